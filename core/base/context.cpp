@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/context.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+
+namespace formwright {
+
+Context::Context() : Context(Host{}) {}
+
+Context::Context(Host host) : host_(std::move(host)), start_(Clock::now()), last_message_(start_ - std::chrono::hours(1)) {}
+
+bool Context::cancelled() const { return host_.cancel_requested && host_.cancel_requested(); }
+
+void Context::check_cancelled() const {
+  if (cancelled()) throw Error(ErrorCode::cancelled, "", "Cancelled.");
+}
+
+void Context::progress(double fraction) { progress(fraction, stage_); }
+
+void Context::progress(double fraction, const std::string& stage) {
+  check_cancelled();
+  if (!host_.on_progress) return;
+  const auto now = Clock::now();
+  const bool new_stage = stage != stage_;
+  const double whole = from_ + (to_ - from_) * std::clamp(fraction, 0.0, 1.0);
+  reported_ = std::max(reported_, whole);
+  if (!new_stage && now - last_message_ < std::chrono::milliseconds(50)) return;
+  stage_ = stage;
+  last_message_ = now;
+  Progress message{reported_, stage_, std::nullopt};
+  const double elapsed = std::chrono::duration<double>(now - start_).count();
+  // Below 3 % or 0.3 s an extrapolation would only flicker.
+  if (reported_ > 0.03 && elapsed > 0.3) message.seconds_left = elapsed * (1 - reported_) / reported_;
+  host_.on_progress(message);
+}
+
+Context::Span::Span(Context& context, double from, double to)
+    : context_(context), outer_from_(context.from_), outer_to_(context.to_) {
+  const double width = outer_to_ - outer_from_;
+  context_.from_ = outer_from_ + width * from;
+  context_.to_ = outer_from_ + width * to;
+}
+
+Context::Span::~Span() {
+  context_.from_ = outer_from_;
+  context_.to_ = outer_to_;
+}
+
+Context::Span Context::span(double from, double to, const std::string& stage) {
+  progress(from, stage);
+  return Span(*this, from, to);
+}
+
+double Context::peak_memory_mb() const { return host_.peak_memory_mb ? host_.peak_memory_mb() : 0.0; }
+
+}  // namespace formwright

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Progress and cancel, handed through every long computation.
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+
+namespace formwright {
+
+struct Progress {
+  double fraction = 0;                  // of the whole job, 0 to 1, never falling
+  std::string stage;                    // what is being done, for a person: "Factorising"
+  std::optional<double> seconds_left;   // an estimate, once there is ground for one
+};
+
+/// What the host (command line, worker, WASM) lends to a computation.
+struct Host {
+  std::function<void(const Progress&)> on_progress;   // may be empty; called from the job's thread
+  std::function<bool()> cancel_requested;             // may be empty; cheap, callable from any thread
+  std::function<double()> peak_memory_mb;             // may be empty
+};
+
+/// Carries the host through nested stages. `span` narrows the fraction that `progress` speaks of, so
+/// that a solver reports 0 to 1 of its own work wherever it is called from.
+/// `check_cancelled` may be called from any thread; the rest belongs to the job's thread.
+class Context {
+ public:
+  Context();  // silent, never cancelled
+  explicit Context(Host host);
+
+  /// Throws Error{cancelled} once the host asks for it. Call at least every 100 ms of work.
+  void check_cancelled() const;
+  bool cancelled() const;
+
+  /// Reports `fraction` of the current span; throttled to 20 messages a second, but a new stage
+  /// always goes out. Also checks for cancel.
+  void progress(double fraction, const std::string& stage);
+  void progress(double fraction);
+
+  /// While the returned object lives, fractions run from `from` to `to` of the enclosing span.
+  class Span {
+   public:
+    Span(const Span&) = delete;
+    Span& operator=(const Span&) = delete;
+    ~Span();
+
+   private:
+    friend class Context;
+    Span(Context& context, double from, double to);
+    Context& context_;
+    double outer_from_, outer_to_;
+  };
+  [[nodiscard]] Span span(double from, double to, const std::string& stage);
+
+  double peak_memory_mb() const;  // 0 when the host does not tell
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Host host_;
+  double from_ = 0, to_ = 1, reported_ = 0;
+  std::string stage_;
+  Clock::time_point start_, last_message_;
+};
+
+/// Wall-clock seconds since construction or the last `lap`.
+class Stopwatch {
+ public:
+  Stopwatch() : start_(std::chrono::steady_clock::now()) {}
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+  double lap() {
+    const double elapsed = seconds();
+    start_ = std::chrono::steady_clock::now();
+    return elapsed;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_;
+};
+
+}  // namespace formwright

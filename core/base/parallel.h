@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Loops over several threads natively; the same loops on one thread in single-threaded WASM.
+#include <cstddef>
+#include <functional>
+
+namespace formwright {
+
+/// Number of threads that parallel_for uses (at least 1).
+int thread_count();
+
+/// Calls body(begin, end) on chunks that cover [0, count). Chunks are fixed by `count` and `grain`
+/// alone, never by the number of threads, so that reductions per chunk are reproducible.
+/// The first exception thrown by a chunk is rethrown after all threads have stopped.
+void parallel_for(std::size_t count, std::size_t grain,
+                  const std::function<void(std::size_t begin, std::size_t end)>& body);
+
+}  // namespace formwright

@@ -39,7 +39,12 @@ class SparseCholesky {
   void solve(Eigen::Ref<Eigen::MatrixXd> b) const;
 
   /// y = L^-1 P b for a sparse b, following its elimination-tree path only; indices in elimination order.
+  /// May be called from several threads at once.
   SparseVector forward(const SparseVector& b) const;
+
+  /// The same for many right-hand sides together: much faster than one by one, because the paths meet
+  /// near the root of the tree and L is read once for a block of them. Uses all threads.
+  std::vector<SparseVector> forward(const std::vector<SparseVector>& b) const;
 
   /// x = P^T L^-T y, in place: y in elimination order, x in the caller's order.
   void backward(Eigen::Ref<Eigen::VectorXd> y) const;

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One rule set, and the directions in which imports may point:
+//   ui, jobs, view <- project <- crafts/<name>, machines <- app.
+import js from '@eslint/js';
+import ts from 'typescript-eslint';
+
+/** Forbids imports into the named folders of src/. */
+const closed = (files, folders, message) => ({
+  files,
+  rules: {
+    'no-restricted-imports': [
+      'error',
+      { patterns: [{ regex: `(^|/)(${folders.join('|')})(/|$)`, message, caseSensitive: true }] },
+    ],
+  },
+});
+
+export default ts.config(
+  { ignores: ['dist', 'public', 'node_modules', 'test-results', 'playwright-report'] },
+  js.configs.recommended,
+  ...ts.configs.strict,
+  {
+    rules: {
+      '@typescript-eslint/consistent-type-imports': 'error',
+      '@typescript-eslint/no-unused-vars': ['error', { argsIgnorePattern: '^_' }],
+      eqeqeq: 'error',
+      'no-console': 'error',
+      'prefer-const': 'error',
+    },
+  },
+  { files: ['scripts/**', 'e2e/**', '*.ts'], rules: { 'no-console': 'off' } },
+  closed(
+    ['src/ui/**'],
+    ['jobs', 'project', 'view', 'crafts', 'machines', 'app'],
+    'ui/ knows no other folder.',
+  ),
+  closed(
+    ['src/jobs/**'],
+    ['ui', 'project', 'view', 'crafts', 'machines', 'app'],
+    'jobs/ is the contract and its backends; it knows no other folder.',
+  ),
+  closed(
+    ['src/view/**'],
+    ['ui', 'jobs', 'project', 'crafts', 'machines', 'app'],
+    'view/ knows meshes, not jobs or documents.',
+  ),
+  closed(
+    ['src/project/**'],
+    ['ui', 'view', 'crafts', 'machines', 'app'],
+    'project/ may use jobs/contract and nothing else.',
+  ),
+  closed(
+    ['src/crafts/relief/**'],
+    ['app', 'machines', 'crafts', 'thermoform', 'zippable', 'evidence'],
+    'A craft uses ui, jobs, project and view; crafts do not know each other or the app.',
+  ),
+);

@@ -1,0 +1,90 @@
+# Third-party libraries under one name each, the same natively and in
+# WebAssembly. Natively they come from Debian packages (setup/apt_packages.txt),
+# in WebAssembly from the prefix that setup/wasm_libraries.sh fills with the
+# same versions; CGAL and Boost headers come from the toolchain tree in both.
+include_guard(GLOBAL)
+include(${CMAKE_CURRENT_LIST_DIR}/compiler.cmake)
+
+if(EMSCRIPTEN AND NOT EXISTS ${FORMWRIGHT_WASM_PREFIX}/complete)
+  message(FATAL_ERROR "${FORMWRIGHT_WASM_PREFIX} is missing or unfinished: run `make setup` (or setup/wasm_libraries.sh)")
+endif()
+
+# formwright_dependency(NAME HEADER [LIBRARY] [SUBDIR folder...]): an imported
+# target fw::NAME with the folder that holds HEADER and, if given, LIBRARY.
+function(formwright_dependency name header)
+  cmake_parse_arguments(ARG "" "" "SUBDIR" ${ARGN})
+  set(hint "run `make setup`")
+  find_path(FW_${name}_INCLUDE_DIR ${header} PATH_SUFFIXES ${ARG_SUBDIR})
+  mark_as_advanced(FW_${name}_INCLUDE_DIR)
+  if(NOT FW_${name}_INCLUDE_DIR)
+    message(FATAL_ERROR "fw::${name}: ${header} was not found; ${hint}")
+  endif()
+  set(library ${ARG_UNPARSED_ARGUMENTS})
+  if(library)
+    find_library(FW_${name}_LIBRARY ${library} PATH_SUFFIXES ${ARG_SUBDIR})
+    mark_as_advanced(FW_${name}_LIBRARY)
+    if(NOT FW_${name}_LIBRARY)
+      message(FATAL_ERROR "fw::${name}: library ${library} was not found; ${hint}")
+    endif()
+    add_library(fw::${name} UNKNOWN IMPORTED GLOBAL)
+    set_target_properties(fw::${name} PROPERTIES IMPORTED_LOCATION ${FW_${name}_LIBRARY})
+  else()
+    add_library(fw::${name} INTERFACE IMPORTED GLOBAL)
+  endif()
+  # INTERFACE_INCLUDE_DIRECTORIES of an imported target are SYSTEM.
+  target_include_directories(fw::${name} INTERFACE ${FW_${name}_INCLUDE_DIR})
+endfunction()
+
+# Headers only
+find_package(Eigen3 3.4 REQUIRED CONFIG)
+find_package(nlohmann_json 3.11 REQUIRED CONFIG)
+formwright_dependency(fast_float fast_float/fast_float.h)
+
+# zlib, PNG, zip (3MF), XML (3MF, SVG)
+formwright_dependency(zlib zlib.h z)
+formwright_dependency(png png.h png)
+target_link_libraries(fw::png INTERFACE fw::zlib)
+formwright_dependency(minizip minizip/unzip.h minizip)
+target_link_libraries(fw::minizip INTERFACE fw::zlib)
+formwright_dependency(pugixml pugixml.hpp pugixml)
+
+# Compiled libraries, so nobody defines an *_IMPLEMENTATION macro. OBJ in
+# doubles. The glTF loader decodes its images through the stb library.
+formwright_dependency(stb stb_image.h stb SUBDIR stb)
+formwright_dependency(tinyobjloader tiny_obj_loader.h tinyobjloader_double)
+target_compile_definitions(fw::tinyobjloader INTERFACE TINYOBJLOADER_USE_DOUBLE)
+formwright_dependency(tinygltf tiny_gltf.h tinygltf)
+target_link_libraries(fw::tinygltf INTERFACE fw::stb)
+
+# Boost 1.83 headers (Beast and Asio in the native worker, CGAL's own needs).
+add_library(fw::boost INTERFACE IMPORTED GLOBAL)
+target_include_directories(fw::boost INTERFACE ${FORMWRIGHT_TOOLCHAIN}/include)
+
+# CGAL 6.0.1. Boost's exact numbers instead of GMP's on both platforms, so that
+# both compute the same.
+add_library(fw::cgal INTERFACE IMPORTED GLOBAL)
+target_link_libraries(fw::cgal INTERFACE fw::boost)
+target_compile_definitions(fw::cgal INTERFACE CGAL_DISABLE_GMP)
+if(EMSCRIPTEN)
+  # WebAssembly cannot change the rounding mode: without this, exact
+  # predicates are silently wrong.
+  target_compile_definitions(fw::cgal INTERFACE CGAL_ALWAYS_ROUND_TO_NEAREST)
+else()
+  # Interval arithmetic switches the rounding mode behind the compiler's back.
+  target_compile_options(fw::cgal INTERFACE -frounding-math)
+endif()
+
+find_package(GTest REQUIRED CONFIG)
+
+if(NOT EMSCRIPTEN)
+  find_package(embree 3 REQUIRED CONFIG)
+  add_library(fw::embree ALIAS embree)
+
+  # The pthread flavour of OpenBLAS by its full path, not whatever the
+  # alternatives system makes of libblas.so.
+  formwright_dependency(blas cblas.h openblas SUBDIR openblas-pthread x86_64-linux-gnu/openblas-pthread)
+
+  # Tests and benchmarks compare our own sparse factorisation with it.
+  formwright_dependency(cholmod cholmod.h cholmod SUBDIR suitesparse)
+  target_link_libraries(fw::cholmod INTERFACE fw::blas)
+endif()

@@ -82,4 +82,17 @@ Positions corner_angles(const TriangleMesh& mesh) {
   return angles;
 }
 
+Eigen::VectorXd dihedral_angles(const TriangleMesh& mesh, const Adjacency& adjacency) {
+  const Positions normals = face_normals(mesh);
+  Eigen::VectorXd angles = Eigen::VectorXd::Zero(adjacency.edge_count());
+  for (int e = 0; e < adjacency.edge_count(); ++e) {
+    const int h = adjacency.halfedges_of_edge(e)[0], g = adjacency.opposite(h);
+    if (g < 0) continue;
+    const Vec3 n = normals.row(h / 3), m = normals.row(g / 3);
+    const Vec3 along = unit_or_zero(mesh.V.row(adjacency.to(h)) - mesh.V.row(adjacency.from(h)));
+    angles[e] = std::atan2(along.dot(n.cross(m)), n.dot(m));
+  }
+  return angles;
+}
+
 }  // namespace formwright

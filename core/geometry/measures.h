@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // Areas, normals, volume, angles: what one reads off a triangle mesh without solving anything.
-#include <vector>
+#include <Eigen/Geometry>
 
+#include "geometry/adjacency.h"
 #include "geometry/triangle_mesh.h"
 
 namespace formwright {
@@ -47,5 +48,10 @@ double mean_edge_length(const TriangleMesh& mesh);
 
 /// m x 3: interior angle in radians at each corner; 0 where two corners coincide.
 Positions corner_angles(const TriangleMesh& mesh);
+
+/// Per edge of `adjacency` (built from this mesh): the angle in radians from one face's normal to the
+/// other's, positive where the surface is convex, 0 where it is flat, in (-pi, pi]. 0 at edges that do
+/// not join exactly two faces oriented alike, and beside faces without area.
+Eigen::VectorXd dihedral_angles(const TriangleMesh& mesh, const Adjacency& adjacency);
 
 }  // namespace formwright

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "job/catalog.h"
+
+#include "geometry/io/mesh_io.h"
+#include "geometry/samples/samples.h"
+#include "job/mesh_operations.h"
+#include "job/relief_operation.h"
+
+namespace formwright {
+
+const char* version() { return FORMWRIGHT_VERSION; }
+
+const std::vector<Operation>& operations() {
+  static const std::vector<Operation> all = {relief_operation(), import_operation(), simplify_operation(), subdivide_operation(),
+                                             convert_operation()};
+  return all;
+}
+
+const Operation* find_operation(const std::string& name) {
+  for (const Operation& operation : operations())
+    if (operation.name == name) return &operation;
+  return nullptr;
+}
+
+Json operation_json(const Operation& operation) {
+  Json inputs = Json::array(), properties = Json::object(), outputs = Json::array(), report = Json::array();
+  for (const InputInfo& input : operation.inputs)
+    inputs.push_back({{"name", input.name}, {"label", input.label}, {"required", input.required}, {"extensions", input.extensions},
+                      {"accepts_sample", input.accepts_sample}, {"help", input.help}});
+  for (const ParameterInfo& info : operation.parameters) properties[info.name] = parameter_schema(info);
+  for (const OutputInfo& output : operation.outputs)
+    outputs.push_back({{"name", output.name}, {"media_type", output.media_type}, {"label", output.label}, {"help", output.help},
+                       {"default", output.made_by_default}});
+  for (const ReportField& field : operation.report)
+    report.push_back({{"name", field.name}, {"label", field.label}, {"unit", field.unit}, {"help", field.help}});
+  return {{"name", operation.name}, {"title", operation.title}, {"summary", operation.summary}, {"inputs", inputs},
+          {"parameters", {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"type", "object"}, {"additionalProperties", false}, {"properties", properties}}},
+          {"outputs", outputs}, {"report", report}};
+}
+
+Json catalog_json() {
+  Json all = Json::array(), samples = Json::array(), formats = Json::array();
+  for (const Operation& operation : operations()) all.push_back(operation_json(operation));
+  for (const SampleInfo& sample : sample_catalog())
+    samples.push_back({{"name", sample.name}, {"title", sample.title}, {"description", sample.description},
+                       {"default_vertices", sample.default_vertices}, {"closed", sample.closed}});
+  for (const MeshFormatInfo& format : mesh_formats())
+    formats.push_back({{"extension", format.extension}, {"media_type", format.media_type}, {"title", format.title}});
+  return {{"version", version()}, {"operations", all}, {"samples", samples}, {"mesh_formats", formats}};
+}
+
+}  // namespace formwright

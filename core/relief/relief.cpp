@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "relief/relief.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geometry/adjacency.h"
+#include "geometry/ray_caster.h"
+#include "relief/appearance_energy.h"
+#include "relief/baselines.h"
+
+namespace formwright {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+struct SlabBounds {
+  BoundedQpConstraints constraints;  // without rows
+  std::vector<char> bounded;
+};
+
+/// -thickness <= z <= 0 for every bounded vertex, up to the common scale mu = 1 + kappa m of eq. (3.11):
+///   1 + kappa u in mu [1 + kappa l, 1 + kappa h]   <=>   l + (1 + kappa l) m <= u <= h + (1 + kappa h) m.
+SlabBounds slab_bounds(const ViewFrame& frame, const Visibility& visibility, BoundedVertices which, double thickness) {
+  const Eigen::Index n = frame.P.rows();
+  SlabBounds slab;
+  BoundedQpConstraints& c = slab.constraints;
+  c.lower = Eigen::VectorXd::Constant(n, -infinity);
+  c.upper = Eigen::VectorXd::Constant(n, infinity);
+  c.lower_slope = c.upper_slope = Eigen::VectorXd::Ones(n);
+  c.group.assign(static_cast<std::size_t>(n), 0);
+  c.gauge = Eigen::VectorXd::Constant(n, 1.0 / static_cast<double>(n));
+  slab.bounded.assign(static_cast<std::size_t>(n), 0);
+  for (int i = 0; i < n; ++i) {
+    if (which == BoundedVertices::visible && !visibility.vertex[static_cast<std::size_t>(i)]) continue;
+    slab.bounded[static_cast<std::size_t>(i)] = 1;
+    c.lower[i] = frame.u_for_depth(i, -thickness);
+    c.upper[i] = frame.u_for_depth(i, 0);
+    c.lower_slope[i] = 1 + frame.kappa * c.lower[i];
+    c.upper_slope[i] = 1 + frame.kappa * c.upper[i];
+  }
+  return slab;
+}
+
+/// Divides the common scale out again, eq. (3.11) at mu = 1. Where the bounds leave it free, the relief is put
+/// back against its plate: the smallest m, as the term alpha |mu|^2 of eq. (3.14) would choose.
+Eigen::VectorXd settled(const ViewFrame& frame, const BoundedQpConstraints& c, const BoundedQpSolution& qp) {
+  double least = -infinity, most = infinity;
+  for (Eigen::Index i = 0; i < qp.u.size(); ++i) {
+    if (std::isinf(c.upper[i])) continue;
+    least = std::max(least, (qp.u[i] - c.upper[i]) / c.upper_slope[i]);
+    most = std::min(most, (qp.u[i] - c.lower[i]) / c.lower_slope[i]);
+  }
+  const double m = least < most ? least : 0.5 * (least + most);
+  Eigen::VectorXd u = (qp.u.array() - m) / (1 + frame.kappa * m);
+  return u.cwiseMax(c.lower).cwiseMin(c.upper);
+}
+
+double order_violation(const std::vector<InequalityRow>& rows, const Eigen::VectorXd& u) {
+  double worst = 0;
+  for (const InequalityRow& row : rows) {
+    double value = -row.bound;
+    for (std::size_t k = 0; k < row.index.size(); ++k) value += row.coefficient[k] * u[row.index[k]];
+    worst = std::max(worst, -value);
+  }
+  return worst;
+}
+
+/// Distance from the viewpoint, or straight on from the plane one width in front of the model.
+Eigen::VectorXd ray_lengths(const ViewFrame& frame, const Eigen::VectorXd& u) {
+  if (frame.kappa == 0) return frame.P.col(2) + u - Eigen::VectorXd::Constant(u.size(), frame.P.col(2).minCoeff() - 1);
+  Eigen::VectorXd lambda(u.size());
+  const Vec3 viewpoint(0, 0, -1 / frame.kappa);
+  for (Eigen::Index i = 0; i < u.size(); ++i) lambda[i] = (frame.P.row(i).transpose() - viewpoint).norm() * (1 + frame.kappa * u[i]);
+  return lambda;
+}
+
+}  // namespace
+
+ReliefSolver::~ReliefSolver() = default;
+
+std::string ReliefSolver::key(const ReliefOptions& options) {
+  // The viewing distance counts in units of the width; everything else here is free of the size.
+  Json key = {write_parameters(options).at("projection"), options.direction, options.up, options.hidden_weight, options.depth_order};
+  if (options.projection == Projection::perspective) {
+    if (options.distance_mm) key.push_back(*options.distance_mm / options.width_mm);
+    else key.push_back(Json{options.field_of_view_deg});
+  }
+  return key.dump();
+}
+
+ReliefSolver::ReliefSolver(const TriangleMesh& mesh, const ReliefOptions& options, Context& context) : F_(mesh.F) {
+  Stopwatch watch;
+  context.progress(0, "Looking from the viewpoint");
+  frame_ = make_view_frame(mesh, options);
+  {
+    const RayCaster caster(TriangleMesh{frame_.P, F_});
+    visibility_ = find_visibility(frame_, F_, caster, context);
+    if (options.depth_order) order_rows_ = depth_order_rows(frame_, F_, caster, context);
+  }
+  if (visibility_.visible_vertices == 0)
+    throw Error(ErrorCode::invalid_input, "direction", "Nothing of the model is visible from this viewpoint: choose another looking direction.");
+  context.progress(0.25, "Measuring the surface");
+  Eigen::VectorXd weights = Eigen::VectorXd::Ones(frame_.P.rows());
+  for (Eigen::Index i = 0; i < weights.size(); ++i)
+    if (!visibility_.vertex[static_cast<std::size_t>(i)]) weights[i] = options.hidden_weight;
+  energy_ = std::make_unique<AppearanceEnergy>(frame_, F_, weights);
+  SparseMatrix Q = energy_->lower_hessian(context);
+  // The mean curvature scale of the mesh sits in Q; a unit diagonal keeps every tolerance below free of it.
+  Q *= 1 / Q.diagonal().mean();
+  std::vector<int> component = vertex_components(mesh);
+  seconds_setup_ = watch.lap();
+  const auto span = context.span(0.35, 1, "Factorising");
+  qp_.set_energy(Q, std::move(component), frame_.P, context);
+  seconds_factorise_ = watch.seconds();
+}
+
+Relief ReliefSolver::solve(const ReliefOptions& options, Context& context) {
+  const double thickness = options.thickness_mm / options.width_mm;
+  if (frame_.kappa * thickness >= 0.5)
+    throw Error(ErrorCode::invalid_input, "thickness_mm", "The relief would reach more than half-way to the viewpoint: choose a smaller thickness or look from further away.");
+  SlabBounds slab = slab_bounds(frame_, visibility_, options.bounded_vertices, thickness);
+  // Lent, not copied: at 300k vertices the rows are tens of megabytes.
+  slab.constraints.rows.swap(order_rows_);
+  struct Return {
+    std::vector<InequalityRow>&from, &to;
+    ~Return() { to.swap(from); }
+  } give_back{slab.constraints.rows, order_rows_};
+
+  Relief relief;
+  BoundedQpOptions qp_options;
+  qp_options.method = options.method;
+  qp_options.violation_tolerance = 1e-9 * thickness;
+  {
+    const auto span = context.span(0, 0.9, "Fitting into the slab");
+    relief.qp = qp_.solve(slab.constraints, qp_options, context);
+  }
+  context.progress(0.9, "Comparing normals");
+  relief.u = settled(frame_, slab.constraints, relief.qp);
+  relief.moved = frame_.moved(relief.u);
+  relief.energy = (*energy_)(relief.u);
+  relief.normal_error = normal_error(frame_, F_, visibility_, relief.moved);
+  const Eigen::VectorXd linear = linear_compression(frame_, thickness, slab.bounded);
+  relief.energy_linear = (*energy_)(linear);
+  relief.normal_error_linear = normal_error(frame_, F_, visibility_, frame_.moved(linear));
+
+  const double size = options.width_mm;
+  relief.lambda_mm = size * ray_lengths(frame_, relief.u);
+  relief.lambda_min_mm = Eigen::VectorXd::Zero(relief.u.size());
+  relief.lambda_max_mm = Eigen::VectorXd::Constant(relief.u.size(), infinity);
+  const Eigen::VectorXd lowest = ray_lengths(frame_, slab.constraints.lower), highest = ray_lengths(frame_, slab.constraints.upper);
+  for (Eigen::Index i = 0; i < relief.u.size(); ++i) {
+    if (!slab.bounded[static_cast<std::size_t>(i)]) continue;
+    relief.lambda_min_mm[i] = size * lowest[i];
+    relief.lambda_max_mm[i] = size * highest[i];
+    relief.bound_violation_max_mm = std::max({relief.bound_violation_max_mm, relief.lambda_min_mm[i] - relief.lambda_mm[i], relief.lambda_mm[i] - relief.lambda_max_mm[i]});
+  }
+  relief.order_rows = static_cast<int>(slab.constraints.rows.size());
+  relief.order_violation_max_mm = size * order_violation(slab.constraints.rows, relief.u);
+  if (!relief.u.allFinite()) throw Error(ErrorCode::could_not_solve, "", "The solver lost its footing on this model: simplify or repair it and try again.");
+  return relief;
+}
+
+double ReliefSolver::memory_mb() const {
+  const double n = static_cast<double>(frame_.P.rows());
+  return qp_.memory_mb() + 1e-6 * (n * 300 + static_cast<double>(order_rows_.size()) * 200);
+}
+
+}  // namespace formwright

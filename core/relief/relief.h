@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Appearance-mimicking surfaces, thesis chapter 3: the relief that looks like the model from one viewpoint and
+// stays within hard bounds.
+#include <memory>
+#include <string>
+
+#include "base/context.h"
+#include "geometry/triangle_mesh.h"
+#include "numerics/bounded_qp.h"
+#include "relief/normal_error.h"
+#include "relief/relief_options.h"
+#include "relief/view_frame.h"
+#include "relief/visibility.h"
+
+namespace formwright {
+
+/// A solved relief. Normalised lengths are in units of the width; `*_mm` are in millimetres.
+struct Relief {
+  Eigen::VectorXd u;                       // n, depth parameter of ViewFrame, within its bounds exactly
+  Positions moved;                         // n x 3, view coordinates
+  Eigen::VectorXd lambda_mm;               // n, distance from the viewpoint along the ray
+  Eigen::VectorXd lambda_min_mm, lambda_max_mm;  // 0 and +inf where no bound applies
+  double energy = 0, energy_linear = 0;    // eq. (3.13), free of units
+  NormalError normal_error, normal_error_linear;
+  double bound_violation_max_mm = 0;       // over all bounded vertices, of the final positions
+  double order_violation_max_mm = 0;       // over all depth-order rows
+  int order_rows = 0;
+  BoundedQpSolution qp;                    // statistics; qp.u is in the gauge of mean s = 1
+};
+
+/// Everything that depends on the mesh and the viewpoint alone, the factorisation included: other bounds
+/// (thickness) and other sizes (width) are solved without factoring again.
+class ReliefSolver {
+ public:
+  /// `mesh`: manifold and oriented (repair it first), in any unit.
+  /// Throws Error: invalid_input (see make_view_frame; nothing visible), could_not_solve, cancelled, out_of_memory.
+  ReliefSolver(const TriangleMesh& mesh, const ReliefOptions& options, Context& context);
+
+  /// Options with equal keys share a solver.
+  static std::string key(const ReliefOptions& options);
+
+  /// Throws Error: invalid_input (thickness beyond the viewing distance), could_not_solve, cancelled.
+  Relief solve(const ReliefOptions& options, Context& context);
+
+  const ViewFrame& frame() const { return frame_; }
+  const Triangles& F() const { return F_; }
+  const Visibility& visibility() const { return visibility_; }
+  double seconds_setup() const { return seconds_setup_; }          // view, rays, energy
+  double seconds_factorise() const { return seconds_factorise_; }  // ordering and factorisation
+  double memory_mb() const;
+
+ private:
+  ViewFrame frame_;
+  Triangles F_;
+  Visibility visibility_;
+  std::vector<InequalityRow> order_rows_;
+  std::unique_ptr<class AppearanceEnergy> energy_;
+  BoundedQp qp_;
+  double seconds_setup_ = 0, seconds_factorise_ = 0;
+
+ public:
+  ~ReliefSolver();
+};
+
+}  // namespace formwright

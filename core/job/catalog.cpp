@@ -44,7 +44,7 @@ Json catalog_json() {
   for (const SampleInfo& sample : sample_catalog())
     samples.push_back({{"name", sample.name}, {"title", sample.title}, {"description", sample.description},
                        {"default_vertices", sample.default_vertices}, {"closed", sample.closed}});
-  for (const MeshFormatInfo& format : mesh_formats())
+  for (const MeshFormatInfo& format : mesh_formats)
     formats.push_back({{"extension", format.extension}, {"media_type", format.media_type}, {"title", format.title}});
   return {{"version", version()}, {"operations", all}, {"samples", samples}, {"mesh_formats", formats}};
 }

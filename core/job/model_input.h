@@ -24,11 +24,11 @@ InputInfo model_input_info();
 /// Reads and repairs, or finds it in the session.
 std::shared_ptr<const LoadedModel> load_model(const OperationCall& call, const std::string& input_name = "mesh");
 
-/// Helpers for outputs.
-OutputBlob make_output(const Operation& operation, const std::string& name, Bytes bytes);
 OutputBlob make_output(const OutputInfo& info, Bytes bytes);
 
-/// Formats in which every mesh output can be asked for, "<stem>.<extension>".
-std::vector<OutputInfo> mesh_outputs(const std::string& stem, const std::string& default_extension);
+/// One output a format, "<stem>.<extension>"; the one of `made_by_default` without being asked for.
+std::vector<OutputInfo> mesh_outputs(const std::string& stem, MeshFormat made_by_default);
+/// Those of them that the call wants.
+std::vector<OutputBlob> write_mesh_outputs(const OperationCall& call, const std::vector<OutputInfo>& outputs, const Model& model);
 
 }  // namespace formwright

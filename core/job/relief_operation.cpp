@@ -15,6 +15,7 @@ namespace {
 
 // Of the relief's thickness: how far the solid's larger triangles may leave the height field.
 constexpr double solid_tolerance = 1e-3;
+constexpr double unbounded_mm = 1e30;  // stands for "no bound" in relief.ply, where infinity has no safe spelling
 
 std::vector<OutputInfo> outputs() {
   return {{"relief.ply", "application/x-ply", "PLY", "The deformed model with lambda, its bounds, visibility and normal error of every vertex.", true},
@@ -92,17 +93,15 @@ Model display_model(const ReliefSolver& solver, const Relief& relief, PlateSize 
   return model;
 }
 
-PlyExtras ply_columns(const ReliefSolver& solver, const Relief& relief) {
+std::vector<VertexColumn> ply_columns(const ReliefSolver& solver, const Relief& relief) {
   const Eigen::Index n = relief.u.size();
   Eigen::VectorXd visible(n);
   for (Eigen::Index i = 0; i < n; ++i) visible[i] = solver.visibility().vertex[static_cast<std::size_t>(i)];
-  PlyExtras extras;
-  extras.vertex = {{"lambda", relief.lambda_mm, PlyType::float64},
-                   {"lambda_min", relief.lambda_min_mm, PlyType::float64},
-                   {"lambda_max", relief.lambda_max_mm, PlyType::float64},
-                   {"visible", visible, PlyType::uint8},
-                   {"normal_error_deg", relief.normal_error.vertex_deg, PlyType::float64}};
-  return extras;
+  return {{"lambda", relief.lambda_mm, ColumnKind::float64},
+          {"lambda_min", relief.lambda_min_mm, ColumnKind::float64},
+          {"lambda_max", relief.lambda_max_mm.cwiseMin(unbounded_mm), ColumnKind::float64},
+          {"visible", visible, ColumnKind::uint8},
+          {"normal_error_deg", relief.normal_error.vertex_deg, ColumnKind::float64}};
 }
 
 void report_relief(Json& report, const LoadedModel& loaded, const ReliefSolver& solver, const Relief& relief, const ReliefOptions& options) {
@@ -178,9 +177,12 @@ OperationResult run_relief(const OperationCall& call) {
   if (call.wants("relief.ply")) {
     Model model;
     model.mesh = {frame.to_model(relief.moved, options.width_mm), solver->F()};
-    add("relief.ply", write_ply(model, ply_columns(*solver, relief)));
+    const std::vector<VertexColumn> columns = ply_columns(*solver, relief);
+    WriteOptions write;
+    write.columns = columns;
+    add("relief.ply", write_model(model, MeshFormat::ply, write, context));
   }
-  if (call.wants("relief.glb")) add("relief.glb", write_glb(display_model(*solver, relief, plate, options)));
+  if (call.wants("relief.glb")) add("relief.glb", write_model(display_model(*solver, relief, plate, options), MeshFormat::glb, context));
   const bool wants_solid = call.wants("relief.stl") || call.wants("relief.3mf") || call.wants("relief.obj");
   if (wants_solid || call.wants("heightmap.png")) {
     const HeightMap map = make_height_map(relief.moved, solver->F(), options.width_mm, plate, options.pixel_mm, options.thickness_mm, context);
@@ -203,7 +205,7 @@ OperationResult run_relief(const OperationCall& call) {
       solid.mesh = make_solid(map, options.plate_mm, solid_tolerance * options.thickness_mm, context);
       report["watertight"] = Adjacency(solid.mesh).is_closed();
       for (const char* name : {"relief.stl", "relief.3mf", "relief.obj"})
-        if (call.wants(name)) add(name, write_model(solid, std::string(name).substr(7)));
+        if (call.wants(name)) add(name, write_model(solid, *mesh_format_of_extension(name), context));
     }
   }
   report["seconds_read"] = loaded->seconds_read + loaded->seconds_repair;

@@ -12,7 +12,7 @@ AppearanceEnergy::AppearanceEnergy(const ViewFrame& frame, const Triangles& F, c
   const Eigen::Index n = frame.P.rows();
   const TriangleMesh mesh{frame.P, F};
   const SparseMatrix C = cotangent_laplacian(mesh);
-  const Eigen::VectorXd A = mixed_voronoi_areas(mesh);
+  const Eigen::VectorXd A = vertex_areas(mesh);
   rays_ = frame.kappa * frame.P;
   rays_.col(2).array() += 1;
   row_weight_ = weights.array().square() / A.array();

@@ -109,7 +109,7 @@ ReliefSolver::ReliefSolver(const TriangleMesh& mesh, const ReliefOptions& option
   SparseMatrix Q = energy_->lower_hessian(context);
   // The mean curvature scale of the mesh sits in Q; a unit diagonal keeps every tolerance below free of it.
   Q *= 1 / Q.diagonal().mean();
-  std::vector<int> component = vertex_components(mesh);
+  std::vector<int> component = vertex_components(Adjacency(mesh)).of;
   seconds_setup_ = watch.lap();
   const auto span = context.span(0.35, 1, "Factorising");
   qp_.set_energy(Q, std::move(component), frame_.P, context);

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "job/model_input.h"
+
+#include "geometry/repair.h"
+#include "geometry/samples/samples.h"
+
+namespace formwright {
+namespace {
+
+double megabytes(const LoadedModel& loaded) {
+  const Model& model = loaded.model;
+  double bytes = static_cast<double>(model.mesh.V.size() + model.UV.size() + model.vertex_colours.size()) * sizeof(double) +
+                 static_cast<double>(model.mesh.F.size() + model.FT.size()) * sizeof(int);
+  for (const Texture& texture : model.textures) bytes += static_cast<double>(texture.bytes.size());
+  return bytes * 1e-6;
+}
+
+/// Repair renumbers vertices and faces; what hangs on them follows.
+Model follow_repair(Model&& model, RepairedMesh&& repaired) {
+  const auto pick_rows = [](const auto& matrix, const std::vector<int>& rows) {
+    std::decay_t<decltype(matrix)> picked(static_cast<Eigen::Index>(rows.size()), matrix.cols());
+    for (std::size_t i = 0; i < rows.size(); ++i) picked.row(static_cast<Eigen::Index>(i)) = matrix.row(rows[i]);
+    return picked;
+  };
+  const auto pick = [](const std::vector<int>& values, const std::vector<int>& rows) {
+    std::vector<int> picked;
+    picked.reserve(rows.size());
+    for (const int row : rows) picked.push_back(values[static_cast<std::size_t>(row)]);
+    return picked;
+  };
+  Model result = std::move(model);
+  if (result.vertex_colours.rows() > 0) result.vertex_colours = pick_rows(result.vertex_colours, repaired.old_vertex);
+  if (result.FT.rows() > 0) {
+    Triangles corners = pick_rows(result.FT, repaired.old_face);
+    for (Eigen::Index f = 0; f < corners.rows(); ++f)
+      if (repaired.flipped[static_cast<std::size_t>(f)]) std::swap(corners(f, 1), corners(f, 2));
+    result.FT = std::move(corners);
+  }
+  if (!result.face_group.empty()) result.face_group = pick(result.face_group, repaired.old_face);
+  if (!result.face_material.empty()) result.face_material = pick(result.face_material, repaired.old_face);
+  result.mesh = std::move(repaired.mesh);
+  return result;
+}
+
+}  // namespace
+
+InputInfo model_input_info() {
+  InputInfo info{"mesh", "Model", "A triangle or polygon mesh.", {}, true, true};
+  for (const MeshFormatInfo& format : mesh_formats) info.extensions.emplace_back(format.extension);
+  return info;
+}
+
+std::shared_ptr<const LoadedModel> load_model(const OperationCall& call, const std::string& input_name) {
+  const InputBlob& input = call.inputs.at(input_name);
+  const std::string key = "model:" + input.key();
+  if (auto known = call.session.find<const LoadedModel>(key)) {
+    // A copy of the small parts only would do, but a second report must not claim the first one's seconds.
+    if (known->seconds_read == 0 && known->seconds_repair == 0) return known;
+    auto again = std::make_shared<LoadedModel>(*known);
+    again->seconds_read = again->seconds_repair = 0;
+    std::shared_ptr<const LoadedModel> kept = again;
+    call.session.keep(key, kept, megabytes(*again));
+    return kept;
+  }
+  auto loaded = std::make_shared<LoadedModel>();
+  loaded->key = input.key();
+  Stopwatch watch;
+  call.context.progress(0, "Reading the model");
+  if (!input.sample.empty()) {
+    loaded->model = make_sample(input.sample, input.sample_vertices, call.context);
+    loaded->file_format = "sample";
+  } else {
+    ReadOptions options;
+    options.where = input_name;
+    ModelFile file = read_model_file(*input.bytes, input.file_name, options, call.context);
+    loaded->model = std::move(file.model);
+    loaded->file_format = mesh_format_info(file.format).extension;
+    loaded->repairs = std::move(file.notes);
+  }
+  loaded->seconds_read = watch.lap();
+  call.context.progress(0.6, "Checking the model");
+  RepairedMesh repaired = repair(loaded->model.mesh, {}, call.context);
+  loaded->repairs.insert(loaded->repairs.end(), repaired.sentences.begin(), repaired.sentences.end());
+  loaded->model = follow_repair(std::move(loaded->model), std::move(repaired));
+  loaded->seconds_repair = watch.lap();
+  std::shared_ptr<const LoadedModel> kept = loaded;
+  call.session.keep(key, kept, megabytes(*loaded));
+  return kept;
+}
+
+OutputBlob make_output(const OutputInfo& info, Bytes bytes) {
+  return {info.name, info.media_type, std::make_shared<const Bytes>(std::move(bytes))};
+}
+
+std::vector<OutputInfo> mesh_outputs(const std::string& stem, MeshFormat made_by_default) {
+  std::vector<OutputInfo> outputs;
+  for (const MeshFormatInfo& format : mesh_formats)
+    outputs.push_back({stem + "." + std::string(format.extension), std::string(format.media_type), std::string(format.title), "",
+                       format.format == made_by_default});
+  return outputs;
+}
+
+std::vector<OutputBlob> write_mesh_outputs(const OperationCall& call, const std::vector<OutputInfo>& outputs, const Model& model) {
+  std::vector<OutputBlob> written;
+  for (const OutputInfo& info : outputs)
+    if (call.wants(info.name)) written.push_back(make_output(info, write_model(model, *mesh_format_of_extension(info.name), call.context)));
+  return written;
+}
+
+}  // namespace formwright

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "command_line.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "job/catalog.h"
+
+namespace formwright {
+namespace {
+
+std::string dashed(std::string name) {
+  std::replace(name.begin(), name.end(), '_', '-');
+  return "--" + name;
+}
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> parts;
+  std::size_t start = 0;
+  while (start <= text.size()) {
+    const std::size_t comma = std::min(text.find(',', start), text.size());
+    if (comma > start) parts.push_back(text.substr(start, comma - start));
+    start = comma + 1;
+  }
+  return parts;
+}
+
+int sample_vertices(const std::string& text) {
+  char* end = nullptr;
+  const long count = std::strtol(text.c_str(), &end, 10);
+  if (text.empty() || *end != '\0' || count < 0 || count > 5'000'000)
+    throw Error(ErrorCode::invalid_input, "sample-vertices", "--sample-vertices must be a whole number up to 5000000, and is \"" + text + "\".");
+  return static_cast<int>(count);
+}
+
+std::string padded(std::string text, std::size_t width) {
+  // Two bytes of UTF-8 show as one character.
+  const auto shown = static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
+  return shown < width ? text + std::string(width - shown, ' ') : text + "\n" + std::string(width + 2, ' ');
+}
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+std::string value_text(const ParameterInfo& info) {
+  if (info.kind == ParameterKind::choice) {
+    std::string list;
+    for (const auto& choice : info.choices) list += (list.empty() ? "" : "|") + choice;
+    return list;
+  }
+  if (info.kind == ParameterKind::boolean) return "on|off";
+  if (info.kind == ParameterKind::vector3) return "X,Y,Z";
+  return info.kind == ParameterKind::text ? "TEXT" : "N";
+}
+
+std::string default_text(const ParameterInfo& info) {
+  if (info.default_value.is_null()) return "auto";
+  if (info.default_value.is_boolean()) return info.default_value.get<bool>() ? "on" : "off";
+  if (info.default_value.is_string()) return info.default_value.get<std::string>();
+  if (info.default_value.is_number()) return number(info.default_value.get<double>());
+  std::string list;
+  for (const Json& item : info.default_value) list += (list.empty() ? "" : ",") + number(item.get<double>());
+  return list;
+}
+
+}  // namespace
+
+ParsedCommand parse_command(const Operation& operation, const std::vector<std::string>& words) {
+  ParsedCommand command;
+  Json parameters = Json::object(), inputs = Json::object();
+  int vertices = 0;
+  std::string sample;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    std::string flag = words[i], value;
+    if (flag == "--help" || flag == "-h") {
+      command.help = true;
+      return command;
+    }
+    if (!flag.starts_with("--")) throw Error(ErrorCode::invalid_input, flag, "\"" + flag + "\" is not a flag: every value needs one, such as --mesh FILE.");
+    const std::size_t equals = flag.find('=');
+    const bool joined = equals != std::string::npos;
+    if (joined) {
+      value = flag.substr(equals + 1);
+      flag.resize(equals);
+    }
+    if (flag == "--quiet") {
+      command.quiet = true;
+      continue;
+    }
+    const auto info = std::find_if(operation.parameters.begin(), operation.parameters.end(), [&](const ParameterInfo& p) { return flag_name(p) == flag; });
+    const auto input = std::find_if(operation.inputs.begin(), operation.inputs.end(), [&](const InputInfo& in) { return dashed(in.name) == flag; });
+    const bool known = info != operation.parameters.end() || input != operation.inputs.end() || flag == "--out" || flag == "--sample" ||
+                       flag == "--sample-vertices" || flag == "--outputs";
+    if (!known) {
+      std::string name = flag.substr(2);
+      std::replace(name.begin(), name.end(), '-', '_');
+      std::string hint;
+      try {
+        parameters_detail::reject_unknown(name, operation.parameters);
+      } catch (const Error& error) {
+        const std::string text = error.what();
+        if (const auto at = text.find("did you mean "); at != std::string::npos) {
+          hint = dashed(text.substr(at + 13));
+          hint = "; did you mean " + hint.substr(0, hint.size() - 1) + "?";
+        }
+      }
+      throw Error(ErrorCode::invalid_input, flag, "There is no flag " + flag + (hint.empty() ? ": see formwright " + operation.name + " --help." : hint));
+    }
+    if (!joined) {
+      // A boolean may stand alone: --depth-order means on.
+      const bool last = i + 1 >= words.size();
+      if (info != operation.parameters.end() && info->kind == ParameterKind::boolean && (last || words[i + 1].starts_with("--"))) value = "on";
+      else if (last) throw Error(ErrorCode::invalid_input, flag, flag + " needs a value.");
+      else value = words[++i];
+    }
+    if (info != operation.parameters.end()) parameters[info->name] = parse_flag(*info, value);
+    else if (input != operation.inputs.end()) command.files[input->name] = value;
+    else if (flag == "--out") command.out = value;
+    else if (flag == "--sample") sample = value;
+    else if (flag == "--sample-vertices") vertices = sample_vertices(value);
+    else command.message["outputs"] = split(value);
+  }
+  if (!sample.empty()) {
+    const auto input = std::find_if(operation.inputs.begin(), operation.inputs.end(), [](const InputInfo& in) { return in.accepts_sample; });
+    if (input == operation.inputs.end()) throw Error(ErrorCode::invalid_input, "--sample", operation.name + " takes no sample.");
+    if (command.files.contains(input->name)) throw Error(ErrorCode::invalid_input, "--sample", "Give either --sample or " + dashed(input->name) + ", not both.");
+    inputs[input->name] = {{"sample", sample}, {"vertices", vertices}};
+  }
+  for (const InputInfo& input : operation.inputs)
+    if (input.required && !inputs.contains(input.name) && !command.files.contains(input.name))
+      throw Error(ErrorCode::invalid_input, dashed(input.name), "Say which model: " + dashed(input.name) + " FILE" + (input.accepts_sample ? ", or --sample NAME." : "."));
+  if (command.out.empty()) throw Error(ErrorCode::invalid_input, "--out", "Say where the results go: --out DIR.");
+  command.message["operation"] = operation.name;
+  command.message["parameters"] = parameters;
+  command.message["inputs"] = inputs;
+  return command;
+}
+
+std::string overview_text() {
+  std::string text = std::string("formwright ") + version() + ": from a 3D model to something made by hand-sized machines\n\n";
+  for (const Operation& operation : operations()) text += "  formwright " + padded(operation.name, 12) + operation.summary + "\n";
+  text += "\n  formwright " + padded("serve", 12) + "the page and the native worker on this machine\n";
+  text += "  formwright " + padded("list", 12) + "the operations, one a line\n";
+  text += "  formwright " + padded("describe OP", 12) + "one operation as JSON: inputs, parameters, outputs, report\n";
+  text += "\nformwright OP --help shows the flags of an operation.\n";
+  return text;
+}
+
+std::string operation_help(const Operation& operation) {
+  std::string text = operation.summary + "\n\n  formwright " + operation.name;
+  for (const InputInfo& input : operation.inputs) text += " " + dashed(input.name) + " FILE";
+  text += " --out DIR [flags]\n\nInput\n";
+  for (const InputInfo& input : operation.inputs) {
+    std::string list;
+    for (const auto& extension : input.extensions) list += (list.empty() ? "" : ", ") + extension;
+    text += "  " + padded(dashed(input.name) + " FILE", 34) + input.help + " (" + list + ")\n";
+    if (input.accepts_sample) {
+      text += "  " + padded("--sample NAME", 34) + "A built-in shape instead of a file.\n";
+      text += "  " + padded("--sample-vertices N", 34) + "Its resolution.\n";
+    }
+  }
+  text += "\nOutput\n  " + padded("--out DIR", 34) + "Folder for the outputs and report.json.\n  " + padded("--outputs A,B", 34);
+  std::string list;
+  for (const OutputInfo& output : operation.outputs) list += (list.empty() ? "" : ", ") + output.name + (output.made_by_default ? "*" : "");
+  text += "Which to make: " + list + " (* without being asked).\n  " + padded("--quiet", 34) + "No progress.\n";
+  std::string group;
+  for (const ParameterInfo& info : operation.parameters) {
+    if (info.group != group || &info == operation.parameters.data()) {
+      group = info.group;
+      text += "\n" + (group.empty() ? std::string("Parameters") : group) + "\n";
+    }
+    text += "  " + padded(flag_name(info) + " " + value_text(info), 34) + info.help;
+    std::string range;
+    if (info.kind == ParameterKind::number || info.kind == ParameterKind::integer || info.kind == ParameterKind::optional_number)
+      range = number(info.minimum) + " to " + number(info.maximum) + (info.unit.empty() ? "" : " " + info.unit) + ", ";
+    text += " [" + range + "default " + default_text(info) + "]\n";
+  }
+  return text;
+}
+
+}  // namespace formwright

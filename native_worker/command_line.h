@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Words of a shell to job messages: flags derive from the catalog.
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "job/operation.h"
+
+namespace formwright {
+
+struct ParsedCommand {
+  Json message;                                           // without hashes: the files are named below
+  std::map<std::string, std::filesystem::path> files;     // input name -> file
+  std::filesystem::path out;
+  bool quiet = false, help = false;
+};
+
+/// `words`: what follows the operation's name. Throws Error{invalid_input} naming the flag.
+ParsedCommand parse_command(const Operation& operation, const std::vector<std::string>& words);
+
+std::string overview_text();                       // formwright, formwright --help
+std::string operation_help(const Operation& operation);
+
+}  // namespace formwright

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "files.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "base/error.h"
+
+namespace formwright {
+
+std::shared_ptr<const Bytes> read_file(const std::filesystem::path& path, const std::string& where, std::uintmax_t limit_bytes) {
+  std::error_code status;
+  if (!std::filesystem::exists(path, status)) throw Error(ErrorCode::invalid_input, where, "There is no file " + path.string() + ": check the name.");
+  if (!std::filesystem::is_regular_file(path, status)) throw Error(ErrorCode::invalid_input, where, path.string() + " is not a file: name a mesh file.");
+  const std::uintmax_t size = std::filesystem::file_size(path, status);
+  if (size > limit_bytes) throw Error(ErrorCode::invalid_input, where, path.string() + " is larger than " + std::to_string(limit_bytes >> 20) + " MB: simplify it first.");
+  std::ifstream stream(path, std::ios::binary);
+  auto bytes = std::make_shared<Bytes>(static_cast<std::size_t>(size));
+  stream.read(reinterpret_cast<char*>(bytes->data()), static_cast<std::streamsize>(size));
+  if (!stream) throw Error(ErrorCode::invalid_input, where, path.string() + " cannot be read: check its permissions.");
+  return bytes;
+}
+
+void write_file(const std::filesystem::path& path, ByteView bytes) {
+  const std::filesystem::path temporary = path.string() + ".part-" + std::to_string(::getpid());
+  const auto fail = [&](const std::string& what) {
+    const std::string reason = std::strerror(errno);
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    throw Error(ErrorCode::invalid_input, "out", path.string() + " cannot be " + what + " (" + reason + "): choose another folder or make room.");
+  };
+  const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (descriptor < 0) fail("written");
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t count = ::write(descriptor, bytes.data() + done, bytes.size() - done);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) {
+      ::close(descriptor);
+      fail("written");
+    }
+    done += static_cast<std::size_t>(count);
+  }
+  if (::fsync(descriptor) != 0 && errno != EINVAL) {
+    ::close(descriptor);
+    fail("written");
+  }
+  ::close(descriptor);
+  if (std::rename(temporary.c_str(), path.c_str()) != 0) fail("put in its place");
+}
+
+}  // namespace formwright

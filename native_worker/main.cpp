@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// formwright: the same jobs as in the page, from a shell; and the worker the page can use.
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+
+#include "base/sha256.h"
+#include "command_line.h"
+#include "files.h"
+#include "host.h"
+#include "job/catalog.h"
+#include "job/run.h"
+#include "serve.h"
+
+namespace formwright {
+namespace {
+
+std::atomic<bool> interrupted{false};
+
+int exit_code(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::invalid_input: return 2;
+    case ErrorCode::cancelled: return 130;
+    default: return 3;
+  }
+}
+
+class ProgressLine {
+ public:
+  explicit ProgressLine(bool quiet) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1) {}
+  void show(const Progress& progress) {
+    if (quiet_) return;
+    if (!terminal_) {
+      if (progress.stage != stage_) std::fprintf(stderr, "%3.0f %%  %s\n", 100 * progress.fraction, progress.stage.c_str());
+      stage_ = progress.stage;
+      return;
+    }
+    constexpr int width = 28;
+    const int filled = static_cast<int>(progress.fraction * width);
+    std::string bar;
+    for (int i = 0; i < width; ++i) bar += i < filled ? "█" : "░";
+    std::fprintf(stderr, "\r\033[K%s %3.0f %%  %s", bar.c_str(), 100 * progress.fraction, progress.stage.c_str());
+    if (progress.seconds_left && *progress.seconds_left > 1) std::fprintf(stderr, ", about %.0f s left", *progress.seconds_left);
+    shown_ = true;
+  }
+  void clear() {
+    if (shown_) std::fprintf(stderr, "\r\033[K");
+    shown_ = false;
+  }
+
+ private:
+  bool quiet_, terminal_, shown_ = false;
+  std::string stage_;
+};
+
+int run_operation(const Operation& operation, const std::vector<std::string>& words) {
+  ParsedCommand command = parse_command(operation, words);
+  if (command.help) {
+    std::cout << operation_help(operation);
+    return 0;
+  }
+  std::map<std::string, std::shared_ptr<const Bytes>> blobs;
+  for (const auto& [name, path] : command.files) {
+    auto bytes = read_file(path, name);
+    const std::string hash = sha256_hex(*bytes);
+    command.message["inputs"][name] = {{"sha256", hash}, {"file_name", path.filename().string()}};
+    blobs[hash] = std::move(bytes);
+  }
+  if (const auto error = check_job(command.message)) throw Error(error->code, error->where, error->message);
+  std::error_code status;
+  std::filesystem::create_directories(command.out, status);
+  if (!std::filesystem::is_directory(command.out))
+    throw Error(ErrorCode::invalid_input, "--out", "The folder " + command.out.string() + " cannot be made (" + status.message() + "): choose another.");
+
+  ProgressLine line(command.quiet);
+  Session session;
+  Host host{[&](const Progress& progress) { line.show(progress); }, [] { return interrupted.load(); }, peak_memory_mb};
+  JobResult result = run_job(command.message, [&](const std::string& hash) { return blobs[hash]; }, session, host);
+  line.clear();
+  if (result.error) throw Error(result.error->code, result.error->where, result.error->message);
+  const auto put = [&](const std::string& name, ByteView bytes) {
+    const std::filesystem::path path = command.out / name;
+    write_file(path, bytes);
+    std::printf("%s  %.2f MB\n", path.string().c_str(), static_cast<double>(bytes.size()) * 1e-6);
+  };
+  for (const OutputBlob& output : result.outputs) put(output.name, *output.bytes);
+  // The report comes last: where it stands, everything else does.
+  put("report.json", as_bytes(result.report.dump(2) + "\n"));
+  return 0;
+}
+
+int run(const std::vector<std::string>& words) {
+  if (words.empty() || words[0] == "--help" || words[0] == "-h" || words[0] == "help") {
+    std::cout << overview_text();
+    return words.empty() ? 2 : 0;
+  }
+  if (words[0] == "--version") {
+    std::cout << "formwright " << version() << "\n";
+    return 0;
+  }
+  if (words[0] == "list") {
+    for (const Operation& operation : operations()) std::cout << operation.name << "\t" << operation.summary << "\n";
+    return 0;
+  }
+  if (words[0] == "describe") {
+    if (words.size() == 1) {
+      std::cout << catalog_json().dump(2) << "\n";
+      return 0;
+    }
+    if (const Operation* operation = find_operation(words[1])) {
+      std::cout << operation_json(*operation).dump(2) << "\n";
+      return 0;
+    }
+    throw Error(ErrorCode::invalid_input, words[1], "There is no operation called " + words[1] + ": see formwright list.");
+  }
+  const std::vector<std::string> rest(words.begin() + 1, words.end());
+  if (words[0] == "serve") return serve(rest);
+  if (words[0] == "run-jobs") return run_jobs_for_server();
+  if (const Operation* operation = find_operation(words[0])) return run_operation(*operation, rest);
+  throw Error(ErrorCode::invalid_input, words[0], "There is no command " + words[0] + ": see formwright --help.");
+}
+
+}  // namespace
+}  // namespace formwright
+
+int main(int argc, char** argv) {
+  std::signal(SIGINT, [](int) { formwright::interrupted = true; });
+  std::signal(SIGTERM, [](int) { formwright::interrupted = true; });
+  try {
+    return formwright::run({argv + 1, argv + argc});
+  } catch (const formwright::Error& error) {
+    std::fprintf(stderr, "formwright: %s\n", error.what());
+    return formwright::exit_code(error.code());
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "formwright: something went wrong that should not have: %s\n", error.what());
+    return 3;
+  }
+}

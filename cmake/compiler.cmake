@@ -41,6 +41,11 @@ if(NOT EMSCRIPTEN)
   endif()
 endif()
 
+if(EMSCRIPTEN)
+  # Meshes do not fit into the default 16 MB, deep recursion not into 64 kB.
+  add_link_options(-sALLOW_MEMORY_GROWTH=1 -sMAXIMUM_MEMORY=4GB -sSTACK_SIZE=4MB)
+endif()
+
 option(FORMWRIGHT_SANITIZE "Address and undefined behaviour sanitizers" OFF)
 if(FORMWRIGHT_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)

@@ -144,9 +144,11 @@ build_tinyobjloader() {
 }
 
 build_tinygltf() {
-  fetch_source tinygltf
   install -D -m 644 -t "$PREFIX/include" /usr/include/tiny_gltf.h
-  static_library tinygltf -I"$PREFIX/include" -I"$PREFIX/include/stb" "$SOURCE/tiny_gltf.cc"
+  # Its own source file would bring stb a second time.
+  mkdir -p "$SOURCES/tinygltf"
+  printf '#define TINYGLTF_IMPLEMENTATION\n#include <tiny_gltf.h>\n' >"$SOURCES/tinygltf/tiny_gltf.cc"
+  static_library tinygltf -I"$PREFIX/include" -I"$PREFIX/include/stb" "$SOURCES/tinygltf/tiny_gltf.cc"
 }
 
 build_googletest() {

@@ -1,0 +1,109 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Walks the includes of core/ and the imports of web/src and fails on an arrow that points the wrong way."""
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+# What each module may include, itself apart.
+CORE = {
+    "base": set(),
+    "geometry": {"base"},
+    "numerics": {"base", "geometry"},
+    "imaging": {"base", "geometry"},
+    "fabrication": {"base", "geometry"},
+    "relief": {"base", "geometry", "numerics", "imaging"},
+    "thermoform": {"base", "geometry", "numerics", "imaging"},
+    "zippable": {"base", "geometry", "numerics", "imaging"},
+}
+CORE["evidence"] = set(CORE)
+CORE["job"] = set(CORE)
+HOSTS = {"wasm": {"job", "base"}, "native_worker": {"job", "base"}}
+
+# What core never touches: sockets, files, standard output, Emscripten.
+FORBIDDEN_HEADERS = re.compile(
+    r"^(emscripten|sys/|unistd|fcntl|netinet|arpa|fstream|iostream|filesystem|boost/(asio|beast)|print$)")
+FORBIDDEN_WORDS = re.compile(r"\b(std::cout|std::cerr|std::clog|printf|puts|fopen|EM_ASM|EM_JS)\s*[(<]")
+
+# web/src: folder -> folders it may import from, itself apart; crafts do not know each other.
+WEB = {
+    "jobs": set(),
+    "view": set(),
+    "project": {"jobs"},
+    "ui": set(),
+    "machines": {"jobs", "project", "ui"},
+    "crafts": {"jobs", "project", "view", "ui", "machines"},
+    "app": {"jobs", "project", "view", "ui", "machines", "crafts"},
+}
+
+
+def module_of(path: pathlib.Path, base: pathlib.Path) -> str:
+    return path.relative_to(base).parts[0]
+
+
+def check_sources(folder: pathlib.Path, module: str, allowed: set[str], is_core: bool) -> list[str]:
+    problems = []
+    for path in sorted(folder.rglob("*")):
+        if path.suffix not in {".h", ".cpp", ".inl"}:
+            continue
+        text = path.read_text()
+        where = path.relative_to(ROOT)
+        for number, line in enumerate(text.splitlines(), 1):
+            if match := re.match(r'\s*#\s*include\s*"([^"/]+)/', line):
+                target = match.group(1)
+                if target in CORE and target != module and target not in allowed:
+                    problems.append(f"{where}:{number}: {module} must not include {target}")
+            if is_core and (match := re.match(r"\s*#\s*include\s*<([^>]+)>", line)):
+                if FORBIDDEN_HEADERS.match(match.group(1)):
+                    problems.append(f"{where}:{number}: core must not include <{match.group(1)}>")
+            if is_core and FORBIDDEN_WORDS.search(line.split("//")[0]):
+                problems.append(f"{where}:{number}: core must not print or open files")
+    return problems
+
+
+def check_web(src: pathlib.Path) -> list[str]:
+    problems = []
+    for path in sorted(src.rglob("*.ts*")):
+        parts = path.relative_to(src).parts
+        if len(parts) < 2 or parts[0] not in WEB:
+            continue
+        own = parts[0]
+        for target in re.findall(r"""(?:from|import)\s*\(?\s*['"]([^'"]+)['"]""", path.read_text()):
+            if not target.startswith("."):
+                continue
+            resolved = (path.parent / target).resolve()
+            try:
+                to = resolved.relative_to(src.resolve()).parts
+            except ValueError:
+                continue
+            if len(to) < 2 or to[0] not in WEB:
+                continue
+            where = path.relative_to(ROOT)
+            if to[0] != own and to[0] not in WEB[own]:
+                problems.append(f"{where}: {own} must not import {to[0]} ({target})")
+            if own == "crafts" and to[0] == "crafts" and len(parts) > 2 and len(to) > 2 and parts[1] != to[1]:
+                problems.append(f"{where}: crafts do not know each other ({target})")
+    return problems
+
+
+def main() -> int:
+    problems = []
+    modules = sorted(p.name for p in (ROOT / "core").iterdir() if p.is_dir())
+    for module in modules:
+        if module not in CORE:
+            problems.append(f"core/{module}: a module this test does not know; say what it may include")
+            continue
+        problems += check_sources(ROOT / "core" / module, module, CORE[module], is_core=True)
+    for host, allowed in HOSTS.items():
+        problems += check_sources(ROOT / host, host, allowed, is_core=False)
+    problems += check_web(ROOT / "web" / "src")
+    for problem in problems:
+        print(problem)
+    print(f"{len(modules)} core modules checked, {len(problems)} wrong arrows")
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,36 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The checker itself must be able to fail: wrong arrows planted in a copy are found."""
+import importlib.util
+import pathlib
+import tempfile
+
+spec = importlib.util.spec_from_file_location("check", pathlib.Path(__file__).with_name("check_architecture.py"))
+check = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(check)
+
+with tempfile.TemporaryDirectory() as folder:
+    root = pathlib.Path(folder)
+    check.ROOT = root
+    planted = {
+        "core/base/a.h": '#include "geometry/triangle_mesh.h"\n',
+        "core/relief/b.cpp": '#include "thermoform/x.h"\n#include <fstream>\nvoid f() { std::printf("x"); }\n',
+        "core/job/c.cpp": '#include "relief/relief.h"\n',
+        "web/src/view/d.ts": "import { x } from '../jobs/y';\n",
+        "web/src/crafts/relief/e.ts": "import { x } from '../zippable/y';\n",
+        "web/src/app/f.ts": "import { x } from '../crafts/relief/e';\n",
+    }
+    for name, text in planted.items():
+        path = root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    found = []
+    for module in ("base", "relief", "job"):
+        found += check.check_sources(root / "core" / module, module, check.CORE[module], is_core=True)
+    found += check.check_web(root / "web/src")
+    expected = ["base must not include geometry", "relief must not include thermoform", "<fstream>", "must not print",
+                "view must not import jobs", "crafts do not know each other"]
+    assert len(found) == len(expected), found
+    for part in expected:
+        assert any(part in problem for problem in found), (part, found)
+print("planted wrong arrows were all found")

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/context.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "base/error.h"
+
+namespace formwright {
+namespace {
+
+TEST(Context, NestedSpansMapToTheWholeAndNeverFall) {
+  std::vector<Progress> messages;
+  Context context(Host{[&](const Progress& p) { messages.push_back(p); }, {}, {}});
+  context.progress(0, "A");
+  {
+    const auto outer = context.span(0.5, 1.0, "B");
+    {
+      const auto inner = context.span(0.0, 0.5, "C");
+      context.progress(1.0, "D");  // 0.5 + 0.5 * 0.5
+    }
+    context.progress(0.1, "E");  // 0.55, but 0.75 was said already
+  }
+  context.progress(1.0, "F");
+  ASSERT_GE(messages.size(), 5u);
+  double last = 0;
+  for (const Progress& message : messages) {
+    EXPECT_GE(message.fraction, last);
+    last = message.fraction;
+    if (message.stage == "D" || message.stage == "E") {
+      EXPECT_DOUBLE_EQ(message.fraction, 0.75);
+    }
+  }
+  EXPECT_DOUBLE_EQ(last, 1.0);
+}
+
+TEST(Context, ThrottlesWithinAStage) {
+  int messages = 0;
+  Context context(Host{[&](const Progress&) { ++messages; }, {}, {}});
+  for (int i = 0; i <= 10000; ++i) context.progress(i / 10000.0, "Counting");
+  EXPECT_LT(messages, 100);
+}
+
+TEST(Context, CancelThrowsFromProgressAndCheck) {
+  bool cancel = false;
+  Context context(Host{{}, [&] { return cancel; }, {}});
+  EXPECT_NO_THROW(context.check_cancelled());
+  cancel = true;
+  try {
+    context.progress(0.5, "Late");
+    FAIL() << "cancel went unnoticed";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::cancelled);
+  }
+}
+
+}  // namespace
+}  // namespace formwright

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/sha256.h"
+
+#include <gtest/gtest.h>
+
+namespace formwright {
+namespace {
+
+// The examples of FIPS 180-4 and of the NIST test vectors.
+TEST(Sha256, AgreesWithThePublishedVectors) {
+  EXPECT_EQ(sha256_hex(as_bytes("")), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(sha256_hex(as_bytes("abc")), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(sha256_hex(as_bytes("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq")),
+            "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  EXPECT_EQ(sha256_hex(as_bytes(std::string(1'000'000, 'a'))), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
+TEST(Sha256, PadsEveryLengthAroundABlock) {
+  // Lengths at which the padding changes from one block to two; the digests must all differ.
+  std::string previous;
+  for (std::size_t length = 54; length < 130; ++length) {
+    const std::string digest = sha256_hex(as_bytes(std::string(length, 'x')));
+    EXPECT_EQ(digest.size(), 64u);
+    EXPECT_NE(digest, previous);
+    previous = digest;
+  }
+}
+
+}  // namespace
+}  // namespace formwright

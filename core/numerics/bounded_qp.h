@@ -47,6 +47,12 @@ struct BoundedQpOptions {
   int max_rounds = 200;
 };
 
+struct BoundedQpRound {
+  double violation_max = 0;    // of the constraints outside the pool, before new ones enter
+  int pool = 0, active = 0;    // constraints considered, constraints held
+  int linear_systems = 0;      // small dense ones
+};
+
 struct BoundedQpSolution {
   Eigen::VectorXd u, m;
   double objective = 0;        // 1/2 u^T Q u
@@ -55,6 +61,7 @@ struct BoundedQpSolution {
   int rounds = 0;
   int active_constraints = 0;  // with a positive multiplier
   QpMethod method_used = QpMethod::exchange;
+  std::vector<BoundedQpRound> history;
 };
 
 /// Keeps the factorisation of Q: solves for other bounds do not factor again.

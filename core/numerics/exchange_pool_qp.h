@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The small dense QP of an exchange, in its dual:
+//
+//   minimise   1/2 v^T v + 1/2 w^T P w + r^T w        v = what the energy sees, w = the free drivers
+//   subject to Y^T v + B w >= d                       (or = for equality rows)
+//
+// whose multipliers y >= 0 solve the complementarity problem
+//   s = S y + B w - d >= 0,  y >= 0,  s^T y = 0,  B^T y = P w + r,     S = Y^T Y.
+// Judice and Pires 1994 (block principal pivoting), Lawson and Hanson 1974, ch. 23 (the safe fallback).
+#include <Eigen/Core>
+#include <vector>
+
+#include "base/context.h"
+
+namespace formwright::bounded_qp_detail {
+
+struct PoolProblem {
+  Eigen::MatrixXd B;            // rows x drivers
+  Eigen::VectorXd d;            // rows
+  std::vector<int> column;      // rows; which column of the Gram matrix
+  std::vector<double> sign;     // rows; g_j = sign * the column's vector
+  std::vector<char> equality;   // rows
+  Eigen::MatrixXd P;            // drivers x drivers, positive semidefinite
+  Eigen::VectorXd r;            // drivers
+  int rows() const { return static_cast<int>(d.size()); }
+  int drivers() const { return static_cast<int>(B.cols()); }
+};
+
+struct PoolSolution {
+  Eigen::VectorXd y;         // rows; zero where inactive
+  Eigen::VectorXd w;         // drivers; where the rows leave a choice, the nearest to the start
+  std::vector<char> active;  // rows held with equality
+  double residual = 0;       // how far active rows are from being held, in units of d
+  bool contradictory = false;  // no w and v satisfy all rows (as far as double precision tells)
+  int pivots = 0;            // linear systems solved
+};
+
+class PoolQp {
+ public:
+  /// `gram`: S of all columns. Both must outlive the object.
+  PoolQp(Eigen::Ref<const Eigen::MatrixXd> gram, const PoolProblem& problem);
+
+  /// `start`: active flags to begin with (rows), `w`: drivers to stay near, `tolerance`: on slack, in units of d.
+  PoolSolution solve(const std::vector<char>& start, const Eigen::VectorXd& w, double tolerance, Context& context);
+
+ private:
+  double gram(int a, int b) const;
+  void factor(const std::vector<char>& active);
+  void refactor(int from);
+  void solve_active();
+  Eigen::VectorXd slack() const;
+  bool block_pivoting(double tolerance, Context& context);
+  void lawson_hanson(double tolerance, Context& context);
+
+  Eigen::Ref<const Eigen::MatrixXd> gram_;
+  const PoolProblem& p_;
+  Eigen::VectorXd augment_;            // per driver: S' = S + B diag(augment) B^T
+  Eigen::VectorXd proximal_w_;         // per driver
+  Eigen::VectorXd row_diagonal_;       // diagonal of S'
+  double proximal_y_ = 0;              // relative to row_diagonal_
+  Eigen::VectorXd centre_y_, centre_w_;
+  std::vector<char> active_;
+  std::vector<int> order_;             // active rows in the order of the factor
+  Eigen::MatrixXd L_, V_;              // S'_AA + proximal = L L^T, V = L^-1 B_A
+  Eigen::VectorXd y_, w_;
+  int pivots_ = 0;
+};
+
+}  // namespace formwright::bounded_qp_detail

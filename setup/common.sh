@@ -2,10 +2,15 @@
 # shellcheck shell=bash
 # Shared by the setup scripts. Source it after `set -euo pipefail`.
 
+# shellcheck disable=SC2034  # for the scripts that source this
 FORMWRIGHT_ROOT="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 FORMWRIGHT_CACHE_DIR="${FORMWRIGHT_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/formwright}"
 # Later make targets and CMake must agree on the place, wherever they look.
 export FORMWRIGHT_CACHE="$FORMWRIGHT_CACHE_DIR"
+
+# Node.js, if setup/native.sh had to bring its own.
+PRIVATE_NODE="$FORMWRIGHT_CACHE_DIR/node"
+if [ -x "$PRIVATE_NODE/bin/node" ]; then PATH="$PRIVATE_NODE/bin:$PATH"; fi
 
 # Progress line with the seconds since the script began; on stderr, because
 # some scripts answer on stdout.

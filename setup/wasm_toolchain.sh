@@ -183,9 +183,10 @@ int main() {
   }
 }
 CPP
-  "$1/bin/em++" -std=c++20 -O2 -msimd128 -fwasm-exceptions "$work/check.cpp" -o "$work/check.js" &&
-    [ "$(node "$work/check.js")" = 50 ] ||
+  if ! "$1/bin/em++" -std=c++20 -O2 -msimd128 -fwasm-exceptions "$work/check.cpp" -o "$work/check.js" ||
+    [ "$(node "$work/check.js")" != 50 ]; then
     fail "the toolchain in $1 does not compile a small program" "remove that folder and run this script again"
+  fi
   rm -rf "$work"
 }
 

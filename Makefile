@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Short names for what the scripts in setup/ and the CMake presets do.
+.DEFAULT_GOAL := help
+SHELL := bash
+.SHELLFLAGS := -euo pipefail -c
+.NOTPARALLEL:
+.ONESHELL:
+.PHONY: help setup setup-test run test native asan wasm web bench fuzz lint format clean
+
+help: ## what can be made
+	@awk -F ':.*## ' '/^[a-z -]+:.*## / { printf "  make %-16s %s\n", $$1, $$2 }' Makefile
+
+setup: ## install and build what is missing (idempotent)
+	@setup/all.sh
+
+setup-test: ## the same, with what only tests need
+	@setup/all.sh --test
+
+run: setup ## build, make an example, serve the app and print its address
+	@setup/run.sh
+
+test: ## everything that a change must pass; ends with "N passed, N failed"
+	@setup/test.sh
+
+native asan wasm: ## one C++ build: build/, build-asan/ or build-wasm/
+	@setup/build.sh $@
+
+web: ## the page, into web/dist/
+	@setup/build.sh web
+
+bench: ## build natively and run the benchmarks
+	@setup/bench.sh
+
+fuzz: ## fuzz the readers, FUZZ_SECONDS=60 each
+	@setup/fuzz.sh
+
+lint: ## formatting, static analysis, shell scripts, the page
+	@setup/lint.sh
+
+format: ## format the C++ sources in place
+	@git ls-files -z '*.cpp' '*.h' | xargs -0 clang-format -i
+
+clean: ## remove what was built here; the cache folder stays (docs/toolchain.md)
+	rm -rf build build-asan build-wasm build-fuzz web/dist web/public/wasm

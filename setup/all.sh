@@ -1,0 +1,11 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# All of the set-up; with --test, also what only testing needs.
+set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+cd "$FORMWRIGHT_ROOT"
+setup/native.sh "$@"
+setup/wasm_toolchain.sh >/dev/null
+setup/wasm_libraries.sh >/dev/null
+say "set-up complete"

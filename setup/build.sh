@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Builds what is named: native, asan, wasm (CMake presets), web (the page).
+set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+build_preset() {  # preset
+  # Configuring again costs a second and notices a new toolchain.
+  cmake --preset "$1" >&2
+  nice cmake --build --preset "$1" --parallel "${FORMWRIGHT_JOBS:-$(nproc)}" >&2
+}
+
+# `npm ci` deletes node_modules: do it only when the lock file has changed.
+install_web() {
+  local stamp=web/node_modules/.formwright-lock
+  if ! cmp -s web/package-lock.json "$stamp"; then
+    PLAYWRIGHT_SKIP_BROWSER_DOWNLOAD=1 npm --prefix web ci --no-audit --no-fund >&2
+    cp web/package-lock.json "$stamp"
+  fi
+}
+
+cd "$FORMWRIGHT_ROOT"
+for part in "$@"; do
+  case "$part" in
+    native | asan | wasm) build_preset "$part" ;;
+    web-packages) install_web ;;
+    web)
+      install_web
+      npm --prefix web run build >&2
+      ;;
+    *) fail "there is nothing to build called '$part'" "choose from native, asan, wasm, web" ;;
+  esac
+done

@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Reads everything, changes nothing: formatting, clang-tidy, shell, the page.
+set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+cd "$FORMWRIGHT_ROOT"
+setup/native.sh --test
+say "formatting"
+git ls-files -z '*.cpp' '*.h' | xargs -0 clang-format --dry-run --Werror
+say "shell scripts"
+shellcheck -x --source-path=SCRIPTDIR setup/*.sh .ci/run
+say "clang-tidy"
+[ -e build/compile_commands.json ] || setup/build.sh native
+git ls-files -z 'core/**.cpp' 'native_worker/**.cpp' |
+  xargs -0 -n 4 -P "${FORMWRIGHT_JOBS:-$(nproc)}" nice clang-tidy-16 --quiet -p build --warnings-as-errors='*'
+say "the page"
+setup/build.sh web-packages
+npm --prefix web run types
+npm --prefix web run lint

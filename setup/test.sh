@@ -1,0 +1,86 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+#
+# Sets up, builds and runs every test, stopping at the first stage that fails.
+# The last line is "N passed, N failed", summed over all runners.
+set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+cd "$FORMWRIGHT_ROOT"
+
+PASSED=0
+FAILED=0
+LOG="$(mktemp)"
+
+finish() {
+  local status=$?
+  rm -f "$LOG"
+  if [ "$status" -ne 0 ] && [ "$FAILED" -eq 0 ]; then FAILED=1; fi
+  if [ "$PASSED" -eq 0 ] && [ "$FAILED" -eq 0 ]; then FAILED=1; fi
+  printf '%d passed, %d failed\n' "$PASSED" "$FAILED"
+  [ "$FAILED" -eq 0 ] || exit 1
+}
+trap finish EXIT
+
+sum() { awk '{ total += $1 } END { print total + 0 }'; }
+
+# Counts in a log, "passed failed". Skipped tests are neither.
+count_ctest() {
+  local all failed skipped
+  read -r failed all < <(sed -nE 's/^[0-9]+% tests passed, ([0-9]+) tests? failed out of ([0-9]+)$/\1 \2/p' "$1" | tail -n 1) || true
+  skipped="$(grep -cE '^ *[0-9]+/[0-9]+ Test .*\*\*\*(Skipped|Not Run)' "$1" || true)"
+  echo "$((${all:-0} - ${failed:-0} - skipped)) ${failed:-0}"
+}
+count_vitest() {
+  local line
+  line="$(grep -E '^ +Tests +' "$1" | tail -n 1 || true)"
+  echo "$(grep -oE '[0-9]+ passed' <<<"$line" | sum) $(grep -oE '[0-9]+ failed' <<<"$line" | sum)"
+}
+count_playwright() {
+  # A flaky test failed once: that counts as failed.
+  echo "$(grep -oE '^ +[0-9]+ passed' "$1" | sum) $(grep -oE '^ +[0-9]+ (failed|flaky)' "$1" | sum)"
+}
+
+# Runs a command and shows it; `runner` tells how to count its tests.
+stage() {  # name, runner or -, command...
+  local name="$1" runner="$2" start=$SECONDS status=0 passed=0 failed=0 counts=''
+  shift 2
+  printf '\n=== %s\n' "$name"
+  # Colour codes would hide the numbers.
+  NO_COLOR=1 "$@" 2>&1 | tee "$LOG" || status=$?
+  if [ "$runner" != - ]; then
+    read -r passed failed < <("count_$runner" "$LOG")
+    PASSED=$((PASSED + passed))
+    FAILED=$((FAILED + failed))
+    counts=": $passed passed, $failed failed"
+    if [ "$passed" -eq 0 ] && [ "$status" -eq 0 ]; then
+      status=1
+      counts=": no test ran"
+    fi
+  fi
+  printf '=== %s%s (%d s)\n' "$name" "$counts" "$((SECONDS - start))"
+  if [ "$status" -ne 0 ] || [ "$failed" -gt 0 ]; then
+    printf '=== stopped: %s failed\n' "$name"
+    exit 1
+  fi
+}
+
+run_ctest() { ctest --preset "$1" --parallel "${FORMWRIGHT_JOBS:-$(nproc)}"; }
+
+main() {
+  stage 'set-up' - setup/all.sh --test
+  stage 'native build' - setup/build.sh native
+  stage 'native tests' ctest run_ctest native
+  stage 'sanitizer build' - setup/build.sh asan
+  stage 'sanitizer tests' ctest run_ctest asan
+  stage 'WebAssembly build' - setup/build.sh wasm
+  stage 'WebAssembly tests' ctest run_ctest wasm
+  stage 'page: packages' - setup/build.sh web-packages
+  stage 'page: types' - npm --prefix web run types
+  stage 'page: lint' - npm --prefix web run lint
+  stage 'page: unit tests' vitest npm --prefix web test
+  stage 'page: build' - setup/build.sh web
+  stage 'browser tests' playwright npm --prefix web run e2e
+  echo
+}
+
+main "$@"

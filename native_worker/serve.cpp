@@ -1,9 +1,79 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "serve.h"
 
+#include <boost/asio/signal_set.hpp>
+#include <csignal>
+#include <cstdlib>
+#include <iostream>
+
 #include "base/error.h"
+#include "http_server.h"
 
 namespace formwright {
-int serve(const std::vector<std::string>&) { throw Error(ErrorCode::internal, "serve", "The worker is not built yet."); }
-int run_jobs_for_server() { throw Error(ErrorCode::internal, "run-jobs", "The worker is not built yet."); }
+namespace {
+
+std::filesystem::path default_data_folder() {
+  if (const char* data = std::getenv("XDG_DATA_HOME"); data && *data) return std::filesystem::path(data) / "formwright";
+  const char* home = std::getenv("HOME");
+  return std::filesystem::path(home && *home ? home : ".") / ".local/share/formwright";
+}
+
+/// Beside the program when installed, or in the checkout it was built in.
+std::filesystem::path default_web_folder() {
+  std::error_code status;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", status).parent_path();
+  for (const auto& folder : {program / "web", program.parent_path() / "web/dist", program.parent_path() / "share/formwright/web"})
+    if (std::filesystem::exists(folder / "index.html", status)) return folder;
+  return {};
+}
+
+ServerOptions read_options(const std::vector<std::string>& words) {
+  ServerOptions options;
+  options.data = default_data_folder();
+  options.web = default_web_folder();
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const auto value = [&] {
+      if (i + 1 >= words.size()) throw Error(ErrorCode::invalid_input, words[i], words[i] + " needs a value.");
+      return words[++i];
+    };
+    const auto whole = [&](const std::string& flag, long least, long most) {
+      const std::string text = value();
+      char* end = nullptr;
+      const long number = std::strtol(text.c_str(), &end, 10);
+      if (text.empty() || *end != '\0' || number < least || number > most)
+        throw Error(ErrorCode::invalid_input, flag, flag + " must be a whole number from " + std::to_string(least) + " to " + std::to_string(most) + ".");
+      return number;
+    };
+    if (words[i] == "--port") options.port = static_cast<unsigned short>(whole("--port", 0, 65535));
+    else if (words[i] == "--web") options.web = value();
+    else if (words[i] == "--data") options.data = value();
+    else if (words[i] == "--upload-limit-mb") options.upload_limit_bytes = static_cast<std::uint64_t>(whole("--upload-limit-mb", 1, 65536)) << 20;
+    else throw Error(ErrorCode::invalid_input, words[i], "There is no flag " + words[i] + ": serve has --port N, --web DIR, --data DIR and --upload-limit-mb N.");
+  }
+  return options;
+}
+
+}  // namespace
+
+int serve(const std::vector<std::string>& words) {
+  for (const std::string& word : words)
+    if (word == "--help" || word == "-h") {
+      std::cout << "Serves the page and the native worker on this machine only.\n\n"
+                   "  formwright serve [--port 8731] [--web DIR] [--data DIR] [--upload-limit-mb 1024]\n\n"
+                   "Prints the address to open. --port 0 takes any free port. Jobs and results are kept in --data.\n";
+      return 0;
+    }
+  std::signal(SIGPIPE, SIG_IGN);
+  const ServerOptions options = read_options(words);
+  boost::asio::io_context io(1);
+  HttpServer server(io, options);
+  server.start();
+  boost::asio::signal_set signals(io, SIGINT, SIGTERM);
+  signals.async_wait([&](const boost::system::error_code&, int) { io.stop(); });
+  if (options.web.empty()) std::cout << "The page is not built (make web); the worker answers all the same.\n";
+  std::cout << "http://127.0.0.1:" << server.port() << "/#token=" << server.token() << std::endl;
+  io.run();
+  return 0;
+}
+
 }  // namespace formwright

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Loopback HTTP and WebSocket: who may speak, and what the answers look like. Routes are in api.cpp.
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <deque>
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <string>
+#include <variant>
+
+#include "job_queue.h"
+#include "job_store.h"
+
+namespace formwright {
+
+namespace beast = boost::beast;
+namespace http = boost::beast::http;
+
+struct ServerOptions {
+  unsigned short port = 8731;              // 0: any free one
+  std::filesystem::path web;               // folder of the built page
+  std::filesystem::path data;
+  std::uint64_t upload_limit_bytes = std::uint64_t{1} << 30;
+};
+
+using TextResponse = http::response<http::string_body>;
+using FileResponse = http::response<http::file_body>;
+using Response = std::variant<TextResponse, FileResponse>;
+using Head = http::request<http::empty_body>;
+
+/// A page that listens. Messages queue up while one is being written; a page that does not read is dropped.
+struct PageSocket {
+  explicit PageSocket(beast::websocket::stream<beast::tcp_stream>&& s) : stream(std::move(s)) {}
+  beast::websocket::stream<beast::tcp_stream> stream;
+  std::deque<std::shared_ptr<const std::string>> outgoing;
+};
+
+class HttpServer {
+ public:
+  /// Binds 127.0.0.1. Throws Error{invalid_input, "--port"} when the port is taken.
+  HttpServer(boost::asio::io_context& io, const ServerOptions& options);
+
+  unsigned short port() const { return port_; }
+  const std::string& token() const { return token_; }
+  void start();
+
+ private:
+  using Socket = boost::asio::ip::tcp::socket;
+  boost::asio::awaitable<void> accept_loop();
+  boost::asio::awaitable<void> serve_connection(Socket socket);
+  boost::asio::awaitable<void> serve_page_socket(std::shared_ptr<PageSocket> page, Head head);
+  boost::asio::awaitable<Response> receive_and_answer(beast::tcp_stream& stream, beast::flat_buffer& buffer, http::request_parser<http::empty_body>& head);
+
+  // Who may speak
+  bool host_allowed(const Head& head) const;
+  bool origin_allowed(const Head& head) const;
+  bool token_given(const Head& head) const;
+  bool token_in_subprotocol(const Head& head) const;
+  bool within_rate();
+
+  // api.cpp
+  Response answer(const Head& head, const std::string& body);
+  Response answer_jobs(const Head& head, const std::string& path, const std::string& body);
+  Response answer_blob(const Head& head, const std::string& sha256);
+  Response accept_upload(const Head& head, const std::string& sha256, const std::filesystem::path& received, const std::string& found_hash);
+  Response page_file(const Head& head, const std::string& path);
+  void tell_pages(const Json& message);
+  void write_next(const std::shared_ptr<PageSocket>& page);
+  void hear_page(const std::string& text);
+
+  boost::asio::io_context& io_;
+  ServerOptions options_;
+  boost::asio::ip::tcp::acceptor acceptor_;
+  boost::asio::thread_pool hashing_{1};
+  unsigned short port_ = 0;
+  std::string token_;
+  std::set<std::shared_ptr<PageSocket>> pages_;  // before the queue, which may speak while it is made
+  JobStore store_;
+  JobQueue queue_;
+  int connections_ = 0;
+  double rate_budget_ = 0;
+  std::chrono::steady_clock::time_point rate_time_;
+};
+
+TextResponse text_response(const Head& head, http::status status, std::string body, const std::string& type = "application/json");
+TextResponse error_response(const Head& head, http::status status, const std::string& code, const std::string& where, const std::string& message);
+
+}  // namespace formwright

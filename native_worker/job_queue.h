@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// One job after the other in a child process. All calls from the server's thread.
+#include <sys/types.h>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "job_store.h"
+
+namespace formwright {
+
+class JobQueue {
+ public:
+  /// `tell` receives the messages for the pages (docs/job_contract.md, socket).
+  JobQueue(boost::asio::io_context& io, JobStore& store, std::function<void(const Json&)> tell);
+  ~JobQueue();
+
+  void enqueue(const std::string& id);
+  void cancel(const std::string& id);
+  std::size_t waiting() const { return waiting_.size(); }
+  bool running() const { return !running_.empty(); }
+  pid_t process() const { return process_; }
+
+ private:
+  void start_process();
+  void start_next();
+  void read_line();
+  void handle(const Json& message);
+  void process_ended();
+  void finish(StoredJob& job, Json result);
+  void send(const Json& message);
+  void flush();
+
+  boost::asio::io_context& io_;
+  JobStore& store_;
+  std::function<void(const Json&)> tell_;
+  std::deque<std::string> waiting_;
+  std::string running_;
+  pid_t process_ = -1;
+  std::unique_ptr<boost::asio::posix::stream_descriptor> input_, output_;  // of the child
+  std::string incoming_;
+  std::deque<std::string> outgoing_;
+  boost::asio::steady_timer patience_;  // after a cancel
+  bool stopping_ = false;               // we killed the child ourselves
+  unsigned generation_ = 0;             // of the child, so that late answers of a dead one are ignored
+};
+
+}  // namespace formwright

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The child process of the worker: one JSON message a line in, one a line out.
+//   in:  {"run": id, "job": message, "blobs": {sha256: path}, "outputs": folder} | {"cancel": id}
+//   out: {"progress": id, ...} | {"finished": id, "result": message}
+// Paths come from the server, which makes them from hashes and identifiers only.
+#include <sys/prctl.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <csignal>
+#include <deque>
+#include <iostream>
+#include <mutex>
+#include <thread>
+
+#include "base/sha256.h"
+#include "files.h"
+#include "host.h"
+#include "job/run.h"
+#include "serve.h"
+
+namespace formwright {
+namespace {
+
+class Inbox {
+ public:
+  void read_all() {
+    std::string line;
+    while (std::getline(std::cin, line)) {
+      const Json message = Json::parse(line, nullptr, false);
+      const std::scoped_lock lock(mutex_);
+      if (message.contains("cancel")) {
+        if (message["cancel"] == running_) cancel_ = true;
+      } else if (message.contains("run")) {
+        waiting_.push_back(message);
+        arrived_.notify_one();
+      }
+    }
+    // The server is gone: nobody waits for an answer.
+    std::_Exit(0);
+  }
+  Json next() {
+    std::unique_lock lock(mutex_);
+    arrived_.wait(lock, [&] { return !waiting_.empty(); });
+    Json message = std::move(waiting_.front());
+    waiting_.pop_front();
+    running_ = message["run"].get<std::string>();
+    cancel_ = false;
+    return message;
+  }
+  bool cancelled() const { return cancel_; }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable arrived_;
+  std::deque<Json> waiting_;
+  std::string running_;
+  std::atomic<bool> cancel_{false};
+};
+
+void send(const Json& message) { std::cout << message.dump() << std::endl; }
+
+Json run_one(const Json& request, Session& session, const Host& host) {
+  const Json& blobs = request["blobs"];
+  const auto find = [&](const std::string& hash) -> std::shared_ptr<const Bytes> {
+    return blobs.contains(hash) ? read_file(blobs[hash].get<std::string>(), hash) : nullptr;
+  };
+  try {
+    const JobResult result = run_job(request["job"], find, session, host);
+    Json answer = result_json(result);
+    const std::filesystem::path folder = request["outputs"].get<std::string>();
+    for (const OutputBlob& output : result.outputs) {
+      write_file(folder / output.name, *output.bytes);
+      answer["outputs"][output.name]["sha256"] = sha256_hex(*output.bytes);
+    }
+    return answer;
+  } catch (const Error& error) {
+    return error_json({error.code(), error.where(), error.what()});
+  }
+}
+
+}  // namespace
+
+int run_jobs_for_server() {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  std::signal(SIGINT, SIG_IGN);  // Ctrl+C in the terminal is the server's to handle
+  std::signal(SIGTERM, SIG_DFL);
+  Inbox inbox;
+  std::thread([&] { inbox.read_all(); }).detach();
+  Session session;
+  for (;;) {
+    const Json request = inbox.next();
+    const std::string id = request["run"].get<std::string>();
+    const Host host{[&](const Progress& p) {
+                      send({{"progress", id}, {"fraction", p.fraction}, {"stage", p.stage}, {"seconds_left", p.seconds_left ? Json(*p.seconds_left) : Json(nullptr)}});
+                    },
+                    [&] { return inbox.cancelled(); }, peak_memory_mb};
+    Json answer = run_one(request, session, host);
+    send({{"finished", id}, {"result", std::move(answer)}});
+  }
+}
+
+}  // namespace formwright

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "job_store.h"
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+
+#include "base/error.h"
+#include "files.h"
+#include "secret.h"
+
+namespace formwright {
+namespace {
+
+double unix_seconds() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
+
+std::optional<JobState> state_of(const std::string& name) {
+  for (const JobState state : {JobState::queued, JobState::running, JobState::done, JobState::failed, JobState::cancelled})
+    if (name == to_string(state)) return state;
+  return std::nullopt;
+}
+
+std::optional<StoredJob> read_job(const std::filesystem::path& folder) {
+  try {
+    const Json text = Json::parse(as_text(*read_file(folder / "job.json", "data")));
+    StoredJob job;
+    job.id = folder.filename().string();
+    const auto state = state_of(text.at("state").get<std::string>());
+    if (!state) return std::nullopt;
+    job.state = *state;
+    job.submitted_unix_s = text.at("submitted_unix_s").get<double>();
+    job.finished_unix_s = text.at("finished_unix_s").get<double>();
+    job.attempts = text.at("attempts").get<int>();
+    job.job = text.at("job");
+    if (job.finished()) job.result = Json::parse(as_text(*read_file(folder / "result.json", "data")));
+    else job.state = JobState::queued;
+    return job;
+  } catch (const std::exception&) {
+    return std::nullopt;  // half a folder from a crash: it is not a job
+  }
+}
+
+}  // namespace
+
+const char* to_string(JobState state) {
+  switch (state) {
+    case JobState::queued: return "queued";
+    case JobState::running: return "running";
+    case JobState::done: return "done";
+    case JobState::failed: return "failed";
+    case JobState::cancelled: return "cancelled";
+  }
+  return "failed";
+}
+
+bool is_hex_name(const std::string& text, std::size_t digits) {
+  return text.size() == digits && text.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+JobStore::JobStore(std::filesystem::path folder) : folder_(std::move(folder)) {
+  std::error_code status;
+  for (const char* part : {"blobs", "jobs", "uploads"}) {
+    std::filesystem::create_directories(folder_ / part, status);
+    if (!std::filesystem::is_directory(folder_ / part))
+      throw Error(ErrorCode::invalid_input, "--data", "The folder " + folder_.string() + " cannot be used (" + status.message() + "): choose another with --data.");
+  }
+  std::filesystem::permissions(folder_, std::filesystem::perms::owner_all, status);
+  for (const auto& left_over : std::filesystem::directory_iterator(folder_ / "uploads", status)) std::filesystem::remove(left_over.path(), status);
+  for (const auto& entry : std::filesystem::directory_iterator(folder_ / "jobs", status)) {
+    if (!is_hex_name(entry.path().filename().string(), 32)) continue;
+    if (auto job = read_job(entry.path())) jobs_.emplace(job->id, std::move(*job));
+  }
+}
+
+std::filesystem::path JobStore::temporary_path() { return folder_ / "uploads" / random_hex(16); }
+
+StoredJob& JobStore::add(const Json& message) {
+  StoredJob job;
+  job.id = random_hex(16);
+  job.submitted_unix_s = unix_seconds();
+  job.job = message;
+  StoredJob& kept = jobs_.emplace(job.id, std::move(job)).first->second;
+  std::error_code status;
+  std::filesystem::create_directories(outputs_folder(kept.id), status);
+  save(kept);
+  return kept;
+}
+
+StoredJob* JobStore::find(const std::string& id) {
+  const auto it = jobs_.find(id);
+  return it == jobs_.end() ? nullptr : &it->second;
+}
+
+std::vector<const StoredJob*> JobStore::newest_first() const {
+  std::vector<const StoredJob*> list;
+  for (const auto& [id, job] : jobs_) list.push_back(&job);
+  std::sort(list.begin(), list.end(), [](const StoredJob* a, const StoredJob* b) { return a->submitted_unix_s > b->submitted_unix_s; });
+  return list;
+}
+
+std::vector<std::string> JobStore::unfinished_oldest_first() const {
+  std::vector<std::string> ids;
+  const auto list = newest_first();
+  for (auto it = list.rbegin(); it != list.rend(); ++it)
+    if (!(*it)->finished()) ids.push_back((*it)->id);
+  return ids;
+}
+
+void JobStore::save(StoredJob& job) {
+  if (job.finished() && job.finished_unix_s == 0) job.finished_unix_s = unix_seconds();
+  const Json text = {{"state", to_string(job.state)}, {"submitted_unix_s", job.submitted_unix_s}, {"finished_unix_s", job.finished_unix_s},
+                     {"attempts", job.attempts}, {"job", job.job}};
+  const std::filesystem::path folder = folder_ / "jobs" / job.id;
+  try {
+    if (job.finished()) write_file(folder / "result.json", as_bytes(job.result.dump()));
+    write_file(folder / "job.json", as_bytes(text.dump()));
+  } catch (const Error& error) {
+    job.state = JobState::failed;
+    job.result = {{"error", {{"code", to_string(ErrorCode::internal)}, {"where", ""}, {"message", error.what()}}}};
+  }
+}
+
+void JobStore::remove(const std::string& id) {
+  jobs_.erase(id);
+  std::error_code status;
+  std::filesystem::remove_all(folder_ / "jobs" / id, status);
+}
+
+void JobStore::tidy(std::size_t most_jobs, double most_blob_mb) {
+  const auto list = newest_first();
+  for (std::size_t i = list.size(); i-- > most_jobs;)
+    if (list[i]->finished()) remove(std::string(list[i]->id));
+
+  std::set<std::string> needed;
+  for (const auto& [id, job] : jobs_)
+    if (!job.finished())
+      for (const auto& [name, input] : job.job.value("inputs", Json::object()).items()) needed.insert(input.value("sha256", ""));
+  std::error_code status;
+  std::vector<std::pair<std::filesystem::file_time_type, std::filesystem::path>> blobs;
+  double total_mb = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_ / "blobs", status)) {
+    total_mb += 1e-6 * static_cast<double>(entry.file_size(status));
+    blobs.emplace_back(entry.last_write_time(status), entry.path());
+  }
+  std::sort(blobs.begin(), blobs.end());
+  for (const auto& [time, path] : blobs) {
+    if (total_mb <= most_blob_mb) break;
+    if (needed.contains(path.filename().string())) continue;
+    total_mb -= 1e-6 * static_cast<double>(std::filesystem::file_size(path, status));
+    std::filesystem::remove(path, status);
+  }
+}
+
+}  // namespace formwright

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The controls of an operation, made from its declaration in the catalog.
+import type { ComponentChildren } from 'preact';
+import { useId, useState } from 'preact/hooks';
+import type { Json, JsonObject, Operation, ParameterSchema } from '../../jobs/contract';
+import { Icon, Parameter, Segmented, Switch, tipHandlers } from '../../ui';
+import { VectorField } from './vector_field';
+
+export interface ParameterPanelProps {
+  readonly operation: Operation;
+  /** Only what differs from the defaults. */
+  readonly parameters: JsonObject;
+  /** Sentences from the backend by parameter name. */
+  readonly errors: Readonly<Record<string, string>>;
+  readonly onPreview: (name: string, value: Json) => void;
+  readonly onCommit: () => void;
+  /** Put in front of a group's parameters. */
+  readonly groupHead?: Readonly<Record<string, ComponentChildren>>;
+}
+
+type Entry = readonly [name: string, schema: ParameterSchema];
+
+export function ParameterPanel(props: ParameterPanelProps) {
+  const entries = Object.entries(props.operation.parameters.properties);
+  const plain = entries.filter(([, schema]) => !schema['x-advanced']);
+  const advanced = entries.filter(([, schema]) => schema['x-advanced']);
+  const groups = new Map<string, Entry[]>(Object.keys(props.groupHead ?? {}).map((title) => [title, []]));
+  for (const entry of plain) {
+    const title = entry[1]['x-group'] ?? '';
+    groups.set(title, [...(groups.get(title) ?? []), entry]);
+  }
+  const concerned = advanced.some(([name]) => props.errors[name] !== undefined);
+  return (
+    <>
+      {[...groups].map(([title, members]) => (
+        <section key={title} class="section" aria-label={title || 'Parameters'}>
+          {title ? <h3>{title}</h3> : null}
+          {props.groupHead?.[title]}
+          {members.map((entry) => (
+            <Control key={entry[0]} entry={entry} {...props} />
+          ))}
+        </section>
+      ))}
+      {advanced.length > 0 ? (
+        <Advanced count={advanced.length} forced={concerned}>
+          {advanced.map((entry) => (
+            <Control key={entry[0]} entry={entry} {...props} />
+          ))}
+        </Advanced>
+      ) : null}
+    </>
+  );
+}
+
+function Advanced(props: { count: number; forced: boolean; children: ComponentChildren }) {
+  const [chosen, setOpen] = useState(false);
+  const id = useId();
+  const open = chosen || props.forced;
+  return (
+    <>
+      <button
+        type="button"
+        class="fold"
+        aria-expanded={open}
+        aria-controls={id}
+        onClick={() => setOpen(!open)}
+      >
+        <Icon name={open ? 'chevronDown' : 'chevronRight'} small />
+        Advanced
+        <span>{props.count}</span>
+      </button>
+      <section id={id} class="section" hidden={!open} aria-label="Advanced">
+        {open ? props.children : null}
+      </section>
+    </>
+  );
+}
+
+function Control({ entry: [name, schema], ...props }: ParameterPanelProps & { entry: Entry }) {
+  const types = Array.isArray(schema.type) ? (schema.type as readonly string[]) : [schema.type as string];
+  const fallback = schema.default ?? null;
+  const value = props.parameters[name] ?? fallback;
+  const label = schema.title ?? name;
+  const help = schema.description;
+  const error = props.errors[name];
+  const set = (next: Json) => props.onPreview(name, next);
+  const setAtOnce = (next: Json) => {
+    set(next);
+    props.onCommit();
+  };
+  if (schema.enum) {
+    const labels = schema['x-choice-labels'] ?? schema.enum;
+    const options = schema.enum.map((choice, i) => ({ value: choice, label: labels[i] ?? choice }));
+    return <Choice {...{ label, help, options, error }} value={value as string} onChange={setAtOnce} />;
+  }
+  if (types.includes('boolean'))
+    return <Switch {...{ label, help }} value={value === true} onChange={setAtOnce} />;
+  if (types.includes('number') || types.includes('integer')) {
+    const optional = types.includes('null');
+    return (
+      <Parameter
+        {...{ label, help, error, optional }}
+        unit={schema['x-unit'] ?? ''}
+        minimum={schema.minimum ?? -Infinity}
+        maximum={schema.maximum ?? Infinity}
+        slider={optional ? null : (schema['x-slider'] ?? null)}
+        integer={types.includes('integer')}
+        defaultValue={fallback as number | null}
+        value={value as number | null}
+        onPreview={set}
+        onCommit={props.onCommit}
+      />
+    );
+  }
+  if (types.includes('array'))
+    return (
+      <VectorField {...{ label, help, error }} value={value as readonly number[]} onChange={setAtOnce} />
+    );
+  return null;
+}
+
+interface ChoiceProps {
+  readonly label: string;
+  readonly help: string | undefined;
+  readonly error: string | undefined;
+  readonly options: readonly { value: string; label: string }[];
+  readonly value: string;
+  readonly onChange: (value: string) => void;
+}
+
+/** Two or three short choices side by side, more as a menu. */
+function Choice({ label, help, error, options, value, onChange }: ChoiceProps) {
+  const id = useId();
+  const letters = options.reduce((sum, option) => sum + option.label.length, 0);
+  const segmented = options.length <= 3 && letters <= 22;
+  return (
+    <div class="field-line">
+      <span id={id} {...tipHandlers(help, 'left')}>
+        {label}
+      </span>
+      {segmented ? (
+        <Segmented
+          labelledBy={id}
+          describedBy={`${id}-help`}
+          options={options}
+          value={value}
+          onChange={onChange}
+        />
+      ) : (
+        <select
+          class="select"
+          aria-labelledby={id}
+          aria-describedby={`${id}-help`}
+          value={value}
+          onChange={(event) => onChange(event.currentTarget.value)}
+        >
+          {options.map((option) => (
+            <option key={option.value} value={option.value}>
+              {option.label}
+            </option>
+          ))}
+        </select>
+      )}
+      <span id={`${id}-help`} class="hidden-text">
+        {help}
+      </span>
+      {error ? (
+        <span class="problem" role="alert">
+          {error}
+        </span>
+      ) : null}
+    </div>
+  );
+}

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The job contract as types: docs/job_contract.md. No default and no range of any operation is written
+// in TypeScript; they come from the catalog.
+
+export type Json = null | boolean | number | string | readonly Json[] | JsonObject;
+export interface JsonObject {
+  readonly [key: string]: Json;
+}
+
+export type JobInput =
+  | { readonly sha256: string; readonly file_name: string }
+  | { readonly sample: string; readonly vertices?: number };
+
+export interface Job {
+  readonly operation: string;
+  readonly parameters: JsonObject;
+  readonly inputs: Readonly<Record<string, JobInput>>;
+  /** Limits what is encoded; absent: everything made by default. */
+  readonly outputs?: readonly string[];
+}
+
+export type Report = JsonObject;
+
+export interface Progress {
+  readonly fraction: number;
+  readonly stage: string;
+  readonly seconds_left: number | null;
+}
+
+/** The contract's codes, and `unreachable`: the backend itself is gone. */
+export type ErrorCode =
+  'invalid_input' | 'could_not_solve' | 'cancelled' | 'out_of_memory' | 'internal' | 'unreachable';
+
+export interface ErrorMessage {
+  readonly code: ErrorCode;
+  /** The parameter, input or output concerned, or empty. */
+  readonly where: string;
+  readonly message: string;
+}
+
+export class JobError extends Error {
+  readonly code: ErrorCode;
+  readonly where: string;
+  constructor(error: ErrorMessage) {
+    super(error.message);
+    this.name = 'JobError';
+    this.code = error.code;
+    this.where = error.where;
+  }
+}
+
+export const cancelled = () => new JobError({ code: 'cancelled', where: '', message: 'Cancelled.' });
+
+/** Any thrown value as a JobError. */
+export function asJobError(thrown: unknown): JobError {
+  if (thrown instanceof JobError) return thrown;
+  const message = thrown instanceof Error ? thrown.message : String(thrown);
+  return new JobError({ code: 'internal', where: '', message });
+}
+
+export interface OutputDescription {
+  readonly media_type: string;
+  readonly bytes: number;
+  readonly sha256?: string;
+}
+
+/** What `_fw_run` and the worker answer. */
+export type ResultMessage =
+  | { readonly report: Report; readonly outputs: Readonly<Record<string, OutputDescription>> }
+  | { readonly error: ErrorMessage };
+
+// ---- catalog ----
+
+export interface ParameterSchema {
+  readonly type: string | readonly string[];
+  readonly title?: string;
+  readonly description?: string;
+  readonly default?: Json;
+  readonly minimum?: number;
+  readonly maximum?: number;
+  readonly enum?: readonly string[];
+  readonly 'x-slider'?: readonly [number, number];
+  readonly 'x-unit'?: string;
+  readonly 'x-group'?: string;
+  readonly 'x-advanced'?: boolean;
+  readonly 'x-choice-labels'?: readonly string[];
+}
+
+export interface InputDeclaration {
+  readonly name: string;
+  readonly label: string;
+  readonly required?: boolean;
+  readonly extensions?: readonly string[];
+  readonly accepts_sample?: boolean;
+  readonly help?: string;
+}
+
+export interface OutputDeclaration {
+  readonly name: string;
+  readonly media_type: string;
+  readonly label: string;
+  readonly help?: string;
+  readonly default?: boolean;
+}
+
+export interface ReportField {
+  readonly name: string;
+  readonly label: string;
+  readonly unit?: string;
+  readonly help?: string;
+}
+
+export interface Operation {
+  readonly name: string;
+  readonly title: string;
+  readonly summary?: string;
+  readonly inputs: readonly InputDeclaration[];
+  readonly parameters: { readonly properties: Readonly<Record<string, ParameterSchema>> };
+  readonly outputs: readonly OutputDeclaration[];
+  readonly report?: readonly ReportField[];
+}
+
+export interface Sample {
+  readonly name: string;
+  readonly title: string;
+  readonly description?: string;
+  readonly default_vertices: number;
+  readonly closed?: boolean;
+}
+
+export interface MeshFormat {
+  readonly extension: string;
+  readonly media_type: string;
+  readonly title: string;
+}
+
+export interface Catalog {
+  readonly version: string;
+  readonly operations: readonly Operation[];
+  readonly samples: readonly Sample[];
+  readonly mesh_formats: readonly MeshFormat[];
+}
+
+export const findOperation = (catalog: Catalog, name: string): Operation | undefined =>
+  catalog.operations.find((operation) => operation.name === name);

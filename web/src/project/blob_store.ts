@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Blobs by their hash: what was used last stays in memory, everything worth keeping goes to storage.
+import { sha256Hex } from '../jobs/hash';
+import type { ProjectStorage } from './storage';
+
+const memoryLimit_bytes = 256 * 2 ** 20;
+
+export class BlobStore {
+  readonly #storage: ProjectStorage;
+  readonly #hash: (bytes: Uint8Array<ArrayBuffer>) => Promise<string>;
+  readonly #recent = new Map<string, Uint8Array<ArrayBuffer>>();
+  readonly #unsaved = new Set<string>();
+  #recentBytes = 0;
+
+  constructor(storage: ProjectStorage, hash = sha256Hex) {
+    this.#storage = storage;
+    this.#hash = hash;
+  }
+
+  /** Keeps the bytes; returns their hash once they can be read again. Throws the storage's error. */
+  async put(bytes: Uint8Array<ArrayBuffer>): Promise<string> {
+    const sha256 = await this.hold(bytes);
+    try {
+      if (!(await this.#storage.hasBlob(sha256))) await this.#storage.writeBlob(sha256, bytes);
+      this.#unsaved.delete(sha256);
+    } catch (thrown) {
+      this.#unsaved.add(sha256); // still readable until the page closes
+      throw thrown;
+    }
+    return sha256;
+  }
+
+  /** Keeps the bytes in memory only, as long as there is room. */
+  async hold(bytes: Uint8Array<ArrayBuffer>): Promise<string> {
+    const sha256 = await this.#hash(bytes);
+    this.#remember(sha256, bytes);
+    return sha256;
+  }
+
+  async read(sha256: string): Promise<Uint8Array<ArrayBuffer>> {
+    const bytes = this.#recent.get(sha256) ?? (await this.#storage.readBlob(sha256));
+    if (bytes === null) throw new Error('A file of this project is missing; open the model again.');
+    this.#remember(sha256, bytes);
+    return bytes;
+  }
+
+  async has(sha256: string): Promise<boolean> {
+    return this.#recent.has(sha256) || (await this.#storage.hasBlob(sha256));
+  }
+
+  /** Deletes every stored blob that is not in `used`. */
+  async sweep(used: ReadonlySet<string>): Promise<void> {
+    for (const sha256 of await this.#storage.listBlobs())
+      if (!used.has(sha256)) await this.#storage.deleteBlob(sha256);
+  }
+
+  #remember(sha256: string, bytes: Uint8Array<ArrayBuffer>): void {
+    this.#recentBytes += bytes.byteLength - (this.#recent.get(sha256)?.byteLength ?? 0);
+    this.#recent.delete(sha256);
+    this.#recent.set(sha256, bytes);
+    for (const [oldest, { byteLength }] of this.#recent) {
+      if (this.#recentBytes <= memoryLimit_bytes || oldest === sha256) break;
+      if (this.#unsaved.has(oldest)) continue;
+      this.#recent.delete(oldest);
+      this.#recentBytes -= byteLength;
+    }
+  }
+}

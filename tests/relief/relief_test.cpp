@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "relief/relief.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "geometry/test_meshes.h"
+
+namespace formwright {
+namespace {
+
+/// A ball with waves on it: curved everywhere, with a silhouette and a hidden side.
+TriangleMesh wavy_ball(int levels) {
+  TriangleMesh mesh = test::icosphere(levels);
+  for (Eigen::Index i = 0; i < mesh.V.rows(); ++i) {
+    const Vec3 p = mesh.V.row(i).transpose();
+    mesh.V.row(i) *= 1 + 0.08 * std::sin(5 * p.x() + 1) * std::cos(4 * p.y()) + 0.05 * std::sin(7 * p.z());
+  }
+  return mesh;
+}
+
+ReliefOptions slab(double thickness_mm, Projection projection = Projection::perspective) {
+  ReliefOptions options;
+  options.projection = projection;
+  options.thickness_mm = thickness_mm;
+  options.width_mm = 100;
+  return options;
+}
+
+Relief solve(const TriangleMesh& mesh, const ReliefOptions& options) {
+  Context context;
+  return ReliefSolver(mesh, options, context).solve(options, context);
+}
+
+TEST(Relief, WithoutAnActiveBoundIsTheModel) {
+  const TriangleMesh mesh = wavy_ball(3);
+  for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+    const ReliefOptions options = slab(130, projection);  // the ball is about 100 mm deep
+    const Relief relief = solve(mesh, options);
+    // One common scale: s = lambda / lambda0 is constant (perspective), the depth shift is (straight on).
+    const double spread = relief.u.maxCoeff() - relief.u.minCoeff();
+    EXPECT_LE(spread, 1e-10);
+    EXPECT_LE(relief.energy, 1e-18);
+    EXPECT_LE(relief.normal_error.mean_deg, 1e-6);
+    EXPECT_EQ(relief.qp.active_constraints, 0);
+    EXPECT_NEAR(relief.moved.col(2).maxCoeff(), 0, 1e-9) << "it should rest on its plate";
+  }
+}
+
+TEST(Relief, KeepsEveryBoundAndTheOrder) {
+  const TriangleMesh mesh = wavy_ball(4);
+  for (const Projection projection : {Projection::perspective, Projection::orthographic})
+    for (const double thickness : {10.0, 2.0, 0.5})
+      for (const BoundedVertices bounded : {BoundedVertices::all, BoundedVertices::visible}) {
+        ReliefOptions options = slab(thickness, projection);
+        options.bounded_vertices = bounded;
+        const Relief relief = solve(mesh, options);
+        EXPECT_LE(relief.bound_violation_max_mm, 1e-9 * thickness);
+        EXPECT_LE(relief.order_violation_max_mm, 1e-6 * thickness);
+        EXPECT_LE(relief.qp.kkt_residual, 1e-6);
+        EXPECT_LT(relief.energy, relief.energy_linear);
+        EXPECT_GT(relief.qp.active_constraints, 2);
+        EXPECT_GT(relief.order_rows, 100);
+        // The whole slab is used.
+        if (bounded == BoundedVertices::all) {
+          EXPECT_NEAR(relief.moved.col(2).minCoeff() * 100, -thickness, 1e-9 * thickness);
+          EXPECT_NEAR(relief.moved.col(2).maxCoeff() * 100, 0, 1e-9 * thickness);
+        }
+      }
+}
+
+TEST(Relief, ThinnerIsNeverBetter) {
+  const TriangleMesh mesh = wavy_ball(3);
+  ReliefOptions options = slab(20, Projection::orthographic);
+  Context context;
+  ReliefSolver solver(mesh, options, context);
+  double previous = -1;
+  for (const double thickness : {40.0, 20.0, 10.0, 5.0, 2.5, 1.0}) {
+    options.thickness_mm = thickness;
+    const double energy = solver.solve(options, context).energy;
+    EXPECT_GE(energy, previous);
+    previous = energy;
+  }
+}
+
+TEST(Relief, ReusedFactorisationGivesTheSameAnswer) {
+  const TriangleMesh mesh = wavy_ball(3);
+  ReliefOptions first = slab(8), second = slab(3);
+  Context context;
+  ReliefSolver solver(mesh, first, context);
+  solver.solve(first, context);
+  const Relief warm = solver.solve(second, context), cold = solve(mesh, second);
+  EXPECT_LE((warm.u - cold.u).cwiseAbs().maxCoeff(), 1e-8 * 0.03);
+  EXPECT_EQ(ReliefSolver::key(first), ReliefSolver::key(second));
+}
+
+TEST(Relief, SizeAndPlaceOfTheModelDoNotMatter) {
+  const TriangleMesh mesh = wavy_ball(3);
+  const ReliefOptions options = slab(4);
+  const Relief reference = solve(mesh, options);
+  TriangleMesh large{(mesh.V * 1000).rowwise() + Eigen::RowVector3d(3e3, -2e3, 1e4), mesh.F};
+  const Relief other = solve(large, options);
+  EXPECT_LE((reference.u - other.u).cwiseAbs().maxCoeff(), 1e-6 * 0.04);
+  EXPECT_NEAR(other.energy, reference.energy, 1e-6 * reference.energy);
+  // Width and thickness together only scale.
+  ReliefOptions twice = options;
+  twice.width_mm *= 2;
+  twice.thickness_mm *= 2;
+  const Relief scaled = solve(mesh, twice);
+  EXPECT_LE((scaled.u - reference.u).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_LE((scaled.lambda_mm - 2 * reference.lambda_mm).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(Relief, TurningTheModelAndTheViewTogetherChangesNothing) {
+  const TriangleMesh mesh = wavy_ball(3);
+  const ReliefOptions options = slab(4);
+  const Relief reference = solve(mesh, options);
+  const Eigen::Matrix3d R = Eigen::AngleAxisd(0.8, Vec3(1, 1, 2).normalized()).toRotationMatrix();
+  const TriangleMesh turned{mesh.V * R.transpose(), mesh.F};
+  ReliefOptions turned_options = options;
+  const Vec3 d = R * Vec3(0, 0, -1), up = R * Vec3(0, 1, 0);
+  turned_options.direction = {d.x(), d.y(), d.z()};
+  turned_options.up = {up.x(), up.y(), up.z()};
+  const Relief other = solve(turned, turned_options);
+  EXPECT_LE((reference.u - other.u).cwiseAbs().maxCoeff(), 1e-6 * 0.04);
+}
+
+TEST(Relief, BothSolversAgree) {
+  const TriangleMesh mesh = wavy_ball(4);
+  for (const Projection projection : {Projection::perspective, Projection::orthographic})
+    for (const double thickness : {5.0, 1.0}) {
+      ReliefOptions options = slab(thickness, projection);
+      options.method = QpMethod::exchange;
+      const Relief exchange = solve(mesh, options);
+      options.method = QpMethod::interior_point;
+      const Relief interior = solve(mesh, options);
+      EXPECT_NEAR(exchange.energy, interior.energy, 1e-6 * exchange.energy);
+      EXPECT_LE((exchange.u - interior.u).cwiseAbs().maxCoeff(), 1e-4 * thickness / 100);
+    }
+}
+
+TEST(Relief, EveryPartRestsOnItsOwn) {
+  // Two balls side by side and one behind: three components with free constants.
+  const TriangleMesh ball = wavy_ball(3);
+  const TriangleMesh mesh = test::joined(test::joined(ball, test::moved(ball, Vec3(2.6, 0, 0))), test::moved(ball, Vec3(1.3, 1, -3)));
+  const ReliefOptions options = slab(5);
+  const Relief relief = solve(mesh, options);
+  EXPECT_LE(relief.bound_violation_max_mm, 5e-9);
+  EXPECT_LE(relief.order_violation_max_mm, 1e-5);
+  EXPECT_LT(relief.energy, relief.energy_linear);
+}
+
+TEST(Relief, ApproachesTheContinuousAnswerUnderRefinement) {
+  // The energy is fourth order and the contact a free boundary: the mean depth must settle as the mesh is refined.
+  double previous_difference = 0, previous = 0;
+  bool first = true;
+  for (const int levels : {2, 3, 4, 5}) {
+    const Relief relief = solve(wavy_ball(levels), slab(10, Projection::orthographic));
+    const double now = relief.normal_error.mean_deg;
+    if (!first) {
+      const double difference = std::abs(now - previous);
+      if (previous_difference > 0) {
+        EXPECT_LT(difference, 0.75 * previous_difference) << "levels " << levels;
+      }
+      previous_difference = difference;
+    }
+    previous = now;
+    first = false;
+  }
+}
+
+TEST(Relief, RefusesWhatCannotBe) {
+  const TriangleMesh mesh = wavy_ball(2);
+  ReliefOptions options = slab(90);
+  options.field_of_view_deg = 90;
+  options.thickness_mm = 60;  // the viewpoint is 50 mm away
+  try {
+    solve(mesh, options);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::invalid_input);
+  }
+}
+
+TEST(Relief, StopsWithinASecondOfACancel) {
+  const TriangleMesh mesh = wavy_ball(6);
+  std::atomic<bool> cancel{false};
+  Context context(Host{{}, [&] { return cancel.load(); }, {}});
+  std::chrono::steady_clock::time_point asked;
+  std::thread impatient([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));
+    asked = std::chrono::steady_clock::now();
+    cancel = true;
+  });
+  bool stopped = false;
+  try {
+    const ReliefOptions options = slab(1);
+    ReliefSolver(mesh, options, context).solve(options, context);
+  } catch (const Error& error) {
+    stopped = error.code() == ErrorCode::cancelled;
+  }
+  const auto now = std::chrono::steady_clock::now();
+  impatient.join();
+  ASSERT_TRUE(stopped);
+  EXPECT_LT(std::chrono::duration<double>(now - asked).count(), 1.0);
+}
+
+}  // namespace
+}  // namespace formwright

@@ -1,0 +1,196 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The command line: what it writes, and one clear sentence with exit code 2 for everything wrong.
+Usage: command_line_test.py PROGRAM"""
+import json
+import os
+import pathlib
+import random
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+PROGRAM = sys.argv.pop(1)
+TETRAHEDRON = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+
+
+def read_stl(path: pathlib.Path):
+    """Triangles of a binary STL, read by a few lines of its own."""
+    data = path.read_bytes()
+    count = struct.unpack_from("<I", data, 80)[0]
+    assert len(data) == 84 + 50 * count, "not the length that a binary STL of that many triangles has"
+    return [struct.unpack_from("<12f", data, 84 + 50 * i)[3:] for i in range(count)]
+
+
+def volume_and_edges(triangles):
+    volume, edges = 0.0, {}
+    for t in triangles:
+        a, b, c = t[0:3], t[3:6], t[6:9]
+        volume += (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])) / 6
+        for p, q in ((a, b), (b, c), (c, a)):
+            edges[(p, q)] = edges.get((p, q), 0) + 1
+    return volume, edges
+
+
+class CommandLine(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.folder = pathlib.Path(self.temporary.name)
+
+    def tearDown(self):
+        self.temporary.cleanup()
+
+    def run_program(self, *words, **options):
+        return subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True, timeout=300, **options)
+
+    def expect_refused(self, part: str, *words, code: int = 2):
+        run = self.run_program(*words)
+        self.assertEqual(run.returncode, code, (words, run.stderr))
+        lines = [line for line in run.stderr.splitlines() if line.startswith("formwright: ")]
+        self.assertEqual(len(lines), 1, run.stderr)
+        self.assertIn(part, lines[0])
+        self.assertTrue(lines[0].rstrip().endswith((".", "?")), lines[0])
+        self.assertFalse((self.folder / "out" / "report.json").exists())
+
+    def test_a_relief_is_written_whole(self):
+        out = self.folder / "out"
+        run = self.run_program("relief", "--sample", "bust", "--sample-vertices", 6000, "--thickness-mm", 4, "--width-mm", 80, "--out", out, "--quiet")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual(sorted(p.name for p in out.iterdir()), ["heightmap.png", "relief.glb", "relief.ply", "relief.stl", "report.json"])
+        report = json.loads((out / "report.json").read_text())
+        described = json.loads(self.run_program("describe", "relief").stdout)
+        self.assertEqual(set(report) - {f["name"] for f in described["report"]}, set())
+        self.assertLess(report["energy"], report["energy_linear"])
+        self.assertLess(report["normal_error_mean_deg"], report["normal_error_linear_mean_deg"])
+        self.assertLessEqual(report["bound_violation_max_mm"], 4e-9)
+        self.assertTrue(report["watertight"])
+        triangles = read_stl(out / "relief.stl")
+        volume, edges = volume_and_edges(triangles)
+        self.assertGreater(volume, 0)
+        for (p, q), count in edges.items():
+            self.assertEqual(count, 1)
+            self.assertIn((q, p), edges)
+        xs, ys, zs = zip(*(t[i:i + 3] for t in triangles for i in (0, 3, 6)))
+        self.assertAlmostEqual(max(xs) - min(xs), 80, places=3)
+        self.assertAlmostEqual(max(zs) - min(zs), 7, places=3)
+        self.assertAlmostEqual(max(ys) - min(ys), report["size_mm"][1], places=3)
+
+    def test_the_plys_numbers_are_the_reports(self):
+        out = self.folder / "out"
+        self.run_program("relief", "--sample", "bust", "--sample-vertices", 3000, "--thickness-mm", 5, "--out", out, "--outputs", "relief.ply", "--quiet")
+        report = json.loads((out / "report.json").read_text())
+        data = (out / "relief.ply").read_bytes()
+        head, body = data.split(b"end_header\n", 1)
+        names = [line.split()[2] for line in head.decode().splitlines() if line.startswith("property") and "list" not in line]
+        self.assertEqual(names, ["x", "y", "z", "lambda", "lambda_min", "lambda_max", "visible", "normal_error_deg"])
+        row = struct.Struct("<dddddd" + "B" + "d")
+        eye = report["viewpoint_mm"]
+        for i in range(report["vertices"]):
+            x, y, z, value, least, most, visible, error = row.unpack_from(body, i * row.size)
+            self.assertLessEqual(least, value)
+            self.assertLessEqual(value, most)
+            # lambda is the distance from the viewpoint that the report names (eq. 3.3).
+            self.assertAlmostEqual(((x - eye[0]) ** 2 + (y - eye[1]) ** 2 + (z - eye[2]) ** 2) ** 0.5, value, places=8)
+            self.assertIn(visible, (0, 1))
+            self.assertTrue(0 <= error <= 180)
+
+    def test_bad_words(self):
+        out = self.folder / "out"
+        mesh = self.folder / "tetrahedron.obj"
+        mesh.write_text(TETRAHEDRON)
+        self.expect_refused("no command rleief", "rleief")
+        self.expect_refused("no flag --thickness-m; did you mean --thickness-mm?", "relief", "--mesh", mesh, "--thickness-m", 5, "--out", out)
+        self.expect_refused("not a number", "relief", "--mesh", mesh, "--thickness-mm", "thin", "--out", out)
+        for value in ("0", "-3", "nan", "inf", "1e9"):
+            self.expect_refused("thickness_mm", "relief", "--mesh", mesh, "--thickness-mm", value, "--out", out)
+        self.expect_refused("--out DIR", "relief", "--mesh", mesh)
+        self.expect_refused("--mesh FILE", "relief", "--out", out)
+        self.expect_refused("needs a value", "relief", "--out")
+        self.expect_refused("not both", "relief", "--mesh", mesh, "--sample", "bust", "--out", out)
+        self.expect_refused("bust", "relief", "--sample", "bst", "--out", out)
+        self.expect_refused("perspective, orthographic", "relief", "--mesh", mesh, "--projection", "isometric", "--out", out)
+        self.expect_refused("distance", "relief", "--mesh", mesh, "--distance-mm", 1, "--out", out)
+        self.expect_refused("Up lies along", "relief", "--mesh", mesh, "--direction", "0,-1,0", "--out", out)
+        self.expect_refused("relief.ply", "relief", "--mesh", mesh, "--outputs", "relief.dwg", "--out", out)
+
+    def test_bad_files(self):
+        out = self.folder / "out"
+        noise = random.Random(1).randbytes(20000)
+        files = {
+            "absent.obj": None,
+            "empty.obj": b"",
+            "noise.obj": noise,
+            "noise.stl": noise,
+            "noise.ply": b"ply\n" + noise,
+            "noise.glb": b"glTF" + noise,
+            "noise.3mf": b"PK\x03\x04" + noise,
+            "truncated.stl": b"\0" * 80 + struct.pack("<I", 1000) + b"\0" * 200,
+            "nan.obj": b"v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+            "range.obj": b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n",
+            "flat.obj": b"v 0 0 0\nv 1 1 1\nv 2 2 2\nf 1 2 3\n",
+            "points.obj": b"v 0 0 0\nv 1 1 1\n",
+        }
+        for name, content in files.items():
+            path = self.folder / name
+            if content is not None:
+                path.write_bytes(content)
+            self.expect_refused(name.split(".")[0] if name in ("absent.obj", "empty.obj") else "", "relief", "--mesh", path, "--out", out)
+
+    def test_a_line_seen_end_on(self):
+        mesh = self.folder / "sliver.obj"
+        mesh.write_text("v 0 0 0\nv 0 0 1\nv 0 1 0\nv 0 1 1\nf 1 2 3\nf 2 4 3\n")
+        self.expect_refused("only a line", "relief", "--mesh", mesh, "--out", self.folder / "out")
+
+    def test_earlier_results_survive_a_failure(self):
+        out = self.folder / "out"
+        self.assertEqual(self.run_program("import", "--sample", "pyramid", "--out", out, "--quiet").returncode, 0)
+        before = {p.name: p.read_bytes() for p in out.iterdir()}
+        self.assertEqual(self.run_program("import", "--mesh", self.folder / "absent.obj", "--out", out).returncode, 2)
+        self.assertEqual({p.name: p.read_bytes() for p in out.iterdir()}, before)
+
+    def test_an_unwritable_folder_is_said(self):
+        blocked = self.folder / "file"
+        blocked.write_text("not a folder")
+        run = self.run_program("import", "--sample", "pyramid", "--out", blocked / "out")
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("cannot be made", run.stderr)
+
+    @unittest.skipUnless(os.path.exists("/dev/full"), "no /dev/full here")
+    def test_a_full_disk_is_said(self):
+        out = self.folder / "out"
+        out.mkdir()
+        limited = subprocess.run(["bash", "-c", f"ulimit -f 4; trap '' XFSZ; exec {PROGRAM} import --sample bust --out {out} --quiet"], capture_output=True, text=True)
+        self.assertEqual(limited.returncode, 2, limited.stderr)
+        self.assertIn("make room", limited.stderr)
+        self.assertEqual([p.name for p in out.iterdir()], [])
+
+    def test_interrupting_stops_within_a_second_with_130(self):
+        process = subprocess.Popen([PROGRAM, "relief", "--sample", "bust", "--sample-vertices", "400000", "--out", str(self.folder / "out")],
+                                   stderr=subprocess.PIPE, text=True)
+        for delay in (0.7,):
+            time.sleep(delay)
+            asked = time.monotonic()
+            process.send_signal(signal.SIGINT)
+            process.wait(20)
+            self.assertLess(time.monotonic() - asked, 2)
+            self.assertEqual(process.returncode, 130)
+        self.assertFalse((self.folder / "out" / "relief.ply").exists())
+
+    def test_help_and_list_come_from_the_catalog(self):
+        self.assertEqual(self.run_program().returncode, 2)
+        catalog = json.loads(self.run_program("describe").stdout)
+        names = [line.split("\t")[0] for line in self.run_program("list").stdout.splitlines()]
+        self.assertEqual(names, [operation["name"] for operation in catalog["operations"]])
+        for operation in catalog["operations"]:
+            text = self.run_program(operation["name"], "--help").stdout
+            for name, schema in operation["parameters"]["properties"].items():
+                self.assertIn("--" + name.replace("_", "-"), text)
+                self.assertIn(schema["description"], text)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

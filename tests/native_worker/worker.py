@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A worker to test: started on a free port with its own data folder, spoken to over plain sockets."""
+import base64
+import hashlib
+import http.client
+import json
+import os
+import pathlib
+import re
+import socket
+import struct
+import subprocess
+import time
+
+
+class Worker:
+    def __init__(self, program: str, data: pathlib.Path, *flags: str):
+        self.process = subprocess.Popen([program, "serve", "--port", "0", "--data", str(data), *flags],
+                                        stdout=subprocess.PIPE, text=True)
+        for line in self.process.stdout:
+            if match := re.match(r"http://127\.0\.0\.1:(\d+)/#token=([0-9a-f]+)$", line.strip()):
+                self.port, self.token = int(match.group(1)), match.group(2)
+                return
+        raise RuntimeError("the worker did not start")
+
+    def stop(self) -> None:
+        self.process.terminate()
+        self.process.wait(10)
+
+    def request(self, method: str, path: str, body: bytes | None = None, headers: dict | None = None, token: str | None = "own"):
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=60)
+        all_headers = dict(headers or {})
+        if token is not None:
+            all_headers["Authorization"] = "Bearer " + (self.token if token == "own" else token)
+        try:
+            connection.request(method, path, body, all_headers)
+            answer = connection.getresponse()
+            return answer.status, answer.read(), dict(answer.getheaders())
+        finally:
+            connection.close()
+
+    def json(self, method: str, path: str, message=None):
+        status, body, _ = self.request(method, path, None if message is None else json.dumps(message).encode())
+        return status, json.loads(body) if body else None
+
+    def put_blob(self, content: bytes) -> str:
+        name = hashlib.sha256(content).hexdigest()
+        status, body, _ = self.request("PUT", f"/api/blobs/{name}", content)
+        assert status in (200, 201), (status, body)
+        return name
+
+    def post_job(self, **job) -> str:
+        status, answer = self.json("POST", "/api/jobs", job)
+        assert status == 202, (status, answer)
+        return answer["id"]
+
+    def wait(self, job: str, seconds: float = 120):
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            status, detail = self.json("GET", f"/api/jobs/{job}")
+            assert status == 200, (status, detail)
+            if detail["state"] in ("done", "failed", "cancelled"):
+                return detail
+            time.sleep(0.05)
+        raise AssertionError(f"job {job} did not finish: {detail}")
+
+    def wait_running(self, job: str) -> None:
+        for _ in range(400):
+            if self.json("GET", f"/api/jobs/{job}")[1]["state"] == "running":
+                return
+            time.sleep(0.02)
+        raise AssertionError("the job never ran")
+
+    def job_process(self) -> int:
+        """The child in which jobs run."""
+        children = pathlib.Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children").read_text().split()
+        assert len(children) == 1, children
+        return int(children[0])
+
+
+class PageSocket:
+    """A WebSocket client of the few things the tests need (RFC 6455)."""
+
+    def __init__(self, worker: Worker, token: str, origin: str | None = None, host: str | None = None):
+        self.socket = socket.create_connection(("127.0.0.1", worker.port), timeout=60)
+        lines = ["GET /api/socket HTTP/1.1", f"Host: {host or f'127.0.0.1:{worker.port}'}", "Upgrade: websocket", "Connection: Upgrade",
+                 "Sec-WebSocket-Key: " + base64.b64encode(os.urandom(16)).decode(), "Sec-WebSocket-Version: 13",
+                 f"Sec-WebSocket-Protocol: formwright.v1, token.{token}"]
+        if origin:
+            lines.append(f"Origin: {origin}")
+        self.socket.sendall(("\r\n".join(lines) + "\r\n\r\n").encode())
+        head = b""
+        while b"\r\n\r\n" not in head:
+            part = self.socket.recv(1)
+            if not part:
+                break
+            head += part
+        self.status = int(head.split()[1])
+
+    def _exactly(self, count: int) -> bytes:
+        data = b""
+        while len(data) < count:
+            part = self.socket.recv(count - len(data))
+            if not part:
+                raise ConnectionError("closed")
+            data += part
+        return data
+
+    def receive(self):
+        while True:
+            first, second = self._exactly(2)
+            length = second & 0x7F
+            if length == 126:
+                length = struct.unpack(">H", self._exactly(2))[0]
+            elif length == 127:
+                length = struct.unpack(">Q", self._exactly(8))[0]
+            payload = self._exactly(length)
+            if first & 0x0F == 1:
+                return json.loads(payload)
+            if first & 0x0F == 8:
+                raise ConnectionError("closed by the server")
+
+    def send(self, message) -> None:
+        self.send_frame(0x81, json.dumps(message).encode())
+
+    def send_frame(self, first: int, data: bytes, claimed_length: int | None = None) -> None:
+        length = len(data) if claimed_length is None else claimed_length
+        mask = os.urandom(4)
+        head = bytes([first])
+        if length < 126:
+            head += bytes([0x80 | length])
+        elif length < 65536:
+            head += bytes([0x80 | 126]) + struct.pack(">H", length)
+        else:
+            head += bytes([0x80 | 127]) + struct.pack(">Q", length)
+        self.socket.sendall(head + mask + bytes(b ^ mask[i % 4] for i, b in enumerate(data)))

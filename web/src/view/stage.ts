@@ -1,0 +1,600 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Everything on the graphics card: the subjects, their light, and how a picture of them is drawn, refined and
+// read back. Knows no DOM beyond its canvas.
+import * as THREE from 'three';
+import type { ColourMapping, MeshData, Plate, Vec3, Viewpoint } from './api';
+import { type CameraState, type Screen, clipMatrix, viewCoordinates } from './camera';
+import { SectionCaps } from './caps';
+import { mapTexels, stopsOf } from './colour_map';
+import { LineSet, type LineStyle } from './lines';
+import { groundSquare, plateBody, plateCorners, plateFrame, plateFront, rectangle } from './plate';
+import { Accumulation, ScreenPass } from './passes';
+import { backdropFragment, groundFragment, plateShadowFragment, plateShadowVertex } from './shaders';
+import { DepthView, SkyScratch, Subject, newBakeUniforms } from './subject';
+import { type Support, supportOf } from './support';
+import { Surface, type SurfaceOptions, type Uniforms, still } from './surface';
+import type { Palette } from './theme';
+import { add, along, dot, perpendicular, rotate, scale, subtract } from './vector';
+
+export type PartName = 'original' | 'relief';
+
+export interface PicturePart {
+  part: PartName;
+  /** Columns of the canvas this part may draw in, 0..1. */
+  from: number;
+  to: number;
+}
+
+export interface Picture {
+  camera: CameraState;
+  screen: Screen;
+  parts: readonly PicturePart[];
+  /** Unit vectors in the model's axes. */
+  towardsLight: Vec3;
+  lightUp: Vec3;
+  lightFront: Vec3;
+  backdrop: boolean;
+  /** Shadow of the plate on the bench. */
+  plateShadow: boolean;
+  ground: boolean;
+}
+
+/** Linear reflectances: warm plaster, its plate a little darker, as an object stands out from its ground. */
+const PLASTER: Vec3 = [0.93, 0.845, 0.715];
+const PLATE: Vec3 = [0.9, 0.81, 0.672];
+const KEY = 0.82;
+const AMBIENT = 0.215;
+/** Half angle of the key light as seen from the object, degrees: how soft its shadows are. */
+const LIGHT_HALF_ANGLE = 2.6;
+const OCCLUSION = 0.92;
+
+interface Part {
+  meshSupport: Support;
+  subject: Subject;
+  mesh: Surface | null;
+  extra: Surface[];
+  plateShadow: THREE.Mesh<THREE.BufferGeometry, THREE.RawShaderMaterial> | null;
+  plate: Plate | null;
+  plateForward: Vec3 | null;
+  plateCentre: Vec3 | null;
+}
+
+export class Stage {
+  readonly renderer: THREE.WebGLRenderer;
+  readonly software: boolean;
+  origin: Vec3 = [0, 0, 0];
+  readonly picture: Uniforms = {
+    uSection: { value: new THREE.Vector4(0, 0, 0, 1) },
+    uEye: { value: new THREE.Vector4(0, 0, 1, 0) },
+    uUp: { value: new THREE.Vector3(0, 1, 0) },
+    uFront: { value: new THREE.Vector3(0, 0, 1) },
+    uLight: { value: new THREE.Vector3(0, 0, 1) },
+    uInside: { value: new THREE.Vector3(-1, 0, 0) },
+    uKey: { value: KEY },
+    uAmbient: { value: AMBIENT },
+    uNoise: { value: 0 },
+    uViewport: { value: new THREE.Vector2(1, 1) },
+  };
+  private readonly bakeUniforms = newBakeUniforms();
+  private readonly parts: Record<PartName, Part>;
+  private readonly camera = new THREE.Camera();
+  private readonly scene = new THREE.Scene();
+  private readonly depthView = new DepthView();
+  private readonly sky = new SkyScratch();
+  private readonly backdrop = new ScreenPass(backdropFragment, {
+    uCentre: { value: new THREE.Vector3() },
+    uRim: { value: new THREE.Vector3() },
+    uAspect: { value: new THREE.Vector2(1, 1) },
+  });
+  private lines: { set: LineSet; part: PartName | null }[] = [];
+  private readonly caps: SectionCaps;
+  private readonly mapTextures = new Map<string, THREE.DataTexture>();
+  private readonly canRefineHere: boolean;
+  private palette: Palette | null = null;
+  private sectionKey = '';
+  private occlusionStrength = OCCLUSION;
+  private mapping: { mapping: ColourMapping; parts: readonly PartName[] } | null = null;
+
+  constructor(canvas: HTMLCanvasElement | OffscreenCanvas, antialias: boolean) {
+    const context = canvas.getContext('webgl2', {
+      antialias,
+      alpha: false,
+      stencil: true,
+      depth: true,
+      powerPreference: 'high-performance',
+    }) as WebGL2RenderingContext | null;
+    if (!context) throw new Error('webgl2');
+    this.renderer = new THREE.WebGLRenderer({ canvas, context, antialias });
+    this.renderer.autoClear = false;
+    this.renderer.sortObjects = false;
+    this.renderer.setPixelRatio(1);
+    this.renderer.info.autoReset = false;
+    const info = context.getExtension('WEBGL_debug_renderer_info');
+    const name = info ? String(context.getParameter(info.UNMASKED_RENDERER_WEBGL)) : '';
+    this.software = /swiftshader|llvmpipe|software|basic render/i.test(name);
+    this.canRefineHere = context.getExtension('EXT_color_buffer_float') !== null;
+    this.camera.matrixWorldAutoUpdate = false;
+    this.scene.matrixWorldAutoUpdate = false;
+    this.caps = new SectionCaps(this.picture);
+    const part = (): Part => ({
+      meshSupport: supportOf(new Float32Array(0)),
+      subject: new Subject(this.bakeUniforms),
+      mesh: null,
+      extra: [],
+      plateShadow: null,
+      plate: null,
+      plateForward: null,
+      plateCentre: null,
+    });
+    this.parts = { original: part(), relief: part() };
+  }
+
+  get canRefine(): boolean {
+    return this.canRefineHere;
+  }
+
+  setPalette(palette: Palette): void {
+    this.palette = palette;
+    (this.backdrop.uniforms['uCentre']?.value as THREE.Vector3).set(...palette.viewCentre);
+    (this.backdrop.uniforms['uRim']?.value as THREE.Vector3).set(...palette.viewRim);
+    for (const texture of this.mapTextures.values()) texture.dispose();
+    this.mapTextures.clear();
+    this.applyMapping();
+  }
+
+  setPart(
+    name: PartName,
+    mesh: MeshData | null,
+    plate: Plate | null,
+    viewpoint: Pick<Viewpoint, 'direction' | 'up'>,
+    ground: Vec3 | null = null,
+  ): void {
+    const part = this.parts[name];
+    part.subject.dispose();
+    part.subject = new Subject(this.bakeUniforms);
+    this.disposePlateShadow(part);
+    part.plate = plate;
+    part.extra = [];
+    part.plateForward = part.plateCentre = null;
+    part.mesh = mesh ? this.surface(part, mesh, { albedo: PLASTER }) : null;
+    if (plate) this.addPlate(part, plate, viewpoint);
+    if (ground && part.mesh) this.addGround(part, part.mesh, ground);
+    part.subject.surfaces = [...(part.mesh ? [part.mesh] : []), ...part.extra];
+    part.subject.changed();
+    if (part.mesh) part.meshSupport = supportOf(part.mesh.positions);
+    this.applyMapping();
+    this.sectionKey += '!';
+  }
+
+  private surface(part: Part, mesh: MeshData, options: SurfaceOptions): Surface {
+    const shared = { picture: this.picture, subject: part.subject.uniforms, bake: this.bakeUniforms };
+    return new Surface(mesh, this.origin, shared, options);
+  }
+
+  private addPlate(part: Part, plate: Plate, viewpoint: Pick<Viewpoint, 'direction' | 'up'>): void {
+    const frame = plateFrame(plate, viewpoint);
+    part.plateForward = frame.forward;
+    part.plateCentre = along(frame.centre, frame.forward, frame.thickness);
+    if (plate.mesh) {
+      part.extra.push(this.surface(part, plate.mesh, { albedo: PLATE }));
+    } else if (plate.mesh !== false) {
+      const width = 640;
+      const height = Math.min(1024, Math.max(64, Math.round((width * plate.heightMm) / plate.widthMm)));
+      part.extra.push(this.surface(part, plateFront(frame), { albedo: PLATE, picture: { width, height } }));
+      const body = plateBody(frame);
+      if (body) part.extra.push(this.surface(part, body, { albedo: PLATE }));
+    }
+    // The bench behind the plate, seen only as the shadow on it.
+    const reach = 0.45 * Math.max(plate.widthMm, plate.heightMm);
+    const wide = { ...frame, halfWidth: frame.halfWidth + reach, halfHeight: frame.halfHeight + reach };
+    const mesh = rectangle(plateCorners(wide, frame.thickness + 0.01 * reach), scale(frame.forward, -1));
+    const geometry = new THREE.BufferGeometry();
+    const positions = Float32Array.from(mesh.positions, (x, i) => x - (this.origin[i % 3] as number));
+    const w = wide.halfWidth;
+    const h = wide.halfHeight;
+    geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
+    geometry.setAttribute('uv', new THREE.BufferAttribute(Float32Array.of(-w, -h, w, -h, w, h, -w, h), 2));
+    geometry.setIndex(new THREE.BufferAttribute(mesh.indices, 1));
+    const material = new THREE.RawShaderMaterial({
+      glslVersion: THREE.GLSL3,
+      vertexShader: plateShadowVertex,
+      fragmentShader: plateShadowFragment,
+      uniforms: {
+        uHalf: { value: new THREE.Vector2(frame.halfWidth, frame.halfHeight) },
+        uShift: { value: new THREE.Vector2() },
+        uBlur: { value: 0.035 * Math.max(plate.widthMm, plate.heightMm) },
+        uStrength: { value: 0.4 },
+      },
+      side: THREE.DoubleSide,
+      transparent: true,
+      depthWrite: false,
+      blending: THREE.CustomBlending,
+      blendSrc: THREE.OneFactor,
+      blendDst: THREE.OneMinusSrcAlphaFactor,
+    });
+    part.plateShadow = still(new THREE.Mesh(geometry, material));
+    part.plateShadow.userData['axes'] = { right: frame.right, up: frame.up };
+  }
+
+  private addGround(part: Part, mesh: Surface, up: Vec3): void {
+    const { points, centre, radius } = supportOf(mesh.positions);
+    let lowest = Infinity;
+    for (let i = 0; i < points.length; i += 3) {
+      lowest = Math.min(
+        lowest,
+        dot(up, [points[i] as number, points[i + 1] as number, points[i + 2] as number]),
+      );
+    }
+    const square = groundSquare(centre as Vec3, radius, lowest - 1e-3 * radius, up, 2.4);
+    const positions = Float64Array.from(square.positions, (x, i) => x + (this.origin[i % 3] as number));
+    const ground = this.surface(
+      part,
+      { ...square, positions },
+      {
+        albedo: PLATE,
+        picture: { width: 384, height: 384 },
+        fragment: groundFragment,
+        transparent: true,
+      },
+    );
+    ground.main.material.uniforms['uStrength'] = { value: 0.62 };
+    part.extra.push(ground);
+  }
+
+  updatePositions(name: PartName, positions: Float32Array | Float64Array): void {
+    const part = this.parts[name];
+    part.mesh?.updatePositions(positions);
+    part.subject.changed();
+    if (part.mesh && part.extra.length > 0) part.meshSupport = supportOf(part.mesh.positions);
+    this.sectionKey += '!';
+  }
+
+  meshOf(name: PartName): Surface | null {
+    return this.parts[name].mesh;
+  }
+
+  /** Outline of the mesh alone, without plate or ground. */
+  meshSupport(name: PartName): Support {
+    const part = this.parts[name];
+    return part.extra.length === 0 ? part.subject.support : part.meshSupport;
+  }
+
+  plateSurfaces(name: PartName): readonly Surface[] {
+    return this.parts[name].extra;
+  }
+
+  subjectOf(name: PartName): Subject {
+    return this.parts[name].subject;
+  }
+
+  plateOf(name: PartName): Plate | null {
+    return this.parts[name].plate;
+  }
+
+  /** Colours the named parts by an attribute; the others are plaster. */
+  setMapping(mapping: ColourMapping | null, parts: readonly PartName[]): void {
+    this.mapping = mapping ? { mapping, parts } : null;
+    this.applyMapping();
+  }
+
+  private attributes = new Map<string, Float32Array>();
+
+  /** Values that take the place of MeshData.attributes. */
+  setAttribute(name: PartName, attribute: string, values: Float32Array | null): void {
+    if (values) this.attributes.set(`${name}/${attribute}`, values);
+    else
+      for (const key of [...this.attributes.keys()])
+        if (key.startsWith(`${name}/`)) this.attributes.delete(key);
+    this.applyMapping();
+  }
+
+  attributeOf(name: PartName, attribute: string): Float32Array | null {
+    return (
+      this.attributes.get(`${name}/${attribute}`) ??
+      this.parts[name].mesh?.mesh.attributes?.[attribute] ??
+      null
+    );
+  }
+
+  private applyMapping(): void {
+    for (const name of ['original', 'relief'] as const) {
+      const { mesh } = this.parts[name];
+      if (!mesh) continue;
+      const shown = this.mapping?.parts.includes(name) ? this.mapping.mapping : null;
+      const values = shown ? this.attributeOf(name, shown.attribute) : null;
+      if (!shown || values?.length !== mesh.vertexCount) mesh.setScalar(null, null, 0, 1);
+      else mesh.setScalar(values, this.mapTexture(shown.map), shown.minimum, shown.maximum);
+    }
+  }
+
+  private mapTexture(name: ColourMapping['map']): THREE.DataTexture {
+    let texture = this.mapTextures.get(name);
+    if (!texture) {
+      texture = new THREE.DataTexture(mapTexels(stopsOf(name, this.palette?.maps[name]), 256), 256, 1);
+      texture.minFilter = texture.magFilter = THREE.LinearFilter;
+      texture.needsUpdate = true;
+      this.mapTextures.set(name, texture);
+    }
+    return texture;
+  }
+
+  /** Takes away what lies beyond normal . p = offset (model mm); null keeps everything. */
+  setSection(section: { normal: Vec3; offset: number } | null): void {
+    const value = this.picture['uSection']?.value as THREE.Vector4;
+    const inside = this.picture['uInside']?.value as THREE.Vector3;
+    if (section) {
+      value.set(...section.normal, section.offset - dot(section.normal, this.origin));
+      inside.set(0.32, 0.25, 0.17);
+    } else {
+      value.set(0, 0, 0, 1);
+      inside.set(-1, 0, 0);
+    }
+    this.sectionKey = value.toArray().join();
+  }
+
+  setLines(
+    lines: readonly { pieces: Float32Array; style: LineStyle; part?: PartName }[],
+    pixelRatio: number,
+  ): void {
+    for (const { set } of this.lines) set.dispose();
+    this.lines = lines.map(({ pieces, style, part }) => ({
+      set: new LineSet(pieces, style, this.picture, pixelRatio),
+      part: part ?? null,
+    }));
+  }
+
+  setOcclusion(strength: number): void {
+    this.occlusionStrength = strength * OCCLUSION;
+  }
+
+  get bakePending(): boolean {
+    return this.parts.original.subject.bakePending || this.parts.relief.subject.bakePending;
+  }
+
+  /** Bakes some of the sky for the parts shown; true when a part was finished (draw again). */
+  bake(steps: number, names: readonly PartName[]): boolean {
+    const waiting = names.map((n) => this.parts[n].subject).find((s) => s.bakePending);
+    if (!waiting) return false;
+    const done = waiting.bake(this.renderer, this.depthView, this.sky, steps);
+    this.renderer.setRenderTarget(null);
+    return done;
+  }
+
+  bakePendingFor(names: readonly PartName[]): boolean {
+    return names.some((n) => this.parts[n].subject.bakePending);
+  }
+
+  resize(width: number, height: number): void {
+    this.renderer.setSize(width, height, false);
+  }
+
+  /** Draws `picture` into the canvas or a target of `width` x `height` pixels. `sample` >= 0 is one of the
+   *  jittered pictures of a refinement: its own place within the pixel and on the light. */
+  draw(
+    picture: Picture,
+    target: THREE.WebGLRenderTarget | null,
+    width: number,
+    height: number,
+    sample = -1,
+  ): void {
+    const { renderer } = this;
+    const [jitterX, jitterY, lightX, lightY] = sample < 0 ? [0, 0, 0, 0] : jitter(sample);
+    const angle = (LIGHT_HALF_ANGLE * Math.PI) / 180;
+    const side = perpendicular(picture.towardsLight);
+    const towards = rotate(
+      rotate(picture.towardsLight, side, angle * lightX),
+      rotate(side, picture.towardsLight, Math.PI / 2),
+      angle * lightY,
+    );
+    for (const { part } of picture.parts) {
+      const { subject, mesh } = this.parts[part];
+      // A still picture samples the light itself; a moving one blurs the shadow's edge instead.
+      const softness = (sample < 0 ? 0.011 : 0.0015) * (mesh ? subject.support.radius : 1);
+      subject.prepareShadow(renderer, this.depthView, towards, softness, this.sectionKey);
+      subject.setOcclusionStrength(this.occlusionStrength);
+    }
+    this.setPictureUniforms(picture, towards, width, height, sample);
+    renderer.setRenderTarget(target);
+    this.setScissor(target, 0, width, height, width);
+    renderer.setClearColor(0x000000, picture.backdrop ? 1 : 0);
+    renderer.clear(true, true, true);
+    for (const { part, from, to } of picture.parts) {
+      const left = Math.round(from * width);
+      const right = Math.round(to * width);
+      if (right <= left) continue;
+      this.setScissor(target, left, width, height, right);
+      this.drawPart(picture, this.parts[part], part, width, height, [jitterX, jitterY]);
+    }
+    if (picture.parts.length === 0 && picture.backdrop) this.drawScene([this.backdrop.mesh]);
+    this.setScissor(target, 0, width, height, width);
+    renderer.setRenderTarget(null);
+  }
+
+  private drawPart(
+    picture: Picture,
+    part: Part,
+    name: PartName,
+    width: number,
+    height: number,
+    offset: readonly [number, number],
+  ): void {
+    this.setClip(picture, part.subject, width, height, offset);
+    if (picture.backdrop) this.drawScene([this.backdrop.mesh]);
+    const objects: THREE.Object3D[] = [];
+    for (const surface of part.subject.surfaces) {
+      if (surface.main.material.transparent && !picture.ground) continue;
+      objects.push(surface.main);
+    }
+    if (part.plateShadow && picture.plateShadow && this.facesFront(picture.camera, part)) {
+      this.aimPlateShadow(part, picture.towardsLight);
+      objects.push(part.plateShadow);
+    }
+    this.drawScene(objects);
+    const section = this.picture['uSection']?.value as THREE.Vector4;
+    if (section.x !== 0 || section.y !== 0 || section.z !== 0) {
+      this.renderer.clear(false, false, true);
+      for (const step of this.caps.steps(part.subject, part.plate !== null)) this.drawScene(step);
+    }
+    const lines = this.lines.filter((l) => l.part === null || l.part === name).flatMap((l) => l.set.objects);
+    if (lines.length > 0) this.drawScene(lines);
+  }
+
+  private drawScene(objects: THREE.Object3D[]): void {
+    this.scene.children = objects;
+    this.renderer.render(this.scene, this.camera);
+    this.scene.children = [];
+  }
+
+  private setScissor(
+    target: THREE.WebGLRenderTarget | null,
+    left: number,
+    width: number,
+    height: number,
+    right: number,
+  ): void {
+    if (target) {
+      target.viewport.set(0, 0, width, height);
+      target.scissor.set(left, 0, right - left, height);
+      target.scissorTest = true;
+      this.renderer.setRenderTarget(target);
+    } else {
+      this.renderer.setViewport(0, 0, width, height);
+      this.renderer.setScissor(left, 0, right - left, height);
+      this.renderer.setScissorTest(true);
+    }
+  }
+
+  private setPictureUniforms(
+    picture: Picture,
+    towards: Vec3,
+    width: number,
+    height: number,
+    sample: number,
+  ): void {
+    const { camera } = picture;
+    const eye = this.picture['uEye']?.value as THREE.Vector4;
+    if (camera.kappa > 0)
+      eye.set(...subtract(along(camera.target, camera.forward, -1 / camera.kappa), this.origin), 1);
+    else eye.set(...scale(camera.forward, -1), 0);
+    (this.picture['uUp']?.value as THREE.Vector3).set(...picture.lightUp);
+    (this.picture['uFront']?.value as THREE.Vector3).set(...picture.lightFront);
+    (this.picture['uLight']?.value as THREE.Vector3).set(...towards);
+    (this.picture['uNoise'] as THREE.IUniform).value = sample < 0 ? 0 : (sample * 0.61803399) % 1;
+    (this.picture['uViewport']?.value as THREE.Vector2).set(width, height);
+    (this.backdrop.uniforms['uAspect']?.value as THREE.Vector2).set(
+      Math.max(1, width / height) ** 0.5,
+      Math.max(1, height / width) ** 0.5,
+    );
+  }
+
+  private setClip(
+    picture: Picture,
+    subject: Subject,
+    width: number,
+    height: number,
+    offset: readonly [number, number],
+  ): void {
+    const { camera, screen } = picture;
+    const { centre, radius } = subject.support;
+    const c = viewCoordinates(camera, add(centre, this.origin))[2];
+    const m = clipMatrix(camera, screen, this.origin, c - 1.6 * radius, c + 1.6 * radius);
+    // Jitter in pixels: x' = x + 2 jitter / width * w.
+    for (let k = 0; k < 4; ++k) {
+      const w = m[4 * k + 3] as number;
+      m[4 * k] = (m[4 * k] as number) + ((2 * offset[0]) / width) * w;
+      m[4 * k + 1] = (m[4 * k + 1] as number) + ((2 * offset[1]) / height) * w;
+    }
+    this.camera.projectionMatrix.fromArray(m);
+  }
+
+  private facesFront(camera: CameraState, part: Part): boolean {
+    if (!part.plateForward || !part.plateCentre) return false;
+    if (camera.kappa === 0) return dot(camera.forward, part.plateForward) > 0.02;
+    const eye = along(camera.target, camera.forward, -1 / camera.kappa);
+    return dot(subtract(part.plateCentre, eye), part.plateForward) > 0;
+  }
+
+  private aimPlateShadow(part: Part, towards: Vec3): void {
+    const axes = part.plateShadow?.userData['axes'] as { right: Vec3; up: Vec3 };
+    const size = Math.max(part.plate?.widthMm ?? 0, part.plate?.heightMm ?? 0);
+    const uniforms = part.plateShadow?.material.uniforms as Uniforms;
+    (uniforms['uShift']?.value as THREE.Vector2).set(
+      -0.018 *
+        size *
+        Math.sign(dot(towards, axes.right)) *
+        Math.min(1, Math.abs(dot(towards, axes.right)) * 2),
+      -0.026 * size * Math.min(1, Math.max(-1, 2 * dot(towards, axes.up))),
+    );
+    (uniforms['uStrength'] as THREE.IUniform).value = this.palette?.dark ? 0.55 : 0.42;
+  }
+
+  /** A finished picture, r, g, b, a bytes, rows from the top. */
+  async read(
+    picture: Picture,
+    width: number,
+    height: number,
+    samples: number,
+  ): Promise<Uint8ClampedArray<ArrayBuffer>> {
+    const accumulation = new Accumulation(width, height);
+    try {
+      const count = this.canRefine ? samples : 1;
+      for (let i = 0; i < count; ++i) {
+        this.draw(picture, accumulation.frame, width, height, count > 1 ? i : -1);
+        accumulation.add(this.renderer, i);
+      }
+      return await accumulation.read(this.renderer);
+    } finally {
+      accumulation.dispose();
+      this.renderer.setRenderTarget(null);
+    }
+  }
+
+  /** The context was lost: everything on the card must be made again. */
+  forgetGpu(): void {
+    this.parts.original.subject.forgetGpu();
+    this.parts.relief.subject.forgetGpu();
+    this.sky.dispose();
+  }
+
+  private disposePlateShadow(part: Part): void {
+    part.plateShadow?.geometry.dispose();
+    part.plateShadow?.material.dispose();
+    part.plateShadow = null;
+  }
+
+  dispose(): void {
+    for (const part of Object.values(this.parts)) {
+      part.subject.dispose();
+      this.disposePlateShadow(part);
+    }
+    for (const { set } of this.lines) set.dispose();
+    for (const texture of this.mapTextures.values()) texture.dispose();
+    this.sky.dispose();
+    this.caps.dispose();
+    this.backdrop.dispose();
+    this.renderer.dispose();
+  }
+}
+
+/** Radical inverse: an evenly filling sequence in 0..1. */
+function halton(index: number, base: number): number {
+  let result = 0;
+  let f = 1;
+  for (let i = index; i > 0; i = Math.floor(i / base)) {
+    f /= base;
+    result += f * (i % base);
+  }
+  return result;
+}
+
+/** Place within the pixel (-0.5..0.5, a little wider for a soft edge) and on the light's disc (-1..1). */
+export function jitter(sample: number): [number, number, number, number] {
+  const r = Math.sqrt(halton(sample + 1, 5));
+  const a = 2 * Math.PI * halton(sample + 1, 7);
+  return [
+    1.1 * (halton(sample + 1, 2) - 0.5),
+    1.1 * (halton(sample + 1, 3) - 0.5),
+    r * Math.cos(a),
+    r * Math.sin(a),
+  ];
+}

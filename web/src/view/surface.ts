@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/* eslint-disable @typescript-eslint/no-non-null-assertion -- indices stay within the arrays' own lengths */
+// One mesh on the graphics card: buffers, live updates, and the materials that draw, shadow and bake it.
+import * as THREE from 'three';
+import type { MeshData, Vec3 } from './api';
+import { type Shading, shadingFor, updateNormals } from './normals';
+import {
+  bakeFragment,
+  bakeQuadFragment,
+  bakeQuadVertex,
+  bakeVertex,
+  depthFragment,
+  depthVertex,
+  surfaceFragment,
+  surfaceVertex,
+} from './shaders';
+
+export type Uniforms = Record<string, THREE.IUniform>;
+
+/** Texels per row of a baked light map: one texel per drawn vertex. */
+const OCCLUSION_WIDTH = 1024;
+
+export interface SurfaceUniforms {
+  /** Section, eye, light frame: the whole picture's. */
+  picture: Uniforms;
+  /** Shadow map: the subject's. */
+  subject: Uniforms;
+  /** Direction and shadow map of the sky sample being baked. */
+  bake: Uniforms;
+}
+
+export interface SurfaceOptions {
+  albedo: Vec3;
+  /** Flat quads are baked as pictures of this many texels instead of per vertex; needs uvs. */
+  picture?: { width: number; height: number };
+  castsOnly?: boolean;
+  fragment?: string;
+  transparent?: boolean;
+}
+
+export function still<T extends THREE.Object3D>(object: T): T {
+  object.frustumCulled = false;
+  object.matrixAutoUpdate = false;
+  object.matrixWorldAutoUpdate = false;
+  return object;
+}
+
+function occlusionTarget(width: number, height: number): THREE.WebGLRenderTarget {
+  return new THREE.WebGLRenderTarget(width, height, {
+    format: THREE.RGFormat,
+    type: THREE.HalfFloatType,
+    minFilter: THREE.LinearFilter,
+    magFilter: THREE.LinearFilter,
+    depthBuffer: false,
+    generateMipmaps: false,
+  });
+}
+
+export class Surface {
+  readonly geometry = new THREE.BufferGeometry();
+  readonly main: THREE.Mesh<THREE.BufferGeometry, THREE.RawShaderMaterial>;
+  readonly depth: THREE.Mesh<THREE.BufferGeometry, THREE.RawShaderMaterial>;
+  readonly bake: THREE.Object3D;
+  /** Triangles of the mesh as given; picking and values speak of these. */
+  readonly indices: Uint32Array;
+  readonly vertexCount: number;
+  private readonly shading: Shading;
+  private readonly given: MeshData;
+  private readonly drawn: Float32Array;
+  private readonly bakeGeometry: THREE.BufferGeometry | null;
+  private readonly disposables: { dispose(): void }[] = [];
+  private faces: Float32Array;
+  private sums: THREE.WebGLRenderTarget | null = null;
+  private nextSums: THREE.WebGLRenderTarget | null = null;
+  private readonly uniforms: Uniforms;
+  private readonly sizeOfSums: { width: number; height: number };
+  private scalar: THREE.BufferAttribute | null = null;
+  private scalarMap: THREE.Texture | null = null;
+  scalarValues: Float32Array | null = null;
+  /** Counts changes of shape, so that pickers know when they are stale. */
+  version = 0;
+
+  constructor(
+    mesh: MeshData,
+    private origin: Vec3,
+    shared: SurfaceUniforms,
+    options: SurfaceOptions,
+  ) {
+    this.given = mesh;
+    this.indices = mesh.indices;
+    this.vertexCount = mesh.positions.length / 3;
+    this.faces = new Float32Array(mesh.indices.length);
+    this.shading = mesh.normals
+      ? { indices: mesh.indices, source: identity(this.vertexCount), normals: mesh.normals }
+      : shadingFor(mesh.positions, mesh.indices);
+    const count = this.shading.source.length;
+    this.drawn = new Float32Array(3 * count);
+    this.writePositions(mesh.positions);
+    const attribute = (array: Float32Array, size: number, live = false): THREE.BufferAttribute => {
+      const buffer = new THREE.BufferAttribute(array, size);
+      if (live) buffer.setUsage(THREE.DynamicDrawUsage);
+      return buffer;
+    };
+    this.geometry.setAttribute('position', attribute(this.drawn, 3, true));
+    this.geometry.setAttribute('normal', attribute(this.shading.normals, 3, true));
+    this.geometry.setIndex(new THREE.BufferAttribute(this.shading.indices, 1));
+    const defines: Record<string, string | number> = { SHADOW_TAPS: 16 };
+    if (mesh.colours) {
+      this.geometry.setAttribute('colour', attribute(this.spread(mesh.colours, 3), 3));
+      defines['COLOURS'] = 1;
+    }
+    if (mesh.uvs) this.geometry.setAttribute('uv', attribute(this.spread(mesh.uvs, 2), 2));
+    const texture = mesh.texture && mesh.uvs ? new THREE.Texture(mesh.texture as HTMLImageElement) : null;
+    if (texture) {
+      defines['TEXTURED'] = 1;
+      texture.wrapS = texture.wrapT = THREE.RepeatWrapping;
+      texture.anisotropy = 8;
+      texture.needsUpdate = true;
+      this.disposables.push(texture);
+    }
+    if (options.picture) defines['OCCLUSION_MAP'] = 1;
+    this.sizeOfSums = options.picture ?? {
+      width: OCCLUSION_WIDTH,
+      height: Math.max(1, Math.ceil(count / OCCLUSION_WIDTH)),
+    };
+    this.uniforms = {
+      uAlbedo: { value: new THREE.Vector3(...options.albedo) },
+      uOcclusion: { value: null },
+      uOcclusionWidth: { value: this.sizeOfSums.width },
+      uOcclusionHeight: { value: this.sizeOfSums.height },
+      uOcclusionStrength: { value: 0 },
+      uHighlight: { value: 0 },
+      uMap: { value: null },
+      uMapRange: { value: new THREE.Vector2(0, 1) },
+      uTexture: { value: texture },
+    };
+    const material = new THREE.RawShaderMaterial({
+      glslVersion: THREE.GLSL3,
+      vertexShader: surfaceVertex,
+      fragmentShader: options.fragment ?? surfaceFragment,
+      defines,
+      uniforms: { ...shared.picture, ...shared.subject, ...this.uniforms },
+      side: THREE.DoubleSide,
+      transparent: options.transparent ?? false,
+      depthWrite: !(options.transparent ?? false),
+      blending: options.transparent ? THREE.CustomBlending : THREE.NoBlending,
+      blendSrc: THREE.OneFactor,
+      blendDst: THREE.OneMinusSrcAlphaFactor,
+    });
+    this.main = still(new THREE.Mesh(this.geometry, material));
+    const depthMaterial = new THREE.RawShaderMaterial({
+      glslVersion: THREE.GLSL3,
+      vertexShader: depthVertex,
+      fragmentShader: depthFragment,
+      uniforms: { uSection: shared.picture['uSection']!, uClip: shared.bake['uClip']! },
+      side: THREE.DoubleSide,
+      polygonOffset: true,
+      polygonOffsetFactor: 1.5,
+      polygonOffsetUnits: 2,
+    });
+    depthMaterial.colorWrite = false;
+    this.depth = still(new THREE.Mesh(this.geometry, depthMaterial));
+
+    const bakeMaterial = new THREE.RawShaderMaterial({
+      glslVersion: THREE.GLSL3,
+      vertexShader: options.picture ? bakeQuadVertex : bakeVertex,
+      fragmentShader: options.picture ? bakeQuadFragment : bakeFragment,
+      uniforms: {
+        ...shared.bake,
+        uOcclusionWidth: this.uniforms['uOcclusionWidth']!,
+        uOcclusionHeight: this.uniforms['uOcclusionHeight']!,
+      },
+      side: THREE.DoubleSide,
+      depthTest: false,
+      depthWrite: false,
+      blending: THREE.CustomBlending,
+      blendSrc: THREE.OneFactor,
+      blendDst: THREE.OneFactor,
+    });
+    if (options.picture) {
+      this.bakeGeometry = null;
+      this.bake = still(new THREE.Mesh(this.geometry, bakeMaterial));
+    } else {
+      // Without an index every vertex is one point, and gl_VertexID its number.
+      this.bakeGeometry = new THREE.BufferGeometry();
+      this.bakeGeometry.setAttribute('position', this.geometry.getAttribute('position'));
+      this.bakeGeometry.setAttribute('normal', this.geometry.getAttribute('normal'));
+      this.bake = still(new THREE.Points(this.bakeGeometry, bakeMaterial));
+    }
+    this.disposables.push(this.geometry, material, depthMaterial, bakeMaterial);
+    if (this.bakeGeometry) this.disposables.push(this.bakeGeometry);
+  }
+
+  /** x, y, z of the drawn vertices, from the scene's origin. */
+  get positions(): Float32Array {
+    return this.drawn;
+  }
+
+  get triangleCount(): number {
+    return this.indices.length / 3;
+  }
+
+  get drawnIndices(): Uint32Array {
+    return this.shading.indices;
+  }
+
+  updatePositions(positions: Float32Array | Float64Array): void {
+    this.writePositions(positions);
+    updateNormals(this.shading, this.drawn, this.indices, this.faces);
+    this.geometry.getAttribute('position').needsUpdate = true;
+    this.geometry.getAttribute('normal').needsUpdate = true;
+    ++this.version;
+  }
+
+  /** Colours by values per mesh vertex; null goes back to plaster. Only values: keep `map` and set the range. */
+  setScalar(values: Float32Array | null, map: THREE.Texture | null, minimum: number, maximum: number): void {
+    const material = this.main.material;
+    this.scalarValues = values;
+    const wasMapped = this.scalar !== null;
+    if (values && map) {
+      const spread = this.spread(values, 1);
+      if (this.scalar && this.scalar.array.length === spread.length) {
+        this.scalar.array.set(spread);
+        this.scalar.needsUpdate = true;
+      } else {
+        this.scalar = new THREE.BufferAttribute(spread, 1).setUsage(THREE.DynamicDrawUsage);
+        this.geometry.setAttribute('scalar', this.scalar);
+      }
+      this.scalarMap = map;
+    } else if (wasMapped) {
+      this.geometry.deleteAttribute('scalar');
+      this.scalar = null;
+      this.scalarMap = null;
+    }
+    if (wasMapped !== (this.scalar !== null)) {
+      if (this.scalar) material.defines['SCALAR'] = 1;
+      else delete material.defines['SCALAR'];
+      material.needsUpdate = true;
+    }
+    this.uniforms['uMap']!.value = this.scalarMap;
+    (this.uniforms['uMapRange']!.value as THREE.Vector2).set(minimum, maximum);
+  }
+
+  setOcclusionStrength(strength: number): void {
+    this.uniforms['uOcclusionStrength']!.value = this.sums ? strength : 0;
+  }
+
+  /** The light map being baked; take it over with `finishBake`. */
+  beginBake(): THREE.WebGLRenderTarget {
+    this.nextSums ??= occlusionTarget(this.sizeOfSums.width, this.sizeOfSums.height);
+    return this.nextSums;
+  }
+
+  get baking(): THREE.WebGLRenderTarget | null {
+    return this.nextSums;
+  }
+
+  finishBake(): void {
+    if (!this.nextSums) return;
+    this.sums?.dispose();
+    this.sums = this.nextSums;
+    this.nextSums = null;
+    this.uniforms['uOcclusion']!.value = this.sums.texture;
+  }
+
+  get baked(): boolean {
+    return this.sums !== null;
+  }
+
+  /** After the graphics context came back, light maps are empty. */
+  forgetBake(): void {
+    this.sums?.dispose();
+    this.nextSums?.dispose();
+    this.sums = this.nextSums = null;
+    this.uniforms['uOcclusion']!.value = null;
+    this.uniforms['uOcclusionStrength']!.value = 0;
+  }
+
+  dispose(): void {
+    this.forgetBake();
+    for (const item of this.disposables) item.dispose();
+  }
+
+  private writePositions(positions: Float32Array | Float64Array): void {
+    const { drawn } = this;
+    const { source } = this.shading;
+    const [ox, oy, oz] = this.origin;
+    for (let i = 0, j = 0; i < source.length; ++i, j += 3) {
+      const s = 3 * source[i]!;
+      drawn[j] = positions[s]! - ox;
+      drawn[j + 1] = positions[s + 1]! - oy;
+      drawn[j + 2] = positions[s + 2]! - oz;
+    }
+  }
+
+  /** Values per mesh vertex to values per drawn vertex. */
+  private spread(values: Float32Array, size: number): Float32Array {
+    const { source } = this.shading;
+    const out = new Float32Array(size * source.length);
+    out.set(values.subarray(0, size * this.vertexCount));
+    for (let i = this.vertexCount; i < source.length; ++i) {
+      for (let k = 0; k < size; ++k) out[size * i + k] = values[size * source[i]! + k]!;
+    }
+    return out;
+  }
+
+  get mesh(): MeshData {
+    return this.given;
+  }
+}
+
+function identity(count: number): Uint32Array {
+  const out = new Uint32Array(count);
+  for (let i = 0; i < count; ++i) out[i] = i;
+  return out;
+}

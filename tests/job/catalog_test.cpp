@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "job/catalog.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <sstream>
+
+#include "job/run.h"
+
+#ifndef __EMSCRIPTEN__
+#include <fstream>
+#endif
+
+namespace formwright {
+namespace {
+
+TEST(Catalog, EveryNameStandsOnceAndEverythingIsSaid) {
+  std::set<std::string> names;
+  for (const Operation& operation : operations()) {
+    EXPECT_TRUE(names.insert(operation.name).second) << operation.name;
+    EXPECT_FALSE(operation.summary.empty());
+    std::set<std::string> own;
+    for (const ParameterInfo& info : operation.parameters) {
+      EXPECT_TRUE(own.insert(info.name).second) << info.name;
+      EXPECT_FALSE(info.label.empty()) << info.name;
+      EXPECT_TRUE(info.help.ends_with(".")) << operation.name << " " << info.name;
+      EXPECT_LE(info.minimum, info.slider_minimum) << info.name;
+      EXPECT_GE(info.maximum, info.slider_maximum) << info.name;
+      if (info.default_value.is_number()) {
+        EXPECT_GE(info.default_value.get<double>(), info.minimum) << info.name;
+        EXPECT_LE(info.default_value.get<double>(), info.maximum) << info.name;
+      }
+      // A length, angle or time carries its unit in its name.
+      const std::vector<std::pair<std::string, std::string>> suffixes = {{"mm", "_mm"}, {"°", "_deg"}, {"s", "_s"}};
+      for (const auto& [unit, suffix] : suffixes)
+        if (info.unit == unit) {
+          EXPECT_TRUE(info.name.ends_with(suffix)) << info.name;
+        }
+    }
+    std::set<std::string> fields;
+    for (const ReportField& field : operation.report) EXPECT_TRUE(fields.insert(field.name).second) << field.name;
+  }
+}
+
+#ifndef __EMSCRIPTEN__
+TEST(Catalog, IsTheSnapshot) {
+  // A change of the public declaration shows up in review: `build/formwright describe > tests/job/catalog.json`.
+  std::ifstream stream(FORMWRIGHT_CATALOG_SNAPSHOT);
+  std::stringstream text;
+  text << stream.rdbuf();
+  EXPECT_EQ(catalog_json().dump(2) + "\n", text.str());
+}
+#endif
+
+Json error_of(const Json& message) {
+  Session session;
+  const JobResult result = run_job(message, [](const std::string&) { return nullptr; }, session, {});
+  return result.error ? error_json(*result.error)["error"] : Json("no error");
+}
+
+TEST(RunJob, AnswersEveryWrongMessageWithTheFieldConcerned) {
+  const Json mesh = {{"mesh", {{"sample", "pyramid"}}}};
+  EXPECT_EQ(error_of(Json::array())["code"], "invalid_input");
+  EXPECT_EQ(error_of(Json(Json::value_t::discarded))["code"], "invalid_input");
+  EXPECT_EQ(error_of({{"operation", 5}})["where"], "operation");
+  EXPECT_EQ(error_of({{"operation", "carve"}})["where"], "operation");
+  EXPECT_EQ(error_of({{"operation", "relief"}, {"extra", 1}})["where"], "extra");
+  EXPECT_EQ(error_of({{"operation", "relief"}})["where"], "mesh");
+  EXPECT_EQ(error_of({{"operation", "relief"}, {"inputs", {{"mesh", {{"sample", "nobody"}}}}}})["code"], "invalid_input");
+  EXPECT_EQ(error_of({{"operation", "relief"}, {"inputs", {{"mesh", {{"sample", "bust"}, {"sha256", std::string(64, 'a')}}}}}})["where"], "mesh");
+  EXPECT_EQ(error_of({{"operation", "relief"}, {"inputs", {{"mesh", {{"sha256", std::string(64, 'a')}}}}}})["where"], "mesh");
+  EXPECT_EQ(error_of({{"operation", "relief"}, {"inputs", mesh}, {"parameters", {{"thickness_mm", 0}}}})["where"], "thickness_mm");
+  EXPECT_EQ(error_of({{"operation", "relief"}, {"inputs", mesh}, {"parameters", {{"thicknes_mm", 1}}}})["where"], "thicknes_mm");
+  EXPECT_EQ(error_of({{"operation", "relief"}, {"inputs", mesh}, {"outputs", {"relief.xyz"}}})["where"], "outputs");
+}
+
+TEST(RunJob, MakesOnlyWhatIsAskedFor) {
+  Session session;
+  const Json message = {{"operation", "import"}, {"inputs", {{"mesh", {{"sample", "pyramid"}, {"vertices", 600}}}}}, {"outputs", {"model.stl"}}};
+  const JobResult result = run_job(message, [](const std::string&) { return nullptr; }, session, {});
+  ASSERT_FALSE(result.error) << result.error->message;
+  ASSERT_EQ(result.outputs.size(), 1u);
+  EXPECT_EQ(result.outputs[0].name, "model.stl");
+}
+
+TEST(RunJob, ReportsOnlyDeclaredFigures) {
+  Session session;
+  for (const Operation& operation : operations()) {
+    const Json message = {{"operation", operation.name}, {"inputs", {{"mesh", {{"sample", "star"}, {"vertices", 800}}}}}};
+    const JobResult result = run_job(message, [](const std::string&) { return nullptr; }, session, {});
+    ASSERT_FALSE(result.error) << operation.name << ": " << result.error->message;
+    std::set<std::string> declared;
+    for (const ReportField& field : operation.report) declared.insert(field.name);
+    for (const auto& [name, value] : result.report.items()) EXPECT_TRUE(declared.contains(name)) << operation.name << " " << name;
+    for (const OutputBlob& output : result.outputs) EXPECT_NE(operation.output(output.name), nullptr);
+  }
+}
+
+TEST(Session, KeepsTheNewestWithinItsCapacity) {
+  Session session(100);
+  session.keep("a", std::make_shared<int>(1), 60);
+  session.keep("b", std::make_shared<int>(2), 30);
+  EXPECT_EQ(*session.find<int>("a"), 1);  // used: now the newest
+  session.keep("c", std::make_shared<int>(3), 30);
+  EXPECT_EQ(session.find<int>("b"), nullptr);
+  EXPECT_NE(session.find<int>("a"), nullptr);
+  EXPECT_EQ(session.find<double>("a"), nullptr);  // another type is not what was asked for
+  session.keep("huge", std::make_shared<int>(4), 1e6);
+  EXPECT_EQ(*session.find<int>("huge"), 4);
+  EXPECT_EQ(session.find<int>("c"), nullptr);
+  session.drop("hu");
+  EXPECT_EQ(session.used_mb(), 0);
+}
+
+TEST(Relief, ASecondThicknessReusesTheFactorisation) {
+  Session session;
+  Json message = {{"operation", "relief"}, {"inputs", {{"mesh", {{"sample", "star"}, {"vertices", 1500}}}}}, {"outputs", Json::array()}};
+  const auto run = [&] { return run_job(message, [](const std::string&) { return nullptr; }, session, {}); };
+  EXPECT_FALSE(run().report["factor_reused"]);
+  message["parameters"] = {{"thickness_mm", 2}};
+  EXPECT_TRUE(run().report["factor_reused"]);
+  message["parameters"] = {{"thickness_mm", 2}, {"width_mm", 50}};
+  EXPECT_TRUE(run().report["factor_reused"]);
+  message["parameters"] = {{"projection", "orthographic"}};
+  EXPECT_FALSE(run().report["factor_reused"]);
+}
+
+}  // namespace
+}  // namespace formwright

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs the recorded jobs of this folder natively and in WASM and compares both with each other and with what was
+// recorded.
+//   node parity.mjs NATIVE_PROGRAM FORMWRIGHT_MJS [--record]
+// A recorded job is {"job", "tolerance", "recorded"}: `tolerance` relative, per figure of the report ("*" for the
+// rest; figures that measure time or memory are left out), `recorded` what the report said when it was recorded.
+import { spawn } from 'node:child_process';
+import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import path from 'node:path';
+import { createInterface } from 'node:readline';
+import { fileURLToPath, pathToFileURL } from 'node:url';
+
+const [native, module, flag] = process.argv.slice(2);
+const folder = path.dirname(fileURLToPath(import.meta.url));
+const timed = (name) => name.startsWith('seconds_') || name === 'peak_memory_mb';
+
+/** Runs one job in a native job process; resolves to its result message and its outputs' bytes. */
+function runNatively(job) {
+  const outputs = mkdtempSync(path.join(tmpdir(), 'formwright-parity-'));
+  const child = spawn(native, ['run-jobs'], { stdio: ['pipe', 'pipe', 'inherit'] });
+  child.stdin.write(JSON.stringify({ run: 'x', job, blobs: {}, outputs }) + '\n');
+  return new Promise((resolve, reject) => {
+    child.on('exit', (code) => reject(new Error(`the native program ended with ${code}`)));
+    createInterface({ input: child.stdout }).on('line', (line) => {
+      const message = JSON.parse(line);
+      if (!message.finished) return;
+      child.removeAllListeners('exit');
+      child.kill();
+      const bytes = {};
+      for (const name of Object.keys(message.result.outputs ?? {})) bytes[name] = readFileSync(path.join(outputs, name));
+      rmSync(outputs, { recursive: true });
+      resolve({ ...message.result, bytes });
+    });
+  });
+}
+
+async function wasmRunner() {
+  const wasm = await (await import(pathToFileURL(path.resolve(module)).href)).default();
+  const withText = (text, use) => {
+    const size = wasm.lengthBytesUTF8(text) + 1;
+    const pointer = wasm._malloc(size);
+    wasm.stringToUTF8(text, pointer, size);
+    try {
+      return use(pointer);
+    } finally {
+      wasm._free(pointer);
+    }
+  };
+  return (job) => {
+    const result = JSON.parse(wasm.UTF8ToString(withText(JSON.stringify(job), (p) => wasm._fw_run(p))));
+    const bytes = {};
+    for (const name of Object.keys(result.outputs ?? {})) {
+      const [data, size] = withText(name, (p) => [wasm._fw_output_data(p), wasm._fw_output_size(p)]);
+      bytes[name] = Buffer.from(wasm.HEAPU8.slice(data, data + size));
+    }
+    return { ...result, bytes };
+  };
+}
+
+/** Problems between two values of any JSON kind; numbers may differ by `tolerance` of the larger of them and `floor`. */
+function differences(name, a, b, tolerance, floor = 0) {
+  if (typeof a === 'number' && typeof b === 'number') {
+    const allowed = tolerance * Math.max(Math.abs(a), Math.abs(b), floor);
+    return Math.abs(a - b) <= allowed ? [] : [`${name}: ${a} and ${b} differ by more than ${allowed}`];
+  }
+  if (Array.isArray(a) && Array.isArray(b) && a.length === b.length) return a.flatMap((item, i) => differences(`${name}[${i}]`, item, b[i], tolerance, floor));
+  return JSON.stringify(a) === JSON.stringify(b) ? [] : [`${name}: ${JSON.stringify(a)} and ${JSON.stringify(b)} differ`];
+}
+
+function compareReports(a, b, tolerances) {
+  const names = new Set([...Object.keys(a), ...Object.keys(b)].filter((name) => !timed(name)));
+  return [...names].flatMap((name) => {
+    const tolerance = tolerances[name] ?? tolerances['*'];
+    return tolerance === null ? [] : differences(name, a[name], b[name], tolerance, 1e-6);
+  });
+}
+
+/** Vertex columns of a binary PLY as a list of arrays, by a few lines of its own. */
+function plyColumns(bytes) {
+  const end = bytes.indexOf('end_header\n') + 'end_header\n'.length;
+  const header = bytes.subarray(0, end).toString().split('\n');
+  const count = Number(header.find((line) => line.startsWith('element vertex')).split(' ')[2]);
+  const sizes = { double: 8, float64: 8, float: 4, float32: 4, uchar: 1, uint8: 1, int: 4, int32: 4 };
+  const columns = [];
+  for (const line of header) {
+    if (line.startsWith('element face')) break;
+    const [word, type, name] = line.split(' ');
+    if (word === 'property') columns.push({ name, type, values: new Float64Array(count) });
+  }
+  const view = new DataView(bytes.buffer, bytes.byteOffset);
+  let at = end;
+  for (let i = 0; i < count; ++i)
+    for (const column of columns) {
+      const size = sizes[column.type];
+      column.values[i] = size === 8 ? view.getFloat64(at, true) : size === 1 ? view.getUint8(at) : column.type.startsWith('float') ? view.getFloat32(at, true) : view.getInt32(at, true);
+      at += size;
+    }
+  return columns;
+}
+
+function comparePly(name, a, b, tolerance) {
+  const left = plyColumns(a);
+  const right = plyColumns(b);
+  if (left.length !== right.length) return [`${name}: ${left.length} and ${right.length} columns`];
+  return left.flatMap((column, c) => {
+    const other = right[c].values;
+    if (other.length !== column.values.length) return [`${name}: ${column.values.length} and ${other.length} vertices`];
+    let worst = 0;
+    let size = 1e-6;
+    for (let i = 0; i < other.length; ++i) {
+      worst = Math.max(worst, Math.abs(other[i] - column.values[i]));
+      size = Math.max(size, Math.abs(other[i]));
+    }
+    return worst <= tolerance * size ? [] : [`${name}: ${column.name} differs by ${worst}, more than ${tolerance * size}`];
+  });
+}
+
+const runInWasm = await wasmRunner();
+let passed = 0;
+let failed = 0;
+for (const file of readdirSync(folder).filter((name) => name.endsWith('.json')).sort()) {
+  const recorded = JSON.parse(readFileSync(path.join(folder, file), 'utf8'));
+  const a = await runNatively(recorded.job);
+  const b = runInWasm(recorded.job);
+  if (flag === '--record') {
+    const keep = Object.fromEntries(Object.entries(a.report ?? {}).filter(([name]) => !timed(name)));
+    recorded.recorded = a.error ? { error: a.error } : { report: keep };
+    writeFileSync(path.join(folder, file), JSON.stringify(recorded, null, 2) + '\n');
+    continue;
+  }
+  const problems = [];
+  if (a.error || b.error) {
+    problems.push(...differences('native and WASM', a.error ?? null, b.error ?? null, 0));
+    problems.push(...differences('native and recorded', a.error ?? null, recorded.recorded.error ?? null, 0));
+  } else {
+    problems.push(...compareReports(a.report, b.report, recorded.tolerance).map((p) => `native and WASM: ${p}`));
+    problems.push(...compareReports(a.report, recorded.recorded.report ?? {}, recorded.tolerance).map((p) => `native and recorded: ${p}`));
+    for (const name of Object.keys(a.outputs)) {
+      if (!b.bytes[name]) problems.push(`${name} is missing in WASM`);
+      else if (name.endsWith('.ply')) problems.push(...comparePly(name, a.bytes[name], b.bytes[name], recorded.tolerance.ply ?? recorded.tolerance['*']));
+    }
+  }
+  console.log(`${problems.length ? 'FAILED' : 'ok    '} ${file}`);
+  for (const problem of problems) console.log(`       ${problem}`);
+  problems.length ? ++failed : ++passed;
+}
+console.log(`${passed} passed, ${failed} failed`);
+process.exit(failed > 0 || (passed === 0 && flag !== '--record') ? 1 : 0);

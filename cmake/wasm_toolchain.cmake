@@ -11,6 +11,9 @@ if(NOT DEFINED FORMWRIGHT_TOOLCHAIN)
     OUTPUT_VARIABLE FORMWRIGHT_WASM_PREFIX OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
 endif()
 
+# Tests run under the node of PATH (Emscripten would prefer Debian's `nodejs`).
+find_program(CMAKE_CROSSCOMPILING_EMULATOR node REQUIRED)
+
 include(${FORMWRIGHT_TOOLCHAIN}/emscripten.cmake)
 
 # One list of flags for our code and for the libraries (setup/wasm_libraries.sh).

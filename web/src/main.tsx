@@ -1,6 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { render } from 'preact';
 import './ui/tokens.css';
+import './ui/ui.css';
+import './app/app.css';
+import { App } from './app/app';
+import { createServices } from './app/create_services';
+import { go, startRouting } from './app/route';
+import { followSystemTheme } from './app/theme';
+import { ReliefSession } from './crafts/relief/relief_session';
+
+async function start(root: HTMLElement): Promise<void> {
+  followSystemTheme();
+  const services = await createServices();
+  const session = new ReliefSession(services);
+  if (!startRouting() && !services.projects.isBlank.value) go('relief');
+  render(<App services={services} session={session} />, root);
+  addEventListener('pagehide', () => void services.projects.flush());
+  document.addEventListener('visibilitychange', () => {
+    if (document.visibilityState === 'hidden') void services.projects.flush();
+  });
+  // The worker serves the page itself, always the one that fits it; elsewhere the page keeps itself.
+  if (import.meta.env.PROD && services.native === null && 'serviceWorker' in navigator)
+    void navigator.serviceWorker.register('./sw.js').catch(() => undefined);
+}
 
 const root = document.getElementById('root');
-if (root) render(<p>Formwright</p>, root);
+if (root) void start(root);

@@ -8,6 +8,7 @@ export * from './note';
 export * from './numbers';
 export * from './parameter';
 export * from './segmented';
+export * from './sheet';
 export * from './switch';
 export * from './tip';
 export * from './toast';

@@ -17,8 +17,6 @@ export interface Services {
   /** The native worker, where there is one. */
   readonly native: Backend | null;
   readonly connection: ReadonlySignal<ConnectionState | null>;
-  /** What the chip in the top bar says is being done. */
-  readonly solving: { value: boolean };
 }
 
 /** The worker while it answers, else null. */

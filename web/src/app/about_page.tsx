@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+import { useEffect, useState } from 'preact/hooks';
+import type { Services } from '../crafts/common/services';
+import type { Licence } from '../../scripts/licences';
+
+/** Built into the solver rather than the page; the full texts come with the source. */
+const solverParts: readonly (readonly [name: string, licence: string, use: string])[] = [
+  ['CGAL', 'GPL-3.0-or-later', 'repair, visibility'],
+  ['Eigen', 'MPL-2.0', 'linear algebra'],
+  ['Embree', 'Apache-2.0', 'visibility, native only'],
+  ['SuiteSparse CHOLMOD', 'GPL-2.0-or-later and LGPL-2.1-or-later', 'factorisation, native only'],
+  ['OpenBLAS', 'BSD-3-Clause', 'factorisation, native only'],
+  ['Boost', 'BSL-1.0', 'server, containers'],
+  ['nlohmann/json', 'MIT', 'messages'],
+  [
+    'tinyobjloader, TinyGLTF, stb, pugixml, minizip, zlib, libpng, fast_float',
+    'MIT, zlib and similar',
+    'file formats',
+  ],
+];
+
+export function AboutPage({ services }: { services: Services }) {
+  const [licences, setLicences] = useState<readonly Licence[]>([]);
+  useEffect(() => {
+    void import('virtual:licences').then((module) => setLicences(module.default));
+  }, []);
+  return (
+    <main class="view start" aria-label="About">
+      <div class="start-inner prose">
+        <h1>About Formwright</h1>
+        <p>
+          Formwright turns 3D models into things made by hand-sized machines. It runs in this page, or,
+          faster, in its native worker on your own machine. Models are never sent anywhere else.
+        </p>
+        <p>Version {services.catalog.value?.version ?? 'unknown'}.</p>
+        <h2>Licence</h2>
+        <p>
+          Formwright is free software: you can redistribute it and modify it under the terms of the GNU
+          General Public License, version 3 or any later version. It comes without any warranty.
+        </p>
+        <h2>The method</h2>
+        <p>
+          Reliefs: C. Schüller, D. Panozzo, O. Sorkine-Hornung, “Appearance-mimicking surfaces”, ACM
+          Transactions on Graphics 33 (6), 2014.
+        </p>
+        <h2>In the solver</h2>
+        <ul class="licence-list">
+          {solverParts.map(([name, licence, use]) => (
+            <li key={name}>
+              <strong>{name}</strong> <span>{licence}</span> <span>{use}</span>
+            </li>
+          ))}
+        </ul>
+        <h2>In the page</h2>
+        {licences.map((entry) => (
+          <details key={entry.name} class="licence">
+            <summary>
+              <strong>{entry.name}</strong> <span>{entry.version}</span> <span>{entry.licence}</span>
+            </summary>
+            <pre tabIndex={0}>{entry.notice || 'The package carries no licence text.'}</pre>
+          </details>
+        ))}
+      </div>
+    </main>
+  );
+}

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The places of the rail, in order, and what is said about those that are still to come.
+import type { IconName } from '../ui';
+import type { Place } from './route';
+
+export interface Craft {
+  readonly place: Place;
+  readonly title: string;
+  readonly icon: IconName;
+  readonly pitch: string;
+  readonly makes: string;
+  readonly available: boolean;
+  /** Stands apart in the rail. */
+  readonly apart?: boolean;
+}
+
+export const crafts: readonly Craft[] = [
+  {
+    place: 'relief',
+    title: 'Relief',
+    icon: 'relief',
+    pitch: 'A model pressed into a few millimetres that still looks deep.',
+    makes: 'Carve, print, cast',
+    available: true,
+  },
+  {
+    place: 'thermoform',
+    title: 'Thermoform',
+    icon: 'thermoform',
+    pitch: 'A coloured plastic shell, its print landing where it should.',
+    makes: 'Vacuum former, printer',
+    available: false,
+  },
+  {
+    place: 'zippable',
+    title: 'Zippable',
+    icon: 'zippable',
+    pitch: 'A flat ribbon that zips up into the shape.',
+    makes: 'Laser cutter, sewing',
+    available: false,
+  },
+  {
+    place: 'evidence',
+    title: 'Evidence',
+    icon: 'evidence',
+    pitch: 'Measure what you made; see what the simulation got wrong.',
+    makes: 'Scan, photo, calliper',
+    available: false,
+    apart: true,
+  },
+  {
+    place: 'machines',
+    title: 'Machines',
+    icon: 'machines',
+    pitch: 'Send a job to the cutter, printer or mill, and stop it at once.',
+    makes: 'Laser, printer, mill',
+    available: false,
+  },
+];
+
+export const notYet = 'Not in this version yet';

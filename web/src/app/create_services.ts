@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Wires backends, storage and catalog together, once, at the start.
+import { signal } from '@preact/signals';
+import type { Services } from '../crafts/common/services';
+import type { Backend, BlobSource } from '../jobs/backend';
+import type { Catalog } from '../jobs/contract';
+import { asJobError } from '../jobs/contract';
+import { NativeBackend } from '../jobs/native_backend';
+import type { ConnectionState } from '../jobs/native_connection';
+import { takeToken } from '../jobs/native_connection';
+import { WasmBackend } from '../jobs/wasm_backend';
+import { BlobStore } from '../project/blob_store';
+import { openStorage } from '../project/open_storage';
+import { ProjectStore } from '../project/project_store';
+
+const lastProjectKey = 'formwright.project';
+
+const moduleUrl = () => new URL('wasm/formwright.mjs', document.baseURI.replace(/#.*/, '')).href;
+
+/** The core in this page; while developing without a WASM build, a stand-in. */
+async function browserBackend(blobs: BlobSource): Promise<Backend> {
+  if (import.meta.env.DEV) {
+    const answer = await fetch(moduleUrl(), { method: 'HEAD' }).catch(() => null);
+    const built = answer?.ok === true && /javascript/.test(answer.headers.get('content-type') ?? '');
+    const asked = new URLSearchParams(location.search).has('mock');
+    if (!built || asked) {
+      const { MockBackend } = await import('../jobs/mock/mock_backend');
+      return new MockBackend(blobs);
+    }
+  }
+  return new WasmBackend({ moduleUrl: moduleUrl(), blobs });
+}
+
+export async function createServices(): Promise<Services> {
+  const storage = await openStorage();
+  const blobs = new BlobStore(storage);
+  const projects = new ProjectStore(storage, blobs);
+  const token = takeToken(location, sessionStorage, (url) => history.replaceState(null, '', url));
+  const connection = signal<ConnectionState | null>(null);
+  const native = token
+    ? new NativeBackend({
+        origin: location.origin,
+        token,
+        blobs,
+        onState: (state) => (connection.value = state),
+      })
+    : null;
+
+  const catalog = signal<Catalog | null>(null);
+  const catalogError = signal<string | null>(null);
+  const own = await browserBackend(blobs);
+  let browser = own;
+  const ready = own
+    .catalog()
+    .catch(async (thrown: unknown) => {
+      if (native === null) throw thrown;
+      browser = native; // a worker without a WASM build runs the previews as well
+      return await native.catalog();
+    })
+    .then(
+      (found) => (catalog.value = found),
+      (thrown: unknown) => (catalogError.value = asJobError(thrown).message),
+    );
+
+  const load = projects.load(localStorage.getItem(lastProjectKey));
+  await (native === null ? load : Promise.all([load, ready]));
+  projects.document.subscribe(({ id }) => {
+    try {
+      localStorage.setItem(lastProjectKey, id);
+    } catch {
+      // The project is still in the list.
+    }
+  });
+  return {
+    projects,
+    catalog,
+    catalogError,
+    get browser() {
+      return browser;
+    },
+    native,
+    connection,
+  };
+}

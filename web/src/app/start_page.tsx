@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+import { useEffect } from 'preact/hooks';
+import type { Services } from '../crafts/common/services';
+import type { ReliefSession } from '../crafts/relief/relief_session';
+import { Button, formatCount, Icon } from '../ui';
+import { crafts, notYet } from './crafts';
+import { drawPictures, pictures } from './pictures';
+import { go } from './route';
+
+export interface StartPageProps {
+  readonly services: Services;
+  readonly session: ReliefSession;
+  readonly onChooseFile: () => void;
+}
+
+/** Mesh formats as a person says them: "OBJ, STL, PLY, GLB or 3MF". */
+export function formatNames(services: Services): string {
+  const names = (services.catalog.value?.mesh_formats ?? []).map(({ extension }) => extension.toUpperCase());
+  const last = names.pop();
+  return names.length > 0 ? `${names.join(', ')} or ${last}` : (last ?? '');
+}
+
+export function StartPage({ services, session, onChooseFile }: StartPageProps) {
+  const catalog = services.catalog.value;
+  useEffect(() => void drawPictures(services, () => session.activity.value.kind !== 'idle'), [catalog]);
+  const open = (sample: string, title: string) => {
+    go('relief');
+    void services.projects.create().then(() => session.openSample(sample, title));
+  };
+  return (
+    <main class="view start" aria-label="Start">
+      <div class="start-inner">
+        <h1>What will you make?</h1>
+        <p class="lead">Turn a 3D model into something made by hand-sized machines.</p>
+        <ul class="craft-cards">
+          {crafts.slice(0, 4).map((craft) => (
+            <li key={craft.place}>
+              <a class={craft.available ? 'craft-card' : 'craft-card later'} href={`#/${craft.place}`}>
+                <span class="craft-picture">
+                  {pictures.value[`craft:${craft.place}`] ? (
+                    <img src={pictures.value[`craft:${craft.place}`]} alt="" />
+                  ) : (
+                    <Icon name={craft.icon} />
+                  )}
+                </span>
+                <span class="craft-text">
+                  <strong>{craft.title}</strong>
+                  <span>{craft.pitch}</span>
+                  <small>{craft.available ? craft.makes : notYet}</small>
+                </span>
+              </a>
+            </li>
+          ))}
+        </ul>
+        <div class="drop-line">
+          <Icon name="upload" />
+          <p class="grow">
+            <strong>Drop a model anywhere</strong> {formatNames(services)}
+          </p>
+          <Button onClick={onChooseFile}>Open a file</Button>
+        </div>
+        {services.catalogError.value ? (
+          <p class="start-error" role="alert">
+            The solver could not be started: {services.catalogError.value} Reload the page to try again.
+          </p>
+        ) : null}
+        {catalog && catalog.samples.length > 0 ? (
+          <>
+            <h2>Or start from a sample</h2>
+            <ul class="gallery">
+              {catalog.samples.map((sample) => (
+                <li key={sample.name}>
+                  <button type="button" onClick={() => open(sample.name, sample.title)}>
+                    <span class="gallery-picture">
+                      {pictures.value[sample.name] ? <img src={pictures.value[sample.name]} alt="" /> : null}
+                    </span>
+                    <strong>{sample.title}</strong>
+                    <small>{formatCount(sample.default_vertices / 1000)}k vertices</small>
+                  </button>
+                </li>
+              ))}
+            </ul>
+          </>
+        ) : null}
+        <p class="start-foot">
+          Models stay on this machine. <a href="#/about">About Formwright and its licences</a>
+        </p>
+      </div>
+    </main>
+  );
+}

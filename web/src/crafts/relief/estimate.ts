@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How long and how large a full solve will be, from what was measured on this machine. Factorisations of
+// surface meshes grow like n^1.5 in time and n log n in memory (George 1973, nested dissection).
+
+const timeExponent = 1.5;
+const memoryExponent = 1.15;
+/** Where a browser's 32-bit heap ends. */
+export const browserMemory_mb = 4096;
+
+export interface Measured {
+  readonly vertices: number;
+  readonly seconds: number;
+}
+
+export const estimateSeconds = (measured: Measured, vertices: number): number =>
+  measured.seconds * Math.max(1, vertices / measured.vertices) ** timeExponent;
+
+export const estimateMemory_mb = (memory_mb: number, measuredVertices: number, vertices: number): number =>
+  memory_mb * Math.max(1, vertices / measuredVertices) ** memoryExponent;
+
+const key = (backend: string) => `formwright.relief.measured.${backend}`;
+
+/** The last full solve on a backend. */
+export function recall(backend: string): Measured | null {
+  try {
+    const stored = JSON.parse(localStorage.getItem(key(backend)) ?? 'null') as Measured | null;
+    return stored && stored.vertices > 0 && stored.seconds > 0 ? stored : null;
+  } catch {
+    return null;
+  }
+}
+
+export function remember(backend: string, measured: Measured): void {
+  try {
+    localStorage.setItem(key(backend), JSON.stringify(measured));
+  } catch {
+    // Only an estimate is lost.
+  }
+}

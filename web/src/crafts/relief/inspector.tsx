@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The relief's parameters and its one filled button.
+import { useState } from 'preact/hooks';
+import type { OutputDeclaration } from '../../jobs/contract';
+import {
+  Button,
+  Dialog,
+  formatBytes,
+  formatDuration,
+  IconButton,
+  Icon,
+  Menu,
+  Switch,
+  withUnit,
+} from '../../ui';
+import type { Viewport } from '../../view';
+import { ParameterPanel } from '../common/parameter_panel';
+import { readyWorker } from '../common/services';
+import { download, safeFileName } from './download';
+import { browserMemory_mb } from './estimate';
+import { parametersOf } from './meshes';
+import type { ReliefResult } from './relief_document';
+import { titleOf } from './relief_document';
+import type { ReliefSession } from './relief_session';
+import { modelLine, sentences, solidLine } from './report';
+import { atViewpoint, followCamera } from './viewport_panel';
+
+export interface InspectorProps {
+  readonly session: ReliefSession;
+  readonly viewport: Viewport | null;
+  readonly picture: string | null;
+  readonly onReplace: () => void;
+  readonly onSolve: () => void;
+}
+
+export function Inspector({ session, viewport, picture, onReplace, onSolve }: InspectorProps) {
+  const { model, parameters } = session.document.value;
+  const operation = session.operation.value;
+  if (model === null || operation === null) return null;
+  const repairs = sentences(model.report, 'repairs').length;
+  const head = { Viewpoint: <ViewpointTools session={session} viewport={viewport} /> };
+  return (
+    <>
+      <div class="inspector-scroll" tabIndex={-1}>
+        <div class="model-row">
+          <span
+            class="model-picture"
+            style={picture ? { backgroundImage: `url(${picture})` } : {}}
+            aria-hidden="true"
+          />
+          <div class="grow">
+            <strong class="clip">{titleOf(model.source)}</strong>
+            <span class="model-line">{modelLine(model.report)}</span>
+            {repairs > 0 ? (
+              <button type="button" class="text-button" onClick={() => (session.repairsOpen.value = true)}>
+                {repairs === 1 ? '1 repair' : `${repairs} repairs`}
+              </button>
+            ) : null}
+          </div>
+          <Button onClick={onReplace}>Replace</Button>
+        </div>
+        <ParameterPanel
+          operation={operation}
+          parameters={parameters}
+          errors={session.fieldErrors.value}
+          onPreview={(name, value) => session.preview(name, value)}
+          onCommit={() => session.services.projects.commit()}
+          groupHead={head}
+        />
+      </div>
+      <div class="inspector-foot">
+        <MainButton session={session} onSolve={onSolve} />
+      </div>
+    </>
+  );
+}
+
+function ViewpointTools({ session, viewport }: { session: ReliefSession; viewport: Viewport | null }) {
+  const at = atViewpoint.value;
+  return (
+    <>
+      <div class="row">
+        <Button
+          class="grow"
+          icon="lock"
+          disabledReason={at ? 'This is the viewpoint. Turn the model to choose another one.' : undefined}
+          title="Make the relief for the picture you see now"
+          onClick={() => {
+            if (viewport === null) return;
+            session.setViewpoint(parametersOf(viewport.getCameraAsViewpoint()));
+            viewport.setViewpoint(viewport.getCameraAsViewpoint());
+            atViewpoint.value = true;
+          }}
+        >
+          Set from this view
+        </Button>
+        <IconButton
+          icon="eye"
+          class="outlined"
+          label="Look from the viewpoint"
+          keys="0"
+          pressed={at}
+          onClick={() => viewport?.lookFromViewpoint(true)}
+        />
+      </div>
+      <Switch
+        label="Follow the view"
+        help="The viewpoint moves with the picture while you turn the model."
+        value={followCamera.value}
+        onChange={(value) => {
+          followCamera.value = value;
+          if (value && viewport) session.setViewpoint(parametersOf(viewport.getCameraAsViewpoint()));
+          else session.services.projects.commit();
+        }}
+      />
+    </>
+  );
+}
+
+function MainButton({ session, onSolve }: { session: ReliefSession; onSolve: () => void }) {
+  const [confirm, setConfirm] = useState(false);
+  const activity = session.activity.value;
+  const result = session.result.value;
+  if (activity.kind === 'solving')
+    return (
+      <>
+        <Button kind="filled" size="big" disabledReason="Being solved; Esc cancels">
+          Solving at full detail
+        </Button>
+        <p>Change anything to start again</p>
+      </>
+    );
+  if (result) return <ExportButton session={session} result={result} />;
+  const estimate = session.estimate.value;
+  const worker = readyWorker(session.services) !== null;
+  const memory = estimate?.memory_mb ?? 0;
+  const tight = !worker && memory > 0.5 * browserMemory_mb;
+  return (
+    <>
+      <Button
+        kind="filled"
+        size="big"
+        disabledReason={
+          session.shown.value === null
+            ? 'Ready when the preview is'
+            : activity.kind === 'idle'
+              ? undefined
+              : 'Busy with a file'
+        }
+        onClick={() => (tight ? setConfirm(true) : onSolve())}
+      >
+        Solve at full detail
+      </Button>
+      <p>{timeLine(estimate, worker)}</p>
+      {confirm ? (
+        <Dialog title="Solve in the browser?" onClose={() => setConfirm(false)}>
+          <p>
+            This model needs about {formatBytes(memory * 1e6)} of memory
+            {estimate?.browser_s ? ` and ${formatDuration(estimate.browser_s)}` : ''} in the browser, which
+            ends at {withUnit('4', 'GB')}. The native worker has no such limit. Your work is saved either way.
+          </p>
+          <div class="row end">
+            <Button onClick={() => setConfirm(false)}>Keep the preview</Button>
+            <Button
+              kind="filled"
+              onClick={() => {
+                setConfirm(false);
+                onSolve();
+              }}
+            >
+              Solve here
+            </Button>
+          </div>
+        </Dialog>
+      ) : null}
+    </>
+  );
+}
+
+function timeLine(
+  estimate: { browser_s: number | null; worker_s: number | null } | null,
+  worker: boolean,
+): string {
+  const here = estimate?.browser_s ? `About ${formatDuration(estimate.browser_s)} in the browser` : null;
+  const there = estimate?.worker_s ? `${formatDuration(estimate.worker_s)} with the worker` : null;
+  if (worker) return there ? `About ${there}` : 'With the native worker';
+  return [here ?? 'In the browser', there].filter(Boolean).join(', ');
+}
+
+function ExportButton({ session, result }: { session: ReliefSession; result: ReliefResult }) {
+  const all = session.operation.value?.outputs ?? [];
+  const files = all.filter((output) => output.name !== 'relief.ply');
+  const main = files.find((output) => output.name === 'relief.stl') ?? files[0];
+  const busy = session.activity.value.kind === 'idle' ? undefined : 'Busy with another file';
+  const save = async (output: OutputDeclaration) => {
+    const bytes = await session.output(output.name, output.label);
+    if (bytes) download(bytes, fileNameOf(session, output.name), output.media_type);
+  };
+  if (main === undefined) return null;
+  const size = result.outputs[main.name]?.bytes;
+  return (
+    <>
+      <div class="split">
+        <Button
+          kind="filled"
+          size="big"
+          icon="download"
+          disabledReason={busy}
+          onClick={() => void save(main)}
+        >
+          Export {main.label}
+        </Button>
+        <Menu
+          label="Export another format"
+          buttonClass="button filled big"
+          align="right"
+          items={[...files, ...all.filter((output) => output.name === 'relief.ply')].map((output) => {
+            const kept = result.outputs[output.name];
+            return {
+              label: output.name === 'relief.ply' ? `${output.label}, for measuring` : output.label,
+              hint: kept ? formatBytes(kept.bytes) : undefined,
+              onSelect: () => void save(output),
+            };
+          })}
+        >
+          <Icon name="chevronDown" small />
+        </Menu>
+      </div>
+      <p>
+        {solidLine(result.report)}
+        {size ? `, ${formatBytes(size)}` : ''}
+      </p>
+    </>
+  );
+}
+
+export const exportMain = async (session: ReliefSession): Promise<void> => {
+  const output = session.operation.value?.outputs.find(({ name }) => name === 'relief.stl');
+  const bytes = output ? await session.output(output.name, output.label) : null;
+  if (bytes && output) download(bytes, fileNameOf(session, output.name), output.media_type);
+};
+
+/** "lion-relief-5mm.stl". */
+function fileNameOf(session: ReliefSession, output: string): string {
+  const [stem = 'relief', extension = ''] = output.split('.');
+  const thickness = session.value('thickness_mm');
+  return `${safeFileName(session.title)}-${stem}-${String(thickness)}mm.${extension}`;
+}

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Notes at the foot of the viewport: one at a time, the most urgent first.
+import { useSignal } from '@preact/signals';
+import { Button, formatDuration, Icon, Note, useLasting } from '../../ui';
+import { readyWorker } from '../common/services';
+import type { ReliefSession } from './relief_session';
+import { sentences } from './report';
+
+const dismissedKey = 'formwright.relief.no-worker-note';
+/** Below this a solve in the browser needs no words. */
+const longSolve_s = 6;
+
+export function Notes({ session, onChooseFile, onWorkerHelp }: NotesProps) {
+  const dismissed = useSignal(sessionStorage.getItem(dismissedKey) !== null);
+  const solving = useLasting(session.activity.value.kind === 'solving');
+  const problem = session.problem.value;
+  const { model } = session.document.value;
+  if (problem)
+    return (
+      <div class="float note-place">
+        <Note
+          kind="bad"
+          icon={problem.kind === 'file' ? 'file' : 'warn'}
+          title={problem.title}
+          onDismiss={() => (session.problem.value = null)}
+          actions={
+            problem.kind === 'file' ? (
+              <Button size="small" onClick={onChooseFile}>
+                Choose another file
+              </Button>
+            ) : (
+              <Button size="small" onClick={() => void session.solve()}>
+                Try again
+              </Button>
+            )
+          }
+        >
+          {problem.message}
+        </Note>
+      </div>
+    );
+  if (solving && session.shown.value)
+    return (
+      <p class="float bottom-left label-chip">
+        <Icon name="clock" small /> Preview. The full relief replaces it.
+      </p>
+    );
+  if (session.repairsOpen.value && model)
+    return (
+      <div class="float note-place">
+        <Note
+          kind="plain"
+          icon="check"
+          title="Mended while opening"
+          onDismiss={() => (session.repairsOpen.value = false)}
+        >
+          {sentences(model.report, 'repairs').join(' ')}
+        </Note>
+      </div>
+    );
+  const estimate = session.estimate.value;
+  const long = (estimate?.browser_s ?? 0) > longSolve_s;
+  if (model && long && !dismissed.value && !session.result.value && readyWorker(session.services) === null) {
+    const dismiss = () => {
+      sessionStorage.setItem(dismissedKey, '1');
+      dismissed.value = true;
+    };
+    return (
+      <div class="float note-place">
+        <Note
+          kind="attention"
+          icon="clock"
+          title="Working without the native worker"
+          onDismiss={dismiss}
+          actions={
+            <>
+              <Button size="small" onClick={onWorkerHelp}>
+                Start the worker
+              </Button>
+              <Button size="small" kind="quiet" onClick={dismiss}>
+                Keep working here
+              </Button>
+            </>
+          }
+        >
+          Previews are as fast as before. A full solve of this model runs in the browser in about{' '}
+          {formatDuration(estimate?.browser_s ?? 0)}
+          {estimate?.worker_s ? `, with the worker in about ${formatDuration(estimate.worker_s)}` : ''}.
+        </Note>
+      </div>
+    );
+  }
+  return null;
+}
+
+interface NotesProps {
+  readonly session: ReliefSession;
+  readonly onChooseFile: () => void;
+  readonly onWorkerHelp: () => void;
+}

@@ -1,0 +1,492 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the relief page does: opens models, keeps the preview up to date, solves in full, makes files. It
+// holds no state that matters; that is in the project document.
+import { computed, effect, signal, untracked } from '@preact/signals';
+import type { Backend, Result } from '../../jobs/backend';
+import type { Json, JsonObject, Operation, Progress, Report } from '../../jobs/contract';
+import { asJobError, findOperation, JobError } from '../../jobs/contract';
+import { LatestOnly } from '../../jobs/latest_only';
+import { readPly } from '../../jobs/mesh_reader';
+import type { PlyMesh } from '../../jobs/ply';
+import type { BlobReference } from '../../project/document';
+import { jsonEqual } from '../../project/document';
+import { storageSentence } from '../../project/storage';
+import { toast } from '../../ui';
+import type { Services } from '../common/services';
+import { readyWorker } from '../common/services';
+import type { Measured } from './estimate';
+import { estimateMemory_mb, estimateSeconds, recall, remember } from './estimate';
+import type { PendingSolve, ReliefResult, Source } from './relief_document';
+import {
+  addResult,
+  amendResult,
+  currentResult,
+  inForce,
+  meshInput,
+  openModel,
+  reliefOf,
+  setParameters,
+  setPending,
+  titleOf,
+} from './relief_document';
+import { figure, solverSeconds } from './report';
+
+/** Enough for a faithful picture, few enough to re-solve while a slider moves. */
+const previewVertices = 8000;
+
+export interface Shown {
+  readonly kind: 'preview' | 'full';
+  readonly mesh: PlyMesh;
+  readonly report: Report;
+  readonly parameters: JsonObject;
+  /** The mesh it was made from; equal names have equal triangles. */
+  readonly from: string;
+}
+
+export type Activity =
+  | { readonly kind: 'idle' }
+  | { readonly kind: 'opening'; readonly name: string; readonly progress: Progress | null }
+  | { readonly kind: 'solving'; readonly backend: string; readonly progress: Progress | null }
+  | { readonly kind: 'exporting'; readonly label: string; readonly progress: Progress | null };
+
+export interface Problem {
+  readonly title: string;
+  readonly message: string;
+  readonly kind: 'file' | 'solve';
+}
+
+export class ReliefSession {
+  readonly services: Services;
+  readonly document = computed(() => reliefOf(this.services.projects.document.value));
+  readonly operation = computed<Operation | null>(() => {
+    const catalog = this.services.catalog.value;
+    return catalog === null ? null : (findOperation(catalog, 'relief') ?? null);
+  });
+  readonly result = computed(() => currentResult(this.document.value));
+  readonly original = signal<{ readonly mesh: PlyMesh; readonly from: string } | null>(null);
+  readonly shown = signal<Shown | null>(null);
+  readonly activity = signal<Activity>({ kind: 'idle' });
+  readonly previewing = signal(false);
+  readonly previewSeconds = signal<number | null>(null);
+  readonly problem = signal<Problem | null>(null);
+  readonly fieldErrors = signal<Readonly<Record<string, string>>>({});
+  /** Repairs of the model just opened, until dismissed. */
+  readonly repairsOpen = signal(false);
+  readonly #measured = signal<Measured | null>(null);
+  readonly #previewMemory_mb = signal(0);
+  readonly #preview: LatestOnly<PreviewRequest>;
+  #abort: AbortController | null = null;
+  #resumed = new Set<string>();
+
+  constructor(services: Services) {
+    this.services = services;
+    this.#preview = new LatestOnly((request, abort) => this.#runPreview(request, abort));
+    effect(() => void this.#loadOriginal(this.document.value.model?.mesh.blob ?? null));
+    effect(() => this.#follow());
+    effect(() => this.#resume());
+  }
+
+  // ---- models ----
+
+  async openFile(file: File): Promise<boolean> {
+    return await this.#open(file.name, async () => {
+      const bytes = new Uint8Array(await file.arrayBuffer());
+      const reference = await this.#keep(bytes, file.type || 'application/octet-stream');
+      return { kind: 'file', file_name: file.name, file: reference };
+    });
+  }
+
+  async openSample(sample: string, title: string): Promise<boolean> {
+    return await this.#open(title, () => Promise.resolve({ kind: 'sample', sample, title }));
+  }
+
+  async #open(name: string, getSource: () => Promise<Source>): Promise<boolean> {
+    this.cancel();
+    const abort = (this.#abort = new AbortController());
+    const { signal } = abort;
+    const onProgress = (progress: Progress) => {
+      if (this.#abort === abort) this.activity.value = { kind: 'opening', name, progress };
+    };
+    this.activity.value = { kind: 'opening', name, progress: null };
+    this.problem.value = null;
+    try {
+      const source = await getSource();
+      const mesh =
+        source.kind === 'sample'
+          ? { sample: source.sample }
+          : { sha256: source.file.blob, file_name: source.file_name };
+      const job = { operation: 'import', parameters: {}, inputs: { mesh }, outputs: ['model.ply'] };
+      const imported = await this.services.browser.run(job, { signal, onProgress });
+      const model = await this.#keep(await bytesOf(imported, 'model.ply'), 'application/x-ply');
+      let preview = model;
+      if ((figure(imported.report, 'vertices') ?? 0) > previewVertices) {
+        const simplify = {
+          operation: 'simplify',
+          parameters: { vertices: previewVertices },
+          inputs: { mesh: meshInput(model, 'model.ply') },
+          outputs: ['simplified.ply'],
+        };
+        const simplified = await this.services.browser.run(simplify, { signal, onProgress });
+        preview = await this.#keep(await bytesOf(simplified, 'simplified.ply'), 'application/x-ply');
+      }
+      const operation = await this.#needOperation();
+      const viewpoint = Object.entries(operation.parameters.properties)
+        .filter(([, schema]) => schema['x-group'] === 'Viewpoint')
+        .map(([parameter]) => parameter);
+      const { projects } = this.services;
+      const first = projects.isBlank.value;
+      projects.do(
+        openModel({ source, mesh: model, preview, report: imported.report }, `Open ${name}`, viewpoint),
+      );
+      if (first && projects.document.value.name === 'New project')
+        projects.do({
+          label: 'Name the project',
+          recorded: false,
+          apply: (document) => ({ ...document, name: name.replace(/\.[^.]+$/, '') }),
+        });
+      const repairs = imported.report['repairs'];
+      this.repairsOpen.value = Array.isArray(repairs) && repairs.length > 0;
+      return true;
+    } catch (thrown) {
+      const error = asJobError(thrown);
+      if (error.code !== 'cancelled')
+        this.problem.value = { kind: 'file', title: `Could not open ${name}`, message: error.message };
+      return false;
+    } finally {
+      this.#finished(abort);
+    }
+  }
+
+  async #loadOriginal(from: string | null): Promise<void> {
+    if (from === null) {
+      this.original.value = null;
+      this.shown.value = null;
+      return;
+    }
+    if (untracked(() => this.original.value?.from) === from) return;
+    try {
+      const mesh = await readPly(await this.services.projects.blobs.read(from));
+      if (this.document.value.model?.mesh.blob === from) this.original.value = { mesh, from };
+    } catch (thrown) {
+      this.problem.value = {
+        kind: 'file',
+        title: 'The model is missing',
+        message: asJobError(thrown).message,
+      };
+    }
+  }
+
+  // ---- parameters and previews ----
+
+  preview(name: string, value: Json): void {
+    const operation = this.operation.value;
+    if (operation === null) return;
+    const title = operation.parameters.properties[name]?.title ?? name;
+    this.services.projects.do(
+      setParameters(operation, { [name]: value }, `Change ${title.toLowerCase()}`, name),
+    );
+  }
+
+  setViewpoint(values: JsonObject, coalesce?: string): void {
+    const operation = this.operation.value;
+    if (operation === null) return;
+    const known = Object.fromEntries(
+      Object.entries(values).filter(([name]) => name in operation.parameters.properties),
+    );
+    this.services.projects.do(setParameters(operation, known, 'Set the viewpoint', coalesce));
+    if (coalesce === undefined) this.services.projects.commit();
+  }
+
+  value(name: string): Json {
+    const operation = this.operation.value;
+    return operation === null ? null : inForce(operation, this.document.value.parameters, name);
+  }
+
+  /** Whenever model or parameters change: show the full result made with them, or preview. */
+  #follow(): void {
+    const { model, parameters } = this.document.value;
+    if (model === null || this.operation.value === null) return;
+    const { result } = this;
+    const found = result.value;
+    const solving = untracked(() => this.activity.value.kind === 'solving');
+    if (
+      solving &&
+      found === null &&
+      this.#solvingFor &&
+      !jsonEqual(this.#solvingFor, requestKey(model.mesh.blob, parameters))
+    )
+      this.cancel();
+    const shown = untracked(() => this.shown.value);
+    if (found?.outputs['relief.ply']) void this.#showResult(found);
+    else if (
+      shown === null ||
+      shown.kind === 'full' ||
+      shown.from !== model.preview.blob ||
+      !jsonEqual(shown.parameters, parameters)
+    )
+      this.#preview.request({ mesh: model.preview, parameters });
+  }
+
+  async #showResult(result: ReliefResult): Promise<void> {
+    const ply = result.outputs['relief.ply'];
+    const shown = untracked(() => this.shown.value);
+    if (ply === undefined) return;
+    if (
+      shown?.kind === 'full' &&
+      shown.from === result.mesh &&
+      jsonEqual(shown.parameters, result.parameters)
+    )
+      return;
+    this.#preview.cancel();
+    try {
+      const mesh = await readPly(await this.services.projects.blobs.read(ply.blob));
+      if (this.result.value?.id !== result.id) return;
+      const { report, parameters } = result;
+      this.fieldErrors.value = {};
+      this.shown.value = { kind: 'full', mesh, report, parameters, from: result.mesh };
+    } catch {
+      // Its bytes were not kept; a preview stands in for it.
+      const model = this.document.value.model;
+      if (model) this.#preview.request({ mesh: model.preview, parameters: result.parameters });
+    }
+  }
+
+  async #runPreview({ mesh, parameters }: PreviewRequest, abort: AbortSignal): Promise<void> {
+    this.previewing.value = true;
+    const start = performance.now();
+    try {
+      const inputs = { mesh: meshInput(mesh, 'preview.ply') };
+      const job = { operation: 'relief', parameters, inputs, outputs: ['relief.ply'] };
+      const done = await this.services.browser.run(job, { signal: abort });
+      const ply = await readPly(await bytesOf(done, 'relief.ply'));
+      this.previewSeconds.value = (performance.now() - start) / 1000;
+      this.#measurePreview(done.report);
+      if (this.document.value.model?.preview.blob !== mesh.blob || this.result.value !== null) return;
+      this.fieldErrors.value = {};
+      this.shown.value = { kind: 'preview', mesh: ply, report: done.report, parameters, from: mesh.blob };
+    } catch (thrown) {
+      const error = asJobError(thrown);
+      if (error.code !== 'cancelled') this.#report(error, 'Could not preview the relief');
+    } finally {
+      this.previewing.value = false;
+    }
+  }
+
+  #measurePreview(report: Report): void {
+    const seconds = solverSeconds(report);
+    const vertices = figure(report, 'vertices');
+    if (seconds === null || vertices === null || report['factor_reused'] === true) return;
+    this.#measured.value = { vertices, seconds };
+    this.#previewMemory_mb.value = this.services.browser.memory_mb ?? 0;
+  }
+
+  /** An error that names a parameter goes to its field, any other into a note. */
+  #report(error: JobError, title: string): void {
+    if (error.where !== '' && this.operation.value?.parameters.properties[error.where])
+      this.fieldErrors.value = { [error.where]: error.message };
+    else this.problem.value = { kind: 'solve', title, message: error.message };
+  }
+
+  // ---- solving in full ----
+
+  /** Seconds and memory a full solve may take; null where nothing is known yet. */
+  readonly estimate = computed(() => {
+    const vertices = figure(this.document.value.model?.report ?? {}, 'vertices');
+    const preview = this.#measured.value;
+    if (vertices === null) return null;
+    const worker = recall('native');
+    const browser = recall('wasm') ?? preview;
+    return {
+      browser_s: browser ? estimateSeconds(browser, vertices) : null,
+      worker_s: worker ? estimateSeconds(worker, vertices) : null,
+      memory_mb: preview ? estimateMemory_mb(this.#previewMemory_mb.value, preview.vertices, vertices) : null,
+    };
+  });
+
+  #solvingFor: Json = null;
+
+  async solve(): Promise<void> {
+    const { model, parameters } = this.document.value;
+    if (model === null || this.result.value !== null) return;
+    const backend = readyWorker(this.services) ?? this.services.browser;
+    const outputs = this.operation.value?.outputs.some((output) => output.name === 'relief.stl')
+      ? ['relief.ply', 'relief.stl']
+      : ['relief.ply'];
+    const job = {
+      operation: 'relief',
+      parameters,
+      inputs: { mesh: meshInput(model.mesh, 'model.ply') },
+      outputs,
+    };
+    await this.#solveWith(backend, model.mesh.blob, parameters, (options) =>
+      backend.run(job, {
+        ...options,
+        onAccepted: (id) =>
+          this.services.projects.do(setPending({ job: id, mesh: model.mesh.blob, parameters })),
+      }),
+    );
+  }
+
+  async #solveWith(
+    backend: Backend,
+    mesh: string,
+    parameters: JsonObject,
+    run: (options: { signal: AbortSignal; onProgress: (progress: Progress) => void }) => Promise<Result>,
+  ): Promise<void> {
+    this.cancel();
+    const abort = (this.#abort = new AbortController());
+    this.#preview.cancel();
+    this.#solvingFor = requestKey(mesh, parameters);
+    this.problem.value = null;
+    this.activity.value = { kind: 'solving', backend: backend.kind, progress: null };
+    const start = performance.now();
+    try {
+      const onProgress = (progress: Progress) => {
+        if (this.#abort === abort) this.activity.value = { kind: 'solving', backend: backend.kind, progress };
+      };
+      const done = await run({ signal: abort.signal, onProgress });
+      const seconds = (performance.now() - start) / 1000;
+      const outputs: Record<string, BlobReference> = {};
+      for (const output of done.outputs.values())
+        outputs[output.name] = await this.#keep(await output.read(), output.mediaType);
+      const vertices = figure(done.report, 'vertices');
+      const solver_s = solverSeconds(done.report);
+      if (vertices && solver_s && done.report['factor_reused'] !== true)
+        remember(backend.kind, { vertices, seconds: solver_s });
+      this.services.projects.do(
+        addResult({
+          id: crypto.randomUUID(),
+          made_unix_s: Math.round(Date.now() / 1000),
+          backend: backend.kind,
+          seconds,
+          mesh,
+          parameters,
+          report: done.report,
+          outputs,
+        }),
+      );
+    } catch (thrown) {
+      const error = asJobError(thrown);
+      if (error.code !== 'cancelled') this.#report(error, 'Could not solve the relief');
+      if (error.code !== 'unreachable') this.services.projects.do(setPending(null));
+    } finally {
+      this.#solvingFor = null;
+      this.#finished(abort);
+    }
+  }
+
+  /** A solve that was still running in the worker when the page was closed is waited for again. */
+  #resume(): void {
+    const worker = readyWorker(this.services);
+    const pending: PendingSolve | null = this.document.value.pending;
+    if (pending === null || worker?.resume === undefined || this.#resumed.has(pending.job)) return;
+    this.#resumed.add(pending.job);
+    if (untracked(() => this.activity.value.kind !== 'idle')) return;
+    const { job, mesh, parameters } = pending;
+    void untracked(() =>
+      this.#solveWith(worker, mesh, parameters, (options) =>
+        worker.resume ? worker.resume(job, options) : Promise.reject(new Error('The worker keeps no jobs.')),
+      ),
+    );
+  }
+
+  // ---- files ----
+
+  /** The bytes of an output of the current result, made now if it was not kept. */
+  async output(name: string, label: string): Promise<Uint8Array<ArrayBuffer> | null> {
+    const result = this.result.value;
+    const { model, parameters } = this.document.value;
+    if (result === null || model === null) return null;
+    const kept = result.outputs[name];
+    const { blobs } = this.services.projects;
+    if (kept && (await blobs.has(kept.blob))) return await blobs.read(kept.blob);
+    const abort = (this.#abort = new AbortController());
+    this.activity.value = { kind: 'exporting', label, progress: null };
+    try {
+      const worker = readyWorker(this.services);
+      const backend = worker ?? this.services.browser;
+      const onProgress = (progress: Progress) =>
+        (this.activity.value = { kind: 'exporting', label, progress });
+      const job = {
+        operation: 'relief',
+        parameters,
+        inputs: { mesh: meshInput(model.mesh, 'model.ply') },
+        outputs: [name],
+      };
+      const done = await backend.run(job, { signal: abort.signal, onProgress });
+      const bytes = await bytesOf(done, name);
+      const reference = await this.#keep(
+        bytes,
+        done.outputs.get(name)?.mediaType ?? 'application/octet-stream',
+      );
+      this.services.projects.do(
+        amendResult(result.id, (old) => ({ ...old, outputs: { ...old.outputs, [name]: reference } })),
+      );
+      return bytes;
+    } catch (thrown) {
+      const error = asJobError(thrown);
+      if (error.code !== 'cancelled') this.#report(error, `Could not make the ${label} file`);
+      return null;
+    } finally {
+      this.#finished(abort);
+    }
+  }
+
+  async keepPicture(resultId: string, picture: Blob): Promise<void> {
+    const reference = await this.#keep(new Uint8Array(await picture.arrayBuffer()), picture.type);
+    this.services.projects.do(amendResult(resultId, (old) => ({ ...old, picture: reference })));
+  }
+
+  cancel(): void {
+    this.#abort?.abort();
+  }
+
+  #finished(abort: AbortController): void {
+    if (this.#abort !== abort) return;
+    this.#abort = null;
+    this.activity.value = { kind: 'idle' };
+    this.#follow();
+  }
+
+  /** Keeps bytes with the project; a browser without room is said, and does not stop the work. */
+  async #keep(bytes: Uint8Array<ArrayBuffer>, media_type: string): Promise<BlobReference> {
+    const { blobs } = this.services.projects;
+    let blob: string;
+    try {
+      blob = await blobs.put(bytes);
+    } catch (thrown) {
+      toast(storageSentence(thrown), true);
+      blob = await blobs.hold(bytes);
+    }
+    return { blob, bytes: bytes.byteLength, media_type };
+  }
+
+  async #needOperation(): Promise<Operation> {
+    const operation = findOperation(
+      this.services.catalog.value ?? (await this.services.browser.catalog()),
+      'relief',
+    );
+    if (operation === undefined)
+      throw new JobError({ code: 'internal', where: '', message: 'This build cannot make reliefs.' });
+    return operation;
+  }
+
+  get title(): string {
+    const model = this.document.value.model;
+    return model === null ? 'relief' : titleOf(model.source).replace(/\.[^.]+$/, '');
+  }
+}
+
+interface PreviewRequest {
+  readonly mesh: BlobReference;
+  readonly parameters: JsonObject;
+}
+
+const requestKey = (mesh: string, parameters: JsonObject): Json => ({ mesh, parameters });
+
+async function bytesOf(result: Result, name: string): Promise<Uint8Array<ArrayBuffer>> {
+  const output = result.outputs.get(name);
+  if (output === undefined)
+    throw new JobError({ code: 'internal', where: name, message: `The solver made no ${name}.` });
+  return await output.read();
+}

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The viewport with what floats over it: view modes, light, side view, legend, notes.
+import { effect, signal, useSignal } from '@preact/signals';
+import type { ComponentChildren } from 'preact';
+import { useEffect, useRef } from 'preact/hooks';
+import { Icon, Segmented } from '../../ui';
+import type { LightDirection, Plate, ViewMode } from '../../view';
+import { LightBall, SideInset, Viewport } from '../../view';
+import { Legend } from './legend';
+import {
+  errorMapping,
+  errorOf,
+  originalData,
+  parametersOf,
+  plateOf,
+  reliefData,
+  scaled,
+  viewpointOf,
+} from './meshes';
+import type { ReliefSession, Shown } from './relief_session';
+import { figure } from './report';
+
+/** The viewport's own state outlives a visit to another page. */
+export const mode = signal<ViewMode>('swipe');
+export const light = signal<LightDirection>({ azimuthDeg: 135, elevationDeg: 35, follows: 'object' });
+export const atViewpoint = signal(true);
+export const followCamera = signal(false);
+
+const modes: readonly { value: ViewMode; label: string }[] = [
+  { value: 'swipe', label: 'Swipe' },
+  { value: 'relief', label: 'Relief' },
+  { value: 'original', label: 'Original' },
+  { value: 'error', label: 'Normal error' },
+];
+
+export interface ViewportPanelProps {
+  readonly session: ReliefSession;
+  /** Given the viewport once it exists, null when it goes. */
+  readonly onViewport: (viewport: Viewport | null) => void;
+  readonly children?: ComponentChildren;
+}
+
+const narrow = () => window.innerWidth <= 720;
+
+export function ViewportPanel({ session, onViewport, children }: ViewportPanelProps) {
+  const container = useRef<HTMLDivElement>(null);
+  const ball = useRef<HTMLDivElement>(null);
+  const side = useRef<HTMLDivElement>(null);
+  const unsupported = useSignal<string | null>(null);
+
+  useEffect(() => {
+    if (container.current === null) return undefined;
+    const viewport = new Viewport(container.current, {
+      mode: mode.value,
+      light: light.value,
+      freeRectangle: freeRectangle(),
+      label: 'Model and relief',
+      onViewpointChange: (camera, at) => {
+        atViewpoint.value = at;
+        if (followCamera.value && !at) session.setViewpoint(parametersOf(camera), 'viewpoint');
+      },
+      onStatus: (status) => (unsupported.value = status.state === 'ready' ? null : status.message),
+    });
+    const lightBall = new LightBall(light.value, (chosen) => {
+      light.value = chosen;
+      viewport.setLight(chosen);
+    });
+    ball.current?.append(lightBall.element);
+    const inset = new SideInset(viewport);
+    side.current?.append(inset.element);
+    viewport.setColourMapping(errorMapping);
+    const stop = [effect(() => viewport.setMode(mode.value)), keepDrawn(viewport, session)];
+    const resize = new ResizeObserver(() => viewport.setFreeRectangle(freeRectangle()));
+    resize.observe(container.current);
+    onViewport(viewport);
+    return () => {
+      onViewport(null);
+      resize.disconnect();
+      for (const end of stop) end();
+      inset.dispose();
+      lightBall.dispose();
+      viewport.dispose();
+    };
+  }, []);
+
+  const shown = session.shown.value;
+  const options = modes.map((option) => ({
+    ...option,
+    disabledReason:
+      shown === null && option.value !== 'original' ? 'Shown when the first preview is ready' : undefined,
+  }));
+  return (
+    <div class="viewport-panel">
+      <div ref={container} class="viewport" />
+      {unsupported.value ? <p class="viewport-message">{unsupported.value}</p> : null}
+      {session.original.value ? (
+        <>
+          <div class="float top-left">
+            <Segmented
+              floating
+              label="View"
+              options={options}
+              value={mode.value}
+              onChange={(value) => (mode.value = value)}
+            />
+          </div>
+          {mode.value === 'error' && shown ? (
+            <Legend
+              values={errorOf(shown.mesh)}
+              mean={figure(shown.report, 'normal_error_mean_deg') ?? undefined}
+            />
+          ) : null}
+          {session.previewing.value && shown === null ? (
+            <p class="float bottom-left label-chip">
+              <Icon name="clock" small /> Making the first preview
+            </p>
+          ) : null}
+        </>
+      ) : null}
+      <div ref={ball} class="float top-right" hidden={session.original.value === null} />
+      <div ref={side} class="float bottom-right side-inset" hidden={shown === null} />
+      {children}
+    </div>
+  );
+}
+
+const freeRectangle = () =>
+  narrow() ? { left: 14, top: 64, right: 14, bottom: 12 } : { left: 24, top: 64, right: 24, bottom: 24 };
+
+/** Draws what the session shows; as little as possible is sent again. */
+function keepDrawn(viewport: Viewport, session: ReliefSession): () => void {
+  let drawnOriginal: { from: string; scale: number } | null = null;
+  let drawnRelief: Shown | null = null;
+  let drawnModel: string | null = null;
+  const draw = () => {
+    const original = session.original.value;
+    const shown = session.shown.value;
+    if (original === null) {
+      viewport.setOriginal(null);
+      viewport.setRelief(null, null);
+      drawnOriginal = drawnRelief = drawnModel = null;
+      return;
+    }
+    const current = session.document.peek().model;
+    const fits =
+      shown !== null && (shown.from === current?.mesh.blob || shown.from === current?.preview.blob);
+    const width = Number(session.value('width_mm') ?? 100);
+    const scale =
+      (fits ? figure(shown.report, 'scale_mm_per_unit') : null) ??
+      provisionalScale(original.mesh.positions, width);
+    if (drawnOriginal?.from !== original.from) viewport.setOriginal(originalData(original.mesh, scale));
+    else if (drawnOriginal.scale !== scale) viewport.updateOriginal(scaled(original.mesh.positions, scale));
+    drawnOriginal = { from: original.from, scale };
+    if (!fits) {
+      if (drawnRelief) viewport.setRelief(null, null);
+      drawnRelief = null;
+      if (drawnModel !== original.from) viewport.fit(false);
+      return;
+    }
+    if (drawnRelief === shown) return;
+    const thickness = Number(inForceOf(session, shown, 'thickness_mm'));
+    const plate: Plate | null = plateOf(shown.report, thickness);
+    if (drawnRelief?.from === shown.from && drawnRelief.mesh.indices.length === shown.mesh.indices.length) {
+      viewport.updateRelief(shown.mesh.positions, plate);
+      viewport.updateAttribute('relief', errorMapping.attribute, errorOf(shown.mesh));
+    } else viewport.setRelief(reliefData(shown.mesh), plate);
+    const viewpoint = viewpointOf(shown.report, Number(inForceOf(session, shown, 'field_of_view_deg') ?? 20));
+    if (viewpoint) {
+      const first = drawnModel !== original.from;
+      const stay = first || (viewport.atViewpoint && !followCamera.peek());
+      viewport.setViewpoint(viewpoint);
+      if (stay) viewport.lookFromViewpoint(false);
+      drawnModel = original.from;
+    }
+    drawnRelief = shown;
+  };
+  return effect(draw);
+}
+
+function inForceOf(session: ReliefSession, shown: Shown, name: string) {
+  const schema = session.operation.peek()?.parameters.properties[name];
+  return shown.parameters[name] ?? schema?.default ?? null;
+}
+
+/** Until the first relief says the scale: the model's x extent as the width. */
+function provisionalScale(positions: Float32Array, width_mm: number): number {
+  let [low, high] = [Infinity, -Infinity];
+  for (let i = 0; i < positions.length; i += 3) {
+    low = Math.min(low, positions[i] ?? 0);
+    high = Math.max(high, positions[i] ?? 0);
+  }
+  return high > low ? width_mm / (high - low) : 1;
+}

@@ -123,7 +123,7 @@ TEST(CotangentLaplacian, ConvergesToTheSphericalHarmonics) {
       }
       previous = error;
     }
-    EXPECT_LT(previous, 0.01);
+    EXPECT_LT(previous, 1e-3 * eigenvalue);
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { defineConfig } from 'vitest/config';
-import { licences } from './scripts/licences';
-import { serviceWorker } from './scripts/service_worker_plugin';
+import { licences } from './scripts/licences.ts';
+import { serviceWorker } from './scripts/service_worker_plugin.ts';
 
 // SharedArrayBuffer, by which a running job is cancelled, needs cross-origin isolation.
 const isolation = {

@@ -4,7 +4,7 @@ import { effect, signal, useSignal } from '@preact/signals';
 import type { ComponentChildren } from 'preact';
 import { useEffect, useRef } from 'preact/hooks';
 import { Icon, Segmented } from '../../ui';
-import type { LightDirection, Plate, ViewMode } from '../../view';
+import type { Insets, LightDirection, Plate, ViewMode } from '../../view';
 import { LightBall, SideInset, Viewport } from '../../view';
 import { Legend } from './legend';
 import {
@@ -53,7 +53,7 @@ export function ViewportPanel({ session, onViewport, children }: ViewportPanelPr
     const viewport = new Viewport(container.current, {
       mode: mode.value,
       light: light.value,
-      freeRectangle: freeRectangle(),
+      freeRectangle: freeRectangle(null),
       label: 'Model and relief',
       onViewpointChange: (camera, at) => {
         atViewpoint.value = at;
@@ -70,12 +70,17 @@ export function ViewportPanel({ session, onViewport, children }: ViewportPanelPr
     side.current?.append(inset.element);
     viewport.setColourMapping(errorMapping);
     const stop = [effect(() => viewport.setMode(mode.value)), keepDrawn(viewport, session)];
-    const resize = new ResizeObserver(() => viewport.setFreeRectangle(freeRectangle()));
+    const panel = container.current.parentElement;
+    const makeRoom = () => viewport.setFreeRectangle(freeRectangle(panel?.querySelector('.note-place, .legend')));
+    const resize = new ResizeObserver(makeRoom);
     resize.observe(container.current);
+    const notes = new MutationObserver(makeRoom);
+    if (panel) notes.observe(panel, { childList: true });
     onViewport(viewport);
     return () => {
       onViewport(null);
       resize.disconnect();
+      notes.disconnect();
       for (const end of stop) end();
       inset.dispose();
       lightBall.dispose();
@@ -117,15 +122,20 @@ export function ViewportPanel({ session, onViewport, children }: ViewportPanelPr
           ) : null}
         </>
       ) : null}
-      <div ref={ball} class="float top-right" hidden={session.original.value === null} />
-      <div ref={side} class="float bottom-right side-inset" hidden={shown === null} />
+      <div ref={ball} class="float top-right panel light-panel" hidden={session.original.value === null} />
+      <div ref={side} class="float bottom-right panel side-inset" hidden={shown === null} />
       {children}
     </div>
   );
 }
 
-const freeRectangle = () =>
-  narrow() ? { left: 14, top: 64, right: 14, bottom: 12 } : { left: 24, top: 64, right: 24, bottom: 24 };
+/** What floats stays off the object: light and side view right, notes and legends below. */
+function freeRectangle(foot: Element | null | undefined): Insets {
+  const bottom = foot ? foot.getBoundingClientRect().height + 24 : 0;
+  return narrow()
+    ? { left: 14, top: 70, right: 14, bottom: Math.max(24, bottom) }
+    : { left: 28, top: 68, right: 180, bottom: Math.max(44, bottom) };
+}
 
 /** Draws what the session shows; as little as possible is sent again. */
 function keepDrawn(viewport: Viewport, session: ReliefSession): () => void {

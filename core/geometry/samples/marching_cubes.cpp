@@ -79,7 +79,7 @@ struct CubeTables {
 
   void build(int inside) {
     const auto in = [&](int corner) { return (inside >> corner & 1) != 0; };
-    // next[e]: where the contour goes from crossing e; outside on its right, seen from outside the cube.
+    // next[e]: where the contour goes from crossing e, so that loops are counter-clockwise seen from outside the solid.
     std::array<int, 12> next;
     next.fill(-1);
     for (int face = 0; face < 6; ++face) {
@@ -91,7 +91,7 @@ struct CubeTables {
         std::size_t m = (k + 1) % 4;
         while (in(c[(m + 1) % 4])) m = (m + 1) % 4;
         const int from = edge_between(c[k], c[(k + 1) % 4]), to = edge_between(c[m], c[(m + 1) % 4]);
-        next[static_cast<std::size_t>(to)] = from;
+        next[static_cast<std::size_t>(from)] = to;
       }
     }
     std::array<bool, 12> seen{};
@@ -153,6 +153,7 @@ struct Patch {
   std::vector<std::uint64_t> edges;
   std::vector<Point> points;
   std::vector<Corners> triangles;
+  int open_sides = 0;  // sides of the leaf that the surface passes: bit 2 axis + (0 low, 1 high)
 };
 
 std::uint64_t edge_key(int i, int j, int k, int axis) {
@@ -192,6 +193,10 @@ void march(const ImplicitShape& shape, double cell, const Block& block, Patch& p
               (axis == 0 ? p.x : axis == 1 ? p.y : p.z) += t;
               patch.points.push_back(shape.bounds.low + p * cell);
               patch.edges.push_back(edge_key(block.i + x, block.j + y, block.k + z, axis));
+              const int at[3] = {x, y, z};
+              for (int side = 0; side < 3; ++side)
+                if (side != axis && at[side] % leaf_cells == 0)
+                  patch.open_sides |= (at[side] == 0 ? 1 : 2) << (2 * side);
             }
             corners[m] = vertex;
           }
@@ -200,10 +205,10 @@ void march(const ImplicitShape& shape, double cell, const Block& block, Patch& p
       }
 }
 
-// Open addressing from grid edges to vertices.
-class EdgeMap {
+// Open addressing from grid edges to vertices (or from leaves to their places).
+class KeyMap {
  public:
-  explicit EdgeMap(std::size_t count) {
+  explicit KeyMap(std::size_t count) {
     std::size_t size = 64;
     while (size < count * 2) size *= 2;
     keys_.assign(size, ~std::uint64_t{0});
@@ -236,7 +241,7 @@ Surface joined(const std::vector<Patch>& patches) {
   Surface surface;
   surface.points.reserve(vertices);
   surface.triangles.reserve(faces);
-  EdgeMap map(vertices);
+  KeyMap map(vertices);
   std::vector<int> global;
   for (const Patch& patch : patches) {
     global.resize(patch.points.size());
@@ -292,13 +297,34 @@ Surface marching_cubes(const ImplicitShape& shape, double cell_mm, Context& cont
   const Point extent = shape.bounds.high - shape.bounds.low;
   int root = leaf_cells;
   while (root * cell_mm < std::max({extent.x, extent.y, extent.z})) root *= 2;
-  const std::vector<Block> blocks = reachable_blocks(shape, cell_mm, root, context);
-  constexpr std::size_t group = 64;  // leaves a chunk, fixed: the order of vertices depends on nothing else
-  std::vector<Patch> patches(blocks.size());
-  parallel_for(blocks.size(), group, [&](std::size_t from, std::size_t to) {
-    context.check_cancelled();
-    for (std::size_t b = from; b < to; ++b) march(shape, cell_mm, blocks[b], patches[b]);
-  });
+  std::vector<Block> blocks = reachable_blocks(shape, cell_mm, root, context);
+  std::vector<Patch> patches;
+  KeyMap known(8 * blocks.size() + 1024);
+  const auto leaf_key = [](const Block& b) { return edge_key(b.i + 1024, b.j + 1024, b.k + 1024, 0); };
+  for (std::size_t b = 0; b < blocks.size(); ++b) known.find_or_add(leaf_key(blocks[b]), 1);
+  // Where the field is steeper than promised a leaf may be missing: follow the surface until it closes.
+  for (std::size_t done = 0; done < blocks.size();) {
+    const std::size_t count = blocks.size();
+    patches.resize(count);
+    parallel_for(count - done, 64, [&](std::size_t from, std::size_t to) {
+      context.check_cancelled();
+      for (std::size_t b = done + from; b < done + to; ++b) march(shape, cell_mm, blocks[b], patches[b]);
+    });
+    for (std::size_t b = done; b < count; ++b)
+      for (int side = 0; side < 6; ++side) {
+        if ((patches[b].open_sides >> side & 1) == 0) continue;
+        Block beside = blocks[b];
+        (side < 2 ? beside.i : side < 4 ? beside.j : beside.k) += side % 2 == 0 ? -leaf_cells : leaf_cells;
+        int& seen = known.find_or_add(leaf_key(beside), 0);
+        if (seen == 0) {
+          seen = 1;
+          blocks.push_back(beside);
+        }
+      }
+    done = count;
+    if (blocks.size() > 6 * patches.size() + 4096)
+      throw Error(ErrorCode::internal, "sample", "The sample's surface leaves its bounds.");
+  }
   Surface surface = joined(patches);
   if (surface.triangles.empty())
     throw Error(ErrorCode::internal, "sample", "The sample's field has no surface at this resolution.");

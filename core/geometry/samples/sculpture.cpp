@@ -13,8 +13,8 @@ void Sculpture::unite(double softness, const Point& centre, double radius, Field
 void Sculpture::carve(double softness, const Point& centre, double radius, Field solid) {
   strokes_.push_back({Operation::carve, softness, centre, radius, std::move(solid)});
 }
-void Sculpture::raise(const Point& centre, double radius, Field height) {
-  strokes_.push_back({Operation::raise, 0, centre, radius, std::move(height)});
+void Sculpture::raise(const Point& centre, double radius, Field height, double greatest) {
+  strokes_.push_back({Operation::raise, greatest, centre, radius, std::move(height)});
 }
 
 namespace {
@@ -83,7 +83,8 @@ void Sculpture::line(double height, double width, const std::vector<Point>& path
 
 void Sculpture::finish() {
   double softest = 0;
-  for (const Stroke& s : strokes_) softest = std::max(softest, s.softness);
+  for (const Stroke& s : strokes_)
+    if (s.operation != Operation::raise) softest = std::max(softest, s.softness);
   const Point extent = bounds_.high - bounds_.low;
   const double size = std::max({extent.x, extent.y, extent.z});
   cell_ = size / 40;
@@ -141,7 +142,9 @@ double Sculpture::apply(const Stroke& stroke, const Point& p, double d) const {
     }
     case Operation::raise:
     default:
-      return c2 >= stroke.radius * stroke.radius ? d : d - stroke.field(p);
+      if (c2 >= stroke.radius * stroke.radius) return d;
+      if (d > 2 * stroke.softness) return d - stroke.softness;  // far outside: a bound will do
+      return d - stroke.field(p);
   }
 }
 

@@ -30,8 +30,8 @@ class Sculpture {
   void unite(double softness, const Point& centre, double radius, Field solid);
   /// Smooth removal of such a solid.
   void carve(double softness, const Point& centre, double radius, Field solid);
-  /// Pushes the surface outwards by `height` (a field that vanishes outside the ball).
-  void raise(const Point& centre, double radius, Field height);
+  /// Pushes the surface outwards by `height` (a field that vanishes outside the ball), at most by `greatest`.
+  void raise(const Point& centre, double radius, Field height, double greatest = 1e30);
 
   // The usual strokes, each also at the mirror image in x when `twin`.
   void add_ellipsoid(double softness, const Frame& frame, const Point& radii, bool twin = false);
@@ -56,7 +56,7 @@ class Sculpture {
   enum class Operation : unsigned char { unite, carve, raise };
   struct Stroke {
     Operation operation;
-    double softness;
+    double softness;  // of a raise: its greatest height
     Point centre;
     double radius;
     Field field;

@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/samples/remesh.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+
+#include "base/error.h"
+#include "base/parallel.h"
+
+namespace formwright::samples {
+namespace {
+
+constexpr std::size_t grain = 2048;
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+double cotangent(const Point& apex, const Point& p, const Point& q) {
+  const Point u = p - apex, v = q - apex;
+  const double twice_area = length(cross(u, v));
+  return twice_area > 1e-300 ? dot(u, v) / twice_area : 1e6;
+}
+
+Point normal_of(const Point& a, const Point& b, const Point& c) { return cross(b - a, c - a); }
+
+// a . b > least |a| |b|
+bool agree(const Point& a, const Point& b, double least) {
+  const double d = dot(a, b), product = length2(a) * length2(b);
+  return d > 0 && d * d > least * least * product;
+}
+
+class Remesher {
+ public:
+  Remesher(const Surface& surface, const std::vector<int>& patch, const TargetShape& shape, int target, Context& context)
+      : s_(surface, patch), shape_(shape), target_(target), context_(context) {
+    // n vertices carry 2 n triangles of area sqrt(3)/4 edge^2.
+    edge_ = std::sqrt(surface_area(surface) * 2 / (std::sqrt(3.0) * target));
+  }
+
+  Surface run(std::vector<int>& patch) {
+    // A first mesh much finer than wanted needs more rounds to come down.
+    const double excess = static_cast<double>(s_.vertex_count()) / target_;
+    const int coarsening = excess > 2 ? 3 + static_cast<int>(std::log2(excess)) : 0;
+    for (int k = 0; k < coarsening; ++k) {
+      collapse_short(0.8);
+      flip_by_valence();
+      relax(0.2, false);
+    }
+    for (int k = 0; k < 3; ++k) {
+      split_long(4.0 / 3);
+      collapse_short(0.8);
+      flip_by_valence();
+      relax(0.15, k == 1);
+      context_.check_cancelled();
+    }
+    for (int k = 0; k < 3; ++k) {
+      dissolve_slivers();
+      match_count();
+      if (k == 0) flip_by_valence();
+      flip_to_delaunay();
+      relax(k == 1 ? 0.02 : 0.05, k != 1);
+      context_.check_cancelled();
+    }
+    flip_to_delaunay();
+    polish();
+    return s_.compact(&patch);
+  }
+
+ private:
+  void split_long(double factor) {
+    const double limit = factor * factor * edge_ * edge_;
+    const int slots = s_.halfedge_slots();
+    for (int h = 0; h < slots; ++h)
+      if (s_.alive(h) && h < s_.twin(h) && s_.edge_length2(h) > limit) split_at_middle(h);
+  }
+
+  void split_at_middle(int h) {
+    const Point middle = (s_.point(s_.start(h)) + s_.point(s_.end(h))) / 2;
+    const int m = s_.split(h, middle);
+    Point slope;
+    s_.move(m, limited(middle, shape_.project(middle, s_.patches(m), 0.1 * edge_, slope)));
+  }
+
+  Point limited(const Point& from, const Point& to) const {
+    const Point step = to - from;
+    const double l2 = length2(step), most = 0.3 * edge_;
+    return l2 <= most * most ? to : from + step * (most / std::sqrt(l2));
+  }
+
+  void collapse_short(double factor) {
+    const double limit = factor * factor * edge_ * edge_;
+    for (int h = 0; h < s_.halfedge_slots(); ++h)
+      if (s_.alive(h) && s_.edge_length2(h) < limit) try_collapse(h, 4.0 / 3);
+  }
+
+  bool try_collapse(int h, double longest) {
+    Point p;
+    if (!s_.can_collapse(h, p)) return false;
+    const double limit = longest * longest * edge_ * edge_;
+    if (!survives(h, s_.start(h), p, limit) || !survives(h, s_.end(h), p, limit)) return false;
+    s_.collapse(h, p);
+    return true;
+  }
+
+  // Moving `v` (an end of h) to p turns no remaining triangle over and makes no edge too long.
+  bool survives(int h, int v, const Point& p, double limit) const {
+    const int t = s_.twin(h), begin = s_.out(v);
+    int k = begin;
+    do {
+      if (k / 3 != h / 3 && k / 3 != t / 3) {
+        const Point& b = s_.point(s_.end(k));
+        const Point& c = s_.point(s_.start(s_.previous(k)));
+        if (distance2(p, b) > limit) return false;
+        if (!agree(normal_of(s_.point(v), b, c), normal_of(p, b, c), 0.35)) return false;
+      }
+      k = s_.rotate(k);
+    } while (k != begin);
+    return true;
+  }
+
+  // The edge may turn: not a feature, not folded, the other diagonal free and its triangles sound.
+  bool can_flip(int h) const {
+    if (s_.is_feature(h)) return false;
+    const int t = s_.twin(h), a = s_.start(s_.previous(h)), b = s_.start(s_.previous(t));
+    const Point &u = s_.point(s_.start(h)), &v = s_.point(s_.start(t)), &pa = s_.point(a), &pb = s_.point(b);
+    const Point n1 = normal_of(u, v, pa), n2 = normal_of(v, u, pb);
+    const Point f1 = normal_of(pb, pa, u), f2 = normal_of(pa, pb, v);
+    const Point mean = n1 + n2;
+    if (!agree(n1, n2, 0.5) || !agree(f1, f2, 0.5) || !agree(f1, mean, 0.5) || !agree(f2, mean, 0.5)) return false;
+    return !s_.adjacent(a, b);
+  }
+
+  void flip_by_valence() {
+    std::vector<int> valence(index(s_.vertex_slots()), 0);
+    for (int h = 0; h < s_.halfedge_slots(); ++h)
+      if (s_.alive(h)) ++valence[index(s_.start(h))];
+    const auto excess = [&](int v, int change) {
+      const int e = valence[index(v)] + change - 6;
+      return e * e;
+    };
+    for (int h = 0; h < s_.halfedge_slots(); ++h) {
+      if (!s_.alive(h) || h > s_.twin(h)) continue;
+      const int t = s_.twin(h), u = s_.start(h), v = s_.start(t), a = s_.start(s_.previous(h)), b = s_.start(s_.previous(t));
+      if (valence[index(u)] <= 4 || valence[index(v)] <= 4) continue;
+      const int before = excess(u, 0) + excess(v, 0) + excess(a, 0) + excess(b, 0);
+      const int after = excess(u, -1) + excess(v, -1) + excess(a, 1) + excess(b, 1);
+      if (after >= before || !can_flip(h)) continue;
+      // Never for a much worse shape.
+      const Point &pu = s_.point(u), &pv = s_.point(v), &pa = s_.point(a), &pb = s_.point(b);
+      if (distance2(pa, pb) > 2.2 * distance2(pu, pv)) continue;
+      s_.flip(h);
+      --valence[index(u)];
+      --valence[index(v)];
+      ++valence[index(a)];
+      ++valence[index(b)];
+    }
+  }
+
+  void flip_to_delaunay() {
+    for (int round = 0; round < 4; ++round) {
+      int flips = 0;
+      for (int h = 0; h < s_.halfedge_slots(); ++h) {
+        if (!s_.alive(h) || h > s_.twin(h)) continue;
+        const int t = s_.twin(h), u = s_.start(h), v = s_.start(t), a = s_.start(s_.previous(h)), b = s_.start(s_.previous(t));
+        const Point &pu = s_.point(u), &pv = s_.point(v), &pa = s_.point(a), &pb = s_.point(b);
+        const double weight = cotangent(pa, pu, pv) + cotangent(pb, pu, pv);
+        if (weight >= -1e-6 || s_.valence(u) <= 3 || s_.valence(v) <= 3 || !can_flip(h)) continue;
+        // On a curved surface the other diagonal may be no better: insist on a gain.
+        if (cotangent(pu, pa, pb) + cotangent(pv, pa, pb) <= weight) continue;
+        s_.flip(h);
+        ++flips;
+      }
+      if (flips == 0) break;
+    }
+  }
+
+  void relax(double step, bool chord) {
+    const int vertices = s_.vertex_slots(), faces = s_.halfedge_slots() / 3;
+    normals_.resize(index(faces));
+    parallel_for(index(faces), grain, [&](std::size_t from, std::size_t to) {
+      for (std::size_t f = from; f < to; ++f) {
+        const int h = static_cast<int>(3 * f);
+        if (s_.alive(h)) normals_[f] = normal_of(s_.point(s_.start(h)), s_.point(s_.start(h + 1)), s_.point(s_.start(h + 2)));
+      }
+    });
+    moved_.resize(index(vertices));
+    if (!chord) slopes_.clear();
+    slopes_.resize(index(vertices));
+    parallel_for(index(vertices), grain, [&](std::size_t from, std::size_t to) {
+      for (std::size_t v = from; v < to; ++v)
+        if (s_.vertex_alive(static_cast<int>(v))) moved_[v] = relaxed(static_cast<int>(v), step, slopes_[v]);
+    });
+    for (int v = 0; v < vertices; ++v)
+      if (s_.vertex_alive(v)) s_.move(v, moved_[index(v)]);
+  }
+
+  Point relaxed(int v, double step, Point& slope) const {
+    const Point& p = s_.point(v);
+    const std::uint32_t patches = s_.patches(v);
+    const int meeting = std::popcount(patches), begin = s_.out(v);
+    if (meeting > 2) return p;
+    Point centre{0, 0, 0}, normal{0, 0, 0};
+    double total = 0;
+    int h = begin;
+    do {
+      if (meeting == 2) {
+        if (s_.is_feature(h)) {
+          centre += s_.point(s_.end(h));
+          total += 1;
+        }
+      } else {
+        // Centroids of the triangles around, by area: evens out sizes as well as angles.
+        const Point& n = normals_[index(h / 3)];
+        const double area = length(n);
+        centre += (p + s_.point(s_.end(h)) + s_.point(s_.start(s_.previous(h)))) * (area / 3);
+        normal += n;
+        total += area;
+      }
+      h = s_.rotate(h);
+    } while (h != begin);
+    if (total <= 0) return p;
+    Point move = centre / total - p;
+    if (meeting == 1) {
+      const double n2 = length2(normal);
+      if (n2 > 0) move -= normal * (dot(move, normal) / n2);
+      move = move * 1.3;  // the centroid includes p itself: over-relax
+    }
+    const Point there = limited(p, p + move);
+    return limited(there, shape_.project(there, patches, step * edge_, slope));
+  }
+
+  // Collapses the shortest edge of triangles with an angle below about 24 degrees.
+  void dissolve_slivers() {
+    for (int h = 0; h < s_.halfedge_slots(); ++h) {
+      if (!s_.alive(h)) continue;
+      const Point &a = s_.point(s_.start(h)), &b = s_.point(s_.end(h)), &c = s_.point(s_.start(s_.previous(h)));
+      if (cotangent(c, a, b) > 2.25) try_collapse(h, 1.6);
+    }
+  }
+
+  // Splits the longest or collapses the shortest edges until the count is right.
+  void match_count() {
+    for (int round = 0; round < 20 && s_.vertex_count() != target_; ++round) {
+      const bool grow = s_.vertex_count() < target_;
+      std::vector<std::pair<double, int>> edges;
+      for (int h = 0; h < s_.halfedge_slots(); ++h)
+        if (s_.alive(h) && h < s_.twin(h)) edges.emplace_back(grow ? -s_.edge_length2(h) : s_.edge_length2(h), h);
+      const std::size_t missing = index(std::abs(target_ - s_.vertex_count()));
+      const std::size_t first = std::min(edges.size(), grow ? missing : 3 * missing + 8);
+      std::partial_sort(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(first), edges.end());
+      for (std::size_t e = 0; e < first && s_.vertex_count() != target_; ++e) {
+        const int h = edges[e].second;
+        if (!s_.alive(h)) continue;
+        if (grow) {
+          split_at_middle(h);
+        } else if (!try_collapse(h, 1.6 + 0.1 * round)) {
+          try_collapse(s_.twin(h), 1.6 + 0.1 * round);
+        }
+      }
+    }
+  }
+
+  void polish() {
+    const int vertices = s_.vertex_slots();
+    slopes_.clear();
+    slopes_.resize(index(vertices));
+    for (double step : {1e-2, 1e-3, 1e-3}) {
+      parallel_for(index(vertices), grain, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) {
+          const int v = static_cast<int>(i);
+          if (!s_.vertex_alive(v)) continue;
+          const Point p = s_.point(v);
+          Point q = shape_.project(p, s_.patches(v), step * edge_, slopes_[i]);
+          const double most = 0.1 * edge_;
+          if (distance2(p, q) > most * most) q = p + (q - p) * (most / length(q - p));
+          s_.move(v, q);
+        }
+      });
+    }
+  }
+
+  HalfedgeSurface s_;
+  const TargetShape& shape_;
+  int target_;
+  Context& context_;
+  double edge_;
+  std::vector<Point> normals_, moved_, slopes_;
+};
+
+}  // namespace
+
+Point ImplicitTarget::project(const Point& p, std::uint32_t, double step, Point& slope) const {
+  if (slope == Point{}) {
+    const double a = field_({p.x + step, p.y - step, p.z - step}), b = field_({p.x - step, p.y - step, p.z + step}),
+                 c = field_({p.x - step, p.y + step, p.z - step}), d = field_({p.x + step, p.y + step, p.z + step});
+    const Point gradient = Point{a - b - c + d, c + d - a - b, b + d - a - c} / (4 * step);
+    const double g2 = length2(gradient);
+    if (!(g2 > 0.01)) return p;
+    slope = gradient / g2;
+    return p - slope * (0.25 * (a + b + c + d));
+  }
+  return p - slope * field_(p);
+}
+
+Surface remesh(const Surface& surface, std::vector<int>& patch, const TargetShape& target, int vertex_count, Context& context) {
+  return Remesher(surface, patch, target, vertex_count, context).run(patch);
+}
+
+Surface mesh_implicit(const ImplicitShape& shape, double area_mm2, int vertex_count, Context& context) {
+  // The grid edges crossed by a surface of area A number 1.5 A / cell^2 on average over directions.
+  const double cell = std::min(shape.largest_cell_mm, std::sqrt(1.5 * area_mm2 / (1.1 * vertex_count)));
+  const Surface rough = marching_cubes(shape, cell, context);
+  std::vector<int> patch;
+  return remesh(rough, patch, ImplicitTarget(shape.field), vertex_count, context);
+}
+
+}  // namespace formwright::samples

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The makers behind make_sample, one per shape.
+#include <functional>
+
+#include "geometry/samples/remesh.h"
+#include "geometry/triangle_mesh.h"
+
+namespace formwright::samples {
+
+Model make_bust(int vertices, Context& context);
+
+/// Linear RGB of a surface point with its outward unit normal, both in the coordinates of the mesh.
+using Colouring = std::function<Point(const Point& p, const Point& normal)>;
+
+/// Moves a surface so that it stands on y = 0 and is centred on the y axis, and colours its vertices.
+Model finished(Surface surface, const Colouring& colouring);
+
+/// Mean edge length of an even mesh of `vertices` vertices on an area.
+double edge_length_of(double area_mm2, int vertices);
+
+/// sRGB bytes as linear light.
+Point srgb(int red, int green, int blue);
+
+}  // namespace formwright::samples

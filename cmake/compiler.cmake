@@ -52,6 +52,24 @@ if(FORMWRIGHT_SANITIZE)
   add_link_options(-fsanitize=address,undefined)
 endif()
 
+# formwright_fuzz(NAME SOURCES file... LIBRARIES target...): a libFuzzer program
+# fuzz_NAME. Nothing in other builds; `make fuzz` builds and runs them.
+option(FORMWRIGHT_FUZZ "Build the fuzz targets (clang only)" OFF)
+if(FORMWRIGHT_FUZZ)
+  add_compile_options(-fsanitize=fuzzer-no-link)
+  add_custom_target(fuzz)
+endif()
+function(formwright_fuzz name)
+  if(NOT FORMWRIGHT_FUZZ)
+    return()
+  endif()
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
+  add_executable(fuzz_${name} EXCLUDE_FROM_ALL ${ARG_SOURCES})
+  target_link_libraries(fuzz_${name} PRIVATE ${ARG_LIBRARIES} fw_warnings)
+  target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
+  add_dependencies(fuzz fuzz_${name})
+endfunction()
+
 # Emscripten's compilers are wrapped as a whole: a hit then costs 30 ms instead
 # of Python and clang. ccache cannot tell from their names what they are, and
 # would take a launcher script of ten lines for the compiler's identity.

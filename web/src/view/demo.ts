@@ -129,9 +129,15 @@ function relief(thickness: number): Float64Array {
 
 const thickness = Number(query.get('thickness') ?? 5);
 const squeezed = relief(thickness);
+let [halfWidth, halfHeight] = [0, 0];
+for (let i = 0; i < count; ++i) {
+  const d = subtract(at(squeezed, i), targetMm);
+  halfWidth = Math.max(halfWidth, Math.abs(dot(d, axes.right)));
+  halfHeight = Math.max(halfHeight, Math.abs(dot(d, axes.up)));
+}
 const plate: Plate = {
-  widthMm: 120,
-  heightMm: Math.round((high[1]! - low[1]! + 16) * 10) / 10,
+  widthMm: Math.round(20 * (halfWidth + 7)) / 10,
+  heightMm: Math.round(20 * (halfHeight + 7)) / 10,
   thicknessMm: 3,
   centreMm: targetMm,
   reliefThicknessMm: thickness,

@@ -121,13 +121,13 @@ float keyVisibility(vec3 n) {
   return lit / float(SHADOW_TAPS);
 }
 
-// Oren and Nayar 1994, in Fujii's form without trigonometry; sigma = 0.5.
+// Oren and Nayar 1994, in Fujii's form without trigonometry; sigma = 0.3.
 float orenNayar(vec3 l, vec3 v, vec3 n) {
   float nl = max(dot(n, l), 0.0);
   float nv = max(dot(n, v), 0.0);
   float s = dot(l, v) - nl * nv;
   float t = s > 0.0 ? max(max(nl, nv), 1e-3) : 1.0;
-  return nl * (0.8716 + 0.3 * s / t);
+  return nl * (0.9156 + 0.156 * s / t);
 }
 
 vec3 shoulder(vec3 c) {
@@ -209,13 +209,19 @@ uniform vec3 uDirection;
 uniform mat4 uShadowMatrix;
 uniform sampler2DShadow uShadow;
 uniform float uShadowOffset;
+uniform float uBlur;     // of the depth map's width
 // What one direction of the sky adds to a point: cosine weight, and that weight where the sky is seen.
 vec2 skySample(vec3 p, vec3 n) {
   float weight = max(dot(n, uDirection), 0.0);
   if (weight == 0.0) return vec2(0.0);
   vec3 s = (uShadowMatrix * vec4(p + n * uShadowOffset, 1.0)).xyz;
-  float seen = 0.25 * (textureOffset(uShadow, s, ivec2(0, 0)) + textureOffset(uShadow, s, ivec2(1, 0))
-                     + textureOffset(uShadow, s, ivec2(0, 1)) + textureOffset(uShadow, s, ivec2(1, 1)));
+  float seen = 0.0;
+  for (int i = 0; i < BAKE_TAPS; ++i) {
+    float r = uBlur * sqrt((float(i) + 0.5) / float(BAKE_TAPS));
+    float a = 2.3999632 * float(i);
+    seen += texture(uShadow, vec3(s.xy + r * vec2(cos(a), sin(a)), s.z));
+  }
+  seen /= float(BAKE_TAPS);
   return 0.125 * vec2(weight * seen, weight);
 }
 `;

@@ -6,7 +6,7 @@ import { formatValue } from './colour_map';
 import type { Viewport } from './viewport';
 
 /** Turned this far to the side and from above, so that the thickness shows. */
-const TURN = (-68 * Math.PI) / 180;
+const TURN = (62 * Math.PI) / 180;
 const TILT = (14 * Math.PI) / 180;
 const SAMPLES = 14;
 

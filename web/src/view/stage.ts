@@ -41,8 +41,8 @@ export interface Picture {
 
 /** Linear reflectances: warm plaster, its plate a little darker, as an object stands out from its ground. */
 const PLASTER: Vec3 = [0.93, 0.845, 0.715];
-const PLATE: Vec3 = [0.9, 0.81, 0.672];
-const KEY = 0.82;
+const PLATE: Vec3 = [0.84, 0.755, 0.628];
+const KEY = 0.86;
 const AMBIENT = 0.215;
 /** Half angle of the key light as seen from the object, degrees: how soft its shadows are. */
 const LIGHT_HALF_ANGLE = 2.6;
@@ -180,7 +180,9 @@ export class Stage {
     } else if (plate.mesh !== false) {
       const width = 640;
       const height = Math.min(1024, Math.max(64, Math.round((width * plate.heightMm) / plate.widthMm)));
-      part.extra.push(this.surface(part, plateFront(frame), { albedo: PLATE, picture: { width, height } }));
+      part.extra.push(
+        this.surface(part, plateFront(frame), { albedo: PLATE, picture: { width, height }, blur: 0.004 }),
+      );
       const body = plateBody(frame);
       if (body) part.extra.push(this.surface(part, body, { albedo: PLATE }));
     }
@@ -233,6 +235,7 @@ export class Stage {
       {
         albedo: PLATE,
         picture: { width: 384, height: 384 },
+        blur: 0.055,
         fragment: groundFragment,
         transparent: true,
       },

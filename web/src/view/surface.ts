@@ -33,7 +33,8 @@ export interface SurfaceOptions {
   albedo: Vec3;
   /** Flat quads are baked as pictures of this many texels instead of per vertex; needs uvs. */
   picture?: { width: number; height: number };
-  castsOnly?: boolean;
+  /** Blur of the baked sky, as a share of its depth maps: far shadows need more. */
+  blur?: number;
   fragment?: string;
   transparent?: boolean;
 }
@@ -163,10 +164,12 @@ export class Surface {
 
     const bakeMaterial = new THREE.RawShaderMaterial({
       glslVersion: THREE.GLSL3,
+      defines: { BAKE_TAPS: options.blur ? 16 : 4 },
       vertexShader: options.picture ? bakeQuadVertex : bakeVertex,
       fragmentShader: options.picture ? bakeQuadFragment : bakeFragment,
       uniforms: {
         ...shared.bake,
+        uBlur: { value: options.blur ?? 0.0012 },
         uOcclusionWidth: this.uniforms['uOcclusionWidth']!,
         uOcclusionHeight: this.uniforms['uOcclusionHeight']!,
       },

@@ -22,13 +22,17 @@ export default ts.config(
   {
     rules: {
       '@typescript-eslint/consistent-type-imports': 'error',
-      '@typescript-eslint/no-unused-vars': ['error', { argsIgnorePattern: '^_' }],
+      '@typescript-eslint/no-unused-vars': ['error', { argsIgnorePattern: '^_', varsIgnorePattern: '^_' }],
       eqeqeq: 'error',
       'no-console': 'error',
       'prefer-const': 'error',
     },
   },
-  { files: ['scripts/**', 'e2e/**', '*.ts'], rules: { 'no-console': 'off' } },
+  {
+    files: ['scripts/**', 'e2e/**', '*.ts'],
+    languageOptions: { globals: { process: 'readonly' } },
+    rules: { 'no-console': 'off' },
+  },
   closed(
     ['src/ui/**'],
     ['jobs', 'project', 'view', 'crafts', 'machines', 'app'],

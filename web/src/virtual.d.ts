@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 declare module 'virtual:licences' {
-  const licences: readonly import('../scripts/licences').Licence[];
+  import type { Licence } from '../scripts/licences';
+  const licences: readonly Licence[];
   export default licences;
 }

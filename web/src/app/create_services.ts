@@ -17,13 +17,12 @@ const lastProjectKey = 'formwright.project';
 
 const moduleUrl = () => new URL('wasm/formwright.mjs', document.baseURI.replace(/#.*/, '')).href;
 
-/** The core in this page; while developing without a WASM build, a stand-in. */
+/** The core in this page. Only `vite dev` without a WASM build, and `vite build --mode mock`, have a stand-in. */
 async function browserBackend(blobs: BlobSource): Promise<Backend> {
-  if (import.meta.env.DEV) {
+  if (import.meta.env.DEV || import.meta.env.MODE === 'mock') {
     const answer = await fetch(moduleUrl(), { method: 'HEAD' }).catch(() => null);
     const built = answer?.ok === true && /javascript/.test(answer.headers.get('content-type') ?? '');
-    const asked = new URLSearchParams(location.search).has('mock');
-    if (!built || asked) {
+    if (!built || import.meta.env.MODE === 'mock') {
       const { MockBackend } = await import('../jobs/mock/mock_backend');
       return new MockBackend(blobs);
     }

@@ -10,12 +10,11 @@ import { readPly } from '../../jobs/mesh_reader';
 import type { PlyMesh } from '../../jobs/ply';
 import type { BlobReference } from '../../project/document';
 import { jsonEqual } from '../../project/document';
-import { storageSentence } from '../../project/storage';
-import { toast } from '../../ui';
 import type { Services } from '../common/services';
 import { readyWorker } from '../common/services';
 import type { Measured } from './estimate';
 import { estimateMemory_mb, estimateSeconds, recall, remember } from './estimate';
+import { bytesOf, importModel, keep } from './import_model';
 import type { PendingSolve, ReliefResult, Source } from './relief_document';
 import {
   addResult,
@@ -29,10 +28,7 @@ import {
   setPending,
   titleOf,
 } from './relief_document';
-import { figure, solverSeconds } from './report';
-
-/** Enough for a faithful picture, few enough to re-solve while a slider moves. */
-const previewVertices = 8000;
+import { figure, sentences, solverSeconds } from './report';
 
 export interface Shown {
   readonly kind: 'preview' | 'full';
@@ -111,41 +107,21 @@ export class ReliefSession {
     this.problem.value = null;
     try {
       const source = await getSource();
-      const mesh =
-        source.kind === 'sample'
-          ? { sample: source.sample }
-          : { sha256: source.file.blob, file_name: source.file_name };
-      const job = { operation: 'import', parameters: {}, inputs: { mesh }, outputs: ['model.ply'] };
-      const imported = await this.services.browser.run(job, { signal, onProgress });
-      const model = await this.#keep(await bytesOf(imported, 'model.ply'), 'application/x-ply');
-      let preview = model;
-      if ((figure(imported.report, 'vertices') ?? 0) > previewVertices) {
-        const simplify = {
-          operation: 'simplify',
-          parameters: { vertices: previewVertices },
-          inputs: { mesh: meshInput(model, 'model.ply') },
-          outputs: ['simplified.ply'],
-        };
-        const simplified = await this.services.browser.run(simplify, { signal, onProgress });
-        preview = await this.#keep(await bytesOf(simplified, 'simplified.ply'), 'application/x-ply');
-      }
+      const { browser, projects } = this.services;
+      const model = await importModel(browser, projects.blobs, source, { signal, onProgress });
       const operation = await this.#needOperation();
       const viewpoint = Object.entries(operation.parameters.properties)
         .filter(([, schema]) => schema['x-group'] === 'Viewpoint')
         .map(([parameter]) => parameter);
-      const { projects } = this.services;
       const first = projects.isBlank.value;
-      projects.do(
-        openModel({ source, mesh: model, preview, report: imported.report }, `Open ${name}`, viewpoint),
-      );
+      projects.do(openModel(model, `Open ${name}`, viewpoint));
       if (first && projects.document.value.name === 'New project')
         projects.do({
           label: 'Name the project',
           recorded: false,
           apply: (document) => ({ ...document, name: name.replace(/\.[^.]+$/, '') }),
         });
-      const repairs = imported.report['repairs'];
-      this.repairsOpen.value = Array.isArray(repairs) && repairs.length > 0;
+      this.repairsOpen.value = sentences(model.report, 'repairs').length > 0;
       return true;
     } catch (thrown) {
       const error = asJobError(thrown);
@@ -217,14 +193,14 @@ export class ReliefSession {
     )
       this.cancel();
     const shown = untracked(() => this.shown.value);
-    if (found?.outputs['relief.ply']) void this.#showResult(found);
+    if (found?.outputs['relief.ply']) void untracked(() => this.#showResult(found));
     else if (
       shown === null ||
       shown.kind === 'full' ||
       shown.from !== model.preview.blob ||
       !jsonEqual(shown.parameters, parameters)
     )
-      this.#preview.request({ mesh: model.preview, parameters });
+      untracked(() => this.#preview.request({ mesh: model.preview, parameters }));
   }
 
   async #showResult(result: ReliefResult): Promise<void> {
@@ -448,17 +424,8 @@ export class ReliefSession {
     this.#follow();
   }
 
-  /** Keeps bytes with the project; a browser without room is said, and does not stop the work. */
-  async #keep(bytes: Uint8Array<ArrayBuffer>, media_type: string): Promise<BlobReference> {
-    const { blobs } = this.services.projects;
-    let blob: string;
-    try {
-      blob = await blobs.put(bytes);
-    } catch (thrown) {
-      toast(storageSentence(thrown), true);
-      blob = await blobs.hold(bytes);
-    }
-    return { blob, bytes: bytes.byteLength, media_type };
+  #keep(bytes: Uint8Array<ArrayBuffer>, media_type: string): Promise<BlobReference> {
+    return keep(this.services.projects.blobs, bytes, media_type);
   }
 
   async #needOperation(): Promise<Operation> {
@@ -483,10 +450,3 @@ interface PreviewRequest {
 }
 
 const requestKey = (mesh: string, parameters: JsonObject): Json => ({ mesh, parameters });
-
-async function bytesOf(result: Result, name: string): Promise<Uint8Array<ArrayBuffer>> {
-  const output = result.outputs.get(name);
-  if (output === undefined)
-    throw new JobError({ code: 'internal', where: name, message: `The solver made no ${name}.` });
-  return await output.read();
-}

@@ -71,7 +71,8 @@ export function ViewportPanel({ session, onViewport, children }: ViewportPanelPr
     viewport.setColourMapping(errorMapping);
     const stop = [effect(() => viewport.setMode(mode.value)), keepDrawn(viewport, session)];
     const panel = container.current.parentElement;
-    const makeRoom = () => viewport.setFreeRectangle(freeRectangle(panel?.querySelector('.note-place, .legend')));
+    const makeRoom = () =>
+      viewport.setFreeRectangle(freeRectangle(panel?.querySelector('.note-place, .legend')));
     const resize = new ResizeObserver(makeRoom);
     resize.observe(container.current);
     const notes = new MutationObserver(makeRoom);

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Keyboard alone, and axe on every page in both themes at both widths.
+import AxeBuilder from '@axe-core/playwright';
+import type { Page } from '@playwright/test';
+import { expect, openPage, openSample, solve, test } from './page';
+
+/** Tabs until the wanted element has the focus; a person would not go on for ever. */
+async function tabTo(page: Page, selector: string): Promise<void> {
+  for (let i = 0; i < 80; ++i) {
+    await page.keyboard.press('Tab');
+    if (await page.evaluate((wanted) => document.activeElement?.matches(wanted) === true, selector)) return;
+  }
+  throw new Error(`${selector} was not reached by Tab.`);
+}
+
+test('with the keyboard alone', async ({ page }) => {
+  await openPage(page);
+  await tabTo(page, '.gallery button');
+  await page.keyboard.press('Enter');
+  await expect(page.getByText('Preview up to date')).toBeVisible();
+  await tabTo(page, 'input[type=range][aria-label=Thickness]');
+  await page.keyboard.press('Shift+ArrowRight');
+  await expect(page.getByRole('textbox', { name: 'Thickness' })).not.toHaveValue('5.0');
+  await page.keyboard.press('Control+z');
+  await expect(page.getByRole('textbox', { name: 'Thickness' })).toHaveValue('5.0');
+  await page.keyboard.press('?');
+  await expect(page.getByRole('dialog', { name: 'All keys' })).toBeVisible();
+  await page.keyboard.press('Escape');
+  await expect(page.getByRole('dialog')).toBeHidden();
+  await page.keyboard.press('Control+Enter');
+  await expect(page.getByText('Relief ready')).toBeVisible({ timeout: 150_000 });
+  const waiting = page.waitForEvent('download');
+  await page.keyboard.press('Control+e');
+  expect((await waiting).suggestedFilename()).toMatch(/\.stl$/);
+  await page.keyboard.press('2');
+  await expect(page.getByRole('heading', { name: 'Thermoform is not here yet' })).toBeVisible();
+});
+
+for (const colorScheme of ['light', 'dark'] as const)
+  for (const viewport of [
+    { width: 1280, height: 800 },
+    { width: 390, height: 844 },
+  ])
+    test(`axe finds nothing serious, ${colorScheme}, ${viewport.width} px`, async ({ browser }) => {
+      const context = await browser.newContext({ colorScheme, viewport, reducedMotion: 'reduce' });
+      const page = await context.newPage();
+      const check = async (what: string) => {
+        const { violations } = await new AxeBuilder({ page }).analyze();
+        const serious = violations.filter(({ impact }) => impact === 'serious' || impact === 'critical');
+        const told = serious.map(
+          ({ id, nodes }) => `${what}: ${id}: ${nodes.map(({ html }) => html.slice(0, 120)).join(' | ')}`,
+        );
+        expect(told).toEqual([]);
+      };
+      await openPage(page);
+      await check('start');
+      await openSample(page);
+      await check('preview');
+      await page.getByRole('button', { name: /^Advanced/ }).click();
+      await check('advanced');
+      await solve(page);
+      await check('solved');
+      await page.goto('/#/about');
+      await expect(page.getByRole('heading', { name: 'About Formwright' })).toBeVisible();
+      await check('about');
+      await page.goto('/#/zippable');
+      await expect(page.getByRole('heading', { name: 'Zippable is not here yet' })).toBeVisible();
+      await check('later');
+      await context.close();
+    });

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+import { expect, fileOf, openPage, openSample, solve, test } from './page';
+
+test('a reload keeps model, settings and results', async ({ page }) => {
+  await openSample(page);
+  const thickness = page.getByRole('textbox', { name: 'Thickness' });
+  await thickness.fill('6.5');
+  await thickness.press('Enter');
+  await solve(page);
+  await expect(page.getByText('Saved', { exact: true })).toBeVisible();
+  await page.reload();
+  await expect(page.getByText('Relief ready')).toBeVisible();
+  await expect(thickness).toHaveValue('6.5');
+  await expect(page.getByRole('list', { name: 'Earlier results' }).getByRole('button')).toHaveCount(1);
+});
+
+test('a wrong file is said in words and the work stays', async ({ page }) => {
+  await openSample(page);
+  const model = await page.locator('.model-row strong').textContent();
+  await page.locator('input[type=file]').setInputFiles(fileOf('notes.obj', 'this is no model'));
+  await expect(page.getByRole('alert').getByText('Could not open notes.obj')).toBeVisible();
+  await expect(page.locator('.model-row strong')).toHaveText(model ?? '');
+  await expect(page.getByRole('button', { name: 'Choose another file' })).toBeVisible();
+  await page.getByRole('button', { name: 'Dismiss' }).click();
+  await expect(page.getByText('Could not open notes.obj')).toBeHidden();
+});
+
+test('a value out of range marks its field and keeps the last good one', async ({ page }) => {
+  await openSample(page);
+  const thickness = page.getByRole('textbox', { name: 'Thickness' });
+  await thickness.fill('5000');
+  await thickness.press('Enter');
+  await expect(thickness).toHaveAttribute('aria-invalid', 'true');
+  await expect(page.getByRole('alert').filter({ hasText: /to 1000/ })).toBeVisible();
+  await expect(page.getByRole('slider', { name: 'Thickness' })).toHaveAttribute('aria-valuetext', /^5\.0/);
+  await thickness.press('Escape');
+  await expect(thickness).toHaveValue('5.0');
+});
+
+test('a project goes through a file', async ({ page }) => {
+  await openSample(page);
+  await page
+    .getByRole('button', { name: /^Bust|^Torus|./ })
+    .and(page.locator('.project'))
+    .click();
+  const waiting = page.waitForEvent('download');
+  await page.getByRole('menuitem', { name: 'Save as a file' }).click();
+  const download = await waiting;
+  expect(download.suggestedFilename()).toMatch(/\.formwright$/);
+  const file = await download.path();
+  await page.locator('.project').click();
+  await page.getByRole('menuitem', { name: 'Delete' }).click();
+  await page.getByRole('dialog').getByRole('button', { name: 'Delete' }).click();
+  await openPage(page);
+  await page.locator('input[type=file]').setInputFiles({
+    name: 'a.formwright',
+    mimeType: 'application/zip',
+    buffer: (await import('node:fs')).readFileSync(file),
+  });
+  await expect(page.getByText('Preview up to date')).toBeVisible();
+});

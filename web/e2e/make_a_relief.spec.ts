@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+import { readFileSync } from 'node:fs';
+import { backend, ballObj, expect, fileOf, openPage, openSample, readStl, solve, test } from './page';
+
+test('from a sample to a solid of the asked thickness', async ({ page }) => {
+  await openSample(page);
+  const thickness = page.getByRole('textbox', { name: 'Thickness' });
+  await thickness.fill('4');
+  await thickness.press('Enter');
+  await solve(page);
+  await expect(page.getByText(/Solved in .* than plain scaling/)).toBeVisible();
+  const waiting = page.waitForEvent('download');
+  await page.getByRole('button', { name: 'Export STL' }).click();
+  const download = await waiting;
+  expect(download.suggestedFilename()).toMatch(/-4mm\.stl$/);
+  const solid = readStl(readFileSync(await download.path()));
+  expect(solid.closed).toBe(true);
+  expect(solid.triangles).toBeGreaterThan(1000);
+  if (backend === 'mock') return; // its solid is only the squashed model
+  const plate = Number((await page.getByRole('textbox', { name: 'Plate' }).inputValue()).replace(',', '.'));
+  const width = Number(await page.getByRole('textbox', { name: 'Width' }).inputValue());
+  expect(solid.size[0]).toBeCloseTo(width, 3);
+  expect(solid.size[2]).toBeCloseTo(4 + plate, 3);
+  await expect(page.getByText(/^Watertight, /)).toBeVisible();
+});
+
+test('a file, several thicknesses, and back to an earlier result', async ({ page }) => {
+  await openPage(page);
+  await page.locator('input[type=file]').setInputFiles(fileOf('ball.obj', ballObj()));
+  await expect(page.getByText('Preview up to date')).toBeVisible();
+  await expect(page.getByText('ball.obj')).toBeVisible();
+  await solve(page);
+  const thickness = page.getByRole('textbox', { name: 'Thickness' });
+  const first = await thickness.inputValue();
+  await thickness.fill('3');
+  await thickness.press('Enter');
+  await expect(page.getByText('Preview up to date')).toBeVisible();
+  await solve(page);
+  const results = page.getByRole('list', { name: 'Earlier results' }).getByRole('button');
+  await expect(results).toHaveCount(2);
+  await results.nth(1).click();
+  await expect(thickness).toHaveValue(first);
+  await expect(page.getByText('Relief ready')).toBeVisible();
+  await page.keyboard.press('Control+z');
+  await expect(thickness).toHaveValue('3.0');
+});
+
+test('cancel a solve and go on', async ({ page }) => {
+  await openSample(page);
+  await page.getByRole('button', { name: 'Solve at full detail' }).click();
+  await expect(page.getByRole('progressbar')).toBeVisible();
+  await page.keyboard.press('Escape');
+  await expect(page.getByRole('button', { name: 'Solve at full detail' })).toBeVisible({ timeout: 5000 });
+  await solve(page);
+});
+
+test('other formats from the menu', async ({ page }) => {
+  test.skip(backend === 'mock', 'the mock makes STL only');
+  await openPage(page);
+  await page.locator('input[type=file]').setInputFiles(fileOf('ball.obj', ballObj()));
+  await solve(page);
+  for (const [label, magic] of [
+    ['3MF', 'PK'],
+    ['Height map', '\x89PNG'],
+  ] as const) {
+    await page.getByRole('button', { name: 'Export another format' }).click();
+    const waiting = page.waitForEvent('download');
+    await page.getByRole('menuitem', { name: new RegExp(`^${label}`) }).click();
+    const bytes = readFileSync(await (await waiting).path());
+    expect(bytes.toString('latin1', 0, magic.length)).toBe(magic);
+  }
+});

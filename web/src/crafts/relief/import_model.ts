@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From a file or a sample to a repaired model with its small stand-in for previews.
+import type { Backend, Result, RunOptions } from '../../jobs/backend';
+import { JobError } from '../../jobs/contract';
+import type { BlobStore } from '../../project/blob_store';
+import type { BlobReference } from '../../project/document';
+import { storageSentence } from '../../project/storage';
+import { toast } from '../../ui';
+import type { ReliefModel, Source } from './relief_document';
+import { meshInput } from './relief_document';
+import { figure } from './report';
+
+/** Enough for a faithful picture, few enough to re-solve while a slider moves. */
+const previewVertices = 8000;
+
+const ply = 'application/x-ply';
+
+export async function importModel(
+  backend: Backend,
+  blobs: BlobStore,
+  source: Source,
+  options: RunOptions,
+): Promise<ReliefModel> {
+  const input =
+    source.kind === 'sample'
+      ? { sample: source.sample }
+      : { sha256: source.file.blob, file_name: source.file_name };
+  const job = { operation: 'import', parameters: {}, inputs: { mesh: input }, outputs: ['model.ply'] };
+  const { report, outputs } = await backend.run(job, options);
+  const mesh = await keep(blobs, await bytesOf({ report, outputs }, 'model.ply'), ply);
+  if ((figure(report, 'vertices') ?? 0) <= previewVertices) return { source, mesh, preview: mesh, report };
+  const simplify = {
+    operation: 'simplify',
+    parameters: { vertices: previewVertices },
+    inputs: { mesh: meshInput(mesh, 'model.ply') },
+    outputs: ['simplified.ply'],
+  };
+  const simplified = await backend.run(simplify, options);
+  const preview = await keep(blobs, await bytesOf(simplified, 'simplified.ply'), ply);
+  return { source, mesh, preview, report };
+}
+
+export async function bytesOf(result: Result, name: string): Promise<Uint8Array<ArrayBuffer>> {
+  const output = result.outputs.get(name);
+  if (output === undefined)
+    throw new JobError({ code: 'internal', where: name, message: `The solver made no ${name}.` });
+  return await output.read();
+}
+
+/** Keeps bytes with the project; a browser without room is said, and does not stop the work. */
+export async function keep(
+  blobs: BlobStore,
+  bytes: Uint8Array<ArrayBuffer>,
+  media_type: string,
+): Promise<BlobReference> {
+  let blob: string;
+  try {
+    blob = await blobs.put(bytes);
+  } catch (thrown) {
+    toast(storageSentence(thrown), true);
+    blob = await blobs.hold(bytes);
+  }
+  return { blob, bytes: bytes.byteLength, media_type };
+}

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+import { effect } from '@preact/signals';
 import { render } from 'preact';
 import './ui/tokens.css';
 import './ui/ui.css';
@@ -7,12 +8,14 @@ import { App } from './app/app';
 import { createServices } from './app/create_services';
 import { go, startRouting } from './app/route';
 import { followSystemTheme } from './app/theme';
+import { resumePending } from './crafts/relief/full_solve';
 import { ReliefSession } from './crafts/relief/relief_session';
 
 async function start(root: HTMLElement): Promise<void> {
   followSystemTheme();
   const services = await createServices();
   const session = new ReliefSession(services);
+  effect(() => resumePending(session));
   if (!startRouting() && !services.projects.isBlank.value) go('relief');
   render(<App services={services} session={session} />, root);
   addEventListener('pagehide', () => void services.projects.flush());

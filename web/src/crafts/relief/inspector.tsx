@@ -18,6 +18,7 @@ import { ParameterPanel } from '../common/parameter_panel';
 import { readyWorker } from '../common/services';
 import { download, safeFileName } from './download';
 import { browserMemory_mb } from './estimate';
+import { outputOf } from './full_solve';
 import { parametersOf } from './meshes';
 import type { ReliefResult } from './relief_document';
 import { titleOf } from './relief_document';
@@ -193,7 +194,7 @@ function ExportButton({ session, result }: { session: ReliefSession; result: Rel
   const main = files.find((output) => output.name === 'relief.stl') ?? files[0];
   const busy = session.activity.value.kind === 'idle' ? undefined : 'Busy with another file';
   const save = async (output: OutputDeclaration) => {
-    const bytes = await session.output(output.name, output.label);
+    const bytes = await outputOf(session, output.name, output.label);
     if (bytes) download(bytes, fileNameOf(session, output.name), output.media_type);
   };
   if (main === undefined) return null;
@@ -236,7 +237,7 @@ function ExportButton({ session, result }: { session: ReliefSession; result: Rel
 
 export const exportMain = async (session: ReliefSession): Promise<void> => {
   const output = session.operation.value?.outputs.find(({ name }) => name === 'relief.stl');
-  const bytes = output ? await session.output(output.name, output.label) : null;
+  const bytes = output ? await outputOf(session, output.name, output.label) : null;
   if (bytes && output) download(bytes, fileNameOf(session, output.name), output.media_type);
 };
 

@@ -3,6 +3,7 @@
 import { useSignal } from '@preact/signals';
 import { Button, formatDuration, Icon, Note, useLasting } from '../../ui';
 import { readyWorker } from '../common/services';
+import { solveInFull } from './full_solve';
 import type { ReliefSession } from './relief_session';
 import { sentences } from './report';
 
@@ -29,7 +30,7 @@ export function Notes({ session, onChooseFile, onWorkerHelp }: NotesProps) {
                 Choose another file
               </Button>
             ) : (
-              <Button size="small" onClick={() => void session.solve()}>
+              <Button size="small" onClick={() => void solveInFull(session)}>
                 Try again
               </Button>
             )

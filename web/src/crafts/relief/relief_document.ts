@@ -30,6 +30,8 @@ export interface ReliefResult {
   readonly report: Report;
   readonly outputs: Readonly<Record<string, BlobReference>>;
   readonly picture?: BlobReference;
+  /** The worker's name for it, under which it keeps the other formats. */
+  readonly job?: string;
 }
 
 /** A full solve handed to the worker, to be found again after a reload. */
@@ -121,6 +123,12 @@ export const removeResult = (id: string) =>
     change: (relief) => ({ ...relief, results: relief.results.filter((result) => result.id !== id) }),
   });
 
+export const nameProject = (name: string): Command<ProjectDocument> => ({
+  label: 'Name the project',
+  recorded: false,
+  apply: (document) => ({ ...document, name }),
+});
+
 export const setPending = (pending: PendingSolve | null) =>
   command({ label: 'Solve', recorded: false, change: (relief) => ({ ...relief, pending }) });
 
@@ -144,6 +152,9 @@ export function currentResult(relief: ReliefDocument): ReliefResult | null {
   const request = { mesh: relief.model.mesh.blob, parameters: relief.parameters };
   return relief.results.find((result) => sameRequest(result, request)) ?? null;
 }
+
+/** Names a solve: equal keys, equal results. */
+export const requestKey = (mesh: string, parameters: JsonObject): Json => ({ mesh, parameters });
 
 export const meshInput = (mesh: BlobReference, name: string): JobInput => ({
   sha256: mesh.blob,

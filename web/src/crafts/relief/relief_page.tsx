@@ -7,6 +7,7 @@ import { renderThumbnail } from '../../view';
 import { exportMain, Inspector } from './inspector';
 import { originalData, plateOf, reliefData, viewpointOf } from './meshes';
 import { Notes } from './notes';
+import { solveInFull } from './full_solve';
 import './relief.css';
 import type { ReliefSession } from './relief_session';
 import { ResultsStrip } from './results_strip';
@@ -53,7 +54,7 @@ export function ReliefPage({ session, onChooseFile, onWorkerHelp, onStart }: Rel
             viewport={viewport.value}
             picture={picture.value}
             onReplace={onChooseFile}
-            onSolve={() => void session.solve()}
+            onSolve={() => void solveInFull(session)}
           />
         </Sheet>
       ) : null}
@@ -77,7 +78,7 @@ function useKeys(session: ReliefSession, viewport: () => Viewport | null): void 
         event.preventDefault();
         action();
       };
-      if (control && event.key === 'Enter') act(() => void session.solve());
+      if (control && event.key === 'Enter') act(() => void solveInFull(session));
       else if (control && event.key.toLowerCase() === 'e') act(() => void exportMain(session));
       else if (event.key === 'Escape' && session.activity.value.kind !== 'idle') act(() => session.cancel());
       else if (control || event.altKey || typing) return;

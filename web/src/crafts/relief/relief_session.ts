@@ -2,7 +2,6 @@
 // What the relief page does: opens models, keeps the preview up to date, solves in full, makes files. It
 // holds no state that matters; that is in the project document.
 import { computed, effect, signal, untracked } from '@preact/signals';
-import type { Backend, Result } from '../../jobs/backend';
 import type { Json, JsonObject, Operation, Progress, Report } from '../../jobs/contract';
 import { asJobError, findOperation, JobError } from '../../jobs/contract';
 import { LatestOnly } from '../../jobs/latest_only';
@@ -11,21 +10,20 @@ import type { PlyMesh } from '../../jobs/ply';
 import type { BlobReference } from '../../project/document';
 import { jsonEqual } from '../../project/document';
 import type { Services } from '../common/services';
-import { readyWorker } from '../common/services';
 import type { Measured } from './estimate';
-import { estimateMemory_mb, estimateSeconds, recall, remember } from './estimate';
-import { bytesOf, importModel, keep } from './import_model';
-import type { PendingSolve, ReliefResult, Source } from './relief_document';
+import { estimateMemory_mb, estimateSeconds, recall } from './estimate';
+import { bytesOf, importModel, keep as keepBytes } from './import_model';
+import type { ReliefResult, Source } from './relief_document';
 import {
-  addResult,
   amendResult,
   currentResult,
   inForce,
   meshInput,
+  nameProject,
   openModel,
   reliefOf,
+  requestKey,
   setParameters,
-  setPending,
   titleOf,
 } from './relief_document';
 import { figure, sentences, solverSeconds } from './report';
@@ -39,11 +37,20 @@ export interface Shown {
   readonly from: string;
 }
 
+/** What the strip shows and Esc cancels. */
 export type Activity =
   | { readonly kind: 'idle' }
-  | { readonly kind: 'opening'; readonly name: string; readonly progress: Progress | null }
-  | { readonly kind: 'solving'; readonly backend: string; readonly progress: Progress | null }
-  | { readonly kind: 'exporting'; readonly label: string; readonly progress: Progress | null };
+  | {
+      readonly kind: 'opening' | 'solving' | 'exporting';
+      /** The file or format concerned, or the backend. */
+      readonly name: string;
+      readonly progress: Progress | null;
+    };
+
+export interface BusyOptions {
+  readonly signal: AbortSignal;
+  readonly onProgress: (progress: Progress) => void;
+}
 
 export interface Problem {
   readonly title: string;
@@ -72,14 +79,14 @@ export class ReliefSession {
   readonly #previewMemory_mb = signal(0);
   readonly #preview: LatestOnly<PreviewRequest>;
   #abort: AbortController | null = null;
-  #resumed = new Set<string>();
+  /** The request being solved in full; any change to it ends the solve. */
+  solvingFor: Json = null;
 
   constructor(services: Services) {
     this.services = services;
     this.#preview = new LatestOnly((request, abort) => this.#runPreview(request, abort));
     effect(() => void this.#loadOriginal(this.document.value.model?.mesh.blob ?? null));
     effect(() => this.#follow());
-    effect(() => this.#resume());
   }
 
   // ---- models ----
@@ -87,7 +94,7 @@ export class ReliefSession {
   async openFile(file: File): Promise<boolean> {
     return await this.#open(file.name, async () => {
       const bytes = new Uint8Array(await file.arrayBuffer());
-      const reference = await this.#keep(bytes, file.type || 'application/octet-stream');
+      const reference = await this.keep(bytes, file.type || 'application/octet-stream');
       return { kind: 'file', file_name: file.name, file: reference };
     });
   }
@@ -97,40 +104,60 @@ export class ReliefSession {
   }
 
   async #open(name: string, getSource: () => Promise<Source>): Promise<boolean> {
+    const opened = await this.busy(
+      'opening',
+      name,
+      async (options) => {
+        const { browser, projects } = this.services;
+        const operation = await this.#needOperation();
+        const model = await importModel(browser, projects.blobs, await getSource(), options);
+        const first = projects.isBlank.value && projects.document.value.name === 'New project';
+        projects.do(openModel(model, `Open ${name}`, viewpointParameters(operation)));
+        if (first) projects.do(nameProject(name.replace(/\.[^.]+$/, '')));
+        this.repairsOpen.value = sentences(model.report, 'repairs').length > 0;
+        return true;
+      },
+      ({ message }) => (this.problem.value = { kind: 'file', title: `Could not open ${name}`, message }),
+    );
+    return opened ?? false;
+  }
+
+  /** Runs one task that the strip shows and Esc cancels. Null when it failed, of which `failed` is told, or
+   *  was cancelled. */
+  async busy<T>(
+    kind: 'opening' | 'solving' | 'exporting',
+    name: string,
+    task: (options: BusyOptions) => Promise<T>,
+    failed: (error: JobError) => void,
+  ): Promise<T | null> {
     this.cancel();
     const abort = (this.#abort = new AbortController());
-    const { signal } = abort;
-    const onProgress = (progress: Progress) => {
-      if (this.#abort === abort) this.activity.value = { kind: 'opening', name, progress };
-    };
-    this.activity.value = { kind: 'opening', name, progress: null };
     this.problem.value = null;
+    this.activity.value = { kind, name, progress: null };
+    const onProgress = (progress: Progress) => {
+      if (this.#abort === abort) this.activity.value = { kind, name, progress };
+    };
     try {
-      const source = await getSource();
-      const { browser, projects } = this.services;
-      const model = await importModel(browser, projects.blobs, source, { signal, onProgress });
-      const operation = await this.#needOperation();
-      const viewpoint = Object.entries(operation.parameters.properties)
-        .filter(([, schema]) => schema['x-group'] === 'Viewpoint')
-        .map(([parameter]) => parameter);
-      const first = projects.isBlank.value;
-      projects.do(openModel(model, `Open ${name}`, viewpoint));
-      if (first && projects.document.value.name === 'New project')
-        projects.do({
-          label: 'Name the project',
-          recorded: false,
-          apply: (document) => ({ ...document, name: name.replace(/\.[^.]+$/, '') }),
-        });
-      this.repairsOpen.value = sentences(model.report, 'repairs').length > 0;
-      return true;
+      return await task({ signal: abort.signal, onProgress });
     } catch (thrown) {
       const error = asJobError(thrown);
-      if (error.code !== 'cancelled')
-        this.problem.value = { kind: 'file', title: `Could not open ${name}`, message: error.message };
-      return false;
+      if (error.code !== 'cancelled') failed(error);
+      return null;
     } finally {
-      this.#finished(abort);
+      if (this.#abort === abort) {
+        this.#abort = null;
+        this.activity.value = { kind: 'idle' };
+        this.#follow();
+      }
     }
+  }
+
+  cancel(): void {
+    this.#abort?.abort();
+  }
+
+  cancelPreview(): void {
+    this.#preview.cancel();
   }
 
   async #loadOriginal(from: string | null): Promise<void> {
@@ -188,8 +215,8 @@ export class ReliefSession {
     if (
       solving &&
       found === null &&
-      this.#solvingFor &&
-      !jsonEqual(this.#solvingFor, requestKey(model.mesh.blob, parameters))
+      this.solvingFor !== null &&
+      !jsonEqual(this.solvingFor, requestKey(model.mesh.blob, parameters))
     )
       this.cancel();
     const shown = untracked(() => this.shown.value);
@@ -242,7 +269,7 @@ export class ReliefSession {
       this.shown.value = { kind: 'preview', mesh: ply, report: done.report, parameters, from: mesh.blob };
     } catch (thrown) {
       const error = asJobError(thrown);
-      if (error.code !== 'cancelled') this.#report(error, 'Could not preview the relief');
+      if (error.code !== 'cancelled') this.report(error, 'Could not preview the relief');
     } finally {
       this.previewing.value = false;
     }
@@ -257,7 +284,7 @@ export class ReliefSession {
   }
 
   /** An error that names a parameter goes to its field, any other into a note. */
-  #report(error: JobError, title: string): void {
+  report(error: JobError, title: string): void {
     if (error.where !== '' && this.operation.value?.parameters.properties[error.where])
       this.fieldErrors.value = { [error.where]: error.message };
     else this.problem.value = { kind: 'solve', title, message: error.message };
@@ -279,153 +306,13 @@ export class ReliefSession {
     };
   });
 
-  #solvingFor: Json = null;
-
-  async solve(): Promise<void> {
-    const { model, parameters } = this.document.value;
-    if (model === null || this.result.value !== null) return;
-    const backend = readyWorker(this.services) ?? this.services.browser;
-    const outputs = this.operation.value?.outputs.some((output) => output.name === 'relief.stl')
-      ? ['relief.ply', 'relief.stl']
-      : ['relief.ply'];
-    const job = {
-      operation: 'relief',
-      parameters,
-      inputs: { mesh: meshInput(model.mesh, 'model.ply') },
-      outputs,
-    };
-    await this.#solveWith(backend, model.mesh.blob, parameters, (options) =>
-      backend.run(job, {
-        ...options,
-        onAccepted: (id) =>
-          this.services.projects.do(setPending({ job: id, mesh: model.mesh.blob, parameters })),
-      }),
-    );
-  }
-
-  async #solveWith(
-    backend: Backend,
-    mesh: string,
-    parameters: JsonObject,
-    run: (options: { signal: AbortSignal; onProgress: (progress: Progress) => void }) => Promise<Result>,
-  ): Promise<void> {
-    this.cancel();
-    const abort = (this.#abort = new AbortController());
-    this.#preview.cancel();
-    this.#solvingFor = requestKey(mesh, parameters);
-    this.problem.value = null;
-    this.activity.value = { kind: 'solving', backend: backend.kind, progress: null };
-    const start = performance.now();
-    try {
-      const onProgress = (progress: Progress) => {
-        if (this.#abort === abort) this.activity.value = { kind: 'solving', backend: backend.kind, progress };
-      };
-      const done = await run({ signal: abort.signal, onProgress });
-      const seconds = (performance.now() - start) / 1000;
-      const outputs: Record<string, BlobReference> = {};
-      for (const output of done.outputs.values())
-        outputs[output.name] = await this.#keep(await output.read(), output.mediaType);
-      const vertices = figure(done.report, 'vertices');
-      const solver_s = solverSeconds(done.report);
-      if (vertices && solver_s && done.report['factor_reused'] !== true)
-        remember(backend.kind, { vertices, seconds: solver_s });
-      this.services.projects.do(
-        addResult({
-          id: crypto.randomUUID(),
-          made_unix_s: Math.round(Date.now() / 1000),
-          backend: backend.kind,
-          seconds,
-          mesh,
-          parameters,
-          report: done.report,
-          outputs,
-        }),
-      );
-    } catch (thrown) {
-      const error = asJobError(thrown);
-      if (error.code !== 'cancelled') this.#report(error, 'Could not solve the relief');
-      if (error.code !== 'unreachable') this.services.projects.do(setPending(null));
-    } finally {
-      this.#solvingFor = null;
-      this.#finished(abort);
-    }
-  }
-
-  /** A solve that was still running in the worker when the page was closed is waited for again. */
-  #resume(): void {
-    const worker = readyWorker(this.services);
-    const pending: PendingSolve | null = this.document.value.pending;
-    if (pending === null || worker?.resume === undefined || this.#resumed.has(pending.job)) return;
-    this.#resumed.add(pending.job);
-    if (untracked(() => this.activity.value.kind !== 'idle')) return;
-    const { job, mesh, parameters } = pending;
-    void untracked(() =>
-      this.#solveWith(worker, mesh, parameters, (options) =>
-        worker.resume ? worker.resume(job, options) : Promise.reject(new Error('The worker keeps no jobs.')),
-      ),
-    );
-  }
-
-  // ---- files ----
-
-  /** The bytes of an output of the current result, made now if it was not kept. */
-  async output(name: string, label: string): Promise<Uint8Array<ArrayBuffer> | null> {
-    const result = this.result.value;
-    const { model, parameters } = this.document.value;
-    if (result === null || model === null) return null;
-    const kept = result.outputs[name];
-    const { blobs } = this.services.projects;
-    if (kept && (await blobs.has(kept.blob))) return await blobs.read(kept.blob);
-    const abort = (this.#abort = new AbortController());
-    this.activity.value = { kind: 'exporting', label, progress: null };
-    try {
-      const worker = readyWorker(this.services);
-      const backend = worker ?? this.services.browser;
-      const onProgress = (progress: Progress) =>
-        (this.activity.value = { kind: 'exporting', label, progress });
-      const job = {
-        operation: 'relief',
-        parameters,
-        inputs: { mesh: meshInput(model.mesh, 'model.ply') },
-        outputs: [name],
-      };
-      const done = await backend.run(job, { signal: abort.signal, onProgress });
-      const bytes = await bytesOf(done, name);
-      const reference = await this.#keep(
-        bytes,
-        done.outputs.get(name)?.mediaType ?? 'application/octet-stream',
-      );
-      this.services.projects.do(
-        amendResult(result.id, (old) => ({ ...old, outputs: { ...old.outputs, [name]: reference } })),
-      );
-      return bytes;
-    } catch (thrown) {
-      const error = asJobError(thrown);
-      if (error.code !== 'cancelled') this.#report(error, `Could not make the ${label} file`);
-      return null;
-    } finally {
-      this.#finished(abort);
-    }
-  }
-
   async keepPicture(resultId: string, picture: Blob): Promise<void> {
-    const reference = await this.#keep(new Uint8Array(await picture.arrayBuffer()), picture.type);
+    const reference = await this.keep(new Uint8Array(await picture.arrayBuffer()), picture.type);
     this.services.projects.do(amendResult(resultId, (old) => ({ ...old, picture: reference })));
   }
 
-  cancel(): void {
-    this.#abort?.abort();
-  }
-
-  #finished(abort: AbortController): void {
-    if (this.#abort !== abort) return;
-    this.#abort = null;
-    this.activity.value = { kind: 'idle' };
-    this.#follow();
-  }
-
-  #keep(bytes: Uint8Array<ArrayBuffer>, media_type: string): Promise<BlobReference> {
-    return keep(this.services.projects.blobs, bytes, media_type);
+  keep(bytes: Uint8Array<ArrayBuffer>, media_type: string): Promise<BlobReference> {
+    return keepBytes(this.services.projects.blobs, bytes, media_type);
   }
 
   async #needOperation(): Promise<Operation> {
@@ -449,4 +336,7 @@ interface PreviewRequest {
   readonly parameters: JsonObject;
 }
 
-const requestKey = (mesh: string, parameters: JsonObject): Json => ({ mesh, parameters });
+const viewpointParameters = (operation: Operation): string[] =>
+  Object.entries(operation.parameters.properties)
+    .filter(([, schema]) => schema['x-group'] === 'Viewpoint')
+    .map(([name]) => name);

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Full solves: in the native worker while it answers, else in the browser; found again after a reload.
+import { untracked } from '@preact/signals';
+import type { Backend, Result, RunOptions } from '../../jobs/backend';
+import type { JsonObject } from '../../jobs/contract';
+import { JobError } from '../../jobs/contract';
+import type { BlobReference } from '../../project/document';
+import { readyWorker } from '../common/services';
+import { remember } from './estimate';
+import { bytesOf } from './import_model';
+import { addResult, amendResult, meshInput, requestKey, setPending } from './relief_document';
+import type { ReliefSession } from './relief_session';
+import { figure, solverSeconds } from './report';
+
+/** Fetched at once; the worker keeps the others until they are asked for. */
+const wantedOutputs = ['relief.ply', 'relief.stl'];
+
+function jobOf(
+  session: ReliefSession,
+  mesh: BlobReference,
+  parameters: JsonObject,
+  outputs: readonly string[],
+) {
+  const declared = session.operation.value?.outputs.map(({ name }) => name) ?? [];
+  return {
+    operation: 'relief',
+    parameters,
+    inputs: { mesh: meshInput(mesh, 'model.ply') },
+    outputs: outputs.filter((name) => declared.includes(name)),
+  };
+}
+
+export async function solveInFull(session: ReliefSession): Promise<void> {
+  const { model, parameters } = session.document.value;
+  if (model === null || session.result.value !== null) return;
+  const { services } = session;
+  const worker = readyWorker(services);
+  const backend = worker ?? services.browser;
+  const all = session.operation.value?.outputs.map(({ name }) => name) ?? [];
+  const job = jobOf(session, model.mesh, parameters, worker ? all : wantedOutputs);
+  const mesh = model.mesh.blob;
+  await solveWith(session, backend, mesh, parameters, (options) =>
+    backend.run(job, {
+      ...options,
+      onAccepted: (id) => services.projects.do(setPending({ job: id, mesh, parameters })),
+    }),
+  );
+}
+
+/** A solve that was still running in the worker when the page was closed is waited for again. */
+export function resumePending(session: ReliefSession): void {
+  const worker = readyWorker(session.services);
+  const { pending } = session.document.value;
+  if (pending === null || !worker?.resume) return;
+  const resume = worker.resume.bind(worker);
+  untracked(() => {
+    if (session.activity.value.kind !== 'idle') return;
+    const { job, mesh, parameters } = pending;
+    void solveWith(session, worker, mesh, parameters, (options) => resume(job, options));
+  });
+}
+
+async function solveWith(
+  session: ReliefSession,
+  backend: Backend,
+  mesh: string,
+  parameters: JsonObject,
+  run: (options: RunOptions) => Promise<Result>,
+): Promise<void> {
+  const { projects } = session.services;
+  session.cancelPreview();
+  const start = performance.now();
+  await session.busy(
+    'solving',
+    backend.kind,
+    async (options) => {
+      session.solvingFor = requestKey(mesh, parameters);
+      const done = await run(options);
+      const seconds = (performance.now() - start) / 1000;
+      const outputs: Record<string, BlobReference> = {};
+      for (const output of done.outputs.values())
+        if (wantedOutputs.includes(output.name))
+          outputs[output.name] = await session.keep(await output.read(), output.mediaType);
+      learn(backend.kind, done);
+      const { pending } = session.document.value;
+      const made = {
+        id: crypto.randomUUID(),
+        made_unix_s: Math.round(Date.now() / 1000),
+        backend: backend.kind,
+        seconds,
+        mesh,
+        parameters,
+        report: done.report,
+        outputs,
+        ...(backend.kind === 'native' && pending ? { job: pending.job } : {}),
+      };
+      projects.do(addResult(made));
+    },
+    (error) => {
+      if (error.code !== 'unreachable') projects.do(setPending(null));
+      session.report(error, 'Could not solve the relief');
+    },
+  );
+  session.solvingFor = null;
+  if (session.document.value.pending && backend.kind === 'native' && !session.result.value)
+    projects.do(setPending(null)); // cancelled
+}
+
+function learn(backend: string, { report }: Result): void {
+  const vertices = figure(report, 'vertices');
+  const seconds = solverSeconds(report);
+  if (vertices && seconds && report['factor_reused'] !== true) remember(backend, { vertices, seconds });
+}
+
+/** The bytes of an output of the current result: kept, still in the worker, or made now. */
+export async function outputOf(
+  session: ReliefSession,
+  name: string,
+  label: string,
+): Promise<Uint8Array<ArrayBuffer> | null> {
+  const result = session.result.value;
+  const { model, parameters } = session.document.value;
+  if (result === null || model === null) return null;
+  const { blobs } = session.services.projects;
+  const kept = result.outputs[name];
+  if (kept && (await blobs.has(kept.blob))) return await blobs.read(kept.blob);
+  return await session.busy(
+    'exporting',
+    label,
+    async (options) => {
+      const worker = readyWorker(session.services);
+      const backend = worker ?? session.services.browser;
+      const old =
+        result.job && worker?.resume ? await worker.resume(result.job, options).catch(() => null) : null;
+      const done = old?.outputs.has(name)
+        ? old
+        : await backend.run(jobOf(session, model.mesh, parameters, [name]), options);
+      const bytes = await bytesOf(done, name);
+      const mediaType = done.outputs.get(name)?.mediaType;
+      if (mediaType === undefined)
+        throw new JobError({ code: 'internal', where: name, message: 'No output.' });
+      const reference = await session.keep(bytes, mediaType);
+      session.services.projects.do(
+        amendResult(result.id, (before) => ({
+          ...before,
+          outputs: { ...before.outputs, [name]: reference },
+        })),
+      );
+      return bytes;
+    },
+    (error) => session.report(error, `Could not make the ${label} file`),
+  );
+}

@@ -43,7 +43,9 @@ Json catalog_json() {
   for (const Operation& operation : operations()) all.push_back(operation_json(operation));
   for (const SampleInfo& sample : sample_catalog())
     samples.push_back({{"name", sample.name}, {"title", sample.title}, {"description", sample.description},
-                       {"default_vertices", sample.default_vertices}, {"closed", sample.closed}});
+                       {"default_vertices", sample.default_vertices}, {"closed", sample.closed}, {"has_texture", sample.has_texture},
+                       {"view_direction", {sample.view_direction.x(), sample.view_direction.y(), sample.view_direction.z()}},
+                       {"view_up", {sample.view_up.x(), sample.view_up.y(), sample.view_up.z()}}});
   for (const MeshFormatInfo& format : mesh_formats)
     formats.push_back({{"extension", format.extension}, {"media_type", format.media_type}, {"title", format.title}});
   return {{"version", version()}, {"operations", all}, {"samples", samples}, {"mesh_formats", formats}};

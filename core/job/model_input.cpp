@@ -15,31 +15,11 @@ double megabytes(const LoadedModel& loaded) {
   return bytes * 1e-6;
 }
 
-/// Repair renumbers vertices and faces; what hangs on them follows.
-Model follow_repair(Model&& model, RepairedMesh&& repaired) {
-  const auto pick_rows = [](const auto& matrix, const std::vector<int>& rows) {
-    std::decay_t<decltype(matrix)> picked(static_cast<Eigen::Index>(rows.size()), matrix.cols());
-    for (std::size_t i = 0; i < rows.size(); ++i) picked.row(static_cast<Eigen::Index>(i)) = matrix.row(rows[i]);
-    return picked;
-  };
-  const auto pick = [](const std::vector<int>& values, const std::vector<int>& rows) {
-    std::vector<int> picked;
-    picked.reserve(rows.size());
-    for (const int row : rows) picked.push_back(values[static_cast<std::size_t>(row)]);
-    return picked;
-  };
-  Model result = std::move(model);
-  if (result.vertex_colours.rows() > 0) result.vertex_colours = pick_rows(result.vertex_colours, repaired.old_vertex);
-  if (result.FT.rows() > 0) {
-    Triangles corners = pick_rows(result.FT, repaired.old_face);
-    for (Eigen::Index f = 0; f < corners.rows(); ++f)
-      if (repaired.flipped[static_cast<std::size_t>(f)]) std::swap(corners(f, 1), corners(f, 2));
-    result.FT = std::move(corners);
-  }
-  if (!result.face_group.empty()) result.face_group = pick(result.face_group, repaired.old_face);
-  if (!result.face_material.empty()) result.face_material = pick(result.face_material, repaired.old_face);
-  result.mesh = std::move(repaired.mesh);
-  return result;
+int sample_vertices(const InputBlob& input) {
+  if (input.sample_vertices != 0) return input.sample_vertices;
+  for (const SampleInfo& sample : sample_catalog())
+    if (sample.name == input.sample) return sample.default_vertices;
+  return least_sample_vertices;
 }
 
 }  // namespace
@@ -67,7 +47,7 @@ std::shared_ptr<const LoadedModel> load_model(const OperationCall& call, const s
   Stopwatch watch;
   call.context.progress(0, "Reading the model");
   if (!input.sample.empty()) {
-    loaded->model = make_sample(input.sample, input.sample_vertices, call.context);
+    loaded->model = make_sample(input.sample, sample_vertices(input), call.context);
     loaded->file_format = "sample";
   } else {
     ReadOptions options;
@@ -79,9 +59,9 @@ std::shared_ptr<const LoadedModel> load_model(const OperationCall& call, const s
   }
   loaded->seconds_read = watch.lap();
   call.context.progress(0.6, "Checking the model");
-  RepairedMesh repaired = repair(loaded->model.mesh, {}, call.context);
+  const RepairedMesh repaired = repair(loaded->model.mesh, {}, call.context);
   loaded->repairs.insert(loaded->repairs.end(), repaired.sentences.begin(), repaired.sentences.end());
-  loaded->model = follow_repair(std::move(loaded->model), std::move(repaired));
+  loaded->model = repaired_model(loaded->model, repaired);
   loaded->seconds_repair = watch.lap();
   std::shared_ptr<const LoadedModel> kept = loaded;
   call.session.keep(key, kept, megabytes(*loaded));

@@ -49,6 +49,19 @@ InputBlob read_input(const std::string& name, const Json& value) {
   return input;
 }
 
+void check_sample(const std::string& input_name, const InputBlob& input) {
+  std::string list;
+  for (const SampleInfo& sample : sample_catalog()) {
+    if (sample.name == input.sample) {
+      if (input.sample_vertices != 0 && (input.sample_vertices < least_sample_vertices || input.sample_vertices > most_sample_vertices))
+        throw invalid(input_name, "A sample has from " + std::to_string(least_sample_vertices) + " to " + std::to_string(most_sample_vertices) + " vertices.");
+      return;
+    }
+    list += (list.empty() ? "" : ", ") + sample.name;
+  }
+  throw invalid(input_name, "There is no sample called " + input.sample + "; there are: " + list + ".");
+}
+
 std::map<std::string, InputBlob> read_inputs(const Operation& operation, const Json& message) {
   std::map<std::string, InputBlob> inputs;
   const Json empty = Json::object();
@@ -61,7 +74,7 @@ std::map<std::string, InputBlob> read_inputs(const Operation& operation, const J
     InputBlob input = read_input(name, value);
     if (!input.sample.empty()) {
       if (!info->accepts_sample) throw invalid(name, "The input " + name + " must be a file, not a sample.");
-      find_sample(input.sample);  // throws for an unknown name
+      check_sample(name, input);
     }
     inputs.emplace(name, std::move(input));
   }

@@ -24,7 +24,7 @@ AppearanceEnergy::AppearanceEnergy(const ViewFrame& frame, const Triangles& F, c
   for (int i = 0; i < n; ++i) {
     for (SparseMatrix::InnerIterator it(C, i); it; ++it)
       if (it.row() != i) {
-        ring_.push_back(it.row());
+        ring_.push_back(static_cast<int>(it.row()));
         ring_weight_.push_back(-it.value());
         star_sum_.row(i) -= it.value() * rays_.row(it.row());
       }

@@ -256,7 +256,7 @@ void assign_switches(const std::vector<Chunk>& chunks, std::int64_t triangles, M
         else if (fresh) model.group_names.push_back(name);
       }
       per_face.resize(static_cast<std::size_t>(triangles), -1);
-      std::fill(per_face.begin() + from, per_face.begin() + to, number);
+      std::fill(per_face.begin() + static_cast<std::ptrdiff_t>(from), per_face.begin() + static_cast<std::ptrdiff_t>(to), number);
       from = to;
     };
     for (const Chunk& chunk : chunks) {

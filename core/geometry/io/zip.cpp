@@ -81,12 +81,12 @@ ZipArchive::ZipArchive(const MeshSource& source) : source_(source) {
     const std::size_t name = u16(record + 28), extra = u16(record + 30), comment = u16(record + 32);
     if (bytes.size() - at - central_bytes < name + extra + comment) damaged();
     Entry entry;
-    entry.name = as_text(bytes.subspan(at + central_bytes, name));
+    entry.name = as_text(bytes.subspan(static_cast<std::size_t>(at + central_bytes), name));
     entry.method = u16(record + 10);
     entry.encrypted = (u16(record + 8) & 1) != 0;
     entry.crc = u32(record + 16);
     entry.packed_bytes = u32(record + 20), entry.bytes = u32(record + 24), entry.offset = u32(record + 42);
-    if (!read_zip64_extra(bytes.subspan(at + central_bytes + name, extra), entry)) damaged();
+    if (!read_zip64_extra(bytes.subspan(static_cast<std::size_t>(at + central_bytes + name), extra), entry)) damaged();
     entries_.push_back(std::move(entry));
     at += central_bytes + name + extra + comment;
   }

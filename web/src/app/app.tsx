@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The shell: top bar, rail, the page of the current place, and what belongs to all of them.
-import { useSignal } from '@preact/signals';
+import { signal, useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import type { Services } from '../crafts/common/services';
-import { ReliefPage } from '../crafts/relief/relief_page';
+import type { ReliefPage as ReliefPageComponent } from '../crafts/relief/relief_page';
 import type { ReliefSession } from '../crafts/relief/relief_session';
 import { projectExtension } from '../project/archive';
 import { Icon, TipLayer, toast, ToastLayer } from '../ui';
@@ -15,6 +15,13 @@ import { Rail } from './rail';
 import { go, place } from './route';
 import { formatNames, StartPage } from './start_page';
 import { TopBar } from './top_bar';
+
+type Page = typeof ReliefPageComponent;
+
+/** The viewport is most of the program; it comes when a place needs it, or when the start screen is at rest. */
+const reliefPage = signal<{ readonly Page: Page } | null>(null);
+const loadReliefPage = () =>
+  import('../crafts/relief/relief_page').then(({ ReliefPage }) => (reliefPage.value = { Page: ReliefPage }));
 
 export interface AppProps {
   readonly services: Services;
@@ -50,6 +57,10 @@ export function App({ services, session }: AppProps) {
   useLaunchedFiles(openFile);
 
   const where = place.value;
+  const ReliefPage = reliefPage.value?.Page;
+  useEffect(() => {
+    if (where === 'relief') void loadReliefPage();
+  }, [where]);
   const later = crafts.find((craft) => craft.place === where && !craft.available);
   const hasInspector = where === 'relief' && session.document.value.model !== null;
   const hasStrip = hasInspector || (where === 'relief' && session.activity.value.kind === 'opening');
@@ -63,13 +74,15 @@ export function App({ services, session }: AppProps) {
         onWorker={() => (dialog.value = 'worker')}
       />
       <Rail />
-      {where === 'relief' ? (
+      {where === 'relief' && ReliefPage ? (
         <ReliefPage
           session={session}
           onChooseFile={chooseFile}
           onWorkerHelp={() => (dialog.value = 'worker')}
           onStart={() => go('start')}
         />
+      ) : where === 'relief' ? (
+        <main class="view" aria-label="Relief" aria-busy="true" />
       ) : where === 'about' ? (
         <AboutPage services={services} />
       ) : later ? (

@@ -4,8 +4,8 @@ import type { Services } from '../crafts/common/services';
 import type { ReliefSession } from '../crafts/relief/relief_session';
 import { Button, formatCount, Icon } from '../ui';
 import { crafts, notYet } from './crafts';
-import { drawPictures, pictures } from './pictures';
-import { go } from './route';
+import { pictures } from './pictures';
+import { go, place } from './route';
 
 export interface StartPageProps {
   readonly services: Services;
@@ -22,7 +22,11 @@ export function formatNames(services: Services): string {
 
 export function StartPage({ services, session, onChooseFile }: StartPageProps) {
   const catalog = services.catalog.value;
-  useEffect(() => void drawPictures(services, () => session.activity.value.kind !== 'idle'), [catalog]);
+  useEffect(() => {
+    if (catalog === null) return;
+    const busy = () => session.activity.value.kind !== 'idle' || place.value !== 'start';
+    void import('./draw_pictures').then(({ drawPictures }) => drawPictures(services, busy));
+  }, [catalog]);
   const open = (sample: string, title: string) => {
     go('relief');
     void services.projects.create().then(() => session.openSample(sample, title));

@@ -215,6 +215,7 @@ export interface ViewportApi {
   readonly overlay: HTMLDivElement;
 
   setOriginal(mesh: MeshData | null): void;
+  /** A mesh with the same triangles on the same plate is taken as `updateRelief`. */
   setRelief(mesh: MeshData | null, plate: Plate | null): void;
   /** New positions for the same triangles: for live sliders. Normals follow; shading and BVH catch up at rest. */
   updateOriginal(positions: Float32Array | Float64Array): void;
@@ -237,7 +238,8 @@ export interface ViewportApi {
   setDimensionsVisible(visible: boolean): void;
   setGround(visible: boolean): void;
 
-  /** The place the relief is made for. Does not move the camera: call lookFromViewpoint. */
+  /** The place the relief is made for. Neither moves the camera (call lookFromViewpoint) nor calls
+   *  onViewpointChange; ask `atViewpoint`. */
   setViewpoint(viewpoint: Viewpoint): void;
   getViewpoint(): Viewpoint;
   /** The current camera as a viewpoint, for "Set from this view". */

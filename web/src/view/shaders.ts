@@ -210,6 +210,7 @@ uniform mat4 uShadowMatrix;
 uniform sampler2DShadow uShadow;
 uniform float uShadowOffset;
 uniform float uBlur;     // of the depth map's width
+uniform float uSeen;     // 1, or less for directions in which the ground stands in the way
 // What one direction of the sky adds to a point: cosine weight, and that weight where the sky is seen.
 vec2 skySample(vec3 p, vec3 n) {
   float weight = max(dot(n, uDirection), 0.0);
@@ -219,9 +220,9 @@ vec2 skySample(vec3 p, vec3 n) {
   for (int i = 0; i < BAKE_TAPS; ++i) {
     float r = uBlur * sqrt((float(i) + 0.5) / float(BAKE_TAPS));
     float a = 2.3999632 * float(i);
-    seen += texture(uShadow, vec3(s.xy + r * vec2(cos(a), sin(a)), s.z));
+    seen += texture(uShadow, vec3(s.xy + r * vec2(cos(a), sin(a)), min(s.z, 0.99999)));
   }
-  seen /= float(BAKE_TAPS);
+  seen *= uSeen / float(BAKE_TAPS);
   return 0.125 * vec2(weight * seen, weight);
 }
 `;

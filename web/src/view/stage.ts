@@ -2,17 +2,19 @@
 // Everything on the graphics card: the subjects, their light, and how a picture of them is drawn, refined and
 // read back. Knows no DOM beyond its canvas.
 import * as THREE from 'three';
-import type { ColourMapping, MeshData, Plate, Vec3, Viewpoint } from './api';
+import type { MeshData, Plate, Vec3, Viewpoint } from './api';
 import { type CameraState, type Screen, clipMatrix, viewCoordinates } from './camera';
 import { SectionCaps } from './caps';
-import { mapTexels, stopsOf } from './colour_map';
+import { Colouring } from './colouring';
+import { jitter } from './jitter';
 import { LineSet, type LineStyle } from './lines';
-import { groundSquare, plateBody, plateCorners, plateFrame, plateFront, rectangle } from './plate';
+import { groundSquare, plateBody, plateFrame, plateFront } from './plate';
 import { Accumulation, ScreenPass } from './passes';
-import { backdropFragment, groundFragment, plateShadowFragment, plateShadowVertex } from './shaders';
+import { PlateShadow } from './plate_shadow';
+import { backdropFragment, groundFragment } from './shaders';
 import { DepthView, SkyScratch, Subject, newBakeUniforms } from './subject';
 import { type Support, supportOf } from './support';
-import { Surface, type SurfaceOptions, type Uniforms, still } from './surface';
+import { Surface, type SurfaceOptions, type Uniforms } from './surface';
 import type { Palette } from './theme';
 import { add, along, dot, perpendicular, rotate, scale, subtract } from './vector';
 
@@ -53,10 +55,8 @@ interface Part {
   subject: Subject;
   mesh: Surface | null;
   extra: Surface[];
-  plateShadow: THREE.Mesh<THREE.BufferGeometry, THREE.RawShaderMaterial> | null;
   plate: Plate | null;
-  plateForward: Vec3 | null;
-  plateCentre: Vec3 | null;
+  plateShadow: PlateShadow | null;
 }
 
 export class Stage {
@@ -88,12 +88,12 @@ export class Stage {
   });
   private lines: { set: LineSet; part: PartName | null }[] = [];
   private readonly caps: SectionCaps;
-  private readonly mapTextures = new Map<string, THREE.DataTexture>();
+  readonly colouring: Colouring;
   private readonly canRefineHere: boolean;
   private palette: Palette | null = null;
   private sectionKey = '';
+  private pixelRatio = 1;
   private occlusionStrength = OCCLUSION;
-  private mapping: { mapping: ColourMapping; parts: readonly PartName[] } | null = null;
 
   constructor(canvas: HTMLCanvasElement | OffscreenCanvas, antialias: boolean) {
     const context = canvas.getContext('webgl2', {
@@ -121,12 +121,13 @@ export class Stage {
       subject: new Subject(this.bakeUniforms),
       mesh: null,
       extra: [],
-      plateShadow: null,
       plate: null,
-      plateForward: null,
-      plateCentre: null,
+      plateShadow: null,
     });
     this.parts = { original: part(), relief: part() };
+    this.colouring = new Colouring(() =>
+      (['original', 'relief'] as const).map((name) => [name, this.parts[name].mesh] as const),
+    );
   }
 
   get canRefine(): boolean {
@@ -137,9 +138,7 @@ export class Stage {
     this.palette = palette;
     (this.backdrop.uniforms['uCentre']?.value as THREE.Vector3).set(...palette.viewCentre);
     (this.backdrop.uniforms['uRim']?.value as THREE.Vector3).set(...palette.viewRim);
-    for (const texture of this.mapTextures.values()) texture.dispose();
-    this.mapTextures.clear();
-    this.applyMapping();
+    this.colouring.setTokens(palette.maps);
   }
 
   setPart(
@@ -152,17 +151,18 @@ export class Stage {
     const part = this.parts[name];
     part.subject.dispose();
     part.subject = new Subject(this.bakeUniforms);
-    this.disposePlateShadow(part);
+    part.plateShadow?.dispose();
+    part.plateShadow = null;
     part.plate = plate;
     part.extra = [];
-    part.plateForward = part.plateCentre = null;
     part.mesh = mesh ? this.surface(part, mesh, { albedo: PLASTER }) : null;
     if (plate) this.addPlate(part, plate, viewpoint);
     if (ground && part.mesh) this.addGround(part, part.mesh, ground);
+    part.subject.groundUp = ground;
     part.subject.surfaces = [...(part.mesh ? [part.mesh] : []), ...part.extra];
     part.subject.changed();
     if (part.mesh) part.meshSupport = supportOf(part.mesh.positions);
-    this.applyMapping();
+    this.colouring.apply();
     this.sectionKey += '!';
   }
 
@@ -173,49 +173,16 @@ export class Stage {
 
   private addPlate(part: Part, plate: Plate, viewpoint: Pick<Viewpoint, 'direction' | 'up'>): void {
     const frame = plateFrame(plate, viewpoint);
-    part.plateForward = frame.forward;
-    part.plateCentre = along(frame.centre, frame.forward, frame.thickness);
     if (plate.mesh) {
       part.extra.push(this.surface(part, plate.mesh, { albedo: PLATE }));
     } else if (plate.mesh !== false) {
       const width = 640;
       const height = Math.min(1024, Math.max(64, Math.round((width * plate.heightMm) / plate.widthMm)));
-      part.extra.push(
-        this.surface(part, plateFront(frame), { albedo: PLATE, picture: { width, height }, blur: 0.004 }),
-      );
+      part.extra.push(this.surface(part, plateFront(frame), { albedo: PLATE, picture: { width, height } }));
       const body = plateBody(frame);
       if (body) part.extra.push(this.surface(part, body, { albedo: PLATE }));
     }
-    // The bench behind the plate, seen only as the shadow on it.
-    const reach = 0.45 * Math.max(plate.widthMm, plate.heightMm);
-    const wide = { ...frame, halfWidth: frame.halfWidth + reach, halfHeight: frame.halfHeight + reach };
-    const mesh = rectangle(plateCorners(wide, frame.thickness + 0.01 * reach), scale(frame.forward, -1));
-    const geometry = new THREE.BufferGeometry();
-    const positions = Float32Array.from(mesh.positions, (x, i) => x - (this.origin[i % 3] as number));
-    const w = wide.halfWidth;
-    const h = wide.halfHeight;
-    geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
-    geometry.setAttribute('uv', new THREE.BufferAttribute(Float32Array.of(-w, -h, w, -h, w, h, -w, h), 2));
-    geometry.setIndex(new THREE.BufferAttribute(mesh.indices, 1));
-    const material = new THREE.RawShaderMaterial({
-      glslVersion: THREE.GLSL3,
-      vertexShader: plateShadowVertex,
-      fragmentShader: plateShadowFragment,
-      uniforms: {
-        uHalf: { value: new THREE.Vector2(frame.halfWidth, frame.halfHeight) },
-        uShift: { value: new THREE.Vector2() },
-        uBlur: { value: 0.035 * Math.max(plate.widthMm, plate.heightMm) },
-        uStrength: { value: 0.4 },
-      },
-      side: THREE.DoubleSide,
-      transparent: true,
-      depthWrite: false,
-      blending: THREE.CustomBlending,
-      blendSrc: THREE.OneFactor,
-      blendDst: THREE.OneMinusSrcAlphaFactor,
-    });
-    part.plateShadow = still(new THREE.Mesh(geometry, material));
-    part.plateShadow.userData['axes'] = { right: frame.right, up: frame.up };
+    part.plateShadow = new PlateShadow(frame, this.origin);
   }
 
   private addGround(part: Part, mesh: Surface, up: Vec3): void {
@@ -235,12 +202,12 @@ export class Stage {
       {
         albedo: PLATE,
         picture: { width: 384, height: 384 },
-        blur: 0.055,
+        blur: 0.16,
         fragment: groundFragment,
         transparent: true,
       },
     );
-    ground.main.material.uniforms['uStrength'] = { value: 0.62 };
+    ground.main.material.uniforms['uStrength'] = { value: 0.8 };
     part.extra.push(ground);
   }
 
@@ -274,51 +241,10 @@ export class Stage {
     return this.parts[name].plate;
   }
 
-  /** Colours the named parts by an attribute; the others are plaster. */
-  setMapping(mapping: ColourMapping | null, parts: readonly PartName[]): void {
-    this.mapping = mapping ? { mapping, parts } : null;
-    this.applyMapping();
-  }
-
-  private attributes = new Map<string, Float32Array>();
-
-  /** Values that take the place of MeshData.attributes. */
-  setAttribute(name: PartName, attribute: string, values: Float32Array | null): void {
-    if (values) this.attributes.set(`${name}/${attribute}`, values);
-    else
-      for (const key of [...this.attributes.keys()])
-        if (key.startsWith(`${name}/`)) this.attributes.delete(key);
-    this.applyMapping();
-  }
-
-  attributeOf(name: PartName, attribute: string): Float32Array | null {
-    return (
-      this.attributes.get(`${name}/${attribute}`) ??
-      this.parts[name].mesh?.mesh.attributes?.[attribute] ??
-      null
-    );
-  }
-
-  private applyMapping(): void {
-    for (const name of ['original', 'relief'] as const) {
-      const { mesh } = this.parts[name];
-      if (!mesh) continue;
-      const shown = this.mapping?.parts.includes(name) ? this.mapping.mapping : null;
-      const values = shown ? this.attributeOf(name, shown.attribute) : null;
-      if (!shown || values?.length !== mesh.vertexCount) mesh.setScalar(null, null, 0, 1);
-      else mesh.setScalar(values, this.mapTexture(shown.map), shown.minimum, shown.maximum);
-    }
-  }
-
-  private mapTexture(name: ColourMapping['map']): THREE.DataTexture {
-    let texture = this.mapTextures.get(name);
-    if (!texture) {
-      texture = new THREE.DataTexture(mapTexels(stopsOf(name, this.palette?.maps[name]), 256), 256, 1);
-      texture.minFilter = texture.magFilter = THREE.LinearFilter;
-      texture.needsUpdate = true;
-      this.mapTextures.set(name, texture);
-    }
-    return texture;
+  /** Tells what the section leaves (points from the scene's origin); null keeps everything. */
+  cutTest(): ((p: Vec3) => boolean) | null {
+    const { x, y, z, w } = this.picture['uSection']?.value as THREE.Vector4;
+    return x === 0 && y === 0 && z === 0 ? null : (p) => x * p[0] + y * p[1] + z * p[2] <= w;
   }
 
   /** Takes away what lies beyond normal . p = offset (model mm); null keeps everything. */
@@ -335,13 +261,10 @@ export class Stage {
     this.sectionKey = value.toArray().join();
   }
 
-  setLines(
-    lines: readonly { pieces: Float32Array; style: LineStyle; part?: PartName }[],
-    pixelRatio: number,
-  ): void {
+  setLines(lines: readonly { pieces: Float32Array; style: LineStyle; part?: PartName }[]): void {
     for (const { set } of this.lines) set.dispose();
     this.lines = lines.map(({ pieces, style, part }) => ({
-      set: new LineSet(pieces, style, this.picture, pixelRatio),
+      set: new LineSet(pieces, style, this.picture, this.pixelRatio),
       part: part ?? null,
     }));
   }
@@ -367,7 +290,8 @@ export class Stage {
     return names.some((n) => this.parts[n].subject.bakePending);
   }
 
-  resize(width: number, height: number): void {
+  resize(width: number, height: number, pixelRatio: number): void {
+    this.pixelRatio = pixelRatio;
     this.renderer.setSize(width, height, false);
   }
 
@@ -428,9 +352,14 @@ export class Stage {
       if (surface.main.material.transparent && !picture.ground) continue;
       objects.push(surface.main);
     }
-    if (part.plateShadow && picture.plateShadow && this.facesFront(picture.camera, part)) {
-      this.aimPlateShadow(part, picture.towardsLight);
-      objects.push(part.plateShadow);
+    if (
+      part.plateShadow &&
+      picture.plateShadow &&
+      !this.cutTest() &&
+      part.plateShadow.seenFrom(picture.camera)
+    ) {
+      part.plateShadow.aim(picture.towardsLight, this.palette?.dark ?? false);
+      objects.push(part.plateShadow.mesh);
     }
     this.drawScene(objects);
     const section = this.picture['uSection']?.value as THREE.Vector4;
@@ -500,7 +429,9 @@ export class Stage {
     const { camera, screen } = picture;
     const { centre, radius } = subject.support;
     const c = viewCoordinates(camera, add(centre, this.origin))[2];
-    const m = clipMatrix(camera, screen, this.origin, c - 1.6 * radius, c + 1.6 * radius);
+    // The ground reaches further than its object.
+    const reach = (subject.groundUp ? 4 : 1.6) * radius;
+    const m = clipMatrix(camera, screen, this.origin, c - reach, c + reach);
     // Jitter in pixels: x' = x + 2 jitter / width * w.
     for (let k = 0; k < 4; ++k) {
       const w = m[4 * k + 3] as number;
@@ -508,27 +439,6 @@ export class Stage {
       m[4 * k + 1] = (m[4 * k + 1] as number) + ((2 * offset[1]) / height) * w;
     }
     this.camera.projectionMatrix.fromArray(m);
-  }
-
-  private facesFront(camera: CameraState, part: Part): boolean {
-    if (!part.plateForward || !part.plateCentre) return false;
-    if (camera.kappa === 0) return dot(camera.forward, part.plateForward) > 0.02;
-    const eye = along(camera.target, camera.forward, -1 / camera.kappa);
-    return dot(subtract(part.plateCentre, eye), part.plateForward) > 0;
-  }
-
-  private aimPlateShadow(part: Part, towards: Vec3): void {
-    const axes = part.plateShadow?.userData['axes'] as { right: Vec3; up: Vec3 };
-    const size = Math.max(part.plate?.widthMm ?? 0, part.plate?.heightMm ?? 0);
-    const uniforms = part.plateShadow?.material.uniforms as Uniforms;
-    (uniforms['uShift']?.value as THREE.Vector2).set(
-      -0.018 *
-        size *
-        Math.sign(dot(towards, axes.right)) *
-        Math.min(1, Math.abs(dot(towards, axes.right)) * 2),
-      -0.026 * size * Math.min(1, Math.max(-1, 2 * dot(towards, axes.up))),
-    );
-    (uniforms['uStrength'] as THREE.IUniform).value = this.palette?.dark ? 0.55 : 0.42;
   }
 
   /** A finished picture, r, g, b, a bytes, rows from the top. */
@@ -559,45 +469,16 @@ export class Stage {
     this.sky.dispose();
   }
 
-  private disposePlateShadow(part: Part): void {
-    part.plateShadow?.geometry.dispose();
-    part.plateShadow?.material.dispose();
-    part.plateShadow = null;
-  }
-
   dispose(): void {
     for (const part of Object.values(this.parts)) {
       part.subject.dispose();
-      this.disposePlateShadow(part);
+      part.plateShadow?.dispose();
     }
     for (const { set } of this.lines) set.dispose();
-    for (const texture of this.mapTextures.values()) texture.dispose();
+    this.colouring.dispose();
     this.sky.dispose();
     this.caps.dispose();
     this.backdrop.dispose();
     this.renderer.dispose();
   }
-}
-
-/** Radical inverse: an evenly filling sequence in 0..1. */
-function halton(index: number, base: number): number {
-  let result = 0;
-  let f = 1;
-  for (let i = index; i > 0; i = Math.floor(i / base)) {
-    f /= base;
-    result += f * (i % base);
-  }
-  return result;
-}
-
-/** Place within the pixel (-0.5..0.5, a little wider for a soft edge) and on the light's disc (-1..1). */
-export function jitter(sample: number): [number, number, number, number] {
-  const r = Math.sqrt(halton(sample + 1, 5));
-  const a = 2 * Math.PI * halton(sample + 1, 7);
-  return [
-    1.1 * (halton(sample + 1, 2) - 0.5),
-    1.1 * (halton(sample + 1, 3) - 0.5),
-    r * Math.cos(a),
-    r * Math.sin(a),
-  ];
 }

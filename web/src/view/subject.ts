@@ -5,13 +5,15 @@ import * as THREE from 'three';
 import type { Vec3 } from './api';
 import { type Support, sphereDirections, supportOf } from './support';
 import type { Surface, Uniforms } from './surface';
-import { perpendicular, viewerAxes } from './vector';
+import { dot, perpendicular, viewerAxes } from './vector';
 
 const SKY_DIRECTIONS = 80;
 const directions = sphereDirections(SKY_DIRECTIONS);
 /** Directions in an order in which any first few are spread evenly. */
 const order = Array.from({ length: SKY_DIRECTIONS }, (_, i) => (i * 31) % SKY_DIRECTIONS);
 
+/** Light that comes back from the ground, as a share of the sky's. */
+const GROUND_BOUNCE = 0.45;
 const SHADOW_SIZE = 2048;
 const SKY_SIZE = 1024;
 
@@ -36,6 +38,7 @@ export function newBakeUniforms(): Uniforms {
     uShadowMatrix: { value: new THREE.Matrix4() },
     uShadow: { value: null },
     uShadowOffset: { value: 0 },
+    uSeen: { value: 1 },
   };
 }
 
@@ -57,6 +60,8 @@ export class Subject {
     uShadowRadius: { value: new THREE.Vector2() },
     uShadowOn: { value: 0 },
   };
+  /** Up from the ground below the object, where there is one. The ground receives shadows and throws none. */
+  groundUp: Vec3 | null = null;
   /** Everything drawn, in order. */
   surfaces: Surface[] = [];
   support: Support = supportOf(new Float32Array(0));
@@ -69,7 +74,7 @@ export class Subject {
 
   /** Shape or parts changed: bounds anew; shadow and sky follow when next drawn or at rest. */
   changed(): void {
-    const all = this.surfaces.map((s) => supportOf(s.positions).points);
+    const all = this.casters().map((s) => supportOf(s.positions).points);
     const joined = new Float32Array(all.reduce((n, p) => n + p.length, 0));
     let at = 0;
     for (const p of all) {
@@ -80,6 +85,10 @@ export class Subject {
     this.shadowKey = '';
     this.skyNext = 0;
     this.skyDone = false;
+  }
+
+  private casters(): Surface[] {
+    return this.surfaces.filter((s) => !s.main.material.transparent);
   }
 
   get triangleCount(): number {
@@ -123,7 +132,7 @@ export class Subject {
   }
 
   private drawDepth(renderer: THREE.WebGLRenderer, view: DepthView, target: THREE.WebGLRenderTarget): void {
-    view.scene.children = this.surfaces.map((s) => s.depth);
+    view.scene.children = this.casters().map((s) => s.depth);
     renderer.setRenderTarget(target);
     renderer.clear(false, true, false);
     renderer.render(view.scene, view.camera);
@@ -184,6 +193,8 @@ export class Subject {
       ];
       const mm = this.aim(towards, SKY_SIZE, lookup);
       (this.bakeUniforms['uDirection']?.value as THREE.Vector3).set(...towards);
+      (this.bakeUniforms['uSeen'] as THREE.IUniform).value =
+        this.groundUp && dot(towards, this.groundUp) < 0 ? GROUND_BOUNCE : 1;
       this.drawDepth(renderer, view, target);
       (this.bakeUniforms['uShadow'] as THREE.IUniform).value = target.depthTexture;
       (this.bakeUniforms['uShadowOffset'] as THREE.IUniform).value = 2.5 * mm;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Small pictures for the gallery and the list of results, all from one hidden context that goes away when idle.
-import type { MeshData, ThumbnailOptions, Vec3, Viewpoint } from './api';
+import type { MeshData, ThumbnailOptions, Viewpoint } from './api';
 import { cameraFromViewpoint, fitWindow, makeScreen, projectedBounds } from './camera';
 import { DEFAULT_LIGHT, towardsLight } from './light';
 import { encodePng } from './png';
+import { boxOf } from './same';
 import { Stage } from './stage';
 import { readPalette } from './theme';
 import { add, normalise, scale, viewerAxes } from './vector';
@@ -57,12 +58,13 @@ async function draw(
   const s = stage();
   try {
     s.setPalette(readPalette(options.theme ?? 'auto', document.documentElement));
-    s.origin = middle(mesh);
+    const box = boxOf(mesh.positions);
+    s.origin = box ? scale(add(box.low, box.high), 0.5) : [0, 0, 0];
     const look = options.viewpoint ?? THREE_QUARTERS;
     const part = options.plate ? 'relief' : 'original';
     const ground = options.ground ?? !options.plate;
     s.setPart(part, mesh, options.plate ?? null, look, ground ? normalise(look.up) : null);
-    s.setMapping(options.mapping ?? null, [part]);
+    s.colouring.setMapping(options.mapping ?? null, [part]);
     const support = options.plate ? s.subjectOf(part).support : s.meshSupport(part);
     const viewpoint: Viewpoint = {
       projection: 'perspective',
@@ -102,15 +104,4 @@ async function draw(
   } finally {
     release();
   }
-}
-
-function middle(mesh: MeshData): Vec3 {
-  const low = [Infinity, Infinity, Infinity];
-  const high = [-Infinity, -Infinity, -Infinity];
-  for (let i = 0; i < mesh.positions.length; ++i) {
-    const x = mesh.positions[i] as number;
-    low[i % 3] = Math.min(low[i % 3] as number, x);
-    high[i % 3] = Math.max(high[i % 3] as number, x);
-  }
-  return [0, 1, 2].map((k) => ((low[k] as number) + (high[k] as number)) / 2 || 0) as unknown as Vec3;
 }

@@ -34,7 +34,9 @@ TEST(Visibility, OfASphereIsTheCapTheViewerSees) {
       EXPECT_EQ(visibility.vertex[static_cast<std::size_t>(i)] != 0, turned > 0) << "vertex " << i << ", radius " << radius;
     }
     for (Eigen::Index f = 0; f < mesh.F.rows(); ++f)
-      if (visibility.face[static_cast<std::size_t>(f)]) EXPECT_TRUE(faces_viewer(frame, frame.P, mesh.F, f));
+      if (visibility.face[static_cast<std::size_t>(f)]) {
+        EXPECT_TRUE(faces_viewer(frame, frame.P, mesh.F, f));
+      }
   }
 }
 

@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Rays against a triangle mesh: Embree natively, a CGAL AABB tree in WASM, the same hits.
+// Rays against a triangle mesh, in double precision, by our own tree (triangle_bvh.h) and a watertight
+// test (ray_triangle.h), the same code and the same hits natively and in WASM.
+//
+// Why not Embree natively and CGAL in WASM: measured on koala.obj (100k triangles, one core), a random
+// first hit takes 0.60 us here, 0.42 us by Embree's single-precision triangles, which miss at silhouettes
+// and need every distance recomputed, and 0.81 us by Embree with this double-precision test as user
+// geometry; coherent rays take 0.065 / 0.058 / 0.071 us. CGAL's tree is the oracle of the tests, with
+// exact predicates, and Embree a second one. tests/bench/geometry measures all three.
 #include <memory>
 #include <optional>
 #include <vector>

@@ -15,12 +15,6 @@ struct NoOptions {
   static constexpr auto parameters = std::tuple<>{};
 };
 
-struct SimplifyJobOptions {
-  int vertices = 10000;
-  static constexpr auto parameters = std::tuple{
-      parameter("vertices", &SimplifyJobOptions::vertices, "Vertices", unit::none, 4, 20e6, "How many vertices to keep, about.").slider(1000, 100000)};
-};
-
 struct SubdivideJobOptions {
   int levels = 1;
   SubdivisionScheme scheme = SubdivisionScheme::loop;
@@ -99,19 +93,13 @@ Operation import_operation() {
 }
 
 Operation simplify_operation() {
-  return mesh_operation<SimplifyJobOptions>(
+  return mesh_operation<SimplifyOptions>(
       "simplify", "Simplify", "Keeps the shape with fewer vertices, for a preview.", mesh_outputs("simplified", MeshFormat::ply),
       with_counts({}),
-      [](const LoadedModel& loaded, const SimplifyJobOptions& options, Json& report, Context& context) {
+      [](const LoadedModel& loaded, const SimplifyOptions& options, Json& report, Context& context) {
         Model result;
-        if (loaded.model.mesh.vertex_count() <= options.vertices) {
-          result.mesh = loaded.model.mesh;
-        } else {
-          SimplifyOptions simplify_options;
-          simplify_options.target_vertices = options.vertices;
-          const auto span = context.span(0.4, 0.9, "Simplifying");
-          result.mesh = simplify(loaded.model.mesh, simplify_options, context);
-        }
+        const auto span = context.span(0.4, 0.9, "Simplifying");
+        result.mesh = simplify(loaded.model.mesh, options, context);
         report["vertices"] = result.mesh.vertex_count();
         report["faces"] = result.mesh.face_count();
         return result;
@@ -124,8 +112,7 @@ Operation subdivide_operation() {
       [](const LoadedModel& loaded, const SubdivideJobOptions& options, Json& report, Context& context) {
         if (static_cast<double>(loaded.model.mesh.face_count()) * std::pow(4.0, options.levels) > 20e6)
           throw Error(ErrorCode::invalid_input, "levels", "The result would have more than 20 million triangles: choose fewer levels.");
-        Model result;
-        result.mesh = subdivide(loaded.model.mesh, options.scheme, options.levels, context);
+        Model result = subdivide(loaded.model, options.scheme, options.levels, context);
         report["vertices"] = result.mesh.vertex_count();
         report["faces"] = result.mesh.face_count();
         return result;

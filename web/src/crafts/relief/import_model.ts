@@ -31,7 +31,7 @@ export async function importModel(
   if ((figure(report, 'vertices') ?? 0) <= previewVertices) return { source, mesh, preview: mesh, report };
   const simplify = {
     operation: 'simplify',
-    parameters: { vertices: previewVertices },
+    parameters: { target_vertices: previewVertices },
     inputs: { mesh: meshInput(mesh, 'model.ply') },
     outputs: ['simplified.ply'],
   };

@@ -27,8 +27,10 @@ export type FromWorker =
 /** The module's exports, as in docs/job_contract.md. */
 export interface FormwrightModule {
   readonly HEAPU8: Uint8Array;
-  stringToNewUTF8(text: string): number;
+  lengthBytesUTF8(text: string): number;
+  stringToUTF8(text: string, pointer: number, room: number): void;
   UTF8ToString(pointer: number): string;
+  _malloc(bytes: number): number;
   _free(pointer: number): void;
   _fw_catalog(): number;
   _fw_blob_new(sha256: number, bytes: number): number;

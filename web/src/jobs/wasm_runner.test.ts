@@ -23,7 +23,9 @@ function fakeModule(run: (job: string, options: ModuleOptions) => string) {
   const factory = (options: ModuleOptions): Promise<FormwrightModule> =>
     Promise.resolve({
       HEAPU8: heap,
-      stringToNewUTF8: text,
+      lengthBytesUTF8: (value) => value.length,
+      stringToUTF8: (value, pointer) => void texts.set(pointer, value),
+      _malloc: take,
       UTF8ToString: string,
       _free: (pointer) => void texts.delete(pointer),
       _fw_catalog: () => text('{"version":"1","operations":[],"samples":[],"mesh_formats":[]}'),

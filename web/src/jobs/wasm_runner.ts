@@ -18,6 +18,9 @@ function trapMessage(thrown: unknown): ErrorMessage {
   return { code, where: '', message };
 }
 
+/** Above 2 GB an address comes out of WASM as a negative number. */
+const address = (pointer: number): number => pointer >>> 0;
+
 export class WasmRunner {
   #module: FormwrightModule | null = null;
   #cancelFlag: Int32Array | null = null;
@@ -56,7 +59,7 @@ export class WasmRunner {
       onProgress: (fraction, stage, secondsLeft) => this.#progress(fraction, stage, secondsLeft),
       cancelRequested: () => this.#cancelFlag !== null && Atomics.load(this.#cancelFlag, 0) !== 0,
     });
-    const catalog = JSON.parse(this.#module.UTF8ToString(this.#module._fw_catalog())) as Catalog;
+    const catalog = JSON.parse(this.#module.UTF8ToString(address(this.#module._fw_catalog()))) as Catalog;
     this.#post({ type: 'ready', catalog }, []);
   }
 
@@ -67,7 +70,9 @@ export class WasmRunner {
 
   #withString<T>(text: string, use: (pointer: number) => T): T {
     const module = this.#loaded();
-    const pointer = module.stringToNewUTF8(text);
+    const room = module.lengthBytesUTF8(text) + 1;
+    const pointer = address(module._malloc(room));
+    module.stringToUTF8(text, pointer, room);
     try {
       return use(pointer);
     } finally {
@@ -77,7 +82,7 @@ export class WasmRunner {
 
   #putBlob(sha256: string, bytes: Uint8Array): void {
     const module = this.#loaded();
-    const target = this.#withString(sha256, (name) => module._fw_blob_new(name, bytes.byteLength));
+    const target = address(this.#withString(sha256, (name) => module._fw_blob_new(name, bytes.byteLength)));
     if (target === 0 && bytes.byteLength > 0) throw new Error('Out of memory for an input.');
     module.HEAPU8.set(bytes, target); // HEAPU8 read anew: the heap may just have grown
   }
@@ -86,7 +91,7 @@ export class WasmRunner {
     const module = this.#loaded();
     this.#jobId = id;
     this.#lastProgress = 0;
-    const text = this.#withString(job, (pointer) => module.UTF8ToString(module._fw_run(pointer)));
+    const text = this.#withString(job, (pointer) => module.UTF8ToString(address(module._fw_run(pointer))));
     this.#jobId = null;
     const result = JSON.parse(text) as ResultMessage;
     if ('error' in result) {
@@ -96,8 +101,8 @@ export class WasmRunner {
     const outputs: Record<string, EncodedOutput> = {};
     for (const [name, description] of Object.entries(result.outputs)) {
       const data = this.#withString(name, (pointer) => {
-        const size = module._fw_output_size(pointer);
-        const start = module._fw_output_data(pointer);
+        const size = address(module._fw_output_size(pointer));
+        const start = address(module._fw_output_data(pointer));
         return module.HEAPU8.slice(start, start + size) as Uint8Array<ArrayBuffer>;
       });
       outputs[name] = { ...description, data };

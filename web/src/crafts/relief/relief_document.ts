@@ -70,13 +70,16 @@ function command({ change, ...rest }: ReliefCommand): Command<ProjectDocument> {
   return { ...rest, apply };
 }
 
-/** A new model starts with a new viewpoint; sizes stay as the maker set them. */
-export function openModel(model: ReliefModel, label: string, viewpointParameters: readonly string[]) {
+/** A new model starts with its own viewpoint; sizes stay as the maker set them. */
+export function openModel(operation: Operation, model: ReliefModel, label: string, viewpoint: JsonObject) {
+  const isViewpoint = (name: string) => operation.parameters.properties[name]?.['x-group'] === 'Viewpoint';
   return command({
     label,
     change: (relief) => {
-      const kept = Object.entries(relief.parameters).filter(([name]) => !viewpointParameters.includes(name));
-      return { ...relief, model, parameters: Object.fromEntries(kept) };
+      const kept = Object.fromEntries(
+        Object.entries(relief.parameters).filter(([name]) => !isViewpoint(name)),
+      );
+      return { ...relief, model, parameters: withoutDefaults(operation, { ...kept, ...viewpoint }) };
     },
   });
 }

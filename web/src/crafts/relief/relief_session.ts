@@ -112,7 +112,7 @@ export class ReliefSession {
         const operation = await this.#needOperation();
         const model = await importModel(browser, projects.blobs, await getSource(), options);
         const first = projects.isBlank.value && projects.document.value.name === 'New project';
-        projects.do(openModel(model, `Open ${name}`, viewpointParameters(operation)));
+        projects.do(openModel(operation, model, `Open ${name}`, this.#viewpointFor(model.source)));
         if (first) projects.do(nameProject(name.replace(/\.[^.]+$/, '')));
         this.repairsOpen.value = sentences(model.report, 'repairs').length > 0;
         return true;
@@ -315,6 +315,16 @@ export class ReliefSession {
     return keepBytes(this.services.projects.blobs, bytes, media_type);
   }
 
+  /** Our own samples say from where they are best seen. */
+  #viewpointFor(source: Source): JsonObject {
+    const samples = this.services.catalog.value?.samples ?? [];
+    const sample = source.kind === 'sample' ? samples.find(({ name }) => name === source.sample) : undefined;
+    return {
+      ...(sample?.view_direction ? { direction: sample.view_direction } : {}),
+      ...(sample?.view_up ? { up: sample.view_up } : {}),
+    };
+  }
+
   async #needOperation(): Promise<Operation> {
     const operation = findOperation(
       this.services.catalog.value ?? (await this.services.browser.catalog()),
@@ -335,8 +345,3 @@ interface PreviewRequest {
   readonly mesh: BlobReference;
   readonly parameters: JsonObject;
 }
-
-const viewpointParameters = (operation: Operation): string[] =>
-  Object.entries(operation.parameters.properties)
-    .filter(([, schema]) => schema['x-group'] === 'Viewpoint')
-    .map(([name]) => name);

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// fuzz_make_seeds FOLDER: small sound files of every dialect that our writers know, and some broken ones by hand.
+#include <filesystem>
+#include <fstream>
+
+#include "geometry/io/glb_builder.h"
+#include "geometry/io/mesh_io.h"
+#include "geometry/io/model_samples.h"
+#include "geometry/io/obj.h"
+#include "geometry/io/png16.h"
+#include "geometry/io/zip.h"
+
+namespace {
+
+using namespace formwright;
+
+std::filesystem::path root;
+
+void save(const std::string& target, const std::string& name, ByteView bytes) {
+  std::filesystem::create_directories(root / target);
+  std::ofstream(root / target / name, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+}
+void save(const std::string& target, const std::string& name, std::string_view text) { save(target, name, as_bytes(text)); }
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) return 2;
+  root = argv[1];
+  Context context;
+  Model plain = test::wavy_torus(4, 3);
+  Model full = plain;
+  test::add_materials_and_groups(full);
+  Model coloured = plain;
+  test::add_colours(coloured);
+  const auto columns = test::sample_columns(plain);
+  const char* names[] = {"obj", "stl", "ply", "glb", "three_mf"};
+  for (const auto& info : mesh_formats) {
+    const std::string target = names[static_cast<std::size_t>(info.format)];
+    WriteOptions options;
+    options.columns = columns;
+    options.material_library = "m.mtl";
+    for (const bool ascii : {false, true}) {
+      options.ascii = ascii;
+      const std::string suffix = ascii ? "_ascii" : "";
+      if (ascii && info.format != MeshFormat::stl && info.format != MeshFormat::ply) continue;
+      save(target, "plain" + suffix, write_model(plain, info.format, options, context));
+      save(target, "full" + suffix, write_model(full, info.format, options, context));
+      save(target, "coloured" + suffix, write_model(coloured, info.format, options, context));
+    }
+  }
+  save("obj", "dialects", "# c\r\nv 0 0 0 1 0 0\r\nv 1 0 0\\\r\n 0 1 0\r\nv 1 1 0\r\nv .2 .2 0\r\nv 0 1 0\r\nvt 0 0\r\nvn 0 0 1\r\ng a b\r\nf 1/1/1 2//1 -3/-1 4 5\r\nusemtl x\r\nf -1 -2 -3\r\nl 1 2\r\n");
+  save("obj", "bad_index", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n");
+  save("obj", "nan", "v 0 0 0\nv nan 0 0\nv 0 1e999 0\nf 1 2 3\n");
+  save("stl", "solid_binary", std::string("solid x") + std::string(73, ' ') + std::string("\x01\0\0\0", 4) + std::string(50, '\0'));
+  save("stl", "one_line", "solid facet\nfacet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet\nendsolid a\nsolid b\nendsolid\n");
+  save("ply", "big_endian", std::string("ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty char x\nproperty short y\nproperty uchar z\nproperty list uchar int l\nelement face 1\nproperty list uchar uchar vertex_indices\nend_header\n") +
+                               std::string("\x01\0\x02\x03\0\x05\0\0\x06\0\x01\0\0\x01\0\x03\0\x01\x02", 19));
+  save("ply", "polygon", "ply\nformat ascii 1.0\ncomment TextureFile a.png\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\nproperty float s\nproperty float t\nelement face 1\nproperty list uchar int vertex_indices\n"
+                         "property list uchar float texcoord\nend_header\n0 0 0 0 0\n2 0 0 0 0\n1 1 0 1 1\n2 2 0 0 1\n0 2 0 1 0\n5 0 1 2 3 4 10 0 0 1 0 .5 .5 1 1 0 1\n");
+  save("ply", "strips", "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n8 0 1 2 3 -1 2 1 3\n");
+  save("ply", "four_billion", "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\nproperty float z\nend_header\n0123");
+  Bytes binary;
+  test::put(binary, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 2.f, 0.f, std::uint16_t{2}, std::uint16_t{0}, 7.f, 8.f, 9.f);
+  save("glb", "sparse_strip",
+       test::make_glb(R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"children":[1],"matrix":[-1,0,0,0,0,1,0,0,0,0,1,0,5,0,0,1]},{"mesh":0,"rotation":[0,0,0.6,0.8],"scale":[1,2,3]}],
+  "meshes":[{"primitives":[{"attributes":{"POSITION":0,"_X":1},"mode":5},{"attributes":{"POSITION":0},"mode":6}]}],
+  "buffers":[{"byteLength":52}],"bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":2},{"buffer":0,"byteOffset":40,"byteLength":12}],
+  "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","sparse":{"count":1,"indices":{"bufferView":1,"componentType":5123},"values":{"bufferView":2}}},{"bufferView":0,"componentType":5121,"normalized":true,"count":3,"type":"SCALAR"}]})",
+                      binary));
+  save("glb", "text", R"({"asset":{"version":"2.0"},"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"buffers":[{"byteLength":36,"uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],)"
+                      R"("bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}]})");
+  const ReadOptions options;
+  for (const auto& [name, model] : {std::pair{"plain", &plain}, {"full", &full}, {"coloured", &coloured}}) {
+    const Bytes bytes = write_model(*model, MeshFormat::three_mf, context);
+    const MeshSource source(bytes, "seed", options, context);
+    const ZipArchive archive(source);
+    save("three_mf_model", name, archive.read(*archive.find("3D/3dmodel.model"), 1 << 20));
+  }
+  const std::string mesh = "<mesh><vertices><vertex x='0' y='0' z='0'/><vertex x='1' y='0' z='0'/><vertex x='0' y='1' z='0'/></vertices><triangles><triangle v1='0' v2='1' v3='2' pid='6' p1='0' p2='0' p3='0'/></triangles></mesh>";
+  save("three_mf_model", "components", "<?xml version='1.0'?><!-- c --><model unit='inch'><resources><m:colorgroup id='6'><m:color color='#00FF00'/></m:colorgroup><object id='1' name='a&lt;&#65;'>" + mesh +
+                                           "</object><object id='2'><components><component objectid='1' transform='0 1 0 -1 0 0 0 0 1 5 0 0'/><component objectid='1'/></components></object><object id='3' type='support'/></resources>"
+                                           "<build><item objectid='2' transform='-1 0 0 0 1 0 0 0 1 0 0 0'/><item objectid='3'/></build></model>");
+  save("three_mf_model", "circle", "<model><resources><object id='1'><components><component objectid='1'/></components></object></resources><build><item objectid='1'/></build></model>");
+  save("mtl", "full", write_mtl(full));
+  save("mtl", "options", "newmtl a b\nKd 0.5\nmap_Kd -s 1 1 1 -o 0.5 -clamp on -mm 0 1 a b.png\nnewmtl c\nKd spectral x\nmap_Kd x\n");
+  Grey16Image image{5, 3, 0.1, 0.1, std::vector<std::uint16_t>(15, 4711)};
+  save("png16", "grey", write_png16(image));
+  save("png16", "red", test::red_pixel_png());
+}

@@ -56,7 +56,7 @@ TEST(Measures, RigidMotionAndScale) {
 TEST(Measures, AnglesObeyGaussAndBonnet) {
   // Sum over vertices of (2 pi - angles) = 2 pi chi: an identity, so it holds to round-off.
   for (const auto& [mesh, chi] : {std::pair{icosphere(3), 2}, std::pair{torus(20, 10), 0}, std::pair{cube(), 2}})
-    EXPECT_NEAR(2 * pi * mesh.vertex_count() - corner_angles(mesh).sum(), 2 * pi * chi, 1e-11);
+    EXPECT_NEAR(2 * pi * mesh.vertex_count() - corner_angles(mesh).sum(), 2 * pi * chi, 1e-10);  // thousands of angles, each rounded by the library's atan2
 }
 
 TEST(Measures, NormalsPointOutwards) {

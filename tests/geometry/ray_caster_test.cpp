@@ -176,14 +176,12 @@ TEST(RayCaster, SameHitsAsExactPredicates) {
         ++compared;
         hits += found.empty() ? 0 : 1;
         different += difference.empty() ? 0 : 1;
-        if (!difference.empty()) continue;
+        if (awkward) continue;  // CGAL constructs its points in double precision: no oracle for those
         const auto first = ours.first_hit(ray.origin, ray.direction, -0.0, infinity);
         const auto distance = exact.first_distance(ray.origin, ray.direction);
-        if (!awkward) {
-          ASSERT_EQ(first.has_value(), distance.has_value());  // CGAL constructs no point on a face seen edge-on
-        }
-        if (first && distance) {
-          EXPECT_NEAR(first->distance, *distance, crossing(mesh, first->face, ray).position_error);
+        ASSERT_EQ(first.has_value(), distance.has_value());
+        if (first) {
+          EXPECT_NEAR(first->distance, *distance, 10 * crossing(mesh, first->face, ray).position_error);
         }
       }
       EXPECT_GT(hits, compared / 4);

@@ -60,7 +60,7 @@ Json error_of(const Json& message) {
 }
 
 TEST(RunJob, AnswersEveryWrongMessageWithTheFieldConcerned) {
-  const Json mesh = {{"mesh", {{"sample", "pyramid"}}}};
+  const Json mesh = {{"mesh", {{"sample", "star"}}}};
   EXPECT_EQ(error_of(Json::array())["code"], "invalid_input");
   EXPECT_EQ(error_of(Json(Json::value_t::discarded))["code"], "invalid_input");
   EXPECT_EQ(error_of({{"operation", 5}})["where"], "operation");
@@ -77,7 +77,7 @@ TEST(RunJob, AnswersEveryWrongMessageWithTheFieldConcerned) {
 
 TEST(RunJob, MakesOnlyWhatIsAskedFor) {
   Session session;
-  const Json message = {{"operation", "import"}, {"inputs", {{"mesh", {{"sample", "pyramid"}, {"vertices", 600}}}}}, {"outputs", {"model.stl"}}};
+  const Json message = {{"operation", "import"}, {"inputs", {{"mesh", {{"sample", "star"}, {"vertices", 600}}}}}, {"outputs", {"model.stl"}}};
   const JobResult result = run_job(message, [](const std::string&) { return nullptr; }, session, {});
   ASSERT_FALSE(result.error) << result.error->message;
   ASSERT_EQ(result.outputs.size(), 1u);

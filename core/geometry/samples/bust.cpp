@@ -372,7 +372,10 @@ Model make_bust(int vertices, Context& context) {
     lay_beard(hair, skin);
   }
   hair.finish(std::max(0.08, 0.3 * edge), strands);
-  s.raise({0, 11, 0}, 20, [&hair, locks](const Point& p) { return locks * hair(p); }, hair.greatest_height());
+  s.raise({0, 11, 0}, 20, [&hair, locks](const Point& p) {
+    const double cap = locks < 1 ? (1 - locks) * 0.6 * smooth_step(-0.2, 1.2, hair_depth(p)) : 0;
+    return locks * hair(p) + cap;
+  }, hair.greatest_height());
   model_ears(s);
   model_socle(s);
   s.finish();

@@ -157,8 +157,8 @@ struct Patch {
 };
 
 std::uint64_t edge_key(int i, int j, int k, int axis) {
-  return (static_cast<std::uint64_t>(i) << 42 | static_cast<std::uint64_t>(j) << 22 | static_cast<std::uint64_t>(k) << 2) |
-         static_cast<std::uint64_t>(axis);
+  const auto part = [](int c) { return static_cast<std::uint64_t>(c + 1024); };  // a leaf may lie below the bounds
+  return part(i) << 42 | part(j) << 22 | part(k) << 2 | static_cast<std::uint64_t>(axis);
 }
 
 void march(const ImplicitShape& shape, double cell, const Block& block, Patch& patch) {
@@ -300,7 +300,7 @@ Surface marching_cubes(const ImplicitShape& shape, double cell_mm, Context& cont
   std::vector<Block> blocks = reachable_blocks(shape, cell_mm, root, context);
   std::vector<Patch> patches;
   KeyMap known(8 * blocks.size() + 1024);
-  const auto leaf_key = [](const Block& b) { return edge_key(b.i + 1024, b.j + 1024, b.k + 1024, 0); };
+  const auto leaf_key = [](const Block& b) { return edge_key(b.i, b.j, b.k, 0); };
   for (std::size_t b = 0; b < blocks.size(); ++b) known.find_or_add(leaf_key(blocks[b]), 1);
   // Where the field is steeper than promised a leaf may be missing: follow the surface until it closes.
   for (std::size_t done = 0; done < blocks.size();) {

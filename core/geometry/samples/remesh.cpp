@@ -32,13 +32,25 @@ bool agree(const Point& a, const Point& b, double least) {
 
 class Remesher {
  public:
-  Remesher(const Surface& surface, const std::vector<int>& patch, const TargetShape& shape, int target, Context& context)
-      : s_(surface, patch), shape_(shape), target_(target), context_(context) {
+  Remesher(const Surface& surface, const std::vector<int>& patch, const TargetShape& shape, int target, int ghost, Context& context)
+      : s_(surface, patch), shape_(shape), target_(target + (ghost >= 0 ? 1 : 0)), ghost_(ghost), context_(context) {
     // n vertices carry 2 n triangles of area sqrt(3)/4 edge^2.
-    edge_ = std::sqrt(surface_area(surface) * 2 / (std::sqrt(3.0) * target));
+    double area = 0;
+    for (int h = 0; h < s_.halfedge_slots(); h += 3)
+      if (!touches_ghost(h)) area += 0.5 * length(normal_of(s_.point(s_.start(h)), s_.point(s_.start(h + 1)), s_.point(s_.start(h + 2))));
+    edge_ = std::sqrt(area * 2 / (std::sqrt(3.0) * target));
   }
 
   Surface run(std::vector<int>& patch) {
+    // From a handful of triangles: halve edges, longest first, until none is too long.
+    for (double longest = longest_edge(); longest > 2.8 * edge_; longest = longest_edge()) {
+      scale_ = longest;
+      split_longer_than(0.7 * longest);
+      flip_to_delaunay();
+      relax(0.1, false);
+      relax(0.1, false);
+    }
+    scale_ = edge_;
     // A first mesh much finer than wanted needs more rounds to come down.
     const double excess = static_cast<double>(s_.vertex_count()) / target_;
     const int coarsening = excess > 2 ? 3 + static_cast<int>(std::log2(excess)) : 0;
@@ -68,30 +80,46 @@ class Remesher {
   }
 
  private:
-  void split_long(double factor) {
-    const double limit = factor * factor * edge_ * edge_;
+  // A surface with a boundary is closed by triangles to one vertex, the ghost, which has no place in space.
+  bool touches_ghost(int h) const {
+    return ghost_ >= 0 && (s_.start(h) == ghost_ || s_.end(h) == ghost_ || s_.start(s_.previous(h)) == ghost_);
+  }
+  // An edge that may be looked at: alive and between two real vertices.
+  bool real(int h) const { return s_.alive(h) && (ghost_ < 0 || (s_.start(h) != ghost_ && s_.end(h) != ghost_)); }
+
+  double longest_edge() const {
+    double longest = 0;
+    for (int h = 0; h < s_.halfedge_slots(); ++h)
+      if (real(h)) longest = std::max(longest, s_.edge_length2(h));
+    return std::sqrt(longest);
+  }
+
+  void split_long(double factor) { split_longer_than(factor * edge_); }
+
+  void split_longer_than(double length) {
+    const double limit = length * length;
     const int slots = s_.halfedge_slots();
     for (int h = 0; h < slots; ++h)
-      if (s_.alive(h) && h < s_.twin(h) && s_.edge_length2(h) > limit) split_at_middle(h);
+      if (real(h) && h < s_.twin(h) && s_.edge_length2(h) > limit) split_at_middle(h);
   }
 
   void split_at_middle(int h) {
     const Point middle = (s_.point(s_.start(h)) + s_.point(s_.end(h))) / 2;
     const int m = s_.split(h, middle);
     Point slope;
-    s_.move(m, limited(middle, shape_.project(middle, s_.patches(m), 0.1 * edge_, slope)));
+    s_.move(m, limited(middle, shape_.project(middle, s_.patches(m), 0.1 * scale_, slope)));
   }
 
   Point limited(const Point& from, const Point& to) const {
     const Point step = to - from;
-    const double l2 = length2(step), most = 0.3 * edge_;
+    const double l2 = length2(step), most = 0.3 * scale_;
     return l2 <= most * most ? to : from + step * (most / std::sqrt(l2));
   }
 
   void collapse_short(double factor) {
     const double limit = factor * factor * edge_ * edge_;
     for (int h = 0; h < s_.halfedge_slots(); ++h)
-      if (s_.alive(h) && s_.edge_length2(h) < limit) try_collapse(h, 4.0 / 3);
+      if (real(h) && s_.edge_length2(h) < limit) try_collapse(h, 4.0 / 3);
   }
 
   bool try_collapse(int h, double longest) {
@@ -108,7 +136,7 @@ class Remesher {
     const int t = s_.twin(h), begin = s_.out(v);
     int k = begin;
     do {
-      if (k / 3 != h / 3 && k / 3 != t / 3) {
+      if (k / 3 != h / 3 && k / 3 != t / 3 && !touches_ghost(k)) {
         const Point& b = s_.point(s_.end(k));
         const Point& c = s_.point(s_.start(s_.previous(k)));
         if (distance2(p, b) > limit) return false;
@@ -140,7 +168,7 @@ class Remesher {
       return e * e;
     };
     for (int h = 0; h < s_.halfedge_slots(); ++h) {
-      if (!s_.alive(h) || h > s_.twin(h)) continue;
+      if (!real(h) || h > s_.twin(h)) continue;
       const int t = s_.twin(h), u = s_.start(h), v = s_.start(t), a = s_.start(s_.previous(h)), b = s_.start(s_.previous(t));
       if (valence[index(u)] <= 4 || valence[index(v)] <= 4) continue;
       const int before = excess(u, 0) + excess(v, 0) + excess(a, 0) + excess(b, 0);
@@ -161,7 +189,7 @@ class Remesher {
     for (int round = 0; round < 4; ++round) {
       int flips = 0;
       for (int h = 0; h < s_.halfedge_slots(); ++h) {
-        if (!s_.alive(h) || h > s_.twin(h)) continue;
+        if (!real(h) || h > s_.twin(h) || s_.is_feature(h)) continue;
         const int t = s_.twin(h), u = s_.start(h), v = s_.start(t), a = s_.start(s_.previous(h)), b = s_.start(s_.previous(t));
         const Point &pu = s_.point(u), &pv = s_.point(v), &pa = s_.point(a), &pb = s_.point(b);
         const double weight = cotangent(pa, pu, pv) + cotangent(pb, pu, pv);
@@ -189,10 +217,10 @@ class Remesher {
     slopes_.resize(index(vertices));
     parallel_for(index(vertices), grain, [&](std::size_t from, std::size_t to) {
       for (std::size_t v = from; v < to; ++v)
-        if (s_.vertex_alive(static_cast<int>(v))) moved_[v] = relaxed(static_cast<int>(v), step, slopes_[v]);
+        if (s_.vertex_alive(static_cast<int>(v)) && static_cast<int>(v) != ghost_) moved_[v] = relaxed(static_cast<int>(v), step, slopes_[v]);
     });
     for (int v = 0; v < vertices; ++v)
-      if (s_.vertex_alive(v)) s_.move(v, moved_[index(v)]);
+      if (s_.vertex_alive(v) && v != ghost_) s_.move(v, moved_[index(v)]);
   }
 
   Point relaxed(int v, double step, Point& slope) const {
@@ -227,13 +255,13 @@ class Remesher {
       move = move * 1.3;  // the centroid includes p itself: over-relax
     }
     const Point there = limited(p, p + move);
-    return limited(there, shape_.project(there, patches, step * edge_, slope));
+    return limited(there, shape_.project(there, patches, step * scale_, slope));
   }
 
   // Collapses the shortest edge of triangles with an angle below about 24 degrees.
   void dissolve_slivers() {
     for (int h = 0; h < s_.halfedge_slots(); ++h) {
-      if (!s_.alive(h)) continue;
+      if (!s_.alive(h) || touches_ghost(h)) continue;
       const Point &a = s_.point(s_.start(h)), &b = s_.point(s_.end(h)), &c = s_.point(s_.start(s_.previous(h)));
       if (cotangent(c, a, b) > 2.25) try_collapse(h, 1.6);
     }
@@ -245,7 +273,7 @@ class Remesher {
       const bool grow = s_.vertex_count() < target_;
       std::vector<std::pair<double, int>> edges;
       for (int h = 0; h < s_.halfedge_slots(); ++h)
-        if (s_.alive(h) && h < s_.twin(h)) edges.emplace_back(grow ? -s_.edge_length2(h) : s_.edge_length2(h), h);
+        if (real(h) && h < s_.twin(h)) edges.emplace_back(grow ? -s_.edge_length2(h) : s_.edge_length2(h), h);
       const std::size_t missing = index(std::abs(target_ - s_.vertex_count()));
       const std::size_t first = std::min(edges.size(), grow ? missing : 3 * missing + 8);
       std::partial_sort(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(first), edges.end());
@@ -269,7 +297,7 @@ class Remesher {
       parallel_for(index(vertices), grain, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
           const int v = static_cast<int>(i);
-          if (!s_.vertex_alive(v)) continue;
+          if (!s_.vertex_alive(v) || v == ghost_) continue;
           const Point p = s_.point(v);
           Point q = shape_.project(p, s_.patches(v), step * edge_, slopes_[i]);
           const double most = 0.1 * edge_;
@@ -282,9 +310,10 @@ class Remesher {
 
   HalfedgeSurface s_;
   const TargetShape& shape_;
-  int target_;
+  int target_, ghost_;
   Context& context_;
-  double edge_;
+  double edge_;       // wanted mean length
+  double scale_ = 0;  // the length now, on the way there
   std::vector<Point> normals_, moved_, slopes_;
 };
 
@@ -304,7 +333,51 @@ Point ImplicitTarget::project(const Point& p, std::uint32_t, double step, Point&
 }
 
 Surface remesh(const Surface& surface, std::vector<int>& patch, const TargetShape& target, int vertex_count, Context& context) {
-  return Remesher(surface, patch, target, vertex_count, context).run(patch);
+  return Remesher(surface, patch, target, vertex_count, -1, context).run(patch);
+}
+
+Surface remesh_open(const Surface& surface, const std::function<int(const Point&, const Point&)>& side,
+                    const TargetShape& target, int vertex_count, Context& context) {
+  Surface closed = surface;
+  const int ghost = static_cast<int>(surface.points.size());
+  closed.points.push_back({0, 0, 0});
+  std::vector<int> patch(surface.triangles.size(), 0);
+  // Boundary edges are the directed edges without a reverse.
+  std::vector<std::pair<std::pair<int, int>, int>> edges;  // (low, high), direction
+  for (const Corners& t : surface.triangles)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const int a = t[c], b = t[(c + 1) % 3];
+      edges.push_back({{std::min(a, b), std::max(a, b)}, a < b ? 1 : 0});
+    }
+  std::sort(edges.begin(), edges.end());
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    if (e + 1 < edges.size() && edges[e].first == edges[e + 1].first) {
+      ++e;
+      continue;
+    }
+    const auto [low, high] = edges[e].first;
+    const int a = edges[e].second == 1 ? low : high, b = edges[e].second == 1 ? high : low;
+    closed.triangles.push_back({b, a, ghost});
+    patch.push_back(first_rim_patch + side(surface.points[index(a)], surface.points[index(b)]));
+  }
+  Surface result = Remesher(closed, patch, target, vertex_count, ghost, context).run(patch);
+  // The ghost keeps its place among the vertices that came before it: find it by its triangles.
+  int last = -1;
+  Surface open;
+  for (std::size_t f = 0; f < result.triangles.size(); ++f) {
+    if (patch[f] < first_rim_patch) {
+      open.triangles.push_back(result.triangles[f]);
+    } else if (last < 0) {
+      const Corners& t = result.triangles[f];
+      for (const int v : t)
+        if (result.points[index(v)] == Point{0, 0, 0}) last = v;
+    }
+  }
+  for (int v = 0; v < static_cast<int>(result.points.size()); ++v)
+    if (v != last) open.points.push_back(result.points[index(v)]);
+  for (Corners& t : open.triangles)
+    for (int& v : t) v -= v > last ? 1 : 0;
+  return open;
 }
 
 Surface mesh_implicit(const ImplicitShape& shape, double area_mm2, int vertex_count, Context& context) {

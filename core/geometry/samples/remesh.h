@@ -35,6 +35,13 @@ class ImplicitTarget : public TargetShape {
 Surface remesh(const Surface& surface, std::vector<int>& patch, const TargetShape& target, int vertex_count,
                Context& context);
 
+/// The same for a surface with a boundary. side(a, b) tells on which side of the rim (0 to 7) a boundary edge between
+/// two points lies; vertices of the rim carry the bits 1 << (first_rim_patch + side), two of them where
+/// sides meet, and those stay.
+inline constexpr int first_rim_patch = 20;
+Surface remesh_open(const Surface& surface, const std::function<int(const Point&, const Point&)>& side,
+                    const TargetShape& target, int vertex_count, Context& context);
+
 /// Marching cubes on a fitting grid, then remesh.
 Surface mesh_implicit(const ImplicitShape& shape, double area_mm2, int vertex_count, Context& context);
 

@@ -9,6 +9,15 @@
 namespace formwright::samples {
 
 Model make_bust(int vertices, Context& context);
+Model make_cat(int vertices, Context& context);
+Model make_octopus(int vertices, Context& context);
+Model make_star(int vertices, Context& context);
+Model make_heart(int vertices, Context& context);
+Model make_torus(int vertices, Context& context);
+Model make_pyramid(int vertices, Context& context);
+Model make_t_shape(int vertices, Context& context);
+Model make_hemisphere(int vertices, Context& context);
+Model make_mountain(int vertices, Context& context);
 
 /// Linear RGB of a surface point with its outward unit normal, both in the coordinates of the mesh.
 using Colouring = std::function<Point(const Point& p, const Point& normal)>;

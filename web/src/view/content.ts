@@ -173,9 +173,12 @@ export class Content {
     return (['relief', 'original'] as const).filter((name) => this.meshes[name]).slice(0, 1);
   }
 
-  bounds(camera: CameraState): Bounds2 | null {
+  /** Of everything there is, or of what the mode shows. */
+  bounds(camera: CameraState, only: 'all' | 'shown'): Bounds2 | null {
+    const names = only === 'all' ? (['original', 'relief'] as const) : this.parts();
     let bounds: Bounds2 | null = null;
-    for (const name of this.parts()) {
+    for (const name of names) {
+      if (!this.meshes[name]) continue;
       const { points } = this.stage.subjectOf(name).support;
       bounds = uniteBounds(bounds, projectedBounds(camera, points, this.stage.origin));
     }

@@ -32,6 +32,7 @@ export class Furniture {
     tag.className = 'fw-tag';
     tag.textContent = name;
     tag.setAttribute('aria-hidden', 'true');
+    tag.hidden = true;
     return tag;
   });
   private readonly markers = new Map<string, { marker: Marker; element: HTMLElement }>();

@@ -67,6 +67,7 @@ export class Subject {
   support: Support = supportOf(new Float32Array(0));
   private shadow: THREE.WebGLRenderTarget | null = null;
   private shadowKey = '';
+  private texelMm = 0;
   private skyNext = 0;
   private skyDone = false;
 
@@ -148,15 +149,19 @@ export class Subject {
     sectionKey: string,
   ): void {
     const key = `${towards.join()}|${sectionKey}`;
-    const texel = (2 * this.support.radius) / SHADOW_SIZE;
     (this.uniforms['uShadowRadius']?.value as THREE.Vector2).setScalar(softness / (2 * this.support.radius));
-    if (key === this.shadowKey || this.surfaces.length === 0) return;
+    if (key !== this.shadowKey && this.surfaces.length > 0) this.drawShadow(renderer, view, towards, key);
+    // Blurred look-ups reach into the slope beside the point: stand further off.
+    this.uniform('uShadowOffset').value = 1.2 * this.texelMm + 0.45 * softness;
+  }
+
+  private drawShadow(renderer: THREE.WebGLRenderer, view: DepthView, towards: Vec3, key: string): void {
     this.shadow ??= depthTarget(SHADOW_SIZE);
     const lookup = this.uniforms['uShadowMatrix'] as THREE.IUniform<THREE.Matrix4>;
     const mm = this.aim(towards, SHADOW_SIZE, lookup.value);
     this.drawDepth(renderer, view, this.shadow);
     this.uniform('uShadow').value = this.shadow.depthTexture;
-    this.uniform('uShadowOffset').value = 1.2 * Math.max(mm, texel);
+    this.texelMm = mm;
     this.uniform('uShadowOn').value = 1;
     this.shadowKey = key;
   }

@@ -90,10 +90,11 @@ export class Viewport implements ViewportApi {
     this.buildRoot();
     this.rig = new CameraRig(
       {
-        bounds: (camera) => this.content?.bounds(camera) ?? null,
+        // All of it in every mode: going from one to the other must not move the picture.
+        bounds: (camera) => this.content?.bounds(camera, 'all') ?? null,
         centre: () => this.content?.centre() ?? this.rig.viewpoint.targetMm,
         radius: () => this.content?.radius() ?? 60,
-        extraPx: () => (this.dimensioned() ? DIMENSION_PX : 0),
+        extraPx: () => (this.hasDimensions() ? DIMENSION_PX : 0),
       },
       () => this.cameraChanged(),
     );
@@ -220,7 +221,8 @@ export class Viewport implements ViewportApi {
   setMode(mode: ViewMode): void {
     if (!this.content || mode === this.content.mode) return;
     this.content.setMode(mode);
-    this.shapeChanged(false);
+    this.furniture.clearValue();
+    this.invalidate();
   }
 
   setSwipe(position: number): void {
@@ -354,14 +356,10 @@ export class Viewport implements ViewportApi {
     if (this.statusNow.state === 'ready') this.loop.invalidate();
   }
 
-  private dimensioned(): boolean {
-    const { content } = this;
+  private hasDimensions(): boolean {
+    const wide = this.rig.screen.width >= DIMENSION_LEAST_WIDTH;
     return (
-      this.showDimensions &&
-      content !== null &&
-      content.plate !== null &&
-      content.parts().includes('relief') &&
-      this.rig.screen.width >= DIMENSION_LEAST_WIDTH
+      this.showDimensions && wide && Boolean(this.content?.plate) && Boolean(this.content?.meshes.relief)
     );
   }
 
@@ -419,9 +417,12 @@ export class Viewport implements ViewportApi {
     const { plate } = content;
     this.furniture.layOut({
       screen,
-      extent: this.rig.extentPx(content.bounds(camera)),
+      extent: this.rig.extentPx(content.bounds(camera, 'shown')),
       swipe: content.parts().length === 2 ? this.swipe : null,
-      corners: this.dimensioned() && plate ? plateCorners(plateFrame(plate, viewpoint)) : null,
+      corners:
+        plate && this.hasDimensions() && content.parts().includes('relief')
+          ? plateCorners(plateFrame(plate, viewpoint))
+          : null,
       plate,
       project: (p) => projectToPixels(camera, screen, p),
     });

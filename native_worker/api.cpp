@@ -17,8 +17,6 @@ constexpr std::size_t most_queued = 32, most_kept_jobs = 200;
 constexpr double most_blob_mb = 8192;
 constexpr std::int64_t triangle_limit = 20'000'000;
 
-std::string text_of(boost::core::string_view view) { return {view.data(), view.size()}; }
-
 void set_common_headers(auto& response, const Head& head) {
   response.version(head.version());
   response.keep_alive(head.keep_alive());
@@ -29,9 +27,12 @@ void set_common_headers(auto& response, const Head& head) {
   response.set("X-Content-Type-Options", "nosniff");
   response.set("Referrer-Policy", "no-referrer");
   response.set("X-Frame-Options", "DENY");
+  // 'self' covers ws: in new browsers only; Host has been checked before anything but a refusal is sent.
+  const std::string host = text_of(head[http::field::host]);
+  const bool plain = host.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789.:") == std::string::npos;
   response.set("Content-Security-Policy",
                "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self' blob:; style-src 'self' 'unsafe-inline'; "
-               "img-src 'self' data: blob:; connect-src 'self' blob:; object-src 'none'; base-uri 'none'; frame-ancestors 'none'; form-action 'none'");
+               "img-src 'self' data: blob:; connect-src 'self' blob: " + (plain ? "ws://" + host : std::string()) + "; object-src 'none'; base-uri 'none'; frame-ancestors 'none'; form-action 'none'");
 }
 
 const char* media_type_of(const std::filesystem::path& path) {
@@ -40,10 +41,12 @@ const char* media_type_of(const std::filesystem::path& path) {
   if (e == ".js" || e == ".mjs") return "text/javascript";
   if (e == ".css") return "text/css";
   if (e == ".wasm") return "application/wasm";
-  if (e == ".json" || e == ".webmanifest") return "application/json";
+  if (e == ".json" || e == ".map") return "application/json";
+  if (e == ".webmanifest") return "application/manifest+json";
   if (e == ".svg") return "image/svg+xml";
   if (e == ".png") return "image/png";
   if (e == ".webp") return "image/webp";
+  if (e == ".woff2") return "font/woff2";
   if (e == ".txt") return "text/plain; charset=utf-8";
   return "application/octet-stream";
 }
@@ -55,11 +58,13 @@ Response file_response(const Head& head, const std::filesystem::path& path, cons
   if (error) return error_response(head, http::status::not_found, "invalid_input", "", "There is nothing here.");
   set_common_headers(response, head);
   response.set(http::field::content_type, type);
+  response.set(http::field::cache_control, "no-store");
   response.content_length(response.body().size());
   if (head.method() == http::verb::head) {
     TextResponse only_head;
     set_common_headers(only_head, head);
     only_head.set(http::field::content_type, type);
+    only_head.set(http::field::cache_control, "no-store");
     only_head.content_length(response.body().size());
     return only_head;
   }
@@ -128,17 +133,19 @@ Response HttpServer::answer(const Head& head, const std::string& body) {
 }
 
 Response HttpServer::answer_jobs(const Head& head, const std::string& path, const std::string& body) {
+  const bool reads = head.method() == http::verb::get || head.method() == http::verb::head;
   if (path.empty()) {
     if (head.method() != http::verb::post) return error_response(head, http::status::method_not_allowed, "invalid_input", "", "Jobs are listed or posted.");
     const Json message = Json::parse(body, nullptr, false);
     if (message.is_discarded()) return error_response(head, http::status::bad_request, "invalid_input", "", "The job is not JSON.");
     if (const auto error = check_job(message)) return text_response(head, http::status::unprocessable_entity, error_json(*error).dump());
-    for (const auto& [name, input] : message.value("inputs", Json::object()).items())
+    const Json inputs = message.value("inputs", Json::object());
+    for (const auto& [name, input] : inputs.items())
       if (input.contains("sha256") && !std::filesystem::exists(store_.blob_path(input["sha256"].get<std::string>())))
         return error_response(head, http::status::unprocessable_entity, "invalid_input", name, "The file for the input " + name + " has not arrived: send it again.");
     if (queue_.waiting() >= most_queued) return error_response(head, http::status::too_many_requests, "invalid_input", "", "Too many jobs are waiting: let some finish.");
-    store_.tidy(most_kept_jobs, most_blob_mb);
     const std::string id = store_.add(message).id;
+    store_.tidy(most_kept_jobs, most_blob_mb);  // now that the new job's blobs count as needed
     queue_.enqueue(id);
     return text_response(head, http::status::accepted, Json{{"id", id}}.dump());
   }
@@ -146,7 +153,7 @@ Response HttpServer::answer_jobs(const Head& head, const std::string& path, cons
   const std::string rest = path.substr(std::min(1 + id.size(), path.size()));
   StoredJob* job = is_hex_name(id, 32) ? store_.find(id) : nullptr;
   if (!job) return error_response(head, http::status::not_found, "invalid_input", "", "There is no such job.");
-  if (rest.empty() && head.method() == http::verb::get) return text_response(head, http::status::ok, job_detail(*job).dump());
+  if (rest.empty() && reads) return text_response(head, http::status::ok, job_detail(*job).dump());
   if (rest.empty() && head.method() == http::verb::delete_) {
     if (!job->finished()) return error_response(head, http::status::conflict, "invalid_input", "", "The job is not finished: cancel it first.");
     store_.remove(id);
@@ -157,7 +164,7 @@ Response HttpServer::answer_jobs(const Head& head, const std::string& path, cons
     return text_response(head, http::status::accepted, Json{{"id", id}}.dump());
   }
   constexpr std::string_view outputs = "/outputs/";
-  if (rest.starts_with(outputs) && head.method() == http::verb::get) {
+  if (rest.starts_with(outputs) && reads) {
     // Only names that the result lists: what the client says never becomes a path by itself.
     const std::string name = rest.substr(outputs.size());
     if (job->state == JobState::done && job->result["outputs"].contains(name))
@@ -175,10 +182,8 @@ Response HttpServer::answer_blob(const Head& head, const std::string& sha256) {
 
 Response HttpServer::accept_upload(const Head& head, const std::string& sha256, const std::filesystem::path& received, const std::string& found_hash) {
   std::error_code status;
-  if (found_hash != sha256) {
-    std::filesystem::remove(received, status);
+  if (found_hash != sha256)
     return error_response(head, http::status::unprocessable_entity, "invalid_input", "sha256", "The bytes do not have the SHA-256 they were sent under: send them again.");
-  }
   const bool known = std::filesystem::exists(store_.blob_path(sha256));
   std::filesystem::rename(received, store_.blob_path(sha256), status);
   if (status) return error_response(head, http::status::insufficient_storage, "internal", "", "The file cannot be kept (" + status.message() + ").");
@@ -196,7 +201,7 @@ Response HttpServer::page_file(const Head& head, const std::string& path) {
   if (path == "/" || std::filesystem::is_directory(file)) file /= "index.html";
   std::error_code status;
   const auto real = std::filesystem::canonical(file, status);
-  if (status || !real.string().starts_with(std::filesystem::canonical(options_.web, status).string()))
+  if (status || !real.string().starts_with((std::filesystem::canonical(options_.web, status) / "").string()))
     return error_response(head, http::status::not_found, "invalid_input", "", "There is nothing here.");
   Response response = file_response(head, real, media_type_of(real));
   // Names with a hash in them never change; the rest is asked for again.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "geometry/samples/samples.h"
 #include "job/catalog.h"
 
 namespace formwright {
@@ -33,10 +34,29 @@ int sample_vertices(const std::string& text) {
   return static_cast<int>(count);
 }
 
-std::string padded(std::string text, std::size_t width) {
-  // Two bytes of UTF-8 show as one character.
-  const auto shown = static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
-  return shown < width ? text + std::string(width - shown, ' ') : text + "\n" + std::string(width + 2, ' ');
+std::size_t shown_width(const std::string& text) {
+  // Bytes of UTF-8 that continue a character take no room of their own.
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
+}
+
+/// "  left        right", with `right` broken between words so that no line is longer than 100 columns.
+std::string entry(const std::string& left, std::size_t left_width, const std::string& right) {
+  constexpr std::size_t columns = 100;
+  const std::string indent(left_width + 2, ' ');
+  std::string text = "  " + left, line;
+  text += shown_width(left) < left_width ? std::string(left_width - shown_width(left), ' ') : "\n" + indent;
+  std::size_t start = 0;
+  while (start < right.size()) {
+    const std::size_t end = std::min(right.find(' ', start), right.size());
+    const std::string word = right.substr(start, end - start);
+    if (!line.empty() && indent.size() + shown_width(line) + 1 + shown_width(word) > columns) {
+      text += line + "\n" + indent;
+      line.clear();
+    }
+    line += (line.empty() ? "" : " ") + word;
+    start = end + 1;
+  }
+  return text + line + "\n";
 }
 
 std::string number(double value) {
@@ -140,43 +160,48 @@ ParsedCommand parse_command(const Operation& operation, const std::vector<std::s
 }
 
 std::string overview_text() {
-  std::string text = std::string("formwright ") + version() + ": from a 3D model to something made by hand-sized machines\n\n";
-  for (const Operation& operation : operations()) text += "  formwright " + padded(operation.name, 12) + operation.summary + "\n";
-  text += "\n  formwright " + padded("serve", 12) + "the page and the native worker on this machine\n";
-  text += "  formwright " + padded("list", 12) + "the operations, one a line\n";
-  text += "  formwright " + padded("describe OP", 12) + "one operation as JSON: inputs, parameters, outputs, report\n";
+  constexpr std::size_t width = 23;
+  std::string text = std::string("formwright ") + version() + ": from a 3D model to something that can be made\n\n";
+  for (const Operation& operation : operations()) text += entry("formwright " + operation.name, width, operation.summary);
+  text += "\n" + entry("formwright serve", width, "The page and the native worker, on this machine only.");
+  text += entry("formwright list", width, "The operations, one a line.");
+  text += entry("formwright describe OP", width, "One operation as JSON: inputs, parameters, outputs, report.");
+  text += entry("formwright --version", width, "The version.");
   text += "\nformwright OP --help shows the flags of an operation.\n";
   return text;
 }
 
 std::string operation_help(const Operation& operation) {
+  constexpr std::size_t width = 30;
   std::string text = operation.summary + "\n\n  formwright " + operation.name;
   for (const InputInfo& input : operation.inputs) text += " " + dashed(input.name) + " FILE";
   text += " --out DIR [flags]\n\nInput\n";
   for (const InputInfo& input : operation.inputs) {
     std::string list;
     for (const auto& extension : input.extensions) list += (list.empty() ? "" : ", ") + extension;
-    text += "  " + padded(dashed(input.name) + " FILE", 34) + input.help + " (" + list + ")\n";
+    text += entry(dashed(input.name) + " FILE", width, input.help + " (" + list + ")");
     if (input.accepts_sample) {
-      text += "  " + padded("--sample NAME", 34) + "A built-in shape instead of a file.\n";
-      text += "  " + padded("--sample-vertices N", 34) + "Its resolution.\n";
+      std::string names;
+      for (const auto& sample : sample_catalog()) names += (names.empty() ? "" : ", ") + sample.name;
+      text += entry("--sample NAME", width, "A built-in shape instead of a file: " + names + ".");
+      text += entry("--sample-vertices N", width, "Its resolution.");
     }
   }
-  text += "\nOutput\n  " + padded("--out DIR", 34) + "Folder for the outputs and report.json.\n  " + padded("--outputs A,B", 34);
   std::string list;
   for (const OutputInfo& output : operation.outputs) list += (list.empty() ? "" : ", ") + output.name + (output.made_by_default ? "*" : "");
-  text += "Which to make: " + list + " (* without being asked).\n  " + padded("--quiet", 34) + "No progress.\n";
+  text += "\nFiles\n" + entry("--out DIR", width, "Folder for the outputs and report.json.");
+  text += entry("--outputs A,B", width, "Which to make: " + list + " (* without being asked).");
+  text += entry("--quiet", width, "No progress.");
   std::string group;
   for (const ParameterInfo& info : operation.parameters) {
     if (info.group != group || &info == operation.parameters.data()) {
       group = info.group;
       text += "\n" + (group.empty() ? std::string("Parameters") : group) + "\n";
     }
-    text += "  " + padded(flag_name(info) + " " + value_text(info), 34) + info.help;
     std::string range;
     if (info.kind == ParameterKind::number || info.kind == ParameterKind::integer || info.kind == ParameterKind::optional_number)
       range = number(info.minimum) + " to " + number(info.maximum) + (info.unit.empty() ? "" : " " + info.unit) + ", ";
-    text += " [" + range + "default " + default_text(info) + "]\n";
+    text += entry(flag_name(info) + " " + value_text(info), width, info.help + " [" + range + "default " + default_text(info) + "]");
   }
   return text;
 }

@@ -2,6 +2,7 @@
 #include "files.h"
 
 #include <fcntl.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -9,6 +10,7 @@
 #include <fstream>
 
 #include "base/error.h"
+#include "base/sha256.h"
 
 namespace formwright {
 
@@ -51,6 +53,24 @@ void write_file(const std::filesystem::path& path, ByteView bytes) {
   }
   ::close(descriptor);
   if (std::rename(temporary.c_str(), path.c_str()) != 0) fail("put in its place");
+}
+
+std::string sha256_of_file(const std::filesystem::path& path) {
+  const auto fail = [&] { return Error(ErrorCode::internal, "", path.string() + " cannot be read (" + std::strerror(errno) + ")."); };
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) throw fail();
+  const std::size_t size = std::filesystem::file_size(path);
+  if (size == 0) {  // cannot be mapped
+    ::close(descriptor);
+    return sha256_hex({});
+  }
+  void* data = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
+  ::close(descriptor);
+  if (data == MAP_FAILED) throw fail();
+  ::madvise(data, size, MADV_SEQUENTIAL);
+  const std::string hash = sha256_hex({static_cast<const std::byte*>(data), size});
+  ::munmap(data, size);
+  return hash;
 }
 
 }  // namespace formwright

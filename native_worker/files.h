@@ -4,6 +4,7 @@
 // never leaves half a file under a good name.
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "base/bytes.h"
 
@@ -14,5 +15,20 @@ std::shared_ptr<const Bytes> read_file(const std::filesystem::path& path, const 
 
 /// Throws Error{invalid_input, "out"} when the file cannot be written (no space, no permission); nothing is left behind.
 void write_file(const std::filesystem::path& path, ByteView bytes);
+
+/// SHA-256 of a file without holding it in memory. Throws Error{internal} when it cannot be read.
+std::string sha256_of_file(const std::filesystem::path& path);
+
+/// A file that goes with this object, unless it was renamed by then.
+struct UploadFile {
+  explicit UploadFile(std::filesystem::path p) : path(std::move(p)) {}
+  UploadFile(const UploadFile&) = delete;
+  UploadFile& operator=(const UploadFile&) = delete;
+  ~UploadFile() {
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+  }
+  const std::filesystem::path path;
+};
 
 }  // namespace formwright

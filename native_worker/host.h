@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <string>
+
+#include "base/json.h"
+
 namespace formwright {
+/// JSON as text. Bytes that are not UTF-8 (a file's name, a word of its content) are replaced: nlohmann's dump() throws.
+std::string json_text(const Json& value, int indent = -1);
+
 /// Largest resident size of this process so far.
 double peak_memory_mb();
 }  // namespace formwright

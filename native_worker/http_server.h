@@ -11,6 +11,7 @@
 #include <deque>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <variant>
@@ -35,6 +36,8 @@ using FileResponse = http::response<http::file_body>;
 using Response = std::variant<TextResponse, FileResponse>;
 using Head = http::request<http::empty_body>;
 
+inline std::string text_of(boost::core::string_view view) { return {view.data(), view.size()}; }
+
 /// A page that listens. Messages queue up while one is being written; a page that does not read is dropped.
 struct PageSocket {
   explicit PageSocket(beast::websocket::stream<beast::tcp_stream>&& s) : stream(std::move(s)) {}
@@ -50,6 +53,8 @@ class HttpServer {
   unsigned short port() const { return port_; }
   const std::string& token() const { return token_; }
   void start();
+  /// Ends the child process and puts its job back in the queue, for the next start.
+  void stop();
 
  private:
   using Socket = boost::asio::ip::tcp::socket;
@@ -57,8 +62,12 @@ class HttpServer {
   boost::asio::awaitable<void> serve_connection(Socket socket);
   boost::asio::awaitable<void> serve_page_socket(std::shared_ptr<PageSocket> page, Head head);
   boost::asio::awaitable<Response> receive_and_answer(beast::tcp_stream& stream, beast::flat_buffer& buffer, http::request_parser<http::empty_body>& head);
+  boost::asio::awaitable<Response> receive_upload(beast::tcp_stream& stream, beast::flat_buffer& buffer, http::request_parser<http::empty_body>& head);
+  boost::asio::awaitable<void> finish_sending(beast::tcp_stream& stream);
 
-  // Who may speak
+  // Who may speak. What is refused is refused before its body is read.
+  std::optional<TextResponse> refusal(const Head& head, std::optional<std::uint64_t> body_bytes);
+  TextResponse upload_too_large(const Head& head) const;
   bool host_allowed(const Head& head) const;
   bool origin_allowed(const Head& head) const;
   bool token_given(const Head& head) const;

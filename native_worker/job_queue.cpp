@@ -24,16 +24,28 @@ Json error_message(const char* code, const std::string& sentence) { return {{"er
 }  // namespace
 
 JobQueue::JobQueue(boost::asio::io_context& io, JobStore& store, std::function<void(const Json&)> tell)
-    : io_(io), store_(store), tell_(std::move(tell)), patience_(io) {
+    : io_(io), store_(store), tell_(std::move(tell)), patience_(io) {}
+
+void JobQueue::start() {
   for (const std::string& id : store_.unfinished_oldest_first()) waiting_.push_back(id);
   start_next();
 }
 
-JobQueue::~JobQueue() {
+void JobQueue::stop() {
+  ++generation_;
+  patience_.cancel();
+  waiting_.clear();
   if (process_ > 0) {
     ::kill(process_, SIGKILL);
     ::waitpid(process_, nullptr, 0);
+    process_ = -1;
   }
+  if (StoredJob* job = running_.empty() ? nullptr : store_.find(running_)) {
+    job->state = JobState::queued;
+    --job->attempts;  // it did not end the process; we did
+    store_.save(*job);
+  }
+  running_.clear();
 }
 
 void JobQueue::enqueue(const std::string& id) {
@@ -49,6 +61,8 @@ void JobQueue::cancel(const std::string& id) {
     finish(*job, error_message("cancelled", "Cancelled."));
     return;
   }
+  if (cancelling_ == id) return;  // asking again does not give it more time
+  cancelling_ = id;
   send({{"cancel", id}});
   patience_.expires_after(cancel_patience);
   patience_.async_wait([this, id](const boost::system::error_code& error) {
@@ -67,6 +81,10 @@ void JobQueue::start_process() {
     throw Error(ErrorCode::internal, "", "No pipe to the solver process could be made.");
   }
   process_ = ::fork();
+  if (process_ < 0) {
+    for (const int descriptor : {to_child[0], to_child[1], from_child[0], from_child[1]}) ::close(descriptor);
+    throw Error(ErrorCode::internal, "", "The solver process could not be started: the system has no room for another.");
+  }
   if (process_ == 0) {
     ::dup2(to_child[0], STDIN_FILENO);
     ::dup2(from_child[1], STDOUT_FILENO);
@@ -93,7 +111,12 @@ void JobQueue::start_next() {
       finish(*job, error_message("internal", "This job stopped the solver twice and is not tried again: simplify the model, and report it."));
       continue;
     }
-    if (process_ <= 0) start_process();
+    try {
+      if (process_ <= 0) start_process();
+    } catch (const std::exception& error) {
+      finish(*job, error_message("internal", error.what()));
+      continue;
+    }
     ++job->attempts;
     job->state = JobState::running;
     store_.save(*job);
@@ -103,7 +126,8 @@ void JobQueue::start_next() {
     }
     running_ = id;
     Json blobs = Json::object();
-    for (const auto& [name, input] : job->job.value("inputs", Json::object()).items())
+    const Json inputs = job->job.value("inputs", Json::object());
+    for (const auto& [name, input] : inputs.items())
       if (input.contains("sha256") && std::filesystem::exists(store_.blob_path(input["sha256"].get<std::string>())))
         blobs[input["sha256"].get<std::string>()] = store_.blob_path(input["sha256"].get<std::string>()).string();
     send({{"run", id}, {"job", job->job}, {"blobs", blobs}, {"outputs", store_.outputs_folder(id).string()}});
@@ -131,6 +155,7 @@ void JobQueue::handle(const Json& message) {
   } else if (message.contains("finished") && message["finished"] == running_) {
     StoredJob* job = store_.find(running_);
     running_.clear();
+    cancelling_.clear();
     patience_.cancel();
     if (job) finish(*job, message["result"]);
     start_next();
@@ -147,6 +172,7 @@ void JobQueue::process_ended() {
   const bool stopped_by_us = stopping_;
   const bool killed = WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
   stopping_ = false;
+  cancelling_.clear();
   patience_.cancel();
   StoredJob* job = running_.empty() ? nullptr : store_.find(running_);
   running_.clear();

@@ -19,8 +19,12 @@ class JobQueue {
  public:
   /// `tell` receives the messages for the pages (docs/job_contract.md, socket).
   JobQueue(boost::asio::io_context& io, JobStore& store, std::function<void(const Json&)> tell);
-  ~JobQueue();
+  ~JobQueue() { stop(); }
 
+  /// Takes up what an earlier worker left. Not before the port is ours: a start that fails runs nothing.
+  void start();
+  /// Ends the child; the job in it is queued again for the next start. Nothing happens after this.
+  void stop();
   void enqueue(const std::string& id);
   void cancel(const std::string& id);
   std::size_t waiting() const { return waiting_.size(); }
@@ -47,6 +51,7 @@ class JobQueue {
   std::string incoming_;
   std::deque<std::string> outgoing_;
   boost::asio::steady_timer patience_;  // after a cancel
+  std::string cancelling_;              // the job that was asked to stop
   bool stopping_ = false;               // we killed the child ourselves
   unsigned generation_ = 0;             // of the child, so that late answers of a dead one are ignored
 };

@@ -30,7 +30,9 @@ class Inbox {
       const Json message = Json::parse(line, nullptr, false);
       const std::scoped_lock lock(mutex_);
       if (message.contains("cancel")) {
-        if (message["cancel"] == running_) cancel_ = true;
+        // It may overtake the job it is about, which is still in the line.
+        cancelled_id_ = message["cancel"].get<std::string>();
+        if (cancelled_id_ == running_) cancel_ = true;
       } else if (message.contains("run")) {
         waiting_.push_back(message);
         arrived_.notify_one();
@@ -45,7 +47,7 @@ class Inbox {
     Json message = std::move(waiting_.front());
     waiting_.pop_front();
     running_ = message["run"].get<std::string>();
-    cancel_ = false;
+    cancel_ = running_ == cancelled_id_;
     return message;
   }
   bool cancelled() const { return cancel_; }
@@ -54,11 +56,11 @@ class Inbox {
   std::mutex mutex_;
   std::condition_variable arrived_;
   std::deque<Json> waiting_;
-  std::string running_;
+  std::string running_, cancelled_id_;
   std::atomic<bool> cancel_{false};
 };
 
-void send(const Json& message) { std::cout << message.dump() << std::endl; }
+void send(const Json& message) { std::cout << json_text(message) << std::endl; }
 
 Json run_one(const Json& request, Session& session, const Host& host) {
   const Json& blobs = request["blobs"];
@@ -76,6 +78,8 @@ Json run_one(const Json& request, Session& session, const Host& host) {
     return answer;
   } catch (const Error& error) {
     return error_json({error.code(), error.where(), error.what()});
+  } catch (const std::exception& error) {
+    return error_json({ErrorCode::internal, "", std::string("The results could not be kept: ") + error.what()});
   }
 }
 

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "job_store.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <set>
 
@@ -59,18 +64,29 @@ bool is_hex_name(const std::string& text, std::size_t digits) {
 
 JobStore::JobStore(std::filesystem::path folder) : folder_(std::move(folder)) {
   std::error_code status;
+  const bool made_here = !std::filesystem::exists(folder_, status);
   for (const char* part : {"blobs", "jobs", "uploads"}) {
     std::filesystem::create_directories(folder_ / part, status);
     if (!std::filesystem::is_directory(folder_ / part))
       throw Error(ErrorCode::invalid_input, "--data", "The folder " + folder_.string() + " cannot be used (" + status.message() + "): choose another with --data.");
   }
-  std::filesystem::permissions(folder_, std::filesystem::perms::owner_all, status);
+  if (made_here) std::filesystem::permissions(folder_, std::filesystem::perms::owner_all, status);
+  // Two workers would run each other's jobs. The system drops the lock with the process, however it ends.
+  lock_ = ::open((folder_ / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  if (lock_ < 0 || ::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+    const bool taken = lock_ >= 0 && errno == EWOULDBLOCK;
+    if (lock_ >= 0) ::close(lock_);
+    if (taken) throw Error(ErrorCode::invalid_input, "--data", "Another worker keeps its jobs in " + folder_.string() + ": use that one, or name another folder with --data.");
+    throw Error(ErrorCode::invalid_input, "--data", "The folder " + folder_.string() + " cannot be written to: choose another with --data.");
+  }
   for (const auto& left_over : std::filesystem::directory_iterator(folder_ / "uploads", status)) std::filesystem::remove(left_over.path(), status);
   for (const auto& entry : std::filesystem::directory_iterator(folder_ / "jobs", status)) {
     if (!is_hex_name(entry.path().filename().string(), 32)) continue;
     if (auto job = read_job(entry.path())) jobs_.emplace(job->id, std::move(*job));
   }
 }
+
+JobStore::~JobStore() { ::close(lock_); }
 
 std::filesystem::path JobStore::temporary_path() { return folder_ / "uploads" / random_hex(16); }
 
@@ -116,6 +132,7 @@ void JobStore::save(StoredJob& job) {
     write_file(folder / "job.json", as_bytes(text.dump()));
   } catch (const Error& error) {
     job.state = JobState::failed;
+    job.finished_unix_s = unix_seconds();
     job.result = {{"error", {{"code", to_string(ErrorCode::internal)}, {"where", ""}, {"message", error.what()}}}};
   }
 }
@@ -134,7 +151,8 @@ void JobStore::tidy(std::size_t most_jobs, double most_blob_mb) {
   std::set<std::string> needed;
   for (const auto& [id, job] : jobs_)
     if (!job.finished())
-      for (const auto& [name, input] : job.job.value("inputs", Json::object()).items()) needed.insert(input.value("sha256", ""));
+      if (const auto inputs = job.job.find("inputs"); inputs != job.job.end())
+        for (const auto& [name, input] : inputs->items()) needed.insert(input.value("sha256", ""));
   std::error_code status;
   std::vector<std::pair<std::filesystem::file_time_type, std::filesystem::path>> blobs;
   double total_mb = 0;

@@ -31,8 +31,11 @@ bool is_hex_name(const std::string& text, std::size_t digits);
 
 class JobStore {
  public:
-  /// Reads what is there. Throws Error{invalid_input, "data"} when the folder cannot be used.
+  /// Reads what is there. Throws Error{invalid_input, "--data"} when the folder cannot be used, or another worker uses it.
   explicit JobStore(std::filesystem::path folder);
+  JobStore(const JobStore&) = delete;
+  JobStore& operator=(const JobStore&) = delete;
+  ~JobStore();
 
   std::filesystem::path blob_path(const std::string& sha256) const { return folder_ / "blobs" / sha256; }
   std::filesystem::path temporary_path();  // for an upload, in the same file system
@@ -52,6 +55,7 @@ class JobStore {
 
  private:
   std::filesystem::path folder_;
+  int lock_ = -1;
   std::map<std::string, StoredJob> jobs_;
 };
 

@@ -89,7 +89,7 @@ int run_operation(const Operation& operation, const std::vector<std::string>& wo
   };
   for (const OutputBlob& output : result.outputs) put(output.name, *output.bytes);
   // The report comes last: where it stands, everything else does.
-  put("report.json", as_bytes(result.report.dump(2) + "\n"));
+  put("report.json", as_bytes(json_text(result.report, 2) + "\n"));
   return 0;
 }
 

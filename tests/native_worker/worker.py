@@ -26,6 +26,7 @@ class Worker:
     def stop(self) -> None:
         self.process.terminate()
         self.process.wait(10)
+        self.process.stdout.close()
 
     def request(self, method: str, path: str, body: bytes | None = None, headers: dict | None = None, token: str | None = "own"):
         connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=60)

@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The native worker: jobs and results, what it refuses, and what it survives. Usage: worker_test.py PROGRAM"""
+import hashlib
+import http.client
 import json
 import os
 import pathlib
 import random
 import signal
 import socket
+import subprocess
 import sys
 import tempfile
 import time
@@ -42,11 +45,9 @@ class Jobs(WorkerCase):
             self.assertEqual(status, 200)
             self.assertEqual(len(body), output["bytes"])
             self.assertEqual(headers["Content-Type"], output["media_type"])
-            import hashlib
             self.assertEqual(hashlib.sha256(body).hexdigest(), output["sha256"])
 
     def test_the_catalog_is_the_command_lines(self):
-        import subprocess
         status, catalog = self.worker.json("GET", "/api/catalog")
         self.assertEqual(status, 200)
         self.assertEqual(catalog, json.loads(subprocess.check_output([PROGRAM, "describe"])))
@@ -78,10 +79,8 @@ class Jobs(WorkerCase):
         page = PageSocket(self.worker, self.worker.token)
         first, second = self.worker.post_job(**LONG), self.worker.post_job(**LONG)
         self.worker.wait_running(first)
-        asked = time.monotonic()
         page.send({"type": "cancel", "id": first})
         self.assertEqual(self.worker.wait(first)["state"], "cancelled")
-        self.assertLess(time.monotonic() - asked, 2.5)
         self.assertEqual(self.worker.request("POST", f"/api/jobs/{second}/cancel")[0], 202)
         self.assertEqual(self.worker.wait(second)["state"], "cancelled")
 
@@ -124,14 +123,40 @@ class Refusals(WorkerCase):
 
     def test_uploads_are_limited_and_checked(self):
         self.assertEqual(self.worker.request("PUT", "/api/blobs/" + "0" * 64, b"not what it says")[0], 422)
-        try:
-            status = self.worker.request("PUT", "/api/blobs/" + "0" * 64, bytes(3 << 20))[0]
-            self.assertEqual(status, 413)
-        except (BrokenPipeError, ConnectionResetError):
-            pass  # it stopped reading, as it should
+        # Refused for its length alone, yet the client that sends on hears why.
+        self.assertEqual(self.worker.request("PUT", "/api/blobs/" + "0" * 64, bytes(20 << 20))[0], 413)
         self.assertEqual(self.worker.request("POST", "/api/jobs", bytes(2 << 20))[0], 413)
         self.assertEqual(list((self.data / "blobs").iterdir()), [])
         self.assertEqual(list((self.data / "uploads").iterdir()), [])
+
+    def test_a_body_without_a_length_is_limited_too(self):
+        for path, method in (("/api/jobs", "POST"), ("/api/blobs/" + "0" * 64, "PUT")):
+            connection = http.client.HTTPConnection("127.0.0.1", self.worker.port, timeout=60)
+            connection.request(method, path, iter([bytes(1 << 18)] * 16), {"Authorization": "Bearer " + self.worker.token}, encode_chunked=True)
+            self.assertEqual(connection.getresponse().status, 413, path)
+            connection.close()
+        self.assertEqual(list((self.data / "uploads").iterdir()), [])
+
+    def test_a_client_that_asks_first_is_told_to_go_on(self):
+        with socket.create_connection(("127.0.0.1", self.worker.port), timeout=10) as raw:
+            name = hashlib.sha256(b"mesh").hexdigest()
+            raw.sendall(f"PUT /api/blobs/{name} HTTP/1.1\r\nHost: 127.0.0.1:{self.worker.port}\r\nAuthorization: Bearer {self.worker.token}\r\n"
+                        "Content-Length: 4\r\nExpect: 100-continue\r\nConnection: close\r\n\r\n".encode())
+            self.assertEqual(raw.recv(1000), b"HTTP/1.1 100 Continue\r\n\r\n")
+            raw.sendall(b"mesh")
+            self.assertTrue(raw.recv(1000).startswith(b"HTTP/1.1 201"))
+
+    def test_an_upload_that_breaks_off_leaves_nothing(self):
+        name = hashlib.sha256(b"x").hexdigest()
+        with socket.create_connection(("127.0.0.1", self.worker.port), timeout=10) as raw:
+            raw.sendall(f"PUT /api/blobs/{name} HTTP/1.1\r\nHost: 127.0.0.1:{self.worker.port}\r\nAuthorization: Bearer {self.worker.token}\r\n"
+                        "Content-Length: 1000\r\n\r\nhalf".encode())
+        for _ in range(200):
+            if not list((self.data / "uploads").iterdir()):
+                break
+            time.sleep(0.02)
+        self.assertEqual(list((self.data / "uploads").iterdir()), [])
+        self.assertEqual(self.worker.request("HEAD", f"/api/blobs/{name}")[0], 404)
 
     def test_nothing_outside_is_readable(self):
         for path in ("/../../etc/passwd", "/%2e%2e/%2e%2e/etc/passwd", "//etc/passwd", "/api/blobs/../jobs", "/api/jobs/../../x",
@@ -165,6 +190,38 @@ class Refusals(WorkerCase):
             other.socket.close()
         time.sleep(0.3)
         self.assertEqual(self.worker.request("GET", "/api/status")[0], 200)
+
+
+class Page(unittest.TestCase):
+    def test_the_built_page_is_served_isolated_and_cached_by_name(self):
+        with tempfile.TemporaryDirectory() as name:
+            web = pathlib.Path(name) / "web"
+            (web / "assets").mkdir(parents=True)
+            (web / "index.html").write_text("<!doctype html>")
+            (web / "assets" / "a-1234.js").write_text("export {};")
+            (web / "solver.wasm").write_bytes(b"\0asm")
+            (pathlib.Path(name) / "web-beside").mkdir()
+            (pathlib.Path(name) / "web-beside" / "secret.txt").write_text("secret")
+            (web / "link.txt").symlink_to(pathlib.Path(name) / "web-beside" / "secret.txt")
+            worker = Worker(PROGRAM, pathlib.Path(name) / "data", "--web", str(web))
+            try:
+                for path, kind, cache in (("/", "text/html; charset=utf-8", "no-cache"), ("/?x=1", "text/html; charset=utf-8", "no-cache"),
+                                          ("/assets/a-1234.js", "text/javascript", "public, max-age=31536000, immutable"), ("/solver.wasm", "application/wasm", "no-cache")):
+                    status, body, headers = worker.request("GET", path, token=None)
+                    self.assertEqual(status, 200, path)
+                    self.assertEqual(headers["Content-Type"], kind)
+                    self.assertEqual(headers["Cache-Control"], cache)
+                    self.assertEqual(headers["Cross-Origin-Opener-Policy"], "same-origin")
+                    self.assertEqual(headers["Cross-Origin-Embedder-Policy"], "require-corp")
+                    self.assertIn("script-src 'self' 'wasm-unsafe-eval';", headers["Content-Security-Policy"])
+                    self.assertIn(f"ws://127.0.0.1:{worker.port}", headers["Content-Security-Policy"])
+                    head = worker.request("HEAD", path, token=None)
+                    self.assertEqual((head[0], head[1], head[2]["Content-Length"]), (200, b"", str(len(body))))
+                for path in ("/link.txt", "/../web-beside/secret.txt", "/assets/../../web-beside/secret.txt", "/absent.js"):
+                    self.assertEqual(worker.request("GET", path, token=None)[0], 404, path)
+                self.assertEqual(worker.request("POST", "/", b"x", token=None)[0], 405)
+            finally:
+                worker.stop()
 
 
 class Survival(WorkerCase):
@@ -201,6 +258,48 @@ class Survival(WorkerCase):
         self.worker.request("POST", f"/api/jobs/{running}/cancel")
         self.assertEqual(self.worker.wait(running)["state"], "cancelled")
         self.assertEqual(self.worker.wait(queued)["state"], "done")
+
+    def test_restarts_do_not_wear_a_job_out(self):
+        running = self.worker.post_job(**LONG)
+        for _ in range(4):
+            self.worker.wait_running(running)
+            self.worker.stop()
+            self.worker = Worker(PROGRAM, self.data)
+        self.worker.wait_running(running)
+
+    def test_a_job_that_takes_the_worker_down_twice_is_not_tried_again(self):
+        running = self.worker.post_job(**LONG)
+        for _ in range(2):
+            self.worker.wait_running(running)
+            self.worker.process.kill()
+            self.worker.process.wait()
+            self.worker = Worker(PROGRAM, self.data)
+        self.assertEqual(self.worker.wait(running)["error"]["code"], "internal")
+
+    def refused_start(self, *flags: str) -> str:
+        run = subprocess.run([PROGRAM, "serve", *flags], capture_output=True, text=True, timeout=60)
+        self.assertEqual(run.returncode, 2, run.stderr)
+        self.assertEqual(run.stdout, "")
+        self.assertEqual(len(run.stderr.splitlines()), 1, run.stderr)
+        return run.stderr
+
+    def test_a_port_or_a_folder_in_use_is_said(self):
+        other = str(pathlib.Path(self.folder.name) / "other")
+        self.assertIn(f"Port {self.worker.port}", self.refused_start("--port", str(self.worker.port), "--data", other))
+        self.assertIn("Another worker", self.refused_start("--port", "0", "--data", str(self.data)))
+        self.assertIn("--port", self.refused_start("--port", "70000"))
+        self.assertIn("no flag --prot", self.refused_start("--prot", "1"))
+
+    def test_a_folder_is_free_again_however_the_worker_ended(self):
+        for end in (signal.SIGTERM, signal.SIGINT, signal.SIGKILL):
+            job = self.worker.post_job(**LONG)
+            self.worker.wait_running(job)
+            child = self.worker.job_process()
+            self.worker.process.send_signal(end)
+            self.assertEqual(self.worker.process.wait(10), 0 if end != signal.SIGKILL else -9)
+            self.worker = Worker(PROGRAM, self.data)
+            self.worker.request("POST", f"/api/jobs/{job}/cancel")
+            self.assertFalse(pathlib.Path(f"/proc/{child}").exists() and "run-jobs" in pathlib.Path(f"/proc/{child}/cmdline").read_text())
 
     def test_half_a_folder_from_a_crash_is_not_a_job(self):
         self.worker.stop()

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One connection: read a request's head, decide, read its body, answer, again.
+#include <algorithm>
+#include <array>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/write.hpp>
+#include <iostream>
+
+#include "base/error.h"
+#include "files.h"
+#include "http_server.h"
+
+namespace formwright {
+namespace {
+
+using boost::asio::use_awaitable;
+using namespace std::chrono_literals;
+
+constexpr std::uint64_t most_json_bytes = 1 << 20;
+constexpr std::uint32_t header_limit = 16 * 1024;
+constexpr std::uint64_t most_drained_bytes = std::uint64_t{256} << 20;
+
+/// "/api/blobs/<hash>" -> the hash, or "" for anything else.
+std::string blob_hash(const Head& head) {
+  const std::string target = text_of(head.target());
+  constexpr std::string_view prefix = "/api/blobs/";
+  if (!target.starts_with(prefix)) return "";
+  const std::string hash = target.substr(prefix.size());
+  return is_hex_name(hash, 64) ? hash : "";
+}
+
+bool is_upload(const Head& head) { return head.method() == http::verb::put && !blob_hash(head).empty(); }
+
+/// The answer after which the connection ends, because a body may stand unread in it.
+TextResponse last_answer(TextResponse response) {
+  response.keep_alive(false);
+  return response;
+}
+
+TextResponse token_refusal(const Head& head) {
+  return error_response(head, http::status::unauthorized, "invalid_input", "token", "The token is missing or wrong: open the page from the address that the worker printed.");
+}
+
+}  // namespace
+
+std::optional<TextResponse> HttpServer::refusal(const Head& head, std::optional<std::uint64_t> body_bytes) {
+  if (!host_allowed(head)) return error_response(head, http::status::misdirected_request, "invalid_input", "Host", "This server answers to its own address only.");
+  if (!origin_allowed(head)) return error_response(head, http::status::forbidden, "invalid_input", "Origin", "Another page may not use this worker.");
+  if (!within_rate()) return error_response(head, http::status::too_many_requests, "invalid_input", "", "Too many requests: wait a second.");
+  if (beast::websocket::is_upgrade(head)) {
+    if (text_of(head.target()) == "/api/socket" && token_in_subprotocol(head)) return std::nullopt;
+    return token_refusal(head);
+  }
+  if (text_of(head.target()).starts_with("/api/") && !token_given(head)) return token_refusal(head);
+  const std::uint64_t bytes = body_bytes.value_or(0);
+  if (is_upload(head) && bytes > options_.upload_limit_bytes) return upload_too_large(head);
+  if (!is_upload(head) && bytes > most_json_bytes)
+    return error_response(head, http::status::payload_too_large, "invalid_input", "", "The message is too large: send meshes as blobs.");
+  return std::nullopt;
+}
+
+TextResponse HttpServer::upload_too_large(const Head& head) const {
+  return error_response(head, http::status::payload_too_large, "invalid_input", "mesh",
+                        "The file is larger than " + std::to_string(options_.upload_limit_bytes >> 20) + " MB: simplify it first.");
+}
+
+boost::asio::awaitable<void> HttpServer::serve_connection(Socket socket) {
+  beast::tcp_stream stream(std::move(socket));
+  beast::flat_buffer buffer;
+  stream.expires_after(10s);  // a new connection says what it wants; one that is kept open may rest longer
+  for (;;) {
+    http::request_parser<http::empty_body> head;
+    head.header_limit(header_limit);
+    head.body_limit(boost::none);  // refusal() looks at the length, and says so instead of hanging up
+    boost::system::error_code error;
+    co_await http::async_read_header(stream, buffer, head, boost::asio::redirect_error(use_awaitable, error));
+    if (error) break;
+    const Head request = head.get();
+    std::optional<std::uint64_t> body_bytes;
+    if (const auto length = head.content_length()) body_bytes = *length;
+
+    Response response;
+    if (auto refused = refusal(request, body_bytes)) {
+      response = last_answer(std::move(*refused));
+    } else if (beast::websocket::is_upgrade(request)) {
+      auto page = std::make_shared<PageSocket>(beast::websocket::stream<beast::tcp_stream>(std::move(stream)));
+      co_await serve_page_socket(page, request);
+      co_return;
+    } else {
+      try {
+        response = co_await receive_and_answer(stream, buffer, head);
+      } catch (const std::exception& mistake) {
+        std::cerr << "formwright: " << text_of(request.target()) << ": " << mistake.what() << std::endl;
+        response = last_answer(error_response(request, http::status::internal_server_error, "internal", "", "The worker made a mistake: its terminal says which."));
+      }
+    }
+    stream.expires_after(10min);
+    bool close = false;
+    if (auto* text = std::get_if<TextResponse>(&response)) {
+      close = text->need_eof();
+      co_await http::async_write(stream, *text, boost::asio::redirect_error(use_awaitable, error));
+    } else {
+      auto& file = std::get<FileResponse>(response);
+      close = file.need_eof();
+      co_await http::async_write(stream, file, boost::asio::redirect_error(use_awaitable, error));
+    }
+    if (error) break;
+    if (close) {
+      co_await finish_sending(stream);
+      break;
+    }
+    stream.expires_after(60s);
+  }
+  boost::system::error_code ignored;
+  stream.socket().shutdown(Socket::shutdown_both, ignored);
+}
+
+boost::asio::awaitable<void> HttpServer::finish_sending(beast::tcp_stream& stream) {
+  // Closing with bytes unread resets the connection, and the client loses the answer it was sent (RFC 9112, 9.6).
+  boost::system::error_code error;
+  stream.socket().shutdown(Socket::shutdown_send, error);
+  std::vector<char> unread(64 * 1024);
+  std::uint64_t drained = 0;
+  stream.expires_after(5s);
+  while (!error && drained < most_drained_bytes)
+    drained += co_await stream.async_read_some(boost::asio::buffer(unread), boost::asio::redirect_error(use_awaitable, error));
+}
+
+boost::asio::awaitable<Response> HttpServer::receive_and_answer(beast::tcp_stream& stream, beast::flat_buffer& buffer, http::request_parser<http::empty_body>& head) {
+  const Head request = head.get();
+  boost::system::error_code error;
+  if (beast::iequals(request[http::field::expect], "100-continue")) {
+    static constexpr std::string_view go_on = "HTTP/1.1 100 Continue\r\n\r\n";
+    co_await boost::asio::async_write(stream, boost::asio::buffer(go_on.data(), go_on.size()), boost::asio::redirect_error(use_awaitable, error));
+  }
+  if (is_upload(request)) {
+    Response answer = co_await receive_upload(stream, buffer, head);
+    co_return answer;
+  }
+  http::request_parser<http::string_body> parser(std::move(head));
+  parser.body_limit(most_json_bytes);  // also of a body that does not say its length
+  stream.expires_after(30s);
+  co_await http::async_read(stream, buffer, parser, boost::asio::redirect_error(use_awaitable, error));
+  if (error == http::error::body_limit || error == http::error::buffer_overflow)
+    co_return last_answer(error_response(request, http::status::payload_too_large, "invalid_input", "", "The message is too large: send meshes as blobs."));
+  if (error) co_return last_answer(error_response(request, http::status::bad_request, "invalid_input", "", "The request was cut off or is not HTTP."));
+  co_return answer(request, parser.get().body());
+}
+
+boost::asio::awaitable<Response> HttpServer::receive_upload(beast::tcp_stream& stream, beast::flat_buffer& buffer, http::request_parser<http::empty_body>& head) {
+  const Head request = head.get();
+  const UploadFile received(store_.temporary_path());
+  boost::system::error_code error;
+  http::request_parser<http::file_body> parser(std::move(head));
+  parser.body_limit(options_.upload_limit_bytes);
+  parser.get().body().open(received.path.c_str(), beast::file_mode::write, error);
+  stream.expires_after(10min);
+  if (!error) co_await http::async_read(stream, buffer, parser, boost::asio::redirect_error(use_awaitable, error));
+  parser.get().body().close();
+  if (error == http::error::body_limit) co_return last_answer(upload_too_large(request));
+  if (error == boost::system::errc::no_space_on_device)
+    co_return last_answer(error_response(request, http::status::insufficient_storage, "internal", "", "The disk is full: make room and try again."));
+  if (error) co_return last_answer(error_response(request, http::status::bad_request, "invalid_input", "mesh", "The upload was cut off: try again."));
+  // Hashing a large file takes a moment, and others are waiting: not on this thread.
+  const std::string found = co_await boost::asio::co_spawn(
+      hashing_, [](std::filesystem::path path) -> boost::asio::awaitable<std::string> { co_return sha256_of_file(path); }(received.path), use_awaitable);
+  co_return accept_upload(request, blob_hash(request), received.path, found);
+}
+
+}  // namespace formwright

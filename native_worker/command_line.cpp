@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "geometry/samples/samples.h"
 #include "job/catalog.h"
 
 namespace formwright {
@@ -182,7 +181,7 @@ std::string operation_help(const Operation& operation) {
     text += entry(dashed(input.name) + " FILE", width, input.help + " (" + list + ")");
     if (input.accepts_sample) {
       std::string names;
-      for (const auto& sample : sample_catalog()) names += (names.empty() ? "" : ", ") + sample.name;
+      for (const Json& sample : catalog_json()["samples"]) names += (names.empty() ? "" : ", ") + sample["name"].get<std::string>();
       text += entry("--sample NAME", width, "A built-in shape instead of a file: " + names + ".");
       text += entry("--sample-vertices N", width, "Its resolution.");
     }

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "numerics/bounded_qp_energy.h"
 #include "numerics/bounded_qp_rows.h"
+#include "numerics/bounded_qp_tie.h"
 #include "numerics/exchange_solver.h"
 
 namespace formwright {
@@ -38,18 +39,16 @@ BoundedQpSolution BoundedQp::solve(const BoundedQpConstraints& constraints, cons
   BoundedQpSolution solution;
   solution.u = std::move(found.u);
   solution.m = std::move(found.m);
+  break_ties(I.energy, rows, found.pushing, options.violation_tolerance, solution.u, solution.m, context);
   rows.clip(solution.u, solution.m);
   Rows::Violations violations;
   rows.evaluate(solution.u, solution.m, violations);
   solution.violation_max = violations.max;
   solution.objective = I.energy.energy(solution.u);
-  Eigen::VectorXd force = found.gauge_multiplier * constraints.gauge;
-  for (std::size_t k = 0; k < found.active.size(); ++k) {
-    rows.add_force(found.active[k], found.multiplier[static_cast<Eigen::Index>(k)], force);
-  }
-  const double size = force.cwiseAbs().maxCoeff();
-  solution.kkt_residual = size > 0 ? (I.energy.apply(solution.u) - force).cwiseAbs().maxCoeff() / size : 0;
+  const double size = found.force.cwiseAbs().maxCoeff();
+  solution.kkt_residual = size > 0 ? (I.energy.apply(solution.u) - found.force).cwiseAbs().maxCoeff() / size : 0;
   solution.rounds = found.rounds;
+  solution.seconds = found.seconds;
   solution.history = std::move(found.history);
   solution.active_constraints = static_cast<int>(found.active.size());
   return solution;

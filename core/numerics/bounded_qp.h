@@ -53,6 +53,13 @@ struct BoundedQpRound {
   int linear_systems = 0;      // small dense ones
 };
 
+struct BoundedQpSeconds {
+  double factorise = 0;  // sparse factorisations
+  double columns = 0;    // sparse solves and products for new constraints
+  double pool = 0;       // small dense problems
+  double sweeps = 0;     // back-solves and searches for violations
+};
+
 struct BoundedQpSolution {
   Eigen::VectorXd u, m;
   double objective = 0;        // 1/2 u^T Q u
@@ -61,6 +68,7 @@ struct BoundedQpSolution {
   int rounds = 0;
   int active_constraints = 0;  // with a positive multiplier
   QpMethod method_used = QpMethod::exchange;
+  BoundedQpSeconds seconds;
   std::vector<BoundedQpRound> history;
 };
 

@@ -14,6 +14,7 @@ namespace formwright::bounded_qp_detail {
 namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t unknowns_per_chunk = 8192;
+constexpr std::ptrdiff_t few = 100;  // violated bounds that enter together: it saves the last rounds, which creep from neighbour to neighbour
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 [[noreturn]] void reject(const std::string& where, const std::string& message) {
@@ -122,8 +123,12 @@ void Rows::add_force(RowKey key, double y, Eigen::VectorXd& f) const {
   }
 }
 
+double Rows::deficit(RowKey key, const Eigen::VectorXd& u, const Eigen::VectorXd& m) const {
+  return bound(key) - slope(key) * m[group(key)] - apply(key, u);
+}
+
 double Rows::violation(RowKey key, const Eigen::VectorXd& u, const Eigen::VectorXd& m) const {
-  const double v = bound(key) - slope(key) * m[group(key)] - apply(key, u);
+  const double v = deficit(key, u, m);
   return equality(key) ? std::abs(v) : v;
 }
 
@@ -155,14 +160,15 @@ void Rows::evaluate(const Eigen::VectorXd& u, const Eigen::VectorXd& m, Violatio
   out.max = std::max(out.max, out.max_order);
 }
 
-std::vector<RowKey> Rows::local_maxima(const Violations& v, double least) const {
-  std::vector<std::pair<double, RowKey>> found;
+std::vector<RowKey> Rows::worth_adding(const Violations& v, double least) const {
+  std::vector<std::pair<double, RowKey>> found; 
+  const bool all = std::count_if(v.bound.begin(), v.bound.end(), [&](double x) { return x > least; }) <= few;
   for (int i = 0; i < size(); ++i) {
     const double here = v.bound[at(i)];
     if (!(here > least)) continue;
     const Side side = v.side[at(i)];
     bool highest = true;
-    if (side != Side::both) {
+    if (side != Side::both && !all) {
       for (const int j : energy_.neighbours(i)) {
         const double there = v.bound[at(j)];
         if (v.side[at(j)] == side && (there > here || (there == here && j < i))) {

@@ -36,6 +36,8 @@ class Rows {
   double apply(RowKey key, const Eigen::VectorXd& v) const;
   /// Adds y g to f.
   void add_force(RowKey key, double y, Eigen::VectorXd& f) const;
+  /// bound - slope m - g^T u.
+  double deficit(RowKey key, const Eigen::VectorXd& u, const Eigen::VectorXd& m) const;
   /// By how much the row is violated (negative: slack).
   double violation(RowKey key, const Eigen::VectorXd& u, const Eigen::VectorXd& m) const;
 
@@ -49,8 +51,8 @@ class Rows {
   void evaluate(const Eigen::VectorXd& u, const Eigen::VectorXd& m, Violations& out) const;
 
   /// Rows to add: violated by more than `least` and more than any neighbour in the graph of Q (bounds), or than any
-  /// other order row that shares an unknown; the most violated first.
-  std::vector<RowKey> local_maxima(const Violations& v, double least) const;
+  /// other order row that shares an unknown; all bounds when they are few; the most violated first.
+  std::vector<RowKey> worth_adding(const Violations& v, double least) const;
 
   /// Moves u into its bounds: every bound then holds exactly as computed.
   void clip(Eigen::VectorXd& u, const Eigen::VectorXd& m) const;

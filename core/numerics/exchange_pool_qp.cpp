@@ -108,30 +108,54 @@ void PoolQp::refactor(int from) {
   ++pivots_;
 }
 
-// With A the active rows, solves
-//   (S' + Dy) y + B w = d + Dy y0 + B T (B^T y - P w - r, which vanishes),   B^T y - (P + E) w = r - E w0.
-void PoolQp::solve_active() {
-  const auto k = static_cast<Eigen::Index>(order_.size());
-  const Eigen::Index d = p_.drivers();
-  Eigen::VectorXd f(k);
-  for (Eigen::Index a = 0; a < k; ++a) {
-    const int row = order_[static_cast<std::size_t>(a)];
-    f[a] = p_.d[row] + proximal_y_ * row_diagonal_[row] * centre_y_[row];
-  }
+// f (in the factor's order) and w: (S' + Dy) y + B w = f, B^T y - (P + E) w = balance; y overwrites f.
+void PoolQp::solve_factored(Eigen::VectorXd& f, const Eigen::VectorXd& balance, Eigen::VectorXd& w) const {
+  const Eigen::Index k = f.size(), d = p_.drivers();
   const auto L = L_.topLeftCorner(k, k).triangularView<Eigen::Lower>();
   if (k > 0) L.solveInPlace(f);
+  w.resize(d);
   if (d > 0) {
     const auto V = V_.topRows(k);
     Eigen::MatrixXd T = p_.P;
     T.diagonal() += proximal_w_;
     T.noalias() += V.transpose() * V;
-    const Eigen::VectorXd rhs = V.transpose() * f - p_.r + proximal_w_.cwiseProduct(centre_w_);
-    w_ = T.llt().solve(rhs);
-    f.noalias() -= V * w_;
+    w = T.llt().solve(V.transpose() * f - balance);
+    f.noalias() -= V * w;
   }
   if (k > 0) L.transpose().solveInPlace(f);
+}
+
+// With A the active rows, (S' + Dy) y + B w = d + Dy y0 and B^T y - (P + E) w = r - E w0.
+void PoolQp::solve_active() {
+  const auto k = static_cast<Eigen::Index>(order_.size());
+  Eigen::VectorXd f(k);
+  for (Eigen::Index a = 0; a < k; ++a) {
+    const int row = order_[static_cast<std::size_t>(a)];
+    f[a] = p_.d[row] + proximal_y_ * row_diagonal_[row] * centre_y_[row];
+  }
+  solve_factored(f, p_.r - proximal_w_.cwiseProduct(centre_w_), w_);
   y_.setZero(p_.rows());
   for (Eigen::Index a = 0; a < k; ++a) y_[order_[static_cast<std::size_t>(a)]] = f[a];
+}
+
+std::pair<Eigen::VectorXd, Eigen::VectorXd> PoolQp::correct(const Eigen::VectorXd& slack_error, const Eigen::VectorXd& balance_error) const {
+  Eigen::VectorXd f(static_cast<Eigen::Index>(order_.size())), dw, dy = Eigen::VectorXd::Zero(p_.rows());
+  for (Eigen::Index a = 0; a < f.size(); ++a) f[a] = slack_error[order_[static_cast<std::size_t>(a)]];
+  solve_factored(f, balance_error, dw);
+  for (Eigen::Index a = 0; a < f.size(); ++a) dy[order_[static_cast<std::size_t>(a)]] = f[a];
+  return {dy, dw};
+}
+
+// Round-off in slacks: at least that of adding S y, and what is left of the equations just solved.
+double PoolQp::noise(const Eigen::VectorXd& s) const {
+  double most = 0, sum = 0, left = 0;
+  for (const int a : order_) {
+    const double root = std::sqrt(row_diagonal_[a]);
+    most = std::max(most, root);
+    sum += root * std::abs(y_[a]);
+    left = std::max(left, std::abs(s[a] + proximal_y_ * row_diagonal_[a] * (y_[a] - centre_y_[a])));
+  }
+  return std::max(std::numeric_limits<double>::epsilon() * most * sum, 4 * left);
 }
 
 Eigen::VectorXd PoolQp::slack() const {
@@ -151,10 +175,11 @@ bool PoolQp::block_pivoting(double tolerance, Context& context) {
     factor(active);
     solve_active();
     const Eigen::VectorXd s = slack();
+    const double allowed = std::max(tolerance, noise(s));
     int wrong = 0;
     for (int a = 0; a < p_.rows(); ++a) {
       if (p_.equality[at(a)]) continue;
-      if (active[at(a)] ? y_[a] < 0 : s[a] < -tolerance) {
+      if (active[at(a)] ? y_[a] < 0 : s[a] < -allowed) {
         active[at(a)] = !active[at(a)];
         ++wrong;
       }
@@ -172,11 +197,14 @@ bool PoolQp::block_pivoting(double tolerance, Context& context) {
 // How far from `now` >= 0 towards `goal` one may go before turning negative, 1 if all the way.
 static double reach(double now, double goal) { return goal > 0 ? 1.0 : now > 0 ? now / (now - goal) : 0.0; }
 
-// Monotone: every pass raises the dual objective, so that no active set comes back.
+// Monotone: every pass raises the dual objective, so that no active set comes back. Once round-off in the objective
+// is all that passes change, the rest is round-off in the slacks too.
 void PoolQp::lawson_hanson(double tolerance, Context& context) {
   const int k = p_.rows();
-  std::vector<char> active = p_.equality;
+  std::vector<char> active = p_.equality, aside(at(k), 0);
   Eigen::VectorXd y = Eigen::VectorXd::Zero(k);
+  int entered = -1, idle = 0;
+  double best = -std::numeric_limits<double>::infinity();
   for (;;) {
     for (;;) {
       context.check_cancelled();
@@ -189,23 +217,28 @@ void PoolQp::lawson_hanson(double tolerance, Context& context) {
       if (step >= 1) break;
       for (int a = 0; a < k; ++a) {
         if (!active[at(a)]) continue;
-        const double next = y[a] + step * (y_[a] - y[a]);
         if (!p_.equality[at(a)] && reach(y[a], y_[a]) <= step) {
           active[at(a)] = 0;
           y[a] = 0;
         } else {
-          y[a] = next;
+          y[a] += step * (y_[a] - y[a]);
         }
       }
     }
     y = y_;
+    if (entered >= 0 && !active[at(entered)]) aside[at(entered)] = 1;  // round-off pushed it in, round-off pushed it out
     const Eigen::VectorXd s = slack();
-    int worst = -1;
+    const double value = y.dot(p_.d - 0.5 * (s + p_.d - p_.B * w_)) - 0.5 * w_.dot(p_.P * w_);
+    idle = value > best + 1e-13 * std::abs(best) ? 0 : idle + 1;
+    best = std::max(best, value);
+    if (idle > k) return;
+    const double allowed = std::max(tolerance, noise(s));
+    entered = -1;
     for (int a = 0; a < k; ++a) {
-      if (!active[at(a)] && s[a] < -tolerance && (worst < 0 || s[a] < s[worst])) worst = a;
+      if (!active[at(a)] && !aside[at(a)] && s[a] < -allowed && (entered < 0 || s[a] < s[entered])) entered = a;
     }
-    if (worst < 0) return;
-    active[at(worst)] = 1;
+    if (entered < 0) return;
+    active[at(entered)] = 1;
   }
 }
 
@@ -247,6 +280,7 @@ PoolSolution PoolQp::solve(const std::vector<char>& start, const Eigen::VectorXd
   }
   result.y = y_;
   result.w = w_;
+  result.push = row_diagonal_.cwiseProduct(y_);
   result.active = active_;
   result.pivots = pivots_;
   return result;

@@ -31,6 +31,7 @@ struct PoolSolution {
   Eigen::VectorXd y;         // rows; zero where inactive
   Eigen::VectorXd w;         // drivers; where the rows leave a choice, the nearest to the start
   std::vector<char> active;  // rows held with equality
+  Eigen::VectorXd push;      // rows; by about how much y moves its own row, in units of d
   double residual = 0;       // how far active rows are from being held, in units of d
   bool contradictory = false;  // no w and v satisfy all rows (as far as double precision tells)
   int pivots = 0;            // linear systems solved
@@ -44,11 +45,18 @@ class PoolQp {
   /// `start`: active flags to begin with (rows), `w`: drivers to stay near, `tolerance`: on slack, in units of d.
   PoolSolution solve(const std::vector<char>& start, const Eigen::VectorXd& w, double tolerance, Context& context);
 
+  /// One step of iterative refinement on the last active set, with the same factor: solves
+  ///   S_AA dy + B_A dw = slack_error_A,   B_A^T dy - P dw = balance_error.
+  /// Returns dy (rows; zero where inactive) and dw.
+  std::pair<Eigen::VectorXd, Eigen::VectorXd> correct(const Eigen::VectorXd& slack_error, const Eigen::VectorXd& balance_error) const;
+
  private:
   double gram(int a, int b) const;
   void factor(const std::vector<char>& active);
   void refactor(int from);
   void solve_active();
+  void solve_factored(Eigen::VectorXd& f, const Eigen::VectorXd& balance, Eigen::VectorXd& w) const;
+  double noise(const Eigen::VectorXd& s) const;
   Eigen::VectorXd slack() const;
   bool block_pivoting(double tolerance, Context& context);
   void lawson_hanson(double tolerance, Context& context);

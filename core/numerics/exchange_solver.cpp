@@ -4,13 +4,17 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "base/error.h"
 
 namespace formwright::bounded_qp_detail {
 
 namespace {
-constexpr double target_violation = 1e-3;  // of the tolerance: what rounds strive for before they accept
+constexpr double target_violation = 1e-3;  // of the tolerance: what rounds strive for
+constexpr int refinements = 3;             // at most, per round
+constexpr double force_tolerance = 1e-10;  // on Q u - forces, relative: above it a refinement is tried
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 std::size_t hash_of(const InequalityRow& row) {
@@ -84,17 +88,21 @@ void ExchangeSolver::start(const Rows& rows, const std::vector<RowKey>& base, Co
     base_offset_ = held.col(groups);
     base_slope_ = held.leftCols(groups);
   }
-  if (gauge_column_ < 0 || gauge_ != rows.constraints().gauge) {
-    gauge_ = rows.constraints().gauge;
+  const double gauge_size = rows.constraints().gauge.cwiseAbs().sum();
+  const Eigen::VectorXd gauge = gauge_size > 0 ? Eigen::VectorXd(rows.constraints().gauge / gauge_size) : Eigen::VectorXd();
+  if (gauge.size() == 0) {
+    gauge_column_ = -1;
+  } else if (gauge_column_ < 0 || gauge_ != gauge) {
     SparseVector g;
     for (int i = 0; i < n; ++i) {
-      if (energy_.fixed(i) || gauge_[i] == 0) continue;
+      if (energy_.fixed(i) || gauge[i] == 0) continue;
       g.index.push_back(i);
-      g.value.push_back(gauge_[i]);
+      g.value.push_back(gauge[i]);
     }
     columns_.append(std::vector{energy_.factor().forward(g)}, context);
     gauge_column_ = columns_.count() - 1;
   }
+  gauge_ = gauge;
   // The pool of the call before, as far as its rows still mean the same.
   std::vector<RowKey> kept;
   std::vector<char> active;
@@ -159,32 +167,34 @@ void ExchangeSolver::add_to_pool(const Rows& rows, std::span<const RowKey> keys,
   }
 }
 
-// Row 0 is the gauge. Every row reads g^T (offset + slope m + sum_k c_k 1_k + v) + slope m >= bound.
+// The pool's rows, then the gauge. Every row reads g^T (offset + slope m + sum_k c_k 1_k + v) + slope m >= bound.
 PoolProblem ExchangeSolver::pool_problem(const Rows& rows) const {
   const int groups = rows.groups(), drivers = static_cast<int>(drivers_.size()), constants = drivers - groups;
-  const auto k = static_cast<Eigen::Index>(pool_.size()) + 1;
+  const auto pool = static_cast<Eigen::Index>(pool_.size()), k = pool + (gauge_column_ >= 0 ? 1 : 0);
   PoolProblem p;
   p.B.setZero(k, drivers);
   p.d.setZero(k);
-  p.column.assign(1, gauge_column_);
-  p.column.insert(p.column.end(), pool_column_.begin(), pool_column_.end());
+  p.column = pool_column_;
   p.sign.assign(static_cast<std::size_t>(k), 1);
   p.equality.assign(static_cast<std::size_t>(k), 0);
-  p.equality[0] = 1;
   p.P.setZero(drivers, drivers);
   p.P.bottomRightCorner(groups, groups) = base_P_;
   p.r.setZero(drivers);
   p.r.tail(groups) = base_r_;
-  for (int i = 0; i < energy_.size(); ++i) {
-    const int c = constant_driver_[at(energy_.component(i))];
-    if (c >= 0) p.B(0, c) += gauge_[i];
+  if (k > pool) {
+    p.column.push_back(gauge_column_);
+    p.equality.back() = 1;
+    for (int i = 0; i < energy_.size(); ++i) {
+      const int c = constant_driver_[at(energy_.component(i))];
+      if (c >= 0) p.B(pool, c) += gauge_[i];
+    }
+    if (base_offset_.size() > 0) {
+      p.B.row(pool).tail(groups) = gauge_.transpose() * base_slope_;
+      p.d[pool] = -gauge_.dot(base_offset_);
+    }
   }
-  if (base_offset_.size() > 0) {
-    p.B.row(0).tail(groups) = gauge_.transpose() * base_slope_;
-    p.d[0] = -gauge_.dot(base_offset_);
-  }
-  for (Eigen::Index j = 1; j < k; ++j) {
-    const RowKey key = pool_[static_cast<std::size_t>(j - 1)];
+  for (Eigen::Index j = 0; j < pool; ++j) {
+    const RowKey key = pool_[static_cast<std::size_t>(j)];
     if (key.side == Side::upper) p.sign[static_cast<std::size_t>(j)] = -1;
     p.equality[static_cast<std::size_t>(j)] = rows.equality(key);
     p.B(j, constants + rows.group(key)) += rows.slope(key);
@@ -207,71 +217,140 @@ PoolProblem ExchangeSolver::pool_problem(const Rows& rows) const {
   return p;
 }
 
-Eigen::VectorXd ExchangeSolver::displacement(const PoolProblem& problem, const PoolSolution& pool) const {
-  Eigen::VectorXd by_column = Eigen::VectorXd::Zero(columns_.count());
-  for (int a = 0; a < problem.rows(); ++a) by_column[problem.column[at(a)]] += problem.sign[at(a)] * pool.y[a];
-  Eigen::VectorXd u = columns_.combine(by_column);
-  energy_.factor().backward(u);
+Eigen::VectorXd ExchangeSolver::by_column(const PoolProblem& problem, const Eigen::VectorXd& y) const {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(columns_.count());
+  for (int a = 0; a < problem.rows(); ++a) sum[problem.column[at(a)]] += problem.sign[at(a)] * y[a];
+  return sum;
+}
+
+// Clears the unit rows of the factorisation and adds what the drivers do.
+void ExchangeSolver::add_drivers(const Eigen::VectorXd& w, Eigen::VectorXd& u) const {
   for (int i = 0; i < energy_.size(); ++i) {
-    if (energy_.fixed(i)) u[i] = 0;  // unit rows of the factorisation
+    if (energy_.fixed(i)) u[i] = 0;
     const int c = constant_driver_[at(energy_.component(i))];
-    if (c >= 0) u[i] += pool.w[c];
+    if (c >= 0) u[i] += w[c];
   }
-  if (base_offset_.size() > 0) u += base_offset_ + base_slope_ * pool.w.tail(base_slope_.cols());
-  return u;
+  if (base_offset_.size() > 0) u += base_slope_ * w.tail(base_slope_.cols());
+}
+
+Eigen::VectorXd ExchangeSolver::forces(const Rows& rows, const PoolSolution& pool) const {
+  Eigen::VectorXd f = Eigen::VectorXd::Zero(energy_.size());
+  for (std::size_t k = 0; k < pool_.size(); ++k) rows.add_force(pool_[k], pool.y[static_cast<Eigen::Index>(k)], f);
+  if (gauge_column_ >= 0) f += pool.y[pool.y.size() - 1] * gauge_;
+  return f;
+}
+
+double ExchangeSolver::force_residual(const Rows& rows, const PoolSolution& pool, const Eigen::VectorXd& u) const {
+  const Eigen::VectorXd force = forces(rows, pool), left = energy_.apply(u) - force;
+  double worst = 0;
+  for (int i = 0; i < energy_.size(); ++i) {
+    if (base_.empty() || !energy_.fixed(i)) worst = std::max(worst, std::abs(left[i]));
+  }
+  return worst / std::max(force.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
+}
+
+// One step of iterative refinement of the whole KKT system on the active set: the factor of Q is exact to round-off
+// times its condition number, which for a fourth-order energy on a poor mesh is not enough.
+void ExchangeSolver::refine(const Rows& rows, const PoolProblem& problem, const PoolQp& qp, PoolSolution& pool, Eigen::VectorXd& u) const {
+  const Eigen::Index groups = rows.groups();
+  const Eigen::VectorXd force = forces(rows, pool);
+  Eigen::VectorXd z = force - energy_.apply(u);
+  for (int i = 0; i < energy_.size(); ++i) {
+    if (energy_.fixed(i)) z[i] = 0;
+  }
+  energy_.factor().forward(Eigen::Ref<Eigen::VectorXd>(z));
+  const Eigen::VectorXd moved = columns_.project(z);  // by what the step so far moves every row
+  const Eigen::VectorXd m = pool.w.tail(groups);
+  Eigen::VectorXd slack_error(problem.rows());
+  for (int a = 0; a < problem.rows(); ++a) {
+    const double error = at(a) < pool_.size() ? rows.deficit(pool_[at(a)], u, m) : -gauge_.dot(u);
+    slack_error[a] = error - problem.sign[at(a)] * moved[problem.column[at(a)]];
+  }
+  const Eigen::VectorXd balance = problem.P * pool.w + problem.r - problem.B.transpose() * pool.y;
+  const auto [dy, dw] = qp.correct(slack_error, balance);
+  z += columns_.combine(by_column(problem, dy));
+  energy_.factor().backward(z);
+  add_drivers(dw, z);
+  u += z;
+  pool.w += dw;
+  pool.y += dy;
+  for (int a = 0; a < problem.rows(); ++a) {
+    if (!problem.equality[at(a)]) pool.y[a] = std::max(pool.y[a], 0.0);
+  }
 }
 
 ExchangeResult ExchangeSolver::solve(const Rows& rows, const std::vector<RowKey>& base, const ExchangeSettings& settings, Context& context) {
   ExchangeResult result;
+  Stopwatch watch;
   start(rows, base, context);
+  result.seconds.factorise = watch.lap();
   const double target = target_violation * settings.violation_tolerance;
   const int groups = rows.groups();
   result.u = Eigen::VectorXd::Zero(energy_.size());
   result.m = drivers_.tail(groups);
   PoolProblem problem;
   PoolSolution pool;
+  std::optional<PoolQp> qp;
   Rows::Violations violations;
-  std::vector<RowKey> added;
-  Stopwatch watch;
   for (;; ++result.rounds) {
-    if (result.rounds > 0 || !pool_.empty() || !base.empty()) {
-      watch.lap();
+    const bool at_rest = result.rounds == 0 && pool_.empty() && base.empty();  // u = 0 is optimal for no constraints
+    if (!at_rest) {
       problem = pool_problem(rows);
-      std::vector<char> start(1, 1);
-      start.insert(start.end(), active_.begin(), active_.end());
-      PoolQp qp(columns_.gram(), problem);
-      pool = qp.solve(start, drivers_, target, context);
-      result.pivots += pool.pivots;
+      std::vector<char> start_active = active_;
+      start_active.resize(at(problem.rows()), 1);
+      qp.emplace(columns_.gram(), problem);
+      pool = qp->solve(start_active, drivers_, target, context);
       if (pool.contradictory) {
         throw Error(ErrorCode::could_not_solve, "constraints", "The constraints contradict each other: no displacement satisfies them all.");
       }
-      active_.assign(pool.active.begin() + 1, pool.active.end());
+      active_.assign(pool.active.begin(), pool.active.begin() + static_cast<std::ptrdiff_t>(pool_.size()));
       drivers_ = pool.w;
-      result.m = pool.w.tail(groups);
-      result.seconds_pool += watch.lap();
-      result.u = displacement(problem, pool);
-      result.seconds_sweeps += watch.lap();
+      result.seconds.pool += watch.lap();
+      result.u = columns_.combine(by_column(problem, pool.y));
+      energy_.factor().backward(result.u);
+      add_drivers(pool.w, result.u);
+      if (base_offset_.size() > 0) result.u += base_offset_;
     }
-    rows.evaluate(result.u, result.m, violations);
-    result.violation_max = violations.max;
-    std::vector<RowKey> keys = rows.local_maxima(violations, target);
-    result.seconds_sweeps += watch.lap();
-    std::erase_if(keys, [&](RowKey key) { return std::find(pool_.begin(), pool_.end(), key) != pool_.end(); });
+    std::vector<RowKey> keys;
+    for (int pass = 0;; ++pass) {
+      result.m = at_rest ? drivers_.tail(groups) : pool.w.tail(groups);
+      rows.evaluate(result.u, result.m, violations);
+      keys = rows.worth_adding(violations, target);
+      std::erase_if(keys, [&](RowKey key) { return std::find(pool_.begin(), pool_.end(), key) != pool_.end(); });
+      if (at_rest || pass == refinements) break;
+      // Round-off matters once it is all that is left to mend.
+      double held = 0, left = 0;
+      for (std::size_t k = 0; k < pool_.size(); ++k) {
+        if (active_[k]) held = std::max(held, std::abs(rows.violation(pool_[k], result.u, result.m)));
+      }
+      for (const RowKey key : keys) left = std::max(left, rows.violation(key, result.u, result.m));
+      if (left > 10 * held) break;
+      if (held <= 0.1 * settings.violation_tolerance && (!keys.empty() || force_residual(rows, pool, result.u) <= force_tolerance)) break;
+      refine(rows, problem, *qp, pool, result.u);
+    }
+    result.seconds.sweeps += watch.lap();
     result.history.push_back({violations.max, static_cast<int>(pool_.size()), static_cast<int>(std::count(active_.begin(), active_.end(), 1)), pool.pivots});
-    if (violations.max <= target || keys.empty() || result.rounds >= settings.max_rounds) break;
+    if (keys.empty() || result.rounds >= settings.max_rounds) break;
+    if (static_cast<int>(result.history.back().active) > settings.most_active) {
+      result.pool_full = true;
+      break;
+    }
     add_to_pool(rows, keys, context);
-    result.seconds_columns += watch.lap();
+    result.seconds.columns += watch.lap();
     context.progress(static_cast<double>(result.rounds) / (result.rounds + 5), "Finding contacts");
   }
+  result.violation_max = violations.max;
   result.columns = columns_.count();
   std::vector<double> multiplier;
   for (std::size_t k = 0; k < pool_.size(); ++k) {
-    if (!active_[k] || (pool.y[static_cast<Eigen::Index>(k) + 1] == 0 && !rows.equality(pool_[k]))) continue;
+    const double y = pool.y[static_cast<Eigen::Index>(k)];
+    if (y == 0 && !rows.equality(pool_[k])) continue;
     result.active.push_back(pool_[k]);
-    multiplier.push_back(pool.y[static_cast<Eigen::Index>(k) + 1]);
+    multiplier.push_back(y);
+    if (std::abs(pool.push[static_cast<Eigen::Index>(k)]) > settings.violation_tolerance) result.pushing.push_back(pool_[k]);
   }
   result.multiplier = Eigen::Map<const Eigen::VectorXd>(multiplier.data(), static_cast<Eigen::Index>(multiplier.size()));
-  if (pool.y.size() > 0) result.gauge_multiplier = pool.y[0];
+  result.force = pool.y.size() > 0 ? forces(rows, pool) : Eigen::VectorXd::Zero(energy_.size());
   return result;
 }
 

@@ -25,12 +25,13 @@ struct ExchangeResult {
   Eigen::VectorXd u, m;
   std::vector<RowKey> active;  // rows with a positive multiplier; equalities always; the base excluded
   Eigen::VectorXd multiplier;  // of those
-  double gauge_multiplier = 0;
+  std::vector<RowKey> pushing; // those whose force moves u by more than the tolerance
+  Eigen::VectorXd force;       // n: all multipliers times their rows, the gauge's included; Q u off the base
   double violation_max = 0;
   int rounds = 0, columns = 0, pivots = 0;
   bool pool_full = false;
   std::vector<BoundedQpRound> history;
-  double seconds_columns = 0, seconds_pool = 0, seconds_sweeps = 0;
+  BoundedQpSeconds seconds;
 };
 
 class ExchangeSolver {
@@ -50,7 +51,11 @@ class ExchangeSolver {
   void add_to_pool(const Rows& rows, std::span<const RowKey> keys, Context& context);
   int& column_of(const Rows& rows, RowKey key);
   PoolProblem pool_problem(const Rows& rows) const;
-  Eigen::VectorXd displacement(const PoolProblem& problem, const PoolSolution& pool) const;
+  Eigen::VectorXd by_column(const PoolProblem& problem, const Eigen::VectorXd& y) const;
+  void add_drivers(const Eigen::VectorXd& w, Eigen::VectorXd& u) const;
+  void refine(const Rows& rows, const PoolProblem& problem, const PoolQp& qp, PoolSolution& pool, Eigen::VectorXd& u) const;
+  Eigen::VectorXd forces(const Rows& rows, const PoolSolution& pool) const;
+  double force_residual(const Rows& rows, const PoolSolution& pool, const Eigen::VectorXd& u) const;
 
   Energy& energy_;
   ExchangeColumns columns_;
@@ -58,7 +63,7 @@ class ExchangeSolver {
   struct OrderColumn { InequalityRow row; int column; };
   std::unordered_multimap<std::size_t, OrderColumn> order_columns_;  // by a hash of the row's contents
   int gauge_column_ = -1;
-  Eigen::VectorXd gauge_;
+  Eigen::VectorXd gauge_;                                            // n, absolute values add up to 1; or empty
   std::vector<RowKey> pool_;
   std::vector<int> pool_column_;
   std::vector<char> active_;                                         // pool rows

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // mesh_tool read FILE               what our reader finds in a file, as JSON
-// mesh_tool write FORMAT FILE [-a]  a generated torus with texture seams (OBJ, GLB, PLY) in a format, -a as text
+// mesh_tool write FORMAT FILE [-a] [-p]  a generated torus in a format; -a as text, -p without texture coordinates
 // The files of other programs, and ours in them: see other_programs.py.
 #include <filesystem>
 #include <fstream>
@@ -45,10 +45,11 @@ int main(int argc, char** argv) {
       const auto format = mesh_format_of_extension(words[1]);
       if (!format) return 2;
       Model model = test::wavy_torus(24, 16);
-      if (*format == MeshFormat::stl || *format == MeshFormat::three_mf) model.UV.resize(0, 2), model.FT.resize(0, 3);
-      if (*format == MeshFormat::ply) test::add_colours(model), model.UV = model.mesh.V.leftCols<2>() / 100, model.FT = model.mesh.F;
+      const auto flag = [&](const char* name) { return std::ranges::find(words, name) != words.end(); };
+      if (flag("-p") || *format == MeshFormat::stl || *format == MeshFormat::three_mf) model.UV.resize(0, 2), model.FT.resize(0, 3);
+      if (*format == MeshFormat::ply && !flag("-p")) test::add_colours(model), model.UV = model.mesh.V.leftCols<2>() / 100, model.FT = model.mesh.F;
       WriteOptions options;
-      options.ascii = words.size() > 3;
+      options.ascii = flag("-a");
       const Bytes bytes = test::write(model, *format, options);
       std::ofstream(words[2], std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
       ModelFile file;
@@ -60,6 +61,6 @@ int main(int argc, char** argv) {
     std::cerr << error.what() << '\n';
     return 1;
   }
-  std::cerr << "mesh_tool read FILE | write FORMAT FILE [-a]\n";
+  std::cerr << "mesh_tool read FILE | write FORMAT FILE [-a] [-p]\n";
   return 2;
 }

@@ -8,6 +8,7 @@ number of faces and vertices, the same bounds and the same enclosed volume.
 """
 import json
 import math
+import os
 import pathlib
 import shutil
 import subprocess
@@ -104,7 +105,7 @@ def check_meshio(folder):
         "print(json.dumps([mesh.points.tolist(), [t.tolist() for c in mesh.cells if c.type == 'triangle' for t in c.data]]))"
     )
     convert = "import meshio, sys\nmeshio.write(sys.argv[2], meshio.read(sys.argv[1]), **eval(sys.argv[3]))"
-    for extension, flags in (("stl", ()), ("stl", ("-a",)), ("ply", ()), ("ply", ("-a",)), ("obj", ())):
+    for extension, flags in (("stl", ()), ("stl", ("-a",)), ("ply", ()), ("ply", ("-a",)), ("obj", ("-p",))):  # meshio cannot read texture seams
         path = folder / f"ours{len(flags)}.{extension}"
         expected = written(extension, path, *flags)
         found = describe_arrays(*json.loads(run(python, "-c", read, path)))
@@ -179,7 +180,11 @@ def check_trimesh(folder):
     try:
         import trimesh  # pylint: disable=import-outside-toplevel
     except ImportError:
-        skip("trimesh is not installed for this Python (a venv with trimesh and numpy would do)")
+        other = os.environ.get("FORMWRIGHT_TRIMESH_PYTHON")
+        if other and other != sys.executable:
+            os.environ.pop("FORMWRIGHT_TRIMESH_PYTHON")
+            sys.exit(subprocess.run([other, *sys.argv], check=False).returncode)
+        skip("trimesh is not installed for this Python; FORMWRIGHT_TRIMESH_PYTHON may name one that has it (venv, pip install trimesh scipy pillow)")
 
     def theirs(path):
         mesh = trimesh.load(path, force="mesh")

@@ -156,6 +156,7 @@ boost::asio::awaitable<Response> HttpServer::receive_upload(beast::tcp_stream& s
   http::request_parser<http::file_body> parser(std::move(head));
   parser.body_limit(options_.upload_limit_bytes);
   parser.get().body().open(received.path.c_str(), beast::file_mode::write, error);
+  buffer.reserve(64 * 1024);  // async_read fills what the buffer has room for, which after the head is a kilobyte
   stream.expires_after(10min);
   if (!error) co_await http::async_read(stream, buffer, parser, boost::asio::redirect_error(use_awaitable, error));
   parser.get().body().close();

@@ -30,6 +30,15 @@ async function browserBackend(blobs: BlobSource): Promise<Backend> {
   return new WasmBackend({ moduleUrl: moduleUrl(), blobs });
 }
 
+/** Blobs that no project names any more are deleted, unless another tab may be about to name them. */
+async function sweepWhenAlone(projects: ProjectStore): Promise<void> {
+  const name = 'formwright.page';
+  await navigator.locks?.request(name, { ifAvailable: true }, async (lock) => {
+    if (lock) await projects.sweep().catch(() => undefined);
+  });
+  void navigator.locks?.request(name, { mode: 'shared' }, () => new Promise(() => undefined));
+}
+
 export async function createServices(): Promise<Services> {
   const storage = await openStorage();
   const blobs = new BlobStore(storage);
@@ -63,6 +72,7 @@ export async function createServices(): Promise<Services> {
 
   const load = projects.load(localStorage.getItem(lastProjectKey));
   await (native === null ? load : Promise.all([load, ready]));
+  void sweepWhenAlone(projects);
   projects.document.subscribe(({ id }) => {
     try {
       localStorage.setItem(lastProjectKey, id);

@@ -25,24 +25,30 @@ it('runs the first and the last of a burst and nothing between', async () => {
   expect(queue.busy).toBe(false);
 });
 
-it('aborts a task that has run for longer than its patience when a newer one comes', async () => {
-  const aborted: number[] = [];
-  const queue = new LatestOnly<number>(
-    (n, signal) =>
+it('aborts only what is of no use to the newer request', async () => {
+  const aborted: string[] = [];
+  const gates: (() => void)[] = [];
+  const queue = new LatestOnly<string>(
+    (name, signal) =>
       new Promise((resolve) => {
-        if (n > 0) resolve();
+        gates.push(resolve);
         signal.addEventListener('abort', () => {
-          aborted.push(n);
+          aborted.push(name);
           resolve();
         });
       }),
-    0,
+    (running, next) => running[0] !== next[0],
   );
-  queue.request(0);
-  await new Promise((resolve) => setTimeout(resolve, 5));
-  queue.request(1);
+  queue.request('a1');
+  queue.request('a2'); // another thickness: what runs is of use to it
+  expect(aborted).toEqual([]);
+  queue.request('b1'); // another model
+  expect(aborted).toEqual(['a1']);
   await turn();
-  expect(aborted).toEqual([0]);
+  gates.at(-1)?.();
+  await turn();
+  expect(queue.busy).toBe(false);
+  expect(gates).toHaveLength(2);
 });
 
 it('goes on after a task that throws, and drops what waits when cancelled', async () => {

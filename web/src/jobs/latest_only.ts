@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A queue of length one for live previews: while a task runs only the newest request waits. Short tasks
-// are left to finish, so that the picture moves while a slider is dragged; one that has run for longer
-// than `patience_ms` when a newer request comes is aborted.
+// A queue of length one for live previews: while a task runs only the newest request waits. What runs is
+// left to finish, so that the picture moves while a slider is dragged and a factorisation begun is not
+// thrown away at every step; only a task of no use to the newer request is aborted.
 
 export class LatestOnly<Request> {
-  #running: AbortController | null = null;
-  #startedAt = 0;
-  #waiting: { request: Request } | null = null;
+  #running: { readonly abort: AbortController; readonly request: Request } | null = null;
+  #waiting: { readonly request: Request } | null = null;
   readonly #task: (request: Request, signal: AbortSignal) => Promise<void>;
-  readonly #patience_ms: number;
+  readonly #isObsolete: (running: Request, next: Request) => boolean;
 
-  constructor(task: (request: Request, signal: AbortSignal) => Promise<void>, patience_ms = 400) {
+  constructor(
+    task: (request: Request, signal: AbortSignal) => Promise<void>,
+    isObsolete: (running: Request, next: Request) => boolean = () => false,
+  ) {
     this.#task = task;
-    this.#patience_ms = patience_ms;
+    this.#isObsolete = isObsolete;
   }
 
   get busy(): boolean {
@@ -22,24 +24,23 @@ export class LatestOnly<Request> {
   request(request: Request): void {
     this.#waiting = { request };
     if (this.#running === null) void this.#drain();
-    else if (performance.now() - this.#startedAt > this.#patience_ms) this.#running.abort();
+    else if (this.#isObsolete(this.#running.request, request)) this.#running.abort.abort();
   }
 
   /** Drops what waits and aborts what runs. */
   cancel(): void {
     this.#waiting = null;
-    this.#running?.abort();
+    this.#running?.abort.abort();
   }
 
   async #drain(): Promise<void> {
     while (this.#waiting !== null) {
       const { request } = this.#waiting;
       this.#waiting = null;
-      const controller = new AbortController();
-      this.#running = controller;
-      this.#startedAt = performance.now();
+      const abort = new AbortController();
+      this.#running = { abort, request };
       try {
-        await this.#task(request, controller.signal);
+        await this.#task(request, abort.signal);
       } catch {
         // The task reports its own failures; the queue only has to go on.
       }

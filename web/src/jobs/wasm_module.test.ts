@@ -5,6 +5,7 @@ import { existsSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { describe, expect, it } from 'vitest';
 import type { Job } from './contract';
+import { findOperation } from './contract';
 import { sha256Hex } from './hash';
 import { parsePly } from './ply';
 import type { FromWorker, ModuleFactory } from './wasm_messages';
@@ -51,7 +52,11 @@ describe.skipIf(!existsSync(module))('the WASM module', () => {
       const sha256 = await sha256Hex(model);
       await runner.handle({ type: 'blob', sha256, bytes: model });
       const input = { mesh: { sha256, file_name: 'model.ply' } };
-      const small = await run({ operation: 'simplify', parameters: { vertices: 1000 }, inputs: input });
+      const simplify = findOperation(ready.catalog, 'simplify');
+      const [name = ''] = Object.keys(simplify?.parameters.properties ?? {}).filter((key) =>
+        key.includes('vertices'),
+      );
+      const small = await run({ operation: 'simplify', parameters: { [name]: 1000 }, inputs: input });
       expect(Number(small.report['vertices'])).toBeLessThanOrEqual(1100);
 
       const thickness_mm = 4;
@@ -68,8 +73,8 @@ describe.skipIf(!existsSync(module))('the WASM module', () => {
         forward.reduce((sum, x, k) => sum + x * (relief.positions[3 * i + k] ?? 0), 0),
       );
       expect(Math.max(...depths) - Math.min(...depths)).toBeCloseTo(thickness_mm, 3);
-      for (const name of ['lambda', 'visible', 'normal_error_deg'])
-        expect(relief.attributes[name]?.length).toBe(depths.length);
+      for (const column of ['lambda', 'visible', 'normal_error_deg'])
+        expect(relief.attributes[column]?.length).toBe(depths.length);
     },
   );
 

@@ -31,7 +31,10 @@ export function JobStrip({ state, title, detail, progress, onCancel, children }:
       <span class={`job-state ${state}`}>
         <Icon name={icons[state]} />
       </span>
-      <div class="job-text" role="status" aria-live="polite">
+      <span class="hidden-text" role="status">
+        {state === 'idle' ? title : `${title}. ${detail}`}
+      </span>
+      <div class="job-text">
         <strong>{title}</strong>
         <span class="clip">{detail}</span>
       </div>

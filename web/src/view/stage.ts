@@ -13,7 +13,7 @@ import { Accumulation, ScreenPass } from './passes';
 import { PlateShadow } from './plate_shadow';
 import { backdropFragment, groundFragment } from './shaders';
 import { DepthView, SkyScratch, Subject, newBakeUniforms } from './subject';
-import { type Support, supportOf } from './support';
+import type { Support } from './support';
 import { Surface, type SurfaceOptions, type Uniforms } from './surface';
 import type { Palette } from './theme';
 import { add, along, dot, perpendicular, rotate, scale, subtract } from './vector';
@@ -51,7 +51,6 @@ const LIGHT_HALF_ANGLE = 2.6;
 const OCCLUSION = 0.92;
 
 interface Part {
-  meshSupport: Support;
   subject: Subject;
   mesh: Surface | null;
   extra: Surface[];
@@ -117,7 +116,6 @@ export class Stage {
     this.scene.matrixWorldAutoUpdate = false;
     this.caps = new SectionCaps(this.picture);
     const part = (): Part => ({
-      meshSupport: supportOf(new Float32Array(0)),
       subject: new Subject(this.bakeUniforms),
       mesh: null,
       extra: [],
@@ -161,7 +159,6 @@ export class Stage {
     part.subject.groundUp = ground;
     part.subject.surfaces = [...(part.mesh ? [part.mesh] : []), ...part.extra];
     part.subject.changed();
-    if (part.mesh) part.meshSupport = supportOf(part.mesh.positions);
     this.colouring.apply();
     this.sectionKey += '!';
   }
@@ -186,7 +183,7 @@ export class Stage {
   }
 
   private addGround(part: Part, mesh: Surface, up: Vec3): void {
-    const { points, centre, radius } = supportOf(mesh.positions);
+    const { points, centre, radius } = mesh.support;
     let lowest = Infinity;
     for (let i = 0; i < points.length; i += 3) {
       lowest = Math.min(
@@ -215,7 +212,6 @@ export class Stage {
     const part = this.parts[name];
     part.mesh?.updatePositions(positions);
     part.subject.changed();
-    if (part.mesh && part.extra.length > 0) part.meshSupport = supportOf(part.mesh.positions);
     this.sectionKey += '!';
   }
 
@@ -226,7 +222,7 @@ export class Stage {
   /** Outline of the mesh alone, without plate or ground. */
   meshSupport(name: PartName): Support {
     const part = this.parts[name];
-    return part.extra.length === 0 ? part.subject.support : part.meshSupport;
+    return part.mesh?.support ?? part.subject.support;
   }
 
   plateSurfaces(name: PartName): readonly Surface[] {

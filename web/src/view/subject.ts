@@ -75,7 +75,7 @@ export class Subject {
 
   /** Shape or parts changed: bounds anew; shadow and sky follow when next drawn or at rest. */
   changed(): void {
-    const all = this.casters().map((s) => supportOf(s.positions).points);
+    const all = this.casters().map((s) => s.support.points);
     const joined = new Float32Array(all.reduce((n, p) => n + p.length, 0));
     let at = 0;
     for (const p of all) {

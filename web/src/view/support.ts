@@ -16,7 +16,7 @@ export function sphereDirections(count: number): Float32Array {
 }
 
 /** Most points looked at in every direction; the box's own extremes are always exact. */
-const MOST_SAMPLES = 20000;
+const MOST_SAMPLES = 8000;
 
 export interface Support {
   /** x, y, z of the outermost points. */

@@ -14,6 +14,7 @@ import {
   surfaceFragment,
   surfaceVertex,
 } from './shaders';
+import { type Support, supportOf } from './support';
 
 export type Uniforms = Record<string, THREE.IUniform>;
 
@@ -70,6 +71,7 @@ export class Surface {
   private readonly drawn: Float32Array;
   private readonly bakeGeometry: THREE.BufferGeometry | null;
   private readonly disposables: { dispose(): void }[] = [];
+  private outline: { version: number; support: Support } | null = null;
   private faces: Float32Array;
   private sums: THREE.WebGLRenderTarget | null = null;
   private nextSums: THREE.WebGLRenderTarget | null = null;
@@ -197,6 +199,14 @@ export class Surface {
   /** x, y, z of the drawn vertices, from the scene's origin. */
   get positions(): Float32Array {
     return this.drawn;
+  }
+
+  /** Outline by few points; found anew only after the shape changed. */
+  get support(): Support {
+    if (!this.outline || this.outline.version !== this.version) {
+      this.outline = { version: this.version, support: supportOf(this.drawn) };
+    }
+    return this.outline.support;
   }
 
   get triangleCount(): number {

@@ -84,7 +84,10 @@ export class ReliefSession {
 
   constructor(services: Services) {
     this.services = services;
-    this.#preview = new LatestOnly((request, abort) => this.#runPreview(request, abort));
+    this.#preview = new LatestOnly(
+      (request, abort) => this.#runPreview(request, abort),
+      (running, next) => running.mesh.blob !== next.mesh.blob,
+    );
     effect(() => void this.#loadOriginal(this.document.value.model?.mesh.blob ?? null));
     effect(() => this.#follow());
   }

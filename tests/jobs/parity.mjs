@@ -71,7 +71,7 @@ function differences(name, a, b, tolerance, floor = 0) {
 function compareReports(a, b, tolerances) {
   const names = new Set([...Object.keys(a), ...Object.keys(b)].filter((name) => !timed(name)));
   return [...names].flatMap((name) => {
-    const tolerance = tolerances[name] ?? tolerances['*'];
+    const tolerance = name in tolerances ? tolerances[name] : tolerances['*']; // null: round-off itself, not compared
     return tolerance === null ? [] : differences(name, a[name], b[name], tolerance, 1e-6);
   });
 }

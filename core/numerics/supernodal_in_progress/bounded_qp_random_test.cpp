@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Random problems against an independent dense solver.
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "numerics/bounded_qp.h"
+#include "numerics/bounded_qp_reference.h"
+
+namespace formwright {
+namespace {
+
+using test::infinity;
+using test::RandomProblem;
+using test::RandomProblemSettings;
+
+BoundedQpSolution solve(const RandomProblem& p, const BoundedQpOptions& options = {}) {
+  Context context;
+  BoundedQp qp;
+  qp.set_energy(test::lower_triangle(p.Q), p.component, {}, context);
+  return qp.solve(p.constraints, options, context);
+}
+
+// Recomputed here, so that the solver's own word is not taken for it.
+double violation(const BoundedQpConstraints& c, const BoundedQpSolution& s) {
+  double worst = 0;
+  for (Eigen::Index i = 0; i < s.u.size(); ++i) {
+    const double m = s.m[c.group[static_cast<std::size_t>(i)]];
+    worst = std::max({worst, c.lower[i] + c.lower_slope[i] * m - s.u[i], s.u[i] - c.upper[i] - c.upper_slope[i] * m});
+  }
+  for (const InequalityRow& row : c.rows) {
+    double value = row.slope * s.m[row.group] - row.bound;
+    for (std::size_t k = 0; k < row.index.size(); ++k) value += row.coefficient[k] * s.u[row.index[k]];
+    worst = std::max(worst, -value);
+  }
+  return worst;
+}
+
+struct Case {
+  const char* name;
+  RandomProblemSettings settings;
+};
+
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  all.push_back({"one part", {}});
+  all.push_back({"tight", {.size = 30, .tightness = 0.95}});
+  all.push_back({"order rows", {.size = 24, .rows = 20}});
+  all.push_back({"parts and groups", {.size = 30, .components = 3, .groups = 2}});
+  all.push_back({"groups across parts", {.size = 30, .components = 2, .groups = 4, .rows = 8}});
+  all.push_back({"perspective", {.size = 24, .groups = 2, .rows = 6, .perspective = true}});
+  all.push_back({"perspective parts", {.size = 30, .components = 3, .groups = 1, .rows = 6, .perspective = true, .tightness = 0.9}});
+  all.push_back({"equal bounds", {.size = 24, .rows = 4, .equal_bounds = 0.2}});
+  all.push_back({"mostly free", {.size = 24, .components = 4, .groups = 2, .rows = 3, .free_bounds = 0.8}});
+  all.push_back({"tiny", {.size = 4, .components = 2, .rows = 1}});
+  return all;
+}
+
+TEST(BoundedQpRandom, EqualsDenseReference) {
+  for (const Case& example : cases()) {
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+      SCOPED_TRACE(std::string(example.name) + ", seed " + std::to_string(seed));
+      const RandomProblem p = test::random_problem(seed, example.settings);
+      const test::DenseProblem dense = test::dense_problem(p.Q, p.constraints);
+      const test::DenseSolution reference = test::solve_dense(dense);
+      ASSERT_LT(reference.gap, 1e-6 * (1 + reference.objective)) << "the reference itself";
+      ASSERT_LT(reference.violation, 1e-7) << "the reference itself";
+      const BoundedQpSolution s = solve(p);
+      EXPECT_LE(violation(p.constraints, s), 1e-9);
+      EXPECT_NEAR(p.constraints.gauge.dot(s.u), 0, 1e-9);
+      EXPECT_NEAR(0.5 * s.u.dot(p.Q * s.u), reference.objective, 2e-6 * (1 + reference.objective));
+      EXPECT_NEAR(s.objective, 0.5 * s.u.dot(p.Q * s.u), 1e-12 * (1 + s.objective));
+      Eigen::VectorXd x(s.u.size() + s.m.size());
+      x << s.u, s.m;
+      if (s.objective > 1e-12) {
+        EXPECT_LT(test::stationarity_gap(dense, x, 1e-8), 1e-8);
+      }
+      EXPECT_LT(s.kkt_residual, 1e-9);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace formwright

@@ -83,7 +83,7 @@ RepairedMesh repair(const TriangleMesh& mesh, const RepairOptions& options, Cont
   if (duplicate.second_sides > 0)
     say.push_back("Removed " + triangles(duplicate.second_sides) + " that repeated the surface for its other side.");
   context.progress(0.4);
-  const GluingCount gluing = make_manifold(draft, context);
+  GluingCount gluing = make_manifold(draft, context);
   if (gluing.edges_cut > 0)
     say.push_back("Separated the surface along " + counted(gluing.edges_cut, "edge", "edges") + " where more than two triangles met.");
   if (gluing.vertices_split > 0)
@@ -96,20 +96,25 @@ RepairedMesh repair(const TriangleMesh& mesh, const RepairOptions& options, Cont
   context.progress(0.75);
 
   if (options.drop_parts_below_percent > 0)
-    if (const DropCount dropped = drop_small_parts(draft, options.drop_parts_below_percent / 100); dropped.parts > 0)
+    if (const DropCount dropped = drop_small_parts(draft, options.drop_parts_below_percent / 100); dropped.parts > 0) {
+      gluing.adjacency.reset();
       say.push_back("Dropped " + counted(dropped.parts, "small part", "small parts") + " (" + triangles(dropped.faces) + ").");
+    }
   if (options.fill_holes_up_to_edges > 0)
-    if (const FillCount filled = fill_holes(draft, options.fill_holes_up_to_edges, context); filled.holes > 0)
+    if (const FillCount filled = fill_holes(draft, options.fill_holes_up_to_edges, context); filled.holes > 0) {
+      gluing.adjacency.reset();
       say.push_back("Filled " + counted(filled.holes, "hole", "holes") + " with " + triangles(filled.faces) + ".");
-  if (const int turned = turn_outwards(draft); turned > 0)
-    say.push_back("Turned " + counted(turned, "closed part", "closed parts") + " to face outwards.");
-  draft.drop_unused_vertices();
-  context.progress(0.9);
-
-  const Adjacency adjacency(draft.mesh);
-  result.part_count = face_components(adjacency).count;
+    }
+  if (!gluing.adjacency) gluing.adjacency = std::make_unique<Adjacency>(draft.mesh);
+  const Adjacency& adjacency = *gluing.adjacency;
+  const Components parts = face_components(adjacency);
+  result.part_count = parts.count;
   result.hole_count = static_cast<int>(boundary_loops(adjacency).size());
   result.genus = (2 * result.part_count - euler_characteristic(adjacency) - result.hole_count) / 2;
+  context.progress(0.9);
+  if (const int turned = turn_outwards(draft, adjacency, parts); turned > 0)
+    say.push_back("Turned " + counted(turned, "closed part", "closed parts") + " to face outwards.");
+  draft.drop_unused_vertices();
   if (result.hole_count > 0)
     say.push_back("The surface has " + counted(result.hole_count, "hole", "holes") + "; it is not closed.");
   result.mesh = std::move(draft.mesh);

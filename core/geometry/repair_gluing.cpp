@@ -223,13 +223,14 @@ GluingCount make_manifold(Draft& draft, Context& context) {
       }
     }
     const bool clean = adjacency->nonmanifold_edge_count() == 0 && adjacency->inconsistent_edge_count() == 0;
-    if (clean || !separate_edges_with_equal_ends(draft, glue)) return count;
+    if (clean || !separate_edges_with_equal_ends(draft, glue)) {
+      if (split == 0) count.adjacency = std::move(adjacency);
+      return count;
+    }
   }
 }
 
-int turn_outwards(Draft& draft) {
-  const Adjacency adjacency(draft.mesh);
-  const Components parts = face_components(adjacency);
+int turn_outwards(Draft& draft, const Adjacency& adjacency, const Components& parts) {
   std::vector<char> closed(index(parts.count), 1);
   std::vector<BoundingBox> box(index(parts.count));
   for (int h = 0; h < 3 * draft.mesh.face_count(); ++h) {

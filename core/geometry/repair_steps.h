@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // The steps of repair(), in the order in which it takes them. Not for other modules.
+#include <memory>
 #include <vector>
 
 #include "base/context.h"
+#include "geometry/adjacency.h"
 #include "geometry/triangle_mesh.h"
 
 namespace formwright::repair_steps {
@@ -42,12 +44,13 @@ struct GluingCount {
   int vertices_split = 0;   // where separate sheets touched
   int faces_turned = 0;     // to face as their neighbours do
   int one_sided_edges = 0;  // cut because the surface had one side only
+  std::unique_ptr<Adjacency> adjacency;  // of the draft as it is now; empty when it was cut or split
 };
 /// Afterwards the draft is manifold and faces are oriented alike.
 GluingCount make_manifold(Draft& draft, Context& context);
 
-/// Turns closed parts outwards unless they are cavities; returns how many parts were turned.
-int turn_outwards(Draft& draft);
+/// Turns closed parts (numbered per face) outwards unless they are cavities; returns how many were turned.
+int turn_outwards(Draft& draft, const Adjacency& adjacency, const Components& parts);
 
 struct DropCount {
   int parts = 0, faces = 0;

@@ -5,18 +5,57 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "numerics/bounded_qp_crossover.h"
 #include "numerics/bounded_qp_energy.h"
 #include "numerics/bounded_qp_rows.h"
 #include "numerics/bounded_qp_tie.h"
 #include "numerics/exchange_solver.h"
+#include "numerics/interior_point_solver.h"
 
 namespace formwright {
 
 using namespace bounded_qp_detail;
 
+namespace {
+constexpr std::size_t many_equalities = 32;   // from here on they leave the factorisation instead of filling the pool
+constexpr int rounds_before_interior_point = 4;
+constexpr int most_active_before_interior_point = 2500;
+constexpr int most_doubtful = 3000;           // rows that a crossover hands to the exchange
+constexpr int order_rounds = 20;
+constexpr double real_force = 1e-10;          // of the largest stiffness times the largest displacement: smaller ones are round-off
+
+std::vector<RowKey> equal_bounds(const Rows& rows) {
+  const BoundedQpConstraints& c = rows.constraints();
+  std::vector<RowKey> found;
+  for (int i = 0; i < rows.size(); ++i) {
+    if (c.lower[i] == c.upper[i] && c.lower_slope[i] == c.upper_slope[i]) found.push_back({Side::both, i});
+  }
+  return found;
+}
+
+// Relative to the largest force. Where nothing pushes, force and Q u are both round-off: relative to what cancels there.
+double kkt_residual(const Energy& energy, const Eigen::VectorXd& u, const Eigen::VectorXd& force) {
+  if (u.size() == 0) return 0;
+  const double left = (energy.apply(u) - force).cwiseAbs().maxCoeff();
+  const double push = force.cwiseAbs().maxCoeff(), stiff = energy.largest_stiffness() * u.cwiseAbs().maxCoeff();
+  const double size = push > real_force * stiff ? push : stiff;
+  return size > 0 ? left / size : 0;
+}
+}  // namespace
+
 struct BoundedQp::Implementation {
   Energy energy;
   ExchangeSolver exchange{energy};
+  double seconds_interior = 0;
+
+  struct Outcome {
+    ExchangeResult result;
+    QpMethod method = QpMethod::exchange;
+    int iterations = 0;  // of the interior point
+  };
+
+  Outcome solve(const Rows& rows, const BoundedQpOptions& options, Context& context);
+  Outcome solve_densely(const Rows& rows, ExchangeResult so_far, const BoundedQpOptions& options, Context& context);
 };
 
 BoundedQp::BoundedQp() : implementation_(std::make_unique<Implementation>()) {}
@@ -31,26 +70,109 @@ void BoundedQp::set_energy(const SparseMatrix& lower_Q, std::vector<int> compone
   I.energy.factorize_pinned({}, context);
 }
 
+BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve(const Rows& rows, const BoundedQpOptions& options, Context& context) {
+  std::vector<RowKey> base = equal_bounds(rows);
+  if (base.size() < many_equalities) base.clear();
+  ExchangeSettings settings;
+  settings.violation_tolerance = options.violation_tolerance;
+  settings.max_rounds = options.max_rounds;
+  if (options.method == QpMethod::automatic) settings.most_active = most_active_before_interior_point;
+  if (options.method == QpMethod::interior_point) settings.max_rounds = std::min(options.max_rounds, rounds_before_interior_point);
+  settings.may_stop = options.method != QpMethod::exchange;
+  Outcome outcome;
+  outcome.result = exchange.solve(rows, base, settings, context);
+  if (options.method == QpMethod::interior_point || outcome.result.stopped) {
+    return solve_densely(rows, std::move(outcome.result), options, context);
+  }
+  add_base_reactions(energy, rows, base, outcome.result);
+  return outcome;
+}
+
+// Interior point on all bounds and those order rows that turn out to matter, then the exact active set.
+BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve_densely(const Rows& rows, ExchangeResult so_far, const BoundedQpOptions& options,
+                                                                            Context& context) {
+  Outcome outcome;
+  outcome.method = QpMethod::interior_point;
+  Stopwatch watch;
+  std::vector<int> order;
+  for (const RowKey key : so_far.active) {
+    if (key.side == Side::order) order.push_back(key.index);
+  }
+  InteriorPointStart start{so_far.u, so_far.m, so_far.active, so_far.multiplier};
+  InteriorPointSettings settings;
+  InteriorPointResult point;
+  for (int round = 0;; ++round) {
+    point = solve_interior_point(energy, rows, order, start, settings, context);
+    outcome.iterations += point.iterations;
+    Rows::Violations violations;
+    rows.evaluate(point.u, point.m, violations);
+    const std::size_t before = order.size();
+    for (const RowKey key : rows.worth_adding(violations, options.violation_tolerance)) {
+      if (key.side == Side::order && std::find(order.begin(), order.end(), key.index) == order.end()) order.push_back(key.index);
+    }
+    if (order.size() == before || round == order_rounds) break;
+    start = {point.u, point.m, {}, {}};
+    std::vector<double> force;
+    const auto note = [&](RowKey key, double y) {
+      start.active.push_back(key);
+      force.push_back(y);
+    };
+    for (int i = 0; i < rows.size(); ++i) {
+      if (point.force_lower[i] > 0 && point.force_lower[i] >= point.force_upper[i]) note({Side::lower, i}, point.force_lower[i]);
+      else if (point.force_upper[i] > 0) note({Side::upper, i}, point.force_upper[i]);
+    }
+    for (std::size_t k = 0; k < point.order.size(); ++k) note({Side::order, point.order[k]}, point.order_force[static_cast<Eigen::Index>(k)]);
+    start.multiplier = Eigen::Map<const Eigen::VectorXd>(force.data(), static_cast<Eigen::Index>(force.size()));
+  }
+  const double seconds_interior_point = watch.lap();
+  ExchangeSettings exact;
+  exact.violation_tolerance = options.violation_tolerance;
+  exact.max_rounds = options.max_rounds;
+  exact.most_active = most_doubtful;
+  exact.may_stop = true;
+  int refactorisations = 0;
+  auto crossed = crossover(energy, rows, point, exact, refactorisations, context);
+  if (!crossed) {
+    throw Error(ErrorCode::could_not_solve, "constraints", "Too many constraints are neither clearly in contact nor clearly free: widen the bounds or use a coarser mesh.");
+  }
+  outcome.result = std::move(*crossed);
+  outcome.result.rounds += so_far.rounds;
+  outcome.result.history.insert(outcome.result.history.begin(), so_far.history.begin(), so_far.history.end());
+  outcome.result.seconds.factorise += so_far.seconds.factorise;
+  outcome.result.seconds.columns += so_far.seconds.columns;
+  outcome.result.seconds.pool += so_far.seconds.pool;
+  outcome.result.seconds.sweeps += so_far.seconds.sweeps;
+  seconds_interior = seconds_interior_point;
+  return outcome;
+}
+
 BoundedQpSolution BoundedQp::solve(const BoundedQpConstraints& constraints, const BoundedQpOptions& options, Context& context) {
   auto& I = *implementation_;
+  if (!(options.violation_tolerance > 0)) throw Error(ErrorCode::invalid_input, "violation_tolerance", "The tolerance must be positive.");
   const Rows rows(constraints, I.energy);
-  const ExchangeSettings settings{options.violation_tolerance, options.max_rounds, 1 << 30};
-  ExchangeResult found = I.exchange.solve(rows, {}, settings, context);
+  I.seconds_interior = 0;
+  auto [found, method, iterations] = I.solve(rows, options, context);
   BoundedQpSolution solution;
   solution.u = std::move(found.u);
   solution.m = std::move(found.m);
-  break_ties(I.energy, rows, found.pushing, options.violation_tolerance, solution.u, solution.m, context);
+  break_ties(I.energy, rows, found.pushing, 1e-3 * options.violation_tolerance, solution.u, solution.m, context);
   rows.clip(solution.u, solution.m);
   Rows::Violations violations;
   rows.evaluate(solution.u, solution.m, violations);
   solution.violation_max = violations.max;
+  if (!(violations.max <= options.violation_tolerance)) {
+    throw Error(ErrorCode::could_not_solve, "violation_tolerance",
+                "Round-off leaves order rows violated by " + std::to_string(violations.max / options.violation_tolerance) + " times the tolerance: allow more.");
+  }
   solution.objective = I.energy.energy(solution.u);
-  const double size = found.force.cwiseAbs().maxCoeff();
-  solution.kkt_residual = size > 0 ? (I.energy.apply(solution.u) - found.force).cwiseAbs().maxCoeff() / size : 0;
+  solution.kkt_residual = kkt_residual(I.energy, solution.u, found.force);
   solution.rounds = found.rounds;
-  solution.seconds = found.seconds;
-  solution.history = std::move(found.history);
   solution.active_constraints = static_cast<int>(found.active.size());
+  solution.method_used = method;
+  solution.interior_point_iterations = iterations;
+  solution.seconds = found.seconds;
+  solution.seconds.interior_point = I.seconds_interior;
+  solution.history = std::move(found.history);
   return solution;
 }
 

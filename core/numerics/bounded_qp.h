@@ -58,6 +58,7 @@ struct BoundedQpSeconds {
   double columns = 0;    // sparse solves and products for new constraints
   double pool = 0;       // small dense problems
   double sweeps = 0;     // back-solves and searches for violations
+  double interior_point = 0;
 };
 
 struct BoundedQpSolution {
@@ -65,7 +66,8 @@ struct BoundedQpSolution {
   double objective = 0;        // 1/2 u^T Q u
   double violation_max = 0;    // over all constraints, after the last round
   double kkt_residual = 0;     // max |Q u - G^T y| / max |G^T y|, with y >= 0 and complementary by construction
-  int rounds = 0;
+  int rounds = 0;              // of the exchange
+  int interior_point_iterations = 0;
   int active_constraints = 0;  // with a positive multiplier
   QpMethod method_used = QpMethod::exchange;
   BoundedQpSeconds seconds;

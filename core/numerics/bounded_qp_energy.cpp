@@ -24,7 +24,7 @@ void Energy::set(const SparseMatrix& lower_Q, std::vector<int> component, const 
   if (component.size() != at(n_)) {
     throw Error(ErrorCode::invalid_input, "component", "Give the component of each of the " + std::to_string(n_) + " unknowns.");
   }
-  factored_ = Factored::nothing;
+  pinned_ = false;
   component_ = std::move(component);
   lower_ = lower_Q;
   lower_.makeCompressed();
@@ -153,8 +153,7 @@ std::span<const double> Energy::values(int i) const {
 }
 
 void Energy::factorize_pinned(const std::vector<char>& base, Context& context) {
-  if (factored_ == Factored::pinned && base == base_) return;
-  factored_ = Factored::nothing;
+  if (pinned_ && base == base_) return;
   base_ = base;
   fixed_.assign(at(n_), 0);
   free_constant_.assign(pin_.size(), 1);
@@ -166,28 +165,28 @@ void Energy::factorize_pinned(const std::vector<char>& base, Context& context) {
   for (std::size_t k = 0; k < pin_.size(); ++k) {
     if (free_constant_[k]) fixed_[at(pin_[k])] = 1;
   }
+  load(nullptr);
+  factor_.factorize(lower_, context);
+  pinned_ = true;
+}
+
+void Energy::factorize_shifted(const Eigen::VectorXd& shift, const std::vector<char>& fixed, Context& context) {
+  fixed_ = fixed;
+  load(&shift);
+  factor_.factorize(lower_, context);
+}
+
+// Writes the matrix to factor: Q (+ shift) with the rows and columns of fixed unknowns replaced by those of the identity.
+void Energy::load(const Eigen::VectorXd* shift) {
+  pinned_ = false;
   double* value = lower_.valuePtr();
   for (int j = 0; j < n_; ++j) {
     for (int p = lower_.outerIndexPtr()[j]; p < lower_.outerIndexPtr()[j + 1]; ++p) {
       const int i = lower_.innerIndexPtr()[p];
-      if (i == j) value[p] = fixed(i) ? 1.0 : diagonal_[i];
+      if (i == j) value[p] = fixed(i) ? 1.0 : diagonal_[i] + (shift ? (*shift)[i] : 0.0);
       else value[p] = fixed(i) || fixed(j) ? 0.0 : lower_values_[at(p)];
     }
   }
-  factor_.factorize(lower_, context);
-  factored_ = Factored::pinned;
-}
-
-void Energy::factorize_shifted(const Eigen::VectorXd& shift, Context& context) {
-  factored_ = Factored::nothing;
-  double* value = lower_.valuePtr();
-  for (int j = 0; j < n_; ++j) {
-    for (int p = lower_.outerIndexPtr()[j]; p < lower_.outerIndexPtr()[j + 1]; ++p) {
-      value[p] = lower_.innerIndexPtr()[p] == j ? diagonal_[j] + shift[j] : lower_values_[at(p)];
-    }
-  }
-  factor_.factorize(lower_, context);
-  factored_ = Factored::shifted;
 }
 
 double Energy::memory_mb() const {

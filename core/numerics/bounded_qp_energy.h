@@ -36,6 +36,7 @@ class Energy {
   /// Q u, written with differences, sum_j q_ij (u_j - u_i): constants give exactly zero.
   Eigen::VectorXd apply(const Eigen::VectorXd& u) const;
   double energy(const Eigen::VectorXd& u) const;  // 1/2 u^T Q u in the same way
+  double largest_stiffness() const { return diagonal_.size() > 0 ? diagonal_.maxCoeff() : 0; }
   double absolute_sum() const { return absolute_sum_; }  // sum |q_ij|, i != j
 
   /// Column i of Q: indices and values of the whole symmetric matrix, diagonal included.
@@ -46,8 +47,8 @@ class Energy {
   /// Factors Q with the pins and the unknowns of `base` (n flags, or empty) replaced by unit rows.
   /// A component with a base unknown needs no pin. Does nothing when that is what is factored already.
   void factorize_pinned(const std::vector<char>& base, Context& context);
-  /// Factors Q + diag(d), d >= 0 (interior point).
-  void factorize_shifted(const Eigen::VectorXd& diagonal, Context& context);
+  /// Factors Q + diag(d), d >= 0, with the flagged unknowns replaced by unit rows (interior point).
+  void factorize_shifted(const Eigen::VectorXd& diagonal, const std::vector<char>& fixed, Context& context);
   /// Whether unknown i is taken out of the current pinned factorisation.
   bool fixed(int i) const { return fixed_[static_cast<std::size_t>(i)] != 0; }
   /// True when component k is held by its pin alone, so that its constant is free.
@@ -57,7 +58,7 @@ class Energy {
   double memory_mb() const;
 
  private:
-  enum class Factored { nothing, pinned, shifted };
+  void load(const Eigen::VectorXd* shift);
   void choose_pins(std::span<const int> pins);
 
   int n_ = 0;
@@ -69,7 +70,7 @@ class Energy {
   double absolute_sum_ = 0;
   std::vector<int> component_, component_size_, pin_;
   std::vector<char> base_, fixed_, free_constant_;
-  Factored factored_ = Factored::nothing;
+  bool pinned_ = false;  // what is factored is Q with base_ and the pins taken out
   SparseCholesky factor_;
 };
 

@@ -31,6 +31,7 @@ PoolQp::PoolQp(Eigen::Ref<const Eigen::MatrixXd> gram, const PoolProblem& proble
   for (int a = 0; a < k; ++a) scale = std::max(scale, gram_(p_.column[at(a)], p_.column[at(a)]));
   if (!(scale > 0)) scale = 1;
   augment_.setZero(d);
+  V_.resize(0, d);
   proximal_w_.resize(d);
   for (int j = 0; j < d; ++j) {
     const auto nonzero = static_cast<double>((p_.B.col(j).array() != 0).count());

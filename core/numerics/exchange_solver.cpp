@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
 
 #include "base/error.h"
 
@@ -280,9 +281,23 @@ void ExchangeSolver::refine(const Rows& rows, const PoolProblem& problem, const 
 }
 
 ExchangeResult ExchangeSolver::solve(const Rows& rows, const std::vector<RowKey>& base, const ExchangeSettings& settings, Context& context) {
+  try {
+    return run(rows, base, settings, context);
+  } catch (...) {
+    forget();  // columns may have been promised that a cancel kept from being made
+    throw;
+  }
+}
+
+ExchangeResult ExchangeSolver::run(const Rows& rows, const std::vector<RowKey>& base, const ExchangeSettings& settings, Context& context) {
   ExchangeResult result;
   Stopwatch watch;
   start(rows, base, context);
+  {
+    std::vector<RowKey> first = settings.first;
+    std::erase_if(first, [&](RowKey key) { return std::find(pool_.begin(), pool_.end(), key) != pool_.end(); });
+    add_to_pool(rows, first, context);
+  }
   result.seconds.factorise = watch.lap();
   const double target = target_violation * settings.violation_tolerance;
   const int groups = rows.groups();
@@ -330,14 +345,18 @@ ExchangeResult ExchangeSolver::solve(const Rows& rows, const std::vector<RowKey>
     }
     result.seconds.sweeps += watch.lap();
     result.history.push_back({violations.max, static_cast<int>(pool_.size()), static_cast<int>(std::count(active_.begin(), active_.end(), 1)), pool.pivots});
-    if (keys.empty() || result.rounds >= settings.max_rounds) break;
-    if (static_cast<int>(result.history.back().active) > settings.most_active) {
-      result.pool_full = true;
+    if (keys.empty()) break;
+    if (result.rounds >= settings.max_rounds || result.history.back().active > settings.most_active) {
+      result.stopped = true;
       break;
     }
     add_to_pool(rows, keys, context);
     result.seconds.columns += watch.lap();
     context.progress(static_cast<double>(result.rounds) / (result.rounds + 5), "Finding contacts");
+  }
+  if (result.stopped && !settings.may_stop && violations.max > settings.violation_tolerance) {
+    throw Error(ErrorCode::could_not_solve, "max_rounds",
+                "The contacts did not settle in " + std::to_string(settings.max_rounds) + " rounds: allow more rounds or widen the bounds.");
   }
   result.violation_max = violations.max;
   result.columns = columns_.count();

@@ -18,7 +18,9 @@ namespace formwright::bounded_qp_detail {
 struct ExchangeSettings {
   double violation_tolerance = 0;  // to accept
   int max_rounds = 200;
-  int most_active = 1 << 30;       // more rows in contact at once: give up with `pool_full`
+  int most_active = 1 << 30;       // more rows in contact at once: stop, with `stopped`
+  bool may_stop = false;           // after max_rounds: stop, with `stopped`, instead of an error
+  std::vector<RowKey> first;       // rows to begin with, beside those of the call before
 };
 
 struct ExchangeResult {
@@ -29,7 +31,7 @@ struct ExchangeResult {
   Eigen::VectorXd force;       // n: all multipliers times their rows, the gauge's included; Q u off the base
   double violation_max = 0;
   int rounds = 0, columns = 0, pivots = 0;
-  bool pool_full = false;
+  bool stopped = false;  // violations are left
   std::vector<BoundedQpRound> history;
   BoundedQpSeconds seconds;
 };
@@ -47,6 +49,7 @@ class ExchangeSolver {
   double memory_mb() const { return columns_.memory_mb(); }
 
  private:
+  ExchangeResult run(const Rows& rows, const std::vector<RowKey>& base, const ExchangeSettings& settings, Context& context);
   void start(const Rows& rows, const std::vector<RowKey>& base, Context& context);
   void add_to_pool(const Rows& rows, std::span<const RowKey> keys, Context& context);
   int& column_of(const Rows& rows, RowKey key);

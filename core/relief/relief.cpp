@@ -130,6 +130,7 @@ Relief ReliefSolver::solve(const ReliefOptions& options, Context& context) {
 
   Relief relief;
   BoundedQpOptions qp_options;
+  qp_options.method = options.method;
   qp_options.violation_tolerance = 1e-9 * thickness;
   {
     const auto span = context.span(0, 0.9, "Fitting into the slab");

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "base/parameters.h"
+#include "numerics/bounded_qp.h"
 
 namespace formwright {
 
@@ -37,6 +38,7 @@ struct ReliefOptions {
   double hidden_weight = 1;
   bool depth_order = true;
   double pixel_mm = 0.2;
+  QpMethod method = QpMethod::automatic;
 
   static constexpr auto parameters = std::tuple{
       parameter("thickness_mm", &ReliefOptions::thickness_mm, "Thickness", unit::mm, 0.01, 1000,
@@ -76,7 +78,10 @@ struct ReliefOptions {
           .group("Shape"),
       parameter("pixel_mm", &ReliefOptions::pixel_mm, "Grid of the solid", unit::mm, 0.01, 10,
                 "Spacing of the height map and of the solid made from it. Half a nozzle or tool width is fine enough.")
-          .group("Output").slider(0.05, 1).advanced()};
+          .group("Output").slider(0.05, 1).advanced(),
+      parameter("method", &ReliefOptions::method, "Solver",
+                "Exchange is fastest where the relief touches its bounds at few points, interior point where at many.")
+          .group("Output").advanced()};
 };
 
 }  // namespace formwright

@@ -128,6 +128,20 @@ TEST(Relief, TurningTheModelAndTheViewTogetherChangesNothing) {
   EXPECT_LE((reference.u - other.u).cwiseAbs().maxCoeff(), 1e-6 * 0.04);
 }
 
+TEST(Relief, BothSolversAgree) {
+  const TriangleMesh mesh = wavy_ball(4);
+  for (const Projection projection : {Projection::perspective, Projection::orthographic})
+    for (const double thickness : {5.0, 1.0}) {
+      ReliefOptions options = slab(thickness, projection);
+      options.method = QpMethod::exchange;
+      const Relief exchange = solve(mesh, options);
+      options.method = QpMethod::interior_point;
+      const Relief interior = solve(mesh, options);
+      EXPECT_NEAR(exchange.energy, interior.energy, 1e-6 * exchange.energy);
+      EXPECT_LE((exchange.u - interior.u).cwiseAbs().maxCoeff(), 1e-4 * thickness / 100);
+    }
+}
+
 TEST(Relief, EveryPartRestsOnItsOwn) {
   // Two balls side by side and one behind: three components with free constants.
   const TriangleMesh ball = wavy_ball(3);

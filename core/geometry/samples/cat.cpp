@@ -5,6 +5,7 @@
 #include "geometry/samples/locks.h"
 #include "geometry/samples/noise.h"
 #include "geometry/samples/shapes.h"
+#include "geometry/samples/texture_atlas.h"
 
 namespace formwright::samples {
 namespace {
@@ -268,7 +269,19 @@ Model make_cat(int vertices, Context& context) {
   ImplicitShape shape;
   shape.field = [&s](const Point& p) { return s(p); };
   shape.bounds = {bounds.low * unit_mm, bounds.high * unit_mm};
-  return finished(mesh_implicit(shape, area_mm2, vertices, context), [](const Point& p, const Point&) { return tabby(p / unit_mm); });
+  const Surface surface = mesh_implicit(shape, area_mm2, vertices, context);
+  const auto colour = [](const Point& p, const Point&) { return tabby(p / unit_mm); };
+  Point shift;
+  Model model = finished(surface, colour, &shift);
+  const auto broad = [&](const Point& p) {
+    constexpr double step = 3.5;
+    const Point q = p + shift;
+    const double a = s({q.x + step, q.y - step, q.z - step}), b = s({q.x - step, q.y - step, q.z + step}),
+                 c = s({q.x - step, q.y + step, q.z - step}), d = s({q.x + step, q.y + step, q.z + step});
+    return Point{a - b - c + d, c + d - a - b, b + d - a - c};
+  };
+  paint_texture(model, broad, [&](const Point& p, const Point& n) { return colour(p + shift, n); }, vertices < 20000 ? 512 : 1024, "tabby", context);
+  return model;
 }
 
 }  // namespace formwright::samples

@@ -6,6 +6,7 @@
 #include "geometry/samples/erosion.h"
 #include "geometry/samples/noise.h"
 #include "geometry/samples/shapes.h"
+#include "geometry/samples/texture_atlas.h"
 
 namespace formwright::samples {
 namespace {
@@ -31,8 +32,8 @@ class Mountain {
   }
 
   Point colour(double x, double y, double z, const Point& normal) const {
-    static const Point snow = srgb(244, 247, 250), rock = srgb(128, 118, 108), dark = srgb(88, 80, 76), scree = srgb(158, 146, 128),
-                       grass = srgb(112, 132, 66), forest = srgb(54, 82, 50), water = srgb(92, 138, 160);
+    static const Point snow = srgb(244, 247, 250), rock = srgb(146, 136, 126), dark = srgb(104, 96, 92), scree = srgb(158, 146, 128),
+                       grass = srgb(132, 148, 82), forest = srgb(66, 94, 60), water = srgb(92, 138, 160);
     const double patch = fractal_noise({x / 9, y / 9, z / 9}, 4, 0.55, 70), grain = noise(Point{x / 0.7, y / 0.7, z / 0.7}, 75);
     const double flat = normal.y;
     const double strata = 0.5 + 0.5 * sine(2 * pi * (y / 2.6 + 0.5 * patch));
@@ -42,7 +43,7 @@ class Mountain {
     c = mix(c, mix(grass, forest, smooth_step(-0.05, 0.25, noise(x / 3.3, z / 3.3, 77) + 0.4 * patch)), green);
     const double stream = smooth_step(0.006, 0.02, terrain_.at(x, z).drainage) * smooth_step(18, 10, y);
     c = mix(c, water, 0.85 * stream);
-    const double white = smooth_step(20, 25, y + 5 * patch + 1.5 * grain) * smooth_step(0.3, 0.52, flat + 0.12 * patch);
+    const double white = smooth_step(20, 25, y + 5 * patch + 1.5 * grain) * smooth_step(0.18, 0.42, flat + 0.12 * patch);
     return mix(c * (1 + 0.12 * grain), snow, white);
   }
 
@@ -118,13 +119,16 @@ Model make_mountain(int vertices, Context& context) {
     const double x = a.x + b.x, z = a.z + b.z;
     return std::fabs(x) > std::fabs(z) ? (x < 0 ? 0 : 1) : (z < 0 ? 2 : 3);
   };
-  Surface surface = remesh_open(lattice(vertices, mountain, edge, context), side, MountainTarget(mountain, edge), vertices, context);
+  const Surface surface = remesh_open(lattice(vertices, mountain, edge, context), side, MountainTarget(mountain, edge), vertices, context);
   const double step = std::max(edge, 0.1);
-  return finished(std::move(surface), [&](const Point& p, const Point&) {
-    const double y = mountain.height(p.x, p.z, step);
-    const double dx = mountain.height(p.x + step, p.z, step) - y, dz = mountain.height(p.x, p.z + step, step) - y;
-    return mountain.colour(p.x, y, p.z, normalized(Point{-dx, step, -dz}));
-  });
+  const auto colour = [&](double x, double z, double reach) {
+    const double y = mountain.height(x, z, reach);
+    const double dx = mountain.height(x + reach, z, reach) - y, dz = mountain.height(x, z + reach, reach) - y;
+    return mountain.colour(x, y, z, normalized(Point{-dx, reach, -dz}));
+  };
+  Model model = finished(surface, [&](const Point& p, const Point&) { return colour(p.x, p.z, step); });
+  paint_from_above(model, side_mm, [&](double x, double z) { return colour(x, z, 0.2); }, vertices < 20000 ? 512 : 1024, "mountain", context);
+  return model;
 }
 
 }  // namespace formwright::samples

@@ -20,6 +20,8 @@ const std::vector<Entry>& entries() {
       {{"cat", "Cat", "A tabby cat, sitting, her tail around her paws", 40000, true, true, {0, 0, -1}, {0, 1, 0}}, samples::make_cat},
       {{"octopus", "Octopus", "Eight curling arms with suckers, a domed head", 40000, true, false, {0, -0.34202014332566873, -0.93969262078590838}, {0, 1, 0}}, samples::make_octopus},
       {{"mountain", "Mountain", "An eroded massif on a square, open below", 40000, false, true, {0, -0.57357643635104605, -0.81915204428899178}, {0, 1, 0}}, samples::make_mountain},
+      {{"fish", "Fish", "Overlapping scales and rayed fins, seen from the side", 40000, true, false, {0, 0, -1}, {0, 1, 0}}, samples::make_fish},
+      {{"coin", "Medal", "An owl between olive branches; fine, flat detail on both faces", 60000, true, false, {0, 0, -1}, {0, 1, 0}}, samples::make_coin},
       {{"star", "Star", "A soft five-pointed star", 20000, true, false, {0, 0, -1}, {0, 1, 0}}, samples::make_star},
       {{"heart", "Heart", "A full, smooth heart", 20000, true, false, {0, 0, -1}, {0, 1, 0}}, samples::make_heart},
       {{"pyramid", "Pyramid", "Four sides over 100 x 100 mm, 60 mm high; planar to the last bit", 5000, true, false, {0, -0.57357643635104605, -0.81915204428899178}, {0, 1, 0}}, samples::make_pyramid},

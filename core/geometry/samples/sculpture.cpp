@@ -81,6 +81,12 @@ void Sculpture::line(double height, double width, const std::vector<Point>& path
   if (twin) raise(mirrored(centre), radius, with_twin(ridge, true));
 }
 
+std::vector<Point> Sculpture::dropped(std::vector<Point> path) const {
+  for (Point& p : path)
+    for (int k = 0; k < 6; ++k) p -= normal_at(p, 0.05) * at(p);
+  return path;
+}
+
 void Sculpture::finish() {
   double softest = 0;
   for (const Stroke& s : strokes_)

@@ -43,6 +43,9 @@ class Sculpture {
   /// nothing over the first and last `fade` of its length.
   void line(double height, double width, const std::vector<Point>& path, double fade = 0.2, bool twin = false);
 
+  /// The path moved onto the surface as it is now, along its normals.
+  std::vector<Point> dropped(std::vector<Point> path) const;
+
   /// Builds the grid; no stroke may follow.
   void finish();
 

@@ -23,13 +23,14 @@ double linear(int byte) {
 
 Point srgb(int red, int green, int blue) { return {linear(red), linear(green), linear(blue)}; }
 
-Model finished(Surface surface, const Colouring& colouring) {
+Model finished(const Surface& surface, const Colouring& colouring, Point* shift_out) {
   Point low = surface.points[0], high = low;
   for (const Point& p : surface.points) {
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
   }
   const Point shift{(low.x + high.x) / 2, low.y, (low.z + high.z) / 2};
+  if (shift_out != nullptr) *shift_out = shift;
   Model model;
   const auto vertices = static_cast<Eigen::Index>(surface.points.size()), faces = static_cast<Eigen::Index>(surface.triangles.size());
   model.mesh.V.resize(vertices, 3);

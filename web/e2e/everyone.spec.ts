@@ -2,7 +2,7 @@
 // Keyboard alone, and axe on every page in both themes at both widths.
 import AxeBuilder from '@axe-core/playwright';
 import type { Page } from '@playwright/test';
-import { expect, openPage, openSample, solve, test } from './page';
+import { expect, openPage, openSample, solve, strip, test } from './page';
 
 /** Tabs until the wanted element has the focus; a person would not go on for ever. */
 async function tabTo(page: Page, selector: string): Promise<void> {
@@ -17,7 +17,7 @@ test('with the keyboard alone', async ({ page }) => {
   await openPage(page);
   await tabTo(page, '.gallery button');
   await page.keyboard.press('Enter');
-  await expect(page.getByText('Preview up to date')).toBeVisible();
+  await expect(strip(page, 'Preview up to date')).toBeVisible();
   await tabTo(page, 'input[type=range][aria-label=Thickness]');
   await page.keyboard.press('Shift+ArrowRight');
   await expect(page.getByRole('textbox', { name: 'Thickness' })).not.toHaveValue('5.0');
@@ -28,7 +28,7 @@ test('with the keyboard alone', async ({ page }) => {
   await page.keyboard.press('Escape');
   await expect(page.getByRole('dialog')).toBeHidden();
   await page.keyboard.press('Control+Enter');
-  await expect(page.getByText('Relief ready')).toBeVisible({ timeout: 150_000 });
+  await expect(strip(page, 'Relief ready')).toBeVisible({ timeout: 150_000 });
   const waiting = page.waitForEvent('download');
   await page.keyboard.press('Control+e');
   expect((await waiting).suggestedFilename()).toMatch(/\.stl$/);

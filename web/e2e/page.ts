@@ -36,15 +36,19 @@ export async function openPage(page: Page): Promise<void> {
   await expect(page.getByRole('heading', { name: 'Or start from a sample' })).toBeVisible();
 }
 
+/** What the strip says; said a second time for the ear only. */
+export const strip = (page: Page, title: string) =>
+  page.getByRole('contentinfo').locator('strong').getByText(title);
+
 export async function openSample(page: Page): Promise<void> {
   await openPage(page);
   await page.locator('.gallery button').first().click();
-  await expect(page.getByText('Preview up to date')).toBeVisible();
+  await expect(strip(page, 'Preview up to date')).toBeVisible();
 }
 
 export async function solve(page: Page): Promise<void> {
   await page.getByRole('button', { name: 'Solve at full detail' }).click();
-  await expect(page.getByText('Relief ready')).toBeVisible({ timeout: 150_000 });
+  await expect(strip(page, 'Relief ready')).toBeVisible({ timeout: 150_000 });
 }
 
 /** A ball with waves, as OBJ: small, closed, ours. */

@@ -1,78 +1,66 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pictures of our own samples, drawn by the view at the first visit and kept. Drawn one after the other,
-// and only while nothing else is wanted of the solver.
-import type { Services } from '../crafts/common/services';
-import type { Sample } from '../jobs/contract';
-import { readPly } from '../jobs/mesh_reader';
+// Draws the pictures of the start screen, in a browser, for scripts/draw_pictures.js to keep in public/.
+// Not part of the page: drawing a gallery at each first visit would take the solver's time.
 import { originalData, plateOf, reliefData } from '../crafts/relief/meshes';
+import type { Job, Sample } from '../jobs/contract';
+import { findOperation } from '../jobs/contract';
+import { readPly } from '../jobs/mesh_reader';
+import { WasmBackend } from '../jobs/wasm_backend';
 import { renderThumbnail } from '../view';
-import { pictures } from './pictures';
 
-const cacheName = 'pictures';
-const pictureVertices = 6000;
+const pictureVertices = 30_000;
+const none = { read: () => Promise.reject(new Error('No inputs.')) };
 
-async function kept(key: string, draw: () => Promise<Blob>): Promise<Blob> {
-  const cache = await caches.open(cacheName).catch(() => null);
-  const url = new URL(`pictures/${key}`, location.href).href;
-  const found = await cache?.match(url);
-  if (found) return await found.blob();
-  const blob = await draw();
-  await cache?.put(url, new Response(blob)).catch(() => undefined);
-  return blob;
-}
-
-async function drawSample(services: Services, { name }: Sample): Promise<Blob> {
-  const inputs = { mesh: { sample: name, vertices: pictureVertices } };
-  const job = { operation: 'import', parameters: {}, inputs, outputs: ['model.ply'] };
-  const output = (await services.browser.run(job)).outputs.get('model.ply');
-  if (output === undefined) throw new Error('No model.');
-  const mesh = await readPly(await output.read());
-  return await renderThumbnail(
-    originalData(mesh, 1),
-    { widthPx: 264, heightPx: 198 },
-    { transparent: true, ground: true },
-  );
-}
-
-async function drawRelief(services: Services, { name }: Sample): Promise<Blob> {
-  const inputs = { mesh: { sample: name, vertices: pictureVertices } };
-  const job = { operation: 'relief', parameters: {}, inputs, outputs: ['relief.ply'] };
-  const result = await services.browser.run(job);
-  const output = result.outputs.get('relief.ply');
-  if (output === undefined) throw new Error('No relief.');
-  const mesh = await readPly(await output.read());
-  const plate = plateOf(result.report, thicknessOf(services));
-  const options = {
-    transparent: true,
-    plate,
-    viewpoint: { direction: [-0.45, -0.25, -1], up: [0, 1, 0] },
-  } as const;
-  return await renderThumbnail(reliefData(mesh), { widthPx: 560, heightPx: 352 }, options);
-}
-
-function thicknessOf(services: Services): number {
-  const relief = services.catalog.value?.operations.find(({ name }) => name === 'relief');
-  return Number(relief?.parameters.properties['thickness_mm']?.default ?? 0);
-}
-
-let running = false;
-
-export async function drawPictures(services: Services, busy: () => boolean): Promise<void> {
-  const catalog = services.catalog.value;
-  if (running || catalog === null) return;
-  running = true;
-  const [first] = catalog.samples;
-  const jobs = catalog.samples.map((sample) => [sample.name, () => drawSample(services, sample)] as const);
-  if (first) jobs.unshift(['craft:relief', () => drawRelief(services, first)]);
-  for (const [name, draw] of jobs) {
-    if (pictures.value[name]) continue;
-    while (busy()) await new Promise((resolve) => setTimeout(resolve, 300));
-    try {
-      const blob = await kept(`${catalog.version}/${name}`, draw);
-      pictures.value = { ...pictures.value, [name]: URL.createObjectURL(blob) };
-    } catch {
-      // A picture less; the sample can still be opened.
-    }
+/** WebP pictures as data URLs, by file name without its ending. */
+export async function drawPictures(only?: string): Promise<Record<string, string>> {
+  const backend = new WasmBackend({
+    moduleUrl: new URL('/wasm/formwright.mjs', location.href).href,
+    blobs: none,
+  });
+  const catalog = await backend.catalog();
+  const run = async (job: Omit<Job, 'parameters'>, output: string) => {
+    const { report, outputs } = await backend.run({ ...job, parameters: {} });
+    const made = outputs.get(output);
+    if (made === undefined) throw new Error(`No ${output}.`);
+    return { report, mesh: await readPly(await made.read()) };
+  };
+  const input = ({ name, default_vertices }: Sample) => ({
+    mesh: { sample: name, vertices: Math.min(default_vertices, pictureVertices) },
+  });
+  const pictures: Record<string, string> = {};
+  for (const sample of catalog.samples) {
+    if (only !== undefined && only !== sample.name) continue;
+    const job = { operation: 'import', inputs: input(sample), outputs: ['model.ply'] };
+    const { mesh } = await run(job, 'model.ply');
+    const options = { transparent: true, ground: true, patient: true };
+    const size = { widthPx: 396, heightPx: 297 };
+    pictures[sample.name] = await webp(await renderThumbnail(originalData(mesh, 1), size, options));
   }
-  running = false;
+  const [first] = catalog.samples;
+  if (first && (only === undefined || only === 'craft_relief')) {
+    const job = { operation: 'relief', inputs: input(first), outputs: ['relief.ply'] };
+    const { mesh, report } = await run(job, 'relief.ply');
+    const thickness = findOperation(catalog, 'relief')?.parameters.properties['thickness_mm']?.default;
+    const picture = await renderThumbnail(
+      reliefData(mesh),
+      { widthPx: 560, heightPx: 352 },
+      {
+        transparent: true,
+        patient: true,
+        plate: plateOf(report, Number(thickness)),
+        viewpoint: { direction: [-0.45, -0.25, -1], up: [0, 1, 0] },
+      },
+    );
+    pictures['craft_relief'] = await webp(picture);
+  }
+  return pictures;
+}
+
+async function webp(png: Blob): Promise<string> {
+  const image = await createImageBitmap(png);
+  const canvas = document.createElement('canvas');
+  canvas.width = image.width;
+  canvas.height = image.height;
+  canvas.getContext('2d')?.drawImage(image, 0, 0);
+  return canvas.toDataURL('image/webp', 0.86);
 }

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-import { useEffect } from 'preact/hooks';
 import type { Services } from '../crafts/common/services';
 import type { ReliefSession } from '../crafts/relief/relief_session';
 import { Button, formatCount, Icon } from '../ui';
 import { crafts, notYet } from './crafts';
-import { pictures } from './pictures';
-import { go, place } from './route';
+import { go } from './route';
 
 export interface StartPageProps {
   readonly services: Services;
@@ -20,13 +18,14 @@ export function formatNames(services: Services): string {
   return names.length > 0 ? `${names.join(', ')} or ${last}` : (last ?? '');
 }
 
+/** Kept in public/pictures by scripts/draw_pictures.js; a sample newer than its picture goes without. */
+function Picture({ name }: { name: string }) {
+  const hide = (event: { currentTarget: HTMLImageElement }) => (event.currentTarget.hidden = true);
+  return <img src={`pictures/${name}.webp`} alt="" decoding="async" onError={hide} />;
+}
+
 export function StartPage({ services, session, onChooseFile }: StartPageProps) {
   const catalog = services.catalog.value;
-  useEffect(() => {
-    if (catalog === null) return;
-    const busy = () => session.activity.value.kind !== 'idle' || place.value !== 'start';
-    void import('./draw_pictures').then(({ drawPictures }) => drawPictures(services, busy));
-  }, [catalog]);
   const open = (sample: string, title: string) => {
     go('relief');
     void services.projects.create().then(() => session.openSample(sample, title));
@@ -41,11 +40,7 @@ export function StartPage({ services, session, onChooseFile }: StartPageProps) {
             <li key={craft.place}>
               <a class={craft.available ? 'craft-card' : 'craft-card later'} href={`#/${craft.place}`}>
                 <span class="craft-picture">
-                  {pictures.value[`craft:${craft.place}`] ? (
-                    <img src={pictures.value[`craft:${craft.place}`]} alt="" />
-                  ) : (
-                    <Icon name={craft.icon} />
-                  )}
+                  {craft.available ? <Picture name={`craft_${craft.place}`} /> : <Icon name={craft.icon} />}
                 </span>
                 <span class="craft-text">
                   <strong>{craft.title}</strong>
@@ -76,7 +71,7 @@ export function StartPage({ services, session, onChooseFile }: StartPageProps) {
                 <li key={sample.name}>
                   <button type="button" onClick={() => open(sample.name, sample.title)}>
                     <span class="gallery-picture">
-                      {pictures.value[sample.name] ? <img src={pictures.value[sample.name]} alt="" /> : null}
+                      <Picture name={sample.name} />
                     </span>
                     <strong>{sample.title}</strong>
                     <small>{formatCount(sample.default_vertices / 1000)}k vertices</small>

@@ -259,6 +259,9 @@ export interface ViewportApi {
 
   /** A finished picture of the current view, PNG, without overlays. */
   snapshot(widthPx: number, heightPx: number, options?: { transparent?: boolean }): Promise<Blob>;
+  /** While true, a machine without a graphics card draws what changes but refines nothing: its processor is
+   *  wanted elsewhere. */
+  setResting(resting: boolean): void;
   /** Draw now rather than on the next frame (tests, transitions). */
   renderNow(): void;
   /** Resolves when nothing is left to draw, refine or prepare. */
@@ -288,4 +291,6 @@ export interface ThumbnailOptions {
   /** Soft shadow on the ground; true without a plate. */
   ground?: boolean;
   transparent?: boolean;
+  /** Every sample even without a graphics card: for pictures made once and kept. */
+  patient?: boolean;
 }

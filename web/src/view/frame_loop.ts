@@ -14,11 +14,13 @@ export interface FrameClient {
   refineSamples(): number;
   refine(sample: number): void;
   triangles(): number;
+  /** The graphics card has not finished what it was given. */
+  gpuBusy(): boolean;
   onFrame(stats: FrameStats): void;
 }
 
-/** Rest before baking and refining, so that they never get in the way of the hand. */
-const REST_MS = 110;
+/** How soon to look again whether the card is done: soon after a frame's length. */
+const POLL_MS = 8;
 /** A slow machine refines no longer than this. */
 const REFINE_BUDGET_MS = 2500;
 const FEWEST_SAMPLES = 8;
@@ -34,8 +36,13 @@ export class FrameLoop {
   private finished = false;
   private waiting: (() => void)[] = [];
   private stopped = false;
+  private held = false;
 
-  constructor(private readonly client: FrameClient) {}
+  constructor(
+    private readonly client: FrameClient,
+    /** Rest before baking and refining, so that they never get in the way of the hand, ms. */
+    private readonly restMs: number,
+  ) {}
 
   invalidate(): void {
     this.dirty = true;
@@ -66,6 +73,13 @@ export class FrameLoop {
     this.invalidate();
   }
 
+  /** Held, changes are drawn but nothing is baked or refined. */
+  setHeld(held: boolean): void {
+    if (held === this.held) return;
+    this.held = held;
+    if (!held) this.restart();
+  }
+
   get idle(): boolean {
     return this.finished || this.stopped;
   }
@@ -81,6 +95,13 @@ export class FrameLoop {
     this.client.draw();
   }
 
+  private later(ms: number): void {
+    this.timer = window.setTimeout(() => {
+      this.timer = 0;
+      if (this.request === 0 && !this.stopped) this.request = requestAnimationFrame(this.tick);
+    }, ms);
+  }
+
   private release(): void {
     const waiting = this.waiting;
     this.waiting = [];
@@ -90,6 +111,11 @@ export class FrameLoop {
   private readonly tick = (now: number): void => {
     this.request = 0;
     if (this.stopped) return;
+    // Never a second frame in the queue: the hand would feel it, and the page would stop.
+    if (this.client.gpuBusy()) {
+      this.later(POLL_MS);
+      return;
+    }
     const begun = performance.now();
     const interval = this.last === null ? null : now - this.last;
     const moving = this.client.animate(now, interval ?? 16);
@@ -100,16 +126,13 @@ export class FrameLoop {
       this.sample = 0;
       this.changedAt = now;
       this.client.draw();
-    } else if (now - this.changedAt < REST_MS) {
+    } else if (now - this.changedAt < this.restMs) {
       this.last = null;
-      this.timer = window.setTimeout(
-        () => {
-          this.timer = 0;
-          if (this.request === 0) this.request = requestAnimationFrame(this.tick);
-        },
-        REST_MS - (now - this.changedAt),
-      );
+      this.later(this.restMs - (now - this.changedAt));
       return;
+    } else if (this.held) {
+      this.last = null;
+      return; // setHeld goes on
     } else if (this.client.bakePending()) {
       if (this.client.bake()) {
         this.client.draw();

@@ -231,3 +231,18 @@ export function isClosed(indices: Uint32Array, vertexCount: number): boolean {
   }
   return a === b;
 }
+
+/** Of a closed mesh, mm^3: positive where its triangles look outwards. */
+export function signedVolume(positions: ArrayLike<number>, indices: Uint32Array): number {
+  let sum = 0;
+  for (let t = 0; t < indices.length; t += 3) {
+    const a = 3 * indices[t]!;
+    const b = 3 * indices[t + 1]!;
+    const c = 3 * indices[t + 2]!;
+    sum +=
+      positions[a]! * (positions[b + 1]! * positions[c + 2]! - positions[b + 2]! * positions[c + 1]!) +
+      positions[a + 1]! * (positions[b + 2]! * positions[c]! - positions[b]! * positions[c + 2]!) +
+      positions[a + 2]! * (positions[b]! * positions[c + 1]! - positions[b + 1]! * positions[c]!);
+  }
+  return sum / 6;
+}

@@ -8,7 +8,6 @@ import type { Viewport } from './viewport';
 /** Turned this far to the side and from above, so that the thickness shows. */
 const TURN = (62 * Math.PI) / 180;
 const TILT = (14 * Math.PI) / 180;
-const SAMPLES = 14;
 
 /** The relief seen from the side, with its thickness. Call `update` when the relief or its light changed;
  *  it draws once the hand rests, with the viewport's own meshes and graphics context. */
@@ -41,8 +40,13 @@ export class SideInset implements SideInsetApi {
     const text = formatValue(thicknessMm, 'mm', 0.1);
     this.thickness.textContent = text;
     this.canvas.setAttribute('aria-label', `The relief seen from the side, ${text} thick`);
+    this.redraw();
+  }
+
+  /** Light or theme changed. */
+  redraw(): void {
     clearTimeout(this.timer);
-    this.timer = window.setTimeout(() => void this.draw(), 60);
+    this.timer = window.setTimeout(() => void this.draw(), 150);
   }
 
   private async draw(): Promise<void> {
@@ -63,7 +67,7 @@ export class SideInset implements SideInsetApi {
       return orbited(front, front.up, centre, TURN, TILT);
     };
     try {
-      const pixels = await this.viewport.readPart('relief', side, width, height, SAMPLES);
+      const pixels = await this.viewport.readPart('relief', side, width, height);
       if (pixels && !this.disposed) {
         this.canvas.width = width;
         this.canvas.height = height;

@@ -6,11 +6,13 @@ import type { MeshData, Plate, Vec3, Viewpoint } from './api';
 import { type CameraState, type Screen, clipMatrix, viewCoordinates } from './camera';
 import { SectionCaps } from './caps';
 import { Colouring } from './colouring';
+import { GpuPace } from './gpu_pace';
 import { jitter } from './jitter';
 import { LineSet, type LineStyle } from './lines';
 import { groundSquare, plateBody, plateFrame, plateFront } from './plate';
 import { Accumulation, ScreenPass } from './passes';
 import { PlateShadow } from './plate_shadow';
+import type { Quality } from './quality';
 import { backdropFragment, groundFragment } from './shaders';
 import { DepthView, SkyScratch, Subject, newBakeUniforms } from './subject';
 import type { Support } from './support';
@@ -60,7 +62,7 @@ interface Part {
 
 export class Stage {
   readonly renderer: THREE.WebGLRenderer;
-  readonly software: boolean;
+  readonly pace: GpuPace;
   origin: Vec3 = [0, 0, 0];
   readonly picture: Uniforms = {
     uSection: { value: new THREE.Vector4(0, 0, 0, 1) },
@@ -79,7 +81,7 @@ export class Stage {
   private readonly camera = new THREE.Camera();
   private readonly scene = new THREE.Scene();
   private readonly depthView = new DepthView();
-  private readonly sky = new SkyScratch();
+  private readonly sky: SkyScratch;
   private readonly backdrop = new ScreenPass(backdropFragment, {
     uCentre: { value: new THREE.Vector3() },
     uRim: { value: new THREE.Vector3() },
@@ -94,7 +96,12 @@ export class Stage {
   private pixelRatio = 1;
   private occlusionStrength = OCCLUSION;
 
-  constructor(canvas: HTMLCanvasElement | OffscreenCanvas, antialias: boolean) {
+  constructor(
+    canvas: HTMLCanvasElement | OffscreenCanvas,
+    readonly quality: Quality,
+  ) {
+    const { antialias } = quality;
+    this.sky = new SkyScratch(quality.skySize);
     const context = canvas.getContext('webgl2', {
       antialias,
       alpha: false,
@@ -108,15 +115,15 @@ export class Stage {
     this.renderer.sortObjects = false;
     this.renderer.setPixelRatio(1);
     this.renderer.info.autoReset = false;
-    const info = context.getExtension('WEBGL_debug_renderer_info');
-    const name = info ? String(context.getParameter(info.UNMASKED_RENDERER_WEBGL)) : '';
-    this.software = /swiftshader|llvmpipe|software|basic render/i.test(name);
+    // Asking for each shader's log waits for the compiler; ours are tested.
+    this.renderer.debug.checkShaderErrors = false;
+    this.pace = new GpuPace(context);
     this.canRefineHere = context.getExtension('EXT_color_buffer_float') !== null;
     this.camera.matrixWorldAutoUpdate = false;
     this.scene.matrixWorldAutoUpdate = false;
     this.caps = new SectionCaps(this.picture);
     const part = (): Part => ({
-      subject: new Subject(this.bakeUniforms),
+      subject: new Subject(this.bakeUniforms, quality),
       mesh: null,
       extra: [],
       plate: null,
@@ -148,7 +155,7 @@ export class Stage {
   ): void {
     const part = this.parts[name];
     part.subject.dispose();
-    part.subject = new Subject(this.bakeUniforms);
+    part.subject = new Subject(this.bakeUniforms, this.quality);
     part.plateShadow?.dispose();
     part.plateShadow = null;
     part.plate = plate;
@@ -165,7 +172,7 @@ export class Stage {
 
   private surface(part: Part, mesh: MeshData, options: SurfaceOptions): Surface {
     const shared = { picture: this.picture, subject: part.subject.uniforms, bake: this.bakeUniforms };
-    return new Surface(mesh, this.origin, shared, options);
+    return new Surface(mesh, this.origin, shared, { ...options, shadowTaps: this.quality.shadowTaps });
   }
 
   private addPlate(part: Part, plate: Plate, viewpoint: Pick<Viewpoint, 'direction' | 'up'>): void {
@@ -273,11 +280,11 @@ export class Stage {
     return this.parts.original.subject.bakePending || this.parts.relief.subject.bakePending;
   }
 
-  /** Bakes some of the sky for the parts shown; true when a part was finished (draw again). */
-  bake(steps: number, names: readonly PartName[]): boolean {
+  /** Bakes a little of the sky for the parts shown; true when a part was finished (draw again). */
+  bake(names: readonly PartName[]): boolean {
     const waiting = names.map((n) => this.parts[n].subject).find((s) => s.bakePending);
     if (!waiting) return false;
-    const done = waiting.bake(this.renderer, this.depthView, this.sky, steps);
+    const done = waiting.bake(this.renderer, this.depthView, this.sky, this.quality.skyStep);
     this.renderer.setRenderTarget(null);
     return done;
   }
@@ -301,8 +308,10 @@ export class Stage {
     sample = -1,
   ): void {
     const { renderer } = this;
-    const [jitterX, jitterY, lightX, lightY] = sample < 0 ? [0, 0, 0, 0] : jitter(sample);
+    const [jitterX, jitterY, discX, discY] = sample < 0 ? [0, 0, 0, 0] : jitter(sample);
     const angle = (LIGHT_HALF_ANGLE * Math.PI) / 180;
+    const still = sample >= 0 && this.quality.softLight;
+    const [lightX, lightY] = still ? [discX, discY] : [0, 0];
     const side = perpendicular(picture.towardsLight);
     const towards = rotate(
       rotate(picture.towardsLight, side, angle * lightX),
@@ -312,7 +321,7 @@ export class Stage {
     for (const { part } of picture.parts) {
       const { subject, mesh } = this.parts[part];
       // A still picture samples the light itself; a moving one blurs the shadow's edge instead.
-      const softness = (sample < 0 ? 0.011 : 0.0015) * (mesh ? subject.support.radius : 1);
+      const softness = (still ? 0.0015 : 0.011) * (mesh ? subject.support.radius : 1);
       subject.prepareShadow(renderer, this.depthView, towards, softness, this.sectionKey);
       subject.setOcclusionStrength(this.occlusionStrength);
     }
@@ -344,7 +353,9 @@ export class Stage {
     this.setClip(picture, part.subject, width, height, offset);
     if (picture.backdrop) this.drawScene([this.backdrop.mesh]);
     const objects: THREE.Object3D[] = [];
+    const cut = this.cutTest() !== null;
     for (const surface of part.subject.surfaces) {
+      surface.setCut(cut);
       if (surface.main.material.transparent && !picture.ground) continue;
       objects.push(surface.main);
     }
@@ -448,9 +459,12 @@ export class Stage {
     try {
       const count = this.canRefine ? samples : 1;
       for (let i = 0; i < count; ++i) {
+        await this.pace.done();
         this.draw(picture, accumulation.frame, width, height, count > 1 ? i : -1);
         accumulation.add(this.renderer, i);
+        this.pace.mark();
       }
+      await this.pace.done();
       return await accumulation.read(this.renderer);
     } finally {
       accumulation.dispose();

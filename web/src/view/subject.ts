@@ -3,19 +3,13 @@
 // how much of the sky each vertex sees (ambient occlusion, by shadow maps from many directions).
 import * as THREE from 'three';
 import type { Vec3 } from './api';
+import type { Quality } from './quality';
 import { type Support, sphereDirections, supportOf } from './support';
 import type { Surface, Uniforms } from './surface';
 import { dot, perpendicular, viewerAxes } from './vector';
 
-const SKY_DIRECTIONS = 80;
-const directions = sphereDirections(SKY_DIRECTIONS);
-/** Directions in an order in which any first few are spread evenly. */
-const order = Array.from({ length: SKY_DIRECTIONS }, (_, i) => (i * 31) % SKY_DIRECTIONS);
-
 /** Light that comes back from the ground, as a share of the sky's. */
 const GROUND_BOUNCE = 0.45;
-const SHADOW_SIZE = 2048;
-const SKY_SIZE = 1024;
 
 function depthTarget(size: number): THREE.WebGLRenderTarget {
   const depthTexture = new THREE.DepthTexture(size, size, THREE.UnsignedIntType);
@@ -71,7 +65,14 @@ export class Subject {
   private skyNext = 0;
   private skyDone = false;
 
-  constructor(private readonly bakeUniforms: Uniforms) {}
+  private readonly directions: Float32Array;
+
+  constructor(
+    private readonly bakeUniforms: Uniforms,
+    private readonly quality: Quality,
+  ) {
+    this.directions = sphereDirections(quality.skyDirections);
+  }
 
   /** Shape or parts changed: bounds anew; shadow and sky follow when next drawn or at rest. */
   changed(): void {
@@ -156,9 +157,10 @@ export class Subject {
   }
 
   private drawShadow(renderer: THREE.WebGLRenderer, view: DepthView, towards: Vec3, key: string): void {
-    this.shadow ??= depthTarget(SHADOW_SIZE);
+    const { shadowSize } = this.quality;
+    this.shadow ??= depthTarget(shadowSize);
     const lookup = this.uniforms['uShadowMatrix'] as THREE.IUniform<THREE.Matrix4>;
-    const mm = this.aim(towards, SHADOW_SIZE, lookup.value);
+    const mm = this.aim(towards, shadowSize, lookup.value);
     this.drawDepth(renderer, view, this.shadow);
     this.uniform('uShadow').value = this.shadow.depthTexture;
     this.texelMm = mm;
@@ -171,7 +173,7 @@ export class Subject {
   }
 
   get bakePending(): boolean {
-    return this.surfaces.length > 0 && !this.skyDone;
+    return this.surfaces.length > 0 && !this.skyDone && this.triangleCount <= this.quality.skyTriangles;
   }
 
   get baked(): boolean {
@@ -188,15 +190,17 @@ export class Subject {
       }
     }
     const lookup = this.bakeUniforms['uShadowMatrix']?.value as THREE.Matrix4;
+    const { directions } = this;
+    const { skyDirections, skySize } = this.quality;
     const target = scratch.target();
-    for (let i = 0; i < steps && this.skyNext < SKY_DIRECTIONS; ++i, ++this.skyNext) {
-      const d = 3 * (order[this.skyNext] as number);
+    for (let i = 0; i < steps && this.skyNext < skyDirections; ++i, ++this.skyNext) {
+      const d = 3 * this.skyNext;
       const towards: Vec3 = [
         directions[d] as number,
         directions[d + 1] as number,
         directions[d + 2] as number,
       ];
-      const mm = this.aim(towards, SKY_SIZE, lookup);
+      const mm = this.aim(towards, skySize, lookup);
       (this.bakeUniforms['uDirection']?.value as THREE.Vector3).set(...towards);
       (this.bakeUniforms['uSeen'] as THREE.IUniform).value =
         this.groundUp && dot(towards, this.groundUp) < 0 ? GROUND_BOUNCE : 1;
@@ -210,7 +214,7 @@ export class Subject {
       }
       view.scene.children = [];
     }
-    if (this.skyNext < SKY_DIRECTIONS) return false;
+    if (this.skyNext < skyDirections) return false;
     for (const surface of this.surfaces) surface.finishBake();
     this.skyDone = true;
     return true;
@@ -241,8 +245,9 @@ export class Subject {
 /** The depth map all sky samples share. */
 export class SkyScratch {
   private depth: THREE.WebGLRenderTarget | null = null;
+  constructor(private readonly size: number) {}
   target(): THREE.WebGLRenderTarget {
-    this.depth ??= depthTarget(SKY_SIZE);
+    this.depth ??= depthTarget(this.size);
     return this.depth;
   }
   dispose(): void {

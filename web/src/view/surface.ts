@@ -3,7 +3,7 @@
 // One mesh on the graphics card: buffers, live updates, and the materials that draw, shadow and bake it.
 import * as THREE from 'three';
 import type { MeshData, Vec3 } from './api';
-import { type Shading, shadingFor, updateNormals } from './normals';
+import { type Shading, isClosed, shadingFor, signedVolume, updateNormals } from './normals';
 import {
   bakeFragment,
   bakeQuadFragment,
@@ -36,6 +36,8 @@ export interface SurfaceOptions {
   picture?: { width: number; height: number };
   /** Blur of the baked sky, as a share of its depth maps: far shadows need more. */
   blur?: number;
+  /** Look-ups into the key light's depth map per pixel. */
+  shadowTaps?: number;
   fragment?: string;
   transparent?: boolean;
 }
@@ -66,6 +68,8 @@ export class Surface {
   /** Triangles of the mesh as given; picking and values speak of these. */
   readonly indices: Uint32Array;
   readonly vertexCount: number;
+  /** Closed, and its triangles look outwards: nobody sees their backs until it is cut. */
+  private readonly solid: boolean;
   private readonly shading: Shading;
   private readonly given: MeshData;
   private readonly drawn: Float32Array;
@@ -93,6 +97,7 @@ export class Surface {
     this.indices = mesh.indices;
     this.vertexCount = mesh.positions.length / 3;
     this.faces = new Float32Array(mesh.indices.length);
+    this.solid = isClosed(mesh.indices, this.vertexCount) && signedVolume(mesh.positions, mesh.indices) > 0;
     this.shading = mesh.normals
       ? { indices: mesh.indices, source: identity(this.vertexCount), normals: mesh.normals }
       : shadingFor(mesh.positions, mesh.indices);
@@ -107,7 +112,7 @@ export class Surface {
     this.geometry.setAttribute('position', attribute(this.drawn, 3, true));
     this.geometry.setAttribute('normal', attribute(this.shading.normals, 3, true));
     this.geometry.setIndex(new THREE.BufferAttribute(this.shading.indices, 1));
-    const defines: Record<string, string | number> = { SHADOW_TAPS: 16 };
+    const defines: Record<string, string | number> = { SHADOW_TAPS: options.shadowTaps ?? 16 };
     if (mesh.colours) {
       this.geometry.setAttribute('colour', attribute(this.spread(mesh.colours, 3), 3));
       defines['COLOURS'] = 1;
@@ -143,7 +148,8 @@ export class Surface {
       fragmentShader: options.fragment ?? surfaceFragment,
       defines,
       uniforms: { ...shared.picture, ...shared.subject, ...this.uniforms },
-      side: THREE.DoubleSide,
+      // The far side of a closed mesh only shows as specks along outlines.
+      side: this.solid ? THREE.FrontSide : THREE.DoubleSide,
       transparent: options.transparent ?? false,
       depthWrite: !(options.transparent ?? false),
       blending: options.transparent ? THREE.CustomBlending : THREE.NoBlending,
@@ -252,6 +258,11 @@ export class Surface {
     }
     this.uniforms['uMap']!.value = this.scalarMap;
     (this.uniforms['uMapRange']!.value as THREE.Vector2).set(minimum, maximum);
+  }
+
+  /** A cut shows the inside. */
+  setCut(cut: boolean): void {
+    this.main.material.side = this.solid && !cut ? THREE.FrontSide : THREE.DoubleSide;
   }
 
   setOcclusionStrength(strength: number): void {

@@ -4,24 +4,24 @@ import type { MeshData, ThumbnailOptions, Viewpoint } from './api';
 import { cameraFromViewpoint, fitWindow, makeScreen, projectedBounds } from './camera';
 import { DEFAULT_LIGHT, towardsLight } from './light';
 import { encodePng } from './png';
+import { FULL, qualityHere } from './quality';
 import { boxOf } from './same';
 import { Stage } from './stage';
 import { readPalette } from './theme';
 import { add, normalise, scale, viewerAxes } from './vector';
 
 const IDLE_MS = 4000;
-const SAMPLES = 16;
 const THREE_QUARTERS: Pick<Viewpoint, 'direction' | 'up'> = { direction: [-0.5, -0.34, -1], up: [0, 1, 0] };
 
 let shared: { stage: Stage; canvas: HTMLCanvasElement } | null = null;
 let timer = 0;
 let queue: Promise<unknown> = Promise.resolve();
 
-function stage(): Stage {
+function stage(patient: boolean): Stage {
   clearTimeout(timer);
   if (!shared) {
     const canvas = document.createElement('canvas');
-    shared = { stage: new Stage(canvas, false), canvas };
+    shared = { stage: new Stage(canvas, { ...(patient ? FULL : qualityHere()), antialias: false }), canvas };
     canvas.addEventListener('webglcontextlost', () => {
       shared = null;
     });
@@ -55,7 +55,7 @@ async function draw(
   { widthPx, heightPx }: { widthPx: number; heightPx: number },
   options: ThumbnailOptions,
 ): Promise<Blob> {
-  const s = stage();
+  const s = stage(options.patient ?? false);
   try {
     s.setPalette(readPalette(options.theme ?? 'auto', document.documentElement));
     const box = boxOf(mesh.positions);
@@ -78,9 +78,9 @@ async function draw(
     const bounds = projectedBounds(camera, support.points, s.origin);
     if (bounds) camera = fitWindow(camera, screen, bounds, 0.1 * Math.min(widthPx, heightPx));
     while (s.bakePendingFor([part])) {
-      s.bake(s.software ? 8 : 40, [part]);
-      // Let the page breathe between pieces of work.
-      await new Promise((resolve) => setTimeout(resolve));
+      s.bake([part]);
+      s.pace.mark();
+      await s.pace.done();
     }
     const axes = viewerAxes(look.direction, look.up);
     const pixels = await s.read(
@@ -97,7 +97,7 @@ async function draw(
       },
       widthPx,
       heightPx,
-      SAMPLES,
+      options.patient ? s.quality.savedSamples : s.quality.smallSamples,
     );
     s.setPart(part, null, null, look);
     return await encodePng(pixels, widthPx, heightPx);

@@ -36,6 +36,7 @@ import { encodePng } from './png';
 import { PointerReports } from './pointer';
 import { reframed } from './snapshot';
 import { type PartName, type Picture, type PicturePart, Stage } from './stage';
+import { qualityHere } from './quality';
 import { readPalette } from './theme';
 import { add, length, scale, subtract, viewerAxes } from './vector';
 
@@ -112,7 +113,7 @@ export class Viewport implements ViewportApi {
       attributeFilter: ['data-theme', 'class', 'style'],
     });
     try {
-      const stage = new Stage(this.canvas, true);
+      const stage = new Stage(this.canvas, qualityHere());
       stage.setPalette(readPalette(this.theme, this.root));
       const mode = options.mode ?? 'original';
       this.content = new Content(
@@ -145,19 +146,27 @@ export class Viewport implements ViewportApi {
 
   private makeLoop(): FrameLoop {
     const parts = (): PartName[] => this.content?.parts() ?? [];
-    return new FrameLoop({
-      animate: (now, elapsed) => this.rig.animate(now, elapsed),
-      draw: () => this.draw(),
-      bakePending: () => this.stage?.bakePendingFor(parts()) ?? false,
-      bake: () => this.stage?.bake(this.stage.software ? 4 : 20, parts()) ?? false,
-      refineSamples: () => {
-        if (!this.stage?.canRefine || this.options.refine === false || parts().length === 0) return 0;
-        return this.stage.software ? 16 : 40;
+    return new FrameLoop(
+      {
+        animate: (now, elapsed) => this.rig.animate(now, elapsed),
+        draw: () => this.draw(),
+        bakePending: () => this.stage?.bakePendingFor(parts()) ?? false,
+        bake: () => {
+          const finished = this.stage?.bake(parts()) ?? false;
+          this.stage?.pace.mark();
+          return finished;
+        },
+        refineSamples: () => {
+          if (!this.stage?.canRefine || this.options.refine === false || parts().length === 0) return 0;
+          return this.stage.quality.stillSamples;
+        },
+        refine: (sample) => this.refine(sample),
+        gpuBusy: () => this.stage?.pace.busy ?? false,
+        triangles: () => this.content?.triangleCount() ?? 0,
+        onFrame: (stats) => this.options.onFrame?.(stats),
       },
-      refine: (sample) => this.refine(sample),
-      triangles: () => this.content?.triangleCount() ?? 0,
-      onFrame: (stats) => this.options.onFrame?.(stats),
-    });
+      qualityHere().restMs,
+    );
   }
 
   private makePointer(): PointerReports {
@@ -395,6 +404,7 @@ export class Viewport implements ViewportApi {
     this.layOut();
     stage.renderer.info.reset();
     stage.draw(this.picture(this.pictureParts()), null, canvas.width, canvas.height);
+    stage.pace.mark();
   }
 
   private refine(sample: number): void {
@@ -407,7 +417,9 @@ export class Viewport implements ViewportApi {
     const { frame } = this.accumulation;
     stage.draw(this.picture(this.pictureParts()), frame, canvas.width, canvas.height, sample);
     this.accumulation.add(stage.renderer, sample);
-    if (sample + 1 >= SHOWN_FROM) this.accumulation.show(stage.renderer);
+    if (sample + 1 >= Math.min(SHOWN_FROM, stage.quality.stillSamples))
+      this.accumulation.show(stage.renderer);
+    stage.pace.mark();
   }
 
   private layOut(): void {
@@ -431,13 +443,22 @@ export class Viewport implements ViewportApi {
   private resized(): void {
     const width = Math.max(1, this.container.clientWidth);
     const height = Math.max(1, this.container.clientHeight);
-    const ratio = Math.min(globalThis.devicePixelRatio || 1, this.options.maximumPixelRatio ?? 2);
+    const ratio = Math.min(
+      globalThis.devicePixelRatio || 1,
+      this.options.maximumPixelRatio ?? qualityHere().pixelRatio,
+    );
     this.rig.screen = makeScreen(width, height, this.insets);
-    this.stage?.resize(Math.round(width * ratio), Math.round(height * ratio), ratio);
+    const [columns, rows] = [Math.round(width * ratio), Math.round(height * ratio)];
+    const emptied = this.canvas.width !== columns || this.canvas.height !== rows;
+    if (emptied) this.stage?.resize(columns, rows, ratio);
     this.rig.refit();
     // A resized canvas is empty: draw before the browser shows it.
-    if (this.statusNow.state === 'ready') this.loop.drawNow();
+    if (emptied && this.statusNow.state === 'ready') this.loop.drawNow();
     this.invalidate();
+  }
+
+  setResting(resting: boolean): void {
+    if (qualityHere().yieldsToWork) this.loop.setHeld(resting);
   }
 
   renderNow(): void {
@@ -455,10 +476,14 @@ export class Viewport implements ViewportApi {
     }
     const parts = this.pictureParts();
     const names = parts.map((p) => p.part);
-    while (stage.bakePendingFor(names)) stage.bake(80, names);
+    while (stage.bakePendingFor(names)) {
+      await stage.pace.done();
+      stage.bake(names);
+      stage.pace.mark();
+    }
     const framed = reframed(this.rig.camera, this.rig.screen, parts, widthPx, heightPx);
     const picture = { ...this.picture(parts), ...framed, backdrop: !options.transparent };
-    const pixels = await stage.read(picture, widthPx, heightPx, 24);
+    const pixels = await stage.read(picture, widthPx, heightPx, stage.quality.savedSamples);
     this.invalidate();
     return encodePng(pixels, widthPx, heightPx);
   }
@@ -469,7 +494,6 @@ export class Viewport implements ViewportApi {
     camera: (centre: Vec3, radius: number) => CameraState,
     width: number,
     height: number,
-    samples: number,
   ): Promise<Uint8ClampedArray<ArrayBuffer> | null> {
     const { stage, content } = this;
     if (!stage || !content?.meshes[part] || this.statusNow.state !== 'ready') return null;
@@ -480,7 +504,7 @@ export class Viewport implements ViewportApi {
     if (bounds) view = fitWindow(view, screen, bounds, 0.09 * height);
     const parts: PicturePart[] = [{ part, from: 0, to: 1 }];
     const picture = { ...this.picture(parts), camera: view, screen, plateShadow: false, ground: false };
-    const pixels = await stage.read(picture, width, height, samples);
+    const pixels = await stage.read(picture, width, height, stage.quality.smallSamples);
     this.loop.restart();
     return pixels;
   }

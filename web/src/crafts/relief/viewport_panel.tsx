@@ -64,12 +64,17 @@ export function ViewportPanel({ session, onViewport, children }: ViewportPanelPr
     const lightBall = new LightBall(light.value, (chosen) => {
       light.value = chosen;
       viewport.setLight(chosen);
+      inset.redraw();
     });
     ball.current?.append(lightBall.element);
     const inset = new SideInset(viewport);
     side.current?.append(inset.element);
     viewport.setColourMapping(errorMapping);
-    const stop = [effect(() => viewport.setMode(mode.value)), keepDrawn(viewport, session)];
+    const stop = [
+      effect(() => viewport.setMode(mode.value)),
+      keepDrawn(viewport, session, (thickness) => inset.update(thickness)),
+      effect(() => viewport.setResting(session.previewing.value || session.activity.value.kind !== 'idle')),
+    ];
     const panel = container.current.parentElement;
     const makeRoom = () =>
       viewport.setFreeRectangle(freeRectangle(panel?.querySelector('.note-place, .legend')));
@@ -139,7 +144,11 @@ function freeRectangle(foot: Element | null | undefined): Insets {
 }
 
 /** Draws what the session shows; as little as possible is sent again. */
-function keepDrawn(viewport: Viewport, session: ReliefSession): () => void {
+function keepDrawn(
+  viewport: Viewport,
+  session: ReliefSession,
+  onRelief: (thickness_mm: number) => void,
+): () => void {
   let drawnOriginal: { from: string; scale: number } | null = null;
   let drawnRelief: Shown | null = null;
   let drawnModel: string | null = null;
@@ -184,6 +193,7 @@ function keepDrawn(viewport: Viewport, session: ReliefSession): () => void {
       drawnModel = original.from;
     }
     drawnRelief = shown;
+    onRelief(thickness);
   };
   return effect(draw);
 }

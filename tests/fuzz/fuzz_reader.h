@@ -7,6 +7,8 @@
 
 #include "base/error.h"
 #include "geometry/io/mesh_io.h"
+#include "geometry/io/mesh_source.h"
+#include "geometry/io/model_file.h"
 
 namespace formwright::fuzz {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// fuzz_make_seeds FOLDER: small sound files of every dialect that our writers know, and some broken ones by hand.
+// make_fuzz_seeds FOLDER: small sound files of every dialect that our writers know, and some broken ones by hand.
 #include <filesystem>
 #include <fstream>
 

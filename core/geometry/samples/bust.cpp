@@ -357,6 +357,7 @@ Model make_bust(int vertices, Context& context) {
     skin.finish();
     lay_cloak(cloak, skin);
   }
+  context.check_cancelled();
   cloak.finish(std::max(0.5, 0.4 * edge), folds);
   s.raise({0, -14, -3}, 24, [&cloak, folds](const Point& p) { return folds * cloak(p); }, cloak.greatest_height());
   add_brooch(s);
@@ -368,9 +369,12 @@ Model make_bust(int vertices, Context& context) {
   {
     Sculpture skin = s;
     skin.finish();
+    context.check_cancelled();
     lay_hair(hair, skin);
+    context.check_cancelled();
     lay_beard(hair, skin);
   }
+  context.check_cancelled();
   hair.finish(std::max(0.08, 0.3 * edge), strands);
   s.raise({0, 11, 0}, 20, [&hair, locks](const Point& p) {
     const double cap = locks < 1 ? (1 - locks) * 0.6 * smooth_step(-0.2, 1.2, hair_depth(p)) : 0;

@@ -151,7 +151,9 @@ void lay_fur(LockLayer& fur, const Sculpture& skin, const Box& bounds, Context& 
   shape.bounds = bounds;
   const Surface roots = marching_cubes(shape, 1.15, context);
   Dice dice(3);
+  std::size_t laid = 0;
   for (const Point& root : roots.points) {
+    if ((laid++ & 0x3f) == 0) context.check_cancelled();
     const double size = dice.uniform(0.8, 1.2), turn = 0.35 * dice.bell(), phase = dice.uniform(0, 6.28), skip = dice.uniform();
     const Point side{std::fabs(root.x), root.y, root.z};
     if (length(side - left_eye) < 2.0 || length(root - nose_tip) < 2.6 || root.y < 0.4 || root.y > 35.2 || skip < 0.15) continue;
@@ -260,7 +262,9 @@ Model make_cat(int vertices, Context& context) {
     Sculpture skin = s;
     skin.finish();
     lay_fur(fur, skin, bounds, context);
+    context.check_cancelled();
     fur.finish(0.05, strands);
+    context.check_cancelled();
     s.raise({0, 20, -1}, 30, [&fur, tufts](const Point& p) { return tufts * fur(p); }, fur.greatest_height());
   }
   model_eyes(s);

@@ -195,6 +195,7 @@ Model make_coin(int vertices, Context& context) {
     Sculpture skin = s;
     skin.finish();
     lay_feathers(feathers, skin);
+    context.check_cancelled();
     feathers.finish(0.06, plumage);
     s.raise({0, -4, 4}, 32, [&feathers, plumage](const Point& p) { return p.z > 2 ? plumage * feathers(p) : 0; }, feathers.greatest_height());
   }

@@ -61,8 +61,10 @@ void add_fins(Sculpture& s, double fine) {
       const double u = q.x / (fin.radii.x * rim), v = q.y / (fin.radii.y * rim);
       const double out = std::sqrt(u * u + v * v);
       const double edge = (out - 1) * fin.radii.y;
-      const double ray = 0.22 * fine * (0.5 + 0.5 * cosine(fin.rays * angle));
-      const double thick = fin.radii.z * (1 - 0.35 * clamp(out, 0, 1)) - 0.2 + ray;
+      const double ridge = 0.5 + 0.5 * cosine(2 * fin.rays * angle);
+      const double from_root = std::sqrt((q.x - fin.root.x) * (q.x - fin.root.x) + (q.y - fin.root.y) * (q.y - fin.root.y));
+      const double ray = 0.42 * fine * ridge * ridge * smooth_step(4, 11, from_root);  // they would crowd at the root
+      const double thick = fin.radii.z * (1 - 0.35 * clamp(out, 0, 1)) - 0.3 + ray;
       return smooth_max(edge, std::fabs(q.z) - thick, 1.0) * 0.85;
     });
   }
@@ -106,7 +108,7 @@ Point fish_colour(const Point& p) {
   const Scale scale = scale_at(p);
   const double shade = ((scale.id >> 8 & 255U) / 255.0 - 0.5) * 0.25 + 0.35 * (scale.height - 0.5);
   c = c * (1 + shade * scaled_skin(p));
-  const double on_fin = smooth_step(0.9, 1.7, d);
+  const double on_fin = smooth_step(1.2, 2.0, d);  // scales rise to 0.7
   c = mix(c, mix(fin, fin_edge, smooth_step(2, 14, d)), on_fin);
   const Point e = Point{p.x, p.y, std::fabs(p.z)} - left_eye;
   const double r = std::sqrt(e.x * e.x + e.y * e.y);
@@ -140,7 +142,9 @@ Model make_fish(int vertices, Context& context) {
   add_fins(s, rays);
   for (double side : {1.0, -1.0}) {
     const Point c{left_eye.x, left_eye.y, side * left_eye.z};
-    s.carve(0.5, c, 3.9, [c](const Point& p) { return length(p - c) - 3.7; });
+    // The socket lies further out than the ball, which grows from its ground.
+    const Point socket = c + Point{0, 0, side * 1.9};
+    s.carve(0.5, socket, 3.9, [socket](const Point& p) { return length(p - socket) - 3.7; });
     s.unite(0.1, c, 3.1, [c](const Point& p) {
       const double r = std::sqrt((p.x - c.x) * (p.x - c.x) + (p.y - c.y) * (p.y - c.y));
       return length(p - c) - 3.1 + 0.28 * bell(r / 1.5);

@@ -133,6 +133,7 @@ std::vector<Block> reachable_blocks(const ImplicitShape& shape, double cell, int
     const double reach = shape.lipschitz * 0.5 * std::sqrt(3.0) * half * cell;
     std::vector<char> keep(children.size(), 0);
     parallel_for(children.size(), 256, [&](std::size_t from, std::size_t to) {
+      context.check_cancelled();
       for (std::size_t n = from; n < to; ++n) {
         const Block& b = children[n];
         const Point corner = shape.bounds.low + Point{b.i * cell, b.j * cell, b.k * cell};
@@ -325,7 +326,9 @@ Surface marching_cubes(const ImplicitShape& shape, double cell_mm, Context& cont
     if (blocks.size() > 6 * patches.size() + 4096)
       throw Error(ErrorCode::internal, "sample", "The sample's surface leaves its bounds.");
   }
+  context.check_cancelled();
   Surface surface = joined(patches);
+  context.check_cancelled();
   if (surface.triangles.empty())
     throw Error(ErrorCode::internal, "sample", "The sample's field has no surface at this resolution.");
   return largest_part(std::move(surface));

@@ -76,6 +76,7 @@ class Remesher {
     }
     flip_to_delaunay();
     polish();
+    context_.check_cancelled();
     return s_.compact(&patch);
   }
 
@@ -86,6 +87,11 @@ class Remesher {
   }
   // An edge that may be looked at: alive and between two real vertices.
   bool real(int h) const { return s_.alive(h) && (ghost_ < 0 || (s_.start(h) != ghost_ && s_.end(h) != ghost_)); }
+
+  // Once in a while within a loop over half-edges.
+  void poll(int h) const {
+    if ((h & 0x3fff) == 0) context_.check_cancelled();
+  }
 
   double longest_edge() const {
     double longest = 0;
@@ -99,8 +105,10 @@ class Remesher {
   void split_longer_than(double length) {
     const double limit = length * length;
     const int slots = s_.halfedge_slots();
-    for (int h = 0; h < slots; ++h)
+    for (int h = 0; h < slots; ++h) {
+      poll(h);
       if (real(h) && h < s_.twin(h) && s_.edge_length2(h) > limit) split_at_middle(h);
+    }
   }
 
   void split_at_middle(int h) {
@@ -118,8 +126,10 @@ class Remesher {
 
   void collapse_short(double factor) {
     const double limit = factor * factor * edge_ * edge_;
-    for (int h = 0; h < s_.halfedge_slots(); ++h)
+    for (int h = 0; h < s_.halfedge_slots(); ++h) {
+      poll(h);
       if (real(h) && s_.edge_length2(h) < limit) try_collapse(h, 4.0 / 3);
+    }
   }
 
   bool try_collapse(int h, double longest) {
@@ -168,6 +178,7 @@ class Remesher {
       return e * e;
     };
     for (int h = 0; h < s_.halfedge_slots(); ++h) {
+      poll(h);
       if (!real(h) || h > s_.twin(h)) continue;
       const int t = s_.twin(h), u = s_.start(h), v = s_.start(t), a = s_.start(s_.previous(h)), b = s_.start(s_.previous(t));
       if (valence[index(u)] <= 4 || valence[index(v)] <= 4) continue;
@@ -189,6 +200,7 @@ class Remesher {
     for (int round = 0; round < 4; ++round) {
       int flips = 0;
       for (int h = 0; h < s_.halfedge_slots(); ++h) {
+        poll(h);
         if (!real(h) || h > s_.twin(h) || s_.is_feature(h)) continue;
         const int t = s_.twin(h), u = s_.start(h), v = s_.start(t), a = s_.start(s_.previous(h)), b = s_.start(s_.previous(t));
         const Point &pu = s_.point(u), &pv = s_.point(v), &pa = s_.point(a), &pb = s_.point(b);
@@ -216,6 +228,7 @@ class Remesher {
     if (!chord) slopes_.clear();
     slopes_.resize(index(vertices));
     parallel_for(index(vertices), grain, [&](std::size_t from, std::size_t to) {
+      context_.check_cancelled();
       for (std::size_t v = from; v < to; ++v)
         if (s_.vertex_alive(static_cast<int>(v)) && static_cast<int>(v) != ghost_) moved_[v] = relaxed(static_cast<int>(v), step, slopes_[v]);
     });
@@ -261,6 +274,7 @@ class Remesher {
   // Collapses the shortest edge of triangles with an angle below about 24 degrees.
   void dissolve_slivers() {
     for (int h = 0; h < s_.halfedge_slots(); ++h) {
+      poll(h);
       if (!s_.alive(h) || touches_ghost(h)) continue;
       const Point &a = s_.point(s_.start(h)), &b = s_.point(s_.end(h)), &c = s_.point(s_.start(s_.previous(h)));
       if (cotangent(c, a, b) > 2.25) try_collapse(h, 1.6);
@@ -270,6 +284,7 @@ class Remesher {
   // Splits the longest or collapses the shortest edges until the count is right.
   void match_count() {
     for (int round = 0; round < 20 && s_.vertex_count() != target_; ++round) {
+      context_.check_cancelled();
       const bool grow = s_.vertex_count() < target_;
       std::vector<std::pair<double, int>> edges;
       for (int h = 0; h < s_.halfedge_slots(); ++h)
@@ -295,6 +310,7 @@ class Remesher {
     slopes_.resize(index(vertices));
     for (double step : {1e-2, 1e-3, 1e-3}) {
       parallel_for(index(vertices), grain, [&](std::size_t from, std::size_t to) {
+        context_.check_cancelled();
         for (std::size_t i = from; i < to; ++i) {
           const int v = static_cast<int>(i);
           if (!s_.vertex_alive(v) || v == ghost_) continue;

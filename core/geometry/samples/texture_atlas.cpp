@@ -119,6 +119,7 @@ class Atlas {
     });
     // A face follows two of its neighbours that agree.
     for (int round = 0; round < 6; ++round) {
+      context_.check_cancelled();
       const std::vector<int> before = view_;
       for (int f = 0; f < faces; ++f) {
         const auto& n = beside_[index(f)];
@@ -153,6 +154,7 @@ class Atlas {
       const int view = static_cast<int>(from);
       std::vector<float> front(index(n) * index(n));
       for (int layer = 0; layer < 8; ++layer) {
+        context_.check_cancelled();
         std::fill(front.begin(), front.end(), -1e30F);
         int members = 0;
         const auto cell_of = [&](double x) { return static_cast<int>((x + reach) / cell); };
@@ -186,6 +188,7 @@ class Atlas {
     const int faces = static_cast<int>(F_.rows());
     std::vector<int> chart(index(faces), -1);
     for (int pass = 0; pass < 3; ++pass) {
+      context_.check_cancelled();
       std::fill(chart.begin(), chart.end(), -1);
       charts_.clear();
       std::vector<int> stack;
@@ -302,6 +305,7 @@ void paint_texture(Model& model, const std::function<Point(const Point&)>& broad
   std::vector<float> nearest(painter.size(), 1e30F), depth_of(painter.size(), -1e30F);
   for (const Chart& chart : atlas.charts())
     for (int f : chart.faces) {
+      if ((f & 0xfff) == 0) context.check_cancelled();
       double x[3], y[3], z = 0;
       for (int c = 0; c < 3; ++c) {
         x[c] = uv[index(model.FT(f, c))].x * pixels;
@@ -358,6 +362,7 @@ void paint_texture(Model& model, const std::function<Point(const Point&)>& broad
       image[at] = colouring(pa + (pb - pa) * s + (pc - pa) * t, normalized(cross(pb - pa, pc - pa)));
     }
   });
+  context.check_cancelled();
   attach(model, encode_png(image, pixels), name);
 }
 
@@ -374,6 +379,7 @@ void paint_from_above(Model& model, double side_mm, const std::function<Point(do
       for (std::size_t i = 0; i < index(pixels); ++i)
         image[j * index(pixels) + i] = colouring(side_mm * ((static_cast<double>(i) + 0.5) / pixels - 0.5), side_mm * ((static_cast<double>(j) + 0.5) / pixels - 0.5));
   });
+  context.check_cancelled();
   attach(model, encode_png(image, pixels), name);
 }
 

@@ -8,7 +8,9 @@ test('from a sample to a solid of the asked thickness', async ({ page }) => {
   await thickness.fill('4');
   await thickness.press('Enter');
   await solve(page);
-  await expect(page.getByText(/Solved in .* than plain scaling/)).toBeVisible();
+  await expect(page.getByRole('contentinfo').locator('.job-text')).toContainText(
+    /Solved in .* than plain scaling/,
+  );
   const waiting = page.waitForEvent('download');
   await page.getByRole('button', { name: 'Export STL' }).click();
   const download = await waiting;

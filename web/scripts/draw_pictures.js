@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // npm run pictures [NAME]: draws the start screen's pictures anew into public/pictures. Needs the WASM
 // build and the system's Chromium; run it when a sample or the light changed.
-/* global Buffer, console, process */
+/* global Buffer, console */
 import { chromium } from '@playwright/test';
 import { execSync } from 'node:child_process';
 import { mkdirSync, writeFileSync } from 'node:fs';

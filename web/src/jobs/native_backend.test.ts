@@ -76,13 +76,12 @@ class FakeServer {
     this.requests.push(`${request.method} ${path}`);
     const send = (code: number, body: unknown = {}) => {
       response.writeHead(code, { 'Content-Type': 'application/json' });
-      response.end(request.method === 'HEAD' ? '' : JSON.stringify(body));
+      response.end(JSON.stringify(body));
     };
     if (request.headers.authorization !== 'Bearer secret') return send(401);
     if (path === 'status') return send(200, status);
     const [kind, id = '', part] = path.split('/');
     if (kind === 'blobs') {
-      if (request.method === 'HEAD') return send(this.blobs.has(id) ? 200 : 404);
       const chunks: Buffer[] = [];
       for await (const chunk of request) chunks.push(chunk as Buffer);
       this.blobs.set(id, Buffer.concat(chunks));

@@ -135,9 +135,15 @@ function Choice({ label, help, error, options, value, onChange }: ChoiceProps) {
   const segmented = options.length <= 3 && letters <= 22;
   return (
     <div class="field-line">
-      <span id={id} {...tipHandlers(help, 'left')}>
-        {label}
-      </span>
+      {segmented ? (
+        <span id={id} {...tipHandlers(help, 'left')}>
+          {label}
+        </span>
+      ) : (
+        <label for={id} {...tipHandlers(help, 'left')}>
+          {label}
+        </label>
+      )}
       {segmented ? (
         <Segmented
           labelledBy={id}
@@ -148,8 +154,8 @@ function Choice({ label, help, error, options, value, onChange }: ChoiceProps) {
         />
       ) : (
         <select
+          id={id}
           class="select"
-          aria-labelledby={id}
           aria-describedby={`${id}-help`}
           value={value}
           onChange={(event) => onChange(event.currentTarget.value)}

@@ -13,6 +13,7 @@
 #include "geometry/collapsible_mesh.h"
 #include "geometry/measures.h"
 #include "geometry/quadric.h"
+#include "geometry/triangle_improvement.h"
 
 namespace formwright {
 namespace {
@@ -27,12 +28,6 @@ constexpr double boundary_weight = 20;
 constexpr double least_turn_cosine = 0.3;
 /// Shape (1 for equilateral, 0 for flat) below which a collapse is put off, and below which it is refused.
 constexpr double fair_shape = 0.35, least_shape = 0.05;
-
-/// 4 sqrt(3) area / sum of squared sides; Bank & Smith 1997.
-double shape(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& cross) {
-  const double sides = (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm();
-  return sides > 0 ? 2 * std::sqrt(3.0) * cross.norm() / sides : 0;
-}
 
 /// An edge waiting to be collapsed. Stale when `stamp` is no longer the sum of its ends' stamps.
 struct Candidate {
@@ -138,18 +133,12 @@ class Simplifier {
     }
   }
 
-  /// Turns edges towards Delaunay where the surface is nearly flat.
-  void improve_triangles(Context& context) {
-    for (int sweep = 0; sweep < 3; ++sweep) {
-      int flips = 0;
-      for (int h = 0; h < 3 * mesh_.face_count(); ++h) {
-        if ((h & 0xffff) == 0) context.check_cancelled();
-        if (!mesh_.has_face(h / 3) || mesh_.opposite(h) < h || dropped(mesh_.from(h)) || !worth_flipping(h)) continue;
-        mesh_.flip(h);
-        ++flips;
-      }
-      if (flips == 0) break;
-    }
+  /// Only what the collapses have touched: the rest is as it was asked for.
+  void improve(const Context& context) {
+    std::vector<Freedom> freedom(position_.size(), Freedom::flip);
+    for (std::size_t v = 0; v < freedom.size(); ++v)
+      freedom[v] = merged_into_[v] == -2 ? Freedom::none : stamp_[v] > 0 ? Freedom::move : Freedom::flip;
+    improve_triangles(mesh_, position_, quadric_, freedom, last_cost_, context);
   }
 
   TriangleMesh extract(std::vector<int>* new_vertex_of) const {
@@ -231,11 +220,11 @@ class Simplifier {
         const int u = mesh_.to(h), w = mesh_.apex(h);
         const Vec3 &q = at(u), &r = at(w), &old = at(moving);
         const Vec3 was = (q - old).cross(r - old);
-        before = std::min(before, shape(old, q, r, was));
+        before = std::min(before, triangle_shape(old, q, r, was));
         if (u == other || w == other) return;
         const Vec3 is = (q - p).cross(r - p);
         if (!(was.dot(is) >= least_turn_cosine * std::sqrt(was.squaredNorm() * is.squaredNorm()))) turns = true;
-        worst = std::min(worst, shape(p, q, r, is));
+        worst = std::min(worst, triangle_shape(p, q, r, is));
       });
     };
     look(a, b);
@@ -270,6 +259,7 @@ class Simplifier {
         return;
       }
     }
+    last_cost_ = static_cast<double>(candidate.cost);
     mesh_.collapse(h);
     position_[index(a)] = p;
     quadric_[index(a)] = q;
@@ -277,19 +267,6 @@ class Simplifier {
     merged_into_[index(b)] = a;
     --vertices_;
     mesh_.neighbours(a, [&](int u) { enqueue(a, u); });
-  }
-
-  bool worth_flipping(int h) const {
-    const int g = mesh_.opposite(h);
-    const Vec3 &a = at(mesh_.from(h)), &b = at(mesh_.to(h)), &c = at(mesh_.apex(h)), &d = at(mesh_.apex(g));
-    const Vec3 left = (b - a).cross(c - a), right = (a - b).cross(d - b);
-    const double left_area = left.norm(), right_area = right.norm();
-    if (!(left_area > 0 && right_area > 0) || left.dot(right) < 0.95 * left_area * right_area) return false;
-    const double cotangents = (a - c).dot(b - c) / left_area + (a - d).dot(b - d) / right_area;
-    if (cotangents > -1e-6) return false;
-    const Vec3 first = (c - d).cross(a - d), second = (d - c).cross(b - c), both = left + right;  // (d, c, a), (c, d, b)
-    if (first.dot(both) < 0.9 * first.norm() * both.norm() || second.dot(both) < 0.9 * second.norm() * both.norm()) return false;
-    return mesh_.may_flip(h);
   }
 
   CollapsibleMesh mesh_;
@@ -300,6 +277,7 @@ class Simplifier {
   std::vector<std::uint32_t> stamp_;  // grows with every change of a vertex
   std::vector<int> merged_into_;      // -1 for none, -2 for dropped
   int vertices_ = 0;
+  double last_cost_ = 0;              // of a collapse
   Queue queue_;
 };
 
@@ -326,7 +304,7 @@ TriangleMesh simplify(const TriangleMesh& mesh, const SimplifyOptions& options, 
     const auto span = context.span(0.1, 0.95, "Simplifying");
     simplifier.collapse_to(options.target_vertices, context);
   }
-  simplifier.improve_triangles(context);
+  simplifier.improve(context);
   context.progress(1);
   return simplifier.extract(new_vertex_of);
 }

@@ -127,15 +127,22 @@ TEST(Simplify, DistanceFallsQuadratically) {
 }
 
 TEST(Simplify, TrianglesAreWellShaped) {
-  for (const TriangleMesh& mesh : {icosphere(5), bumpy_torus(120, 60), grid(80, 80, 0.3)}) {
-    const TriangleMesh result = simplified(mesh, mesh.vertex_count() / 10);
+  struct Case {
+    const char* name;
+    TriangleMesh mesh;
+    double least, hundredth, median;  // degrees: of the worst triangle, the worst hundredth, the usual one
+  };
+  // Measured 33.8, 35.4, 49.6; 11.4, 14.9, 36.6 (the waves of the torus stretch its triangles); 16.5, 21.0, 46.1.
+  // The bunny to 5000 vertices has 12, 21, 44; without the improvement at the end it had 11, 16, 39.
+  for (const Case& c : std::vector<Case>{{"sphere", icosphere(5), 30, 33, 48}, {"torus", bumpy_torus(120, 60), 10, 14, 35.5}, {"grid", grid(80, 80, 0.3), 15, 19.5, 45}}) {
+    SCOPED_TRACE(c.name);
+    const TriangleMesh result = simplified(c.mesh, c.mesh.vertex_count() / 10);
     const Eigen::VectorXd least = corner_angles(result).rowwise().minCoeff() * (180 / std::numbers::pi);
     std::vector<double> sorted(least.begin(), least.end());
     std::sort(sorted.begin(), sorted.end());
-    // Scans keep 13 degrees at least and 41 in the middle; the waves of the torus stretch its triangles.
-    EXPECT_GT(sorted[0], 3);                      // no slivers
-    EXPECT_GT(sorted[sorted.size() / 100], 8);    // the worst hundredth
-    EXPECT_GT(sorted[sorted.size() / 2], 30);     // the usual one
+    EXPECT_GT(sorted[0], c.least);
+    EXPECT_GT(sorted[sorted.size() / 100], c.hundredth);
+    EXPECT_GT(sorted[sorted.size() / 2], c.median);
   }
 }
 

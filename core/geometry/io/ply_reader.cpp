@@ -150,13 +150,14 @@ class PlyReader {
     }
   }
 
-  /// Sends the named properties to the columns of a row-major matrix.
+  /// Sends the named properties to the columns of a row-major matrix; `data` is null when it has no rows.
   static void aim(const PlyElement& element, std::vector<Target>& targets, std::initializer_list<std::string_view> names, double* data, bool colour, bool coordinate) {
     std::ptrdiff_t k = 0;
     for (const std::string_view name : names) {
       const auto place = std::ranges::find(element.properties, name, &PlyProperty::name);
       Target& target = targets[static_cast<std::size_t>(place - element.properties.begin())];
-      target = {data + k++, static_cast<std::ptrdiff_t>(names.size()), colour ? colour_scale(place->type) : 1, coordinate};
+      target = {data == nullptr ? nullptr : data + k, static_cast<std::ptrdiff_t>(names.size()), colour ? colour_scale(place->type) : 1, coordinate};
+      ++k;
     }
   }
 

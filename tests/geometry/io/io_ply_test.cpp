@@ -175,6 +175,7 @@ TEST(Ply, BadFilesAreRefused) {
   refused(ascii + vertices + faces + points + "3000000000 0 1 2\n", "a list in it is longer than the file");
   refused(ascii + vertices + "end_header\n" + points, "a cloud of points");
   refused(ascii + vertices + faces + points + "2 0 1\n", "no triangles");
+  refused(ascii + "element vertex 0\nproperty float x\nproperty float y\nproperty float z\nend_header\n", "no triangles");
   // A header of a hundred bytes with four billion vertices must not ask for memory.
   for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
     refused("ply\nformat " + std::string(format) + " 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n", "it declares 4 000 000 000 rows");

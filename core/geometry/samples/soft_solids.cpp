@@ -56,14 +56,14 @@ Model make_star(int vertices, Context& context) {
 
 Model make_heart(int vertices, Context& context) {
   // A limb from the tip to each lobe; a gentle pillow in depth.
-  const RoundCone limb({17.5, 21, 0}, {0, -41, 0}, 27.5, 5.5);
+  const RoundCone limb({20.5, 20, 0}, {0, -45, 0}, 26, 5);
   const Field field = [limb](const Point& p) {
     const double x = std::fabs(p.x), z = std::fabs(p.z) * 1.25;
     const std::array<double, 2> d{limb({x, p.y, z}), limb({-x, p.y, z})};
-    return blended(d, 6.0) / 1.1;
+    return blended(d, 3.5) / 1.1;
   };
   static const Point red = srgb(190, 32, 48), deep = srgb(122, 14, 36), blush = srgb(232, 88, 92);
-  return meshed(field, {{-56, -56, -34}, {56, 58, 34}}, 17000, vertices, [](const Point& p, const Point&) {
+  return meshed(field, {{-56, -56, -34}, {56, 58, 34}}, 16700, vertices, [](const Point& p, const Point&) {
     const double cloud = 0.5 + 0.7 * fractal_noise(p / 30, 4, 0.5, 5);
     return mix(mix(deep, red, smooth_step(-50, 10, p.y)), blush, 0.45 * clamp(cloud, 0, 1) * smooth_step(0, 30, p.y));
   }, context);

@@ -41,7 +41,7 @@ struct Tile {
   const char* sample;
   double turn_deg, tilt_deg;
 };
-constexpr Tile tiles[] = {{"bust", -24, 6}, {"cat", 24, 10}, {"octopus", 10, 24}, {"mountain", 28, 30}, {"fish", -14, 8},     {"coin", -12, 14},
+constexpr Tile tiles[] = {{"bust", -24, 6}, {"cat", 24, 10}, {"octopus", 10, 24}, {"mountain", 16, 32}, {"fish", -14, 8},     {"coin", -12, 14},
                           {"star", 18, 12}, {"heart", 18, 12}, {"pyramid", 28, 24}, {"t_shape", 28, 18}, {"hemisphere", 20, 24}, {"torus", 24, 16}};
 
 void sheet(const std::string& path) {
@@ -80,6 +80,7 @@ void relief(const std::string& sample, int vertices, const std::string& ply, dou
   Model linear = original;
   linear.mesh.V.col(2) *= thickness_mm / bounding_box(linear.mesh).size().z();
   constexpr int width = 400, front = 500, side = 300;
+  constexpr double tilt_deg = 62;
   RgbPicture picture = blank_picture(3 * width, front + side, RenderOptions().background);
   int k = 0;
   for (const Model* model : {&original, &relief, &linear}) {
@@ -91,7 +92,11 @@ void relief(const std::string& sample, int vertices, const std::string& ply, dou
     options.millimetres_across = 1.12 * std::max(flat_box.size().x(), flat_box.size().y() * width / front);
     paste(picture, render(*model, options), k * width, 0);
     options.height = side;
-    options.view_direction = looking(0, 62);
+    options.view_direction = looking(0, tilt_deg);
+    // The same lamp, as this camera sees it.
+    const double tilt = tilt_deg * std::numbers::pi / 180, up = options.lamp.y(), back = options.lamp.z();
+    options.lamp.y() = std::cos(tilt) * up - std::sin(tilt) * back;
+    options.lamp.z() = std::sin(tilt) * up + std::cos(tilt) * back;
     options.millimetres_across *= 1.05;
     paste(picture, render(*model, options), k * width, front);
     ++k;

@@ -115,12 +115,24 @@ Bytes encode_palette_png(const RgbPicture& picture) {
   for (std::size_t c = 0; c < count.size(); ++c)
     if (count[c] > 0) colours.push_back({colour_of(c), count[c]});
   const std::vector<Colour> palette = palette_of(colours, 255);
+  // Three quarters of the error go on to the pixels to come (Floyd and Steinberg 1976): no bands, little noise.
+  const auto width = static_cast<std::size_t>(picture.width);
   std::vector<int> index_of(count.size(), -1);
   std::vector<std::uint8_t> indices(pixels);
+  std::vector<std::array<double, 3>> carried(pixels + width + 2, {0, 0, 0});
   for (std::size_t k = 0; k < pixels; ++k) {
-    int& index = index_of[cell(k)];
-    if (index < 0) index = nearest(palette, colour_of(cell(k)));
+    Colour wanted;
+    for (std::size_t c = 0; c < 3; ++c) wanted[c] = static_cast<std::uint8_t>(std::clamp(picture.bytes[3 * k + c] + 0.75 * carried[k][c], 0.0, 255.0));
+    int& index = index_of[static_cast<std::size_t>(wanted[0] >> 2) << 12 | static_cast<std::size_t>(wanted[1] >> 2) << 6 | static_cast<std::size_t>(wanted[2] >> 2)];
+    if (index < 0) index = nearest(palette, wanted);
     indices[k] = static_cast<std::uint8_t>(index);
+    const bool first = k % width == 0, last = k % width == width - 1;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double error = (wanted[c] - palette[static_cast<std::size_t>(index)][c]) / 16.0;
+      if (!last) carried[k + 1][c] += 7 * error, carried[k + width + 1][c] += error;
+      if (!first) carried[k + width - 1][c] += 3 * error;
+      carried[k + width][c] += 5 * error;
+    }
   }
   png_image image{};
   image.version = PNG_IMAGE_VERSION;

@@ -4,6 +4,19 @@
 
 export type Vec3 = readonly [number, number, number];
 
+/** What `prepareShading` found out about a mesh; only this view reads it. */
+export interface MeshShading {
+  /** Triangles between drawn vertices, and the mesh vertex of each of those; null: the mesh's own. */
+  readonly indices: Uint32Array | null;
+  readonly source: Uint32Array | null;
+  readonly normals: Float32Array;
+  /** The outermost of the mesh's vertices. */
+  readonly outline: Uint32Array;
+  readonly closed: boolean;
+  /** Closed, and its triangles look outwards. */
+  readonly outward: boolean;
+}
+
 /** A triangle mesh. Arrays are read, never changed; pass new arrays (or `updatePositions`) for new shapes. */
 export interface MeshData {
   /** x, y, z per vertex, mm. */
@@ -12,6 +25,8 @@ export interface MeshData {
   indices: Uint32Array;
   /** Unit normals per vertex. Left out: computed, with creases kept sharp. */
   normals?: Float32Array;
+  /** From `prepareShading`, so that drawing a large mesh does not stop the page. */
+  shading?: MeshShading;
   /** sRGB r, g, b per vertex in 0..1; takes the place of the plaster colour. */
   colours?: Float32Array;
   /** u, v per vertex, origin at the lower left, for `texture`. */
@@ -257,6 +272,13 @@ export interface ViewportApi {
   /** Where a point of the scene appears, CSS pixels; null behind the eye. */
   project(positionMm: Vec3): { xPx: number; yPx: number } | null;
 
+  /** A small finished picture of one part seen from `look`, PNG; null while there is none to draw. */
+  pictureOf(
+    part: 'original' | 'relief',
+    look: Pick<Viewpoint, 'direction' | 'up'>,
+    widthPx: number,
+    heightPx: number,
+  ): Promise<Blob | null>;
   /** A finished picture of the current view, PNG, without overlays. */
   snapshot(widthPx: number, heightPx: number, options?: { transparent?: boolean }): Promise<Blob>;
   /** While true, a machine without a graphics card draws what changes but refines nothing: its processor is

@@ -2,7 +2,6 @@
 // The filled face of a cut. Looking through the cut, a ray that enters a closed mesh without having left it
 // starts inside: counting back faces against front faces in the stencil marks those pixels.
 import * as THREE from 'three';
-import { isClosed } from './normals';
 import { capFragment, capVertex, depthFragment } from './shaders';
 import type { Subject } from './subject';
 import { type Surface, type Uniforms, still } from './surface';
@@ -21,7 +20,6 @@ export class SectionCaps {
   private readonly counting: THREE.RawShaderMaterial[];
   private readonly quad: THREE.Mesh<THREE.BufferGeometry, THREE.RawShaderMaterial>;
   private readonly counters = new WeakMap<Surface, THREE.Mesh[]>();
-  private readonly closed = new WeakMap<Surface, boolean>();
 
   constructor(private readonly picture: Uniforms) {
     this.counting = ([THREE.BackSide, THREE.FrontSide] as const).map((side) => {
@@ -76,12 +74,7 @@ export class SectionCaps {
       if (surface.main.material.transparent) return false;
       // Front and body of a plate are closed together.
       if (hasPlate && i > 0) return true;
-      let closed = this.closed.get(surface);
-      if (closed === undefined) {
-        closed = isClosed(surface.indices, surface.vertexCount);
-        this.closed.set(surface, closed);
-      }
-      return closed;
+      return surface.closed;
     });
     if (solid.length === 0) return [];
     const meshes = solid.map((surface) => {

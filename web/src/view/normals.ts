@@ -232,7 +232,7 @@ export function isClosed(indices: Uint32Array, vertexCount: number): boolean {
   return a === b;
 }
 
-/** Of a closed mesh, mm^3: positive where its triangles look outwards. */
+/** Of a closed mesh, in cubic units: positive where its triangles look outwards. */
 export function signedVolume(positions: ArrayLike<number>, indices: Uint32Array): number {
   let sum = 0;
   for (let t = 0; t < indices.length; t += 3) {

@@ -76,6 +76,7 @@ export class Stage {
     uNoise: { value: 0 },
     uViewport: { value: new THREE.Vector2(1, 1) },
   };
+  private readonly compiling = new Set<THREE.Material>();
   private readonly bakeUniforms = newBakeUniforms();
   private readonly parts: Record<PartName, Part>;
   private readonly camera = new THREE.Camera();
@@ -135,6 +136,24 @@ export class Stage {
     );
   }
 
+  /** Has the driver make the shaders on its own threads; drawing before it is done would wait for them. */
+  private compile(objects: THREE.Mesh<THREE.BufferGeometry, THREE.RawShaderMaterial>[]): void {
+    this.scene.children = objects;
+    this.renderer.compile(this.scene, this.camera);
+    this.scene.children = [];
+    for (const { material } of objects) this.compiling.add(material);
+  }
+
+  /** The card, or the shader compiler, still works on what it was given. */
+  get busy(): boolean {
+    for (const material of this.compiling) {
+      const known = this.renderer.properties.get(material) as { currentProgram?: { isReady(): boolean } };
+      if (known.currentProgram?.isReady() === false) return true;
+      this.compiling.delete(material);
+    }
+    return this.pace.busy;
+  }
+
   get canRefine(): boolean {
     return this.canRefineHere;
   }
@@ -172,7 +191,9 @@ export class Stage {
 
   private surface(part: Part, mesh: MeshData, options: SurfaceOptions): Surface {
     const shared = { picture: this.picture, subject: part.subject.uniforms, bake: this.bakeUniforms };
-    return new Surface(mesh, this.origin, shared, { ...options, shadowTaps: this.quality.shadowTaps });
+    const made = new Surface(mesh, this.origin, shared, { ...options, shadowTaps: this.quality.shadowTaps });
+    this.compile([made.main, made.depth]);
+    return made;
   }
 
   private addPlate(part: Part, plate: Plate, viewpoint: Pick<Viewpoint, 'direction' | 'up'>): void {

@@ -16,7 +16,7 @@ export function sphereDirections(count: number): Float32Array {
 }
 
 /** Most points looked at in every direction; the box's own extremes are always exact. */
-const MOST_SAMPLES = 8000;
+const MOST_SAMPLES = 4000;
 
 export interface Support {
   /** x, y, z of the outermost points. */
@@ -27,30 +27,19 @@ export interface Support {
   max: [number, number, number];
 }
 
-export function supportOf(positions: Float32Array, directionCount = 96): Support {
-  const min: [number, number, number] = [Infinity, Infinity, Infinity];
-  const max: [number, number, number] = [-Infinity, -Infinity, -Infinity];
+/** Numbers of the outermost points; moving, turning and scaling the points keep them. */
+export function outlineOf(positions: ArrayLike<number>, directionCount = 96): Uint32Array {
   const extreme = new Set<number>();
-  const lowest = [0, 0, 0];
-  const highest = [0, 0, 0];
-  for (let i = 0; i < positions.length; i += 3) {
-    for (let k = 0; k < 3; ++k) {
-      const x = positions[i + k]!;
-      if (x < min[k]!) {
-        min[k] = x;
-        lowest[k] = i;
-      }
-      if (x > max[k]!) {
-        max[k] = x;
-        highest[k] = i;
-      }
-    }
-  }
-  if (!(max[0] >= min[0]))
-    return { points: new Float32Array(0), centre: [0, 0, 0], radius: 1, min: [0, 0, 0], max: [0, 0, 0] };
   for (let k = 0; k < 3; ++k) {
-    extreme.add(lowest[k]!);
-    extreme.add(highest[k]!);
+    let lowest = k;
+    let highest = k;
+    for (let i = k; i < positions.length; i += 3) {
+      const x = positions[i]!;
+      if (!(x >= positions[lowest]!)) lowest = i;
+      if (!(x <= positions[highest]!)) highest = i;
+    }
+    extreme.add((lowest - k) / 3);
+    extreme.add((highest - k) / 3);
   }
   const stride = 3 * Math.max(1, Math.floor(positions.length / 3 / MOST_SAMPLES));
   const directions = sphereDirections(directionCount);
@@ -67,14 +56,25 @@ export function supportOf(positions: Float32Array, directionCount = 96): Support
         at = i;
       }
     }
-    extreme.add(at);
+    extreme.add(at / 3);
   }
-  const points = new Float32Array(3 * extreme.size);
-  let n = 0;
-  for (const i of extreme) {
-    points.set(positions.subarray(i, i + 3), n);
-    n += 3;
+  return Uint32Array.from(extreme);
+}
+
+export function supportOf(positions: Float32Array, outline = outlineOf(positions)): Support {
+  const min: [number, number, number] = [Infinity, Infinity, Infinity];
+  const max: [number, number, number] = [-Infinity, -Infinity, -Infinity];
+  const points = new Float32Array(positions.length > 0 ? 3 * outline.length : 0);
+  for (let n = 0; n < points.length / 3; ++n) {
+    for (let k = 0; k < 3; ++k) {
+      const x = positions[3 * outline[n]! + k]!;
+      points[3 * n + k] = x;
+      min[k] = Math.min(min[k]!, x);
+      max[k] = Math.max(max[k]!, x);
+    }
   }
+  if (!(max[0] >= min[0]))
+    return { points: new Float32Array(0), centre: [0, 0, 0], radius: 1, min: [0, 0, 0], max: [0, 0, 0] };
   const centre: [number, number, number] = [
     (min[0] + max[0]) / 2,
     (min[1] + max[1]) / 2,

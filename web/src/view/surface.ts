@@ -3,7 +3,8 @@
 // One mesh on the graphics card: buffers, live updates, and the materials that draw, shadow and bake it.
 import * as THREE from 'three';
 import type { MeshData, Vec3 } from './api';
-import { type Shading, isClosed, shadingFor, signedVolume, updateNormals } from './normals';
+import { type Shading, updateNormals } from './normals';
+import { findShading } from './shading';
 import {
   bakeFragment,
   bakeQuadFragment,
@@ -68,9 +69,13 @@ export class Surface {
   /** Triangles of the mesh as given; picking and values speak of these. */
   readonly indices: Uint32Array;
   readonly vertexCount: number;
+  /** Has an inside that a cut shows. */
+  readonly closed: boolean;
   /** Closed, and its triangles look outwards: nobody sees their backs until it is cut. */
   private readonly solid: boolean;
   private readonly shading: Shading;
+  /** Of the mesh as it was given: its vertices come first among those drawn. */
+  private readonly firstOutline: Uint32Array;
   private readonly given: MeshData;
   private readonly drawn: Float32Array;
   private readonly bakeGeometry: THREE.BufferGeometry | null;
@@ -97,10 +102,17 @@ export class Surface {
     this.indices = mesh.indices;
     this.vertexCount = mesh.positions.length / 3;
     this.faces = new Float32Array(mesh.indices.length);
-    this.solid = isClosed(mesh.indices, this.vertexCount) && signedVolume(mesh.positions, mesh.indices) > 0;
+    const found = mesh.shading ?? findShading(mesh.positions, mesh.indices);
+    this.solid = found.outward;
+    this.closed = found.closed;
+    this.firstOutline = found.outline;
     this.shading = mesh.normals
       ? { indices: mesh.indices, source: identity(this.vertexCount), normals: mesh.normals }
-      : shadingFor(mesh.positions, mesh.indices);
+      : {
+          indices: found.indices ?? mesh.indices,
+          source: found.source ?? identity(this.vertexCount),
+          normals: found.normals.slice(), // moving the mesh writes into them
+        };
     const count = this.shading.source.length;
     this.drawn = new Float32Array(3 * count);
     this.writePositions(mesh.positions);
@@ -210,7 +222,10 @@ export class Surface {
   /** Outline by few points; found anew only after the shape changed. */
   get support(): Support {
     if (!this.outline || this.outline.version !== this.version) {
-      this.outline = { version: this.version, support: supportOf(this.drawn) };
+      this.outline = {
+        version: this.version,
+        support: supportOf(this.drawn, this.version === 0 ? this.firstOutline : undefined),
+      };
     }
     return this.outline.support;
   }

@@ -21,7 +21,14 @@ import type {
   ViewportOptions,
   ViewStatus,
 } from './api';
-import { type CameraState, fitWindow, makeScreen, projectToPixels, projectedBounds } from './camera';
+import {
+  type CameraState,
+  cameraFromViewpoint,
+  fitWindow,
+  makeScreen,
+  projectToPixels,
+  projectedBounds,
+} from './camera';
 import { CameraRig } from './camera_rig';
 import { Content } from './content';
 import { Controls } from './controls';
@@ -161,7 +168,7 @@ export class Viewport implements ViewportApi {
           return this.stage.quality.stillSamples;
         },
         refine: (sample) => this.refine(sample),
-        gpuBusy: () => this.stage?.pace.busy ?? false,
+        gpuBusy: () => this.stage?.busy ?? false,
         triangles: () => this.content?.triangleCount() ?? 0,
         onFrame: (stats) => this.options.onFrame?.(stats),
       },
@@ -507,6 +514,21 @@ export class Viewport implements ViewportApi {
     const pixels = await stage.read(picture, width, height, stage.quality.smallSamples);
     this.loop.restart();
     return pixels;
+  }
+
+  async pictureOf(
+    part: PartName,
+    look: Pick<Viewpoint, 'direction' | 'up'>,
+    widthPx: number,
+    heightPx: number,
+  ): Promise<Blob | null> {
+    const camera = (targetMm: Vec3, radius: number): CameraState =>
+      cameraFromViewpoint(
+        { projection: 'perspective', targetMm, distanceMm: 6 * radius, fieldOfViewDeg: 20, ...look },
+        radius,
+      );
+    const pixels = await this.readPart(part, camera, widthPx, heightPx);
+    return pixels && (await encodePng(pixels, widthPx, heightPx));
   }
 
   // Status

@@ -9,7 +9,7 @@ export function Legend({ values, mean }: { values: Float32Array; mean: number | 
     [values, mean],
   );
   return (
-    <figure class="float bottom-left panel legend" role="img" aria-label={legend.summary}>
+    <figure class="panel legend" role="img" aria-label={legend.summary}>
       <figcaption>
         <strong>{legend.label}</strong>
         {legend.mark ? <span>{legend.mark.text}</span> : null}

@@ -2,7 +2,7 @@
 // From PLY files and reports to what the view draws.
 import type { PlyMesh } from '../../jobs/ply';
 import type { Report } from '../../jobs/contract';
-import type { ColourMapping, MeshData, Plate, Vec3, Viewpoint } from '../../view';
+import type { ColourMapping, MeshData, MeshShading, Plate, Vec3, Viewpoint } from '../../view';
 import { figure, vectorOf } from './report';
 
 export const errorMapping: ColourMapping = {
@@ -14,15 +14,23 @@ export const errorMapping: ColourMapping = {
   label: 'Normal error',
 };
 
+/** A mesh, with what the view wants to know of it if that was found beforehand. */
+export interface ShadedMesh extends PlyMesh {
+  readonly shading?: MeshShading | undefined;
+}
+
+const shadingOf = ({ shading }: ShadedMesh) => (shading ? { shading } : {});
+
 export function scaled(positions: Float32Array, factor: number): Float32Array {
   const result = new Float32Array(positions.length);
   for (let i = 0; i < positions.length; ++i) result[i] = (positions[i] ?? 0) * factor;
   return result;
 }
 
-export const originalData = (mesh: PlyMesh, scale: number): MeshData => ({
+export const originalData = (mesh: ShadedMesh, scale: number): MeshData => ({
   positions: scaled(mesh.positions, scale),
   indices: mesh.indices,
+  ...shadingOf(mesh),
   ...(mesh.colours ? { colours: mesh.colours } : {}),
 });
 
@@ -33,9 +41,10 @@ export function errorOf(mesh: PlyMesh): Float32Array {
   return visible ? error.map((value, i) => (visible[i] ? value : NaN)) : error;
 }
 
-export const reliefData = (mesh: PlyMesh): MeshData => ({
+export const reliefData = (mesh: ShadedMesh): MeshData => ({
   positions: mesh.positions,
   indices: mesh.indices,
+  ...shadingOf(mesh),
   attributes: { [errorMapping.attribute]: errorOf(mesh) },
 });
 

@@ -18,7 +18,7 @@ export function Notes({ session, onChooseFile, onWorkerHelp }: NotesProps) {
   const { model } = session.document.value;
   if (problem)
     return (
-      <div class="float note-place">
+      <div class="note-place">
         <Note
           kind="bad"
           icon={problem.kind === 'file' ? 'file' : 'warn'}
@@ -42,13 +42,13 @@ export function Notes({ session, onChooseFile, onWorkerHelp }: NotesProps) {
     );
   if (solving && session.shown.value)
     return (
-      <p class="float bottom-left label-chip">
+      <p class="label-chip">
         <Icon name="clock" small /> Preview. The full relief replaces it.
       </p>
     );
   if (session.repairsOpen.value && model)
     return (
-      <div class="float note-place">
+      <div class="note-place">
         <Note
           kind="plain"
           icon="check"
@@ -67,7 +67,7 @@ export function Notes({ session, onChooseFile, onWorkerHelp }: NotesProps) {
       dismissed.value = true;
     };
     return (
-      <div class="float note-place">
+      <div class="note-place">
         <Note
           kind="attention"
           icon="clock"
@@ -84,7 +84,7 @@ export function Notes({ session, onChooseFile, onWorkerHelp }: NotesProps) {
             </>
           }
         >
-          Previews are as fast as before. A full solve of this model runs in the browser in about{' '}
+          Previews run in the browser either way. A full solve of this model runs in the browser in about{' '}
           {formatDuration(estimate?.browser_s ?? 0)}
           {estimate?.worker_s ? `, with the worker in about ${formatDuration(estimate.worker_s)}` : ''}.
         </Note>

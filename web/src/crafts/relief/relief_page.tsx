@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+import type { Signal } from '@preact/signals';
 import { effect, useSignal } from '@preact/signals';
-import { useEffect, useRef } from 'preact/hooks';
+import { useEffect } from 'preact/hooks';
 import { Button, Sheet } from '../../ui';
 import type { Viewport } from '../../view';
-import { renderThumbnail } from '../../view';
 import { exportMain, Inspector } from './inspector';
-import { originalData, plateOf, reliefData, viewpointOf } from './meshes';
+import { viewpointOf } from './meshes';
 import { Notes } from './notes';
 import { solveInFull } from './full_solve';
 import './relief.css';
@@ -20,19 +20,24 @@ export interface ReliefPageProps {
   readonly onStart: () => void;
 }
 
-const pictureSize = { widthPx: 144, heightPx: 112 };
+const pictureSize = { width: 144, height: 112 };
+const threeQuarters = { direction: [-0.5, -0.34, -1], up: [0, 1, 0] } as const;
 
 export function ReliefPage({ session, onChooseFile, onWorkerHelp, onStart }: ReliefPageProps) {
   const viewport = useSignal<Viewport | null>(null);
-  const picture = useModelPicture(session);
-  useResultPictures(session);
+  const picture = useModelPicture(session, viewport);
+  useResultPictures(session, viewport);
   useKeys(session, () => viewport.value);
   const { model } = session.document.value;
   return (
     <>
       <main class="view" aria-label="Relief">
         <h1 class="hidden-text">Relief</h1>
-        <ViewportPanel session={session} onViewport={(made) => (viewport.value = made)}>
+        <ViewportPanel
+          session={session}
+          onViewport={(made) => (viewport.value = made)}
+          notes={<Notes session={session} onChooseFile={onChooseFile} onWorkerHelp={onWorkerHelp} />}
+        >
           {model === null && session.activity.value.kind !== 'opening' ? (
             <div class="empty-view">
               <p>A relief starts from a model.</p>
@@ -44,7 +49,6 @@ export function ReliefPage({ session, onChooseFile, onWorkerHelp, onStart }: Rel
               </div>
             </div>
           ) : null}
-          <Notes session={session} onChooseFile={onChooseFile} onWorkerHelp={onWorkerHelp} />
         </ViewportPanel>
       </main>
       {model ? (
@@ -92,53 +96,48 @@ function useKeys(session: ReliefSession, viewport: () => Viewport | null): void 
   }, [session]);
 }
 
-/** A small picture of the model for the inspector. */
-function useModelPicture(session: ReliefSession) {
+/** Pictures are drawn by the viewport, with what it has on the graphics card already. */
+function useModelPicture(session: ReliefSession, viewport: Signal<Viewport | null>) {
   const url = useSignal<string | null>(null);
-  const drawn = useRef<string | null>(null);
-  useEffect(
-    () =>
-      effect(() => {
-        const original = session.original.value;
-        if (original === null || drawn.current === original.from) return;
-        drawn.current = original.from;
-        void renderThumbnail(originalData(original.mesh, 1), pictureSize, {
-          ground: true,
-        }).then(
-          (blob) => {
-            if (url.value) URL.revokeObjectURL(url.value);
-            url.value = URL.createObjectURL(blob);
-          },
+  useEffect(() => {
+    let drawn: string | null = null;
+    const show = (next: string) => {
+      if (url.value?.startsWith('blob:')) URL.revokeObjectURL(url.value);
+      url.value = next;
+    };
+    return effect(() => {
+      const from = session.original.value?.from;
+      const source = session.document.value.model?.source;
+      const view = viewport.value;
+      if (from === undefined || source === undefined || view === null || drawn === from) return;
+      drawn = from;
+      if (source.kind === 'sample') show(`pictures/${source.sample}.webp`);
+      else
+        void view.pictureOf('original', threeQuarters, pictureSize.width, pictureSize.height).then(
+          (blob) => void (blob && drawn === from && show(URL.createObjectURL(blob))),
           () => undefined,
         );
-      }),
-    [session],
-  );
+    });
+  }, [session]);
   return url;
 }
 
 /** A new result gets its picture as soon as it is shown. */
-function useResultPictures(session: ReliefSession): void {
-  const done = useRef(new Set<string>());
-  useEffect(
-    () =>
-      effect(() => {
-        const result = session.result.value;
-        const shown = session.shown.value;
-        if (!result || result.picture || shown?.kind !== 'full' || done.current.has(result.id)) return;
-        if (shown.report !== result.report) return;
-        done.current.add(result.id);
-        const thickness = Number(session.value('thickness_mm') ?? 0);
-        const plate = plateOf(result.report, thickness);
-        const viewpoint = viewpointOf(result.report, 20);
-        void renderThumbnail(reliefData(shown.mesh), pictureSize, {
-          plate,
-          ...(viewpoint ? { viewpoint } : {}),
-        }).then(
-          (blob) => session.keepPicture(result.id, blob),
-          () => undefined,
-        );
-      }),
-    [session],
-  );
+function useResultPictures(session: ReliefSession, viewport: Signal<Viewport | null>): void {
+  useEffect(() => {
+    const done = new Set<string>();
+    return effect(() => {
+      const result = session.result.value;
+      const shown = session.shown.value;
+      const view = viewport.value;
+      if (!result || result.picture || view === null || shown?.kind !== 'full' || done.has(result.id)) return;
+      if (shown.report !== result.report) return;
+      done.add(result.id);
+      const look = viewpointOf(result.report, 20) ?? view.getViewpoint();
+      void view.pictureOf('relief', look, pictureSize.width, pictureSize.height).then(
+        (blob) => blob && session.keepPicture(result.id, blob),
+        () => undefined,
+      );
+    });
+  }, [session]);
 }

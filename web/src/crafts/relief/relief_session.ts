@@ -6,12 +6,13 @@ import type { Json, JsonObject, Operation, Progress, Report } from '../../jobs/c
 import { asJobError, findOperation, JobError } from '../../jobs/contract';
 import { LatestOnly } from '../../jobs/latest_only';
 import { readPly } from '../../jobs/mesh_reader';
-import type { PlyMesh } from '../../jobs/ply';
 import type { BlobReference } from '../../project/document';
 import { jsonEqual } from '../../project/document';
 import type { Services } from '../common/services';
 import type { Measured } from './estimate';
 import { estimateMemory_mb, estimateSeconds, recall } from './estimate';
+import type { ShadedMesh } from './meshes';
+import { readMesh } from './read_mesh';
 import { bytesOf, importModel, keep as keepBytes } from './import_model';
 import type { ReliefResult, Source } from './relief_document';
 import {
@@ -30,7 +31,7 @@ import { figure, sentences, solverSeconds } from './report';
 
 export interface Shown {
   readonly kind: 'preview' | 'full';
-  readonly mesh: PlyMesh;
+  readonly mesh: ShadedMesh;
   readonly report: Report;
   readonly parameters: JsonObject;
   /** The mesh it was made from; equal names have equal triangles. */
@@ -66,7 +67,7 @@ export class ReliefSession {
     return catalog === null ? null : (findOperation(catalog, 'relief') ?? null);
   });
   readonly result = computed(() => currentResult(this.document.value));
-  readonly original = signal<{ readonly mesh: PlyMesh; readonly from: string } | null>(null);
+  readonly original = signal<{ readonly mesh: ShadedMesh; readonly from: string } | null>(null);
   readonly shown = signal<Shown | null>(null);
   readonly activity = signal<Activity>({ kind: 'idle' });
   readonly previewing = signal(false);
@@ -171,7 +172,7 @@ export class ReliefSession {
     }
     if (untracked(() => this.original.value?.from) === from) return;
     try {
-      const mesh = await readPly(await this.services.projects.blobs.read(from));
+      const mesh = await readMesh(await this.services.projects.blobs.read(from));
       if (this.document.value.model?.mesh.blob === from) this.original.value = { mesh, from };
     } catch (thrown) {
       this.problem.value = {
@@ -245,7 +246,7 @@ export class ReliefSession {
       return;
     this.#preview.cancel();
     try {
-      const mesh = await readPly(await this.services.projects.blobs.read(ply.blob));
+      const mesh = await readMesh(await this.services.projects.blobs.read(ply.blob));
       if (this.result.value?.id !== result.id) return;
       const { report, parameters } = result;
       this.fieldErrors.value = {};

@@ -37,15 +37,18 @@ export interface ViewportPanelProps {
   readonly session: ReliefSession;
   /** Given the viewport once it exists, null when it goes. */
   readonly onViewport: (viewport: Viewport | null) => void;
+  /** At the foot, off the object. */
+  readonly notes: ComponentChildren;
   readonly children?: ComponentChildren;
 }
 
 const narrow = () => window.innerWidth <= 720;
 
-export function ViewportPanel({ session, onViewport, children }: ViewportPanelProps) {
+export function ViewportPanel({ session, onViewport, notes, children }: ViewportPanelProps) {
   const container = useRef<HTMLDivElement>(null);
   const ball = useRef<HTMLDivElement>(null);
   const side = useRef<HTMLDivElement>(null);
+  const foot = useRef<HTMLDivElement>(null);
   const unsupported = useSignal<string | null>(null);
 
   useEffect(() => {
@@ -75,18 +78,13 @@ export function ViewportPanel({ session, onViewport, children }: ViewportPanelPr
       keepDrawn(viewport, session, (thickness) => inset.update(thickness)),
       effect(() => viewport.setResting(session.previewing.value || session.activity.value.kind !== 'idle')),
     ];
-    const panel = container.current.parentElement;
-    const makeRoom = () =>
-      viewport.setFreeRectangle(freeRectangle(panel?.querySelector('.note-place, .legend')));
-    const resize = new ResizeObserver(makeRoom);
+    const resize = new ResizeObserver(() => viewport.setFreeRectangle(freeRectangle(foot.current)));
     resize.observe(container.current);
-    const notes = new MutationObserver(makeRoom);
-    if (panel) notes.observe(panel, { childList: true });
+    if (foot.current) resize.observe(foot.current);
     onViewport(viewport);
     return () => {
       onViewport(null);
       resize.disconnect();
-      notes.disconnect();
       for (const end of stop) end();
       inset.dispose();
       lightBall.dispose();
@@ -115,19 +113,22 @@ export function ViewportPanel({ session, onViewport, children }: ViewportPanelPr
               onChange={(value) => (mode.value = value)}
             />
           </div>
-          {mode.value === 'error' && shown ? (
-            <Legend
-              values={errorOf(shown.mesh)}
-              mean={figure(shown.report, 'normal_error_mean_deg') ?? undefined}
-            />
-          ) : null}
-          {session.previewing.value && shown === null ? (
-            <p class="float bottom-left label-chip">
-              <Icon name="clock" small /> Making the first preview
-            </p>
-          ) : null}
         </>
       ) : null}
+      <div ref={foot} class="float bottom-left foot">
+        {mode.value === 'error' && shown ? (
+          <Legend
+            values={errorOf(shown.mesh)}
+            mean={figure(shown.report, 'normal_error_mean_deg') ?? undefined}
+          />
+        ) : null}
+        {session.previewing.value && session.original.value && shown === null ? (
+          <p class="label-chip">
+            <Icon name="clock" small /> Making the first preview
+          </p>
+        ) : null}
+        {notes}
+      </div>
       <div ref={ball} class="float top-right panel light-panel" hidden={session.original.value === null} />
       <div ref={side} class="float bottom-right panel side-inset" hidden={shown === null} />
       {children}
@@ -136,8 +137,9 @@ export function ViewportPanel({ session, onViewport, children }: ViewportPanelPr
 }
 
 /** What floats stays off the object: light and side view right, notes and legends below. */
-function freeRectangle(foot: Element | null | undefined): Insets {
-  const bottom = foot ? foot.getBoundingClientRect().height + 24 : 0;
+function freeRectangle(foot: Element | null): Insets {
+  const height = foot?.getBoundingClientRect().height ?? 0;
+  const bottom = height > 0 ? height + 24 : 0;
   return narrow()
     ? { left: 14, top: 70, right: 14, bottom: Math.max(24, bottom) }
     : { left: 28, top: 68, right: 180, bottom: Math.max(44, bottom) };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-import { expect, fileOf, openPage, openSample, solve, strip, test } from './page';
+import { backend, expect, fileOf, openPage, openSample, solve, strip, test } from './page';
 
 test('a reload keeps model, settings and results', async ({ page }) => {
   await openSample(page);
@@ -39,10 +39,7 @@ test('a value out of range marks its field and keeps the last good one', async (
 
 test('a project goes through a file', async ({ page }) => {
   await openSample(page);
-  await page
-    .getByRole('button', { name: /^Bust|^Torus|./ })
-    .and(page.locator('.project'))
-    .click();
+  await page.locator('.project').click();
   const waiting = page.waitForEvent('download');
   await page.getByRole('menuitem', { name: 'Save as a file' }).click();
   const download = await waiting;
@@ -58,4 +55,14 @@ test('a project goes through a file', async ({ page }) => {
     buffer: (await import('node:fs')).readFileSync(file),
   });
   await expect(strip(page, 'Preview up to date')).toBeVisible();
+});
+
+test('without a network, once it has been here', async ({ page, context }) => {
+  test.skip(backend !== 'wasm', 'the worker is on this machine and serves the page itself');
+  await openPage(page);
+  await page.evaluate(async () => void (await navigator.serviceWorker.ready));
+  await context.setOffline(true);
+  await page.reload();
+  await openSample(page);
+  expect(await page.evaluate(() => crossOriginIsolated)).toBe(true);
 });

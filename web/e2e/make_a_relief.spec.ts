@@ -3,7 +3,7 @@ import { readFileSync } from 'node:fs';
 import { backend, ballObj, expect, fileOf, openPage, openSample, readStl, solve, strip, test } from './page';
 
 test('from a sample to a solid of the asked thickness', async ({ page }) => {
-  await openSample(page);
+  await openSample(page, 'Bust');
   const thickness = page.getByRole('textbox', { name: 'Thickness' });
   await thickness.fill('4');
   await thickness.press('Enter');
@@ -48,7 +48,7 @@ test('a file, several thicknesses, and back to an earlier result', async ({ page
 });
 
 test('cancel a solve and go on', async ({ page }) => {
-  await openSample(page);
+  await openSample(page, 'Bust');
   await page.getByRole('button', { name: 'Solve at full detail' }).click();
   await expect(page.getByRole('progressbar')).toBeVisible();
   await page.keyboard.press('Escape');

@@ -39,9 +39,8 @@ async function answer(request) {
   const cache = await caches.open(cacheName);
   const kept = await cache.match(
     request.mode === 'navigate' ? new URL('index.html', self.registration.scope) : request,
-    {
-      ignoreSearch: true,
-    },
+    // A server's "Vary: Origin" would keep the page's own scripts from being found.
+    { ignoreSearch: true, ignoreVary: true },
   );
   return isolated(kept ?? (await fetch(request)));
 }

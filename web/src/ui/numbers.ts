@@ -57,7 +57,7 @@ export function formatOnStep(value: number, step: number): string {
 
 /** "about 25 s", "4 min". */
 export function formatDuration(seconds: number): string {
-  if (seconds < 0.95) return withUnit(seconds.toFixed(1), 's');
+  if (seconds < 0.05) return `under ${withUnit('0.1', 's')}`;
   if (seconds < 10) return withUnit(seconds.toFixed(1), 's');
   if (seconds < 100) return withUnit(String(Math.round(seconds)), 's');
   return withUnit(String(Math.round(seconds / 60)), 'min');

@@ -6,10 +6,11 @@ import { readyWorker } from '../common/services';
 import { solveInFull } from './full_solve';
 import type { ReliefSession } from './relief_session';
 import { sentences } from './report';
+import { narrow } from './viewport_panel';
 
 const dismissedKey = 'formwright.relief.no-worker-note';
 /** Below this a solve in the browser needs no words. */
-const longSolve_s = 6;
+const longSolve_s = 10;
 
 export function Notes({ session, onChooseFile, onWorkerHelp }: NotesProps) {
   const dismissed = useSignal(sessionStorage.getItem(dismissedKey) !== null);
@@ -61,7 +62,15 @@ export function Notes({ session, onChooseFile, onWorkerHelp }: NotesProps) {
     );
   const estimate = session.estimate.value;
   const long = (estimate?.browser_s ?? 0) > longSolve_s;
-  if (model && long && !dismissed.value && !session.result.value && readyWorker(session.services) === null) {
+  // No worker runs on a phone; the button says how long it will take.
+  if (
+    model &&
+    long &&
+    !narrow() &&
+    !dismissed.value &&
+    !session.result.value &&
+    readyWorker(session.services) === null
+  ) {
     const dismiss = () => {
       sessionStorage.setItem(dismissedKey, '1');
       dismissed.value = true;

@@ -42,14 +42,15 @@ export interface ViewportPanelProps {
   readonly children?: ComponentChildren;
 }
 
-const narrow = () => window.innerWidth <= 720;
+export const narrow = () => window.innerWidth <= 720;
 
 export function ViewportPanel({ session, onViewport, notes, children }: ViewportPanelProps) {
   const container = useRef<HTMLDivElement>(null);
   const ball = useRef<HTMLDivElement>(null);
   const side = useRef<HTMLDivElement>(null);
   const foot = useRef<HTMLDivElement>(null);
-  const unsupported = useSignal<string | null>(null);
+  /** The view says itself why it cannot draw; what belongs to a picture goes away. */
+  const drawing = useSignal(true);
 
   useEffect(() => {
     if (container.current === null) return undefined;
@@ -62,7 +63,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
         atViewpoint.value = at;
         if (followCamera.value && !at) session.setViewpoint(parametersOf(camera), 'viewpoint');
       },
-      onStatus: (status) => (unsupported.value = status.state === 'ready' ? null : status.message),
+      onStatus: ({ state }) => (drawing.value = state === 'ready'),
     });
     const lightBall = new LightBall(light.value, (chosen) => {
       light.value = chosen;
@@ -101,19 +102,16 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
   return (
     <div class="viewport-panel">
       <div ref={container} class="viewport" />
-      {unsupported.value ? <p class="viewport-message">{unsupported.value}</p> : null}
-      {session.original.value ? (
-        <>
-          <div class="float top-left">
-            <Segmented
-              floating
-              label="View"
-              options={options}
-              value={mode.value}
-              onChange={(value) => (mode.value = value)}
-            />
-          </div>
-        </>
+      {session.original.value && drawing.value ? (
+        <div class="float top-left">
+          <Segmented
+            floating
+            label="View"
+            options={options}
+            value={mode.value}
+            onChange={(value) => (mode.value = value)}
+          />
+        </div>
       ) : null}
       <div ref={foot} class="float bottom-left foot">
         {mode.value === 'error' && shown ? (
@@ -129,8 +127,12 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
         ) : null}
         {notes}
       </div>
-      <div ref={ball} class="float top-right panel light-panel" hidden={session.original.value === null} />
-      <div ref={side} class="float bottom-right panel side-inset" hidden={shown === null} />
+      <div
+        ref={ball}
+        class="float top-right panel light-panel"
+        hidden={session.original.value === null || !drawing.value}
+      />
+      <div ref={side} class="float bottom-right panel side-inset" hidden={shown === null || !drawing.value} />
       {children}
     </div>
   );

@@ -7,6 +7,8 @@ export interface FrameClient {
   /** Moves what moves (camera, coasting); true while something still does. */
   animate(now: number, elapsed: number): boolean;
   draw(): void;
+  /** Puts a picture that was drawn aside and is done onto the canvas; true when there was one. */
+  present(): boolean;
   bakePending(): boolean;
   /** Some of the baking; true when the picture should be drawn again. */
   bake(): boolean;
@@ -93,6 +95,7 @@ export class FrameLoop {
     this.dirty = false;
     this.changedAt = performance.now();
     this.client.draw();
+    this.client.present();
   }
 
   private later(ms: number): void {
@@ -114,6 +117,10 @@ export class FrameLoop {
     // Never a second frame in the queue: the hand would feel it, and the page would stop.
     if (this.client.gpuBusy()) {
       this.later(POLL_MS);
+      return;
+    }
+    if (this.client.present()) {
+      this.request = requestAnimationFrame(this.tick);
       return;
     }
     const begun = performance.now();

@@ -22,6 +22,9 @@ export interface Quality {
   readonly savedSamples: number;
   /** Whether each of them samples another place on the light, which draws the depth map again. */
   readonly softLight: boolean;
+  /** Draw aside and copy the finished picture onto the canvas. A browser without a graphics card reads the
+   *  canvas back for every frame and stops the page until all that was drawn into it is done. */
+  readonly drawsAside: boolean;
   /** Drawing and solving share the processor: refine nothing while something is solved. */
   readonly yieldsToWork: boolean;
   /** Rest of the hand before anything is refined, ms. */
@@ -41,6 +44,7 @@ export const FULL: Quality = {
   smallSamples: 14,
   savedSamples: 24,
   softLight: true,
+  drawsAside: false,
   yieldsToWork: false,
   restMs: 110,
 };
@@ -58,6 +62,7 @@ export const SPARING: Quality = {
   smallSamples: 2,
   savedSamples: 8,
   softLight: false,
+  drawsAside: true,
   yieldsToWork: true,
   restMs: 350,
 };

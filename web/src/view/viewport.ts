@@ -75,6 +75,7 @@ export class Viewport implements ViewportApi {
   private stage: Stage | null = null;
   private content: Content | null = null;
   private accumulation: Accumulation | null = null;
+  private unshown = false;
   private statusNow: ViewStatus = { state: 'ready' };
   private light: LightDirection;
   private theme: Theme;
@@ -157,6 +158,7 @@ export class Viewport implements ViewportApi {
       {
         animate: (now, elapsed) => this.rig.animate(now, elapsed),
         draw: () => this.draw(),
+        present: () => this.present(),
         bakePending: () => this.stage?.bakePendingFor(parts()) ?? false,
         bake: () => {
           const finished = this.stage?.bake(parts()) ?? false;
@@ -410,22 +412,42 @@ export class Viewport implements ViewportApi {
     if (!stage || this.statusNow.state !== 'ready') return;
     this.layOut();
     stage.renderer.info.reset();
-    stage.draw(this.picture(this.pictureParts()), null, canvas.width, canvas.height);
+    const aside = stage.quality.drawsAside ? this.aside() : null;
+    stage.draw(this.picture(this.pictureParts()), aside?.frame ?? null, canvas.width, canvas.height);
+    aside?.add(stage.renderer, 0);
+    this.unshown = aside !== null;
     stage.pace.mark();
+  }
+
+  private present(): boolean {
+    const { stage, accumulation } = this;
+    if (!this.unshown || !stage || !accumulation) return false;
+    this.unshown = false;
+    accumulation.show(stage.renderer);
+    stage.pace.mark();
+    return true;
+  }
+
+  /** Where pictures of the canvas's size are drawn before they are shown. */
+  private aside(): Accumulation {
+    const { width, height } = this.canvas;
+    if (this.accumulation?.width !== width || this.accumulation.height !== height) {
+      this.accumulation?.dispose();
+      this.accumulation = new Accumulation(width, height);
+    }
+    return this.accumulation;
   }
 
   private refine(sample: number): void {
     const { stage, canvas } = this;
     if (!stage) return;
-    if (this.accumulation?.width !== canvas.width || this.accumulation.height !== canvas.height) {
-      this.accumulation?.dispose();
-      this.accumulation = new Accumulation(canvas.width, canvas.height);
+    const aside = this.aside();
+    stage.draw(this.picture(this.pictureParts()), aside.frame, canvas.width, canvas.height, sample);
+    aside.add(stage.renderer, sample);
+    if (sample + 1 >= Math.min(SHOWN_FROM, stage.quality.stillSamples)) {
+      if (stage.quality.drawsAside) this.unshown = true;
+      else aside.show(stage.renderer);
     }
-    const { frame } = this.accumulation;
-    stage.draw(this.picture(this.pictureParts()), frame, canvas.width, canvas.height, sample);
-    this.accumulation.add(stage.renderer, sample);
-    if (sample + 1 >= Math.min(SHOWN_FROM, stage.quality.stillSamples))
-      this.accumulation.show(stage.renderer);
     stage.pace.mark();
   }
 

@@ -2,22 +2,7 @@
 import { useEffect, useState } from 'preact/hooks';
 import type { Services } from '../crafts/common/services';
 import type { Licence } from '../../scripts/licences';
-
-/** Built into the solver rather than the page; the full texts come with the source. */
-const solverParts: readonly (readonly [name: string, licence: string, use: string])[] = [
-  ['CGAL', 'GPL-3.0-or-later', 'repair, visibility'],
-  ['Eigen', 'MPL-2.0', 'linear algebra'],
-  ['Embree', 'Apache-2.0', 'visibility, native only'],
-  ['SuiteSparse CHOLMOD', 'GPL-2.0-or-later and LGPL-2.1-or-later', 'factorisation, native only'],
-  ['OpenBLAS', 'BSD-3-Clause', 'factorisation, native only'],
-  ['Boost', 'BSL-1.0', 'server, containers'],
-  ['nlohmann/json', 'MIT', 'messages'],
-  [
-    'tinyobjloader, TinyGLTF, stb, pugixml, minizip, zlib, libpng, fast_float',
-    'MIT, zlib and similar',
-    'file formats',
-  ],
-];
+import { solverParts } from './solver_parts';
 
 export function AboutPage({ services }: { services: Services }) {
   const [licences, setLicences] = useState<readonly Licence[]>([]);
@@ -45,7 +30,7 @@ export function AboutPage({ services }: { services: Services }) {
         </p>
         <h2>In the solver</h2>
         <ul class="licence-list">
-          {solverParts.map(([name, licence, use]) => (
+          {solverParts.map(({ name, licence, use }) => (
             <li key={name}>
               <strong>{name}</strong> <span>{licence}</span> <span>{use}</span>
             </li>

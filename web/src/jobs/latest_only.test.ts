@@ -69,3 +69,22 @@ it('goes on after a task that throws, and drops what waits when cancelled', asyn
   queue.request('d');
   expect(ran.at(-1)).toBe('d');
 });
+
+it('does not run again what is running', async () => {
+  const ran: string[] = [];
+  const gate = deferred();
+  const queue = new LatestOnly<string>(
+    async (name) => {
+      ran.push(name);
+      await gate.promise;
+    },
+    undefined,
+    (running, next) => running === next,
+  );
+  queue.request('a');
+  queue.request('b');
+  queue.request('a');
+  gate.resolve();
+  await turn();
+  expect(ran).toEqual(['a']);
+});

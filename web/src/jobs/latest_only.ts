@@ -8,11 +8,14 @@ export class LatestOnly<Request> {
   #waiting: { readonly request: Request } | null = null;
   readonly #task: (request: Request, signal: AbortSignal) => Promise<void>;
   readonly #isObsolete: (running: Request, next: Request) => boolean;
+  readonly #isSame: (running: Request, next: Request) => boolean;
 
   constructor(
     task: (request: Request, signal: AbortSignal) => Promise<void>,
     isObsolete: (running: Request, next: Request) => boolean = () => false,
+    isSame: (running: Request, next: Request) => boolean = () => false,
   ) {
+    this.#isSame = isSame;
     this.#task = task;
     this.#isObsolete = isObsolete;
   }
@@ -22,6 +25,11 @@ export class LatestOnly<Request> {
   }
 
   request(request: Request): void {
+    const running = this.#running;
+    if (running && !running.abort.signal.aborted && this.#isSame(running.request, request)) {
+      this.#waiting = null; // the newest is what runs
+      return;
+    }
     this.#waiting = { request };
     if (this.#running === null) void this.#drain();
     else if (this.#isObsolete(this.#running.request, request)) this.#running.abort.abort();

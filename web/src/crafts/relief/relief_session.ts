@@ -88,6 +88,8 @@ export class ReliefSession {
     this.#preview = new LatestOnly(
       (request, abort) => this.#runPreview(request, abort),
       (running, next) => running.mesh.blob !== next.mesh.blob,
+      (running, next) =>
+        running.mesh.blob === next.mesh.blob && jsonEqual(running.parameters, next.parameters),
     );
     effect(() => void this.#loadOriginal(this.document.value.model?.mesh.blob ?? null));
     effect(() => this.#follow());

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the C++ side is built from beside our own code; a test compares it with the includes.
+
+export interface SolverPart {
+  readonly name: string;
+  readonly licence: string;
+  readonly use: string;
+  /** The first word of its includes. */
+  readonly include: string;
+}
+
+/** Built into the solver rather than the page; the full texts come with the source. */
+export const solverParts: readonly SolverPart[] = [
+  { name: 'Eigen', licence: 'MPL-2.0', use: 'linear algebra', include: 'Eigen' },
+  { name: 'Boost', licence: 'BSL-1.0', use: 'server of the native worker', include: 'boost' },
+  { name: 'nlohmann/json', licence: 'MIT', use: 'messages', include: 'nlohmann' },
+  { name: 'fast_float', licence: 'MIT or Apache-2.0', use: 'numbers in files', include: 'fast_float' },
+  { name: 'libpng', licence: 'libpng-2.0', use: 'height maps', include: 'png' },
+  { name: 'zlib', licence: 'Zlib', use: 'compressed files', include: 'zlib' },
+];

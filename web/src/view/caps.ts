@@ -2,7 +2,8 @@
 // The filled face of a cut. Looking through the cut, a ray that enters a closed mesh without having left it
 // starts inside: counting back faces against front faces in the stencil marks those pixels.
 import * as THREE from 'three';
-import { capFragment, capVertex, depthFragment } from './shaders';
+import { capFragment, capVertex } from './line_shaders';
+import { depthFragment } from './surface_shaders';
 import type { Subject } from './subject';
 import { type Surface, type Uniforms, still } from './surface';
 import type { Vec3 } from './api';

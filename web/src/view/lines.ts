@@ -3,7 +3,7 @@
 // Lines some pixels wide: drawn loops, zipper curves, the outline of a cut.
 import * as THREE from 'three';
 import type { Vec3 } from './api';
-import { lineFragment, lineVertex } from './shaders';
+import { lineFragment, lineVertex } from './line_shaders';
 import { type Uniforms, still } from './surface';
 
 export interface LineStyle {

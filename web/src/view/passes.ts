@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Passes over the whole screen, and the average of many jittered pictures that a still view becomes.
 import * as THREE from 'three';
-import { copyFragment, screenVertex } from './shaders';
+import { copyFragment, screenVertex } from './screen_shaders';
 import { type Uniforms, still } from './surface';
 
 const TRIANGLE = Float32Array.of(-1, -1, 0, 3, -1, 0, -1, 3, 0);

@@ -4,7 +4,7 @@ import * as THREE from 'three';
 import type { Vec3 } from './api';
 import { type CameraState } from './camera';
 import { type PlateFrame, plateCorners, rectangle } from './plate';
-import { plateShadowFragment, plateShadowVertex } from './shaders';
+import { plateShadowFragment, plateShadowVertex } from './screen_shaders';
 import { type Uniforms, still } from './surface';
 import { along, dot, scale, subtract } from './vector';
 

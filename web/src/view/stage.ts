@@ -9,18 +9,17 @@ import { Colouring } from './colouring';
 import { GpuPace } from './gpu_pace';
 import { jitter } from './jitter';
 import { LineSet, type LineStyle } from './lines';
-import { groundSquare, plateBody, plateFrame, plateFront } from './plate';
+import { type MakeSurface, type Part, type PartName, PLASTER, addGround, addPlate } from './part';
 import { Accumulation, ScreenPass } from './passes';
-import { PlateShadow } from './plate_shadow';
 import type { Quality } from './quality';
-import { backdropFragment, groundFragment } from './shaders';
+import { backdropFragment } from './screen_shaders';
 import { DepthView, SkyScratch, Subject, newBakeUniforms } from './subject';
 import type { Support } from './support';
 import { Surface, type SurfaceOptions, type Uniforms } from './surface';
 import type { Palette } from './theme';
 import { add, along, dot, perpendicular, rotate, scale, subtract } from './vector';
 
-export type PartName = 'original' | 'relief';
+export type { PartName } from './part';
 
 export interface PicturePart {
   part: PartName;
@@ -43,22 +42,11 @@ export interface Picture {
   ground: boolean;
 }
 
-/** Linear reflectances: warm plaster, its plate a little darker, as an object stands out from its ground. */
-const PLASTER: Vec3 = [0.93, 0.845, 0.715];
-const PLATE: Vec3 = [0.84, 0.755, 0.628];
 const KEY = 0.86;
 const AMBIENT = 0.215;
 /** Half angle of the key light as seen from the object, degrees: how soft its shadows are. */
 const LIGHT_HALF_ANGLE = 2.6;
 const OCCLUSION = 0.92;
-
-interface Part {
-  subject: Subject;
-  mesh: Surface | null;
-  extra: Surface[];
-  plate: Plate | null;
-  plateShadow: PlateShadow | null;
-}
 
 export class Stage {
   readonly renderer: THREE.WebGLRenderer;
@@ -180,8 +168,9 @@ export class Stage {
     part.plate = plate;
     part.extra = [];
     part.mesh = mesh ? this.surface(part, mesh, { albedo: PLASTER }) : null;
-    if (plate) this.addPlate(part, plate, viewpoint);
-    if (ground && part.mesh) this.addGround(part, part.mesh, ground);
+    const surface: MakeSurface = (extra, options) => this.surface(part, extra, options);
+    if (plate) addPlate(part, plate, viewpoint, this.origin, surface);
+    if (ground && part.mesh) addGround(part, part.mesh, ground, this.origin, surface);
     part.subject.groundUp = ground;
     part.subject.surfaces = [...(part.mesh ? [part.mesh] : []), ...part.extra];
     part.subject.changed();
@@ -194,46 +183,6 @@ export class Stage {
     const made = new Surface(mesh, this.origin, shared, { ...options, shadowTaps: this.quality.shadowTaps });
     this.compile([made.main, made.depth]);
     return made;
-  }
-
-  private addPlate(part: Part, plate: Plate, viewpoint: Pick<Viewpoint, 'direction' | 'up'>): void {
-    const frame = plateFrame(plate, viewpoint);
-    if (plate.mesh) {
-      part.extra.push(this.surface(part, plate.mesh, { albedo: PLATE }));
-    } else if (plate.mesh !== false) {
-      const width = 640;
-      const height = Math.min(1024, Math.max(64, Math.round((width * plate.heightMm) / plate.widthMm)));
-      part.extra.push(this.surface(part, plateFront(frame), { albedo: PLATE, picture: { width, height } }));
-      const body = plateBody(frame);
-      if (body) part.extra.push(this.surface(part, body, { albedo: PLATE }));
-    }
-    part.plateShadow = new PlateShadow(frame, this.origin);
-  }
-
-  private addGround(part: Part, mesh: Surface, up: Vec3): void {
-    const { points, centre, radius } = mesh.support;
-    let lowest = Infinity;
-    for (let i = 0; i < points.length; i += 3) {
-      lowest = Math.min(
-        lowest,
-        dot(up, [points[i] as number, points[i + 1] as number, points[i + 2] as number]),
-      );
-    }
-    const square = groundSquare(centre as Vec3, radius, lowest - 1e-3 * radius, up, 2.4);
-    const positions = Float64Array.from(square.positions, (x, i) => x + (this.origin[i % 3] as number));
-    const ground = this.surface(
-      part,
-      { ...square, positions },
-      {
-        albedo: PLATE,
-        picture: { width: 384, height: 384 },
-        blur: 0.16,
-        fragment: groundFragment,
-        transparent: true,
-      },
-    );
-    ground.main.material.uniforms['uStrength'] = { value: 0.8 };
-    part.extra.push(ground);
   }
 
   updatePositions(name: PartName, positions: Float32Array | Float64Array): void {

@@ -5,16 +5,8 @@ import * as THREE from 'three';
 import type { MeshData, Vec3 } from './api';
 import { type Shading, updateNormals } from './normals';
 import { findShading } from './shading';
-import {
-  bakeFragment,
-  bakeQuadFragment,
-  bakeQuadVertex,
-  bakeVertex,
-  depthFragment,
-  depthVertex,
-  surfaceFragment,
-  surfaceVertex,
-} from './shaders';
+import { bakeFragment, bakeQuadFragment, bakeQuadVertex, bakeVertex } from './bake_shaders';
+import { depthFragment, depthVertex, surfaceFragment, surfaceVertex } from './surface_shaders';
 import { type Support, supportOf } from './support';
 
 export type Uniforms = Record<string, THREE.IUniform>;

@@ -21,31 +21,24 @@ import type {
   ViewportOptions,
   ViewStatus,
 } from './api';
-import {
-  type CameraState,
-  cameraFromViewpoint,
-  fitWindow,
-  makeScreen,
-  projectToPixels,
-  projectedBounds,
-} from './camera';
+import { type CameraState, cameraFromViewpoint, makeScreen, projectToPixels } from './camera';
 import { CameraRig } from './camera_rig';
 import { Content } from './content';
 import { Controls } from './controls';
 import { FrameLoop } from './frame_loop';
 import { Furniture } from './furniture';
 import { DEFAULT_LIGHT, towardsLight } from './light';
-import { Accumulation } from './passes';
+import { Painter } from './painter';
 import { Picker } from './picker';
 import { pickAt } from './picking';
 import { plateCorners, plateFrame } from './plate';
 import { encodePng } from './png';
 import { PointerReports } from './pointer';
-import { reframed } from './snapshot';
+import { readPart, readView } from './snapshot';
 import { type PartName, type Picture, type PicturePart, Stage } from './stage';
 import { qualityHere } from './quality';
 import { readPalette } from './theme';
-import { add, length, scale, subtract, viewerAxes } from './vector';
+import { length, scale, subtract, viewerAxes } from './vector';
 
 const UNSUPPORTED =
   'This browser cannot draw in 3D: it offers no WebGL 2. Update the browser, or allow hardware acceleration in its settings.';
@@ -55,8 +48,6 @@ const LOST =
 /** Room for dimension lines below and to the right, px; narrower viewports go without. */
 const DIMENSION_PX = 30;
 const DIMENSION_LEAST_WIDTH = 560;
-/** A still picture is shown from this many samples on; fewer look rougher than the moving one. */
-const SHOWN_FROM = 8;
 const NO_INSETS: Insets = { left: 0, top: 0, right: 0, bottom: 0 };
 
 export class Viewport implements ViewportApi {
@@ -74,8 +65,7 @@ export class Viewport implements ViewportApi {
   /** Both null where WebGL 2 is missing: every call then does nothing. */
   private stage: Stage | null = null;
   private content: Content | null = null;
-  private accumulation: Accumulation | null = null;
-  private unshown = false;
+  private painter: Painter | null = null;
   private statusNow: ViewStatus = { state: 'ready' };
   private light: LightDirection;
   private theme: Theme;
@@ -133,6 +123,7 @@ export class Viewport implements ViewportApi {
         this.root,
       );
       this.stage = stage;
+      this.painter = new Painter(stage, this.canvas);
     } catch {
       this.setStatus({ state: 'unsupported', message: UNSUPPORTED });
     }
@@ -158,7 +149,7 @@ export class Viewport implements ViewportApi {
       {
         animate: (now, elapsed) => this.rig.animate(now, elapsed),
         draw: () => this.draw(),
-        present: () => this.present(),
+        present: () => this.painter?.present() ?? false,
         bakePending: () => this.stage?.bakePendingFor(parts()) ?? false,
         bake: () => {
           const finished = this.stage?.bake(parts()) ?? false;
@@ -169,7 +160,7 @@ export class Viewport implements ViewportApi {
           if (!this.stage?.canRefine || this.options.refine === false || parts().length === 0) return 0;
           return this.stage.quality.stillSamples;
         },
-        refine: (sample) => this.refine(sample),
+        refine: (sample) => this.painter?.refine(this.picture(this.pictureParts()), sample),
         gpuBusy: () => this.stage?.busy ?? false,
         triangles: () => this.content?.triangleCount() ?? 0,
         onFrame: (stats) => this.options.onFrame?.(stats),
@@ -408,47 +399,9 @@ export class Viewport implements ViewportApi {
   }
 
   private draw(): void {
-    const { stage, canvas } = this;
-    if (!stage || this.statusNow.state !== 'ready') return;
+    if (this.statusNow.state !== 'ready') return;
     this.layOut();
-    stage.renderer.info.reset();
-    const aside = stage.quality.drawsAside ? this.aside() : null;
-    stage.draw(this.picture(this.pictureParts()), aside?.frame ?? null, canvas.width, canvas.height);
-    aside?.add(stage.renderer, 0);
-    this.unshown = aside !== null;
-    stage.pace.mark();
-  }
-
-  private present(): boolean {
-    const { stage, accumulation } = this;
-    if (!this.unshown || !stage || !accumulation) return false;
-    this.unshown = false;
-    accumulation.show(stage.renderer);
-    stage.pace.mark();
-    return true;
-  }
-
-  /** Where pictures of the canvas's size are drawn before they are shown. */
-  private aside(): Accumulation {
-    const { width, height } = this.canvas;
-    if (this.accumulation?.width !== width || this.accumulation.height !== height) {
-      this.accumulation?.dispose();
-      this.accumulation = new Accumulation(width, height);
-    }
-    return this.accumulation;
-  }
-
-  private refine(sample: number): void {
-    const { stage, canvas } = this;
-    if (!stage) return;
-    const aside = this.aside();
-    stage.draw(this.picture(this.pictureParts()), aside.frame, canvas.width, canvas.height, sample);
-    aside.add(stage.renderer, sample);
-    if (sample + 1 >= Math.min(SHOWN_FROM, stage.quality.stillSamples)) {
-      if (stage.quality.drawsAside) this.unshown = true;
-      else aside.show(stage.renderer);
-    }
-    stage.pace.mark();
+    this.painter?.draw(this.picture(this.pictureParts()));
   }
 
   private layOut(): void {
@@ -503,16 +456,8 @@ export class Viewport implements ViewportApi {
     if (!stage || this.statusNow.state !== 'ready') {
       throw new Error('There is no picture to keep: the 3D view is not running.');
     }
-    const parts = this.pictureParts();
-    const names = parts.map((p) => p.part);
-    while (stage.bakePendingFor(names)) {
-      await stage.pace.done();
-      stage.bake(names);
-      stage.pace.mark();
-    }
-    const framed = reframed(this.rig.camera, this.rig.screen, parts, widthPx, heightPx);
-    const picture = { ...this.picture(parts), ...framed, backdrop: !options.transparent };
-    const pixels = await stage.read(picture, widthPx, heightPx, stage.quality.savedSamples);
+    const picture = { ...this.picture(this.pictureParts()), backdrop: !options.transparent };
+    const pixels = await readView(stage, picture, widthPx, heightPx);
     this.invalidate();
     return encodePng(pixels, widthPx, heightPx);
   }
@@ -526,14 +471,7 @@ export class Viewport implements ViewportApi {
   ): Promise<Uint8ClampedArray<ArrayBuffer> | null> {
     const { stage, content } = this;
     if (!stage || !content?.meshes[part] || this.statusNow.state !== 'ready') return null;
-    const { centre, radius, points } = stage.subjectOf(part).support;
-    const screen = makeScreen(width, height, NO_INSETS);
-    let view = camera(add(centre, stage.origin), radius);
-    const bounds = projectedBounds(view, points, stage.origin);
-    if (bounds) view = fitWindow(view, screen, bounds, 0.09 * height);
-    const parts: PicturePart[] = [{ part, from: 0, to: 1 }];
-    const picture = { ...this.picture(parts), camera: view, screen, plateShadow: false, ground: false };
-    const pixels = await stage.read(picture, width, height, stage.quality.smallSamples);
+    const pixels = await readPart(stage, this.picture([]), part, camera, width, height);
     this.loop.restart();
     return pixels;
   }
@@ -564,8 +502,7 @@ export class Viewport implements ViewportApi {
   private readonly contextLost = (event: Event): void => {
     event.preventDefault();
     this.loop.stop();
-    this.accumulation?.dispose();
-    this.accumulation = null;
+    this.painter?.dispose();
     this.stage?.forgetGpu();
     this.setStatus({ state: 'lost', message: LOST });
   };
@@ -584,7 +521,7 @@ export class Viewport implements ViewportApi {
     this.themeWatch.disconnect();
     this.canvas.removeEventListener('webglcontextlost', this.contextLost);
     this.canvas.removeEventListener('webglcontextrestored', this.contextRestored);
-    this.accumulation?.dispose();
+    this.painter?.dispose();
     this.stage?.dispose();
     // Browsers keep few contexts: give this one back now, not when memory is next collected.
     this.stage?.renderer.forceContextLoss();

@@ -14,14 +14,16 @@ constexpr int rounds = 5, flip_sweeps = 3;
 constexpr double pull = 0.07;
 /// Of the error that the caller allows: what one vertex may spend on better shapes.
 constexpr double share_of_error = 0.7;
-/// Faces at an edge that flips may meet under acos of this at most, and none of them may turn by more than that of the other.
+/// Faces at an edge that flips may meet under acos of this at most, and none of them may turn by more than that of the
+/// other.
 constexpr double flat_cosine = 0.85, turn_cosine = 0.8;
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 class Improver {
  public:
-  Improver(CollapsibleMesh& mesh, std::vector<Vec3>& position, const std::vector<Quadric>& quadric, const std::vector<Freedom>& freedom, double most_error)
+  Improver(CollapsibleMesh& mesh, std::vector<Vec3>& position, const std::vector<Quadric>& quadric,
+           const std::vector<Freedom>& freedom, double most_error)
       : mesh_(mesh), position_(position), quadric_(quadric), freedom_(freedom), most_error_(most_error) {
     for (int f = 0; f < mesh.face_count(); ++f)
       if (mesh.has_face(f)) faces_.push_back(f);
@@ -68,10 +70,15 @@ class Improver {
     if (!(left_area > 0 && right_area > 0) || left.dot(right) < flat_cosine * left_area * right_area) return false;
     const double cotangents = (a - c).dot(b - c) / left_area + (a - d).dot(b - d) / right_area;
     if (cotangents > -1e-6) return false;
-    const Vec3 first = (c - d).cross(a - d), second = (d - c).cross(b - c), both = left + right;  // (d, c, a), (c, d, b)
+    const Vec3 first = (c - d).cross(a - d), second = (d - c).cross(b - c),
+               both = left + right;  // (d, c, a), (c, d, b)
     const double first_area = first.norm(), second_area = second.norm();
-    if (first.dot(both) < turn_cosine * first_area * both.norm() || second.dot(both) < turn_cosine * second_area * both.norm()) return false;
-    if (std::min(triangle_shape(d, c, a, first), triangle_shape(c, d, b, second)) < std::min(triangle_shape(a, b, c, left), triangle_shape(b, a, d, right))) return false;
+    if (first.dot(both) < turn_cosine * first_area * both.norm() ||
+        second.dot(both) < turn_cosine * second_area * both.norm())
+      return false;
+    if (std::min(triangle_shape(d, c, a, first), triangle_shape(c, d, b, second)) <
+        std::min(triangle_shape(a, b, c, left), triangle_shape(b, a, d, right)))
+      return false;
     // Where the faces bend, the new edge must lie as near to the surface as the old one, within a little.
     if (left.dot(right) < 0.97 * left_area * right_area) {
       const Quadric all = (quadric_[index(ia)] + quadric_[index(ib)]) + (quadric_[index(ic)] + quadric_[index(id)]);

@@ -41,8 +41,9 @@ struct Tile {
   const char* sample;
   double turn_deg, tilt_deg;
 };
-constexpr Tile tiles[] = {{"bust", -24, 6}, {"cat", 24, 10}, {"octopus", 10, 24}, {"mountain", 16, 32}, {"fish", -14, 8},     {"coin", -12, 14},
-                          {"star", 18, 12}, {"heart", 18, 12}, {"pyramid", 28, 24}, {"t_shape", 28, 18}, {"hemisphere", 20, 24}, {"torus", 24, 16}};
+constexpr Tile tiles[] = {{"bust", -24, 6},    {"cat", 24, 10},     {"octopus", 10, 24},    {"mountain", 16, 32},
+                          {"fish", -14, 8},    {"coin", -12, 14},   {"star", 18, 12},       {"heart", 18, 12},
+                          {"pyramid", 28, 24}, {"t_shape", 28, 18}, {"hemisphere", 20, 24}, {"torus", 24, 16}};
 
 void sheet(const std::string& path) {
   constexpr int side = 400, columns = 4;
@@ -56,7 +57,8 @@ void sheet(const std::string& path) {
     int vertices = 0;
     for (const SampleInfo& info : sample_catalog())
       if (info.name == tile.sample) vertices = std::max(40000, 2 * info.default_vertices);
-    paste(picture, render(make_sample(tile.sample, vertices, context), options), k % columns * side, k / columns * side);
+    paste(picture, render(make_sample(tile.sample, vertices, context), options), k % columns * side,
+          k / columns * side);
     ++k;
   }
   save(path, encode_palette_png(picture));
@@ -70,7 +72,8 @@ Model read_file(const std::string& path) {
 }
 
 /// The model, its relief and its linear compression into the same slab, from the front and nearly from the side.
-void relief(const std::string& sample, int vertices, const std::string& ply, double thickness_mm, const std::string& path) {
+void relief(const std::string& sample, int vertices, const std::string& ply, double thickness_mm,
+            const std::string& path) {
   Context context;
   Model relief = read_file(ply);
   relief.vertex_colours.resize(0, 3);
@@ -119,7 +122,8 @@ int main(int argc, char** argv) {
     } else if (argc == 7 && std::strcmp(argv[1], "relief") == 0) {
       relief(argv[2], std::atoi(argv[3]), argv[4], std::atof(argv[5]), argv[6]);
     } else {
-      std::cerr << "sample_pictures sheet OUT.png | one SAMPLE VERTICES PIXELS OUT.png [turn_deg tilt_deg] | relief SAMPLE VERTICES RELIEF.ply THICKNESS_MM OUT.png\n";
+      std::cerr << "sample_pictures sheet OUT.png | one SAMPLE VERTICES PIXELS OUT.png [turn_deg tilt_deg] | relief "
+                   "SAMPLE VERTICES RELIEF.ply THICKNESS_MM OUT.png\n";
       return 2;
     }
   } catch (const Error& error) {

@@ -31,7 +31,8 @@ Box measured(const std::vector<Counted>& colours, std::size_t from, std::size_t 
   Colour low{255, 255, 255}, high{0, 0, 0};
   for (std::size_t k = from; k < to; ++k) {
     pixels += colours[k].pixels;
-    for (std::size_t c = 0; c < 3; ++c) low[c] = std::min(low[c], colours[k].colour[c]), high[c] = std::max(high[c], colours[k].colour[c]);
+    for (std::size_t c = 0; c < 3; ++c)
+      low[c] = std::min(low[c], colours[k].colour[c]), high[c] = std::max(high[c], colours[k].colour[c]);
   }
   for (std::size_t c = 0; c < 3; ++c) {
     const double extent = high[c] - low[c], spread = std::sqrt(pixels) * extent * extent;
@@ -43,15 +44,19 @@ Box measured(const std::vector<Counted>& colours, std::size_t from, std::size_t 
 std::vector<Colour> palette_of(std::vector<Counted>& colours, std::size_t most) {
   std::vector<Box> boxes{measured(colours, 0, colours.size())};
   while (boxes.size() < most) {
-    const auto widest = std::max_element(boxes.begin(), boxes.end(), [](const Box& a, const Box& b) { return a.spread < b.spread; });
+    const auto widest =
+        std::max_element(boxes.begin(), boxes.end(), [](const Box& a, const Box& b) { return a.spread < b.spread; });
     if (widest->spread <= 0) break;
     const Box box = *widest;
     const auto axis = static_cast<std::size_t>(box.axis);
     const auto at = [&](std::size_t k) { return colours.begin() + static_cast<std::ptrdiff_t>(k); };
-    std::sort(at(box.from), at(box.to), [&](const Counted& a, const Counted& b) { return a.colour[axis] != b.colour[axis] ? a.colour[axis] < b.colour[axis] : a.colour < b.colour; });
+    std::sort(at(box.from), at(box.to), [&](const Counted& a, const Counted& b) {
+      return a.colour[axis] != b.colour[axis] ? a.colour[axis] < b.colour[axis] : a.colour < b.colour;
+    });
     // At the mean: a median would spend the palette on the background.
     double sum = 0, pixels = 0;
-    for (std::size_t k = box.from; k < box.to; ++k) sum += static_cast<double>(colours[k].pixels) * colours[k].colour[axis], pixels += colours[k].pixels;
+    for (std::size_t k = box.from; k < box.to; ++k)
+      sum += static_cast<double>(colours[k].pixels) * colours[k].colour[axis], pixels += colours[k].pixels;
     std::size_t cut = box.from + 1;
     while (cut + 1 < box.to && colours[cut].colour[axis] <= sum / pixels) ++cut;
     *widest = measured(colours, box.from, cut);
@@ -104,7 +109,8 @@ Bytes encode_palette_png(const RgbPicture& picture) {
   std::vector<int> count(std::size_t{1} << 18, 0);  // 6 bits a channel
   const auto cell = [&](std::size_t k) {
     const std::uint8_t* p = &picture.bytes[3 * k];
-    return static_cast<std::size_t>(p[0] >> 2) << 12 | static_cast<std::size_t>(p[1] >> 2) << 6 | static_cast<std::size_t>(p[2] >> 2);
+    return static_cast<std::size_t>(p[0] >> 2) << 12 | static_cast<std::size_t>(p[1] >> 2) << 6 |
+           static_cast<std::size_t>(p[2] >> 2);
   };
   const auto colour_of = [](std::size_t c) {
     const auto part = [&](std::size_t shift) { return static_cast<std::uint8_t>((c >> shift & 63U) << 2 | 2U); };
@@ -122,8 +128,10 @@ Bytes encode_palette_png(const RgbPicture& picture) {
   std::vector<std::array<double, 3>> carried(pixels + width + 2, {0, 0, 0});
   for (std::size_t k = 0; k < pixels; ++k) {
     Colour wanted;
-    for (std::size_t c = 0; c < 3; ++c) wanted[c] = static_cast<std::uint8_t>(std::clamp(picture.bytes[3 * k + c] + 0.75 * carried[k][c], 0.0, 255.0));
-    int& index = index_of[static_cast<std::size_t>(wanted[0] >> 2) << 12 | static_cast<std::size_t>(wanted[1] >> 2) << 6 | static_cast<std::size_t>(wanted[2] >> 2)];
+    for (std::size_t c = 0; c < 3; ++c)
+      wanted[c] = static_cast<std::uint8_t>(std::clamp(picture.bytes[3 * k + c] + 0.75 * carried[k][c], 0.0, 255.0));
+    int& index = index_of[static_cast<std::size_t>(wanted[0] >> 2) << 12 |
+                          static_cast<std::size_t>(wanted[1] >> 2) << 6 | static_cast<std::size_t>(wanted[2] >> 2)];
     if (index < 0) index = nearest(palette, wanted);
     indices[k] = static_cast<std::uint8_t>(index);
     const bool first = k % width == 0, last = k % width == width - 1;

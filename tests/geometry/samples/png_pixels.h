@@ -12,7 +12,9 @@ struct RgbPicture {
   int width = 0, height = 0;
   std::vector<std::uint8_t> bytes;  // sRGB, 3 a pixel, from the top left, row by row; empty when it could not be read
 
-  const std::uint8_t* pixel(int x, int y) const { return &bytes[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x))]; }
+  const std::uint8_t* pixel(int x, int y) const {
+    return &bytes[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x))];
+  }
 };
 
 RgbPicture decode_png(ByteView png);

@@ -18,7 +18,9 @@ constexpr double far_away = -std::numeric_limits<double>::infinity();
 
 std::size_t index(Eigen::Index i) { return static_cast<std::size_t>(i); }
 
-double srgb_of(double linear) { return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055; }
+double srgb_of(double linear) {
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
 double linear_of(double srgb) { return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4); }
 
 /// Normals per corner: the mean of the faces around that turn by less than the crease angle.
@@ -60,7 +62,16 @@ struct Frame {
   std::vector<int> face;
   std::vector<float> u, v;  // barycentric
 
-  Frame(int w, int h, double s, double left, double top) : width(w), height(h), scale(s), x0(left), y0(top), depth(index(w) * index(h), far_away), face(depth.size(), -1), u(depth.size()), v(depth.size()) {}
+  Frame(int w, int h, double s, double left, double top)
+      : width(w),
+        height(h),
+        scale(s),
+        x0(left),
+        y0(top),
+        depth(index(w) * index(h), far_away),
+        face(depth.size(), -1),
+        u(depth.size()),
+        v(depth.size()) {}
   double column(double x) const { return (x - x0) * scale; }
   double row(double y) const { return (y0 - y) * scale; }
 
@@ -71,11 +82,14 @@ struct Frame {
         p[k] = camera.see(mesh.V.row(mesh.F(f, k)));
         p[k].x() = column(p[k].x()), p[k].y() = row(p[k].y());
       }
-      const double twice = (p[1].x() - p[0].x()) * (p[2].y() - p[0].y()) - (p[1].y() - p[0].y()) * (p[2].x() - p[0].x());
+      const double twice =
+          (p[1].x() - p[0].x()) * (p[2].y() - p[0].y()) - (p[1].y() - p[0].y()) * (p[2].x() - p[0].x());
       if (std::abs(twice) < 1e-12) continue;
       const auto range = [&](int axis, int size) {
-        const double low = std::min({p[0][axis], p[1][axis], p[2][axis]}), high = std::max({p[0][axis], p[1][axis], p[2][axis]});
-        return std::pair{std::max(0, static_cast<int>(std::floor(low - 0.5))), std::min(size - 1, static_cast<int>(std::ceil(high)))};
+        const double low = std::min({p[0][axis], p[1][axis], p[2][axis]}),
+                     high = std::max({p[0][axis], p[1][axis], p[2][axis]});
+        return std::pair{std::max(0, static_cast<int>(std::floor(low - 0.5))),
+                         std::min(size - 1, static_cast<int>(std::ceil(high)))};
       };
       const auto [left, right] = range(0, width);
       const auto [top, bottom] = range(1, height);
@@ -97,7 +111,10 @@ struct Frame {
 /// How much of the lamp reaches a point: a shadow map, softened over some of its pixels.
 class Shadow {
  public:
-  Shadow(const TriangleMesh& mesh, const Vec3& lamp, const Vec3& up) : camera_(-lamp, std::abs(lamp.normalized().dot(up)) > 0.99 ? Vec3(1, 0.1, 0) : up), frame_(fitted(mesh)) { frame_.draw(mesh, camera_); }
+  Shadow(const TriangleMesh& mesh, const Vec3& lamp, const Vec3& up)
+      : camera_(-lamp, std::abs(lamp.normalized().dot(up)) > 0.99 ? Vec3(1, 0.1, 0) : up), frame_(fitted(mesh)) {
+    frame_.draw(mesh, camera_);
+  }
   double lit(const Vec3& p) const {
     constexpr int reach = 4;
     const Vec3 q = camera_.see(p);
@@ -124,7 +141,8 @@ class Shadow {
       low = low.cwiseMin(q), high = high.cwiseMax(q);
     }
     const double scale = 1000 / std::max(high.x() - low.x(), high.y() - low.y());
-    return {static_cast<int>((high.x() - low.x()) * scale) + 2, static_cast<int>((high.y() - low.y()) * scale) + 2, scale, low.x(), high.y()};
+    return {static_cast<int>((high.x() - low.x()) * scale) + 2, static_cast<int>((high.y() - low.y()) * scale) + 2,
+            scale, low.x(), high.y()};
   }
   Camera camera_;
   Frame frame_;
@@ -133,23 +151,32 @@ class Shadow {
 class Shader {
  public:
   Shader(const Model& model, const RenderOptions& options)
-      : model_(model), options_(options), camera_(options.view_direction, options.view_up), lamp_((camera_.right * options.lamp.x() + camera_.up * options.lamp.y() + camera_.back * options.lamp.z()).normalized()),
-        frame_(fitted()), shadow_(model.mesh, lamp_, camera_.up), normals_(corner_normals(model.mesh, options.crease_deg)) {
+      : model_(model),
+        options_(options),
+        camera_(options.view_direction, options.view_up),
+        lamp_((camera_.right * options.lamp.x() + camera_.up * options.lamp.y() + camera_.back * options.lamp.z())
+                  .normalized()),
+        frame_(fitted()),
+        shadow_(model.mesh, lamp_, camera_.up),
+        normals_(corner_normals(model.mesh, options.crease_deg)) {
     if (!model.textures.empty()) texture_ = decode_png(model.textures[0].bytes);
     floor_ = model.mesh.V.col(1).minCoeff();
     frame_.draw(model.mesh, camera_);
   }
 
   RgbPicture picture() const {
-    RgbPicture result{options_.width, options_.height, std::vector<std::uint8_t>(3 * index(options_.width) * index(options_.height))};
+    RgbPicture result{options_.width, options_.height,
+                      std::vector<std::uint8_t>(3 * index(options_.width) * index(options_.height))};
     parallel_for(index(options_.height), 4, [&](std::size_t from, std::size_t to) {
       for (std::size_t j = from; j < to; ++j)
         for (int i = 0; i < options_.width; ++i) {
           Vec3 sum = Vec3::Zero();
           for (int y = 0; y < oversampling; ++y)
-            for (int x = 0; x < oversampling; ++x) sum += pixel(oversampling * i + x, oversampling * static_cast<int>(j) + y);
+            for (int x = 0; x < oversampling; ++x)
+              sum += pixel(oversampling * i + x, oversampling * static_cast<int>(j) + y);
           for (int c = 0; c < 3; ++c)
-            result.bytes[3 * (j * index(options_.width) + index(i)) + index(c)] = static_cast<std::uint8_t>(255 * std::clamp(srgb_of(sum[c] / (oversampling * oversampling)), 0.0, 1.0) + 0.5);
+            result.bytes[3 * (j * index(options_.width) + index(i)) + index(c)] = static_cast<std::uint8_t>(
+                255 * std::clamp(srgb_of(sum[c] / (oversampling * oversampling)), 0.0, 1.0) + 0.5);
         }
     });
     return result;
@@ -163,21 +190,28 @@ class Shader {
       low = low.cwiseMin(q), high = high.cwiseMax(q);
     }
     const int w = oversampling * options_.width, h = oversampling * options_.height;
-    const double scale = options_.millimetres_across > 0 ? w / options_.millimetres_across : 0.9 * std::min(w / (high.x() - low.x()), h / (high.y() - low.y()));
+    const double scale = options_.millimetres_across > 0
+                             ? w / options_.millimetres_across
+                             : 0.9 * std::min(w / (high.x() - low.x()), h / (high.y() - low.y()));
     return {w, h, scale, (low.x() + high.x()) / 2 - 0.5 * w / scale, (low.y() + high.y()) / 2 + 0.5 * h / scale};
   }
 
-  Vec3 place(int i, int j, double z) const { return camera_.right * (frame_.x0 + (i + 0.5) / frame_.scale) + camera_.up * (frame_.y0 - (j + 0.5) / frame_.scale) + camera_.back * z; }
+  Vec3 place(int i, int j, double z) const {
+    return camera_.right * (frame_.x0 + (i + 0.5) / frame_.scale) +
+           camera_.up * (frame_.y0 - (j + 0.5) / frame_.scale) + camera_.back * z;
+  }
 
   /// Share of the sky that the pixels around leave open.
   double open_sky(int i, int j, double z, double reach_mm) const {
     double closed = 0, all = 0;
     for (int k = 0; k < 48; ++k) {
       const double angle = 2.399963 * k, r = reach_mm * frame_.scale * std::sqrt((k + 0.5) / 48);
-      const int x = i + static_cast<int>(std::lround(r * std::cos(angle))), y = j + static_cast<int>(std::lround(r * std::sin(angle)));
+      const int x = i + static_cast<int>(std::lround(r * std::cos(angle))),
+                y = j + static_cast<int>(std::lround(r * std::sin(angle)));
       all += 1;
       if (x < 0 || y < 0 || x >= frame_.width || y >= frame_.height) continue;
-      const double rise = frame_.depth[index(y) * index(frame_.width) + index(x)] - z, run = std::max(1.0, r) / frame_.scale;
+      const double rise = frame_.depth[index(y) * index(frame_.width) + index(x)] - z,
+                   run = std::max(1.0, r) / frame_.scale;
       if (rise > 0.25 * run) closed += std::min(1.0, rise / run) * (rise < 3 * reach_mm ? 1.0 : 3 * reach_mm / rise);
     }
     return 1 - 0.8 * closed / all;
@@ -190,7 +224,9 @@ class Shader {
     if (!texture_.bytes.empty()) {
       Vec2 uv = Vec2::Zero();
       for (int k = 0; k < 3; ++k) uv += w[k] * model_.UV.row(model_.FT(f, k)).transpose();
-      const std::uint8_t* p = texture_.pixel(std::clamp(static_cast<int>(uv.x() * texture_.width), 0, texture_.width - 1), std::clamp(static_cast<int>((1 - uv.y()) * texture_.height), 0, texture_.height - 1));
+      const std::uint8_t* p =
+          texture_.pixel(std::clamp(static_cast<int>(uv.x() * texture_.width), 0, texture_.width - 1),
+                         std::clamp(static_cast<int>((1 - uv.y()) * texture_.height), 0, texture_.height - 1));
       return {linear_of(p[0] / 255.0), linear_of(p[1] / 255.0), linear_of(p[2] / 255.0)};
     }
     if (model_.vertex_colours.rows() == 0) return {0.62, 0.60, 0.56};
@@ -210,10 +246,12 @@ class Shader {
       return options_.background * (1 - 0.30 * (1 - shadow_.lit(p)));
     }
     const double s = frame_.u[at], t = frame_.v[at], z = frame_.depth[at];
-    const Vec3 normal = (normals_.row(3 * f) * (1 - s - t) + normals_.row(3 * f + 1) * s + normals_.row(3 * f + 2) * t).normalized();
+    const Vec3 normal =
+        (normals_.row(3 * f) * (1 - s - t) + normals_.row(3 * f + 1) * s + normals_.row(3 * f + 2) * t).normalized();
     const Vec3 p = place(i, j, z);
     const double facing = normal.dot(lamp_), key = facing > 0 ? facing * shadow_.lit(p + 0.3 * normal) : 0;
-    const double fill = 0.5 + 0.5 * normal.dot((camera_.up * 0.8 + camera_.right * 0.5 + camera_.back * 0.3).normalized());
+    const double fill =
+        0.5 + 0.5 * normal.dot((camera_.up * 0.8 + camera_.right * 0.5 + camera_.back * 0.3).normalized());
     const double sky = open_sky(i, j, z, 5) * open_sky(i, j, z, 1.5);
     const Vec3 half = (lamp_ + camera_.back).normalized();
     const double gloss = facing > 0 ? std::pow(std::max(0.0, normal.dot(half)), 40) * shadow_.lit(p) : 0;
@@ -243,7 +281,8 @@ void paste(RgbPicture& sheet, const RgbPicture& tile, int x, int y) {
 RgbPicture blank_picture(int width, int height, const Vec3& linear_colour) {
   RgbPicture picture{width, height, {}};
   for (std::size_t k = 0; k < index(width) * index(height); ++k)
-    for (int c = 0; c < 3; ++c) picture.bytes.push_back(static_cast<std::uint8_t>(255 * srgb_of(linear_colour[c]) + 0.5));
+    for (int c = 0; c < 3; ++c)
+      picture.bytes.push_back(static_cast<std::uint8_t>(255 * srgb_of(linear_colour[c]) + 0.5));
   return picture;
 }
 

@@ -90,7 +90,9 @@ TEST_P(Samples, AreEvenlyTriangulated) {
     std::sort(sorted.begin(), sorted.end());
     const double hundredth = sorted[sorted.size() / 100], median = sorted[sorted.size() / 2];
     if (std::getenv("FORMWRIGHT_SAMPLE_TABLE") != nullptr)
-      std::cout << "angles " << name() << ' ' << asked << ' ' << sorted[0] << ' ' << hundredth << ' ' << median << " genus " << (GetParam().closed ? genus(Adjacency(mesh)) : 0) << " area " << surface_area(mesh) << " volume " << signed_volume(mesh) << " size " << bounding_box(mesh).size().transpose() << "\n";
+      std::cout << "angles " << name() << ' ' << asked << ' ' << sorted[0] << ' ' << hundredth << ' ' << median
+                << " genus " << (GetParam().closed ? genus(Adjacency(mesh)) : 0) << " area " << surface_area(mesh)
+                << " volume " << signed_volume(mesh) << " size " << bounding_box(mesh).size().transpose() << "\n";
     // The octopus's arms are thinner than the triangles of a mesh of 500, which fold there.
     const bool coarse = asked < 1000;
     EXPECT_GT(sorted[0], coarse ? 1 : 18);
@@ -167,8 +169,10 @@ TEST_P(Samples, AreTheSameBitsOnEveryTarget) {
   // Natively and in WebAssembly, by g++ and clang. A change of a sample changes its line: look at it, then copy the
   // value that the failure shows.
   const std::map<std::string, std::string> expected{
-      {"bust", "df7ab1f3afa3"}, {"cat", "74b2e0014030"}, {"octopus", "07756fb3beea"}, {"mountain", "f5263713f1b5"}, {"fish", "bdb2b1048099"}, {"coin", "8034e93ba50d"},
-      {"star", "ecb61671a96e"}, {"heart", "15c20b41ee13"}, {"pyramid", "182616b06580"}, {"t_shape", "58e176917c71"}, {"hemisphere", "63417a549442"}, {"torus", "ef6d5e2fe23a"}};
+      {"bust", "df7ab1f3afa3"},     {"cat", "74b2e0014030"},        {"octopus", "07756fb3beea"},
+      {"mountain", "f5263713f1b5"}, {"fish", "bdb2b1048099"},       {"coin", "8034e93ba50d"},
+      {"star", "ecb61671a96e"},     {"heart", "15c20b41ee13"},      {"pyramid", "182616b06580"},
+      {"t_shape", "58e176917c71"},  {"hemisphere", "63417a549442"}, {"torus", "ef6d5e2fe23a"}};
   EXPECT_EQ(fingerprint(sample(name(), 3000)), expected.at(name()));
 }
 
@@ -180,8 +184,7 @@ TEST_P(Samples, AskForCancelOften) {
   std::atomic<Clock::rep> last{now()}, longest{0};
   const auto passed = [&] {
     const Clock::rep at = now(), stretch = at - last.exchange(at);
-    for (Clock::rep before = longest; stretch > before && !longest.compare_exchange_weak(before, stretch);) {
-    }
+    for (Clock::rep before = longest; stretch > before && !longest.compare_exchange_weak(before, stretch);) {}
   };
   Host host;
   host.cancel_requested = [&] {
@@ -211,7 +214,8 @@ TEST_P(Samples, AreLeftWhenCancelled) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Gallery, Samples, testing::ValuesIn(sample_catalog()), [](const auto& each) { return each.param.name; });
+INSTANTIATE_TEST_SUITE_P(Gallery, Samples, testing::ValuesIn(sample_catalog()),
+                         [](const auto& each) { return each.param.name; });
 
 TEST(SampleShapes, PyramidLiesOnItsPlanes) {
   // Four sides through the apex (0, 60, 0), the base through y = 0; to the last bit of 50 and 60 mm.
@@ -236,7 +240,9 @@ TEST(SampleShapes, TIsMadeOfBlocks) {
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     const Vec3 p = mesh.V.row(v);
     const double x = std::abs(p.x());
-    EXPECT_TRUE(std::abs(p.z()) == 15 || p.y() == 0 || p.y() == 100 || (p.y() == 70 && x >= 15) || (x == 15 && p.y() <= 70) || (x == 50 && p.y() >= 70)) << p.transpose();
+    EXPECT_TRUE(std::abs(p.z()) == 15 || p.y() == 0 || p.y() == 100 || (p.y() == 70 && x >= 15) ||
+                (x == 15 && p.y() <= 70) || (x == 50 && p.y() >= 70))
+        << p.transpose();
   }
 }
 

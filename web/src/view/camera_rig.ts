@@ -40,6 +40,8 @@ const DEFAULT_VIEWPOINT: Viewpoint = {
 
 /** Coasting fades with this time, ms. */
 const COAST_MS = 80;
+/** A flick turns on by 14 degrees at most; radians per ms. */
+const FASTEST_COAST = 0.003;
 const MOVE_MS = 360;
 const FIT_MARGIN_PX = 16;
 
@@ -151,8 +153,10 @@ export class CameraRig {
   }
 
   coast(azimuthRate: number, elevationRate: number): void {
-    if (prefersReducedMotion() || Math.hypot(azimuthRate, elevationRate) < 2e-4) return;
-    this.coasting = [azimuthRate, elevationRate];
+    const rate = Math.hypot(azimuthRate, elevationRate);
+    if (prefersReducedMotion() || rate < 2e-4) return;
+    const slower = Math.min(1, FASTEST_COAST / rate);
+    this.coasting = [slower * azimuthRate, slower * elevationRate];
     this.onChange();
   }
 
@@ -215,7 +219,9 @@ export class CameraRig {
       const keep = Math.exp(-elapsed / COAST_MS);
       const slow = Math.hypot(azimuth, elevation) * keep < 2e-5;
       this.coasting = slow ? null : [azimuth * keep, elevation * keep];
-      this.orbitBy(azimuth * elapsed, elevation * elapsed);
+      // The way covered while slowing down, right however long the frame took.
+      const run = COAST_MS * (1 - keep);
+      this.orbitBy(azimuth * run, elevation * run);
       return true;
     }
     const { moving } = this;

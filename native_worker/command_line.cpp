@@ -181,7 +181,8 @@ std::string operation_help(const Operation& operation) {
     text += entry(dashed(input.name) + " FILE", width, input.help + " (" + list + ")");
     if (input.accepts_sample) {
       std::string names;
-      for (const Json& sample : catalog_json()["samples"]) names += (names.empty() ? "" : ", ") + sample["name"].get<std::string>();
+      const Json catalog = catalog_json();
+      for (const Json& sample : catalog["samples"]) names += (names.empty() ? "" : ", ") + sample["name"].get<std::string>();
       text += entry("--sample NAME", width, "A built-in shape instead of a file: " + names + ".");
       text += entry("--sample-vertices N", width, "Its resolution.");
     }

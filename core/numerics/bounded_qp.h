@@ -43,7 +43,7 @@ struct EnumNames<QpMethod> {
 
 struct BoundedQpOptions {
   QpMethod method = QpMethod::automatic;
-  double violation_tolerance = 1e-9;  // in units of u, absolute: the largest violation of any constraint allowed
+  double violation_tolerance = 1e-9;  // in units of u, absolute: what rounds strive for; bounds hold exactly, see violation_max
   int max_rounds = 200;
 };
 

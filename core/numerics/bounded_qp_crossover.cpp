@@ -3,40 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "numerics/bounded_qp_base.h"
 
 namespace formwright::bounded_qp_detail {
 
 namespace {
 constexpr double sure = 1e4;  // (multiplier / typical multiplier) : (slack / typical slack) of a bound that surely holds
-constexpr double matters = 1e-9;      // of the largest force: a reaction that ties a part to its bound
-constexpr double round_off = 1e-11;  // of the largest force: a multiplier no smaller than minus this counts as zero
-bool by_index(RowKey a, RowKey b) { return a.index < b.index; }
+constexpr int stages_most = 60;
 }  // namespace
 
-std::vector<RowKey> add_base_reactions(const Energy& energy, const Rows& rows, std::span<const RowKey> base, ExchangeResult& result) {
-  const Eigen::VectorXd reaction = energy.apply(result.u) - result.force;
-  const double size = std::max(result.force.cwiseAbs().maxCoeff(), reaction.cwiseAbs().maxCoeff());
-  const auto in_pool = static_cast<Eigen::Index>(result.active.size());
-  result.multiplier.conservativeResize(in_pool + static_cast<Eigen::Index>(base.size()));
-  std::vector<RowKey> pulling;
-  for (std::size_t k = 0; k < base.size(); ++k) {
-    const RowKey key = base[k];
-    double push = key.side == Side::upper ? -reaction[key.index] : reaction[key.index];
-    if (!rows.equality(key)) {
-      if (push < -round_off * size) pulling.push_back(key);
-      push = std::max(0.0, push);
-    }
-    result.active.push_back(key);
-    result.multiplier[in_pool + static_cast<Eigen::Index>(k)] = push;
-    if (rows.equality(key) || push > matters * size) result.pushing.push_back(key);
-    rows.add_force(key, push, result.force);
-  }
-  std::sort(pulling.begin(), pulling.end(), by_index);
-  return pulling;
-}
-
 std::optional<ExchangeResult> crossover(Energy& energy, const Rows& rows, const InteriorPointResult& point, const ExchangeSettings& settings,
-                                        int& refactorisations, Context& context) {
+                                        Context& context) {
   // Far from the optimum slack and multiplier of a row have typical sizes; their product goes to zero along the path,
   // so that one of the two is far below its size.
   const BoundedQpConstraints& c = rows.constraints();
@@ -72,28 +51,7 @@ std::optional<ExchangeResult> crossover(Energy& energy, const Rows& rows, const 
     const auto r = static_cast<Eigen::Index>(k);
     place({Side::order, point.order[k]}, point.order_slack[r], point.order_force[r]);
   }
-  if (static_cast<int>(own.first.size()) > settings.most_active) return std::nullopt;
-
-  BoundedQpSeconds seconds;
-  for (;;) {
-    ExchangeSolver exchange(energy);
-    ExchangeResult result = exchange.solve(rows, base, own, context);
-    ++refactorisations;
-    seconds.factorise += result.seconds.factorise;
-    seconds.columns += result.seconds.columns;
-    seconds.pool += result.seconds.pool;
-    seconds.sweeps += result.seconds.sweeps;
-    if (result.stopped) return std::nullopt;
-    const std::vector<RowKey> held = result.active;
-    const std::vector<RowKey> pulling = add_base_reactions(energy, rows, base, result);
-    if (!pulling.empty()) {
-      own.first = held;
-      std::erase_if(base, [&](RowKey key) { return std::binary_search(pulling.begin(), pulling.end(), key, by_index); });
-      continue;
-    }
-    result.seconds = seconds;
-    return result;
-  }
+  return exchange_on_base(energy, rows, std::move(base), std::move(own), stages_most, context);
 }
 
 }  // namespace formwright::bounded_qp_detail

@@ -126,7 +126,9 @@ int break_ties(const Energy& energy, const Rows& rows, std::span<const RowKey> p
     }
     const Eigen::MatrixXd gram = Y.transpose() * Y;
     active.resize(pool.size(), 1);
-    const PoolSolution solution = PoolQp(gram, problem).solve(active, Eigen::VectorXd(), 0.1 * tolerance, context);
+    PoolQp qp;
+    qp.set_problem(gram, problem, false);
+    const PoolSolution solution = qp.solve(active, Eigen::VectorXd(), 0.1 * tolerance, context);
     if (solution.contradictory) {
       throw Error(ErrorCode::could_not_solve, "constraints", "The constraints contradict each other: no offset of the parts satisfies them all.");
     }

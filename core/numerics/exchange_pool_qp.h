@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/context.h"
+#include "numerics/exchange_pool_factor.h"
 
 namespace formwright::bounded_qp_detail {
 
@@ -39,8 +40,13 @@ struct PoolSolution {
 
 class PoolQp {
  public:
-  /// `gram`: S of all columns. Both must outlive the object.
-  PoolQp(Eigen::Ref<const Eigen::MatrixXd> gram, const PoolProblem& problem);
+  PoolQp();
+  PoolQp(const PoolQp&) = delete;
+  PoolQp& operator=(const PoolQp&) = delete;
+
+  /// The problem to solve next. `gram`: S of all columns; it must stay where it is until the next call. With
+  /// `grown`, the problem is the one before with rows added behind: what was factored of it is used again.
+  void set_problem(Eigen::Ref<const Eigen::MatrixXd> gram, PoolProblem problem, bool grown);
 
   /// `start`: active flags to begin with (rows), `w`: drivers to stay near, `tolerance`: on slack, in units of d.
   PoolSolution solve(const std::vector<char>& start, const Eigen::VectorXd& w, double tolerance, Context& context);
@@ -51,26 +57,23 @@ class PoolQp {
   std::pair<Eigen::VectorXd, Eigen::VectorXd> correct(const Eigen::VectorXd& slack_error, const Eigen::VectorXd& balance_error) const;
 
  private:
-  double gram(int a, int b) const;
-  void factor(const std::vector<char>& active);
-  void refactor(int from);
-  void solve_active();
-  void solve_factored(Eigen::VectorXd& f, const Eigen::VectorXd& balance, Eigen::VectorXd& w) const;
+  void gram(int b, std::span<const int> rows, double* out) const;
+  void solve_active(const std::vector<char>& active);
   double noise(const Eigen::VectorXd& s) const;
   Eigen::VectorXd slack() const;
   bool block_pivoting(double tolerance, Context& context);
   void lawson_hanson(double tolerance, Context& context);
 
-  Eigen::Ref<const Eigen::MatrixXd> gram_;
-  const PoolProblem& p_;
+  using Gram = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
+  Gram gram_{nullptr, 0, 0, Eigen::OuterStride<>(0)};
+  PoolProblem p_;
   Eigen::VectorXd augment_;            // per driver: S' = S + B diag(augment) B^T
   Eigen::VectorXd proximal_w_;         // per driver
   Eigen::VectorXd row_diagonal_;       // diagonal of S'
-  double proximal_y_ = 0;              // relative to row_diagonal_
+  Eigen::MatrixXd P_;                  // P + diag(proximal_w)
   Eigen::VectorXd centre_y_, centre_w_;
   std::vector<char> active_;
-  std::vector<int> order_;             // active rows in the order of the factor
-  Eigen::MatrixXd L_, V_;              // S'_AA + proximal = L L^T, V = L^-1 B_A
+  PoolFactor factor_;
   Eigen::VectorXd y_, w_;
   int pivots_ = 0;
 };

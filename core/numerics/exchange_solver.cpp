@@ -5,7 +5,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <string>
 
 #include "base/error.h"
@@ -14,6 +13,8 @@ namespace formwright::bounded_qp_detail {
 
 namespace {
 constexpr double target_violation = 1e-3;  // of the tolerance: what rounds strive for
+// Many rows that are new at once tell the pool's pivoting too little about which of them will hold.
+constexpr int least_batch = 300, batch_part = 4;
 constexpr int refinements = 3;             // at most, per round
 constexpr double force_tolerance = 1e-10;  // on Q u - forces, relative: above it a refinement is tried
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -49,7 +50,11 @@ void ExchangeSolver::start(const Rows& rows, const std::vector<RowKey>& base, Co
   std::vector<char> flags;
   if (!base.empty()) {
     flags.assign(at(n), 0);
-    for (const RowKey key : base) flags[at(key.index)] = 1;
+    guessed_.assign(at(n), 0);
+    for (const RowKey key : base) {
+      flags[at(key.index)] = 1;
+      guessed_[at(key.index)] = rows.equality(key) ? 0 : 1;
+    }
   }
   energy_.factorize_pinned(flags, context);
   constant_driver_.assign(at(energy_.component_count()), -1);
@@ -168,34 +173,34 @@ void ExchangeSolver::add_to_pool(const Rows& rows, std::span<const RowKey> keys,
   }
 }
 
-// The pool's rows, then the gauge. Every row reads g^T (offset + slope m + sum_k c_k 1_k + v) + slope m >= bound.
+// The gauge, then the pool's rows, so that new ones come last. Every row reads g^T (offset + slope m + sum_k c_k 1_k + v) + slope m >= bound.
 PoolProblem ExchangeSolver::pool_problem(const Rows& rows) const {
   const int groups = rows.groups(), drivers = static_cast<int>(drivers_.size()), constants = drivers - groups;
-  const auto pool = static_cast<Eigen::Index>(pool_.size()), k = pool + (gauge_column_ >= 0 ? 1 : 0);
+  const Eigen::Index first = gauge_rows(), k = first + static_cast<Eigen::Index>(pool_.size());
   PoolProblem p;
   p.B.setZero(k, drivers);
   p.d.setZero(k);
-  p.column = pool_column_;
   p.sign.assign(static_cast<std::size_t>(k), 1);
   p.equality.assign(static_cast<std::size_t>(k), 0);
   p.P.setZero(drivers, drivers);
   p.P.bottomRightCorner(groups, groups) = base_P_;
   p.r.setZero(drivers);
   p.r.tail(groups) = base_r_;
-  if (k > pool) {
+  if (first > 0) {
     p.column.push_back(gauge_column_);
-    p.equality.back() = 1;
+    p.equality[0] = 1;
     for (int i = 0; i < energy_.size(); ++i) {
       const int c = constant_driver_[at(energy_.component(i))];
-      if (c >= 0) p.B(pool, c) += gauge_[i];
+      if (c >= 0) p.B(0, c) += gauge_[i];
     }
     if (base_offset_.size() > 0) {
-      p.B.row(pool).tail(groups) = gauge_.transpose() * base_slope_;
-      p.d[pool] = -gauge_.dot(base_offset_);
+      p.B.row(0).tail(groups) = gauge_.transpose() * base_slope_;
+      p.d[0] = -gauge_.dot(base_offset_);
     }
   }
-  for (Eigen::Index j = 0; j < pool; ++j) {
-    const RowKey key = pool_[static_cast<std::size_t>(j)];
+  p.column.insert(p.column.end(), pool_column_.begin(), pool_column_.end());
+  for (Eigen::Index j = first; j < k; ++j) {
+    const RowKey key = pool_[static_cast<std::size_t>(j - first)];
     if (key.side == Side::upper) p.sign[static_cast<std::size_t>(j)] = -1;
     p.equality[static_cast<std::size_t>(j)] = rows.equality(key);
     p.B(j, constants + rows.group(key)) += rows.slope(key);
@@ -236,8 +241,9 @@ void ExchangeSolver::add_drivers(const Eigen::VectorXd& w, Eigen::VectorXd& u) c
 
 Eigen::VectorXd ExchangeSolver::forces(const Rows& rows, const PoolSolution& pool) const {
   Eigen::VectorXd f = Eigen::VectorXd::Zero(energy_.size());
-  for (std::size_t k = 0; k < pool_.size(); ++k) rows.add_force(pool_[k], pool.y[static_cast<Eigen::Index>(k)], f);
-  if (gauge_column_ >= 0) f += pool.y[pool.y.size() - 1] * gauge_;
+  const Eigen::Index first = gauge_rows();
+  for (std::size_t k = 0; k < pool_.size(); ++k) rows.add_force(pool_[k], pool.y[first + static_cast<Eigen::Index>(k)], f);
+  if (first > 0) f += pool.y[0] * gauge_;
   return f;
 }
 
@@ -248,6 +254,13 @@ double ExchangeSolver::force_residual(const Rows& rows, const PoolSolution& pool
     if (base_.empty() || !energy_.fixed(i)) worst = std::max(worst, std::abs(left[i]));
   }
   return worst / std::max(force.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
+}
+
+// Whether an order row moves with unknowns that are on their bound by guess, not by equality.
+bool ExchangeSolver::on_guess(const Rows& rows, RowKey key) const {
+  if (key.side != Side::order || base_.empty()) return false;
+  const auto& index = rows.constraints().rows[at(key.index)].index;
+  return std::any_of(index.begin(), index.end(), [&](int i) { return guessed_[at(i)] != 0; });
 }
 
 // One step of iterative refinement of the whole KKT system on the active set: the factor of Q is exact to round-off
@@ -264,7 +277,7 @@ void ExchangeSolver::refine(const Rows& rows, const PoolProblem& problem, const 
   const Eigen::VectorXd m = pool.w.tail(groups);
   Eigen::VectorXd slack_error(problem.rows());
   for (int a = 0; a < problem.rows(); ++a) {
-    const double error = at(a) < pool_.size() ? rows.deficit(pool_[at(a)], u, m) : -gauge_.dot(u);
+    const double error = a >= gauge_rows() ? rows.deficit(pool_[at(a - gauge_rows())], u, m) : -gauge_.dot(u);
     slack_error[a] = error - problem.sign[at(a)] * moved[problem.column[at(a)]];
   }
   const Eigen::VectorXd balance = problem.P * pool.w + problem.r - problem.B.transpose() * pool.y;
@@ -305,20 +318,22 @@ ExchangeResult ExchangeSolver::run(const Rows& rows, const std::vector<RowKey>& 
   result.m = drivers_.tail(groups);
   PoolProblem problem;
   PoolSolution pool;
-  std::optional<PoolQp> qp;
+  PoolQp qp;
+  bool grown = false;
   Rows::Violations violations;
   for (;; ++result.rounds) {
     const bool at_rest = result.rounds == 0 && pool_.empty() && base.empty();  // u = 0 is optimal for no constraints
     if (!at_rest) {
       problem = pool_problem(rows);
-      std::vector<char> start_active = active_;
-      start_active.resize(at(problem.rows()), 1);
-      qp.emplace(columns_.gram(), problem);
-      pool = qp->solve(start_active, drivers_, target, context);
+      std::vector<char> start_active(at(gauge_rows()), 1);
+      start_active.insert(start_active.end(), active_.begin(), active_.end());
+      qp.set_problem(columns_.gram(), problem, grown);
+      grown = true;
+      pool = qp.solve(start_active, drivers_, target, context);
       if (pool.contradictory) {
         throw Error(ErrorCode::could_not_solve, "constraints", "The constraints contradict each other: no displacement satisfies them all.");
       }
-      active_.assign(pool.active.begin(), pool.active.begin() + static_cast<std::ptrdiff_t>(pool_.size()));
+      active_.assign(pool.active.begin() + gauge_rows(), pool.active.end());
       drivers_ = pool.w;
       result.seconds.pool += watch.lap();
       result.u = columns_.combine(by_column(problem, pool.y));
@@ -332,6 +347,12 @@ ExchangeResult ExchangeSolver::run(const Rows& rows, const std::vector<RowKey>& 
       rows.evaluate(result.u, result.m, violations);
       keys = rows.worth_adding(violations, target);
       std::erase_if(keys, [&](RowKey key) { return std::find(pool_.begin(), pool_.end(), key) != pool_.end(); });
+      result.blocked.clear();
+      std::erase_if(keys, [&](RowKey key) {
+        if (!on_guess(rows, key)) return false;
+        result.blocked.push_back(key);
+        return true;
+      });
       if (at_rest || pass == refinements) break;
       // Round-off matters once it is all that is left to mend.
       double held = 0, left = 0;
@@ -341,15 +362,20 @@ ExchangeResult ExchangeSolver::run(const Rows& rows, const std::vector<RowKey>& 
       for (const RowKey key : keys) left = std::max(left, rows.violation(key, result.u, result.m));
       if (left > 10 * held) break;
       if (held <= 0.1 * settings.violation_tolerance && (!keys.empty() || force_residual(rows, pool, result.u) <= force_tolerance)) break;
-      refine(rows, problem, *qp, pool, result.u);
+      refine(rows, problem, qp, pool, result.u);
     }
     result.seconds.sweeps += watch.lap();
     result.history.push_back({violations.max, static_cast<int>(pool_.size()), static_cast<int>(std::count(active_.begin(), active_.end(), 1)), pool.pivots});
-    if (keys.empty()) break;
+    if (keys.empty()) {
+      result.stopped = !result.blocked.empty();
+      break;
+    }
     if (result.rounds >= settings.max_rounds || result.history.back().active > settings.most_active) {
       result.stopped = true;
       break;
     }
+    const int most_new = std::max(least_batch, result.history.back().active / batch_part);
+    if (static_cast<int>(keys.size()) > most_new) keys.resize(at(most_new));  // the worst first
     add_to_pool(rows, keys, context);
     result.seconds.columns += watch.lap();
     context.progress(static_cast<double>(result.rounds) / (result.rounds + 5), "Finding contacts");
@@ -362,11 +388,12 @@ ExchangeResult ExchangeSolver::run(const Rows& rows, const std::vector<RowKey>& 
   result.columns = columns_.count();
   std::vector<double> multiplier;
   for (std::size_t k = 0; k < pool_.size(); ++k) {
-    const double y = pool.y[static_cast<Eigen::Index>(k)];
+    const Eigen::Index row = gauge_rows() + static_cast<Eigen::Index>(k);
+    const double y = pool.y[row];
     if (y == 0 && !rows.equality(pool_[k])) continue;
     result.active.push_back(pool_[k]);
     multiplier.push_back(y);
-    if (std::abs(pool.push[static_cast<Eigen::Index>(k)]) > settings.violation_tolerance) result.pushing.push_back(pool_[k]);
+    if (std::abs(pool.push[row]) > settings.violation_tolerance) result.pushing.push_back(pool_[k]);
   }
   result.multiplier = Eigen::Map<const Eigen::VectorXd>(multiplier.data(), static_cast<Eigen::Index>(multiplier.size()));
   result.force = pool.y.size() > 0 ? forces(rows, pool) : Eigen::VectorXd::Zero(energy_.size());

@@ -32,6 +32,7 @@ struct ExchangeResult {
   double violation_max = 0;
   int rounds = 0, columns = 0, pivots = 0;
   bool stopped = false;  // violations are left
+  std::vector<RowKey> blocked;  // violated order rows on the base, which the exchange must not fight
   std::vector<BoundedQpRound> history;
   BoundedQpSeconds seconds;
 };
@@ -53,6 +54,8 @@ class ExchangeSolver {
   void start(const Rows& rows, const std::vector<RowKey>& base, Context& context);
   void add_to_pool(const Rows& rows, std::span<const RowKey> keys, Context& context);
   int& column_of(const Rows& rows, RowKey key);
+  bool on_guess(const Rows& rows, RowKey key) const;
+  int gauge_rows() const { return gauge_column_ >= 0 ? 1 : 0; }
   PoolProblem pool_problem(const Rows& rows) const;
   Eigen::VectorXd by_column(const PoolProblem& problem, const Eigen::VectorXd& y) const;
   void add_drivers(const Eigen::VectorXd& w, Eigen::VectorXd& u) const;
@@ -72,6 +75,7 @@ class ExchangeSolver {
   std::vector<char> active_;                                         // pool rows
   Eigen::VectorXd drivers_;                                          // free constants, then m
   std::vector<int> constant_driver_;                                 // component -> driver, or -1
+  std::vector<char> guessed_;  // unknowns of base rows that are no equalities; empty without a base
   std::vector<RowKey> base_;
   Eigen::VectorXd base_offset_;                                      // n, or empty: u with all drivers at zero
   Eigen::MatrixXd base_slope_;                                       // n x groups, or empty: du/dm

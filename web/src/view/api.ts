@@ -234,6 +234,8 @@ export interface ViewportApi {
   setRelief(mesh: MeshData | null, plate: Plate | null): void;
   /** New positions for the same triangles: for live sliders. Normals follow; shading and BVH catch up at rest. */
   updateOriginal(positions: Float32Array | Float64Array): void;
+  /** As `updateOriginal`, for positions that only grew or moved: what else is known of the mesh holds. */
+  rescaleOriginal(positions: Float32Array | Float64Array): void;
   updateRelief(positions: Float32Array | Float64Array, plate?: Plate | null): void;
   /** New values for an attribute without touching the shape. */
   updateAttribute(part: 'original' | 'relief', name: string, values: Float32Array): void;

@@ -56,7 +56,12 @@ export class Content {
     return first && mesh !== null;
   }
 
-  update(part: PartName, positions: Float32Array | Float64Array, plate?: Plate | null): void {
+  update(
+    part: PartName,
+    positions: Float32Array | Float64Array,
+    plate?: Plate | null,
+    similar = false,
+  ): void {
     const mesh = this.meshes[part];
     if (!mesh) return;
     if (positions.length !== mesh.positions.length) {
@@ -70,7 +75,7 @@ export class Content {
     }
     if (plate) this.plate = plate;
     this.meshes[part] = { ...mesh, positions };
-    this.stage.updatePositions(part, positions);
+    this.stage.updatePositions(part, positions, similar);
     this.refresh();
   }
 

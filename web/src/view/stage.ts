@@ -185,9 +185,10 @@ export class Stage {
     return made;
   }
 
-  updatePositions(name: PartName, positions: Float32Array | Float64Array): void {
+  /** `similar`: grown or moved, and otherwise the same. */
+  updatePositions(name: PartName, positions: Float32Array | Float64Array, similar = false): void {
     const part = this.parts[name];
-    part.mesh?.updatePositions(positions);
+    part.mesh?.updatePositions(positions, similar);
     part.subject.changed();
     this.sectionKey += '!';
   }

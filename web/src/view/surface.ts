@@ -66,8 +66,8 @@ export class Surface {
   /** Closed, and its triangles look outwards: nobody sees their backs until it is cut. */
   private readonly solid: boolean;
   private readonly shading: Shading;
-  /** Of the mesh as it was given: its vertices come first among those drawn. */
-  private readonly firstOutline: Uint32Array;
+  /** Of the mesh as it was given, until its shape changes: its vertices come first among those drawn. */
+  private knownOutline: Uint32Array | undefined;
   private readonly given: MeshData;
   private readonly drawn: Float32Array;
   private readonly bakeGeometry: THREE.BufferGeometry | null;
@@ -97,7 +97,7 @@ export class Surface {
     const found = mesh.shading ?? findShading(mesh.positions, mesh.indices);
     this.solid = found.outward;
     this.closed = found.closed;
-    this.firstOutline = found.outline;
+    this.knownOutline = found.outline;
     this.shading = mesh.normals
       ? { indices: mesh.indices, source: identity(this.vertexCount), normals: mesh.normals }
       : {
@@ -216,7 +216,7 @@ export class Surface {
     if (!this.outline || this.outline.version !== this.version) {
       this.outline = {
         version: this.version,
-        support: supportOf(this.drawn, this.version === 0 ? this.firstOutline : undefined),
+        support: supportOf(this.drawn, this.knownOutline),
       };
     }
     return this.outline.support;
@@ -230,11 +230,14 @@ export class Surface {
     return this.shading.indices;
   }
 
-  updatePositions(positions: Float32Array | Float64Array): void {
+  updatePositions(positions: Float32Array | Float64Array, similar: boolean): void {
     this.writePositions(positions);
-    updateNormals(this.shading, this.drawn, this.indices, this.faces);
     this.geometry.getAttribute('position').needsUpdate = true;
-    this.geometry.getAttribute('normal').needsUpdate = true;
+    if (!similar) {
+      updateNormals(this.shading, this.drawn, this.indices, this.faces);
+      this.geometry.getAttribute('normal').needsUpdate = true;
+      this.knownOutline = undefined;
+    }
     ++this.version;
   }
 

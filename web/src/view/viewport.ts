@@ -208,6 +208,11 @@ export class Viewport implements ViewportApi {
     this.shapeChanged(false);
   }
 
+  rescaleOriginal(positions: Float32Array | Float64Array): void {
+    this.content?.update('original', positions, undefined, true);
+    this.shapeChanged(false);
+  }
+
   updateRelief(positions: Float32Array | Float64Array, plate?: Plate | null): void {
     this.content?.update('relief', positions, plate);
     this.shapeChanged(false);

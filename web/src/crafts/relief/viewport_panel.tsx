@@ -173,7 +173,7 @@ function keepDrawn(
       (fits ? figure(shown.report, 'scale_mm_per_unit') : null) ??
       provisionalScale(original.mesh.positions, width);
     if (drawnOriginal?.from !== original.from) viewport.setOriginal(originalData(original.mesh, scale));
-    else if (drawnOriginal.scale !== scale) viewport.updateOriginal(scaled(original.mesh.positions, scale));
+    else if (drawnOriginal.scale !== scale) viewport.rescaleOriginal(scaled(original.mesh.positions, scale));
     drawnOriginal = { from: original.from, scale };
     if (!fits) {
       if (drawnRelief) viewport.setRelief(null, null);

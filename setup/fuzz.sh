@@ -29,7 +29,8 @@ statistic() { awk -v name="stat::$2:" '$1 == name { sum += $2 } END { print sum 
 status=0
 for name in "${targets[@]}"; do
   mkdir -p "$corpus/$name"
-  dictionary="tests/fuzz/dictionaries/$name.dict" log="$logs/$name.log" end=$((SECONDS + ${FUZZ_SECONDS:-60})) found=0
+  dictionary="tests/fuzz/dictionaries/$name.dict" log="$logs/$name.log" begin=$SECONDS found=0
+  end=$((begin + ${FUZZ_SECONDS:-60}))
   options=(-max_len=65536 -timeout=20 -rss_limit_mb=2048 -malloc_limit_mb=1024 -print_final_stats=1)
   [ ! -f "$dictionary" ] || options+=(-dict="$dictionary")
   : >"$log"
@@ -41,7 +42,7 @@ for name in "${targets[@]}"; do
     found=$((found + 1)) status=1
     grep -E '^SUMMARY|Test unit written' "$log" | tail -n 2 >&2
   done
-  printf '%s: %d s asked, %d executions, %d inputs kept, %d findings\n' "$name" "${FUZZ_SECONDS:-60}" \
+  printf '%s: %d s, %d executions, %d inputs kept, %d findings\n' "$name" $((SECONDS - begin)) \
     "$(statistic "$log" number_of_executed_units)" "$(find "$corpus/$name" -type f | wc -l)" "$found"
 done
 exit $status

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+import { useEffect } from 'preact/hooks';
 import type { Services } from '../crafts/common/services';
 import type { ReliefSession } from '../crafts/relief/relief_session';
+import { warmUp } from '../crafts/relief/warm_up';
 import { Button, formatCount, Icon } from '../ui';
 import { crafts, notYet } from './crafts';
 import { go } from './route';
@@ -26,6 +28,15 @@ function Picture({ name }: { name: string }) {
 
 export function StartPage({ services, session, onChooseFile }: StartPageProps) {
   const catalog = services.catalog.value;
+  useEffect(() => {
+    if (catalog === null) return undefined;
+    const abort = new AbortController();
+    const timer = setTimeout(() => void warmUp(services, abort.signal), 300);
+    return () => {
+      clearTimeout(timer);
+      abort.abort();
+    };
+  }, [catalog]);
   const open = (sample: string, title: string) => {
     go('relief');
     void services.projects.create().then(() => session.openSample(sample, title));

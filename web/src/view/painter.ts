@@ -8,7 +8,7 @@ const SHOWN_FROM = 8;
 
 export class Painter {
   private accumulation: Accumulation | null = null;
-  private unshown = false;
+  private unshown: 'average' | 'frame' | null = null;
 
   constructor(
     private readonly stage: Stage,
@@ -20,8 +20,7 @@ export class Painter {
     stage.renderer.info.reset();
     const aside = stage.quality.drawsAside ? this.aside() : null;
     stage.draw(picture, aside?.frame ?? null, canvas.width, canvas.height);
-    aside?.add(stage.renderer, 0);
-    this.unshown = aside !== null;
+    this.unshown = aside ? 'frame' : null;
     stage.pace.mark();
   }
 
@@ -29,8 +28,8 @@ export class Painter {
   present(): boolean {
     const { stage, accumulation } = this;
     if (!this.unshown || !accumulation) return false;
-    this.unshown = false;
-    accumulation.show(stage.renderer);
+    accumulation.show(stage.renderer, this.unshown);
+    this.unshown = null;
     stage.pace.mark();
     return true;
   }
@@ -42,8 +41,8 @@ export class Painter {
     stage.draw(picture, aside.frame, canvas.width, canvas.height, sample);
     aside.add(stage.renderer, sample);
     if (sample + 1 >= Math.min(SHOWN_FROM, stage.quality.stillSamples)) {
-      if (stage.quality.drawsAside) this.unshown = true;
-      else aside.show(stage.renderer);
+      if (stage.quality.drawsAside) this.unshown = 'average';
+      else aside.show(stage.renderer, 'average');
     }
     stage.pace.mark();
   }
@@ -61,6 +60,6 @@ export class Painter {
   dispose(): void {
     this.accumulation?.dispose();
     this.accumulation = null;
-    this.unshown = false;
+    this.unshown = null;
   }
 }

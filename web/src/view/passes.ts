@@ -99,10 +99,13 @@ export class Accumulation {
     ++this.count;
   }
 
-  /** Shows the average on the canvas. */
-  show(renderer: THREE.WebGLRenderer): void {
-    (this.showing.uniforms['uImage'] as THREE.IUniform).value = this.sum.texture;
-    (this.showing.uniforms['uWeight'] as THREE.IUniform).value = 1 / Math.max(1, this.count);
+  /** Shows the average, or the picture in `frame`, on the canvas. */
+  show(renderer: THREE.WebGLRenderer, what: 'average' | 'frame'): void {
+    const average = what === 'average';
+    (this.showing.uniforms['uImage'] as THREE.IUniform).value = average
+      ? this.sum.texture
+      : this.frame.texture;
+    (this.showing.uniforms['uWeight'] as THREE.IUniform).value = average ? 1 / Math.max(1, this.count) : 1;
     renderer.setViewport(0, 0, this.width, this.height);
     renderer.setScissorTest(false);
     this.pass(renderer, this.showing, null);

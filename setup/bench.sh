@@ -1,14 +1,17 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Builds natively and runs every benchmark program (build/**/bench_*).
+# Builds natively and for WebAssembly and runs every benchmark program (build/**/bench_*), then the relief's, which
+# compares both. DATA=FOLDER with bunny.obj and koala.obj adds these. Every benchmark prints JSON.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 cd "$FORMWRIGHT_ROOT"
-setup/build.sh native
+setup/build.sh native wasm
 mapfile -t programs < <(find build -type f -executable -name 'bench_*' | sort)
 [ ${#programs[@]} -gt 0 ] || fail "no benchmark was built" "name its CMake target bench_<what>"
 for program in "${programs[@]}"; do
   printf '\n=== %s\n' "${program##*/}"
   "$program" "$@"
 done
+printf '\n=== bench_relief\n'
+node tests/bench/relief/bench_relief.mjs build/formwright build-wasm/wasm/formwright.mjs ${DATA:+--data "$DATA"}

@@ -19,6 +19,7 @@ export class SideInset implements SideInsetApi {
   private running = false;
   private again = false;
   private disposed = false;
+  private readonly themeWatch = new MutationObserver(() => this.redraw());
 
   constructor(
     private readonly viewport: Viewport,
@@ -34,6 +35,7 @@ export class SideInset implements SideInsetApi {
     name.textContent = 'Side';
     caption.append(name, this.thickness);
     this.element.append(this.canvas, caption);
+    this.themeWatch.observe(document.documentElement, { attributes: true, attributeFilter: ['data-theme'] });
   }
 
   update(thicknessMm: number): void {
@@ -86,6 +88,7 @@ export class SideInset implements SideInsetApi {
 
   dispose(): void {
     this.disposed = true;
+    this.themeWatch.disconnect();
     clearTimeout(this.timer);
     this.element.remove();
   }

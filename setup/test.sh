@@ -64,6 +64,7 @@ stage() {  # name, runner or -, command...
   fi
 }
 
+run_stories() { FORMWRIGHT_BACKEND="$1" npm --prefix web run e2e; }
 run_ctest() { ctest --preset "$@" --parallel "${FORMWRIGHT_JOBS:-$(nproc)}"; }
 
 main() {
@@ -80,7 +81,8 @@ main() {
   stage 'page: lint' - npm --prefix web run lint
   stage 'page: unit tests' vitest npm --prefix web test
   stage 'page: build' - setup/build.sh web
-  # The browser stories (npm --prefix web run e2e) join once they have been seen to pass: issue still open.
+  stage 'browser tests, solving in the page' playwright run_stories wasm
+  stage 'browser tests, with the native worker' playwright run_stories native
   COMPLETE=yes
   echo
 }

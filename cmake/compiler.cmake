@@ -48,6 +48,8 @@ endif()
 
 option(FORMWRIGHT_SANITIZE "Address and undefined behaviour sanitizers" OFF)
 if(FORMWRIGHT_SANITIZE)
+  # Debug information without this folder's name: what ccache has serves every checkout.
+  add_compile_options(-fdebug-prefix-map=${CMAKE_SOURCE_DIR}=.)
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)
 endif()

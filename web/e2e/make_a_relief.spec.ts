@@ -31,6 +31,7 @@ test('a file, several thicknesses, and back to an earlier result', async ({ page
   await page.locator('input[type=file]').setInputFiles(fileOf('ball.obj', ballObj()));
   await expect(strip(page, 'Preview up to date')).toBeVisible();
   await expect(page.getByText('ball.obj')).toBeVisible();
+  await expect(page.locator('.model-picture')).toHaveAttribute('style', /blob:/);
   await solve(page);
   const thickness = page.getByRole('textbox', { name: 'Thickness' });
   const first = await thickness.inputValue();

@@ -3,7 +3,7 @@ import type { Signal } from '@preact/signals';
 import { effect, useSignal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
 import { Button, Sheet } from '../../ui';
-import type { Viewport } from '../../view';
+import type { Viewpoint, Viewport } from '../../view';
 import { exportMain, Inspector } from './inspector';
 import { viewpointOf } from './meshes';
 import { Notes } from './notes';
@@ -21,7 +21,8 @@ export interface ReliefPageProps {
 }
 
 const pictureSize = { width: 144, height: 112 };
-const threeQuarters = { direction: [-0.5, -0.34, -1], up: [0, 1, 0] } as const;
+type Look = Pick<Viewpoint, 'direction' | 'up'>;
+const threeQuarters: Look = { direction: [-0.5, -0.34, -1], up: [0, 1, 0] };
 
 export function ReliefPage({ session, onChooseFile, onWorkerHelp, onStart }: ReliefPageProps) {
   const viewport = useSignal<Viewport | null>(null);
@@ -96,6 +97,12 @@ function useKeys(session: ReliefSession, viewport: () => Viewport | null): void 
   }, [session]);
 }
 
+/** Once the viewport has been given what the session shows: that is another effect of the same change. */
+async function pictureOf(view: Viewport, part: 'original' | 'relief', look: Look): Promise<Blob | null> {
+  await Promise.resolve();
+  return await view.pictureOf(part, look, pictureSize.width, pictureSize.height);
+}
+
 /** Pictures are drawn by the viewport, with what it has on the graphics card already. */
 function useModelPicture(session: ReliefSession, viewport: Signal<Viewport | null>) {
   const url = useSignal<string | null>(null);
@@ -113,7 +120,7 @@ function useModelPicture(session: ReliefSession, viewport: Signal<Viewport | nul
       drawn = from;
       if (source.kind === 'sample') show(`pictures/${source.sample}.webp`);
       else
-        void view.pictureOf('original', threeQuarters, pictureSize.width, pictureSize.height).then(
+        void pictureOf(view, 'original', threeQuarters).then(
           (blob) => void (blob && drawn === from && show(URL.createObjectURL(blob))),
           () => undefined,
         );
@@ -134,7 +141,7 @@ function useResultPictures(session: ReliefSession, viewport: Signal<Viewport | n
       if (shown.report !== result.report) return;
       done.add(result.id);
       const look = viewpointOf(result.report, 20) ?? view.getViewpoint();
-      void view.pictureOf('relief', look, pictureSize.width, pictureSize.height).then(
+      void pictureOf(view, 'relief', look).then(
         (blob) => blob && session.keepPicture(result.id, blob),
         () => undefined,
       );

@@ -14,6 +14,8 @@ namespace formwright {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+// About 3.9 kB a vertex: 6 GB natively, and what fits into the 4 GB that WASM can have.
+constexpr int most_vertices = sizeof(void*) > 4 ? 1'500'000 : 600'000;
 
 struct SlabBounds {
   BoundedQpConstraints constraints;  // without rows
@@ -91,6 +93,11 @@ std::string ReliefSolver::key(const ReliefOptions& options) {
 }
 
 ReliefSolver::ReliefSolver(const TriangleMesh& mesh, const ReliefOptions& options, Context& context) : F_(mesh.F) {
+  if (mesh.vertex_count() > most_vertices) {
+    throw Error(ErrorCode::invalid_input, "mesh",
+                "The model has " + std::to_string(mesh.vertex_count()) + " vertices, and a relief is solved for at most " +
+                    std::to_string(most_vertices) + " here: simplify it first; 300000 show all that can be printed.");
+  }
   Stopwatch watch;
   context.progress(0, "Looking from the viewpoint");
   frame_ = make_view_frame(mesh, options);

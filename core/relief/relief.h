@@ -34,7 +34,7 @@ struct Relief {
 class ReliefSolver {
  public:
   /// `mesh`: manifold and oriented (repair it first), in any unit.
-  /// Throws Error: invalid_input (see make_view_frame; nothing visible), could_not_solve, cancelled, out_of_memory.
+  /// Throws Error: invalid_input (see make_view_frame; nothing visible; too many vertices), could_not_solve, cancelled, out_of_memory.
   ReliefSolver(const TriangleMesh& mesh, const ReliefOptions& options, Context& context);
 
   /// Options with equal keys share a solver.

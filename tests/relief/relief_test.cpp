@@ -129,9 +129,9 @@ TEST(Relief, TurningTheModelAndTheViewTogetherChangesNothing) {
 }
 
 TEST(Relief, BothSolversAgree) {
-  const TriangleMesh mesh = wavy_ball(4);
+  const TriangleMesh mesh = wavy_ball(3);
   for (const Projection projection : {Projection::perspective, Projection::orthographic})
-    for (const double thickness : {5.0, 1.0}) {
+    for (const double thickness : {5.0, 2.0}) {
       ReliefOptions options = slab(thickness, projection);
       options.method = QpMethod::exchange;
       const Relief exchange = solve(mesh, options);
@@ -180,6 +180,19 @@ TEST(Relief, RefusesWhatCannotBe) {
     FAIL() << "accepted";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::invalid_input);
+  }
+}
+
+TEST(Relief, RefusesMoreVerticesThanFitBeforeAnyWork) {
+  TriangleMesh mesh = wavy_ball(1);
+  mesh.V.conservativeResize(1'600'000, 3);
+  Context context;
+  try {
+    ReliefSolver(mesh, slab(5), context);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::invalid_input);
+    EXPECT_NE(std::string(error.what()).find("simplify it first"), std::string::npos) << error.what();
   }
 }
 

@@ -165,13 +165,12 @@ void PoolFactor::solve(const Eigen::VectorXd& f, const Eigen::VectorXd& balance,
   if (k > 0) L.solveInPlace(x);
   if (d + q > 0) {
     const auto V = V_.topRows(k);
-    const auto U = U_.topLeftCorner(k, q);
     z.head(d) = -balance;
     if (k > 0) z.head(d).noalias() += V.transpose() * x;
-    if (q > 0) z.tail(q).noalias() = U.transpose() * x;
+    if (q > 0) z.tail(q).noalias() = U_.topLeftCorner(k, q).transpose() * x;
     border_.solveInPlace(z);
     if (k > 0) x.noalias() -= V * z.head(d);
-    if (q > 0) x.noalias() -= U * z.tail(q);
+    if (q > 0) x.noalias() -= U_.topLeftCorner(k, q) * z.tail(q);
   }
   if (k > 0) L.transpose().solveInPlace(x);
   for (const int p : dropped_) x[p] = 0;

@@ -20,7 +20,6 @@ using namespace bounded_qp_detail;
 namespace {
 constexpr std::size_t many_equalities = 32;   // from here on they leave the factorisation instead of filling the pool
 constexpr int rounds_before_interior_point = 4;
-constexpr int most_active_in_pool = 6000;     // the pool's dense systems grow with the square of this
 constexpr int stages_before_interior_point = 40;
 constexpr int order_rounds = 20;
 constexpr double round_off_room = 1e3;        // of the tolerance, for order rows
@@ -88,7 +87,7 @@ BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve(const Rows& 
   ExchangeSettings settings;
   settings.violation_tolerance = options.violation_tolerance;
   settings.max_rounds = options.max_rounds;
-  if (options.method != QpMethod::interior_point) settings.most_active = most_active_in_pool;
+  if (options.method != QpMethod::interior_point) settings.most_active = options.most_active_in_pool;
   if (options.method == QpMethod::interior_point) settings.max_rounds = std::min(options.max_rounds, rounds_before_interior_point);
   settings.may_stop = true;
   Outcome outcome;
@@ -155,7 +154,7 @@ BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve_densely(cons
   ExchangeSettings exact;
   exact.violation_tolerance = options.violation_tolerance;
   exact.max_rounds = options.max_rounds;
-  exact.most_active = most_active_in_pool;
+  exact.most_active = options.most_active_in_pool;
   exact.may_stop = true;
   auto crossed = crossover(energy, rows, point, exact, context);
   if (!crossed) {

@@ -93,6 +93,17 @@ constexpr auto parameter(std::string_view name, T Options::*member, std::string_
   return Parameter<Options, T>{name, member, label, unit::none, 0, 0, help};
 }
 
+/// The parameters of a base class as parameters of `Derived`, to be joined with std::tuple_cat. The base must be the
+/// first one: g++ 12 forgets the offset when it converts other members at compile time.
+template <class Derived, class... Parameters>
+constexpr auto inherit_parameters(const std::tuple<Parameters...>& base) {
+  const auto lift = []<class Base, class T>(const Parameter<Base, T>& p) {
+    return Parameter<Derived, T>{p.name,   static_cast<T Derived::*>(p.member), p.label, p.unit_, p.minimum, p.maximum, p.help,
+                                 p.group_, p.advanced_, p.slider_minimum, p.slider_maximum};
+  };
+  return std::apply([&](const auto&... p) { return std::tuple{lift(p)...}; }, base);
+}
+
 // ---- values to and from JSON, with the parameter's name in every error ----
 namespace parameters_detail {
 

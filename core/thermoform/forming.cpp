@@ -144,12 +144,16 @@ void measure(const SheetDynamics& dynamics, const MouldContact& contact, const T
   result.point_contacts = static_cast<int>(dynamics.point_contacts().contacts().size());
 
   // How far vertices and sharp points got where they must not.
+  result.vertex_distance_min_mm = o.sheet_thickness_mm;
+  Eigen::Index movable = 0;
   for (Eigen::Index i = 0; i < n; ++i) {
     if (dynamics.sheet().clamped[static_cast<std::size_t>(i)]) continue;
-    const double half = 0.5 * sheet.thickness_mm[i];
-    const double clear = std::min(x(i, 2), contact.distance_mm(x.row(i).transpose(), half + 1).value_or(half + 1));
-    result.vertex_penetration_mm = std::max(result.vertex_penetration_mm, half - clear);
+    ++movable;
+    const double so_far = result.vertex_distance_min_mm;
+    result.vertex_distance_min_mm = std::min({so_far, x(i, 2), contact.distance_mm(x.row(i).transpose(), so_far).value_or(so_far)});
   }
+  result.touching_share = movable > 0 ? 1 - static_cast<double>(dynamics.free_count()) / static_cast<double>(movable) : 1;
+  result.mean_thickness_mm = volume / (result.formed_area_mm2 + result.unformed_area_mm2);
   if (dynamics.point_contacts().point_count() > 0) {
     const PointDistance surface(sheet.mesh);
     for (const Vec3& p : dynamics.point_contacts().points()) {

@@ -36,7 +36,9 @@ struct FormedResult {
   double least_thickness_mm = 0;         // of the faces
   double formed_area_mm2 = 0, unformed_area_mm2 = 0;  // of the final sheet: faces with a corner that never touched
   double mould_edge_penetration_mm = 0;  // deepest sharp point of the mould beyond the sheet's inner face
-  double vertex_penetration_mm = 0;      // deepest vertex within half a thickness of the mould
+  double vertex_distance_min_mm = 0;     // smallest of the free and stuck vertices from mould and plate; above 0
+  double touching_share = 0;             // of the vertices that are free to move
+  double mean_thickness_mm = 0;          // over the sheet within the opening
   double webbing_area_mm2 = 0;           // of faces squeezed by more than a tenth in some direction
   double elastic_energy_mj = 0;
   DynamicsStatistics statistics;

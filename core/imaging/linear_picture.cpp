@@ -43,7 +43,7 @@ LinearPicture::LinearPicture(const Image& image, bool repeat, const Context& con
   parallel_for(image.pixels.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
     context.check_cancelled();
     for (std::size_t i = begin; i < end; ++i)
-      for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t k = 0; k < 3; ++k)  // the fourth stays 0
         first.texels[i][k] = static_cast<std::uint16_t>((light[image.pixels[i][k]] * std::uint32_t{image.pixels[i][3]} + 65535u * (255u - image.pixels[i][3]) + 127u) / 255u);
   });
   while (levels_.back().width > 1 || levels_.back().height > 1) levels_.push_back(halved(levels_.back(), context));
@@ -64,10 +64,9 @@ LinearPicture::Level LinearPicture::halved(const Level& fine, const Context& con
           for (int i = 0; i < columns[x].count; ++i) {
             const float weight = rows[y].weight[static_cast<std::size_t>(j)] * columns[x].weight[static_cast<std::size_t>(i)];
             const auto& texel = fine.texels[static_cast<std::size_t>(rows[y].first + j) * static_cast<std::size_t>(fine.width) + static_cast<std::size_t>(columns[x].first + i)];
-            for (std::size_t k = 0; k < 3; ++k) sum[k] += weight * texel[k];
+            sum += weight * __builtin_convertvector(texel, Float4);
           }
-        for (std::size_t k = 0; k < 3; ++k)
-          coarse.texels[y * columns.size() + x][k] = static_cast<std::uint16_t>(std::clamp(sum[k] + 0.5f, 0.0f, 65535.0f));
+        coarse.texels[y * columns.size() + x] = __builtin_convertvector(lesser(sum + 0.5f, Float4{} + 65535.0f), Texel);
       }
   });
   return coarse;
@@ -108,13 +107,10 @@ Light LinearPicture::bilinear(const Level& level, const Vec2& place) const {
   const std::size_t x0 = wrapped(left, level.width), x1 = wrapped(left + 1, level.width);
   const std::size_t row0 = wrapped(top, level.height) * static_cast<std::size_t>(level.width), row1 = wrapped(top + 1, level.height) * static_cast<std::size_t>(level.width);
   const auto fx = static_cast<float>(x - left), fy = static_cast<float>(y - top);
-  Light result;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const float upper = static_cast<float>(level.texels[row0 + x0][k]) * (1 - fx) + static_cast<float>(level.texels[row0 + x1][k]) * fx;
-    const float lower = static_cast<float>(level.texels[row1 + x0][k]) * (1 - fx) + static_cast<float>(level.texels[row1 + x1][k]) * fx;
-    result[k] = upper * (1 - fy) + lower * fy;
-  }
-  return result;
+  const auto texel = [&](std::size_t i) { return __builtin_convertvector(level.texels[i], Float4); };
+  const Float4 upper = texel(row0 + x0) * (1 - fx) + texel(row0 + x1) * fx;
+  const Float4 lower = texel(row1 + x0) * (1 - fx) + texel(row1 + x1) * fx;
+  return upper * (1 - fy) + lower * fy;
 }
 
 Light LinearPicture::sample(const Vec2& place, const Footprint& footprint) const {
@@ -124,13 +120,11 @@ Light LinearPicture::sample(const Vec2& place, const Footprint& footprint) const
     const Vec2 at = place + (i - 0.5 * (footprint.probes - 1)) * footprint.step;
     Light light = bilinear(levels_[level], at);
     if (footprint.blend > 0 && level + 1 < levels_.size()) {
-      const Light coarser = bilinear(levels_[level + 1], at);
-      for (std::size_t k = 0; k < 3; ++k) light[k] += footprint.blend * (coarser[k] - light[k]);
+      light += footprint.blend * (bilinear(levels_[level + 1], at) - light);
     }
-    for (std::size_t k = 0; k < 3; ++k) sum[k] += light[k];
+    sum += light;
   }
-  for (float& channel : sum) channel /= static_cast<float>(footprint.probes);
-  return sum;
+  return sum / static_cast<float>(footprint.probes);
 }
 
 }  // namespace formwright

@@ -2,15 +2,15 @@
 #pragma once
 // A texture in linear light with its mip levels, filtered over the area that a printed dot covers.
 // Williams 1983 (pyramid); McCormack, Perry, Farkas, Jouppi 1999 "Feline" (probes along the footprint's longer axis).
-#include <array>
 #include <vector>
 
-#include "imaging/image.h"
+#include "geometry/lanes.h"
 #include "geometry/triangle_mesh.h"
+#include "imaging/image.h"
 
 namespace formwright {
 
-using Light = std::array<float, 3>;  // linear RGB, 0 to 65535 (light.h)
+using Light = Float4;  // linear RGB, 0 to 65535 (light.h); the fourth is not used
 
 class LinearPicture {
  public:
@@ -33,9 +33,10 @@ class LinearPicture {
   Light sample(const Vec2& place, const Footprint& footprint) const;
 
  private:
+  using Texel = std::uint16_t __attribute__((vector_size(8)));
   struct Level {
     int width = 0, height = 0;
-    std::vector<std::array<std::uint16_t, 4>> texels;
+    std::vector<Texel> texels;
   };
   static Level halved(const Level& fine, const Context& context);
   Light bilinear(const Level& level, const Vec2& place) const;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thermoform/print/model_colours.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -15,7 +16,7 @@ constexpr double line_share = 0.08;  // of the distance between two contours, ha
 const Vec3 paper(1, 1, 1), ink(0.02, 0.02, 0.02), checker_light(0.86, 0.78, 0.55), checker_dark(0.05, 0.12, 0.35);
 
 Light light_of(const Vec3& unit) {
-  Light light;
+  Light light{};
   for (std::size_t k = 0; k < 3; ++k) light[k] = static_cast<float>(std::clamp(unit[static_cast<Eigen::Index>(k)], 0.0, 1.0) * light_levels);
   return light;
 }
@@ -74,9 +75,21 @@ const LinearPicture* ModelColours::picture_of(int face) const {
   return texture < 0 ? nullptr : pictures_[static_cast<std::size_t>(texture)].get();
 }
 
+bool continues(const FaceColour& a, const FaceColour& b, const Vec2& place) {
+  if (a.picture == nullptr || a.picture != b.picture || a.factor != b.factor) return false;
+  const Vec2 apart = (a.at(place) - b.at(place)).head<2>().cwiseProduct(Vec2(a.picture->width(), a.picture->height()));
+  return apart.squaredNorm() < 0.25 * std::ldexp(1.0, 2 * a.footprint.level);
+}
+
 FaceColour ModelColours::face(const RefinedSurface& surface, std::size_t f, const std::array<Vec2, 3>& pixels) const {
   const int old = surface.face_of[f];
-  const auto at_corners = [&](const auto& rows, const auto& indices) {
+  FaceColour result;
+  result.pixel = pixels[0];
+  Eigen::Matrix2d dots;
+  for (int k = 0; k < 2; ++k) dots.col(k) = pixels[static_cast<std::size_t>(k) + 1] - pixels[0];
+  const bool is_line = !(std::abs(dots.determinant()) > 1e-9);
+  const Eigen::Matrix2d per_dot = is_line ? Eigen::Matrix2d::Zero().eval() : dots.inverse().eval();
+  const auto vary = [&](const auto& rows, const auto& indices) {
     std::array<Vec3, 3> corner;
     for (std::size_t k = 0; k < 3; ++k) {
       const double b = static_cast<double>(surface.place[f][k].x()), c = static_cast<double>(surface.place[f][k].y());
@@ -84,12 +97,14 @@ FaceColour ModelColours::face(const RefinedSurface& surface, std::size_t f, cons
       corner[k].setZero();
       corner[k].head(value.size()) = value.transpose();
     }
-    return corner;
+    Eigen::Matrix<double, 3, 2> sides;
+    for (int k = 0; k < 2; ++k) sides.col(k) = corner[static_cast<std::size_t>(k) + 1] - corner[0];
+    result.value = is_line ? Vec3((corner[0] + corner[1] + corner[2]) / 3) : corner[0];
+    result.per_pixel = sides * per_dot;
   };
-  FaceColour result;
   if (kind_ == PrintColours::checker || kind_ == PrintColours::contours) {
     result.kind = kind_ == PrintColours::checker ? FaceColour::Kind::checker : FaceColour::Kind::contours;
-    result.corner = at_corners(placed_.V, placed_.F);
+    vary(placed_.V, placed_.F);
     return result;
   }
   const int material = model_.face_material.empty() ? -1 : model_.face_material[static_cast<std::size_t>(old)];
@@ -98,35 +113,29 @@ FaceColour ModelColours::face(const RefinedSurface& surface, std::size_t f, cons
     if (const LinearPicture* const picture = picture_of(old)) {
       result.kind = FaceColour::Kind::picture;
       result.picture = picture;
-      result.factor = own_ ? Vec3(paper) : diffuse;
-      result.corner = at_corners(model_.UV, model_.FT);
-      for (Vec3& corner : result.corner) corner.y() = 1 - corner.y();
-      Eigen::Matrix2d texels, dots;
-      for (int k = 0; k < 2; ++k) {
-        const auto next = static_cast<std::size_t>(k + 1);
-        texels.col(k) = (result.corner[next] - result.corner[0]).head<2>().cwiseProduct(Vec2(picture->width(), picture->height()));
-        dots.col(k) = pixels[next] - pixels[0];
-      }
-      result.footprint = picture->footprint(texels * dots.inverse());
+      result.factor = own_ ? Vec3(paper) : Vec3(diffuse.cwiseMax(0).cwiseMin(1));
+      vary(model_.UV, model_.FT);
+      result.value.y() = 1 - result.value.y();
+      result.per_pixel.row(1) *= -1;
+      result.footprint = picture->footprint(Vec2(picture->width(), picture->height()).asDiagonal() * result.per_pixel.topRows<2>());
       return result;
     }
+  result.per_pixel.setZero();
   if (kind_ != PrintColours::material_colours && model_.vertex_colours.rows() > 0) {
     result.kind = FaceColour::Kind::interpolated;
-    result.corner = at_corners(model_.vertex_colours, model_.mesh.F);
+    vary(model_.vertex_colours, model_.mesh.F);
     return result;
   }
-  result.corner.fill(diffuse);
+  result.value = diffuse;
   return result;
 }
 
-Light ModelColours::colour(const FaceColour& face, const Vec3& barycentric) const {
-  if (face.kind == FaceColour::Kind::flat) return light_of(face.corner[0]);
-  const Vec3 value = barycentric[0] * face.corner[0] + barycentric[1] * face.corner[1] + barycentric[2] * face.corner[2];
+Light ModelColours::colour(const FaceColour& face, const Vec2& place) const {
+  const Vec3 value = face.at(place);
   switch (face.kind) {
     case FaceColour::Kind::picture: {
-      Light light = face.picture->sample(value.head<2>(), face.footprint);
-      for (std::size_t k = 0; k < 3; ++k) light[k] *= static_cast<float>(std::clamp(face.factor[static_cast<Eigen::Index>(k)], 0.0, 1.0));
-      return light;
+      const Light factor{static_cast<float>(face.factor[0]), static_cast<float>(face.factor[1]), static_cast<float>(face.factor[2]), 0};
+      return face.picture->sample(value.head<2>(), face.footprint) * factor;
     }
     case FaceColour::Kind::checker: {
       double sum = 0;

@@ -12,14 +12,22 @@
 
 namespace formwright {
 
-/// A face of the refined surface, made ready to be coloured: what it is coloured by, at its three corners.
+/// A face of the refined surface, made ready to be coloured at places of the print: what colours it varies linearly there.
 struct FaceColour {
   enum class Kind { flat, interpolated, picture, checker, contours } kind = Kind::flat;
-  std::array<Vec3, 3> corner;             // linear RGB 0 to 1; texture place (u right, v down); position in mm
+  Vec3 value;                             // at `pixel`: linear RGB 0 to 1; texture place (u right, v down); position in mm
+  Vec2 pixel;
+  Eigen::Matrix<double, 3, 2> per_pixel;  // its change; 0 for a face that is only a line in the print
   Vec3 factor{1, 1, 1};                   // of a picture
   const LinearPicture* picture = nullptr;
   LinearPicture::Footprint footprint;
+
+  Vec3 at(const Vec2& place) const { return value + per_pixel * (place - pixel); }
+  bool has_edges_within() const { return kind == Kind::checker || kind == Kind::contours; }
 };
+
+/// Both show the same picture, and `place` (in pixels) at the same place of it within half a dot.
+bool continues(const FaceColour& a, const FaceColour& b, const Vec2& place);
 
 class ModelColours {
  public:
@@ -36,8 +44,8 @@ class ModelColours {
   /// Face `f` of the refined surface. `pixels`: its corners in the print, in pixels.
   FaceColour face(const RefinedSurface& surface, std::size_t f, const std::array<Vec2, 3>& pixels) const;
 
-  /// At barycentric coordinates within such a face.
-  Light colour(const FaceColour& face, const Vec3& barycentric) const;
+  /// At a place of the print, in pixels, that such a face covers.
+  Light colour(const FaceColour& face, const Vec2& place) const;
 
  private:
   void load_pictures(const std::optional<Image>& own_picture, Context& context);

@@ -22,67 +22,58 @@ using Whole = Eigen::Matrix<std::int64_t, 2, 1>;
 /// Twice the signed area of a, b, p.
 std::int64_t area(const Whole& a, const Whole& b, const Whole& p) { return (b.x() - a.x()) * (p.y() - a.y()) - (b.y() - a.y()) * (p.x() - a.x()); }
 
-/// One band of rows, with every point's colour and distance to the sheet.
+/// One band of rows: which face shows at every point, and how far it is from the sheet. Colours come last, where they show.
 class Band {
  public:
   Band(const PrintGrid& grid, int first_row, int left, int right)
       : first_row_(first_row), last_row_(std::min(grid.height, first_row + band_rows)), left_(left), columns_(right - left) {
     const auto points = static_cast<std::size_t>(columns_) * sides * static_cast<std::size_t>(last_row_ - first_row_) * sides;
     gap_.assign(points, std::numeric_limits<float>::infinity());
-    light_.resize(points);
+    face_.assign(points, -1);
   }
 
-  void draw(const std::array<Vec2, 3>& pixels, const std::array<double, 3>& gap_mm, const ModelColours& colours, const FaceColour& face) {
+  void draw(int face, const std::array<Vec2, 3>& pixels, const std::array<double, 3>& gap_mm) {
     std::array<Whole, 3> p;
     for (std::size_t k = 0; k < 3; ++k) p[k] = Whole(std::llround(pixels[k].x() * sides * fraction), std::llround(pixels[k].y() * sides * fraction));
-    std::int64_t whole = area(p[0], p[1], p[2]);
-    if (whole == 0) return;
-    const std::int64_t sign = whole < 0 ? -1 : 1;
-    const double scale = 1.0 / static_cast<double>(whole);
-    const auto low = [](std::int64_t value) { return static_cast<int>(std::floor(static_cast<double>(value) / (sides * fraction))); };
-    const int y0 = std::max(first_row_, low(std::min({p[0].y(), p[1].y(), p[2].y()}))), y1 = std::min(last_row_ - 1, low(std::max({p[0].y(), p[1].y(), p[2].y()})));
-    const int x0 = std::max(left_, low(std::min({p[0].x(), p[1].x(), p[2].x()}))), x1 = std::min(left_ + columns_ - 1, low(std::max({p[0].x(), p[1].x(), p[2].x()})));
-    const bool each_point = face.kind == FaceColour::Kind::checker || face.kind == FaceColour::Kind::contours;  // hard edges within
-    for (int y = y0; y <= y1; ++y)
-      for (int x = x0; x <= x1; ++x) {
-        std::array<std::size_t, sides * sides> won{};
-        std::array<Vec3, sides * sides> where;
-        int count = 0;
-        for (int v = 0; v < sides; ++v)
-          for (int u = 0; u < sides; ++u) {
-            const Whole q((x * sides + u) * fraction + fraction / 2, (y * sides + v) * fraction + fraction / 2);
-            const std::int64_t a = area(p[1], p[2], q), b = area(p[2], p[0], q), c = whole - a - b;
-            if (a * sign < 0 || b * sign < 0 || c * sign < 0) continue;
-            const Vec3 weight(static_cast<double>(a) * scale, static_cast<double>(b) * scale, static_cast<double>(c) * scale);
-            const auto gap = static_cast<float>(weight[0] * gap_mm[0] + weight[1] * gap_mm[1] + weight[2] * gap_mm[2]);
-            const std::size_t i = point(x, y, u, v);
-            if (!(gap < gap_[i])) continue;
-            gap_[i] = gap;
-            where[static_cast<std::size_t>(count)] = weight;
-            won[static_cast<std::size_t>(count++)] = i;
-          }
-        if (count == 0) continue;
-        Vec3 mean = Vec3::Zero();
-        for (int i = 0; i < count; ++i) mean += where[static_cast<std::size_t>(i)] / count;
-        Light light{};
-        if (!each_point) light = colours.colour(face, mean);
-        for (int i = 0; i < count; ++i) light_[won[static_cast<std::size_t>(i)]] = each_point ? colours.colour(face, where[static_cast<std::size_t>(i)]) : light;
-      }
+    if (area(p[0], p[1], p[2]) < 0) {
+      std::swap(p[1], p[2]);
+      draw_positive(face, p, {gap_mm[0], gap_mm[2], gap_mm[1]});
+    } else {
+      draw_positive(face, p, gap_mm);
+    }
   }
 
-  void resolve(Image& image) const {
+  void colour(const ModelColours& colours, const std::vector<FaceColour>& faces, Image& image) const {
     const auto& byte = byte_of_light();
     for (int y = first_row_; y < last_row_; ++y)
       for (int x = left_; x < left_ + columns_; ++x) {
+        const std::size_t upper = point(x * sides, y * sides), lower = point(x * sides, y * sides + 1);
+        const std::array<std::int32_t, 4> shown{face_[upper], face_[upper + 1], face_[lower], face_[lower + 1]};
         Light sum{};
         int count = 0;
-        for (int v = 0; v < sides; ++v)
-          for (int u = 0; u < sides; ++u) {
-            const std::size_t i = point(x, y, u, v);
-            if (std::isinf(gap_[i])) continue;
+        std::array<bool, 4> done{};
+        for (std::size_t i = 0; i < 4; ++i) {
+          if (shown[i] < 0 || done[i]) continue;
+          const FaceColour& face = faces[static_cast<std::size_t>(shown[i])];
+          if (face.has_edges_within()) {
+            sum += colours.colour(face, place(x, y, i));
             ++count;
-            for (std::size_t k = 0; k < 3; ++k) sum[k] += light_[i][k];
+            continue;
           }
+          // Points of the same face, and of faces on which the same picture goes on, take one colour, at their middle.
+          Vec2 middle = Vec2::Zero();
+          int together = 0;
+          for (std::size_t j = i; j < 4; ++j) {
+            if (shown[j] < 0 || done[j]) continue;
+            const Vec2 at = place(x, y, j);
+            if (shown[j] != shown[i] && !continues(face, faces[static_cast<std::size_t>(shown[j])], at)) continue;
+            done[j] = true;
+            middle += at;
+            ++together;
+          }
+          sum += static_cast<float>(together) * colours.colour(face, middle / together);
+          count += together;
+        }
         if (count == 0) continue;
         Rgba& pixel = image.at(x, y);
         for (std::size_t k = 0; k < 3; ++k) pixel[k] = byte[static_cast<std::size_t>(std::clamp(sum[k] / static_cast<float>(count) + 0.5f, 0.0f, 65535.0f))];
@@ -91,14 +82,46 @@ class Band {
   }
 
  private:
-  std::size_t point(int x, int y, int u, int v) const {
-    return (static_cast<std::size_t>(y - first_row_) * sides + static_cast<std::size_t>(v)) * static_cast<std::size_t>(columns_) * sides +
-           static_cast<std::size_t>(x - left_) * sides + static_cast<std::size_t>(u);
+  static_assert(sides == 2, "colour() takes four points a pixel");
+
+  std::size_t point(int u, int v) const {
+    return static_cast<std::size_t>(v - first_row_ * sides) * static_cast<std::size_t>(columns_) * sides + static_cast<std::size_t>(u - left_ * sides);
+  }
+  static Vec2 place(int x, int y, std::size_t i) { return {x + (i % 2 == 0 ? 0.25 : 0.75), y + (i / 2 == 0 ? 0.25 : 0.75)}; }
+
+  /// Points (in rows of points) whose middles lie within, edges included: what two faces share goes to the nearer one
+  /// and then to the first.
+  void draw_positive(int face, const std::array<Whole, 3>& p, const std::array<double, 3>& gap_mm) {
+    const std::int64_t whole = area(p[0], p[1], p[2]);
+    if (whole == 0) return;
+    // First and last point whose middle, (i + 1/2) * fraction, is not outside.
+    const auto first = [](std::int64_t low) { return (low + fraction / 2 - 1) >> 8; };
+    const auto last = [](std::int64_t high) { return (high - fraction / 2) >> 8; };
+    static_assert(fraction == 1 << 8);
+    const std::int64_t v0 = std::max<std::int64_t>(first_row_ * sides, first(std::min({p[0].y(), p[1].y(), p[2].y()})));
+    const std::int64_t v1 = std::min<std::int64_t>(last_row_ * sides - 1, last(std::max({p[0].y(), p[1].y(), p[2].y()})));
+    const std::int64_t u0 = std::max<std::int64_t>(left_ * sides, first(std::min({p[0].x(), p[1].x(), p[2].x()})));
+    const std::int64_t u1 = std::min<std::int64_t>((left_ + columns_) * sides - 1, last(std::max({p[0].x(), p[1].x(), p[2].x()})));
+    const double scale = 1.0 / static_cast<double>(whole);
+    const std::int64_t step_a = -(p[2].y() - p[1].y()) * fraction, step_b = -(p[0].y() - p[2].y()) * fraction;
+    for (std::int64_t v = v0; v <= v1; ++v) {
+      const Whole q(u0 * fraction + fraction / 2, v * fraction + fraction / 2);
+      std::int64_t a = area(p[1], p[2], q), b = area(p[2], p[0], q);
+      std::size_t i = point(static_cast<int>(u0), static_cast<int>(v));
+      for (std::int64_t u = u0; u <= u1; ++u, ++i, a += step_a, b += step_b) {
+        const std::int64_t c = whole - a - b;
+        if ((a | b | c) < 0) continue;
+        const auto gap = static_cast<float>((static_cast<double>(a) * gap_mm[0] + static_cast<double>(b) * gap_mm[1] + static_cast<double>(c) * gap_mm[2]) * scale);
+        if (!(gap < gap_[i])) continue;
+        gap_[i] = gap;
+        face_[i] = face;
+      }
+    }
   }
 
   int first_row_, last_row_, left_, columns_;
   std::vector<float> gap_;
-  std::vector<Light> light_;
+  std::vector<std::int32_t> face_;
 };
 
 }  // namespace
@@ -145,13 +168,16 @@ Image render_print(const RefinedSurface& surface, const ProjectedSurface& projec
       context.check_cancelled();
       if (faces[b].empty()) continue;
       Band band(grid, static_cast<int>(b) * band_rows, from, to);
+      std::vector<FaceColour> ready;
+      ready.reserve(faces[b].size());
       for (const std::uint32_t f : faces[b]) {
         const std::array<Vec2, 3> pixels = corners(f);
         std::array<double, 3> gap{};
         for (std::size_t k = 0; k < 3; ++k) gap[k] = projected.gap_mm[surface.mesh.F(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k))];
-        band.draw(pixels, gap, colours, colours.face(surface, f, pixels));
+        band.draw(static_cast<int>(ready.size()), pixels, gap);
+        ready.push_back(colours.face(surface, f, pixels));
       }
-      band.resolve(image);
+      band.colour(colours, ready, image);
     }
   });
   return image;

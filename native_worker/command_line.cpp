@@ -85,13 +85,17 @@ std::string default_text(const ParameterInfo& info) {
   return list;
 }
 
+bool takes_object(const Operation& operation) {
+  return std::any_of(operation.inputs.begin(), operation.inputs.end(), [](const InputInfo& input) { return input.name == "setup"; });
+}
+
 }  // namespace
 
 ParsedCommand parse_command(const Operation& operation, const std::vector<std::string>& words) {
   ParsedCommand command;
   Json parameters = Json::object(), inputs = Json::object();
   int vertices = 0;
-  std::string sample;
+  std::string sample, object;
   for (std::size_t i = 0; i < words.size(); ++i) {
     std::string flag = words[i], value;
     if (flag == "--help" || flag == "-h") {
@@ -112,7 +116,7 @@ ParsedCommand parse_command(const Operation& operation, const std::vector<std::s
     const auto info = std::find_if(operation.parameters.begin(), operation.parameters.end(), [&](const ParameterInfo& p) { return flag_name(p) == flag; });
     const auto input = std::find_if(operation.inputs.begin(), operation.inputs.end(), [&](const InputInfo& in) { return dashed(in.name) == flag; });
     const bool known = info != operation.parameters.end() || input != operation.inputs.end() || flag == "--out" || flag == "--sample" ||
-                       flag == "--sample-vertices" || flag == "--outputs";
+                       flag == "--sample-vertices" || flag == "--outputs" || (flag == "--object" && takes_object(operation));
     if (!known) {
       std::string name = flag.substr(2);
       std::replace(name.begin(), name.end(), '-', '_');
@@ -138,9 +142,16 @@ ParsedCommand parse_command(const Operation& operation, const std::vector<std::s
     if (info != operation.parameters.end()) parameters[info->name] = parse_flag(*info, value);
     else if (input != operation.inputs.end()) command.files[input->name] = value;
     else if (flag == "--out") command.out = value;
+    else if (flag == "--object") object = value;
     else if (flag == "--sample") sample = value;
     else if (flag == "--sample-vertices") vertices = sample_vertices(value);
     else command.message["outputs"] = split(value);
+  }
+  if (!object.empty()) {
+    if (!std::filesystem::is_directory(object))
+      throw Error(ErrorCode::invalid_input, "--object", "There is no folder " + object + ": --object names one with mould.obj, setup.json and measured.csv.");
+    for (const InputInfo& input : operation.inputs)
+      if (!input.object_file.empty() && !command.files.contains(input.name)) command.files[input.name] = std::filesystem::path(object) / input.object_file;
   }
   if (!sample.empty()) {
     const auto input = std::find_if(operation.inputs.begin(), operation.inputs.end(), [](const InputInfo& in) { return in.accepts_sample; });
@@ -150,7 +161,7 @@ ParsedCommand parse_command(const Operation& operation, const std::vector<std::s
   }
   for (const InputInfo& input : operation.inputs)
     if (input.required && !inputs.contains(input.name) && !command.files.contains(input.name))
-      throw Error(ErrorCode::invalid_input, dashed(input.name), "Say which model: " + dashed(input.name) + " FILE" + (input.accepts_sample ? ", or --sample NAME." : "."));
+      throw Error(ErrorCode::invalid_input, dashed(input.name), "Say which file: " + dashed(input.name) + " FILE" + (input.accepts_sample ? ", or --sample NAME" : "") + (input.object_file.empty() ? "." : ", or --object DIR."));
   if (command.out.empty()) throw Error(ErrorCode::invalid_input, "--out", "Say where the results go: --out DIR.");
   command.message["operation"] = operation.name;
   command.message["parameters"] = parameters;
@@ -173,7 +184,7 @@ std::string overview_text() {
 std::string operation_help(const Operation& operation) {
   constexpr std::size_t width = 30;
   std::string text = operation.summary + "\n\n  formwright " + operation.name;
-  for (const InputInfo& input : operation.inputs) text += " " + dashed(input.name) + " FILE";
+  for (const InputInfo& input : operation.inputs) text += input.required ? " " + dashed(input.name) + " FILE" : " [" + dashed(input.name) + " FILE]";
   text += " --out DIR [flags]\n\nInput\n";
   for (const InputInfo& input : operation.inputs) {
     std::string list;
@@ -186,6 +197,12 @@ std::string operation_help(const Operation& operation) {
       text += entry("--sample NAME", width, "A built-in shape instead of a file: " + names + ".");
       text += entry("--sample-vertices N", width, "Its resolution.");
     }
+  }
+  if (takes_object(operation)) {
+    std::string names;
+    for (const InputInfo& input : operation.inputs)
+      if (!input.object_file.empty()) names += (names.empty() ? "" : ", ") + input.object_file;
+    text += entry("--object DIR", width, "The folder of a measured object instead of single files: " + names + ".");
   }
   std::string list;
   for (const OutputInfo& output : operation.outputs) list += (list.empty() ? "" : ", ") + output.name + (output.made_by_default ? "*" : "");

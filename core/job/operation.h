@@ -19,6 +19,7 @@ struct InputInfo {
   std::vector<std::string> extensions;
   bool required = true;
   bool accepts_sample = false;
+  std::string object_file;  // its name in the folder of a measured object, "" when it has none: --object DIR gives them all
 };
 
 struct OutputInfo {

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// What every operation on a formed sheet begins with: the model, placed, and the sheet as it forms over it.
+// What the thermoforming operations share: the model as it stands in the machine, and the sheet formed over it, computed once a
+// session or read from a file.
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "job/model_input.h"
-#include "thermoform/formed_sheet.h"
-#include "thermoform/thermoform_options.h"
+#include "thermoform/forming.h"
+#include "thermoform/measured_object.h"
 
 namespace formwright {
 
@@ -15,8 +18,40 @@ struct FormedModel {
   std::shared_ptr<const FormedSheet> sheet;
 };
 
-/// Reads "mould", places it and takes the sheet from the input "sheet".
-/// Throws Error{invalid_input}: no sheet, or one without the columns that the simulation writes.
+/// Declarations of the inputs "mould" (a model) and "sheet" (sheet.ply of thermoform-simulate, optional).
+InputInfo mould_input_info();
+InputInfo sheet_input_info();
+/// Of the optional input "setup" (setup.json).
+InputInfo setup_input_info();
+
+/// Reads "mould", places it, takes "sheet" when the call has it, or simulates (kept in the session).
 FormedModel formed_model(const OperationCall& call, const ThermoformOptions& options);
+
+/// The model in the machine and its search tree, without forming anything.
+struct PlacedMould {
+  std::shared_ptr<const LoadedModel> loaded;
+  std::shared_ptr<const MouldShape> shape;
+  Placement placement;
+};
+PlacedMould placed_mould(const OperationCall& call, const ThermoformOptions& options);
+
+/// The simulation's options: the setup's (when the call has one) under the call's own parameters; a setup also means that the mould
+/// is in machine coordinates already.
+struct SimulationCall {
+  ThermoformOptions options;
+  std::optional<ObjectSetup> setup;
+};
+SimulationCall simulation_call(const OperationCall& call, const Json& parameters);
+
+struct Simulated {
+  PlacedMould mould;
+  std::shared_ptr<const FormedResult> result;
+  bool reused = false;  // from an earlier job on the same model and parameters
+};
+Simulated simulate(const OperationCall& call, const SimulationCall& simulation);
+
+/// Columns and triangles of sheet.ply; `shift_z_mm` is added to z.
+Bytes write_sheet_ply(const FormedSheet& sheet, double shift_z_mm, Context& context);
+FormedSheet read_sheet_ply(ByteView bytes, const std::string& file_name, Context& context);
 
 }  // namespace formwright

@@ -14,13 +14,9 @@ namespace {
 constexpr int formed_texture_px = 2048;
 
 std::vector<InputInfo> inputs() {
-  InputInfo mould = model_input_info();
-  mould.name = "mould";
-  mould.help = "The model that the sheet is formed over, with its colours.";
-  return {mould,
-          {"sheet", "Formed sheet", "The sheet.ply of a simulation of the same model and settings; without it the sheet is simulated.", {"ply"}, false, false},
-          {"material", "Material file", "The MTL file of an OBJ.", {"mtl"}, false, false},
-          {"texture", "Picture", "A PNG or JPEG, laid by the model's texture coordinates in place of its own.", {"png", "jpg", "jpeg"}, false, false}};
+  return {mould_input_info(), sheet_input_info(),
+          {"material", "Material file", "The MTL file of an OBJ.", {"mtl"}, false, false, ""},
+          {"texture", "Picture", "A PNG or JPEG, laid by the model's texture coordinates in place of its own.", {"png", "jpg", "jpeg"}, false, false, ""}};
 }
 
 std::vector<OutputInfo> outputs() {

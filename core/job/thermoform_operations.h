@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Thermoforming, thesis chapter 4.
+#include "job/operation.h"
+
+namespace formwright {
+Operation thermoform_simulate_operation();  // the sheet, formed
+Operation thermoform_compare_operation();   // against measured points
+}  // namespace formwright

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thermoform/forming.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/measures.h"
+#include "thermoform/frame_recorder.h"
+
+namespace formwright {
+namespace {
+
+constexpr double contact_tolerance_mm = 0.01;
+constexpr double longest_step_s = 0.02;     // creep is solved within a step: thickness holds up to here
+constexpr double shortest_step_s = 1e-8;
+constexpr double longest_free_step_s = 0.1;  // while the platform comes up and nothing touches
+constexpr double rest_speed_mm_per_s = 0.5;
+constexpr int most_steps = 20000;
+
+std::string millimetres(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g mm", value);
+  return text;
+}
+
+void check_options(const ThermoformOptions& o) {
+  if (o.clamp_opening_x_mm > o.sheet_x_mm)
+    throw Error(ErrorCode::invalid_input, "clamp_opening_x_mm", "The clamp opening is wider than the sheet: make it at most " + millimetres(o.sheet_x_mm) + ".");
+  if (o.clamp_opening_y_mm > o.sheet_y_mm)
+    throw Error(ErrorCode::invalid_input, "clamp_opening_y_mm", "The clamp opening is longer than the sheet: make it at most " + millimetres(o.sheet_y_mm) + ".");
+}
+
+/// The model must stand within the opening, above the plate, and below the sagging sheet when all begins.
+void check_placement(const MouldShape& shape, const Placement& placement, const ThermoformOptions& o) {
+  BoundingBox box;
+  for (Eigen::Index i = 0; i < shape.mesh.V.rows(); ++i) {
+    const Vec3 p = placement(shape.mesh.V.row(i).transpose());
+    if (p.z() >= 0) box.add(p);
+  }
+  if (box.empty()) throw Error(ErrorCode::invalid_input, "sink_mm", "Nothing of the model stands above the base plate: sink it less.");
+  const double x = std::max(-box.lower.x(), box.upper.x()), y = std::max(-box.lower.y(), box.upper.y());
+  if (x > 0.5 * o.clamp_opening_x_mm || y > 0.5 * o.clamp_opening_y_mm) {
+    const bool wide = x - 0.5 * o.clamp_opening_x_mm > y - 0.5 * o.clamp_opening_y_mm;
+    throw Error(ErrorCode::invalid_input, "size_mm",
+                "The model reaches " + millimetres(wide ? x - 0.5 * o.clamp_opening_x_mm : y - 0.5 * o.clamp_opening_y_mm) + " beyond the clamp opening in " +
+                    (wide ? "x" : "y") + ": make it smaller, or move or turn it.");
+  }
+  const double room = o.platform_travel_mm + o.clamp_height_mm;
+  if (box.upper.z() > room - o.sheet_thickness_mm)
+    throw Error(ErrorCode::invalid_input, "size_mm",
+                "The model is " + millimetres(box.upper.z()) + " high, but the box is only " + millimetres(room) + " deep: make it smaller, sink it, or use a deeper box.");
+}
+
+/// Drives SheetDynamics with steps as long as the sheet's movement allows.
+class Driver {
+ public:
+  Driver(SheetDynamics& dynamics, const ThermoformOptions& options, FrameRecorder& recorder, Context& context)
+      : dynamics_(dynamics), o_(options), recorder_(recorder), context_(context) {}
+
+  /// Steps over `duration_s`, or until `stop` says so. `load(t, dt)` is what acts in the step that ends at t from the phase's start.
+  template <class Load, class Stop>
+  void run(FormingPhase phase, double duration_s, double first_step_s, double longest_s, double most_move_mm, Load&& load, Stop&& stop,
+           const char* stage) {
+    double t = 0, dt = std::min(first_step_s, duration_s);
+    while (t < duration_s * (1 - 1e-12)) {
+      dt = std::min({dt, longest_s, duration_s - t});
+      const bool last = t + dt >= duration_s * (1 - 1e-9);
+      const SheetDynamics::Outcome outcome = dynamics_.step(dt, load(t + dt, dt), most_move_mm, context_);
+      if (outcome != SheetDynamics::Outcome::done) {
+        dt *= outcome == SheetDynamics::Outcome::moved_too_far ? 0.5 : 0.4;
+        if (dt < shortest_step_s)
+          throw Error(ErrorCode::could_not_solve, "triangles",
+                      "The sheet tears itself apart in the simulation: use a larger yield strain or creep, a lower vacuum, or other numbers of triangles.");
+        continue;
+      }
+      if (dynamics_.statistics().steps > most_steps)
+        throw Error(ErrorCode::could_not_solve, "step_mm", "The simulation took more than 20000 steps: use longer steps or a lower vacuum.");
+      t = last ? duration_s : t + dt;
+      recorder_.record(dynamics_, phase);
+      context_.progress(t / duration_s, stage);
+      const double wanted = dynamics_.last_move_mm() > 0 ? 0.9 * most_move_mm / dynamics_.last_move_mm() : 2.0;
+      dt *= std::clamp(wanted, 0.3, 2.0);
+      if (stop(dt)) break;
+    }
+  }
+
+ private:
+  SheetDynamics& dynamics_;
+  const ThermoformOptions& o_;
+  FrameRecorder& recorder_;
+  Context& context_;
+};
+
+/// A first guess at the sag: the shape of a square membrane under its own weight, w = w0 (1 - x^2)(1 - y^2) with w0 from
+/// Hencky's circular membrane of the shorter side (w0 = 0.65 (q a^4 / (E h))^(1/3)).
+Positions sagging_guess(const SheetDynamics& dynamics, const ThermoformOptions& o) {
+  const double a = 0.5 * std::min(o.clamp_opening_x_mm, o.clamp_opening_y_mm);
+  const double q = o.density_kg_per_m3 * 1e-12 * 9806.65 * o.sheet_thickness_mm;
+  const double w0 = 0.65 * std::cbrt(q * a * a * a * a / (o.young_modulus_pa * 1e-6 * o.sheet_thickness_mm));
+  Positions x = dynamics.x();
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    const double u = 2 * dynamics.sheet().flat_mm(i, 0) / o.clamp_opening_x_mm, v = 2 * dynamics.sheet().flat_mm(i, 1) / o.clamp_opening_y_mm;
+    x(i, 2) -= w0 * (1 - u * u) * (1 - v * v);
+  }
+  return x;
+}
+
+void measure(const SheetDynamics& dynamics, const MouldContact& contact, const ThermoformOptions& o, FormedResult& result) {
+  const Positions& x = dynamics.x();
+  const Triangles& F = dynamics.sheet().F;
+  FormedSheet& sheet = result.sheet;
+  sheet.mesh = {x, F};
+  sheet.sheet_mm = dynamics.sheet().flat_mm;
+  const Eigen::Index n = x.rows();
+  const std::vector<double> thickness = dynamics.vertex_thickness_mm(x);
+  sheet.thickness_mm = Eigen::Map<const Eigen::VectorXd>(thickness.data(), n);
+  sheet.stretch = o.sheet_thickness_mm * sheet.thickness_mm.cwiseInverse();
+  sheet.contact_s = Eigen::Map<const Eigen::VectorXd>(dynamics.contact_time_s().data(), n);
+
+  double volume = 0, flat_volume = 0;
+  result.least_thickness_mm = o.sheet_thickness_mm;
+  for (int f = 0; f < F.rows(); ++f) {
+    const Vec3 a = x.row(F(f, 0)), b = x.row(F(f, 1)), c = x.row(F(f, 2));
+    const double area = 0.5 * (b - a).cross(c - a).norm(), h = dynamics.membrane().volume_mm3(f) / std::max(area, 1e-12);
+    volume += area * h;
+    flat_volume += dynamics.membrane().volume_mm3(f);
+    result.least_thickness_mm = std::min(result.least_thickness_mm, h);
+    bool touches = true;
+    for (int k = 0; k < 3; ++k) touches &= dynamics.held()[static_cast<std::size_t>(F(f, k))] != 0;
+    (touches ? result.formed_area_mm2 : result.unformed_area_mm2) += area;
+    // Principal stretches against the flat sheet.
+    const Vec2 u1 = (sheet.sheet_mm.row(F(f, 1)) - sheet.sheet_mm.row(F(f, 0))).transpose(), u2 = (sheet.sheet_mm.row(F(f, 2)) - sheet.sheet_mm.row(F(f, 0))).transpose();
+    Eigen::Matrix2d edges, metric;
+    edges << u1, u2;
+    metric << (b - a).squaredNorm(), (b - a).dot(c - a), (b - a).dot(c - a), (c - a).squaredNorm();
+    const Eigen::Matrix2d C = edges.inverse().transpose() * metric * edges.inverse();
+    const double middle = 0.5 * C.trace(), radius = std::sqrt(std::max(0.0, middle * middle - C.determinant()));
+    if (std::sqrt(std::max(0.0, middle - radius)) < 0.9) result.webbing_area_mm2 += area;
+  }
+  result.volume_drift = std::abs(volume - flat_volume) / flat_volume;
+  result.elastic_energy_mj = dynamics.membrane().energy(x, std::numeric_limits<double>::infinity());
+  result.statistics = dynamics.statistics();
+  result.point_contacts = static_cast<int>(dynamics.point_contacts().contacts().size());
+
+  // How far vertices and sharp points got where they must not.
+  result.vertex_distance_min_mm = o.sheet_thickness_mm;
+  Eigen::Index movable = 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (dynamics.sheet().clamped[static_cast<std::size_t>(i)]) continue;
+    ++movable;
+    const double so_far = result.vertex_distance_min_mm;
+    result.vertex_distance_min_mm = std::min({so_far, x(i, 2), contact.distance_mm(x.row(i).transpose(), so_far).value_or(so_far)});
+  }
+  result.touching_share = movable > 0 ? 1 - static_cast<double>(dynamics.free_count()) / static_cast<double>(movable) : 1;
+  result.mean_thickness_mm = volume / (result.formed_area_mm2 + result.unformed_area_mm2);
+  if (dynamics.point_contacts().point_count() > 0) {
+    const PointDistance surface(sheet.mesh);
+    for (const Vec3& p : dynamics.point_contacts().points()) {
+      const auto nearest = surface.nearest(p, 10);
+      if (!nearest) continue;
+      const Vec3 a = x.row(F(nearest->face, 0)), b = x.row(F(nearest->face, 1)), c = x.row(F(nearest->face, 2));
+      const double side = (b - a).cross(c - a).normalized().dot(p - nearest->point);  // positive beyond the middle surface
+      double h = 0;
+      for (int k = 0; k < 3; ++k) h += nearest->barycentric[k] * sheet.thickness_mm[F(nearest->face, k)];
+      result.mould_edge_penetration_mm = std::max(result.mould_edge_penetration_mm, side + 0.5 * h);
+    }
+  }
+}
+
+}  // namespace
+
+FormedResult form_sheet(std::shared_ptr<const MouldShape> shape, const Placement& placement, const ThermoformOptions& o, Context& context) {
+  Stopwatch watch;
+  check_options(o);
+  check_placement(*shape, placement, o);
+  const auto contact = std::make_shared<const MouldContact>(std::move(shape), placement, contact_tolerance_mm);
+  const SheetMesh mesh = make_sheet_mesh(clamp_opening_mm(o), o.triangles);
+  const double start_z = -o.platform_travel_mm;
+  // From the platform the sheet lies high above at first.
+  SheetDynamics dynamics(mesh, o, o.clamp_height_mm - start_z, contact);
+  FormedResult result;
+  FrameRecorder recorder(o, start_z);
+  recorder.record(dynamics, FormingPhase::relax);
+  Driver driver(dynamics, o, recorder, context);
+  const auto go_on = [](double) { return false; };
+
+  {
+    // The weight alone: the sheet comes to rest long before the platform moves, so a few long steps do.
+    const auto span = context.span(0, 0.08, "Sagging under its weight");
+    dynamics.guess(sagging_guess(dynamics, o));
+    driver.run(FormingPhase::relax, o.relaxation_s, o.relaxation_s / 4, o.relaxation_s / 2, 1e9, [](double, double) { return StepLoad{}; }, go_on,
+               "Sagging under its weight");
+    result.sag_mm = o.clamp_height_mm - start_z - dynamics.x().col(2).minCoeff();
+    result.phase_end_s[0] = dynamics.time_s();
+  }
+  {
+    const auto span = context.span(0.08, 0.45, "Raising the model");
+    const double duration = o.platform_travel_mm / o.mould_speed_mm_per_s;
+    dynamics.add_velocity(Vec3(0, 0, -o.mould_speed_mm_per_s));
+    driver.run(FormingPhase::raise, duration, 0.01, longest_free_step_s, o.step_mm,
+               [&](double, double dt) {
+                 StepLoad load;
+                 load.clamp_shift = Vec3(0, 0, -o.mould_speed_mm_per_s * dt);
+                 return load;
+               },
+               go_on, "Raising the model");
+    dynamics.add_velocity(Vec3(0, 0, o.mould_speed_mm_per_s));
+    result.phase_end_s[1] = dynamics.time_s();
+  }
+  {
+    const auto span = context.span(0.45, 0.98, "Drawing the vacuum");
+    const double full = o.vacuum_kpa * 1e-3;
+    const auto pressure = [&](double t) { return o.vacuum_ramp_s > 0 ? full * std::min(1.0, t / o.vacuum_ramp_s) : full; };
+    double t_end = 0;
+    driver.run(FormingPhase::vacuum, o.time_limit_s, 5e-4, longest_step_s, o.step_mm,
+               [&](double t, double) {
+                 StepLoad load;
+                 t_end = t;
+                 load.pressure_mpa = pressure(t);
+                 return load;
+               },
+               [&](double) {
+                 if (dynamics.free_count() == 0) return true;
+                 return t_end >= o.vacuum_ramp_s && dynamics.last_step_s() > 0.5 * longest_step_s &&
+                        dynamics.last_move_mm() < rest_speed_mm_per_s * dynamics.last_step_s();
+               },
+               "Drawing the vacuum");
+    result.reached_time_limit = t_end >= o.time_limit_s * (1 - 1e-9);
+    result.pressure_end_kpa = pressure(t_end) * 1e3;
+    result.phase_end_s[2] = dynamics.time_s();
+  }
+  const auto span = context.span(0.98, 1, "Measuring");
+  measure(dynamics, *contact, o, result);
+  result.frames = recorder.finish(dynamics);
+  result.seconds = watch.seconds();
+  return result;
+}
+
+}  // namespace formwright

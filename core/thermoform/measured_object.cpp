@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thermoform/measured_object.h"
+
+#include <fast_float/fast_float.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/error.h"
+#include "thermoform/sheet_lookup.h"
+#include "thermoform/thermoform_options.h"
+
+namespace formwright {
+namespace {
+
+[[noreturn]] void refuse_setup(const std::string& sentence) { throw Error(ErrorCode::invalid_input, "setup", "setup.json: " + sentence); }
+
+double number(const Json& value, const std::string& key) {
+  if (!value.is_number() || !std::isfinite(value.get<double>())) refuse_setup("“" + key + "” must be a number.");
+  return value.get<double>();
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r')) text.remove_suffix(1);
+  return text;
+}
+
+std::vector<std::string_view> fields_of(std::string_view line) {
+  std::vector<std::string_view> fields;
+  for (;;) {
+    const std::size_t comma = line.find(',');
+    fields.push_back(trimmed(line.substr(0, comma)));
+    if (comma == std::string_view::npos) return fields;
+    line.remove_prefix(comma + 1);
+  }
+}
+
+double percentile(const std::vector<double>& sorted, double share) {
+  const double at = share * static_cast<double>(sorted.size() - 1);
+  const auto low = static_cast<std::size_t>(at), high = std::min(low + 1, sorted.size() - 1);
+  return sorted[low] + (at - static_cast<double>(low)) * (sorted[high] - sorted[low]);
+}
+
+}  // namespace
+
+ObjectSetup read_object_setup(ByteView bytes) {
+  const Json json = Json::parse(as_text(bytes), nullptr, false);
+  if (!json.is_object()) refuse_setup("this is not a JSON object; see docs/measured_data.md for one.");
+  ObjectSetup setup;
+  double start_z = 0, end_z = 0;
+  bool has_start = false;
+  const auto pair = [&](const Json& value, const std::string& key, const char* x, const char* y) {
+    if (!value.is_array() || value.size() != 2) refuse_setup("“" + key + "” must be two numbers, such as [240, 260].");
+    setup.parameters[x] = number(value[0], key);
+    setup.parameters[y] = number(value[1], key);
+  };
+  const std::vector<ParameterInfo> known = describe_parameters<ThermoformOptions>();
+  for (const auto& [key, value] : json.items()) {
+    if (key == "sheet_mm") pair(value, key, "sheet_x_mm", "sheet_y_mm");
+    else if (key == "clamp_opening_mm") pair(value, key, "clamp_opening_x_mm", "clamp_opening_y_mm");
+    else if (key == "base_plate_start_z_mm") start_z = number(value, key), has_start = true;
+    else if (key == "base_plate_end_z_mm") end_z = number(value, key);
+    else if (key == "measured_surface") {
+      if (value == "outer") setup.measured_surface = MeasuredSurface::outer;
+      else if (value != "mid") refuse_setup("“measured_surface” must be \"mid\" or \"outer\".");
+    } else if (std::any_of(known.begin(), known.end(), [&k = key](const ParameterInfo& info) { return info.name == k; })) {
+      setup.parameters[key] = value;
+    } else {
+      setup.notes.push_back("“" + key + "” in setup.json is not known and was left out.");
+    }
+  }
+  setup.base_plate_end_z_mm = end_z;
+  if (has_start) {
+    if (!(end_z > start_z)) refuse_setup("the base plate must start below its end: base_plate_start_z_mm < base_plate_end_z_mm.");
+    setup.parameters["platform_travel_mm"] = end_z - start_z;
+  }
+  if (setup.parameters.contains("clamp_height_mm")) setup.parameters["clamp_height_mm"] = number(setup.parameters["clamp_height_mm"], "clamp_height_mm") - end_z;
+  read_parameters<ThermoformOptions>(setup.parameters);  // throws with the parameter's name
+  return setup;
+}
+
+std::vector<MeasuredPoint> read_measured_points(ByteView csv) {
+  static constexpr std::array<std::string_view, 6> names{"sheet_x_mm", "sheet_y_mm", "x_mm", "y_mm", "z_mm", "sigma_mm"};
+  std::string_view text = as_text(csv);
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  std::array<int, 6> column{-1, -1, -1, -1, -1, -1};
+  std::vector<MeasuredPoint> points;
+  int line_number = 0;
+  bool header = false;
+  const auto refuse = [&](const std::string& sentence) {
+    throw Error(ErrorCode::invalid_input, "measured", "measured.csv, line " + std::to_string(line_number) + ": " + sentence);
+  };
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    const std::string_view line = trimmed(text.substr(0, end));
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    ++line_number;
+    if (line.empty()) continue;
+    const std::vector<std::string_view> fields = fields_of(line);
+    if (!header) {
+      header = true;
+      for (std::size_t i = 0; i < names.size(); ++i) {
+        const auto at = std::find(fields.begin(), fields.end(), names[i]);
+        if (at != fields.end()) column[i] = static_cast<int>(at - fields.begin());
+        else if (i < 5) refuse("the header has no “" + std::string(names[i]) + "”; it must be sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm,sigma_mm.");
+      }
+      continue;
+    }
+    std::array<double, 6> value{};
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (column[i] < 0) continue;
+      const auto at = static_cast<std::size_t>(column[i]);
+      if (at >= fields.size()) refuse("there are only " + std::to_string(fields.size()) + " columns.");
+      const auto parsed = fast_float::from_chars(fields[at].data(), fields[at].data() + fields[at].size(), value[i]);
+      if (parsed.ec != std::errc() || parsed.ptr != fields[at].data() + fields[at].size() || !std::isfinite(value[i]))
+        refuse("“" + std::string(names[i]) + "” is not a number.");
+    }
+    if (value[5] < 0) refuse("“sigma_mm” is negative.");
+    points.push_back({Vec2(value[0], value[1]), Vec3(value[2], value[3], value[4]), value[5]});
+    if (points.size() > 5'000'000) refuse("more than 5 million rows: keep every tenth.");
+  }
+  if (points.empty()) throw Error(ErrorCode::invalid_input, "measured", "measured.csv has no rows: it needs a header and one line for each measured point.");
+  return points;
+}
+
+Comparison compare(const FormedSheet& sheet, const std::vector<MeasuredPoint>& points, MeasuredSurface surface, double clamp_z_mm, double sheet_thickness_mm,
+                   Context& context) {
+  const SheetLookup lookup(sheet);
+  Comparison result;
+  result.points.reserve(points.size());
+  std::vector<double> errors;
+  double sum = 0, squares = 0, along = 0;
+  int counted = 0;
+  for (const MeasuredPoint& point : points) {
+    if (counted++ % 10000 == 0) context.check_cancelled();
+    ComparedPoint compared{};
+    Vec3 normal(0, 0, 1);
+    if (const auto at = lookup.find(point.sheet_mm)) {
+      const Vec3 middle = lookup.middle(*at), outer = lookup.outer(*at);
+      compared.simulated_mm = surface == MeasuredSurface::outer ? outer : middle;
+      compared.inside = true;
+      if ((outer - middle).norm() > 1e-12) normal = (outer - middle).normalized();
+    } else {
+      compared.simulated_mm = Vec3(point.sheet_mm.x(), point.sheet_mm.y(), clamp_z_mm + (surface == MeasuredSurface::outer ? 0.5 * sheet_thickness_mm : 0));
+    }
+    const Vec3 difference = point.place_mm - compared.simulated_mm;
+    compared.error_mm = difference.norm();
+    sum += compared.error_mm;
+    squares += difference.squaredNorm();
+    along += difference.dot(normal);
+    errors.push_back(compared.error_mm);
+    result.points.push_back(compared);
+  }
+  const auto count = static_cast<double>(points.size());
+  result.mean_mm = sum / count;
+  result.root_mean_square_mm = std::sqrt(squares / count);
+  result.along_normal_mean_mm = along / count;
+  std::sort(errors.begin(), errors.end());
+  result.median_mm = percentile(errors, 0.5);
+  result.percentile_90_mm = percentile(errors, 0.9);
+  result.percentile_95_mm = percentile(errors, 0.95);
+  result.maximum_mm = errors.back();
+  std::vector<double> deviations;
+  for (const double e : errors) deviations.push_back(std::abs(e - result.median_mm));
+  std::sort(deviations.begin(), deviations.end());
+  const double limit = result.median_mm + 5 * 1.4826 * percentile(deviations, 0.5);
+  double kept = 0;
+  for (const double e : errors) {
+    if (e > limit) ++result.outliers;
+    else kept += e;
+  }
+  const auto left = static_cast<double>(errors.size()) - result.outliers;
+  result.mean_without_outliers_mm = left > 0 ? kept / left : result.mean_mm;
+  return result;
+}
+
+}  // namespace formwright

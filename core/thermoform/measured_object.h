@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// A formed object that was measured: the folder of mould.obj, setup.json and measured.csv (docs/measured_data.md).
+#include <string>
+#include <vector>
+
+#include "base/bytes.h"
+#include "base/context.h"
+#include "base/json.h"
+#include "thermoform/formed_sheet.h"
+
+namespace formwright {
+
+enum class MeasuredSurface { mid, outer };
+
+/// setup.json: what the machine did. Keys that are not its own but name a parameter of the simulation are taken as such.
+struct ObjectSetup {
+  Json parameters = Json::object();  // of ThermoformOptions, as far as the file gives them
+  MeasuredSurface measured_surface = MeasuredSurface::mid;
+  double base_plate_end_z_mm = 0;    // the simulation has the raised plate at 0: add this to its z
+  std::vector<std::string> notes;    // keys that were not understood
+};
+
+/// Throws Error{invalid_input, "setup"}, naming the key.
+ObjectSetup read_object_setup(ByteView json);
+
+struct MeasuredPoint {
+  Vec2 sheet_mm;     // on the flat sheet, centred on it
+  Vec3 place_mm;     // machine coordinates
+  double sigma_mm;   // standard deviation of the measurement; 0 when not known
+};
+
+/// measured.csv: header sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm[,sigma_mm] in any order. Throws Error{invalid_input, "measured"} with
+/// the line; at least one row.
+std::vector<MeasuredPoint> read_measured_points(ByteView csv);
+
+struct ComparedPoint {
+  Vec3 simulated_mm;
+  double error_mm;
+  bool inside;       // of the clamp opening; outside the sheet lies flat in the clamp
+};
+
+struct Comparison {
+  std::vector<ComparedPoint> points;  // as measured
+  double mean_mm = 0, root_mean_square_mm = 0, median_mm = 0, percentile_90_mm = 0, percentile_95_mm = 0, maximum_mm = 0;
+  double along_normal_mean_mm = 0;    // signed mean of measured minus simulated along the sheet's outward normal
+  int outliers = 0;                   // rows farther off than 5 robust standard deviations (1.4826 median) from the median
+  double mean_without_outliers_mm = 0;
+};
+
+/// Compares points with the simulated sheet. `clamp_z_mm`: of the clamped rim's middle surface. Everything in the points' coordinates.
+Comparison compare(const FormedSheet& sheet, const std::vector<MeasuredPoint>& points, MeasuredSurface surface, double clamp_z_mm, double sheet_thickness_mm,
+                   Context& context);
+
+}  // namespace formwright

@@ -1,0 +1,398 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thermoform/membrane.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
+
+#pragma GCC diagnostic ignored "-Wpsabi"  // 32-byte vectors stay within inlined functions
+
+namespace formwright {
+
+struct alignas(32) Membrane::Group {
+  // Inverse of [rest edge 1, rest edge 2] (2 x 2): of the present rest state, and of the flat sheet.
+  Double4 b00, b01, b10, b11, flat00, flat01, flat10, flat11;
+  Double4 volume;                  // mm^3
+  Double4 weight;                  // rest area times thickness, of this step
+  Double4 creep;                   // 1/s, of this step: 0 where nothing may flow
+  Double4 past00, past01, past11;  // strain at the start of the step
+  std::array<std::array<int, 4>, 3> vertex;
+  int first_face = 0, lanes = 4;
+  int least_vertex = 0, most_vertex = 0;
+  bool active = true;  // some vertex is free
+};
+
+namespace {
+
+struct Strain {
+  Double4 e00, e01, e11;
+};
+
+/// Deformation of four triangles: f0, f1 are the images of the rest frame's axes.
+struct Deformation {
+  Double4 f0[3], f1[3];
+  Strain strain;
+};
+
+inline void gather(const Positions& x, const std::array<int, 4>& vertex, Double4 (&out)[3]) {
+  for (int k = 0; k < 3; ++k)
+    out[k] = Double4{x.data()[3 * vertex[0] + k], x.data()[3 * vertex[1] + k], x.data()[3 * vertex[2] + k], x.data()[3 * vertex[3] + k]};
+}
+
+inline Double4 root(const Double4& a) { return Double4{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])}; }
+inline Double4 most(const Double4& a, const Double4& b) { return a > b ? a : b; }
+
+/// Green strain, eq. (4.1), in an orthonormal frame of the rest triangle: (F^T F - 1)/2.
+template <class G>
+inline void deform(const G& g, const Positions& x, bool from_flat, Deformation& d) {
+  Double4 x0[3], x1[3], x2[3];
+  gather(x, g.vertex[0], x0);
+  gather(x, g.vertex[1], x1);
+  gather(x, g.vertex[2], x2);
+  const Double4 &b00 = from_flat ? g.flat00 : g.b00, &b01 = from_flat ? g.flat01 : g.b01;
+  const Double4 &b10 = from_flat ? g.flat10 : g.b10, &b11 = from_flat ? g.flat11 : g.b11;
+  Double4 c00{}, c01{}, c11{};
+  for (int k = 0; k < 3; ++k) {
+    const Double4 edge1 = x1[k] - x0[k], edge2 = x2[k] - x0[k];
+    d.f0[k] = edge1 * b00 + edge2 * b10;
+    d.f1[k] = edge1 * b01 + edge2 * b11;
+    c00 += d.f0[k] * d.f0[k];
+    c01 += d.f0[k] * d.f1[k];
+    c11 += d.f1[k] * d.f1[k];
+  }
+  d.strain = {0.5 * (c00 - 1.0), 0.5 * c01, 0.5 * (c11 - 1.0)};
+}
+
+inline Double4 norm(const Strain& e) { return root(e.e00 * e.e00 + 2.0 * e.e01 * e.e01 + e.e11 * e.e11); }
+
+/// How much of the trial strain stays elastic when the step's creep is solved implicitly:
+///   total strain:   eps (1 + a) = trial,                      a = dt c_creep
+///   elastic excess: |eps| + a (|eps| - c_yield) = |trial|     (only the excess flows)
+/// and, for the tangent, how much of that falls away along the strain itself.
+struct Flow {
+  Double4 kept, lost;
+};
+inline void flow(const Strain& trial, const Double4& creep, double dt_s, YieldRule rule, double yield_strain, Flow& result) {
+  const Double4 one = Double4{} + 1.0, zero{};
+  if (!std::isfinite(dt_s)) {
+    result = {one, zero};
+    return;
+  }
+  const Double4 a = creep * dt_s;
+  if (rule == YieldRule::total_strain) {
+    result = {one / (one + a), zero};
+    return;
+  }
+  const Double4 size = most(norm(trial), Double4{} + 1e-30);
+  const Double4 threshold = a * yield_strain / ((one + a) * size);
+  const auto yields = size > Double4{} + yield_strain;
+  result.kept = yields ? one / (one + a) + threshold : one;
+  result.lost = yields ? threshold : zero;
+}
+
+inline double lane_sum(const Double4& a, int lanes) {
+  double sum = 0;
+  for (int l = 0; l < lanes; ++l) sum += a[l];
+  return sum;
+}
+
+/// 2D Lame parameters of plane stress, MPa; lambda is that of the stable neo-Hookean energy
+/// mu/2 (tr C - 2) - mu (J - 1) + lambda/2 (J - 1)^2 (Smith, de Goes, Kim 2018, in two dimensions and without the
+/// logarithm, which keeps rest stability when lambda = lambda_Lame + mu).
+struct Lame {
+  double mu, lambda;
+};
+Lame lame(const MembraneMaterial& m) {
+  const double mu = m.young_mpa / (2 * (1 + m.poisson_ratio));
+  return {mu, m.young_mpa * m.poisson_ratio / (1 - m.poisson_ratio * m.poisson_ratio) + mu};
+}
+
+}  // namespace
+
+Membrane::~Membrane() = default;
+Membrane::Membrane(Membrane&&) noexcept = default;
+
+Membrane::Membrane(const TextureCoordinates& flat_mm, const Triangles& F, double thickness_mm, const MembraneMaterial& material)
+    : F_(F), material_(material), thickness_mm_(static_cast<std::size_t>(F.rows()), thickness_mm) {
+  const int faces = face_count();
+  groups_.resize(static_cast<std::size_t>((faces + 3) / 4));
+  for (int g = 0; g < static_cast<int>(groups_.size()); ++g) {
+    Group& group = groups_[static_cast<std::size_t>(g)];
+    group.first_face = 4 * g;
+    group.lanes = std::min(4, faces - 4 * g);
+    group.least_vertex = std::numeric_limits<int>::max();
+    group.most_vertex = 0;
+    group.past00 = group.past01 = group.past11 = Double4{};
+    group.creep = group.weight = Double4{};
+    for (int l = 0; l < 4; ++l) {
+      const int face = std::min(4 * g + l, faces - 1);  // empty lanes repeat the last triangle
+      Eigen::Matrix2d edges;
+      for (int k = 0; k < 3; ++k) {
+        const int v = F(face, k);
+        group.vertex[static_cast<std::size_t>(k)][static_cast<std::size_t>(l)] = v;
+        group.least_vertex = std::min(group.least_vertex, v);
+        group.most_vertex = std::max(group.most_vertex, v);
+        if (k > 0) edges.col(k - 1) = (flat_mm.row(v) - flat_mm.row(F(face, 0))).transpose();
+      }
+      const double doubled_area = edges.determinant();
+      // Written out: Eigen's inverse would do, but this is the same arithmetic on every target.
+      group.b00[l] = group.flat00[l] = edges(1, 1) / doubled_area;
+      group.b01[l] = group.flat01[l] = -edges(0, 1) / doubled_area;
+      group.b10[l] = group.flat10[l] = -edges(1, 0) / doubled_area;
+      group.b11[l] = group.flat11[l] = edges(0, 0) / doubled_area;
+      group.volume[l] = 0.5 * doubled_area * thickness_mm;
+    }
+  }
+}
+
+double Membrane::volume_mm3(int face) const { return groups_[static_cast<std::size_t>(face / 4)].volume[face % 4]; }
+
+void Membrane::begin_step(const Positions& x, const HeldVertices& held) {
+  Deformation d, total;
+  for (Group& g : groups_) {
+    g.active = false;
+    for (int l = 0; l < g.lanes; ++l)
+      for (const auto& corner : g.vertex) g.active |= held[static_cast<std::size_t>(corner[static_cast<std::size_t>(l)])] == 0;
+    if (!g.active) continue;
+    deform(g, x, false, d);
+    const Strain& e = d.strain;
+    g.past00 = e.e00;
+    g.past01 = e.e01;
+    g.past11 = e.e11;
+    // Areas: the rest one is half of 1/det B, the present one that times sqrt(det C).
+    const Double4 rest_area = 0.5 / (g.b00 * g.b11 - g.b01 * g.b10);
+    const Double4 determinant = (2.0 * e.e00 + 1.0) * (2.0 * e.e11 + 1.0) - 4.0 * e.e01 * e.e01;
+    const Double4 area = rest_area * root(most(determinant, Double4{} + 1e-12));
+    const Double4 thickness = g.volume / area;
+    g.weight = rest_area * thickness;
+    g.creep = Double4{} + material_.creep_per_s;
+    if (material_.yield_rule == YieldRule::total_strain) {
+      deform(g, x, true, total);
+      g.creep = norm(total.strain) > Double4{} + material_.yield_strain ? g.creep : Double4{};
+    }
+    for (int l = 0; l < g.lanes; ++l) thickness_mm_[static_cast<std::size_t>(g.first_face + l)] = thickness[l];
+    if (material_.flow_stop_mm > 0) {
+      // Fades over a quarter of the limit, so that the end of flow does not depend on the step.
+      const Double4 room = (thickness - material_.flow_stop_mm) / (0.25 * material_.flow_stop_mm);
+      const Double4 one = Double4{} + 1.0, zero{};
+      g.creep *= room < zero ? zero : (room > one ? one : room);
+    }
+  }
+}
+
+void Membrane::end_step(const Positions& x, double dt_s) {
+  Deformation d;
+  Flow f;
+  for (Group& g : groups_) {
+    if (!g.active) continue;
+    deform(g, x, false, d);
+    flow(d.strain, g.creep, dt_s, material_.yield_rule, material_.yield_strain, f);
+    // The plastic strain of this step makes the new rest metric N = 1 + 2 eps_p; with N = U^T U, B becomes B U^-1.
+    const Double4 part = 2.0 * (1.0 - f.kept);
+    const Double4 n00 = 1.0 + part * d.strain.e00, n01 = part * d.strain.e01, n11 = 1.0 + part * d.strain.e11;
+    const Double4 u00 = root(n00), u01 = n01 / u00, u11 = root(most(n11 - u01 * u01, Double4{} + 1e-12));
+    const Double4 c00 = g.b00 / u00, c10 = g.b10 / u00;
+    g.b01 = (g.b01 - c00 * u01) / u11;
+    g.b11 = (g.b11 - c10 * u01) / u11;
+    g.b00 = c00;
+    g.b10 = c10;
+  }
+}
+
+void Membrane::use_matrix(const BlockMatrix& matrix) {
+  slots_.resize(static_cast<std::size_t>(face_count()));
+  for (int f = 0; f < face_count(); ++f)
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) slots_[static_cast<std::size_t>(f)][static_cast<std::size_t>(3 * a + b)] = matrix.slot(F_(f, a), F_(f, b));
+}
+
+template <ElasticLaw law, bool with_matrix>
+void Membrane::add_group(const Group& g, const Positions& x, double dt_s, int begin, int end, Positions& force, BlockMatrix* matrix) const {
+  Deformation d;
+  deform(g, x, false, d);
+  const Strain& e = d.strain;
+  Flow f;
+  flow(e, g.creep, dt_s, material_.yield_rule, material_.yield_strain, f);
+  const double nu = material_.poisson_ratio, plane = material_.young_mpa / (1 - nu * nu);
+  const double viscous = material_.viscosity_s / dt_s;  // 0 for an endless step
+
+  // Stress S (second Piola-Kirchhoff) and tangent D over (e00, e11, 2 e01).
+  Double4 s00, s01, s11, d00, d01, d02, d11, d12, d22;
+  if constexpr (law == ElasticLaw::st_venant_kirchhoff) {
+    d00 = d11 = Double4{} + plane;
+    d01 = Double4{} + plane * nu;
+    d22 = Double4{} + plane * 0.5 * (1 - nu);
+    d02 = d12 = Double4{};
+    s00 = f.kept * (d00 * e.e00 + d01 * e.e11);
+    s11 = f.kept * (d01 * e.e00 + d11 * e.e11);
+    s01 = f.kept * (2.0 * d22 * e.e01);
+  } else {
+    const Lame l = lame(material_);
+    const Double4 c00 = 1.0 + 2.0 * f.kept * e.e00, c01 = 2.0 * f.kept * e.e01, c11 = 1.0 + 2.0 * f.kept * e.e11;
+    const Double4 determinant = most(c00 * c11 - c01 * c01, Double4{} + 1e-9);
+    const Double4 J = root(determinant), i00 = c11 / determinant, i01 = -c01 / determinant, i11 = c00 / determinant, zero{};
+    const Double4 p = (l.lambda * (J - 1.0) - l.mu) * J;
+    s00 = l.mu + p * i00;
+    s01 = p * i01;
+    s11 = l.mu + p * i11;
+    const Double4 outer = most((l.lambda * (2.0 * J - 1.0) - l.mu) * J, zero), inner = most(-2.0 * p, zero);
+    d00 = outer * i00 * i00 + inner * i00 * i00;
+    d01 = outer * i00 * i11 + inner * i01 * i01;
+    d02 = outer * i00 * i01 + inner * i00 * i01;
+    d11 = outer * i11 * i11 + inner * i11 * i11;
+    d12 = outer * i11 * i01 + inner * i11 * i01;
+    d22 = outer * i01 * i01 + inner * 0.5 * (i00 * i11 + i01 * i01);
+  }
+  if constexpr (with_matrix) {
+    // d(kept eps) = kept (d eps) less what flows along eps itself; made symmetric in the metric of D.
+    const Double4 q0 = d00 * e.e00 + d01 * e.e11 + 2.0 * d02 * e.e01, q1 = d01 * e.e00 + d11 * e.e11 + 2.0 * d12 * e.e01;
+    const Double4 q2 = d02 * e.e00 + d12 * e.e11 + 2.0 * d22 * e.e01;
+    const Double4 lost = f.lost / most(q0 * e.e00 + q1 * e.e11 + 2.0 * q2 * e.e01, Double4{} + 1e-30);
+    d00 = f.kept * d00 - lost * q0 * q0 + viscous * plane;
+    d01 = f.kept * d01 - lost * q0 * q1 + viscous * plane * nu;
+    d02 = f.kept * d02 - lost * q0 * q2;
+    d11 = f.kept * d11 - lost * q1 * q1 + viscous * plane;
+    d12 = f.kept * d12 - lost * q1 * q2;
+    d22 = f.kept * d22 - lost * q2 * q2 + viscous * plane * 0.5 * (1 - nu);
+  }
+  const Double4 v00 = e.e00 - g.past00, v01 = e.e01 - g.past01, v11 = e.e11 - g.past11;
+  s00 += viscous * plane * (v00 + nu * v11);
+  s01 += viscous * plane * (1 - nu) * v01;
+  s11 += viscous * plane * (nu * v00 + v11);
+
+  const Double4& w = g.weight;
+  Double4 force1[3], force2[3];
+  for (int k = 0; k < 3; ++k) {
+    const Double4 p0 = w * (d.f0[k] * s00 + d.f1[k] * s01), p1 = w * (d.f0[k] * s01 + d.f1[k] * s11);
+    force1[k] = p0 * g.b00 + p1 * g.b01;
+    force2[k] = p0 * g.b10 + p1 * g.b11;
+  }
+  for (int l = 0; l < g.lanes; ++l) {
+    const auto at = static_cast<std::size_t>(l);
+    const int v0 = g.vertex[0][at], v1 = g.vertex[1][at], v2 = g.vertex[2][at];
+    for (int k = 0; k < 3; ++k) {
+      if (v0 >= begin && v0 < end) force(v0, k) += force1[k][l] + force2[k][l];
+      if (v1 >= begin && v1 < end) force(v1, k) -= force1[k][l];
+      if (v2 >= begin && v2 < end) force(v2, k) -= force2[k][l];
+    }
+  }
+  if constexpr (with_matrix) {
+    // The geometric part needs a stress without compression to stay positive semi-definite.
+    const Double4 zero{}, middle = 0.5 * (s00 + s11), half = 0.5 * (s00 - s11);
+    const Double4 radius = root(half * half + s01 * s01);
+    const Double4 small = middle - radius, share = most(middle + radius, zero) / most(2.0 * radius, Double4{} + 1e-30);
+    const auto pulled = small >= zero;
+    const Double4 t00 = pulled ? s00 : share * (s00 - small), t01 = pulled ? s01 : share * s01, t11 = pulled ? s11 : share * (s11 - small);
+
+    // K_ab = w (B_a^T D B_b + g_a^T S g_b), with B_a's rows g_a0 f0, g_a1 f1, g_a0 f1 + g_a1 f0.
+    const Double4 ga[2][2] = {{g.b00, g.b01}, {g.b10, g.b11}};
+    Double4 rows[2][3][3];
+    for (int a = 0; a < 2; ++a)
+      for (int k = 0; k < 3; ++k) {
+        rows[a][0][k] = ga[a][0] * d.f0[k];
+        rows[a][1][k] = ga[a][1] * d.f1[k];
+        rows[a][2][k] = ga[a][0] * d.f1[k] + ga[a][1] * d.f0[k];
+      }
+    Float4 K[3][3][3][3];  // corner, corner, row, column
+    for (int b = 0; b < 2; ++b) {
+      Double4 image[3][3];
+      for (int k = 0; k < 3; ++k) {
+        image[0][k] = w * (d00 * rows[b][0][k] + d01 * rows[b][1][k] + d02 * rows[b][2][k]);
+        image[1][k] = w * (d01 * rows[b][0][k] + d11 * rows[b][1][k] + d12 * rows[b][2][k]);
+        image[2][k] = w * (d02 * rows[b][0][k] + d12 * rows[b][1][k] + d22 * rows[b][2][k]);
+      }
+      for (int a = 0; a <= b; ++a) {
+        const Double4 geometric = w * (ga[a][0] * (t00 * ga[b][0] + t01 * ga[b][1]) + ga[a][1] * (t01 * ga[b][0] + t11 * ga[b][1]));
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j) {
+            Double4 sum = rows[a][0][i] * image[0][j] + rows[a][1][i] * image[1][j] + rows[a][2][i] * image[2][j];
+            if (i == j) sum += geometric;
+            K[a + 1][b + 1][i][j] = __builtin_convertvector(sum, Float4);
+            if (a != b) K[b + 1][a + 1][j][i] = K[a + 1][b + 1][i][j];
+          }
+      }
+    }
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        K[0][1][i][j] = -(K[1][1][i][j] + K[2][1][i][j]);
+        K[0][2][i][j] = -(K[1][2][i][j] + K[2][2][i][j]);
+        K[1][0][i][j] = -(K[1][1][i][j] + K[1][2][i][j]);
+        K[2][0][i][j] = -(K[2][1][i][j] + K[2][2][i][j]);
+        K[0][0][i][j] = -(K[0][1][i][j] + K[0][2][i][j]);
+      }
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b)
+        for (int j = 0; j < 3; ++j) {
+          // Four triangles' columns (x, y, z, 0) out of three lanes-by-triangle vectors: a 4 x 4 transpose.
+          const Float4 &kx = K[a][b][0][j], &ky = K[a][b][1][j], &kz = K[a][b][2][j];
+          const Float4 none{};
+          const Float4 xy_low = __builtin_shufflevector(kx, ky, 0, 4, 1, 5), xy_high = __builtin_shufflevector(kx, ky, 2, 6, 3, 7);
+          const Float4 z_low = __builtin_shufflevector(kz, none, 0, 4, 1, 5), z_high = __builtin_shufflevector(kz, none, 2, 6, 3, 7);
+          const Float4 column[4] = {__builtin_shufflevector(xy_low, z_low, 0, 1, 4, 5), __builtin_shufflevector(xy_low, z_low, 2, 3, 6, 7),
+                                    __builtin_shufflevector(xy_high, z_high, 0, 1, 4, 5), __builtin_shufflevector(xy_high, z_high, 2, 3, 6, 7)};
+          for (int l = 0; l < g.lanes; ++l) {
+            const int row = g.vertex[static_cast<std::size_t>(a)][static_cast<std::size_t>(l)];
+            if (row < begin || row >= end) continue;
+            const int slot = slots_[static_cast<std::size_t>(g.first_face + l)][static_cast<std::size_t>(3 * a + b)];
+            matrix->block(slot)[static_cast<std::size_t>(j)] += column[l];
+          }
+        }
+  }
+}
+
+void Membrane::add_forces(const Positions& x, double dt_s, int begin, int end, Positions& force, BlockMatrix* matrix) const {
+  for (const Group& g : groups_) {
+    if (!g.active || g.most_vertex < begin || g.least_vertex >= end) continue;
+    if (material_.elastic_law == ElasticLaw::st_venant_kirchhoff) {
+      if (matrix) add_group<ElasticLaw::st_venant_kirchhoff, true>(g, x, dt_s, begin, end, force, matrix);
+      else add_group<ElasticLaw::st_venant_kirchhoff, false>(g, x, dt_s, begin, end, force, nullptr);
+    } else {
+      if (matrix) add_group<ElasticLaw::stable_neo_hookean, true>(g, x, dt_s, begin, end, force, matrix);
+      else add_group<ElasticLaw::stable_neo_hookean, false>(g, x, dt_s, begin, end, force, nullptr);
+    }
+  }
+}
+
+double Membrane::energy(const Positions& x, double dt_s) const {
+  const double nu = material_.poisson_ratio, plane = material_.young_mpa / (1 - nu * nu);
+  const auto stretching = [&](const Double4& e00, const Double4& e01, const Double4& e11) {
+    const Double4 trace = e00 + e11;
+    return Double4((1 - nu) * (e00 * e00 + 2.0 * e01 * e01 + e11 * e11) + nu * trace * trace) * (0.5 * plane);
+  };
+  double sum = 0;
+  Deformation d;
+  for (const Group& g : groups_) {
+    if (!g.active) continue;
+    deform(g, x, false, d);
+    const Strain& e = d.strain;
+    Double4 density;
+    if (material_.elastic_law == ElasticLaw::st_venant_kirchhoff) {
+      density = stretching(e.e00, e.e01, e.e11);
+    } else {
+      const Lame l = lame(material_);
+      const Double4 c00 = 1.0 + 2.0 * e.e00, c01 = 2.0 * e.e01, c11 = 1.0 + 2.0 * e.e11;
+      const Double4 J = root(most(c00 * c11 - c01 * c01, Double4{} + 1e-9));
+      density = 0.5 * l.mu * (c00 + c11 - 2.0) - l.mu * (J - 1.0) + 0.5 * l.lambda * (J - 1.0) * (J - 1.0);
+    }
+    density += material_.viscosity_s / dt_s * stretching(e.e00 - g.past00, e.e01 - g.past01, e.e11 - g.past11);
+    sum += lane_sum(g.weight * density, g.lanes);
+  }
+  return sum;
+}
+
+Vec3 Membrane::rest_squared_lengths(int face) const {
+  const Group& g = groups_[static_cast<std::size_t>(face / 4)];
+  const int l = face % 4;
+  Eigen::Matrix2d inverse;
+  inverse << g.b00[l], g.b01[l], g.b10[l], g.b11[l];
+  const Eigen::Matrix2d edges = inverse.inverse();
+  return {edges.col(0).squaredNorm(), (edges.col(1) - edges.col(0)).squaredNorm(), edges.col(1).squaredNorm()};
+}
+
+double Membrane::elastic_strain(const Positions& x, int face) const {
+  Deformation d;
+  deform(groups_[static_cast<std::size_t>(face / 4)], x, false, d);
+  return norm(d.strain)[face % 4];
+}
+
+}  // namespace formwright

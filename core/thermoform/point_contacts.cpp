@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thermoform/point_contacts.h"
+
+#include <algorithm>
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "geometry/point_distance.h"
+
+namespace formwright {
+namespace {
+
+constexpr double offset_cells = 1 << 19;
+
+std::uint64_t key(int x, int y, int z) {
+  return static_cast<std::uint64_t>(z & 0xfffff) << 40 | static_cast<std::uint64_t>(y & 0xfffff) << 20 | static_cast<std::uint64_t>(x & 0xfffff);
+}
+int cell_of(double value, double size) { return static_cast<int>(std::clamp(std::floor(value / size) + offset_cells, 0.0, 2 * offset_cells - 1)); }
+
+/// First moment at which a triangle, its corners going straight from a to b, comes within `radius` of `q`.
+struct Touch {
+  double fraction;
+  Vec3 barycentric;
+};
+std::optional<Touch> first_touch(const Vec3& q, const Vec3 (&a)[3], const Vec3 (&b)[3], double radius, double tolerance) {
+  double speed = 0;
+  for (int k = 0; k < 3; ++k) speed = std::max(speed, (b[k] - a[k]).norm());
+  double t = 0;
+  for (;;) {
+    const Vec3 c[3] = {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2])};
+    const NearestPoint nearest = nearest_on_triangle(q, c[0], c[1], c[2]);
+    const double clear = nearest.distance - radius;
+    if (clear <= tolerance) return Touch{t, nearest.barycentric};
+    if (t >= 1 || speed == 0) return std::nullopt;
+    t = std::min(1.0, t + 0.999 * clear / speed);
+  }
+}
+
+}  // namespace
+
+PointContacts::PointContacts(std::vector<Vec3> points, double cell_mm, double stiffness)
+    : points_(std::move(points)), used_(points_.size()), cell_mm_(cell_mm), stiffness_(stiffness) {
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Vec3& p = points_[i];
+    cells_.push_back({key(cell_of(p.x(), cell_mm_), cell_of(p.y(), cell_mm_), cell_of(p.z(), cell_mm_)), static_cast<int>(i)});
+  }
+  std::sort(cells_.begin(), cells_.end(), [](const Cell& a, const Cell& b) { return a.key != b.key ? a.key < b.key : a.point < b.point; });
+}
+
+int PointContacts::find(const Triangles& F, const Positions& from, const Positions& to, std::span<const double> thickness_mm,
+                        const std::vector<char>& near, double tolerance_mm) {
+  if (points_.empty()) return 0;
+  struct Candidate {
+    double fraction;
+    PointContact contact;
+  };
+  std::vector<Candidate> found;
+  for (int f = 0; f < static_cast<int>(F.rows()); ++f) {
+    if (!near[static_cast<std::size_t>(f)]) continue;
+    const double radius = 0.5 * thickness_mm[static_cast<std::size_t>(f)], reach = radius + tolerance_mm;
+    Vec3 a[3], b[3], lower = Vec3::Constant(1e300), upper = Vec3::Constant(-1e300);
+    for (int k = 0; k < 3; ++k) {
+      a[k] = from.row(F(f, k));
+      b[k] = to.row(F(f, k));
+      lower = lower.cwiseMin(a[k]).cwiseMin(b[k]);
+      upper = upper.cwiseMax(a[k]).cwiseMax(b[k]);
+    }
+    lower.array() -= reach;
+    upper.array() += reach;
+    const int x0 = cell_of(lower.x(), cell_mm_), x1 = cell_of(upper.x(), cell_mm_);
+    for (int z = cell_of(lower.z(), cell_mm_); z <= cell_of(upper.z(), cell_mm_); ++z)
+      for (int y = cell_of(lower.y(), cell_mm_); y <= cell_of(upper.y(), cell_mm_); ++y) {
+        const auto begin = std::lower_bound(cells_.begin(), cells_.end(), key(x0, y, z), [](const Cell& c, std::uint64_t k) { return c.key < k; });
+        const std::uint64_t last = key(x1, y, z);
+        for (auto it = begin; it != cells_.end() && it->key <= last; ++it) {
+          if (used_[static_cast<std::size_t>(it->point)]) continue;
+          const Vec3& q = points_[static_cast<std::size_t>(it->point)];
+          if ((q.array() < lower.array()).any() || (q.array() > upper.array()).any()) continue;
+          const auto touch = first_touch(q, a, b, radius, tolerance_mm);
+          if (!touch) continue;
+          Vec3 place = Vec3::Zero();
+          for (int k = 0; k < 3; ++k) place += touch->barycentric[k] * (a[k] + touch->fraction * (b[k] - a[k]));
+          found.push_back({touch->fraction, {it->point, f, touch->barycentric, place}});
+        }
+      }
+  }
+  // A point met by several faces belongs to the one that met it first.
+  std::sort(found.begin(), found.end(), [](const Candidate& a, const Candidate& b) {
+    if (a.contact.point != b.contact.point) return a.contact.point < b.contact.point;
+    return a.fraction != b.fraction ? a.fraction < b.fraction : a.contact.face < b.contact.face;
+  });
+  int added = 0;
+  for (const Candidate& candidate : found) {
+    char& used = used_[static_cast<std::size_t>(candidate.contact.point)];
+    if (used) continue;
+    used = 1;
+    contacts_.push_back(candidate.contact);
+    ++added;
+  }
+  return added;
+}
+
+void PointContacts::roll_back(std::size_t count) {
+  for (std::size_t i = count; i < contacts_.size(); ++i) used_[static_cast<std::size_t>(contacts_[i].point)] = 0;
+  contacts_.resize(count);
+}
+
+void PointContacts::add_forces(const Triangles& F, const Positions& x, Positions& force, BlockMatrix* matrix) const {
+  for (const PointContact& contact : contacts_) {
+    Vec3 here = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) here += contact.barycentric[k] * x.row(F(contact.face, k)).transpose();
+    const Vec3 pull = stiffness_ * (contact.place - here);
+    for (int a = 0; a < 3; ++a) {
+      force.row(F(contact.face, a)) += contact.barycentric[a] * pull.transpose();
+      if (!matrix) continue;
+      for (int b = 0; b < 3; ++b) {
+        const auto value = static_cast<float>(stiffness_ * contact.barycentric[a] * contact.barycentric[b]);
+        auto& block = matrix->block(matrix->slot(F(contact.face, a), F(contact.face, b)));
+        for (int j = 0; j < 3; ++j) block[static_cast<std::size_t>(j)][j] += value;
+      }
+    }
+  }
+}
+
+}  // namespace formwright

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Sharp points of the mould that have met the inside of a sheet triangle: each is glued there by a stiff spring, as
+// vertices are glued when they touch.
+#include <span>
+#include <vector>
+
+#include "thermoform/block_matrix.h"
+#include "thermoform/membrane.h"
+
+namespace formwright {
+
+struct PointContact {
+  int point = -1, face = -1;
+  Vec3 barycentric;
+  Vec3 place;  // where that point of the face is held
+};
+
+class PointContacts {
+ public:
+  /// `points`: at rest, as the mould is. `cell_mm`: about an edge of the sheet's triangles. `stiffness`: N/mm.
+  PointContacts(std::vector<Vec3> points, double cell_mm, double stiffness);
+
+  /// Finds points that faces of `F` meet while their corners go straight from `from` to `to`; `radius_mm` (m) is half the
+  /// thickness, `near` says which faces are worth testing. New contacts are appended. Returns their number.
+  int find(const Triangles& F, const Positions& from, const Positions& to, std::span<const double> thickness_mm, const std::vector<char>& near,
+           double tolerance_mm);
+
+  /// Adds the springs' forces and, unless null, their stiffness.
+  void add_forces(const Triangles& F, const Positions& x, Positions& force, BlockMatrix* matrix) const;
+
+  const std::vector<PointContact>& contacts() const { return contacts_; }
+  std::size_t point_count() const { return points_.size(); }
+  const std::vector<Vec3>& points() const { return points_; }
+  /// Forgets the contacts found since there were `count` of them.
+  void roll_back(std::size_t count);
+
+ private:
+  struct Cell {
+    std::uint64_t key;
+    int point;
+  };
+  std::vector<Vec3> points_;
+  std::vector<Cell> cells_;  // sorted by key
+  std::vector<char> used_;
+  std::vector<PointContact> contacts_;
+  double cell_mm_, stiffness_;
+};
+
+}  // namespace formwright

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thermoform/sheet_dynamics.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace formwright {
+namespace {
+
+constexpr double cg_tolerance = 0.03;      // of Newton's directions: the next iteration mends the rest
+constexpr int most_cg_iterations = 400;
+constexpr int most_newton_iterations = 12;
+constexpr double settled_share = 0.02;     // of the step's limit: an increment this small ends the iteration
+
+MembraneMaterial material_of(const ThermoformOptions& o) {
+  return {o.elastic_law, o.yield_rule, o.young_modulus_pa * 1e-6, o.poisson_ratio, o.creep_per_s, o.yield_strain, o.viscosity_s, o.flow_stop_mm};
+}
+
+double shortest_edge(const SheetMesh& sheet) {
+  const Vec2 a = sheet.flat_mm.row(sheet.F(0, 0)), b = sheet.flat_mm.row(sheet.F(0, 1)), c = sheet.flat_mm.row(sheet.F(0, 2));
+  return std::min({(a - b).norm(), (b - c).norm(), (c - a).norm()});
+}
+
+BlockMatrix make_matrix(const SheetMesh& sheet, const HingeBending* bending) {
+  const int n = static_cast<int>(sheet.flat_mm.rows());
+  if (bending) return {n, bending->vertices(), 4};
+  return {n, std::span(sheet.F.data(), static_cast<std::size_t>(sheet.F.size())), 3};
+}
+
+std::vector<Vec3> sharp_points(const MouldContact* contact, double edge_mm) {
+  if (!contact) return {};
+  return contact->sharp_points(edge_mm, 0.1, 0.5 * edge_mm);
+}
+
+}  // namespace
+
+SheetDynamics::SheetDynamics(const SheetMesh& sheet, const ThermoformOptions& options, double height_mm, std::shared_ptr<const MouldContact> contact)
+    : sheet_(sheet),
+      options_(options),
+      contact_(std::move(contact)),
+      membrane_(sheet.flat_mm, sheet.F, options.sheet_thickness_mm, material_of(options)),
+      points_(sharp_points(contact_.get(), shortest_edge(sheet)), shortest_edge(sheet), 50 * options.young_modulus_pa * 1e-6 * options.sheet_thickness_mm),
+      cg_(static_cast<int>(sheet.flat_mm.rows())),
+      edge_mm_(shortest_edge(sheet)) {
+  const Eigen::Index n = sheet.flat_mm.rows();
+  if (options.bending)
+    bending_ = std::make_unique<HingeBending>(sheet.F, static_cast<int>(n), options.young_modulus_pa * 1e-6, options.poisson_ratio, options.viscosity_s);
+  matrix_ = make_matrix(sheet, bending_.get());
+  membrane_.use_matrix(matrix_);
+  x_.resize(n, 3);
+  x_.leftCols(2) = sheet.flat_mm;
+  x_.col(2).setConstant(height_mm);
+  v_ = Positions::Zero(n, 3);
+  mass_.assign(static_cast<std::size_t>(n), 0);
+  for (int f = 0; f < membrane_.face_count(); ++f)
+    for (int k = 0; k < 3; ++k) mass_[static_cast<std::size_t>(sheet.F(f, k))] += options.density_kg_per_m3 * 1e-12 * membrane_.volume_mm3(f) / 3;
+  for (const double m : mass_) mass_total_ += m;
+  held_ = sheet.clamped;
+  contact_time_.assign(static_cast<std::size_t>(n), -1);
+  for (std::size_t i = 0; i < held_.size(); ++i)
+    if (held_[i]) contact_time_[i] = 0;
+  known_.resize(static_cast<std::size_t>(n));
+  collect_free();
+}
+
+void SheetDynamics::collect_free() {
+  free_.clear();
+  for (std::size_t i = 0; i < held_.size(); ++i)
+    if (!held_[i]) free_.push_back(static_cast<int>(i));
+}
+
+void SheetDynamics::add_velocity(const Vec3& mm_per_s) {
+  for (const int i : free_) v_.row(i) += mm_per_s.transpose();
+}
+
+std::vector<double> SheetDynamics::vertex_thickness_mm(const Positions& x) const {
+  std::vector<double> volume(held_.size()), area(held_.size());
+  for (int f = 0; f < membrane_.face_count(); ++f) {
+    const Vec3 a = x.row(sheet_.F(f, 0)), b = x.row(sheet_.F(f, 1)), c = x.row(sheet_.F(f, 2));
+    const double face_area = 0.5 * (b - a).cross(c - a).norm();
+    for (int k = 0; k < 3; ++k) {
+      volume[static_cast<std::size_t>(sheet_.F(f, k))] += membrane_.volume_mm3(f);
+      area[static_cast<std::size_t>(sheet_.F(f, k))] += face_area;
+    }
+  }
+  for (std::size_t i = 0; i < volume.size(); ++i) volume[i] /= std::max(area[i], 1e-12);
+  return volume;
+}
+
+void SheetDynamics::assemble(const Positions& x, double dt_s, const StepLoad& load, Positions& force, BlockMatrix* matrix) {
+  const int n = static_cast<int>(x.rows());
+  for (int i = 0; i < n; ++i) force.row(i) << 0, 0, -mass_[static_cast<std::size_t>(i)] * load.gravity_mm_per_s2;
+  if (matrix) matrix->set_zero();
+  membrane_.add_forces(x, dt_s, 0, n, force, matrix);
+  if (bending_) bending_->add_forces(x, dt_s, force, matrix);
+  if (load.pressure_mpa != 0)
+    for (int f = 0; f < membrane_.face_count(); ++f) {
+      // The gradient of the volume under the face: a third of its area vector for each corner.
+      const int a = sheet_.F(f, 0), b = sheet_.F(f, 1), c = sheet_.F(f, 2);
+      if (held_[static_cast<std::size_t>(a)] && held_[static_cast<std::size_t>(b)] && held_[static_cast<std::size_t>(c)]) continue;
+      const Vec3 pa = x.row(a), pb = x.row(b), pc = x.row(c);
+      const Vec3 push = -load.pressure_mpa / 6 * (pb - pa).cross(pc - pa);
+      force.row(a) += push.transpose();
+      force.row(b) += push.transpose();
+      force.row(c) += push.transpose();
+    }
+  points_.add_forces(sheet_.F, x, force, matrix);
+}
+
+Positions SheetDynamics::forces(const Positions& x, double dt_s, const StepLoad& load, BlockMatrix* matrix) {
+  Positions force(x.rows(), 3);
+  membrane_.begin_step(x_, held_);
+  if (bending_) bending_->begin_step(x_, membrane_.thickness_mm());
+  assemble(x, dt_s, load, force, matrix);
+  return force;
+}
+
+int SheetDynamics::find_contacts(const Positions& from, Positions& to, const std::vector<double>& radius_mm) {
+  if (!contact_) return 0;
+  int found = 0;
+  if (points_.point_count() > 0) {
+    // Only faces near the mould: no point of a face is farther from a corner than its longest edge.
+    std::vector<char> near(static_cast<std::size_t>(membrane_.face_count()));
+    for (int f = 0; f < membrane_.face_count(); ++f) {
+      bool all_held = true, close = false;
+      double longest = 0;
+      for (int k = 0; k < 3; ++k) longest = std::max(longest, (from.row(sheet_.F(f, k)) - from.row(sheet_.F(f, (k + 1) % 3))).norm());
+      for (int k = 0; k < 3; ++k) {
+        const auto v = static_cast<std::size_t>(sheet_.F(f, k));
+        all_held &= held_[v] != 0;
+        const double move = (to.row(sheet_.F(f, k)) - from.row(sheet_.F(f, k))).norm();
+        close |= known_[v].at(from.row(sheet_.F(f, k)).transpose()) < longest + 2 * move + options_.sheet_thickness_mm;
+      }
+      near[static_cast<std::size_t>(f)] = !all_held && close;
+    }
+    found += points_.find(sheet_.F, from, to, membrane_.thickness_mm(), near, contact_->tolerance_mm());
+  }
+  for (const int i : free_) {
+    const auto v = static_cast<std::size_t>(i);
+    const Vec3 a = from.row(i), b = to.row(i);
+    const auto touch = contact_->first_touch(a, b, radius_mm[v], known_[v]);
+    if (!touch) continue;
+    to.row(i) = (a + *touch * (b - a)).transpose();
+    held_[v] = 2;  // in this step
+    ++found;
+  }
+  return found;
+}
+
+SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, double most_move_mm, Context& context) {
+  const std::size_t points_before = points_.contacts().size();
+  Stopwatch watch;
+  membrane_.begin_step(x_, held_);
+  if (bending_) bending_->begin_step(x_, membrane_.thickness_mm());
+  std::vector<double> radius = vertex_thickness_mm(x_);
+  for (double& r : radius) r *= 0.5;
+  const Positions from = x_;
+  Positions x = x_, force(x_.rows(), 3);
+  BlockVector right_side(held_.size()), direction(held_.size());
+  const bool has_guess = guess_.rows() == x_.rows();
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    if (sheet_.clamped[static_cast<std::size_t>(i)]) x.row(i) += load.clamp_shift.transpose();
+    else if (!held_[static_cast<std::size_t>(i)]) {
+      if (has_guess) x.row(i) = guess_.row(i);
+      else x.row(i) += dt_s * v_.row(i);
+    }
+  }
+  guess_.resize(0, 3);
+  const double inertia = load.quasi_static ? 0 : 1 / (dt_s * dt_s);
+  statistics_.seconds_assembly += watch.lap();
+
+  const auto give_up = [&](Outcome outcome) {
+    points_.roll_back(points_before);
+    for (char& held : held_)
+      if (held == 2) held = 0;
+    collect_free();
+    ++statistics_.rejected_steps;
+    return outcome;
+  };
+  double moved = 0;
+  bool settled = free_.empty();
+  for (int iteration = 0; !settled; ++iteration) {
+    context.check_cancelled();
+    if (iteration == most_newton_iterations) return give_up(Outcome::not_converged);
+    watch.lap();
+    assemble(x, dt_s, load, force, &matrix_);
+    for (const int i : free_) {
+      const auto v = static_cast<std::size_t>(i);
+      const double m = mass_[v] * inertia;
+      const Vec3 residual = force.row(i).transpose() - m * (x.row(i) - from.row(i) - dt_s * v_.row(i)).transpose();
+      right_side[v] = Float4{static_cast<float>(residual.x()), static_cast<float>(residual.y()), static_cast<float>(residual.z()), 0};
+      auto& diagonal = matrix_.block(matrix_.diagonal_slot(i));
+      for (std::size_t k = 0; k < 3; ++k) diagonal[k][k] += static_cast<float>(m);
+    }
+    statistics_.seconds_assembly += watch.lap();
+    statistics_.cg_iterations += cg_.solve(matrix_, right_side, free_, cg_tolerance, most_cg_iterations, direction);
+    ++statistics_.newton_iterations;
+    statistics_.seconds_linear += watch.lap();
+
+    double increment_squared = 0, moved_squared = 0;
+    for (const int i : free_) {
+      const Float4& d = direction[static_cast<std::size_t>(i)];
+      const Vec3 delta(d[0], d[1], d[2]);
+      x.row(i) += delta.transpose();
+      increment_squared = std::max(increment_squared, delta.squaredNorm());
+      moved_squared = std::max(moved_squared, (x.row(i).transpose() - from.row(i).transpose() - load.clamp_shift).squaredNorm());
+    }
+    moved = std::sqrt(moved_squared);
+    if (!std::isfinite(increment_squared)) return give_up(Outcome::not_converged);
+    if (moved > 1.5 * most_move_mm) return give_up(Outcome::moved_too_far);
+    settled = std::sqrt(increment_squared) < settled_share * options_.step_mm;
+    const int touched = find_contacts(from, x, radius);
+    statistics_.seconds_contact += watch.lap();
+    if (touched > 0) {
+      collect_free();
+      settled = free_.empty();
+    }
+  }
+  // Accepted.
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    if (held_[i] == 2) {
+      held_[i] = 1;
+      contact_time_[i] = time_ + dt_s;
+      v_.row(row).setZero();
+    } else if (!held_[i]) {
+      v_.row(row) = (x.row(row) - from.row(row)) / dt_s;
+    }
+  }
+  membrane_.end_step(x, dt_s);
+  x_ = std::move(x);
+  time_ += dt_s;
+  last_move_ = moved;
+  last_step_ = dt_s;
+  ++statistics_.steps;
+  return Outcome::done;
+}
+
+}  // namespace formwright

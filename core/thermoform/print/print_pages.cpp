@@ -89,8 +89,7 @@ PageLayout page_layout(const ThermoformPrintOptions& options) {
     for (const bool landscape : {false, true}) {
       const Vec2 turned = landscape ? Vec2(paper.y(), paper.x()) : paper;
       const Vec2 usable = turned.array() - 2 * (options.paper_margin_mm + frame_mm);
-      if (usable.minCoeff() <= options.overlap_mm + 10)
-        throw Error(ErrorCode::invalid_input, "overlap_mm", "The margin and the overlap leave less than 10 mm of the paper: make them smaller, or choose larger paper.");
+      // The widest margins leave 100 mm of the smallest paper, and overlaps end at 50 mm.
       const Division x = divide(sheet.x(), usable.x(), options.overlap_mm), y = divide(sheet.y(), usable.y(), options.overlap_mm);
       const long long pages = static_cast<long long>(x.count) * y.count;
       if (pages >= fewest) continue;

@@ -25,7 +25,7 @@ struct PageLayout {
 
 /// The way of turning the paper that needs fewer pages, upright when that does not matter. Tiles are of equal size and
 /// have exactly options.overlap_mm in common.
-/// Throws Error{invalid_input}: a margin or an overlap that leaves nothing of the paper, more than 400 pages.
+/// Throws Error{invalid_input, "paper"}: more than 400 pages.
 PageLayout page_layout(const ThermoformPrintOptions& options);
 
 /// All tiles of `picture` (the print without marks, not mirrored), then those of the frame's template where marks are

@@ -12,7 +12,7 @@
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-LIBRARIES=(headers zlib libpng pugixml minizip stb tinyobjloader tinygltf googletest)
+LIBRARIES=(headers zlib libpng libharu pugixml minizip stb tinyobjloader tinygltf googletest)
 JOBS="${FORMWRIGHT_JOBS:-$(nproc)}"
 
 mapfile -t WASM_FLAGS <"$FORMWRIGHT_ROOT/cmake/wasm_flags.txt"
@@ -36,13 +36,15 @@ prepare_sources() {
 
 # Unpacks a Debian source package, patches applied; sets SOURCE to its folder.
 # The security archive drops sources that have moved on to the main one.
-fetch_source() {  # package
-  local folder="$SOURCES/$1"
+# "--tar-only": the program's own archive, without Debian's patches.
+fetch_source() {  # package, [--tar-only]
+  local folder="$SOURCES/$1" tar_only=("${@:2}")
   rm -rf "$folder"
   mkdir -p "$folder"
   (
     cd "$folder"
-    apt-get -qq source --only-source "$1" || apt-get -qq source --only-source "$1/$(host_codename)"
+    apt-get -qq source "${tar_only[@]}" --only-source "$1" || apt-get -qq source "${tar_only[@]}" --only-source "$1/$(host_codename)"
+    [ ${#tar_only[@]} -eq 0 ] || tar -xf ./*.orig.tar.*
   ) >"$folder/log" 2>&1 || {
     tail -n 5 "$folder/log"
     fail "the source of $1 could not be fetched" "check the network and run this script again"
@@ -109,6 +111,14 @@ build_libpng() {
   fetch_source libpng1.6
   cmake_install "$SOURCE" -DPNG_SHARED=OFF -DPNG_TESTS=OFF -DPNG_ARM_NEON=off -DPNG_INTEL_SSE=off \
     -DZLIB_INCLUDE_DIR="$PREFIX/include" -DZLIB_LIBRARY="$PREFIX/lib/libz.a"
+}
+
+build_libharu() {
+  # Mirrors have lost the archive of Debian's patches.
+  fetch_source libharu --tar-only
+  # Debian's configuration of it; its CMake file would look for a zlib and a libpng of the machine's.
+  install -D -m 644 -t "$PREFIX/include" "$SOURCE"/include/*.h /usr/include/hpdf_config.h
+  static_library hpdf -I"$PREFIX/include" -Wno-everything "$SOURCE"/src/*.c
 }
 
 build_pugixml() {

@@ -206,6 +206,7 @@ TEST(Membrane, rest_lengths_of_the_flow_agree_with_the_thesis) {
   const Positions x = shaken(sheet, 0.3, 7);
   membrane.begin_step(x, none_held(sheet));
   const double dt = 1e-3, a = dt * m.creep_per_s;
+  int flowing = 0;
   for (int f = 0; f < membrane.face_count(); f += 5) {
     Vec3 flat, now;  // squared lengths of 01, 12, 20
     for (int k = 0; k < 3; ++k) {
@@ -214,7 +215,8 @@ TEST(Membrane, rest_lengths_of_the_flow_agree_with_the_thesis) {
       now[k] = (x.row(i) - x.row(j)).squaredNorm();
     }
     const double size = membrane.elastic_strain(x, f);
-    ASSERT_GT(size, m.yield_strain);
+    if (size <= m.yield_strain) continue;
+    ++flowing;
     const double kept = (1 + a * m.yield_strain / size) / (1 + a);
     Membrane after(sheet.flat_mm, sheet.F, 1, m);
     after.begin_step(x, none_held(sheet));
@@ -222,6 +224,7 @@ TEST(Membrane, rest_lengths_of_the_flow_agree_with_the_thesis) {
     // Strain is linear in the squared lengths, so its plastic part moves them by the same share.
     EXPECT_LT((after.rest_squared_lengths(f) - (flat + (1 - kept) * (now - flat))).cwiseAbs().maxCoeff(), 1e-11);
   }
+  EXPECT_GT(flowing, 3);
 }
 
 TEST(Membrane, flow_ends_where_the_sheet_is_thin) {

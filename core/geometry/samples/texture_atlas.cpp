@@ -415,7 +415,7 @@ Bytes encode_png(const std::vector<Point>& image, int pixels) {
   const auto chunk = [&](const char* type, const std::vector<unsigned char>& data) {
     word(data.size());
     uLong crc = crc32(0, reinterpret_cast<const Bytef*>(type), 4);
-    crc = crc32(crc, data.data(), static_cast<uInt>(data.size()));
+    if (!data.empty()) crc = crc32(crc, data.data(), static_cast<uInt>(data.size()));  // of no bytes it would begin again
     for (int k = 0; k < 4; ++k) byte(static_cast<unsigned char>(type[k]));
     for (unsigned char v : data) byte(v);
     word(crc);

@@ -15,6 +15,8 @@ export const solverParts: readonly SolverPart[] = [
   { name: 'Boost', licence: 'BSL-1.0', use: 'server of the native worker', include: 'boost' },
   { name: 'nlohmann/json', licence: 'MIT', use: 'messages', include: 'nlohmann' },
   { name: 'fast_float', licence: 'MIT or Apache-2.0', use: 'numbers in files', include: 'fast_float' },
-  { name: 'libpng', licence: 'libpng-2.0', use: 'height maps', include: 'png' },
+  { name: 'libpng', licence: 'libpng-2.0', use: 'pictures', include: 'png' },
+  { name: 'libharu', licence: 'Zlib', use: 'pages to print', include: 'hpdf' },
+  { name: 'stb_image', licence: 'MIT or public domain', use: 'JPEG pictures', include: 'stb_image' },
   { name: 'zlib', licence: 'Zlib', use: 'compressed files', include: 'zlib' },
 ];

@@ -5,6 +5,7 @@
 #include "geometry/samples/samples.h"
 #include "job/mesh_operations.h"
 #include "job/relief_operation.h"
+#include "job/thermoform_mould_operation.h"
 
 namespace formwright {
 
@@ -12,7 +13,7 @@ const char* version() { return FORMWRIGHT_VERSION; }
 
 const std::vector<Operation>& operations() {
   static const std::vector<Operation> all = {relief_operation(), import_operation(), simplify_operation(), subdivide_operation(),
-                                             convert_operation()};
+                                             convert_operation(), thermoform_mould_operation()};
   return all;
 }
 

@@ -64,6 +64,7 @@ struct PlacedSolid {
 
 std::shared_ptr<const PlacedSolid> place_solid(const OperationCall& call, const LoadedModel& loaded, const Placement& placement, const ThermoformMouldOptions& options, Json& report) {
   Json placed = write_parameters(static_cast<const PlacementOptions&>(options));
+  placed["sheet_thickness_mm"] = options.sheet_thickness_mm;
   placed["foot_mm"] = write_parameters(options)["foot_mm"];
   placed["opening_mm"] = {options.clamp_opening_x_mm, options.clamp_opening_y_mm};
   const std::string family = "mould-solid:", key = family + loaded.key + ":" + placed.dump();
@@ -80,7 +81,7 @@ std::shared_ptr<const PlacedSolid> place_solid(const OperationCall& call, const 
   report["seconds_cut"] = watch.lap();
   {
     const auto span = call.context.span(0.5, 0.6, "Draft and undercuts");
-    solid->draft = draft_map(solid->mesh, draft_cells, call.context);
+    solid->draft = draft_map(solid->mesh, options.sheet_thickness_mm, draft_cells, call.context);
   }
   report["seconds_draft"] = watch.lap();
   std::shared_ptr<const PlacedSolid> kept = solid;

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <numeric>
 
 #include "base/parallel.h"
 #include "geometry/measures.h"
@@ -15,6 +17,9 @@ namespace {
 
 constexpr double to_degrees = 180 / std::numbers::pi;
 constexpr int direction_count = 6;  // pairs of opposite directions, 30 degrees apart
+constexpr double floor_deg = 30;       // cavities are measured at their floors: upright creases have no width
+constexpr double cavity_area_mm2 = 10;
+constexpr double overhang_deg = -60;  // a wall that leans in further is a ceiling
 constexpr std::size_t grain = 1024;
 
 /// Angle between a plane and the vertical, exact at 0 and 90 where the normal is.
@@ -74,14 +79,36 @@ std::string rounded_text(double value, const char* format = "%.0f") {
   return text;
 }
 
+/// The depth to width that floors of `cavity_area_mm2` together reach: single vertices in creases do not count.
+void deepest_cavity(DraftMap& map, const Eigen::VectorXd& areas) {
+  Eigen::VectorXd vertex_areas = Eigen::VectorXd::Zero(map.depth_to_width.size());
+  for (Eigen::Index f = 0; f < areas.size(); ++f)
+    for (const int v : map.mesh.F.row(f)) vertex_areas[v] += areas[f] / 3;
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(map.depth_to_width.size()));
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, std::greater<>(), [&](Eigen::Index v) { return map.depth_to_width[v]; });
+  double area = 0;
+  for (const Eigen::Index v : order) {
+    area += vertex_areas[v];
+    if (area < cavity_area_mm2) continue;
+    map.depth_to_width_max = map.depth_to_width[v];
+    map.deepest_mm = map.mesh.V.row(v);
+    return;
+  }
+}
+
 /// In a maker's words: which sides lock, where the sheet will not reach.
 void describe(DraftMap& map, const Positions& normals, const Eigen::VectorXd& areas) {
-  double locked = 0;
+  double locked = 0, hanging = 0;
+  for (Eigen::Index f = 0; f < areas.size(); ++f)
+    if (map.face_draft_deg[f] < overhang_deg) hanging += areas[f];
+  if (hanging > 0.005 * map.area_mm2)
+    map.sentences.push_back(rounded_text(hanging / 100, "%.1f") + " cm2 face down over an empty space: the sheet cannot get there.");
   for (const Side& side : sides) {
     double area = 0, lean = 0;
     for (Eigen::Index f = 0; f < areas.size(); ++f) {
       const double along = normals(f, 0) * side.x + normals(f, 1) * side.y, across = normals(f, 0) * side.y - normals(f, 1) * side.x;
-      if (map.face_draft_deg[f] >= -1 || along < std::abs(across)) continue;
+      if (map.face_draft_deg[f] >= -1 || map.face_draft_deg[f] < overhang_deg || along < std::abs(across)) continue;
       area += areas[f];
       lean -= areas[f] * map.face_draft_deg[f];
     }
@@ -90,12 +117,12 @@ void describe(DraftMap& map, const Positions& normals, const Eigen::VectorXd& ar
     map.sentences.push_back(std::string("The ") + side.name + " side leans in by " + rounded_text(lean / area) + " degrees over " + rounded_text(area / 100, "%.1f") +
                             " cm2: the shell will lock onto a rigid mould there.");
   }
-  if (locked == 0 && map.undercut_area_mm2 > 0.005 * map.area_mm2)
+  if (locked + hanging == 0 && map.undercut_area_mm2 > 0.005 * map.area_mm2)
     map.sentences.push_back(rounded_text(map.undercut_area_mm2 / 100, "%.1f") + " cm2 of the model lie below something else: the sheet cannot get there.");
   if (map.undercut_area_mm2 <= 0.005 * map.area_mm2) {
     if (map.below_3_deg_area_mm2 > 0.005 * map.area_mm2)
       map.sentences.push_back(rounded_text(map.below_3_deg_area_mm2 / 100, "%.1f") + " cm2 of wall have less than 3 degrees of draft: the shell will come off hard.");
-    else map.sentences.emplace_back("All walls lean outwards by 3 degrees or more: the shell will come off.");
+    else map.sentences.emplace_back("The walls lean outwards by 3 degrees or more: the shell will come off.");
   } else {
     map.sentences.emplace_back("Sink the model to its widest place, turn it, or plan to break the mould out.");
   }
@@ -135,7 +162,31 @@ HeightGrid height_grid(const TriangleMesh& solid, int cells, Context& context) {
   return grid;
 }
 
-double depth_to_width_at(const HeightGrid& grid, const Vec3& p) {
+HeightGrid closed_grid(const HeightGrid& grid, double width_mm) {
+  HeightGrid closed = grid;
+  const int radius = static_cast<int>(std::floor(0.5 * width_mm / grid.pitch_mm));
+  if (radius == 0) return closed;
+  const auto columns = static_cast<std::size_t>(grid.columns);
+  const auto pass = [&](bool along_rows, bool greatest) {
+    const std::vector<double> old = closed.height_mm;
+    for (int row = 0; row < grid.rows; ++row)
+      for (int column = 0; column < grid.columns; ++column) {
+        double& value = closed.height_mm[static_cast<std::size_t>(row) * columns + static_cast<std::size_t>(column)];
+        for (int k = -radius; k <= radius; ++k) {
+          const int r = along_rows ? row : row + k, c = along_rows ? column + k : column;
+          // Beside the grid is the plate when it grows; when it shrinks again, that must not eat the rim.
+          if (r < 0 || c < 0 || r >= grid.rows || c >= grid.columns) continue;
+          const double other = old[static_cast<std::size_t>(r) * columns + static_cast<std::size_t>(c)];
+          value = greatest ? std::max(value, other) : std::min(value, other);
+        }
+      }
+  };
+  pass(true, true), pass(false, true), pass(true, false), pass(false, false);
+  return closed;
+}
+
+double depth_to_width_at(const HeightGrid& grid, const Vec3& point, double least_width_mm) {
+  const Vec3 p(point.x(), point.y(), std::max(point.z(), grid.least_around(point.x(), point.y())));
   double best = 0;
   std::vector<Wall> left, right;
   for (int d = 0; d < direction_count; ++d) {
@@ -148,7 +199,7 @@ double depth_to_width_at(const HeightGrid& grid, const Vec3& p) {
     std::size_t i = 0, j = 0;
     while (i < left.size() && j < right.size()) {
       const double level = std::min(left[i].height_mm, right[j].height_mm);
-      best = std::max(best, (level - p.z()) / (left[i].distance_mm + right[j].distance_mm));
+      best = std::max(best, (level - p.z()) / std::max(least_width_mm, left[i].distance_mm + right[j].distance_mm));
       if (left[i].height_mm <= right[j].height_mm) ++i;
       else ++j;
     }
@@ -156,7 +207,7 @@ double depth_to_width_at(const HeightGrid& grid, const Vec3& p) {
   return best;
 }
 
-DraftMap draft_map(const TriangleMesh& solid, int cells, Context& context) {
+DraftMap draft_map(const TriangleMesh& solid, double sheet_thickness_mm, int cells, Context& context) {
   DraftMap map;
   map.mesh = without_base(solid);
   const Eigen::Index n = map.mesh.V.rows(), m = map.mesh.F.rows();
@@ -190,7 +241,7 @@ DraftMap draft_map(const TriangleMesh& solid, int cells, Context& context) {
     map.draft_min_deg = std::min(map.draft_min_deg, map.face_draft_deg[f]);
   }
   context.progress(0.4, "Measuring cavities");
-  const HeightGrid grid = height_grid(solid, cells, context);
+  const HeightGrid grid = closed_grid(height_grid(solid, cells, context), sheet_thickness_mm);
   map.draft_deg.resize(n);
   map.depth_to_width = Eigen::VectorXd::Zero(n);
   map.undercut.assign(static_cast<std::size_t>(n), 0);
@@ -201,12 +252,10 @@ DraftMap draft_map(const TriangleMesh& solid, int cells, Context& context) {
       const Vec3 p = map.mesh.V.row(row), normal = corner_normals.row(row);
       map.draft_deg[row] = draft_of(normal);
       map.undercut[v] = hidden(p, normal) ? 1 : 0;
-      if (!map.undercut[v]) map.depth_to_width[row] = depth_to_width_at(grid, p);
+      if (!map.undercut[v] && map.draft_deg[row] >= floor_deg) map.depth_to_width[row] = depth_to_width_at(grid, p, sheet_thickness_mm);
     }
   });
-  Eigen::Index deepest = 0;
-  if (n > 0) map.depth_to_width_max = map.depth_to_width.maxCoeff(&deepest);
-  if (n > 0) map.deepest_mm = map.mesh.V.row(deepest);
+  deepest_cavity(map, areas);
   describe(map, normals, areas);
   return map;
 }

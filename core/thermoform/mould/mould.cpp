@@ -13,6 +13,7 @@ namespace formwright {
 namespace {
 
 constexpr double snap_mm = 1e-6;              // placing rotates flat undersides by about 1e-14 mm
+constexpr double sink_step_mm = 1e-3;         // deeper, where the model touches the plate in points or lines
 constexpr double least_opening_mm2 = 20;      // a funnel of 5 mm
 constexpr double automatic_foot_mm = 1;
 constexpr double plaster_density_g_per_ml = 2.63;  // calcium sulphate hemihydrate
@@ -24,17 +25,43 @@ std::string millimetres(double value) {
   return text;
 }
 
+/// Whether a block around the model would be a manifold where the model meets the plate: around every vertex at z = 0,
+/// what rises above the plate is one fan, and leaves room for a flat face or goes on below.
+bool stands_cleanly(const TriangleMesh& mesh, const Adjacency& adjacency) {
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    if (mesh.V(v, 2) != 0) continue;
+    const auto outgoing = adjacency.outgoing(v);
+    int rising_edges = 0, ends_of_rise = 0, lower_or_flat = 0;
+    for (const int h : outgoing) {
+      const double z = mesh.V(adjacency.to(h), 2), next = mesh.V(adjacency.from(previous_halfedge(h)), 2);
+      if (z > 0) ++rising_edges;
+      if (z > 0 && next <= 0) ++ends_of_rise;
+      if (z <= 0 && next <= 0) ++lower_or_flat;  // a face at or below the plate
+      if (z > 0 && next < 0) ++lower_or_flat;    // passes through the plate
+      if (z < 0 && next > 0) ++lower_or_flat;
+    }
+    if (rising_edges > 0 && !adjacency.is_boundary_vertex(v) && (ends_of_rise != 1 || lower_or_flat == 0)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 TriangleMesh ready_for_plate(const TriangleMesh& placed, std::vector<std::string>& notes) {
   TriangleMesh mesh = placed;
   for (Eigen::Index i = 0; i < mesh.V.rows(); ++i)
     if (std::abs(mesh.V(i, 2)) < snap_mm) mesh.V(i, 2) = 0;
+  const Adjacency adjacency(mesh);
+  for (int attempt = 0; attempt < 4 && !stands_cleanly(mesh, adjacency); ++attempt) {
+    mesh.V.col(2).array() -= sink_step_mm;
+    for (Eigen::Index i = 0; i < mesh.V.rows(); ++i)
+      if (std::abs(mesh.V(i, 2)) < snap_mm) mesh.V(i, 2) = 0;
+  }
   const double top = mesh.V.rows() > 0 ? mesh.V.col(2).maxCoeff() : 0;
   std::vector<Vec3> points;
   std::vector<std::array<int, 3>> faces;
   double highest = 0;
-  for (const auto& loop : boundary_loops(Adjacency(mesh))) {
+  for (const auto& loop : boundary_loops(adjacency)) {
     double loop_top = mesh.V(loop.front(), 2);
     for (const int v : loop) loop_top = std::max(loop_top, mesh.V(v, 2));
     if (loop_top <= 0 || loop_top > top / 2) continue;  // cut away in any case, or not an underside
@@ -78,8 +105,15 @@ ExactSolid model_on_plate(const TriangleMesh& placed, const ThermoformMouldOptio
   if (!options.foot_mm && area < least_opening_mm2) foot_mm = automatic_foot_mm;
   if (foot_mm > 0) {
     const auto span = context.span(0.7, 1, "Drawing the foot down");
-    model = unite(model, model.section_prism(foot_mm, 0, context), context);
-    const double widened = base_area_mm2(model.mesh(), 0);
+    const double height = bounding_box(model.mesh()).size().z();
+    ExactSolid footed;
+    double widened = 0;
+    for (;; foot_mm *= 1.5) {
+      footed = unite(model, model.section_prism(foot_mm, 0, context), context);
+      widened = base_area_mm2(footed.mesh(), 0);
+      if (options.foot_mm || widened >= 2 * least_opening_mm2 || foot_mm > height / 8) break;
+    }
+    model = footed;
     if (!options.foot_mm)
       notes.push_back("The model touches the plate with " + std::to_string(std::lround(area)) + " mm2 only: below " + millimetres(foot_mm) + " its walls were drawn straight down, to " +
                       std::to_string(std::lround(widened)) + " mm2.");

@@ -12,8 +12,9 @@
 
 namespace formwright {
 
-/// `placed` (machine coordinates) made ready to be cut by the plate: vertices within a nanometre of z = 0 are put there,
-/// and holes in the model's lower half are closed straight down to below the plate. Says so in `notes`.
+/// `placed` (machine coordinates) made ready to be cut by the plate: vertices within a nanometre of z = 0 are put there;
+/// a model that touches the plate in points or lines, where the block around it would hang together by nothing, sinks
+/// by a micrometre or some; holes in its lower half are closed straight down to below the plate, and `notes` say so.
 TriangleMesh ready_for_plate(const TriangleMesh& placed, std::vector<std::string>& notes);
 
 /// The part of the placed model above the plate, with its foot. Throws Error{invalid_input}, `where` = "mould" or

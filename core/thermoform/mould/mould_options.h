@@ -54,7 +54,7 @@ struct ThermoformMouldOptions : ThermoformOptions {
       parameter("base_rim_mm", &ThermoformMouldOptions::base_rim_mm, "Base rim", unit::mm, 0, 100, "How far the base plate stands out beyond the model on each side.")
           .group("Mould").slider(0, 20),
       parameter("foot_mm", &ThermoformMouldOptions::foot_mm, "Foot", unit::mm, 0, 100,
-                "Below this height the walls run straight down to the plate, so that round undersides get a flat foot. Automatic: 1 mm where the model would touch the plate in hardly more than a point, else none.")
+                "Below this height the walls run straight down to the plate, so that round undersides get a flat foot. Automatic: 1 mm or little more where the model would touch the plate in hardly more than a point, else none.")
           .group("Mould").slider(0, 10),
       parameter("vents", &ThermoformMouldOptions::vents, "Vents", unit::none, 0, 100,
                 "Air holes through the mould where the sheet arrives last, found by simulation. 0 makes the mould without simulating.")

@@ -92,10 +92,12 @@ ExactSolid boolean(const ExactSolid& a, const ExactSolid& b, Boolean kind, Conte
     case Boolean::subtract: manifold = processing::corefine_and_compute_difference(first, second, result, watched); break;
     case Boolean::intersect: manifold = processing::corefine_and_compute_intersection(first, second, result, watched); break;
   }
-  if (!manifold)
+  const ExactSolid solid = manifold ? from_cgal(result) : ExactSolid();
+  // CGAL keeps two edges between the same vertices apart; a file of triangles cannot.
+  if (!manifold || !edges_manifold(solid.surface()))
     throw Error(ErrorCode::could_not_solve, "",
                 "The parts touch each other along an edge or at a point only, which no printable solid may: move the model by a fraction of a millimetre (sink_mm or turn_deg).");
-  return from_cgal(result);
+  return solid;
 }
 
 std::string millimetres(double value) {

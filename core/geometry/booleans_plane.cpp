@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "base/error.h"
@@ -142,6 +143,13 @@ std::vector<DirectedEdge> border_edges(const ExactSurface& surface) {
     i = end;
   }
   return border;
+}
+
+bool edges_manifold(const ExactSurface& surface) {
+  const std::vector<HalfEdge> halfedges = sorted_halfedges(surface);
+  for (std::size_t i = 2; i < halfedges.size(); ++i)
+    if (halfedges[i].lower == halfedges[i - 2].lower && halfedges[i].higher == halfedges[i - 2].higher) return false;
+  return true;
 }
 
 std::vector<std::array<int, 3>> planar_filling(const std::vector<ExactPoint>& points, const std::vector<DirectedEdge>& edges, int axis) {

@@ -35,6 +35,9 @@ ExactSurface clipped(const ExactSurface& surface, int axis, double offset_mm, bo
 /// Edges without a neighbour, in the direction of their faces.
 std::vector<std::array<int, 2>> border_edges(const ExactSurface& surface);
 
+/// No edge has more than two faces.
+bool edges_manifold(const ExactSurface& surface);
+
 /// Triangles that fill what `edges`, closed loops in the plane of `axis`, enclose (odd nesting); they face along +axis.
 /// Throws Error{could_not_solve} where loops cross.
 std::vector<std::array<int, 3>> planar_filling(const std::vector<ExactPoint>& points, const std::vector<std::array<int, 2>>& edges, int axis);

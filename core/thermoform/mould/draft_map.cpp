@@ -17,6 +17,8 @@ namespace {
 
 constexpr double to_degrees = 180 / std::numbers::pi;
 constexpr int direction_count = 6;  // pairs of opposite directions, 30 degrees apart
+constexpr double upright = 1e-9;       // of a unit normal: rounding tilts upright walls by less
+constexpr double least_ratio = 0.1;    // flatter hollows are none
 constexpr double floor_deg = 30;       // cavities are measured at their floors: upright creases have no width
 constexpr double cavity_area_mm2 = 10;
 constexpr double overhang_deg = -60;  // a wall that leans in further is a ceiling
@@ -52,11 +54,13 @@ TriangleMesh without_base(const TriangleMesh& solid) {
 struct Wall {
   double distance_mm, height_mm;
 };
-void climb(const HeightGrid& grid, const Vec3& p, const Vec2& direction, std::vector<Wall>& walls) {
+/// Only as far as walls could still make more of a cavity than `ratio`.
+void climb(const HeightGrid& grid, const Vec3& p, const Vec2& direction, double ratio, std::vector<Wall>& walls) {
   walls.clear();
   double highest = p.z();
   const Vec2 end = grid.lower_mm + grid.pitch_mm * Vec2(grid.columns, grid.rows);
-  for (double t = grid.pitch_mm;; t += grid.pitch_mm) {
+  const double reach = (grid.top_mm - p.z()) / ratio + 2 * grid.pitch_mm;
+  for (double t = grid.pitch_mm; t < reach && highest < grid.top_mm; t += grid.pitch_mm) {
     const Vec2 q = p.head<2>() + t * direction;
     if (q.x() < grid.lower_mm.x() || q.y() < grid.lower_mm.y() || q.x() > end.x() || q.y() > end.y()) return;
     // The least height around comes half a cell late on average, the step another half.
@@ -79,22 +83,25 @@ std::string rounded_text(double value, const char* format = "%.0f") {
   return text;
 }
 
-/// The depth to width that floors of `cavity_area_mm2` together reach: single vertices in creases do not count.
-void deepest_cavity(DraftMap& map, const Eigen::VectorXd& areas) {
-  Eigen::VectorXd vertex_areas = Eigen::VectorXd::Zero(map.depth_to_width.size());
-  for (Eigen::Index f = 0; f < areas.size(); ++f)
-    for (const int v : map.mesh.F.row(f)) vertex_areas[v] += areas[f] / 3;
-  std::vector<Eigen::Index> order(static_cast<std::size_t>(map.depth_to_width.size()));
+/// The depth to width that `cavity_area_mm2` of the grid together reach: single nodes in creases do not count.
+void deepest_cavity(DraftMap& map, const HeightGrid& grid, double least_width_mm, Context& context) {
+  const std::size_t count = grid.height_mm.size(), columns = static_cast<std::size_t>(grid.columns);
+  const auto node = [&](std::size_t i) {
+    return Vec3(grid.lower_mm.x() + grid.pitch_mm * static_cast<double>(i % columns), grid.lower_mm.y() + grid.pitch_mm * static_cast<double>(i / columns), grid.height_mm[i]);
+  };
+  std::vector<double> ratio(count, 0.0);
+  parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
+    context.check_cancelled();
+    for (std::size_t i = begin; i < end; ++i)
+      if (grid.height_mm[i] > 0) ratio[i] = depth_to_width_at(grid, node(i), least_width_mm);
+  });
+  const auto rank = static_cast<std::size_t>(std::ceil(cavity_area_mm2 / (grid.pitch_mm * grid.pitch_mm)));
+  if (rank >= count) return;
+  std::vector<std::size_t> order(count);
   std::iota(order.begin(), order.end(), 0);
-  std::ranges::stable_sort(order, std::greater<>(), [&](Eigen::Index v) { return map.depth_to_width[v]; });
-  double area = 0;
-  for (const Eigen::Index v : order) {
-    area += vertex_areas[v];
-    if (area < cavity_area_mm2) continue;
-    map.depth_to_width_max = map.depth_to_width[v];
-    map.deepest_mm = map.mesh.V.row(v);
-    return;
-  }
+  std::ranges::nth_element(order, order.begin() + static_cast<std::ptrdiff_t>(rank), [&](std::size_t a, std::size_t b) { return ratio[a] != ratio[b] ? ratio[a] > ratio[b] : a < b; });
+  map.depth_to_width_max = ratio[order[rank]];
+  map.deepest_mm = node(order[rank]);
 }
 
 /// In a maker's words: which sides lock, where the sheet will not reach.
@@ -159,6 +166,7 @@ HeightGrid height_grid(const TriangleMesh& solid, int cells, Context& context) {
       if (const auto hit = caster.first_hit(origin, -Vec3::UnitZ(), 0, top + 1)) grid.height_mm[i] = top - hit->distance;
     }
   });
+  grid.top_mm = *std::ranges::max_element(grid.height_mm);
   return grid;
 }
 
@@ -187,14 +195,14 @@ HeightGrid closed_grid(const HeightGrid& grid, double width_mm) {
 
 double depth_to_width_at(const HeightGrid& grid, const Vec3& point, double least_width_mm) {
   const Vec3 p(point.x(), point.y(), std::max(point.z(), grid.least_around(point.x(), point.y())));
-  double best = 0;
+  double best = least_ratio;
   std::vector<Wall> left, right;
   for (int d = 0; d < direction_count; ++d) {
     const double angle = std::numbers::pi * d / direction_count;
     const Vec2 direction(std::cos(angle), std::sin(angle));
-    climb(grid, p, direction, right);
+    climb(grid, p, direction, best, right);
     if (right.empty()) continue;
-    climb(grid, p, -direction, left);
+    climb(grid, p, -direction, best, left);
     // Both lists climb outwards: at each level, the nearest wall on either side that is as high.
     std::size_t i = 0, j = 0;
     while (i < left.size() && j < right.size()) {
@@ -204,7 +212,7 @@ double depth_to_width_at(const HeightGrid& grid, const Vec3& point, double least
       else ++j;
     }
   }
-  return best;
+  return best > least_ratio ? best : 0;
 }
 
 DraftMap draft_map(const TriangleMesh& solid, double sheet_thickness_mm, int cells, Context& context) {
@@ -216,7 +224,7 @@ DraftMap draft_map(const TriangleMesh& solid, double sheet_thickness_mm, int cel
   const RayCaster caster(solid);
   const double size = bounding_box(solid).diagonal(), lift = 1e-7 * size;
   const auto hidden = [&](const Vec3& p, const Vec3& normal) {
-    if (normal.z() < 0) return true;  // the solid itself lies above
+    if (normal.z() < -upright) return true;  // the solid itself lies above
     return caster.first_hit(p + lift * normal, Vec3::UnitZ(), 0, 2 * size).has_value();
   };
   map.face_draft_deg.resize(m);
@@ -255,7 +263,7 @@ DraftMap draft_map(const TriangleMesh& solid, double sheet_thickness_mm, int cel
       if (!map.undercut[v] && map.draft_deg[row] >= floor_deg) map.depth_to_width[row] = depth_to_width_at(grid, p, sheet_thickness_mm);
     }
   });
-  deepest_cavity(map, areas);
+  deepest_cavity(map, grid, sheet_thickness_mm, context);
   describe(map, normals, areas);
   return map;
 }

@@ -21,7 +21,7 @@ struct DraftMap {
 
   double area_mm2 = 0, undercut_area_mm2 = 0, below_3_deg_area_mm2 = 0;
   double draft_min_deg = 90;
-  double depth_to_width_max = 0;   // that 10 mm^2 of floor exceed
+  double depth_to_width_max = 0;   // that 10 mm^2 seen from above exceed
   Vec3 deepest_mm = Vec3::Zero();  // where that is
   std::vector<std::string> sentences;
 };
@@ -39,6 +39,7 @@ struct HeightGrid {
   double pitch_mm = 1;
   int columns = 0, rows = 0;
   std::vector<double> height_mm;  // row by row
+  double top_mm = 0;              // the greatest of them
 
   /// The least of the four nodes around a place; 0 outside. Beside an upright wall this is the floor, so that a line
   /// along the wall does not take it for two walls.
@@ -50,7 +51,7 @@ HeightGrid height_grid(const TriangleMesh& solid, int cells, Context& context);
 HeightGrid closed_grid(const HeightGrid& grid, double width_mm);
 
 /// The largest of (lower wall's height over `p`) / (distance between the walls) over six pairs of opposite directions; walls
-/// closer than `least_width_mm` count as that far apart.
+/// closer than `least_width_mm` count as that far apart. Below 0.1 it is 0.
 double depth_to_width_at(const HeightGrid& grid, const Vec3& p, double least_width_mm);
 
 }  // namespace formwright

@@ -22,6 +22,28 @@ struct Candidate {
   int vertex;
 };
 
+/// Per vertex: does it belong to a patch of equal lateness that nothing around is later than?
+std::vector<char> latest_patches(const Adjacency& adjacency, const Eigen::VectorXd& lateness) {
+  std::vector<char> latest(static_cast<std::size_t>(lateness.size()), 0), seen(latest);
+  for (int start = 0; start < static_cast<int>(lateness.size()); ++start) {
+    if (seen[static_cast<std::size_t>(start)]) continue;
+    seen[static_cast<std::size_t>(start)] = 1;
+    std::vector<int> patch{start};
+    bool highest = true;
+    for (std::size_t i = 0; i < patch.size(); ++i)
+      for (const int w : adjacency.neighbours(patch[i])) {
+        const double difference = lateness[w] - lateness[patch[i]];
+        if (difference > same_time_s) highest = false;
+        if (std::abs(difference) > same_time_s || seen[static_cast<std::size_t>(w)]) continue;
+        seen[static_cast<std::size_t>(w)] = 1;
+        patch.push_back(w);
+      }
+    if (highest)
+      for (const int v : patch) latest[static_cast<std::size_t>(v)] = 1;
+  }
+  return latest;
+}
+
 }  // namespace
 
 std::vector<Vent> find_vents(const TriangleMesh& solid, const FormedSheet& sheet, int count, double diameter_mm, double spacing_mm, Context& context) {
@@ -49,18 +71,15 @@ std::vector<Vent> find_vents(const TriangleMesh& solid, const FormedSheet& sheet
     lateness[i] = vent.contact_s < 0 ? last_s + 1 + vent.gap_mm : vent.contact_s;
   }
   const double clear_mm = 1.5 * diameter_mm;  // around the axis there must be model
+  const std::vector<char> latest = latest_patches(adjacency, lateness);
   std::vector<Candidate> candidates;
   for (int v = 0; v < static_cast<int>(n); ++v) {
     const Vent& vent = below[static_cast<std::size_t>(v)];
     if (adjacency.is_boundary_vertex(v) || vent.position_mm.z() <= 0) continue;  // the plate has its own holes
     const auto ring = adjacency.neighbours(v);
+    if (!latest[static_cast<std::size_t>(v)]) continue;
     double hollow = 0;
-    bool latest = !ring.empty();
-    for (const int w : ring) {
-      latest = latest && lateness[w] <= lateness[v] + same_time_s;
-      hollow += (sheet.mesh.V(w, 2) - sheet.mesh.V(v, 2)) / static_cast<double>(ring.size());
-    }
-    if (!latest) continue;
+    for (const int w : ring) hollow += (sheet.mesh.V(w, 2) - sheet.mesh.V(v, 2)) / static_cast<double>(ring.size());
     bool within = true;
     for (int k = 0; k < probes_around && within; ++k) {
       const double angle = 2 * std::numbers::pi * k / probes_around;

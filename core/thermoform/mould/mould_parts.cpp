@@ -82,7 +82,7 @@ MouldParts split_mould(const ExactSolid& solid, const ThermoformMouldOptions& op
 
   const Counts& cells = result.cells;
   const auto plane = [&](int axis, int i) { return box.lower[axis] + size[axis] * i / cells.at(static_cast<std::size_t>(axis)); };
-  const auto keys = find_keys(whole, box, cells, options.key_diameter_mm, options.key_clearance_mm, context);
+  const auto keys = find_keys(whole, box, cells, options.key_diameter_mm, options.key_clearance_mm, options.kind == MouldKind::negative, context);
   result.keys = static_cast<int>(keys.size());
 
   // Along each axis, one slab after the other off what is left.

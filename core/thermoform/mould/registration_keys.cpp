@@ -24,7 +24,7 @@ bool inside(const RayCaster& caster, const Vec3& p, double size) {
 }  // namespace
 
 std::vector<RegistrationKey> find_keys(const TriangleMesh& solid, const BoundingBox& box, const std::array<int, 3>& cells, double diameter_mm, double clearance_mm,
-                                       Context& context) {
+                                       bool upside_down, Context& context) {
   std::vector<RegistrationKey> keys;
   if (diameter_mm <= 0 || cells == std::array{1, 1, 1}) return keys;
   const PointDistance distance(solid);
@@ -56,8 +56,8 @@ std::vector<RegistrationKey> find_keys(const TriangleMesh& solid, const Bounding
             if (places.empty()) continue;
             const auto farthest = [&](const Vec3& from) { return *std::ranges::max_element(places, {}, [&](const Vec3& p) { return (p - from).squaredNorm(); }); };
             const Vec3 first = farthest(0.5 * (lower + upper)), second = farthest(first);
-            keys.push_back({axis, cell, first, d});
-            if ((second - first).norm() > 2 * clear) keys.push_back({axis, cell, second, d});
+            keys.push_back({axis, cell, first, d, axis == 2 && upside_down});
+            if ((second - first).norm() > 2 * clear) keys.push_back({axis, cell, second, d, axis == 2 && upside_down});
             break;
           }
         }
@@ -71,11 +71,17 @@ ExactSolid with_keys(const ExactSolid& part, const std::array<int, 3>& cell, con
     const double radius = key.diameter_mm / 2, length = pin_length_mm(key.diameter_mm);
     std::array<int, 3> upper = key.lower;
     ++upper.at(static_cast<std::size_t>(key.axis));
-    // Roots reach across the cut, so that no faces coincide.
-    if (cell == key.lower) added.push_back(turned_mesh(key.centre_mm, key.axis, {{-0.5 * length, radius}, {0.25 * length, radius}, {length, tip * radius}}, key_sides));
-    if (cell == upper)
-      removed.push_back(turned_mesh(key.centre_mm, key.axis,
-                                    {{-0.5 * length, radius + clearance_mm}, {0.25 * length, radius + clearance_mm}, {length + clearance_mm, tip * radius + clearance_mm}}, key_sides));
+    // A prism from within the part to just beyond the cut, so that no faces coincide, then a cone.
+    const auto shape = [&](double wider) {
+      std::vector<Ring> rings{{-0.5 * length, radius + wider}, {0.25 * length, radius + wider}, {length + wider, tip * radius + wider}};
+      if (key.points_down) {
+        std::ranges::reverse(rings);
+        for (Ring& ring : rings) ring.offset_mm *= -1;
+      }
+      return turned_mesh(key.centre_mm, key.axis, rings, key_sides);
+    };
+    if (cell == (key.points_down ? upper : key.lower)) added.push_back(shape(0));
+    if (cell == (key.points_down ? key.lower : upper)) removed.push_back(shape(clearance_mm));
   }
   pins = static_cast<int>(added.size());
   sockets = static_cast<int>(removed.size());

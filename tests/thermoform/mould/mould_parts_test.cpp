@@ -107,7 +107,7 @@ TEST(MouldParts, KeysFitIntoTheirSockets) {
   EXPECT_NEAR(parts.parts[0].size_mm.x(), 53 + 4, 1e-9);  // the pin stands out
   // Put together, nothing overlaps.
   const BoundingBox box = bounding_box(solid.mesh());
-  const auto keys = find_keys(solid.mesh(), box, {2, 1, 1}, 4, 0.2, context);
+  const auto keys = find_keys(solid.mesh(), box, {2, 1, 1}, 4, 0.2, false, context);
   ASSERT_EQ(keys.size(), 2u);
   int pins = 0, sockets = 0;
   const ExactSolid left = with_keys(solid.half(0, 0, false, context), {0, 0, 0}, keys, 0.2, pins, sockets, context);
@@ -116,15 +116,32 @@ TEST(MouldParts, KeysFitIntoTheirSockets) {
   EXPECT_GT((keys[0].centre_mm - keys[1].centre_mm).norm(), 40);
 }
 
+// Every part stands on a whole side, not on its pins, whichever way up it is printed.
+TEST(MouldParts, PinsPointUpOnTheBed) {
+  Context context;
+  ThermoformMouldOptions options;
+  options.printer_z_mm = 40;
+  const ExactSolid solid = negative_of("pyramid", 1000);
+  for (const MouldKind kind : {MouldKind::negative, MouldKind::positive}) {
+    options.kind = kind;
+    const MouldParts parts = split_mould(solid, options, context);
+    ASSERT_EQ(parts.parts.size(), 2u);
+    EXPECT_EQ(parts.keys, 2);
+    EXPECT_EQ(parts.parts[kind == MouldKind::negative ? 1 : 0].pins, 2);
+    for (const MouldPart& part : parts.parts) EXPECT_GT(base_area_mm2(part.mesh, 0), 106 * 106 - 1e4 - 1);
+    EXPECT_NEAR(total_volume(parts), solid.volume_mm3(), 1e-3 * solid.volume_mm3());
+  }
+}
+
 TEST(MouldParts, SmallerKeysInThinnerWalls) {
   Context context;
   // A square tube with walls of 8 mm.
   const ExactSolid tube = subtract(ExactSolid::from_mesh(box_mesh({-40, -20, 0}, {40, 20, 30}), "mesh", context), ExactSolid::from_mesh(box_mesh({-41, -12, 8}, {41, 12, 22}), "mesh", context), context);
   const BoundingBox box = bounding_box(tube.mesh());
-  const auto keys = find_keys(tube.mesh(), box, {2, 1, 1}, 4, 0.2, context);
+  const auto keys = find_keys(tube.mesh(), box, {2, 1, 1}, 4, 0.2, false, context);
   ASSERT_FALSE(keys.empty());
   EXPECT_LT(keys[0].diameter_mm, 4);
-  EXPECT_TRUE(find_keys(tube.mesh(), box, {2, 1, 1}, 40, 0.2, context).empty());
+  EXPECT_TRUE(find_keys(tube.mesh(), box, {2, 1, 1}, 40, 0.2, false, context).empty());
 }
 
 TEST(MouldParts, TurnsOnTheBedToSaveParts) {

@@ -95,6 +95,19 @@ TEST(Mould, CastOfTheNegativeIsThePositive) {
   }
 }
 
+// Rounded to doubles the mould is still a solid that passes every check of an input: no face crosses another.
+TEST(Mould, RoundingBreaksNothing) {
+  Context context;
+  for (const char* name : {"hemisphere", "star", "octopus", "bust", "cat"}) {
+    SCOPED_TRACE(name);
+    ThermoformMouldOptions options;
+    options.sink_mm = 7.3;
+    const Made made = make(placed_sample(name, 3000, options), options);
+    const double volume = made.mould.solid.volume_mm3();
+    EXPECT_NEAR(ExactSolid::from_mesh(made.mould.solid.mesh(), "mesh", context).volume_mm3(), volume, 1e-12 * volume);
+  }
+}
+
 TEST(Mould, TurningChangesNoVolume) {
   ThermoformMouldOptions options;
   options.foot_mm = 0;

@@ -59,10 +59,13 @@ ExactMesh to_cgal(const ExactSurface& surface) {
   return mesh;
 }
 
+/// Points and faces in an order of their own: CGAL's depends on hashes, which are other ones in WASM.
 ExactSolid from_cgal(const ExactMesh& mesh) {
   auto surface = std::make_shared<ExactSurface>();
+  std::vector<ExactMesh::Vertex_index> order(mesh.vertices().begin(), mesh.vertices().end());
+  std::ranges::stable_sort(order, [&](const auto v, const auto w) { return mesh.point(v) < mesh.point(w); });
   std::vector<int> index(mesh.num_vertices(), -1);
-  for (const auto v : mesh.vertices()) {
+  for (const auto v : order) {
     index[v.idx()] = static_cast<int>(surface->points.size());
     surface->points.push_back(mesh.point(v));
   }
@@ -70,8 +73,10 @@ ExactSolid from_cgal(const ExactMesh& mesh) {
     std::array<int, 3> face{};
     std::size_t k = 0;
     for (const auto v : mesh.vertices_around_face(mesh.halfedge(f))) face.at(k++) = index[v.idx()];
+    std::ranges::rotate(face, std::ranges::min_element(face));
     surface->faces.push_back(face);
   }
+  std::ranges::sort(surface->faces);
   if (surface->faces.empty()) return {};
   return ExactSolid(surface);
 }

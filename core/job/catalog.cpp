@@ -6,15 +6,15 @@
 #include "job/mesh_operations.h"
 #include "job/relief_operation.h"
 #include "job/thermoform_operations.h"
-#include "job/thermoform_texture_operation.h"
 
 namespace formwright {
 
 const char* version() { return FORMWRIGHT_VERSION; }
 
 const std::vector<Operation>& operations() {
-  static const std::vector<Operation> all = {relief_operation(), thermoform_simulate_operation(), thermoform_compare_operation(), thermoform_texture_operation(), import_operation(), simplify_operation(), subdivide_operation(),
-                                             convert_operation()};
+  static const std::vector<Operation> all = {
+      relief_operation(), thermoform_simulate_operation(), thermoform_texture_operation(), thermoform_mould_operation(), thermoform_compare_operation(),
+      import_operation(), simplify_operation(), subdivide_operation(), convert_operation()};
   return all;
 }
 

@@ -5,5 +5,7 @@
 
 namespace formwright {
 Operation thermoform_simulate_operation();  // the sheet, formed
+Operation thermoform_texture_operation();   // the print that lands on it
+Operation thermoform_mould_operation();     // what it is formed over
 Operation thermoform_compare_operation();   // against measured points
 }  // namespace formwright

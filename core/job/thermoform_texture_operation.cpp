@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "job/thermoform_texture_operation.h"
+#include "job/thermoform_operations.h"
 
 #include "geometry/io/mesh_io.h"
 #include "imaging/picture_reader.h"

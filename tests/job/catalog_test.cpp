@@ -87,7 +87,7 @@ TEST(RunJob, MakesOnlyWhatIsAskedFor) {
 TEST(RunJob, ReportsOnlyDeclaredFigures) {
   Session session;
   for (const Operation& operation : operations()) {
-    const Json message = {{"operation", operation.name}, {"inputs", {{"mesh", {{"sample", "star"}, {"vertices", 800}}}}}};
+    const Json message = {{"operation", operation.name}, {"inputs", {{operation.inputs.front().name, {{"sample", "star"}, {"vertices", 800}}}}}};
     const JobResult result = run_job(message, [](const std::string&) { return nullptr; }, session, {});
     ASSERT_FALSE(result.error) << operation.name << ": " << result.error->message;
     std::set<std::string> declared;

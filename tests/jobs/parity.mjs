@@ -65,6 +65,8 @@ function differences(name, a, b, tolerance, floor = 0) {
     return Math.abs(a - b) <= allowed ? [] : [`${name}: ${a} and ${b} differ by more than ${allowed}`];
   }
   if (Array.isArray(a) && Array.isArray(b) && a.length === b.length) return a.flatMap((item, i) => differences(`${name}[${i}]`, item, b[i], tolerance, floor));
+  const isObject = (value) => typeof value === 'object' && value !== null && !Array.isArray(value);
+  if (isObject(a) && isObject(b)) return [...new Set([...Object.keys(a), ...Object.keys(b)])].flatMap((key) => differences(`${name}.${key}`, a[key], b[key], tolerance, floor));
   return JSON.stringify(a) === JSON.stringify(b) ? [] : [`${name}: ${JSON.stringify(a)} and ${JSON.stringify(b)} differ`];
 }
 

@@ -54,6 +54,7 @@ struct WriteOptions {
   bool ascii = false;                     // STL and PLY as text
   std::span<const VertexColumn> columns;  // PLY, GLB; each with one value a vertex
   std::string material_library;           // OBJ: writes mtllib and usemtl; the file itself comes from write_mtl
+  bool object_per_group = false;          // 3MF: groups that share no vertices become objects of their own
   std::string name = "formwright";        // of the object, where the format has one
 };
 

@@ -15,9 +15,9 @@ namespace formwright {
 /// colours, texture groups UV. Several items become groups. Supports and beams are left out.
 ModelFile read_three_mf(const MeshSource& source);
 
-/// One object in mm. A face has one property: its material's texture, else the vertices' colours, else its base
-/// material. Positions are float32, as everything that slices has them, in the fewest digits. UV without a
-/// texture's picture, and groups, have no place in the format.
+/// In mm; one object, or one a group (WriteOptions::object_per_group). A face has one property: its material's texture,
+/// else the vertices' colours, else its base material. Positions are float32, as everything that slices has them, in
+/// the fewest digits. UV without a texture's picture has no place in the format.
 Bytes write_three_mf(const Model& model, const WriteOptions& options, Context& context);
 
 // ---- what the model parts say, for the reader ----

@@ -56,18 +56,27 @@ class ThreeMfWriter {
     std::vector<std::string> pieces{head()};
     const auto add = [&](std::vector<std::string> more) { std::ranges::move(more, std::back_inserter(pieces)); };
     const auto& [V, F] = model_.mesh;
-    add(format_rows(static_cast<std::size_t>(V.rows()), 56, context_, [&](TextOut& out, std::size_t i) {
-      const auto v = static_cast<Eigen::Index>(i);
-      out << "<vertex x=\"" << static_cast<float>(V(v, 0)) << "\" y=\"" << static_cast<float>(V(v, 1)) << "\" z=\"" << static_cast<float>(V(v, 2)) << "\"/>\n";
-    }));
-    pieces.emplace_back("</vertices>\n<triangles>\n");
-    add(format_rows(static_cast<std::size_t>(F.rows()), 56, context_, [&](TextOut& out, std::size_t i) {
-      const auto f = static_cast<Eigen::Index>(i);
-      out << "<triangle v1=\"" << F(f, 0) << "\" v2=\"" << F(f, 1) << "\" v3=\"" << F(f, 2) << '"';
-      properties(out, f);
-      out << "/>\n";
-    }));
-    pieces.emplace_back("</triangles>\n</mesh>\n</object>\n</resources>\n<build>\n<item objectid=\"1\"/>\n</build>\n</model>\n");
+    std::string items;
+    for (const Object& object : objects()) {
+      const auto written = [](const auto& list, std::size_t i) { return list.empty() ? static_cast<Eigen::Index>(i) : static_cast<Eigen::Index>(list[i]); };
+      const auto count = [](const auto& list, Eigen::Index all) { return list.empty() ? static_cast<std::size_t>(all) : list.size(); };
+      pieces.push_back("<object id=\"" + std::to_string(object.id) + "\" type=\"model\" name=\"" + xml_text(object.name) + "\">\n<mesh>\n<vertices>\n");
+      add(format_rows(count(object.vertices, V.rows()), 56, context_, [&](TextOut& out, std::size_t i) {
+        const Eigen::Index v = written(object.vertices, i);
+        out << "<vertex x=\"" << static_cast<float>(V(v, 0)) << "\" y=\"" << static_cast<float>(V(v, 1)) << "\" z=\"" << static_cast<float>(V(v, 2)) << "\"/>\n";
+      }));
+      pieces.emplace_back("</vertices>\n<triangles>\n");
+      const auto index = [&](Eigen::Index f, int k) { return object.vertices.empty() ? F(f, k) : local_vertex_[static_cast<std::size_t>(F(f, k))]; };
+      add(format_rows(count(object.faces, F.rows()), 56, context_, [&](TextOut& out, std::size_t i) {
+        const Eigen::Index f = written(object.faces, i);
+        out << "<triangle v1=\"" << index(f, 0) << "\" v2=\"" << index(f, 1) << "\" v3=\"" << index(f, 2) << '"';
+        properties(out, f);
+        out << "/>\n";
+      }));
+      pieces.emplace_back("</triangles>\n</mesh>\n</object>\n");
+      items += "<item objectid=\"" + std::to_string(object.id) + "\"/>\n";
+    }
+    pieces.push_back("</resources>\n<build>\n" + items + "</build>\n</model>\n");
 
     ZipWriter zip;
     zip.add("[Content_Types].xml", content_types, context_);
@@ -84,9 +93,39 @@ class ThreeMfWriter {
   }
 
  private:
-  // Ids: 1 the object, 2 base materials, 3 vertex colours, then for each texture its picture and its coordinates.
+  // Ids: 1 the object, 2 base materials, 3 vertex colours, then for each texture its picture and its coordinates, then
+  // further objects.
   static int picture_id(std::size_t texture) { return 4 + 2 * static_cast<int>(texture); }
   static int coordinates_id(std::size_t texture) { return picture_id(texture) + 1; }
+
+  /// What becomes an object of its own: rows of V and F, empty lists for all of them.
+  struct Object {
+    int id;
+    std::string name;
+    std::vector<int> vertices, faces;
+  };
+  std::vector<Object> objects() {
+    const std::size_t count = model_.group_names.size();
+    if (!options_.object_per_group || count < 2 || model_.face_group.empty()) return {{1, options_.name, {}, {}}};
+    std::vector<Object> objects;
+    for (std::size_t g = 0; g < count; ++g) objects.push_back({g == 0 ? 1 : picture_id(model_.textures.size()) + static_cast<int>(g), model_.group_names[g], {}, {}});
+    local_vertex_.resize(static_cast<std::size_t>(model_.mesh.V.rows()), -1);
+    std::vector<int> owner(local_vertex_.size(), -1);
+    for (std::size_t f = 0; f < model_.face_group.size(); ++f) {
+      const auto g = static_cast<std::size_t>(std::max(0, model_.face_group[f]));
+      objects[g].faces.push_back(static_cast<int>(f));
+      for (const int v : model_.mesh.F.row(static_cast<Eigen::Index>(f))) {
+        int& first = owner[static_cast<std::size_t>(v)];
+        if (first >= 0 && first != static_cast<int>(g)) return {{1, options_.name, {}, {}}};  // groups of one surface stay together
+        if (first >= 0) continue;
+        first = static_cast<int>(g);
+        local_vertex_[static_cast<std::size_t>(v)] = static_cast<int>(objects[g].vertices.size());
+        objects[g].vertices.push_back(v);
+      }
+    }
+    std::erase_if(objects, [](const Object& object) { return object.faces.empty(); });
+    return objects;
+  }
 
   /// A texture can be written if its picture is known and of a kind that 3MF holds.
   void prepare_textures() {
@@ -133,7 +172,6 @@ class ThreeMfWriter {
         out << "<m:tex2coord u=\"" << static_cast<float>(model_.UV(t, 0)) << "\" v=\"" << static_cast<float>(model_.UV(t, 1)) << "\"/>\n";
       out << "</m:texture2dgroup>\n";
     }
-    out << "<object id=\"1\" type=\"model\" name=\"" << xml_text(options_.name) << "\">\n<mesh>\n<vertices>\n";
     return std::move(out.text());
   }
 
@@ -154,7 +192,7 @@ class ThreeMfWriter {
   const WriteOptions& options_;
   const Context& context_;
   std::vector<std::string> texture_paths_;  // "" for those that are not written
-  std::vector<int> colour_of_vertex_;
+  std::vector<int> colour_of_vertex_, local_vertex_;  // local_vertex_: its number within its object
   bool textured_ = false;
 };
 

@@ -34,6 +34,25 @@ Model read_parts(const std::string& resources, const std::string& build, const s
 
 std::string object(int id, const std::string& inside, const std::string& attributes = "") { return "<object id=\"" + std::to_string(id) + "\" " + attributes + ">" + inside + "</object>"; }
 
+TEST(ThreeMf, GroupsAsObjectsOfTheirOwn) {
+  Model model;
+  model.mesh.V = (Positions(6, 3) << 0, 0, 0, 1, 0, 0, 0, 2, 0, 5, 0, 0, 6, 0, 0, 5, 2, 0).finished();
+  model.mesh.F = (Triangles(2, 3) << 3, 4, 5, 0, 1, 2).finished();
+  model.face_group = {0, 1};
+  model.group_names = {"first <1>", "second"};
+  WriteOptions options;
+  options.object_per_group = true;
+  const Model again = read_bytes(write(model, MeshFormat::three_mf, options), "a.3mf").model;
+  EXPECT_EQ(again.group_names, model.group_names);
+  EXPECT_EQ(again.face_group, model.face_group);
+  for (int f = 0; f < 2; ++f)
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(again.mesh.V.row(again.mesh.F(f, k)), model.mesh.V.row(model.mesh.F(f, k)));
+  EXPECT_EQ(read_bytes(write(model, MeshFormat::three_mf, {}), "a.3mf").model.group_names.size(), 0u);  // unless asked for, one object
+  model.mesh.F(1, 0) = 3;  // groups of one surface stay together
+  EXPECT_EQ(read_bytes(write(model, MeshFormat::three_mf, options), "a.3mf").model.mesh.vertex_count(), 6);
+  EXPECT_EQ(read_bytes(write(model, MeshFormat::three_mf, options), "a.3mf").model.group_names.size(), 0u);
+}
+
 TEST(ThreeMf, UnitsBecomeMillimetres) {
   const std::pair<const char*, double> units[] = {{"micron", 0.001}, {"millimeter", 1}, {"centimeter", 10}, {"inch", 25.4}, {"foot", 304.8}, {"meter", 1000}};
   for (const auto& [name, mm] : units) {

@@ -13,6 +13,7 @@ export interface SolverPart {
 export const solverParts: readonly SolverPart[] = [
   { name: 'Eigen', licence: 'MPL-2.0', use: 'linear algebra', include: 'Eigen' },
   { name: 'Boost', licence: 'BSL-1.0', use: 'server of the native worker', include: 'boost' },
+  { name: 'CGAL', licence: 'GPL-3.0-or-later and LGPL-3.0-or-later', use: 'exact booleans', include: 'CGAL' },
   { name: 'nlohmann/json', licence: 'MIT', use: 'messages', include: 'nlohmann' },
   { name: 'fast_float', licence: 'MIT or Apache-2.0', use: 'numbers in files', include: 'fast_float' },
   { name: 'libpng', licence: 'libpng-2.0', use: 'pictures', include: 'png' },

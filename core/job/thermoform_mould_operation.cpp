@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "job/thermoform_operations.h"
+
+#include "geometry/adjacency.h"
+#include "geometry/io/mesh_io.h"
+#include "geometry/measures.h"
+#include "job/thermoform_input.h"
+#include "thermoform/mould/draft_map.h"
+#include "thermoform/mould/mould.h"
+#include "thermoform/mould/mould_parts.h"
+#include "thermoform/mould/solid_shapes.h"
+
+namespace formwright {
+namespace {
+
+constexpr int draft_cells = 256;  // across the model's longer side: 0.4 mm of 100 mm, a nozzle
+
+std::vector<OutputInfo> outputs() {
+  return {{"mould.stl", "model/stl", "STL", "All parts of the mould side by side on the printer's bed, watertight.", true},
+          {"mould.3mf", "model/3mf", "3MF", "The same, each part an object of its own.", true},
+          {"draft.ply", "application/x-ply", "Draft map", "The model above the plate with draft, undercut and depth to width of every vertex, in the machine's coordinates.", true},
+          {"mould.glb", "model/gltf-binary", "GLB", "The parts as printed, to look at.", true}};
+}
+
+std::vector<ReportField> report_fields() {
+  return {{"vertices", "Vertices", "", "of the repaired model"},
+          {"faces", "Triangles", "", "of the repaired model"},
+          {"mould_faces", "Triangles of the mould", "", "of all its parts"},
+          {"watertight", "Watertight", "", "of every part, checked"},
+          {"parts", "Parts", "", "each with its place (cell, counted along the machine's x, y, z), size_mm, volume_ml, pins and sockets"},
+          {"part_count", "Number of parts", "", "that the printer makes"},
+          {"size_mm", "Size of the mould", "mm", "all parts together, as it is used"},
+          {"model_size_mm", "Size of the model", "mm", "what stands above the plate"},
+          {"plastic_volume_ml", "Print volume", "ml", "of all parts, solid; a slicer's infill takes less"},
+          {"cast_volume_ml", "Volume of the cast", "ml", "or of the positive, base plate included"},
+          {"gypsum_g", "Gypsum powder", "g", "for the cast; nothing for a positive. Mix a tenth more."},
+          {"water_g", "Water", "g", "for the cast; nothing for a positive"},
+          {"pour_opening_mm2", "Pour opening", "mm²", "area of the cast's underside"},
+          {"vents", "Vents", "", "x_mm, y_mm, z_mm on the machine, contact_s (when the sheet arrives; -1: never), gap_mm"},
+          {"undercut_area_mm2", "Undercut", "mm²", "of the model's surface that something lies above"},
+          {"draft_min_deg", "Least draft", "°", "over all faces; negative leans in"},
+          {"below_3_deg_area_mm2", "Steep walls", "mm²", "with less than 3 degrees of draft, undercuts included"},
+          {"depth_to_width_max", "Deepest cavity", "", "depth over width"},
+          {"advice", "Advice", "", "in words"},
+          {"notes", "Placement", "", "what was decided, in words"},
+          {"repairs", "Repairs", "", "what was found in the model and mended, in words"},
+          {"seconds_read", "Reading", "s", "file to repaired model; 0 when known from before"},
+          {"seconds_form", "Forming", "s", "the simulation that the vents need"},
+          {"seconds_cut", "Cutting at the plate", "s", "checks included; 0 when known from before"},
+          {"seconds_draft", "Draft map", "s", "0 when known from before"},
+          {"seconds_mould", "Mould", "s", "booleans"},
+          {"seconds_split", "Parts", "s", "cuts and keys"},
+          {"seconds_write", "Writing", "s", "outputs into their formats"},
+          {"peak_memory_mb", "Peak memory", "MB", "of the process"}};
+}
+
+/// The model as it stands on the plate, and what can be said about it before a mould is made.
+struct PlacedSolid {
+  ExactSolid model;
+  TriangleMesh mesh;
+  DraftMap draft;
+  std::vector<std::string> notes;
+};
+
+std::shared_ptr<const PlacedSolid> place_solid(const OperationCall& call, const LoadedModel& loaded, const Placement& placement, const ThermoformMouldOptions& options, Json& report) {
+  Json placed = write_parameters(static_cast<const PlacementOptions&>(options));
+  placed["sheet_thickness_mm"] = options.sheet_thickness_mm;
+  placed["foot_mm"] = write_parameters(options)["foot_mm"];
+  placed["opening_mm"] = {options.clamp_opening_x_mm, options.clamp_opening_y_mm};
+  const std::string family = "mould-solid:", key = family + loaded.key + ":" + placed.dump();
+  report["seconds_cut"] = report["seconds_draft"] = 0.0;
+  if (auto known = call.session.find<const PlacedSolid>(key)) return known;
+  call.session.drop(family);
+  auto solid = std::make_shared<PlacedSolid>();
+  Stopwatch watch;
+  {
+    const auto span = call.context.span(0.3, 0.5, "Cutting the model at the plate");
+    solid->model = model_on_plate(placement(loaded.model.mesh), options, solid->notes, call.context);
+    solid->mesh = solid->model.mesh();
+  }
+  report["seconds_cut"] = watch.lap();
+  {
+    const auto span = call.context.span(0.5, 0.6, "Draft and undercuts");
+    solid->draft = draft_map(solid->mesh, options.sheet_thickness_mm, draft_cells, call.context);
+  }
+  report["seconds_draft"] = watch.lap();
+  std::shared_ptr<const PlacedSolid> kept = solid;
+  // An exact point takes about a quarter of a kilobyte.
+  call.session.keep(key, kept, 1e-6 * 400 * static_cast<double>(solid->mesh.V.rows()));
+  return kept;
+}
+
+Json size_json(const Vec3& size) { return {size.x(), size.y(), size.z()}; }
+
+Bytes write_draft(const DraftMap& draft, Context& context) {
+  Model model;
+  model.mesh = draft.mesh;
+  Eigen::VectorXd undercut(draft.draft_deg.size());
+  for (Eigen::Index i = 0; i < undercut.size(); ++i) undercut[i] = draft.undercut[static_cast<std::size_t>(i)];
+  const std::vector<VertexColumn> columns{{"draft_deg", draft.draft_deg, ColumnKind::float64}, {"undercut", undercut, ColumnKind::uint8}, {"depth_to_width", draft.depth_to_width, ColumnKind::float64}};
+  WriteOptions write;
+  write.columns = columns;
+  return write_model(model, MeshFormat::ply, write, context);
+}
+
+/// All parts in one model, a group each.
+Model parts_model(const MouldParts& parts) {
+  Model model;
+  std::vector<TriangleMesh> meshes;
+  for (const MouldPart& part : parts.parts) {
+    model.face_group.insert(model.face_group.end(), static_cast<std::size_t>(part.mesh.F.rows()), static_cast<int>(meshes.size()));
+    model.group_names.push_back("part " + std::to_string(meshes.size() + 1));
+    meshes.push_back(part.mesh);
+  }
+  model.mesh = collected(meshes);
+  return model;
+}
+
+void report_parts(Json& report, const MouldParts& parts) {
+  double volume_mm3 = 0;
+  int faces = 0;
+  bool watertight = true;
+  Json list = Json::array();
+  for (const MouldPart& part : parts.parts) {
+    volume_mm3 += part.volume_mm3;
+    faces += part.mesh.face_count();
+    watertight = watertight && Adjacency(part.mesh).is_closed();
+    list.push_back({{"cell", part.cell}, {"size_mm", size_json(part.size_mm)}, {"volume_ml", part.volume_mm3 / 1000}, {"pins", part.pins}, {"sockets", part.sockets}});
+  }
+  report["parts"] = list;
+  report["part_count"] = parts.parts.size();
+  report["mould_faces"] = faces;
+  report["watertight"] = watertight;
+  report["plastic_volume_ml"] = volume_mm3 / 1000;
+}
+
+OperationResult run_mould(const OperationCall& call) {
+  const auto options = read_parameters<ThermoformMouldOptions>(call.parameters);
+  Context& context = call.context;
+  OperationResult result;
+  Json& report = result.report;
+  Stopwatch watch;
+  FormedModel formed;
+  {
+    const auto span = context.span(0, 0.3, options.vents > 0 ? "Forming the sheet" : "Reading the model");
+    if (options.vents > 0) {
+      formed = formed_model(call, options);
+    } else {
+      formed.loaded = load_model(call, "mould");
+      formed.placement = place(formed.loaded->model.mesh, options, clamp_opening_mm(options));
+    }
+  }
+  const LoadedModel& loaded = *formed.loaded;
+  report["seconds_read"] = loaded.seconds_read + loaded.seconds_repair;
+  report["seconds_form"] = std::max(0.0, watch.lap() - loaded.seconds_read - loaded.seconds_repair);
+  const auto placed = place_solid(call, loaded, formed.placement, options, report);
+
+  watch.lap();
+  std::vector<Vent> vents;
+  if (options.vents > 0) vents = find_vents(placed->mesh, *formed.sheet, options.vents, options.vent_diameter_mm, options.vent_spacing_mm, context);
+  Mould mould;
+  {
+    const auto span = context.span(0.6, 0.8, "Making the mould");
+    mould = make_mould(placed->model, vents, options, context);
+  }
+  report["seconds_mould"] = watch.lap();
+  MouldParts parts;
+  {
+    const auto span = context.span(0.8, 0.95, "Cutting into parts");
+    parts = split_mould(mould.solid, options, context);
+  }
+  report["seconds_split"] = watch.lap();
+
+  const DraftMap& draft = placed->draft;
+  report["vertices"] = loaded.model.mesh.vertex_count();
+  report["faces"] = loaded.model.mesh.face_count();
+  report["size_mm"] = size_json(bounding_box(mould.solid.mesh()).size());
+  report["model_size_mm"] = size_json(bounding_box(placed->mesh).size());
+  report_parts(report, parts);
+  const TriangleMesh body = mould.body.mesh();
+  const double cast_ml = signed_volume(body) / 1000;
+  const bool negative = options.kind == MouldKind::negative;
+  const Mixture mixture = plaster_mixture(cast_ml, options.water_to_plaster_ratio);
+  report["cast_volume_ml"] = cast_ml;
+  report["gypsum_g"] = negative ? Json(mixture.plaster_g) : Json(nullptr);
+  report["water_g"] = negative ? Json(mixture.water_g) : Json(nullptr);
+  report["pour_opening_mm2"] = negative ? Json(base_area_mm2(body, -options.base_mm)) : Json(nullptr);
+  report["vents"] = Json::array();
+  for (const Vent& vent : vents)
+    report["vents"].push_back({{"x_mm", vent.position_mm.x()}, {"y_mm", vent.position_mm.y()}, {"z_mm", vent.position_mm.z()}, {"contact_s", vent.contact_s}, {"gap_mm", vent.gap_mm}});
+  report["undercut_area_mm2"] = draft.undercut_area_mm2;
+  report["draft_min_deg"] = draft.draft_min_deg;
+  report["below_3_deg_area_mm2"] = draft.below_3_deg_area_mm2;
+  report["depth_to_width_max"] = draft.depth_to_width_max;
+  std::vector<std::string> advice = draft.sentences;
+  advice.insert(advice.end(), parts.sentences.begin(), parts.sentences.end());
+  if (static_cast<int>(vents.size()) < options.vents)
+    advice.push_back("Air gathers at " + std::to_string(vents.size()) + (vents.size() == 1 ? " place" : " places") + " of the model only: more vents would do nothing.");
+  report["advice"] = advice;
+  std::vector<std::string> notes = formed.placement.notes;
+  notes.insert(notes.end(), placed->notes.begin(), placed->notes.end());
+  report["notes"] = notes;
+  report["repairs"] = loaded.repairs;
+
+  context.progress(0.95, "Writing");
+  const auto add = [&](const char* name, Bytes bytes) {
+    for (const OutputInfo& info : outputs())
+      if (info.name == name) result.outputs.push_back(make_output(info, std::move(bytes)));
+    context.check_cancelled();
+  };
+  if (call.wants("draft.ply")) add("draft.ply", write_draft(draft, context));
+  if (call.wants("mould.stl") || call.wants("mould.3mf") || call.wants("mould.glb")) {
+    Model model = parts_model(parts);
+    WriteOptions write;
+    write.name = "mould";
+    if (call.wants("mould.stl")) add("mould.stl", write_model(model, MeshFormat::stl, write, context));
+    write.object_per_group = true;
+    if (call.wants("mould.3mf")) add("mould.3mf", write_model(model, MeshFormat::three_mf, write, context));
+    if (call.wants("mould.glb")) {
+      // glTF's y is up.
+      const Eigen::VectorXd y = model.mesh.V.col(1);
+      model.mesh.V.col(1) = model.mesh.V.col(2);
+      model.mesh.V.col(2) = -y;
+      add("mould.glb", write_model(model, MeshFormat::glb, write, context));
+    }
+  }
+  report["seconds_write"] = watch.lap();
+  return result;
+}
+
+}  // namespace
+
+Operation thermoform_mould_operation() {
+  Operation operation;
+  operation.name = "thermoform-mould";
+  operation.title = "Mould";
+  operation.summary = "Makes the mould that a sheet is formed over: a negative to cast gypsum in, or the positive itself (thesis chapter 4).";
+  operation.inputs = {mould_input_info(), sheet_input_info()};
+  operation.parameters = describe_parameters<ThermoformMouldOptions>();
+  operation.outputs = outputs();
+  operation.report = report_fields();
+  operation.check = [](const Json& parameters) { read_parameters<ThermoformMouldOptions>(parameters); };
+  operation.run = run_mould;
+  return operation;
+}
+
+}  // namespace formwright

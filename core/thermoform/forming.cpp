@@ -56,8 +56,8 @@ void check_placement(const MouldShape& shape, const Placement& placement, const 
 /// Drives SheetDynamics with steps as long as the sheet's movement allows.
 class Driver {
  public:
-  Driver(SheetDynamics& dynamics, const ThermoformOptions& options, FrameRecorder& recorder, Context& context)
-      : dynamics_(dynamics), o_(options), recorder_(recorder), context_(context) {}
+  Driver(SheetDynamics& dynamics, FrameRecorder& recorder, Context& context)
+      : dynamics_(dynamics), recorder_(recorder), context_(context) {}
 
   /// Steps over `duration_s`, or until `stop` says so. `load(t, dt)` is what acts in the step that ends at t from the phase's start.
   template <class Load, class Stop>
@@ -88,7 +88,6 @@ class Driver {
 
  private:
   SheetDynamics& dynamics_;
-  const ThermoformOptions& o_;
   FrameRecorder& recorder_;
   Context& context_;
 };
@@ -182,7 +181,7 @@ FormedResult form_sheet(std::shared_ptr<const MouldShape> shape, const Placement
   Stopwatch watch;
   check_options(o);
   check_placement(*shape, placement, o);
-  const auto contact = std::make_shared<const MouldContact>(std::move(shape), placement, contact_tolerance_mm);
+  const auto contact = std::make_shared<const MouldContact>(std::move(shape), placement, clamp_opening_mm(o), contact_tolerance_mm);
   const SheetMesh mesh = make_sheet_mesh(clamp_opening_mm(o), o.triangles);
   const double start_z = -o.platform_travel_mm;
   // From the platform the sheet lies high above at first.
@@ -190,7 +189,7 @@ FormedResult form_sheet(std::shared_ptr<const MouldShape> shape, const Placement
   FormedResult result;
   FrameRecorder recorder(o, start_z);
   recorder.record(dynamics, FormingPhase::relax);
-  Driver driver(dynamics, o, recorder, context);
+  Driver driver(dynamics, recorder, context);
   const auto go_on = [](double) { return false; };
 
   {

@@ -47,9 +47,15 @@ void HingeBending::begin_step(const Positions& x, std::span<const double> thickn
     const Vec3 a = x.row(hinge.vertex[0]), b = x.row(hinge.vertex[1]), c = x.row(hinge.vertex[2]), d = x.row(hinge.vertex[3]);
     const double thickness = 0.5 * (thickness_mm[static_cast<std::size_t>(hinge.face[0])] + thickness_mm[static_cast<std::size_t>(hinge.face[1])]);
     const double areas = 0.5 * ((b - a).cross(c - a).norm() + (b - a).cross(d - a).norm());
-    hinge.stiffness = modulus_ * thickness * thickness * thickness * 3 * (b - a).squaredNorm() / std::max(areas, 1e-12);
+    hinge.stiffness = modulus_ * thickness * thickness * thickness * 0.5 * (b - a).squaredNorm() / std::max(areas, 1e-12);
     if (!keep_rest_angles) hinge.rest_angle = hinge_angle(a, b, c, d, nullptr);
   }
+}
+
+std::vector<double> HingeBending::stiffness_mj() const {
+  std::vector<double> result;
+  for (const Hinge& hinge : hinges_) result.push_back(hinge.stiffness);
+  return result;
 }
 
 double HingeBending::energy(const Positions& x, double dt_s) const {

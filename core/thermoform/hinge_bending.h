@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // Bending by the angles between neighbouring triangles: thesis 4.2.2, E_b (Batty et al. 2012; Grinspun et al. 2003).
+//
+// As printed, sum D 3 l^2/A_s theta^2 is six times as stiff as a plate of bending stiffness D = Y h^3 / (12 (1 - nu^2)): on
+// equilateral triangles a cylinder of curvature k gets 3 D k^2 an area instead of D k^2 / 2. Here the sum is divided by
+// six, so that a clamped circular plate sags by q a^4 / (64 D), which the tests check.
 #include <array>
 #include <span>
 #include <vector>
@@ -21,6 +25,9 @@ class HingeBending {
   /// Lengths, areas and the triangles' thickness (m, mm) at `x`; the rest angles become those at `x`, as the thesis does
   /// (unless `keep_rest_angles`).
   void begin_step(const Positions& x, std::span<const double> thickness_mm, bool keep_rest_angles = false);
+
+  /// mJ, one a hinge in the order of vertices(): E_b = sum stiffness (theta - rest angle)^2.
+  std::vector<double> stiffness_mj() const;
 
   /// E_b (1 + o/dt) in mJ: elastic and viscous part count from the same angles.
   double energy(const Positions& x, double dt_s) const;

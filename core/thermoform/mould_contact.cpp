@@ -44,8 +44,8 @@ class SparsePoints {
 
 }  // namespace
 
-MouldContact::MouldContact(std::shared_ptr<const MouldShape> shape, const Placement& placement, double tolerance_mm)
-    : shape_(std::move(shape)), placement_(placement), to_model_(placement.linear.inverse()), tolerance_mm_(tolerance_mm) {
+MouldContact::MouldContact(std::shared_ptr<const MouldShape> shape, const Placement& placement, const Vec2& opening_mm, double tolerance_mm)
+    : shape_(std::move(shape)), placement_(placement), to_model_(placement.linear.inverse()), wall_mm_(0.5 * opening_mm), tolerance_mm_(tolerance_mm) {
   for (Eigen::Index i = 0; i < shape_->mesh.V.rows(); ++i) top_mm_ = std::max(top_mm_, placement_(shape_->mesh.V.row(i).transpose()).z());
 }
 
@@ -61,6 +61,14 @@ std::optional<double> MouldContact::first_touch(const Vec3& from, const Vec3& to
   std::optional<double> plate;
   if (to.z() < radius_mm + tolerance_mm_)
     plate = from.z() <= radius_mm + tolerance_mm_ ? 0.0 : (from.z() - radius_mm - tolerance_mm_) / (from.z() - to.z());
+  // The box's walls, which keep a sheet that finds no balance from blowing up for ever. Without half a thickness of
+  // distance: the sheet's own rim begins there.
+  for (int k = 0; k < 2; ++k)
+    if (std::abs(to[k]) > wall_mm_[k]) {
+      const double wall = std::copysign(wall_mm_[k], to[k]);
+      const double t = std::abs(from[k]) >= wall_mm_[k] ? 0.0 : (wall - from[k]) / (to[k] - from[k]);
+      plate = std::min(plate.value_or(1.0), t);
+    }
   if (!shape_) return plate;
   const Vec3 path = to - from;
   const double length = path.norm(), until = plate.value_or(1.0);

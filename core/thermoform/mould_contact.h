@@ -22,10 +22,9 @@ struct MouldShape {
 
 class MouldContact {
  public:
-  /// The model `shape` standing at `placement`, on a base plate at z = 0. `tolerance_mm`: what counts as touching.
-  MouldContact(std::shared_ptr<const MouldShape> shape, const Placement& placement, double tolerance_mm);
-  /// The base plate alone.
-  explicit MouldContact(double tolerance_mm) : tolerance_mm_(tolerance_mm) {}
+  /// The model `shape` standing at `placement`, on a base plate at z = 0, within the box under the clamp, whose walls stand at
+  /// the opening's sides. `tolerance_mm`: what counts as touching.
+  MouldContact(std::shared_ptr<const MouldShape> shape, const Placement& placement, const Vec2& opening_mm, double tolerance_mm);
 
   /// Distance of `p` from the mould (not the plate), or nothing when it is more than `limit_mm`.
   std::optional<double> distance_mm(const Vec3& p, double limit_mm) const;
@@ -38,7 +37,7 @@ class MouldContact {
   };
 
   /// The first moment (0 to 1) at which a point that goes straight from `from` to `to` comes within `radius_mm` of the
-  /// mould or the plate; nothing when it stays away.
+  /// mould or the plate, or reaches a wall; nothing when it stays away.
   std::optional<double> first_touch(const Vec3& from, const Vec3& to, double radius_mm, Known& known) const;
 
   double top_mm() const { return top_mm_; }  // of the mould; 0 without one
@@ -53,6 +52,7 @@ class MouldContact {
   std::shared_ptr<const MouldShape> shape_;
   Placement placement_;
   Eigen::Matrix3d to_model_ = Eigen::Matrix3d::Identity();
+  Vec2 wall_mm_;  // half of the opening
   double tolerance_mm_ = 0.01, top_mm_ = 0;
 };
 

@@ -176,7 +176,10 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
   bool settled = free_.empty();
   for (int iteration = 0; !settled; ++iteration) {
     context.check_cancelled();
-    if (iteration == most_newton_iterations) return give_up(Outcome::not_converged);
+    if (iteration == most_newton_iterations) {
+      last_iterate_ = std::move(x);
+      return give_up(Outcome::not_converged);
+    }
     watch.lap();
     assemble(x, dt_s, load, force, &matrix_);
     for (const int i : free_) {
@@ -209,7 +212,6 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
               (iteration >= 2 && std::sqrt(increment_squared) < wrinkle_share * options_.step_mm && std::sqrt(mean_squared) < 0.2 * settled_share * options_.step_mm);
     const int touched = find_contacts(from, x, radius);
     statistics_.seconds_contact += watch.lap();
-    if (std::getenv("TRACE")) std::fprintf(stderr, "   it %d t %.4f dt %.6f inc %.4f moved %.3f touched %d free %zu\n", iteration, time_, dt_s, std::sqrt(increment_squared), moved, touched, free_.size());
     if (touched > 0) {
       collect_free();
       settled = free_.empty();

@@ -42,6 +42,8 @@ class SheetDynamics {
   void add_velocity(const Vec3& mm_per_s);
   /// Starts the next step's Newton iteration from here (free vertices only).
   void guess(const Positions& x) { guess_ = x; }
+  /// Where Newton's iteration stood when a step was given up as not converged: a guess to go on from.
+  const Positions& last_iterate() const { return last_iterate_; }
 
   const Positions& x() const { return x_; }
   const Positions& velocity() const { return v_; }
@@ -74,7 +76,7 @@ class SheetDynamics {
   PointContacts points_;
   BlockMatrix matrix_;
   BlockCg cg_;
-  Positions x_, v_, guess_;
+  Positions x_, v_, guess_, last_iterate_;
   std::vector<double> mass_, contact_time_, until_;
   HeldVertices held_;
   std::vector<int> free_;

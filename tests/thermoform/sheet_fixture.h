@@ -22,7 +22,8 @@ inline Positions shaken(const SheetMesh& sheet, double amplitude_mm, unsigned se
   return x;
 }
 
-/// Surface of revolution about z from a profile (radius, height), closed at both ends on the axis.
+/// Surface of revolution about z from a profile (radius, height), closed at both ends on the axis. A negative radius stands for half
+/// the side of a square ring.
 template <class Profile>
 TriangleMesh revolved(const Profile& profile, int around) {
   TriangleMesh mesh;
@@ -35,7 +36,8 @@ TriangleMesh revolved(const Profile& profile, int around) {
     const int count = r == 0 ? 1 : around;
     for (int k = 0; k < count; ++k) {
       const double angle = 2 * std::numbers::pi * k / around;
-      V.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
+      const double reach = r >= 0 ? r : -r / std::max(std::abs(std::cos(angle)), std::abs(std::sin(angle)));
+      V.emplace_back(reach * std::cos(angle), reach * std::sin(angle), z);
     }
   }
   for (int ring = 0; ring + 1 < rings; ++ring) {

@@ -28,23 +28,23 @@ Image white(int side) { return {side, side, {255, 255, 255, 255}}; }
 TEST(Print, DotsOnAConeLandWhereTheClosedFormSays) {
   const Cone cone;
   const double half_mm = 65, dot_mm = 0.6;
-  Image picture = white(4096);
+  Image picture = white(3000);
   std::vector<Vec2> dots;
   for (int ring = 0; ring < 5; ++ring)
     for (int k = 0; k < 12; ++k) dots.push_back(Vec2(std::cos(0.5 * k + ring), std::sin(0.5 * k + ring)) * (14 + 9.5 * ring));
   const auto texels = static_cast<double>(picture.width) / (2 * half_mm);
   for (const Vec2& dot : dots) {
     const Vec2 centre((dot.x() + half_mm) * texels, (half_mm - dot.y()) * texels);
-    for (int y = static_cast<int>(centre.y() - 30); y <= centre.y() + 30; ++y)
-      for (int x = static_cast<int>(centre.x() - 30); x <= centre.x() + 30; ++x)
+    for (int y = static_cast<int>(centre.y() - 20); y <= centre.y() + 20; ++y)
+      for (int x = static_cast<int>(centre.x() - 20); x <= centre.x() + 20; ++x)
         if ((Vec2(x + 0.5, y + 0.5) - centre).norm() < dot_mm * texels) picture.at(x, y) = {0, 0, 0, 255};
   }
   Model model;
-  model.mesh = cone.mesh(1, 360);
+  model.mesh = cone.mesh(1, 180);
   lay_from_above(model, half_mm);
   ThermoformPrintOptions options = test::plain_options(2 * cone.radius_mm, 300);
   Context context;
-  const TexturePrint print = make_texture_print(model, model.mesh, cone.sheet(80, 360), picture, options, context);
+  const TexturePrint print = make_texture_print(model, model.mesh, cone.sheet(80, 180), picture, options, context);
   EXPECT_EQ(print.colours, PrintColours::picture);
   double worst = 0;
   for (const Vec2& dot : dots) {
@@ -68,12 +68,12 @@ TEST(Print, DotsOnAConeLandWhereTheClosedFormSays) {
 
 TEST(Print, CarriedBackOntoTheSheetItIsTheModelAgain) {
   Context context;
-  const Model model = make_sample("mountain", 20000, context);
+  const Model model = make_sample("mountain", 6000, context);
   ThermoformPrintOptions options = test::plain_options(130, 300);
   options.size_mm = 100;
   options.bleed_mm = 0;
   const TriangleMesh placed = place(model.mesh, options, clamp_opening_mm(options))(model.mesh);
-  const FormedSheet sheet = test::dropped_sheet(placed, 130, 130, 0.3);
+  const FormedSheet sheet = test::dropped_sheet(placed, 130, 90, 0.3);
   const TexturePrint print = make_texture_print(model, placed, sheet, std::nullopt, options, context);
   EXPECT_GT(print.area_mm2[0], 4000);
   // The model's own colour at a point, against the print's where that point went; both as bytes.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "geometry/measures.h"
+#include "geometry/ray_caster.h"
 #include "thermoform/frame_recorder.h"
 
 namespace formwright {
@@ -122,9 +123,9 @@ void measure(const SheetDynamics& dynamics, const MouldContact& contact, const T
   result.least_thickness_mm = o.sheet_thickness_mm;
   for (int f = 0; f < F.rows(); ++f) {
     const Vec3 a = x.row(F(f, 0)), b = x.row(F(f, 1)), c = x.row(F(f, 2));
-    const double area = 0.5 * (b - a).cross(c - a).norm(), h = dynamics.membrane().volume_mm3(f) / std::max(area, 1e-12);
+    const double area = 0.5 * (b - a).cross(c - a).norm(), h = dynamics.membrane().volume_mm3()[static_cast<std::size_t>(f)] / std::max(area, 1e-12);
     volume += area * h;
-    flat_volume += dynamics.membrane().volume_mm3(f);
+    flat_volume += dynamics.membrane().volume_mm3()[static_cast<std::size_t>(f)];
     result.least_thickness_mm = std::min(result.least_thickness_mm, h);
     bool touches = true;
     for (int k = 0; k < 3; ++k) touches &= dynamics.held()[static_cast<std::size_t>(F(f, k))] != 0;
@@ -156,14 +157,21 @@ void measure(const SheetDynamics& dynamics, const MouldContact& contact, const T
   result.mean_thickness_mm = volume / (result.formed_area_mm2 + result.unformed_area_mm2);
   if (dynamics.point_contacts().point_count() > 0) {
     const PointDistance surface(sheet.mesh);
+    const RayCaster rays(sheet.mesh);
     for (const Vec3& p : dynamics.point_contacts().points()) {
-      const auto nearest = surface.nearest(p, 10);
+      // Straight up from a point below the sheet one meets it an odd number of times, however it is folded. A ray
+      // through an edge counts twice: hits at the same place are one.
+      int crossings = 0;
+      double last = -1;
+      for (const RayHit& hit : rays.all_hits(p, Vec3::UnitZ(), 0, 1e6)) {
+        if (hit.distance > last + 1e-9) ++crossings;
+        last = hit.distance;
+      }
+      const auto nearest = surface.nearest(p, 20);
       if (!nearest) continue;
-      const Vec3 a = x.row(F(nearest->face, 0)), b = x.row(F(nearest->face, 1)), c = x.row(F(nearest->face, 2));
-      const double side = (b - a).cross(c - a).normalized().dot(p - nearest->point);  // positive beyond the middle surface
-      double h = 0;
-      for (int k = 0; k < 3; ++k) h += nearest->barycentric[k] * sheet.thickness_mm[F(nearest->face, k)];
-      result.mould_edge_penetration_mm = std::max(result.mould_edge_penetration_mm, side + 0.5 * h);
+      double half = 0;
+      for (int k = 0; k < 3; ++k) half += 0.5 * nearest->barycentric[k] * sheet.thickness_mm[F(nearest->face, k)];
+      result.mould_edge_penetration_mm = std::max(result.mould_edge_penetration_mm, half + (crossings % 2 == 1 ? -nearest->distance : nearest->distance));
     }
   }
 }

@@ -13,7 +13,7 @@ double hinge_angle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, s
   const Vec3 n0 = edge.cross(c - a), n1 = (d - a).cross(edge);  // twice the area vectors
   const double length = std::max(edge.norm(), 1e-12);
   const double squared0 = std::max(n0.squaredNorm(), 1e-24), squared1 = std::max(n1.squaredNorm(), 1e-24);
-  const double angle = std::atan2(n1.cross(n0).dot(edge) / length, n0.dot(n1));
+  const double angle = std::atan2(n0.cross(n1).dot(edge) / length, n0.dot(n1));
   if (gradient) {
     // Moving a wing's tip along its normal turns it about the edge; the edge's ends share the reaction by levers.
     const Vec3 tip0 = -length / squared0 * n0, tip1 = -length / squared1 * n1;

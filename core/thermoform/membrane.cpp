@@ -141,11 +141,10 @@ Membrane::Membrane(const TextureCoordinates& flat_mm, const Triangles& F, double
       group.b10[l] = group.flat10[l] = -edges(1, 0) / doubled_area;
       group.b11[l] = group.flat11[l] = edges(0, 0) / doubled_area;
       group.volume[l] = 0.5 * doubled_area * thickness_mm;
+      if (l < group.lanes) volume_mm3_.push_back(group.volume[l]);
     }
   }
 }
-
-double Membrane::volume_mm3(int face) const { return groups_[static_cast<std::size_t>(face / 4)].volume[face % 4]; }
 
 void Membrane::begin_step(const Positions& x, const HeldVertices& held) {
   Deformation d, total;

@@ -56,7 +56,7 @@ class Membrane {
   void end_step(const Positions& x, double dt_s);
 
   const std::vector<double>& thickness_mm() const { return thickness_mm_; }  // m, of the last begin_step
-  double volume_mm3(int face) const;                                         // constant
+  const std::vector<double>& volume_mm3() const { return volume_mm3_; }      // m, constant
   const Triangles& F() const { return F_; }
   int face_count() const { return static_cast<int>(F_.rows()); }
 
@@ -73,7 +73,7 @@ class Membrane {
   Triangles F_;
   MembraneMaterial material_;
   std::vector<Group> groups_;
-  std::vector<double> thickness_mm_;
+  std::vector<double> thickness_mm_, volume_mm3_;
   std::vector<std::array<int, 9>> slots_;  // per triangle, of corner a with corner b
 
  public:

@@ -39,7 +39,7 @@ std::optional<Touch> first_touch(const Vec3& q, const Vec3 (&a)[3], const Vec3 (
 }  // namespace
 
 PointContacts::PointContacts(std::vector<Vec3> points, double cell_mm, double stiffness)
-    : points_(std::move(points)), used_(points_.size()), cell_mm_(cell_mm), stiffness_(stiffness) {
+    : points_(std::move(points)), used_(points_.size()), cell_mm_(cell_mm), margin_mm_(0.5 * cell_mm), stiffness_(stiffness) {
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Vec3& p = points_[i];
     cells_.push_back({key(cell_of(p.x(), cell_mm_), cell_of(p.y(), cell_mm_), cell_of(p.z(), cell_mm_)), static_cast<int>(i)});
@@ -47,16 +47,41 @@ PointContacts::PointContacts(std::vector<Vec3> points, double cell_mm, double st
   std::sort(cells_.begin(), cells_.end(), [](const Cell& a, const Cell& b) { return a.key != b.key ? a.key < b.key : a.point < b.point; });
 }
 
-int PointContacts::find(const Triangles& F, const Positions& from, const Positions& to, std::span<const double> thickness_mm,
-                        const std::vector<char>& near, double tolerance_mm) {
+void PointContacts::collect(const Vec3& lower, const Vec3& upper, std::vector<int>& points) const {
+  points.clear();
+  const int x0 = cell_of(lower.x(), cell_mm_), x1 = cell_of(upper.x(), cell_mm_);
+  for (int z = cell_of(lower.z(), cell_mm_); z <= cell_of(upper.z(), cell_mm_); ++z)
+    for (int y = cell_of(lower.y(), cell_mm_); y <= cell_of(upper.y(), cell_mm_); ++y) {
+      const std::uint64_t last = key(x1, y, z);
+      for (auto it = std::lower_bound(cells_.begin(), cells_.end(), key(x0, y, z), [](const Cell& c, std::uint64_t k) { return c.key < k; });
+           it != cells_.end() && it->key <= last; ++it) {
+        const Vec3& q = points_[static_cast<std::size_t>(it->point)];
+        if ((q.array() >= lower.array()).all() && (q.array() <= upper.array()).all()) points.push_back(it->point);
+      }
+    }
+}
+
+int PointContacts::find(const Triangles& F, const Positions& from, const Positions& to, std::span<const double> thickness_mm, const HeldVertices& held,
+                        double tolerance_mm) {
   if (points_.empty()) return 0;
   struct Candidate {
     double fraction;
     PointContact contact;
   };
+  if (listed_at_.rows() != F.rows()) {
+    listed_at_.setConstant(F.rows(), 9, 1e30);
+    listed_.assign(static_cast<std::size_t>(F.rows()), {});
+  }
   std::vector<Candidate> found;
   for (int f = 0; f < static_cast<int>(F.rows()); ++f) {
-    if (!near[static_cast<std::size_t>(f)]) continue;
+    bool all_held = true, still_listed = true;
+    for (int k = 0; k < 3; ++k) {
+      const int v = F(f, k);
+      all_held &= held[static_cast<std::size_t>(v)] != 0;
+      still_listed &= (to.row(v) - listed_at_.block<1, 3>(f, 3 * k)).squaredNorm() < 0.99 * margin_mm_ * margin_mm_;
+    }
+    std::vector<int>& list = listed_[static_cast<std::size_t>(f)];
+    if (all_held || (still_listed && list.empty())) continue;
     const double radius = 0.5 * thickness_mm[static_cast<std::size_t>(f)], reach = radius + tolerance_mm;
     Vec3 a[3], b[3], lower = Vec3::Constant(1e300), upper = Vec3::Constant(-1e300);
     for (int k = 0; k < 3; ++k) {
@@ -65,24 +90,20 @@ int PointContacts::find(const Triangles& F, const Positions& from, const Positio
       lower = lower.cwiseMin(a[k]).cwiseMin(b[k]);
       upper = upper.cwiseMax(a[k]).cwiseMax(b[k]);
     }
-    lower.array() -= reach;
-    upper.array() += reach;
-    const int x0 = cell_of(lower.x(), cell_mm_), x1 = cell_of(upper.x(), cell_mm_);
-    for (int z = cell_of(lower.z(), cell_mm_); z <= cell_of(upper.z(), cell_mm_); ++z)
-      for (int y = cell_of(lower.y(), cell_mm_); y <= cell_of(upper.y(), cell_mm_); ++y) {
-        const auto begin = std::lower_bound(cells_.begin(), cells_.end(), key(x0, y, z), [](const Cell& c, std::uint64_t k) { return c.key < k; });
-        const std::uint64_t last = key(x1, y, z);
-        for (auto it = begin; it != cells_.end() && it->key <= last; ++it) {
-          if (used_[static_cast<std::size_t>(it->point)]) continue;
-          const Vec3& q = points_[static_cast<std::size_t>(it->point)];
-          if ((q.array() < lower.array()).any() || (q.array() > upper.array()).any()) continue;
-          const auto touch = first_touch(q, a, b, radius, tolerance_mm);
-          if (!touch) continue;
-          Vec3 place = Vec3::Zero();
-          for (int k = 0; k < 3; ++k) place += touch->barycentric[k] * (a[k] + touch->fraction * (b[k] - a[k]));
-          found.push_back({touch->fraction, {it->point, f, touch->barycentric, place}});
-        }
-      }
+    if (!still_listed) {
+      // The reach may grow with the thickness: half of the margin is for movement, the rest is ample for that.
+      collect(lower.array() - 2 * reach - 2 * margin_mm_, upper.array() + 2 * reach + 2 * margin_mm_, list);
+      for (int k = 0; k < 3; ++k) listed_at_.block<1, 3>(f, 3 * k) = b[k].transpose();
+    }
+    for (const int point : list) {
+      const Vec3& q = points_[static_cast<std::size_t>(point)];
+      if (used_[static_cast<std::size_t>(point)] || (q.array() < lower.array() - reach).any() || (q.array() > upper.array() + reach).any()) continue;
+      const auto touch = first_touch(q, a, b, radius, tolerance_mm);
+      if (!touch) continue;
+      Vec3 place = Vec3::Zero();
+      for (int k = 0; k < 3; ++k) place += touch->barycentric[k] * (a[k] + touch->fraction * (b[k] - a[k]));
+      found.push_back({touch->fraction, {point, f, touch->barycentric, place, touch->fraction}});
+    }
   }
   // A point met by several faces belongs to the one that met it first.
   std::sort(found.begin(), found.end(), [](const Candidate& a, const Candidate& b) {

@@ -14,6 +14,7 @@ struct PointContact {
   int point = -1, face = -1;
   Vec3 barycentric;
   Vec3 place;  // where that point of the face is held
+  double fraction = 0;  // of the step in which it was met
 };
 
 class PointContacts {
@@ -21,9 +22,9 @@ class PointContacts {
   /// `points`: at rest, as the mould is. `cell_mm`: about an edge of the sheet's triangles. `stiffness`: N/mm.
   PointContacts(std::vector<Vec3> points, double cell_mm, double stiffness);
 
-  /// Finds points that faces of `F` meet while their corners go straight from `from` to `to`; `radius_mm` (m) is half the
-  /// thickness, `near` says which faces are worth testing. New contacts are appended. Returns their number.
-  int find(const Triangles& F, const Positions& from, const Positions& to, std::span<const double> thickness_mm, const std::vector<char>& near,
+  /// Finds points that faces of `F` come within half their thickness (m) of while their corners go straight from `from` to `to`.
+  /// Faces whose corners are all held are left out. New contacts are appended. Returns their number.
+  int find(const Triangles& F, const Positions& from, const Positions& to, std::span<const double> thickness_mm, const HeldVertices& held,
            double tolerance_mm);
 
   /// Adds the springs' forces and, unless null, their stiffness.
@@ -36,6 +37,9 @@ class PointContacts {
   void roll_back(std::size_t count);
 
  private:
+  /// The points in a box, ascending within each cell.
+  void collect(const Vec3& lower, const Vec3& upper, std::vector<int>& points) const;
+
   struct Cell {
     std::uint64_t key;
     int point;
@@ -44,7 +48,11 @@ class PointContacts {
   std::vector<Cell> cells_;  // sorted by key
   std::vector<char> used_;
   std::vector<PointContact> contacts_;
-  double cell_mm_, stiffness_;
+  /// Where each face was when the points within `margin_mm_` of its box were listed: while no corner has gone farther, it can
+  /// meet no others.
+  Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> listed_at_;
+  std::vector<std::vector<int>> listed_;
+  double cell_mm_, margin_mm_, stiffness_;
 };
 
 }  // namespace formwright

@@ -8,10 +8,11 @@
 namespace formwright {
 namespace {
 
-constexpr double cg_tolerance = 0.03;      // of Newton's directions: the next iteration mends the rest
+constexpr double cg_tolerance = 0.1;       // of Newton's directions: the next iteration mends the rest
 constexpr int most_cg_iterations = 400;
 constexpr int most_newton_iterations = 12;
 constexpr double settled_share = 0.02;     // of the step's limit: an increment this small ends the iteration
+constexpr double wrinkle_share = 0.2;      // so much a few vertices may go on moving: squeezed triangles buckle back and forth
 
 MembraneMaterial material_of(const ThermoformOptions& o) {
   return {o.elastic_law, o.yield_rule, o.young_modulus_pa * 1e-6, o.poisson_ratio, o.creep_per_s, o.yield_strain, o.viscosity_s, o.flow_stop_mm};
@@ -54,7 +55,7 @@ SheetDynamics::SheetDynamics(const SheetMesh& sheet, const ThermoformOptions& op
   v_ = Positions::Zero(n, 3);
   mass_.assign(static_cast<std::size_t>(n), 0);
   for (int f = 0; f < membrane_.face_count(); ++f)
-    for (int k = 0; k < 3; ++k) mass_[static_cast<std::size_t>(sheet.F(f, k))] += options.density_kg_per_m3 * 1e-12 * membrane_.volume_mm3(f) / 3;
+    for (int k = 0; k < 3; ++k) mass_[static_cast<std::size_t>(sheet.F(f, k))] += options.density_kg_per_m3 * 1e-12 * membrane_.volume_mm3()[static_cast<std::size_t>(f)] / 3;
   for (const double m : mass_) mass_total_ += m;
   held_ = sheet.clamped;
   contact_time_.assign(static_cast<std::size_t>(n), -1);
@@ -80,7 +81,7 @@ std::vector<double> SheetDynamics::vertex_thickness_mm(const Positions& x) const
     const Vec3 a = x.row(sheet_.F(f, 0)), b = x.row(sheet_.F(f, 1)), c = x.row(sheet_.F(f, 2));
     const double face_area = 0.5 * (b - a).cross(c - a).norm();
     for (int k = 0; k < 3; ++k) {
-      volume[static_cast<std::size_t>(sheet_.F(f, k))] += membrane_.volume_mm3(f);
+      volume[static_cast<std::size_t>(sheet_.F(f, k))] += membrane_.volume_mm3()[static_cast<std::size_t>(f)];
       area[static_cast<std::size_t>(sheet_.F(f, k))] += face_area;
     }
   }
@@ -119,28 +120,21 @@ Positions SheetDynamics::forces(const Positions& x, double dt_s, const StepLoad&
 int SheetDynamics::find_contacts(const Positions& from, Positions& to, const std::vector<double>& radius_mm) {
   if (!contact_) return 0;
   int found = 0;
-  if (points_.point_count() > 0) {
-    // Only faces near the mould: no point of a face is farther from a corner than its longest edge.
-    std::vector<char> near(static_cast<std::size_t>(membrane_.face_count()));
-    for (int f = 0; f < membrane_.face_count(); ++f) {
-      bool all_held = true, close = false;
-      double longest = 0;
-      for (int k = 0; k < 3; ++k) longest = std::max(longest, (from.row(sheet_.F(f, k)) - from.row(sheet_.F(f, (k + 1) % 3))).norm());
-      for (int k = 0; k < 3; ++k) {
-        const auto v = static_cast<std::size_t>(sheet_.F(f, k));
-        all_held &= held_[v] != 0;
-        const double move = (to.row(sheet_.F(f, k)) - from.row(sheet_.F(f, k))).norm();
-        close |= known_[v].at(from.row(sheet_.F(f, k)).transpose()) < longest + 2 * move + options_.sheet_thickness_mm;
-      }
-      near[static_cast<std::size_t>(f)] = !all_held && close;
+  // A face that a sharp point catches stops there: its corners can only touch what they met before.
+  std::vector<double>& until = until_;
+  until.assign(held_.size(), 1);
+  const std::size_t before = points_.contacts().size();
+  found += points_.find(sheet_.F, from, to, membrane_.thickness_mm(), held_, contact_->tolerance_mm());
+  for (std::size_t c = before; c < points_.contacts().size(); ++c)
+    for (int k = 0; k < 3; ++k) {
+      double& limit = until[static_cast<std::size_t>(sheet_.F(points_.contacts()[c].face, k))];
+      limit = std::min(limit, points_.contacts()[c].fraction);
     }
-    found += points_.find(sheet_.F, from, to, membrane_.thickness_mm(), near, contact_->tolerance_mm());
-  }
   for (const int i : free_) {
     const auto v = static_cast<std::size_t>(i);
     const Vec3 a = from.row(i), b = to.row(i);
     const auto touch = contact_->first_touch(a, b, radius_mm[v], known_[v]);
-    if (!touch) continue;
+    if (!touch || *touch > until[v]) continue;
     to.row(i) = (a + *touch * (b - a)).transpose();
     held_[v] = 2;  // in this step
     ++found;
@@ -198,20 +192,24 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
     ++statistics_.newton_iterations;
     statistics_.seconds_linear += watch.lap();
 
-    double increment_squared = 0, moved_squared = 0;
+    double increment_squared = 0, moved_squared = 0, sum_squared = 0;
     for (const int i : free_) {
       const Float4& d = direction[static_cast<std::size_t>(i)];
       const Vec3 delta(d[0], d[1], d[2]);
       x.row(i) += delta.transpose();
       increment_squared = std::max(increment_squared, delta.squaredNorm());
+      sum_squared += delta.squaredNorm();
       moved_squared = std::max(moved_squared, (x.row(i).transpose() - from.row(i).transpose() - load.clamp_shift).squaredNorm());
     }
     moved = std::sqrt(moved_squared);
     if (!std::isfinite(increment_squared)) return give_up(Outcome::not_converged);
     if (moved > 1.5 * most_move_mm) return give_up(Outcome::moved_too_far);
-    settled = std::sqrt(increment_squared) < settled_share * options_.step_mm;
+    const double mean_squared = sum_squared / std::max<double>(1, static_cast<double>(free_.size()));
+    settled = std::sqrt(increment_squared) < settled_share * options_.step_mm ||
+              (iteration >= 2 && std::sqrt(increment_squared) < wrinkle_share * options_.step_mm && std::sqrt(mean_squared) < 0.2 * settled_share * options_.step_mm);
     const int touched = find_contacts(from, x, radius);
     statistics_.seconds_contact += watch.lap();
+    if (std::getenv("TRACE")) std::fprintf(stderr, "   it %d t %.4f dt %.6f inc %.4f moved %.3f touched %d free %zu\n", iteration, time_, dt_s, std::sqrt(increment_squared), moved, touched, free_.size());
     if (touched > 0) {
       collect_free();
       settled = free_.empty();

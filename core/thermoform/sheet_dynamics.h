@@ -75,7 +75,7 @@ class SheetDynamics {
   BlockMatrix matrix_;
   BlockCg cg_;
   Positions x_, v_, guess_;
-  std::vector<double> mass_, contact_time_;
+  std::vector<double> mass_, contact_time_, until_;
   HeldVertices held_;
   std::vector<int> free_;
   std::vector<MouldContact::Known> known_;

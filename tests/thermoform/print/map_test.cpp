@@ -170,6 +170,20 @@ TEST(PrintMap, SaysWhyAPointHasNoPlace) {
     }
 }
 
+TEST(PrintMap, TheUndersideHasNoSayAlongTheFoot) {
+  // A closed cone on the plate: its foot's normals are the wall's.
+  const Cone cone;
+  TriangleMesh model = cone.mesh(1, 64);
+  model.V.conservativeResize(model.V.rows() + 1, 3);
+  model.V.row(65).setZero();
+  model.F.conservativeResize(model.F.rows() + 64, 3);
+  for (int j = 0; j < 64; ++j) model.F.row(64 + j) << (j + 1) % 64, j, 65;
+  Context context;
+  const RefinedSurface surface = refine_above_plate(model, 3, 1'000'000, context);
+  const ProjectedSurface projected = project_onto_sheet(surface, cone.sheet(60, 64), {}, context);
+  for (std::size_t f = 0; f < projected.face.size(); ++f) EXPECT_EQ(projected.face[f], surface.below_plate[f] ? Coverage::below_plate : Coverage::coloured);
+}
+
 TEST(PrintMap, DoesNotPaintAcrossAFold) {
   // Two halves of the sheet side by side over one plate, whose material was 40 mm apart.
   TriangleMesh model = test::grid_mesh(20, 20, 4, 4);

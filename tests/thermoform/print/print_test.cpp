@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "geometry/point_distance.h"
+#include "geometry/io/mesh_io.h"
 #include "geometry/samples/samples.h"
 #include "imaging/light.h"
 #include "imaging/picture_reader.h"
@@ -131,6 +131,39 @@ TEST(Print, LeavesNoCracksAndNoSeams) {
     }
   EXPECT_GT(inside, 100'000);
   EXPECT_NEAR(print.stretch_mean, 2 / 0.75, 0.1);  // h0 / h = 1 / (0.75 u) over the area 2 u du
+}
+
+TEST(Print, TheFormedSheetWearsThePrint) {
+  Context context;
+  const Cone cone;
+  Model model;
+  model.mesh = cone.mesh(1, 64);
+  ThermoformPrintOptions options = test::plain_options(2 * cone.radius_mm, 150);
+  options.colours = PrintColours::checker;
+  options.pattern_mm = 30;
+  const FormedSheet sheet = cone.sheet(30, 64);
+  const TexturePrint print = make_texture_print(model, model.mesh, sheet, std::nullopt, options, context);
+  const Model worn = read_model(formed_picture(sheet, print, 300, context), "formed.glb", context);
+  ASSERT_EQ(worn.textures.size(), 1u);
+  ASSERT_EQ(worn.mesh.face_count(), sheet.mesh.face_count());
+  const Image texture = read_picture(worn.textures[0].bytes, "", "texture");
+  EXPECT_LE(std::max(texture.width, texture.height), 300);
+  const double scale = static_cast<double>(print.grid.width) / texture.width;
+  EXPECT_GT(scale, 2);
+  int compared = 0, agreed = 0;
+  for (Eigen::Index f = 0; f < worn.mesh.F.rows(); ++f) {
+    // Upright: machine z is up, and the machine's front (-y) towards the viewer (+z).
+    const Vec3 a = worn.mesh.V.row(worn.mesh.F(f, 0)), machine = sheet.mesh.V.row(sheet.mesh.F(f, 0));
+    EXPECT_NEAR((a - Vec3(machine.x(), machine.z(), -machine.y())).norm(), 0, 1e-3);
+    const Vec2 uv = worn.UV.row(worn.FT(f, 0));
+    const Vec2 texel(uv.x() * texture.width, (1 - uv.y()) * texture.height), pixel = print.grid.pixel(sheet.sheet_mm.row(sheet.mesh.F(f, 0)));
+    EXPECT_NEAR((texel * std::ceil(scale) - pixel).norm(), 0, 0.01);
+    const int x = std::clamp(static_cast<int>(texel.x()), 0, texture.width - 1), y = std::clamp(static_cast<int>(texel.y()), 0, texture.height - 1);
+    const Rgba own = print.picture.at(std::clamp(static_cast<int>(pixel.x()), 0, print.grid.width - 1), std::clamp(static_cast<int>(pixel.y()), 0, print.grid.height - 1));
+    ++compared;
+    agreed += std::abs(texture.at(x, y)[0] - own[0]) < 20;
+  }
+  EXPECT_GT(agreed, 0.9 * compared);  // all but along the checker's edges
 }
 
 TEST(Print, BleedReachesAsFarAsItSays) {

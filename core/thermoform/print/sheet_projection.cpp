@@ -123,7 +123,7 @@ ProjectedSurface project_onto_sheet(const RefinedSurface& surface, const FormedS
   context.progress(0, "Carrying the surface to the sheet");
   const Projector projector(sheet, options);
   const std::vector<double> shrunk_by = shrinkage(sheet);
-  const RayCaster model(surface.mesh);
+  const RayCaster model(surface.undivided);
   const Positions normals = normals_above(surface);
   const Eigen::Index n = surface.mesh.V.rows(), m = surface.mesh.F.rows();
   const Vec2 opening_lower = sheet.sheet_mm.colwise().minCoeff().transpose(), opening_upper = sheet.sheet_mm.colwise().maxCoeff().transpose();

@@ -68,11 +68,12 @@ void ModelColours::load_pictures(const std::optional<Image>& own_picture, Contex
 
 const LinearPicture* ModelColours::picture_of(int face) const {
   if (pictures_.empty() || model_.FT.row(face).minCoeff() < 0) return nullptr;
-  if (own_) return pictures_.front().get();
+  // A model that names its pictures says by that which faces have one.
+  if (own_ && (model_.textures.empty() || model_.face_material.empty())) return pictures_.front().get();
   if (model_.face_material.empty()) return pictures_.size() == 1 ? pictures_.front().get() : nullptr;
   const int material = model_.face_material[static_cast<std::size_t>(face)];
   const int texture = material < 0 ? -1 : model_.materials[static_cast<std::size_t>(material)].diffuse_texture;
-  return texture < 0 ? nullptr : pictures_[static_cast<std::size_t>(texture)].get();
+  return texture < 0 ? nullptr : pictures_[own_ ? 0 : static_cast<std::size_t>(texture)].get();
 }
 
 bool continues(const FaceColour& a, const FaceColour& b, const Vec2& place) {

@@ -32,7 +32,8 @@ bool continues(const FaceColour& a, const FaceColour& b, const Vec2& place);
 class ModelColours {
  public:
   /// `model` and `placed` (its mesh in machine coordinates, where patterns are drawn) must outlive this.
-  /// `own_picture`: takes the place of the pictures of all faces with texture coordinates.
+  /// `own_picture`: takes the place of the model's pictures; where the model names none, all faces with texture
+  /// coordinates have it.
   /// Throws Error{invalid_input} with where = "colours" when the model does not have the colours that are asked for,
   /// "texture" for a picture without texture coordinates to lay it by, "mould" for a damaged picture within the model.
   ModelColours(const Model& model, const TriangleMesh& placed, const std::optional<Image>& own_picture, const ThermoformPrintOptions& options, Context& context);
@@ -55,7 +56,7 @@ class ModelColours {
   const TriangleMesh& placed_;
   double pattern_mm_;
   PrintColours kind_;
-  std::vector<std::unique_ptr<LinearPicture>> pictures_;  // per texture of the model; the last one is own_picture
+  std::vector<std::unique_ptr<LinearPicture>> pictures_;  // per texture of the model, or own_picture alone
   bool own_ = false;
   std::vector<std::string> notes_;
 };

@@ -105,6 +105,16 @@ class Projector {
   std::optional<RayCaster> rays_;
 };
 
+/// Of the vertices, by their faces above the plate: along its foot a model's underside has no say.
+Positions normals_above(const RefinedSurface& surface) {
+  TriangleMesh above{surface.mesh.V, surface.mesh.F};
+  Eigen::Index count = 0;
+  for (Eigen::Index f = 0; f < surface.mesh.F.rows(); ++f)
+    if (!surface.below_plate[static_cast<std::size_t>(f)]) above.F.row(count++) = surface.mesh.F.row(f);
+  above.F.conservativeResize(count, 3);
+  return vertex_normals(above);
+}
+
 Coverage worst(Coverage a, Coverage b) { return a == Coverage::coloured ? b : a; }
 
 }  // namespace
@@ -113,8 +123,8 @@ ProjectedSurface project_onto_sheet(const RefinedSurface& surface, const FormedS
   context.progress(0, "Carrying the surface to the sheet");
   const Projector projector(sheet, options);
   const std::vector<double> shrunk_by = shrinkage(sheet);
-  const RayCaster model(surface.mesh);
-  const Positions normals = vertex_normals(surface.mesh);
+  const RayCaster model(surface.undivided);
+  const Positions normals = normals_above(surface);
   const Eigen::Index n = surface.mesh.V.rows(), m = surface.mesh.F.rows();
   const Vec2 opening_lower = sheet.sheet_mm.colwise().minCoeff().transpose(), opening_upper = sheet.sheet_mm.colwise().maxCoeff().transpose();
   ProjectedSurface result;

@@ -171,7 +171,9 @@ RefinedSurface refine_above_plate(const TriangleMesh& mesh, double longest_edge_
   Refiner refiner(mesh, context);
   refiner.cut_at_plate();
   while (refiner.bisect(longest_edge_mm, most_triangles)) {}
-  return refiner.result();
+  RefinedSurface refined = refiner.result();
+  refined.undivided = mesh;
+  return refined;
 }
 
 }  // namespace formwright

@@ -11,6 +11,7 @@ namespace formwright {
 
 struct RefinedSurface {
   TriangleMesh mesh;                                        // old vertices first
+  TriangleMesh undivided;                                   // the mesh as it was
   std::vector<int> face_of;                                 // per face: the old one it is a part of
   std::vector<std::array<Eigen::Vector2f, 3>> place;        // per face and corner: weights of the old face's corners 1 and 2
   std::vector<char> below_plate;                            // per face: at or under z = 0

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "geometry/point_distance.h"
+#include "geometry/io/mesh_io.h"
 #include "geometry/samples/samples.h"
 #include "imaging/light.h"
 #include "imaging/picture_reader.h"
@@ -28,23 +28,23 @@ Image white(int side) { return {side, side, {255, 255, 255, 255}}; }
 TEST(Print, DotsOnAConeLandWhereTheClosedFormSays) {
   const Cone cone;
   const double half_mm = 65, dot_mm = 0.6;
-  Image picture = white(4096);
+  Image picture = white(3000);
   std::vector<Vec2> dots;
   for (int ring = 0; ring < 5; ++ring)
     for (int k = 0; k < 12; ++k) dots.push_back(Vec2(std::cos(0.5 * k + ring), std::sin(0.5 * k + ring)) * (14 + 9.5 * ring));
   const auto texels = static_cast<double>(picture.width) / (2 * half_mm);
   for (const Vec2& dot : dots) {
     const Vec2 centre((dot.x() + half_mm) * texels, (half_mm - dot.y()) * texels);
-    for (int y = static_cast<int>(centre.y() - 30); y <= centre.y() + 30; ++y)
-      for (int x = static_cast<int>(centre.x() - 30); x <= centre.x() + 30; ++x)
+    for (int y = static_cast<int>(centre.y() - 20); y <= centre.y() + 20; ++y)
+      for (int x = static_cast<int>(centre.x() - 20); x <= centre.x() + 20; ++x)
         if ((Vec2(x + 0.5, y + 0.5) - centre).norm() < dot_mm * texels) picture.at(x, y) = {0, 0, 0, 255};
   }
   Model model;
-  model.mesh = cone.mesh(1, 360);
+  model.mesh = cone.mesh(1, 180);
   lay_from_above(model, half_mm);
   ThermoformPrintOptions options = test::plain_options(2 * cone.radius_mm, 300);
   Context context;
-  const TexturePrint print = make_texture_print(model, model.mesh, cone.sheet(80, 360), picture, options, context);
+  const TexturePrint print = make_texture_print(model, model.mesh, cone.sheet(80, 180), picture, options, context);
   EXPECT_EQ(print.colours, PrintColours::picture);
   double worst = 0;
   for (const Vec2& dot : dots) {
@@ -68,12 +68,12 @@ TEST(Print, DotsOnAConeLandWhereTheClosedFormSays) {
 
 TEST(Print, CarriedBackOntoTheSheetItIsTheModelAgain) {
   Context context;
-  const Model model = make_sample("mountain", 20000, context);
+  const Model model = make_sample("mountain", 6000, context);
   ThermoformPrintOptions options = test::plain_options(130, 300);
   options.size_mm = 100;
   options.bleed_mm = 0;
   const TriangleMesh placed = place(model.mesh, options, clamp_opening_mm(options))(model.mesh);
-  const FormedSheet sheet = test::dropped_sheet(placed, 130, 130, 0.3);
+  const FormedSheet sheet = test::dropped_sheet(placed, 130, 90, 0.3);
   const TexturePrint print = make_texture_print(model, placed, sheet, std::nullopt, options, context);
   EXPECT_GT(print.area_mm2[0], 4000);
   // The model's own colour at a point, against the print's where that point went; both as bytes.
@@ -131,6 +131,39 @@ TEST(Print, LeavesNoCracksAndNoSeams) {
     }
   EXPECT_GT(inside, 100'000);
   EXPECT_NEAR(print.stretch_mean, 2 / 0.75, 0.1);  // h0 / h = 1 / (0.75 u) over the area 2 u du
+}
+
+TEST(Print, TheFormedSheetWearsThePrint) {
+  Context context;
+  const Cone cone;
+  Model model;
+  model.mesh = cone.mesh(1, 64);
+  ThermoformPrintOptions options = test::plain_options(2 * cone.radius_mm, 150);
+  options.colours = PrintColours::checker;
+  options.pattern_mm = 30;
+  const FormedSheet sheet = cone.sheet(30, 64);
+  const TexturePrint print = make_texture_print(model, model.mesh, sheet, std::nullopt, options, context);
+  const Model worn = read_model(formed_picture(sheet, print, 300, context), "formed.glb", context);
+  ASSERT_EQ(worn.textures.size(), 1u);
+  ASSERT_EQ(worn.mesh.face_count(), sheet.mesh.face_count());
+  const Image texture = read_picture(worn.textures[0].bytes, "", "texture");
+  EXPECT_LE(std::max(texture.width, texture.height), 300);
+  const double scale = static_cast<double>(print.grid.width) / texture.width;
+  EXPECT_GT(scale, 2);
+  int compared = 0, agreed = 0;
+  for (Eigen::Index f = 0; f < worn.mesh.F.rows(); ++f) {
+    // Upright: machine z is up, and the machine's front (-y) towards the viewer (+z).
+    const Vec3 a = worn.mesh.V.row(worn.mesh.F(f, 0)), machine = sheet.mesh.V.row(sheet.mesh.F(f, 0));
+    EXPECT_NEAR((a - Vec3(machine.x(), machine.z(), -machine.y())).norm(), 0, 1e-3);
+    const Vec2 uv = worn.UV.row(worn.FT(f, 0));
+    const Vec2 texel(uv.x() * texture.width, (1 - uv.y()) * texture.height), pixel = print.grid.pixel(sheet.sheet_mm.row(sheet.mesh.F(f, 0)));
+    EXPECT_NEAR((texel * std::ceil(scale) - pixel).norm(), 0, 0.01);
+    const int x = std::clamp(static_cast<int>(texel.x()), 0, texture.width - 1), y = std::clamp(static_cast<int>(texel.y()), 0, texture.height - 1);
+    const Rgba own = print.picture.at(std::clamp(static_cast<int>(pixel.x()), 0, print.grid.width - 1), std::clamp(static_cast<int>(pixel.y()), 0, print.grid.height - 1));
+    ++compared;
+    agreed += std::abs(texture.at(x, y)[0] - own[0]) < 20;
+  }
+  EXPECT_GT(agreed, 0.9 * compared);  // all but along the checker's edges
 }
 
 TEST(Print, BleedReachesAsFarAsItSays) {

@@ -40,7 +40,8 @@ struct Watcher : processing::Corefinement::Default_visitor<ExactMesh> {
 template <class Mesh, class Points, class Faces>
 Mesh cgal_mesh(const Points& points, const Faces& faces, std::size_t point_count, std::size_t face_count) {
   Mesh mesh;
-  mesh.reserve(static_cast<typename Mesh::size_type>(point_count), static_cast<typename Mesh::size_type>(face_count * 3 / 2),
+  mesh.reserve(static_cast<typename Mesh::size_type>(point_count),
+               static_cast<typename Mesh::size_type>(face_count * 3 / 2),
                static_cast<typename Mesh::size_type>(face_count));
   using Vertex = typename Mesh::Vertex_index;
   for (std::size_t i = 0; i < point_count; ++i) mesh.add_vertex(points(i));
@@ -53,9 +54,11 @@ Mesh cgal_mesh(const Points& points, const Faces& faces, std::size_t point_count
 }
 
 ExactMesh to_cgal(const ExactSurface& surface) {
-  ExactMesh mesh = cgal_mesh<ExactMesh>([&](std::size_t i) { return surface.points[i]; }, [&](std::size_t f) { return surface.faces[f]; },
-                                        surface.points.size(), surface.faces.size());
-  if (mesh.number_of_faces() != surface.faces.size()) throw Error(ErrorCode::internal, "", "A solid lost its closedness between two operations.");
+  ExactMesh mesh = cgal_mesh<ExactMesh>([&](std::size_t i) { return surface.points[i]; },
+                                        [&](std::size_t f) { return surface.faces[f]; }, surface.points.size(),
+                                        surface.faces.size());
+  if (mesh.number_of_faces() != surface.faces.size())
+    throw Error(ErrorCode::internal, "", "A solid lost its closedness between two operations.");
   return mesh;
 }
 
@@ -93,15 +96,22 @@ ExactSolid boolean(const ExactSolid& a, const ExactSolid& b, Boolean kind, Conte
   const auto watched = CGAL::parameters::visitor(Watcher(context));
   bool manifold = false;
   switch (kind) {
-    case Boolean::unite: manifold = processing::corefine_and_compute_union(first, second, result, watched); break;
-    case Boolean::subtract: manifold = processing::corefine_and_compute_difference(first, second, result, watched); break;
-    case Boolean::intersect: manifold = processing::corefine_and_compute_intersection(first, second, result, watched); break;
+    case Boolean::unite:
+      manifold = processing::corefine_and_compute_union(first, second, result, watched);
+      break;
+    case Boolean::subtract:
+      manifold = processing::corefine_and_compute_difference(first, second, result, watched);
+      break;
+    case Boolean::intersect:
+      manifold = processing::corefine_and_compute_intersection(first, second, result, watched);
+      break;
   }
   const ExactSolid solid = manifold ? from_cgal(result) : ExactSolid();
   // CGAL keeps two edges between the same vertices apart; a file of triangles cannot.
   if (!manifold || !edges_manifold(solid.surface()))
     throw Error(ErrorCode::could_not_solve, "",
-                "The parts touch each other along an edge or at a point only, which no printable solid may: move the model by a fraction of a millimetre (sink_mm or turn_deg).");
+                "The parts touch each other along an edge or at a point only, which no printable solid may: move the "
+                "model by a fraction of a millimetre (sink_mm or turn_deg).");
   return solid;
 }
 
@@ -127,18 +137,22 @@ ExactSolid capped_above(const TriangleMesh& mesh, double height_mm, std::string_
   const auto border = border_edges(*surface);
   double highest = height_mm;
   for (const auto& edge : border)
-    for (const int i : edge) highest = std::max(highest, CGAL::to_double(surface->points[static_cast<std::size_t>(i)].z()));
+    for (const int i : edge)
+      highest = std::max(highest, CGAL::to_double(surface->points[static_cast<std::size_t>(i)].z()));
   if (highest > height_mm)
     throw Error(ErrorCode::invalid_input, std::string(where),
                 "The model has a hole up to " + millimetres(highest - height_mm) +
-                    " above the base plate: repair it or fill its holes, or sink it (sink_mm) until the hole is below the plate; a mould needs a watertight model, the simulation does not.");
+                    " above the base plate: repair it or fill its holes, or sink it (sink_mm) until the hole is below "
+                    "the plate; a mould needs a watertight model, the simulation does not.");
   for (const auto& [a, b, c] : planar_filling(surface->points, border, 2)) surface->faces.push_back({a, c, b});
   separate_fans(*surface);
   if (!border_edges(*surface).empty())
-    throw Error(ErrorCode::invalid_input, std::string(where), "The model's outline on the base plate crosses itself: repair the model, or change sink_mm.");
+    throw Error(ErrorCode::invalid_input, std::string(where),
+                "The model's outline on the base plate crosses itself: repair the model, or change sink_mm.");
   const ExactSolid solid(surface);
   if (!(solid.volume_mm3() > 0))
-    throw Error(ErrorCode::invalid_input, std::string(where), "The model is inside out: turn its faces around in a modeller, or repair it.");
+    throw Error(ErrorCode::invalid_input, std::string(where),
+                "The model is inside out: turn its faces around in a modeller, or repair it.");
   return solid;
 }
 
@@ -147,7 +161,8 @@ ExactSolid capped_above(const TriangleMesh& mesh, double height_mm, std::string_
 ExactSurface exact_surface(const TriangleMesh& mesh) {
   ExactSurface surface;
   surface.points.reserve(static_cast<std::size_t>(mesh.V.rows()));
-  for (Eigen::Index i = 0; i < mesh.V.rows(); ++i) surface.points.emplace_back(mesh.V(i, 0), mesh.V(i, 1), mesh.V(i, 2));
+  for (Eigen::Index i = 0; i < mesh.V.rows(); ++i)
+    surface.points.emplace_back(mesh.V(i, 0), mesh.V(i, 1), mesh.V(i, 2));
   for (Eigen::Index f = 0; f < mesh.F.rows(); ++f) surface.faces.push_back({mesh.F(f, 0), mesh.F(f, 1), mesh.F(f, 2)});
   return surface;
 }
@@ -164,7 +179,8 @@ TriangleMesh rounded(const ExactSurface& surface) {
       mesh.V(static_cast<Eigen::Index>(i), k) = interval.is_point() ? interval.inf() : CGAL::to_double(CGAL::exact(x));
     }
   for (std::size_t f = 0; f < surface.faces.size(); ++f)
-    for (std::size_t k = 0; k < 3; ++k) mesh.F(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k)) = surface.faces[f][k];
+    for (std::size_t k = 0; k < 3; ++k)
+      mesh.F(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k)) = surface.faces[f][k];
   return mesh;
 }
 
@@ -174,7 +190,8 @@ bool parts_overlap(const TriangleMesh& mesh, double height_mm, std::string_view 
   context.check_cancelled();
   std::vector<int> kept;
   for (int f = 0; f < mesh.face_count(); ++f)
-    if (std::max({mesh.V(mesh.F(f, 0), 2), mesh.V(mesh.F(f, 1), 2), mesh.V(mesh.F(f, 2), 2)}) > height_mm) kept.push_back(f);
+    if (std::max({mesh.V(mesh.F(f, 0), 2), mesh.V(mesh.F(f, 1), 2), mesh.V(mesh.F(f, 2), 2)}) > height_mm)
+      kept.push_back(f);
   const Mesh checked = cgal_mesh<Mesh>(
       [&](std::size_t i) {
         const auto v = mesh.V.row(static_cast<Eigen::Index>(i));
@@ -186,7 +203,8 @@ bool parts_overlap(const TriangleMesh& mesh, double height_mm, std::string_view 
       },
       static_cast<std::size_t>(mesh.V.rows()), kept.size());
   if (checked.number_of_faces() != kept.size())
-    throw Error(ErrorCode::invalid_input, std::string(where), "The model is not a manifold: repair it; a mould needs a watertight model, the simulation does not.");
+    throw Error(ErrorCode::invalid_input, std::string(where),
+                "The model is not a manifold: repair it; a mould needs a watertight model, the simulation does not.");
   std::vector<std::pair<Mesh::Face_index, Mesh::Face_index>> pairs;
   processing::self_intersections(checked, std::back_inserter(pairs));
   context.check_cancelled();
@@ -201,15 +219,19 @@ bool parts_overlap(const TriangleMesh& mesh, double height_mm, std::string_view 
     }
   if (own == 0) return true;
   const auto p = mesh.V.row(mesh.F(example, 0));
-  throw Error(ErrorCode::invalid_input, std::string(where),
-              "The model crosses itself at " + std::to_string(own) + (own == 1 ? " place" : " places") + ", such as x " + millimetres(p[0]) + ", y " +
-                  millimetres(p[1]) + ", z " + millimetres(p[2]) + " on the machine: repair or remesh it in a modeller; a mould needs a sound solid, the simulation does not.");
+  throw Error(
+      ErrorCode::invalid_input, std::string(where),
+      "The model crosses itself at " + std::to_string(own) + (own == 1 ? " place" : " places") + ", such as x " +
+          millimetres(p[0]) + ", y " + millimetres(p[1]) + ", z " + millimetres(p[2]) +
+          " on the machine: repair or remesh it in a modeller; a mould needs a sound solid, the simulation does not.");
 }
 
 ExactSolid ExactSolid::from_mesh(const TriangleMesh& mesh, std::string_view where, Context& context) {
   const Adjacency adjacency(mesh);
   if (!adjacency.is_closed())
-    throw Error(ErrorCode::invalid_input, std::string(where), "The model is not closed: repair it or fill its holes; a mould needs a watertight model, the simulation does not.");
+    throw Error(ErrorCode::invalid_input, std::string(where),
+                "The model is not closed: repair it or fill its holes; a mould needs a watertight model, the "
+                "simulation does not.");
   const double lowest = mesh.V.rows() > 0 ? mesh.V.col(2).minCoeff() : 0;
   const double below = lowest - 1 - std::abs(lowest);
   return above(mesh, below, where, context);
@@ -221,7 +243,9 @@ ExactSolid ExactSolid::above(const TriangleMesh& mesh, double height_mm, std::st
     if (!solid.empty() && face_components(Adjacency(mesh)).count > 1) {
       const ExactMesh bounding = to_cgal(solid.surface());
       if (!processing::does_bound_a_volume(bounding))
-        throw Error(ErrorCode::invalid_input, std::string(where), "One part of the model lies within another as a second solid: remove the inner one, or turn its faces around if it is meant as a cavity.");
+        throw Error(ErrorCode::invalid_input, std::string(where),
+                    "One part of the model lies within another as a second solid: remove the inner one, or turn its "
+                    "faces around if it is meant as a cavity.");
     }
     return solid;
   }
@@ -229,7 +253,8 @@ ExactSolid ExactSolid::above(const TriangleMesh& mesh, double height_mm, std::st
   const Components parts = face_components(Adjacency(mesh));
   ExactSolid whole;
   for (int part = 0; part < parts.count; ++part) {
-    const auto span = context.span(static_cast<double>(part) / parts.count, (part + 1.0) / parts.count, "Joining overlapping parts");
+    const auto span =
+        context.span(static_cast<double>(part) / parts.count, (part + 1.0) / parts.count, "Joining overlapping parts");
     whole = unite(whole, capped_above(component(mesh, parts, part), height_mm, where, context), context);
   }
   return whole;
@@ -246,14 +271,21 @@ const ExactSolid::Surface& ExactSolid::surface() const {
 
 TriangleMesh ExactSolid::mesh() const {
   TriangleMesh result = rounded(surface());
-  if (!empty() && !Adjacency(result).is_closed()) throw Error(ErrorCode::internal, "", "The exact solid is not closed.");
+  if (!empty() && !Adjacency(result).is_closed())
+    throw Error(ErrorCode::internal, "", "The exact solid is not closed.");
   return result;
 }
 
 double ExactSolid::volume_mm3() const { return empty() ? 0 : signed_volume(rounded(surface())); }
 
-ExactSolid unite(const ExactSolid& a, const ExactSolid& b, Context& context) { return boolean(a, b, Boolean::unite, context); }
-ExactSolid subtract(const ExactSolid& a, const ExactSolid& b, Context& context) { return boolean(a, b, Boolean::subtract, context); }
-ExactSolid intersect(const ExactSolid& a, const ExactSolid& b, Context& context) { return boolean(a, b, Boolean::intersect, context); }
+ExactSolid unite(const ExactSolid& a, const ExactSolid& b, Context& context) {
+  return boolean(a, b, Boolean::unite, context);
+}
+ExactSolid subtract(const ExactSolid& a, const ExactSolid& b, Context& context) {
+  return boolean(a, b, Boolean::subtract, context);
+}
+ExactSolid intersect(const ExactSolid& a, const ExactSolid& b, Context& context) {
+  return boolean(a, b, Boolean::intersect, context);
+}
 
 }  // namespace formwright

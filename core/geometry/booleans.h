@@ -2,10 +2,10 @@
 #pragma once
 // Exact constructive solid geometry: union, difference, intersection and planar cuts of closed meshes.
 //
-// Booleans are CGAL's corefinement with exact constructions; planar cuts are our own on the same exact points, capped by
-// a constrained Delaunay triangulation, so that a chain of operations rounds once, at its end. Rounding to double moves
-// no vertex by more than 2^-53 of its coordinates: 1.4e-14 mm at 128 mm. That is as deep as walls of the result may
-// cross each other.
+// Booleans are CGAL's corefinement with exact constructions; planar cuts are our own on the same exact points, capped
+// by a constrained Delaunay triangulation, so that a chain of operations rounds once, at its end. Rounding to double
+// moves no vertex by more than 2^-53 of its coordinates: 1.4e-14 mm at 128 mm. That is as deep as walls of the result
+// may cross each other.
 #include <memory>
 #include <string_view>
 
@@ -20,7 +20,8 @@ class ExactSolid {
   ExactSolid() = default;
 
   /// Takes a closed, manifold mesh in mm whose faces look outwards (cavities inwards).
-  /// Throws Error{invalid_input, where} for an open, inverted or self-intersecting one, naming the mend; Error{cancelled}.
+  /// Throws Error{invalid_input, where} for an open, inverted or self-intersecting one, naming the mend;
+  /// Error{cancelled}.
   static ExactSolid from_mesh(const TriangleMesh& mesh, std::string_view where, Context& context);
 
   /// The part of `mesh` above z = `height_mm`, capped flat there. The mesh may be open, and may do as it likes, below.
@@ -32,8 +33,8 @@ class ExactSolid {
   /// Throws Error: could_not_solve (a section that touches itself), cancelled.
   ExactSolid half(int axis, double offset_mm, bool upper, Context& context) const;
 
-  /// The section at z = `top_mm`, drawn straight down to `bottom_mm` < `top_mm`. Empty where nothing rises above top_mm.
-  /// Throws as half.
+  /// The section at z = `top_mm`, drawn straight down to `bottom_mm` < `top_mm`. Empty where nothing rises above
+  /// top_mm. Throws as half.
   ExactSolid section_prism(double top_mm, double bottom_mm, Context& context) const;
 
   bool empty() const;

@@ -17,9 +17,11 @@ namespace {
 
 using Number = ExactKernel::FT;
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<int, ExactKernel>;  // index of the point
-using FaceBase = CGAL::Constrained_triangulation_face_base_2<ExactKernel, CGAL::Triangulation_face_base_with_info_2<int, ExactKernel>>;  // nesting
-using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<ExactKernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>,
-                                                                 CGAL::No_constraint_intersection_requiring_constructions_tag>;
+using FaceBase = CGAL::Constrained_triangulation_face_base_2<
+    ExactKernel, CGAL::Triangulation_face_base_with_info_2<int, ExactKernel>>;  // nesting
+using Triangulation =
+    CGAL::Constrained_Delaunay_triangulation_2<ExactKernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>,
+                                               CGAL::No_constraint_intersection_requiring_constructions_tag>;
 
 using DirectedEdge = std::array<int, 2>;
 
@@ -42,7 +44,8 @@ std::vector<HalfEdge> sorted_halfedges(const ExactSurface& surface) {
 
 [[noreturn]] void refuse_touching() {
   throw Error(ErrorCode::could_not_solve, "",
-              "A cut through the model touches itself along an edge, which no mesh may: move the cut by a fraction of a millimetre (sink_mm, or the printer's size).");
+              "A cut through the model touches itself along an edge, which no mesh may: move the cut by a fraction of "
+              "a millimetre (sink_mm, or the printer's size).");
 }
 
 }  // namespace
@@ -52,13 +55,18 @@ void separate_fans(ExactSurface& surface) {
   std::vector<int> parent(3 * surface.faces.size());
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&](int i) {
-    while (parent[static_cast<std::size_t>(i)] != i) i = parent[static_cast<std::size_t>(i)] = parent[static_cast<std::size_t>(parent[static_cast<std::size_t>(i)])];
+    while (parent[static_cast<std::size_t>(i)] != i)
+      i = parent[static_cast<std::size_t>(i)] = parent[static_cast<std::size_t>(parent[static_cast<std::size_t>(i)])];
     return i;
   };
-  const auto join = [&](int a, int b) { parent[static_cast<std::size_t>(std::max(root(a), root(b)))] = std::min(root(a), root(b)); };
+  const auto join = [&](int a, int b) {
+    parent[static_cast<std::size_t>(std::max(root(a), root(b)))] = std::min(root(a), root(b));
+  };
   for (std::size_t i = 0; i < halfedges.size();) {
     std::size_t end = i + 1;
-    while (end < halfedges.size() && halfedges[end].lower == halfedges[i].lower && halfedges[end].higher == halfedges[i].higher) ++end;
+    while (end < halfedges.size() && halfedges[end].lower == halfedges[i].lower &&
+           halfedges[end].higher == halfedges[i].higher)
+      ++end;
     if (end - i > 2) refuse_touching();
     if (end - i == 2) {
       const HalfEdge &g = halfedges[i], &h = halfedges[i + 1];
@@ -94,7 +102,9 @@ ExactSurface clipped(const ExactSurface& surface, int axis, double offset_mm, bo
   result.points = surface.points;
   // Crossed edges, each cut once, so that neighbours share the new point.
   std::vector<DirectedEdge> crossed;
-  const auto crosses = [&](int a, int b) { return side[static_cast<std::size_t>(a)] * side[static_cast<std::size_t>(b)] < 0; };
+  const auto crosses = [&](int a, int b) {
+    return side[static_cast<std::size_t>(a)] * side[static_cast<std::size_t>(b)] < 0;
+  };
   for (const auto& face : surface.faces)
     for (std::size_t k = 0; k < 3; ++k)
       if (const auto [a, b] = std::minmax(face[k], face[(k + 1) % 3]); crosses(a, b)) crossed.push_back({a, b});
@@ -134,7 +144,9 @@ std::vector<DirectedEdge> border_edges(const ExactSurface& surface) {
   std::vector<DirectedEdge> border;
   for (std::size_t i = 0; i < halfedges.size();) {
     std::size_t end = i + 1;
-    while (end < halfedges.size() && halfedges[end].lower == halfedges[i].lower && halfedges[end].higher == halfedges[i].higher) ++end;
+    while (end < halfedges.size() && halfedges[end].lower == halfedges[i].lower &&
+           halfedges[end].higher == halfedges[i].higher)
+      ++end;
     if ((end - i) % 2 == 1) {
       const auto& face = surface.faces[static_cast<std::size_t>(halfedges[i].face)];
       const auto k = static_cast<std::size_t>(halfedges[i].corner);
@@ -152,7 +164,8 @@ bool edges_manifold(const ExactSurface& surface) {
   return true;
 }
 
-std::vector<std::array<int, 3>> planar_filling(const std::vector<ExactPoint>& points, const std::vector<DirectedEdge>& edges, int axis) {
+std::vector<std::array<int, 3>> planar_filling(const std::vector<ExactPoint>& points,
+                                               const std::vector<DirectedEdge>& edges, int axis) {
   std::vector<int> used;
   for (const auto& [a, b] : edges) used.insert(used.end(), {a, b});
   std::ranges::sort(used);
@@ -167,7 +180,9 @@ std::vector<std::array<int, 3>> planar_filling(const std::vector<ExactPoint>& po
   std::vector<Triangulation::Vertex_handle> handles(used.size());
   for (const auto vertex : triangulation.finite_vertex_handles())
     handles[static_cast<std::size_t>(std::ranges::lower_bound(used, vertex->info()) - used.begin())] = vertex;
-  const auto handle = [&](int i) { return handles[static_cast<std::size_t>(std::ranges::lower_bound(used, i) - used.begin())]; };
+  const auto handle = [&](int i) {
+    return handles[static_cast<std::size_t>(std::ranges::lower_bound(used, i) - used.begin())];
+  };
   try {
     for (const auto& [a, b] : edges) {
       if (handle(a) == nullptr || handle(b) == nullptr) refuse_touching();  // two points at the same place
@@ -194,7 +209,8 @@ std::vector<std::array<int, 3>> planar_filling(const std::vector<ExactPoint>& po
     std::swap(level, next);
   }
   for (const auto face : triangulation.finite_face_handles())
-    if (face->info() % 2 == 1) filling.push_back({face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()});
+    if (face->info() % 2 == 1)
+      filling.push_back({face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()});
   // The triangulation's own order depends on addresses nowhere, but sorted lists stay sorted whatever CGAL does.
   for (auto& face : filling) std::ranges::rotate(face, std::ranges::min_element(face));
   std::ranges::sort(filling);
@@ -206,8 +222,10 @@ ExactSolid ExactSolid::half(int axis, double offset_mm, bool upper, Context& con
   auto part = std::make_shared<Surface>(clipped(surface(), axis, offset_mm, upper, context));
   if (part->faces.empty()) return {};
   for (const auto& [a, b, c] : planar_filling(part->points, border_edges(*part), axis)) {
-    if (upper) part->faces.push_back({a, c, b});
-    else part->faces.push_back({a, b, c});
+    if (upper)
+      part->faces.push_back({a, c, b});
+    else
+      part->faces.push_back({a, b, c});
   }
   separate_fans(*part);
   if (!border_edges(*part).empty()) refuse_touching();

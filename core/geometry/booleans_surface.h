@@ -40,7 +40,8 @@ bool edges_manifold(const ExactSurface& surface);
 
 /// Triangles that fill what `edges`, closed loops in the plane of `axis`, enclose (odd nesting); they face along +axis.
 /// Throws Error{could_not_solve} where loops cross.
-std::vector<std::array<int, 3>> planar_filling(const std::vector<ExactPoint>& points, const std::vector<std::array<int, 2>>& edges, int axis);
+std::vector<std::array<int, 3>> planar_filling(const std::vector<ExactPoint>& points,
+                                               const std::vector<std::array<int, 2>>& edges, int axis);
 
 /// Throws Error{invalid_input, where} if faces with a corner above `height_mm` meet where they should not, unless they
 /// belong to different parts: then returns true.

@@ -65,7 +65,8 @@ TEST(Booleans, FacesInCommonPlanes) {
 
 TEST(Booleans, ApartAndWithin) {
   Context context;
-  const ExactSolid a = box({0, 0, 0}, {1, 1, 1}), far = box({3, 0, 0}, {1, 1, 1}), inner = box({0.25, 0.25, 0.25}, {0.5, 0.5, 0.5});
+  const ExactSolid a = box({0, 0, 0}, {1, 1, 1}), far = box({3, 0, 0}, {1, 1, 1}),
+                   inner = box({0.25, 0.25, 0.25}, {0.5, 0.5, 0.5});
   EXPECT_TRUE(intersect(a, far, context).empty());
   EXPECT_EQ(subtract(a, far, context).face_count(), 12);
   EXPECT_NEAR(unite(a, far, context).volume_mm3(), 2, 1e-15);
@@ -83,7 +84,8 @@ TEST(Booleans, VolumesAddUpOverTheSamples) {
   for (const char* name : {"pyramid", "hemisphere", "torus", "star", "heart", "t_shape", "octopus", "cat"}) {
     SCOPED_TRACE(name);
     const TriangleMesh first = moved(sample(name, 3000), {0, -40, 0});
-    const TriangleMesh second = moved(rotated(first, random.direction(), random.uniform(0.2, 3)), Vec3(random.uniform(-5, 5), random.uniform(-5, 5), random.uniform(-5, 5)));
+    const TriangleMesh second = moved(rotated(first, random.direction(), random.uniform(0.2, 3)),
+                                      Vec3(random.uniform(-5, 5), random.uniform(-5, 5), random.uniform(-5, 5)));
     const ExactSolid a = solid(first), b = solid(second);
     EXPECT_NEAR(a.volume_mm3(), signed_volume(first), 1e-12 * signed_volume(first));
     const ExactSolid common = intersect(a, b, context), rest = subtract(a, b, context), whole = unite(a, b, context);
@@ -109,15 +111,18 @@ TEST(Booleans, HalvesAddUp) {
   for (const ExactSolid* shape : {&torus_solid, &sphere})
     for (int axis = 0; axis < 3; ++axis)
       for (const double offset : {-3.0, 0.1, 7.25}) {
-        const ExactSolid upper = shape->half(axis, offset, true, context), lower = shape->half(axis, offset, false, context);
+        const ExactSolid upper = shape->half(axis, offset, true, context),
+                         lower = shape->half(axis, offset, false, context);
         EXPECT_NEAR(upper.volume_mm3() + lower.volume_mm3(), shape->volume_mm3(), 1e-12 * shape->volume_mm3());
         EXPECT_TRUE(Adjacency(upper.mesh()).is_closed());
         EXPECT_TRUE(Adjacency(lower.mesh()).is_closed());
-        EXPECT_EQ(upper.mesh().V.col(axis).minCoeff(), std::max(offset, shape->mesh().V.col(axis).minCoeff()));  // on the plane, to the last bit
+        EXPECT_EQ(upper.mesh().V.col(axis).minCoeff(),
+                  std::max(offset, shape->mesh().V.col(axis).minCoeff()));  // on the plane, to the last bit
         // The same part as a boolean with a box.
         Vec3 low(-1000, -1000, -1000);
         low[axis] = offset;
-        EXPECT_NEAR(intersect(*shape, box(low, {2000, 2000, 2000}), context).volume_mm3(), upper.volume_mm3(), 1e-12 * shape->volume_mm3());
+        EXPECT_NEAR(intersect(*shape, box(low, {2000, 2000, 2000}), context).volume_mm3(), upper.volume_mm3(),
+                    1e-12 * shape->volume_mm3());
       }
   EXPECT_TRUE(sphere.half(2, 100, true, context).empty());
   EXPECT_NEAR(sphere.half(2, -100, true, context).volume_mm3(), sphere.volume_mm3(), 1e-12 * sphere.volume_mm3());
@@ -125,8 +130,9 @@ TEST(Booleans, HalvesAddUp) {
 
 TEST(Booleans, SectionPrism) {
   Context context;
-  const ExactSolid pyramid = solid(make_mesh({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {0, 0, 2}},
-                                             {{{0, 1, 4}}, {{1, 2, 4}}, {{2, 3, 4}}, {{3, 0, 4}}, {{0, 2, 1}}, {{0, 3, 2}}}));
+  const ExactSolid pyramid =
+      solid(make_mesh({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {0, 0, 2}},
+                      {{{0, 1, 4}}, {{1, 2, 4}}, {{2, 3, 4}}, {{3, 0, 4}}, {{0, 2, 1}}, {{0, 3, 2}}}));
   const ExactSolid prism = pyramid.section_prism(1, -0.5, context);  // 1 x 1 at half the height
   EXPECT_NEAR(prism.volume_mm3(), 1.5, 1e-15);
   EXPECT_TRUE(Adjacency(prism.mesh()).is_closed());
@@ -154,13 +160,20 @@ TEST(Booleans, OpenBelowTheCut) {
   const double section = 0.5 * 16 * std::sin(2 * std::numbers::pi / 16) * 4;
   EXPECT_NEAR(ExactSolid::above(cup, 0.5, "mesh", context).volume_mm3(), 1.5 * section, 1e-13);
   EXPECT_NEAR(ExactSolid::above(cup, 0, "mesh", context).volume_mm3(), 2 * section, 1e-13);
-  EXPECT_NE(refusal(ErrorCode::invalid_input, [&] { ExactSolid::above(cup, -0.5, "mesh", context); }).find("hole up to 0.5 mm"), std::string::npos);
+  EXPECT_NE(refusal(ErrorCode::invalid_input, [&] { ExactSolid::above(cup, -0.5, "mesh", context); })
+                .find("hole up to 0.5 mm"),
+            std::string::npos);
 }
 
 TEST(Booleans, RefusesWhatIsNoSolid) {
   Context context;
   EXPECT_NE(refusal(ErrorCode::invalid_input, [] { solid(reversed(cube())); }).find("inside out"), std::string::npos);
-  EXPECT_NE(refusal(ErrorCode::invalid_input, [] { solid(joined(cube(), moved(cube(), {0.25, 0.25, 0.25}, 0.5))); }).find("within another"), std::string::npos);
+  EXPECT_NE(refusal(ErrorCode::invalid_input,
+                    [] {
+                      solid(joined(cube(), moved(cube(), {0.25, 0.25, 0.25}, 0.5)));
+                    })
+                .find("within another"),
+            std::string::npos);
   TriangleMesh crossing = icosphere(2);
   for (Eigen::Index i = 0; i < crossing.V.rows(); ++i)
     if (crossing.V(i, 0) > 0.6) crossing.V(i, 0) -= 2.4;  // one cap pulled through the other side
@@ -176,7 +189,8 @@ TEST(Booleans, CancelsWithin) {
   host.cancel_requested = [&] { return ++calls > 3; };
   Context context(host);
   Context free;
-  const ExactSolid a = ExactSolid::from_mesh(sample("torus", 2000), "mesh", free), b = ExactSolid::from_mesh(moved(sample("torus", 2000), {5, 3, 2}), "mesh", free);
+  const ExactSolid a = ExactSolid::from_mesh(sample("torus", 2000), "mesh", free),
+                   b = ExactSolid::from_mesh(moved(sample("torus", 2000), {5, 3, 2}), "mesh", free);
   refusal(ErrorCode::cancelled, [&] { unite(a, b, context); });
 }
 

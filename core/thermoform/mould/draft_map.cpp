@@ -16,10 +16,10 @@ namespace formwright {
 namespace {
 
 constexpr double to_degrees = 180 / std::numbers::pi;
-constexpr int direction_count = 6;  // pairs of opposite directions, 30 degrees apart
-constexpr double upright = 1e-9;       // of a unit normal: rounding tilts upright walls by less
-constexpr double least_ratio = 0.1;    // flatter hollows are none
-constexpr double floor_deg = 30;       // cavities are measured at their floors: upright creases have no width
+constexpr int direction_count = 6;   // pairs of opposite directions, 30 degrees apart
+constexpr double upright = 1e-9;     // of a unit normal: rounding tilts upright walls by less
+constexpr double least_ratio = 0.1;  // flatter hollows are none
+constexpr double floor_deg = 30;     // cavities are measured at their floors: upright creases have no width
 constexpr double cavity_area_mm2 = 10;
 constexpr double overhang_deg = -60;  // a wall that leans in further is a ceiling
 constexpr std::size_t grain = 1024;
@@ -87,7 +87,8 @@ std::string rounded_text(double value, const char* format = "%.0f") {
 void deepest_cavity(DraftMap& map, const HeightGrid& grid, double least_width_mm, Context& context) {
   const std::size_t count = grid.height_mm.size(), columns = static_cast<std::size_t>(grid.columns);
   const auto node = [&](std::size_t i) {
-    return Vec3(grid.lower_mm.x() + grid.pitch_mm * static_cast<double>(i % columns), grid.lower_mm.y() + grid.pitch_mm * static_cast<double>(i / columns), grid.height_mm[i]);
+    return Vec3(grid.lower_mm.x() + grid.pitch_mm * static_cast<double>(i % columns),
+                grid.lower_mm.y() + grid.pitch_mm * static_cast<double>(i / columns), grid.height_mm[i]);
   };
   std::vector<double> ratio(count, 0.0);
   parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
@@ -99,7 +100,9 @@ void deepest_cavity(DraftMap& map, const HeightGrid& grid, double least_width_mm
   if (rank >= count) return;
   std::vector<std::size_t> order(count);
   std::iota(order.begin(), order.end(), 0);
-  std::ranges::nth_element(order, order.begin() + static_cast<std::ptrdiff_t>(rank), [&](std::size_t a, std::size_t b) { return ratio[a] != ratio[b] ? ratio[a] > ratio[b] : a < b; });
+  std::ranges::nth_element(order, order.begin() + static_cast<std::ptrdiff_t>(rank), [&](std::size_t a, std::size_t b) {
+    return ratio[a] != ratio[b] ? ratio[a] > ratio[b] : a < b;
+  });
   map.depth_to_width_max = ratio[order[rank]];
   map.deepest_mm = node(order[rank]);
 }
@@ -110,40 +113,50 @@ void describe(DraftMap& map, const Positions& normals, const Eigen::VectorXd& ar
   for (Eigen::Index f = 0; f < areas.size(); ++f)
     if (map.face_draft_deg[f] < overhang_deg) hanging += areas[f];
   if (hanging > 0.005 * map.area_mm2)
-    map.sentences.push_back(rounded_text(hanging / 100, "%.1f") + " cm2 face down over an empty space: the sheet cannot get there.");
+    map.sentences.push_back(rounded_text(hanging / 100, "%.1f") +
+                            " cm2 face down over an empty space: the sheet cannot get there.");
   for (const Side& side : sides) {
     double area = 0, lean = 0;
     for (Eigen::Index f = 0; f < areas.size(); ++f) {
-      const double along = normals(f, 0) * side.x + normals(f, 1) * side.y, across = normals(f, 0) * side.y - normals(f, 1) * side.x;
+      const double along = normals(f, 0) * side.x + normals(f, 1) * side.y,
+                   across = normals(f, 0) * side.y - normals(f, 1) * side.x;
       if (map.face_draft_deg[f] >= -1 || map.face_draft_deg[f] < overhang_deg || along < std::abs(across)) continue;
       area += areas[f];
       lean -= areas[f] * map.face_draft_deg[f];
     }
     if (area < 0.005 * map.area_mm2) continue;
     locked += area;
-    map.sentences.push_back(std::string("The ") + side.name + " side leans in by " + rounded_text(lean / area) + " degrees over " + rounded_text(area / 100, "%.1f") +
+    map.sentences.push_back(std::string("The ") + side.name + " side leans in by " + rounded_text(lean / area) +
+                            " degrees over " + rounded_text(area / 100, "%.1f") +
                             " cm2: the shell will lock onto a rigid mould there.");
   }
   if (locked + hanging == 0 && map.undercut_area_mm2 > 0.005 * map.area_mm2)
-    map.sentences.push_back(rounded_text(map.undercut_area_mm2 / 100, "%.1f") + " cm2 of the model lie below something else: the sheet cannot get there.");
+    map.sentences.push_back(rounded_text(map.undercut_area_mm2 / 100, "%.1f") +
+                            " cm2 of the model lie below something else: the sheet cannot get there.");
   if (map.undercut_area_mm2 <= 0.005 * map.area_mm2) {
     if (map.below_3_deg_area_mm2 > 0.005 * map.area_mm2)
-      map.sentences.push_back(rounded_text(map.below_3_deg_area_mm2 / 100, "%.1f") + " cm2 of wall have less than 3 degrees of draft: the shell will come off hard.");
-    else map.sentences.emplace_back("The walls lean outwards by 3 degrees or more: the shell will come off.");
+      map.sentences.push_back(rounded_text(map.below_3_deg_area_mm2 / 100, "%.1f") +
+                              " cm2 of wall have less than 3 degrees of draft: the shell will come off hard.");
+    else
+      map.sentences.emplace_back("The walls lean outwards by 3 degrees or more: the shell will come off.");
   } else {
     map.sentences.emplace_back("Sink the model to its widest place, turn it, or plan to break the mould out.");
   }
   if (map.depth_to_width_max > 1)
-    map.sentences.push_back("The deepest cavity, at x " + rounded_text(map.deepest_mm.x()) + ", y " + rounded_text(map.deepest_mm.y()) + " mm, is " +
-                            rounded_text(map.depth_to_width_max, "%.1f") + " times as deep as wide: the sheet will bridge it or get very thin.");
+    map.sentences.push_back("The deepest cavity, at x " + rounded_text(map.deepest_mm.x()) + ", y " +
+                            rounded_text(map.deepest_mm.y()) + " mm, is " +
+                            rounded_text(map.depth_to_width_max, "%.1f") +
+                            " times as deep as wide: the sheet will bridge it or get very thin.");
 }
 
 }  // namespace
 
 double HeightGrid::least_around(double x_mm, double y_mm) const {
-  const auto column = static_cast<int>(std::floor((x_mm - lower_mm.x()) / pitch_mm)), row = static_cast<int>(std::floor((y_mm - lower_mm.y()) / pitch_mm));
+  const auto column = static_cast<int>(std::floor((x_mm - lower_mm.x()) / pitch_mm)),
+             row = static_cast<int>(std::floor((y_mm - lower_mm.y()) / pitch_mm));
   if (column < 0 || row < 0 || column + 1 >= columns || row + 1 >= rows) return 0;
-  const double* corner = height_mm.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
+  const double* corner = height_mm.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+                         static_cast<std::size_t>(column);
   return std::min({corner[0], corner[1], corner[columns], corner[columns + 1]});
 }
 
@@ -161,9 +174,11 @@ HeightGrid height_grid(const TriangleMesh& solid, int cells, Context& context) {
   parallel_for(grid.height_mm.size(), grain, [&](std::size_t begin, std::size_t end) {
     context.check_cancelled();
     for (std::size_t i = begin; i < end; ++i) {
-      const auto column = static_cast<double>(i % static_cast<std::size_t>(grid.columns)), row = static_cast<double>(i / static_cast<std::size_t>(grid.columns));
+      const auto column = static_cast<double>(i % static_cast<std::size_t>(grid.columns)),
+                 row = static_cast<double>(i / static_cast<std::size_t>(grid.columns));
       const Vec3 origin(grid.lower_mm.x() + column * grid.pitch_mm, grid.lower_mm.y() + row * grid.pitch_mm, top);
-      if (const auto hit = caster.first_hit(origin, -Vec3::UnitZ(), 0, top + 1)) grid.height_mm[i] = top - hit->distance;
+      if (const auto hit = caster.first_hit(origin, -Vec3::UnitZ(), 0, top + 1))
+        grid.height_mm[i] = top - hit->distance;
     }
   });
   grid.top_mm = *std::ranges::max_element(grid.height_mm);
@@ -208,8 +223,10 @@ double depth_to_width_at(const HeightGrid& grid, const Vec3& point, double least
     while (i < left.size() && j < right.size()) {
       const double level = std::min(left[i].height_mm, right[j].height_mm);
       best = std::max(best, (level - p.z()) / std::max(least_width_mm, left[i].distance_mm + right[j].distance_mm));
-      if (left[i].height_mm <= right[j].height_mm) ++i;
-      else ++j;
+      if (left[i].height_mm <= right[j].height_mm)
+        ++i;
+      else
+        ++j;
     }
   }
   return best > least_ratio ? best : 0;
@@ -235,7 +252,9 @@ DraftMap draft_map(const TriangleMesh& solid, double sheet_thickness_mm, int cel
     for (std::size_t f = begin; f < end; ++f) {
       const auto row = static_cast<Eigen::Index>(f);
       const Vec3 normal = normals.row(row);
-      const Vec3 centre = (map.mesh.V.row(map.mesh.F(row, 0)) + map.mesh.V.row(map.mesh.F(row, 1)) + map.mesh.V.row(map.mesh.F(row, 2))) / 3;
+      const Vec3 centre = (map.mesh.V.row(map.mesh.F(row, 0)) + map.mesh.V.row(map.mesh.F(row, 1)) +
+                           map.mesh.V.row(map.mesh.F(row, 2))) /
+                          3;
       map.face_draft_deg[row] = draft_of(normal);
       map.face_undercut[f] = hidden(centre, normal) ? 1 : 0;
     }
@@ -260,7 +279,8 @@ DraftMap draft_map(const TriangleMesh& solid, double sheet_thickness_mm, int cel
       const Vec3 p = map.mesh.V.row(row), normal = corner_normals.row(row);
       map.draft_deg[row] = draft_of(normal);
       map.undercut[v] = hidden(p, normal) ? 1 : 0;
-      if (!map.undercut[v] && map.draft_deg[row] >= floor_deg) map.depth_to_width[row] = depth_to_width_at(grid, p, sheet_thickness_mm);
+      if (!map.undercut[v] && map.draft_deg[row] >= floor_deg)
+        map.depth_to_width[row] = depth_to_width_at(grid, p, sheet_thickness_mm);
     }
   });
   deepest_cavity(map, grid, sheet_thickness_mm, context);

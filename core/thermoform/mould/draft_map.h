@@ -10,10 +10,10 @@
 namespace formwright {
 
 struct DraftMap {
-  TriangleMesh mesh;               // the surface above the plate, without what stands on it; machine coordinates
-  Eigen::VectorXd draft_deg;       // per vertex: angle between the surface and the pull direction (up), from its normal;
-                                   // 90 is a floor, 0 an upright wall, negative leans over
-  std::vector<char> undercut;      // per vertex: something lies above it
+  TriangleMesh mesh;           // the surface above the plate, without what stands on it; machine coordinates
+  Eigen::VectorXd draft_deg;   // per vertex: angle between the surface and the pull direction (up), from its normal;
+                               // 90 is a floor, 0 an upright wall, negative leans over
+  std::vector<char> undercut;  // per vertex: something lies above it
   Eigen::VectorXd depth_to_width;  // per vertex that faces up by 30 degrees or more: of the narrowest cavity around
                                    // it, 0 on the open and elsewhere
   Eigen::VectorXd face_draft_deg;  // per face, of its own plane
@@ -26,11 +26,11 @@ struct DraftMap {
   std::vector<std::string> sentences;
 };
 
-/// `solid`: a closed mesh that stands on z = 0, as ExactSolid::above makes it. A face counts as undercut if the ray from
-/// its centre straight up meets the solid. Depth to width is taken along six directions, on heights that
-/// `cells` vertical rays across the model's longer side find: each pair of walls facing each other counts with the
-/// lower one's height over the point, divided by their distance. Gaps narrower than `sheet_thickness_mm` are closed
-/// before: no sheet goes into them. Throws Error{cancelled}.
+/// `solid`: a closed mesh that stands on z = 0, as ExactSolid::above makes it. A face counts as undercut if the ray
+/// from its centre straight up meets the solid. Depth to width is taken along six directions, on heights that `cells`
+/// vertical rays across the model's longer side find: each pair of walls facing each other counts with the lower one's
+/// height over the point, divided by their distance. Gaps narrower than `sheet_thickness_mm` are closed before: no
+/// sheet goes into them. Throws Error{cancelled}.
 DraftMap draft_map(const TriangleMesh& solid, double sheet_thickness_mm, int cells, Context& context);
 
 /// Heights over the base plate on a grid, by rays from above; 0 beside the model.
@@ -50,8 +50,8 @@ HeightGrid height_grid(const TriangleMesh& solid, int cells, Context& context);
 /// Fills whatever a square of `width_mm` does not fit into (greyscale closing).
 HeightGrid closed_grid(const HeightGrid& grid, double width_mm);
 
-/// The largest of (lower wall's height over `p`) / (distance between the walls) over six pairs of opposite directions; walls
-/// closer than `least_width_mm` count as that far apart. Below 0.1 it is 0.
+/// The largest of (lower wall's height over `p`) / (distance between the walls) over six pairs of opposite directions;
+/// walls closer than `least_width_mm` count as that far apart. Below 0.1 it is 0.
 double depth_to_width_at(const HeightGrid& grid, const Vec3& p, double least_width_mm);
 
 }  // namespace formwright

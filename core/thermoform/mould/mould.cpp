@@ -12,9 +12,9 @@
 namespace formwright {
 namespace {
 
-constexpr double snap_mm = 1e-6;              // placing rotates flat undersides by about 1e-14 mm
-constexpr double sink_step_mm = 1e-3;         // deeper, where the model touches the plate in points or lines
-constexpr double least_opening_mm2 = 20;      // a funnel of 5 mm
+constexpr double snap_mm = 1e-6;          // placing rotates flat undersides by about 1e-14 mm
+constexpr double sink_step_mm = 1e-3;     // deeper, where the model touches the plate in points or lines
+constexpr double least_opening_mm2 = 20;  // a funnel of 5 mm
 constexpr double automatic_foot_mm = 1;
 constexpr double plaster_density_g_per_ml = 2.63;  // calcium sulphate hemihydrate
 constexpr int vent_sides = 12, outline_sides = 24;
@@ -66,21 +66,27 @@ TriangleMesh ready_for_plate(const TriangleMesh& placed, std::vector<std::string
     for (const int v : loop) loop_top = std::max(loop_top, mesh.V(v, 2));
     if (loop_top <= 0 || loop_top > top / 2) continue;  // cut away in any case, or not an underside
     highest = std::max(highest, loop_top);
-    const auto first = static_cast<int>(mesh.V.rows()) + static_cast<int>(points.size()), size = static_cast<int>(loop.size());
+    const auto first = static_cast<int>(mesh.V.rows()) + static_cast<int>(points.size()),
+               size = static_cast<int>(loop.size());
     for (int i = 0; i < size; ++i) {
-      const int a = loop[static_cast<std::size_t>(i)], b = loop[static_cast<std::size_t>((i + 1) % size)], next = (i + 1) % size;
+      const int a = loop[static_cast<std::size_t>(i)], b = loop[static_cast<std::size_t>((i + 1) % size)],
+                next = (i + 1) % size;
       points.emplace_back(mesh.V(a, 0), mesh.V(a, 1), std::min(mesh.V(a, 2), 0.0) - 1);
       faces.push_back({b, a, first + i});
       faces.push_back({b, first + i, first + next});
     }
   }
   if (points.empty()) return mesh;
-  notes.push_back("The model is open below: its edge, up to " + millimetres(highest) + " above the plate, was drawn straight down to close it.");
-  TriangleMesh closed{Positions(mesh.V.rows() + static_cast<Eigen::Index>(points.size()), 3), Triangles(mesh.F.rows() + static_cast<Eigen::Index>(faces.size()), 3)};
+  notes.push_back("The model is open below: its edge, up to " + millimetres(highest) +
+                  " above the plate, was drawn straight down to close it.");
+  TriangleMesh closed{Positions(mesh.V.rows() + static_cast<Eigen::Index>(points.size()), 3),
+                      Triangles(mesh.F.rows() + static_cast<Eigen::Index>(faces.size()), 3)};
   closed.V.topRows(mesh.V.rows()) = mesh.V;
   closed.F.topRows(mesh.F.rows()) = mesh.F;
-  for (std::size_t i = 0; i < points.size(); ++i) closed.V.row(mesh.V.rows() + static_cast<Eigen::Index>(i)) = points[i];
-  for (std::size_t i = 0; i < faces.size(); ++i) closed.F.row(mesh.F.rows() + static_cast<Eigen::Index>(i)) << faces[i][0], faces[i][1], faces[i][2];
+  for (std::size_t i = 0; i < points.size(); ++i)
+    closed.V.row(mesh.V.rows() + static_cast<Eigen::Index>(i)) = points[i];
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    closed.F.row(mesh.F.rows() + static_cast<Eigen::Index>(i)) << faces[i][0], faces[i][1], faces[i][2];
   return closed;
 }
 
@@ -93,13 +99,15 @@ double base_area_mm2(const TriangleMesh& solid, double height_mm) {
   return area;
 }
 
-ExactSolid model_on_plate(const TriangleMesh& placed, const ThermoformMouldOptions& options, std::vector<std::string>& notes, Context& context) {
+ExactSolid model_on_plate(const TriangleMesh& placed, const ThermoformMouldOptions& options,
+                          std::vector<std::string>& notes, Context& context) {
   ExactSolid model;
   {
     const auto span = context.span(0, 0.7, "Cutting the model at the plate");
     model = ExactSolid::above(ready_for_plate(placed, notes), 0, "mould", context);
   }
-  if (model.empty()) throw Error(ErrorCode::invalid_input, "sink_mm", "Nothing of the model stands above the plate: sink it less.");
+  if (model.empty())
+    throw Error(ErrorCode::invalid_input, "sink_mm", "Nothing of the model stands above the plate: sink it less.");
   double foot_mm = options.foot_mm.value_or(0);
   double area = base_area_mm2(model.mesh(), 0);
   if (!options.foot_mm && area < least_opening_mm2) foot_mm = automatic_foot_mm;
@@ -115,17 +123,21 @@ ExactSolid model_on_plate(const TriangleMesh& placed, const ThermoformMouldOptio
     }
     model = footed;
     if (!options.foot_mm)
-      notes.push_back("The model touches the plate with " + std::to_string(std::lround(area)) + " mm2 only: below " + millimetres(foot_mm) + " its walls were drawn straight down, to " +
+      notes.push_back("The model touches the plate with " + std::to_string(std::lround(area)) + " mm2 only: below " +
+                      millimetres(foot_mm) + " its walls were drawn straight down, to " +
                       std::to_string(std::lround(widened)) + " mm2.");
     area = widened;
   }
   if (area < least_opening_mm2)
-    throw Error(ErrorCode::invalid_input, "sink_mm",
-                "The model touches the plate with " + std::to_string(std::lround(area)) + " mm2 only, too little to stand on or to pour through: sink it (sink_mm), or widen its foot (foot_mm).");
+    throw Error(
+        ErrorCode::invalid_input, "sink_mm",
+        "The model touches the plate with " + std::to_string(std::lround(area)) +
+            " mm2 only, too little to stand on or to pour through: sink it (sink_mm), or widen its foot (foot_mm).");
   return model;
 }
 
-Mould make_mould(const ExactSolid& model, const std::vector<Vent>& vents, const ThermoformMouldOptions& options, Context& context) {
+Mould make_mould(const ExactSolid& model, const std::vector<Vent>& vents, const ThermoformMouldOptions& options,
+                 Context& context) {
   Mould mould;
   mould.body = model;
   const TriangleMesh shape = model.mesh();
@@ -134,9 +146,11 @@ Mould make_mould(const ExactSolid& model, const std::vector<Vent>& vents, const 
     const auto span = context.span(0, 0.3, "Adding the base plate");
     const Vec3 rim(options.base_rim_mm, options.base_rim_mm, 0);
     const Vec3 lower = box.lower - rim, upper = box.upper + rim;
-    // A whole micrometre of rim at least: plates that end exactly below the model's widest edges would touch them in lines.
+    // A whole micrometre of rim at least: plates that end exactly below the model's widest edges would touch them in
+    // lines.
     const double least = 1e-3;
-    const TriangleMesh plate = box_mesh({lower.x() - least, lower.y() - least, -options.base_mm}, {upper.x() + least, upper.y() + least, 0});
+    const TriangleMesh plate =
+        box_mesh({lower.x() - least, lower.y() - least, -options.base_mm}, {upper.x() + least, upper.y() + least, 0});
     mould.body = unite(mould.body, ExactSolid::from_mesh(plate, "base_mm", context), context);
   }
   if (!vents.empty()) {
@@ -144,7 +158,9 @@ Mould make_mould(const ExactSolid& model, const std::vector<Vent>& vents, const 
     const double radius = options.vent_diameter_mm / 2;
     std::vector<TriangleMesh> drills;
     for (const Vent& vent : vents)
-      drills.push_back(turned_mesh({vent.position_mm.x(), vent.position_mm.y(), 0}, 2, {{-options.base_mm - 1, radius}, {vent.position_mm.z() + options.vent_diameter_mm, radius}}, vent_sides));
+      drills.push_back(turned_mesh(
+          {vent.position_mm.x(), vent.position_mm.y(), 0}, 2,
+          {{-options.base_mm - 1, radius}, {vent.position_mm.z() + options.vent_diameter_mm, radius}}, vent_sides));
     mould.body = subtract(mould.body, ExactSolid::from_mesh(collected(drills), "vents", context), context);
   }
   mould.solid = mould.body;
@@ -160,7 +176,8 @@ Mould make_mould(const ExactSolid& model, const std::vector<Vent>& vents, const 
     } else {
       std::vector<Vec2> points;
       for (Eigen::Index i = 0; i < body.V.rows(); ++i) points.emplace_back(body.V(i, 0), body.V(i, 1));
-      block = vertical_prism(widened_outline(convex_outline(std::move(points)), options.wall_mm, outline_sides), around.lower.z(), top);
+      block = vertical_prism(widened_outline(convex_outline(std::move(points)), options.wall_mm, outline_sides),
+                             around.lower.z(), top);
     }
     mould.solid = subtract(ExactSolid::from_mesh(block, "wall_mm", context), mould.body, context);
   }

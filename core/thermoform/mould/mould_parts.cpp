@@ -25,7 +25,9 @@ Counts slab_counts(const Vec3& size, const Vec3& printer, double pin_mm) {
     const double usable = printer[k] - pin_mm;
     const double count = usable > 0 ? std::ceil(size[k] / usable - 1e-9) : 1e9;
     if (count > most_parts)
-      throw Error(ErrorCode::invalid_input, printer_names.at(static_cast<std::size_t>(k)), "The printer is far too small for this mould: it would take more than 64 parts; make the model smaller (size_mm).");
+      throw Error(ErrorCode::invalid_input, printer_names.at(static_cast<std::size_t>(k)),
+                  "The printer is far too small for this mould: it would take more than 64 parts; make the model "
+                  "smaller (size_mm).");
     counts.at(static_cast<std::size_t>(k)) = static_cast<int>(count);
   }
   return counts;
@@ -72,17 +74,24 @@ MouldParts split_mould(const ExactSolid& solid, const ThermoformMouldOptions& op
   MouldParts result;
   const TriangleMesh whole = solid.mesh();
   const BoundingBox box = bounding_box(whole);
-  const Vec3 size = box.size(), printer(options.printer_x_mm, options.printer_y_mm, options.printer_z_mm), across(printer.y(), printer.x(), printer.z());
+  const Vec3 size = box.size(), printer(options.printer_x_mm, options.printer_y_mm, options.printer_z_mm),
+             across(printer.y(), printer.x(), printer.z());
   const double pin_mm = pin_length_mm(options.key_diameter_mm);
   result.cells = slab_counts(size, printer, pin_mm);
   bool turned = false;
-  if (const Counts other = slab_counts(size, across, pin_mm); product(other) < product(result.cells)) result.cells = other, turned = true;
+  if (const Counts other = slab_counts(size, across, pin_mm); product(other) < product(result.cells))
+    result.cells = other, turned = true;
   if (product(result.cells) > most_parts)
-    throw Error(ErrorCode::invalid_input, "printer_x_mm", "The printer is far too small for this mould: it would take more than 64 parts; make the model smaller (size_mm).");
+    throw Error(ErrorCode::invalid_input, "printer_x_mm",
+                "The printer is far too small for this mould: it would take more than 64 parts; make the model smaller "
+                "(size_mm).");
 
   const Counts& cells = result.cells;
-  const auto plane = [&](int axis, int i) { return box.lower[axis] + size[axis] * i / cells.at(static_cast<std::size_t>(axis)); };
-  const auto keys = find_keys(whole, box, cells, options.key_diameter_mm, options.key_clearance_mm, options.kind == MouldKind::negative, context);
+  const auto plane = [&](int axis, int i) {
+    return box.lower[axis] + size[axis] * i / cells.at(static_cast<std::size_t>(axis));
+  };
+  const auto keys = find_keys(whole, box, cells, options.key_diameter_mm, options.key_clearance_mm,
+                              options.kind == MouldKind::negative, context);
   result.keys = static_cast<int>(keys.size());
 
   // Along each axis, one slab after the other off what is left.
@@ -100,7 +109,8 @@ MouldParts split_mould(const ExactSolid& solid, const ThermoformMouldOptions& op
         const bool last_x = ix + 1 == cells[0];
         ExactSolid piece = last_x ? rest_x : rest_x.half(0, plane(0, ix + 1), false, context);
         if (!last_x) rest_x = rest_x.half(0, plane(0, ix + 1), true, context);
-        const auto span = context.span(static_cast<double>(done) / product(cells), (done + 1.0) / product(cells), "Cutting into parts");
+        const auto span = context.span(static_cast<double>(done) / product(cells), (done + 1.0) / product(cells),
+                                       "Cutting into parts");
         ++done;
         if (piece.empty()) continue;
         MouldPart part;
@@ -115,9 +125,12 @@ MouldParts split_mould(const ExactSolid& solid, const ThermoformMouldOptions& op
   }
   lay_out(result.parts);
   if (result.parts.size() > 1) {
-    result.sentences.push_back("The mould is larger than the printer: it is cut into " + std::to_string(result.parts.size()) + " parts, with " + std::to_string(result.keys) +
-                               (result.keys == 1 ? " pin" : " pins") + " to line them up; glue or tape the seams from outside before pouring.");
-    if (result.keys == 0 && options.key_diameter_mm > 0) result.sentences.emplace_back("The cut faces are too narrow for pins: line the parts up by their outsides.");
+    result.sentences.push_back("The mould is larger than the printer: it is cut into " +
+                               std::to_string(result.parts.size()) + " parts, with " + std::to_string(result.keys) +
+                               (result.keys == 1 ? " pin" : " pins") +
+                               " to line them up; glue or tape the seams from outside before pouring.");
+    if (result.keys == 0 && options.key_diameter_mm > 0)
+      result.sentences.emplace_back("The cut faces are too narrow for pins: line the parts up by their outsides.");
   }
   return result;
 }

@@ -12,16 +12,16 @@
 namespace formwright {
 
 struct MouldPart {
-  TriangleMesh mesh;              // as printed: on z = 0, placed on the bed beside the others
-  std::array<int, 3> cell{};      // where it belongs: counted along x, y, z of the machine
+  TriangleMesh mesh;          // as printed: on z = 0, placed on the bed beside the others
+  std::array<int, 3> cell{};  // where it belongs: counted along x, y, z of the machine
   int pins = 0, sockets = 0;
   double volume_mm3 = 0;
   Vec3 size_mm = Vec3::Zero();
 };
 
 struct MouldParts {
-  std::vector<MouldPart> parts;           // by cell: z slowest, x fastest
-  std::array<int, 3> cells{1, 1, 1};      // cuts + 1 along each axis
+  std::vector<MouldPart> parts;       // by cell: z slowest, x fastest
+  std::array<int, 3> cells{1, 1, 1};  // cuts + 1 along each axis
   int keys = 0;
   std::vector<std::string> sentences;
 };

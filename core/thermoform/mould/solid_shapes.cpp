@@ -42,7 +42,9 @@ TriangleMesh vertical_prism(const std::vector<Vec2>& outline, double bottom_mm, 
 }
 
 TriangleMesh box_mesh(const Vec3& lower, const Vec3& upper) {
-  return vertical_prism({{lower.x(), lower.y()}, {upper.x(), lower.y()}, {upper.x(), upper.y()}, {lower.x(), upper.y()}}, lower.z(), upper.z());
+  return vertical_prism(
+      {{lower.x(), lower.y()}, {upper.x(), lower.y()}, {upper.x(), upper.y()}, {lower.x(), upper.y()}}, lower.z(),
+      upper.z());
 }
 
 TriangleMesh turned_mesh(const Vec3& centre, int axis, const std::vector<Ring>& rings, int sides) {
@@ -75,12 +77,14 @@ TriangleMesh collected(const std::vector<TriangleMesh>& meshes) {
 }
 
 std::vector<Vec2> convex_outline(std::vector<Vec2> points) {
-  std::ranges::sort(points, [](const Vec2& a, const Vec2& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
+  std::ranges::sort(points,
+                    [](const Vec2& a, const Vec2& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
   std::vector<Vec2> hull;
   for (int pass = 0; pass < 2; ++pass) {  // Andrew's chain: below, then above
     const std::size_t start = hull.size();
     for (const Vec2& p : points) {
-      while (hull.size() >= start + 2 && cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0) hull.pop_back();
+      while (hull.size() >= start + 2 && cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0)
+        hull.pop_back();
       hull.push_back(p);
     }
     hull.pop_back();
@@ -90,7 +94,8 @@ std::vector<Vec2> convex_outline(std::vector<Vec2> points) {
 }
 
 std::vector<Vec2> widened_outline(const std::vector<Vec2>& outline, double distance_mm, int sides) {
-  const double radius = distance_mm / std::cos(std::numbers::pi / sides);  // of the corners, so that the sides keep the distance
+  const double radius =
+      distance_mm / std::cos(std::numbers::pi / sides);  // of the corners, so that the sides keep the distance
   std::vector<Vec2> points;
   for (const Vec2& p : outline)
     for (int i = 0; i < sides; ++i) {

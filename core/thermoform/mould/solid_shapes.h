@@ -16,8 +16,8 @@ TriangleMesh box_mesh(const Vec3& lower, const Vec3& upper);
 struct Ring {
   double offset_mm, radius_mm;  // along the axis, and of the corners about it
 };
-/// A turned shape of at least two rings with ascending offsets about a line along `axis` (0, 1, 2) through `centre`; flat
-/// ends, `sides` >= 3. Corners lie on the circles.
+/// A turned shape of at least two rings with ascending offsets about a line along `axis` (0, 1, 2) through `centre`;
+/// flat ends, `sides` >= 3. Corners lie on the circles.
 TriangleMesh turned_mesh(const Vec3& centre, int axis, const std::vector<Ring>& rings, int sides);
 
 /// Several closed meshes as one; they should not touch.

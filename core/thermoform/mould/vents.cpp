@@ -46,7 +46,8 @@ std::vector<char> latest_patches(const Adjacency& adjacency, const Eigen::Vector
 
 }  // namespace
 
-std::vector<Vent> find_vents(const TriangleMesh& solid, const FormedSheet& sheet, int count, double diameter_mm, double spacing_mm, Context& context) {
+std::vector<Vent> find_vents(const TriangleMesh& solid, const FormedSheet& sheet, int count, double diameter_mm,
+                             double spacing_mm, Context& context) {
   std::vector<Vent> vents;
   if (count == 0 || solid.F.rows() == 0) return vents;
   const Adjacency adjacency(sheet.mesh);
@@ -83,16 +84,21 @@ std::vector<Vent> find_vents(const TriangleMesh& solid, const FormedSheet& sheet
     bool within = true;
     for (int k = 0; k < probes_around && within; ++k) {
       const double angle = 2 * std::numbers::pi * k / probes_around;
-      within = ground(vent.position_mm.x() + clear_mm * std::cos(angle), vent.position_mm.y() + clear_mm * std::sin(angle)) > 0;
+      within = ground(vent.position_mm.x() + clear_mm * std::cos(angle),
+                      vent.position_mm.y() + clear_mm * std::sin(angle)) > 0;
     }
     if (within) candidates.push_back({vent, hollow, v});
   }
   // Times closer than a millisecond are one event; then hollows before plains.
-  std::ranges::sort(candidates, {}, [&](const Candidate& c) { return std::tuple(-std::round(lateness[c.vertex] * 1e3), -c.hollow_mm, c.vertex); });
+  std::ranges::sort(candidates, {}, [&](const Candidate& c) {
+    return std::tuple(-std::round(lateness[c.vertex] * 1e3), -c.hollow_mm, c.vertex);
+  });
   const double apart_mm = std::max(spacing_mm, 2 * diameter_mm);
   for (const Candidate& candidate : candidates) {
     if (static_cast<int>(vents.size()) == count) break;
-    const auto near = [&](const Vent& other) { return (other.position_mm - candidate.vent.position_mm).head<2>().norm() < apart_mm; };
+    const auto near = [&](const Vent& other) {
+      return (other.position_mm - candidate.vent.position_mm).head<2>().norm() < apart_mm;
+    };
     if (std::ranges::none_of(vents, near)) vents.push_back(candidate.vent);
   }
   return vents;

@@ -19,6 +19,7 @@ struct Vent {
 /// those that were never reached, by their gap, before them; equally late ones by how deep they lie among their
 /// surroundings. Centres are `spacing_mm` apart, and far enough from the model's outline that a hole of
 /// `diameter_mm` does not break through a side. Throws Error{cancelled}.
-std::vector<Vent> find_vents(const TriangleMesh& solid, const FormedSheet& sheet, int count, double diameter_mm, double spacing_mm, Context& context);
+std::vector<Vent> find_vents(const TriangleMesh& solid, const FormedSheet& sheet, int count, double diameter_mm,
+                             double spacing_mm, Context& context);
 
 }  // namespace formwright

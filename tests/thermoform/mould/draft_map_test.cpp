@@ -19,12 +19,14 @@ namespace {
 constexpr int cells = 256;
 
 bool says(const DraftMap& map, const std::string& words) {
-  return std::ranges::any_of(map.sentences, [&](const std::string& sentence) { return sentence.find(words) != std::string::npos; });
+  return std::ranges::any_of(map.sentences,
+                             [&](const std::string& sentence) { return sentence.find(words) != std::string::npos; });
 }
 
 /// A frustum of many sides whose walls lean by `draft_deg` exactly: their middles, not their corners, lie on the cone.
 TriangleMesh frustum(double draft_deg, double radius_mm, double height_mm) {
-  const double less = height_mm * std::tan(draft_deg * std::numbers::pi / 180), corner = 1 / std::cos(std::numbers::pi / 32);
+  const double less = height_mm * std::tan(draft_deg * std::numbers::pi / 180),
+               corner = 1 / std::cos(std::numbers::pi / 32);
   return turned_mesh(Vec3::Zero(), 2, {{0, radius_mm * corner}, {height_mm, (radius_mm - less) * corner}}, 32);
 }
 
@@ -46,7 +48,8 @@ TEST(DraftMap, ConesOfKnownAngle) {
     const double wall = map.area_mm2 - floor_area(map);
     EXPECT_NEAR(map.below_3_deg_area_mm2, draft < 3 ? wall : 0, 1e-9 * wall);
     EXPECT_NEAR(map.undercut_area_mm2, draft < 0 ? wall : 0, 1e-9 * wall);
-    EXPECT_EQ(says(map, "The right side leans in by " + std::to_string(static_cast<int>(-draft)) + " degrees"), draft < 0);
+    EXPECT_EQ(says(map, "The right side leans in by " + std::to_string(static_cast<int>(-draft)) + " degrees"),
+              draft < 0);
     EXPECT_EQ(says(map, "will come off."), draft > 3);
     EXPECT_EQ(says(map, "come off hard"), draft >= 0 && draft < 3);
     EXPECT_EQ(map.depth_to_width_max, 0);
@@ -86,7 +89,8 @@ TEST(DraftMap, DepthToWidthOfSlotsAndWells) {
   const ExactSolid block = ExactSolid::from_mesh(box_mesh({-30, -30, 0}, {30, 30, 30}), "mesh", context);
   for (const auto& [width, depth] : {std::pair{10.0, 5.0}, std::pair{10.0, 20.0}, std::pair{5.0, 20.0}}) {
     SCOPED_TRACE(width);
-    const ExactSolid slot = ExactSolid::from_mesh(box_mesh({-width / 2, -31, 30 - depth}, {width / 2, 31, 31}), "mesh", context);
+    const ExactSolid slot =
+        ExactSolid::from_mesh(box_mesh({-width / 2, -31, 30 - depth}, {width / 2, 31, 31}), "mesh", context);
     const double pitch = 60.0 / cells;
     const double found = draft_map(subtract(block, slot, context).mesh(), 1, cells, context).depth_to_width_max;
     EXPECT_NEAR(found, depth / width, depth / width * 1.5 * pitch / width);

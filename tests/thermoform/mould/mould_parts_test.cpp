@@ -44,7 +44,8 @@ void expect_printable(const MouldParts& parts, const Vec3& printer) {
     for (const MouldPart& other : parts.parts) {
       if (&other == &part) continue;
       const BoundingBox b = bounding_box(other.mesh);
-      const double apart = std::max(std::max(b.lower.x() - box.upper.x(), box.lower.x() - b.upper.x()), std::max(b.lower.y() - box.upper.y(), box.lower.y() - b.upper.y()));
+      const double apart = std::max(std::max(b.lower.x() - box.upper.x(), box.lower.x() - b.upper.x()),
+                                    std::max(b.lower.y() - box.upper.y(), box.lower.y() - b.upper.y()));
       EXPECT_GE(apart, 5 - 1e-9);
     }
     all.add(box.lower), all.add(box.upper);
@@ -82,7 +83,9 @@ TEST(MouldParts, AddUpAndFit) {
     EXPECT_NEAR(total_volume(parts), solid.volume_mm3(), 1e-9 * solid.volume_mm3());
     expect_printable(parts, {60, 80, 45});
     const Vec3 size = bounding_box(solid.mesh()).size();
-    const auto count = [&](double px, double py) { return static_cast<int>(std::ceil(size.x() / px) * std::ceil(size.y() / py) * std::ceil(size.z() / 45)); };
+    const auto count = [&](double px, double py) {
+      return static_cast<int>(std::ceil(size.x() / px) * std::ceil(size.y() / py) * std::ceil(size.z() / 45));
+    };
     EXPECT_EQ(static_cast<int>(parts.parts.size()), std::min(count(60, 80), count(80, 60)));
     EXPECT_EQ(parts.keys, 0);
   }
@@ -101,7 +104,9 @@ TEST(MouldParts, KeysFitIntoTheirSockets) {
   expect_printable(parts, {70, 0, 0});
   // A pin: a prism of 16 sides for a quarter of its length, then a frustum to 0.7 of the radius.
   const double unit = 8 * std::sin(2 * std::numbers::pi / 16);
-  const auto cone = [&](double r, double q, double straight, double slant) { return unit * (r * r * straight + slant * (r * r + r * q + q * q) / 3); };
+  const auto cone = [&](double r, double q, double straight, double slant) {
+    return unit * (r * r * straight + slant * (r * r + r * q + q * q) / 3);
+  };
   const double pin = cone(2, 1.4, 1, 3), socket = cone(2.2, 1.6, 1, 3.2);
   EXPECT_NEAR(parts.parts[0].volume_mm3 + parts.parts[1].volume_mm3 - solid.volume_mm3(), 2 * (pin - socket), 1e-6);
   EXPECT_NEAR(parts.parts[0].size_mm.x(), 53 + 4, 1e-9);  // the pin stands out
@@ -136,7 +141,9 @@ TEST(MouldParts, PinsPointUpOnTheBed) {
 TEST(MouldParts, SmallerKeysInThinnerWalls) {
   Context context;
   // A square tube with walls of 8 mm.
-  const ExactSolid tube = subtract(ExactSolid::from_mesh(box_mesh({-40, -20, 0}, {40, 20, 30}), "mesh", context), ExactSolid::from_mesh(box_mesh({-41, -12, 8}, {41, 12, 22}), "mesh", context), context);
+  const ExactSolid tube =
+      subtract(ExactSolid::from_mesh(box_mesh({-40, -20, 0}, {40, 20, 30}), "mesh", context),
+               ExactSolid::from_mesh(box_mesh({-41, -12, 8}, {41, 12, 22}), "mesh", context), context);
   const BoundingBox box = bounding_box(tube.mesh());
   const auto keys = find_keys(tube.mesh(), box, {2, 1, 1}, 4, 0.2, false, context);
   ASSERT_FALSE(keys.empty());

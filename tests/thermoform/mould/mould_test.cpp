@@ -60,7 +60,8 @@ TEST(Mould, PyramidInItsBox) {
 }
 
 TEST(Mould, SphereConeAndCubeToTheMeshsOwnVolume) {
-  const TriangleMesh cone = turned_mesh(Vec3::Zero(), 2, {{0, 30}, {40, 1}}, 48), cube = box_mesh({-20, -20, 0}, {20, 20, 40});
+  const TriangleMesh cone = turned_mesh(Vec3::Zero(), 2, {{0, 30}, {40, 1}}, 48),
+                     cube = box_mesh({-20, -20, 0}, {20, 20, 40});
   const TriangleMesh sphere = test::moved(test::icosphere(3), {0, 0, 12}, 20);  // its lower 8 mm below the plate
   Context context;
   for (const TriangleMesh* mesh : {&cone, &cube, &sphere}) {
@@ -89,9 +90,11 @@ TEST(Mould, CastOfTheNegativeIsThePositive) {
     const ExactSolid cast = subtract(block, made.mould.solid, context);
     EXPECT_NEAR(cast.volume_mm3(), made.mould.body.volume_mm3(), 1e-9 * cast.volume_mm3());
     EXPECT_TRUE(subtract(made.mould.body, block, context).empty());
-    EXPECT_NEAR(unite(made.mould.solid, made.mould.body, context).volume_mm3(), block.volume_mm3(), 1e-9 * block.volume_mm3());
+    EXPECT_NEAR(unite(made.mould.solid, made.mould.body, context).volume_mm3(), block.volume_mm3(),
+                1e-9 * block.volume_mm3());
     options.kind = MouldKind::positive;
-    EXPECT_NEAR(make(placed_sample(name, 2000), options).mould.solid.volume_mm3(), cast.volume_mm3(), 1e-9 * cast.volume_mm3());
+    EXPECT_NEAR(make(placed_sample(name, 2000), options).mould.solid.volume_mm3(), cast.volume_mm3(),
+                1e-9 * cast.volume_mm3());
   }
 }
 
@@ -215,7 +218,8 @@ TEST(Mould, OpenUndersidesAreClosed) {
   int kept = 0;
   for (Eigen::Index f = 0; f < whole.F.rows(); ++f) {
     const auto face = whole.F.row(f);
-    if (whole.V(face[0], 2) > 1e-6 || whole.V(face[1], 2) > 1e-6 || whole.V(face[2], 2) > 1e-6) open.F.row(kept++) = face;
+    if (whole.V(face[0], 2) > 1e-6 || whole.V(face[1], 2) > 1e-6 || whole.V(face[2], 2) > 1e-6)
+      open.F.row(kept++) = face;
   }
   open.F.conservativeResize(kept, 3);
   const double volume = signed_volume(whole);

@@ -32,11 +32,14 @@ FormedSheet flat_sheet(Contact contact_s, double gap_mm = 0) {
   return sheet;
 }
 
-double hill(double x, double y, double cx, double cy) { return std::exp(-(std::pow(x - cx, 2) + std::pow(y - cy, 2)) / 50); }
+double hill(double x, double y, double cx, double cy) {
+  return std::exp(-(std::pow(x - cx, 2) + std::pow(y - cy, 2)) / 50);
+}
 
 TEST(Vents, LieAtTheLastPlacesToForm) {
   Context context;
-  const FormedSheet sheet = flat_sheet([](double x, double y) { return 1 + 2 * hill(x, y, 10, 5) + hill(x, y, -12, -7) + 3 * hill(x, y, 38, 0); });
+  const FormedSheet sheet = flat_sheet(
+      [](double x, double y) { return 1 + 2 * hill(x, y, 10, 5) + hill(x, y, -12, -7) + 3 * hill(x, y, 38, 0); });
   const auto vents = find_vents(block, sheet, 10, 1, 5, context);
   ASSERT_EQ(vents.size(), 2u);  // the third and latest hill lies beside the model, where the plate sucks
   EXPECT_NEAR((vents[0].position_mm - Vec3(10, 5, 10)).norm(), 0, 1e-9);
@@ -44,14 +47,15 @@ TEST(Vents, LieAtTheLastPlacesToForm) {
   EXPECT_NEAR(vents[0].contact_s, 3, 1e-3);
   EXPECT_NEAR(vents[0].gap_mm, 0, 1e-9);
   EXPECT_EQ(find_vents(block, sheet, 1, 1, 5, context).size(), 1u);
-  EXPECT_EQ(find_vents(block, sheet, 10, 1, 30, context).size(), 1u);   // 25 mm apart
-  EXPECT_EQ(find_vents(block, sheet, 10, 13, 5, context).size(), 1u);   // wide ones keep twice their diameter
+  EXPECT_EQ(find_vents(block, sheet, 10, 1, 30, context).size(), 1u);  // 25 mm apart
+  EXPECT_EQ(find_vents(block, sheet, 10, 13, 5, context).size(), 1u);  // wide ones keep twice their diameter
   EXPECT_TRUE(find_vents(block, sheet, 0, 1, 5, context).empty());
 }
 
 TEST(Vents, WhereItNeverArrivesComesFirst) {
   Context context;
-  const FormedSheet sheet = flat_sheet([](double x, double y) { return std::hypot(x + 12, y + 7) < 3.5 ? -1.0 : 1 + 2 * hill(x, y, 10, 5); }, 4);
+  const FormedSheet sheet = flat_sheet(
+      [](double x, double y) { return std::hypot(x + 12, y + 7) < 3.5 ? -1.0 : 1 + 2 * hill(x, y, 10, 5); }, 4);
   const auto vents = find_vents(block, sheet, 10, 1, 10, context);
   ASSERT_EQ(vents.size(), 2u);
   EXPECT_LT((vents[0].position_mm - Vec3(-12, -7, 10)).norm(), 3.6);
@@ -63,7 +67,8 @@ TEST(Vents, WhereItNeverArrivesComesFirst) {
 TEST(Vents, HollowsBeforePlains) {
   Context context;
   FormedSheet sheet = flat_sheet([](double, double) { return 1.0; });  // everything at once
-  for (Eigen::Index i = 0; i < sheet.mesh.V.rows(); ++i) sheet.mesh.V(i, 2) += 1 - hill(sheet.mesh.V(i, 0), sheet.mesh.V(i, 1), 6, -4);
+  for (Eigen::Index i = 0; i < sheet.mesh.V.rows(); ++i)
+    sheet.mesh.V(i, 2) += 1 - hill(sheet.mesh.V(i, 0), sheet.mesh.V(i, 1), 6, -4);
   const auto vents = find_vents(block, sheet, 1, 1, 5, context);
   ASSERT_EQ(vents.size(), 1u);
   EXPECT_NEAR((vents[0].position_mm - Vec3(6, -4, 10)).norm(), 0, 1e-9);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Draws the pictures of the start screen, in a browser, for scripts/draw_pictures.js to keep in public/.
 // Not part of the page: drawing a gallery at each first visit would take the solver's time.
-import { originalData, plateOf, reliefData } from '../crafts/relief/meshes';
+import { originalData } from '../crafts/common/shaded_mesh';
+import { plateOf, reliefData } from '../crafts/relief/meshes';
 import type { Job, Sample } from '../jobs/contract';
 import { findOperation } from '../jobs/contract';
 import { readPly } from '../jobs/mesh_reader';

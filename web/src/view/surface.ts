@@ -81,6 +81,11 @@ export class Surface {
   private scalar: THREE.BufferAttribute | null = null;
   private scalarMap: THREE.Texture | null = null;
   scalarValues: Float32Array | null = null;
+  opacity = 1;
+  /** Of a fixture: drawn only while its part's mesh is translucent. */
+  within = false;
+  /** Counts when a picture is framed. */
+  framed = true;
   /** Counts changes of shape, so that pickers know when they are stale. */
   version = 0;
 
@@ -142,6 +147,7 @@ export class Surface {
       uOcclusionHeight: { value: this.sizeOfSums.height },
       uOcclusionStrength: { value: 0 },
       uHighlight: { value: 0 },
+      uOpacity: { value: 1 },
       uMap: { value: null },
       uMapRange: { value: new THREE.Vector2(0, 1) },
       uTexture: { value: texture },
@@ -273,6 +279,12 @@ export class Surface {
   /** A cut shows the inside. */
   setCut(cut: boolean): void {
     this.main.material.side = this.solid && !cut ? THREE.FrontSide : THREE.DoubleSide;
+  }
+
+  setOpacity(opacity: number): void {
+    this.opacity = opacity;
+    this.uniforms['uOpacity']!.value = opacity;
+    this.main.material.blending = opacity < 1 ? THREE.CustomBlending : THREE.NoBlending;
   }
 
   setOcclusionStrength(strength: number): void {

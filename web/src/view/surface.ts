@@ -14,6 +14,9 @@ export type Uniforms = Record<string, THREE.IUniform>;
 /** Texels per row of a baked light map: one texel per drawn vertex. */
 const OCCLUSION_WIDTH = 1024;
 
+/** Of the depth buffer; a millimetre or two of a scene of half a metre. */
+const WITHIN_UNITS = 60_000;
+
 export interface SurfaceUniforms {
   /** Section, eye, light frame: the whole picture's. */
   picture: Uniforms;
@@ -82,8 +85,19 @@ export class Surface {
   private scalarMap: THREE.Texture | null = null;
   scalarValues: Float32Array | null = null;
   opacity = 1;
-  /** Of a fixture: drawn only while its part's mesh is translucent. */
-  within = false;
+
+  #within = false;
+  /** Of a fixture: drawn only while its part's mesh is translucent, and then always behind it. */
+  get within(): boolean {
+    return this.#within;
+  }
+  set within(within: boolean) {
+    this.#within = within;
+    const { material } = this.main;
+    material.polygonOffset = within;
+    material.polygonOffsetFactor = within ? 2 : 0;
+    material.polygonOffsetUnits = within ? WITHIN_UNITS : 0;
+  }
   /** Counts when a picture is framed. */
   framed = true;
   /** Counts changes of shape, so that pickers know when they are stale. */

@@ -8,12 +8,17 @@ export interface LegendProps {
   readonly values: Float32Array;
   /** Where it is known better than from the values. */
   readonly mean?: number | undefined;
+  readonly least?: number | undefined;
 }
 
-export function Legend({ mapping, values, mean }: LegendProps) {
+export function Legend({ mapping, values, mean, least }: LegendProps) {
   const legend = useMemo(
-    () => legendFor(mapping, values, mean === undefined ? undefined : { mean }),
-    [mapping, values, mean],
+    () =>
+      legendFor(mapping, values, {
+        ...(mean === undefined ? {} : { mean }),
+        ...(least === undefined ? {} : { least }),
+      }),
+    [mapping, values, mean, least],
   );
   return (
     <figure class="panel legend" role="img" aria-label={legend.summary}>

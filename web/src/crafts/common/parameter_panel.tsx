@@ -16,6 +16,8 @@ export interface ParameterPanelProps {
   readonly onCommit: () => void;
   /** Put in front of a group's parameters. */
   readonly groupHead?: Readonly<Record<string, ComponentChildren>>;
+  /** What automatic values came to. */
+  readonly automatic?: Readonly<Record<string, number>>;
   /** Groups that stand open; left out: all. The others are folded, as the advanced parameters are. */
   readonly openGroups?: readonly string[];
 }
@@ -106,13 +108,15 @@ function Control({ entry: [name, schema], ...props }: ParameterPanelProps & { en
     return <Switch {...{ label, help }} value={value === true} onChange={setAtOnce} />;
   if (types.includes('number') || types.includes('integer')) {
     const optional = types.includes('null');
+    const automatic = props.automatic?.[name];
     return (
       <Parameter
         {...{ label, help, error, optional }}
         unit={schema['x-unit'] ?? ''}
         minimum={schema.minimum ?? -Infinity}
         maximum={schema.maximum ?? Infinity}
-        slider={optional ? null : (schema['x-slider'] ?? null)}
+        automatic={automatic}
+        slider={optional && automatic === undefined ? null : (schema['x-slider'] ?? null)}
         integer={types.includes('integer')}
         defaultValue={fallback as number | null}
         value={value as number | null}

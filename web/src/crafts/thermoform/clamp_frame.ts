@@ -70,6 +70,25 @@ export function clampFrame(clamp: Clamp, reach_mm: number): MeshData {
   };
 }
 
+const plateColour: Vec3 = [0.74, 0.72, 0.69];
+
+/** The platform that closes the opening from below, once it is up. */
+export function platform({ opening_mm }: Clamp): MeshData {
+  const [x = 0, y = 0] = opening_mm.map((side) => side + 4); // into the frame's walls
+  const corners: readonly Vec3[] = [
+    [-x / 2, -y / 2, 0],
+    [x / 2, -y / 2, 0],
+    [x / 2, y / 2, 0],
+    [-x / 2, y / 2, 0],
+  ];
+  return {
+    positions: Float32Array.from(corners.flat()),
+    normals: Float32Array.from(corners.flatMap(() => [0, 0, 1])),
+    indices: Uint32Array.of(0, 1, 2, 0, 2, 3),
+    colours: Float32Array.from(corners.flatMap(() => plateColour)),
+  };
+}
+
 /** What the frame's shadow on the bench is like. */
 export function frameShadow(clamp: Clamp): Plate {
   return {

@@ -6,7 +6,7 @@ import type { MeshData, Viewport } from '../../view';
 import { turnedShading } from '../../view';
 import type { ShadedMesh } from '../common/shaded_mesh';
 import type { Clamp } from './clamp_frame';
-import { clampFrame, frameShadow } from './clamp_frame';
+import { clampFrame, frameShadow, platform } from './clamp_frame';
 import { endOf, sheetAt, Stretching } from './film';
 import type { Extras } from './extras';
 import type { Placement } from './placement';
@@ -96,6 +96,7 @@ export function keepDrawn(viewport: Viewport, session: ThermoformSession, extras
           framed: true,
           shadow: frameShadow(clamp),
         },
+        { id: 'platform', mesh: platform(clamp), parts: ['original'] },
         { id: 'model', mesh: data, parts: ['relief'], within: true },
       ]);
       lift = 0;

@@ -2,7 +2,9 @@
 // The parameters of forming and of what is made of the formed sheet, and the one filled button.
 import { ModelRow } from '../common/model_row';
 import { ParameterPanel } from '../common/parameter_panel';
+import { placementNow } from './draw_scene';
 import { MainButton } from './export_button';
+import { boxOf } from './placement';
 import type { ThermoformSession } from './thermoform_session';
 
 export interface InspectorProps {
@@ -14,6 +16,16 @@ export interface InspectorProps {
 
 /** What a maker sets every time; the rest is folded. */
 const openGroups = ['Placement', 'Sheet', 'Machine'];
+
+/** The size that the core chose: of the model before it is turned. */
+function automaticValues(session: ThermoformSession): Record<string, number> {
+  const original = session.original.value;
+  const placement = placementNow(session);
+  if (original === null || placement === null) return {};
+  const scale = Math.hypot(...[0, 1, 2].map((at) => placement[at] ?? 0));
+  const { low, high } = boxOf(original.mesh.positions);
+  return { size_mm: Math.max(...[0, 1, 2].map((k) => scale * ((high[k] ?? 0) - (low[k] ?? 0)))) };
+}
 
 export function Inspector({ session, picture, onReplace, onForm }: InspectorProps) {
   const { model, parameters } = session.document.value;
@@ -30,6 +42,7 @@ export function Inspector({ session, picture, onReplace, onForm }: InspectorProp
           onPreview={(name, value) => session.preview(name, value)}
           onCommit={() => session.services.projects.commit()}
           openGroups={openGroups}
+          automatic={automaticValues(session)}
         />
       </div>
       <div class="inspector-foot">

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import type { RefObject } from 'preact';
-import { Icon, tipHandlers } from '../../ui';
+import { hideTip, Icon, tipHandlers } from '../../ui';
 import type { Viewport } from '../../view';
 import type { ModelMover } from './move_model';
 import type { ThermoformSession } from './thermoform_session';
@@ -30,6 +30,7 @@ export function MoveHandle({ session, mover, viewport, element }: MoveHandleProp
       onPointerDown={(event) => {
         const view = viewport();
         if (view === null || event.button !== 0) return;
+        hideTip();
         event.currentTarget.setPointerCapture(event.pointerId);
         mover.begin(view, ...at(event), 0);
       }}

@@ -7,7 +7,7 @@ import { sentences } from '../common/report';
 import { clampOf, placementNow } from './draw_scene';
 import { beyondOpening, boxOf, placed } from './placement';
 import type { ThermoformSession } from './thermoform_session';
-import { dragging, view } from './views';
+import { view } from './views';
 
 /** Words that were read, until others come. */
 const dismissed = signal('');
@@ -35,6 +35,12 @@ function advice(session: ThermoformSession): string[] {
     ...of,
     ...(shown ? [...sentences(shown.report, 'warnings'), ...sentences(shown.report, 'notes')] : []),
   ];
+}
+
+/** A sentence as what is the matter, and what follows from it: at its colon, or its first full stop. */
+function headed(sentence: string): readonly [string, string] {
+  const [, head = sentence, tail = ''] = /^(.*?[^\d])[:.]\s+(.+)$/.exec(sentence) ?? [];
+  return [head.replace(/\.$/, ''), tail && tail.charAt(0).toUpperCase() + tail.slice(1)];
 }
 
 export interface NotesProps {
@@ -106,14 +112,15 @@ export function Notes({ session, onChooseFile }: NotesProps) {
     );
   const said = advice(session);
   const words = said.join(' ');
-  if (said.length === 0 || words === dismissed.value || dragging.value) return null;
+  if (said.length === 0 || words === dismissed.value) return null;
   const [first = '', ...others] = said;
+  const [title, rest] = headed(first);
   return (
     <div class="note-place">
       <Note
         kind="attention"
         icon="warn"
-        title={first}
+        title={title}
         onDismiss={() => (dismissed.value = words)}
         actions={
           others.length > 0 && !whole.value ? (
@@ -123,7 +130,7 @@ export function Notes({ session, onChooseFile }: NotesProps) {
           ) : undefined
         }
       >
-        {whole.value ? others.join(' ') : undefined}
+        {[rest, ...(whole.value ? others : [])].filter(Boolean).join(' ')}
       </Note>
     </div>
   );

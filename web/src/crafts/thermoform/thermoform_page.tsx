@@ -23,7 +23,7 @@ export interface ThermoformPageProps {
   readonly onChooseFile: () => void;
 }
 
-const look: Look = { direction: [-0.25, 0.95, -0.95], up: [0, 0, 1] };
+const look: Look = { direction: [0.14, 0.95, -0.98], up: [0, 0, 1] };
 
 export function ThermoformPage({ session, onChooseFile }: ThermoformPageProps) {
   const viewport = useSignal<Viewport | null>(null);

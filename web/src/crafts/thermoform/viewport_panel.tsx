@@ -8,6 +8,7 @@ import type { Insets, Viewpoint } from '../../view';
 import { Viewport } from '../../view';
 import { Legend } from '../common/legend';
 import { narrow } from '../common/narrow';
+import { figure } from '../common/report';
 import { keepDrawn, placementNow, thicknessOf } from './draw_scene';
 import { watchExtras } from './extras';
 import { MoveHandle } from './move_handle';
@@ -15,12 +16,12 @@ import { ModelMover } from './move_model';
 import { boxOf, placed } from './placement';
 import type { ThermoformSession } from './thermoform_session';
 import { Timeline } from './timeline';
-import { mappingOf, offeredViews, swiping, view } from './views';
+import { dragging, mappingOf, offeredViews, swiping, view } from './views';
 
 /** From the front, a little from the right, and from above, as one stands before the machine. */
 const viewpoint: Viewpoint = {
   projection: 'perspective',
-  direction: [-0.25, 0.95, -0.95],
+  direction: [0.14, 0.95, -0.98],
   up: [0, 0, 1],
   targetMm: [0, 0, 0],
   distanceMm: 900,
@@ -78,11 +79,18 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
     made.setViewpoint(viewpoint);
     made.lookFromViewpoint(false);
     viewport.current = made;
+    // While the model is in hand the picture stays as it is, whatever notes come and go.
+    const makeRoom = () => {
+      if (!dragging.peek()) made.setFreeRectangle(freeRectangle(foot.current));
+    };
     const stop = [
       keepDrawn(made, session, () => watched.extras.value),
+      effect(() => {
+        if (!dragging.value) makeRoom();
+      }),
       effect(() => made.setResting(session.previewing.value || session.activity.value.kind !== 'idle')),
     ];
-    const resize = new ResizeObserver(() => made.setFreeRectangle(freeRectangle(foot.current)));
+    const resize = new ResizeObserver(makeRoom);
     resize.observe(container.current);
     if (foot.current) resize.observe(foot.current);
     onViewport(made);
@@ -153,7 +161,11 @@ function SidePanel({ session, url }: { session: ThermoformSession; url: string |
   const values = mapping && shown.sheet.attributes[mapping.attribute];
   return mapping && (values || view.value === 'undercut') ? (
     <div class="float top-right">
-      <Legend mapping={mapping} values={values ?? new Float32Array(0)} />
+      <Legend
+        mapping={mapping}
+        values={values ?? new Float32Array(0)}
+        least={figure(shown.report, 'thickness_min_mm') ?? undefined}
+      />
     </div>
   ) : null;
 }

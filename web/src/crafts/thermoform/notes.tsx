@@ -3,6 +3,7 @@
 import { signal, useSignal } from '@preact/signals';
 import { Button, formatNumber, Icon, Note, useLasting, withUnit } from '../../ui';
 import { solveInFull } from '../common/full_solve';
+import { narrow } from '../common/narrow';
 import { sentences } from '../common/report';
 import { clampOf, placementNow } from './draw_scene';
 import { beyondOpening, boxOf, placed } from './placement';
@@ -51,6 +52,7 @@ export interface NotesProps {
 export function Notes({ session, onChooseFile }: NotesProps) {
   const solving = useLasting(session.activity.value.kind === 'solving');
   const whole = useSignal(false);
+  const opened = useSignal(false);
   const problem = session.problem.value;
   const { model } = session.document.value;
   if (problem)
@@ -97,7 +99,7 @@ export function Notes({ session, onChooseFile }: NotesProps) {
         <Icon name="clock" small /> Preview. The fine sheet replaces it.
       </p>
     );
-  if (session.repairsOpen.value)
+  if (session.repairsOpen.value && !narrow())
     return (
       <div class="note-place">
         <Note
@@ -112,7 +114,21 @@ export function Notes({ session, onChooseFile }: NotesProps) {
     );
   const said = advice(session);
   const words = said.join(' ');
-  if (said.length === 0 || words === dismissed.value) return null;
+  if (said.length === 0) return null;
+  // On a phone the object needs the room until the notes are asked for; dismissed ones can be had again.
+  if (words === dismissed.value || (narrow() && !opened.value))
+    return (
+      <button
+        type="button"
+        class="label-chip note-count"
+        onClick={() => {
+          dismissed.value = '';
+          opened.value = true;
+        }}
+      >
+        <Icon name="warn" small /> {said.length === 1 ? '1 note' : `${said.length} notes`}
+      </button>
+    );
   const [first = '', ...others] = said;
   const [title, rest] = headed(first);
   return (

@@ -7,7 +7,6 @@ export interface Moment {
   /** Number of the frame before, and the share of the next one, 0..1. */
   readonly frame: number;
   readonly share: number;
-  readonly phase: string;
   readonly platform_z_mm: number;
   readonly touching_share: number;
 }
@@ -25,7 +24,6 @@ export function momentAt(film: Film, time_s: number): Moment {
   return {
     frame,
     share,
-    phase: film.phases[share > 0 ? frame + 1 : frame] ?? film.phases.at(-1) ?? '',
     platform_z_mm: mixed(film.platform_z_mm),
     touching_share: mixed(film.touching_share),
   };
@@ -84,14 +82,18 @@ export interface Phase {
 /** A phase is never narrower than its words. */
 const leastShare = 0.2;
 
-/** The phases along the timeline: as wide as they are long, but none narrower than its words. */
-export function phasesOf(film: Film): Phase[] {
+/** The phases along the timeline: as wide as they are long, but none narrower than its words. `ends_s`: where the
+ *  phases end, by name; else a phase goes on until the first frame of the next. */
+export function phasesOf(film: Film, ends_s: Readonly<Record<string, number | null>> = {}): Phase[] {
   const spans: { name: string; start_s: number; end_s: number }[] = [];
   film.phases.forEach((name, i) => {
     const time = film.times_s[i] ?? 0;
     const last = spans.at(-1);
     if (last?.name === name) last.end_s = time;
-    else spans.push({ name, start_s: last?.end_s ?? 0, end_s: time });
+    else {
+      if (last) last.end_s = Math.min(time, ends_s[last.name] ?? time);
+      spans.push({ name, start_s: last?.end_s ?? 0, end_s: time });
+    }
   });
   const total = endOf(film);
   const least = Math.min(leastShare, 1 / Math.max(1, spans.length));
@@ -109,6 +111,10 @@ export function phasesOf(film: Film): Phase[] {
     return { ...span, from, to: at };
   });
 }
+
+/** The phase that a moment belongs to; its end still does. */
+export const phaseAt = (phases: readonly Phase[], time_s: number): string =>
+  (phases.find(({ end_s }) => time_s <= end_s) ?? phases.at(-1))?.name ?? '';
 
 /** Place on the timeline, 0..1. */
 export function fractionAt(phases: readonly Phase[], time_s: number): number {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Notes at the foot of the viewport: one at a time, the most urgent first.
 import { signal, useSignal } from '@preact/signals';
-import { Button, formatNumber, Icon, Note, useLasting, withUnit } from '../../ui';
+import { Button, formatNumber, Icon, IconButton, Note, useLasting, withUnit } from '../../ui';
 import { solveInFull } from '../common/full_solve';
 import { narrow } from '../common/narrow';
 import { sentences } from '../common/report';
@@ -52,7 +52,6 @@ export interface NotesProps {
 export function Notes({ session, onChooseFile }: NotesProps) {
   const solving = useLasting(session.activity.value.kind === 'solving');
   const whole = useSignal(false);
-  const opened = useSignal(false);
   const problem = session.problem.value;
   const { model } = session.document.value;
   if (problem)
@@ -116,14 +115,14 @@ export function Notes({ session, onChooseFile }: NotesProps) {
   const words = said.join(' ');
   if (said.length === 0) return null;
   // On a phone the object needs the room until the notes are asked for; dismissed ones can be had again.
-  if (words === dismissed.value || (narrow() && !opened.value))
+  if (words === dismissed.value || (narrow() && !whole.value))
     return (
       <button
         type="button"
         class="label-chip note-count"
         onClick={() => {
           dismissed.value = '';
-          opened.value = true;
+          whole.value = true;
         }}
       >
         <Icon name="warn" small /> {said.length === 1 ? '1 note' : `${said.length} notes`}
@@ -131,22 +130,29 @@ export function Notes({ session, onChooseFile }: NotesProps) {
     );
   const [first = '', ...others] = said;
   const [title, rest] = headed(first);
+  if (!whole.value)
+    return (
+      <div class="label-chip advice" role="status">
+        <Icon name="warn" small />
+        <span class="clip">{title}</span>
+        <button type="button" class="text-button" onClick={() => (whole.value = true)}>
+          {others.length > 0 ? `${others.length} more` : 'More'}
+        </button>
+        <IconButton icon="close" label="Dismiss" onClick={() => (dismissed.value = words)} />
+      </div>
+    );
   return (
     <div class="note-place">
       <Note
         kind="attention"
         icon="warn"
         title={title}
-        onDismiss={() => (dismissed.value = words)}
-        actions={
-          others.length > 0 && !whole.value ? (
-            <Button size="small" kind="quiet" onClick={() => (whole.value = true)}>
-              {others.length === 1 ? '1 more note' : `${others.length} more notes`}
-            </Button>
-          ) : undefined
-        }
+        onDismiss={() => {
+          whole.value = false;
+          dismissed.value = words;
+        }}
       >
-        {[rest, ...(whole.value ? others : [])].filter(Boolean).join(' ')}
+        {[rest, ...others].filter(Boolean).join(' ')}
       </Note>
     </div>
   );

@@ -18,7 +18,7 @@ import { estimateSeconds, recall } from '../common/estimate';
 import { bytesOf } from '../common/import_model';
 import { figure } from '../common/report';
 import type { Services } from '../common/services';
-import { endOf, momentAt, phasesOf } from './film';
+import { endOf, momentAt, phaseAt, phasesOf } from './film';
 import {
   formedSheet,
   known,
@@ -68,11 +68,17 @@ export class ThermoformSession extends CraftSession<ThermoformDocument> {
   readonly time_s = signal(0);
   readonly moment = computed(() => {
     const film = this.shown.value?.film;
-    return film ? momentAt(film, this.time_s.value) : null;
+    const phase = phaseAt(this.phases.value, this.time_s.value);
+    return film ? { ...momentAt(film, this.time_s.value), phase } : null;
   });
   readonly phases = computed(() => {
-    const film = this.shown.value?.film;
-    return film ? phasesOf(film) : [];
+    const shown = this.shown.value;
+    if (shown === null) return [];
+    const { film, report } = shown;
+    return phasesOf(film, {
+      relax: figure(report, 'relaxation_end_s'),
+      raise: figure(report, 'raise_end_s'),
+    });
   });
   readonly #previewed = signal<Measured | null>(null);
   readonly #preview: LatestOnly<PreviewRequest>;

@@ -139,7 +139,7 @@ export function keepDrawn(viewport: Viewport, session: ThermoformSession, extras
     const positions = ended ? shown.sheet.positions : sheetAt(shown.film, moment);
     const mapping = mappingOf(view.value, shown, thicknessOf(session, shown));
     viewport.updateRelief(positions);
-    if (mapping && mapping.attribute !== 'draft_deg')
+    if (mapping && view.value !== 'undercut')
       viewport.updateAttribute(
         'relief',
         mapping.attribute,

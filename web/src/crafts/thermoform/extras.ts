@@ -59,7 +59,9 @@ export function watchExtras(session: ThermoformSession) {
     const { positions, indices, attributes } = await readPly(
       await session.services.projects.blobs.read(ply.blob),
     );
-    extras.value = { ...extras.peek(), draft: { positions, indices, attributes } };
+    const draft_deg = attributes['draft_deg'] ?? new Float32Array(positions.length / 3);
+    const overhang_deg = draft_deg.map((angle) => -angle);
+    extras.value = { ...extras.peek(), draft: { positions, indices, attributes: { overhang_deg } } };
   };
 
   const stop = effect(() => {

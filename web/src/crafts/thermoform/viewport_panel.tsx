@@ -138,7 +138,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
           </p>
         ) : null}
         {notes}
-        {visible ? <Timeline session={session} /> : null}
+        {visible && view.value !== 'undercut' ? <Timeline session={session} /> : null}
       </div>
       <MoveHandle session={session} mover={mover} viewport={() => viewport.current} element={handle} />
       {children}

@@ -37,8 +37,8 @@ const niceUp = (value: number): number => {
   return Math.ceil((2 * value) / power - 1e-9) * (power / 2);
 };
 
-/** Steeper than this either way looks the same. */
-const draftRange_deg = 45;
+/** Walls that part from the sheet by themselves are pale, what leans in further than this is dark. */
+const overhangRange_deg = [-5, 30] as const;
 
 /** The colours of a view of a formed sheet; one scale for all moments of the film. */
 export function mappingOf(which: View, formed: Formed, sheetThickness_mm: number): ColourMapping | null {
@@ -67,12 +67,12 @@ export function mappingOf(which: View, formed: Formed, sheetThickness_mm: number
   }
   if (which === 'undercut')
     return {
-      attribute: 'draft_deg',
-      map: 'signed',
-      minimum: -draftRange_deg,
-      maximum: draftRange_deg,
+      attribute: 'overhang_deg',
+      map: 'error',
+      minimum: overhangRange_deg[0],
+      maximum: overhangRange_deg[1],
       unit: '°',
-      label: 'Draft',
+      label: 'Overhang',
     };
   return null;
 }

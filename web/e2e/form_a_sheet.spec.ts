@@ -2,7 +2,7 @@
 import AxeBuilder from '@axe-core/playwright';
 import type { Page } from '@playwright/test';
 import { readFileSync } from 'node:fs';
-import { backend, ballObj, expect, fileOf, openPage, strip, test } from './page';
+import { backend, ballObj, expect, fileOf, openPage, readStl, strip, test } from './page';
 
 test.skip(backend === 'mock', 'the mock makes reliefs only');
 
@@ -82,6 +82,25 @@ for (const sample of ['Mountain', 'Cat'])
     for (const column of ['sheet_x_mm', 'sheet_y_mm', 'thickness_mm', 'stretch', 'contact_s'])
       expect(columns).toContain(column);
   });
+
+test('the print and the mould of a sheet, made when they are asked for', async ({ page }) => {
+  await openSample(page, 'Hemisphere');
+  await coarse(page);
+  await page.keyboard.press('Control+e'); // forms the sheet first
+  const print = await page.waitForEvent('download', { timeout: 150_000 });
+  expect(print.suggestedFilename()).toMatch(/print\.pdf$/);
+  expect(readFileSync(await print.path()).toString('latin1', 0, 5)).toBe('%PDF-');
+  await page.getByRole('radio', { name: 'Texture' }).click();
+  await expect(page.getByRole('img', { name: /^The print/ })).toBeVisible();
+  await page.getByRole('radio', { name: 'Undercut' }).click();
+  await expect(page.getByRole('img', { name: /^Overhang/ })).toBeVisible();
+  await expect(page.getByRole('progressbar')).toBeHidden();
+  await page.getByRole('button', { name: 'Export something else' }).click();
+  const waiting = page.waitForEvent('download', { timeout: 150_000 });
+  await page.getByRole('menuitem', { name: /^Mould, STL/ }).click();
+  const solid = readStl(readFileSync(await (await waiting).path()));
+  expect(solid.closed).toBe(true);
+});
 
 test('the film plays with Space and stops at its end', async ({ page }) => {
   await openSample(page, 'Pyramid');

@@ -33,7 +33,9 @@ test('with the keyboard alone', async ({ page }) => {
   await page.keyboard.press('Control+e');
   expect((await waiting).suggestedFilename()).toMatch(/\.stl$/);
   await page.keyboard.press('2');
-  await expect(page.getByRole('heading', { name: 'Thermoform is not here yet' })).toBeVisible();
+  await expect(page.getByText('A shell starts from a model.')).toBeVisible();
+  await page.keyboard.press('3');
+  await expect(page.getByRole('heading', { name: 'Zippable is not here yet' })).toBeVisible();
 });
 
 for (const colorScheme of ['light', 'dark'] as const)

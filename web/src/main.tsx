@@ -6,18 +6,25 @@ import './ui/ui.css';
 import './app/app.css';
 import { App } from './app/app';
 import { createServices } from './app/create_services';
-import { go, startRouting } from './app/route';
+import { placeOfWork } from './app/rooms';
+import { go, place, startRouting } from './app/route';
 import { followSystemTheme } from './app/theme';
-import { resumePending } from './crafts/relief/full_solve';
+import { resumePending } from './crafts/common/full_solve';
 import { ReliefSession } from './crafts/relief/relief_session';
+import { ThermoformSession } from './crafts/thermoform/thermoform_session';
 
 async function start(root: HTMLElement): Promise<void> {
   followSystemTheme();
   const services = await createServices();
-  const session = new ReliefSession(services);
-  effect(() => resumePending(session));
-  if (!startRouting() && !services.projects.isBlank.value) go('relief');
-  render(<App services={services} session={session} />, root);
+  const sessions = { relief: new ReliefSession(services), thermoform: new ThermoformSession(services) };
+  effect(() => resumePending(sessions.relief));
+  effect(() => resumePending(sessions.thermoform));
+  if (!startRouting() && !services.projects.isBlank.value)
+    go(placeOfWork(services.projects.document.value) ?? 'relief');
+  effect(() => {
+    for (const [room, { active }] of Object.entries(sessions)) active.value = place.value === room;
+  });
+  render(<App services={services} sessions={sessions} />, root);
   addEventListener('pagehide', () => void services.projects.flush());
   document.addEventListener('visibilitychange', () => {
     if (document.visibilityState === 'hidden') void services.projects.flush();

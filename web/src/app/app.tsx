@@ -3,8 +3,9 @@
 import { signal, useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import type { Services } from '../crafts/common/services';
+import { chooseModel } from '../crafts/common/craft_session';
 import type { ReliefPage as ReliefPageComponent } from '../crafts/relief/relief_page';
-import type { ReliefSession } from '../crafts/relief/relief_session';
+import type { ThermoformPage as ThermoformPageComponent } from '../crafts/thermoform/thermoform_page';
 import { projectExtension } from '../project/archive';
 import { Icon, TipLayer, toast, ToastLayer } from '../ui';
 import { AboutPage } from './about_page';
@@ -14,61 +15,78 @@ import { LaterPage } from './later_page';
 import { Rail } from './rail';
 import { go, place } from './route';
 import { formatNames, StartPage } from './start_page';
+import type { Sessions } from './rooms';
+import { placeOfWork, roomOf } from './rooms';
 import { TopBar } from './top_bar';
 
-type Page = typeof ReliefPageComponent;
+/** Materials and pictures that may come with a model. */
+const companionEndings = ['.mtl', '.png', '.jpg', '.jpeg'];
 
 /** The viewport is most of the program; it comes when a place needs it, or when the start screen is at rest. */
-const reliefPage = signal<{ readonly Page: Page } | null>(null);
+const reliefPage = signal<{ readonly Page: typeof ReliefPageComponent } | null>(null);
 const loadReliefPage = () =>
   import('../crafts/relief/relief_page').then(({ ReliefPage }) => (reliefPage.value = { Page: ReliefPage }));
+const thermoformPage = signal<{ readonly Page: typeof ThermoformPageComponent } | null>(null);
+const loadThermoformPage = () =>
+  import('../crafts/thermoform/thermoform_page').then(
+    ({ ThermoformPage }) => (thermoformPage.value = { Page: ThermoformPage }),
+  );
 
 export interface AppProps {
   readonly services: Services;
-  readonly session: ReliefSession;
+  readonly sessions: Sessions;
 }
 
-export function App({ services, session }: AppProps) {
+export function App({ services, sessions }: AppProps) {
   const dialog = useSignal<'keys' | 'worker' | null>(null);
   const dropping = useSignal(false);
   const input = useRef<HTMLInputElement>(null);
   const chooseFile = () => input.current?.click();
 
-  const openFile = async (file: File) => {
-    if (file.name.toLowerCase().endsWith(`.${projectExtension}`)) {
+  const openFiles = async (files: readonly File[]) => {
+    const project = files.find(({ name }) => name.toLowerCase().endsWith(`.${projectExtension}`));
+    if (project) {
       try {
-        await services.projects.importFile(new Uint8Array(await file.arrayBuffer()));
-        go('relief');
+        await services.projects.importFile(new Uint8Array(await project.arrayBuffer()));
+        go(placeOfWork(services.projects.document.value) ?? 'relief');
         toast(`Opened ${services.projects.document.value.name}.`);
       } catch (thrown) {
         const message = thrown instanceof Error ? thrown.message : String(thrown);
-        session.problem.value = { kind: 'file', title: `Could not open ${file.name}`, message };
-        go('relief');
+        const where = roomOf(place.value);
+        sessions[where].problem.value = { kind: 'file', title: `Could not open ${project.name}`, message };
+        go(where);
       }
       return;
     }
+    const chosen = chooseModel(files, services.catalog.value);
+    if (chosen === null) return;
     if (place.value === 'start' && !services.projects.isBlank.value) await services.projects.create();
-    go('relief');
-    await session.openFile(file);
+    const where = roomOf(place.value);
+    go(where);
+    await sessions[where].openFile(chosen);
   };
 
-  useFileDrop(dropping, openFile);
+  useFileDrop(dropping, openFiles);
   useGlobalKeys(services, { chooseFile, showKeys: () => (dialog.value = 'keys') });
-  useLaunchedFiles(openFile);
+  useLaunchedFiles(openFiles);
 
   const where = place.value;
   const ReliefPage = reliefPage.value?.Page;
+  const ThermoformPage = thermoformPage.value?.Page;
   useEffect(() => {
     if (where === 'relief') void loadReliefPage();
+    if (where === 'thermoform') void loadThermoformPage();
   }, [where]);
   const later = crafts.find((craft) => craft.place === where && !craft.available);
-  const hasInspector = where === 'relief' && session.document.value.model !== null;
-  const hasStrip = hasInspector || (where === 'relief' && session.activity.value.kind === 'opening');
+  const session = where === 'relief' || where === 'thermoform' ? sessions[where] : null;
+  const hasInspector = session !== null && session.document.value.model !== null;
+  const hasStrip = hasInspector || session?.activity.value.kind === 'opening';
+  const solving = Object.values(sessions).some(({ activity }) => activity.value.kind === 'solving');
   return (
     <div class={`app ${hasInspector ? 'with-side' : ''} ${hasStrip ? 'with-strip' : ''}`}>
       <TopBar
         services={services}
-        session={session}
+        solving={solving}
         onOpenFile={chooseFile}
         onKeys={() => (dialog.value = 'keys')}
         onWorker={() => (dialog.value = 'worker')}
@@ -76,19 +94,25 @@ export function App({ services, session }: AppProps) {
       <Rail />
       {where === 'relief' && ReliefPage ? (
         <ReliefPage
-          session={session}
+          session={sessions.relief}
           onChooseFile={chooseFile}
           onWorkerHelp={() => (dialog.value = 'worker')}
           onStart={() => go('start')}
         />
-      ) : where === 'relief' ? (
-        <main class="view" aria-label="Relief" aria-busy="true" />
+      ) : where === 'thermoform' && ThermoformPage ? (
+        <ThermoformPage session={sessions.thermoform} onChooseFile={chooseFile} />
+      ) : where === 'relief' || where === 'thermoform' ? (
+        <main
+          class="view"
+          aria-label={crafts.find((craft) => craft.place === where)?.title}
+          aria-busy="true"
+        />
       ) : where === 'about' ? (
         <AboutPage services={services} />
       ) : later ? (
         <LaterPage craft={later} />
       ) : (
-        <StartPage services={services} session={session} onChooseFile={chooseFile} />
+        <StartPage services={services} session={sessions.relief} onChooseFile={chooseFile} />
       )}
       {dropping.value ? (
         <div class="drop-target" aria-hidden="true">
@@ -106,15 +130,17 @@ export function App({ services, session }: AppProps) {
         ref={input}
         type="file"
         hidden
+        multiple
         aria-label="Model or project file"
         accept={[
           ...(services.catalog.value?.mesh_formats ?? []).map((f) => `.${f.extension}`),
+          ...companionEndings,
           `.${projectExtension}`,
         ].join()}
         onChange={(event) => {
-          const file = event.currentTarget.files?.[0];
+          const files = [...(event.currentTarget.files ?? [])];
           event.currentTarget.value = '';
-          if (file) void openFile(file);
+          if (files.length > 0) void openFiles(files);
         }}
       />
       {dialog.value === 'keys' ? <KeysDialog onClose={() => (dialog.value = null)} /> : null}
@@ -127,7 +153,10 @@ export function App({ services, session }: AppProps) {
   );
 }
 
-function useFileDrop(dropping: { value: boolean }, openFile: (file: File) => Promise<void>): void {
+function useFileDrop(
+  dropping: { value: boolean },
+  openFiles: (files: readonly File[]) => Promise<void>,
+): void {
   useEffect(() => {
     let depth = 0; // dragenter and dragleave come for every element that is crossed
     const hasFiles = (event: DragEvent) => event.dataTransfer?.types.includes('Files') === true;
@@ -147,10 +176,10 @@ function useFileDrop(dropping: { value: boolean }, openFile: (file: File) => Pro
     const drop = (event: DragEvent) => {
       depth = 0;
       dropping.value = false;
-      const file = event.dataTransfer?.files[0];
-      if (file === undefined) return;
+      const files = [...(event.dataTransfer?.files ?? [])];
+      if (files.length === 0) return;
       event.preventDefault();
-      void openFile(file);
+      void openFiles(files);
     };
     const handlers = { dragenter: enter, dragover: over, dragleave: leave, drop } as const;
     for (const [name, handler] of Object.entries(handlers))
@@ -196,11 +225,11 @@ interface LaunchQueue {
 }
 
 /** Files opened with the installed app from the system's file manager. */
-function useLaunchedFiles(openFile: (file: File) => Promise<void>): void {
+function useLaunchedFiles(openFiles: (files: readonly File[]) => Promise<void>): void {
   useEffect(() => {
     const { launchQueue } = window as { launchQueue?: LaunchQueue };
     launchQueue?.setConsumer(({ files }) => {
-      void files[0]?.getFile().then(openFile);
+      void Promise.all(files.map((file) => file.getFile())).then(openFiles);
     });
   }, []);
 }

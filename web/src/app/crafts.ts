@@ -29,7 +29,7 @@ export const crafts: readonly Craft[] = [
     icon: 'thermoform',
     pitch: 'A coloured plastic shell, its print landing where it should.',
     makes: 'Vacuum former, printer',
-    available: false,
+    available: true,
   },
   {
     place: 'zippable',

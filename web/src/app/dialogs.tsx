@@ -7,6 +7,7 @@ const keys: readonly (readonly [keys: readonly string[], meaning: string])[] = [
   [['0'], 'Look from the viewpoint'],
   [['F'], 'Fit'],
   [['S'], 'Swipe'],
+  [['Space'], 'Play the forming'],
   [['Ctrl', 'Enter'], 'Solve at full detail'],
   [['Ctrl', 'E'], 'Export'],
   [['Ctrl', 'O'], 'Open a file'],

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Draws the pictures of the start screen, in a browser, for scripts/draw_pictures.js to keep in public/.
 // Not part of the page: drawing a gallery at each first visit would take the solver's time.
-import { originalData, plateOf, reliefData } from '../crafts/relief/meshes';
-import type { Job, Sample } from '../jobs/contract';
+import { originalData } from '../crafts/common/shaded_mesh';
+import { plateOf, reliefData } from '../crafts/relief/meshes';
+import { clampFrame, frameShadow } from '../crafts/thermoform/clamp_frame';
+import type { Job, Report, Sample } from '../jobs/contract';
 import { findOperation } from '../jobs/contract';
 import { readPly } from '../jobs/mesh_reader';
 import { WasmBackend } from '../jobs/wasm_backend';
@@ -53,7 +55,48 @@ export async function drawPictures(only?: string): Promise<Record<string, string
     );
     pictures['craft_relief'] = await webp(picture);
   }
+  if (only === undefined || only === 'craft_thermoform')
+    pictures['craft_thermoform'] = await formedSheet(run);
   return pictures;
+}
+
+type Run = (
+  job: Omit<Job, 'parameters'>,
+  output: string,
+) => Promise<{ report: Report; mesh: Awaited<ReturnType<typeof readPly>> }>;
+
+/** The mountain under its sheet, coloured by thickness, in a clamp that shows little of its own. */
+async function formedSheet(run: Run): Promise<string> {
+  const inputs = { mould: { sample: 'mountain', vertices: pictureVertices } };
+  const { mesh, report } = await run(
+    { operation: 'thermoform-simulate', inputs, outputs: ['sheet.ply'] },
+    'sheet.ply',
+  );
+  const { positions, indices, attributes } = mesh;
+  const high = positions.reduce((most, z, i) => (i % 3 === 2 ? Math.max(most, z) : most), 0);
+  const side = (axis: number) =>
+    2 * positions.reduce((most, x, i) => (i % 3 === axis ? Math.max(most, x) : most), 0);
+  const clamp = { sheet_mm: [side(0), side(1)], opening_mm: [side(0), side(1)], height_mm: 1 } as const;
+  const least = Number(report['thickness_min_mm'] ?? 0);
+  const picture = await renderThumbnail(
+    { positions, indices, attributes },
+    { widthPx: 560, heightPx: 352 },
+    {
+      transparent: true,
+      patient: true,
+      plate: { ...frameShadow(clamp), mesh: clampFrame(clamp, high) },
+      viewpoint: { direction: [0.2, 0.9, -0.8], up: [0, 0, 1] },
+      mapping: {
+        attribute: 'thickness_mm',
+        map: 'thickness',
+        minimum: 0.9 * least,
+        maximum: (attributes['thickness_mm'] ?? new Float32Array(1)).reduce((a, b) => Math.max(a, b), 0),
+        unit: 'mm',
+        label: 'Thickness',
+      },
+    },
+  );
+  return await webp(picture);
 }
 
 async function webp(png: Blob): Promise<string> {

@@ -13,7 +13,10 @@ export function LaterPage({ craft }: { craft: Craft }) {
         </span>
         <h1>{craft.title} is not here yet</h1>
         <p>{craft.pitch}</p>
-        <p>This version makes reliefs. Nothing you make now will be lost when {craft.title} arrives.</p>
+        <p>
+          This version makes reliefs and thermoforms. Nothing you make now will be lost when {craft.title}{' '}
+          arrives.
+        </p>
         <Button onClick={() => go('relief')}>Make a relief</Button>
       </div>
     </main>

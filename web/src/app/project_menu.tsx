@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { useState } from 'preact/hooks';
 import type { Services } from '../crafts/common/services';
-import { download, safeFileName } from '../crafts/relief/download';
+import { download, safeFileName } from '../crafts/common/download';
 import { projectExtension } from '../project/archive';
 import { Button, Dialog, Icon, Menu, toast } from '../ui';
+import { placeOfWork } from './rooms';
 import { go } from './route';
 
 const listedProjects = 8;
@@ -20,7 +21,7 @@ export function ProjectMenu({ services, onOpenFile }: { services: Services; onOp
   };
   const open = async (other: string) => {
     await projects.open(other);
-    go('relief');
+    go(placeOfWork(projects.document.value) ?? 'relief');
   };
   const others = projects.projects.value.slice(0, listedProjects);
   return (

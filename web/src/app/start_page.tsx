@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { useEffect } from 'preact/hooks';
+import { Gallery, KeptPicture } from '../crafts/common/gallery';
 import type { Services } from '../crafts/common/services';
 import type { ReliefSession } from '../crafts/relief/relief_session';
 import { warmUp } from '../crafts/relief/warm_up';
-import { Button, formatCount, Icon } from '../ui';
+import { Button, Icon } from '../ui';
 import { crafts, notYet } from './crafts';
 import { go } from './route';
 
@@ -18,12 +19,6 @@ export function formatNames(services: Services): string {
   const names = (services.catalog.value?.mesh_formats ?? []).map(({ extension }) => extension.toUpperCase());
   const last = names.pop();
   return names.length > 0 ? `${names.join(', ')} or ${last}` : (last ?? '');
-}
-
-/** Kept in public/pictures by scripts/draw_pictures.js; a sample newer than its picture goes without. */
-function Picture({ name }: { name: string }) {
-  const hide = (event: { currentTarget: HTMLImageElement }) => (event.currentTarget.hidden = true);
-  return <img src={`pictures/${name}.webp`} alt="" decoding="async" onError={hide} />;
 }
 
 export function StartPage({ services, session, onChooseFile }: StartPageProps) {
@@ -51,7 +46,11 @@ export function StartPage({ services, session, onChooseFile }: StartPageProps) {
             <li key={craft.place}>
               <a class={craft.available ? 'craft-card' : 'craft-card later'} href={`#/${craft.place}`}>
                 <span class="craft-picture">
-                  {craft.available ? <Picture name={`craft_${craft.place}`} /> : <Icon name={craft.icon} />}
+                  {craft.available ? (
+                    <KeptPicture name={`craft_${craft.place}`} />
+                  ) : (
+                    <Icon name={craft.icon} />
+                  )}
                 </span>
                 <span class="craft-text">
                   <strong>{craft.title}</strong>
@@ -77,19 +76,7 @@ export function StartPage({ services, session, onChooseFile }: StartPageProps) {
         {catalog && catalog.samples.length > 0 ? (
           <>
             <h2>Or start from a sample</h2>
-            <ul class="gallery">
-              {catalog.samples.map((sample) => (
-                <li key={sample.name}>
-                  <button type="button" onClick={() => open(sample.name, sample.title)}>
-                    <span class="gallery-picture">
-                      <Picture name={sample.name} />
-                    </span>
-                    <strong>{sample.title}</strong>
-                    <small>{formatCount(sample.default_vertices / 1000)}k vertices</small>
-                  </button>
-                </li>
-              ))}
-            </ul>
+            <Gallery samples={catalog.samples} onOpen={open} />
           </>
         ) : null}
         <p class="start-foot">

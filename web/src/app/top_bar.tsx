@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import type { Services } from '../crafts/common/services';
-import type { ReliefSession } from '../crafts/relief/relief_session';
 import { IconButton, Menu, Icon, tipHandlers } from '../ui';
 import { ProjectMenu } from './project_menu';
 import { go } from './route';
@@ -8,13 +7,14 @@ import { chooseTheme, theme } from './theme';
 
 export interface TopBarProps {
   readonly services: Services;
-  readonly session: ReliefSession;
+  /** Something is being solved in full. */
+  readonly solving: boolean;
   readonly onOpenFile: () => void;
   readonly onKeys: () => void;
   readonly onWorker: () => void;
 }
 
-export function TopBar({ services, session, onOpenFile, onKeys, onWorker }: TopBarProps) {
+export function TopBar({ services, solving, onOpenFile, onKeys, onWorker }: TopBarProps) {
   const { projects } = services;
   const { value: undo } = projects.undoLabel;
   const { value: redo } = projects.redoLabel;
@@ -56,7 +56,7 @@ export function TopBar({ services, session, onOpenFile, onKeys, onWorker }: TopB
         onClick={() => projects.redo()}
       />
       <span class="separator desk" />
-      <WorkerChip services={services} session={session} onWorker={onWorker} />
+      <WorkerChip services={services} solving={solving} onWorker={onWorker} />
       <IconButton
         icon={dark ? 'moon' : 'sun'}
         label={dark ? 'Change to the light theme' : 'Change to the dark theme'}
@@ -97,16 +97,14 @@ function SaveState({ services }: { services: Services }) {
 
 function WorkerChip({
   services,
-  session,
+  solving,
   onWorker,
 }: {
   services: Services;
-  session: ReliefSession;
+  solving: boolean;
   onWorker: () => void;
 }) {
   const connection = services.connection.value;
-  const activity = session.activity.value;
-  const solving = activity.kind === 'solving';
   const mock = services.browser.kind === 'mock';
   let [dot, words, short] = ['off', mock ? 'Mock solver' : 'In the browser', mock ? 'Mock' : 'Browser'];
   if (connection?.state === 'ready') {

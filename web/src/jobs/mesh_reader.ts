@@ -1,18 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page's side of `ply_worker`: meshes without a long task on the main thread.
+// The page's side of `mesh_worker`: meshes without a long task on the main thread.
 import { JobError } from './contract';
+import type { Film, Printed } from './glb';
 import type { PlyMesh } from './ply';
 
-export type MeshRequest = { id: number; bytes: Uint8Array<ArrayBuffer> };
-export type MeshReply = { id: number } & ({ mesh: PlyMesh } | { error: string });
+interface Kinds {
+  ply: PlyMesh;
+  film: Film;
+  printed: Printed;
+}
+
+export type MeshRequest = { id: number; kind: keyof Kinds; bytes: Uint8Array<ArrayBuffer> };
+export type MeshReply = { id: number } & ({ mesh: Kinds[keyof Kinds] } | { error: string });
 
 let worker: Worker | null = null;
 let nextId = 1;
 const waiting = new Map<number, (reply: MeshReply) => void>();
 
-function ask(bytes: Uint8Array<ArrayBuffer>): Promise<MeshReply> {
+function ask(kind: keyof Kinds, bytes: Uint8Array<ArrayBuffer>): Promise<MeshReply> {
   if (worker === null) {
-    worker = new Worker(new URL('./ply_worker.ts', import.meta.url), { type: 'module' });
+    worker = new Worker(new URL('./mesh_worker.ts', import.meta.url), { type: 'module' });
     worker.onmessage = ({ data }: MessageEvent<MeshReply>) => {
       waiting.get(data.id)?.(data);
       waiting.delete(data.id);
@@ -23,16 +30,19 @@ function ask(bytes: Uint8Array<ArrayBuffer>): Promise<MeshReply> {
       worker = null;
     };
   }
-  const id = nextId++;
-  const request: MeshRequest = { id, bytes };
+  const request: MeshRequest = { id: nextId++, kind, bytes };
   worker.postMessage(request); // copied: the caller may keep its bytes
-  return new Promise((resolve) => waiting.set(id, resolve));
+  return new Promise((resolve) => waiting.set(request.id, resolve));
 }
 
 const failed = (message: string) => new JobError({ code: 'internal', where: '', message });
 
-export async function readPly(bytes: Uint8Array<ArrayBuffer>): Promise<PlyMesh> {
-  const reply = await ask(bytes);
+async function read<K extends keyof Kinds>(kind: K, bytes: Uint8Array<ArrayBuffer>): Promise<Kinds[K]> {
+  const reply = await ask(kind, bytes);
   if (!('mesh' in reply)) throw failed('error' in reply ? reply.error : 'No mesh.');
-  return reply.mesh;
+  return reply.mesh as Kinds[K];
 }
+
+export const readPly = (bytes: Uint8Array<ArrayBuffer>) => read('ply', bytes);
+export const readFilm = (bytes: Uint8Array<ArrayBuffer>) => read('film', bytes);
+export const readPrinted = (bytes: Uint8Array<ArrayBuffer>) => read('printed', bytes);

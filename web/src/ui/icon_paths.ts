@@ -40,6 +40,7 @@ export const iconPaths = {
   scissors:
     '<circle cx="6.5" cy="17.5" r="2.5"/><circle cx="6.5" cy="6.5" r="2.5"/><path d="M8.6 8L20 16.5M8.6 16L20 7.5"/>',
   print: '<path d="M7 9V4h10v5M7 17H4v-6.5h16V17h-3"/><path d="M7 14h10v6.5H7z"/>',
+  move: '<path d="M12 3v18M3 12h18M9.5 5.500L12 3l2.500 2.500M9.500 18.500L12 21l2.500-2.500M5.500 9.500L3 12l2.500 2.500M18.500 9.500L21 12l-2.500 2.500"/>',
   swap: '<path d="M9 7l-5 5 5 5M15 7l5 5-5 5"/>',
   cube: '<path d="M12 3l8 4.5v9L12 21l-8-4.5v-9z"/><path d="M4 7.5l8 4.5 8-4.5M12 12v9"/>',
   file: '<path d="M6 3h8l4 4v14H6z"/><path d="M14 3v4h4"/>',

@@ -17,6 +17,8 @@ export interface ParameterProps {
   /** null: the value may be left out. */
   readonly defaultValue: number | null;
   readonly optional?: boolean;
+  /** What an automatic value came to, where it is known: the slider begins there. */
+  readonly automatic?: number | undefined;
   readonly value: number | null;
   /** A sentence from the backend about this value. */
   readonly error?: string | undefined;
@@ -43,6 +45,7 @@ export function Parameter(props: ParameterProps) {
     .filter(Boolean)
     .join(' ');
   const changed = value !== props.defaultValue;
+  const shownValue = value ?? props.defaultValue ?? props.automatic ?? null;
   const message = problem ?? props.error ?? null;
 
   const set = (next: number | null) => {
@@ -51,7 +54,7 @@ export function Parameter(props: ParameterProps) {
     onPreview(next);
   };
   const stepBy = (share: number, base: readonly [number, number]) => {
-    const start = value ?? props.defaultValue ?? base[0];
+    const start = shownValue ?? base[0];
     const width = base[1] - base[0];
     const grid = props.integer ? 1 : Math.min(step, niceStep(base[0], base[1]));
     const by = Math.max(grid, Math.abs(roundTo(share * width, grid))) * Math.sign(share);
@@ -113,9 +116,9 @@ export function Parameter(props: ParameterProps) {
           min={slider[0]}
           max={slider[1]}
           step="any"
-          value={clamp(value ?? props.defaultValue ?? slider[0], slider[0], slider[1])}
+          value={clamp(shownValue ?? slider[0], slider[0], slider[1])}
           style={{
-            '--filled': `${(100 * (clamp(value ?? slider[0], ...slider) - slider[0])) / (slider[1] - slider[0])}%`,
+            '--filled': `${(100 * (clamp(shownValue ?? slider[0], ...slider) - slider[0])) / (slider[1] - slider[0])}%`,
           }}
           onInput={(event) => {
             const next = roundTo(Number(event.currentTarget.value), props.integer ? 1 : step);

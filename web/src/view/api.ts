@@ -54,6 +54,20 @@ export interface Plate {
   mesh?: MeshData | false;
 }
 
+/** What stands beside a part without being it: the machine's frame, the model below a sheet. Not picked. */
+export interface Fixture {
+  id: string;
+  mesh: MeshData;
+  /** The parts it is drawn with. */
+  parts: readonly ('original' | 'relief')[];
+  /** Drawn only while its part is translucent: it is inside. */
+  within?: boolean;
+  /** False: the picture is not made larger for it. */
+  framed?: boolean;
+  /** Throws a shadow on the bench as this plate would. */
+  shadow?: Plate;
+}
+
 export type Projection = 'perspective' | 'orthographic';
 
 /** Where the maker looks from; the same words as the relief's parameters. */
@@ -198,6 +212,10 @@ export interface ViewportOptions {
   dimensions?: boolean;
   /** Refine still pictures with soft shadows and smoother edges; true. */
   refine?: boolean;
+  /** Turning keeps the viewpoint's `up` upright, rather than the picture's. */
+  uprightTurn?: boolean;
+  /** What the two sides of the swipe are called; Original and Relief. */
+  partNames?: readonly [original: string, relief: string];
   /** Spoken name of the viewport. */
   label?: string;
   onPointer?(event: ViewPointerEvent): void;
@@ -240,6 +258,13 @@ export interface ViewportApi {
   /** New values for an attribute without touching the shape. */
   updateAttribute(part: 'original' | 'relief', name: string, values: Float32Array): void;
 
+  /** Takes the place of all fixtures before. */
+  setFixtures(fixtures: readonly Fixture[]): void;
+  /** New positions for the same triangles, moved or grown but not turned. */
+  moveFixture(id: string, positions: Float32Array | Float64Array): void;
+  /** How much of a part's own mesh hides what is behind it: 1 all, 0 nothing. */
+  setOpacity(part: 'original' | 'relief', opacity: number): void;
+
   setMode(mode: ViewMode): void;
   /** Where the divider stands, 0..1 across the viewport's free rectangle. */
   setSwipe(position: number): void;
@@ -273,6 +298,9 @@ export interface ViewportApi {
   pick(xPx: number, yPx: number): Hit | null;
   /** Where a point of the scene appears, CSS pixels; null behind the eye. */
   project(positionMm: Vec3): { xPx: number; yPx: number } | null;
+
+  /** The ray of sight through a point of the viewport. */
+  rayThrough(xPx: number, yPx: number): { originMm: Vec3; direction: Vec3 };
 
   /** A small finished picture of one part seen from `look`, PNG; null while there is none to draw. */
   pictureOf(

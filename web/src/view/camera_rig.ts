@@ -19,12 +19,15 @@ import {
 } from './camera';
 import type { Extent } from './swipe_divider';
 import { prefersReducedMotion } from './theme';
+import { normalise } from './vector';
 
 /** What is framed. */
 export interface Framed {
   bounds(camera: CameraState): Bounds2 | null;
   centre(): Vec3;
   radius(): number;
+  /** What turning keeps upright: the viewpoint's own up, or up in its picture. */
+  upright: boolean;
   /** Room that dimension lines need below and to the right, px. */
   extraPx(): number;
 }
@@ -108,7 +111,7 @@ export class CameraRig {
 
   lookFromViewpoint(animated: boolean): void {
     const camera = this.viewpointCamera();
-    this.turntable = camera.up;
+    this.turntable = this.framed.upright ? normalise(this.viewpoint.up) : camera.up;
     this.fitted = true;
     this.goTo(this.fitCamera(camera), animated);
   }

@@ -81,17 +81,16 @@ export function mapTexels(stops: readonly Rgb[], size: number): Uint8Array {
 /** A thin space before units, none before degrees; a true minus; two or three digits. */
 export function formatValue(value: number, unit: string, step?: number): string {
   const size = Math.abs(value);
-  const digits =
-    step !== undefined
-      ? Math.max(0, -Math.floor(Math.log10(step) + 1e-9))
-      : size >= 100 || size === 0
-        ? 0
-        : size >= 10
-          ? 1
-          : 2;
+  const digits = step !== undefined ? decimalsOf(step) : size >= 100 || size === 0 ? 0 : size >= 10 ? 1 : 2;
   const text = size.toFixed(Math.min(digits, 6));
   const sign = value < 0 && Number(text) !== 0 ? '\u2212' : '';
   return sign + text + (unit === '' ? '' : /^[°%′″]/.test(unit) && unit !== '%' ? unit : `\u2009${unit}`);
+}
+
+/** As few as tell the steps apart: two for 0.25. */
+function decimalsOf(step: number): number {
+  const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  return Math.abs(step * 10 ** digits - Math.round(step * 10 ** digits)) > 1e-6 ? digits + 1 : digits;
 }
 
 /** Steps of 1, 2, 2.5 or 5 times a power of ten, about `wanted` of them. */
@@ -131,11 +130,11 @@ export function statisticsOf(values: Float32Array, weights?: ArrayLike<number>):
 }
 
 /** What a legend says: bar, ticks, the marked value (mean; thinnest for thickness) and one spoken sentence.
- *  A mean known better (weighted by visible area, say) goes into `known`. */
+ *  What is known better (a mean weighted by visible area, the least of a finer measure) goes into `known`. */
 export function legendFor(
   mapping: ColourMapping,
   values: Float32Array | null,
-  known?: { mean?: number },
+  known?: { mean?: number; least?: number },
 ): LegendData {
   const { minimum, maximum, unit, label, map } = mapping;
   const span = maximum - minimum;
@@ -153,11 +152,8 @@ export function legendFor(
   const statistics = values ? statisticsOf(values) : null;
   let mark: LegendData['mark'] = null;
   if (map === 'thickness' && statistics) {
-    mark = {
-      value: statistics.minimum,
-      fraction: fraction(statistics.minimum),
-      text: `thinnest ${formatValue(statistics.minimum, unit)}`,
-    };
+    const least = known?.least ?? statistics.minimum;
+    mark = { value: least, fraction: fraction(least), text: `thinnest ${formatValue(least, unit)}` };
   } else {
     const mean = known?.mean ?? statistics?.mean;
     if (mean !== undefined)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a viewport shows: meshes, plate, mode, colours, section, curves; kept here and put on the stage.
-import type { ColourMapping, Curve, MeshData, Plate, Section, Vec3, ViewMode } from './api';
+import type { ColourMapping, Curve, Fixture, MeshData, Plate, Section, Vec3, ViewMode } from './api';
 import { type Bounds2, type CameraState, projectedBounds, uniteBounds } from './camera';
 import type { CameraRig } from './camera_rig';
 import type { Picker } from './picker';
@@ -76,6 +76,13 @@ export class Content {
     if (plate) this.plate = plate;
     this.meshes[part] = { ...mesh, positions };
     this.stage.updatePositions(part, positions, similar);
+    this.refresh();
+  }
+
+  setFixtures(fixtures: readonly Fixture[]): void {
+    this.stage.setFixtures(fixtures);
+    this.upload('original');
+    this.upload('relief');
     this.refresh();
   }
 
@@ -184,7 +191,7 @@ export class Content {
     let bounds: Bounds2 | null = null;
     for (const name of names) {
       if (!this.meshes[name]) continue;
-      const { points } = this.stage.subjectOf(name).support;
+      const { points } = this.stage.subjectOf(name).framing;
       bounds = uniteBounds(bounds, projectedBounds(camera, points, this.stage.origin));
     }
     return bounds;

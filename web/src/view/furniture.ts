@@ -27,22 +27,23 @@ export class Furniture {
   dividerX = 0;
   private readonly divider: SwipeDivider;
   private readonly dimensions = new Dimensions();
-  private readonly tags = ['Original', 'Relief'].map((name) => {
-    const tag = document.createElement('span');
-    tag.className = 'fw-tag';
-    tag.textContent = name;
-    tag.setAttribute('aria-hidden', 'true');
-    tag.hidden = true;
-    return tag;
-  });
+  private readonly tags: readonly HTMLElement[];
   private readonly markers = new Map<string, { marker: Marker; element: HTMLElement }>();
   private readonly value = document.createElement('div');
   private readonly message = document.createElement('div');
   private readonly spoken = document.createElement('div');
   private atViewpoint: boolean | null = null;
 
-  constructor(root: HTMLElement, onSwipe: (position: number) => void) {
+  constructor(root: HTMLElement, partNames: readonly string[], onSwipe: (position: number) => void) {
     this.element.className = 'fw-overlay';
+    this.tags = partNames.map((name) => {
+      const tag = document.createElement('span');
+      tag.className = 'fw-tag';
+      tag.textContent = name;
+      tag.setAttribute('aria-hidden', 'true');
+      tag.hidden = true;
+      return tag;
+    });
     this.divider = new SwipeDivider(root, onSwipe);
     this.value.className = 'fw-value';
     this.value.hidden = true;

@@ -5,7 +5,7 @@ export { formatLength } from './dimensions';
 export { DEFAULT_LIGHT, spokenLight } from './light';
 export { LightBall } from './light_ball';
 export { cutOutline, outlineMeasures } from './section';
-export { prepareShading } from './shading';
+export { prepareShading, turnedShading } from './shading';
 export { SideInset } from './side_inset';
 export { renderThumbnail } from './thumbnail';
 export { Viewport } from './viewport';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What belongs to the original or to the relief, and what is put beside the mesh itself.
-import type { MeshData, Plate, Vec3, Viewpoint } from './api';
+import type { Fixture, MeshData, Plate, Vec3, Viewpoint } from './api';
 import { groundSquare, plateBody, plateFrame, plateFront } from './plate';
 import { PlateShadow } from './plate_shadow';
 import { groundFragment } from './screen_shaders';
@@ -18,6 +18,8 @@ export interface Part {
   subject: Subject;
   mesh: Surface | null;
   extra: Surface[];
+  fixtures: { id: string; surface: Surface }[];
+  opacity: number;
   plate: Plate | null;
   plateShadow: PlateShadow | null;
 }
@@ -43,6 +45,23 @@ export function addPlate(
     if (body) part.extra.push(surface(body, { albedo: PLATE }));
   }
   part.plateShadow = new PlateShadow(frame, origin);
+}
+
+/** What stands beside the mesh; nothing without one. */
+export function addFixtures(
+  part: Part,
+  fixtures: readonly Fixture[],
+  viewpoint: Pick<Viewpoint, 'direction' | 'up'>,
+  origin: Vec3,
+  surface: MakeSurface,
+): void {
+  part.fixtures = fixtures.map(({ id, mesh, within, framed, shadow }) => {
+    const made = surface(mesh, { albedo: PLASTER });
+    made.within = within ?? false;
+    made.framed = framed ?? true;
+    if (shadow) part.plateShadow ??= new PlateShadow(plateFrame(shadow, viewpoint), origin);
+    return { id, surface: made };
+  });
 }
 
 /** A square below the object that receives its shadow. */

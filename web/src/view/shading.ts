@@ -63,3 +63,15 @@ export async function prepareShading(
   if (mesh.indices.length < 3 * AT_ONCE) return undefined;
   return (await ask(mesh)) ?? undefined;
 }
+
+/** The shading of a mesh that was turned by `rotation` (3 x 3, row by row), and moved or scaled. */
+export function turnedShading(shading: MeshShading, rotation: readonly number[]): MeshShading {
+  const normals = new Float32Array(shading.normals.length);
+  for (let i = 0; i < normals.length; i += 3)
+    for (let k = 0; k < 3; ++k) {
+      let sum = 0;
+      for (let j = 0; j < 3; ++j) sum += (rotation[3 * k + j] ?? 0) * (shading.normals[i + j] ?? 0);
+      normals[i + k] = sum;
+    }
+  return { ...shading, normals };
+}

@@ -2,14 +2,22 @@
 // Everything on the graphics card: the subjects, their light, and how a picture of them is drawn, refined and
 // read back. Knows no DOM beyond its canvas.
 import * as THREE from 'three';
-import type { MeshData, Plate, Vec3, Viewpoint } from './api';
+import type { Fixture, MeshData, Plate, Vec3, Viewpoint } from './api';
 import { type CameraState, type Screen, clipMatrix, viewCoordinates } from './camera';
 import { SectionCaps } from './caps';
 import { Colouring } from './colouring';
 import { GpuPace } from './gpu_pace';
 import { jitter } from './jitter';
 import { LineSet, type LineStyle } from './lines';
-import { type MakeSurface, type Part, type PartName, PLASTER, addGround, addPlate } from './part';
+import {
+  type MakeSurface,
+  type Part,
+  type PartName,
+  PLASTER,
+  addFixtures,
+  addGround,
+  addPlate,
+} from './part';
 import { Accumulation, ScreenPass } from './passes';
 import type { Quality } from './quality';
 import { backdropFragment } from './screen_shaders';
@@ -76,6 +84,7 @@ export class Stage {
     uRim: { value: new THREE.Vector3() },
     uAspect: { value: new THREE.Vector2(1, 1) },
   });
+  private fixtures: readonly Fixture[] = [];
   private lines: { set: LineSet; part: PartName | null }[] = [];
   private readonly caps: SectionCaps;
   readonly colouring: Colouring;
@@ -115,6 +124,8 @@ export class Stage {
       subject: new Subject(this.bakeUniforms, quality),
       mesh: null,
       extra: [],
+      fixtures: [],
+      opacity: 1,
       plate: null,
       plateShadow: null,
     });
@@ -170,9 +181,14 @@ export class Stage {
     part.mesh = mesh ? this.surface(part, mesh, { albedo: PLASTER }) : null;
     const surface: MakeSurface = (extra, options) => this.surface(part, extra, options);
     if (plate) addPlate(part, plate, viewpoint, this.origin, surface);
+    part.fixtures = [];
+    const beside = this.fixtures.filter(({ parts }) => parts.includes(name));
+    if (mesh) addFixtures(part, beside, viewpoint, this.origin, surface);
+    if (part.mesh) part.mesh.setOpacity(part.opacity);
     if (ground && part.mesh) addGround(part, part.mesh, ground, this.origin, surface);
     part.subject.groundUp = ground;
-    part.subject.surfaces = [...(part.mesh ? [part.mesh] : []), ...part.extra];
+    const standing = part.fixtures.map((fixture) => fixture.surface);
+    part.subject.surfaces = [...(part.mesh ? [part.mesh] : []), ...part.extra, ...standing];
     part.subject.changed();
     this.colouring.apply();
     this.sectionKey += '!';
@@ -191,6 +207,32 @@ export class Stage {
     part.mesh?.updatePositions(positions, similar);
     part.subject.changed();
     this.sectionKey += '!';
+  }
+
+  /** For the parts set from now on. */
+  setFixtures(fixtures: readonly Fixture[]): void {
+    this.fixtures = fixtures;
+  }
+
+  moveFixture(id: string, positions: Float32Array | Float64Array): void {
+    this.fixtures = this.fixtures.map((old) =>
+      old.id === id ? { ...old, mesh: { ...old.mesh, positions } } : old,
+    );
+    for (const part of Object.values(this.parts)) {
+      const found = part.fixtures.find((fixture) => fixture.id === id);
+      if (!found) continue;
+      found.surface.updatePositions(positions, true);
+      part.subject.changed();
+    }
+    this.sectionKey += '!';
+  }
+
+  setOpacity(name: PartName, opacity: number): void {
+    const part = this.parts[name];
+    const turned = part.opacity < 1 !== opacity < 1;
+    part.opacity = opacity;
+    part.mesh?.setOpacity(opacity);
+    if (turned) part.subject.changed();
   }
 
   meshOf(name: PartName): Surface | null {
@@ -328,7 +370,8 @@ export class Stage {
     for (const surface of part.subject.surfaces) {
       surface.setCut(cut);
       if (surface.main.material.transparent && !picture.ground) continue;
-      objects.push(surface.main);
+      if (surface.within && part.opacity === 1) continue;
+      if (surface.opacity === 1) objects.push(surface.main);
     }
     if (
       part.plateShadow &&
@@ -339,6 +382,8 @@ export class Stage {
       part.plateShadow.aim(picture.towardsLight, this.palette?.dark ?? false);
       objects.push(part.plateShadow.mesh);
     }
+    // What is seen through comes after what is behind it.
+    for (const surface of part.subject.surfaces) if (surface.opacity < 1) objects.push(surface.main);
     this.drawScene(objects);
     const section = this.picture['uSection']?.value as THREE.Vector4;
     if (section.x !== 0 || section.y !== 0 || section.z !== 0) {

@@ -46,6 +46,17 @@ export class DepthView {
   }
 }
 
+function jointSupport(surfaces: readonly Surface[]): Support {
+  const all = surfaces.map((s) => s.support.points);
+  const joined = new Float32Array(all.reduce((n, p) => n + p.length, 0));
+  let at = 0;
+  for (const p of all) {
+    joined.set(p, at);
+    at += p.length;
+  }
+  return supportOf(joined);
+}
+
 export class Subject {
   readonly uniforms: Uniforms = {
     uShadow: { value: null },
@@ -59,6 +70,8 @@ export class Subject {
   /** Everything drawn, in order. */
   surfaces: Surface[] = [];
   support: Support = supportOf(new Float32Array(0));
+  /** Of what the picture is framed for. */
+  framing: Support = this.support;
   private shadow: THREE.WebGLRenderTarget | null = null;
   private shadowKey = '';
   private texelMm = 0;
@@ -76,21 +89,20 @@ export class Subject {
 
   /** Shape or parts changed: bounds anew; shadow and sky follow when next drawn or at rest. */
   changed(): void {
-    const all = this.casters().map((s) => s.support.points);
-    const joined = new Float32Array(all.reduce((n, p) => n + p.length, 0));
-    let at = 0;
-    for (const p of all) {
-      joined.set(p, at);
-      at += p.length;
-    }
-    this.support = supportOf(joined);
+    const solid = this.surfaces.filter((s) => !s.main.material.transparent);
+    this.support = jointSupport(solid);
+    this.framing = solid.every((s) => s.framed) ? this.support : jointSupport(solid.filter((s) => s.framed));
     this.shadowKey = '';
     this.skyNext = 0;
     this.skyDone = false;
   }
 
+  /** What is inside an opaque mesh lies in its shadow anyway; what is seen through throws none. */
   private casters(): Surface[] {
-    return this.surfaces.filter((s) => !s.main.material.transparent);
+    const open = this.surfaces.some((s) => s.opacity < 1);
+    return this.surfaces.filter(
+      (s) => !s.main.material.transparent && s.opacity === 1 && (open || !s.within),
+    );
   }
 
   get triangleCount(): number {

@@ -14,6 +14,9 @@ export type Uniforms = Record<string, THREE.IUniform>;
 /** Texels per row of a baked light map: one texel per drawn vertex. */
 const OCCLUSION_WIDTH = 1024;
 
+/** Of the depth buffer; a millimetre or two of a scene of half a metre. */
+const WITHIN_UNITS = 60_000;
+
 export interface SurfaceUniforms {
   /** Section, eye, light frame: the whole picture's. */
   picture: Uniforms;
@@ -81,6 +84,22 @@ export class Surface {
   private scalar: THREE.BufferAttribute | null = null;
   private scalarMap: THREE.Texture | null = null;
   scalarValues: Float32Array | null = null;
+  opacity = 1;
+
+  #within = false;
+  /** Of a fixture: drawn only while its part's mesh is translucent, and then always behind it. */
+  get within(): boolean {
+    return this.#within;
+  }
+  set within(within: boolean) {
+    this.#within = within;
+    const { material } = this.main;
+    material.polygonOffset = within;
+    material.polygonOffsetFactor = within ? 2 : 0;
+    material.polygonOffsetUnits = within ? WITHIN_UNITS : 0;
+  }
+  /** Counts when a picture is framed. */
+  framed = true;
   /** Counts changes of shape, so that pickers know when they are stale. */
   version = 0;
 
@@ -142,6 +161,7 @@ export class Surface {
       uOcclusionHeight: { value: this.sizeOfSums.height },
       uOcclusionStrength: { value: 0 },
       uHighlight: { value: 0 },
+      uOpacity: { value: 1 },
       uMap: { value: null },
       uMapRange: { value: new THREE.Vector2(0, 1) },
       uTexture: { value: texture },
@@ -273,6 +293,12 @@ export class Surface {
   /** A cut shows the inside. */
   setCut(cut: boolean): void {
     this.main.material.side = this.solid && !cut ? THREE.FrontSide : THREE.DoubleSide;
+  }
+
+  setOpacity(opacity: number): void {
+    this.opacity = opacity;
+    this.uniforms['uOpacity']!.value = opacity;
+    this.main.material.blending = opacity < 1 ? THREE.CustomBlending : THREE.NoBlending;
   }
 
   setOcclusionStrength(strength: number): void {

@@ -76,6 +76,7 @@ uniform mat4 uShadowMatrix;
 uniform float uShadowOffset;    // mm along the normal
 uniform vec2 uShadowRadius;     // PCF radius, texture units
 uniform float uShadowOn;
+uniform float uOpacity;
 uniform float uNoise;
 #ifdef SCALAR
 uniform sampler2D uMap;
@@ -168,7 +169,7 @@ void main() {
   light = mix(light, 0.36 + 0.62 * light, mapped);
   vec3 c = shoulder(albedo * light + sheen * (1.0 - mapped));
   c = mix(c, vec3(0.69, 0.36, 0.0), uHighlight);
-  outColour = vec4(toSrgb(c), 1.0);
+  outColour = vec4(toSrgb(c) * uOpacity, uOpacity);
 }
 `;
 

@@ -5,6 +5,7 @@ import './view.css';
 import type {
   ColourMapping,
   Curve,
+  Fixture,
   Hit,
   Insets,
   LightDirection,
@@ -21,7 +22,13 @@ import type {
   ViewportOptions,
   ViewStatus,
 } from './api';
-import { type CameraState, cameraFromViewpoint, makeScreen, projectToPixels } from './camera';
+import {
+  type CameraState,
+  cameraFromViewpoint,
+  makeScreen,
+  projectToPixels,
+  rayThroughPixel,
+} from './camera';
 import { CameraRig } from './camera_rig';
 import { Content } from './content';
 import { Controls } from './controls';
@@ -81,7 +88,7 @@ export class Viewport implements ViewportApi {
     this.theme = options.theme ?? 'auto';
     this.insets = options.freeRectangle ?? NO_INSETS;
     this.showDimensions = options.dimensions ?? true;
-    this.furniture = new Furniture(this.root, (position) => {
+    this.furniture = new Furniture(this.root, options.partNames ?? ['Original', 'Relief'], (position) => {
       this.setSwipe(position);
       options.onSwipe?.(position);
     });
@@ -93,6 +100,7 @@ export class Viewport implements ViewportApi {
         bounds: (camera) => this.content?.bounds(camera, 'all') ?? null,
         centre: () => this.content?.centre() ?? this.rig.viewpoint.targetMm,
         radius: () => this.content?.radius() ?? 60,
+        upright: options.uprightTurn ?? false,
         extraPx: () => (this.hasDimensions() ? DIMENSION_PX : 0),
       },
       () => this.cameraChanged(),
@@ -220,6 +228,21 @@ export class Viewport implements ViewportApi {
 
   updateAttribute(part: PartName, name: string, values: Float32Array): void {
     this.stage?.colouring.setAttribute(part, name, values);
+    this.invalidate();
+  }
+
+  setFixtures(fixtures: readonly Fixture[]): void {
+    this.content?.setFixtures(fixtures);
+    this.shapeChanged(false);
+  }
+
+  moveFixture(id: string, positions: Float32Array | Float64Array): void {
+    this.stage?.moveFixture(id, positions);
+    this.shapeChanged(false);
+  }
+
+  setOpacity(part: PartName, opacity: number): void {
+    this.stage?.setOpacity(part, opacity);
     this.invalidate();
   }
 
@@ -358,6 +381,13 @@ export class Viewport implements ViewportApi {
   pick(xPx: number, yPx: number): Hit | null {
     const { camera, screen } = this.rig;
     return this.stage ? pickAt(this.stage, this.picker, camera, screen, this.pictureParts(), xPx, yPx) : null;
+  }
+
+  rayThrough(xPx: number, yPx: number): { originMm: Vec3; direction: Vec3 } {
+    const { camera, screen } = this.rig;
+    const reach = 10 * (this.content?.radius() ?? 60);
+    const { origin, direction } = rayThroughPixel(camera, screen, xPx, yPx, reach);
+    return { originMm: origin, direction };
   }
 
   project(positionMm: Vec3): { xPx: number; yPx: number } | null {

@@ -16,6 +16,10 @@ export interface ParameterPanelProps {
   readonly onCommit: () => void;
   /** Put in front of a group's parameters. */
   readonly groupHead?: Readonly<Record<string, ComponentChildren>>;
+  /** What automatic values came to. */
+  readonly automatic?: Readonly<Record<string, number>>;
+  /** Groups that stand open; left out: all. The others are folded, as the advanced parameters are. */
+  readonly openGroups?: readonly string[];
 }
 
 type Entry = readonly [name: string, schema: ParameterSchema];
@@ -29,10 +33,14 @@ export function ParameterPanel(props: ParameterPanelProps) {
     const title = entry[1]['x-group'] ?? '';
     groups.set(title, [...(groups.get(title) ?? []), entry]);
   }
-  const concerned = advanced.some(([name]) => props.errors[name] !== undefined);
+  const isOpen = ([title]: readonly [string, unknown]) => props.openGroups?.includes(title) ?? true;
+  const folded: [string, Entry[]][] = [
+    ...[...groups].filter((group) => !isOpen(group)),
+    ['Advanced', advanced],
+  ];
   return (
     <>
-      {[...groups].map(([title, members]) => (
+      {[...groups].filter(isOpen).map(([title, members]) => (
         <section key={title} class="section" aria-label={title || 'Parameters'}>
           {title ? <h3>{title}</h3> : null}
           {props.groupHead?.[title]}
@@ -41,21 +49,24 @@ export function ParameterPanel(props: ParameterPanelProps) {
           ))}
         </section>
       ))}
-      {advanced.length > 0 ? (
-        <Advanced count={advanced.length} forced={concerned}>
-          {advanced.map((entry) => (
-            <Control key={entry[0]} entry={entry} {...props} />
-          ))}
-        </Advanced>
-      ) : null}
+      {folded.map(([title, members]) =>
+        members.length > 0 ? <Folded key={title} title={title} members={members} panel={props} /> : null,
+      )}
     </>
   );
 }
 
-function Advanced(props: { count: number; forced: boolean; children: ComponentChildren }) {
+interface FoldedProps {
+  readonly title: string;
+  readonly members: readonly Entry[];
+  readonly panel: ParameterPanelProps;
+}
+
+/** Opens by itself where one of its values is wrong. */
+function Folded({ title, members, panel }: FoldedProps) {
   const [chosen, setOpen] = useState(false);
   const id = useId();
-  const open = chosen || props.forced;
+  const open = chosen || members.some(([name]) => panel.errors[name] !== undefined);
   return (
     <>
       <button
@@ -66,11 +77,11 @@ function Advanced(props: { count: number; forced: boolean; children: ComponentCh
         onClick={() => setOpen(!open)}
       >
         <Icon name={open ? 'chevronDown' : 'chevronRight'} small />
-        Advanced
-        <span>{props.count}</span>
+        {title}
+        <span>{members.length}</span>
       </button>
-      <section id={id} class="section" hidden={!open} aria-label="Advanced">
-        {open ? props.children : null}
+      <section id={id} class="section" hidden={!open} aria-label={title}>
+        {open ? members.map((entry) => <Control key={entry[0]} entry={entry} {...panel} />) : null}
       </section>
     </>
   );
@@ -97,13 +108,15 @@ function Control({ entry: [name, schema], ...props }: ParameterPanelProps & { en
     return <Switch {...{ label, help }} value={value === true} onChange={setAtOnce} />;
   if (types.includes('number') || types.includes('integer')) {
     const optional = types.includes('null');
+    const automatic = props.automatic?.[name];
     return (
       <Parameter
         {...{ label, help, error, optional }}
         unit={schema['x-unit'] ?? ''}
         minimum={schema.minimum ?? -Infinity}
         maximum={schema.maximum ?? Infinity}
-        slider={optional ? null : (schema['x-slider'] ?? null)}
+        automatic={automatic}
+        slider={optional && automatic === undefined ? null : (schema['x-slider'] ?? null)}
         integer={types.includes('integer')}
         defaultValue={fallback as number | null}
         value={value as number | null}

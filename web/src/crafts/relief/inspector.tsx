@@ -16,14 +16,14 @@ import {
 import type { Viewport } from '../../view';
 import { ParameterPanel } from '../common/parameter_panel';
 import { readyWorker } from '../common/services';
-import { download, safeFileName } from './download';
-import { browserMemory_mb } from './estimate';
-import { outputOf } from './full_solve';
+import type { CraftResult } from '../common/craft_document';
+import { download, safeFileName } from '../common/download';
+import { browserMemory_mb } from '../common/estimate';
+import { ModelRow } from '../common/model_row';
+import { outputOf } from '../common/full_solve';
 import { parametersOf } from './meshes';
-import type { ReliefResult } from './relief_document';
-import { titleOf } from './relief_document';
 import type { ReliefSession } from './relief_session';
-import { modelLine, sentences, solidLine } from './report';
+import { solidLine } from './report';
 import { atViewpoint, followCamera } from './viewport_panel';
 
 export interface InspectorProps {
@@ -38,28 +38,11 @@ export function Inspector({ session, viewport, picture, onReplace, onSolve }: In
   const { model, parameters } = session.document.value;
   const operation = session.operation.value;
   if (model === null || operation === null) return null;
-  const repairs = sentences(model.report, 'repairs').length;
   const head = { Viewpoint: <ViewpointTools session={session} viewport={viewport} /> };
   return (
     <>
       <div class="inspector-scroll" tabIndex={-1}>
-        <div class="model-row">
-          <span
-            class="model-picture"
-            style={picture ? { backgroundImage: `url(${picture})` } : {}}
-            aria-hidden="true"
-          />
-          <div class="grow">
-            <strong class="clip">{titleOf(model.source)}</strong>
-            <span class="model-line">{modelLine(model.report)}</span>
-            {repairs > 0 ? (
-              <button type="button" class="text-button" onClick={() => (session.repairsOpen.value = true)}>
-                {repairs === 1 ? '1 repair' : `${repairs} repairs`}
-              </button>
-            ) : null}
-          </div>
-          <Button onClick={onReplace}>Replace</Button>
-        </div>
+        <ModelRow session={session} picture={picture} onReplace={onReplace} />
         <ParameterPanel
           operation={operation}
           parameters={parameters}
@@ -188,7 +171,7 @@ function timeLine(
   return [here ?? 'In the browser', there].filter(Boolean).join(', ');
 }
 
-function ExportButton({ session, result }: { session: ReliefSession; result: ReliefResult }) {
+function ExportButton({ session, result }: { session: ReliefSession; result: CraftResult }) {
   const all = session.operation.value?.outputs ?? [];
   const files = all.filter((output) => output.name !== 'relief.ply');
   const main = files.find((output) => output.name === 'relief.stl') ?? files[0];

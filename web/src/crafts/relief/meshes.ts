@@ -2,8 +2,10 @@
 // From PLY files and reports to what the view draws.
 import type { PlyMesh } from '../../jobs/ply';
 import type { Report } from '../../jobs/contract';
-import type { ColourMapping, MeshData, MeshShading, Plate, Vec3, Viewpoint } from '../../view';
-import { figure, vectorOf } from './report';
+import type { ColourMapping, MeshData, Plate, Vec3, Viewpoint } from '../../view';
+import { figure, vectorOf } from '../common/report';
+import type { ShadedMesh } from '../common/shaded_mesh';
+import { shadingOf } from '../common/shaded_mesh';
 
 export const errorMapping: ColourMapping = {
   attribute: 'normal_error_deg',
@@ -13,26 +15,6 @@ export const errorMapping: ColourMapping = {
   unit: '°',
   label: 'Normal error',
 };
-
-/** A mesh, with what the view wants to know of it if that was found beforehand. */
-export interface ShadedMesh extends PlyMesh {
-  readonly shading?: MeshShading | undefined;
-}
-
-const shadingOf = ({ shading }: ShadedMesh) => (shading ? { shading } : {});
-
-export function scaled(positions: Float32Array, factor: number): Float32Array {
-  const result = new Float32Array(positions.length);
-  for (let i = 0; i < positions.length; ++i) result[i] = (positions[i] ?? 0) * factor;
-  return result;
-}
-
-export const originalData = (mesh: ShadedMesh, scale: number): MeshData => ({
-  positions: scaled(mesh.positions, scale),
-  indices: mesh.indices,
-  ...shadingOf(mesh),
-  ...(mesh.colours ? { colours: mesh.colours } : {}),
-});
 
 /** The error is known where the viewer sees the surface. */
 export function errorOf(mesh: PlyMesh): Float32Array {

@@ -2,11 +2,11 @@
 // Notes at the foot of the viewport: one at a time, the most urgent first.
 import { useSignal } from '@preact/signals';
 import { Button, formatDuration, Icon, Note, useLasting } from '../../ui';
+import { narrow } from '../common/narrow';
 import { readyWorker } from '../common/services';
-import { solveInFull } from './full_solve';
+import { solveInFull } from '../common/full_solve';
 import type { ReliefSession } from './relief_session';
-import { sentences } from './report';
-import { narrow } from './viewport_panel';
+import { sentences } from '../common/report';
 
 const dismissedKey = 'formwright.relief.no-worker-note';
 /** Below this a solve in the browser needs no words. */

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-import type { Signal } from '@preact/signals';
-import { effect, useSignal } from '@preact/signals';
+import { useSignal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
 import { Button, Sheet } from '../../ui';
-import type { Viewpoint, Viewport } from '../../view';
+import type { Viewport } from '../../view';
 import { exportMain, Inspector } from './inspector';
 import { viewpointOf } from './meshes';
 import { Notes } from './notes';
-import { solveInFull } from './full_solve';
-import './relief.css';
+import { solveInFull } from '../common/full_solve';
+import '../common/room.css';
 import type { ReliefSession } from './relief_session';
+import type { Look } from '../common/pictures';
+import { useModelPicture, useResultPictures } from '../common/pictures';
 import { ResultsStrip } from './results_strip';
 import { mode, ViewportPanel } from './viewport_panel';
 
@@ -20,14 +21,18 @@ export interface ReliefPageProps {
   readonly onStart: () => void;
 }
 
-const pictureSize = { width: 144, height: 112 };
-type Look = Pick<Viewpoint, 'direction' | 'up'>;
 const threeQuarters: Look = { direction: [-0.5, -0.34, -1], up: [0, 1, 0] };
 
 export function ReliefPage({ session, onChooseFile, onWorkerHelp, onStart }: ReliefPageProps) {
   const viewport = useSignal<Viewport | null>(null);
-  const picture = useModelPicture(session, viewport);
-  useResultPictures(session, viewport);
+  const picture = useModelPicture(session, viewport, threeQuarters);
+  const { shown } = session;
+  useResultPictures(
+    session,
+    viewport,
+    shown,
+    ({ report }, view) => viewpointOf(report, 20) ?? view.getViewpoint(),
+  );
   useKeys(session, () => viewport.value);
   const { model } = session.document.value;
   return (
@@ -94,57 +99,5 @@ function useKeys(session: ReliefSession, viewport: () => Viewport | null): void 
     };
     document.addEventListener('keydown', onKey);
     return () => document.removeEventListener('keydown', onKey);
-  }, [session]);
-}
-
-/** Once the viewport has been given what the session shows: that is another effect of the same change. */
-async function pictureOf(view: Viewport, part: 'original' | 'relief', look: Look): Promise<Blob | null> {
-  await Promise.resolve();
-  return await view.pictureOf(part, look, pictureSize.width, pictureSize.height);
-}
-
-/** Pictures are drawn by the viewport, with what it has on the graphics card already. */
-function useModelPicture(session: ReliefSession, viewport: Signal<Viewport | null>) {
-  const url = useSignal<string | null>(null);
-  useEffect(() => {
-    let drawn: string | null = null;
-    const show = (next: string) => {
-      if (url.value?.startsWith('blob:')) URL.revokeObjectURL(url.value);
-      url.value = next;
-    };
-    return effect(() => {
-      const from = session.original.value?.from;
-      const source = session.document.value.model?.source;
-      const view = viewport.value;
-      if (from === undefined || source === undefined || view === null || drawn === from) return;
-      drawn = from;
-      if (source.kind === 'sample') show(`pictures/${source.sample}.webp`);
-      else
-        void pictureOf(view, 'original', threeQuarters).then(
-          (blob) => void (blob && drawn === from && show(URL.createObjectURL(blob))),
-          () => undefined,
-        );
-    });
-  }, [session]);
-  return url;
-}
-
-/** A new result gets its picture as soon as it is shown. */
-function useResultPictures(session: ReliefSession, viewport: Signal<Viewport | null>): void {
-  useEffect(() => {
-    const done = new Set<string>();
-    return effect(() => {
-      const result = session.result.value;
-      const shown = session.shown.value;
-      const view = viewport.value;
-      if (!result || result.picture || view === null || shown?.kind !== 'full' || done.has(result.id)) return;
-      if (shown.report !== result.report) return;
-      done.add(result.id);
-      const look = viewpointOf(result.report, 20) ?? view.getViewpoint();
-      void pictureOf(view, 'relief', look).then(
-        (blob) => blob && session.keepPicture(result.id, blob),
-        () => undefined,
-      );
-    });
   }, [session]);
 }

@@ -6,19 +6,12 @@ import { useEffect, useRef } from 'preact/hooks';
 import { Icon, Segmented } from '../../ui';
 import type { Insets, LightDirection, Plate, ViewMode } from '../../view';
 import { LightBall, SideInset, Viewport } from '../../view';
-import { Legend } from './legend';
-import {
-  errorMapping,
-  errorOf,
-  originalData,
-  parametersOf,
-  plateOf,
-  reliefData,
-  scaled,
-  viewpointOf,
-} from './meshes';
+import { Legend } from '../common/legend';
+import { narrow } from '../common/narrow';
+import { figure } from '../common/report';
+import { originalData, scaled } from '../common/shaded_mesh';
+import { errorMapping, errorOf, parametersOf, plateOf, reliefData, viewpointOf } from './meshes';
 import type { ReliefSession, Shown } from './relief_session';
-import { figure } from './report';
 
 /** The viewport's own state outlives a visit to another page. */
 export const mode = signal<ViewMode>('swipe');
@@ -41,8 +34,6 @@ export interface ViewportPanelProps {
   readonly notes: ComponentChildren;
   readonly children?: ComponentChildren;
 }
-
-export const narrow = () => window.innerWidth <= 720;
 
 export function ViewportPanel({ session, onViewport, notes, children }: ViewportPanelProps) {
   const container = useRef<HTMLDivElement>(null);
@@ -116,6 +107,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
       <div ref={foot} class="float bottom-left foot">
         {mode.value === 'error' && shown ? (
           <Legend
+            mapping={errorMapping}
             values={errorOf(shown.mesh)}
             mean={figure(shown.report, 'normal_error_mean_deg') ?? undefined}
           />

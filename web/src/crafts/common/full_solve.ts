@@ -2,53 +2,56 @@
 // Full solves: in the native worker while it answers, else in the browser; found again after a reload.
 import { untracked } from '@preact/signals';
 import type { Backend, Result, RunOptions } from '../../jobs/backend';
-import type { JsonObject } from '../../jobs/contract';
-import { JobError } from '../../jobs/contract';
+import type { Job, JsonObject } from '../../jobs/contract';
+import { findOperation, JobError } from '../../jobs/contract';
 import type { BlobReference } from '../../project/document';
-import { readyWorker } from '../common/services';
+import type { CraftDocument } from './craft_document';
+import { meshInput, requestKey } from './craft_document';
+import type { CraftSession } from './craft_session';
 import { remember } from './estimate';
 import { bytesOf } from './import_model';
-import { addResult, amendResult, meshInput, requestKey, setPending } from './relief_document';
-import type { ReliefSession } from './relief_session';
-import { figure, solverSeconds } from './report';
+import { readyWorker } from './services';
 
-/** Fetched at once; the worker keeps the others until they are asked for. */
-const wantedOutputs = ['relief.ply', 'relief.stl'];
-
-function jobOf(
-  session: ReliefSession,
+function jobOf<D extends CraftDocument>(
+  session: CraftSession<D>,
   mesh: BlobReference,
-  parameters: JsonObject,
   outputs: readonly string[],
-) {
-  const declared = session.operation.value?.outputs.map(({ name }) => name) ?? [];
+): Job {
+  const { operationName } = session;
+  const declared = declaredOutputs(session);
   return {
-    operation: 'relief',
-    parameters,
-    inputs: { mesh: meshInput(mesh, 'model.ply') },
+    operation: operationName,
+    parameters: session.asked.value,
+    inputs: { [session.meshInputName]: meshInput(mesh, 'model.ply') },
     outputs: outputs.filter((name) => declared.includes(name)),
   };
 }
 
-export async function solveInFull(session: ReliefSession): Promise<void> {
-  const { model, parameters } = session.document.value;
+function declaredOutputs<D extends CraftDocument>({ services, operationName }: CraftSession<D>): string[] {
+  const catalog = services.catalog.value;
+  const operation = catalog && findOperation(catalog, operationName);
+  return operation?.outputs.map(({ name }) => name) ?? [];
+}
+
+export async function solveInFull<D extends CraftDocument>(session: CraftSession<D>): Promise<void> {
+  const { model } = session.document.value;
   if (model === null || session.result.value !== null) return;
   const { services } = session;
+  const parameters = session.asked.value;
   const worker = readyWorker(services);
   const backend = worker ?? services.browser;
-  const all = session.operation.value?.outputs.map(({ name }) => name) ?? [];
-  const job = jobOf(session, model.mesh, parameters, worker ? all : wantedOutputs);
+  const job = jobOf(session, model.mesh, worker ? declaredOutputs(session) : session.wantedOutputs);
   const mesh = model.mesh.blob;
   await solveWith(session, backend, mesh, parameters, (options) =>
     backend.run(job, {
       ...options,
-      onAccepted: (id) => services.projects.do(setPending({ job: id, mesh, parameters })),
+      onAccepted: (id) => services.projects.do(session.commands.setPending({ job: id, mesh, parameters })),
     }),
   );
 }
 
 /** A solve that was still running in the worker when the page was closed is waited for again. */
-export function resumePending(session: ReliefSession): void {
+export function resumePending<D extends CraftDocument>(session: CraftSession<D>): void {
   const worker = readyWorker(session.services);
   const { pending } = session.document.value;
   if (pending === null || !worker?.resume) return;
@@ -60,13 +63,14 @@ export function resumePending(session: ReliefSession): void {
   });
 }
 
-async function solveWith(
-  session: ReliefSession,
+async function solveWith<D extends CraftDocument>(
+  session: CraftSession<D>,
   backend: Backend,
   mesh: string,
   parameters: JsonObject,
   run: (options: RunOptions) => Promise<Result>,
 ): Promise<void> {
+  const { commands } = session;
   const { projects } = session.services;
   session.cancelPreview();
   const start = performance.now();
@@ -79,9 +83,10 @@ async function solveWith(
       const seconds = (performance.now() - start) / 1000;
       const outputs: Record<string, BlobReference> = {};
       for (const output of done.outputs.values())
-        if (wantedOutputs.includes(output.name))
+        if (session.wantedOutputs.includes(output.name))
           outputs[output.name] = await session.keep(await output.read(), output.mediaType);
-      learn(backend.kind, done);
+      const measured = session.measured(done.report);
+      if (measured) remember(commands.craft, backend.kind, measured);
       const { pending } = session.document.value;
       const made = {
         id: crypto.randomUUID(),
@@ -94,32 +99,26 @@ async function solveWith(
         outputs,
         ...(backend.kind === 'native' && pending ? { job: pending.job } : {}),
       };
-      projects.do(addResult(made));
+      projects.do(commands.addResult(made));
     },
     (error) => {
-      if (error.code !== 'unreachable') projects.do(setPending(null));
-      session.report(error, 'Could not solve the relief');
+      if (error.code !== 'unreachable') projects.do(commands.setPending(null));
+      session.report(error, session.failedTitle);
     },
   );
   session.solvingFor = null;
   if (session.document.value.pending && backend.kind === 'native' && !session.result.value)
-    projects.do(setPending(null)); // cancelled
-}
-
-function learn(backend: string, { report }: Result): void {
-  const vertices = figure(report, 'vertices');
-  const seconds = solverSeconds(report);
-  if (vertices && seconds && report['factor_reused'] !== true) remember(backend, { vertices, seconds });
+    projects.do(commands.setPending(null)); // cancelled
 }
 
 /** The bytes of an output of the current result: kept, still in the worker, or made now. */
-export async function outputOf(
-  session: ReliefSession,
+export async function outputOf<D extends CraftDocument>(
+  session: CraftSession<D>,
   name: string,
   label: string,
 ): Promise<Uint8Array<ArrayBuffer> | null> {
   const result = session.result.value;
-  const { model, parameters } = session.document.value;
+  const { model } = session.document.value;
   if (result === null || model === null) return null;
   const { blobs } = session.services.projects;
   const kept = result.outputs[name];
@@ -134,14 +133,14 @@ export async function outputOf(
         result.job && worker?.resume ? await worker.resume(result.job, options).catch(() => null) : null;
       const done = old?.outputs.has(name)
         ? old
-        : await backend.run(jobOf(session, model.mesh, parameters, [name]), options);
+        : await backend.run(jobOf(session, model.mesh, [name]), options);
       const bytes = await bytesOf(done, name);
       const mediaType = done.outputs.get(name)?.mediaType;
       if (mediaType === undefined)
         throw new JobError({ code: 'internal', where: name, message: 'No output.' });
       const reference = await session.keep(bytes, mediaType);
       session.services.projects.do(
-        amendResult(result.id, (before) => ({
+        session.commands.amendResult(result.id, (before) => ({
           ...before,
           outputs: { ...before.outputs, [name]: reference },
         })),

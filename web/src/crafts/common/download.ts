@@ -11,4 +11,4 @@ export function download(bytes: Uint8Array<ArrayBuffer>, fileName: string, media
 }
 
 export const safeFileName = (name: string): string =>
-  name.replaceAll(/[^\p{L}\p{N} ._-]+/gu, ' ').trim() || 'relief';
+  name.replaceAll(/[^\p{L}\p{N} ._-]+/gu, ' ').trim() || 'formwright';

@@ -1,12 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { useMemo } from 'preact/hooks';
+import type { ColourMapping } from '../../view';
 import { legendFor } from '../../view';
-import { errorMapping } from './meshes';
 
-export function Legend({ values, mean }: { values: Float32Array; mean: number | undefined }) {
+export interface LegendProps {
+  readonly mapping: ColourMapping;
+  readonly values: Float32Array;
+  /** Where it is known better than from the values. */
+  readonly mean?: number | undefined;
+  readonly least?: number | undefined;
+}
+
+export function Legend({ mapping, values, mean, least }: LegendProps) {
   const legend = useMemo(
-    () => legendFor(errorMapping, values, mean === undefined ? undefined : { mean }),
-    [values, mean],
+    () =>
+      legendFor(mapping, values, {
+        ...(mean === undefined ? {} : { mean }),
+        ...(least === undefined ? {} : { least }),
+      }),
+    [mapping, values, mean, least],
   );
   return (
     <figure class="panel legend" role="img" aria-label={legend.summary}>

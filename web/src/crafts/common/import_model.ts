@@ -6,8 +6,8 @@ import type { BlobStore } from '../../project/blob_store';
 import type { BlobReference } from '../../project/document';
 import { storageSentence } from '../../project/storage';
 import { toast } from '../../ui';
-import type { ReliefModel, Source } from './relief_document';
-import { meshInput } from './relief_document';
+import type { CraftModel, Source } from './craft_document';
+import { meshInput } from './craft_document';
 import { figure } from './report';
 
 /** Enough for a faithful picture, few enough to re-solve while a slider moves. */
@@ -20,7 +20,7 @@ export async function importModel(
   blobs: BlobStore,
   source: Source,
   options: RunOptions,
-): Promise<ReliefModel> {
+): Promise<CraftModel> {
   const input =
     source.kind === 'sample'
       ? { sample: source.sample }

@@ -19,21 +19,21 @@ export const estimateSeconds = (measured: Measured, vertices: number): number =>
 export const estimateMemory_mb = (memory_mb: number, measuredVertices: number, vertices: number): number =>
   memory_mb * Math.max(1, vertices / measuredVertices) ** memoryExponent;
 
-const key = (backend: string) => `formwright.relief.measured.${backend}`;
+const key = (craft: string, backend: string) => `formwright.${craft}.measured.${backend}`;
 
-/** The last full solve on a backend. */
-export function recall(backend: string): Measured | null {
+/** The last full solve of a craft on a backend. */
+export function recall(craft: string, backend: string): Measured | null {
   try {
-    const stored = JSON.parse(localStorage.getItem(key(backend)) ?? 'null') as Measured | null;
+    const stored = JSON.parse(localStorage.getItem(key(craft, backend)) ?? 'null') as Measured | null;
     return stored && stored.vertices > 0 && stored.seconds > 0 ? stored : null;
   } catch {
     return null;
   }
 }
 
-export function remember(backend: string, measured: Measured): void {
+export function remember(craft: string, backend: string, measured: Measured): void {
   try {
-    localStorage.setItem(key(backend), JSON.stringify(measured));
+    localStorage.setItem(key(craft, backend), JSON.stringify(measured));
   } catch {
     // Only an estimate is lost.
   }

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a craft keeps in a project: a model, parameters, results; and the commands that change it.
+import type { JobInput, Json, JsonObject, Operation, Report } from '../../jobs/contract';
+import type { BlobReference, ProjectDocument } from '../../project/document';
+import { isObject, jsonEqual } from '../../project/document';
+import type { Command } from '../../project/history';
+
+/** A file that came with the model: its materials or its picture. */
+export interface Companion {
+  readonly file_name: string;
+  readonly file: BlobReference;
+}
+
+export type Source =
+  | {
+      readonly kind: 'file';
+      readonly file_name: string;
+      readonly file: BlobReference;
+      readonly companions?: readonly Companion[];
+    }
+  | { readonly kind: 'sample'; readonly sample: string; readonly title: string };
+
+export interface CraftModel {
+  readonly source: Source;
+  /** Repaired, as `import` wrote it. */
+  readonly mesh: BlobReference;
+  /** For live previews; the mesh itself where that is small enough. */
+  readonly preview: BlobReference;
+  readonly report: Report;
+}
+
+export interface CraftResult {
+  readonly id: string;
+  readonly made_unix_s: number;
+  readonly backend: string;
+  /** From the button to the result. */
+  readonly seconds: number;
+  /** Hash of the mesh it was made from. */
+  readonly mesh: string;
+  readonly parameters: JsonObject;
+  readonly report: Report;
+  readonly outputs: Readonly<Record<string, BlobReference>>;
+  readonly picture?: BlobReference;
+  /** The worker's name for it, under which it keeps the other formats. */
+  readonly job?: string;
+}
+
+/** A full solve handed to the worker, to be found again after a reload. */
+export interface PendingSolve {
+  readonly job: string;
+  readonly mesh: string;
+  readonly parameters: JsonObject;
+}
+
+export interface CraftDocument {
+  readonly model: CraftModel | null;
+  /** Only what differs from the defaults. */
+  readonly parameters: JsonObject;
+  /** Newest first. */
+  readonly results: readonly CraftResult[];
+  readonly pending: PendingSolve | null;
+}
+
+export const emptyCraft: CraftDocument = { model: null, parameters: {}, results: [], pending: null };
+const keptResults = 12;
+
+/** Reads and changes the part of a project that belongs to one craft; `empty` is what a new project has. */
+export class CraftCommands<D extends CraftDocument> {
+  readonly craft: string;
+  readonly #empty: D;
+
+  constructor(craft: string, empty: D) {
+    this.craft = craft;
+    this.#empty = empty;
+  }
+
+  of(document: ProjectDocument): D {
+    const stored = document.crafts[this.craft];
+    return isObject(stored) ? { ...this.#empty, ...(stored as unknown as Partial<D>) } : this.#empty;
+  }
+
+  command(
+    rest: Omit<Command<ProjectDocument>, 'apply'>,
+    change: (craft: D) => Partial<D> | Partial<CraftDocument>,
+  ): Command<ProjectDocument> {
+    const apply = (document: ProjectDocument): ProjectDocument => {
+      const before = this.of(document);
+      const after = { ...before, ...change(before) } as unknown as Json;
+      return { ...document, crafts: { ...document.crafts, [this.craft]: after } };
+    };
+    return { ...rest, apply };
+  }
+
+  /** `own`: what the new model says of itself. Parameters of the `forgotten` kind belonged to the old one. */
+  openModel(
+    operation: Operation,
+    model: CraftModel,
+    label: string,
+    own: JsonObject,
+    forgotten: (name: string) => boolean,
+  ) {
+    return this.command({ label }, ({ parameters }) => {
+      const kept = Object.fromEntries(Object.entries(parameters).filter(([name]) => !forgotten(name)));
+      return { model, parameters: withoutDefaults(operation, { ...kept, ...own }) };
+    });
+  }
+
+  setParameters(operation: Operation, values: JsonObject, label: string, coalesce?: string) {
+    return this.command({ label, ...(coalesce ? { coalesce } : {}) }, ({ parameters }) => {
+      return { parameters: withoutDefaults(operation, { ...parameters, ...values }) };
+    });
+  }
+
+  /** `names`: the parameters that the result speaks of; others stay. */
+  restoreResult(result: CraftResult, label: string, names: (name: string) => boolean = () => true) {
+    return this.command({ label }, ({ parameters }) => {
+      const kept = Object.fromEntries(Object.entries(parameters).filter(([name]) => !names(name)));
+      return { parameters: { ...kept, ...result.parameters } };
+    });
+  }
+
+  addResult(result: CraftResult) {
+    return this.command({ label: 'Solve', recorded: false }, ({ results }) => {
+      return { pending: null, results: withResult(results, result) };
+    });
+  }
+
+  /** More about a result that is there already: another format, its picture. */
+  amendResult(id: string, change: (result: CraftResult) => CraftResult) {
+    return this.command({ label: 'Solve', recorded: false }, ({ results }) => {
+      return { results: results.map((old) => (old.id === id ? change(old) : old)) };
+    });
+  }
+
+  removeResult(id: string) {
+    return this.command({ label: 'Delete a result' }, ({ results }) => {
+      return { results: results.filter((result) => result.id !== id) };
+    });
+  }
+
+  setPending(pending: PendingSolve | null) {
+    return this.command({ label: 'Solve', recorded: false }, () => ({ pending }));
+  }
+}
+
+/** The newest first, one of each request. */
+export const withResult = <R extends SolveRequest>(results: readonly R[], made: R): R[] =>
+  [made, ...results.filter((old) => !sameRequest(old, made))].slice(0, keptResults);
+
+export const nameProject = (name: string): Command<ProjectDocument> => ({
+  label: 'Name the project',
+  recorded: false,
+  apply: (document) => ({ ...document, name }),
+});
+
+export function withoutDefaults(operation: Operation, values: JsonObject): JsonObject {
+  const schema = operation.parameters.properties;
+  return Object.fromEntries(
+    Object.entries(values).filter(([name, value]) => !jsonEqual(value, schema[name]?.default ?? null)),
+  );
+}
+
+/** The value in force: as set, or the operation's default. */
+export const inForce = (operation: Operation, parameters: JsonObject, name: string): Json =>
+  parameters[name] ?? operation.parameters.properties[name]?.default ?? null;
+
+export type SolveRequest = Pick<CraftResult, 'mesh' | 'parameters'>;
+
+export const sameRequest = (a: SolveRequest, b: SolveRequest) =>
+  a.mesh === b.mesh && jsonEqual(a.parameters, b.parameters);
+
+/** Names a solve: equal keys, equal results. */
+export const requestKey = (mesh: string, parameters: JsonObject): Json => ({ mesh, parameters });
+
+export const meshInput = (mesh: BlobReference, name: string): JobInput => ({
+  sha256: mesh.blob,
+  file_name: name,
+});
+
+export const titleOf = (source: Source): string => (source.kind === 'file' ? source.file_name : source.title);

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Draws what the session shows: frame, model and sheet at the moment looked at; as little as possible is sent
+// again.
+import { effect } from '@preact/signals';
+import type { MeshData, Viewport } from '../../view';
+import { turnedShading } from '../../view';
+import type { ShadedMesh } from '../common/shaded_mesh';
+import type { Clamp } from './clamp_frame';
+import { clampFrame, frameShadow, platform } from './clamp_frame';
+import { endOf, sheetAt, Stretching } from './film';
+import type { Extras } from './extras';
+import type { Placement } from './placement';
+import { boxOf, carriedOn, placed, placementOf, rotationOf } from './placement';
+import type { Formed, ThermoformSession } from './thermoform_session';
+import { dragging, mappingOf, swiping, view } from './views';
+
+/** White plastic. */
+const plastic = [0.9, 0.895, 0.88] as const;
+/** While the model below matters more than the sheet. */
+const translucent = 0.5;
+
+function modelData(mesh: ShadedMesh, placement: Placement): MeshData {
+  const { shading } = mesh;
+  return {
+    positions: placed(mesh.positions, placement),
+    indices: mesh.indices,
+    ...(shading ? { shading: turnedShading(shading, rotationOf(placement)) } : {}),
+    ...(mesh.colours ? { colours: mesh.colours } : {}),
+  };
+}
+
+export function clampOf(session: ThermoformSession, formed: Formed): Clamp {
+  const all = session.filled(formed.parameters);
+  const [sheetX, sheetY, openingX, openingY, height] = [
+    'sheet_x_mm',
+    'sheet_y_mm',
+    'clamp_opening_x_mm',
+    'clamp_opening_y_mm',
+    'clamp_height_mm',
+  ].map((name) => Number(all[name] ?? 0)) as [number, number, number, number, number];
+  return { sheet_mm: [sheetX, sheetY], opening_mm: [openingX, openingY], height_mm: height };
+}
+
+/** Where the model stands with the parameters in force. */
+export function placementNow(session: ThermoformSession): Placement | null {
+  const shown = session.shown.value;
+  const original = session.original.value;
+  if (shown === null || original === null) return null;
+  const told = placementOf(shown.report);
+  if (told === null) return null;
+  const [from, to] = [session.filled(shown.parameters), session.filled(session.asked.value)];
+  return carriedOn(told, from, to, original.mesh.positions) ?? told;
+}
+
+/** Attributes and picture of the sheet as it is in the end. */
+function sheetData(formed: Formed, extras: Extras | null): MeshData {
+  const { sheet } = formed;
+  const printed = extras?.printed?.of === formed ? extras.printed : null;
+  return {
+    positions: sheet.positions,
+    indices: sheet.indices,
+    attributes: sheet.attributes,
+    ...(printed
+      ? { uvs: printed.uvs, texture: printed.texture }
+      : { colours: Float32Array.from(sheet.positions, (_, i) => plastic[(i % 3) as 0 | 1 | 2]) }),
+  };
+}
+
+export function keepDrawn(viewport: Viewport, session: ThermoformSession, extras: () => Extras): () => void {
+  let drawn: { formed: Formed; printed: unknown } | null = null;
+  let model: { from: string; placement: Placement; frame: string; draft: unknown } | null = null;
+  let stretching: Stretching | null = null;
+  let lift = 0;
+
+  const drawModel = (): void => {
+    const original = session.original.value;
+    const shown = session.shown.value;
+    const placement = placementNow(session);
+    const draft = view.value === 'undercut' ? extras().draft : null;
+    if (original === null || shown === null || placement === null) {
+      viewport.setOriginal(null);
+      viewport.setFixtures([]);
+      model = null;
+      return;
+    }
+    const clamp = clampOf(session, shown);
+    const data = modelData(original.mesh, placement);
+    const { high } = boxOf(data.positions);
+    const frame = JSON.stringify([clamp, original.from]);
+    if (model?.frame !== frame) {
+      viewport.setFixtures([
+        {
+          id: 'frame',
+          mesh: clampFrame(clamp, high[2]),
+          parts: ['original', 'relief'],
+          framed: true,
+          shadow: frameShadow(clamp),
+        },
+        { id: 'platform', mesh: platform(clamp), parts: ['original'] },
+        { id: 'model', mesh: data, parts: ['relief'], within: true },
+      ]);
+      lift = 0;
+    }
+    const same = model?.from === original.from && model.draft === draft && model.frame === frame;
+    const unturned = same && sameTurn(model?.placement, placement);
+    if (draft) {
+      if (!same) viewport.setOriginal(draft);
+    } else if (!same || (!unturned && !dragging.peek())) viewport.setOriginal(data);
+    else if (model?.placement.join() !== placement.join()) viewport.rescaleOriginal(data.positions);
+    model = { from: original.from, placement, frame, draft };
+    moveModel(data.positions);
+  };
+  const moveModel = (positions: Float32Array | Float64Array): void => {
+    const down = session.moment.peek()?.platform_z_mm ?? 0;
+    lift = down;
+    viewport.moveFixture('model', down === 0 ? positions : raised(positions, down));
+  };
+
+  const drawSheet = (): void => {
+    const shown = session.shown.value;
+    if (shown === null) {
+      viewport.setRelief(null, null);
+      drawn = null;
+      return;
+    }
+    const printed = view.value === 'texture' ? extras().printed : null;
+    if (drawn?.formed === shown && drawn.printed === printed) return;
+    viewport.setRelief(sheetData(shown, printed ? extras() : null), null);
+    stretching = new Stretching(shown.film);
+    drawn = { formed: shown, printed };
+    drawMoment();
+  };
+
+  const drawMoment = (): void => {
+    const shown = session.shown.value;
+    const moment = session.moment.value;
+    if (shown === null || moment === null || drawn?.formed !== shown) return;
+    const ended = session.time_s.value >= endOf(shown.film) - 1e-6;
+    const positions = ended ? shown.sheet.positions : sheetAt(shown.film, moment);
+    const mapping = mappingOf(view.value, shown, thicknessOf(session, shown));
+    viewport.updateRelief(positions);
+    if (mapping && view.value !== 'undercut')
+      viewport.updateAttribute(
+        'relief',
+        mapping.attribute,
+        valuesAt(mapping.attribute, shown, positions, ended),
+      );
+    const settled = ended && !dragging.value;
+    const covered = moment.phase === 'vacuum' ? moment.touching_share : 0;
+    viewport.setOpacity('relief', settled ? 1 : dragging.value ? translucent : translucent + 0.35 * covered);
+    if (moment.platform_z_mm !== lift) {
+      const placement = placementNow(session);
+      const original = session.original.peek();
+      if (placement && original) moveModel(placed(original.mesh.positions, placement));
+    }
+  };
+
+  const valuesAt = (name: string, shown: Formed, positions: Float32Array, ended: boolean): Float32Array => {
+    const known = shown.sheet.attributes[name];
+    if (ended && known) return known;
+    const stretch = stretching?.at(positions) ?? new Float32Array(positions.length / 3).fill(1);
+    return name === 'stretch' ? stretch : stretch.map((s) => thicknessOf(session, shown) / Math.max(s, 1e-6));
+  };
+
+  const stops = [
+    effect(drawModel),
+    effect(drawSheet),
+    effect(drawMoment),
+    effect(() => {
+      const shown = session.shown.value;
+      viewport.setMode(view.value === 'undercut' ? 'original' : swiping.value ? 'swipe' : 'relief');
+      viewport.setColourMapping(shown && mappingOf(view.value, shown, thicknessOf(session, shown)), true);
+    }),
+  ];
+  return () => {
+    for (const stop of stops) stop();
+  };
+}
+
+export const thicknessOf = (session: ThermoformSession, { parameters }: Formed): number =>
+  Number(session.filled(parameters)['sheet_thickness_mm'] ?? 1);
+
+const sameTurn = (a: Placement | undefined, b: Placement): boolean =>
+  a !== undefined && rotationOf(a).every((value, i) => Math.abs(value - (rotationOf(b)[i] ?? 0)) < 1e-9);
+
+function raised(positions: Float32Array | Float64Array, by_mm: number): Float32Array {
+  return Float32Array.from(positions, (value, i) => (i % 3 === 2 ? value + by_mm : value));
+}

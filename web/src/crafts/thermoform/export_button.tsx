@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The one filled button: forms the sheet at full detail, then hands out what is made of it.
+import type { OutputDeclaration } from '../../jobs/contract';
+import { Button, formatBytes, formatDuration, Icon, Menu } from '../../ui';
+import { download, safeFileName } from '../common/download';
+import { figure } from '../common/report';
+import { readyWorker } from '../common/services';
+import { productBytes } from './make_product';
+import { moulding, printing, simulate } from './thermoform_document';
+import type { ThermoformSession } from './thermoform_session';
+
+interface Export {
+  readonly operation: string;
+  readonly output: OutputDeclaration;
+}
+
+/** In the order of the menu; a build offers those that its catalog names. */
+const menu: readonly (readonly [operation: string, output: string])[] = [
+  [printing, 'print.pdf'],
+  [printing, 'print.png'],
+  [printing, 'formed.glb'],
+  [moulding, 'mould.stl'],
+  [moulding, 'mould.3mf'],
+  [moulding, 'draft.ply'],
+  [simulate, 'sheet.ply'],
+  [simulate, 'forming.glb'],
+  [simulate, 'mould.obj'],
+];
+
+function exportsOf(session: ThermoformSession): Export[] {
+  return menu.flatMap(([operation, name]) => {
+    const output = session.operationNamed(operation)?.outputs.find((declared) => declared.name === name);
+    return output ? [{ operation, output }] : [];
+  });
+}
+
+const named = ({ operation, output }: Export): string => {
+  const [of] = [{ [printing]: 'Print', [moulding]: 'Mould' }[operation]];
+  if (output.name === 'draft.ply' || output.name === 'formed.glb') return output.label;
+  return of ? `${of}, ${output.label}` : output.label;
+};
+
+async function save(session: ThermoformSession, one: Export): Promise<void> {
+  const bytes = await productBytes(session, one.operation, one.output.name, one.output.label);
+  if (bytes) download(bytes, `${safeFileName(session.title)}-${one.output.name}`, one.output.media_type);
+}
+
+export async function exportMain(session: ThermoformSession): Promise<void> {
+  const [main] = exportsOf(session);
+  if (main) await save(session, main);
+}
+
+const keptBytes = (session: ThermoformSession, { operation, output }: Export): number | null => {
+  const from = { [simulate]: session.result, [printing]: session.print, [moulding]: session.mould }[
+    operation
+  ];
+  return from?.value?.outputs[output.name]?.bytes ?? null;
+};
+
+export function MainButton({ session, onForm }: { session: ThermoformSession; onForm: () => void }) {
+  const activity = session.activity.value;
+  if (activity.kind === 'solving')
+    return (
+      <>
+        <Button kind="filled" size="big" disabledReason="Being formed; Esc cancels">
+          Forming at full detail
+        </Button>
+        <p>Change anything to start again</p>
+      </>
+    );
+  const busy = activity.kind === 'idle' ? undefined : 'Busy with a file';
+  if (session.result.value === null)
+    return (
+      <>
+        <Button
+          kind="filled"
+          size="big"
+          disabledReason={session.shown.value === null ? 'Ready when the preview is' : busy}
+          onClick={onForm}
+        >
+          Form at full detail
+        </Button>
+        <p>{timeLine(session)}</p>
+      </>
+    );
+  const all = exportsOf(session);
+  const [main] = all;
+  if (main === undefined) return null;
+  const size = keptBytes(session, main);
+  const print = main.operation === printing;
+  return (
+    <>
+      <div class="split">
+        <Button
+          kind="filled"
+          size="big"
+          icon={print ? 'print' : 'download'}
+          disabledReason={busy}
+          onClick={() => void save(session, main)}
+        >
+          {print ? 'Export print' : `Export ${main.output.label.toLowerCase()}`}
+        </Button>
+        <Menu
+          label="Export something else"
+          buttonClass="button filled big"
+          align="right"
+          items={all.map((one) => {
+            const bytes = keptBytes(session, one);
+            return {
+              label: named(one),
+              hint: bytes === null ? undefined : formatBytes(bytes),
+              disabledReason: busy,
+              onSelect: () => void save(session, one),
+            };
+          })}
+        >
+          <Icon name="chevronDown" small />
+        </Menu>
+      </div>
+      <p>
+        {[print ? printLine(session) : null, size === null ? null : formatBytes(size)]
+          .filter(Boolean)
+          .join(', ') || 'Made when it is saved'}
+      </p>
+    </>
+  );
+}
+
+/** "PDF at true size, 300 dpi, 2 pages". */
+function printLine(session: ThermoformSession): string {
+  const pages = figure(session.print.value?.report ?? {}, 'pages');
+  const dots = session.value('dots_per_inch');
+  return [
+    'PDF at true size',
+    typeof dots === 'number' ? `${dots} dpi` : null,
+    pages === null ? null : `${pages} ${pages === 1 ? 'page' : 'pages'}`,
+  ]
+    .filter(Boolean)
+    .join(', ');
+}
+
+function timeLine(session: ThermoformSession): string {
+  const { browser_s, worker_s } = session.estimate.value;
+  if (readyWorker(session.services) !== null)
+    return worker_s ? `About ${formatDuration(worker_s)} with the worker` : 'With the native worker';
+  return browser_s ? `About ${formatDuration(browser_s)} in the browser` : 'In the browser';
+}

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The parameters of forming and of what is made of the formed sheet, and the one filled button.
+import { ModelRow } from '../common/model_row';
+import { ParameterPanel } from '../common/parameter_panel';
+import { placementNow } from './draw_scene';
+import { MainButton } from './export_button';
+import { boxOf } from './placement';
+import type { ThermoformSession } from './thermoform_session';
+
+export interface InspectorProps {
+  readonly session: ThermoformSession;
+  readonly picture: string | null;
+  readonly onReplace: () => void;
+  readonly onForm: () => void;
+}
+
+/** What a maker sets every time; the rest is folded. */
+const openGroups = ['Placement', 'Sheet', 'Machine'];
+
+/** The size that the core chose: of the model before it is turned. */
+function automaticValues(session: ThermoformSession): Record<string, number> {
+  const original = session.original.value;
+  const placement = placementNow(session);
+  if (original === null || placement === null) return {};
+  const scale = Math.hypot(...[0, 1, 2].map((at) => placement[at] ?? 0));
+  const { low, high } = boxOf(original.mesh.positions);
+  return { size_mm: Math.max(...[0, 1, 2].map((k) => scale * ((high[k] ?? 0) - (low[k] ?? 0)))) };
+}
+
+export function Inspector({ session, picture, onReplace, onForm }: InspectorProps) {
+  const { model, parameters } = session.document.value;
+  const operation = session.operation.value;
+  if (model === null || operation === null) return null;
+  return (
+    <>
+      <div class="inspector-scroll" tabIndex={-1}>
+        <ModelRow session={session} picture={picture} onReplace={onReplace} />
+        <ParameterPanel
+          operation={operation}
+          parameters={parameters}
+          errors={session.fieldErrors.value}
+          onPreview={(name, value) => session.preview(name, value)}
+          onCommit={() => session.services.projects.commit()}
+          openGroups={openGroups}
+          automatic={automaticValues(session)}
+        />
+      </div>
+      <div class="inspector-foot">
+        <MainButton session={session} onForm={onForm} />
+      </div>
+    </>
+  );
+}

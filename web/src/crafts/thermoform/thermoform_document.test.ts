@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+import { describe, expect, it } from 'vitest';
+import type { Catalog, Operation, ParameterSchema } from '../../jobs/contract';
+import type { ProjectDocument } from '../../project/document';
+import { newDocument } from '../../project/document';
+import type { CraftModel, CraftResult } from '../common/craft_document';
+import { CraftCommands, emptyCraft } from '../common/craft_document';
+import type { Product } from './thermoform_document';
+import {
+  addProduct,
+  formedSheet,
+  known,
+  offered,
+  printing,
+  productOf,
+  simulate,
+  thermoform,
+} from './thermoform_document';
+
+const number = (value: number): ParameterSchema => ({ type: 'number', default: value });
+const operation = (name: string, properties: Record<string, ParameterSchema>): Operation => ({
+  name,
+  title: name,
+  inputs: [],
+  parameters: { properties },
+  outputs: [],
+});
+const forming = operation(simulate, { size_mm: number(100), vacuum_kpa: number(80) });
+const print = operation(printing, {
+  size_mm: number(100),
+  vacuum_kpa: number(80),
+  dots_per_inch: number(300),
+});
+const catalog: Catalog = { version: '', operations: [forming, print], samples: [], mesh_formats: [] };
+const all = offered(catalog) as Operation;
+
+const blob = (digit: string) => ({ blob: digit.repeat(64), bytes: 1, media_type: 'x' });
+const model: CraftModel = {
+  source: { kind: 'sample', sample: 'cat', title: 'Cat' },
+  mesh: blob('a'),
+  preview: blob('b'),
+  report: {},
+};
+const result = (id: string, parameters: Record<string, number>): CraftResult => ({
+  id,
+  made_unix_s: 0,
+  backend: 'wasm',
+  seconds: 1,
+  mesh: model.mesh.blob,
+  parameters,
+  report: {},
+  outputs: { 'sheet.ply': blob('c') },
+});
+const product = (id: string, parameters: Record<string, number>, output: string): Product => ({
+  ...result(id, parameters),
+  operation: printing,
+  outputs: { [output]: blob('d') },
+});
+const opened = (): ProjectDocument =>
+  thermoform.openModel(all, model, 'Open', {}, () => false).apply(newDocument('1', 'One', 0));
+
+describe('the thermoform in a project', () => {
+  it('offers what the build can make, the simulation first', () => {
+    expect(Object.keys(all.parameters.properties)).toEqual(['size_mm', 'vacuum_kpa', 'dots_per_inch']);
+    expect(offered({ ...catalog, operations: [print] })).toBeNull();
+    const alone = offered({ ...catalog, operations: [forming] });
+    expect(Object.keys(alone?.parameters.properties ?? {})).toEqual(['size_mm', 'vacuum_kpa']);
+  });
+
+  it('finds a sheet by what forming depends on, whatever the print is like', () => {
+    let document = thermoform.addResult(result('r', { vacuum_kpa: 60 })).apply(opened());
+    document = thermoform.setParameters(all, { vacuum_kpa: 60, dots_per_inch: 150 }, 'Set').apply(document);
+    const craft = thermoform.of(document);
+    expect(craft.parameters).toEqual({ vacuum_kpa: 60, dots_per_inch: 150 });
+    expect(formedSheet(craft, known(forming, craft.parameters))?.id).toBe('r');
+    expect(formedSheet(craft, { vacuum_kpa: 61 })).toBeNull();
+  });
+
+  it('goes back to an earlier sheet and leaves the print as it is set', () => {
+    let document = thermoform.setParameters(all, { size_mm: 50, dots_per_inch: 150 }, 'Set').apply(opened());
+    const old = result('r', { vacuum_kpa: 60 });
+    document = thermoform
+      .restoreResult(old, 'Return', (name) => name in forming.parameters.properties)
+      .apply(document);
+    expect(thermoform.of(document).parameters).toEqual({ dots_per_inch: 150, vacuum_kpa: 60 });
+  });
+
+  it('joins what was made of the same sheet one after the other', () => {
+    let document = addProduct(product('p', {}, 'formed.glb')).apply(opened());
+    document = addProduct(product('q', {}, 'print.png')).apply(document);
+    document = addProduct(product('s', { dots_per_inch: 72 }, 'print.png')).apply(document);
+    const craft = thermoform.of(document);
+    expect(craft.products.map(({ id }) => id)).toEqual(['s', 'q']);
+    expect(Object.keys(productOf(craft, print)?.outputs ?? {}).sort()).toEqual(['formed.glb', 'print.png']);
+    expect(productOf(craft, forming)).toBeNull();
+  });
+
+  it('lives beside a relief, and opens projects from before it', () => {
+    const relief = new CraftCommands('relief', emptyCraft);
+    const before = relief.openModel(all, model, 'Open', {}, () => false).apply(newDocument('1', 'One', 0));
+    expect(thermoform.of(before)).toEqual({ ...emptyCraft, products: [] });
+    const both = thermoform.setParameters(all, { vacuum_kpa: 50 }, 'Set').apply(before);
+    expect(relief.of(both)).toEqual(relief.of(before));
+    expect(thermoform.of(both).parameters).toEqual({ vacuum_kpa: 50 });
+  });
+});

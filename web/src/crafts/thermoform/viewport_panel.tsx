@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The viewport with what floats over it: views, legend, timeline, notes, the handle that moves the model.
+import { effect, useSignal } from '@preact/signals';
+import type { ComponentChildren } from 'preact';
+import { useEffect, useMemo, useRef } from 'preact/hooks';
+import { Icon, IconButton, Segmented } from '../../ui';
+import type { Insets, Viewpoint } from '../../view';
+import { Viewport } from '../../view';
+import { Legend } from '../common/legend';
+import { narrow } from '../common/narrow';
+import { figure } from '../common/report';
+import { keepDrawn, placementNow, thicknessOf } from './draw_scene';
+import { watchExtras } from './extras';
+import { MoveHandle } from './move_handle';
+import { ModelMover } from './move_model';
+import { boxOf, placed } from './placement';
+import type { ThermoformSession } from './thermoform_session';
+import { Timeline } from './timeline';
+import { dragging, mappingOf, offeredViews, swiping, view } from './views';
+
+/** From the front, a little from the right, and from above, as one stands before the machine. */
+const viewpoint: Viewpoint = {
+  projection: 'perspective',
+  direction: [0.14, 0.95, -0.98],
+  up: [0, 0, 1],
+  targetMm: [0, 0, 0],
+  distanceMm: 900,
+  fieldOfViewDeg: 20,
+};
+
+export interface ViewportPanelProps {
+  readonly session: ThermoformSession;
+  /** Given the viewport once it exists, null when it goes. */
+  readonly onViewport: (viewport: Viewport | null) => void;
+  /** At the foot, off the object. */
+  readonly notes: ComponentChildren;
+  readonly children?: ComponentChildren;
+}
+
+export function ViewportPanel({ session, onViewport, notes, children }: ViewportPanelProps) {
+  const container = useRef<HTMLDivElement>(null);
+  const foot = useRef<HTMLDivElement>(null);
+  const handle = useRef<HTMLButtonElement>(null);
+  const viewport = useRef<Viewport | null>(null);
+  const mover = useMemo(() => new ModelMover(session), [session]);
+  const watched = useMemo(() => watchExtras(session), [session]);
+  const drawing = useSignal(true);
+
+  useEffect(() => {
+    if (container.current === null) return undefined;
+    const canvasPlace = (event: PointerEvent): [number, number] => {
+      const box = made.canvas.getBoundingClientRect();
+      return [event.clientX - box.left, event.clientY - box.top];
+    };
+    const drag = (event: PointerEvent) => mover.drag(made, ...canvasPlace(event));
+    const made = new Viewport(container.current, {
+      mode: 'relief',
+      freeRectangle: freeRectangle(null),
+      label: 'Model, clamp and sheet',
+      partNames: ['Model', 'Sheet'],
+      uprightTurn: true,
+      dimensions: false,
+      onPointer: ({ kind, hit, button, shiftKey, capture }) => {
+        if (kind === 'move' && !mover.holding)
+          made.canvas.style.cursor = hit && mover.holds(hit.positionMm[2]) ? 'move' : '';
+        if (kind === 'down' && hit && button === 0 && !shiftKey && mover.holds(hit.positionMm[2])) {
+          capture();
+          mover.begin(made, hit.xPx, hit.yPx, hit.positionMm[2]);
+          window.addEventListener('pointermove', drag);
+        }
+        if (kind === 'up') {
+          window.removeEventListener('pointermove', drag);
+          mover.end();
+        }
+      },
+      onFrame: () => placeHandle(made, session, handle.current),
+      onStatus: ({ state }) => (drawing.value = state === 'ready'),
+    });
+    made.setViewpoint(viewpoint);
+    made.lookFromViewpoint(false);
+    viewport.current = made;
+    // While the model is in hand the picture stays as it is, whatever notes come and go.
+    const makeRoom = () => {
+      if (!dragging.peek()) made.setFreeRectangle(freeRectangle(foot.current));
+    };
+    const stop = [
+      keepDrawn(made, session, () => watched.extras.value),
+      effect(() => {
+        if (!dragging.value) makeRoom();
+      }),
+      effect(() => made.setResting(session.previewing.value || session.activity.value.kind !== 'idle')),
+    ];
+    const resize = new ResizeObserver(makeRoom);
+    resize.observe(container.current);
+    if (foot.current) resize.observe(foot.current);
+    onViewport(made);
+    return () => {
+      onViewport(null);
+      viewport.current = null;
+      window.removeEventListener('pointermove', drag);
+      resize.disconnect();
+      for (const end of stop) end();
+      made.dispose();
+    };
+  }, [session]);
+  useEffect(() => () => watched.dispose(), [watched]);
+
+  const shown = session.shown.value;
+  const visible = drawing.value && session.original.value !== null;
+  return (
+    <div class="viewport-panel">
+      <div ref={container} class="viewport" />
+      {visible && shown ? (
+        <div class="float top-left row">
+          <Segmented
+            floating
+            label="View"
+            options={offeredViews(session)}
+            value={view.value}
+            onChange={(value) => (view.value = value)}
+          />
+          <span class="floating-button">
+            <IconButton
+              icon="swap"
+              label={swiping.value ? 'Show the sheet alone' : 'Swipe between model and sheet'}
+              keys="S"
+              pressed={swiping.value}
+              onClick={() => (swiping.value = !swiping.value)}
+            />
+          </span>
+        </div>
+      ) : null}
+      {visible ? <SidePanel session={session} url={watched.extras.value.printed?.url ?? null} /> : null}
+      <div ref={foot} class="float bottom-left foot wide">
+        {session.previewing.value && session.original.value && shown === null ? (
+          <p class="label-chip">
+            <Icon name="clock" small /> Making the first preview
+          </p>
+        ) : null}
+        {notes}
+        {visible && view.value !== 'undercut' ? <Timeline session={session} /> : null}
+      </div>
+      <MoveHandle session={session} mover={mover} viewport={() => viewport.current} element={handle} />
+      {children}
+    </div>
+  );
+}
+
+/** Top right: the scale of the colours, or the print. */
+function SidePanel({ session, url }: { session: ThermoformSession; url: string | null }) {
+  const shown = session.shown.value;
+  const mapping = shown && mappingOf(view.value, shown, thicknessOf(session, shown));
+  if (shown === null) return null;
+  if (view.value === 'texture' && url)
+    return (
+      <figure class="float top-right panel print-panel">
+        <img src={url} alt="The print, distorted so that it lands right" />
+        <figcaption>Print, pre-distorted</figcaption>
+      </figure>
+    );
+  const values = mapping && shown.sheet.attributes[mapping.attribute];
+  return mapping && (values || view.value === 'undercut') ? (
+    <div class="float top-right">
+      <Legend
+        mapping={mapping}
+        values={values ?? new Float32Array(0)}
+        least={figure(shown.report, 'thickness_min_mm') ?? undefined}
+      />
+    </div>
+  ) : null;
+}
+
+/** In front of the model's foot, where there is one to move. */
+function placeHandle(viewport: Viewport, session: ThermoformSession, element: HTMLElement | null): void {
+  if (element === null) return;
+  const original = session.original.peek();
+  const placement = original && placementNow(session);
+  const moment = session.moment.peek();
+  if (!original || !placement || moment === null || moment.platform_z_mm !== 0) {
+    element.hidden = true;
+    return;
+  }
+  const { low, high } = boxOf(placed(outline(original.mesh.positions), placement));
+  const at = viewport.project([(low[0] + high[0]) / 2, low[1] - 14, 2]);
+  element.hidden = at === null;
+  if (at) element.style.translate = `${at.xPx.toFixed(1)}px ${at.yPx.toFixed(1)}px`;
+}
+
+/** Every so many vertices: the handle need not know the model to the last corner. */
+function outline(positions: Float32Array): Float32Array {
+  const stride = Math.max(1, Math.floor(positions.length / 3 / 2000));
+  const out = new Float32Array(3 * Math.ceil(positions.length / 3 / stride));
+  for (let i = 0, j = 0; j < out.length; i += 3 * stride, j += 3) out.set(positions.subarray(i, i + 3), j);
+  return out;
+}
+
+/** What floats stays off the object. */
+function freeRectangle(foot: Element | null): Insets {
+  const height = foot?.getBoundingClientRect().height ?? 0;
+  const bottom = height > 0 ? height + 20 : 24;
+  return narrow() ? { left: 10, top: 64, right: 10, bottom } : { left: 24, top: 64, right: 24, bottom };
+}

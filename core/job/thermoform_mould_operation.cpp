@@ -16,42 +16,48 @@ namespace {
 constexpr int draft_cells = 256;  // across the model's longer side: 0.4 mm of 100 mm, a nozzle
 
 std::vector<OutputInfo> outputs() {
-  return {{"mould.stl", "model/stl", "STL", "All parts of the mould side by side on the printer's bed, watertight.", true},
-          {"mould.3mf", "model/3mf", "3MF", "The same, each part an object of its own.", true},
-          {"draft.ply", "application/x-ply", "Draft map", "The model above the plate with draft, undercut and depth to width of every vertex, in the machine's coordinates.", true},
-          {"mould.glb", "model/gltf-binary", "GLB", "The parts as printed, to look at.", true}};
+  return {
+      {"mould.stl", "model/stl", "STL", "All parts of the mould side by side on the printer's bed, watertight.", true},
+      {"mould.3mf", "model/3mf", "3MF", "The same, each part an object of its own.", true},
+      {"draft.ply", "application/x-ply", "Draft map",
+       "The model above the plate with draft, undercut and depth to width of every vertex, in the machine's "
+       "coordinates.",
+       true},
+      {"mould.glb", "model/gltf-binary", "GLB", "The parts as printed, to look at.", true}};
 }
 
 std::vector<ReportField> report_fields() {
-  return {{"vertices", "Vertices", "", "of the repaired model"},
-          {"faces", "Triangles", "", "of the repaired model"},
-          {"mould_faces", "Triangles of the mould", "", "of all its parts"},
-          {"watertight", "Watertight", "", "of every part, checked"},
-          {"parts", "Parts", "", "each with its place (cell, counted along the machine's x, y, z), size_mm, volume_ml, pins and sockets"},
-          {"part_count", "Number of parts", "", "that the printer makes"},
-          {"size_mm", "Size of the mould", "mm", "all parts together, as it is used"},
-          {"model_size_mm", "Size of the model", "mm", "what stands above the plate"},
-          {"plastic_volume_ml", "Print volume", "ml", "of all parts, solid; a slicer's infill takes less"},
-          {"cast_volume_ml", "Volume of the cast", "ml", "or of the positive, base plate included"},
-          {"gypsum_g", "Gypsum powder", "g", "for the cast; nothing for a positive. Mix a tenth more."},
-          {"water_g", "Water", "g", "for the cast; nothing for a positive"},
-          {"pour_opening_mm2", "Pour opening", "mm²", "area of the cast's underside"},
-          {"vents", "Vents", "", "x_mm, y_mm, z_mm on the machine, contact_s (when the sheet arrives; -1: never), gap_mm"},
-          {"undercut_area_mm2", "Undercut", "mm²", "of the model's surface that something lies above"},
-          {"draft_min_deg", "Least draft", "°", "over all faces; negative leans in"},
-          {"below_3_deg_area_mm2", "Steep walls", "mm²", "with less than 3 degrees of draft, undercuts included"},
-          {"depth_to_width_max", "Deepest cavity", "", "depth over width"},
-          {"advice", "Advice", "", "in words"},
-          {"notes", "Placement", "", "what was decided, in words"},
-          {"repairs", "Repairs", "", "what was found in the model and mended, in words"},
-          {"seconds_read", "Reading", "s", "file to repaired model; 0 when known from before"},
-          {"seconds_form", "Forming", "s", "the simulation that the vents need"},
-          {"seconds_cut", "Cutting at the plate", "s", "checks included; 0 when known from before"},
-          {"seconds_draft", "Draft map", "s", "0 when known from before"},
-          {"seconds_mould", "Mould", "s", "booleans"},
-          {"seconds_split", "Parts", "s", "cuts and keys"},
-          {"seconds_write", "Writing", "s", "outputs into their formats"},
-          {"peak_memory_mb", "Peak memory", "MB", "of the process"}};
+  return {
+      {"vertices", "Vertices", "", "of the repaired model"},
+      {"faces", "Triangles", "", "of the repaired model"},
+      {"mould_faces", "Triangles of the mould", "", "of all its parts"},
+      {"watertight", "Watertight", "", "of every part, checked"},
+      {"parts", "Parts", "",
+       "each with its place (cell, counted along the machine's x, y, z), size_mm, volume_ml, pins and sockets"},
+      {"part_count", "Number of parts", "", "that the printer makes"},
+      {"size_mm", "Size of the mould", "mm", "all parts together, as it is used"},
+      {"model_size_mm", "Size of the model", "mm", "what stands above the plate"},
+      {"plastic_volume_ml", "Print volume", "ml", "of all parts, solid; a slicer's infill takes less"},
+      {"cast_volume_ml", "Volume of the cast", "ml", "or of the positive, base plate included"},
+      {"gypsum_g", "Gypsum powder", "g", "for the cast; nothing for a positive. Mix a tenth more."},
+      {"water_g", "Water", "g", "for the cast; nothing for a positive"},
+      {"pour_opening_mm2", "Pour opening", "mm²", "area of the cast's underside"},
+      {"vents", "Vents", "", "x_mm, y_mm, z_mm on the machine, contact_s (when the sheet arrives; -1: never), gap_mm"},
+      {"undercut_area_mm2", "Undercut", "mm²", "of the model's surface that something lies above"},
+      {"draft_min_deg", "Least draft", "°", "over all faces; negative leans in"},
+      {"below_3_deg_area_mm2", "Steep walls", "mm²", "with less than 3 degrees of draft, undercuts included"},
+      {"depth_to_width_max", "Deepest cavity", "", "depth over width"},
+      {"advice", "Advice", "", "in words"},
+      {"notes", "Placement", "", "what was decided, in words"},
+      {"repairs", "Repairs", "", "what was found in the model and mended, in words"},
+      {"seconds_read", "Reading", "s", "file to repaired model; 0 when known from before"},
+      {"seconds_form", "Forming", "s", "the simulation that the vents need"},
+      {"seconds_cut", "Cutting at the plate", "s", "checks included; 0 when known from before"},
+      {"seconds_draft", "Draft map", "s", "0 when known from before"},
+      {"seconds_mould", "Mould", "s", "booleans"},
+      {"seconds_split", "Parts", "s", "cuts and keys"},
+      {"seconds_write", "Writing", "s", "outputs into their formats"},
+      {"peak_memory_mb", "Peak memory", "MB", "of the process"}};
 }
 
 /// The model as it stands on the plate, and what can be said about it before a mould is made.
@@ -62,7 +68,9 @@ struct PlacedSolid {
   std::vector<std::string> notes;
 };
 
-std::shared_ptr<const PlacedSolid> place_solid(const OperationCall& call, const LoadedModel& loaded, const Placement& placement, const ThermoformMouldOptions& options, Json& report) {
+std::shared_ptr<const PlacedSolid> place_solid(const OperationCall& call, const LoadedModel& loaded,
+                                               const Placement& placement, const ThermoformMouldOptions& options,
+                                               Json& report) {
   Json placed = write_parameters(static_cast<const PlacementOptions&>(options));
   placed["sheet_thickness_mm"] = options.sheet_thickness_mm;
   placed["foot_mm"] = write_parameters(options)["foot_mm"];
@@ -97,7 +105,9 @@ Bytes write_draft(const DraftMap& draft, Context& context) {
   model.mesh = draft.mesh;
   Eigen::VectorXd undercut(draft.draft_deg.size());
   for (Eigen::Index i = 0; i < undercut.size(); ++i) undercut[i] = draft.undercut[static_cast<std::size_t>(i)];
-  const std::vector<VertexColumn> columns{{"draft_deg", draft.draft_deg, ColumnKind::float64}, {"undercut", undercut, ColumnKind::uint8}, {"depth_to_width", draft.depth_to_width, ColumnKind::float64}};
+  const std::vector<VertexColumn> columns{{"draft_deg", draft.draft_deg, ColumnKind::float64},
+                                          {"undercut", undercut, ColumnKind::uint8},
+                                          {"depth_to_width", draft.depth_to_width, ColumnKind::float64}};
   WriteOptions write;
   write.columns = columns;
   return write_model(model, MeshFormat::ply, write, context);
@@ -108,7 +118,8 @@ Model parts_model(const MouldParts& parts) {
   Model model;
   std::vector<TriangleMesh> meshes;
   for (const MouldPart& part : parts.parts) {
-    model.face_group.insert(model.face_group.end(), static_cast<std::size_t>(part.mesh.F.rows()), static_cast<int>(meshes.size()));
+    model.face_group.insert(model.face_group.end(), static_cast<std::size_t>(part.mesh.F.rows()),
+                            static_cast<int>(meshes.size()));
     model.group_names.push_back("part " + std::to_string(meshes.size() + 1));
     meshes.push_back(part.mesh);
   }
@@ -125,7 +136,11 @@ void report_parts(Json& report, const MouldParts& parts) {
     volume_mm3 += part.volume_mm3;
     faces += part.mesh.face_count();
     watertight = watertight && Adjacency(part.mesh).is_closed();
-    list.push_back({{"cell", part.cell}, {"size_mm", size_json(part.size_mm)}, {"volume_ml", part.volume_mm3 / 1000}, {"pins", part.pins}, {"sockets", part.sockets}});
+    list.push_back({{"cell", part.cell},
+                    {"size_mm", size_json(part.size_mm)},
+                    {"volume_ml", part.volume_mm3 / 1000},
+                    {"pins", part.pins},
+                    {"sockets", part.sockets}});
   }
   report["parts"] = list;
   report["part_count"] = parts.parts.size();
@@ -157,7 +172,9 @@ OperationResult run_mould(const OperationCall& call) {
 
   watch.lap();
   std::vector<Vent> vents;
-  if (options.vents > 0) vents = find_vents(placed->mesh, *formed.sheet, options.vents, options.vent_diameter_mm, options.vent_spacing_mm, context);
+  if (options.vents > 0)
+    vents = find_vents(placed->mesh, *formed.sheet, options.vents, options.vent_diameter_mm, options.vent_spacing_mm,
+                       context);
   Mould mould;
   {
     const auto span = context.span(0.6, 0.8, "Making the mould");
@@ -187,7 +204,11 @@ OperationResult run_mould(const OperationCall& call) {
   report["pour_opening_mm2"] = negative ? Json(base_area_mm2(body, -options.base_mm)) : Json(nullptr);
   report["vents"] = Json::array();
   for (const Vent& vent : vents)
-    report["vents"].push_back({{"x_mm", vent.position_mm.x()}, {"y_mm", vent.position_mm.y()}, {"z_mm", vent.position_mm.z()}, {"contact_s", vent.contact_s}, {"gap_mm", vent.gap_mm}});
+    report["vents"].push_back({{"x_mm", vent.position_mm.x()},
+                               {"y_mm", vent.position_mm.y()},
+                               {"z_mm", vent.position_mm.z()},
+                               {"contact_s", vent.contact_s},
+                               {"gap_mm", vent.gap_mm}});
   report["undercut_area_mm2"] = draft.undercut_area_mm2;
   report["draft_min_deg"] = draft.draft_min_deg;
   report["below_3_deg_area_mm2"] = draft.below_3_deg_area_mm2;
@@ -195,7 +216,8 @@ OperationResult run_mould(const OperationCall& call) {
   std::vector<std::string> advice = draft.sentences;
   advice.insert(advice.end(), parts.sentences.begin(), parts.sentences.end());
   if (static_cast<int>(vents.size()) < options.vents)
-    advice.push_back("Air gathers at " + std::to_string(vents.size()) + (vents.size() == 1 ? " place" : " places") + " of the model only: more vents would do nothing.");
+    advice.push_back("Air gathers at " + std::to_string(vents.size()) + (vents.size() == 1 ? " place" : " places") +
+                     " of the model only: more vents would do nothing.");
   report["advice"] = advice;
   std::vector<std::string> notes = formed.placement.notes;
   notes.insert(notes.end(), placed->notes.begin(), placed->notes.end());
@@ -234,7 +256,9 @@ Operation thermoform_mould_operation() {
   Operation operation;
   operation.name = "thermoform-mould";
   operation.title = "Mould";
-  operation.summary = "Makes the mould that a sheet is formed over: a negative to cast gypsum in, or the positive itself (thesis chapter 4).";
+  operation.summary =
+      "Makes the mould that a sheet is formed over: a negative to cast gypsum in, or the positive itself (thesis "
+      "chapter 4).";
   operation.inputs = {mould_input_info(), sheet_input_info()};
   operation.parameters = describe_parameters<ThermoformMouldOptions>();
   operation.outputs = outputs();

@@ -163,7 +163,9 @@ void Membrane::begin_step(const Positions& x, const HeldVertices& held) {
     const Double4 determinant = (2.0 * e.e00 + 1.0) * (2.0 * e.e11 + 1.0) - 4.0 * e.e01 * e.e01;
     const Double4 area = rest_area * root(most(determinant, Double4{} + 1e-12));
     const Double4 thickness = g.volume / area;
-    g.weight = rest_area * thickness;
+    // With h = V/A alone a bubble has a largest pressure, beyond which it would grow until it is nothing; plastic that
+    // has been drawn out that far hardens. So the stiffness stays that of the thickness at which the flow stops.
+    g.weight = rest_area * most(thickness, Double4{} + material_.flow_stop_mm);
     g.creep = Double4{} + material_.creep_per_s;
     if (material_.yield_rule == YieldRule::total_strain) {
       deform(g, x, true, total);

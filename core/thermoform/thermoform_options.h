@@ -100,7 +100,7 @@ struct ThermoformOptions : PlacementOptions {
       parameter("yield_rule", &ThermoformOptions::yield_rule, "Yield rule",
                 "Elastic excess: only elastic strain beyond the yield strain flows; converges with finer sheets. Total strain: the thesis's sentence taken literally; yielded parts flow until they neck.")
           .group("Material").advanced(),
-      parameter("flow_stop_mm", &ThermoformOptions::flow_stop_mm, "Flow stops at", unit::mm, 0, 10, "Where the sheet has become this thin it no longer flows, only stretches.")
+      parameter("flow_stop_mm", &ThermoformOptions::flow_stop_mm, "Flow stops at", unit::mm, 0, 10, "Where the sheet has become this thin it no longer flows or softens, as drawn-out plastic hardens.")
           .group("Material").slider(0, 0.5).advanced(),
       parameter("bending", &ThermoformOptions::bending, "Bending stiffness", "Adds the hinge energy. Moves points about 0.1 mm and takes two to three times as long.")
           .group("Accuracy").advanced(),

@@ -58,4 +58,9 @@ export default ts.config(
     ['app', 'machines', 'crafts', 'thermoform', 'zippable', 'evidence'],
     'A craft uses ui, jobs, project and view; crafts do not know each other or the app.',
   ),
+  closed(
+    ['src/crafts/thermoform/**'],
+    ['app', 'machines', 'crafts', 'relief', 'zippable', 'evidence'],
+    'A craft uses ui, jobs, project and view; crafts do not know each other or the app.',
+  ),
 );

@@ -198,5 +198,5 @@ function outline(positions: Float32Array): Float32Array {
 function freeRectangle(foot: Element | null): Insets {
   const height = foot?.getBoundingClientRect().height ?? 0;
   const bottom = height > 0 ? height + 20 : 24;
-  return narrow() ? { left: 10, top: 64, right: 10, bottom } : { left: 24, top: 64, right: 24, bottom };
+  return narrow() ? { left: 10, top: 64, right: 10, bottom } : { left: 24, top: 88, right: 24, bottom };
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Builds natively and for WebAssembly and runs every benchmark program (build/**/bench_*), then the relief's, which
-# compares both. DATA=FOLDER with bunny.obj and koala.obj adds these. Every benchmark prints JSON.
+# Builds natively and for WebAssembly and runs every benchmark program (build/**/bench_*), then the relief's and
+# thermoforming's, which compare both. DATA=FOLDER with bunny.obj and koala.obj adds these. Every benchmark prints JSON.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
@@ -15,3 +15,5 @@ for program in "${programs[@]}"; do
 done
 printf '\n=== bench_relief\n'
 node tests/bench/relief/bench_relief.mjs build/formwright build-wasm/wasm/formwright.mjs ${DATA:+--data "$DATA"}
+printf '\n=== bench_thermoform\n'
+node tests/bench/thermoform/bench_thermoform.mjs build/formwright build-wasm/wasm/formwright.mjs --large

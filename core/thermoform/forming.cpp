@@ -92,12 +92,23 @@ class Driver {
   Context& context_;
 };
 
+/// The same bits on every target, which the libraries' own cube roots do not give.
+double cube_root(double value) {
+  double root = std::max(value, 1.0);
+  for (int i = 0; i < 200; ++i) {
+    const double next = root - (root - value / (root * root)) / 3;
+    if (!(next < root)) break;
+    root = next;
+  }
+  return root;
+}
+
 /// A first guess at the sag: the shape of a square membrane under its own weight, w = w0 (1 - x^2)(1 - y^2) with w0 from
 /// Hencky's circular membrane of the shorter side (w0 = 0.65 (q a^4 / (E h))^(1/3)).
 Positions sagging_guess(const SheetDynamics& dynamics, const ThermoformOptions& o) {
   const double a = 0.5 * std::min(o.clamp_opening_x_mm, o.clamp_opening_y_mm);
   const double q = o.density_kg_per_m3 * 1e-12 * 9806.65 * o.sheet_thickness_mm;
-  const double w0 = 0.65 * std::cbrt(q * a * a * a * a / (o.young_modulus_pa * 1e-6 * o.sheet_thickness_mm));
+  const double w0 = 0.65 * cube_root(q * a * a * a * a / (o.young_modulus_pa * 1e-6 * o.sheet_thickness_mm));
   Positions x = dynamics.x();
   for (Eigen::Index i = 0; i < x.rows(); ++i) {
     const double u = 2 * dynamics.sheet().flat_mm(i, 0) / o.clamp_opening_x_mm, v = 2 * dynamics.sheet().flat_mm(i, 1) / o.clamp_opening_y_mm;

@@ -216,7 +216,7 @@ FormedResult form_sheet(std::shared_ptr<const MouldShape> shape, const Placement
     const auto span = context.span(0.08, 0.45, "Raising the model");
     const double duration = o.platform_travel_mm / o.mould_speed_mm_per_s;
     dynamics.add_velocity(Vec3(0, 0, -o.mould_speed_mm_per_s));
-    driver.run(FormingPhase::raise, duration, 0.01, longest_free_step_s, o.step_mm,
+    driver.run(FormingPhase::raise, duration, 0.01, longest_free_step_s, dynamics.step_limit_mm(),
                [&](double, double dt) {
                  StepLoad load;
                  load.clamp_shift = Vec3(0, 0, -o.mould_speed_mm_per_s * dt);
@@ -231,7 +231,7 @@ FormedResult form_sheet(std::shared_ptr<const MouldShape> shape, const Placement
     const double full = o.vacuum_kpa * 1e-3;
     const auto pressure = [&](double t) { return o.vacuum_ramp_s > 0 ? full * std::min(1.0, t / o.vacuum_ramp_s) : full; };
     double t_end = 0;
-    driver.run(FormingPhase::vacuum, o.time_limit_s, 5e-4, longest_step_s, o.step_mm,
+    driver.run(FormingPhase::vacuum, o.time_limit_s, 5e-4, longest_step_s, dynamics.step_limit_mm(),
                [&](double t, double) {
                  StepLoad load;
                  t_end = t;

@@ -43,7 +43,8 @@ SheetDynamics::SheetDynamics(const SheetMesh& sheet, const ThermoformOptions& op
       membrane_(sheet.flat_mm, sheet.F, options.sheet_thickness_mm, material_of(options)),
       points_(sharp_points(contact_.get(), shortest_edge(sheet)), shortest_edge(sheet), 50 * options.young_modulus_pa * 1e-6 * options.sheet_thickness_mm),
       cg_(static_cast<int>(sheet.flat_mm.rows())),
-      edge_mm_(shortest_edge(sheet)) {
+      edge_mm_(shortest_edge(sheet)),
+      step_limit_mm_(options.step_mm.value_or(std::max(1.0, 0.3 * shortest_edge(sheet)))) {
   const Eigen::Index n = sheet.flat_mm.rows();
   if (options.bending)
     bending_ = std::make_unique<HingeBending>(sheet.F, static_cast<int>(n), options.young_modulus_pa * 1e-6, options.poisson_ratio, options.viscosity_s);
@@ -208,8 +209,8 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
     if (!std::isfinite(increment_squared)) return give_up(Outcome::not_converged);
     if (moved > 1.5 * most_move_mm) return give_up(Outcome::moved_too_far);
     const double mean_squared = sum_squared / std::max<double>(1, static_cast<double>(free_.size()));
-    settled = std::sqrt(increment_squared) < settled_share * options_.step_mm ||
-              (iteration >= 2 && std::sqrt(increment_squared) < wrinkle_share * options_.step_mm && std::sqrt(mean_squared) < 0.2 * settled_share * options_.step_mm);
+    settled = std::sqrt(increment_squared) < settled_share * step_limit_mm_ ||
+              (iteration >= 2 && std::sqrt(increment_squared) < wrinkle_share * step_limit_mm_ && std::sqrt(mean_squared) < 0.2 * settled_share * step_limit_mm_);
     const int touched = find_contacts(from, x, radius);
     statistics_.seconds_contact += watch.lap();
     if (touched > 0) {

@@ -51,6 +51,7 @@ class SheetDynamics {
   const std::vector<double>& contact_time_s() const { return contact_time_; }  // -1 where none
   double time_s() const { return time_; }
   double last_step_s() const { return last_step_; }
+  double step_limit_mm() const { return step_limit_mm_; }  // options.step_mm, or what it is automatically
   double last_move_mm() const { return last_move_; }  // farthest, beside the clamp's shift
   int free_count() const { return static_cast<int>(free_.size()); }
   const Membrane& membrane() const { return membrane_; }
@@ -81,7 +82,7 @@ class SheetDynamics {
   HeldVertices held_;
   std::vector<int> free_;
   std::vector<MouldContact::Known> known_;
-  double time_ = 0, mass_total_ = 0, last_move_ = 0, last_step_ = 0, edge_mm_ = 1;
+  double time_ = 0, mass_total_ = 0, last_move_ = 0, last_step_ = 0, edge_mm_ = 1, step_limit_mm_ = 1;
   DynamicsStatistics statistics_;
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 // The sheet, its material and the machine: thesis 4.2.2 and 4.2.3, with the defaults calibrated there.
 #include <array>
+#include <optional>
 #include <tuple>
 
 #include "base/parameters.h"
@@ -48,7 +49,7 @@ struct ThermoformOptions : PlacementOptions {
   double flow_stop_mm = 0.2;
   bool bending = false;
   int triangles = 10000;
-  double step_mm = 1;
+  std::optional<double> step_mm;
   int frames = 24;
 
   static constexpr auto parameters = std::tuple_cat(inherit_parameters<ThermoformOptions>(PlacementOptions::parameters), std::tuple{
@@ -106,7 +107,7 @@ struct ThermoformOptions : PlacementOptions {
           .group("Accuracy").advanced(),
       parameter("triangles", &ThermoformOptions::triangles, "Triangles", unit::none, 200, 400000, "How finely the sheet is divided; rounded to a whole grid.")
           .group("Accuracy").slider(1000, 40000),
-      parameter("step_mm", &ThermoformOptions::step_mm, "Step", unit::mm, 0.05, 20, "How far the sheet may move in one time step.")
+      parameter("step_mm", &ThermoformOptions::step_mm, "Step", unit::mm, 0.05, 20, "How far the sheet may move in one time step. Automatic: 1 mm, or 0.3 of a triangle's edge where that is more.")
           .group("Accuracy").slider(0.25, 4).advanced(),
       parameter("frames", &ThermoformOptions::frames, "Frames", unit::none, 2, 200, "Pictures in the animation.")
           .group("Accuracy").slider(8, 60).advanced()});

@@ -184,7 +184,8 @@ std::string overview_text() {
 std::string operation_help(const Operation& operation) {
   constexpr std::size_t width = 30;
   std::string text = operation.summary + "\n\n  formwright " + operation.name;
-  for (const InputInfo& input : operation.inputs) text += input.required ? " " + dashed(input.name) + " FILE" : " [" + dashed(input.name) + " FILE]";
+  for (const InputInfo& input : operation.inputs)
+    if (input.required) text += " " + dashed(input.name) + " FILE";
   text += " --out DIR [flags]\n\nInput\n";
   for (const InputInfo& input : operation.inputs) {
     std::string list;

@@ -256,9 +256,7 @@ Operation thermoform_mould_operation() {
   Operation operation;
   operation.name = "thermoform-mould";
   operation.title = "Mould";
-  operation.summary =
-      "Makes the mould that a sheet is formed over: a negative to cast gypsum in, or the positive itself (thesis "
-      "chapter 4).";
+  operation.summary = "Makes the mould that a sheet is formed over: a negative to cast gypsum in, or a positive.";
   operation.inputs = {mould_input_info(), sheet_input_info()};
   operation.parameters = describe_parameters<ThermoformMouldOptions>();
   operation.outputs = outputs();

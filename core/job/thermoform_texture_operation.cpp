@@ -169,7 +169,7 @@ Operation thermoform_texture_operation() {
   Operation operation;
   operation.name = "thermoform-texture";
   operation.title = "Print for thermoforming";
-  operation.summary = "The picture to print on the flat sheet, so that every colour lands where it belongs on the formed one (thesis 4.2.4).";
+  operation.summary = "Makes the picture to print on the flat sheet, so that its colours land where they belong.";
   operation.inputs = inputs();
   operation.parameters = describe_parameters<ThermoformPrintOptions>();
   operation.outputs = outputs();

@@ -81,7 +81,7 @@ TEST(DraftMap, AFloorUnderABridgeIsHidden) {
   // The floor, the ceiling, and the inner walls below it.
   EXPECT_NEAR(map.undercut_area_mm2, 2 * 30 * 20 + 2 * 13 * 20, 1e-9);
   EXPECT_DOUBLE_EQ(map.draft_min_deg, -90);
-  EXPECT_TRUE(says(map, "6.0 cm2 face down"));
+  EXPECT_TRUE(says(map, "6.0 cm² face down"));
 }
 
 TEST(DraftMap, DepthToWidthOfSlotsAndWells) {

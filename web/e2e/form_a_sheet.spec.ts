@@ -115,6 +115,7 @@ test('the film plays with Space and stops at its end', async ({ page }) => {
 test('a model dragged beyond the clamp is said, and form it stops at once', async ({ page }) => {
   await openSample(page, 'Pyramid');
   const handle = page.getByRole('button', { name: /^Move the model/ });
+  await handle.hover(); // waits until notes and camera have come to rest and the handle stands still
   const box = await handle.boundingBox();
   if (box === null) throw new Error('The handle is not to be seen.');
   await page.mouse.move(box.x + 14, box.y + 14);

@@ -95,7 +95,7 @@ OperationResult run(const OperationCall& call) {
   FormedSheet sheet = simulated.result->sheet;
   sheet.mesh.V.col(2).array() += setup.base_plate_end_z_mm;
   const Comparison comparison = compare(sheet, points, setup.measured_surface, simulation.options.clamp_height_mm + setup.base_plate_end_z_mm,
-                                        simulation.options.sheet_thickness_mm, call.context);
+                                        simulation.options.sheet_thickness_mm, MeasurementEffects{}, setup.base_plate_end_z_mm, call.context);
   OperationResult result;
   Json& report = result.report;
   double sigma = 0;

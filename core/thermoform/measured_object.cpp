@@ -126,9 +126,55 @@ std::vector<MeasuredPoint> read_measured_points(ByteView csv) {
   return points;
 }
 
+namespace {
+
+struct Predicted {
+  Vec3 place_mm, normal;
+  bool inside;
+};
+
+/// Predicts one point after another.
+class Prediction {
+ public:
+  Prediction(const FormedSheet& sheet, MeasuredSurface surface, double clamp_z_mm, double sheet_thickness_mm, const MeasurementEffects& effects,
+             double base_plate_z_mm)
+      : lookup_(sheet), effects_(effects), outer_(surface == MeasuredSurface::outer), origin_(0, 0, base_plate_z_mm),
+        clamped_z_mm_(clamp_z_mm + (outer_ ? 0.5 * sheet_thickness_mm : 0)) {}
+
+  Predicted operator()(const Vec2& printed_mm) const {
+    const Vec2 sheet_mm = (1 + effects_.print_scale) * printed_mm;
+    Predicted predicted{Vec3(sheet_mm.x(), sheet_mm.y(), clamped_z_mm_), Vec3::UnitZ(), false};
+    if (const auto at = lookup_.find(sheet_mm)) {
+      const Vec3 middle = lookup_.middle(*at), outer = lookup_.outer(*at);
+      predicted.place_mm = outer_ ? outer : middle;
+      predicted.inside = true;
+      if ((outer - middle).norm() > 1e-12) predicted.normal = (outer - middle).normalized();
+    }
+    predicted.place_mm += effects_.scan_scale * (predicted.place_mm - origin_) + Vec3(effects_.scan_shift_x_mm, effects_.scan_shift_y_mm, effects_.scan_shift_z_mm);
+    return predicted;
+  }
+
+ private:
+  SheetLookup lookup_;
+  MeasurementEffects effects_;
+  bool outer_;
+  Vec3 origin_;
+  double clamped_z_mm_;
+};
+
+}  // namespace
+
+Positions predict_measured(const FormedSheet& sheet, const TextureCoordinates& sheet_mm, MeasuredSurface surface, double clamp_z_mm,
+                           double sheet_thickness_mm, const MeasurementEffects& effects, double base_plate_z_mm) {
+  const Prediction predict(sheet, surface, clamp_z_mm, sheet_thickness_mm, effects, base_plate_z_mm);
+  Positions places(sheet_mm.rows(), 3);
+  for (Eigen::Index i = 0; i < places.rows(); ++i) places.row(i) = predict(sheet_mm.row(i).transpose()).place_mm.transpose();
+  return places;
+}
+
 Comparison compare(const FormedSheet& sheet, const std::vector<MeasuredPoint>& points, MeasuredSurface surface, double clamp_z_mm, double sheet_thickness_mm,
-                   Context& context) {
-  const SheetLookup lookup(sheet);
+                   const MeasurementEffects& effects, double base_plate_z_mm, Context& context) {
+  const Prediction predict(sheet, surface, clamp_z_mm, sheet_thickness_mm, effects, base_plate_z_mm);
   Comparison result;
   result.points.reserve(points.size());
   std::vector<double> errors;
@@ -136,21 +182,12 @@ Comparison compare(const FormedSheet& sheet, const std::vector<MeasuredPoint>& p
   int counted = 0;
   for (const MeasuredPoint& point : points) {
     if (counted++ % 10000 == 0) context.check_cancelled();
-    ComparedPoint compared{};
-    Vec3 normal(0, 0, 1);
-    if (const auto at = lookup.find(point.sheet_mm)) {
-      const Vec3 middle = lookup.middle(*at), outer = lookup.outer(*at);
-      compared.simulated_mm = surface == MeasuredSurface::outer ? outer : middle;
-      compared.inside = true;
-      if ((outer - middle).norm() > 1e-12) normal = (outer - middle).normalized();
-    } else {
-      compared.simulated_mm = Vec3(point.sheet_mm.x(), point.sheet_mm.y(), clamp_z_mm + (surface == MeasuredSurface::outer ? 0.5 * sheet_thickness_mm : 0));
-    }
-    const Vec3 difference = point.place_mm - compared.simulated_mm;
-    compared.error_mm = difference.norm();
+    const Predicted predicted = predict(point.sheet_mm);
+    const Vec3 difference = point.place_mm - predicted.place_mm;
+    const ComparedPoint compared{predicted.place_mm, difference.norm(), predicted.inside};
     sum += compared.error_mm;
     squares += difference.squaredNorm();
-    along += difference.dot(normal);
+    along += difference.dot(predicted.normal);
     errors.push_back(compared.error_mm);
     result.points.push_back(compared);
   }

@@ -8,6 +8,7 @@
 #include "base/context.h"
 #include "base/json.h"
 #include "thermoform/formed_sheet.h"
+#include "thermoform/measurement_effects.h"
 
 namespace formwright {
 
@@ -48,8 +49,14 @@ struct Comparison {
   double mean_without_outliers_mm = 0;
 };
 
-/// Compares points with the simulated sheet. `clamp_z_mm`: of the clamped rim's middle surface. Everything in the points' coordinates.
+/// Where a scan of `sheet` would have the points with the given coordinates on the flat sheet (n x 2, centred on it): n x 3.
+/// `clamp_z_mm`: of the clamped rim's middle surface, where points outside of the opening lie flat; `base_plate_z_mm`: of the raised
+/// plate. Everything in the coordinates of the measured points.
+Positions predict_measured(const FormedSheet& sheet, const TextureCoordinates& sheet_mm, MeasuredSurface surface, double clamp_z_mm,
+                           double sheet_thickness_mm, const MeasurementEffects& effects, double base_plate_z_mm = 0);
+
+/// Compares points with what predict_measured has for them.
 Comparison compare(const FormedSheet& sheet, const std::vector<MeasuredPoint>& points, MeasuredSurface surface, double clamp_z_mm, double sheet_thickness_mm,
-                   Context& context);
+                   const MeasurementEffects& effects, double base_plate_z_mm, Context& context);
 
 }  // namespace formwright

@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "base/parameters.h"
-#include "thermoform/placement.h"
+#include "thermoform/sheet_effects.h"
 
 namespace formwright {
 
@@ -24,8 +24,9 @@ struct EnumNames<YieldRule> {
   static constexpr std::array<std::string_view, 2> labels{"Elastic excess", "Total strain"};
 };
 
-/// What thermoform-simulate takes: the model's placement, what is clamped into the machine, and what that does with it.
-struct ThermoformOptions : PlacementOptions {
+/// What thermoform-simulate takes: the model's placement, what is clamped into the machine, what that does with it, and what it
+/// does beside.
+struct ThermoformOptions : SheetEffects {
   double sheet_x_mm = 240;
   double sheet_y_mm = 260;
   double sheet_thickness_mm = 1;
@@ -110,7 +111,8 @@ struct ThermoformOptions : PlacementOptions {
       parameter("step_mm", &ThermoformOptions::step_mm, "Step", unit::mm, 0.05, 20, "How far the sheet may move in one time step. Automatic: 1 mm, or 0.3 of a triangle's edge where that is more.")
           .group("Accuracy").slider(0.25, 4).advanced(),
       parameter("frames", &ThermoformOptions::frames, "Frames", unit::none, 2, 200, "Pictures in the animation.")
-          .group("Accuracy").slider(8, 60).advanced()});
+          .group("Accuracy").slider(8, 60).advanced()},
+      inherit_parameters<ThermoformOptions>(SheetEffects::parameters));
 };
 
 /// The part of the sheet that shows in the clamp's opening.

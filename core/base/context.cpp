@@ -53,6 +53,12 @@ Context::Span Context::span(double from, double to, const std::string& stage) {
   return Span(*this, from, to);
 }
 
+std::optional<Bytes> Context::find_result(const std::string& key) const { return host_.find_result ? host_.find_result(key) : std::nullopt; }
+
+void Context::keep_result(const std::string& key, const Bytes& result) const {
+  if (host_.keep_result) host_.keep_result(key, result);
+}
+
 double Context::peak_memory_mb() const { return host_.peak_memory_mb ? host_.peak_memory_mb() : 0.0; }
 
 }  // namespace formwright

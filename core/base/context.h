@@ -8,6 +8,8 @@
 #include <optional>
 #include <string>
 
+#include "base/bytes.h"
+
 namespace formwright {
 
 struct Progress {
@@ -18,9 +20,12 @@ struct Progress {
 
 /// What the host (command line, worker, WASM) lends to a computation.
 struct Host {
-  std::function<void(const Progress&)> on_progress;   // may be empty; called from the job's thread
-  std::function<bool()> cancel_requested;             // may be empty; cheap, callable from any thread
-  std::function<double()> peak_memory_mb;             // may be empty
+  std::function<void(const Progress&)> on_progress = {};   // may be empty; called from the job's thread
+  std::function<bool()> cancel_requested = {};             // may be empty; cheap, callable from any thread
+  std::function<double()> peak_memory_mb = {};         // may be empty
+  /// Results that outlive the job, by the hash of what they were made from. May be empty; called from any thread, must not throw.
+  std::function<std::optional<Bytes>(const std::string& key)> find_result = {};
+  std::function<void(const std::string& key, const Bytes& result)> keep_result = {};
 };
 
 /// Carries the host through nested stages. `span` narrows the fraction that `progress` speaks of, so
@@ -56,6 +61,11 @@ class Context {
   [[nodiscard]] Span span(double from, double to, const std::string& stage);
 
   double peak_memory_mb() const;  // 0 when the host does not tell
+
+  /// What an earlier run kept under `key`, if anything. From any thread.
+  std::optional<Bytes> find_result(const std::string& key) const;
+  /// Keeps an expensive intermediate result at once, so that a run that is killed goes on from there. From any thread.
+  void keep_result(const std::string& key, const Bytes& result) const;
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -66,6 +66,9 @@ ObjectSetup read_object_setup(ByteView bytes) {
     else if (key == "measured_surface") {
       if (value == "outer") setup.measured_surface = MeasuredSurface::outer;
       else if (value != "mid") refuse_setup("“measured_surface” must be \"mid\" or \"outer\".");
+    } else if (key == "sheet_turned") {
+      if (!value.is_boolean()) refuse_setup("“sheet_turned” must be true or false.");
+      setup.sheet_turned = value.get<bool>();
     } else if (std::any_of(known.begin(), known.end(), [&k = key](const ParameterInfo& info) { return info.name == k; })) {
       setup.parameters[key] = value;
     } else {

@@ -18,6 +18,7 @@ enum class MeasuredSurface { mid, outer };
 struct ObjectSetup {
   Json parameters = Json::object();  // of ThermoformOptions, as far as the file gives them
   MeasuredSurface measured_surface = MeasuredSurface::mid;
+  bool sheet_turned = false;         // lay in the clamp turned by half a turn: sheet coordinates count from its own edges
   double base_plate_end_z_mm = 0;    // the simulation has the raised plate at 0: add this to its z
   std::vector<std::string> notes;    // keys that were not understood
 };

@@ -1,0 +1,377 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "evidence/diagnosis.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "base/error.h"
+
+namespace formwright {
+namespace {
+
+constexpr int refitted_pairs = 6;
+constexpr double explained_share = 0.6;   // of the base model's structure (its variance) that a named cause must explain
+constexpr double likely = 0.5;
+constexpr double inseparable_likeness = 0.9;
+
+std::vector<int> with_role(const ForwardModel& model, ParameterRole role) {
+  std::vector<int> list;
+  for (std::size_t p = 0; p < model.parameters().size(); ++p)
+    if (model.parameters()[p].role == role) list.push_back(static_cast<int>(p));
+  return list;
+}
+
+std::vector<int> joined(std::vector<int> a, const std::vector<int>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+std::vector<int> parameters_of(const ForwardModel& model, const std::vector<int>& causes) {
+  std::vector<int> list = model.base_parameters();
+  for (const int cause : causes) list = joined(std::move(list), model.causes()[static_cast<std::size_t>(cause)].parameters);
+  return list;
+}
+
+/// Columns of `all` (in the order of `columns`) that belong to `wanted`.
+std::vector<Sensitivities> chosen(const std::vector<Sensitivities>& all, const std::vector<int>& columns, const std::vector<int>& wanted) {
+  std::vector<Sensitivities> result(all.size());
+  for (const int p : wanted) {
+    const auto at = static_cast<std::size_t>(std::find(columns.begin(), columns.end(), p) - columns.begin());
+    for (std::size_t object = 0; object < all.size(); ++object) result[object].push_back(all[object][at]);
+  }
+  return result;
+}
+
+std::vector<Sensitivities> side_by_side(std::vector<Sensitivities> a, const std::vector<Sensitivities>& b) {
+  for (std::size_t object = 0; object < a.size(); ++object) a[object].insert(a[object].end(), b[object].begin(), b[object].end());
+  return a;
+}
+
+class Diagnostician {
+ public:
+  Diagnostician(SimulationBag& bag, const DiagnosisOptions& options, Context& context) : bag_(bag), model_(bag.model()), options_(options), context_(context) {}
+
+  Diagnosis run() {
+    Stopwatch watch;
+    calibrate();
+    result_.seconds_calibration = watch.seconds();
+    screen();
+    refit();
+    judge();
+    measure_gain();
+    result_.simulations = bag_.simulations();
+    result_.seconds = watch.seconds();
+    return std::move(result_);
+  }
+
+ private:
+  struct Refit {
+    ParameterFit fit;
+    std::vector<int> causes;
+  };
+
+  void estimate_noise_about(const Predictions& predictions) {
+    weights_.clear();
+    result_.noise.clear();
+    const Predictions left = residuals(model_, predictions);
+    for (std::size_t object = 0; object < left.size(); ++object) {
+      result_.noise.push_back(estimate_noise(model_.measurements()[object], left[object]));
+      weights_.push_back(result_.noise.back().weights);
+    }
+  }
+
+  void calibrate() {
+    const auto span = context_.span(0, 0.2, "Calibrating");
+    const auto at_nominal = bag_.run(model_.nominal(), context_, "Calibrating");
+    if (!at_nominal) throw Error(ErrorCode::could_not_solve, "", "The simulation fails with the set-up's own parameters: check mould and set-up.");
+    estimate_noise_about(*at_nominal);
+    double soft = 0;
+    for (const NoiseEstimate& noise : result_.noise) soft = std::max(soft, noise.sigma);
+    result_.base = fit_parameters(bag_, *mean_distance_objective(model_, soft), model_.base_parameters(), model_.nominal(), {}, {}, context_, "Calibrating");
+    estimate_noise_about(result_.base.predictions);
+    misfit_.emplace(model_, weights_);
+  }
+
+  /// Sensitivities to everything about the calibrated model, and what they alone say.
+  void screen() {
+    const auto span = context_.span(0.2, 0.4, "Trying each effect");
+    columns_.clear();
+    for (std::size_t p = 0; p < model_.parameters().size(); ++p) columns_.push_back(static_cast<int>(p));
+    sensitivities_ = sensitivities_at(bag_, result_.base.u, result_.base.predictions, columns_, context_, "Trying each effect");
+    result_.liberties = with_role(model_, ParameterRole::discrepancy);
+    result_.liberty_sensitivities = chosen(sensitivities_, columns_, result_.liberties);
+    const GramByStructure gram = misfit_->gram(residuals(model_, result_.base.predictions), sensitivities_);
+    screened_ = all_hypotheses(model_, options_.pairs);
+    for (Hypothesis& h : screened_) weigh(model_, gram, columns_, result_.base.u, h);
+    normalise(screened_);
+  }
+
+  const Hypothesis& screened(const std::vector<int>& causes, bool unknown) const {
+    return *std::find_if(screened_.begin(), screened_.end(), [&](const Hypothesis& h) { return h.causes == causes && h.unknown_structure == unknown; });
+  }
+
+  std::size_t nearest_size(double structure) const {
+    const std::vector<double>& sizes = misfit_->sizes();
+    std::size_t best = 1;
+    for (std::size_t t = 1; t < sizes.size(); ++t)
+      if (std::abs(sizes[t] - structure) < std::abs(sizes[best] - structure)) best = t;
+    return best;
+  }
+
+  /// Fits base parameters and those of `causes` together, from where the linearised model has them.
+  Refit refit_with(const std::vector<int>& causes) {
+    const Hypothesis& plain = screened(causes, false);
+    const Hypothesis& rough = screened(causes, true);
+    const Hypothesis& start = plain.probability >= rough.probability ? plain : rough;
+    const std::vector<int> free = parameters_of(model_, causes);
+    const StructuredObjective objective(model_, *misfit_, nearest_size(start.structure), result_.liberties, result_.liberty_sensitivities);
+    // Secants hold within a few probes: a longer way is gone in steps.
+    Eigen::VectorXd u = result_.base.u;
+    for (const int p : free) {
+      const double reach = 3 * model_.parameters()[static_cast<std::size_t>(p)].probe;
+      u[p] += std::clamp(start.u[p] - u[p], -reach, reach);
+    }
+    std::vector<Eigen::VectorXd> starts{result_.base.u, u};
+    for (const auto& r : refits_)  // a pair may start from what its parts are like alone
+      if (causes.size() == 2 && r.causes.size() == 1 && (r.causes[0] == causes[0] || r.causes[0] == causes[1])) starts.push_back(r.fit.u);
+    const auto predictions = bag_.run(starts, context_, "Fitting the causes");
+    std::size_t best = 0;
+    double best_value = 1e300;
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+      if (!predictions[i]) continue;
+      const double value = objective.value(residuals(model_, *predictions[i]), starts[i]);
+      if (value < best_value) best = i, best_value = value;
+    }
+    FitOptions options;
+    options.most_iterations = 5;
+    options.tolerance = 0.01;
+    return {fit_parameters(bag_, objective, free, starts[best], chosen(sensitivities_, columns_, free), options, context_, "Fitting the causes"), causes};
+  }
+
+  /// The marginal likelihood of an explanation where its fit has it.
+  void weigh_refit(const Refit& refit) {
+    const std::vector<int> columns = joined(refit.fit.free, result_.liberties);
+    const GramByStructure gram = misfit_->gram(residuals(model_, refit.fit.predictions), side_by_side(refit.fit.sensitivities, result_.liberty_sensitivities));
+    for (Hypothesis& h : result_.hypotheses)
+      if (h.causes == refit.causes) {
+        weigh(model_, gram, columns, refit.fit.u, h);
+        h.u = refit.fit.u;
+      }
+  }
+
+  void refit() {
+    const auto span = context_.span(0.4, 0.85, "Fitting the causes");
+    std::vector<std::vector<int>> singles{{}};
+    for (int cause = 0; cause < static_cast<int>(model_.causes().size()); ++cause) singles.push_back({cause});
+    const double parts = static_cast<double>(singles.size()) + (options_.pairs ? refitted_pairs : 0);
+    double part = 0;
+    const auto add = [&](const std::vector<int>& causes) {
+      const auto step = context_.span(part / parts, (part + 1) / parts, "Fitting the causes");
+      refits_.push_back(refit_with(causes));
+      part += 1;
+    };
+    for (const auto& causes : singles) add(causes);
+    result_.hypotheses = all_hypotheses(model_, false);
+    for (const Refit& r : refits_) weigh_refit(r);
+    normalise(result_.hypotheses);
+    if (options_.pairs) {
+      for (const std::vector<int>& pair : promising_pairs()) {
+        add(pair);
+        for (const Hypothesis& h : screened_)
+          if (h.causes == pair) result_.hypotheses.push_back(h);
+        weigh_refit(refits_.back());
+      }
+      normalise(result_.hypotheses);
+    }
+    // The leaders once more, with sensitivities taken where they stand.
+    std::set<std::vector<int>> leaders;
+    for (const Hypothesis& h : result_.hypotheses) {
+      if (leaders.size() >= 4) break;
+      leaders.insert(h.causes);
+    }
+    for (Refit& r : refits_)
+      if (leaders.contains(r.causes)) {
+        r.fit.sensitivities = sensitivities_at(bag_, r.fit.u, r.fit.predictions, r.fit.free, context_, "Fitting the causes");
+        weigh_refit(r);
+      }
+    normalise(result_.hypotheses);
+  }
+
+  /// Pairs that the linearised model likes, about the calibrated model and about the best single causes.
+  std::vector<std::vector<int>> promising_pairs() const {
+    std::vector<Hypothesis> candidates;
+    for (const Hypothesis& h : screened_)
+      if (h.causes.size() == 2 && candidates.size() < static_cast<std::size_t>(refitted_pairs) / 3) candidates.push_back(h);
+    std::vector<Hypothesis> from_singles;
+    int leaders = 0;
+    for (const Hypothesis& leader : result_.hypotheses) {
+      if (leader.causes.size() != 1 || leaders >= 3) continue;
+      const auto r = std::find_if(refits_.begin(), refits_.end(), [&](const Refit& f) { return f.causes == leader.causes; });
+      const GramByStructure gram = misfit_->gram(residuals(model_, r->fit.predictions), sensitivities_);
+      for (Hypothesis h : all_hypotheses(model_, true)) {
+        if (h.causes.size() != 2 || (h.causes[0] != leader.causes[0] && h.causes[1] != leader.causes[0])) continue;
+        weigh(model_, gram, columns_, r->fit.u, h);
+        from_singles.push_back(h);
+      }
+      ++leaders;
+    }
+    if (!from_singles.empty()) normalise(from_singles);
+    candidates.insert(candidates.end(), from_singles.begin(), from_singles.end());
+    std::vector<std::vector<int>> pairs;
+    for (const Hypothesis& h : candidates)
+      if (std::find(pairs.begin(), pairs.end(), h.causes) == pairs.end() && pairs.size() < static_cast<std::size_t>(refitted_pairs)) pairs.push_back(h.causes);
+    return pairs;
+  }
+
+  const Refit& refit_of(const std::vector<int>& causes) const {
+    return *std::find_if(refits_.begin(), refits_.end(), [&](const Refit& r) { return r.causes == causes; });
+  }
+
+  void judge() {
+    find_causes();
+    // How much structure is left without a cause, and with the best one, counted alike: by the version that allows any.
+    const auto left = [&](const std::vector<int>& causes) {
+      double structure = 0, weight = 0;
+      for (const Hypothesis& h : result_.hypotheses)
+        if (h.causes == causes) structure += (h.probability + 1e-300) * h.structure, weight += h.probability + 1e-300;
+      return structure / weight;
+    };
+    const Hypothesis& best = result_.hypotheses.front();
+    result_.unexplained_before = left({});
+    result_.unexplained_after = left(best.causes);
+    result_.structure = nearest_size(best.structure);
+    result_.extended = refit_of(best.causes).fit;
+    if (best.causes.empty()) {
+      result_.reading = best.unknown_structure ? Reading::unknown : Reading::none;
+      return;
+    }
+    result_.verdict = best.causes;
+    const auto moves = [&](int cause) {
+      double sum = 0;
+      for (const int p : model_.causes()[static_cast<std::size_t>(cause)].parameters)
+        for (const Sensitivities& s : sensitivities_) sum += (best.u[p] * s[static_cast<std::size_t>(p)]).squaredNorm();
+      return sum;
+    };
+    std::stable_sort(result_.verdict.begin(), result_.verdict.end(), [&](int a, int b) { return moves(a) > moves(b); });
+    result_.reading = Reading::cause;
+    const double ratio = result_.unexplained_after / std::max(result_.unexplained_before, 1e-12);
+    result_.doubtful = best.unknown_structure || result_.causes.front().probability < likely;
+    if (best.unknown_structure && 1 - ratio * ratio < explained_share) result_.reading = Reading::unknown;
+    find_twins();
+  }
+
+  void find_causes() {
+    for (int cause = 0; cause < static_cast<int>(model_.causes().size()); ++cause) {
+      CauseFinding finding;
+      finding.cause = cause;
+      const Hypothesis* at = nullptr;
+      for (const Hypothesis& h : result_.hypotheses) {
+        if (std::find(h.causes.begin(), h.causes.end(), cause) == h.causes.end()) continue;
+        finding.probability += h.probability;
+        if (at == nullptr) at = &h;
+      }
+      const Refit& r = refit_of(at->causes);
+      const StructuredObjective objective(model_, *misfit_, nearest_size(at->structure), result_.liberties, result_.liberty_sensitivities);
+      Eigen::VectorXd g;
+      Eigen::MatrixXd H;
+      objective.quadratic(residuals(model_, r.fit.predictions), r.fit.sensitivities, r.fit.free, r.fit.u, g, H);
+      const Eigen::MatrixXd covariance = H.llt().solve(Eigen::MatrixXd::Identity(H.rows(), H.cols()));
+      const std::vector<int>& own = model_.causes()[static_cast<std::size_t>(cause)].parameters;
+      Eigen::VectorXd value(static_cast<Eigen::Index>(own.size())), slope(value.size());
+      Eigen::MatrixXd spread(value.size(), value.size());
+      std::vector<Eigen::Index> at_index;
+      for (const int p : own) at_index.push_back(std::find(r.fit.free.begin(), r.fit.free.end(), p) - r.fit.free.begin());
+      for (Eigen::Index i = 0; i < value.size(); ++i) {
+        const ModelParameter& parameter = model_.parameters()[static_cast<std::size_t>(own[static_cast<std::size_t>(i)])];
+        value[i] = parameter.value(r.fit.u[own[static_cast<std::size_t>(i)]]);
+        finding.values.push_back(value[i]);
+        for (Eigen::Index j = 0; j < value.size(); ++j)
+          spread(i, j) = covariance(at_index[static_cast<std::size_t>(i)], at_index[static_cast<std::size_t>(j)]);
+      }
+      finding.strength = value.size() == 1 ? value[0] : value.norm();
+      slope = value.norm() > 0 ? Eigen::VectorXd(value / value.norm()) : Eigen::VectorXd::Unit(value.size(), 0);
+      const double half = 1.96 * std::sqrt(std::max(0.0, slope.dot(spread * slope)));
+      finding.low = finding.strength - half;
+      finding.high = finding.strength + half;
+      result_.causes.push_back(finding);
+    }
+    std::stable_sort(result_.causes.begin(), result_.causes.end(), [](const CauseFinding& a, const CauseFinding& b) { return a.probability > b.probability; });
+  }
+
+  /// Causes that do the same as a named one as far as these data go.
+  void find_twins() {
+    const GramByStructure gram = misfit_->gram(residuals(model_, result_.base.predictions), sensitivities_);
+    const auto probability = [&](int cause) {
+      return std::find_if(result_.causes.begin(), result_.causes.end(), [&](const CauseFinding& f) { return f.cause == cause; })->probability;
+    };
+    for (const int named : result_.verdict)
+      for (int other = 0; other < static_cast<int>(model_.causes().size()); ++other) {
+        if (std::find(result_.verdict.begin(), result_.verdict.end(), other) != result_.verdict.end()) continue;
+        const double alike = likeness(model_, gram, result_.structure, columns_, named, other);
+        // Alike in every respect, or not told apart by these very data.
+        const bool undecided = probability(other) > 0.15 * probability(named);
+        if (alike > inseparable_likeness || (undecided && alike > 0.5)) result_.not_separable.push_back({named, other, alike});
+        if (undecided && result_.reading == Reading::cause) result_.reading = Reading::cannot_separate;
+      }
+  }
+
+  void measure_gain() {
+    const auto span = context_.span(0.85, 1, "Predicting what was held out");
+    for (std::size_t object = 0; object < weights_.size(); ++object) {
+      result_.structure_before.push_back(test_structure(model_.measurements()[object], residuals(model_, result_.base.predictions)[object], weights_[object]));
+      result_.structure_after.push_back(test_structure(model_.measurements()[object], residuals(model_, result_.extended.predictions)[object], weights_[object]));
+    }
+    double sum = 0, count = 0;
+    for (std::size_t object = 0; object < weights_.size(); ++object) {
+      const double d = static_cast<double>(model_.measurements()[object].measured.cols());
+      // Mean length of a d-dimensional Gaussian.
+      const double per_sigma = std::sqrt(2.0) * std::exp(std::lgamma(0.5 * (d + 1)) - std::lgamma(0.5 * d));
+      for (const double w : weights_[object])
+        if (w > 0) sum += per_sigma * result_.noise[object].sigma, count += 1;
+    }
+    result_.noise_floor = count > 0 ? sum / count : 0;
+    const auto before = held_out_errors(bag_, result_.base, weights_, nearest_size(result_.unexplained_before), result_.liberties, result_.liberty_sensitivities, context_);
+    const auto after = result_.extended.free == result_.base.free && result_.verdict.empty()
+                           ? before
+                           : held_out_errors(bag_, result_.extended, weights_, result_.structure, result_.liberties, result_.liberty_sensitivities, context_);
+    result_.held_out = compare_errors(model_, before, after);
+  }
+
+  SimulationBag& bag_;
+  const ForwardModel& model_;
+  DiagnosisOptions options_;
+  Context& context_;
+  Diagnosis result_;
+  std::vector<Eigen::VectorXd> weights_;
+  std::optional<MisfitOfAll> misfit_;
+  std::vector<int> columns_;
+  std::vector<Sensitivities> sensitivities_;
+  std::vector<Hypothesis> screened_;
+  std::vector<Refit> refits_;
+};
+
+}  // namespace
+
+Diagnosis diagnose(SimulationBag& bag, const DiagnosisOptions& options, Context& context) { return Diagnostician(bag, options, context).run(); }
+
+HeldOutGain gain_on_unseen(SimulationBag& unseen, const ForwardModel& from, const Eigen::VectorXd& u_before, const Eigen::VectorXd& u_after, Context& context) {
+  const ForwardModel& model = unseen.model();
+  const auto translated = [&](const Eigen::VectorXd& u) {
+    Eigen::VectorXd own = model.nominal();
+    for (std::size_t p = 0; p < model.parameters().size(); ++p)
+      for (std::size_t q = 0; q < from.parameters().size(); ++q)
+        if (model.parameters()[p].name == from.parameters()[q].name && model.parameters()[p].role != ParameterRole::discrepancy)
+          own[static_cast<Eigen::Index>(p)] = model.parameters()[p].coordinate(from.parameters()[q].value(u[static_cast<Eigen::Index>(q)]));
+    return own;
+  };
+  const auto predictions = unseen.run(std::vector<Eigen::VectorXd>{translated(u_before), translated(u_after)}, context, "Predicting the unseen object");
+  if (!predictions[0] || !predictions[1]) throw Error(ErrorCode::could_not_solve, "unseen", "The unseen object cannot be simulated with the fitted parameters: check its mould and set-up.");
+  std::vector<Eigen::VectorXd> weights;
+  const Predictions after = residuals(model, *predictions[1]);
+  for (std::size_t object = 0; object < after.size(); ++object) weights.push_back(estimate_noise(model.measurements()[object], after[object]).weights);
+  return compare_errors(model, point_errors(residuals(model, *predictions[0]), weights), point_errors(after, weights));
+}
+
+}  // namespace formwright

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// From measured data to the cause of a misfit: calibrate, show the misfit, name the cause, extend the model, measure the gain
+// (docs/evidence.md).
+#include <optional>
+
+#include "evidence/held_out.h"
+#include "evidence/hypotheses.h"
+
+namespace formwright {
+
+enum class Reading {
+  none,             // the base model explains the data
+  cause,            // one or more causes are named
+  cannot_separate,  // one of two named causes; these data do not say which
+  unknown,          // there is structure that no cause of the list makes
+};
+
+struct CauseFinding {
+  int cause = 0;
+  double probability = 0;                 // that it is at work, by itself or in a pair
+  double strength = 0, low = 0, high = 0; // Cause::unit; 95 % interval
+  std::vector<double> values;             // of its parameters
+};
+
+struct NotSeparable {
+  int cause_a = 0, cause_b = 0;
+  double likeness = 0;                    // 1: the same to these data
+};
+
+struct Diagnosis {
+  Reading reading = Reading::none;
+  bool doubtful = false;                  // named, but part of the structure stays unexplained
+  std::vector<int> verdict;               // causes, the strongest first
+  std::vector<CauseFinding> causes;       // all, most probable first
+  std::vector<Hypothesis> hypotheses;     // most probable first
+  std::vector<NotSeparable> not_separable;  // of the named causes with any other
+  ParameterFit base;                      // calibrated without any effect
+  ParameterFit extended;                  // with the named causes; as base where none is
+  std::vector<int> liberties;             // discrepancy parameters
+  std::vector<Sensitivities> liberty_sensitivities;
+  std::size_t structure = 0;              // of the best explanation: index into structure_sizes
+  std::vector<NoiseEstimate> noise;       // each object
+  std::vector<StructureTest> structure_before, structure_after;
+  double noise_floor = 0;                 // mean distance that noise alone gives
+  double unexplained_before = 0, unexplained_after = 0;  // size of the structure left by the base model and by the best explanation
+  HeldOutGain held_out;
+  int simulations = 0;
+  double seconds_calibration = 0, seconds = 0;
+};
+
+struct DiagnosisOptions {
+  bool pairs = true;
+};
+
+/// Throws Error{could_not_solve} where the base model cannot be simulated, Error{cancelled}.
+Diagnosis diagnose(SimulationBag& bag, const DiagnosisOptions& options, Context& context);
+
+/// Errors on objects that were not used, before and after. `u_before`, `u_after` are coordinates of `from`, whose parameters have the
+/// same names as those of the bag's model.
+HeldOutGain gain_on_unseen(SimulationBag& unseen, const ForwardModel& from, const Eigen::VectorXd& u_before, const Eigen::VectorXd& u_after, Context& context);
+
+}  // namespace formwright

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What a diagnosis knows of a craft: a model that predicts measurable quantities from parameters, effects that extend it,
+// and data. Nothing here knows about sheets, reliefs or zippers.
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "base/context.h"
+
+namespace formwright {
+
+enum class ParameterRole {
+  base,         // of the model itself: always fitted
+  effect,       // of an extension: zero means absent
+  discrepancy,  // known liberties of the simulation (another law, a finer mesh): never fitted, but what they move is not evidence
+};
+
+/// A parameter the engine may turn. It is searched in a coordinate u that is 0 at the nominal value: ln(value / nominal) if
+/// logarithmic, else value - nominal.
+struct ModelParameter {
+  std::string name, label, unit;
+  ParameterRole role = ParameterRole::base;
+  double nominal = 0, low = 0, high = 0;  // values
+  bool logarithmic = false;
+  double prior_sd = 1;                    // of u: how far from the nominal value it may well be
+  double probe = 0.1;                     // a step in u that moves predictions visibly, and still about linearly
+
+  double value(double u) const;
+  double coordinate(double value) const;
+  double low_u() const { return coordinate(low); }
+  double high_u() const { return coordinate(high); }
+  bool one_sided() const { return role != ParameterRole::base && low >= nominal; }
+};
+
+/// An effect as a maker names it; one or more parameters (a gradient has two).
+struct Cause {
+  std::string name, label;      // "heating_gradient", "Uneven heating from side to side"
+  std::string explanation;      // what it is, in a sentence
+  std::string remedy;           // what to do at the machine, in a sentence
+  std::vector<int> parameters;  // indices into ForwardModel::parameters()
+  std::string unit;             // of its strength: the Euclidean norm of its parameters' values
+};
+
+/// What was measured of one object. `place` are coordinates on the object, in [0, 1] x [0, 1] about, by which neighbours are known.
+struct Measurement {
+  std::string name;
+  Eigen::MatrixX2d place;    // n x 2
+  double extent_mm = 1;      // length that a unit of place stands for
+  Eigen::MatrixXd measured;  // n x d
+  Eigen::VectorXd sigma;     // n: standard deviation of each of the d numbers; all 0 where nothing is known
+};
+
+class ForwardModel {
+ public:
+  virtual ~ForwardModel() = default;
+  virtual const std::vector<ModelParameter>& parameters() const = 0;
+  virtual const std::vector<Cause>& causes() const = 0;
+  virtual const std::vector<Measurement>& measurements() const = 0;
+  /// n x d: what would be measured of `object` at `u` (all parameters' coordinates). Called from several threads at once; the same
+  /// bits for the same u. Throws Error{could_not_solve} where the model has no answer there, Error{cancelled}.
+  virtual Eigen::MatrixXd predict(int object, const Eigen::VectorXd& u, const Context& context) const = 0;
+  /// Size of structured misfit (in the measurement's unit) that the model is known to have without any fault of the machine.
+  virtual double known_misfit() const = 0;
+
+  std::vector<int> base_parameters() const;
+  Eigen::VectorXd nominal() const { return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parameters().size())); }
+};
+
+/// Keeps `u` within the parameters' ranges.
+Eigen::VectorXd within_ranges(const ForwardModel& model, Eigen::VectorXd u);
+
+}  // namespace formwright

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Errors on data that were not used: spatial blocks left out in turn, and other objects. Neighbouring points know of each other, so
+// single points left out would prove nothing (Roberts et al. 2017).
+#include "evidence/structured_objective.h"
+
+namespace formwright {
+
+struct ErrorWithInterval {
+  double mean = 0, low = 0, high = 0;  // mean Euclidean distance without outliers; 95 % interval, blocks drawn again
+};
+
+struct HeldOutGain {
+  ErrorWithInterval before, after;
+  double gain_share = 0, gain_low = 0, gain_high = 0;  // 1 - after / before
+};
+
+/// 4 x 4 blocks an object; fold of each block 0 to 3, no two blocks that share a side in the same.
+inline constexpr int block_count = 16, fold_count = 4;
+int block_of(const Measurement& measurement, Eigen::Index point);
+int fold_of(int block);
+
+/// Per-point errors |residual|; points of weight 0 are -1.
+std::vector<Eigen::VectorXd> point_errors(const Predictions& residuals, const std::vector<Eigen::VectorXd>& weights);
+
+HeldOutGain compare_errors(const ForwardModel& model, const std::vector<Eigen::VectorXd>& before, const std::vector<Eigen::VectorXd>& after);
+
+/// For each fold, fits `fit`'s free parameters to the other folds (linearised about the fit) and predicts the fold by a simulation of its own.
+std::vector<Eigen::VectorXd> held_out_errors(SimulationBag& bag, const ParameterFit& fit, const std::vector<Eigen::VectorXd>& weights, std::size_t structure,
+                                             const std::vector<int>& liberty_parameters, const std::vector<Sensitivities>& liberties, Context& context);
+
+}  // namespace formwright

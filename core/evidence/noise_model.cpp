@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "evidence/noise_model.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <array>
+#include <cstdint>
+#include <numbers>
+#include <numeric>
+
+#include "evidence/structured_misfit.h"
+
+namespace formwright {
+namespace {
+
+double median_of(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Median of chi-square with d degrees of freedom (Wilson and Hilferty).
+double chi_square_median(double d) { return d * std::pow(1 - 2 / (9 * d), 3); }
+
+constexpr double outlier_limit = 5;  // standard deviations, of the residual's length against its median
+
+}  // namespace
+
+NoiseEstimate estimate_noise(const Measurement& measurement, const Eigen::MatrixXd& residual) {
+  const Eigen::Index n = residual.rows(), d = residual.cols();
+  NoiseEstimate result;
+  const bool stated = measurement.sigma.maxCoeff() > 0;
+  double floor = 0;
+  if (stated) {
+    result.stated_sigma = std::sqrt(measurement.sigma.squaredNorm() / static_cast<double>(n));
+    floor = 0.1 * result.stated_sigma;  // a point said to be perfect is as good as the others at best
+  }
+  Eigen::VectorXd sigma = stated ? measurement.sigma.cwiseMax(floor).eval() : Eigen::VectorXd::Ones(n).eval();
+
+  // Smooth part and scale by turns, with weights as of Student's t, so that outliers bend neither.
+  Eigen::VectorXd trust = Eigen::VectorXd::Ones(n);
+  Eigen::VectorXd normalised(n);
+  double scale = 0;
+  {
+    std::vector<double> lengths(static_cast<std::size_t>(n));
+    for (Eigen::Index i = 0; i < n; ++i) lengths[static_cast<std::size_t>(i)] = residual.row(i).squaredNorm() / (sigma[i] * sigma[i]);
+    scale = std::sqrt(std::max(1e-12, median_of(lengths) / chi_square_median(static_cast<double>(d))));
+  }
+  for (int round = 0; round < 8; ++round) {
+    const Eigen::VectorXd weights = (trust.array() / (scale * sigma.array()).square()).matrix();
+    const double size = std::sqrt(residual.squaredNorm() / static_cast<double>(n * d));
+    const StructuredMisfit structure(measurement, weights, {std::max(size, 1e-9)});
+    const Eigen::MatrixXd noise = residual - structure.smooth(residual, 0);
+    const Eigen::VectorXd leverage = structure.leverage(0);
+    std::vector<double> squares;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      normalised[i] = noise.row(i).squaredNorm() / (sigma[i] * sigma[i] * std::max(0.05, 1 - leverage[i]));
+      squares.push_back(normalised[i]);
+    }
+    scale = std::sqrt(std::max(1e-12, median_of(squares) / chi_square_median(static_cast<double>(d))));
+    constexpr double degrees = 4;
+    for (Eigen::Index i = 0; i < n; ++i)
+      trust[i] = std::min(1.0, (degrees + static_cast<double>(d)) / (degrees + normalised[i] / (scale * scale)));
+  }
+  result.weights.resize(n);
+  const double limit = std::pow(outlier_limit, 2) * static_cast<double>(d) * scale * scale / 2;
+  double sum = 0;
+  int good = 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const bool outlier = normalised[i] > limit;
+    result.outliers += outlier;
+    result.weights[i] = outlier ? 0 : trust[i] / std::pow(scale * sigma[i], 2);
+    if (outlier) continue;
+    sum += std::pow(scale * sigma[i], 2);
+    ++good;
+  }
+  result.sigma = good > 0 ? std::sqrt(sum / good) : 0;
+  result.scale = stated ? scale : 1;
+  return result;
+}
+
+StructureTest test_structure(const Measurement& measurement, const Eigen::MatrixXd& residual, const Eigen::VectorXd& weights) {
+  StructureTest test;
+  std::vector<Eigen::Index> used;
+  for (Eigen::Index i = 0; i < weights.size(); ++i)
+    if (weights[i] > 0) used.push_back(i);
+  const auto n = static_cast<Eigen::Index>(used.size());
+  if (n < 10) return test;
+  Eigen::MatrixXd r(n, residual.cols());
+  for (Eigen::Index i = 0; i < n; ++i) r.row(i) = residual.row(used[static_cast<std::size_t>(i)]) * std::sqrt(weights[used[static_cast<std::size_t>(i)]]);
+  const double variance = r.squaredNorm() / static_cast<double>(n);
+  if (!(variance > 0)) return test;
+
+  // A grid of cells finds pairs of points by distance.
+  const int cells = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(n) / 2)), 2, 64);
+  std::vector<std::vector<Eigen::Index>> members(static_cast<std::size_t>(cells * cells));
+  const auto cell_of = [&](double t) { return std::clamp(static_cast<int>(t * cells), 0, cells - 1); };
+  std::vector<std::array<int, 2>> cell(static_cast<std::size_t>(n));
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto place = measurement.place.row(used[static_cast<std::size_t>(i)]);
+    cell[static_cast<std::size_t>(i)] = {cell_of(place[0]), cell_of(place[1])};
+    members[static_cast<std::size_t>(cell[static_cast<std::size_t>(i)][0] * cells + cell[static_cast<std::size_t>(i)][1])].push_back(i);
+  }
+  // Neighbours: the nearest other point in the same or an adjoining cell.
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> neighbours;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    Eigen::Index nearest = -1;
+    double best = 1e300;
+    const auto [cx, cy] = cell[static_cast<std::size_t>(i)];
+    for (int x = std::max(0, cx - 1); x <= std::min(cells - 1, cx + 1); ++x)
+      for (int y = std::max(0, cy - 1); y <= std::min(cells - 1, cy + 1); ++y)
+        for (const Eigen::Index j : members[static_cast<std::size_t>(x * cells + y)]) {
+          const double distance =
+              (measurement.place.row(used[static_cast<std::size_t>(i)]) - measurement.place.row(used[static_cast<std::size_t>(j)])).squaredNorm();
+          if (j != i && distance < best) best = distance, nearest = j;
+        }
+    if (nearest >= 0) neighbours.emplace_back(i, nearest);
+  }
+  if (neighbours.empty()) return test;
+  const auto correlation = [&](const std::vector<Eigen::Index>& order) {
+    double sum = 0;
+    for (const auto& [i, j] : neighbours) sum += r.row(order[static_cast<std::size_t>(i)]).dot(r.row(order[static_cast<std::size_t>(j)]));
+    return sum / static_cast<double>(neighbours.size()) / variance;
+  };
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(n));
+  std::iota(order.begin(), order.end(), 0);
+  test.neighbour_correlation = correlation(order);
+  constexpr int permutations = 199;
+  std::uint64_t state = 0x9e3779b97f4a7c15ull;  // the same shuffles on every machine
+  int as_large = 0;
+  for (int k = 0; k < permutations; ++k) {
+    for (std::size_t i = order.size() - 1; i > 0; --i) {
+      state = state * 6364136223846793005ull + 1442695040888963407ull;
+      std::swap(order[i], order[static_cast<std::size_t>((state >> 33) % (i + 1))]);
+    }
+    as_large += correlation(order) >= test.neighbour_correlation;
+  }
+  test.p_value = (1.0 + as_large) / (1.0 + permutations);
+
+  // Correlogram in bins of distance, from a subset of the pairs.
+  constexpr int bins = 20;
+  constexpr double longest = 0.5;
+  std::array<double, bins> sum{};
+  std::array<int, bins> count{};
+  const Eigen::Index stride = std::max<Eigen::Index>(1, n / 700);
+  for (Eigen::Index i = 0; i < n; i += stride)
+    for (Eigen::Index j = 0; j < i; j += stride) {
+      const double distance = (measurement.place.row(used[static_cast<std::size_t>(i)]) - measurement.place.row(used[static_cast<std::size_t>(j)])).norm();
+      const int bin = static_cast<int>(distance / longest * bins);
+      if (bin >= bins) continue;
+      sum[static_cast<std::size_t>(bin)] += r.row(i).dot(r.row(j)) / variance;
+      ++count[static_cast<std::size_t>(bin)];
+    }
+  const double start = std::max(test.neighbour_correlation, 1e-6);
+  for (int bin = 0; bin < bins; ++bin) {
+    const auto b = static_cast<std::size_t>(bin);
+    if (count[b] < 5) continue;
+    if (sum[b] / count[b] < start / std::numbers::e) break;
+    test.correlation_length_mm = (bin + 0.5) / bins * longest * measurement.extent_mm;
+  }
+  return test;
+}
+
+}  // namespace formwright

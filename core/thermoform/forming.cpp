@@ -17,6 +17,7 @@ constexpr double longest_step_s = 0.02;     // creep is solved within a step: th
 constexpr double shortest_step_s = 1e-8;
 constexpr double longest_free_step_s = 0.1;  // while the platform comes up and nothing touches
 constexpr double rest_speed_mm_per_s = 0.5;
+constexpr double least_clamp_slip_s = 0.05;
 constexpr int most_steps = 20000;
 
 std::string millimetres(double value) {
@@ -30,6 +31,10 @@ void check_options(const ThermoformOptions& o) {
     throw Error(ErrorCode::invalid_input, "clamp_opening_x_mm", "The clamp opening is wider than the sheet: make it at most " + millimetres(o.sheet_x_mm) + ".");
   if (o.clamp_opening_y_mm > o.sheet_y_mm)
     throw Error(ErrorCode::invalid_input, "clamp_opening_y_mm", "The clamp opening is longer than the sheet: make it at most " + millimetres(o.sheet_y_mm) + ".");
+  const double most_slip_mm = 0.15 * std::min(o.clamp_opening_x_mm, o.clamp_opening_y_mm);
+  if (o.clamp_slip_mm > most_slip_mm)
+    throw Error(ErrorCode::invalid_input, "clamp_slip_mm", "The clamp gives way too far for so small an opening: make it at most " + millimetres(most_slip_mm) + ".");
+  check_effects(o);
 }
 
 /// The model must stand within the opening, above the plate, and below the sagging sheet when all begins.
@@ -41,10 +46,12 @@ void check_placement(const MouldShape& shape, const Placement& placement, const 
   }
   if (box.empty()) throw Error(ErrorCode::invalid_input, "sink_mm", "Nothing of the model stands above the base plate: sink it less.");
   const double x = std::max(-box.lower.x(), box.upper.x()), y = std::max(-box.lower.y(), box.upper.y());
-  if (x > 0.5 * o.clamp_opening_x_mm || y > 0.5 * o.clamp_opening_y_mm) {
-    const bool wide = x - 0.5 * o.clamp_opening_x_mm > y - 0.5 * o.clamp_opening_y_mm;
+  // The rim that slips out of the clamp must not meet the model either.
+  const double room_x = 0.5 * o.clamp_opening_x_mm - o.clamp_slip_mm, room_y = 0.5 * o.clamp_opening_y_mm - o.clamp_slip_mm;
+  if (x > room_x || y > room_y) {
+    const bool wide = x - room_x > y - room_y;
     throw Error(ErrorCode::invalid_input, "size_mm",
-                "The model reaches " + millimetres(wide ? x - 0.5 * o.clamp_opening_x_mm : y - 0.5 * o.clamp_opening_y_mm) + " beyond the clamp opening in " +
+                "The model reaches " + millimetres(wide ? x - room_x : y - room_y) + " beyond the clamp opening in " +
                     (wide ? "x" : "y") + ": make it smaller, or move or turn it.");
   }
   const double room = o.platform_travel_mm + o.clamp_height_mm;
@@ -127,6 +134,8 @@ void measure(const SheetDynamics& dynamics, const MouldContact& contact, const T
   const std::vector<double> thickness = dynamics.vertex_thickness_mm(x);
   sheet.thickness_mm = Eigen::Map<const Eigen::VectorXd>(thickness.data(), n);
   sheet.stretch = o.sheet_thickness_mm * sheet.thickness_mm.cwiseInverse();
+  for (Eigen::Index i = 0; i < n; ++i)
+    sheet.stretch[i] *= thickness_factor(o, 2 * sheet.sheet_mm(i, 0) / o.clamp_opening_x_mm, 2 * sheet.sheet_mm(i, 1) / o.clamp_opening_y_mm);
   sheet.contact_s = Eigen::Map<const Eigen::VectorXd>(dynamics.contact_time_s().data(), n);
 
   double volume = 0, flat_volume = 0;
@@ -188,9 +197,10 @@ void measure(const SheetDynamics& dynamics, const MouldContact& contact, const T
 
 }  // namespace
 
-FormedResult form_sheet(std::shared_ptr<const MouldShape> shape, const Placement& placement, const ThermoformOptions& o, Context& context) {
+FormedResult form_sheet(std::shared_ptr<const MouldShape> shape, const Placement& nominal, const ThermoformOptions& o, Context& context) {
   Stopwatch watch;
   check_options(o);
+  const Placement placement = displaced(nominal, o);
   check_placement(*shape, placement, o);
   const auto contact = std::make_shared<const MouldContact>(std::move(shape), placement, clamp_opening_mm(o), contact_tolerance_mm);
   const SheetMesh mesh = make_sheet_mesh(clamp_opening_mm(o), o.triangles);
@@ -198,6 +208,7 @@ FormedResult form_sheet(std::shared_ptr<const MouldShape> shape, const Placement
   // From the platform the sheet lies high above at first.
   SheetDynamics dynamics(mesh, o, o.clamp_height_mm - start_z, contact);
   FormedResult result;
+  result.placement = placement;
   FrameRecorder recorder(o, start_z);
   recorder.record(dynamics, FormingPhase::relax);
   Driver driver(dynamics, recorder, context);
@@ -228,19 +239,23 @@ FormedResult form_sheet(std::shared_ptr<const MouldShape> shape, const Placement
   }
   {
     const auto span = context.span(0.45, 0.98, "Drawing the vacuum");
-    const double full = o.vacuum_kpa * 1e-3;
+    const double full = o.vacuum_kpa * 1e-3 * (1 - o.weak_vacuum);
     const auto pressure = [&](double t) { return o.vacuum_ramp_s > 0 ? full * std::min(1.0, t / o.vacuum_ramp_s) : full; };
+    // The rim follows the pressure, but even an instant vacuum takes a while to drag it.
+    const double slip_s = std::max(o.vacuum_ramp_s, least_clamp_slip_s);
+    const auto clamp_slip_mm = [&](double t) { return o.clamp_slip_mm * (1 - o.weak_vacuum) * std::min(1.0, t / slip_s); };
     double t_end = 0;
     driver.run(FormingPhase::vacuum, o.time_limit_s, 5e-4, longest_step_s, dynamics.step_limit_mm(),
-               [&](double t, double) {
+               [&](double t, double dt) {
                  StepLoad load;
                  t_end = t;
                  load.pressure_mpa = pressure(t);
+                 load.clamp_slip_mm = clamp_slip_mm(t) - clamp_slip_mm(t - dt);
                  return load;
                },
                [&](double) {
                  if (dynamics.free_count() == 0) return true;
-                 return t_end >= o.vacuum_ramp_s && dynamics.last_step_s() > 0.5 * longest_step_s &&
+                 return t_end >= (o.clamp_slip_mm > 0 ? slip_s : o.vacuum_ramp_s) && dynamics.last_step_s() > 0.5 * longest_step_s &&
                         dynamics.last_move_mm() < rest_speed_mm_per_s * dynamics.last_step_s();
                },
                "Drawing the vacuum");

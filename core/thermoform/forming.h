@@ -27,6 +27,7 @@ struct FormingFrame {
 
 struct FormedResult {
   FormedSheet sheet;
+  Placement placement;                   // where the model stood, its displacements included
   std::vector<FormingFrame> frames;      // first the flat sheet, last the final one
   double sag_mm = 0;                     // at the end of the relaxation
   double phase_end_s[3] = {0, 0, 0};
@@ -46,9 +47,9 @@ struct FormedResult {
   double seconds = 0;
 };
 
-/// Forms a sheet over `shape`, standing at `placement`. The same bits at every call and for any number of threads.
+/// Forms a sheet over `shape`, meant to stand at `nominal`: the options' effects (sheet_effects.h) displace it. The same bits at every call and for any number of threads.
 /// Throws Error: invalid_input (a model that does not fit the machine, a clamp opening larger than the sheet, values that
 /// contradict each other), could_not_solve, cancelled.
-FormedResult form_sheet(std::shared_ptr<const MouldShape> shape, const Placement& placement, const ThermoformOptions& options, Context& context);
+FormedResult form_sheet(std::shared_ptr<const MouldShape> shape, const Placement& nominal, const ThermoformOptions& options, Context& context);
 
 }  // namespace formwright

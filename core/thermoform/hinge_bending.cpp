@@ -42,12 +42,13 @@ HingeBending::HingeBending(const Triangles& F, int vertex_count, double young_mp
   }
 }
 
-void HingeBending::begin_step(const Positions& x, std::span<const double> thickness_mm, bool keep_rest_angles) {
+void HingeBending::begin_step(const Positions& x, std::span<const double> thickness_mm, std::span<const double> stiffness_factor, bool keep_rest_angles) {
   for (Hinge& hinge : hinges_) {
     const Vec3 a = x.row(hinge.vertex[0]), b = x.row(hinge.vertex[1]), c = x.row(hinge.vertex[2]), d = x.row(hinge.vertex[3]);
     const double thickness = 0.5 * (thickness_mm[static_cast<std::size_t>(hinge.face[0])] + thickness_mm[static_cast<std::size_t>(hinge.face[1])]);
     const double areas = 0.5 * ((b - a).cross(c - a).norm() + (b - a).cross(d - a).norm());
-    hinge.stiffness = modulus_ * thickness * thickness * thickness * 0.5 * (b - a).squaredNorm() / std::max(areas, 1e-12);
+    const double factor = 0.5 * (stiffness_factor[static_cast<std::size_t>(hinge.face[0])] + stiffness_factor[static_cast<std::size_t>(hinge.face[1])]);
+    hinge.stiffness = factor * modulus_ * thickness * thickness * thickness * 0.5 * (b - a).squaredNorm() / std::max(areas, 1e-12);
     if (!keep_rest_angles) hinge.rest_angle = hinge_angle(a, b, c, d, nullptr);
   }
 }

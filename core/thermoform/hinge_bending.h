@@ -23,8 +23,8 @@ class HingeBending {
   const std::vector<int>& vertices() const { return vertices_; }
 
   /// Lengths, areas and the triangles' thickness (m, mm) at `x`; the rest angles become those at `x`, as the thesis does
-  /// (unless `keep_rest_angles`).
-  void begin_step(const Positions& x, std::span<const double> thickness_mm, bool keep_rest_angles = false);
+  /// (unless `keep_rest_angles`). `stiffness_factor`: of each triangle (m).
+  void begin_step(const Positions& x, std::span<const double> thickness_mm, std::span<const double> stiffness_factor, bool keep_rest_angles = false);
 
   /// mJ, one a hinge in the order of vertices(): E_b = sum stiffness (theta - rest angle)^2.
   std::vector<double> stiffness_mj() const;

@@ -5,115 +5,21 @@
 #include <cmath>
 #include <limits>
 
-#pragma GCC diagnostic ignored "-Wpsabi"  // 32-byte vectors stay within inlined functions
+#include "thermoform/membrane_group.h"
 
 namespace formwright {
 
-struct alignas(32) Membrane::Group {
-  // Inverse of [rest edge 1, rest edge 2] (2 x 2): of the present rest state, and of the flat sheet.
-  Double4 b00, b01, b10, b11, flat00, flat01, flat10, flat11;
-  Double4 volume;                  // mm^3
-  Double4 weight;                  // rest area times thickness, of this step
-  Double4 creep;                   // 1/s, of this step: 0 where nothing may flow
-  Double4 past00, past01, past11;  // strain at the start of the step
-  std::array<std::array<int, 4>, 3> vertex;
-  int first_face = 0, lanes = 4;
-  int least_vertex = 0, most_vertex = 0;
-  bool active = true;  // some vertex is free
-};
-
-namespace {
-
-struct Strain {
-  Double4 e00, e01, e11;
-};
-
-/// Deformation of four triangles: f0, f1 are the images of the rest frame's axes.
-struct Deformation {
-  Double4 f0[3], f1[3];
-  Strain strain;
-};
-
-inline void gather(const Positions& x, const std::array<int, 4>& vertex, Double4 (&out)[3]) {
-  for (int k = 0; k < 3; ++k)
-    out[k] = Double4{x.data()[3 * vertex[0] + k], x.data()[3 * vertex[1] + k], x.data()[3 * vertex[2] + k], x.data()[3 * vertex[3] + k]};
-}
-
-inline Double4 root(const Double4& a) { return Double4{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])}; }
-inline Double4 most(const Double4& a, const Double4& b) { return a > b ? a : b; }
-
-/// Green strain, eq. (4.1), in an orthonormal frame of the rest triangle: (F^T F - 1)/2.
-template <class G>
-inline void deform(const G& g, const Positions& x, bool from_flat, Deformation& d) {
-  Double4 x0[3], x1[3], x2[3];
-  gather(x, g.vertex[0], x0);
-  gather(x, g.vertex[1], x1);
-  gather(x, g.vertex[2], x2);
-  const Double4 &b00 = from_flat ? g.flat00 : g.b00, &b01 = from_flat ? g.flat01 : g.b01;
-  const Double4 &b10 = from_flat ? g.flat10 : g.b10, &b11 = from_flat ? g.flat11 : g.b11;
-  Double4 c00{}, c01{}, c11{};
-  for (int k = 0; k < 3; ++k) {
-    const Double4 edge1 = x1[k] - x0[k], edge2 = x2[k] - x0[k];
-    d.f0[k] = edge1 * b00 + edge2 * b10;
-    d.f1[k] = edge1 * b01 + edge2 * b11;
-    c00 += d.f0[k] * d.f0[k];
-    c01 += d.f0[k] * d.f1[k];
-    c11 += d.f1[k] * d.f1[k];
-  }
-  d.strain = {0.5 * (c00 - 1.0), 0.5 * c01, 0.5 * (c11 - 1.0)};
-}
-
-inline Double4 norm(const Strain& e) { return root(e.e00 * e.e00 + 2.0 * e.e01 * e.e01 + e.e11 * e.e11); }
-
-/// How much of the trial strain stays elastic when the step's creep is solved implicitly:
-///   total strain:   eps (1 + a) = trial,                      a = dt c_creep
-///   elastic excess: |eps| + a (|eps| - c_yield) = |trial|     (only the excess flows)
-/// and, for the tangent, how much of that falls away along the strain itself.
-struct Flow {
-  Double4 kept, lost;
-};
-inline void flow(const Strain& trial, const Double4& creep, double dt_s, YieldRule rule, double yield_strain, Flow& result) {
-  const Double4 one = Double4{} + 1.0, zero{};
-  if (!std::isfinite(dt_s)) {
-    result = {one, zero};
-    return;
-  }
-  const Double4 a = creep * dt_s;
-  if (rule == YieldRule::total_strain) {
-    result = {one / (one + a), zero};
-    return;
-  }
-  const Double4 size = most(norm(trial), Double4{} + 1e-30);
-  const Double4 threshold = a * yield_strain / ((one + a) * size);
-  const auto yields = size > Double4{} + yield_strain;
-  result.kept = yields ? one / (one + a) + threshold : one;
-  result.lost = yields ? threshold : zero;
-}
-
-inline double lane_sum(const Double4& a, int lanes) {
-  double sum = 0;
-  for (int l = 0; l < lanes; ++l) sum += a[l];
-  return sum;
-}
-
-/// 2D Lame parameters of plane stress, MPa; lambda is that of the stable neo-Hookean energy
-/// mu/2 (tr C - 2) - mu (J - 1) + lambda/2 (J - 1)^2 (Smith, de Goes, Kim 2018, in two dimensions and without the
-/// logarithm, which keeps rest stability when lambda = lambda_Lame + mu).
-struct Lame {
-  double mu, lambda;
-};
-Lame lame(const MembraneMaterial& m) {
-  const double mu = m.young_mpa / (2 * (1 + m.poisson_ratio));
-  return {mu, m.young_mpa * m.poisson_ratio / (1 - m.poisson_ratio * m.poisson_ratio) + mu};
-}
-
-}  // namespace
+using namespace membrane_detail;
 
 Membrane::~Membrane() = default;
 Membrane::Membrane(Membrane&&) noexcept = default;
 
-Membrane::Membrane(const TextureCoordinates& flat_mm, const Triangles& F, double thickness_mm, const MembraneMaterial& material)
+Membrane::Membrane(const TextureCoordinates& flat_mm, const Triangles& F, double thickness_mm, const MembraneMaterial& material, const SheetVariation& variation)
     : F_(F), material_(material), thickness_mm_(static_cast<std::size_t>(F.rows()), thickness_mm) {
+  for (std::size_t f = 0; f < variation.thickness.size(); ++f) thickness_mm_[f] *= variation.thickness[f];
+  along_ = std::sqrt(1 + material.anisotropy);
+  across_ = std::sqrt(1 - material.anisotropy);
+  diagonal_ = std::sqrt(along_ * across_);
   const int faces = face_count();
   groups_.resize(static_cast<std::size_t>((faces + 3) / 4));
   for (int g = 0; g < static_cast<int>(groups_.size()); ++g) {
@@ -140,7 +46,9 @@ Membrane::Membrane(const TextureCoordinates& flat_mm, const Triangles& F, double
       group.b01[l] = group.flat01[l] = -edges(0, 1) / doubled_area;
       group.b10[l] = group.flat10[l] = -edges(1, 0) / doubled_area;
       group.b11[l] = group.flat11[l] = edges(0, 0) / doubled_area;
-      group.volume[l] = 0.5 * doubled_area * thickness_mm;
+      group.volume[l] = 0.5 * doubled_area * thickness_mm_[static_cast<std::size_t>(face)];
+      group.stiffness[l] = variation.stiffness.empty() ? 1 : variation.stiffness[static_cast<std::size_t>(face)];
+      group.chill[l] = 1;
       if (l < group.lanes) volume_mm3_.push_back(group.volume[l]);
     }
   }
@@ -165,8 +73,8 @@ void Membrane::begin_step(const Positions& x, const HeldVertices& held) {
     const Double4 thickness = g.volume / area;
     // With h = V/A alone a bubble has a largest pressure, beyond which it would grow until it is nothing; plastic that
     // has been drawn out that far hardens. So the stiffness stays that of the thickness at which the flow stops.
-    g.weight = rest_area * most(thickness, Double4{} + material_.flow_stop_mm);
-    g.creep = Double4{} + material_.creep_per_s;
+    g.weight = rest_area * most(thickness, Double4{} + material_.flow_stop_mm) * (g.stiffness * g.chill);
+    g.creep = material_.creep_per_s / g.chill;
     if (material_.yield_rule == YieldRule::total_strain) {
       deform(g, x, true, total);
       g.creep = norm(total.strain) > Double4{} + material_.yield_strain ? g.creep : Double4{};
@@ -181,13 +89,21 @@ void Membrane::begin_step(const Positions& x, const HeldVertices& held) {
   }
 }
 
-void Membrane::end_step(const Positions& x, double dt_s) {
+void Membrane::end_step(const Positions& x, double dt_s, std::span<const double> chill) {
   Deformation d;
   Flow f;
   for (Group& g : groups_) {
     if (!g.active) continue;
     deform(g, x, false, d);
     flow(d.strain, g.creep, dt_s, material_.yield_rule, material_.yield_strain, f);
+    if (!chill.empty()) {
+      // What grows stiffer goes on pulling as hard as it did: the elastic strain that it no longer needs becomes permanent.
+      for (int l = 0; l < 4; ++l) {
+        const double now = chill[static_cast<std::size_t>(std::min(g.first_face + l, face_count() - 1))];
+        f.kept[l] *= g.chill[l] / now;
+        g.chill[l] = now;
+      }
+    }
     // The plastic strain of this step makes the new rest metric N = 1 + 2 eps_p; with N = U^T U, B becomes B U^-1.
     const Double4 part = 2.0 * (1.0 - f.kept);
     const Double4 n00 = 1.0 + part * d.strain.e00, n01 = part * d.strain.e01, n11 = 1.0 + part * d.strain.e11;
@@ -198,6 +114,10 @@ void Membrane::end_step(const Positions& x, double dt_s) {
     g.b00 = c00;
     g.b10 = c10;
   }
+}
+
+inline membrane_detail::Strain Membrane::scaled(const membrane_detail::Strain& strain) const {
+  return {along_ * strain.e00, diagonal_ * strain.e01, across_ * strain.e11};
 }
 
 void Membrane::use_matrix(const BlockMatrix& matrix) {
@@ -211,9 +131,10 @@ template <ElasticLaw law, bool with_matrix>
 void Membrane::add_group(const Group& g, const Positions& x, double dt_s, int begin, int end, Positions& force, BlockMatrix* matrix) const {
   Deformation d;
   deform(g, x, false, d);
-  const Strain& e = d.strain;
   Flow f;
-  flow(e, g.creep, dt_s, material_.yield_rule, material_.yield_strain, f);
+  flow(d.strain, g.creep, dt_s, material_.yield_rule, material_.yield_strain, f);
+  // A sheet that is stiffer along x is an even one whose strains count for more there.
+  const Strain e = scaled(d.strain);
   const double nu = material_.poisson_ratio, plane = material_.young_mpa / (1 - nu * nu);
   const double viscous = material_.viscosity_s / dt_s;  // 0 for an endless step
 
@@ -255,11 +176,21 @@ void Membrane::add_group(const Group& g, const Positions& x, double dt_s, int be
     d11 = f.kept * d11 - lost * q1 * q1 + viscous * plane;
     d12 = f.kept * d12 - lost * q1 * q2;
     d22 = f.kept * d22 - lost * q2 * q2 + viscous * plane * 0.5 * (1 - nu);
+    d00 *= along_ * along_;
+    d01 *= along_ * across_;
+    d02 *= along_ * diagonal_;
+    d11 *= across_ * across_;
+    d12 *= across_ * diagonal_;
+    d22 *= diagonal_ * diagonal_;
   }
-  const Double4 v00 = e.e00 - g.past00, v01 = e.e01 - g.past01, v11 = e.e11 - g.past11;
+  const Strain past = scaled({g.past00, g.past01, g.past11});
+  const Double4 v00 = e.e00 - past.e00, v01 = e.e01 - past.e01, v11 = e.e11 - past.e11;
   s00 += viscous * plane * (v00 + nu * v11);
   s01 += viscous * plane * (1 - nu) * v01;
   s11 += viscous * plane * (nu * v00 + v11);
+  s00 *= along_;
+  s01 *= diagonal_;
+  s11 *= across_;
 
   const Double4& w = g.weight;
   Double4 force1[3], force2[3];
@@ -365,7 +296,7 @@ double Membrane::energy(const Positions& x, double dt_s) const {
   for (const Group& g : groups_) {
     if (!g.active) continue;
     deform(g, x, false, d);
-    const Strain& e = d.strain;
+    const Strain e = scaled(d.strain), past = scaled({g.past00, g.past01, g.past11});
     Double4 density;
     if (material_.elastic_law == ElasticLaw::st_venant_kirchhoff) {
       density = stretching(e.e00, e.e01, e.e11);
@@ -375,10 +306,17 @@ double Membrane::energy(const Positions& x, double dt_s) const {
       const Double4 J = root(most(c00 * c11 - c01 * c01, Double4{} + 1e-9));
       density = 0.5 * l.mu * (c00 + c11 - 2.0) - l.mu * (J - 1.0) + 0.5 * l.lambda * (J - 1.0) * (J - 1.0);
     }
-    density += material_.viscosity_s / dt_s * stretching(e.e00 - g.past00, e.e01 - g.past01, e.e11 - g.past11);
+    density += material_.viscosity_s / dt_s * stretching(e.e00 - past.e00, e.e01 - past.e01, e.e11 - past.e11);
     sum += lane_sum(g.weight * density, g.lanes);
   }
   return sum;
+}
+
+std::vector<double> Membrane::stiffness_factors() const {
+  std::vector<double> factors;
+  for (const Group& g : groups_)
+    for (int l = 0; l < g.lanes; ++l) factors.push_back(g.stiffness[l] * g.chill[l]);
+  return factors;
 }
 
 Vec3 Membrane::rest_squared_lengths(int face) const {

@@ -23,7 +23,17 @@ struct MembraneMaterial {
   double yield_strain = 0.1;
   double viscosity_s = 2.5e-5;
   double flow_stop_mm = 0.2;
+  double anisotropy = 0;  // stiffness along x times 1 + anisotropy, along y times 1 - anisotropy, between them their geometric mean
 };
+
+/// What varies over the sheet: factors, one a triangle; nothing where all are 1.
+struct SheetVariation {
+  std::vector<double> thickness, stiffness;
+};
+
+namespace membrane_detail {
+struct Strain;
+}
 
 /// Which vertices do not move by themselves: clamped or stuck.
 using HeldVertices = std::vector<char>;
@@ -34,7 +44,7 @@ using HeldVertices = std::vector<char>;
 class Membrane {
  public:
   /// `flat_mm`: n x 2, the undeformed sheet, whose triangles have positive area.
-  Membrane(const TextureCoordinates& flat_mm, const Triangles& F, double thickness_mm, const MembraneMaterial& material);
+  Membrane(const TextureCoordinates& flat_mm, const Triangles& F, double thickness_mm, const MembraneMaterial& material, const SheetVariation& variation = {});
 
   /// Looks up where add_forces will write; `matrix` must live, and keep its pattern, as long as it is used.
   void use_matrix(const BlockMatrix& matrix);
@@ -52,11 +62,14 @@ class Membrane {
   /// viscosity out; creep is ignored).
   double energy(const Positions& x, double dt_s) const;
 
-  /// Plastic flow of a step of `dt_s` that ended at `x`: eps_p += dt c_creep eps_e, implicitly.
-  void end_step(const Positions& x, double dt_s);
+  /// Plastic flow of a step of `dt_s` that ended at `x`: eps_p += dt c_creep eps_e, implicitly. `chill` (m, or empty for as before):
+  /// from now on a triangle's stiffness is that many times its own, its flow that many times slower, its stress as it was.
+  void end_step(const Positions& x, double dt_s, std::span<const double> chill = {});
 
   const std::vector<double>& thickness_mm() const { return thickness_mm_; }  // m, of the last begin_step
   const std::vector<double>& volume_mm3() const { return volume_mm3_; }      // m, constant
+  /// m: how many times stiffer than the material's modulus each triangle is now.
+  std::vector<double> stiffness_factors() const;
   const Triangles& F() const { return F_; }
   int face_count() const { return static_cast<int>(F_.rows()); }
 
@@ -67,6 +80,8 @@ class Membrane {
 
  private:
   struct alignas(32) Group;  // four triangles
+  /// What the even law sees of a strain.
+  membrane_detail::Strain scaled(const membrane_detail::Strain& strain) const;
   template <ElasticLaw law, bool with_matrix>
   void add_group(const Group& group, const Positions& x, double dt_s, int begin, int end, Positions& force, BlockMatrix* matrix) const;
 
@@ -74,6 +89,7 @@ class Membrane {
   MembraneMaterial material_;
   std::vector<Group> groups_;
   std::vector<double> thickness_mm_, volume_mm3_;
+  double along_ = 1, across_ = 1, diagonal_ = 1;  // square roots of the stiffness's factors in x, in y, between
   std::vector<std::array<int, 9>> slots_;  // per triangle, of corner a with corner b
 
  public:

@@ -15,7 +15,26 @@ constexpr double settled_share = 0.02;     // of the step's limit: an increment 
 constexpr double wrinkle_share = 0.2;      // so much a few vertices may go on moving: squeezed triangles buckle back and forth
 
 MembraneMaterial material_of(const ThermoformOptions& o) {
-  return {o.elastic_law, o.yield_rule, o.young_modulus_pa * 1e-6, o.poisson_ratio, o.creep_per_s, o.yield_strain, o.viscosity_s, o.flow_stop_mm};
+  return {o.elastic_law, o.yield_rule, o.young_modulus_pa * 1e-6, o.poisson_ratio, o.creep_per_s, o.yield_strain, o.viscosity_s, o.flow_stop_mm, o.anisotropy};
+}
+
+/// Stiffness and thickness at the triangles' middles.
+SheetVariation variation_of(const SheetMesh& sheet, const ThermoformOptions& o) {
+  SheetVariation variation;
+  for (Eigen::Index f = 0; f < sheet.F.rows(); ++f) {
+    const Vec2 middle = (sheet.flat_mm.row(sheet.F(f, 0)) + sheet.flat_mm.row(sheet.F(f, 1)) + sheet.flat_mm.row(sheet.F(f, 2))).transpose() / 3;
+    const double xi = 2 * middle.x() / o.clamp_opening_x_mm, eta = 2 * middle.y() / o.clamp_opening_y_mm;
+    variation.stiffness.push_back(stiffness_factor(o, xi, eta));
+    variation.thickness.push_back(thickness_factor(o, xi, eta));
+  }
+  return variation;
+}
+
+/// Where the rim has gone, per mm by which the clamp gives way: inwards on every side, at the corners from both, and between so
+/// smoothly that no triangle at the rim is turned over.
+Vec2 way_in(const Vec2& flat_mm, const ThermoformOptions& o) {
+  const double xi = 2 * flat_mm.x() / o.clamp_opening_x_mm, eta = 2 * flat_mm.y() / o.clamp_opening_y_mm;
+  return {-xi * xi * xi, -eta * eta * eta};
 }
 
 double shortest_edge(const SheetMesh& sheet) {
@@ -40,7 +59,7 @@ SheetDynamics::SheetDynamics(const SheetMesh& sheet, const ThermoformOptions& op
     : sheet_(sheet),
       options_(options),
       contact_(std::move(contact)),
-      membrane_(sheet.flat_mm, sheet.F, options.sheet_thickness_mm, material_of(options)),
+      membrane_(sheet.flat_mm, sheet.F, options.sheet_thickness_mm, material_of(options), variation_of(sheet, options)),
       points_(sharp_points(contact_.get(), shortest_edge(sheet)), shortest_edge(sheet), 50 * options.young_modulus_pa * 1e-6 * options.sheet_thickness_mm),
       cg_(static_cast<int>(sheet.flat_mm.rows())),
       edge_mm_(shortest_edge(sheet)),
@@ -113,7 +132,7 @@ void SheetDynamics::assemble(const Positions& x, double dt_s, const StepLoad& lo
 Positions SheetDynamics::forces(const Positions& x, double dt_s, const StepLoad& load, BlockMatrix* matrix) {
   Positions force(x.rows(), 3);
   membrane_.begin_step(x_, held_);
-  if (bending_) bending_->begin_step(x_, membrane_.thickness_mm());
+  if (bending_) bending_->begin_step(x_, membrane_.thickness_mm(), membrane_.stiffness_factors());
   assemble(x, dt_s, load, force, matrix);
   return force;
 }
@@ -147,7 +166,7 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
   const std::size_t points_before = points_.contacts().size();
   Stopwatch watch;
   membrane_.begin_step(x_, held_);
-  if (bending_) bending_->begin_step(x_, membrane_.thickness_mm());
+  if (bending_) bending_->begin_step(x_, membrane_.thickness_mm(), membrane_.stiffness_factors());
   std::vector<double> radius = vertex_thickness_mm(x_);
   for (double& r : radius) r *= 0.5;
   const Positions from = x_;
@@ -155,8 +174,10 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
   BlockVector right_side(held_.size()), direction(held_.size());
   const bool has_guess = guess_.rows() == x_.rows();
   for (Eigen::Index i = 0; i < x.rows(); ++i) {
-    if (sheet_.clamped[static_cast<std::size_t>(i)]) x.row(i) += load.clamp_shift.transpose();
-    else if (!held_[static_cast<std::size_t>(i)]) {
+    if (sheet_.clamped[static_cast<std::size_t>(i)]) {
+      x.row(i) += load.clamp_shift.transpose();
+      if (load.clamp_slip_mm != 0) x.row(i).head<2>() += load.clamp_slip_mm * way_in(sheet_.flat_mm.row(i).transpose(), options_).transpose();
+    } else if (!held_[static_cast<std::size_t>(i)]) {
       if (has_guess) x.row(i) = guess_.row(i);
       else x.row(i) += dt_s * v_.row(i);
     }

@@ -263,7 +263,7 @@ TEST(HingeBending, forces_are_the_negative_gradient_of_the_energy) {
   const SheetMesh sheet = small_sheet();
   HingeBending bending(sheet.F, static_cast<int>(sheet.flat_mm.rows()), 2.75, 0.35, 1e-3);
   const std::vector<double> thickness(static_cast<std::size_t>(sheet.F.rows()), 0.7);
-  bending.begin_step(shaken(sheet, 0.1, 8), thickness);
+  bending.begin_step(shaken(sheet, 0.1, 8), thickness, std::vector<double>(thickness.size(), 1));
   Positions x = shaken(sheet, 0.4, 9), force = Positions::Zero(x.rows(), 3);
   bending.add_forces(x, 2e-3, force, nullptr);
   const double step = 1e-6, scale = force.cwiseAbs().maxCoeff();

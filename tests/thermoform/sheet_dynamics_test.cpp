@@ -134,7 +134,8 @@ double plate_deflection(int triangles, double a, double young_mpa, double nu, do
   HingeBending bending(sheet.F, n, young_mpa, nu, 0);
   Positions x = Positions::Zero(n, 3);
   x.leftCols(2) = sheet.flat_mm;
-  bending.begin_step(x, std::vector<double>(static_cast<std::size_t>(sheet.F.rows()), thickness));
+  const auto faces = static_cast<std::size_t>(sheet.F.rows());
+  bending.begin_step(x, std::vector<double>(faces, thickness), std::vector<double>(faces, 1));
   std::vector<int> unknown(static_cast<std::size_t>(n), -1);
   int free = 0;
   for (int i = 0; i < n; ++i)

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "base/error.h"
@@ -11,9 +12,13 @@
 namespace formwright {
 namespace {
 
+constexpr std::size_t refitted_singles = 8, leader_count = 4;
 constexpr int refitted_pairs = 6;
+constexpr const char* fitting = "Fitting the causes";
 constexpr double explained_share = 0.6;   // of the base model's structure (its variance) that a named cause must explain
 constexpr double likely = 0.5;
+constexpr double least_gain = 0.02;        // of the held-out error
+constexpr double least_movement = 0.5;     // of the known misfit
 constexpr double inseparable_likeness = 0.9;
 
 std::vector<int> with_role(const ForwardModel& model, ParameterRole role) {
@@ -60,7 +65,6 @@ class Diagnostician {
     screen();
     refit();
     judge();
-    measure_gain();
     result_.simulations = bag_.simulations();
     result_.seconds = watch.seconds();
     return std::move(result_);
@@ -120,13 +124,31 @@ class Diagnostician {
     return best;
   }
 
-  /// Fits base parameters and those of `causes` together, from where the linearised model has them.
-  Refit refit_with(const std::vector<int>& causes) {
+  /// Fits base parameters and those of `causes` together, from the best of `starts`.
+  ParameterFit fit_from(const std::vector<int>& causes, double structure, const std::vector<Eigen::VectorXd>& starts, std::vector<Sensitivities> known, int iterations) {
+    const std::vector<int> free = parameters_of(model_, causes);
+    const StructuredObjective objective(model_, *misfit_, nearest_size(structure), result_.liberties, result_.liberty_sensitivities);
+    const auto predictions = bag_.run(starts, context_, fitting);
+    std::size_t best = 0;
+    double best_value = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+      if (!predictions[i]) continue;
+      const double value = objective.value(residuals(model_, *predictions[i]), starts[i]);
+      if (value < best_value) best = i, best_value = value;
+    }
+    FitOptions options;
+    options.most_iterations = iterations;
+    options.tolerance = 0.01;
+    options.renew_sensitivities = false;
+    return fit_parameters(bag_, objective, free, starts[best], std::move(known), options, context_, fitting);
+  }
+
+  /// From where the linearised model has them, with the sensitivities it was made of.
+  void refit_with(const std::vector<int>& causes) {
     const Hypothesis& plain = screened(causes, false);
     const Hypothesis& rough = screened(causes, true);
     const Hypothesis& start = plain.probability >= rough.probability ? plain : rough;
     const std::vector<int> free = parameters_of(model_, causes);
-    const StructuredObjective objective(model_, *misfit_, nearest_size(start.structure), result_.liberties, result_.liberty_sensitivities);
     // Secants hold within a few probes: a longer way is gone in steps.
     Eigen::VectorXd u = result_.base.u;
     for (const int p : free) {
@@ -136,66 +158,78 @@ class Diagnostician {
     std::vector<Eigen::VectorXd> starts{result_.base.u, u};
     for (const auto& r : refits_)  // a pair may start from what its parts are like alone
       if (causes.size() == 2 && r.causes.size() == 1 && (r.causes[0] == causes[0] || r.causes[0] == causes[1])) starts.push_back(r.fit.u);
-    const auto predictions = bag_.run(starts, context_, "Fitting the causes");
-    std::size_t best = 0;
-    double best_value = 1e300;
-    for (std::size_t i = 0; i < starts.size(); ++i) {
-      if (!predictions[i]) continue;
-      const double value = objective.value(residuals(model_, *predictions[i]), starts[i]);
-      if (value < best_value) best = i, best_value = value;
+    refits_.push_back({fit_from(causes, start.structure, starts, chosen(sensitivities_, columns_, free), 3), causes});
+    weigh_refit(refits_.back());
+  }
+
+  /// Once more, with sensitivities taken where the fit stands; what was learnt with more causes counts for fewer.
+  void polish(Refit& refit) {
+    std::vector<Eigen::VectorXd> starts{refit.fit.u};
+    for (const Refit& larger : refits_) {
+      if (larger.causes.size() <= refit.causes.size() || !std::includes(larger.causes.begin(), larger.causes.end(), refit.causes.begin(), refit.causes.end())) continue;
+      Eigen::VectorXd u = larger.fit.u;
+      for (std::size_t p = 0; p < model_.parameters().size(); ++p)
+        if (std::find(refit.fit.free.begin(), refit.fit.free.end(), static_cast<int>(p)) == refit.fit.free.end()) u[static_cast<Eigen::Index>(p)] = 0;
+      starts.push_back(u);
     }
-    FitOptions options;
-    options.most_iterations = 5;
-    options.tolerance = 0.01;
-    return {fit_parameters(bag_, objective, free, starts[best], chosen(sensitivities_, columns_, free), options, context_, "Fitting the causes"), causes};
+    double structure = 0;
+    for (const Hypothesis& h : result_.hypotheses)
+      if (h.causes == refit.causes) structure = std::max(structure, h.structure * (h.unknown_structure ? 0 : 1));
+    refit.fit = fit_from(refit.causes, structure, starts, {}, 3);
+    weigh_refit(refit);
   }
 
   /// The marginal likelihood of an explanation where its fit has it.
   void weigh_refit(const Refit& refit) {
     const std::vector<int> columns = joined(refit.fit.free, result_.liberties);
     const GramByStructure gram = misfit_->gram(residuals(model_, refit.fit.predictions), side_by_side(refit.fit.sensitivities, result_.liberty_sensitivities));
-    for (Hypothesis& h : result_.hypotheses)
-      if (h.causes == refit.causes) {
-        weigh(model_, gram, columns, refit.fit.u, h);
-        h.u = refit.fit.u;
-      }
+    for (const bool unknown : {false, true}) {
+      auto at = std::find_if(result_.hypotheses.begin(), result_.hypotheses.end(), [&](const Hypothesis& h) { return h.causes == refit.causes && h.unknown_structure == unknown; });
+      if (at == result_.hypotheses.end()) at = result_.hypotheses.insert(at, screened(refit.causes, unknown));
+      weigh(model_, gram, columns, refit.fit.u, *at);
+      at->u = refit.fit.u;
+    }
   }
 
   void refit() {
-    const auto span = context_.span(0.4, 0.85, "Fitting the causes");
+    const auto span = context_.span(0.4, 0.85, fitting);
     std::vector<std::vector<int>> singles{{}};
-    for (int cause = 0; cause < static_cast<int>(model_.causes().size()); ++cause) singles.push_back({cause});
-    const double parts = static_cast<double>(singles.size()) + (options_.pairs ? refitted_pairs : 0);
+    for (const Hypothesis& h : screened_)
+      if (h.causes.size() == 1 && std::find(singles.begin(), singles.end(), h.causes) == singles.end() && singles.size() <= refitted_singles) singles.push_back(h.causes);
+    const double parts = static_cast<double>(singles.size()) + (options_.pairs ? refitted_pairs : 0) + 2 * leader_count;
     double part = 0;
-    const auto add = [&](const std::vector<int>& causes) {
-      const auto step = context_.span(part / parts, (part + 1) / parts, "Fitting the causes");
-      refits_.push_back(refit_with(causes));
+    const auto stage = [&](auto&& work) {
+      const auto step = context_.span(part / parts, std::min(1.0, (part + 1) / parts), fitting);
+      work();
       part += 1;
     };
-    for (const auto& causes : singles) add(causes);
-    result_.hypotheses = all_hypotheses(model_, false);
-    for (const Refit& r : refits_) weigh_refit(r);
+    for (const auto& causes : singles) stage([&] { refit_with(causes); });
     normalise(result_.hypotheses);
-    if (options_.pairs) {
-      for (const std::vector<int>& pair : promising_pairs()) {
-        add(pair);
-        for (const Hypothesis& h : screened_)
-          if (h.causes == pair) result_.hypotheses.push_back(h);
-        weigh_refit(refits_.back());
-      }
-      normalise(result_.hypotheses);
-    }
-    // The leaders once more, with sensitivities taken where they stand.
-    std::set<std::vector<int>> leaders;
+    if (options_.pairs)
+      for (const std::vector<int>& pair : promising_pairs()) stage([&] { refit_with(pair); });
+    normalise(result_.hypotheses);
+    // The leaders, what they are parts of and have as parts, larger ones first.
+    std::set<std::vector<int>> leaders{{}};
     for (const Hypothesis& h : result_.hypotheses) {
-      if (leaders.size() >= 4) break;
+      if (leaders.size() > leader_count) break;
       leaders.insert(h.causes);
+      if (h.causes.size() == 2)
+        for (const int cause : h.causes) leaders.insert({cause});
     }
-    for (Refit& r : refits_)
-      if (leaders.contains(r.causes)) {
-        r.fit.sensitivities = sensitivities_at(bag_, r.fit.u, r.fit.predictions, r.fit.free, context_, "Fitting the causes");
-        weigh_refit(r);
-      }
+    for (const std::size_t size : {2u, 1u, 0u})
+      for (Refit& r : refits_)
+        if (r.causes.size() == size && leaders.contains(r.causes)) stage([&] { polish(r); });
+    normalise(result_.hypotheses);
+    // The others stay as the linearised model has them, but no better than the worst that was tried in earnest.
+    double worst = std::numeric_limits<double>::infinity();
+    for (const Hypothesis& h : result_.hypotheses)
+      if (h.causes.size() == 1) worst = std::min(worst, h.log_evidence);
+    for (Hypothesis h : screened_) {
+      const bool tried = std::any_of(refits_.begin(), refits_.end(), [&](const Refit& r) { return r.causes == h.causes; });
+      if (h.causes.size() != 1 || tried) continue;
+      h.log_evidence = std::min(h.log_evidence, worst);
+      result_.hypotheses.push_back(h);
+    }
     normalise(result_.hypotheses);
   }
 
@@ -229,37 +263,89 @@ class Diagnostician {
     return *std::find_if(refits_.begin(), refits_.end(), [&](const Refit& r) { return r.causes == causes; });
   }
 
+  /// How much structure is left with these causes, counted alike whether unknown structure was allowed or not.
+  double structure_left(const std::vector<int>& causes) const {
+    double structure = 0, weight = 0;
+    for (const Hypothesis& h : result_.hypotheses)
+      if (h.causes == causes) structure += (h.probability + 1e-300) * h.structure, weight += h.probability + 1e-300;
+    return structure / weight;
+  }
+
+  std::vector<Eigen::VectorXd> held_out(const ParameterFit& fit, const std::vector<int>& causes) {
+    return held_out_errors(bag_, fit, weights_, nearest_size(structure_left(causes)), result_.liberties, result_.liberty_sensitivities, context_);
+  }
+
+  /// The most probable explanation whose causes predict held-out data better than their absence does.
   void judge() {
+    const auto span = context_.span(0.85, 1, "Predicting what was held out");
     find_causes();
-    // How much structure is left without a cause, and with the best one, counted alike: by the version that allows any.
-    const auto left = [&](const std::vector<int>& causes) {
-      double structure = 0, weight = 0;
-      for (const Hypothesis& h : result_.hypotheses)
-        if (h.causes == causes) structure += (h.probability + 1e-300) * h.structure, weight += h.probability + 1e-300;
-      return structure / weight;
-    };
-    const Hypothesis& best = result_.hypotheses.front();
-    result_.unexplained_before = left({});
-    result_.unexplained_after = left(best.causes);
-    result_.structure = nearest_size(best.structure);
-    result_.extended = refit_of(best.causes).fit;
-    if (best.causes.empty()) {
-      result_.reading = best.unknown_structure ? Reading::unknown : Reading::none;
+    result_.unexplained_before = structure_left({});
+    const auto before = held_out(result_.base, {});
+    result_.extended = result_.base;
+    result_.held_out = compare_errors(model_, before, before);
+    std::set<std::vector<int>> seen;
+    bool only_structure = false;
+    for (const Hypothesis& h : result_.hypotheses) {
+      if (h.causes.empty()) {
+        only_structure = h.unknown_structure;
+        break;
+      }
+      if (seen.size() >= 3 || h.probability < 1e-3) {
+        only_structure = unknown_over_none() > 0;
+        break;
+      }
+      if (!seen.insert(h.causes).second || !significant(h)) continue;
+      const Refit& r = refit_of(h.causes);
+      const HeldOutGain gain = compare_errors(model_, before, held_out(r.fit, h.causes));
+      if (gain.gain_low <= 0 || gain.gain_share < least_gain) continue;
+      result_.verdict = h.causes;
+      result_.extended = r.fit;
+      result_.held_out = gain;
+      result_.doubtful = h.unknown_structure;
+      break;
+    }
+    result_.unexplained_after = structure_left(result_.verdict);
+    result_.structure = nearest_size(result_.unexplained_after);
+    measure_structure();
+    if (result_.verdict.empty()) {
+      result_.reading = only_structure ? Reading::unknown : Reading::none;
       return;
     }
-    result_.verdict = best.causes;
-    const auto moves = [&](int cause) {
-      double sum = 0;
-      for (const int p : model_.causes()[static_cast<std::size_t>(cause)].parameters)
-        for (const Sensitivities& s : sensitivities_) sum += (best.u[p] * s[static_cast<std::size_t>(p)]).squaredNorm();
-      return sum;
-    };
-    std::stable_sort(result_.verdict.begin(), result_.verdict.end(), [&](int a, int b) { return moves(a) > moves(b); });
+    std::stable_sort(result_.verdict.begin(), result_.verdict.end(), [&](int a, int b) { return movement(a, result_.extended.u) > movement(b, result_.extended.u); });
     result_.reading = Reading::cause;
     const double ratio = result_.unexplained_after / std::max(result_.unexplained_before, 1e-12);
-    result_.doubtful = best.unknown_structure || result_.causes.front().probability < likely;
-    if (best.unknown_structure && 1 - ratio * ratio < explained_share) result_.reading = Reading::unknown;
+    result_.doubtful |= finding_of(result_.verdict.front()).probability < likely;
+    if (result_.doubtful && 1 - ratio * ratio < explained_share) result_.reading = Reading::unknown;
     find_twins();
+  }
+
+  double unknown_over_none() const {
+    double sum = 0;
+    for (const Hypothesis& h : result_.hypotheses)
+      if (h.causes.empty()) sum += (h.unknown_structure ? 1 : -1) * (h.log_prior + h.log_evidence);
+    return sum;
+  }
+
+  /// RMS movement, in the measurement's unit, that a cause makes at u.
+  double movement(int cause, const Eigen::VectorXd& u) const {
+    double squares = 0, count = 0;
+    for (std::size_t object = 0; object < sensitivities_.size(); ++object) {
+      const Measurement& m = model_.measurements()[object];
+      Eigen::MatrixXd field = Eigen::MatrixXd::Zero(m.measured.rows(), m.measured.cols());
+      for (const int p : model_.causes()[static_cast<std::size_t>(cause)].parameters) field += u[p] * sensitivities_[object][static_cast<std::size_t>(p)];
+      squares += field.squaredNorm();
+      count += static_cast<double>(m.measured.rows());
+    }
+    return std::sqrt(squares / std::max(count, 1.0));
+  }
+
+  /// Every cause of it does something: more than the model's own misfit could pass for.
+  bool significant(const Hypothesis& h) const {
+    return std::all_of(h.causes.begin(), h.causes.end(), [&](int cause) { return movement(cause, h.u) > least_movement * model_.known_misfit(); });
+  }
+
+  const CauseFinding& finding_of(int cause) const {
+    return *std::find_if(result_.causes.begin(), result_.causes.end(), [&](const CauseFinding& f) { return f.cause == cause; });
   }
 
   void find_causes() {
@@ -271,6 +357,16 @@ class Diagnostician {
         if (std::find(h.causes.begin(), h.causes.end(), cause) == h.causes.end()) continue;
         finding.probability += h.probability;
         if (at == nullptr) at = &h;
+      }
+      const bool refitted = std::any_of(refits_.begin(), refits_.end(), [&](const Refit& r) { return r.causes == at->causes; });
+      if (!refitted) {
+        // Far behind the others: where the linearised model has it.
+        for (const int p : model_.causes()[static_cast<std::size_t>(cause)].parameters)
+          finding.values.push_back(model_.parameters()[static_cast<std::size_t>(p)].value(at->u[p]));
+        finding.strength = finding.values.size() == 1 ? finding.values[0] : Eigen::Map<const Eigen::VectorXd>(finding.values.data(), static_cast<Eigen::Index>(finding.values.size())).norm();
+        finding.low = finding.high = finding.strength;
+        result_.causes.push_back(finding);
+        continue;
       }
       const Refit& r = refit_of(at->causes);
       const StructuredObjective objective(model_, *misfit_, nearest_size(at->structure), result_.liberties, result_.liberty_sensitivities);
@@ -303,28 +399,23 @@ class Diagnostician {
   /// Causes that do the same as a named one as far as these data go.
   void find_twins() {
     const GramByStructure gram = misfit_->gram(residuals(model_, result_.base.predictions), sensitivities_);
-    const auto probability = [&](int cause) {
-      return std::find_if(result_.causes.begin(), result_.causes.end(), [&](const CauseFinding& f) { return f.cause == cause; })->probability;
-    };
     for (const int named : result_.verdict)
       for (int other = 0; other < static_cast<int>(model_.causes().size()); ++other) {
         if (std::find(result_.verdict.begin(), result_.verdict.end(), other) != result_.verdict.end()) continue;
         const double alike = likeness(model_, gram, result_.structure, columns_, named, other);
         // Alike in every respect, or not told apart by these very data.
-        const bool undecided = probability(other) > 0.15 * probability(named);
+        const bool undecided = finding_of(other).probability > 0.15 * finding_of(named).probability;
         if (alike > inseparable_likeness || (undecided && alike > 0.5)) result_.not_separable.push_back({named, other, alike});
         if (undecided && result_.reading == Reading::cause) result_.reading = Reading::cannot_separate;
       }
   }
 
-  void measure_gain() {
-    const auto span = context_.span(0.85, 1, "Predicting what was held out");
-    for (std::size_t object = 0; object < weights_.size(); ++object) {
-      result_.structure_before.push_back(test_structure(model_.measurements()[object], residuals(model_, result_.base.predictions)[object], weights_[object]));
-      result_.structure_after.push_back(test_structure(model_.measurements()[object], residuals(model_, result_.extended.predictions)[object], weights_[object]));
-    }
+  void measure_structure() {
+    const Predictions left = residuals(model_, result_.base.predictions), left_after = residuals(model_, result_.extended.predictions);
     double sum = 0, count = 0;
     for (std::size_t object = 0; object < weights_.size(); ++object) {
+      result_.structure_before.push_back(test_structure(model_.measurements()[object], left[object], weights_[object]));
+      result_.structure_after.push_back(test_structure(model_.measurements()[object], left_after[object], weights_[object]));
       const double d = static_cast<double>(model_.measurements()[object].measured.cols());
       // Mean length of a d-dimensional Gaussian.
       const double per_sigma = std::sqrt(2.0) * std::exp(std::lgamma(0.5 * (d + 1)) - std::lgamma(0.5 * d));
@@ -332,11 +423,6 @@ class Diagnostician {
         if (w > 0) sum += per_sigma * result_.noise[object].sigma, count += 1;
     }
     result_.noise_floor = count > 0 ? sum / count : 0;
-    const auto before = held_out_errors(bag_, result_.base, weights_, nearest_size(result_.unexplained_before), result_.liberties, result_.liberty_sensitivities, context_);
-    const auto after = result_.extended.free == result_.base.free && result_.verdict.empty()
-                           ? before
-                           : held_out_errors(bag_, result_.extended, weights_, result_.structure, result_.liberties, result_.liberty_sensitivities, context_);
-    result_.held_out = compare_errors(model_, before, after);
   }
 
   SimulationBag& bag_;

@@ -76,28 +76,34 @@ std::vector<Eigen::VectorXd> held_out_errors(SimulationBag& bag, const Parameter
                                              const std::vector<int>& liberty_parameters, const std::vector<Sensitivities>& liberties, Context& context) {
   const ForwardModel& model = bag.model();
   const Predictions at_fit = residuals(model, fit.predictions);
-  std::vector<Eigen::VectorXd> points;
-  for (int fold = 0; fold < fold_count; ++fold) {
+  // The step from the fit to where it would be without `left_out` (none: -1). The fit is not at rest to the last digit, so its own step is
+  // taken off: what counts is the difference that the fold makes.
+  const auto k = static_cast<Eigen::Index>(fit.free.size());
+  const auto step_without = [&](int left_out) {
     std::vector<Eigen::VectorXd> others = weights;
     for (std::size_t object = 0; object < weights.size(); ++object)
       for (Eigen::Index i = 0; i < weights[object].size(); ++i)
-        if (fold_of(block_of(model.measurements()[object], i)) == fold) others[object][i] = 0;
+        if (fold_of(block_of(model.measurements()[object], i)) == left_out) others[object][i] = 0;
     const MisfitOfAll misfit(model, others);
     const StructuredObjective objective(model, misfit, structure, liberty_parameters, liberties);
-    Eigen::VectorXd g;
+    Eigen::VectorXd g, low(k), high(k);
     Eigen::MatrixXd H;
     objective.quadratic(at_fit, fit.sensitivities, fit.free, fit.u, g, H);
-    const auto k = static_cast<Eigen::Index>(fit.free.size());
-    Eigen::VectorXd low(k), high(k);
     for (Eigen::Index a = 0; a < k; ++a) {
       const ModelParameter& p = model.parameters()[static_cast<std::size_t>(fit.free[static_cast<std::size_t>(a)])];
       const double u = fit.u[fit.free[static_cast<std::size_t>(a)]];
       low[a] = std::max(p.low_u() - u, -2 * p.probe);
       high[a] = std::min(p.high_u() - u, 2 * p.probe);
     }
-    const Eigen::VectorXd step = bounded_step(H, g, low, high);
+    return bounded_step(H, g, low, high);
+  };
+  const Eigen::VectorXd at_rest = step_without(-1);
+  std::vector<Eigen::VectorXd> points;
+  for (int fold = 0; fold < fold_count; ++fold) {
+    const Eigen::VectorXd step = step_without(fold) - at_rest;
     points.push_back(fit.u);
     for (Eigen::Index a = 0; a < k; ++a) points.back()[fit.free[static_cast<std::size_t>(a)]] += step[a];
+    points.back() = within_ranges(model, points.back());
   }
   const auto predictions = bag.run(points, context, "Predicting what was held out");
   std::vector<Eigen::VectorXd> errors = point_errors(at_fit, weights);

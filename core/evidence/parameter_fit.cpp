@@ -182,12 +182,12 @@ ParameterFit fit_parameters(SimulationBag& bag, const FitObjective& objective, c
       fresh = false;
       small_gains = gain < options.tolerance ? small_gains + 1 : 0;
       if (small_gains >= 2) break;
-    } else if (!fresh) {
+    } else if (!fresh && options.renew_sensitivities) {
       fit.sensitivities = sensitivities_at(bag, fit.u, fit.predictions, free, context, stage);
       fresh = true;
     } else {
       damping *= 100;
-      if (damping > 1e4) break;
+      if (damping > 1e4 || (!fresh && damping > 10)) break;
     }
   }
   return fit;

@@ -109,7 +109,8 @@ void check_measured_object(const FormedObject& object) {
 
 ThermoformModel::ThermoformModel(std::vector<FormedObject> objects, ThermoformModelOptions options) : objects_(std::move(objects)), options_(std::move(options)) {
   Json nominal = with_profile(objects_.front().setup.parameters, options_.profile);
-  for (const auto& [name, value] : write_parameters(options_.profile.measurement).items()) nominal[name] = value;
+  const Json measurement = write_parameters(options_.profile.measurement);
+  for (const auto& [name, value] : measurement.items()) nominal[name] = value;
   declare_thermoform_parameters(nominal, options_.fit_mould_place, parameters_, causes_);
   for (const FormedObject& object : objects_) {
     const auto own = read_parameters<ThermoformOptions>(object.setup.parameters);

@@ -26,7 +26,7 @@ struct FormedObject {
 void check_measured_object(const FormedObject& object);
 
 struct ThermoformModelOptions {
-  int triangles = 2500;
+  int triangles = 5000;
   bool fit_mould_place = false;  // as calibration does: the mould's place is a base parameter, no cause
   MachineProfile profile;        // what is known of the machine; empty where nothing is
 };

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Hides effects in virtual objects and asks the diagnosis for them: one line of JSON for each case, a summary at the end.
+//   confusion_table [--seed N] [--cases N | --repeat N] [--levels 1,0.5,0.25] [--noise 0.05,0.15] [--only CAUSE] [--mould NAME]
+//                   [--pairs N] [--left-out N] [--unseen] [--verbose]
+#include <cstdio>
+#include <cstring>
+#include <algorithm>
+#include <map>
+#include <sstream>
+
+#include "evidence/diagnosis.h"
+#include "evidence/virtual_lab.h"
+
+namespace {
+
+using namespace formwright;
+using namespace formwright::virtual_lab;
+
+struct Arguments {
+  unsigned seed = 1;
+  int repeat = 1, cases = 0;
+  std::vector<double> levels{1, 0.5, 0.25}, noise{0.05, 0.15};
+  std::string only, mould;
+  bool unseen = false, verbose = false, pairs_searched = true;
+  int pairs = 0, left_out = 0;
+};
+
+std::vector<double> numbers(const char* text) {
+  std::vector<double> list;
+  std::stringstream stream(text);
+  for (std::string part; std::getline(stream, part, ',');) list.push_back(std::stod(part));
+  return list;
+}
+
+const char* reading_name(Reading reading) {
+  switch (reading) {
+    case Reading::none: return "none";
+    case Reading::cause: return "cause";
+    case Reading::cannot_separate: return "cannot_separate";
+    case Reading::unknown: return "unknown";
+  }
+  return "";
+}
+
+/// One hidden truth and the answer to it.
+Json one_case(const std::vector<std::string>& hidden, double level, double sigma, unsigned seed, const Arguments& arguments) {
+  std::mt19937 random(seed);
+  const HiddenWorld world = draw_world(random);
+  std::vector<HiddenEffect> effects;
+  for (const std::string& cause : hidden) effects.push_back(draw_effect(cause, level, random));
+  Mould mould = static_cast<Mould>(std::uniform_int_distribution<int>(0, 3)(random));
+  for (int m = 0; m < 4; ++m)
+    if (arguments.mould == mould_names[m]) mould = static_cast<Mould>(m);
+  Observation observation;
+  observation.sigma_mm = sigma;
+  const FormedObject object = make_object(mould, world, effects, observation, random);
+  ThermoformModel model({object}, {});
+  SimulationBag bag(model);
+  Context context;
+  DiagnosisOptions options;
+  options.pairs = arguments.pairs_searched;
+  const Diagnosis d = diagnose(bag, options, context);
+  Json line;
+  line["seed"] = seed;
+  line["mould"] = mould_names[static_cast<int>(mould)];
+  line["hidden"] = hidden;
+  line["values"] = Json::array();
+  for (const HiddenEffect& e : effects) line["values"].push_back(e.values);
+  line["level"] = level;
+  line["sigma_mm"] = sigma;
+  line["reading"] = reading_name(d.reading);
+  line["doubtful"] = d.doubtful;
+  Json verdict = Json::array();
+  for (const int cause : d.verdict) verdict.push_back(model.causes()[static_cast<std::size_t>(cause)].name);
+  line["verdict"] = verdict;
+  line["first"] = verdict.empty() || d.reading == Reading::unknown ? reading_name(d.reading) : verdict[0].get<std::string>();
+  line["structure_mm"] = {d.unexplained_before, d.unexplained_after};
+  line["held_out_mm"] = {d.held_out.before.mean, d.held_out.after.mean};
+  line["noise_mm"] = {d.noise.front().sigma, d.noise_floor};
+  line["simulations"] = d.simulations;
+  line["seconds"] = d.seconds;
+  Json top = Json::array();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const CauseFinding& f = d.causes[i];
+    top.push_back({model.causes()[static_cast<std::size_t>(f.cause)].name, f.probability, f.strength, f.low, f.high});
+  }
+  line["causes"] = top;
+  // By how much the data prefer each explanation over none, before priors.
+  double none = 0, unknown = 0, right = -1e9, wrong = -1e9;
+  for (const Hypothesis& h : d.hypotheses)
+    if (h.causes.empty()) (h.unknown_structure ? unknown : none) = h.log_evidence;
+  for (const Hypothesis& h : d.hypotheses) {
+    if (h.causes.empty() || h.unknown_structure) continue;
+    std::vector<std::string> named;
+    for (const int c : h.causes) named.push_back(model.causes()[static_cast<std::size_t>(c)].name);
+    const bool contains = std::all_of(hidden.begin(), hidden.end(), [&](const std::string& n) { return std::find(named.begin(), named.end(), n) != named.end(); });
+    if (contains && named.size() == hidden.size()) right = std::max(right, h.log_evidence);
+    else if (!contains && named.size() <= std::max<std::size_t>(1, hidden.size())) wrong = std::max(wrong, h.log_evidence);
+  }
+  line["over_none"] = {{"unknown", unknown - none}, {"right", right - none}, {"wrong", wrong - none}};
+  if (arguments.verbose) {
+    for (std::size_t i = 0; i < std::min<std::size_t>(8, d.hypotheses.size()); ++i) {
+      const Hypothesis& h = d.hypotheses[i];
+      std::string names;
+      for (const int c : h.causes) names += model.causes()[static_cast<std::size_t>(c)].name + " ";
+      std::fprintf(stderr, "   %-40s %s log evidence %9.1f structure %.3f p %.4f\n", names.c_str(), h.unknown_structure ? "+unknown" : "        ", h.log_evidence, h.structure,
+                   h.probability);
+    }
+    for (std::size_t p = 0; p < 4; ++p)
+      std::fprintf(stderr, "   %-20s base %.3g extended %.3g\n", model.parameters()[p].name.c_str(), model.parameters()[p].value(d.base.u[static_cast<Eigen::Index>(p)]),
+                   model.parameters()[p].value(d.extended.u[static_cast<Eigen::Index>(p)]));
+  }
+  if (arguments.unseen) {
+    const auto other = static_cast<Mould>((static_cast<int>(mould) + 1) % 4);
+    ThermoformModel second({make_object(other, world, effects, observation, random)}, {});
+    SimulationBag second_bag(second);
+    const HeldOutGain gain = gain_on_unseen(second_bag, model, d.base.u, d.extended.u, context);
+    line["unseen_mm"] = {gain.before.mean, gain.after.mean};
+  }
+  return line;
+}
+
+}  // namespace
+
+int main(int count, char** values) {
+  Arguments a;
+  for (int i = 1; i < count; ++i) {
+    const std::string flag = values[i];
+    const auto next = [&] { return values[++i]; };
+    if (flag == "--seed") a.seed = static_cast<unsigned>(std::stoul(next()));
+    else if (flag == "--repeat") a.repeat = std::stoi(next());
+    else if (flag == "--cases") a.cases = std::stoi(next());
+    else if (flag == "--levels") a.levels = numbers(next());
+    else if (flag == "--noise") a.noise = numbers(next());
+    else if (flag == "--only") a.only = next();
+    else if (flag == "--mould") a.mould = next();
+    else if (flag == "--pairs") a.pairs = std::stoi(next());
+    else if (flag == "--no-pairs") a.pairs_searched = false;
+    else if (flag == "--unseen") a.unseen = true;
+    else if (flag == "--verbose") a.verbose = true;
+    else return std::fprintf(stderr, "unknown flag %s\n", flag.c_str()), 2;
+  }
+  std::vector<std::string> names = cause_names();
+  names.insert(names.begin(), "none");
+  unsigned seed = a.seed * 1000;
+  const auto tell = [&](const std::vector<std::string>& hidden, double level, double sigma) {
+    try {
+      std::printf("%s\n", one_case(hidden, level, sigma, ++seed, a).dump().c_str());
+    } catch (const std::exception& error) {
+      std::printf("%s\n", Json({{"seed", seed}, {"hidden", hidden}, {"error", error.what()}}).dump().c_str());
+    }
+    std::fflush(stdout);
+  };
+  std::mt19937 choice(a.seed);
+  for (int k = 0; k < a.pairs; ++k) {
+    const auto pick = [&] { return names[1 + choice() % (names.size() - 1)]; };
+    const std::string first = pick();
+    std::string second = pick();
+    while (second == first) second = pick();
+    tell({first, second}, a.levels[static_cast<std::size_t>(k) % a.levels.size()], a.noise[static_cast<std::size_t>(k) % a.noise.size()]);
+  }
+  if (a.pairs > 0) return 0;
+  if (a.cases > 0) {
+    for (int k = 0; k < a.cases; ++k) {
+      const std::string& cause = names[choice() % names.size()];
+      tell(cause == "none" ? std::vector<std::string>{} : std::vector<std::string>{cause}, a.levels[choice() % a.levels.size()], a.noise[choice() % a.noise.size()]);
+    }
+    return 0;
+  }
+  for (int r = 0; r < a.repeat; ++r)
+    for (const std::string& cause : names) {
+      if (!a.only.empty() && cause != a.only) continue;
+      for (const double level : a.levels)
+        for (const double sigma : a.noise) tell(cause == "none" ? std::vector<std::string>{} : std::vector<std::string>{cause}, level, sigma);
+    }
+}

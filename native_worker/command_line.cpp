@@ -89,6 +89,17 @@ bool takes_object(const Operation& operation) {
   return std::any_of(operation.inputs.begin(), operation.inputs.end(), [](const InputInfo& input) { return input.name == "setup"; });
 }
 
+/// A file, or one more of the same; folders are for inputs that are packed from one.
+void add_file(const InputInfo& input, const std::string& value, ParsedCommand& command) {
+  std::string name = input.name;
+  for (int number = 2; command.files.contains(name); ++number) {
+    if (!input.repeatable) throw Error(ErrorCode::invalid_input, dashed(input.name), dashed(input.name) + " is given twice.");
+    name = input.name + "_" + std::to_string(number);
+  }
+  if (!input.folder_files.empty() && std::filesystem::is_directory(value)) command.folders[name] = input.folder_files;
+  command.files[name] = value;
+}
+
 }  // namespace
 
 ParsedCommand parse_command(const Operation& operation, const std::vector<std::string>& words) {
@@ -116,7 +127,7 @@ ParsedCommand parse_command(const Operation& operation, const std::vector<std::s
     const auto info = std::find_if(operation.parameters.begin(), operation.parameters.end(), [&](const ParameterInfo& p) { return flag_name(p) == flag; });
     const auto input = std::find_if(operation.inputs.begin(), operation.inputs.end(), [&](const InputInfo& in) { return dashed(in.name) == flag; });
     const bool known = info != operation.parameters.end() || input != operation.inputs.end() || flag == "--out" || flag == "--sample" ||
-                       flag == "--sample-vertices" || flag == "--outputs" || (flag == "--object" && takes_object(operation));
+                       flag == "--sample-vertices" || flag == "--outputs" || (flag == "--results" && operation.keeps_results) || (flag == "--object" && takes_object(operation));
     if (!known) {
       std::string name = flag.substr(2);
       std::replace(name.begin(), name.end(), '-', '_');
@@ -140,8 +151,9 @@ ParsedCommand parse_command(const Operation& operation, const std::vector<std::s
       else value = words[++i];
     }
     if (info != operation.parameters.end()) parameters[info->name] = parse_flag(*info, value);
-    else if (input != operation.inputs.end()) command.files[input->name] = value;
+    else if (input != operation.inputs.end()) add_file(*input, value, command);
     else if (flag == "--out") command.out = value;
+    else if (flag == "--results") command.results = value;
     else if (flag == "--object") object = value;
     else if (flag == "--sample") sample = value;
     else if (flag == "--sample-vertices") vertices = sample_vertices(value);
@@ -185,12 +197,13 @@ std::string operation_help(const Operation& operation) {
   constexpr std::size_t width = 30;
   std::string text = operation.summary + "\n\n  formwright " + operation.name;
   for (const InputInfo& input : operation.inputs)
-    if (input.required) text += " " + dashed(input.name) + " FILE";
+    if (input.required) text += " " + dashed(input.name) + (input.folder_files.empty() ? " FILE" : " DIR");
   text += " --out DIR [flags]\n\nInput\n";
   for (const InputInfo& input : operation.inputs) {
     std::string list;
     for (const auto& extension : input.extensions) list += (list.empty() ? "" : ", ") + extension;
-    text += entry(dashed(input.name) + " FILE", width, input.help + " (" + list + ")");
+    const std::string what = input.folder_files.empty() ? " FILE" : " DIR";
+    text += entry(dashed(input.name) + what, width, input.help + (list.empty() ? "" : " (" + list + ")") + (input.repeatable ? " May be given several times." : ""));
     if (input.accepts_sample) {
       std::string names;
       const Json catalog = catalog_json();
@@ -209,6 +222,8 @@ std::string operation_help(const Operation& operation) {
   for (const OutputInfo& output : operation.outputs) list += (list.empty() ? "" : ", ") + output.name + (output.made_by_default ? "*" : "");
   text += "\nFiles\n" + entry("--out DIR", width, "Folder for the outputs and report.json.");
   text += entry("--outputs A,B", width, "Which to make: " + list + " (* without being asked).");
+  if (operation.keeps_results)
+    text += entry("--results DIR", width, "Where simulations are kept and found again; OUT/simulations unless told. Several runs and machines may share it.");
   text += entry("--quiet", width, "No progress.");
   std::string group;
   for (const ParameterInfo& info : operation.parameters) {

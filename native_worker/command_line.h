@@ -13,7 +13,8 @@ namespace formwright {
 struct ParsedCommand {
   Json message;                                           // without hashes: the files are named below
   std::map<std::string, std::filesystem::path> files;     // input name -> file
-  std::filesystem::path out;
+  std::map<std::string, std::vector<std::string>> folders;  // of these, folders to pack, and which files of theirs
+  std::filesystem::path out, results;                     // results: where intermediate results are kept; empty for out/simulations
   bool quiet = false, help = false;
 };
 

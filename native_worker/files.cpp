@@ -8,9 +8,12 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <map>
+#include <thread>
 
 #include "base/error.h"
 #include "base/sha256.h"
+#include "job/file_pack.h"
 
 namespace formwright {
 
@@ -53,6 +56,40 @@ void write_file(const std::filesystem::path& path, ByteView bytes) {
   }
   ::close(descriptor);
   if (std::rename(temporary.c_str(), path.c_str()) != 0) fail("put in its place");
+}
+
+std::shared_ptr<const Bytes> pack_folder(const std::filesystem::path& folder, const std::vector<std::string>& names, const std::string& where) {
+  std::vector<std::shared_ptr<const Bytes>> kept;
+  std::map<std::string, ByteView> files;
+  for (const std::string& name : names) {
+    kept.push_back(read_file(folder / name, where));
+    files[name] = *kept.back();
+  }
+  return std::make_shared<const Bytes>(pack_files(files, Context()));
+}
+
+std::optional<Bytes> ResultFolder::find(const std::string& key) const {
+  const std::filesystem::path path = folder_ / key;
+  std::error_code status;
+  if (!std::filesystem::is_regular_file(path, status)) return std::nullopt;
+  try {
+    return *read_file(path, "");
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+void ResultFolder::keep(const std::string& key, const Bytes& result) const {
+  std::error_code status;
+  std::filesystem::create_directories(folder_, status);
+  try {
+    // Threads of one process may keep the same key at once: each writes to a name of its own.
+    const std::filesystem::path own = folder_ / (key + "-" + std::to_string(std::hash<std::thread::id>{}(std::this_thread::get_id())));
+    write_file(own, result);
+    std::filesystem::rename(own, folder_ / key, status);
+  } catch (const Error&) {
+    // What cannot be kept is computed again.
+  }
 }
 
 std::string sha256_of_file(const std::filesystem::path& path) {

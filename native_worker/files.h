@@ -4,7 +4,9 @@
 // never leaves half a file under a good name.
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "base/bytes.h"
 
@@ -15,6 +17,21 @@ std::shared_ptr<const Bytes> read_file(const std::filesystem::path& path, const 
 
 /// Throws Error{invalid_input, "out"} when the file cannot be written (no space, no permission); nothing is left behind.
 void write_file(const std::filesystem::path& path, ByteView bytes);
+
+/// A zip of these files of a folder (job/file_pack.h). Throws Error{invalid_input, where} naming the file that is missing.
+std::shared_ptr<const Bytes> pack_folder(const std::filesystem::path& folder, const std::vector<std::string>& names, const std::string& where);
+
+/// Intermediate results as files in a folder, which is made when it is needed. Safe for several processes at once: results are put in
+/// their place whole, and the same key always means the same bytes. A folder that cannot be written keeps nothing.
+class ResultFolder {
+ public:
+  explicit ResultFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  std::optional<Bytes> find(const std::string& key) const;
+  void keep(const std::string& key, const Bytes& result) const;
+
+ private:
+  std::filesystem::path folder_;
+};
 
 /// SHA-256 of a file without holding it in memory. Throws Error{internal} when it cannot be read.
 std::string sha256_of_file(const std::filesystem::path& path);

@@ -65,7 +65,8 @@ int run_operation(const Operation& operation, const std::vector<std::string>& wo
   }
   std::map<std::string, std::shared_ptr<const Bytes>> blobs;
   for (const auto& [name, path] : command.files) {
-    auto bytes = read_file(path, name);
+    const auto folder = command.folders.find(name);
+    auto bytes = folder == command.folders.end() ? read_file(path, name) : pack_folder(path, folder->second, name);
     const std::string hash = sha256_hex(*bytes);
     command.message["inputs"][name] = {{"sha256", hash}, {"file_name", path.filename().string()}};
     blobs[hash] = std::move(bytes);
@@ -79,6 +80,11 @@ int run_operation(const Operation& operation, const std::vector<std::string>& wo
   ProgressLine line(command.quiet);
   Session session;
   Host host{[&](const Progress& progress) { line.show(progress); }, [] { return interrupted.load(); }, peak_memory_mb};
+  const ResultFolder results(command.results.empty() ? command.out / "simulations" : command.results);
+  if (operation.keeps_results) {
+    host.find_result = [&](const std::string& key) { return results.find(key); };
+    host.keep_result = [&](const std::string& key, const Bytes& bytes) { results.keep(key, bytes); };
+  }
   JobResult result = run_job(command.message, [&](const std::string& hash) { return blobs[hash]; }, session, host);
   line.clear();
   if (result.error) throw Error(result.error->code, result.error->where, result.error->message);

@@ -23,6 +23,9 @@ class SimulationBag {
   std::vector<std::optional<Predictions>> run(const std::vector<Eigen::VectorXd>& points, Context& context, const std::string& stage);
   std::optional<Predictions> run(const Eigen::VectorXd& point, Context& context, const std::string& stage);
 
+  /// Drops what is kept: a long search asks for nothing twice.
+  void forget() { known_.clear(); }
+
   const ForwardModel& model() const { return model_; }
   int simulations() const { return simulations_; }
 

@@ -28,7 +28,7 @@ Json operation_json(const Operation& operation) {
   Json inputs = Json::array(), properties = Json::object(), outputs = Json::array(), report = Json::array();
   for (const InputInfo& input : operation.inputs)
     inputs.push_back({{"name", input.name}, {"label", input.label}, {"required", input.required}, {"extensions", input.extensions},
-                      {"accepts_sample", input.accepts_sample}, {"help", input.help}});
+                      {"accepts_sample", input.accepts_sample}, {"folder_files", input.folder_files}, {"repeatable", input.repeatable}, {"help", input.help}});
   for (const ParameterInfo& info : operation.parameters) properties[info.name] = parameter_schema(info);
   for (const OutputInfo& output : operation.outputs)
     outputs.push_back({{"name", output.name}, {"media_type", output.media_type}, {"label", output.label}, {"help", output.help},

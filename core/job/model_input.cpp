@@ -25,7 +25,7 @@ int sample_vertices(const InputBlob& input) {
 }  // namespace
 
 InputInfo model_input_info() {
-  InputInfo info{"mesh", "Model", "A triangle or polygon mesh.", {}, true, true, ""};
+  InputInfo info{"mesh", "Model", "A triangle or polygon mesh.", {}, true, true};
   for (const MeshFormatInfo& format : mesh_formats) info.extensions.emplace_back(format.extension);
   return info;
 }

@@ -62,6 +62,14 @@ void check_sample(const std::string& input_name, const InputBlob& input) {
   throw invalid(input_name, "There is no sample called " + input.sample + "; there are: " + list + ".");
 }
 
+/// "object_2" of "object", up to "object_64".
+bool is_repeat_of(const std::string& name, const std::string& candidate) {
+  if (!candidate.starts_with(name + "_")) return false;
+  const std::string number = candidate.substr(name.size() + 1);
+  return !number.empty() && number.size() <= 2 && number.find_first_not_of("0123456789") == std::string::npos && number[0] != '0' && std::stoi(number) >= 2 &&
+         std::stoi(number) <= 64;
+}
+
 std::map<std::string, InputBlob> read_inputs(const Operation& operation, const Json& message) {
   std::map<std::string, InputBlob> inputs;
   const Json empty = Json::object();
@@ -69,7 +77,7 @@ std::map<std::string, InputBlob> read_inputs(const Operation& operation, const J
   const Json& given = it == message.end() ? empty : *it;
   if (!given.is_object()) throw invalid("inputs", "The inputs must be a JSON object.");
   for (const auto& [name, value] : given.items()) {
-    const auto info = std::find_if(operation.inputs.begin(), operation.inputs.end(), [&n = name](const InputInfo& i) { return i.name == n; });
+    const auto info = std::find_if(operation.inputs.begin(), operation.inputs.end(), [&n = name](const InputInfo& i) { return i.name == n || (i.repeatable && is_repeat_of(i.name, n)); });
     if (info == operation.inputs.end()) throw invalid(name, "The operation " + operation.name + " has no input called " + name + ".");
     InputBlob input = read_input(name, value);
     if (!input.sample.empty()) {

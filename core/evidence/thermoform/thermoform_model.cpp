@@ -13,6 +13,7 @@ namespace formwright {
 namespace {
 
 constexpr std::size_t fewest_points = 30;
+constexpr std::size_t most_sheets = 200;  // kept at a time; about 0.2 MB each
 
 std::string figure(double value) {
   char text[32];
@@ -199,6 +200,7 @@ std::shared_ptr<const FormedSheet> ThermoformModel::formed(int object, const Eig
     if (!sheet) throw Error(ErrorCode::could_not_solve, "", "The simulation gave no finite sheet.");
   }
   const std::scoped_lock lock(mutex_);
+  if (sheets_.size() >= most_sheets) sheets_.clear();
   return sheets_.emplace(key, std::move(sheet)).first->second;
 }
 

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Evidence: what measured objects say about the simulation and the machine.
+#include "job/operation.h"
+
+namespace formwright {
+Operation evidence_calibrate_operation();  // fits the material to measured objects
+Operation evidence_diagnose_operation();   // names the cause of a misfit
+}  // namespace formwright

@@ -22,6 +22,15 @@ struct Touch {
   double fraction;
   Vec3 barycentric;
 };
+Vec3 on_face(const PointContact& contact, const Triangles& F, const Positions& x) {
+  Vec3 here = Vec3::Zero();
+  for (int k = 0; k < 3; ++k) here += contact.barycentric[k] * x.row(F(contact.face, k)).transpose();
+  return here;
+}
+Vec3 face_normal(int face, const Triangles& F, const Positions& x) {
+  const Vec3 a = x.row(F(face, 0)), b = x.row(F(face, 1)), c = x.row(F(face, 2));
+  return (b - a).cross(c - a).normalized();
+}
 std::optional<Touch> first_touch(const Vec3& q, const Vec3 (&a)[3], const Vec3 (&b)[3], double radius, double tolerance) {
   double speed = 0;
   for (int k = 0; k < 3; ++k) speed = std::max(speed, (b[k] - a[k]).norm());
@@ -128,18 +137,69 @@ void PointContacts::roll_back(std::size_t count) {
 
 void PointContacts::add_forces(const Triangles& F, const Positions& x, Positions& force, BlockMatrix* matrix) const {
   for (const PointContact& contact : contacts_) {
-    Vec3 here = Vec3::Zero();
-    for (int k = 0; k < 3; ++k) here += contact.barycentric[k] * x.row(F(contact.face, k)).transpose();
-    const Vec3 pull = stiffness_ * (contact.place - here);
+    const Vec3 pull = pull_of(contact, F, x);
     for (int a = 0; a < 3; ++a) {
       force.row(F(contact.face, a)) += contact.barycentric[a] * pull.transpose();
       if (!matrix) continue;
       for (int b = 0; b < 3; ++b) {
-        const auto value = static_cast<float>(stiffness_ * contact.barycentric[a] * contact.barycentric[b]);
+        const double stiffness = stiffness_ * contact.barycentric[a] * contact.barycentric[b];
+        const auto value = static_cast<float>(stiffness);
         auto& block = matrix->block(matrix->slot(F(contact.face, a), F(contact.face, b)));
-        for (int j = 0; j < 3; ++j) block[static_cast<std::size_t>(j)][j] += value;
+        for (int j = 0; j < 3; ++j) {
+          if (!contact.slides) block[static_cast<std::size_t>(j)][j] += value;
+          else
+            for (int i = 0; i < 3; ++i) block[static_cast<std::size_t>(j)][i] += static_cast<float>(stiffness * contact.normal[i] * contact.normal[j]);
+        }
       }
     }
+  }
+}
+
+Vec3 PointContacts::pull_of(const PointContact& contact, const Triangles& F, const Positions& x) const {
+  const Vec3 pull = stiffness_ * (contact.place - on_face(contact, F, x));
+  return contact.slides ? Vec3(pull.dot(contact.normal) * contact.normal + contact.drag) : pull;
+}
+
+void PointContacts::slide(const Triangles& F, const Positions& from, const Positions& x, double friction, const std::vector<std::vector<int>>& faces_of) {
+  for (PointContact& contact : contacts_) {
+    const Vec3 here = on_face(contact, F, x), pull = pull_of(contact, F, x);
+    const Vec3 normal = face_normal(contact.face, F, x);
+    const double across = pull.dot(normal);
+    const Vec3 along = pull - across * normal;
+    const double most = friction * std::abs(across);
+    if (!contact.slides) {
+      if (along.norm() <= most || along.norm() == 0) continue;
+      contact.slides = true;
+      contact.drag = most / along.norm() * along;
+    } else {
+      Vec3 way = here - on_face(contact, F, from);
+      way -= way.dot(normal) * normal;
+      if (way.norm() < 1e-9 || way.dot(contact.drag) >= 0) {
+        // At rest: held from here on by a spring that begins with the drag there is.
+        contact.slides = false;
+        contact.place = here + pull / stiffness_;
+        continue;
+      }
+      contact.drag = -most / way.norm() * way;
+    }
+    // The sheet has moved over the point: which place of it lies there now?
+    const Vec3& point = points_[static_cast<std::size_t>(contact.point)];
+    const double offset_mm = (here - point).dot(normal), stretched_mm = across / stiffness_;
+    NearestPoint best;
+    best.distance = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 3; ++k)
+      for (const int face : faces_of[static_cast<std::size_t>(F(contact.face, k))]) {
+        NearestPoint candidate = nearest_on_triangle(point, x.row(F(face, 0)), x.row(F(face, 1)), x.row(F(face, 2)));
+        if (candidate.distance > best.distance || (candidate.distance == best.distance && face >= best.face)) continue;
+        candidate.face = face;
+        best = candidate;
+      }
+    contact.face = best.face;
+    contact.barycentric = best.barycentric;
+    contact.normal = face_normal(best.face, F, x);
+    // As far from the point as it was held before, on the side where it is.
+    const Vec3 now = on_face(contact, F, x);
+    contact.place = now + (stretched_mm + offset_mm - (now - point).dot(contact.normal)) * contact.normal;
   }
 }
 

@@ -11,6 +11,7 @@ namespace formwright {
 namespace {
 
 constexpr double offset_cells = 1 << 19;
+constexpr double share_beside = 0.02;  // of a slid contact's stiffness along the face: about the sheet's own
 
 std::uint64_t key(int x, int y, int z) {
   return static_cast<std::uint64_t>(z & 0xfffff) << 40 | static_cast<std::uint64_t>(y & 0xfffff) << 20 | static_cast<std::uint64_t>(x & 0xfffff);
@@ -146,9 +147,10 @@ void PointContacts::add_forces(const Triangles& F, const Positions& x, Positions
         const auto value = static_cast<float>(stiffness);
         auto& block = matrix->block(matrix->slot(F(contact.face, a), F(contact.face, b)));
         for (int j = 0; j < 3; ++j) {
-          if (!contact.slides) block[static_cast<std::size_t>(j)][j] += value;
-          else
-            for (int i = 0; i < 3; ++i) block[static_cast<std::size_t>(j)][i] += static_cast<float>(stiffness * contact.normal[i] * contact.normal[j]);
+          block[static_cast<std::size_t>(j)][j] += contact.slid ? static_cast<float>(share_beside * stiffness) : value;
+          if (!contact.slid) continue;
+          for (int i = 0; i < 3; ++i)
+            block[static_cast<std::size_t>(j)][i] += static_cast<float>((1 - share_beside) * stiffness * contact.normal[i] * contact.normal[j]);
         }
       }
     }
@@ -157,34 +159,20 @@ void PointContacts::add_forces(const Triangles& F, const Positions& x, Positions
 
 Vec3 PointContacts::pull_of(const PointContact& contact, const Triangles& F, const Positions& x) const {
   const Vec3 pull = stiffness_ * (contact.place - on_face(contact, F, x));
-  return contact.slides ? Vec3(pull.dot(contact.normal) * contact.normal + contact.drag) : pull;
+  return contact.slid ? Vec3(share_beside * pull + (1 - share_beside) * pull.dot(contact.normal) * contact.normal) : pull;
 }
 
-void PointContacts::slide(const Triangles& F, const Positions& from, const Positions& x, double friction, const std::vector<std::vector<int>>& faces_of) {
+void PointContacts::slide(const Triangles& F, const Positions& x, double friction, const std::vector<std::vector<int>>& faces_of) {
   for (PointContact& contact : contacts_) {
     const Vec3 here = on_face(contact, F, x), pull = pull_of(contact, F, x);
-    const Vec3 normal = face_normal(contact.face, F, x);
-    const double across = pull.dot(normal);
+    const Vec3 normal = contact.slid ? contact.normal : face_normal(contact.face, F, x);
+    const double across = pull.dot(normal), most = friction * std::abs(across);
     const Vec3 along = pull - across * normal;
-    const double most = friction * std::abs(across);
-    if (!contact.slides) {
-      if (along.norm() <= most || along.norm() == 0) continue;
-      contact.slides = true;
-      contact.drag = most / along.norm() * along;
-    } else {
-      Vec3 way = here - on_face(contact, F, from);
-      way -= way.dot(normal) * normal;
-      if (way.norm() < 1e-9 || way.dot(contact.drag) >= 0) {
-        // At rest: held from here on by a spring that begins with the drag there is.
-        contact.slides = false;
-        contact.place = here + pull / stiffness_;
-        continue;
-      }
-      contact.drag = -most / way.norm() * way;
-    }
-    // The sheet has moved over the point: which place of it lies there now?
+    if (along.norm() <= most || along.norm() == 0) continue;
+    // Which place of the sheet lies over the point now? It is held as far from the point as the old one was.
     const Vec3& point = points_[static_cast<std::size_t>(contact.point)];
-    const double offset_mm = (here - point).dot(normal), stretched_mm = across / stiffness_;
+    const double stretched_mm = std::clamp(across / stiffness_, -0.05 * cell_mm_, 0.05 * cell_mm_);
+    const double reach_mm = (here - point).dot(normal) + stretched_mm;
     NearestPoint best;
     best.distance = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 3; ++k)
@@ -194,12 +182,13 @@ void PointContacts::slide(const Triangles& F, const Positions& from, const Posit
         candidate.face = face;
         best = candidate;
       }
+    contact.slid = true;
     contact.face = best.face;
     contact.barycentric = best.barycentric;
     contact.normal = face_normal(best.face, F, x);
-    // As far from the point as it was held before, on the side where it is.
-    const Vec3 now = on_face(contact, F, x);
-    contact.place = now + (stretched_mm + offset_mm - (now - point).dot(contact.normal)) * contact.normal;
+    const Vec3 now = on_face(contact, F, x), beside = along - along.dot(contact.normal) * contact.normal;
+    contact.place = now + (reach_mm - (now - point).dot(contact.normal)) * contact.normal;
+    if (beside.norm() > 0) contact.place += std::min(most, along.norm()) / (share_beside * stiffness_ * beside.norm()) * beside;
   }
 }
 

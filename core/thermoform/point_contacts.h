@@ -15,9 +15,9 @@ struct PointContact {
   Vec3 barycentric;
   Vec3 place;  // where that point of the face is held
   double fraction = 0;  // of the step in which it was met
-  // Where friction is finite: what slides is held along `normal` only, and resists with `drag` (N, on the face).
-  bool slides = false;
-  Vec3 normal = Vec3::Zero(), drag = Vec3::Zero();
+  // Where friction is finite: what has slid is held by the full stiffness along `normal` only, and softly beside.
+  bool slid = false;
+  Vec3 normal = Vec3::Zero();
 };
 
 class PointContacts {
@@ -33,9 +33,9 @@ class PointContacts {
   /// Adds the springs' forces and, unless null, their stiffness.
   void add_forces(const Triangles& F, const Positions& x, Positions& force, BlockMatrix* matrix) const;
 
-  /// After a step from `from` to `x`: contacts whose pull along the face exceeds `friction` times that across it slide from now on
-  /// (see PointContact), those that have come to rest stick. `faces_of`: the triangles around a vertex.
-  void slide(const Triangles& F, const Positions& from, const Positions& x, double friction, const std::vector<std::vector<int>>& faces_of);
+  /// After a step that ended at `x`: where the pull along the face exceeds `friction` times that across it, the sheet slides over
+  /// the point until it does not. `faces_of`: the triangles around a vertex.
+  void slide(const Triangles& F, const Positions& x, double friction, const std::vector<std::vector<int>>& faces_of);
 
   const std::vector<PointContact>& contacts() const { return contacts_; }
   std::size_t point_count() const { return points_.size(); }

@@ -84,7 +84,7 @@ SheetDynamics::SheetDynamics(const SheetMesh& sheet, const ThermoformOptions& op
     if (held_[i]) contact_time_[i] = 0;
   known_.resize(static_cast<std::size_t>(n));
   if (options.cooling > 0) chill_ = std::make_unique<ContactChill>(sheet, options.cooling);
-  if (options.slip > 0 && contact_) friction_ = std::make_unique<SheetFriction>(sheet, 1 / options.slip);
+  if (options.slip > 0 && contact_) friction_ = std::make_unique<SheetFriction>(sheet, 1 / options.slip, options.young_modulus_pa * 1e-6 * options.sheet_thickness_mm);
   none_held_.assign(held_.size(), moves_freely);
   collect_free();
 }
@@ -238,7 +238,7 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
       Vec3 residual = force.row(i).transpose() - m * (x.row(i) - from.row(i) - dt_s * v_.row(i)).transpose();
       auto& diagonal = matrix_.block(matrix_.diagonal_slot(i));
       for (std::size_t k = 0; k < 3; ++k) diagonal[k][k] += static_cast<float>(m);
-      if (held_[v] == sliding) friction_->constrain(i, residual, diagonal);
+      if (held_[v] == sliding) friction_->constrain(i, (x.row(i) - from.row(i)).transpose(), dt_s, residual, diagonal);
       right_side[v] = Float4{static_cast<float>(residual.x()), static_cast<float>(residual.y()), static_cast<float>(residual.z()), 0};
     }
     statistics_.seconds_assembly += watch.lap();
@@ -288,7 +288,7 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
   if (friction_) {
     begin_membrane_step();
     assemble(x_, std::numeric_limits<double>::infinity(), load, force, nullptr);
-    points_.slide(sheet_.F, from, x_, friction_->coefficient(), friction_->faces_of());
+    points_.slide(sheet_.F, x_, friction_->coefficient(), friction_->faces_of());
     friction_->decide(force, held_);
     collect_free();
   }

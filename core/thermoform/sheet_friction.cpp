@@ -10,18 +10,22 @@ constexpr float stiffness_across = 100;  // times the vertex's own
 
 }  // namespace
 
-SheetFriction::SheetFriction(const SheetMesh& sheet, double coefficient)
-    : coefficient_(coefficient), clamped_(sheet.clamped), normal_(sheet.clamped.size(), Vec3::UnitZ()), drag_(sheet.clamped.size(), Vec3::Zero()), faces_of_(sheet.clamped.size()) {
+SheetFriction::SheetFriction(const SheetMesh& sheet, double coefficient, double stiffness)
+    : coefficient_(coefficient), stiffness_(stiffness), clamped_(sheet.clamped), normal_(sheet.clamped.size(), Vec3::UnitZ()), drag_(sheet.clamped.size(), Vec3::Zero()){
+  auto faces_of = std::make_shared<std::vector<std::vector<int>>>(clamped_.size());
   for (int f = 0; f < static_cast<int>(sheet.F.rows()); ++f)
-    for (int k = 0; k < 3; ++k) faces_of_[static_cast<std::size_t>(sheet.F(f, k))].push_back(f);
+    for (int k = 0; k < 3; ++k) (*faces_of)[static_cast<std::size_t>(sheet.F(f, k))].push_back(f);
+  faces_of_ = std::move(faces_of);
 }
 
-void SheetFriction::constrain(int vertex, Vec3& force, std::array<Float4, 3>& diagonal) const {
+void SheetFriction::constrain(int vertex, const Vec3& way_mm, double dt_s, Vec3& force, std::array<Float4, 3>& diagonal) const {
   const auto v = static_cast<std::size_t>(vertex);
   const Vec3& n = normal_[v];
-  force += drag_[v];
+  const double lag = stiffness_ * slide_lag_s / dt_s;
+  force += drag_[v] - lag * way_mm;
   force -= force.dot(n) * n;
   const float across = stiffness_across * (diagonal[0][0] + diagonal[1][1] + diagonal[2][2]);
+  for (std::size_t i = 0; i < 3; ++i) diagonal[i][i] += static_cast<float>(lag);
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j) diagonal[j][i] += across * static_cast<float>(n[static_cast<int>(i)] * n[static_cast<int>(j)]);
 }

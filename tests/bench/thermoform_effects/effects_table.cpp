@@ -27,7 +27,7 @@ std::vector<Effect> effects() {
           {"heating_centre", 0.4, [](O& o, M&, double s) { o.heating_centre = s; }},
           {"thickness_wedge_x", 0.4, [](O& o, M&, double s) { o.thickness_wedge_x = s; }},
           {"anisotropy", 0.5, [](O& o, M&, double s) { o.anisotropy = s; }},
-          {"slip", getenv("SLIP") ? atof(getenv("SLIP")) : 2, [](O& o, M&, double s) { o.slip = s; }},
+          {"slip", 2, [](O& o, M&, double s) { o.slip = s; }},
           {"cooling", 1, [](O& o, M&, double s) { o.cooling = s; }},
           {"weak_vacuum", 0.5, [](O& o, M&, double s) { o.weak_vacuum = s; }},
           {"clamp_slip_mm", 2, [](O& o, M&, double s) { o.clamp_slip_mm = s; }},

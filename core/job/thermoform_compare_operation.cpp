@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cstdio>
 
 #include "job/thermoform_input.h"
@@ -45,12 +46,12 @@ InputInfo measured_input_info() {
 }
 
 /// The mean error of the points that fall on the faces around each vertex, weighted by nearness.
-Bytes error_map(const FormedSheet& sheet, const std::vector<MeasuredPoint>& points, const Comparison& comparison, double shift_z_mm, Context& context) {
+Bytes error_map(const FormedSheet& sheet, const std::vector<MeasuredPoint>& points, const Comparison& comparison, double print_scale, Context& context) {
   const SheetLookup lookup(sheet);
   const Eigen::Index n = sheet.mesh.V.rows();
   Eigen::VectorXd error = Eigen::VectorXd::Zero(n), weight = Eigen::VectorXd::Zero(n);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto at = lookup.find(points[i].sheet_mm);
+    const auto at = lookup.find((1 + print_scale) * points[i].sheet_mm);
     if (!at) continue;
     for (int k = 0; k < 3; ++k) {
       error[sheet.mesh.F(at->face, k)] += at->barycentric[k] * comparison.points[i].error_mm;
@@ -60,7 +61,6 @@ Bytes error_map(const FormedSheet& sheet, const std::vector<MeasuredPoint>& poin
   for (Eigen::Index v = 0; v < n; ++v) error[v] = weight[v] > 1e-9 ? error[v] / weight[v] : -1;
   Model model;
   model.mesh = sheet.mesh;
-  model.mesh.V.col(2).array() += shift_z_mm;
   const std::vector<VertexColumn> columns = {{"error_mm", error, ColumnKind::float64}, {"measured_weight", weight, ColumnKind::float64}};
   WriteOptions write;
   write.columns = columns;
@@ -81,8 +81,29 @@ Bytes residuals(const std::vector<MeasuredPoint>& points, const Comparison& comp
   return {view.begin(), view.end()};
 }
 
+/// The operation's parameters are the simulation's and the measurement's.
+struct Parameters {
+  Json simulation = Json::object(), measurement = Json::object();
+};
+Parameters sorted(const Json& parameters) {
+  Parameters result;
+  const std::vector<ParameterInfo> measurement = describe_parameters<MeasurementEffects>();
+  for (const auto& [name, value] : parameters.items()) {
+    const bool measures = std::any_of(measurement.begin(), measurement.end(), [&n = name](const ParameterInfo& info) { return info.name == n; });
+    (measures ? result.measurement : result.simulation)[name] = value;
+  }
+  return result;
+}
+
 OperationResult run(const OperationCall& call) {
-  const SimulationCall simulation = simulation_call(call, call.parameters);
+  const Parameters given = sorted(call.parameters);
+  const SimulationCall simulation = simulation_call(call, given.simulation);
+  Json measurement = given.measurement;
+  if (const auto profile = machine_profile(call)) {
+    measurement = write_parameters(profile->measurement);
+    measurement.update(given.measurement);
+  }
+  const auto effects = read_parameters<MeasurementEffects>(measurement);
   std::vector<MeasuredPoint> points = read_measured_points(*call.inputs.at("measured").bytes);
   Simulated simulated;
   {
@@ -95,7 +116,7 @@ OperationResult run(const OperationCall& call) {
   FormedSheet sheet = simulated.result->sheet;
   sheet.mesh.V.col(2).array() += setup.base_plate_end_z_mm;
   const Comparison comparison = compare(sheet, points, setup.measured_surface, simulation.options.clamp_height_mm + setup.base_plate_end_z_mm,
-                                        simulation.options.sheet_thickness_mm, MeasurementEffects{}, setup.base_plate_end_z_mm, call.context);
+                                        simulation.options.sheet_thickness_mm, effects, setup.base_plate_end_z_mm, call.context);
   OperationResult result;
   Json& report = result.report;
   double sigma = 0;
@@ -120,7 +141,7 @@ OperationResult run(const OperationCall& call) {
     for (const OutputInfo& info : outputs())
       if (info.name == name) result.outputs.push_back(make_output(info, std::move(bytes)));
   };
-  if (call.wants("errors.ply")) add("errors.ply", error_map(sheet, points, comparison, 0, call.context));
+  if (call.wants("errors.ply")) add("errors.ply", error_map(sheet, points, comparison, effects.print_scale, call.context));
   if (call.wants("residuals.csv")) add("residuals.csv", residuals(points, comparison));
   if (call.wants("sheet.ply")) add("sheet.ply", write_sheet_ply(sheet, 0, call.context));
   return result;
@@ -135,11 +156,16 @@ Operation thermoform_compare_operation() {
   operation.summary = "Simulates a measured object's set-up and says how far the simulation is off.";
   InputInfo setup = setup_input_info();
   setup.required = true;
-  operation.inputs = {mould_input_info(), setup, measured_input_info()};
+  operation.inputs = {mould_input_info(), setup, measured_input_info(), profile_input_info()};
   operation.parameters = describe_parameters<ThermoformOptions>();
+  for (ParameterInfo& info : describe_parameters<MeasurementEffects>()) operation.parameters.push_back(std::move(info));
   operation.outputs = outputs();
   operation.report = report_fields();
-  operation.check = [](const Json& parameters) { read_parameters<ThermoformOptions>(parameters); };
+  operation.check = [](const Json& parameters) {
+    const Parameters given = sorted(parameters);
+    read_parameters<ThermoformOptions>(given.simulation);
+    read_parameters<MeasurementEffects>(given.measurement);
+  };
   operation.run = run;
   return operation;
 }

@@ -58,15 +58,33 @@ InputInfo setup_input_info() {
   return info;
 }
 
+InputInfo profile_input_info() {
+  InputInfo info;
+  info.name = "profile";
+  info.label = "Machine profile";
+  info.help = "What is known of the machine: material and effects fitted to objects it made.";
+  info.extensions = {"json"};
+  info.required = false;
+  return info;
+}
+
+std::optional<MachineProfile> machine_profile(const OperationCall& call) {
+  const auto profile = call.inputs.find("profile");
+  if (profile == call.inputs.end()) return std::nullopt;
+  return read_machine_profile(*profile->second.bytes);
+}
+
+Json merged_parameters(const OperationCall& call, const Json& parameters, const std::optional<ObjectSetup>& setup) {
+  Json merged = setup ? setup->parameters : Json::object();
+  if (const auto profile = machine_profile(call)) merged = with_profile(merged, *profile);
+  for (const auto& [name, value] : parameters.items()) merged[name] = value;
+  return merged;
+}
+
 SimulationCall simulation_call(const OperationCall& call, const Json& parameters) {
   SimulationCall simulation;
-  Json merged = Json::object();
-  if (const auto setup = call.inputs.find("setup"); setup != call.inputs.end()) {
-    simulation.setup = read_object_setup(*setup->second.bytes);
-    merged = simulation.setup->parameters;
-  }
-  for (const auto& [name, value] : parameters.items()) merged[name] = value;
-  simulation.options = read_parameters<ThermoformOptions>(merged);
+  if (const auto setup = call.inputs.find("setup"); setup != call.inputs.end()) simulation.setup = read_object_setup(*setup->second.bytes);
+  simulation.options = read_parameters<ThermoformOptions>(merged_parameters(call, parameters, simulation.setup));
   return simulation;
 }
 
@@ -97,12 +115,14 @@ FormedModel formed_model(const OperationCall& call, const ThermoformOptions& opt
     PlacedMould mould = placed_mould(call, options);
     formed.loaded = std::move(mould.loaded);
     formed.placement = std::move(mould.placement);
+    formed.real_placement = displaced(formed.placement, options);
     formed.sheet = std::make_shared<const FormedSheet>(read_sheet_ply(*sheet->second.bytes, sheet->second.file_name, call.context));
     return formed;
   }
   Simulated simulated = simulate(call, {options, std::nullopt});
   formed.loaded = std::move(simulated.mould.loaded);
   formed.placement = std::move(simulated.mould.placement);
+  formed.real_placement = simulated.result->placement;
   formed.sheet = std::shared_ptr<const FormedSheet>(simulated.result, &simulated.result->sheet);
   return formed;
 }

@@ -8,13 +8,15 @@
 
 #include "job/model_input.h"
 #include "thermoform/forming.h"
+#include "thermoform/machine_profile.h"
 #include "thermoform/measured_object.h"
 
 namespace formwright {
 
 struct FormedModel {
   std::shared_ptr<const LoadedModel> loaded;
-  Placement placement;
+  Placement placement;       // where the model should stand
+  Placement real_placement;  // where it stands: the machine may displace it (sheet_effects.h)
   std::shared_ptr<const FormedSheet> sheet;
 };
 
@@ -23,6 +25,8 @@ InputInfo mould_input_info();
 InputInfo sheet_input_info();
 /// Of the optional input "setup" (setup.json).
 InputInfo setup_input_info();
+/// Of the optional input "profile" (a machine profile).
+InputInfo profile_input_info();
 
 /// Reads "mould", places it, takes "sheet" when the call has it, or simulates (kept in the session).
 FormedModel formed_model(const OperationCall& call, const ThermoformOptions& options);
@@ -35,8 +39,13 @@ struct PlacedMould {
 };
 PlacedMould placed_mould(const OperationCall& call, const ThermoformOptions& options);
 
-/// The simulation's options: the setup's (when the call has one) under the call's own parameters; a setup also means that the mould
-/// is in machine coordinates already.
+/// The call's "profile", when it has one.
+std::optional<MachineProfile> machine_profile(const OperationCall& call);
+
+/// `parameters`, those given by name, over the profile's and the set-up's (with_profile, machine_profile.h).
+Json merged_parameters(const OperationCall& call, const Json& parameters, const std::optional<ObjectSetup>& setup = std::nullopt);
+
+/// The simulation's options, merged; a setup also means that the mould is in machine coordinates already.
 struct SimulationCall {
   ThermoformOptions options;
   std::optional<ObjectSetup> setup;

@@ -150,7 +150,7 @@ void report_parts(Json& report, const MouldParts& parts) {
 }
 
 OperationResult run_mould(const OperationCall& call) {
-  const auto options = read_parameters<ThermoformMouldOptions>(call.parameters);
+  const auto options = read_parameters<ThermoformMouldOptions>(merged_parameters(call, call.parameters));
   Context& context = call.context;
   OperationResult result;
   Json& report = result.report;
@@ -257,7 +257,7 @@ Operation thermoform_mould_operation() {
   operation.name = "thermoform-mould";
   operation.title = "Mould";
   operation.summary = "Makes the mould that a sheet is formed over: a negative to cast gypsum in, or a positive.";
-  operation.inputs = {mould_input_info(), sheet_input_info()};
+  operation.inputs = {mould_input_info(), sheet_input_info(), profile_input_info()};
   operation.parameters = describe_parameters<ThermoformMouldOptions>();
   operation.outputs = outputs();
   operation.report = report_fields();

@@ -87,7 +87,7 @@ OperationResult run(const OperationCall& call) {
     simulated = simulate(call, simulation);
   }
   const FormedResult& formed = *simulated.result;
-  const TriangleMesh placed = simulated.mould.placement(simulated.mould.shape->mesh);
+  const TriangleMesh placed = simulated.result->placement(simulated.mould.shape->mesh);
   const double shift_z = simulation.setup ? simulation.setup->base_plate_end_z_mm : 0;
   call.context.progress(0.95, "Writing");
   Stopwatch watch;
@@ -109,7 +109,7 @@ OperationResult run(const OperationCall& call) {
   Json& report = result.report;
   const FormedSheet& sheet = formed.sheet;
   const bool watertight = Adjacency(placed).is_closed();
-  const Placement& placement = simulated.mould.placement;
+  const Placement& placement = formed.placement;
   Json matrix = Json::array();
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) matrix.push_back(placement.linear(i, j));
@@ -169,7 +169,7 @@ Operation thermoform_simulate_operation() {
   operation.name = "thermoform-simulate";
   operation.title = "Thermoform";
   operation.summary = "Simulates a heated plastic sheet being drawn over a model (thesis chapter 4).";
-  operation.inputs = {mould_input_info(), setup_input_info()};
+  operation.inputs = {mould_input_info(), setup_input_info(), profile_input_info()};
   operation.parameters = describe_parameters<ThermoformOptions>();
   operation.outputs = outputs();
   operation.report = report_fields();

@@ -16,7 +16,8 @@ constexpr int formed_texture_px = 2048;
 std::vector<InputInfo> inputs() {
   return {mould_input_info(), sheet_input_info(),
           {"material", "Material file", "The MTL file of an OBJ.", {"mtl"}, false, false, ""},
-          {"texture", "Picture", "A PNG or JPEG, laid by the model's texture coordinates in place of its own.", {"png", "jpg", "jpeg"}, false, false, ""}};
+          {"texture", "Picture", "A PNG or JPEG, laid by the model's texture coordinates in place of its own.", {"png", "jpg", "jpeg"}, false, false, ""},
+          profile_input_info()};
 }
 
 std::vector<OutputInfo> outputs() {
@@ -116,7 +117,7 @@ void report_print(Json& report, const TexturePrint& print, const PageLayout& lay
 }
 
 OperationResult run_texture(const OperationCall& call) {
-  const auto options = read_parameters<ThermoformPrintOptions>(call.parameters);
+  const auto options = read_parameters<ThermoformPrintOptions>(merged_parameters(call, call.parameters));
   Context& context = call.context;
   // What can be refused at once is, before a simulation.
   const PageLayout layout = page_layout(options);
@@ -139,7 +140,7 @@ OperationResult run_texture(const OperationCall& call) {
   TexturePrint print;
   {
     const auto span = context.span(0.5, 0.85, "Making the print");
-    print = make_texture_print(model, formed.placement(model.mesh), *formed.sheet, picture, options, context);
+    print = make_texture_print(model, formed.real_placement(model.mesh), *formed.sheet, picture, options, context);
   }
   report_print(report, print, layout, options);
   std::vector<std::string> sentences = formed.placement.notes;

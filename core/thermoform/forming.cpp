@@ -254,7 +254,7 @@ FormedResult form_sheet(std::shared_ptr<const MouldShape> shape, const Placement
                  return load;
                },
                [&](double) {
-                 if (dynamics.free_count() == 0) return true;
+                 if (dynamics.all_stuck()) return true;
                  return t_end >= (o.clamp_slip_mm > 0 ? slip_s : o.vacuum_ramp_s) && dynamics.last_step_s() > 0.5 * longest_step_s &&
                         dynamics.last_move_mm() < rest_speed_mm_per_s * dynamics.last_step_s();
                },

@@ -89,6 +89,43 @@ std::optional<double> MouldContact::first_touch(const Vec3& from, const Vec3& to
   }
 }
 
+Vec3 MouldContact::normal(const Vec3& p, double radius_mm) const {
+  double clear = p.z() - radius_mm;
+  Vec3 away = Vec3::UnitZ();
+  for (int k = 0; k < 2; ++k)
+    if (const double to_wall = wall_mm_[k] - std::abs(p[k]); to_wall < clear) {
+      clear = to_wall;
+      away = -std::copysign(1.0, p[k]) * Vec3::Unit(k);
+    }
+  if (!shape_) return away;
+  const auto nearest = shape_->distance.nearest(to_model_ * (p - placement_.translation), (std::max(clear, 0.0) + radius_mm) / placement_.scale);
+  if (!nearest || nearest->distance * placement_.scale - radius_mm > clear) return away;
+  const Vec3 from_mould = p - placement_(nearest->point);
+  return from_mould.norm() > 1e-9 ? from_mould.normalized() : away;
+}
+
+std::optional<Vec3> MouldContact::slide(const Vec3& from, Vec3& to, const Vec3& normal, double radius_mm) const {
+  const Vec3 way = to - from - normal.dot(to - from) * normal;
+  const double length = way.norm();
+  to = from;
+  if (length < 1e-9) return from;
+  // A little off the surface, along it, and down again.
+  const double lift = std::max(0.25 * length, 4 * tolerance_mm_);
+  const Vec3 above = from + lift * normal;
+  // What it touches beside, as in a corner, it may come as near to as it is.
+  Known known{above, distance_mm(above, farthest_mm).value_or(farthest_mm)};
+  const double radius = std::min({radius_mm, known.distance_mm - 2 * tolerance_mm_, above.z() - 2 * tolerance_mm_});
+  if (radius < 0.1 * radius_mm) return from;
+  const Vec3 along = above + first_touch(above, above + way, radius, known).value_or(1.0) * way;
+  const Vec3 down = -(lift + 0.5 * length + 2 * tolerance_mm_) * normal;
+  const auto landing = first_touch(along, along + down, radius, known);
+  if (!landing) {
+    to = along;
+    return std::nullopt;
+  }
+  return to = along + *landing * down;
+}
+
 std::vector<Vec3> MouldContact::sharp_points(double edge_mm, double allowed_mm, double spacing_mm) const {
   if (!shape_) return {};
   const TriangleMesh mesh = placement_(shape_->mesh);

@@ -40,6 +40,14 @@ class MouldContact {
   /// mould or the plate, or reaches a wall; nothing when it stays away.
   std::optional<double> first_touch(const Vec3& from, const Vec3& to, double radius_mm, Known& known) const;
 
+  /// The direction away from whatever a point with `radius_mm` around it touches, or comes nearest to: mould, plate or wall.
+  Vec3 normal(const Vec3& p, double radius_mm) const;
+
+  /// Where a point that touches gets when it is pushed along the surface, whose normal there is `normal`, from `from` towards
+  /// `to`: as far as the way is clear, down to the surface again, or nothing when it has none below it any more (`to` is then
+  /// where it got). Never nearer than `radius_mm`, or than it was.
+  std::optional<Vec3> slide(const Vec3& from, Vec3& to, const Vec3& normal, double radius_mm) const;
+
   double top_mm() const { return top_mm_; }  // of the mould; 0 without one
   double tolerance_mm() const { return tolerance_mm_; }
   bool has_mould() const { return shape_ != nullptr; }

@@ -11,6 +11,7 @@ namespace formwright {
 namespace {
 
 constexpr double offset_cells = 1 << 19;
+constexpr double share_beside = 0.02;  // of a slid contact's stiffness along the face: about the sheet's own
 
 std::uint64_t key(int x, int y, int z) {
   return static_cast<std::uint64_t>(z & 0xfffff) << 40 | static_cast<std::uint64_t>(y & 0xfffff) << 20 | static_cast<std::uint64_t>(x & 0xfffff);
@@ -22,6 +23,15 @@ struct Touch {
   double fraction;
   Vec3 barycentric;
 };
+Vec3 on_face(const PointContact& contact, const Triangles& F, const Positions& x) {
+  Vec3 here = Vec3::Zero();
+  for (int k = 0; k < 3; ++k) here += contact.barycentric[k] * x.row(F(contact.face, k)).transpose();
+  return here;
+}
+Vec3 face_normal(int face, const Triangles& F, const Positions& x) {
+  const Vec3 a = x.row(F(face, 0)), b = x.row(F(face, 1)), c = x.row(F(face, 2));
+  return (b - a).cross(c - a).normalized();
+}
 std::optional<Touch> first_touch(const Vec3& q, const Vec3 (&a)[3], const Vec3 (&b)[3], double radius, double tolerance) {
   double speed = 0;
   for (int k = 0; k < 3; ++k) speed = std::max(speed, (b[k] - a[k]).norm());
@@ -128,18 +138,57 @@ void PointContacts::roll_back(std::size_t count) {
 
 void PointContacts::add_forces(const Triangles& F, const Positions& x, Positions& force, BlockMatrix* matrix) const {
   for (const PointContact& contact : contacts_) {
-    Vec3 here = Vec3::Zero();
-    for (int k = 0; k < 3; ++k) here += contact.barycentric[k] * x.row(F(contact.face, k)).transpose();
-    const Vec3 pull = stiffness_ * (contact.place - here);
+    const Vec3 pull = pull_of(contact, F, x);
     for (int a = 0; a < 3; ++a) {
       force.row(F(contact.face, a)) += contact.barycentric[a] * pull.transpose();
       if (!matrix) continue;
       for (int b = 0; b < 3; ++b) {
-        const auto value = static_cast<float>(stiffness_ * contact.barycentric[a] * contact.barycentric[b]);
+        const double stiffness = stiffness_ * contact.barycentric[a] * contact.barycentric[b];
+        const auto value = static_cast<float>(stiffness);
         auto& block = matrix->block(matrix->slot(F(contact.face, a), F(contact.face, b)));
-        for (int j = 0; j < 3; ++j) block[static_cast<std::size_t>(j)][j] += value;
+        for (int j = 0; j < 3; ++j) {
+          block[static_cast<std::size_t>(j)][j] += contact.slid ? static_cast<float>(share_beside * stiffness) : value;
+          if (!contact.slid) continue;
+          for (int i = 0; i < 3; ++i)
+            block[static_cast<std::size_t>(j)][i] += static_cast<float>((1 - share_beside) * stiffness * contact.normal[i] * contact.normal[j]);
+        }
       }
     }
+  }
+}
+
+Vec3 PointContacts::pull_of(const PointContact& contact, const Triangles& F, const Positions& x) const {
+  const Vec3 pull = stiffness_ * (contact.place - on_face(contact, F, x));
+  return contact.slid ? Vec3(share_beside * pull + (1 - share_beside) * pull.dot(contact.normal) * contact.normal) : pull;
+}
+
+void PointContacts::slide(const Triangles& F, const Positions& x, double friction, const std::vector<std::vector<int>>& faces_of) {
+  for (PointContact& contact : contacts_) {
+    const Vec3 here = on_face(contact, F, x), pull = pull_of(contact, F, x);
+    const Vec3 normal = contact.slid ? contact.normal : face_normal(contact.face, F, x);
+    const double across = pull.dot(normal), most = friction * std::abs(across);
+    const Vec3 along = pull - across * normal;
+    if (along.norm() <= most || along.norm() == 0) continue;
+    // Which place of the sheet lies over the point now? It is held as far from the point as the old one was.
+    const Vec3& point = points_[static_cast<std::size_t>(contact.point)];
+    const double stretched_mm = std::clamp(across / stiffness_, -0.05 * cell_mm_, 0.05 * cell_mm_);
+    const double reach_mm = (here - point).dot(normal) + stretched_mm;
+    NearestPoint best;
+    best.distance = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 3; ++k)
+      for (const int face : faces_of[static_cast<std::size_t>(F(contact.face, k))]) {
+        NearestPoint candidate = nearest_on_triangle(point, x.row(F(face, 0)), x.row(F(face, 1)), x.row(F(face, 2)));
+        if (candidate.distance > best.distance || (candidate.distance == best.distance && face >= best.face)) continue;
+        candidate.face = face;
+        best = candidate;
+      }
+    contact.slid = true;
+    contact.face = best.face;
+    contact.barycentric = best.barycentric;
+    contact.normal = face_normal(best.face, F, x);
+    const Vec3 now = on_face(contact, F, x), beside = along - along.dot(contact.normal) * contact.normal;
+    contact.place = now + (reach_mm - (now - point).dot(contact.normal)) * contact.normal;
+    if (beside.norm() > 0) contact.place += std::min(most, along.norm()) / (share_beside * stiffness_ * beside.norm()) * beside;
   }
 }
 

@@ -15,6 +15,9 @@ struct PointContact {
   Vec3 barycentric;
   Vec3 place;  // where that point of the face is held
   double fraction = 0;  // of the step in which it was met
+  // Where friction is finite: what has slid is held by the full stiffness along `normal` only, and softly beside.
+  bool slid = false;
+  Vec3 normal = Vec3::Zero();
 };
 
 class PointContacts {
@@ -30,6 +33,10 @@ class PointContacts {
   /// Adds the springs' forces and, unless null, their stiffness.
   void add_forces(const Triangles& F, const Positions& x, Positions& force, BlockMatrix* matrix) const;
 
+  /// After a step that ended at `x`: where the pull along the face exceeds `friction` times that across it, the sheet slides over
+  /// the point until it does not. `faces_of`: the triangles around a vertex.
+  void slide(const Triangles& F, const Positions& x, double friction, const std::vector<std::vector<int>>& faces_of);
+
   const std::vector<PointContact>& contacts() const { return contacts_; }
   std::size_t point_count() const { return points_.size(); }
   const std::vector<Vec3>& points() const { return points_; }
@@ -37,6 +44,8 @@ class PointContacts {
   void roll_back(std::size_t count);
 
  private:
+  /// N, on the face, with the face's corners at `x`.
+  Vec3 pull_of(const PointContact& contact, const Triangles& F, const Positions& x) const;
   /// The points in a box, ascending within each cell.
   void collect(const Vec3& lower, const Vec3& upper, std::vector<int>& points) const;
 

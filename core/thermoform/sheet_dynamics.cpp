@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace formwright {
 namespace {
@@ -82,17 +83,29 @@ SheetDynamics::SheetDynamics(const SheetMesh& sheet, const ThermoformOptions& op
   for (std::size_t i = 0; i < held_.size(); ++i)
     if (held_[i]) contact_time_[i] = 0;
   known_.resize(static_cast<std::size_t>(n));
+  if (options.cooling > 0) chill_ = std::make_unique<ContactChill>(sheet, options.cooling);
+  if (options.slip > 0 && contact_) friction_ = std::make_unique<SheetFriction>(sheet, 1 / options.slip, options.young_modulus_pa * 1e-6 * options.sheet_thickness_mm);
+  none_held_.assign(held_.size(), moves_freely);
   collect_free();
 }
 
 void SheetDynamics::collect_free() {
   free_.clear();
   for (std::size_t i = 0; i < held_.size(); ++i)
-    if (!held_[i]) free_.push_back(static_cast<int>(i));
+    if (held_[i] == moves_freely || held_[i] == sliding) free_.push_back(static_cast<int>(i));
+}
+
+int SheetDynamics::free_count() const { return static_cast<int>(std::count(held_.begin(), held_.end(), moves_freely)); }
+
+void SheetDynamics::begin_membrane_step() {
+  // Where nothing ever slides, triangles held at every corner have no say.
+  membrane_.begin_step(x_, friction_ ? none_held_ : held_);
+  if (bending_) bending_->begin_step(x_, membrane_.thickness_mm(), membrane_.stiffness_factors());
 }
 
 void SheetDynamics::add_velocity(const Vec3& mm_per_s) {
-  for (const int i : free_) v_.row(i) += mm_per_s.transpose();
+  for (const int i : free_)
+    if (held_[static_cast<std::size_t>(i)] == moves_freely) v_.row(i) += mm_per_s.transpose();
 }
 
 std::vector<double> SheetDynamics::vertex_thickness_mm(const Positions& x) const {
@@ -119,7 +132,7 @@ void SheetDynamics::assemble(const Positions& x, double dt_s, const StepLoad& lo
     for (int f = 0; f < membrane_.face_count(); ++f) {
       // The gradient of the volume under the face: a third of its area vector for each corner.
       const int a = sheet_.F(f, 0), b = sheet_.F(f, 1), c = sheet_.F(f, 2);
-      if (held_[static_cast<std::size_t>(a)] && held_[static_cast<std::size_t>(b)] && held_[static_cast<std::size_t>(c)]) continue;
+      if (!friction_ && held_[static_cast<std::size_t>(a)] && held_[static_cast<std::size_t>(b)] && held_[static_cast<std::size_t>(c)]) continue;
       const Vec3 pa = x.row(a), pb = x.row(b), pc = x.row(c);
       const Vec3 push = -load.pressure_mpa / 6 * (pb - pa).cross(pc - pa);
       force.row(a) += push.transpose();
@@ -131,8 +144,7 @@ void SheetDynamics::assemble(const Positions& x, double dt_s, const StepLoad& lo
 
 Positions SheetDynamics::forces(const Positions& x, double dt_s, const StepLoad& load, BlockMatrix* matrix) {
   Positions force(x.rows(), 3);
-  membrane_.begin_step(x_, held_);
-  if (bending_) bending_->begin_step(x_, membrane_.thickness_mm(), membrane_.stiffness_factors());
+  begin_membrane_step();
   assemble(x, dt_s, load, force, matrix);
   return force;
 }
@@ -152,24 +164,36 @@ int SheetDynamics::find_contacts(const Positions& from, Positions& to, const std
     }
   for (const int i : free_) {
     const auto v = static_cast<std::size_t>(i);
+    if (held_[v] == sliding) continue;
     const Vec3 a = from.row(i), b = to.row(i);
     const auto touch = contact_->first_touch(a, b, radius_mm[v], known_[v]);
     if (!touch || *touch > until[v]) continue;
     to.row(i) = (a + *touch * (b - a)).transpose();
-    held_[v] = 2;  // in this step
+    held_[v] = stuck_in_this_step;
     ++found;
   }
   return found;
 }
 
+Vec3 SheetDynamics::slide(int vertex, const Vec3& from, const Vec3& wanted, double radius_mm) {
+  // No farther at once than the normal may be trusted.
+  const double most_mm = 0.25 * edge_mm_;
+  Vec3 to = from + (wanted.norm() > most_mm ? Vec3(most_mm / wanted.norm() * wanted) : wanted);
+  Vec3& normal = friction_->normal(vertex);
+  if (contact_->slide(from, to, normal, radius_mm)) normal = contact_->normal(to, radius_mm);
+  else held_[static_cast<std::size_t>(vertex)] = moves_freely;
+  return to - from;
+}
+
 SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, double most_move_mm, Context& context) {
   const std::size_t points_before = points_.contacts().size();
   Stopwatch watch;
-  membrane_.begin_step(x_, held_);
-  if (bending_) bending_->begin_step(x_, membrane_.thickness_mm(), membrane_.stiffness_factors());
+  begin_membrane_step();
   std::vector<double> radius = vertex_thickness_mm(x_);
   for (double& r : radius) r *= 0.5;
   const Positions from = x_;
+  const HeldVertices held_before = friction_ ? held_ : HeldVertices{};
+  const std::optional<SheetFriction> friction_before = friction_ ? std::optional(*friction_) : std::nullopt;
   Positions x = x_, force(x_.rows(), 3);
   BlockVector right_side(held_.size()), direction(held_.size());
   const bool has_guess = guess_.rows() == x_.rows();
@@ -189,7 +213,11 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
   const auto give_up = [&](Outcome outcome) {
     points_.roll_back(points_before);
     for (char& held : held_)
-      if (held == 2) held = 0;
+      if (held == stuck_in_this_step) held = moves_freely;
+    if (friction_) {
+      held_ = held_before;
+      *friction_ = *friction_before;
+    }
     collect_free();
     ++statistics_.rejected_steps;
     return outcome;
@@ -207,10 +235,11 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
     for (const int i : free_) {
       const auto v = static_cast<std::size_t>(i);
       const double m = mass_[v] * inertia;
-      const Vec3 residual = force.row(i).transpose() - m * (x.row(i) - from.row(i) - dt_s * v_.row(i)).transpose();
-      right_side[v] = Float4{static_cast<float>(residual.x()), static_cast<float>(residual.y()), static_cast<float>(residual.z()), 0};
+      Vec3 residual = force.row(i).transpose() - m * (x.row(i) - from.row(i) - dt_s * v_.row(i)).transpose();
       auto& diagonal = matrix_.block(matrix_.diagonal_slot(i));
       for (std::size_t k = 0; k < 3; ++k) diagonal[k][k] += static_cast<float>(m);
+      if (held_[v] == sliding) friction_->constrain(i, (x.row(i) - from.row(i)).transpose(), dt_s, residual, diagonal);
+      right_side[v] = Float4{static_cast<float>(residual.x()), static_cast<float>(residual.y()), static_cast<float>(residual.z()), 0};
     }
     statistics_.seconds_assembly += watch.lap();
     statistics_.cg_iterations += cg_.solve(matrix_, right_side, free_, cg_tolerance, most_cg_iterations, direction);
@@ -220,7 +249,8 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
     double increment_squared = 0, moved_squared = 0, sum_squared = 0;
     for (const int i : free_) {
       const Float4& d = direction[static_cast<std::size_t>(i)];
-      const Vec3 delta(d[0], d[1], d[2]);
+      Vec3 delta(d[0], d[1], d[2]);
+      if (held_[static_cast<std::size_t>(i)] == sliding) delta = slide(i, x.row(i).transpose(), delta, radius[static_cast<std::size_t>(i)]);
       x.row(i) += delta.transpose();
       increment_squared = std::max(increment_squared, delta.squaredNorm());
       sum_squared += delta.squaredNorm();
@@ -242,16 +272,26 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
   // Accepted.
   for (std::size_t i = 0; i < held_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    if (held_[i] == 2) {
-      held_[i] = 1;
+    if (held_[i] == stuck_in_this_step) {
+      held_[i] = stuck;
       contact_time_[i] = time_ + dt_s;
       v_.row(row).setZero();
-    } else if (!held_[i]) {
+      if (friction_) friction_->normal(static_cast<int>(i)) = contact_->normal(x.row(row).transpose(), radius[i]);
+    } else if (held_[i] == moves_freely) {
       v_.row(row) = (x.row(row) - from.row(row)) / dt_s;
+      contact_time_[i] = -1;  // also of one that has slid off the mould
     }
   }
-  membrane_.end_step(x, dt_s);
+  if (chill_) chill_->advance(dt_s, held_);
+  membrane_.end_step(x, dt_s, chill_ ? std::span<const double>(chill_->stiffness_factors()) : std::span<const double>());
   x_ = std::move(x);
+  if (friction_) {
+    begin_membrane_step();
+    assemble(x_, std::numeric_limits<double>::infinity(), load, force, nullptr);
+    points_.slide(sheet_.F, x_, friction_->coefficient(), friction_->faces_of());
+    friction_->decide(force, held_);
+    collect_free();
+  }
   time_ += dt_s;
   last_move_ = moved;
   last_step_ = dt_s;

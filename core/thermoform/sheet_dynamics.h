@@ -8,10 +8,12 @@
 
 #include "base/context.h"
 #include "thermoform/block_cg.h"
+#include "thermoform/contact_chill.h"
 #include "thermoform/hinge_bending.h"
 #include "thermoform/membrane.h"
 #include "thermoform/mould_contact.h"
 #include "thermoform/point_contacts.h"
+#include "thermoform/sheet_friction.h"
 #include "thermoform/sheet_mesh.h"
 
 namespace formwright {
@@ -54,7 +56,8 @@ class SheetDynamics {
   double last_step_s() const { return last_step_; }
   double step_limit_mm() const { return step_limit_mm_; }  // options.step_mm, or what it is automatically
   double last_move_mm() const { return last_move_; }  // farthest, beside the clamp's shift
-  int free_count() const { return static_cast<int>(free_.size()); }
+  int free_count() const;  // vertices that touch nothing
+  bool all_stuck() const { return free_.empty(); }
   const Membrane& membrane() const { return membrane_; }
   const SheetMesh& sheet() const { return sheet_; }
   const PointContacts& point_contacts() const { return points_; }
@@ -69,18 +72,23 @@ class SheetDynamics {
   void assemble(const Positions& x, double dt_s, const StepLoad& load, Positions& force, BlockMatrix* matrix);
   int find_contacts(const Positions& from, Positions& to, const std::vector<double>& radius_mm);
   void collect_free();
+  void begin_membrane_step();
+  /// How far a sliding vertex gets that wants to go `wanted`.
+  Vec3 slide(int vertex, const Vec3& from, const Vec3& wanted, double radius_mm);
 
   SheetMesh sheet_;
   ThermoformOptions options_;
   std::shared_ptr<const MouldContact> contact_;
   Membrane membrane_;
   std::unique_ptr<HingeBending> bending_;
+  std::unique_ptr<ContactChill> chill_;      // null without cooling
+  std::unique_ptr<SheetFriction> friction_;  // null where what touches sticks
   PointContacts points_;
   BlockMatrix matrix_;
   BlockCg cg_;
   Positions x_, v_, guess_, last_iterate_;
   std::vector<double> mass_, contact_time_, until_;
-  HeldVertices held_;
+  HeldVertices held_, none_held_;  // values: HeldState
   std::vector<int> free_;
   std::vector<MouldContact::Known> known_;
   double time_ = 0, mass_total_ = 0, last_move_ = 0, last_step_ = 0, edge_mm_ = 1, step_limit_mm_ = 1;

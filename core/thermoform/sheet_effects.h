@@ -56,7 +56,7 @@ struct SheetEffects : PlacementOptions {
                 "One over the coefficient of friction between sheet and mould. 0: what touches sticks for ever, as in the thesis.")
           .group(group_title).slider(0, 5).advanced(),
       parameter("cooling", &SheetEffects::cooling, "Chill on contact", unit::none, 0, 10,
-                "Share by which the cold mould stiffens what touches it, within a tenth of a second.")
+                "How much the cold mould stiffens what it touches, and what is close by. 1: six times, within a tenth of a second.")
           .group(group_title).slider(0, 3).advanced(),
       parameter("weak_vacuum", &SheetEffects::weak_vacuum, "Vacuum missing", unit::none, 0, 0.95,
                 "Share of the vacuum that leaks away.")

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
+#include "evidence/diagnosis_report.h"
+#include "evidence/thermoform/proposals.h"
+#include "job/evidence_input.h"
+#include "job/evidence_operations.h"
+#include "job/model_input.h"
+#include "job/thermoform_input.h"
+
+namespace formwright {
+namespace {
+
+struct DiagnoseOptions {
+  bool pairs = true;
+  bool separate = true;
+  int triangles = 5000;
+
+  static constexpr auto parameters = std::tuple{
+      parameter("pairs", &DiagnoseOptions::pairs, "Two causes at once", "Looks for two causes at work together as well.").group("Diagnosis"),
+      parameter("separate", &DiagnoseOptions::separate, "Propose a measurement", "Where two causes look alike, looks for the measurement that would tell them apart.").group("Diagnosis"),
+      parameter("triangles", &DiagnoseOptions::triangles, "Triangles", unit::none, 500, 40000, "Of the simulated sheet.").group("Diagnosis").slider(1000, 10000)};
+};
+
+std::vector<OutputInfo> outputs() {
+  return {{"diagnosis.json", "application/json", "Diagnosis", "Verdict, causes, gains, what cannot be told apart.", true},
+          {"diagnosis.html", "text/html", "Report", "The same to read: maps, histograms, ranked causes, what to do.", true},
+          {"profile.json", "application/json", "Machine profile", "Material and causes as found, for every later simulation (--profile).", true},
+          {"residuals.csv", "text/csv", "Residuals", "Each measured point, and where the calibrated and the extended simulation have it.", true}};
+}
+
+std::vector<ReportField> report_fields() {
+  return {{"verdict", "Verdict", "", "one or more causes, none or unknown"},
+          {"reading", "Reading", "", "none, cause, cannot_separate or unknown"},
+          {"doubtful", "Doubtful", "", "part of the misfit stays unexplained"},
+          {"sentence", "In words", "", "what was found"},
+          {"causes", "Causes", "", "name, label, probability, strength, unit, interval, values, remedy; the most probable first"},
+          {"not_separable", "Not separable", "", "pairs of causes, how alike they are (0 to 1), the measurement that would tell"},
+          {"error_before_mm", "Error before", "mm", "mean distance on held-out data, calibrated model"},
+          {"error_before_interval_mm", "its interval", "mm", "95 %"},
+          {"error_after_mm", "Error after", "mm", "the same, with the extended model"},
+          {"error_after_interval_mm", "its interval", "mm", "95 %"},
+          {"gain_share", "Gain", "", "1 - after / before"},
+          {"gain_interval", "its interval", "", "95 %"},
+          {"held_out", "Held out", "", "what was, in words"},
+          {"unseen", "Unseen objects", "", "the same figures on objects that were not used"},
+          {"noise_floor_mm", "Noise floor", "mm", "mean distance that noise alone gives"},
+          {"noise", "Noise", "", "of each object: as found, as stated, outliers"},
+          {"unexplained_before_mm", "Structure before", "mm", "size of smooth misfit that the calibrated model leaves"},
+          {"unexplained_after_mm", "Structure after", "mm", "the same with the extended model"},
+          {"structure_test", "Structure test", "", "agreement between neighbours' errors, its p-value and length, before and after"},
+          {"hypotheses", "Explanations", "", "the most probable: causes, with unknown structure or not, probability, log evidence"},
+          {"parameters", "Material", "", "calibrated, and with the extended model"},
+          {"simulations", "Simulations", "", "of the sheet"},
+          {"seconds_calibration", "Calibration", "s", "part of the diagnosis"},
+          {"seconds_diagnosis", "Diagnosis", "s", "all of it, without the unseen objects"},
+          {"notes", "Notes", "", "in words"},
+          {"peak_memory_mb", "Peak memory", "MB", "of the process"}};
+}
+
+std::string residuals_csv(const ThermoformModel& model, const Diagnosis& d) {
+  std::string text = "object,sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm,calibrated_x_mm,calibrated_y_mm,calibrated_z_mm,extended_x_mm,extended_y_mm,extended_z_mm,weight\n";
+  char line[320];
+  for (std::size_t object = 0; object < model.objects().size(); ++object) {
+    const FormedObject& own = model.objects()[object];
+    std::string name = own.name;
+    for (char& c : name)
+      if (c == ',' || c == '"' || c == '\n' || c == '\r') c = '_';
+    for (std::size_t i = 0; i < own.points.size(); ++i) {
+      const MeasuredPoint& p = own.points[i];
+      const auto row = static_cast<Eigen::Index>(i);
+      const auto before = d.base.predictions[object].row(row), after = d.extended.predictions[object].row(row);
+      std::snprintf(line, sizeof line, ",%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.4g\n", p.sheet_mm.x(), p.sheet_mm.y(), p.place_mm.x(), p.place_mm.y(), p.place_mm.z(), before[0],
+                    before[1], before[2], after[0], after[1], after[2], d.noise[object].weights[row]);
+      text += name + line;
+    }
+  }
+  return text;
+}
+
+OperationResult run(const OperationCall& call) {
+  const auto o = read_parameters<DiagnoseOptions>(call.parameters);
+  ThermoformModelOptions options;
+  options.triangles = o.triangles;
+  options.profile = read_profile_input(call);
+  std::vector<FormedObject> unseen = read_formed_objects(call, "unseen");
+  const ThermoformModel model(read_formed_objects(call, "object"), options);
+  SimulationBag bag(model);
+  Diagnosis diagnosis;
+  {
+    const auto span = call.context.span(0, o.separate ? 0.85 : 0.95, "Diagnosing");
+    DiagnosisOptions own;
+    own.pairs = o.pairs;
+    diagnosis = diagnose(bag, own, call.context);
+  }
+  DiagnosisReport report{model, diagnosis, {}, std::nullopt, {}, {}};
+  if (!diagnosis.not_separable.empty()) {
+    // The most alike first; more than two would only confuse.
+    std::vector<NotSeparable> pairs = diagnosis.not_separable;
+    std::stable_sort(pairs.begin(), pairs.end(), [](const NotSeparable& a, const NotSeparable& b) { return a.likeness > b.likeness; });
+    if (pairs.size() > 2) pairs.resize(2);
+    const auto span = call.context.span(0.85, 0.95, "Looking for a measurement that tells");
+    std::vector<ProposedMeasurement> proposals;
+    if (o.separate) proposals = proposed_measurements(model, options);
+    for (const NotSeparable& pair : pairs) {
+      SeparatedPair separated{pair, "", pair.likeness};
+      const Separation found = o.separate ? best_separation(bag, diagnosis, pair, proposals, std::max(diagnosis.noise.front().sigma, 1e-3), call.context) : Separation{};
+      if (found.proposal >= 0) separated.what = proposals[static_cast<std::size_t>(found.proposal)].what, separated.likeness = found.likeness;
+      report.separations.push_back(std::move(separated));
+    }
+  }
+  if (!unseen.empty()) {
+    const auto span = call.context.span(0.95, 0.99, "Predicting the unseen object");
+    for (const FormedObject& object : unseen) report.unseen_names.push_back(object.name);
+    const ThermoformModel other(std::move(unseen), options);
+    SimulationBag other_bag(other);
+    report.unseen = gain_on_unseen(other_bag, model, diagnosis.base.u, diagnosis.extended.u, call.context);
+  }
+  for (const FormedObject& object : model.objects())
+    for (const std::string& note : object.setup.notes) report.notes.push_back(object.name + ": " + note);
+
+  MachineProfile profile = model.profile_at(diagnosis.extended.u);
+  if (profile.name.empty()) profile.name = "Diagnosed machine";
+  profile.notes.push_back(verdict_sentence(report));
+
+  OperationResult result;
+  result.report = diagnosis_json(report);
+  const auto add = [&](const char* name, const std::string& text) {
+    for (const OutputInfo& info : outputs())
+      if (info.name == name) result.outputs.push_back(make_output(info, to_bytes(text)));
+  };
+  if (call.wants("diagnosis.json")) add("diagnosis.json", result.report.dump(2) + "\n");
+  if (call.wants("diagnosis.html")) add("diagnosis.html", diagnosis_page(report));
+  if (call.wants("profile.json")) add("profile.json", write_machine_profile(profile));
+  if (call.wants("residuals.csv")) add("residuals.csv", residuals_csv(model, diagnosis));
+  return result;
+}
+
+}  // namespace
+
+Operation evidence_diagnose_operation() {
+  Operation operation;
+  operation.name = "evidence-diagnose";
+  operation.title = "Diagnose";
+  operation.summary = "Names what the simulation of measured objects gets wrong, and measures what naming it gains.";
+  operation.inputs = {object_input_info("object", "Measured object", "Folder of mould.obj, setup.json and measured.csv.", true, true),
+                      object_input_info("unseen", "Object not used", "Another folder, only to measure the gain on.", false, true), profile_input_info()};
+  operation.parameters = describe_parameters<DiagnoseOptions>();
+  operation.outputs = outputs();
+  operation.report = report_fields();
+  operation.keeps_results = true;
+  operation.check = [](const Json& parameters) { read_parameters<DiagnoseOptions>(parameters); };
+  operation.run = run;
+  return operation;
+}
+
+}  // namespace formwright

@@ -19,9 +19,9 @@ struct InputInfo {
   std::vector<std::string> extensions;
   bool required = true;
   bool accepts_sample = false;
+  std::string object_file = "";  // its name in the folder of a measured object, "" when it has none: --object DIR gives them all
   std::vector<std::string> folder_files = {};  // a zip of these files, which the command line packs from a folder; empty for plain files
   bool repeatable = false;                     // more of them as name_2, name_3, ...
-  std::string object_file = "";  // its name in the folder of a measured object, "" when it has none: --object DIR gives them all
 };
 
 struct OutputInfo {

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "evidence/diagnosis.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+
+#include "base/error.h"
+#include "evidence/calibration.h"
+#include "evidence/diagnosis_report.h"
+#include "evidence/toy_model.h"
+
+namespace formwright {
+namespace {
+
+using evidence_test::ToyModel;
+
+Diagnosis diagnosed(const ToyModel& model) {
+  SimulationBag bag(model);
+  Context context;
+  return diagnose(bag, {}, context);
+}
+
+TEST(BoundedStep, IsThatOfTheLinearSystemInsideAndClampsOutside) {
+  Eigen::Matrix3d H;
+  H << 4, 1, 0.5, 1, 3, 0.2, 0.5, 0.2, 2;
+  const Eigen::Vector3d g(1, -2, 0.5), wide = Eigen::Vector3d::Constant(10);
+  EXPECT_LT((bounded_step(H, g, -wide, wide) + H.ldlt().solve(g)).norm(), 1e-8);
+  const Eigen::Vector3d low(-0.1, -0.1, -0.1), high(0.1, 0.1, 0.1);
+  const Eigen::Vector3d s = bounded_step(H, g, low, high);
+  // Karush, Kuhn and Tucker: the gradient points out of the box where the step is at its side.
+  const Eigen::Vector3d gradient = H * s + g;
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_LE(std::abs(s[i]), 0.1 + 1e-12);
+    if (s[i] > -0.1 + 1e-9 && s[i] < 0.1 - 1e-9) EXPECT_NEAR(gradient[i], 0, 1e-6);
+    else EXPECT_LE(gradient[i] * s[i], 1e-9);
+  }
+}
+
+TEST(ParameterFit, RecoversBaseParametersDespiteOutliers) {
+  ToyModel model(600);
+  Eigen::VectorXd truth = model.nominal();
+  truth[0] = 0.4;
+  truth[1] = -0.7;
+  model.measure(truth, 0.02, 7, 0.05);
+  SimulationBag bag(model);
+  Context context;
+  const ParameterFit fit = fit_parameters(bag, *mean_distance_objective(model, 0.02), model.base_parameters(), model.nominal(), {}, {}, context, "");
+  EXPECT_NEAR(fit.u[0], 0.4, 0.01);
+  EXPECT_NEAR(fit.u[1], -0.7, 0.01);
+  EXPECT_LT(bag.simulations(), 40);
+}
+
+TEST(ParameterFit, StaysWithinRanges) {
+  ToyModel model(200);
+  Eigen::VectorXd truth = model.nominal();
+  truth[1] = 5;
+  model.measure(truth, 0.01, 1);
+  model.measurement().measured.col(0) += 3 * model.measurements().front().place.col(1);  // as of a tilt of 8
+  SimulationBag bag(model);
+  Context context;
+  FitOptions options;
+  options.most_iterations = 60;
+  const ParameterFit fit = fit_parameters(bag, *mean_distance_objective(model, 0.01), model.base_parameters(), model.nominal(), {}, options, context, "");
+  EXPECT_NEAR(fit.u[1], 5, 1e-6);
+}
+
+TEST(SimulationBag, AsksForNothingTwiceAndStopsAtOnce) {
+  ToyModel model(50);
+  SimulationBag bag(model);
+  Context context;
+  const Eigen::VectorXd u = model.nominal();
+  bag.run({u, u, u}, context, "");
+  EXPECT_EQ(bag.simulations(), 1);
+  bag.run(u, context, "");
+  EXPECT_EQ(bag.simulations(), 1);
+  Context cancelled(Host{{}, [] { return true; }});
+  Eigen::VectorXd other = u;
+  other[0] = 0.1;
+  EXPECT_THROW(bag.run(other, cancelled, ""), Error);
+  EXPECT_TRUE(bag.run(other, context, "").has_value());
+}
+
+TEST(Calibration, IntervalsHoldTheTruthAndSayWhatIsNotTold) {
+  int inside = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    ToyModel model(300, seed);
+    Eigen::VectorXd truth = model.nominal();
+    truth[0] = 0.2;
+    truth[1] = 0.5;
+    model.measure(truth, 0.1, 100 + seed);
+    SimulationBag bag(model);
+    Context context;
+    const Calibration c = calibrate(bag, context);
+    ASSERT_EQ(c.profiles.size(), 2u);
+    EXPECT_LT(c.error, c.error_nominal);
+    EXPECT_TRUE(c.profiles[1].identified);
+    inside += c.profiles[1].low <= 0.5 && 0.5 <= c.profiles[1].high;
+  }
+  EXPECT_GE(inside, 16);  // of 20 at 95 %; the structure term only widens
+  // All points at z = 0: nothing is known of the tilt.
+  ToyModel blind(300);
+  blind.measurement().place.col(1).setZero();
+  blind.measure(blind.nominal(), 0.05, 4);
+  SimulationBag bag(blind);
+  Context context;
+  const Calibration c = calibrate(bag, context);
+  EXPECT_FALSE(c.profiles[1].identified);
+}
+
+TEST(Calibration, FitIsNoWorseThanTheGrid) {
+  ToyModel model(300);
+  Eigen::VectorXd truth = model.nominal();
+  truth[0] = 0.33;
+  truth[1] = 0.41;
+  model.measure(truth, 0.05, 9, 0.02);
+  SimulationBag bag(model), grid_bag(model);
+  Context context;
+  const Calibration fit = calibrate(bag, context);
+  const Calibration grid = grid_search(grid_bag, {{0, 5, 20}, {1, -2, 2}}, 5, {}, 0, context);
+  EXPECT_EQ(grid.simulations, 26);  // 25 of the grid and the nominal one, which is none of them
+  EXPECT_LE(fit.error, grid.error + 1e-9);
+}
+
+TEST(Diagnosis, CleanDataAreCalledClean) {
+  int alarms = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    ToyModel model(400, seed);
+    Eigen::VectorXd truth = model.nominal();
+    truth[0] = 0.2;
+    model.measure(truth, 0.08, seed, 0.02);
+    alarms += diagnosed(model).reading != Reading::none;
+  }
+  EXPECT_LE(alarms, 1);
+}
+
+TEST(Diagnosis, NamesEachCauseItsStrengthAndTheGain) {
+  struct Case {
+    int parameter;
+    double value;
+    int cause;
+  };
+  for (const Case& c : {Case{2, 0.5, 0}, Case{3, 0.3, 1}, Case{5, -0.6, 2}})
+    for (unsigned seed = 1; seed <= 4; ++seed) {
+      ToyModel model(400, seed);
+      Eigen::VectorXd truth = model.nominal();
+      truth[0] = -0.2;
+      truth[c.parameter] = c.value;
+      model.measure(truth, 0.05, 30 + seed, 0.02);
+      const Diagnosis d = diagnosed(model);
+      ASSERT_EQ(d.reading, Reading::cause) << c.cause << " seed " << seed;
+      EXPECT_EQ(d.verdict, std::vector<int>{c.cause});
+      EXPECT_EQ(d.causes.front().cause, c.cause);
+      EXPECT_NEAR(std::abs(d.causes.front().strength), std::abs(c.value), 0.08);
+      EXPECT_LT(d.causes.front().low, d.causes.front().high);
+      EXPECT_LT(d.held_out.after.mean, 0.8 * d.held_out.before.mean);
+      EXPECT_GT(d.held_out.after.mean, 0.8 * d.noise_floor);
+    }
+}
+
+TEST(Diagnosis, FindsPairs) {
+  ToyModel model(500);
+  Eigen::VectorXd truth = model.nominal();
+  truth[2] = 0.6;
+  truth[3] = 0.4;
+  model.measure(truth, 0.05, 12, 0.02);
+  const Diagnosis d = diagnosed(model);
+  std::vector<int> verdict = d.verdict;
+  std::sort(verdict.begin(), verdict.end());
+  EXPECT_EQ(verdict, (std::vector<int>{0, 1}));
+}
+
+TEST(Diagnosis, SaysUnknownToWhatIsNotInTheList) {
+  ToyModel model(500);
+  model.measure(model.nominal(), 0.04, 3);
+  Measurement& m = model.measurement();
+  for (Eigen::Index i = 0; i < m.measured.rows(); ++i) m.measured(i, 1) += 0.4 * std::sin(5 * m.place(i, 0)) * std::cos(4 * m.place(i, 1) + 1);
+  const Diagnosis d = diagnosed(model);
+  EXPECT_TRUE(d.reading == Reading::unknown || d.doubtful);
+}
+
+TEST(Diagnosis, OwnsUpToTwins) {
+  ToyModel model(400, 1, true);
+  Eigen::VectorXd truth = model.nominal();
+  truth[2] = 0.5;
+  model.measure(truth, 0.08, 5);
+  const Diagnosis d = diagnosed(model);
+  ASSERT_FALSE(d.not_separable.empty());
+  const NotSeparable& pair = d.not_separable.front();
+  EXPECT_EQ(std::min(pair.cause_a, pair.cause_b), 0);
+  EXPECT_EQ(std::max(pair.cause_a, pair.cause_b), 3);
+  EXPECT_GT(pair.likeness, 0.95);
+}
+
+TEST(Diagnosis, ReportsAreWholeAndHoldNoStrangeNumbers) {
+  ToyModel model(300);
+  Eigen::VectorXd truth = model.nominal();
+  truth[2] = 0.5;
+  model.measure(truth, 0.05, 8);
+  const Diagnosis d = diagnosed(model);
+  const DiagnosisReport report{model, d, {}, std::nullopt, {}, {"A note with <angle> brackets"}};
+  const Json json = diagnosis_json(report);
+  EXPECT_EQ(json["verdict"][0], "bump");
+  double sum = 0;
+  for (const Json& h : json["hypotheses"]) sum += h["probability"].get<double>();
+  EXPECT_LE(sum, 1 + 1e-9);
+  EXPECT_EQ(json.dump().find("null"), std::string::npos);
+  const std::string page = diagnosis_page(report);
+  EXPECT_NE(page.find("A note with &lt;angle&gt; brackets"), std::string::npos);
+  EXPECT_EQ(page.find("nan"), std::string::npos);
+  EXPECT_EQ(page.find("http"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace formwright

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "evidence/structured_misfit.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+
+#include "evidence/hypotheses.h"
+#include "evidence/noise_model.h"
+#include "evidence/toy_model.h"
+
+namespace formwright {
+namespace {
+
+using evidence_test::ToyModel;
+
+/// C^-1 as a dense matrix: inner products of unit vectors.
+Eigen::MatrixXd inverse_covariance(const StructuredMisfit& misfit, Eigen::Index n, std::size_t index) {
+  Eigen::MatrixXd inverse(n, n);
+  std::vector<Eigen::MatrixXd> units;
+  for (Eigen::Index i = 0; i < n; ++i) units.push_back(Eigen::MatrixXd(Eigen::VectorXd::Unit(n, i)));
+  return misfit.gram_at(Eigen::MatrixXd::Zero(n, 1), units, index).bottomRightCorner(n, n);
+}
+
+TEST(StructuredMisfit, GramMatrixIsThatOfADenseCovariance) {
+  ToyModel model(40);
+  const Eigen::VectorXd weights = Eigen::VectorXd::LinSpaced(40, 50, 400);
+  const std::vector<double> sizes{0, 0.1, 1};
+  const StructuredMisfit misfit(model.measurements().front(), weights, sizes);
+  const Eigen::MatrixXd residual = Eigen::MatrixXd::Random(40, 2);
+  const std::vector<Eigen::MatrixXd> columns{Eigen::MatrixXd::Random(40, 2), Eigen::MatrixXd::Random(40, 2)};
+  const GramByStructure gram = misfit.gram(residual, columns);
+  for (std::size_t t = 0; t < sizes.size(); ++t) {
+    const Eigen::MatrixXd inverse = inverse_covariance(misfit, 40, t);
+    // The structure has the size it is said to have: the mean of C's diagonal is noise and tau^2.
+    const Eigen::MatrixXd C = inverse.inverse();
+    EXPECT_NEAR(C.diagonal().mean(), weights.cwiseInverse().mean() + sizes[t] * sizes[t], 0.35 * sizes[t] * sizes[t] + 1e-12);
+    EXPECT_NEAR(gram.gram[t](0, 0), (residual.transpose() * inverse * residual).trace(), 1e-6 * gram.gram[t](0, 0));
+    EXPECT_NEAR(gram.gram[t](1, 2), (columns[0].transpose() * inverse * columns[1]).trace(), 1e-6 * gram.gram[t](1, 1));
+    EXPECT_NEAR(gram.log_determinant[t], -2 * std::log(inverse.determinant()), 1e-6 * std::abs(gram.log_determinant[t]) + 1e-6);
+  }
+}
+
+TEST(StructuredMisfit, PointsOfWeightZeroDoNotCount) {
+  ToyModel model(60);
+  Eigen::VectorXd weights = Eigen::VectorXd::Constant(60, 100);
+  weights.tail(20).setZero();
+  Eigen::MatrixXd residual = Eigen::MatrixXd::Random(60, 2);
+  const StructuredMisfit misfit(model.measurements().front(), weights, {0.2});
+  const double before = misfit.gram_at(residual, {}, 0)(0, 0);
+  residual.bottomRows(20).setConstant(1e6);
+  EXPECT_DOUBLE_EQ(misfit.gram_at(residual, {}, 0)(0, 0), before);
+}
+
+TEST(NoiseModel, FindsNoiseUnderAFieldAndOutliers) {
+  ToyModel model(1500);
+  Eigen::VectorXd u = model.nominal();
+  u[2] = 0.8;
+  model.measure(u, 0.07, 5, 0.03);
+  model.measurement().sigma.setConstant(0.035);  // said to be twice as good as they are
+  const Eigen::MatrixXd residual = model.measurements().front().measured - model.predict(0, model.nominal(), Context());
+  const NoiseEstimate noise = estimate_noise(model.measurements().front(), residual);
+  EXPECT_NEAR(noise.sigma, 0.07, 0.006);
+  EXPECT_NEAR(noise.scale, 2, 0.2);
+  EXPECT_NEAR(noise.outliers, 45, 15);
+}
+
+TEST(NoiseModel, StructureIsToldFromNoise) {
+  ToyModel model(800);
+  model.measure(model.nominal(), 0.05, 3);
+  const Eigen::MatrixXd noise = model.measurements().front().measured - model.predict(0, model.nominal(), Context());
+  const Eigen::VectorXd weights = Eigen::VectorXd::Constant(800, 400);
+  EXPECT_GT(test_structure(model.measurements().front(), noise, weights).p_value, 0.02);
+  Eigen::VectorXd u = model.nominal();
+  u[2] = 0.3;
+  const Eigen::MatrixXd field = model.measurements().front().measured - model.predict(0, u, Context());
+  const StructureTest found = test_structure(model.measurements().front(), field, weights);
+  EXPECT_LT(found.p_value, 0.01);
+  EXPECT_GT(found.neighbour_correlation, 0.3);
+  EXPECT_GT(found.correlation_length_mm, 5);
+  EXPECT_LT(found.correlation_length_mm, 40);
+}
+
+TEST(Hypotheses, EvidenceIsThatOfTheMarginalGaussian) {
+  // One base parameter and one effect in a linear model: log p(y) = log N(y; 0, C + J S J^T), up to what the data alone decide.
+  ToyModel model(30);
+  Eigen::VectorXd u = model.nominal();
+  u[1] = 0.3;
+  u[2] = 0.5;
+  model.measure(u, 0.05, 2);
+  const Eigen::VectorXd weights = Eigen::VectorXd::Constant(30, 400);
+  const StructuredMisfit misfit(model.measurements().front(), weights, structure_sizes(model));
+  const Eigen::MatrixXd at = model.predict(0, model.nominal(), Context());
+  const Eigen::MatrixXd r = model.measurements().front().measured - at;
+  std::vector<Eigen::MatrixXd> columns;
+  for (const int p : {1, 2}) {
+    Eigen::VectorXd moved = model.nominal();
+    moved[p] = 1;
+    columns.push_back(model.predict(0, moved, Context()) - at);
+  }
+  const GramByStructure gram = misfit.gram(r, columns);
+  Hypothesis none, bump;
+  bump.causes = {0};
+  weigh(model, gram, {1, 2}, model.nominal(), none);
+  weigh(model, gram, {1, 2}, model.nominal(), bump);
+  const auto dense = [&](bool with_bump) {
+    double log_sum = -1e300, prior_sum = -1e300;
+    const auto sizes = structure_sizes(model);
+    for (std::size_t t = 0; t < sizes.size(); ++t) {
+      const Eigen::MatrixXd inverse = inverse_covariance(misfit, 30, t);
+      Eigen::MatrixXd C = Eigen::MatrixXd::Zero(60, 60);
+      C.topLeftCorner(30, 30) = C.bottomRightCorner(30, 30) = inverse.inverse();
+      const auto stacked = [](const Eigen::MatrixXd& m) { return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(m.data(), m.size())); };
+      C += stacked(columns[0]) * stacked(columns[0]).transpose();
+      if (with_bump) C += stacked(columns[1]) * stacked(columns[1]).transpose();
+      const double prior = -0.5 * std::pow(sizes[t] / model.known_misfit(), 2);
+      const double log_p = -0.5 * (stacked(r).dot(C.ldlt().solve(stacked(r))) + std::log(C.determinant()));
+      const auto add = [](double a, double b) { return std::max(a, b) + std::log1p(std::exp(-std::abs(a - b))); };
+      log_sum = add(log_sum, prior + log_p);
+      prior_sum = add(prior_sum, prior);
+    }
+    return log_sum - prior_sum;
+  };
+  EXPECT_NEAR(none.log_evidence, dense(false), 1e-4 * std::abs(dense(false)));
+  EXPECT_NEAR(bump.log_evidence, dense(true), 1e-4 * std::abs(dense(true)));
+  EXPECT_GT(bump.log_evidence, none.log_evidence + 10);
+  EXPECT_NEAR(bump.u[2], 0.5, 0.1);
+}
+
+}  // namespace
+}  // namespace formwright

@@ -89,8 +89,7 @@ TEST(SheetEffects, turning_the_machine_turns_the_result) {
   };
   EXPECT_LT(turned([](ThermoformOptions& o) { o.heating_gradient_x = 0.4; }, [](ThermoformOptions& o) { o.heating_gradient_y = 0.4; }), 0.1);
   EXPECT_LT(turned([](ThermoformOptions& o) { o.thickness_wedge_x = 0.4; }, [](ThermoformOptions& o) { o.thickness_wedge_y = 0.4; }), 0.1);
-  // The material's own frame follows x as it flows, so this symmetry is one of small strains.
-  EXPECT_LT(turned([](ThermoformOptions& o) { o.anisotropy = 0.4; }, [](ThermoformOptions& o) { o.anisotropy = -0.4; }), 0.3);
+  EXPECT_LT(turned([](ThermoformOptions& o) { o.anisotropy = 0.4; }, [](ThermoformOptions& o) { o.anisotropy = -0.4; }), 0.15);
 }
 
 TEST(SheetEffects, effects_move_points_the_way_they_should) {
@@ -116,9 +115,12 @@ TEST(SheetEffects, effects_move_points_the_way_they_should) {
   const FormedResult weak = with([](ThermoformOptions& o) { o.weak_vacuum = 0.95; });
   EXPECT_LT(weak.formed_area_mm2, none.formed_area_mm2);
   EXPECT_NEAR(weak.pressure_end_kpa, 4, 1e-9);
-  // Sliding evens the sheet out.
+  // A sheet that slides comes down the walls.
   const FormedResult sliding = with([](ThermoformOptions& o) { o.slip = 5; });
-  EXPECT_GT(sliding.least_thickness_mm, none.least_thickness_mm);
+  double fallen = 0, counted = 0;
+  for (Eigen::Index i = 0; i < none.sheet.mesh.V.rows(); ++i)
+    if (none.sheet.mesh.V(i, 2) > 5 && none.sheet.contact_s[i] > 0) fallen += none.sheet.mesh.V(i, 2) - sliding.sheet.mesh.V(i, 2), ++counted;
+  EXPECT_GT(fallen / counted, 0.2);
 }
 
 TEST(SheetEffects, more_slip_and_more_cooling_move_more) {
@@ -136,21 +138,34 @@ TEST(SheetEffects, more_slip_and_more_cooling_move_more) {
   }
 }
 
+/// An effect's name.
+std::string info(double SheetEffects::*effect) {
+  std::string name;
+  std::apply([&](const auto&... p) { ((p.member == effect ? name = p.name : name), ...); }, SheetEffects::parameters);
+  return name;
+}
+
 TEST(SheetEffects, half_an_effect_moves_points_half_as_far_the_same_way) {
   // What a diagnosis relies on, which takes secants for derivatives.
-  const TriangleMesh shape = pyramid(60, 40);
-  const Positions none = form(shape, small_machine(2500)).sheet.mesh.V;
+  Context context;
+  const TriangleMesh sample = make_sample("pyramid", 2000, context).mesh;
+  const auto shape = std::make_shared<const MouldShape>(sample);
+  ThermoformOptions o;
+  o.triangles = 2500;
+  o.size_mm = 100;
+  o.step_mm = 0.5;
+  const Placement placement = place(sample, o, clamp_opening_mm(o));
+  const Positions reference = form_sheet(shape, placement, o, context).sheet.mesh.V;
   for (double SheetEffects::*effect : {&SheetEffects::heating_gradient_x, &SheetEffects::heating_centre, &SheetEffects::thickness_wedge_x, &SheetEffects::anisotropy,
                                        &SheetEffects::cooling, &SheetEffects::clamp_slip_mm}) {
-    ThermoformOptions o = small_machine(2500);
-    o.step_mm = 0.5;
-    const Positions reference = form(shape, o).sheet.mesh.V;
-    static_cast<SheetEffects&>(o).*effect = 0.2;
-    const Positions half = form(shape, o).sheet.mesh.V - reference;
-    static_cast<SheetEffects&>(o).*effect = 0.4;
-    const Positions full = form(shape, o).sheet.mesh.V - reference;
-    EXPECT_GT(half.cwiseProduct(full).sum() / (half.norm() * full.norm()), 0.95);
-    EXPECT_NEAR(half.norm() / full.norm(), 0.5, 0.15);
+    ThermoformOptions with = o;
+    static_cast<SheetEffects&>(with).*effect = 0.25;
+    const Positions half = form_sheet(shape, placement, with, context).sheet.mesh.V - reference;
+    static_cast<SheetEffects&>(with).*effect = 0.5;
+    const Positions full = form_sheet(shape, placement, with, context).sheet.mesh.V - reference;
+    // Anisotropy pulls vertices across the pyramid's edges, where sticking decides for one side or the other.
+    EXPECT_GT(half.cwiseProduct(full).sum() / (half.norm() * full.norm()), effect == &SheetEffects::anisotropy ? 0.85 : 0.95) << info(effect);
+    EXPECT_NEAR(half.norm() / full.norm(), 0.5, 0.15) << info(effect);
   }
 }
 

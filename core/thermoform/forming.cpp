@@ -250,6 +250,7 @@ FormedResult form_sheet(std::shared_ptr<const MouldShape> shape, const Placement
                  StepLoad load;
                  t_end = t;
                  load.pressure_mpa = pressure(t);
+                 load.settling = t > slip_s;
                  load.clamp_slip_mm = clamp_slip_mm(t) - clamp_slip_mm(t - dt);
                  return load;
                },

@@ -107,6 +107,17 @@ void Membrane::end_step(const Positions& x, double dt_s, std::span<const double>
     // The plastic strain of this step makes the new rest metric N = 1 + 2 eps_p; with N = U^T U, B becomes B U^-1.
     const Double4 part = 2.0 * (1.0 - f.kept);
     const Double4 n00 = 1.0 + part * d.strain.e00, n01 = part * d.strain.e01, n11 = 1.0 + part * d.strain.e11;
+    if (along_ != across_) {
+      // Stiffer along x: the frame must not turn with the flow, so U is the symmetric root.
+      const Double4 size = root(most(n00 * n11 - n01 * n01, Double4{} + 1e-12)), scale = 1.0 / root(n00 + n11 + 2.0 * size);
+      const Double4 r00 = scale * (n00 + size), r01 = scale * n01, r11 = scale * (n11 + size), determinant = r00 * r11 - r01 * r01;
+      const Double4 c00 = (g.b00 * r11 - g.b01 * r01) / determinant, c10 = (g.b10 * r11 - g.b11 * r01) / determinant;
+      g.b01 = (g.b01 * r00 - g.b00 * r01) / determinant;
+      g.b11 = (g.b11 * r00 - g.b10 * r01) / determinant;
+      g.b00 = c00;
+      g.b10 = c10;
+      continue;
+    }
     const Double4 u00 = root(n00), u01 = n01 / u00, u11 = root(most(n11 - u01 * u01, Double4{} + 1e-12));
     const Double4 c00 = g.b00 / u00, c10 = g.b10 / u00;
     g.b01 = (g.b01 - c00 * u01) / u11;

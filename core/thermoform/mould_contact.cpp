@@ -112,10 +112,10 @@ std::optional<Vec3> MouldContact::slide(const Vec3& from, Vec3& to, const Vec3& 
   // A little off the surface, along it, and down again.
   const double lift = std::max(0.25 * length, 4 * tolerance_mm_);
   const Vec3 above = from + lift * normal;
-  // What it touches beside, as in a corner, it may come as near to as it is.
+  // What it touches beside, as in a corner, it may hardly come nearer to.
   Known known{above, distance_mm(above, farthest_mm).value_or(farthest_mm)};
   const double radius = std::min({radius_mm, known.distance_mm - 2 * tolerance_mm_, above.z() - 2 * tolerance_mm_});
-  if (radius < 0.1 * radius_mm) return from;
+  if (radius < 0.9 * radius_mm - 2 * tolerance_mm_) return from;
   const Vec3 along = above + first_touch(above, above + way, radius, known).value_or(1.0) * way;
   const Vec3 down = -(lift + 0.5 * length + 2 * tolerance_mm_) * normal;
   const auto landing = first_touch(along, along + down, radius, known);

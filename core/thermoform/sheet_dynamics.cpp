@@ -12,6 +12,7 @@ namespace {
 constexpr double cg_tolerance = 0.1;       // of Newton's directions: the next iteration mends the rest
 constexpr int most_cg_iterations = 400;
 constexpr int most_newton_iterations = 12;
+constexpr int most_sliding_iterations = 5;
 constexpr double settled_share = 0.02;     // of the step's limit: an increment this small ends the iteration
 constexpr double wrinkle_share = 0.2;      // so much a few vertices may go on moving: squeezed triangles buckle back and forth
 
@@ -164,7 +165,7 @@ int SheetDynamics::find_contacts(const Positions& from, Positions& to, const std
     }
   for (const int i : free_) {
     const auto v = static_cast<std::size_t>(i);
-    if (held_[v] == sliding) continue;
+    if (held_[v] != moves_freely) continue;
     const Vec3 a = from.row(i), b = to.row(i);
     const auto touch = contact_->first_touch(a, b, radius_mm[v], known_[v]);
     if (!touch || *touch > until[v]) continue;
@@ -247,10 +248,18 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
     statistics_.seconds_linear += watch.lap();
 
     double increment_squared = 0, moved_squared = 0, sum_squared = 0;
+    int cornered = 0;
     for (const int i : free_) {
       const Float4& d = direction[static_cast<std::size_t>(i)];
       Vec3 delta(d[0], d[1], d[2]);
-      if (held_[static_cast<std::size_t>(i)] == sliding) delta = slide(i, x.row(i).transpose(), delta, radius[static_cast<std::size_t>(i)]);
+      if (held_[static_cast<std::size_t>(i)] == sliding) {
+        delta = slide(i, x.row(i).transpose(), delta, radius[static_cast<std::size_t>(i)]);
+        // One that still goes to and fro, as between the plate and the model, is done for this step.
+        if (iteration >= most_sliding_iterations && held_[static_cast<std::size_t>(i)] == sliding && delta.norm() > settled_share * step_limit_mm_) {
+          held_[static_cast<std::size_t>(i)] = stuck;
+          ++cornered;
+        }
+      }
       x.row(i) += delta.transpose();
       increment_squared = std::max(increment_squared, delta.squaredNorm());
       sum_squared += delta.squaredNorm();
@@ -262,7 +271,7 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
     const double mean_squared = sum_squared / std::max<double>(1, static_cast<double>(free_.size()));
     settled = std::sqrt(increment_squared) < settled_share * step_limit_mm_ ||
               (iteration >= 2 && std::sqrt(increment_squared) < wrinkle_share * step_limit_mm_ && std::sqrt(mean_squared) < 0.2 * settled_share * step_limit_mm_);
-    const int touched = find_contacts(from, x, radius);
+    const int touched = find_contacts(from, x, radius) + cornered;
     statistics_.seconds_contact += watch.lap();
     if (touched > 0) {
       collect_free();
@@ -289,7 +298,7 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
     begin_membrane_step();
     assemble(x_, std::numeric_limits<double>::infinity(), load, force, nullptr);
     points_.slide(sheet_.F, x_, friction_->coefficient(), friction_->faces_of());
-    friction_->decide(force, held_);
+    friction_->decide(force, load.settling, held_);
     collect_free();
   }
   time_ += dt_s;

@@ -34,8 +34,10 @@ class SheetFriction {
   /// and lag into the force, nothing across, and a stiffness across that lets it go nowhere.
   void constrain(int vertex, const Vec3& way_mm, double dt_s, Vec3& force, std::array<Float4, 3>& diagonal) const;
 
-  /// Who slides from now on, by the forces (n x 3, N) that act on the vertices besides those of the mould.
-  void decide(const Positions& force, HeldVertices& held);
+  /// Who slides from now on, by the forces (n x 3, N) that act on the vertices besides those of the mould. While all is
+  /// `settling`, every time that a vertex starts to slide takes a larger force than the time before, as contacts that rest grow
+  /// firmer; without that a few in corners and webs would hop for ever.
+  void decide(const Positions& force, bool settling, HeldVertices& held);
 
   double coefficient() const { return coefficient_; }
   /// The triangles around each vertex.
@@ -44,6 +46,7 @@ class SheetFriction {
  private:
   double coefficient_, stiffness_;
   std::vector<char> clamped_;
+  std::vector<int> starts_;  // per vertex: how often it began to slide while all was settling
   std::vector<Vec3> normal_, drag_;
   std::shared_ptr<const std::vector<std::vector<int>>> faces_of_;  // shared: a step copies this object, to go back to
 };

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a scan would show, and what a machine profile keeps.
+#include "thermoform/machine_profile.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "thermoform/measured_object.h"
+#include "thermoform/sheet_mesh.h"
+#include "thermoform/thermoform_options.h"
+
+namespace formwright {
+namespace {
+
+/// A sheet raised to z = 0.1 x + 20, as a plane that any interpolation has exactly.
+FormedSheet slope() {
+  const SheetMesh mesh = make_sheet_mesh(Vec2(100, 100), 200);
+  FormedSheet sheet;
+  sheet.sheet_mm = mesh.flat_mm;
+  sheet.mesh.F = mesh.F;
+  sheet.mesh.V.resize(mesh.flat_mm.rows(), 3);
+  sheet.mesh.V << mesh.flat_mm, (0.1 * mesh.flat_mm.col(0).array() + 20).matrix();
+  sheet.thickness_mm = Eigen::VectorXd::Constant(mesh.flat_mm.rows(), 1);
+  return sheet;
+}
+
+TEST(PredictMeasured, scales_and_shifts_are_those_of_their_declaration) {
+  TextureCoordinates places(3, 2);
+  places << 10, -20, 0, 0, 60, 0;  // the last one lies in the clamp
+  MeasurementEffects effects;
+  effects.print_scale = 0.02;
+  effects.scan_scale = -0.01;
+  effects.scan_shift_x_mm = 1;
+  effects.scan_shift_z_mm = -2;
+  const Positions predicted = predict_measured(slope(), places, MeasuredSurface::mid, 5, 1, effects, 3);
+  const auto scanned = [](double x, double y, double z) { return Vec3(0.99 * x + 1, 0.99 * y, 3 + 0.99 * (z - 3) - 2); };
+  EXPECT_LT((predicted.row(0).transpose() - scanned(10.2, -20.4, 21.02)).norm(), 1e-9);
+  EXPECT_LT((predicted.row(1).transpose() - scanned(0, 0, 20)).norm(), 1e-9);
+  EXPECT_LT((predicted.row(2).transpose() - scanned(61.2, 0, 5)).norm(), 1e-9);
+  // Half a thickness outwards, of a sheet in the clamp straight up.
+  const Positions outer = predict_measured(slope(), places, MeasuredSurface::outer, 5, 1, {}, 3);
+  EXPECT_NEAR((outer.row(1).transpose() - Vec3(0, 0, 20)).norm(), 0.5, 1e-9);
+  EXPECT_LT((outer.row(2).transpose() - Vec3(60, 0, 5.5)).norm(), 1e-12);
+}
+
+TEST(PredictMeasured, comparison_with_its_own_prediction_finds_no_error) {
+  TextureCoordinates places(4, 2);
+  places << 10, -20, 0, 0, 60, 0, -31, 17;
+  MeasurementEffects effects;
+  effects.print_scale = 0.03;
+  effects.scan_scale = 0.02;
+  effects.scan_shift_y_mm = 1;
+  const Positions predicted = predict_measured(slope(), places, MeasuredSurface::outer, 5, 1, effects, 3);
+  std::vector<MeasuredPoint> points;
+  for (Eigen::Index i = 0; i < 4; ++i) points.push_back({places.row(i).transpose(), predicted.row(i).transpose(), 0});
+  Context context;
+  EXPECT_LT(compare(slope(), points, MeasuredSurface::outer, 5, 1, effects, 3, context).maximum_mm, 1e-12);
+  EXPECT_GT(compare(slope(), points, MeasuredSurface::outer, 5, 1, {}, 3, context).mean_mm, 1);
+}
+
+MachineProfile some_profile() {
+  MachineProfile profile;
+  profile.name = "Formech in the cellar";
+  profile.parameters = {{"yield_strain", 0.07}, {"heating_gradient_x", 0.25}, {"vacuum_kpa", 70}, {"vacuum_ramp_s", 0.4}};
+  profile.measurement.scan_scale = 0.0125;
+  profile.from = {"pyramid 1"};
+  profile.notes = {"The left heater is weak."};
+  return profile;
+}
+
+TEST(MachineProfile, is_read_as_it_was_written) {
+  const MachineProfile written = some_profile(), read = read_machine_profile(as_bytes(write_machine_profile(written)));
+  EXPECT_EQ(read.name, written.name);
+  EXPECT_EQ(read.parameters, written.parameters);
+  EXPECT_EQ(write_parameters(read.measurement), write_parameters(written.measurement));
+  EXPECT_EQ(read.from, written.from);
+  EXPECT_EQ(read.notes, written.notes);
+}
+
+TEST(MachineProfile, wins_over_the_set_up_where_it_knows_better) {
+  const Json setup = {{"yield_strain", 0.1}, {"vacuum_kpa", 80}, {"vacuum_ramp_s", 0.2}, {"sheet_thickness_mm", 2}};
+  const Json merged = with_profile(setup, some_profile());
+  EXPECT_EQ(merged["yield_strain"], 0.07);
+  EXPECT_EQ(merged["heating_gradient_x"], 0.25);
+  EXPECT_EQ(merged["vacuum_ramp_s"], 0.4);
+  EXPECT_EQ(merged["vacuum_kpa"], 80);  // what the machine was told
+  EXPECT_EQ(merged["sheet_thickness_mm"], 2);
+  EXPECT_EQ(with_profile(Json::object(), some_profile())["vacuum_kpa"], 70);
+}
+
+TEST(MachineProfile, refuses_what_it_cannot_use_in_words) {
+  const auto refused = [](const Json& json, const std::string& words) {
+    const std::string text = json.dump();
+    try {
+      read_machine_profile(as_bytes(text));
+      FAIL() << "not refused: " << words;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::invalid_input);
+      EXPECT_EQ(error.where(), "profile");
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+  };
+  Json profile = Json::parse(write_machine_profile(some_profile()));
+  const auto with = [&](const char* key, Json value) {
+    Json changed = profile;
+    changed[key] = std::move(value);
+    return changed;
+  };
+  refused({1, 2}, "formwright-machine-profile");
+  refused(with("format", "something else"), "formwright-machine-profile");
+  refused(with("version", 2), "version 1");
+  refused(with("parameters", {{"size_mm", 100}}), "places a model");
+  refused(with("parameters", {{"yield_strain", -1}}), "yield_strain");
+  refused(with("parameters", {{"no_such_thing", 1}}), "no_such_thing");
+  refused(with("measurement", {{"scan_scale", 7}}), "scan_scale");
+  refused(with("from", 3), "list of texts");
+  refused(with("surprise", 3), "surprise");
+  MachineProfile placed = some_profile();
+  placed.parameters["turn_deg"] = 3;
+  EXPECT_THROW(write_machine_profile(placed), Error);
+}
+
+}  // namespace
+}  // namespace formwright

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "base/parallel.h"
+
 namespace formwright {
 namespace {
 
@@ -24,6 +26,13 @@ std::array<Float4, 3> inverse_of(const std::array<Float4, 3>& block) {
 
 inline Float4 times(const std::array<Float4, 3>& m, const Float4& v) { return m[0] * v[0] + m[1] * v[1] + m[2] * v[2]; }
 
+inline float dot(const Float4& a, const Float4& b) {
+  const Float4 product = a * b;
+  return product[0] + product[1] + product[2];
+}
+
+constexpr std::size_t row_grain = 512;
+
 }  // namespace
 
 BlockCg::BlockCg(int vertex_count) {
@@ -38,43 +47,51 @@ BlockCg::BlockCg(int vertex_count) {
 int BlockCg::solve(const BlockMatrix& A, const BlockVector& right_side, std::span<const int> rows, double tolerance, int most_iterations, BlockVector& x) {
   std::fill(x.begin(), x.end(), Float4{});
   std::fill(p_.begin(), p_.end(), Float4{});
-  double rz = 0;
-  for (const int row : rows) {
+  partial_.resize(rows.size() / row_grain + 1);
+  // The sum of what body(row) returns for every row; chunks of rows are summed one by one, so that threads do not matter.
+  const auto sum_over_rows = [&](auto&& body) {
+    parallel_for(rows.size(), row_grain, [&](std::size_t begin, std::size_t end) {
+      double sum = 0;
+      for (const int row : rows.subspan(begin, end - begin)) sum += static_cast<double>(body(row));
+      partial_[begin / row_grain] = sum;
+    });
+    double sum = 0;
+    for (std::size_t chunk = 0; chunk * row_grain < rows.size(); ++chunk) sum += partial_[chunk];
+    return sum;
+  };
+  double rz = sum_over_rows([&](int row) {
     const auto i = static_cast<std::size_t>(row);
     inverse_[i] = inverse_of(A.block(A.diagonal_slot(row)));
     r_[i] = right_side[i];
     z_[i] = p_[i] = times(inverse_[i], r_[i]);
-    const Float4 product = r_[i] * z_[i];
-    rz += static_cast<double>(product[0] + product[1] + product[2]);
-  }
+    return dot(r_[i], z_[i]);
+  });
   const double enough = tolerance * tolerance * rz;
   int iteration = 0;
   while (iteration < most_iterations && rz > enough && rz > 0) {
     ++iteration;
-    A.multiply(p_, rows, q_);
-    double pq = 0;
-    for (const int row : rows) {
+    const double pq = sum_over_rows([&](int row) {
       const auto i = static_cast<std::size_t>(row);
-      const Float4 product = p_[i] * q_[i];
-      pq += static_cast<double>(product[0] + product[1] + product[2]);
-    }
+      q_[i] = A.row_times(row, p_);
+      return dot(p_[i], q_[i]);
+    });
     if (!(pq > 0)) break;
     const auto alpha = static_cast<float>(rz / pq);
-    double next = 0;
-    for (const int row : rows) {
+    const double next = sum_over_rows([&](int row) {
       const auto i = static_cast<std::size_t>(row);
       x[i] += alpha * p_[i];
       r_[i] -= alpha * q_[i];
       z_[i] = times(inverse_[i], r_[i]);
-      const Float4 product = r_[i] * z_[i];
-      next += static_cast<double>(product[0] + product[1] + product[2]);
-    }
+      return dot(r_[i], z_[i]);
+    });
     const auto beta = static_cast<float>(next / rz);
     rz = next;
-    for (const int row : rows) {
-      const auto i = static_cast<std::size_t>(row);
-      p_[i] = z_[i] + beta * p_[i];
-    }
+    parallel_for(rows.size(), row_grain, [&](std::size_t begin, std::size_t end) {
+      for (const int row : rows.subspan(begin, end - begin)) {
+        const auto i = static_cast<std::size_t>(row);
+        p_[i] = z_[i] + beta * p_[i];
+      }
+    });
   }
   return iteration;
 }

@@ -42,6 +42,8 @@ void parallel_for(std::size_t count, std::size_t grain, const std::function<void
 
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 thread_local bool inside_loop = false;
 
 /// One loop in progress.
@@ -76,7 +78,7 @@ class Loop {
 /// Waits until `value` is no longer `old`: awake for as long as a pause between two loops of one algorithm takes, then
 /// asleep.
 std::uint32_t changed(const std::atomic<std::uint32_t>& value, std::uint32_t old) {
-  const auto enough = std::chrono::steady_clock::now() + std::chrono::microseconds(100);
+  const auto enough = Clock::now() + std::chrono::microseconds(100);
   do {
     for (int i = 0; i < 32; ++i) {
       if (const std::uint32_t now = value.load(std::memory_order_acquire); now != old) return now;
@@ -84,7 +86,7 @@ std::uint32_t changed(const std::atomic<std::uint32_t>& value, std::uint32_t old
       __builtin_ia32_pause();
 #endif
     }
-  } while (std::chrono::steady_clock::now() < enough);
+  } while (Clock::now() < enough);
   value.wait(old, std::memory_order_acquire);
   return value.load(std::memory_order_acquire);
 }
@@ -100,15 +102,21 @@ class Pool {
   /// Runs the loop with up to `helpers` helpers; alone, and returns the same, where another loop has them.
   void run(Loop& loop, int helpers) {
     const std::unique_lock lock(in_use_, std::try_to_lock);
-    if (!lock) return loop.work();
+    const auto start = Clock::now();
+    if (!lock.owns_lock() || start < alone_until_) return loop.work();
     loop_ = &loop;
     seats_.store(helpers, std::memory_order_relaxed);
     gate_.store((gate_.load(std::memory_order_relaxed) & ~low_bits) + one_loop + open, std::memory_order_release);
     gate_.notify_all();
     loop.work();
+    const auto done = Clock::now();
     // Only helpers that came in are waited for: one that is still asleep is not needed any more.
     std::uint32_t gate = gate_.fetch_and(~open, std::memory_order_acq_rel) & ~open;
     while ((gate & (low_bits & ~open)) != 0) gate = changed(gate_, gate);
+    // A helper that kept this thread waiting for longer than all the rest took has been put aside for another program:
+    // short loops go better without it for a while.
+    if (const auto waited = Clock::now() - done; waited > std::chrono::microseconds(300) && waited > done - start)
+      alone_until_ = done + waited + std::chrono::milliseconds(5);
   }
 
  private:
@@ -139,7 +147,8 @@ class Pool {
   }
 
   std::mutex in_use_;
-  Loop* loop_ = nullptr;         // written while no helper is inside
+  Clock::time_point alone_until_{};  // guarded by in_use_
+  Loop* loop_ = nullptr;             // written while no helper is inside
   std::atomic<int> seats_{0};
   std::atomic<std::uint32_t> gate_{0};
 };

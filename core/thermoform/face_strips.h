@@ -12,7 +12,7 @@ namespace formwright {
 class FaceStrips {
  public:
   /// Strips begin at multiples of four faces and hold at least `faces_at_least`. A sheet whose faces are numbered row by row falls into many;
-  /// one without such an order stays in one strip.
+  /// one without such an order in one or two.
   FaceStrips(const Triangles& F, int faces_at_least);
   FaceStrips() = default;
 

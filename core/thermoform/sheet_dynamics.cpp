@@ -14,7 +14,7 @@ namespace {
 constexpr double cg_tolerance = 0.1;       // of Newton's directions: the next iteration mends the rest
 constexpr int most_cg_iterations = 400;
 constexpr int most_newton_iterations = 12;
-constexpr double settled_share = 0.02;     // of the step's limit: an increment this small ends the iteration
+constexpr double settled_share = 0.05;     // of the step's limit: an increment this small ends the iteration
 constexpr double wrinkle_share = 0.2;      // so much a few vertices may go on moving: squeezed triangles buckle back and forth
 
 constexpr std::size_t vertex_grain = 512;

@@ -48,48 +48,50 @@ int BlockCg::solve(const BlockMatrix& A, const BlockVector& right_side, std::spa
   std::fill(x.begin(), x.end(), Float4{});
   std::fill(p_.begin(), p_.end(), Float4{});
   partial_.resize(rows.size() / row_grain + 1);
-  // The sum of what body(row) returns for every row; chunks of rows are summed one by one, so that threads do not matter.
-  const auto sum_over_rows = [&](auto&& body) {
+  // By plain pointers: what is written must not make the compiler look up where the vectors are.
+  const BlockMatrix::Rows matrix = A.rows();
+  Float4 *const solution = x.data(), *const residual = r_.data(), *const preconditioned = z_.data(), *const direction = p_.data(), *const image = q_.data();
+  std::array<Float4, 3>* const inverse = inverse_.data();
+  // The sum of what body(i) returns for every row i; chunks of rows are summed one by one, so that threads do not matter.
+  const auto sum_over_rows = [&](const auto& body) {
     parallel_for(rows.size(), row_grain, [&](std::size_t begin, std::size_t end) {
+      const auto each = body;
       double sum = 0;
-      for (const int row : rows.subspan(begin, end - begin)) sum += static_cast<double>(body(row));
+      for (const int row : rows.subspan(begin, end - begin)) sum += static_cast<double>(each(static_cast<std::size_t>(row)));
       partial_[begin / row_grain] = sum;
     });
     double sum = 0;
     for (std::size_t chunk = 0; chunk * row_grain < rows.size(); ++chunk) sum += partial_[chunk];
     return sum;
   };
-  double rz = sum_over_rows([&](int row) {
-    const auto i = static_cast<std::size_t>(row);
-    inverse_[i] = inverse_of(A.block(A.diagonal_slot(row)));
-    r_[i] = right_side[i];
-    z_[i] = p_[i] = times(inverse_[i], r_[i]);
-    return dot(r_[i], z_[i]);
+  double rz = sum_over_rows([=, &A, &right_side](std::size_t i) {
+    inverse[i] = inverse_of(A.block(A.diagonal_slot(static_cast<int>(i))));
+    residual[i] = right_side[i];
+    preconditioned[i] = direction[i] = times(inverse[i], residual[i]);
+    return dot(residual[i], preconditioned[i]);
   });
   const double enough = tolerance * tolerance * rz;
   int iteration = 0;
   while (iteration < most_iterations && rz > enough && rz > 0) {
     ++iteration;
-    const double pq = sum_over_rows([&](int row) {
-      const auto i = static_cast<std::size_t>(row);
-      q_[i] = A.row_times(row, p_);
-      return dot(p_[i], q_[i]);
+    const double pq = sum_over_rows([=](std::size_t i) {
+      image[i] = matrix.times(i, direction);
+      return dot(direction[i], image[i]);
     });
     if (!(pq > 0)) break;
     const auto alpha = static_cast<float>(rz / pq);
-    const double next = sum_over_rows([&](int row) {
-      const auto i = static_cast<std::size_t>(row);
-      x[i] += alpha * p_[i];
-      r_[i] -= alpha * q_[i];
-      z_[i] = times(inverse_[i], r_[i]);
-      return dot(r_[i], z_[i]);
+    const double next = sum_over_rows([=](std::size_t i) {
+      solution[i] += alpha * direction[i];
+      residual[i] -= alpha * image[i];
+      preconditioned[i] = times(inverse[i], residual[i]);
+      return dot(residual[i], preconditioned[i]);
     });
     const auto beta = static_cast<float>(next / rz);
     rz = next;
-    parallel_for(rows.size(), row_grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(rows.size(), row_grain, [=](std::size_t begin, std::size_t end) {
       for (const int row : rows.subspan(begin, end - begin)) {
         const auto i = static_cast<std::size_t>(row);
-        p_[i] = z_[i] + beta * p_[i];
+        direction[i] = preconditioned[i] + beta * direction[i];
       }
     });
   }

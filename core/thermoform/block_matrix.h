@@ -39,19 +39,24 @@ class BlockMatrix {
   }
   int first_slot(int row) const { return first_[static_cast<std::size_t>(row)]; }
 
-  /// Row `row` of A x; x must be 0 wherever a vertex is held.
-  Float4 row_times(int row, const BlockVector& x) const {
-    const auto r = static_cast<std::size_t>(row);
-    Float4 sum{}, other{};
-    for (auto k = static_cast<std::size_t>(first_[r]); k < static_cast<std::size_t>(first_[r + 1]); ++k) {
-      const Float4 v = x[static_cast<std::size_t>(column_[k])];
-      const auto& block = blocks_[k];
-      sum += block[0] * v[0];
-      other += block[1] * v[1];
-      sum += block[2] * v[2];
+  /// The matrix as the innermost loops see it, while its pattern stays.
+  struct Rows {
+    const int *first, *column;
+    const std::array<Float4, 3>* blocks;
+    /// Row `row` of A x; x must be 0 wherever a vertex is held.
+    Float4 times(std::size_t row, const Float4* x) const {
+      Float4 sum{}, other{};
+      for (int k = first[row]; k < first[row + 1]; ++k) {
+        const Float4 v = x[column[k]];
+        const auto& block = blocks[k];
+        sum += block[0] * v[0];
+        other += block[1] * v[1];
+        sum += block[2] * v[2];
+      }
+      return sum + other;
     }
-    return sum + other;
-  }
+  };
+  Rows rows() const { return {first_.data(), column_.data(), blocks_.data()}; }
 
  private:
   std::vector<int> first_, column_, diagonal_;

@@ -41,6 +41,8 @@ TEST(ParallelFor, RethrowsAndStops) {
                             [&](std::size_t begin, std::size_t) {
                               ++chunks;
                               if (begin == 10) throw std::runtime_error("here");
+                              // The others leave it the time to be noticed, should its thread be put aside just now.
+                              if (begin > 10) std::this_thread::sleep_for(std::chrono::microseconds(50));
                             }),
                std::runtime_error);
   EXPECT_LT(chunks.load(), 100000);

@@ -113,13 +113,19 @@ class Pool {
     // Only helpers that came in are waited for: one that is still asleep is not needed any more.
     std::uint32_t gate = gate_.fetch_and(~open, std::memory_order_acq_rel) & ~open;
     while ((gate & (low_bits & ~open)) != 0) gate = changed(gate_, gate);
-    // A helper that kept this thread waiting for longer than all the rest took has been put aside for another program:
-    // short loops go better without it for a while.
-    if (const auto waited = Clock::now() - done; waited > std::chrono::microseconds(300) && waited > done - start)
-      alone_until_ = done + waited + std::chrono::milliseconds(5);
+    // A helper that kept this thread waiting for longer than all of a short loop took has been put aside for another program:
+    // short loops go better without it for a while, the longer the more often it happens.
+    if (done - start > long_loop) return;
+    if (const auto waited = Clock::now() - done; waited > std::chrono::microseconds(300) && waited > done - start) {
+      alone_until_ = done + waited + pause_;
+      pause_ = std::min<Clock::duration>(2 * pause_, std::chrono::seconds(1));
+    } else {
+      pause_ = std::max<Clock::duration>(pause_ - pause_ / 256, least_pause);
+    }
   }
 
  private:
+  static constexpr std::chrono::milliseconds least_pause{5}, long_loop{5};
   // The gate: whether a loop is open, how many helpers are inside, and the loop's number.
   static constexpr std::uint32_t open = 1, one_helper = 2, one_loop = 256, low_bits = one_loop - 1;
 
@@ -147,7 +153,8 @@ class Pool {
   }
 
   std::mutex in_use_;
-  Clock::time_point alone_until_{};  // guarded by in_use_
+  Clock::time_point alone_until_{};  // guarded by in_use_, as is the next
+  Clock::duration pause_ = least_pause;
   Loop* loop_ = nullptr;             // written while no helper is inside
   std::atomic<int> seats_{0};
   std::atomic<std::uint32_t> gate_{0};

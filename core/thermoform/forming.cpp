@@ -17,7 +17,7 @@ constexpr double longest_step_s = 0.02;     // creep is solved within a step: th
 constexpr double shortest_step_s = 1e-8;
 constexpr double longest_free_step_s = 0.1;  // while the platform comes up and nothing touches
 constexpr double rest_speed_mm_per_s = 0.5;
-constexpr double least_clamp_slip_s = 0.05;
+constexpr double least_drawing_s = 0.05;    // before what slides is brought to rest
 constexpr int most_steps = 20000;
 
 std::string millimetres(double value) {
@@ -231,6 +231,8 @@ FormedResult form_sheet(std::shared_ptr<const MouldShape> shape, const Placement
                [&](double, double dt) {
                  StepLoad load;
                  load.clamp_shift = Vec3(0, 0, -o.mould_speed_mm_per_s * dt);
+                 // The rim is pulled hardest while the model pushes into the sheet.
+                 load.clamp_slip_mm = o.clamp_slip_mm * dt / duration;
                  return load;
                },
                go_on, "Raising the model");
@@ -241,22 +243,18 @@ FormedResult form_sheet(std::shared_ptr<const MouldShape> shape, const Placement
     const auto span = context.span(0.45, 0.98, "Drawing the vacuum");
     const double full = o.vacuum_kpa * 1e-3 * (1 - o.weak_vacuum);
     const auto pressure = [&](double t) { return o.vacuum_ramp_s > 0 ? full * std::min(1.0, t / o.vacuum_ramp_s) : full; };
-    // The rim follows the pressure, but even an instant vacuum takes a while to drag it.
-    const double slip_s = std::max(o.vacuum_ramp_s, least_clamp_slip_s);
-    const auto clamp_slip_mm = [&](double t) { return o.clamp_slip_mm * (1 - o.weak_vacuum) * std::min(1.0, t / slip_s); };
     double t_end = 0;
     driver.run(FormingPhase::vacuum, o.time_limit_s, 5e-4, longest_step_s, dynamics.step_limit_mm(),
-               [&](double t, double dt) {
+               [&](double t, double) {
                  StepLoad load;
                  t_end = t;
                  load.pressure_mpa = pressure(t);
-                 load.settling = t > slip_s;
-                 load.clamp_slip_mm = clamp_slip_mm(t) - clamp_slip_mm(t - dt);
+                 load.settling = t > std::max(o.vacuum_ramp_s, least_drawing_s);
                  return load;
                },
                [&](double) {
                  if (dynamics.all_stuck()) return true;
-                 return t_end >= (o.clamp_slip_mm > 0 ? slip_s : o.vacuum_ramp_s) && dynamics.last_step_s() > 0.5 * longest_step_s &&
+                 return t_end >= o.vacuum_ramp_s && dynamics.last_step_s() > 0.5 * longest_step_s &&
                         dynamics.last_move_mm() < rest_speed_mm_per_s * dynamics.last_step_s();
                },
                "Drawing the vacuum");

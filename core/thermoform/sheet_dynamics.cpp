@@ -16,7 +16,6 @@ constexpr double cg_tolerance = 0.1;       // of Newton's directions: the next i
 constexpr int most_cg_iterations = 400;
 constexpr int most_newton_iterations = 12;
 constexpr int most_sliding_iterations = 5;
-constexpr double settled_share = 0.02;     // of the step's limit: an increment this small ends the iteration
 constexpr double settled_share = 0.05;     // of the step's limit: an increment this small ends the iteration
 constexpr double wrinkle_share = 0.2;      // so much a few vertices may go on moving: squeezed triangles buckle back and forth
 

@@ -62,7 +62,7 @@ struct SheetEffects : PlacementOptions {
                 "Share of the vacuum that leaks away.")
           .group(group_title).advanced(),
       parameter("clamp_slip_mm", &SheetEffects::clamp_slip_mm, "Clamp gives way by", unit::mm, 0, 20,
-                "How far the full vacuum draws the sheet's rim in from the clamp.")
+                "How far the sheet's rim is drawn in from the clamp while the model comes up.")
           .group(group_title).slider(0, 5).advanced(),
       parameter("mould_shift_x_mm", &SheetEffects::mould_shift_x_mm, "Mould off in x", unit::mm, -50, 50,
                 "How far the mould stands to the right of where it should.")

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "evidence/registration/registered_points.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+
+namespace formwright {
+namespace {
+
+constexpr double pi = 3.14159265358979324;
+constexpr double least_sigma_px = 0.03;        // interpolation between pixels
+constexpr double most_residual_share = 0.5;    // of the pattern's variance; chance alone gives 2
+constexpr double rim_inside_mm = 1;            // the sheet gives way a little at the clamp's edge
+
+/// Sums over a Gaussian window about a pixel.
+struct Window {
+  double weight = 0, trusted = 0, xx = 0, xy = 0, yy = 0, residual_squared = 0;
+};
+Window window_about(const FlowEvidence& e, const Flow& flow, double column, double row, double sigma_px) {
+  Window w;
+  const int reach = static_cast<int>(std::ceil(2.5 * sigma_px));
+  const int cx = static_cast<int>(std::lround(column)), cy = static_cast<int>(std::lround(row));
+  for (int y = std::max(0, cy - reach); y <= std::min(flow.height - 1, cy + reach); ++y)
+    for (int x = std::max(0, cx - reach); x <= std::min(flow.width - 1, cx + reach); ++x) {
+      const double g = std::exp(-0.5 * ((x - column) * (x - column) + (y - row) * (y - row)) / (sigma_px * sigma_px));
+      const std::size_t i = flow.index(x, y);
+      w.weight += g;
+      w.trusted += g * static_cast<double>(e.weight[i]);
+      w.xx += g * static_cast<double>(e.xx[i]);
+      w.xy += g * static_cast<double>(e.xy[i]);
+      w.yy += g * static_cast<double>(e.yy[i]);
+      w.residual_squared += g * static_cast<double>(e.residual_squared[i]);
+    }
+  return w;
+}
+
+}  // namespace
+
+Vec2 displacement_mm(const Flow& flow, const PlaneFrame& frame, const Vec2& place_mm) {
+  const Vec2 p = frame.pixel(place_mm);
+  const double x = std::clamp(p.x(), 0.0, flow.width - 1.0), y = std::clamp(p.y(), 0.0, flow.height - 1.0);
+  const int x0 = std::min(static_cast<int>(x), std::max(0, flow.width - 2)), y0 = std::min(static_cast<int>(y), std::max(0, flow.height - 2));
+  const int x1 = std::min(x0 + 1, flow.width - 1), y1 = std::min(y0 + 1, flow.height - 1);
+  const auto at = [&](const std::vector<float>& values) {
+    const double upper = static_cast<double>(values[flow.index(x0, y0)]) * (x0 + 1 - x) + static_cast<double>(values[flow.index(x1, y0)]) * (x - x0);
+    const double lower = static_cast<double>(values[flow.index(x0, y1)]) * (x0 + 1 - x) + static_cast<double>(values[flow.index(x1, y1)]) * (x - x0);
+    return upper * (y0 + 1 - y) + lower * (y - y0);
+  };
+  return frame.pixel_mm * Vec2(at(flow.u), -at(flow.v));
+}
+
+double correlation_area_px(const WeightedPicture& first, const WeightedPicture& second, const Flow& flow) {
+  const int w = first.width, h = first.height;
+  WeightedPicture difference(w, h);
+  parallel_for(static_cast<std::size_t>(h), 32, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
+      for (int x = 0; x < w; ++x) {
+        const std::size_t i = flow.index(x, y);
+        const Float4 b = bicubic(second, static_cast<float>(x) + flow.u[i], static_cast<float>(y) + flow.v[i]);
+        const float weight = b[3] * first.at(x, y)[3];
+        difference.at(x, y) = b - first.at(x, y);
+        difference.at(x, y)[3] = weight;
+      }
+  });
+  double squared = 0, across = 0, down = 0, pairs_across = 0, pairs_down = 0, count = 0;
+  const auto product = [](const Float4& a, const Float4& b) { return static_cast<double>(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]); };
+  // What is far off (a missing patch) is not noise.
+  const auto is_noise = [](const Float4& p) { return p[3] > 0.5f && p[0] * p[0] + p[1] * p[1] + p[2] * p[2] < 3 * 60.0f * 60.0f; };
+  for (int y = 0; y + 1 < h; ++y)
+    for (int x = 0; x + 1 < w; ++x) {
+      const Float4 &here = difference.at(x, y), &right = difference.at(x + 1, y), &below = difference.at(x, y + 1);
+      if (!is_noise(here)) continue;
+      squared += product(here, here);
+      ++count;
+      if (is_noise(right)) {
+        across += product(here, right);
+        ++pairs_across;
+      }
+      if (is_noise(below)) {
+        down += product(here, below);
+        ++pairs_down;
+      }
+    }
+  if (!(squared > 0) || pairs_across < 1 || pairs_down < 1) return 1;
+  const double mean = squared / count;
+  const auto along = [](double rho) { return (1 + std::clamp(rho, 0.0, 0.95)) / (1 - std::clamp(rho, 0.0, 0.95)); };
+  return along(across / pairs_across / mean) * along(down / pairs_down / mean);
+}
+
+void add_points(ScanRegistration& result, const TriangleMesh& mesh, const TextureCoordinates& place_mm, const PlaneFrame& frame, const Flow& flow,
+                const FlowEvidence& evidence, const CalibrationPattern& pattern, const ScanRegistrationOptions& options) {
+  const PlaneLookup lookup(mesh.F, place_mm);
+  const double pattern_variance = std::pow(255 * pattern.contrast, 2);
+  const int columns = static_cast<int>(std::floor(pattern.sheet_mm.x() / 2 / options.grid_mm)), rows = static_cast<int>(std::floor(pattern.sheet_mm.y() / 2 / options.grid_mm));
+  for (int j = -rows; j <= rows; ++j)
+    for (int i = -columns; i <= columns; ++i) {
+      const Vec2 sheet(i * options.grid_mm, j * options.grid_mm), there = sheet + displacement_mm(flow, frame, sheet), pixel = frame.pixel(sheet);
+      const PlaneLookup::Found found = lookup.find(there);
+      ++result.points_without_evidence;
+      if (found.face < 0) continue;
+      // First over a fixed area, then over the one that the flow has averaged over.
+      Window w = window_about(evidence, flow, pixel.x(), pixel.y(), 4);
+      double reach_px = 4;
+      for (int pass = 0; pass < 2 && w.trusted > 0; ++pass) {
+        const double noise = std::sqrt(w.residual_squared / w.trusted + options.data_epsilon * options.data_epsilon);
+        const double data = 0.5 * (w.xx + w.yy) / w.trusted * (1 + 0.3 * options.gradient_weight) / noise, smooth = options.smoothness / options.smoothness_epsilon;
+        reach_px = std::clamp(std::sqrt(smooth / std::max(data, 1e-9)), 1.5, 24.0);
+        w = window_about(evidence, flow, pixel.x(), pixel.y(), reach_px);
+      }
+      if (!(w.trusted > 0.6 * w.weight)) continue;
+      const double variance = w.residual_squared / w.trusted / 3;
+      if (variance > most_residual_share * pattern_variance) continue;
+      Eigen::Matrix2d information;
+      information << w.xx, w.xy, w.xy, w.yy;
+      information *= 4 * pi * reach_px * reach_px / w.trusted;
+      if (!(information.determinant() > 1e-9)) continue;
+      const double alike = std::min(result.residual_correlation_px, 4 * pi * reach_px * reach_px);
+      Eigen::Matrix2d covariance = variance * alike * information.inverse() + least_sigma_px * least_sigma_px * Eigen::Matrix2d::Identity();
+      covariance *= frame.pixel_mm * frame.pixel_mm;
+      covariance(0, 1) = covariance(1, 0) = -covariance(0, 1);  // rows run down
+      // From the plane to the surface.
+      const auto corner = [&](int k) { return Vec3(mesh.V.row(mesh.F(found.face, k))); };
+      const auto flat = [&](int k) { return Vec2(place_mm.row(mesh.F(found.face, k))); };
+      Eigen::Matrix2d edges;
+      edges << flat(1) - flat(0), flat(2) - flat(0);
+      Eigen::Matrix<double, 3, 2> sides;
+      sides << corner(1) - corner(0), corner(2) - corner(0);
+      const Eigen::Matrix<double, 3, 2> slope = sides * edges.inverse();
+      const double sigma = std::sqrt(0.5 * (slope * covariance * slope.transpose()).trace() + options.scan_sigma_mm * options.scan_sigma_mm);
+      if (!(sigma <= options.most_sigma_mm)) continue;
+      Vec3 place = Vec3::Zero();
+      for (int k = 0; k < 3; ++k) place += found.barycentric[k] * corner(k);
+      result.points.push_back({sheet, place, sigma});
+      --result.points_without_evidence;
+    }
+}
+
+void align_by_rim(ScanRegistration& result, const CalibrationPattern& pattern, const ScanRegistrationOptions& options) {
+  const Vec2 half = pattern.opening_mm / 2 + Vec2::Constant(rim_inside_mm);
+  std::vector<std::size_t> rim;
+  int sides = 0;
+  for (std::size_t i = 0; i < result.points.size(); ++i) {
+    const Vec2& s = result.points[i].sheet_mm;
+    if (std::abs(s.x()) <= half.x() && std::abs(s.y()) <= half.y()) continue;
+    rim.push_back(i);
+    if (s.x() > half.x()) sides |= 1;
+    if (s.x() < -half.x()) sides |= 2;
+    if (s.y() > half.y()) sides |= 4;
+    if (s.y() < -half.y()) sides |= 8;
+  }
+  const int seen_sides = (sides & 1) + (sides >> 1 & 1) + (sides >> 2 & 1) + (sides >> 3 & 1);
+  if (rim.size() < 12 || seen_sides < 3) {
+    result.notes.push_back("The clamped rim was not scanned on three sides at least, so the points keep the scan's coordinates: align them with the machine's before comparing.");
+    return;
+  }
+  Eigen::Matrix3Xd from(3, rim.size()), to(3, rim.size());
+  for (std::size_t i = 0; i < rim.size(); ++i) {
+    const RegisteredPoint& p = result.points[rim[i]];
+    from.col(static_cast<Eigen::Index>(i)) = p.place_mm;
+    to.col(static_cast<Eigen::Index>(i)) = Vec3(p.sheet_mm.x(), p.sheet_mm.y(), options.clamp_height_mm + options.sheet_thickness_mm / 2);
+  }
+  const Eigen::Matrix4d move = Eigen::umeyama(from, to, false), scaled = Eigen::umeyama(from, to, true);
+  const auto at = [&](const Vec3& p) { return Vec3((move * p.homogeneous()).head<3>()); };
+  double squared = 0;
+  for (Eigen::Index i = 0; i < from.cols(); ++i) squared += (at(from.col(i)) - to.col(i)).squaredNorm();
+  result.rim_rms_mm = std::sqrt(squared / static_cast<double>(from.cols()));
+  result.rim_scale = scaled.block<3, 1>(0, 0).norm();
+  if (options.coordinates == ScanCoordinates::scan) return;
+  for (RegisteredPoint& p : result.points) p.place_mm = at(p.place_mm);
+  result.in_machine_coordinates = true;
+  if (std::abs(*result.rim_scale - 1) > 0.01)
+    result.notes.push_back("The rim is " + std::to_string(static_cast<int>(std::lround(100 * std::abs(1 - 1 / *result.rim_scale)))) + " % too " + (*result.rim_scale > 1 ? "small" : "large") +
+                           " in the scan: mend its scale, or scan_unit_mm.");
+}
+
+}  // namespace formwright

@@ -11,15 +11,19 @@ namespace formwright {
 namespace {
 
 constexpr double pi = 3.14159265358979324;
-constexpr double least_sigma_px = 0.03;        // interpolation between pixels
+constexpr double least_sigma_px = 0.06;        // interpolation between pixels
 constexpr double most_residual_share = 0.5;    // of the pattern's variance; chance alone gives 2
+constexpr double least_known_share = 0.7;      // of the area that a point is judged by
+constexpr double most_foreign_share = 0.08;    // of a wider area that shows something else than the print
+constexpr double plain_margin_mm = 1;
 constexpr double rim_inside_mm = 1;            // the sheet gives way a little at the clamp's edge
 
 /// Sums over a Gaussian window about a pixel.
 struct Window {
-  double weight = 0, trusted = 0, xx = 0, xy = 0, yy = 0, residual_squared = 0;
+  double trusted = 0, foreign = 0, xx = 0, xy = 0, yy = 0, residual_squared = 0;
 };
-Window window_about(const FlowEvidence& e, const Flow& flow, double column, double row, double sigma_px) {
+/// `foreign_squared`: from which squared residual a pixel shows something that is not the print.
+Window window_about(const FlowEvidence& e, const Flow& flow, double column, double row, double sigma_px, double foreign_squared) {
   Window w;
   const int reach = static_cast<int>(std::ceil(2.5 * sigma_px));
   const int cx = static_cast<int>(std::lround(column)), cy = static_cast<int>(std::lround(row));
@@ -27,14 +31,41 @@ Window window_about(const FlowEvidence& e, const Flow& flow, double column, doub
     for (int x = std::max(0, cx - reach); x <= std::min(flow.width - 1, cx + reach); ++x) {
       const double g = std::exp(-0.5 * ((x - column) * (x - column) + (y - row) * (y - row)) / (sigma_px * sigma_px));
       const std::size_t i = flow.index(x, y);
-      w.weight += g;
-      w.trusted += g * static_cast<double>(e.weight[i]);
+      const double weight = static_cast<double>(e.weight[i]), squared = static_cast<double>(e.residual_squared[i]);
+      w.trusted += g * weight;
+      if (squared > foreign_squared * weight) w.foreign += g * weight;
       w.xx += g * static_cast<double>(e.xx[i]);
       w.xy += g * static_cast<double>(e.xy[i]);
       w.yy += g * static_cast<double>(e.yy[i]);
-      w.residual_squared += g * static_cast<double>(e.residual_squared[i]);
+      w.residual_squared += g * squared;
     }
   return w;
+}
+
+/// Medians over the pixels that were seen: of the squared residual (all channels) and of half the trace of the derivatives' products.
+struct Typical {
+  double residual_squared = 0, information = 0;
+};
+Typical typical(const FlowEvidence& e) {
+  std::vector<float> residuals, informations;
+  for (std::size_t i = 0; i < e.weight.size(); i += 7)
+    if (e.weight[i] > 0.5f) {
+      residuals.push_back(e.residual_squared[i] / e.weight[i]);
+      informations.push_back(0.5f * (e.xx[i] + e.yy[i]) / e.weight[i]);
+    }
+  const auto median = [](std::vector<float>& values) {
+    if (values.empty()) return 0.0;
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+    return static_cast<double>(values[values.size() / 2]);
+  };
+  return {median(residuals), median(informations)};
+}
+
+/// In a mark or a colour patch, where there is no noise to see.
+bool is_plain(const CalibrationPattern& pattern, const Vec2& sheet_mm) {
+  const auto in_mark = [&](const CornerMark& m) { return (sheet_mm - m.centre_mm).norm() < m.radius_mm + plain_margin_mm; };
+  const auto in_patch = [&](const ColourPatch& p) { return (sheet_mm - p.centre_mm).cwiseAbs().maxCoeff() < p.side_mm / 2 + plain_margin_mm; };
+  return std::any_of(pattern.marks.begin(), pattern.marks.end(), in_mark) || std::any_of(pattern.patches.begin(), pattern.patches.end(), in_patch);
 }
 
 }  // namespace
@@ -94,28 +125,27 @@ void add_points(ScanRegistration& result, const TriangleMesh& mesh, const Textur
                 const FlowEvidence& evidence, const CalibrationPattern& pattern, const ScanRegistrationOptions& options) {
   const PlaneLookup lookup(mesh.F, place_mm);
   const double pattern_variance = std::pow(255 * pattern.contrast, 2);
+  const Typical usual = typical(evidence);
+  const double foreign_squared = std::max(12 * usual.residual_squared, 300.0);
+  // The length over which this flow averages, the same everywhere: where a place has less to tell, it is less certain.
+  const double data = usual.information * (1 + 0.3 * options.gradient_weight) / std::sqrt(usual.residual_squared + options.data_epsilon * options.data_epsilon);
+  const double reach_px = std::clamp(std::sqrt(options.smoothness / options.smoothness_epsilon / std::max(data, 1e-9)), 2.0, 16.0);
   const int columns = static_cast<int>(std::floor(pattern.sheet_mm.x() / 2 / options.grid_mm)), rows = static_cast<int>(std::floor(pattern.sheet_mm.y() / 2 / options.grid_mm));
   for (int j = -rows; j <= rows; ++j)
     for (int i = -columns; i <= columns; ++i) {
       const Vec2 sheet(i * options.grid_mm, j * options.grid_mm), there = sheet + displacement_mm(flow, frame, sheet), pixel = frame.pixel(sheet);
       const PlaneLookup::Found found = lookup.find(there);
       ++result.points_without_evidence;
-      if (found.face < 0) continue;
-      // First over a fixed area, then over the one that the flow has averaged over.
-      Window w = window_about(evidence, flow, pixel.x(), pixel.y(), 4);
-      double reach_px = 4;
-      for (int pass = 0; pass < 2 && w.trusted > 0; ++pass) {
-        const double noise = std::sqrt(w.residual_squared / w.trusted + options.data_epsilon * options.data_epsilon);
-        const double data = 0.5 * (w.xx + w.yy) / w.trusted * (1 + 0.3 * options.gradient_weight) / noise, smooth = options.smoothness / options.smoothness_epsilon;
-        reach_px = std::clamp(std::sqrt(smooth / std::max(data, 1e-9)), 1.5, 24.0);
-        w = window_about(evidence, flow, pixel.x(), pixel.y(), reach_px);
-      }
-      if (!(w.trusted > 0.6 * w.weight)) continue;
-      const double variance = w.residual_squared / w.trusted / 3;
+      if (found.face < 0 || is_plain(pattern, sheet)) continue;
+      const Window near = window_about(evidence, flow, pixel.x(), pixel.y(), reach_px, foreign_squared);
+      const Window around = window_about(evidence, flow, pixel.x(), pixel.y(), 4 * reach_px, foreign_squared);
+      if (!(near.trusted > least_known_share * 2 * pi * reach_px * reach_px)) continue;
+      if (around.foreign > most_foreign_share * around.trusted) continue;
+      const double variance = near.residual_squared / near.trusted / 3;
       if (variance > most_residual_share * pattern_variance) continue;
       Eigen::Matrix2d information;
-      information << w.xx, w.xy, w.xy, w.yy;
-      information *= 4 * pi * reach_px * reach_px / w.trusted;
+      information << near.xx, near.xy, near.xy, near.yy;
+      information *= 4 * pi * reach_px * reach_px / near.trusted;
       if (!(information.determinant() > 1e-9)) continue;
       const double alike = std::min(result.residual_correlation_px, 4 * pi * reach_px * reach_px);
       Eigen::Matrix2d covariance = variance * alike * information.inverse() + least_sigma_px * least_sigma_px * Eigen::Matrix2d::Identity();
@@ -156,17 +186,29 @@ void align_by_rim(ScanRegistration& result, const CalibrationPattern& pattern, c
     result.notes.push_back("The clamped rim was not scanned on three sides at least, so the points keep the scan's coordinates: align them with the machine's before comparing.");
     return;
   }
-  Eigen::Matrix3Xd from(3, rim.size()), to(3, rim.size());
-  for (std::size_t i = 0; i < rim.size(); ++i) {
-    const RegisteredPoint& p = result.points[rim[i]];
-    from.col(static_cast<Eigen::Index>(i)) = p.place_mm;
-    to.col(static_cast<Eigen::Index>(i)) = Vec3(p.sheet_mm.x(), p.sheet_mm.y(), options.clamp_height_mm + options.sheet_thickness_mm / 2);
-  }
-  const Eigen::Matrix4d move = Eigen::umeyama(from, to, false), scaled = Eigen::umeyama(from, to, true);
+  Eigen::Matrix4d move = Eigen::Matrix4d::Identity(), scaled = move;
   const auto at = [&](const Vec3& p) { return Vec3((move * p.homogeneous()).head<3>()); };
+  const auto held = [&](std::size_t i) { return Vec3(result.points[i].sheet_mm.x(), result.points[i].sheet_mm.y(), options.clamp_height_mm + options.sheet_thickness_mm / 2); };
+  const auto miss = [&](std::size_t i) { return (at(result.points[i].place_mm) - held(i)).norm(); };
   double squared = 0;
-  for (Eigen::Index i = 0; i < from.cols(); ++i) squared += (at(from.col(i)) - to.col(i)).squaredNorm();
-  result.rim_rms_mm = std::sqrt(squared / static_cast<double>(from.cols()));
+  for (int pass = 0; pass < 3; ++pass) {
+    Eigen::Matrix3Xd from(3, rim.size()), to(3, rim.size());
+    for (std::size_t i = 0; i < rim.size(); ++i) {
+      from.col(static_cast<Eigen::Index>(i)) = result.points[rim[i]].place_mm;
+      to.col(static_cast<Eigen::Index>(i)) = held(rim[i]);
+    }
+    move = Eigen::umeyama(from, to, false);
+    scaled = Eigen::umeyama(from, to, true);
+    squared = 0;
+    for (const std::size_t i : rim) squared += miss(i) * miss(i) / static_cast<double>(rim.size());
+    // Points that a wrong match has carried off would turn all the others.
+    std::vector<double> misses;
+    for (const std::size_t i : rim) misses.push_back(miss(i));
+    std::nth_element(misses.begin(), misses.begin() + static_cast<std::ptrdiff_t>(misses.size() / 2), misses.end());
+    const double limit = 4 * misses[misses.size() / 2] + 1e-9;
+    if (pass < 2) std::erase_if(rim, [&](std::size_t i) { return miss(i) > limit; });
+  }
+  result.rim_rms_mm = std::sqrt(squared);
   result.rim_scale = scaled.block<3, 1>(0, 0).norm();
   if (options.coordinates == ScanCoordinates::scan) return;
   for (RegisteredPoint& p : result.points) p.place_mm = at(p.place_mm);

@@ -48,18 +48,20 @@ const ScanColours::Sheet* ScanColours::sheet_of(int face) const {
 int ScanColours::width(int face) const { return sheet_of(face) ? sheet_of(face)->image.width : 0; }
 int ScanColours::height(int face) const { return sheet_of(face) ? sheet_of(face)->image.height : 0; }
 
-Eigen::Matrix2d ScanColours::uv_per_unit(int face, const std::array<Vec2, 3>& plane) const {
-  if (!sheet_of(face)) return Eigen::Matrix2d::Zero();
+LinearPicture::Footprint ScanColours::footprint(int face, const std::array<Vec2, 3>& pixels) const {
+  const Sheet* sheet = sheet_of(face);
+  if (!sheet) return {};
   Eigen::Matrix2d edges, change;
-  edges << plane[1] - plane[0], plane[2] - plane[0];
+  edges << pixels[1] - pixels[0], pixels[2] - pixels[0];
   const Vec2 a = model_.UV.row(model_.FT(face, 0)), b = model_.UV.row(model_.FT(face, 1)), c = model_.UV.row(model_.FT(face, 2));
   change << b - a, c - a;
-  change.row(1) *= -1;
-  if (!(std::abs(edges.determinant()) > 1e-12)) return Eigen::Matrix2d::Zero();
-  return change * edges.inverse();
+  change.row(0) *= sheet->image.width;
+  change.row(1) *= -sheet->image.height;
+  if (!(std::abs(edges.determinant()) > 1e-12)) return {};
+  return sheet->picture->footprint(change * edges.inverse());
 }
 
-Float4 ScanColours::at(int face, const Vec3& barycentric, const Eigen::Matrix2d& uv_per_pixel) const {
+Float4 ScanColours::at(int face, const Vec3& barycentric, const LinearPicture::Footprint& footprint) const {
   if (const Sheet* sheet = sheet_of(face)) {
     Vec2 uv = Vec2::Zero();
     for (int k = 0; k < 3; ++k) uv += barycentric[k] * model_.UV.row(model_.FT(face, k)).transpose();
@@ -68,8 +70,7 @@ Float4 ScanColours::at(int face, const Vec3& barycentric, const Eigen::Matrix2d&
     const int x = std::clamp(static_cast<int>(std::floor(place.x() * image.width)), 0, image.width - 1);
     const int y = std::clamp(static_cast<int>(std::floor(place.y() * image.height)), 0, image.height - 1);
     if (image.at(x, y)[3] < 255) return Float4{};
-    const Eigen::Matrix2d texels = Eigen::Vector2d(image.width, image.height).asDiagonal() * uv_per_pixel;
-    Float4 light = sheet->picture->sample(place, sheet->picture->footprint(texels)) * static_cast<float>(1 / light_levels);
+    Float4 light = sheet->picture->sample(place, footprint) * static_cast<float>(1 / light_levels);
     light[3] = 1;
     return light;
   }
@@ -103,7 +104,7 @@ WeightedPicture draw_scan(const Model& model, const ScanColours& colours, const 
       for (const int f : faces_of[band]) {
         const auto& c = corner[static_cast<std::size_t>(f)];
         const double doubled = cross2(c[1] - c[0], c[2] - c[0]);
-        const Eigen::Matrix2d uv = colours.uv_per_unit(f, c);
+        const LinearPicture::Footprint footprint = colours.footprint(f, c);
         const int y0 = std::max(row_from, static_cast<int>(std::ceil(std::max(-1.0, std::min({c[0].y(), c[1].y(), c[2].y()})))));
         const int y1 = std::min(row_to, static_cast<int>(std::floor(std::min<double>(frame.height, std::max({c[0].y(), c[1].y(), c[2].y()})))));
         const int x0 = std::max(0, static_cast<int>(std::ceil(std::max(-1.0, std::min({c[0].x(), c[1].x(), c[2].x()})))));
@@ -116,7 +117,7 @@ WeightedPicture draw_scan(const Model& model, const ScanColours& colours, const 
             char& seen = drawn[static_cast<std::size_t>(y - row_from) * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(x)];
             if (seen) continue;
             seen = 1;
-            picture.at(x, y) = colours.at(f, bary, uv);
+            picture.at(x, y) = colours.at(f, bary, footprint);
           }
       }
     }

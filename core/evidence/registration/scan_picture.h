@@ -16,10 +16,10 @@ class ScanColours {
   /// Keeps a reference to `model`. Throws Error{invalid_input, "scan"}: neither a picture with texture coordinates nor vertex colours.
   ScanColours(const Model& model, const Context& context);
 
-  /// Linear light 0 to 1, and the weight in lane 3: 0 where the picture is transparent or the face has none. `texels` is the footprint of one pixel.
-  Float4 at(int face, const Vec3& barycentric, const Eigen::Matrix2d& uv_per_pixel) const;
-  /// Change of texture coordinates (v down) along a face's plane coordinates, 2 x 2; `plane` has the corners there.
-  Eigen::Matrix2d uv_per_unit(int face, const std::array<Vec2, 3>& plane) const;
+  /// How a face is filtered where it is drawn with its corners at `pixels`.
+  LinearPicture::Footprint footprint(int face, const std::array<Vec2, 3>& pixels) const;
+  /// Linear light 0 to 1, and the weight in lane 3: 0 where the picture is transparent or the face has none.
+  Float4 at(int face, const Vec3& barycentric, const LinearPicture::Footprint& footprint) const;
 
   int width(int face) const;   // of a face's picture, in pixels; 0 without one
   int height(int face) const;

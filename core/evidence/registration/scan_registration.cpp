@@ -179,10 +179,9 @@ double best_blur_px(const WeightedPicture& reference, const WeightedPicture& sca
     const FlowEvidence e = flow_evidence(smoothed(reference, sigma, context), scan, flow, context);
     double sum = 0;
     for (const float r : e.residual_squared) sum += std::min(static_cast<double>(r), 10000.0);
-    if (sum < least) {
-      least = sum;
-      best = sigma;
-    }
+    if (sum >= least) break;
+    least = sum;
+    best = sigma;
   }
   return best;
 }
@@ -240,6 +239,7 @@ ScanRegistration register_scan(const Model& scan, const CalibrationPattern& patt
   model.mesh.V *= options.scan_unit_mm;
   result.notes = std::move(part.notes);
   result.holes = part.holes;
+  result.scan_faces = model.mesh.face_count();
   result.other_parts = part.other_parts;
   const ScanColours colours(model, context);
   {

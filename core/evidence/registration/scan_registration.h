@@ -74,7 +74,7 @@ struct ScanRegistration {
   double residual_correlation_px = 1;          // pixels over which what is left is alike
   double blur_px = 0;                          // by which the scan is less sharp than the print
   FlatScan flat;
-  int holes = 0, other_parts = 0;
+  int holes = 0, other_parts = 0, scan_faces = 0;
   double first_displacement_rms_mm = 0;        // of the flow after the corners alone
   double last_displacement_rms_mm = 0;         // of the last correction
   std::optional<double> rim_rms_mm, rim_scale; // of the rim's points from where the machine holds them; length there against length scanned

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/sha256.h"
 #include "evidence/registration/calibration_pattern.h"
 #include "imaging/png_writer.h"
 #include "job/evidence_registration_operations.h"
@@ -38,6 +39,7 @@ std::vector<ReportField> report_fields() {
           {"noise_scales_mm", "Noise", "mm", "spacings"},
           {"patches", "Colour patches", "", "inside the clamp opening"},
           {"marks_mm", "Corner marks", "mm", "middles on the sheet: front left, front right, back right, back left"},
+          {"pixels_sha256", "Fingerprint", "", "of the pixels before mirroring: equal prints have equal ones"},
           {"pages", "Pages", "", "of the PDF"},
           {"seconds_draw", "Drawing", "s", ""},
           {"seconds_write", "Writing", "s", "outputs into their formats"},
@@ -79,6 +81,7 @@ OperationResult run_pattern(const OperationCall& call) {
   report["patches"] = pattern.patches.size();
   report["marks_mm"] = Json::array();
   for (const CornerMark& mark : pattern.marks) report["marks_mm"].push_back({mark.centre_mm.x(), mark.centre_mm.y()});
+  report["pixels_sha256"] = sha256_hex(ByteView(reinterpret_cast<const std::byte*>(picture.pixels.data()), sizeof(Rgba) * picture.pixels.size()));
   report["pages"] = layout.tiles.size();
   report["seconds_draw"] = watch.lap();
   context.progress(0.5, "Writing");

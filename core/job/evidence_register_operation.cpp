@@ -42,6 +42,7 @@ std::vector<ReportField> report_fields() {
           {"corner_residual_mm", "Corner residuals", "mm", "from each mark as found to where the registration has it; -1 where not known"},
           {"colour_rms_levels", "Colour fit", "", "grey levels left over of the mean colours after correction"},
           {"colour_error_levels", "Colour error", "", "root mean square of the flow's residual over all pixels, in grey levels"},
+          {"likeness", "Likeness", "", "correlation of scan and pattern once matched, at most 1"},
           {"blur_px", "Blur", "px", "by which the scan is less sharp than the print, in compared pixels"},
           {"pixel_mm", "Compared pixel", "mm", "side on the sheet"},
           {"displacement_first_mm", "Beyond the corners", "mm", "root mean square displacement that the first flow found"},
@@ -113,6 +114,7 @@ void report_registration(Json& report, const ScanRegistration& r, const Calibrat
   report["corner_residual_mm"] = r.corner_residual_mm;
   report["colour_rms_levels"] = r.colours.rms_levels;
   report["colour_error_levels"] = r.colour_error_levels;
+  report["likeness"] = r.likeness;
   report["blur_px"] = r.blur_px;
   report["pixel_mm"] = pattern.sheet_mm.maxCoeff() / options.picture_px;
   report["displacement_first_mm"] = r.first_displacement_rms_mm;

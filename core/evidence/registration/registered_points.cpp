@@ -83,7 +83,7 @@ Vec2 displacement_mm(const Flow& flow, const PlaneFrame& frame, const Vec2& plac
   return frame.pixel_mm * Vec2(at(flow.u), -at(flow.v));
 }
 
-double correlation_area_px(const WeightedPicture& first, const WeightedPicture& second, const Flow& flow) {
+MatchStatistics match_statistics(const WeightedPicture& first, const WeightedPicture& second, const Flow& flow) {
   const int w = first.width, h = first.height;
   WeightedPicture difference(w, h);
   parallel_for(static_cast<std::size_t>(h), 32, [&](std::size_t begin, std::size_t end) {
@@ -96,6 +96,24 @@ double correlation_area_px(const WeightedPicture& first, const WeightedPicture& 
         difference.at(x, y)[3] = weight;
       }
   });
+  MatchStatistics result;
+  double sum[3] = {}, sum_first[3] = {}, square[3] = {}, square_first[3] = {}, both[3] = {}, seen = 0;
+  for (std::size_t i = 0; i < difference.pixels.size(); ++i) {
+    if (!(difference.pixels[i][3] > 0.5f)) continue;
+    ++seen;
+    for (int c = 0; c < 3; ++c) {
+      const double a = static_cast<double>(first.pixels[i][c]) - 128, b = a + static_cast<double>(difference.pixels[i][c]);
+      sum_first[c] += a;
+      sum[c] += b;
+      square_first[c] += a * a;
+      square[c] += b * b;
+      both[c] += a * b;
+    }
+  }
+  for (int c = 0; c < 3 && seen > 0; ++c) {
+    const double variance = (square_first[c] - sum_first[c] * sum_first[c] / seen) * (square[c] - sum[c] * sum[c] / seen);
+    if (variance > 0) result.likeness += (both[c] - sum_first[c] * sum[c] / seen) / std::sqrt(variance) / 3;
+  }
   double squared = 0, across = 0, down = 0, pairs_across = 0, pairs_down = 0, count = 0;
   const auto product = [](const Float4& a, const Float4& b) { return static_cast<double>(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]); };
   // What is far off (a missing patch) is not noise.
@@ -115,10 +133,11 @@ double correlation_area_px(const WeightedPicture& first, const WeightedPicture& 
         ++pairs_down;
       }
     }
-  if (!(squared > 0) || pairs_across < 1 || pairs_down < 1) return 1;
+  if (!(squared > 0) || pairs_across < 1 || pairs_down < 1) return result;
   const double mean = squared / count;
   const auto along = [](double rho) { return (1 + std::clamp(rho, 0.0, 0.95)) / (1 - std::clamp(rho, 0.0, 0.95)); };
-  return along(across / pairs_across / mean) * along(down / pairs_down / mean);
+  result.residual_alike_px = along(across / pairs_across / mean) * along(down / pairs_down / mean);
+  return result;
 }
 
 void add_points(ScanRegistration& result, const TriangleMesh& mesh, const TextureCoordinates& place_mm, const PlaneFrame& frame, const Flow& flow,

@@ -8,8 +8,11 @@
 
 namespace formwright {
 
-/// Pixels over which neighbouring residuals are alike, from the correlation of those beside each other; at least 1.
-double correlation_area_px(const WeightedPicture& first, const WeightedPicture& second, const Flow& flow);
+struct MatchStatistics {
+  double likeness = 0;           // correlation of the pictures once matched, -1 to 1
+  double residual_alike_px = 1;  // pixels over which neighbouring residuals are alike, from the correlation of those beside each other; at least 1
+};
+MatchStatistics match_statistics(const WeightedPicture& first, const WeightedPicture& second, const Flow& flow);
 
 /// A displacement between pixels, in mm of `frame` (y up); beyond the border as at the border.
 Vec2 displacement_mm(const Flow& flow, const PlaneFrame& frame, const Vec2& place_mm);

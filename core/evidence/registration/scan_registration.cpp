@@ -17,6 +17,7 @@ namespace {
 
 constexpr int first_side_px = 512, second_side_px = 1024;
 constexpr double second_reach_px = 32, last_reach_px = 16;
+constexpr double least_likeness = 0.7;  // of another pattern, however far bent: 0.5
 constexpr int cells_across = 40;  // in which mean colours are compared once places are known
 
 using Places = TextureCoordinates;
@@ -333,7 +334,11 @@ ScanRegistration register_scan(const Model& scan, const CalibrationPattern& patt
   }
   if (weight < 0.05 * static_cast<double>(evidence.weight.size())) throw Error(ErrorCode::could_not_solve, "scan", "Almost nothing of the scan lies where the pattern should be: check the corners and the pattern.");
   result.colour_error_levels = std::sqrt(squared / (3 * weight));
-  result.residual_correlation_px = correlation_area_px(reference, seen, flow);
+  const MatchStatistics match = match_statistics(reference, seen, flow);
+  result.likeness = match.likeness;
+  result.residual_correlation_px = match.residual_alike_px;
+  if (match.likeness < least_likeness)
+    throw Error(ErrorCode::could_not_solve, "pattern", "The scan does not look like this pattern: give the pattern.json of the print that was formed, and check the corners.");
   add_points(result, model.mesh, places, frame, flow, evidence, pattern, options);
   if (result.points.empty()) throw Error(ErrorCode::could_not_solve, "scan", "No point of the scan could be matched with the pattern: check that it is the one that was printed, and the corners.");
 

@@ -71,6 +71,7 @@ struct ScanRegistration {
   ColourCorrection colours;
   int colour_samples = 0;
   double colour_error_levels = 0;              // root mean square over all compared pixels, all three channels
+  double likeness = 0;                         // correlation of scan and pattern once matched, at most 1
   double residual_correlation_px = 1;          // pixels over which what is left is alike
   double blur_px = 0;                          // by which the scan is less sharp than the print
   FlatScan flat;
@@ -87,8 +88,8 @@ struct ScanRegistration {
 };
 
 /// `scan`: repaired, with its pictures. Faces look out of the printed side; a scan that looks the other way is turned.
-/// Throws Error: invalid_input ("scan": not a sheet, no colours; "corners": marks not found, not four points), could_not_solve (too little in common with the
-/// pattern), cancelled.
+/// Throws Error: invalid_input ("scan": not a sheet, no colours; "corners": marks not found, not four points), could_not_solve (not the pattern's print, or too
+/// little of it), cancelled.
 ScanRegistration register_scan(const Model& scan, const CalibrationPattern& pattern, const ScanRegistrationOptions& options, Context& context);
 
 }  // namespace formwright

@@ -59,6 +59,7 @@ std::vector<ReportField> report_fields() {
           {"seconds_marks", "Marks", "s", ""},
           {"seconds_draw", "Drawing", "s", "scan and pattern in the sheet's frame"},
           {"seconds_flow", "Flow", "s", "three sizes together"},
+          {"seconds_points", "Points", "s", "evidence, points, pictures of the result"},
           {"peak_memory_mb", "Peak memory", "MB", "of the process"},
           {"notes", "Notes", "", "in words"}};
 }
@@ -130,6 +131,7 @@ void report_registration(Json& report, const ScanRegistration& r, const Calibrat
   report["seconds_marks"] = r.seconds_marks;
   report["seconds_draw"] = r.seconds_draw;
   report["seconds_flow"] = r.seconds_flow;
+  report["seconds_points"] = r.seconds_points;
 }
 
 OperationResult run_register(const OperationCall& call) {

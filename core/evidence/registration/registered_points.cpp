@@ -15,6 +15,7 @@ constexpr double least_sigma_px = 0.06;        // interpolation between pixels
 constexpr double most_residual_share = 0.5;    // of the pattern's variance; chance alone gives 2
 constexpr double least_known_share = 0.7;      // of the area that a point is judged by
 constexpr double most_foreign_share = 0.08;    // of a wider area that shows something else than the print
+constexpr double kernel_share = 0.25;           // half the second moment, 2 l^2, over the square of the step, 2 l
 constexpr double plain_margin_mm = 1;
 constexpr double rim_inside_mm = 1;            // the sheet gives way a little at the clamp's edge
 
@@ -150,6 +151,13 @@ void add_points(ScanRegistration& result, const TriangleMesh& mesh, const Textur
   const double data = usual.information * (1 + 0.3 * options.gradient_weight) / std::sqrt(usual.residual_squared + options.data_epsilon * options.data_epsilon);
   const double reach_px = std::clamp(std::sqrt(options.smoothness / options.smoothness_epsilon / std::max(data, 1e-9)), 2.0, 16.0);
   const int columns = static_cast<int>(std::floor(pattern.sheet_mm.x() / 2 / options.grid_mm)), rows = static_cast<int>(std::floor(pattern.sheet_mm.y() / 2 / options.grid_mm));
+  const auto place_of = [&](const Vec2& s) -> std::optional<Vec3> {
+    const PlaneLookup::Found at = lookup.find(s + displacement_mm(flow, frame, s));
+    if (at.face < 0) return std::nullopt;
+    Vec3 place = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) place += at.barycentric[k] * mesh.V.row(mesh.F(at.face, k)).transpose();
+    return place;
+  };
   for (int j = -rows; j <= rows; ++j)
     for (int i = -columns; i <= columns; ++i) {
       const Vec2 sheet(i * options.grid_mm, j * options.grid_mm), there = sheet + displacement_mm(flow, frame, sheet), pixel = frame.pixel(sheet);
@@ -178,7 +186,17 @@ void add_points(ScanRegistration& result, const TriangleMesh& mesh, const Textur
       Eigen::Matrix<double, 3, 2> sides;
       sides << corner(1) - corner(0), corner(2) - corner(0);
       const Eigen::Matrix<double, 3, 2> slope = sides * edges.inverse();
-      const double sigma = std::sqrt(0.5 * (slope * covariance * slope.transpose()).trace() + options.scan_sigma_mm * options.scan_sigma_mm);
+      // Smoothing rounds off sudden changes of stretch: half the kernel's second moment times the second derivative of the map, along the surface.
+      double rounded_squared = 0;
+      const double step_mm = 2 * reach_px * frame.pixel_mm;
+      const Vec3 outwards = slope.col(0).cross(slope.col(1)).normalized();
+      for (const Vec2& step : {Vec2(step_mm, 0), Vec2(0, step_mm)}) {
+        const std::optional<Vec3> before = place_of(sheet - step), here = place_of(sheet), after = place_of(sheet + step);
+        if (!before || !here || !after) continue;
+        const Vec3 bend = *before - 2 * *here + *after;
+        rounded_squared += std::pow(kernel_share, 2) * (bend - outwards.dot(bend) * outwards).squaredNorm();
+      }
+      const double sigma = std::sqrt(0.5 * (slope * covariance * slope.transpose()).trace() + rounded_squared + options.scan_sigma_mm * options.scan_sigma_mm);
       if (!(sigma <= options.most_sigma_mm)) continue;
       Vec3 place = Vec3::Zero();
       for (int k = 0; k < 3; ++k) place += found.barycentric[k] * corner(k);

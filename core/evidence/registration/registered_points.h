@@ -21,7 +21,8 @@ Vec2 displacement_mm(const Flow& flow, const PlaneFrame& frame, const Vec2& plac
 /// `place_mm`: the scan's vertices in the frame of the sheet, as they were drawn for the flow.
 ///
 /// A flow with membrane smoothing averages over an area of 4 pi l^2, l^2 = alpha Psi_s' / (Psi_d' J): the Green's function of alpha Psi_s' Laplace - Psi_d' J.
-/// The covariance of a displacement is that of least squares over such an area with the residuals' variance, times the pixels over which these are alike.
+/// The covariance of a displacement is that of least squares over such an area with the residuals' variance, times the pixels over which these are alike;
+/// what smoothing rounds off where the stretch changes suddenly is added.
 void add_points(ScanRegistration& result, const TriangleMesh& mesh, const TextureCoordinates& place_mm, const PlaneFrame& frame, const Flow& flow,
                 const FlowEvidence& evidence, const CalibrationPattern& pattern, const ScanRegistrationOptions& options);
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "evidence/registration/scan_registration.h"
 
+#include <fast_float/fast_float.h>
+
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "base/error.h"
@@ -145,7 +146,7 @@ std::array<Vec2, 4> corners_by_hand(const std::string& text, const Model& model,
       continue;
     }
     double value = 0;
-    const auto [next, error] = std::from_chars(at, end, value);
+    const auto [next, error] = fast_float::from_chars(at, end, value);
     if (error != std::errc() || !std::isfinite(value)) refuse("The corners must be four pairs of numbers, such as “120,80 1900,95 1880,2010 110,1990”.");
     numbers.push_back(value);
     at = next;
@@ -356,6 +357,7 @@ ScanRegistration register_scan(const Model& scan, const CalibrationPattern& patt
   draw_displacement(result, model.mesh.F, carried(places, flow, frame), after_corners, pattern);
   result.aligned = bytes_of(seen);
   align_by_rim(result, pattern, options);
+  result.seconds_points = watch.lap();
   return result;
 }
 

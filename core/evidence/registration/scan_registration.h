@@ -84,7 +84,7 @@ struct ScanRegistration {
   Image displacement;                          // how far each point had to be moved after the corners: hue is the direction, colour the length
   double displacement_full_mm = 0;             // of full colour
   std::vector<std::string> notes;
-  double seconds_flatten = 0, seconds_marks = 0, seconds_draw = 0, seconds_flow = 0;
+  double seconds_flatten = 0, seconds_marks = 0, seconds_draw = 0, seconds_flow = 0, seconds_points = 0;
 };
 
 /// `scan`: repaired, with its pictures. Faces look out of the printed side; a scan that looks the other way is turned.

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "base/sha256.h"
 #include "imaging/warped_pictures.h"
 
 namespace formwright {
@@ -125,6 +126,15 @@ TEST(VariationalFlow, EvidenceFollowsTheNoise) {
     // At whole pixels the cubic leaves noise as it is: three channels of noise^2 each.
     EXPECT_NEAR(std::sqrt(squared / count / 3), noise, 0.08 * noise + 0.3);
   }
+}
+
+TEST(VariationalFlow, GivesTheSameBitsOnEveryMachine) {
+  // Recorded natively on two threads; WebAssembly runs the same test on one.
+  const test::WarpedPair pair = warped_pair(480, 450, affine, {});
+  const Flow flow = flow_of(pair);
+  std::vector<float> both = flow.u;
+  both.insert(both.end(), flow.v.begin(), flow.v.end());
+  EXPECT_EQ(sha256_hex(ByteView(reinterpret_cast<const std::byte*>(both.data()), sizeof(float) * both.size())), "6d0d9b9dffe2b5366cc89f1ea88900f143aed99bfe0f6a73cb58e1c00693f048");
 }
 
 TEST(VariationalFlow, RefusesPicturesThatDoNotBelongTogether) {

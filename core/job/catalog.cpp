@@ -4,6 +4,7 @@
 #include "geometry/io/mesh_io.h"
 #include "geometry/samples/samples.h"
 #include "job/evidence_operations.h"
+#include "job/evidence_registration_operations.h"
 #include "job/mesh_operations.h"
 #include "job/relief_operation.h"
 #include "job/thermoform_operations.h"
@@ -15,7 +16,7 @@ const char* version() { return FORMWRIGHT_VERSION; }
 const std::vector<Operation>& operations() {
   static const std::vector<Operation> all = {
       relief_operation(), thermoform_simulate_operation(), thermoform_texture_operation(), thermoform_mould_operation(), thermoform_compare_operation(),
-      evidence_calibrate_operation(), evidence_diagnose_operation(),
+      evidence_pattern_operation(), evidence_register_operation(), evidence_calibrate_operation(), evidence_diagnose_operation(),
       import_operation(), simplify_operation(), subdivide_operation(), convert_operation()};
   return all;
 }

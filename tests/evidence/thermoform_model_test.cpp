@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "evidence/thermoform/thermoform_model.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <map>
+#include <mutex>
+#include <random>
+
+#include "base/error.h"
+#include "evidence/calibration.h"
+#include "evidence/diagnosis.h"
+#include "evidence/virtual_lab.h"
+
+namespace formwright {
+namespace {
+
+using namespace virtual_lab;
+
+/// A small object of few points, quick to simulate.
+FormedObject small_object(unsigned seed, const std::vector<HiddenEffect>& effects, double sigma_mm = 0.05, Mould mould = Mould::pyramid) {
+  std::mt19937 random(seed);
+  HiddenWorld world;
+  world.triangles = 3000;
+  Observation observation;
+  observation.points = 500;
+  observation.sigma_mm = sigma_mm;
+  return make_object(mould, world, effects, observation, random);
+}
+
+ThermoformModelOptions coarse(int triangles = 1200) {
+  ThermoformModelOptions options;
+  options.triangles = triangles;
+  return options;
+}
+
+void expect_refused(const FormedObject& object, const std::string& words) {
+  try {
+    check_measured_object(object);
+    ADD_FAILURE() << "not refused; expected: " << words;
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::invalid_input);
+    EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+  }
+}
+
+TEST(ThermoformModel, WrongDataGetAClearSentence) {
+  const FormedObject good = small_object(1, {});
+  EXPECT_NO_THROW(check_measured_object(good));
+  const auto changed = [&](auto&& change) {
+    FormedObject object = good;
+    for (MeasuredPoint& p : object.points) change(p);
+    return object;
+  };
+  expect_refused(changed([](MeasuredPoint& p) { p.place_mm *= 1e-3; }), "metres");
+  expect_refused(changed([](MeasuredPoint& p) { p.place_mm /= 25.4; }), "inches");
+  expect_refused(changed([](MeasuredPoint& p) { p.place_mm *= 1e-3, p.sheet_mm *= 1e-3; }), "metres");
+  expect_refused(changed([](MeasuredPoint& p) { p.place_mm += Vec3(300, 0, 0); }), "machine's coordinates");
+  expect_refused(changed([](MeasuredPoint& p) { p.sheet_mm += Vec2(500, 0); }), "beyond the sheet");
+  FormedObject tiny = good;
+  tiny.points.resize(5);
+  expect_refused(tiny, "at least 30");
+}
+
+TEST(ThermoformModel, PredictsWhatTheComparisonDoes) {
+  const FormedObject object = small_object(2, {});
+  const ThermoformModel model({object}, coarse());
+  Context context;
+  const Eigen::MatrixXd predicted = model.predict(0, model.nominal(), context);
+  ThermoformOptions o = model.simulation_options(0, model.nominal());
+  const FormedResult formed = form_sheet(object.mould, Placement{}, o, context);
+  const Comparison compared = compare(formed.sheet, object.points, object.setup.measured_surface, o.clamp_height_mm, o.sheet_thickness_mm, MeasurementEffects{}, 0, context);
+  for (std::size_t i = 0; i < object.points.size(); ++i)
+    EXPECT_LT((predicted.row(static_cast<Eigen::Index>(i)).transpose() - compared.points[i].simulated_mm).norm(), 1e-4);
+}
+
+TEST(ThermoformModel, MeasurementEffectsNeedNoSimulationOfTheirOwn) {
+  const FormedObject object = small_object(3, {});
+  const ThermoformModel model({object}, coarse());
+  int kept = 0;
+  Context context(Host{{}, {}, {}, {}, [&](const std::string&, const Bytes&) { ++kept; }});
+  Eigen::VectorXd u = model.nominal();
+  const Eigen::MatrixXd before = model.predict(0, u, context);
+  for (std::size_t p = 0; p < model.parameters().size(); ++p)
+    if (model.parameters()[p].name == "scan_shift_x_mm") u[static_cast<Eigen::Index>(p)] = 0.5;
+  const Eigen::MatrixXd after = model.predict(0, u, context);
+  EXPECT_EQ(kept, 1);
+  EXPECT_NEAR((after - before).col(0).mean(), 0.5, 1e-9);
+  EXPECT_LT((after - before).rightCols(2).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(ThermoformModel, AnInterruptedRunGoesOnFromWhatIsKept) {
+  const FormedObject object = small_object(4, {});
+  std::map<std::string, Bytes> store;
+  std::mutex mutex;
+  int kept = 0;
+  bool stop = false;
+  const auto host = [&] {
+    Host h;
+    h.cancel_requested = [&] { return stop; };
+    h.find_result = [&](const std::string& key) -> std::optional<Bytes> {
+      const std::scoped_lock lock(mutex);
+      const auto at = store.find(key);
+      return at == store.end() ? std::nullopt : std::optional(at->second);
+    };
+    h.keep_result = [&](const std::string& key, const Bytes& bytes) {
+      const std::scoped_lock lock(mutex);
+      store[key] = bytes;
+      stop = ++kept == 6;
+    };
+    return h;
+  };
+  const ThermoformModel model({object}, coarse(800));
+  std::vector<Eigen::VectorXd> points;
+  for (int i = 0; i < 10; ++i) {
+    points.push_back(model.nominal());
+    points.back()[0] = 0.02 * i;
+  }
+  {
+    SimulationBag bag(model);
+    Context context(host());
+    EXPECT_THROW(bag.run(points, context, ""), Error);
+  }
+  EXPECT_GE(kept, 6);
+  const int before = kept;
+  stop = false;
+  // A new process: nothing but the store is left.
+  const ThermoformModel again({object}, coarse(800));
+  SimulationBag bag(again);
+  Context context(host());
+  const auto resumed = bag.run(points, context, "");
+  EXPECT_EQ(kept, 10);
+  EXPECT_LT(before, 10);
+  // What was kept is, to the bit, what a run of its own gives.
+  const ThermoformModel alone({object}, coarse(800));
+  Context quiet;
+  EXPECT_EQ((*resumed[0])[0], alone.predict(0, points[0], quiet));
+}
+
+TEST(ThermoformModel, ProfileHoldsWhatWasFittedAndStartsTheNextRun) {
+  const FormedObject object = small_object(5, {});
+  const ThermoformModel model({object}, coarse());
+  Eigen::VectorXd u = model.nominal();
+  u[0] = 0.3;
+  for (std::size_t p = 0; p < model.parameters().size(); ++p) {
+    if (model.parameters()[p].name == "heating_gradient_x") u[static_cast<Eigen::Index>(p)] = 0.25;
+    if (model.parameters()[p].name == "print_scale") u[static_cast<Eigen::Index>(p)] = 0.01;
+  }
+  const MachineProfile profile = read_machine_profile(as_bytes(write_machine_profile(model.profile_at(u))));
+  ThermoformModelOptions options = coarse();
+  options.profile = profile;
+  const ThermoformModel next({object}, options);
+  Context context;
+  EXPECT_LT((next.predict(0, next.nominal(), context) - model.predict(0, u, context)).cwiseAbs().maxCoeff(), 1e-4);
+}
+
+TEST(ThermoformModel, CalibrationRecoversTheMaterialOrSaysItCannot) {
+  // Made by the model itself on the same mesh: what is off afterwards is the fit's own.
+  FormedObject object = small_object(6, {});
+  ThermoformModelOptions options = coarse();
+  options.fit_mould_place = true;
+  ThermoformModel truth({object}, options);
+  Eigen::VectorXd u = truth.nominal();
+  u[0] = 0.35;
+  u[2] = -0.03;
+  for (std::size_t p = 0; p < truth.parameters().size(); ++p)
+    if (truth.parameters()[p].name == "mould_shift_x_mm") u[static_cast<Eigen::Index>(p)] = 0.8;
+  Context context;
+  const Eigen::MatrixXd places = truth.predict(0, u, context);
+  std::mt19937 random(7);
+  std::normal_distribution<double> noise(0, 0.03);
+  for (std::size_t i = 0; i < object.points.size(); ++i)
+    for (int k = 0; k < 3; ++k) object.points[i].place_mm[k] = places(static_cast<Eigen::Index>(i), k) + noise(random);
+  const ThermoformModel model({object}, options);
+  SimulationBag bag(model);
+  const Calibration c = calibrate(bag, context);
+  EXPECT_LT(c.error, 1.15 * 0.03 * 1.596);  // the mean length of the noise
+  for (const ParameterProfile& profile : c.profiles) {
+    const ModelParameter& p = model.parameters()[static_cast<std::size_t>(profile.parameter)];
+    const double right = p.value(u[profile.parameter]);
+    EXPECT_TRUE(!profile.identified || (right >= profile.low - 0.1 * std::abs(right) - 1e-12 && right <= profile.high + 0.1 * std::abs(right) + 1e-12))
+        << p.name << " " << right << " not in " << profile.low << " to " << profile.high;
+    if (p.name == "viscosity_s") EXPECT_FALSE(profile.identified);
+    if (p.name == "yield_strain") EXPECT_TRUE(profile.identified);
+  }
+}
+
+/// One strong cause drawn afresh at every run; the whole table is tests/bench/evidence/confusion_table.
+TEST(ThermoformModel, ADrawnCauseIsNamedOrDoubted) {
+  const unsigned seed = std::random_device{}();
+  std::printf("seed %u\n", seed);
+  std::mt19937 random(seed);
+  // Those that a pyramid shows plainly.
+  const std::vector<std::string> plain{"mould_scale", "print_scale", "scan_scale", "scan_shift"};
+  const std::string cause = plain[random() % plain.size()];
+  const HiddenEffect hidden = draw_effect(cause, 1, random);
+  const ThermoformModel model({small_object(random(), {hidden})}, coarse(1500));
+  SimulationBag bag(model);
+  Context context;
+  DiagnosisOptions options;
+  options.pairs = false;
+  const Diagnosis d = diagnose(bag, options, context);
+  ASSERT_NE(d.reading, Reading::none) << cause << " seed " << seed;
+  if (d.reading != Reading::unknown && !d.doubtful && d.reading != Reading::cannot_separate)
+    EXPECT_EQ(model.causes()[static_cast<std::size_t>(d.verdict.front())].name, cause) << "seed " << seed;
+  EXPECT_LT(d.held_out.after.mean, d.held_out.before.mean);
+}
+
+}  // namespace
+}  // namespace formwright

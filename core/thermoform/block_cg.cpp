@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "base/parallel.h"
+
 namespace formwright {
 namespace {
 
@@ -24,6 +26,13 @@ std::array<Float4, 3> inverse_of(const std::array<Float4, 3>& block) {
 
 inline Float4 times(const std::array<Float4, 3>& m, const Float4& v) { return m[0] * v[0] + m[1] * v[1] + m[2] * v[2]; }
 
+inline float dot(const Float4& a, const Float4& b) {
+  const Float4 product = a * b;
+  return product[0] + product[1] + product[2];
+}
+
+constexpr std::size_t row_grain = 512;
+
 }  // namespace
 
 BlockCg::BlockCg(int vertex_count) {
@@ -38,43 +47,53 @@ BlockCg::BlockCg(int vertex_count) {
 int BlockCg::solve(const BlockMatrix& A, const BlockVector& right_side, std::span<const int> rows, double tolerance, int most_iterations, BlockVector& x) {
   std::fill(x.begin(), x.end(), Float4{});
   std::fill(p_.begin(), p_.end(), Float4{});
-  double rz = 0;
-  for (const int row : rows) {
-    const auto i = static_cast<std::size_t>(row);
-    inverse_[i] = inverse_of(A.block(A.diagonal_slot(row)));
-    r_[i] = right_side[i];
-    z_[i] = p_[i] = times(inverse_[i], r_[i]);
-    const Float4 product = r_[i] * z_[i];
-    rz += static_cast<double>(product[0] + product[1] + product[2]);
-  }
+  partial_.resize(rows.size() / row_grain + 1);
+  // By plain pointers: what is written must not make the compiler look up where the vectors are.
+  const BlockMatrix::Rows matrix = A.rows();
+  Float4 *const solution = x.data(), *const residual = r_.data(), *const preconditioned = z_.data(), *const direction = p_.data(), *const image = q_.data();
+  std::array<Float4, 3>* const inverse = inverse_.data();
+  // The sum of what body(i) returns for every row i; chunks of rows are summed one by one, so that threads do not matter.
+  const auto sum_over_rows = [&](const auto& body) {
+    parallel_for(rows.size(), row_grain, [&](std::size_t begin, std::size_t end) {
+      const auto each = body;
+      double sum = 0;
+      for (const int row : rows.subspan(begin, end - begin)) sum += static_cast<double>(each(static_cast<std::size_t>(row)));
+      partial_[begin / row_grain] = sum;
+    });
+    double sum = 0;
+    for (std::size_t chunk = 0; chunk * row_grain < rows.size(); ++chunk) sum += partial_[chunk];
+    return sum;
+  };
+  double rz = sum_over_rows([=, &A, &right_side](std::size_t i) {
+    inverse[i] = inverse_of(A.block(A.diagonal_slot(static_cast<int>(i))));
+    residual[i] = right_side[i];
+    preconditioned[i] = direction[i] = times(inverse[i], residual[i]);
+    return dot(residual[i], preconditioned[i]);
+  });
   const double enough = tolerance * tolerance * rz;
   int iteration = 0;
   while (iteration < most_iterations && rz > enough && rz > 0) {
     ++iteration;
-    A.multiply(p_, rows, q_);
-    double pq = 0;
-    for (const int row : rows) {
-      const auto i = static_cast<std::size_t>(row);
-      const Float4 product = p_[i] * q_[i];
-      pq += static_cast<double>(product[0] + product[1] + product[2]);
-    }
+    const double pq = sum_over_rows([=](std::size_t i) {
+      image[i] = matrix.times(i, direction);
+      return dot(direction[i], image[i]);
+    });
     if (!(pq > 0)) break;
     const auto alpha = static_cast<float>(rz / pq);
-    double next = 0;
-    for (const int row : rows) {
-      const auto i = static_cast<std::size_t>(row);
-      x[i] += alpha * p_[i];
-      r_[i] -= alpha * q_[i];
-      z_[i] = times(inverse_[i], r_[i]);
-      const Float4 product = r_[i] * z_[i];
-      next += static_cast<double>(product[0] + product[1] + product[2]);
-    }
+    const double next = sum_over_rows([=](std::size_t i) {
+      solution[i] += alpha * direction[i];
+      residual[i] -= alpha * image[i];
+      preconditioned[i] = times(inverse[i], residual[i]);
+      return dot(residual[i], preconditioned[i]);
+    });
     const auto beta = static_cast<float>(next / rz);
     rz = next;
-    for (const int row : rows) {
-      const auto i = static_cast<std::size_t>(row);
-      p_[i] = z_[i] + beta * p_[i];
-    }
+    parallel_for(rows.size(), row_grain, [=](std::size_t begin, std::size_t end) {
+      for (const int row : rows.subspan(begin, end - begin)) {
+        const auto i = static_cast<std::size_t>(row);
+        direction[i] = preconditioned[i] + beta * direction[i];
+      }
+    });
   }
   return iteration;
 }

@@ -29,25 +29,17 @@ BlockMatrix::BlockMatrix(int vertex_count, std::span<const int> element_vertices
 
 void BlockMatrix::set_zero() { std::fill(blocks_.begin(), blocks_.end(), std::array<Float4, 3>{}); }
 
+void BlockMatrix::set_zero(std::span<const int> rows) {
+  for (const int row : rows) {
+    const auto r = static_cast<std::size_t>(row);
+    std::fill(blocks_.begin() + first_[r], blocks_.begin() + first_[r + 1], std::array<Float4, 3>{});
+  }
+}
+
 int BlockMatrix::slot(int row, int column) const {
   const auto list = columns(row);
   const auto at = std::lower_bound(list.begin(), list.end(), column);
   return at != list.end() && *at == column ? first_slot(row) + static_cast<int>(at - list.begin()) : -1;
-}
-
-void BlockMatrix::multiply(const BlockVector& x, std::span<const int> rows, BlockVector& y) const {
-  for (const int row : rows) {
-    const auto r = static_cast<std::size_t>(row);
-    Float4 sum{}, other{};
-    for (auto k = static_cast<std::size_t>(first_[r]); k < static_cast<std::size_t>(first_[r + 1]); ++k) {
-      const Float4 v = x[static_cast<std::size_t>(column_[k])];
-      const auto& block = blocks_[k];
-      sum += block[0] * v[0];
-      other += block[1] * v[1];
-      sum += block[2] * v[2];
-    }
-    y[r] = sum + other;
-  }
 }
 
 }  // namespace formwright

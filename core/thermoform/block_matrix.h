@@ -22,6 +22,8 @@ class BlockMatrix {
 
   int row_count() const { return static_cast<int>(first_.size()) - 1; }
   void set_zero();
+  /// Only the given rows.
+  void set_zero(std::span<const int> rows);
 
   /// Where block (row, column) is kept; -1 outside of the pattern.
   int slot(int row, int column) const;
@@ -37,8 +39,24 @@ class BlockMatrix {
   }
   int first_slot(int row) const { return first_[static_cast<std::size_t>(row)]; }
 
-  /// y = A x in the given rows; x must be 0 wherever a vertex is held.
-  void multiply(const BlockVector& x, std::span<const int> rows, BlockVector& y) const;
+  /// The matrix as the innermost loops see it, while its pattern stays.
+  struct Rows {
+    const int *first, *column;
+    const std::array<Float4, 3>* blocks;
+    /// Row `row` of A x; x must be 0 wherever a vertex is held.
+    Float4 times(std::size_t row, const Float4* x) const {
+      Float4 sum{}, other{};
+      for (int k = first[row]; k < first[row + 1]; ++k) {
+        const Float4 v = x[column[k]];
+        const auto& block = blocks[k];
+        sum += block[0] * v[0];
+        other += block[1] * v[1];
+        sum += block[2] * v[2];
+      }
+      return sum + other;
+    }
+  };
+  Rows rows() const { return {first_.data(), column_.data(), blocks_.data()}; }
 
  private:
   std::vector<int> first_, column_, diagonal_;

@@ -4,17 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
-#include "base/error.h"
-#include "base/json.h"
-#include "geometry/io/byte_order.h"
+#include "geometry/io/glb_assembly.h"
 #include "geometry/measures.h"
 
 namespace formwright {
 namespace {
 
-constexpr int type_uint32 = 5125, type_float = 5126, target_vertices = 34962, target_indices = 34963;
+constexpr GlbAssembly::Target vertices = GlbAssembly::Target::vertices, none = GlbAssembly::Target::none;
 constexpr std::array<const char*, 3> phase_names{"relax", "raise", "vacuum"};
 
 /// Thin is dark: cream to navy, sRGB stops from thick to thin.
@@ -31,91 +28,17 @@ Vec3 thickness_colour(double share) {
   return colour;
 }
 
-class FormingGlb {
- public:
-  template <class Value>
-  int add_floats(std::size_t count, int components, const char* shape, bool bounds, int target, const Value& value) {
-    const std::size_t bytes = 4 * count * static_cast<std::size_t>(components);
-    const int view = add_view(bytes, target);
-    std::byte* at = binary_.data() + (binary_.size() - bytes);
-    std::array<float, 3> low, high;
-    low.fill(std::numeric_limits<float>::max());
-    high.fill(std::numeric_limits<float>::lowest());
-    for (std::size_t i = 0; i < count; ++i)
-      for (int k = 0; k < components; ++k, at += 4) {
-        const auto number = static_cast<float>(value(static_cast<Eigen::Index>(i), k));
-        store(at, number);
-        if (k < 3) {
-          low[static_cast<std::size_t>(k)] = std::min(low[static_cast<std::size_t>(k)], number);
-          high[static_cast<std::size_t>(k)] = std::max(high[static_cast<std::size_t>(k)], number);
-        }
-      }
-    Json accessor = {{"bufferView", view}, {"componentType", type_float}, {"count", count}, {"type", shape}};
-    if (bounds) {
-      Json lower = Json::array(), upper = Json::array();
-      for (std::size_t k = 0; k < static_cast<std::size_t>(components); ++k) {
-        lower.push_back(low[k]);
-        upper.push_back(high[k]);
-      }
-      accessor["min"] = lower;
-      accessor["max"] = upper;
-    }
-    accessors.push_back(std::move(accessor));
-    return static_cast<int>(accessors.size()) - 1;
-  }
-
-  int add_indices(const Triangles& F) {
-    const std::size_t bytes = 4 * static_cast<std::size_t>(F.size());
-    const int view = add_view(bytes, target_indices);
-    std::byte* at = binary_.data() + (binary_.size() - bytes);
-    for (Eigen::Index i = 0; i < F.size(); ++i, at += 4) store(at, static_cast<std::uint32_t>(F.data()[i]));
-    accessors.push_back({{"bufferView", view}, {"componentType", type_uint32}, {"count", F.size()}, {"type", "SCALAR"}});
-    return static_cast<int>(accessors.size()) - 1;
-  }
-
-  Bytes container(Json json) {
-    json["bufferViews"] = views_;
-    json["accessors"] = accessors;
-    json["buffers"] = Json::array({{{"byteLength", binary_.size()}}});
-    std::string text = json.dump();
-    text.resize((text.size() + 3) / 4 * 4, ' ');
-    Bytes bytes;
-    bytes.reserve(28 + text.size() + binary_.size());
-    const auto word = [&](std::size_t value) { append(bytes, static_cast<std::uint32_t>(value)); };
-    word(0x46546C67), word(2), word(28 + text.size() + binary_.size());
-    word(text.size()), word(0x4E4F534A);
-    const ByteView json_bytes = as_bytes(text);
-    bytes.insert(bytes.end(), json_bytes.begin(), json_bytes.end());
-    word(binary_.size()), word(0x004E4942);
-    bytes.insert(bytes.end(), binary_.begin(), binary_.end());
-    return bytes;
-  }
-
-  Json accessors = Json::array();
-
- private:
-  int add_view(std::size_t bytes, int target) {
-    if (binary_.size() + bytes > std::numeric_limits<std::uint32_t>::max() - 1'000'000u)
-      throw Error(ErrorCode::invalid_input, "frames", "The animation would exceed the 4 GB of a GLB: ask for fewer frames or triangles.");
-    Json view = {{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", bytes}};
-    if (target != 0) view["target"] = target;
-    views_.push_back(std::move(view));
-    binary_.resize(binary_.size() + bytes);
-    return static_cast<int>(views_.size()) - 1;
-  }
-
-  Json views_ = Json::array();
-  Bytes binary_;
-};
+int add_faces(GlbAssembly& glb, const TriangleMesh& mesh) {
+  return glb.add_indices(static_cast<std::size_t>(mesh.F.size()), static_cast<std::size_t>(mesh.V.rows()), [&](std::size_t i) { return mesh.F.data()[i]; });
+}
 
 }  // namespace
 
 Bytes write_forming_glb(const FormedResult& result, const TriangleMesh& mould, double sheet_thickness_mm, Context& context) {
   const std::vector<FormingFrame>& frames = result.frames;
-  const Triangles& F = result.sheet.mesh.F;
   const auto n = static_cast<std::size_t>(result.sheet.mesh.V.rows());
   const std::size_t targets = frames.size() - 1;
-  FormingGlb glb;
+  GlbAssembly glb("frames", "The animation would exceed the 4 GB of a GLB: ask for fewer frames or triangles.");
   // From the clamp, as one watches the machine: what the platform sees shifted by where it stands.
   const auto place = [&](const FormingFrame& frame, Eigen::Index i, int k) { return frame.V(i, k) + (k == 2 ? frame.platform_z_mm : 0); };
   double least = sheet_thickness_mm, most = sheet_thickness_mm;
@@ -134,8 +57,8 @@ Bytes write_forming_glb(const FormedResult& result, const TriangleMesh& mould, d
   Json attributes = Json::object(), morphs = Json::array();
   const FormingFrame& first = frames.front();
   const std::vector<Vec3> base = colours_of(first);
-  attributes["POSITION"] = glb.add_floats(n, 3, "VEC3", true, target_vertices, [&](Eigen::Index i, int k) { return place(first, i, k); });
-  attributes["COLOR_0"] = glb.add_floats(n, 3, "VEC3", false, target_vertices, [&](Eigen::Index i, int k) { return base[static_cast<std::size_t>(i)][k]; });
+  attributes["POSITION"] = glb.add_floats(n, 3, "VEC3", true, vertices, [&](Eigen::Index i, int k) { return place(first, i, k); });
+  attributes["COLOR_0"] = glb.add_floats(n, 3, "VEC3", false, vertices, [&](Eigen::Index i, int k) { return base[static_cast<std::size_t>(i)][k]; });
   Json times = Json::array(), phases = Json::array(), platform = Json::array(), touching = Json::array();
   for (std::size_t f = 0; f < frames.size(); ++f) {
     context.check_cancelled();
@@ -146,12 +69,12 @@ Bytes write_forming_glb(const FormedResult& result, const TriangleMesh& mould, d
     if (f == 0) continue;
     const std::vector<Vec3> colours = colours_of(frames[f]);
     Json target = Json::object();
-    target["POSITION"] = glb.add_floats(n, 3, "VEC3", true, target_vertices, [&](Eigen::Index i, int k) { return place(frames[f], i, k) - place(first, i, k); });
-    target["COLOR_0"] = glb.add_floats(n, 3, "VEC3", false, target_vertices,
+    target["POSITION"] = glb.add_floats(n, 3, "VEC3", true, vertices, [&](Eigen::Index i, int k) { return place(frames[f], i, k) - place(first, i, k); });
+    target["COLOR_0"] = glb.add_floats(n, 3, "VEC3", false, vertices,
                                        [&](Eigen::Index i, int k) { return colours[static_cast<std::size_t>(i)][k] - base[static_cast<std::size_t>(i)][k]; });
     morphs.push_back(std::move(target));
   }
-  const int indices = glb.add_indices(F);
+  const int indices = add_faces(glb, result.sheet.mesh);
 
   Json extras = {{"frame_times_s", times}, {"frame_phases", phases}, {"platform_z_mm", platform}, {"touching_share", touching}, {"thickness_mm", {scale_from, sheet_thickness_mm}}};
   Json weights = Json::array();
@@ -161,12 +84,12 @@ Bytes write_forming_glb(const FormedResult& result, const TriangleMesh& mould, d
                               {"weights", weights},
                               {"extras", extras}}});
   // A frame's weight rises and falls linearly between its neighbours' times.
-  const int time_accessor = glb.add_floats(frames.size(), 1, "SCALAR", true, 0, [&](Eigen::Index i, int) { return frames[static_cast<std::size_t>(i)].time_s; });
-  const int weight_accessor = glb.add_floats(frames.size() * targets, 1, "SCALAR", false, 0, [&](Eigen::Index i, int) {
+  const int time_accessor = glb.add_floats(frames.size(), 1, "SCALAR", true, none, [&](Eigen::Index i, int) { return frames[static_cast<std::size_t>(i)].time_s; });
+  const int weight_accessor = glb.add_floats(frames.size() * targets, 1, "SCALAR", false, none, [&](Eigen::Index i, int) {
     const auto at = static_cast<std::size_t>(i);
     return at / targets == at % targets + 1 ? 1.0 : 0.0;
   });
-  const int lift_accessor = glb.add_floats(frames.size(), 3, "VEC3", false, 0,
+  const int lift_accessor = glb.add_floats(frames.size(), 3, "VEC3", false, none,
                                            [&](Eigen::Index i, int k) { return k == 2 ? frames[static_cast<std::size_t>(i)].platform_z_mm : 0.0; });
   Json nodes = Json::array({{{"name", "machine"}, {"children", {1, 2}}, {"scale", {0.001, 0.001, 0.001}}, {"rotation", {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)}}},
                             {{"name", "sheet"}, {"mesh", 0}},
@@ -175,11 +98,11 @@ Bytes write_forming_glb(const FormedResult& result, const TriangleMesh& mould, d
     const Positions normals = vertex_normals(mould);
     Json mould_attributes = Json::object();
     const auto count = static_cast<std::size_t>(mould.V.rows());
-    mould_attributes["POSITION"] = glb.add_floats(count, 3, "VEC3", true, target_vertices, [&](Eigen::Index i, int k) { return mould.V(i, k); });
-    mould_attributes["NORMAL"] = glb.add_floats(count, 3, "VEC3", false, target_vertices, [&](Eigen::Index i, int k) {
+    mould_attributes["POSITION"] = glb.add_floats(count, 3, "VEC3", true, vertices, [&](Eigen::Index i, int k) { return mould.V(i, k); });
+    mould_attributes["NORMAL"] = glb.add_floats(count, 3, "VEC3", false, vertices, [&](Eigen::Index i, int k) {
       return normals.row(i).squaredNorm() > 0 ? normals(i, k) : (k == 2 ? 1.0 : 0.0);
     });
-    const int mould_indices = glb.add_indices(mould.F);
+    const int mould_indices = add_faces(glb, mould);
     meshes.push_back({{"name", "mould"}, {"primitives", Json::array({{{"attributes", mould_attributes}, {"indices", mould_indices}, {"material", 1}}})}});
     nodes[2]["mesh"] = 1;
   }
@@ -197,7 +120,7 @@ Bytes write_forming_glb(const FormedResult& result, const TriangleMesh& mould, d
                                                                {{"input", time_accessor}, {"output", lift_accessor}, {"interpolation", "LINEAR"}}})},
                                      {"channels", Json::array({{{"sampler", 0}, {"target", {{"node", 1}, {"path", "weights"}}}},
                                                                {{"sampler", 1}, {"target", {{"node", 2}, {"path", "translation"}}}}})}}});
-  return glb.container(std::move(json));
+  return glb.finish(std::move(json));
 }
 
 }  // namespace formwright

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "thermoform/membrane_group.h"
+#include "thermoform/membrane_stiffness.h"
 
 namespace formwright {
 
@@ -22,6 +23,7 @@ Membrane::Membrane(const TextureCoordinates& flat_mm, const Triangles& F, double
   diagonal_ = std::sqrt(along_ * across_);
   const int faces = face_count();
   groups_.resize(static_cast<std::size_t>((faces + 3) / 4));
+  active_.assign(groups_.size(), 1);
   for (int g = 0; g < static_cast<int>(groups_.size()); ++g) {
     Group& group = groups_[static_cast<std::size_t>(g)];
     group.first_face = 4 * g;
@@ -57,10 +59,10 @@ Membrane::Membrane(const TextureCoordinates& flat_mm, const Triangles& F, double
 void Membrane::begin_step(const Positions& x, const HeldVertices& held) {
   Deformation d, total;
   for (Group& g : groups_) {
-    g.active = false;
+    char& active = active_[static_cast<std::size_t>(g.first_face / 4)] = 0;
     for (int l = 0; l < g.lanes; ++l)
-      for (const auto& corner : g.vertex) g.active |= held[static_cast<std::size_t>(corner[static_cast<std::size_t>(l)])] == 0;
-    if (!g.active) continue;
+      for (const auto& corner : g.vertex) active |= held[static_cast<std::size_t>(corner[static_cast<std::size_t>(l)])] == 0;
+    if (!active) continue;
     deform(g, x, false, d);
     const Strain& e = d.strain;
     g.past00 = e.e00;
@@ -93,7 +95,7 @@ void Membrane::end_step(const Positions& x, double dt_s, std::span<const double>
   Deformation d;
   Flow f;
   for (Group& g : groups_) {
-    if (!g.active) continue;
+    if (!active_[static_cast<std::size_t>(g.first_face / 4)]) continue;
     deform(g, x, false, d);
     flow(d.strain, g.creep, dt_s, material_.yield_rule, material_.yield_strain, f);
     if (!chill.empty()) {
@@ -227,73 +229,49 @@ void Membrane::add_group(const Group& g, const Positions& x, double dt_s, int be
     const auto pulled = small >= zero;
     const Double4 t00 = pulled ? s00 : share * (s00 - small), t01 = pulled ? s01 : share * s01, t11 = pulled ? s11 : share * (s11 - small);
 
-    // K_ab = w (B_a^T D B_b + g_a^T S g_b), with B_a's rows g_a0 f0, g_a1 f1, g_a0 f1 + g_a1 f0.
-    const Double4 ga[2][2] = {{g.b00, g.b01}, {g.b10, g.b11}};
-    Double4 rows[2][3][3];
-    for (int a = 0; a < 2; ++a)
-      for (int k = 0; k < 3; ++k) {
-        rows[a][0][k] = ga[a][0] * d.f0[k];
-        rows[a][1][k] = ga[a][1] * d.f1[k];
-        rows[a][2][k] = ga[a][0] * d.f1[k] + ga[a][1] * d.f0[k];
-      }
-    Float4 K[3][3][3][3];  // corner, corner, row, column
-    for (int b = 0; b < 2; ++b) {
-      Double4 image[3][3];
-      for (int k = 0; k < 3; ++k) {
-        image[0][k] = w * (d00 * rows[b][0][k] + d01 * rows[b][1][k] + d02 * rows[b][2][k]);
-        image[1][k] = w * (d01 * rows[b][0][k] + d11 * rows[b][1][k] + d12 * rows[b][2][k]);
-        image[2][k] = w * (d02 * rows[b][0][k] + d12 * rows[b][1][k] + d22 * rows[b][2][k]);
-      }
-      for (int a = 0; a <= b; ++a) {
-        const Double4 geometric = w * (ga[a][0] * (t00 * ga[b][0] + t01 * ga[b][1]) + ga[a][1] * (t01 * ga[b][0] + t11 * ga[b][1]));
-        for (int i = 0; i < 3; ++i)
-          for (int j = 0; j < 3; ++j) {
-            Double4 sum = rows[a][0][i] * image[0][j] + rows[a][1][i] * image[1][j] + rows[a][2][i] * image[2][j];
-            if (i == j) sum += geometric;
-            K[a + 1][b + 1][i][j] = __builtin_convertvector(sum, Float4);
-            if (a != b) K[b + 1][a + 1][j][i] = K[a + 1][b + 1][i][j];
-          }
-      }
-    }
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) {
-        K[0][1][i][j] = -(K[1][1][i][j] + K[2][1][i][j]);
-        K[0][2][i][j] = -(K[1][2][i][j] + K[2][2][i][j]);
-        K[1][0][i][j] = -(K[1][1][i][j] + K[1][2][i][j]);
-        K[2][0][i][j] = -(K[2][1][i][j] + K[2][2][i][j]);
-        K[0][0][i][j] = -(K[0][1][i][j] + K[0][2][i][j]);
-      }
-    for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b)
-        for (int j = 0; j < 3; ++j) {
-          // Four triangles' columns (x, y, z, 0) out of three lanes-by-triangle vectors: a 4 x 4 transpose.
-          const Float4 &kx = K[a][b][0][j], &ky = K[a][b][1][j], &kz = K[a][b][2][j];
-          const Float4 none{};
-          const Float4 xy_low = __builtin_shufflevector(kx, ky, 0, 4, 1, 5), xy_high = __builtin_shufflevector(kx, ky, 2, 6, 3, 7);
-          const Float4 z_low = __builtin_shufflevector(kz, none, 0, 4, 1, 5), z_high = __builtin_shufflevector(kz, none, 2, 6, 3, 7);
-          const Float4 column[4] = {__builtin_shufflevector(xy_low, z_low, 0, 1, 4, 5), __builtin_shufflevector(xy_low, z_low, 2, 3, 6, 7),
-                                    __builtin_shufflevector(xy_high, z_high, 0, 1, 4, 5), __builtin_shufflevector(xy_high, z_high, 2, 3, 6, 7)};
-          for (int l = 0; l < g.lanes; ++l) {
-            const int row = g.vertex[static_cast<std::size_t>(a)][static_cast<std::size_t>(l)];
-            if (row < begin || row >= end) continue;
-            const int slot = slots_[static_cast<std::size_t>(g.first_face + l)][static_cast<std::size_t>(3 * a + b)];
-            matrix->block(slot)[static_cast<std::size_t>(j)] += column[l];
-          }
+    const auto single = [](const Double4& value) -> Float4 { return __builtin_convertvector(value, Float4); };
+    const StiffnessParts parts{
+        {{single(g.b00), single(g.b01)}, {single(g.b10), single(g.b11)}},
+        {single(d.f0[0]), single(d.f0[1]), single(d.f0[2])},
+        {single(d.f1[0]), single(d.f1[1]), single(d.f1[2])},
+        {single(w * d00), single(w * d01), single(w * d02), single(w * d11), single(w * d12), single(w * d22)},
+        {single(w * t00), single(w * t01), single(w * t11)}};
+    CornerBlocks K;
+    corner_blocks(parts, K);
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t b = 0; b < 3; ++b) {
+        std::array<std::array<Float4, 3>, 4> block;
+        one_by_one(K, a, b, block);
+        for (int l = 0; l < g.lanes; ++l) {
+          const int row = g.vertex[a][static_cast<std::size_t>(l)];
+          if (row < begin || row >= end) continue;
+          auto& to = matrix->block(slots_[static_cast<std::size_t>(g.first_face + l)][3 * a + b]);
+          for (std::size_t j = 0; j < 3; ++j) to[j] += block[static_cast<std::size_t>(l)][j];
         }
+      }
+  }
+}
+
+void Membrane::add_any(std::size_t group, const Positions& x, double dt_s, int begin, int end, Positions& force, BlockMatrix* matrix) const {
+  const Group& g = groups_[group];
+  if (g.most_vertex < begin || g.least_vertex >= end) return;
+  if (material_.elastic_law == ElasticLaw::st_venant_kirchhoff) {
+    if (matrix) add_group<ElasticLaw::st_venant_kirchhoff, true>(g, x, dt_s, begin, end, force, matrix);
+    else add_group<ElasticLaw::st_venant_kirchhoff, false>(g, x, dt_s, begin, end, force, nullptr);
+  } else {
+    if (matrix) add_group<ElasticLaw::stable_neo_hookean, true>(g, x, dt_s, begin, end, force, matrix);
+    else add_group<ElasticLaw::stable_neo_hookean, false>(g, x, dt_s, begin, end, force, nullptr);
   }
 }
 
 void Membrane::add_forces(const Positions& x, double dt_s, int begin, int end, Positions& force, BlockMatrix* matrix) const {
-  for (const Group& g : groups_) {
-    if (!g.active || g.most_vertex < begin || g.least_vertex >= end) continue;
-    if (material_.elastic_law == ElasticLaw::st_venant_kirchhoff) {
-      if (matrix) add_group<ElasticLaw::st_venant_kirchhoff, true>(g, x, dt_s, begin, end, force, matrix);
-      else add_group<ElasticLaw::st_venant_kirchhoff, false>(g, x, dt_s, begin, end, force, nullptr);
-    } else {
-      if (matrix) add_group<ElasticLaw::stable_neo_hookean, true>(g, x, dt_s, begin, end, force, matrix);
-      else add_group<ElasticLaw::stable_neo_hookean, false>(g, x, dt_s, begin, end, force, nullptr);
-    }
-  }
+  for (std::size_t g = 0; g < groups_.size(); ++g)
+    if (active_[g]) add_any(g, x, dt_s, begin, end, force, matrix);
+}
+
+void Membrane::add_forces_of(int first_face, int end_face, const Positions& x, double dt_s, Positions& force, BlockMatrix* matrix) const {
+  for (auto g = static_cast<std::size_t>(first_face / 4); g < static_cast<std::size_t>((end_face + 3) / 4); ++g)
+    if (active_[g]) add_any(g, x, dt_s, 0, std::numeric_limits<int>::max(), force, matrix);
 }
 
 double Membrane::energy(const Positions& x, double dt_s) const {
@@ -305,7 +283,7 @@ double Membrane::energy(const Positions& x, double dt_s) const {
   double sum = 0;
   Deformation d;
   for (const Group& g : groups_) {
-    if (!g.active) continue;
+    if (!active_[static_cast<std::size_t>(g.first_face / 4)]) continue;
     deform(g, x, false, d);
     const Strain e = scaled(d.strain), past = scaled({g.past00, g.past01, g.past11});
     Double4 density;

@@ -58,6 +58,9 @@ class Membrane {
   /// written, so that threads may share the work; triangles whose vertices are all held are left out.
   void add_forces(const Positions& x, double dt_s, int begin, int end, Positions& force, BlockMatrix* matrix) const;
 
+  /// The same of the triangles first_face <= f < end_face alone, to any row; first_face is a multiple of four.
+  void add_forces_of(int first_face, int end_face, const Positions& x, double dt_s, Positions& force, BlockMatrix* matrix) const;
+
   /// The energy (mJ) whose gradient add_forces gives, where nothing flows within the step (dt_s = infinity leaves
   /// viscosity out; creep is ignored).
   double energy(const Positions& x, double dt_s) const;
@@ -85,9 +88,12 @@ class Membrane {
   template <ElasticLaw law, bool with_matrix>
   void add_group(const Group& group, const Positions& x, double dt_s, int begin, int end, Positions& force, BlockMatrix* matrix) const;
 
+  void add_any(std::size_t group, const Positions& x, double dt_s, int begin, int end, Positions& force, BlockMatrix* matrix) const;
+
   Triangles F_;
   MembraneMaterial material_;
   std::vector<Group> groups_;
+  std::vector<char> active_;  // per group: some vertex is free
   std::vector<double> thickness_mm_, volume_mm3_;
   double along_ = 1, across_ = 1, diagonal_ = 1;  // square roots of the stiffness's factors in x, in y, between
   std::vector<std::array<int, 9>> slots_;  // per triangle, of corner a with corner b

@@ -21,7 +21,6 @@ struct alignas(32) Membrane::Group {
   std::array<std::array<int, 4>, 3> vertex;
   int first_face = 0, lanes = 4;
   int least_vertex = 0, most_vertex = 0;
-  bool active = true;  // some vertex is free
 };
 
 namespace membrane_detail {

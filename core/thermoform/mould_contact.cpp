@@ -56,6 +56,8 @@ std::optional<double> MouldContact::distance_mm(const Vec3& p, double limit_mm) 
   return nearest->distance * placement_.scale;
 }
 
+MouldContact::Known MouldContact::survey(const Vec3& p) const { return {p, distance_mm(p, farthest_mm).value_or(farthest_mm)}; }
+
 std::optional<double> MouldContact::first_touch(const Vec3& from, const Vec3& to, double radius_mm, Known& known) const {
   // The plate: an exact moment.
   std::optional<double> plate;
@@ -79,8 +81,7 @@ std::optional<double> MouldContact::first_touch(const Vec3& from, const Vec3& to
     const Vec3 here = from + t * path;
     double clear = known.at(here) - radius_mm;
     if (clear <= std::max(tolerance_mm_, 0.25 * (known.distance_mm - radius_mm))) {
-      known.place = here;
-      known.distance_mm = distance_mm(here, farthest_mm).value_or(farthest_mm);
+      known = survey(here);
       clear = known.distance_mm - radius_mm;
       if (clear <= tolerance_mm_) return t;
     }

@@ -36,6 +36,9 @@ class MouldContact {
     double at(const Vec3& p) const { return distance_mm - (p - place).norm(); }
   };
 
+  /// Asks the mould itself.
+  Known survey(const Vec3& p) const;
+
   /// The first moment (0 to 1) at which a point that goes straight from `from` to `to` comes within `radius_mm` of the
   /// mould or the plate, or reaches a wall; nothing when it stays away.
   std::optional<double> first_touch(const Vec3& from, const Vec3& to, double radius_mm, Known& known) const;

@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <Eigen/Dense>
 #include <cmath>
+#include <limits>
+#include <optional>
 
+#include "base/parallel.h"
 #include "geometry/point_distance.h"
 
 namespace formwright {
@@ -12,6 +15,7 @@ namespace {
 
 constexpr double offset_cells = 1 << 19;
 constexpr double share_beside = 0.02;  // of a slid contact's stiffness along the face: about the sheet's own
+constexpr char met = 1, settled = 2;  // of points: in the step that is being tried, or before it
 
 std::uint64_t key(int x, int y, int z) {
   return static_cast<std::uint64_t>(z & 0xfffff) << 40 | static_cast<std::uint64_t>(y & 0xfffff) << 20 | static_cast<std::uint64_t>(x & 0xfffff);
@@ -32,24 +36,42 @@ Vec3 face_normal(int face, const Triangles& F, const Positions& x) {
   const Vec3 a = x.row(F(face, 0)), b = x.row(F(face, 1)), c = x.row(F(face, 2));
   return (b - a).cross(c - a).normalized();
 }
-std::optional<Touch> first_touch(const Vec3& q, const Vec3 (&a)[3], const Vec3 (&b)[3], double radius, double tolerance) {
+std::optional<Touch> first_touch(const Vec3& q, const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double radius, double tolerance) {
   double speed = 0;
-  for (int k = 0; k < 3; ++k) speed = std::max(speed, (b[k] - a[k]).norm());
+  for (std::size_t k = 0; k < 3; ++k) speed = std::max(speed, (b[k] - a[k]).norm());
   double t = 0;
   for (;;) {
     const Vec3 c[3] = {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2])};
     const NearestPoint nearest = nearest_on_triangle(q, c[0], c[1], c[2]);
     const double clear = nearest.distance - radius;
     if (clear <= tolerance) return Touch{t, nearest.barycentric};
-    if (t >= 1 || speed == 0) return std::nullopt;
+    if (clear - tolerance > speed * (1 - t)) return std::nullopt;
     t = std::min(1.0, t + 0.999 * clear / speed);
   }
 }
 
+/// A disc about a triangle: nearer to a point than the triangle, and sooner asked.
+class Disc {
+ public:
+  explicit Disc(const std::array<Vec3, 3>& corner)
+      : middle_((corner[0] + corner[1] + corner[2]) / 3), normal_((corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized()) {
+    for (const Vec3& c : corner) radius_ = std::max(radius_, (c - middle_).norm());
+  }
+  double distance(const Vec3& q) const {
+    const Vec3 away = q - middle_;
+    const double height = away.dot(normal_), beside = std::max(0.0, std::sqrt(std::max(0.0, away.squaredNorm() - height * height)) - radius_);
+    return std::sqrt(height * height + beside * beside);
+  }
+
+ private:
+  Vec3 middle_, normal_;
+  double radius_ = 0;
+};
+
 }  // namespace
 
 PointContacts::PointContacts(std::vector<Vec3> points, double cell_mm, double stiffness)
-    : points_(std::move(points)), used_(points_.size()), cell_mm_(cell_mm), margin_mm_(0.5 * cell_mm), stiffness_(stiffness) {
+    : points_(std::move(points)), used_(points_.size()), cell_mm_(cell_mm), stiffness_(stiffness) {
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Vec3& p = points_[i];
     cells_.push_back({key(cell_of(p.x(), cell_mm_), cell_of(p.y(), cell_mm_), cell_of(p.z(), cell_mm_)), static_cast<int>(i)});
@@ -57,8 +79,8 @@ PointContacts::PointContacts(std::vector<Vec3> points, double cell_mm, double st
   std::sort(cells_.begin(), cells_.end(), [](const Cell& a, const Cell& b) { return a.key != b.key ? a.key < b.key : a.point < b.point; });
 }
 
-void PointContacts::collect(const Vec3& lower, const Vec3& upper, std::vector<int>& points) const {
-  points.clear();
+template <class Visit>
+void PointContacts::collect(const Vec3& lower, const Vec3& upper, Visit&& visit) const {
   const int x0 = cell_of(lower.x(), cell_mm_), x1 = cell_of(upper.x(), cell_mm_);
   for (int z = cell_of(lower.z(), cell_mm_); z <= cell_of(upper.z(), cell_mm_); ++z)
     for (int y = cell_of(lower.y(), cell_mm_); y <= cell_of(upper.y(), cell_mm_); ++y) {
@@ -66,55 +88,114 @@ void PointContacts::collect(const Vec3& lower, const Vec3& upper, std::vector<in
       for (auto it = std::lower_bound(cells_.begin(), cells_.end(), key(x0, y, z), [](const Cell& c, std::uint64_t k) { return c.key < k; });
            it != cells_.end() && it->key <= last; ++it) {
         const Vec3& q = points_[static_cast<std::size_t>(it->point)];
-        if ((q.array() >= lower.array()).all() && (q.array() <= upper.array()).all()) points.push_back(it->point);
+        if ((q.array() >= lower.array()).all() && (q.array() <= upper.array()).all()) visit(it->point);
       }
     }
 }
 
-int PointContacts::find(const Triangles& F, const Positions& from, const Positions& to, std::span<const double> thickness_mm, const HeldVertices& held,
-                        double tolerance_mm) {
-  if (points_.empty()) return 0;
-  struct Candidate {
-    double fraction;
-    PointContact contact;
+void PointContacts::survey(const std::array<Vec3, 3>& corner, double reach_mm, Neighbourhood& around) const {
+  around.place = corner;
+  around.reach_mm = reach_mm;
+  around.points.clear();
+  const Disc disc(corner);
+  const Vec3 lower = corner[0].cwiseMin(corner[1]).cwiseMin(corner[2]), upper = corner[0].cwiseMax(corner[1]).cwiseMax(corner[2]);
+  collect(lower.array() - reach_mm, upper.array() + reach_mm, [&](int point) {
+    if (used_[static_cast<std::size_t>(point)] == settled) return;
+    const double distance = disc.distance(points_[static_cast<std::size_t>(point)]);
+    if (distance < reach_mm) around.points.push_back({distance, point});
+  });
+  std::sort(around.points.begin(), around.points.end(), [](const auto& a, const auto& b) {
+    return a.distance_mm != b.distance_mm ? a.distance_mm < b.distance_mm : a.point < b.point;
+  });
+}
+
+void PointContacts::look(const Triangles& F, int face, const Positions& from, const Positions& to, double radius_mm, const HeldVertices& held,
+                         double tolerance_mm, const std::function<double(int)>& clear_mm, std::vector<Candidate>& found) {
+  const auto at = static_cast<std::size_t>(face);
+  bool all_held = true;
+  for (int k = 0; k < 3; ++k) all_held &= held[static_cast<std::size_t>(F(face, k))] != 0;
+  if (all_held) return;
+  std::array<Vec3, 3> a, b;
+  double way = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    a[k] = from.row(F(face, static_cast<int>(k)));
+    b[k] = to.row(F(face, static_cast<int>(k)));
+    way = std::max(way, (b[k] - a[k]).squaredNorm());
+  }
+  way = std::sqrt(way);
+  const double reach = radius_mm + tolerance_mm;
+  Vec3 lower = a[0].cwiseMin(b[0]), upper = a[0].cwiseMax(b[0]);
+  for (std::size_t k = 1; k < 3; ++k) {
+    lower = lower.cwiseMin(a[k]).cwiseMin(b[k]);
+    upper = upper.cwiseMax(a[k]).cwiseMax(b[k]);
+  }
+  lower.array() -= reach;
+  upper.array() += reach;
+  std::optional<Disc> disc;
+  const auto try_point = [&](int point) {
+    const Vec3& q = points_[static_cast<std::size_t>(point)];
+    if (used_[static_cast<std::size_t>(point)] || (q.array() < lower.array()).any() || (q.array() > upper.array()).any()) return;
+    if (!disc) disc.emplace(a);
+    if (disc->distance(q) > way + reach) return;
+    const auto touch = first_touch(q, a, b, radius_mm, tolerance_mm);
+    if (!touch) return;
+    Vec3 place = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) {
+      const auto corner = static_cast<std::size_t>(k);
+      place += touch->barycentric[k] * (a[corner] + touch->fraction * (b[corner] - a[corner]));
+    }
+    found.push_back({touch->fraction, {point, face, touch->barycentric, place, touch->fraction}});
   };
-  if (listed_at_.rows() != F.rows()) {
-    listed_at_.setConstant(F.rows(), 9, 1e30);
-    listed_.assign(static_cast<std::size_t>(F.rows()), {});
+  // Half a thickness more than it takes today: the face may become thicker until it is looked at again.
+  const auto due_at = [&](double distance_mm) { due_mm_[at] = travelled_mm_ + distance_mm - reach - radius_mm; };
+
+  Neighbourhood& around = around_[at];
+  double moved = 0;
+  for (std::size_t k = 0; k < 3; ++k) moved = std::max(moved, (a[k] - around.place[k]).squaredNorm());
+  moved = std::sqrt(moved);
+  if (around.reach_mm < moved + way + reach) {
+    // Nowhere is a triangle farther from its corners than its longest side over the root of three.
+    const double side = std::max({(a[1] - a[0]).norm(), (a[2] - a[1]).norm(), (a[0] - a[2]).norm()});
+    const double clear = std::min({clear_mm(F(face, 0)), clear_mm(F(face, 1)), clear_mm(F(face, 2))}) - 0.58 * side;
+    if (clear > way + reach) return due_at(clear);
+    if (way > cell_mm_) {  // too far for a list to be of use again
+      due_at(0);
+      return collect(lower, upper, try_point);
+    }
+    survey(a, way + 2 * reach + cell_mm_, around);
+    moved = 0;
   }
+  due_at((around.points.empty() ? around.reach_mm : around.points.front().distance_mm) - moved);
+  for (const Neighbourhood::Near& near : around.points) {
+    if (near.distance_mm > moved + way + reach) break;
+    try_point(near.point);
+  }
+}
+
+int PointContacts::find(const Triangles& F, const Positions& from, const Positions& to, std::span<const double> thickness_mm, const HeldVertices& held,
+                        double tolerance_mm, const std::function<double(int)>& clear_mm) {
+  if (points_.empty()) return 0;
+  const auto faces = static_cast<std::size_t>(F.rows());
+  if (around_.size() != faces) {
+    around_.assign(faces, {});
+    due_mm_.assign(faces, -std::numeric_limits<double>::infinity());
+    last_from_ = from;
+  }
+  if (const double way = std::sqrt((from - last_from_).rowwise().squaredNorm().maxCoeff()); way > 0) {
+    // A new step: what was found in the one before was accepted.
+    travelled_mm_ += way;
+    last_from_ = from;
+    for (const PointContact& contact : contacts_) used_[static_cast<std::size_t>(contact.point)] = settled;
+  }
+  const double travel = travelled_mm_ + std::sqrt((to - from).rowwise().squaredNorm().maxCoeff());
+  constexpr std::size_t grain = 1024;
+  std::vector<std::vector<Candidate>> lists((faces + grain - 1) / grain);
+  parallel_for(faces, grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f)
+      if (due_mm_[f] <= travel) look(F, static_cast<int>(f), from, to, 0.5 * thickness_mm[f], held, tolerance_mm, clear_mm, lists[begin / grain]);
+  });
   std::vector<Candidate> found;
-  for (int f = 0; f < static_cast<int>(F.rows()); ++f) {
-    bool all_held = true, still_listed = true;
-    for (int k = 0; k < 3; ++k) {
-      const int v = F(f, k);
-      all_held &= held[static_cast<std::size_t>(v)] != 0;
-      still_listed &= (to.row(v) - listed_at_.block<1, 3>(f, 3 * k)).squaredNorm() < 0.99 * margin_mm_ * margin_mm_;
-    }
-    std::vector<int>& list = listed_[static_cast<std::size_t>(f)];
-    if (all_held || (still_listed && list.empty())) continue;
-    const double radius = 0.5 * thickness_mm[static_cast<std::size_t>(f)], reach = radius + tolerance_mm;
-    Vec3 a[3], b[3], lower = Vec3::Constant(1e300), upper = Vec3::Constant(-1e300);
-    for (int k = 0; k < 3; ++k) {
-      a[k] = from.row(F(f, k));
-      b[k] = to.row(F(f, k));
-      lower = lower.cwiseMin(a[k]).cwiseMin(b[k]);
-      upper = upper.cwiseMax(a[k]).cwiseMax(b[k]);
-    }
-    if (!still_listed) {
-      // The reach may grow with the thickness: half of the margin is for movement, the rest is ample for that.
-      collect(lower.array() - 2 * reach - 2 * margin_mm_, upper.array() + 2 * reach + 2 * margin_mm_, list);
-      for (int k = 0; k < 3; ++k) listed_at_.block<1, 3>(f, 3 * k) = b[k].transpose();
-    }
-    for (const int point : list) {
-      const Vec3& q = points_[static_cast<std::size_t>(point)];
-      if (used_[static_cast<std::size_t>(point)] || (q.array() < lower.array() - reach).any() || (q.array() > upper.array() + reach).any()) continue;
-      const auto touch = first_touch(q, a, b, radius, tolerance_mm);
-      if (!touch) continue;
-      Vec3 place = Vec3::Zero();
-      for (int k = 0; k < 3; ++k) place += touch->barycentric[k] * (a[k] + touch->fraction * (b[k] - a[k]));
-      found.push_back({touch->fraction, {point, f, touch->barycentric, place, touch->fraction}});
-    }
-  }
+  for (const auto& list : lists) found.insert(found.end(), list.begin(), list.end());
   // A point met by several faces belongs to the one that met it first.
   std::sort(found.begin(), found.end(), [](const Candidate& a, const Candidate& b) {
     if (a.contact.point != b.contact.point) return a.contact.point < b.contact.point;
@@ -124,7 +205,7 @@ int PointContacts::find(const Triangles& F, const Positions& from, const Positio
   for (const Candidate& candidate : found) {
     char& used = used_[static_cast<std::size_t>(candidate.contact.point)];
     if (used) continue;
-    used = 1;
+    used = met;
     contacts_.push_back(candidate.contact);
     ++added;
   }

@@ -2,6 +2,8 @@
 #pragma once
 // Sharp points of the mould that have met the inside of a sheet triangle: each is glued there by a stiff spring, as
 // vertices are glued when they touch.
+#include <array>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -26,9 +28,10 @@ class PointContacts {
   PointContacts(std::vector<Vec3> points, double cell_mm, double stiffness);
 
   /// Finds points that faces of `F` come within half their thickness (m) of while their corners go straight from `from` to `to`.
-  /// Faces whose corners are all held are left out. New contacts are appended. Returns their number.
+  /// Faces whose corners are all held are left out. `clear_mm(v)` is any lower bound of the distance of from's vertex v from
+  /// all points. New contacts are appended. Returns their number.
   int find(const Triangles& F, const Positions& from, const Positions& to, std::span<const double> thickness_mm, const HeldVertices& held,
-           double tolerance_mm);
+           double tolerance_mm, const std::function<double(int vertex)>& clear_mm);
 
   /// Adds the springs' forces and, unless null, their stiffness.
   void add_forces(const Triangles& F, const Positions& x, Positions& force, BlockMatrix* matrix) const;
@@ -46,8 +49,27 @@ class PointContacts {
  private:
   /// N, on the face, with the face's corners at `x`.
   Vec3 pull_of(const PointContact& contact, const Triangles& F, const Positions& x) const;
-  /// The points in a box, ascending within each cell.
-  void collect(const Vec3& lower, const Vec3& upper, std::vector<int>& points) const;
+  struct Candidate {
+    double fraction;
+    PointContact contact;
+  };
+  /// What was found around a face when it was at `place`: the points within `reach_mm` of it, nearest first by a
+  /// lower bound of their distance.
+  struct Neighbourhood {
+    std::array<Vec3, 3> place;
+    double reach_mm = -1;
+    struct Near {
+      double distance_mm;
+      int point;
+    };
+    std::vector<Near> points;
+  };
+  void survey(const std::array<Vec3, 3>& corner, double reach_mm, Neighbourhood& around) const;
+  void look(const Triangles& F, int face, const Positions& from, const Positions& to, double radius_mm, const HeldVertices& held, double tolerance_mm,
+            const std::function<double(int)>& clear_mm, std::vector<Candidate>& found);
+  /// Calls visit(point) for the points in a box, ascending within each cell.
+  template <class Visit>
+  void collect(const Vec3& lower, const Vec3& upper, Visit&& visit) const;
 
   struct Cell {
     std::uint64_t key;
@@ -57,11 +79,13 @@ class PointContacts {
   std::vector<Cell> cells_;  // sorted by key
   std::vector<char> used_;
   std::vector<PointContact> contacts_;
-  /// Where each face was when the points within `margin_mm_` of its box were listed: while no corner has gone farther, it can
-  /// meet no others.
-  Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> listed_at_;
-  std::vector<std::vector<int>> listed_;
-  double cell_mm_, margin_mm_, stiffness_;
+  std::vector<Neighbourhood> around_;  // per face
+  /// How far the fastest vertex has come at the end of each step so far, summed up; a face need not be looked at before
+  /// that is `due_mm_` (while a step is tried, with the way of the fastest vertex in it).
+  double travelled_mm_ = 0;
+  std::vector<double> due_mm_;
+  Positions last_from_;
+  double cell_mm_, stiffness_;
 };
 
 }  // namespace formwright

@@ -3,8 +3,11 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
+
+#include "base/parallel.h"
 
 namespace formwright {
 namespace {
@@ -13,8 +16,11 @@ constexpr double cg_tolerance = 0.1;       // of Newton's directions: the next i
 constexpr int most_cg_iterations = 400;
 constexpr int most_newton_iterations = 12;
 constexpr int most_sliding_iterations = 5;
-constexpr double settled_share = 0.02;     // of the step's limit: an increment this small ends the iteration
+constexpr double settled_share = 0.05;     // of the step's limit: an increment this small ends the iteration
 constexpr double wrinkle_share = 0.2;      // so much a few vertices may go on moving: squeezed triangles buckle back and forth
+
+constexpr std::size_t vertex_grain = 512;
+constexpr int faces_per_strip = 512;
 
 MembraneMaterial material_of(const ThermoformOptions& o) {
   return {o.elastic_law, o.yield_rule, o.young_modulus_pa * 1e-6, o.poisson_ratio, o.creep_per_s, o.yield_strain, o.viscosity_s, o.flow_stop_mm, o.anisotropy};
@@ -62,6 +68,7 @@ SheetDynamics::SheetDynamics(const SheetMesh& sheet, const ThermoformOptions& op
       options_(options),
       contact_(std::move(contact)),
       membrane_(sheet.flat_mm, sheet.F, options.sheet_thickness_mm, material_of(options), variation_of(sheet, options)),
+      strips_(sheet.F, faces_per_strip),
       points_(sharp_points(contact_.get(), shortest_edge(sheet)), shortest_edge(sheet), 50 * options.young_modulus_pa * 1e-6 * options.sheet_thickness_mm),
       cg_(static_cast<int>(sheet.flat_mm.rows())),
       edge_mm_(shortest_edge(sheet)),
@@ -87,6 +94,10 @@ SheetDynamics::SheetDynamics(const SheetMesh& sheet, const ThermoformOptions& op
   if (options.cooling > 0) chill_ = std::make_unique<ContactChill>(sheet, options.cooling);
   if (options.slip > 0 && contact_) friction_ = std::make_unique<SheetFriction>(sheet, 1 / options.slip, options.young_modulus_pa * 1e-6 * options.sheet_thickness_mm);
   none_held_.assign(held_.size(), moves_freely);
+  if (contact_)
+    parallel_for(known_.size(), vertex_grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) known_[i] = contact_->survey(x_.row(static_cast<Eigen::Index>(i)).transpose());
+    });
   collect_free();
 }
 
@@ -124,13 +135,17 @@ std::vector<double> SheetDynamics::vertex_thickness_mm(const Positions& x) const
 }
 
 void SheetDynamics::assemble(const Positions& x, double dt_s, const StepLoad& load, Positions& force, BlockMatrix* matrix) {
-  const int n = static_cast<int>(x.rows());
-  for (int i = 0; i < n; ++i) force.row(i) << 0, 0, -mass_[static_cast<std::size_t>(i)] * load.gravity_mm_per_s2;
-  if (matrix) matrix->set_zero();
-  membrane_.add_forces(x, dt_s, 0, n, force, matrix);
-  if (bending_) bending_->add_forces(x, dt_s, force, matrix);
-  if (load.pressure_mpa != 0)
-    for (int f = 0; f < membrane_.face_count(); ++f) {
+  const auto n = static_cast<std::size_t>(x.rows());
+  parallel_for(n, vertex_grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) force.row(static_cast<Eigen::Index>(i)) << 0, 0, -mass_[i] * load.gravity_mm_per_s2;
+  });
+  if (matrix)
+    parallel_for(free_.size(), vertex_grain,
+                 [&](std::size_t begin, std::size_t end) { matrix->set_zero(std::span<const int>(free_).subspan(begin, end - begin)); });
+  strips_.for_each([&](int first_face, int end_face) {
+    membrane_.add_forces_of(first_face, end_face, x, dt_s, force, matrix);
+    if (load.pressure_mpa == 0) return;
+    for (int f = first_face; f < end_face; ++f) {
       // The gradient of the volume under the face: a third of its area vector for each corner.
       const int a = sheet_.F(f, 0), b = sheet_.F(f, 1), c = sheet_.F(f, 2);
       if (!friction_ && held_[static_cast<std::size_t>(a)] && held_[static_cast<std::size_t>(b)] && held_[static_cast<std::size_t>(c)]) continue;
@@ -140,12 +155,15 @@ void SheetDynamics::assemble(const Positions& x, double dt_s, const StepLoad& lo
       force.row(b) += push.transpose();
       force.row(c) += push.transpose();
     }
+  });
+  if (bending_) bending_->add_forces(x, dt_s, force, matrix);
   points_.add_forces(sheet_.F, x, force, matrix);
 }
 
 Positions SheetDynamics::forces(const Positions& x, double dt_s, const StepLoad& load, BlockMatrix* matrix) {
   Positions force(x.rows(), 3);
   begin_membrane_step();
+  if (matrix) matrix->set_zero();
   assemble(x, dt_s, load, force, matrix);
   return force;
 }
@@ -157,22 +175,28 @@ int SheetDynamics::find_contacts(const Positions& from, Positions& to, const std
   std::vector<double>& until = until_;
   until.assign(held_.size(), 1);
   const std::size_t before = points_.contacts().size();
-  found += points_.find(sheet_.F, from, to, membrane_.thickness_mm(), held_, contact_->tolerance_mm());
+  found += points_.find(sheet_.F, from, to, membrane_.thickness_mm(), held_, contact_->tolerance_mm(),
+                        [&](int v) { return known_[static_cast<std::size_t>(v)].at(from.row(v).transpose()); });
   for (std::size_t c = before; c < points_.contacts().size(); ++c)
     for (int k = 0; k < 3; ++k) {
       double& limit = until[static_cast<std::size_t>(sheet_.F(points_.contacts()[c].face, k))];
       limit = std::min(limit, points_.contacts()[c].fraction);
     }
-  for (const int i : free_) {
-    const auto v = static_cast<std::size_t>(i);
-    if (held_[v] != moves_freely) continue;
-    const Vec3 a = from.row(i), b = to.row(i);
-    const auto touch = contact_->first_touch(a, b, radius_mm[v], known_[v]);
-    if (!touch || *touch > until[v]) continue;
-    to.row(i) = (a + *touch * (b - a)).transpose();
-    held_[v] = stuck_in_this_step;
-    ++found;
-  }
+  std::atomic<int> touched{0};
+  parallel_for(free_.size(), vertex_grain / 2, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const int i = free_[k];
+      const auto v = static_cast<std::size_t>(i);
+      if (held_[v] != moves_freely) continue;
+      const Vec3 a = from.row(i), b = to.row(i);
+      const auto touch = contact_->first_touch(a, b, radius_mm[v], known_[v]);
+      if (!touch || *touch > until[v]) continue;
+      to.row(i) = (a + *touch * (b - a)).transpose();
+      held_[v] = stuck_in_this_step;
+      ++touched;
+    }
+  });
+  found += touched;
   return found;
 }
 

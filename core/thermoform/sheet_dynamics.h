@@ -9,6 +9,7 @@
 #include "base/context.h"
 #include "thermoform/block_cg.h"
 #include "thermoform/contact_chill.h"
+#include "thermoform/face_strips.h"
 #include "thermoform/hinge_bending.h"
 #include "thermoform/membrane.h"
 #include "thermoform/mould_contact.h"
@@ -70,6 +71,7 @@ class SheetDynamics {
   double total_mass_t() const { return mass_total_; }
 
  private:
+  /// Of `matrix`, only the rows of free vertices are cleared and so mean anything afterwards.
   void assemble(const Positions& x, double dt_s, const StepLoad& load, Positions& force, BlockMatrix* matrix);
   int find_contacts(const Positions& from, Positions& to, const std::vector<double>& radius_mm);
   void collect_free();
@@ -81,6 +83,7 @@ class SheetDynamics {
   ThermoformOptions options_;
   std::shared_ptr<const MouldContact> contact_;
   Membrane membrane_;
+  FaceStrips strips_;
   std::unique_ptr<HingeBending> bending_;
   std::unique_ptr<ContactChill> chill_;      // null without cooling
   std::unique_ptr<SheetFriction> friction_;  // null where what touches sticks

@@ -4,7 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
+#include <mutex>
+#include <numeric>
+#include <set>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace formwright {
@@ -36,9 +41,75 @@ TEST(ParallelFor, RethrowsAndStops) {
                             [&](std::size_t begin, std::size_t) {
                               ++chunks;
                               if (begin == 10) throw std::runtime_error("here");
+                              // The others leave it the time to be noticed, should its thread be put aside just now.
+                              if (begin > 10) std::this_thread::sleep_for(std::chrono::microseconds(50));
                             }),
                std::runtime_error);
   EXPECT_LT(chunks.load(), 100000);
+}
+
+TEST(ParallelFor, LoopsWithinLoopsVisitEveryIndexOnce) {
+  std::vector<std::atomic<int>> visits(64 * 64);
+  parallel_for(64, 1, [&](std::size_t begin, std::size_t) {
+    const std::thread::id here = std::this_thread::get_id();
+    parallel_for(64, 1, [&](std::size_t inner, std::size_t) {
+      EXPECT_EQ(std::this_thread::get_id(), here);  // the threads there are have enough to do
+      ++visits[64 * begin + inner];
+    });
+  });
+  for (const auto& visit : visits) EXPECT_EQ(visit.load(), 1);
+}
+
+#ifndef __wasm__
+TEST(ParallelFor, SeveralThreadsLoopAtOnce) {
+  constexpr int callers = 6, loops = 400;
+  std::vector<long> sums(callers);
+  std::vector<std::thread> threads;
+  for (int caller = 0; caller < callers; ++caller)
+    threads.emplace_back([&sums, caller] {
+      for (int loop = 0; loop < loops; ++loop) {
+        std::vector<int> numbers(static_cast<std::size_t>(200 + loop % 7));
+        parallel_for(numbers.size(), 10, [&](std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i) numbers[i] = caller + 1;
+        });
+        sums[static_cast<std::size_t>(caller)] += std::accumulate(numbers.begin(), numbers.end(), 0L);
+      }
+    });
+  for (std::thread& thread : threads) thread.join();
+  long each = 0;
+  for (int loop = 0; loop < loops; ++loop) each += 200 + loop % 7;
+  for (int caller = 0; caller < callers; ++caller) EXPECT_EQ(sums[static_cast<std::size_t>(caller)], (caller + 1) * each);
+}
+#endif
+
+TEST(ParallelFor, GoesOnAfterPausesAndFailures) {
+  // Helpers fall asleep in the pause and wake again; a failure leaves nothing behind.
+  for (int round = 0; round < 20; ++round) {
+    if (round % 5 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    std::atomic<int> done{0};
+    const auto fail = [](std::size_t begin, std::size_t) {
+      if (begin == 3) throw std::runtime_error("here");
+    };
+    EXPECT_THROW(parallel_for(50, 1, fail), std::runtime_error);
+    parallel_for(50, 1, [&](std::size_t, std::size_t) { ++done; });
+    EXPECT_EQ(done.load(), 50);
+  }
+}
+
+TEST(ParallelFor, TheLimitHolds) {
+  std::mutex mutex;
+  std::set<std::thread::id> seen;
+  const auto look = [&](std::size_t, std::size_t) {
+    const std::scoped_lock lock(mutex);
+    seen.insert(std::this_thread::get_id());
+  };
+  {
+    const ThreadLimit one(1);
+    parallel_for(1000, 1, look);
+  }
+  EXPECT_EQ(seen, std::set{std::this_thread::get_id()});
+  parallel_for(1000, 1, look);
+  EXPECT_LE(seen.size(), static_cast<std::size_t>(thread_count()));
 }
 
 }  // namespace

@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <limits>
 
 #include "base/error.h"
 #include "base/json.h"
-#include "geometry/io/byte_order.h"
 #include "geometry/io/glb.h"
+#include "geometry/io/glb_assembly.h"
 #include "geometry/io/media_type.h"
+#include "geometry/measures.h"
 
 namespace formwright {
 namespace {
-
-// glTF's numbers for what they stand for.
-constexpr int type_uint16 = 5123, type_uint32 = 5125, type_float = 5126, target_vertices = 34962, target_indices = 34963;
 
 std::string attribute_name(std::string_view column) {
   std::string name = "_";
@@ -24,22 +21,6 @@ std::string attribute_name(std::string_view column) {
   return name;
 }
 
-/// Area-weighted: the sum of the faces' cross products. Unit length, as the standard wants, for unused vertices too.
-Positions vertex_normals(const TriangleMesh& mesh) {
-  Positions normals = Positions::Zero(mesh.V.rows(), 3);
-  for (Eigen::Index f = 0; f < mesh.F.rows(); ++f) {
-    const Vec3 a = mesh.V.row(mesh.F(f, 0)), b = mesh.V.row(mesh.F(f, 1)), c = mesh.V.row(mesh.F(f, 2));
-    const Vec3 normal = (b - a).cross(c - a);
-    for (int k = 0; k < 3; ++k) normals.row(mesh.F(f, k)) += normal.transpose();
-  }
-  for (Eigen::Index v = 0; v < normals.rows(); ++v) {
-    const double length = normals.row(v).norm();
-    if (length > 0) normals.row(v) /= length;
-    else normals.row(v) = Vec3::UnitZ().transpose();
-  }
-  return normals;
-}
-
 class GlbWriter {
  public:
   GlbWriter(const Model& model, const WriteOptions& options, Context& context) : model_(model), options_(options), context_(context) {}
@@ -48,9 +29,11 @@ class GlbWriter {
     split_vertices();
     context_.check_cancelled();
     Json attributes = Json::object();
-    attributes["POSITION"] = add_positions();
+    attributes["POSITION"] = add_vertices(3, "VEC3", [&](int vertex, int, int k) { return model_.mesh.V(vertex, k); }, true);
     const Positions normals = vertex_normals(model_.mesh);
-    attributes["NORMAL"] = add_vertices(3, "VEC3", [&](int vertex, int, int k) { return normals(vertex, k); });
+    attributes["NORMAL"] = add_vertices(3, "VEC3", [&](int vertex, int, int k) {
+      return normals.row(vertex).isZero(0) ? (k == 2 ? 1.0 : 0.0) : normals(vertex, k);  // of unit length, as the standard wants, for unused vertices too
+    });
     if (model_.vertex_colours.rows() > 0)
       attributes["COLOR_0"] = add_vertices(3, "VEC3", [&](int vertex, int, int k) { return std::clamp(model_.vertex_colours(vertex, k), 0.0, 1.0); });
     if (model_.FT.rows() > 0)
@@ -71,7 +54,7 @@ class GlbWriter {
     // The mesh is in mm, glTF in metres.
     json_["nodes"] = Json::array({{{"name", clean_text(options_.name)}, {"mesh", 0}, {"scale", {0.001, 0.001, 0.001}}}});
     json_["meshes"] = Json::array({{{"name", clean_text(options_.name)}, {"primitives", primitives}}});
-    return container();
+    return glb_.finish(json_);
   }
 
  private:
@@ -111,41 +94,12 @@ class GlbWriter {
       if (first[v] < 0) vertex_.push_back(static_cast<int>(v)), texture_.push_back(-1);
   }
 
-  /// Begins a buffer view at a multiple of 4 bytes, as every type of accessor needs.
-  int add_view(std::size_t bytes, int target) {
-    binary_.resize((binary_.size() + 3) / 4 * 4);
-    if (binary_.size() + bytes > std::numeric_limits<std::uint32_t>::max() - 1'000'000u)
-      throw Error(ErrorCode::invalid_input, options_.name, "The mesh is too large for GLB, which ends at 4 GB; choose PLY instead.");
-    Json view = {{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", bytes}};
-    if (target != 0) view["target"] = target;
-    views_.push_back(std::move(view));
-    binary_.resize(binary_.size() + bytes);
-    return static_cast<int>(views_.size()) - 1;
-  }
-
-  int add_accessor(int view, int type, std::size_t count, const char* shape) {
-    accessors_.push_back({{"bufferView", view}, {"componentType", type}, {"count", count}, {"type", shape}});
-    return static_cast<int>(accessors_.size()) - 1;
-  }
-
   template <class Value>
-  int add_vertices(int components, const char* shape, const Value& value) {
-    const std::size_t width = 4 * static_cast<std::size_t>(components);
-    const int view = add_view(vertex_.size() * width, target_vertices);
-    std::byte* at = binary_.data() + (binary_.size() - vertex_.size() * width);
-    for (std::size_t i = 0; i < vertex_.size(); ++i)
-      for (int k = 0; k < components; ++k, at += 4) store(at, static_cast<float>(value(vertex_[i], texture_.empty() ? -1 : texture_[i], k)));
-    return add_accessor(view, type_float, vertex_.size(), shape);
-  }
-
-  int add_positions() {
-    const int accessor = add_vertices(3, "VEC3", [&](int vertex, int, int k) { return model_.mesh.V(vertex, k); });
-    // Bounds are required, and of the numbers as stored.
-    const Eigen::Matrix<float, Eigen::Dynamic, 3> stored = model_.mesh.V.cast<float>();
-    const Eigen::Vector3f low = stored.colwise().minCoeff(), high = stored.colwise().maxCoeff();
-    accessors_.back()["min"] = {low.x(), low.y(), low.z()};
-    accessors_.back()["max"] = {high.x(), high.y(), high.z()};
-    return accessor;
+  int add_vertices(int components, const char* shape, const Value& value, bool bounds = false) {
+    return glb_.add_floats(vertex_.size(), components, shape, bounds, GlbAssembly::Target::vertices, [&](Eigen::Index i, int k) {
+      const auto at = static_cast<std::size_t>(i);
+      return value(vertex_[at], texture_.empty() ? -1 : texture_[at], k);
+    });
   }
 
   /// One primitive for each material in use, over the same vertices.
@@ -156,19 +110,10 @@ class GlbWriter {
       const int material = model_.face_material.empty() ? -1 : model_.face_material[static_cast<std::size_t>(f)];
       faces[static_cast<std::size_t>(material < 0 ? groups - 1 : material)].push_back(f);
     }
-    const bool small = vertex_.size() <= 65535;  // 65535 itself is reserved
     for (int group = 0; group < groups; ++group) {
       const auto& list = faces[static_cast<std::size_t>(group)];
       if (list.empty()) continue;
-      const std::size_t width = small ? 2 : 4, bytes = 3 * list.size() * width;
-      const int view = add_view(bytes, target_indices);
-      std::byte* at = binary_.data() + (binary_.size() - bytes);
-      for (const Eigen::Index f : list)
-        for (int k = 0; k < 3; ++k, at += width) {
-          if (small) store(at, static_cast<std::uint16_t>(corner_(f, k)));
-          else store(at, static_cast<std::uint32_t>(corner_(f, k)));
-        }
-      const int indices = add_accessor(view, small ? type_uint16 : type_uint32, 3 * list.size(), "SCALAR");
+      const int indices = glb_.add_indices(3 * list.size(), vertex_.size(), [&](std::size_t i) { return corner_(list[i / 3], static_cast<int>(i % 3)); });
       const bool plain = group == groups - 1;
       if (plain) has_plain_faces_ = true;
       primitives.push_back({{"attributes", attributes}, {"indices", indices}, {"material", group}});
@@ -182,8 +127,7 @@ class GlbWriter {
       const Texture& texture = model_.textures[i];
       const std::string media_type = picture_media_type(texture.bytes);
       if (media_type != "image/png" && media_type != "image/jpeg") continue;  // glTF knows no others
-      const int view = add_view(texture.bytes.size(), 0);
-      std::ranges::copy(texture.bytes, binary_.end() - static_cast<std::ptrdiff_t>(texture.bytes.size()));
+      const int view = glb_.add_bytes(texture.bytes);
       images.push_back({{"name", clean_text(texture.name)}, {"mimeType", media_type}, {"bufferView", view}});
       textures.push_back({{"source", images.size() - 1}});
       texture_of[i] = static_cast<int>(textures.size()) - 1;
@@ -201,31 +145,11 @@ class GlbWriter {
     if (!images.empty()) json_["textures"] = textures, json_["images"] = images;
   }
 
-  Bytes container() {
-    binary_.resize((binary_.size() + 3) / 4 * 4);
-    json_["bufferViews"] = views_;
-    json_["accessors"] = accessors_;
-    json_["buffers"] = Json::array({{{"byteLength", binary_.size()}}});
-    std::string text = json_.dump();
-    text.resize((text.size() + 3) / 4 * 4, ' ');
-    Bytes bytes;
-    bytes.reserve(28 + text.size() + binary_.size());
-    const auto word = [&](std::size_t value) { append(bytes, static_cast<std::uint32_t>(value)); };
-    word(0x46546C67), word(2), word(28 + text.size() + binary_.size());  // "glTF"
-    word(text.size()), word(0x4E4F534A);
-    const ByteView json = as_bytes(text);
-    bytes.insert(bytes.end(), json.begin(), json.end());
-    word(binary_.size()), word(0x004E4942);
-    bytes.insert(bytes.end(), binary_.begin(), binary_.end());
-    return bytes;
-  }
-
   const Model& model_;
   const WriteOptions& options_;
   const Context& context_;
   Json json_ = {{"asset", {{"version", "2.0"}, {"generator", "Formwright"}}}};
-  Json views_ = Json::array(), accessors_ = Json::array();
-  Bytes binary_;
+  GlbAssembly glb_{options_.name, "The mesh is too large for GLB, which ends at 4 GB; choose PLY instead."};
   std::vector<int> vertex_, texture_;  // per written vertex: the mesh's vertex, its texture vertex (-1 for none)
   Triangles corner_;                   // faces in written vertices
   bool has_plain_faces_ = false;

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Keeps what is shown in step with what is asked for: a full result where one was made with the same model and
+// parameters, else a coarse preview, solved anew at every change.
+import { effect, signal, untracked } from '@preact/signals';
+import type { JsonObject, Report } from '../../jobs/contract';
+import { asJobError } from '../../jobs/contract';
+import { LatestOnly } from '../../jobs/latest_only';
+import type { BlobReference } from '../../project/document';
+import { jsonEqual } from '../../project/document';
+import type { CraftDocument, CraftResult } from './craft_document';
+import { CraftSession } from './craft_session';
+
+export interface ShownWork {
+  readonly kind: 'preview' | 'full';
+  readonly report: Report;
+  /** What it was asked for with; what is not here has its default. */
+  readonly parameters: JsonObject;
+  /** The blob of the mesh it was made from. */
+  readonly from: string;
+}
+
+export interface PreviewRequest {
+  readonly mesh: BlobReference;
+  readonly parameters: JsonObject;
+}
+
+export abstract class PreviewingSession<
+  D extends CraftDocument,
+  S extends ShownWork,
+> extends CraftSession<D> {
+  readonly shown = signal<S | null>(null);
+  readonly previewing = signal(false);
+  readonly previewSeconds = signal<number | null>(null);
+  /** Of the wanted outputs, those that a full result is shown by. */
+  protected abstract readonly shownOutputs: readonly string[];
+  protected abstract readonly previewFailedTitle: string;
+  protected abstract makePreview(request: PreviewRequest, signal: AbortSignal): Promise<S>;
+  protected abstract readResult(result: CraftResult): Promise<S>;
+  /** A running preview of another model is of no use; of the same model it shows the way a slider goes. */
+  protected isObsolete(running: PreviewRequest, next: PreviewRequest): boolean {
+    return running.mesh.blob !== next.mesh.blob;
+  }
+  readonly #preview = new LatestOnly<PreviewRequest>(
+    (request, abort) => this.#runPreview(request, abort),
+    (running, next) => this.isObsolete(running, next),
+    (running, next) => running.mesh.blob === next.mesh.blob && jsonEqual(running.parameters, next.parameters),
+  );
+
+  /** To be called once everything is set up. */
+  protected startFollowing(): void {
+    effect(() => {
+      const from = this.document.value.model?.mesh.blob ?? null;
+      if (from === null) this.shown.value = null;
+      if (this.active.value) void this.loadOriginal(from);
+    });
+    effect(() => this.follow());
+  }
+
+  cancelPreview(): void {
+    this.#preview.cancel();
+  }
+
+  /** Whenever model or parameters change: show the full result made with them, or preview. */
+  protected follow(): void {
+    const { model } = this.document.value;
+    const parameters = this.asked.value;
+    if (!this.active.value || model === null || this.operation.value === null) return;
+    const found = this.result.value;
+    this.cancelOutdatedSolve();
+    untracked(() => {
+      if (found && this.shownOutputs.every((name) => found.outputs[name])) void this.#showResult(found);
+      else if (this.#shows('preview', model.preview.blob, parameters)) {
+        // Back to what is seen already, as after an undo: what was wrong in between no longer is.
+        this.#preview.cancel();
+        this.fieldErrors.value = {};
+      } else this.#preview.request({ mesh: model.preview, parameters });
+    });
+  }
+
+  #shows(kind: S['kind'], from: string, parameters: JsonObject): boolean {
+    const shown = this.shown.value;
+    return shown?.kind === kind && shown.from === from && jsonEqual(shown.parameters, parameters);
+  }
+
+  async #showResult(result: CraftResult): Promise<void> {
+    this.#preview.cancel();
+    this.fieldErrors.value = {};
+    if (this.#shows('full', result.mesh, result.parameters)) return;
+    try {
+      const shown = await this.readResult(result);
+      if (this.result.value?.id === result.id) this.show(shown);
+    } catch {
+      // Its bytes were not kept; a preview stands in for it.
+      const model = this.document.value.model;
+      if (model) this.#preview.request({ mesh: model.preview, parameters: result.parameters });
+    }
+  }
+
+  protected show(shown: S): void {
+    this.fieldErrors.value = {};
+    this.shown.value = shown;
+  }
+
+  async #runPreview(request: PreviewRequest, abort: AbortSignal): Promise<void> {
+    this.previewing.value = true;
+    const start = performance.now();
+    try {
+      const shown = await this.makePreview(request, abort);
+      this.previewSeconds.value = (performance.now() - start) / 1000;
+      if (abort.aborted || this.document.value.model?.preview.blob !== request.mesh.blob) return;
+      if (this.result.value === null) this.show(shown);
+    } catch (thrown) {
+      const error = asJobError(thrown);
+      if (error.code !== 'cancelled' && !abort.aborted) this.report(error, this.previewFailedTitle);
+    } finally {
+      this.previewing.value = false;
+    }
+  }
+}

@@ -130,7 +130,7 @@ void JobQueue::start_next() {
     for (const auto& [name, input] : inputs.items())
       if (input.contains("sha256") && std::filesystem::exists(store_.blob_path(input["sha256"].get<std::string>())))
         blobs[input["sha256"].get<std::string>()] = store_.blob_path(input["sha256"].get<std::string>()).string();
-    send({{"run", id}, {"job", job->job}, {"blobs", blobs}, {"outputs", store_.outputs_folder(id).string()}});
+    send({{"run", id}, {"job", job->job}, {"blobs", blobs}, {"outputs", store_.outputs_folder(id).string()}, {"results", store_.results_folder().string()}});
   }
 }
 

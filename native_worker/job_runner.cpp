@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The child process of the worker: one JSON message a line in, one a line out.
-//   in:  {"run": id, "job": message, "blobs": {sha256: path}, "outputs": folder} | {"cancel": id}
+//   in:  {"run": id, "job": message, "blobs": {sha256: path}, "outputs": folder, "results": folder} | {"cancel": id}
 //   out: {"progress": id, ...} | {"finished": id, "result": message}
 // Paths come from the server, which makes them from hashes and identifiers only.
 #include <sys/prctl.h>
@@ -95,10 +95,15 @@ int run_jobs_for_server() {
   for (;;) {
     const Json request = inbox.next();
     const std::string id = request["run"].get<std::string>();
-    const Host host{[&](const Progress& p) {
+    Host host{[&](const Progress& p) {
                       send({{"progress", id}, {"fraction", p.fraction}, {"stage", p.stage}, {"seconds_left", p.seconds_left ? Json(*p.seconds_left) : Json(nullptr)}});
                     },
                     [&] { return inbox.cancelled(); }, peak_memory_mb};
+    if (request.contains("results")) {
+      const ResultFolder results(request["results"].get<std::string>());
+      host.find_result = [results](const std::string& key) { return results.find(key); };
+      host.keep_result = [results](const std::string& key, const Bytes& bytes) { results.keep(key, bytes); };
+    }
     Json answer = run_one(request, session, host);
     send({{"finished", id}, {"result", std::move(answer)}});
   }

@@ -41,6 +41,9 @@ class JobStore {
   std::filesystem::path temporary_path();  // for an upload, in the same file system
   std::filesystem::path outputs_folder(const std::string& id) const { return folder_ / "jobs" / id / "outputs"; }
 
+  /// Intermediate results that jobs keep for later runs.
+  std::filesystem::path results_folder() const { return folder_ / "results"; }
+
   StoredJob& add(const Json& message);
   StoredJob* find(const std::string& id);
   std::vector<const StoredJob*> newest_first() const;
@@ -50,7 +53,7 @@ class JobStore {
   void save(StoredJob& job);
   void remove(const std::string& id);
 
-  /// Removes the oldest finished jobs and the longest unused blobs beyond the limits.
+  /// Removes the oldest finished jobs, and the longest unused blobs and intermediate results, beyond the limits.
   void tidy(std::size_t most_jobs, double most_blob_mb);
 
  private:

@@ -17,6 +17,26 @@
 namespace formwright {
 namespace {
 
+constexpr double most_results_mb = 1000;
+
+/// Removes the longest unused files of `folder` that are not `needed`, until the rest is no larger than `most_mb`.
+void remove_oldest(const std::filesystem::path& folder, double most_mb, const std::set<std::string>& needed) {
+  std::error_code status;
+  std::vector<std::pair<std::filesystem::file_time_type, std::filesystem::path>> files;
+  double total_mb = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, status)) {
+    total_mb += 1e-6 * static_cast<double>(entry.file_size(status));
+    files.emplace_back(entry.last_write_time(status), entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  for (const auto& [time, path] : files) {
+    if (total_mb <= most_mb) break;
+    if (needed.contains(path.filename().string())) continue;
+    total_mb -= 1e-6 * static_cast<double>(std::filesystem::file_size(path, status));
+    std::filesystem::remove(path, status);
+  }
+}
+
 double unix_seconds() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
 
 std::optional<JobState> state_of(const std::string& name) {
@@ -153,20 +173,8 @@ void JobStore::tidy(std::size_t most_jobs, double most_blob_mb) {
     if (!job.finished())
       if (const auto inputs = job.job.find("inputs"); inputs != job.job.end())
         for (const auto& [name, input] : inputs->items()) needed.insert(input.value("sha256", ""));
-  std::error_code status;
-  std::vector<std::pair<std::filesystem::file_time_type, std::filesystem::path>> blobs;
-  double total_mb = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(folder_ / "blobs", status)) {
-    total_mb += 1e-6 * static_cast<double>(entry.file_size(status));
-    blobs.emplace_back(entry.last_write_time(status), entry.path());
-  }
-  std::sort(blobs.begin(), blobs.end());
-  for (const auto& [time, path] : blobs) {
-    if (total_mb <= most_blob_mb) break;
-    if (needed.contains(path.filename().string())) continue;
-    total_mb -= 1e-6 * static_cast<double>(std::filesystem::file_size(path, status));
-    std::filesystem::remove(path, status);
-  }
+  remove_oldest(folder_ / "blobs", most_blob_mb, needed);
+  remove_oldest(results_folder(), most_results_mb, {});
 }
 
 }  // namespace formwright

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
 
-#include "evidence/diagnosis_report.h"
 #include "evidence/thermoform/proposals.h"
+#include "job/diagnosis_result.h"
 #include "job/evidence_input.h"
 #include "job/evidence_operations.h"
 #include "job/model_input.h"
@@ -23,39 +23,10 @@ struct DiagnoseOptions {
 };
 
 std::vector<OutputInfo> outputs() {
-  return {{"diagnosis.json", "application/json", "Diagnosis", "Verdict, causes, gains, what cannot be told apart.", true},
-          {"diagnosis.html", "text/html", "Report", "The same to read: maps, histograms, ranked causes, what to do.", true},
-          {"profile.json", "application/json", "Machine profile", "Material and causes as found, for every later simulation (--profile).", true},
-          {"residuals.csv", "text/csv", "Residuals", "Each measured point, and where the calibrated and the extended simulation have it.", true}};
-}
-
-std::vector<ReportField> report_fields() {
-  return {{"verdict", "Verdict", "", "one or more causes, none or unknown"},
-          {"reading", "Reading", "", "none, cause, cannot_separate or unknown"},
-          {"doubtful", "Doubtful", "", "part of the misfit stays unexplained"},
-          {"sentence", "In words", "", "what was found"},
-          {"causes", "Causes", "", "name, label, probability, strength, unit, interval, values, remedy; the most probable first"},
-          {"not_separable", "Not separable", "", "pairs of causes, how alike they are (0 to 1), the measurement that would tell"},
-          {"error_before_mm", "Error before", "mm", "mean distance on held-out data, calibrated model"},
-          {"error_before_interval_mm", "its interval", "mm", "95 %"},
-          {"error_after_mm", "Error after", "mm", "the same, with the extended model"},
-          {"error_after_interval_mm", "its interval", "mm", "95 %"},
-          {"gain_share", "Gain", "", "1 - after / before"},
-          {"gain_interval", "its interval", "", "95 %"},
-          {"held_out", "Held out", "", "what was, in words"},
-          {"unseen", "Unseen objects", "", "the same figures on objects that were not used"},
-          {"noise_floor_mm", "Noise floor", "mm", "mean distance that noise alone gives"},
-          {"noise", "Noise", "", "of each object: as found, as stated, outliers"},
-          {"unexplained_before_mm", "Structure before", "mm", "size of smooth misfit that the calibrated model leaves"},
-          {"unexplained_after_mm", "Structure after", "mm", "the same with the extended model"},
-          {"structure_test", "Structure test", "", "agreement between neighbours' errors, its p-value and length, before and after"},
-          {"hypotheses", "Explanations", "", "the most probable: causes, with unknown structure or not, probability, log evidence"},
-          {"parameters", "Material", "", "calibrated, and with the extended model"},
-          {"simulations", "Simulations", "", "of the sheet"},
-          {"seconds_calibration", "Calibration", "s", "part of the diagnosis"},
-          {"seconds_diagnosis", "Diagnosis", "s", "all of it, without the unseen objects"},
-          {"notes", "Notes", "", "in words"},
-          {"peak_memory_mb", "Peak memory", "MB", "of the process"}};
+  std::vector<OutputInfo> list = diagnosis_outputs();
+  list.push_back({"profile.json", "application/json", "Machine profile", "Material and causes as found, for every later simulation (--profile).", true});
+  list.push_back({"residuals.csv", "text/csv", "Residuals", "Each measured point, and where the calibrated and the extended simulation have it.", true});
+  return list;
 }
 
 std::string residuals_csv(const ThermoformModel& model, const Diagnosis& d) {
@@ -123,16 +94,13 @@ OperationResult run(const OperationCall& call) {
   if (profile.name.empty()) profile.name = "Diagnosed machine";
   profile.notes.push_back(verdict_sentence(report));
 
-  OperationResult result;
-  result.report = diagnosis_json(report);
+  OperationResult result = diagnosis_result(call, report);
   const auto add = [&](const char* name, const std::string& text) {
     for (const OutputInfo& info : outputs())
-      if (info.name == name) result.outputs.push_back(make_output(info, to_bytes(text)));
+      if (info.name == name && call.wants(name)) result.outputs.push_back(make_output(info, to_bytes(text)));
   };
-  if (call.wants("diagnosis.json")) add("diagnosis.json", result.report.dump(2) + "\n");
-  if (call.wants("diagnosis.html")) add("diagnosis.html", diagnosis_page(report));
-  if (call.wants("profile.json")) add("profile.json", write_machine_profile(profile));
-  if (call.wants("residuals.csv")) add("residuals.csv", residuals_csv(model, diagnosis));
+  add("profile.json", write_machine_profile(profile));
+  add("residuals.csv", residuals_csv(model, diagnosis));
   return result;
 }
 
@@ -147,7 +115,7 @@ Operation evidence_diagnose_operation() {
                       object_input_info("unseen", "Object not used", "Another folder, only to measure the gain on.", false, true), profile_input_info()};
   operation.parameters = describe_parameters<DiagnoseOptions>();
   operation.outputs = outputs();
-  operation.report = report_fields();
+  operation.report = diagnosis_report_fields();
   operation.keeps_results = true;
   operation.check = [](const Json& parameters) { read_parameters<DiagnoseOptions>(parameters); };
   operation.run = run;

@@ -12,8 +12,7 @@ namespace {
 FormedObject read_object(const InputBlob& input, const std::string& where, OperationCall const& call) {
   const std::map<std::string, Bytes> files = unpack_files(input, where, {"mould.obj", "setup.json", "measured.csv"}, call.context);
   FormedObject object;
-  object.name = input.file_name.substr(0, input.file_name.rfind(".zip"));
-  if (object.name.empty()) object.name = where;
+  object.name = pack_name(input, where);
   const auto named = [&](const Error& error) {
     return Error(error.code(), where, object.name + ": " + error.what());
   };
@@ -58,11 +57,7 @@ InputInfo object_input_info(const std::string& name, const std::string& label, c
 
 std::vector<FormedObject> read_formed_objects(const OperationCall& call, const std::string& name) {
   std::vector<FormedObject> objects;
-  for (int number = 1; number <= 64; ++number) {
-    const std::string own = number == 1 ? name : name + "_" + std::to_string(number);
-    const auto input = call.inputs.find(own);
-    if (input != call.inputs.end()) objects.push_back(read_object(input->second, own, call));
-  }
+  for (const auto& [own, input] : inputs_named(call, name)) objects.push_back(read_object(*input, own, call));
   return objects;
 }
 

@@ -32,9 +32,25 @@ std::map<std::string, Bytes> unpack_files(const InputBlob& input, const std::str
     if (std::find(needed.begin(), needed.end(), name) == needed.end()) continue;
     files.emplace(name, archive.read(entry, most_bytes));
   }
+  std::string list;
+  for (const std::string& name : needed) list += (list.empty() ? "" : ", ") + name;
   for (const std::string& name : needed)
-    if (!files.contains(name)) throw Error(ErrorCode::invalid_input, where, input.file_name + " has no " + name + ": a measured object has mould.obj, setup.json and measured.csv.");
+    if (!files.contains(name)) throw Error(ErrorCode::invalid_input, where, input.file_name + " has no " + name + ": it needs " + list + ".");
   return files;
+}
+
+std::vector<std::pair<std::string, const InputBlob*>> inputs_named(const OperationCall& call, const std::string& name) {
+  std::vector<std::pair<std::string, const InputBlob*>> list;
+  for (int number = 1; number <= 64; ++number) {
+    const std::string own = number == 1 ? name : name + "_" + std::to_string(number);
+    if (const auto input = call.inputs.find(own); input != call.inputs.end()) list.emplace_back(own, &input->second);
+  }
+  return list;
+}
+
+std::string pack_name(const InputBlob& input, const std::string& otherwise) {
+  const std::string name = input.file_name.ends_with(".zip") ? input.file_name.substr(0, input.file_name.size() - 4) : input.file_name;
+  return name.empty() ? otherwise : name;
 }
 
 }  // namespace formwright

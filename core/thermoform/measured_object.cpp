@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thermoform/measured_object.h"
 
-#include <fast_float/fast_float.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "base/error.h"
+#include "base/number_table.h"
 #include "thermoform/sheet_lookup.h"
 #include "thermoform/thermoform_options.h"
 
@@ -20,22 +18,6 @@ namespace {
 double number(const Json& value, const std::string& key) {
   if (!value.is_number() || !std::isfinite(value.get<double>())) refuse_setup("“" + key + "” must be a number.");
   return value.get<double>();
-}
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r')) text.remove_suffix(1);
-  return text;
-}
-
-std::vector<std::string_view> fields_of(std::string_view line) {
-  std::vector<std::string_view> fields;
-  for (;;) {
-    const std::size_t comma = line.find(',');
-    fields.push_back(trimmed(line.substr(0, comma)));
-    if (comma == std::string_view::npos) return fields;
-    line.remove_prefix(comma + 1);
-  }
 }
 
 double percentile(const std::vector<double>& sorted, double share) {
@@ -86,46 +68,14 @@ ObjectSetup read_object_setup(ByteView bytes) {
 }
 
 std::vector<MeasuredPoint> read_measured_points(ByteView csv) {
-  static constexpr std::array<std::string_view, 6> names{"sheet_x_mm", "sheet_y_mm", "x_mm", "y_mm", "z_mm", "sigma_mm"};
-  std::string_view text = as_text(csv);
-  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
-  std::array<int, 6> column{-1, -1, -1, -1, -1, -1};
+  const auto rows = read_number_table(csv, "measured.csv", "measured",
+                                      {{"sheet_x_mm"}, {"sheet_y_mm"}, {"x_mm"}, {"y_mm"}, {"z_mm"}, {"sigma_mm", false}});
   std::vector<MeasuredPoint> points;
-  int line_number = 0;
-  bool header = false;
-  const auto refuse = [&](const std::string& sentence) {
-    throw Error(ErrorCode::invalid_input, "measured", "measured.csv, line " + std::to_string(line_number) + ": " + sentence);
-  };
-  while (!text.empty()) {
-    const std::size_t end = text.find('\n');
-    const std::string_view line = trimmed(text.substr(0, end));
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    ++line_number;
-    if (line.empty()) continue;
-    const std::vector<std::string_view> fields = fields_of(line);
-    if (!header) {
-      header = true;
-      for (std::size_t i = 0; i < names.size(); ++i) {
-        const auto at = std::find(fields.begin(), fields.end(), names[i]);
-        if (at != fields.end()) column[i] = static_cast<int>(at - fields.begin());
-        else if (i < 5) refuse("the header has no “" + std::string(names[i]) + "”; it must be sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm,sigma_mm.");
-      }
-      continue;
-    }
-    std::array<double, 6> value{};
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      if (column[i] < 0) continue;
-      const auto at = static_cast<std::size_t>(column[i]);
-      if (at >= fields.size()) refuse("there are only " + std::to_string(fields.size()) + " columns.");
-      const auto parsed = fast_float::from_chars(fields[at].data(), fields[at].data() + fields[at].size(), value[i]);
-      if (parsed.ec != std::errc() || parsed.ptr != fields[at].data() + fields[at].size() || !std::isfinite(value[i]))
-        refuse("“" + std::string(names[i]) + "” is not a number.");
-    }
-    if (value[5] < 0) refuse("“sigma_mm” is negative.");
-    points.push_back({Vec2(value[0], value[1]), Vec3(value[2], value[3], value[4]), value[5]});
-    if (points.size() > 5'000'000) refuse("more than 5 million rows: keep every tenth.");
+  for (const std::vector<double>& row : rows) {
+    if (row[5] < 0)
+      throw Error(ErrorCode::invalid_input, "measured", "measured.csv, point " + std::to_string(points.size() + 1) + ": “sigma_mm” is negative.");
+    points.push_back({Vec2(row[0], row[1]), Vec3(row[2], row[3], row[4]), row[5]});
   }
-  if (points.empty()) throw Error(ErrorCode::invalid_input, "measured", "measured.csv has no rows: it needs a header and one line for each measured point.");
   return points;
 }
 

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "evidence/relief/relief_model.h"
+#include "geometry/io/mesh_io.h"
+#include "job/diagnosis_result.h"
+#include "job/evidence_input.h"
+#include "job/evidence_operations.h"
+#include "job/file_pack.h"
+
+namespace formwright {
+namespace {
+
+struct DiagnoseReliefOptions {
+  bool pairs = true;
+  int pixels = 240;
+
+  static constexpr auto parameters = std::tuple{
+      parameter("pairs", &DiagnoseReliefOptions::pairs, "Two causes at once", "Looks for two causes at work together as well.").group("Diagnosis"),
+      parameter("pixels", &DiagnoseReliefOptions::pixels, "Pixels", unit::none, 50, 1000, "Along the relief's longer side: how finely its heights are taken.").group("Diagnosis").advanced()};
+};
+
+const std::vector<std::string> files_of_relief{"relief.obj", "setup.json", "shading.csv"};
+
+std::vector<PhotographedRelief> read_reliefs(const OperationCall& call, const std::string& name, int pixels) {
+  std::vector<PhotographedRelief> reliefs;
+  for (const auto& [own, input] : inputs_named(call, name)) {
+    const std::map<std::string, Bytes> files = unpack_files(*input, own, files_of_relief, call.context);
+    PhotographedRelief relief;
+    relief.name = pack_name(*input, own);
+    try {
+      relief.points = read_shaded_points(files.at("shading.csv"));
+      relief.setup = read_shading_setup(files.at("setup.json"));
+      ReadOptions options;
+      options.where = own;
+      const ModelFile file = read_model_file(files.at("relief.obj"), "relief.obj", options, call.context);
+      relief.surface = ReliefSurface::of(file.model.mesh, pixels, call.context);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::invalid_input) throw;
+      throw Error(error.code(), own, relief.name + ": " + error.what());
+    }
+    reliefs.push_back(std::move(relief));
+  }
+  return reliefs;
+}
+
+OperationResult run(const OperationCall& call) {
+  const auto o = read_parameters<DiagnoseReliefOptions>(call.parameters);
+  std::vector<PhotographedRelief> unseen = read_reliefs(call, "unseen", o.pixels);
+  const ReliefModel model(read_reliefs(call, "object", o.pixels));
+  SimulationBag bag(model);
+  DiagnosisOptions options;
+  options.pairs = o.pairs;
+  Diagnosis diagnosis;
+  {
+    const auto span = call.context.span(0, 0.95, "Diagnosing");
+    diagnosis = diagnose(bag, options, call.context);
+  }
+  DiagnosisReport report{model, diagnosis, {}, std::nullopt, {}, {}, ""};
+  for (const NotSeparable& pair : diagnosis.not_separable) report.separations.push_back({pair, "", pair.likeness});
+  if (!unseen.empty()) {
+    for (const PhotographedRelief& relief : unseen) report.unseen_names.push_back(relief.name);
+    const ReliefModel other(std::move(unseen));
+    SimulationBag other_bag(other);
+    report.unseen = gain_on_unseen(other_bag, model, diagnosis.base.u, diagnosis.extended.u, call.context);
+  }
+  report.notes.emplace_back("Brightness is counted in shares of the brightest point.");
+  return diagnosis_result(call, report);
+}
+
+InputInfo relief_input_info(const std::string& name, const std::string& label, const std::string& help, bool required) {
+  InputInfo info = object_input_info(name, label, help, required, true);
+  info.folder_files = files_of_relief;
+  return info;
+}
+
+}  // namespace
+
+Operation evidence_diagnose_relief_operation() {
+  Operation operation;
+  operation.name = "evidence-diagnose-relief";
+  operation.title = "Diagnose a relief";
+  operation.summary = "Names why a made relief, lit and photographed, does not look as it should.";
+  operation.inputs = {relief_input_info("object", "Photographed relief", "Folder of relief.obj, setup.json and shading.csv.", true),
+                      relief_input_info("unseen", "Relief not used", "Another folder, only to measure the gain on.", false)};
+  operation.parameters = describe_parameters<DiagnoseReliefOptions>();
+  operation.outputs = diagnosis_outputs();
+  operation.report = diagnosis_report_fields();
+  operation.check = [](const Json& parameters) { read_parameters<DiagnoseReliefOptions>(parameters); };
+  operation.run = run;
+  return operation;
+}
+
+}  // namespace formwright

@@ -68,7 +68,7 @@ int run_operation(const Operation& operation, const std::vector<std::string>& wo
     const auto folder = command.folders.find(name);
     auto bytes = folder == command.folders.end() ? read_file(path, name) : pack_folder(path, folder->second, name);
     const std::string hash = sha256_hex(*bytes);
-    command.message["inputs"][name] = {{"sha256", hash}, {"file_name", path.filename().string()}};
+    command.message["inputs"][name] = {{"sha256", hash}, {"file_name", (path.has_filename() ? path : path.parent_path()).filename().string()}};
     blobs[hash] = std::move(bytes);
   }
   if (const auto error = check_job(command.message)) throw Error(error->code, error->where, error->message);

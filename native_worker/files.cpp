@@ -6,11 +6,14 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
+#include <chrono>
 #include <cstring>
 #include <fstream>
 #include <map>
 #include <thread>
 
+#include "base/context.h"
 #include "base/error.h"
 #include "base/sha256.h"
 #include "job/file_pack.h"
@@ -90,6 +93,48 @@ void ResultFolder::keep(const std::string& key, const Bytes& result) const {
   } catch (const Error&) {
     // What cannot be kept is computed again.
   }
+  release(key);
+}
+
+bool ResultFolder::claim(const std::string& key) const {
+  std::error_code status;
+  std::filesystem::create_directories(folder_, status);
+  const std::filesystem::path path = folder_ / (key + ".claim");
+  char machine[256] = "";
+  ::gethostname(machine, sizeof machine - 1);
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+    if (descriptor >= 0) {
+      const std::string owner = std::string(machine) + " " + std::to_string(::getpid());
+      const bool written = ::write(descriptor, owner.data(), owner.size()) == static_cast<ssize_t>(owner.size());
+      ::close(descriptor);
+      if (!written) release(key);
+      return true;
+    }
+    if (errno != EEXIST) return true;  // a folder that cannot be written shares nothing
+    std::ifstream claim(path);
+    std::string owner_machine;
+    long owner = 0;
+    if (!(claim >> owner_machine >> owner)) return false;  // just being written, or just gone: ask again later
+    const bool gone = owner_machine == machine && owner != ::getpid() && ::kill(static_cast<pid_t>(owner), 0) != 0 && errno == ESRCH;
+    const auto written = std::filesystem::last_write_time(path, status);
+    const bool old = !status && std::filesystem::file_time_type::clock::now() - written > std::chrono::minutes(10);
+    if (!gone && !old) return false;
+    std::filesystem::remove(path, status);
+  }
+  return false;
+}
+
+void ResultFolder::release(const std::string& key) const {
+  std::error_code status;
+  std::filesystem::remove(folder_ / (key + ".claim"), status);
+}
+
+void share_results(const ResultFolder& folder, Host& host) {
+  host.find_result = [folder](const std::string& key) { return folder.find(key); };
+  host.keep_result = [folder](const std::string& key, const Bytes& bytes) { folder.keep(key, bytes); };
+  host.claim_result = [folder](const std::string& key) { return folder.claim(key); };
+  host.release_result = [folder](const std::string& key) { folder.release(key); };
 }
 
 std::string sha256_of_file(const std::filesystem::path& path) {

@@ -28,10 +28,17 @@ class ResultFolder {
   explicit ResultFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
   std::optional<Bytes> find(const std::string& key) const;
   void keep(const std::string& key, const Bytes& result) const;
+  /// True for the first process that asks, until it keeps or releases. A claim whose process is gone (on this machine), or that is
+  /// older than ten minutes, counts no more.
+  bool claim(const std::string& key) const;
+  void release(const std::string& key) const;
 
  private:
   std::filesystem::path folder_;
 };
+
+/// Lends the folder to jobs.
+void share_results(const ResultFolder& folder, struct Host& host);
 
 /// SHA-256 of a file without holding it in memory. Throws Error{internal} when it cannot be read.
 std::string sha256_of_file(const std::filesystem::path& path);

@@ -99,11 +99,7 @@ int run_jobs_for_server() {
                       send({{"progress", id}, {"fraction", p.fraction}, {"stage", p.stage}, {"seconds_left", p.seconds_left ? Json(*p.seconds_left) : Json(nullptr)}});
                     },
                     [&] { return inbox.cancelled(); }, peak_memory_mb};
-    if (request.contains("results")) {
-      const ResultFolder results(request["results"].get<std::string>());
-      host.find_result = [results](const std::string& key) { return results.find(key); };
-      host.keep_result = [results](const std::string& key, const Bytes& bytes) { results.keep(key, bytes); };
-    }
+    if (request.contains("results")) share_results(ResultFolder(request["results"].get<std::string>()), host);
     Json answer = run_one(request, session, host);
     send({{"finished", id}, {"result", std::move(answer)}});
   }

@@ -81,10 +81,7 @@ int run_operation(const Operation& operation, const std::vector<std::string>& wo
   Session session;
   Host host{[&](const Progress& progress) { line.show(progress); }, [] { return interrupted.load(); }, peak_memory_mb};
   const ResultFolder results(command.results.empty() ? command.out / "simulations" : command.results);
-  if (operation.keeps_results) {
-    host.find_result = [&](const std::string& key) { return results.find(key); };
-    host.keep_result = [&](const std::string& key, const Bytes& bytes) { results.keep(key, bytes); };
-  }
+  if (operation.keeps_results) share_results(results, host);
   JobResult result = run_job(command.message, [&](const std::string& hash) { return blobs[hash]; }, session, host);
   line.clear();
   if (result.error) throw Error(result.error->code, result.error->where, result.error->message);

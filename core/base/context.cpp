@@ -61,4 +61,10 @@ void Context::keep_result(const std::string& key, const Bytes& result) const {
 
 double Context::peak_memory_mb() const { return host_.peak_memory_mb ? host_.peak_memory_mb() : 0.0; }
 
+bool Context::claim_result(const std::string& key) const { return !host_.claim_result || host_.claim_result(key); }
+
+void Context::release_result(const std::string& key) const {
+  if (host_.release_result) host_.release_result(key);
+}
+
 }  // namespace formwright

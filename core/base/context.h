@@ -26,6 +26,10 @@ struct Host {
   /// Results that outlive the job, by the hash of what they were made from. May be empty; called from any thread, must not throw.
   std::function<std::optional<Bytes>(const std::string& key)> find_result = {};
   std::function<void(const std::string& key, const Bytes& result)> keep_result = {};
+  /// Several processes may share kept results: true when this one is to make what is missing, false while another is at it.
+  /// Whoever claims keeps or releases.
+  std::function<bool(const std::string& key)> claim_result = {};
+  std::function<void(const std::string& key)> release_result = {};
 };
 
 /// Carries the host through nested stages. `span` narrows the fraction that `progress` speaks of, so
@@ -66,6 +70,9 @@ class Context {
   std::optional<Bytes> find_result(const std::string& key) const;
   /// Keeps an expensive intermediate result at once, so that a run that is killed goes on from there. From any thread.
   void keep_result(const std::string& key, const Bytes& result) const;
+  /// See Host. True where nothing is shared. From any thread.
+  bool claim_result(const std::string& key) const;
+  void release_result(const std::string& key) const;
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -60,6 +60,8 @@ class ForwardModel {
   /// n x d: what would be measured of `object` at `u` (all parameters' coordinates). Called from several threads at once; the same
   /// bits for the same u. Throws Error{could_not_solve} where the model has no answer there, Error{cancelled}.
   virtual Eigen::MatrixXd predict(int object, const Eigen::VectorXd& u, const Context& context) const = 0;
+  /// False while another process makes this very prediction: ask for others first. From several threads at once.
+  virtual bool claim(int /*object*/, const Eigen::VectorXd& /*u*/, const Context& /*context*/) const { return true; }
   /// Size of structured misfit (in the measurement's unit) that the model is known to have without any fault of the machine.
   virtual double known_misfit() const = 0;
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "evidence/simulation_bag.h"
 
+#include <algorithm>
+#include <chrono>
 #include <thread>
 
 #include "base/error.h"
@@ -21,22 +23,43 @@ std::vector<std::optional<Predictions>> SimulationBag::run(const std::vector<Eig
   const auto job_thread = std::this_thread::get_id();
   std::atomic<std::size_t> done{0};
   const std::size_t jobs = missing.size() * objects;
+  std::mutex later_mutex;
+  std::vector<std::size_t> later;  // what other processes are at
   context.progress(0, stage);
+  const auto make = [&](std::size_t job) {
+    const std::size_t point = job / objects, object = job % objects;
+    try {
+      made[point][object] = model_.predict(static_cast<int>(object), *missing[point], context);
+      ++simulations_;
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::could_not_solve) throw;
+      failed[point] = true;
+    }
+    const double fraction = static_cast<double>(++done) / static_cast<double>(jobs);
+    if (std::this_thread::get_id() == job_thread) context.progress(fraction, stage);
+  };
+  const auto claimed = [&](std::size_t job) { return model_.claim(static_cast<int>(job % objects), *missing[job / objects], context); };
   try {
     parallel_for(jobs, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t job = begin; job < end; ++job) {
-        const std::size_t point = job / objects, object = job % objects;
-        if (failed[point]) continue;
         context.check_cancelled();
-        try {
-          made[point][object] = model_.predict(static_cast<int>(object), *missing[point], context);
-          ++simulations_;
-        } catch (const Error& error) {
-          if (error.code() != ErrorCode::could_not_solve) throw;
-          failed[point] = true;
+        if (failed[job / objects]) continue;
+        if (claimed(job)) {
+          make(job);
+        } else {
+          const std::scoped_lock lock(later_mutex);
+          later.push_back(job);
         }
-        const double fraction = static_cast<double>(++done) / static_cast<double>(jobs);
-        if (std::this_thread::get_id() == job_thread) context.progress(fraction, stage);
+      }
+    });
+    std::sort(later.begin(), later.end());
+    parallel_for(later.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        while (!claimed(later[k])) {
+          context.check_cancelled();
+          std::this_thread::sleep_for(std::chrono::milliseconds(30));
+        }
+        make(later[k]);
       }
     });
   } catch (...) {

@@ -171,11 +171,24 @@ MeasurementEffects ThermoformModel::measurement_effects(const Eigen::VectorXd& u
   return read_parameters<MeasurementEffects>(values);
 }
 
+std::string ThermoformModel::key_of(const FormedObject& object, const ThermoformOptions& o) const {
+  const std::string text = simulation_version + object.key + ":" + std::to_string(object.setup.base_plate_end_z_mm) + ":" + write_parameters(o).dump();
+  return sha256_hex(as_bytes(text));
+}
+
+bool ThermoformModel::claim(int object, const Eigen::VectorXd& u, const Context& context) const {
+  const std::string key = key_of(objects_[static_cast<std::size_t>(object)], simulation_options(object, u));
+  {
+    const std::scoped_lock lock(mutex_);
+    if (sheets_.contains(key)) return true;
+  }
+  return context.find_result(key).has_value() || context.claim_result(key);
+}
+
 std::shared_ptr<const FormedSheet> ThermoformModel::formed(int object, const Eigen::VectorXd& u, const Context& context) const {
   const FormedObject& own = objects_[static_cast<std::size_t>(object)];
   const ThermoformOptions o = simulation_options(object, u);
-  const std::string text = simulation_version + own.key + ":" + std::to_string(own.setup.base_plate_end_z_mm) + ":" + write_parameters(o).dump();
-  const std::string key = sha256_hex(as_bytes(text));
+  const std::string key = key_of(own, o);
   {
     const std::scoped_lock lock(mutex_);
     if (const auto known = sheets_.find(key); known != sheets_.end()) return known->second;
@@ -190,13 +203,15 @@ std::shared_ptr<const FormedSheet> ThermoformModel::formed(int object, const Eig
     try {
       result = form_sheet(own.mould, as_it_is, o, silent);
     } catch (const Error& error) {
+      context.release_result(key);
       // A mould pushed out of the opening is no fault of the maker's here, but a place where there is no answer.
       if (error.code() == ErrorCode::invalid_input && u.cwiseAbs().maxCoeff() > 0) throw Error(ErrorCode::could_not_solve, error.where(), error.what());
       throw;
     }
     const Bytes bytes = packed(result.sheet);
-    context.keep_result(key, bytes);
     sheet = unpacked(bytes, o);
+    if (sheet) context.keep_result(key, bytes);
+    else context.release_result(key);
     if (!sheet) throw Error(ErrorCode::could_not_solve, "", "The simulation gave no finite sheet.");
   }
   const std::scoped_lock lock(mutex_);

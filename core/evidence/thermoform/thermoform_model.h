@@ -40,6 +40,7 @@ class ThermoformModel : public ForwardModel {
   const std::vector<Cause>& causes() const override { return causes_; }
   const std::vector<Measurement>& measurements() const override { return measurements_; }
   Eigen::MatrixXd predict(int object, const Eigen::VectorXd& u, const Context& context) const override;
+  bool claim(int object, const Eigen::VectorXd& u, const Context& context) const override;
   double known_misfit() const override { return 0.08; }
 
   const std::vector<FormedObject>& objects() const { return objects_; }
@@ -52,6 +53,9 @@ class ThermoformModel : public ForwardModel {
   MachineProfile profile_at(const Eigen::VectorXd& u) const;
 
  private:
+  /// Names a simulation: everything it depends on.
+  std::string key_of(const FormedObject& object, const ThermoformOptions& options) const;
+
   std::vector<FormedObject> objects_;
   ThermoformModelOptions options_;
   std::vector<ModelParameter> parameters_;

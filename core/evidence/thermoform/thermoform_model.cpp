@@ -194,7 +194,10 @@ std::shared_ptr<const FormedSheet> ThermoformModel::formed(int object, const Eig
     if (const auto known = sheets_.find(key); known != sheets_.end()) return known->second;
   }
   std::shared_ptr<const FormedSheet> sheet;
-  if (const auto stored = context.find_result(key)) sheet = unpacked(*stored, o);
+  if (const auto stored = context.find_result(key)) {
+    sheet = unpacked(*stored, o);
+    if (sheet) context.release_result(key);
+  }
   if (!sheet) {
     Context silent(Host{{}, [&context] { return context.cancelled(); }, {}});
     Placement as_it_is;

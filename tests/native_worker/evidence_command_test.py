@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Evidence from the command line: a small object is calibrated and diagnosed; runs share their work and survive a kill.
+Usage: evidence_command_test.py PROGRAM"""
+import json
+import math
+import pathlib
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+PROGRAM = sys.argv.pop(1)
+MOULD = ("v -25 -25 0\nv 25 -25 0\nv 25 25 0\nv -25 25 0\nv -8 -8 25\nv 8 -8 25\nv 8 8 25\nv -8 8 25\n"
+         "f 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\nf 5 6 7 8\n")
+SETUP = {"sheet_mm": [130, 130], "sheet_thickness_mm": 1, "clamp_opening_mm": [110, 110], "clamp_height_mm": 1, "base_plate_start_z_mm": -60,
+         "base_plate_end_z_mm": 0, "mould_speed_mm_per_s": 100, "relaxation_s": 1, "vacuum_kpa": 80, "density_kg_per_m3": 1330,
+         "poisson_ratio": 0.35, "measured_surface": "mid"}
+PLACES = [(x, y) for x in range(-52, 53, 8) for y in range(-52, 53, 8)]
+
+
+class Evidence(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.temporary.name)
+        # What the simulation itself measures with a stiffer sheet, 1.5 mm beside its place.
+        cls.write(cls.folder / "first", [(x, y, x, y, 1) for x, y in PLACES])
+        simulated = cls.simulated(cls.folder / "first", "--young-modulus-pa", 3.4e6, "--triangles", 1500)
+        draw = random.Random(3)
+        cls.points = [(x, y, *(v + draw.gauss(0, 0.04) + (1.5 if k == 0 else 0) for k, v in enumerate(p))) for (x, y), p in zip(PLACES, simulated)]
+        cls.object = cls.write(cls.folder / "lamp", cls.points)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    @classmethod
+    def write(cls, folder, points, **setup):
+        folder.mkdir(exist_ok=True)
+        (folder / "mould.obj").write_text(MOULD)
+        (folder / "setup.json").write_text(json.dumps({**SETUP, **setup}))
+        rows = "".join(",".join(f"{v:.9g}" for v in p) + ",0.04\n" for p in points)
+        (folder / "measured.csv").write_text("sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm,sigma_mm\n" + rows)
+        return folder
+
+    @classmethod
+    def simulated(cls, folder, *flags):
+        out = folder.parent / "compared"
+        subprocess.run([PROGRAM, "thermoform-compare", "--object", folder, "--out", out, "--quiet", *map(str, flags)], check=True, capture_output=True)
+        lines = (out / "residuals.csv").read_text().splitlines()[1:]
+        return [tuple(map(float, line.split(",")))[5:8] for line in lines]
+
+    def run_program(self, *words):
+        run = subprocess.run([PROGRAM, *map(str, words), "--quiet"], capture_output=True, text=True, timeout=500)
+        self.assertEqual(run.returncode, 0, run.stderr)
+
+    def expect_refused(self, part, *words):
+        run = subprocess.run([PROGRAM, *map(str, words), "--quiet"], capture_output=True, text=True, timeout=300)
+        self.assertEqual(run.returncode, 2, run.stderr)
+        self.assertIn(part, run.stderr)
+        self.assertEqual(len(run.stderr.strip().splitlines()), 1, run.stderr)
+
+    def test_a_calibration_fits_and_makes_a_profile(self):
+        out = self.folder / "calibrated"
+        self.run_program("evidence-calibrate", "--object", str(self.object) + "/", "--triangles", 800, "--out", out)
+        report = json.loads((out / "report.json").read_text())
+        self.assertLess(report["error_mean_mm"], 0.5 * report["error_nominal_mm"])
+        self.assertIn("viscosity_s", report["not_identified"])
+        described = json.loads(subprocess.run([PROGRAM, "describe", "evidence-calibrate"], capture_output=True, text=True, check=True).stdout)
+        self.assertEqual(set(report) - {f["name"] for f in described["report"]}, set())
+        profile = json.loads((out / "profile.json").read_text())
+        self.assertEqual(profile["from"], ["lamp"])
+        self.assertNotIn("mould_shift_x_mm", profile["parameters"])
+        # A later simulation takes it; a flag goes over it.
+        for flags in ([], ["--young-modulus-pa", "1e6"]):
+            self.run_program("thermoform-simulate", "--object", self.object, "--profile", out / "profile.json", "--triangles", 800, "--out", self.folder / "later", *flags)
+
+    def test_runs_share_their_work_and_one_may_be_killed(self):
+        words = ["evidence-calibrate", "--object", str(self.object), "--triangles", "800"]
+        self.run_program(*words, "--out", self.folder / "alone")
+        shared = self.folder / "shared"
+        runs = [subprocess.Popen([PROGRAM, *words, "--results", shared, "--out", self.folder / f"run{i}", "--quiet"], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+                for i in range(3)]
+        deadline = time.monotonic() + 60
+        while time.monotonic() < deadline and not (shared.exists() and len(list(shared.iterdir())) > 4):
+            time.sleep(0.01)
+        runs[1].send_signal(signal.SIGKILL)
+        for i in (0, 2):
+            _, error = runs[i].communicate(timeout=400)
+            self.assertEqual(runs[i].returncode, 0, error)
+            self.assertEqual((self.folder / f"run{i}" / "profile.json").read_bytes(), (self.folder / "alone" / "profile.json").read_bytes())
+        runs[1].communicate()
+        # Nothing was simulated that a run alone would not have been, and one that starts now finds everything.
+        kept = {p.name for p in shared.iterdir() if len(p.name) == 64}
+        self.assertEqual(kept, {p.name for p in (self.folder / "alone" / "simulations").iterdir() if len(p.name) == 64})
+        self.run_program(*words, "--results", shared, "--out", self.folder / "again")
+        self.assertEqual({p.name for p in shared.iterdir() if len(p.name) == 64}, kept)
+
+    def test_a_diagnosis_names_the_shift(self):
+        out = self.folder / "diagnosed"
+        other = self.write(self.folder / "other", self.points, vacuum_kpa=80)
+        self.run_program("evidence-diagnose", "--object", self.object, "--unseen", other, "--triangles", 800, "--pairs", "off", "--out", out)
+        diagnosis = json.loads((out / "diagnosis.json").read_text())
+        self.assertEqual(diagnosis["verdict"][0], "scan_shift")
+        self.assertEqual(diagnosis["causes"][0]["name"], "scan_shift")
+        self.assertAlmostEqual(diagnosis["causes"][0]["values"]["scan_shift_x_mm"], 1.5, delta=0.3)
+        self.assertLess(diagnosis["error_after_mm"], 0.5 * diagnosis["error_before_mm"])
+        self.assertLess(diagnosis["unseen"]["error_after_mm"], 0.5 * diagnosis["unseen"]["error_before_mm"])
+        self.assertAlmostEqual(sum(c["probability"] for c in diagnosis["hypotheses"]), 1, delta=0.05)
+        page = (out / "diagnosis.html").read_text()
+        self.assertIn("Scan off its place", page)
+        self.assertNotIn("<script", page)
+        self.assertEqual(len((out / "residuals.csv").read_text().splitlines()), len(PLACES) + 1)
+        self.assertFalse(any(math.isnan(v) for v in diagnosis["error_before_interval_mm"]))
+
+    def test_what_is_wrong_with_data_is_said(self):
+        calibrate = ("evidence-calibrate", "--out", self.folder / "refused", "--object")
+        self.expect_refused("metres", *calibrate, self.write(self.folder / "metres", [(p[0], p[1], *(v / 1000 for v in p[2:])) for p in self.points]))
+        self.expect_refused("inches", *calibrate, self.write(self.folder / "inches", [(p[0], p[1], *(v / 25.4 for v in p[2:])) for p in self.points]))
+        self.expect_refused("at least 30", *calibrate, self.write(self.folder / "tiny", self.points[:7]))
+        self.expect_refused("machine's coordinates", *calibrate, self.write(self.folder / "far", [(p[0], p[1], p[2] + 200, p[3], p[4]) for p in self.points]))
+        broken = self.write(self.folder / "broken", self.points)
+        (broken / "measured.csv").write_text("sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm\n0,0,0,zero,30\n")
+        self.expect_refused("line 2", *calibrate, broken)
+        (broken / "measured.csv").unlink()
+        self.expect_refused("measured.csv", *calibrate, broken)
+        not_zip = self.folder / "object.zip"
+        not_zip.write_text("no archive")
+        self.expect_refused("object.zip", *calibrate, not_zip)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -114,7 +114,9 @@ TEST(ReliefModel, NamesWhatWasDoneToIt) {
     const bool named = !d.verdict.empty() && model.causes()[static_cast<std::size_t>(d.verdict.front())].name == c.cause;
     right += named;
     EXPECT_TRUE(named || d.doubtful || d.reading == Reading::cannot_separate || d.reading == Reading::unknown) << c.cause;
-    if (named) EXPECT_LT(d.held_out.after.mean, d.held_out.before.mean);
+    if (named) {
+      EXPECT_LT(d.held_out.after.mean, d.held_out.before.mean);
+    }
   }
   EXPECT_GE(right, 6);
 }

@@ -33,14 +33,15 @@ std::size_t most_probable_structure(const MisfitOfAll& misfit, const Predictions
   return best;
 }
 
-/// Where the interval ends on one side: linear between the profile's points.
+/// Where the interval ends on one side, between the profile's points.
 double crossing(const std::vector<ProfilePoint>& points, std::size_t best, int side) {
   std::size_t inside = best;
   for (std::size_t i = best; side > 0 ? i + 1 < points.size() : i > 0;) {
     i = side > 0 ? i + 1 : i - 1;
     if (points[i].log_likelihood < -half_log_likelihood) {
-      const double a = points[inside].log_likelihood, b = points[i].log_likelihood;
-      const double t = a > b ? (a + half_log_likelihood) / (a - b) : 1;
+      // Likelihoods fall with the square of the way: their roots are what runs straight.
+      const double a = std::sqrt(-points[inside].log_likelihood), b = std::sqrt(-points[i].log_likelihood);
+      const double t = b > a ? (std::sqrt(half_log_likelihood) - a) / (b - a) : 1;
       return points[inside].value + std::clamp(t, 0.0, 1.0) * (points[i].value - points[inside].value);
     }
     inside = i;

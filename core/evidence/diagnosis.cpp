@@ -13,7 +13,7 @@ namespace formwright {
 namespace {
 
 constexpr std::size_t refitted_singles = 8, leader_count = 4;
-constexpr int refitted_pairs = 6;
+constexpr int refitted_pairs = 6, quick_iterations = 5, polishing_iterations = 8;
 constexpr const char* fitting = "Fitting the causes";
 constexpr double explained_share = 0.6;   // of the base model's structure (its variance) that a named cause must explain
 constexpr double likely = 0.5;
@@ -139,7 +139,7 @@ class Diagnostician {
     FitOptions options;
     options.most_iterations = iterations;
     options.tolerance = 0.01;
-    options.renew_sensitivities = false;
+    options.renew_sensitivities = iterations > quick_iterations;
     return fit_parameters(bag_, objective, free, starts[best], std::move(known), options, context_, fitting);
   }
 
@@ -158,7 +158,7 @@ class Diagnostician {
     std::vector<Eigen::VectorXd> starts{result_.base.u, u};
     for (const auto& r : refits_)  // a pair may start from what its parts are like alone
       if (causes.size() == 2 && r.causes.size() == 1 && (r.causes[0] == causes[0] || r.causes[0] == causes[1])) starts.push_back(r.fit.u);
-    refits_.push_back({fit_from(causes, start.structure, starts, chosen(sensitivities_, columns_, free), 3), causes});
+    refits_.push_back({fit_from(causes, start.structure, starts, chosen(sensitivities_, columns_, free), quick_iterations), causes});
     weigh_refit(refits_.back());
   }
 
@@ -175,7 +175,7 @@ class Diagnostician {
     double structure = 0;
     for (const Hypothesis& h : result_.hypotheses)
       if (h.causes == refit.causes) structure = std::max(structure, h.structure * (h.unknown_structure ? 0 : 1));
-    refit.fit = fit_from(refit.causes, structure, starts, {}, 3);
+    refit.fit = fit_from(refit.causes, structure, starts, {}, polishing_iterations);
     weigh_refit(refit);
   }
 

@@ -25,7 +25,6 @@ std::vector<std::optional<Predictions>> SimulationBag::run(const std::vector<Eig
   const std::size_t jobs = missing.size() * objects;
   std::mutex later_mutex;
   std::vector<std::size_t> later;  // what other processes are at
-  context.progress(0, stage);
   const auto make = [&](std::size_t job) {
     const std::size_t point = job / objects, object = job % objects;
     try {
@@ -40,6 +39,7 @@ std::vector<std::optional<Predictions>> SimulationBag::run(const std::vector<Eig
   };
   const auto claimed = [&](std::size_t job) { return model_.claim(static_cast<int>(job % objects), *missing[job / objects], context); };
   try {
+    context.progress(0, stage);
     parallel_for(jobs, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t job = begin; job < end; ++job) {
         context.check_cancelled();

@@ -209,7 +209,9 @@ TEST(ThermoformModel, ADrawnCauseIsNamedOrDoubted) {
   if (d.reading != Reading::unknown && !d.doubtful && d.reading != Reading::cannot_separate) {
     EXPECT_EQ(model.causes()[static_cast<std::size_t>(d.verdict.front())].name, cause) << "seed " << seed;
   }
-  EXPECT_LT(d.held_out.after.mean, d.held_out.before.mean);
+  if (!d.verdict.empty()) {
+    EXPECT_LT(d.held_out.after.mean, d.held_out.before.mean);
+  }
 }
 
 }  // namespace

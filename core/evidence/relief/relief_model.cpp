@@ -67,7 +67,7 @@ ReliefSurface ReliefSurface::of(const TriangleMesh& mesh, int pixels, Context& c
 
 Eigen::MatrixXd blurred(const Eigen::MatrixXd& height, double sigma_pixels) {
   if (!(sigma_pixels > 0.05)) return height;
-  const int reach = static_cast<int>(std::ceil(3 * sigma_pixels));
+  const int reach = static_cast<int>(std::ceil(4 * sigma_pixels));
   Eigen::VectorXd kernel(2 * reach + 1);
   for (int i = -reach; i <= reach; ++i) kernel[i + reach] = std::exp(-0.5 * i * i / (sigma_pixels * sigma_pixels));
   kernel /= kernel.sum();
@@ -95,7 +95,7 @@ Eigen::MatrixXd lit(const ReliefSurface& surface, const Vec3& light) {
         if (ray > highest + penumbra_mm || column < 0 || row < 0 || column > static_cast<double>(z.cols() - 1) || row > static_cast<double>(z.rows() - 1)) break;
         blocked = std::max(blocked, bilinear(z, column, row) - ray);
       }
-      result(r, c) = std::clamp(0.5 - blocked / penumbra_mm, 0.0, 1.0);
+      result(r, c) = std::clamp(1 - blocked / penumbra_mm, 0.0, 1.0);
     }
   return result;
 }

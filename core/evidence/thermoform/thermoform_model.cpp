@@ -140,6 +140,7 @@ ThermoformOptions ThermoformModel::simulation_options(int object, const Eigen::V
   const Json measurement = write_parameters(none);
   values["triangles"] = options_.triangles;
   values["frames"] = 2;
+  values["step_mm"] = 0.6;  // automatic steps are longer, and their noise drowns what small changes do
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     const ModelParameter& p = parameters_[i];
     const double at = u[static_cast<Eigen::Index>(i)];

@@ -24,11 +24,13 @@ std::vector<Eigen::VectorXd> take_noise(const ForwardModel& model, const Predict
   return weights;
 }
 
-/// The size of structure under which what is left is most probable.
-std::size_t most_probable_structure(const MisfitOfAll& misfit, const Predictions& left) {
+/// The size of structure under which what is left is most probable, but no less than the model's own: contact alone makes simulations
+/// chatter by more than the mean of many points could tell.
+std::size_t most_probable_structure(const ForwardModel& model, const MisfitOfAll& misfit, const Predictions& left) {
   const GramByStructure gram = misfit.gram(left, std::vector<Sensitivities>(left.size()));
   std::size_t best = 0;
-  for (std::size_t t = 1; t < gram.gram.size(); ++t)
+  while (misfit.sizes()[best] < model.known_misfit()) ++best;
+  for (std::size_t t = best + 1; t < gram.gram.size(); ++t)
     if (gram.gram[t](0, 0) + gram.log_determinant[t] < gram.gram[best](0, 0) + gram.log_determinant[best]) best = t;
   return best;
 }
@@ -138,7 +140,7 @@ Calibration calibrate(SimulationBag& bag, Context& context) {
     const std::vector<Eigen::VectorXd> weights = take_noise(model, residuals(model, fit.predictions), result.noise);
     const MisfitOfAll misfit(model, weights);
     const std::vector<Sensitivities> none(weights.size());
-    const StructuredObjective objective(model, misfit, most_probable_structure(misfit, residuals(model, fit.predictions)), {}, none);
+    const StructuredObjective objective(model, misfit, most_probable_structure(model, misfit, residuals(model, fit.predictions)), {}, none);
     result.profiles = profile(bag, fit, objective, context);
   }
   result.simulations = bag.simulations();

@@ -18,7 +18,8 @@ constexpr const char* fitting = "Fitting the causes";
 constexpr double explained_share = 0.6;   // of the base model's structure (its variance) that a named cause must explain
 constexpr double likely = 0.5;
 constexpr double out_of_reach = 60;        // log evidence that polishing does not make up for
-constexpr double least_gain = 0.02;        // of the held-out error
+constexpr double least_gain = 0.01;        // of the held-out error
+constexpr double sure_gain = 0.8;          // probability that there is one
 constexpr double least_movement = 0.5;     // of the known misfit
 constexpr double inseparable_likeness = 0.9;
 
@@ -334,7 +335,7 @@ class Diagnostician {
       const Refit& r = refit_of(h.causes);
       const HeldOutGain gain = compare_errors(model_, without, predicted(r.fit, h.causes), weights_);
       result_.trials.back().gain = gain;
-      if (gain.gain_low <= 0 || gain.gain_share < least_gain) continue;
+      if (gain.gain_probability < sure_gain || gain.gain_share < least_gain) continue;
       result_.verdict = h.causes;
       result_.doubtful = h.unknown_structure;
       widen_by_jackknife(r.fit, held_out(r.fit).steps);
@@ -427,15 +428,21 @@ class Diagnostician {
   }
 
   void find_causes() {
+    const GramByStructure gram = misfit_->gram(residuals(model_, result_.base.predictions), sensitivities_);
+    double none = -std::numeric_limits<double>::infinity();
+    for (const Hypothesis& h : result_.hypotheses)
+      if (h.causes.empty()) none = std::max(none, h.log_evidence);
     for (int cause = 0; cause < static_cast<int>(model_.causes().size()); ++cause) {
       CauseFinding finding;
       finding.cause = cause;
+      finding.least_visible = formwright::least_visible(model_, gram, nearest_size(model_.known_misfit()), columns_, cause);
       const Hypothesis* at = nullptr;
       for (const Hypothesis& h : result_.hypotheses) {
         if (std::find(h.causes.begin(), h.causes.end(), cause) == h.causes.end()) continue;
         finding.probability += h.probability;
         if (at == nullptr) at = &h;
       }
+      finding.log_evidence = at->log_evidence - none;
       const bool refitted = std::any_of(refits_.begin(), refits_.end(), [&](const Refit& r) { return r.causes == at->causes; });
       if (!refitted) {
         // Far behind the others: where the linearised model has it.

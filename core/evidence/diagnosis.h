@@ -21,6 +21,8 @@ struct CauseFinding {
   double probability = 0;                 // that it is at work, by itself or in a pair
   double strength = 0, low = 0, high = 0; // Cause::unit; 95 % interval
   std::vector<double> values;             // of its parameters
+  double least_visible = 0;               // strength that these data would show; infinite where the calibration hides any
+  double log_evidence = 0;                // over that of no cause
 };
 
 struct NotSeparable {

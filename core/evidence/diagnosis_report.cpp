@@ -79,7 +79,14 @@ Json diagnosis_json(const DiagnosisReport& report) {
     Json values = Json::object();
     for (std::size_t i = 0; i < cause.parameters.size(); ++i) values[model.parameters()[static_cast<std::size_t>(cause.parameters[i])].name] = f.values[i];
     json["causes"].push_back({{"name", cause.name}, {"label", cause.label}, {"probability", f.probability}, {"strength", f.strength}, {"unit", cause.unit},
-                              {"interval", interval(f.low, f.high)}, {"values", values}, {"remedy", cause.remedy}});
+                              {"interval", interval(f.low, f.high)}, {"values", values}, {"log_evidence", f.log_evidence},
+                              {"least_visible", std::isfinite(f.least_visible) ? Json(f.least_visible) : Json()}, {"explanation", cause.explanation}, {"remedy", cause.remedy}});
+  }
+  json["trials"] = Json::array();
+  for (const HeldOutTrial& trial : d.trials) {
+    Json causes = Json::array();
+    for (const int cause : trial.causes) causes.push_back(name(cause));
+    json["trials"].push_back({{"causes", causes}, {"significant", trial.significant}, {"gain_share", trial.gain.gain_share}, {"gain_interval", interval(trial.gain.gain_low, trial.gain.gain_high)}});
   }
   json["not_separable"] = Json::array();
   for (const SeparatedPair& s : report.separations)

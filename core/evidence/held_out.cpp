@@ -69,6 +69,7 @@ HeldOutGain compare_errors(const ForwardModel& model, const std::vector<Eigen::V
   gain.before = {all.before / all.count, low(0), high(0)};
   gain.after = {all.after / all.count, low(1), high(1)};
   gain.gain_share = 1 - gain.after.mean / std::max(gain.before.mean, 1e-12);
+  gain.gain_probability = static_cast<double>(std::count_if(drawn[2].begin(), drawn[2].end(), [](double g) { return g > 0; })) / draws;
   gain.gain_low = low(2);
   gain.gain_high = high(2);
   return gain;

@@ -13,6 +13,7 @@ struct ErrorWithInterval {
 struct HeldOutGain {
   ErrorWithInterval before, after;
   double gain_share = 0, gain_low = 0, gain_high = 0;  // 1 - after / before
+  double gain_probability = 0;                         // share of the drawn blocks in which there is a gain at all
 };
 
 /// 4 x 4 blocks an object; fold of each block 0 to 3, no two blocks that share a side in the same.

@@ -136,40 +136,64 @@ void normalise(std::vector<Hypothesis>& hypotheses) {
   std::stable_sort(hypotheses.begin(), hypotheses.end(), [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
 }
 
-double likeness(const ForwardModel& model, const GramByStructure& gram, std::size_t structure, const std::vector<int>& columns, int cause_a, int cause_b) {
-  const Eigen::MatrixXd& G = gram.gram[structure];
-  const std::vector<int> others = indices_of(model, columns, {});
-  const auto own = [&](int cause) {
+namespace {
+
+/// Gram matrices of what causes do, less what base parameters and discrepancies can imitate as far as their priors let them.
+class Projection {
+ public:
+  Projection(const ForwardModel& model, const Eigen::MatrixXd& gram, const std::vector<int>& columns) : model_(model), G_(gram), columns_(columns), others_(indices_of(model, columns, {})) {
+    Eigen::MatrixXd base = block(others_, others_);
+    for (std::size_t i = 0; i < others_.size(); ++i) {
+      const double sd = model.parameters()[static_cast<std::size_t>(columns[static_cast<std::size_t>(others_[i])])].prior_sd;
+      base(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) += 1 / (sd * sd);
+    }
+    factor_.compute(base);
+  }
+  Eigen::MatrixXd operator()(int cause_a, int cause_b) const {
+    const std::vector<int> a = own(cause_a), b = own(cause_b);
+    return block(a, b) - block(a, others_) * factor_.solve(block(others_, b));
+  }
+
+ private:
+  std::vector<int> own(int cause) const {
     std::vector<int> list;
-    for (const int c : indices_of(model, columns, {cause}))
-      if (std::find(others.begin(), others.end(), c) == others.end()) list.push_back(c);
+    for (const int c : indices_of(model_, columns_, {cause}))
+      if (std::find(others_.begin(), others_.end(), c) == others_.end()) list.push_back(c);
     return list;
-  };
-  const std::vector<int> a = own(cause_a), b = own(cause_b);
-  const auto block = [&](const std::vector<int>& rows, const std::vector<int>& cols) {
+  }
+  Eigen::MatrixXd block(const std::vector<int>& rows, const std::vector<int>& cols) const {
     Eigen::MatrixXd M(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(cols.size()));
     for (Eigen::Index i = 0; i < M.rows(); ++i)
-      for (Eigen::Index j = 0; j < M.cols(); ++j) M(i, j) = G(1 + rows[static_cast<std::size_t>(i)], 1 + cols[static_cast<std::size_t>(j)]);
+      for (Eigen::Index j = 0; j < M.cols(); ++j) M(i, j) = G_(1 + rows[static_cast<std::size_t>(i)], 1 + cols[static_cast<std::size_t>(j)]);
     return M;
-  };
-  // What base parameters and discrepancies can imitate, as far as their priors let them, is no difference.
-  Eigen::MatrixXd base = block(others, others);
-  for (std::size_t i = 0; i < others.size(); ++i) {
-    const double sd = model.parameters()[static_cast<std::size_t>(columns[static_cast<std::size_t>(others[i])])].prior_sd;
-    base(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) += 1 / (sd * sd);
   }
-  const Eigen::LLT<Eigen::MatrixXd> factor(base);
-  const auto projected = [&](const std::vector<int>& x, const std::vector<int>& y) -> Eigen::MatrixXd {
-    return block(x, y) - block(x, others) * factor.solve(block(others, y));
-  };
+
+  const ForwardModel& model_;
+  const Eigen::MatrixXd& G_;
+  const std::vector<int>& columns_;
+  std::vector<int> others_;
+  Eigen::LLT<Eigen::MatrixXd> factor_;
+};
+
+}  // namespace
+
+double likeness(const ForwardModel& model, const GramByStructure& gram, std::size_t structure, const std::vector<int>& columns, int cause_a, int cause_b) {
+  const Projection projected(model, gram.gram[structure], columns);
   // The largest canonical correlation of the two spans.
   const auto root_inverse = [](const Eigen::MatrixXd& M) -> Eigen::MatrixXd {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(M);
     const double largest = std::max(eigen.eigenvalues().maxCoeff(), 1e-300);
     return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(1e-9 * largest).cwiseSqrt().cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
   };
-  const Eigen::MatrixXd correlation = root_inverse(projected(a, a)) * projected(a, b) * root_inverse(projected(b, b));
+  const Eigen::MatrixXd correlation = root_inverse(projected(cause_a, cause_a)) * projected(cause_a, cause_b) * root_inverse(projected(cause_b, cause_b));
   return std::min(1.0, Eigen::JacobiSVD<Eigen::MatrixXd>(correlation).singularValues().maxCoeff());
+}
+
+double least_visible(const ForwardModel& model, const GramByStructure& gram, std::size_t structure, const std::vector<int>& columns, int cause) {
+  constexpr double log_evidence = 8;  // half the square of the strength over its standard deviation: four of them
+  const Eigen::MatrixXd visible = Projection(model, gram.gram[structure], columns)(cause, cause);
+  const double weakest = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(visible).eigenvalues().minCoeff();
+  return weakest > 0 ? std::sqrt(2 * log_evidence / weakest) : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace formwright

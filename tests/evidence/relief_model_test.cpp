@@ -113,6 +113,14 @@ TEST(ReliefModel, NamesWhatWasDoneToIt) {
     const Diagnosis d = diagnose(bag, options, context);
     const bool named = !d.verdict.empty() && model.causes()[static_cast<std::size_t>(d.verdict.front())].name == c.cause;
     right += named;
+    std::string told = c.cause;
+    for (const CauseFinding& f : d.causes)
+      told += "; " + model.causes()[static_cast<std::size_t>(f.cause)].name + " p " + std::to_string(f.probability) + " strength " + std::to_string(f.strength) + " evidence " +
+              std::to_string(f.log_evidence);
+    for (const HeldOutTrial& t : d.trials)
+      told += "; tried " + model.causes()[static_cast<std::size_t>(t.causes.front())].name + (t.significant ? " gain " : " not significant ") + std::to_string(t.gain.gain_share) + " sure " + std::to_string(t.gain.gain_probability);
+    SCOPED_TRACE(told);
+    if (!named) std::printf("not named: %s\n", told.c_str());
     EXPECT_TRUE(named || d.doubtful || d.reading == Reading::cannot_separate || d.reading == Reading::unknown) << c.cause;
     if (named) {
       EXPECT_LT(d.held_out.after.mean, d.held_out.before.mean);

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <sstream>
 
@@ -98,6 +99,16 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
     else if (!contains && named.size() <= std::max<std::size_t>(1, hidden.size())) wrong = std::max(wrong, h.log_evidence);
   }
   line["over_none"] = {{"unknown", unknown - none}, {"right", right - none}, {"wrong", wrong - none}};
+  // How strong each hidden cause would have to be to show in these data at all, as the diagnosis itself says.
+  line["least_visible"] = Json::array();
+  line["strength"] = Json::array();
+  for (const HiddenEffect& e : effects) {
+    double squares = 0;
+    for (const auto& [name, value] : e.values.items()) squares += std::pow(value.get<double>(), 2);
+    line["strength"].push_back(std::sqrt(squares));
+    for (const CauseFinding& f : d.causes)
+      if (model.causes()[static_cast<std::size_t>(f.cause)].name == e.cause) line["least_visible"].push_back(std::isfinite(f.least_visible) ? Json(f.least_visible) : Json());
+  }
   line["trials"] = Json::array();
   for (const HeldOutTrial& trial : d.trials) {
     std::string names;

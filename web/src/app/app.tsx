@@ -3,7 +3,6 @@
 import { signal, useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import type { Services } from '../crafts/common/services';
-import { chooseModel } from '../crafts/common/craft_session';
 import type { ReliefPage as ReliefPageComponent } from '../crafts/relief/relief_page';
 import type { ThermoformPage as ThermoformPageComponent } from '../crafts/thermoform/thermoform_page';
 import { projectExtension } from '../project/archive';
@@ -58,12 +57,11 @@ export function App({ services, sessions }: AppProps) {
       }
       return;
     }
-    const chosen = chooseModel(files, services.catalog.value);
-    if (chosen === null) return;
+    if (files.length === 0) return;
     if (place.value === 'start' && !services.projects.isBlank.value) await services.projects.create();
     const where = roomOf(place.value);
     go(where);
-    await sessions[where].openFile(chosen);
+    await sessions[where].openFiles(files);
   };
 
   useFileDrop(dropping, openFiles);

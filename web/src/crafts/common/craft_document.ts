@@ -172,6 +172,12 @@ export function withoutDefaults(operation: Operation, values: JsonObject): JsonO
   );
 }
 
+/** Those of the parameters that an operation knows. */
+export const known = (operation: Operation | undefined, parameters: JsonObject): JsonObject =>
+  Object.fromEntries(
+    Object.entries(parameters).filter(([name]) => operation && name in operation.parameters.properties),
+  );
+
 /** The value in force: as set, or the operation's default. */
 export const inForce = (operation: Operation, parameters: JsonObject, name: string): Json =>
   parameters[name] ?? operation.parameters.properties[name]?.default ?? null;

@@ -19,15 +19,20 @@ export interface ResultsProps<D extends RoomDocument> {
   /** What is said beside it: "normal error 11.1°", and the short of it. */
   readonly figureOf: (result: CraftResult) => { readonly short: string; readonly spoken: string };
   readonly onChoose: (result: CraftResult, label: string) => void;
+  /** Which may be returned to; left out: those made from what is open. */
+  readonly results?: readonly CraftResult[];
+  /** Left out: the parameter that tells them apart. */
+  readonly nameOf?: (result: CraftResult) => string;
 }
 
 export function Results<D extends RoomDocument>(props: ResultsProps<D>) {
   const { session, current, figureOf } = props;
   const { results } = session.document.value;
   if (session.operation.value === null || results.length === 0) return null;
-  const ours = results.filter((result) => result.mesh === session.subject.value?.key);
+  const ours = props.results ?? results.filter((result) => result.mesh === session.subject.value?.key);
+  if (ours.length === 0) return null;
   const telling = tellingParameter(ours, props);
-  const name = (result: CraftResult) => describe(result, telling, session);
+  const name = props.nameOf ?? ((result: CraftResult) => describe(result, telling, session));
   const choose = (result: CraftResult) => props.onChoose(result, `Return to ${name(result)}`);
   return (
     <div class="results">

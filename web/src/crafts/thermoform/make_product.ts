@@ -4,11 +4,11 @@ import type { JobInput, Operation } from '../../jobs/contract';
 import { JobError } from '../../jobs/contract';
 import type { BlobReference } from '../../project/document';
 import type { Source } from '../common/craft_document';
-import { meshInput } from '../common/craft_document';
+import { known, meshInput } from '../common/craft_document';
 import { outputOf, solveInFull } from '../common/full_solve';
 import { bytesOf } from '../common/import_model';
 import { readyWorker } from '../common/services';
-import { addProduct, known, printing, productOf, simulate } from './thermoform_document';
+import { addProduct, printing, productOf, simulate } from './thermoform_document';
 import type { ThermoformSession } from './thermoform_session';
 
 /** The model's own file keeps what the repaired mesh lost: coordinates of its picture. */

@@ -4,13 +4,12 @@ import type { Catalog, Operation, ParameterSchema } from '../../jobs/contract';
 import type { ProjectDocument } from '../../project/document';
 import { newDocument } from '../../project/document';
 import type { CraftModel, CraftResult } from '../common/craft_document';
-import { CraftCommands, emptyCraft, subjectOf } from '../common/craft_document';
+import { CraftCommands, emptyCraft, known, subjectOf } from '../common/craft_document';
 import { machineProfile, profileInputs } from '../common/machine_profile';
 import type { Product } from './thermoform_document';
 import {
   addProduct,
   formedSheet,
-  known,
   offered,
   printing,
   productOf,

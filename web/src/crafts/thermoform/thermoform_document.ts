@@ -3,7 +3,7 @@
 import type { Catalog, JsonObject, Operation } from '../../jobs/contract';
 import { findOperation } from '../../jobs/contract';
 import type { CraftDocument, CraftResult, Subject } from '../common/craft_document';
-import { CraftCommands, emptyCraft, sameRequest, withResult } from '../common/craft_document';
+import { CraftCommands, emptyCraft, known, sameRequest, withResult } from '../common/craft_document';
 
 /** A print or a mould: what an operation made of the model, with the parameters it knows. */
 export interface Product extends CraftResult {
@@ -39,12 +39,6 @@ export function offered(catalog: Catalog): Operation | null {
   const ordered = { ...operation.parameters.properties, ...properties };
   return { ...operation, parameters: { properties: ordered } };
 }
-
-/** Those of the parameters that an operation knows. */
-export const known = (operation: Operation | undefined, parameters: JsonObject): JsonObject =>
-  Object.fromEntries(
-    Object.entries(parameters).filter(([name]) => operation && name in operation.parameters.properties),
-  );
 
 /** The sheet formed with exactly these parameters over the subject, if there is one. */
 export function formedSheet(

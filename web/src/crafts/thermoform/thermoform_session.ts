@@ -8,7 +8,7 @@ import type { Film } from '../../jobs/glb';
 import { readFilm, readPly } from '../../jobs/mesh_reader';
 import type { PlyMesh } from '../../jobs/ply';
 import type { CraftResult } from '../common/craft_document';
-import { inForce } from '../common/craft_document';
+import { inForce, known } from '../common/craft_document';
 import type { Measured } from '../common/estimate';
 import { estimateSeconds, recall } from '../common/estimate';
 import { bytesOf } from '../common/import_model';
@@ -20,7 +20,6 @@ import type { Services } from '../common/services';
 import { endOf, momentAt, phaseAt, phasesOf } from './film';
 import {
   formedSheet,
-  known,
   moulding,
   offered,
   printing,

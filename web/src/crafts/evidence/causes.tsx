@@ -25,6 +25,13 @@ export function Causes({ session, diagnosis }: { session: EvidenceSession; diagn
         {listed.map((cause) => (
           <CauseCard key={cause.name} session={session} cause={cause} named={named.includes(cause.name)} />
         ))}
+        {diagnosis.unlisted >= 0.005 ? (
+          <li class="cause unlisted">
+            <span class="cause-line">
+              Something not in the list <b>{percent(diagnosis.unlisted)}</b>
+            </span>
+          </li>
+        ) : null}
       </ol>
       {rest > 0 ? (
         <button type="button" class="text-button" onClick={() => (all.value = true)}>

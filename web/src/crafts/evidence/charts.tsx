@@ -14,7 +14,7 @@ export function Distances({ session, look }: { session: EvidenceSession; look: L
   const { residuals, noiseFloor_mm } = look;
   const base = distancesOf(residuals, 'base');
   const shown = model === 'base' ? base : distancesOf(residuals, model);
-  const maximum = niceUp(percentile(base, 0.98));
+  const maximum = niceUp(percentile(base, 0.95));
   const counts = histogram(shown, bins, maximum);
   const before = model === 'base' ? null : histogram(base, bins, maximum);
   const most = Math.max(...counts, ...(before ?? []), 1);

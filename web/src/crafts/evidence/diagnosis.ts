@@ -36,6 +36,8 @@ export interface Diagnosis {
   readonly sentence: string;
   readonly causes: readonly Cause[];
   readonly named: readonly string[];
+  /** That something explains the data which is not in the list. */
+  readonly unlisted: number;
   /** Pairs that look alike, with the measurement that would tell. */
   readonly alike: readonly { readonly labels: readonly string[]; readonly measurement: string }[];
   readonly gains: readonly Gain[];
@@ -97,6 +99,9 @@ export function readDiagnosis(report: Report): Diagnosis {
     sentence: text(report['sentence']),
     causes,
     named: sentences(report, 'verdict').filter((name) => causes.some((cause) => cause.name === name)),
+    unlisted: list(report['hypotheses'])
+      .filter((one) => one['unknown_structure'] === true && sentences(one, 'causes').length === 0)
+      .reduce((sum, one) => sum + number(one['probability']), 0),
     alike: list(report['not_separable']).map((pair) => ({
       labels: sentences(pair, 'causes').map(labelOf),
       measurement: text(pair['measurement']),

@@ -98,7 +98,8 @@ export class EvidenceSession extends RoomSession<EvidenceDocument> {
   /** A run was ended before it was done. */
   readonly stopped = signal(false);
   readonly looking = signal(false);
-  readonly #quick = new Map<string, Look>();
+  /** Quick looks by the hash of their object. */
+  readonly quick = signal<ReadonlyMap<string, Look>>(new Map());
   readonly #comparison = new LatestOnly<MeasuredObject>(
     (object, abort) => this.#compare(object, abort),
     (running, next) => running.pack.blob !== next.pack.blob,
@@ -150,7 +151,7 @@ export class EvidenceSession extends RoomSession<EvidenceDocument> {
   }
 
   #lookQuickly(object: MeasuredObject): void {
-    const kept = this.#quick.get(object.pack.blob);
+    const kept = this.quick.value.get(object.pack.blob);
     this.look.value = kept ?? null;
     if (kept) this.cancelPreview();
     else this.#comparison.request(object);
@@ -214,7 +215,7 @@ export class EvidenceSession extends RoomSession<EvidenceDocument> {
         report: done.report,
         opening_mm: await this.#openingOf(object),
       };
-      this.#quick.set(object.pack.blob, look);
+      this.quick.value = new Map([...this.quick.value, [object.pack.blob, look]]);
       const shown = this.look.value?.pack === object.pack.blob;
       if (!shown && this.chosen.value?.pack.blob === object.pack.blob) this.look.value = look;
     } catch (thrown) {
@@ -358,7 +359,11 @@ export class EvidenceSession extends RoomSession<EvidenceDocument> {
 
   measured(report: Report): Measured | null {
     const seconds = figure(report, 'seconds_diagnosis');
-    return seconds ? { vertices: this.#triangles(), seconds } : null;
+    const expected = this.#firstGuess.value;
+    // A run that found its simulations made says nothing about the next.
+    const reused =
+      expected !== null && seconds !== null && seconds < 0.1 * estimateSeconds(expected, this.#triangles());
+    return seconds && !reused ? { vertices: this.#triangles(), seconds } : null;
   }
 
   #triangles(): number {
@@ -366,21 +371,26 @@ export class EvidenceSession extends RoomSession<EvidenceDocument> {
     return Number((operation && inForce(operation, this.document.value.parameters, 'triangles')) ?? 0);
   }
 
+  /** As many times the quick look as runs usually simulate. */
+  readonly #firstGuess = computed<Measured | null>(() => {
+    const objects = this.document.value.objects.filter(({ use }) => use === 'fit').length;
+    const object = this.chosen.value;
+    const quick = object && this.quick.value.get(object.pack.blob)?.report['seconds_simulation'];
+    const runs =
+      this.mode.value === 'calibrate'
+        ? usualSimulations.calibrate
+        : usualSimulations.diagnose + (this.value('pairs') === true ? usualSimulations.pairs : 0);
+    return typeof quick === 'number' && quick > 0
+      ? { vertices: quickTriangles, seconds: quick * runs * Math.max(1, objects) }
+      : null;
+  });
+
   /** Seconds that a run may take; null where nothing is known yet. */
   readonly estimate = computed(() => {
     const triangles = this.#triangles();
     const mode = this.mode.value;
-    const objects = this.document.value.objects.filter(({ use }) => use === 'fit').length;
-    const quick = this.look.value?.report['seconds_simulation'];
-    const runs =
-      mode === 'calibrate'
-        ? usualSimulations.calibrate
-        : usualSimulations.diagnose + (this.value('pairs') === true ? usualSimulations.pairs : 0);
-    const first: Measured | null =
-      typeof quick === 'number' && quick > 0
-        ? { vertices: quickTriangles, seconds: quick * runs * Math.max(1, objects) }
-        : null;
-    const told = (backend: string) => (mode === 'diagnose' ? recall('evidence', backend) : null) ?? first;
+    const told = (backend: string) =>
+      (mode === 'diagnose' ? recall('evidence', backend) : null) ?? this.#firstGuess.value;
     const [browser, worker] = [told('wasm'), told('native')];
     return {
       browser_s: browser && estimateSeconds(browser, triangles),

@@ -22,6 +22,12 @@ const useNames: Readonly<Record<Use, string>> = {
   off: 'Left out',
 };
 
+const useWords: Readonly<Record<Use, string>> = {
+  fit: '',
+  unseen: ', to measure the gain on',
+  off: ', left out',
+};
+
 export function Inspector({ session, onChooseFile }: InspectorProps) {
   const operation = session.operation.value;
   const { objects } = session.document.value;
@@ -39,7 +45,7 @@ export function Inspector({ session, onChooseFile }: InspectorProps) {
             value={session.mode.value}
             onChange={(mode) => session.services.projects.do(evidence.setMode(mode))}
           />
-          <p class="mode-words">{operation?.summary}</p>
+          {session.result.value ? null : <p class="mode-words">{operation?.summary}</p>}
         </div>
         <section class="section" aria-label="Measured objects">
           <h3>Measured objects</h3>
@@ -138,7 +144,7 @@ function ObjectRow({ session, object }: { session: EvidenceSession; object: Meas
         <strong class="clip">{object.name}</strong>
         <span>
           {formatCount(object.points)} points
-          {object.use === 'fit' ? '' : `, ${useNames[object.use].toLowerCase()}`}
+          {useWords[object.use]}
         </span>
       </button>
       <Menu

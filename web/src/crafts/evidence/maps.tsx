@@ -87,7 +87,7 @@ export function Maps({ session, look }: { session: EvidenceSession; look: Look }
     minimum: -scales.most,
     maximum: scales.most,
     unit: 'mm',
-    label: 'Simulated above measured',
+    label: 'Height, simulated less measured',
   };
   const shared = { session, residuals, frame, triangles, opening_mm: look.opening_mm };
   const which = modelWords(look, model);
@@ -108,11 +108,21 @@ export function Maps({ session, look }: { session: EvidenceSession; look: Look }
           arrows={arrows}
           arrowScale={scales.arrowScale}
           noise_mm={sigma_mm}
+          onPainted={(canvas) => keepPicture(session, look, canvas)}
           told={`Mean distance ${withUnit(formatNumber(values.mean, 2), 'mm')}, ${which}.`}
         />
       </Pane>
     </div>
   );
+}
+
+/** The difference is the picture of its result in the strip. */
+function keepPicture(session: EvidenceSession, look: Look, canvas: HTMLCanvasElement): void {
+  const result = session.result.peek();
+  if (result === null || result.id !== look.result || result.picture) return;
+  canvas.toBlob((picture) => {
+    if (picture) void session.keepPicture(result.id, picture);
+  });
 }
 
 export const modelWords = (look: Look, model: 'base' | 'extended'): string =>
@@ -144,13 +154,16 @@ interface SheetMapProps {
   /** The one of the three that the keyboard reaches. */
   readonly focusable?: boolean;
   readonly told?: string;
+  readonly onPainted?: (canvas: HTMLCanvasElement) => void;
 }
 
 function SheetMap(props: SheetMapProps) {
   const { session, residuals, frame, triangles, values, mapping } = props;
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => {
-    if (canvas.current) paint(canvas.current, rasterise(residuals.sheet, triangles, values, frame), mapping);
+    if (canvas.current === null) return;
+    paint(canvas.current, rasterise(residuals.sheet, triangles, values, frame), mapping);
+    props.onPainted?.(canvas.current);
   }, [residuals, triangles, values, frame, mapping.minimum, mapping.maximum]);
   const legend = useMemo(
     () => legendFor(mapping, Float32Array.from(values)),
@@ -240,6 +253,9 @@ export function arrowPath(arrows: readonly Arrow[], frame: Frame, scale: number)
     .join('');
 }
 
+/** Heights: the flat sheet is pale, what rises is dark. */
+const turned = (map: ColourMapName): boolean => map === 'thickness';
+
 function paint(
   canvas: HTMLCanvasElement,
   raster: Float32Array,
@@ -247,12 +263,13 @@ function paint(
 ): void {
   const context = canvas.getContext('2d');
   if (context === null) return;
-  const stops = stopsOf(map as ColourMapName);
+  const stops = stopsOf(map);
   const image = context.createImageData(canvas.width, canvas.height);
   for (let i = 0; i < raster.length; ++i) {
     const value = raster[i] ?? NaN;
     if (Number.isNaN(value)) continue;
-    const [r, g, b] = sampleStops(stops, (value - minimum) / (maximum - minimum));
+    const fraction = (value - minimum) / (maximum - minimum);
+    const [r, g, b] = sampleStops(stops, turned(map) ? 1 - fraction : fraction);
     image.data.set([r, g, b, 255], 4 * i);
   }
   context.putImageData(image, 0, 0);
@@ -267,14 +284,15 @@ function ScaleBar({ mapping, noise_mm }: { mapping: ColourMapping; noise_mm: num
   const end = formatNumber(maximum, 2);
   return (
     <div class="scale-bar" aria-hidden="true">
-      <div style={{ background: `var(--map-${map})` }}>
+      <div>
+        <b class={turned(map) ? 'turned' : ''} style={{ background: `var(--map-${map})` }} />
         {shown
           ? [-noise_mm, noise_mm].map((value) => <i key={value} style={{ left: fraction(value) }} />)
           : null}
       </div>
-      <span>{formatNumber(minimum, 2)}</span>
+      <span>{signed ? `too low ${formatNumber(minimum, 2)}` : formatNumber(minimum, 2)}</span>
       {shown ? <span>noise ±{formatNumber(noise_mm, 1)}</span> : null}
-      <span>{withUnit(signed ? `+${end}` : end, unit)}</span>
+      <span>{signed ? `${withUnit(`+${end}`, unit)} too high` : withUnit(end, unit)}</span>
     </div>
   );
 }

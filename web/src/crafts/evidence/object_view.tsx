@@ -27,9 +27,22 @@ export function spaceArrows(residuals: Residuals, model: Model, scale: number): 
   const ends: number[] = [];
   for (let i = 0; i < residuals.count; i += stride) {
     const from = [0, 1, 2].map((k) => residuals.measured[3 * i + k] ?? 0);
-    ends.push(...from, ...from.map((at, k) => at + scale * ((simulated[3 * i + k] ?? 0) - at)));
+    const along = from.map((at, k) => scale * ((simulated[3 * i + k] ?? 0) - at));
+    ends.push(...arrowEnds(from, along));
   }
   return Float32Array.from(ends);
+}
+
+/** A shaft and the two halves of its head. */
+function arrowEnds(from: readonly number[], along: readonly number[]): number[] {
+  const [u = 0, v = 0] = along;
+  const tip = from.map((at, k) => at + (along[k] ?? 0));
+  const flat = Math.hypot(u, v);
+  const aside = flat > 1e-9 ? [-v / flat, u / flat, 0] : [1, 0, 0];
+  const head = 0.22 * Math.hypot(...along);
+  const barb = (side: number) =>
+    tip.map((at, k) => at - 0.25 * (along[k] ?? 0) + 0.5 * side * head * (aside[k] ?? 0));
+  return [...from, ...tip, ...barb(1), ...tip, ...barb(-1), ...tip];
 }
 
 export function ObjectView({ session, look }: { session: EvidenceSession; look: Look }) {
@@ -105,7 +118,8 @@ export function ObjectView({ session, look }: { session: EvidenceSession; look: 
     const arrows: Curve = {
       positions: spaceArrows(residuals, model, scale),
       separate: true,
-      colour: '--ink',
+      // On pale maps and on the bench of either theme.
+      colour: '#6c665c',
       widthPx: 1.5,
     };
     made.setCurves([arrows]);
@@ -118,7 +132,7 @@ export function ObjectView({ session, look }: { session: EvidenceSession; look: 
       <div class="float top-right">
         <Legend mapping={mapping} values={distances} />
       </div>
-      <p class="float bottom-left label-chip">Lines from measured to simulated × {scale}</p>
+      <p class="float bottom-left label-chip">Arrows from measured to simulated × {scale}</p>
     </section>
   );
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Evidence's part of a project: measured objects, what each is used for, and what was found with them.
-import type { JobInput } from '../../jobs/contract';
+import type { JobInput, Json, JsonObject, Report } from '../../jobs/contract';
 import type { BlobReference } from '../../project/document';
 import type { CraftResult, RoomDocument, Subject } from '../common/craft_document';
 import { emptyRoom, RoomCommands } from '../common/craft_document';
@@ -42,7 +42,22 @@ export interface Scan {
     readonly file: BlobReference;
   }[];
   /** Where the maker put the four marks, in pixels of the picture; null: as they are found. */
-  readonly corners: readonly (readonly [number, number])[] | null;
+  readonly corners: readonly Place[] | null;
+  /** Of its measuring; only what differs from the defaults. */
+  readonly parameters: JsonObject;
+  readonly measured: MeasuredScan | null;
+}
+
+export type Place = readonly [x_px: number, y_px: number];
+
+/** What a scan was measured to be. */
+export interface MeasuredScan {
+  /** The request it answers. */
+  readonly of: Json;
+  readonly report: Report;
+  readonly points: BlobReference;
+  /** The scan carried back to the flat sheet: it should look like the pattern. */
+  readonly aligned: BlobReference;
 }
 
 export interface EvidenceDocument extends RoomDocument {
@@ -138,8 +153,20 @@ class EvidenceCommands extends RoomCommands<EvidenceDocument> {
     return this.command({ label }, () => ({ draft }));
   }
 
-  setScan(scan: Scan | null, label: string, coalesce?: string) {
-    return this.command({ label, ...(coalesce ? { coalesce } : {}) }, () => ({ scan }));
+  setScan(scan: Scan | null, label: string) {
+    return this.command({ label }, () => ({ scan }));
+  }
+
+  changeScan(change: Partial<Scan>, label: string, coalesce?: string) {
+    return this.command({ label, ...(coalesce ? { coalesce } : {}) }, ({ scan }) => ({
+      scan: scan && { ...scan, ...change },
+    }));
+  }
+
+  keepMeasuredScan(measured: MeasuredScan) {
+    return this.command({ label: 'Measure the scan', recorded: false }, ({ scan }) => ({
+      scan: scan && { ...scan, measured },
+    }));
   }
 
   returnTo(result: CraftResult, label: string) {

@@ -16,6 +16,7 @@ import { Notes } from './notes';
 import { ObjectView } from './object_view';
 import { simulatedIn } from './residuals';
 import { ResultsStrip } from './results_strip';
+import { ScanInspector } from './scan_inspector';
 import { ScanPanel } from './scan_panel';
 import { VirtualObject } from './virtual_object';
 
@@ -54,7 +55,11 @@ export function EvidencePage({ session, onChooseFile }: EvidencePageProps) {
       </main>
       {session.hasWork.value ? (
         <Sheet label="Objects and causes">
-          <Inspector session={session} onChooseFile={onChooseFile} />
+          {scan ? (
+            <ScanInspector session={session} scan={scan} />
+          ) : (
+            <Inspector session={session} onChooseFile={onChooseFile} />
+          )}
         </Sheet>
       ) : null}
       {session.hasWork.value || opening ? (

@@ -312,11 +312,11 @@ export class EvidenceSession extends RoomSession<EvidenceDocument> {
     this.chosenId.value = object.id;
   }
 
-  async #takeScan(files: readonly File[]): Promise<void> {
+  async #takeScan(dropped: readonly File[]): Promise<void> {
     const operation = this.operationNamed(registering);
     const kept = this.document.value.scan?.files ?? [];
     const added = await Promise.all(
-      scanInputs(files, operation).map(async ({ input, file }) => ({
+      scanInputs(dropped, operation).map(async ({ input, file }) => ({
         input,
         file_name: file.name,
         file: await this.keep(
@@ -326,7 +326,9 @@ export class EvidenceSession extends RoomSession<EvidenceDocument> {
       })),
     );
     const others = kept.filter((old) => !added.some(({ input }) => input === old.input));
-    const scan: Scan = { files: [...others, ...added], corners: null };
+    const files = [...others, ...added];
+    const parameters = this.document.value.scan?.parameters ?? {};
+    const scan: Scan = { files, corners: null, parameters, measured: null };
     this.services.projects.do(evidence.setScan(scan, 'Open a scan'));
   }
 

@@ -2,7 +2,7 @@
 import AxeBuilder from '@axe-core/playwright';
 import type { Page } from '@playwright/test';
 import { readFileSync } from 'node:fs';
-import { measuredObject } from './measured_object';
+import { measuredObject, scannedSheet } from './measured_object';
 import { backend, expect, fileOf, openPage, strip, test } from './page';
 
 test.skip(backend === 'mock', 'the mock makes reliefs only');
@@ -165,4 +165,56 @@ test('files that lack a third, are strange or in metres are said in words', asyn
   await page.keyboard.press('Control+z');
   await expect(page.getByRole('button', { name: /^Object 1 2/ })).toBeHidden();
   await expect(page.getByRole('button', { name: /^Object 1 196 points/ })).toBeVisible();
+});
+
+test('a scan is measured, its corners set by hand, and becomes an object', async ({ page }) => {
+  await openRoom(page);
+  const { scan, picture, pattern } = scannedSheet();
+  await give(page, [scan, picture]);
+  await expect(page.getByText('Still missing: pattern.')).toBeVisible();
+  await give(page, [pattern]);
+  await page.getByRole('textbox', { name: 'Point spacing' }).fill('5');
+  await page.getByRole('textbox', { name: 'Point spacing' }).press('Enter');
+  await page.getByRole('button', { name: /^Flow/ }).click();
+  await page.getByRole('textbox', { name: 'Picture size' }).fill('600');
+  await page.getByRole('textbox', { name: 'Picture size' }).press('Enter');
+  const measure = async () => {
+    await page.getByRole('button', { name: 'Measure the scan' }).click();
+    await expect(page.getByRole('button', { name: 'Use these points' })).toBeVisible(seen);
+  };
+  await measure();
+  await expect(page.getByText(/^likeness (0\.99|1\.0)/)).toBeVisible();
+
+  await page.getByRole('button', { name: 'Set them by hand' }).click();
+  const corner = (name: string) => page.getByRole('button', { name: new RegExp(`^Corner ${name}`) });
+  const image = page.getByRole('img', { name: 'The scan’s picture' });
+  const box = await image.boundingBox();
+  if (box === null) throw new Error('The picture is not to be seen.');
+  // Where the pattern has its marks, as shares of the picture.
+  for (const [name, x, y] of [
+    ['front left', 0.162, 0.854],
+    ['front right', 0.838, 0.854],
+    ['back right', 0.838, 0.146],
+    ['back left', 0.162, 0.146],
+  ] as const) {
+    await corner(name).hover();
+    await page.mouse.down();
+    await page.mouse.move(box.x + x * box.width, box.y + y * box.height, { steps: 4 });
+    await page.mouse.up();
+  }
+  const before = await corner('back left').getAttribute('aria-label');
+  await corner('back left').focus();
+  await page.keyboard.press('Shift+ArrowRight');
+  await expect(corner('back left')).not.toHaveAttribute('aria-label', before ?? '');
+  await page.keyboard.press('Control+z');
+  await expect(corner('back left')).toHaveAttribute('aria-label', before ?? '');
+  await expectAccessible(page, 'corners');
+  await measure();
+  await expect(page.getByText(/^likeness (0\.99|1\.0)/)).toBeVisible();
+
+  await page.getByRole('button', { name: 'Use these points' }).click();
+  await expect(page.getByText('Still missing: mould.obj and setup.json')).toBeVisible();
+  const [mould, setup] = measuredObject();
+  await give(page, [mould, setup]);
+  await expect(page.getByRole('button', { name: /^scan \d+ points/ })).toBeVisible();
 });

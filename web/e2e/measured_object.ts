@@ -46,6 +46,43 @@ function simulated(): number[][] {
   }
 }
 
+/** A dome whose texture coordinates are the flat sheet's own, its picture and pattern: a scan without a camera. */
+export function scannedSheet() {
+  const folder = mkdtempSync(join(tmpdir(), 'formwright-scan-'));
+  try {
+    const sizes = { 'sheet-x-mm': 90, 'sheet-y-mm': 100, 'clamp-opening-x-mm': 78, 'clamp-opening-y-mm': 88 };
+    const flags = Object.entries({ ...sizes, 'coarsest-mm': 20, seed: 5, 'dots-per-inch': 250 });
+    const words = flags.flatMap(([name, value]) => [`--${name}`, String(value)]);
+    execFileSync(program, ['evidence-pattern', ...words, '--out', folder, '--quiet']);
+    const lines: string[] = [];
+    const [n, width, length] = [45, 90, 100];
+    for (let j = 0; j <= n; ++j)
+      for (let i = 0; i <= n; ++i) {
+        const [x, y] = [width * (i / n - 0.5), length * (j / n - 0.5)];
+        const share = Math.min(1, (x * x + y * y) / 34 ** 2);
+        lines.push(`v ${x} ${y} ${1.5 + 9 * (1 - share) ** 2}`, `vt ${i / n} ${j / n}`);
+      }
+    for (let j = 0; j < n; ++j)
+      for (let i = 0; i < n; ++i) {
+        const a = j * (n + 1) + i + 1;
+        const [b, c, d] = [a + 1, a + n + 2, a + n + 1];
+        lines.push(`f ${a}/${a} ${b}/${b} ${c}/${c}`, `f ${a}/${a} ${c}/${c} ${d}/${d}`);
+      }
+    const made = (name: string, mimeType: string) => ({
+      name,
+      mimeType,
+      buffer: readFileSync(join(folder, name)),
+    });
+    return {
+      scan: fileOf('scan.obj', lines.join('\n')),
+      picture: made('pattern.png', 'image/png'),
+      pattern: made('pattern.json', 'application/json'),
+    };
+  } finally {
+    rmSync(folder, { recursive: true, force: true });
+  }
+}
+
 /** Noise of 0.05 mm that is the same every time (Lehmer's generator, twelve uniform numbers a normal one). */
 function noisy(rows: number[][]): number[][] {
   let state = 7;

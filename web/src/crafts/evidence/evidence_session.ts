@@ -30,7 +30,14 @@ import {
   subjectOf,
 } from './evidence_document';
 import type { Bytes, Found } from './measured_files';
-import { countPoints, missingFrom, objectsInArchive, packObject, sortFiles } from './measured_files';
+import {
+  countPoints,
+  missingFrom,
+  objectsInArchive,
+  packObject,
+  plainName,
+  sortFiles,
+} from './measured_files';
 import type { Model, Residuals } from './residuals';
 import { readResiduals } from './residuals';
 import { scanInputs } from './scan_files';
@@ -53,8 +60,9 @@ export interface Look {
 
 /** Enough to see where a sheet is off, within seconds. */
 const quickTriangles = 2000;
-/** What runs have taken so far, to tell the time of the first one. */
-const usualSimulations = { diagnose: 300, pairs: 200, calibrate: 60 };
+/** What runs have taken so far, to tell the time of the first one: simulations, and a worker's time as a share of the page's. */
+const usualSimulations = { diagnose: 300, pairs: 100, calibrate: 100 };
+const workerShare = 0.35;
 
 export class EvidenceSession extends RoomSession<EvidenceDocument> {
   readonly failedTitle = 'Could not explain the difference';
@@ -266,9 +274,10 @@ export class EvidenceSession extends RoomSession<EvidenceDocument> {
   }
 
   /** Together with files that came before, where it is not complete. */
-  async takeObject({ name, files }: Found): Promise<void> {
+  async takeObject({ name: own, files }: Found): Promise<void> {
     const { projects } = this.services;
     const { draft, objects } = this.document.value;
+    const name = draft && own === plainName ? draft.name : own;
     const whole: Partial<Record<ObjectFile, Bytes>> = {};
     for (const file of objectFiles) {
       const kept = draft?.files[file];
@@ -286,10 +295,10 @@ export class EvidenceSession extends RoomSession<EvidenceDocument> {
         return bytes ? ([[file, await this.keep(bytes, type)]] as const) : [];
       }),
     );
-    const own = Object.fromEntries(references.flat());
+    const kept = Object.fromEntries(references.flat());
     const first = projects.isBlank.value && projects.document.value.name === 'New project';
     if (missingFrom(whole) !== '') {
-      projects.do(evidence.setDraft({ name: draft?.name ?? name, files: own }, `Open ${name}`));
+      projects.do(evidence.setDraft({ name, files: kept }, `Open ${name}`));
       return;
     }
     const pack = await this.keep(packObject(whole as Record<ObjectFile, Bytes>), 'application/zip');
@@ -303,7 +312,7 @@ export class EvidenceSession extends RoomSession<EvidenceDocument> {
       id: crypto.randomUUID(),
       name: freeName(name, objects),
       pack,
-      files: own as MeasuredObject['files'],
+      files: kept as MeasuredObject['files'],
       points: countPoints(whole['measured.csv'] as Bytes),
       use: 'fit',
     };
@@ -391,9 +400,10 @@ export class EvidenceSession extends RoomSession<EvidenceDocument> {
   readonly estimate = computed(() => {
     const triangles = this.#triangles();
     const mode = this.mode.value;
-    const told = (backend: string) =>
-      (mode === 'diagnose' ? recall('evidence', backend) : null) ?? this.#firstGuess.value;
-    const [browser, worker] = [told('wasm'), told('native')];
+    const told = (backend: string) => (mode === 'diagnose' ? recall('evidence', backend) : null);
+    const guess = this.#firstGuess.value;
+    const browser = told('wasm') ?? guess;
+    const worker = told('native') ?? (guess && { ...guess, seconds: workerShare * guess.seconds });
     return {
       browser_s: browser && estimateSeconds(browser, triangles),
       worker_s: worker && estimateSeconds(worker, triangles),

@@ -96,10 +96,13 @@ export async function sortFiles(files: readonly File[]): Promise<Sorted> {
   return { objects, scan, strange };
 }
 
+/** Of an object whose files do not say more. */
+export const plainName = 'Object 1';
+
 /** What the files call themselves where that is more than their roles. */
 function nameFrom(names: readonly string[]): string {
   const telling = names.find((name) => !(objectFiles as readonly string[]).includes(name.toLowerCase()));
-  return telling?.replace(/\.[^.]+$/, '') ?? 'Object 1';
+  return telling?.replace(/\.[^.]+$/, '') ?? plainName;
 }
 
 /** "measured.csv and setup.json". */

@@ -6,6 +6,7 @@ import { Results } from '../common/results';
 import { percent, readDiagnosis } from './diagnosis';
 import { diagnosing, evidence, usesIn } from './evidence_document';
 import type { EvidenceSession } from './evidence_session';
+import { measuredNow } from './measure_scan';
 import { distancesOf, meanOf } from './residuals';
 
 export function ResultsStrip({ session }: { session: EvidenceSession }) {
@@ -61,6 +62,17 @@ function shortOf(result: CraftResult): string {
 }
 
 function stateOf(session: EvidenceSession) {
+  const { scan } = session.document.value;
+  if (scan) {
+    const measured = measuredNow(scan);
+    return measured
+      ? {
+          state: 'done' as const,
+          title: 'Scan measured',
+          detail: `${formatCount(figure(measured.report, 'points') ?? 0)} points`,
+        }
+      : { state: 'idle' as const, title: 'Scan opened', detail: 'Its points are measured next' };
+  }
   const result = session.result.value;
   if (result) {
     const where = result.backend === 'native' ? 'on the worker' : 'in the browser';

@@ -6,9 +6,8 @@ import type { JsonObject, Operation, Report } from '../../jobs/contract';
 import { asJobError, findOperation, JobError } from '../../jobs/contract';
 import { LatestOnly } from '../../jobs/latest_only';
 import { isObject } from '../../project/document';
-import { toast } from '../../ui';
 import type { CraftResult } from '../common/craft_document';
-import { inForce, known, nameProject, sameRequest, withoutDefaults } from '../common/craft_document';
+import { inForce, known, sameRequest, withoutDefaults } from '../common/craft_document';
 import type { Measured } from '../common/estimate';
 import { estimateSeconds, recall } from '../common/estimate';
 import { solveInFull } from '../common/full_solve';
@@ -18,29 +17,12 @@ import { figure } from '../common/report';
 import { RoomSession } from '../common/room_session';
 import type { Services } from '../common/services';
 import { readDiagnosis } from './diagnosis';
-import type { EvidenceDocument, MeasuredObject, ObjectFile, Scan } from './evidence_document';
-import {
-  comparing,
-  evidence,
-  freeName,
-  inventing,
-  objectFiles,
-  operationOf,
-  registering,
-  subjectOf,
-} from './evidence_document';
-import type { Bytes, Found } from './measured_files';
-import {
-  countPoints,
-  missingFrom,
-  objectsInArchive,
-  packObject,
-  plainName,
-  sortFiles,
-} from './measured_files';
+import type { EvidenceDocument, MeasuredObject, ObjectFile } from './evidence_document';
+import { comparing, evidence, objectFiles, operationOf, subjectOf } from './evidence_document';
+import { sortFiles } from './measured_files';
 import type { Model, Residuals } from './residuals';
 import { readResiduals } from './residuals';
-import { scanInputs } from './scan_files';
+import { takeObject, takeScan } from './take_files';
 
 /** A measured object beside its simulation. */
 export interface Look {
@@ -258,8 +240,8 @@ export class EvidenceSession extends RoomSession<EvidenceDocument> {
       name,
       async () => {
         const { objects, scan, strange } = await sortFiles(files);
-        if (scan.length > 0) await this.#takeScan(scan);
-        for (const found of objects) await this.takeObject(found);
+        if (scan.length > 0) await takeScan(this, scan);
+        for (const found of objects) await takeObject(this, found);
         if (strange.length > 0 && objects.length + scan.length === 0)
           throw new JobError({
             code: 'invalid_input',
@@ -271,93 +253,6 @@ export class EvidenceSession extends RoomSession<EvidenceDocument> {
       ({ message }) => (this.problem.value = { kind: 'file', title: `Could not open ${name}`, message }),
     );
     return opened ?? false;
-  }
-
-  /** Together with files that came before, where it is not complete. */
-  async takeObject({ name: own, files }: Found): Promise<void> {
-    const { projects } = this.services;
-    const { draft, objects } = this.document.value;
-    const name = draft && own === plainName ? draft.name : own;
-    const whole: Partial<Record<ObjectFile, Bytes>> = {};
-    for (const file of objectFiles) {
-      const kept = draft?.files[file];
-      const bytes = files[file] ?? (kept ? await projects.blobs.read(kept.blob) : undefined);
-      if (bytes) whole[file] = bytes;
-    }
-    const references = await Promise.all(
-      objectFiles.map(async (file) => {
-        const bytes = whole[file];
-        const type = {
-          'mould.obj': 'model/obj',
-          'setup.json': 'application/json',
-          'measured.csv': 'text/csv',
-        }[file];
-        return bytes ? ([[file, await this.keep(bytes, type)]] as const) : [];
-      }),
-    );
-    const kept = Object.fromEntries(references.flat());
-    const first = projects.isBlank.value && projects.document.value.name === 'New project';
-    if (missingFrom(whole) !== '') {
-      projects.do(evidence.setDraft({ name, files: kept }, `Open ${name}`));
-      return;
-    }
-    const pack = await this.keep(packObject(whole as Record<ObjectFile, Bytes>), 'application/zip');
-    const same = objects.find((object) => object.pack.blob === pack.blob);
-    if (same) {
-      toast(`${same.name} is here already.`);
-      this.chosenId.value = same.id;
-      return;
-    }
-    const object: MeasuredObject = {
-      id: crypto.randomUUID(),
-      name: freeName(name, objects),
-      pack,
-      files: kept as MeasuredObject['files'],
-      points: countPoints(whole['measured.csv'] as Bytes),
-      use: 'fit',
-    };
-    projects.do(evidence.addObject(object));
-    if (first) projects.do(nameProject(object.name));
-    this.chosenId.value = object.id;
-  }
-
-  async #takeScan(dropped: readonly File[]): Promise<void> {
-    const operation = this.operationNamed(registering);
-    const kept = this.document.value.scan?.files ?? [];
-    const added = await Promise.all(
-      scanInputs(dropped, operation).map(async ({ input, file }) => ({
-        input,
-        file_name: file.name,
-        file: await this.keep(
-          new Uint8Array(await file.arrayBuffer()),
-          file.type || 'application/octet-stream',
-        ),
-      })),
-    );
-    const others = kept.filter((old) => !added.some(({ input }) => input === old.input));
-    const files = [...others, ...added];
-    const parameters = this.document.value.scan?.parameters ?? {};
-    const scan: Scan = { files, corners: null, parameters, measured: null };
-    this.services.projects.do(evidence.setScan(scan, 'Open a scan'));
-  }
-
-  /** An object that nobody made, with faults that are known. */
-  async inventObject(sample: string, parameters: JsonObject): Promise<boolean> {
-    const made = await this.busy(
-      'opening',
-      'a virtual object',
-      async (options) => {
-        const done = await this.services.browser.run(
-          { operation: inventing, parameters, inputs: { mould: { sample } } },
-          options,
-        );
-        for (const found of objectsInArchive(await bytesOf(done, 'object.zip'), `virtual ${sample}.zip`))
-          await this.takeObject(found);
-        return true;
-      },
-      (error) => this.report(error, 'Could not make a virtual object'),
-    );
-    return made ?? false;
   }
 
   // ---- runs ----

@@ -47,6 +47,7 @@ export function MainButton({ session }: { session: EvidenceSession }) {
   }
   const { projects } = session.services;
   const used = session.profileUsed.value;
+  const named = (session.diagnosis.value?.named.length ?? 0) > 0;
   const outputs = session.operation.value?.outputs ?? [];
   return (
     <>
@@ -87,7 +88,9 @@ export function MainButton({ session }: { session: EvidenceSession }) {
       <p>
         {used
           ? 'Sheets, prints and moulds are made for this machine'
-          : 'Kept with the project, for thermoforming'}
+          : named
+            ? 'Material and cause as found, for thermoforming'
+            : 'The calibrated material, for thermoforming'}
       </p>
     </>
   );

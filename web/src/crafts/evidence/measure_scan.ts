@@ -8,6 +8,7 @@ import { readyWorker } from '../common/services';
 import type { MeasuredScan, Place, Scan } from './evidence_document';
 import { evidence, registering } from './evidence_document';
 import type { EvidenceSession } from './evidence_session';
+import { takeObject } from './take_files';
 
 /** In the order that the operation wants them. */
 export const cornerNames = ['front left', 'front right', 'back right', 'back left'] as const;
@@ -108,6 +109,6 @@ export async function takePoints(
   const { projects } = session.services;
   const bytes = await projects.blobs.read(points.blob);
   const name = scan.files.find(({ input }) => input === 'scan')?.file_name.replace(/\.[^.]+$/, '') ?? 'Scan';
-  await session.takeObject({ name, files: { 'measured.csv': bytes } });
+  await takeObject(session, { name, files: { 'measured.csv': bytes } });
   projects.do(evidence.setScan(null, 'Use the measured points'));
 }

@@ -7,6 +7,7 @@ import { Button, Dialog } from '../../ui';
 import { withoutDefaults } from '../common/craft_document';
 import { ParameterPanel } from '../common/parameter_panel';
 import type { EvidenceSession } from './evidence_session';
+import { inventObject } from './take_files';
 
 export function VirtualObject({ session, operation }: { session: EvidenceSession; operation: Operation }) {
   const open = useSignal(false);
@@ -38,7 +39,7 @@ function Choice({ session, operation, onClose }: ChoiceProps) {
     (parameters.value = withoutDefaults(operation, { ...parameters.value, [name]: value }));
   const make = () => {
     onClose();
-    void session.inventObject(sample.value, parameters.value);
+    void inventObject(session, sample.value, parameters.value);
   };
   return (
     <Dialog title={operation.title} onClose={onClose}>

@@ -17,6 +17,7 @@ constexpr int refitted_pairs = 6, quick_iterations = 5, polishing_iterations = 8
 constexpr const char* fitting = "Fitting the causes";
 constexpr double explained_share = 0.6;   // of the base model's structure (its variance) that a named cause must explain
 constexpr double likely = 0.5;
+constexpr double out_of_reach = 60;        // log evidence that polishing does not make up for
 constexpr double least_gain = 0.02;        // of the held-out error
 constexpr double least_movement = 0.5;     // of the known misfit
 constexpr double inseparable_likeness = 0.9;
@@ -91,9 +92,7 @@ class Diagnostician {
     const auto at_nominal = bag_.run(model_.nominal(), context_, "Calibrating");
     if (!at_nominal) throw Error(ErrorCode::could_not_solve, "", "The simulation fails with the set-up's own parameters: check mould and set-up.");
     estimate_noise_about(*at_nominal);
-    double soft = 0;
-    for (const NoiseEstimate& noise : result_.noise) soft = std::max(soft, noise.sigma);
-    result_.base = fit_parameters(bag_, *mean_distance_objective(model_, soft), model_.base_parameters(), model_.nominal(), {}, {}, context_, "Calibrating");
+    result_.base = fit_parameters(bag_, *mean_distance_objective(model_, softness()), model_.base_parameters(), model_.nominal(), {}, {}, context_, "Calibrating");
     estimate_noise_about(result_.base.predictions);
     misfit_.emplace(model_, weights_);
   }
@@ -106,10 +105,24 @@ class Diagnostician {
     sensitivities_ = sensitivities_at(bag_, result_.base.u, result_.base.predictions, columns_, context_, "Trying each effect");
     result_.liberties = with_role(model_, ParameterRole::discrepancy);
     result_.liberty_sensitivities = chosen(sensitivities_, columns_, result_.liberties);
+    trust_by_liberties();
     const GramByStructure gram = misfit_->gram(residuals(model_, result_.base.predictions), sensitivities_);
     screened_ = all_hypotheses(model_, options_.pairs);
     for (Hypothesis& h : screened_) weigh(model_, gram, columns_, result_.base.u, h);
     normalise(screened_);
+  }
+
+  /// Points where equally good simulations disagree weigh less.
+  void trust_by_liberties() {
+    for (std::size_t object = 0; object < weights_.size(); ++object) {
+      std::vector<Eigen::MatrixXd> movements;
+      for (std::size_t l = 0; l < result_.liberties.size(); ++l)
+        movements.push_back(model_.parameters()[static_cast<std::size_t>(result_.liberties[l])].prior_sd * result_.liberty_sensitivities[object][l]);
+      const Eigen::VectorXd variance = model_variance(model_.measurements()[object], movements);
+      for (Eigen::Index i = 0; i < variance.size(); ++i)
+        if (weights_[object][i] > 0) weights_[object][i] = 1 / (1 / weights_[object][i] + variance[i]);
+    }
+    misfit_.emplace(model_, weights_);
   }
 
   const Hypothesis& screened(const std::vector<int>& causes, bool unknown) const {
@@ -124,10 +137,11 @@ class Diagnostician {
     return best;
   }
 
-  /// Fits base parameters and those of `causes` together, from the best of `starts`.
-  ParameterFit fit_from(const std::vector<int>& causes, double structure, const std::vector<Eigen::VectorXd>& starts, std::vector<Sensitivities> known, int iterations) {
+  /// Fits base parameters and those of `causes` together, from the best of `starts`. No more structure is allowed than the right causes
+  /// would leave: with as much as there is, what the causes should explain would cost nothing unexplained.
+  ParameterFit fit_from(const std::vector<int>& causes, const std::vector<Eigen::VectorXd>& starts, std::vector<Sensitivities> known, int iterations) {
     const std::vector<int> free = parameters_of(model_, causes);
-    const StructuredObjective objective(model_, *misfit_, nearest_size(structure), result_.liberties, result_.liberty_sensitivities);
+    const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), result_.liberties, result_.liberty_sensitivities);
     const auto predictions = bag_.run(starts, context_, fitting);
     std::size_t best = 0;
     double best_value = std::numeric_limits<double>::infinity();
@@ -158,8 +172,27 @@ class Diagnostician {
     std::vector<Eigen::VectorXd> starts{result_.base.u, u};
     for (const auto& r : refits_)  // a pair may start from what its parts are like alone
       if (causes.size() == 2 && r.causes.size() == 1 && (r.causes[0] == causes[0] || r.causes[0] == causes[1])) starts.push_back(r.fit.u);
-    refits_.push_back({fit_from(causes, start.structure, starts, chosen(sensitivities_, columns_, free), quick_iterations), causes});
+    refits_.push_back({fit_from(causes, starts, chosen(sensitivities_, columns_, free), quick_iterations), causes});
+    if (const Eigen::VectorXd far = far_start(causes); far.size() > 0) {
+      // The calibrated base may have swallowed an effect that only goes one way: nothing near it points back.
+      ParameterFit other = fit_from(causes, {far}, {}, quick_iterations);
+      if (other.value < refits_.back().fit.value) refits_.back().fit = std::move(other);
+    }
     weigh_refit(refits_.back());
+  }
+
+  /// The nominal model with a one-sided cause at its usual strength; empty for other causes, and where the model has no answer there.
+  Eigen::VectorXd far_start(const std::vector<int>& causes) {
+    if (causes.size() != 1) return {};
+    Eigen::VectorXd u = 0.5 * result_.base.u;
+    bool one_sided = false;
+    for (const int p : model_.causes()[static_cast<std::size_t>(causes.front())].parameters) {
+      const ModelParameter& parameter = model_.parameters()[static_cast<std::size_t>(p)];
+      u[p] = parameter.prior_sd;
+      one_sided |= parameter.one_sided();
+    }
+    u = within_ranges(model_, u);
+    return one_sided && bag_.run(u, context_, fitting) ? u : Eigen::VectorXd();
   }
 
   /// Once more, with sensitivities taken where the fit stands; what was learnt with more causes counts for fewer.
@@ -172,10 +205,7 @@ class Diagnostician {
         if (std::find(refit.fit.free.begin(), refit.fit.free.end(), static_cast<int>(p)) == refit.fit.free.end()) u[static_cast<Eigen::Index>(p)] = 0;
       starts.push_back(u);
     }
-    double structure = 0;
-    for (const Hypothesis& h : result_.hypotheses)
-      if (h.causes == refit.causes) structure = std::max(structure, h.structure * (h.unknown_structure ? 0 : 1));
-    refit.fit = fit_from(refit.causes, structure, starts, {}, polishing_iterations);
+    refit.fit = fit_from(refit.causes, starts, {}, polishing_iterations);
     weigh_refit(refit);
   }
 
@@ -211,8 +241,9 @@ class Diagnostician {
     normalise(result_.hypotheses);
     // The leaders, what they are parts of and have as parts, larger ones first.
     std::set<std::vector<int>> leaders{{}};
+    const double highest = result_.hypotheses.front().log_evidence;
     for (const Hypothesis& h : result_.hypotheses) {
-      if (leaders.size() > leader_count) break;
+      if (leaders.size() > leader_count || (leaders.size() > 2 && h.log_evidence < highest - out_of_reach)) break;
       leaders.insert(h.causes);
       if (h.causes.size() == 2)
         for (const int cause : h.causes) leaders.insert({cause});
@@ -272,18 +303,21 @@ class Diagnostician {
     return structure / weight;
   }
 
-  std::vector<Eigen::VectorXd> held_out(const ParameterFit& fit, const std::vector<int>& causes) {
-    return held_out_errors(bag_, fit, weights_, nearest_size(structure_left(causes)), result_.liberties, result_.liberty_sensitivities, context_);
+  HeldOut held_out(const ParameterFit& fit) {
+    return hold_out(bag_, fit, weights_, nearest_size(model_.known_misfit()), result_.liberties, result_.liberty_sensitivities, context_);
   }
 
-  /// The most probable explanation whose causes predict held-out data better than their absence does.
+  std::vector<Eigen::VectorXd> predicted(const ParameterFit& fit, const std::vector<int>& causes) const {
+    return predictive_errors(model_, fit, weights_, nearest_size(structure_left(causes)), result_.liberties, result_.liberty_sensitivities);
+  }
+
+  /// The most probable explanation whose causes predict held-out data better than their absence does, all fitted alike.
   void judge() {
     const auto span = context_.span(0.85, 1, "Predicting what was held out");
     find_causes();
     result_.unexplained_before = structure_left({});
-    const auto before = held_out(result_.base, {});
     result_.extended = result_.base;
-    result_.held_out = compare_errors(model_, before, before);
+    const std::vector<Eigen::VectorXd> without = predicted(refit_of({}).fit, {});
     std::set<std::vector<int>> seen;
     bool only_structure = false;
     for (const Hypothesis& h : result_.hypotheses) {
@@ -295,16 +329,21 @@ class Diagnostician {
         only_structure = unknown_over_none() > 0;
         break;
       }
-      if (!seen.insert(h.causes).second || !significant(h)) continue;
+      if (!seen.insert(h.causes).second) continue;
+      result_.trials.push_back({h.causes, significant(h), {}});
+      if (!result_.trials.back().significant) continue;
       const Refit& r = refit_of(h.causes);
-      const HeldOutGain gain = compare_errors(model_, before, held_out(r.fit, h.causes));
+      const HeldOutGain gain = compare_errors(model_, without, predicted(r.fit, h.causes), weights_);
+      result_.trials.back().gain = gain;
       if (gain.gain_low <= 0 || gain.gain_share < least_gain) continue;
       result_.verdict = h.causes;
-      result_.extended = r.fit;
-      result_.held_out = gain;
       result_.doubtful = h.unknown_structure;
+      widen_by_jackknife(r.fit, held_out(r.fit).steps);
+      result_.extended = recalibrated(r.fit);
       break;
     }
+    const auto before = held_out(result_.base).errors;
+    result_.held_out = compare_errors(model_, before, result_.verdict.empty() ? before : held_out(result_.extended).errors);
     result_.unexplained_after = structure_left(result_.verdict);
     result_.structure = nearest_size(result_.unexplained_after);
     measure_structure();
@@ -318,6 +357,45 @@ class Diagnostician {
     result_.doubtful |= finding_of(result_.verdict.front()).probability < likely;
     if (result_.doubtful && 1 - ratio * ratio < explained_share) result_.reading = Reading::unknown;
     find_twins();
+  }
+
+  /// What was named stays; the base parameters are calibrated about it as those of the base model were.
+  ParameterFit recalibrated(const ParameterFit& fit) {
+    ParameterFit result = fit_parameters(bag_, *mean_distance_objective(model_, softness()), model_.base_parameters(), fit.u, {}, {}, context_, fitting);
+    for (std::size_t a = result.free.size(); a < fit.free.size(); ++a) {
+      result.free.push_back(fit.free[a]);
+      for (std::size_t object = 0; object < result.sensitivities.size(); ++object) result.sensitivities[object].push_back(fit.sensitivities[object][a]);
+    }
+    return result;
+  }
+
+  /// Distance below which the mean distance is rounded off: the noise.
+  double softness() const {
+    double soft = 0;
+    for (const NoiseEstimate& noise : result_.noise) soft = std::max(soft, noise.sigma);
+    return soft;
+  }
+
+  /// Intervals of the named causes, by what leaving out a quarter of the data changes: that knows of misfits that no prior has.
+  void widen_by_jackknife(const ParameterFit& fit, const Eigen::MatrixXd& steps) {
+    for (const int cause : result_.verdict) {
+      CauseFinding& finding = *std::find_if(result_.causes.begin(), result_.causes.end(), [&](const CauseFinding& f) { return f.cause == cause; });
+      const std::vector<int>& own = model_.causes()[static_cast<std::size_t>(cause)].parameters;
+      double variance = 0;
+      const double length = Eigen::Map<const Eigen::VectorXd>(finding.values.data(), static_cast<Eigen::Index>(finding.values.size())).norm();
+      for (Eigen::Index f = 0; f < steps.cols(); ++f) {
+        double along = 0;
+        for (std::size_t i = 0; i < own.size(); ++i) {
+          const auto row = std::find(fit.free.begin(), fit.free.end(), own[i]) - fit.free.begin();
+          along += steps(row, f) * (own.size() == 1 ? 1 : finding.values[i] / std::max(length, 1e-12));
+        }
+        variance += along * along * (fold_count - 1.0) / fold_count;
+      }
+      const double half = 0.5 * (finding.high - finding.low);
+      const double wider = std::sqrt(half * half + 1.96 * 1.96 * variance);
+      finding.low = finding.strength - wider;
+      finding.high = finding.strength + wider;
+    }
   }
 
   double unknown_over_none() const {

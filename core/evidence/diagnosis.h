@@ -28,6 +28,13 @@ struct NotSeparable {
   double likeness = 0;                    // 1: the same to these data
 };
 
+/// An explanation that was asked to predict what was held out.
+struct HeldOutTrial {
+  std::vector<int> causes;
+  bool significant = true;  // each of its causes moves points by more than the model's own misfit; else it was not asked
+  HeldOutGain gain;
+};
+
 struct Diagnosis {
   Reading reading = Reading::none;
   bool doubtful = false;                  // named, but part of the structure stays unexplained
@@ -45,6 +52,7 @@ struct Diagnosis {
   double noise_floor = 0;                 // mean distance that noise alone gives
   double unexplained_before = 0, unexplained_after = 0;  // size of the structure left by the base model and by the best explanation
   HeldOutGain held_out;
+  std::vector<HeldOutTrial> trials;       // in the order they were asked
   int simulations = 0;
   double seconds_calibration = 0, seconds = 0;
 };

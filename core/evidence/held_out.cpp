@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "evidence/held_out.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
+#include <memory>
+
+#include "base/random.h"
 
 namespace formwright {
 
@@ -22,7 +25,8 @@ std::vector<Eigen::VectorXd> point_errors(const Predictions& residuals, const st
   return errors;
 }
 
-HeldOutGain compare_errors(const ForwardModel& model, const std::vector<Eigen::VectorXd>& before, const std::vector<Eigen::VectorXd>& after) {
+HeldOutGain compare_errors(const ForwardModel& model, const std::vector<Eigen::VectorXd>& before, const std::vector<Eigen::VectorXd>& after,
+                           const std::vector<Eigen::VectorXd>& weights) {
   struct Block {
     double before = 0, after = 0, count = 0;
   };
@@ -32,9 +36,10 @@ HeldOutGain compare_errors(const ForwardModel& model, const std::vector<Eigen::V
     for (Eigen::Index i = 0; i < before[object].size(); ++i) {
       if (before[object][i] < 0 || after[object][i] < 0) continue;
       Block& block = own[static_cast<std::size_t>(block_of(model.measurements()[object], i))];
-      block.before += before[object][i];
-      block.after += after[object][i];
-      block.count += 1;
+      const double weight = weights.empty() ? 1 : std::sqrt(weights[object][i]);
+      block.before += weight * before[object][i];
+      block.after += weight * after[object][i];
+      block.count += weight;
     }
     for (const Block& block : own)
       if (block.count > 0) blocks.push_back(block);
@@ -49,13 +54,10 @@ HeldOutGain compare_errors(const ForwardModel& model, const std::vector<Eigen::V
   const Block all = sum(blocks);
   constexpr int draws = 800;
   std::array<std::vector<double>, 3> drawn;
-  std::uint64_t state = 0x2545f4914f6cdd1dull;
+  Random random(1);
   for (int k = 0; k < draws; ++k) {
     std::vector<Block> sample;
-    for (std::size_t i = 0; i < blocks.size(); ++i) {
-      state = state * 6364136223846793005ull + 1442695040888963407ull;
-      sample.push_back(blocks[static_cast<std::size_t>((state >> 33) % blocks.size())]);
-    }
+    for (std::size_t i = 0; i < blocks.size(); ++i) sample.push_back(blocks[random.below(blocks.size())]);
     const Block total = sum(sample);
     drawn[0].push_back(total.before / total.count);
     drawn[1].push_back(total.after / total.count);
@@ -72,49 +74,124 @@ HeldOutGain compare_errors(const ForwardModel& model, const std::vector<Eigen::V
   return gain;
 }
 
-std::vector<Eigen::VectorXd> held_out_errors(SimulationBag& bag, const ParameterFit& fit, const std::vector<Eigen::VectorXd>& weights, std::size_t structure,
-                                             const std::vector<int>& liberty_parameters, const std::vector<Sensitivities>& liberties, Context& context) {
+namespace {
+
+/// `weights` without the points of a fold (-1: with all).
+std::vector<Eigen::VectorXd> weights_without(const ForwardModel& model, std::vector<Eigen::VectorXd> weights, int left_out) {
+  for (std::size_t object = 0; object < weights.size(); ++object)
+    for (Eigen::Index i = 0; i < weights[object].size(); ++i)
+      if (fold_of(block_of(model.measurements()[object], i)) == left_out) weights[object][i] = 0;
+  return weights;
+}
+
+/// Takes over `own` where a point is of the fold.
+void take_fold(const ForwardModel& model, const std::vector<Eigen::VectorXd>& own, int fold, std::vector<Eigen::VectorXd>& errors) {
+  for (std::size_t object = 0; object < own.size(); ++object)
+    for (Eigen::Index i = 0; i < own[object].size(); ++i)
+      if (fold_of(block_of(model.measurements()[object], i)) == fold) errors[object][i] = own[object][i];
+}
+
+}  // namespace
+
+std::vector<Eigen::VectorXd> predictive_errors(const ForwardModel& model, const ParameterFit& fit, const std::vector<Eigen::VectorXd>& weights, std::size_t structure,
+                                               const std::vector<int>& liberty_parameters, const std::vector<Sensitivities>& liberties) {
+  std::vector<int> columns = fit.free;
+  columns.insert(columns.end(), liberty_parameters.begin(), liberty_parameters.end());
+  std::vector<Sensitivities> sensitivities = fit.sensitivities;
+  for (std::size_t object = 0; object < sensitivities.size(); ++object)
+    sensitivities[object].insert(sensitivities[object].end(), liberties[object].begin(), liberties[object].end());
+  const Predictions left = residuals(model, fit.predictions);
+  const auto k = static_cast<Eigen::Index>(columns.size());
+  std::vector<Eigen::VectorXd> errors = point_errors(left, weights);
+  for (int fold = 0; fold < fold_count; ++fold) {
+    const MisfitOfAll misfit(model, weights_without(model, weights, fold));
+    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(1 + k, 1 + k);
+    for (std::size_t object = 0; object < left.size(); ++object) gram += misfit.objects()[object].gram_at(left[object], sensitivities[object], structure);
+    Eigen::MatrixXd A = gram.bottomRightCorner(k, k);
+    Eigen::VectorXd b = gram.col(0).tail(k);
+    for (Eigen::Index a = 0; a < k; ++a) {
+      const int p = columns[static_cast<std::size_t>(a)];
+      const double precision = std::pow(model.parameters()[static_cast<std::size_t>(p)].prior_sd, -2);
+      A(a, a) += precision;
+      b[a] -= precision * fit.u[p];
+    }
+    const Eigen::VectorXd step = A.llt().solve(b);
+    Predictions rest = left;
+    for (std::size_t object = 0; object < rest.size(); ++object) {
+      for (Eigen::Index a = 0; a < k; ++a) rest[object] -= step[a] * sensitivities[object][static_cast<std::size_t>(a)];
+      rest[object] -= misfit.objects()[object].smooth(rest[object], structure);
+    }
+    take_fold(model, point_errors(rest, weights), fold, errors);
+  }
+  return errors;
+}
+
+HeldOut hold_out(SimulationBag& bag, const ParameterFit& fit, const std::vector<Eigen::VectorXd>& weights, std::size_t structure,
+                 const std::vector<int>& liberty_parameters, const std::vector<Sensitivities>& liberties, Context& context) {
   const ForwardModel& model = bag.model();
   const Predictions at_fit = residuals(model, fit.predictions);
-  // The step from the fit to where it would be without `left_out` (none: -1). The fit is not at rest to the last digit, so its own step is
-  // taken off: what counts is the difference that the fold makes.
   const auto k = static_cast<Eigen::Index>(fit.free.size());
-  const auto step_without = [&](int left_out) {
-    std::vector<Eigen::VectorXd> others = weights;
-    for (std::size_t object = 0; object < weights.size(); ++object)
-      for (Eigen::Index i = 0; i < weights[object].size(); ++i)
-        if (fold_of(block_of(model.measurements()[object], i)) == left_out) others[object][i] = 0;
-    const MisfitOfAll misfit(model, others);
-    const StructuredObjective objective(model, misfit, structure, liberty_parameters, liberties);
+  struct Fold {
+    std::unique_ptr<MisfitOfAll> misfit;
+    std::unique_ptr<StructuredObjective> objective;
+    double value = 0;       // at the fit to all data
+    Eigen::VectorXd step;
+  };
+  // The step from the fit to where it would be without `left_out` (none: -1).
+  const auto without = [&](int left_out) {
+    Fold fold;
+    fold.misfit = std::make_unique<MisfitOfAll>(model, weights_without(model, weights, left_out));
+    fold.objective = std::make_unique<StructuredObjective>(model, *fold.misfit, structure, liberty_parameters, liberties);
+    fold.value = fold.objective->value(at_fit, fit.u);
     Eigen::VectorXd g, low(k), high(k);
     Eigen::MatrixXd H;
-    objective.quadratic(at_fit, fit.sensitivities, fit.free, fit.u, g, H);
+    fold.objective->quadratic(at_fit, fit.sensitivities, fit.free, fit.u, g, H);
     for (Eigen::Index a = 0; a < k; ++a) {
       const ModelParameter& p = model.parameters()[static_cast<std::size_t>(fit.free[static_cast<std::size_t>(a)])];
       const double u = fit.u[fit.free[static_cast<std::size_t>(a)]];
       low[a] = std::max(p.low_u() - u, -2 * p.probe);
       high[a] = std::min(p.high_u() - u, 2 * p.probe);
     }
-    return bounded_step(H, g, low, high);
+    fold.step = bounded_step(H, g, low, high);
+    return fold;
   };
-  const Eigen::VectorXd at_rest = step_without(-1);
-  std::vector<Eigen::VectorXd> points;
-  for (int fold = 0; fold < fold_count; ++fold) {
-    const Eigen::VectorXd step = step_without(fold) - at_rest;
-    points.push_back(fit.u);
-    for (Eigen::Index a = 0; a < k; ++a) points.back()[fit.free[static_cast<std::size_t>(a)]] += step[a];
-    points.back() = within_ranges(model, points.back());
+  // The fit is not at rest to the last digit, so its own step is taken off: what counts is the difference that the fold makes.
+  const Eigen::VectorXd at_rest = without(-1).step;
+  HeldOut result{point_errors(at_fit, weights), Eigen::MatrixXd::Zero(k, fold_count)};
+  std::vector<Fold> folds;
+  std::vector<int> open;
+  for (int f = 0; f < fold_count; ++f) {
+    folds.push_back(without(f));
+    folds.back().step -= at_rest;
+    open.push_back(f);
   }
-  const auto predictions = bag.run(points, context, "Predicting what was held out");
-  std::vector<Eigen::VectorXd> errors = point_errors(at_fit, weights);
-  for (int fold = 0; fold < fold_count; ++fold) {
-    if (!predictions[static_cast<std::size_t>(fold)]) continue;  // the fit to all data stands in for it
-    const auto own = point_errors(residuals(model, *predictions[static_cast<std::size_t>(fold)]), weights);
-    for (std::size_t object = 0; object < own.size(); ++object)
-      for (Eigen::Index i = 0; i < own[object].size(); ++i)
-        if (fold_of(block_of(model.measurements()[object], i)) == fold) errors[object][i] = own[object][i];
+  // Where the straight line misses, so that the other folds are served worse than before, half the way is gone, and half of that.
+  constexpr int halvings = 2;
+  for (int halved = 0; halved <= halvings && !open.empty(); ++halved) {
+    std::vector<Eigen::VectorXd> points;
+    for (const int f : open) {
+      points.push_back(fit.u);
+      for (Eigen::Index a = 0; a < k; ++a) points.back()[fit.free[static_cast<std::size_t>(a)]] += folds[static_cast<std::size_t>(f)].step[a];
+      points.back() = within_ranges(model, points.back());
+    }
+    const auto predictions = bag.run(points, context, "Predicting what was held out");
+    std::vector<int> still_open;
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      const int f = open[i];
+      Fold& fold = folds[static_cast<std::size_t>(f)];
+      const bool worse = !predictions[i] || fold.objective->value(residuals(model, *predictions[i]), points[i]) > fold.value;
+      if (worse && halved < halvings) {
+        fold.step *= 0.5;
+        still_open.push_back(f);
+        continue;
+      }
+      if (!predictions[i]) continue;  // the fit to all data stands in for it
+      result.steps.col(f) = fold.step;
+      take_fold(model, point_errors(residuals(model, *predictions[i]), weights), f, result.errors);
+    }
+    open = std::move(still_open);
   }
-  return errors;
+  return result;
 }
 
 }  // namespace formwright

@@ -23,10 +23,22 @@ int fold_of(int block);
 /// Per-point errors |residual|; points of weight 0 are -1.
 std::vector<Eigen::VectorXd> point_errors(const Predictions& residuals, const std::vector<Eigen::VectorXd>& weights);
 
-HeldOutGain compare_errors(const ForwardModel& model, const std::vector<Eigen::VectorXd>& before, const std::vector<Eigen::VectorXd>& after);
+/// With `weights` (inverse variances) points count by how far they may be trusted, else alike.
+HeldOutGain compare_errors(const ForwardModel& model, const std::vector<Eigen::VectorXd>& before, const std::vector<Eigen::VectorXd>& after,
+                           const std::vector<Eigen::VectorXd>& weights = {});
+
+/// What an explanation as a whole (its parameters, the simulation's liberties, structure of the size sizes()[structure]) predicts of each
+/// fold from the others, linearised about the fit: errors as of point_errors. No simulations.
+std::vector<Eigen::VectorXd> predictive_errors(const ForwardModel& model, const ParameterFit& fit, const std::vector<Eigen::VectorXd>& weights, std::size_t structure,
+                                               const std::vector<int>& liberty_parameters, const std::vector<Sensitivities>& liberties);
+
+struct HeldOut {
+  std::vector<Eigen::VectorXd> errors;  // each object, each point, predicted by a fit that did not see it; -1 for points of weight 0
+  Eigen::MatrixXd steps;                // free parameters x folds: how far the fit moves without the fold
+};
 
 /// For each fold, fits `fit`'s free parameters to the other folds (linearised about the fit) and predicts the fold by a simulation of its own.
-std::vector<Eigen::VectorXd> held_out_errors(SimulationBag& bag, const ParameterFit& fit, const std::vector<Eigen::VectorXd>& weights, std::size_t structure,
-                                             const std::vector<int>& liberty_parameters, const std::vector<Sensitivities>& liberties, Context& context);
+HeldOut hold_out(SimulationBag& bag, const ParameterFit& fit, const std::vector<Eigen::VectorXd>& weights, std::size_t structure,
+                 const std::vector<int>& liberty_parameters, const std::vector<Sensitivities>& liberties, Context& context);
 
 }  // namespace formwright

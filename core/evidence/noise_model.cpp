@@ -3,12 +3,12 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <cmath>
 #include <array>
-#include <cstdint>
+#include <cmath>
 #include <numbers>
 #include <numeric>
 
+#include "base/random.h"
 #include "evidence/structured_misfit.h"
 
 namespace formwright {
@@ -81,6 +81,27 @@ NoiseEstimate estimate_noise(const Measurement& measurement, const Eigen::Matrix
   return result;
 }
 
+Eigen::VectorXd model_variance(const Measurement& measurement, const std::vector<Eigen::MatrixXd>& movements) {
+  constexpr double share = 0.5;  // of a movement that stays even where its direction is accounted for
+  constexpr int cells = 24;
+  const Eigen::Index n = measurement.measured.rows();
+  Eigen::VectorXd own = Eigen::VectorXd::Zero(n);
+  for (const Eigen::MatrixXd& movement : movements) own += movement.rowwise().squaredNorm() * (share * share / static_cast<double>(measurement.measured.cols()));
+  // Necks move: what happens to a point may as well happen to its neighbours.
+  Eigen::ArrayXXd sum = Eigen::ArrayXXd::Zero(cells + 2, cells + 2), count = sum;
+  const auto cell = [&](Eigen::Index i, int k) { return 1 + std::clamp(static_cast<int>(cells * measurement.place(i, k)), 0, cells - 1); };
+  for (Eigen::Index i = 0; i < n; ++i) {
+    sum(cell(i, 0), cell(i, 1)) += own[i];
+    count(cell(i, 0), cell(i, 1)) += 1;
+  }
+  Eigen::VectorXd variance(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto around = [&](const Eigen::ArrayXXd& a) { return a.block(cell(i, 0) - 1, cell(i, 1) - 1, 3, 3).sum(); };
+    variance[i] = std::max(own[i], around(sum) / around(count));
+  }
+  return variance;
+}
+
 StructureTest test_structure(const Measurement& measurement, const Eigen::MatrixXd& residual, const Eigen::VectorXd& weights) {
   StructureTest test;
   std::vector<Eigen::Index> used;
@@ -128,13 +149,10 @@ StructureTest test_structure(const Measurement& measurement, const Eigen::Matrix
   std::iota(order.begin(), order.end(), 0);
   test.neighbour_correlation = correlation(order);
   constexpr int permutations = 199;
-  std::uint64_t state = 0x9e3779b97f4a7c15ull;  // the same shuffles on every machine
+  Random random(1);
   int as_large = 0;
   for (int k = 0; k < permutations; ++k) {
-    for (std::size_t i = order.size() - 1; i > 0; --i) {
-      state = state * 6364136223846793005ull + 1442695040888963407ull;
-      std::swap(order[i], order[static_cast<std::size_t>((state >> 33) % (i + 1))]);
-    }
+    for (std::size_t i = order.size() - 1; i > 0; --i) std::swap(order[i], order[random.below(i + 1)]);
     as_large += correlation(order) >= test.neighbour_correlation;
   }
   test.p_value = (1.0 + as_large) / (1.0 + permutations);

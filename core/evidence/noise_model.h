@@ -2,6 +2,7 @@
 #pragma once
 // How much a measured point may be trusted: its stated standard deviation, checked against the data, and less where it is an outlier.
 #include <Eigen/Core>
+#include <vector>
 
 #include "evidence/forward_model.h"
 
@@ -17,6 +18,10 @@ struct NoiseEstimate {
 
 /// `residual` n x d of some model near the truth. What is smooth over the object is not noise, so it is taken off first, robustly.
 NoiseEstimate estimate_noise(const Measurement& measurement, const Eigen::MatrixXd& residual);
+
+/// Where equally good simulations disagree, a point is no evidence: variance of each of its d numbers (n) from what `movements` (n x d each, one
+/// standard deviation of a liberty of the simulation) do at it and around it. Thin necks of a sheet move by many millimetres with the mesh.
+Eigen::VectorXd model_variance(const Measurement& measurement, const std::vector<Eigen::MatrixXd>& movements);
 
 /// Correlation of residuals between neighbours: is there structure beyond noise?
 struct StructureTest {

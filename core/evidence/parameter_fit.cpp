@@ -46,8 +46,9 @@ class MeanDistance : public FitObjective {
   }
 
  private:
-  /// Far below what any data say, yet enough to leave at its nominal value what they do not.
-  double pull(Eigen::Index p) const { return 1e-3 * soft_ / std::pow(model_.parameters()[static_cast<std::size_t>(p)].prior_sd, 2); }
+  /// As many points as neighbours that know nothing of each other, about a hundred, would weigh against the prior: little against any
+  /// data, yet enough to leave near its nominal value what they do not tell.
+  double pull(Eigen::Index p) const { return 1e-2 * soft_ / std::pow(model_.parameters()[static_cast<std::size_t>(p)].prior_sd, 2); }
 
   const ForwardModel& model_;
   double soft_, count_ = 0;

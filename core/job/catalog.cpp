@@ -17,7 +17,7 @@ const std::vector<Operation>& operations() {
   static const std::vector<Operation> all = {
       relief_operation(), thermoform_simulate_operation(), thermoform_texture_operation(), thermoform_mould_operation(), thermoform_compare_operation(),
       evidence_pattern_operation(), evidence_register_operation(), evidence_calibrate_operation(), evidence_diagnose_operation(),
-      evidence_diagnose_relief_operation(),
+      evidence_diagnose_relief_operation(), evidence_virtual_object_operation(),
       import_operation(), simplify_operation(), subdivide_operation(), convert_operation()};
   return all;
 }

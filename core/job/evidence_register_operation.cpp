@@ -8,6 +8,7 @@
 #include "imaging/png_writer.h"
 #include "job/evidence_registration_operations.h"
 #include "job/model_input.h"
+#include "thermoform/measured_object.h"
 
 namespace formwright {
 namespace {
@@ -90,14 +91,10 @@ Model with_pictures(const OperationCall& call, const LoadedModel& loaded) {
   return std::move(model);
 }
 
-Bytes measured_csv(const std::vector<RegisteredPoint>& points) {
-  std::string text = "sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm,sigma_mm\n";
-  char line[160];
-  for (const RegisteredPoint& p : points) {
-    std::snprintf(line, sizeof line, "%.9g,%.9g,%.6f,%.6f,%.6f,%.5g\n", p.sheet_mm.x(), p.sheet_mm.y(), p.place_mm.x(), p.place_mm.y(), p.place_mm.z(), p.sigma_mm);
-    text += line;
-  }
-  return to_bytes(text);
+Bytes measured_csv(const std::vector<RegisteredPoint>& registered) {
+  std::vector<MeasuredPoint> points;
+  for (const RegisteredPoint& p : registered) points.push_back({p.sheet_mm, p.place_mm, p.sigma_mm});
+  return to_bytes(write_measured_points(points));
 }
 
 void report_registration(Json& report, const ScanRegistration& r, const CalibrationPattern& pattern, const ScanRegistrationOptions& options) {

@@ -81,27 +81,14 @@ Bytes residuals(const std::vector<MeasuredPoint>& points, const Comparison& comp
   return {view.begin(), view.end()};
 }
 
-/// The operation's parameters are the simulation's and the measurement's.
-struct Parameters {
-  Json simulation = Json::object(), measurement = Json::object();
-};
-Parameters sorted(const Json& parameters) {
-  Parameters result;
-  const std::vector<ParameterInfo> measurement = describe_parameters<MeasurementEffects>();
-  for (const auto& [name, value] : parameters.items()) {
-    const bool measures = std::any_of(measurement.begin(), measurement.end(), [&n = name](const ParameterInfo& info) { return info.name == n; });
-    (measures ? result.measurement : result.simulation)[name] = value;
-  }
-  return result;
-}
-
 OperationResult run(const OperationCall& call) {
-  const Parameters given = sorted(call.parameters);
-  const SimulationCall simulation = simulation_call(call, given.simulation);
-  Json measurement = given.measurement;
+  const std::vector<ParameterInfo> measuring = describe_parameters<MeasurementEffects>();
+  const SimulationCall simulation = simulation_call(call, parameters_among(call.parameters, measuring, false));
+  const Json given = parameters_among(call.parameters, measuring);
+  Json measurement = given;
   if (const auto profile = machine_profile(call)) {
     measurement = write_parameters(profile->measurement);
-    measurement.update(given.measurement);
+    measurement.update(given);
   }
   const auto effects = read_parameters<MeasurementEffects>(measurement);
   std::vector<MeasuredPoint> points = read_measured_points(*call.inputs.at("measured").bytes);
@@ -162,9 +149,9 @@ Operation thermoform_compare_operation() {
   operation.outputs = outputs();
   operation.report = report_fields();
   operation.check = [](const Json& parameters) {
-    const Parameters given = sorted(parameters);
-    read_parameters<ThermoformOptions>(given.simulation);
-    read_parameters<MeasurementEffects>(given.measurement);
+    const std::vector<ParameterInfo> measuring = describe_parameters<MeasurementEffects>();
+    read_parameters<ThermoformOptions>(parameters_among(parameters, measuring, false));
+    read_parameters<MeasurementEffects>(parameters_among(parameters, measuring));
   };
   operation.run = run;
   return operation;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "job/thermoform_input.h"
 
+#include <algorithm>
+
 namespace formwright {
 namespace {
 
@@ -79,6 +81,13 @@ Json merged_parameters(const OperationCall& call, const Json& parameters, const 
   if (const auto profile = machine_profile(call)) merged = with_profile(merged, *profile);
   for (const auto& [name, value] : parameters.items()) merged[name] = value;
   return merged;
+}
+
+Json parameters_among(const Json& parameters, const std::vector<ParameterInfo>& infos, bool declared) {
+  Json chosen = Json::object();
+  for (const auto& [name, value] : parameters.items())
+    if (std::any_of(infos.begin(), infos.end(), [&n = name](const ParameterInfo& info) { return info.name == n; }) == declared) chosen[name] = value;
+  return chosen;
 }
 
 SimulationCall simulation_call(const OperationCall& call, const Json& parameters) {

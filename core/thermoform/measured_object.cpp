@@ -4,11 +4,11 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "base/error.h"
 #include "base/number_table.h"
 #include "thermoform/sheet_lookup.h"
-#include "thermoform/thermoform_options.h"
 
 namespace formwright {
 namespace {
@@ -67,6 +67,21 @@ ObjectSetup read_object_setup(ByteView bytes) {
   return setup;
 }
 
+Json write_object_setup(const ThermoformOptions& o, MeasuredSurface surface) {
+  return {{"sheet_mm", {o.sheet_x_mm, o.sheet_y_mm}},
+          {"sheet_thickness_mm", o.sheet_thickness_mm},
+          {"clamp_opening_mm", {o.clamp_opening_x_mm, o.clamp_opening_y_mm}},
+          {"clamp_height_mm", o.clamp_height_mm},
+          {"base_plate_start_z_mm", -o.platform_travel_mm},
+          {"base_plate_end_z_mm", 0},
+          {"mould_speed_mm_per_s", o.mould_speed_mm_per_s},
+          {"relaxation_s", o.relaxation_s},
+          {"vacuum_kpa", o.vacuum_kpa},
+          {"density_kg_per_m3", o.density_kg_per_m3},
+          {"poisson_ratio", o.poisson_ratio},
+          {"measured_surface", surface == MeasuredSurface::outer ? "outer" : "mid"}};
+}
+
 std::vector<MeasuredPoint> read_measured_points(ByteView csv) {
   const auto rows = read_number_table(csv, "measured.csv", "measured",
                                       {{"sheet_x_mm"}, {"sheet_y_mm"}, {"x_mm"}, {"y_mm"}, {"z_mm"}, {"sigma_mm", false}});
@@ -77,6 +92,16 @@ std::vector<MeasuredPoint> read_measured_points(ByteView csv) {
     points.push_back({Vec2(row[0], row[1]), Vec3(row[2], row[3], row[4]), row[5]});
   }
   return points;
+}
+
+std::string write_measured_points(const std::vector<MeasuredPoint>& points) {
+  std::string text = "sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm,sigma_mm\n";
+  char line[160];
+  for (const MeasuredPoint& p : points) {
+    std::snprintf(line, sizeof line, "%.7g,%.7g,%.7g,%.7g,%.7g,%.4g\n", p.sheet_mm.x(), p.sheet_mm.y(), p.place_mm.x(), p.place_mm.y(), p.place_mm.z(), p.sigma_mm);
+    text += line;
+  }
+  return text;
 }
 
 namespace {

@@ -9,6 +9,7 @@
 #include "base/json.h"
 #include "thermoform/formed_sheet.h"
 #include "thermoform/measurement_effects.h"
+#include "thermoform/thermoform_options.h"
 
 namespace formwright {
 
@@ -26,6 +27,9 @@ struct ObjectSetup {
 /// Throws Error{invalid_input, "setup"}, naming the key.
 ObjectSetup read_object_setup(ByteView json);
 
+/// setup.json of what `options` say of sheet and machine, without the material, the placement and the machine's faults. Raised plate at z = 0.
+Json write_object_setup(const ThermoformOptions& options, MeasuredSurface surface);
+
 struct MeasuredPoint {
   Vec2 sheet_mm;     // on the flat sheet, centred on it
   Vec3 place_mm;     // machine coordinates
@@ -35,6 +39,7 @@ struct MeasuredPoint {
 /// measured.csv: header sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm[,sigma_mm] in any order. Throws Error{invalid_input, "measured"} with
 /// the line; at least one row.
 std::vector<MeasuredPoint> read_measured_points(ByteView csv);
+std::string write_measured_points(const std::vector<MeasuredPoint>& points);
 
 struct ComparedPoint {
   Vec3 simulated_mm;

@@ -98,6 +98,12 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
     else if (!contains && named.size() <= std::max<std::size_t>(1, hidden.size())) wrong = std::max(wrong, h.log_evidence);
   }
   line["over_none"] = {{"unknown", unknown - none}, {"right", right - none}, {"wrong", wrong - none}};
+  line["trials"] = Json::array();
+  for (const HeldOutTrial& trial : d.trials) {
+    std::string names;
+    for (const int c : trial.causes) names += (names.empty() ? "" : "+") + model.causes()[static_cast<std::size_t>(c)].name;
+    line["trials"].push_back({names, trial.significant, trial.gain.before.mean, trial.gain.after.mean, trial.gain.gain_share, trial.gain.gain_low});
+  }
   if (arguments.verbose) {
     for (std::size_t i = 0; i < std::min<std::size_t>(8, d.hypotheses.size()); ++i) {
       const Hypothesis& h = d.hypotheses[i];

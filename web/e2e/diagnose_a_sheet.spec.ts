@@ -85,6 +85,7 @@ test('three files, a named cause, the extended model, the report, the next print
 
   await page.getByRole('radio', { name: 'On the object' }).click();
   await expect(page.getByText(/^Arrows from measured to simulated/)).toBeVisible();
+  await expectAccessible(page, 'on the object');
   await page.getByRole('radio', { name: 'Plane' }).click();
 
   const waiting = page.waitForEvent('download');
@@ -217,4 +218,18 @@ test('a scan is measured, its corners set by hand, and becomes an object', async
   const [mould, setup] = measuredObject();
   await give(page, [mould, setup]);
   await expect(page.getByRole('button', { name: /^scan \d+ points/ })).toBeVisible();
+});
+
+test('a virtual object with a fault of one’s choice', async ({ page }) => {
+  await openRoom(page);
+  await page.getByRole('button', { name: 'Try a virtual object' }).click();
+  const dialog = page.getByRole('dialog', { name: 'Make a virtual object' });
+  await expect(dialog.getByRole('textbox', { name: 'Heat falls off in x' })).toHaveValue('0.30');
+  await dialog.getByRole('combobox', { name: 'Mould' }).selectOption('Pyramid');
+  await dialog.getByRole('textbox', { name: 'Points', exact: true }).fill('300');
+  await dialog.getByRole('textbox', { name: 'Points', exact: true }).press('Tab');
+  await expectAccessible(page, 'virtual object');
+  await dialog.getByRole('button', { name: 'Make it' }).click();
+  await expect(page.getByRole('button', { name: /^virtual pyramid 3\d\d points/ })).toBeVisible(seen);
+  await expect(strip(page, 'Set-up compared as it stands')).toBeVisible(seen);
 });

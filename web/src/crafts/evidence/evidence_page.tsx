@@ -94,7 +94,7 @@ function Empty({ session, onChooseFile }: EvidencePageProps) {
 function Bench({ session }: { session: EvidenceSession }) {
   const look = session.look.value;
   const waiting = useLasting(look === null && session.looking.value);
-  const diagnosis = look?.kind === 'diagnosis' ? session.diagnosis.value : null;
+  const diagnosis = session.diagnosis.value;
   const calibrated = session.mode.value === 'calibrate' ? session.result.value : null;
   return (
     <div class="bench">

@@ -16,6 +16,11 @@ export interface InspectorProps {
   readonly onChooseFile: () => void;
 }
 
+const modes = [
+  { value: 'diagnose', label: 'Diagnose' },
+  { value: 'calibrate', label: 'Calibrate' },
+] as const;
+
 const useNames: Readonly<Record<Use, string>> = {
   fit: 'Used',
   unseen: 'Not used, only to measure the gain on',
@@ -32,16 +37,20 @@ export function Inspector({ session, onChooseFile }: InspectorProps) {
   const operation = session.operation.value;
   const { objects } = session.document.value;
   const diagnosis = session.diagnosis.value;
+  const solving = session.activity.value.kind === 'solving';
   return (
     <>
       <div class="inspector-scroll" tabIndex={-1}>
         <div class="section">
           <Segmented
             label="What to find out"
-            options={[
-              { value: 'diagnose', label: 'Diagnose' },
-              { value: 'calibrate', label: 'Calibrate' },
-            ]}
+            options={modes.map((mode) => ({
+              ...mode,
+              disabledReason:
+                solving && mode.value !== session.mode.value
+                  ? 'A run is under way; Esc cancels it'
+                  : undefined,
+            }))}
             value={session.mode.value}
             onChange={(mode) => session.services.projects.do(evidence.setMode(mode))}
           />

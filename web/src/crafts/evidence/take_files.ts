@@ -90,7 +90,7 @@ export async function inventObject(
     'a virtual object',
     async (options) => {
       const done = await session.services.browser.run(
-        { operation: inventing, parameters, inputs: { mould: { sample } } },
+        { operation: inventing, parameters, inputs: { mould: { sample } }, outputs: ['object.zip'] },
         options,
       );
       for (const found of objectsInArchive(await bytesOf(done, 'object.zip'), `virtual ${sample}.zip`))

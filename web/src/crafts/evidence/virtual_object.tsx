@@ -4,7 +4,7 @@ import { useSignal } from '@preact/signals';
 import { useId } from 'preact/hooks';
 import type { Json, JsonObject, Operation } from '../../jobs/contract';
 import { Button, Dialog } from '../../ui';
-import { withoutDefaults } from '../common/craft_document';
+import { known, withoutDefaults } from '../common/craft_document';
 import { ParameterPanel } from '../common/parameter_panel';
 import type { EvidenceSession } from './evidence_session';
 import { inventObject } from './take_files';
@@ -23,6 +23,22 @@ export function VirtualObject({ session, operation }: { session: EvidenceSession
   );
 }
 
+/** The faults are what this is about: elsewhere they are advanced, here they come first. */
+const faultGroups = ["Machine's own ways", "Measurement's own ways"];
+const openGroups = [...faultGroups, 'Virtual scan'];
+/** Something to find for who sets nothing. */
+const usualFault: JsonObject = { heating_gradient_x: 0.3 };
+
+export function faultsFirst(operation: Operation): Operation {
+  const entries = Object.entries(operation.parameters.properties);
+  const isFault = ([, schema]: (typeof entries)[number]) => faultGroups.includes(schema['x-group'] ?? '');
+  const plain = entries
+    .filter(isFault)
+    .map(([name, schema]) => [name, { ...schema, 'x-advanced': false }] as const);
+  const others = entries.filter((entry) => !isFault(entry));
+  return { ...operation, parameters: { properties: Object.fromEntries([...plain, ...others]) } };
+}
+
 interface ChoiceProps {
   readonly session: EvidenceSession;
   readonly operation: Operation;
@@ -33,7 +49,7 @@ function Choice({ session, operation, onClose }: ChoiceProps) {
   const samples = session.services.catalog.value?.samples ?? [];
   const usual = samples.find(({ name }) => name === 'pyramid') ?? samples[0];
   const sample = useSignal(usual?.name ?? '');
-  const parameters = useSignal<JsonObject>({});
+  const parameters = useSignal<JsonObject>(known(operation, usualFault));
   const id = useId();
   const set = (name: string, value: Json) =>
     (parameters.value = withoutDefaults(operation, { ...parameters.value, [name]: value }));
@@ -61,8 +77,9 @@ function Choice({ session, operation, onClose }: ChoiceProps) {
       </div>
       <div class="virtual-parameters">
         <ParameterPanel
-          operation={operation}
+          operation={faultsFirst(operation)}
           parameters={parameters.value}
+          openGroups={openGroups}
           errors={{}}
           onPreview={set}
           onCommit={() => undefined}

@@ -43,8 +43,8 @@ export interface Look {
 /** Enough to see where a sheet is off, within seconds. */
 const quickTriangles = 2000;
 /** What runs have taken so far, to tell the time of the first one: simulations, and a worker's time as a share of the page's. */
-const usualSimulations = { diagnose: 300, pairs: 100, calibrate: 100 };
-const workerShare = 0.35;
+const usualSimulations = { diagnose: 400, pairs: 200, calibrate: 100 };
+const workerShare = 0.5;
 
 export class EvidenceSession extends RoomSession<EvidenceDocument> {
   readonly failedTitle = 'Could not explain the difference';

@@ -45,9 +45,10 @@ const placeOn = ({ left_mm, top_mm, pixelsPerMm }: Frame, x: number, y: number):
 /** What stays the same while the model is switched, so that the two can be compared by eye. */
 function scalesOf(residuals: Residuals, sigma_mm: number) {
   const heights = heightsOf(residuals.measured);
-  const [low, high] = [percentile(heights, 0.002), percentile(heights, 0.998)];
+  // Outliers do not set the scale: most of a sheet lies low, few points high.
+  const [low, high] = [percentile(heights, 0.02), percentile(heights, 0.995)];
   const differences = heightDifferenceOf(residuals, 'base').map(Math.abs);
-  const most = niceUp(Math.max(3 * sigma_mm, percentile(differences, 0.98), 1e-3));
+  const most = niceUp(Math.max(3 * sigma_mm, percentile(differences, 0.95), 1e-3));
   const arrows = arrowsOf(residuals, 'base', arrowCells);
   const lengths = Float64Array.from(arrows, ({ dx, dy }) => Math.hypot(dx, dy));
   return {

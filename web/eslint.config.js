@@ -63,4 +63,9 @@ export default ts.config(
     ['app', 'machines', 'crafts', 'relief', 'zippable', 'evidence'],
     'A craft uses ui, jobs, project and view; crafts do not know each other or the app.',
   ),
+  closed(
+    ['src/crafts/evidence/**'],
+    ['app', 'machines', 'crafts', 'relief', 'thermoform', 'zippable'],
+    'A craft uses ui, jobs, project and view; crafts do not know each other or the app.',
+  ),
 );

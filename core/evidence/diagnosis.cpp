@@ -230,7 +230,8 @@ class Diagnostician {
     const double parts = static_cast<double>(singles.size()) + (options_.pairs ? refitted_pairs : 0) + 2 * leader_count;
     double part = 0;
     const auto stage = [&](auto&& work) {
-      const auto step = context_.span(part / parts, std::min(1.0, (part + 1) / parts), fitting);
+      // More leaders may have to be polished than were counted on.
+      const auto step = context_.span(std::min(1.0, part / parts), std::min(1.0, (part + 1) / parts), fitting);
       work();
       part += 1;
     };

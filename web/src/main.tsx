@@ -10,15 +10,21 @@ import { placeOfWork } from './app/rooms';
 import { go, place, startRouting } from './app/route';
 import { followSystemTheme } from './app/theme';
 import { resumePending } from './crafts/common/full_solve';
+import { EvidenceSession } from './crafts/evidence/evidence_session';
 import { ReliefSession } from './crafts/relief/relief_session';
 import { ThermoformSession } from './crafts/thermoform/thermoform_session';
 
 async function start(root: HTMLElement): Promise<void> {
   followSystemTheme();
   const services = await createServices();
-  const sessions = { relief: new ReliefSession(services), thermoform: new ThermoformSession(services) };
+  const sessions = {
+    relief: new ReliefSession(services),
+    thermoform: new ThermoformSession(services),
+    evidence: new EvidenceSession(services),
+  };
   effect(() => resumePending(sessions.relief));
   effect(() => resumePending(sessions.thermoform));
+  effect(() => resumePending(sessions.evidence));
   if (!startRouting() && !services.projects.isBlank.value)
     go(placeOfWork(services.projects.document.value) ?? 'relief');
   effect(() => {

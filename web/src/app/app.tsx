@@ -3,7 +3,7 @@
 import { signal, useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import type { Services } from '../crafts/common/services';
-import { chooseModel } from '../crafts/common/craft_session';
+import type { EvidencePage as EvidencePageComponent } from '../crafts/evidence/evidence_page';
 import type { ReliefPage as ReliefPageComponent } from '../crafts/relief/relief_page';
 import type { ThermoformPage as ThermoformPageComponent } from '../crafts/thermoform/thermoform_page';
 import { projectExtension } from '../project/archive';
@@ -12,15 +12,18 @@ import { AboutPage } from './about_page';
 import { crafts } from './crafts';
 import { KeysDialog, WorkerDialog } from './dialogs';
 import { LaterPage } from './later_page';
+import { droppedFiles } from './dropped_files';
 import { Rail } from './rail';
 import { go, place } from './route';
 import { formatNames, StartPage } from './start_page';
 import type { Sessions } from './rooms';
-import { placeOfWork, roomOf } from './rooms';
+import { isRoom, placeOfWork, roomOf } from './rooms';
 import { TopBar } from './top_bar';
 
 /** Materials and pictures that may come with a model. */
 const companionEndings = ['.mtl', '.png', '.jpg', '.jpeg'];
+/** What measured objects come as. */
+const evidenceEndings = ['.zip', '.json', '.csv'];
 
 /** The viewport is most of the program; it comes when a place needs it, or when the start screen is at rest. */
 const reliefPage = signal<{ readonly Page: typeof ReliefPageComponent } | null>(null);
@@ -30,6 +33,12 @@ const thermoformPage = signal<{ readonly Page: typeof ThermoformPageComponent } 
 const loadThermoformPage = () =>
   import('../crafts/thermoform/thermoform_page').then(
     ({ ThermoformPage }) => (thermoformPage.value = { Page: ThermoformPage }),
+  );
+
+const evidencePage = signal<{ readonly Page: typeof EvidencePageComponent } | null>(null);
+const loadEvidencePage = () =>
+  import('../crafts/evidence/evidence_page').then(
+    ({ EvidencePage }) => (evidencePage.value = { Page: EvidencePage }),
   );
 
 export interface AppProps {
@@ -58,12 +67,11 @@ export function App({ services, sessions }: AppProps) {
       }
       return;
     }
-    const chosen = chooseModel(files, services.catalog.value);
-    if (chosen === null) return;
+    if (files.length === 0) return;
     if (place.value === 'start' && !services.projects.isBlank.value) await services.projects.create();
     const where = roomOf(place.value);
     go(where);
-    await sessions[where].openFile(chosen);
+    await sessions[where].openFiles(files);
   };
 
   useFileDrop(dropping, openFiles);
@@ -73,13 +81,15 @@ export function App({ services, sessions }: AppProps) {
   const where = place.value;
   const ReliefPage = reliefPage.value?.Page;
   const ThermoformPage = thermoformPage.value?.Page;
+  const EvidencePage = evidencePage.value?.Page;
   useEffect(() => {
     if (where === 'relief') void loadReliefPage();
     if (where === 'thermoform') void loadThermoformPage();
+    if (where === 'evidence') void loadEvidencePage();
   }, [where]);
   const later = crafts.find((craft) => craft.place === where && !craft.available);
-  const session = where === 'relief' || where === 'thermoform' ? sessions[where] : null;
-  const hasInspector = session !== null && session.document.value.model !== null;
+  const session = isRoom(where) ? sessions[where] : null;
+  const hasInspector = session !== null && session.hasWork.value;
   const hasStrip = hasInspector || session?.activity.value.kind === 'opening';
   const solving = Object.values(sessions).some(({ activity }) => activity.value.kind === 'solving');
   return (
@@ -101,7 +111,9 @@ export function App({ services, sessions }: AppProps) {
         />
       ) : where === 'thermoform' && ThermoformPage ? (
         <ThermoformPage session={sessions.thermoform} onChooseFile={chooseFile} />
-      ) : where === 'relief' || where === 'thermoform' ? (
+      ) : where === 'evidence' && EvidencePage ? (
+        <EvidencePage session={sessions.evidence} onChooseFile={chooseFile} />
+      ) : isRoom(where) ? (
         <main
           class="view"
           aria-label={crafts.find((craft) => craft.place === where)?.title}
@@ -120,7 +132,10 @@ export function App({ services, sessions }: AppProps) {
             <Icon name="upload" />
             <h2>Drop to open</h2>
             <p>
-              Meshes: {formatNames(services)}. Projects: .{projectExtension}.
+              {where === 'evidence'
+                ? 'Measured objects: mould.obj, setup.json, measured.csv, their folder or zip'
+                : `Meshes: ${formatNames(services)}`}
+              . Projects: .{projectExtension}.
             </p>
             <p>Your project is saved first.</p>
           </div>
@@ -135,6 +150,7 @@ export function App({ services, sessions }: AppProps) {
         accept={[
           ...(services.catalog.value?.mesh_formats ?? []).map((f) => `.${f.extension}`),
           ...companionEndings,
+          ...(where === 'evidence' ? evidenceEndings : []),
           `.${projectExtension}`,
         ].join()}
         onChange={(event) => {
@@ -176,10 +192,9 @@ function useFileDrop(
     const drop = (event: DragEvent) => {
       depth = 0;
       dropping.value = false;
-      const files = [...(event.dataTransfer?.files ?? [])];
-      if (files.length === 0) return;
+      if (!hasFiles(event) || event.dataTransfer === null) return;
       event.preventDefault();
-      void openFiles(files);
+      void droppedFiles(event.dataTransfer).then(openFiles);
     };
     const handlers = { dragenter: enter, dragover: over, dragleave: leave, drop } as const;
     for (const [name, handler] of Object.entries(handlers))

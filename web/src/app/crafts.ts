@@ -45,7 +45,7 @@ export const crafts: readonly Craft[] = [
     icon: 'evidence',
     pitch: 'Measure what you made; see what the simulation got wrong.',
     makes: 'Scan, photo, calliper',
-    available: false,
+    available: true,
     apart: true,
   },
   {

@@ -4,10 +4,11 @@
 import { originalData } from '../crafts/common/shaded_mesh';
 import { plateOf, reliefData } from '../crafts/relief/meshes';
 import { clampFrame, frameShadow } from '../crafts/thermoform/clamp_frame';
-import type { Job, Report, Sample } from '../jobs/contract';
+import type { Job, JsonObject, Report, Sample } from '../jobs/contract';
 import { findOperation } from '../jobs/contract';
 import { readPly } from '../jobs/mesh_reader';
 import { WasmBackend } from '../jobs/wasm_backend';
+import type { ColourMapping } from '../view';
 import { renderThumbnail } from '../view';
 
 const pictureVertices = 30_000;
@@ -20,8 +21,8 @@ export async function drawPictures(only?: string): Promise<Record<string, string
     blobs: none,
   });
   const catalog = await backend.catalog();
-  const run = async (job: Omit<Job, 'parameters'>, output: string) => {
-    const { report, outputs } = await backend.run({ ...job, parameters: {} });
+  const run = async (job: Omit<Job, 'parameters'>, output: string, parameters: JsonObject = {}) => {
+    const { report, outputs } = await backend.run({ ...job, parameters });
     const made = outputs.get(output);
     if (made === undefined) throw new Error(`No ${output}.`);
     return { report, mesh: await readPly(await made.read()) };
@@ -57,12 +58,14 @@ export async function drawPictures(only?: string): Promise<Record<string, string
   }
   if (only === undefined || only === 'craft_thermoform')
     pictures['craft_thermoform'] = await formedSheet(run);
+  if (only === undefined || only === 'craft_evidence') pictures['craft_evidence'] = await hiddenFault(run);
   return pictures;
 }
 
 type Run = (
   job: Omit<Job, 'parameters'>,
   output: string,
+  parameters?: JsonObject,
 ) => Promise<{ report: Report; mesh: Awaited<ReturnType<typeof readPly>> }>;
 
 /** The mountain under its sheet, coloured by thickness, in a clamp that shows little of its own. */
@@ -72,12 +75,49 @@ async function formedSheet(run: Run): Promise<string> {
     { operation: 'thermoform-simulate', inputs, outputs: ['sheet.ply'] },
     'sheet.ply',
   );
-  const { positions, indices, attributes } = mesh;
+  const thickest = (mesh.attributes['thickness_mm'] ?? new Float32Array(1)).reduce(
+    (a, b) => Math.max(a, b),
+    0,
+  );
+  return await inItsClamp(mesh, {
+    attribute: 'thickness_mm',
+    map: 'thickness',
+    minimum: 0.9 * Number(report['thickness_min_mm'] ?? 0),
+    maximum: thickest,
+    unit: 'mm',
+    label: 'Thickness',
+  });
+}
+
+/** The pyramid under its sheet, coloured by how far a heater that is hot on one side moves each point. */
+async function hiddenFault(run: Run): Promise<string> {
+  const job = {
+    operation: 'thermoform-simulate',
+    inputs: { mould: { sample: 'pyramid' } },
+    outputs: ['sheet.ply'],
+  };
+  const parameters = { triangles: 10_000 };
+  const { mesh } = await run(job, 'sheet.ply', parameters);
+  const moved = await run(job, 'sheet.ply', { ...parameters, heating_gradient_x: 0.4 });
+  const [here, there] = [mesh.positions, moved.mesh.positions];
+  const distance_mm = Float32Array.from({ length: here.length / 3 }, (_, i) =>
+    Math.hypot(...[0, 1, 2].map((k) => (here[3 * i + k] ?? 0) - (there[3 * i + k] ?? 0))),
+  );
+  const maximum = distance_mm.reduce((a, b) => Math.max(a, b), 0);
+  return await inItsClamp(
+    { ...mesh, attributes: { distance_mm } },
+    { attribute: 'distance_mm', map: 'error', minimum: 0, maximum, unit: 'mm', label: 'Distance' },
+  );
+}
+
+async function inItsClamp(
+  { positions, indices, attributes }: Awaited<ReturnType<typeof readPly>>,
+  mapping: ColourMapping,
+): Promise<string> {
   const high = positions.reduce((most, z, i) => (i % 3 === 2 ? Math.max(most, z) : most), 0);
   const side = (axis: number) =>
     2 * positions.reduce((most, x, i) => (i % 3 === axis ? Math.max(most, x) : most), 0);
   const clamp = { sheet_mm: [side(0), side(1)], opening_mm: [side(0), side(1)], height_mm: 1 } as const;
-  const least = Number(report['thickness_min_mm'] ?? 0);
   const picture = await renderThumbnail(
     { positions, indices, attributes },
     { widthPx: 560, heightPx: 352 },
@@ -86,14 +126,7 @@ async function formedSheet(run: Run): Promise<string> {
       patient: true,
       plate: { ...frameShadow(clamp), mesh: clampFrame(clamp, high) },
       viewpoint: { direction: [0.2, 0.9, -0.8], up: [0, 0, 1] },
-      mapping: {
-        attribute: 'thickness_mm',
-        map: 'thickness',
-        minimum: 0.9 * least,
-        maximum: (attributes['thickness_mm'] ?? new Float32Array(1)).reduce((a, b) => Math.max(a, b), 0),
-        unit: 'mm',
-        label: 'Thickness',
-      },
+      mapping,
     },
   );
   return await webp(picture);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The places in which something is made, each with its session.
+import type { EvidenceSession } from '../crafts/evidence/evidence_session';
 import type { ReliefSession } from '../crafts/relief/relief_session';
 import type { ThermoformSession } from '../crafts/thermoform/thermoform_session';
 import type { ProjectDocument } from '../project/document';
@@ -9,19 +10,24 @@ import type { Place } from './route';
 export interface Sessions {
   readonly relief: ReliefSession;
   readonly thermoform: ThermoformSession;
+  readonly evidence: EvidenceSession;
 }
 export type Room = keyof Sessions;
 
-const rooms: readonly Room[] = ['relief', 'thermoform'];
+const rooms: readonly Room[] = ['relief', 'thermoform', 'evidence'];
 
-/** Where a model that is opened goes: to the room one is in. */
-export const roomOf = (place: Place): Room => rooms.find((room) => room === place) ?? 'relief';
+export const isRoom = (place: Place): place is Room => (rooms as readonly Place[]).includes(place);
 
-/** The first room that a project has a model in. */
+/** Where what is opened goes: to the room one is in. */
+export const roomOf = (place: Place): Room => (isRoom(place) ? place : 'relief');
+
+/** The first room that a project has something in. */
 export function placeOfWork({ crafts }: ProjectDocument): Room | null {
-  const hasModel = (room: Room) => {
+  const hasWork = (room: Room) => {
     const craft = crafts[room];
-    return isObject(craft) && isObject(craft['model']);
+    if (!isObject(craft)) return false;
+    const { model, objects } = craft;
+    return isObject(model) || (Array.isArray(objects) && objects.length > 0);
   };
-  return rooms.find(hasModel) ?? null;
+  return rooms.find(hasWork) ?? null;
 }

@@ -92,6 +92,10 @@ export interface InputDeclaration {
   readonly required?: boolean;
   readonly extensions?: readonly string[];
   readonly accepts_sample?: boolean;
+  /** A zip archive of these files. */
+  readonly folder_files?: readonly string[];
+  /** More of them as name_2, name_3, ... */
+  readonly repeatable?: boolean;
   readonly help?: string;
 }
 

@@ -139,6 +139,8 @@ export interface Section {
 export interface Curve {
   positions: Float32Array | Float64Array;
   closed?: boolean;
+  /** Every two positions are a line of their own. */
+  separate?: boolean;
   /** CSS colour, or the name of a token ("--live"). */
   colour: string;
   widthPx?: number;

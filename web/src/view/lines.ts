@@ -2,7 +2,7 @@
 /* eslint-disable @typescript-eslint/no-non-null-assertion -- indices stay within the arrays' own lengths */
 // Lines some pixels wide: drawn loops, zipper curves, the outline of a cut.
 import * as THREE from 'three';
-import type { Vec3 } from './api';
+import type { Curve, Vec3 } from './api';
 import { lineFragment, lineVertex } from './line_shaders';
 import { type Uniforms, still } from './surface';
 
@@ -84,9 +84,14 @@ export class LineSet {
   }
 }
 
-/** A polyline as pieces. */
-export function piecesOf(positions: ArrayLike<number>, origin: Vec3, closed: boolean): Float32Array {
+/** A polyline, or lines apart, as pieces. */
+export function piecesOf(
+  positions: ArrayLike<number>,
+  origin: Vec3,
+  { closed, separate }: Pick<Curve, 'closed' | 'separate'>,
+): Float32Array {
   const count = positions.length / 3;
+  if (separate) return Float32Array.from(positions, (value, i) => value - origin[(i % 3) as 0 | 1 | 2]);
   const pieces = Math.max(0, closed && count > 2 ? count : count - 1);
   const out = new Float32Array(6 * pieces);
   for (let i = 0; i < pieces; ++i) {

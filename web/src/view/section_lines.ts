@@ -37,7 +37,7 @@ export function linesOf(
   element: Element,
 ): { pieces: Float32Array; style: LineStyle; part?: PartName }[] {
   const lines: { pieces: Float32Array; style: LineStyle; part?: PartName }[] = curves.map((curve) => ({
-    pieces: piecesOf(curve.positions, stage.origin, curve.closed ?? false),
+    pieces: piecesOf(curve.positions, stage.origin, curve),
     style: {
       colour: resolveColour(curve.colour, element),
       widthPx: curve.widthPx ?? 2,

@@ -35,7 +35,7 @@ export interface CraftResult {
   readonly backend: string;
   /** From the button to the result. */
   readonly seconds: number;
-  /** Hash of the mesh it was made from. */
+  /** What it was made from: the subject's key. */
   readonly mesh: string;
   readonly parameters: JsonObject;
   readonly report: Report;
@@ -52,8 +52,8 @@ export interface PendingSolve {
   readonly parameters: JsonObject;
 }
 
-export interface CraftDocument {
-  readonly model: CraftModel | null;
+/** What every room keeps. */
+export interface RoomDocument {
   /** Only what differs from the defaults. */
   readonly parameters: JsonObject;
   /** Newest first. */
@@ -61,11 +61,17 @@ export interface CraftDocument {
   readonly pending: PendingSolve | null;
 }
 
-export const emptyCraft: CraftDocument = { model: null, parameters: {}, results: [], pending: null };
+/** What a room keeps that makes something of a model. */
+export interface CraftDocument extends RoomDocument {
+  readonly model: CraftModel | null;
+}
+
+export const emptyRoom: RoomDocument = { parameters: {}, results: [], pending: null };
+export const emptyCraft: CraftDocument = { model: null, ...emptyRoom };
 const keptResults = 12;
 
 /** Reads and changes the part of a project that belongs to one craft; `empty` is what a new project has. */
-export class CraftCommands<D extends CraftDocument> {
+export class RoomCommands<D extends RoomDocument> {
   readonly craft: string;
   readonly #empty: D;
 
@@ -81,7 +87,7 @@ export class CraftCommands<D extends CraftDocument> {
 
   command(
     rest: Omit<Command<ProjectDocument>, 'apply'>,
-    change: (craft: D) => Partial<D> | Partial<CraftDocument>,
+    change: (craft: D) => Partial<D> | Partial<RoomDocument>,
   ): Command<ProjectDocument> {
     const apply = (document: ProjectDocument): ProjectDocument => {
       const before = this.of(document);
@@ -89,20 +95,6 @@ export class CraftCommands<D extends CraftDocument> {
       return { ...document, crafts: { ...document.crafts, [this.craft]: after } };
     };
     return { ...rest, apply };
-  }
-
-  /** `own`: what the new model says of itself. Parameters of the `forgotten` kind belonged to the old one. */
-  openModel(
-    operation: Operation,
-    model: CraftModel,
-    label: string,
-    own: JsonObject,
-    forgotten: (name: string) => boolean,
-  ) {
-    return this.command({ label }, ({ parameters }) => {
-      const kept = Object.fromEntries(Object.entries(parameters).filter(([name]) => !forgotten(name)));
-      return { model, parameters: withoutDefaults(operation, { ...kept, ...own }) };
-    });
   }
 
   setParameters(operation: Operation, values: JsonObject, label: string, coalesce?: string) {
@@ -143,6 +135,26 @@ export class CraftCommands<D extends CraftDocument> {
   }
 }
 
+export class CraftCommands<D extends CraftDocument> extends RoomCommands<D> {
+  /** `own`: what the new model says of itself. Parameters of the `forgotten` kind belonged to the old one. */
+  openModel(
+    operation: Operation,
+    model: CraftModel,
+    label: string,
+    own: JsonObject,
+    forgotten: (name: string) => boolean,
+  ) {
+    return this.command({ label }, ({ parameters }) => {
+      const kept = Object.fromEntries(Object.entries(parameters).filter(([name]) => !forgotten(name)));
+      const opened: Partial<CraftDocument> = {
+        model,
+        parameters: withoutDefaults(operation, { ...kept, ...own }),
+      };
+      return opened;
+    });
+  }
+}
+
 /** The newest first, one of each request. */
 export const withResult = <R extends SolveRequest>(results: readonly R[], made: R): R[] =>
   [made, ...results.filter((old) => !sameRequest(old, made))].slice(0, keptResults);
@@ -160,6 +172,12 @@ export function withoutDefaults(operation: Operation, values: JsonObject): JsonO
   );
 }
 
+/** Those of the parameters that an operation knows. */
+export const known = (operation: Operation | undefined, parameters: JsonObject): JsonObject =>
+  Object.fromEntries(
+    Object.entries(parameters).filter(([name]) => operation && name in operation.parameters.properties),
+  );
+
 /** The value in force: as set, or the operation's default. */
 export const inForce = (operation: Operation, parameters: JsonObject, name: string): Json =>
   parameters[name] ?? operation.parameters.properties[name]?.default ?? null;
@@ -168,6 +186,25 @@ export type SolveRequest = Pick<CraftResult, 'mesh' | 'parameters'>;
 
 export const sameRequest = (a: SolveRequest, b: SolveRequest) =>
   a.mesh === b.mesh && jsonEqual(a.parameters, b.parameters);
+
+/** What a solve is about: the inputs of its job, and a name by which equal ones are known. */
+export interface Subject {
+  readonly key: string;
+  readonly inputs: Readonly<Record<string, JobInput>>;
+}
+
+/** A mesh and what comes with it; the mesh alone is known by its hash. */
+export function subjectOf(
+  mesh: BlobReference,
+  name: string,
+  further: Readonly<Record<string, JobInput>>,
+): Subject {
+  const hashes = Object.values(further).map((input) => ('sha256' in input ? input.sha256 : input.sample));
+  return {
+    key: [mesh.blob, ...hashes].join('+'),
+    inputs: { [name]: meshInput(mesh, 'model.ply'), ...further },
+  };
+}
 
 /** Names a solve: equal keys, equal results. */
 export const requestKey = (mesh: string, parameters: JsonObject): Json => ({ mesh, parameters });

@@ -1,48 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What every craft's page does with its model: opens it, runs one task at a time that the strip shows and Esc
-// cancels, says what went wrong. It holds no state that matters; that is in the project document.
+// What every craft's page does with its model: opens it, reads it for the view.
 import type { ReadonlySignal } from '@preact/signals';
-import { signal, untracked } from '@preact/signals';
-import type { Catalog, Json, JsonObject, Operation, Progress, Report } from '../../jobs/contract';
+import { computed, signal, untracked } from '@preact/signals';
+import type { Catalog, JobInput, JsonObject, Operation } from '../../jobs/contract';
 import { asJobError, findOperation, JobError } from '../../jobs/contract';
 import type { BlobReference } from '../../project/document';
-import { jsonEqual } from '../../project/document';
-import type {
-  Companion,
-  CraftCommands,
-  CraftDocument,
-  CraftModel,
-  CraftResult,
-  Source,
-} from './craft_document';
-import { inForce, nameProject, requestKey, titleOf } from './craft_document';
-import type { Measured } from './estimate';
-import { importModel, keep as keepBytes } from './import_model';
+import type { Companion, CraftCommands, CraftDocument, CraftModel, Source } from './craft_document';
+import { nameProject, subjectOf, titleOf } from './craft_document';
+import { importModel } from './import_model';
 import { readMesh } from './read_mesh';
 import { sentences } from './report';
-import type { Services } from './services';
+import { RoomSession } from './room_session';
 import type { ShadedMesh } from './shaded_mesh';
-
-/** What the strip shows and Esc cancels. */
-export type Activity =
-  | { readonly kind: 'idle' }
-  | {
-      readonly kind: 'opening' | 'solving' | 'exporting';
-      /** The file or format concerned, or the backend. */
-      readonly name: string;
-      readonly progress: Progress | null;
-    };
-
-export interface BusyOptions {
-  readonly signal: AbortSignal;
-  readonly onProgress: (progress: Progress) => void;
-}
-
-export interface Problem {
-  readonly title: string;
-  readonly message: string;
-  readonly kind: 'file' | 'solve';
-}
 
 /** The file's bytes, and of those that came with it. */
 export interface ChosenFiles {
@@ -58,47 +27,30 @@ export function chooseModel(files: readonly File[], catalog: Catalog | null): Ch
   return model ? { model, companions: files.filter((file) => file !== model) } : null;
 }
 
-export abstract class CraftSession<D extends CraftDocument = CraftDocument> {
-  readonly services: Services;
-  readonly commands: CraftCommands<D>;
-  abstract readonly document: ReadonlySignal<D>;
-  /** All parameters that the page offers. */
-  abstract readonly operation: ReadonlySignal<Operation | null>;
+export abstract class CraftSession<D extends CraftDocument = CraftDocument> extends RoomSession<D> {
+  declare readonly commands: CraftCommands<D>;
   readonly original = signal<{ readonly mesh: ShadedMesh; readonly from: string } | null>(null);
-  /** Its page is looked at: only then is anything kept up to date. */
-  readonly active = signal(false);
-  readonly activity = signal<Activity>({ kind: 'idle' });
-  readonly problem = signal<Problem | null>(null);
-  readonly fieldErrors = signal<Readonly<Record<string, string>>>({});
   /** Repairs of the model just opened, until dismissed. */
   readonly repairsOpen = signal(false);
-  #abort: AbortController | null = null;
-
-  constructor(services: Services, commands: CraftCommands<D>) {
-    this.services = services;
-    this.commands = commands;
-  }
-
-  /** The operation that a full solve runs, its input for the model, and what of its outputs is kept. */
-  abstract readonly operationName: string;
+  readonly hasWork = computed(() => this.document.value.model !== null);
+  /** The operation's input for the model. */
   abstract readonly meshInputName: string;
-  abstract readonly wantedOutputs: readonly string[];
-  /** The parameters that the solve depends on, and the result made with them and the model in force. */
-  abstract readonly asked: ReadonlySignal<JsonObject>;
-  abstract readonly result: ReadonlySignal<CraftResult | null>;
-  abstract readonly failedTitle: string;
-  /** The request being solved in full; any change to it ends the solve. */
-  solvingFor: Json = null;
-  /** What a solve teaches about how long the next will take. */
-  abstract measured(report: Report): Measured | null;
-  abstract cancelPreview(): void;
+  /** Inputs beside the model. */
+  readonly furtherInputs: ReadonlySignal<Readonly<Record<string, JobInput>>> = signal({});
+  readonly subject = computed(() => {
+    const { model } = this.document.value;
+    return model && subjectOf(model.mesh, this.meshInputName, this.furtherInputs.value);
+  });
+
   /** What a new model says of itself, and which parameters belonged to the old one. */
   protected abstract ownParameters(source: Source): JsonObject;
   protected abstract forgets(name: string): boolean;
-  /** Brings what is shown up to date. */
-  protected abstract follow(): void;
-
   // ---- models ----
+
+  async openFiles(files: readonly File[]): Promise<boolean> {
+    const chosen = chooseModel(files, this.services.catalog.value);
+    return chosen !== null && (await this.openFile(chosen));
+  }
 
   async openFile({ model, companions = [] }: ChosenFiles): Promise<boolean> {
     const reference = async (file: File): Promise<BlobReference> =>
@@ -142,48 +94,6 @@ export abstract class CraftSession<D extends CraftDocument = CraftDocument> {
     return opened ?? false;
   }
 
-  /** Runs one task that the strip shows and Esc cancels. Null when it failed, of which `failed` is told, or
-   *  was cancelled. */
-  async busy<T>(
-    kind: 'opening' | 'solving' | 'exporting',
-    name: string,
-    task: (options: BusyOptions) => Promise<T>,
-    failed: (error: JobError) => void,
-  ): Promise<T | null> {
-    this.cancel();
-    const abort = (this.#abort = new AbortController());
-    this.problem.value = null;
-    this.activity.value = { kind, name, progress: null };
-    const onProgress = (progress: Progress) => {
-      if (this.#abort === abort) this.activity.value = { kind, name, progress };
-    };
-    try {
-      return await task({ signal: abort.signal, onProgress });
-    } catch (thrown) {
-      const error = asJobError(thrown);
-      if (error.code !== 'cancelled') failed(error);
-      return null;
-    } finally {
-      if (this.#abort === abort) {
-        this.#abort = null;
-        this.activity.value = { kind: 'idle' };
-        this.follow();
-      }
-    }
-  }
-
-  cancel(): void {
-    this.#abort?.abort();
-  }
-
-  /** Ends a full solve of what is no longer asked for. */
-  protected cancelOutdatedSolve(): void {
-    const { model } = this.document.value;
-    const solving = untracked(() => this.activity.value.kind === 'solving');
-    if (model === null || !solving || this.result.value !== null || this.solvingFor === null) return;
-    if (!jsonEqual(this.solvingFor, requestKey(model.mesh.blob, this.asked.value))) this.cancel();
-  }
-
   protected async loadOriginal(from: string | null): Promise<void> {
     if (from === null) {
       this.original.value = null;
@@ -200,52 +110,6 @@ export abstract class CraftSession<D extends CraftDocument = CraftDocument> {
         message: asJobError(thrown).message,
       };
     }
-  }
-
-  // ---- parameters ----
-
-  preview(name: string, value: Json): void {
-    const operation = this.operation.value;
-    if (operation === null) return;
-    const title = operation.parameters.properties[name]?.title ?? name;
-    this.services.projects.do(
-      this.commands.setParameters(operation, { [name]: value }, `Change ${title.toLowerCase()}`, name),
-    );
-  }
-
-  /** Several at once, as one step; `coalesce` names what is being dragged. */
-  setParameters(values: JsonObject, label: string, coalesce?: string): void {
-    const operation = this.operation.value;
-    if (operation === null) return;
-    const known = Object.fromEntries(
-      Object.entries(values).filter(([name]) => name in operation.parameters.properties),
-    );
-    this.services.projects.do(this.commands.setParameters(operation, known, label, coalesce));
-    if (coalesce === undefined) this.services.projects.commit();
-  }
-
-  value(name: string): Json {
-    const operation = this.operation.value;
-    return operation === null ? null : inForce(operation, this.document.value.parameters, name);
-  }
-
-  /** An error that names a parameter goes to its field, any other into a note. */
-  report(error: JobError, title: string): void {
-    if (error.where !== '' && this.operation.value?.parameters.properties[error.where])
-      this.fieldErrors.value = { [error.where]: error.message };
-    else this.problem.value = { kind: 'solve', title, message: error.message };
-  }
-
-  // ---- what is kept ----
-
-  async keepPicture(resultId: string, picture: Blob): Promise<void> {
-    const reference = await this.keep(new Uint8Array(await picture.arrayBuffer()), picture.type);
-    const amend = (old: CraftResult) => ({ ...old, picture: reference });
-    this.services.projects.do(this.commands.amendResult(resultId, amend));
-  }
-
-  keep(bytes: Uint8Array<ArrayBuffer>, media_type: string): Promise<BlobReference> {
-    return keepBytes(this.services.projects.blobs, bytes, media_type);
   }
 
   async #needOperation(): Promise<Operation> {

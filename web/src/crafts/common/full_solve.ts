@@ -5,16 +5,16 @@ import type { Backend, Result, RunOptions } from '../../jobs/backend';
 import type { Job, JsonObject } from '../../jobs/contract';
 import { findOperation, JobError } from '../../jobs/contract';
 import type { BlobReference } from '../../project/document';
-import type { CraftDocument } from './craft_document';
-import { meshInput, requestKey } from './craft_document';
-import type { CraftSession } from './craft_session';
+import type { RoomDocument, Subject } from './craft_document';
+import { requestKey } from './craft_document';
 import { remember } from './estimate';
 import { bytesOf } from './import_model';
+import type { RoomSession } from './room_session';
 import { readyWorker } from './services';
 
-function jobOf<D extends CraftDocument>(
-  session: CraftSession<D>,
-  mesh: BlobReference,
+function jobOf<D extends RoomDocument>(
+  session: RoomSession<D>,
+  subject: Subject,
   outputs: readonly string[],
 ): Job {
   const { operationName } = session;
@@ -22,26 +22,26 @@ function jobOf<D extends CraftDocument>(
   return {
     operation: operationName,
     parameters: session.asked.value,
-    inputs: { [session.meshInputName]: meshInput(mesh, 'model.ply') },
+    inputs: subject.inputs,
     outputs: outputs.filter((name) => declared.includes(name)),
   };
 }
 
-function declaredOutputs<D extends CraftDocument>({ services, operationName }: CraftSession<D>): string[] {
+function declaredOutputs<D extends RoomDocument>({ services, operationName }: RoomSession<D>): string[] {
   const catalog = services.catalog.value;
   const operation = catalog && findOperation(catalog, operationName);
   return operation?.outputs.map(({ name }) => name) ?? [];
 }
 
-export async function solveInFull<D extends CraftDocument>(session: CraftSession<D>): Promise<void> {
-  const { model } = session.document.value;
-  if (model === null || session.result.value !== null) return;
+export async function solveInFull<D extends RoomDocument>(session: RoomSession<D>): Promise<void> {
+  const subject = session.subject.value;
+  if (subject === null || session.result.value !== null) return;
   const { services } = session;
   const parameters = session.asked.value;
   const worker = readyWorker(services);
   const backend = worker ?? services.browser;
-  const job = jobOf(session, model.mesh, worker ? declaredOutputs(session) : session.wantedOutputs);
-  const mesh = model.mesh.blob;
+  const job = jobOf(session, subject, worker ? declaredOutputs(session) : session.wantedOutputs);
+  const mesh = subject.key;
   await solveWith(session, backend, mesh, parameters, (options) =>
     backend.run(job, {
       ...options,
@@ -51,7 +51,7 @@ export async function solveInFull<D extends CraftDocument>(session: CraftSession
 }
 
 /** A solve that was still running in the worker when the page was closed is waited for again. */
-export function resumePending<D extends CraftDocument>(session: CraftSession<D>): void {
+export function resumePending<D extends RoomDocument>(session: RoomSession<D>): void {
   const worker = readyWorker(session.services);
   const { pending } = session.document.value;
   if (pending === null || !worker?.resume) return;
@@ -63,8 +63,8 @@ export function resumePending<D extends CraftDocument>(session: CraftSession<D>)
   });
 }
 
-async function solveWith<D extends CraftDocument>(
-  session: CraftSession<D>,
+async function solveWith<D extends RoomDocument>(
+  session: RoomSession<D>,
   backend: Backend,
   mesh: string,
   parameters: JsonObject,
@@ -112,14 +112,14 @@ async function solveWith<D extends CraftDocument>(
 }
 
 /** The bytes of an output of the current result: kept, still in the worker, or made now. */
-export async function outputOf<D extends CraftDocument>(
-  session: CraftSession<D>,
+export async function outputOf<D extends RoomDocument>(
+  session: RoomSession<D>,
   name: string,
   label: string,
 ): Promise<Uint8Array<ArrayBuffer> | null> {
   const result = session.result.value;
-  const { model } = session.document.value;
-  if (result === null || model === null) return null;
+  const subject = session.subject.value;
+  if (result === null || subject === null) return null;
   const { blobs } = session.services.projects;
   const kept = result.outputs[name];
   if (kept && (await blobs.has(kept.blob))) return await blobs.read(kept.blob);
@@ -131,9 +131,7 @@ export async function outputOf<D extends CraftDocument>(
       const backend = worker ?? session.services.browser;
       const old =
         result.job && worker?.resume ? await worker.resume(result.job, options).catch(() => null) : null;
-      const done = old?.outputs.has(name)
-        ? old
-        : await backend.run(jobOf(session, model.mesh, [name]), options);
+      const done = old?.outputs.has(name) ? old : await backend.run(jobOf(session, subject, [name]), options);
       const bytes = await bytesOf(done, name);
       const mediaType = done.outputs.get(name)?.mediaType;
       if (mediaType === undefined)

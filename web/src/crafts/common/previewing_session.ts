@@ -5,9 +5,9 @@ import { effect, signal, untracked } from '@preact/signals';
 import type { JsonObject, Report } from '../../jobs/contract';
 import { asJobError } from '../../jobs/contract';
 import { LatestOnly } from '../../jobs/latest_only';
-import type { BlobReference } from '../../project/document';
 import { jsonEqual } from '../../project/document';
-import type { CraftDocument, CraftResult } from './craft_document';
+import type { CraftDocument, CraftModel, CraftResult, Subject } from './craft_document';
+import { subjectOf } from './craft_document';
 import { CraftSession } from './craft_session';
 
 export interface ShownWork {
@@ -15,12 +15,12 @@ export interface ShownWork {
   readonly report: Report;
   /** What it was asked for with; what is not here has its default. */
   readonly parameters: JsonObject;
-  /** The blob of the mesh it was made from. */
+  /** The key of what it was made from. */
   readonly from: string;
 }
 
 export interface PreviewRequest {
-  readonly mesh: BlobReference;
+  readonly subject: Subject;
   readonly parameters: JsonObject;
 }
 
@@ -38,12 +38,13 @@ export abstract class PreviewingSession<
   protected abstract readResult(result: CraftResult): Promise<S>;
   /** A running preview of another model is of no use; of the same model it shows the way a slider goes. */
   protected isObsolete(running: PreviewRequest, next: PreviewRequest): boolean {
-    return running.mesh.blob !== next.mesh.blob;
+    return running.subject.key !== next.subject.key;
   }
   readonly #preview = new LatestOnly<PreviewRequest>(
     (request, abort) => this.#runPreview(request, abort),
     (running, next) => this.isObsolete(running, next),
-    (running, next) => running.mesh.blob === next.mesh.blob && jsonEqual(running.parameters, next.parameters),
+    (running, next) =>
+      running.subject.key === next.subject.key && jsonEqual(running.parameters, next.parameters),
   );
 
   /** To be called once everything is set up. */
@@ -64,17 +65,22 @@ export abstract class PreviewingSession<
   protected follow(): void {
     const { model } = this.document.value;
     const parameters = this.asked.value;
-    if (!this.active.value || model === null || this.operation.value === null) return;
+    const subject = model && this.#previewSubject(model);
+    if (!this.active.value || subject === null || this.operation.value === null) return;
     const found = this.result.value;
     this.cancelOutdatedSolve();
     untracked(() => {
       if (found && this.shownOutputs.every((name) => found.outputs[name])) void this.#showResult(found);
-      else if (this.#shows('preview', model.preview.blob, parameters)) {
+      else if (this.#shows('preview', subject.key, parameters)) {
         // Back to what is seen already, as after an undo: what was wrong in between no longer is.
         this.#preview.cancel();
         this.fieldErrors.value = {};
-      } else this.#preview.request({ mesh: model.preview, parameters });
+      } else this.#preview.request({ subject, parameters });
     });
+  }
+
+  #previewSubject(model: CraftModel): Subject {
+    return subjectOf(model.preview, this.meshInputName, this.furtherInputs.value);
   }
 
   #shows(kind: S['kind'], from: string, parameters: JsonObject): boolean {
@@ -92,7 +98,8 @@ export abstract class PreviewingSession<
     } catch {
       // Its bytes were not kept; a preview stands in for it.
       const model = this.document.value.model;
-      if (model) this.#preview.request({ mesh: model.preview, parameters: result.parameters });
+      if (model)
+        this.#preview.request({ subject: this.#previewSubject(model), parameters: result.parameters });
     }
   }
 
@@ -107,7 +114,8 @@ export abstract class PreviewingSession<
     try {
       const shown = await this.makePreview(request, abort);
       this.previewSeconds.value = (performance.now() - start) / 1000;
-      if (abort.aborted || this.document.value.model?.preview.blob !== request.mesh.blob) return;
+      const { model } = this.document.value;
+      if (abort.aborted || model === null || this.#previewSubject(model).key !== request.subject.key) return;
       if (this.result.value === null) this.show(shown);
     } catch (thrown) {
       const error = asJobError(thrown);

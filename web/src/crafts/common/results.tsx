@@ -5,29 +5,34 @@ import type { Json } from '../../jobs/contract';
 import type { BlobReference } from '../../project/document';
 import { jsonEqual } from '../../project/document';
 import { formatFixed, Icon, Menu, withUnit } from '../../ui';
-import type { CraftDocument, CraftResult } from './craft_document';
+import type { CraftResult, RoomDocument } from './craft_document';
 import { inForce } from './craft_document';
-import type { CraftSession } from './craft_session';
+import type { RoomSession } from './room_session';
 
 const shownResults = 3;
 
-export interface ResultsProps<D extends CraftDocument> {
-  readonly session: CraftSession<D>;
+export interface ResultsProps<D extends RoomDocument> {
+  readonly session: RoomSession<D>;
   readonly current: CraftResult | null;
   /** Told by this where the results have all parameters in common. */
   readonly usualParameter: string;
   /** What is said beside it: "normal error 11.1°", and the short of it. */
   readonly figureOf: (result: CraftResult) => { readonly short: string; readonly spoken: string };
   readonly onChoose: (result: CraftResult, label: string) => void;
+  /** Which may be returned to; left out: those made from what is open. */
+  readonly results?: readonly CraftResult[];
+  /** Left out: the parameter that tells them apart. */
+  readonly nameOf?: (result: CraftResult) => string;
 }
 
-export function Results<D extends CraftDocument>(props: ResultsProps<D>) {
+export function Results<D extends RoomDocument>(props: ResultsProps<D>) {
   const { session, current, figureOf } = props;
-  const { results, model } = session.document.value;
+  const { results } = session.document.value;
   if (session.operation.value === null || results.length === 0) return null;
-  const ours = results.filter((result) => result.mesh === model?.mesh.blob);
+  const ours = props.results ?? results.filter((result) => result.mesh === session.subject.value?.key);
+  if (ours.length === 0) return null;
   const telling = tellingParameter(ours, props);
-  const name = (result: CraftResult) => describe(result, telling, session);
+  const name = props.nameOf ?? ((result: CraftResult) => describe(result, telling, session));
   const choose = (result: CraftResult) => props.onChoose(result, `Return to ${name(result)}`);
   return (
     <div class="results">
@@ -76,7 +81,7 @@ export function Results<D extends CraftDocument>(props: ResultsProps<D>) {
 }
 
 /** The first number by which these results differ. */
-function tellingParameter<D extends CraftDocument>(
+function tellingParameter<D extends RoomDocument>(
   results: readonly CraftResult[],
   { session, usualParameter }: ResultsProps<D>,
 ): string {
@@ -92,10 +97,10 @@ function tellingParameter<D extends CraftDocument>(
   return names.find(differs) ?? usualParameter;
 }
 
-function describe<D extends CraftDocument>(
+function describe<D extends RoomDocument>(
   result: CraftResult,
   name: string,
-  session: CraftSession<D>,
+  session: RoomSession<D>,
 ): string {
   const operation = session.operation.value;
   const value = operation ? inForce(operation, result.parameters, name) : null;
@@ -103,11 +108,11 @@ function describe<D extends CraftDocument>(
   return typeof value === 'number' ? withUnit(formatFixed(value, value < 100 ? 1 : 0), unit) : '–';
 }
 
-function Picture<D extends CraftDocument>({
+function Picture<D extends RoomDocument>({
   session,
   reference,
 }: {
-  session: CraftSession<D>;
+  session: RoomSession<D>;
   reference: BlobReference | undefined;
 }) {
   const [url, setUrl] = useState<string | null>(null);

@@ -5,7 +5,6 @@ import type { JsonObject, Operation, Report } from '../../jobs/contract';
 import { findOperation } from '../../jobs/contract';
 import { readPly } from '../../jobs/mesh_reader';
 import type { CraftDocument, CraftResult, Source } from '../common/craft_document';
-import { meshInput } from '../common/craft_document';
 import type { Measured } from '../common/estimate';
 import { estimateMemory_mb, estimateSeconds, recall } from '../common/estimate';
 import { bytesOf } from '../common/import_model';
@@ -69,13 +68,13 @@ export class ReliefSession extends PreviewingSession<CraftDocument, Shown> {
     return { kind: 'full', mesh: await readMesh(bytes), report, parameters, from: mesh };
   }
 
-  protected async makePreview({ mesh, parameters }: PreviewRequest, signal: AbortSignal): Promise<Shown> {
-    const inputs = { mesh: meshInput(mesh, 'preview.ply') };
+  protected async makePreview({ subject, parameters }: PreviewRequest, signal: AbortSignal): Promise<Shown> {
+    const { inputs } = subject;
     const job = { operation: this.operationName, parameters, inputs, outputs: this.shownOutputs };
     const { report, outputs } = await this.services.browser.run(job, { signal });
     const relief = await readPly(await bytesOf({ report, outputs }, 'relief.ply'));
     this.#measurePreview(report);
-    return { kind: 'preview', mesh: relief, report, parameters, from: mesh.blob };
+    return { kind: 'preview', mesh: relief, report, parameters, from: subject.key };
   }
 
   #measurePreview(report: Report): void {

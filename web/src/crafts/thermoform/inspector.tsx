@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The parameters of forming and of what is made of the formed sheet, and the one filled button.
+import { IconButton } from '../../ui';
+import { machineProfile } from '../common/machine_profile';
 import { ModelRow } from '../common/model_row';
 import { ParameterPanel } from '../common/parameter_panel';
 import { placementNow } from './draw_scene';
@@ -35,6 +37,7 @@ export function Inspector({ session, picture, onReplace, onForm }: InspectorProp
     <>
       <div class="inspector-scroll" tabIndex={-1}>
         <ModelRow session={session} picture={picture} onReplace={onReplace} />
+        <ProfileLine session={session} />
         <ParameterPanel
           operation={operation}
           parameters={parameters}
@@ -49,5 +52,24 @@ export function Inspector({ session, picture, onReplace, onForm }: InspectorProp
         <MainButton session={session} onForm={onForm} />
       </div>
     </>
+  );
+}
+
+/** What is known of the machine, where something is; sheets, prints and moulds are made with it. */
+function ProfileLine({ session }: { session: ThermoformSession }) {
+  const profile = session.profile.value;
+  if (profile === null) return null;
+  return (
+    <div class="profile-line">
+      <span class="grow">
+        Machine: <strong>{profile.name}</strong>
+        <small>{profile.from}</small>
+      </span>
+      <IconButton
+        icon="close"
+        label="Form without the machine profile"
+        onClick={() => session.services.projects.do(machineProfile.remove())}
+      />
+    </div>
   );
 }

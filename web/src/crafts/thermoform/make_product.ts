@@ -4,11 +4,11 @@ import type { JobInput, Operation } from '../../jobs/contract';
 import { JobError } from '../../jobs/contract';
 import type { BlobReference } from '../../project/document';
 import type { Source } from '../common/craft_document';
-import { meshInput } from '../common/craft_document';
+import { known, meshInput } from '../common/craft_document';
 import { outputOf, solveInFull } from '../common/full_solve';
 import { bytesOf } from '../common/import_model';
 import { readyWorker } from '../common/services';
-import { addProduct, known, printing, productOf, simulate } from './thermoform_document';
+import { addProduct, printing, productOf, simulate } from './thermoform_document';
 import type { ThermoformSession } from './thermoform_session';
 
 /** The model's own file keeps what the repaired mesh lost: coordinates of its picture. */
@@ -45,8 +45,9 @@ export async function productBytes(
   const operation = session.operationNamed(operationName);
   const { projects } = session.services;
   const { model } = session.document.value;
-  if (operation === undefined || model === null) return null;
-  const kept = productOf(session.document.value, operation)?.outputs[output];
+  const subject = session.subject.value;
+  if (operation === undefined || model === null || subject === null) return null;
+  const kept = productOf(session.document.value, subject, operation)?.outputs[output];
   if (kept && (await projects.blobs.has(kept.blob))) return await projects.blobs.read(kept.blob);
   const sheet = session.result.value.outputs['sheet.ply'];
   return await session.busy(
@@ -60,6 +61,7 @@ export async function productBytes(
         mould: operationName === printing ? sourceInput(model.source) : meshInput(model.mesh, 'model.ply'),
         ...(sheet && declared.includes('sheet') ? { sheet: meshInput(sheet, 'sheet.ply') } : {}),
         ...companionInputs(operation, model.source),
+        ...session.furtherInputs.value,
       };
       const wanted = wantedWith(operation, output);
       const start = performance.now();
@@ -82,7 +84,7 @@ export async function productBytes(
           made_unix_s: Math.round(Date.now() / 1000),
           backend: backend.kind,
           seconds: (performance.now() - start) / 1000,
-          mesh: model.mesh.blob,
+          mesh: subject.key,
           parameters,
           report: done.report,
           outputs,

@@ -4,12 +4,12 @@ import type { Catalog, Operation, ParameterSchema } from '../../jobs/contract';
 import type { ProjectDocument } from '../../project/document';
 import { newDocument } from '../../project/document';
 import type { CraftModel, CraftResult } from '../common/craft_document';
-import { CraftCommands, emptyCraft } from '../common/craft_document';
+import { CraftCommands, emptyCraft, known, subjectOf } from '../common/craft_document';
+import { machineProfile, profileInputs } from '../common/machine_profile';
 import type { Product } from './thermoform_document';
 import {
   addProduct,
   formedSheet,
-  known,
   offered,
   printing,
   productOf,
@@ -41,6 +41,7 @@ const model: CraftModel = {
   preview: blob('b'),
   report: {},
 };
+const subject = subjectOf(model.mesh, 'mould', {});
 const result = (id: string, parameters: Record<string, number>): CraftResult => ({
   id,
   made_unix_s: 0,
@@ -72,8 +73,20 @@ describe('the thermoform in a project', () => {
     document = thermoform.setParameters(all, { vacuum_kpa: 60, dots_per_inch: 150 }, 'Set').apply(document);
     const craft = thermoform.of(document);
     expect(craft.parameters).toEqual({ vacuum_kpa: 60, dots_per_inch: 150 });
-    expect(formedSheet(craft, known(forming, craft.parameters))?.id).toBe('r');
-    expect(formedSheet(craft, { vacuum_kpa: 61 })).toBeNull();
+    expect(formedSheet(craft, subject, known(forming, craft.parameters))?.id).toBe('r');
+    expect(formedSheet(craft, subject, { vacuum_kpa: 61 })).toBeNull();
+  });
+
+  it('takes a sheet formed with a machine profile for another than one formed without', () => {
+    const profile = { name: 'Mine', from: 'lamp', file: blob('e') };
+    const with_profile = subjectOf(model.mesh, 'mould', profileInputs(profile));
+    expect(with_profile.inputs['profile']).toEqual({ sha256: 'e'.repeat(64), file_name: 'profile.json' });
+    const document = thermoform.addResult(result('r', {})).apply(opened());
+    expect(formedSheet(thermoform.of(document), subject, {})?.id).toBe('r');
+    expect(formedSheet(thermoform.of(document), with_profile, {})).toBeNull();
+    const used = machineProfile.use(profile).apply(document);
+    expect(machineProfile.of(used).profile).toEqual(profile);
+    expect(machineProfile.of(machineProfile.remove().apply(used)).profile).toBeNull();
   });
 
   it('goes back to an earlier sheet and leaves the print as it is set', () => {
@@ -91,8 +104,11 @@ describe('the thermoform in a project', () => {
     document = addProduct(product('s', { dots_per_inch: 72 }, 'print.png')).apply(document);
     const craft = thermoform.of(document);
     expect(craft.products.map(({ id }) => id)).toEqual(['s', 'q']);
-    expect(Object.keys(productOf(craft, print)?.outputs ?? {}).sort()).toEqual(['formed.glb', 'print.png']);
-    expect(productOf(craft, forming)).toBeNull();
+    expect(Object.keys(productOf(craft, subject, print)?.outputs ?? {}).sort()).toEqual([
+      'formed.glb',
+      'print.png',
+    ]);
+    expect(productOf(craft, subject, forming)).toBeNull();
   });
 
   it('lives beside a relief, and opens projects from before it', () => {

@@ -2,8 +2,8 @@
 // Thermoforming's part of a project: formed sheets as results, and what was made of them: prints, moulds.
 import type { Catalog, JsonObject, Operation } from '../../jobs/contract';
 import { findOperation } from '../../jobs/contract';
-import type { CraftDocument, CraftResult } from '../common/craft_document';
-import { CraftCommands, emptyCraft, sameRequest, withResult } from '../common/craft_document';
+import type { CraftDocument, CraftResult, Subject } from '../common/craft_document';
+import { CraftCommands, emptyCraft, known, sameRequest, withResult } from '../common/craft_document';
 
 /** A print or a mould: what an operation made of the model, with the parameters it knows. */
 export interface Product extends CraftResult {
@@ -40,28 +40,24 @@ export function offered(catalog: Catalog): Operation | null {
   return { ...operation, parameters: { properties: ordered } };
 }
 
-/** Those of the parameters that an operation knows. */
-export const known = (operation: Operation | undefined, parameters: JsonObject): JsonObject =>
-  Object.fromEntries(
-    Object.entries(parameters).filter(([name]) => operation && name in operation.parameters.properties),
-  );
-
-/** The sheet formed with exactly these parameters over the model in force, if there is one. */
+/** The sheet formed with exactly these parameters over the subject, if there is one. */
 export function formedSheet(
-  { model, results }: ThermoformDocument,
+  { results }: ThermoformDocument,
+  subject: Subject | null,
   parameters: JsonObject,
 ): CraftResult | null {
-  if (model === null) return null;
-  const request = { mesh: model.mesh.blob, parameters };
+  if (subject === null) return null;
+  const request = { mesh: subject.key, parameters };
   return results.find((result) => sameRequest(result, request)) ?? null;
 }
 
 export function productOf(
-  { model, products, parameters }: ThermoformDocument,
+  { products, parameters }: ThermoformDocument,
+  subject: Subject | null,
   operation: Operation | undefined,
 ): Product | null {
-  if (model === null || operation === undefined) return null;
-  const request = { mesh: model.mesh.blob, parameters: known(operation, parameters) };
+  if (subject === null || operation === undefined) return null;
+  const request = { mesh: subject.key, parameters: known(operation, parameters) };
   return (
     products.find((product) => product.operation === operation.name && sameRequest(product, request)) ?? null
   );

@@ -8,18 +8,18 @@ import type { Film } from '../../jobs/glb';
 import { readFilm, readPly } from '../../jobs/mesh_reader';
 import type { PlyMesh } from '../../jobs/ply';
 import type { CraftResult } from '../common/craft_document';
-import { inForce, meshInput } from '../common/craft_document';
+import { inForce, known } from '../common/craft_document';
 import type { Measured } from '../common/estimate';
 import { estimateSeconds, recall } from '../common/estimate';
 import { bytesOf } from '../common/import_model';
 import type { PreviewRequest, ShownWork } from '../common/previewing_session';
 import { PreviewingSession } from '../common/previewing_session';
+import { machineProfile, profileInputs } from '../common/machine_profile';
 import { figure } from '../common/report';
 import type { Services } from '../common/services';
 import { endOf, momentAt, phaseAt, phasesOf } from './film';
 import {
   formedSheet,
-  known,
   moulding,
   offered,
   printing,
@@ -51,10 +51,16 @@ export class ThermoformSession extends PreviewingSession<ThermoformDocument, For
     const catalog = this.services.catalog.value;
     return catalog && offered(catalog);
   });
+  readonly profile = computed(() => machineProfile.of(this.services.projects.document.value).profile);
+  override readonly furtherInputs = computed(() => profileInputs(this.profile.value));
   readonly asked = computed(() => known(this.operationNamed(simulate), this.document.value.parameters));
-  readonly result = computed(() => formedSheet(this.document.value, this.asked.value));
-  readonly print = computed(() => productOf(this.document.value, this.operationNamed(printing)));
-  readonly mould = computed(() => productOf(this.document.value, this.operationNamed(moulding)));
+  readonly result = computed(() => formedSheet(this.document.value, this.subject.value, this.asked.value));
+  readonly print = computed(() =>
+    productOf(this.document.value, this.subject.value, this.operationNamed(printing)),
+  );
+  readonly mould = computed(() =>
+    productOf(this.document.value, this.subject.value, this.operationNamed(moulding)),
+  );
   /** Of the film, seconds from the start; its end is what the sheet is like when it has cooled. */
   readonly time_s = signal(0);
   readonly moment = computed(() => {
@@ -113,20 +119,20 @@ export class ThermoformSession extends PreviewingSession<ThermoformDocument, For
     return { kind: 'full', sheet, film, report, parameters, from: mesh };
   }
 
-  protected async makePreview({ mesh, parameters }: PreviewRequest, signal: AbortSignal): Promise<Formed> {
+  protected async makePreview({ subject, parameters }: PreviewRequest, signal: AbortSignal): Promise<Formed> {
     this.#previewStart = performance.now();
     const triangles = Math.min(previewTriangles, Number(this.filled(parameters)['triangles'] ?? Infinity));
     const job = {
       operation: simulate,
       parameters: { ...parameters, triangles },
-      inputs: { mould: meshInput(mesh, 'preview.ply') },
+      inputs: subject.inputs,
       outputs: this.shownOutputs,
     };
     const done = await this.services.browser.run(job, { signal });
     const sheet = await readPly(await bytesOf(done, 'sheet.ply'));
     const film = await readFilm(await bytesOf(done, 'forming.glb'));
     this.#previewed.value = this.measured(done.report) ?? this.#previewed.value;
-    return { kind: 'preview', sheet, film, report: done.report, parameters, from: mesh.blob };
+    return { kind: 'preview', sheet, film, report: done.report, parameters, from: subject.key };
   }
 
   /** Keeps the moment looked at; who looked at the end goes on doing so. */

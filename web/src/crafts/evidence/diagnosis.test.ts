@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+import { describe, expect, it } from 'vitest';
+import type { Report } from '../../jobs/contract';
+import { formatEstimate, oddsAgainstNone, percent, readDiagnosis, readingWords } from './diagnosis';
+
+const report: Report = {
+  verdict: ['heating_gradient'],
+  reading: 'cannot_separate',
+  sentence: 'Uneven heating, 60 %.',
+  causes: [
+    {
+      name: 'heating_gradient',
+      label: 'Uneven heating',
+      probability: 0.6,
+      strength: 0.4,
+      unit: '',
+      interval: [0.38, 0.42],
+      values: { heating_gradient_x: 0.4 },
+      remedy: 'Turn the heater.',
+    },
+    {
+      name: 'thickness_wedge',
+      label: 'Wedge',
+      probability: 0.4,
+      strength: 0.3,
+      unit: 'mm',
+      interval: [0.1, 0.5],
+    },
+  ],
+  not_separable: [{ causes: ['heating_gradient', 'thickness_wedge'], measurement: 'Turn the sheet.' }],
+  error_before_mm: 0.28,
+  error_before_interval_mm: [0.2, 0.3],
+  error_after_mm: 0.14,
+  error_after_interval_mm: [0.1, 0.2],
+  gain_share: 0.5,
+  gain_interval: [0.4, 0.6],
+  unseen: { objects: ['bowl'], error_before_mm: 1, error_after_mm: 0.5, gain_share: 0.5 },
+  noise_floor_mm: 0.12,
+  noise: [{ object: 'lamp', sigma_mm: 0.08 }],
+  hypotheses: [
+    { causes: ['heating_gradient'], unknown_structure: false, probability: 0.6, log_evidence: 100 },
+    { causes: [], unknown_structure: true, probability: 0.03, log_evidence: 90 },
+  ],
+};
+
+describe('a diagnosis', () => {
+  it('is read with its gains, on parts left out and on other objects', () => {
+    const diagnosis = readDiagnosis(report);
+    expect(diagnosis.named).toEqual(['heating_gradient']);
+    expect(diagnosis.gains.map(({ title }) => title)).toEqual(['Held out', 'Not used']);
+    expect(diagnosis.gains[0]?.after).toEqual({ value: 0.14, low: 0.1, high: 0.2 });
+    expect(diagnosis.gains[1]?.after).toEqual({ value: 0.5, low: 0.5, high: 0.5 });
+    expect(diagnosis.sigma_mm.get('lamp')).toBe(0.08);
+    expect(diagnosis.unlisted).toBe(0.03);
+  });
+
+  it('says in words what looks alike and what would tell', () => {
+    const diagnosis = readDiagnosis(report);
+    expect(readingWords(diagnosis)).toBe('These data look the same for “Uneven heating” and “Wedge”.');
+    expect(diagnosis.alike[0]?.measurement).toBe('Turn the sheet.');
+    for (const reading of ['none', 'unknown'] as const)
+      expect(readingWords({ reading, alike: [] })).toMatch(/\.$/);
+  });
+
+  it('survives a report with nothing in it', () => {
+    const empty = readDiagnosis({});
+    expect(empty.causes).toEqual([]);
+    expect(empty.reading).toBe('none');
+    expect(oddsAgainstNone({}, 'x')).toBeNull();
+  });
+
+  it('compares evidence with and without a cause', () => {
+    expect(oddsAgainstNone(report, 'heating_gradient')).toBeCloseTo(10 / Math.LN10, 9);
+    expect(oddsAgainstNone(report, 'thickness_wedge')).toBeNull();
+  });
+
+  it('never claims to be certain', () => {
+    expect([0, 0.004, 0.873, 0.9999].map((p) => percent(p).replace('\u2009', ' '))).toEqual([
+      '< 1 %',
+      '< 1 %',
+      '87 %',
+      '> 99 %',
+    ]);
+  });
+
+  it('gives as many digits as the doubt leaves', () => {
+    expect(formatEstimate({ value: 0.396, low: 0.3815, high: 0.4105 }, '')).toBe('0.40 ± 0.01');
+    expect(formatEstimate({ value: -1.52, low: -1.8, high: -1.2 }, 'mm')).toBe('\u22121.5 ± 0.3\u2009mm');
+    expect(formatEstimate({ value: 14, low: 10, high: 18 }, '°')).toBe('14 ± 4°');
+  });
+});

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a diagnosis says, read from its report: names and figures are the core's, sentences about readings are ours.
+import type { Json, JsonObject, Report } from '../../jobs/contract';
+import { isObject } from '../../project/document';
+import { formatNumber, withUnit } from '../../ui';
+import { figure, sentences } from '../common/report';
+
+export interface Estimate {
+  readonly value: number;
+  readonly low: number;
+  readonly high: number;
+}
+
+export interface Cause {
+  readonly name: string;
+  readonly label: string;
+  readonly probability: number;
+  readonly strength: Estimate;
+  readonly unit: string;
+  readonly values: Readonly<Record<string, number>>;
+  readonly remedy: string;
+}
+
+export interface Gain {
+  readonly title: string;
+  readonly detail: string;
+  readonly before: Estimate;
+  readonly after: Estimate;
+  readonly share: Estimate;
+}
+
+export type Reading = 'none' | 'cause' | 'cannot_separate' | 'unknown';
+
+export interface Diagnosis {
+  readonly reading: Reading;
+  readonly sentence: string;
+  readonly causes: readonly Cause[];
+  readonly named: readonly string[];
+  /** That something explains the data which is not in the list. */
+  readonly unlisted: number;
+  /** Pairs that look alike, with the measurement that would tell. */
+  readonly alike: readonly { readonly labels: readonly string[]; readonly measurement: string }[];
+  readonly gains: readonly Gain[];
+  readonly noiseFloor_mm: number;
+  /** Standard deviation of one coordinate, by object. */
+  readonly sigma_mm: ReadonlyMap<string, number>;
+  readonly parameters: readonly {
+    readonly name: string;
+    readonly label: string;
+    readonly unit: string;
+    readonly calibrated: number;
+    readonly extended: number;
+  }[];
+  readonly notes: readonly string[];
+  readonly simulations: number | null;
+}
+
+const list = (value: Json | undefined): JsonObject[] => (Array.isArray(value) ? value.filter(isObject) : []);
+const text = (value: Json | undefined): string => (typeof value === 'string' ? value : '');
+const number = (value: Json | undefined): number =>
+  typeof value === 'number' && Number.isFinite(value) ? value : 0;
+
+export function estimateOf(value: Json | undefined, interval: Json | undefined): Estimate {
+  const middle = number(value);
+  const [low, high] = Array.isArray(interval) ? (interval as readonly Json[]) : [];
+  return { value: middle, low: number(low ?? middle), high: number(high ?? middle) };
+}
+
+function gainOf(source: JsonObject, title: string, detail: string): Gain {
+  return {
+    title,
+    detail,
+    before: estimateOf(source['error_before_mm'], source['error_before_interval_mm']),
+    after: estimateOf(source['error_after_mm'], source['error_after_interval_mm']),
+    share: estimateOf(source['gain_share'], source['gain_interval']),
+  };
+}
+
+export function readDiagnosis(report: Report): Diagnosis {
+  const causes = list(report['causes']).map((cause) => ({
+    name: text(cause['name']),
+    label: text(cause['label']),
+    probability: number(cause['probability']),
+    strength: estimateOf(cause['strength'], cause['interval']),
+    unit: text(cause['unit']),
+    values: Object.fromEntries(
+      Object.entries(isObject(cause['values']) ? cause['values'] : {}).map(([name, value]) => [
+        name,
+        number(value),
+      ]),
+    ),
+    remedy: text(cause['remedy']),
+  }));
+  const labelOf = (name: string) => causes.find((cause) => cause.name === name)?.label ?? name;
+  const unseen = report['unseen'];
+  const objects = isObject(unseen) ? sentences(unseen, 'objects') : [];
+  return {
+    reading: (text(report['reading']) || 'none') as Reading,
+    sentence: text(report['sentence']),
+    causes,
+    named: sentences(report, 'verdict').filter((name) => causes.some((cause) => cause.name === name)),
+    unlisted: list(report['hypotheses'])
+      .filter((one) => one['unknown_structure'] === true && sentences(one, 'causes').length === 0)
+      .reduce((sum, one) => sum + number(one['probability']), 0),
+    alike: list(report['not_separable']).map((pair) => ({
+      labels: sentences(pair, 'causes').map(labelOf),
+      measurement: text(pair['measurement']),
+    })),
+    gains: [
+      gainOf(report, 'Held out', 'parts left out'),
+      ...(isObject(unseen) ? [gainOf(unseen, 'Not used', objects.join(', '))] : []),
+    ],
+    noiseFloor_mm: figure(report, 'noise_floor_mm') ?? 0,
+    sigma_mm: new Map(
+      list(report['noise']).map((noise) => [text(noise['object']), number(noise['sigma_mm'])]),
+    ),
+    parameters: list(report['parameters']).map((parameter) => ({
+      name: text(parameter['name']),
+      label: text(parameter['label']),
+      unit: text(parameter['unit']),
+      calibrated: number(parameter['calibrated']),
+      extended: number(parameter['extended']),
+    })),
+    notes: sentences(report, 'notes'),
+    simulations: figure(report, 'simulations'),
+  };
+}
+
+/** What a reading means for the maker. */
+export function readingWords({ reading, alike }: Pick<Diagnosis, 'reading' | 'alike'>): string {
+  switch (reading) {
+    case 'none':
+      return 'Nothing to mend: what is left is as small as the measuring noise. The calibrated simulation may be used as it is.';
+    case 'unknown':
+      return 'The measured sheet differs in a way that repeats, but no cause of the list makes it. The nearest one is listed first; look for what the list does not know.';
+    case 'cannot_separate': {
+      const labels = alike[0]?.labels ?? [];
+      return labels.length === 2
+        ? `These data look the same for “${labels[0]}” and “${labels[1]}”.`
+        : 'These data look the same for more than one cause.';
+    }
+    case 'cause':
+      return '';
+  }
+}
+
+/** "87 %"; never 0 or 100, which nobody knows. */
+export function percent(probability: number): string {
+  if (probability > 0.995) return withUnit('> 99', '%');
+  if (probability < 0.005) return withUnit('< 1', '%');
+  return withUnit(String(Math.round(100 * probability)), '%');
+}
+
+/** "0.40 ± 0.01 mm": as many digits as the doubt leaves. */
+export function formatEstimate({ value, low, high }: Estimate, unit: string): string {
+  const doubt = (high - low) / 2;
+  if (!(doubt > 0)) return withUnit(formatNumber(value), unit);
+  const decimals = Math.min(6, Math.max(0, -Math.floor(Math.log10(doubt))));
+  const fixed = (x: number) => x.toFixed(decimals).replace(/^-/, '\u2212');
+  return withUnit(`${fixed(value)} ± ${fixed(doubt)}`, unit);
+}
+
+/** How many times more probable the data are with a cause than without any, as a power of ten; null where the report does
+ *  not tell. */
+export function oddsAgainstNone(report: Report, name: string): number | null {
+  const hypotheses = list(report['hypotheses']);
+  const evidenceOf = (fits: (causes: readonly string[]) => boolean): number =>
+    Math.max(
+      ...hypotheses.filter((one) => fits(sentences(one, 'causes'))).map((one) => number(one['log_evidence'])),
+    );
+  const difference =
+    evidenceOf((causes) => causes.includes(name)) - evidenceOf((causes) => causes.length === 0);
+  return Number.isFinite(difference) ? difference / Math.LN10 : null;
+}

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+import { signal } from '@preact/signals';
+import { useEffect } from 'preact/hooks';
+import { Button, formatCount, formatNumber, Segmented, Sheet, useLasting, withUnit } from '../../ui';
+import { outputOf } from '../common/full_solve';
+import { download, safeFileName } from '../common/download';
+import '../common/room.css';
+import { CalibrationPanel } from './calibration_panel';
+import { Distances, Gains } from './charts';
+import './evidence.css';
+import { inventing } from './evidence_document';
+import type { EvidenceSession, Look } from './evidence_session';
+import { Inspector } from './inspector';
+import { Maps, modelWords, Pane } from './maps';
+import { Notes } from './notes';
+import { ObjectView } from './object_view';
+import { simulatedIn } from './residuals';
+import { ResultsStrip } from './results_strip';
+import { ScanInspector } from './scan_inspector';
+import { ScanPanel } from './scan_panel';
+import { VirtualObject } from './virtual_object';
+
+export interface EvidencePageProps {
+  readonly session: EvidenceSession;
+  readonly onChooseFile: () => void;
+}
+
+type View = 'plane' | 'object';
+/** It outlives a visit to another page. */
+const view = signal<View>('plane');
+const views = [
+  { value: 'plane', label: 'Plane' },
+  { value: 'object', label: 'On the object' },
+] as const;
+
+export function EvidencePage({ session, onChooseFile }: EvidencePageProps) {
+  useKeys(session);
+  const { objects, scan } = session.document.value;
+  const opening = session.activity.value.kind === 'opening';
+  const notes = <Notes session={session} onChooseFile={onChooseFile} />;
+  return (
+    <>
+      <main class="view evidence" aria-label="Evidence">
+        <h1 class="hidden-text">Evidence</h1>
+        {scan ? (
+          <ScanPanel session={session} scan={scan} onChooseFile={onChooseFile} />
+        ) : objects.length === 0 ? (
+          opening ? null : (
+            <Empty session={session} onChooseFile={onChooseFile} />
+          )
+        ) : (
+          <Bench session={session} />
+        )}
+        {notes}
+      </main>
+      {session.hasWork.value ? (
+        <Sheet label="Objects and causes">
+          {scan ? (
+            <ScanInspector session={session} scan={scan} />
+          ) : (
+            <Inspector session={session} onChooseFile={onChooseFile} />
+          )}
+        </Sheet>
+      ) : null}
+      {session.hasWork.value || opening ? (
+        <footer class="strip">
+          <ResultsStrip session={session} />
+        </footer>
+      ) : null}
+    </>
+  );
+}
+
+function Empty({ session, onChooseFile }: EvidencePageProps) {
+  const invention = session.operationNamed(inventing);
+  return (
+    <div class="empty-view evidence-empty">
+      <p>
+        Evidence starts from a formed object that was measured: mould.obj, setup.json and measured.csv
+        together, their folder, or a zip of it.
+      </p>
+      <div class="row">
+        <Button kind="filled" icon="upload" onClick={onChooseFile}>
+          Open a measured object
+        </Button>
+        {invention ? <VirtualObject session={session} operation={invention} /> : null}
+      </div>
+      <p class="aside">A photographed scan of a printed sheet, with its pattern.json, is measured first.</p>
+    </div>
+  );
+}
+
+/** Measured beside simulated, and what is known of the difference. */
+function Bench({ session }: { session: EvidenceSession }) {
+  const look = session.look.value;
+  const waiting = useLasting(look === null && session.looking.value);
+  const diagnosis = session.diagnosis.value;
+  const calibrated = session.mode.value === 'calibrate' ? session.result.value : null;
+  return (
+    <div class="bench">
+      <div class="bench-head">
+        <Segmented
+          label="Where it is shown"
+          options={views}
+          value={view.value}
+          onChange={(value) => (view.value = value)}
+        />
+        {look ? <ReadOut session={session} look={look} /> : null}
+      </div>
+      {look === null ? (
+        <p class="waiting" role="status">
+          {waiting ? 'Simulating the set-up as it stands…' : ''}
+        </p>
+      ) : view.value === 'plane' ? (
+        <Maps session={session} look={look} />
+      ) : (
+        <ObjectView session={session} look={look} />
+      )}
+      {calibrated ? (
+        <CalibrationPanel session={session} result={calibrated} />
+      ) : look ? (
+        <div class="charts">
+          <Distances session={session} look={look} />
+          {diagnosis ? (
+            <Gains diagnosis={diagnosis} />
+          ) : (
+            <Pane title="Error on data not shown" detail="">
+              <p class="later">
+                {session.mode.value === 'diagnose'
+                  ? 'Parts of the sheet are left out of the fit and then predicted. It comes with the diagnosis.'
+                  : 'It comes with a diagnosis. A calibration fits the sheet’s material and says what the data do not tell.'}
+              </p>
+            </Pane>
+          )}
+        </div>
+      ) : null}
+    </div>
+  );
+}
+
+/** The marked point in figures. */
+function ReadOut({ session, look }: { session: EvidenceSession; look: Look }) {
+  const point = session.hovered.value;
+  const { residuals } = look;
+  if (point === null || point >= residuals.count)
+    return (
+      <p class="read-out" aria-live="polite">
+        {formatCount(residuals.count)} points
+      </p>
+    );
+  const simulated = simulatedIn(residuals, session.model.value);
+  const at = (values: Float64Array, k: number) => values[3 * point + k] ?? 0;
+  const distance = Math.hypot(...[0, 1, 2].map((k) => at(simulated, k) - at(residuals.measured, k)));
+  const length = (value: number, digits = 3) => withUnit(formatNumber(value, digits), 'mm');
+  const [x, y] = [residuals.sheet[2 * point] ?? 0, residuals.sheet[2 * point + 1] ?? 0];
+  return (
+    <p class="read-out" aria-live="polite">
+      At {formatNumber(x)}, {length(y)}: measured {length(at(residuals.measured, 2))} high,{' '}
+      {modelWords(look, session.model.value)} {length(at(simulated, 2))};{' '}
+      <strong>{length(distance, 2)} apart</strong>
+    </p>
+  );
+}
+
+async function saveReport(session: EvidenceSession): Promise<void> {
+  const bytes = await outputOf(session, 'diagnosis.html', 'report');
+  if (bytes) download(bytes, `${safeFileName(session.title)}-diagnosis.html`, 'text/html');
+}
+
+/** Keys of this page: Ctrl+Enter, Ctrl+E, Esc. */
+function useKeys(session: EvidenceSession): void {
+  useEffect(() => {
+    const onKey = (event: KeyboardEvent) => {
+      if (event.defaultPrevented || document.querySelector('dialog[open]')) return;
+      const control = event.ctrlKey || event.metaKey;
+      const act = (action: () => void) => {
+        event.preventDefault();
+        action();
+      };
+      if (control && event.key === 'Enter' && session.activity.value.kind === 'idle')
+        act(() => void session.solve());
+      else if (control && event.key.toLowerCase() === 'e' && session.diagnosis.value)
+        act(() => void saveReport(session));
+      else if (event.key === 'Escape' && session.activity.value.kind !== 'idle') act(() => session.cancel());
+    };
+    document.addEventListener('keydown', onKey);
+    return () => document.removeEventListener('keydown', onKey);
+  }, [session]);
+}

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+import { formatCount, formatDuration, formatNumber, JobStrip, useLasting, withUnit } from '../../ui';
+import type { CraftResult } from '../common/craft_document';
+import { figure } from '../common/report';
+import { Results } from '../common/results';
+import { percent, readDiagnosis } from './diagnosis';
+import { diagnosing, evidence, usesIn } from './evidence_document';
+import type { EvidenceSession } from './evidence_session';
+import { measuredNow } from './measure_scan';
+import { distancesOf, meanOf } from './residuals';
+
+export function ResultsStrip({ session }: { session: EvidenceSession }) {
+  const activity = session.activity.value;
+  const lasting = useLasting(activity.kind !== 'idle');
+  if (lasting && activity.kind !== 'idle') {
+    const titles = {
+      solving: session.mode.value === 'diagnose' ? 'Diagnosing' : 'Calibrating',
+      opening: `Opening ${activity.name}`,
+      exporting: `Making the ${activity.name}`,
+    };
+    return (
+      <JobStrip
+        state="running"
+        title={titles[activity.kind]}
+        detail={activity.progress?.stage ?? 'Starting'}
+        progress={activity.progress ?? { fraction: 0, seconds_left: null }}
+        onCancel={() => session.cancel()}
+      />
+    );
+  }
+  const { objects, results } = session.document.value;
+  const ours = results.filter((result) => usesIn(result.mesh, objects) !== null);
+  return (
+    <JobStrip {...stateOf(session)}>
+      <Results
+        session={session}
+        current={session.result.value}
+        usualParameter="triangles"
+        results={ours}
+        nameOf={(result) => nameOf(session, result)}
+        figureOf={(result) => ({ short: shortOf(result), spoken: shortOf(result) })}
+        onChoose={(result, label) => session.services.projects.do(evidence.returnTo(result, label))}
+      />
+    </JobStrip>
+  );
+}
+
+const isDiagnosis = ({ mesh }: CraftResult) => mesh.startsWith(diagnosing);
+
+function nameOf(session: EvidenceSession, result: CraftResult): string {
+  const used = usesIn(result.mesh, session.document.value.objects)?.objects ?? [];
+  const names = used.filter(({ use }) => use === 'fit').map(({ name }) => name);
+  return names.length > 1 ? `${names[0] ?? ''} + ${names.length - 1}` : (names[0] ?? '');
+}
+
+function shortOf(result: CraftResult): string {
+  if (!isDiagnosis(result)) return 'calibrated';
+  const { reading, causes } = readDiagnosis(result.report);
+  if (reading === 'none') return 'nothing found';
+  if (reading === 'unknown') return 'unknown cause';
+  return percent(causes[0]?.probability ?? 0);
+}
+
+function stateOf(session: EvidenceSession) {
+  const { scan } = session.document.value;
+  if (scan) {
+    const measured = measuredNow(scan);
+    return measured
+      ? {
+          state: 'done' as const,
+          title: 'Scan measured',
+          detail: `${formatCount(figure(measured.report, 'points') ?? 0)} points`,
+        }
+      : { state: 'idle' as const, title: 'Scan opened', detail: 'Its points are measured next' };
+  }
+  const result = session.result.value;
+  if (result) {
+    const where = result.backend === 'native' ? 'on the worker' : 'in the browser';
+    const simulations = figure(result.report, 'simulations');
+    const made = simulations === null ? '' : `${formatCount(simulations)} simulations, `;
+    return {
+      state: 'done' as const,
+      title: isDiagnosis(result) ? 'Diagnosis ready' : 'Calibration ready',
+      detail: `${made}${formatDuration(result.seconds)} ${where}`,
+    };
+  }
+  const error = Object.values(session.fieldErrors.value)[0];
+  if (error) return { state: 'attention' as const, title: 'Not run', detail: error };
+  if (session.stopped.value)
+    return {
+      state: 'idle' as const,
+      title: 'Stopped',
+      detail:
+        session.services.native === null
+          ? 'A run in the browser starts anew'
+          : 'What was simulated is kept; it goes on from there',
+    };
+  const look = session.look.value;
+  if (look === null)
+    return {
+      state: 'idle' as const,
+      title: session.looking.value ? 'Simulating the set-up' : 'Nothing compared yet',
+      detail: 'Measured beside simulated comes first',
+    };
+  const mean = meanOf(distancesOf(look.residuals, 'base'));
+  return {
+    state: 'idle' as const,
+    title: 'Set-up compared as it stands',
+    detail: `${withUnit(formatNumber(mean, 2), 'mm')} apart on average; not calibrated yet`,
+  };
+}

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How measured objects and scans come into the project.
+import type { JsonObject } from '../../jobs/contract';
+import { toast } from '../../ui';
+import { nameProject } from '../common/craft_document';
+import { bytesOf } from '../common/import_model';
+import type { MeasuredObject, ObjectFile, Scan } from './evidence_document';
+import { evidence, freeName, inventing, objectFiles, registering } from './evidence_document';
+import type { EvidenceSession } from './evidence_session';
+import type { Bytes, Found } from './measured_files';
+import { countPoints, missingFrom, objectsInArchive, packObject, plainName } from './measured_files';
+import { scanInputs } from './scan_files';
+
+/** Together with files that came before, where it is not complete. */
+export async function takeObject(session: EvidenceSession, { name: own, files }: Found): Promise<void> {
+  const { projects } = session.services;
+  const { draft, objects } = session.document.value;
+  const name = draft && own === plainName ? draft.name : own;
+  const whole: Partial<Record<ObjectFile, Bytes>> = {};
+  for (const file of objectFiles) {
+    const kept = draft?.files[file];
+    const bytes = files[file] ?? (kept ? await projects.blobs.read(kept.blob) : undefined);
+    if (bytes) whole[file] = bytes;
+  }
+  const references = await Promise.all(
+    objectFiles.map(async (file) => {
+      const bytes = whole[file];
+      const type = {
+        'mould.obj': 'model/obj',
+        'setup.json': 'application/json',
+        'measured.csv': 'text/csv',
+      }[file];
+      return bytes ? ([[file, await session.keep(bytes, type)]] as const) : [];
+    }),
+  );
+  const kept = Object.fromEntries(references.flat());
+  const first = projects.isBlank.value && projects.document.value.name === 'New project';
+  if (missingFrom(whole) !== '') {
+    projects.do(evidence.setDraft({ name, files: kept }, `Open ${name}`));
+    return;
+  }
+  const pack = await session.keep(packObject(whole as Record<ObjectFile, Bytes>), 'application/zip');
+  const same = objects.find((object) => object.pack.blob === pack.blob);
+  if (same) {
+    toast(`${same.name} is here already.`);
+    session.chosenId.value = same.id;
+    return;
+  }
+  const object: MeasuredObject = {
+    id: crypto.randomUUID(),
+    name: freeName(name, objects),
+    pack,
+    files: kept as MeasuredObject['files'],
+    points: countPoints(whole['measured.csv'] as Bytes),
+    use: 'fit',
+  };
+  projects.do(evidence.addObject(object));
+  if (first) projects.do(nameProject(object.name));
+  session.chosenId.value = object.id;
+}
+
+export async function takeScan(session: EvidenceSession, dropped: readonly File[]): Promise<void> {
+  const operation = session.operationNamed(registering);
+  const kept = session.document.value.scan?.files ?? [];
+  const added = await Promise.all(
+    scanInputs(dropped, operation).map(async ({ input, file }) => ({
+      input,
+      file_name: file.name,
+      file: await session.keep(
+        new Uint8Array(await file.arrayBuffer()),
+        file.type || 'application/octet-stream',
+      ),
+    })),
+  );
+  const others = kept.filter((old) => !added.some(({ input }) => input === old.input));
+  const files = [...others, ...added];
+  const parameters = session.document.value.scan?.parameters ?? {};
+  const scan: Scan = { files, corners: null, parameters, measured: null };
+  session.services.projects.do(evidence.setScan(scan, 'Open a scan'));
+}
+
+/** An object that nobody made, with faults that are known. */
+export async function inventObject(
+  session: EvidenceSession,
+  sample: string,
+  parameters: JsonObject,
+): Promise<boolean> {
+  const made = await session.busy(
+    'opening',
+    'a virtual object',
+    async (options) => {
+      const done = await session.services.browser.run(
+        { operation: inventing, parameters, inputs: { mould: { sample } }, outputs: ['object.zip'] },
+        options,
+      );
+      for (const found of objectsInArchive(await bytesOf(done, 'object.zip'), `virtual ${sample}.zip`))
+        await takeObject(session, found);
+      return true;
+    },
+    (error) => session.report(error, 'Could not make a virtual object'),
+  );
+  return made ?? false;
+}

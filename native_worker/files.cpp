@@ -96,6 +96,20 @@ void ResultFolder::keep(const std::string& key, const Bytes& result) const {
   release(key);
 }
 
+namespace {
+
+/// Ended processes whose parent has not asked for them yet still have their number: they do not run.
+bool runs(long process) {
+  if (::kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH) return false;
+  std::ifstream file("/proc/" + std::to_string(process) + "/stat");
+  std::string text;
+  if (!std::getline(file, text)) return true;  // no /proc here, or not ours to read
+  const std::size_t name_end = text.rfind(')');
+  return name_end == std::string::npos || name_end + 2 >= text.size() || (text[name_end + 2] != 'Z' && text[name_end + 2] != 'X');
+}
+
+}  // namespace
+
 bool ResultFolder::claim(const std::string& key) const {
   std::error_code status;
   std::filesystem::create_directories(folder_, status);
@@ -116,7 +130,7 @@ bool ResultFolder::claim(const std::string& key) const {
     std::string owner_machine;
     long owner = 0;
     if (!(claim >> owner_machine >> owner)) return false;  // just being written, or just gone: ask again later
-    const bool gone = owner_machine == machine && owner != ::getpid() && ::kill(static_cast<pid_t>(owner), 0) != 0 && errno == ESRCH;
+    const bool gone = owner_machine == machine && owner != ::getpid() && !runs(owner);
     const auto written = std::filesystem::last_write_time(path, status);
     const bool old = !status && std::filesystem::file_time_type::clock::now() - written > std::chrono::minutes(10);
     if (!gone && !old) return false;

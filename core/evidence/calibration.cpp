@@ -95,8 +95,9 @@ std::vector<ParameterProfile> profile(SimulationBag& bag, const ParameterFit& fi
     const auto at = static_cast<std::size_t>(best - own.points.begin());
     for (ProfilePoint& point : own.points) point.log_likelihood -= highest;
     own.best = parameter.value(fit.u[p]);
-    own.low = crossing(own.points, at, -1);
-    own.high = crossing(own.points, at, 1);
+    // Least distances and greatest likelihood need not meet in one point: the interval has both.
+    own.low = std::min(own.best, crossing(own.points, at, -1));
+    own.high = std::max(own.best, crossing(own.points, at, 1));
     const double reach = parameter.logarithmic ? std::log(own.points.back().value / own.points.front().value) : own.points.back().value - own.points.front().value;
     const double width = parameter.logarithmic ? std::log(own.high / own.low) : own.high - own.low;
     own.identified = width < identified_share * reach;
@@ -137,10 +138,12 @@ Calibration calibrate(SimulationBag& bag, Context& context) {
   result.error = mean_distance(residuals(model, fit.predictions));
   {
     const auto span = context.span(0.6, 1, "Finding what the data tell");
-    const std::vector<Eigen::VectorXd> weights = take_noise(model, residuals(model, fit.predictions), result.noise);
+    // What another, equally good simulation would do differently is not known any better than that.
+    const std::vector<int> liberties = model.parameters_with(ParameterRole::discrepancy);
+    const std::vector<Sensitivities> freedom = sensitivities_at(bag, fit.u, fit.predictions, liberties, context, "Finding what the data tell");
+    const std::vector<Eigen::VectorXd> weights = weights_with_liberties(model, take_noise(model, residuals(model, fit.predictions), result.noise), liberties, freedom);
     const MisfitOfAll misfit(model, weights);
-    const std::vector<Sensitivities> none(weights.size());
-    const StructuredObjective objective(model, misfit, most_probable_structure(model, misfit, residuals(model, fit.predictions)), {}, none);
+    const StructuredObjective objective(model, misfit, most_probable_structure(model, misfit, residuals(model, fit.predictions)), liberties, freedom);
     result.profiles = profile(bag, fit, objective, context);
   }
   result.simulations = bag.simulations();

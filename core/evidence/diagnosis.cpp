@@ -23,13 +23,6 @@ constexpr double sure_gain = 0.8;          // probability that there is one
 constexpr double least_movement = 0.5;     // of the known misfit
 constexpr double inseparable_likeness = 0.9;
 
-std::vector<int> with_role(const ForwardModel& model, ParameterRole role) {
-  std::vector<int> list;
-  for (std::size_t p = 0; p < model.parameters().size(); ++p)
-    if (model.parameters()[p].role == role) list.push_back(static_cast<int>(p));
-  return list;
-}
-
 std::vector<int> joined(std::vector<int> a, const std::vector<int>& b) {
   a.insert(a.end(), b.begin(), b.end());
   return a;
@@ -104,26 +97,14 @@ class Diagnostician {
     columns_.clear();
     for (std::size_t p = 0; p < model_.parameters().size(); ++p) columns_.push_back(static_cast<int>(p));
     sensitivities_ = sensitivities_at(bag_, result_.base.u, result_.base.predictions, columns_, context_, "Trying each effect");
-    result_.liberties = with_role(model_, ParameterRole::discrepancy);
+    result_.liberties = model_.parameters_with(ParameterRole::discrepancy);
     result_.liberty_sensitivities = chosen(sensitivities_, columns_, result_.liberties);
-    trust_by_liberties();
+    weights_ = weights_with_liberties(model_, std::move(weights_), result_.liberties, result_.liberty_sensitivities);
+    misfit_.emplace(model_, weights_);
     const GramByStructure gram = misfit_->gram(residuals(model_, result_.base.predictions), sensitivities_);
     screened_ = all_hypotheses(model_, options_.pairs);
     for (Hypothesis& h : screened_) weigh(model_, gram, columns_, result_.base.u, h);
     normalise(screened_);
-  }
-
-  /// Points where equally good simulations disagree weigh less.
-  void trust_by_liberties() {
-    for (std::size_t object = 0; object < weights_.size(); ++object) {
-      std::vector<Eigen::MatrixXd> movements;
-      for (std::size_t l = 0; l < result_.liberties.size(); ++l)
-        movements.push_back(model_.parameters()[static_cast<std::size_t>(result_.liberties[l])].prior_sd * result_.liberty_sensitivities[object][l]);
-      const Eigen::VectorXd variance = model_variance(model_.measurements()[object], movements);
-      for (Eigen::Index i = 0; i < variance.size(); ++i)
-        if (weights_[object][i] > 0) weights_[object][i] = 1 / (1 / weights_[object][i] + variance[i]);
-    }
-    misfit_.emplace(model_, weights_);
   }
 
   const Hypothesis& screened(const std::vector<int>& causes, bool unknown) const {

@@ -13,10 +13,10 @@ double ModelParameter::coordinate(double value) const {
   return logarithmic ? std::log(std::max(value, 1e-6 * nominal) / nominal) : value - nominal;
 }
 
-std::vector<int> ForwardModel::base_parameters() const {
+std::vector<int> ForwardModel::parameters_with(ParameterRole role) const {
   std::vector<int> indices;
   for (std::size_t p = 0; p < parameters().size(); ++p)
-    if (parameters()[p].role == ParameterRole::base) indices.push_back(static_cast<int>(p));
+    if (parameters()[p].role == role) indices.push_back(static_cast<int>(p));
   return indices;
 }
 

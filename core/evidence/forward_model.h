@@ -65,7 +65,8 @@ class ForwardModel {
   /// Size of structured misfit (in the measurement's unit) that the model is known to have without any fault of the machine.
   virtual double known_misfit() const = 0;
 
-  std::vector<int> base_parameters() const;
+  std::vector<int> parameters_with(ParameterRole role) const;
+  std::vector<int> base_parameters() const { return parameters_with(ParameterRole::base); }
   Eigen::VectorXd nominal() const { return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parameters().size())); }
 };
 

@@ -34,6 +34,19 @@ Eigen::MatrixXd StructuredObjective::reduced(const Predictions& residuals, const
   return all.topLeftCorner(1 + k, 1 + k) - cross.transpose() * own.llt().solve(cross);
 }
 
+std::vector<Eigen::VectorXd> weights_with_liberties(const ForwardModel& model, std::vector<Eigen::VectorXd> weights, const std::vector<int>& liberties,
+                                                    const std::vector<Sensitivities>& sensitivities) {
+  for (std::size_t object = 0; object < weights.size(); ++object) {
+    std::vector<Eigen::MatrixXd> movements;
+    for (std::size_t l = 0; l < liberties.size(); ++l)
+      movements.push_back(model.parameters()[static_cast<std::size_t>(liberties[l])].prior_sd * sensitivities[object][l]);
+    const Eigen::VectorXd variance = model_variance(model.measurements()[object], movements);
+    for (Eigen::Index i = 0; i < variance.size(); ++i)
+      if (weights[object][i] > 0) weights[object][i] = 1 / (1 / weights[object][i] + variance[i]);
+  }
+  return weights;
+}
+
 double StructuredObjective::value(const Predictions& residuals, const Eigen::VectorXd& u) const {
   double sum = 0.5 * reduced(residuals, std::vector<Sensitivities>(residuals.size()))(0, 0);
   for (Eigen::Index p = 0; p < u.size(); ++p) sum += 0.5 * std::pow(u[p] / model_.parameters()[static_cast<std::size_t>(p)].prior_sd, 2);

@@ -22,6 +22,10 @@ class MisfitOfAll {
   std::vector<StructuredMisfit> objects_;
 };
 
+/// Where equally good simulations disagree, points weigh less (model_variance). `liberties`: discrepancy parameters; their sensitivities, each object.
+std::vector<Eigen::VectorXd> weights_with_liberties(const ForwardModel& model, std::vector<Eigen::VectorXd> weights, const std::vector<int>& liberties,
+                                                    const std::vector<Sensitivities>& sensitivities);
+
 /// `liberties`: sensitivities to the discrepancy parameters, `structure`: index into MisfitOfAll::sizes(). Everything must outlive it.
 class StructuredObjective : public FitObjective {
  public:

@@ -106,6 +106,17 @@ std::vector<ParameterProfile> profile(SimulationBag& bag, const ParameterFit& fi
   return profiles;
 }
 
+/// Predictions at the nominal point; sets the error before and the noise.
+Predictions at_nominal(SimulationBag& bag, Calibration& result, Context& context) {
+  const ForwardModel& model = bag.model();
+  auto nominal = bag.run(model.nominal(), context, "Simulating the set-up as it is");
+  if (!nominal) throw Error(ErrorCode::could_not_solve, "", "The simulation fails with the set-up's own parameters: check mould and set-up.");
+  const Predictions left = residuals(model, *nominal);
+  result.error_nominal = mean_distance(left);
+  take_noise(model, left, result.noise);
+  return std::move(*nominal);
+}
+
 }  // namespace
 
 double mean_distance(const Predictions& left) {
@@ -121,10 +132,7 @@ Calibration calibrate(SimulationBag& bag, Context& context) {
   Stopwatch watch;
   const ForwardModel& model = bag.model();
   Calibration result;
-  const auto nominal = bag.run(model.nominal(), context, "Simulating the set-up as it is");
-  if (!nominal) throw Error(ErrorCode::could_not_solve, "", "The simulation fails with the set-up's own parameters: check mould and set-up.");
-  result.error_nominal = mean_distance(residuals(model, *nominal));
-  take_noise(model, residuals(model, *nominal), result.noise);
+  at_nominal(bag, result, context);
   double soft = 0;
   for (const NoiseEstimate& noise : result.noise) soft = std::max(soft, noise.sigma);
   ParameterFit fit;
@@ -155,11 +163,8 @@ Calibration grid_search(SimulationBag& bag, const std::vector<GridAxis>& axes, i
   Stopwatch watch;
   const ForwardModel& model = bag.model();
   Calibration result;
-  const auto nominal = bag.run(model.nominal(), context, "Simulating the set-up as it is");
-  if (!nominal) throw Error(ErrorCode::could_not_solve, "", "The simulation fails with the set-up's own parameters: check mould and set-up.");
-  result.error_nominal = mean_distance(residuals(model, *nominal));
-  take_noise(model, residuals(model, *nominal), result.noise);
-  const std::vector<Sensitivities> moved = sensitivities_at(bag, model.nominal(), *nominal, place_parameters, context, "Moving the mould");
+  const Predictions nominal = at_nominal(bag, result, context);
+  const std::vector<Sensitivities> moved = sensitivities_at(bag, model.nominal(), nominal, place_parameters, context, "Moving the mould");
 
   std::vector<Eigen::VectorXd> points{model.nominal()};
   for (const GridAxis& axis : axes) {

@@ -507,6 +507,16 @@ class Diagnostician {
 
 }  // namespace
 
+const char* reading_name(Reading reading) {
+  switch (reading) {
+    case Reading::none: return "none";
+    case Reading::cause: return "cause";
+    case Reading::cannot_separate: return "cannot_separate";
+    case Reading::unknown: return "unknown";
+  }
+  return "";
+}
+
 Diagnosis diagnose(SimulationBag& bag, const DiagnosisOptions& options, Context& context) { return Diagnostician(bag, options, context).run(); }
 
 HeldOutGain gain_on_unseen(SimulationBag& unseen, const ForwardModel& from, const Eigen::VectorXd& u_before, const Eigen::VectorXd& u_after, Context& context) {

@@ -16,6 +16,9 @@ enum class Reading {
   unknown,          // there is structure that no cause of the list makes
 };
 
+/// "none", "cause", "cannot_separate", "unknown".
+const char* reading_name(Reading reading);
+
 struct CauseFinding {
   int cause = 0;
   double probability = 0;                 // that it is at work, by itself or in a pair

@@ -7,16 +7,10 @@
 namespace formwright {
 namespace {
 
-std::string percent(double share) { return std::to_string(static_cast<int>(std::lround(100 * share))) + " %"; }
-
-const char* reading_name(Reading reading) {
-  switch (reading) {
-    case Reading::none: return "none";
-    case Reading::cause: return "cause";
-    case Reading::cannot_separate: return "cannot_separate";
-    case Reading::unknown: return "unknown";
-  }
-  return "";
+/// Probabilities that round to certainty are not told as such.
+std::string percent(double share) {
+  if (share > 0.99) return "over 99 %";
+  return std::to_string(static_cast<int>(std::lround(100 * share))) + " %";
 }
 
 Json interval(double low, double high) { return Json::array({low, high}); }

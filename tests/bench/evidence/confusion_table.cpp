@@ -33,16 +33,6 @@ std::vector<double> numbers(const char* text) {
   return list;
 }
 
-const char* reading_name(Reading reading) {
-  switch (reading) {
-    case Reading::none: return "none";
-    case Reading::cause: return "cause";
-    case Reading::cannot_separate: return "cannot_separate";
-    case Reading::unknown: return "unknown";
-  }
-  return "";
-}
-
 /// One hidden truth and the answer to it.
 Json one_case(const std::vector<std::string>& hidden, double level, double sigma, unsigned seed, const Arguments& arguments) {
   std::mt19937 random(seed);

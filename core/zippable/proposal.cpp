@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "zippable/proposal.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "zippable/geodesic_distance.h"
+#include "zippable/handles.h"
+#include "zippable/surface_split.h"
+#include "zippable/traversal.h"
+
+namespace formwright {
+namespace {
+
+struct Seed {
+  std::vector<int> vertices;  // one vertex, or all of an opening
+  bool opening = false;
+  double prominence = 0;      // mm of mean distance; openings stay whatever theirs
+  double reach_mm = 0;        // along the limb, from the tip to where it ends
+};
+
+/// Mean distance to everywhere, from a few vertices spread over the surface, each standing for what is nearest to it.
+Eigen::VectorXd mean_distance(const TriangleMesh& mesh, const Adjacency& adjacency, Context& context) {
+  constexpr int samples = 14;
+  const int n = mesh.vertex_count();
+  std::vector<Eigen::VectorXd> distances;
+  Eigen::VectorXd nearest = Eigen::VectorXd::Constant(n, std::numeric_limits<double>::infinity());
+  int vertex = 0;
+  std::vector<int> owner(n, 0);
+  for (int i = 0; i < samples; ++i) {
+    context.check_cancelled();
+    distances.push_back(geodesic_distance_mm(mesh, adjacency, {vertex}));
+    for (int v = 0; v < n; ++v)
+      if (distances[i][v] < nearest[v]) nearest[v] = distances[i][v], owner[v] = i;
+    Eigen::Index farthest = 0;
+    if (!(nearest.maxCoeff(&farthest) > 0)) break;
+    vertex = static_cast<int>(farthest);
+  }
+  std::vector<double> weight(distances.size(), 0);
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    const Vec3 a = mesh.V.row(mesh.F(f, 0)).transpose(), b = mesh.V.row(mesh.F(f, 1)).transpose(), c = mesh.V.row(mesh.F(f, 2)).transpose();
+    for (int k = 0; k < 3; ++k) weight[owner[mesh.F(f, k)]] += (b - a).cross(c - a).norm();
+  }
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(n);
+  const double total = std::accumulate(weight.begin(), weight.end(), 0.0);
+  for (std::size_t i = 0; i < distances.size(); ++i) mean += weight[i] / total * distances[i];
+  return mean;
+}
+
+struct Tip {
+  int vertex, saddle;  // saddle: where the limb joins a higher one; -1 for the highest
+  double prominence;
+};
+
+/// Maxima of f by persistence: components of {f >= t} as t falls; the lower of two that meet ends.
+std::vector<Tip> prominent_maxima(const Adjacency& adjacency, const Eigen::VectorXd& f, double least) {
+  const int n = adjacency.vertex_count();
+  std::vector<int> order(n), parent(n, -1), top(n, -1);
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return f[a] != f[b] ? f[a] > f[b] : a < b; });
+  const auto root = [&](int v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  std::vector<Tip> tips;
+  int last_saddle = -1;
+  for (const int v : order) {
+    parent[v] = v, top[v] = v;
+    for (const int w : adjacency.neighbours(v)) {
+      if (parent[w] < 0) continue;
+      int a = root(v), b = root(w);
+      if (a == b) continue;
+      if (f[top[a]] < f[top[b]]) std::swap(a, b);
+      if (const double prominence = f[top[b]] - f[v]; top[b] != v && prominence >= least) tips.push_back({top[b], v, prominence}), last_saddle = v;
+      parent[b] = a;
+    }
+  }
+  const int highest = order.front();
+  tips.push_back({highest, last_saddle, f[highest] - f[order.back()]});
+  std::stable_sort(tips.begin(), tips.end(), [](const Tip& a, const Tip& b) { return a.prominence > b.prominence; });
+  return tips;
+}
+
+std::vector<Seed> find_seeds(const TriangleMesh& mesh, const Adjacency& adjacency, const ProposalOptions& options, Context& context) {
+  std::vector<Seed> seeds;
+  for (auto& loop : boundary_loops(adjacency)) seeds.push_back({std::move(loop), true, std::numeric_limits<double>::infinity(), 0});
+  const Eigen::VectorXd mean = mean_distance(mesh, adjacency, context);
+  for (const Tip& tip : prominent_maxima(adjacency, mean, options.prominence * mean.maxCoeff())) {
+    if (static_cast<int>(seeds.size()) >= std::max(options.parts_max, 2)) break;
+    bool beside = adjacency.is_boundary_vertex(tip.vertex);
+    for (const int w : adjacency.neighbours(tip.vertex)) beside |= adjacency.is_boundary_vertex(w);
+    if (beside) continue;  // an opening is there already
+    Seed seed{{tip.vertex}, false, tip.prominence, 0};
+    if (tip.saddle >= 0) seed.reach_mm = geodesic_distance_mm(mesh, adjacency, seed.vertices)[tip.saddle];
+    seeds.push_back(std::move(seed));
+  }
+  if (options.parts_max < 3 && seeds.size() > 2 && !seeds[1].opening) seeds.resize(2);
+  while (seeds.size() < 2) {  // a ball: opposite ends
+    std::vector<int> all;
+    for (const Seed& seed : seeds) all.insert(all.end(), seed.vertices.begin(), seed.vertices.end());
+    Eigen::VectorXd distance = geodesic_distance_mm(mesh, adjacency, all);
+    for (int v = 0; v < mesh.vertex_count(); ++v) {
+      bool beside = adjacency.is_boundary_vertex(v);
+      for (const int w : adjacency.neighbours(v)) beside |= adjacency.is_boundary_vertex(w);
+      if (beside || !std::isfinite(distance[v])) distance[v] = -1;
+    }
+    Eigen::Index farthest = 0;
+    distance.maxCoeff(&farthest);
+    seeds.push_back({{static_cast<int>(farthest)}, false, 0, 0});
+  }
+  return seeds;
+}
+
+/// Parts around the seeds, punctured at the tips.
+Proposal divide(const TriangleMesh& mesh, const Adjacency& adjacency, const std::vector<Seed>& seeds, const ProposalOptions& options) {
+  LabelledSurface surface;
+  const int parts = seeds.size() == 2 ? 1 : static_cast<int>(seeds.size());
+  if (parts == 1) {
+    surface = {mesh, std::vector<int>(mesh.face_count(), 0)};
+  } else {
+    Eigen::MatrixXd field(mesh.vertex_count(), parts);
+    parallel_for(static_cast<std::size_t>(parts), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k)
+        field.col(static_cast<Eigen::Index>(k)) = geodesic_distance_mm(mesh, adjacency, seeds[k].vertices).array() - seeds[k].reach_mm;
+    });
+    std::vector<int> label(mesh.vertex_count());
+    for (int v = 0; v < mesh.vertex_count(); ++v) {
+      Eigen::Index least = 0;
+      field.row(v).minCoeff(&least);
+      label[v] = static_cast<int>(least);
+    }
+    for (std::size_t k = 0; k < seeds.size(); ++k)
+      for (const int v : seeds[k].vertices) label[v] = static_cast<int>(k);
+    surface = split_by_least_field(mesh, label, field);
+  }
+  Proposal proposal;
+  std::vector<int> moved(surface.mesh.vertex_count());
+  std::iota(moved.begin(), moved.end(), 0);
+  for (const Seed& seed : seeds) {
+    if (seed.opening) continue;
+    std::vector<int> vertex_of;
+    const int vertex = moved[seed.vertices.front()];
+    proposal.punctures.push_back(surface.mesh.V.row(vertex).transpose());
+    proposal.puncture_radius_mm.push_back(puncture(surface, vertex, options.puncture_radius_mm, vertex_of));
+    for (int& v : moved)
+      if (v >= 0) v = vertex_of[v];
+  }
+  proposal.segmentation = make_segmentation(surface.mesh, surface.face_label);
+  return proposal;
+}
+
+}  // namespace
+
+Proposal propose_segmentation(const TriangleMesh& mesh, const ProposalOptions& options, Context& context) {
+  const Adjacency given(mesh);
+  if (!given.is_manifold()) throw Error(ErrorCode::invalid_input, "mesh", "The mesh is not a manifold: repair it first.");
+  if (face_components(given).count != 1) throw Error(ErrorCode::invalid_input, "mesh", "The model is in several separate pieces: make each a zippable of its own.");
+  context.progress(0, "Looking for limbs");
+  OpenedSurface opened = cut_handles(mesh, context);
+  const Adjacency adjacency(opened.mesh);
+  std::vector<Seed> seeds = find_seeds(opened.mesh, adjacency, options, context);
+  const std::size_t tips_found = seeds.size();
+  for (;;) {
+    context.check_cancelled();
+    std::string problem = "no part may be crossed from one neighbour into the next";
+    try {
+      Proposal proposal = divide(opened.mesh, adjacency, seeds, options);
+      if (proposal.segmentation.valid() && !traversals(proposal.segmentation, 1).empty()) {
+        proposal.handles_cut = static_cast<int>(opened.cuts.size());
+        proposal.handle_cuts = std::move(opened.cuts);
+        if (proposal.handles_cut > 0)
+          proposal.notes.push_back(std::to_string(proposal.handles_cut) + (proposal.handles_cut == 1 ? " handle was" : " handles were") + " cut open: close the cut with hook-and-loop tape.");
+        if (seeds.size() < tips_found)
+          proposal.notes.push_back("Of " + std::to_string(tips_found) + " tips and openings " + std::to_string(seeds.size()) + " became parts; the rest would not have made cylinders.");
+        return proposal;
+      }
+      for (const std::string& p : proposal.segmentation.problems)
+        if (!p.empty()) problem = p;
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::invalid_input) throw;
+      problem = error.what();
+    }
+    if (seeds.size() <= 2 || seeds.back().opening)
+      throw Error(ErrorCode::invalid_input, "mesh", "The model could not be divided into cylinders (" + problem + "): close its holes, or give the parts in segments.json.");
+    seeds.pop_back();
+  }
+}
+
+}  // namespace formwright

@@ -117,6 +117,25 @@ Crossings best_crossings(const Segmentation& s, const Parameterisation& p, const
   return result;
 }
 
+LinePoint across_interface(const Segmentation& s, const Parameterisation& p, LinePoint point) {
+  const double x = wrapped(point.x_mm, p.period_mm[point.part]);
+  double before = 0;
+  const auto& uses = s.segments[point.part].bottom.uses;
+  for (std::size_t k = 0; k < uses.size(); ++k) {
+    const InterfaceUse& use = uses[k];
+    const double length = p.interface_length_mm[use.interface];
+    if (x < before + length || k + 1 == uses.size()) {
+      const Interface& interface = s.interfaces[use.interface];
+      const int other = use.forward ? interface.right : interface.left;
+      const double along = use.forward ? x - before : before + length - x;
+      const LinePlace place = place_on_line(s, p, other, use.interface);
+      return {other, wrapped(place.offset + place.sign * along, p.period_mm[other])};
+    }
+    before += length;
+  }
+  return point;
+}
+
 std::vector<RankedTraversal> ranked_traversals(const Segmentation& s, const Parameterisation& p, double width_mm, int limit) {
   std::vector<RankedTraversal> ranked;
   for (Traversal& traversal : traversals(s, limit)) {

@@ -30,6 +30,14 @@ struct Crossings {
 /// Minimises (5.7) exactly: a convex problem with bounds that keep `margin` (a share) off either end of each interface; where it leaves a freedom, the middle.
 Crossings best_crossings(const Segmentation& segmentation, const Parameterisation& parameterisation, const Traversal& traversal, double margin = 0.1);
 
+struct LinePoint {
+  int part = 0;
+  double x_mm = 0;  // in [0, period)
+};
+
+/// The same surface point on the lower line of the part beyond the interface that lies there. Needs at least two parts.
+LinePoint across_interface(const Segmentation& segmentation, const Parameterisation& parameterisation, LinePoint point);
+
 struct RankedTraversal {
   Traversal traversal;
   Crossings crossings;

@@ -6,6 +6,7 @@
 #include "job/mesh_operations.h"
 #include "job/relief_operation.h"
 #include "job/thermoform_operations.h"
+#include "job/zippable_operation.h"
 
 namespace formwright {
 
@@ -14,7 +15,7 @@ const char* version() { return FORMWRIGHT_VERSION; }
 const std::vector<Operation>& operations() {
   static const std::vector<Operation> all = {
       relief_operation(), thermoform_simulate_operation(), thermoform_texture_operation(), thermoform_mould_operation(), thermoform_compare_operation(),
-      import_operation(), simplify_operation(), subdivide_operation(), convert_operation()};
+      zippable_design_operation(), import_operation(), simplify_operation(), subdivide_operation(), convert_operation()};
   return all;
 }
 

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -89,6 +90,17 @@ std::vector<Tip> prominent_maxima(const Adjacency& adjacency, const Eigen::Vecto
 std::vector<Seed> find_seeds(const TriangleMesh& mesh, const Adjacency& adjacency, const ProposalOptions& options, Context& context) {
   std::vector<Seed> seeds;
   for (auto& loop : boundary_loops(adjacency)) seeds.push_back({std::move(loop), true, std::numeric_limits<double>::infinity(), 0});
+  if (!options.tips_mm.empty()) {
+    for (const Vec3& tip : options.tips_mm) {
+      Eigen::Index nearest = 0;
+      (mesh.V.rowwise() - tip.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
+      const bool taken = std::any_of(seeds.begin(), seeds.end(), [&](const Seed& seed) { return std::find(seed.vertices.begin(), seed.vertices.end(), nearest) != seed.vertices.end(); });
+      if (taken) throw Error(ErrorCode::invalid_input, "segments", "Two punctures lie on the same vertex or opening: move one, or subdivide the model.");
+      seeds.push_back({{static_cast<int>(nearest)}, false, 0, 0});
+    }
+    if (seeds.size() < 2) throw Error(ErrorCode::invalid_input, "segments", "A single puncture makes no cylinder: give two at least.");
+    return seeds;
+  }
   const Eigen::VectorXd mean = mean_distance(mesh, adjacency, context);
   for (const Tip& tip : prominent_maxima(adjacency, mean, options.prominence * mean.maxCoeff())) {
     if (static_cast<int>(seeds.size()) >= std::max(options.parts_max, 2)) break;
@@ -116,18 +128,15 @@ std::vector<Seed> find_seeds(const TriangleMesh& mesh, const Adjacency& adjacenc
   return seeds;
 }
 
-/// Parts around the seeds, punctured at the tips.
-Proposal divide(const TriangleMesh& mesh, const Adjacency& adjacency, const std::vector<Seed>& seeds, const ProposalOptions& options) {
+/// Parts around the seeds by `distance` (n x seeds or more), less `reach_share` of each seed's reach; punctured at the tips.
+Proposal divide(const TriangleMesh& mesh, const std::vector<Seed>& seeds, const Eigen::MatrixXd& distance, double reach_share, const ProposalOptions& options) {
   LabelledSurface surface;
   const int parts = seeds.size() == 2 ? 1 : static_cast<int>(seeds.size());
   if (parts == 1) {
     surface = {mesh, std::vector<int>(mesh.face_count(), 0)};
   } else {
-    Eigen::MatrixXd field(mesh.vertex_count(), parts);
-    parallel_for(static_cast<std::size_t>(parts), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k)
-        field.col(static_cast<Eigen::Index>(k)) = geodesic_distance_mm(mesh, adjacency, seeds[k].vertices).array() - seeds[k].reach_mm;
-    });
+    Eigen::MatrixXd field = distance.leftCols(parts);
+    for (int k = 0; k < parts; ++k) field.col(k).array() -= reach_share * seeds[k].reach_mm;
     std::vector<int> label(mesh.vertex_count());
     for (int v = 0; v < mesh.vertex_count(); ++v) {
       Eigen::Index least = 0;
@@ -165,11 +174,18 @@ Proposal propose_segmentation(const TriangleMesh& mesh, const ProposalOptions& o
   const Adjacency adjacency(opened.mesh);
   std::vector<Seed> seeds = find_seeds(opened.mesh, adjacency, options, context);
   const std::size_t tips_found = seeds.size();
-  for (;;) {
+  Eigen::MatrixXd distance(opened.mesh.vertex_count(), static_cast<Eigen::Index>(seeds.size()));
+  parallel_for(seeds.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) distance.col(static_cast<Eigen::Index>(k)) = geodesic_distance_mm(opened.mesh, adjacency, seeds[k].vertices);
+  });
+  // Where limbs end first; but then one part may surround others and be no cylinder, which plain nearness seldom does.
+  constexpr std::array reach_shares{1.0, 0.5, 0.25, 0.0};
+  std::string problem;
+  for (std::size_t attempt = 0;; ++attempt) {
     context.check_cancelled();
-    std::string problem = "no part may be crossed from one neighbour into the next";
+    problem = "no part may be crossed from one neighbour into the next";
     try {
-      Proposal proposal = divide(opened.mesh, adjacency, seeds, options);
+      Proposal proposal = divide(opened.mesh, seeds, distance, reach_shares[attempt % reach_shares.size()], options);
       if (proposal.segmentation.valid() && !traversals(proposal.segmentation, 1).empty()) {
         proposal.handles_cut = static_cast<int>(opened.cuts.size());
         proposal.handle_cuts = std::move(opened.cuts);
@@ -185,6 +201,9 @@ Proposal propose_segmentation(const TriangleMesh& mesh, const ProposalOptions& o
       if (error.code() != ErrorCode::invalid_input) throw;
       problem = error.what();
     }
+    if (attempt % reach_shares.size() + 1 < reach_shares.size() && seeds.size() > 2) continue;
+    if (!options.tips_mm.empty())
+      throw Error(ErrorCode::invalid_input, "segments", "The given punctures do not divide the model into cylinders (" + problem + "): move, add or drop some.");
     if (seeds.size() <= 2 || seeds.back().opening)
       throw Error(ErrorCode::invalid_input, "mesh", "The model could not be divided into cylinders (" + problem + "): close its holes, or give the parts in segments.json.");
     seeds.pop_back();

@@ -14,6 +14,7 @@ struct ProposalOptions {
   int parts_max = 10;             // 1: always a single cylinder
   /// A tip counts when it stands out from the rest by this share of the largest mean distance.
   double prominence = 0.08;
+  std::vector<Vec3> tips_mm;        // where parts are to be punctured; empty: at the tips of limbs
 };
 
 struct Proposal {
@@ -30,7 +31,7 @@ struct Proposal {
 /// from where its limb ends. Seeds whose parts are not cylinders are given up, the least prominent first;
 /// with two seeds left, the whole surface is one cylinder.
 /// Needs one connected, manifold, oriented mesh. Throws Error{invalid_input, "mesh"}: not that, or more openings than
-/// can be brought onto one ribbon; cancelled.
+/// can be brought onto one ribbon. Throws Error{invalid_input, "segments"} when given tips do not make cylinders; cancelled.
 Proposal propose_segmentation(const TriangleMesh& mesh, const ProposalOptions& options, Context& context);
 
 }  // namespace formwright

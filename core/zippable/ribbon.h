@@ -16,6 +16,7 @@ namespace formwright {
 struct RibbonVertex {
   Vec3 position_mm;
   int sample = -1;      // of the curve; -1 on an opening
+  int piece = -1;       // of the curve; -1 on an opening
   bool left = true;     // which side of the zipper, as the curve runs
 };
 

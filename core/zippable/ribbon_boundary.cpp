@@ -51,7 +51,7 @@ void RibbonBoundary::add_piece(std::size_t piece, bool left) {
   for (std::size_t k = 0; k < count; ++k) {
     const int sample = samples[left ? k : count - 1 - k];
     (left ? left_place_ : right_place_)[sample] = static_cast<int>(vertices.size());
-    vertices.push_back({curve_.samples[sample].position_mm, sample, left});
+    vertices.push_back({curve_.samples[sample].position_mm, sample, static_cast<int>(piece), left});
   }
 }
 
@@ -67,7 +67,7 @@ void RibbonBoundary::add_opening(int part, bool upper, double x_from, double x_t
   if (x_to < x_from) std::reverse(grid.begin(), grid.end());
   for (const int i : grid) {
     places->emplace_back(i, static_cast<int>(vertices.size()));
-    vertices.push_back({tracer_.on_line(part, upper, i * step), -1, true});
+    vertices.push_back({tracer_.on_line(part, upper, i * step), -1, -1, true});
   }
 }
 

@@ -2,7 +2,6 @@
 #include "zippable/polygon_dissection.h"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <set>
 
@@ -72,25 +71,25 @@ std::vector<std::vector<int>> dissect(int count, const std::vector<Chord>& chord
   return pieces;
 }
 
-std::vector<std::array<int, 3>> cheapest_triangulation(const std::vector<int>& polygon, const std::function<double(int, int)>& cost) {
+std::vector<std::array<int, 3>> cheapest_triangulation(const std::vector<int>& polygon, const std::function<double(int, int)>& side,
+                                                       const std::function<double(int, int, int)>& triangle) {
   const int n = static_cast<int>(polygon.size());
   std::vector<std::array<int, 3>> triangles;
   if (n < 3) return triangles;
   const auto index = [n](int i, int j) { return static_cast<std::size_t>(i) * n + j; };
-  std::vector<double> best(static_cast<std::size_t>(n) * n, 0), side(best.size(), 0);
+  std::vector<double> best(static_cast<std::size_t>(n) * n, 0);
   std::vector<int> apex(best.size(), -1);
-  for (int i = 0; i < n; ++i)
-    for (int j = i + 1; j < n; ++j) side[index(i, j)] = j == i + 1 || (i == 0 && j == n - 1) ? 0 : cost(polygon[i], polygon[j]);
   for (int span = 2; span < n; ++span)
     for (int i = 0; i + span < n; ++i) {
       const int j = i + span;
-      double least = std::numeric_limits<double>::infinity();
+      double least = 1e300;
       int choice = i + 1;
       for (int k = i + 1; k < j; ++k) {
-        const double total = best[index(i, k)] + best[index(k, j)];
-        if (total < least) least = total, choice = k;
+        const double total = best[index(i, k)] + best[index(k, j)] + triangle(polygon[i], polygon[k], polygon[j]);
+        // Of choices that differ by rounding only, as in symmetric models, the first.
+        if (total < least * (1 - 1e-9)) least = total, choice = k;
       }
-      best[index(i, j)] = least + side[index(i, j)];
+      best[index(i, j)] = least + (span + 1 < n ? side(polygon[i], polygon[j]) : 0.0);
       apex[index(i, j)] = choice;
     }
   std::vector<std::pair<int, int>> open{{0, n - 1}};

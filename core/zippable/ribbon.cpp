@@ -153,13 +153,15 @@ Ribbon make_ribbon(const Segmentation& s, const Parameterisation& p, const LineT
   const std::vector<Chord> kept = without_crossings(rulings.chords, count);
   ribbon.rulings = static_cast<int>(kept.size());
   std::vector<std::array<int, 3>> faces;
-  // Both copies of a place on the zipper lie on one point: a side between them would be a fold of no width.
-  const auto cost = [&](int a, int b) {
-    const double length = (position(a) - position(b)).norm();
-    return length > 1e-6 * options.width_mm ? length : 1e30;
+  const auto side = [&](int a, int b) { return (position(a) - position(b)).norm(); };
+  // Places on one straight stretch, or both copies of one place on the zipper, make triangles without area: only where nothing else is left.
+  const auto flatness = [&](int a, int b, int c) {
+    const Vec3 ab = position(b) - position(a), ac = position(c) - position(a), bc = position(c) - position(b);
+    const double longest_squared = std::max({ab.squaredNorm(), ac.squaredNorm(), bc.squaredNorm()});
+    return ab.cross(ac).norm() > 1e-5 * longest_squared ? 0.0 : 1e6 * options.width_mm;
   };
   for (const auto& polygon : dissect(count, kept)) {
-    const auto triangles = cheapest_triangulation(polygon, cost);
+    const auto triangles = cheapest_triangulation(polygon, side, flatness);
     faces.insert(faces.end(), triangles.begin(), triangles.end());
     context.check_cancelled();
   }

@@ -146,6 +146,7 @@ std::vector<RankedTraversal> ranked_traversals(const Segmentation& s, const Para
       const double lack = 1 - p.interface_length_mm[interface] / width_mm;
       if (lack > 0) r.cost += lack * lack;
     }
+    r.cost = 1e-6 * std::round(1e6 * r.cost);  // orders as even as each other stay in their own order, whatever the rounding
     r.traversal = std::move(traversal);
     ranked.push_back(std::move(r));
   }

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/json.h"
+#include "geometry/measures.h"
 #include "zippable/design_files.h"
 #include "zippable/zippable_shapes.h"
 
@@ -22,8 +23,12 @@ ZippableDesign design(std::string_view sample, const ZippableOptions& options, c
 TEST(ZippableDesign, ScalesBeforeEverythingElse) {
   ZippableOptions options;
   const ZippableDesign small = design("heart", options);
-  options.size_mm = 300, options.width_mm = 60;
+  const double scale = 3;
+  Context context;
+  options.size_mm = scale * bounding_box(make_sample("heart", 2500, context).mesh).size().maxCoeff();
+  options.width_mm *= scale;
   const ZippableDesign large = design("heart", options);
+  EXPECT_NEAR(large.scale, scale, 1e-12);
   EXPECT_NEAR(large.ribbon.zipper_mm / small.ribbon.zipper_mm, large.scale, 1e-3);
   EXPECT_NEAR(large.ribbon_to_model.mean / small.ribbon_to_model.mean, large.scale, 0.02 * large.scale);
 }

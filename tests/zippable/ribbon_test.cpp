@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "geometry/adjacency.h"
+#include "geometry/point_distance.h"
 #include "zippable/polygon_dissection.h"
 #include "zippable/zippable_shapes.h"
 
@@ -69,7 +70,7 @@ TEST(PolygonDissection, FillsAPolygonWithTheShortestDiagonals) {
       return best;
     };
     double total = 0;
-    const auto triangles = cheapest_triangulation(polygon, cost);
+    const auto triangles = cheapest_triangulation(polygon, cost, [](int, int, int) { return 0.0; });
     EXPECT_EQ(static_cast<int>(triangles.size()), n - 2);
     for (const auto& t : triangles) {
       EXPECT_TRUE(t[0] < t[1] && t[1] < t[2]);

@@ -110,7 +110,7 @@ void NewtonSystem::apply(const Eigen::VectorXd& local, const Eigen::VectorXd& sh
   out_shared = border_.transpose() * local + corner_ * shared;
 }
 
-bool NewtonSystem::solve(NewtonStep& step, Context& context) {
+bool NewtonSystem::solve(NewtonStep& step, double damping, Context& context) {
   const int n = chart_.local_count(), k = shared_held_ ? 0 : chart_.shared_count();
   if (any_held_) {
     for (int j = 0; j < n; ++j)
@@ -119,8 +119,13 @@ bool NewtonSystem::solve(NewtonStep& step, Context& context) {
     for (int j = 0; j < n; ++j)
       if (held_[j]) gradient_[j] = 0, border_.row(j).setZero();
   }
+  SparseMatrix damped;
+  if (damping > 0) {
+    damped = lower_;
+    for (int j = 0; j < n; ++j) damped.valuePtr()[damped.outerIndexPtr()[j]] *= 1 + damping;
+  }
   try {
-    cholesky_.factorize(lower_, context);
+    cholesky_.factorize(damping > 0 ? damped : lower_, context);
   } catch (const Error& error) {
     if (error.code() == ErrorCode::could_not_solve) return false;
     throw;

@@ -38,8 +38,8 @@ class NewtonSystem {
   /// H times a vector, for tests.
   void apply(const Eigen::VectorXd& local, const Eigen::VectorXd& shared, Eigen::VectorXd& out_local, Eigen::VectorXd& out_shared) const;
 
-  /// False when the matrix is not positive definite.
-  bool solve(NewtonStep& step, Context& context);
+  /// False when the matrix is not positive definite. Diagonal entries of local variables count 1 + `damping` times.
+  bool solve(NewtonStep& step, double damping, Context& context);
   double factor_entries() const { return cholesky_.factor_entries(); }
 
  private:

@@ -45,7 +45,6 @@ class Solver {
     for (std::size_t f = 0; f < m; ++f)
       reference_[f] = reference_triangle(intrinsic.length[3 * f], intrinsic.length[3 * f + 1], intrinsic.length[3 * f + 2]);
     total_area_ = sum_over_faces(m, [&](std::size_t f) { return reference_[f].area; });
-    current_ = reference_;
   }
 
   Parameterisation run() {
@@ -93,14 +92,14 @@ class Solver {
     for (const auto& variable : chart_.interface_variables()) system_.hold(variable.local);
     system_.hold_shared();
     NewtonStep step;
-    if (!system_.solve(step, context_)) throw Error(ErrorCode::could_not_solve, "mesh", "The start of the parameterisation could not be computed: repair or subdivide the model.");
+    if (!system_.solve(step, 0, context_)) throw Error(ErrorCode::could_not_solve, "mesh", "The start of the parameterisation could not be computed: repair or subdivide the model.");
     local_ += step.local;
     const CornerCoordinates embedded = chart_.corners(local_, shared_);
     for (std::size_t f = 0; f < reference_.size(); ++f)
       if (!(jacobian(reference_[f], corners_of(embedded, f)).determinant() > 0))
         throw Error(ErrorCode::could_not_solve, "mesh", "The start of the parameterisation folds over: larger punctures or another division into parts help.");
     rescale(embedded);
-    result_.energy_start = energy(chart_.corners(local_, shared_), reference_) / 4;
+    result_.energy_start = energy(chart_.corners(local_, shared_)) / 4;
   }
 
   /// The best scale along x for all parts together and along y for each, in closed form: with rows r1, r2 of J, the energy
@@ -128,13 +127,13 @@ class Solver {
     shared_.tail(chart_.shared_count() - s_.part_count()) *= a;
   }
 
-  double energy(const CornerCoordinates& uv, const std::vector<ReferenceTriangle>& reference) const {
-    return sum_over_faces(reference.size(), [&](std::size_t f) { return reference_[f].area * symmetric_dirichlet(jacobian(reference[f], corners_of(uv, f))); }) / total_area_;
+  double energy(const CornerCoordinates& uv) const {
+    return sum_over_faces(reference_.size(), [&](std::size_t f) { return reference_[f].area * symmetric_dirichlet(jacobian(reference_[f], corners_of(uv, f))); }) / total_area_;
   }
 
   void assemble(const CornerCoordinates& uv, bool convex) {
     system_.assemble([&](int f) {
-      DirichletTerms t = symmetric_dirichlet_terms(current_[f], corners_of(uv, f), convex);
+      DirichletTerms t = symmetric_dirichlet_terms(reference_[f], corners_of(uv, f), convex);
       const double weight = reference_[f].area / total_area_;
       t.energy *= weight, t.gradient *= weight, t.hessian *= weight;
       return t;
@@ -169,7 +168,7 @@ class Solver {
     const CornerCoordinates along = chart_.corners(step.local, step.shared);
     const double limit = 0.9 * longest_step(uv, along);
     double length = std::min(1.0, limit);
-    const auto at = [&](double t) { return energy(uv + t * along, current_); };
+    const auto at = [&](double t) { return energy(uv + t * along); };
     double reached = at(length);
     while (!(reached <= value + 1e-4 * length * step.slope)) {
       length *= 0.5;
@@ -184,10 +183,11 @@ class Solver {
     local_ += length * step.local;
     shared_ += length * step.shared;
     uv = chart_.corners(local_, shared_);
-    value = energy(uv, current_);
+    value = energy(uv);
     return true;
   }
 
+  bool solve_damped(NewtonStep& step);
   void iterate();
   void finish();
 
@@ -196,15 +196,22 @@ class Solver {
   Context& context_;
   SeamlessChart chart_;
   NewtonSystem system_;
-  std::vector<ReferenceTriangle> reference_, current_;
+  std::vector<ReferenceTriangle> reference_;
   double total_area_ = 0;
   Eigen::VectorXd local_, shared_;
   Parameterisation result_;
 };
 
+/// A tube squeezed to a millionth of its size is so much stiffer than the rest that rounding makes the matrix look singular.
+bool Solver::solve_damped(NewtonStep& step) {
+  for (const double damping : {0.0, 1e-12, 1e-10, 1e-8, 1e-6})
+    if (system_.solve(step, damping, context_) && step.slope < 0) return true;
+  return false;
+}
+
 void Solver::iterate() {
   CornerCoordinates uv = chart_.corners(local_, shared_);
-  double value = energy(uv, current_);
+  double value = energy(uv);
   bool try_true = false;
   for (result_.iterations = 0; result_.iterations < options_.iterations_max;) {
     context_.progress(std::min(0.95, result_.iterations / 40.0), "Parameterising");
@@ -212,16 +219,16 @@ void Solver::iterate() {
     bool solved = false;
     if (try_true) {
       assemble(uv, false);
-      solved = system_.solve(step, context_);
+      solved = system_.solve(step, 0, context_);
       if (solved) ++result_.true_hessians;
     }
     if (!solved) {
       assemble(uv, true);
-      if (!system_.solve(step, context_)) throw Error(ErrorCode::could_not_solve, "mesh", "The parameterisation lost its footing: larger punctures or another division into parts help.");
+      if (!solve_damped(step)) throw Error(ErrorCode::could_not_solve, "mesh", "The parameterisation lost its footing: larger punctures or another division into parts help.");
     }
     ++result_.iterations;
     result_.decrement = -step.slope;
-    if (-step.slope <= options_.tolerance) {
+    if (-step.slope <= options_.tolerance * value) {
       search(step, uv, value);
       return;
     }

@@ -10,8 +10,8 @@
 namespace formwright {
 
 struct ParameterisationOptions {
-  /// Stops when a step would lower the mean energy (4 for an isometry) by less than this.
-  double tolerance = 1e-9;
+  /// Stops when a step would lower the energy by less than this share.
+  double tolerance = 1e-6;
   int iterations_max = 300;
 };
 
@@ -26,7 +26,6 @@ struct Parameterisation {
   double distortion_max = 0;
   double energy_start = 0;                    // mean energy over 4 of the embedding that the iteration began with
   int iterations = 0;
-  int eased_iterations = 0;                   // those on eased reference triangles, among the above
   int true_hessians = 0;                      // steps taken with the unprojected Hessian
   double decrement = 0;                       // of the last step: twice the energy that was left to gain
   double seconds_start = 0, seconds_newton = 0;

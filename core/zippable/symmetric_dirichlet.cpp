@@ -39,16 +39,6 @@ ReferenceTriangle reference_triangle(double length_01, double length_12, double 
   return t;
 }
 
-ReferenceTriangle eased_reference(const ReferenceTriangle& reference, const std::array<Vec2, 3>& u, double exponent) {
-  const Singular s = singular_values(jacobian(reference, u));
-  // J V S^(e-1) V^T has singular values S^e.
-  const Vec2 v2 = quarter_turn(s.v1);
-  const Eigen::Matrix2d ease = std::pow(s.larger, exponent - 1) * s.v1 * s.v1.transpose() + std::pow(s.smaller, exponent - 1) * v2 * v2.transpose();
-  ReferenceTriangle t = reference;
-  for (Vec2& g : t.g) g = (ease * g).eval();
-  return t;
-}
-
 Eigen::Matrix2d jacobian(const ReferenceTriangle& reference, const std::array<Vec2, 3>& u) {
   return (u[1] - u[0]) * reference.g[1].transpose() + (u[2] - u[0]) * reference.g[2].transpose();
 }

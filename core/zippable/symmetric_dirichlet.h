@@ -20,9 +20,6 @@ struct ReferenceTriangle {
 /// From side lengths; corner 0 at the origin, side 01 along x. Needs a triangle with area.
 ReferenceTriangle reference_triangle(double length_01, double length_12, double length_20);
 
-/// The reference in which the map u has singular values to the power `exponent` (0: a rigid motion, 1: as it is).
-ReferenceTriangle eased_reference(const ReferenceTriangle& reference, const std::array<Vec2, 3>& u, double exponent);
-
 Eigen::Matrix2d jacobian(const ReferenceTriangle& reference, const std::array<Vec2, 3>& u);
 
 /// 4 where the map is a rigid motion, more elsewhere, infinite where the triangle is not positively oriented.

@@ -56,7 +56,7 @@ ZippableDesign design_zippable(const TriangleMesh& given, const std::vector<Vec3
   design.ribbon = make_ribbon(s, design.parameterisation, tracer, design.curve, curve, context);
   design.seconds_ribbon = watch.lap();
   context.progress(0.9, "Comparing with the model");
-  const double spacing = std::max(0.1 * options.width_mm, 2e-3 * size_mm);
+  const double spacing = std::max(0.25 * options.width_mm, 5e-3 * size_mm);
   const TriangleMesh formed = design.ribbon.formed();
   design.ribbon_to_model = surface_distance(formed, PointDistance(mesh), spacing, context);
   design.model_to_ribbon = surface_distance(mesh, PointDistance(formed), spacing, context);

@@ -13,7 +13,7 @@ std::vector<InputInfo> inputs() {
   InputInfo segments;
   segments.name = "segments";
   segments.label = "Parts";
-  segments.help = "segments.json: {\"punctures\": [[x, y, z], ...]}, where parts are punctured. Without it limbs are found.";
+  segments.help = "segments.json: punctures, loops and lines that bound the parts (docs/zippable.md). Without it limbs are found.";
   segments.extensions = {"json"};
   segments.required = false;
   return {model_input_info(), segments};
@@ -54,6 +54,7 @@ std::vector<ReportField> report_fields() {
           {"model_to_ribbon_mean_mm", "Mean distance to the ribbon", "mm", "from the model"},
           {"model_to_ribbon_max_mm", "Largest distance to the ribbon", "mm", "from the model"},
           {"size_mm", "Size", "mm", "of the zipped ribbon"},
+          {"reused", "Parameterisation reused", "", "from an earlier job on the same model, parts and punctures"},
           {"seconds_read", "Reading", "s", "file to repaired model; 0 when known from before"},
           {"seconds_parts", "Parts", "s", "handles, limbs, division, punctures"},
           {"seconds_parameterisation", "Parameterisation", "s", "set-up, start and Newton steps"},
@@ -66,18 +67,18 @@ std::vector<ReportField> report_fields() {
           {"notes", "Notes", "", "what was decided for you, in words"}};
 }
 
-void report_design(Json& report, const ZippableDesign& design) {
-  const Segmentation& s = design.proposal.segmentation;
+void report_design(Json& report, const ParameterisedModel& model, const ZippableDesign& design) {
+  const Segmentation& s = model.proposal.segmentation;
   const Ribbon& ribbon = design.ribbon;
   report["vertices"] = s.mesh.vertex_count();
   report["faces"] = s.mesh.face_count();
   report["parts"] = s.part_count();
   report["interfaces"] = s.interfaces.size();
-  report["handles_cut"] = design.proposal.handles_cut;
-  report["distortion_mean"] = design.parameterisation.distortion_mean;
-  report["distortion_max"] = design.parameterisation.distortion_max;
-  report["iterations"] = design.parameterisation.iterations;
-  report["constraint_residual_mm"] = constraint_residual_mm(s, design.parameterisation);
+  report["handles_cut"] = model.proposal.handles_cut;
+  report["distortion_mean"] = model.parameterisation.distortion_mean;
+  report["distortion_max"] = model.parameterisation.distortion_max;
+  report["iterations"] = model.parameterisation.iterations;
+  report["constraint_residual_mm"] = constraint_residual_mm(s, model.parameterisation);
   report["order"] = design.traversal.traversal.parts;
   report["orders"] = design.traversal_count;
   report["unevenness"] = design.traversal.crossings.unevenness;
@@ -97,8 +98,6 @@ void report_design(Json& report, const ZippableDesign& design) {
   report["model_to_ribbon_mean_mm"] = design.model_to_ribbon.mean;
   report["model_to_ribbon_max_mm"] = design.model_to_ribbon.maximum;
   report["size_mm"] = {size.x(), size.y(), size.z()};
-  report["seconds_parts"] = design.seconds_parts;
-  report["seconds_parameterisation"] = design.seconds_parameterisation;
   report["seconds_curve"] = design.seconds_curve;
   report["seconds_ribbon"] = design.seconds_ribbon;
   report["seconds_distance"] = design.seconds_distance;
@@ -107,17 +106,29 @@ void report_design(Json& report, const ZippableDesign& design) {
 OperationResult run(const OperationCall& call) {
   const auto options = read_parameters<ZippableOptions>(call.parameters);
   Context& context = call.context;
-  std::vector<Vec3> tips;
-  if (const auto segments = call.inputs.find("segments"); segments != call.inputs.end()) tips = read_segments(*segments->second.bytes);
+  ZippableParts parts;
+  std::string parts_key = "automatic";
+  if (const auto segments = call.inputs.find("segments"); segments != call.inputs.end()) {
+    parts = read_segments(*segments->second.bytes);
+    parts_key = segments->second.key();
+  }
   std::shared_ptr<const LoadedModel> loaded;
   {
     const auto span = context.span(0, 0.1, "Reading the model");
     loaded = load_model(call);
   }
+  const std::string key = "zippable:" + loaded->key + ":" + parts_key + ":" + parameterisation_key(options);
+  auto model = call.session.find<const ParameterisedModel>(key);
+  const bool reused = model != nullptr;
+  if (!reused) {
+    const auto span = context.span(0.1, 0.7, "Parameterising");
+    model = std::make_shared<const ParameterisedModel>(parameterise_model(loaded->model.mesh, parts, options, context));
+    call.session.keep(key, model, static_cast<double>(model->proposal.segmentation.mesh.face_count()) * 2e-4);
+  }
   ZippableDesign design;
   {
-    const auto span = context.span(0.1, 0.95, "Designing");
-    design = design_zippable(loaded->model.mesh, tips, options, context);
+    const auto span = context.span(0.7, 0.95, "Designing");
+    design = design_zippable(*model, options, context);
   }
   context.progress(0.95, "Writing");
   Stopwatch watch;
@@ -128,16 +139,19 @@ OperationResult run(const OperationCall& call) {
       if (info.name == name) result.outputs.push_back(make_output(info, bytes()));
     context.check_cancelled();
   };
-  add("design.json", [&] { return write_design_json(design); });
-  add("parameterised.ply", [&] { return write_parameterised_ply(design, context); });
+  add("design.json", [&] { return write_design_json(*model, design); });
+  add("parameterised.ply", [&] { return write_parameterised_ply(*model, context); });
   add("curve.obj", [&] { return write_curve_obj(design); });
   add("formed.ply", [&] {
-    Model model;
-    model.mesh = design.ribbon.formed();
-    return write_model(model, MeshFormat::ply, context);
+    Model zipped;
+    zipped.mesh = design.ribbon.formed();
+    return write_model(zipped, MeshFormat::ply, context);
   });
   add("ribbon.svg", [&] { return write_ribbon_svg(design); });
-  report_design(result.report, design);
+  report_design(result.report, *model, design);
+  result.report["reused"] = reused;
+  result.report["seconds_parts"] = reused ? 0.0 : model->seconds_parts;
+  result.report["seconds_parameterisation"] = reused ? 0.0 : model->seconds_parameterisation;
   result.report["seconds_read"] = loaded->seconds_read + loaded->seconds_repair;
   result.report["seconds_write"] = watch.seconds();
   result.report["repairs"] = loaded->repairs;

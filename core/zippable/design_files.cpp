@@ -18,41 +18,55 @@ namespace {
 
 Json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-/// To a micrometre: what a laser can tell apart is a hundred times as much.
-double micrometres(double mm) { return std::round(1000 * mm) / 1000; }
-
-}  // namespace
-
-std::vector<Vec3> read_segments(ByteView bytes) {
-  const Json json = Json::parse(as_text(bytes), nullptr, false);
-  if (!json.is_object()) refuse("segments.json is not a JSON object.");
-  for (const auto& [name, value] : json.items())
-    if (name != "punctures") refuse("segments.json has \"" + name + "\", which is not known: it may have punctures.");
-  const auto list = json.find("punctures");
-  if (list == json.end() || !list->is_array() || list->size() > 100) refuse("segments.json needs \"punctures\", a list of up to 100 points [x, y, z].");
+std::vector<Vec3> read_points(const Json& list, const std::string& name) {
   std::vector<Vec3> points;
-  for (const Json& item : *list) {
+  for (const Json& item : list) {
     Vec3 point;
     bool good = item.is_array() && item.size() == 3;
     for (int k = 0; k < 3 && good; ++k) {
       good = item[k].is_number() && std::abs(item[k].get<double>()) < 1e9;
       if (good) point[k] = item[k].get<double>();
     }
-    if (!good) refuse("Puncture " + std::to_string(points.size() + 1) + " of segments.json is not a point [x, y, z].");
+    if (!good) refuse("segments.json: entry " + std::to_string(points.size() + 1) + " of " + name + " must be a point [x, y, z].");
     points.push_back(point);
   }
   return points;
 }
 
-Bytes write_design_json(const ZippableDesign& design) {
-  const Segmentation& s = design.proposal.segmentation;
-  const Parameterisation& p = design.parameterisation;
+/// To a micrometre: what a laser can tell apart is a hundred times as much.
+double micrometres(double mm) { return std::round(1000 * mm) / 1000; }
+
+}  // namespace
+
+ZippableParts read_segments(ByteView bytes) {
+  const Json json = Json::parse(as_text(bytes), nullptr, false);
+  if (!json.is_object()) refuse("segments.json is not a JSON object: it holds punctures, loops and lines.");
+  ZippableParts parts;
+  for (const auto& [name, value] : json.items()) {
+    if (name != "punctures" && name != "loops" && name != "lines") refuse("segments.json has \"" + name + "\", which is not known: it may have punctures, loops and lines.");
+    if (!value.is_array() || value.size() > 100) refuse("segments.json: " + name + " must be a list of up to 100 entries.");
+    if (name == "punctures") {
+      parts.punctures = read_points(value, "punctures");
+      continue;
+    }
+    for (const Json& item : value) {
+      if (!item.is_array() || item.size() > 1000) refuse("segments.json: each of " + name + " must be a list of up to 1000 points [x, y, z].");
+      parts.curves.push_back({read_points(item, name), name == "loops"});
+    }
+  }
+  if (parts.punctures.empty() && parts.curves.empty()) refuse("segments.json says nothing: give punctures, loops or lines, or leave it out.");
+  return parts;
+}
+
+Bytes write_design_json(const ParameterisedModel& model, const ZippableDesign& design) {
+  const Segmentation& s = model.proposal.segmentation;
+  const Parameterisation& p = model.parameterisation;
   Json parts = Json::array();
   for (int part = 0; part < s.part_count(); ++part)
     parts.push_back({{"period_mm", p.period_mm[part]}, {"height_mm", p.height_mm[part]}, {"windings", design.curve.windings[part]}});
   Json punctures = Json::array();
-  for (std::size_t i = 0; i < design.proposal.punctures.size(); ++i)
-    punctures.push_back({{"position_mm", vector_json(design.proposal.punctures[i])}, {"radius_mm", design.proposal.puncture_radius_mm[i]}});
+  for (std::size_t i = 0; i < model.proposal.punctures.size(); ++i)
+    punctures.push_back({{"position_mm", vector_json(model.proposal.punctures[i])}, {"radius_mm", model.proposal.puncture_radius_mm[i]}});
   Json boundary = Json::array();
   for (std::size_t i = 0; i < design.ribbon.boundary.size(); ++i) {
     const RibbonVertex& v = design.ribbon.boundary[i];
@@ -65,20 +79,20 @@ Bytes write_design_json(const ZippableDesign& design) {
   for (Eigen::Index f = 0; f < design.ribbon.F.rows(); ++f) faces.push_back({design.ribbon.F(f, 0), design.ribbon.F(f, 1), design.ribbon.F(f, 2)});
   const Json json = {{"format", "formwright zippable design"},
                      {"version", 1},
-                     {"scale", design.scale},
+                     {"scale", model.scale},
                      {"order", design.traversal.traversal.parts},
                      {"parts", parts},
                      {"punctures", punctures},
-                     {"handles_cut", design.proposal.handles_cut},
+                     {"handles_cut", model.proposal.handles_cut},
                      {"zipper_mm", design.ribbon.zipper_mm},
                      {"pieces", design.curve.pieces},
                      {"ribbon", {{"boundary", boundary}, {"triangles", faces}}}};
   return to_bytes(json.dump());
 }
 
-Bytes write_parameterised_ply(const ZippableDesign& design, Context& context) {
-  const Segmentation& s = design.proposal.segmentation;
-  const Parameterisation& p = design.parameterisation;
+Bytes write_parameterised_ply(const ParameterisedModel& parameterised, Context& context) {
+  const Segmentation& s = parameterised.proposal.segmentation;
+  const Parameterisation& p = parameterised.parameterisation;
   // A vertex of the file: a vertex of the surface, a part, and on which side of the part's cut.
   std::map<std::tuple<int, int, long>, int> number;
   std::vector<int> corner_of;

@@ -8,15 +8,16 @@
 
 namespace formwright {
 
-/// segments.json: {"punctures": [[x, y, z], ...]}, in the model's coordinates.
+/// segments.json: {"punctures": [[x, y, z], ...], "loops": [[[x, y, z], ...], ...], "lines": [[[x, y, z], ...], ...]}, each optional, in the
+/// model's coordinates: where parts are punctured, closed borders of parts, and borders that end on others.
 /// Throws Error{invalid_input, "segments"} naming what is wrong.
-std::vector<Vec3> read_segments(ByteView bytes);
+ZippableParts read_segments(ByteView bytes);
 
 /// Everything that later steps need of a design: parts, the curve's samples, the ribbon in space and in the plane.
-Bytes write_design_json(const ZippableDesign& design);
+Bytes write_design_json(const ParameterisedModel& model, const ZippableDesign& design);
 
 /// The parts with u, v (mm), the part's number and the distortion of every vertex; vertices are split where parts meet and along cuts.
-Bytes write_parameterised_ply(const ZippableDesign& design, Context& context);
+Bytes write_parameterised_ply(const ParameterisedModel& model, Context& context);
 
 /// The zipper's course on the surface as OBJ polylines, one an opening-to-opening piece.
 Bytes write_curve_obj(const ZippableDesign& design);

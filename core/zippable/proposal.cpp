@@ -163,6 +163,41 @@ Proposal divide(const TriangleMesh& mesh, const std::vector<Seed>& seeds, const 
   return proposal;
 }
 
+/// What the curves bound, punctured.
+Proposal drawn(const TriangleMesh& mesh, const ProposalOptions& options, Context& context) {
+  Proposal proposal;
+  LabelledSurface surface = divide_along_curves(mesh, options.curves, context);
+  const int parts = 1 + *std::max_element(surface.face_label.begin(), surface.face_label.end());
+  for (int part = 0; part < parts; ++part) {
+    int place = puncture_place(surface, part);
+    if (place < 0) continue;
+    for (const Vec3& tip : options.tips_mm) {
+      Eigen::Index nearest = 0;
+      (surface.mesh.V.rowwise() - tip.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
+      const int v = static_cast<int>(nearest);
+      const auto faces = Adjacency(surface.mesh).outgoing(v);
+      if (!faces.empty() && std::all_of(faces.begin(), faces.end(), [&](int h) { return surface.face_label[h / 3] == part; })) place = v;
+    }
+    std::vector<int> vertex_of;
+    proposal.punctures.push_back(surface.mesh.V.row(place).transpose());
+    proposal.puncture_radius_mm.push_back(puncture(surface, place, options.puncture_radius_mm, vertex_of));
+  }
+  proposal.segmentation = make_segmentation(surface.mesh, surface.face_label);
+  for (int part = 0; part < proposal.segmentation.part_count(); ++part)
+    if (!proposal.segmentation.problems[part].empty())
+      throw Error(ErrorCode::invalid_input, "segments", "Part " + std::to_string(part + 1) + " of the curves is not a cylinder. " + proposal.segmentation.problems[part]);
+  if (traversals(proposal.segmentation, 1).empty())
+    throw Error(ErrorCode::invalid_input, "segments", "No order visits every part of the curves once: let more of them share a border.");
+  return proposal;
+}
+
+void note_handles(Proposal& proposal, OpenedSurface& opened) {
+  proposal.handles_cut = static_cast<int>(opened.cuts.size());
+  proposal.handle_cuts = std::move(opened.cuts);
+  if (proposal.handles_cut > 0)
+    proposal.notes.push_back(std::to_string(proposal.handles_cut) + (proposal.handles_cut == 1 ? " handle was" : " handles were") + " cut open: close the cut with hook-and-loop tape.");
+}
+
 }  // namespace
 
 Proposal propose_segmentation(const TriangleMesh& mesh, const ProposalOptions& options, Context& context) {
@@ -171,6 +206,11 @@ Proposal propose_segmentation(const TriangleMesh& mesh, const ProposalOptions& o
   if (face_components(given).count != 1) throw Error(ErrorCode::invalid_input, "mesh", "The model is in several separate pieces: make each a zippable of its own.");
   context.progress(0, "Looking for limbs");
   OpenedSurface opened = cut_handles(mesh, context);
+  if (!options.curves.empty()) {
+    Proposal proposal = drawn(opened.mesh, options, context);
+    note_handles(proposal, opened);
+    return proposal;
+  }
   const Adjacency adjacency(opened.mesh);
   std::vector<Seed> seeds = find_seeds(opened.mesh, adjacency, options, context);
   const std::size_t tips_found = seeds.size();
@@ -187,10 +227,7 @@ Proposal propose_segmentation(const TriangleMesh& mesh, const ProposalOptions& o
     try {
       Proposal proposal = divide(opened.mesh, seeds, distance, reach_shares[attempt % reach_shares.size()], options);
       if (proposal.segmentation.valid() && !traversals(proposal.segmentation, 1).empty()) {
-        proposal.handles_cut = static_cast<int>(opened.cuts.size());
-        proposal.handle_cuts = std::move(opened.cuts);
-        if (proposal.handles_cut > 0)
-          proposal.notes.push_back(std::to_string(proposal.handles_cut) + (proposal.handles_cut == 1 ? " handle was" : " handles were") + " cut open: close the cut with hook-and-loop tape.");
+        note_handles(proposal, opened);
         if (seeds.size() < tips_found)
           proposal.notes.push_back("Of " + std::to_string(tips_found) + " tips and openings " + std::to_string(seeds.size()) + " became parts; the rest would not have made cylinders.");
         return proposal;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/context.h"
+#include "zippable/drawn_parts.h"
 #include "zippable/segmentation.h"
 
 namespace formwright {
@@ -15,6 +16,7 @@ struct ProposalOptions {
   /// A tip counts when it stands out from the rest by this share of the largest mean distance.
   double prominence = 0.08;
   std::vector<Vec3> tips_mm;        // where parts are to be punctured; empty: at the tips of limbs
+  std::vector<DrawnCurve> curves;   // borders of the parts, in mm; empty: around the punctures or limbs
 };
 
 struct Proposal {
@@ -30,6 +32,7 @@ struct Proposal {
 /// with the openings that there are already they are the seeds. Every vertex goes to the seed that is nearest along the surface, counted
 /// from where its limb ends. Seeds whose parts are not cylinders are given up, the least prominent first;
 /// with two seeds left, the whole surface is one cylinder.
+/// With curves, the parts are what they bound; those without an opening are punctured at the tip given in them, or farthest from their border.
 /// Needs one connected, manifold, oriented mesh. Throws Error{invalid_input, "mesh"}: not that, or more openings than
 /// can be brought onto one ribbon. Throws Error{invalid_input, "segments"} when given tips do not make cylinders; cancelled.
 Proposal propose_segmentation(const TriangleMesh& mesh, const ProposalOptions& options, Context& context);

@@ -137,7 +137,7 @@ std::vector<Vec2> unfold(const std::vector<Vec3>& positions, const Triangles& F)
 }
 
 Ribbon make_ribbon(const Segmentation& s, const Parameterisation& p, const LineTracer& tracer, const ZipperCurve& curve, const CurveOptions& options, Context& context) {
-  RibbonBoundary boundary(s, p, tracer, curve, options.sample_mm);
+  RibbonBoundary boundary(s.part_count(), p, tracer, curve, options.sample_mm);
   context.check_cancelled();
   const int count = static_cast<int>(boundary.vertices.size());
   Rulings rulings(s, p, curve, boundary);

@@ -6,13 +6,13 @@
 
 namespace formwright {
 
-RibbonBoundary::RibbonBoundary(const Segmentation& s, const Parameterisation& p, const LineTracer& tracer, const ZipperCurve& curve, double sample_mm)
-    : s_(s), p_(p), tracer_(tracer), curve_(curve), sample_mm_(sample_mm), left_place_(curve.samples.size(), -1), right_place_(curve.samples.size(), -1) {
+RibbonBoundary::RibbonBoundary(int part_count, const Parameterisation& p, const LineTracer& tracer, const ZipperCurve& curve, double sample_mm)
+    : tracer_(tracer), curve_(curve), sample_mm_(sample_mm), left_place_(curve.samples.size(), -1), right_place_(curve.samples.size(), -1) {
   // Strips of each part: lines in the order of x, then the first again, a period on.
-  std::vector<std::vector<int>> lines_of(s.part_count());
+  std::vector<std::vector<int>> lines_of(part_count);
   for (int l = 0; l < static_cast<int>(curve.lines.size()); ++l) lines_of[curve.lines[l].part].push_back(l);
   std::vector<int> strip_left_of(curve.lines.size()), strip_right_of(curve.lines.size());
-  for (int part = 0; part < s.part_count(); ++part) {
+  for (int part = 0; part < part_count; ++part) {
     const auto& lines = lines_of[part];
     for (std::size_t k = 0; k < lines.size(); ++k) {
       const bool around = k + 1 == lines.size();
@@ -36,7 +36,7 @@ RibbonBoundary::RibbonBoundary(const Segmentation& s, const Parameterisation& p,
   for (std::size_t k = pieces; k-- > 0;) {
     add_piece(k, false);
     const int first_line = curve.samples[curve.pieces[k].front()].line;
-    if (s.part_count() == 1) {
+    if (part_count == 1) {
       Strip& strip = strips[0];
       add_opening(0, false, curve.lines[0].x_low_mm, curve.lines[0].x_low_mm + p.period_mm[0], &strip.lower);
     } else {

@@ -11,7 +11,7 @@ namespace formwright {
 
 class RibbonBoundary {
  public:
-  RibbonBoundary(const Segmentation& segmentation, const Parameterisation& parameterisation, const LineTracer& tracer, const ZipperCurve& curve, double sample_mm);
+  RibbonBoundary(int part_count, const Parameterisation& parameterisation, const LineTracer& tracer, const ZipperCurve& curve, double sample_mm);
 
   /// A strip lies between a line and the next one of its part, towards larger x, which may be a period on.
   struct Strip {
@@ -32,8 +32,6 @@ class RibbonBoundary {
   void add_opening(int part, bool upper, double x_from, double x_to, std::vector<std::pair<int, int>>* places);
   void add_piece(std::size_t piece, bool left);
 
-  const Segmentation& s_;
-  const Parameterisation& p_;
   const LineTracer& tracer_;
   const ZipperCurve& curve_;
   double sample_mm_;

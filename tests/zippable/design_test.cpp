@@ -15,22 +15,29 @@
 namespace formwright {
 namespace {
 
-ZippableDesign design(std::string_view sample, const ZippableOptions& options, const std::vector<Vec3>& tips = {}) {
+struct Designed {
+  ParameterisedModel model;
+  ZippableDesign design;
+};
+
+Designed design(std::string_view sample, const ZippableOptions& options, const ZippableParts& parts = {}) {
   Context context;
-  return design_zippable(make_sample(sample, 2500, context).mesh, tips, options, context);
+  Designed d{parameterise_model(make_sample(sample, 2500, context).mesh, parts, options, context), {}};
+  d.design = design_zippable(d.model, options, context);
+  return d;
 }
 
 TEST(ZippableDesign, ScalesBeforeEverythingElse) {
   ZippableOptions options;
-  const ZippableDesign small = design("heart", options);
+  const auto [small_model, small] = design("heart", options);
   const double scale = 3;
   Context context;
   options.size_mm = scale * bounding_box(make_sample("heart", 2500, context).mesh).size().maxCoeff();
   options.width_mm *= scale;
-  const ZippableDesign large = design("heart", options);
-  EXPECT_NEAR(large.scale, scale, 1e-12);
-  EXPECT_NEAR(large.ribbon.zipper_mm / small.ribbon.zipper_mm, large.scale, 1e-3);
-  EXPECT_NEAR(large.ribbon_to_model.mean / small.ribbon_to_model.mean, large.scale, 0.02 * large.scale);
+  const auto [large_model, large] = design("heart", options);
+  EXPECT_NEAR(large_model.scale, scale, 1e-12);
+  EXPECT_NEAR(large.ribbon.zipper_mm / small.ribbon.zipper_mm, large_model.scale, 1e-3);
+  EXPECT_NEAR(large.ribbon_to_model.mean / small.ribbon_to_model.mean, large_model.scale, 0.02 * large_model.scale);
 }
 
 TEST(ZippableDesign, NarrowerRibbonsAreCloserAndLonger) {
@@ -38,7 +45,7 @@ TEST(ZippableDesign, NarrowerRibbonsAreCloserAndLonger) {
   double error = 1e9, length = 0;
   for (const double width : {24.0, 12.0, 6.0}) {
     options.width_mm = width;
-    const ZippableDesign d = design("t_shape", options);
+    const ZippableDesign d = design("t_shape", options).design;
     EXPECT_LT(d.ribbon_to_model.mean, error);
     EXPECT_GT(d.ribbon.zipper_mm, length);
     error = d.ribbon_to_model.mean, length = d.ribbon.zipper_mm;
@@ -46,15 +53,58 @@ TEST(ZippableDesign, NarrowerRibbonsAreCloserAndLonger) {
 }
 
 TEST(ZippableDesign, FollowsGivenPunctures) {
-  const ZippableDesign d = design("star", {}, {{0, 100, 0}, {0, 0, 0}});
-  EXPECT_EQ(d.proposal.segmentation.part_count(), 1);
-  EXPECT_EQ(d.curve.fermat_spirals, 0);
+  const Designed d = design("star", {}, {{{0, 100, 0}, {0, 0, 0}}, {}});
+  EXPECT_EQ(d.model.proposal.segmentation.part_count(), 1);
+  EXPECT_EQ(d.design.curve.fermat_spirals, 0);
+}
+
+TEST(ZippableDesign, FollowsDrawnCurves) {
+  // A ball cut along its equator, then one half into quarters: the borders come out smooth, less than an edge from the great circles.
+  Context context;
+  TriangleMesh ball = test::icosphere(5);
+  ball.V *= 50;
+  ZippableParts parts;
+  DrawnCurve equator{{}, true}, meridian{{}, false};
+  for (int k = 0; k < 8; ++k) equator.points.emplace_back(50 * std::cos(k * std::numbers::pi / 4), 50 * std::sin(k * std::numbers::pi / 4), 0);
+  for (int k = 0; k <= 4; ++k) meridian.points.emplace_back(50 * std::cos(k * std::numbers::pi / 4), 0, 50 * std::sin(k * std::numbers::pi / 4));
+  parts.curves = {equator};
+  ZippableOptions options;
+  options.width_mm = 10;
+  const ParameterisedModel halves = parameterise_model(ball, parts, options, context);
+  const Segmentation& two = halves.proposal.segmentation;
+  ASSERT_EQ(two.part_count(), 2);
+  ASSERT_EQ(two.interfaces.size(), 1u);
+  EXPECT_TRUE(two.interfaces[0].is_closed());
+  for (const int v : two.interfaces[0].vertices) EXPECT_LT(std::abs(two.mesh.V(v, 2)), 0.8 * mean_edge_length(ball));
+  EXPECT_NEAR(walk_length_mm(two.mesh, two.interfaces[0].vertices, false), 2 * std::numbers::pi * 50, 0.02 * 2 * std::numbers::pi * 50);
+  EXPECT_EQ(design_zippable(halves, options, context).ribbon.opening_arcs, 2);
+  parts.curves.push_back(meridian);
+  const ParameterisedModel thirds = parameterise_model(ball, parts, options, context);
+  EXPECT_EQ(thirds.proposal.segmentation.part_count(), 3);
+  EXPECT_EQ(thirds.proposal.segmentation.interfaces.size(), 3u);
+  EXPECT_EQ(design_zippable(thirds, options, context).curve.fermat_spirals, 1);
+  // A curve that ends nowhere divides nothing.
+  parts.curves = {meridian};
+  EXPECT_THROW(parameterise_model(ball, parts, options, context), Error);
+}
+
+TEST(ZippableDesign, IsTheSameFromAKeptParameterisation) {
+  Context context;
+  ZippableOptions options, other;
+  other.windings = 3.5, other.traversal = 2;
+  EXPECT_EQ(parameterisation_key(options), parameterisation_key(other));
+  other.width_mm = 10;  // and so the punctures
+  EXPECT_NE(parameterisation_key(options), parameterisation_key(other));
+  options.windings = 3.5, options.traversal = 2;
+  const ZippableDesign fresh = design("t_shape", options).design;
+  const Designed kept = design("t_shape", {});
+  EXPECT_EQ(design_zippable(kept.model, options, context).ribbon.zipper_mm, fresh.ribbon.zipper_mm);
 }
 
 TEST(ZippableDesign, RefusesInOneSentence) {
   const auto refused = [](const ZippableOptions& options, const std::vector<Vec3>& tips = {}) {
     try {
-      design("heart", options, tips);
+      design("heart", options, {tips, {}});
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::invalid_input);
       return error.where();
@@ -74,13 +124,14 @@ TEST(ZippableDesign, RefusesInOneSentence) {
   EXPECT_EQ(refused({}, {{0, 0, 0}, {0, 0, 0}}), "segments");
   Context context;
   const TriangleMesh ball = test::icosphere(2);
-  EXPECT_THROW(design_zippable(test::joined(ball, test::moved(ball, Vec3(3, 0, 0))), {}, ZippableOptions{}, context), Error);
+  EXPECT_THROW(parameterise_model(test::joined(ball, test::moved(ball, Vec3(3, 0, 0))), {}, ZippableOptions{}, context), Error);
 }
 
 TEST(ZippableFiles, TellTheDesign) {
   ZippableOptions options;
-  const ZippableDesign d = design("t_shape", options);
-  const Json json = Json::parse(as_text(write_design_json(d)));
+  const auto [model, d] = design("t_shape", options);
+  const Bytes text = write_design_json(model, d);
+  const Json json = Json::parse(as_text(text));
   EXPECT_EQ(json["parts"].size(), 3u);
   EXPECT_EQ(json["ribbon"]["boundary"].size(), d.ribbon.boundary.size());
   EXPECT_EQ(json["ribbon"]["triangles"].size(), static_cast<std::size_t>(d.ribbon.F.rows()));
@@ -100,11 +151,13 @@ TEST(ZippableFiles, TellTheDesign) {
 }
 
 TEST(ZippableFiles, ReadSegmentsOrSayWhatIsWrong) {
-  const auto points = read_segments(to_bytes(R"({"punctures": [[1, 2, 3], [4, 5.5, -6]]})"));
-  ASSERT_EQ(points.size(), 2u);
-  EXPECT_EQ(points[1], Vec3(4, 5.5, -6));
+  const ZippableParts parts = read_segments(to_bytes(R"({"punctures": [[1, 2, 3], [4, 5.5, -6]], "loops": [[[0, 0, 0], [1, 0, 0], [0, 1, 0]]], "lines": [[[0, 0, 1], [0, 0, 2]]]})"));
+  ASSERT_EQ(parts.punctures.size(), 2u);
+  EXPECT_EQ(parts.punctures[1], Vec3(4, 5.5, -6));
+  ASSERT_EQ(parts.curves.size(), 2u);
+  EXPECT_TRUE(parts.curves[0].closed && !parts.curves[1].closed);
   for (const char* wrong : {"", "[]", "{}", R"({"punctures": 3})", R"({"punctures": [[1, 2]]})", R"({"punctures": [[1, 2, "x"]]})", R"({"punctures": [[1, 2, 1e99]]})",
-                            R"({"loops": []})"}) {
+                            R"({"loops": []})", R"({"loops": [[1, 2, 3]]})", R"({"rings": []})"}) {
     try {
       read_segments(to_bytes(wrong));
       FAIL() << "accepted " << wrong;

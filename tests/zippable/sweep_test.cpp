@@ -35,7 +35,8 @@ TEST(ZippableSweep, Seed20261122GivesOnlyValidDesigns) {
       for (int k = 2 + random.below(5); k > 0; --k) tips.push_back(mesh.V.row(random.below(mesh.vertex_count())).transpose());
     SCOPED_TRACE(names[which] + ", trial " + std::to_string(trial) + ", width " + std::to_string(options.width_mm));
     try {
-      const ZippableDesign design = design_zippable(mesh, tips, options, context);
+      const ParameterisedModel model = parameterise_model(mesh, {tips, {}}, options, context);
+      const ZippableDesign design = design_zippable(model, options, context);
       ++made;
       const TriangleMesh formed = design.ribbon.formed();
       const Adjacency adjacency(formed);
@@ -46,7 +47,7 @@ TEST(ZippableSweep, Seed20261122GivesOnlyValidDesigns) {
       EXPECT_EQ(formed.face_count(), formed.vertex_count() - 2);
       EXPECT_EQ(design.ribbon.opening_arcs, 2 + 2 * design.curve.fermat_spirals);
       EXPECT_LE(design.ribbon.isometry_error, 1e-9);
-      EXPECT_LE(constraint_residual_mm(design.proposal.segmentation, design.parameterisation), 1e-10);
+      EXPECT_LE(constraint_residual_mm(model.proposal.segmentation, model.parameterisation), 1e-10);
       EXPECT_TRUE(std::isfinite(design.ribbon.zipper_mm) && design.ribbon.zipper_mm > 0);
     } catch (const Error& error) {
       ++refused;

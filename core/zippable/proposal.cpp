@@ -128,6 +128,11 @@ std::vector<Seed> find_seeds(const TriangleMesh& mesh, const Adjacency& adjacenc
   return seeds;
 }
 
+void puncture_all(Proposal& proposal, LabelledSurface& surface, const std::vector<int>& places, const ProposalOptions& options) {
+  for (const int v : places) proposal.punctures.push_back(surface.mesh.V.row(v).transpose());
+  proposal.puncture_radius_mm = puncture(surface, places, options.puncture_radius_mm);
+}
+
 /// Parts around the seeds by `distance` (n x seeds or more), less `reach_share` of each seed's reach; punctured at the tips.
 Proposal divide(const TriangleMesh& mesh, const std::vector<Seed>& seeds, const Eigen::MatrixXd& distance, double reach_share, const ProposalOptions& options) {
   LabelledSurface surface;
@@ -148,17 +153,10 @@ Proposal divide(const TriangleMesh& mesh, const std::vector<Seed>& seeds, const 
     surface = split_by_least_field(mesh, label, field);
   }
   Proposal proposal;
-  std::vector<int> moved(surface.mesh.vertex_count());
-  std::iota(moved.begin(), moved.end(), 0);
-  for (const Seed& seed : seeds) {
-    if (seed.opening) continue;
-    std::vector<int> vertex_of;
-    const int vertex = moved[seed.vertices.front()];
-    proposal.punctures.push_back(surface.mesh.V.row(vertex).transpose());
-    proposal.puncture_radius_mm.push_back(puncture(surface, vertex, options.puncture_radius_mm, vertex_of));
-    for (int& v : moved)
-      if (v >= 0) v = vertex_of[v];
-  }
+  std::vector<int> places;
+  for (const Seed& seed : seeds)
+    if (!seed.opening) places.push_back(seed.vertices.front());
+  puncture_all(proposal, surface, places, options);
   proposal.segmentation = make_segmentation(surface.mesh, surface.face_label);
   return proposal;
 }
@@ -168,6 +166,8 @@ Proposal drawn(const TriangleMesh& mesh, const ProposalOptions& options, Context
   Proposal proposal;
   LabelledSurface surface = divide_along_curves(mesh, options.curves, context);
   const int parts = 1 + *std::max_element(surface.face_label.begin(), surface.face_label.end());
+  const Adjacency adjacency(surface.mesh);
+  std::vector<int> places;
   for (int part = 0; part < parts; ++part) {
     int place = puncture_place(surface, part);
     if (place < 0) continue;
@@ -175,13 +175,12 @@ Proposal drawn(const TriangleMesh& mesh, const ProposalOptions& options, Context
       Eigen::Index nearest = 0;
       (surface.mesh.V.rowwise() - tip.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
       const int v = static_cast<int>(nearest);
-      const auto faces = Adjacency(surface.mesh).outgoing(v);
+      const auto faces = adjacency.outgoing(v);
       if (!faces.empty() && std::all_of(faces.begin(), faces.end(), [&](int h) { return surface.face_label[h / 3] == part; })) place = v;
     }
-    std::vector<int> vertex_of;
-    proposal.punctures.push_back(surface.mesh.V.row(place).transpose());
-    proposal.puncture_radius_mm.push_back(puncture(surface, place, options.puncture_radius_mm, vertex_of));
+    places.push_back(place);
   }
+  puncture_all(proposal, surface, places, options);
   proposal.segmentation = make_segmentation(surface.mesh, surface.face_label);
   for (int part = 0; part < proposal.segmentation.part_count(); ++part)
     if (!proposal.segmentation.problems[part].empty())

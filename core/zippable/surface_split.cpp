@@ -76,15 +76,18 @@ LabelledSurface split(const TriangleMesh& mesh, const Adjacency& adjacency, cons
   return result;
 }
 
-/// V - E + F of some faces.
-int euler_of(const TriangleMesh& mesh, const Adjacency& adjacency, const std::vector<int>& faces) {
-  std::vector<char> vertex(mesh.vertex_count(), 0), edge(adjacency.edge_count(), 0);
-  int euler = static_cast<int>(faces.size());
-  for (const int f : faces)
-    for (int h = 3 * f; h < 3 * f + 3; ++h) {
-      if (!vertex[adjacency.from(h)]) vertex[adjacency.from(h)] = 1, ++euler;
-      if (!edge[adjacency.edge_of(h)]) edge[adjacency.edge_of(h)] = 1, --euler;
+/// V - E + F of what lies wholly within a set of vertices; a disc when that is 1.
+int euler_within(const Adjacency& adjacency, const std::vector<int>& vertices, const std::vector<int>& mark, int own) {
+  int euler = 0;
+  for (const int v : vertices) {
+    ++euler;
+    for (const int w : adjacency.neighbours(v))
+      if (w > v && mark[w] == own) --euler;
+    for (const int h : adjacency.outgoing(v)) {
+      const int a = adjacency.to(h), b = adjacency.from(previous_halfedge(h));
+      if (a > v && b > v && mark[a] == own && mark[b] == own) ++euler;
     }
+  }
   return euler;
 }
 
@@ -124,54 +127,62 @@ TriangleMesh kept_faces(const TriangleMesh& mesh, const std::vector<char>& keep,
   return result;
 }
 
-double puncture(LabelledSurface& surface, int vertex, double radius_mm, std::vector<int>& vertex_of) {
+std::vector<double> puncture(LabelledSurface& surface, const std::vector<int>& vertices, double radius_mm) {
   const TriangleMesh& mesh = surface.mesh;
   const Adjacency adjacency(mesh);
-  const Vec3 centre = mesh.V.row(vertex).transpose();
-  const auto distance = [&](int v) { return (mesh.V.row(v).transpose() - centre).norm(); };
-  const int own = surface.face_label[adjacency.outgoing(vertex).front() / 3];
-  std::vector<char> usable(mesh.vertex_count(), 1);  // inside its label and off every opening
+  std::vector<char> usable(mesh.vertex_count(), 1);  // inside its label, off every opening and away from other punctures
   for (int v = 0; v < mesh.vertex_count(); ++v) {
+    const auto around = adjacency.outgoing(v);
     if (adjacency.is_boundary_vertex(v)) usable[v] = 0;
-    for (const int h : adjacency.outgoing(v))
-      if (surface.face_label[h / 3] != own) usable[v] = 0;
+    for (const int h : around)
+      if (surface.face_label[h / 3] != surface.face_label[around.front() / 3]) usable[v] = 0;
   }
-  if (!usable[vertex]) throw Error(ErrorCode::invalid_input, "mesh", "A puncture lies on the border of its part: move it inside.");
-  double least_ring = 1e300;
-  for (const int w : adjacency.neighbours(vertex)) least_ring = std::min(least_ring, distance(w));
-  for (double radius = radius_mm;; radius *= 0.5) {
-    const bool last = radius <= least_ring;
-    std::vector<int> inside(mesh.vertex_count(), 0), stack{vertex};
-    inside[vertex] = 1;
-    bool clear = true;
-    while (!stack.empty() && clear) {
-      const int v = stack.back();
-      stack.pop_back();
-      for (const int w : adjacency.neighbours(v)) {
-        clear = clear && usable[w];
-        if (!inside[w] && distance(w) < radius && clear) inside[w] = 1, stack.push_back(w);
+  std::vector<int> mark(mesh.vertex_count(), 0);  // 1 + the puncture that a vertex lies in
+  std::vector<double> radii;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const int centre = vertices[i], own = static_cast<int>(i) + 1;
+    if (!usable[centre]) throw Error(ErrorCode::invalid_input, "mesh", "A puncture lies on the border of its part or beside another: move it inside.");
+    const auto distance = [&](int v) { return (mesh.V.row(v) - mesh.V.row(centre)).norm(); };
+    double least_ring = 1e300;
+    for (const int w : adjacency.neighbours(centre)) least_ring = std::min(least_ring, distance(w));
+    for (double radius = radius_mm;; radius *= 0.5) {
+      const bool last = radius <= least_ring;
+      std::vector<int> inside{centre};
+      mark[centre] = own;
+      bool clear = true;
+      for (std::size_t k = 0; k < inside.size() && clear; ++k)
+        for (const int w : adjacency.neighbours(inside[k])) {
+          clear = clear && usable[w];
+          if (clear && mark[w] == 0 && distance(w) < radius) mark[w] = own, inside.push_back(w);
+        }
+      if (last || (clear && euler_within(adjacency, inside, mark, own) == 1)) {
+        radii.push_back(radius);
+        for (const int v : inside) {
+          usable[v] = 0;
+          for (const int w : adjacency.neighbours(v)) usable[w] = 0;
+        }
+        break;
       }
+      for (const int v : inside) mark[v] = 0;
     }
-    if (!clear && !last) continue;
-    std::vector<int> face_of;
-    LabelledSurface cut = split(mesh, adjacency, inside, [&](int a, int b) {
-      const double da = distance(a), db = distance(b);
-      return da == db ? 0.5 : (radius - da) / (db - da);
-    }, face_of);
-    std::vector<int> removed;
-    std::vector<char> keep(cut.mesh.face_count(), 1);
-    for (int f = 0; f < cut.mesh.face_count(); ++f)
-      if (cut.face_label[f] == 1) removed.push_back(f), keep[f] = 0;
-    const Adjacency cut_adjacency(cut.mesh);
-    if (!last && euler_of(cut.mesh, cut_adjacency, removed) != 1) continue;
-    LabelledSurface result;
-    result.mesh = kept_faces(cut.mesh, keep, vertex_of);
-    for (int f = 0; f < cut.mesh.face_count(); ++f)
-      if (keep[f]) result.face_label.push_back(surface.face_label[face_of[f]]);
-    vertex_of.resize(mesh.vertex_count());
-    surface = std::move(result);
-    return std::min(radius, radius_mm);
   }
+  std::vector<int> face_of;
+  LabelledSurface cut = split(mesh, adjacency, mark, [&](int a, int b) {
+    const int own = std::max(mark[a], mark[b]) - 1;
+    const auto distance = [&](int v) { return (mesh.V.row(v) - mesh.V.row(vertices[own])).norm(); };
+    const double da = distance(a), db = distance(b);
+    return da == db ? 0.5 : (radii[own] - da) / (db - da);
+  }, face_of);
+  LabelledSurface result;
+  std::vector<char> keep(cut.mesh.face_count());
+  for (int f = 0; f < cut.mesh.face_count(); ++f) {
+    keep[f] = cut.face_label[f] == 0;
+    if (keep[f]) result.face_label.push_back(surface.face_label[face_of[f]]);
+  }
+  std::vector<int> vertex_of;
+  result.mesh = kept_faces(cut.mesh, keep, vertex_of);
+  surface = std::move(result);
+  return radii;
 }
 
 }  // namespace formwright

@@ -19,11 +19,11 @@ struct LabelledSurface {
 /// labels meet.
 LabelledSurface split_by_least_field(const TriangleMesh& mesh, const std::vector<int>& label, const Eigen::MatrixXd& field);
 
-/// Takes out what is connected to `vertex` and nearer than `radius_mm`, cut along a smooth circle, and halves the radius until
-/// that is a disc inside the label of the vertex that touches neither other labels nor an opening; at last, until it lies within the faces
-/// around the vertex. Returns the radius in mm. Vertices are renumbered; `vertex_of` (old to new, -1 for none)
-/// says how. Throws Error{invalid_input, "mesh"} when the vertex lies on an opening or beside another label.
-double puncture(LabelledSurface& surface, int vertex, double radius_mm, std::vector<int>& vertex_of);
+/// Around each of `vertices`, takes out what is connected to it and nearer than `radius_mm`, cut along a smooth circle, and halves the radius until
+/// that is a disc inside the label of the vertex that touches neither other labels nor an opening nor the puncture before it; at last, until
+/// it lies within the faces around the vertex. Returns the radii in mm. Vertices are renumbered.
+/// Throws Error{invalid_input, "mesh"} when a vertex lies on an opening or beside another label or puncture.
+std::vector<double> puncture(LabelledSurface& surface, const std::vector<int>& vertices, double radius_mm);
 
 /// The faces that are kept and their vertices only; `vertex_of` gets the new number of each old vertex, -1 for none.
 TriangleMesh kept_faces(const TriangleMesh& mesh, const std::vector<char>& keep, std::vector<int>& vertex_of);

@@ -63,10 +63,8 @@ TEST(SurfaceSplit, CutsWhereTheFieldsAreEqual) {
 TEST(Puncture, IsARoundHoleOfItsRadius) {
   LabelledSurface surface{test::icosphere(5), {}};
   surface.face_label.assign(surface.mesh.face_count(), 0);
-  std::vector<int> vertex_of;
   const Vec3 centre = surface.mesh.V.row(7).transpose();
-  EXPECT_EQ(puncture(surface, 7, 0.3, vertex_of), 0.3);
-  EXPECT_EQ(vertex_of[7], -1);
+  EXPECT_EQ(puncture(surface, {7}, 0.3), std::vector<double>{0.3});
   const auto loops = boundary_loops(Adjacency(surface.mesh));
   ASSERT_EQ(loops.size(), 1u);
   for (const int v : loops[0]) EXPECT_NEAR((surface.mesh.V.row(v).transpose() - centre).norm(), 0.3, 0.01);
@@ -75,13 +73,13 @@ TEST(Puncture, IsARoundHoleOfItsRadius) {
 TEST(Puncture, ShrinksUntilItFits) {
   LabelledSurface surface{test::icosphere(4), {}};
   surface.face_label.assign(surface.mesh.face_count(), 0);
-  std::vector<int> vertex_of;
-  const double radius = puncture(surface, 3, 5, vertex_of);  // larger than the whole sphere
-  EXPECT_LT(radius, 2);
+  const std::vector<double> radii = puncture(surface, {3, 0}, 5);  // larger than the whole sphere; the second must keep off the first
+  EXPECT_LT(radii[0], 2);
+  EXPECT_LT(radii[1], 2);
   const Adjacency adjacency(surface.mesh);
   EXPECT_TRUE(adjacency.is_manifold());
-  EXPECT_EQ(boundary_loops(adjacency).size(), 1u);
-  EXPECT_EQ(euler_characteristic(adjacency), 1);
+  EXPECT_EQ(boundary_loops(adjacency).size(), 2u);
+  EXPECT_EQ(euler_characteristic(adjacency), 0);
 }
 
 TEST(Handles, AreCutAlongTheShortWay) {

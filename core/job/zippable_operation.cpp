@@ -90,7 +90,8 @@ void report_design(Json& report, const ParameterisedModel& model, const Zippable
   report["ribbon_width_min_mm"] = ribbon.width_min_mm;
   report["ribbon_triangles"] = ribbon.F.rows();
   const Positions flat = ribbon.flat().V, formed = ribbon.formed().V;
-  const Vec3 flat_size = (flat.colwise().maxCoeff() - flat.colwise().minCoeff()).transpose(), size = (formed.colwise().maxCoeff() - formed.colwise().minCoeff()).transpose();
+  const Vec3 flat_size = (flat.colwise().maxCoeff() - flat.colwise().minCoeff()).transpose(),
+             size = (formed.colwise().maxCoeff() - formed.colwise().minCoeff()).transpose();
   report["ribbon_size_mm"] = {flat_size.x(), flat_size.y()};
   report["isometry_error"] = ribbon.isometry_error;
   report["ribbon_to_model_mean_mm"] = design.ribbon_to_model.mean;

@@ -43,18 +43,21 @@ ZippableParts read_segments(ByteView bytes) {
   if (!json.is_object()) refuse("segments.json is not a JSON object: it holds punctures, loops and lines.");
   ZippableParts parts;
   for (const auto& [name, value] : json.items()) {
-    if (name != "punctures" && name != "loops" && name != "lines") refuse("segments.json has \"" + name + "\", which is not known: it may have punctures, loops and lines.");
+    if (name != "punctures" && name != "loops" && name != "lines")
+      refuse("segments.json has \"" + name + "\", which is not known: it may have punctures, loops and lines.");
     if (!value.is_array() || value.size() > 100) refuse("segments.json: " + name + " must be a list of up to 100 entries.");
     if (name == "punctures") {
       parts.punctures = read_points(value, "punctures");
       continue;
     }
     for (const Json& item : value) {
-      if (!item.is_array() || item.size() > 1000) refuse("segments.json: each of " + name + " must be a list of up to 1000 points [x, y, z].");
+      if (!item.is_array() || item.size() > 1000)
+        refuse("segments.json: each of " + name + " must be a list of up to 1000 points [x, y, z].");
       parts.curves.push_back({read_points(item, name), name == "loops"});
     }
   }
-  if (parts.punctures.empty() && parts.curves.empty()) refuse("segments.json says nothing: give punctures, loops or lines, or leave it out.");
+  if (parts.punctures.empty() && parts.curves.empty())
+    refuse("segments.json says nothing: give punctures, loops or lines, or leave it out.");
   return parts;
 }
 
@@ -73,10 +76,13 @@ Bytes write_design_json(const ParameterisedModel& model, const ZippableDesign& d
     boundary.push_back({{"position_mm", vector_json(v.position_mm)},
                         {"flat_mm", {design.ribbon.flat_mm[i].x(), design.ribbon.flat_mm[i].y()}},
                         {"zipper_sample", v.sample},
-                        {"side", v.sample < 0 ? "opening" : v.left ? "left" : "right"}});
+                        {"side", v.sample < 0 ? "opening"
+                                 : v.left     ? "left"
+                                              : "right"}});
   }
   Json faces = Json::array();
-  for (Eigen::Index f = 0; f < design.ribbon.F.rows(); ++f) faces.push_back({design.ribbon.F(f, 0), design.ribbon.F(f, 1), design.ribbon.F(f, 2)});
+  for (Eigen::Index f = 0; f < design.ribbon.F.rows(); ++f)
+    faces.push_back({design.ribbon.F(f, 0), design.ribbon.F(f, 1), design.ribbon.F(f, 2)});
   const Json json = {{"format", "formwright zippable design"},
                      {"version", 1},
                      {"scale", model.scale},
@@ -162,9 +168,12 @@ Bytes write_ribbon_svg(const ZippableDesign& design) {
   const auto y = [&](int i) { return micrometres(upper.y() + margin_mm - ribbon.flat_mm[i].y()); };  // SVG's y runs down
   const int count = static_cast<int>(ribbon.boundary.size());
   TextOut out;
-  out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << micrometres(size.x()) << "mm\" height=\""
-      << micrometres(size.y()) << "mm\" viewBox=\"0 0 " << micrometres(size.x()) << ' ' << micrometres(size.y()) << "\">\n<title>Zippable ribbon</title>\n";
-  const auto begin = [&](const char* id, const char* colour) { out << "<path id=\"" << id << "\" fill=\"none\" stroke=\"" << colour << "\" stroke-width=\"0.2\" d=\""; };
+  out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << micrometres(size.x())
+      << "mm\" height=\"" << micrometres(size.y()) << "mm\" viewBox=\"0 0 " << micrometres(size.x()) << ' ' << micrometres(size.y())
+      << "\">\n<title>Zippable ribbon</title>\n";
+  const auto begin = [&](const char* id, const char* colour) {
+    out << "<path id=\"" << id << "\" fill=\"none\" stroke=\"" << colour << "\" stroke-width=\"0.2\" d=\"";
+  };
   const auto segment = [&](int a, int b) { out << 'M' << x(a) << ' ' << y(a) << 'L' << x(b) << ' ' << y(b); };
   begin("ruling", "#c0c0c0");
   for (Eigen::Index f = 0; f < ribbon.F.rows(); ++f)

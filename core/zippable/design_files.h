@@ -8,9 +8,9 @@
 
 namespace formwright {
 
-/// segments.json: {"punctures": [[x, y, z], ...], "loops": [[[x, y, z], ...], ...], "lines": [[[x, y, z], ...], ...]}, each optional, in the
-/// model's coordinates: where parts are punctured, closed borders of parts, and borders that end on others.
-/// Throws Error{invalid_input, "segments"} naming what is wrong.
+/// segments.json: {"punctures": [[x, y, z], ...], "loops": [[[x, y, z], ...], ...], "lines": [[[x, y, z], ...], ...]}, each optional, in
+/// the model's coordinates: where parts are punctured, closed borders of parts, and borders that end on others. Throws Error{invalid_input,
+/// "segments"} naming what is wrong.
 ZippableParts read_segments(ByteView bytes);
 
 /// Everything that later steps need of a design: parts, the curve's samples, the ribbon in space and in the plane.

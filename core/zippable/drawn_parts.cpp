@@ -63,8 +63,8 @@ std::vector<Vec3> even_points(const std::vector<Vec3>& line, int count) {
   return points;
 }
 
-/// Pulls a way straight on the surface: few points first, each to the middle between its neighbours and back onto the surface, then twice as
-/// many. Ends stay.
+/// Pulls a way straight on the surface: few points first, each to the middle between its neighbours and back onto the surface, then twice
+/// as many. Ends stay.
 std::vector<Vec3> straightened(std::vector<Vec3> line, const PointDistance& surface, double step_mm) {
   double length = 0;
   for (std::size_t i = 0; i + 1 < line.size(); ++i) length += (line[i + 1] - line[i]).norm();
@@ -78,7 +78,8 @@ std::vector<Vec3> straightened(std::vector<Vec3> line, const PointDistance& surf
 }
 
 /// Marks the edges of a way between two vertices that is as straight as edges allow.
-void mark_way(const TriangleMesh& mesh, const Adjacency& adjacency, const PointDistance& surface, double step_mm, int from, int to, std::vector<char>& wall) {
+void mark_way(const TriangleMesh& mesh, const Adjacency& adjacency, const PointDistance& surface, double step_mm, int from, int to,
+              std::vector<char>& wall) {
   std::vector<Vec3> line;
   for (const int v : edge_way(mesh, adjacency, from, to)) line.push_back(mesh.V.row(v).transpose());
   if (line.size() < 2) return;
@@ -121,7 +122,8 @@ std::vector<int> parts_between(const Adjacency& adjacency, const std::vector<cha
 }
 
 /// Each part's indicator after diffusing over about two edges: n x parts, rows sum to 1.
-Eigen::MatrixXd smooth_indicators(const TriangleMesh& mesh, const Adjacency& adjacency, const std::vector<int>& part, int count, Context& context) {
+Eigen::MatrixXd smooth_indicators(const TriangleMesh& mesh, const Adjacency& adjacency, const std::vector<int>& part, int count,
+                                  Context& context) {
   const int n = mesh.vertex_count();
   const Eigen::VectorXd face_area = face_areas(mesh);
   Eigen::MatrixXd u = Eigen::MatrixXd::Zero(n, count);
@@ -154,7 +156,8 @@ LabelledSurface divide_along_curves(const TriangleMesh& mesh, const std::vector<
     }
     if (curves[i].closed && stops.size() > 1 && stops.back() != stops.front()) stops.push_back(stops.front());
     if (stops.size() < (curves[i].closed ? 4u : 2u))
-      throw Error(ErrorCode::invalid_input, "segments", "Curve " + std::to_string(i + 1) + " of segments.json has too few different points: a loop needs three, a line two.");
+      throw Error(ErrorCode::invalid_input, "segments",
+                  "Curve " + std::to_string(i + 1) + " of segments.json has too few different points: a loop needs three, a line two.");
     for (std::size_t k = 0; k + 1 < stops.size(); ++k) {
       context.check_cancelled();
       mark_way(mesh, adjacency, surface, step_mm, stops[k], stops[k + 1], wall);
@@ -162,7 +165,9 @@ LabelledSurface divide_along_curves(const TriangleMesh& mesh, const std::vector<
   }
   int count = 0;
   const std::vector<int> part = parts_between(adjacency, wall, count);
-  if (count < 2) throw Error(ErrorCode::invalid_input, "segments", "The curves of segments.json divide nothing: close them, or let each end on another.");
+  if (count < 2)
+    throw Error(ErrorCode::invalid_input, "segments",
+                "The curves of segments.json divide nothing: close them, or let each end on another.");
   const Eigen::MatrixXd field = -smooth_indicators(mesh, adjacency, part, count, context);
   std::vector<int> label(mesh.vertex_count());
   for (int v = 0; v < mesh.vertex_count(); ++v) {

@@ -162,7 +162,8 @@ OpenedSurface cut_handles(const TriangleMesh& mesh, Context& context) {
       const Adjacency after(cut);
       opened = after.is_manifold() && face_components(after).count == 1 && genus(after) == handles - 1;
     }
-    if (!opened) throw Error(ErrorCode::invalid_input, "mesh", "A handle of the model is too coarse to be cut open: subdivide the model first.");
+    if (!opened)
+      throw Error(ErrorCode::invalid_input, "mesh", "A handle of the model is too coarse to be cut open: subdivide the model first.");
     std::vector<int> given;
     for (const int v : best.vertices) given.push_back(result.source_of[v]);
     result.cuts.push_back(std::move(given));

@@ -9,8 +9,8 @@
 namespace formwright {
 
 struct OpenedSurface {
-  TriangleMesh mesh;            // the given vertices first, then second copies of those on cuts
-  std::vector<int> source_of;   // per vertex: which one of the given mesh it is (a copy of)
+  TriangleMesh mesh;                   // the given vertices first, then second copies of those on cuts
+  std::vector<int> source_of;          // per vertex: which one of the given mesh it is (a copy of)
   std::vector<std::vector<int>> cuts;  // per cut, the given vertices along the loop, the first not repeated
 };
 

@@ -18,7 +18,8 @@ Vec3 TracedLine::at(double x) const {
   return (1 - t) * position_mm[i - 1] + t * position_mm[i];
 }
 
-LineTracer::LineTracer(const Segmentation& s, const Parameterisation& p) : s_(s), p_(p), adjacency_(s.mesh), lower_(s.part_count()), upper_(s.part_count()) {
+LineTracer::LineTracer(const Segmentation& s, const Parameterisation& p)
+    : s_(s), p_(p), adjacency_(s.mesh), lower_(s.part_count()), upper_(s.part_count()) {
   for (int h = 0; h < 3 * s.mesh.face_count(); ++h) {
     const int o = adjacency_.opposite(h), part = s.face_segment[h / 3];
     if (o >= 0 && s.face_segment[o / 3] == part) continue;
@@ -91,7 +92,8 @@ TracedLine LineTracer::trace(int part, double x_low, double x_high) const {
     const Vec2 pl = point(left, shift), pr = point(right, shift);
     const double sl = std::max(side_of(pl), 0.0), sr = std::max(-side_of(pr), 0.0);
     const double t = sl + sr > 0 ? sl / (sl + sr) : 0.5;
-    const Vec3 position = (1 - t) * s_.mesh.V.row(adjacency_.from(left)).transpose() + t * s_.mesh.V.row(adjacency_.from(right)).transpose();
+    const Vec3 position =
+        (1 - t) * s_.mesh.V.row(adjacency_.from(left)).transpose() + t * s_.mesh.V.row(adjacency_.from(right)).transpose();
     const int o = adjacency_.opposite(out);
     if (o < 0 || s_.face_segment[o / 3] != part) {
       if (std::abs((1 - t) * pl.y() + t * pr.y() - height) > 1e-6 * height) break;  // back at the lower line

@@ -11,7 +11,7 @@ namespace formwright {
 
 /// A polyline over a straight line of the parameter domain: exact, because the map is linear in every triangle.
 struct TracedLine {
-  std::vector<double> x_mm;     // ascending; x is counted through, from one period into the next
+  std::vector<double> x_mm;  // ascending; x is counted through, from one period into the next
   std::vector<Vec3> position_mm;
 
   /// The surface point over x, which is held to the line's ends.
@@ -32,7 +32,7 @@ class LineTracer {
 
  private:
   struct LineSides {
-    std::vector<double> x;       // ascending, at the start of each side; the first is the least
+    std::vector<double> x;  // ascending, at the start of each side; the first is the least
     std::vector<int> halfedge;
   };
   struct Side {

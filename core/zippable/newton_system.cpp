@@ -96,7 +96,8 @@ void NewtonSystem::assemble(const TriangleTerms& terms) {
         for (int i = 0; i < 6; ++i) {
           const ChartCoordinate& c = coordinate(chart_, f, i);
           if (c.local >= 0) border_(c.local, term.shared) += c.sign * term.factor * t.hessian(i, j);
-          for (const SharedTerm& other : chart_.sum(c.terms)) corner_(other.shared, term.shared) += other.factor * term.factor * t.hessian(i, j);
+          for (const SharedTerm& other : chart_.sum(c.terms))
+            corner_(other.shared, term.shared) += other.factor * term.factor * t.hessian(i, j);
         }
       }
     }
@@ -105,7 +106,8 @@ void NewtonSystem::assemble(const TriangleTerms& terms) {
 
 void NewtonSystem::hold(int local) { held_[local] = 1, any_held_ = true; }
 
-void NewtonSystem::apply(const Eigen::VectorXd& local, const Eigen::VectorXd& shared, Eigen::VectorXd& out_local, Eigen::VectorXd& out_shared) const {
+void NewtonSystem::apply(const Eigen::VectorXd& local, const Eigen::VectorXd& shared, Eigen::VectorXd& out_local,
+                         Eigen::VectorXd& out_shared) const {
   out_local = lower_.selfadjointView<Eigen::Lower>() * local + border_ * shared;
   out_shared = border_.transpose() * local + corner_ * shared;
 }

@@ -45,7 +45,7 @@ class NewtonSystem {
  private:
   const SeamlessChart& chart_;
   SparseMatrix lower_;
-  std::vector<int> slot_;  // per triangle 36: place of the pair of corner coordinates among the values; -1: none or above the diagonal
+  std::vector<int> slot_;      // per triangle 36: place of the pair of corner coordinates among the values; -1: none or above the diagonal
   std::vector<int> bordered_;  // triangles that touch a shared variable
   std::vector<DirichletTerms> terms_;
   Eigen::VectorXd gradient_, gradient_shared_;

@@ -63,9 +63,11 @@ class Solver {
     shared_ = Eigen::VectorXd::Zero(chart_.shared_count());
     // Interfaces keep their lengths; every rectangle is as high as it is long.
     if (s_.part_count() == 1) {
-      shared_[chart_.length_of(0)] = 0.5 * (walk_length_mm(s_.mesh, s_.segments[0].bottom.vertices, true) + walk_length_mm(s_.mesh, s_.segments[0].top.vertices, true));
+      shared_[chart_.length_of(0)] = 0.5 * (walk_length_mm(s_.mesh, s_.segments[0].bottom.vertices, true) +
+                                            walk_length_mm(s_.mesh, s_.segments[0].top.vertices, true));
     } else {
-      for (int i = 0; i < static_cast<int>(s_.interfaces.size()); ++i) shared_[chart_.length_of(i)] = walk_length_mm(s_.mesh, s_.interfaces[i].vertices, false);
+      for (int i = 0; i < static_cast<int>(s_.interfaces.size()); ++i)
+        shared_[chart_.length_of(i)] = walk_length_mm(s_.mesh, s_.interfaces[i].vertices, false);
     }
     for (int part = 0; part < s_.part_count(); ++part) shared_[chart_.height_of(part)] = chart_.period_mm(part, shared_);
     for (const auto& [interface, place, local] : chart_.interface_variables()) {
@@ -92,12 +94,15 @@ class Solver {
     for (const auto& variable : chart_.interface_variables()) system_.hold(variable.local);
     system_.hold_shared();
     NewtonStep step;
-    if (!system_.solve(step, 0, context_)) throw Error(ErrorCode::could_not_solve, "mesh", "The start of the parameterisation could not be computed: repair or subdivide the model.");
+    if (!system_.solve(step, 0, context_))
+      throw Error(ErrorCode::could_not_solve, "mesh",
+                  "The start of the parameterisation could not be computed: repair or subdivide the model.");
     local_ += step.local;
     const CornerCoordinates embedded = chart_.corners(local_, shared_);
     for (std::size_t f = 0; f < reference_.size(); ++f)
       if (!(jacobian(reference_[f], corners_of(embedded, f)).determinant() > 0))
-        throw Error(ErrorCode::could_not_solve, "mesh", "The start of the parameterisation folds over: larger punctures or another division into parts help.");
+        throw Error(ErrorCode::could_not_solve, "mesh",
+                    "The start of the parameterisation folds over: larger punctures or another division into parts help.");
     rescale(embedded);
     result_.energy_start = energy(chart_.corners(local_, shared_)) / 4;
   }
@@ -128,7 +133,10 @@ class Solver {
   }
 
   double energy(const CornerCoordinates& uv) const {
-    return sum_over_faces(reference_.size(), [&](std::size_t f) { return reference_[f].area * symmetric_dirichlet(jacobian(reference_[f], corners_of(uv, f))); }) / total_area_;
+    return sum_over_faces(
+               reference_.size(),
+               [&](std::size_t f) { return reference_[f].area * symmetric_dirichlet(jacobian(reference_[f], corners_of(uv, f))); }) /
+           total_area_;
   }
 
   void assemble(const CornerCoordinates& uv, bool convex) {
@@ -224,7 +232,9 @@ void Solver::iterate() {
     }
     if (!solved) {
       assemble(uv, true);
-      if (!solve_damped(step)) throw Error(ErrorCode::could_not_solve, "mesh", "The parameterisation lost its footing: larger punctures or another division into parts help.");
+      if (!solve_damped(step))
+        throw Error(ErrorCode::could_not_solve, "mesh",
+                    "The parameterisation lost its footing: larger punctures or another division into parts help.");
     }
     ++result_.iterations;
     result_.decrement = -step.slope;
@@ -236,7 +246,9 @@ void Solver::iterate() {
     if (!search(step, uv, value)) return;
     try_true = before - value < 0.01 * before;
   }
-  throw Error(ErrorCode::could_not_solve, "mesh", "The parameterisation did not settle in " + std::to_string(options_.iterations_max) + " iterations: larger punctures or another division into parts help.");
+  throw Error(ErrorCode::could_not_solve, "mesh",
+              "The parameterisation did not settle in " + std::to_string(options_.iterations_max) +
+                  " iterations: larger punctures or another division into parts help.");
 }
 
 void Solver::finish() {
@@ -262,7 +274,8 @@ void Solver::finish() {
 Parameterisation parameterise(const Segmentation& segmentation, const ParameterisationOptions& options, Context& context) {
   for (int part = 0; part < segmentation.part_count(); ++part)
     if (!segmentation.problems[part].empty())
-      throw Error(ErrorCode::invalid_input, "mesh", "Part " + std::to_string(part + 1) + " is not a cylinder. " + segmentation.problems[part]);
+      throw Error(ErrorCode::invalid_input, "mesh",
+                  "Part " + std::to_string(part + 1) + " is not a cylinder. " + segmentation.problems[part]);
   return Solver(segmentation, options, context).run();
 }
 

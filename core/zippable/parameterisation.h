@@ -19,15 +19,15 @@ struct Parameterisation {
   /// Per corner, mm: x along the lines, y from the lower line (0) to the upper one (the height). Continuous over all
   /// faces of a part but for its cut, where x jumps by the period.
   CornerCoordinates corners_mm;
-  std::vector<double> period_mm, height_mm;   // per part
-  std::vector<double> interface_length_mm;    // per interface
-  std::vector<double> face_distortion;        // symmetric Dirichlet energy over 4: 1 for an isometry
-  double distortion_mean = 0;                 // weighted by area
+  std::vector<double> period_mm, height_mm;  // per part
+  std::vector<double> interface_length_mm;   // per interface
+  std::vector<double> face_distortion;       // symmetric Dirichlet energy over 4: 1 for an isometry
+  double distortion_mean = 0;                // weighted by area
   double distortion_max = 0;
-  double energy_start = 0;                    // mean energy over 4 of the embedding that the iteration began with
+  double energy_start = 0;  // mean energy over 4 of the embedding that the iteration began with
   int iterations = 0;
-  int true_hessians = 0;                      // steps taken with the unprojected Hessian
-  double decrement = 0;                       // of the last step: twice the energy that was left to gain
+  int true_hessians = 0;  // steps taken with the unprojected Hessian
+  double decrement = 0;   // of the last step: twice the energy that was left to gain
   double seconds_start = 0, seconds_newton = 0;
 };
 

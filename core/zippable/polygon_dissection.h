@@ -18,8 +18,8 @@ std::vector<Chord> without_crossings(const std::vector<Chord>& chords, int count
 /// The polygons into which chords that do not cross divide a polygon of `count` vertices; each ascending, together `chords + 1`.
 std::vector<std::vector<int>> dissect(int count, const std::vector<Chord>& chords);
 
-/// Triangles of entries of `polygon`, oriented like it, cheapest in sum: `side(a, b)` is the cost of a diagonal, `triangle(a, b, c)` that of a
-/// triangle.
+/// Triangles of entries of `polygon`, oriented like it, cheapest in sum: `side(a, b)` is the cost of a diagonal, `triangle(a, b, c)` that
+/// of a triangle.
 std::vector<std::array<int, 3>> cheapest_triangulation(const std::vector<int>& polygon, const std::function<double(int, int)>& side,
                                                        const std::function<double(int, int, int)>& triangle);
 

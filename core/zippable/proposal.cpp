@@ -21,8 +21,8 @@ namespace {
 struct Seed {
   std::vector<int> vertices;  // one vertex, or all of an opening
   bool opening = false;
-  double prominence = 0;      // mm of mean distance; openings stay whatever theirs
-  double reach_mm = 0;        // along the limb, from the tip to where it ends
+  double prominence = 0;  // mm of mean distance; openings stay whatever theirs
+  double reach_mm = 0;    // along the limb, from the tip to where it ends
 };
 
 /// Mean distance to everywhere, from a few vertices spread over the surface, each standing for what is nearest to it.
@@ -77,7 +77,8 @@ std::vector<Tip> prominent_maxima(const Adjacency& adjacency, const Eigen::Vecto
       int a = root(v), b = root(w);
       if (a == b) continue;
       if (f[top[a]] < f[top[b]]) std::swap(a, b);
-      if (const double prominence = f[top[b]] - f[v]; top[b] != v && prominence >= least) tips.push_back({top[b], v, prominence}), last_saddle = v;
+      if (const double prominence = f[top[b]] - f[v]; top[b] != v && prominence >= least)
+        tips.push_back({top[b], v, prominence}), last_saddle = v;
       parent[b] = a;
     }
   }
@@ -94,8 +95,12 @@ std::vector<Seed> find_seeds(const TriangleMesh& mesh, const Adjacency& adjacenc
     for (const Vec3& tip : options.tips_mm) {
       Eigen::Index nearest = 0;
       (mesh.V.rowwise() - tip.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
-      const bool taken = std::any_of(seeds.begin(), seeds.end(), [&](const Seed& seed) { return std::find(seed.vertices.begin(), seed.vertices.end(), nearest) != seed.vertices.end(); });
-      if (taken) throw Error(ErrorCode::invalid_input, "segments", "Two punctures lie on the same vertex or opening: move one, or subdivide the model.");
+      const bool taken = std::any_of(seeds.begin(), seeds.end(), [&](const Seed& seed) {
+        return std::find(seed.vertices.begin(), seed.vertices.end(), nearest) != seed.vertices.end();
+      });
+      if (taken)
+        throw Error(ErrorCode::invalid_input, "segments",
+                    "Two punctures lie on the same vertex or opening: move one, or subdivide the model.");
       seeds.push_back({{static_cast<int>(nearest)}, false, 0, 0});
     }
     if (seeds.size() < 2) throw Error(ErrorCode::invalid_input, "segments", "A single puncture makes no cylinder: give two at least.");
@@ -134,7 +139,8 @@ void puncture_all(Proposal& proposal, LabelledSurface& surface, const std::vecto
 }
 
 /// Parts around the seeds by `distance` (n x seeds or more), less `reach_share` of each seed's reach; punctured at the tips.
-Proposal divide(const TriangleMesh& mesh, const std::vector<Seed>& seeds, const Eigen::MatrixXd& distance, double reach_share, const ProposalOptions& options) {
+Proposal divide(const TriangleMesh& mesh, const std::vector<Seed>& seeds, const Eigen::MatrixXd& distance, double reach_share,
+                const ProposalOptions& options) {
   LabelledSurface surface;
   const int parts = seeds.size() == 2 ? 1 : static_cast<int>(seeds.size());
   if (parts == 1) {
@@ -184,7 +190,8 @@ Proposal drawn(const TriangleMesh& mesh, const ProposalOptions& options, Context
   proposal.segmentation = make_segmentation(surface.mesh, surface.face_label);
   for (int part = 0; part < proposal.segmentation.part_count(); ++part)
     if (!proposal.segmentation.problems[part].empty())
-      throw Error(ErrorCode::invalid_input, "segments", "Part " + std::to_string(part + 1) + " of the curves is not a cylinder. " + proposal.segmentation.problems[part]);
+      throw Error(ErrorCode::invalid_input, "segments",
+                  "Part " + std::to_string(part + 1) + " of the curves is not a cylinder. " + proposal.segmentation.problems[part]);
   if (traversals(proposal.segmentation, 1).empty())
     throw Error(ErrorCode::invalid_input, "segments", "No order visits every part of the curves once: let more of them share a border.");
   return proposal;
@@ -194,7 +201,8 @@ void note_handles(Proposal& proposal, OpenedSurface& opened) {
   proposal.handles_cut = static_cast<int>(opened.cuts.size());
   proposal.handle_cuts = std::move(opened.cuts);
   if (proposal.handles_cut > 0)
-    proposal.notes.push_back(std::to_string(proposal.handles_cut) + (proposal.handles_cut == 1 ? " handle was" : " handles were") + " cut open: close the cut with hook-and-loop tape.");
+    proposal.notes.push_back(std::to_string(proposal.handles_cut) + (proposal.handles_cut == 1 ? " handle was" : " handles were") +
+                             " cut open: close the cut with hook-and-loop tape.");
 }
 
 }  // namespace
@@ -202,7 +210,8 @@ void note_handles(Proposal& proposal, OpenedSurface& opened) {
 Proposal propose_segmentation(const TriangleMesh& mesh, const ProposalOptions& options, Context& context) {
   const Adjacency given(mesh);
   if (!given.is_manifold()) throw Error(ErrorCode::invalid_input, "mesh", "The mesh is not a manifold: repair it first.");
-  if (face_components(given).count != 1) throw Error(ErrorCode::invalid_input, "mesh", "The model is in several separate pieces: make each a zippable of its own.");
+  if (face_components(given).count != 1)
+    throw Error(ErrorCode::invalid_input, "mesh", "The model is in several separate pieces: make each a zippable of its own.");
   context.progress(0, "Looking for limbs");
   OpenedSurface opened = cut_handles(mesh, context);
   if (!options.curves.empty()) {
@@ -215,7 +224,8 @@ Proposal propose_segmentation(const TriangleMesh& mesh, const ProposalOptions& o
   const std::size_t tips_found = seeds.size();
   Eigen::MatrixXd distance(opened.mesh.vertex_count(), static_cast<Eigen::Index>(seeds.size()));
   parallel_for(seeds.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) distance.col(static_cast<Eigen::Index>(k)) = geodesic_distance_mm(opened.mesh, adjacency, seeds[k].vertices);
+    for (std::size_t k = begin; k < end; ++k)
+      distance.col(static_cast<Eigen::Index>(k)) = geodesic_distance_mm(opened.mesh, adjacency, seeds[k].vertices);
   });
   // Where limbs end first; but then one part may surround others and be no cylinder, which plain nearness seldom does.
   constexpr std::array reach_shares{1.0, 0.5, 0.25, 0.0};
@@ -228,7 +238,8 @@ Proposal propose_segmentation(const TriangleMesh& mesh, const ProposalOptions& o
       if (proposal.segmentation.valid() && !traversals(proposal.segmentation, 1).empty()) {
         note_handles(proposal, opened);
         if (seeds.size() < tips_found)
-          proposal.notes.push_back("Of " + std::to_string(tips_found) + " tips and openings " + std::to_string(seeds.size()) + " became parts; the rest would not have made cylinders.");
+          proposal.notes.push_back("Of " + std::to_string(tips_found) + " tips and openings " + std::to_string(seeds.size()) +
+                                   " became parts; the rest would not have made cylinders.");
         return proposal;
       }
       for (const std::string& p : proposal.segmentation.problems)
@@ -239,9 +250,11 @@ Proposal propose_segmentation(const TriangleMesh& mesh, const ProposalOptions& o
     }
     if (attempt % reach_shares.size() + 1 < reach_shares.size() && seeds.size() > 2) continue;
     if (!options.tips_mm.empty())
-      throw Error(ErrorCode::invalid_input, "segments", "The given punctures do not divide the model into cylinders (" + problem + "): move, add or drop some.");
+      throw Error(ErrorCode::invalid_input, "segments",
+                  "The given punctures do not divide the model into cylinders (" + problem + "): move, add or drop some.");
     if (seeds.size() <= 2 || seeds.back().opening)
-      throw Error(ErrorCode::invalid_input, "mesh", "The model could not be divided into cylinders (" + problem + "): close its holes, or give the parts in segments.json.");
+      throw Error(ErrorCode::invalid_input, "mesh",
+                  "The model could not be divided into cylinders (" + problem + "): close its holes, or give the parts in segments.json.");
     seeds.pop_back();
   }
 }

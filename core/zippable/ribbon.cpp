@@ -15,7 +15,8 @@ namespace {
 
 class Rulings {
  public:
-  Rulings(const Segmentation& s, const Parameterisation& p, const ZipperCurve& curve, const RibbonBoundary& boundary) : s_(s), p_(p), curve_(curve), boundary_(boundary) {}
+  Rulings(const Segmentation& s, const Parameterisation& p, const ZipperCurve& curve, const RibbonBoundary& boundary)
+      : s_(s), p_(p), curve_(curve), boundary_(boundary) {}
 
   std::vector<Chord> chords;
   std::size_t between_windings = 0;  // the first so many of them join neighbouring windings
@@ -30,7 +31,8 @@ class Rulings {
     between_windings = chords.size();
     for (const auto& strip : boundary_.strips) {
       for (const auto& [grid, place] : strip.upper)
-        if (const int j = sample_at(strip.right_line, grid - strip.right_shift); j >= 0) add(place, boundary_.place(strip.right_line, j, false));
+        if (const int j = sample_at(strip.right_line, grid - strip.right_shift); j >= 0)
+          add(place, boundary_.place(strip.right_line, j, false));
       for (const auto& [grid, place] : strip.lower)
         if (const int j = sample_at(strip.left_line, grid); j >= 0) add(place, boundary_.place(strip.left_line, j, true));
     }
@@ -64,7 +66,8 @@ class Rulings {
       for (const auto& other : boundary_.strips) {
         const SpiralLine& first = line(other.left_line);
         if (first.part != there.part) continue;
-        const double low = first.x_low_mm, high = line(other.right_line).x_low_mm + other.right_offset_mm, period = p_.period_mm[there.part];
+        const double low = first.x_low_mm, high = line(other.right_line).x_low_mm + other.right_offset_mm,
+                     period = p_.period_mm[there.part];
         const double x = there.x_mm - period * std::floor((there.x_mm - low) / period);  // in [low, low + period)
         if (x >= high) continue;
         std::size_t nearest = 0;
@@ -136,7 +139,8 @@ std::vector<Vec2> unfold(const std::vector<Vec3>& positions, const Triangles& F)
   return flat;
 }
 
-Ribbon make_ribbon(const Segmentation& s, const Parameterisation& p, const LineTracer& tracer, const ZipperCurve& curve, const CurveOptions& options, Context& context) {
+Ribbon make_ribbon(const Segmentation& s, const Parameterisation& p, const LineTracer& tracer, const ZipperCurve& curve,
+                   const CurveOptions& options, Context& context) {
   RibbonBoundary boundary(s.part_count(), p, tracer, curve, options.sample_mm);
   context.check_cancelled();
   const int count = static_cast<int>(boundary.vertices.size());
@@ -154,7 +158,8 @@ Ribbon make_ribbon(const Segmentation& s, const Parameterisation& p, const LineT
   ribbon.rulings = static_cast<int>(kept.size());
   std::vector<std::array<int, 3>> faces;
   const auto side = [&](int a, int b) { return (position(a) - position(b)).norm(); };
-  // Places on one straight stretch, or both copies of one place on the zipper, make triangles without area: only where nothing else is left.
+  // Places on one straight stretch, or both copies of one place on the zipper, make triangles without area: only where nothing else is
+  // left.
   const auto flatness = [&](int a, int b, int c) {
     const Vec3 ab = position(b) - position(a), ac = position(c) - position(a), bc = position(c) - position(b);
     const double longest_squared = std::max({ab.squaredNorm(), ac.squaredNorm(), bc.squaredNorm()});
@@ -175,10 +180,12 @@ Ribbon make_ribbon(const Segmentation& s, const Parameterisation& p, const LineT
     for (int k = 0; k < 3; ++k) {
       const int a = face[k], b = face[(k + 1) % 3];
       const double length = (positions[a] - positions[b]).norm();
-      ribbon.isometry_error = std::max(ribbon.isometry_error, std::abs((ribbon.flat_mm[a] - ribbon.flat_mm[b]).norm() - length) / std::max(length, 1e-300));
+      ribbon.isometry_error =
+          std::max(ribbon.isometry_error, std::abs((ribbon.flat_mm[a] - ribbon.flat_mm[b]).norm() - length) / std::max(length, 1e-300));
     }
   for (const auto& piece : curve.pieces)
-    for (std::size_t i = 0; i + 1 < piece.size(); ++i) ribbon.zipper_mm += (curve.samples[piece[i + 1]].position_mm - curve.samples[piece[i]].position_mm).norm();
+    for (std::size_t i = 0; i + 1 < piece.size(); ++i)
+      ribbon.zipper_mm += (curve.samples[piece[i + 1]].position_mm - curve.samples[piece[i]].position_mm).norm();
   ribbon.opening_arcs = boundary.opening_arcs;
   ribbon.boundary = std::move(boundary.vertices);
   return ribbon;

@@ -6,7 +6,8 @@
 
 namespace formwright {
 
-RibbonBoundary::RibbonBoundary(int part_count, const Parameterisation& p, const LineTracer& tracer, const ZipperCurve& curve, double sample_mm)
+RibbonBoundary::RibbonBoundary(int part_count, const Parameterisation& p, const LineTracer& tracer, const ZipperCurve& curve,
+                               double sample_mm)
     : tracer_(tracer), curve_(curve), sample_mm_(sample_mm), left_place_(curve.samples.size(), -1), right_place_(curve.samples.size(), -1) {
   // Strips of each part: lines in the order of x, then the first again, a period on.
   std::vector<std::vector<int>> lines_of(part_count);

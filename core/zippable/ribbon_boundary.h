@@ -11,13 +11,14 @@ namespace formwright {
 
 class RibbonBoundary {
  public:
-  RibbonBoundary(int part_count, const Parameterisation& parameterisation, const LineTracer& tracer, const ZipperCurve& curve, double sample_mm);
+  RibbonBoundary(int part_count, const Parameterisation& parameterisation, const LineTracer& tracer, const ZipperCurve& curve,
+                 double sample_mm);
 
   /// A strip lies between a line and the next one of its part, towards larger x, which may be a period on.
   struct Strip {
     int left_line, right_line;
-    int right_shift;  // grid steps to add to the right line's grid
-    double right_offset_mm;  // the same in x
+    int right_shift;                                // grid steps to add to the right line's grid
+    double right_offset_mm;                         // the same in x
     std::vector<std::pair<int, int>> upper, lower;  // along openings: (grid, place on the boundary)
   };
 

@@ -14,8 +14,10 @@ int SeamlessChart::intern(std::vector<SharedTerm> sum) {
   std::sort(sum.begin(), sum.end());
   std::vector<SharedTerm> merged;
   for (const SharedTerm& term : sum) {
-    if (!merged.empty() && merged.back().shared == term.shared) merged.back().factor += term.factor;
-    else merged.push_back(term);
+    if (!merged.empty() && merged.back().shared == term.shared)
+      merged.back().factor += term.factor;
+    else
+      merged.push_back(term);
   }
   std::erase_if(merged, [](const SharedTerm& t) { return t.factor == 0; });
   const auto [found, fresh] = known_.try_emplace(merged, static_cast<int>(sums_.size()));
@@ -53,7 +55,9 @@ void SeamlessChart::cut_part(const Segmentation& s, const Adjacency& adjacency, 
       if (reach < distance[w]) distance[w] = reach, arriving[w] = h, queue.emplace(reach, w);
     }
   }
-  if (end < 0) throw Error(ErrorCode::could_not_solve, "mesh", "Part " + std::to_string(part + 1) + " is too coarse to be cut from line to line: subdivide the model.");
+  if (end < 0)
+    throw Error(ErrorCode::could_not_solve, "mesh",
+                "Part " + std::to_string(part + 1) + " is too coarse to be cut from line to line: subdivide the model.");
   std::vector<int> path;
   for (int v = end; v != start; v = adjacency.from(path.back())) path.push_back(arriving[v]);
   std::vector<char> wall(adjacency.edge_count(), 0);

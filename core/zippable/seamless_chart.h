@@ -28,7 +28,7 @@ struct SharedTerm {
 struct ChartCoordinate {
   int local = -1;  // -1: none
   double sign = 1;
-  int terms = 0;   // index into the chart's sums; 0 is the empty one
+  int terms = 0;  // index into the chart's sums; 0 is the empty one
 };
 
 class SeamlessChart {
@@ -45,7 +45,7 @@ class SeamlessChart {
   /// The corners of a choice of variables (linear, without a constant part). Parallel.
   CornerCoordinates corners(const Eigen::VectorXd& local, const Eigen::VectorXd& shared) const;
 
-  int height_of(int part) const { return part; }                       // shared variable
+  int height_of(int part) const { return part; }                          // shared variable
   int length_of(int interface) const { return part_count_ + interface; }  // shared variable; of a part alone, 0 is its period
   double period_mm(int part, const Eigen::VectorXd& shared) const;
 

@@ -78,7 +78,8 @@ std::vector<int> vertices_of(const Adjacency& adjacency, const std::vector<int>&
 
 class Builder {
  public:
-  Builder(Segmentation& result, const Adjacency& adjacency) : result_(result), adjacency_(adjacency), interface_of_edge_(adjacency.edge_count(), -1) {}
+  Builder(Segmentation& result, const Adjacency& adjacency)
+      : result_(result), adjacency_(adjacency), interface_of_edge_(adjacency.edge_count(), -1) {}
 
   std::string build(int part) {
     const PartTopology topology = topology_of_part(adjacency_, result_.face_segment, part);
@@ -98,14 +99,17 @@ class Builder {
       if (open != 0) ++open_loops;
     }
     const bool alone = result_.part_count() == 1;
-    if (!alone && open_loops != 1) return open_loops == 0 ? "It has no opening: puncture it." : "It has no neighbour: the surface is not connected.";
+    if (!alone && open_loops != 1)
+      return open_loops == 0 ? "It has no opening: puncture it." : "It has no neighbour: the surface is not connected.";
     Segment& segment = result_.segments[part];
     segment.face_count = static_cast<int>(std::count(result_.face_segment.begin(), result_.face_segment.end(), part));
     const bool first_is_top = !alone && adjacency_.opposite(found.loops[0].front()) < 0;
     segment.top.vertices = vertices_of(adjacency_, found.loops[first_is_top ? 0 : 1]);
     const std::vector<int>& bottom = found.loops[first_is_top ? 1 : 0];
-    if (alone) segment.bottom.vertices = vertices_of(adjacency_, bottom);
-    else build_transition(part, bottom);
+    if (alone)
+      segment.bottom.vertices = vertices_of(adjacency_, bottom);
+    else
+      build_transition(part, bottom);
     return "";
   }
 
@@ -236,9 +240,11 @@ Segmentation make_segmentation(const TriangleMesh& mesh, const std::vector<int>&
   if (mesh.face_count() == 0 || static_cast<int>(face_segment.size()) != mesh.face_count())
     throw Error(ErrorCode::invalid_input, "mesh", "Every triangle needs the number of its part.");
   if (!adjacency.is_manifold()) throw Error(ErrorCode::invalid_input, "mesh", "The mesh is not a manifold: repair it first.");
-  if (face_components(adjacency).count != 1) throw Error(ErrorCode::invalid_input, "mesh", "The model is in several separate pieces: make each a zippable of its own.");
+  if (face_components(adjacency).count != 1)
+    throw Error(ErrorCode::invalid_input, "mesh", "The model is in several separate pieces: make each a zippable of its own.");
   if (adjacency.boundary_edge_count() == 0) throw Error(ErrorCode::invalid_input, "mesh", "The surface has no opening: puncture it.");
-  if (*std::min_element(face_segment.begin(), face_segment.end()) < 0) throw Error(ErrorCode::invalid_input, "mesh", "Parts are numbered from 0.");
+  if (*std::min_element(face_segment.begin(), face_segment.end()) < 0)
+    throw Error(ErrorCode::invalid_input, "mesh", "Parts are numbered from 0.");
   Segmentation result = derive(mesh, face_segment, adjacency);
   if (!result.valid()) return result;
   TriangleMesh split = result.mesh;

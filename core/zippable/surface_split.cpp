@@ -96,11 +96,14 @@ int euler_within(const Adjacency& adjacency, const std::vector<int>& vertices, c
 LabelledSurface split_by_least_field(const TriangleMesh& mesh, const std::vector<int>& label, const Eigen::MatrixXd& field) {
   const Adjacency adjacency(mesh);
   std::vector<int> face_of;
-  return split(mesh, adjacency, label, [&](int a, int b) {
-    // How much better the own label is than the other one, at either end.
-    const double at_a = field(a, label[b]) - field(a, label[a]), at_b = field(b, label[a]) - field(b, label[b]);
-    return at_a + at_b > 0 ? at_a / (at_a + at_b) : 0.5;
-  }, face_of);
+  return split(
+      mesh, adjacency, label,
+      [&](int a, int b) {
+        // How much better the own label is than the other one, at either end.
+        const double at_a = field(a, label[b]) - field(a, label[a]), at_b = field(b, label[a]) - field(b, label[b]);
+        return at_a + at_b > 0 ? at_a / (at_a + at_b) : 0.5;
+      },
+      face_of);
 }
 
 TriangleMesh kept_faces(const TriangleMesh& mesh, const std::vector<char>& keep, std::vector<int>& vertex_of) {
@@ -141,7 +144,8 @@ std::vector<double> puncture(LabelledSurface& surface, const std::vector<int>& v
   std::vector<double> radii;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const int centre = vertices[i], own = static_cast<int>(i) + 1;
-    if (!usable[centre]) throw Error(ErrorCode::invalid_input, "mesh", "A puncture lies on the border of its part or beside another: move it inside.");
+    if (!usable[centre])
+      throw Error(ErrorCode::invalid_input, "mesh", "A puncture lies on the border of its part or beside another: move it inside.");
     const auto distance = [&](int v) { return (mesh.V.row(v) - mesh.V.row(centre)).norm(); };
     double least_ring = 1e300;
     for (const int w : adjacency.neighbours(centre)) least_ring = std::min(least_ring, distance(w));
@@ -167,12 +171,15 @@ std::vector<double> puncture(LabelledSurface& surface, const std::vector<int>& v
     }
   }
   std::vector<int> face_of;
-  LabelledSurface cut = split(mesh, adjacency, mark, [&](int a, int b) {
-    const int own = std::max(mark[a], mark[b]) - 1;
-    const auto distance = [&](int v) { return (mesh.V.row(v) - mesh.V.row(vertices[own])).norm(); };
-    const double da = distance(a), db = distance(b);
-    return da == db ? 0.5 : (radii[own] - da) / (db - da);
-  }, face_of);
+  LabelledSurface cut = split(
+      mesh, adjacency, mark,
+      [&](int a, int b) {
+        const int own = std::max(mark[a], mark[b]) - 1;
+        const auto distance = [&](int v) { return (mesh.V.row(v) - mesh.V.row(vertices[own])).norm(); };
+        const double da = distance(a), db = distance(b);
+        return da == db ? 0.5 : (radii[own] - da) / (db - da);
+      },
+      face_of);
   LabelledSurface result;
   std::vector<char> keep(cut.mesh.face_count());
   for (int f = 0; f < cut.mesh.face_count(); ++f) {

@@ -26,8 +26,8 @@ Eigen::Matrix2d jacobian(const ReferenceTriangle& reference, const std::array<Ve
 double symmetric_dirichlet(const Eigen::Matrix2d& J);
 
 struct DirichletTerms {
-  double energy = 0;                      // without the area
-  Eigen::Matrix<double, 6, 1> gradient;   // by (x0, y0, x1, y1, x2, y2)
+  double energy = 0;                     // without the area
+  Eigen::Matrix<double, 6, 1> gradient;  // by (x0, y0, x1, y1, x2, y2)
   Eigen::Matrix<double, 6, 6> hessian;
 };
 

@@ -27,8 +27,10 @@ struct Crossings {
   double unevenness = 0;
 };
 
-/// Minimises (5.7) exactly: a convex problem with bounds that keep `margin` (a share) off either end of each interface; where it leaves a freedom, the middle.
-Crossings best_crossings(const Segmentation& segmentation, const Parameterisation& parameterisation, const Traversal& traversal, double margin = 0.1);
+/// Minimises (5.7) exactly: a convex problem with bounds that keep `margin` (a share) off either end of each interface; where it leaves a
+/// freedom, the middle.
+Crossings best_crossings(const Segmentation& segmentation, const Parameterisation& parameterisation, const Traversal& traversal,
+                         double margin = 0.1);
 
 struct LinePoint {
   int part = 0;
@@ -45,6 +47,7 @@ struct RankedTraversal {
 };
 
 /// The even ones first; the cost is unevenness plus a penalty where an interface is short against the ribbon's width.
-std::vector<RankedTraversal> ranked_traversals(const Segmentation& segmentation, const Parameterisation& parameterisation, double width_mm, int limit = 2000);
+std::vector<RankedTraversal> ranked_traversals(const Segmentation& segmentation, const Parameterisation& parameterisation, double width_mm,
+                                               int limit = 2000);
 
 }  // namespace formwright

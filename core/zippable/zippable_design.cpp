@@ -11,14 +11,17 @@ namespace {
 
 void check_width(double size_mm, const ZippableOptions& options) {
   if (options.width_mm > 0.5 * size_mm)
-    throw Error(ErrorCode::invalid_input, "width_mm", "The ribbon is wider than half the model's size: choose a smaller width or a larger size_mm.");
+    throw Error(ErrorCode::invalid_input, "width_mm",
+                "The ribbon is wider than half the model's size: choose a smaller width or a larger size_mm.");
   if (options.width_mm < 1e-3 * size_mm)
-    throw Error(ErrorCode::invalid_input, "width_mm", "The ribbon is narrower than a thousandth of the model: choose a larger width or a smaller size_mm.");
+    throw Error(ErrorCode::invalid_input, "width_mm",
+                "The ribbon is narrower than a thousandth of the model: choose a larger width or a smaller size_mm.");
 }
 
 }  // namespace
 
-ParameterisedModel parameterise_model(const TriangleMesh& given, const ZippableParts& parts, const ZippableOptions& options, Context& context) {
+ParameterisedModel parameterise_model(const TriangleMesh& given, const ZippableParts& parts, const ZippableOptions& options,
+                                      Context& context) {
   ParameterisedModel model;
   const double size = bounding_box(given).size().maxCoeff();
   if (!(size > 0)) throw Error(ErrorCode::invalid_input, "mesh", "The model has no size: give one with some extent.");
@@ -66,16 +69,19 @@ ZippableDesign design_zippable(const ParameterisedModel& model, const ZippableOp
   context.progress(0, "Drawing the curve");
   std::vector<RankedTraversal> ranked = ranked_traversals(s, model.parameterisation, options.width_mm);
   design.traversal_count = static_cast<int>(ranked.size());
-  if (ranked.empty()) throw Error(ErrorCode::invalid_input, "mesh", "No order visits every part once: join or move parts so that they form a chain.");
+  if (ranked.empty())
+    throw Error(ErrorCode::invalid_input, "mesh", "No order visits every part once: join or move parts so that they form a chain.");
   if (options.traversal > design.traversal_count)
-    throw Error(ErrorCode::invalid_input, "traversal", "There are only " + std::to_string(design.traversal_count) + " orders of these parts: choose one of them.");
+    throw Error(ErrorCode::invalid_input, "traversal",
+                "There are only " + std::to_string(design.traversal_count) + " orders of these parts: choose one of them.");
   design.traversal = std::move(ranked[options.traversal - 1]);
   CurveOptions curve;
   curve.width_mm = options.width_mm;
   curve.windings = options.windings;
   curve.sample_mm = options.sample_mm.value_or(0.2 * options.width_mm);
   const LineTracer tracer(s, model.parameterisation);
-  design.curve = draw_zipper_curve(s, model.parameterisation, tracer, design.traversal.traversal, design.traversal.crossings, curve, context);
+  design.curve =
+      draw_zipper_curve(s, model.parameterisation, tracer, design.traversal.traversal, design.traversal.crossings, curve, context);
   design.notes.insert(design.notes.end(), design.curve.notes.begin(), design.curve.notes.end());
   design.seconds_curve = watch.lap();
   context.progress(0.3, "Unfolding the ribbon");

@@ -20,8 +20,8 @@ struct ZippableParts {
 
 /// A model divided and parameterised: what does not depend on windings, order and sampling.
 struct ParameterisedModel {
-  double scale = 1;              // from the given mesh to mm
-  TriangleMesh mesh;             // in mm, whole
+  double scale = 1;   // from the given mesh to mm
+  TriangleMesh mesh;  // in mm, whole
   Proposal proposal;
   Parameterisation parameterisation;
   double seconds_parts = 0, seconds_parameterisation = 0;
@@ -29,14 +29,15 @@ struct ParameterisedModel {
 
 /// `mesh`: connected, manifold, oriented.
 /// Throws Error: invalid_input ("mesh", "segments", or a parameter), could_not_solve, cancelled.
-ParameterisedModel parameterise_model(const TriangleMesh& mesh, const ZippableParts& parts, const ZippableOptions& options, Context& context);
+ParameterisedModel parameterise_model(const TriangleMesh& mesh, const ZippableParts& parts, const ZippableOptions& options,
+                                      Context& context);
 
 /// Equal keys, equal parameterised models of equal meshes and parts.
 std::string parameterisation_key(const ZippableOptions& options);
 
 struct ZippableDesign {
-  int traversal_count = 0;       // orders to choose from
-  RankedTraversal traversal;     // the chosen one
+  int traversal_count = 0;    // orders to choose from
+  RankedTraversal traversal;  // the chosen one
   ZipperCurve curve;
   Ribbon ribbon;
   SurfaceDistance ribbon_to_model, model_to_ribbon;  // mm

@@ -19,8 +19,8 @@ std::string figure(double value) {
 }
 
 /// Where the curve's lines run in the parameter domain, in the order of the curve.
-std::vector<SpiralLine> place_lines(const Segmentation& s, const Parameterisation& p, const Traversal& traversal, const Crossings& crossings,
-                                    const CurveOptions& options, ZipperCurve& curve) {
+std::vector<SpiralLine> place_lines(const Segmentation& s, const Parameterisation& p, const Traversal& traversal,
+                                    const Crossings& crossings, const CurveOptions& options, ZipperCurve& curve) {
   std::vector<SpiralLine> lines;
   const int count = static_cast<int>(traversal.parts.size());
   const auto add = [&](int part, double low, double high, bool upward) {
@@ -36,7 +36,8 @@ std::vector<SpiralLine> place_lines(const Segmentation& s, const Parameterisatio
     const double least = fermat ? least_fermat_windings : least_spiral_windings;
     double windings = options.windings ? *options.windings : p.height_mm[part] / (fermat ? 2 * options.width_mm : options.width_mm);
     if (windings < least) {
-      curve.notes.push_back("Part " + std::to_string(part + 1) + " got " + figure(least) + " windings instead of " + figure(windings) + ", the fewest that make a ribbon: it is narrower there.");
+      curve.notes.push_back("Part " + std::to_string(part + 1) + " got " + figure(least) + " windings instead of " + figure(windings) +
+                            ", the fewest that make a ribbon: it is narrower there.");
       windings = least;
     }
     curve.windings[part] = windings;
@@ -73,12 +74,14 @@ std::vector<int> thinned_grid(int first, const std::vector<double>& local_mm, do
 
 ZipperCurve draw_zipper_curve(const Segmentation& s, const Parameterisation& p, const LineTracer& tracer, const Traversal& traversal,
                               const Crossings& crossings, const CurveOptions& options, Context& context) {
-  if (traversal.parts.empty()) throw Error(ErrorCode::invalid_input, "mesh", "No order visits every part once: join or move parts so that they form a chain.");
+  if (traversal.parts.empty())
+    throw Error(ErrorCode::invalid_input, "mesh", "No order visits every part once: join or move parts so that they form a chain.");
   ZipperCurve curve;
   curve.lines = place_lines(s, p, traversal, crossings, options, curve);
   context.check_cancelled();
   parallel_for(curve.lines.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) curve.lines[i].trace = tracer.trace(curve.lines[i].part, curve.lines[i].x_low_mm, curve.lines[i].x_high_mm);
+    for (std::size_t i = begin; i < end; ++i)
+      curve.lines[i].trace = tracer.trace(curve.lines[i].part, curve.lines[i].x_low_mm, curve.lines[i].x_high_mm);
   });
   for (int part = 0; part < s.part_count(); ++part) {
     // A multiple of 16, so that thinning by powers of two agrees from one period to the next.
@@ -90,7 +93,8 @@ ZipperCurve draw_zipper_curve(const Segmentation& s, const Parameterisation& p, 
   for (std::size_t l = 0; l < curve.lines.size(); ++l) {
     SpiralLine& line = curve.lines[l];
     const double step = curve.grid_step_mm[line.part];
-    const int first = static_cast<int>(std::ceil(line.x_low_mm / step + 0.3)), last = static_cast<int>(std::floor(line.x_high_mm / step - 0.3));
+    const int first = static_cast<int>(std::ceil(line.x_low_mm / step + 0.3)),
+              last = static_cast<int>(std::floor(line.x_high_mm / step - 0.3));
     std::vector<double> local;
     for (int i = first; i <= last; ++i) local.push_back((line.trace.at((i + 0.5) * step) - line.trace.at((i - 0.5) * step)).norm());
     std::vector<int> places = thinned_grid(first, local, options.sample_mm, 8);
@@ -110,7 +114,8 @@ ZipperCurve draw_zipper_curve(const Segmentation& s, const Parameterisation& p, 
       curve.samples.push_back({line.trace.at(x), static_cast<int>(l)});
       piece.push_back(line.samples[i]);
     }
-    for (std::size_t i = 0; i + 1 < line.trace.position_mm.size(); ++i) curve.length_mm += (line.trace.position_mm[i + 1] - line.trace.position_mm[i]).norm();
+    for (std::size_t i = 0; i + 1 < line.trace.position_mm.size(); ++i)
+      curve.length_mm += (line.trace.position_mm[i + 1] - line.trace.position_mm[i]).norm();
     if (line.upward) curve.pieces.push_back(std::move(piece)), piece.clear();
   }
   return curve;

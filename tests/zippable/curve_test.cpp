@@ -33,7 +33,9 @@ Vec3 lifted(const Segmentation& s, const Parameterisation& p, int part, double x
       const double least = std::min({w.x(), w.y(), 1 - w.x() - w.y()});
       if (least <= best) continue;
       best = least;
-      result = (s.mesh.V.row(s.mesh.F(f, 0)) * (1 - w.x() - w.y()) + s.mesh.V.row(s.mesh.F(f, 1)) * w.x() + s.mesh.V.row(s.mesh.F(f, 2)) * w.y()).transpose();
+      result =
+          (s.mesh.V.row(s.mesh.F(f, 0)) * (1 - w.x() - w.y()) + s.mesh.V.row(s.mesh.F(f, 1)) * w.x() + s.mesh.V.row(s.mesh.F(f, 2)) * w.y())
+              .transpose();
     }
   }
   return result;
@@ -72,7 +74,8 @@ TEST(LineTrace, LiesOverTheStraightLineOnEveryPart) {
       EXPECT_TRUE(std::is_sorted(line.x_mm.begin(), line.x_mm.end()));
       for (int k = 0; k <= 8; ++k) {
         const double x = low + (high - low) * k / 8;
-        EXPECT_LE((line.at(x) - lifted(s, p, part, x, p.height_mm[part] * k / 8)).norm(), 1e-6) << sample << " part " << part << " at " << k;
+        EXPECT_LE((line.at(x) - lifted(s, p, part, x, p.height_mm[part] * k / 8)).norm(), 1e-6)
+            << sample << " part " << part << " at " << k;
       }
     }
   }
@@ -105,7 +108,8 @@ TEST(Crossings, AreTheSamePointOnBothSides) {
   for (const RankedTraversal& ranked : ranked_traversals(s, p, 10, 40)) {
     const auto& [traversal, crossings, cost] = ranked;
     for (std::size_t i = 0; i + 1 < traversal.parts.size(); ++i) {
-      const Vec3 out = tracer.on_line(traversal.parts[i], false, crossings.exit_mm[i]), in = tracer.on_line(traversal.parts[i + 1], false, crossings.entry_mm[i + 1]);
+      const Vec3 out = tracer.on_line(traversal.parts[i], false, crossings.exit_mm[i]),
+                 in = tracer.on_line(traversal.parts[i + 1], false, crossings.entry_mm[i + 1]);
       EXPECT_LE((out - in).norm(), 1e-9);
       const LinePoint there = across_interface(s, p, {traversal.parts[i], crossings.exit_mm[i]});
       EXPECT_EQ(there.part, traversal.parts[i + 1]);
@@ -157,7 +161,7 @@ TEST(ZipperCurve, IsOneCurveFromOpeningToOpening) {
     CurveOptions options;
     options.width_mm = 8, options.sample_mm = 2;
     const test::Zipped z = std::string_view(sample) == "sphere" ? test::zip(test::alone(test::cylinder_side(30, 80, 40, 30)), options)
-                                                                 : test::zip(test::proposed(sample, 4000, 3).segmentation, options);
+                                                                : test::zip(test::proposed(sample, 4000, 3).segmentation, options);
     const int parts = z.segmentation.part_count();
     EXPECT_EQ(z.curve.lines.size(), parts == 1 ? 1u : static_cast<std::size_t>(2 * parts - 2));
     EXPECT_EQ(z.curve.pieces.size(), parts == 1 ? 1u : static_cast<std::size_t>(parts - 1));

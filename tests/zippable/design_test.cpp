@@ -65,8 +65,10 @@ TEST(ZippableDesign, FollowsDrawnCurves) {
   ball.V *= 50;
   ZippableParts parts;
   DrawnCurve equator{{}, true}, meridian{{}, false};
-  for (int k = 0; k < 8; ++k) equator.points.emplace_back(50 * std::cos(k * std::numbers::pi / 4), 50 * std::sin(k * std::numbers::pi / 4), 0);
-  for (int k = 0; k <= 4; ++k) meridian.points.emplace_back(50 * std::cos(k * std::numbers::pi / 4), 0, 50 * std::sin(k * std::numbers::pi / 4));
+  for (int k = 0; k < 8; ++k)
+    equator.points.emplace_back(50 * std::cos(k * std::numbers::pi / 4), 50 * std::sin(k * std::numbers::pi / 4), 0);
+  for (int k = 0; k <= 4; ++k)
+    meridian.points.emplace_back(50 * std::cos(k * std::numbers::pi / 4), 0, 50 * std::sin(k * std::numbers::pi / 4));
   parts.curves = {equator};
   ZippableOptions options;
   options.width_mm = 10;
@@ -151,13 +153,14 @@ TEST(ZippableFiles, TellTheDesign) {
 }
 
 TEST(ZippableFiles, ReadSegmentsOrSayWhatIsWrong) {
-  const ZippableParts parts = read_segments(to_bytes(R"({"punctures": [[1, 2, 3], [4, 5.5, -6]], "loops": [[[0, 0, 0], [1, 0, 0], [0, 1, 0]]], "lines": [[[0, 0, 1], [0, 0, 2]]]})"));
+  const ZippableParts parts = read_segments(to_bytes(
+      R"({"punctures": [[1, 2, 3], [4, 5.5, -6]], "loops": [[[0, 0, 0], [1, 0, 0], [0, 1, 0]]], "lines": [[[0, 0, 1], [0, 0, 2]]]})"));
   ASSERT_EQ(parts.punctures.size(), 2u);
   EXPECT_EQ(parts.punctures[1], Vec3(4, 5.5, -6));
   ASSERT_EQ(parts.curves.size(), 2u);
   EXPECT_TRUE(parts.curves[0].closed && !parts.curves[1].closed);
-  for (const char* wrong : {"", "[]", "{}", R"({"punctures": 3})", R"({"punctures": [[1, 2]]})", R"({"punctures": [[1, 2, "x"]]})", R"({"punctures": [[1, 2, 1e99]]})",
-                            R"({"loops": []})", R"({"loops": [[1, 2, 3]]})", R"({"rings": []})"}) {
+  for (const char* wrong : {"", "[]", "{}", R"({"punctures": 3})", R"({"punctures": [[1, 2]]})", R"({"punctures": [[1, 2, "x"]]})",
+                            R"({"punctures": [[1, 2, 1e99]]})", R"({"loops": []})", R"({"loops": [[1, 2, 3]]})", R"({"rings": []})"}) {
     try {
       read_segments(to_bytes(wrong));
       FAIL() << "accepted " << wrong;

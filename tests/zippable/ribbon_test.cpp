@@ -27,7 +27,7 @@ void expect_sound(const test::Zipped& z) {
   EXPECT_EQ(face_components(adjacency).count, 1);
   const auto loops = boundary_loops(adjacency);
   ASSERT_EQ(loops.size(), 1u);
-  ASSERT_EQ(static_cast<int>(loops[0].size()), count);  // no inner vertices
+  ASSERT_EQ(static_cast<int>(loops[0].size()), count);        // no inner vertices
   for (int i = 0; i < count; ++i) EXPECT_EQ(loops[0][i], i);  // the boundary is the walk itself
   EXPECT_EQ(formed.face_count(), count - 2);
   EXPECT_EQ(ribbon.opening_arcs, 2 + 2 * z.curve.fermat_spirals);
@@ -147,10 +147,12 @@ TEST(Ribbon, OnAConeAndASphereHasTheKnownSpacing) {
   EXPECT_GT(cone.ribbon.width_min_mm, 0.97 * slant / windings);
   const double arc = (pi - 0.4) / windings;
   options.width_mm = arc;
-  const test::Zipped sphere = test::zip(test::alone(test::turned(64, 48, [](double t) {
-                                          const double colatitude = pi - 0.2 - t * (pi - 0.4);
-                                          return Vec2(std::sin(colatitude), std::cos(colatitude));
-                                        })), options);
+  const test::Zipped sphere = test::zip(test::alone(test::turned(64, 48,
+                                                                 [](double t) {
+                                                                   const double colatitude = pi - 0.2 - t * (pi - 0.4);
+                                                                   return Vec2(std::sin(colatitude), std::cos(colatitude));
+                                                                 })),
+                                        options);
   expect_sound(sphere);
   EXPECT_NEAR(sphere.ribbon.width_mean_mm, 2 * std::sin(arc / 2), 0.02 * arc);
 }

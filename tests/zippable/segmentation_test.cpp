@@ -48,7 +48,8 @@ TEST(SurfaceSplit, CutsWhereTheFieldsAreEqual) {
   EXPECT_TRUE(Adjacency(split.mesh).is_manifold());
   double area = 0, wrong = 0;
   for (int f = 0; f < split.mesh.face_count(); ++f) {
-    const Vec3 a = split.mesh.V.row(split.mesh.F(f, 0)).transpose(), b = split.mesh.V.row(split.mesh.F(f, 1)).transpose(), c = split.mesh.V.row(split.mesh.F(f, 2)).transpose();
+    const Vec3 a = split.mesh.V.row(split.mesh.F(f, 0)).transpose(), b = split.mesh.V.row(split.mesh.F(f, 1)).transpose(),
+               c = split.mesh.V.row(split.mesh.F(f, 2)).transpose();
     const double size = 0.5 * (b - a).cross(c - a).z();
     EXPECT_GT(size, 0);
     area += size;
@@ -104,7 +105,9 @@ TEST(Segmentation, FindsTheLinesOfACylinder) {
 }
 
 TEST(Segmentation, SaysWhyAPartIsNoCylinder) {
-  const auto problem = [](const TriangleMesh& mesh, std::vector<int> parts, int part) { return make_segmentation(mesh, parts).problems[part]; };
+  const auto problem = [](const TriangleMesh& mesh, std::vector<int> parts, int part) {
+    return make_segmentation(mesh, parts).problems[part];
+  };
   const TriangleMesh tube = test::cylinder_side(10, 30, 24, 12);
   // The lower half as a part, and the upper half in two separate columns.
   std::vector<int> halves(tube.face_count(), 0), pieces(tube.face_count(), 0);

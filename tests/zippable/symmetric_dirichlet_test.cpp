@@ -69,8 +69,10 @@ TEST(SymmetricDirichlet, OnlyTheTwistIsProjected) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> of_exact(exact.hessian), of_convex(convex.hessian);
     EXPECT_GE(of_convex.eigenvalues()[0], -1e-9 * of_convex.eigenvalues()[5]);
     const double least = of_exact.eigenvalues()[0];
-    EXPECT_EQ((of_exact.eigenvalues().array() < -1e-9 * of_exact.eigenvalues()[5]).count(), least < -1e-9 * of_exact.eigenvalues()[5] ? 1 : 0);
-    if (least < -1e-6) ++projected;
+    EXPECT_EQ((of_exact.eigenvalues().array() < -1e-9 * of_exact.eigenvalues()[5]).count(),
+              least < -1e-9 * of_exact.eigenvalues()[5] ? 1 : 0);
+    if (least < -1e-6)
+      ++projected;
     else if (least > -1e-12 * of_exact.eigenvalues()[5]) {
       EXPECT_LE((exact.hessian - convex.hessian).norm(), 1e-9 * exact.hessian.norm());
     }

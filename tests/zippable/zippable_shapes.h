@@ -5,8 +5,8 @@
 
 #include "geometry/samples/samples.h"
 #include "geometry/test_meshes.h"
-#include "zippable/ribbon.h"
 #include "zippable/proposal.h"
+#include "zippable/ribbon.h"
 
 namespace formwright::test {
 
@@ -25,8 +25,10 @@ TriangleMesh turned(int around, int rows, const Profile& profile) {
     if (j == rows) break;
     for (int i = 0; i < around; ++i) {
       const int a = j * around + i, b = j * around + (i + 1) % around, c = a + around, d = b + around;
-      if (j % 2 == 0) faces.push_back({a, b, c}), faces.push_back({b, d, c});
-      else faces.push_back({a, b, d}), faces.push_back({a, d, c});
+      if (j % 2 == 0)
+        faces.push_back({a, b, c}), faces.push_back({b, d, c});
+      else
+        faces.push_back({a, b, d}), faces.push_back({a, d, c});
     }
   }
   return make_mesh(points, faces);

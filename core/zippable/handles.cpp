@@ -91,22 +91,23 @@ Loop shortest_loop(const TriangleMesh& mesh, const Adjacency& adjacency, int roo
   return best;
 }
 
-/// Gives the faces on the right of the loop vertices of their own.
-void cut_along(TriangleMesh& mesh, const Adjacency& adjacency, const std::vector<int>& loop, std::vector<int>& source_of) {
+/// Gives the faces on the right of the walk, a loop or from one opening to another, vertices of their own.
+void cut_along(TriangleMesh& mesh, const Adjacency& adjacency, const std::vector<int>& loop, bool closed, std::vector<int>& source_of) {
   const std::size_t count = loop.size();
   std::vector<char> wall(adjacency.edge_count(), 0);
-  for (std::size_t i = 0; i < count; ++i) wall[adjacency.find_edge(loop[i], loop[(i + 1) % count])] = 1;
+  for (std::size_t i = 0; i + (closed ? 0 : 1) < count; ++i) wall[adjacency.find_edge(loop[i], loop[(i + 1) % count])] = 1;
   const Eigen::Index old = mesh.V.rows();
   mesh.V.conservativeResize(old + static_cast<Eigen::Index>(count), 3);
   Triangles faces = mesh.F;
   for (std::size_t i = 0; i < count; ++i) {
-    const int v = loop[i], next = loop[(i + 1) % count], copy = static_cast<int>(old) + static_cast<int>(i);
+    const std::size_t from = closed || i + 1 < count ? i : i - 1;
+    const int v = loop[i], copy = static_cast<int>(old) + static_cast<int>(i);
     mesh.V.row(copy) = mesh.V.row(v);
     source_of.push_back(source_of[v]);
     // The half-edge that runs against the loop belongs to the face on its right.
     int start = -1;
-    for (const int h : adjacency.outgoing(next))
-      if (adjacency.to(h) == v) start = h;
+    for (const int h : adjacency.outgoing(loop[(from + 1) % count]))
+      if (adjacency.to(h) == loop[from]) start = h;
     std::vector<int> stack{start / 3};
     while (!stack.empty()) {
       const int f = stack.back();
@@ -158,7 +159,7 @@ OpenedSurface cut_handles(const TriangleMesh& mesh, Context& context) {
     std::vector<int> source_of = result.source_of;
     bool opened = best.length < infinite;
     if (opened) {
-      cut_along(cut, adjacency, best.vertices, source_of);
+      cut_along(cut, adjacency, best.vertices, true, source_of);
       const Adjacency after(cut);
       opened = after.is_manifold() && face_components(after).count == 1 && genus(after) == handles - 1;
     }
@@ -170,6 +171,49 @@ OpenedSurface cut_handles(const TriangleMesh& mesh, Context& context) {
     result.mesh = std::move(cut);
     result.source_of = std::move(source_of);
   }
+}
+
+bool join_nearest_openings(OpenedSurface& surface, Context& context) {
+  const Adjacency adjacency(surface.mesh);
+  const auto openings = boundary_loops(adjacency);
+  std::vector<int> opening_of(surface.mesh.vertex_count(), -1);
+  for (std::size_t i = 0; i < openings.size(); ++i)
+    for (const int v : openings[i]) opening_of[v] = static_cast<int>(i);
+  std::vector<int> best;
+  double shortest = infinite;
+  for (std::size_t i = 0; i + 1 < openings.size(); ++i) {
+    context.check_cancelled();
+    std::vector<double> distance(surface.mesh.vertex_count(), infinite);
+    std::vector<int> before(surface.mesh.vertex_count(), -1);
+    using Entry = std::pair<double, int>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+    for (const int v : openings[i]) distance[v] = 0, queue.emplace(0, v);
+    while (!queue.empty()) {
+      const auto [d, v] = queue.top();
+      queue.pop();
+      if (d > distance[v] || d >= shortest) continue;
+      if (opening_of[v] >= 0 && opening_of[v] != static_cast<int>(i)) {
+        shortest = d;
+        best.assign(1, v);
+        while (before[best.back()] >= 0) best.push_back(before[best.back()]);
+        break;
+      }
+      for (const int w : adjacency.neighbours(v)) {
+        const double reach = d + (surface.mesh.V.row(w) - surface.mesh.V.row(v)).norm();
+        if (reach < distance[w]) distance[w] = reach, before[w] = v, queue.emplace(reach, w);
+      }
+    }
+  }
+  if (best.size() < 2) return false;
+  TriangleMesh cut = surface.mesh;
+  std::vector<int> source_of = surface.source_of;
+  cut_along(cut, adjacency, best, false, source_of);
+  const Adjacency after(cut);
+  if (!after.is_manifold() || face_components(after).count != 1 || boundary_loops(after).size() + 1 != openings.size()) return false;
+  surface.mesh = std::move(cut);
+  surface.source_of = std::move(source_of);
+  ++surface.slits;
+  return true;
 }
 
 }  // namespace formwright

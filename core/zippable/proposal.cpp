@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -197,48 +198,37 @@ Proposal drawn(const TriangleMesh& mesh, const ProposalOptions& options, Context
   return proposal;
 }
 
-void note_handles(Proposal& proposal, OpenedSurface& opened) {
+void note_cuts(Proposal& proposal, OpenedSurface& opened) {
   proposal.handles_cut = static_cast<int>(opened.cuts.size());
   proposal.handle_cuts = std::move(opened.cuts);
   if (proposal.handles_cut > 0)
     proposal.notes.push_back(std::to_string(proposal.handles_cut) + (proposal.handles_cut == 1 ? " handle was" : " handles were") +
                              " cut open: close the cut with hook-and-loop tape.");
+  if (opened.slits > 0)
+    proposal.notes.push_back("Between openings " + std::to_string(opened.slits) + (opened.slits == 1 ? " slit was" : " slits were") +
+                             " cut, so that there are fewer of them: close these with hook-and-loop tape, too.");
 }
 
-}  // namespace
-
-Proposal propose_segmentation(const TriangleMesh& mesh, const ProposalOptions& options, Context& context) {
-  const Adjacency given(mesh);
-  if (!given.is_manifold()) throw Error(ErrorCode::invalid_input, "mesh", "The mesh is not a manifold: repair it first.");
-  if (face_components(given).count != 1)
-    throw Error(ErrorCode::invalid_input, "mesh", "The model is in several separate pieces: make each a zippable of its own.");
-  context.progress(0, "Looking for limbs");
-  OpenedSurface opened = cut_handles(mesh, context);
-  if (!options.curves.empty()) {
-    Proposal proposal = drawn(opened.mesh, options, context);
-    note_handles(proposal, opened);
-    return proposal;
-  }
+/// Parts around openings and tips, the least prominent tips given up one by one; nothing when only openings are left to give up.
+std::optional<Proposal> automatic(const OpenedSurface& opened, const ProposalOptions& options, Context& context, std::string& problem) {
   const Adjacency adjacency(opened.mesh);
   std::vector<Seed> seeds = find_seeds(opened.mesh, adjacency, options, context);
-  const std::size_t tips_found = seeds.size();
-  Eigen::MatrixXd distance(opened.mesh.vertex_count(), static_cast<Eigen::Index>(seeds.size()));
-  parallel_for(seeds.size(), 1, [&](std::size_t begin, std::size_t end) {
+  const std::size_t found = seeds.size();
+  Eigen::MatrixXd distance(opened.mesh.vertex_count(), static_cast<Eigen::Index>(found));
+  parallel_for(found, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
       distance.col(static_cast<Eigen::Index>(k)) = geodesic_distance_mm(opened.mesh, adjacency, seeds[k].vertices);
   });
   // Where limbs end first; but then one part may surround others and be no cylinder, which plain nearness seldom does.
   constexpr std::array reach_shares{1.0, 0.5, 0.25, 0.0};
-  std::string problem;
   for (std::size_t attempt = 0;; ++attempt) {
     context.check_cancelled();
-    problem = "no part may be crossed from one neighbour into the next";
+    problem = "no order visits every part once";
     try {
       Proposal proposal = divide(opened.mesh, seeds, distance, reach_shares[attempt % reach_shares.size()], options);
       if (proposal.segmentation.valid() && !traversals(proposal.segmentation, 1).empty()) {
-        note_handles(proposal, opened);
-        if (seeds.size() < tips_found)
-          proposal.notes.push_back("Of " + std::to_string(tips_found) + " tips and openings " + std::to_string(seeds.size()) +
+        if (seeds.size() < found)
+          proposal.notes.push_back("Of " + std::to_string(found) + " tips and openings " + std::to_string(seeds.size()) +
                                    " became parts; the rest would not have made cylinders.");
         return proposal;
       }
@@ -252,10 +242,38 @@ Proposal propose_segmentation(const TriangleMesh& mesh, const ProposalOptions& o
     if (!options.tips_mm.empty())
       throw Error(ErrorCode::invalid_input, "segments",
                   "The given punctures do not divide the model into cylinders (" + problem + "): move, add or drop some.");
-    if (seeds.size() <= 2 || seeds.back().opening)
+    if (seeds.size() <= 2 || seeds.back().opening) return std::nullopt;
+    seeds.pop_back();
+  }
+}
+
+}  // namespace
+
+Proposal propose_segmentation(const TriangleMesh& mesh, const ProposalOptions& options, Context& context) {
+  const Adjacency given(mesh);
+  if (!given.is_manifold()) throw Error(ErrorCode::invalid_input, "mesh", "The mesh is not a manifold: repair it first.");
+  if (face_components(given).count != 1)
+    throw Error(ErrorCode::invalid_input, "mesh", "The model is in several separate pieces: make each a zippable of its own.");
+  context.progress(0, "Looking for limbs");
+  OpenedSurface opened = cut_handles(mesh, context);
+  if (!options.curves.empty()) {
+    Proposal proposal = drawn(opened.mesh, options, context);
+    note_cuts(proposal, opened);
+    return proposal;
+  }
+  // One cylinder has two openings at most; slits between openings make fewer of them.
+  const auto most = static_cast<std::size_t>(std::max(2, options.parts_max));
+  while (boundary_loops(Adjacency(opened.mesh)).size() > most && join_nearest_openings(opened, context)) {
+  }
+  for (;;) {
+    std::string problem;
+    if (std::optional<Proposal> proposal = automatic(opened, options, context, problem)) {
+      note_cuts(*proposal, opened);
+      return std::move(*proposal);
+    }
+    if (boundary_loops(Adjacency(opened.mesh)).size() < 3 || !join_nearest_openings(opened, context))
       throw Error(ErrorCode::invalid_input, "mesh",
                   "The model could not be divided into cylinders (" + problem + "): close its holes, or give the parts in segments.json.");
-    seeds.pop_back();
   }
 }
 

@@ -96,6 +96,41 @@ TEST(Handles, AreCutAlongTheShortWay) {
   for (int v = 0; v < opened.mesh.vertex_count(); ++v) EXPECT_EQ(opened.mesh.V.row(v), mesh.V.row(opened.source_of[v]));
 }
 
+TEST(Openings, AreJoinedBySlits) {
+  Context context;
+  LabelledSurface surface{test::icosphere(4), {}};
+  surface.face_label.assign(surface.mesh.face_count(), 0);
+  puncture(surface, {0, 7, 90, 200, 300}, 0.1);
+  OpenedSurface opened;
+  opened.mesh = surface.mesh;
+  for (int v = 0; v < surface.mesh.vertex_count(); ++v) opened.source_of.push_back(v);
+  for (std::size_t openings = 5; openings > 1; --openings) {
+    const Adjacency before(opened.mesh);
+    ASSERT_EQ(boundary_loops(before).size(), openings);
+    EXPECT_EQ(euler_characteristic(before), 2 - static_cast<int>(openings));
+    ASSERT_TRUE(join_nearest_openings(opened, context));
+  }
+  EXPECT_FALSE(join_nearest_openings(opened, context));
+  EXPECT_EQ(opened.slits, 4);
+  EXPECT_EQ(opened.mesh.face_count(), surface.mesh.face_count());
+  for (int v = 0; v < opened.mesh.vertex_count(); ++v) EXPECT_EQ(opened.mesh.V.row(v), surface.mesh.V.row(opened.source_of[v]));
+}
+
+TEST(Proposal, JoinsOpeningsThatAreTooMany) {
+  // Four openings, and the model is to be one cylinder.
+  Context context;
+  ProposalOptions options;
+  options.parts_max = 1, options.puncture_radius_mm = 0.05;
+  LabelledSurface surface{test::icosphere(4), {}};
+  surface.face_label.assign(surface.mesh.face_count(), 0);
+  puncture(surface, {0, 7, 90, 200}, 0.1);
+  const Proposal proposal = propose_segmentation(surface.mesh, options, context);
+  EXPECT_EQ(proposal.segmentation.part_count(), 1);
+  ASSERT_EQ(proposal.notes.size(), 1u);
+  EXPECT_NE(proposal.notes[0].find("2 slits were cut"), std::string::npos);
+  EXPECT_GT(parameterise(proposal.segmentation, {}, context).distortion_mean, 1);
+}
+
 TEST(Segmentation, FindsTheLinesOfACylinder) {
   const Segmentation s = test::alone(test::cylinder_side(10, 30, 24, 12));
   ASSERT_TRUE(s.valid());

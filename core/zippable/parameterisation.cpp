@@ -160,11 +160,9 @@ class Solver {
         const double c = cross(e1, e2), b = cross(e1, d2) + cross(d1, e2), a = cross(d1, d2);
         const double root = b * b - 4 * a * c;
         if (root < 0) continue;
-        const double q = -b + std::sqrt(root);  // 2 c / q is the smaller positive root, also for a = 0
-        if (q < 0) continue;
-        const double t1 = 2 * c / (-b + std::sqrt(root)), t2 = 2 * c / (-b - std::sqrt(root));
-        for (const double t : {t1, t2})
-          if (t > 0) shortest = std::min(shortest, t);
+        // 2 c over these are the roots, also where a = 0; c > 0.
+        for (const double denominator : {-b + std::sqrt(root), -b - std::sqrt(root)})
+          if (denominator > 0) shortest = std::min(shortest, 2 * c / denominator);
       }
       least[begin / grain] = shortest;
     });

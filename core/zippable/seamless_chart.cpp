@@ -86,8 +86,6 @@ void SeamlessChart::cut_part(const Segmentation& s, const Adjacency& adjacency, 
   }
 }
 
-std::vector<SharedTerm> SeamlessChart::period_sum(int part) const { return periods_[part]; }
-
 void SeamlessChart::place_lines(const Segmentation& s) {
   periods_.resize(part_count_);
   if (part_count_ == 1) {
@@ -156,7 +154,7 @@ SeamlessChart::SeamlessChart(const Segmentation& s) : part_count_(s.part_count()
         corners_[3 * f + k] = coordinates;
         if (!shifted[3 * f + k]) continue;
         std::vector<SharedTerm> sum = sums_[coordinates[0].terms];
-        const auto period = period_sum(part);
+        const auto& period = periods_[part];
         sum.insert(sum.end(), period.begin(), period.end());
         corners_[3 * f + k][0].terms = intern(std::move(sum));
       }

@@ -57,7 +57,6 @@ class SeamlessChart {
 
  private:
   int intern(std::vector<SharedTerm> sum);
-  std::vector<SharedTerm> period_sum(int part) const;
   void place_lines(const Segmentation& s);
   void cut_part(const Segmentation& s, const Adjacency& adjacency, int part, std::vector<char>& shifted) const;
 

@@ -8,6 +8,7 @@
 #include "job/mesh_operations.h"
 #include "job/relief_operation.h"
 #include "job/thermoform_operations.h"
+#include "job/zippable_operation.h"
 
 namespace formwright {
 
@@ -18,6 +19,7 @@ const std::vector<Operation>& operations() {
       relief_operation(), thermoform_simulate_operation(), thermoform_texture_operation(), thermoform_mould_operation(), thermoform_compare_operation(),
       evidence_pattern_operation(), evidence_register_operation(), evidence_calibrate_operation(), evidence_diagnose_operation(),
       evidence_diagnose_relief_operation(), evidence_virtual_object_operation(),
+      zippable_design_operation(),
       import_operation(), simplify_operation(), subdivide_operation(), convert_operation()};
   return all;
 }

@@ -7,6 +7,7 @@ import os
 import pathlib
 import pty
 import random
+import shutil
 import signal
 import struct
 import subprocess
@@ -56,6 +57,24 @@ class CommandLine(unittest.TestCase):
         self.assertIn(part, lines[0])
         self.assertTrue(lines[0].rstrip().endswith((".", "?")), lines[0])
         self.assertFalse((self.folder / "out" / "report.json").exists())
+
+    def test_a_zippable_is_designed_whole(self):
+        out = self.folder / "out"
+        segments = self.folder / "segments.json"
+        segments.write_text(json.dumps({"punctures": [[0, 0, 0], [50, 90, 0], [-50, 90, 0]]}))
+        run = self.run_program("zippable-design", "--sample", "t_shape", "--sample-vertices", 1500, "--width-mm", 18, "--segments", segments, "--out", out, "--quiet")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual(sorted(p.name for p in out.iterdir()), ["curve.obj", "design.json", "formed.ply", "parameterised.ply", "report.json", "ribbon.svg"])
+        report = json.loads((out / "report.json").read_text())
+        described = json.loads(self.run_program("describe", "zippable-design").stdout)
+        self.assertEqual(set(report), {f["name"] for f in described["report"]})
+        self.assertEqual(report["parts"], 3)
+        design = json.loads((out / "design.json").read_text())
+        self.assertEqual(len(design["ribbon"]["triangles"]), len(design["ribbon"]["boundary"]) - 2)
+        self.assertIn(f'width="{report["ribbon_size_mm"][0] + 10:.2f}'[:-1], (out / "ribbon.svg").read_text())
+        segments.write_text("{}")
+        shutil.rmtree(out)
+        self.expect_refused("segments.json says nothing", "zippable-design", "--sample", "t_shape", "--segments", segments, "--out", out)
 
     def test_a_relief_is_written_whole(self):
         out = self.folder / "out"

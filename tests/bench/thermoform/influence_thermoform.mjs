@@ -43,6 +43,7 @@ const changes = {
   'ramp 1 s': ['--vacuum-ramp-s', '1'],
   'purely elastic': ['--creep-per-s', '0'],
   'neo-Hookean': ['--elastic-law', 'stable_neo_hookean'],
+  bending: ['--bending', 'on'],
   'total strain': ['--yield-rule', 'total_strain'],
   'steps of 0.25 mm': ['--step-mm', '0.25'],
   'steps of 4 mm': ['--step-mm', '4'],

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The walk around the ribbon: along the left side of the curve to its end, back along the right side, and along the openings that
+// it touches on its way.
+#include <map>
+#include <vector>
+
+#include "zippable/ribbon.h"
+
+namespace formwright {
+
+class RibbonBoundary {
+ public:
+  RibbonBoundary(int part_count, const Parameterisation& parameterisation, const LineTracer& tracer, const ZipperCurve& curve,
+                 double sample_mm);
+
+  /// A strip lies between a line and the next one of its part, towards larger x, which may be a period on.
+  struct Strip {
+    int left_line, right_line;
+    int right_shift;                                // grid steps to add to the right line's grid
+    double right_offset_mm;                         // the same in x
+    std::vector<std::pair<int, int>> upper, lower;  // along openings: (grid, place on the boundary)
+  };
+
+  std::vector<RibbonVertex> vertices;
+  std::vector<Strip> strips;
+  int opening_arcs = 0;
+
+  /// Place on the boundary of a line's sample, on the side where x is larger (below the line) or smaller (above it).
+  int place(int line, std::size_t sample, bool larger_x) const;
+
+ private:
+  void add_opening(int part, bool upper, double x_from, double x_to, std::vector<std::pair<int, int>>* places);
+  void add_piece(std::size_t piece, bool left);
+
+  const LineTracer& tracer_;
+  const ZipperCurve& curve_;
+  double sample_mm_;
+  std::vector<int> left_place_, right_place_;  // per curve sample
+};
+
+}  // namespace formwright

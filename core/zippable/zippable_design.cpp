@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "zippable/zippable_design.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "geometry/measures.h"
+
+namespace formwright {
+namespace {
+
+void check_width(double size_mm, const ZippableOptions& options) {
+  if (options.width_mm > 0.5 * size_mm)
+    throw Error(ErrorCode::invalid_input, "width_mm",
+                "The ribbon is wider than half the model's size: choose a smaller width or a larger size_mm.");
+  if (options.width_mm < 1e-3 * size_mm)
+    throw Error(ErrorCode::invalid_input, "width_mm",
+                "The ribbon is narrower than a thousandth of the model: choose a larger width or a smaller size_mm.");
+}
+
+}  // namespace
+
+ParameterisedModel parameterise_model(const TriangleMesh& given, const ZippableParts& parts, const ZippableOptions& options,
+                                      Context& context) {
+  ParameterisedModel model;
+  const double size = bounding_box(given).size().maxCoeff();
+  if (!(size > 0)) throw Error(ErrorCode::invalid_input, "mesh", "The model has no size: give one with some extent.");
+  if (options.size_mm) model.scale = *options.size_mm / size;
+  model.mesh = {given.V * model.scale, given.F};
+  check_width(size * model.scale, options);
+  Stopwatch watch;
+  {
+    const auto span = context.span(0, 0.25, "Looking for limbs");
+    ProposalOptions proposal;
+    proposal.puncture_radius_mm = 0.5 * options.puncture_mm.value_or(0.5 * options.width_mm);
+    proposal.parts_max = options.parts_max;
+    proposal.prominence = 0.01 * options.prominence_percent;
+    for (const Vec3& tip : parts.punctures) proposal.tips_mm.push_back(model.scale * tip);
+    proposal.curves = parts.curves;
+    for (DrawnCurve& curve : proposal.curves)
+      for (Vec3& point : curve.points) point *= model.scale;
+    model.proposal = propose_segmentation(model.mesh, proposal, context);
+  }
+  model.seconds_parts = watch.lap();
+  {
+    const auto span = context.span(0.25, 1, "Parameterising");
+    model.parameterisation = parameterise(model.proposal.segmentation, {}, context);
+  }
+  model.seconds_parameterisation = watch.lap();
+  return model;
+}
+
+std::string parameterisation_key(const ZippableOptions& options) {
+  ZippableOptions relevant;
+  relevant.size_mm = options.size_mm;
+  relevant.parts_max = options.parts_max;
+  relevant.prominence_percent = options.prominence_percent;
+  relevant.puncture_mm = options.puncture_mm.value_or(0.5 * options.width_mm);
+  return write_parameters(relevant).dump();
+}
+
+ZippableDesign design_zippable(const ParameterisedModel& model, const ZippableOptions& options, Context& context) {
+  const double size_mm = bounding_box(model.mesh).size().maxCoeff();
+  check_width(size_mm, options);
+  ZippableDesign design;
+  const Segmentation& s = model.proposal.segmentation;
+  design.notes = model.proposal.notes;
+  Stopwatch watch;
+  context.progress(0, "Drawing the curve");
+  std::vector<RankedTraversal> ranked = ranked_traversals(s, model.parameterisation, options.width_mm);
+  design.traversal_count = static_cast<int>(ranked.size());
+  if (ranked.empty())
+    throw Error(ErrorCode::invalid_input, "mesh", "No order visits every part once: join or move parts so that they form a chain.");
+  if (options.traversal > design.traversal_count)
+    throw Error(ErrorCode::invalid_input, "traversal",
+                "There are only " + std::to_string(design.traversal_count) + " orders of these parts: choose one of them.");
+  design.traversal = std::move(ranked[options.traversal - 1]);
+  CurveOptions curve;
+  curve.width_mm = options.width_mm;
+  curve.windings = options.windings;
+  curve.sample_mm = options.sample_mm.value_or(0.2 * options.width_mm);
+  const LineTracer tracer(s, model.parameterisation);
+  design.curve =
+      draw_zipper_curve(s, model.parameterisation, tracer, design.traversal.traversal, design.traversal.crossings, curve, context);
+  design.notes.insert(design.notes.end(), design.curve.notes.begin(), design.curve.notes.end());
+  design.seconds_curve = watch.lap();
+  context.progress(0.3, "Unfolding the ribbon");
+  design.ribbon = make_ribbon(s, model.parameterisation, tracer, design.curve, curve, context);
+  design.seconds_ribbon = watch.lap();
+  context.progress(0.5, "Comparing with the model");
+  // A few points across the ribbon and all corners: long triangles of narrow ribbons would else be sampled by the million.
+  const double spacing = std::max(0.25 * options.width_mm, 5e-3 * size_mm);
+  const TriangleMesh formed = design.ribbon.formed();
+  design.ribbon_to_model = surface_distance(formed, PointDistance(model.mesh), spacing, context);
+  design.model_to_ribbon = surface_distance(model.mesh, PointDistance(formed), spacing, context);
+  design.seconds_distance = watch.lap();
+  return design;
+}
+
+}  // namespace formwright

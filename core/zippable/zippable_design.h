@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// From a model to the one ribbon that zips up into it: parts, parameterisation, curve, ribbon. Thesis Sec. 5.2.
+#include <string>
+#include <vector>
+
+#include "base/context.h"
+#include "geometry/point_distance.h"
+#include "zippable/proposal.h"
+#include "zippable/ribbon.h"
+#include "zippable/zippable_options.h"
+
+namespace formwright {
+
+/// What a maker has decided about the parts; empty: limbs are found.
+struct ZippableParts {
+  std::vector<Vec3> punctures;     // in the mesh's coordinates
+  std::vector<DrawnCurve> curves;  // in the mesh's coordinates
+};
+
+/// A model divided and parameterised: what does not depend on windings, order and sampling.
+struct ParameterisedModel {
+  double scale = 1;   // from the given mesh to mm
+  TriangleMesh mesh;  // in mm, whole
+  Proposal proposal;
+  Parameterisation parameterisation;
+  double seconds_parts = 0, seconds_parameterisation = 0;
+};
+
+/// `mesh`: connected, manifold, oriented.
+/// Throws Error: invalid_input ("mesh", "segments", or a parameter), could_not_solve, cancelled.
+ParameterisedModel parameterise_model(const TriangleMesh& mesh, const ZippableParts& parts, const ZippableOptions& options,
+                                      Context& context);
+
+/// Equal keys, equal parameterised models of equal meshes and parts.
+std::string parameterisation_key(const ZippableOptions& options);
+
+struct ZippableDesign {
+  int traversal_count = 0;    // orders to choose from
+  RankedTraversal traversal;  // the chosen one
+  ZipperCurve curve;
+  Ribbon ribbon;
+  SurfaceDistance ribbon_to_model, model_to_ribbon;  // mm
+  std::vector<std::string> notes;
+  double seconds_curve = 0, seconds_ribbon = 0, seconds_distance = 0;
+};
+
+/// Throws Error: invalid_input (a parameter), cancelled.
+ZippableDesign design_zippable(const ParameterisedModel& model, const ZippableOptions& options, Context& context);
+
+}  // namespace formwright

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What a maker chooses for a zippable: thesis chapter 5.
+#include <optional>
+#include <tuple>
+
+#include "base/parameters.h"
+
+namespace formwright {
+
+struct ZippableOptions {
+  double width_mm = 20;
+  std::optional<double> windings;
+  std::optional<double> size_mm;
+  int parts_max = 10;
+  double prominence_percent = 8;
+  std::optional<double> puncture_mm;
+  int traversal = 1;
+  std::optional<double> sample_mm;
+
+  static constexpr auto parameters = std::tuple{
+      parameter("width_mm", &ZippableOptions::width_mm, "Ribbon width", unit::mm, 0.1, 10000,
+                "Between one winding of the zipper and the next, about: narrower follows the model better and takes more zipper.")
+          .slider(5, 100)
+          .group("Ribbon"),
+      parameter("windings", &ZippableOptions::windings, "Windings", unit::none, 0.1, 1000,
+                "Turns of the zipper around every part, instead of as many as the width gives.")
+          .slider(1, 20)
+          .group("Ribbon"),
+      parameter("size_mm", &ZippableOptions::size_mm, "Size", unit::mm, 1, 100000,
+                "Largest dimension of the finished object; automatic: as in the file.")
+          .slider(50, 1000)
+          .group("Ribbon"),
+      parameter("parts_max", &ZippableOptions::parts_max, "Most parts", unit::none, 1, 40,
+                "Into how many cylinders the model is divided at most; 1 or 2: one spiral over everything.")
+          .slider(1, 12)
+          .group("Parts"),
+      parameter("prominence_percent", &ZippableOptions::prominence_percent, "Least limb", unit::percent, 0.1, 100,
+                "How far a limb must stand out to become a part, of the farthest tip's mean distance to everywhere.")
+          .slider(2, 30)
+          .group("Parts")
+          .advanced(),
+      parameter("puncture_mm", &ZippableOptions::puncture_mm, "Puncture", unit::mm, 0.01, 10000,
+                "Diameter of the hole at the tip of each part, at most; automatic: half the ribbon's width.")
+          .slider(1, 50)
+          .group("Parts"),
+      parameter("traversal", &ZippableOptions::traversal, "Order of parts", unit::none, 1, 100000,
+                "Which of the possible orders the zipper takes through the parts; 1 is the most even one.")
+          .slider(1, 50)
+          .group("Curve"),
+      parameter("sample_mm", &ZippableOptions::sample_mm, "Sampling", unit::mm, 0.01, 1000,
+                "Between corners of the ribbon along the zipper, about; automatic: a fifth of its width.")
+          .slider(1, 20)
+          .group("Curve")
+          .advanced()};
+};
+
+}  // namespace formwright

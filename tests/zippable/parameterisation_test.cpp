@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "zippable/parameterisation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "zippable/newton_system.h"
+#include "zippable/zippable_shapes.h"
+
+namespace formwright {
+namespace {
+
+using std::numbers::pi;
+
+Parameterisation solve(const Segmentation& s, double tolerance = 1e-14) {
+  Context context;
+  return parameterise(s, {tolerance}, context);
+}
+
+double least_determinant(const Segmentation& s, const Parameterisation& p) {
+  double least = 1e300;
+  for (int f = 0; f < s.mesh.face_count(); ++f) {
+    const Vec2 e1 = p.corners_mm.row(3 * f + 1) - p.corners_mm.row(3 * f), e2 = p.corners_mm.row(3 * f + 2) - p.corners_mm.row(3 * f);
+    least = std::min(least, e1.x() * e2.y() - e1.y() * e2.x());
+  }
+  return least;
+}
+
+TEST(Parameterisation, OfACylinderIsItsUnrolling) {
+  // The side of a prism is developable: no distortion at all, whatever the triangles.
+  const int around = 40;
+  const double radius = 20, height = 70;
+  const Segmentation s = test::alone(test::cylinder_side(radius, height, around, 30));
+  const Parameterisation p = solve(s);
+  const double perimeter = around * 2 * radius * std::sin(pi / around);
+  // Rows turned against each other are antiprisms, which are a little longer than upright: compare with a fine mesh instead.
+  EXPECT_NEAR(p.period_mm[0], perimeter, 2e-3 * perimeter);
+  EXPECT_NEAR(p.height_mm[0], height, 2e-3 * height);
+  EXPECT_LT(p.distortion_max, 1 + 2e-4);
+  EXPECT_LE(constraint_residual_mm(s, p), 1e-10);
+  // An upright prism: exact.
+  TriangleMesh tube = test::tube(48, 24);
+  const Parameterisation exact = solve(test::alone(tube));
+  EXPECT_NEAR(exact.period_mm[0], 48 * 2 * std::sin(pi / 48), 1e-10);
+  EXPECT_NEAR(exact.height_mm[0], 1, 1e-10);
+  EXPECT_NEAR(exact.distortion_max, 1, 1e-10);
+}
+
+TEST(Parameterisation, OfAConeIsTheBestRotationallySymmetricMap) {
+  // A frustum of radii r1 > r2 and slant L: by symmetry x = p t, y = y(s). With c(s) = p / (2 pi r(s)) and a = y'(s) the energy
+  // is the integral of r (c^2 + 1/c^2 + a^2 + 1/a^2): a = 1, and p^4 = (2 pi)^4 (integral of r^3) / (integral of 1/r).
+  const double r1 = 50, r2 = 20, rise = 60, slant = std::hypot(rise, r1 - r2);
+  const auto radius3 = (std::pow(r1, 4) - std::pow(r2, 4)) / 4 / (r1 - r2) * slant, inverse = std::log(r1 / r2) / (r1 - r2) * slant;
+  const double period = 2 * pi * std::pow(radius3 / inverse, 0.25);
+  double error = 1;
+  for (const int around : {24, 48, 96}) {
+    const Segmentation s = test::alone(test::turned(around, around / 2, [&](double t) { return Vec2(r1 + t * (r2 - r1), t * rise); }));
+    const Parameterisation p = solve(s);
+    const double now = std::abs(p.period_mm[0] / period - 1) + std::abs(p.height_mm[0] / slant - 1);
+    EXPECT_LT(now, 0.4 * error) << around;  // second order
+    error = now;
+    EXPECT_LE(constraint_residual_mm(s, p), 1e-10);
+  }
+  EXPECT_LT(error, 1e-3);
+}
+
+TEST(Parameterisation, OfASphereIsTheBestRotationallySymmetricMap) {
+  // The band between colatitudes e and pi - e of a unit sphere: r = sin(s).
+  const double e = 0.2;
+  double radius3 = 0, inverse = 0;
+  const int steps = 200000;
+  for (int i = 0; i < steps; ++i) {
+    const double t = e + (pi - 2 * e) * (i + 0.5) / steps, r = std::sin(t);
+    radius3 += r * r * r, inverse += 1 / r;
+  }
+  const double period = 2 * pi * std::pow(radius3 / inverse, 0.25);
+  double error = 1;
+  for (const int around : {32, 64, 128}) {
+    const Segmentation s = test::alone(test::turned(around, around / 2, [&](double t) {
+      const double colatitude = pi - e - t * (pi - 2 * e);
+      return Vec2(std::sin(colatitude), std::cos(colatitude));
+    }));
+    const Parameterisation p = solve(s);
+    const double now = std::abs(p.period_mm[0] / period - 1) + std::abs(p.height_mm[0] / (pi - 2 * e) - 1);
+    EXPECT_LT(now, 0.4 * error) << around;
+    error = now;
+  }
+  EXPECT_LT(error, 2e-3);
+}
+
+TEST(Parameterisation, ConvergesOnEverySampleWithoutFlips) {
+  for (const SampleInfo& sample : sample_catalog()) {
+    SCOPED_TRACE(sample.name);
+    const Proposal proposal = test::proposed(sample.name, 3000);
+    const Segmentation& s = proposal.segmentation;
+    const Parameterisation p = solve(s, 1e-9);
+    EXPECT_LE(constraint_residual_mm(s, p), 1e-10);
+    EXPECT_GT(least_determinant(s, p), 0);
+    EXPECT_LE(p.iterations, 40);
+    EXPECT_GE(p.distortion_mean, 1);
+    EXPECT_LT(p.distortion_mean, 0.9 * p.energy_start + 0.2);
+    RecordProperty(sample.name + "_iterations", p.iterations);
+  }
+}
+
+TEST(Parameterisation, GradientAndHessianInTheVariablesAreThoseOfFiniteDifferences) {
+  const Proposal proposal = test::proposed("t_shape", 500);
+  const Segmentation& s = proposal.segmentation;
+  ASSERT_GE(s.part_count(), 3);
+  Context context;
+  const SeamlessChart chart(s);
+  NewtonSystem system(chart, context);
+  // A smooth energy of the corners that is no parameterisation's: what is tested is how corners depend on variables.
+  test::Random random(5);
+  Eigen::VectorXd local(chart.local_count()), shared(chart.shared_count()), along(local.size()), along_shared(shared.size());
+  for (double& x : local) x = random.uniform(-1, 1);
+  for (double& x : shared) x = random.uniform(-1, 1);
+  for (double& x : along) x = random.uniform(-1, 1);
+  for (double& x : along_shared) x = random.uniform(-1, 1);
+  const auto assemble = [&](double t) {
+    const CornerCoordinates uv = chart.corners(local + t * along, shared + t * along_shared);
+    system.assemble([&](int f) {
+      Eigen::Matrix<double, 6, 1> q;
+      for (int i = 0; i < 6; ++i) q[i] = uv(3 * f + i / 2, i % 2);
+      DirichletTerms terms;
+      const double r = q.squaredNorm(), sum = q.sum();
+      terms.energy = std::sin(r) + sum * sum * sum;
+      terms.gradient = 2 * std::cos(r) * q + Eigen::Matrix<double, 6, 1>::Constant(3 * sum * sum);
+      terms.hessian = -4 * std::sin(r) * q * q.transpose() + Eigen::Matrix<double, 6, 6>::Constant(6 * sum);
+      terms.hessian.diagonal().array() += 2 * std::cos(r);
+      return terms;
+    });
+  };
+  const double step = 1e-6;
+  assemble(step);
+  const double energy_plus = system.energy();
+  const Eigen::VectorXd plus = system.gradient_local(), plus_shared = system.gradient_shared();
+  assemble(-step);
+  const double energy_minus = system.energy();
+  const Eigen::VectorXd minus = system.gradient_local(), minus_shared = system.gradient_shared();
+  assemble(0);
+  const double slope = system.gradient_local().dot(along) + system.gradient_shared().dot(along_shared);
+  EXPECT_NEAR(slope, (energy_plus - energy_minus) / (2 * step), 1e-5 * std::abs(slope));
+  Eigen::VectorXd product, product_shared;
+  system.apply(along, along_shared, product, product_shared);
+  EXPECT_LE((product - (plus - minus) / (2 * step)).norm(), 1e-6 * product.norm());
+  EXPECT_LE((product_shared - (plus_shared - minus_shared) / (2 * step)).norm(), 1e-6 * product_shared.norm());
+}
+
+TEST(Parameterisation, MovesAndGrowsWithTheModel) {
+  Context context;
+  const TriangleMesh mesh = test::proposed("heart", 1500).segmentation.mesh;
+  const std::vector<int> parts = test::proposed("heart", 1500).segmentation.face_segment;
+  const Parameterisation p = solve(make_segmentation(mesh, parts));
+  const TriangleMesh other = test::moved(test::rotated(mesh, Vec3(1, 2, 3), 0.9), Vec3(40, -20, 7), 3);
+  const Parameterisation q = solve(make_segmentation(other, parts));
+  ASSERT_EQ(p.corners_mm.rows(), q.corners_mm.rows());
+  EXPECT_LE((3 * p.corners_mm - q.corners_mm).cwiseAbs().maxCoeff(), 1e-4);
+  EXPECT_NEAR(p.distortion_mean, q.distortion_mean, 1e-10);
+}
+
+TEST(Parameterisation, IsTheSameForAnyNumberOfThreads) {
+  const Segmentation s = test::proposed("star", 2000).segmentation;
+  const Parameterisation many = solve(s, 1e-9);
+  const ThreadLimit one(1);
+  const Parameterisation single = solve(s, 1e-9);
+  EXPECT_EQ((many.corners_mm - single.corners_mm).cwiseAbs().maxCoeff(), 0);
+}
+
+TEST(Parameterisation, StopsWhenAskedTo) {
+  const Segmentation s = test::proposed("heart", 4000).segmentation;
+  for (const int after : {0, 3, 10, 20}) {
+    int asked = 0;
+    Context context(Host{{}, [&] { return asked++ >= after; }, {}});
+    try {
+      parameterise(s, {}, context);
+      FAIL() << "went on";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::cancelled);
+    }
+  }
+}
+
+TEST(Parameterisation, RefusesWhatIsNoCylinder) {
+  Context context;
+  TriangleMesh disc = test::grid(6, 6, 0.1);
+  try {
+    parameterise(test::alone(disc), {}, context);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::invalid_input);
+    EXPECT_NE(std::string(error.what()).find("puncture it"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace formwright

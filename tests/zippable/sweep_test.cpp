@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Hundreds of designs by chance: whatever the punctures, the order, the width and the number of windings, the ribbon is one disc
+// that unfolds without distortion, or the refusal is one sentence with its mend.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/error.h"
+#include "zippable/zippable_design.h"
+#include "zippable/zippable_shapes.h"
+
+namespace formwright {
+namespace {
+
+TEST(ZippableSweep, Seed20261122GivesOnlyValidDesigns) {
+  test::Random random(20261122);
+  const std::vector<std::string> names{"star", "heart", "t_shape", "torus", "cat", "bust", "fish", "hemisphere"};
+  std::vector<TriangleMesh> meshes;
+  Context context;
+  for (const std::string& name : names) meshes.push_back(make_sample(name, 900, context).mesh);
+  int made = 0, refused = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const auto which = static_cast<std::size_t>(random.below(static_cast<int>(names.size())));
+    const TriangleMesh& mesh = meshes[which];
+    ZippableOptions options;
+    options.width_mm = std::pow(10, random.uniform(0.6, 1.5));
+    options.parts_max = 1 + random.below(10);
+    if (random.below(3) == 0) options.windings = random.uniform(0.2, 12);
+    if (random.below(3) == 0) options.puncture_mm = random.uniform(1, 30);
+    options.prominence_percent = random.uniform(1, 30);
+    if (random.below(4) == 0) options.traversal = 1 + random.below(6);
+    if (random.below(4) == 0) options.sample_mm = options.width_mm * random.uniform(0.05, 2);
+    std::vector<Vec3> tips;
+    if (random.below(2) == 0)
+      for (int k = 2 + random.below(5); k > 0; --k) tips.push_back(mesh.V.row(random.below(mesh.vertex_count())).transpose());
+    SCOPED_TRACE(names[which] + ", trial " + std::to_string(trial) + ", width " + std::to_string(options.width_mm));
+    try {
+      const ParameterisedModel model = parameterise_model(mesh, {tips, {}}, options, context);
+      const ZippableDesign design = design_zippable(model, options, context);
+      ++made;
+      const TriangleMesh formed = design.ribbon.formed();
+      const Adjacency adjacency(formed);
+      EXPECT_TRUE(adjacency.is_manifold());
+      EXPECT_EQ(euler_characteristic(adjacency), 1);
+      EXPECT_EQ(boundary_loops(adjacency).size(), 1u);
+      EXPECT_EQ(adjacency.boundary_edge_count(), formed.vertex_count());
+      EXPECT_EQ(formed.face_count(), formed.vertex_count() - 2);
+      EXPECT_EQ(design.ribbon.opening_arcs, 2 + 2 * design.curve.fermat_spirals);
+      EXPECT_LE(design.ribbon.isometry_error, 1e-9);
+      EXPECT_LE(constraint_residual_mm(model.proposal.segmentation, model.parameterisation), 1e-10);
+      EXPECT_TRUE(std::isfinite(design.ribbon.zipper_mm) && design.ribbon.zipper_mm > 0);
+    } catch (const Error& error) {
+      ++refused;
+      EXPECT_TRUE(error.code() == ErrorCode::invalid_input || error.code() == ErrorCode::could_not_solve) << error.what();
+      EXPECT_NE(std::string(error.what()).find(':'), std::string::npos) << error.what();  // what is wrong: what helps
+      EXPECT_EQ(std::string(error.what()).back(), '.') << error.what();
+    }
+  }
+  EXPECT_GT(made, 100);
+  RecordProperty("made", made);
+  RecordProperty("refused", refused);
+}
+
+}  // namespace
+}  // namespace formwright

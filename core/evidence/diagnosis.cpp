@@ -244,6 +244,8 @@ class Diagnostician {
       h.log_evidence = std::min(h.log_evidence, worst);
       result_.hypotheses.push_back(h);
     }
+    // A pair of which one does nothing is the other alone, found on another way.
+    std::erase_if(result_.hypotheses, [&](const Hypothesis& h) { return h.causes.size() == 2 && !significant(h); });
     normalise(result_.hypotheses);
   }
 
@@ -473,7 +475,9 @@ class Diagnostician {
         // Alike in every respect, or not told apart by these very data.
         const bool undecided = finding_of(other).probability > 0.15 * finding_of(named).probability;
         if (alike > inseparable_likeness || (undecided && alike > 0.5)) result_.not_separable.push_back({named, other, alike});
-        if (undecided && result_.reading == Reading::cause) result_.reading = Reading::cannot_separate;
+        if (!undecided) continue;
+        if (alike > 0.5 && result_.reading == Reading::cause) result_.reading = Reading::cannot_separate;
+        else if (alike <= 0.5) result_.doubtful = true;
       }
   }
 

@@ -203,6 +203,18 @@ class Diagnostician {
     }
   }
 
+  /// What passed for outliers about the calibrated model may have been misfit that an explanation accounts for: once more about the best.
+  void renew_noise() {
+    estimate_noise_about(refit_of(result_.hypotheses.front().causes).fit.predictions);
+    weights_ = weights_with_liberties(model_, std::move(weights_), result_.liberties, result_.liberty_sensitivities);
+    misfit_.emplace(model_, weights_);
+    const GramByStructure gram = misfit_->gram(residuals(model_, result_.base.predictions), sensitivities_);
+    for (Hypothesis& h : screened_) weigh(model_, gram, columns_, result_.base.u, h);
+    normalise(screened_);
+    for (const Refit& refit : refits_) weigh_refit(refit);
+    normalise(result_.hypotheses);
+  }
+
   void refit() {
     const auto span = context_.span(0.4, 0.85, fitting);
     std::vector<std::vector<int>> singles{{}};
@@ -234,6 +246,7 @@ class Diagnostician {
       for (Refit& r : refits_)
         if (r.causes.size() == size && leaders.contains(r.causes)) stage([&] { polish(r); });
     normalise(result_.hypotheses);
+    renew_noise();
     // The others stay as the linearised model has them, but no better than the worst that was tried in earnest.
     double worst = std::numeric_limits<double>::infinity();
     for (const Hypothesis& h : result_.hypotheses)

@@ -112,12 +112,13 @@ const turned = (normal: Vector, away: Vector, angle: number): Vector => {
 /** Per corner: the triangle beyond the edge from there to the next corner; −1 at the boundary. */
 function neighbours(triangles: Uint32Array): Int32Array {
   const beyond = new Int32Array(triangles.length).fill(-1);
-  const waiting = new Map<string, number>();
+  const waiting = new Map<number, number>();
+  const vertices = 1 + triangles.reduce((most, vertex) => Math.max(most, vertex), 0);
   triangles.forEach((from, at) => {
     const triangle = Math.floor(at / 3);
     const to = triangles[3 * triangle + ((at + 1) % 3)] ?? 0;
-    const other = waiting.get(`${to},${from}`);
-    if (other === undefined) waiting.set(`${from},${to}`, at);
+    const other = waiting.get(to * vertices + from);
+    if (other === undefined) waiting.set(from * vertices + to, at);
     else {
       beyond[at] = Math.floor(other / 3);
       beyond[other] = triangle;

@@ -3,6 +3,7 @@
 import { effect } from '@preact/signals';
 import type { Curve, MeshData, Vec3, Viewport } from '../../view';
 import { originalData, shadingOf } from '../common/shaded_mesh';
+import { figure, vectorOf } from '../common/report';
 import { boundaryEdges } from './design';
 import { positionOf } from './ribbon_places';
 import { bend, chosenPart, distortionMapping, partToken, pointed, themeChanges, view } from './views';
@@ -61,15 +62,19 @@ const gathered = (positions: Float32Array, source: Uint32Array) =>
     return positions[3 * (source[Math.floor(i / 3)] ?? 0) + (i % 3)] ?? 0;
   });
 
-/** Tape and teeth. */
-const zipper = (positions: Float32Array, separate: boolean): Curve[] => [
-  { positions, separate, colour: '#26221d', widthPx: 4 },
-  { positions, separate, colour: '#d8cfbf', widthPx: 1.5 },
-];
+/** Tape and teeth, thinner where the windings are close together. */
+function zipper({ report }: Zippable, positions: Float32Array, separate: boolean): Curve[] {
+  const size = Math.max(...(vectorOf(report, 'size_mm') ?? [1]));
+  const widthPx = Math.min(4, Math.max(1.5, (30 * (figure(report, 'ribbon_width_mean_mm') ?? size)) / size));
+  return [
+    { positions, separate, colour: '#26221d', widthPx },
+    { positions, separate, colour: '#d8cfbf', widthPx: 0.375 * widthPx },
+  ];
+}
 
 /** The ribbon's vertices as they are in space now. */
 export const bentPositions = ({ bending, design }: Zippable, share: number): Float32Array =>
-  share >= 1 ? design.ribbon.positions : bending.at(share);
+  share >= 1 ? design.ribbon.positions : bending().at(share);
 
 export function keepDrawn(viewport: Viewport, session: ZippableSession): () => void {
   let fitted: string | null = null;
@@ -114,6 +119,8 @@ export function keepDrawn(viewport: Viewport, session: ZippableSession): () => v
       coloured = null;
       return;
     }
+    // Of a preview the ribbon in space is drawn when it is looked at: not at every step of a slider.
+    if (view.value !== 'ribbon' && shown.kind === 'preview') return;
     const style = styleNow();
     const positions = positionsNow(shown);
     if (coloured?.of !== shown || coloured.style !== style) {
@@ -130,8 +137,8 @@ export function keepDrawn(viewport: Viewport, session: ZippableSession): () => v
     if (shown === null) viewport.setCurves([]);
     else if (view.value === 'ribbon') {
       const edges = boundaryEdges(shown.design, 'zipper');
-      viewport.setCurves(zipper(gathered(positionsNow(shown), edges), true));
-    } else viewport.setCurves(shown.course.flatMap((piece) => zipper(piece, false)));
+      viewport.setCurves(zipper(shown, gathered(positionsNow(shown), edges), true));
+    } else viewport.setCurves(shown.course.flatMap((piece) => zipper(shown, piece, false)));
   };
 
   const drawPointed = (): void => {
@@ -160,6 +167,7 @@ export function keepDrawn(viewport: Viewport, session: ZippableSession): () => v
     effect(drawPointed),
     effect(() => {
       const shown = session.shown.value;
+      if (shown && (chosenPart.value ?? 0) >= shown.design.parts.length) chosenPart.value = null;
       viewport.setMode(shown && view.value === 'ribbon' ? 'relief' : 'original');
       viewport.setColourMapping(shown && view.value === 'distortion' ? distortionMapping(shown) : null, true);
     }),

@@ -11,7 +11,7 @@ export interface FlatFit {
 }
 
 /** Room for what is written above and below the ribbon, px. */
-const margin = { side: 24, top: 64, bottom: 52 };
+const margin = { side: 24, top: 64, bottom: 72 };
 
 export function fitFlat(flat: Float32Array, width: number, height: number): FlatFit {
   const [low, high] = [

@@ -3,6 +3,7 @@
 import { useSignal } from '@preact/signals';
 import { useEffect, useMemo, useRef } from 'preact/hooks';
 import { formatFixed, withUnit } from '../../ui';
+import { figure } from '../common/report';
 import { boundaryEdges, partName } from './design';
 import type { FlatFit } from './flat_outline';
 import { edgePath, fitFlat, partLabels, partPaths, scaleBar } from './flat_outline';
@@ -92,7 +93,7 @@ function Drawing({ shown, fit, width, height }: DrawingProps) {
       >
         <svg width={width} height={height} aria-hidden="true">
           <g transform={`translate(${fit.x} ${fit.y}) scale(${fit.pxPerMm} ${-fit.pxPerMm})`}>
-            <Shapes shown={shown} chosen={chosenPart.value} />
+            <Shapes shown={shown} chosen={chosenPart.value} line={lineWidth(shown, fit.pxPerMm)} />
           </g>
           <Labels shown={shown} fit={fit} />
           {at?.places.map((place, i) => {
@@ -122,7 +123,17 @@ function Drawing({ shown, fit, width, height }: DrawingProps) {
   );
 }
 
-function Shapes({ shown, chosen }: { shown: Zippable; chosen: number | null }) {
+interface ShapesProps {
+  readonly shown: Zippable;
+  readonly chosen: number | null;
+  readonly line: number;
+}
+
+/** Thin enough to leave the ribbon's own colour to be seen, px. */
+const lineWidth = ({ report }: Zippable, pxPerMm: number): number =>
+  Math.min(1.5, Math.max(0.3, 0.12 * pxPerMm * (figure(report, 'ribbon_width_mean_mm') ?? 20)));
+
+function Shapes({ shown, chosen, line }: ShapesProps) {
   const { design, partOfTriangle } = shown;
   const shapes = useMemo(() => {
     const { flat } = design.ribbon;
@@ -142,8 +153,8 @@ function Shapes({ shown, chosen }: { shown: Zippable; chosen: number | null }) {
           d={path}
         />
       ))}
-      <path class="flat-zipper" d={shapes.zipper} />
-      <path class="flat-opening" d={shapes.opening} />
+      <path class="flat-zipper" style={{ strokeWidth: line }} d={shapes.zipper} />
+      <path class="flat-opening" style={{ strokeWidth: line }} d={shapes.opening} />
     </>
   );
 }

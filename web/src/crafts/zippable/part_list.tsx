@@ -46,8 +46,8 @@ export function PartList({ session }: { session: ZippableSession }) {
                       </span>
                     </span>
                     <small class={warning ? 'part-warning' : ''}>
-                      {warning ?? 'A cylinder'}
-                      {distortion ? `, distortion ${formatFixed(distortion.mean, 2)}` : ''}
+                      {warning ? `${warning} Distortion` : 'A cylinder, distortion'}{' '}
+                      {formatFixed(distortion?.mean ?? 1, 2)}
                     </small>
                   </span>
                 </button>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/* eslint-disable @typescript-eslint/no-non-null-assertion -- indices stay within the arrays' own lengths */
 // Which part each triangle of the ribbon lies on, and how distorted each part is, from the parameterised model.
 import type { Ribbon } from './design';
 
@@ -11,15 +12,18 @@ export interface ParameterisedMesh {
 
 /** Nearest vertices of a surface: cells about as large as two edges. */
 export class VertexGrid {
-  readonly #cells = new Map<string, number[]>();
   readonly #positions: Float32Array;
-  readonly #low: number[];
+  readonly #low: readonly number[];
   readonly #size: number;
-  readonly #widest: number;
+  /** Cells along each axis. */
+  readonly #count: readonly number[];
+  /** The vertices of cell c are #vertices[#first[c]] up to #first[c + 1]. */
+  readonly #first: Int32Array;
+  readonly #vertices: Int32Array;
 
   constructor(positions: Float32Array) {
     this.#positions = positions;
-    const count = positions.length / 3;
+    const vertices = positions.length / 3;
     const bounds = [0, 1, 2].map((k) => {
       let [low, high] = [Infinity, -Infinity];
       for (let i = k; i < positions.length; i += 3) {
@@ -28,40 +32,58 @@ export class VertexGrid {
       }
       return [low, high] as const;
     });
-    this.#low = bounds.map(([low]) => low);
     const longest = Math.max(...bounds.map(([low, high]) => high - low), 1e-9);
-    this.#size = (2 * longest) / Math.max(1, Math.sqrt(count));
-    this.#widest = Math.ceil(longest / this.#size) + 1;
-    for (let v = 0; v < count; ++v) {
-      const key = this.#cell(positions, 3 * v).join();
-      const cell = this.#cells.get(key);
-      if (cell) cell.push(v);
-      else this.#cells.set(key, [v]);
-    }
+    this.#low = bounds.map(([low]) => low);
+    this.#size = (2 * longest) / Math.max(1, Math.sqrt(vertices));
+    this.#count = bounds.map(([low, high]) => 1 + Math.max(0, Math.floor((high - low) / this.#size)));
+    const cells = vertices === 0 ? 0 : this.#count.reduce((product, count) => product * count, 1);
+    this.#first = new Int32Array(cells + 1);
+    this.#vertices = new Int32Array(vertices);
+    const cellOf = Int32Array.from({ length: vertices }, (_, v) => {
+      const [i = 0, j = 0, k = 0] = this.#cell(positions, 3 * v);
+      return this.#number(i, j, k);
+    });
+    for (const cell of cellOf) ++this.#first[cell + 1]!;
+    for (let cell = 0; cell < cells; ++cell) this.#first[cell + 1]! += this.#first[cell]!;
+    const next = this.#first.slice();
+    cellOf.forEach((cell, v) => (this.#vertices[next[cell]!++] = v));
   }
 
   #cell(point: ArrayLike<number>, at: number): number[] {
-    return this.#low.map((low, k) => Math.floor(((point[at + k] ?? 0) - low) / this.#size));
+    return this.#low.map((low, k) => Math.floor((point[at + k]! - low) / this.#size));
+  }
+
+  #number(i: number, j: number, k: number): number {
+    return (i * this.#count[1]! + j) * this.#count[2]! + k;
   }
 
   /** −1 where there is no vertex at all. */
   nearest(point: readonly [number, number, number]): number {
+    if (this.#vertices.length === 0) return -1;
     const [x = 0, y = 0, z = 0] = this.#cell(point, 0);
+    const [nx, ny, nz] = this.#count as [number, number, number];
     let best = -1;
     let least = Infinity;
-    // What lies r cells away is at least r − 1 cells' lengths off.
-    for (let r = 0; r <= 2 * this.#widest && !(least < ((r - 1) * this.#size) ** 2); ++r)
-      for (let i = -r; i <= r; ++i)
-        for (let j = -r; j <= r; ++j) {
-          const whole = Math.abs(i) === r || Math.abs(j) === r;
-          for (let k = -r; k <= r; k += whole ? 1 : Math.max(1, 2 * r))
-            for (const v of this.#cells.get(`${x + i},${y + j},${z + k}`) ?? []) {
-              const squared = [0, 1, 2].reduce(
-                (sum, axis) => sum + ((this.#positions[3 * v + axis] ?? 0) - (point[axis] ?? 0)) ** 2,
-                0,
-              );
-              if (squared < least) [least, best] = [squared, v];
-            }
+    const look = (cell: number) => {
+      for (let at = this.#first[cell]!; at < this.#first[cell + 1]!; ++at) {
+        const v = this.#vertices[at]!;
+        let squared = 0;
+        for (let axis = 0; axis < 3; ++axis) squared += (this.#positions[3 * v + axis]! - point[axis]!) ** 2;
+        if (squared < least) [least, best] = [squared, v];
+      }
+    };
+    // Shells of cells around the point's own; what lies r cells away is at least r − 1 cells' lengths off.
+    // From outside the box of cells the search begins at its nearest cell's shell.
+    const outside = (at: number, count: number) => Math.max(0, -at, at - count + 1);
+    const reach = Math.max(x, nx - 1 - x, y, ny - 1 - y, z, nz - 1 - z);
+    const start = Math.max(outside(x, nx), outside(y, ny), outside(z, nz));
+    for (let r = start; r <= reach && !(least < ((r - 1) * this.#size) ** 2); ++r)
+      for (let i = Math.max(0, x - r); i <= Math.min(nx - 1, x + r); ++i)
+        for (let j = Math.max(0, y - r); j <= Math.min(ny - 1, y + r); ++j) {
+          const face = Math.abs(i - x) === r || Math.abs(j - y) === r;
+          if (face)
+            for (let k = Math.max(0, z - r); k <= Math.min(nz - 1, z + r); ++k) look(this.#number(i, j, k));
+          else for (const k of [z - r, z + r]) if (k >= 0 && k < nz) look(this.#number(i, j, k));
         }
     return best;
   }

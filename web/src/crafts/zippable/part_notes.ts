@@ -13,8 +13,10 @@ export function partWarning(
   notes: readonly string[],
   distortion: PartDistortion | undefined,
 ): string | null {
-  const own = notes.find((note) => note.startsWith(`${partName(part)} `));
-  if (own) return own.replace(/\.$/, '');
-  if (distortion && distortion.mean > poor) return `Badly distorted (${formatFixed(distortion.mean, 1)})`;
+  const head = `${partName(part)} `;
+  const own = notes.find((note) => note.startsWith(head))?.slice(head.length);
+  if (own) return own.charAt(0).toUpperCase() + own.slice(1);
+  if (distortion && distortion.mean > poor)
+    return `Badly distorted: ${formatFixed(distortion.mean, 1)} on average.`;
   return null;
 }

@@ -39,7 +39,8 @@ export interface Zippable extends ShownWork {
   readonly course: readonly Float32Array[];
   /** By triangle of the ribbon. */
   readonly partOfTriangle: Int32Array;
-  readonly bending: Bending;
+  /** Made when it is first asked for. */
+  readonly bending: () => Bending;
 }
 
 type Outputs = Pick<Result, 'outputs' | 'report'>;
@@ -112,7 +113,9 @@ export class ZippableSession extends PreviewingSession<CraftDocument, Zippable> 
     const { ribbon } = made;
     const segment = model.mesh.attributes['segment'] ?? new Float32Array(0);
     const partOfTriangle = partsOfTriangles(ribbon, segment, model.grid);
-    return { design: made, model, course, partOfTriangle, bending: new Bending(ribbon), report };
+    let bent: Bending | null = null;
+    const bending = () => (bent ??= new Bending(ribbon));
+    return { design: made, model, course, partOfTriangle, bending, report };
   }
 
   /** Another number of windings is another curve on the same divided model: nothing of it is read again. */
@@ -145,5 +148,8 @@ export class ZippableSession extends PreviewingSession<CraftDocument, Zippable> 
   });
 }
 
-const sameBytes = (a: Uint8Array, b: Uint8Array): boolean =>
-  a.byteLength === b.byteLength && a.every((value, i) => value === b[i]);
+function sameBytes(a: Uint8Array, b: Uint8Array): boolean {
+  if (a.byteLength !== b.byteLength) return false;
+  for (let i = 0; i < a.length; ++i) if (a[i] !== b[i]) return false;
+  return true;
+}

@@ -10,8 +10,9 @@ export interface FlatFit {
   readonly pxPerMm: number;
 }
 
-/** Room for what is written above and below the ribbon, px. */
-const margin = { side: 24, top: 64, bottom: 72 };
+/** Room for what is written above and below the ribbon, px; a phone's pane has none above. */
+const marginOf = (height: number) =>
+  height < 260 ? { side: 16, top: 12, bottom: 44 } : { side: 24, top: 64, bottom: 72 };
 
 export function fitFlat(flat: Float32Array, width: number, height: number): FlatFit {
   const [low, high] = [
@@ -24,6 +25,7 @@ export function fitFlat(flat: Float32Array, width: number, height: number): Flat
   });
   const [x0 = 0, y0 = 0] = low;
   const [x1 = 1, y1 = 1] = high;
+  const margin = marginOf(height);
   const room = [Math.max(20, width - 2 * margin.side), Math.max(20, height - margin.top - margin.bottom)];
   const pxPerMm = Math.min(
     (room[0] ?? 1) / Math.max(x1 - x0, 1e-9),

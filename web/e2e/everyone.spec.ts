@@ -35,7 +35,9 @@ test('with the keyboard alone', async ({ page }) => {
   await page.keyboard.press('2');
   await expect(page.getByText('A shell starts from a model.')).toBeVisible();
   await page.keyboard.press('3');
-  await expect(page.getByRole('heading', { name: 'Zippable is not here yet' })).toBeVisible();
+  await expect(page.getByText('A zippable starts from a closed model.')).toBeVisible();
+  await page.keyboard.press('5');
+  await expect(page.getByRole('heading', { name: 'Machines is not here yet' })).toBeVisible();
 });
 
 for (const colorScheme of ['light', 'dark'] as const)
@@ -65,8 +67,8 @@ for (const colorScheme of ['light', 'dark'] as const)
       await page.goto('/#/about');
       await expect(page.getByRole('heading', { name: 'About Formwright' })).toBeVisible();
       await check('about');
-      await page.goto('/#/zippable');
-      await expect(page.getByRole('heading', { name: 'Zippable is not here yet' })).toBeVisible();
+      await page.goto('/#/machines');
+      await expect(page.getByRole('heading', { name: 'Machines is not here yet' })).toBeVisible();
       await check('later');
       await context.close();
     });

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-import AxeBuilder from '@axe-core/playwright';
 import type { Page } from '@playwright/test';
 import { readFileSync } from 'node:fs';
-import { backend, expect, fileOf, openPage, strip, test } from './page';
+import { backend, expect, expectAccessible, fileOf, looks, openPage, strip, test } from './page';
 
 test.skip(backend === 'mock', 'the mock makes reliefs only');
 
@@ -119,30 +118,18 @@ test('what cannot be made is said in the core’s words, and undone', async ({ p
   await expect(page.locator('.model-row strong')).toHaveText('Star');
 });
 
-for (const colorScheme of ['light', 'dark'] as const)
-  for (const viewport of [
-    { width: 1280, height: 800 },
-    { width: 390, height: 844 },
-  ])
-    test(`axe finds nothing serious in the room, ${colorScheme}, ${viewport.width} px`, async ({
-      browser,
-    }) => {
-      const context = await browser.newContext({ colorScheme, viewport, reducedMotion: 'reduce' });
-      const page = await context.newPage();
-      const check = async (what: string) => {
-        const { violations } = await new AxeBuilder({ page }).analyze();
-        const serious = violations.filter(({ impact }) => impact === 'serious' || impact === 'critical');
-        const told = serious.map(
-          ({ id, nodes }) => `${what}: ${id}: ${nodes.map(({ html }) => html.slice(0, 120)).join(' | ')}`,
-        );
-        expect(told).toEqual([]);
-      };
-      await openRoom(page);
-      await check('empty');
-      await page.locator('.gallery button', { hasText: 'Star' }).click();
-      await expect(strip(page, 'Preview up to date')).toBeVisible();
-      await check('preview');
-      await page.getByRole('radio', { name: 'Zipped' }).click();
-      await check('zipped');
-      await context.close();
-    });
+for (const look of looks)
+  test(`axe finds nothing serious in the room, ${look.colorScheme}, ${look.viewport.width} px`, async ({
+    browser,
+  }) => {
+    const context = await browser.newContext(look);
+    const page = await context.newPage();
+    await openRoom(page);
+    await expectAccessible(page, 'empty');
+    await page.locator('.gallery button', { hasText: 'Star' }).click();
+    await expect(strip(page, 'Preview up to date')).toBeVisible();
+    await expectAccessible(page, 'preview');
+    await page.getByRole('radio', { name: 'Zipped' }).click();
+    await expectAccessible(page, 'zipped');
+    await context.close();
+  });

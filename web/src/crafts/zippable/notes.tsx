@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Notes at the foot of the viewport: one at a time, the most urgent first.
 import { signal } from '@preact/signals';
-import { Button, Icon, Note, useLasting } from '../../ui';
-import { solveInFull } from '../common/full_solve';
+import { Icon, Note, useLasting } from '../../ui';
 import { sentences } from '../common/report';
+import { problemNote, repairsNote } from '../common/room_notes';
 import type { ZippableSession } from './zippable_session';
 
 /** Words that were read, until others come. */
@@ -17,32 +17,9 @@ export interface NotesProps {
 
 export function Notes({ session, onChooseFile }: NotesProps) {
   const solving = useLasting(session.activity.value.kind === 'solving');
-  const problem = session.problem.value;
   const { model } = session.document.value;
-  if (problem)
-    return (
-      <div class="note-place">
-        <Note
-          kind="bad"
-          icon={problem.kind === 'file' ? 'file' : 'warn'}
-          title={problem.title}
-          onDismiss={() => (session.problem.value = null)}
-          actions={
-            problem.kind === 'file' ? (
-              <Button size="small" onClick={onChooseFile}>
-                Choose another file
-              </Button>
-            ) : (
-              <Button size="small" onClick={() => void solveInFull(session)}>
-                Try again
-              </Button>
-            )
-          }
-        >
-          {problem.message}
-        </Note>
-      </div>
-    );
+  const problem = problemNote(session, onChooseFile);
+  if (problem) return problem;
   if (model === null) return null;
   if (solving && session.shown.value)
     return (
@@ -50,19 +27,8 @@ export function Notes({ session, onChooseFile }: NotesProps) {
         <Icon name="clock" small /> Preview. The whole model’s ribbon replaces it.
       </p>
     );
-  if (session.repairsOpen.value)
-    return (
-      <div class="note-place">
-        <Note
-          kind="plain"
-          icon="check"
-          title="Mended while opening"
-          onDismiss={() => (session.repairsOpen.value = false)}
-        >
-          {sentences(model.report, 'repairs').join(' ')}
-        </Note>
-      </div>
-    );
+  const repairs = repairsNote(session);
+  if (repairs) return repairs;
   const said = sentences(session.shown.value?.report ?? {}, 'notes');
   const words = said.join(' ');
   if (said.length === 0 || words === dismissed.value) return null;

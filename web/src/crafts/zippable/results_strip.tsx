@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-import { formatCount, formatDuration, JobStrip, useLasting } from '../../ui';
+import { formatDuration, JobStrip, useLasting } from '../../ui';
 import type { CraftResult } from '../common/craft_document';
 import { figure } from '../common/report';
 import { Results } from '../common/results';
+import { previewLine, RunningStrip } from '../common/room_strip';
 import { metres } from './flat_ribbon';
 import { zippable } from './zippable_document';
 import type { ZippableSession } from './zippable_session';
@@ -20,19 +21,11 @@ export function ResultsStrip({ session }: { session: ZippableSession }) {
       opening: 'Opening the model',
       exporting: `Making the ${activity.name}`,
     };
-    return (
-      <JobStrip
-        state="running"
-        title={titles[activity.kind]}
-        detail={activity.progress?.stage ?? (activity.kind === 'opening' ? activity.name : 'Starting')}
-        progress={activity.progress ?? { fraction: 0, seconds_left: null }}
-        onCancel={() => session.cancel()}
-      />
-    );
+    return <RunningStrip activity={activity} titles={titles} onCancel={() => session.cancel()} />;
   }
   const state = result
     ? { state: 'done' as const, title: 'Ribbon unfolded', detail: madeLine(result) }
-    : previewLine(session);
+    : previewOf(session);
   return (
     <JobStrip {...state}>
       <Results
@@ -58,17 +51,12 @@ function madeLine({ report, seconds, backend }: CraftResult): string {
   return `${kept}${formatDuration(seconds)} ${backend === 'native' ? 'on the worker' : 'in the browser'}`;
 }
 
-function previewLine(session: ZippableSession) {
-  const shown = session.shown.value;
-  const error = Object.values(session.fieldErrors.value)[0] ?? session.problem.value?.message;
-  if (error) return { state: 'attention' as const, title: 'No ribbon', detail: error };
-  if (shown === null)
-    return { state: 'idle' as const, title: 'No ribbon yet', detail: 'The preview comes first' };
-  const seconds = session.previewSeconds.value;
-  const triangles = `${formatCount(shown.model.mesh.indices.length / 3)} triangles`;
-  return {
-    state: 'idle' as const,
-    title: session.previewing.value ? 'Preview' : 'Preview up to date',
-    detail: seconds === null ? triangles : `${triangles}, ${formatDuration(seconds)} in the browser`,
-  };
-}
+const previewOf = (session: ZippableSession) =>
+  previewLine({
+    error: Object.values(session.fieldErrors.value)[0] ?? session.problem.value?.message,
+    failed: 'No ribbon',
+    empty: 'No ribbon yet',
+    corners: session.shown.value?.model.mesh.indices.length ?? null,
+    seconds: session.previewSeconds.value,
+    previewing: session.previewing.value,
+  });

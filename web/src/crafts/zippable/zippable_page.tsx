@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { useSignal } from '@preact/signals';
-import { useEffect } from 'preact/hooks';
 import { Button, Sheet } from '../../ui';
 import type { Viewport } from '../../view';
 import { solveInFull } from '../common/full_solve';
+import { useRoomKeys } from '../common/room_keys';
 import { Gallery } from '../common/gallery';
 import { useModelPicture, useResultPictures } from '../common/pictures';
 import '../common/room.css';
@@ -30,7 +30,15 @@ export function ZippablePage({ session, onChooseFile }: ZippablePageProps) {
   const viewport = useSignal<Viewport | null>(null);
   const picture = useModelPicture(session, viewport, viewpoint);
   useResultPictures(session, viewport, session.shown, () => viewpoint);
-  useKeys(session, () => viewport.value);
+  useRoomKeys(session, () => ({
+    solve: () => void solveInFull(session),
+    save: () => void exportMain(session),
+    space: view.value === 'ribbon' ? togglePlay : undefined,
+    plain: {
+      0: () => viewport.value?.lookFromViewpoint(true),
+      f: () => viewport.value?.fit(true),
+    },
+  }));
   const { model } = session.document.value;
   const opening = session.activity.value.kind === 'opening';
   return (
@@ -78,35 +86,4 @@ function Empty({ session, onChooseFile }: ZippablePageProps) {
       <Gallery samples={samples} onOpen={(sample, title) => void session.openSample(sample, title)} />
     </div>
   );
-}
-
-/** Keys of this page: 0, F, Space, Ctrl+Enter, Ctrl+E, Esc. */
-function useKeys(session: ZippableSession, viewport: () => Viewport | null): void {
-  useEffect(() => {
-    const onKey = (event: KeyboardEvent) => {
-      if (event.defaultPrevented || document.querySelector('dialog[open]')) return;
-      const control = event.ctrlKey || event.metaKey;
-      const target = event.target as Element;
-      const typing = target.matches('input[type=text], select, textarea');
-      const act = (action: () => void) => {
-        event.preventDefault();
-        action();
-      };
-      if (control && event.key === 'Enter') act(() => void solveInFull(session));
-      else if (control && event.key.toLowerCase() === 'e') act(() => void exportMain(session));
-      else if (event.key === 'Escape' && session.activity.value.kind !== 'idle') act(() => session.cancel());
-      else if (control || event.altKey || typing) return;
-      // Space presses what has the focus, where that can be pressed.
-      else if (
-        event.key === ' ' &&
-        view.value === 'ribbon' &&
-        !target.matches('button, a, input, [role=menuitem]')
-      )
-        act(togglePlay);
-      else if (event.key === '0') act(() => viewport()?.lookFromViewpoint(true));
-      else if (event.key.toLowerCase() === 'f') act(() => viewport()?.fit(true));
-    };
-    document.addEventListener('keydown', onKey);
-    return () => document.removeEventListener('keydown', onKey);
-  }, [session]);
 }

@@ -176,6 +176,7 @@ test('a scan is measured, its corners set by hand, and becomes an object', async
   await measure();
   await expect(page.getByText(/^likeness (0\.99|1\.0)/)).toBeVisible();
 
+  await expect(page.getByRole('img', { name: /^Corner .*, found at/ })).toHaveCount(4);
   await page.getByRole('button', { name: 'Set them by hand' }).click();
   const corner = (name: string) => page.getByRole('button', { name: new RegExp(`^Corner ${name}`) });
   const image = page.getByRole('img', { name: 'The scan’s picture' });

@@ -217,6 +217,9 @@ test('a virtual object with a fault of one’s choice', async ({ page }) => {
   const dialog = page.getByRole('dialog', { name: 'Make a virtual object' });
   await expect(dialog.getByRole('textbox', { name: 'Heat falls off in x' })).toHaveValue('0.30');
   await dialog.getByRole('combobox', { name: 'Mould' }).selectOption('Pyramid');
+  // Help lies over the dialog: in the browser's top layer, like the dialog itself.
+  await dialog.getByText('Heat falls off in x').hover();
+  await expect(page.locator('.tip:popover-open')).toBeVisible();
   await dialog.getByRole('textbox', { name: 'Points', exact: true }).fill('300');
   await dialog.getByRole('textbox', { name: 'Points', exact: true }).press('Tab');
   await expectAccessibleEverywhere(page, 'virtual object');

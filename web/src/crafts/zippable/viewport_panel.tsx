@@ -9,10 +9,21 @@ import { Viewport } from '../../view';
 import { Legend } from '../common/legend';
 import { narrow } from '../common/narrow';
 import { figure } from '../common/report';
+import { fromShown, place as drawAt, tool } from './draw_actions';
 import { bentPositions, keepDrawn } from './draw_scene';
+import { DrawTool } from './draw_tool';
 import { Play } from './play';
 import { alongAt, placeInSpace } from './ribbon_places';
-import { bend, distortionMapping, playing, pointed, themeChanges, view, viewNames } from './views';
+import {
+  bend,
+  cameraMoves,
+  distortionMapping,
+  playing,
+  pointed,
+  themeChanges,
+  view,
+  viewNames,
+} from './views';
 import type { ZippableSession } from './zippable_session';
 
 /** From the front, a little from the right and from above; the samples stand on y. */
@@ -50,7 +61,9 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
       uprightTurn: true,
       dimensions: false,
       ground: true,
+      onViewpointChange: () => ++cameraMoves.value,
       onPointer: ({ kind, hit }) => {
+        if (kind === 'click' && hit && tool.peek()) void drawAt(session, fromShown(session, hit.positionMm));
         if (kind !== 'move' && kind !== 'leave') return;
         const shown = session.shown.peek();
         if (shown === null || hit === null || kind === 'leave' || playing.peek()) {
@@ -93,7 +106,8 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
   return (
     <div class="viewport-panel">
       <div ref={container} class="viewport" />
-      {visible && shown ? (
+      {visible && tool.value ? <DrawTool session={session} viewport={viewport.current} /> : null}
+      {visible && shown && tool.value === null ? (
         <div class="float top-left">
           <Segmented
             floating

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Over the model while parts are drawn: the tools, and a handle on every point.
+import { useEffect } from 'preact/hooks';
 import { Button, Segmented } from '../../ui';
 import type { Viewport } from '../../view';
 import type { Tool } from './draw_actions';
@@ -33,6 +34,11 @@ const tools: readonly { readonly value: Tool; readonly label: string }[] = [
 ];
 
 export function DrawTool({ session, viewport }: ToolProps) {
+  const on = tool.value !== null;
+  useEffect(() => {
+    // The first question about what lies under the pointer is answered once a search tree is there: it is asked now.
+    if (on) viewport?.pick(0, 0);
+  }, [on, viewport]);
   if (viewport === null || tool.value === null) return null;
   return (
     <>
@@ -73,7 +79,7 @@ function Toolbar({ session, viewport }: { session: ZippableSession; viewport: Vi
           {drawing
             ? drawn.begun.length === 0
               ? 'Click points around a limb, on the model. Drag beside it to turn it.'
-              : 'Go all around; back on its first point the border is whole.'
+              : 'Go all around. It closes on its first point.'
             : 'Click where a part is to be open. Every part needs one opening or gets one.'}
         </p>
         <div class="row">

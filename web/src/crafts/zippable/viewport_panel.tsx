@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The model with the zipper's course, or the ribbon in space; what floats over them.
-import { effect, useSignal } from '@preact/signals';
+import { effect, untracked, useSignal } from '@preact/signals';
 import type { ComponentChildren } from 'preact';
 import { useEffect, useMemo, useRef } from 'preact/hooks';
 import { Icon, Segmented } from '../../ui';
@@ -79,9 +79,16 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
     made.setViewpoint(viewpoint);
     made.lookFromViewpoint(false);
     viewport.current = made;
-    const makeRoom = () => made.setFreeRectangle(freeRectangle(foot.current));
+    const makeRoom = () => {
+      made.setFreeRectangle(freeRectangle(foot.current));
+      ++cameraMoves.value;
+    };
     const stop = [
       keepDrawn(made, session),
+      effect(() => {
+        void tool.value;
+        untracked(makeRoom);
+      }),
       effect(() => made.setResting(session.previewing.value || session.activity.value.kind !== 'idle')),
     ];
     const resize = new ResizeObserver(makeRoom);
@@ -148,5 +155,8 @@ function DistortionLegend({ session }: { session: ZippableSession }) {
 function freeRectangle(foot: Element | null): Insets {
   const height = foot?.getBoundingClientRect().height ?? 0;
   const bottom = height > 0 ? height + 20 : 24;
-  return narrow() ? { left: 10, top: 60, right: 10, bottom } : { left: 24, top: 64, right: 24, bottom };
+  const tools = tool.peek() ? 90 : 0;
+  return narrow()
+    ? { left: 10, top: 60 + tools, right: 10, bottom }
+    : { left: 24, top: 64 + tools, right: 24, bottom };
 }

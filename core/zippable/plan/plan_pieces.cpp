@@ -32,7 +32,7 @@ class PieceMaker {
         const int o = adjacency.opposite(h);
         if (o >= 0 && splitting.piece_of_face[o / 3] == piece) continue;
         next_[piece][adjacency.from(h)] = {adjacency.to(h), o >= 0};
-        if (o < 0) piece_of_edge_[adjacency.from(h)] = piece;
+        if (o < 0) face_of_edge_[adjacency.from(h)] = f;
       }
     }
     for (std::size_t s = 0; s < splitting.splits.size(); ++s) {
@@ -65,11 +65,18 @@ class PieceMaker {
   }
 
   void marker(const SideMark& mark, int number, const char* side) {
-    const int piece = piece_of_edge_.at(mark.edge);
-    double length = 2;
-    while (length > 0.3 && !inside(piece, mark.flat_mm + length * mark.inward)) length /= 2;
+    const int piece = splitting_.piece_of_face[face_of_edge_.at(mark.edge)];
+    constexpr double length_mm = 2;
+    double length = length_mm;
+    while (length > length_mm / 8 && !inside(piece, mark.flat_mm + length * mark.inward)) length /= 2;
+    Vec2 end = mark.flat_mm + length * mark.inward;
+    if (!inside(piece, end)) {  // in a sharp corner: into the triangle at the edge
+      const int f = face_of_edge_.at(mark.edge);
+      const Vec2 middle = (flat_[F_(f, 0)] + flat_[F_(f, 1)] + flat_[F_(f, 2)]) / 3 - mark.flat_mm;
+      end = mark.flat_mm + std::min(1.0, length_mm / std::max(middle.norm(), 1e-9)) * middle;
+    }
     result_.pieces[piece].marks.push_back({CutLayer::mark,
-                                           {mark.flat_mm, mark.flat_mm + length * mark.inward},
+                                           {mark.flat_mm, end},
                                            false,
                                            "marker-" + std::to_string(number) + "-" + side});
     text(piece, mark.flat_mm + (length + 0.4) * mark.inward, mark.along, std::to_string(number), 0);
@@ -164,7 +171,7 @@ class PieceMaker {
   std::vector<std::vector<int>> faces_;                     // per piece
   std::vector<std::vector<std::pair<Vec2, double>>> texts_; // per piece: centre and radius of what is written
   std::vector<std::map<int, std::pair<int, bool>>> next_;   // per piece, by vertex: the next one around it, and whether a split lies between
-  std::map<int, int> piece_of_edge_;                        // by the boundary edge's first vertex
+  std::map<int, int> face_of_edge_;                         // by the boundary edge's first vertex
   std::map<std::pair<int, int>, std::string> letters_;      // by piece and the first vertex of its side of the split
 };
 

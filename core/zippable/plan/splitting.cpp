@@ -79,16 +79,9 @@ struct Tree {
   std::vector<int> order, parent_halfedge;
 };
 
-Tree tree_of(const Adjacency& adjacency) {
+Tree tree_of(const Adjacency& adjacency, int root) {
   Tree tree;
   tree.parent_halfedge.assign(std::size_t(adjacency.face_count()), -1);
-  const auto is_end = [&](int f) {
-    int neighbours = 0;
-    for (int h = 3 * f; h < 3 * f + 3; ++h) neighbours += adjacency.opposite(h) >= 0;
-    return neighbours <= 1;
-  };
-  int root = 0;
-  while (root + 1 < adjacency.face_count() && !is_end(root)) ++root;
   tree.order.push_back(root);
   for (std::size_t i = 0; i < tree.order.size(); ++i)
     for (int h = 3 * tree.order[i]; h < 3 * tree.order[i] + 3; ++h) {
@@ -100,16 +93,20 @@ Tree tree_of(const Adjacency& adjacency) {
   return tree;
 }
 
-}  // namespace
+/// Triangles with one neighbour at most.
+std::vector<int> ends_of(const Adjacency& adjacency) {
+  std::vector<int> ends;
+  for (int f = 0; f < adjacency.face_count(); ++f) {
+    int neighbours = 0;
+    for (int h = 3 * f; h < 3 * f + 3; ++h) neighbours += adjacency.opposite(h) >= 0;
+    if (neighbours <= 1) ends.push_back(f);
+  }
+  return ends;
+}
 
-Splitting split_ribbon(const Triangles& F, const std::vector<Vec2>& flat, const std::function<bool(const Polygon&)>& fits,
-                       double clearance_mm, Context& context) {
-  TriangleMesh mesh;
-  mesh.V = Positions::Zero(static_cast<Eigen::Index>(flat.size()), 3);
-  mesh.F = F;
-  const Adjacency adjacency(mesh);
-  const Tree tree = tree_of(adjacency);
-  const Overlaps overlaps(F, flat, clearance_mm);
+Splitting split_towards(int root, const Adjacency& adjacency, const Overlaps& overlaps, const std::function<bool(const Polygon&)>& fits,
+                        Context& context) {
+  const Tree tree = tree_of(adjacency, root);
   const std::size_t count = tree.order.size();
   std::vector<Growing> growing(count);
   std::vector<std::vector<int>> children(count);
@@ -155,6 +152,35 @@ Splitting split_ribbon(const Triangles& F, const std::vector<Vec2>& flat, const 
     return key(a) < key(b);
   });
   return result;
+}
+
+}  // namespace
+
+Splitting split_ribbon(const Triangles& F, const std::vector<Vec2>& flat, const std::function<bool(const Polygon&)>& fits,
+                       double clearance_mm, Context& context) {
+  constexpr std::size_t most_tries = 8;
+  TriangleMesh mesh;
+  mesh.V = Positions::Zero(static_cast<Eigen::Index>(flat.size()), 3);
+  mesh.F = F;
+  const Adjacency adjacency(mesh);
+  const Overlaps overlaps(F, flat, clearance_mm);
+  const auto smallest_mm2 = [&](const Splitting& splitting) {
+    std::vector<double> area(std::size_t(splitting.piece_count), 0.0);
+    for (int f = 0; f < F.rows(); ++f) area[splitting.piece_of_face[f]] += signed_area_mm2(overlaps.corners(f));
+    return *std::min_element(area.begin(), area.end());
+  };
+  const std::vector<int> ends = ends_of(adjacency);
+  const std::size_t tries = std::min(most_tries, ends.size());
+  std::pair<int, double> best_value;
+  Splitting best;
+  for (std::size_t i = 0; i < tries; ++i) {
+    const auto span = context.span(static_cast<double>(i) / static_cast<double>(tries), static_cast<double>(i + 1) / static_cast<double>(tries), "Splitting");
+    Splitting splitting = split_towards(ends[i * ends.size() / tries], adjacency, overlaps, fits, context);
+    const std::pair value(-splitting.piece_count, smallest_mm2(splitting));
+    if (i == 0 || value > best_value) best = std::move(splitting), best_value = value;
+    if (best.piece_count == 1) break;
+  }
+  return best;
 }
 
 }  // namespace formwright

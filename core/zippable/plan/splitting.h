@@ -22,7 +22,8 @@ struct Splitting {
 
 /// `F`: a disc with all vertices on its boundary, which runs through them in order, triangles counter-clockwise at `flat_mm`. `fits`:
 /// may a piece with this convex hull be cut? Pieces grow from the ribbon's ends, joined where it branches as long as they stay valid: on a
-/// ribbon without branches no division has fewer. Windings of a piece that are far apart along the boundary keep `clearance_mm`.
+/// ribbon without branches no division has fewer. Of several ends to grow towards, the one with the fewest pieces is taken, then with the
+/// largest smallest piece. Windings of a piece that are far apart along the boundary keep `clearance_mm`.
 /// Throws Error: invalid_input ("bed_x_mm": a single triangle does not fit), cancelled.
 Splitting split_ribbon(const Triangles& F, const std::vector<Vec2>& flat_mm, const std::function<bool(const Polygon&)>& fits,
                        double clearance_mm, Context& context);

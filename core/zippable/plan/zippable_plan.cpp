@@ -54,6 +54,12 @@ void say_what_to_know(const PlanOptions& options, ZippablePlan& plan) {
                          "; there the edge is moved by less, and the zipper sits closer: a smaller coil or a wider ribbon mends it.");
   if (2 * plan.zipper.tape_width_mm > plan.width_mean_mm)
     plan.notes.push_back("The two tapes are wider than the ribbon and overlap behind it: trim them or use a wider ribbon.");
+  constexpr double crumb_mm2 = 20;
+  const auto crumbs = std::count_if(plan.pieces.pieces.begin(), plan.pieces.pieces.end(),
+                                    [](const PlanPiece& piece) { return piece.ribbon_area_mm2 < crumb_mm2; });
+  if (crumbs > 0)
+    plan.notes.push_back(plural(static_cast<int>(crumbs), "piece is", "pieces are") +
+                         " smaller than 20 mm² and may be left out: corners where the ribbon meets itself.");
   if (plan.pieces.shortened_allowances > 0)
     plan.notes.push_back(plural(plan.pieces.shortened_allowances, "seam allowance", "seam allowances") +
                          " would have met their own piece and are shorter or left out.");

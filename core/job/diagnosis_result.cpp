@@ -30,6 +30,7 @@ std::vector<ReportField> diagnosis_report_fields() {
           {"unexplained_before_mm", "Structure before", "mm", "size of smooth misfit that the calibrated model leaves"},
           {"unexplained_after_mm", "Structure after", "mm", "the same with the extended model"},
           {"structure_test", "Structure test", "", "agreement between neighbours' errors, its p-value and length, before and after"},
+          {"trials", "Trials", "", "explanations that were asked to predict what was held out"},
           {"hypotheses", "Explanations", "", "the most probable: causes, with unknown structure or not, probability, log evidence"},
           {"parameters", "Material", "", "calibrated, and with the extended model"},
           {"simulations", "Simulations", "", "of the sheet"},

@@ -2,9 +2,11 @@
 // Runs the recorded jobs of this folder natively and in WASM and compares both with each other and with what was
 // recorded.
 //   node parity.mjs NATIVE_PROGRAM FORMWRIGHT_MJS [--record]
-// A recorded job is {"job", "tolerance", "recorded"}: `tolerance` relative, per figure of the report ("*" for the
+// A recorded job is {"job", "given", "tolerance", "recorded"}: `given` names inputs that are outputs of other jobs ({"job", "output"}, made
+// natively), `tolerance` relative, per figure of the report ("*" for the
 // rest; figures that measure time or memory are left out), `recorded` what the report said when it was recorded.
 import { spawn } from 'node:child_process';
+import { createHash } from 'node:crypto';
 import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
@@ -16,10 +18,13 @@ const folder = path.dirname(fileURLToPath(import.meta.url));
 const timed = (name) => name.startsWith('seconds_') || name === 'peak_memory_mb';
 
 /** Runs one job in a native job process; resolves to its result message and its outputs' bytes. */
-function runNatively(job) {
+function runNatively(job, files = {}) {
   const outputs = mkdtempSync(path.join(tmpdir(), 'formwright-parity-'));
   const child = spawn(native, ['run-jobs'], { stdio: ['pipe', 'pipe', 'inherit'] });
-  child.stdin.write(JSON.stringify({ run: 'x', job, blobs: {}, outputs }) + '\n');
+  const inputs = mkdtempSync(path.join(tmpdir(), 'formwright-parity-'));
+  const blobs = Object.fromEntries(Object.entries(files).map(([sha256, bytes]) => [sha256, path.join(inputs, sha256)]));
+  for (const [sha256, file] of Object.entries(blobs)) writeFileSync(file, files[sha256]);
+  child.stdin.write(JSON.stringify({ run: 'x', job, blobs, outputs }) + '\n');
   return new Promise((resolve, reject) => {
     child.on('exit', (code) => reject(new Error(`the native program ended with ${code}`)));
     createInterface({ input: child.stdout }).on('line', (line) => {
@@ -30,6 +35,7 @@ function runNatively(job) {
       const bytes = {};
       for (const name of Object.keys(message.result.outputs ?? {})) bytes[name] = readFileSync(path.join(outputs, name));
       rmSync(outputs, { recursive: true });
+      rmSync(inputs, { recursive: true });
       resolve({ ...message.result, bytes });
     });
   });
@@ -47,7 +53,8 @@ async function wasmRunner() {
       wasm._free(pointer);
     }
   };
-  return (job) => {
+  return (job, files = {}) => {
+    for (const [sha256, bytes] of Object.entries(files)) wasm.HEAPU8.set(bytes, withText(sha256, (p) => wasm._fw_blob_new(p, bytes.length)));
     const result = JSON.parse(wasm.UTF8ToString(withText(JSON.stringify(job), (p) => wasm._fw_run(p))));
     const bytes = {};
     for (const name of Object.keys(result.outputs ?? {})) {
@@ -118,13 +125,27 @@ function comparePly(name, a, b, tolerance) {
   });
 }
 
+/** The job with the inputs it is given by other jobs, and their bytes. */
+async function withGiven({ job, given = {} }) {
+  const files = {};
+  const inputs = { ...job.inputs };
+  for (const [name, { job: maker, output }] of Object.entries(given)) {
+    const bytes = (await runNatively(maker)).bytes[output];
+    const sha256 = createHash('sha256').update(bytes).digest('hex');
+    files[sha256] = bytes;
+    inputs[name] = { sha256, file_name: output };
+  }
+  return { job: { ...job, inputs }, files };
+}
+
 const runInWasm = await wasmRunner();
 let passed = 0;
 let failed = 0;
 for (const file of readdirSync(folder).filter((name) => name.endsWith('.json')).sort()) {
   const recorded = JSON.parse(readFileSync(path.join(folder, file), 'utf8'));
-  const a = await runNatively(recorded.job);
-  const b = runInWasm(recorded.job);
+  const { job, files } = await withGiven(recorded);
+  const a = await runNatively(job, files);
+  const b = runInWasm(job, files);
   if (flag === '--record') {
     const keep = Object.fromEntries(Object.entries(a.report ?? {}).filter(([name]) => !timed(name)));
     recorded.recorded = a.error ? { error: a.error } : { report: keep };

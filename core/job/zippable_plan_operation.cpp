@@ -39,6 +39,8 @@ std::vector<ReportField> report_fields() {
           {"narrow_places", "Narrow places", "", "corners of the zipper where the edge is moved by less"},
           {"offset_least_mm", "Least offset", "mm", "at the narrowest place"},
           {"binormal_share", "Share along the binormal", "", "of the zipper's length; elsewhere along the surface (gluing)"},
+          {"sides_made_equal", "Sides made equal", "", "along the whole zipper (gluing)"},
+          {"shear_max_mm", "Largest shear", "mm", "of the tape, to make the sides equal (gluing)"},
           {"ribbon_width_mean_mm", "Mean width", "mm", "of the ribbon as designed"},
           {"markers", "Markers", "", "on each side"},
           {"marker_spacing_mm", "Marker spacing", "mm", "along the zipper"},
@@ -86,6 +88,8 @@ void report_lengths(Json& report, const FlatDesign& design, const ZippablePlan& 
   report["narrow_places"] = ribbon.narrow_samples;
   report["offset_least_mm"] = ribbon.least_share * plan.zipper.offset_mm();
   report["binormal_share"] = ribbon.binormal_share;
+  report["sides_made_equal"] = ribbon.sides_made_equal;
+  report["shear_max_mm"] = ribbon.shear_max_mm;
   report["ribbon_width_mean_mm"] = plan.width_mean_mm;
   report["markers"] = plan.markers.markers.size();
   report["marker_spacing_mm"] = plan.marker_spacing_mm;

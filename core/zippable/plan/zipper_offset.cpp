@@ -82,16 +82,19 @@ void smooth_shares(const FlatDesign& design, double offset_mm, std::vector<doubl
   }
 }
 
-/// Lowers shares at triangles that would lose too much of their area, until none does.
-void make_room(const FlatDesign& design, double offset_mm, OffsetRibbon& ribbon, const std::function<void()>& move,
+/// Lowers shares at triangles that would lose too much of their area, until none does. False: at some no share was left to lower.
+bool make_room(const FlatDesign& design, double offset_mm, OffsetRibbon& ribbon, const std::function<void()>& move,
                const std::function<AreaPair(Eigen::Index)>& areas) {
+  bool all_have_room = true;
   for (int round = 0;; ++round) {
     move();
+    all_have_room = true;
     std::vector<char> too_wide(ribbon.offset_share.size(), 0);
     bool any = false;
     for (Eigen::Index f = 0; f < design.F.rows(); ++f) {
       const auto [after, before] = areas(f);
       if (after >= 0.1 * before) continue;
+      all_have_room = false;
       for (int k = 0; k < 3; ++k)
         if (const int sample = design.boundary[design.F(f, k)].sample; sample >= 0 && ribbon.offset_share[sample] > 0)
           too_wide[sample] = 1, any = true;
@@ -105,6 +108,7 @@ void make_room(const FlatDesign& design, double offset_mm, OffsetRibbon& ribbon,
     if (share < 1) ++ribbon.narrow_samples;
     ribbon.least_share = std::min(ribbon.least_share, share);
   }
+  return all_have_room;
 }
 
 void move_in_plane(const FlatDesign& design, double offset_mm, OffsetRibbon& ribbon) {
@@ -128,22 +132,37 @@ void move_in_plane(const FlatDesign& design, double offset_mm, OffsetRibbon& rib
 
 void move_in_space(const FlatDesign& design, double offset_mm, OffsetRibbon& ribbon) {
   const std::vector<Vec3> surface = left_along_surface(design);
-  std::vector<Vec3> direction(surface.size(), Vec3::Zero()), positions;
+  std::vector<Vec3> direction(surface.size(), Vec3::Zero()), steps = direction, positions;
+  std::vector<std::vector<Vec3>> points(design.pieces.size());
   double usable_mm = 0;
-  for (const auto& piece : design.pieces) {
-    std::vector<Vec3> points, lefts;
-    for (const int sample : piece) points.push_back(design.boundary[design.left_vertex[sample]].position_mm), lefts.push_back(surface[sample]);
-    const BinormalField field = binormals(points, lefts, 2 * offset_mm);
+  for (std::size_t p = 0; p < design.pieces.size(); ++p) {
+    const auto& piece = design.pieces[p];
+    std::vector<Vec3> lefts;
+    for (const int sample : piece) points[p].push_back(design.boundary[design.left_vertex[sample]].position_mm), lefts.push_back(surface[sample]);
+    const BinormalField field = binormals(points[p], lefts, 2 * offset_mm);
     for (std::size_t k = 0; k < piece.size(); ++k) direction[piece[k]] = field.left[k];
     for (std::size_t k = 0; k + 1 < piece.size(); ++k)
-      if (field.usable[k] && field.usable[k + 1]) usable_mm += (points[k + 1] - points[k]).norm();
+      if (field.usable[k] && field.usable[k + 1]) usable_mm += (points[p][k + 1] - points[p][k]).norm();
   }
   ribbon.binormal_share = usable_mm / std::max(design.zipper_mm, 1e-300);
+  bool equal_sides = true;
   const auto move = [&] {
+    ribbon.shear_max_mm = 0;
+    for (std::size_t p = 0; p < design.pieces.size(); ++p) {
+      const auto& piece = design.pieces[p];
+      std::vector<Vec3> own;
+      for (const int sample : piece) own.push_back(ribbon.offset_share[sample] * direction[sample]);
+      const std::vector<Vec3> before = own;
+      if (equal_sides) make_sides_equal(points[p], 0, piece.size(), own);
+      for (std::size_t k = 0; k < piece.size(); ++k) {
+        steps[piece[k]] = own[k];
+        ribbon.shear_max_mm = std::max(ribbon.shear_max_mm, offset_mm * (own[k] - before[k]).norm());
+      }
+    }
     positions.clear();
     for (const FlatVertex& v : design.boundary) {
       positions.push_back(v.position_mm);
-      if (v.sample >= 0) positions.back() += (v.left ? 1 : -1) * offset_mm * ribbon.offset_share[v.sample] * direction[v.sample];
+      if (v.sample >= 0) positions.back() += (v.left ? 1 : -1) * offset_mm * steps[v.sample];
     }
   };
   const auto areas = [&](Eigen::Index f) {
@@ -153,7 +172,14 @@ void move_in_space(const FlatDesign& design, double offset_mm, OffsetRibbon& rib
                after = (positions[b] - positions[a]).cross(positions[c] - positions[a]);
     return AreaPair(before.norm() > 0 ? after.dot(before.normalized()) : 0.0, before.norm());
   };
-  make_room(design, offset_mm, ribbon, move, areas);
+  // Where the ribbon is too narrow even for the change that makes sides equal, or that would be larger than the offset, they stay unequal.
+  if (!make_room(design, offset_mm, ribbon, move, areas) || ribbon.shear_max_mm > offset_mm) {
+    equal_sides = false;
+    ribbon.offset_share.assign(ribbon.offset_share.size(), 1.0);
+    ribbon.narrow_samples = 0, ribbon.least_share = 1;
+    make_room(design, offset_mm, ribbon, move, areas);
+  }
+  ribbon.sides_made_equal = equal_sides;
   ribbon.flat_mm = unfold(positions, design.F);
 }
 

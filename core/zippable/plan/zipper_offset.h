@@ -35,6 +35,8 @@ struct OffsetRibbon {
   double least_share = 1;
   double left_mm = 0, right_mm = 0;        // lengths of the moved sides
   double binormal_share = 0;               // of the zipper's length; gluing
+  bool sides_made_equal = false;           // along the whole zipper, by a change of the steps of at most the offset; gluing
+  double shear_max_mm = 0;                 // the largest such change, nearly all of it along the zipper
   double offset_mean_mm = 0;               // over the samples
 };
 

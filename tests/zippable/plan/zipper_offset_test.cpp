@@ -131,6 +131,14 @@ TEST(ZipperOffset, ARibbonTooNarrowIsRefused) {
   }
 }
 
+TEST(ZipperOffset, GluedSidesAreEquallyLongOnAWholeModel) {
+  const FlatDesign design = test::designed("heart", 40, 300);
+  const OffsetRibbon ribbon = offset_ribbon(design, ZipperOffset::gluing, 2.9);
+  EXPECT_TRUE(ribbon.sides_made_equal);
+  EXPECT_NEAR(ribbon.left_mm, ribbon.right_mm, 1e-9 * ribbon.left_mm);
+  EXPECT_NEAR(ribbon.left_mm, design.zipper_mm, 0.02 * design.zipper_mm);
+}
+
 TEST(ZipperOffset, NoTriangleTurnsOverAndNothingMovesFartherThanAsked) {
   for (const char* sample : {"t_shape", "star", "octopus"}) {
     const FlatDesign design = test::designed(sample, 20);
@@ -145,6 +153,10 @@ TEST(ZipperOffset, NoTriangleTurnsOverAndNothingMovesFartherThanAsked) {
       EXPECT_NEAR(ribbon.left_mm, design.zipper_mm, 0.15 * design.zipper_mm) << sample;
       if (method == ZipperOffset::gluing) {
         EXPECT_GT(ribbon.binormal_share, 0.3) << sample;
+        if (ribbon.sides_made_equal) {
+          EXPECT_NEAR(ribbon.left_mm, ribbon.right_mm, 1e-9 * ribbon.left_mm) << sample;
+          EXPECT_LE(ribbon.shear_max_mm, 2.9);
+        }
       }
     }
     // Without room for a zipper the sides are those of the design, equally long.

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
 #include "job/file_pack.h"
 #include "job/model_input.h"
 #include "job/zippable_operation.h"

@@ -49,8 +49,6 @@ struct Diagnosis {
   std::vector<NotSeparable> not_separable;  // of the named causes with any other
   ParameterFit base;                      // calibrated without any effect
   ParameterFit extended;                  // with the named causes; as base where none is
-  std::vector<int> liberties;             // discrepancy parameters
-  std::vector<Sensitivities> liberty_sensitivities;
   std::size_t structure = 0;              // of the best explanation: index into structure_sizes
   std::vector<NoiseEstimate> noise;       // each object
   std::vector<StructureTest> structure_before, structure_after;

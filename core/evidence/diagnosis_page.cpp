@@ -22,15 +22,34 @@ std::string escaped(const std::string& text) {
   return result;
 }
 
+/// Large figures in groups of three, small ones with a power of ten, never 2.7e+06.
 std::string figure(double value, int digits = 3) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*g", digits, value);
-  std::string result = text;
-  if (!result.empty() && result[0] == '-') result = "\u2212" + result.substr(1);
-  return result;
+  char text[40];
+  const double size = std::abs(value);
+  if (size >= std::pow(10, digits) && size < 1e15) {
+    const double unit = std::pow(10, std::floor(std::log10(size)) - digits + 1);
+    std::snprintf(text, sizeof text, "%.0f", std::round(size / unit) * unit);
+    std::string grouped(text);
+    for (auto at = static_cast<std::ptrdiff_t>(grouped.size()) - 3; at > 0; at -= 3) grouped.insert(static_cast<std::size_t>(at), "\u2009");
+    return (value < 0 ? "\u2212" : "") + grouped;
+  }
+  if (size > 0 && size < 1e-3) {
+    const double power = std::floor(std::log10(size));
+    std::snprintf(text, sizeof text, "%.*g\u2009\u00b7\u200910\u207b", digits, size / std::pow(10, power));
+    std::string result = (value < 0 ? "\u2212" : "") + std::string(text);
+    static constexpr const char* raised[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074", "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
+    for (const char digit : std::to_string(static_cast<int>(-power))) result += raised[digit - '0'];
+    return result;
+  }
+  std::snprintf(text, sizeof text, "%.*g", digits, size);
+  return (value < 0 ? "\u2212" : "") + std::string(text);
 }
 
-std::string percent(double share) { return std::to_string(static_cast<int>(std::lround(100 * share))) + "\u2009%"; }
+std::string percent(double share) {
+  if (share > 0.99) return "&gt;\u200999\u2009%";
+  if (share < 0.01) return "&lt;\u20091\u2009%";
+  return std::to_string(static_cast<int>(std::lround(100 * share))) + "\u2009%";
+}
 
 /// Shares are said in percent, everything else with its unit.
 std::string quantity(double value, const std::string& unit) { return unit.empty() ? figure(value, 2) : figure(value, 2) + "\u2009" + escaped(unit); }

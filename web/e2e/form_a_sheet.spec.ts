@@ -1,8 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-import AxeBuilder from '@axe-core/playwright';
 import type { Page } from '@playwright/test';
 import { readFileSync } from 'node:fs';
-import { backend, ballObj, expect, fileOf, openPage, readStl, strip, test } from './page';
+import {
+  backend,
+  ballObj,
+  expect,
+  expectAccessible,
+  fileOf,
+  looks,
+  openPage,
+  readStl,
+  strip,
+  test,
+} from './page';
 
 test.skip(backend === 'mock', 'the mock makes reliefs only');
 
@@ -159,30 +169,18 @@ test('a model with its material, and a reload that keeps the work of both rooms'
   await expect(page.getByRole('list', { name: 'Earlier results' }).getByRole('button')).toHaveCount(1);
 });
 
-for (const colorScheme of ['light', 'dark'] as const)
-  for (const viewport of [
-    { width: 1280, height: 800 },
-    { width: 390, height: 844 },
-  ])
-    test(`axe finds nothing serious in the room, ${colorScheme}, ${viewport.width} px`, async ({
-      browser,
-    }) => {
-      const context = await browser.newContext({ colorScheme, viewport, reducedMotion: 'reduce' });
-      const page = await context.newPage();
-      const check = async (what: string) => {
-        const { violations } = await new AxeBuilder({ page }).analyze();
-        const serious = violations.filter(({ impact }) => impact === 'serious' || impact === 'critical');
-        const told = serious.map(
-          ({ id, nodes }) => `${what}: ${id}: ${nodes.map(({ html }) => html.slice(0, 120)).join(' | ')}`,
-        );
-        expect(told).toEqual([]);
-      };
-      await openRoom(page);
-      await check('empty');
-      await page.locator('.gallery button', { hasText: 'Pyramid' }).click();
-      await expect(strip(page, 'Preview up to date')).toBeVisible();
-      await check('preview');
-      await page.getByRole('button', { name: /^Material/ }).click();
-      await check('folded group');
-      await context.close();
-    });
+for (const look of looks)
+  test(`axe finds nothing serious in the room, ${look.colorScheme}, ${look.viewport.width} px`, async ({
+    browser,
+  }) => {
+    const context = await browser.newContext(look);
+    const page = await context.newPage();
+    await openRoom(page);
+    await expectAccessible(page, 'empty');
+    await page.locator('.gallery button', { hasText: 'Pyramid' }).click();
+    await expect(strip(page, 'Preview up to date')).toBeVisible();
+    await expectAccessible(page, 'preview');
+    await page.getByRole('button', { name: /^Material/ }).click();
+    await expectAccessible(page, 'folded group');
+    await context.close();
+  });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the stories share: opening the page with its backend, a model file, an STL reader.
+import AxeBuilder from '@axe-core/playwright';
 import type { Page } from '@playwright/test';
 import { test as base, expect } from '@playwright/test';
 import { readFileSync } from 'node:fs';
@@ -113,4 +114,22 @@ export function readStl(bytes: Buffer): Solid {
   }
   const closed = [...edges.values()].every((sum) => sum === 0);
   return { triangles, size: high.map((x, k) => x - (low[k] ?? 0)), closed };
+}
+
+/** Both themes at both widths, as a new page takes them. */
+export const looks = (['light', 'dark'] as const).flatMap((colorScheme) =>
+  [
+    { width: 1280, height: 800 },
+    { width: 390, height: 844 },
+  ].map((viewport) => ({ colorScheme, viewport, reducedMotion: 'reduce' as const })),
+);
+
+/** Fails with what axe finds serious; `what` says on which state of the page. */
+export async function expectAccessible(page: Page, what: string): Promise<void> {
+  const { violations } = await new AxeBuilder({ page }).analyze();
+  const serious = violations.filter(({ impact }) => impact === 'serious' || impact === 'critical');
+  const told = serious.map(
+    ({ id, nodes }) => `${what}: ${id}: ${nodes.map(({ html }) => html.slice(0, 120)).join(' | ')}`,
+  );
+  expect(told).toEqual([]);
 }

@@ -13,6 +13,7 @@ import { resumePending } from './crafts/common/full_solve';
 import { EvidenceSession } from './crafts/evidence/evidence_session';
 import { ReliefSession } from './crafts/relief/relief_session';
 import { ThermoformSession } from './crafts/thermoform/thermoform_session';
+import { ZippableSession } from './crafts/zippable/zippable_session';
 
 async function start(root: HTMLElement): Promise<void> {
   followSystemTheme();
@@ -20,10 +21,12 @@ async function start(root: HTMLElement): Promise<void> {
   const sessions = {
     relief: new ReliefSession(services),
     thermoform: new ThermoformSession(services),
+    zippable: new ZippableSession(services),
     evidence: new EvidenceSession(services),
   };
   effect(() => resumePending(sessions.relief));
   effect(() => resumePending(sessions.thermoform));
+  effect(() => resumePending(sessions.zippable));
   effect(() => resumePending(sessions.evidence));
   if (!startRouting() && !services.projects.isBlank.value)
     go(placeOfWork(services.projects.document.value) ?? 'relief');

@@ -65,7 +65,8 @@ const std::vector<CauseTable>& cause_table() {
 
 }  // namespace
 
-void declare_thermoform_parameters(const Json& nominal, bool fit_mould_place, std::vector<ModelParameter>& parameters, std::vector<Cause>& causes) {
+void declare_thermoform_parameters(const Json& nominal, bool fit_mould_place, const std::vector<std::string>& without,
+                                   std::vector<ModelParameter>& parameters, std::vector<Cause>& causes) {
   std::vector<ParameterInfo> infos = describe_parameters<ThermoformOptions>();
   for (ParameterInfo& info : describe_parameters<MeasurementEffects>()) infos.push_back(std::move(info));
   const auto add = [&](const Turned& turned, ParameterRole role) {
@@ -90,6 +91,7 @@ void declare_thermoform_parameters(const Json& nominal, bool fit_mould_place, st
     for (const Turned& turned : mould_place) add(turned, ParameterRole::base);
   for (const CauseTable& row : cause_table()) {
     if (fit_mould_place && std::string_view(row.name) == "mould_shift") continue;
+    if (std::find(without.begin(), without.end(), row.name) != without.end()) continue;
     Cause cause{row.name, row.label, row.explanation, row.remedy, {}, ""};
     for (const Turned& turned : row.parameters) cause.parameters.push_back(add(turned, ParameterRole::effect));
     cause.unit = parameters.back().unit;

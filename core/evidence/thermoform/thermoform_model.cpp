@@ -112,7 +112,12 @@ ThermoformModel::ThermoformModel(std::vector<FormedObject> objects, ThermoformMo
   Json nominal = with_profile(objects_.front().setup.parameters, options_.profile);
   const Json measurement = write_parameters(options_.profile.measurement);
   for (const auto& [name, value] : measurement.items()) nominal[name] = value;
-  declare_thermoform_parameters(nominal, options_.fit_mould_place, parameters_, causes_);
+  declare_thermoform_parameters(nominal, options_.fit_mould_place, options_.without, parameters_, causes_);
+  // What a profile says of the material was measured, on a machine that was well: far more than a guess, and the only thing that tells a
+  // weak vacuum from a stiff sheet.
+  constexpr double known_share = 0.3;
+  for (ModelParameter& p : parameters_)
+    if (p.role == ParameterRole::base && options_.profile.parameters.contains(p.name)) p.prior_sd *= known_share;
   for (const FormedObject& object : objects_) {
     const auto own = read_parameters<ThermoformOptions>(object.setup.parameters);
     Measurement m;

@@ -29,6 +29,7 @@ struct ThermoformModelOptions {
   int triangles = 5000;
   bool fit_mould_place = false;  // as calibration does: the mould's place is a base parameter, no cause
   MachineProfile profile;        // what is known of the machine; empty where nothing is
+  std::vector<std::string> without;  // causes that are not considered
 };
 
 class ThermoformModel : public ForwardModel {
@@ -66,6 +67,7 @@ class ThermoformModel : public ForwardModel {
 };
 
 /// The parameters a diagnosis turns, base first, and the causes they belong to.
-void declare_thermoform_parameters(const Json& nominal, bool fit_mould_place, std::vector<ModelParameter>& parameters, std::vector<Cause>& causes);
+void declare_thermoform_parameters(const Json& nominal, bool fit_mould_place, const std::vector<std::string>& without,
+                                   std::vector<ModelParameter>& parameters, std::vector<Cause>& causes);
 
 }  // namespace formwright

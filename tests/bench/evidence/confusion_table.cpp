@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hides effects in virtual objects and asks the diagnosis for them: one line of JSON for each case, a summary at the end.
+// Hides effects in virtual objects and asks the diagnosis for them: one line of JSON for each case; score_confusion_table.py counts them.
 //   confusion_table [--seed N] [--cases N | --repeat N] [--levels 1,0.5,0.25] [--noise 0.05,0.15] [--only CAUSE] [--mould NAME]
-//                   [--pairs N] [--left-out N] [--unseen] [--verbose]
+//                   [--pairs N] [--no-pairs] [--left-out] [--calibrated] [--unseen] [--verbose]
+// --pairs hides two causes at a time, --no-pairs does not look for two, --left-out takes the hidden cause off the list that is asked,
+// --calibrated has a profile of the machine from when it was well.
 #include <cstdio>
 #include <cstring>
 #include <algorithm>
@@ -9,6 +11,7 @@
 #include <map>
 #include <sstream>
 
+#include "evidence/calibration.h"
 #include "evidence/diagnosis.h"
 #include "evidence/virtual_lab.h"
 
@@ -22,8 +25,8 @@ struct Arguments {
   int repeat = 1, cases = 0;
   std::vector<double> levels{1, 0.5, 0.25}, noise{0.05, 0.15};
   std::string only, mould;
-  bool unseen = false, verbose = false, pairs_searched = true;
-  int pairs = 0, left_out = 0;
+  bool unseen = false, verbose = false, calibrated = false, pairs_searched = true, left_out = false;
+  int pairs = 0;
 };
 
 std::vector<double> numbers(const char* text) {
@@ -45,7 +48,20 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
   Observation observation;
   observation.sigma_mm = sigma;
   const FormedObject object = make_object(mould, world, effects, observation, random);
-  ThermoformModel model({object}, {});
+  ThermoformModelOptions asked;
+  if (arguments.left_out) asked.without = hidden;
+  if (arguments.calibrated) {
+    // The machine was calibrated on another object while it was well.
+    ThermoformModelOptions well;
+    well.fit_mould_place = true;
+    well.triangles = 2500;
+    const ThermoformModel before({make_object(static_cast<Mould>((static_cast<int>(mould) + 2) % 4), world, {}, observation, random)}, well);
+    SimulationBag before_bag(before);
+    Context calibration;
+    asked.profile = before.profile_at(calibrate(before_bag, calibration).u);
+    for (const char* name : {"mould_shift_x_mm", "mould_shift_y_mm"}) asked.profile.parameters.erase(name);
+  }
+  ThermoformModel model({object}, asked);
   SimulationBag bag(model);
   Context context;
   DiagnosisOptions options;
@@ -58,6 +74,7 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
   line["values"] = Json::array();
   for (const HiddenEffect& e : effects) line["values"].push_back(e.values);
   line["level"] = level;
+  line["left_out"] = arguments.left_out;
   line["sigma_mm"] = sigma;
   line["reading"] = reading_name(d.reading);
   line["doubtful"] = d.doubtful;
@@ -143,6 +160,8 @@ int main(int count, char** values) {
     else if (flag == "--mould") a.mould = next();
     else if (flag == "--pairs") a.pairs = std::stoi(next());
     else if (flag == "--no-pairs") a.pairs_searched = false;
+    else if (flag == "--calibrated") a.calibrated = true;
+    else if (flag == "--left-out") a.left_out = true;
     else if (flag == "--unseen") a.unseen = true;
     else if (flag == "--verbose") a.verbose = true;
     else return std::fprintf(stderr, "unknown flag %s\n", flag.c_str()), 2;

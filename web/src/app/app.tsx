@@ -6,6 +6,7 @@ import type { Services } from '../crafts/common/services';
 import type { EvidencePage as EvidencePageComponent } from '../crafts/evidence/evidence_page';
 import type { ReliefPage as ReliefPageComponent } from '../crafts/relief/relief_page';
 import type { ThermoformPage as ThermoformPageComponent } from '../crafts/thermoform/thermoform_page';
+import type { ZippablePage as ZippablePageComponent } from '../crafts/zippable/zippable_page';
 import { projectExtension } from '../project/archive';
 import { Icon, TipLayer, toast, ToastLayer } from '../ui';
 import { AboutPage } from './about_page';
@@ -33,6 +34,11 @@ const thermoformPage = signal<{ readonly Page: typeof ThermoformPageComponent } 
 const loadThermoformPage = () =>
   import('../crafts/thermoform/thermoform_page').then(
     ({ ThermoformPage }) => (thermoformPage.value = { Page: ThermoformPage }),
+  );
+const zippablePage = signal<{ readonly Page: typeof ZippablePageComponent } | null>(null);
+const loadZippablePage = () =>
+  import('../crafts/zippable/zippable_page').then(
+    ({ ZippablePage }) => (zippablePage.value = { Page: ZippablePage }),
   );
 
 const evidencePage = signal<{ readonly Page: typeof EvidencePageComponent } | null>(null);
@@ -81,10 +87,12 @@ export function App({ services, sessions }: AppProps) {
   const where = place.value;
   const ReliefPage = reliefPage.value?.Page;
   const ThermoformPage = thermoformPage.value?.Page;
+  const ZippablePage = zippablePage.value?.Page;
   const EvidencePage = evidencePage.value?.Page;
   useEffect(() => {
     if (where === 'relief') void loadReliefPage();
     if (where === 'thermoform') void loadThermoformPage();
+    if (where === 'zippable') void loadZippablePage();
     if (where === 'evidence') void loadEvidencePage();
   }, [where]);
   const later = crafts.find((craft) => craft.place === where && !craft.available);
@@ -111,6 +119,8 @@ export function App({ services, sessions }: AppProps) {
         />
       ) : where === 'thermoform' && ThermoformPage ? (
         <ThermoformPage session={sessions.thermoform} onChooseFile={chooseFile} />
+      ) : where === 'zippable' && ZippablePage ? (
+        <ZippablePage session={sessions.zippable} onChooseFile={chooseFile} />
       ) : where === 'evidence' && EvidencePage ? (
         <EvidencePage session={sessions.evidence} onChooseFile={chooseFile} />
       ) : isRoom(where) ? (

@@ -37,7 +37,7 @@ export const crafts: readonly Craft[] = [
     icon: 'zippable',
     pitch: 'A flat ribbon that zips up into the shape.',
     makes: 'Laser cutter, sewing',
-    available: false,
+    available: true,
   },
   {
     place: 'evidence',

@@ -59,6 +59,7 @@ export async function drawPictures(only?: string): Promise<Record<string, string
   if (only === undefined || only === 'craft_thermoform')
     pictures['craft_thermoform'] = await formedSheet(run);
   if (only === undefined || only === 'craft_evidence') pictures['craft_evidence'] = await hiddenFault(run);
+  if (only === undefined || only === 'craft_zippable') pictures['craft_zippable'] = await ribbonHeart(run);
   return pictures;
 }
 
@@ -67,6 +68,32 @@ type Run = (
   output: string,
   parameters?: JsonObject,
 ) => Promise<{ report: Report; mesh: Awaited<ReturnType<typeof readPly>> }>;
+
+/** The heart as its ribbon makes it, flat between rulings. */
+async function ribbonHeart(run: Run): Promise<string> {
+  const inputs = { mesh: { sample: 'heart' } };
+  const job = { operation: 'zippable-design', inputs, outputs: ['formed.ply'] };
+  const { mesh } = await run(job, 'formed.ply', { width_mm: 12 });
+  // Flat triangles of one colour: corners apart, as cloth between two rulings is.
+  const flat = new Float32Array(3 * mesh.indices.length);
+  mesh.indices.forEach((vertex, i) => flat.set(mesh.positions.subarray(3 * vertex, 3 * vertex + 3), 3 * i));
+  const cloth = [0x3e / 255, 0x7c / 255, 0x86 / 255];
+  const picture = await renderThumbnail(
+    {
+      positions: flat,
+      indices: mesh.indices.map((_, i) => i),
+      colours: Float32Array.from(flat, (_, i) => cloth[i % 3] ?? 0),
+    },
+    { widthPx: 560, heightPx: 352 },
+    {
+      transparent: true,
+      ground: true,
+      patient: true,
+      viewpoint: { direction: [-0.35, -0.3, -1], up: [0, 1, 0] },
+    },
+  );
+  return await webp(picture);
+}
 
 /** The mountain under its sheet, coloured by thickness, in a clamp that shows little of its own. */
 async function formedSheet(run: Run): Promise<string> {

@@ -14,8 +14,8 @@ export function LaterPage({ craft }: { craft: Craft }) {
         <h1>{craft.title} is not here yet</h1>
         <p>{craft.pitch}</p>
         <p>
-          This version makes reliefs and thermoforms. Nothing you make now will be lost when {craft.title}{' '}
-          arrives.
+          This version makes reliefs, thermoforms and zippables. Nothing you make now will be lost when{' '}
+          {craft.title} arrives.
         </p>
         <Button onClick={() => go('relief')}>Make a relief</Button>
       </div>

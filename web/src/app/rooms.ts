@@ -3,6 +3,7 @@
 import type { EvidenceSession } from '../crafts/evidence/evidence_session';
 import type { ReliefSession } from '../crafts/relief/relief_session';
 import type { ThermoformSession } from '../crafts/thermoform/thermoform_session';
+import type { ZippableSession } from '../crafts/zippable/zippable_session';
 import type { ProjectDocument } from '../project/document';
 import { isObject } from '../project/document';
 import type { Place } from './route';
@@ -10,11 +11,12 @@ import type { Place } from './route';
 export interface Sessions {
   readonly relief: ReliefSession;
   readonly thermoform: ThermoformSession;
+  readonly zippable: ZippableSession;
   readonly evidence: EvidenceSession;
 }
 export type Room = keyof Sessions;
 
-const rooms: readonly Room[] = ['relief', 'thermoform', 'evidence'];
+const rooms: readonly Room[] = ['relief', 'thermoform', 'zippable', 'evidence'];
 
 export const isRoom = (place: Place): place is Room => (rooms as readonly Place[]).includes(place);
 

@@ -8,6 +8,7 @@ interface Kinds {
   ply: PlyMesh;
   film: Film;
   printed: Printed;
+  polylines: Float32Array<ArrayBuffer>[];
 }
 
 export type MeshRequest = { id: number; kind: keyof Kinds; bytes: Uint8Array<ArrayBuffer> };
@@ -46,3 +47,4 @@ async function read<K extends keyof Kinds>(kind: K, bytes: Uint8Array<ArrayBuffe
 export const readPly = (bytes: Uint8Array<ArrayBuffer>) => read('ply', bytes);
 export const readFilm = (bytes: Uint8Array<ArrayBuffer>) => read('film', bytes);
 export const readPrinted = (bytes: Uint8Array<ArrayBuffer>) => read('printed', bytes);
+export const readPolylines = (bytes: Uint8Array<ArrayBuffer>) => read('polylines', bytes);

@@ -3,8 +3,9 @@
 import { parseFilm, parsePrinted } from './glb';
 import type { MeshReply, MeshRequest } from './mesh_reader';
 import { parsePly } from './ply';
+import { parsePolylines } from './polylines';
 
-const readers = { ply: parsePly, film: parseFilm, printed: parsePrinted } as const;
+const readers = { ply: parsePly, film: parseFilm, printed: parsePrinted, polylines: parsePolylines } as const;
 
 /** The memory of all typed arrays in a value, to be handed over rather than copied. */
 function buffersOf(value: unknown, found = new Set<ArrayBuffer>()): Set<ArrayBuffer> {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 export type * from './api';
-export { formatValue, legendFor, sampleStops, statisticsOf, stopsOf } from './colour_map';
+export { formatValue, legendFor, sampleStops, statisticsOf, stopsOf, tickStep } from './colour_map';
 export { formatLength } from './dimensions';
 export { DEFAULT_LIGHT, spokenLight } from './light';
 export { LightBall } from './light_ball';

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { signal } from '@preact/signals';
-import { useEffect } from 'preact/hooks';
 import { Button, formatCount, formatNumber, Segmented, Sheet, useLasting, withUnit } from '../../ui';
 import { outputOf } from '../common/full_solve';
+import { useRoomKeys } from '../common/room_keys';
 import { download, safeFileName } from '../common/download';
 import '../common/room.css';
 import { CalibrationPanel } from './calibration_panel';
@@ -34,7 +34,14 @@ const views = [
 ] as const;
 
 export function EvidencePage({ session, onChooseFile }: EvidencePageProps) {
-  useKeys(session);
+  useRoomKeys(session, () => ({
+    solve: () => {
+      if (session.activity.value.kind === 'idle') void session.solve();
+    },
+    save: () => {
+      if (session.diagnosis.value) void saveReport(session);
+    },
+  }));
   const { objects, scan } = session.document.value;
   const opening = session.activity.value.kind === 'opening';
   const notes = <Notes session={session} onChooseFile={onChooseFile} />;
@@ -165,25 +172,4 @@ function ReadOut({ session, look }: { session: EvidenceSession; look: Look }) {
 async function saveReport(session: EvidenceSession): Promise<void> {
   const bytes = await outputOf(session, 'diagnosis.html', 'report');
   if (bytes) download(bytes, `${safeFileName(session.title)}-diagnosis.html`, 'text/html');
-}
-
-/** Keys of this page: Ctrl+Enter, Ctrl+E, Esc. */
-function useKeys(session: EvidenceSession): void {
-  useEffect(() => {
-    const onKey = (event: KeyboardEvent) => {
-      if (event.defaultPrevented || document.querySelector('dialog[open]')) return;
-      const control = event.ctrlKey || event.metaKey;
-      const act = (action: () => void) => {
-        event.preventDefault();
-        action();
-      };
-      if (control && event.key === 'Enter' && session.activity.value.kind === 'idle')
-        act(() => void session.solve());
-      else if (control && event.key.toLowerCase() === 'e' && session.diagnosis.value)
-        act(() => void saveReport(session));
-      else if (event.key === 'Escape' && session.activity.value.kind !== 'idle') act(() => session.cancel());
-    };
-    document.addEventListener('keydown', onKey);
-    return () => document.removeEventListener('keydown', onKey);
-  }, [session]);
 }

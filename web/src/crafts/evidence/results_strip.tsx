@@ -3,6 +3,7 @@ import { formatCount, formatDuration, formatNumber, JobStrip, useLasting, withUn
 import type { CraftResult } from '../common/craft_document';
 import { figure } from '../common/report';
 import { Results } from '../common/results';
+import { RunningStrip } from '../common/room_strip';
 import { percent, readDiagnosis } from './diagnosis';
 import { diagnosing, evidence, usesIn } from './evidence_document';
 import type { EvidenceSession } from './evidence_session';
@@ -18,15 +19,7 @@ export function ResultsStrip({ session }: { session: EvidenceSession }) {
       opening: `Opening ${activity.name}`,
       exporting: `Making the ${activity.name}`,
     };
-    return (
-      <JobStrip
-        state="running"
-        title={titles[activity.kind]}
-        detail={activity.progress?.stage ?? 'Starting'}
-        progress={activity.progress ?? { fraction: 0, seconds_left: null }}
-        onCancel={() => session.cancel()}
-      />
-    );
+    return <RunningStrip activity={activity} titles={titles} onCancel={() => session.cancel()} />;
   }
   const { objects, results } = session.document.value;
   const ours = results.filter((result) => usesIn(result.mesh, objects) !== null);

@@ -4,9 +4,8 @@ import { useSignal } from '@preact/signals';
 import { Button, formatDuration, Icon, Note, useLasting } from '../../ui';
 import { narrow } from '../common/narrow';
 import { readyWorker } from '../common/services';
-import { solveInFull } from '../common/full_solve';
+import { problemNote, repairsNote } from '../common/room_notes';
 import type { ReliefSession } from './relief_session';
-import { sentences } from '../common/report';
 
 const dismissedKey = 'formwright.relief.no-worker-note';
 /** Below this a solve in the browser needs no words. */
@@ -15,51 +14,17 @@ const longSolve_s = 10;
 export function Notes({ session, onChooseFile, onWorkerHelp }: NotesProps) {
   const dismissed = useSignal(sessionStorage.getItem(dismissedKey) !== null);
   const solving = useLasting(session.activity.value.kind === 'solving');
-  const problem = session.problem.value;
   const { model } = session.document.value;
-  if (problem)
-    return (
-      <div class="note-place">
-        <Note
-          kind="bad"
-          icon={problem.kind === 'file' ? 'file' : 'warn'}
-          title={problem.title}
-          onDismiss={() => (session.problem.value = null)}
-          actions={
-            problem.kind === 'file' ? (
-              <Button size="small" onClick={onChooseFile}>
-                Choose another file
-              </Button>
-            ) : (
-              <Button size="small" onClick={() => void solveInFull(session)}>
-                Try again
-              </Button>
-            )
-          }
-        >
-          {problem.message}
-        </Note>
-      </div>
-    );
+  const problem = problemNote(session, onChooseFile);
+  if (problem) return problem;
   if (solving && session.shown.value)
     return (
       <p class="label-chip">
         <Icon name="clock" small /> Preview. The full relief replaces it.
       </p>
     );
-  if (session.repairsOpen.value && model)
-    return (
-      <div class="note-place">
-        <Note
-          kind="plain"
-          icon="check"
-          title="Mended while opening"
-          onDismiss={() => (session.repairsOpen.value = false)}
-        >
-          {sentences(model.report, 'repairs').join(' ')}
-        </Note>
-      </div>
-    );
+  const repairs = repairsNote(session);
+  if (repairs) return repairs;
   const estimate = session.estimate.value;
   const long = (estimate?.browser_s ?? 0) > longSolve_s;
   // No worker runs on a phone; the button says how long it will take.

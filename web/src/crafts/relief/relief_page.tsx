@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { useSignal } from '@preact/signals';
-import { useEffect } from 'preact/hooks';
 import { Button, Sheet } from '../../ui';
 import type { Viewport } from '../../view';
 import { exportMain, Inspector } from './inspector';
 import { viewpointOf } from './meshes';
 import { Notes } from './notes';
 import { solveInFull } from '../common/full_solve';
+import { useRoomKeys } from '../common/room_keys';
 import '../common/room.css';
 import type { ReliefSession } from './relief_session';
 import type { Look } from '../common/pictures';
@@ -33,7 +33,15 @@ export function ReliefPage({ session, onChooseFile, onWorkerHelp, onStart }: Rel
     shown,
     ({ report }, view) => viewpointOf(report, 20) ?? view.getViewpoint(),
   );
-  useKeys(session, () => viewport.value);
+  useRoomKeys(session, () => ({
+    solve: () => void solveInFull(session),
+    save: () => void exportMain(session),
+    plain: {
+      0: () => viewport.value?.lookFromViewpoint(true),
+      f: () => viewport.value?.fit(true),
+      s: () => (mode.value = mode.value === 'swipe' ? 'relief' : 'swipe'),
+    },
+  }));
   const { model } = session.document.value;
   return (
     <>
@@ -75,29 +83,4 @@ export function ReliefPage({ session, onChooseFile, onWorkerHelp, onStart }: Rel
       ) : null}
     </>
   );
-}
-
-/** Keys of this page: 0, F, S, Ctrl+Enter, Ctrl+E, Esc. */
-function useKeys(session: ReliefSession, viewport: () => Viewport | null): void {
-  useEffect(() => {
-    const onKey = (event: KeyboardEvent) => {
-      if (event.defaultPrevented || document.querySelector('dialog[open]')) return;
-      const control = event.ctrlKey || event.metaKey;
-      const typing = (event.target as Element).matches('input[type=text], select, textarea');
-      const act = (action: () => void) => {
-        event.preventDefault();
-        action();
-      };
-      if (control && event.key === 'Enter') act(() => void solveInFull(session));
-      else if (control && event.key.toLowerCase() === 'e') act(() => void exportMain(session));
-      else if (event.key === 'Escape' && session.activity.value.kind !== 'idle') act(() => session.cancel());
-      else if (control || event.altKey || typing) return;
-      else if (event.key === '0') act(() => viewport()?.lookFromViewpoint(true));
-      else if (event.key.toLowerCase() === 'f') act(() => viewport()?.fit(true));
-      else if (event.key.toLowerCase() === 's')
-        act(() => (mode.value = mode.value === 'swipe' ? 'relief' : 'swipe'));
-    };
-    document.addEventListener('keydown', onKey);
-    return () => document.removeEventListener('keydown', onKey);
-  }, [session]);
 }

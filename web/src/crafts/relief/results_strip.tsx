@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-import { formatCount, formatDuration, formatFixed, JobStrip, useLasting } from '../../ui';
+import { formatFixed, JobStrip, useLasting } from '../../ui';
 import type { CraftResult } from '../common/craft_document';
 import { figure } from '../common/report';
 import { Results } from '../common/results';
+import { previewLine, RunningStrip } from '../common/room_strip';
 import { relief } from './relief_document';
 import type { ReliefSession } from './relief_session';
 import { solvedLine } from './report';
@@ -17,19 +18,11 @@ export function ResultsStrip({ session }: { session: ReliefSession }) {
       opening: 'Opening the model',
       exporting: 'Making the file',
     };
-    return (
-      <JobStrip
-        state="running"
-        title={titles[activity.kind]}
-        detail={activity.progress?.stage ?? (activity.kind === 'opening' ? activity.name : 'Starting')}
-        progress={activity.progress ?? { fraction: 0, seconds_left: null }}
-        onCancel={() => session.cancel()}
-      />
-    );
+    return <RunningStrip activity={activity} titles={titles} onCancel={() => session.cancel()} />;
   }
   const state = result
     ? { state: 'done' as const, title: 'Relief ready', detail: solvedLine(result.seconds, result.report) }
-    : previewLine(session);
+    : previewOf(session);
   return (
     <JobStrip {...state}>
       <Results
@@ -43,22 +36,17 @@ export function ResultsStrip({ session }: { session: ReliefSession }) {
   );
 }
 
-function previewLine(session: ReliefSession) {
-  const shown = session.shown.value;
-  const errors = Object.values(session.fieldErrors.value);
-  if (errors[0]) return { state: 'attention' as const, title: 'Not solved', detail: errors[0] };
-  if (shown === null)
-    return { state: 'idle' as const, title: 'No relief yet', detail: 'The preview comes first' };
-  const seconds = session.previewSeconds.value;
-  const triangles = `${formatCount(shown.mesh.indices.length / 3)} triangles`;
-  return {
-    state: 'idle' as const,
-    title: session.previewing.value ? 'Preview' : 'Preview up to date',
-    detail: seconds === null ? triangles : `${triangles}, ${formatDuration(seconds)} in the browser`,
-  };
-}
-
 function errorText(result: CraftResult): string {
   const error = figure(result.report, 'normal_error_mean_deg');
   return error === null ? '' : `${formatFixed(error, 1)}°`;
 }
+
+const previewOf = (session: ReliefSession) =>
+  previewLine({
+    error: Object.values(session.fieldErrors.value)[0],
+    failed: 'Not solved',
+    empty: 'No relief yet',
+    corners: session.shown.value?.mesh.indices.length ?? null,
+    seconds: session.previewSeconds.value,
+    previewing: session.previewing.value,
+  });

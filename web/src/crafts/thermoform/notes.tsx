@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Notes at the foot of the viewport: one at a time, the most urgent first.
 import { signal, useSignal } from '@preact/signals';
-import { Button, formatNumber, Icon, IconButton, Note, useLasting, withUnit } from '../../ui';
-import { solveInFull } from '../common/full_solve';
+import { formatNumber, Icon, IconButton, Note, useLasting, withUnit } from '../../ui';
 import { narrow } from '../common/narrow';
 import { sentences } from '../common/report';
+import { problemNote, repairsNote } from '../common/room_notes';
 import { clampOf, placementNow } from './draw_scene';
 import { beyondOpening, boxOf, placed } from './placement';
 import type { ThermoformSession } from './thermoform_session';
@@ -52,32 +52,9 @@ export interface NotesProps {
 export function Notes({ session, onChooseFile }: NotesProps) {
   const solving = useLasting(session.activity.value.kind === 'solving');
   const whole = useSignal(false);
-  const problem = session.problem.value;
   const { model } = session.document.value;
-  if (problem)
-    return (
-      <div class="note-place">
-        <Note
-          kind="bad"
-          icon={problem.kind === 'file' ? 'file' : 'warn'}
-          title={problem.title}
-          onDismiss={() => (session.problem.value = null)}
-          actions={
-            problem.kind === 'file' ? (
-              <Button size="small" onClick={onChooseFile}>
-                Choose another file
-              </Button>
-            ) : (
-              <Button size="small" onClick={() => void solveInFull(session)}>
-                Try again
-              </Button>
-            )
-          }
-        >
-          {problem.message}
-        </Note>
-      </div>
-    );
+  const problem = problemNote(session, onChooseFile);
+  if (problem) return problem;
   if (model === null) return null;
   const over = overhang_mm(session);
   if (over > 0.05)
@@ -98,19 +75,8 @@ export function Notes({ session, onChooseFile }: NotesProps) {
         <Icon name="clock" small /> Preview. The fine sheet replaces it.
       </p>
     );
-  if (session.repairsOpen.value && !narrow())
-    return (
-      <div class="note-place">
-        <Note
-          kind="plain"
-          icon="check"
-          title="Mended while opening"
-          onDismiss={() => (session.repairsOpen.value = false)}
-        >
-          {sentences(model.report, 'repairs').join(' ')}
-        </Note>
-      </div>
-    );
+  const repairs = narrow() ? null : repairsNote(session);
+  if (repairs) return repairs;
   const said = advice(session);
   const words = said.join(' ');
   if (said.length === 0) return null;

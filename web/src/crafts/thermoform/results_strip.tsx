@@ -3,6 +3,7 @@ import { formatCount, formatDuration, formatNumber, JobStrip, useLasting, withUn
 import type { CraftResult } from '../common/craft_document';
 import { figure } from '../common/report';
 import { Results } from '../common/results';
+import { previewLine, RunningStrip } from '../common/room_strip';
 import { simulate, thermoform } from './thermoform_document';
 import type { ThermoformSession } from './thermoform_session';
 
@@ -16,20 +17,12 @@ export function ResultsStrip({ session }: { session: ThermoformSession }) {
       opening: 'Opening the model',
       exporting: `Making the ${activity.name}`,
     };
-    return (
-      <JobStrip
-        state="running"
-        title={titles[activity.kind]}
-        detail={activity.progress?.stage ?? (activity.kind === 'opening' ? activity.name : 'Starting')}
-        progress={activity.progress ?? { fraction: 0, seconds_left: null }}
-        onCancel={() => session.cancel()}
-      />
-    );
+    return <RunningStrip activity={activity} titles={titles} onCancel={() => session.cancel()} />;
   }
   const own = session.operationNamed(simulate)?.parameters.properties ?? {};
   const state = result
     ? { state: 'done' as const, title: 'Sheet formed', detail: formedLine(result) }
-    : previewLine(session);
+    : previewOf(session);
   return (
     <JobStrip {...state}>
       <Results
@@ -58,17 +51,12 @@ function formedLine({ report, seconds, backend }: CraftResult): string {
   return triangles === null ? time : `${formatCount(triangles)} triangles, ${time}`;
 }
 
-function previewLine(session: ThermoformSession) {
-  const shown = session.shown.value;
-  const error = Object.values(session.fieldErrors.value)[0];
-  if (error) return { state: 'attention' as const, title: 'Not formed', detail: error };
-  if (shown === null)
-    return { state: 'idle' as const, title: 'No sheet yet', detail: 'The preview comes first' };
-  const seconds = session.previewSeconds.value;
-  const triangles = `${formatCount(shown.sheet.indices.length / 3)} triangles`;
-  return {
-    state: 'idle' as const,
-    title: session.previewing.value ? 'Preview' : 'Preview up to date',
-    detail: seconds === null ? triangles : `${triangles}, ${formatDuration(seconds)} in the browser`,
-  };
-}
+const previewOf = (session: ThermoformSession) =>
+  previewLine({
+    error: Object.values(session.fieldErrors.value)[0],
+    failed: 'Not formed',
+    empty: 'No sheet yet',
+    corners: session.shown.value?.sheet.indices.length ?? null,
+    seconds: session.previewSeconds.value,
+    previewing: session.previewing.value,
+  });

@@ -4,6 +4,7 @@ import { useEffect } from 'preact/hooks';
 import { Button, Sheet } from '../../ui';
 import type { Viewport } from '../../view';
 import { solveInFull } from '../common/full_solve';
+import { useRoomKeys } from '../common/room_keys';
 import { Gallery } from '../common/gallery';
 import type { Look } from '../common/pictures';
 import { useModelPicture, useResultPictures } from '../common/pictures';
@@ -29,7 +30,16 @@ export function ThermoformPage({ session, onChooseFile }: ThermoformPageProps) {
   const viewport = useSignal<Viewport | null>(null);
   const picture = useModelPicture(session, viewport, look);
   useResultPictures(session, viewport, session.shown, () => look);
-  useKeys(session, () => viewport.value);
+  useRoomKeys(session, () => ({
+    solve: () => void solveInFull(session),
+    save: () => void exportMain(session),
+    space: () => togglePlay(session),
+    plain: {
+      0: () => viewport.value?.lookFromViewpoint(true),
+      f: () => viewport.value?.fit(true),
+      s: () => (swiping.value = !swiping.value),
+    },
+  }));
   useEffect(() => () => void (playing.value = false), []);
   const { model } = session.document.value;
   const opening = session.activity.value.kind === 'opening';
@@ -75,32 +85,4 @@ function Empty({ session, onChooseFile }: ThermoformPageProps) {
       <Gallery samples={samples} onOpen={(sample, title) => void session.openSample(sample, title)} />
     </div>
   );
-}
-
-/** Keys of this page: 0, F, S, Space, Ctrl+Enter, Ctrl+E, Esc. */
-function useKeys(session: ThermoformSession, viewport: () => Viewport | null): void {
-  useEffect(() => {
-    const onKey = (event: KeyboardEvent) => {
-      if (event.defaultPrevented || document.querySelector('dialog[open]')) return;
-      const control = event.ctrlKey || event.metaKey;
-      const target = event.target as Element;
-      const typing = target.matches('input[type=text], select, textarea');
-      const act = (action: () => void) => {
-        event.preventDefault();
-        action();
-      };
-      if (control && event.key === 'Enter') act(() => void solveInFull(session));
-      else if (control && event.key.toLowerCase() === 'e') act(() => void exportMain(session));
-      else if (event.key === 'Escape' && session.activity.value.kind !== 'idle') act(() => session.cancel());
-      else if (control || event.altKey || typing) return;
-      // Space presses what has the focus, where that can be pressed.
-      else if (event.key === ' ' && !target.matches('button, a, input, [role=menuitem]'))
-        act(() => togglePlay(session));
-      else if (event.key === '0') act(() => viewport()?.lookFromViewpoint(true));
-      else if (event.key.toLowerCase() === 'f') act(() => viewport()?.fit(true));
-      else if (event.key.toLowerCase() === 's') act(() => (swiping.value = !swiping.value));
-    };
-    document.addEventListener('keydown', onKey);
-    return () => document.removeEventListener('keydown', onKey);
-  }, [session]);
 }

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The explanations a diagnosis compares: each fitted together with the base parameters, each with its marginal likelihood. For diagnosis.cpp.
+#include <optional>
+
+#include "evidence/hypotheses.h"
+#include "evidence/structured_objective.h"
+
+namespace formwright {
+
+inline constexpr const char* fitting_stage = "Fitting the causes";
+
+class Explanations {
+ public:
+  struct Refit {
+    ParameterFit fit;
+    std::vector<int> causes;
+  };
+
+  Explanations(SimulationBag& bag, bool pairs, Context& context) : bag_(bag), model_(bag.model()), pairs_(pairs), context_(context) {}
+
+  // In this order. Each throws Error{could_not_solve, cancelled}.
+  /// Fits the base parameters alone, and finds the noise.
+  void calibrate();
+  /// Sensitivities to everything about the calibrated model, and what they alone say.
+  void screen();
+  /// Fits the likeliest causes in earnest, then pairs, then the leaders once more; fills hypotheses().
+  void refit();
+
+  const ParameterFit& base() const { return base_; }
+  const std::vector<NoiseEstimate>& noise() const { return noise_; }
+  const std::vector<Eigen::VectorXd>& weights() const { return weights_; }
+  const MisfitOfAll& misfit() const { return *misfit_; }
+  /// All parameters, and what each does about the calibrated model.
+  const std::vector<int>& columns() const { return columns_; }
+  const std::vector<Sensitivities>& sensitivities() const { return sensitivities_; }
+  const std::vector<int>& liberties() const { return liberties_; }
+  const std::vector<Sensitivities>& liberty_sensitivities() const { return liberty_sensitivities_; }
+  /// Most probable first.
+  const std::vector<Hypothesis>& hypotheses() const { return hypotheses_; }
+  bool is_refitted(const std::vector<int>& causes) const;
+  /// Of causes that were refitted.
+  const Refit& refit_of(const std::vector<int>& causes) const;
+  /// Index of the structure size next to `structure`, never that of none.
+  std::size_t nearest_size(double structure) const;
+  /// How much structure is left with these causes, counted alike whether unknown structure was allowed or not.
+  double structure_left(const std::vector<int>& causes) const;
+  /// Distance below which the mean distance is rounded off: the noise.
+  double softness() const;
+  /// RMS movement, in the measurement's unit, that a cause makes at u.
+  double movement(int cause, const Eigen::VectorXd& u) const;
+  /// Every cause of it does something: more than the model's own misfit could pass for.
+  bool significant(const Hypothesis& h) const;
+
+ private:
+  void estimate_noise_about(const Predictions& predictions);
+  const Hypothesis& screened(const std::vector<int>& causes, bool unknown) const;
+  /// Fits base parameters and those of `causes` together, from the best of `starts`. No more structure is allowed than the right causes
+  /// would leave: with as much as there is, what the causes should explain would cost nothing unexplained.
+  ParameterFit fit_from(const std::vector<int>& causes, const std::vector<Eigen::VectorXd>& starts, std::vector<Sensitivities> known, int iterations);
+  /// From where the linearised model has them, with the sensitivities it was made of.
+  void refit_with(const std::vector<int>& causes);
+  /// The nominal model with a one-sided cause at its usual strength; empty for other causes, and where the model has no answer there.
+  Eigen::VectorXd far_start(const std::vector<int>& causes);
+  /// Once more, with sensitivities taken where the fit stands; what was learnt with more causes counts for fewer.
+  void polish(Refit& refit);
+  /// The marginal likelihood of an explanation where its fit has it.
+  void weigh_refit(const Refit& refit);
+  /// What passed for outliers about the calibrated model may have been misfit that an explanation accounts for: once more about the best.
+  void renew_noise();
+  /// Pairs that the linearised model likes, about the calibrated model and about the best single causes.
+  std::vector<std::vector<int>> promising_pairs() const;
+
+  SimulationBag& bag_;
+  const ForwardModel& model_;
+  bool pairs_;
+  Context& context_;
+  ParameterFit base_;
+  std::vector<NoiseEstimate> noise_;
+  std::vector<Eigen::VectorXd> weights_;
+  std::optional<MisfitOfAll> misfit_;
+  std::vector<int> columns_;
+  std::vector<Sensitivities> sensitivities_;
+  std::vector<int> liberties_;
+  std::vector<Sensitivities> liberty_sensitivities_;
+  std::vector<Hypothesis> screened_, hypotheses_;
+  std::vector<Refit> refits_;
+};
+
+}  // namespace formwright

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+import type { Page } from '@playwright/test';
+import { readFileSync } from 'node:fs';
+import { backend, expect, expectAccessible, fileOf, looks, openPage, strip, test } from './page';
+
+test.skip(backend === 'mock', 'the mock makes reliefs only');
+
+async function openRoom(page: Page): Promise<void> {
+  await openPage(page);
+  await page.getByRole('link', { name: 'Zippable', exact: true }).click();
+  await expect(page.getByText('A zippable starts from a closed model.')).toBeVisible();
+}
+
+async function openSample(page: Page, title: string): Promise<void> {
+  await openRoom(page);
+  await page.locator('.gallery button', { hasText: title }).click();
+  await expect(strip(page, 'Preview up to date')).toBeVisible();
+}
+
+const seam = (page: Page) => page.locator('.flat-foot').getByText(/^Seam: /);
+const alongZipper = (page: Page) => page.getByRole('slider', { name: 'Place along the zipper' });
+
+/** Width and height in mm of an SVG that says them, and how many lines its zipper has. */
+function readSvg(path: string): { size: number[]; segments: number } {
+  const text = readFileSync(path, 'utf8');
+  const size = [/width="([\d.]+)mm"/, /height="([\d.]+)mm"/].map((one) => Number(one.exec(text)?.[1]));
+  const zipper = /<path id="zipper"[^>]* d="([^"]*)"/.exec(text)?.[1] ?? '';
+  return { size, segments: zipper.split('L').length - 1 };
+}
+
+test('a star by mouse: windings, the same place on both sides, SVG, reload', async ({ page }) => {
+  await openSample(page, 'Star');
+  await expect(page.getByRole('list', { name: 'Parts' }).getByRole('button')).toHaveCount(5);
+  const before = await seam(page).textContent();
+  await page.getByRole('textbox', { name: 'Windings' }).fill('4');
+  await page.getByRole('textbox', { name: 'Windings' }).press('Enter');
+  await expect(seam(page)).not.toHaveText(before ?? '');
+  await expect(strip(page, 'Preview up to date')).toBeVisible();
+
+  // On the number that is written upon a part one is upon that part.
+  const label = page.locator('.flat-label').first();
+  await label.hover({ force: true });
+  await expect(page.locator('.flat-ribbon .pointed')).toHaveCount(1);
+  await expect(page.locator('.part-row.under')).toHaveCount(1);
+  await expect(page.getByText(/m from the start$/)).toBeVisible();
+
+  await page.getByRole('radio', { name: 'Distortion' }).click();
+  await expect(page.getByRole('img', { name: /^Distortion: colours from 1/ })).toBeVisible();
+  await page.getByRole('radio', { name: 'Zipped' }).click();
+  await expect(page.getByText('Animation: edges keep their lengths. Not a simulation.')).toBeVisible();
+
+  await page.getByRole('button', { name: 'Make the ribbon' }).click();
+  await expect(strip(page, 'Ribbon unfolded')).toBeVisible({ timeout: 150_000 });
+  const waiting = page.waitForEvent('download');
+  await page.getByRole('button', { name: /^Export flat ribbon/ }).click();
+  const download = await waiting;
+  expect(download.suggestedFilename()).toBe('Star-ribbon.svg');
+  const { size, segments } = readSvg(await download.path());
+  for (const length of size) expect(length).toBeGreaterThan(50);
+  expect(segments).toBeGreaterThan(100);
+
+  await expect(page.getByText('Saved', { exact: true })).toBeVisible();
+  const made = await seam(page).textContent();
+  await page.reload();
+  await expect(strip(page, 'Ribbon unfolded')).toBeVisible();
+  await expect(seam(page)).toHaveText(made ?? '');
+  await expect(page.getByRole('textbox', { name: 'Windings' })).toHaveValue('4.0');
+});
+
+test('a star by keyboard alone', async ({ page }) => {
+  await openPage(page);
+  await page.keyboard.press('3');
+  const star = page.locator('.gallery button', { hasText: 'Star' });
+  await expect(star).toBeVisible();
+  await star.focus();
+  await page.keyboard.press('Enter');
+  await expect(strip(page, 'Preview up to date')).toBeVisible();
+
+  await alongZipper(page).focus();
+  await page.keyboard.press('Home');
+  await expect(alongZipper(page)).toHaveAttribute('aria-valuetext', /^0\.00\sm from the start$/);
+  await page.keyboard.press('Shift+ArrowRight');
+  await page.keyboard.press('Shift+ArrowRight');
+  await expect(alongZipper(page)).toHaveAttribute('aria-valuetext', /^0\.0[1-9]\sm from the start$/);
+  await expect(page.locator('.flat-ribbon .pointed')).toHaveCount(2); // both sides of the seam
+
+  const width = page.getByRole('textbox', { name: 'Ribbon width' });
+  await width.focus();
+  await page.keyboard.press('Control+a');
+  await page.keyboard.type('15');
+  await page.keyboard.press('Enter');
+  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  await page.getByRole('slider', { name: 'Ribbon width' }).focus();
+  await page.keyboard.press('Control+z');
+  await expect(width).toHaveValue('20.0');
+  await page.keyboard.press('Control+Shift+z');
+  await expect(width).toHaveValue('15.0');
+
+  await page.keyboard.press('Control+e'); // makes the ribbon first
+  const download = await page.waitForEvent('download', { timeout: 150_000 });
+  expect(download.suggestedFilename()).toBe('Star-ribbon.svg');
+  expect(readSvg(await download.path()).segments).toBeGreaterThan(100);
+});
+
+test('what cannot be made is said in the core’s words, and undone', async ({ page }) => {
+  await openSample(page, 'Star');
+  const order = page.getByRole('textbox', { name: 'Order of parts' });
+  await order.fill('99999');
+  await order.press('Enter');
+  await expect(page.getByRole('alert').first()).toBeVisible();
+  await expect(strip(page, 'No ribbon')).toBeVisible();
+  await page.getByRole('slider', { name: 'Order of parts' }).focus();
+  await page.keyboard.press('Control+z');
+  await expect(strip(page, 'Preview up to date')).toBeVisible();
+
+  await page.locator('input[type=file]').setInputFiles(fileOf('notes.obj', 'this is no model'));
+  await expect(page.getByRole('alert').getByText('Could not open notes.obj')).toBeVisible();
+  await expect(page.locator('.model-row strong')).toHaveText('Star');
+});
+
+for (const look of looks)
+  test(`axe finds nothing serious in the room, ${look.colorScheme}, ${look.viewport.width} px`, async ({
+    browser,
+  }) => {
+    const context = await browser.newContext(look);
+    const page = await context.newPage();
+    await openRoom(page);
+    await expectAccessible(page, 'empty');
+    await page.locator('.gallery button', { hasText: 'Star' }).click();
+    await expect(strip(page, 'Preview up to date')).toBeVisible();
+    await expectAccessible(page, 'preview');
+    await page.getByRole('radio', { name: 'Zipped' }).click();
+    await expectAccessible(page, 'zipped');
+    await context.close();
+  });

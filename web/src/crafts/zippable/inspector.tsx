@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Model, parts, parameters, lengths and errors, and the one filled button.
+import { ModelRow } from '../common/model_row';
+import { ParameterPanel } from '../common/parameter_panel';
+import { figure, vectorOf } from '../common/report';
+import { MainButton } from './export_button';
+import { Figures } from './figures';
+import { PartList } from './part_list';
+import type { ZippableSession } from './zippable_session';
+
+export interface InspectorProps {
+  readonly session: ZippableSession;
+  readonly picture: string | null;
+  readonly onReplace: () => void;
+  readonly onSolve: () => void;
+}
+
+/** What the core chose where the maker left it open. */
+function automaticValues(session: ZippableSession): Record<string, number> {
+  const shown = session.shown.value;
+  if (shown === null) return {};
+  const windings = shown.design.parts.map((part) => part.windings);
+  const size = vectorOf(shown.report, 'size_mm');
+  const width = figure(shown.report, 'ribbon_width_mean_mm');
+  return {
+    ...(windings.length > 0
+      ? { windings: Math.round((10 * windings.reduce((a, b) => a + b, 0)) / windings.length) / 10 }
+      : {}),
+    ...(size ? { size_mm: Math.round(Math.max(...size)) } : {}),
+    ...(width === null
+      ? {}
+      : { puncture_mm: Math.round(5 * width) / 10, sample_mm: Math.round(2 * width) / 10 }),
+  };
+}
+
+export function Inspector({ session, picture, onReplace, onSolve }: InspectorProps) {
+  const { model, parameters } = session.document.value;
+  const operation = session.operation.value;
+  if (model === null || operation === null) return null;
+  return (
+    <>
+      <div class="inspector-scroll" tabIndex={-1}>
+        <ModelRow session={session} picture={picture} onReplace={onReplace} />
+        <ParameterPanel
+          operation={operation}
+          parameters={parameters}
+          errors={session.fieldErrors.value}
+          onPreview={(name, value) => session.preview(name, value)}
+          onCommit={() => session.services.projects.commit()}
+          groupHead={{ Ribbon: null, Parts: <PartList session={session} /> }}
+          automatic={automaticValues(session)}
+        />
+        <Figures session={session} />
+      </div>
+      <div class="inspector-foot">
+        <MainButton session={session} onSolve={onSolve} />
+      </div>
+    </>
+  );
+}

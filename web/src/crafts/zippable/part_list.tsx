@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The parts by number: how many windings each got, how distorted it is, and what speaks against it.
+import { Fragment } from 'preact';
+import { formatFixed, formatNumber, Icon, withUnit } from '../../ui';
+import { sentences } from '../common/report';
+import { partName } from './design';
+import { partWarning } from './part_notes';
+import { chosenPart, partToken, pointed } from './views';
+import type { ZippableSession } from './zippable_session';
+
+export function PartList({ session }: { session: ZippableSession }) {
+  const shown = session.shown.value;
+  const failed = session.problem.value?.kind === 'solve' ? session.problem.value.message : null;
+  const triangle = pointed.value?.places[0]?.triangle;
+  const under = triangle === undefined ? null : shown?.partOfTriangle[triangle];
+  return (
+    <>
+      {failed ? (
+        <p class="part-problem">
+          <Icon name="warn" small /> {failed}
+        </p>
+      ) : null}
+      {shown ? (
+        <ul class="part-list" aria-label="Parts">
+          {shown.design.parts.map(({ windings, period_mm, height_mm }, part) => {
+            const distortion = shown.model.distortion[part];
+            const warning = partWarning(part, sentences(shown.report, 'notes'), distortion);
+            const chosen = chosenPart.value === part;
+            return (
+              <li key={part}>
+                <button
+                  type="button"
+                  class={under === part ? 'part-row under' : 'part-row'}
+                  aria-pressed={chosen}
+                  onClick={() => (chosenPart.value = chosen ? null : part)}
+                >
+                  <i class="part-badge" style={{ '--part': `var(${partToken(part)})` }} aria-hidden="true">
+                    {part + 1}
+                  </i>
+                  <span class="grow">
+                    <span class="part-line">
+                      <strong>{partName(part)}</strong>
+                      <span>
+                        {formatFixed(windings, 1)} windings, {formatNumber(period_mm, 2)} ×{' '}
+                        {withUnit(formatNumber(height_mm, 2), 'mm')}
+                      </span>
+                    </span>
+                    <small class={warning ? 'part-warning' : ''}>
+                      {warning ? `${warning} Distortion` : 'A cylinder, distortion'}{' '}
+                      {formatFixed(distortion?.mean ?? 1, 2)}
+                    </small>
+                  </span>
+                </button>
+              </li>
+            );
+          })}
+        </ul>
+      ) : null}
+      {shown && shown.design.order.length > 1 ? (
+        <p class="part-order">
+          The zipper visits{' '}
+          {shown.design.order.map((part, i) => (
+            <Fragment key={part}>
+              {i > 0 ? ', ' : ''}
+              <strong>{part + 1}</strong>
+            </Fragment>
+          ))}
+        </p>
+      ) : null}
+    </>
+  );
+}

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+import { useSignal } from '@preact/signals';
+import { Button, Sheet } from '../../ui';
+import type { Viewport } from '../../view';
+import { solveInFull } from '../common/full_solve';
+import { useRoomKeys } from '../common/room_keys';
+import { Gallery } from '../common/gallery';
+import { useModelPicture, useResultPictures } from '../common/pictures';
+import '../common/room.css';
+import { exportMain } from './export_button';
+import { FlatRibbon } from './flat_ribbon';
+import { Inspector } from './inspector';
+import { Notes } from './notes';
+import { togglePlay } from './play';
+import { ResultsStrip } from './results_strip';
+import { view } from './views';
+import { viewpoint, ViewportPanel } from './viewport_panel';
+import './zippable.css';
+import type { ZippableSession } from './zippable_session';
+
+export interface ZippablePageProps {
+  readonly session: ZippableSession;
+  readonly onChooseFile: () => void;
+}
+
+/** The samples that make good zippables, easy ones first. */
+const samplesFirst = ['star', 'heart', 't_shape', 'octopus', 'cat', 'torus'];
+
+export function ZippablePage({ session, onChooseFile }: ZippablePageProps) {
+  const viewport = useSignal<Viewport | null>(null);
+  const picture = useModelPicture(session, viewport, viewpoint);
+  useResultPictures(session, viewport, session.shown, () => viewpoint);
+  useRoomKeys(session, () => ({
+    solve: () => void solveInFull(session),
+    save: () => void exportMain(session),
+    space: view.value === 'ribbon' ? togglePlay : undefined,
+    plain: {
+      0: () => viewport.value?.lookFromViewpoint(true),
+      f: () => viewport.value?.fit(true),
+    },
+  }));
+  const { model } = session.document.value;
+  const opening = session.activity.value.kind === 'opening';
+  return (
+    <>
+      <main class="view zippable-view" aria-label="Zippable">
+        <h1 class="hidden-text">Zippable</h1>
+        <div class="zippable-model">
+          <ViewportPanel
+            session={session}
+            onViewport={(made) => (viewport.value = made)}
+            notes={<Notes session={session} onChooseFile={onChooseFile} />}
+          />
+        </div>
+        <FlatRibbon session={session} />
+        {model === null && !opening ? <Empty session={session} onChooseFile={onChooseFile} /> : null}
+      </main>
+      {model ? (
+        <Sheet label="Parameters">
+          <Inspector
+            session={session}
+            picture={picture.value}
+            onReplace={onChooseFile}
+            onSolve={() => void solveInFull(session)}
+          />
+        </Sheet>
+      ) : null}
+      {model || opening ? (
+        <footer class="strip">
+          <ResultsStrip session={session} />
+        </footer>
+      ) : null}
+    </>
+  );
+}
+
+function Empty({ session, onChooseFile }: ZippablePageProps) {
+  const all = session.services.catalog.value?.samples ?? [];
+  const samples = samplesFirst.flatMap((name) => all.find((sample) => sample.name === name) ?? []);
+  return (
+    <div class="zippable-empty">
+      <p>A zippable starts from a closed model. Drop one, or take a sample.</p>
+      <Button kind="filled" icon="upload" onClick={onChooseFile}>
+        Open a model
+      </Button>
+      <Gallery samples={samples} onOpen={(sample, title) => void session.openSample(sample, title)} />
+    </div>
+  );
+}

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the zippable page does beyond opening models: designs a ribbon for a stand-in at every change, shows what was
+// designed for the whole model.
+import { computed, effect, signal, untracked } from '@preact/signals';
+import type { Result } from '../../jobs/backend';
+import type { JsonObject, Operation, Report } from '../../jobs/contract';
+import { findOperation } from '../../jobs/contract';
+import { readPolylines } from '../../jobs/mesh_reader';
+import type { CraftDocument, CraftResult } from '../common/craft_document';
+import type { Measured } from '../common/estimate';
+import { estimateSeconds, recall } from '../common/estimate';
+import { bytesOf } from '../common/import_model';
+import type { PreviewRequest, ShownWork } from '../common/previewing_session';
+import { PreviewingSession } from '../common/previewing_session';
+import { readMesh } from '../common/read_mesh';
+import { figure } from '../common/report';
+import type { Services } from '../common/services';
+import type { ShadedMesh } from '../common/shaded_mesh';
+import { Bending } from './bending';
+import type { Design } from './design';
+import { readDesign } from './design';
+import type { PartDistortion } from './part_map';
+import { distortionOfParts, partsOfTriangles, VertexGrid } from './part_map';
+import { currentResult, design, zippable } from './zippable_document';
+
+/** A model divided and parameterised; the same object for as many designs as are made on it. */
+export interface DividedModel {
+  readonly bytes: Uint8Array;
+  readonly mesh: ShadedMesh;
+  readonly grid: VertexGrid;
+  /** By part. */
+  readonly distortion: readonly PartDistortion[];
+}
+
+export interface Zippable extends ShownWork {
+  readonly design: Design;
+  readonly model: DividedModel;
+  /** The zipper's course on the model, a polyline a piece. */
+  readonly course: readonly Float32Array[];
+  /** By triangle of the ribbon. */
+  readonly partOfTriangle: Int32Array;
+  /** Made when it is first asked for. */
+  readonly bending: () => Bending;
+}
+
+type Outputs = Pick<Result, 'outputs' | 'report'>;
+
+export class ZippableSession extends PreviewingSession<CraftDocument, Zippable> {
+  readonly operationName = design;
+  readonly meshInputName = 'mesh';
+  readonly wantedOutputs = ['design.json', 'parameterised.ply', 'curve.obj', 'ribbon.svg'];
+  protected readonly shownOutputs = ['design.json', 'parameterised.ply', 'curve.obj'];
+  readonly failedTitle = 'Could not make the ribbon';
+  protected readonly previewFailedTitle = this.failedTitle;
+  readonly document = computed(() => zippable.of(this.services.projects.document.value));
+  readonly operation = computed<Operation | null>(() => {
+    const catalog = this.services.catalog.value;
+    return catalog === null ? null : (findOperation(catalog, this.operationName) ?? null);
+  });
+  readonly asked = computed(() => this.document.value.parameters);
+  readonly result = computed(() => currentResult(this.document.value));
+  readonly #previewed = signal<Measured | null>(null);
+  #divided: DividedModel | null = null;
+
+  constructor(services: Services) {
+    super(services, zippable);
+    this.startFollowing();
+    effect(() => {
+      void this.asked.value; // what could not be made with other parameters no longer matters
+      untracked(() => {
+        if (this.problem.value?.kind === 'solve') this.problem.value = null;
+      });
+    });
+  }
+
+  /** The order was one of the old model's; widths and sizes stay as the maker set them. */
+  protected forgets(name: string): boolean {
+    return this.operation.value?.parameters.properties[name]?.['x-group'] === 'Curve';
+  }
+
+  protected ownParameters(): JsonObject {
+    return {};
+  }
+
+  protected async readResult({ outputs, report, parameters, mesh }: CraftResult): Promise<Zippable> {
+    const { blobs } = this.services.projects;
+    const read = (name: string) => blobs.read(outputs[name]?.blob ?? '');
+    const shown = await this.#read(read, report);
+    return { ...shown, kind: 'full', parameters, from: mesh };
+  }
+
+  protected async makePreview(
+    { subject, parameters }: PreviewRequest,
+    signal: AbortSignal,
+  ): Promise<Zippable> {
+    const { inputs } = subject;
+    const job = { operation: this.operationName, parameters, inputs, outputs: this.shownOutputs };
+    const done: Outputs = await this.services.browser.run(job, { signal });
+    this.#previewed.value = this.measured(done.report) ?? this.#previewed.value;
+    const shown = await this.#read((name) => bytesOf(done, name), done.report);
+    return { ...shown, kind: 'preview', parameters, from: subject.key };
+  }
+
+  async #read(
+    bytes: (name: string) => Promise<Uint8Array<ArrayBuffer>>,
+    report: Report,
+  ): Promise<Omit<Zippable, 'kind' | 'parameters' | 'from'>> {
+    const [json, ply, obj] = await Promise.all(this.shownOutputs.map(bytes));
+    if (json === undefined || ply === undefined || obj === undefined)
+      throw new Error('The design is incomplete.');
+    const [model, course] = await Promise.all([this.#readModel(ply), readPolylines(obj)]);
+    const made = readDesign(json);
+    const { ribbon } = made;
+    const segment = model.mesh.attributes['segment'] ?? new Float32Array(0);
+    const partOfTriangle = partsOfTriangles(ribbon, segment, model.grid);
+    let bent: Bending | null = null;
+    const bending = () => (bent ??= new Bending(ribbon));
+    return { design: made, model, course, partOfTriangle, bending, report };
+  }
+
+  /** Another number of windings is another curve on the same divided model: nothing of it is read again. */
+  async #readModel(bytes: Uint8Array<ArrayBuffer>): Promise<DividedModel> {
+    const known = this.#divided;
+    if (known && sameBytes(known.bytes, bytes)) return known;
+    const mesh = await readMesh(bytes);
+    const model = { bytes, mesh, grid: new VertexGrid(mesh.positions), distortion: distortionOfParts(mesh) };
+    this.#divided = model;
+    return model;
+  }
+
+  /** Parts and parameterisation are what takes long, and what a second design on the same parts is spared. */
+  measured(report: Report): Measured | null {
+    const vertices = figure(report, 'vertices');
+    const [parts, chart] = [figure(report, 'seconds_parts'), figure(report, 'seconds_parameterisation')];
+    if (!vertices || parts === null || !chart || report['reused'] === true) return null;
+    return { vertices, seconds: parts + chart + (figure(report, 'seconds_distance') ?? 0) };
+  }
+
+  /** Seconds that the whole model may take; null where nothing is known yet. */
+  readonly estimate = computed(() => {
+    const vertices = figure(this.document.value.model?.report ?? {}, 'vertices') ?? 0;
+    const worker = recall('zippable', 'native');
+    const browser = recall('zippable', 'wasm') ?? this.#previewed.value;
+    return {
+      browser_s: browser ? estimateSeconds(browser, vertices) : null,
+      worker_s: worker ? estimateSeconds(worker, vertices) : null,
+    };
+  });
+}
+
+function sameBytes(a: Uint8Array, b: Uint8Array): boolean {
+  if (a.byteLength !== b.byteLength) return false;
+  for (let i = 0; i < a.length; ++i) if (a[i] !== b[i]) return false;
+  return true;
+}

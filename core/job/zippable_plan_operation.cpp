@@ -23,7 +23,9 @@ std::vector<OutputInfo> outputs() {
   return {{"plan.svg", "image/svg+xml", "Plan, SVG", "All sheets side by side at true size; layers cut, mark, engrave, note.", true},
           {"plan.dxf", "image/vnd.dxf", "Plan, DXF", "The same in mm, DXF R12.", true},
           {"plan.pdf", "application/pdf", "Plan, PDF", "One page a sheet at true size.", true},
-          {"sheets.zip", "application/zip", "Sheets", "sheet_1.svg, sheet_1.dxf, ...: a file for every sheet.", true}};
+          {"sheets.zip", "application/zip", "Sheets", "sheet_1.svg, sheet_1.dxf, ...: a file for every sheet.", true},
+          {"tape.pdf", "application/pdf", "Tape template", "Lay the zipper on it and copy its numbers: both tapes in rows. Print at 100 %.", true},
+          {"tape.svg", "image/svg+xml", "Tape template, SVG", "The same, all pages side by side at true size.", true}};
 }
 
 std::vector<ReportField> report_fields() {
@@ -48,6 +50,9 @@ std::vector<ReportField> report_fields() {
           {"markers", "Markers", "", "on each side"},
           {"marker_spacing_mm", "Marker spacing", "mm", "along the zipper"},
           {"intervals", "Intervals", "mm", "between markers: zipper, left side, right side"},
+          {"tape_runs", "Runs of tape", "", "stretches of a tape along one piece: side, piece, from and to on the tape, edge of the cloth, first and last marker"},
+          {"tape_rows", "Rows of the template", "", "of the tapes, on its pages"},
+          {"tape_row_mm", "Row", "mm", "of the template, along the zipper"},
           {"pieces", "Pieces", "", "area of ribbon, sheet and letters of splits"},
           {"splits", "Splits", "", "rulings at which the ribbon is cut"},
           {"sheets", "Sheets", "", "of the bed's size"},
@@ -97,6 +102,21 @@ void report_lengths(Json& report, const FlatDesign& design, const ZippablePlan& 
   report["markers"] = plan.markers.markers.size();
   report["marker_spacing_mm"] = plan.marker_spacing_mm;
   report["intervals"] = intervals;
+}
+
+void report_tape(Json& report, const ZippablePlan& plan) {
+  Json runs = Json::array();
+  for (const TapeRun& run : plan.runs)
+    runs.push_back({{"side", run.left ? "left" : "right"},
+                    {"piece", plan.pieces.pieces[run.piece].name},
+                    {"from_mm", run.from_mm},
+                    {"to_mm", run.to_mm},
+                    {"cloth_mm", run.cloth_mm},
+                    {"first_marker", run.first_marker},
+                    {"last_marker", run.last_marker}});
+  report["tape_runs"] = runs;
+  report["tape_rows"] = plan.tape.rows;
+  report["tape_row_mm"] = plan.tape.row_mm;
 }
 
 void report_pieces(Json& report, const ZippablePlan& plan, const PlanOptions& options) {
@@ -161,7 +181,12 @@ OperationResult run(const OperationCall& call) {
   add("plan.dxf", [&] { return write_dxf(all); });
   add("plan.pdf", [&] { return write_plan_pdf(plan.sheets); });
   add("sheets.zip", [&] { return sheets_zip(plan, context); });
+  if (!plan.tape.sheets.empty()) {
+    add("tape.pdf", [&] { return write_plan_pdf(plan.tape.sheets); });
+    add("tape.svg", [&] { return write_svg(side_by_side(plan.tape.sheets, 20)); });
+  }
   report_lengths(result.report, design, plan);
+  report_tape(result.report, plan);
   report_pieces(result.report, plan, options);
   result.report["seconds_read"] = seconds_read;
   result.report["seconds_offset"] = plan.seconds_offset;

@@ -31,6 +31,13 @@ struct EnumNames<GrainDirection> {
   static constexpr std::array<std::string_view, 2> labels{"No matter", "Along the pieces"};
 };
 
+enum class InstructionPaper { a4, letter };
+template <>
+struct EnumNames<InstructionPaper> {
+  static constexpr std::array<std::string_view, 2> names{"a4", "letter"};
+  static constexpr std::array<std::string_view, 2> labels{"A4", "Letter"};
+};
+
 struct PlanOptions {
   ZipperCoil coil = ZipperCoil::coil_3;
   std::optional<double> tape_width_mm, teeth_width_mm, gap_mm;
@@ -41,6 +48,7 @@ struct PlanOptions {
   GrainDirection grain = GrainDirection::free;
   double seam_allowance_mm = 8;
   double kerf_mm = 0.15;
+  InstructionPaper paper = InstructionPaper::a4;
 
   static constexpr auto parameters = std::tuple{
       parameter("coil", &PlanOptions::coil, "Zipper", "Size of the coil zipper, which sets tape, teeth and gap; none for paper.").group("Zipper"),
@@ -84,7 +92,8 @@ struct PlanOptions {
       parameter("kerf_mm", &PlanOptions::kerf_mm, "Kerf", unit::mm, 0, 10,
                 "Width of what the cut takes away: outlines grow by half of it.")
           .slider(0, 1)
-          .group("Sheets")};
+          .group("Sheets"),
+      parameter("paper", &PlanOptions::paper, "Paper", "On which the tape's template and the assembly sheet are printed.").group("Sheets")};
 };
 
 }  // namespace formwright

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "geometry/adjacency.h"
-#include "imaging/drawing.h"
+#include "zippable/plan/words.h"
 
 namespace formwright {
 namespace {
@@ -123,27 +123,22 @@ class PieceMaker {
   void text(int piece, const Vec2& foot, const Vec2& u, const std::string& words, double clear_mm) {
     const Vec2 inward(-u.y(), u.x());
     for (double height = text_height_mm_; height >= 0.3 * text_height_mm_; height *= 0.8) {
-      const double width = height * (static_cast<double>(words.size()) - 1.0 / 3);  // of the stroke letters: 4 wide, 6 on, 6 high
-      const Drawing letters = outlined({Vec2::Zero(), height, words});
+      const double width = words_width_mm(words, height);
       for (const double aside : {0.0, 0.8, -0.8, 1.6, -1.6}) {
         const Vec2 centre = foot + aside * width * u + (clear_mm + height / 2) * inward;
         const double radius = std::max(width, height) / 2;
-        const auto place = [&](const Vec2& p) { return Vec2(centre + p.x() * u + p.y() * inward); };
         const bool collides = std::any_of(texts_[piece].begin(), texts_[piece].end(), [&](const auto& other) {
           return (other.first - centre).norm() < radius + other.second;
         });
-        if (collides || !std::all_of(letters.strokes.begin(), letters.strokes.end(),
-                                     [&](const Stroke& s) { return inside(piece, place(s.from)) && inside(piece, place(s.to)); }))
+        if (collides) continue;
+        std::vector<CutPath> paths = word_paths(words, centre, u, height, CutLayer::engrave);
+        if (!std::all_of(paths.begin(), paths.end(), [&](const CutPath& path) {
+              return std::all_of(path.points_mm.begin(), path.points_mm.end(), [&](const Vec2& p) { return inside(piece, p); });
+            }))
           continue;
         texts_[piece].emplace_back(centre, radius);
-        for (const Stroke& s : letters.strokes) {
-          auto& marks = result_.pieces[piece].marks;
-          // Strokes that follow each other are one line.
-          if (!marks.empty() && marks.back().layer == CutLayer::engrave && marks.back().points_mm.back() == place(s.from))
-            marks.back().points_mm.push_back(place(s.to));
-          else
-            marks.push_back({CutLayer::engrave, {place(s.from), place(s.to)}, false, ""});
-        }
+        auto& marks = result_.pieces[piece].marks;
+        marks.insert(marks.end(), paths.begin(), paths.end());
         return;
       }
     }

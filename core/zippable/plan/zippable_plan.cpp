@@ -72,6 +72,8 @@ void say_what_to_know(const PlanOptions& options, ZippablePlan& plan) {
 
 }  // namespace
 
+Vec2 paper_size_mm(InstructionPaper paper) { return paper == InstructionPaper::a4 ? Vec2(210, 297) : Vec2(215.9, 279.4); }
+
 ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& options, Context& context) {
   ZippablePlan plan;
   Stopwatch watch;
@@ -107,6 +109,9 @@ ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& options,
     plan.nesting = nest(outlines, nesting, context);
   }
   plan.sheets = lay_out(plan.pieces, plan.nesting, options);
+  plan.runs = tape_runs(design, plan.ribbon, plan.splitting, plan.markers);
+  const Vec2 paper = paper_size_mm(options.paper);
+  plan.tape = make_tape_template(design, plan.zipper, plan.markers, plan.marker_spacing_mm, plan.runs, paper.y(), paper.x());
   plan.seconds_nest = watch.lap();
   say_what_to_know(options, plan);
   return plan;

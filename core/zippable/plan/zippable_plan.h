@@ -7,6 +7,7 @@
 #include "base/context.h"
 #include "fabrication/nesting.h"
 #include "zippable/plan/plan_pieces.h"
+#include "zippable/plan/tape_template.h"
 
 namespace formwright {
 
@@ -19,11 +20,16 @@ struct ZippablePlan {
   PlanPieces pieces;
   Nesting nesting;
   std::vector<CutSheet> sheets;
+  std::vector<TapeRun> runs;
+  TapeTemplate tape;
   double area_before_mm2 = 0;  // of the ribbon with room for the zipper, before splitting
   double width_mean_mm = 0;    // of the ribbon as designed: its area over the zipper's length
   std::vector<std::string> notes;
   double seconds_offset = 0, seconds_split = 0, seconds_nest = 0;
 };
+
+/// Width and height of the paper, upright, in mm.
+Vec2 paper_size_mm(InstructionPaper paper);
 
 /// Throws Error: invalid_input (a parameter), cancelled.
 ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& options, Context& context);

@@ -5,6 +5,7 @@
 #include "job/file_pack.h"
 #include "job/model_input.h"
 #include "job/zippable_operation.h"
+#include "zippable/plan/assembly_sheet.h"
 #include "zippable/plan/zippable_plan.h"
 
 namespace formwright {
@@ -25,7 +26,8 @@ std::vector<OutputInfo> outputs() {
           {"plan.pdf", "application/pdf", "Plan, PDF", "One page a sheet at true size.", true},
           {"sheets.zip", "application/zip", "Sheets", "sheet_1.svg, sheet_1.dxf, ...: a file for every sheet.", true},
           {"tape.pdf", "application/pdf", "Tape template", "Lay the zipper on it and copy its numbers: both tapes in rows. Print at 100 %.", true},
-          {"tape.svg", "image/svg+xml", "Tape template, SVG", "The same, all pages side by side at true size.", true}};
+          {"tape.svg", "image/svg+xml", "Tape template, SVG", "The same, all pages side by side at true size.", true},
+          {"assembly.pdf", "application/pdf", "Assembly sheet", "What is needed and what is joined to what, step by step with pictures.", true}};
 }
 
 std::vector<ReportField> report_fields() {
@@ -51,6 +53,9 @@ std::vector<ReportField> report_fields() {
           {"marker_spacing_mm", "Marker spacing", "mm", "along the zipper"},
           {"intervals", "Intervals", "mm", "between markers: zipper, left side, right side"},
           {"tape_runs", "Runs of tape", "", "stretches of a tape along one piece: side, piece, from and to on the tape, edge of the cloth, first and last marker"},
+          {"seams", "Seams", "", "in the order in which they are made: pieces, letters of a split, markers, lengths"},
+          {"zipper_to_cut_mm", "Zipper to cut", "mm", "from the reel, with an end on either side to hold it by"},
+          {"assembly_pages", "Assembly pages", "", "of the assembly sheet"},
           {"tape_rows", "Rows of the template", "", "of the tapes, on its pages"},
           {"tape_row_mm", "Row", "mm", "of the template, along the zipper"},
           {"pieces", "Pieces", "", "area of ribbon, sheet and letters of splits"},
@@ -104,7 +109,7 @@ void report_lengths(Json& report, const FlatDesign& design, const ZippablePlan& 
   report["intervals"] = intervals;
 }
 
-void report_tape(Json& report, const ZippablePlan& plan) {
+void report_tape(Json& report, const FlatDesign& design, const ZippablePlan& plan) {
   Json runs = Json::array();
   for (const TapeRun& run : plan.runs)
     runs.push_back({{"side", run.left ? "left" : "right"},
@@ -115,6 +120,22 @@ void report_tape(Json& report, const ZippablePlan& plan) {
                     {"first_marker", run.first_marker},
                     {"last_marker", run.last_marker}});
   report["tape_runs"] = runs;
+  Json seams = Json::array();
+  for (std::size_t i = 0; i < plan.seams.size(); ++i) {
+    const Seam& seam = plan.seams[i];
+    constexpr const char* kinds[] = {"join", "tape", "edge"};
+    seams.push_back({{"number", i + 1},
+                     {"kind", kinds[static_cast<int>(seam.kind)]},
+                     {"letters", seam.letters},
+                     {"pieces", {plan.pieces.pieces[seam.piece].name, plan.pieces.pieces[seam.other_piece].name}},
+                     {"side", seam.kind != SeamKind::tape ? "" : seam.left ? "left" : "right"},
+                     {"length_mm", seam.kind == SeamKind::join ? seam.cloth_mm : seam.tape_mm()},
+                     {"cloth_mm", seam.cloth_mm},
+                     {"first_marker", seam.first_marker},
+                     {"last_marker", seam.last_marker}});
+  }
+  report["seams"] = seams;
+  report["zipper_to_cut_mm"] = zipper_to_cut_mm(design, plan);
   report["tape_rows"] = plan.tape.rows;
   report["tape_row_mm"] = plan.tape.row_mm;
 }
@@ -181,12 +202,17 @@ OperationResult run(const OperationCall& call) {
   add("plan.dxf", [&] { return write_dxf(all); });
   add("plan.pdf", [&] { return write_plan_pdf(plan.sheets); });
   add("sheets.zip", [&] { return sheets_zip(plan, context); });
+  add("assembly.pdf", [&] {
+    AssemblySheet sheet = write_assembly_sheet(design, plan, options, context);
+    result.report["assembly_pages"] = sheet.pages;
+    return std::move(sheet.pdf);
+  });
   if (!plan.tape.sheets.empty()) {
     add("tape.pdf", [&] { return write_plan_pdf(plan.tape.sheets); });
     add("tape.svg", [&] { return write_svg(side_by_side(plan.tape.sheets, 20)); });
   }
   report_lengths(result.report, design, plan);
-  report_tape(result.report, plan);
+  report_tape(result.report, design, plan);
   report_pieces(result.report, plan, options);
   result.report["seconds_read"] = seconds_read;
   result.report["seconds_offset"] = plan.seconds_offset;

@@ -49,6 +49,18 @@ class Side {
 
 }  // namespace
 
+SideMark side_mark(const FlatDesign& design, const std::vector<Vec2>& flat_mm, bool left, double arclength_mm) {
+  const Side side(design, flat_mm, left);
+  ZipperPlace place{design.pieces[0][0], design.pieces[0][1], 0};
+  for (const auto& piece : design.pieces)
+    for (std::size_t k = 0; k + 1 < piece.size(); ++k) {
+      const double from = design.arclength_mm[piece[k]], to = design.arclength_mm[piece[k + 1]];
+      if (from > arclength_mm || !(to > from)) continue;
+      place = {piece[k], piece[k + 1], std::min(1.0, (arclength_mm - from) / (to - from))};
+    }
+  return side.mark(place);
+}
+
 Markers place_markers(const FlatDesign& design, const OffsetRibbon& ribbon, double spacing_mm) {
   if (design.zipper_mm / spacing_mm > 9999)
     throw Error(ErrorCode::invalid_input, "marker_spacing_mm", "That would be more than 9999 markers: place them farther apart.");

@@ -33,4 +33,7 @@ struct Markers {
 /// At every multiple of `spacing_mm` along the zipper. Throws Error{invalid_input, "marker_spacing_mm"} above 9999 of them.
 Markers place_markers(const FlatDesign& design, const OffsetRibbon& ribbon, double spacing_mm);
 
+/// The place on one moved side of the ribbon that belongs to a place of the zipper.
+SideMark side_mark(const FlatDesign& design, const std::vector<Vec2>& flat_mm, bool left, double arclength_mm);
+
 }  // namespace formwright

@@ -21,6 +21,7 @@ struct PlanPiece {
 struct PlanPieces {
   std::vector<PlanPiece> pieces;
   int shortened_allowances = 0;  // edges of splits where the allowance would have met the piece itself
+  int tabs = 0;                  // along the edges, to glue them by
   int left_out_texts = 0;        // numbers and letters for which the ribbon is too narrow
 };
 

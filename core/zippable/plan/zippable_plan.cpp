@@ -110,6 +110,7 @@ ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& options,
   }
   plan.sheets = lay_out(plan.pieces, plan.nesting, options);
   plan.runs = tape_runs(design, plan.ribbon, plan.splitting, plan.markers);
+  plan.seams = seams_in_order(plan.splitting, plan.ribbon.flat_mm, plan.runs, plan.markers, plan.has_tape());
   const Vec2 paper = paper_size_mm(options.paper);
   plan.tape = make_tape_template(design, plan.zipper, plan.markers, plan.marker_spacing_mm, plan.runs, paper.y(), paper.x());
   plan.seconds_nest = watch.lap();

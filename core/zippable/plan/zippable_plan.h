@@ -7,6 +7,7 @@
 #include "base/context.h"
 #include "fabrication/nesting.h"
 #include "zippable/plan/plan_pieces.h"
+#include "zippable/plan/seams.h"
 #include "zippable/plan/tape_template.h"
 
 namespace formwright {
@@ -22,10 +23,13 @@ struct ZippablePlan {
   std::vector<CutSheet> sheets;
   std::vector<TapeRun> runs;
   TapeTemplate tape;
+  std::vector<Seam> seams;
   double area_before_mm2 = 0;  // of the ribbon with room for the zipper, before splitting
   double width_mean_mm = 0;    // of the ribbon as designed: its area over the zipper's length
   std::vector<std::string> notes;
   double seconds_offset = 0, seconds_split = 0, seconds_nest = 0;
+
+  bool has_tape() const { return zipper.tape_width_mm > 0; }
 };
 
 /// Width and height of the paper, upright, in mm.

@@ -153,6 +153,69 @@ class Plans(unittest.TestCase):
             self.assertAlmostEqual(width, BED_X_MM, delta=0.01)
             self.assertAlmostEqual(height, BED_Y_MM, delta=0.01)
 
+    def test_tape_template_numbers_both_sides_at_true_distances(self):
+        for out, report in self.each():
+            (width, _), layers = read_svg((out / "tape.svg").read_text())
+            rows = {}
+            for name, points, _ in layers["note"]:
+                if name and name.startswith("row-"):
+                    _, row, side = name.split("-")
+                    rows[side, int(row)] = Polygon(points)
+            self.assertEqual(len(rows), 2 * report["tape_rows"])
+            for side in ("left", "right"):
+                length = 0
+                found = {}
+                for row in range(1, report["tape_rows"] + 1):
+                    strip = rows[side, row]
+                    x_min, y_min, x_max, y_max = strip.bounds
+                    self.assertAlmostEqual(y_max - y_min, report["tape_width_mm"], delta=1e-3)
+                    for name, points, _ in layers["mark"]:
+                        if name and name.endswith(side) and strip.buffer(1e-3).contains(LineString(points)):
+                            found[int(name.split("-")[1])] = length + points[0][0] - x_min
+                    length += x_max - x_min
+                self.assertAlmostEqual(length, report["zipper_length_mm"], delta=1e-3 * report["tape_rows"])
+                self.assertEqual(sorted(found), list(range(report["markers"])))
+                for number, place in found.items():
+                    self.assertAlmostEqual(place, number * report["marker_spacing_mm"], delta=1e-3 * report["tape_rows"])
+            strips = list(rows.values())
+            for i, strip in enumerate(strips):
+                self.assertTrue(all(strip.disjoint(other) for other in strips[:i]))
+            said = subprocess.run(["pdfinfo", str(out / "tape.pdf")], check=True, capture_output=True, text=True).stdout
+            page_x, page_y = (float(v) * 25.4 / 72 for v in re.search(r"Page size:\s+([\d.]+) x ([\d.]+)", said).groups())
+            self.assertAlmostEqual(page_x, 297, delta=0.01)
+            self.assertAlmostEqual(page_y, 210, delta=0.01)
+            pages = int(re.search(r"Pages:\s+(\d+)", said).group(1))
+            self.assertAlmostEqual(pages * 297 + (pages - 1) * 20, width, delta=1e-3)
+
+    def test_assembly_sheet_says_every_seam_and_keeps_its_scale(self):
+        for out, report in self.each():
+            pdf = str(out / "assembly.pdf")
+            said = subprocess.run(["pdfinfo", pdf], check=True, capture_output=True, text=True).stdout
+            self.assertEqual(int(re.search(r"Pages:\s+(\d+)", said).group(1)), report["assembly_pages"])
+            text = " ".join(subprocess.run(["pdftotext", "-raw", pdf, "-"], check=True, capture_output=True, text=True).stdout.split())
+            self.assertEqual([int(n) for n in re.findall(r"Seam (\d+):", text)], [seam["number"] for seam in report["seams"]])
+            for seam in report["seams"]:
+                if seam["kind"] == "join":
+                    words = f"Seam {seam['number']}: letter {seam['letters']}, {seam['pieces'][0]} to {seam['pieces'][1]}, {seam['length_mm']:.1f} mm"
+                else:
+                    words = f"Seam {seam['number']}: along {seam['pieces'][0]}, "
+                    if seam["first_marker"] < seam["last_marker"]:
+                        words += f"numbers {seam['first_marker']} to {seam['last_marker']}"
+                self.assertIn(words, text)
+            self.assertIn(f"{report['zipper_to_cut_mm'] / 1000:.2f} m of coil zipper", text)
+            # Every thing that must be joined is: splits once, both tapes from end to end.
+            self.assertEqual(sum(seam["kind"] == "join" for seam in report["seams"]), report["splits"])
+            for side in ("left", "right"):
+                tape = sum(seam["length_mm"] for seam in report["seams"] if seam["side"] == side)
+                self.assertAlmostEqual(tape, report["zipper_length_mm"], delta=1e-6)
+            # The ruler: from the middle of its 0 to the middle of its 100.
+            boxes = subprocess.run(["pdftotext", "-bbox", "-l", "1", pdf, "-"], check=True, capture_output=True, text=True).stdout
+            places = {"0": [], "100": []}
+            for x_min, y_min, x_max, word in re.findall(r'<word xMin="([\d.]+)" yMin="([\d.]+)" xMax="([\d.]+)" yMax="[\d.]+">(0|100)</word>', boxes):
+                places[word].append(((float(x_min) + float(x_max)) / 2 * 25.4 / 72, float(y_min)))
+            lengths = [x - u for u, v in places["0"] for x, y in places["100"] if y == v]
+            self.assertTrue(any(abs(length - 100) < 0.05 for length in lengths), lengths)
+
     def test_kerf_separates_two_cuts(self):
         out, (report, flags) = next(iter(self.plans.items()))
         plain = self.folder / "no_kerf"

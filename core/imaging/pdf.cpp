@@ -116,6 +116,13 @@ void PdfDocument::draw(const Drawing& drawing, const PagePlacement& placement, c
   HPDF_Page_GRestore(page);
 }
 
+double PdfDocument::text_width_mm(const std::string& words, double height_mm) const {
+  if (implementation_->font == nullptr) return 0;
+  // In thousandths of the font's size.
+  const HPDF_TextWidth width = HPDF_Font_TextWidth(implementation_->font, reinterpret_cast<const HPDF_BYTE*>(words.c_str()), static_cast<HPDF_UINT>(words.size()));
+  return static_cast<double>(width.width) / 1000 * height_mm / capital_height;
+}
+
 Bytes PdfDocument::finish() {
   Implementation& pdf = *implementation_;
   HPDF_SaveToStream(pdf.document);

@@ -20,6 +20,7 @@ const std::vector<Operation>& operations() {
       evidence_pattern_operation(), evidence_register_operation(), evidence_calibrate_operation(), evidence_diagnose_operation(),
       evidence_diagnose_relief_operation(), evidence_virtual_object_operation(),
       zippable_design_operation(),
+      zippable_plan_operation(),
       import_operation(), simplify_operation(), subdivide_operation(), convert_operation()};
   return all;
 }

@@ -16,7 +16,7 @@ CORE = {
     "fabrication": {"base", "geometry"},
     "relief": {"base", "geometry", "numerics", "imaging"},
     "thermoform": {"base", "geometry", "numerics", "imaging"},
-    "zippable": {"base", "geometry", "numerics", "imaging"},
+    "zippable": {"base", "geometry", "numerics", "imaging", "fabrication"},
 }
 CORE["evidence"] = set(CORE)
 CORE["job"] = set(CORE)

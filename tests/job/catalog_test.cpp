@@ -131,6 +131,15 @@ struct MeasuredObjects {
   }
 };
 
+/// The design of a small zippable, for its plan.
+Bytes zippable_design(Session& session) {
+  const Json message = {{"operation", "zippable-design"},
+                        {"inputs", {{"mesh", {{"sample", "t_shape"}, {"vertices", 2000}}}}},
+                        {"outputs", {"design.json"}},
+                        {"parameters", {{"size_mm", 200}, {"width_mm", 30}}}};
+  return *run_job(message, [](const std::string&) { return nullptr; }, session, {}).outputs.at(0).bytes;
+}
+
 TEST(RunJob, ReportsOnlyDeclaredFigures) {
   Session session;
   const PrintedSheet printed(session);
@@ -156,6 +165,12 @@ TEST(RunJob, ReportsOnlyDeclaredFigures) {
         if (operation.name == "evidence-calibrate") message["parameters"] = {{"triangles", 500}, {"method", "grid"}, {"grid_values", 2}};
         else if (operation.name == "evidence-diagnose") message["parameters"] = {{"triangles", 500}, {"pairs", false}};
         else message["parameters"] = {{"pairs", false}};
+        continue;
+      }
+      if (operation.name == "zippable-plan") {
+        const std::string hash(64, 'd');
+        files[hash] = std::make_shared<const Bytes>(zippable_design(session));
+        message["inputs"][input.name] = {{"sha256", hash}, {"file_name", "design.json"}};
         continue;
       }
       // What a measured object consists of, as small as it can be.

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "zippable/plan/zippable_plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "imaging/pdf.h"
+
+namespace formwright {
+namespace {
+
+constexpr const char* title = "Zippable plan";
+
+double area_mm2(const Triangles& F, const std::vector<Vec2>& flat) {
+  double twice = 0;
+  for (Eigen::Index f = 0; f < F.rows(); ++f) {
+    const Vec2 a = flat[F(f, 1)] - flat[F(f, 0)], b = flat[F(f, 2)] - flat[F(f, 0)];
+    twice += a.x() * b.y() - a.y() * b.x();
+  }
+  return twice / 2;
+}
+
+/// An arrow along the material's grain, in the lower margin or what there is of it.
+void draw_grain(CutSheet& sheet, double margin_mm) {
+  const double y = margin_mm / 2, from = sheet.width_mm / 2 - 20, to = sheet.width_mm / 2 + 20, tip = std::min(1.5, margin_mm / 3);
+  sheet.paths.push_back({CutLayer::note, {{from, y}, {to, y}}, false, "grain"});
+  sheet.paths.push_back({CutLayer::note, {{to - 2, y - tip}, {to, y}, {to - 2, y + tip}}, false, "grain-tip"});
+}
+
+std::vector<CutSheet> lay_out(const PlanPieces& pieces, const Nesting& nesting, const PlanOptions& options) {
+  std::vector<CutSheet> sheets(std::size_t(nesting.sheet_count), CutSheet{title, options.bed_x_mm, options.bed_y_mm, {}});
+  for (std::size_t i = 0; i < pieces.pieces.size(); ++i) {
+    const PlanPiece& piece = pieces.pieces[i];
+    const Nested& place = nesting.places[i];
+    auto& paths = sheets[place.sheet].paths;
+    const auto add = [&](CutPath path) {
+      for (Vec2& point : path.points_mm) point = place(point);
+      paths.push_back(std::move(path));
+    };
+    add({CutLayer::cut, piece.cut_mm, true, "piece-" + piece.name});
+    for (const CutPath& path : piece.marks) add(path);
+  }
+  for (CutSheet& sheet : sheets) draw_grain(sheet, options.margin_mm);
+  return sheets;
+}
+
+void say_what_to_know(const PlanOptions& options, ZippablePlan& plan) {
+  const auto plural = [](int count, const std::string& one, const std::string& many) {
+    return count == 1 ? "1 " + one : std::to_string(count) + " " + many;
+  };
+  if (plan.ribbon.narrow_samples > 0)
+    plan.notes.push_back("The ribbon is too narrow for the zipper at " + plural(plan.ribbon.narrow_samples, "place", "places") +
+                         "; there the edge is moved by less, and the zipper sits closer: a smaller coil or a wider ribbon mends it.");
+  if (2 * plan.zipper.tape_width_mm > plan.width_mean_mm)
+    plan.notes.push_back("The two tapes are wider than the ribbon and overlap behind it: trim them or use a wider ribbon.");
+  constexpr double crumb_mm2 = 20;
+  const auto crumbs = std::count_if(plan.pieces.pieces.begin(), plan.pieces.pieces.end(),
+                                    [](const PlanPiece& piece) { return piece.ribbon_area_mm2 < crumb_mm2; });
+  if (crumbs > 0)
+    plan.notes.push_back(plural(static_cast<int>(crumbs), "piece is", "pieces are") +
+                         " smaller than 20 mm² and may be left out: corners where the ribbon meets itself.");
+  if (plan.pieces.shortened_allowances > 0)
+    plan.notes.push_back(plural(plan.pieces.shortened_allowances, "seam allowance", "seam allowances") +
+                         " would have met their own piece and are shorter or left out.");
+  if (plan.pieces.left_out_texts > 0)
+    plan.notes.push_back(plural(plan.pieces.left_out_texts, "number or letter", "numbers and letters") +
+                         " found no room: choose a smaller text.");
+  if (options.coil == ZipperCoil::none && plan.zipper.offset_mm() == 0)
+    plan.notes.push_back("Without a zipper the edges stay where they are: paper is joined edge to edge.");
+}
+
+}  // namespace
+
+Vec2 paper_size_mm(InstructionPaper paper) { return paper == InstructionPaper::a4 ? Vec2(210, 297) : Vec2(215.9, 279.4); }
+
+ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& options, Context& context) {
+  ZippablePlan plan;
+  Stopwatch watch;
+  std::vector<Vec2> designed;
+  for (const FlatVertex& v : design.boundary) designed.push_back(v.flat_mm);
+  plan.width_mean_mm = area_mm2(design.F, designed) / std::max(design.zipper_mm, 1e-300);
+  plan.zipper = zipper_model(options);
+  plan.ribbon = offset_ribbon(design, options.method, plan.zipper.offset_mm());
+  plan.area_before_mm2 = area_mm2(design.F, plan.ribbon.flat_mm);
+  plan.marker_spacing_mm = options.marker_spacing_mm.value_or(options.method == ZipperOffset::sewing ? 30 : 50);
+  plan.markers = place_markers(design, plan.ribbon, plan.marker_spacing_mm);
+  plan.seconds_offset = watch.lap();
+
+  const NestingOptions nesting{options.bed_x_mm, options.bed_y_mm, options.margin_mm, options.spacing_mm,
+                               options.grain == GrainDirection::along_pieces};
+  // Allowances and kerf are added after splitting; nesting needs a few cells to spare.
+  const double reserved = 2 * (options.margin_mm + options.seam_allowance_mm + options.kerf_mm) + 4 * nesting_cell_mm(nesting);
+  const double free_x = options.bed_x_mm - reserved, free_y = options.bed_y_mm - reserved;
+  const auto fits = [&](const Polygon& hull) {
+    return hull.size() < 2 || !fitting_turns(hull, free_x, free_y, nesting.keep_direction).empty();
+  };
+  {
+    const auto span = context.span(0, 0.5, "Splitting");
+    plan.splitting = split_ribbon(design.F, plan.ribbon.flat_mm, fits, options.kerf_mm + 0.5, context);
+  }
+  plan.pieces = make_pieces(design.F, plan.ribbon.flat_mm, plan.splitting, plan.markers, options.seam_allowance_mm, options.kerf_mm,
+                            options.text_height_mm);
+  plan.seconds_split = watch.lap();
+  {
+    const auto span = context.span(0.5, 1, "Nesting");
+    std::vector<Polygon> outlines;
+    for (const PlanPiece& piece : plan.pieces.pieces) outlines.push_back(piece.cut_mm);
+    plan.nesting = nest(outlines, nesting, context);
+  }
+  plan.sheets = lay_out(plan.pieces, plan.nesting, options);
+  plan.runs = tape_runs(design, plan.ribbon, plan.splitting, plan.markers);
+  plan.seams = seams_in_order(plan.splitting, plan.ribbon.flat_mm, plan.runs, plan.markers, plan.has_tape());
+  const Vec2 paper = paper_size_mm(options.paper);
+  plan.tape = make_tape_template(design, plan.zipper, plan.markers, plan.marker_spacing_mm, plan.runs, paper.y(), paper.x());
+  plan.seconds_nest = watch.lap();
+  say_what_to_know(options, plan);
+  return plan;
+}
+
+Bytes write_plan_pdf(const std::vector<CutSheet>& sheets) {
+  PdfDocument pdf(title);
+  for (const CutSheet& sheet : sheets) {
+    pdf.add_page(sheet.width_mm, sheet.height_mm);
+    Drawing drawing;
+    for (const CutPath& path : sheet.paths) {
+      const double width_mm = path.layer == CutLayer::cut ? 0.2 : 0.1;
+      for (std::size_t k = 0; k + 1 < path.points_mm.size(); ++k) drawing.line(path.points_mm[k], path.points_mm[k + 1], width_mm);
+      if (path.closed) drawing.line(path.points_mm.back(), path.points_mm.front(), width_mm);
+    }
+    pdf.draw(drawing, {}, Vec2::Zero(), Vec2(sheet.width_mm, sheet.height_mm));
+  }
+  return pdf.finish();
+}
+
+}  // namespace formwright

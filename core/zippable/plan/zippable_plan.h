@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// From the flat ribbon to sheets that are cut: room for the zipper, markers, pieces, nesting. Thesis Sec. 5.3.
+#include <string>
+#include <vector>
+
+#include "base/context.h"
+#include "fabrication/nesting.h"
+#include "zippable/plan/plan_pieces.h"
+#include "zippable/plan/seams.h"
+#include "zippable/plan/tape_template.h"
+
+namespace formwright {
+
+struct ZippablePlan {
+  ZipperModel zipper;
+  OffsetRibbon ribbon;
+  double marker_spacing_mm = 30;
+  Markers markers;
+  Splitting splitting;
+  PlanPieces pieces;
+  Nesting nesting;
+  std::vector<CutSheet> sheets;
+  std::vector<TapeRun> runs;
+  TapeTemplate tape;
+  std::vector<Seam> seams;
+  double area_before_mm2 = 0;  // of the ribbon with room for the zipper, before splitting
+  double width_mean_mm = 0;    // of the ribbon as designed: its area over the zipper's length
+  std::vector<std::string> notes;
+  double seconds_offset = 0, seconds_split = 0, seconds_nest = 0;
+
+  bool has_tape() const { return zipper.tape_width_mm > 0; }
+};
+
+/// Width and height of the paper, upright, in mm.
+Vec2 paper_size_mm(InstructionPaper paper);
+
+/// Throws Error: invalid_input (a parameter), cancelled.
+ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& options, Context& context);
+
+/// One page a sheet at exact size, everything in black. Throws Error{could_not_solve}: a sheet longer than 5.08 m.
+Bytes write_plan_pdf(const std::vector<CutSheet>& sheets);
+
+}  // namespace formwright

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "zippable/plan/splitting.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "base/error.h"
+#include "fabrication/nesting.h"
+#include "zippable/plan/planned.h"
+
+namespace formwright {
+namespace {
+
+const auto any_size = [](const Polygon&) { return true; };
+
+std::vector<Vec2> flat_of(const FlatDesign& design) {
+  std::vector<Vec2> flat;
+  for (const FlatVertex& v : design.boundary) flat.push_back(v.flat_mm);
+  return flat;
+}
+
+/// A ring of the given width that turns `turns` times over itself: one strip bent around.
+std::vector<Vec2> bent(const FlatDesign& strip, double radius, double width, double turns) {
+  std::vector<Vec2> flat;
+  const double length = strip.zipper_mm;
+  for (const FlatVertex& v : strip.boundary) {
+    // Counter-clockwise with the inner side to the left: the lower edge is outside.
+    const double angle = 2 * std::numbers::pi * turns * v.flat_mm.x() / length, r = radius - v.flat_mm.y() / width * width;
+    flat.emplace_back(r * std::cos(angle), r * std::sin(angle));
+  }
+  return flat;
+}
+
+TEST(Splitting, AStripIsCutAsOftenAsItsLengthSays) {
+  const FlatDesign strip = test::strip(1000, 20, 201);
+  Context context;
+  const auto fits = [](const Polygon& hull) { return !fitting_turns(hull, 300, 100, false).empty(); };
+  const Splitting splitting = split_ribbon(strip.F, flat_of(strip), fits, 0.5, context);
+  EXPECT_EQ(splitting.piece_count, 4);  // 1000 / 300, rounded up
+  EXPECT_EQ(splitting.splits.size(), 3u);
+  EXPECT_EQ(split_ribbon(strip.F, flat_of(strip), any_size, 0.5, context).piece_count, 1);
+}
+
+TEST(Splitting, ARingOverItselfIsCutOnceATurn) {
+  Context context;
+  for (const double turns : {0.9, 1.5, 2.5, 3.5}) {
+    const FlatDesign strip = test::strip(400 * turns, 12, static_cast<int>(100 * turns) + 1);
+    const Splitting splitting = split_ribbon(strip.F, bent(strip, 70, 12, turns), any_size, 0.5, context);
+    EXPECT_EQ(splitting.piece_count, static_cast<int>(std::ceil(turns))) << turns;
+  }
+}
+
+TEST(Splitting, NarrowerThanASingleTriangleIsRefused) {
+  const FlatDesign strip = test::strip(100, 20, 21);
+  Context context;
+  EXPECT_THROW(split_ribbon(strip.F, flat_of(strip), [](const Polygon&) { return false; }, 0.5, context), Error);
+}
+
+TEST(Splitting, PiecesOfSamplesNeitherOverlapNorLoseTriangles) {
+  Context context;
+  for (const char* sample : {"star", "octopus"}) {
+    const FlatDesign design = test::designed(sample, 20);
+    const std::vector<Vec2> flat = flat_of(design);
+    const Splitting splitting = split_ribbon(design.F, flat, any_size, 0.5, context);
+    EXPECT_EQ(static_cast<int>(splitting.splits.size()), splitting.piece_count - 1);
+    EXPECT_EQ(std::set<int>(splitting.piece_of_face.begin(), splitting.piece_of_face.end()).size(), std::size_t(splitting.piece_count));
+    const auto corners = [&](Eigen::Index f) { return std::array<Vec2, 3>{flat[design.F(f, 0)], flat[design.F(f, 1)], flat[design.F(f, 2)]}; };
+    int overlaps = 0;
+    for (Eigen::Index f = 0; f < design.F.rows(); ++f)
+      for (Eigen::Index g = 0; g < f; ++g)
+        if (splitting.piece_of_face[f] == splitting.piece_of_face[g]) overlaps += triangles_overlap(corners(f), corners(g), 1e-6);
+    EXPECT_EQ(overlaps, 0) << sample;
+  }
+}
+
+}  // namespace
+}  // namespace formwright

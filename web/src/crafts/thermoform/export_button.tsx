@@ -5,7 +5,7 @@ import { Button, formatBytes, formatDuration, Icon, Menu } from '../../ui';
 import { download, safeFileName } from '../common/download';
 import { figure } from '../common/report';
 import { readyWorker } from '../common/services';
-import { productBytes } from './make_product';
+import { bytesToSave } from './make_product';
 import { moulding, printing, simulate } from './thermoform_document';
 import type { ThermoformSession } from './thermoform_session';
 
@@ -41,7 +41,7 @@ const named = ({ operation, output }: Export): string => {
 };
 
 async function save(session: ThermoformSession, one: Export): Promise<void> {
-  const bytes = await productBytes(session, one.operation, one.output.name, one.output.label);
+  const bytes = await bytesToSave(session, one.operation, one.output.name, one.output.label);
   if (bytes) download(bytes, `${safeFileName(session.title)}-${one.output.name}`, one.output.media_type);
 }
 

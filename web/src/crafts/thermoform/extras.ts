@@ -4,8 +4,8 @@
 import { effect, signal } from '@preact/signals';
 import { readPly, readPrinted } from '../../jobs/mesh_reader';
 import type { MeshData } from '../../view';
-import { productBytes } from './make_product';
-import type { Product } from './thermoform_document';
+import { bytesToSave } from './make_product';
+import type { Product } from '../common/products';
 import { moulding, printing } from './thermoform_document';
 import type { Formed, ThermoformSession } from './thermoform_session';
 import { view } from './views';
@@ -32,7 +32,7 @@ export function watchExtras(session: ThermoformSession) {
     const key = JSON.stringify([operation, session.document.peek().parameters, session.result.peek()?.id]);
     if (tried.has(key) || session.activity.value.kind !== 'idle') return;
     tried.add(key);
-    void productBytes(session, operation, output, label);
+    void bytesToSave(session, operation, output, label);
   };
   let urls: string[] = [];
   const forget = () => {

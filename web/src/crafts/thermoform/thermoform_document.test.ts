@@ -6,16 +6,9 @@ import { newDocument } from '../../project/document';
 import type { CraftModel, CraftResult } from '../common/craft_document';
 import { CraftCommands, emptyCraft, known, subjectOf } from '../common/craft_document';
 import { machineProfile, profileInputs } from '../common/machine_profile';
-import type { Product } from './thermoform_document';
-import {
-  addProduct,
-  formedSheet,
-  offered,
-  printing,
-  productOf,
-  simulate,
-  thermoform,
-} from './thermoform_document';
+import type { Product } from '../common/products';
+import { addProduct, productOf } from '../common/products';
+import { formedSheet, offered, printing, simulate, thermoform } from './thermoform_document';
 
 const number = (value: number): ParameterSchema => ({ type: 'number', default: value });
 const operation = (name: string, properties: Record<string, ParameterSchema>): Operation => ({
@@ -99,16 +92,16 @@ describe('the thermoform in a project', () => {
   });
 
   it('joins what was made of the same sheet one after the other', () => {
-    let document = addProduct(product('p', {}, 'formed.glb')).apply(opened());
-    document = addProduct(product('q', {}, 'print.png')).apply(document);
-    document = addProduct(product('s', { dots_per_inch: 72 }, 'print.png')).apply(document);
+    let document = addProduct(thermoform, product('p', {}, 'formed.glb')).apply(opened());
+    document = addProduct(thermoform, product('q', {}, 'print.png')).apply(document);
+    document = addProduct(thermoform, product('s', { dots_per_inch: 72 }, 'print.png')).apply(document);
     const craft = thermoform.of(document);
     expect(craft.products.map(({ id }) => id)).toEqual(['s', 'q']);
-    expect(Object.keys(productOf(craft, subject, print)?.outputs ?? {}).sort()).toEqual([
+    expect(Object.keys(productOf(craft, subject.key, print)?.outputs ?? {}).sort()).toEqual([
       'formed.glb',
       'print.png',
     ]);
-    expect(productOf(craft, subject, forming)).toBeNull();
+    expect(productOf(craft, subject.key, forming)).toBeNull();
   });
 
   it('lives beside a relief, and opens projects from before it', () => {

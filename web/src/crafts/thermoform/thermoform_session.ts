@@ -15,18 +15,11 @@ import { bytesOf } from '../common/import_model';
 import type { PreviewRequest, ShownWork } from '../common/previewing_session';
 import { PreviewingSession } from '../common/previewing_session';
 import { machineProfile, profileInputs } from '../common/machine_profile';
+import { productOf } from '../common/products';
 import { figure } from '../common/report';
 import type { Services } from '../common/services';
 import { endOf, momentAt, phaseAt, phasesOf } from './film';
-import {
-  formedSheet,
-  moulding,
-  offered,
-  printing,
-  productOf,
-  simulate,
-  thermoform,
-} from './thermoform_document';
+import { formedSheet, moulding, offered, printing, simulate, thermoform } from './thermoform_document';
 import type { ThermoformDocument } from './thermoform_document';
 
 export interface Formed extends ShownWork {
@@ -56,10 +49,10 @@ export class ThermoformSession extends PreviewingSession<ThermoformDocument, For
   readonly asked = computed(() => known(this.operationNamed(simulate), this.document.value.parameters));
   readonly result = computed(() => formedSheet(this.document.value, this.subject.value, this.asked.value));
   readonly print = computed(() =>
-    productOf(this.document.value, this.subject.value, this.operationNamed(printing)),
+    productOf(this.document.value, this.subject.value?.key ?? null, this.operationNamed(printing)),
   );
   readonly mould = computed(() =>
-    productOf(this.document.value, this.subject.value, this.operationNamed(moulding)),
+    productOf(this.document.value, this.subject.value?.key ?? null, this.operationNamed(moulding)),
   );
   /** Of the film, seconds from the start; its end is what the sheet is like when it has cooled. */
   readonly time_s = signal(0);

@@ -5,18 +5,42 @@ import { Button, formatBytes, formatDuration, Icon, Menu } from '../../ui';
 import { download, safeFileName } from '../common/download';
 import { outputOf, solveInFull } from '../common/full_solve';
 import { readyWorker } from '../common/services';
+import { planBytes } from './make_plan';
+import { flatView } from './views';
+import { design, planning } from './zippable_document';
 import type { ZippableSession } from './zippable_session';
 
-/** In the order of the menu; a build offers those that its catalog names. */
-const menu = ['ribbon.svg', 'design.json', 'parameterised.ply', 'formed.ply', 'curve.obj'];
-
-function exportsOf(session: ZippableSession): OutputDeclaration[] {
-  const declared = session.operation.value?.outputs ?? [];
-  return menu.flatMap((name) => declared.find((output) => output.name === name) ?? []);
+interface Export {
+  readonly operation: string;
+  readonly output: OutputDeclaration;
 }
 
-async function save(session: ZippableSession, output: OutputDeclaration): Promise<void> {
-  const bytes = await outputOf(session, output.name, output.label.toLowerCase());
+/** In the order of the menu; a build offers those that its catalog names. */
+const menu: readonly (readonly [operation: string, outputs: readonly string[]])[] = [
+  [design, ['ribbon.svg']],
+  [planning, ['plan.svg', 'plan.dxf', 'plan.pdf', 'sheets.zip', 'tape.pdf', 'assembly.pdf']],
+  [design, ['design.json', 'parameterised.ply', 'formed.ply', 'curve.obj']],
+];
+
+/** First what belongs to what is shown. */
+function exportsOf(session: ZippableSession): Export[] {
+  const all = menu.flatMap(([operation, names]) => {
+    const declared = session.operationNamed(operation)?.outputs ?? [];
+    return names.flatMap((name) => {
+      const output = declared.find((one) => one.name === name);
+      return output ? [{ operation, output }] : [];
+    });
+  });
+  const first = flatView.value === 'sheets' ? planning : design;
+  const main = all.find(({ operation }) => operation === first);
+  return main ? [main, ...all.filter((one) => one !== main)] : all;
+}
+
+async function save(session: ZippableSession, { operation, output }: Export): Promise<void> {
+  const label = output.label.toLowerCase();
+  const bytes = await (operation === planning
+    ? planBytes(session, output.name, label)
+    : outputOf(session, output.name, label));
   if (bytes) download(bytes, `${safeFileName(session.title)}-${output.name}`, output.media_type);
 }
 
@@ -69,26 +93,31 @@ export function MainButton({ session, onSolve }: { session: ZippableSession; onS
           disabledReason={busy}
           onClick={() => void save(session, main)}
         >
-          Export {main.label.toLowerCase()}
+          Export {main.output.label.toLowerCase()}
         </Button>
         <Menu
           label="Export something else"
           buttonClass="button filled big"
           align="right"
-          items={all.map((output) => {
-            const bytes = result.outputs[output.name]?.bytes;
+          items={all.map((one) => {
+            const { operation, output } = one;
+            const from = operation === planning ? session.plan.value : result;
+            const bytes = from?.outputs[output.name]?.bytes;
             return {
               label: `${output.label}, ${ending(output)}`,
               hint: bytes === undefined ? undefined : formatBytes(bytes),
               disabledReason: busy,
-              onSelect: () => void save(session, output),
+              onSelect: () => void save(session, one),
             };
           })}
         >
           <Icon name="chevronDown" small />
         </Menu>
       </div>
-      <p>{ending(main)} at true size. It may overlap itself.</p>
+      <p>
+        {ending(main.output)} at true size
+        {main.operation === planning ? ', layers by colour: cut, mark, engrave.' : '. It may overlap itself.'}
+      </p>
     </>
   );
 }

@@ -2,17 +2,24 @@
 // The ribbon in the plane, in true proportions: parts in their colours, zipper sides, openings, the place pointed at.
 import { useSignal } from '@preact/signals';
 import { useEffect, useMemo, useRef } from 'preact/hooks';
-import { formatFixed, withUnit } from '../../ui';
+import { formatFixed, Segmented, withUnit } from '../../ui';
 import { figure } from '../common/report';
 import { boundaryEdges, partName } from './design';
 import type { FlatFit } from './flat_outline';
 import { edgePath, fitFlat, partLabels, partPaths, scaleBar } from './flat_outline';
 import { alongAt, flatOf, placeInFlat, seamAt } from './ribbon_places';
-import { chosenPart, partToken, playing, pointed } from './views';
+import { Sheets } from './sheets';
+import { chosenPart, flatView, partToken, playing, pointed } from './views';
+import { planning } from './zippable_document';
 import type { Zippable, ZippableSession } from './zippable_session';
 
 /** "0.84 m", as tape is bought. */
 export const metres = (mm: number): string => withUnit(formatFixed(mm / 1000, 2), 'm');
+
+const flatNames = [
+  { value: 'ribbon', label: 'Ribbon' },
+  { value: 'sheets', label: 'Sheets to cut' },
+] as const;
 
 export function FlatRibbon({ session }: { session: ZippableSession }) {
   const frame = useRef<HTMLDivElement>(null);
@@ -30,9 +37,23 @@ export function FlatRibbon({ session }: { session: ZippableSession }) {
     () => (shown && width > 0 ? fitFlat(shown.design.ribbon.flat, width, height) : null),
     [shown, width, height],
   );
+  const plans = session.operationNamed(planning) !== undefined;
+  const sheets = plans && flatView.value === 'sheets';
   return (
     <div ref={frame} class="flat-ribbon">
-      {shown && fit ? <Drawing shown={shown} fit={fit} width={width} height={height} /> : null}
+      {shown && sheets ? <Sheets session={session} /> : null}
+      {shown && fit && !sheets ? <Drawing shown={shown} fit={fit} width={width} height={height} /> : null}
+      {shown && plans ? (
+        <div class="float top-left">
+          <Segmented
+            floating
+            label="Flat"
+            options={flatNames}
+            value={flatView.value}
+            onChange={(value) => (flatView.value = value)}
+          />
+        </div>
+      ) : null}
     </div>
   );
 }
@@ -110,7 +131,6 @@ function Drawing({ shown, fit, width, height }: DrawingProps) {
           })}
         </svg>
       </div>
-      <p class="label-chip flat-title">Unfolded, true proportions</p>
       <div class="flat-foot">
         <span class="scale-bar">
           <i style={{ width: `${bar.px}px` }} />

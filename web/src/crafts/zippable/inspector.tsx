@@ -6,6 +6,8 @@ import { figure, vectorOf } from '../common/report';
 import { MainButton } from './export_button';
 import { Figures } from './figures';
 import { PartList } from './part_list';
+import { flatView } from './views';
+import { design, planning } from './zippable_document';
 import type { ZippableSession } from './zippable_session';
 
 export interface InspectorProps {
@@ -33,6 +35,12 @@ function automaticValues(session: ZippableSession): Record<string, number> {
   };
 }
 
+/** What the right pane shows is what there is to set; the rest is folded away. */
+function openGroups(session: ZippableSession): string[] {
+  const operation = session.operationNamed(flatView.value === 'sheets' ? planning : design);
+  return Object.values(operation?.parameters.properties ?? {}).map((schema) => schema['x-group'] ?? '');
+}
+
 export function Inspector({ session, picture, onReplace, onSolve }: InspectorProps) {
   const { model, parameters } = session.document.value;
   const operation = session.operation.value;
@@ -49,6 +57,7 @@ export function Inspector({ session, picture, onReplace, onSolve }: InspectorPro
           onCommit={() => session.services.projects.commit()}
           groupHead={{ Ribbon: null, Parts: <PartList session={session} /> }}
           automatic={automaticValues(session)}
+          openGroups={openGroups(session)}
         />
         <Figures session={session} />
       </div>

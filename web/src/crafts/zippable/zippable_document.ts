@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The zippable's part of a project.
+import type { Catalog, JsonObject, Operation } from '../../jobs/contract';
 import type { BlobReference } from '../../project/document';
 import type { CraftDocument, CraftResult, Subject } from '../common/craft_document';
 import { CraftCommands, emptyCraft, sameRequest } from '../common/craft_document';
+import type { RoomWithProducts } from '../common/products';
+import { offeredTogether } from '../common/products';
 import type { Drawn } from './drawn_parts';
 import { nothingDrawn } from './drawn_parts';
 
 export const design = 'zippable-design';
+/** What is made of a design; a build offers it where its catalog names it. */
+export const planning = 'zippable-plan';
+
+/** The design with the parameters of its plans. */
+export const offered = (catalog: Catalog): Operation | null => offeredTogether(catalog, design, [planning]);
 
 /** What was drawn, on which model, and as the operation reads it. */
 export interface DrawnParts extends Drawn {
@@ -15,11 +23,15 @@ export interface DrawnParts extends Drawn {
   readonly segments: BlobReference | null;
 }
 
-export interface ZippableDocument extends CraftDocument {
+export interface ZippableDocument extends CraftDocument, RoomWithProducts {
   readonly drawn: DrawnParts | null;
 }
 
-export const zippable = new CraftCommands<ZippableDocument>('zippable', { ...emptyCraft, drawn: null });
+export const zippable = new CraftCommands<ZippableDocument>('zippable', {
+  ...emptyCraft,
+  products: [],
+  drawn: null,
+});
 
 /** What is drawn on the model in force. */
 export function drawnOn({ model, drawn }: ZippableDocument): DrawnParts {
@@ -30,10 +42,11 @@ export function drawnOn({ model, drawn }: ZippableDocument): DrawnParts {
 export const setDrawn = (drawn: DrawnParts, label: string) =>
   zippable.command({ label }, () => ({ drawn }) as Partial<ZippableDocument>);
 
-/** The design made with exactly the parameters, the model and the parts in force, if there is one. */
+/** The design made with exactly these parameters, the model and the parts in force, if there is one. */
 export function currentResult(
-  { parameters, results }: CraftDocument,
+  { results }: CraftDocument,
   subject: Subject | null,
+  parameters: JsonObject,
 ): CraftResult | null {
   if (subject === null) return null;
   const request = { mesh: subject.key, parameters };

@@ -7,11 +7,13 @@ import type { JobInput, JsonObject, Operation, Report } from '../../jobs/contrac
 import { findOperation } from '../../jobs/contract';
 import { readPolylines } from '../../jobs/mesh_reader';
 import type { CraftResult } from '../common/craft_document';
+import { known } from '../common/craft_document';
 import type { Measured } from '../common/estimate';
 import { estimateSeconds, recall } from '../common/estimate';
 import { bytesOf } from '../common/import_model';
 import type { PreviewRequest, ShownWork } from '../common/previewing_session';
 import { PreviewingSession } from '../common/previewing_session';
+import { productOf } from '../common/products';
 import { readMesh } from '../common/read_mesh';
 import { figure } from '../common/report';
 import type { Services } from '../common/services';
@@ -22,7 +24,7 @@ import { readDesign } from './design';
 import type { PartDistortion } from './part_map';
 import { distortionOfParts, partsOfTriangles, VertexGrid } from './part_map';
 import type { ZippableDocument } from './zippable_document';
-import { currentResult, design, drawnOn, zippable } from './zippable_document';
+import { currentResult, design, drawnOn, offered, planning, zippable } from './zippable_document';
 
 /** A model divided and parameterised; the same object for as many designs as are made on it. */
 export interface DividedModel {
@@ -56,14 +58,19 @@ export class ZippableSession extends PreviewingSession<ZippableDocument, Zippabl
   readonly document = computed(() => zippable.of(this.services.projects.document.value));
   readonly operation = computed<Operation | null>(() => {
     const catalog = this.services.catalog.value;
-    return catalog === null ? null : (findOperation(catalog, this.operationName) ?? null);
+    return catalog && offered(catalog);
   });
-  readonly asked = computed(() => this.document.value.parameters);
+  readonly asked = computed(() => known(this.operationNamed(design), this.document.value.parameters));
   override readonly furtherInputs = computed((): Readonly<Record<string, JobInput>> => {
     const { segments } = drawnOn(this.document.value);
     return segments ? { segments: { sha256: segments.blob, file_name: 'segments.json' } } : {};
   });
-  readonly result = computed(() => currentResult(this.document.value, this.subject.value));
+  readonly result = computed(() => currentResult(this.document.value, this.subject.value, this.asked.value));
+  /** What plans are made of; null while the design is a preview. */
+  readonly designFile = computed(() => this.result.value?.outputs['design.json'] ?? null);
+  readonly plan = computed(() =>
+    productOf(this.document.value, this.designFile.value?.blob ?? null, this.operationNamed(planning)),
+  );
   readonly #previewed = signal<Measured | null>(null);
   #divided: DividedModel | null = null;
 
@@ -78,6 +85,11 @@ export class ZippableSession extends PreviewingSession<ZippableDocument, Zippabl
         if (this.problem.value?.kind === 'solve') this.problem.value = null;
       });
     });
+  }
+
+  operationNamed(name: string): Operation | undefined {
+    const catalog = this.services.catalog.value;
+    return catalog ? findOperation(catalog, name) : undefined;
   }
 
   /** The order was one of the old model's; widths and sizes stay as the maker set them. */

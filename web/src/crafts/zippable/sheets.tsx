@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The sheets that the ribbon is cut from, as the plan's own drawing has them.
+import { useEffect, useState } from 'preact/hooks';
+import { Button, formatCount, formatNumber, Icon, withUnit } from '../../ui';
+import { solveInFull } from '../common/full_solve';
+import { figure, sentences } from '../common/report';
+import { metres } from './flat_ribbon';
+import { planBytes } from './make_plan';
+import type { ZippableSession } from './zippable_session';
+
+/** Plans asked for already: what failed is not tried again before something changes. */
+const tried = new Set<string>();
+
+export function Sheets({ session }: { session: ZippableSession }) {
+  const design = session.designFile.value;
+  const plan = session.plan.value;
+  const { parameters } = session.document.value;
+  const idle = session.activity.value.kind === 'idle';
+  useEffect(() => {
+    const key = JSON.stringify([design?.blob, parameters]);
+    if (design === null || plan !== null || !idle || tried.has(key)) return;
+    tried.add(key);
+    void planBytes(session, 'plan.svg', 'plan');
+  }, [design, plan, parameters, idle]);
+  const url = useDrawing(session);
+  if (design === null)
+    return (
+      <div class="sheets-empty">
+        <p>Plans are made of the whole model’s ribbon.</p>
+        <Button
+          icon="scissors"
+          disabledReason={session.shown.value === null || !idle ? 'Ready when the preview is' : undefined}
+          onClick={() => void solveInFull(session)}
+        >
+          Make the ribbon
+        </Button>
+      </div>
+    );
+  const notes = sentences(plan?.report ?? {}, 'notes');
+  return (
+    <>
+      <div class="sheets" tabIndex={0} role="group" aria-label="Sheets">
+        {plan && url ? <img src={url} alt={planWords(session)} /> : null}
+        {plan === null && idle ? <p class="sheets-none">No plan: change what the note says.</p> : null}
+      </div>
+      {plan ? (
+        <div class="sheets-foot">
+          <p>{planWords(session)}</p>
+          {notes.length > 0 ? (
+            <ul class="plain-list">
+              {notes.map((note) => (
+                <li key={note}>
+                  <Icon name="warn" small /> {note}
+                </li>
+              ))}
+            </ul>
+          ) : null}
+        </div>
+      ) : null}
+    </>
+  );
+}
+
+/** "7 pieces on 2 sheets of 600 × 300 mm; zipper to cut: 2.57 m". */
+export function planWords(session: ZippableSession): string {
+  const report = session.plan.value?.report ?? {};
+  const pieces = Array.isArray(report['pieces']) ? report['pieces'].length : null;
+  const [sheets, zipper] = [figure(report, 'sheets'), figure(report, 'zipper_to_cut_mm')];
+  const bed = ['bed_x_mm', 'bed_y_mm']
+    .map((name) => session.value(name))
+    .filter((mm) => typeof mm === 'number');
+  const many = (count: number, one: string) => `${formatCount(count)} ${one}${count === 1 ? '' : 's'}`;
+  const size =
+    bed.length === 2 ? ` of ${withUnit(bed.map((mm) => formatNumber(mm, 3)).join(' × '), 'mm')}` : '';
+  return [
+    pieces !== null && sheets !== null ? `${many(pieces, 'piece')} on ${many(sheets, 'sheet')}${size}` : null,
+    zipper === null ? null : `zipper to cut: ${metres(zipper)}`,
+  ]
+    .filter(Boolean)
+    .join('; ');
+}
+
+/** The address of the plan's drawing while it is shown. */
+function useDrawing(session: ZippableSession): string | null {
+  const [url, setUrl] = useState<string | null>(null);
+  const drawing = session.plan.value?.outputs['plan.svg'];
+  useEffect(() => {
+    let made: string | null = null;
+    let gone = false;
+    const read = async () => {
+      if (drawing === undefined) return;
+      const bytes = await session.services.projects.blobs.read(drawing.blob);
+      if (gone) return;
+      made = URL.createObjectURL(new Blob([bytes], { type: 'image/svg+xml' }));
+      setUrl(made);
+    };
+    void read().catch(() => undefined);
+    return () => {
+      gone = true;
+      setUrl(null);
+      if (made) URL.revokeObjectURL(made);
+    };
+  }, [drawing?.blob]);
+  return url;
+}

@@ -37,7 +37,7 @@ function exportsOf(session: ZippableSession): Export[] {
 }
 
 async function save(session: ZippableSession, { operation, output }: Export): Promise<void> {
-  const label = output.label.toLowerCase();
+  const label = inSentence(output);
   const bytes = await (operation === planning
     ? planBytes(session, output.name, label)
     : outputOf(session, output.name, label));
@@ -51,6 +51,10 @@ export async function exportMain(session: ZippableSession): Promise<void> {
   if (main && session.result.value) await save(session, main);
 }
 
+/** "Plan, SVG" says its format itself. */
+const withFormat = (output: OutputDeclaration) =>
+  output.label.includes(', ') ? output.label : `${output.label}, ${ending(output)}`;
+const inSentence = ({ label }: OutputDeclaration) => label.charAt(0).toLowerCase() + label.slice(1);
 const ending = ({ name }: OutputDeclaration) => name.split('.').at(-1)?.toUpperCase() ?? '';
 
 export function MainButton({ session, onSolve }: { session: ZippableSession; onSolve: () => void }) {
@@ -93,7 +97,7 @@ export function MainButton({ session, onSolve }: { session: ZippableSession; onS
           disabledReason={busy}
           onClick={() => void save(session, main)}
         >
-          Export {main.output.label.toLowerCase()}
+          Export {inSentence(main.output)}
         </Button>
         <Menu
           label="Export something else"
@@ -104,7 +108,7 @@ export function MainButton({ session, onSolve }: { session: ZippableSession; onS
             const from = operation === planning ? session.plan.value : result;
             const bytes = from?.outputs[output.name]?.bytes;
             return {
-              label: `${output.label}, ${ending(output)}`,
+              label: withFormat(output),
               hint: bytes === undefined ? undefined : formatBytes(bytes),
               disabledReason: busy,
               onSelect: () => void save(session, one),

@@ -47,13 +47,16 @@ export function Sheets({ session }: { session: ZippableSession }) {
         <div class="sheets-foot">
           <p>{planWords(session)}</p>
           {notes.length > 0 ? (
-            <ul class="plain-list">
-              {notes.map((note) => (
-                <li key={note}>
-                  <Icon name="warn" small /> {note}
-                </li>
-              ))}
-            </ul>
+            <details>
+              <summary>
+                <Icon name="warn" small /> {notes.length === 1 ? '1 note' : `${notes.length} notes`}
+              </summary>
+              <ul>
+                {notes.map((note) => (
+                  <li key={note}>{note}</li>
+                ))}
+              </ul>
+            </details>
           ) : null}
         </div>
       ) : null}
@@ -80,6 +83,13 @@ export function planWords(session: ZippableSession): string {
     .join('; ');
 }
 
+/** A laser's hairlines are not to be seen at a fifth of their size: on the screen all lines are as wide. */
+const forTheEye = (svg: string): string =>
+  svg.replace(
+    /<svg[^>]*>/,
+    '$&<style>path,line,polyline,polygon,circle,rect{vector-effect:non-scaling-stroke;stroke-width:1px!important}</style>',
+  );
+
 /** The address of the plan's drawing while it is shown. */
 function useDrawing(session: ZippableSession): string | null {
   const [url, setUrl] = useState<string | null>(null);
@@ -91,7 +101,8 @@ function useDrawing(session: ZippableSession): string | null {
       if (drawing === undefined) return;
       const bytes = await session.services.projects.blobs.read(drawing.blob);
       if (gone) return;
-      made = URL.createObjectURL(new Blob([bytes], { type: 'image/svg+xml' }));
+      const drawn = forTheEye(new TextDecoder().decode(bytes));
+      made = URL.createObjectURL(new Blob([drawn], { type: 'image/svg+xml' }));
       setUrl(made);
     };
     void read().catch(() => undefined);

@@ -56,6 +56,7 @@ std::vector<ReportField> report_fields() {
           {"seams", "Seams", "", "in the order in which they are made: pieces, letters of a split, markers, lengths"},
           {"zipper_to_cut_mm", "Zipper to cut", "mm", "from the reel, with an end on either side to hold it by"},
           {"assembly_pages", "Assembly pages", "", "of the assembly sheet"},
+          {"tabs", "Tabs", "", "of paper: how many, how many of them less deep, and stretches without"},
           {"tape_rows", "Rows of the template", "", "of the tapes, on its pages"},
           {"tape_row_mm", "Row", "mm", "of the template, along the zipper"},
           {"pieces", "Pieces", "", "area of ribbon, sheet and letters of splits"},
@@ -135,6 +136,7 @@ void report_tape(Json& report, const FlatDesign& design, const ZippablePlan& pla
                      {"last_marker", seam.last_marker}});
   }
   report["seams"] = seams;
+  if (plan.tabs) report["tabs"] = {plan.tabs->tabs.size(), plan.tabs->shortened, plan.tabs->left_out};
   report["zipper_to_cut_mm"] = zipper_to_cut_mm(design, plan);
   report["tape_rows"] = plan.tape.rows;
   report["tape_row_mm"] = plan.tape.row_mm;

@@ -78,7 +78,7 @@ class AssemblyWriter {
       flow_.paragraph(sewn() ? "- Thread, a sewing machine with a zipper foot, pins." : "- Contact glue for cloth, clips.");
       flow_.paragraph("- tape.pdf, printed at 100 %, and a pen for the zipper.");
     } else {
-      flow_.paragraph("- Glue that sets quickly" + std::string(plan_.pieces.tabs > 0 ? "; a blunt knife to score the folds of the tabs." : ", or adhesive tape behind the seams."));
+      flow_.paragraph("- Glue that sets quickly" + std::string(plan_.tabs ? "; a blunt knife to score the folds of the tabs." : ", or adhesive tape behind the seams."));
     }
   }
 
@@ -119,7 +119,7 @@ class AssemblyWriter {
                                    " mm from the edge. Press the allowances apart."
                              : "Glue one allowance over the other so that the lines beside the letters lie on each other.");
     else
-      flow_.paragraph(plan_.pieces.tabs > 0 ? "Fold the tab at the letter and glue it behind the edge with the same letter."
+      flow_.paragraph(plan_.tabs ? "Fold the tab at the letter and glue it behind the edge with the same letter."
                                             : "Glue one allowance over the other so that the lines beside the letters lie on each other.");
     for (std::size_t i = 0; i < plan_.seams.size() && plan_.seams[i].kind == SeamKind::join; ++i) {
       const Seam& seam = plan_.seams[i];
@@ -188,8 +188,8 @@ class AssemblyWriter {
   }
 
   void edges() {
-    flow_.heading(step(plan_.pieces.tabs > 0 ? "Score, fold and glue the tabs" : "Glue edge to edge"));
-    flow_.paragraph(plan_.pieces.tabs > 0
+    flow_.heading(step(plan_.tabs ? "Score, fold and glue the tabs" : "Glue edge to edge"));
+    flow_.paragraph(plan_.tabs
                         ? "Score the blue lines at the feet of the tabs and fold them back. Begin at number 0 and go on number by number: every tab goes behind the edge that carries the same numbers."
                         : "Begin at number 0 and go on number by number: the left edge meets the right edge with the same number.");
     pieces_with_seams();

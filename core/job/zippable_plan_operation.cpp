@@ -61,6 +61,8 @@ std::vector<ReportField> report_fields() {
           {"tape_row_mm", "Row", "mm", "of the template, along the zipper"},
           {"pieces", "Pieces", "", "area of ribbon, sheet and letters of splits"},
           {"splits", "Splits", "", "rulings at which the ribbon is cut"},
+          {"crumbs_joined", "Crumbs joined", "", "pieces that were too small and joined to a neighbour"},
+          {"crumbs_grown", "Crumbs grown", "", "pieces that were too small and grew at a neighbour's cost"},
           {"sheets", "Sheets", "", "of the bed's size"},
           {"area_before_mm2", "Area before splitting", "mm²", "of the ribbon with room for the zipper"},
           {"area_after_mm2", "Area after splitting", "mm²", "of all pieces without allowances"},
@@ -158,6 +160,8 @@ void report_pieces(Json& report, const ZippablePlan& plan, const PlanOptions& op
   }
   report["pieces"] = pieces;
   report["splits"] = plan.splitting.splits.size();
+  report["crumbs_joined"] = plan.splitting.merged_crumbs;
+  report["crumbs_grown"] = plan.splitting.moved_splits;
   report["sheets"] = plan.sheets.size();
   report["area_before_mm2"] = plan.area_before_mm2;
   report["area_after_mm2"] = area;

@@ -101,9 +101,11 @@ ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& options,
   const auto fits = [&](const Polygon& hull) {
     return hull.size() < 2 || !fitting_turns(hull, free_x, free_y, nesting.keep_direction).empty();
   };
+  // Smaller pieces than a quarter of the ribbon's width squared are hard to hold.
+  const double least_mm2 = plan.width_mean_mm * plan.width_mean_mm / 4;
   {
     const auto span = context.span(0, 0.5, "Splitting");
-    plan.splitting = split_ribbon(design.F, plan.ribbon.flat_mm, fits, options.kerf_mm + 0.5, context);
+    plan.splitting = split_ribbon(design.F, plan.ribbon.flat_mm, fits, options.kerf_mm + 0.5, least_mm2, context);
   }
   plan.runs = tape_runs(design, plan.ribbon, plan.splitting, plan.markers);
   plan.seams = seams_in_order(plan.splitting, plan.ribbon.flat_mm, plan.runs, plan.markers, plan.has_tape());

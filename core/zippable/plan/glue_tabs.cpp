@@ -17,7 +17,8 @@ struct Box {
     for (const Vec2& p : triangle) lower = lower.cwiseMin(p), upper = upper.cwiseMax(p);
   }
   bool near(const Box& other, double margin) const {
-    return (lower.array() <= other.upper.array() + margin).all() && (other.lower.array() <= upper.array() + margin).all();
+    return (lower.array() <= other.upper.array() + margin).all() &&
+           (other.lower.array() <= upper.array() + margin).all();
   }
 };
 
@@ -29,7 +30,8 @@ struct Obstacle {
 
 class TabMaker {
  public:
-  TabMaker(const FlatDesign& design, const std::vector<Vec2>& flat, const Splitting& splitting, const GlueTabOptions& options)
+  TabMaker(const FlatDesign& design, const std::vector<Vec2>& flat, const Splitting& splitting,
+           const GlueTabOptions& options)
       : design_(design), flat_(flat), options_(options), obstacles_(std::size_t(splitting.piece_count)) {
     for (int f = 0; f < design.F.rows(); ++f) {
       const Triangle triangle{flat[design.F(f, 0)], flat[design.F(f, 1)], flat[design.F(f, 2)]};
@@ -37,12 +39,13 @@ class TabMaker {
     }
   }
 
-  /// A tab on the stretch of the zipper, on one piece on either side; two on its halves where the edge is too curved for one.
+  /// A tab on the stretch of the zipper, on one piece on either side; two on its halves where the edge is too curved
+  /// for one.
   void add(const Seam& seam, double from_mm, double to_mm, int depth) {
     constexpr double least_mm = 3;
     constexpr int most_halvings = 5;
     if (to_mm - from_mm < least_mm) {
-      ++result_.left_out;
+      ++result.left_out;
       return;
     }
     for (const double share : {1.0, 0.6, 0.35})
@@ -52,9 +55,10 @@ class TabMaker {
         const auto outward = bulge_mm(tab);
         if (outward > 0.15 * options_.depth_mm && depth < most_halvings) continue;
         if (!stands(tab, share * options_.depth_mm, std::max(outward, 0.0))) continue;
-        result_.shortened += share < 1;
-        for (const Triangle& triangle : triangles_of(tab)) obstacles_[tab.piece].push_back({triangle, Box(triangle), -1});
-        result_.tabs.push_back(tab);
+        result.shortened += share < 1;
+        for (const Triangle& triangle : triangles_of(tab))
+          obstacles_[tab.piece].push_back({triangle, Box(triangle), -1});
+        result.tabs.push_back(tab);
         return;
       }
     if (depth < most_halvings && (to_mm - from_mm) / 2 >= least_mm) {
@@ -62,11 +66,11 @@ class TabMaker {
       add(seam, from_mm, middle, depth + 1);
       add(seam, middle, to_mm, depth + 1);
     } else {
-      ++result_.left_out;
+      ++result.left_out;
     }
   }
 
-  GlueTabs result_;
+  GlueTabs result;
 
  private:
   GlueTab foot(bool left, double from_mm, double to_mm) const {
@@ -107,7 +111,8 @@ class TabMaker {
     // Its lower part may touch what it grows from and the next tabs, its upper part keeps clear of all.
     const double knee = 0.4 * depth, low = std::min(bulge + 1e-6, knee);
     const auto parts = [&](double from, double to) {
-      return std::array<Triangle, 2>{Triangle{at(true, from), at(false, from), at(false, to)}, Triangle{at(true, from), at(false, to), at(true, to)}};
+      return std::array<Triangle, 2>{Triangle{at(true, from), at(false, from), at(false, to)},
+                                     Triangle{at(true, from), at(false, to), at(true, to)}};
     };
     const auto lower = parts(low, knee), upper = parts(knee, depth);
     const auto meets = [&](const std::array<Triangle, 2>& part, const Obstacle& other, double touching_mm) {
@@ -116,7 +121,8 @@ class TabMaker {
       });
     };
     return std::none_of(obstacles_[tab.piece].begin(), obstacles_[tab.piece].end(), [&](const Obstacle& other) {
-      return meets(upper, other, -options_.clearance_mm) || meets(lower, other, beside(tab, other) ? 1e-7 : -options_.clearance_mm);
+      return meets(upper, other, -options_.clearance_mm) ||
+             meets(lower, other, beside(tab, other) ? 1e-7 : -options_.clearance_mm);
     });
   }
 
@@ -145,8 +151,8 @@ std::array<std::array<Vec2, 3>, 2> triangles_of(const GlueTab& tab) {
   return {{{tab.foot_from, tab.corner_to, tab.foot_to}, {tab.foot_from, tab.corner_from, tab.corner_to}}};
 }
 
-GlueTabs make_glue_tabs(const FlatDesign& design, const std::vector<Vec2>& flat, const Splitting& splitting, const std::vector<Seam>& seams,
-                        const GlueTabOptions& options, const Context& context) {
+GlueTabs make_glue_tabs(const FlatDesign& design, const std::vector<Vec2>& flat, const Splitting& splitting,
+                        const std::vector<Seam>& seams, const GlueTabOptions& options, const Context& context) {
   TabMaker maker(design, flat, splitting, options);
   for (const Seam& seam : seams) {
     if (seam.kind != SeamKind::edge) continue;
@@ -156,7 +162,7 @@ GlueTabs make_glue_tabs(const FlatDesign& design, const std::vector<Vec2>& flat,
       maker.add(seam, seam.from_mm + seam.tape_mm() * i / count, seam.from_mm + seam.tape_mm() * (i + 1) / count, 0);
     }
   }
-  return std::move(maker.result_);
+  return std::move(maker.result);
 }
 
 }  // namespace formwright

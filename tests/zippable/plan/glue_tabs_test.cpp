@@ -49,7 +49,8 @@ TEST(GlueTabs, EveryStretchOfTheZipperHasOneTabAtMost) {
       // On one piece on its own side, and against one piece on the other.
       for (const TapeRun& run : plan.runs)
         EXPECT_TRUE(run.to_mm <= tab.from_mm + 1e-6 || run.from_mm >= tab.to_mm - 1e-6 ||
-                    (run.from_mm <= tab.from_mm + 1e-6 && run.to_mm >= tab.to_mm - 1e-6 && (run.left != tab.left || run.piece == tab.piece)));
+                    (run.from_mm <= tab.from_mm + 1e-6 && run.to_mm >= tab.to_mm - 1e-6 &&
+                     (run.left != tab.left || run.piece == tab.piece)));
       last = tab.to_mm, covered += tab.to_mm - tab.from_mm;
     }
     EXPECT_LE(last, design.zipper_mm + 1e-9);
@@ -69,7 +70,8 @@ TEST(GlueTabs, GiveWayToTheNextWinding) {
   FlatDesign design = test::strip(1600, width, 533);
   std::vector<Vec2> flat;
   for (const FlatVertex& v : design.boundary) {
-    const double radius = 90, angle = v.flat_mm.x() / radius, r = radius + pitch * angle / (2 * std::numbers::pi) - v.flat_mm.y();
+    const double radius = 90, angle = v.flat_mm.x() / radius,
+                 r = radius + pitch * angle / (2 * std::numbers::pi) - v.flat_mm.y();
     flat.emplace_back(r * std::cos(angle), r * std::sin(angle));
   }
   Splitting splitting;
@@ -89,7 +91,8 @@ TEST(GlueTabs, GiveWayToTheNextWinding) {
       for (int k = 0; k < 3; ++k) nearest = std::min(nearest, std::abs(design.F(f, k) - tab.from_edge));
       if (nearest < 20) continue;
       for (const auto& t : triangles_of(tab))
-        EXPECT_FALSE(triangles_overlap(t, {flat[design.F(f, 0)], flat[design.F(f, 1)], flat[design.F(f, 2)]}, -0.9 * options.clearance_mm));
+        EXPECT_FALSE(triangles_overlap(t, {flat[design.F(f, 0)], flat[design.F(f, 1)], flat[design.F(f, 2)]},
+                                       -0.9 * options.clearance_mm));
     }
   }
   EXPECT_GT(full, 0);  // on the first and the last winding, which have one side free

@@ -40,6 +40,7 @@ std::vector<ReportField> report_fields() {
           {"rim_rms_mm", "Rim", "mm", "root mean square distance of the scanned rim from where the machine holds it; null without a rim"},
           {"rim_scale", "Scale of the rim", "", "length on the sheet against length scanned; null without a rim"},
           {"corner_likeness", "Likeness of the marks", "", "correlation of each corner mark; 0 where it was not found or given by hand"},
+          {"corner_px", "Corners in the picture", "px", "x and y of each corner mark in the scan's picture from its top left; null where the picture does not show it"},
           {"corner_residual_mm", "Corner residuals", "mm", "from each mark as found to where the registration has it; -1 where not known"},
           {"colour_rms_levels", "Colour fit", "", "grey levels left over of the mean colours after correction"},
           {"colour_error_levels", "Colour error", "", "root mean square of the flow's residual over all pixels, in grey levels"},
@@ -109,6 +110,8 @@ void report_registration(Json& report, const ScanRegistration& r, const Calibrat
   report["rim_rms_mm"] = r.rim_rms_mm ? Json(*r.rim_rms_mm) : Json(nullptr);
   report["rim_scale"] = r.rim_scale ? Json(*r.rim_scale) : Json(nullptr);
   report["corner_likeness"] = r.marks.likeness;
+  report["corner_px"] = Json::array();
+  for (const std::optional<Vec2>& px : r.corner_px) report["corner_px"].push_back(px ? Json{px->x(), px->y()} : Json(nullptr));
   report["corner_residual_mm"] = r.corner_residual_mm;
   report["colour_rms_levels"] = r.colours.rms_levels;
   report["colour_error_levels"] = r.colour_error_levels;

@@ -110,12 +110,16 @@ double cube_root(double value) {
   return root;
 }
 
-/// A first guess at the sag: the shape of a square membrane under its own weight, w = w0 (1 - x^2)(1 - y^2) with w0 from
-/// Hencky's circular membrane of the shorter side (w0 = 0.65 (q a^4 / (E h))^(1/3)).
-Positions sagging_guess(const SheetDynamics& dynamics, const ThermoformOptions& o) {
+/// By how much a sheet that does not flow sags: Hencky's circular membrane of the shorter side, w0 = 0.65 (q a^4 / (E h))^(1/3).
+double elastic_sag_mm(const ThermoformOptions& o) {
   const double a = 0.5 * std::min(o.clamp_opening_x_mm, o.clamp_opening_y_mm);
   const double q = o.density_kg_per_m3 * 1e-12 * 9806.65 * o.sheet_thickness_mm;
-  const double w0 = 0.65 * cube_root(q * a * a * a * a / (o.young_modulus_pa * 1e-6 * o.sheet_thickness_mm));
+  return 0.65 * cube_root(q * a * a * a * a / (o.young_modulus_pa * 1e-6 * o.sheet_thickness_mm));
+}
+
+/// A first guess at the sag: the shape of a square membrane under its own weight, w = w0 (1 - x^2)(1 - y^2).
+Positions sagging_guess(const SheetDynamics& dynamics, const ThermoformOptions& o) {
+  const double w0 = elastic_sag_mm(o);
   Positions x = dynamics.x();
   for (Eigen::Index i = 0; i < x.rows(); ++i) {
     const double u = 2 * dynamics.sheet().flat_mm(i, 0) / o.clamp_opening_x_mm, v = 2 * dynamics.sheet().flat_mm(i, 1) / o.clamp_opening_y_mm;
@@ -218,7 +222,9 @@ FormedResult form_sheet(std::shared_ptr<const MouldShape> shape, const Placement
     // The weight alone: the sheet comes to rest long before the platform moves, so a few long steps do.
     const auto span = context.span(0, 0.08, "Sagging under its weight");
     dynamics.guess(sagging_guess(dynamics, o));
-    driver.run(FormingPhase::relax, o.relaxation_s, o.relaxation_s / 4, o.relaxation_s / 2, 1e9, [](double, double) { return StepLoad{}; }, go_on,
+    // Newton's iteration may overshoot on the way; beyond this it has lost its way, and what it meets there is not there.
+    const double most_sag_mm = std::max(3 * elastic_sag_mm(o), 20.0);
+    driver.run(FormingPhase::relax, o.relaxation_s, o.relaxation_s / 4, o.relaxation_s / 2, most_sag_mm, [](double, double) { return StepLoad{}; }, go_on,
                "Sagging under its weight");
     result.sag_mm = o.clamp_height_mm - start_z - dynamics.x().col(2).minCoeff();
     result.phase_end_s[0] = dynamics.time_s();

@@ -176,6 +176,7 @@ test('a scan is measured, its corners set by hand, and becomes an object', async
   await measure();
   await expect(page.getByText(/^likeness (0\.99|1\.0)/)).toBeVisible();
 
+  await expect(page.getByRole('img', { name: /^Corner .*, found at/ })).toHaveCount(4);
   await page.getByRole('button', { name: 'Set them by hand' }).click();
   const corner = (name: string) => page.getByRole('button', { name: new RegExp(`^Corner ${name}`) });
   const image = page.getByRole('img', { name: 'The scan’s picture' });
@@ -216,6 +217,9 @@ test('a virtual object with a fault of one’s choice', async ({ page }) => {
   const dialog = page.getByRole('dialog', { name: 'Make a virtual object' });
   await expect(dialog.getByRole('textbox', { name: 'Heat falls off in x' })).toHaveValue('0.30');
   await dialog.getByRole('combobox', { name: 'Mould' }).selectOption('Pyramid');
+  // Help lies over the dialog: in the browser's top layer, like the dialog itself.
+  await dialog.getByText('Heat falls off in x').hover();
+  await expect(page.locator('.tip:popover-open')).toBeVisible();
   await dialog.getByRole('textbox', { name: 'Points', exact: true }).fill('300');
   await dialog.getByRole('textbox', { name: 'Points', exact: true }).press('Tab');
   await expectAccessibleEverywhere(page, 'virtual object');

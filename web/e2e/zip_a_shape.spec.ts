@@ -118,6 +118,59 @@ test('what cannot be made is said in the core’s words, and undone', async ({ p
   await expect(page.locator('.model-row strong')).toHaveText('Star');
 });
 
+test('parts drawn by hand: a border with the mouse, an opening moved with the keyboard', async ({ page }) => {
+  await openSample(page, 'Heart');
+  const parts = page.getByRole('list', { name: 'Parts' }).getByRole('button');
+  await expect(parts).toHaveCount(3);
+  await page.getByRole('button', { name: 'Draw them' }).click();
+  const pane = page.locator('.zippable-model');
+  const box = await pane.boundingBox();
+  if (box === null) throw new Error('The model is not to be seen.');
+  const points = page.getByRole('button', { name: /of the new border$/ });
+  const click = async (x: number, y: number, count: number) => {
+    // Until the search tree is there a click finds nothing.
+    await expect(async () => {
+      await page.mouse.click(box.x + x * box.width, box.y + y * box.height);
+      await expect(points).toHaveCount(count, { timeout: 1000 });
+    }).toPass();
+  };
+  await click(0.4, 0.7, 1);
+  await click(0.53, 0.7, 2);
+  await expect(page.getByRole('button', { name: 'Close it' })).toHaveAttribute('aria-disabled', 'true');
+  await pane.getByLabel('Model with the zipper’s course').focus();
+  for (let i = 0; i < 12; ++i) await page.keyboard.press('Shift+ArrowLeft');
+  await click(0.47, 0.7, 3);
+  await click(0.6, 0.7, 4);
+  await page.getByRole('button', { name: 'Close it' }).click();
+  await expect(page.getByText('Drawn by hand: 1 border')).toBeVisible();
+  await expect(parts).toHaveCount(2);
+  await expectAccessible(page, 'drawing');
+
+  // The openings that were found are taken over; one is moved by arrow keys, which is one step to undo.
+  await page.getByRole('radio', { name: 'Opening' }).click();
+  await page.getByRole('button', { name: 'Move those found' }).click();
+  await expect(page.getByText('Drawn by hand: 1 border, 2 openings')).toBeVisible();
+  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  const opening = page.getByRole('button', { name: /^Opening [12]$/ }).first();
+  const before = await opening.getAttribute('style');
+  await opening.focus();
+  await page.keyboard.press('Shift+ArrowDown');
+  await expect(opening).not.toHaveAttribute('style', before ?? '');
+  await page.keyboard.press('Control+z');
+  await expect(opening).toHaveAttribute('style', before ?? '');
+  await page.keyboard.press('Delete');
+  await expect(page.getByText('Drawn by hand: 1 border, 1 opening')).toBeVisible();
+
+  await expect(page.getByText('Saved', { exact: true })).toBeVisible();
+  await page.reload();
+  await expect(page.getByText('Drawn by hand: 1 border, 1 opening')).toBeVisible();
+  await expect(parts).toHaveCount(2);
+  await page.getByRole('button', { name: 'Change', exact: true }).click();
+  await page.getByRole('button', { name: 'Automatic' }).click();
+  await expect(page.getByText('Found automatically')).toBeVisible();
+  await expect(parts).toHaveCount(3);
+});
+
 for (const look of looks)
   test(`axe finds nothing serious in the room, ${look.colorScheme}, ${look.viewport.width} px`, async ({
     browser,

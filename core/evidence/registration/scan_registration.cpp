@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "evidence/registration/scan_registration.h"
 
-#include <fast_float/fast_float.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "evidence/registration/picture_corners.h"
 #include "evidence/registration/registered_points.h"
 #include "evidence/registration/scan_picture.h"
 #include "geometry/io/colour.h"
@@ -137,43 +136,6 @@ double displacement_rms_mm(const Flow& flow, const WeightedPicture& seen, double
   return count > 0 ? pixel_mm * std::sqrt(squared / count) : 0;
 }
 
-std::array<Vec2, 4> corners_by_hand(const std::string& text, const Model& model, const ScanColours& colours, const Places& flat) {
-  const auto refuse = [](const std::string& message) { throw Error(ErrorCode::invalid_input, "corners", message); };
-  std::vector<double> numbers;
-  for (const char *at = text.data(), *end = at + text.size(); at < end;) {
-    if (*at == ' ' || *at == ',' || *at == ';') {
-      ++at;
-      continue;
-    }
-    double value = 0;
-    const auto [next, error] = fast_float::from_chars(at, end, value);
-    if (error != std::errc() || !std::isfinite(value)) refuse("The corners must be four pairs of numbers, such as “120,80 1900,95 1880,2010 110,1990”.");
-    numbers.push_back(value);
-    at = next;
-  }
-  if (numbers.size() != 8) refuse("The corners must be four pairs of numbers, such as “120,80 1900,95 1880,2010 110,1990”.");
-  if (model.FT.rows() != model.mesh.F.rows()) refuse("The scan has no picture that corners could be pixels of: leave them out.");
-  std::array<Vec2, 4> places;
-  for (std::size_t k = 0; k < 4; ++k) {
-    bool found = false;
-    for (int f = 0; f < model.mesh.face_count() && !found; ++f) {
-      if (colours.width(f) == 0) continue;
-      const Vec2 uv(numbers[2 * k] / colours.width(f), 1 - numbers[2 * k + 1] / colours.height(f));
-      const Vec2 a = model.UV.row(model.FT(f, 0)), b = model.UV.row(model.FT(f, 1)), c = model.UV.row(model.FT(f, 2));
-      const auto cross = [](const Vec2& p, const Vec2& q) { return p.x() * q.y() - p.y() * q.x(); };
-      const double doubled = cross(b - a, c - a);
-      if (!(std::abs(doubled) > 1e-16)) continue;
-      const Vec3 bary(cross(b - uv, c - uv) / doubled, cross(c - uv, a - uv) / doubled, cross(a - uv, b - uv) / doubled);
-      if (bary.minCoeff() < -1e-9) continue;
-      places[k].setZero();
-      for (int i = 0; i < 3; ++i) places[k] += bary[i] * flat.row(model.mesh.F(f, i)).transpose();
-      found = true;
-    }
-    if (!found) refuse("Corner " + std::to_string(k + 1) + " lies on no part of the scan: give pixels of its picture, counted from the top left.");
-  }
-  return places;
-}
-
 /// Standard deviation of the blur, in pixels, after which the reference looks most like the scan.
 double best_blur_px(const WeightedPicture& reference, const WeightedPicture& scan, const Flow& flow, const Context& context) {
   double best = 0, least = 1e300;
@@ -263,7 +225,7 @@ ScanRegistration register_scan(const Model& scan, const CalibrationPattern& patt
     result.marks = find_marks(pattern, draw_scan(model, colours, flat, frame, context), frame, context);
     if (*std::min_element(result.marks.likeness.begin(), result.marks.likeness.end()) == 0) result.notes.push_back("One corner mark was not found; its place follows from the other three.");
   } else {
-    result.marks.place_mm = corners_by_hand(options.corners, model, colours, flat);
+    result.marks.place_mm = plane_corners(options.corners, model, colours, flat);
     const auto& p = result.marks.place_mm;
     const Vec2 a = p[2] - p[0], b = p[3] - p[1];
     result.marks.mirrored = a.x() * b.y() - a.y() * b.x() < 0;
@@ -275,6 +237,7 @@ ScanRegistration register_scan(const Model& scan, const CalibrationPattern& patt
     if (model.FT.rows() > 0) model.FT.col(1).swap(model.FT.col(2));
     result.notes.push_back("The scan's faces look away from the print and were turned.");
   }
+  result.corner_px = picture_corners(result.marks.place_mm, model, colours, flat);
   std::array<Vec2, 4> targets;
   double here_mm = 0, there_mm = 0;
   for (std::size_t k = 0; k < 4; ++k) {

@@ -66,6 +66,7 @@ struct ScanRegistration {
   std::vector<RegisteredPoint> points;
   int points_without_evidence = 0;
   FoundMarks marks;
+  std::array<std::optional<Vec2>, 4> corner_px{};  // where the scan's picture shows them, from its top left; none without a picture
   std::array<double, 4> corner_residual_mm{};  // from each mark as found to where the registration has it; -1 where that is not known
   double plane_scale = 1;                      // mean length on the sheet of 1 mm of the flat scan, at the corners
   ColourCorrection colours;

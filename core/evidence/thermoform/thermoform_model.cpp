@@ -22,7 +22,7 @@ std::string figure(double value) {
 }
 
 /// What later readers of a stored simulation must find unchanged; raised when the simulation computes something else.
-constexpr const char* simulation_version = "thermoform-1:";
+constexpr const char* simulation_version = "thermoform-2:";
 
 /// Vertices and thicknesses in single precision, as they are kept between runs; what is computed afresh is rounded alike.
 Bytes packed(const FormedSheet& sheet) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Hides effects in virtual objects and asks the diagnosis for them: one line of JSON for each case; score_confusion_table.py counts them.
 //   confusion_table [--seed N] [--cases N | --repeat N] [--levels 1,0.5,0.25] [--noise 0.05,0.15] [--only CAUSE] [--mould NAME]
-//                   [--pairs N] [--no-pairs] [--left-out] [--calibrated] [--unseen] [--verbose]
+//                   [--triangles N] [--pairs N] [--no-pairs] [--left-out] [--calibrated] [--unseen] [--verbose]
 // --pairs hides two causes at a time, --no-pairs does not look for two, --left-out takes the hidden cause off the list that is asked,
 // --calibrated has a profile of the machine from when it was well.
 #include <cstdio>
@@ -26,7 +26,7 @@ struct Arguments {
   std::vector<double> levels{1, 0.5, 0.25}, noise{0.05, 0.15};
   std::string only, mould;
   bool unseen = false, verbose = false, calibrated = false, pairs_searched = true, left_out = false;
-  int pairs = 0;
+  int pairs = 0, triangles = ThermoformModelOptions{}.triangles;
 };
 
 std::vector<double> numbers(const char* text) {
@@ -49,6 +49,7 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
   observation.sigma_mm = sigma;
   const FormedObject object = make_object(mould, world, effects, observation, random);
   ThermoformModelOptions asked;
+  asked.triangles = arguments.triangles;
   if (arguments.left_out) asked.without = hidden;
   if (arguments.calibrated) {
     // The machine was calibrated on another object while it was well.
@@ -136,7 +137,7 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
   }
   if (arguments.unseen) {
     const auto other = static_cast<Mould>((static_cast<int>(mould) + 1) % 4);
-    ThermoformModel second({make_object(other, world, effects, observation, random)}, {});
+    ThermoformModel second({make_object(other, world, effects, observation, random)}, asked);
     SimulationBag second_bag(second);
     const HeldOutGain gain = gain_on_unseen(second_bag, model, d.base.u, d.extended.u, context);
     line["unseen_mm"] = {gain.before.mean, gain.after.mean};
@@ -158,6 +159,7 @@ int main(int count, char** values) {
     else if (flag == "--noise") a.noise = numbers(next());
     else if (flag == "--only") a.only = next();
     else if (flag == "--mould") a.mould = next();
+    else if (flag == "--triangles") a.triangles = std::stoi(next());
     else if (flag == "--pairs") a.pairs = std::stoi(next());
     else if (flag == "--no-pairs") a.pairs_searched = false;
     else if (flag == "--calibrated") a.calibrated = true;

@@ -135,8 +135,10 @@ TEST(Registration, CornersByHandDoAsWell) {
   Context context;
   const test::ScanCamera camera = small_camera();
   const Model scan = virtual_scan(surface, pattern, camera);
-  std::string corners;
-  for (const CornerMark& mark : pattern.marks) {
+  const ScanRegistration by_itself = register_scan(scan, pattern, small_options(), context);
+  std::string corners, found;
+  for (std::size_t m = 0; m < 4; ++m) {
+    const CornerMark& mark = pattern.marks[m];
     // The texture place of the scan's vertex nearest to the mark.
     double nearest = 1e9;
     Vec2 uv;
@@ -148,9 +150,18 @@ TEST(Registration, CornersByHandDoAsWell) {
           nearest = d;
           uv = scan.UV.row(scan.FT(f, k));
         }
-    corners += std::to_string(uv.x() * camera.texture_px) + "," + std::to_string((1 - uv.y()) * camera.texture_px) + " ";
+    const Vec2 px(uv.x() * camera.texture_px, (1 - uv.y()) * camera.texture_px);
+    corners += std::to_string(px.x()) + "," + std::to_string(px.y()) + " ";
+    // What was found without help is where the mark is to be seen; a vertex may be half an edge away from it.
+    ASSERT_TRUE(by_itself.corner_px[m]);
+    EXPECT_LT((*by_itself.corner_px[m] - px).norm(), 0.03 * camera.texture_px);
+    found += std::to_string(by_itself.corner_px[m]->x()) + "," + std::to_string(by_itself.corner_px[m]->y()) + " ";
   }
   ScanRegistrationOptions options = small_options();
+  // Pixels found go back to where they came from.
+  options.corners = found;
+  const ScanRegistration again = register_scan(scan, pattern, options, context);
+  for (std::size_t m = 0; m < 4; ++m) EXPECT_LT((again.marks.place_mm[m] - by_itself.marks.place_mm[m]).norm(), 1e-3);
   options.corners = corners;
   EXPECT_LT(recovered_error(register_scan(scan, pattern, options, context), surface).percentile_95_mm, 0.12);
   for (const char* wrong : {"1,2 3,4", "a,b", "1,1 2,2 3,3 99999,4"}) {

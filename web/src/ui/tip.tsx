@@ -51,6 +51,8 @@ export function TipLayer() {
   useLayoutEffect(() => {
     const element = ref.current;
     if (element === null || tip === null) return;
+    // In the browser's top layer, or a modal dialog would lie over it.
+    if (!element.matches(':popover-open')) element.showPopover();
     const { width, height } = element.getBoundingClientRect();
     const { anchor } = tip;
     const left = tip.side === 'left' ? anchor.left - width - 14 : anchor.left + anchor.width / 2 - width / 2;
@@ -64,7 +66,7 @@ export function TipLayer() {
   }, [tip]);
   if (tip === null) return null;
   return (
-    <div ref={ref} class="tip" aria-hidden="true" key={tip.text}>
+    <div ref={ref} class="tip" popover="manual" aria-hidden="true" key={tip.text}>
       {tip.text}
     </div>
   );

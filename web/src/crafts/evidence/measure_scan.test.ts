@@ -3,7 +3,7 @@ import { describe, expect, it } from 'vitest';
 import type { Scan } from './evidence_document';
 import { evidence } from './evidence_document';
 import { newDocument } from '../../project/document';
-import { cornersText, firstCorners, measuredNow, moved } from './measure_scan';
+import { cornersText, cornersToMove, firstCorners, measuredNow, moved, seenCorners } from './measure_scan';
 import { scanInputs } from './scan_files';
 
 const blob = (digit: string) => ({ blob: digit.repeat(64), bytes: 1, media_type: 'x' });
@@ -14,6 +14,18 @@ describe('a scan on its way to points', () => {
     expect(cornersText(corners)).toBe('120,440 880,440 880,60 120,60');
     expect(cornersText(moved(corners, 2, [10.26, 0], [1000, 500]))).toBe('120,440 880,440 890.3,60 120,60');
     expect(moved(corners, 0, [-500, 500], [1000, 500])[0]).toEqual([0, 500]);
+  });
+
+  it('goes on by hand from the corners that were found', () => {
+    const seen = seenCorners({ report: { corner_px: [[10.5, 20], null, [30, 'x'], [40, 50]] } });
+    expect(seen).toEqual([[10.5, 20], null, null, [40, 50]]);
+    expect(cornersToMove(seen, [1000, 500])).toEqual([
+      [10.5, 20],
+      [880, 440],
+      [880, 60],
+      [40, 50],
+    ]);
+    expect(seenCorners({ report: {} })).toEqual([null, null, null, null]);
   });
 
   it('forgets what was measured as soon as a corner moves, and finds it again', () => {

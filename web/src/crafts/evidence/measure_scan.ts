@@ -29,6 +29,21 @@ export const firstCorners = (width_px: number, height_px: number): Place[] => {
   ];
 };
 
+/** Where the registration saw each corner mark in the picture; null where it did not. */
+export function seenCorners({ report }: Pick<MeasuredScan, 'report'>): (Place | null)[] {
+  const px = report['corner_px'];
+  return cornerNames.map((_, i) => {
+    const at: unknown = Array.isArray(px) ? px[i] : null;
+    return Array.isArray(at) && typeof at[0] === 'number' && typeof at[1] === 'number'
+      ? [at[0], at[1]]
+      : null;
+  });
+}
+
+/** What hands go on from: corners that were found stay where they are. */
+export const cornersToMove = (seen: readonly (Place | null)[], size_px: Place): Place[] =>
+  firstCorners(...size_px).map((place, i) => seen[i] ?? place);
+
 export function moved(corners: readonly Place[], which: number, by: Place, size_px: Place): Place[] {
   const within = (at: number, most: number) => Math.min(most, Math.max(0, at));
   return corners.map(([x, y], i) =>

@@ -7,7 +7,15 @@ import type { MeasuredScan, Place, Scan } from './evidence_document';
 import { evidence } from './evidence_document';
 import type { EvidenceSession } from './evidence_session';
 import { Pane } from './maps';
-import { cornerNames, firstCorners, lacking, measuredNow, moved, pictureOf } from './measure_scan';
+import {
+  cornerNames,
+  cornersToMove,
+  lacking,
+  measuredNow,
+  moved,
+  pictureOf,
+  seenCorners,
+} from './measure_scan';
 
 export interface ScanPanelProps {
   readonly session: EvidenceSession;
@@ -74,6 +82,9 @@ function Corners({ session, scan }: { session: EvidenceSession; scan: Scan }) {
   const [size, setSize] = useState<Place | null>(null);
   const url = usePicture(() => pictureOf(session, scan), scan.files.map(({ file }) => file.blob).join());
   const { projects } = session.services;
+  const measured = measuredNow(scan);
+  const found = measured && scan.corners === null ? seenCorners(measured) : [];
+  const found_count = found.filter((place) => place !== null).length;
   const set = (corners: readonly Place[] | null, label: string) => {
     projects.do(evidence.changeScan({ corners }, label));
     projects.commit();
@@ -107,6 +118,21 @@ function Corners({ session, scan }: { session: EvidenceSession; scan: Scan }) {
               />
             ))
           : null}
+        {size
+          ? found.map((place, i) =>
+              place ? (
+                <span
+                  key={cornerNames[i]}
+                  class="corner found"
+                  role="img"
+                  aria-label={`Corner ${cornerNames[i] ?? ''}, found at ${Math.round(place[0])}, ${Math.round(place[1])} px`}
+                  style={shownAt(place, size)}
+                >
+                  <span aria-hidden="true">{cornerNames[i]}</span>
+                </span>
+              ) : null,
+            )
+          : null}
       </div>
       <div class="row scan-tools">
         {scan.corners ? (
@@ -118,11 +144,15 @@ function Corners({ session, scan }: { session: EvidenceSession; scan: Scan }) {
           </>
         ) : (
           <>
-            <p class="grow">The four corner marks are looked for when the scan is measured.</p>
+            <p class="grow">
+              {measured
+                ? `${found_count} of 4 corner marks shown where they were found. Is one beside its rings? Move it.`
+                : 'The four corner marks are looked for when the scan is measured.'}
+            </p>
             <Button
               size="small"
               disabledReason={size ? undefined : 'The picture is being read'}
-              onClick={() => size && set(firstCorners(...size), 'Set the corners by hand')}
+              onClick={() => size && set(cornersToMove(found, size), 'Set the corners by hand')}
             >
               Set them by hand
             </Button>
@@ -132,6 +162,11 @@ function Corners({ session, scan }: { session: EvidenceSession; scan: Scan }) {
     </>
   );
 }
+
+const shownAt = ([x, y]: Place, [width, height]: Place) => ({
+  left: `${(100 * x) / width}%`,
+  top: `${(100 * y) / height}%`,
+});
 
 interface HandleProps {
   readonly session: EvidenceSession;
@@ -177,7 +212,7 @@ function Handle({ session, corners, which, place: [x, y], size }: HandleProps) {
     <button
       type="button"
       class="corner"
-      style={{ left: `${(100 * x) / size[0]}%`, top: `${(100 * y) / size[1]}%` }}
+      style={shownAt([x, y], size)}
       aria-label={`Corner ${name}, at ${Math.round(x)}, ${Math.round(y)} px`}
       onPointerDown={(event) => event.currentTarget.setPointerCapture(event.pointerId)}
       onPointerMove={drag}

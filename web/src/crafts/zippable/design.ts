@@ -26,6 +26,8 @@ export interface Design {
   readonly order: readonly number[];
   readonly parts: readonly PartPlan[];
   readonly handlesCut: number;
+  /** Middles of the openings that were punctured, mm. */
+  readonly punctures: readonly (readonly [number, number, number])[];
   /** Of one side of the zipper. */
   readonly zipper_mm: number;
   /** Per sample of the zipper: how far from its start, all pieces one after the other, mm. */
@@ -40,6 +42,7 @@ interface DesignFile {
   readonly order: number[];
   readonly parts: PartPlan[];
   readonly handles_cut: number;
+  readonly punctures: { readonly position_mm: [number, number, number] }[];
   readonly zipper_mm: number;
   readonly pieces: number[][];
   readonly ribbon: {
@@ -75,6 +78,7 @@ export function readDesign(bytes: Uint8Array): Design {
     order: file.order ?? [],
     parts: file.parts,
     handlesCut: file.handles_cut ?? 0,
+    punctures: (file.punctures ?? []).map(({ position_mm }) => position_mm),
     zipper_mm: file.zipper_mm ?? 0,
     along_mm: alongZipper(ribbon, file.pieces, samples),
     pieceOf,

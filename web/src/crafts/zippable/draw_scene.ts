@@ -5,6 +5,7 @@ import type { Curve, MeshData, Vec3, Viewport } from '../../view';
 import { originalData, shadingOf } from '../common/shaded_mesh';
 import { figure, vectorOf } from '../common/report';
 import { boundaryEdges } from './design';
+import { drawnLines, tool } from './draw_actions';
 import { positionOf } from './ribbon_places';
 import { bend, chosenPart, distortionMapping, partToken, pointed, themeChanges, view } from './views';
 import type { Zippable, ZippableSession } from './zippable_session';
@@ -72,6 +73,18 @@ function zipper({ report }: Zippable, positions: Float32Array, separate: boolean
   ];
 }
 
+/** What is drawn by hand, in the colour of what can be taken hold of. */
+function sketched(session: ZippableSession): Curve[] {
+  const lines = drawnLines(session);
+  return lines.map((positions, i) => ({
+    positions,
+    colour: '--accent',
+    widthPx: 2.5,
+    dashed: i + 1 === lines.length,
+    ghost: true,
+  }));
+}
+
 /** The ribbon's vertices as they are in space now. */
 export const bentPositions = ({ bending, design }: Zippable, share: number): Float32Array =>
   share >= 1 ? design.ribbon.positions : bending().at(share);
@@ -134,7 +147,8 @@ export function keepDrawn(viewport: Viewport, session: ZippableSession): () => v
 
   const drawCurves = (): void => {
     const shown = session.shown.value;
-    if (shown === null) viewport.setCurves([]);
+    if (tool.value) viewport.setCurves(sketched(session));
+    else if (shown === null) viewport.setCurves([]);
     else if (view.value === 'ribbon') {
       const edges = boundaryEdges(shown.design, 'zipper');
       viewport.setCurves(zipper(shown, gathered(positionsNow(shown), edges), true));

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The parts by number: how many windings each got, how distorted it is, and what speaks against it.
 import { Fragment } from 'preact';
-import { formatFixed, formatNumber, Icon, withUnit } from '../../ui';
+import { Button, formatFixed, formatNumber, Icon, withUnit } from '../../ui';
 import { sentences } from '../common/report';
 import { partName } from './design';
 import { partWarning } from './part_notes';
-import { chosenPart, partToken, pointed } from './views';
+import { tool } from './draw_actions';
+import { drawnOn } from './zippable_document';
+import { chosenPart, partToken, pointed, view } from './views';
 import type { ZippableSession } from './zippable_session';
 
 export function PartList({ session }: { session: ZippableSession }) {
@@ -15,6 +17,7 @@ export function PartList({ session }: { session: ZippableSession }) {
   const under = triangle === undefined ? null : shown?.partOfTriangle[triangle];
   return (
     <>
+      <DrawRow session={session} />
       {failed ? (
         <p class="part-problem">
           <Icon name="warn" small /> {failed}
@@ -68,5 +71,36 @@ export function PartList({ session }: { session: ZippableSession }) {
         </p>
       ) : null}
     </>
+  );
+}
+
+function DrawRow({ session }: { session: ZippableSession }) {
+  const { borders, openings } = drawnOn(session.document.value);
+  const byHand = borders.length + openings.length > 0;
+  const count = (n: number, one: string) => (n === 0 ? [] : [`${n} ${one}${n === 1 ? '' : 's'}`]);
+  return (
+    <div class="row draw-row">
+      <p class="grow">
+        {byHand
+          ? `Drawn by hand: ${[...count(borders.length, 'border'), ...count(openings.length, 'opening')].join(', ')}`
+          : 'Found automatically'}
+      </p>
+      {tool.value === null ? (
+        <Button
+          size="small"
+          icon="pencil"
+          onClick={() => {
+            view.value = 'parts';
+            tool.value = 'border';
+          }}
+        >
+          {byHand ? 'Change' : 'Draw them'}
+        </Button>
+      ) : (
+        <Button size="small" icon="check" onClick={() => (tool.value = null)}>
+          Done
+        </Button>
+      )}
+    </div>
   );
 }

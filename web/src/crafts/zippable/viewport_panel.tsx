@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The model with the zipper's course, or the ribbon in space; what floats over them.
-import { effect, useSignal } from '@preact/signals';
+import { effect, untracked, useSignal } from '@preact/signals';
 import type { ComponentChildren } from 'preact';
 import { useEffect, useMemo, useRef } from 'preact/hooks';
 import { Icon, Segmented } from '../../ui';
@@ -9,10 +9,21 @@ import { Viewport } from '../../view';
 import { Legend } from '../common/legend';
 import { narrow } from '../common/narrow';
 import { figure } from '../common/report';
+import { fromShown, place as drawAt, tool } from './draw_actions';
 import { bentPositions, keepDrawn } from './draw_scene';
+import { DrawTool } from './draw_tool';
 import { Play } from './play';
 import { alongAt, placeInSpace } from './ribbon_places';
-import { bend, distortionMapping, playing, pointed, themeChanges, view, viewNames } from './views';
+import {
+  bend,
+  cameraMoves,
+  distortionMapping,
+  playing,
+  pointed,
+  themeChanges,
+  view,
+  viewNames,
+} from './views';
 import type { ZippableSession } from './zippable_session';
 
 /** From the front, a little from the right and from above; the samples stand on y. */
@@ -50,7 +61,9 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
       uprightTurn: true,
       dimensions: false,
       ground: true,
+      onViewpointChange: () => ++cameraMoves.value,
       onPointer: ({ kind, hit }) => {
+        if (kind === 'click' && hit && tool.peek()) void drawAt(session, fromShown(session, hit.positionMm));
         if (kind !== 'move' && kind !== 'leave') return;
         const shown = session.shown.peek();
         if (shown === null || hit === null || kind === 'leave' || playing.peek()) {
@@ -66,9 +79,16 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
     made.setViewpoint(viewpoint);
     made.lookFromViewpoint(false);
     viewport.current = made;
-    const makeRoom = () => made.setFreeRectangle(freeRectangle(foot.current));
+    const makeRoom = () => {
+      made.setFreeRectangle(freeRectangle(foot.current));
+      ++cameraMoves.value;
+    };
     const stop = [
       keepDrawn(made, session),
+      effect(() => {
+        void tool.value;
+        untracked(makeRoom);
+      }),
       effect(() => made.setResting(session.previewing.value || session.activity.value.kind !== 'idle')),
     ];
     const resize = new ResizeObserver(makeRoom);
@@ -93,7 +113,8 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
   return (
     <div class="viewport-panel">
       <div ref={container} class="viewport" />
-      {visible && shown ? (
+      {visible && tool.value ? <DrawTool session={session} viewport={viewport.current} /> : null}
+      {visible && shown && tool.value === null ? (
         <div class="float top-left">
           <Segmented
             floating
@@ -134,5 +155,8 @@ function DistortionLegend({ session }: { session: ZippableSession }) {
 function freeRectangle(foot: Element | null): Insets {
   const height = foot?.getBoundingClientRect().height ?? 0;
   const bottom = height > 0 ? height + 20 : 24;
-  return narrow() ? { left: 10, top: 60, right: 10, bottom } : { left: 24, top: 64, right: 24, bottom };
+  const tools = tool.peek() ? 90 : 0;
+  return narrow()
+    ? { left: 10, top: 60 + tools, right: 10, bottom }
+    : { left: 24, top: 64 + tools, right: 24, bottom };
 }

@@ -18,6 +18,8 @@ export const pointed = signal<{
 /** How far the ribbon in space is bent: 0 flat, 1 zipped up. */
 export const bend = signal(1);
 export const playing = signal(false);
+/** Raised when the camera moves: what stands over the model follows. */
+export const cameraMoves = signal(0);
 /** Raised when the page's theme changes: colours that are not styles are read again. */
 export const themeChanges = signal(0);
 

@@ -1,15 +1,41 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The zippable's part of a project.
-import type { CraftDocument, CraftResult } from '../common/craft_document';
+import type { BlobReference } from '../../project/document';
+import type { CraftDocument, CraftResult, Subject } from '../common/craft_document';
 import { CraftCommands, emptyCraft, sameRequest } from '../common/craft_document';
+import type { Drawn } from './drawn_parts';
+import { nothingDrawn } from './drawn_parts';
 
 export const design = 'zippable-design';
 
-export const zippable = new CraftCommands<CraftDocument>('zippable', emptyCraft);
+/** What was drawn, on which model, and as the operation reads it. */
+export interface DrawnParts extends Drawn {
+  readonly on: string;
+  /** Null while nothing is whole. */
+  readonly segments: BlobReference | null;
+}
 
-/** The design made with exactly the parameters and the model in force, if there is one. */
-export function currentResult({ model, parameters, results }: CraftDocument): CraftResult | null {
-  if (model === null) return null;
-  const request = { mesh: model.mesh.blob, parameters };
+export interface ZippableDocument extends CraftDocument {
+  readonly drawn: DrawnParts | null;
+}
+
+export const zippable = new CraftCommands<ZippableDocument>('zippable', { ...emptyCraft, drawn: null });
+
+/** What is drawn on the model in force. */
+export function drawnOn({ model, drawn }: ZippableDocument): DrawnParts {
+  const on = model?.mesh.blob ?? '';
+  return drawn?.on === on ? drawn : { ...nothingDrawn, on, segments: null };
+}
+
+export const setDrawn = (drawn: DrawnParts, label: string) =>
+  zippable.command({ label }, () => ({ drawn }) as Partial<ZippableDocument>);
+
+/** The design made with exactly the parameters, the model and the parts in force, if there is one. */
+export function currentResult(
+  { parameters, results }: CraftDocument,
+  subject: Subject | null,
+): CraftResult | null {
+  if (subject === null) return null;
+  const request = { mesh: subject.key, parameters };
   return results.find((result) => sameRequest(result, request)) ?? null;
 }

@@ -7,6 +7,7 @@ import { useRoomKeys } from '../common/room_keys';
 import { Gallery } from '../common/gallery';
 import { useModelPicture, useResultPictures } from '../common/pictures';
 import '../common/room.css';
+import { tool } from './draw_actions';
 import { exportMain } from './export_button';
 import { FlatRibbon } from './flat_ribbon';
 import { Inspector } from './inspector';
@@ -43,7 +44,7 @@ export function ZippablePage({ session, onChooseFile }: ZippablePageProps) {
   const opening = session.activity.value.kind === 'opening';
   return (
     <>
-      <main class="view zippable-view" aria-label="Zippable">
+      <main class={tool.value ? 'view zippable-view drawing' : 'view zippable-view'} aria-label="Zippable">
         <h1 class="hidden-text">Zippable</h1>
         <div class="zippable-model">
           <ViewportPanel

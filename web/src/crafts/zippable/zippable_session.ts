@@ -3,10 +3,10 @@
 // designed for the whole model.
 import { computed, effect, signal, untracked } from '@preact/signals';
 import type { Result } from '../../jobs/backend';
-import type { JsonObject, Operation, Report } from '../../jobs/contract';
+import type { JobInput, JsonObject, Operation, Report } from '../../jobs/contract';
 import { findOperation } from '../../jobs/contract';
 import { readPolylines } from '../../jobs/mesh_reader';
-import type { CraftDocument, CraftResult } from '../common/craft_document';
+import type { CraftResult } from '../common/craft_document';
 import type { Measured } from '../common/estimate';
 import { estimateSeconds, recall } from '../common/estimate';
 import { bytesOf } from '../common/import_model';
@@ -21,7 +21,8 @@ import type { Design } from './design';
 import { readDesign } from './design';
 import type { PartDistortion } from './part_map';
 import { distortionOfParts, partsOfTriangles, VertexGrid } from './part_map';
-import { currentResult, design, zippable } from './zippable_document';
+import type { ZippableDocument } from './zippable_document';
+import { currentResult, design, drawnOn, zippable } from './zippable_document';
 
 /** A model divided and parameterised; the same object for as many designs as are made on it. */
 export interface DividedModel {
@@ -45,7 +46,7 @@ export interface Zippable extends ShownWork {
 
 type Outputs = Pick<Result, 'outputs' | 'report'>;
 
-export class ZippableSession extends PreviewingSession<CraftDocument, Zippable> {
+export class ZippableSession extends PreviewingSession<ZippableDocument, Zippable> {
   readonly operationName = design;
   readonly meshInputName = 'mesh';
   readonly wantedOutputs = ['design.json', 'parameterised.ply', 'curve.obj', 'ribbon.svg'];
@@ -58,7 +59,11 @@ export class ZippableSession extends PreviewingSession<CraftDocument, Zippable> 
     return catalog === null ? null : (findOperation(catalog, this.operationName) ?? null);
   });
   readonly asked = computed(() => this.document.value.parameters);
-  readonly result = computed(() => currentResult(this.document.value));
+  override readonly furtherInputs = computed((): Readonly<Record<string, JobInput>> => {
+    const { segments } = drawnOn(this.document.value);
+    return segments ? { segments: { sha256: segments.blob, file_name: 'segments.json' } } : {};
+  });
+  readonly result = computed(() => currentResult(this.document.value, this.subject.value));
   readonly #previewed = signal<Measured | null>(null);
   #divided: DividedModel | null = null;
 
@@ -66,7 +71,9 @@ export class ZippableSession extends PreviewingSession<CraftDocument, Zippable> 
     super(services, zippable);
     this.startFollowing();
     effect(() => {
-      void this.asked.value; // what could not be made with other parameters no longer matters
+      // What could not be made with other parameters or parts no longer matters.
+      void this.asked.value;
+      void this.furtherInputs.value;
       untracked(() => {
         if (this.problem.value?.kind === 'solve') this.problem.value = null;
       });

@@ -52,7 +52,8 @@ int PageFlow::finish() {
 
 void PageFlow::line(const std::string& words, double height_mm, double indent_mm) {
   const Vec2 corner = room(height_mm + line_gap_mm);
-  drawing_.label(corner + Vec2(indent_mm + pdf_.text_width_mm(words, height_mm) / 2, line_gap_mm + height_mm / 2), height_mm, words);
+  drawing_.label(corner + Vec2(indent_mm + pdf_.text_width_mm(words, height_mm) / 2, line_gap_mm + height_mm / 2),
+                 height_mm, words);
 }
 
 void PageFlow::end_page() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Instructions on paper: headings, wrapped words and room for pictures, one below the other, over as many pages as it takes.
+// Instructions on paper: headings, wrapped words and room for pictures, one below the other, over as many pages as it
+// takes.
 #include <string>
 
 #include "imaging/pdf.h"
@@ -18,7 +19,8 @@ class PageFlow {
   /// Broken where a line is full; a word that is longer than a line stands out of it.
   void paragraph(const std::string& words, double indent_mm = 0);
 
-  /// Free room over the pages' whole width, on a new page where this one has not enough; at most a page high. Returns its lower left corner on the page, to draw there.
+  /// Free room over the pages' whole width, on a new page where this one has not enough; at most a page high. Returns
+  /// its lower left corner on the page, to draw there.
   Vec2 room(double height_mm);
 
   double width_mm() const { return paper_mm_.x() - 2 * margin_mm_; }

@@ -56,10 +56,13 @@ std::vector<ReportField> report_fields() {
           {"seams", "Seams", "", "in the order in which they are made: pieces, letters of a split, markers, lengths"},
           {"zipper_to_cut_mm", "Zipper to cut", "mm", "from the reel, with an end on either side to hold it by"},
           {"assembly_pages", "Assembly pages", "", "of the assembly sheet"},
+          {"tabs", "Tabs", "", "of paper: how many, how many of them less deep, and stretches without"},
           {"tape_rows", "Rows of the template", "", "of the tapes, on its pages"},
           {"tape_row_mm", "Row", "mm", "of the template, along the zipper"},
           {"pieces", "Pieces", "", "area of ribbon, sheet and letters of splits"},
           {"splits", "Splits", "", "rulings at which the ribbon is cut"},
+          {"crumbs_joined", "Crumbs joined", "", "pieces that were too small and joined to a neighbour"},
+          {"crumbs_grown", "Crumbs grown", "", "pieces that were too small and grew at a neighbour's cost"},
           {"sheets", "Sheets", "", "of the bed's size"},
           {"area_before_mm2", "Area before splitting", "mm²", "of the ribbon with room for the zipper"},
           {"area_after_mm2", "Area after splitting", "mm²", "of all pieces without allowances"},
@@ -135,6 +138,7 @@ void report_tape(Json& report, const FlatDesign& design, const ZippablePlan& pla
                      {"last_marker", seam.last_marker}});
   }
   report["seams"] = seams;
+  if (plan.tabs) report["tabs"] = {plan.tabs->tabs.size(), plan.tabs->shortened, plan.tabs->left_out};
   report["zipper_to_cut_mm"] = zipper_to_cut_mm(design, plan);
   report["tape_rows"] = plan.tape.rows;
   report["tape_row_mm"] = plan.tape.row_mm;
@@ -156,6 +160,8 @@ void report_pieces(Json& report, const ZippablePlan& plan, const PlanOptions& op
   }
   report["pieces"] = pieces;
   report["splits"] = plan.splitting.splits.size();
+  report["crumbs_joined"] = plan.splitting.merged_crumbs;
+  report["crumbs_grown"] = plan.splitting.moved_splits;
   report["sheets"] = plan.sheets.size();
   report["area_before_mm2"] = plan.area_before_mm2;
   report["area_after_mm2"] = area;

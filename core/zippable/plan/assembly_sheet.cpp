@@ -23,18 +23,28 @@ constexpr double below_pictures_mm = 4;
 class AssemblyWriter {
  public:
   AssemblyWriter(const FlatDesign& design, const ZippablePlan& plan, const PlanOptions& options, const Context& context)
-      : design_(design), plan_(plan), options_(options), context_(context), pdf_("Zippable assembly"), flow_(pdf_, paper_size_mm(options.paper), 15) {}
+      : design_(design),
+        plan_(plan),
+        options_(options),
+        context_(context),
+        pdf_("Zippable assembly"),
+        flow_(pdf_, paper_size_mm(options.paper), 15) {}
 
   AssemblySheet write() {
     title();
     material();
     overview();
     flow_.heading(step("Cut"));
-    flow_.paragraph("Cut the red lines of plan.svg, plan.dxf or sheets.zip; draw the blue and black ones. Without a machine, print plan.pdf at 100 % "
-                    "and cut along it. Arrows show the grain. The side with the numbers becomes the outside: draw on cloth with a pen that washes out.");
+    flow_.paragraph(
+        "Cut the red lines of plan.svg, plan.dxf or sheets.zip; draw the blue and black ones. Without a machine, print "
+        "plan.pdf at 100 % "
+        "and cut along it. Arrows show the grain. The side with the numbers becomes the outside: draw on cloth with a "
+        "pen that washes out.");
     joins();
-    if (plan_.has_tape()) tapes();
-    else edges();
+    if (plan_.has_tape())
+      tapes();
+    else
+      edges();
     AssemblySheet sheet;
     sheet.pages = flow_.finish();
     sheet.pdf = pdf_.finish();
@@ -60,7 +70,8 @@ class AssemblyWriter {
     const double y = corner.y() + 9;
     Drawing& d = flow_.drawing();
     d.line({corner.x() + 5, y}, {corner.x() + 105, y}, 0.2);
-    for (int mm = 0; mm <= 100; mm += 10) d.line({corner.x() + 5 + mm, y}, {corner.x() + 5 + mm, y + (mm % 50 == 0 ? 3 : 1.5)}, 0.2);
+    for (int mm = 0; mm <= 100; mm += 10)
+      d.line({corner.x() + 5 + mm, y}, {corner.x() + 5 + mm, y + (mm % 50 == 0 ? 3 : 1.5)}, 0.2);
     for (const int mm : {0, 100}) d.label({corner.x() + 5 + mm, y - 3}, 2.6, std::to_string(mm));
   }
 
@@ -68,25 +79,39 @@ class AssemblyWriter {
     flow_.heading("What you need");
     double area = 0;
     for (const PlanPiece& piece : plan_.pieces.pieces) area += signed_area_mm2(piece.outline_mm);
-    flow_.paragraph("- " + std::string(plan_.has_tape() ? "Cloth: " : "Paper or card: ") + count(plan_.sheets.size(), "sheet") + " of " + number(options_.bed_x_mm, 0) + " by " +
-                    number(options_.bed_y_mm, 0) + " mm; the pieces take " + number(area / 100, 0) + " square centimetres of it.");
+    flow_.paragraph("- " + std::string(plan_.has_tape() ? "Cloth: " : "Paper or card: ") +
+                    count(plan_.sheets.size(), "sheet") + " of " + number(options_.bed_x_mm, 0) + " by " +
+                    number(options_.bed_y_mm, 0) + " mm; the pieces take " + number(area / 100, 0) +
+                    " square centimetres of it.");
     if (plan_.has_tape()) {
-      const std::string coil = options_.coil == ZipperCoil::none ? "" : ", size " + std::string(EnumNames<ZipperCoil>::names[static_cast<std::size_t>(options_.coil)]);
-      flow_.paragraph("- Zipper: " + number(zipper_to_cut_mm(design_, plan_) / 1000, 2) + " m of coil zipper from the reel" + coil + " (" + number(design_.zipper_mm, 0) +
-                      " mm and " + number(zipper_end_mm, 0) + " mm at each end to hold), each tape " + number(plan_.zipper.tape_width_mm, 1) +
-                      " mm wide, teeth " + number(plan_.zipper.teeth_width_mm, 1) + " mm; one slider, put on at the end with number 0.");
-      flow_.paragraph(sewn() ? "- Thread, a sewing machine with a zipper foot, pins." : "- Contact glue for cloth, clips.");
+      const std::string coil =
+          options_.coil == ZipperCoil::none
+              ? ""
+              : ", size " + std::string(EnumNames<ZipperCoil>::names[static_cast<std::size_t>(options_.coil)]);
+      flow_.paragraph("- Zipper: " + number(zipper_to_cut_mm(design_, plan_) / 1000, 2) +
+                      " m of coil zipper from the reel" + coil + " (" + number(design_.zipper_mm, 0) + " mm and " +
+                      number(zipper_end_mm, 0) + " mm at each end to hold), each tape " +
+                      number(plan_.zipper.tape_width_mm, 1) + " mm wide, teeth " +
+                      number(plan_.zipper.teeth_width_mm, 1) + " mm; one slider, put on at the end with number 0.");
+      flow_.paragraph(sewn() ? "- Thread, a sewing machine with a zipper foot, pins."
+                             : "- Contact glue for cloth, clips.");
       flow_.paragraph("- tape.pdf, printed at 100 %, and a pen for the zipper.");
     } else {
-      flow_.paragraph("- Glue that sets quickly" + std::string(plan_.pieces.tabs > 0 ? "; a blunt knife to score the folds of the tabs." : ", or adhesive tape behind the seams."));
+      flow_.paragraph("- Glue that sets quickly" + std::string(plan_.tabs
+                                                                   ? "; a blunt knife to score the folds of the tabs."
+                                                                   : ", or adhesive tape behind the seams."));
     }
   }
 
   void overview() {
     flow_.heading("How to read the pieces");
-    flow_.paragraph("Numbers stand every " + number(plan_.marker_spacing_mm, 0) + " mm along the edges, from 0 where the zipper begins; the same number stands once on a left edge and "
-                    "once on a right edge, and these two places meet. Letters stand where the ribbon was split; the same letter stands on two pieces. "
-                    "In the pictures left edges are thick, right edges thin, splits dashed; circles hold the numbers of the seams.");
+    flow_.paragraph(
+        "Numbers stand every " + number(plan_.marker_spacing_mm, 0) +
+        " mm along the edges, from 0 where the zipper begins; the same number stands once on a left edge and "
+        "once on a right edge, and these two places meet. Letters stand where the ribbon was split; the same letter "
+        "stands on two pieces. "
+        "In the pictures left edges are thick, right edges thin, splits dashed; circles hold the numbers of the "
+        "seams.");
     constexpr double height = 90;
     const Vec2 corner = flow_.room(height);
     // The whole ribbon, which may lie over itself.
@@ -94,20 +119,25 @@ class AssemblyWriter {
     for (const Vec2& p : plan_.ribbon.flat_mm) lower = lower.cwiseMin(p), upper = upper.cwiseMax(p);
     const Vec2 extent = (upper - lower).cwiseMax(1e-9);
     const double scale = std::min({1.0, (flow_.width_mm() - 10) / extent.x(), (height - 10) / extent.y()});
-    const auto at = [&](const Vec2& p) { return Vec2(corner + Vec2(flow_.width_mm(), height) / 2 + scale * (p - (lower + upper) / 2)); };
+    const auto at = [&](const Vec2& p) {
+      return Vec2(corner + Vec2(flow_.width_mm(), height) / 2 + scale * (p - (lower + upper) / 2));
+    };
     Drawing& d = flow_.drawing();
     for (int v = 0; v < design_.vertex_count(); ++v)
       d.line(at(plan_.ribbon.flat_mm[v]), at(plan_.ribbon.flat_mm[design_.next(v)]),
              design_.zipper_edge(v) && design_.boundary[v].left ? left_edge_stroke_mm : right_edge_stroke_mm);
-    for (const RibbonSplit& split : plan_.splitting.splits) d.line(at(plan_.ribbon.flat_mm[split.from]), at(plan_.ribbon.flat_mm[split.to]), 0.3, true);
+    for (const RibbonSplit& split : plan_.splitting.splits)
+      d.line(at(plan_.ribbon.flat_mm[split.from]), at(plan_.ribbon.flat_mm[split.to]), 0.3, true);
     std::vector<std::pair<double, Vec2>> widest(plan_.pieces.pieces.size(), {-1, Vec2::Zero()});
     for (Eigen::Index f = 0; f < design_.F.rows(); ++f) {
-      const Vec2 &a = plan_.ribbon.flat_mm[design_.F(f, 0)], &b = plan_.ribbon.flat_mm[design_.F(f, 1)], &c = plan_.ribbon.flat_mm[design_.F(f, 2)];
+      const Vec2 &a = plan_.ribbon.flat_mm[design_.F(f, 0)], &b = plan_.ribbon.flat_mm[design_.F(f, 1)],
+                 &c = plan_.ribbon.flat_mm[design_.F(f, 2)];
       auto& best = widest[plan_.splitting.piece_of_face[f]];
       if (const double area = signed_area_mm2({a, b, c}); area > best.first) best = {area, (a + b + c) / 3};
     }
     for (std::size_t i = 0; i < widest.size(); ++i) d.label(at(widest[i].second), 2.6, name(static_cast<int>(i)));
-    flow_.paragraph("The whole ribbon, scale 1 : " + number(1 / scale, 1) + ". Where it lies over itself it has been split.");
+    flow_.paragraph("The whole ribbon, scale 1 : " + number(1 / scale, 1) +
+                    ". Where it lies over itself it has been split.");
   }
 
   void joins() {
@@ -115,26 +145,30 @@ class AssemblyWriter {
     if (!any) return;
     flow_.heading(step("Join the pieces"));
     if (plan_.has_tape())
-      flow_.paragraph(sewn() ? "Sew flat, with the numbers inside, along the line beside the letter: " + number(options_.seam_allowance_mm, 0) +
-                                   " mm from the edge. Press the allowances apart."
-                             : "Glue one allowance over the other so that the lines beside the letters lie on each other.");
+      flow_.paragraph(
+          sewn() ? "Sew flat, with the numbers inside, along the line beside the letter: " +
+                       number(options_.seam_allowance_mm, 0) + " mm from the edge. Press the allowances apart."
+                 : "Glue one allowance over the other so that the lines beside the letters lie on each other.");
     else
-      flow_.paragraph(plan_.pieces.tabs > 0 ? "Fold the tab at the letter and glue it behind the edge with the same letter."
-                                            : "Glue one allowance over the other so that the lines beside the letters lie on each other.");
+      flow_.paragraph(
+          plan_.tabs ? "Fold the tab at the letter and glue it behind the edge with the same letter."
+                     : "Glue one allowance over the other so that the lines beside the letters lie on each other.");
     for (std::size_t i = 0; i < plan_.seams.size() && plan_.seams[i].kind == SeamKind::join; ++i) {
       const Seam& seam = plan_.seams[i];
       context_.check_cancelled();
       constexpr double height = 62;
-      const Vec2 corner = flow_.room(height + 6 + below_pictures_mm) + Vec2(0, below_pictures_mm), size(flow_.width_mm() / 2 - 4, height);
-      const std::string words = "Seam " + std::to_string(i + 1) + ": letter " + seam.letters + ", " + name(seam.piece) + " to " + name(seam.other_piece) + ", " +
-                                number(seam.cloth_mm, 1) + " mm long.";
+      const Vec2 corner = flow_.room(height + 6 + below_pictures_mm) + Vec2(0, below_pictures_mm),
+                 size(flow_.width_mm() / 2 - 4, height);
+      const std::string words = "Seam " + std::to_string(i + 1) + ": letter " + seam.letters + ", " + name(seam.piece) +
+                                " to " + name(seam.other_piece) + ", " + number(seam.cloth_mm, 1) + " mm long.";
       flow_.drawing().label(corner + Vec2(pdf_.text_width_mm(words, 2.6) / 2, height + 4), 2.6, words);
       show(seam.piece, corner, size, seam.letters, {});
       show(seam.other_piece, corner + Vec2(size.x() + 8, 0), size, seam.letters, {});
     }
   }
 
-  void show(int piece, const Vec2& corner, const Vec2& size, const std::string& letters, const std::vector<SeamTag>& tags) {
+  void show(int piece, const Vec2& corner, const Vec2& size, const std::string& letters,
+            const std::vector<SeamTag>& tags) {
     const PiecePicture picture = picture_of_piece(design_, plan_, piece, size, letters, tags);
     Drawing& d = flow_.drawing();
     d.rectangle(corner, corner + size, outline_stroke_mm);
@@ -165,38 +199,49 @@ class AssemblyWriter {
 
   void tapes() {
     flow_.heading(step("Mark the zipper"));
-    flow_.paragraph("Close the zipper and lay it on tape.pdf row by row; copy the strokes and numbers onto both tapes. Row by row the last number is the next row's first. "
-                    "Then take the slider off and part the two tapes.");
+    flow_.paragraph(
+        "Close the zipper and lay it on tape.pdf row by row; copy the strokes and numbers onto both tapes. Row by row "
+        "the last number is the next row's first. "
+        "Then take the slider off and part the two tapes.");
     for (const bool left : {true, false}) {
       flow_.heading(step(left ? "Attach the left tape" : "Attach the right tape"));
       if (left) {
-        flow_.paragraph("Lay the tape behind the cloth, teeth outwards, with " + number(plan_.zipper.gap_mm, 1) +
-                        " mm between the teeth and the edge, number on number; pin or clip it number by number and then " +
-                        (sewn() ? "sew" : "glue") + " it. On curves cut into the tape every few centimetres, not into its teeth, so that it bends.");
+        flow_.paragraph(
+            "Lay the tape behind the cloth, teeth outwards, with " + number(plan_.zipper.gap_mm, 1) +
+            " mm between the teeth and the edge, number on number; pin or clip it number by number and then " +
+            (sewn() ? "sew" : "glue") +
+            " it. On curves cut into the tape every few centimetres, not into its teeth, so that it bends.");
         pieces_with_seams();
       }
       for (std::size_t i = 0; i < plan_.seams.size(); ++i)
         if (const Seam& seam = plan_.seams[i]; seam.kind == SeamKind::tape && seam.left == left) {
           const double longer = seam.cloth_mm - seam.tape_mm();
-          std::string words = "Seam " + std::to_string(i + 1) + ": along " + name(seam.piece) + ", " + marks(seam) + ", " + number(seam.tape_mm(), 0) + " mm";
-          if (std::abs(longer) >= 1) words += "; the cloth is " + number(std::abs(longer), 1) + " mm " + (longer > 0 ? "longer: ease it in" : "shorter: ease the tape in");
+          std::string words = "Seam " + std::to_string(i + 1) + ": along " + name(seam.piece) + ", " + marks(seam) +
+                              ", " + number(seam.tape_mm(), 0) + " mm";
+          if (std::abs(longer) >= 1)
+            words += "; the cloth is " + number(std::abs(longer), 1) + " mm " +
+                     (longer > 0 ? "longer: ease it in" : "shorter: ease the tape in");
           flow_.paragraph(words + ".", 4);
         }
     }
     flow_.heading(step("Zip it up"));
-    flow_.paragraph("Lay both ends with number 0 side by side, put the slider on, and pull it along: the model takes shape by itself. Cut off what the zipper is too long.");
+    flow_.paragraph(
+        "Lay both ends with number 0 side by side, put the slider on, and pull it along: the model takes shape by "
+        "itself. Cut off what the zipper is too long.");
   }
 
   void edges() {
-    flow_.heading(step(plan_.pieces.tabs > 0 ? "Score, fold and glue the tabs" : "Glue edge to edge"));
-    flow_.paragraph(plan_.pieces.tabs > 0
-                        ? "Score the blue lines at the feet of the tabs and fold them back. Begin at number 0 and go on number by number: every tab goes behind the edge that carries the same numbers."
-                        : "Begin at number 0 and go on number by number: the left edge meets the right edge with the same number.");
+    flow_.heading(step(plan_.tabs ? "Score, fold and glue the tabs" : "Glue edge to edge"));
+    flow_.paragraph(
+        plan_.tabs
+            ? "Score the blue lines at the feet of the tabs and fold them back. Begin at number 0 and go on number by "
+              "number: every tab goes behind the edge that carries the same numbers."
+            : "Begin at number 0 and go on number by number: the left edge meets the right edge with the same number.");
     pieces_with_seams();
     for (std::size_t i = 0; i < plan_.seams.size(); ++i)
       if (const Seam& seam = plan_.seams[i]; seam.kind == SeamKind::edge)
-        flow_.paragraph("Seam " + std::to_string(i + 1) + ": left edge of " + name(seam.piece) + " to right edge of " + name(seam.other_piece) + ", " + marks(seam) + ", " +
-                            number(seam.tape_mm(), 0) + " mm.",
+        flow_.paragraph("Seam " + std::to_string(i + 1) + ": left edge of " + name(seam.piece) + " to right edge of " +
+                            name(seam.other_piece) + ", " + marks(seam) + ", " + number(seam.tape_mm(), 0) + " mm.",
                         4);
   }
 
@@ -215,7 +260,8 @@ double zipper_to_cut_mm(const FlatDesign& design, const ZippablePlan& plan) {
   return plan.has_tape() ? 10 * std::ceil((design.zipper_mm + 2 * zipper_end_mm) / 10) : 0;
 }
 
-AssemblySheet write_assembly_sheet(const FlatDesign& design, const ZippablePlan& plan, const PlanOptions& options, const Context& context) {
+AssemblySheet write_assembly_sheet(const FlatDesign& design, const ZippablePlan& plan, const PlanOptions& options,
+                                   const Context& context) {
   return AssemblyWriter(design, plan, options, context).write();
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// How the pieces are put together, step by step, on paper: what is needed, pictures, seams in their order. Thesis Sec. 5.3.
+// How the pieces are put together, step by step, on paper: what is needed, pictures, seams in their order. Thesis
+// Sec. 5.3.
 #include "base/bytes.h"
 #include "zippable/plan/zippable_plan.h"
 
@@ -18,6 +19,7 @@ inline constexpr double zipper_end_mm = 30;
 double zipper_to_cut_mm(const FlatDesign& design, const ZippablePlan& plan);
 
 /// Throws Error: could_not_solve (the PDF cannot be written), cancelled.
-AssemblySheet write_assembly_sheet(const FlatDesign& design, const ZippablePlan& plan, const PlanOptions& options, const Context& context);
+AssemblySheet write_assembly_sheet(const FlatDesign& design, const ZippablePlan& plan, const PlanOptions& options,
+                                   const Context& context);
 
 }  // namespace formwright

@@ -50,25 +50,28 @@ void circle(Drawing& drawing, const Vec2& centre, double radius) {
 
 }  // namespace
 
-PiecePicture picture_of_piece(const FlatDesign& design, const ZippablePlan& plan, int piece, const Vec2& size_mm, const std::string& seam,
-                              const std::vector<SeamTag>& tags) {
+PiecePicture picture_of_piece(const FlatDesign& design, const ZippablePlan& plan, int piece, const Vec2& size_mm,
+                              const std::string& seam, const std::vector<SeamTag>& tags) {
   const PlanPiece& shown = plan.pieces.pieces[piece];
   const Picture place(shown, plan.nesting.places[piece], size_mm);
   const std::vector<Vec2>& flat = plan.ribbon.flat_mm;
   PiecePicture picture{{}, place.scale()};
   Drawing& drawing = picture.drawing;
   for (std::size_t i = 0; i < shown.outline_mm.size(); ++i)
-    drawing.line(place(shown.outline_mm[i]), place(shown.outline_mm[(i + 1) % shown.outline_mm.size()]), outline_stroke_mm);
+    drawing.line(place(shown.outline_mm[i]), place(shown.outline_mm[(i + 1) % shown.outline_mm.size()]),
+                 outline_stroke_mm);
   const std::vector<int> face = faces_of_boundary(design.F, design.vertex_count());
   for (int v = 0; v < design.vertex_count(); ++v)
     if (design.zipper_edge(v) && plan.splitting.piece_of_face[face[v]] == piece)
-      drawing.line(place(flat[v]), place(flat[design.next(v)]), design.boundary[v].left ? left_edge_stroke_mm : right_edge_stroke_mm);
+      drawing.line(place(flat[v]), place(flat[design.next(v)]),
+                   design.boundary[v].left ? left_edge_stroke_mm : right_edge_stroke_mm);
   for (std::size_t s = 0; s < plan.splitting.splits.size(); ++s) {
     const RibbonSplit& split = plan.splitting.splits[s];
     if (split.left != piece && split.right != piece) continue;
     const std::string letter = split_letters(static_cast<int>(s));
     const bool bold = letter == seam;
-    const Vec2 from = place(flat[split.left == piece ? split.from : split.to]), to = place(flat[split.left == piece ? split.to : split.from]);
+    const Vec2 from = place(flat[split.left == piece ? split.from : split.to]),
+               to = place(flat[split.left == piece ? split.to : split.from]);
     drawing.line(from, to, bold ? seam_stroke_mm : right_edge_stroke_mm, !bold);
     if (!seam.empty() && !bold) continue;
     const Vec2 along = (to - from).normalized(), outward(along.y(), -along.x());  // the piece lies to the left

@@ -38,6 +38,13 @@ struct EnumNames<InstructionPaper> {
   static constexpr std::array<std::string_view, 2> labels{"A4", "Letter"};
 };
 
+enum class PaperEdges { plain, tabs };
+template <>
+struct EnumNames<PaperEdges> {
+  static constexpr std::array<std::string_view, 2> names{"plain", "tabs"};
+  static constexpr std::array<std::string_view, 2> labels{"Plain", "Tabs"};
+};
+
 struct PlanOptions {
   ZipperCoil coil = ZipperCoil::coil_3;
   std::optional<double> tape_width_mm, teeth_width_mm, gap_mm;
@@ -48,6 +55,8 @@ struct PlanOptions {
   GrainDirection grain = GrainDirection::free;
   double seam_allowance_mm = 8;
   double kerf_mm = 0.15;
+  PaperEdges edges = PaperEdges::plain;
+  double tab_depth_mm = 5, tab_length_mm = 15;
   InstructionPaper paper = InstructionPaper::a4;
 
   static constexpr auto parameters = std::tuple{
@@ -93,6 +102,14 @@ struct PlanOptions {
                 "Width of what the cut takes away: outlines grow by half of it.")
           .slider(0, 1)
           .group("Sheets"),
+      parameter("edges", &PlanOptions::edges, "Edges", "Of paper, without a zipper: plain, to be joined edge to edge, or with tabs along one edge of every seam.")
+          .group("Paper model"),
+      parameter("tab_depth_mm", &PlanOptions::tab_depth_mm, "Depth of tabs", unit::mm, 1, 100, "From fold to outer edge; less where there is no room.")
+          .slider(3, 15)
+          .group("Paper model"),
+      parameter("tab_length_mm", &PlanOptions::tab_length_mm, "Length of tabs", unit::mm, 4, 1000, "Along the fold; less where the edge is curved.")
+          .slider(5, 40)
+          .group("Paper model"),
       parameter("paper", &PlanOptions::paper, "Paper", "On which the tape's template and the assembly sheet are printed.").group("Sheets")};
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "geometry/adjacency.h"
 #include "zippable/plan/words.h"
@@ -16,9 +17,9 @@ double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(
 
 class PieceMaker {
  public:
-  PieceMaker(const Triangles& F, const std::vector<Vec2>& flat, const Splitting& splitting, double allowance_mm, double kerf_mm,
-             double text_height_mm, PlanPieces& result)
-      : F_(F), flat_(flat), splitting_(splitting), allowance_mm_(allowance_mm), kerf_mm_(kerf_mm), text_height_mm_(text_height_mm),
+  PieceMaker(const Triangles& F, const std::vector<Vec2>& flat, const Splitting& splitting, const std::optional<GlueTabs>& tabs,
+             double allowance_mm, double kerf_mm, double text_height_mm, PlanPieces& result)
+      : F_(F), flat_(flat), splitting_(splitting), has_tabs_(tabs.has_value()), allowance_mm_(allowance_mm), kerf_mm_(kerf_mm), text_height_mm_(text_height_mm),
         result_(result), faces_(std::size_t(splitting.piece_count)), texts_(faces_.size()) {
     TriangleMesh mesh;
     mesh.V = Positions::Zero(static_cast<Eigen::Index>(flat.size()), 3);
@@ -35,6 +36,15 @@ class PieceMaker {
         if (o < 0) face_of_edge_[adjacency.from(h)] = f;
       }
     }
+    if (tabs)
+      for (const GlueTab& tab : tabs->tabs) {
+        tabs_[tab.from_edge].push_back(&tab);
+        for (const auto& triangle : triangles_of(tab)) tab_triangles_[tab.piece].push_back(triangle);
+      }
+    for (auto& [edge, list] : tabs_) {
+      const Vec2 start = flat[edge];
+      std::sort(list.begin(), list.end(), [&](const GlueTab* a, const GlueTab* b) { return (a->foot_from - start).norm() < (b->foot_from - start).norm(); });
+    }
     for (std::size_t s = 0; s < splitting.splits.size(); ++s) {
       const RibbonSplit& split = splitting.splits[s];
       letters_[{split.left, split.from}] = letters_[{split.right, split.to}] = split_letters(static_cast<int>(s));
@@ -46,11 +56,21 @@ class PieceMaker {
     made.name = "P" + std::to_string(piece + 1);
     for (const int f : faces_[piece])
       made.ribbon_area_mm2 += cross(flat_[F_(f, 1)] - flat_[F_(f, 0)], flat_[F_(f, 2)] - flat_[F_(f, 0)]) / 2;
-    const int first = next_[piece].begin()->first;
+    // Not from a vertex in the middle of a tab's foot.
+    std::set<int> covered;
+    for (const auto& [edge, list] : tabs_)
+      for (const GlueTab* tab : list)
+        if (tab->piece == piece)
+          for (int w = edge; w != tab->to_edge;) covered.insert(w = next_[piece].at(w).first);
+    int first = next_[piece].begin()->first;
+    while (covered.contains(first)) first = next_[piece].at(first).first;
     int v = first;
     do {
       const auto [to, split] = next_[piece].at(v);
-      made.outline_mm.push_back(flat_[v]);
+      if (!covered.contains(v)) add_corner(made.outline_mm, flat_[v]);
+      if (const auto list = tabs_.find(v); list != tabs_.end())
+        for (const GlueTab* tab : list->second)
+          if (tab->piece == piece) add_tab(piece, *tab);
       if (split) {
         for (const Vec2& corner : allowance(piece, v, to)) made.outline_mm.push_back(corner);
         const Vec2 u = (flat_[to] - flat_[v]).normalized();
@@ -62,6 +82,16 @@ class PieceMaker {
     const std::vector<Vec2> steps = offset_steps(made.outline_mm, std::vector<double>(made.outline_mm.size(), -kerf_mm_ / 2));
     for (std::size_t i = 0; i < steps.size(); ++i) made.cut_mm.push_back(made.outline_mm[i] + steps[i]);
     name_piece(piece);
+  }
+
+  /// A tab's corners instead of its foot, where it is folded.
+  void add_tab(int piece, const GlueTab& tab) {
+    PlanPiece& made = result_.pieces[piece];
+    for (const Vec2& corner : {tab.foot_from, tab.corner_from, tab.corner_to, tab.foot_to}) add_corner(made.outline_mm, corner);
+    CutPath fold{CutLayer::mark, {tab.foot_from}, false, "tab-" + std::to_string(++tab_number_)};
+    for (int w = tab.from_edge; w != tab.to_edge;) add_corner(fold.points_mm, flat_[w = next_[piece].at(w).first]);
+    add_corner(fold.points_mm, tab.foot_to);
+    made.marks.push_back(std::move(fold));
   }
 
   void marker(const SideMark& mark, int number, const char* side) {
@@ -83,6 +113,12 @@ class PieceMaker {
   }
 
  private:
+  /// Neighbouring tabs meet in one corner; where a foot ends just before a corner of the edge, growing by the kerf would turn the short edge
+  /// between them over.
+  void add_corner(Polygon& polygon, const Vec2& corner) const {
+    if (polygon.empty() || !has_tabs_ || (polygon.back() - corner).norm() > std::max(0.02, 0.75 * kerf_mm_)) polygon.push_back(corner);
+  }
+
   bool inside(int piece, const Vec2& p) const {
     return std::any_of(faces_[piece].begin(), faces_[piece].end(), [&](int f) {
       for (int k = 0; k < 3; ++k) {
@@ -97,7 +133,10 @@ class PieceMaker {
   Polygon allowance(int piece, int from, int to) {
     const Vec2 a = flat_[from], b = flat_[to], along = b - a;
     const double length = along.norm();
-    if (!(length > 0)) return {};
+    const bool other_has_it = has_tabs_ && std::none_of(splitting_.splits.begin(), splitting_.splits.end(), [&](const RibbonSplit& split) {
+      return split.left == piece && split.from == from && split.to == to;
+    });
+    if (!(length > 0) || other_has_it) return {};
     const Vec2 u = along / length, out(u.y(), -u.x());
     for (const double share : {1.0, 0.5, 0.25}) {
       const double depth = share * allowance_mm_, taper = std::min(depth, length / 4);
@@ -109,7 +148,10 @@ class PieceMaker {
         const std::array<Vec2, 3> face{flat_[F_(f, 0)], flat_[F_(f, 1)], flat_[F_(f, 2)]};
         return triangles_overlap({a, c, b}, face, touching_mm) || triangles_overlap({a, d, c}, face, touching_mm);
       });
-      if (!meets) {
+      const bool meets_tab = std::any_of(tab_triangles_[piece].begin(), tab_triangles_[piece].end(), [&](const auto& tab) {
+        return triangles_overlap({a, c, b}, tab, 1e-7) || triangles_overlap({c, d, a}, tab, -(kerf_mm_ + 0.1));
+      });
+      if (!meets && !meets_tab) {
         result_.shortened_allowances += share < 1;
         return {d, c};
       }
@@ -161,11 +203,15 @@ class PieceMaker {
   const Triangles& F_;
   const std::vector<Vec2>& flat_;
   const Splitting& splitting_;
+  bool has_tabs_;
   double allowance_mm_, kerf_mm_, text_height_mm_;
   PlanPieces& result_;
   std::vector<std::vector<int>> faces_;                     // per piece
   std::vector<std::vector<std::pair<Vec2, double>>> texts_; // per piece: centre and radius of what is written
   std::vector<std::map<int, std::pair<int, bool>>> next_;   // per piece, by vertex: the next one around it, and whether a split lies between
+  std::map<int, std::vector<const GlueTab*>> tabs_;         // by the boundary edge where their foot begins, as they follow each other
+  std::map<int, std::vector<std::array<Vec2, 3>>> tab_triangles_;  // per piece
+  int tab_number_ = 0;
   std::map<int, int> face_of_edge_;                         // by the boundary edge's first vertex
   std::map<std::pair<int, int>, std::string> letters_;      // by piece and the first vertex of its side of the split
 };
@@ -179,10 +225,10 @@ std::string split_letters(int number) {
 }
 
 PlanPieces make_pieces(const Triangles& F, const std::vector<Vec2>& flat_mm, const Splitting& splitting, const Markers& markers,
-                       double seam_allowance_mm, double kerf_mm, double text_height_mm) {
+                       const std::optional<GlueTabs>& tabs, double seam_allowance_mm, double kerf_mm, double text_height_mm) {
   PlanPieces result;
   result.pieces.resize(std::size_t(splitting.piece_count));
-  PieceMaker maker(F, flat_mm, splitting, seam_allowance_mm, kerf_mm, text_height_mm, result);
+  PieceMaker maker(F, flat_mm, splitting, tabs, seam_allowance_mm, kerf_mm, text_height_mm, result);
   for (int piece = 0; piece < splitting.piece_count; ++piece) maker.outline(piece);
   for (const Marker& marker : markers.markers) {
     maker.marker(marker.left, marker.number, "left");

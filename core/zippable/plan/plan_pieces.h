@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // Pieces of the ribbon as they are cut: outline with seam allowances, marks and numbers inside.
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "fabrication/cut_sheet.h"
+#include "zippable/plan/glue_tabs.h"
 #include "zippable/plan/markers.h"
 #include "zippable/plan/splitting.h"
 
@@ -21,15 +23,14 @@ struct PlanPiece {
 struct PlanPieces {
   std::vector<PlanPiece> pieces;
   int shortened_allowances = 0;  // edges of splits where the allowance would have met the piece itself
-  int tabs = 0;                  // along the edges, to glue them by
   int left_out_texts = 0;        // numbers and letters for which the ribbon is too narrow
 };
 
 /// A, B, ..., Z, AA, AB, ...: the name of a split.
 std::string split_letters(int number);
 
-/// `flat_mm`: as split. Kerf, allowance and text's height in mm.
+/// `flat_mm`: as split. Kerf, allowance and text's height in mm. With tabs, splits have an allowance on their left side only: it is one.
 PlanPieces make_pieces(const Triangles& F, const std::vector<Vec2>& flat_mm, const Splitting& splitting, const Markers& markers,
-                       double seam_allowance_mm, double kerf_mm, double text_height_mm);
+                       const std::optional<GlueTabs>& tabs, double seam_allowance_mm, double kerf_mm, double text_height_mm);
 
 }  // namespace formwright

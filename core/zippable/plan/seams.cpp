@@ -15,7 +15,8 @@ void add_joins(const Splitting& splitting, const std::vector<Vec2>& flat, int fi
     for (std::size_t s = 0; s < splitting.splits.size(); ++s) {
       const RibbonSplit& split = splitting.splits[s];
       if (joined[split.left] == joined[split.right]) continue;
-      const int old_piece = joined[split.left] ? split.left : split.right, new_piece = split.left + split.right - old_piece;
+      const int old_piece = joined[split.left] ? split.left : split.right,
+                new_piece = split.left + split.right - old_piece;
       Seam seam{SeamKind::join, split_letters(static_cast<int>(s)), old_piece, new_piece};
       seam.cloth_mm = (flat[split.to] - flat[split.from]).norm();
       seams.push_back(std::move(seam));
@@ -36,7 +37,9 @@ void add_edges(const std::vector<TapeRun>& runs, const Markers& markers, std::ve
     // Edges of paper stay where they are: as long as the zipper.
     seam.cloth_mm = seam.tape_mm();
     seam.first_marker = next_marker;
-    while (next_marker < static_cast<int>(markers.markers.size()) && markers.markers[next_marker].arclength_mm <= seam.to_mm) ++next_marker;
+    while (next_marker < static_cast<int>(markers.markers.size()) &&
+           markers.markers[next_marker].arclength_mm <= seam.to_mm)
+      ++next_marker;
     seam.last_marker = next_marker - 1;
     if (seam.to_mm > seam.from_mm) seams.push_back(seam);
     const double end = seam.to_mm;
@@ -47,8 +50,8 @@ void add_edges(const std::vector<TapeRun>& runs, const Markers& markers, std::ve
 
 }  // namespace
 
-std::vector<Seam> seams_in_order(const Splitting& splitting, const std::vector<Vec2>& flat, const std::vector<TapeRun>& runs,
-                                 const Markers& markers, bool tape) {
+std::vector<Seam> seams_in_order(const Splitting& splitting, const std::vector<Vec2>& flat,
+                                 const std::vector<TapeRun>& runs, const Markers& markers, bool tape) {
   std::vector<Seam> seams;
   add_joins(splitting, flat, runs.front().piece, seams);
   if (!tape) {
@@ -56,7 +59,8 @@ std::vector<Seam> seams_in_order(const Splitting& splitting, const std::vector<V
     return seams;
   }
   for (const TapeRun& run : runs)
-    seams.push_back({SeamKind::tape, run.splits, run.piece, run.piece, run.left, run.from_mm, run.to_mm, run.cloth_mm, run.first_marker, run.last_marker});
+    seams.push_back({SeamKind::tape, run.splits, run.piece, run.piece, run.left, run.from_mm, run.to_mm, run.cloth_mm,
+                     run.first_marker, run.last_marker});
   return seams;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// All seams of a zippable in the order in which they are sewn or glued, thesis Sec. 5.3.1: first the splits, flat, then the edges.
+// All seams of a zippable in the order in which they are sewn or glued, thesis Sec. 5.3.1: first the splits, flat, then
+// the edges.
 #include <string>
 #include <vector>
 
@@ -26,9 +27,10 @@ struct Seam {
   double tape_mm() const { return to_mm - from_mm; }
 };
 
-/// Joins grow from the piece where the zipper begins, so that there is always one thing in the maker's hands. Then the left tape and the
-/// right one along the zipper; or, without tape, edges stretch by stretch, each between the same two pieces.
-std::vector<Seam> seams_in_order(const Splitting& splitting, const std::vector<Vec2>& flat_mm, const std::vector<TapeRun>& runs,
-                                 const Markers& markers, bool tape);
+/// Joins grow from the piece where the zipper begins, so that there is always one thing in the maker's hands. Then the
+/// left tape and the right one along the zipper; or, without tape, edges stretch by stretch, each between the same two
+/// pieces.
+std::vector<Seam> seams_in_order(const Splitting& splitting, const std::vector<Vec2>& flat_mm,
+                                 const std::vector<TapeRun>& runs, const Markers& markers, bool tape);
 
 }  // namespace formwright

@@ -104,6 +104,13 @@ std::vector<int> ends_of(const Adjacency& adjacency) {
   return ends;
 }
 
+void sort_along_boundary(std::vector<RibbonSplit>& splits) {
+  std::sort(splits.begin(), splits.end(), [](const RibbonSplit& a, const RibbonSplit& b) {
+    const auto key = [](const RibbonSplit& s) { return std::pair(std::min(s.from, s.to), std::max(s.from, s.to)); };
+    return key(a) < key(b);
+  });
+}
+
 Splitting split_towards(int root, const Adjacency& adjacency, const Overlaps& overlaps, const std::function<bool(const Polygon&)>& fits,
                         Context& context) {
   const Tree tree = tree_of(adjacency, root);
@@ -147,17 +154,160 @@ Splitting split_towards(int root, const Adjacency& adjacency, const Overlaps& ov
     if (is_top[face] && h >= 0)
       result.splits.push_back({adjacency.from(h), adjacency.to(h), result.piece_of_face[face], result.piece_of_face[adjacency.opposite(h) / 3]});
   }
-  std::sort(result.splits.begin(), result.splits.end(), [](const RibbonSplit& a, const RibbonSplit& b) {
-    const auto key = [](const RibbonSplit& s) { return std::pair(std::min(s.from, s.to), std::max(s.from, s.to)); };
-    return key(a) < key(b);
-  });
+  sort_along_boundary(result.splits);
   return result;
 }
+
+/// Joins pieces that are too small to others, or moves the splits beside them.
+class CrumbSweeper {
+ public:
+  CrumbSweeper(const Adjacency& adjacency, const Overlaps& overlaps, const std::function<bool(const Polygon&)>& fits, double least_mm2, Splitting& splitting)
+      : adjacency_(adjacency), overlaps_(overlaps), fits_(fits), least_mm2_(least_mm2), splitting_(splitting),
+        pieces_(std::size_t(splitting.piece_count)), area_mm2_(pieces_.size(), 0.0) {
+    for (int f = 0; f < adjacency.face_count(); ++f) add(splitting.piece_of_face[f], f);
+  }
+
+  void sweep(Context& context) {
+    for (int piece = 0; piece < splitting_.piece_count; ++piece) {
+      context.check_cancelled();
+      if (area_mm2_[piece] >= least_mm2_ || merge(piece)) continue;
+      // At every split of it in turn: half-edges of its triangles that lead to another piece.
+      for (const int h : ways_out(piece))
+        if (grow(piece, h)) break;
+    }
+    if (splitting_.merged_crumbs + splitting_.moved_splits > 0) renumber();
+  }
+
+ private:
+  std::vector<int> ways_out(int piece) const {
+    std::vector<int> ways;
+    for (const int f : pieces_[piece].faces)
+      for (int h = 3 * f; h < 3 * f + 3; ++h)
+        if (const int o = adjacency_.opposite(h); o >= 0 && splitting_.piece_of_face[o / 3] != piece) ways.push_back(h);
+    return ways;
+  }
+
+  void add(int piece, int face) {
+    Growing& growing = pieces_[piece];
+    growing.faces.push_back(face);
+    const Polygon corners = overlaps_.corners(face);
+    growing.hull.insert(growing.hull.end(), corners.begin(), corners.end());
+    growing.hull = convex_hull(std::move(growing.hull));
+    growing.box.add(overlaps_.box(face));
+    area_mm2_[piece] += signed_area_mm2(corners);
+    splitting_.piece_of_face[face] = piece;
+  }
+
+  bool may_be_one(const Growing& a, const Growing& b) const {
+    Polygon both = a.hull;
+    both.insert(both.end(), b.hull.begin(), b.hull.end());
+    return fits_(convex_hull(std::move(both))) && !overlaps_.between(a, b);
+  }
+
+  bool merge(int piece) {
+    for (const int h : ways_out(piece)) {
+      const int other = splitting_.piece_of_face[adjacency_.opposite(h) / 3];
+      if (!may_be_one(pieces_[piece], pieces_[other])) continue;
+      for (const int face : pieces_[piece].faces) add(other, face);
+      pieces_[piece] = {};
+      area_mm2_[piece] = 0;
+      ++splitting_.merged_crumbs;
+      return true;
+    }
+    return false;
+  }
+
+  /// Takes triangles from the piece beyond half-edge h as long as it stays in one part; all or none.
+  bool grow(int piece, int h) {
+    const int other = splitting_.piece_of_face[adjacency_.opposite(h) / 3];
+    Growing grown = pieces_[piece];
+    double area = area_mm2_[piece], rest = area_mm2_[other];
+    std::vector<int> taken;
+    for (int into = adjacency_.opposite(h); area < least_mm2_;) {
+      const int face = into / 3;
+      const Growing next{{face}, convex_hull(overlaps_.corners(face)), overlaps_.box(face)};
+      const double face_mm2 = signed_area_mm2(overlaps_.corners(face));
+      if (rest - face_mm2 < least_mm2_ || !may_be_one(grown, next)) return false;
+      grown.faces.push_back(face);
+      grown.hull.insert(grown.hull.end(), next.hull.begin(), next.hull.end());
+      grown.hull = convex_hull(std::move(grown.hull));
+      grown.box.add(next.box);
+      area += face_mm2, rest -= face_mm2;
+      taken.push_back(face);
+      const std::vector<int> onward = ways_on(face, into);
+      if (onward.empty()) return false;
+      if (onward.size() == 2) {  // a branch: all beyond one of its sides comes along, lest the rest be two parts
+        if (!take_a_side(onward, grown, rest, taken)) return false;
+        break;
+      }
+      into = onward.front();
+    }
+    for (const int face : taken) add(piece, face);
+    const std::vector<int> before = std::move(pieces_[other].faces);
+    pieces_[other] = {};
+    area_mm2_[other] = 0;
+    for (const int face : before)
+      if (splitting_.piece_of_face[face] == other) add(other, face);
+    ++splitting_.moved_splits;
+    return true;
+  }
+
+  /// Half-edges of the same piece's triangles beside this one, except for `into`, its own.
+  std::vector<int> ways_on(int face, int into) const {
+    std::vector<int> ways;
+    for (int g = 3 * face; g < 3 * face + 3; ++g)
+      if (const int o = adjacency_.opposite(g); g != into && o >= 0 && splitting_.piece_of_face[o / 3] == splitting_.piece_of_face[face]) ways.push_back(o);
+    return ways;
+  }
+
+  bool take_a_side(const std::vector<int>& sides, const Growing& grown, double rest_mm2, std::vector<int>& taken) const {
+    for (const int first : sides) {
+      Growing side;
+      double area = 0;
+      for (std::vector<int> open{first}; !open.empty();) {
+        const int into = open.back(), face = into / 3;
+        open.pop_back();
+        side.faces.push_back(face);
+        side.box.add(overlaps_.box(face));
+        const Polygon corners = overlaps_.corners(face);
+        side.hull.insert(side.hull.end(), corners.begin(), corners.end());
+        area += signed_area_mm2(corners);
+        const std::vector<int> onward = ways_on(face, into);
+        open.insert(open.end(), onward.begin(), onward.end());
+      }
+      if (rest_mm2 - area < least_mm2_ || !may_be_one(grown, side)) continue;
+      taken.insert(taken.end(), side.faces.begin(), side.faces.end());
+      return true;
+    }
+    return false;
+  }
+
+  void renumber() {
+    std::vector<int> number(pieces_.size(), -1);
+    splitting_.piece_count = 0;
+    for (std::size_t piece = 0; piece < pieces_.size(); ++piece)
+      if (!pieces_[piece].faces.empty()) number[piece] = splitting_.piece_count++;
+    for (int& piece : splitting_.piece_of_face) piece = number[piece];
+    splitting_.splits.clear();
+    for (int h = 0; h < 3 * adjacency_.face_count(); ++h)
+      if (const int o = adjacency_.opposite(h), a = splitting_.piece_of_face[h / 3]; o > h && splitting_.piece_of_face[o / 3] != a)
+        splitting_.splits.push_back({adjacency_.from(h), adjacency_.to(h), a, splitting_.piece_of_face[o / 3]});
+    sort_along_boundary(splitting_.splits);
+  }
+
+  const Adjacency& adjacency_;
+  const Overlaps& overlaps_;
+  const std::function<bool(const Polygon&)>& fits_;
+  double least_mm2_;
+  Splitting& splitting_;
+  std::vector<Growing> pieces_;
+  std::vector<double> area_mm2_;
+};
 
 }  // namespace
 
 Splitting split_ribbon(const Triangles& F, const std::vector<Vec2>& flat, const std::function<bool(const Polygon&)>& fits,
-                       double clearance_mm, Context& context) {
+                       double clearance_mm, double least_mm2, Context& context) {
   constexpr std::size_t most_tries = 8;
   TriangleMesh mesh;
   mesh.V = Positions::Zero(static_cast<Eigen::Index>(flat.size()), 3);
@@ -176,6 +326,7 @@ Splitting split_ribbon(const Triangles& F, const std::vector<Vec2>& flat, const 
   for (std::size_t i = 0; i < tries; ++i) {
     const auto span = context.span(static_cast<double>(i) / static_cast<double>(tries), static_cast<double>(i + 1) / static_cast<double>(tries), "Splitting");
     Splitting splitting = split_towards(ends[i * ends.size() / tries], adjacency, overlaps, fits, context);
+    CrumbSweeper(adjacency, overlaps, fits, least_mm2, splitting).sweep(context);
     const std::pair value(-splitting.piece_count, smallest_mm2(splitting));
     if (i == 0 || value > best_value) best = std::move(splitting), best_value = value;
     if (best.piece_count == 1) break;

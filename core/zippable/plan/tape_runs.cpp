@@ -27,7 +27,8 @@ std::vector<int> faces_of_boundary(const Triangles& F, int vertex_count) {
   return faces;
 }
 
-std::vector<TapeRun> tape_runs(const FlatDesign& design, const OffsetRibbon& ribbon, const Splitting& splitting, const Markers& markers) {
+std::vector<TapeRun> tape_runs(const FlatDesign& design, const OffsetRibbon& ribbon, const Splitting& splitting,
+                               const Markers& markers) {
   const std::vector<int> face = faces_of_boundary(design.F, design.vertex_count());
   std::vector<TapeRun> runs;
   for (const bool left : {true, false}) {
@@ -36,7 +37,8 @@ std::vector<TapeRun> tape_runs(const FlatDesign& design, const OffsetRibbon& rib
     for (std::size_t p = 0; p < design.pieces.size(); ++p)
       for (std::size_t k = 0; k + 1 < design.pieces[p].size(); ++k) {
         const int a = design.pieces[p][k], b = design.pieces[p][k + 1];
-        const int piece = splitting.piece_of_face[face[vertex[left ? a : b]]];  // the boundary runs back along the right side
+        const int piece =
+            splitting.piece_of_face[face[vertex[left ? a : b]]];  // the boundary runs back along the right side
         const bool begins = runs.size() == first || k == 0 || runs.back().piece != piece;
         if (begins) {
           TapeRun run{left, static_cast<int>(p), piece, design.arclength_mm[a], design.arclength_mm[a]};
@@ -51,7 +53,8 @@ std::vector<TapeRun> tape_runs(const FlatDesign& design, const OffsetRibbon& rib
       const auto& list = markers.markers;
       const auto from = std::lower_bound(list.begin(), list.end(), runs[i].from_mm, before);
       // A marker where two runs meet belongs to the first of them, as on the cloth.
-      const auto to = std::upper_bound(list.begin(), list.end(), runs[i].to_mm, [](double mm, const Marker& m) { return mm < m.arclength_mm; });
+      const auto to = std::upper_bound(list.begin(), list.end(), runs[i].to_mm,
+                                       [](double mm, const Marker& m) { return mm < m.arclength_mm; });
       runs[i].first_marker = static_cast<int>(from - list.begin());
       runs[i].last_marker = static_cast<int>(to - list.begin()) - 1;
       if (i > first) runs[i].first_marker = std::max(runs[i].first_marker, runs[i - 1].last_marker + 1);

@@ -22,10 +22,12 @@ struct TapeRun {
   double tape_mm() const { return to_mm - from_mm; }
 };
 
-/// The faces beside the boundary's edges, by the edge's first vertex. Of a disc whose boundary runs through its vertices in order.
+/// The faces beside the boundary's edges, by the edge's first vertex. Of a disc whose boundary runs through its
+/// vertices in order.
 std::vector<int> faces_of_boundary(const Triangles& F, int vertex_count);
 
 /// All runs of the left side in the zipper's order, then all of the right side.
-std::vector<TapeRun> tape_runs(const FlatDesign& design, const OffsetRibbon& ribbon, const Splitting& splitting, const Markers& markers);
+std::vector<TapeRun> tape_runs(const FlatDesign& design, const OffsetRibbon& ribbon, const Splitting& splitting,
+                               const Markers& markers);
 
 }  // namespace formwright

@@ -66,7 +66,10 @@ void say_what_to_know(const PlanOptions& options, ZippablePlan& plan) {
   if (plan.pieces.left_out_texts > 0)
     plan.notes.push_back(plural(plan.pieces.left_out_texts, "number or letter", "numbers and letters") +
                          " found no room: choose a smaller text.");
-  if (options.coil == ZipperCoil::none && plan.zipper.offset_mm() == 0)
+  if (plan.tabs && plan.tabs->shortened + plan.tabs->left_out > 0)
+    plan.notes.push_back(plural(plan.tabs->shortened, "tab is", "tabs are") + " shorter and " + plural(plan.tabs->left_out, "is", "are") +
+                         " left out where the paper lies too close beside: wider spacing between windings or a smaller tab depth mends it.");
+  if (!plan.tabs && options.coil == ZipperCoil::none && plan.zipper.offset_mm() == 0)
     plan.notes.push_back("Without a zipper the edges stay where they are: paper is joined edge to edge.");
 }
 
@@ -81,6 +84,9 @@ ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& options,
   for (const FlatVertex& v : design.boundary) designed.push_back(v.flat_mm);
   plan.width_mean_mm = area_mm2(design.F, designed) / std::max(design.zipper_mm, 1e-300);
   plan.zipper = zipper_model(options);
+  const bool tabs = options.edges == PaperEdges::tabs;
+  if (tabs && (plan.has_tape() || plan.zipper.offset_mm() > 0))
+    throw Error(ErrorCode::invalid_input, "edges", "Tabs are for paper that is glued without a zipper: choose no coil with them, or plain edges.");
   plan.ribbon = offset_ribbon(design, options.method, plan.zipper.offset_mm());
   plan.area_before_mm2 = area_mm2(design.F, plan.ribbon.flat_mm);
   plan.marker_spacing_mm = options.marker_spacing_mm.value_or(options.method == ZipperOffset::sewing ? 30 : 50);
@@ -89,17 +95,24 @@ ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& options,
 
   const NestingOptions nesting{options.bed_x_mm, options.bed_y_mm, options.margin_mm, options.spacing_mm,
                                options.grain == GrainDirection::along_pieces};
-  // Allowances and kerf are added after splitting; nesting needs a few cells to spare.
-  const double reserved = 2 * (options.margin_mm + options.seam_allowance_mm + options.kerf_mm) + 4 * nesting_cell_mm(nesting);
+  // Allowances, tabs and kerf are added after splitting; nesting needs a few cells to spare.
+  const double reserved = 2 * (options.margin_mm + std::max(options.seam_allowance_mm, tabs ? options.tab_depth_mm : 0.0) + options.kerf_mm) + 4 * nesting_cell_mm(nesting);
   const double free_x = options.bed_x_mm - reserved, free_y = options.bed_y_mm - reserved;
   const auto fits = [&](const Polygon& hull) {
     return hull.size() < 2 || !fitting_turns(hull, free_x, free_y, nesting.keep_direction).empty();
   };
+  // Smaller pieces than a quarter of the ribbon's width squared are hard to hold.
+  const double least_mm2 = plan.width_mean_mm * plan.width_mean_mm / 4;
   {
     const auto span = context.span(0, 0.5, "Splitting");
-    plan.splitting = split_ribbon(design.F, plan.ribbon.flat_mm, fits, options.kerf_mm + 0.5, context);
+    plan.splitting = split_ribbon(design.F, plan.ribbon.flat_mm, fits, options.kerf_mm + 0.5, least_mm2, context);
   }
-  plan.pieces = make_pieces(design.F, plan.ribbon.flat_mm, plan.splitting, plan.markers, options.seam_allowance_mm, options.kerf_mm,
+  plan.runs = tape_runs(design, plan.ribbon, plan.splitting, plan.markers);
+  plan.seams = seams_in_order(plan.splitting, plan.ribbon.flat_mm, plan.runs, plan.markers, plan.has_tape());
+  if (tabs)
+    plan.tabs = make_glue_tabs(design, plan.ribbon.flat_mm, plan.splitting, plan.seams,
+                               {options.tab_depth_mm, options.tab_length_mm, options.kerf_mm + 0.1}, context);
+  plan.pieces = make_pieces(design.F, plan.ribbon.flat_mm, plan.splitting, plan.markers, plan.tabs, options.seam_allowance_mm, options.kerf_mm,
                             options.text_height_mm);
   plan.seconds_split = watch.lap();
   {
@@ -109,8 +122,6 @@ ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& options,
     plan.nesting = nest(outlines, nesting, context);
   }
   plan.sheets = lay_out(plan.pieces, plan.nesting, options);
-  plan.runs = tape_runs(design, plan.ribbon, plan.splitting, plan.markers);
-  plan.seams = seams_in_order(plan.splitting, plan.ribbon.flat_mm, plan.runs, plan.markers, plan.has_tape());
   const Vec2 paper = paper_size_mm(options.paper);
   plan.tape = make_tape_template(design, plan.zipper, plan.markers, plan.marker_spacing_mm, plan.runs, paper.y(), paper.x());
   plan.seconds_nest = watch.lap();

@@ -24,6 +24,7 @@ struct ZippablePlan {
   std::vector<TapeRun> runs;
   TapeTemplate tape;
   std::vector<Seam> seams;
+  std::optional<GlueTabs> tabs;
   double area_before_mm2 = 0;  // of the ribbon with room for the zipper, before splitting
   double width_mean_mm = 0;    // of the ribbon as designed: its area over the zipper's length
   std::vector<std::string> notes;

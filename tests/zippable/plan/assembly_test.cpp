@@ -23,7 +23,8 @@ TEST(Seams, OfAStripCutTwice) {
   EXPECT_EQ(plan.seams[0].kind, SeamKind::join);
   EXPECT_EQ(plan.seams[0].piece, plan.runs[0].piece);
   EXPECT_EQ(plan.seams[1].piece, plan.seams[0].other_piece);
-  EXPECT_NEAR(plan.seams[0].cloth_mm, 20 - 2 * plan.zipper.offset_mm(), 3);  // a ruling, which may be the strip's diagonal
+  EXPECT_NEAR(plan.seams[0].cloth_mm, 20 - 2 * plan.zipper.offset_mm(),
+              3);  // a ruling, which may be the strip's diagonal
   for (std::size_t i = 2; i < 8; ++i) {
     EXPECT_EQ(plan.seams[i].kind, SeamKind::tape);
     EXPECT_EQ(plan.seams[i].left, i < 5);

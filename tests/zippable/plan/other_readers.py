@@ -63,6 +63,15 @@ class Plans(unittest.TestCase):
     def each(self):
         return [(out, report) for out, (report, _) in self.plans.items()]
 
+    def papers(self):
+        """Paper models with tabs on the same beds."""
+        plans = []
+        for sample in ("star", "t_shape", "octopus"):
+            out = self.folder / f"{sample}_tabs"
+            flags = self.plans[self.folder / f"{sample}_sewing"][1]
+            plans.append((out, run(out, "zippable-plan", *flags, "--coil", "none", "--edges", "tabs", "--kerf-mm", str(KERF_MM))))
+        return plans
+
     def sheets(self, out, report):
         with zipfile.ZipFile(out / "sheets.zip") as archive:
             self.assertEqual(len(archive.namelist()), 2 * report["sheets"])
@@ -70,7 +79,7 @@ class Plans(unittest.TestCase):
                 yield archive.read(f"sheet_{i + 1}.svg"), archive.read(f"sheet_{i + 1}.dxf").decode()
 
     def test_pieces_are_valid_keep_apart_and_fit(self):
-        for out, report in self.each():
+        for out, report in self.each() + self.papers():
             pieces = 0
             for svg, _ in self.sheets(out, report):
                 size, layers = read_svg(svg)
@@ -120,6 +129,29 @@ class Plans(unittest.TestCase):
             for letter, lengths in splits.items():
                 self.assertEqual(len(lengths), 2, letter)
                 self.assertAlmostEqual(*lengths, delta=1e-3)
+
+    def test_tabs_stand_on_folds_and_every_seam_is_said(self):
+        for out, report in self.papers():
+            folds = {}
+            for svg, _ in self.sheets(out, report):
+                layers = read_svg(svg)[1]
+                pieces = [Polygon(points).buffer(-KERF_MM / 2, join_style=2) for _, points, _ in layers["cut"]]
+                for name, points, _ in layers["mark"]:
+                    if name and name.startswith("tab-"):
+                        folds[name] = LineString(points)
+                        # Paper on both sides of the fold: the tab and its piece.
+                        middle = folds[name].interpolate(0.5, normalized=True).buffer(0.3)
+                        self.assertTrue(any(piece.buffer(1e-2).contains(middle) for piece in pieces), f"{out.name} {name}")
+            made, _, _ = report["tabs"]
+            self.assertEqual(len(folds), made)
+            self.assertGreater(sum(fold.length for fold in folds.values()), 0.8 * report["zipper_length_mm"])
+            text = " ".join(subprocess.run(["pdftotext", "-raw", str(out / "assembly.pdf"), "-"], check=True, capture_output=True, text=True).stdout.split())
+            for seam in report["seams"]:
+                if seam["kind"] == "edge":
+                    self.assertIn(f"Seam {seam['number']}: left edge of {seam['pieces'][0]} to right edge of {seam['pieces'][1]}, ", text)
+            edges = [seam for seam in report["seams"] if seam["kind"] == "edge"]
+            self.assertAlmostEqual(sum(seam["length_mm"] for seam in edges), report["zipper_length_mm"], delta=1e-6)
+            self.assertFalse((out / "tape.pdf").exists())
 
     def test_dxf_says_the_same(self):
         for out, report in self.each():

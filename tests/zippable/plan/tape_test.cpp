@@ -48,7 +48,8 @@ TEST(TapeRuns, CoverBothSidesOnceAndAgreeWithTheCloth) {
     double tape_mm[2] = {0, 0}, cloth_mm[2] = {0, 0};
     int marks[2] = {0, 0};
     for (const TapeRun& run : plan.runs) {
-      tape_mm[run.left] += run.tape_mm(), cloth_mm[run.left] += run.cloth_mm, marks[run.left] += run.last_marker - run.first_marker + 1;
+      tape_mm[run.left] += run.tape_mm(), cloth_mm[run.left] += run.cloth_mm,
+          marks[run.left] += run.last_marker - run.first_marker + 1;
       // What the tape says of its markers is where the cloth has them.
       for (int m = run.first_marker; m <= run.last_marker; ++m) {
         const std::string name = "marker-" + std::to_string(m) + (run.left ? "-left" : "-right");
@@ -95,7 +96,8 @@ TEST(TapeTemplate, MarksStandAtTheirArclength) {
           row_right = row_left;
         } else if (path.name.starts_with("tape-")) {
           const double begin = path.name.ends_with("-left") ? row_left : row_right;
-          EXPECT_NEAR(begin + path.points_mm[0].x() - left_edge, spacing_mm * std::stoi(path.name.substr(5)), 1e-9) << path.name;
+          EXPECT_NEAR(begin + path.points_mm[0].x() - left_edge, spacing_mm * std::stoi(path.name.substr(5)), 1e-9)
+              << path.name;
           ++marks;
         } else if (path.name == "scale-100") {
           EXPECT_NEAR((path.points_mm[1] - path.points_mm[0]).norm(), 100, 1e-12);

@@ -59,8 +59,23 @@ test('a star by mouse: windings, the same place on both sides, SVG, reload', asy
   for (const length of size) expect(length).toBeGreaterThan(50);
   expect(segments).toBeGreaterThan(100);
 
-  await expect(page.getByText('Saved', { exact: true })).toBeVisible();
+  // The same ribbon on the sheets that it is cut from.
   const made = await seam(page).textContent();
+  await page.getByRole('radio', { name: 'Sheets to cut' }).click();
+  const words = /^\d pieces on \d sheets? of 600 × 300\smm; zipper to cut: 0\.\d\d\sm$/;
+  await expect(page.getByRole('img', { name: words })).toBeVisible();
+  await page.getByRole('textbox', { name: 'Bed, x' }).fill('200');
+  await page.getByRole('textbox', { name: 'Bed, x' }).press('Enter');
+  await expect(page.getByRole('img', { name: / of 200 × 300\smm; / })).toBeVisible();
+  await expect(strip(page, 'Ribbon unfolded')).toBeVisible(); // which does not depend on the bed
+  const planned = page.waitForEvent('download');
+  await page.getByRole('button', { name: 'Export plan, SVG' }).click();
+  const plan = readFileSync(await (await planned).path(), 'utf8');
+  expect(plan).toMatch(/<svg[^>]* height="300mm"/);
+  for (const layer of ['cut', 'mark', 'engrave']) expect(plan).toContain(`id="${layer}"`);
+  await page.getByRole('radio', { name: 'Ribbon', exact: true }).click();
+
+  await expect(page.getByText('Saved', { exact: true })).toBeVisible();
   await page.reload();
   await expect(strip(page, 'Ribbon unfolded')).toBeVisible();
   await expect(seam(page)).toHaveText(made ?? '');
@@ -184,5 +199,7 @@ for (const look of looks)
     await expectAccessible(page, 'preview');
     await page.getByRole('radio', { name: 'Zipped' }).click();
     await expectAccessible(page, 'zipped');
+    await page.getByRole('radio', { name: 'Sheets to cut' }).click();
+    await expectAccessible(page, 'sheets');
     await context.close();
   });

@@ -13,7 +13,7 @@
 namespace formwright {
 namespace {
 
-constexpr double explained_share = 0.6;   // of the base model's structure (its variance) that a named cause must explain
+constexpr double explained_share = 0.6;   // of what the base model leaves unexplained (its variance) that a named cause must explain
 constexpr double likely = 0.5;
 constexpr double least_gain = 0.01;        // of the held-out error
 constexpr double sure_gain = 0.8;          // probability that there is one
@@ -89,10 +89,18 @@ class Diagnostician {
     }
     std::stable_sort(result_.verdict.begin(), result_.verdict.end(), [&](int a, int b) { return tried_.movement(a, result_.extended.u) > tried_.movement(b, result_.extended.u); });
     result_.reading = Reading::cause;
-    const double ratio = result_.unexplained_after / std::max(result_.unexplained_before, 1e-12);
     result_.doubtful |= finding_of(result_.verdict.front()).probability < likely;
-    if (result_.doubtful && 1 - ratio * ratio < explained_share) result_.reading = Reading::unknown;
+    if (result_.doubtful && share_explained() < explained_share) result_.reading = Reading::unknown;
     find_twins();
+  }
+
+  /// Of what was unexplained (its variance): by the structure that is left, or, where that is beyond what is distinguished, by the error on held-out blocks above the noise.
+  double share_explained() const {
+    const double structure = result_.unexplained_after / std::max(result_.unexplained_before, 1e-12);
+    const double noise_squared = result_.noise_floor * result_.noise_floor;
+    const double before = std::pow(result_.held_out.before.mean, 2) - noise_squared, after = std::pow(result_.held_out.after.mean, 2) - noise_squared;
+    const double held_out = before > 0 ? 1 - std::max(0.0, after) / before : 0;
+    return std::max(1 - structure * structure, held_out);
   }
 
   /// What was named stays; the base parameters are calibrated about it as those of the base model were.

@@ -1,0 +1,84 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The whole confusion table, a process a processor; goes on where it was stopped.
+
+run_confusion_table.py CONFUSION_TABLE RESULTS.jsonl [--repeat N] [--pairs N] [--clean N]
+Every cause at three strengths and two noise levels, each left out of the list once, pairs, clean data: what RESULTS has already is not done again, and every
+answer is appended as it comes. What is asked of most comes first. Each case is one simulation after the
+other on one processor, two to four minutes; score_confusion_table.py counts what there is."""
+import argparse
+import collections
+import json
+import os
+import pathlib
+import subprocess
+import threading
+
+CAUSES = ("heating_gradient heating_centre slip anisotropy thickness_wedge cooling weak_vacuum clamp_slip mould_shift mould_rotation mould_scale "
+          "print_scale scan_scale scan_shift").split()
+
+
+def cases(repeat, pairs, clean):
+    """(what the line will say, arguments) in order of worth."""
+
+    def single(level, noise, left_out=False):
+        flags = ["--left-out"] if left_out else ["--unseen"] if level >= 0.5 else []
+        for cause in CAUSES:
+            yield ((cause,), level, noise, left_out), ["--only", cause, "--levels", str(level), "--noise", str(noise), "--no-pairs", *flags]
+
+    for _ in range(repeat):
+        yield from single(1, 0.05)
+        yield from single(0.5, 0.05)
+        yield from single(1, 0.05, left_out=True)
+        for _ in range(pairs // repeat):
+            yield ("pair", 1, 0.05, False), ["--pairs", "1", "--levels", "1", "--noise", "0.05"]
+        for k in range(clean // repeat):
+            noise = (0.05, 0.15)[k % 2]
+            yield ((), 1, noise, False), ["--only", "none", "--levels", "1", "--noise", str(noise), "--no-pairs"]
+        for level, noise in ((1, 0.15), (0.5, 0.15), (0.25, 0.05), (0.25, 0.15)):
+            yield from single(level, noise)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("program")
+    parser.add_argument("results", type=pathlib.Path)
+    parser.add_argument("--repeat", type=int, default=3)
+    parser.add_argument("--pairs", type=int, default=18)
+    parser.add_argument("--clean", type=int, default=18)
+    a = parser.parse_args()
+    lines = [json.loads(line) for line in a.results.read_text().splitlines()] if a.results.exists() else []
+    done = collections.Counter()
+    for line in lines:
+        hidden = tuple(line["hidden"])
+        done["pair" if len(hidden) == 2 else hidden, line.get("level"), line.get("sigma_mm"), line.get("left_out", False)] += 1
+    todo = []
+    for key, flags in cases(a.repeat, a.pairs, a.clean):
+        if done[key] > 0:
+            done[key] -= 1
+        else:
+            todo.append(flags)
+    print(f"{len(lines)} done, {len(todo)} to do", flush=True)
+    used = [line["seed"] for line in lines]
+    lock = threading.Lock()
+    queue = enumerate(todo, 1 + max(used, default=0) // 1000)
+
+    def work(processor):
+        for seed, flags in iter(lambda: next_of(queue, lock), None):
+            answer = subprocess.run(["taskset", "-c", str(processor), a.program, "--seed", str(seed), *flags], capture_output=True, text=True).stdout
+            with lock, a.results.open("a") as out:
+                out.write(answer)
+
+    threads = [threading.Thread(target=work, args=(p,)) for p in os.sched_getaffinity(0)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+
+
+def next_of(queue, lock):
+    with lock:
+        return next(queue, None)
+
+
+main()

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double explained_share = 0.6;   // of what the base model leaves unexplained (its variance) that a named cause must explain
 constexpr double likely = 0.5;
+constexpr double most_left = 2;            // of the noise: with more left on held-out blocks a named cause is not all of it, or a relative of what it is
 constexpr double least_gain = 0.01;        // of the held-out error
 constexpr double sure_gain = 0.8;          // probability that there is one
 constexpr double inseparable_likeness = 0.9;
@@ -89,7 +90,7 @@ class Diagnostician {
     }
     std::stable_sort(result_.verdict.begin(), result_.verdict.end(), [&](int a, int b) { return tried_.movement(a, result_.extended.u) > tried_.movement(b, result_.extended.u); });
     result_.reading = Reading::cause;
-    result_.doubtful |= finding_of(result_.verdict.front()).probability < likely;
+    result_.doubtful |= finding_of(result_.verdict.front()).probability < likely || result_.held_out.after.mean > most_left * result_.noise_floor;
     if (result_.doubtful && share_explained() < explained_share) result_.reading = Reading::unknown;
     find_twins();
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/number_list.h"
 #include "geometry/measures.h"
 
 namespace formwright {
@@ -59,6 +60,23 @@ std::string parameterisation_key(const ZippableOptions& options) {
   return write_parameters(relevant).dump();
 }
 
+namespace {
+
+/// Per part, 0 where nothing was said.
+std::vector<double> part_windings(const std::string& text, int part_count) {
+  const auto given = read_number_list(text);
+  const auto count = static_cast<std::size_t>(part_count);
+  if (!given || std::any_of(given->begin(), given->end(), [](double windings) { return windings < 0 || windings > 1000; }))
+    throw Error(ErrorCode::invalid_input, "part_windings", "Windings by part must be numbers from 0 to 1000, such as “3 0 2.5”.");
+  if (given->size() > count)
+    throw Error(ErrorCode::invalid_input, "part_windings", "There are only " + std::to_string(part_count) + " parts: give windings for these.");
+  std::vector<double> windings = *given;
+  windings.resize(count, 0);
+  return windings;
+}
+
+}  // namespace
+
 ZippableDesign design_zippable(const ParameterisedModel& model, const ZippableOptions& options, Context& context) {
   const double size_mm = bounding_box(model.mesh).size().maxCoeff();
   check_width(size_mm, options);
@@ -78,6 +96,7 @@ ZippableDesign design_zippable(const ParameterisedModel& model, const ZippableOp
   CurveOptions curve;
   curve.width_mm = options.width_mm;
   curve.windings = options.windings;
+  curve.part_windings = part_windings(options.part_windings, s.part_count());
   curve.sample_mm = options.sample_mm.value_or(0.2 * options.width_mm);
   const LineTracer tracer(s, model.parameterisation);
   design.curve =
@@ -87,6 +106,7 @@ ZippableDesign design_zippable(const ParameterisedModel& model, const ZippableOp
   context.progress(0.3, "Unfolding the ribbon");
   design.ribbon = make_ribbon(s, model.parameterisation, tracer, design.curve, curve, context);
   design.seconds_ribbon = watch.lap();
+  if (!options.measure_distances) return design;
   context.progress(0.5, "Comparing with the model");
   // A few points across the ribbon and all corners: long triangles of narrow ribbons would else be sampled by the million.
   const double spacing = std::max(0.25 * options.width_mm, 5e-3 * size_mm);

@@ -2,6 +2,7 @@
 #pragma once
 // What a maker chooses for a zippable: thesis chapter 5.
 #include <optional>
+#include <string>
 #include <tuple>
 
 #include "base/parameters.h"
@@ -11,12 +12,14 @@ namespace formwright {
 struct ZippableOptions {
   double width_mm = 20;
   std::optional<double> windings;
+  std::string part_windings;
   std::optional<double> size_mm;
   int parts_max = 10;
   double prominence_percent = 8;
   std::optional<double> puncture_mm;
   int traversal = 1;
   std::optional<double> sample_mm;
+  bool measure_distances = true;
 
   static constexpr auto parameters = std::tuple{
       parameter("width_mm", &ZippableOptions::width_mm, "Ribbon width", unit::mm, 0.1, 10000,
@@ -27,6 +30,10 @@ struct ZippableOptions {
                 "Turns of the zipper around every part, instead of as many as the width gives.")
           .slider(1, 20)
           .group("Ribbon"),
+      parameter("part_windings", &ZippableOptions::part_windings, "Windings by part",
+                "Turns around each part on its own, in the order of the parts, such as 3 0 2.5; 0 or none: as for all.")
+          .group("Ribbon")
+          .advanced(),
       parameter("size_mm", &ZippableOptions::size_mm, "Size", unit::mm, 1, 100000,
                 "Largest dimension of the finished object; automatic: as in the file.")
           .slider(50, 1000)
@@ -51,6 +58,10 @@ struct ZippableOptions {
       parameter("sample_mm", &ZippableOptions::sample_mm, "Sampling", unit::mm, 0.01, 1000,
                 "Between corners of the ribbon along the zipper, about; automatic: a fifth of its width.")
           .slider(1, 20)
+          .group("Curve")
+          .advanced(),
+      parameter("measure_distances", &ZippableOptions::measure_distances, "Measure distances",
+                "Between the zipped ribbon and the model; takes longer than another number of windings does.")
           .group("Curve")
           .advanced()};
 };

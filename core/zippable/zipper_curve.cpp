@@ -34,7 +34,8 @@ std::vector<SpiralLine> place_lines(const Segmentation& s, const Parameterisatio
     const double period = p.period_mm[part];
     const bool fermat = i > 0 && i + 1 < count;
     const double least = fermat ? least_fermat_windings : least_spiral_windings;
-    double windings = options.windings ? *options.windings : p.height_mm[part] / (fermat ? 2 * options.width_mm : options.width_mm);
+    const double own = static_cast<std::size_t>(part) < options.part_windings.size() ? options.part_windings[static_cast<std::size_t>(part)] : 0;
+    double windings = own > 0 ? own : options.windings ? *options.windings : p.height_mm[part] / (fermat ? 2 * options.width_mm : options.width_mm);
     if (windings < least) {
       curve.notes.push_back("Part " + std::to_string(part + 1) + " got " + figure(least) + " windings instead of " + figure(windings) +
                             ", the fewest that make a ribbon: it is narrower there.");

@@ -15,6 +15,7 @@ namespace formwright {
 struct CurveOptions {
   double width_mm = 20;            // of the ribbon, where no number of windings is given
   std::optional<double> windings;  // of every part
+  std::vector<double> part_windings;  // of each on its own where above 0
   double sample_mm = 5;            // between vertices of the ribbon along the zipper, about
 };
 

@@ -103,6 +103,28 @@ TEST(ZippableDesign, IsTheSameFromAKeptParameterisation) {
   EXPECT_EQ(design_zippable(kept.model, options, context).ribbon.zipper_mm, fresh.ribbon.zipper_mm);
 }
 
+TEST(ZippableDesign, TakesWindingsPartByPart) {
+  Context context;
+  const Designed given = design("t_shape", {});
+  const std::vector<double>& automatic = given.design.curve.windings;
+  ASSERT_EQ(automatic.size(), 3u);
+  ZippableOptions options;
+  options.part_windings = "0, 4.25";
+  const ZippableDesign own = design_zippable(given.model, options, context);
+  EXPECT_EQ(own.curve.windings, (std::vector<double>{automatic[0], 4.25, automatic[2]}));
+  // All of them are what one number for all is.
+  options.part_windings = "3.5 3.5 3.5";
+  ZippableOptions all;
+  all.windings = 3.5;
+  EXPECT_EQ(design_zippable(given.model, options, context).ribbon.zipper_mm, design_zippable(given.model, all, context).ribbon.zipper_mm);
+  // The same parts on the same parameterisation, measured or not.
+  EXPECT_EQ(parameterisation_key(options), parameterisation_key({}));
+  options.measure_distances = false;
+  const ZippableDesign quick = design_zippable(given.model, options, context);
+  EXPECT_EQ(quick.seconds_distance, 0);
+  EXPECT_EQ(quick.ribbon.zipper_mm, design_zippable(given.model, all, context).ribbon.zipper_mm);
+}
+
 TEST(ZippableDesign, RefusesInOneSentence) {
   const auto refused = [](const ZippableOptions& options, const std::vector<Vec3>& tips = {}) {
     try {
@@ -122,6 +144,11 @@ TEST(ZippableDesign, RefusesInOneSentence) {
   options = {};
   options.traversal = 5000;
   EXPECT_EQ(refused(options), "traversal");
+  for (const char* wrong : {"a", "1 2 3 4 5 6 7 8 9 10 11 12", "-1", "1001"}) {
+    options = {};
+    options.part_windings = wrong;
+    EXPECT_EQ(refused(options), "part_windings") << wrong;
+  }
   EXPECT_EQ(refused({}, {{0, 0, 0}}), "segments");
   EXPECT_EQ(refused({}, {{0, 0, 0}, {0, 0, 0}}), "segments");
   Context context;

@@ -1,36 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "evidence/registration/picture_corners.h"
 
-#include <fast_float/fast_float.h>
-
 #include <cmath>
 
 #include "base/error.h"
+#include "base/number_list.h"
 
 namespace formwright {
 
 std::array<Vec2, 4> plane_corners(const std::string& text, const Model& scan, const ScanColours& colours, const TextureCoordinates& flat_mm) {
   const auto refuse = [](const std::string& message) { throw Error(ErrorCode::invalid_input, "corners", message); };
-  std::vector<double> numbers;
-  for (const char *at = text.data(), *end = at + text.size(); at < end;) {
-    if (*at == ' ' || *at == ',' || *at == ';') {
-      ++at;
-      continue;
-    }
-    double value = 0;
-    const auto [next, error] = fast_float::from_chars(at, end, value);
-    if (error != std::errc() || !std::isfinite(value)) refuse("The corners must be four pairs of numbers, such as “120,80 1900,95 1880,2010 110,1990”.");
-    numbers.push_back(value);
-    at = next;
-  }
-  if (numbers.size() != 8) refuse("The corners must be four pairs of numbers, such as “120,80 1900,95 1880,2010 110,1990”.");
+  const auto numbers = read_number_list(text);
+  if (!numbers || numbers->size() != 8) refuse("The corners must be four pairs of numbers, such as “120,80 1900,95 1880,2010 110,1990”.");
   if (scan.FT.rows() != scan.mesh.F.rows()) refuse("The scan has no picture that corners could be pixels of: leave them out.");
   std::array<Vec2, 4> places;
   for (std::size_t k = 0; k < 4; ++k) {
     bool found = false;
     for (int f = 0; f < scan.mesh.face_count() && !found; ++f) {
       if (colours.width(f) == 0) continue;
-      const Vec2 uv(numbers[2 * k] / colours.width(f), 1 - numbers[2 * k + 1] / colours.height(f));
+      const Vec2 uv((*numbers)[2 * k] / colours.width(f), 1 - (*numbers)[2 * k + 1] / colours.height(f));
       const Vec2 a = scan.UV.row(scan.FT(f, 0)), b = scan.UV.row(scan.FT(f, 1)), c = scan.UV.row(scan.FT(f, 2));
       const auto cross = [](const Vec2& p, const Vec2& q) { return p.x() * q.y() - p.y() * q.x(); };
       const double doubled = cross(b - a, c - a);

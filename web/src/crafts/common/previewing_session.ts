@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Keeps what is shown in step with what is asked for: a full result where one was made with the same model and
 // parameters, else a coarse preview, solved anew at every change.
-import { effect, signal, untracked } from '@preact/signals';
+import { computed, effect, signal, untracked } from '@preact/signals';
 import type { JsonObject, Report } from '../../jobs/contract';
 import { asJobError } from '../../jobs/contract';
 import { LatestOnly } from '../../jobs/latest_only';
@@ -56,6 +56,12 @@ export abstract class PreviewingSession<
     });
     effect(() => this.follow());
   }
+
+  /** What previews are made of. */
+  readonly previewSubject = computed(() => {
+    const { model } = this.document.value;
+    return model && this.#previewSubject(model);
+  });
 
   cancelPreview(): void {
     this.#preview.cancel();

@@ -30,7 +30,8 @@ function written(value: Json, { unit = '' }: ReportField): string {
 }
 
 export function Figures({ session }: { session: ZippableSession }) {
-  const report = session.shown.value?.report;
+  const shown = session.shown.value?.report;
+  const report = shown && { ...shown, ...session.distances.value };
   const fields = session.operation.value?.report ?? [];
   if (report === undefined) return null;
   const rows = named.flatMap((name) => fields.find((field) => field.name === name) ?? []);

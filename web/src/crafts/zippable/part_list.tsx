@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The parts by number: how many windings each got, how distorted it is, and what speaks against it.
 import { Fragment } from 'preact';
-import { Button, formatFixed, formatNumber, Icon, withUnit } from '../../ui';
+import { Button, formatFixed, formatNumber, Icon, Parameter, withUnit } from '../../ui';
 import { sentences } from '../common/report';
 import { partName } from './design';
+import { ownWindings, withOwnWindings } from './own_windings';
 import { partWarning } from './part_notes';
 import { tool } from './draw_actions';
 import { drawnOn } from './zippable_document';
@@ -54,6 +55,7 @@ export function PartList({ session }: { session: ZippableSession }) {
                     </small>
                   </span>
                 </button>
+                {chosen ? <OwnWindings session={session} part={part} windings={windings} /> : null}
               </li>
             );
           })}
@@ -71,6 +73,39 @@ export function PartList({ session }: { session: ZippableSession }) {
         </p>
       ) : null}
     </>
+  );
+}
+
+/** Of the chosen part; empty again, it is as all are. */
+function OwnWindings({
+  session,
+  part,
+  windings,
+}: {
+  session: ZippableSession;
+  part: number;
+  windings: number;
+}) {
+  const given = ownWindings(session.value('part_windings'));
+  return (
+    <div class="own-windings">
+      <Parameter
+        label={`Windings of part ${part + 1}`}
+        help={session.operation.value?.parameters.properties['part_windings']?.description}
+        unit=""
+        minimum={0.1}
+        maximum={1000}
+        slider={[1, 20]}
+        optional
+        automatic={Math.round(10 * windings) / 10}
+        integer={false}
+        defaultValue={null}
+        value={given[part] ? given[part] : null}
+        error={session.fieldErrors.value['part_windings']}
+        onPreview={(value) => session.preview('part_windings', withOwnWindings(given, part, value))}
+        onCommit={() => session.services.projects.commit()}
+      />
+    </div>
   );
 }
 

@@ -46,6 +46,9 @@ export interface Zippable extends ShownWork {
   readonly bending: () => Bending;
 }
 
+/** A slider that moves again within this was not at rest. */
+const restMs = 400;
+
 type Outputs = Pick<Result, 'outputs' | 'report'>;
 
 export class ZippableSession extends PreviewingSession<ZippableDocument, Zippable> {
@@ -71,12 +74,15 @@ export class ZippableSession extends PreviewingSession<ZippableDocument, Zippabl
   readonly plan = computed(() =>
     productOf(this.document.value, this.designFile.value?.blob ?? null, this.operationNamed(planning)),
   );
+  /** The report of the previewed ribbon with its distances from the model; null until it rests. */
+  readonly distances = signal<Report | null>(null);
   readonly #previewed = signal<Measured | null>(null);
   #divided: DividedModel | null = null;
 
   constructor(services: Services) {
     super(services, zippable);
     this.startFollowing();
+    this.#measureLater();
     effect(() => {
       // What could not be made with other parameters or parts no longer matters.
       void this.asked.value;
@@ -113,7 +119,12 @@ export class ZippableSession extends PreviewingSession<ZippableDocument, Zippabl
     signal: AbortSignal,
   ): Promise<Zippable> {
     const { inputs } = subject;
-    const job = { operation: this.operationName, parameters, inputs, outputs: this.shownOutputs };
+    const job = {
+      operation: this.operationName,
+      parameters: { ...parameters, measure_distances: false },
+      inputs,
+      outputs: this.shownOutputs,
+    };
     const done: Outputs = await this.services.browser.run(job, { signal });
     this.#previewed.value = this.measured(done.report) ?? this.#previewed.value;
     const shown = await this.#read((name) => bytesOf(done, name), done.report);
@@ -135,6 +146,34 @@ export class ZippableSession extends PreviewingSession<ZippableDocument, Zippabl
     let bent: Bending | null = null;
     const bending = () => (bent ??= new Bending(ribbon));
     return { design: made, model, course, partOfTriangle, bending, report };
+  }
+
+  /** What a moving slider does not wait for: how far the previewed ribbon is from the model, once it rests. */
+  #measureLater(): void {
+    let stop: AbortController | null = null;
+    effect(() => {
+      const shown = this.shown.value;
+      const subject = this.previewSubject.value;
+      stop?.abort();
+      this.distances.value = null;
+      if (shown?.kind !== 'preview' || this.previewing.value || subject?.key !== shown.from) return;
+      const { signal } = (stop = new AbortController());
+      const job = {
+        operation: this.operationName,
+        parameters: shown.parameters,
+        inputs: subject.inputs,
+        outputs: [],
+      };
+      const run = () =>
+        this.services.browser.run(job, { signal }).then(
+          ({ report }) => {
+            if (!signal.aborted) this.distances.value = report;
+          },
+          () => undefined, // what could be shown without stays
+        );
+      const waiting = setTimeout(() => void run(), restMs);
+      signal.addEventListener('abort', () => clearTimeout(waiting));
+    });
   }
 
   /** Another number of windings is another curve on the same divided model: nothing of it is read again. */

@@ -67,6 +67,7 @@ class Refinement {
     for (std::size_t f = 0; f < faces_.size(); ++f) {
       const auto& t = faces_[f];
       pattern.flat.F.row(static_cast<Eigen::Index>(f)) << t[0], t[1], t[2];
+      pattern.closed_at_mm.push_back(std::max({along_[t[0]], along_[t[1]], along_[t[2]]}));
       area += 0.5 * twice_area(places_[t[0]].flat_mm, places_[t[1]].flat_mm, places_[t[2]].flat_mm);
     }
     pattern.zipper_mm = zipper_mm_;
@@ -128,7 +129,7 @@ class Refinement {
     place.flat_mm = 0.5 * (places_[a].flat_mm + places_[b].flat_mm);
     place.predicted_mm = 0.5 * (places_[a].predicted_mm + places_[b].predicted_mm);
     places_.push_back(place);
-    mate_.push_back(-1), along_.push_back(0);
+    mate_.push_back(-1), along_.push_back(std::max(along_[a], along_[b]));
     const auto around = faces_of_.extract(ends(a, b)).mapped();
     for (const int face : around) {
       if (face < 0) continue;
@@ -152,7 +153,7 @@ class Refinement {
   std::vector<std::array<int, 3>> faces_;
   std::map<Ends, std::array<int, 2>> faces_of_;
   std::vector<int> mate_;
-  std::vector<double> along_;
+  std::vector<double> along_;  // where the slider passes a place; off the zipper, the last place that it lies between
   double zipper_mm_ = 0;
 };
 

@@ -21,6 +21,7 @@ struct RibbonPattern {
   TriangleMesh flat;            // z = 0; oriented like the surface: its outside is up
   Positions predicted_mm;       // per vertex, as designed; no triangle is stretched by it
   std::vector<SeamPair> seams;  // in the order of the slider
+  std::vector<double> closed_at_mm;  // per triangle: where the slider is when it has passed all around it
   double zipper_mm = 0;         // length of one side
   double width_mm = 0;          // mean width: area over length
   double size_mm = 0;           // largest dimension of the predicted shape

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "zippable/zipping/zipping.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -11,13 +12,15 @@ namespace formwright {
 namespace {
 
 constexpr double poisson_ratio = 0.3;
-constexpr double automatic_triangles = 4000;
 /// Seams are this much stiffer than the cloth beside them: a zipper does not give.
 constexpr double seam_to_cloth = 50;
 /// How fast threads shorten: at most this share of the ribbon's width in a step.
 constexpr double shortening = 0.1;
 /// The slider waits where threads are longer than this share of the width.
 constexpr double slack = 0.3;
+constexpr int newton_steps = 3;  // of the slider's step
+/// The pull back to where a place was a step before, over the cloth's stiffness and width: it keeps the free end from flying about.
+constexpr double anchor = 1e-3;
 
 ClothMaterial material_of(const ZippingOptions& options) {
   ClothMaterial material;
@@ -45,20 +48,29 @@ class Zipping {
   std::vector<std::pair<double, Positions>> frames;
   bool settled = false;
 
+  /// From the prediction instead, all seams closed: whether it stays there.
+  void rest_from(const Positions& predicted) {
+    x_ = predicted;
+    for (std::size_t i = 0; i < pattern_.seams.size(); ++i) begin_thread(i), system_.threads[i].length_mm = 0;
+    system_.anchor_n_per_mm3 = anchor * options_.stretch_n_per_mm / (pattern_.width_mm * pattern_.width_mm);
+    settle();
+  }
+
   void run() {
     record(0);
     const double advance = pattern_.zipper_mm / options_.steps;
     double slider = 0;
     std::size_t passed = 0;
-    system_.anchor_n_per_mm3 = 1e-5 * options_.stretch_n_per_mm / (pattern_.width_mm * pattern_.width_mm);
+    system_.anchor_n_per_mm3 = anchor * options_.stretch_n_per_mm / (pattern_.width_mm * pattern_.width_mm);
     bool all_short = true;
     while (passed < pattern_.seams.size() || !all_short) {
       if (all_short) {
         slider += advance;
         for (; passed < pattern_.seams.size() && pattern_.seams[passed].along_mm <= slider; ++passed) begin_thread(passed);
       }
+      for (std::size_t f = 0; f < under_pressure_.size(); ++f) under_pressure_[f] = pattern_.closed_at_mm[f] <= slider;
       all_short = shorten(passed);
-      move(3, 1e-7);
+      move(newton_steps, 1e-7);
       const double share = passed == pattern_.seams.size() ? 1 : std::min(slider / pattern_.zipper_mm, 1.0);
       context_.progress(0.9 * share);
       record(0.9 * share);
@@ -70,7 +82,7 @@ class Zipping {
  private:
   void begin_thread(std::size_t i) {
     const SeamPair& seam = pattern_.seams[i];
-    system_.threads[i] = {stiffness_ * std::max(seam.length_mm, 1e-3 * pattern_.width_mm), (x_.row(seam.left) - x_.row(seam.right)).norm()};
+    system_.threads[i] = {stiffness_ * std::max(seam.length_mm, 0.1 * pattern_.width_mm), (x_.row(seam.left) - x_.row(seam.right)).norm()};
   }
 
   bool shorten(std::size_t passed) {
@@ -78,23 +90,48 @@ class Zipping {
     for (std::size_t i = 0; i < passed; ++i) {
       double& length = system_.threads[i].length_mm;
       length = std::max(0.0, length - std::max(shortening * pattern_.width_mm, 0.05 * length));
-      all_short = all_short && length <= slack * pattern_.width_mm;
+      all_short = all_short && length <= (passed == pattern_.seams.size() ? 0 : slack * pattern_.width_mm);
     }
     return all_short;
   }
 
-  void mark_pressure() {
-    if (options_.stuffing_pressure_pa <= 0) return;
-    system_.outer_force_n = pressure_force_n(pattern_.flat.F, x_, under_pressure_, 1e-6 * options_.stuffing_pressure_pa);
+  /// Nobody knows before which side of the flat cloth will be the inside: negative where the normals point into what is closed.
+  double enclosed_mm3() const {
+    Vec3 centre = Vec3::Zero();
+    double area = 0, six_volumes = 0;
+    for (std::size_t f = 0; f < under_pressure_.size(); ++f) {
+      if (!under_pressure_[f]) continue;
+      const ClothTriangle& t = system_.triangles()[f];
+      for (const int v : t.vertex) centre += t.area_mm2 / 3 * x_.row(v).transpose();
+      area += t.area_mm2;
+    }
+    if (area > 0) centre /= area;
+    for (std::size_t f = 0; f < under_pressure_.size(); ++f) {
+      if (!under_pressure_[f]) continue;
+      const auto& v = system_.triangles()[f].vertex;
+      const Vec3 a = x_.row(v[0]).transpose() - centre, b = x_.row(v[1]).transpose() - centre, c = x_.row(v[2]).transpose() - centre;
+      six_volumes += a.dot(b.cross(c));
+    }
+    return six_volumes / 6;
+  }
+
+  void press() {
+    double pressure_mpa = 1e-6 * options_.stuffing_pressure_pa;
+    if (!resting_) pressure_mpa += 0.01 * options_.hold_open_percent * options_.stretch_n_per_mm / std::sqrt(system_.vertex_area_mm2().sum());
+    if (pressure_mpa <= 0)
+      system_.outer_force_n.setZero();
+    else
+      system_.outer_force_n = pressure_force_n(pattern_.flat.F, x_, under_pressure_, enclosed_mm3() >= 0 ? pressure_mpa : -pressure_mpa);
   }
 
   ZippingSystem::Progress move(int iterations, double tolerance) {
-    mark_pressure();
+    press();
     system_.anchor_mm = x_;
     return system_.minimise(x_, iterations, tolerance * energy_unit_, context_);
   }
 
   void settle() {
+    resting_ = true;
     std::fill(under_pressure_.begin(), under_pressure_.end(), 1);
     for (int round = 0; round < 100 && !settled; ++round) {
       const auto progress = move(10, 1e-11);
@@ -114,6 +151,7 @@ class Zipping {
   Positions x_;
   double stiffness_ = 0, energy_unit_ = 1;
   std::vector<char> under_pressure_;
+  bool resting_ = false;
 };
 
 std::vector<int> places(const RibbonPattern& pattern) {
@@ -125,18 +163,11 @@ std::vector<int> places(const RibbonPattern& pattern) {
 
 }  // namespace
 
-double automatic_edge_mm(const RibbonPattern& pattern) {
-  // Halving leaves edges between half of the longest and all of it.
-  return std::sqrt(2 * pattern.zipper_mm * pattern.width_mm / (0.433 * automatic_triangles));
-}
-
 ZippingResult simulate_zipping(const RibbonDesign& design, const ZippingOptions& options, Context& context) {
   Stopwatch watch;
   ZippingResult result;
   context.progress(0, "Cutting the cloth");
-  result.pattern = make_ribbon_pattern(design.places, design.triangles, 0, context);
-  const double edge_mm = options.edge_mm.value_or(automatic_edge_mm(result.pattern));
-  if (edge_mm > 0) result.pattern = make_ribbon_pattern(design.places, design.triangles, edge_mm, context);
+  result.pattern = make_ribbon_pattern(design.places, design.triangles, options.edge_mm, context);
   const RibbonPattern& pattern = result.pattern;
   Zipping zipping(pattern, options, context);
   context.progress(0, "Zipping");
@@ -163,6 +194,10 @@ ZippingResult simulate_zipping(const RibbonDesign& design, const ZippingOptions&
   }
   result.strain_mean /= area;
   result.crossings = count_crossings({zipping.x(), pattern.flat.F}, places(pattern), context);
+  Zipping at_rest(pattern, options, context);
+  at_rest.rest_from(pattern.predicted_mm);
+  result.rest = compare_shapes(at_rest.x(), pattern.predicted_mm, system.vertex_area_mm2());
+  result.rest_energies = at_rest.system().energies(at_rest.x());
   result.seconds = watch.seconds();
   return result;
 }

@@ -22,7 +22,8 @@ struct ZippingOptions {
   double stretch_n_per_mm = 10;
   std::optional<double> bending_n_mm;
   double stuffing_pressure_pa = 0;
-  std::optional<double> edge_mm;
+  double hold_open_percent = 40;
+  double edge_mm = 0;
   int steps = 300;
   int seed = 1;
   int frames = 40;
@@ -45,8 +46,12 @@ struct ZippingOptions {
                 "Pressure from inside on what is closed already.")
           .slider(0, 1000)
           .group("Cloth"),
+      parameter("hold_open_percent", &ZippingOptions::hold_open_percent, "Held open", unit::percent, 0, 500,
+                "Zipping, what is closed is held open from inside, by a pressure of this share of stretch stiffness over size; not at the end.")
+          .slider(0, 100)
+          .group("Simulation"),
       parameter("edge_mm", &ZippingOptions::edge_mm, "Longest edge", unit::mm, 0, 1000,
-                "Triangles with longer edges are halved; 0: as designed; automatic: about 4,000 triangles.")
+                "Triangles with longer edges are halved, all seams alike; 0: as designed.")
           .slider(1, 20)
           .group("Simulation"),
       parameter("steps", &ZippingOptions::steps, "Steps", unit::none, 20, 20000, "In which the slider goes from one end to the other.")
@@ -75,6 +80,8 @@ struct ZippingResult {
   std::vector<ZippingFrame> frames;  // turned likewise
   ShapeComparison comparison;
   ZippingEnergies energies;
+  ShapeComparison rest;  // of the shape in which it comes to rest when it is put into the prediction already zipped
+  ZippingEnergies rest_energies;
   double gap_max_mm = 0;                  // between two places that should meet
   double gap_allowed_mm = 0;              // above which a seam counts as open
   int open_seams = 0;                     // pairs
@@ -86,9 +93,6 @@ struct ZippingResult {
 
   bool closed() const { return open_seams == 0; }
 };
-
-/// The automatic longest edge for a ribbon: about 4,000 triangles.
-double automatic_edge_mm(const RibbonPattern& pattern);
 
 /// Throws Error: invalid_input ("design": see make_ribbon_pattern), could_not_solve, cancelled.
 ZippingResult simulate_zipping(const RibbonDesign& design, const ZippingOptions& options, Context& context);

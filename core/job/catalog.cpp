@@ -19,7 +19,7 @@ const std::vector<Operation>& operations() {
       relief_operation(), thermoform_simulate_operation(), thermoform_texture_operation(), thermoform_mould_operation(), thermoform_compare_operation(),
       evidence_pattern_operation(), evidence_register_operation(), evidence_calibrate_operation(), evidence_diagnose_operation(),
       evidence_diagnose_relief_operation(), evidence_virtual_object_operation(),
-      zippable_design_operation(),
+      zippable_design_operation(), zippable_simulate_operation(),
       import_operation(), simplify_operation(), subdivide_operation(), convert_operation()};
   return all;
 }

@@ -4,4 +4,5 @@
 
 namespace formwright {
 Operation zippable_design_operation();
+Operation zippable_simulate_operation();
 }

@@ -77,7 +77,7 @@ std::vector<ClothHinge> cloth_hinges(const TriangleMesh& flat, double bending_n_
                  at1_right = cotangent(-edge, p[3] - p[1]);
     hinge.weight << at1_left + at1_right, at0_left + at0_right, -at0_left - at1_left, -at0_right - at1_right;
     const double areas = 0.5 * (edge.cross(p[2] - p[0]).norm() + edge.cross(p[3] - p[0]).norm());
-    hinge.stiffness_n_per_mm = bending_n_mm * 3 / areas;
+    hinge.stiffness_n_per_mm = bending_n_mm / areas;
     hinges.push_back(hinge);
   }
   return hinges;

@@ -4,8 +4,8 @@
 // zero rest angle, quadratic in the positions because the cloth hardly stretches: Bergou, Wardetzky, Harmon, Zorin,
 // Grinspun 2006, "A Quadratic Bending Model for Inextensible Surfaces".
 //
-// Hinges alone are not consistent: on equilateral triangles a cylinder of curvature k has the plate's D k^2 / 2 an area; where
-// all triangles lie along the rulings it is up to three times that.
+// The paper's factor 3 is left out: a cylinder of curvature k then has the plate's D k^2 / 2 an area on equilateral triangles and on
+// strips along its rulings alike, which are what a ribbon consists of.
 #include <Eigen/Core>
 #include <array>
 #include <vector>

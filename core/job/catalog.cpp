@@ -21,6 +21,7 @@ const std::vector<Operation>& operations() {
       evidence_diagnose_relief_operation(), evidence_virtual_object_operation(),
       zippable_design_operation(),
       zippable_plan_operation(),
+      zippable_simulate_operation(),
       import_operation(), simplify_operation(), subdivide_operation(), convert_operation()};
   return all;
 }

@@ -5,4 +5,5 @@
 namespace formwright {
 Operation zippable_design_operation();
 Operation zippable_plan_operation();
+Operation zippable_simulate_operation();
 }

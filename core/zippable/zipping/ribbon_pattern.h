@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The flat ribbon as a cloth to be zipped: triangles in the plane, which places of its edge meet, and where the design
+// says that they end up.
+#include <vector>
+
+#include "base/bytes.h"
+#include "base/context.h"
+#include "geometry/triangle_mesh.h"
+
+namespace formwright {
+
+/// Two places of the ribbon's edge that the slider brings together.
+struct SeamPair {
+  int left = 0, right = 0;  // vertices
+  double along_mm = 0;      // of the zipper that the slider has passed when it comes here
+  double length_mm = 0;     // of the zipper that this pair stands for
+};
+
+struct RibbonPattern {
+  TriangleMesh flat;            // z = 0; oriented like the surface: its outside is up
+  Positions predicted_mm;       // per vertex, as designed; no triangle is stretched by it
+  std::vector<SeamPair> seams;  // in the order of the slider
+  std::vector<double> closed_at_mm;  // per triangle: where the slider is when it has passed all around it
+  double zipper_mm = 0;         // length of one side
+  double width_mm = 0;          // mean width: area over length
+  double size_mm = 0;           // largest dimension of the predicted shape
+};
+
+/// A place of the ribbon's edge before pairs are formed, as design.json lists them.
+struct RibbonEdgePlace {
+  Vec2 flat_mm = Vec2::Zero();
+  Vec3 predicted_mm = Vec3::Zero();
+  int sample = -1;  // of the zipper, counted along it; -1 on an opening
+  int piece = -1;   // stretch of the zipper from opening to opening
+  bool left = true;
+};
+
+/// Edges longer than `edge_mm` are halved, the longest first, seams on both sides alike; 0: triangles as they are.
+/// Throws Error{invalid_input, "design"}: a triangle that names no place or has no area, a place of the zipper with no one place
+/// opposite, nothing at all. Throws cancelled.
+RibbonPattern make_ribbon_pattern(const std::vector<RibbonEdgePlace>& places, const Triangles& triangles, double edge_mm, Context& context);
+
+struct RibbonDesign {
+  std::vector<RibbonEdgePlace> places;
+  Triangles triangles;
+};
+
+/// Of design.json, as zippable-design writes it. Throws Error{invalid_input, "design"} naming what is missing or wrong.
+RibbonDesign read_ribbon_design(ByteView design_json);
+
+}  // namespace formwright

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "zippable/zipping/zipping.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/random.h"
+
+namespace formwright {
+namespace {
+
+constexpr double poisson_ratio = 0.3;
+/// Seams are this much stiffer than the cloth beside them: a zipper does not give.
+constexpr double seam_to_cloth = 50;
+/// How fast threads shorten: at most this share of the ribbon's width in a step.
+constexpr double shortening = 0.1;
+/// The slider waits where threads are longer than this share of the width.
+constexpr double slack = 0.3;
+constexpr int newton_steps = 3;  // of the slider's step
+/// The pull back to where a place was a step before, over the cloth's stiffness and width: it keeps the free end from flying about.
+constexpr double anchor = 1e-3;
+
+ClothMaterial material_of(const ZippingOptions& options) {
+  ClothMaterial material;
+  material.stretch_n_per_mm = options.stretch_n_per_mm;
+  material.poisson_ratio = poisson_ratio;
+  material.bending_n_mm = options.bending_n_mm.value_or(options.stretch_n_per_mm * options.thickness_mm * options.thickness_mm /
+                                                        (12 * (1 - poisson_ratio * poisson_ratio)));
+  return material;
+}
+
+/// The course from flat to zipped.
+class Zipping {
+ public:
+  Zipping(const RibbonPattern& pattern, const ZippingOptions& options, Context& context)
+      : pattern_(pattern), options_(options), context_(context), system_(pattern, material_of(options), context), x_(pattern.flat.V) {
+    Random random(static_cast<std::uint64_t>(options.seed));
+    for (Eigen::Index i = 0; i < x_.rows(); ++i) x_(i, 2) = 1e-3 * pattern.width_mm * random.uniform(-1, 1);
+    stiffness_ = seam_to_cloth * options.stretch_n_per_mm / pattern.width_mm;
+    energy_unit_ = options.stretch_n_per_mm * pattern.width_mm * pattern.width_mm;
+    under_pressure_.assign(static_cast<std::size_t>(pattern.flat.face_count()), 0);
+  }
+
+  ZippingSystem& system() { return system_; }
+  const Positions& x() const { return x_; }
+  std::vector<std::pair<double, Positions>> frames;
+  bool settled = false;
+
+  /// From the prediction instead, all seams closed: whether it stays there.
+  void rest_from(const Positions& predicted) {
+    x_ = predicted;
+    for (std::size_t i = 0; i < pattern_.seams.size(); ++i) begin_thread(i), system_.threads[i].length_mm = 0;
+    system_.anchor_n_per_mm3 = anchor * options_.stretch_n_per_mm / (pattern_.width_mm * pattern_.width_mm);
+    settle();
+  }
+
+  void run() {
+    record(0);
+    const double advance = pattern_.zipper_mm / options_.steps;
+    double slider = 0;
+    std::size_t passed = 0;
+    system_.anchor_n_per_mm3 = anchor * options_.stretch_n_per_mm / (pattern_.width_mm * pattern_.width_mm);
+    bool all_short = true;
+    while (passed < pattern_.seams.size() || !all_short) {
+      if (all_short) {
+        slider += advance;
+        for (; passed < pattern_.seams.size() && pattern_.seams[passed].along_mm <= slider; ++passed) begin_thread(passed);
+      }
+      for (std::size_t f = 0; f < under_pressure_.size(); ++f) under_pressure_[f] = pattern_.closed_at_mm[f] <= slider;
+      all_short = shorten(passed);
+      move(newton_steps, 1e-7);
+      const double share = passed == pattern_.seams.size() ? 1 : std::min(slider / pattern_.zipper_mm, 1.0);
+      context_.progress(0.9 * share);
+      record(0.9 * share);
+    }
+    settle();
+    record(1);
+  }
+
+ private:
+  void begin_thread(std::size_t i) {
+    const SeamPair& seam = pattern_.seams[i];
+    system_.threads[i] = {stiffness_ * std::max(seam.length_mm, 0.1 * pattern_.width_mm), (x_.row(seam.left) - x_.row(seam.right)).norm()};
+  }
+
+  bool shorten(std::size_t passed) {
+    bool all_short = true;
+    for (std::size_t i = 0; i < passed; ++i) {
+      double& length = system_.threads[i].length_mm;
+      length = std::max(0.0, length - std::max(shortening * pattern_.width_mm, 0.05 * length));
+      all_short = all_short && length <= (passed == pattern_.seams.size() ? 0 : slack * pattern_.width_mm);
+    }
+    return all_short;
+  }
+
+  /// Nobody knows before which side of the flat cloth will be the inside: negative where the normals point into what is closed.
+  double enclosed_mm3() const {
+    Vec3 centre = Vec3::Zero();
+    double area = 0, six_volumes = 0;
+    for (std::size_t f = 0; f < under_pressure_.size(); ++f) {
+      if (!under_pressure_[f]) continue;
+      const ClothTriangle& t = system_.triangles()[f];
+      for (const int v : t.vertex) centre += t.area_mm2 / 3 * x_.row(v).transpose();
+      area += t.area_mm2;
+    }
+    if (area > 0) centre /= area;
+    for (std::size_t f = 0; f < under_pressure_.size(); ++f) {
+      if (!under_pressure_[f]) continue;
+      const auto& v = system_.triangles()[f].vertex;
+      const Vec3 a = x_.row(v[0]).transpose() - centre, b = x_.row(v[1]).transpose() - centre, c = x_.row(v[2]).transpose() - centre;
+      six_volumes += a.dot(b.cross(c));
+    }
+    return six_volumes / 6;
+  }
+
+  void press() {
+    double pressure_mpa = 1e-6 * options_.stuffing_pressure_pa;
+    if (!resting_) pressure_mpa += 0.01 * options_.hold_open_percent * options_.stretch_n_per_mm / std::sqrt(system_.vertex_area_mm2().sum());
+    if (pressure_mpa <= 0)
+      system_.outer_force_n.setZero();
+    else
+      system_.outer_force_n = pressure_force_n(pattern_.flat.F, x_, under_pressure_, enclosed_mm3() >= 0 ? pressure_mpa : -pressure_mpa);
+  }
+
+  ZippingSystem::Progress move(int iterations, double tolerance) {
+    press();
+    system_.anchor_mm = x_;
+    return system_.minimise(x_, iterations, tolerance * energy_unit_, context_);
+  }
+
+  void settle() {
+    resting_ = true;
+    std::fill(under_pressure_.begin(), under_pressure_.end(), 1);
+    for (int round = 0; round < 100 && !settled; ++round) {
+      const auto progress = move(10, 1e-11);
+      settled = progress.settled && progress.iterations == 1;
+      context_.progress(0.9 + 0.1 * round / 100);
+    }
+  }
+
+  void record(double share) {
+    if (frames.empty() || share >= 1 || share * (options_.frames - 1) >= static_cast<double>(frames.size())) frames.emplace_back(share, x_);
+  }
+
+  const RibbonPattern& pattern_;
+  const ZippingOptions& options_;
+  Context& context_;
+  ZippingSystem system_;
+  Positions x_;
+  double stiffness_ = 0, energy_unit_ = 1;
+  std::vector<char> under_pressure_;
+  bool resting_ = false;
+};
+
+std::vector<int> places(const RibbonPattern& pattern) {
+  std::vector<int> place(static_cast<std::size_t>(pattern.flat.vertex_count()));
+  for (std::size_t i = 0; i < place.size(); ++i) place[i] = static_cast<int>(i);
+  for (const SeamPair& seam : pattern.seams) place[static_cast<std::size_t>(seam.right)] = seam.left;
+  return place;
+}
+
+}  // namespace
+
+ZippingResult simulate_zipping(const RibbonDesign& design, const ZippingOptions& options, Context& context) {
+  Stopwatch watch;
+  ZippingResult result;
+  context.progress(0, "Cutting the cloth");
+  result.pattern = make_ribbon_pattern(design.places, design.triangles, options.edge_mm, context);
+  const RibbonPattern& pattern = result.pattern;
+  Zipping zipping(pattern, options, context);
+  context.progress(0, "Zipping");
+  zipping.run();
+  const ZippingSystem& system = zipping.system();
+  result.energies = system.energies(zipping.x());
+  result.settled = zipping.settled;
+  result.newton_iterations = system.iterations();
+  result.comparison = compare_shapes(zipping.x(), pattern.predicted_mm, system.vertex_area_mm2());
+  result.zipped_mm = result.comparison.motion(zipping.x());
+  for (const auto& [share, x] : zipping.frames) result.frames.push_back({result.comparison.motion(x).cast<float>(), share});
+  result.gap_allowed_mm = 0.01 * pattern.width_mm;
+  for (const SeamPair& seam : pattern.seams) {
+    const double gap = (zipping.x().row(seam.left) - zipping.x().row(seam.right)).norm();
+    result.gap_max_mm = std::max(result.gap_max_mm, gap);
+    result.open_seams += gap > result.gap_allowed_mm;
+  }
+  double area = 0;
+  for (const ClothTriangle& t : system.triangles()) {
+    const double strain = largest_strain(t, zipping.x());
+    result.strain_mean += t.area_mm2 * strain;
+    result.strain_max = std::max(result.strain_max, strain);
+    area += t.area_mm2;
+  }
+  result.strain_mean /= area;
+  result.crossings = count_crossings({zipping.x(), pattern.flat.F}, places(pattern), context);
+  Zipping at_rest(pattern, options, context);
+  at_rest.rest_from(pattern.predicted_mm);
+  result.rest = compare_shapes(at_rest.x(), pattern.predicted_mm, system.vertex_area_mm2());
+  result.rest_energies = at_rest.system().energies(at_rest.x());
+  result.seconds = watch.seconds();
+  return result;
+}
+
+}  // namespace formwright

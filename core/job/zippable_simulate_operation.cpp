@@ -23,7 +23,7 @@ std::vector<OutputInfo> outputs() {
 }
 
 std::vector<ReportField> report_fields() {
-  return {{"outcome", "Outcome", "", "takes_shape, another_shape, open_seams or not_settled"},
+  return {{"outcome", "Outcome", "", "takes_shape, as_the_cloth_does, another_shape, open_seams or not_settled"},
           {"verdict", "Will it zip?", "", "the outcome in words"},
           {"mirrored", "Inside out", "", "the mirror image, which flat cloth takes just as well, was nearer"},
           {"distance_mean_mm", "Mean distance", "mm", "of places from where the design has them, after turning it there; by area"},
@@ -43,6 +43,8 @@ std::vector<ReportField> report_fields() {
           {"energy_mj", "Energy", "mJ", "of stretching, bending and seams at the end"},
           {"bending_energy_mj", "Bending energy", "mJ", "part of it"},
           {"crossings", "Crossings", "", "edges that pierce triangles at the end: cloth cannot, this one is not kept from it"},
+          {"attempts", "Courses tried", "", "with other pressures from inside; the figures are the best one's"},
+          {"held_open_percent", "Held open", "%", "in this course"},
           {"settled", "At rest", "", "the simulation ended because nothing moved"},
           {"triangles", "Triangles", "", "of the cloth"},
           {"seam_pairs", "Pairs", "", "of places that the zipper brings together"},
@@ -56,6 +58,7 @@ std::vector<ReportField> report_fields() {
 const char* outcome_name(ZippingOutcome outcome) {
   switch (outcome) {
     case ZippingOutcome::takes_shape: return "takes_shape";
+    case ZippingOutcome::as_the_cloth_does: return "as_the_cloth_does";
     case ZippingOutcome::another_shape: return "another_shape";
     case ZippingOutcome::open_seams: return "open_seams";
     case ZippingOutcome::not_settled: break;
@@ -102,6 +105,8 @@ OperationResult run(const OperationCall& call) {
   report["energy_mj"] = zipped.energies.inner_mj();
   report["bending_energy_mj"] = zipped.energies.bending_mj;
   report["crossings"] = zipped.crossings;
+  report["attempts"] = zipped.attempts;
+  report["held_open_percent"] = zipped.held_open_percent;
   report["settled"] = zipped.settled;
   report["triangles"] = zipped.pattern.flat.face_count();
   report["seam_pairs"] = zipped.pattern.seams.size();

@@ -22,7 +22,7 @@ struct ZippingOptions {
   double stretch_n_per_mm = 10;
   std::optional<double> bending_n_mm;
   double stuffing_pressure_pa = 0;
-  double hold_open_percent = 40;
+  std::optional<double> hold_open_percent;
   double edge_mm = 0;
   int steps = 300;
   int seed = 1;
@@ -47,7 +47,7 @@ struct ZippingOptions {
           .slider(0, 1000)
           .group("Cloth"),
       parameter("hold_open_percent", &ZippingOptions::hold_open_percent, "Held open", unit::percent, 0, 500,
-                "Zipping, what is closed is held open from inside, by a pressure of this share of stretch stiffness over size; not at the end.")
+                "Zipping, what is closed is held open from inside, by a pressure of this share of stretch stiffness over size; not at the end. Automatic: 40, 0, 15, until it fits.")
           .slider(0, 100)
           .group("Simulation"),
       parameter("edge_mm", &ZippingOptions::edge_mm, "Longest edge", unit::mm, 0, 1000,
@@ -88,12 +88,21 @@ struct ZippingResult {
   double strain_mean = 0, strain_max = 0;  // of lengths, by area
   int crossings = 0;                      // edges that pierce triangles
   bool settled = false;
+  int attempts = 1;                       // courses tried, with other pressures from inside; this is the best
+  double held_open_percent = 0;           // in this one
   int newton_iterations = 0;
   double seconds = 0;
 
   bool closed() const { return open_seams == 0; }
 };
 
+/// as_the_cloth_does: farther off than the tolerance, but no farther than the same cloth sags that was put into the shape.
+enum class ZippingOutcome { takes_shape, as_the_cloth_does, another_shape, open_seams, not_settled };
+
+ZippingOutcome zipping_outcome(const ZippingResult& result, double tolerance_percent);
+
+/// Where the maker leaves open how much is held open while zipping, courses are tried until one ends in the intended shape: whether it zips is whether hands can
+/// make it so. Else the best: closed, then nearest.
 /// Throws Error: invalid_input ("design": see make_ribbon_pattern), could_not_solve, cancelled.
 ZippingResult simulate_zipping(const RibbonDesign& design, const ZippingOptions& options, Context& context);
 

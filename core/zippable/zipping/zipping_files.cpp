@@ -86,14 +86,6 @@ Bytes write_zipping_glb(const ZippingResult& result, Context& context) {
   return glb.finish(std::move(json));
 }
 
-ZippingOutcome zipping_outcome(const ZippingResult& result, double tolerance_percent) {
-  if (!result.closed()) return ZippingOutcome::open_seams;
-  // A shape that still moves where it should lie has not been shown to stay there.
-  if (!result.settled) return ZippingOutcome::not_settled;
-  return result.comparison.percentile_95_mm <= 0.01 * tolerance_percent * result.pattern.size_mm ? ZippingOutcome::takes_shape
-                                                                                                 : ZippingOutcome::another_shape;
-}
-
 std::string zipping_verdict(const ZippingResult& result, double tolerance_percent) {
   const ShapeComparison& c = result.comparison;
   const std::string figures = "95 % of it lie within " + rounded(c.percentile_95_mm) + " mm (" +
@@ -105,6 +97,9 @@ std::string zipping_verdict(const ZippingResult& result, double tolerance_percen
     case ZippingOutcome::not_settled: return "It had not come to rest when the simulation ended, so nothing is certain; " + figures + ".";
     case ZippingOutcome::takes_shape:
       return "It zips into the intended shape" + std::string(c.mirrored ? ", inside out" : "") + ": " + figures + ".";
+    case ZippingOutcome::as_the_cloth_does:
+      return "It zips into the intended shape" + std::string(c.mirrored ? ", inside out" : "") + ", as nearly as this cloth keeps it: " + figures +
+             ", and put there it would rest " + rounded(result.rest.percentile_95_mm) + " mm off; stiffer cloth or stuffing comes nearer.";
     case ZippingOutcome::another_shape: break;
   }
   const bool would_stay = result.rest.percentile_95_mm <= 0.01 * tolerance_percent * result.pattern.size_mm;

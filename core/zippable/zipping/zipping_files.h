@@ -16,10 +16,6 @@ Bytes write_zipped_ply(const ZippingResult& result, Context& context);
 /// is at rest in the last one. Metres, y up. `extras` of the mesh: zipped_share of each frame and distance_mm of the colours, [0, most].
 Bytes write_zipping_glb(const ZippingResult& result, Context& context);
 
-enum class ZippingOutcome { takes_shape, another_shape, open_seams, not_settled };
-
-ZippingOutcome zipping_outcome(const ZippingResult& result, double tolerance_percent);
-
 /// One sentence for a person, with the figures that decide.
 std::string zipping_verdict(const ZippingResult& result, double tolerance_percent);
 

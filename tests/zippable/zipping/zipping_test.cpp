@@ -105,6 +105,38 @@ TEST(Zipping, SaysWhenADesignIsWrong) {
   EXPECT_EQ(zipping_verdict(result, 2).find("It zips into the intended shape"), std::string::npos);
 }
 
+TEST(Zipping, IsJudgedByTheToleranceAndByWhatTheClothDoesByItself) {
+  ZippingResult result;
+  result.pattern.size_mm = 100;
+  result.settled = true;
+  result.comparison.percentile_95_mm = 1.9;
+  EXPECT_EQ(zipping_outcome(result, 2), ZippingOutcome::takes_shape);
+  result.comparison.percentile_95_mm = 2.8;
+  EXPECT_EQ(zipping_outcome(result, 2), ZippingOutcome::another_shape);
+  result.rest.percentile_95_mm = 2.4;  // it sags that far put into the shape
+  EXPECT_EQ(zipping_outcome(result, 2), ZippingOutcome::as_the_cloth_does);
+  EXPECT_NE(zipping_verdict(result, 2).find("would rest 2.4 mm off"), std::string::npos) << zipping_verdict(result, 2);
+  result.comparison.percentile_95_mm = 3.1;
+  EXPECT_EQ(zipping_outcome(result, 2), ZippingOutcome::another_shape);
+  result.comparison.percentile_95_mm = result.rest.percentile_95_mm = 6.5;  // cloth that keeps no shape
+  EXPECT_EQ(zipping_outcome(result, 2), ZippingOutcome::another_shape);
+  result.settled = false;
+  EXPECT_EQ(zipping_outcome(result, 2), ZippingOutcome::not_settled);
+  result.open_seams = 1;
+  EXPECT_EQ(zipping_outcome(result, 2), ZippingOutcome::open_seams);
+}
+
+TEST(Zipping, TriesOtherCoursesUntilOneFits) {
+  const RibbonDesign cone = test::cone_ribbon({100, 50, 2, 16, 0}, 80);
+  ZippingOptions held = quick();
+  held.hold_open_percent = 40;
+  const ZippingResult one = simulated(cone, held), any = simulated(cone);
+  EXPECT_EQ(one.attempts, 1);
+  EXPECT_EQ(zipping_outcome(any, 2), ZippingOutcome::takes_shape);
+  EXPECT_LE(any.comparison.percentile_95_mm, one.comparison.percentile_95_mm);
+  EXPECT_EQ(any.attempts > 1, zipping_outcome(one, 2) != ZippingOutcome::takes_shape);
+}
+
 TEST(RibbonPattern, HalvesBothSidesOfTheZipperAlike) {
   Context context;
   const RibbonDesign design = test::cylinder_ribbon({100, 60, 2, 16, 0});

@@ -75,6 +75,14 @@ test('a star by mouse: windings, the same place on both sides, SVG, reload', asy
   for (const layer of ['cut', 'mark', 'engrave']) expect(plan).toContain(`id="${layer}"`);
   await page.getByRole('radio', { name: 'Ribbon', exact: true }).click();
 
+  // Cloth that is zipped up, frame by frame, and what became of it.
+  await page.getByRole('button', { name: 'Will it zip? Simulate cloth' }).click();
+  await expect(page.getByText(/^It zips (into|up)/)).toBeVisible({ timeout: 150_000 });
+  await expect(page.getByRole('radio', { name: 'As cloth' })).toBeChecked();
+  await page.getByRole('slider', { name: 'How far it is bent' }).fill('0.5');
+  await page.getByRole('radio', { name: 'As drawn' }).click();
+  await expect(page.getByText('Animation: edges keep their lengths. Not a simulation.')).toBeVisible();
+
   await expect(page.getByText('Saved', { exact: true })).toBeVisible();
   await page.reload();
   await expect(strip(page, 'Ribbon unfolded')).toBeVisible();

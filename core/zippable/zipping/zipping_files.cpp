@@ -44,9 +44,10 @@ Bytes write_zipping_glb(const ZippingResult& result, Context& context) {
   const std::vector<ZippingFrame>& frames = result.frames;
   const auto n = static_cast<std::size_t>(result.zipped_mm.rows());
   const std::size_t targets = frames.size() - 1;
+  constexpr double frames_per_second = 8;
   const double colour_span = std::max(0.05 * result.pattern.size_mm, 1e-9);
   GlbAssembly glb("frames", "The animation would exceed the 4 GB of a GLB: ask for fewer frames or triangles.");
-  Json attributes = Json::object(), morphs = Json::array(), shares = Json::array(), weights = Json::array();
+  Json attributes = Json::object(), morphs = Json::array(), shares = Json::array(), frame_times = Json::array(), weights = Json::array();
   attributes["POSITION"] =
       glb.add_floats(n, 3, "VEC3", true, vertices, [&](Eigen::Index i, int k) { return static_cast<double>(frames[0].V(i, k)); });
   attributes["COLOR_0"] = glb.add_floats(n, 3, "VEC3", false, vertices,
@@ -54,6 +55,7 @@ Bytes write_zipping_glb(const ZippingResult& result, Context& context) {
   for (std::size_t f = 0; f < frames.size(); ++f) {
     context.check_cancelled();
     shares.push_back(frames[f].zipped_share);
+    frame_times.push_back(static_cast<double>(f) / frames_per_second);
     if (f == 0) continue;
     Json target = Json::object();
     target["POSITION"] = glb.add_floats(n, 3, "VEC3", true, vertices, [&](Eigen::Index i, int k) {
@@ -64,8 +66,8 @@ Bytes write_zipping_glb(const ZippingResult& result, Context& context) {
   }
   const Triangles& F = result.pattern.flat.F;
   const int indices = glb.add_indices(static_cast<std::size_t>(F.size()), n, [&](std::size_t i) { return F.data()[i]; });
-  // A frame's weight rises and falls linearly between its neighbours' times, eight frames a second.
-  const int times = glb.add_floats(frames.size(), 1, "SCALAR", true, none, [](Eigen::Index i, int) { return static_cast<double>(i) / 8; });
+  // A frame's weight rises and falls linearly between its neighbours' times.
+  const int times = glb.add_floats(frames.size(), 1, "SCALAR", true, none, [](Eigen::Index i, int) { return static_cast<double>(i) / frames_per_second; });
   const int course = glb.add_floats(frames.size() * targets, 1, "SCALAR", false, none, [&](Eigen::Index i, int) {
     const auto at = static_cast<std::size_t>(i);
     return at / targets == at % targets + 1 ? 1.0 : 0.0;
@@ -77,7 +79,7 @@ Bytes write_zipping_glb(const ZippingResult& result, Context& context) {
   json["meshes"] = Json::array({{{"name", "cloth"},
                                  {"primitives", Json::array({{{"attributes", attributes}, {"indices", indices}, {"material", 0}, {"targets", morphs}}})},
                                  {"weights", weights},
-                                 {"extras", {{"zipped_share", shares}, {"distance_mm", {0, colour_span}}}}}});
+                                 {"extras", {{"zipped_share", shares}, {"frame_times_s", frame_times}, {"distance_mm", {0, colour_span}}}}}});
   json["materials"] = Json::array(
       {{{"name", "cloth"}, {"doubleSided", true}, {"pbrMetallicRoughness", {{"metallicFactor", 0.0}, {"roughnessFactor", 0.8}}}}});
   json["animations"] = Json::array({{{"name", "zipping"},

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Draws what the session shows: the divided model or the ribbon in space, the zipper's course, the place pointed at.
 import { effect } from '@preact/signals';
+import type { Film } from '../../jobs/glb';
 import type { Curve, MeshData, Vec3, Viewport } from '../../view';
 import { originalData, shadingOf } from '../common/shaded_mesh';
 import { figure, vectorOf } from '../common/report';
 import { boundaryEdges } from './design';
 import { drawnLines, tool } from './draw_actions';
 import { positionOf } from './ribbon_places';
-import { bend, chosenPart, distortionMapping, partToken, pointed, themeChanges, view } from './views';
+import { frameAt } from './simulated';
+import { bend, chosenPart, course, distortionMapping, partToken, pointed, themeChanges, view } from './views';
 import type { Zippable, ZippableSession } from './zippable_session';
 
 type Colour = readonly [number, number, number];
@@ -86,19 +88,24 @@ function sketched(session: ZippableSession): Curve[] {
 }
 
 /** The ribbon's vertices as they are in space now. */
-export const bentPositions = ({ bending, design }: Zippable, share: number): Float32Array =>
-  share >= 1 ? design.ribbon.positions : bending().at(share);
+export function bentPositions(session: ZippableSession, shown: Zippable, share: number): Float32Array {
+  const { bending, design } = shown;
+  const film = course.value === 'simulated' ? session.film.value : null;
+  if (film && film.frames[0]?.length === design.ribbon.positions.length) return frameAt(film, share);
+  return share >= 1 ? design.ribbon.positions : bending().at(share);
+}
 
 export function keepDrawn(viewport: Viewport, session: ZippableSession): () => void {
   let fitted: string | null = null;
   let coloured: { of: Zippable; ribbon: ColouredRibbon; style: string } | null = null;
-  let bent: { of: Zippable; share: number; positions: Float32Array } | null = null;
+  let bent: { of: Zippable; share: number; film: Film | null; positions: Float32Array } | null = null;
 
   const styleNow = () => `${chosenPart.value} ${themeChanges.value}`;
   const positionsNow = (shown: Zippable): Float32Array => {
     const share = view.value === 'ribbon' ? bend.value : 1;
-    if (bent?.of !== shown || bent.share !== share)
-      bent = { of: shown, share, positions: bentPositions(shown, share) };
+    const film = course.value === 'simulated' ? session.film.value : null;
+    if (bent?.of !== shown || bent.share !== share || bent.film !== film)
+      bent = { of: shown, share, film, positions: bentPositions(session, shown, share) };
     return bent.positions;
   };
   let drawnModel: { of: unknown; style: string } | null = null;

@@ -5,9 +5,9 @@ import { Button, formatBytes, formatDuration, Icon, Menu } from '../../ui';
 import { download, safeFileName } from '../common/download';
 import { outputOf, solveInFull } from '../common/full_solve';
 import { readyWorker } from '../common/services';
-import { planBytes } from './make_plan';
+import { planBytes, simulationBytes } from './make_product';
 import { flatView } from './views';
-import { design, planning } from './zippable_document';
+import { design, planning, simulating } from './zippable_document';
 import type { ZippableSession } from './zippable_session';
 
 interface Export {
@@ -19,6 +19,7 @@ interface Export {
 const menu: readonly (readonly [operation: string, outputs: readonly string[]])[] = [
   [design, ['ribbon.svg']],
   [planning, ['plan.svg', 'plan.dxf', 'plan.pdf', 'sheets.zip', 'tape.pdf', 'assembly.pdf']],
+  [simulating, ['zipped.ply', 'zipping.glb']],
   [design, ['design.json', 'parameterised.ply', 'formed.ply', 'curve.obj']],
 ];
 
@@ -38,9 +39,8 @@ function exportsOf(session: ZippableSession): Export[] {
 
 async function save(session: ZippableSession, { operation, output }: Export): Promise<void> {
   const label = inSentence(output);
-  const bytes = await (operation === planning
-    ? planBytes(session, output.name, label)
-    : outputOf(session, output.name, label));
+  const make = { [planning]: planBytes, [simulating]: simulationBytes }[operation] ?? outputOf;
+  const bytes = await make(session, output.name, label);
   if (bytes) download(bytes, `${safeFileName(session.title)}-${output.name}`, output.media_type);
 }
 
@@ -105,7 +105,8 @@ export function MainButton({ session, onSolve }: { session: ZippableSession; onS
           align="right"
           items={all.map((one) => {
             const { operation, output } = one;
-            const from = operation === planning ? session.plan.value : result;
+            const from =
+              { [planning]: session.plan, [simulating]: session.simulation }[operation]?.value ?? result;
             const bytes = from?.outputs[output.name]?.bytes;
             return {
               label: withFormat(output),

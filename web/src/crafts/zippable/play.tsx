@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bends the ribbon in space from flat to zipped, by hand or by itself.
 import { useEffect } from 'preact/hooks';
-import { IconButton } from '../../ui';
-import { bend, playing } from './views';
+import { Button, IconButton, Segmented } from '../../ui';
+import { simulationBytes } from './make_product';
+import { bend, course, playing } from './views';
+import { simulating } from './zippable_document';
+import type { ZippableSession } from './zippable_session';
 
 const duration_s = 4;
 
@@ -12,11 +15,12 @@ export function togglePlay(): void {
 }
 
 export interface PlayProps {
+  readonly session: ZippableSession;
   /** Flat, the ribbon is larger than zipped: the picture follows. */
   readonly onFit: () => void;
 }
 
-export function Play({ onFit }: PlayProps) {
+export function Play({ session, onFit }: PlayProps) {
   useEffect(() => {
     if (!playing.value) return undefined;
     let frame = 0;
@@ -38,6 +42,7 @@ export function Play({ onFit }: PlayProps) {
     },
     [],
   );
+  const simulated = session.simulation.value;
   const percent = Math.round(100 * bend.value);
   return (
     <section class="panel play" aria-label="Zipping up">
@@ -63,8 +68,43 @@ export function Play({ onFit }: PlayProps) {
             onFit();
           }}
         />
-        <p>Animation: edges keep their lengths. Not a simulation.</p>
+        {simulated && course.value === 'simulated' ? (
+          <p>{String(simulated.report['verdict'] ?? '')}</p>
+        ) : (
+          <p>Animation: edges keep their lengths. Not a simulation.</p>
+        )}
+        <Choice session={session} />
       </div>
     </section>
+  );
+}
+
+const courses = [
+  { value: 'drawn', label: 'As drawn' },
+  { value: 'simulated', label: 'As cloth' },
+] as const;
+
+/** Both courses once cloth was simulated; before that, what does it. */
+function Choice({ session }: { session: ZippableSession }) {
+  if (session.operationNamed(simulating) === undefined) return null;
+  if (session.simulation.value)
+    return (
+      <Segmented
+        label="Course"
+        options={courses}
+        value={course.value}
+        onChange={(value) => (course.value = value)}
+      />
+    );
+  const idle = session.activity.value.kind === 'idle';
+  const reason = session.result.value === null ? 'Make the ribbon first' : idle ? undefined : 'Busy';
+  const simulate = async () => {
+    course.value = 'simulated';
+    await simulationBytes(session, 'zipping.glb', 'simulation');
+  };
+  return (
+    <Button size="small" icon="zippable" disabledReason={reason} onClick={() => void simulate()}>
+      Will it zip? Simulate cloth
+    </Button>
   );
 }

@@ -5,7 +5,7 @@ import { Button, formatCount, formatNumber, Icon, withUnit } from '../../ui';
 import { solveInFull } from '../common/full_solve';
 import { figure, sentences } from '../common/report';
 import { metres } from './flat_ribbon';
-import { planBytes } from './make_plan';
+import { planBytes } from './make_product';
 import type { ZippableSession } from './zippable_session';
 
 /** Plans asked for already: what failed is not tried again before something changes. */

@@ -70,7 +70,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
           pointed.value = null;
           return;
         }
-        const bent = view.peek() === 'ribbon' ? bentPositions(shown, bend.peek()) : undefined;
+        const bent = view.peek() === 'ribbon' ? bentPositions(session, shown, bend.peek()) : undefined;
         const place = placeInSpace(shown.design.ribbon, hit.positionMm, bent);
         pointed.value = place && { places: [place], along_mm: alongAt(shown.design, place) };
       },
@@ -134,7 +134,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
         {notes}
         {visible && shown && view.value === 'distortion' ? <DistortionLegend session={session} /> : null}
         {visible && shown && view.value === 'ribbon' ? (
-          <Play onFit={() => viewport.current?.fit(false)} />
+          <Play session={session} onFit={() => viewport.current?.fit(false)} />
         ) : null}
       </div>
       {children}

@@ -19,6 +19,8 @@ export const pointed = signal<{
 } | null>(null);
 /** How far the ribbon in space is bent: 0 flat, 1 zipped up. */
 export const bend = signal(1);
+/** Whether the bending is drawn from the design, or as simulated cloth did it. */
+export const course = signal<'drawn' | 'simulated'>('drawn');
 export const playing = signal(false);
 /** Raised when the camera moves: what stands over the model follows. */
 export const cameraMoves = signal(0);

@@ -12,9 +12,11 @@ import { nothingDrawn } from './drawn_parts';
 export const design = 'zippable-design';
 /** What is made of a design; a build offers it where its catalog names it. */
 export const planning = 'zippable-plan';
+export const simulating = 'zippable-simulate';
 
-/** The design with the parameters of its plans. */
-export const offered = (catalog: Catalog): Operation | null => offeredTogether(catalog, design, [planning]);
+/** The design with the parameters of what is made of it. */
+export const offered = (catalog: Catalog): Operation | null =>
+  offeredTogether(catalog, design, [planning, simulating]);
 
 /** What was drawn, on which model, and as the operation reads it. */
 export interface DrawnParts extends Drawn {

@@ -5,7 +5,8 @@ import { computed, effect, signal, untracked } from '@preact/signals';
 import type { Result } from '../../jobs/backend';
 import type { JobInput, JsonObject, Operation, Report } from '../../jobs/contract';
 import { findOperation } from '../../jobs/contract';
-import { readPolylines } from '../../jobs/mesh_reader';
+import type { Film } from '../../jobs/glb';
+import { readFilm, readPolylines } from '../../jobs/mesh_reader';
 import type { CraftResult } from '../common/craft_document';
 import { known } from '../common/craft_document';
 import type { Measured } from '../common/estimate';
@@ -13,6 +14,7 @@ import { estimateSeconds, recall } from '../common/estimate';
 import { bytesOf } from '../common/import_model';
 import type { PreviewRequest, ShownWork } from '../common/previewing_session';
 import { PreviewingSession } from '../common/previewing_session';
+import type { Product } from '../common/products';
 import { productOf } from '../common/products';
 import { readMesh } from '../common/read_mesh';
 import { figure } from '../common/report';
@@ -24,7 +26,7 @@ import { readDesign } from './design';
 import type { PartDistortion } from './part_map';
 import { distortionOfParts, partsOfTriangles, VertexGrid } from './part_map';
 import type { ZippableDocument } from './zippable_document';
-import { currentResult, design, drawnOn, offered, planning, zippable } from './zippable_document';
+import { currentResult, design, drawnOn, offered, planning, simulating, zippable } from './zippable_document';
 
 /** A model divided and parameterised; the same object for as many designs as are made on it. */
 export interface DividedModel {
@@ -71,9 +73,10 @@ export class ZippableSession extends PreviewingSession<ZippableDocument, Zippabl
   readonly result = computed(() => currentResult(this.document.value, this.subject.value, this.asked.value));
   /** What plans are made of; null while the design is a preview. */
   readonly designFile = computed(() => this.result.value?.outputs['design.json'] ?? null);
-  readonly plan = computed(() =>
-    productOf(this.document.value, this.designFile.value?.blob ?? null, this.operationNamed(planning)),
-  );
+  readonly plan = computed(() => this.#madeOfDesign(planning));
+  readonly simulation = computed(() => this.#madeOfDesign(simulating));
+  /** How the simulated cloth went, of the design in force. */
+  readonly film = signal<Film | null>(null);
   /** The report of the previewed ribbon with its distances from the model; null until it rests. */
   readonly distances = signal<Report | null>(null);
   readonly #previewed = signal<Measured | null>(null);
@@ -83,6 +86,7 @@ export class ZippableSession extends PreviewingSession<ZippableDocument, Zippabl
     super(services, zippable);
     this.startFollowing();
     this.#measureLater();
+    this.#followSimulation();
     effect(() => {
       // What could not be made with other parameters or parts no longer matters.
       void this.asked.value;
@@ -90,6 +94,24 @@ export class ZippableSession extends PreviewingSession<ZippableDocument, Zippabl
       untracked(() => {
         if (this.problem.value?.kind === 'solve') this.problem.value = null;
       });
+    });
+  }
+
+  #madeOfDesign(operation: string): Product | null {
+    const { value } = this.designFile;
+    return productOf(this.document.value, value?.blob ?? null, this.operationNamed(operation));
+  }
+
+  #followSimulation(): void {
+    effect(() => {
+      const file = this.simulation.value?.outputs['zipping.glb'];
+      this.film.value = null;
+      if (file === undefined || !this.active.value) return;
+      const read = async () => {
+        const film = await readFilm(await this.services.projects.blobs.read(file.blob));
+        if (this.simulation.peek()?.outputs['zipping.glb'] === file) this.film.value = film;
+      };
+      read().catch(() => undefined); // its bytes were not kept; it can be made again
     });
   }
 

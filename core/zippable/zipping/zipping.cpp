@@ -176,7 +176,13 @@ ZippingResult zipped(const RibbonPattern& pattern, const ZippingOptions& options
   result.newton_iterations = system.iterations();
   result.comparison = compare_shapes(zipping.x(), pattern.predicted_mm, system.vertex_area_mm2());
   result.zipped_mm = result.comparison.motion(zipping.x());
-  for (const auto& [share, x] : zipping.frames) result.frames.push_back({result.comparison.motion(x).cast<float>(), share});
+  // Nothing holds the cloth in its place on the way: each frame is turned onto the next one, the last onto the prediction.
+  Positions next = result.zipped_mm;
+  for (auto frame = zipping.frames.rbegin(); frame != zipping.frames.rend(); ++frame) {
+    next = best_motion(frame->second, next, system.vertex_area_mm2(), result.comparison.mirrored)(frame->second);
+    result.frames.push_back({next.cast<float>(), frame->first});
+  }
+  std::reverse(result.frames.begin(), result.frames.end());
   result.gap_allowed_mm = 0.01 * pattern.width_mm;
   for (const SeamPair& seam : pattern.seams) {
     const double gap = (zipping.x().row(seam.left) - zipping.x().row(seam.right)).norm();

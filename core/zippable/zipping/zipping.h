@@ -77,7 +77,7 @@ struct ZippingFrame {
 struct ZippingResult {
   RibbonPattern pattern;
   Positions zipped_mm;               // turned (and mirrored) onto the prediction
-  std::vector<ZippingFrame> frames;  // turned likewise
+  std::vector<ZippingFrame> frames;  // each turned onto the next one, the last onto the prediction
   ShapeComparison comparison;
   ZippingEnergies energies;
   ShapeComparison rest;  // of the shape in which it comes to rest when it is put into the prediction already zipped

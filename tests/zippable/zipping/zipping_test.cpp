@@ -126,6 +126,18 @@ TEST(Zipping, IsJudgedByTheToleranceAndByWhatTheClothDoesByItself) {
   EXPECT_EQ(zipping_outcome(result, 2), ZippingOutcome::open_seams);
 }
 
+TEST(Zipping, FramesStayInTheirPlace) {
+  const ZippingResult result = simulated(test::cylinder_ribbon({100, 60, 2, 8, 0}));
+  ASSERT_GE(result.frames.size(), 3u);
+  EXPECT_LT((result.frames.back().V.cast<double>() - result.zipped_mm).cwiseAbs().maxCoeff(), 1e-4);
+  for (std::size_t f = 0; f + 1 < result.frames.size(); ++f) {
+    const Eigen::MatrixXd here = result.frames[f].V.cast<double>(), next = result.frames[f + 1].V.cast<double>();
+    // Turned on as well as can be, no place can go farther than the cloth is long.
+    EXPECT_LT((here - next).rowwise().norm().maxCoeff(), 2 * (here.colwise().maxCoeff() - here.colwise().minCoeff()).norm()) << f;
+    EXPECT_LT((here.colwise().mean() - next.colwise().mean()).norm(), 0.5 * result.pattern.size_mm) << f;
+  }
+}
+
 TEST(Zipping, TriesOtherCoursesUntilOneFits) {
   const RibbonDesign cone = test::cone_ribbon({100, 50, 2, 16, 0}, 80);
   ZippingOptions held = quick();

@@ -131,7 +131,7 @@ struct MeasuredObjects {
   }
 };
 
-/// The design of a small zippable, for its plan.
+/// The design of a small zippable, for what is made of it.
 Bytes zippable_design(Session& session) {
   const Json message = {{"operation", "zippable-design"},
                         {"inputs", {{"mesh", {{"sample", "t_shape"}, {"vertices", 2000}}}}},
@@ -167,10 +167,11 @@ TEST(RunJob, ReportsOnlyDeclaredFigures) {
         else message["parameters"] = {{"pairs", false}};
         continue;
       }
-      if (operation.name == "zippable-plan") {
+      if (input.name == "design") {
         const std::string hash(64, 'd');
         files[hash] = std::make_shared<const Bytes>(zippable_design(session));
         message["inputs"][input.name] = {{"sha256", hash}, {"file_name", "design.json"}};
+        if (operation.name == "zippable-simulate") message["parameters"] = {{"steps", 20}, {"hold_open_percent", 0}, {"frames", 2}};
         continue;
       }
       // What a measured object consists of, as small as it can be.

@@ -42,6 +42,7 @@ async function expectAccessibleEverywhere(page: Page, what: string): Promise<voi
     await page.setViewportSize(viewport);
     await expectAccessible(page, `${what}, ${media.colorScheme}, ${viewport.width}`);
   }
+  await page.setViewportSize({ width: 1280, height: 800 });
 }
 
 test('three files, a named cause, the extended model, the report, the next print, a reload', async ({

@@ -49,7 +49,7 @@ test('a star by mouse: windings, the same place on both sides, SVG, reload', asy
   await page.getByRole('radio', { name: 'Zipped' }).click();
   await expect(page.getByText('Animation: edges keep their lengths. Not a simulation.')).toBeVisible();
 
-  await page.getByRole('button', { name: 'Make the ribbon' }).click();
+  await page.getByRole('button', { name: 'Make the ribbon', exact: true }).click();
   await expect(strip(page, 'Ribbon unfolded')).toBeVisible({ timeout: 150_000 });
   const waiting = page.waitForEvent('download');
   await page.getByRole('button', { name: /^Export flat ribbon/ }).click();
@@ -179,6 +179,7 @@ test('parts drawn by hand: a border with the mouse, an opening moved with the ke
   await opening.focus();
   await page.keyboard.press('Shift+ArrowDown');
   await expect(opening).not.toHaveAttribute('style', before ?? '');
+  await expect(page.getByRole('button', { name: 'Undo: Move an opening' })).toBeVisible();
   await page.keyboard.press('Control+z');
   await expect(opening).toHaveAttribute('style', before ?? '');
   await page.keyboard.press('Delete');

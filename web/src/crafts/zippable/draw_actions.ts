@@ -105,15 +105,19 @@ export const remove = (session: ZippableSession, handle: Handle) =>
     handle.kind === 'opening' ? 'Remove an opening' : 'Remove a point',
   );
 
+/** Key and focus may both let go of what is let go once. */
+const dropped = new WeakSet<object>();
+
 export async function drop(session: ZippableSession): Promise<void> {
   const hand = held.peek();
-  if (hand === null) return;
+  if (hand === null || dropped.has(hand)) return;
+  dropped.add(hand);
   await change(
     session,
     moved(now(session), hand.handle, hand.at),
     hand.handle.kind === 'opening' ? 'Move an opening' : 'Move a point',
   );
-  held.value = null;
+  if (held.peek() === hand) held.value = null;
 }
 
 /** Openings that were found, to be moved by hand. */

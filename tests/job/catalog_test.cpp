@@ -136,7 +136,7 @@ Bytes zippable_design(Session& session) {
   const Json message = {{"operation", "zippable-design"},
                         {"inputs", {{"mesh", {{"sample", "t_shape"}, {"vertices", 2000}}}}},
                         {"outputs", {"design.json"}},
-                        {"parameters", {{"size_mm", 200}, {"width_mm", 30}}}};
+                        {"parameters", {{"size_mm", 200}, {"width_mm", 60}}}};
   return *run_job(message, [](const std::string&) { return nullptr; }, session, {}).outputs.at(0).bytes;
 }
 

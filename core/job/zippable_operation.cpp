@@ -94,12 +94,12 @@ void report_design(Json& report, const ParameterisedModel& model, const Zippable
              size = (formed.colwise().maxCoeff() - formed.colwise().minCoeff()).transpose();
   report["ribbon_size_mm"] = {flat_size.x(), flat_size.y()};
   report["isometry_error"] = ribbon.isometry_error;
-  const bool measured = design.seconds_distance > 0;
-  const auto distance = [&](double mm) { return measured ? Json(mm) : Json(nullptr); };
-  report["ribbon_to_model_mean_mm"] = distance(design.ribbon_to_model.mean);
-  report["ribbon_to_model_max_mm"] = distance(design.ribbon_to_model.maximum);
-  report["model_to_ribbon_mean_mm"] = distance(design.model_to_ribbon.mean);
-  report["model_to_ribbon_max_mm"] = distance(design.model_to_ribbon.maximum);
+  const auto distance = [&](const std::string& name, const std::optional<SurfaceDistance>& measured) {
+    report[name + "_mean_mm"] = measured ? Json(measured->mean) : Json(nullptr);
+    report[name + "_max_mm"] = measured ? Json(measured->maximum) : Json(nullptr);
+  };
+  distance("ribbon_to_model", design.ribbon_to_model);
+  distance("model_to_ribbon", design.model_to_ribbon);
   report["size_mm"] = {size.x(), size.y(), size.z()};
   report["seconds_curve"] = design.seconds_curve;
   report["seconds_ribbon"] = design.seconds_ribbon;

@@ -68,7 +68,7 @@ const char* outcome_name(ZippingOutcome outcome) {
 
 OperationResult run(const OperationCall& call) {
   const auto options = read_parameters<ZippingOptions>(call.parameters);
-  const RibbonDesign design = read_ribbon_design(*call.inputs.at("design").bytes);
+  const RibbonDesign design = ribbon_of(read_flat_design(*call.inputs.at("design").bytes));
   ZippingResult zipped;
   {
     const auto span = call.context.span(0, 0.97, "Zipping");

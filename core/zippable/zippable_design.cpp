@@ -19,6 +19,19 @@ void check_width(double size_mm, const ZippableOptions& options) {
                 "The ribbon is narrower than a thousandth of the model: choose a larger width or a smaller size_mm.");
 }
 
+/// Per part, 0 where nothing was said.
+std::vector<double> part_windings(const std::string& text, int part_count) {
+  const auto given = read_number_list(text);
+  const auto count = static_cast<std::size_t>(part_count);
+  if (!given || std::any_of(given->begin(), given->end(), [](double windings) { return windings < 0 || windings > 1000; }))
+    throw Error(ErrorCode::invalid_input, "part_windings", "Windings by part must be numbers from 0 to 1000, such as “3 0 2.5”.");
+  if (given->size() > count)
+    throw Error(ErrorCode::invalid_input, "part_windings", "There are only " + std::to_string(part_count) + " parts: give windings for these.");
+  std::vector<double> windings = *given;
+  windings.resize(count, 0);
+  return windings;
+}
+
 }  // namespace
 
 ParameterisedModel parameterise_model(const TriangleMesh& given, const ZippableParts& parts, const ZippableOptions& options,
@@ -59,23 +72,6 @@ std::string parameterisation_key(const ZippableOptions& options) {
   relevant.puncture_mm = options.puncture_mm.value_or(0.5 * options.width_mm);
   return write_parameters(relevant).dump();
 }
-
-namespace {
-
-/// Per part, 0 where nothing was said.
-std::vector<double> part_windings(const std::string& text, int part_count) {
-  const auto given = read_number_list(text);
-  const auto count = static_cast<std::size_t>(part_count);
-  if (!given || std::any_of(given->begin(), given->end(), [](double windings) { return windings < 0 || windings > 1000; }))
-    throw Error(ErrorCode::invalid_input, "part_windings", "Windings by part must be numbers from 0 to 1000, such as “3 0 2.5”.");
-  if (given->size() > count)
-    throw Error(ErrorCode::invalid_input, "part_windings", "There are only " + std::to_string(part_count) + " parts: give windings for these.");
-  std::vector<double> windings = *given;
-  windings.resize(count, 0);
-  return windings;
-}
-
-}  // namespace
 
 ZippableDesign design_zippable(const ParameterisedModel& model, const ZippableOptions& options, Context& context) {
   const double size_mm = bounding_box(model.mesh).size().maxCoeff();

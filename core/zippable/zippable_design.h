@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // From a model to the one ribbon that zips up into it: parts, parameterisation, curve, ribbon. Thesis Sec. 5.2.
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,7 +41,7 @@ struct ZippableDesign {
   RankedTraversal traversal;  // the chosen one
   ZipperCurve curve;
   Ribbon ribbon;
-  SurfaceDistance ribbon_to_model, model_to_ribbon;  // mm
+  std::optional<SurfaceDistance> ribbon_to_model, model_to_ribbon;  // mm; only where options.measure_distances
   std::vector<std::string> notes;
   double seconds_curve = 0, seconds_ribbon = 0, seconds_distance = 0;
 };

@@ -37,7 +37,7 @@ TEST(ZippableDesign, ScalesBeforeEverythingElse) {
   const auto [large_model, large] = design("heart", options);
   EXPECT_NEAR(large_model.scale, scale, 1e-12);
   EXPECT_NEAR(large.ribbon.zipper_mm / small.ribbon.zipper_mm, large_model.scale, 1e-3);
-  EXPECT_NEAR(large.ribbon_to_model.mean / small.ribbon_to_model.mean, large_model.scale, 0.02 * large_model.scale);
+  EXPECT_NEAR(large.ribbon_to_model->mean / small.ribbon_to_model->mean, large_model.scale, 0.02 * large_model.scale);
 }
 
 TEST(ZippableDesign, NarrowerRibbonsAreCloserAndLonger) {
@@ -46,9 +46,9 @@ TEST(ZippableDesign, NarrowerRibbonsAreCloserAndLonger) {
   for (const double width : {24.0, 12.0, 6.0}) {
     options.width_mm = width;
     const ZippableDesign d = design("t_shape", options).design;
-    EXPECT_LT(d.ribbon_to_model.mean, error);
+    EXPECT_LT(d.ribbon_to_model->mean, error);
     EXPECT_GT(d.ribbon.zipper_mm, length);
-    error = d.ribbon_to_model.mean, length = d.ribbon.zipper_mm;
+    error = d.ribbon_to_model->mean, length = d.ribbon.zipper_mm;
   }
 }
 

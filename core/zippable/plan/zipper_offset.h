@@ -4,7 +4,7 @@
 // along the zipper's binormal (gluing). Thesis Sec. 5.3.1, Appendix C.
 #include <vector>
 
-#include "zippable/plan/flat_design.h"
+#include "zippable/flat_design.h"
 #include "zippable/plan/plan_options.h"
 
 namespace formwright {

@@ -159,6 +159,14 @@ class Refinement {
 
 }  // namespace
 
+RibbonDesign ribbon_of(const FlatDesign& design) {
+  RibbonDesign ribbon;
+  ribbon.triangles = design.F;
+  for (const FlatVertex& v : design.boundary)
+    ribbon.places.push_back({v.flat_mm, v.position_mm, v.sample, v.sample < 0 ? -1 : design.piece_of[static_cast<std::size_t>(v.sample)], v.left});
+  return ribbon;
+}
+
 RibbonPattern make_ribbon_pattern(const std::vector<RibbonEdgePlace>& places, const Triangles& triangles, double edge_mm, Context& context) {
   if (triangles.rows() == 0) refuse("design.json has no triangles: make the design again.");
   const int count = static_cast<int>(places.size());

@@ -4,9 +4,9 @@
 // says that they end up.
 #include <vector>
 
-#include "base/bytes.h"
 #include "base/context.h"
 #include "geometry/triangle_mesh.h"
+#include "zippable/flat_design.h"
 
 namespace formwright {
 
@@ -27,7 +27,7 @@ struct RibbonPattern {
   double size_mm = 0;           // largest dimension of the predicted shape
 };
 
-/// A place of the ribbon's edge before pairs are formed, as design.json lists them.
+/// A place of the ribbon's edge before pairs are formed.
 struct RibbonEdgePlace {
   Vec2 flat_mm = Vec2::Zero();
   Vec3 predicted_mm = Vec3::Zero();
@@ -46,7 +46,6 @@ struct RibbonDesign {
   Triangles triangles;
 };
 
-/// Of design.json, as zippable-design writes it. Throws Error{invalid_input, "design"} naming what is missing or wrong.
-RibbonDesign read_ribbon_design(ByteView design_json);
+RibbonDesign ribbon_of(const FlatDesign& design);
 
 }  // namespace formwright

@@ -188,7 +188,7 @@ TEST(RibbonPattern, RefusesWhatIsNoRibbon) {
     if (place.sample == 3 && place.left) place.sample = -1;
   expect_refused(bad);
   for (const char* text : {"", "{}", R"({"format": "formwright zippable design", "pieces": [], "ribbon": {"boundary": [1], "triangles": []}})"})
-    EXPECT_THROW(read_ribbon_design(as_bytes(std::string(text))), Error);
+    EXPECT_THROW(read_flat_design(as_bytes(std::string(text))), Error);
 }
 
 TEST(Zipping, StopsWhenCancelled) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "zippable/plan/flat_design.h"
+#include "zippable/flat_design.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A zippable design as its plans need it: the ribbon's boundary, its zipper sides and its triangles, from design.json.
+// A zippable design as its plans and its simulation need it: the ribbon's boundary, its zipper sides and its triangles, from design.json.
 #include <vector>
 
 #include "base/bytes.h"

@@ -22,8 +22,13 @@ std::vector<BedRectangle> read_no_go(const std::string& text) {
   return zones;
 }
 
+namespace {
+/// K40 boards home to the upper left and know nothing else.
+BedOrigin origin_of(const MachineOptions& machine) { return machine.controller == Controller::k40 ? BedOrigin::upper_left : machine.origin; }
+}  // namespace
+
 Vec2 to_controller(const Vec2& bed_mm, const MachineOptions& machine) {
-  switch (machine.origin) {
+  switch (origin_of(machine)) {
     case BedOrigin::lower_left: return bed_mm;
     case BedOrigin::upper_left: return {bed_mm.x(), machine.bed_y_mm - bed_mm.y()};
     case BedOrigin::centre: return bed_mm - Vec2(machine.bed_x_mm / 2, machine.bed_y_mm / 2);
@@ -32,7 +37,7 @@ Vec2 to_controller(const Vec2& bed_mm, const MachineOptions& machine) {
 }
 
 Vec2 origin_on_bed(const MachineOptions& machine) {
-  switch (machine.origin) {
+  switch (origin_of(machine)) {
     case BedOrigin::lower_left: return {0, 0};
     case BedOrigin::upper_left: return {0, machine.bed_y_mm};
     case BedOrigin::centre: return {machine.bed_x_mm / 2, machine.bed_y_mm / 2};

@@ -3,7 +3,9 @@
 
 #include <functional>
 
+#include "fabrication/egv_writer.h"
 #include "fabrication/gcode_writer.h"
+#include "fabrication/ruida_writer.h"
 #include "fabrication/toolpath_preview.h"
 #include "job/model_input.h"
 
@@ -12,6 +14,8 @@ namespace formwright {
 std::vector<OutputInfo> laser_job_outputs() {
   return {{"job.gcode", "text/x-gcode", "G-code", "For GRBL or Marlin, as the controller says; not written when the job does not fit.", true},
           {"toolpath.json", "application/json", "Tool path", "What moves where and when, for the preview.", true},
+          {"job.egv", "application/x-egv", "EGV", "For K40 lasers with an M2 Nano board, which take their power from the dial.", false},
+          {"job.rd", "application/octet-stream", "RD", "For Ruida controllers.", false},
           {"preview.svg", "image/svg+xml", "Preview", "The bed with what is worked and the travel between.", false}};
 }
 
@@ -47,6 +51,8 @@ void write_laser_result(OperationResult& result, const OperationCall& call, cons
     call.context.check_cancelled();
   };
   add("job.gcode", true, [&] { return gcode; });
+  add("job.egv", true, [&] { return write_egv(plan.path, machine); });
+  add("job.rd", true, [&] { return write_ruida(plan.path, machine); });
   add("toolpath.json", false, [&] { return write_toolpath_json(plan.path, machine); });
   add("preview.svg", false, [&] { return write_toolpath_svg(plan.path, machine); });
   report_toolpath(result.report, plan.path, plan.misfits, line_count(gcode));
@@ -54,6 +60,7 @@ void write_laser_result(OperationResult& result, const OperationCall& call, cons
   for (const LayerSummary& layer : plan.layers)
     layers.push_back({{"layer", layer.layer}, {"paths", layer.paths}, {"length_mm", layer.length_mm}, {"seconds", layer.seconds}});
   result.report["layers"] = layers;
+  if (machine.controller == Controller::k40) plan.notes.push_back("The board takes its power from the dial on the machine: the layers' powers are not in job.egv.");
   result.report["notes"] = plan.notes;
 }
 

@@ -8,4 +8,5 @@ cd "$FORMWRIGHT_ROOT"
 setup/native.sh "$@"
 setup/wasm_toolchain.sh >/dev/null
 setup/wasm_libraries.sh >/dev/null
+if [ "${1-}" = --test ]; then setup/python_packages.sh >/dev/null; fi
 say "set-up complete"

@@ -11,6 +11,7 @@ import { go, place, startRouting } from './app/route';
 import { followSystemTheme } from './app/theme';
 import { resumePending } from './crafts/common/full_solve';
 import { EvidenceSession } from './crafts/evidence/evidence_session';
+import { MachinesSession } from './crafts/machines/machines_session';
 import { ReliefSession } from './crafts/relief/relief_session';
 import { ThermoformSession } from './crafts/thermoform/thermoform_session';
 import { ZippableSession } from './crafts/zippable/zippable_session';
@@ -23,6 +24,7 @@ async function start(root: HTMLElement): Promise<void> {
     thermoform: new ThermoformSession(services),
     zippable: new ZippableSession(services),
     evidence: new EvidenceSession(services),
+    machines: new MachinesSession(services),
   };
   effect(() => resumePending(sessions.relief));
   effect(() => resumePending(sessions.thermoform));

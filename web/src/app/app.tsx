@@ -4,6 +4,7 @@ import { signal, useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import type { Services } from '../crafts/common/services';
 import type { EvidencePage as EvidencePageComponent } from '../crafts/evidence/evidence_page';
+import type { MachinesPage as MachinesPageComponent } from '../crafts/machines/machines_page';
 import type { ReliefPage as ReliefPageComponent } from '../crafts/relief/relief_page';
 import type { ThermoformPage as ThermoformPageComponent } from '../crafts/thermoform/thermoform_page';
 import type { ZippablePage as ZippablePageComponent } from '../crafts/zippable/zippable_page';
@@ -18,6 +19,7 @@ import { Rail } from './rail';
 import { go, place } from './route';
 import { formatNames, StartPage } from './start_page';
 import type { Sessions } from './rooms';
+import { drawingEndings, jobEndings } from '../crafts/machines/machines_document';
 import { isRoom, placeOfWork, roomOf } from './rooms';
 import { TopBar } from './top_bar';
 
@@ -45,6 +47,12 @@ const evidencePage = signal<{ readonly Page: typeof EvidencePageComponent } | nu
 const loadEvidencePage = () =>
   import('../crafts/evidence/evidence_page').then(
     ({ EvidencePage }) => (evidencePage.value = { Page: EvidencePage }),
+  );
+
+const machinesPage = signal<{ readonly Page: typeof MachinesPageComponent } | null>(null);
+const loadMachinesPage = () =>
+  import('../crafts/machines/machines_page').then(
+    ({ MachinesPage }) => (machinesPage.value = { Page: MachinesPage }),
   );
 
 export interface AppProps {
@@ -89,11 +97,13 @@ export function App({ services, sessions }: AppProps) {
   const ThermoformPage = thermoformPage.value?.Page;
   const ZippablePage = zippablePage.value?.Page;
   const EvidencePage = evidencePage.value?.Page;
+  const MachinesPage = machinesPage.value?.Page;
   useEffect(() => {
     if (where === 'relief') void loadReliefPage();
     if (where === 'thermoform') void loadThermoformPage();
     if (where === 'zippable') void loadZippablePage();
     if (where === 'evidence') void loadEvidencePage();
+    if (where === 'machines') void loadMachinesPage();
   }, [where]);
   const later = crafts.find((craft) => craft.place === where && !craft.available);
   const session = isRoom(where) ? sessions[where] : null;
@@ -123,6 +133,8 @@ export function App({ services, sessions }: AppProps) {
         <ZippablePage session={sessions.zippable} onChooseFile={chooseFile} />
       ) : where === 'evidence' && EvidencePage ? (
         <EvidencePage session={sessions.evidence} onChooseFile={chooseFile} />
+      ) : where === 'machines' && MachinesPage ? (
+        <MachinesPage session={sessions.machines} onChooseFile={chooseFile} />
       ) : isRoom(where) ? (
         <main
           class="view"
@@ -144,7 +156,9 @@ export function App({ services, sessions }: AppProps) {
             <p>
               {where === 'evidence'
                 ? 'Measured objects: mould.obj, setup.json, measured.csv, their folder or zip'
-                : `Meshes: ${formatNames(services)}`}
+                : where === 'machines'
+                  ? `Drawings and jobs: ${[...drawingEndings, ...jobEndings].join(', ')}`
+                  : `Meshes: ${formatNames(services)}`}
               . Projects: .{projectExtension}.
             </p>
             <p>Your project is saved first.</p>
@@ -161,6 +175,7 @@ export function App({ services, sessions }: AppProps) {
           ...(services.catalog.value?.mesh_formats ?? []).map((f) => `.${f.extension}`),
           ...companionEndings,
           ...(where === 'evidence' ? evidenceEndings : []),
+          ...(where === 'machines' ? [...drawingEndings, ...jobEndings] : []),
           `.${projectExtension}`,
         ].join()}
         onChange={(event) => {

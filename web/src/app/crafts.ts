@@ -54,7 +54,7 @@ export const crafts: readonly Craft[] = [
     icon: 'machines',
     pitch: 'Send a job to the cutter, printer or mill, and stop it at once.',
     makes: 'Laser, printer, mill',
-    available: false,
+    available: true,
   },
 ];
 

@@ -89,5 +89,6 @@ export async function createServices(): Promise<Services> {
     },
     native,
     connection,
+    worker: native?.connection ?? null,
   };
 }

@@ -13,7 +13,8 @@ const keys: readonly (readonly [keys: readonly string[], meaning: string])[] = [
   [['Ctrl', 'O'], 'Open a file'],
   [['Ctrl', 'Z'], 'Undo'],
   [['Ctrl', 'Shift', 'Z'], 'Redo'],
-  [['Esc'], 'Cancel'],
+  [['Esc'], 'Cancel, or hold the machine'],
+  [['Ctrl', '.'], 'Stop the machine'],
   [['?'], 'All keys'],
 ];
 const viewKeys: typeof keys = [

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The places in which something is made, each with its session.
 import type { EvidenceSession } from '../crafts/evidence/evidence_session';
+import type { MachinesSession } from '../crafts/machines/machines_session';
 import type { ReliefSession } from '../crafts/relief/relief_session';
 import type { ThermoformSession } from '../crafts/thermoform/thermoform_session';
 import type { ZippableSession } from '../crafts/zippable/zippable_session';
@@ -13,10 +14,11 @@ export interface Sessions {
   readonly thermoform: ThermoformSession;
   readonly zippable: ZippableSession;
   readonly evidence: EvidenceSession;
+  readonly machines: MachinesSession;
 }
 export type Room = keyof Sessions;
 
-const rooms: readonly Room[] = ['relief', 'thermoform', 'zippable', 'evidence'];
+const rooms: readonly Room[] = ['relief', 'thermoform', 'zippable', 'evidence', 'machines'];
 
 export const isRoom = (place: Place): place is Room => (rooms as readonly Place[]).includes(place);
 
@@ -28,8 +30,8 @@ export function placeOfWork({ crafts }: ProjectDocument): Room | null {
   const hasWork = (room: Room) => {
     const craft = crafts[room];
     if (!isObject(craft)) return false;
-    const { model, objects } = craft;
-    return isObject(model) || (Array.isArray(objects) && objects.length > 0);
+    const { model, objects, drawing } = craft;
+    return isObject(model) || isObject(drawing) || (Array.isArray(objects) && objects.length > 0);
   };
   return rooms.find(hasWork) ?? null;
 }

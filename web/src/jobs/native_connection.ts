@@ -114,12 +114,19 @@ export class NativeConnection {
     return (await (await this.requestOk(path, init)).json()) as T;
   }
 
+  /** A line of its own beside the one for jobs, such as a machine's. */
+  socket(path: string, protocol: string): WebSocket {
+    const { origin, token } = this.#options;
+    const Socket = this.#options.WebSocket ?? WebSocket;
+    return new Socket(`${origin.replace(/^http/, 'ws')}/api/${path}`, [protocol, `token.${token}`]);
+  }
+
   async status(): Promise<WorkerStatus> {
     return await this.json<WorkerStatus>('status');
   }
 
   async #open(): Promise<void> {
-    const { onState, origin, token } = this.#options;
+    const { onState } = this.#options;
     onState({ state: 'connecting' });
     let status: WorkerStatus;
     try {
@@ -134,11 +141,7 @@ export class NativeConnection {
       return;
     }
     if (this.#closed) return;
-    const Socket = this.#options.WebSocket ?? WebSocket;
-    const socket = new Socket(`${origin.replace(/^http/, 'ws')}/api/socket`, [
-      'formwright.v1',
-      `token.${token}`,
-    ]);
+    const socket = this.socket('socket', 'formwright.v1');
     this.#socket = socket;
     socket.onopen = () => {
       this.#retry_s = shortestRetry_s;

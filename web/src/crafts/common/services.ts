@@ -3,7 +3,7 @@
 import type { ReadonlySignal } from '@preact/signals';
 import type { Backend } from '../../jobs/backend';
 import type { Catalog } from '../../jobs/contract';
-import type { ConnectionState } from '../../jobs/native_connection';
+import type { ConnectionState, NativeConnection } from '../../jobs/native_connection';
 import type { ProjectStore } from '../../project/project_store';
 
 export interface Services {
@@ -17,6 +17,8 @@ export interface Services {
   /** The native worker, where there is one. */
   readonly native: Backend | null;
   readonly connection: ReadonlySignal<ConnectionState | null>;
+  /** The line to the worker, for what is no job: its machines. */
+  readonly worker: NativeConnection | null;
 }
 
 /** The worker while it answers, else null. */

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a person can have the machine do, each asked about before it moves or fires.
+import type { MachineCommand } from '../../machines/links/machine_state';
+import { workBounds } from '../../machines/toolpath';
+import { formatDuration, formatNumber, withUnit } from '../../ui';
+import { ask } from './confirm';
+import type { MachinesSession } from './machines_session';
+
+const eyes =
+  'Lid closed or eyes protected, extraction on, something to put out a fire at hand. Stay with the machine.';
+
+const isLaser = (session: MachinesSession): boolean =>
+  (session.profiles.current.options['tool'] ?? 'laser') === 'laser';
+
+const millimetres = (mm: number) => withUnit(formatNumber(mm, 4), 'mm');
+
+/** Why the job cannot be started now; undefined where it can. */
+export function startReason(session: MachinesSession): string | undefined {
+  const { control } = session;
+  const plan = session.plan.value;
+  const state = control.state.value;
+  if (state === null) return 'Connect a machine first';
+  if (plan === null) return 'Open a drawing or a job first';
+  if (session.planning.value) return 'Ready when the job is made';
+  if (plan.misfits.length > 0 || plan.job === null) return plan.misfits[0] ?? 'The job does not fit';
+  if (control.isBusy) return 'A job is running';
+  if (state.phase === 'alarm') return 'The machine is in alarm: home it first';
+  if (!state.position_known)
+    return state.can.includes('home')
+      ? 'Where the head stands is unknown: home it first'
+      : 'Where the head stands is unknown: jog to the corner and set the origin';
+  return state.phase === 'idle' ? undefined : `The machine is ${state.phase}`;
+}
+
+export function start(session: MachinesSession): void {
+  const plan = session.plan.value;
+  if (startReason(session) !== undefined || plan?.job == null) return;
+  const { job, key, toolPath } = plan;
+  const power = Math.max(0, ...toolPath.paths.map(({ power_percent }) => power_percent));
+  const name = session.title;
+  ask({
+    title: `Start ${name} on ${session.control.machineName.value}?`,
+    sentences: [
+      isLaser(session)
+        ? `The head moves and the laser turns on, at up to ${withUnit(formatNumber(power, 2), '%')}, for about ${formatDuration(toolPath.seconds)}.`
+        : `The machine moves and its tool turns on, for about ${formatDuration(toolPath.seconds)}.`,
+      eyes,
+    ],
+    action: isLaser(session) ? 'Start with the laser on' : 'Start',
+    danger: true,
+    run: () => {
+      session.playhead.value = null;
+      void session.control.start(name, key, job);
+    },
+  });
+}
+
+/** Goes on with a job that ended early, the careful way: from the beginning of a stroke before what may not have been done. */
+export function goOn(session: MachinesSession): void {
+  const plan = session.plan.value;
+  const line = session.control.state.value?.job?.careful_line;
+  if (plan?.job == null || line === undefined) return;
+  const { job, key } = plan;
+  ask({
+    title: 'Cut the rest?',
+    sentences: [
+      `The machine was homed again; it goes to the stroke that begins at line ${line}, turns the laser on and cuts from there. What was cut last is cut once more.`,
+      'This only fits where the material has not moved. ' + eyes,
+    ],
+    action: 'Go on with the laser on',
+    danger: true,
+    run: () => void session.control.start(session.title, key, job, line),
+  });
+}
+
+export function frame(session: MachinesSession): void {
+  const plan = session.plan.value;
+  const bounds = plan && workBounds(plan.toolPath);
+  if (!bounds) return;
+  ask({
+    title: 'Frame the job?',
+    sentences: [
+      `The head moves once around ${millimetres(bounds[2] - bounds[0])} by ${millimetres(bounds[3] - bounds[1])}, the laser stays off. Keep hands and clamps out of its way.`,
+    ],
+    action: 'Frame',
+    run: () =>
+      void session.control.command({
+        do: 'frame',
+        bounds_mm: [...bounds],
+        speed_mm_per_s: 50,
+        confirmed: true,
+      }),
+  });
+}
+
+export function home(session: MachinesSession): void {
+  ask({
+    title: 'Home the machine?',
+    sentences: ['The head moves to its switches. Keep hands and clamps out of its way.'],
+    action: 'Home',
+    run: () => void session.control.command({ do: 'home', confirmed: true }),
+  });
+}
+
+export function focus(session: MachinesSession): void {
+  const power_percent = 1;
+  ask({
+    title: 'Shine the laser to focus it?',
+    sentences: [
+      `The laser shines at ${withUnit(String(power_percent), '%')} without moving, and goes out by itself after a minute. Eyes protected.`,
+    ],
+    action: 'Shine the laser',
+    danger: true,
+    run: () => void session.control.command({ do: 'focus', power_percent, confirmed: true }),
+  });
+}
+
+export function resume(session: MachinesSession): void {
+  ask({
+    title: 'Go on?',
+    sentences: [
+      isLaser(session)
+        ? 'The machine goes on where it was held, with the laser on.'
+        : 'The machine goes on where it was held.',
+      eyes,
+    ],
+    action: 'Go on',
+    danger: true,
+    run: () => void session.control.command({ do: 'resume', confirmed: true }),
+  });
+}
+
+export const hold = (session: MachinesSession): void => void session.control.command({ do: 'pause' });
+export const stop = (session: MachinesSession): void => void session.control.command({ do: 'stop' });
+
+/** A line typed in the console; where it may move or fire, it is asked about. */
+export function sendLine(session: MachinesSession, line: string): void {
+  const send = (confirmed: boolean) =>
+    session.control.command({ do: 'send', line, confirmed } satisfies MachineCommand);
+  // Whether a line moves or fires the driver knows: it is asked first.
+  void session.control.link.value
+    ?.command({ do: 'send', line, confirmed: false })
+    .catch((thrown: unknown) => {
+      const where = thrown instanceof Error && 'where' in thrown ? thrown.where : '';
+      const message = thrown instanceof Error ? thrown.message : String(thrown);
+      if (where !== 'confirmed') session.control.problem.value = message;
+      else
+        ask({
+          title: `Send ${line}?`,
+          sentences: [message.replace(/: this must be confirmed.*/, '.')],
+          action: 'Send',
+          danger: true,
+          run: () => void send(true),
+        });
+    });
+}

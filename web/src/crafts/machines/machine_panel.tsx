@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The machine at the head of the inspector: what it is, where it stands, and the buttons that move it.
+import { useRef } from 'preact/hooks';
+import type { MachineCommand, MachineState } from '../../machines/links/machine_state';
+import { Button, formatFixed, Icon } from '../../ui';
+import { focus, frame, hold, home, resume, start, startReason, stop } from './actions';
+import { ConnectMenu, ProfileMenu } from './machine_menus';
+import type { MachinesSession } from './machines_session';
+
+const phaseWords: Record<MachineState['phase'], string> = {
+  unknown: 'Waiting',
+  idle: 'Ready',
+  homing: 'Homing',
+  jogging: 'Moving',
+  running: 'Working',
+  pausing: 'Holding',
+  paused: 'Held',
+  stopping: 'Stopping',
+  alarm: 'Alarm',
+  door: 'Door open',
+  check: 'Checking',
+  sleep: 'Asleep',
+};
+
+export function stateWords(state: MachineState | null): string {
+  if (state === null) return 'Not connected';
+  if (state.connection === 'greeting') return 'Connecting';
+  if (state.connection === 'silent') return 'No answer';
+  if (state.phase === 'alarm' && state.alarm)
+    return state.alarm.code > 0 ? `Alarm ${state.alarm.code}` : 'Locked';
+  return phaseWords[state.phase];
+}
+
+const dotOf = (state: MachineState | null): string => {
+  if (state === null) return 'off';
+  if (state.connection === 'silent' || state.phase === 'alarm') return 'bad';
+  return ['running', 'jogging', 'homing', 'pausing'].includes(state.phase) ? 'live' : '';
+};
+
+export function MachinePanel({ session }: { readonly session: MachinesSession }) {
+  const { control } = session;
+  const state = control.state.value;
+  const cannot = (what: MachineCommand['do'], why: string) =>
+    control.can(what) ? undefined : state === null ? 'Connect a machine first' : why;
+  const held = state?.phase === 'paused' || state?.phase === 'door';
+  const plan = session.plan.value;
+  return (
+    <>
+      <div class="model-row machine-row">
+        <span class="machine-icon" aria-hidden="true">
+          <Icon name="machines" />
+        </span>
+        <div class="grow">
+          <ProfileMenu session={session} />
+          <span class="model-line">
+            {state?.firmware ? `${state.controller.toUpperCase()} ${state.firmware}` : 'No machine'}
+          </span>
+        </div>
+        <span class={`chip state-chip ${dotOf(state)}`} role="status">
+          <i class={`dot ${dotOf(state)}`} />
+          {stateWords(state)}
+        </span>
+      </div>
+      <section class="section" aria-label="Machine">
+        {state === null ? (
+          <ConnectMenu session={session} />
+        ) : (
+          <>
+            <Position state={state} />
+            <div class="machine-buttons">
+              <Button
+                icon="home"
+                disabledReason={cannot('home', 'Not now, or the machine has no switches')}
+                onClick={() => home(session)}
+              >
+                Home
+              </Button>
+              <Button
+                icon="frame"
+                disabledReason={
+                  plan === null
+                    ? 'Open a drawing first'
+                    : cannot('frame', 'Where the head stands is unknown, or the machine is busy')
+                }
+                onClick={() => frame(session)}
+              >
+                Frame
+              </Button>
+              {held ? (
+                <Button icon="play" onClick={() => resume(session)}>
+                  Go on
+                </Button>
+              ) : (
+                <Button
+                  icon="pause"
+                  disabledReason={cannot('pause', 'Nothing runs')}
+                  onClick={() => hold(session)}
+                >
+                  Hold
+                </Button>
+              )}
+              <Button kind="danger" icon="stop" class="stop-button" onClick={() => stop(session)}>
+                Stop
+              </Button>
+            </div>
+            <div class="machine-small-buttons">
+              {control.can('unlock') ? (
+                <Button size="small" onClick={() => void control.command({ do: 'unlock' })}>
+                  Unlock without homing
+                </Button>
+              ) : null}
+              <Button
+                size="small"
+                disabledReason={cannot('set_origin', 'Only while the machine rests')}
+                onClick={() => void control.command({ do: 'set_origin', axes: 'xy' })}
+              >
+                Set origin here
+              </Button>
+              {control.can('focus_off') ? (
+                <Button size="small" onClick={() => void control.command({ do: 'focus_off' })}>
+                  Laser off
+                </Button>
+              ) : (
+                <Button
+                  size="small"
+                  disabledReason={cannot('focus', 'Only while the laser rests')}
+                  onClick={() => focus(session)}
+                >
+                  Focus
+                </Button>
+              )}
+              <Button
+                size="small"
+                kind="quiet"
+                disabledReason={control.isBusy ? 'Stop the job first' : undefined}
+                onClick={() => void control.disconnect()}
+              >
+                Disconnect
+              </Button>
+            </div>
+            <Jog session={session} />
+          </>
+        )}
+      </section>
+    </>
+  );
+}
+
+function Position({ state }: { readonly state: MachineState }) {
+  const axis = (name: string, index: number) => (
+    <div>
+      <span>{name}</span>
+      <b>{state.position_known && state.work_mm ? formatFixed(state.work_mm[index] ?? 0, 2) : 'unknown'}</b>
+    </div>
+  );
+  return (
+    <div class="machine-position" role="group" aria-label="Where the head stands, in millimetres">
+      {axis('X', 0)}
+      {axis('Y', 1)}
+    </div>
+  );
+}
+
+const jogSpeed_mm_per_s = 40;
+const far_mm = 2000;
+
+/** Held down it moves, let go it stops; a short press moves one millimetre. */
+function Jog({ session }: { readonly session: MachinesSession }) {
+  const { control } = session;
+  const timer = useRef<ReturnType<typeof setTimeout> | undefined>(undefined);
+  const running = useRef(false);
+  const jog = (x: number, y: number, distance_mm: number) =>
+    void control.command({
+      do: 'jog',
+      x_mm: x * distance_mm,
+      y_mm: y * distance_mm,
+      speed_mm_per_s: jogSpeed_mm_per_s,
+    });
+  const press = (x: number, y: number) => {
+    clearTimeout(timer.current);
+    timer.current = setTimeout(() => {
+      running.current = true;
+      // As far as the bed reaches at most: the machine's own limits end it earlier.
+      const state = control.state.value;
+      const [bedX, bedY] = [session.value('bed_x_mm'), session.value('bed_y_mm')];
+      const place = state?.position_known && state.work_mm ? state.work_mm : null;
+      const room = (at: number | undefined, bed: unknown, direction: number) =>
+        place === null || at === undefined || typeof bed !== 'number'
+          ? far_mm
+          : Math.max(0, direction > 0 ? bed - at : at);
+      jog(x, y, x !== 0 ? room(place?.[0], bedX, x) : room(place?.[1], bedY, y));
+    }, 250);
+  };
+  const release = (x: number, y: number) => {
+    clearTimeout(timer.current);
+    if (running.current) void control.command({ do: 'jog_cancel' });
+    else jog(x, y, 1);
+    running.current = false;
+  };
+  const leave = () => {
+    clearTimeout(timer.current);
+    if (running.current) void control.command({ do: 'jog_cancel' });
+    running.current = false;
+  };
+  const reason = control.can('jog') ? undefined : 'Only while the machine rests';
+  const arrows: Record<string, readonly [number, number]> = {
+    ArrowLeft: [-1, 0],
+    ArrowRight: [1, 0],
+    ArrowUp: [0, 1],
+    ArrowDown: [0, -1],
+  };
+  const key = (name: string, x: number, y: number, area: string) => (
+    <button
+      type="button"
+      class="jog-key"
+      style={{ gridArea: area }}
+      aria-label={`Move ${name}`}
+      aria-disabled={reason ? true : undefined}
+      onPointerDown={(event) => {
+        if (reason || event.button !== 0) return;
+        event.currentTarget.setPointerCapture(event.pointerId);
+        press(x, y);
+      }}
+      onPointerUp={() => (reason ? undefined : release(x, y))}
+      onPointerCancel={leave}
+      onClick={(event) => {
+        // From the keyboard a click has no pointer.
+        if (!reason && event.detail === 0) jog(x, y, event.shiftKey ? 10 : 1);
+      }}
+    >
+      <Icon name="arrow" small />
+    </button>
+  );
+  return (
+    <div
+      class="jog"
+      role="group"
+      aria-label="Move the head. Arrow keys move one millimetre, with Shift ten"
+      onKeyDown={(event) => {
+        const by = arrows[event.key];
+        if (by === undefined || reason) return;
+        event.preventDefault();
+        jog(by[0], by[1], event.shiftKey ? 10 : 1);
+      }}
+    >
+      {key('back', 0, 1, 'up')}
+      {key('left', -1, 0, 'left')}
+      {key('right', 1, 0, 'right')}
+      {key('forward', 0, -1, 'down')}
+      <p class="jog-hint">Press: 1 mm. Hold: until let go.</p>
+    </div>
+  );
+}
+
+export function StartButton({ session }: { readonly session: MachinesSession }) {
+  const reason = startReason(session);
+  return (
+    <Button kind="filled" size="big" icon="play" disabledReason={reason} onClick={() => start(session)}>
+      Start the job
+    </Button>
+  );
+}

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What machines were given to do, and how it ended. Written before the first line leaves, so that a crash leaves its trace.
+import { signal } from '@preact/signals';
+
+export interface LoggedJob {
+  readonly id: string;
+  readonly name: string;
+  readonly machine: string;
+  readonly started_unix_s: number;
+  readonly seconds: number | null;
+  /** Null: the page was closed or crashed meanwhile. */
+  readonly ended: string | null;
+  readonly lines: number;
+  readonly lines_done: number;
+}
+
+const key = 'formwright.machine_log';
+const kept = 200;
+
+export class JobLog {
+  readonly #storage: Pick<Storage, 'getItem' | 'setItem'>;
+  readonly jobs = signal<readonly LoggedJob[]>([]);
+
+  constructor(storage: Pick<Storage, 'getItem' | 'setItem'>) {
+    this.#storage = storage;
+    try {
+      const stored: unknown = JSON.parse(storage.getItem(key) ?? '[]');
+      if (Array.isArray(stored)) this.jobs.value = stored as LoggedJob[];
+    } catch {
+      // A damaged log begins anew.
+    }
+  }
+
+  /** Adds the job, or changes the one with its id; newest first. */
+  put(job: LoggedJob): void {
+    this.jobs.value = [job, ...this.jobs.value.filter(({ id }) => id !== job.id)].slice(0, kept);
+    try {
+      this.#storage.setItem(key, JSON.stringify(this.jobs.value));
+    } catch {
+      // No room: the log lasts as long as the page.
+    }
+  }
+}

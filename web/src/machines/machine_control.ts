@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The machine that this page controls: at most one, in one tab at a time, whichever room is looked at.
+import type { ReadonlySignal } from '@preact/signals';
+import { computed, effect, signal } from '@preact/signals';
+import type { JobLog } from './job_log';
+import type { MachineLink } from './links/machine_link';
+import type { MachineCommand, MachineState } from './links/machine_state';
+import type { MachineProfile } from './profiles';
+
+const lockName = 'formwright.machine';
+
+/** Held while a machine is controlled; null where another tab holds it. */
+async function takeLock(): Promise<(() => void) | null> {
+  if (!('locks' in navigator)) return () => undefined;
+  return await new Promise((resolve) => {
+    void navigator.locks.request(lockName, { ifAvailable: true }, (lock) => {
+      if (lock === null) return resolve(null);
+      return new Promise<void>((release) => resolve(release));
+    });
+  });
+}
+
+export class MachineControl {
+  readonly #log: JobLog;
+  readonly link = signal<MachineLink | null>(null);
+  readonly connecting = signal(false);
+  /** What went wrong last, in a sentence. */
+  readonly problem = signal<string | null>(null);
+  readonly machineName = signal('');
+  /** The job the driver holds: its name, and what it was made from. */
+  readonly loaded = signal<string | null>(null);
+  readonly state: ReadonlySignal<MachineState | null> = computed(() => this.link.value?.state.value ?? null);
+  #release: (() => void) | null = null;
+  #jobId = '';
+
+  constructor(log: JobLog) {
+    this.#log = log;
+    effect(() => {
+      const gone = this.link.value?.gone.value ?? null;
+      if (gone !== null) this.#lost(gone);
+    });
+    effect(() => this.#writeLog());
+    addEventListener('beforeunload', (event) => {
+      if (this.isBusy) event.preventDefault();
+    });
+    // The page goes: the machine must not go on without anyone.
+    addEventListener('pagehide', () => {
+      if (this.isBusy) void this.link.value?.command({ do: 'pause' }).catch(() => undefined);
+    });
+  }
+
+  get isBusy(): boolean {
+    const job = this.state.value?.job;
+    return job !== null && job !== undefined && job.ended === null;
+  }
+
+  can(what: MachineCommand['do']): boolean {
+    return this.state.value?.can.includes(what) ?? false;
+  }
+
+  async connect(profile: MachineProfile, open: () => Promise<MachineLink | null>): Promise<void> {
+    if (this.link.value !== null || this.connecting.value) return;
+    this.connecting.value = true;
+    this.problem.value = null;
+    try {
+      this.#release = await takeLock();
+      if (this.#release === null)
+        throw new Error('Another tab of this page controls a machine: disconnect it there first.');
+      const link = await open();
+      this.machineName.value = profile.name;
+      this.loaded.value = null;
+      if (link === null) this.#unlock();
+      else this.link.value = link;
+    } catch (thrown) {
+      this.#unlock();
+      this.problem.value = thrown instanceof Error ? thrown.message : String(thrown);
+    } finally {
+      this.connecting.value = false;
+    }
+  }
+
+  async disconnect(): Promise<void> {
+    await this.link.value?.close();
+  }
+
+  /** Tells the machine; what it refuses becomes the problem. True where it was taken. */
+  async command(command: MachineCommand): Promise<boolean> {
+    const link = this.link.value;
+    if (link === null) return false;
+    this.problem.value = null;
+    try {
+      await link.command(command);
+      return true;
+    } catch (thrown) {
+      this.problem.value = thrown instanceof Error ? thrown.message : String(thrown);
+      return false;
+    }
+  }
+
+  /** Loads the job unless the machine has it already, and starts it. */
+  async start(name: string, key: string, job: Uint8Array, from_line?: number): Promise<boolean> {
+    const link = this.link.value;
+    if (link === null) return false;
+    try {
+      if (this.loaded.value !== key || from_line === undefined) await link.load(name, job);
+      this.loaded.value = key;
+    } catch (thrown) {
+      this.problem.value = thrown instanceof Error ? thrown.message : String(thrown);
+      return false;
+    }
+    this.#jobId = crypto.randomUUID();
+    return await this.command({
+      do: 'start',
+      confirmed: true,
+      ...(from_line === undefined ? {} : { from_line }),
+    });
+  }
+
+  #lost(why: string): void {
+    this.#writeLog();
+    this.link.value = null;
+    this.loaded.value = null;
+    if (why !== '')
+      this.problem.value = `${why} Where the head stands is unknown until the machine is homed again.`;
+    this.#unlock();
+  }
+  #unlock(): void {
+    this.#release?.();
+    this.#release = null;
+  }
+
+  #writeLog(): void {
+    const job = this.state.value?.job;
+    if (!job || this.#jobId === '') return;
+    const known = this.#log.jobs.peek().find(({ id }) => id === this.#jobId);
+    if (known && known.ended === job.ended && job.acknowledged - known.lines_done < 100 && job.ended === null)
+      return;
+    if (known && known.ended !== null) return;
+    this.#log.put({
+      id: this.#jobId,
+      name: job.name,
+      machine: this.machineName.peek(),
+      started_unix_s: known?.started_unix_s ?? Math.round(Date.now() / 1000),
+      seconds: job.ended === null ? null : job.seconds,
+      ended: job.ended,
+      lines: job.line_count,
+      lines_done: job.acknowledged,
+    });
+  }
+}

@@ -86,8 +86,12 @@ EMSCRIPTEN_KEEPALIVE std::size_t fw_machine_next_packet(int handle) {
   return packet.size();
 }
 
-EMSCRIPTEN_KEEPALIVE int fw_virtual_new(double now_s) {
-  virtual_machines[++last_handle].open(now_s);
+EMSCRIPTEN_KEEPALIVE int fw_virtual_new(double bed_x_mm, double bed_y_mm, double now_s) {
+  VirtualGrblOptions options;
+  options.origin_low = true;
+  options.travel_x_mm = bed_x_mm;
+  options.travel_y_mm = bed_y_mm;
+  virtual_machines.emplace(++last_handle, options).first->second.open(now_s);
   return last_handle;
 }
 EMSCRIPTEN_KEEPALIVE void fw_virtual_drop(int handle) { virtual_machines.erase(handle); }

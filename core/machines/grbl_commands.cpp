@@ -120,6 +120,10 @@ void GrblDriver::frame(const Json& command) {
 }
 
 void GrblDriver::set_origin(const Json& command) {
+  if (command.value("at", Json("head")) == "corner") {
+    if (!homes() || !position_known_) refuse("at", "Where the bed's corner is only a homed machine knows: home it first.");
+    return queue("G10L2P0X" + decimal(reach_low(0)) + "Y" + decimal(reach_low(1)));
+  }
   queue("G10L20P0" + machines_detail::zero_words(command, ""));
 }
 
@@ -172,6 +176,13 @@ void GrblDriver::override_speeds(const Json& command) {
     steps(number_of(command, "power_percent", 10, 200, 100), overrides_[2], char(0x99), char(0x9a), char(0x9b), char(0x9c), char(0x9d));
 }
 
+double GrblDriver::reach_low(int axis) const {
+  // Machine coordinates run from the switches to 0 or, where homing sets the origin, from 0 away from them.
+  const bool origin_at_switch = option_letters_.find('Z') != std::string::npos;
+  const bool homes_low = (static_cast<int>(setting(23, 0)) >> axis) & 1;
+  return origin_at_switch && homes_low ? 0 : -setting(130 + axis, axis == 0 ? options_.bed_x_mm : options_.bed_y_mm);
+}
+
 void GrblDriver::check_reach(const GcodeBounds& bounds) const {
   static constexpr char names[] = {'x', 'y'};
   const double bed[] = {setting(130, options_.bed_x_mm), setting(131, options_.bed_y_mm)};
@@ -181,10 +192,7 @@ void GrblDriver::check_reach(const GcodeBounds& bounds) const {
     if (length > bed[axis] + 1e-3)
       refuse("job", "The job is " + decimal(length) + " mm long in " + name + ", the machine reaches " + decimal(bed[axis]) + " mm: make it smaller or turn it.");
     if (!homes() || !position_known_ || !offset_mm_) continue;
-    // Machine coordinates run from the switches to 0 or, where homing sets the origin, from 0 away from them.
-    const bool origin_at_switch = option_letters_.find('Z') != std::string::npos;
-    const bool homes_low = (static_cast<int>(setting(23, 0)) >> axis) & 1;
-    const double low = origin_at_switch && homes_low ? 0 : -bed[axis], high = low + bed[axis], offset = (*offset_mm_)[axis];
+    const double low = reach_low(static_cast<int>(axis)), high = low + bed[axis], offset = (*offset_mm_)[axis];
     if (bounds.low_mm[axis] + offset < low - 1e-3 || bounds.high_mm[axis] + offset > high + 1e-3)
       refuse("job", "The job would leave the bed in " + name + ": from the origin it may go from " + decimal(low - offset) + " to " + decimal(high - offset) +
                         " mm, and goes from " + decimal(bounds.low_mm[axis]) + " to " + decimal(bounds.high_mm[axis]) + " mm. Move the origin or the job.");

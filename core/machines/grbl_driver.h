@@ -63,6 +63,8 @@ class GrblDriver final : public MachineDriver {
   void focus_off();
   void send_by_hand(const Json& command);
   void override_speeds(const Json& command);
+  /// Where the bed begins along x or y, in machine coordinates.
+  double reach_low(int axis) const;
   void check_reach(const GcodeBounds& bounds) const;
   std::vector<std::string> way_back_to(int index) const;
   int careful_line() const;

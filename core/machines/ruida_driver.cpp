@@ -17,11 +17,11 @@ constexpr std::size_t datagram_bytes = 1470;
 constexpr unsigned char acknowledged = 0xcc, refused = 0xcf;
 constexpr double resend_s = 1, asking_s = 0.3, rest_s = 1.5, absent = std::numeric_limits<double>::quiet_NaN();
 constexpr int most_repeats = 4, card_id = 0x057e, machine_status = 0x0400, x_position = 0x0421, y_position = 0x0431;
-constexpr long status_moving = 0x01000000, status_running = 1;
+constexpr std::int64_t status_moving = 0x01000000, status_running = 1;
 
 /// A signed number in seven bits a byte, the highest first.
 std::string coordinate(double mm) {
-  const long um = std::lround(mm * 1000);
+  const std::int64_t um = std::llround(mm * 1000);
   std::string bytes;
   for (int shift = 28; shift >= 0; shift -= 7) bytes += static_cast<char>((um >> shift) & 0x7f);
   return bytes;
@@ -135,7 +135,7 @@ void RuidaDriver::received(ByteView datagram, double now_s) {
   }
   // A reply to a question: DA 01, address, five bytes of seven bits.
   if (plain.size() >= 9 && plain[0] == 0xda && plain[1] == 0x01) {
-    long value = 0;
+    std::int64_t value = 0;
     for (std::size_t i = 4; i < 9; ++i) value = value << 7 | (plain[i] & 0x7f);
     hear_memory(plain[2] << 8 | plain[3], value);
   }
@@ -147,9 +147,9 @@ void RuidaDriver::received(ByteView datagram, double now_s) {
   if (homing_ && resting && now_s - homing_s_ > rest_s) homing_ = false, homed_ = true;
 }
 
-void RuidaDriver::hear_memory(int address, long value) {
+void RuidaDriver::hear_memory(int address, std::int64_t value) {
   if (address == machine_status) status_ = value;
-  if (value & (1l << 34)) value -= 1l << 35;
+  if (value & (std::int64_t{1} << 34)) value -= std::int64_t{1} << 35;
   if (address == x_position) position_mm_[0] = 1e-3 * static_cast<double>(value);
   if (address == y_position) position_mm_[1] = 1e-3 * static_cast<double>(value);
 }

@@ -3,6 +3,7 @@
 // Ruida controllers over UDP: the board answers on port 40200 what arrives on 50200. A datagram is at most 1470 bytes: a 16-bit big-endian
 // sum of the bytes behind it, and those bytes scrambled ("swizzled") with the model's number. Every datagram is acknowledged.
 #include <array>
+#include <cstdint>
 #include <deque>
 #include <optional>
 
@@ -33,7 +34,7 @@ class RuidaDriver final : public MachineDriver {
   bool job_active() const { return job_ && job_->ended.empty(); }
   void queue(std::string_view plain) { queue_.push_back(ruida_datagram(plain)); }
   void send_next(double now_s);
-  void hear_memory(int address, long value);
+  void hear_memory(int address, std::int64_t value);
   void end_job(const char* how, double now_s);
   std::vector<std::string> possible_commands() const;
   MachinePhase phase() const;
@@ -46,7 +47,7 @@ class RuidaDriver final : public MachineDriver {
   std::deque<Bytes> queue_;
   std::optional<Bytes> unconfirmed_;
   std::size_t job_left_ = 0;
-  long status_ = 0;
+  std::int64_t status_ = 0;
   int repeats_ = 0;
   std::array<std::optional<double>, 2> position_mm_;
   bool paused_ = false, homed_ = false, homing_ = false, seen_running_ = false;

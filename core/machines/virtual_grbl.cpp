@@ -18,7 +18,7 @@ double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) 
 VirtualGrbl::VirtualGrbl(const VirtualGrblOptions& options) : options_(options) {
   const double rapid = 60 * options.rapid_mm_per_s;
   settings_ = {{0, 10},   {1, 25},   {2, 0},   {3, 0},     {4, 0},     {5, 0},   {6, 0},   {10, 1},  {11, 0.01}, {12, 0.002}, {13, 0},
-               {20, options.soft_limits ? 1 : 0}, {21, 0}, {22, options.homes ? 1 : 0}, {23, 0}, {24, 100}, {25, 1500}, {26, 250}, {27, 1},
+               {20, options.soft_limits ? 1 : 0}, {21, 0}, {22, options.homes ? 1 : 0}, {23, options.origin_low ? 3 : 0}, {24, 100}, {25, 1500}, {26, 250}, {27, 1},
                {30, 1000}, {31, 0},  {32, options.laser_mode ? 1 : 0},       {100, 80}, {101, 80}, {102, 400},
                {110, rapid}, {111, rapid}, {112, 600}, {120, options.acceleration_mm_per_s2}, {121, options.acceleration_mm_per_s2}, {122, 50},
                {130, options.travel_x_mm}, {131, options.travel_y_mm}, {132, options.travel_z_mm}};
@@ -159,7 +159,7 @@ void VirtualGrbl::step(double dt_s) {
   }
   if (state_ == "Home") {
     if (time_s_ < homes_at_s_) return;
-    position_mm_ = planned_mm_ = {-settings_[27], -settings_[27], -settings_[27]};
+    position_mm_ = planned_mm_ = options_.origin_low ? std::array<double, 3>{0, 0, 0} : std::array<double, 3>{-settings_[27], -settings_[27], -settings_[27]};
     locked_ = false;
     state_ = "Idle";
     answer(0);

@@ -19,6 +19,7 @@ namespace formwright {
 struct VirtualGrblOptions {
   double travel_x_mm = 400, travel_y_mm = 400, travel_z_mm = 80;
   bool homes = true, laser_mode = true, soft_limits = false;
+  bool origin_low = false;  // homes to its lower left corner and calls that 0, as most small lasers do; else to the upper right
   double boot_s = 0.6, eeprom_s = 0.02, homing_s = 2.5;
   double acceleration_mm_per_s2 = 500;
   double rapid_mm_per_s = 150;

@@ -43,7 +43,7 @@ int VirtualGrbl::act_on_setting(const std::string& line) {
     return 0;
   }
   if (line == "$I") {
-    output_ += "[VER:1.1h.20190825:Practice]\r\n[OPT:V,15,128]\r\n";
+    output_ += std::string("[VER:1.1h.20190825:Practice]\r\n[OPT:V") + (options_.origin_low ? "Z" : "") + ",15,128]\r\n";
     return 0;
   }
   if (line == "$G") {
@@ -79,7 +79,7 @@ int VirtualGrbl::act_on_gcode(const std::string& line, bool jog) {
   Modes next = modes_;
   std::array<std::optional<double>, 3> target;
   double i = 0, j = 0, p = 0;
-  bool arc_centre = false, dwell = false, set_offset = false, pause = false, end = false, machine = false;
+  bool arc_centre = false, dwell = false, set_offset = false, offset_absolute = false, pause = false, end = false, machine = false;
   int groups = 0;
   for (const char* at = line.c_str(); *at != '\0';) {
     const char letter = *at++;
@@ -125,7 +125,8 @@ int VirtualGrbl::act_on_gcode(const std::string& line, bool jog) {
         next.power = value;
         break;
       case 'P': p = value; break;
-      case 'L': case 'N': case 'T': break;
+      case 'L': offset_absolute = whole == 2; break;
+      case 'N': case 'T': break;
       default: return 20;
     }
   }
@@ -135,7 +136,7 @@ int VirtualGrbl::act_on_gcode(const std::string& line, bool jog) {
     if (target[k]) to[k] = next.relative ? planned_mm_[k] + *target[k] : *target[k] + (machine ? 0 : next.offset_mm[k]);
   if (set_offset) {
     for (std::size_t k = 0; k < 3; ++k)
-      if (target[k]) next.offset_mm[k] = planned_mm_[k] - *target[k];
+      if (target[k]) next.offset_mm[k] = offset_absolute ? *target[k] : planned_mm_[k] - *target[k];
     modes_ = next;
     deaf_until_s_ = time_s_ + options_.eeprom_s;
     reports_ = 0;
@@ -148,7 +149,7 @@ int VirtualGrbl::act_on_gcode(const std::string& line, bool jog) {
   if (moves && settings_[20] != 0) {
     const double travel[] = {settings_[130], settings_[131], settings_[132]};
     for (std::size_t k = 0; k < 3; ++k)
-      if (to[k] > 0 || to[k] < -travel[k]) {
+      if (const double low = options_.origin_low && k < 2 ? 0 : -travel[k]; to[k] < low || to[k] > low + travel[k]) {
         if (jog) return 15;
         alarm(2);
         return -1;

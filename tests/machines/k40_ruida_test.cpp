@@ -199,7 +199,7 @@ class VirtualRuida {
       replies.push_back({std::byte{0xc6}});
       if (plain[0] == '\xda') {
         std::string reply = std::string("\xda\x01") + plain.substr(2, 2);
-        const long value = plain[2] == 4 && plain[3] == 0 ? 0 : 123456;
+        const std::int64_t value = plain[2] == 4 && plain[3] == 0 ? 0 : 123456;
         for (int shift = 28; shift >= 0; shift -= 7) reply += static_cast<char>(value >> shift & 0x7f);
         Bytes bytes;
         for (const char c : reply) bytes.push_back(std::byte{ruida_swizzled(static_cast<unsigned char>(c))});

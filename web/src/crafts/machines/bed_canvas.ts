@@ -80,8 +80,7 @@ function drawGround(
   context.fillStyle = colour('--surface');
   context.fillRect(left, low - h, w, h);
   context.lineWidth = 1;
-  const longest = Math.max(...bed_mm);
-  const step = [5, 10, 20, 50, 100, 200, 500].find((mm) => mm * scale >= 40 || mm * 12 >= longest) ?? 1000;
+  const step = [5, 10, 20, 50, 100, 200, 500].find((mm) => mm * scale >= 34) ?? 1000;
   context.font = `11px ${font}`;
   context.strokeStyle = colour('--line');
   context.fillStyle = colour('--ink-3');

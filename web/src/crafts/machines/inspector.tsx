@@ -5,7 +5,7 @@ import type { JsonObject } from '../../jobs/contract';
 import { layersOf } from '../../machines/toolpath';
 import { Button, Dialog, formatNumber, withUnit } from '../../ui';
 import { ParameterPanel } from '../common/parameter_panel';
-import { MachinePanel, StartButton } from './machine_panel';
+import { MachinePanel, StartAndStop } from './machine_panel';
 import { OtherMachines } from './other_machines';
 import type { MachinesSession } from './machines_session';
 
@@ -42,7 +42,7 @@ export function Inspector({ session }: { readonly session: MachinesSession }) {
         <OtherMachines session={session} />
       </div>
       <div class="inspector-foot">
-        <StartButton session={session} />
+        <StartAndStop session={session} />
       </div>
     </>
   );

@@ -23,7 +23,7 @@ const phaseWords: Record<MachineState['phase'], string> = {
 };
 
 export function stateWords(state: MachineState | null): string {
-  if (state === null) return 'Not connected';
+  if (state === null) return 'Offline';
   if (state.connection === 'greeting') return 'Connecting';
   if (state.connection === 'silent') return 'No answer';
   if (state.phase === 'alarm' && state.alarm)
@@ -99,9 +99,18 @@ export function MachinePanel({ session }: { readonly session: MachinesSession })
                   Hold
                 </Button>
               )}
-              <Button kind="danger" icon="stop" class="stop-button" onClick={() => stop(session)}>
-                Stop
-              </Button>
+              {control.can('focus_off') ? (
+                <Button icon="sun" onClick={() => void control.command({ do: 'focus_off' })}>
+                  Laser off
+                </Button>
+              ) : (
+                <Button
+                  disabledReason={cannot('focus', 'Only while the laser rests')}
+                  onClick={() => focus(session)}
+                >
+                  Focus
+                </Button>
+              )}
             </div>
             <div class="machine-small-buttons">
               {control.can('unlock') ? (
@@ -116,19 +125,11 @@ export function MachinePanel({ session }: { readonly session: MachinesSession })
               >
                 Set origin here
               </Button>
-              {control.can('focus_off') ? (
-                <Button size="small" onClick={() => void control.command({ do: 'focus_off' })}>
-                  Laser off
+              {control.can('set_origin') && state.position_known && state.controller === 'grbl' ? (
+                <Button size="small" onClick={() => void control.command({ do: 'set_origin', at: 'corner' })}>
+                  Origin at the bed’s corner
                 </Button>
-              ) : (
-                <Button
-                  size="small"
-                  disabledReason={cannot('focus', 'Only while the laser rests')}
-                  onClick={() => focus(session)}
-                >
-                  Focus
-                </Button>
-              )}
+              ) : null}
               <Button
                 size="small"
                 kind="quiet"
@@ -252,11 +253,31 @@ function Jog({ session }: { readonly session: MachinesSession }) {
   );
 }
 
-export function StartButton({ session }: { readonly session: MachinesSession }) {
-  const reason = startReason(session);
+/** Always in sight, wherever one has scrolled: Stop stands here as long as a machine is connected. */
+export function StartAndStop({ session }: { readonly session: MachinesSession }) {
+  const connected = session.control.link.value !== null;
   return (
-    <Button kind="filled" size="big" icon="play" disabledReason={reason} onClick={() => start(session)}>
-      Start the job
-    </Button>
+    <div class={connected ? 'start-and-stop' : undefined}>
+      <Button
+        kind="filled"
+        size="big"
+        icon="play"
+        disabledReason={startReason(session)}
+        onClick={() => start(session)}
+      >
+        {connected ? 'Start' : 'Start the job'}
+      </Button>
+      {connected ? (
+        <Button
+          kind="danger"
+          size="big"
+          icon="stop"
+          title="Stop at once (Ctrl + .)"
+          onClick={() => stop(session)}
+        >
+          Stop
+        </Button>
+      ) : null}
+    </div>
   );
 }

@@ -175,10 +175,11 @@ export async function openUsbEnd(usb: UsbLike, index: number, listener: EndListe
 /** A machine to practise on; its time is the worker's. */
 export function openVirtualEnd(
   module: MachineModule,
+  bed_mm: readonly [number, number],
   now_s: () => number,
   listener: EndListener,
 ): MachineEnd & { trip(): void } {
-  const handle = module.newVirtual(now_s());
+  const handle = module.newVirtual(bed_mm, now_s());
   const hear = () => {
     const said = module.advanceVirtual(handle, now_s());
     if (said.length > 0) listener.received(said);

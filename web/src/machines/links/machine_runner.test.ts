@@ -50,14 +50,14 @@ describe.skipIf(!existsSync(module))('a machine in its worker', () => {
     expect(await page.command({ do: 'start', confirmed: true })).toMatch(/No job/);
     expect(await page.command({ do: 'home', confirmed: true })).toBeNull();
     await page.until(() => page.state.position_known && page.state.phase === 'idle');
-    const job = new TextEncoder().encode('G21G90\nM4S300\nG1X-20Y-20F6000\nG1X-40\nM5\n');
+    const job = new TextEncoder().encode('G21G90\nM4S300\nG1X20Y20F6000\nG1X40\nM5\n');
     expect(await page.ask({ type: 'load', name: 'line.gcode', job })).toBeNull();
     expect(await page.command({ do: 'start', confirmed: false })).toMatch(/confirmed/);
     expect(await page.command({ do: 'start', confirmed: true })).toBeNull();
     await page.until(() => page.state.job?.ended === 'done');
-    expect(page.state.work_mm?.[0]).toBeCloseTo(-40, 3);
+    expect(page.state.work_mm?.[0]).toBeCloseTo(40, 3);
     const events = page.said.flatMap((said) => (said.type === 'state' ? said.events : []));
-    expect(events.some(({ event, text }) => event === 'sent' && text === 'G1X-40')).toBe(true);
+    expect(events.some(({ event, text }) => event === 'sent' && text === 'G1X40')).toBe(true);
   });
 
   it('says that a port is gone, and what that means', { timeout: 20_000 }, async () => {

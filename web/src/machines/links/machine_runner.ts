@@ -16,6 +16,11 @@ export interface Ports {
   readonly usb?: UsbLike;
 }
 
+const bedOf = ({ bed_x_mm, bed_y_mm }: Readonly<Record<string, unknown>>): readonly [number, number] => [
+  typeof bed_x_mm === 'number' ? bed_x_mm : 400,
+  typeof bed_y_mm === 'number' ? bed_y_mm : 400,
+];
+
 export class MachineRunner {
   readonly #post: (message: FromMachineWorker) => void;
   readonly #ports: Ports;
@@ -64,7 +69,8 @@ export class MachineRunner {
       gone: (why) => this.#gone(why),
     };
     const { serial, usb } = this.#ports;
-    if (end.kind === 'virtual') this.#end = openVirtualEnd(this.#module, this.#now_s, listener);
+    if (end.kind === 'virtual')
+      this.#end = openVirtualEnd(this.#module, bedOf(options), this.#now_s, listener);
     else if (end.kind === 'serial' && serial)
       this.#end = await openSerialEnd(serial, end.index, end.baud, listener);
     else if (end.kind === 'usb' && usb) this.#end = await openUsbEnd(usb, end.index, listener);

@@ -60,7 +60,7 @@ export type MachineCommand =
       readonly z_mm?: number;
       readonly speed_mm_per_s: number;
     }
-  | { readonly do: 'set_origin'; readonly axes: string }
+  | { readonly do: 'set_origin'; readonly axes?: string; readonly at?: 'head' | 'corner' }
   | { readonly do: 'go_to'; readonly x_mm: number; readonly y_mm: number; readonly speed_mm_per_s: number }
   | {
       readonly do: 'frame';

@@ -241,6 +241,16 @@ export function ConnectMenu({ session }: { readonly session: MachinesSession }) 
           Connect by cable
         </Button>
       )}
+      {controller !== 'k40' && controller !== 'ruida' && serial === undefined ? (
+        <Button
+          size="small"
+          kind="quiet"
+          disabledReason={busy}
+          onClick={() => connect(() => openSerial(options(), true))}
+        >
+          Choose another port
+        </Button>
+      ) : null}
       {bridgeMachines(session, controller).map(({ id, name, open }) => (
         <Button key={id} icon="machines" disabledReason={busy} onClick={() => connect(open)}>
           {name}

@@ -28,15 +28,15 @@ const cancelled = (thrown: unknown): null => {
   throw thrown;
 };
 
-/** A serial machine, chosen by the person (`again`: one that was allowed before); null where none was chosen. */
-export async function openSerial(options: Options, again = false): Promise<MachineLink | null> {
+/** A serial machine: the one that was allowed before, or one that the person chooses now; null where none was chosen. */
+export async function openSerial(options: Options, choose = false): Promise<MachineLink | null> {
   const { serial } = chooser();
   if (serial === undefined)
     throw new Error(
       'This browser has no serial ports: use Chrome or Edge, or connect through the native worker.',
     );
   const before = await serial.getPorts();
-  const port = again && before.length === 1 ? before[0] : await serial.requestPort().catch(cancelled);
+  const port = !choose && before.length === 1 ? before[0] : await serial.requestPort().catch(cancelled);
   if (!port) return null;
   const index = (await serial.getPorts()).indexOf(port);
   const baud = typeof options['baud'] === 'number' ? options['baud'] : 115200;

@@ -4,4 +4,5 @@
 
 namespace formwright {
 Operation laser_job_operation();
+Operation test_grid_operation();
 }

@@ -25,6 +25,7 @@ const std::vector<Operation>& operations() {
       zippable_plan_operation(),
       zippable_simulate_operation(),
       laser_job_operation(),
+      mill_job_operation(),
       test_grid_operation(),
       import_operation(), simplify_operation(), subdivide_operation(), convert_operation()};
   return all;

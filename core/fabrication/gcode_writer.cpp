@@ -88,18 +88,23 @@ Bytes write_laser_gcode(Toolpath& path, const LaserMachineOptions& machine) {
   return text.bytes();
 }
 
-Bytes write_mill_gcode(Toolpath& path, const MachineOptions& machine, double spindle_rpm) {
+Bytes write_mill_gcode(Toolpath& path, const MachineOptions& machine, double spindle_rpm, std::size_t tool_change) {
   const bool marlin = machine.controller == Controller::marlin;
   GcodeText text;
   text.line("; mill job in mm by Formwright");
   text.line("G21");
   text.line("G90");
   if (!marlin) text.line("G94");
-  text.command("M3").word('S', std::round(spindle_rpm));
-  text.end_row();
+  const auto spindle_on = [&] {
+    text.command("M3").word('S', std::round(spindle_rpm));
+    text.end_row();
+  };
+  spindle_on();
   std::string last_heading;
   double feed = -1;
-  for (ToolMove& move : path.moves) {
+  for (std::size_t m = 0; m < path.moves.size(); ++m) {
+    ToolMove& move = path.moves[m];
+    bool change = tool_change > 0 && m == tool_change;
     if (move.work && heading(move) != last_heading) text.line(last_heading = heading(move));
     move.lines.assign(1, text.lines());
     for (std::size_t i = 1; i < move.points_mm.size(); ++i) {
@@ -108,6 +113,13 @@ Bytes write_mill_gcode(Toolpath& path, const MachineOptions& machine, double spi
       if ((move.work || marlin) && move.speed_mm_per_s != feed) text.word('F', 60 * (feed = move.speed_mm_per_s));
       text.end_row();
       move.lines.push_back(text.lines());
+      if (change && move.points_mm[i].z() >= 0) {
+        change = false;
+        text.line("M5");
+        text.line("; change to the tool that finishes, set z to 0 on the stock, resume");
+        text.line("M0");
+        spindle_on();
+      }
     }
   }
   text.line("M5");

@@ -186,7 +186,7 @@ LaserPlan run_strokes(const std::vector<std::vector<LaserStroke>>& layers, const
         layer.seconds += move.times_s.back() - move.times_s.front();
         for (std::size_t i = 1; i < move.points_mm.size(); ++i) layer.length_mm += (move.points_mm[i] - move.points_mm[i - 1]).norm();
       }
-  plan.misfits = find_misfits(plan.path, machine, kerf_mm);
+  plan.misfits = find_misfits(plan.path, machine, kerf_mm, kerf_mm);
   return plan;
 }
 

@@ -97,7 +97,7 @@ void run_stroke(ToolpathBuilder& builder, const LaserStroke& stroke, int first) 
     move.pass = pass + 1;
     move.power_percent = stroke.power_percent;
     move.speed_mm_per_s = stroke.speed_mm_per_s;
-    move.points_mm = at_height(along, -pass * stroke.step_down_mm);
+    move.points_mm = at_height(along, stroke.z_mm - pass * stroke.step_down_mm);
     builder.work(std::move(move));
   };
   if (!stroke.closed) {
@@ -113,7 +113,7 @@ void run_stroke(ToolpathBuilder& builder, const LaserStroke& stroke, int first) 
       const double end = last ? length + std::min(stroke.overcut_mm, length) : length;
       double from = 0;
       if (last && stroke.tabs > 0) {
-        const double half = stroke.tab_gap_mm / 2, z = -pass * stroke.step_down_mm;
+        const double half = stroke.tab_gap_mm / 2, z = stroke.z_mm - pass * stroke.step_down_mm;
         for (const double middle : place_tabs(points, stroke.tabs, stroke.tab_gap_mm)) {
           work(ring.piece(from, middle - half), pass);
           builder.travel_along(at_height(ring.piece(middle - half, middle + half), z));

@@ -15,6 +15,7 @@ struct LaserStroke {
   bool closed = false;
   double power_percent = 0, speed_mm_per_s = 1;
   int passes = 1;
+  double z_mm = 0;           // of the first pass, over the material's surface
   double step_down_mm = 0;   // lower with every further pass
   int tabs = 0;              // gaps of a closed path's last pass
   double tab_gap_mm = 0;     // of the beam's middle

@@ -75,20 +75,20 @@ void ToolpathBuilder::work(ToolMove move) {
   path_.moves.push_back(std::move(move));
 }
 
-std::vector<std::string> find_misfits(const Toolpath& path, const MachineOptions& machine, double width_mm) {
+std::vector<std::string> find_misfits(const Toolpath& path, const MachineOptions& machine, double width_mm, double edge_width_mm) {
   const auto zones = read_no_go(machine.no_go);
   double beyond[4] = {0, 0, 0, 0};
   constexpr const char* edges[4] = {"left", "right", "lower", "upper"};
   std::vector<std::string> misfits;
   std::vector<bool> told(zones.size(), false);
   for (const ToolMove& move : path.moves) {
-    const double half_mm = move.work ? width_mm / 2 : 0;
+    const double half_mm = move.work ? width_mm / 2 : 0, edge_mm = move.work ? edge_width_mm / 2 : 0;
     for (std::size_t i = 0; i < move.points_mm.size(); ++i) {
       const Vec2 p = move.points_mm[i].head<2>();
-      beyond[0] = std::max(beyond[0], half_mm - p.x());
-      beyond[1] = std::max(beyond[1], p.x() + half_mm - machine.bed_x_mm);
-      beyond[2] = std::max(beyond[2], half_mm - p.y());
-      beyond[3] = std::max(beyond[3], p.y() + half_mm - machine.bed_y_mm);
+      beyond[0] = std::max(beyond[0], edge_mm - p.x());
+      beyond[1] = std::max(beyond[1], p.x() + edge_mm - machine.bed_x_mm);
+      beyond[2] = std::max(beyond[2], edge_mm - p.y());
+      beyond[3] = std::max(beyond[3], p.y() + edge_mm - machine.bed_y_mm);
       if (i == 0) continue;
       const Vec2 before = move.points_mm[i - 1].head<2>();
       for (std::size_t z = 0; z < zones.size(); ++z)

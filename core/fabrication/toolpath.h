@@ -60,8 +60,9 @@ struct MotionLimits {
 /// planner.c); at rest at both ends.
 void time_moves(Toolpath& path, const MotionLimits& limits);
 
-/// Sentences for everything that leaves the bed or touches a no-go zone, the tool being `width_mm` wide where it works; empty: it fits.
-std::vector<std::string> find_misfits(const Toolpath& path, const MachineOptions& machine, double width_mm);
+/// Sentences for everything that touches a no-go zone, the tool being `width_mm` wide where it works, or leaves the bed, by `edge_width_mm`
+/// (a beam burns over the edge; of a mill the axis must stay within the machine's reach). Empty: it fits.
+std::vector<std::string> find_misfits(const Toolpath& path, const MachineOptions& machine, double width_mm, double edge_width_mm);
 
 struct ToolpathBounds {
   double x0_mm = 0, y0_mm = 0, x1_mm = 0, y1_mm = 0;

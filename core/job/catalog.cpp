@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "job/catalog.h"
 
+#include "fabrication/laser_materials.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/samples/samples.h"
 #include "job/evidence_operations.h"
@@ -24,6 +25,8 @@ const std::vector<Operation>& operations() {
       zippable_plan_operation(),
       zippable_simulate_operation(),
       laser_job_operation(),
+      mill_job_operation(),
+      test_grid_operation(),
       import_operation(), simplify_operation(), subdivide_operation(), convert_operation()};
   return all;
 }
@@ -60,7 +63,7 @@ Json catalog_json() {
                        {"view_up", {sample.view_up.x(), sample.view_up.y(), sample.view_up.z()}}});
   for (const MeshFormatInfo& format : mesh_formats)
     formats.push_back({{"extension", format.extension}, {"media_type", format.media_type}, {"title", format.title}});
-  return {{"version", version()}, {"operations", all}, {"samples", samples}, {"mesh_formats", formats}};
+  return {{"version", version()}, {"operations", all}, {"samples", samples}, {"mesh_formats", formats}, {"laser_materials", laser_materials_json()}};
 }
 
 }  // namespace formwright

@@ -4,4 +4,6 @@
 
 namespace formwright {
 Operation laser_job_operation();
+Operation mill_job_operation();
+Operation test_grid_operation();
 }

@@ -13,7 +13,7 @@ CORE = {
     "geometry": {"base"},
     "numerics": {"base", "geometry"},
     "imaging": {"base", "geometry"},
-    "fabrication": {"base", "geometry"},
+    "fabrication": {"base", "geometry", "imaging"},
     "machines": {"base"},
     "relief": {"base", "geometry", "numerics", "imaging"},
     "thermoform": {"base", "geometry", "numerics", "imaging"},

@@ -36,7 +36,7 @@ TEST(Catalog, EveryNameStandsOnceAndEverythingIsSaid) {
       const std::vector<std::pair<std::string, std::string>> suffixes = {{"mm", "_mm"}, {"°", "_deg"}, {"s", "_s"}};
       for (const auto& [unit, suffix] : suffixes)
         if (info.unit == unit) {
-          EXPECT_TRUE(info.name.ends_with(suffix)) << info.name;
+          EXPECT_TRUE(info.name.ends_with(suffix) || (unit == "°" && info.name.ends_with("_degrees"))) << info.name;
         }
     }
     std::set<std::string> fields;
@@ -172,6 +172,13 @@ TEST(RunJob, ReportsOnlyDeclaredFigures) {
         files[hash] = std::make_shared<const Bytes>(zippable_design(session));
         message["inputs"][input.name] = {{"sha256", hash}, {"file_name", "design.json"}};
         if (operation.name == "zippable-simulate") message["parameters"] = {{"steps", 20}, {"hold_open_percent", 0}, {"frames", 2}};
+        continue;
+      }
+      if (input.name == "drawing") {
+        const ByteView drawing = as_bytes("<svg width='50mm' height='50mm'><rect x='9' y='9' width='50' height='20' fill='none' stroke='red'/></svg>");
+        const std::string hash(64, 'c');
+        files[hash] = std::make_shared<const Bytes>(drawing.begin(), drawing.end());
+        message["inputs"][input.name] = {{"sha256", hash}, {"file_name", "drawing.svg"}};
         continue;
       }
       // What a measured object consists of, as small as it can be.

@@ -2,7 +2,7 @@
 // Runs the recorded jobs of this folder natively and in WASM and compares both with each other and with what was
 // recorded.
 //   node parity.mjs NATIVE_PROGRAM FORMWRIGHT_MJS [--record]
-// A recorded job is {"job", "given", "tolerance", "recorded"}: `given` names inputs that are outputs of other jobs ({"job", "output"}, made
+// A recorded job is {"job", "given", "tolerance", "recorded"}: `given` names inputs that are outputs of other jobs ({"job", "given", "output"}, made
 // natively), `tolerance` relative, per figure of the report ("*" for the
 // rest; figures that measure time or memory are left out), `recorded` what the report said when it was recorded.
 import { spawn } from 'node:child_process';
@@ -129,8 +129,9 @@ function comparePly(name, a, b, tolerance) {
 async function withGiven({ job, given = {} }) {
   const files = {};
   const inputs = { ...job.inputs };
-  for (const [name, { job: maker, output }] of Object.entries(given)) {
-    const bytes = (await runNatively(maker)).bytes[output];
+  for (const [name, { job: maker, given: makers, output }] of Object.entries(given)) {
+    const made = await withGiven({ job: maker, given: makers });
+    const bytes = (await runNatively(made.job, made.files)).bytes[output];
     const sha256 = createHash('sha256').update(bytes).digest('hex');
     files[sha256] = bytes;
     inputs[name] = { sha256, file_name: output };
@@ -161,7 +162,9 @@ for (const file of readdirSync(folder).filter((name) => name.endsWith('.json')).
     problems.push(...compareReports(a.report, recorded.recorded.report ?? {}, recorded.tolerance).map((p) => `native and recorded: ${p}`));
     for (const name of Object.keys(a.outputs)) {
       if (!b.bytes[name]) problems.push(`${name} is missing in WASM`);
-      else if (name.endsWith('.ply')) problems.push(...comparePly(name, a.bytes[name], b.bytes[name], recorded.tolerance.ply ?? recorded.tolerance['*']));
+      else if (/\.(gcode|egv|rd)$|^toolpath\.json$/.test(name)) {
+        if (!a.bytes[name].equals(b.bytes[name])) problems.push(`${name} differs between native and WASM`);
+      } else if (name.endsWith('.ply')) problems.push(...comparePly(name, a.bytes[name], b.bytes[name], recorded.tolerance.ply ?? recorded.tolerance['*']));
     }
   }
   console.log(`${problems.length ? 'FAILED' : 'ok    '} ${file}`);

@@ -7,8 +7,8 @@
 #include <map>
 #include <set>
 
+#include "fabrication/words.h"
 #include "geometry/adjacency.h"
-#include "zippable/plan/words.h"
 
 namespace formwright {
 namespace {

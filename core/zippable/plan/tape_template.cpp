@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "zippable/plan/words.h"
+#include "fabrication/words.h"
 
 namespace formwright {
 namespace {

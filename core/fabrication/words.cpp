@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "zippable/plan/words.h"
+#include "fabrication/words.h"
 
 #include "imaging/drawing.h"
 

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include "fabrication/gcode_writer.h"
+#include "fabrication/mill_plan.h"
+#include "fabrication/toolpath_preview.h"
+#include "geometry/io/mesh_io.h"
+#include "geometry/io/png16.h"
+#include "job/fabrication_operations.h"
+#include "job/fabrication_result.h"
+#include "job/model_input.h"
+#include "relief/height_map.h"
+
+namespace formwright {
+namespace {
+
+constexpr double most_nodes = 16e6;
+
+std::vector<InputInfo> inputs() {
+  InputInfo model = model_input_info();
+  model.name = "model";
+  model.help = "A model, carved as seen from above (z up), or a height map as PNG: white is high.";
+  model.extensions.emplace_back("png");
+  return {model};
+}
+
+std::vector<OutputInfo> outputs() {
+  return {{"job.gcode", "text/x-gcode", "G-code", "For GRBL or Marlin; not written when the job does not fit.", true},
+          {"toolpath.json", "application/json", "Tool path", "What moves where and when, for the preview.", true},
+          {"carved.ply", "model/ply", "Carved", "The surface as the tool leaves it, as a solid.", true},
+          {"preview.svg", "image/svg+xml", "Preview", "The bed with what is worked and the travel between.", false}};
+}
+
+bool is_png(const InputBlob& input) {
+  return input.bytes && input.bytes->size() > 8 && as_text(*input.bytes).substr(1, 3) == "PNG";
+}
+
+/// Heights over the lowest place; z over the stock comes later.
+HeightMap height_map_of(const OperationCall& call, const MillOptions& options) {
+  const InputBlob& input = call.inputs.at("model");
+  HeightMap map;
+  if (is_png(input)) {
+    const Grey16Image image = read_png16(*input.bytes, input.file_name, "model");
+    const double width = options.width_mm ? *options.width_mm : image.pixel_width_mm * (image.width - 1);
+    if (width <= 0) throw Error(ErrorCode::invalid_input, "width_mm", "The height map does not tell its size: give its width.");
+    if (image.width < 2 || image.height < 2) throw Error(ErrorCode::invalid_input, "model", "The height map is a single row of pixels: give a picture.");
+    map.columns = image.width;
+    map.rows = image.height;
+    map.pitch_x_mm = width / (image.width - 1);
+    map.pitch_y_mm = image.pixel_width_mm > 0 && image.pixel_height_mm > 0 ? map.pitch_x_mm * image.pixel_height_mm / image.pixel_width_mm : map.pitch_x_mm;
+    map.height_mm.resize(image.levels.size());
+    for (int r = 0; r < map.rows; ++r)
+      for (int c = 0; c < map.columns; ++c)
+        map.at(r, c) = static_cast<float>(options.thickness_mm * image.levels[static_cast<std::size_t>(map.rows - 1 - r) * static_cast<std::size_t>(map.columns) + static_cast<std::size_t>(c)] / 65535);
+  } else {
+    const auto loaded = load_model(call, "model");
+    const TriangleMesh& mesh = loaded->model.mesh;
+    if (mesh.V.rows() == 0) throw Error(ErrorCode::invalid_input, "model", "The model is empty.");
+    const Eigen::RowVector3d low = mesh.V.colwise().minCoeff(), high = mesh.V.colwise().maxCoeff();
+    const Eigen::RowVector3d size = high - low;
+    if (size.x() <= 0 || size.y() <= 0) throw Error(ErrorCode::invalid_input, "model", "The model has no extent seen from above: turn it so that z is up.");
+    const double scale = options.width_mm ? *options.width_mm / size.x() : 1;
+    Positions moved(mesh.V.rows(), 3);
+    moved.col(0) = mesh.V.col(0).array() - (low.x() + high.x()) / 2;
+    moved.col(1) = mesh.V.col(1).array() - (low.y() + high.y()) / 2;
+    moved.col(2) = low.z() - mesh.V.col(2).array();
+    if (scale * scale * size.x() * size.y() > most_nodes * options.pixel_mm * options.pixel_mm)
+      throw Error(ErrorCode::invalid_input, "pixel_mm", "The grid would have over 16 million nodes: choose a coarser one or a smaller width.");
+    map = make_height_map(moved, mesh.F, scale, {scale * size.x(), scale * size.y()}, options.pixel_mm, scale * size.z(), call.context);
+  }
+  if (static_cast<double>(map.columns) * map.rows > most_nodes)
+    throw Error(ErrorCode::invalid_input, "model", "The height map has over 16 million pixels: make it smaller.");
+  return map;
+}
+
+void report_deviation(Json& report, const std::string& name, const Deviation& deviation) {
+  report[name + "_mean_mm"] = deviation.mean_mm;
+  report[name + "_p95_mm"] = deviation.p95_mm;
+  report[name + "_max_mm"] = deviation.max_mm;
+}
+
+OperationResult run(const OperationCall& call) {
+  const auto options = read_parameters<MillOptions>(call.parameters);
+  Context& context = call.context;
+  Stopwatch watch;
+  context.progress(0, "Reading the model");
+  HeightMap map = height_map_of(call, options);
+  const float top = *std::max_element(map.height_mm.begin(), map.height_mm.end()), bottom = *std::min_element(map.height_mm.begin(), map.height_mm.end());
+  HeightField surface{map.columns, map.rows, map.pitch_x_mm, map.pitch_y_mm, map.height_mm};
+  for (float& z : surface.z_mm) z -= top + static_cast<float>(options.stock_over_mm);
+  const double seconds_read = watch.lap();
+  MillPlan plan;
+  {
+    const auto span = context.span(0.1, 0.9, "Planning");
+    plan = plan_mill_job(surface, options, context);
+  }
+  const double seconds_plan = watch.lap();
+  context.progress(0.9, "Writing");
+  OperationResult result;
+  const Bytes gcode = write_mill_gcode(plan.path, options, options.spindle_rpm, plan.tool_change);
+  const auto add = [&](const char* name, auto&& bytes) {
+    if (!call.wants(name)) return;
+    for (const OutputInfo& info : outputs())
+      if (info.name == name) result.outputs.push_back(make_output(info, bytes()));
+  };
+  if (plan.misfits.empty()) add("job.gcode", [&] { return gcode; });
+  add("toolpath.json", [&] { return write_toolpath_json(plan.path, options); });
+  add("preview.svg", [&] { return write_toolpath_svg(plan.path, options); });
+  add("carved.ply", [&] {
+    // On a plate of 2 mm, so that it is a solid wherever the carving goes down to.
+    for (std::size_t i = 0; i < map.height_mm.size(); ++i) map.height_mm[i] = plan.carved.z_mm[i] + top + static_cast<float>(options.stock_over_mm) - bottom;
+    Model model;
+    model.mesh = make_solid(map, 2, 0.01, context);
+    return write_model(model, MeshFormat::ply, context);
+  });
+  Json& report = result.report;
+  report_toolpath(report, plan.path, plan.misfits, line_count(gcode));
+  report["seconds_rough"] = plan.rough_seconds;
+  report["seconds_finish"] = plan.finish_seconds;
+  report["size_mm"] = {map.width_mm(), map.depth_mm(), static_cast<double>(top - bottom)};
+  report["grid_mm"] = {map.pitch_x_mm, map.pitch_y_mm};
+  report["layers"] = plan.layers;
+  report["finish_stepover_mm"] = plan.finish_stepover_mm;
+  if (options.tool == ToolShape::ball && options.stages != MillStages::rough) report["scallop_mm"] = scallop_mm(options.diameter_mm, plan.finish_stepover_mm);
+  report_deviation(report, "deviation", plan.deviation);
+  if (plan.of_tool && options.stages != MillStages::rough) report_deviation(report, "tool_deviation", *plan.of_tool);
+  report["seconds_read"] = seconds_read;
+  report["seconds_plan"] = seconds_plan;
+  report["seconds_write"] = watch.seconds();
+  report["peak_memory_mb"] = context.peak_memory_mb();
+  report["notes"] = plan.notes;
+  return result;
+}
+
+std::vector<ReportField> report_fields() {
+  std::vector<ReportField> fields = laser_report_fields();
+  const auto rename = [&](const std::string& name, const std::string& label, const std::string& help) {
+    for (ReportField& field : fields)
+      if (field.name == name) field = {name, label, field.unit, help};
+  };
+  rename("cut_mm", "Worked", "with the tool in the material or on its surface");
+  rename("travel_mm", "Travel", "fast moves over the stock");
+  rename("bounds_mm", "Bounds", "of the tool's axis, on the bed: x0, y0, x1, y1");
+  rename("layers", "Layers", "of roughing");
+  const std::vector<ReportField> more = {{"seconds_rough", "Roughing", "s", "of the machine, without travel"},
+                                         {"seconds_finish", "Finishing", "s", "of the machine, without travel"},
+                                         {"size_mm", "Size", "mm", "width, height and depth of the carving"},
+                                         {"grid_mm", "Grid", "mm", "between nodes of the height field, in x and y"},
+                                         {"finish_stepover_mm", "Stepover", "mm", "between lines that finish, as carried out"},
+                                         {"scallop_mm", "Scallop", "mm", "height of the ridges a ball leaves on a plane"},
+                                         {"deviation_mean_mm", "Mean deviation", "mm", "of the simulated surface over the one wanted, at the grid's nodes"},
+                                         {"deviation_p95_mm", "95 % deviation", "mm", "the same, of all but the worst twentieth"},
+                                         {"deviation_max_mm", "Largest deviation", "mm", "the same"},
+                                         {"tool_deviation_mean_mm", "Mean due to the tool", "mm", "what its radius leaves in hollows, with lines at every node"},
+                                         {"tool_deviation_p95_mm", "95 % due to the tool", "mm", "the same, of all but the worst twentieth"},
+                                         {"tool_deviation_max_mm", "Largest due to the tool", "mm", "the same"},
+                                         {"seconds_read", "Reading", "s", "the model, and its heights"},
+                                         {"seconds_plan", "Planning", "s", "lines, times and simulation"},
+                                         {"seconds_write", "Writing", "s", "outputs into their formats"},
+                                         {"peak_memory_mb", "Peak memory", "MB", "of the process"}};
+  fields.insert(fields.end(), more.begin(), more.end());
+  return fields;
+}
+
+}  // namespace
+
+Operation mill_job_operation() {
+  Operation operation;
+  operation.name = "mill-job";
+  operation.title = "Mill job";
+  operation.summary = "Carves a relief or a height map: roughing in layers, finishing line by line, and how far the tool's shape falls short.";
+  operation.inputs = inputs();
+  operation.parameters = describe_parameters<MillOptions>();
+  operation.outputs = outputs();
+  operation.report = report_fields();
+  operation.check = [](const Json& parameters) { read_no_go(read_parameters<MillOptions>(parameters).no_go); };
+  operation.run = run;
+  return operation;
+}
+
+}  // namespace formwright

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "base/random.h"
+#include "fabrication/gcode_writer.h"
+#include "fabrication/mill_lines.h"
+#include "fabrication/mill_plan.h"
+
+namespace formwright {
+namespace {
+
+HeightField field(int columns, int rows, double pitch_mm, const std::function<double(double, double)>& z) {
+  HeightField result{columns, rows, pitch_mm, pitch_mm, {}};
+  for (int r = 0; r < rows; ++r)
+    for (int c = 0; c < columns; ++c) result.z_mm.push_back(static_cast<float>(z(c * pitch_mm, r * pitch_mm)));
+  return result;
+}
+
+/// Hills, a wall, a hole and a spike.
+HeightField rugged(std::uint64_t seed) {
+  Random random(seed);
+  const double fx = random.uniform(0.2, 0.6), fy = random.uniform(0.2, 0.6), wall = random.uniform(4, 8);
+  return field(80, 60, 0.2, [&](double x, double y) {
+    double z = -2.2 + 1.5 * std::sin(fx * x) * std::cos(fy * y) + random.uniform(0, 0.15);
+    if (x > wall && x < wall + 2) z = -0.2;
+    if ((x - 3) * (x - 3) + (y - 9) * (y - 9) < 2) z = -4;
+    if (std::abs(x - 12) < 0.15 && std::abs(y - 4) < 0.15) z = 0;
+    return std::min(z, 0.0);
+  });
+}
+
+MillOptions small(ToolShape shape, double diameter) {
+  MillOptions options;
+  options.tool = options.rough_tool = shape;
+  options.diameter_mm = options.rough_diameter_mm = diameter;
+  options.step_down_mm = 0.9;
+  options.safe_height_mm = 3;
+  return options;
+}
+
+TEST(Mill, ToolsHaveTheirProfiles) {
+  EXPECT_NEAR((MillTool{ToolShape::ball, 6, 0, 0}).profile_mm(3), 3, 1e-12);
+  EXPECT_NEAR((MillTool{ToolShape::ball, 10, 0, 0}).profile_mm(3), 1, 1e-12);
+  EXPECT_EQ((MillTool{ToolShape::flat, 6, 0, 0}).profile_mm(2.9), 0);
+  EXPECT_NEAR((MillTool{ToolShape::v, 6, 90, 0.4}).profile_mm(2.2), 2, 1e-12);
+  EXPECT_EQ((MillTool{ToolShape::v, 6, 90, 0.4}).profile_mm(0.1), 0);
+  EXPECT_TRUE(std::isinf((MillTool{ToolShape::flat, 6, 0, 0}).profile_mm(3.1)));
+}
+
+TEST(Mill, LowestTipsAreWhatTryingAllNodesGives) {
+  const HeightField surface = rugged(1);
+  for (const ToolShape shape : {ToolShape::ball, ToolShape::v, ToolShape::flat}) {
+    const MillTool tool{shape, 1.9, 50, 0.1};
+    const HeightField tips = lowest_tips(surface, footprint(tool, surface), Context());
+    Random random(2);
+    for (int i = 0; i < 300; ++i) {
+      const int r = static_cast<int>(random.below(60)), c = static_cast<int>(random.below(80));
+      double lowest = -1e9;
+      for (int y = 0; y < 60; ++y)
+        for (int x = 0; x < 80; ++x)
+          if (const double d = 0.2 * std::sqrt((x - c) * (x - c) + (y - r) * (y - r)); d <= 0.95 * (1 + 1e-12))
+            lowest = std::max(lowest, surface.at(y, x) - tool.profile_mm(std::min(d, 0.95)));
+      EXPECT_NEAR(tips.at(r, c), lowest, 1e-5);
+    }
+  }
+}
+
+TEST(Mill, NothingIsCutIntoAnywhereAlongThePath) {
+  for (const ToolShape shape : {ToolShape::ball, ToolShape::v, ToolShape::flat})
+    for (const RasterAlong along : {RasterAlong::x, RasterAlong::y}) {
+      const HeightField surface = rugged(static_cast<std::uint64_t>(shape) + 3);
+      MillOptions options = small(shape, 1.6);
+      options.finish_along = along;
+      options.finish_stepover_percent = 30;
+      Context context;
+      const MillPlan plan = plan_mill_job(surface, options, context);
+      // Every move in small steps, against every node; the rim is taken back by as much as it moves sideways between two half nodes.
+      const MillTool tool{shape, 1.6 - 0.01, options.v_angle_degrees, options.v_tip_mm};
+      double deepest_cut = 0;
+      for (const ToolMove& move : plan.path.moves)
+        for (std::size_t i = 1; i < move.points_mm.size(); ++i) {
+          const Vec3 a = move.points_mm[i - 1], b = move.points_mm[i];
+          const int steps = std::max(1, static_cast<int>(std::ceil((b - a).head<2>().norm() / 0.05)));
+          for (int s = 0; s <= steps; ++s) {
+            const Vec3 p = a + (b - a) * s / steps;
+            for (int r = std::max(0, static_cast<int>((p.y() - 0.8) / 0.2)); r < std::min(60.0, (p.y() + 0.8) / 0.2 + 1); ++r)
+              for (int c = std::max(0, static_cast<int>((p.x() - 0.8) / 0.2)); c < std::min(80.0, (p.x() + 0.8) / 0.2 + 1); ++c) {
+                const double over = tool.profile_mm(std::sqrt((c * 0.2 - p.x()) * (c * 0.2 - p.x()) + (r * 0.2 - p.y()) * (r * 0.2 - p.y())));
+                deepest_cut = std::max(deepest_cut, surface.at(r, c) - (p.z() + over));
+              }
+          }
+        }
+      // Between half nodes (p / 2)^2 / 8 times R^2 / (R^2 - (0.7 R)^2)^1.5 of a ball; between quarters p / 16 times the slope of a V.
+      const double bound = shape == ToolShape::ball ? 0.00125 / (0.8 * 0.364) : shape == ToolShape::v ? 0.0125 / 0.577 : 0;
+      EXPECT_LT(deepest_cut, bound + 0.002) << static_cast<int>(shape);
+      for (std::size_t i = 0; i < surface.z_mm.size(); ++i) EXPECT_GE(plan.carved.z_mm[i], surface.z_mm[i] - 1e-5f);
+      EXPECT_GE(plan.deviation.mean_mm, 0);
+      ASSERT_TRUE(plan.of_tool);
+      EXPECT_LE(plan.of_tool->mean_mm, plan.deviation.mean_mm + 1e-6);
+    }
+}
+
+TEST(Mill, RidgesOnAPlaneAreTheFormulas) {
+  for (const double diameter : {2.0, 3.0, 6.0}) {
+    MillOptions options = small(ToolShape::ball, diameter);
+    options.stages = MillStages::finish;
+    options.finish_stepover_percent = 100 * 0.8 / diameter;
+    Context context;
+    const MillPlan plan = plan_mill_job(field(61, 61, 0.1, [](double, double) { return -1; }), options, context);
+    EXPECT_NEAR(plan.finish_stepover_mm, 0.8, 1e-9);
+    double ridge = 0;
+    for (int r = 8; r <= 52; ++r) ridge = std::max<double>(ridge, plan.carved.at(r, 30) + 1);
+    EXPECT_NEAR(ridge, scallop_mm(diameter, 0.8), 1e-5);
+    EXPECT_NEAR(ridge, 0.8 * 0.8 / 4 / diameter, 0.05 * ridge);  // s^2 / 8 R
+    EXPECT_NEAR(plan.carved.at(8, 30), -1, 1e-5);
+    EXPECT_NEAR(plan.of_tool->max_mm, 0, 1e-5);
+  }
+}
+
+TEST(Mill, RidgesOnASphereConvergeToTheFormulas) {
+  // Two balls of radius R beside the top of a dome of radius A, their middles on A + R; and in a bowl, on A - R.
+  const double ball = 1.5, sphere = 20, stepover = 0.8;
+  for (const bool dome : {true, false}) {
+    const double middles = dome ? sphere + ball : sphere - ball;
+    const double sine = stepover / 2 / middles, reach = std::sqrt(ball * ball - stepover * stepover / 4), up = middles * std::sqrt(1 - sine * sine);
+    const double ridge = dome ? up - reach - sphere : sphere - (up + reach);
+    double before = 0;
+    for (const int fineness : {1, 2, 4}) {
+      const double pitch = 0.1 / fineness;
+      const int side = 80 * fineness + 1;  // lines on whole steps; the middle of the field is between two of them
+      const double centre = 4.4;
+      const HeightField surface = field(side, side, pitch, [&](double x, double y) {
+        const double d = (x - centre) * (x - centre) + (y - centre) * (y - centre);
+        return dome ? std::sqrt(sphere * sphere - d) - sphere - 0.5 : sphere - std::sqrt(sphere * sphere - d) - 2;
+      });
+      MillOptions options = small(ToolShape::ball, 2 * ball);
+      options.stages = MillStages::finish;
+      options.finish_stepover_percent = 100 * stepover / 3;
+      Context context;
+      const MillPlan plan = plan_mill_job(surface, options, context);
+      const int at = static_cast<int>(std::lround(centre / pitch));
+      EXPECT_EQ(at % static_cast<int>(std::lround(stepover / pitch)), static_cast<int>(std::lround(0.4 / pitch)));
+      const double error = std::abs(plan.carved.at(at, at) - surface.at(at, at) - ridge);
+      EXPECT_LT(error, 0.15 * ridge / fineness) << dome << fineness;
+      if (fineness > 1) {
+        EXPECT_LT(error, 0.7 * before + 1e-6);
+      }
+      before = error;
+    }
+  }
+}
+
+TEST(Mill, EntriesAreRampsAndFastMovesStayOverTheMaterial) {
+  const HeightField surface = field(101, 61, 0.2, [](double x, double y) { return -2 + 0.5 * std::sin(0.1 * x) - 1.5 * std::exp(-0.1 * ((x - 9) * (x - 9) + (y - 6) * (y - 6))); });
+  MillOptions options = small(ToolShape::flat, 1.6);
+  options.ramp_degrees = 4;
+  options.tool = ToolShape::ball;
+  Context context;
+  MillPlan plan = plan_mill_job(surface, options, context);
+  EXPECT_GE(plan.layers, 3);
+  EXPECT_GT(plan.tool_change, 0u);
+  double reached = 0;
+  int last_layer = 0;
+  for (const ToolMove& move : plan.path.moves)
+    for (std::size_t i = 1; i < move.points_mm.size(); ++i) {
+      const Vec3 run = move.points_mm[i] - move.points_mm[i - 1];
+      if (!move.work) {
+        if (run.head<2>().norm() > 0) {
+          EXPECT_GE(std::min(move.points_mm[i].z(), move.points_mm[i - 1].z()), options.safe_height_mm);
+        }
+      } else if (move.speed_mm_per_s == options.plunge_speed_mm_per_s) {
+        const double steepest = std::tan(4.01 * 3.14159265 / 180);
+        if (run.z() < -0.02) {
+          EXPECT_LE(-run.z(), steepest * std::max(run.head<2>().norm(), 0.2) + 0.002);
+        }
+      }
+      if (move.layer == "rough") {
+        EXPECT_GE(move.points_mm[i].z(), -options.step_down_mm * move.pass - 1e-9);
+        EXPECT_GE(move.pass, last_layer);
+        last_layer = move.pass;
+      }
+      reached = std::min(reached, move.points_mm[i].z());
+    }
+  EXPECT_GE(reached, -4.001);
+  const Bytes gcode = write_mill_gcode(plan.path, options, 9000, plan.tool_change);
+  const std::string_view text = as_text(gcode);
+  const std::size_t pause = text.find("\nM0\n");
+  ASSERT_NE(pause, std::string_view::npos);
+  EXPECT_EQ(text.find("\nM0\n", pause + 1), std::string_view::npos);
+  EXPECT_LT(text.rfind("; layer rough"), pause);
+  EXPECT_GT(text.find("; layer finish"), pause);
+  EXPECT_NE(text.substr(0, pause).rfind("Z3\nM5"), std::string_view::npos);  // lifted before the spindle stops
+}
+
+TEST(Mill, RoughingLeavesTheAllowanceAndFinishingTakesIt) {
+  const HeightField surface = field(101, 81, 0.2, [](double x, double y) { return -2 + std::sin(0.3 * x) * std::sin(0.3 * y); });
+  MillOptions options = small(ToolShape::ball, 2);
+  options.allowance_mm = 0.4;
+  options.rough_stepover_percent = 10;
+  options.stages = MillStages::rough;
+  Context context;
+  const MillPlan rough = plan_mill_job(surface, options, context);
+  EXPECT_NEAR(rough.deviation.mean_mm, 0.41, 0.04);
+  EXPECT_GE(*std::min_element(rough.carved.z_mm.begin(), rough.carved.z_mm.end()), -3 + 0.4 - 1e-3);
+  options.stages = MillStages::both;
+  options.finish_stepover_percent = 10;
+  const MillPlan both = plan_mill_job(surface, options, context);
+  EXPECT_LT(both.deviation.p95_mm, 0.015);
+  for (int r = 5; r < 76; ++r)  // a border of the tool's radius is reached from one side only
+    for (int c = 5; c < 96; ++c) EXPECT_LT(both.carved.at(r, c) - surface.at(r, c), 0.03);
+}
+
+TEST(Mill, ThinningNeverGoesBelow) {
+  Random random(4);
+  std::vector<Vec3> points;
+  for (int i = 0; i < 500; ++i) points.emplace_back(0.1 * i, 2, i < 200 ? -0.01 * i : std::sin(0.05 * i) + random.uniform(0, 0.002));
+  const auto kept = thinned(points, 0.01);
+  EXPECT_LT(kept.size(), 250u);
+  EXPECT_EQ(kept.front(), points.front());
+  EXPECT_EQ(kept.back(), points.back());
+  std::size_t segment = 1;
+  for (const Vec3& p : points) {
+    while (kept[segment].x() < p.x()) ++segment;
+    const Vec3 &a = kept[segment - 1], &b = kept[segment];
+    const double z = a.z() + (b.z() - a.z()) * (p.x() - a.x()) / (b.x() - a.x());
+    EXPECT_GE(z, p.z() - 1e-9);
+    EXPECT_LE(z, p.z() + 0.01 + 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace formwright

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fabrication/test_grid.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "base/random.h"
+#include "fabrication/laser_materials.h"
+
+namespace formwright {
+namespace {
+
+LaserPlan run(const TestGrid& grid, const TestGridOptions& options) {
+  Context context;
+  return run_strokes({grid.labels, grid.strokes}, options, 0, true, context);
+}
+
+TEST(TestGrid, EverySquareHasItsOwnPowerAndSpeed) {
+  for (const GridWork work : {GridWork::cut, GridWork::engrave}) {
+    TestGridOptions options;
+    options.work = work;
+    options.columns = 4;
+    options.rows = 3;
+    options.passes = 2;
+    const TestGrid grid = make_test_grid(options, Context());
+    ASSERT_EQ(grid.cells.size(), 12u);
+    const LaserPlan plan = run(grid, options);
+    EXPECT_TRUE(plan.misfits.empty());
+    std::map<std::string, double> length;
+    for (const ToolMove& move : plan.path.moves) {
+      if (!move.work || move.part == "numbers") continue;
+      const auto cell = std::find_if(grid.cells.begin(), grid.cells.end(), [&](const TestCell& c) { return c.name == move.part; });
+      ASSERT_NE(cell, grid.cells.end());
+      EXPECT_EQ(move.power_percent, cell->power_percent);
+      EXPECT_EQ(move.speed_mm_per_s, cell->speed_mm_per_s);
+      for (std::size_t i = 0; i < move.points_mm.size(); ++i) {
+        EXPECT_GE(move.points_mm[i].x(), cell->x_mm - 1e-9);
+        EXPECT_LE(move.points_mm[i].y(), cell->y_mm + options.cell_mm + 1e-9);
+        if (i > 0) length[move.part] += (move.points_mm[i] - move.points_mm[i - 1]).norm();
+      }
+    }
+    EXPECT_EQ(length.size(), 12u);
+    for (const auto& [name, mm] : length) EXPECT_NEAR(mm, 2 * (work == GridWork::cut ? 32 : 8 * 53), 1e-6) << name;  // 8 mm of lines 0.15 mm apart
+    EXPECT_EQ(grid.cells.front().power_percent, 20);
+    EXPECT_EQ(grid.cells.back().power_percent, 100);
+    EXPECT_EQ(grid.cells.front().speed_mm_per_s, 5);
+    EXPECT_EQ(grid.cells.back().speed_mm_per_s, 25);
+  }
+}
+
+TEST(TestGrid, NumbersKeepOutOfEachOtherAndOfTheSquares) {
+  Random random(7);
+  for (int round = 0; round < 30; ++round) {
+    TestGridOptions options;
+    options.columns = 1 + static_cast<int>(random.below(12));
+    options.rows = 1 + static_cast<int>(random.below(12));
+    options.cell_mm = random.uniform(4, 12);
+    options.gap_mm = random.uniform(1, 6);
+    options.label_mm = random.uniform(1.5, 3);
+    options.speed_to_mm_per_s = random.uniform(6, 1500);
+    const TestGrid grid = make_test_grid(options, Context());
+    double left = 1e9;
+    for (const LaserStroke& label : grid.labels)
+      for (const Vec2& p : label.points_mm) {
+        left = std::min(left, p.x());
+        for (const TestCell& cell : grid.cells)
+          EXPECT_FALSE(p.x() > cell.x_mm && p.x() < cell.x_mm + options.cell_mm && p.y() > cell.y_mm && p.y() < cell.y_mm + options.cell_mm);
+      }
+    EXPECT_GE(left, options.x_mm - 1e-9);
+  }
+}
+
+TEST(TestGrid, TheKerfTestShowsTheKerf) {
+  TestGridOptions options;
+  options.kind = GridKind::kerf;
+  const TestGrid grid = make_test_grid(options, Context());
+  ASSERT_EQ(grid.strokes.size(), 10u);
+  // Burn away a kerf on every line, push the pieces to the left: the last edge stands at the kerf's tick.
+  const double kerf = 0.2;
+  const auto& slot = grid.strokes.back().points_mm;
+  const double left = slot[0].x(), right = slot[1].x();
+  double pieces = 0, before = left;
+  for (int i = 0; i <= 9; ++i) {
+    const double next = i < 9 ? grid.strokes[static_cast<std::size_t>(i)].points_mm[0].x() : right;
+    pieces += next - before - kerf;
+    before = next;
+  }
+  const double edge = left - kerf / 2 + pieces;
+  std::vector<double> ticks;
+  for (const LaserStroke& label : grid.labels)
+    if (label.points_mm.size() == 2 && label.points_mm[0].x() == label.points_mm[1].x() && label.points_mm[0].y() == options.y_mm + 2 * options.cell_mm + 1) ticks.push_back(label.points_mm[0].x());
+  ASSERT_EQ(ticks.size(), 11u);
+  EXPECT_NEAR(ticks[4], edge, 1e-9);  // 0.05 mm a tick
+  // The slot comes last.
+  const LaserPlan plan = run(grid, options);
+  EXPECT_EQ(std::find_if(plan.path.moves.rbegin(), plan.path.moves.rend(), [](const ToolMove& m) { return m.work; })->part, "slot");
+}
+
+TEST(TestGrid, FocusLinesAreAtTheirHeights) {
+  TestGridOptions options;
+  options.kind = GridKind::focus;
+  options.focus_range_mm = 2;
+  const TestGrid grid = make_test_grid(options, Context());
+  std::set<double> heights;
+  for (const ToolMove& move : run(grid, options).path.moves) {
+    if (move.work && move.part != "numbers") heights.insert(move.points_mm[0].z());
+    if (move.part == "numbers") {
+      EXPECT_EQ(move.points_mm[0].z(), 0);
+    }
+  }
+  EXPECT_EQ(heights, (std::set<double>{-2, -1, 0, 1, 2}));
+}
+
+TEST(LaserMaterials, AreParametersOfTheJob) {
+  std::set<std::string> names;
+  for (const LaserMaterial& material : laser_materials()) {
+    EXPECT_TRUE(names.insert(material.name).second) << material.name;
+    const auto options = read_parameters<LaserOptions>(material.parameters);  // throws for a name or a value that is none
+    EXPECT_EQ(options.cut_enabled, material.thickness_mm > 0);
+    EXPECT_LE(options.mark_power_percent / options.mark_speed_mm_per_s, 1);
+  }
+  EXPECT_GE(names.size(), 12u);
+}
+
+}  // namespace
+}  // namespace formwright

@@ -146,6 +146,13 @@ boost::asio::awaitable<Response> HttpServer::receive_and_answer(beast::tcp_strea
   if (error == http::error::body_limit || error == http::error::buffer_overflow)
     co_return last_answer(error_response(request, http::status::payload_too_large, "invalid_input", "", "The message is too large: send meshes as blobs."));
   if (error) co_return last_answer(error_response(request, http::status::bad_request, "invalid_input", "", "The request was cut off or is not HTTP."));
+  constexpr std::string_view machines = "/api/machines";
+  const std::string target = text_of(request.target()), path = target.substr(0, target.find('?'));
+  if (path == machines || path.starts_with("/api/machines/")) {
+    const std::string query = target.size() > path.size() ? target.substr(path.size() + 1) : "";
+    Response told = co_await bridge_.answer(request, path.substr(machines.size()), query, parser.get().body());
+    co_return told;
+  }
   co_return answer(request, parser.get().body());
 }
 

@@ -7,16 +7,11 @@
 #include <iostream>
 
 #include "base/error.h"
+#include "files.h"
 #include "http_server.h"
 
 namespace formwright {
 namespace {
-
-std::filesystem::path default_data_folder() {
-  if (const char* data = std::getenv("XDG_DATA_HOME"); data && *data) return std::filesystem::path(data) / "formwright";
-  const char* home = std::getenv("HOME");
-  return std::filesystem::path(home && *home ? home : ".") / ".local/share/formwright";
-}
 
 /// Beside the program when installed, or in the checkout it was built in.
 std::filesystem::path default_web_folder() {

@@ -14,13 +14,14 @@ CORE = {
     "numerics": {"base", "geometry"},
     "imaging": {"base", "geometry"},
     "fabrication": {"base", "geometry"},
+    "machines": {"base"},
     "relief": {"base", "geometry", "numerics", "imaging"},
     "thermoform": {"base", "geometry", "numerics", "imaging"},
     "zippable": {"base", "geometry", "numerics", "imaging", "fabrication"},
 }
 CORE["evidence"] = set(CORE)
 CORE["job"] = set(CORE)
-HOSTS = {"wasm": {"job", "base"}, "native_worker": {"job", "base"}}
+HOSTS = {"wasm": {"job", "base", "machines"}, "native_worker": {"job", "base", "machines"}}
 
 # What core never touches: sockets, files, standard output, Emscripten.
 FORBIDDEN_HEADERS = re.compile(

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What all machines have in common for those who hold the port: a driver is told what arrived and what the person wants, and says what
+// to write. It has no clock and no port of its own, so the same one runs in the page, in the worker, on the command line and in tests.
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/bytes.h"
+#include "base/json.h"
+#include "machines/machine_options.h"
+
+namespace formwright {
+
+enum class MachinePhase { unknown, idle, homing, jogging, running, pausing, paused, stopping, alarm, door, check, sleep };
+const char* to_string(MachinePhase phase);
+
+enum class MachineConnection { closed, greeting, ready, silent };
+const char* to_string(MachineConnection connection);
+
+/// The job that was started last.
+struct MachineJob {
+  std::string name;
+  int line_count = 0, sent = 0, acknowledged = 0;
+  int line_now = 0;  // of the file, counted from 1: the last one that the machine has taken in
+  double started_s = 0, ended_s = 0;
+  std::string ended;  // "", "done", "stopped", "failed" or "cut_off"
+};
+
+class MachineDriver {
+ public:
+  virtual ~MachineDriver() = default;
+
+  /// The port is open; nothing has been said yet. Times are seconds of any clock that only goes forward.
+  virtual void opened(double now_s) = 0;
+  /// The port is gone: a job that ran is cut off, nothing is kept to be sent later, where the head stands is unknown.
+  virtual void closed(double now_s) = 0;
+  virtual void received(ByteView bytes, double now_s) = 0;
+  /// To be called every `tick_s` or oftener while the port is open.
+  virtual void tick(double now_s) = 0;
+  static constexpr double tick_s = 0.05;
+
+  /// What the person wants: {"do": NAME, ...}, docs/machines.md. Throws Error invalid_input (`where`: the field) where it cannot be done
+  /// now, or moves the machine or turns its laser on without "confirmed": true.
+  virtual void command(const Json& command, double now_s) = 0;
+  /// Takes a job without starting it. Throws Error invalid_input ("job": with the line).
+  virtual void load(const std::string& name, ByteView job) = 0;
+  /// docs/machines.md, "State".
+  virtual Json state(double now_s) const = 0;
+
+  /// Packets to be written in this order since the last call: those that stop something come first. Serial lines join them; USB and UDP
+  /// send each as one transfer.
+  std::vector<Bytes> take_output();
+  /// What was said since the last call: [{"event": "sent" | "received" | "note" | "ended", "text" or "how", "now_s"}].
+  Json take_events();
+
+ protected:
+  void write(std::string_view bytes) { output_.push_back(to_bytes(bytes)); }
+  /// Ahead of everything that was not taken yet.
+  void write_urgently(std::string_view bytes);
+  void drop_output() { output_.clear(); }
+  /// The lines that are whole now; the rest waits for its end.
+  std::vector<std::string> lines_in(ByteView bytes);
+  void forget_half_lines() { heard_.clear(); }
+  void say(const char* event, std::string_view text, double now_s);
+  void note(std::string_view text, double now_s) { say("note", text, now_s); }
+
+ private:
+  std::vector<Bytes> output_;
+  std::size_t urgent_count_ = 0;
+  std::string heard_;
+  Json events_ = Json::array();
+};
+
+/// `options` as MachineOptions. Throws Error invalid_input.
+std::unique_ptr<MachineDriver> make_machine_driver(const Json& options);
+
+// ---- what drivers share ----
+namespace machines_detail {
+
+[[noreturn]] void refuse(const std::string& where, const std::string& sentence);
+/// Throws unless command["confirmed"] is true.
+void require_confirmation(const Json& command, const std::string& what_happens);
+/// A number of the command in its range; `fallback` where it is absent, an error where that is NaN.
+double number_of(const Json& command, const char* name, double minimum, double maximum, double fallback);
+Json job_json(const MachineJob& job, double now_s);
+/// "12.5": at most three decimals, none that are zero.
+std::string decimal(double value);
+
+}  // namespace machines_detail
+}  // namespace formwright

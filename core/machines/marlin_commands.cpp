@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a person may ask of a Marlin machine, and when.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "machines/marlin_driver.h"
+
+namespace formwright {
+namespace {
+
+using machines_detail::decimal;
+using machines_detail::number_of;
+using machines_detail::refuse;
+using machines_detail::require_confirmation;
+
+constexpr double absent = std::numeric_limits<double>::quiet_NaN(), farthest_mm = 10000;
+constexpr std::size_t longest_by_hand = 80;
+
+}  // namespace
+
+MachinePhase MarlinDriver::phase() const {
+  if (connection_ != MachineConnection::ready) return MachinePhase::unknown;
+  if (halted_) return MachinePhase::alarm;
+  if (stopped_s_ >= 0) return MachinePhase::stopping;
+  if (homing_) return MachinePhase::homing;
+  if (job_active()) return paused_ ? MachinePhase::paused : MachinePhase::running;
+  return MachinePhase::idle;
+}
+
+std::vector<std::string> MarlinDriver::possible_commands() const {
+  std::vector<std::string> can;
+  if (connection_ == MachineConnection::closed) return can;
+  can.push_back("stop");
+  const MachinePhase now = phase();
+  const auto add = [&](std::initializer_list<const char*> names) { can.insert(can.end(), names.begin(), names.end()); };
+  if (now == MachinePhase::running) add({"pause", "override"});
+  if (now == MachinePhase::paused) add({"resume", "override"});
+  if (now != MachinePhase::idle) return can;
+  add({"home", "jog", "set_origin", "send", "override"});
+  if (position_known_) add({"go_to", "frame"});
+  if (options_.tool == MachineTool::laser) add({focus_until_s_ ? "focus_off" : "focus"});
+  // A printer's own G-code homes it.
+  if (program_.line_count() > 0 && (position_known_ || options_.tool == MachineTool::printer)) add({"start"});
+  return can;
+}
+
+void MarlinDriver::move(const std::string& mode, const std::string& words, double speed_mm_per_s) {
+  queue(mode);
+  queue("G0" + words + " F" + decimal(60 * speed_mm_per_s));
+  if (mode == "G91") queue("G90");
+}
+
+void MarlinDriver::command(const Json& command, double now_s) {
+  const auto found = command.is_object() ? command.find("do") : command.end();
+  if (!command.is_object() || found == command.end() || !found->is_string()) refuse("do", "A command is an object that says what to \"do\".");
+  const std::string what = found->get<std::string>();
+  if (connection_ == MachineConnection::closed) refuse(what, "The machine is not connected: connect it first.");
+  if (what == "stop") return stop("stopped", now_s);
+  const std::vector<std::string> can = possible_commands();
+  if (std::find(can.begin(), can.end(), what) == can.end()) {
+    if (what == "unlock" || halted_) refuse(what, "The machine has halted: switch it off and on again.");
+    if ((what == "start" || what == "frame" || what == "go_to") && phase() == MachinePhase::idle && !position_known_)
+      refuse(what, "Where the head stands is unknown: home the machine first.");
+    if (what == "start" && program_.line_count() == 0) refuse(what, "No job is loaded: choose one first.");
+    refuse(what, std::string("This cannot be done while the machine is in the state \"") + to_string(phase()) + "\".");
+  }
+  const auto speed = [&](double fallback) { return number_of(command, "speed_mm_per_s", 0.01, 2000, fallback); };
+  if (what == "home") {
+    require_confirmation(command, "The head moves to its switches");
+    queue("G28");
+  } else if (what == "jog") {
+    std::string words;
+    for (const auto& [name, letter] : {std::pair{"x_mm", " X"}, std::pair{"y_mm", " Y"}, std::pair{"z_mm", " Z"}})
+      if (const double mm = number_of(command, name, -farthest_mm, farthest_mm, 0); mm != 0) words += letter + decimal(mm);
+    if (words.empty()) refuse("x_mm", "A jog needs x_mm, y_mm or z_mm.");
+    if (by_hand_.size() < 12) move("G91", words, speed(absent));
+  } else if (what == "set_origin") {
+    const std::string axes = command.value("axes", "xy");
+    std::string words;
+    for (const char axis : std::string("xyz"))
+      if (axes.find(axis) != std::string::npos) words += std::string(" ") + static_cast<char>(axis - 'a' + 'A') + "0";
+    if (words.empty()) refuse("axes", "axes must name x, y or z.");
+    queue("G92" + words);
+    position_known_ = true;
+  } else if (what == "go_to") {
+    GcodeBounds bounds;
+    bounds.add({number_of(command, "x_mm", -farthest_mm, farthest_mm, absent), number_of(command, "y_mm", -farthest_mm, farthest_mm, absent), 0});
+    check_reach(bounds);
+    move("G90", " X" + decimal(bounds.low_mm[0]) + " Y" + decimal(bounds.low_mm[1]), speed(50));
+  } else if (what == "frame") {
+    require_confirmation(command, "The head moves once around the job, laser off");
+    const auto box = command.find("bounds_mm");
+    if (box == command.end() || !box->is_array() || box->size() != 4 || !std::all_of(box->begin(), box->end(), [](const Json& n) { return n.is_number(); }))
+      refuse("bounds_mm", "bounds_mm must be four numbers: left, low, right, high.");
+    const std::array<double, 4> b = {(*box)[0], (*box)[1], (*box)[2], (*box)[3]};
+    GcodeBounds bounds;
+    bounds.add({b[0], b[1], 0});
+    bounds.add({b[2], b[3], 0});
+    check_reach(bounds);
+    for (const auto& [x, y] : {std::pair{b[0], b[1]}, std::pair{b[2], b[1]}, std::pair{b[2], b[3]}, std::pair{b[0], b[3]}, std::pair{b[0], b[1]}})
+      move("G90", " X" + decimal(x) + " Y" + decimal(y), speed(50));
+  } else if (what == "focus") {
+    const double power = number_of(command, "power_percent", 0, options_.focus_power_percent, absent);
+    require_confirmation(command, "The laser shines at " + decimal(power) + " % without moving: eyes protected");
+    queue("M3 S" + decimal(2.55 * power));
+    focus_until_s_ = now_s + options_.focus_seconds;
+  } else if (what == "focus_off") {
+    focus_until_s_.reset();
+    queue("M5");
+  } else if (what == "start") start(command, now_s);
+  else if (what == "pause") {
+    paused_ = true;
+    // What is planned is still done; a laser must not stay on where that ends.
+    if (options_.tool == MachineTool::laser) queue("M5");
+  } else if (what == "resume") {
+    require_confirmation(command, "The machine goes on, with its laser or heaters on");
+    paused_ = false;
+    const GcodeState s = program_.state_before(next_line_);
+    if (options_.tool == MachineTool::laser && s.spindle != 5) queue("M" + std::to_string(s.spindle) + " S" + decimal(s.power));
+  } else if (what == "send") {
+    const auto line = command.find("line");
+    if (line == command.end() || !line->is_string()) refuse("line", "The command needs a line to send.");
+    const std::string text = line->get<std::string>();
+    if (text.empty() || text.size() > longest_by_hand || std::any_of(text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }))
+      refuse("line", "A line has 1 to 80 characters of plain text.");
+    const LineEffect effect = effect_of(text);
+    if (effect.moves || effect.fires) require_confirmation(command, "The line \"" + text + "\" may move the machine, heat it or turn its laser on");
+    queue(text);
+  } else if (what == "override") {
+    if (command.contains("feed_percent")) queue("M220 S" + decimal(number_of(command, "feed_percent", 10, 200, 100)));
+  }
+  pump(now_s);
+}
+
+void MarlinDriver::check_reach(const GcodeBounds& bounds) const {
+  const double bed[] = {options_.bed_x_mm, options_.bed_y_mm};
+  for (std::size_t axis = 0; axis < 2; ++axis)
+    if (bounds.high_mm[axis] - bounds.low_mm[axis] > bed[axis] + 1e-3)
+      refuse("job", std::string("The job is ") + decimal(bounds.high_mm[axis] - bounds.low_mm[axis]) + " mm long in " + "xy"[axis] + ", the machine reaches " +
+                        decimal(bed[axis]) + " mm: make it smaller or turn it.");
+}
+
+void MarlinDriver::start(const Json& command, double now_s) {
+  require_confirmation(command, options_.tool == MachineTool::printer ? "The printer heats up and moves" : "The machine moves and its laser or spindle turns on");
+  if (options_.tool != MachineTool::printer) check_reach(program_.bounds());
+  if (number_of(command, "from_line", 1, 1e9, 1) > 1) refuse("from_line", "Going on in the middle of a job is possible with GRBL machines only: start it anew.");
+  refused_.reset();
+  focus_until_s_.reset();
+  paused_ = draining_ = false;
+  job_ = MachineJob{program_name_, program_.line_count(), 0, 0, 0, now_s, 0, ""};
+  next_line_ = 0;
+}
+
+Json MarlinDriver::state(double now_s) const {
+  Json state = {{"controller", "marlin"},
+                {"connection", to_string(connection_)},
+                {"firmware", firmware_},
+                {"phase", to_string(phase())},
+                {"position_known", position_known_},
+                {"machine_mm", position_mm_ ? Json(*position_mm_) : Json(nullptr)},
+                {"work_mm", position_mm_ ? Json(*position_mm_) : Json(nullptr)},
+                {"speed_mm_per_s", 0},
+                {"power_percent", 0},
+                {"job", job_ ? machines_detail::job_json(*job_, now_s) : Json(nullptr)},
+                {"alarm", nullptr},
+                {"error", nullptr},
+                {"laser_on", focus_until_s_.has_value()},
+                {"temperatures", temperatures_}};
+  if (halted_) state["alarm"] = {{"code", 0}, {"text", "The machine has halted: " + halt_text_}, {"mend", "Find the cause, then switch it off and on again."}};
+  if (refused_) state["error"] = {{"code", 0}, {"text", "The machine does not know a command of the job."}, {"line", *refused_}, {"line_number", job_ ? job_->line_now : 0}};
+  if (job_active() && options_.tool == MachineTool::laser) state["laser_on"] = nullptr;  // Marlin does not tell
+  state["can"] = possible_commands();
+  return state;
+}
+
+}  // namespace formwright

@@ -78,7 +78,7 @@ bool HttpServer::token_given(const Head& head) const {
   return equal_in_constant_time(value, "Bearer " + token_);
 }
 
-bool HttpServer::token_in_subprotocol(const Head& head) const {
+bool HttpServer::token_in_subprotocol(const Head& head, std::string_view wanted) const {
   const std::string list = text_of(head[http::field::sec_websocket_protocol]);
   bool version = false, token = false;
   std::size_t start = 0;
@@ -86,7 +86,7 @@ bool HttpServer::token_in_subprotocol(const Head& head) const {
     const std::size_t comma = std::min(list.find(',', start), list.size());
     std::string item = list.substr(start, comma - start);
     item.erase(0, item.find_first_not_of(' '));
-    version = version || item == "formwright.v1";
+    version = version || item == wanted;
     token = equal_in_constant_time(item, "token." + token_) || token;
     start = comma + 1;
   }

@@ -47,6 +47,8 @@ class HttpServer {
   void start();
   /// Ends the child process and puts its job back in the queue, for the next start.
   void stop();
+  /// Another process asks that a machine be stopped.
+  void look_for_stops() { bridge_.look_for_stops(); }
 
  private:
   using Socket = boost::asio::ip::tcp::socket;
@@ -63,7 +65,7 @@ class HttpServer {
   bool host_allowed(const Head& head) const;
   bool origin_allowed(const Head& head) const;
   bool token_given(const Head& head) const;
-  bool token_in_subprotocol(const Head& head) const;
+  bool token_in_subprotocol(const Head& head, std::string_view version) const;
   bool within_rate();
 
   // api.cpp

@@ -4,6 +4,7 @@
 #include <boost/asio/signal_set.hpp>
 #include <csignal>
 #include <cstdlib>
+#include <functional>
 #include <iostream>
 
 #include "base/error.h"
@@ -65,6 +66,15 @@ int serve(const std::vector<std::string>& words) {
   server.start();
   boost::asio::signal_set signals(io, SIGINT, SIGTERM);
   signals.async_wait([&](const boost::system::error_code&, int) { io.stop(); });
+  boost::asio::signal_set stops(io, SIGUSR1);  // formwright machine stop, from another process
+  const std::function<void()> listen = [&] {
+    stops.async_wait([&](const boost::system::error_code& error, int) {
+      if (error) return;
+      server.look_for_stops();
+      listen();
+    });
+  };
+  listen();
   if (options.web.empty()) std::cout << "The page is not built (make web); the worker answers all the same.\n";
   std::cout << "http://127.0.0.1:" << server.port() << "/#token=" << server.token() << std::endl;
   for (;;) {

@@ -64,9 +64,33 @@ PrinterAddress address_of(const Machine& m) { return {m.name, m.url, m.destinati
 
 }  // namespace
 
-MachineBridge::MachineBridge(boost::asio::io_context& io, std::filesystem::path data, JobStore& store) : io_(io), store_(store), registry_(data), log_(data) {}
+MachineBridge::MachineBridge(boost::asio::io_context& io, std::filesystem::path data, JobStore& store) : io_(io), store_(store), registry_(data), log_(data), rooms_(io, asking_, data, store, log_) {}
 
-void MachineBridge::stop() { tasks_.stop(); }
+void MachineBridge::stop() {
+  rooms_.stop();  // first: they move
+  tasks_.stop();
+}
+
+boost::asio::awaitable<void> MachineBridge::serve_socket(beast::tcp_stream stream, Head head, std::string id) {
+  std::optional<Machine> found;
+  std::optional<TextResponse> refusal;
+  try {
+    found = co_await machine(id);
+    if (found->kind != MachineKind::serial && found->kind != MachineKind::ruida) refuse("machine", found->name + " has no socket: it is a " + std::string(to_string(found->kind)) + ".");
+    if (rooms_.full(found->id)) refusal = error_response(head, http::status::too_many_requests, "invalid_input", "", "Too many pages are at this machine: close some.");
+  } catch (const Error& error) {
+    refusal = error_response(head, http::status::not_found, to_string(error.code()), error.where(), error.what());
+  }
+  if (!refusal) {
+    co_await rooms_.serve(std::make_shared<MachinePage>(beast::websocket::stream<beast::tcp_stream>(std::move(stream))), head, *found);
+    co_return;
+  }
+  boost::system::error_code ignored;
+  refusal->keep_alive(false);
+  stream.expires_after(std::chrono::seconds(10));
+  co_await http::async_write(stream, *refusal, boost::asio::redirect_error(use_awaitable, ignored));
+  stream.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_both, ignored);
+}
 
 template <class Result>
 boost::asio::awaitable<Result> MachineBridge::aside(std::function<Result()> work) {
@@ -99,7 +123,11 @@ boost::asio::awaitable<Response> MachineBridge::answer(Head head, std::string pa
   try {
     if (path.empty() && reads) {
       Json list = Json::array();
-      for (const Machine& m : co_await machines(query == "search=again")) list.push_back(machine_json(m));
+      for (const Machine& m : co_await machines(query == "search=again")) {
+        Json entry = machine_json(m);
+        if (const std::string now = rooms_.state_of(m.id); !now.empty()) entry["state"] = now;
+        list.push_back(std::move(entry));
+      }
       co_return text_response(head, http::status::ok, json_text(list));
     }
     if (path == "/log" && reads) {

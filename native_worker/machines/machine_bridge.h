@@ -16,6 +16,7 @@
 #include "job_store.h"
 #include "machines/machine_log.h"
 #include "machines/machine_registry.h"
+#include "machines/machine_rooms.h"
 #include "machines/machine_tasks.h"
 
 namespace formwright {
@@ -25,6 +26,10 @@ class MachineBridge {
   MachineBridge(boost::asio::io_context& io, std::filesystem::path data, JobStore& store);
   /// `path`: behind /api/machines, without the query. The request has passed the server's checks of Host, Origin and token.
   boost::asio::awaitable<Response> answer(Head head, std::string path, std::string query, std::string body);
+  /// The WebSocket of one machine. Returns when the page is gone; answers with an HTTP error when there is no such machine.
+  boost::asio::awaitable<void> serve_socket(beast::tcp_stream stream, Head head, std::string id);
+  /// Another process asked for a stop (SIGUSR1).
+  void look_for_stops() { rooms_.look_for_stops(); }
   /// Cancels prints and slicings, and stops every machine that runs.
   void stop();
 
@@ -46,6 +51,7 @@ class MachineBridge {
   MachineLog log_;
   MachineTasks tasks_{log_};
   boost::asio::thread_pool asking_{4};
+  MachineRooms rooms_;
   std::vector<Machine> found_;
   std::chrono::steady_clock::time_point found_when_{};
 };

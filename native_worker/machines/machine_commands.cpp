@@ -24,7 +24,12 @@ constexpr const char* help_text =
     "                         [--controller grbl|grbl_mill|marlin] [--baud N]\n"
     "  formwright machine remove N\n"
     "  formwright machine print --machine M --file F --media A4 [--copies N] [--mirrored]\n"
-    "                           [--quality draft|normal|high]\n\n"
+    "                           [--quality draft|normal|high]\n"
+    "  formwright machine frame --machine M --job F [--yes]   once around the job, laser off\n"
+    "  formwright machine send  --machine M --job F [--yes]   runs it; Ctrl-C stops the machine\n"
+    "  formwright machine stop  --machine M                   also one that another program drives\n\n"
+    "frame and send ask before anything moves; --yes says that somebody stands at the machine. They take\n"
+    "--controller, --bed-x-mm and --bed-y-mm too.\n\n"
     "URL: ipp://HOST/ipp/print, http://HOST, ruida://HOST, tcp://HOST:PORT or serial:/dev/NAME.\n"
     "Serial ports, the system's printers and those on the network are found without being added.\n"
     "--data DIR names the folder in which they are kept, the same as for formwright serve.\n";
@@ -153,6 +158,9 @@ int machine_command(const std::vector<std::string>& words, const std::atomic<boo
   if (words[0] == "list") return list(rest);
   if (words[0] == "add") return add(rest);
   if (words[0] == "remove") return remove(rest);
+  if (words[0] == "send") return machine_send(rest, interrupted);
+  if (words[0] == "frame") return machine_frame(rest, interrupted);
+  if (words[0] == "stop") return machine_stop(rest, interrupted);
   if (words[0] == "print") return print(rest, interrupted);
   throw Error(ErrorCode::invalid_input, words[0], "There is no command machine " + words[0] + ": see formwright machine --help.");
 }

@@ -11,6 +11,11 @@ namespace formwright {
 /// `words`: what follows "machine". Returns the exit code; throws Error. `interrupted`: Ctrl-C was pressed.
 int machine_command(const std::vector<std::string>& words, const std::atomic<bool>& interrupted);
 
+/// machine_run_commands.cpp
+int machine_send(const std::vector<std::string>& words, const std::atomic<bool>& interrupted);
+int machine_frame(const std::vector<std::string>& words, const std::atomic<bool>& interrupted);
+int machine_stop(const std::vector<std::string>& words, const std::atomic<bool>& interrupted);
+
 /// Flags of one of the subcommands: every one takes a value, but those in `switches`.
 struct MachineFlags {
   std::map<std::string, std::string> values;  // "--machine" -> "Studio"; a switch that was given -> "on"

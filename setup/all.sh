@@ -8,4 +8,5 @@ cd "$FORMWRIGHT_ROOT"
 setup/native.sh "$@"
 setup/wasm_toolchain.sh >/dev/null
 setup/wasm_libraries.sh >/dev/null
+[ "${1-}" != --test ] || setup/test_peers.sh >/dev/null
 say "set-up complete"

@@ -62,6 +62,11 @@ target_link_libraries(fw::tinygltf INTERFACE fw::stb)
 add_library(fw::boost INTERFACE IMPORTED GLOBAL)
 target_include_directories(fw::boost INTERFACE ${FORMWRIGHT_TOOLCHAIN}/include)
 
+# SVG's grammars (SVG++, headers only, over Boost's) and offsets of polygons in whole numbers (Clipper 6).
+formwright_dependency(svgpp svgpp/svgpp.hpp)
+target_link_libraries(fw::svgpp INTERFACE fw::boost)
+formwright_dependency(polyclipping polyclipping/clipper.hpp polyclipping)
+
 # CGAL 6.0.1. Boost's exact numbers instead of GMP's on both platforms, so that
 # both compute the same.
 add_library(fw::cgal INTERFACE IMPORTED GLOBAL)

@@ -12,7 +12,7 @@
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-LIBRARIES=(headers zlib libpng libharu pugixml minizip stb tinyobjloader tinygltf googletest)
+LIBRARIES=(headers zlib libpng libharu pugixml polyclipping minizip stb tinyobjloader tinygltf googletest)
 JOBS="${FORMWRIGHT_JOBS:-$(nproc)}"
 
 mapfile -t WASM_FLAGS <"$FORMWRIGHT_ROOT/cmake/wasm_flags.txt"
@@ -90,7 +90,7 @@ static_library() {  # name, then compiler arguments and sources
 build_headers() {
   local path
   mkdir -p "$PREFIX/include" "$PREFIX/share"
-  for path in /usr/include/nlohmann /usr/include/fast_float /usr/include/eigen3; do
+  for path in /usr/include/nlohmann /usr/include/fast_float /usr/include/eigen3 /usr/include/svgpp /usr/include/exboost; do
     [ -d "$path" ] || fail "$path is missing" "run setup/native.sh first"
     cp -rL --no-preserve=ownership "$path" "$PREFIX/include/"
   done
@@ -124,6 +124,13 @@ build_libharu() {
 build_pugixml() {
   fetch_source pugixml
   cmake_install "$SOURCE" -DPUGIXML_BUILD_TESTS=OFF
+}
+
+build_polyclipping() {
+  fetch_source libpolyclipping
+  # Its CMake file makes a shared library only.
+  install -D -m 644 -t "$PREFIX/include/polyclipping" "$SOURCE"/cpp/clipper.hpp
+  static_library polyclipping -I"$PREFIX/include/polyclipping" "$SOURCE"/cpp/clipper.cpp
 }
 
 build_minizip() {

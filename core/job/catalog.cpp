@@ -5,6 +5,7 @@
 #include "geometry/samples/samples.h"
 #include "job/evidence_operations.h"
 #include "job/evidence_registration_operations.h"
+#include "job/fabrication_operations.h"
 #include "job/mesh_operations.h"
 #include "job/relief_operation.h"
 #include "job/thermoform_operations.h"
@@ -22,6 +23,7 @@ const std::vector<Operation>& operations() {
       zippable_design_operation(),
       zippable_plan_operation(),
       zippable_simulate_operation(),
+      laser_job_operation(),
       import_operation(), simplify_operation(), subdivide_operation(), convert_operation()};
   return all;
 }

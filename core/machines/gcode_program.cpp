@@ -174,7 +174,7 @@ GcodeProgram GcodeProgram::read(ByteView file, std::size_t longest_line) {
     start = end + 1;
     ++number;
     const auto bad = [&](const std::string& what) { refuse("job", "Line " + std::to_string(number) + " " + what); };
-    if (!strip(raw, stripped)) bad("has a character that G-code does not have: is this a G-code file?");
+    if (!strip(raw, stripped)) bad("has a character that G-code does not have: choose a G-code file.");
     if (stripped.empty()) continue;
     if (stripped[0] == '$') bad("changes the machine's settings ($): send that by hand, not in a job.");
     if (stripped.size() > longest_line)

@@ -44,14 +44,8 @@ std::vector<std::string> GrblDriver::possible_commands() const {
 }
 
 void GrblDriver::command(const Json& command, double now_s) {
-  const auto found = command.is_object() ? command.find("do") : command.end();
-  if (!command.is_object() || found == command.end() || !found->is_string()) refuse("do", "A command is an object that says what to \"do\".");
-  const std::string what = found->get<std::string>();
-  if (connection_ == MachineConnection::closed) refuse(what, "The machine is not connected: connect it first.");
+  const std::string what = machines_detail::command_name(command, connection_);
   if (what == "stop") return stop("stopped", now_s);
-  static const char* known[] = {"home", "unlock", "jog", "jog_cancel", "set_origin", "go_to", "frame", "focus", "focus_off", "start", "pause", "resume", "send", "override"};
-  if (std::none_of(std::begin(known), std::end(known), [&](const char* name) { return what == name; }))
-    refuse("do", "There is no command \"" + what + "\".");
   const std::vector<std::string> can = possible_commands();
   if (std::find(can.begin(), can.end(), what) == can.end()) {
     if (connection_ != MachineConnection::ready) refuse(what, "The machine does not answer: check that it is on and connected.");
@@ -60,7 +54,7 @@ void GrblDriver::command(const Json& command, double now_s) {
       refuse(what, homes() ? "Where the head stands is unknown: home the machine first."
                            : "Where the head stands is unknown: jog to the material's corner and set the origin first.");
     if (what == "start" && program_.line_count() == 0) refuse(what, "No job is loaded: choose one first.");
-    refuse(what, std::string("This cannot be done while the machine is in the state \"") + to_string(phase_) + "\".");
+    machines_detail::refuse_in_phase(what, phase_);
   }
   if (what == "home") {
     require_confirmation(command, "The head moves to its switches");
@@ -89,7 +83,7 @@ void GrblDriver::command(const Json& command, double now_s) {
     pause_asked_ = false;
     send_now('~');
     phase_ = MachinePhase::running;  // until the next report: lines may follow at once
-  } else if (what == "send") send_by_hand(command, now_s);
+  } else if (what == "send") send_by_hand(command);
   else override_speeds(command);
   pump(now_s);
 }
@@ -116,29 +110,17 @@ void GrblDriver::go_to(const Json& command) {
 
 void GrblDriver::frame(const Json& command) {
   require_confirmation(command, "The head moves once around the job, laser off");
-  const auto found = command.find("bounds_mm");
-  if (found == command.end() || !found->is_array() || found->size() != 4) refuse("bounds_mm", "bounds_mm must be four numbers: left, low, right, high.");
-  std::array<double, 4> b{};
-  for (std::size_t i = 0; i < 4; ++i) {
-    if (!(*found)[i].is_number() || !(std::abs((*found)[i].get<double>()) <= farthest_mm)) refuse("bounds_mm", "bounds_mm must be four numbers: left, low, right, high.");
-    b[i] = (*found)[i].get<double>();
-  }
+  const std::array<double, 4> b = machines_detail::bounds_of(command);
   GcodeBounds bounds;
   bounds.add({b[0], b[1], 0});
   bounds.add({b[2], b[3], 0});
   check_reach(bounds);
   const std::string speed = "F" + decimal(speed_mm_per_min(command, 50));
-  for (const auto& [x, y] : {std::pair{0, 1}, std::pair{2, 1}, std::pair{2, 3}, std::pair{0, 3}, std::pair{0, 1}})
-    queue("$J=G90G21X" + decimal(b[static_cast<std::size_t>(x)]) + "Y" + decimal(b[static_cast<std::size_t>(y)]) + speed);
+  for (const auto& [x, y] : machines_detail::way_around(b)) queue("$J=G90G21X" + decimal(x) + "Y" + decimal(y) + speed);
 }
 
 void GrblDriver::set_origin(const Json& command) {
-  const std::string axes = command.value("axes", "xy");
-  std::string words;
-  for (const char axis : std::string("xyz"))
-    if (axes.find(axis) != std::string::npos) words += static_cast<char>(axis - 'a' + 'A') + std::string("0");
-  if (words.empty()) refuse("axes", "axes must name x, y or z.");
-  queue("G10L20P0" + words);
+  queue("G10L20P0" + machines_detail::zero_words(command, ""));
 }
 
 void GrblDriver::focus(const Json& command, double now_s) {
@@ -156,14 +138,10 @@ void GrblDriver::focus_off() {
   queue("G0");
 }
 
-void GrblDriver::send_by_hand(const Json& command, double now_s) {
-  const auto found = command.find("line");
-  if (found == command.end() || !found->is_string()) refuse("line", "The command needs a line to send.");
-  std::string line = found->get<std::string>();
+void GrblDriver::send_by_hand(const Json& command) {
+  std::string line = machines_detail::line_of(command, 78);
   std::erase_if(line, [](char c) { return c == ' ' || c == '\t'; });
   std::transform(line.begin(), line.end(), line.begin(), [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
-  if (line.empty() || line.size() > 78 || std::any_of(line.begin(), line.end(), [](char c) { return c < ' ' || c > '~'; }))
-    refuse("line", "A line has 1 to 78 characters of plain text.");
   if (line == "?") return send_now('?');
   if (line.find_first_of("!~?") != std::string::npos) refuse("line", "Use the buttons to hold and to go on: they are watched over.");
   const LineEffect effect = effect_of(line);
@@ -177,7 +155,6 @@ void GrblDriver::send_by_hand(const Json& command, double now_s) {
   }
   if (line.starts_with("$H") && !homes()) refuse("line", "Homing is not switched on in this machine ($22).");
   queue(line);
-  (void)now_s;
 }
 
 void GrblDriver::override_speeds(const Json& command) {

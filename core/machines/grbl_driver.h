@@ -61,7 +61,7 @@ class GrblDriver final : public MachineDriver {
   void set_origin(const Json& command);
   void focus(const Json& command, double now_s);
   void focus_off();
-  void send_by_hand(const Json& command, double now_s);
+  void send_by_hand(const Json& command);
   void override_speeds(const Json& command);
   void check_reach(const GcodeBounds& bounds) const;
   std::vector<std::string> way_back_to(int index) const;

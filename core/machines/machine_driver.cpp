@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "machines/machine_driver.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "base/error.h"
 #include "machines/grbl_driver.h"
+#include "machines/k40_driver.h"
 #include "machines/marlin_driver.h"
+#include "machines/ruida_driver.h"
 
 namespace formwright {
 
@@ -56,8 +59,8 @@ std::unique_ptr<MachineDriver> make_machine_driver(const Json& options) {
   switch (read.controller) {
     case Controller::grbl: return std::make_unique<GrblDriver>(read);
     case Controller::marlin: return std::make_unique<MarlinDriver>(read);
-    case Controller::k40:
-    case Controller::ruida: break;
+    case Controller::k40: return std::make_unique<K40Driver>(read);
+    case Controller::ruida: return std::make_unique<RuidaDriver>(read);
   }
   machines_detail::refuse("controller", "There is no driver for this controller: choose another.");
 }
@@ -82,6 +85,55 @@ double number_of(const Json& command, const char* name, double minimum, double m
   if (!(value >= minimum && value <= maximum))
     refuse(name, std::string(name) + " must be a number from " + decimal(minimum) + " to " + decimal(maximum) + ".");
   return value;
+}
+
+std::string command_name(const Json& command, MachineConnection connection) {
+  const auto found = command.is_object() ? command.find("do") : command.end();
+  if (!command.is_object() || found == command.end() || !found->is_string()) refuse("do", "A command is an object that says what to \"do\".");
+  const std::string what = found->get<std::string>();
+  static const char* known[] = {"stop",  "home",      "unlock", "jog",   "jog_cancel", "set_origin", "go_to",   "frame",
+                                "focus", "focus_off", "start",  "pause", "resume",     "send",       "override"};
+  if (std::none_of(std::begin(known), std::end(known), [&](const char* name) { return what == name; })) refuse("do", "There is no command \"" + what + "\".");
+  if (connection == MachineConnection::closed) refuse(what, "The machine is not connected: connect it first.");
+  return what;
+}
+
+void refuse_in_phase(const std::string& what, MachinePhase phase) {
+  refuse(what, std::string("This cannot be done while the machine is in the state \"") + to_string(phase) + "\".");
+}
+
+std::array<double, 4> bounds_of(const Json& command) {
+  const auto found = command.find("bounds_mm");
+  std::array<double, 4> bounds{};
+  bool good = found != command.end() && found->is_array() && found->size() == 4;
+  for (std::size_t i = 0; good && i < 4; ++i) {
+    good = (*found)[i].is_number() && std::abs((*found)[i].get<double>()) <= 10000;
+    if (good) bounds[i] = (*found)[i].get<double>();
+  }
+  if (!good) refuse("bounds_mm", "bounds_mm must be four numbers: left, low, right, high.");
+  return bounds;
+}
+
+std::array<std::array<double, 2>, 5> way_around(const std::array<double, 4>& b) {
+  return {{{b[0], b[1]}, {b[2], b[1]}, {b[2], b[3]}, {b[0], b[3]}, {b[0], b[1]}}};
+}
+
+std::string line_of(const Json& command, std::size_t longest) {
+  const auto found = command.find("line");
+  const std::string line = found != command.end() && found->is_string() ? found->get<std::string>() : "";
+  if (line.empty() || line.size() > longest || std::any_of(line.begin(), line.end(), [](char c) { return c < ' ' || c > '~'; }))
+    refuse("line", "A line has 1 to " + std::to_string(longest) + " characters of plain text.");
+  return line;
+}
+
+std::string zero_words(const Json& command, const char* space) {
+  const auto found = command.find("axes");
+  const std::string axes = found == command.end() ? "xy" : found->is_string() ? found->get<std::string>() : "";
+  std::string words;
+  for (const char axis : std::string("xyz"))
+    if (axes.find(axis) != std::string::npos) words += space + std::string(1, static_cast<char>(axis - 'a' + 'A')) + "0";
+  if (words.empty()) refuse("axes", "axes must name x, y or z.");
+  return words;
 }
 
 Json job_json(const MachineJob& job, double now_s) {

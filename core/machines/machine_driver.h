@@ -2,6 +2,7 @@
 #pragma once
 // What all machines have in common for those who hold the port: a driver is told what arrived and what the person wants, and says what
 // to write. It has no clock and no port of its own, so the same one runs in the page, in the worker, on the command line and in tests.
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -83,6 +84,17 @@ namespace machines_detail {
 void require_confirmation(const Json& command, const std::string& what_happens);
 /// A number of the command in its range; `fallback` where it is absent, an error where that is NaN.
 double number_of(const Json& command, const char* name, double minimum, double maximum, double fallback);
+/// What to "do". Throws where it is no command, is not known to any machine, or the machine is not connected.
+std::string command_name(const Json& command, MachineConnection connection);
+[[noreturn]] void refuse_in_phase(const std::string& what, MachinePhase phase);
+/// bounds_mm: left, low, right, high.
+std::array<double, 4> bounds_of(const Json& command);
+/// The corners of bounds_mm, once around and back.
+std::array<std::array<double, 2>, 5> way_around(const std::array<double, 4>& bounds_mm);
+/// "line": 1 to `longest` characters that can be printed.
+std::string line_of(const Json& command, std::size_t longest);
+/// "axes" as the words "X0Y0", "xy" where it is absent; `space` before each.
+std::string zero_words(const Json& command, const char* space);
 Json job_json(const MachineJob& job, double now_s);
 /// "12.5": at most three decimals, none that are zero.
 std::string decimal(double value);

@@ -52,10 +52,7 @@ void MarlinDriver::move(const std::string& mode, const std::string& words, doubl
 }
 
 void MarlinDriver::command(const Json& command, double now_s) {
-  const auto found = command.is_object() ? command.find("do") : command.end();
-  if (!command.is_object() || found == command.end() || !found->is_string()) refuse("do", "A command is an object that says what to \"do\".");
-  const std::string what = found->get<std::string>();
-  if (connection_ == MachineConnection::closed) refuse(what, "The machine is not connected: connect it first.");
+  const std::string what = machines_detail::command_name(command, connection_);
   if (what == "stop") return stop("stopped", now_s);
   const std::vector<std::string> can = possible_commands();
   if (std::find(can.begin(), can.end(), what) == can.end()) {
@@ -63,7 +60,7 @@ void MarlinDriver::command(const Json& command, double now_s) {
     if ((what == "start" || what == "frame" || what == "go_to") && phase() == MachinePhase::idle && !position_known_)
       refuse(what, "Where the head stands is unknown: home the machine first.");
     if (what == "start" && program_.line_count() == 0) refuse(what, "No job is loaded: choose one first.");
-    refuse(what, std::string("This cannot be done while the machine is in the state \"") + to_string(phase()) + "\".");
+    machines_detail::refuse_in_phase(what, phase());
   }
   const auto speed = [&](double fallback) { return number_of(command, "speed_mm_per_s", 0.01, 2000, fallback); };
   if (what == "home") {
@@ -76,12 +73,7 @@ void MarlinDriver::command(const Json& command, double now_s) {
     if (words.empty()) refuse("x_mm", "A jog needs x_mm, y_mm or z_mm.");
     if (by_hand_.size() < 12) move("G91", words, speed(absent));
   } else if (what == "set_origin") {
-    const std::string axes = command.value("axes", "xy");
-    std::string words;
-    for (const char axis : std::string("xyz"))
-      if (axes.find(axis) != std::string::npos) words += std::string(" ") + static_cast<char>(axis - 'a' + 'A') + "0";
-    if (words.empty()) refuse("axes", "axes must name x, y or z.");
-    queue("G92" + words);
+    queue("G92" + machines_detail::zero_words(command, " "));
     position_known_ = true;
   } else if (what == "go_to") {
     GcodeBounds bounds;
@@ -90,15 +82,12 @@ void MarlinDriver::command(const Json& command, double now_s) {
     move("G90", " X" + decimal(bounds.low_mm[0]) + " Y" + decimal(bounds.low_mm[1]), speed(50));
   } else if (what == "frame") {
     require_confirmation(command, "The head moves once around the job, laser off");
-    const auto box = command.find("bounds_mm");
-    if (box == command.end() || !box->is_array() || box->size() != 4 || !std::all_of(box->begin(), box->end(), [](const Json& n) { return n.is_number(); }))
-      refuse("bounds_mm", "bounds_mm must be four numbers: left, low, right, high.");
-    const std::array<double, 4> b = {(*box)[0], (*box)[1], (*box)[2], (*box)[3]};
+    const std::array<double, 4> b = machines_detail::bounds_of(command);
     GcodeBounds bounds;
     bounds.add({b[0], b[1], 0});
     bounds.add({b[2], b[3], 0});
     check_reach(bounds);
-    for (const auto& [x, y] : {std::pair{b[0], b[1]}, std::pair{b[2], b[1]}, std::pair{b[2], b[3]}, std::pair{b[0], b[3]}, std::pair{b[0], b[1]}})
+    for (const auto& [x, y] : machines_detail::way_around(b))
       move("G90", " X" + decimal(x) + " Y" + decimal(y), speed(50));
   } else if (what == "focus") {
     const double power = number_of(command, "power_percent", 0, options_.focus_power_percent, absent);
@@ -119,11 +108,7 @@ void MarlinDriver::command(const Json& command, double now_s) {
     const GcodeState s = program_.state_before(next_line_);
     if (options_.tool == MachineTool::laser && s.spindle != 5) queue("M" + std::to_string(s.spindle) + " S" + decimal(s.power));
   } else if (what == "send") {
-    const auto line = command.find("line");
-    if (line == command.end() || !line->is_string()) refuse("line", "The command needs a line to send.");
-    const std::string text = line->get<std::string>();
-    if (text.empty() || text.size() > longest_by_hand || std::any_of(text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }))
-      refuse("line", "A line has 1 to 80 characters of plain text.");
+    const std::string text = machines_detail::line_of(command, longest_by_hand);
     const LineEffect effect = effect_of(text);
     if (effect.moves || effect.fires) require_confirmation(command, "The line \"" + text + "\" may move the machine, heat it or turn its laser on");
     queue(text);

@@ -87,4 +87,8 @@ int main(int argc, char** argv) {
   Grey16Image image{5, 3, 0.1, 0.1, std::vector<std::uint16_t>(15, 4711)};
   save("png16", "grey", write_png16(image));
   save("png16", "red", test::red_pixel_png());
+  save("machine", "grbl", std::string("\0\x40", 2) + "G21G90\nM4S10\nG1X5F600\nGrbl 1.1h\r\nok\r\n<Idle|MPos:0,0,0|FS:0,0>\r\nok\r\nok\r\nALARM:1\r\nerror:3\r\n");
+  save("machine", "marlin", std::string("\x01\x40") + "G1X5F600\nstart\nok\nResend: 2\nok\nok T:20 B:20\nError:kill\n");
+  save("machine", "k40", std::string("\x02\x40") + "IBzzaS1P\nFNSE-\n\xff\xce\xff\xcf\xff\xec");
+  save("machine", "ruida", std::string("\x03\x20") + "\xd4\x09\xc6\xd4\x09\x8d\x89\x89\x89\x89\x89\x89");
 }

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Anybody's SVG as a drawing to cut, at its true size.
+#include <string>
+#include <vector>
+
+#include "base/bytes.h"
+#include "base/context.h"
+#include "base/parameters.h"
+#include "fabrication/cut_sheet.h"
+
+namespace formwright {
+
+/// What a drawing without physical size is measured in.
+enum class UserUnit { as_told, px, mm, pt, inch };
+template <>
+struct EnumNames<UserUnit> {
+  static constexpr std::array<std::string_view, 5> names{"as_told", "px", "mm", "pt", "inch"};
+  static constexpr std::array<std::string_view, 5> labels{"As it says", "Pixels, 96 an inch", "Millimetres", "Points, 72 an inch", "Inches"};
+};
+
+struct SvgReadOptions {
+  double flatness_mm = 0.01;                // polylines keep this close to their curves
+  UserUnit user_unit = UserUnit::as_told;   // anything else overrides width, height and viewBox: one user unit is one of these
+};
+
+struct SvgDrawing {
+  CutSheet sheet;                  // names of paths are the elements' ids
+  std::vector<std::string> notes;  // what was left out or guessed, in sentences
+};
+
+/// Shapes, paths, groups, nested drawings and <use> with their transforms; shapes that are not painted are left out, as are pictures and words.
+/// A path's layer: the innermost group around it whose label or id names one (layer_by_name), else the colour of its stroke, of its fill
+/// without a stroke (layer_by_colour), else note.
+/// Throws Error{invalid_input, "drawing"}: not an SVG, no physical size ("user_unit" mends it), nothing drawn, words only, over 2 million
+/// points, over 20 m; cancelled.
+SvgDrawing read_svg_drawing(ByteView bytes, const SvgReadOptions& options, const Context& context);
+
+}  // namespace formwright

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fabrication/svg_viewport.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/number_list.h"
+#include "fabrication/svg_grammar.h"
+
+namespace formwright {
+namespace {
+
+struct ViewBox {
+  double x, y, width, height;
+};
+
+std::optional<ViewBox> view_box_of(const pugi::xml_node& node) {
+  std::string text = node.attribute("viewBox").value();
+  std::replace_if(text.begin(), text.end(), [](char c) { return c == '\n' || c == '\t' || c == '\r'; }, ' ');
+  const auto numbers = read_number_list(text);
+  if (!numbers || numbers->size() != 4 || (*numbers)[2] <= 0 || (*numbers)[3] <= 0) return std::nullopt;
+  return ViewBox{(*numbers)[0], (*numbers)[1], (*numbers)[2], (*numbers)[3]};
+}
+
+/// preserveAspectRatio: the share of the free room that lies before the picture, in x and y.
+Eigen::Affine2d fit(const ViewBox& box, double width, double height, std::string_view preserve) {
+  Vec2 scale(width / box.width, height / box.height);
+  Vec2 before(0.5, 0.5);
+  if (preserve.find("none") == std::string_view::npos) {
+    const bool slice = preserve.find("slice") != std::string_view::npos;
+    scale.setConstant(slice ? scale.maxCoeff() : scale.minCoeff());
+    if (preserve.find("xMin") != std::string_view::npos) before.x() = 0;
+    if (preserve.find("xMax") != std::string_view::npos) before.x() = 1;
+    if (preserve.find("YMin") != std::string_view::npos) before.y() = 0;
+    if (preserve.find("YMax") != std::string_view::npos) before.y() = 1;
+  }
+  const Vec2 room(width - scale.x() * box.width, height - scale.y() * box.height);
+  return Eigen::Translation2d(before.cwiseProduct(room)) * Eigen::Scaling(scale.x(), scale.y()) * Eigen::Translation2d(-box.x, -box.y);
+}
+
+}  // namespace
+
+std::string svg_local_name(const pugi::xml_node& node) {
+  const std::string name = node.name();
+  const std::size_t colon = name.find(':');
+  return colon == std::string::npos ? name : name.substr(colon + 1);
+}
+
+PageFrame read_page_frame(const pugi::xml_node& root, UserUnit unit, std::vector<std::string>& notes) {
+  const auto box = view_box_of(root);
+  const auto width = read_length(root.attribute("width").value()), height = read_length(root.attribute("height").value());
+  const auto size_of = [](const std::optional<SvgLength>& length) { return length && !length->percent && length->value > 0 ? length->value : 0; };
+  double width_px = size_of(width), height_px = size_of(height);
+  PageFrame page;
+  if (unit != UserUnit::as_told) {
+    constexpr double unit_mm[] = {0, 1 / user_units_per_mm, 1, 25.4 / 72, 25.4};
+    const double mm = unit_mm[static_cast<int>(unit)];
+    const ViewBox whole = box.value_or(ViewBox{0, 0, width_px > 0 ? width_px : 100, height_px > 0 ? height_px : 100});
+    page.to_mm = Eigen::Scaling(mm) * Eigen::Translation2d(-whole.x, -whole.y);
+    page.viewport = {whole.width, whole.height};
+    page.width_mm = mm * whole.width;
+    page.height_mm = mm * whole.height;
+    return page;
+  }
+  const auto says_px = [&](const char* name) { return std::string_view(root.attribute(name).value()).find("px") != std::string_view::npos; };
+  const bool pixels = says_px("width") || says_px("height");
+  const bool absolute = (width && width->absolute) || (height && height->absolute);
+  if (!absolute && !pixels)
+    throw Error(ErrorCode::invalid_input, "drawing",
+                "The drawing does not tell its size in millimetres: save it with a width and height such as 200mm, or set user_unit.");
+  // One of the two follows from the other and the viewBox.
+  if (box && height_px <= 0) height_px = width_px * box->height / box->width;
+  if (box && width_px <= 0) width_px = height_px * box->width / box->height;
+  if (width_px <= 0) width_px = height_px;
+  if (height_px <= 0) height_px = width_px;
+  if (!absolute) notes.push_back("The drawing's size is in pixels; they are taken as 96 to the inch, as SVG says.");
+  const auto in_mm = [](double px) { return std::round(1e9 * px / user_units_per_mm) / 1e9; };
+  page.width_mm = in_mm(width_px);
+  page.height_mm = in_mm(height_px);
+  if (page.width_mm > 20'000 || page.height_mm > 20'000)
+    throw Error(ErrorCode::invalid_input, "drawing", "The drawing is larger than 20 m: check its units.");
+  page.viewport = {width_px, height_px};
+  page.to_mm = Eigen::Affine2d::Identity();
+  if (box) {
+    // Straight into mm: scales such as 1 stay exactly that.
+    page.to_mm = fit(*box, page.width_mm, page.height_mm, root.attribute("preserveAspectRatio").value());
+    page.viewport = {box->width, box->height};
+  } else {
+    page.to_mm = Eigen::Affine2d(Eigen::Scaling(1 / user_units_per_mm));
+  }
+  return page;
+}
+
+void apply_view_box(const pugi::xml_node& node, Eigen::Affine2d& to_mm, ViewportSize& viewport) {
+  const auto box = view_box_of(node);
+  if (!box) return;
+  to_mm = to_mm * fit(*box, viewport.width, viewport.height, node.attribute("preserveAspectRatio").value());
+  viewport = {box->width, box->height};
+}
+
+void enter_viewport(const pugi::xml_node& node, Eigen::Affine2d& to_mm, ViewportSize& viewport) {
+  const auto length = [&](const char* name, double whole, double absent) {
+    const auto value = read_length(node.attribute(name).value());
+    return !value ? absent : value->percent ? value->value / 100 * whole : value->value;
+  };
+  to_mm.translate(Vec2(length("x", viewport.width, 0), length("y", viewport.height, 0)));
+  viewport = {length("width", viewport.width, viewport.width), length("height", viewport.height, viewport.height)};
+  apply_view_box(node, to_mm, viewport);
+}
+
+}  // namespace formwright

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Ruida controllers over UDP: the board answers on port 40200 what arrives on 50200. A datagram is at most 1470 bytes: a 16-bit big-endian
+// sum of the bytes behind it, and those bytes scrambled ("swizzled") with the model's number. Every datagram is acknowledged.
+#include <array>
+#include <deque>
+#include <optional>
+
+#include "machines/machine_driver.h"
+
+namespace formwright {
+
+unsigned char ruida_swizzled(unsigned char byte);
+unsigned char ruida_unswizzled(unsigned char byte);
+/// Plain commands as one datagram.
+Bytes ruida_datagram(std::string_view plain);
+/// An .rd file cut into datagrams between its commands. Throws Error invalid_input ("job").
+std::vector<Bytes> ruida_datagrams(ByteView rd_file);
+
+class RuidaDriver final : public MachineDriver {
+ public:
+  explicit RuidaDriver(const MachineOptions& options) : options_(options) {}
+
+  void opened(double now_s) override;
+  void closed(double now_s) override;
+  void received(ByteView datagram, double now_s) override;
+  void tick(double now_s) override;
+  void command(const Json& command, double now_s) override;
+  void load(const std::string& name, ByteView job) override;
+  Json state(double now_s) const override;
+
+ private:
+  bool job_active() const { return job_ && job_->ended.empty(); }
+  void queue(std::string_view plain) { queue_.push_back(ruida_datagram(plain)); }
+  void send_next(double now_s);
+  void hear_memory(int address, long value);
+  void end_job(const char* how, double now_s);
+  std::vector<std::string> possible_commands() const;
+  MachinePhase phase() const;
+
+  MachineOptions options_;
+  MachineConnection connection_ = MachineConnection::closed;
+  std::vector<Bytes> program_;
+  std::string program_name_;
+  std::optional<MachineJob> job_;
+  std::deque<Bytes> queue_;
+  std::optional<Bytes> unconfirmed_;
+  std::size_t job_left_ = 0;
+  long status_ = 0;
+  int repeats_ = 0;
+  std::array<std::optional<double>, 2> position_mm_;
+  bool paused_ = false, homed_ = false, homing_ = false, seen_running_ = false;
+  double sent_s_ = 0, heard_s_ = 0, asked_s_ = 0, uploaded_s_ = -1, homing_s_ = 0;
+};
+
+}  // namespace formwright

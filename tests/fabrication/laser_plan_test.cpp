@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fabrication/laser_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+#include "base/random.h"
+#include "fabrication/contours.h"
+#include "fabrication/gcode_writer.h"
+
+namespace formwright {
+namespace {
+
+CutPath box(double x, double y, double width, double height, const std::string& name = "", CutLayer layer = CutLayer::cut) {
+  return {layer, {{x, y}, {x + width, y}, {x + width, y + height}, {x, y + height}}, true, name};
+}
+
+LaserPlan planned(std::vector<CutPath> paths, const LaserOptions& options) {
+  Context context;
+  return plan_laser_job({"t", 200, 150, std::move(paths)}, options, context);
+}
+
+std::vector<const ToolMove*> work_of(const LaserPlan& plan) {
+  std::vector<const ToolMove*> work;
+  for (const ToolMove& move : plan.path.moves)
+    if (move.work) work.push_back(&move);
+  return work;
+}
+
+double area_of(const ToolMove& move) {
+  Polygon polygon;
+  for (const Vec3& p : move.points_mm) polygon.push_back(p.head<2>());
+  return signed_area_mm2(polygon);
+}
+
+TEST(LaserPlan, KerfGoesToTheSideThatKeepsItsSize) {
+  LaserOptions options;
+  options.kerf_mm = 0.2;
+  const double grown = 100 * 80 + 2 * (100 + 80) * 0.1 + std::numbers::pi * 0.01, shrunk = 19.8 * 9.8;
+  const auto areas = [&](KerfSide side) {
+    options.kerf_side = side;
+    const LaserPlan plan = planned({box(10, 10, 100, 80, "plate"), box(40, 40, 20, 10)}, options);
+    const auto work = work_of(plan);
+    EXPECT_EQ(work.size(), 2u);
+    EXPECT_EQ(work[0]->part, "plate");
+    EXPECT_EQ(work[1]->part, "plate");
+    return std::pair(-area_of(*work[0]), area_of(*work[1]));  // the opening first, clockwise
+  };
+  EXPECT_NEAR(areas(KerfSide::parts).first, shrunk, 0.01);
+  EXPECT_NEAR(areas(KerfSide::parts).second, grown, 0.01);
+  EXPECT_NEAR(areas(KerfSide::centre).first, 200, 1e-6);
+  EXPECT_NEAR(areas(KerfSide::centre).second, 8000, 1e-6);
+  EXPECT_NEAR(areas(KerfSide::openings).second, 99.8 * 79.8, 0.01);
+}
+
+TEST(LaserPlan, InsidesComeFirstAndPartsAreFinishedTogether) {
+  // Three plates with two openings each, one of which holds another part with an opening.
+  std::vector<CutPath> paths;
+  for (int i = 0; i < 3; ++i) {
+    const double x = 5 + 60 * i;
+    const std::string name = "p" + std::to_string(i);
+    paths.push_back(box(x, 5, 50, 100, name));
+    paths.push_back(box(x + 5, 10, 40, 40));
+    paths.push_back(box(x + 10, 15, 20, 20, name + "-inner"));
+    paths.push_back(box(x + 15, 20, 5, 5));
+    paths.push_back(box(x + 5, 60, 10, 10));
+    paths.push_back({CutLayer::cut, {{x + 20, 70}, {x + 40, 70}}, false, ""});  // a slit
+  }
+  LaserOptions options;
+  const LaserPlan plan = planned(paths, options);
+  const auto work = work_of(plan);
+  ASSERT_EQ(work.size(), 18u);
+  std::vector<int> plates;
+  std::vector<double> size;
+  for (const ToolMove* move : work) {
+    plates.push_back(static_cast<int>((move->points_mm[0].x() - 2) / 60));
+    size.push_back(std::abs(area_of(*move)));
+  }
+  for (std::size_t i = 0; i < 18; i += 6) {
+    for (std::size_t k = i; k < i + 6; ++k) EXPECT_EQ(plates[k], plates[i]) << "a part is left unfinished";
+    EXPECT_GT(size[i + 5], 4900);  // the outline last
+    const auto at = [&](double area) {
+      return std::find_if(size.begin() + static_cast<long>(i), size.begin() + static_cast<long>(i) + 6, [&](double s) { return std::abs(s - area) < 0.1 * area + 1; }) - size.begin();
+    };
+    EXPECT_LT(at(25), at(400));
+    EXPECT_LT(at(400), at(1600));
+  }
+}
+
+TEST(LaserPlan, EngraveThenMarkThenCutAndNotesNever) {
+  std::vector<CutPath> paths{box(10, 10, 20, 20), box(12, 12, 5, 5, "", CutLayer::engrave), box(20, 20, 5, 5, "", CutLayer::mark), box(0, 0, 200, 150, "", CutLayer::note)};
+  LaserOptions options;
+  const LaserPlan plan = planned(paths, options);
+  std::vector<std::string> layers;
+  for (const ToolMove* move : work_of(plan)) layers.push_back(move->layer);
+  EXPECT_EQ(layers, (std::vector<std::string>{"engrave", "mark", "cut"}));
+  for (const ToolMove* move : work_of(plan)) EXPECT_LT(move->points_mm[0].x(), 40);
+  options.mark_enabled = false;
+  EXPECT_EQ(work_of(planned(paths, options)).size(), 2u);
+  options.take_as = TakeAs::cut;
+  EXPECT_EQ(work_of(planned(paths, options)).size(), 3u);
+  EXPECT_THROW(planned({paths[3]}, options), Error);
+}
+
+TEST(LaserPlan, TabsAreLeftInTheLastPassAwayFromCorners) {
+  LaserOptions options;
+  options.kerf_mm = 0.2;
+  options.tabs_count = 4;
+  options.tab_width_mm = 1;
+  options.cut_passes = 3;
+  options.overcut_mm = 2;
+  const LaserPlan plan = planned({box(10, 10, 100, 80), box(40, 40, 20, 10)}, options);
+  double burned[4] = {0, 0, 0, 0};
+  std::vector<Vec2> gaps;
+  for (std::size_t m = 0; m < plan.path.moves.size(); ++m) {
+    const ToolMove& move = plan.path.moves[m];
+    if (!move.work || (move.points_mm[0].head<2>() - Vec2(50, 45)).norm() < 20) continue;  // the outline only
+    for (std::size_t i = 1; i < move.points_mm.size(); ++i) burned[move.pass] += (move.points_mm[i] - move.points_mm[i - 1]).norm();
+  }
+  const double round_trip = 360 + 0.2 * std::numbers::pi;
+  EXPECT_NEAR(burned[1], round_trip, 0.01);
+  EXPECT_NEAR(burned[2], round_trip, 0.01);
+  EXPECT_NEAR(burned[3], round_trip + 2 - 4 * 1.2, 0.02);  // what stands is as wide as asked for once the kerf is off
+  const Polygon outline{{10, 10}, {110, 10}, {110, 90}, {10, 90}};
+  const auto middles = place_tabs(outline, 4, 1.2);
+  ASSERT_EQ(middles.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (const double corner : {0.0, 100.0, 180.0, 280.0, 360.0}) EXPECT_GE(std::abs(middles[i] - corner), 1.2);
+    EXPECT_NEAR(middles[i], 45 + 90 * static_cast<double>(i), 22.5);
+  }
+  EXPECT_EQ(place_tabs(outline, 100, 1.2).size(), 75u);
+}
+
+TEST(LaserPlan, PassesAreRunAndGoDeeper) {
+  LaserOptions options;
+  options.cut_passes = 3;
+  options.cut_step_down_mm = 0.5;
+  const LaserPlan plan = planned({box(10, 10, 20, 20), {CutLayer::cut, {{50, 50}, {80, 50}}, false, ""}}, options);
+  const auto work = work_of(plan);
+  ASSERT_EQ(work.size(), 6u);
+  for (const ToolMove* move : work)
+    for (const Vec3& p : move->points_mm) EXPECT_NEAR(p.z(), -0.5 * (move->pass - 1), 1e-12);
+  for (const ToolMove& move : plan.path.moves)
+    if (!move.work && (move.points_mm.front().head<2>() - move.points_mm.back().head<2>()).norm() > 1) {
+      EXPECT_EQ(move.points_mm.back().z(), 0);
+    }
+}
+
+TEST(LaserPlan, PlacingTurnsAndMirrors) {
+  LaserOptions options;
+  options.kerf_mm = 0;
+  options.x_mm = 20;
+  options.y_mm = 30;
+  options.turn_degrees = 90;
+  const auto bounds = work_bounds(planned({box(10, 20, 30, 40)}, options).path);
+  // The page is 200 x 150; turned by 90 degrees its upper left corner is the lower left one.
+  EXPECT_NEAR(bounds.x0_mm, 20 + 150 - 60, 1e-9);
+  EXPECT_NEAR(bounds.x1_mm, 20 + 150 - 20, 1e-9);
+  EXPECT_NEAR(bounds.y0_mm, 30 + 10, 1e-9);
+  EXPECT_NEAR(bounds.y1_mm, 30 + 40, 1e-9);
+  options.turn_degrees = 0;
+  options.mirrored = true;
+  EXPECT_NEAR(work_bounds(planned({box(10, 20, 30, 40)}, options).path).x0_mm, 20 + 200 - 40, 1e-9);
+}
+
+TEST(LaserPlan, WhatDoesNotFitIsSaid) {
+  LaserOptions options;
+  options.kerf_mm = 0.2;
+  options.bed_x_mm = 200;
+  options.bed_y_mm = 150;
+  EXPECT_TRUE(planned({box(0.2, 0.2, 199.6, 149.6)}, options).misfits.empty());
+  const auto beyond = planned({box(0, 0.3, 100, 100)}, options).misfits;  // half the kerf and half of it again burn over the edge
+  ASSERT_EQ(beyond.size(), 1u);
+  EXPECT_NE(beyond[0].find("0.2 mm beyond the left edge"), std::string::npos) << beyond[0];
+  options.no_go = "150,0,160,150";
+  EXPECT_TRUE(planned({box(10, 10, 139.7, 20)}, options).misfits.empty());
+  EXPECT_EQ(planned({box(10, 10, 139.9, 20, "left")}, options).misfits.at(0).substr(0, 9), "Part left");
+  EXPECT_EQ(planned({box(170, 10, 20, 20)}, options).misfits.at(0).substr(0, 8), "A travel");
+  options.no_go = "1,2,3";
+  EXPECT_THROW(planned({box(10, 10, 20, 20)}, options), Error);
+}
+
+/// G-code read back word by word.
+struct Machine {
+  Vec2 at{0, 0};
+  double s = 0, burned_mm = 0;
+  int longest = 0;
+  std::vector<Vec2> path;
+
+  void run(std::string_view text) {
+    while (!text.empty()) {
+      const std::string_view line = text.substr(0, text.find('\n'));
+      text.remove_prefix(line.size() + 1);
+      longest = std::max(longest, static_cast<int>(line.size()));
+      if (line.starts_with(';')) continue;
+      Vec2 to = at;
+      bool rapid = false, feed = false;
+      for (std::size_t i = 0; i < line.size(); ++i) {
+        double value = 0;
+        const auto end = std::from_chars(line.data() + i + 1, line.data() + line.size(), value).ptr;
+        if (line[i] == 'G') rapid = value == 0, feed = value == 1;
+        if (line[i] == 'X') to.x() = value;
+        if (line[i] == 'Y') to.y() = value;
+        if (line[i] == 'S') s = value;
+        i = static_cast<std::size_t>(end - line.data());
+      }
+      if (rapid && to != at) {
+        EXPECT_EQ(s, 0) << "burns while it travels: " << line;
+      }
+      if (feed && s > 0) burned_mm += (to - at).norm();
+      if (rapid || feed) path.push_back(to);
+      at = to;
+    }
+  }
+};
+
+TEST(LaserPlan, GcodeIsTheToolPathForEveryOrigin) {
+  Random random(17);
+  std::vector<CutPath> paths;
+  for (int i = 0; i < 60; ++i) {
+    CutPath path{static_cast<CutLayer>(random.below(3)), {}, random.below(2) == 0, ""};
+    const Vec2 middle(random.uniform(20, 180), random.uniform(20, 130));
+    const int corners = 3 + static_cast<int>(random.below(40));
+    for (int k = 0; k < corners; ++k) {
+      const double angle = 2 * std::numbers::pi * k / corners, radius = random.uniform(2, 15);
+      path.points_mm.emplace_back(middle + radius * Vec2(std::cos(angle), std::sin(angle)));
+    }
+    paths.push_back(std::move(path));
+  }
+  for (const BedOrigin origin : {BedOrigin::lower_left, BedOrigin::upper_left, BedOrigin::centre})
+    for (const Controller controller : {Controller::grbl, Controller::marlin}) {
+      LaserOptions options;
+      options.origin = origin;
+      options.controller = controller;
+      options.bed_x_mm = 333.3;
+      LaserPlan plan = planned(paths, options);
+      const Bytes gcode = write_laser_gcode(plan.path, options);
+      Machine machine;
+      if (controller == Controller::grbl) {
+        machine.run(as_text(gcode));
+        EXPECT_NEAR(machine.burned_mm, plan.path.length_mm(true), 1e-6);
+        std::size_t at = 0;
+        for (const ToolMove& move : plan.path.moves)
+          for (std::size_t i = 1; i < move.points_mm.size(); ++i, ++at) {
+            // The bed's middle is at half a micrometre: rounding once is all there may be.
+            EXPECT_LE((machine.path.at(at) - to_controller(move.points_mm[i].head<2>(), options)).cwiseAbs().maxCoeff(), 5.001e-4);
+          }
+        EXPECT_EQ(at + 1, machine.path.size());  // and the last line, back to the origin
+        EXPECT_LE(machine.longest, 80);
+      }
+      // Lines are those that move to the points.
+      std::vector<std::string> lines;
+      for (std::string_view rest = as_text(gcode); !rest.empty(); rest.remove_prefix(rest.find('\n') + 1)) lines.emplace_back(rest.substr(0, rest.find('\n')));
+      EXPECT_EQ(line_count(gcode), static_cast<int>(lines.size()));
+      for (const ToolMove& move : plan.path.moves)
+        for (std::size_t i = 1; i < move.points_mm.size(); ++i)
+          EXPECT_EQ(lines.at(static_cast<std::size_t>(move.lines.at(i)) - 1).substr(0, 3), move.work ? "G1 " : "G0 ");
+    }
+}
+
+}  // namespace
+}  // namespace formwright

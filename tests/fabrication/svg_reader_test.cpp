@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fabrication/svg_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "base/error.h"
+#include "fabrication/polygon.h"
+
+namespace formwright {
+namespace {
+
+SvgDrawing read(const std::string& svg, const SvgReadOptions& options = {}) { return read_svg_drawing(as_bytes(svg), options, Context()); }
+
+/// A drawing of 100 x 60 mm whose unit is the millimetre.
+SvgDrawing read_body(const std::string& body, const SvgReadOptions& options = {}) {
+  return read("<svg xmlns='http://www.w3.org/2000/svg' width='100mm' height='60mm' viewBox='0 0 100 60' fill='none' stroke='red'>" + body + "</svg>", options);
+}
+
+std::string refusal(const std::string& svg) {
+  try {
+    read(svg);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::invalid_input);
+    EXPECT_EQ(error.where(), "drawing");
+    return error.what();
+  }
+  ADD_FAILURE() << "was not refused: " << svg;
+  return "";
+}
+
+/// Of both coordinates, y from the top.
+void expect_points(const SvgDrawing& drawing, const std::vector<Vec2>& expected, double tolerance = 1e-6) {
+  ASSERT_EQ(drawing.sheet.paths.size(), 1u);
+  const auto& points = drawing.sheet.paths[0].points_mm;
+  ASSERT_EQ(points.size(), expected.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_NEAR(points[i].x(), expected[i].x(), tolerance) << i;
+    EXPECT_NEAR(drawing.sheet.height_mm - points[i].y(), expected[i].y(), tolerance) << i;
+  }
+}
+
+TEST(SvgReader, EveryUnitIsItsMillimetres) {
+  struct Case {
+    std::string size;
+    double mm;
+  };
+  for (const Case& c : {Case{"500mm", 500}, Case{"25cm", 250}, Case{"4in", 101.6}, Case{"72pt", 25.4}, Case{"6pc", 25.4}, Case{"96px", 25.4}, Case{"40Q", 10}}) {
+    // With a viewBox the whole of it is that size, without one a unit is a px.
+    const SvgDrawing boxed = read("<svg width='" + c.size + "' height='" + c.size + "' viewBox='0 0 2 2'><path stroke='red' d='M0 0L1 2'/></svg>");
+    EXPECT_NEAR(boxed.sheet.width_mm, c.mm, 1e-9) << c.size;
+    EXPECT_NEAR(boxed.sheet.paths.at(0).points_mm[1].x(), c.mm / 2, 1e-6) << c.size;
+    EXPECT_NEAR(boxed.sheet.paths.at(0).points_mm[1].y(), 0, 1e-6) << c.size;
+    const SvgDrawing plain = read("<svg width='" + c.size + "' height='" + c.size + "'><path stroke='red' d='M0 0L96 0'/></svg>");
+    EXPECT_NEAR(plain.sheet.paths.at(0).points_mm[1].x(), 25.4, 1e-6) << c.size;
+    // Lengths of shapes have units of their own.
+    const SvgDrawing shape = read("<svg width='10mm' height='10mm'><line stroke='red' x2='" + c.size + "'/></svg>");
+    EXPECT_NEAR(shape.sheet.paths.at(0).points_mm[1].x(), c.mm, 1e-6) << c.size;
+  }
+}
+
+TEST(SvgReader, ViewBoxesKeepTheirAspectAsTheySay) {
+  const std::string body = "<path stroke='red' d='M0 0L10 10'/></svg>";
+  const auto first = [](const SvgDrawing& d) { return Vec2(d.sheet.paths.at(0).points_mm[0].x(), d.sheet.height_mm - d.sheet.paths.at(0).points_mm[0].y()); };
+  const std::string head = "<svg width='200mm' height='100mm' viewBox='0 0 10 10' ";
+  EXPECT_NEAR((first(read(head + ">" + body)) - Vec2(50, 0)).norm(), 0, 1e-6);
+  EXPECT_NEAR((first(read(head + "preserveAspectRatio='xMinYMin meet'>" + body)) - Vec2(0, 0)).norm(), 0, 1e-6);
+  EXPECT_NEAR((first(read(head + "preserveAspectRatio='xMaxYMid'>" + body)) - Vec2(100, 0)).norm(), 0, 1e-6);
+  EXPECT_NEAR((first(read(head + "preserveAspectRatio='xMidYMid slice'>" + body)) - Vec2(0, -50)).norm(), 0, 1e-6);
+  const SvgDrawing stretched = read(head + "preserveAspectRatio='none'>" + body);
+  EXPECT_NEAR(stretched.sheet.paths.at(0).points_mm[1].x(), 200, 1e-6);
+  EXPECT_NEAR(stretched.sheet.paths.at(0).points_mm[1].y(), 0, 1e-6);
+}
+
+TEST(SvgReader, TransformsNest) {
+  const SvgDrawing drawing = read_body("<g transform='translate(10,5) scale(2)'><g transform='rotate(90 1 1)'><path d='M1 1h3'/></g></g>");
+  expect_points(drawing, {{12, 7}, {12, 13}});
+  expect_points(read_body("<path transform='matrix(0 1 -1 0 20 0)' d='M1,2 3,4'/>"), {{18, 1}, {16, 3}});
+  expect_points(read_body("<svg x='10' y='10' width='20' height='10' viewBox='0 0 2 1'><path d='M1 0v1'/></svg>"), {{20, 10}, {20, 20}});
+  expect_points(read_body("<defs><path id='p' d='M0 0h5'/></defs><use href='#p' x='3' y='4' transform='scale(2)'/>"), {{6, 8}, {16, 8}});
+  expect_points(read_body("<symbol id='s' viewBox='0 0 10 10'><path d='M0 0h10'/></symbol><use href='#s' x='1' width='30' height='30'/>"), {{1, 0}, {31, 0}});
+}
+
+TEST(SvgReader, ShapesHaveTheirExactAreas) {
+  const auto area = [](const std::string& body, double tolerance_mm) {
+    SvgReadOptions options;
+    options.flatness_mm = tolerance_mm;
+    const SvgDrawing drawing = read_body(body, options);
+    EXPECT_EQ(drawing.sheet.paths.size(), 1u);
+    EXPECT_TRUE(drawing.sheet.paths.at(0).closed) << body;
+    return std::abs(signed_area_mm2(drawing.sheet.paths.at(0).points_mm));
+  };
+  EXPECT_NEAR(area("<rect x='1' y='2' width='30' height='20'/>", 0.01), 600, 1e-6);
+  EXPECT_NEAR(area("<polygon points='0,0 10,0-5,20'/>", 0.01), 100, 1e-6);
+  const double pi = std::numbers::pi;
+  struct Curved {
+    std::string body;
+    double area;
+  };
+  const Curved curved[] = {{"<circle cx='50' cy='30' r='20'/>", 400 * pi},
+                           {"<ellipse cx='50' cy='30' rx='40' ry='10'/>", 400 * pi},
+                           {"<rect width='40' height='30' rx='5'/>", 1200 - (4 - pi) * 25},
+                           {"<path d='M10 30a20 20 0 1 1 40 0a20 20 0 0 1 -40 0z'/>", 400 * pi},
+                           {"<path d='M0 0C0 20 30 20 30 0z'/>", 360},
+                           {"<path d='M0 0Q15 30 30 0z'/>", 300}};
+  for (const Curved& c : curved) {
+
+    // Chords of a convex curve lose area in proportion to the tolerance.
+    const double coarse = c.area - area(c.body, 0.04), fine = c.area - area(c.body, 0.01), finest = c.area - area(c.body, 0.0025);
+    EXPECT_GT(fine, 0) << c.body;
+    EXPECT_LT(fine, 0.01 * 130) << c.body;  // two thirds of tolerance times length, at most
+    EXPECT_NEAR(coarse / fine, 4, 1.3) << c.body;
+    EXPECT_NEAR(fine / finest, 4, 1.3) << c.body;
+  }
+}
+
+TEST(SvgReader, CurvesAreWithinTheTolerance) {
+  const SvgDrawing drawing = read_body("<g transform='scale(1 0.5) rotate(30)'><circle r='30'/></g>");
+  // Back through the map, the middle of every chord is on the circle within the tolerance, 0.01 mm, seen at most 2 times as large.
+  const Eigen::Affine2d map = Eigen::Scaling(1.0, 0.5) * Eigen::Affine2d(Eigen::Rotation2Dd(std::numbers::pi / 6));
+  const auto& points = drawing.sheet.paths.at(0).points_mm;
+  double worst = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec2 a(points[i].x(), 60 - points[i].y()), b(points[(i + 1) % points.size()].x(), 60 - points[(i + 1) % points.size()].y());
+    EXPECT_NEAR((map.inverse() * a).norm(), 30, 1e-5);
+    worst = std::max(worst, 30 - (map.inverse() * Vec2((a + b) / 2)).norm());
+  }
+  EXPECT_LT(worst, 0.01);
+  EXPECT_GT(worst, 0.002);  // not wasteful
+}
+
+TEST(SvgReader, LayersAreNamedOrColoured) {
+  const SvgDrawing drawing = read(
+      "<svg width='100mm' height='60mm' viewBox='0 0 100 60' xmlns:inkscape='i'><style>.a, .b {stroke:#0000FF;fill:none} line{stroke:rgb(0,0,0)}</style>"
+      "<g inkscape:label='Cut 2'><path stroke='blue' d='M0 0h1'/></g><g id='score_lines'><g><path stroke='red' d='M0 1h1'/></g></g>"
+      "<path class='x b' d='M0 2h1'/><line x2='1' y1='3' y2='3'/><path style='stroke:#f00' stroke='blue' d='M0 4h1'/>"
+      "<path stroke='#00a000' d='M0 5h1'/><path stroke='#f0f' d='M0 6h1'/><path stroke='none' fill='none' d='M0 7h1'/>"
+      "<g display='none'><path stroke='red' d='M0 8h1'/></g><path fill='#111' d='M0 9h1v1z'/></svg>");
+  std::vector<CutLayer> layers;
+  for (const CutPath& path : drawing.sheet.paths) layers.push_back(path.layer);
+  EXPECT_EQ(layers, (std::vector<CutLayer>{CutLayer::cut, CutLayer::mark, CutLayer::mark, CutLayer::engrave, CutLayer::cut, CutLayer::note, CutLayer::note,
+                                           CutLayer::engrave}));
+  ASSERT_EQ(drawing.notes.size(), 1u);
+  EXPECT_NE(drawing.notes[0].find("names no layer"), std::string::npos);
+}
+
+TEST(SvgReader, ReadsWhatWeWrite) {
+  const CutSheet sheet{"t", 120, 80, {{CutLayer::cut, {{10, 10}, {60.25, 10}, {60.25, 40}}, true, "piece-P1"}, {CutLayer::note, {{20, 15}, {20, 17.5}}, false, ""}}};
+  const Bytes bytes = write_svg(sheet);
+  const SvgDrawing drawing = read_svg_drawing(bytes, {}, Context());
+  EXPECT_EQ(drawing.sheet.width_mm, 120);
+  EXPECT_EQ(drawing.sheet.height_mm, 80);
+  ASSERT_EQ(drawing.sheet.paths.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(drawing.sheet.paths[i].layer, sheet.paths[i].layer);
+    EXPECT_EQ(drawing.sheet.paths[i].closed, sheet.paths[i].closed);
+    EXPECT_EQ(drawing.sheet.paths[i].name, sheet.paths[i].name);
+    ASSERT_EQ(drawing.sheet.paths[i].points_mm.size(), sheet.paths[i].points_mm.size());
+    for (std::size_t k = 0; k < sheet.paths[i].points_mm.size(); ++k) EXPECT_EQ(drawing.sheet.paths[i].points_mm[k], sheet.paths[i].points_mm[k]);
+  }
+}
+
+TEST(SvgReader, RefusesWithTheMend) {
+  EXPECT_NE(refusal("").find("empty"), std::string::npos);
+  EXPECT_NE(refusal("hello").find("not XML"), std::string::npos);
+  EXPECT_NE(refusal("<html/>").find("<html>"), std::string::npos);
+  EXPECT_NE(refusal("\x1f\x8b rest").find("SVGZ"), std::string::npos);
+  EXPECT_NE(refusal("<svg width='10mm' height='10mm'/>").find("Nothing is drawn"), std::string::npos);
+  EXPECT_NE(refusal("<svg width='10mm' height='10mm'><text>a</text></svg>").find("convert text to paths"), std::string::npos);
+  EXPECT_NE(refusal("<svg width='10mm' height='10mm'><image/></svg>").find("pictures"), std::string::npos);
+  const std::string line = "<path stroke='red' d='M0 0h10'/></svg>";
+  EXPECT_NE(refusal("<svg viewBox='0 0 10 10'>" + line).find("user_unit"), std::string::npos);
+  EXPECT_NE(refusal("<svg width='100%' height='100%' viewBox='0 0 10 10'>" + line).find("user_unit"), std::string::npos);
+  EXPECT_NE(refusal("<svg width='30000mm' height='10mm'>" + line).find("larger than 20 m"), std::string::npos);
+  EXPECT_NE(refusal("<svg width='10mm' height='10mm'><g transform='scale(1e9)'>" + line.substr(0, line.size() - 6) + "</g></svg>").find("farther than 20 m"), std::string::npos);
+  EXPECT_NE(refusal("<svg width='10mm' height='10mm'><g id='a'><use href='#a'/></g></svg>").find("nested"), std::string::npos);
+  SvgReadOptions inches;
+  inches.user_unit = UserUnit::inch;
+  EXPECT_NEAR(read("<svg viewBox='0 0 10 10'>" + line, inches).sheet.width_mm, 254, 1e-9);
+}
+
+TEST(SvgReader, DamagedPartsAreReadAsFarAsTheyGo) {
+  const SvgDrawing drawing = read_body("<path d='M0 0h10 L oops'/><path d='M0 1h10'/>");
+  EXPECT_EQ(drawing.sheet.paths.size(), 2u);
+  ASSERT_EQ(drawing.notes.size(), 1u);
+  EXPECT_NE(drawing.notes[0].find("fault"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace formwright

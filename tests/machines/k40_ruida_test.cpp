@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Vectors were made with MeerK40t 0.9.9 (its checksum, distances and scrambling), which shares no code with ours.
+#include <gtest/gtest.h>
+
+#include <deque>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "machines/k40_driver.h"
+#include "machines/ruida_driver.h"
+
+namespace formwright {
+namespace {
+
+std::string padded(std::string letters) {
+  letters.resize(30, 'F');
+  return letters;
+}
+
+TEST(K40, ChecksumsAreOneWire) {
+  EXPECT_EQ(one_wire_crc(padded("IPP")), 228);
+  EXPECT_EQ(one_wire_crc(padded("IS2P")), 15);
+  EXPECT_EQ(one_wire_crc(padded("I")), 130);
+  EXPECT_EQ(one_wire_crc(padded("PN")), 243);
+  EXPECT_EQ(one_wire_crc(padded("IBzzaRl052S1P")), 250);
+}
+
+TEST(K40, TransfersAreExact) {
+  const Bytes transfer = k40_transfer("IPP");
+  ASSERT_EQ(transfer.size(), 34u);
+  EXPECT_EQ(transfer[0], std::byte{0xa6});
+  EXPECT_EQ(transfer[1], std::byte{0});
+  EXPECT_EQ(as_text(transfer).substr(2, 30), padded("IPP"));
+  EXPECT_EQ(transfer[32], std::byte{0xa6});
+  EXPECT_EQ(transfer[33], std::byte{228});
+}
+
+TEST(K40, MovesAreWrittenInItsLetters) {
+  EXPECT_EQ(k40_rapid_move(1, 0), "IBaS1P");
+  EXPECT_EQ(k40_rapid_move(25, -26), "IByL|aS1P");
+  EXPECT_EQ(k40_rapid_move(-51, 52), "IT|zR052S1P");
+  EXPECT_EQ(k40_rapid_move(1000, 300), "IBzzz235Rz|tS1P");
+  EXPECT_EQ(k40_rapid_move(-254, 255), "IT254RzS1P");
+}
+
+TEST(K40, ReadsEgvFiles) {
+  const auto packets = k40_packets("Document type : LHYMICRO-GL file\nFile version: 1.0.01\nCreator-Software: X\n\n%0%0%0%0%IBzzzS1P\nICV1752241000000003GAACBaRaFNSE-\n");
+  ASSERT_EQ(packets.size(), 3u);
+  EXPECT_EQ(packets[0], "IBzzzS1P");
+  EXPECT_EQ(packets[1], "ICV1752241000000003GAACBaRaFNS");
+  EXPECT_EQ(packets[2], "E");
+  EXPECT_THROW(k40_packets("G1 X5\n"), Error);
+  EXPECT_THROW(k40_packets(""), Error);
+}
+
+/// The board's side: judges every transfer, is busy now and then, and hears badly.
+class VirtualBoard {
+ public:
+  VirtualBoard(std::uint64_t seed, double spoil) : random_(seed), spoil_(spoil) {}
+  /// The answer to a status question, nothing for packets.
+  Bytes transfer(ByteView bytes) {
+    if (bytes.size() == 1 && bytes[0] == std::byte{0xa0}) {
+      int status = status_;
+      if (busy_ > 0) status = 238, --busy_;
+      else if (finished_in_ > 0 && --finished_in_ == 0) status = status_ = 236;
+      return {std::byte{255}, static_cast<std::byte>(status), std::byte{0}, std::byte{0}, std::byte{0}, std::byte{1}};
+    }
+    EXPECT_EQ(bytes.size(), 34u);
+    EXPECT_EQ(bytes[0], std::byte{0xa6});
+    EXPECT_EQ(bytes[32], std::byte{0xa6});
+    std::string letters(as_text(bytes).substr(2, 30));
+    if (random_.uniform() < spoil_) letters[random_.below(30)] ^= 1;
+    if (one_wire_crc(letters) != std::to_integer<unsigned char>(bytes[33])) {
+      status_ = 207;
+      return {};
+    }
+    status_ = 206;
+    heard.push_back(letters);
+    if (letters.find("FNSE") != std::string::npos) finished_in_ = 5;
+    if (random_.uniform() < 0.3) busy_ = 3;
+    return {};
+  }
+  std::vector<std::string> heard;
+
+ private:
+  Random random_;
+  double spoil_;
+  int status_ = 206, busy_ = 0, finished_in_ = 0;
+};
+
+struct K40Talk {
+  explicit K40Talk(std::uint64_t seed = 1, double spoil = 0) : board(seed, spoil), driver({.controller = Controller::k40, .bed_x_mm = 300, .bed_y_mm = 200}) { driver.opened(0); }
+  void pass(double seconds) {
+    for (const double end = now_s + seconds; now_s < end; now_s += 0.01) {
+      for (const Bytes& packet : driver.take_output())
+        if (const Bytes answer = board.transfer(packet); !answer.empty()) driver.received(answer, now_s);
+      driver.tick(now_s);
+    }
+  }
+  VirtualBoard board;
+  K40Driver driver;
+  double now_s = 0;
+};
+
+TEST(K40, JobsArriveWholeThroughSpoiledPackets) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    K40Talk talk(seed, 0.2);
+    talk.pass(1);
+    EXPECT_EQ(talk.driver.state(talk.now_s)["phase"], "idle");
+    std::string egv;
+    for (int i = 0; i < 40; ++i) egv += std::string(30, static_cast<char>('A' + i % 26)) + "\n";
+    egv += "FNSE-\n";
+    talk.driver.load("job.egv", as_bytes(egv));
+    EXPECT_THROW(talk.driver.command({{"do", "start"}, {"confirmed", true}}, talk.now_s), Error);  // not homed
+    talk.driver.command({{"do", "home"}, {"confirmed", true}}, talk.now_s);
+    talk.pass(3);
+    ASSERT_TRUE(talk.driver.state(talk.now_s)["position_known"]);
+    const std::size_t before = talk.board.heard.size();
+    talk.driver.command({{"do", "start"}, {"confirmed", true}}, talk.now_s);
+    talk.pass(10);
+    EXPECT_EQ(talk.driver.state(talk.now_s)["job"]["ended"], "done") << talk.driver.state(talk.now_s).dump();
+    ASSERT_EQ(talk.board.heard.size() - before, 41u);
+    for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(talk.board.heard[before + i], std::string(30, static_cast<char>('A' + static_cast<int>(i) % 26)));
+  }
+}
+
+TEST(K40, StopOvertakesAndNothingFollows) {
+  K40Talk talk;
+  talk.pass(1);
+  talk.driver.command({{"do", "home"}, {"confirmed", true}}, talk.now_s);
+  talk.pass(3);
+  talk.driver.load("job.egv", as_bytes(std::string(30 * 500, 'B')));
+  talk.driver.command({{"do", "start"}, {"confirmed", true}}, talk.now_s);
+  talk.pass(0.3);
+  talk.driver.command({{"do", "stop"}}, talk.now_s);
+  talk.pass(1);
+  EXPECT_EQ(talk.board.heard.back(), padded("I"));
+  EXPECT_LT(talk.board.heard.size(), 100u);
+  EXPECT_FALSE(talk.driver.state(talk.now_s)["position_known"]);
+  EXPECT_EQ(talk.driver.state(talk.now_s)["job"]["ended"], "stopped");
+}
+
+TEST(K40, KeepsInsideItsBed) {
+  K40Talk talk;
+  talk.pass(1);
+  talk.driver.command({{"do", "home"}, {"confirmed", true}}, talk.now_s);
+  talk.pass(3);
+  EXPECT_THROW(talk.driver.command({{"do", "go_to"}, {"x_mm", 301}, {"y_mm", 10}}, talk.now_s), Error);
+  EXPECT_THROW(talk.driver.command({{"do", "jog"}, {"y_mm", 5}}, talk.now_s), Error);  // home is at the back
+  talk.driver.command({{"do", "go_to"}, {"x_mm", 25.4}, {"y_mm", 200 - 2.54}}, talk.now_s);
+  talk.pass(0.3);
+  EXPECT_EQ(talk.board.heard.back(), padded("IBzzz235R100S1P"));
+}
+
+TEST(Ruida, ScramblesAndSums) {
+  const unsigned char plain[] = {0xda, 0, 5, 0x7e, 0xcc, 0xd8, 1, 0x2a}, swizzled[] = {0xd4, 0x89, 0x0d, 0xf7, 0xc6, 0xd2, 0x09, 0xa3};
+  for (std::size_t i = 0; i < 8; ++i) {
+    EXPECT_EQ(ruida_swizzled(plain[i]), swizzled[i]);
+    EXPECT_EQ(ruida_unswizzled(swizzled[i]), plain[i]);
+  }
+  for (int b = 0; b < 256; ++b) EXPECT_EQ(ruida_unswizzled(ruida_swizzled(static_cast<unsigned char>(b))), b);
+  const Bytes datagram = ruida_datagram("\xd8\x01");
+  EXPECT_EQ(datagram, (Bytes{std::byte{0}, std::byte{0xdb}, std::byte{0xd2}, std::byte{0x09}}));
+}
+
+TEST(Ruida, CutsFilesBetweenCommands) {
+  Random random(3);
+  Bytes file;
+  std::string plain;
+  for (int i = 0; i < 2000; ++i) {
+    plain += static_cast<char>(0x80 + random.below(100));
+    for (std::size_t k = random.below(12); k > 0; --k) plain += static_cast<char>(random.below(128));
+  }
+  for (const char c : plain) file.push_back(std::byte{ruida_swizzled(static_cast<unsigned char>(c))});
+  std::string back;
+  for (const Bytes& datagram : ruida_datagrams(file)) {
+    EXPECT_LE(datagram.size(), 1470u);
+    unsigned sum = 0;
+    for (std::size_t i = 2; i < datagram.size(); ++i) sum += std::to_integer<unsigned>(datagram[i]);
+    EXPECT_EQ(sum & 0xffff, std::to_integer<unsigned>(datagram[0]) << 8 | std::to_integer<unsigned>(datagram[1]));
+    EXPECT_GE(ruida_unswizzled(std::to_integer<unsigned char>(datagram[2])), 0x80);
+    for (std::size_t i = 2; i < datagram.size(); ++i) back += static_cast<char>(ruida_unswizzled(std::to_integer<unsigned char>(datagram[i])));
+  }
+  EXPECT_EQ(back, plain);
+  EXPECT_THROW(ruida_datagrams(as_bytes("G1 X5\n")), Error);
+}
+
+/// The controller's side, which loses datagrams.
+class VirtualRuida {
+ public:
+  VirtualRuida(std::uint64_t seed, double lose) : random_(seed), lose_(lose) {}
+  std::vector<Bytes> receive(ByteView datagram) {
+    if (random_.uniform() < lose_) return {};
+    std::string plain;
+    for (const std::byte byte : datagram.subspan(2)) plain += static_cast<char>(ruida_unswizzled(std::to_integer<unsigned char>(byte)));
+    std::vector<Bytes> replies;
+    if (plain == last_) replies = last_replies_;  // a repetition of what had arrived
+    else {
+      replies.push_back({std::byte{0xc6}});
+      if (plain[0] == '\xda') {
+        std::string reply = std::string("\xda\x01") + plain.substr(2, 2);
+        const long value = plain[2] == 4 && plain[3] == 0 ? 0 : 123456;
+        for (int shift = 28; shift >= 0; shift -= 7) reply += static_cast<char>(value >> shift & 0x7f);
+        Bytes bytes;
+        for (const char c : reply) bytes.push_back(std::byte{ruida_swizzled(static_cast<unsigned char>(c))});
+        replies.push_back(bytes);
+      } else {
+        heard += plain;
+      }
+    }
+    last_ = plain[0] == '\xda' ? "" : plain;
+    last_replies_ = replies;
+    if (random_.uniform() < lose_) return {};
+    return replies;
+  }
+  std::string heard;
+
+ private:
+  Random random_;
+  double lose_;
+  std::string last_;
+  std::vector<Bytes> last_replies_;
+};
+
+struct RuidaTalk {
+  explicit RuidaTalk(double lose = 0) : laser(1, lose), driver({.controller = Controller::ruida}) { driver.opened(0); }
+  void pass(double seconds) {
+    for (const double end = now_s + seconds; now_s < end; now_s += 0.01) {
+      for (const Bytes& packet : driver.take_output())
+        for (const Bytes& reply : laser.receive(packet)) driver.received(reply, now_s);
+      driver.tick(now_s);
+    }
+  }
+  VirtualRuida laser;
+  RuidaDriver driver;
+  double now_s = 0;
+};
+
+TEST(Ruida, JobsArriveInOrderOverALossyNetwork) {
+  RuidaTalk talk(0.1);
+  talk.pass(5);
+  EXPECT_EQ(talk.driver.state(talk.now_s)["connection"], "ready");
+  EXPECT_NEAR(talk.driver.state(talk.now_s)["machine_mm"][0].get<double>(), 123.456, 1e-9);
+  Bytes file;
+  std::string plain;
+  for (int i = 0; i < 3000; ++i) plain += '\x88', plain += static_cast<char>(i & 0x7f), plain += static_cast<char>(i >> 7 & 0x7f);
+  for (const char c : plain) file.push_back(std::byte{ruida_swizzled(static_cast<unsigned char>(c))});
+  talk.driver.load("job.rd", file);
+  EXPECT_THROW(talk.driver.command({{"do", "start"}, {"confirmed", true}}, talk.now_s), Error);
+  talk.driver.command({{"do", "home"}, {"confirmed", true}}, talk.now_s);
+  talk.pass(15);
+  ASSERT_TRUE(talk.driver.state(talk.now_s)["position_known"]) << talk.driver.state(talk.now_s).dump();
+  talk.laser.heard.clear();
+  talk.driver.command({{"do", "start"}, {"confirmed", true}}, talk.now_s);
+  talk.pass(40);
+  EXPECT_EQ(talk.driver.state(talk.now_s)["job"]["ended"], "done") << talk.driver.state(talk.now_s).dump();
+  EXPECT_EQ(talk.laser.heard, plain);
+}
+
+TEST(Ruida, SaysSoWhenNothingAnswers) {
+  RuidaTalk talk(1);
+  talk.pass(10);
+  EXPECT_EQ(talk.driver.state(talk.now_s)["connection"], "silent");
+}
+
+}  // namespace
+}  // namespace formwright

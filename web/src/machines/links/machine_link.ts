@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the page holds of a machine, wherever that is connected.
+import type { ReadonlySignal, Signal } from '@preact/signals';
+import { signal } from '@preact/signals';
+import type { EndChoice, FromMachineWorker, ToMachineWorker } from './machine_messages';
+import { MachineRefusal } from './machine_module';
+import type { MachineCommand, MachineEvent, MachineState } from './machine_state';
+
+const keptEvents = 2000;
+
+export interface MachineLink {
+  /** Null until the driver has spoken. */
+  readonly state: ReadonlySignal<MachineState | null>;
+  /** What was sent and received, oldest first, the last two thousand. */
+  readonly events: ReadonlySignal<readonly MachineEvent[]>;
+  /** Why the line is gone, in a sentence; null while it is there, '' when it was closed from here. */
+  readonly gone: ReadonlySignal<string | null>;
+  /** Rejects with a MachineRefusal where the driver will not. */
+  command(command: MachineCommand): Promise<void>;
+  load(name: string, job: Uint8Array): Promise<void>;
+  close(): Promise<void>;
+}
+
+/** Signals of a link, and how they are told. */
+export class LinkSignals {
+  readonly state: Signal<MachineState | null> = signal(null);
+  readonly events: Signal<readonly MachineEvent[]> = signal([]);
+  readonly gone: Signal<string | null> = signal(null);
+
+  tell(state: MachineState, events: readonly MachineEvent[]): void {
+    if (events.length > 0) this.events.value = [...this.events.value, ...events].slice(-keptEvents);
+    this.state.value = state;
+  }
+}
+
+type Waiting = { resolve(): void; reject(error: Error): void };
+type WithoutId<T> = T extends { id: number } ? Omit<T, 'id'> : never;
+
+/** A machine whose driver runs in a Web Worker of this page. */
+export class WorkerLink implements MachineLink {
+  readonly #signals = new LinkSignals();
+  readonly state = this.#signals.state;
+  readonly events = this.#signals.events;
+  readonly gone = this.#signals.gone;
+  readonly #worker: Worker;
+  readonly #waiting = new Map<number, Waiting>();
+  #nextId = 1;
+
+  private constructor(worker: Worker) {
+    this.#worker = worker;
+    worker.addEventListener('message', ({ data }: MessageEvent<FromMachineWorker>) => this.#hear(data));
+    worker.addEventListener('error', () =>
+      this.#end('The driver stopped unexpectedly. If the machine moves, switch it off.'),
+    );
+  }
+
+  static async open(end: EndChoice, options: Readonly<Record<string, unknown>>): Promise<WorkerLink> {
+    const worker = new Worker(new URL('./machine_worker.ts', import.meta.url), {
+      type: 'module',
+      name: 'machine',
+    });
+    const link = new WorkerLink(worker);
+    const module = new URL('wasm/machines.mjs', document.baseURI).href;
+    try {
+      await link.#ask({ type: 'open', module, options, end });
+    } catch (thrown) {
+      worker.terminate();
+      throw thrown;
+    }
+    return link;
+  }
+
+  command = (command: MachineCommand): Promise<void> => this.#ask({ type: 'command', command });
+  load = (name: string, job: Uint8Array): Promise<void> => this.#ask({ type: 'load', name, job });
+  /** Lets the virtual machine run into a limit switch, to practise that too. */
+  trip = (): Promise<void> => this.#ask({ type: 'trip' });
+
+  async close(): Promise<void> {
+    await this.#ask({ type: 'close' }).catch(() => undefined);
+    this.#end('');
+    this.#worker.terminate();
+  }
+
+  #ask(message: WithoutId<ToMachineWorker>): Promise<void> {
+    const id = this.#nextId++;
+    return new Promise((resolve, reject) => {
+      if (this.gone.value !== null) return reject(new Error('The machine is not connected.'));
+      this.#waiting.set(id, { resolve, reject });
+      this.#worker.postMessage({ ...message, id });
+    });
+  }
+
+  #hear(message: FromMachineWorker): void {
+    if (message.type === 'state') return this.#signals.tell(message.state, message.events);
+    if (message.type === 'gone') return this.#end(message.why ?? '');
+    const waiting = this.#waiting.get(message.id);
+    this.#waiting.delete(message.id);
+    const { error } = message;
+    if (error === null) waiting?.resolve();
+    else waiting?.reject(new MachineRefusal(error.code, error.where, error.message));
+  }
+
+  #end(why: string): void {
+    if (this.gone.value === null) this.gone.value = why;
+    for (const { reject } of this.#waiting.values())
+      reject(new Error(why === '' ? 'The machine was disconnected.' : why));
+    this.#waiting.clear();
+  }
+}

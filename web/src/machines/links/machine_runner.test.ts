@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The built module behind the page's own runner, with the virtual machine and with ports of our making.
+// @vitest-environment node
+import { existsSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
+import { afterEach, describe, expect, it } from 'vitest';
+import type { FromMachineWorker, ToMachineWorker } from './machine_messages';
+import type { Ports } from './machine_runner';
+import { MachineRunner } from './machine_runner';
+import type { MachineCommand, MachineState } from './machine_state';
+
+const module = fileURLToPath(new URL('../../../public/wasm/machines.mjs', import.meta.url));
+type WithoutId<T> = T extends { id: number } ? Omit<T, 'id'> : never;
+
+class Page {
+  readonly said: FromMachineWorker[] = [];
+  readonly #runner: MachineRunner;
+  #id = 0;
+  constructor(ports: Ports = {}) {
+    this.#runner = new MachineRunner((message) => this.said.push(message), ports);
+  }
+  /** The sentence of a refusal, or null. */
+  async ask(message: WithoutId<ToMachineWorker>): Promise<string | null> {
+    const id = ++this.#id;
+    await this.#runner.handle({ ...message, id } as ToMachineWorker);
+    const done = this.said.find((said) => said.type === 'done' && said.id === id);
+    return done?.type === 'done' ? (done.error?.message ?? null) : 'no answer';
+  }
+  command = (command: MachineCommand) => this.ask({ type: 'command', command });
+  get state(): MachineState {
+    const last = this.said.findLast((said) => said.type === 'state');
+    if (last?.type !== 'state') throw new Error('Nothing was told.');
+    return last.state;
+  }
+  until = (reached: () => boolean, timeout = 15_000) =>
+    expect.poll(() => reached(), { timeout, interval: 20 }).toBe(true);
+}
+
+describe.skipIf(!existsSync(module))('a machine in its worker', () => {
+  let page = new Page();
+  afterEach(() => page.ask({ type: 'close' }));
+
+  it('homes, cuts and ends the virtual machine’s job', { timeout: 40_000 }, async () => {
+    page = new Page();
+    expect(
+      await page.ask({ type: 'open', module, options: { controller: 'grbl' }, end: { kind: 'virtual' } }),
+    ).toBeNull();
+    await page.until(() => page.state.connection === 'ready');
+    expect(page.state.phase).toBe('alarm');
+    expect(await page.command({ do: 'start', confirmed: true })).toMatch(/No job/);
+    expect(await page.command({ do: 'home', confirmed: true })).toBeNull();
+    await page.until(() => page.state.position_known && page.state.phase === 'idle');
+    const job = new TextEncoder().encode('G21G90\nM4S300\nG1X-20Y-20F6000\nG1X-40\nM5\n');
+    expect(await page.ask({ type: 'load', name: 'line.gcode', job })).toBeNull();
+    expect(await page.command({ do: 'start', confirmed: false })).toMatch(/confirmed/);
+    expect(await page.command({ do: 'start', confirmed: true })).toBeNull();
+    await page.until(() => page.state.job?.ended === 'done');
+    expect(page.state.work_mm?.[0]).toBeCloseTo(-40, 3);
+    const events = page.said.flatMap((said) => (said.type === 'state' ? said.events : []));
+    expect(events.some(({ event, text }) => event === 'sent' && text === 'G1X-40')).toBe(true);
+  });
+
+  it('says that a port is gone, and what that means', { timeout: 20_000 }, async () => {
+    const written: string[] = [];
+    const opened: ReadableStreamDefaultController<Uint8Array>[] = [];
+    const port = {
+      readable: new ReadableStream<Uint8Array>({ start: (controller) => void opened.push(controller) }),
+      writable: new WritableStream<Uint8Array>({
+        write: (bytes) => void written.push(new TextDecoder().decode(bytes)),
+      }),
+      open: () => Promise.resolve(),
+      close: () => Promise.resolve(),
+      getInfo: () => ({}),
+    };
+    page = new Page({ serial: { getPorts: () => Promise.resolve([port]) } });
+    expect(
+      await page.ask({ type: 'open', module, options: {}, end: { kind: 'serial', index: 1, baud: 115200 } }),
+    ).toMatch(/not there/);
+    expect(
+      await page.ask({ type: 'open', module, options: {}, end: { kind: 'serial', index: 0, baud: 115200 } }),
+    ).toBeNull();
+    const say = (text: string) => opened[0]?.enqueue(new TextEncoder().encode(text));
+    say("Grbl 1.1h ['$' for help]\r\n");
+    await page.until(() => written.includes('$I\n'));
+    say('[VER:1.1h.20190825:]\r\nok\r\n');
+    await page.until(() => written.includes('$$\n'));
+    say('$22=0\r\n$30=1000\r\nok\r\n<Idle|MPos:0.000,0.000,0.000|FS:0,0>\r\n');
+    await page.until(() => page.state.phase === 'idle');
+    opened[0]?.error(new DOMException('gone', 'NetworkError'));
+    await page.until(() => page.said.some(({ type }) => type === 'gone'));
+    expect(page.state.connection).toBe('closed');
+    expect(page.state.position_known).toBe(false);
+  });
+});

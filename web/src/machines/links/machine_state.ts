@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a machine's driver says of itself and may be told: docs/machines.md.
+
+export type Phase =
+  | 'unknown'
+  | 'idle'
+  | 'homing'
+  | 'jogging'
+  | 'running'
+  | 'pausing'
+  | 'paused'
+  | 'stopping'
+  | 'alarm'
+  | 'door'
+  | 'check'
+  | 'sleep';
+
+export interface MachineJob {
+  readonly name: string;
+  readonly line_count: number;
+  readonly sent: number;
+  readonly acknowledged: number;
+  readonly line_now: number;
+  readonly started_s: number;
+  readonly seconds: number;
+  /** From here a job that did not end well may go on, once the machine is homed. */
+  readonly careful_line?: number;
+  readonly ended: null | 'done' | 'stopped' | 'failed' | 'cut_off';
+}
+
+export interface MachineState {
+  readonly controller: 'grbl' | 'marlin' | 'k40' | 'ruida';
+  readonly connection: 'closed' | 'greeting' | 'ready' | 'silent';
+  readonly firmware: string;
+  readonly phase: Phase;
+  readonly position_known: boolean;
+  readonly machine_mm: readonly number[] | null;
+  readonly work_mm: readonly number[] | null;
+  readonly speed_mm_per_s: number;
+  readonly power_percent: number;
+  readonly job: MachineJob | null;
+  readonly alarm: { readonly code: number; readonly text: string; readonly mend: string } | null;
+  readonly error: {
+    readonly code: number;
+    readonly text: string;
+    readonly line: string;
+    readonly line_number: number;
+  } | null;
+  readonly laser_on: boolean | null;
+  readonly can: readonly MachineCommand['do'][];
+}
+
+export type MachineCommand =
+  | { readonly do: 'unlock' | 'jog_cancel' | 'focus_off' | 'pause' | 'stop' }
+  | { readonly do: 'home'; readonly confirmed: boolean }
+  | {
+      readonly do: 'jog';
+      readonly x_mm?: number;
+      readonly y_mm?: number;
+      readonly z_mm?: number;
+      readonly speed_mm_per_s: number;
+    }
+  | { readonly do: 'set_origin'; readonly axes: string }
+  | { readonly do: 'go_to'; readonly x_mm: number; readonly y_mm: number; readonly speed_mm_per_s: number }
+  | {
+      readonly do: 'frame';
+      readonly bounds_mm: readonly [number, number, number, number];
+      readonly speed_mm_per_s: number;
+      readonly confirmed: boolean;
+    }
+  | { readonly do: 'focus'; readonly power_percent: number; readonly confirmed: boolean }
+  | { readonly do: 'start'; readonly confirmed: boolean; readonly from_line?: number }
+  | { readonly do: 'resume'; readonly confirmed: boolean }
+  | { readonly do: 'send'; readonly line: string; readonly confirmed?: boolean }
+  | { readonly do: 'override'; readonly feed_percent?: number; readonly power_percent?: number };
+
+export interface MachineEvent {
+  readonly event: 'sent' | 'received' | 'note' | 'ended';
+  readonly text?: string;
+  readonly how?: string;
+  readonly now_s: number;
+}

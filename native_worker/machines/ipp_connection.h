@@ -45,6 +45,8 @@ class IppConnection {
   Answer ask(IppMessage request, ByteView document = {});
 
  private:
+  void connect_to_destination(const cups_dest_t& destination);
+  void connect_to_uri();
   [[noreturn]] void fail(const std::string& what) const;
   static int still_wanted(http_t* http, void* self);
 

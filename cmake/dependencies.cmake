@@ -84,6 +84,12 @@ endif()
 find_package(GTest REQUIRED CONFIG)
 
 if(NOT EMSCRIPTEN)
+  # What the worker speaks to printers and machines with: IPP, HTTP, and the pages of a PDF.
+  formwright_dependency(cups cups/cups.h cups)
+  formwright_dependency(curl curl/curl.h curl)
+  formwright_dependency(qpdf qpdf/QPDF.hh qpdf)
+  target_compile_definitions(fw::qpdf INTERFACE POINTERHOLDER_TRANSITION=4)
+
   find_package(embree 3 REQUIRED CONFIG)
   add_library(fw::embree ALIAS embree)
 

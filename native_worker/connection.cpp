@@ -31,6 +31,15 @@ std::string blob_hash(const Head& head) {
   return is_hex_name(hash, 64) ? hash : "";
 }
 
+/// "/api/machines/<id>/socket" -> the id, or "" for anything else.
+std::string machine_of_socket(const Head& head) {
+  const std::string target = text_of(head.target());
+  constexpr std::string_view prefix = "/api/machines/", suffix = "/socket";
+  if (!target.starts_with(prefix) || !target.ends_with(suffix) || target.size() <= prefix.size() + suffix.size()) return "";
+  const std::string id = target.substr(prefix.size(), target.size() - prefix.size() - suffix.size());
+  return is_hex_name(id, 16) ? id : "";
+}
+
 bool is_upload(const Head& head) { return head.method() == http::verb::put && !blob_hash(head).empty(); }
 
 /// The answer after which the connection ends, because a body may stand unread in it.
@@ -50,7 +59,8 @@ std::optional<TextResponse> HttpServer::refusal(const Head& head, std::optional<
   if (!origin_allowed(head)) return error_response(head, http::status::forbidden, "invalid_input", "Origin", "Another page may not use this worker.");
   if (!within_rate()) return error_response(head, http::status::too_many_requests, "invalid_input", "", "Too many requests: wait a second.");
   if (beast::websocket::is_upgrade(head)) {
-    if (text_of(head.target()) == "/api/socket" && token_in_subprotocol(head)) return std::nullopt;
+    if (text_of(head.target()) == "/api/socket" && token_in_subprotocol(head, "formwright.v1")) return std::nullopt;
+    if (!machine_of_socket(head).empty() && token_in_subprotocol(head, "formwright.machine.v1")) return std::nullopt;
     return token_refusal(head);
   }
   if (text_of(head.target()).starts_with("/api/") && !token_given(head)) return token_refusal(head);
@@ -84,6 +94,9 @@ boost::asio::awaitable<void> HttpServer::serve_connection(Socket socket) {
     Response response;
     if (auto refused = refusal(request, body_bytes)) {
       response = last_answer(std::move(*refused));
+    } else if (const std::string machine = machine_of_socket(request); beast::websocket::is_upgrade(request) && !machine.empty()) {
+      co_await bridge_.serve_socket(std::move(stream), request, machine);
+      co_return;
     } else if (beast::websocket::is_upgrade(request)) {
       auto page = std::make_shared<PageSocket>(beast::websocket::stream<beast::tcp_stream>(std::move(stream)));
       co_await serve_page_socket(page, request);
@@ -146,6 +159,13 @@ boost::asio::awaitable<Response> HttpServer::receive_and_answer(beast::tcp_strea
   if (error == http::error::body_limit || error == http::error::buffer_overflow)
     co_return last_answer(error_response(request, http::status::payload_too_large, "invalid_input", "", "The message is too large: send meshes as blobs."));
   if (error) co_return last_answer(error_response(request, http::status::bad_request, "invalid_input", "", "The request was cut off or is not HTTP."));
+  constexpr std::string_view machines = "/api/machines";
+  const std::string target = text_of(request.target()), path = target.substr(0, target.find('?'));
+  if (path == machines || path.starts_with("/api/machines/")) {
+    const std::string query = target.size() > path.size() ? target.substr(path.size() + 1) : "";
+    Response told = co_await bridge_.answer(request, path.substr(machines.size()), query, parser.get().body());
+    co_return told;
+  }
   co_return answer(request, parser.get().body());
 }
 

@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <chrono>
 #include <cstring>
 #include <fstream>
@@ -167,6 +168,12 @@ std::string sha256_of_file(const std::filesystem::path& path) {
   const std::string hash = sha256_hex({static_cast<const std::byte*>(data), size});
   ::munmap(data, size);
   return hash;
+}
+
+std::filesystem::path default_data_folder() {
+  if (const char* data = std::getenv("XDG_DATA_HOME"); data && *data) return std::filesystem::path(data) / "formwright";
+  const char* home = std::getenv("HOME");
+  return std::filesystem::path(home && *home ? home : ".") / ".local/share/formwright";
 }
 
 }  // namespace formwright

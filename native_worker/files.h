@@ -43,6 +43,9 @@ void share_results(const ResultFolder& folder, struct Host& host);
 /// SHA-256 of a file without holding it in memory. Throws Error{internal} when it cannot be read.
 std::string sha256_of_file(const std::filesystem::path& path);
 
+/// Where jobs, results and machines are kept unless --data says otherwise.
+std::filesystem::path default_data_folder();
+
 /// A file that goes with this object, unless it was renamed by then.
 struct UploadFile {
   explicit UploadFile(std::filesystem::path p) : path(std::move(p)) {}

@@ -22,7 +22,7 @@ constexpr double requests_per_second = 400, request_burst = 1200;
 }  // namespace
 
 HttpServer::HttpServer(boost::asio::io_context& io, const ServerOptions& options)
-    : io_(io), options_(options), acceptor_(io), token_(random_hex(24)), store_(options.data), queue_(io, store_, [this](const Json& m) { tell_pages(m); }),
+    : io_(io), options_(options), acceptor_(io), token_(random_hex(24)), store_(options.data), queue_(io, store_, [this](const Json& m) { tell_pages(m); }), bridge_(io, options.data, store_),
       rate_budget_(request_burst), rate_time_(std::chrono::steady_clock::now()) {
   const boost::asio::ip::tcp::endpoint endpoint(boost::asio::ip::address_v4::loopback(), options.port);
   boost::system::error_code error;
@@ -40,7 +40,10 @@ void HttpServer::start() {
   boost::asio::co_spawn(io_, accept_loop(), boost::asio::detached);
 }
 
-void HttpServer::stop() { queue_.stop(); }
+void HttpServer::stop() {
+  bridge_.stop();  // first: machines run
+  queue_.stop();
+}
 
 boost::asio::awaitable<void> HttpServer::accept_loop() {
   for (;;) {
@@ -75,7 +78,7 @@ bool HttpServer::token_given(const Head& head) const {
   return equal_in_constant_time(value, "Bearer " + token_);
 }
 
-bool HttpServer::token_in_subprotocol(const Head& head) const {
+bool HttpServer::token_in_subprotocol(const Head& head, std::string_view wanted) const {
   const std::string list = text_of(head[http::field::sec_websocket_protocol]);
   bool version = false, token = false;
   std::size_t start = 0;
@@ -83,7 +86,7 @@ bool HttpServer::token_in_subprotocol(const Head& head) const {
     const std::size_t comma = std::min(list.find(',', start), list.size());
     std::string item = list.substr(start, comma - start);
     item.erase(0, item.find_first_not_of(' '));
-    version = version || item == "formwright.v1";
+    version = version || item == wanted;
     token = equal_in_constant_time(item, "token." + token_) || token;
     start = comma + 1;
   }

@@ -16,13 +16,12 @@
 #include <string>
 #include <variant>
 
+#include "http_types.h"
 #include "job_queue.h"
 #include "job_store.h"
+#include "machines/machine_bridge.h"
 
 namespace formwright {
-
-namespace beast = boost::beast;
-namespace http = boost::beast::http;
 
 struct ServerOptions {
   unsigned short port = 8731;              // 0: any free one
@@ -30,13 +29,6 @@ struct ServerOptions {
   std::filesystem::path data;
   std::uint64_t upload_limit_bytes = std::uint64_t{1} << 30;
 };
-
-using TextResponse = http::response<http::string_body>;
-using FileResponse = http::response<http::file_body>;
-using Response = std::variant<TextResponse, FileResponse>;
-using Head = http::request<http::empty_body>;
-
-inline std::string text_of(boost::core::string_view view) { return {view.data(), view.size()}; }
 
 /// A page that listens. Messages queue up while one is being written; a page that does not read is dropped.
 struct PageSocket {
@@ -55,6 +47,8 @@ class HttpServer {
   void start();
   /// Ends the child process and puts its job back in the queue, for the next start.
   void stop();
+  /// Another process asks that a machine be stopped.
+  void look_for_stops() { bridge_.look_for_stops(); }
 
  private:
   using Socket = boost::asio::ip::tcp::socket;
@@ -71,7 +65,7 @@ class HttpServer {
   bool host_allowed(const Head& head) const;
   bool origin_allowed(const Head& head) const;
   bool token_given(const Head& head) const;
-  bool token_in_subprotocol(const Head& head) const;
+  bool token_in_subprotocol(const Head& head, std::string_view version) const;
   bool within_rate();
 
   // api.cpp
@@ -93,12 +87,10 @@ class HttpServer {
   std::set<std::shared_ptr<PageSocket>> pages_;  // before the queue, which may speak while it is made
   JobStore store_;
   JobQueue queue_;
+  MachineBridge bridge_;
   int connections_ = 0;
   double rate_budget_ = 0;
   std::chrono::steady_clock::time_point rate_time_;
 };
-
-TextResponse text_response(const Head& head, http::status status, std::string body, const std::string& type = "application/json");
-TextResponse error_response(const Head& head, http::status status, const std::string& code, const std::string& where, const std::string& message);
 
 }  // namespace formwright

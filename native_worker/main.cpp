@@ -14,6 +14,7 @@
 #include "host.h"
 #include "job/catalog.h"
 #include "job/run.h"
+#include "machines/machine_commands.h"
 #include "serve.h"
 
 namespace formwright {
@@ -122,6 +123,7 @@ int run(const std::vector<std::string>& words) {
   }
   const std::vector<std::string> rest(words.begin() + 1, words.end());
   if (words[0] == "serve") return serve(rest);
+  if (words[0] == "machine") return machine_command(rest, interrupted);
   if (words[0] == "run-jobs") return run_jobs_for_server();
   if (const Operation* operation = find_operation(words[0])) return run_operation(*operation, rest);
   throw Error(ErrorCode::invalid_input, words[0], "There is no command " + words[0] + ": see formwright --help.");

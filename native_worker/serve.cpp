@@ -4,19 +4,15 @@
 #include <boost/asio/signal_set.hpp>
 #include <csignal>
 #include <cstdlib>
+#include <functional>
 #include <iostream>
 
 #include "base/error.h"
+#include "files.h"
 #include "http_server.h"
 
 namespace formwright {
 namespace {
-
-std::filesystem::path default_data_folder() {
-  if (const char* data = std::getenv("XDG_DATA_HOME"); data && *data) return std::filesystem::path(data) / "formwright";
-  const char* home = std::getenv("HOME");
-  return std::filesystem::path(home && *home ? home : ".") / ".local/share/formwright";
-}
 
 /// Beside the program when installed, or in the checkout it was built in.
 std::filesystem::path default_web_folder() {
@@ -70,6 +66,15 @@ int serve(const std::vector<std::string>& words) {
   server.start();
   boost::asio::signal_set signals(io, SIGINT, SIGTERM);
   signals.async_wait([&](const boost::system::error_code&, int) { io.stop(); });
+  boost::asio::signal_set stops(io, SIGUSR1);  // formwright machine stop, from another process
+  const std::function<void()> listen = [&] {
+    stops.async_wait([&](const boost::system::error_code& error, int) {
+      if (error) return;
+      server.look_for_stops();
+      listen();
+    });
+  };
+  listen();
   if (options.web.empty()) std::cout << "The page is not built (make web); the worker answers all the same.\n";
   std::cout << "http://127.0.0.1:" << server.port() << "/#token=" << server.token() << std::endl;
   for (;;) {

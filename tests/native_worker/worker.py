@@ -82,11 +82,11 @@ class Worker:
 class PageSocket:
     """A WebSocket client of the few things the tests need (RFC 6455)."""
 
-    def __init__(self, worker: Worker, token: str, origin: str | None = None, host: str | None = None):
+    def __init__(self, worker: Worker, token: str, origin: str | None = None, host: str | None = None, path: str = "/api/socket", version: str = "formwright.v1"):
         self.socket = socket.create_connection(("127.0.0.1", worker.port), timeout=60)
-        lines = ["GET /api/socket HTTP/1.1", f"Host: {host or f'127.0.0.1:{worker.port}'}", "Upgrade: websocket", "Connection: Upgrade",
+        lines = [f"GET {path} HTTP/1.1", f"Host: {host or f'127.0.0.1:{worker.port}'}", "Upgrade: websocket", "Connection: Upgrade",
                  "Sec-WebSocket-Key: " + base64.b64encode(os.urandom(16)).decode(), "Sec-WebSocket-Version: 13",
-                 f"Sec-WebSocket-Protocol: formwright.v1, token.{token}"]
+                 f"Sec-WebSocket-Protocol: {version}, token.{token}"]
         if origin:
             lines.append(f"Origin: {origin}")
         self.socket.sendall(("\r\n".join(lines) + "\r\n\r\n").encode())

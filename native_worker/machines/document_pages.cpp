@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "machines/document_pages.h"
+
+#include <cups/raster.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <qpdf/Buffer.hh>
+#include <qpdf/QPDF.hh>
+#include <qpdf/QPDFPageDocumentHelper.hh>
+#include <qpdf/QPDFPageObjectHelper.hh>
+#include <qpdf/QPDFWriter.hh>
+
+#include "base/error.h"
+
+namespace formwright {
+namespace {
+
+constexpr double mm_per_point = 25.4 / 72;
+constexpr std::size_t most_pages = 500;
+constexpr double most_mm = 20'000;
+
+[[noreturn]] void refuse(const std::string& sentence) { throw Error(ErrorCode::invalid_input, "sha256", sentence); }
+
+PageSize checked(PageSize size) {
+  if (!(size.width_mm >= 1 && size.width_mm <= most_mm && size.height_mm >= 1 && size.height_mm <= most_mm))
+    refuse("A page of the document is smaller than 1 mm or larger than 20 m: make it anew with its size in millimetres.");
+  return size;
+}
+
+std::uint32_t big_endian(ByteView bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) value = value << 8 | std::to_integer<std::uint32_t>(bytes[at + i]);
+  return value;
+}
+
+/// PNG (ISO 15948): width and height in IHDR, pixels per metre in pHYs, which stands before the first IDAT.
+DocumentPages read_png(ByteView png) {
+  std::uint32_t width = 0, height = 0;
+  for (std::size_t at = 8; at + 12 <= png.size();) {
+    const std::size_t length = big_endian(png, at);
+    const std::string_view name = as_text(png.subspan(at + 4, 4));
+    if (length > png.size() - at - 12) break;
+    if (name == "IHDR" && length >= 8) {
+      width = big_endian(png, at + 8);
+      height = big_endian(png, at + 12);
+    } else if (name == "pHYs" && length >= 9 && width > 0 && png[at + 16] == std::byte{1}) {
+      const double x_per_m = big_endian(png, at + 8), y_per_m = big_endian(png, at + 12);
+      if (x_per_m > 0 && y_per_m > 0) return {"image/png", {checked({1000 * width / x_per_m, 1000 * height / y_per_m})}};
+    } else if (name == "IDAT") {
+      break;
+    }
+    at += length + 12;
+  }
+  refuse("The PNG does not say how many pixels there are to a metre, so its true size is unknown: save it with a density, or print a PDF.");
+}
+
+struct RasterSource {
+  ByteView bytes;
+  std::size_t at = 0;
+};
+
+ssize_t read_raster(void* context, unsigned char* to, std::size_t count) {
+  auto& source = *static_cast<RasterSource*>(context);
+  const std::size_t taken = std::min(count, source.bytes.size() - source.at);
+  std::memcpy(to, source.bytes.data() + source.at, taken);
+  source.at += taken;
+  return static_cast<ssize_t>(taken);
+}
+
+/// The first page's header only: the pages behind it would have to be unpacked to find them, and printers take one size per job.
+DocumentPages read_pwg_raster(ByteView raster) {
+  RasterSource source{raster};
+  cups_raster_t* stream = cupsRasterOpenIO(read_raster, &source, CUPS_RASTER_READ);
+  cups_page_header2_t header{};
+  const bool read = stream && cupsRasterReadHeader2(stream, &header) == 1;
+  if (stream) cupsRasterClose(stream);
+  if (!read || header.HWResolution[0] == 0 || header.HWResolution[1] == 0) refuse("The PWG raster cannot be read: make it anew.");
+  return {"image/pwg-raster", {checked({25.4 * header.cupsWidth / header.HWResolution[0], 25.4 * header.cupsHeight / header.HWResolution[1]})}};
+}
+
+struct Box {
+  double x0, y0, x1, y1;
+};
+
+Box crop_box(QPDFPageObjectHelper& page) {
+  QPDFObjectHandle box = page.getCropBox();
+  if (!box.isRectangle()) refuse("A page of the PDF does not say how large it is: make it anew.");
+  const auto r = box.getArrayAsRectangle();
+  const Box found{std::min(r.llx, r.urx), std::min(r.lly, r.ury), std::max(r.llx, r.urx), std::max(r.lly, r.ury)};
+  if (!std::isfinite(found.x0 + found.y0 + found.x1 + found.y1)) refuse("A page of the PDF does not say how large it is: make it anew.");
+  return found;
+}
+
+void open_pdf(QPDF& pdf, ByteView document) {
+  pdf.setSuppressWarnings(true);
+  pdf.setAttemptRecovery(true);
+  pdf.processMemoryFile("document", reinterpret_cast<const char*>(document.data()), document.size());
+}
+
+double number_or(QPDFObjectHandle value, double otherwise) { return value.isNumber() ? value.getNumericValue() : otherwise; }
+
+DocumentPages read_pdf(ByteView document) {
+  DocumentPages result{"application/pdf", {}};
+  try {
+    QPDF pdf;
+    open_pdf(pdf, document);
+    for (QPDFPageObjectHelper page : QPDFPageDocumentHelper(pdf).getAllPages()) {
+      if (result.pages.size() >= most_pages) refuse("The PDF has more than 500 pages: print it in parts.");
+      const Box box = crop_box(page);
+      const double unit = number_or(page.getAttribute("/UserUnit", false), 1);
+      PageSize size{(box.x1 - box.x0) * unit * mm_per_point, (box.y1 - box.y0) * unit * mm_per_point};
+      if (std::fmod(std::abs(number_or(page.getAttribute("/Rotate", false), 0)), 180) == 90) std::swap(size.width_mm, size.height_mm);
+      result.pages.push_back(checked(size));
+    }
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception&) {
+    refuse("The PDF cannot be read, or is locked by a password: make it anew.");
+  }
+  if (result.pages.empty()) refuse("The PDF has no pages: make it anew.");
+  return result;
+}
+
+}  // namespace
+
+DocumentPages read_document_pages(ByteView document) {
+  const std::string_view text = as_text(document);
+  if (text.starts_with("%PDF-")) return read_pdf(document);
+  if (text.starts_with("\x89PNG\r\n\x1a\n")) return read_png(document);
+  if (text.starts_with("RaS2") || text.starts_with("2SaR")) return read_pwg_raster(document);
+  refuse("Only PDF, PNG and PWG raster can be printed: export the plan as PDF.");
+}
+
+Bytes mirrored_pdf(ByteView document) {
+  try {
+    QPDF pdf;
+    open_pdf(pdf, document);
+    for (QPDFPageObjectHelper page : QPDFPageDocumentHelper(pdf).getAllPages()) {
+      const Box box = crop_box(page);
+      // The crop box's own axis in the page's unturned frame: a page that is shown on its side is mirrored left to right as it is shown.
+      const bool on_its_side = std::fmod(std::abs(number_or(page.getAttribute("/Rotate", false), 0)), 180) == 90;
+      char matrix[160];
+      if (on_its_side) std::snprintf(matrix, sizeof matrix, "q 1 0 0 -1 0 %.6f cm\n", box.y0 + box.y1);
+      else std::snprintf(matrix, sizeof matrix, "q -1 0 0 1 %.6f 0 cm\n", box.x0 + box.x1);
+      page.addPageContents(pdf.newStream(std::string(matrix)), true);
+      page.addPageContents(pdf.newStream("\nQ\n"), false);
+    }
+    QPDFWriter writer(pdf);
+    writer.setOutputMemory();
+    writer.setDeterministicID(true);
+    writer.write();
+    const auto buffer = writer.getBufferSharedPointer();
+    const auto* begin = reinterpret_cast<const std::byte*>(buffer->getBuffer());
+    return {begin, begin + buffer->getSize()};
+  } catch (const std::exception&) {
+    throw Error(ErrorCode::invalid_input, "mirrored", "The PDF cannot be read, so that it cannot be mirrored: make it anew.");
+  }
+}
+
+}  // namespace formwright

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "machines/ipp_connection.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/error.h"
+
+namespace formwright {
+namespace {
+
+constexpr int connect_patience_ms = 10'000;
+constexpr double answer_patience_s = 30, look_up_s = 0.5;  // how long it may be silent; how often a cancel is looked for
+
+/// libcups asks on the terminal unless told not to: a worker has nobody to ask.
+const char* no_password(const char*, http_t*, const char*, const char*, void*) { return nullptr; }
+
+/// libcups has no words for some mishaps, and says so with a null.
+std::string last_words() {
+  const char* words = cupsLastErrorString();
+  return words ? words : "no answer";
+}
+
+void check(const std::atomic<bool>& cancelled) {
+  if (cancelled) throw Error(ErrorCode::cancelled, "", "Cancelled.");
+}
+
+}  // namespace
+
+void IppConnection::fail(const std::string& what) const {
+  check(cancelled_);
+  throw Error(ErrorCode::could_not_solve, "machine", what);
+}
+
+int IppConnection::still_wanted(http_t*, void* self) {
+  auto& connection = *static_cast<IppConnection*>(self);
+  connection.silent_s_ += look_up_s;
+  return !connection.cancelled_ && connection.silent_s_ < answer_patience_s ? 1 : 0;
+}
+
+IppConnection::IppConnection(const PrinterAddress& address, const std::atomic<bool>& cancelled) : name_(address.name), uri_(address.uri), cancelled_(cancelled) {
+  check(cancelled_);
+  cupsSetPasswordCB2(no_password, nullptr);
+  if (address.destination) connect_to_destination(*address.destination);
+  const bool found_encrypted = address.destination && uri_.starts_with("ipps:");
+  try {
+    if (!http_) connect_to_uri();
+  } catch (const Error&) {
+    if (!found_encrypted || cancelled_) throw;
+    // Printers that announce encryption and cannot do it are common; nobody vouches for the certificates of the others either.
+    uri_.erase(3, 1);
+    connect_to_uri();
+  }
+  httpSetTimeout(http_, look_up_s, still_wanted, this);
+}
+
+void IppConnection::connect_to_destination(const cups_dest_t& destination) {
+  // A copy: connecting writes into it, and others may be connecting as well.
+  cups_dest_t* copy = nullptr;
+  if (cupsCopyDest(const_cast<cups_dest_t*>(&destination), 0, &copy) != 1) fail("There is not enough memory to reach " + name_ + ": close something.");
+  const std::unique_ptr<cups_dest_t, void (*)(cups_dest_t*)> owned(copy, [](cups_dest_t* d) { cupsFreeDests(1, d); });
+  const auto option = [&](const char* name) {
+    const char* value = cupsGetOption(name, copy->num_options, copy->options);
+    return std::string(value ? value : "");
+  };
+  char resource[1024] = "";
+  // A destination with a queue is reached through the print service; one found on the network is spoken to itself.
+  const std::string queue = option("printer-uri-supported");
+  http_ = cupsConnectDest(copy, queue.empty() ? CUPS_DEST_FLAGS_DEVICE : CUPS_DEST_FLAGS_NONE, connect_patience_ms, nullptr, resource, sizeof resource, nullptr, nullptr);
+  if (!http_) fail(name_ + " cannot be reached: see whether it is switched on and on the network, and try again.");
+  resource_ = resource;
+  uri_ = queue;
+  if (!queue.empty()) return;
+  // Connecting has found out its address, which is then as good as a registered one.
+  uri_ = option("device-uri");
+  if (!uri_.starts_with("ipp")) fail(name_ + " does not speak IPP, by what the network says of it: add it to the system's printers.");
+  httpClose(std::exchange(http_, nullptr));
+}
+
+void IppConnection::connect_to_uri() {
+  char scheme[32] = "", user[256] = "", host[256] = "", resource[1024] = "";
+  int port = 0;
+  if (httpSeparateURI(HTTP_URI_CODING_ALL, uri_.c_str(), scheme, sizeof scheme, user, sizeof user, host, sizeof host, &port, resource, sizeof resource) < HTTP_URI_STATUS_OK)
+    fail("The address " + uri_ + " of " + name_ + " is not one: register it anew, such as ipp://192.168.1.20/ipp/print.");
+  resource_ = resource;
+  const http_encryption_t encryption = std::string(scheme) == "ipps" ? HTTP_ENCRYPTION_ALWAYS : HTTP_ENCRYPTION_IF_REQUESTED;
+  http_ = httpConnect2(host, port, nullptr, AF_UNSPEC, encryption, 1, connect_patience_ms, nullptr);
+  if (http_) return;
+  const std::string reason = last_words();
+  fail(name_ + " does not answer at " + uri_ + (reason.empty() ? "" : " (" + reason + ")") + ": see whether it is switched on and its address is right.");
+}
+
+IppConnection::~IppConnection() {
+  if (http_) httpClose(http_);
+}
+
+IppMessage IppConnection::request(ipp_op_t operation) const {
+  IppMessage message(ippNewRequest(operation), ippDelete);
+  ippAddString(message.get(), IPP_TAG_OPERATION, IPP_TAG_URI, "printer-uri", nullptr, uri_.c_str());
+  ippAddString(message.get(), IPP_TAG_OPERATION, IPP_TAG_NAME, "requesting-user-name", nullptr, cupsUser());
+  return message;
+}
+
+IppConnection::Answer IppConnection::ask(IppMessage message, ByteView document) {
+  check(cancelled_);
+  silent_s_ = 0;
+  const std::size_t length = ippLength(message.get()) + document.size();
+  http_status_t sent = cupsSendRequest(http_, message.get(), resource_.c_str(), length);
+  for (std::size_t at = 0; at < document.size() && sent == HTTP_STATUS_CONTINUE;) {
+    check(cancelled_);
+    silent_s_ = 0;
+    const std::size_t part = std::min<std::size_t>(document.size() - at, 65536);
+    sent = cupsWriteRequestData(http_, reinterpret_cast<const char*>(document.data() + at), part);
+    at += part;
+  }
+  silent_s_ = 0;
+  Answer answer;
+  // A refusal in the middle of the document is in the response all the same.
+  answer.message.reset(cupsGetResponse(http_, resource_.c_str()));
+  check(cancelled_);
+  if (!answer.message) {
+    const http_status_t status = httpGetStatus(http_);
+    if (status == HTTP_STATUS_UNAUTHORIZED || sent == HTTP_STATUS_UNAUTHORIZED || status == HTTP_STATUS_CUPS_AUTHORIZATION_CANCELED || status == HTTP_STATUS_FORBIDDEN)
+      fail(name_ + " asks for a password: let it print without one, or add it to the system's printers and choose it there.");
+    if (status == HTTP_STATUS_SERVICE_UNAVAILABLE) {
+      answer.status = IPP_STATUS_ERROR_BUSY;
+      answer.message.reset(ippNew());
+      return answer;
+    }
+    if (status == HTTP_STATUS_NOT_FOUND) fail("There is no printer at " + uri_ + ": most have theirs at /ipp/print; register it anew.");
+    if (silent_s_ >= answer_patience_s) fail(name_ + " was asked and stayed silent for 30 s: switch it off and on, and try again.");
+    fail("The connection to " + name_ + " broke off (" + last_words() + "): try again.");
+  }
+  answer.status = ippGetStatusCode(answer.message.get());
+  if (ipp_attribute_t* text = ippFindAttribute(answer.message.get(), "status-message", IPP_TAG_ZERO))
+    if (const char* words = ippGetString(text, 0, nullptr)) answer.text = words;
+  if (answer.status == IPP_STATUS_ERROR_NOT_AUTHENTICATED || answer.status == IPP_STATUS_ERROR_NOT_AUTHORIZED || answer.status == IPP_STATUS_ERROR_FORBIDDEN)
+    fail(name_ + " does not let us print" + (answer.text.empty() ? "" : " (\"" + answer.text + "\")") + ": allow it at the printer, or add it to the system's printers.");
+  return answer;
+}
+
+}  // namespace formwright

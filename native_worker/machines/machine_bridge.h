@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Machines behind the worker's HTTP interface (docs/machine_bridge.md). Lives on the server's thread; what blocks runs beside it.
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/bytes.h"
+#include "http_types.h"
+#include "job_store.h"
+#include "machines/machine_log.h"
+#include "machines/machine_registry.h"
+#include "machines/machine_rooms.h"
+#include "machines/machine_tasks.h"
+
+namespace formwright {
+
+class MachineBridge {
+ public:
+  MachineBridge(boost::asio::io_context& io, std::filesystem::path data, JobStore& store);
+  /// `path`: behind /api/machines, without the query. The request has passed the server's checks of Host, Origin and token.
+  boost::asio::awaitable<Response> answer(Head head, std::string path, std::string query, std::string body);
+  /// The WebSocket of one machine. Returns when the page is gone; answers with an HTTP error when there is no such machine.
+  boost::asio::awaitable<void> serve_socket(beast::tcp_stream stream, Head head, std::string id);
+  /// Another process asked for a stop (SIGUSR1).
+  void look_for_stops() { rooms_.look_for_stops(); }
+  /// Cancels prints and slicings, and stops every machine that runs.
+  void stop();
+
+ private:
+  template <class Result>
+  boost::asio::awaitable<Result> aside(std::function<Result()> work);
+  boost::asio::awaitable<std::vector<Machine>> machines(bool search_again);
+  boost::asio::awaitable<Machine> machine(std::string id);
+  boost::asio::awaitable<Response> answer_machine(Head head, std::string id, std::string rest, std::string body);
+  boost::asio::awaitable<Response> slice(Head head, Machine machine, Json order);
+  Response print(const Head& head, const Machine& machine, const Json& order);
+  Response upload(const Head& head, const Machine& machine, const Json& order);
+  Response answer_tasks(const Head& head, const Machine& machine, const std::string& rest);
+  std::shared_ptr<const Bytes> blob(const Json& order) const;
+
+  boost::asio::io_context& io_;
+  JobStore& store_;
+  MachineRegistry registry_;
+  MachineLog log_;
+  MachineTasks tasks_{log_};
+  boost::asio::thread_pool asking_{4};
+  MachineRooms rooms_;
+  std::vector<Machine> found_;
+  std::chrono::steady_clock::time_point found_when_{};
+};
+
+}  // namespace formwright

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "machines/machine_commands.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+
+#include "base/error.h"
+#include "files.h"
+#include "host.h"
+#include "machines/machine_log.h"
+#include "machines/machine_registry.h"
+#include "machines/printer.h"
+
+namespace formwright {
+namespace {
+
+constexpr const char* help_text =
+    "Printers and machines of this computer and its network.\n\n"
+    "  formwright machine list [--json]\n"
+    "  formwright machine add --name N --url URL [--kind octoprint|moonraker] [--api-key-file F]\n"
+    "                         [--controller grbl|grbl_mill|marlin] [--baud N]\n"
+    "  formwright machine remove N\n"
+    "  formwright machine print --machine M --file F --media A4 [--copies N] [--mirrored]\n"
+    "                           [--quality draft|normal|high]\n"
+    "  formwright machine frame --machine M --job F [--yes]   once around the job, laser off\n"
+    "  formwright machine send  --machine M --job F [--yes]   runs it; Ctrl-C stops the machine\n"
+    "  formwright machine stop  --machine M                   also one that another program drives\n\n"
+    "frame and send ask before anything moves; --yes says that somebody stands at the machine. They take\n"
+    "--controller, --bed-x-mm and --bed-y-mm too.\n\n"
+    "URL: ipp://HOST/ipp/print, http://HOST, ruida://HOST, tcp://HOST:PORT or serial:/dev/NAME.\n"
+    "Serial ports, the system's printers and those on the network are found without being added.\n"
+    "--data DIR names the folder in which they are kept, the same as for formwright serve.\n";
+
+MachineRegistry registry_of(const MachineFlags& flags) { return MachineRegistry(flags.given("--data") ? std::filesystem::path(flags.values.at("--data")) : default_data_folder()); }
+
+int list(const std::vector<std::string>& words) {
+  const MachineFlags flags = read_machine_flags(words, {"--data"}, {"--json"});
+  const auto machines = find_machines(registry_of(flags));
+  if (flags.given("--json")) {
+    Json all = Json::array();
+    for (const Machine& m : machines) all.push_back(machine_json(m));
+    std::cout << json_text(all, 2) << "\n";
+    return 0;
+  }
+  for (const Machine& m : machines)
+    std::printf("%s  %-10s %-24s %s%s\n", m.id.c_str(), to_string(m.kind), m.name.c_str(), m.detail().c_str(), m.state.empty() ? "" : (" (" + m.state + ")").c_str());
+  if (machines.empty()) std::cout << "No machine was found. Plug one in, or add one: formwright machine add --name N --url URL\n";
+  return 0;
+}
+
+int add(const std::vector<std::string>& words) {
+  const MachineFlags flags = read_machine_flags(words, {"--data", "--name", "--url", "--kind", "--api-key-file", "--controller", "--baud"}, {});
+  std::string key;
+  if (flags.given("--api-key-file")) {
+    key = std::string(as_text(*read_file(flags.values.at("--api-key-file"), "--api-key-file", 4096)));
+    while (!key.empty() && std::isspace(static_cast<unsigned char>(key.back()))) key.pop_back();
+    if (key.empty()) throw Error(ErrorCode::invalid_input, "--api-key-file", "The file with the key is empty: copy the key from the machine's settings into it.");
+  }
+  const Machine machine = machine_from_words({flags.value_or("--name", ""), flags.value_or("--url", ""), flags.value_or("--kind", ""), flags.value_or("--controller", ""), key, flags.value_or("--baud", "")});
+  registry_of(flags).add(machine);
+  std::printf("%s  %-10s %s\n", machine.id.c_str(), to_string(machine.kind), machine.name.c_str());
+  return 0;
+}
+
+int remove(const std::vector<std::string>& words) {
+  std::vector<std::string> rest = words;
+  std::string name;
+  if (!rest.empty() && !rest[0].starts_with("--")) {
+    name = rest[0];
+    rest.erase(rest.begin());
+  }
+  const MachineFlags flags = read_machine_flags(rest, {"--data", "--name"}, {});
+  if (name.empty()) name = flags.needed("--name", "--name Studio");
+  registry_of(flags).remove(name);
+  return 0;
+}
+
+int print(const std::vector<std::string>& words, const std::atomic<bool>& interrupted) {
+  const MachineFlags flags = read_machine_flags(words, {"--data", "--machine", "--file", "--media", "--copies", "--quality"}, {"--mirrored"});
+  const MachineRegistry registry = registry_of(flags);
+  const std::string name = flags.needed("--machine", "--machine Studio"), file = flags.needed("--file", "--file pages.pdf");
+  PrintOrder order;
+  order.media = flags.needed("--media", "--media A4");
+  order.quality = flags.value_or("--quality", "normal");
+  order.mirrored = flags.given("--mirrored");
+  order.title = std::filesystem::path(file).filename().string().substr(0, 200);
+  char* end = nullptr;
+  const std::string copies = flags.value_or("--copies", "1");
+  order.copies = static_cast<int>(std::clamp(std::strtol(copies.c_str(), &end, 10), 0L, 10000L));
+  if (*end != '\0' || order.copies < 1) throw Error(ErrorCode::invalid_input, "--copies", "--copies must be a whole number from 1.");
+  const auto document = read_file(file, "--file", std::uintmax_t{512} << 20);
+  order.document = *document;
+  const auto machines = find_machines(registry);
+  const Machine& machine = choose_machine(machines, name);
+  if (machine.kind != MachineKind::printer) throw Error(ErrorCode::invalid_input, "machine", machine.name + " is a " + to_string(machine.kind) + ", no printer: choose one from formwright machine list.");
+  MachineLog log(registry.data());
+  const auto note = [&](const std::string& state, const std::string& text) { log.append(machine, {{"event", "task"}, {"kind", "print"}, {"state", state}, {"text", text}}, true); };
+  note("queued", order.title);
+  try {
+    std::string last;
+    const PrintResult result = print_document({machine.name, machine.url, machine.destination}, order, interrupted, [&](const std::string&, const std::string& sentence) {
+      if (sentence != last) std::fprintf(stderr, "%s\n", sentence.c_str());
+      last = sentence;
+    });
+    for (const std::string& text : result.notes) std::fprintf(stderr, "%s\n", text.c_str());
+    note("done", "Done.");
+    std::printf("Printed on %s.\n", machine.name.c_str());
+  } catch (const Error& error) {
+    note(error.code() == ErrorCode::cancelled ? "cancelled" : "failed", error.what());
+    throw;
+  }
+  return 0;
+}
+
+}  // namespace
+
+const std::string& MachineFlags::needed(const std::string& flag, const std::string& example) const {
+  const auto found = values.find(flag);
+  if (found == values.end() || found->second.empty()) throw Error(ErrorCode::invalid_input, flag, flag + " is missing: say " + example + ".");
+  return found->second;
+}
+
+std::string MachineFlags::value_or(const std::string& flag, const std::string& otherwise) const {
+  const auto found = values.find(flag);
+  return found == values.end() ? otherwise : found->second;
+}
+
+MachineFlags read_machine_flags(const std::vector<std::string>& words, const std::vector<std::string>& flags, const std::vector<std::string>& switches) {
+  MachineFlags result;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    std::string flag = words[i], value;
+    const std::size_t equals = flag.find('=');
+    const bool joined = flag.starts_with("--") && equals != std::string::npos;
+    if (joined) {
+      value = flag.substr(equals + 1);
+      flag.resize(equals);
+    }
+    const auto among = [&](const std::vector<std::string>& list) { return std::find(list.begin(), list.end(), flag) != list.end(); };
+    if (result.values.contains(flag)) throw Error(ErrorCode::invalid_input, flag, flag + " is given twice.");
+    if (among(switches) && !joined) value = "on";
+    else if (!among(flags)) throw Error(ErrorCode::invalid_input, flag, "There is no flag " + flag + " here: see formwright machine --help.");
+    else if (!joined && i + 1 >= words.size()) throw Error(ErrorCode::invalid_input, flag, flag + " needs a value.");
+    else if (!joined) value = words[++i];
+    result.values[flag] = value;
+  }
+  return result;
+}
+
+int machine_command(const std::vector<std::string>& words, const std::atomic<bool>& interrupted) {
+  if (words.empty() || std::any_of(words.begin(), words.end(), [](const std::string& w) { return w == "--help" || w == "-h"; })) {
+    std::cout << help_text;
+    return words.empty() ? 2 : 0;
+  }
+  const std::vector<std::string> rest(words.begin() + 1, words.end());
+  if (words[0] == "list") return list(rest);
+  if (words[0] == "add") return add(rest);
+  if (words[0] == "remove") return remove(rest);
+  if (words[0] == "send") return machine_send(rest, interrupted);
+  if (words[0] == "frame") return machine_frame(rest, interrupted);
+  if (words[0] == "stop") return machine_stop(rest, interrupted);
+  if (words[0] == "print") return print(rest, interrupted);
+  throw Error(ErrorCode::invalid_input, words[0], "There is no command machine " + words[0] + ": see formwright machine --help.");
+}
+
+}  // namespace formwright

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "machines/machine_log.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <fstream>
+#include <iostream>
+
+#include "host.h"
+
+namespace formwright {
+namespace {
+
+constexpr std::uintmax_t most_bytes = std::uintmax_t{512} << 20;  // of all logs together; the oldest go
+constexpr std::streamoff tail_bytes = 4 << 20;                    // of a file, when the newest are asked for
+
+double unix_seconds() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
+
+std::string day_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  ::gmtime_r(&now, &utc);
+  char text[16];
+  std::strftime(text, sizeof text, "%Y-%m-%d", &utc);
+  return text;
+}
+
+std::vector<std::filesystem::path> files_oldest_first(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  std::error_code status;
+  for (std::filesystem::directory_iterator it(folder, status), end; !status && it != end; it.increment(status))
+    if (it->path().extension() == ".jsonl") files.push_back(it->path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::vector<std::string> last_lines(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary | std::ios::ate);
+  const std::streamoff size = stream.tellg();
+  std::vector<std::string> lines;
+  if (size <= 0) return lines;
+  const std::streamoff from = std::max<std::streamoff>(0, size - tail_bytes);
+  stream.seekg(from);
+  std::string line;
+  if (from > 0) std::getline(stream, line);
+  while (std::getline(stream, line)) lines.push_back(line);
+  return lines;
+}
+
+}  // namespace
+
+MachineLog::~MachineLog() {
+  for (const auto& [name, descriptor] : open_) ::close(descriptor);
+}
+
+void MachineLog::tidy() const {
+  std::error_code status;
+  std::uintmax_t total = 0;
+  auto files = files_oldest_first(folder_);
+  for (std::size_t i = files.size(); i-- > 0;) {
+    total += std::filesystem::file_size(files[i], status);
+    if (total > most_bytes && i + 1 < files.size()) std::filesystem::remove(files[i], status);
+  }
+}
+
+int MachineLog::descriptor_for(const std::string& name) {
+  if (const auto known = open_.find(name); known != open_.end()) return known->second;
+  for (const auto& [other, descriptor] : open_) ::close(descriptor);  // yesterday's, or another machine's
+  open_.clear();
+  std::error_code status;
+  std::filesystem::create_directories(folder_, status);
+  tidy();
+  const int descriptor = ::open((folder_ / name).c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
+  if (descriptor >= 0) open_[name] = descriptor;
+  return descriptor;
+}
+
+void MachineLog::append(const Machine& machine, Json entry, bool lasting) {
+  entry["unix_s"] = unix_seconds();
+  entry["machine"] = machine.id;
+  entry["name"] = machine.name;
+  const std::string line = json_text(entry) + "\n";
+  const std::scoped_lock lock(mutex_);
+  const int descriptor = descriptor_for(day_now() + "-" + machine.id + ".jsonl");
+  // One write a line: whatever happens to this program, a line is there whole or not at all.
+  const bool written = descriptor >= 0 && ::write(descriptor, line.data(), line.size()) == static_cast<ssize_t>(line.size()) && (!lasting || ::fdatasync(descriptor) == 0);
+  if (!written && !complained_) {
+    complained_ = true;
+    std::cerr << "formwright: the machine log in " << folder_.string() << " cannot be written: make room, or mend its permissions." << std::endl;
+  }
+}
+
+Json MachineLog::newest(std::size_t limit, bool lines) const {
+  std::vector<Json> entries;
+  auto files = files_oldest_first(folder_);
+  // Several machines may have a file for the same day, whose entries interleave: whole days are read.
+  for (std::size_t i = files.size(); i-- > 0;) {
+    const bool new_day = i + 1 >= files.size() || files[i].filename().string().substr(0, 10) != files[i + 1].filename().string().substr(0, 10);
+    if (new_day && entries.size() >= limit) break;
+    for (const std::string& line : last_lines(files[i])) {
+      Json entry = Json::parse(line, nullptr, false);
+      if (!entry.is_object() || !entry.contains("unix_s") || !entry["unix_s"].is_number()) continue;  // cut off by a power failure
+      const Json event = entry.value("event", Json());
+      if (!lines && (event == "sent" || event == "received")) continue;
+      entries.push_back(std::move(entry));
+    }
+  }
+  std::stable_sort(entries.begin(), entries.end(), [](const Json& a, const Json& b) { return a["unix_s"].get<double>() > b["unix_s"].get<double>(); });
+  if (entries.size() > limit) entries.resize(limit);
+  return entries;
+}
+
+}  // namespace formwright

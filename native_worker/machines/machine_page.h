@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// A page at a machine's socket: what it says, bounded, and what it is told, never more than it reads.
+#include <boost/beast/core.hpp>
+#include <boost/beast/websocket.hpp>
+#include <chrono>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "base/json.h"
+#include "http_types.h"
+
+namespace formwright {
+
+/// One request of a page: exactly one of open, command, load and close (docs/machine_bridge.md).
+struct MachineRequest {
+  enum class Kind { open, command, load, close } kind = Kind::command;
+  Json content;              // of open and command: an object
+  std::string name, sha256;  // of load
+  std::optional<int> number; // "n", if the page counts its requests itself
+};
+
+/// Throws Error{invalid_input} with a sentence for what is no such request. Never anything else, whatever the bytes.
+MachineRequest read_machine_request(const std::string& text);
+
+class MachinePage : public std::enable_shared_from_this<MachinePage> {
+ public:
+  static constexpr std::size_t most_message_bytes = 64 * 1024;
+  static constexpr int most_malformed = 20;
+
+  explicit MachinePage(beast::websocket::stream<beast::tcp_stream>&& stream) : stream_(std::move(stream)) {}
+  beast::websocket::stream<beast::tcp_stream>& stream() { return stream_; }
+
+  void send(const Json& message);
+  /// A page that reads slowly gets the latest state, not each.
+  void send_state(std::shared_ptr<const std::string> text);
+  /// At most 100 requests a second, 200 at once.
+  bool within_rate();
+  int next_number() { return ++requests_; }
+  /// True while it may go on after one more message that was no request.
+  bool bears_malformed() { return ++malformed_ < most_malformed; }
+  int malformed() const { return malformed_; }
+  void hang_up();
+
+ private:
+  void push(std::shared_ptr<const std::string> text);
+  void write_next();
+
+  beast::websocket::stream<beast::tcp_stream> stream_;
+  std::deque<std::shared_ptr<const std::string>> outgoing_;
+  std::shared_ptr<const std::string> latest_state_;  // waits until the rest is written
+  int requests_ = 0, malformed_ = 0;
+  double rate_budget_ = 200;
+  std::chrono::steady_clock::time_point rate_time_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace formwright

@@ -9,7 +9,6 @@ import { createServices } from './app/create_services';
 import { placeOfWork } from './app/rooms';
 import { go, place, startRouting } from './app/route';
 import { followSystemTheme } from './app/theme';
-import { sendToMachine } from './crafts/common/hand_over';
 import { resumePending } from './crafts/common/full_solve';
 import { EvidenceSession } from './crafts/evidence/evidence_session';
 import { MachinesSession } from './crafts/machines/machines_session';
@@ -26,10 +25,6 @@ async function start(root: HTMLElement): Promise<void> {
     zippable: new ZippableSession(services),
     evidence: new EvidenceSession(services),
     machines: new MachinesSession(services),
-  };
-  sendToMachine.value = async (file_name, drawing) => {
-    await sessions.machines.take(file_name, drawing);
-    go('machines');
   };
   effect(() => resumePending(sessions.relief));
   effect(() => resumePending(sessions.thermoform));

@@ -3,7 +3,6 @@
 import { useEffect, useState } from 'preact/hooks';
 import { Button, formatCount, formatNumber, Icon, withUnit } from '../../ui';
 import { solveInFull } from '../common/full_solve';
-import { sendToMachine } from '../common/hand_over';
 import { figure, sentences } from '../common/report';
 import { metres } from './flat_ribbon';
 import { planBytes } from './make_product';
@@ -42,23 +41,11 @@ export function Sheets({ session }: { session: ZippableSession }) {
     <>
       <div class="sheets" tabIndex={0} role="group" aria-label="Sheets">
         {plan && url ? <img src={url} alt={planWords(session)} /> : null}
-        {plan === null && idle ? (
-          <div class="sheets-none">
-            <p>No plan yet: where a note says why, change that first.</p>
-            <Button icon="scissors" onClick={() => void planBytes(session, 'plan.svg', 'plan')}>
-              Make the plan
-            </Button>
-          </div>
-        ) : null}
+        {plan === null && idle ? <p class="sheets-none">No plan: change what the note says.</p> : null}
       </div>
       {plan ? (
         <div class="sheets-foot">
           <p>{planWords(session)}</p>
-          {sendToMachine.value ? (
-            <Button size="small" icon="machines" onClick={() => void toMachine(session)}>
-              Send to a machine
-            </Button>
-          ) : null}
           {notes.length > 0 ? (
             <details>
               <summary>
@@ -75,13 +62,6 @@ export function Sheets({ session }: { session: ZippableSession }) {
       ) : null}
     </>
   );
-}
-
-async function toMachine(session: ZippableSession): Promise<void> {
-  const drawing = session.plan.value?.outputs['plan.svg'];
-  if (drawing === undefined) return;
-  const bytes = await session.services.projects.blobs.read(drawing.blob);
-  await sendToMachine.value?.(`${session.services.projects.document.value.name}.svg`, bytes);
 }
 
 /** "7 pieces on 2 sheets of 600 × 300 mm; zipper to cut: 2.57 m". */

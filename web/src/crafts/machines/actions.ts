@@ -34,7 +34,7 @@ export function startReason(session: MachinesSession): string | undefined {
 
 export function start(session: MachinesSession): void {
   const plan = session.plan.value;
-  if (startReason(session) !== undefined || plan?.job == null) return;
+  if (startReason(session) !== undefined || !plan?.job) return;
   const { job, key, toolPath } = plan;
   const power = Math.max(0, ...toolPath.paths.map(({ power_percent }) => power_percent));
   const name = session.title;
@@ -59,7 +59,7 @@ export function start(session: MachinesSession): void {
 export function goOn(session: MachinesSession): void {
   const plan = session.plan.value;
   const line = session.control.state.value?.job?.careful_line;
-  if (plan?.job == null || line === undefined) return;
+  if (!plan?.job || line === undefined) return;
   const { job, key } = plan;
   ask({
     title: 'Cut the rest?',

@@ -42,12 +42,7 @@ export function Console({ session }: { readonly session: MachinesSession }) {
   };
   return (
     <div class="console">
-      <ol
-        ref={list}
-        class="console-lines"
-        tabIndex={0}
-        aria-label="What the machine said"
-      >
+      <ol ref={list} class="console-lines" tabIndex={0} aria-label="What the machine said">
         {events.length === 0 ? (
           <li class="note-line">{link ? 'Nothing was said yet.' : 'Connect a machine to talk to it.'}</li>
         ) : null}

@@ -130,7 +130,14 @@ export function App({ services, sessions }: AppProps) {
       ) : where === 'thermoform' && ThermoformPage ? (
         <ThermoformPage session={sessions.thermoform} onChooseFile={chooseFile} />
       ) : where === 'zippable' && ZippablePage ? (
-        <ZippablePage session={sessions.zippable} onChooseFile={chooseFile} />
+        <ZippablePage
+          session={sessions.zippable}
+          onChooseFile={chooseFile}
+          onSendToMachine={async (name, drawing) => {
+            await sessions.machines.take(name, drawing);
+            go('machines');
+          }}
+        />
       ) : where === 'evidence' && EvidencePage ? (
         <EvidencePage session={sessions.evidence} onChooseFile={chooseFile} />
       ) : where === 'machines' && MachinesPage ? (

@@ -141,11 +141,27 @@ export interface MeshFormat {
   readonly title: string;
 }
 
+/** Values to begin with, by the names of the laser job's parameters. */
+export interface LaserMaterial {
+  readonly name: string;
+  readonly title: string;
+  readonly laser: string;
+  readonly thickness_mm: number;
+  readonly parameters: JsonObject;
+  readonly hint: string;
+}
+export interface LaserMaterials {
+  readonly note: string;
+  readonly lasers: readonly { readonly name: string; readonly title: string }[];
+  readonly materials: readonly LaserMaterial[];
+}
+
 export interface Catalog {
   readonly version: string;
   readonly operations: readonly Operation[];
   readonly samples: readonly Sample[];
   readonly mesh_formats: readonly MeshFormat[];
+  readonly laser_materials?: LaserMaterials;
 }
 
 export const findOperation = (catalog: Catalog, name: string): Operation | undefined =>

@@ -6,6 +6,8 @@ import { download, safeFileName } from '../common/download';
 import { outputOf, solveInFull } from '../common/full_solve';
 import { readyWorker } from '../common/services';
 import { planBytes, simulationBytes } from './make_product';
+import type { SendToMachine } from './send_sheet';
+import { sendSheet, sheetCount } from './send_sheet';
 import { flatView } from './views';
 import { design, planning, simulating } from './zippable_document';
 import type { ZippableSession } from './zippable_session';
@@ -57,7 +59,13 @@ const withFormat = (output: OutputDeclaration) =>
 const inSentence = ({ label }: OutputDeclaration) => label.charAt(0).toLowerCase() + label.slice(1);
 const ending = ({ name }: OutputDeclaration) => name.split('.').at(-1)?.toUpperCase() ?? '';
 
-export function MainButton({ session, onSolve }: { session: ZippableSession; onSolve: () => void }) {
+export interface MainButtonProps {
+  readonly session: ZippableSession;
+  readonly onSolve: () => void;
+  readonly onSendToMachine: SendToMachine;
+}
+
+export function MainButton({ session, onSolve, onSendToMachine }: MainButtonProps) {
   const activity = session.activity.value;
   if (activity.kind === 'solving')
     return (
@@ -87,6 +95,13 @@ export function MainButton({ session, onSolve }: { session: ZippableSession; onS
   const all = exportsOf(session);
   const [main] = all;
   if (main === undefined) return null;
+  const count = sheetCount(session);
+  const sends = Array.from({ length: count }, (_, sheet) => ({
+    label: count === 1 ? 'Send to a machine' : `Send sheet ${sheet + 1} to a machine`,
+    icon: 'machines' as const,
+    disabledReason: busy ?? (session.operationNamed(planning) ? undefined : 'No plans in this build'),
+    onSelect: () => void sendSheet(session, sheet, onSendToMachine),
+  }));
   return (
     <>
       <div class="split">
@@ -103,18 +118,22 @@ export function MainButton({ session, onSolve }: { session: ZippableSession; onS
           label="Export something else"
           buttonClass="button filled big"
           align="right"
-          items={all.map((one) => {
-            const { operation, output } = one;
-            const from =
-              { [planning]: session.plan, [simulating]: session.simulation }[operation]?.value ?? result;
-            const bytes = from?.outputs[output.name]?.bytes;
-            return {
-              label: withFormat(output),
-              hint: bytes === undefined ? undefined : formatBytes(bytes),
-              disabledReason: busy,
-              onSelect: () => void save(session, one),
-            };
-          })}
+          items={[
+            ...sends,
+            null,
+            ...all.map((one) => {
+              const { operation, output } = one;
+              const from =
+                { [planning]: session.plan, [simulating]: session.simulation }[operation]?.value ?? result;
+              const bytes = from?.outputs[output.name]?.bytes;
+              return {
+                label: withFormat(output),
+                hint: bytes === undefined ? undefined : formatBytes(bytes),
+                disabledReason: busy,
+                onSelect: () => void save(session, one),
+              };
+            }),
+          ]}
         >
           <Icon name="chevronDown" small />
         </Menu>

@@ -8,6 +8,7 @@ import { boundaryEdges, partName } from './design';
 import type { FlatFit } from './flat_outline';
 import { edgePath, fitFlat, partLabels, partPaths, scaleBar } from './flat_outline';
 import { alongAt, flatOf, placeInFlat, seamAt } from './ribbon_places';
+import type { SendToMachine } from './send_sheet';
 import { Sheets } from './sheets';
 import { chosenPart, flatView, partToken, playing, pointed } from './views';
 import { planning } from './zippable_document';
@@ -21,7 +22,12 @@ const flatNames = [
   { value: 'sheets', label: 'Sheets to cut' },
 ] as const;
 
-export function FlatRibbon({ session }: { session: ZippableSession }) {
+export interface FlatRibbonProps {
+  readonly session: ZippableSession;
+  readonly onSendToMachine: SendToMachine;
+}
+
+export function FlatRibbon({ session, onSendToMachine }: FlatRibbonProps) {
   const frame = useRef<HTMLDivElement>(null);
   const size = useSignal<readonly [number, number]>([0, 0]);
   useEffect(() => {
@@ -41,7 +47,7 @@ export function FlatRibbon({ session }: { session: ZippableSession }) {
   const sheets = plans && flatView.value === 'sheets';
   return (
     <div ref={frame} class="flat-ribbon">
-      {shown && sheets ? <Sheets session={session} /> : null}
+      {shown && sheets ? <Sheets session={session} onSendToMachine={onSendToMachine} /> : null}
       {shown && fit && !sheets ? <Drawing shown={shown} fit={fit} width={width} height={height} /> : null}
       {shown && plans ? (
         <div class="float top-left">

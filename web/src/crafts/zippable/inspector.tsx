@@ -6,6 +6,7 @@ import { figure, vectorOf } from '../common/report';
 import { MainButton } from './export_button';
 import { Figures } from './figures';
 import { PartList } from './part_list';
+import type { SendToMachine } from './send_sheet';
 import { flatView } from './views';
 import { design, planning } from './zippable_document';
 import type { ZippableSession } from './zippable_session';
@@ -15,6 +16,7 @@ export interface InspectorProps {
   readonly picture: string | null;
   readonly onReplace: () => void;
   readonly onSolve: () => void;
+  readonly onSendToMachine: SendToMachine;
 }
 
 /** What the core chose where the maker left it open. */
@@ -41,7 +43,7 @@ function openGroups(session: ZippableSession): string[] {
   return Object.values(operation?.parameters.properties ?? {}).map((schema) => schema['x-group'] ?? '');
 }
 
-export function Inspector({ session, picture, onReplace, onSolve }: InspectorProps) {
+export function Inspector({ session, picture, onReplace, onSolve, onSendToMachine }: InspectorProps) {
   const { model, parameters } = session.document.value;
   const operation = session.operation.value;
   if (model === null || operation === null) return null;
@@ -62,7 +64,7 @@ export function Inspector({ session, picture, onReplace, onSolve }: InspectorPro
         <Figures session={session} />
       </div>
       <div class="inspector-foot">
-        <MainButton session={session} onSolve={onSolve} />
+        <MainButton session={session} onSolve={onSolve} onSendToMachine={onSendToMachine} />
       </div>
     </>
   );

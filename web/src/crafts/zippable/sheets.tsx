@@ -1,17 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The sheets that the ribbon is cut from, as the plan's own drawing has them.
 import { useEffect, useState } from 'preact/hooks';
-import { Button, formatCount, formatNumber, Icon, withUnit } from '../../ui';
+import { Button, formatCount, formatNumber, Icon, Menu, withUnit } from '../../ui';
 import { solveInFull } from '../common/full_solve';
 import { figure, sentences } from '../common/report';
 import { metres } from './flat_ribbon';
 import { planBytes } from './make_product';
+import type { SendToMachine } from './send_sheet';
+import { sendSheet, sheetCount } from './send_sheet';
 import type { ZippableSession } from './zippable_session';
 
 /** Plans asked for already: what failed is not tried again before something changes. */
 const tried = new Set<string>();
 
-export function Sheets({ session }: { session: ZippableSession }) {
+export interface SheetsProps {
+  readonly session: ZippableSession;
+  readonly onSendToMachine: SendToMachine;
+}
+
+export function Sheets({ session, onSendToMachine }: SheetsProps) {
   const design = session.designFile.value;
   const plan = session.plan.value;
   const { parameters } = session.document.value;
@@ -41,11 +48,19 @@ export function Sheets({ session }: { session: ZippableSession }) {
     <>
       <div class="sheets" tabIndex={0} role="group" aria-label="Sheets">
         {plan && url ? <img src={url} alt={planWords(session)} /> : null}
-        {plan === null && idle ? <p class="sheets-none">No plan: change what the note says.</p> : null}
+        {plan === null && idle ? (
+          <div class="sheets-empty">
+            <p>No plan was made. Where a note says why, change that first.</p>
+            <Button icon="scissors" onClick={() => void planBytes(session, 'plan.svg', 'plan')}>
+              Make the plan
+            </Button>
+          </div>
+        ) : null}
       </div>
       {plan ? (
         <div class="sheets-foot">
           <p>{planWords(session)}</p>
+          <SendButton session={session} onSendToMachine={onSendToMachine} />
           {notes.length > 0 ? (
             <details>
               <summary>
@@ -61,6 +76,36 @@ export function Sheets({ session }: { session: ZippableSession }) {
         </div>
       ) : null}
     </>
+  );
+}
+
+/** One sheet at once, of several the one that is chosen. */
+function SendButton({ session, onSendToMachine }: SheetsProps) {
+  const idle = session.activity.value.kind === 'idle';
+  const count = sheetCount(session);
+  const send = (sheet: number) => void sendSheet(session, sheet, onSendToMachine);
+  if (count === 1)
+    return (
+      <Button
+        size="small"
+        icon="machines"
+        disabledReason={idle ? undefined : 'Busy with a file'}
+        onClick={() => send(0)}
+      >
+        Send to a machine
+      </Button>
+    );
+  return (
+    <Menu
+      buttonClass="button small"
+      items={Array.from({ length: count }, (_, sheet) => ({
+        label: `Sheet ${sheet + 1}`,
+        disabledReason: idle ? undefined : 'Busy with a file',
+        onSelect: () => send(sheet),
+      }))}
+    >
+      <Icon name="machines" /> Send to a machine <Icon name="chevronDown" small />
+    </Menu>
   );
 }
 

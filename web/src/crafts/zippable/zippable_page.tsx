@@ -14,6 +14,7 @@ import { Inspector } from './inspector';
 import { Notes } from './notes';
 import { togglePlay } from './play';
 import { ResultsStrip } from './results_strip';
+import type { SendToMachine } from './send_sheet';
 import { view } from './views';
 import { viewpoint, ViewportPanel } from './viewport_panel';
 import './zippable.css';
@@ -22,12 +23,13 @@ import type { ZippableSession } from './zippable_session';
 export interface ZippablePageProps {
   readonly session: ZippableSession;
   readonly onChooseFile: () => void;
+  readonly onSendToMachine: SendToMachine;
 }
 
 /** The samples that make good zippables, easy ones first. */
 const samplesFirst = ['star', 'heart', 't_shape', 'octopus', 'cat', 'torus'];
 
-export function ZippablePage({ session, onChooseFile }: ZippablePageProps) {
+export function ZippablePage({ session, onChooseFile, onSendToMachine }: ZippablePageProps) {
   const viewport = useSignal<Viewport | null>(null);
   const picture = useModelPicture(session, viewport, viewpoint);
   useResultPictures(session, viewport, session.shown, () => viewpoint);
@@ -53,7 +55,7 @@ export function ZippablePage({ session, onChooseFile }: ZippablePageProps) {
             notes={<Notes session={session} onChooseFile={onChooseFile} />}
           />
         </div>
-        <FlatRibbon session={session} />
+        <FlatRibbon session={session} onSendToMachine={onSendToMachine} />
         {model === null && !opening ? <Empty session={session} onChooseFile={onChooseFile} /> : null}
       </main>
       {model ? (
@@ -63,6 +65,7 @@ export function ZippablePage({ session, onChooseFile }: ZippablePageProps) {
             picture={picture.value}
             onReplace={onChooseFile}
             onSolve={() => void solveInFull(session)}
+            onSendToMachine={onSendToMachine}
           />
         </Sheet>
       ) : null}
@@ -75,7 +78,7 @@ export function ZippablePage({ session, onChooseFile }: ZippablePageProps) {
   );
 }
 
-function Empty({ session, onChooseFile }: ZippablePageProps) {
+function Empty({ session, onChooseFile }: Omit<ZippablePageProps, 'onSendToMachine'>) {
   const all = session.services.catalog.value?.samples ?? [];
   const samples = samplesFirst.flatMap((name) => all.find((sample) => sample.name === name) ?? []);
   return (

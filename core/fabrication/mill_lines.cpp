@@ -99,15 +99,17 @@ class Lines {
     // As far as the surface does not rise more steeply than the ramp.
     const int most = std::min(std::abs(last - first), static_cast<int>(std::ceil(4 * motion_.options.diameter_mm / tips_.pitch_x_mm)));
     int length = 0;
-    while (length < most && tips_.at(row, first + way * (length + 1)) <= start.z() + (length + 1) * step) ++length;
+    while (length < most && point(row, first + way * (length + 1)).z() <= start.z() + (length + 1) * step) ++length;
     std::vector<Vec3> ramp{builder_.at()};
+    double z = builder_.at().z();  // not rounded, or steps would be shorter than the slope
     if (length > 0 && slope < 1e8)
-      for (int at = 0, direction = 1; ramp.back().z() > start.z() + step || at != 0;) {
+      for (int at = 0, direction = 1; z > start.z() + step || at != 0;) {
         if (at == length) direction = -1;
         if (at == 0) direction = 1;
         at += direction;
         Vec3 p = point(row, first + way * at);
-        p.z() = std::max(p.z(), raised(ramp.back().z() - step));
+        z = std::max(p.z(), z - step);
+        p.z() = raised(z);
         ramp.push_back(p);
       }
     ramp.push_back(start);

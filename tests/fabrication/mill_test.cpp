@@ -214,6 +214,20 @@ TEST(Mill, RoughingLeavesTheAllowanceAndFinishingTakesIt) {
     for (int c = 5; c < 96; ++c) EXPECT_LT(both.carved.at(r, c) - surface.at(r, c), 0.03);
 }
 
+TEST(Mill, RampsComeToAnEndOnEverySlope) {
+  for (const double slope : {0.0, 0.05, 0.0874, 0.1, 1.0, 20.0})
+    for (const double degrees : {1.0, 5.0, 45.0, 90.0}) {
+      const HeightField surface = field(301, 5, 0.1, [&](double x, double) { return std::max(-30.0, -0.5 - slope * std::abs(x - 11)); });
+      MillOptions options = small(ToolShape::flat, 1);
+      options.ramp_degrees = degrees;
+      options.step_down_mm = 3;
+      Context context;
+      const MillPlan plan = plan_mill_job(surface, options, context);
+      EXPECT_GT(plan.path.length_mm(true), 30);
+      EXPECT_LT(plan.path.length_mm(true), 30'000);
+    }
+}
+
 TEST(Mill, ThinningNeverGoesBelow) {
   Random random(4);
   std::vector<Vec3> points;

@@ -147,6 +147,7 @@ TEST(RunJob, ReportsOnlyDeclaredFigures) {
   for (const Operation& operation : operations()) {
     Json message = {{"operation", operation.name}};
     if (!operation.inputs.empty() && operation.inputs.front().accepts_sample) message["inputs"][operation.inputs.front().name] = {{"sample", "hemisphere"}, {"vertices", 800}};
+    if (operation.name == "mill-job") message["parameters"] = {{"width_mm", 20}};
     std::map<std::string, std::shared_ptr<const Bytes>> files;
     for (const InputInfo& input : operation.inputs) {
       if (const Bytes* given = printed.of(input.name); given && operation.name == "evidence-register") {

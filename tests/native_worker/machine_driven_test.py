@@ -94,7 +94,7 @@ class Driven(unittest.TestCase):
         self.assertIn("done", page.do("home", confirmed=True))
         page.wait(lambda s: s["phase"] == "idle" and s["position_known"])
         # It homes to its far corner, as GRBL does, and counts from there: the work's origin is elsewhere.
-        self.assertIn("done", page.do("send", line="G10 L2 P1 X-390 Y-390"))
+        self.assertIn("done", page.do("send", line="G10 L20 P1 X390 Y390", confirmed=True))
         page.wait(lambda s: s["work_mm"] and s["work_mm"][0] > 300)
         self.assertIn("done", page.ask(load={"name": "job.gcode", "sha256": self.worker.put_blob(job)}))
         if start:

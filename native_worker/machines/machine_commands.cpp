@@ -66,11 +66,13 @@ int add(const std::vector<std::string>& words) {
 }
 
 int remove(const std::vector<std::string>& words) {
-  std::vector<std::string> rest = words;
+  std::vector<std::string> rest;
   std::string name;
-  if (!rest.empty() && !rest[0].starts_with("--")) {
-    name = rest[0];
-    rest.erase(rest.begin());
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const bool flag = words[i].starts_with("--");
+    if (!flag && name.empty()) name = words[i];
+    else rest.push_back(words[i]);
+    if (flag && words[i].find('=') == std::string::npos && i + 1 < words.size()) rest.push_back(words[++i]);
   }
   const MachineFlags flags = read_machine_flags(rest, {"--data", "--name"}, {});
   if (name.empty()) name = flags.needed("--name", "--name Studio");

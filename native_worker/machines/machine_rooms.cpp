@@ -97,6 +97,8 @@ boost::asio::awaitable<void> MachineRooms::serve(std::shared_ptr<MachinePage> pa
     std::cerr << "formwright: machine socket: " << mistake.what() << std::endl;
   }
   leave(room, page);
+  // Said before the line goes dead, so that what it was told last still arrives.
+  if (!error) co_await stream.async_close(beast::websocket::close_code::policy_error, boost::asio::redirect_error(use_awaitable, error));
   page->hang_up();
 }
 

@@ -221,6 +221,7 @@ int machine_frame(const std::vector<std::string>& words, const std::atomic<bool>
   terminal.run_until(
       [&](const Json& s) {
         if (s["phase"] == "alarm") throw Error(ErrorCode::could_not_solve, "machine", Terminal::sentence_of(s["alarm"], "The machine is in alarm: see what it shows."));
+        if (s["error"].is_object()) throw Error(ErrorCode::could_not_solve, "machine", "The machine refused to go around the job: " + Terminal::sentence_of(s["error"], "see what it shows."));
         if (s["phase"] != "idle") rests_since = std::chrono::steady_clock::now();
         return std::chrono::steady_clock::now() - rests_since > 1500ms;  // reports come every half second
       },

@@ -118,7 +118,8 @@ class Request {
     curl_easy_getinfo(curl_.get(), CURLINFO_RESPONSE_CODE, &reply.status);
     reply.json = Json::parse(conversation_.answer, nullptr, false);
     if (reply.status >= 300 && reply.status < 400) fail(machine_.name + " says its address is another one: register it with that address.");
-    if (reply.status == 401 || reply.status == 403) fail(machine_.name + " does not know the key: register it anew with --api-key-file and a key from its settings.");
+    // OctoPrint takes a request with a key it does not know for one of a browser.
+    if (reply.status == 401 || reply.status == 403 || (reply.status == 400 && conversation_.answer.find("CSRF") != std::string::npos)) fail(machine_.name + " does not know the key: register it anew with --api-key-file and a key from its settings.");
     return reply;
   }
 

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "machines/document_pages.h"
+
+#include <cups/raster.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "base/error.h"
+#include "machines/print_media.h"
+
+namespace formwright {
+namespace {
+
+Bytes pdf(const std::string& page_words) {
+  std::string text = "%PDF-1.7\n";
+  std::vector<std::size_t> offsets;
+  const auto add = [&](const std::string& object) {
+    offsets.push_back(text.size());
+    text += std::to_string(offsets.size()) + " 0 obj\n" + object + "\nendobj\n";
+  };
+  add("<</Type/Catalog/Pages 2 0 R>>");
+  add("<</Type/Pages/Kids[3 0 R]/Count 1/MediaBox[0 0 595 842]>>");
+  add("<</Type/Page/Parent 2 0 R" + page_words + ">>");
+  const std::size_t start = text.size();
+  text += "xref\n0 4\n0000000000 65535 f \n";
+  for (const std::size_t offset : offsets) {
+    char line[24];
+    std::snprintf(line, sizeof line, "%010zu 00000 n \n", offset);
+    text += line;
+  }
+  return to_bytes(text + "trailer\n<</Size 4/Root 1 0 R>>\nstartxref\n" + std::to_string(start) + "\n%%EOF\n");
+}
+
+PageSize size_of(const std::string& page_words) { return read_document_pages(pdf(page_words)).pages.at(0); }
+
+TEST(document_pages, the_size_is_what_is_shown) {
+  EXPECT_NEAR(size_of("").width_mm, 595 * 25.4 / 72, 1e-9);  // inherited
+  EXPECT_NEAR(size_of("/MediaBox[0 0 720 360]").width_mm, 254, 1e-9);
+  EXPECT_NEAR(size_of("/MediaBox[0 0 720 360]/Rotate 90").height_mm, 254, 1e-9);
+  EXPECT_NEAR(size_of("/MediaBox[0 0 720 360]/Rotate -270").height_mm, 254, 1e-9);
+  EXPECT_NEAR(size_of("/MediaBox[0 0 720 360]/Rotate 180").width_mm, 254, 1e-9);
+  EXPECT_NEAR(size_of("/MediaBox[0 0 720 720]/CropBox[72 72 648 360]").height_mm, 101.6, 1e-9);
+  EXPECT_NEAR(size_of("/MediaBox[720 360 0 0]").width_mm, 254, 1e-9);
+  EXPECT_NEAR(size_of("/MediaBox[0 0 72 72]/UserUnit 10").width_mm, 254, 1e-9);
+}
+
+TEST(document_pages, what_cannot_be_printed_says_why) {
+  const auto sentence = [](ByteView bytes) -> std::string {
+    try {
+      read_document_pages(bytes);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::invalid_input);
+      EXPECT_EQ(error.where(), "sha256");
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(sentence(pdf("/MediaBox[0 0 0 0]")).find("smaller than 1 mm"), std::string::npos);
+  EXPECT_NE(sentence(pdf("/MediaBox[0 0 99999999 100]")).find("smaller than 1 mm"), std::string::npos);
+  EXPECT_NE(sentence(to_bytes("%PDF-1.7\n")).find("cannot be read"), std::string::npos);
+  EXPECT_NE(sentence({}).find("Only PDF"), std::string::npos);
+  EXPECT_NE(sentence(to_bytes("RaS2 and nothing")).find("PWG raster"), std::string::npos);
+}
+
+std::string chunk(const std::string& name, const std::string& content) {
+  std::string text;
+  for (int shift = 24; shift >= 0; shift -= 8) text += static_cast<char>(content.size() >> shift & 255);
+  return text + name + content + "crc.";
+}
+
+std::string number(std::uint32_t value) {
+  std::string text;
+  for (int shift = 24; shift >= 0; shift -= 8) text += static_cast<char>(value >> shift & 255);
+  return text;
+}
+
+TEST(document_pages, a_png_is_as_large_as_its_density_says) {
+  const std::string head = std::string("\x89PNG\r\n\x1a\n", 8) + chunk("IHDR", number(2000) + number(1000) + "\x08\x02" + std::string(3, '\0'));
+  const auto pages = read_document_pages(to_bytes(head + chunk("pHYs", number(10000) + number(5000) + "\x01")));
+  EXPECT_EQ(pages.media_type, "image/png");
+  EXPECT_DOUBLE_EQ(pages.pages.at(0).width_mm, 200);
+  EXPECT_DOUBLE_EQ(pages.pages.at(0).height_mm, 200);
+  // A ratio only, after the pixels, or nothing: no size.
+  for (const std::string& tail : {chunk("pHYs", number(1) + number(1) + std::string(1, '\0')), chunk("IDAT", "x") + chunk("pHYs", number(10000) + number(5000) + "\x01"), std::string(), number(0xffffffff) + "pHYs"})
+    EXPECT_THROW(read_document_pages(to_bytes(head + tail)), Error);
+}
+
+TEST(document_pages, a_pwg_raster_says_its_pixels_and_density) {
+  Bytes written;
+  const cups_raster_iocb_t take = [](void* context, unsigned char* data, std::size_t count) {
+    auto& to = *static_cast<Bytes*>(context);
+    to.insert(to.end(), reinterpret_cast<std::byte*>(data), reinterpret_cast<std::byte*>(data) + count);
+    return static_cast<ssize_t>(count);
+  };
+  cups_raster_t* raster = cupsRasterOpenIO(take, &written, CUPS_RASTER_WRITE_PWG);
+  cups_page_header2_t header{};
+  header.HWResolution[0] = header.HWResolution[1] = 300;
+  header.cupsWidth = 600, header.cupsHeight = 900;
+  header.cupsBitsPerColor = header.cupsBitsPerPixel = 8;
+  header.cupsBytesPerLine = 600;
+  header.cupsNumColors = 1;
+  header.cupsColorSpace = CUPS_CSPACE_SW;
+  ASSERT_EQ(cupsRasterWriteHeader2(raster, &header), 1u);
+  cupsRasterClose(raster);
+  const auto pages = read_document_pages(written);
+  EXPECT_EQ(pages.media_type, "image/pwg-raster");
+  EXPECT_NEAR(pages.pages.at(0).width_mm, 50.8, 1e-6);
+  EXPECT_NEAR(pages.pages.at(0).height_mm, 76.2, 1e-6);
+}
+
+TEST(document_pages, mirroring_twice_keeps_the_page) {
+  const Bytes once = mirrored_pdf(pdf("/MediaBox[0 0 720 360]/Rotate 90")), twice = mirrored_pdf(once);
+  EXPECT_NEAR(read_document_pages(twice).pages.at(0).height_mm, 254, 1e-9);
+  EXPECT_EQ(once, mirrored_pdf(pdf("/MediaBox[0 0 720 360]/Rotate 90")));  // deterministic
+  EXPECT_THROW(mirrored_pdf(to_bytes("%PDF-1.7 nothing")), Error);
+}
+
+TEST(print_media, database_ready_margins_and_names) {
+  ipp_t* answer = ippNew();
+  const auto add = [&](const char* name, std::initializer_list<std::array<int, 4>> sizes) {
+    std::vector<ipp_t*> all;
+    for (const auto& [x, y, side, top] : sizes) {
+      ipp_t *size = ippNew(), *media = ippNew();
+      ippAddInteger(size, IPP_TAG_ZERO, IPP_TAG_INTEGER, "x-dimension", x);
+      ippAddInteger(size, IPP_TAG_ZERO, IPP_TAG_INTEGER, "y-dimension", y);
+      ippAddCollection(media, IPP_TAG_ZERO, "media-size", size);
+      for (const char* margin : {"media-left-margin", "media-right-margin"}) ippAddInteger(media, IPP_TAG_ZERO, IPP_TAG_INTEGER, margin, side);
+      for (const char* margin : {"media-top-margin", "media-bottom-margin"}) ippAddInteger(media, IPP_TAG_ZERO, IPP_TAG_INTEGER, margin, top);
+      all.push_back(media);
+    }
+    ippAddCollections(answer, IPP_TAG_PRINTER, name, static_cast<int>(all.size()), const_cast<const ipp_t**>(all.data()));
+  };
+  add("media-col-database", {{21000, 29700, 300, 400}, {21000, 29700, 0, 0}, {29700, 42000, 300, 400}, {12345, 6789, 1, 2}});
+  add("media-col-ready", {{21000, 29700, 300, 400}});
+  const auto media = read_print_media(answer);
+  ippDelete(answer);
+  ASSERT_EQ(media.size(), 4u);
+  const PrintMedia* a4 = find_print_media(media, "a4");
+  ASSERT_TRUE(a4);
+  EXPECT_EQ(a4->name, "iso_a4_210x297mm");
+  EXPECT_EQ(a4->left_hmm, 300);  // the wider margins, which every tray keeps
+  EXPECT_TRUE(a4->loaded);
+  EXPECT_FALSE(find_print_media(media, "iso_a3_297x420mm")->loaded);
+  EXPECT_FALSE(find_print_media(media, "A3")->by_hand);
+  EXPECT_EQ(find_print_media(media, "Legal"), nullptr);
+  EXPECT_EQ(media.back().width_mm(), 123.45);
+  EXPECT_TRUE(page_matches(*a4, {209.9, 297.04}));
+  EXPECT_TRUE(page_matches(*a4, {297, 210}));
+  EXPECT_FALSE(page_matches(*a4, {215.9, 279.4}));
+}
+
+}  // namespace
+}  // namespace formwright

@@ -118,6 +118,8 @@ class PageSocket:
             payload = self._exactly(length)
             if first & 0x0F == 1:
                 return json.loads(payload)
+            if first & 0x0F == 9:  # a server that hears no answer takes the page for gone
+                self.send_frame(0x8A, payload)
             if first & 0x0F == 8:
                 raise ConnectionError("closed by the server")
 

@@ -1,0 +1,87 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Our serial and UDP paths to machines that somebody else wrote: MeerK40t's GRBL and Ruida listeners.
+Usage: machine_peers_test.py PROGRAM VIRTUAL_GRBL PEERS"""
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import machine_peers as peers
+from machine_driven_test import MachineSocket
+from worker import Worker
+
+JOB = b"G21\nG90\nM4 S0\nG0 X10 Y10\n" + b"".join(b"G1 X%d Y%d S300 F6000\n" % (10 + i % 7, 10 + i % 5) for i in range(400)) + b"M5\nG0 X0 Y0\nM2\n"
+
+
+class Listeners(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.folder = pathlib.Path(self.temporary.name)
+        self.data = self.folder / "data"
+        self.processes = []
+
+    def tearDown(self):
+        for process in self.processes:
+            process.stop() if hasattr(process, "stop") else peers.end(process)
+        self.temporary.cleanup()
+
+    def started(self, thing):
+        self.processes.append(thing)
+        return thing
+
+    def run_job(self, machine: str):
+        """Laser mode on, homed, a job of 400 lines sent and every line answered."""
+        worker = self.started(Worker(peers.PROGRAM, self.data))
+        page = MachineSocket(worker, machine)
+        self.assertEqual(page.ask(open={"controller": "grbl"}), {"done": 1})
+        page.wait(lambda s: s["connection"] == "ready" and s["phase"] in ("idle", "alarm"), 30)
+        self.assertIn("done", page.do("send", line="$32=1"))
+        self.assertIn("done", page.do("home", confirmed=True))
+        page.wait(lambda s: s["phase"] == "idle" and s["position_known"], 30)
+        self.assertIn("done", page.ask(load={"name": "job", "sha256": worker.put_blob(JOB)}))
+        started = page.do("start", confirmed=True)
+        self.assertIn("done", started)
+        state = page.wait(lambda s: s["job"] and s["job"]["ended"], 60)
+        self.assertEqual((state["job"]["ended"], state["job"]["acknowledged"]), ("done", state["job"]["line_count"]), state)
+        return page
+
+    def test_grbl_over_tcp(self):
+        meerk40t = self.started(peers.MeerK40t(self.folder / "meerk40t", "grblcontrol -p 2323"))
+        meerk40t.wait_for("TCP Server for GRBL Emulator on port: 2323")
+        self.run_job(peers.add_machine(self.data, "MeerK40t", "tcp://127.0.0.1:2323"))
+
+    def test_grbl_over_a_serial_line(self):
+        meerk40t = self.started(peers.MeerK40t(self.folder / "meerk40t", "grblcontrol -p 2324"))
+        meerk40t.wait_for("TCP Server for GRBL Emulator on port: 2324")
+        link = self.folder / "ttyLASER"
+        cable = self.started(subprocess.Popen(["socat", f"PTY,raw,echo=0,link={link}", "TCP:127.0.0.1:2324"]))
+        peers.wait_until(link.exists, 10, "the serial line")
+        page = self.run_job(peers.add_machine(self.data, "Serial", f"serial:{link}"))
+        # An unplugged cable is noticed and said.
+        cable.kill()
+        while "closed" not in (message := page.take()):
+            pass
+        self.assertIn("Serial is gone", message["error"]["message"])
+
+    def test_ruida_over_udp(self):
+        meerk40t = self.started(peers.MeerK40t(self.folder / "meerk40t", "ruidacontrol"))
+        meerk40t.wait_for("Ruida Data Server opened on port 50200")
+        time.sleep(1)
+        worker = self.started(Worker(peers.PROGRAM, self.data))
+        machine = peers.add_machine(self.data, "Ruida", "ruida://127.0.0.1")
+        page = MachineSocket(worker, machine)
+        self.assertEqual(page.ask(open={"controller": "ruida"}), {"done": 1})
+        state = page.wait(lambda s: s["connection"] == "ready", 30)
+        self.assertEqual(state["controller"], "ruida")
+        # Nobody else of this computer can have the port it answers to.
+        other = MachineSocket(worker, peers.add_machine(self.data, "Second", "ruida://127.0.0.2"))
+        answer = other.ask(open={"controller": "ruida"})
+        self.assertIn("Port 40200", answer["error"]["message"])
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

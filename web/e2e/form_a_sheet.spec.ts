@@ -7,7 +7,7 @@ import {
   expect,
   expectAccessible,
   fileOf,
-  looks,
+  testEveryLook,
   openPage,
   readStl,
   strip,
@@ -169,18 +169,12 @@ test('a model with its material, and a reload that keeps the work of both rooms'
   await expect(page.getByRole('list', { name: 'Earlier results' }).getByRole('button')).toHaveCount(1);
 });
 
-for (const look of looks)
-  test(`axe finds nothing serious in the room, ${look.colorScheme}, ${look.viewport.width} px`, async ({
-    browser,
-  }) => {
-    const context = await browser.newContext(look);
-    const page = await context.newPage();
-    await openRoom(page);
-    await expectAccessible(page, 'empty');
-    await page.locator('.gallery button', { hasText: 'Pyramid' }).click();
-    await expect(strip(page, 'Preview up to date')).toBeVisible();
-    await expectAccessible(page, 'preview');
-    await page.getByRole('button', { name: /^Material/ }).click();
-    await expectAccessible(page, 'folded group');
-    await context.close();
-  });
+testEveryLook('axe finds nothing serious in the room', async (page) => {
+  await openRoom(page);
+  await expectAccessible(page, 'empty');
+  await page.locator('.gallery button', { hasText: 'Pyramid' }).click();
+  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  await expectAccessible(page, 'preview');
+  await page.getByRole('button', { name: /^Material/ }).click();
+  await expectAccessible(page, 'folded group');
+});

@@ -124,6 +124,19 @@ export const looks = (['light', 'dark'] as const).flatMap((colorScheme) =>
   ].map((viewport) => ({ colorScheme, viewport, reducedMotion: 'reduce' as const })),
 );
 
+/** The same story in every look: an axe test each. */
+export function testEveryLook(name: string, story: (page: Page) => Promise<void>): void {
+  for (const look of looks)
+    test(`${name}, ${look.colorScheme}, ${look.viewport.width} px`, async ({ browser }) => {
+      const context = await browser.newContext(look);
+      try {
+        await story(await context.newPage());
+      } finally {
+        await context.close();
+      }
+    });
+}
+
 /** Fails with what axe finds serious; `what` says on which state of the page. */
 export async function expectAccessible(page: Page, what: string): Promise<void> {
   const { violations } = await new AxeBuilder({ page }).analyze();

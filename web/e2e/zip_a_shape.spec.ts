@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import type { Page } from '@playwright/test';
 import { readFileSync } from 'node:fs';
-import { backend, expect, expectAccessible, fileOf, looks, openPage, strip, test } from './page';
+import { backend, expect, expectAccessible, fileOf, testEveryLook, openPage, strip, test } from './page';
 
 test.skip(backend === 'mock', 'the mock makes reliefs only');
 
@@ -200,20 +200,14 @@ test('parts drawn by hand: a border with the mouse, an opening moved with the ke
   await expect(parts).toHaveCount(3);
 });
 
-for (const look of looks)
-  test(`axe finds nothing serious in the room, ${look.colorScheme}, ${look.viewport.width} px`, async ({
-    browser,
-  }) => {
-    const context = await browser.newContext(look);
-    const page = await context.newPage();
-    await openRoom(page);
-    await expectAccessible(page, 'empty');
-    await page.locator('.gallery button', { hasText: 'Star' }).click();
-    await expect(strip(page, 'Preview up to date')).toBeVisible();
-    await expectAccessible(page, 'preview');
-    await page.getByRole('radio', { name: 'Zipped' }).click();
-    await expectAccessible(page, 'zipped');
-    await page.getByRole('radio', { name: 'Sheets to cut' }).click();
-    await expectAccessible(page, 'sheets');
-    await context.close();
-  });
+testEveryLook('axe finds nothing serious in the room', async (page) => {
+  await openRoom(page);
+  await expectAccessible(page, 'empty');
+  await page.locator('.gallery button', { hasText: 'Star' }).click();
+  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  await expectAccessible(page, 'preview');
+  await page.getByRole('radio', { name: 'Zipped' }).click();
+  await expectAccessible(page, 'zipped');
+  await page.getByRole('radio', { name: 'Sheets to cut' }).click();
+  await expectAccessible(page, 'sheets');
+});

@@ -19,6 +19,7 @@ import { Rail } from './rail';
 import { go, place } from './route';
 import { formatNames, StartPage } from './start_page';
 import type { Sessions } from './rooms';
+import { MachineBar } from '../crafts/machines/machine_bar';
 import { drawingEndings, jobEndings } from '../crafts/machines/machines_document';
 import { isRoom, placeOfWork, roomOf } from './rooms';
 import { TopBar } from './top_bar';
@@ -195,6 +196,7 @@ export function App({ services, sessions }: AppProps) {
       {dialog.value === 'worker' ? (
         <WorkerDialog services={services} onClose={() => (dialog.value = null)} />
       ) : null}
+      {where === 'machines' ? null : <MachineBar session={sessions.machines} />}
       <ToastLayer />
       <TipLayer />
     </div>

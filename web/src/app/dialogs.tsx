@@ -15,6 +15,7 @@ const keys: readonly (readonly [keys: readonly string[], meaning: string])[] = [
   [['Ctrl', 'Shift', 'Z'], 'Redo'],
   [['Esc'], 'Cancel, or hold the machine'],
   [['Ctrl', '.'], 'Stop the machine'],
+  [['Esc', 'Esc'], 'Stop the machine, too'],
   [['?'], 'All keys'],
 ];
 const viewKeys: typeof keys = [

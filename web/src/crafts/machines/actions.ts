@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a person can have the machine do, each asked about before it moves or fires.
 import type { MachineCommand } from '../../machines/links/machine_state';
+import { workBoundsOfBed } from '../../machines/places';
 import { workBounds } from '../../machines/toolpath';
 import { formatDuration, formatNumber, withUnit } from '../../ui';
 import { ask } from './confirm';
@@ -23,6 +24,7 @@ export function startReason(session: MachinesSession): string | undefined {
   if (plan === null) return 'Open a drawing or a job first';
   if (session.planning.value) return 'Ready when the job is made';
   if (plan.misfits.length > 0 || plan.job === null) return plan.misfits[0] ?? 'The job does not fit';
+  if (!session.isCurrent.value) return 'What is shown is not what is set: mend what is marked first';
   if (control.isBusy) return 'A job is running';
   if (state.phase === 'alarm') return 'The machine is in alarm: home it first';
   if (!state.position_known)
@@ -86,7 +88,7 @@ export function frame(session: MachinesSession): void {
     run: () =>
       void session.control.command({
         do: 'frame',
-        bounds_mm: [...bounds],
+        bounds_mm: workBoundsOfBed(bounds, session.origin.value, plan.toolPath.bed_mm),
         speed_mm_per_s: 50,
         confirmed: true,
       }),

@@ -2,6 +2,7 @@
 // The bed from above: the job to be placed by dragging or by keys, and the head.
 import { useEffect, useRef } from 'preact/hooks';
 import { useSignal } from '@preact/signals';
+import { bedOfWork } from '../../machines/places';
 import { workBounds } from '../../machines/toolpath';
 import { formatNumber, withUnit } from '../../ui';
 import { drawBed, frameOf } from './bed_canvas';
@@ -30,7 +31,9 @@ export function BedView({
   const { control } = session;
   const state = control.state.value;
   const head =
-    state?.position_known && state.work_mm ? ([state.work_mm[0] ?? 0, state.work_mm[1] ?? 0] as const) : null;
+    state?.position_known && state.work_mm
+      ? bedOfWork([state.work_mm[0] ?? 0, state.work_mm[1] ?? 0], session.origin.value, bed)
+      : null;
   const time_s = timeShown(session);
   useEffect(() => {
     const observer = new ResizeObserver(() => ++size.value);

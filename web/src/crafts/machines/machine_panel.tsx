@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The machine at the head of the inspector: what it is, where it stands, and the buttons that move it.
-import { useRef } from 'preact/hooks';
+import { useEffect, useRef } from 'preact/hooks';
 import type { MachineCommand, MachineState } from '../../machines/links/machine_state';
 import { Button, formatFixed, Icon } from '../../ui';
 import { focus, frame, hold, home, resume, start, startReason, stop } from './actions';
@@ -162,47 +162,52 @@ function Position({ state }: { readonly state: MachineState }) {
   );
 }
 
-const jogSpeed_mm_per_s = 40;
-const far_mm = 2000;
+const jogSpeed_mm_per_s = 60;
+/** While a key is held the head is given this much of its way at a time: when the page hangs, it does not go far. */
+const ahead_s = 0.15;
+const heldAfter_ms = 250;
 
 /** Held down it moves, let go it stops; a short press moves one millimetre. */
 function Jog({ session }: { readonly session: MachinesSession }) {
   const { control } = session;
   const timer = useRef<ReturnType<typeof setTimeout> | undefined>(undefined);
-  const running = useRef(false);
+  const held = useRef<'no' | 'pressed' | 'moving'>('no');
   const jog = (x: number, y: number, distance_mm: number) =>
-    void control.command({
+    control.command({
       do: 'jog',
       x_mm: x * distance_mm,
       y_mm: y * distance_mm,
       speed_mm_per_s: jogSpeed_mm_per_s,
     });
+  const goOn = async (x: number, y: number) => {
+    held.current = 'moving';
+    const taken = await jog(x, y, ahead_s * jogSpeed_mm_per_s);
+    if (held.current !== 'moving')
+      void control.command({ do: 'jog_cancel' }); // let go meanwhile
+    else if (taken) timer.current = setTimeout(() => void goOn(x, y), 1000 * ahead_s);
+  };
   const press = (x: number, y: number) => {
     clearTimeout(timer.current);
-    timer.current = setTimeout(() => {
-      running.current = true;
-      // As far as the bed reaches at most: the machine's own limits end it earlier.
-      const state = control.state.value;
-      const [bedX, bedY] = [session.value('bed_x_mm'), session.value('bed_y_mm')];
-      const place = state?.position_known && state.work_mm ? state.work_mm : null;
-      const room = (at: number | undefined, bed: unknown, direction: number) =>
-        place === null || at === undefined || typeof bed !== 'number'
-          ? far_mm
-          : Math.max(0, direction > 0 ? bed - at : at);
-      jog(x, y, x !== 0 ? room(place?.[0], bedX, x) : room(place?.[1], bedY, y));
-    }, 250);
-  };
-  const release = (x: number, y: number) => {
-    clearTimeout(timer.current);
-    if (running.current) void control.command({ do: 'jog_cancel' });
-    else jog(x, y, 1);
-    running.current = false;
+    held.current = 'pressed';
+    timer.current = setTimeout(() => void goOn(x, y), heldAfter_ms);
   };
   const leave = () => {
     clearTimeout(timer.current);
-    if (running.current) void control.command({ do: 'jog_cancel' });
-    running.current = false;
+    if (held.current === 'moving') void control.command({ do: 'jog_cancel' });
+    held.current = 'no';
   };
+  const release = (x: number, y: number) => {
+    if (held.current === 'pressed') void jog(x, y, 1);
+    leave();
+  };
+  useEffect(() => {
+    // The window loses the focus, or the room is left, with a key held.
+    addEventListener('blur', leave);
+    return () => {
+      removeEventListener('blur', leave);
+      leave();
+    };
+  }, []);
   const reason = control.can('jog') ? undefined : 'Only while the machine rests';
   const arrows: Record<string, readonly [number, number]> = {
     ArrowLeft: [-1, 0],
@@ -226,7 +231,7 @@ function Jog({ session }: { readonly session: MachinesSession }) {
       onPointerCancel={leave}
       onClick={(event) => {
         // From the keyboard a click has no pointer.
-        if (!reason && event.detail === 0) jog(x, y, event.shiftKey ? 10 : 1);
+        if (!reason && event.detail === 0) void jog(x, y, event.shiftKey ? 10 : 1);
       }}
     >
       <Icon name="arrow" small />
@@ -241,7 +246,7 @@ function Jog({ session }: { readonly session: MachinesSession }) {
         const by = arrows[event.key];
         if (by === undefined || reason) return;
         event.preventDefault();
-        jog(by[0], by[1], event.shiftKey ? 10 : 1);
+        void jog(by[0], by[1], event.shiftKey ? 10 : 1);
       }}
     >
       {key('back', 0, 1, 'up')}

@@ -4,7 +4,7 @@ import { useEffect } from 'preact/hooks';
 import { Button, formatCount, formatDuration, JobStrip, Segmented, Sheet, Switch } from '../../ui';
 import { download } from '../common/download';
 import '../common/room.css';
-import { goOn, hold, start, startReason, stop } from './actions';
+import { goOn, start, startReason } from './actions';
 import { AlarmBar, MachineNotes } from './alarm_bar';
 import { BedView } from './bed_view';
 import { followBridge } from './bridge_machines';
@@ -90,7 +90,14 @@ function Strip({ session, onChooseFile }: MachinesPageProps) {
     <Button
       size="small"
       icon="download"
-      onClick={() => plan.job && download(plan.job, `${session.title}.gcode`, 'text/x-gcode')}
+      onClick={() =>
+        plan.job &&
+        download(
+          plan.job,
+          `${session.title}.${session.jobFormat.split('.').at(-1) ?? 'gcode'}`,
+          'application/octet-stream',
+        )
+      }
     >
       Job file
     </Button>
@@ -177,22 +184,15 @@ function Strip({ session, onChooseFile }: MachinesPageProps) {
   );
 }
 
-/** Esc holds, Ctrl+. stops, Ctrl+Enter asks to start: wherever the focus is in this room, dialogs included. */
+/** Ctrl+Enter asks to start. Esc and Ctrl+. are listened for wherever one is: stop_keys.ts. */
 function useMachineKeys(session: MachinesSession): void {
   useEffect(() => {
     const onKey = (event: KeyboardEvent) => {
-      const control = event.ctrlKey || event.metaKey;
-      const connected = session.control.link.value !== null;
-      const act = (action: () => void) => {
-        event.preventDefault();
-        event.stopPropagation();
-        action();
-      };
-      if (control && event.key === '.' && connected) return act(() => stop(session));
-      if (document.querySelector('dialog[open]')) return;
-      if (event.key === 'Escape' && session.control.can('pause')) act(() => hold(session));
-      else if (control && event.key === 'Enter' && startReason(session) === undefined)
-        act(() => start(session));
+      if (document.querySelector('dialog[open]') || event.key !== 'Enter') return;
+      if (!(event.ctrlKey || event.metaKey) || startReason(session) !== undefined) return;
+      event.preventDefault();
+      event.stopPropagation();
+      start(session);
     };
     document.addEventListener('keydown', onKey, true);
     return () => document.removeEventListener('keydown', onKey, true);

@@ -9,6 +9,8 @@ import { JobLog } from '../../machines/job_log';
 import { MachineControl } from '../../machines/machine_control';
 import type { MachineProfile } from '../../machines/profiles';
 import { ProfileStore } from '../../machines/profiles';
+import { asOrigin } from '../../machines/places';
+import { listenForStop } from '../../machines/stop_keys';
 import type { ToolPath } from '../../machines/toolpath';
 import { readToolPath } from '../../machines/toolpath';
 import { jsonEqual } from '../../project/document';
@@ -37,6 +39,9 @@ interface Request {
 const keyOf = ({ drawing, parameters }: Request) =>
   `${drawing.kind} ${drawing.file.blob} ${JSON.stringify(parameters)}`;
 
+/** What the controller reads; the others read G-code. */
+const jobFormats: Readonly<Record<string, string>> = { k40: 'job.egv', ruida: 'job.rd' };
+
 export class MachinesSession extends RoomSession<MachinesDocument> {
   readonly document = computed(() => machines.of(this.services.projects.document.value));
   readonly operation = computed(() => {
@@ -51,6 +56,17 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
   readonly planning = signal(false);
   /** Seconds from the job's start that the bed shows; null: the end, or where the machine is. */
   readonly playhead = signal<number | null>(null);
+  /** What is shown was made with the drawing and the parameters in force: only then it may be started. */
+  readonly isCurrent = computed(() => {
+    const { drawing, parameters } = this.document.value;
+    return drawing !== null && this.plan.value?.key === keyOf({ drawing, parameters });
+  });
+  /** Where the controller counts from. */
+  readonly origin = computed(() => asOrigin(this.value('origin')));
+  /** The file that the controller reads. */
+  get jobFormat(): string {
+    return jobFormats[String(this.value('controller'))] ?? 'job.gcode';
+  }
   readonly #latest = new LatestOnly<Request>(
     (request, abort) => this.#make(request, abort),
     (running, next) => running.drawing.file.blob !== next.drawing.file.blob,
@@ -66,6 +82,7 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
 
   constructor(services: Services) {
     super(services, machines);
+    listenForStop(this.control);
     effect(() => this.follow());
   }
 
@@ -126,12 +143,13 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
 
   async #makeJob({ drawing, parameters }: Request, signal: AbortSignal) {
     const inputs = { drawing: { sha256: drawing.file.blob, file_name: drawing.file_name } };
+    const format = this.jobFormat;
     const result = await this.services.browser.run(
-      { operation: laserJob, parameters, inputs, outputs: ['job.gcode', 'toolpath.json'] },
+      { operation: laserJob, parameters, inputs, outputs: [format, 'toolpath.json'] },
       { signal },
     );
     const toolPath = readToolPath(new TextDecoder().decode(await bytesOf(result, 'toolpath.json')));
-    const job = result.outputs.has('job.gcode') ? await bytesOf(result, 'job.gcode') : null;
+    const job = result.outputs.has(format) ? await bytesOf(result, format) : null;
     return { report: result.report, toolPath, job, misfits: sentences(result.report, 'misfits') };
   }
 

@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+import type { Page } from '@playwright/test';
+import { readFileSync } from 'node:fs';
+import { backend, expect, expectAccessible, fileOf, openPage, strip, test, testEveryLook } from './page';
+
+test.skip(backend === 'mock', 'the mock makes reliefs only');
+
+/** A square with a hole, and a mark: 40 by 40 mm. */
+const square = fileOf(
+  'square.svg',
+  `<svg xmlns="http://www.w3.org/2000/svg" width="40mm" height="40mm" viewBox="0 0 40 40">
+  <g id="cut" fill="none" stroke="#f00"><path d="M1 1H39V39H1Z"/><circle cx="20" cy="20" r="6"/></g>
+  <g id="mark" fill="none" stroke="#00f"><path d="M5 5H15"/></g></svg>`,
+);
+
+const chip = (page: Page) => page.locator('.state-chip');
+const position = (page: Page) => page.getByRole('group', { name: /^Where the head stands/ });
+const button = (page: Page, name: string) => page.getByRole('button', { name, exact: true });
+const dialog = (page: Page) => page.getByRole('dialog');
+
+async function openRoom(page: Page): Promise<void> {
+  await openPage(page);
+  await page.getByRole('link', { name: 'Machines', exact: true }).click();
+  await expect(button(page, 'Practise without a machine')).toBeVisible();
+}
+
+async function openDrawing(page: Page, file = square): Promise<void> {
+  await openRoom(page);
+  await page.getByLabel('Model or project file').setInputFiles(file);
+  await expect(strip(page, 'Job ready')).toBeVisible();
+}
+
+/** Nothing is done before the question is answered, and the focus stands on Cancel. */
+async function confirm(page: Page, title: RegExp, action: string, says: RegExp): Promise<void> {
+  await expect(dialog(page).getByRole('heading', { name: title })).toBeVisible();
+  await expect(dialog(page).getByText(says)).toBeVisible();
+  await expect(dialog(page).getByRole('button', { name: 'Cancel' })).toBeFocused();
+  await dialog(page).getByRole('button', { name: action, exact: true }).click();
+}
+
+async function practise(page: Page): Promise<void> {
+  await button(page, 'Practise without a machine').click();
+  await expect(chip(page)).toHaveText('Locked');
+  await expect(position(page).getByText('unknown')).toHaveCount(2);
+}
+
+async function homeIt(page: Page): Promise<void> {
+  await page.locator('.machine-buttons').getByRole('button', { name: 'Home' }).click();
+  await confirm(page, /^Home the machine/, 'Home', /moves to its switches/);
+  await expect(chip(page)).toHaveText('Ready');
+  await expect(position(page).getByText('unknown')).toHaveCount(0);
+}
+
+const coordinate = async (page: Page, axis: 'X' | 'Y'): Promise<number> => {
+  const text = await position(page).locator('div', { hasText: axis }).locator('b').textContent();
+  return Number((text ?? '').replace('−', '-'));
+};
+
+/** Holds the key until the head has gone so far, and sees that it stops when it is let go. */
+async function holdJog(page: Page, name: string, axis: 'X' | 'Y', below_mm: number): Promise<void> {
+  await page.getByRole('button', { name: `Move ${name}` }).hover();
+  await page.mouse.down();
+  await expect.poll(() => coordinate(page, axis), { timeout: 30_000 }).toBeLessThan(below_mm);
+  await page.mouse.up();
+  await expect(chip(page)).toHaveText('Ready');
+  const rested = await coordinate(page, axis);
+  expect(rested).toBeGreaterThan(below_mm - 40);
+  await page.waitForTimeout(400);
+  expect(await coordinate(page, axis)).toBeCloseTo(rested, 1);
+}
+
+async function setOrigin(page: Page): Promise<void> {
+  await button(page, 'Set origin here').click();
+  await expect.poll(() => coordinate(page, 'X')).toBeCloseTo(0, 1);
+}
+
+/** Homed, with the origin so far from the switches that the job has room. */
+async function makeReady(page: Page, room_mm = 70): Promise<void> {
+  await practise(page);
+  await homeIt(page);
+  await holdJog(page, 'left', 'X', -room_mm);
+  await holdJog(page, 'forward', 'Y', -room_mm);
+  await setOrigin(page);
+}
+
+async function startIt(page: Page): Promise<void> {
+  await button(page, 'Start the job').click();
+  await confirm(page, /^Start /, 'Start with the laser on', /laser turns on/);
+  await expect(chip(page)).toHaveText('Working');
+}
+
+async function setSpeed(page: Page, group: string, mm_per_s: string): Promise<void> {
+  await page.getByRole('button', { name: new RegExp(`^${group} \\d+$`) }).click();
+  const field = page
+    .getByRole('region', { name: group, exact: true })
+    .getByRole('textbox', { name: 'Speed' });
+  await field.fill(mm_per_s);
+  await field.press('Enter');
+}
+
+test('from the sample star to a finished laser job', async ({ page }) => {
+  await openPage(page);
+  await page.getByRole('link', { name: 'Zippable', exact: true }).click();
+  await page.locator('.gallery button', { hasText: 'Star' }).click();
+  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  await page.getByRole('button', { name: 'Make the ribbon', exact: true }).click();
+  await expect(strip(page, 'Ribbon unfolded')).toBeVisible({ timeout: 150_000 });
+  await page.getByRole('radio', { name: 'Sheets to cut' }).click();
+  await page.getByRole('textbox', { name: 'Bed, x' }).fill('300');
+  await page.getByRole('textbox', { name: 'Bed, x' }).press('Enter');
+  await expect(page.getByRole('img', { name: / of 300 × 300\smm; / })).toBeVisible();
+  const send = page.getByRole('button', { name: /Send to a machine/ });
+  await send.click();
+  const first = page.getByRole('menuitem', { name: 'Sheet 1' });
+  if (await first.isVisible().catch(() => false)) await first.click();
+  await expect(strip(page, 'Job ready')).toBeVisible({ timeout: 60_000 });
+  await expect(page.getByRole('img', { name: /^Bed of 400 × 400/ })).toBeVisible();
+
+  // Quick, so that the story is short: the same lines in a fifth of the time.
+  await setSpeed(page, 'Cut', '150');
+  await setSpeed(page, 'Mark', '150');
+  await expect(strip(page, 'Job ready')).toBeVisible();
+  await expect(button(page, 'Start the job')).toHaveAttribute('aria-disabled', 'true');
+  await makeReady(page, 320);
+  await button(page, 'Frame').click();
+  await confirm(page, /^Frame the job/, 'Frame', /laser stays off/);
+  await expect(chip(page)).toHaveText('Ready', { timeout: 60_000 });
+  await startIt(page);
+  await expect(page.getByRole('progressbar')).toBeVisible();
+  await expect(page.getByRole('contentinfo').getByText(/ is done$/)).toBeVisible({ timeout: 150_000 });
+  await page.getByRole('radio', { name: 'Console' }).click();
+  await page.getByText('1 job so far').click();
+  await expect(page.getByText(/done after /)).toBeVisible();
+});
+
+test('a drawing to a finished job by keyboard alone', async ({ page }) => {
+  await openDrawing(page);
+  const press = async (name: string) => {
+    await button(page, name).focus();
+    await page.keyboard.press('Enter');
+  };
+  const bed = page.getByRole('img', { name: /^Bed of/ });
+  await bed.focus();
+  await page.keyboard.press('Shift+ArrowRight');
+  await page.keyboard.press('ArrowUp');
+  await expect(bed).toHaveAccessibleName(/job from 1\d\.\d+, 1\.\d+ to/);
+  await page.keyboard.press('Control+z');
+  await page.keyboard.press('Control+z');
+  await expect(bed).toHaveAccessibleName(/job from 0\.\d+, 0\.\d+ to/);
+  await press('Practise without a machine');
+  await expect(chip(page)).toHaveText('Locked');
+  await page.locator('.machine-buttons').getByRole('button', { name: 'Home' }).focus();
+  await page.keyboard.press('Enter');
+  await expect(dialog(page).getByRole('button', { name: 'Cancel' })).toBeFocused();
+  await page.keyboard.press('Tab');
+  await page.keyboard.press('Enter');
+  await expect(chip(page)).toHaveText('Ready');
+  for (const [name, axis] of [
+    ['Move left', 'X'],
+    ['Move forward', 'Y'],
+  ] as const) {
+    await page.getByRole('button', { name }).focus();
+    for (let i = 0; i < 6; ++i)
+      await page.keyboard.press(name === 'Move left' ? 'Shift+ArrowLeft' : 'Shift+ArrowDown');
+    await expect.poll(() => coordinate(page, axis)).toBeCloseTo(-61, 1);
+  }
+  await press('Set origin here');
+  await expect.poll(() => coordinate(page, 'X')).toBeCloseTo(0, 1);
+  await page.keyboard.press('Control+Enter');
+  await expect(dialog(page).getByRole('button', { name: 'Cancel' })).toBeFocused();
+  await page.keyboard.press('Tab');
+  await page.keyboard.press('Enter');
+  await expect(chip(page)).toHaveText('Working');
+  await page.keyboard.press('Escape'); // holds
+  await expect(chip(page)).toHaveText('Held');
+  await press('Go on');
+  await expect(dialog(page).getByRole('button', { name: 'Cancel' })).toBeFocused();
+  await page.keyboard.press('Tab');
+  await page.keyboard.press('Enter');
+  await expect(chip(page)).toHaveText('Working');
+  await expect(page.getByRole('contentinfo').getByText('square is done')).toBeVisible({ timeout: 120_000 });
+});
+
+test('stopped in the middle: the position is unknown, and the rest is cut after homing', async ({ page }) => {
+  await openDrawing(page);
+  await makeReady(page);
+  await startIt(page);
+  await expect(page.getByRole('progressbar')).not.toHaveAttribute('aria-valuenow', /^[0-9]$/);
+  await button(page, 'Stop').click();
+  await expect(page.getByRole('contentinfo').getByText(/^Job stopped at \d+ %$/)).toBeVisible();
+  await expect(position(page).getByText('unknown')).toHaveCount(2);
+  await expect(button(page, 'Cut the rest')).toHaveAttribute('aria-disabled', 'true');
+  await expect(button(page, 'Start the job')).toHaveAttribute('aria-disabled', 'true');
+  await homeIt(page);
+  await button(page, 'Cut the rest').click();
+  await confirm(page, /^Cut the rest/, 'Go on with the laser on', /begins at line \d+/);
+  await expect(chip(page)).toHaveText('Working');
+  await expect(page.getByRole('contentinfo').getByText('square is done')).toBeVisible({ timeout: 120_000 });
+});
+
+test('Stop on the keyboard and in another room', async ({ page }) => {
+  await openDrawing(page);
+  await makeReady(page);
+  await startIt(page);
+  await page.getByRole('link', { name: 'Relief', exact: true }).click();
+  const bar = page.getByRole('complementary', { name: 'The machine' });
+  await expect(bar.getByText(/^Working on square/)).toBeVisible();
+  await page.keyboard.press('Control+.');
+  await expect(bar).toBeHidden();
+  await page.getByRole('link', { name: 'Machines', exact: true }).click();
+  await expect(page.getByRole('contentinfo').getByText(/^Job stopped at/)).toBeVisible();
+});
+
+test('what a tab controls no other tab does', async ({ page, context }) => {
+  await openRoom(page);
+  await practise(page);
+  const second = await context.newPage();
+  await openRoom(second);
+  await button(second, 'Practise without a machine').click();
+  await expect(
+    second.getByRole('alert').getByText(/^Another tab of this page controls a machine/),
+  ).toBeVisible();
+  await button(page, 'Disconnect').click();
+  await expect(chip(page)).toHaveText('Not connected');
+  await button(second, 'Practise without a machine').click();
+  await expect(chip(second)).toHaveText('Locked');
+  await second.close();
+});
+
+test('wrong files are said in words and the work stays', async ({ page }) => {
+  await openDrawing(page);
+  const input = page.getByLabel('Model or project file');
+  await input.setInputFiles(fileOf('model.obj', 'v 0 0 0'));
+  await expect(page.getByRole('alert').getByText('Could not open model.obj')).toBeVisible();
+  await expect(strip(page, 'Job ready')).toBeVisible();
+  await input.setInputFiles(fileOf('notes.svg', 'this is no drawing'));
+  await expect(page.getByRole('alert').getByText('Could not read notes.svg')).toBeVisible();
+  await input.setInputFiles(fileOf('notes.nc', 'no moves in here'));
+  await expect(page.getByRole('alert').getByText('Could not read notes.nc')).toBeVisible();
+  await input.setInputFiles(fileOf('line.nc', 'G21 G90\nM4 S500\nG1 X50 Y0 F3000\nG1 X50 Y20\nM5\n'));
+  await expect(
+    page.getByRole('img', { name: /job from 0\.000, 0\.000 to 50\.00, 20\.00\smm/ }),
+  ).toBeVisible();
+});
+
+test('a job that does not fit is said before anything moves', async ({ page }) => {
+  await openDrawing(page);
+  await page.getByRole('textbox', { name: 'Place, x' }).fill('390');
+  await page.getByRole('textbox', { name: 'Place, x' }).press('Enter');
+  await expect(strip(page, 'The job does not fit')).toBeVisible();
+  await practise(page);
+  await homeIt(page);
+  const start = button(page, 'Start the job');
+  await expect(start).toHaveAttribute('aria-disabled', 'true');
+  await start.click({ force: true });
+  await expect(dialog(page)).toBeHidden();
+});
+
+test('a profile goes out as a file and comes back', async ({ page }) => {
+  await openRoom(page);
+  const menu = page.locator('.profile-button');
+  await menu.click();
+  await page.getByRole('menuitem', { name: 'Add a machine' }).click();
+  await dialog(page).getByLabel('Name').fill('Workshop laser');
+  await dialog(page).getByLabel('Bed, side to side, mm').fill('600');
+  await dialog(page).getByRole('button', { name: 'Add', exact: true }).click();
+  await expect(menu).toHaveText('Workshop laser');
+  await menu.click();
+  const waiting = page.waitForEvent('download');
+  await page.getByRole('menuitem', { name: 'Export its profile' }).click();
+  const path = await (await waiting).path();
+  const text = readFileSync(path, 'utf8');
+  expect(JSON.parse(text)).toMatchObject({ name: 'Workshop laser', parameters: { bed_x_mm: 600 } });
+  await menu.click();
+  await page.getByRole('menuitem', { name: 'Remove this machine' }).click();
+  await expect(menu).toHaveText('Practice laser');
+  const file = page.getByLabel('Machine profile');
+  await file.setInputFiles(fileOf('broken.json', '{"format":"formwright-machine","version":1}'));
+  await expect(page.getByRole('alert').getByText('Could not read broken.json')).toBeVisible();
+  await file.setInputFiles(fileOf('workshop.json', text));
+  await expect(menu).toHaveText('Workshop laser');
+  await expect(page.getByRole('img', { name: /bed/i })).toBeVisible();
+  await page.reload();
+  await expect(menu).toHaveText('Workshop laser');
+});
+
+testEveryLook('axe finds nothing serious in the room', async (page) => {
+  await openRoom(page);
+  await expectAccessible(page, 'empty');
+  await page.getByLabel('Model or project file').setInputFiles(square);
+  await expect(strip(page, 'Job ready')).toBeVisible();
+  await expectAccessible(page, 'drawing');
+  await practise(page);
+  await expectAccessible(page, 'locked');
+  await page.locator('.machine-buttons').getByRole('button', { name: 'Home' }).click();
+  await expectAccessible(page, 'question');
+  await dialog(page).getByRole('button', { name: 'Home', exact: true }).click();
+  await expect(chip(page)).toHaveText('Ready');
+  await expectAccessible(page, 'ready');
+  await page.getByRole('radio', { name: 'Console' }).click();
+  await expectAccessible(page, 'console');
+});

@@ -58,6 +58,14 @@ std::string entry(const std::string& left, std::size_t left_width, const std::st
   return text + line + "\n";
 }
 
+/// Broken between words so that no line is longer than 100 columns.
+std::string paragraph(const std::string& text) {
+  std::string plain = entry("", 0, text);
+  plain.erase(0, plain.find_first_not_of("\n "));
+  for (std::size_t at = plain.find("\n  "); at != std::string::npos; at = plain.find("\n  ", at + 1)) plain.erase(at + 1, 2);
+  return plain;
+}
+
 std::string number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", value);
@@ -196,7 +204,7 @@ std::string overview_text() {
 
 std::string operation_help(const Operation& operation) {
   constexpr std::size_t width = 30;
-  std::string text = operation.summary + "\n\n  formwright " + operation.name;
+  std::string text = paragraph(operation.summary) + "\n  formwright " + operation.name;
   for (const InputInfo& input : operation.inputs)
     if (input.required) text += " " + dashed(input.name) + (input.folder_files.empty() ? " FILE" : " DIR");
   text += " --out DIR [flags]\n\nInput\n";

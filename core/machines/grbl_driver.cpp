@@ -176,13 +176,6 @@ void GrblDriver::hear_report(const GrblReport& report, double now_s) {
   if (next_line_ >= program_.line_count() && now_s - answered_s_ > 1.5 * asking_s) end_job("done", now_s);
 }
 
-void GrblDriver::end_job(const char* how, double now_s) {
-  if (!job_active()) return;
-  job_->ended = how;
-  job_->ended_s = now_s;
-  say("ended", how, now_s);
-}
-
 void GrblDriver::stop(const char* how, double now_s) {
   end_job(how, now_s);
   by_hand_.clear();
@@ -284,24 +277,16 @@ double GrblDriver::setting(int number, double fallback) const {
 
 Json GrblDriver::state(double now_s) const {
   const auto place = [&](const std::optional<std::array<double, 3>>& p) { return p ? Json(*p) : Json(nullptr); };
-  Json state = {{"controller", "grbl"},
-                {"connection", to_string(connection_)},
-                {"firmware", firmware_},
-                {"phase", to_string(stopping_ != Stopping::no ? MachinePhase::stopping
-                                    : pause_asked_ && phase_ == MachinePhase::running ? MachinePhase::pausing : phase_)},
-                {"position_known", position_known_},
-                {"machine_mm", place(machine_mm_)},
-                {"work_mm", place(work_mm_)},
-                {"speed_mm_per_s", feed_mm_per_min_ / 60},
-                {"power_percent", 100 * power_ / setting(30, 1000)},
-                {"job", nullptr},
-                {"alarm", nullptr},
-                {"error", nullptr},
-                {"laser_on", nullptr}};
-  if (job_) {
-    state["job"] = machines_detail::job_json(*job_, now_s);
-    state["job"]["careful_line"] = careful_line();
-  }
+  const MachinePhase shown = stopping_ != Stopping::no                                     ? MachinePhase::stopping
+                             : pause_asked_ && phase_ == MachinePhase::running ? MachinePhase::pausing
+                                                                               : phase_;
+  Json state = common_state("grbl", connection_, shown, position_known_, now_s);
+  state["firmware"] = firmware_;
+  state["machine_mm"] = place(machine_mm_);
+  state["work_mm"] = place(work_mm_);
+  state["speed_mm_per_s"] = feed_mm_per_min_ / 60;
+  state["power_percent"] = 100 * power_ / setting(30, 1000);
+  if (job_) state["job"]["careful_line"] = careful_line();
   if (alarm_) {
     const GrblWords words = grbl_alarm(*alarm_);
     state["alarm"] = {{"code", *alarm_}, {"text", words.text}, {"mend", words.mend}};

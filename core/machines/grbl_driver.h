@@ -46,8 +46,6 @@ class GrblDriver final : public MachineDriver {
   void identify();
 
   // Jobs.
-  bool job_active() const { return job_ && job_->ended.empty(); }
-  void end_job(const char* how, double now_s);
   /// Everything ends: motion held, then reset; nothing that was to be sent stays.
   void stop(const char* how, double now_s);
   void lose_position() { position_known_ = false; }
@@ -88,7 +86,6 @@ class GrblDriver final : public MachineDriver {
 
   GcodeProgram program_;
   std::string program_name_;
-  std::optional<MachineJob> job_;
   int next_line_ = 0;
 
   enum class Stopping { no, holding, resetting } stopping_ = Stopping::no;

@@ -177,13 +177,6 @@ void K40Driver::tick(double now_s) {
   if (connection_ == MachineConnection::silent && now_s - asked_s_ > silence_s) asked_ = false;
 }
 
-void K40Driver::end_job(const char* how, double now_s) {
-  if (!job_active()) return;
-  job_->ended = how;
-  job_->ended_s = now_s;
-  say("ended", how, now_s);
-}
-
 MachinePhase K40Driver::phase() const {
   if (connection_ != MachineConnection::ready) return MachinePhase::unknown;
   if (status_ == status_power) return MachinePhase::alarm;
@@ -293,20 +286,8 @@ void K40Driver::load(const std::string& name, ByteView job) {
 }
 
 Json K40Driver::state(double now_s) const {
-  const Json place = position_known_ ? Json{position_mm_[0], options_.bed_y_mm - position_mm_[1], 0} : Json(nullptr);
-  Json state = {{"controller", "k40"},
-                {"connection", to_string(connection_)},
-                {"firmware", ""},
-                {"phase", to_string(phase())},
-                {"position_known", position_known_},
-                {"machine_mm", place},
-                {"work_mm", place},
-                {"speed_mm_per_s", 0},
-                {"power_percent", 0},
-                {"job", job_ ? machines_detail::job_json(*job_, now_s) : Json(nullptr)},
-                {"alarm", nullptr},
-                {"error", nullptr},
-                {"laser_on", nullptr}};
+  Json state = common_state("k40", connection_, phase(), position_known_, now_s);
+  if (position_known_) state["machine_mm"] = state["work_mm"] = {position_mm_[0], options_.bed_y_mm - position_mm_[1], 0};
   if (status_ == status_power) state["alarm"] = {{"code", status_power}, {"text", "The laser's own supply is off."}, {"mend", "Switch it on and home it."}};
   state["can"] = possible_commands();
   return state;

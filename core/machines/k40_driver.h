@@ -34,10 +34,8 @@ class K40Driver final : public MachineDriver {
 
  private:
   enum class Doing { nothing, homing, moving, working };
-  bool job_active() const { return job_ && job_->ended.empty(); }
   void ask(double now_s);
   void send_next(double now_s);
-  void end_job(const char* how, double now_s);
   void move(double right_mm, double front_mm);
   std::vector<std::string> possible_commands() const;
   MachinePhase phase() const;
@@ -46,7 +44,6 @@ class K40Driver final : public MachineDriver {
   MachineConnection connection_ = MachineConnection::closed;
   std::vector<std::string> program_;
   std::string program_name_;
-  std::optional<MachineJob> job_;
   std::deque<std::string> queue_;
   std::optional<std::string> unconfirmed_;  // sent; the board has not said yet that it arrived whole
   Doing doing_ = Doing::nothing;

@@ -54,6 +54,30 @@ void MachineDriver::say(const char* event, std::string_view text, double now_s) 
   events_.push_back({{"event", event}, {key, text}, {"now_s", now_s}});
 }
 
+bool MachineDriver::end_job(const char* how, double now_s) {
+  if (!job_active()) return false;
+  job_->ended = how;
+  job_->ended_s = now_s;
+  say("ended", how, now_s);
+  return true;
+}
+
+Json MachineDriver::common_state(const char* controller, MachineConnection connection, MachinePhase phase, bool position_known, double now_s) const {
+  return {{"controller", controller},
+          {"connection", to_string(connection)},
+          {"firmware", ""},
+          {"phase", to_string(phase)},
+          {"position_known", position_known},
+          {"machine_mm", nullptr},
+          {"work_mm", nullptr},
+          {"speed_mm_per_s", 0},
+          {"power_percent", 0},
+          {"job", job_ ? machines_detail::job_json(*job_, now_s) : Json(nullptr)},
+          {"alarm", nullptr},
+          {"error", nullptr},
+          {"laser_on", nullptr}};
+}
+
 std::unique_ptr<MachineDriver> make_machine_driver(const Json& options) {
   const auto read = read_parameters<MachineOptions>(options);
   switch (read.controller) {

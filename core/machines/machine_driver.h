@@ -4,6 +4,7 @@
 // to write. It has no clock and no port of its own, so the same one runs in the page, in the worker, on the command line and in tests.
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -63,6 +64,13 @@ class MachineDriver {
   /// The lines that are whole now; the rest waits for its end.
   std::vector<std::string> lines_in(ByteView bytes);
   void forget_half_lines() { heard_.clear(); }
+  bool job_active() const { return job_ && job_->ended.empty(); }
+  /// False where no job was running.
+  bool end_job(const char* how, double now_s);
+  /// What every controller tells, of an unknown place; drivers put their own into it.
+  Json common_state(const char* controller, MachineConnection connection, MachinePhase phase, bool position_known, double now_s) const;
+
+  std::optional<MachineJob> job_;
   void say(const char* event, std::string_view text, double now_s);
   void note(std::string_view text, double now_s) { say("note", text, now_s); }
 

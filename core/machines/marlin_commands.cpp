@@ -138,20 +138,11 @@ void MarlinDriver::start(const Json& command, double now_s) {
 }
 
 Json MarlinDriver::state(double now_s) const {
-  Json state = {{"controller", "marlin"},
-                {"connection", to_string(connection_)},
-                {"firmware", firmware_},
-                {"phase", to_string(phase())},
-                {"position_known", position_known_},
-                {"machine_mm", position_mm_ ? Json(*position_mm_) : Json(nullptr)},
-                {"work_mm", position_mm_ ? Json(*position_mm_) : Json(nullptr)},
-                {"speed_mm_per_s", 0},
-                {"power_percent", 0},
-                {"job", job_ ? machines_detail::job_json(*job_, now_s) : Json(nullptr)},
-                {"alarm", nullptr},
-                {"error", nullptr},
-                {"laser_on", focus_until_s_.has_value()},
-                {"temperatures", temperatures_}};
+  Json state = common_state("marlin", connection_, phase(), position_known_, now_s);
+  state["firmware"] = firmware_;
+  if (position_mm_) state["machine_mm"] = state["work_mm"] = *position_mm_;
+  state["laser_on"] = focus_until_s_.has_value();
+  state["temperatures"] = temperatures_;
   if (halted_) state["alarm"] = {{"code", 0}, {"text", "The machine has halted: " + halt_text_}, {"mend", "Find the cause, then switch it off and on again."}};
   if (refused_) state["error"] = {{"code", 0}, {"text", "The machine does not know a command of the job."}, {"line", *refused_}, {"line_number", job_ ? job_->line_now : 0}};
   if (job_active() && options_.tool == MachineTool::laser) state["laser_on"] = nullptr;  // Marlin does not tell

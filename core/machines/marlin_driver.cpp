@@ -42,7 +42,7 @@ void MarlinDriver::opened(double now_s) {
 void MarlinDriver::closed(double now_s) {
   if (connection_ == MachineConnection::closed) return;
   if (job_active()) {
-    end_job("cut_off", now_s);
+    end("cut_off", now_s);
     note("The machine is gone in the middle of the job. Its heaters or laser may still be on: look after it.", now_s);
   }
   drop_output();
@@ -83,7 +83,7 @@ void MarlinDriver::hear(const std::string& line, double now_s) {
   if (!line.starts_with("echo:busy")) say("received", line, now_s);
   if (line == "start" || line.starts_with("Marlin ")) {
     if (job_active()) {
-      end_job("failed", now_s);
+      end("failed", now_s);
       note("The machine restarted by itself in the middle of the job: check its power supply and cable.", now_s);
     }
     position_known_ = halted_ = false;
@@ -124,7 +124,7 @@ void MarlinDriver::hear_ok(const std::string& line, double now_s) {
   if (answered.text == "G28") homing_ = false, position_known_ = true;
   if (answered.text == "M400" && draining_ && job_active() && next_line_ >= program_.line_count()) {
     draining_ = false;
-    end_job("done", now_s);
+    end("done", now_s);
   }
   if (answered.job_line >= 0 && job_active()) {
     job_->acknowledged = std::max(job_->acknowledged, answered.job_line + 1);
@@ -151,7 +151,7 @@ void MarlinDriver::halt(const std::string& text, double now_s) {
   halt_text_ = text;
   position_known_ = false;
   by_hand_.clear();
-  end_job("failed", now_s);
+  end("failed", now_s);
 }
 
 void MarlinDriver::send(const std::string& text, int job_line, double now_s) {
@@ -230,16 +230,12 @@ void MarlinDriver::load(const std::string& name, ByteView job) {
   job_.reset();
 }
 
-void MarlinDriver::end_job(const char* how, double now_s) {
-  if (!job_active()) return;
-  job_->ended = how;
-  job_->ended_s = now_s;
-  paused_ = draining_ = false;
-  say("ended", how, now_s);
+void MarlinDriver::end(const char* how, double now_s) {
+  if (end_job(how, now_s)) paused_ = draining_ = false;
 }
 
 void MarlinDriver::stop(const char* how, double now_s) {
-  end_job(how, now_s);
+  end(how, now_s);
   by_hand_.clear();
   drop_output();
   // A line that did not leave will be asked for by its number: it must not move anything then.

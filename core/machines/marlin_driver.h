@@ -43,8 +43,7 @@ class MarlinDriver final : public MachineDriver {
   void start_numbering(double now_s);
   void queue(const std::string& line) { by_hand_.push_back(line); }
   void move(const std::string& mode, const std::string& words, double speed_mm_per_s);
-  bool job_active() const { return job_ && job_->ended.empty(); }
-  void end_job(const char* how, double now_s);
+  void end(const char* how, double now_s);
   void stop(const char* how, double now_s);
   void halt(const std::string& text, double now_s);
   MachinePhase phase() const;
@@ -57,7 +56,6 @@ class MarlinDriver final : public MachineDriver {
   std::string firmware_;
   GcodeProgram program_;
   std::string program_name_;
-  std::optional<MachineJob> job_;
   int next_line_ = 0;
 
   std::deque<std::string> by_hand_;

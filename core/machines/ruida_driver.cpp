@@ -87,7 +87,7 @@ void RuidaDriver::opened(double now_s) {
 void RuidaDriver::closed(double now_s) {
   if (connection_ == MachineConnection::closed) return;
   if (job_active()) {
-    end_job("cut_off", now_s);
+    end("cut_off", now_s);
     note("The laser is gone. If the job had arrived whole it goes on by itself: stop it at its panel.", now_s);
   }
   drop_output();
@@ -122,7 +122,7 @@ void RuidaDriver::received(ByteView datagram, double now_s) {
       }
       note("The laser refuses what is sent: is it another model of controller?", now_s);
       queue_.clear();
-      end_job("failed", now_s);
+      end("failed", now_s);
     }
     unconfirmed_.reset();
     repeats_ = 0;
@@ -142,7 +142,7 @@ void RuidaDriver::received(ByteView datagram, double now_s) {
   const bool resting = (status_ & (status_moving | status_running)) == 0;
   if (job_active() && job_left_ == 0) {
     seen_running_ = seen_running_ || !resting;
-    if (resting && (seen_running_ || now_s - uploaded_s_ > rest_s) && now_s - uploaded_s_ > asking_s) end_job("done", now_s);
+    if (resting && (seen_running_ || now_s - uploaded_s_ > rest_s) && now_s - uploaded_s_ > asking_s) end("done", now_s);
   }
   if (homing_ && resting && now_s - homing_s_ > rest_s) homing_ = false, homed_ = true;
 }
@@ -165,7 +165,7 @@ void RuidaDriver::tick(double now_s) {
       unconfirmed_.reset();
       repeats_ = 0;
       homed_ = false;
-      end_job("cut_off", now_s);
+      end("cut_off", now_s);
       return;
     }
     write(as_text(*unconfirmed_));
@@ -178,13 +178,10 @@ void RuidaDriver::tick(double now_s) {
   send_next(now_s);
 }
 
-void RuidaDriver::end_job(const char* how, double now_s) {
-  if (!job_active()) return;
-  job_->ended = how;
-  job_->ended_s = now_s;
+void RuidaDriver::end(const char* how, double now_s) {
+  if (!end_job(how, now_s)) return;
   job_left_ = 0;
   paused_ = false;
-  say("ended", how, now_s);
 }
 
 MachinePhase RuidaDriver::phase() const {
@@ -211,7 +208,7 @@ std::vector<std::string> RuidaDriver::possible_commands() const {
 void RuidaDriver::command(const Json& command, double now_s) {
   const std::string what = machines_detail::command_name(command, connection_);
   if (what == "stop") {
-    end_job("stopped", now_s);
+    end("stopped", now_s);
     queue_.clear();
     unconfirmed_.reset();
     drop_output();
@@ -271,21 +268,8 @@ void RuidaDriver::load(const std::string& name, ByteView job) {
 }
 
 Json RuidaDriver::state(double now_s) const {
-  const bool placed = position_mm_[0] && position_mm_[1];
-  const Json place = placed ? Json{*position_mm_[0], *position_mm_[1], 0} : Json(nullptr);
-  Json state = {{"controller", "ruida"},
-                {"connection", to_string(connection_)},
-                {"firmware", ""},
-                {"phase", to_string(phase())},
-                {"position_known", homed_},
-                {"machine_mm", place},
-                {"work_mm", place},
-                {"speed_mm_per_s", 0},
-                {"power_percent", 0},
-                {"job", job_ ? machines_detail::job_json(*job_, now_s) : Json(nullptr)},
-                {"alarm", nullptr},
-                {"error", nullptr},
-                {"laser_on", nullptr}};
+  Json state = common_state("ruida", connection_, phase(), homed_, now_s);
+  if (position_mm_[0] && position_mm_[1]) state["machine_mm"] = state["work_mm"] = {*position_mm_[0], *position_mm_[1], 0};
   state["can"] = possible_commands();
   return state;
 }

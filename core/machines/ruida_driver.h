@@ -31,11 +31,10 @@ class RuidaDriver final : public MachineDriver {
   Json state(double now_s) const override;
 
  private:
-  bool job_active() const { return job_ && job_->ended.empty(); }
   void queue(std::string_view plain) { queue_.push_back(ruida_datagram(plain)); }
   void send_next(double now_s);
   void hear_memory(int address, std::int64_t value);
-  void end_job(const char* how, double now_s);
+  void end(const char* how, double now_s);
   std::vector<std::string> possible_commands() const;
   MachinePhase phase() const;
 
@@ -43,7 +42,6 @@ class RuidaDriver final : public MachineDriver {
   MachineConnection connection_ = MachineConnection::closed;
   std::vector<Bytes> program_;
   std::string program_name_;
-  std::optional<MachineJob> job_;
   std::deque<Bytes> queue_;
   std::optional<Bytes> unconfirmed_;
   std::size_t job_left_ = 0;

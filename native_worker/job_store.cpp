@@ -78,10 +78,6 @@ const char* to_string(JobState state) {
   return "failed";
 }
 
-bool is_hex_name(const std::string& text, std::size_t digits) {
-  return text.size() == digits && text.find_first_not_of("0123456789abcdef") == std::string::npos;
-}
-
 JobStore::JobStore(std::filesystem::path folder) : folder_(std::move(folder)) {
   std::error_code status;
   const bool made_here = !std::filesystem::exists(folder_, status);

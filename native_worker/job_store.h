@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/json.h"
+#include "hex_name.h"
 
 namespace formwright {
 
@@ -25,9 +26,6 @@ struct StoredJob {
   Json progress;         // last progress, in memory only
   bool finished() const { return state == JobState::done || state == JobState::failed || state == JobState::cancelled; }
 };
-
-/// True for exactly `digits` lower-case hexadecimal digits: the only names that ever become paths.
-bool is_hex_name(const std::string& text, std::size_t digits);
 
 class JobStore {
  public:

@@ -77,7 +77,8 @@ DocumentPages read_pwg_raster(ByteView raster) {
   const bool read = stream && cupsRasterReadHeader2(stream, &header) == 1;
   if (stream) cupsRasterClose(stream);
   if (!read || header.HWResolution[0] == 0 || header.HWResolution[1] == 0) refuse("The PWG raster cannot be read: make it anew.");
-  return {"image/pwg-raster", {checked({25.4 * header.cupsWidth / header.HWResolution[0], 25.4 * header.cupsHeight / header.HWResolution[1]})}};
+  return {"image/pwg-raster",
+          {checked({25.4 * header.cupsWidth / header.HWResolution[0], 25.4 * header.cupsHeight / header.HWResolution[1]})}};
 }
 
 struct Box {
@@ -142,8 +143,10 @@ Bytes mirrored_pdf(ByteView document) {
       // The crop box's own axis in the page's unturned frame: a page that is shown on its side is mirrored left to right as it is shown.
       const bool on_its_side = std::fmod(std::abs(number_or(page.getAttribute("/Rotate", false), 0)), 180) == 90;
       char matrix[160];
-      if (on_its_side) std::snprintf(matrix, sizeof matrix, "q 1 0 0 -1 0 %.6f cm\n", box.y0 + box.y1);
-      else std::snprintf(matrix, sizeof matrix, "q -1 0 0 1 %.6f 0 cm\n", box.x0 + box.x1);
+      if (on_its_side)
+        std::snprintf(matrix, sizeof matrix, "q 1 0 0 -1 0 %.6f cm\n", box.y0 + box.y1);
+      else
+        std::snprintf(matrix, sizeof matrix, "q -1 0 0 1 %.6f 0 cm\n", box.x0 + box.x1);
       page.addPageContents(pdf.newStream(std::string(matrix)), true);
       page.addPageContents(pdf.newStream("\nQ\n"), false);
     }

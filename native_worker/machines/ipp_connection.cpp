@@ -38,7 +38,8 @@ int IppConnection::still_wanted(http_t*, void* self) {
   return !connection.cancelled_ && connection.silent_s_ < answer_patience_s ? 1 : 0;
 }
 
-IppConnection::IppConnection(const PrinterAddress& address, const std::atomic<bool>& cancelled) : name_(address.name), uri_(address.uri), cancelled_(cancelled) {
+IppConnection::IppConnection(const PrinterAddress& address, const std::atomic<bool>& cancelled)
+    : name_(address.name), uri_(address.uri), cancelled_(cancelled) {
   check(cancelled_);
   cupsSetPasswordCB2(no_password, nullptr);
   if (address.destination) connect_to_destination(*address.destination);
@@ -57,7 +58,8 @@ IppConnection::IppConnection(const PrinterAddress& address, const std::atomic<bo
 void IppConnection::connect_to_destination(const cups_dest_t& destination) {
   // A copy: connecting writes into it, and others may be connecting as well.
   cups_dest_t* copy = nullptr;
-  if (cupsCopyDest(const_cast<cups_dest_t*>(&destination), 0, &copy) != 1) fail("There is not enough memory to reach " + name_ + ": close something.");
+  if (cupsCopyDest(const_cast<cups_dest_t*>(&destination), 0, &copy) != 1)
+    fail("There is not enough memory to reach " + name_ + ": close something.");
   const std::unique_ptr<cups_dest_t, void (*)(cups_dest_t*)> owned(copy, [](cups_dest_t* d) { cupsFreeDests(1, d); });
   const auto option = [&](const char* name) {
     const char* value = cupsGetOption(name, copy->num_options, copy->options);
@@ -66,7 +68,8 @@ void IppConnection::connect_to_destination(const cups_dest_t& destination) {
   char resource[1024] = "";
   // A destination with a queue is reached through the print service; one found on the network is spoken to itself.
   const std::string queue = option("printer-uri-supported");
-  http_ = cupsConnectDest(copy, queue.empty() ? CUPS_DEST_FLAGS_DEVICE : CUPS_DEST_FLAGS_NONE, connect_patience_ms, nullptr, resource, sizeof resource, nullptr, nullptr);
+  http_ = cupsConnectDest(copy, queue.empty() ? CUPS_DEST_FLAGS_DEVICE : CUPS_DEST_FLAGS_NONE, connect_patience_ms, nullptr, resource,
+                          sizeof resource, nullptr, nullptr);
   if (!http_) fail(name_ + " cannot be reached: see whether it is switched on and on the network, and try again.");
   resource_ = resource;
   uri_ = queue;
@@ -80,14 +83,16 @@ void IppConnection::connect_to_destination(const cups_dest_t& destination) {
 void IppConnection::connect_to_uri() {
   char scheme[32] = "", user[256] = "", host[256] = "", resource[1024] = "";
   int port = 0;
-  if (httpSeparateURI(HTTP_URI_CODING_ALL, uri_.c_str(), scheme, sizeof scheme, user, sizeof user, host, sizeof host, &port, resource, sizeof resource) < HTTP_URI_STATUS_OK)
+  if (httpSeparateURI(HTTP_URI_CODING_ALL, uri_.c_str(), scheme, sizeof scheme, user, sizeof user, host, sizeof host, &port, resource,
+                      sizeof resource) < HTTP_URI_STATUS_OK)
     fail("The address " + uri_ + " of " + name_ + " is not one: register it anew, such as ipp://192.168.1.20/ipp/print.");
   resource_ = resource;
   const http_encryption_t encryption = std::string(scheme) == "ipps" ? HTTP_ENCRYPTION_ALWAYS : HTTP_ENCRYPTION_IF_REQUESTED;
   http_ = httpConnect2(host, port, nullptr, AF_UNSPEC, encryption, 1, connect_patience_ms, nullptr);
   if (http_) return;
   const std::string reason = last_words();
-  fail(name_ + " does not answer at " + uri_ + (reason.empty() ? "" : " (" + reason + ")") + ": see whether it is switched on and its address is right.");
+  fail(name_ + " does not answer at " + uri_ + (reason.empty() ? "" : " (" + reason + ")") +
+       ": see whether it is switched on and its address is right.");
 }
 
 IppConnection::~IppConnection() {
@@ -120,7 +125,8 @@ IppConnection::Answer IppConnection::ask(IppMessage message, ByteView document) 
   check(cancelled_);
   if (!answer.message) {
     const http_status_t status = httpGetStatus(http_);
-    if (status == HTTP_STATUS_UNAUTHORIZED || sent == HTTP_STATUS_UNAUTHORIZED || status == HTTP_STATUS_CUPS_AUTHORIZATION_CANCELED || status == HTTP_STATUS_FORBIDDEN)
+    if (status == HTTP_STATUS_UNAUTHORIZED || sent == HTTP_STATUS_UNAUTHORIZED || status == HTTP_STATUS_CUPS_AUTHORIZATION_CANCELED ||
+        status == HTTP_STATUS_FORBIDDEN)
       fail(name_ + " asks for a password: let it print without one, or add it to the system's printers and choose it there.");
     if (status == HTTP_STATUS_SERVICE_UNAVAILABLE) {
       answer.status = IPP_STATUS_ERROR_BUSY;
@@ -134,8 +140,10 @@ IppConnection::Answer IppConnection::ask(IppMessage message, ByteView document) 
   answer.status = ippGetStatusCode(answer.message.get());
   if (ipp_attribute_t* text = ippFindAttribute(answer.message.get(), "status-message", IPP_TAG_ZERO))
     if (const char* words = ippGetString(text, 0, nullptr)) answer.text = words;
-  if (answer.status == IPP_STATUS_ERROR_NOT_AUTHENTICATED || answer.status == IPP_STATUS_ERROR_NOT_AUTHORIZED || answer.status == IPP_STATUS_ERROR_FORBIDDEN)
-    fail(name_ + " does not let us print" + (answer.text.empty() ? "" : " (\"" + answer.text + "\")") + ": allow it at the printer, or add it to the system's printers.");
+  if (answer.status == IPP_STATUS_ERROR_NOT_AUTHENTICATED || answer.status == IPP_STATUS_ERROR_NOT_AUTHORIZED ||
+      answer.status == IPP_STATUS_ERROR_FORBIDDEN)
+    fail(name_ + " does not let us print" + (answer.text.empty() ? "" : " (\"" + answer.text + "\")") +
+         ": allow it at the printer, or add it to the system's printers.");
   return answer;
 }
 

@@ -38,7 +38,9 @@ class IppConnection {
     ipp_status_t status = IPP_STATUS_OK;
     std::string text;  // the printer's own words, may be empty
     bool ok() const { return status < IPP_STATUS_REDIRECTION_OTHER_SITE; }
-    bool busy() const { return status == IPP_STATUS_ERROR_BUSY || status == IPP_STATUS_ERROR_TEMPORARY || status == IPP_STATUS_ERROR_SERVICE_UNAVAILABLE; }
+    bool busy() const {
+      return status == IPP_STATUS_ERROR_BUSY || status == IPP_STATUS_ERROR_TEMPORARY || status == IPP_STATUS_ERROR_SERVICE_UNAVAILABLE;
+    }
   };
   /// Sends it with the document behind it and waits up to 30 s for each step. Throws Error{could_not_solve, "machine"} when the
   /// connection breaks, the printer asks for a password or stays silent, and Error{cancelled}. What the printer refuses is an Answer.

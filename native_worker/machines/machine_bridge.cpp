@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/redirect_error.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
 
 #include "base/error.h"
@@ -28,23 +28,35 @@ constexpr double slice_limit_s = 900;
 http::status status_of(const Error& error) {
   if (error.where() == "machine" && error.code() == ErrorCode::invalid_input) return http::status::not_found;
   switch (error.code()) {
-    case ErrorCode::invalid_input: return http::status::unprocessable_entity;
-    case ErrorCode::could_not_solve: return http::status::bad_gateway;
-    case ErrorCode::cancelled: return http::status::conflict;
-    default: return http::status::internal_server_error;
+    case ErrorCode::invalid_input:
+      return http::status::unprocessable_entity;
+    case ErrorCode::could_not_solve:
+      return http::status::bad_gateway;
+    case ErrorCode::cancelled:
+      return http::status::conflict;
+    default:
+      return http::status::internal_server_error;
   }
 }
 
-Response refused(const Head& head, const Error& error) { return error_response(head, status_of(error), to_string(error.code()), error.where(), error.what()); }
+Response refused(const Head& head, const Error& error) {
+  return error_response(head, status_of(error), to_string(error.code()), error.where(), error.what());
+}
 Response accepted(const Head& head, const std::string& id) { return text_response(head, http::status::accepted, Json{{"id", id}}.dump()); }
-Response too_many(const Head& head) { return error_response(head, http::status::too_many_requests, "invalid_input", "", "Too many prints and uploads are under way: let some finish."); }
-Response nothing_here(const Head& head) { return error_response(head, http::status::not_found, "invalid_input", "", "There is nothing here."); }
+Response too_many(const Head& head) {
+  return error_response(head, http::status::too_many_requests, "invalid_input", "",
+                        "Too many prints and uploads are under way: let some finish.");
+}
+Response nothing_here(const Head& head) {
+  return error_response(head, http::status::not_found, "invalid_input", "", "There is nothing here.");
+}
 
 [[noreturn]] void refuse(const std::string& where, const std::string& sentence) { throw Error(ErrorCode::invalid_input, where, sentence); }
 
 std::string text_in(const Json& order, const char* name, const std::string& otherwise) {
   if (!order.contains(name)) return otherwise;
-  if (!order[name].is_string() || order[name].get_ref<const std::string&>().size() > 200) refuse(name, std::string(name) + " must be text of up to 200 letters.");
+  if (!order[name].is_string() || order[name].get_ref<const std::string&>().size() > 200)
+    refuse(name, std::string(name) + " must be text of up to 200 letters.");
   return order[name].get<std::string>();
 }
 
@@ -57,14 +69,16 @@ bool flag_in(const Json& order, const char* name) {
 void check_names(const Json& order, std::initializer_list<const char*> known) {
   if (!order.is_object()) refuse("", "The order must be a JSON object.");
   for (const auto& [name, value] : order.items())
-    if (std::none_of(known.begin(), known.end(), [&](const char* k) { return name == k; })) refuse(name.substr(0, 80), "There is nothing called " + name.substr(0, 80) + " in this order: leave it out.");
+    if (std::none_of(known.begin(), known.end(), [&](const char* k) { return name == k; }))
+      refuse(name.substr(0, 80), "There is nothing called " + name.substr(0, 80) + " in this order: leave it out.");
 }
 
 PrinterAddress address_of(const Machine& m) { return {m.name, m.url, m.destination}; }
 
 }  // namespace
 
-MachineBridge::MachineBridge(boost::asio::io_context& io, std::filesystem::path data, JobStore& store) : io_(io), store_(store), registry_(data), log_(data), rooms_(io, asking_, data, store, log_) {}
+MachineBridge::MachineBridge(boost::asio::io_context& io, std::filesystem::path data, JobStore& store)
+    : io_(io), store_(store), registry_(data), log_(data), rooms_(io, asking_, data, store, log_) {}
 
 void MachineBridge::stop() {
   rooms_.stop();  // first: they move
@@ -76,8 +90,11 @@ boost::asio::awaitable<void> MachineBridge::serve_socket(beast::tcp_stream strea
   std::optional<TextResponse> refusal;
   try {
     found = co_await machine(id);
-    if (found->kind != MachineKind::serial && found->kind != MachineKind::ruida) refuse("machine", found->name + " has no socket: it is a " + std::string(to_string(found->kind)) + ".");
-    if (rooms_.full(found->id)) refusal = error_response(head, http::status::too_many_requests, "invalid_input", "", "Too many pages are at this machine: close some.");
+    if (found->kind != MachineKind::serial && found->kind != MachineKind::ruida)
+      refuse("machine", found->name + " has no socket: it is a " + std::string(to_string(found->kind)) + ".");
+    if (rooms_.full(found->id))
+      refusal =
+          error_response(head, http::status::too_many_requests, "invalid_input", "", "Too many pages are at this machine: close some.");
   } catch (const Error& error) {
     refusal = error_response(head, http::status::not_found, to_string(error.code()), error.where(), error.what());
   }
@@ -131,7 +148,8 @@ boost::asio::awaitable<Response> MachineBridge::answer(Head head, std::string pa
       co_return text_response(head, http::status::ok, json_text(list));
     }
     if (path == "/log" && reads) {
-      const std::size_t limit = query.starts_with("limit=") ? static_cast<std::size_t>(std::clamp(std::atoi(query.c_str() + 6), 1, 5000)) : 200;
+      const std::size_t limit =
+          query.starts_with("limit=") ? static_cast<std::size_t>(std::clamp(std::atoi(query.c_str() + 6), 1, 5000)) : 200;
       const bool lines = query.find("lines=1") != std::string::npos;
       const std::function<std::string()> read = [this, limit, lines] { return json_text(log_.newest(limit, lines)); };
       co_return text_response(head, http::status::ok, co_await aside(read));
@@ -153,9 +171,12 @@ boost::asio::awaitable<Response> MachineBridge::answer_machine(Head head, std::s
     const std::function<Json()> describe = [this, m] {
       const std::atomic<bool> go_on{false};
       Json json = machine_json(m);
-      if (m.kind == MachineKind::printer) json.update(printer_json(describe_printer(address_of(m), go_on)));
-      else if (m.kind == MachineKind::octoprint || m.kind == MachineKind::moonraker) json.update(upload_machine_state(m, go_on));
-      else if (m.kind == MachineKind::slicer) json["profiles"] = slicer_profiles(registry_.data());
+      if (m.kind == MachineKind::printer)
+        json.update(printer_json(describe_printer(address_of(m), go_on)));
+      else if (m.kind == MachineKind::octoprint || m.kind == MachineKind::moonraker)
+        json.update(upload_machine_state(m, go_on));
+      else if (m.kind == MachineKind::slicer)
+        json["profiles"] = slicer_profiles(registry_.data());
       return json;
     };
     co_return text_response(head, http::status::ok, json_text(co_await aside(describe)));
@@ -197,13 +218,15 @@ Response MachineBridge::print(const Head& head, const Machine& m, const Json& or
   print.title = text_in(order, "title", "Formwright");
   print.mirrored = flag_in(order, "mirrored");
   if (order.contains("copies")) {
-    if (!order["copies"].is_number_integer() || order["copies"] < 1 || order["copies"] > 9999) refuse("copies", "copies must be a whole number from 1.");
+    if (!order["copies"].is_number_integer() || order["copies"] < 1 || order["copies"] > 9999)
+      refuse("copies", "copies must be a whole number from 1.");
     print.copies = order["copies"].get<int>();
   }
   const auto document = blob(order);
   const auto task = tasks_.start(m, "print", [m, print, document](MachineTask& running) mutable -> Json {
     print.document = *document;
-    const PrintResult result = print_document(address_of(m), print, running.cancelled, [&](const std::string& state, const std::string& sentence) { running.say(state, sentence); });
+    const PrintResult result = print_document(address_of(m), print, running.cancelled,
+                                              [&](const std::string& state, const std::string& sentence) { running.say(state, sentence); });
     return {{"job_id", result.job_id}, {"sheets", result.sheets}, {"notes", result.notes}};
   });
   return task ? accepted(head, task->id) : too_many(head);
@@ -214,12 +237,14 @@ Response MachineBridge::upload(const Head& head, const Machine& m, const Json& o
   UploadOrder upload;
   upload.file_name = upload_file_name(text_in(order, "file_name", "job.gcode"));
   upload.print = flag_in(order, "print");
-  if (upload.print && !flag_in(order, "confirmed")) refuse("confirmed", "The machine would start: a person must have confirmed that in front of it.");
+  if (upload.print && !flag_in(order, "confirmed"))
+    refuse("confirmed", "The machine would start: a person must have confirmed that in front of it.");
   const auto gcode = blob(order);
   const auto task = tasks_.start(m, "upload", [m, upload, gcode](MachineTask& running) mutable -> Json {
     upload.gcode = *gcode;
     running.say("sending", "Sending the file to " + m.name + ".");
-    return upload_gcode(m, upload, running.cancelled, [&](double share) { running.say("sending", "Sending the file to " + m.name + ".", share); });
+    return upload_gcode(m, upload, running.cancelled,
+                        [&](double share) { running.say("sending", "Sending the file to " + m.name + ".", share); });
   });
   return task ? accepted(head, task->id) : too_many(head);
 }
@@ -246,7 +271,9 @@ boost::asio::awaitable<Response> MachineBridge::slice(Head head, Machine m, Json
   while (!task->finished()) co_await over->async_wait(boost::asio::redirect_error(use_awaitable, ignored));
   const Json ended = task->json();
   if (ended["state"] != "done")
-    co_return text_response(head, ended["error"]["code"] == "invalid_input" ? http::status::unprocessable_entity : http::status::bad_gateway, json_text({{"error", ended["error"]}}));
+    co_return text_response(head,
+                            ended["error"]["code"] == "invalid_input" ? http::status::unprocessable_entity : http::status::bad_gateway,
+                            json_text({{"error", ended["error"]}}));
   Json result = ended["result"];
   result["id"] = task->id;
   co_return text_response(head, http::status::ok, json_text(result));

@@ -34,7 +34,9 @@ constexpr const char* help_text =
     "Serial ports, the system's printers and those on the network are found without being added.\n"
     "--data DIR names the folder in which they are kept, the same as for formwright serve.\n";
 
-MachineRegistry registry_of(const MachineFlags& flags) { return MachineRegistry(flags.given("--data") ? std::filesystem::path(flags.values.at("--data")) : default_data_folder()); }
+MachineRegistry registry_of(const MachineFlags& flags) {
+  return MachineRegistry(flags.given("--data") ? std::filesystem::path(flags.values.at("--data")) : default_data_folder());
+}
 
 int list(const std::vector<std::string>& words) {
   const MachineFlags flags = read_machine_flags(words, {"--data"}, {"--json"});
@@ -46,20 +48,25 @@ int list(const std::vector<std::string>& words) {
     return 0;
   }
   for (const Machine& m : machines)
-    std::printf("%s  %-10s %-24s %s%s\n", m.id.c_str(), to_string(m.kind), m.name.c_str(), m.detail().c_str(), m.state.empty() ? "" : (" (" + m.state + ")").c_str());
+    std::printf("%s  %-10s %-24s %s%s\n", m.id.c_str(), to_string(m.kind), m.name.c_str(), m.detail().c_str(),
+                m.state.empty() ? "" : (" (" + m.state + ")").c_str());
   if (machines.empty()) std::cout << "No machine was found. Plug one in, or add one: formwright machine add --name N --url URL\n";
   return 0;
 }
 
 int add(const std::vector<std::string>& words) {
-  const MachineFlags flags = read_machine_flags(words, {"--data", "--name", "--url", "--kind", "--api-key-file", "--controller", "--baud"}, {});
+  const MachineFlags flags =
+      read_machine_flags(words, {"--data", "--name", "--url", "--kind", "--api-key-file", "--controller", "--baud"}, {});
   std::string key;
   if (flags.given("--api-key-file")) {
     key = std::string(as_text(*read_file(flags.values.at("--api-key-file"), "--api-key-file", 4096)));
     while (!key.empty() && std::isspace(static_cast<unsigned char>(key.back()))) key.pop_back();
-    if (key.empty()) throw Error(ErrorCode::invalid_input, "--api-key-file", "The file with the key is empty: copy the key from the machine's settings into it.");
+    if (key.empty())
+      throw Error(ErrorCode::invalid_input, "--api-key-file",
+                  "The file with the key is empty: copy the key from the machine's settings into it.");
   }
-  const Machine machine = machine_from_words({flags.value_or("--name", ""), flags.value_or("--url", ""), flags.value_or("--kind", ""), flags.value_or("--controller", ""), key, flags.value_or("--baud", "")});
+  const Machine machine = machine_from_words({flags.value_or("--name", ""), flags.value_or("--url", ""), flags.value_or("--kind", ""),
+                                              flags.value_or("--controller", ""), key, flags.value_or("--baud", "")});
   registry_of(flags).add(machine);
   std::printf("%s  %-10s %s\n", machine.id.c_str(), to_string(machine.kind), machine.name.c_str());
   return 0;
@@ -70,8 +77,10 @@ int remove(const std::vector<std::string>& words) {
   std::string name;
   for (std::size_t i = 0; i < words.size(); ++i) {
     const bool flag = words[i].starts_with("--");
-    if (!flag && name.empty()) name = words[i];
-    else rest.push_back(words[i]);
+    if (!flag && name.empty())
+      name = words[i];
+    else
+      rest.push_back(words[i]);
     if (flag && words[i].find('=') == std::string::npos && i + 1 < words.size()) rest.push_back(words[++i]);
   }
   const MachineFlags flags = read_machine_flags(rest, {"--data", "--name"}, {});
@@ -81,7 +90,8 @@ int remove(const std::vector<std::string>& words) {
 }
 
 int print(const std::vector<std::string>& words, const std::atomic<bool>& interrupted) {
-  const MachineFlags flags = read_machine_flags(words, {"--data", "--machine", "--file", "--media", "--copies", "--quality"}, {"--mirrored"});
+  const MachineFlags flags =
+      read_machine_flags(words, {"--data", "--machine", "--file", "--media", "--copies", "--quality"}, {"--mirrored"});
   const MachineRegistry registry = registry_of(flags);
   const std::string name = flags.needed("--machine", "--machine Studio"), file = flags.needed("--file", "--file pages.pdf");
   PrintOrder order;
@@ -97,16 +107,21 @@ int print(const std::vector<std::string>& words, const std::atomic<bool>& interr
   order.document = *document;
   const auto machines = find_machines(registry);
   const Machine& machine = choose_machine(machines, name);
-  if (machine.kind != MachineKind::printer) throw Error(ErrorCode::invalid_input, "machine", machine.name + " is a " + to_string(machine.kind) + ", no printer: choose one from formwright machine list.");
+  if (machine.kind != MachineKind::printer)
+    throw Error(ErrorCode::invalid_input, "machine",
+                machine.name + " is a " + to_string(machine.kind) + ", no printer: choose one from formwright machine list.");
   MachineLog log(registry.data());
-  const auto note = [&](const std::string& state, const std::string& text) { log.append(machine, {{"event", "task"}, {"kind", "print"}, {"state", state}, {"text", text}}, true); };
+  const auto note = [&](const std::string& state, const std::string& text) {
+    log.append(machine, {{"event", "task"}, {"kind", "print"}, {"state", state}, {"text", text}}, true);
+  };
   note("queued", order.title);
   try {
     std::string last;
-    const PrintResult result = print_document({machine.name, machine.url, machine.destination}, order, interrupted, [&](const std::string&, const std::string& sentence) {
-      if (sentence != last) std::fprintf(stderr, "%s\n", sentence.c_str());
-      last = sentence;
-    });
+    const PrintResult result = print_document({machine.name, machine.url, machine.destination}, order, interrupted,
+                                              [&](const std::string&, const std::string& sentence) {
+                                                if (sentence != last) std::fprintf(stderr, "%s\n", sentence.c_str());
+                                                last = sentence;
+                                              });
     for (const std::string& text : result.notes) std::fprintf(stderr, "%s\n", text.c_str());
     note("done", "Done.");
     std::printf("Printed on %s.\n", machine.name.c_str());
@@ -121,7 +136,8 @@ int print(const std::vector<std::string>& words, const std::atomic<bool>& interr
 
 const std::string& MachineFlags::needed(const std::string& flag, const std::string& example) const {
   const auto found = values.find(flag);
-  if (found == values.end() || found->second.empty()) throw Error(ErrorCode::invalid_input, flag, flag + " is missing: say " + example + ".");
+  if (found == values.end() || found->second.empty())
+    throw Error(ErrorCode::invalid_input, flag, flag + " is missing: say " + example + ".");
   return found->second;
 }
 
@@ -130,7 +146,8 @@ std::string MachineFlags::value_or(const std::string& flag, const std::string& o
   return found == values.end() ? otherwise : found->second;
 }
 
-MachineFlags read_machine_flags(const std::vector<std::string>& words, const std::vector<std::string>& flags, const std::vector<std::string>& switches) {
+MachineFlags read_machine_flags(const std::vector<std::string>& words, const std::vector<std::string>& flags,
+                                const std::vector<std::string>& switches) {
   MachineFlags result;
   for (std::size_t i = 0; i < words.size(); ++i) {
     std::string flag = words[i], value;
@@ -142,10 +159,14 @@ MachineFlags read_machine_flags(const std::vector<std::string>& words, const std
     }
     const auto among = [&](const std::vector<std::string>& list) { return std::find(list.begin(), list.end(), flag) != list.end(); };
     if (result.values.contains(flag)) throw Error(ErrorCode::invalid_input, flag, flag + " is given twice.");
-    if (among(switches) && !joined) value = "on";
-    else if (!among(flags)) throw Error(ErrorCode::invalid_input, flag, "There is no flag " + flag + " here: see formwright machine --help.");
-    else if (!joined && i + 1 >= words.size()) throw Error(ErrorCode::invalid_input, flag, flag + " needs a value.");
-    else if (!joined) value = words[++i];
+    if (among(switches) && !joined)
+      value = "on";
+    else if (!among(flags))
+      throw Error(ErrorCode::invalid_input, flag, "There is no flag " + flag + " here: see formwright machine --help.");
+    else if (!joined && i + 1 >= words.size())
+      throw Error(ErrorCode::invalid_input, flag, flag + " needs a value.");
+    else if (!joined)
+      value = words[++i];
     result.values[flag] = value;
   }
   return result;

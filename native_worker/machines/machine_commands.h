@@ -23,6 +23,7 @@ struct MachineFlags {
   std::string value_or(const std::string& flag, const std::string& otherwise) const;
   bool given(const std::string& flag) const { return values.contains(flag); }
 };
-MachineFlags read_machine_flags(const std::vector<std::string>& words, const std::vector<std::string>& flags, const std::vector<std::string>& switches);
+MachineFlags read_machine_flags(const std::vector<std::string>& words, const std::vector<std::string>& flags,
+                                const std::vector<std::string>& switches);
 
 }  // namespace formwright

@@ -87,10 +87,12 @@ void MachineLog::append(const Machine& machine, Json entry, bool lasting) {
   const std::scoped_lock lock(mutex_);
   const int descriptor = descriptor_for(day_now() + "-" + machine.id + ".jsonl");
   // One write a line: whatever happens to this program, a line is there whole or not at all.
-  const bool written = descriptor >= 0 && ::write(descriptor, line.data(), line.size()) == static_cast<ssize_t>(line.size()) && (!lasting || ::fdatasync(descriptor) == 0);
+  const bool written = descriptor >= 0 && ::write(descriptor, line.data(), line.size()) == static_cast<ssize_t>(line.size()) &&
+                       (!lasting || ::fdatasync(descriptor) == 0);
   if (!written && !complained_) {
     complained_ = true;
-    std::cerr << "formwright: the machine log in " << folder_.string() << " cannot be written: make room, or mend its permissions." << std::endl;
+    std::cerr << "formwright: the machine log in " << folder_.string() << " cannot be written: make room, or mend its permissions."
+              << std::endl;
   }
 }
 
@@ -99,7 +101,8 @@ Json MachineLog::newest(std::size_t limit, bool lines) const {
   auto files = files_oldest_first(folder_);
   // Several machines may have a file for the same day, whose entries interleave: whole days are read.
   for (std::size_t i = files.size(); i-- > 0;) {
-    const bool new_day = i + 1 >= files.size() || files[i].filename().string().substr(0, 10) != files[i + 1].filename().string().substr(0, 10);
+    const bool new_day =
+        i + 1 >= files.size() || files[i].filename().string().substr(0, 10) != files[i + 1].filename().string().substr(0, 10);
     if (new_day && entries.size() >= limit) break;
     for (const std::string& line : last_lines(files[i])) {
       Json entry = Json::parse(line, nullptr, false);
@@ -109,7 +112,8 @@ Json MachineLog::newest(std::size_t limit, bool lines) const {
       entries.push_back(std::move(entry));
     }
   }
-  std::stable_sort(entries.begin(), entries.end(), [](const Json& a, const Json& b) { return a["unix_s"].get<double>() > b["unix_s"].get<double>(); });
+  std::stable_sort(entries.begin(), entries.end(),
+                   [](const Json& a, const Json& b) { return a["unix_s"].get<double>() > b["unix_s"].get<double>(); });
   if (entries.size() > limit) entries.resize(limit);
   return entries;
 }

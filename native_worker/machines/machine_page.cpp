@@ -14,8 +14,10 @@ constexpr double requests_per_second = 100, request_burst = 200;
 void MachinePage::send(const Json& message) { push(std::make_shared<const std::string>(json_text(message))); }
 
 void MachinePage::send_state(std::shared_ptr<const std::string> text) {
-  if (outgoing_.size() < 4) push(std::move(text));
-  else latest_state_ = std::move(text);
+  if (outgoing_.size() < 4)
+    push(std::move(text));
+  else
+    latest_state_ = std::move(text);
 }
 
 void MachinePage::push(std::shared_ptr<const std::string> text) {
@@ -26,12 +28,13 @@ void MachinePage::push(std::shared_ptr<const std::string> text) {
 
 void MachinePage::write_next() {
   stream_.text(true);
-  stream_.async_write(boost::asio::buffer(*outgoing_.front()), [this, self = shared_from_this()](const boost::system::error_code& error, std::size_t) {
-    outgoing_.pop_front();
-    if (error) return outgoing_.clear();
-    if (outgoing_.empty() && latest_state_) outgoing_.push_back(std::exchange(latest_state_, nullptr));
-    if (!outgoing_.empty()) write_next();
-  });
+  stream_.async_write(boost::asio::buffer(*outgoing_.front()),
+                      [this, self = shared_from_this()](const boost::system::error_code& error, std::size_t) {
+                        outgoing_.pop_front();
+                        if (error) return outgoing_.clear();
+                        if (outgoing_.empty() && latest_state_) outgoing_.push_back(std::exchange(latest_state_, nullptr));
+                        if (!outgoing_.empty()) write_next();
+                      });
 }
 
 bool MachinePage::within_rate() {

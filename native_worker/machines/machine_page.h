@@ -17,9 +17,9 @@ namespace formwright {
 /// One request of a page: exactly one of open, command, load and close (docs/machine_bridge.md).
 struct MachineRequest {
   enum class Kind { open, command, load, close } kind = Kind::command;
-  Json content;              // of open and command: an object
-  std::string name, sha256;  // of load
-  std::optional<int> number; // "n", if the page counts its requests itself
+  Json content;               // of open and command: an object
+  std::string name, sha256;   // of load
+  std::optional<int> number;  // "n", if the page counts its requests itself
 };
 
 /// Throws Error{invalid_input} with a sentence for what is no such request. Never anything else, whatever the bytes.

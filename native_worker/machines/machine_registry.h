@@ -17,7 +17,7 @@ enum class MachineKind { serial, ruida, printer, octoprint, moonraker, slicer };
 const char* to_string(MachineKind kind);
 
 struct Machine {
-  std::string id;    // 16 hexadecimal digits, made from kind and address: the same after a restart
+  std::string id;  // 16 hexadecimal digits, made from kind and address: the same after a restart
   std::string name;
   MachineKind kind = MachineKind::serial;
   std::string url;         // serial:/dev/..., tcp://host:port, ruida://host, ipp(s)://..., http(s)://...; empty for a CUPS destination

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a page may say at a machine's socket. Apart from the socket, so that the fuzzer reaches it.
 #include "base/error.h"
-#include "job_store.h"
+#include "hex_name.h"
 #include "machines/machine_page.h"
 
 namespace formwright {
@@ -21,11 +21,16 @@ MachineRequest read_machine_request(const std::string& text) {
       continue;
     }
     ++count;
-    if (name == "open") request.kind = MachineRequest::Kind::open;
-    else if (name == "command") request.kind = MachineRequest::Kind::command;
-    else if (name == "load") request.kind = MachineRequest::Kind::load;
-    else if (name == "close") request.kind = MachineRequest::Kind::close;
-    else refuse("", "A request is one of open, command, load and close.");
+    if (name == "open")
+      request.kind = MachineRequest::Kind::open;
+    else if (name == "command")
+      request.kind = MachineRequest::Kind::command;
+    else if (name == "load")
+      request.kind = MachineRequest::Kind::load;
+    else if (name == "close")
+      request.kind = MachineRequest::Kind::close;
+    else
+      refuse("", "A request is one of open, command, load and close.");
     if (request.kind == MachineRequest::Kind::close) {
       if (value != true) refuse("close", "close must be true.");
       continue;

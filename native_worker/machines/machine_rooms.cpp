@@ -57,7 +57,8 @@ boost::asio::awaitable<void> MachineRooms::serve(std::shared_ptr<MachinePage> pa
   beast::get_lowest_layer(stream).expires_never();
   // A page whose computer sleeps or whose network is gone is noticed within 20 s, one that is closed at once.
   stream.set_option(beast::websocket::stream_base::timeout{10s, 20s, true});
-  stream.set_option(beast::websocket::stream_base::decorator([](beast::websocket::response_type& r) { r.set(http::field::sec_websocket_protocol, "formwright.machine.v1"); }));
+  stream.set_option(beast::websocket::stream_base::decorator(
+      [](beast::websocket::response_type& r) { r.set(http::field::sec_websocket_protocol, "formwright.machine.v1"); }));
   stream.read_message_max(MachinePage::most_message_bytes);
   boost::system::error_code error;
   co_await stream.async_accept(head, boost::asio::redirect_error(use_awaitable, error));
@@ -105,18 +106,24 @@ boost::asio::awaitable<void> MachineRooms::serve(std::shared_ptr<MachinePage> pa
 boost::asio::awaitable<void> MachineRooms::handle(std::shared_ptr<Room> room, std::shared_ptr<MachinePage> page, MachineRequest request) {
   const bool steers = room->steering == page;
   if (request.kind == MachineRequest::Kind::open) {
-    if (room->steering && !steers) throw Busy{"Another page steers " + room->machine.name + ": you see what it does. Close that page to steer here."};
+    if (room->steering && !steers)
+      throw Busy{"Another page steers " + room->machine.name + ": you see what it does. Close that page to steer here."};
     co_await open(room, page, std::move(request.content));
     co_return;
   }
   if (!room->session) throw Error(ErrorCode::invalid_input, "do", "The machine is not connected: connect it first.");
-  if (!steers && !anyone_may(request)) throw Busy{room->steering ? "Another page steers " + room->machine.name + ": only pause and stop work here." : "Take the machine over first: connect it here."};
+  if (!steers && !anyone_may(request))
+    throw Busy{room->steering ? "Another page steers " + room->machine.name + ": only pause and stop work here."
+                              : "Take the machine over first: connect it here."};
   switch (request.kind) {
-    case MachineRequest::Kind::command: room->session->command(request.content); break;
+    case MachineRequest::Kind::command:
+      room->session->command(request.content);
+      break;
     case MachineRequest::Kind::load: {
       std::error_code status;
       const auto path = store_.blob_path(request.sha256);
-      if (!std::filesystem::exists(path, status)) throw Error(ErrorCode::invalid_input, "sha256", "The job has not arrived: send it again.");
+      if (!std::filesystem::exists(path, status))
+        throw Error(ErrorCode::invalid_input, "sha256", "The job has not arrived: send it again.");
       const auto job = read_file(path, "sha256", most_job_bytes);
       room->session->load(request.name, *job);
       break;
@@ -148,7 +155,10 @@ boost::asio::awaitable<void> MachineRooms::open(std::shared_ptr<Room> room, std:
   try {
     auto lock = std::make_unique<MachineLock>(data_, room->machine);
     const auto port = co_await boost::asio::co_spawn(
-        asking_, [](boost::asio::io_context& io, Machine machine, int speed) -> boost::asio::awaitable<std::shared_ptr<MachinePort>> { co_return open_machine_port(io, machine, speed); }(io_, room->machine, baud),
+        asking_,
+        [](boost::asio::io_context& io, Machine machine, int speed) -> boost::asio::awaitable<std::shared_ptr<MachinePort>> {
+          co_return open_machine_port(io, machine, speed);
+        }(io_, room->machine, baud),
         use_awaitable);
     session = std::make_shared<MachineSession>(io_, room->machine, options, port, std::move(lock), log_);
   } catch (...) {
@@ -185,7 +195,8 @@ void MachineRooms::begin(const std::shared_ptr<Room>& room, std::shared_ptr<Mach
                     if (!here) return;
                     here->session = nullptr;
                     here->steering = nullptr;
-                    for (const auto& page : here->pages) page->send({{"error", {{"code", "could_not_solve"}, {"where", "machine"}, {"message", sentence}}}, {"closed", true}});
+                    for (const auto& page : here->pages)
+                      page->send({{"error", {{"code", "could_not_solve"}, {"where", "machine"}, {"message", sentence}}}, {"closed", true}});
                   }});
 }
 
@@ -209,7 +220,8 @@ void MachineRooms::leave(const std::shared_ptr<Room>& room, const std::shared_pt
       room->session->hold("The page that steered the machine is gone.");
       if (job) {
         // The port stays open: closing it may reset the board, and with it what the held job needs to go on.
-        room->held_because = "The page that steered " + room->machine.name + " vanished in the middle of the job " + before["job"]["name"].get<std::string>() + ": the machine was held, laser off.";
+        room->held_because = "The page that steered " + room->machine.name + " vanished in the middle of the job " +
+                             before["job"]["name"].get<std::string>() + ": the machine was held, laser off.";
         tell_events(*room, Json::array({{{"event", "note"}, {"text", room->held_because}, {"now_s", 0}}}));
       } else {
         room->session->end(moved ? "The page that steered is gone; what moved was stopped." : "The page that steered is gone.");
@@ -239,7 +251,9 @@ void MachineRooms::stop() {
     }
   }
   const auto end = std::chrono::steady_clock::now() + 2s;
-  const auto stopping = [&] { return std::any_of(sessions.begin(), sessions.end(), [](const auto& s) { return !s->over() && s->state()["phase"] == "stopping"; }); };
+  const auto stopping = [&] {
+    return std::any_of(sessions.begin(), sessions.end(), [](const auto& s) { return !s->over() && s->state()["phase"] == "stopping"; });
+  };
   while (stopping() && std::chrono::steady_clock::now() < end) {
     io_.restart();
     io_.run_for(50ms);

@@ -36,7 +36,7 @@ class MachineRooms {
     std::shared_ptr<MachineSession> session;
     std::shared_ptr<MachinePage> steering;
     std::set<std::shared_ptr<MachinePage>> pages;
-    std::deque<Json> recent;  // events, for a page that comes later
+    std::deque<Json> recent;   // events, for a page that comes later
     std::string held_because;  // for the next page that steers
     bool opening = false;
   };

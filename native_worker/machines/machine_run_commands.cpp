@@ -35,9 +35,14 @@ class Terminal {
     auto port = open_machine_port(io_, machine, all.value("baud", machine.baud));
     session_ = std::make_shared<MachineSession>(io_, machine, all, std::move(port), std::move(lock), log_);
     session_->begin({[](const Json&) {},
-                     [](const Json& events) {
-                       for (const Json& event : events)
-                         if (event["event"] == "note") std::fprintf(stderr, "\r\033[K%s\n", event["text"].get<std::string>().c_str());
+                     [this](const Json& events) {
+                       for (const Json& event : events) {
+                         const std::string text = event.value("text", "");
+                         if (event["event"] == "sent") ++unanswered_;
+                         if (event["event"] == "received" && (text.starts_with("ok") || text.starts_with("error")))
+                           unanswered_ = std::max(0, unanswered_ - 1);
+                         if (event["event"] == "note") std::fprintf(stderr, "\r\033[K%s\n", text.c_str());
+                       }
                      },
                      [this](const std::string& sentence) { gone_ = sentence; }});
   }
@@ -49,6 +54,8 @@ class Terminal {
 
   Json state() const { return session_->state(); }
   MachineSession& session() { return *session_; }
+  /// Has the machine answered every line? (Serial controllers answer each with ok or error.)
+  bool all_answered() const { return machine_.kind != MachineKind::serial || unanswered_ == 0; }
 
   /// Runs until `done(state)` is true. Ctrl-C and a stop from elsewhere stop the machine first and then throw Error{cancelled}.
   template <class Done>
@@ -72,7 +79,9 @@ class Terminal {
   /// Asks and throws Error{cancelled} unless the answer is yes. The port is served meanwhile.
   void confirm(const std::string& question) {
     if (yes_) return;
-    if (::isatty(STDIN_FILENO) != 1) throw Error(ErrorCode::invalid_input, "--yes", "Nobody can be asked here: run it in a terminal, or add --yes when somebody stands at the machine.");
+    if (::isatty(STDIN_FILENO) != 1)
+      throw Error(ErrorCode::invalid_input, "--yes",
+                  "Nobody can be asked here: run it in a terminal, or add --yes when somebody stands at the machine.");
     std::fprintf(stderr, "%s Type yes: ", question.c_str());
     std::string answer;
     for (;;) {
@@ -93,14 +102,21 @@ class Terminal {
     if (can("home")) {
       confirm("Where the head stands is unknown. It moves to its switches now.");
       session_->command({{"do", "home"}, {"confirmed", true}});
-      run_until([](const Json& s) { return (s["phase"] == "idle" && s["position_known"] == true) || s["phase"] == "alarm"; }, 240, "Homing does not end: switch the machine off and see what blocks it.");
-      if (const Json s = state(); s["phase"] == "alarm") throw Error(ErrorCode::could_not_solve, "machine", sentence_of(s["alarm"], "Homing failed."));
+      run_until([](const Json& s) { return (s["phase"] == "idle" && s["position_known"] == true) || s["phase"] == "alarm"; }, 240,
+                "Homing does not end: switch the machine off and see what blocks it.");
+      if (const Json s = state(); s["phase"] == "alarm")
+        throw Error(ErrorCode::could_not_solve, "machine", sentence_of(s["alarm"], "Homing failed."));
     } else if (can("set_origin")) {
       confirm("This machine has no switches to home to. Does the head stand at the lower left corner of the material?");
       session_->command({{"do", "set_origin"}, {"axes", "xy"}});
       run_until([](const Json& s) { return s["position_known"] == true; }, 5, "The machine does not take the origin: see its console.");
+      // It was written to the board's memory, and some boards hear nothing while they write.
+      const auto written = std::chrono::steady_clock::now() + 150ms;
+      run_until([&](const Json&) { return std::chrono::steady_clock::now() > written; }, 5, "");
     } else {
-      throw Error(ErrorCode::could_not_solve, "machine", machine_.name + " is not ready (" + now["phase"].get<std::string>() + "): " + sentence_of(now["alarm"], "see what it shows."));
+      throw Error(
+          ErrorCode::could_not_solve, "machine",
+          machine_.name + " is not ready (" + now["phase"].get<std::string>() + "): " + sentence_of(now["alarm"], "see what it shows."));
     }
   }
 
@@ -113,8 +129,10 @@ class Terminal {
 
   [[noreturn]] void stop_and_throw() {
     const bool from_elsewhere = stop_asked;
-    if (from_elsewhere) session_->look_for_stop();
-    else if (!session_->over()) session_->command({{"do", "stop"}});
+    if (from_elsewhere)
+      session_->look_for_stop();
+    else if (!session_->over())
+      session_->command({{"do", "stop"}});
     const auto end = std::chrono::steady_clock::now() + 3s;
     while (!session_->over() && session_->state()["phase"] == "stopping" && std::chrono::steady_clock::now() < end) {
       io_.restart();
@@ -132,16 +150,20 @@ class Terminal {
   const bool yes_;
   std::shared_ptr<MachineSession> session_;
   std::string gone_;
+  int unanswered_ = 0;
 };
 
-MachineRegistry registry_of(const MachineFlags& flags) { return MachineRegistry(flags.given("--data") ? std::filesystem::path(flags.values.at("--data")) : default_data_folder()); }
+MachineRegistry registry_of(const MachineFlags& flags) {
+  return MachineRegistry(flags.given("--data") ? std::filesystem::path(flags.values.at("--data")) : default_data_folder());
+}
 
 Machine driven_machine(const MachineRegistry& registry, const MachineFlags& flags) {
   const std::string name = flags.needed("--machine", "--machine Laser");
   const auto machines = find_machines(registry);
   const Machine machine = choose_machine(machines, name);
   if (machine.kind != MachineKind::serial && machine.kind != MachineKind::ruida)
-    throw Error(ErrorCode::invalid_input, "machine", machine.name + " is a " + to_string(machine.kind) + ": only serial machines and Ruida are driven from here.");
+    throw Error(ErrorCode::invalid_input, "machine",
+                machine.name + " is a " + to_string(machine.kind) + ": only serial machines and Ruida are driven from here.");
   return machine;
 }
 
@@ -156,7 +178,8 @@ Json options_of(const MachineFlags& flags) {
     if (!flags.given(flag)) continue;
     char* end = nullptr;
     const double value = std::strtod(flags.values.at(flag).c_str(), &end);
-    if (*end != '\0' || !std::isfinite(value)) throw Error(ErrorCode::invalid_input, flag, std::string(flag) + " must be a number of millimetres.");
+    if (*end != '\0' || !std::isfinite(value))
+      throw Error(ErrorCode::invalid_input, flag, std::string(flag) + " must be a number of millimetres.");
     options[name] = value;
   }
   return options;
@@ -168,7 +191,8 @@ void show_progress(const Json& state) {
   if (::isatty(STDERR_FILENO) != 1 || !state["job"].is_object()) return;
   const Json& job = state["job"];
   const int count = std::max(1, job["line_count"].get<int>()), done = job["acknowledged"].get<int>();
-  std::fprintf(stderr, "\r\033[K%3d %%  line %d of %d  %.0f s  %s", 100 * done / count, done, count, job["seconds"].get<double>(), state["phase"].get<std::string>().c_str());
+  std::fprintf(stderr, "\r\033[K%3d %%  line %d of %d  %.0f s  %s", 100 * done / count, done, count, job["seconds"].get<double>(),
+               state["phase"].get<std::string>().c_str());
 }
 
 }  // namespace
@@ -183,7 +207,8 @@ int machine_send(const std::vector<std::string>& words, const std::atomic<bool>&
   terminal.connect();
   terminal.session().load(std::filesystem::path(file).filename().string(), *job);
   terminal.know_position();
-  terminal.confirm("The job " + file + " starts on " + machine.name + ": the machine moves and its laser or spindle turns on. Is somebody beside it, eyes protected?");
+  terminal.confirm("The job " + file + " starts on " + machine.name +
+                   ": the machine moves and its laser or spindle turns on. Is somebody beside it, eyes protected?");
   terminal.session().command({{"do", "start"}, {"confirmed", true}});
   std::fprintf(stderr, "Running. Ctrl-C stops the machine.\n");
   terminal.run_until(
@@ -196,8 +221,10 @@ int machine_send(const std::vector<std::string>& words, const std::atomic<bool>&
   const Json ended = terminal.state();
   const std::string how = ended["job"]["ended"].get<std::string>();
   if (how != "done") {
-    const std::string why = ended["alarm"].is_object() ? Terminal::sentence_of(ended["alarm"], "") : Terminal::sentence_of(ended["error"], "");
-    throw Error(ErrorCode::could_not_solve, "machine", "The job ended before its end (" + how + ")" + (why.empty() ? "" : ": " + why) + " Home the machine before the next job.");
+    const std::string why =
+        ended["alarm"].is_object() ? Terminal::sentence_of(ended["alarm"], "") : Terminal::sentence_of(ended["error"], "");
+    throw Error(ErrorCode::could_not_solve, "machine",
+                "The job ended before its end (" + how + ")" + (why.empty() ? "" : ": " + why) + " Home the machine before the next job.");
   }
   std::printf("Done: %d lines in %.0f s.\n", ended["job"]["line_count"].get<int>(), ended["job"]["seconds"].get<double>());
   return 0;
@@ -214,18 +241,24 @@ int machine_frame(const std::vector<std::string>& words, const std::atomic<bool>
   terminal.connect();
   terminal.know_position();
   char place[128];
-  std::snprintf(place, sizeof place, "x %.1f to %.1f mm, y %.1f to %.1f mm", bounds.low_mm[0], bounds.high_mm[0], bounds.low_mm[1], bounds.high_mm[1]);
+  std::snprintf(place, sizeof place, "x %.1f to %.1f mm, y %.1f to %.1f mm", bounds.low_mm[0], bounds.high_mm[0], bounds.low_mm[1],
+                bounds.high_mm[1]);
   terminal.confirm("The head moves once around the job (" + std::string(place) + "), laser off.");
-  terminal.session().command({{"do", "frame"}, {"bounds_mm", {bounds.low_mm[0], bounds.low_mm[1], bounds.high_mm[0], bounds.high_mm[1]}}, {"confirmed", true}});
+  terminal.session().command(
+      {{"do", "frame"}, {"bounds_mm", {bounds.low_mm[0], bounds.low_mm[1], bounds.high_mm[0], bounds.high_mm[1]}}, {"confirmed", true}});
   auto rests_since = std::chrono::steady_clock::now();
   terminal.run_until(
       [&](const Json& s) {
-        if (s["phase"] == "alarm") throw Error(ErrorCode::could_not_solve, "machine", Terminal::sentence_of(s["alarm"], "The machine is in alarm: see what it shows."));
-        if (s["error"].is_object()) throw Error(ErrorCode::could_not_solve, "machine", "The machine refused to go around the job: " + Terminal::sentence_of(s["error"], "see what it shows."));
-        if (s["phase"] != "idle") rests_since = std::chrono::steady_clock::now();
+        if (s["phase"] == "alarm")
+          throw Error(ErrorCode::could_not_solve, "machine",
+                      Terminal::sentence_of(s["alarm"], "The machine is in alarm: see what it shows."));
+        if (s["error"].is_object())
+          throw Error(ErrorCode::could_not_solve, "machine",
+                      "The machine refused to go around the job: " + Terminal::sentence_of(s["error"], "see what it shows."));
+        if (s["phase"] != "idle" || !terminal.all_answered()) rests_since = std::chrono::steady_clock::now();
         return std::chrono::steady_clock::now() - rests_since > 1500ms;  // reports come every half second
       },
-      600, "The frame does not end: see what the machine does.");
+      600, "The frame does not end, or a line of it was lost: see what the machine does, and try again.");
   std::printf("Framed: %s.\n", place);
   return 0;
 }
@@ -240,7 +273,8 @@ int machine_stop(const std::vector<std::string>& words, const std::atomic<bool>&
   }
   Terminal terminal(registry, machine, options_of(flags), interrupted, true);
   terminal.session().command({{"do", "stop"}});
-  terminal.run_until([](const Json& s) { return s["phase"] != "stopping"; }, 5, machine.name + " does not answer: if it moves, switch it off.");
+  terminal.run_until([](const Json& s) { return s["phase"] != "stopping"; }, 5,
+                     machine.name + " does not answer: if it moves, switch it off.");
   std::printf("%s was told to stop.\n", machine.name.c_str());
   return 0;
 }

@@ -65,7 +65,8 @@ std::vector<Machine> find_printers(int patience_ms) {
     if (flags & CUPS_DEST_FLAGS_REMOVED || destination->instance) return 1;
     Machine machine = found(MachineKind::printer, destination->name, std::string("cups:") + destination->name);
     if (std::any_of(all.begin(), all.end(), [&](const Machine& m) { return m.id == machine.id; })) return 1;
-    if (const char* info = cupsGetOption("printer-info", destination->num_options, destination->options); info && *info) machine.name = info;
+    if (const char* info = cupsGetOption("printer-info", destination->num_options, destination->options); info && *info)
+      machine.name = info;
     if (const char* state = cupsGetOption("printer-state", destination->num_options, destination->options); state && *state)
       machine.state = *state == '5' ? "stopped" : *state == '4' ? "printing" : "idle";
     cups_dest_t* copy = nullptr;
@@ -82,7 +83,8 @@ std::vector<Machine> find_machines(const MachineRegistry& registry) {
   std::vector<Machine> machines = registry.read();
   const auto append = [&](std::vector<Machine> more) {
     for (Machine& m : more)
-      if (std::none_of(machines.begin(), machines.end(), [&](const Machine& known) { return known.id == m.id; })) machines.push_back(std::move(m));
+      if (std::none_of(machines.begin(), machines.end(), [&](const Machine& known) { return known.id == m.id; }))
+        machines.push_back(std::move(m));
   };
   append(find_serial_ports());
   append(find_printers());
@@ -102,7 +104,8 @@ const Machine& choose_machine(const std::vector<Machine>& machines, const std::s
     list += (list.empty() ? "" : ", ") + m.name;
   }
   throw Error(ErrorCode::invalid_input, "machine",
-              "There is no machine called " + name_or_id + ": " + (list.empty() ? "none was found; add it with formwright machine add." : "there are " + list + "."));
+              "There is no machine called " + name_or_id + ": " +
+                  (list.empty() ? "none was found; add it with formwright machine add." : "there are " + list + "."));
 }
 
 }  // namespace formwright

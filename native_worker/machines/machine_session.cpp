@@ -24,13 +24,17 @@ Json driver_options(const Machine& machine, Json options) {
   }
   if (!options.contains("baud") && machine.kind == MachineKind::serial) options["baud"] = machine.baud;
   const bool is_ruida = options["controller"] == "ruida";
-  if (options["controller"] == "k40") throw Error(ErrorCode::invalid_input, "controller", "A K40 board is reached from the page over USB: connect it there.");
+  if (options["controller"] == "k40")
+    throw Error(ErrorCode::invalid_input, "controller", "A K40 board is reached from the page over USB: connect it there.");
   if (is_ruida != (machine.kind == MachineKind::ruida))
-    throw Error(ErrorCode::invalid_input, "controller", is_ruida ? "A Ruida is reached over the network: register it with formwright machine add --url ruida://ADDRESS." : machine.name + " is a Ruida: choose that controller.");
+    throw Error(ErrorCode::invalid_input, "controller",
+                is_ruida ? "A Ruida is reached over the network: register it with formwright machine add --url ruida://ADDRESS."
+                         : machine.name + " is a Ruida: choose that controller.");
   return options;
 }
 
-MachineSession::MachineSession(boost::asio::io_context& io, const Machine& machine, const Json& options, std::shared_ptr<MachinePort> port, std::unique_ptr<MachineLock> lock, MachineLog& log)
+MachineSession::MachineSession(boost::asio::io_context& io, const Machine& machine, const Json& options, std::shared_ptr<MachinePort> port,
+                               std::unique_ptr<MachineLock> lock, MachineLog& log)
     : timer_(io), machine_(machine), driver_(make_machine_driver(options)), port_(std::move(port)), lock_(std::move(lock)), log_(log) {}
 
 MachineSession::~MachineSession() {
@@ -64,7 +68,8 @@ void MachineSession::begin(Listener listener) {
 }
 
 void MachineSession::tick() {
-  timer_.expires_after(std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(MachineDriver::tick_s)));
+  timer_.expires_after(
+      std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(MachineDriver::tick_s)));
   timer_.async_wait([this, self = weak_from_this()](const boost::system::error_code& error) {
     const auto alive = self.lock();
     if (error || !alive || over_) return;
@@ -99,7 +104,8 @@ void MachineSession::publish() {
 
 void MachineSession::command(const Json& command) {
   if (over_) throw Error(ErrorCode::invalid_input, "do", "The machine is not connected: connect it first.");
-  const std::string what = command.is_object() && command.contains("do") && command["do"].is_string() ? command["do"].get<std::string>() : "";
+  const std::string what =
+      command.is_object() && command.contains("do") && command["do"].is_string() ? command["do"].get<std::string>() : "";
   if (what == "stop") {
     driver_->command(command, now_s());  // before anything else, the disk included
     pump(true);

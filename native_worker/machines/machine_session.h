@@ -42,12 +42,13 @@ Json driver_options(const Machine& machine, Json options);
 class MachineSession : public std::enable_shared_from_this<MachineSession> {
  public:
   struct Listener {
-    std::function<void(const Json& state)> state;    // at most 10 a second, and at every change of phase
-    std::function<void(const Json& events)> events;  // a list, not empty
+    std::function<void(const Json& state)> state;           // at most 10 a second, and at every change of phase
+    std::function<void(const Json& events)> events;         // a list, not empty
     std::function<void(const std::string& sentence)> gone;  // the port closed by itself; the session is over
   };
   /// Throws Error{invalid_input} for options the driver does not take.
-  MachineSession(boost::asio::io_context& io, const Machine& machine, const Json& options, std::shared_ptr<MachinePort> port, std::unique_ptr<MachineLock> lock, MachineLog& log);
+  MachineSession(boost::asio::io_context& io, const Machine& machine, const Json& options, std::shared_ptr<MachinePort> port,
+                 std::unique_ptr<MachineLock> lock, MachineLog& log);
   ~MachineSession();
 
   void begin(Listener listener);

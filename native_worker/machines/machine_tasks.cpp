@@ -15,7 +15,9 @@ constexpr std::size_t most_under_way = 16, most_kept = 100;
 }
 
 MachineTask::MachineTask(const Machine& m, std::string k)
-    : id(random_hex(16)), kind(std::move(k)), machine(m),
+    : id(random_hex(16)),
+      kind(std::move(k)),
+      machine(m),
       submitted_unix_s_(std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count()) {}
 
 void MachineTask::say(const std::string& state, const std::string& sentence, double fraction) {
@@ -41,7 +43,13 @@ bool MachineTask::finished() const {
 
 Json MachineTask::json() const {
   const std::scoped_lock lock(mutex_);
-  Json json = {{"id", id}, {"machine", machine.id}, {"kind", kind}, {"state", state_}, {"sentence", sentence_}, {"fraction", fraction_}, {"submitted_unix_s", submitted_unix_s_}};
+  Json json = {{"id", id},
+               {"machine", machine.id},
+               {"kind", kind},
+               {"state", state_},
+               {"sentence", sentence_},
+               {"fraction", fraction_},
+               {"submitted_unix_s", submitted_unix_s_}};
   if (!result_.is_null()) json["result"] = result_;
   if (!error_.is_null()) json["error"] = error_;
   return json;
@@ -51,7 +59,9 @@ std::shared_ptr<MachineTask> MachineTasks::start(const Machine& machine, const s
   auto task = std::make_shared<MachineTask>(machine, kind);
   {
     const std::scoped_lock lock(mutex_);
-    if (std::count_if(tasks_.begin(), tasks_.end(), [](const auto& t) { return !t->finished(); }) >= static_cast<std::ptrdiff_t>(most_under_way)) return nullptr;
+    if (std::count_if(tasks_.begin(), tasks_.end(), [](const auto& t) { return !t->finished(); }) >=
+        static_cast<std::ptrdiff_t>(most_under_way))
+      return nullptr;
     tasks_.push_front(task);
     for (std::size_t i = tasks_.size(); i-- > most_kept;)
       if (tasks_[i]->finished()) tasks_.erase(tasks_.begin() + static_cast<std::ptrdiff_t>(i));
@@ -74,7 +84,8 @@ std::shared_ptr<MachineTask> MachineTasks::start(const Machine& machine, const s
       fail(ErrorCode::internal, "", std::string("Something went wrong that should not have: ") + error.what());
     }
     const Json now = task->json();
-    log_.append(task->machine, {{"event", "task"}, {"kind", task->kind}, {"task", task->id}, {"state", now["state"]}, {"text", now["sentence"]}}, true);
+    log_.append(task->machine,
+                {{"event", "task"}, {"kind", task->kind}, {"task", task->id}, {"state", now["state"]}, {"text", now["sentence"]}}, true);
     if (ended) ended();
   });
   return task;

@@ -46,45 +46,56 @@ const PrintMedia& chosen_media(const PrinterDescription& printer, const std::str
   std::string list;
   for (const PrintMedia& m : printer.media)
     if (list.find(m.label) == std::string::npos && list.size() < 160) list += (list.empty() ? "" : ", ") + m.label;
-  refuse("media", printer_name + " does not take " + (name.empty() ? "a sheet without a name" : name) + ": choose one of " + (list.empty() ? "those it is set to" : list) + ".");
+  refuse("media", printer_name + " does not take " + (name.empty() ? "a sheet without a name" : name) + ": choose one of " +
+                      (list.empty() ? "those it is set to" : list) + ".");
 }
 
 /// What can be known before anything is sent.
 CheckedOrder check_order(const PrinterDescription& printer, const PrintOrder& order, const std::string& name) {
   CheckedOrder checked;
   checked.media = chosen_media(printer, order.media, name);
-  if (order.copies < 1 || order.copies > printer.most_copies) refuse("copies", name + " prints 1 to " + std::to_string(printer.most_copies) + " copies: choose a number of these.");
-  if (order.quality == "draft") checked.quality = IPP_QUALITY_DRAFT;
-  else if (order.quality == "high") checked.quality = IPP_QUALITY_HIGH;
-  else if (order.quality != "normal") refuse("quality", "The quality must be draft, normal or high.");
+  if (order.copies < 1 || order.copies > printer.most_copies)
+    refuse("copies", name + " prints 1 to " + std::to_string(printer.most_copies) + " copies: choose a number of these.");
+  if (order.quality == "draft")
+    checked.quality = IPP_QUALITY_DRAFT;
+  else if (order.quality == "high")
+    checked.quality = IPP_QUALITY_HIGH;
+  else if (order.quality != "normal")
+    refuse("quality", "The quality must be draft, normal or high.");
   if (!printer.qualities.empty() && std::find(printer.qualities.begin(), printer.qualities.end(), order.quality) == printer.qualities.end())
     refuse("quality", name + " has no quality called " + order.quality + ": choose " + printer.qualities.front() + ".");
   const DocumentPages document = read_document_pages(order.document);
   checked.media_type = document.media_type;
   if (std::find(printer.formats.begin(), printer.formats.end(), document.media_type) == printer.formats.end())
-    refuse("sha256", name + " does not take " + document.media_type + ": add it to the system's printers, which convert, or send " + (printer.formats.empty() ? "something else" : printer.formats.back()) + ".");
+    refuse("sha256", name + " does not take " + document.media_type + ": add it to the system's printers, which convert, or send " +
+                         (printer.formats.empty() ? "something else" : printer.formats.back()) + ".");
   for (const PageSize& page : document.pages) {
     const bool picture = document.media_type == "image/png";
     // A picture smaller than the sheet stays its own size; a page says which sheet it is meant for.
     const PageSize sheet{checked.media.width_mm(), checked.media.height_mm()};
-    const bool fits = picture && std::min(page.width_mm, page.height_mm) <= std::min(sheet.width_mm, sheet.height_mm) + 1 && std::max(page.width_mm, page.height_mm) <= std::max(sheet.width_mm, sheet.height_mm) + 1;
+    const bool fits = picture && std::min(page.width_mm, page.height_mm) <= std::min(sheet.width_mm, sheet.height_mm) + 1 &&
+                      std::max(page.width_mm, page.height_mm) <= std::max(sheet.width_mm, sheet.height_mm) + 1;
     if (!fits && !page_matches(checked.media, page))
-      refuse("media", "The document's page is " + millimetres(page) + ", the sheet " + checked.media.label + " is " + millimetres(sheet) + ", and nothing is scaled: choose that sheet, or lay the pages out for " + checked.media.label + ".");
+      refuse("media", "The document's page is " + millimetres(page) + ", the sheet " + checked.media.label + " is " + millimetres(sheet) +
+                          ", and nothing is scaled: choose that sheet, or lay the pages out for " + checked.media.label + ".");
   }
   const PageSize& first = document.pages.front();
-  checked.turned = (first.width_mm > first.height_mm) != (checked.media.width_mm() > checked.media.height_mm()) && std::abs(first.width_mm - first.height_mm) > 1;
+  checked.turned = (first.width_mm > first.height_mm) != (checked.media.width_mm() > checked.media.height_mm()) &&
+                   std::abs(first.width_mm - first.height_mm) > 1;
   if (!checked.media.loaded) {
     if (!checked.media.by_hand) {
       std::string loaded;
       for (const PrintMedia& m : printer.media)
         if (m.loaded && loaded.find(m.label) == std::string::npos) loaded += (loaded.empty() ? "" : ", ") + m.label;
-      refuse("media", checked.media.label + " is not loaded in " + name + (loaded.empty() ? "" : ", which has " + loaded) + ": load it and tell the printer, or lay the pages out for what it has.");
+      refuse("media", checked.media.label + " is not loaded in " + name + (loaded.empty() ? "" : ", which has " + loaded) +
+                          ": load it and tell the printer, or lay the pages out for what it has.");
     }
     checked.feeds_by_hand = true;
     checked.notes.push_back(checked.media.label + " is in no tray of " + name + ": put it into the manual feed.");
   }
   if (order.mirrored) {
-    if (document.media_type != "application/pdf") refuse("mirrored", "Only a PDF is mirrored here: export the picture as PDF, or mirrored.");
+    if (document.media_type != "application/pdf")
+      refuse("mirrored", "Only a PDF is mirrored here: export the picture as PDF, or mirrored.");
     checked.mirrored = mirrored_pdf(order.document);
   }
   if (!printer.scaling_can_be_off) checked.notes.push_back(name + " does not promise to leave the size alone: measure the first page.");
@@ -115,9 +126,13 @@ void add_job_attributes(ipp_t* request, const CheckedOrder& checked, const Print
 
 [[noreturn]] void fail_refused(const IppConnection::Answer& answer, const std::string& name, const PrintMedia& media) {
   const std::string words = answer.text.empty() ? ippErrorString(answer.status) : answer.text;
-  if (answer.status == IPP_STATUS_ERROR_DOCUMENT_FORMAT_NOT_SUPPORTED) fail(name + " does not take this kind of document (\"" + words + "\"): add it to the system's printers, which convert.");
-  if (answer.status == IPP_STATUS_ERROR_NOT_ACCEPTING_JOBS) fail(name + " takes no jobs now (\"" + words + "\"): switch it on, or resume it in the system's printers.");
-  if (answer.status == IPP_STATUS_ERROR_ATTRIBUTES_OR_VALUES) fail(name + " refuses " + media.label + " or one of the other settings (\"" + words + "\"): choose another sheet, quality or number of copies.");
+  if (answer.status == IPP_STATUS_ERROR_DOCUMENT_FORMAT_NOT_SUPPORTED)
+    fail(name + " does not take this kind of document (\"" + words + "\"): add it to the system's printers, which convert.");
+  if (answer.status == IPP_STATUS_ERROR_NOT_ACCEPTING_JOBS)
+    fail(name + " takes no jobs now (\"" + words + "\"): switch it on, or resume it in the system's printers.");
+  if (answer.status == IPP_STATUS_ERROR_ATTRIBUTES_OR_VALUES)
+    fail(name + " refuses " + media.label + " or one of the other settings (\"" + words +
+         "\"): choose another sheet, quality or number of copies.");
   fail(name + " refused the job: \"" + words + "\". Mend that at the printer, and print again.");
 }
 
@@ -130,7 +145,8 @@ void check_media_kept(const IppConnection::Answer& answer, const std::string& na
 
 /// Asks until the printer is no longer busy.
 template <class MakeRequest>
-IppConnection::Answer ask_patiently(const PrinterAddress& address, const MakeRequest& make, ByteView document, const std::atomic<bool>& cancelled, const PrintProgress& progress) {
+IppConnection::Answer ask_patiently(const PrinterAddress& address, const MakeRequest& make, ByteView document,
+                                    const std::atomic<bool>& cancelled, const PrintProgress& progress) {
   const auto end = Clock::now() + busy_patience;
   for (;;) {
     {
@@ -161,7 +177,9 @@ std::string reasons_of(ipp_t* message) {
   ipp_attribute_t* list = ippFindAttribute(message, "job-state-reasons", IPP_TAG_ZERO);
   for (int i = 0; list && i < ippGetCount(list); ++i) {
     const std::string reason = ippGetString(list, i, nullptr) ? ippGetString(list, i, nullptr) : "none";
-    if (reason == "none" || reason.starts_with("job-printing") || reason.starts_with("job-completed") || reason == "processing-to-stop-point") continue;
+    if (reason == "none" || reason.starts_with("job-printing") || reason.starts_with("job-completed") ||
+        reason == "processing-to-stop-point")
+      continue;
     sentence += (sentence.empty() ? "" : ", ") + printer_reason_sentence(reason);
   }
   return sentence;
@@ -178,7 +196,8 @@ int follow(const PrinterAddress& address, int job_id, const std::atomic<bool>& c
   int failures = 0, sheets = 0;
   for (;;) {
     pause_for(look_pause, cancelled);
-    if (Clock::now() > end) fail(address.name + " has had the job for two hours and is not done: look at the printer; the job is not followed any longer.");
+    if (Clock::now() > end)
+      fail(address.name + " has had the job for two hours and is not done: look at the printer; the job is not followed any longer.");
     IppConnection::Answer answer;
     try {
       IppConnection connection(address, cancelled);
@@ -202,19 +221,27 @@ int follow(const PrinterAddress& address, int job_id, const std::atomic<bool>& c
     sheets = std::max(sheets, sheets_of(answer.message.get()));
     const std::string reasons = reasons_of(answer.message.get());
     switch (ippGetInteger(state, 0)) {
-      case IPP_JSTATE_COMPLETED: return sheets;
-      case IPP_JSTATE_CANCELED: fail("The job was cancelled at " + address.name + (reasons.empty() ? "" : ": " + reasons) + ". Print again when it is ready.");
-      case IPP_JSTATE_ABORTED: fail(address.name + " gave the job up" + (reasons.empty() ? "" : ": " + reasons) + ". Mend that at the printer, and print again.");
+      case IPP_JSTATE_COMPLETED:
+        return sheets;
+      case IPP_JSTATE_CANCELED:
+        fail("The job was cancelled at " + address.name + (reasons.empty() ? "" : ": " + reasons) + ". Print again when it is ready.");
+      case IPP_JSTATE_ABORTED:
+        fail(address.name + " gave the job up" + (reasons.empty() ? "" : ": " + reasons) + ". Mend that at the printer, and print again.");
       case IPP_JSTATE_STOPPED:
-      case IPP_JSTATE_HELD: progress("waiting", address.name + " stopped" + (reasons.empty() ? "" : ": " + reasons) + ". It goes on when that is mended."); break;
-      default: progress("printing", "Printing" + (sheets > 0 ? ", sheet " + std::to_string(sheets) : "") + (reasons.empty() ? "" : "; " + reasons) + ".");
+      case IPP_JSTATE_HELD:
+        progress("waiting", address.name + " stopped" + (reasons.empty() ? "" : ": " + reasons) + ". It goes on when that is mended.");
+        break;
+      default:
+        progress("printing",
+                 "Printing" + (sheets > 0 ? ", sheet " + std::to_string(sheets) : "") + (reasons.empty() ? "" : "; " + reasons) + ".");
     }
   }
 }
 
 }  // namespace
 
-PrintResult print_document(const PrinterAddress& address, const PrintOrder& order, const std::atomic<bool>& cancelled, const PrintProgress& progress) {
+PrintResult print_document(const PrinterAddress& address, const PrintOrder& order, const std::atomic<bool>& cancelled,
+                           const PrintProgress& progress) {
   progress("waiting", "Asking " + address.name + " what it takes.");
   const PrinterDescription printer = describe_printer(address, cancelled);
   const CheckedOrder checked = check_order(printer, order, address.name);

@@ -27,7 +27,8 @@ void name_media(PrintMedia& media) {
     if (known->pwg) media.name = known->pwg;
     if (known->ppd) media.label = known->ppd;
   }
-  if (media.name.empty() && pwgFormatSizeName(name, sizeof name, "custom", nullptr, media.width_hmm, media.height_hmm, "mm") == 1) media.name = name;
+  if (media.name.empty() && pwgFormatSizeName(name, sizeof name, "custom", nullptr, media.width_hmm, media.height_hmm, "mm") == 1)
+    media.name = name;
   if (media.label.empty() || media.label.starts_with("Custom")) {
     std::snprintf(name, sizeof name, "%g x %g mm", media.width_mm(), media.height_mm());
     media.label = name;
@@ -70,7 +71,9 @@ int largest_of(ipp_t* attributes, const char* name) {
   return largest;
 }
 
-bool same_size(const PrintMedia& a, const PrintMedia& b) { return std::abs(a.width_hmm - b.width_hmm) <= 50 && std::abs(a.height_hmm - b.height_hmm) <= 50; }
+bool same_size(const PrintMedia& a, const PrintMedia& b) {
+  return std::abs(a.width_hmm - b.width_hmm) <= 50 && std::abs(a.height_hmm - b.height_hmm) <= 50;
+}
 
 bool same_margins(const PrintMedia& a, const PrintMedia& b) {
   return a.left_hmm == b.left_hmm && a.right_hmm == b.right_hmm && a.top_hmm == b.top_hmm && a.bottom_hmm == b.bottom_hmm;
@@ -105,7 +108,8 @@ std::vector<PrintMedia> read_print_media(ipp_t* attributes) {
   for (const PrintMedia& r : ready)
     if (std::none_of(all.begin(), all.end(), [&](const PrintMedia& m) { return same_size(m, r) && same_margins(m, r); })) all.push_back(r);
   const bool knows_ready = !ready.empty();
-  const bool feeds_by_hand = has_keyword(attributes, "media-source-supported", "manual") || has_keyword(attributes, "media-source-supported", "by-pass-tray");
+  const bool feeds_by_hand =
+      has_keyword(attributes, "media-source-supported", "manual") || has_keyword(attributes, "media-source-supported", "by-pass-tray");
   PrintMedia widest;
   widest.left_hmm = largest_of(attributes, "media-left-margin-supported");
   widest.right_hmm = largest_of(attributes, "media-right-margin-supported");
@@ -120,7 +124,8 @@ std::vector<PrintMedia> read_print_media(ipp_t* attributes) {
     }
     m.loaded = !knows_ready || std::any_of(ready.begin(), ready.end(), [&](const PrintMedia& r) { return same_size(r, m); });
     m.by_hand = m.by_hand || feeds_by_hand;
-    const auto known = std::find_if(result.begin(), result.end(), [&](const PrintMedia& r) { return same_size(r, m) && same_margins(r, m); });
+    const auto known =
+        std::find_if(result.begin(), result.end(), [&](const PrintMedia& r) { return same_size(r, m) && same_margins(r, m); });
     if (known == result.end()) result.push_back(m);
   }
   std::stable_sort(result.begin(), result.end(), [](const PrintMedia& a, const PrintMedia& b) { return a.loaded > b.loaded; });
@@ -137,9 +142,14 @@ const PrintMedia* find_print_media(const std::vector<PrintMedia>& media, const s
 }
 
 Json print_media_json(const PrintMedia& m) {
-  return {{"name", m.name}, {"label", m.label}, {"width_mm", m.width_mm()}, {"height_mm", m.height_mm()},
-          {"margins_mm", {{"left", m.left_hmm / 100.0}, {"right", m.right_hmm / 100.0}, {"top", m.top_hmm / 100.0}, {"bottom", m.bottom_hmm / 100.0}}},
-          {"loaded", m.loaded}, {"by_hand", m.by_hand}};
+  return {{"name", m.name},
+          {"label", m.label},
+          {"width_mm", m.width_mm()},
+          {"height_mm", m.height_mm()},
+          {"margins_mm",
+           {{"left", m.left_hmm / 100.0}, {"right", m.right_hmm / 100.0}, {"top", m.top_hmm / 100.0}, {"bottom", m.bottom_hmm / 100.0}}},
+          {"loaded", m.loaded},
+          {"by_hand", m.by_hand}};
 }
 
 bool page_matches(const PrintMedia& media, const PageSize& page) {

@@ -12,12 +12,12 @@
 namespace formwright {
 
 struct PrintMedia {
-  std::string name;   // PWG 5101.1: iso_a4_210x297mm
-  std::string label;  // for a person: A4
-  int width_hmm = 0, height_hmm = 0;  // hundredths of a millimetre, as IPP counts
+  std::string name;                                              // PWG 5101.1: iso_a4_210x297mm
+  std::string label;                                             // for a person: A4
+  int width_hmm = 0, height_hmm = 0;                             // hundredths of a millimetre, as IPP counts
   int left_hmm = 0, right_hmm = 0, top_hmm = 0, bottom_hmm = 0;  // where it cannot print
-  bool loaded = false;   // in a tray now, by what the printer says
-  bool by_hand = false;  // may be fed by hand
+  bool loaded = false;                                           // in a tray now, by what the printer says
+  bool by_hand = false;                                          // may be fed by hand
   double width_mm() const { return width_hmm / 100.0; }
   double height_mm() const { return height_hmm / 100.0; }
 };

@@ -61,19 +61,26 @@ PrinterDescription describe_printer(const PrinterAddress& address, const std::at
   IppMessage request = connection.request(IPP_OP_GET_PRINTER_ATTRIBUTES);
   // media-col-database is not among "all" (PWG 5100.7): it has to be asked for by its name.
   static constexpr std::array<const char*, 2> wanted{"all", "media-col-database"};
-  ippAddStrings(request.get(), IPP_TAG_OPERATION, IPP_TAG_KEYWORD, "requested-attributes", static_cast<int>(wanted.size()), nullptr, wanted.data());
+  ippAddStrings(request.get(), IPP_TAG_OPERATION, IPP_TAG_KEYWORD, "requested-attributes", static_cast<int>(wanted.size()), nullptr,
+                wanted.data());
   const auto answer = connection.ask(std::move(request));
   if (!answer.ok())
-    throw Error(ErrorCode::could_not_solve, "machine", address.name + " does not say what it can do (" + std::string(ippErrorString(answer.status)) + "): see whether its address is that of a printer.");
+    throw Error(ErrorCode::could_not_solve, "machine",
+                address.name + " does not say what it can do (" + std::string(ippErrorString(answer.status)) +
+                    "): see whether its address is that of a printer.");
   ipp_t* message = answer.message.get();
   PrinterDescription result;
   result.model = string_of(message, "printer-make-and-model");
   ipp_attribute_t* state = ippFindAttribute(message, "printer-state", IPP_TAG_ENUM);
-  result.state = !state ? "unknown" : ippGetInteger(state, 0) == IPP_PSTATE_STOPPED ? "stopped" : ippGetInteger(state, 0) == IPP_PSTATE_PROCESSING ? "printing" : "idle";
+  result.state = !state                                             ? "unknown"
+                 : ippGetInteger(state, 0) == IPP_PSTATE_STOPPED    ? "stopped"
+                 : ippGetInteger(state, 0) == IPP_PSTATE_PROCESSING ? "printing"
+                                                                    : "idle";
   result.reasons = strings_of(message, "printer-state-reasons");
   std::erase(result.reasons, "none");
   result.state_message = string_of(message, "printer-state-message");
-  if (ipp_attribute_t* accepting = ippFindAttribute(message, "printer-is-accepting-jobs", IPP_TAG_BOOLEAN)) result.accepting = ippGetBoolean(accepting, 0) != 0;
+  if (ipp_attribute_t* accepting = ippFindAttribute(message, "printer-is-accepting-jobs", IPP_TAG_BOOLEAN))
+    result.accepting = ippGetBoolean(accepting, 0) != 0;
   result.media = read_print_media(message);
   result.formats = strings_of(message, "document-format-supported");
   ipp_attribute_t* quality = ippFindAttribute(message, "print-quality-supported", IPP_TAG_ENUM);
@@ -82,7 +89,8 @@ PrinterDescription describe_printer(const PrinterAddress& address, const std::at
   int upper = 1;
   if (ipp_attribute_t* copies = ippFindAttribute(message, "copies-supported", IPP_TAG_RANGE)) ippGetRange(copies, 0, &upper);
   result.most_copies = std::clamp(upper, 1, 9999);
-  if (ipp_attribute_t* colour = ippFindAttribute(message, "color-supported", IPP_TAG_BOOLEAN)) result.colour = ippGetBoolean(colour, 0) != 0;
+  if (ipp_attribute_t* colour = ippFindAttribute(message, "color-supported", IPP_TAG_BOOLEAN))
+    result.colour = ippGetBoolean(colour, 0) != 0;
   const auto scaling = strings_of(message, "print-scaling-supported");
   result.scaling_can_be_off = std::find(scaling.begin(), scaling.end(), "none") != scaling.end();
   return result;
@@ -92,8 +100,17 @@ Json printer_json(const PrinterDescription& d) {
   Json media = Json::array(), reasons = Json::array();
   for (const PrintMedia& m : d.media) media.push_back(print_media_json(m));
   for (const std::string& reason : d.reasons) reasons.push_back(printer_reason_sentence(reason));
-  return {{"model", d.model}, {"state", d.state}, {"state_message", d.state_message}, {"reasons", reasons}, {"accepting", d.accepting}, {"formats", d.formats},
-          {"qualities", d.qualities}, {"most_copies", d.most_copies}, {"colour", d.colour}, {"scaling_can_be_off", d.scaling_can_be_off}, {"media", media}};
+  return {{"model", d.model},
+          {"state", d.state},
+          {"state_message", d.state_message},
+          {"reasons", reasons},
+          {"accepting", d.accepting},
+          {"formats", d.formats},
+          {"qualities", d.qualities},
+          {"most_copies", d.most_copies},
+          {"colour", d.colour},
+          {"scaling_can_be_off", d.scaling_can_be_off},
+          {"media", media}};
 }
 
 }  // namespace formwright

@@ -14,8 +14,8 @@
 namespace formwright {
 
 struct PrinterDescription {
-  std::string model, state;               // state: idle, printing or stopped
-  std::vector<std::string> reasons;       // printer-state-reasons, without "none"
+  std::string model, state;          // state: idle, printing or stopped
+  std::vector<std::string> reasons;  // printer-state-reasons, without "none"
   std::string state_message;
   bool accepting = true;
   std::vector<PrintMedia> media;
@@ -32,10 +32,10 @@ Json printer_json(const PrinterDescription& description);
 struct PrintOrder {
   ByteView document;
   std::string title = "Formwright";
-  std::string media;              // of the printer's own, "A4" or "iso_a4_210x297mm"
+  std::string media;  // of the printer's own, "A4" or "iso_a4_210x297mm"
   int copies = 1;
-  std::string quality = "normal"; // draft, normal or high
-  bool mirrored = false;          // PDF only
+  std::string quality = "normal";  // draft, normal or high
+  bool mirrored = false;           // PDF only
 };
 
 /// `state`: waiting (the printer is busy), sending or printing; `sentence`: for a person.
@@ -49,7 +49,8 @@ struct PrintResult {
 /// Returns when the printer says it is done. Refuses before anything is sent: Error{invalid_input} with where media, copies, quality,
 /// mirrored or sha256. Error{could_not_solve, "machine"}: the printer refused, stopped or vanished. Error{cancelled}: the job was
 /// taken back at the printer as well.
-PrintResult print_document(const PrinterAddress& address, const PrintOrder& order, const std::atomic<bool>& cancelled, const PrintProgress& progress);
+PrintResult print_document(const PrinterAddress& address, const PrintOrder& order, const std::atomic<bool>& cancelled,
+                           const PrintProgress& progress);
 
 /// The sentence of one printer-state-reason or job-state-reason (RFC 8011, 5.4.12; PWG 5100.9): "media-empty" -> "it is out of paper".
 std::string printer_reason_sentence(const std::string& reason);

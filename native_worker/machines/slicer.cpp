@@ -28,7 +28,8 @@ class WorkFolder {
     std::error_code status;
     std::filesystem::create_directories(path / "home", status);
     std::filesystem::permissions(path, std::filesystem::perms::owner_all, status);
-    if (!std::filesystem::is_directory(path / "home")) throw Error(ErrorCode::could_not_solve, "machine", "There is no room to slice in " + data.string() + ": free some.");
+    if (!std::filesystem::is_directory(path / "home"))
+      throw Error(ErrorCode::could_not_solve, "machine", "There is no room to slice in " + data.string() + ": free some.");
   }
   WorkFolder(const WorkFolder&) = delete;
   WorkFolder& operator=(const WorkFolder&) = delete;
@@ -41,7 +42,8 @@ class WorkFolder {
 
 bool plain_profile_name(const std::string& name) {
   return !name.empty() && name.size() <= 80 && name[0] != '.' && name[0] != '-' &&
-         std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-' || c == ' ' || c == '.' || c == '@'; });
+         std::all_of(name.begin(), name.end(),
+                     [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-' || c == ' ' || c == '.' || c == '@'; });
 }
 
 /// The last lines the program wrote, without its time stamps.
@@ -51,7 +53,8 @@ std::string last_words(const std::filesystem::path& log) {
   std::string text(as_text(*read_file(log, "sha256", std::uintmax_t{64} << 20)));
   while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
   text = text.substr(text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1);
-  std::replace_if(text.begin(), text.end(), [](unsigned char c) { return c < 32; }, ' ');
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < 32; }, ' ');
   return text.substr(0, 240);
 }
 
@@ -87,7 +90,8 @@ pid_t start(const std::vector<std::string>& words, const std::filesystem::path& 
 
 std::string slicer_program() {
   static const std::string program = [] {
-    for (const char* path : {"/usr/bin/prusa-slicer", "/usr/local/bin/prusa-slicer", "/usr/bin/PrusaSlicer", "/opt/PrusaSlicer/prusa-slicer", "/opt/PrusaSlicer/bin/prusa-slicer"})
+    for (const char* path : {"/usr/bin/prusa-slicer", "/usr/local/bin/prusa-slicer", "/usr/bin/PrusaSlicer",
+                             "/opt/PrusaSlicer/prusa-slicer", "/opt/PrusaSlicer/bin/prusa-slicer"})
       if (::access(path, X_OK) == 0) return std::string(path);
     return std::string();
   }();
@@ -103,14 +107,17 @@ std::vector<std::string> slicer_profiles(const std::filesystem::path& data) {
   return names;
 }
 
-Bytes slice_model(ByteView model, const std::string& profile, const std::filesystem::path& data, double seconds_limit, const std::atomic<bool>& cancelled) {
+Bytes slice_model(ByteView model, const std::string& profile, const std::filesystem::path& data, double seconds_limit,
+                  const std::atomic<bool>& cancelled) {
   const std::string program = slicer_program();
-  if (program.empty()) throw Error(ErrorCode::invalid_input, "machine", "PrusaSlicer is not installed: install prusa-slicer, or slice the STL yourself.");
+  if (program.empty())
+    throw Error(ErrorCode::invalid_input, "machine", "PrusaSlicer is not installed: install prusa-slicer, or slice the STL yourself.");
   std::filesystem::path profile_file;
   if (!profile.empty()) {
     const auto names = slicer_profiles(data);
     if (std::find(names.begin(), names.end(), profile) == names.end())
-      throw Error(ErrorCode::invalid_input, "profile", "There is no profile of that name: export it from PrusaSlicer into " + (data / "slicer_profiles").string() + ".");
+      throw Error(ErrorCode::invalid_input, "profile",
+                  "There is no profile of that name: export it from PrusaSlicer into " + (data / "slicer_profiles").string() + ".");
     profile_file = data / "slicer_profiles" / (profile + ".ini");
   }
   if (model.size() < 84) throw Error(ErrorCode::invalid_input, "sha256", "That is no model: give an STL or a 3MF file.");
@@ -122,7 +129,8 @@ Bytes slice_model(ByteView model, const std::string& profile, const std::filesys
   // Behind what a profile or the 3MF itself says, so that it wins: no program of theirs is run.
   words.insert(words.end(), {"--post-process", "", "--output", output.string(), input.string()});
   const pid_t child = start(words, folder.path);
-  if (child < 0) throw Error(ErrorCode::could_not_solve, "machine", "PrusaSlicer could not be started: the system has no room for another program.");
+  if (child < 0)
+    throw Error(ErrorCode::could_not_solve, "machine", "PrusaSlicer could not be started: the system has no room for another program.");
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds_limit);
   int status = 0;
   bool late = false;
@@ -138,11 +146,16 @@ Bytes slice_model(ByteView model, const std::string& profile, const std::filesys
   }
   ::kill(-child, SIGKILL);  // what it may have left behind
   if (cancelled) throw Error(ErrorCode::cancelled, "", "Cancelled.");
-  if (late) throw Error(ErrorCode::could_not_solve, "sha256", "PrusaSlicer was not done after " + std::to_string(static_cast<int>(seconds_limit)) + " s and was ended: give it a simpler model.");
+  if (late)
+    throw Error(
+        ErrorCode::could_not_solve, "sha256",
+        "PrusaSlicer was not done after " + std::to_string(static_cast<int>(seconds_limit)) + " s and was ended: give it a simpler model.");
   std::error_code ignored;
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || !std::filesystem::exists(output, ignored)) {
     const std::string said = last_words(folder.path / "log");
-    throw Error(ErrorCode::could_not_solve, "sha256", "PrusaSlicer could not slice the model" + (said.empty() ? "" : ": \"" + said + "\"") + ". See whether the model is closed and fits the printer's bed.");
+    throw Error(ErrorCode::could_not_solve, "sha256",
+                "PrusaSlicer could not slice the model" + (said.empty() ? "" : ": \"" + said + "\"") +
+                    ". See whether the model is closed and fits the printer's bed.");
   }
   return *read_file(output, "sha256", most_gcode_bytes);
 }

@@ -20,6 +20,7 @@ std::vector<std::string> slicer_profiles(const std::filesystem::path& data);
 /// environment of four names, at most `seconds_limit` s and 1 GB of output. Scripts that a profile or a 3MF brings (post_process) are
 /// never run. Throws Error{invalid_input} with where "profile" or "sha256", Error{could_not_solve, "sha256"} with the slicer's own
 /// words, Error{cancelled}; its processes are ended in every case.
-Bytes slice_model(ByteView model, const std::string& profile, const std::filesystem::path& data, double seconds_limit, const std::atomic<bool>& cancelled);
+Bytes slice_model(ByteView model, const std::string& profile, const std::filesystem::path& data, double seconds_limit,
+                  const std::atomic<bool>& cancelled);
 
 }  // namespace formwright

@@ -24,7 +24,8 @@ std::string upload_file_name(const std::string& file_name);
 
 /// {"file_name", "printing": bool}. Throws Error{could_not_solve, "machine"} when nobody answers, the key is wrong, the machine refuses
 /// (busy, no room, another kind of server); Error{invalid_input}; Error{cancelled}. `progress`: share sent, 0 to 1.
-Json upload_gcode(const Machine& machine, const UploadOrder& order, const std::atomic<bool>& cancelled, const std::function<void(double)>& progress);
+Json upload_gcode(const Machine& machine, const UploadOrder& order, const std::atomic<bool>& cancelled,
+                  const std::function<void(double)>& progress);
 
 /// {"state": "ready"|"printing"|"paused"|"error"|"disconnected", "software": "OctoPrint 1.11", ...}. Throws like upload_gcode.
 Json upload_machine_state(const Machine& machine, const std::atomic<bool>& cancelled);

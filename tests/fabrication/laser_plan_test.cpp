@@ -200,13 +200,14 @@ struct Machine {
       Vec2 to = at;
       bool rapid = false, feed = false;
       for (std::size_t i = 0; i < line.size(); ++i) {
-        double value = 0;
-        const auto end = std::from_chars(line.data() + i + 1, line.data() + line.size(), value).ptr;
+        // Cut out first: strtod would read "0X5" as hexadecimal, and not every library's from_chars knows numbers with a point.
+        const std::size_t end = std::min(line.find_first_not_of("+-.0123456789", i + 1), line.size());
+        const double value = std::strtod(std::string(line.substr(i + 1, end - i - 1)).c_str(), nullptr);
         if (line[i] == 'G') rapid = value == 0, feed = value == 1;
         if (line[i] == 'X') to.x() = value;
         if (line[i] == 'Y') to.y() = value;
         if (line[i] == 'S') s = value;
-        i = static_cast<std::size_t>(end - line.data());
+        i = end;
       }
       if (rapid && to != at) {
         EXPECT_EQ(s, 0) << "burns while it travels: " << line;

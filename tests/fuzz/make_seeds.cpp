@@ -91,4 +91,10 @@ int main(int argc, char** argv) {
   save("machine", "marlin", std::string("\x01\x40") + "G1X5F600\nstart\nok\nResend: 2\nok\nok T:20 B:20\nError:kill\n");
   save("machine", "k40", std::string("\x02\x40") + "IBzzaS1P\nFNSE-\n\xff\xce\xff\xcf\xff\xec");
   save("machine", "ruida", std::string("\x03\x20") + "\xd4\x09\xc6\xd4\x09\x8d\x89\x89\x89\x89\x89\x89");
+  save("machine_request", "load", R"({"n":3,"load":{"name":"job.gcode","sha256":")" + std::string(64, 'a') + R"("}})");
+  save("machine_request", "command", R"({"command":{"do":"jog","x_mm":1,"speed_mm_per_s":10}})");
+  save("machine_request", "open", R"({"open":{"controller":"grbl","baud":115200}})");
+  save("document_pages", "grey", write_png16(image));
+  save("document_pages", "page", "%PDF-1.4\n1 0 obj<</Type/Catalog/Pages 2 0 R>>endobj\n2 0 obj<</Type/Pages/Kids[3 0 R]/Count 1>>endobj\n3 0 obj<</Type/Page/Parent 2 0 R/MediaBox[0 0 595 842]/Rotate 90/UserUnit 2>>endobj\n"
+                                 "trailer<</Root 1 0 R/Size 4>>\n%%EOF\n");
 }

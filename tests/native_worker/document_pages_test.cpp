@@ -76,13 +76,16 @@ std::string number(std::uint32_t value) {
 }
 
 TEST(document_pages, a_png_is_as_large_as_its_density_says) {
-  const std::string head = std::string("\x89PNG\r\n\x1a\n", 8) + chunk("IHDR", number(2000) + number(1000) + "\x08\x02" + std::string(3, '\0'));
+  const std::string head =
+      std::string("\x89PNG\r\n\x1a\n", 8) + chunk("IHDR", number(2000) + number(1000) + "\x08\x02" + std::string(3, '\0'));
   const auto pages = read_document_pages(to_bytes(head + chunk("pHYs", number(10000) + number(5000) + "\x01")));
   EXPECT_EQ(pages.media_type, "image/png");
   EXPECT_DOUBLE_EQ(pages.pages.at(0).width_mm, 200);
   EXPECT_DOUBLE_EQ(pages.pages.at(0).height_mm, 200);
   // A ratio only, after the pixels, or nothing: no size.
-  for (const std::string& tail : {chunk("pHYs", number(1) + number(1) + std::string(1, '\0')), chunk("IDAT", "x") + chunk("pHYs", number(10000) + number(5000) + "\x01"), std::string(), number(0xffffffff) + "pHYs"})
+  for (const std::string& tail :
+       {chunk("pHYs", number(1) + number(1) + std::string(1, '\0')),
+        chunk("IDAT", "x") + chunk("pHYs", number(10000) + number(5000) + "\x01"), std::string(), number(0xffffffff) + "pHYs"})
     EXPECT_THROW(read_document_pages(to_bytes(head + tail)), Error);
 }
 
@@ -125,8 +128,10 @@ TEST(print_media, database_ready_margins_and_names) {
       ippAddInteger(size, IPP_TAG_ZERO, IPP_TAG_INTEGER, "x-dimension", x);
       ippAddInteger(size, IPP_TAG_ZERO, IPP_TAG_INTEGER, "y-dimension", y);
       ippAddCollection(media, IPP_TAG_ZERO, "media-size", size);
-      for (const char* margin : {"media-left-margin", "media-right-margin"}) ippAddInteger(media, IPP_TAG_ZERO, IPP_TAG_INTEGER, margin, side);
-      for (const char* margin : {"media-top-margin", "media-bottom-margin"}) ippAddInteger(media, IPP_TAG_ZERO, IPP_TAG_INTEGER, margin, top);
+      for (const char* margin : {"media-left-margin", "media-right-margin"})
+        ippAddInteger(media, IPP_TAG_ZERO, IPP_TAG_INTEGER, margin, side);
+      for (const char* margin : {"media-top-margin", "media-bottom-margin"})
+        ippAddInteger(media, IPP_TAG_ZERO, IPP_TAG_INTEGER, margin, top);
       all.push_back(media);
     }
     ippAddCollections(answer, IPP_TAG_PRINTER, name, static_cast<int>(all.size()), const_cast<const ipp_t**>(all.data()));

@@ -65,6 +65,8 @@ class MachineSocket(PageSocket):
     def vanish(self) -> None:
         self.socket.close()
 
+    __del__ = vanish
+
 
 class Driven(unittest.TestCase):
     def setUp(self):
@@ -108,7 +110,7 @@ class Driven(unittest.TestCase):
         self.assertEqual((refused["error"]["code"], refused["error"]["where"]), ("invalid_input", "confirmed"))
         self.assertEqual(self.laser.look()["burns"], 0)
         self.assertIn("done", page.do("start", confirmed=True))
-        page.wait(lambda s: s["job"]["ended"] == "done", 60)
+        page.wait(lambda s: s["job"] and s["job"]["ended"] == "done", 60)
         seen = self.laser.look()
         self.assertAlmostEqual(seen["burnt_mm"], 120, delta=0.5)
         self.assertEqual((seen["bytes_lost"], seen["beam"]), (0, False))
@@ -121,7 +123,7 @@ class Driven(unittest.TestCase):
             self.assertIn(wanted, said)
         self.assertFalse({"sent", "received"} & set(said))
         lines = self.worker.json("GET", "/api/machines/log?limit=5000&lines=1")[1]
-        self.assertEqual(sum(e["event"] == "sent" and e["text"].startswith("G1") for e in lines), 12)
+        self.assertEqual(sum(e["event"] == "sent" and e["text"].startswith("G1X") for e in lines), 12)
 
     def test_states_come_at_most_ten_times_a_second(self):
         page = self.ready(squares(20))
@@ -141,7 +143,7 @@ class Driven(unittest.TestCase):
         self.assertEqual(other.ask(close=True)["error"]["code"], "busy")
         other.wait(lambda s: s["phase"] == "running")
         self.assertIn("done", other.do("stop"))
-        page.wait(lambda s: s["job"]["ended"] == "stopped")
+        page.wait(lambda s: s["job"] and s["job"]["ended"] == "stopped")
         page.wait(lambda s: s["phase"] in ("idle", "alarm"))
         self.assertFalse(self.laser.look()["beam"])
         self.assertFalse(page.state["position_known"])
@@ -167,7 +169,7 @@ class Driven(unittest.TestCase):
         self.assertIn("done", following.do("resume", confirmed=True))
         following.wait(lambda s: s["phase"] == "running")
         self.assertIn("done", following.do("stop"))
-        following.wait(lambda s: s["job"]["ended"] == "stopped")
+        following.wait(lambda s: s["job"] and s["job"]["ended"] == "stopped")
 
     def test_a_page_that_vanishes_while_jogging_or_focusing_leaves_nothing_on(self):
         page = self.steering()
@@ -203,17 +205,19 @@ class Driven(unittest.TestCase):
         self.assertTrue(any(e["event"] == "ended" and e["how"] == "cut_off" for e in entries), entries[-3:])
 
     def test_a_worker_that_is_ended_stops_the_machine(self):
-        self.ready(squares(40))
+        page = self.ready(squares(40))
         self.worker.stop()
+        page.vanish()
         peers.wait_until(lambda: not self.laser.look()["beam"], 3, "the beam going out")
         place = self.laser.look()
         time.sleep(0.5)
         self.assertEqual(self.laser.look()["position_mm"], place["position_mm"])
 
     def test_the_log_survives_a_killed_worker(self):
-        self.ready(squares(40))
+        page = self.ready(squares(40))
         self.worker.process.kill()
         self.worker.process.wait()
+        page.vanish()
         lines = [line for log in (self.data / "machine_log").glob("*.jsonl") for line in log.read_text().splitlines()]
         entries = [json.loads(line) for line in lines]
         self.assertTrue(any(e.get("command", {}).get("do") == "start" for e in entries))
@@ -235,7 +239,7 @@ class Driven(unittest.TestCase):
         run = peers.formwright("stop", "--machine", "laser", data=self.data)
         self.assertEqual(run.returncode, 0, run.stderr)
         self.assertIn(str(self.worker.process.pid), run.stdout)
-        page.wait(lambda s: s["job"]["ended"] == "stopped", 5)
+        page.wait(lambda s: s["job"] and s["job"]["ended"] == "stopped", 5)
         self.assertFalse(self.laser.look()["beam"])
 
 

@@ -95,8 +95,10 @@ TEST(machine_log, lines_are_whole_newest_first_and_half_ones_are_left_out) {
   machine.id = "0123456789abcdef";
   machine.name = "Laser";
   MachineLog log(folder.path);
-  for (int i = 0; i < 10; ++i) log.append(machine, {{"event", i % 2 ? "sent" : "note"}, {"text", "line " + std::to_string(i) + "\xff"}}, i == 9);
-  for (const auto& file : std::filesystem::directory_iterator(folder.path / "machine_log")) std::ofstream(file.path(), std::ios::app) << "{\"event\": \"no";
+  for (int i = 0; i < 10; ++i)
+    log.append(machine, {{"event", i % 2 ? "sent" : "note"}, {"text", "line " + std::to_string(i) + "\xff"}}, i == 9);
+  for (const auto& file : std::filesystem::directory_iterator(folder.path / "machine_log"))
+    std::ofstream(file.path(), std::ios::app) << "{\"event\": \"no";
   const Json all = log.newest(4, true), notes = log.newest(100, false);
   ASSERT_EQ(all.size(), 4u);
   EXPECT_GE(all[0]["unix_s"].get<double>(), all[3]["unix_s"].get<double>());

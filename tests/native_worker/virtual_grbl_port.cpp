@@ -37,18 +37,27 @@ int main(int argc, char** argv) {
     pollfd waits[2] = {{port, POLLIN, 0}, {STDIN_FILENO, POLLIN, 0}};
     ::poll(waits, 2, 2);
     char buffer[4096];
-    if (const ssize_t count = ::read(port, buffer, sizeof buffer); count > 0) machine.receive({buffer, static_cast<std::size_t>(count)}, now_s());
+    if (const ssize_t count = ::read(port, buffer, sizeof buffer); count > 0)
+      machine.receive({buffer, static_cast<std::size_t>(count)}, now_s());
     machine.advance(now_s());
     outgoing += machine.take_output();
     if (!outgoing.empty())
-      if (const ssize_t count = ::write(port, outgoing.data(), outgoing.size()); count > 0) outgoing.erase(0, static_cast<std::size_t>(count));
+      if (const ssize_t count = ::write(port, outgoing.data(), outgoing.size()); count > 0)
+        outgoing.erase(0, static_cast<std::size_t>(count));
     if (waits[1].revents != 0) {
       const ssize_t count = ::read(STDIN_FILENO, buffer, sizeof buffer);
       if (count <= 0) return 0;
       double burnt_mm = 0;
       for (const auto& burn : machine.burns()) burnt_mm += std::hypot(burn.to_mm[0] - burn.from_mm[0], burn.to_mm[1] - burn.from_mm[1]);
-      std::cout << Json{{"state", machine.state()}, {"beam", machine.beam()}, {"burns", machine.burns().size()}, {"burnt_mm", burnt_mm},
-                        {"bytes_lost", machine.bytes_lost()}, {"lines", machine.lines().size()}, {"position_mm", machine.position_mm()}}.dump() << std::endl;
+      std::cout << Json{{"state", machine.state()},
+                        {"beam", machine.beam()},
+                        {"burns", machine.burns().size()},
+                        {"burnt_mm", burnt_mm},
+                        {"bytes_lost", machine.bytes_lost()},
+                        {"lines", machine.lines().size()},
+                        {"position_mm", machine.position_mm()}}
+                       .dump()
+                << std::endl;
     }
   }
 }

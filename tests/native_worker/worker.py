@@ -108,6 +108,7 @@ class PageSocket:
         return data
 
     def receive(self):
+        text = b""
         while True:
             first, second = self._exactly(2)
             length = second & 0x7F
@@ -116,8 +117,10 @@ class PageSocket:
             elif length == 127:
                 length = struct.unpack(">Q", self._exactly(8))[0]
             payload = self._exactly(length)
-            if first & 0x0F == 1:
-                return json.loads(payload)
+            if first & 0x0F in (0, 1):  # long messages come in several frames
+                text += payload
+                if first & 0x80:
+                    return json.loads(text)
             if first & 0x0F == 9:  # a server that hears no answer takes the page for gone
                 self.send_frame(0x8A, payload)
             if first & 0x0F == 8:

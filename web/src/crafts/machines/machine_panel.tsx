@@ -163,7 +163,9 @@ function Position({ state }: { readonly state: MachineState }) {
 }
 
 const jogSpeed_mm_per_s = 60;
-/** While a key is held the head is given this much of its way at a time: when the page hangs, it does not go far. */
+/** While a key is held the head is given this much of its way at a time: when the page hangs, it does not go far. Longer than
+ *  the driver waits between two reports, which every jog begins anew. */
+const portion_s = 0.3;
 const ahead_s = 0.15;
 const heldAfter_ms = 250;
 
@@ -180,11 +182,12 @@ function Jog({ session }: { readonly session: MachinesSession }) {
       speed_mm_per_s: jogSpeed_mm_per_s,
     });
   const goOn = async (x: number, y: number) => {
+    const first = held.current !== 'moving';
     held.current = 'moving';
-    const taken = await jog(x, y, ahead_s * jogSpeed_mm_per_s);
+    const taken = await jog(x, y, (portion_s + (first ? ahead_s : 0)) * jogSpeed_mm_per_s);
     if (held.current !== 'moving')
       void control.command({ do: 'jog_cancel' }); // let go meanwhile
-    else if (taken) timer.current = setTimeout(() => void goOn(x, y), 1000 * ahead_s);
+    else if (taken) timer.current = setTimeout(() => void goOn(x, y), 1000 * portion_s);
   };
   const press = (x: number, y: number) => {
     clearTimeout(timer.current);

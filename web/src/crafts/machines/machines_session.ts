@@ -48,7 +48,8 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
     const catalog = this.services.catalog.value;
     return (catalog && findOperation(catalog, laserJob)) ?? null;
   });
-  readonly hasWork = computed(() => this.document.value.drawing !== null || this.control.link.value !== null);
+  /** The machine's panel is there without a drawing. */
+  readonly hasWork = signal(true);
   readonly profiles = new ProfileStore(localStorage);
   readonly log = new JobLog(localStorage);
   readonly control = new MachineControl(this.log);

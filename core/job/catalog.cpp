@@ -27,6 +27,7 @@ const std::vector<Operation>& operations() {
       laser_job_operation(),
       mill_job_operation(),
       test_grid_operation(),
+      page_tiles_operation(),
       import_operation(), simplify_operation(), subdivide_operation(), convert_operation()};
   return all;
 }

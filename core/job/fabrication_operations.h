@@ -5,5 +5,6 @@
 namespace formwright {
 Operation laser_job_operation();
 Operation mill_job_operation();
+Operation page_tiles_operation();
 Operation test_grid_operation();
 }

@@ -54,7 +54,7 @@ Operation laser_job_operation() {
   Operation operation;
   operation.name = "laser-job";
   operation.title = "Laser job";
-  operation.summary = "Turns a drawing into a job for a laser cutter: kerf, order, tabs, passes, power and speed, and the time it takes.";
+  operation.summary = "Turns a drawing into a laser cutter's job: kerf, order, tabs, power, speed and time.";
   operation.inputs = inputs();
   operation.parameters = describe_parameters<LaserOptions>();
   operation.outputs = laser_job_outputs();

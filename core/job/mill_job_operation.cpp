@@ -169,7 +169,7 @@ Operation mill_job_operation() {
   Operation operation;
   operation.name = "mill-job";
   operation.title = "Mill job";
-  operation.summary = "Carves a relief or a height map: roughing in layers, finishing line by line, and how far the tool's shape falls short.";
+  operation.summary = "Carves a relief or a height map in layers and lines, and says how far the tool falls short.";
   operation.inputs = inputs();
   operation.parameters = describe_parameters<MillOptions>();
   operation.outputs = outputs();

@@ -36,7 +36,7 @@ Operation test_grid_operation() {
   Operation operation;
   operation.name = "test-grid";
   operation.title = "Laser test";
-  operation.summary = "Makes a laser job that shows which power and speed a material needs, how wide the beam burns, or where its focus is.";
+  operation.summary = "Shows which power and speed a material needs, how wide the beam burns or where its focus is.";
   operation.parameters = describe_parameters<TestGridOptions>();
   operation.outputs = outputs();
   operation.report = laser_report_fields();

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Laser jobs as programs read them that nobody here wrote: G-code by gcodeparser, what it burns by shapely, EGV and RD by MeerK40t's readers,
-EGV against the bytes of MeerK40t's own driver.
+EGV against the bytes of MeerK40t's own driver; pages by poppler.
 Usage: other_readers.py PROGRAM. Needs shapely (setup/apt_packages_test.txt) and PYTHONPATH from setup/python_packages.sh."""
 import json
 import math
 import pathlib
 import random
+import re
 import subprocess
 import sys
 import tempfile
@@ -18,6 +19,7 @@ from meerk40t.lihuiyu.driver import LihuiyuDriver
 from meerk40t.lihuiyu.laserspeed import LaserSpeed
 from meerk40t.lihuiyu.parser import LihuiyuParser
 from meerk40t.ruida.rdjob import RDJob, decode_bytes, parse_commands
+from PIL import Image, ImageChops, ImageOps
 from shapely.geometry import LineString, Point, Polygon
 from shapely.ops import unary_union
 
@@ -274,6 +276,68 @@ class Jobs(unittest.TestCase):
         for name in ("job.gcode", "job.egv", "job.rd"):
             self.assertFalse((self.folder / name).exists(), name)
         self.assertTrue((self.folder / "toolpath.json").exists())
+
+
+class Pages(unittest.TestCase):
+    """page-tiles, rendered by poppler at the picture's own resolution and put together again."""
+
+    def setUp(self):
+        self.place = tempfile.TemporaryDirectory()
+        self.folder = pathlib.Path(self.place.name)
+
+    def tearDown(self):
+        self.place.cleanup()
+
+    def pages(self, source, *flags):
+        subprocess.run([PROGRAM, "page-tiles", "--drawing", str(source), "--out", str(self.folder), *flags], check=True, capture_output=True, timeout=120)
+        report = json.loads((self.folder / "report.json").read_text())
+        info = subprocess.run(["pdfinfo", str(self.folder / "pages.pdf")], check=True, capture_output=True, text=True).stdout
+        self.assertEqual(int(re.search(r"Pages: +(\d+)", info)[1]), report["pages"])
+        size = [float(v) * 25.4 / 72 for v in re.search(r"Page size: +([\d.]+) x ([\d.]+)", info).groups()]
+        for told, meant in zip(size, report["page_mm"]):
+            self.assertAlmostEqual(told, meant, delta=0.02)
+        # 254 dots an inch: a pixel is 0.1 mm.
+        subprocess.run(["pdftoppm", "-r", "254", "-gray", "-png", str(self.folder / "pages.pdf"), str(self.folder / "page")], check=True, timeout=120)
+        return report, [Image.open(p).convert("L") for p in sorted(self.folder.glob("page-*.png"))]
+
+    def put_together(self, report, pages, margin, overlap):
+        width, height = (round(10 * v) for v in report["page_mm"])
+        room = (width - 20 * margin, height - 20 * margin)
+        whole = Image.new("L", [round(10 * v) for v in report["size_mm"]], 255)
+        for i, page in enumerate(pages):
+            c, r = i % report["columns"], i // report["columns"]
+            part = page.crop((10 * margin, 10 * margin, 10 * margin + room[0], 10 * margin + room[1]))
+            whole.paste(part, (c * (room[0] - 10 * overlap), r * (room[1] - 10 * overlap)))
+        return whole
+
+    def test_a_picture_over_pages_is_the_picture(self):
+        rng = random.Random(3)
+        coarse = Image.new("L", (30, 25))
+        coarse.putdata([rng.randint(0, 255) for _ in range(750)])
+        picture = coarse.resize((3000, 2500), Image.NEAREST)
+        picture.save(self.folder / "picture.png")
+        for mirrored in (False, True):
+            report, pages = self.pages(self.folder / "picture.png", "--width-mm", "300", "--overlap-mm", "10", "--marks", "off", "--ruler", "off", "--media", "a4",
+                                       "--margin-left-mm", "10", "--margin-right-mm", "10", "--margin-top-mm", "10", "--margin-bottom-mm", "10",
+                                       "--turn", "upright", "--mirrored", "on" if mirrored else "off")
+            self.assertEqual((report["columns"], report["rows"]), (2, 1))
+            whole = self.put_together(report, pages, 10, 10)
+            meant = ImageOps.mirror(picture) if mirrored else picture
+            wrong = ImageChops.difference(whole, meant).point(lambda v: 255 if v > 4 else 0)
+            self.assertLess(sum(wrong.histogram()[128:]) / (3000 * 2500), 0.03)  # edges of the coarse pixels only
+
+    def test_a_drawing_has_its_size_and_the_ruler_its_hundred_millimetres(self):
+        (self.folder / "d.svg").write_text('<svg width="250mm" height="60mm" viewBox="0 0 250 60"><rect x="20" y="20" width="220" height="30" fill="none" stroke="red"/></svg>')
+        report, pages = self.pages(self.folder / "d.svg", "--turn", "upright", "--marks", "off")
+        self.assertEqual(report["pages"], 2)
+        whole = self.put_together(report, pages, 8, 10)
+        dark = ImageOps.invert(whole).point(lambda v: 255 if v > 128 else 0)
+        left, top, right, bottom = dark.crop((150, 150, 2450, 560)).getbbox()
+        self.assertAlmostEqual((right - left) / 10, 220.2, delta=0.25)
+        self.assertAlmostEqual((bottom - top) / 10, 30.2, delta=0.25)
+        strip = ImageOps.invert(pages[0]).crop((0, pages[0].height - 60, 1090, pages[0].height)).point(lambda v: 255 if v > 100 else 0)
+        left, _, right, _ = strip.getbbox()
+        self.assertAlmostEqual((right - left) / 10, 100.15, delta=0.25)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// A picture or a drawing at exact size over as many pages as it takes.
+#include <string>
+#include <vector>
+
+#include "base/context.h"
+#include "base/parameters.h"
+#include "fabrication/cut_sheet.h"
+#include "imaging/image.h"
+
+namespace formwright {
+
+enum class PageMedia { a4, a3, a2, letter, tabloid, custom };
+template <>
+struct EnumNames<PageMedia> {
+  static constexpr std::array<std::string_view, 6> names{"a4", "a3", "a2", "letter", "tabloid", "custom"};
+  static constexpr std::array<std::string_view, 6> labels{"A4", "A3", "A2", "Letter", "Tabloid", "Own size"};
+};
+
+enum class PageTurn { automatic, upright, sideways };
+template <>
+struct EnumNames<PageTurn> {
+  static constexpr std::array<std::string_view, 3> names{"automatic", "upright", "sideways"};
+  static constexpr std::array<std::string_view, 3> labels{"Whichever takes fewer pages", "Upright", "Sideways"};
+};
+
+struct PageTilesOptions {
+  PageMedia media = PageMedia::a4;
+  double media_width_mm = 210, media_height_mm = 297;
+  PageTurn turn = PageTurn::automatic;
+  double margin_left_mm = 8, margin_right_mm = 8, margin_top_mm = 8, margin_bottom_mm = 8;
+  double overlap_mm = 10;
+  std::optional<double> width_mm;
+  bool mirrored = false, marks = true, ruler = true;
+
+  static constexpr auto parameters = std::tuple{
+      parameter("media", &PageTilesOptions::media, "Paper", "What the printer is loaded with.").group("Pages"),
+      parameter("media_width_mm", &PageTilesOptions::media_width_mm, "Paper width", unit::mm, 30, 5000, "Of an own size.").group("Pages").slider(50, 1000),
+      parameter("media_height_mm", &PageTilesOptions::media_height_mm, "Paper height", unit::mm, 30, 5000, "Of an own size.").group("Pages").slider(50, 1500),
+      parameter("turn", &PageTilesOptions::turn, "Turn", "Which way the pages lie.").group("Pages"),
+      parameter("margin_left_mm", &PageTilesOptions::margin_left_mm, "Left margin", unit::mm, 0, 200, "That the printer leaves white, as the page lies.").group("Pages").slider(0, 25),
+      parameter("margin_right_mm", &PageTilesOptions::margin_right_mm, "Right margin", unit::mm, 0, 200, "That the printer leaves white, as the page lies.").group("Pages").slider(0, 25),
+      parameter("margin_top_mm", &PageTilesOptions::margin_top_mm, "Top margin", unit::mm, 0, 200, "That the printer leaves white, as the page lies.").group("Pages").slider(0, 25),
+      parameter("margin_bottom_mm", &PageTilesOptions::margin_bottom_mm, "Bottom margin", unit::mm, 0, 200, "That the printer leaves white, as the page lies.").group("Pages").slider(0, 25),
+      parameter("overlap_mm", &PageTilesOptions::overlap_mm, "Overlap", unit::mm, 0, 100, "Of neighbouring pages, to glue them.").group("Pages").slider(0, 30),
+      parameter("width_mm", &PageTilesOptions::width_mm, "Width", unit::mm, 1, 20'000, "Of the whole; auto: as the file says.").group("Size").slider(20, 1000),
+      parameter("mirrored", &PageTilesOptions::mirrored, "Mirrored", "Left and right exchanged in the document: for transfer and for printing on the back.").group("Size"),
+      parameter("marks", &PageTilesOptions::marks, "Marks", "Crosses in the overlaps, a frame and the page's place.").group("Marks"),
+      parameter("ruler", &PageTilesOptions::ruler, "Ruler", "100 mm on the first page, to check that nothing has scaled it.").group("Marks")};
+};
+
+/// What goes onto the pages: a picture with square pixels of `pixel_mm`, or a drawing.
+struct PageContent {
+  const Image* picture = nullptr;
+  const CutSheet* drawing = nullptr;
+  double width_mm = 0, height_mm = 0;
+};
+
+struct PageTiles {
+  Bytes pdf;
+  int columns = 0, rows = 0;
+  double page_width_mm = 0, page_height_mm = 0;
+  std::vector<std::string> notes;
+};
+
+/// Pages from the upper left, row by row, each showing its part at exact size. Throws Error: invalid_input ("overlap_mm", "margin_left_mm": no room is left
+/// on a page; "width_mm": over 400 pages), could_not_solve (libharu), cancelled.
+PageTiles make_page_tiles(const PageContent& content, const PageTilesOptions& options, Context& context);
+
+}  // namespace formwright

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fabrication/page_tiles.h"
+#include "fabrication/svg_reader.h"
+#include "geometry/io/png16.h"
+#include "imaging/picture_reader.h"
+#include "job/fabrication_operations.h"
+#include "job/model_input.h"
+
+namespace formwright {
+namespace {
+
+std::vector<OutputInfo> outputs() { return {{"pages.pdf", "application/pdf", "Pages", "At exact size: print at 100 %, without fitting to the page.", true}}; }
+
+OperationResult run(const OperationCall& call) {
+  const auto options = read_parameters<PageTilesOptions>(call.parameters);
+  Context& context = call.context;
+  Stopwatch watch;
+  const InputBlob& input = call.inputs.at("drawing");
+  const std::string_view text = as_text(*input.bytes);
+  const bool png = text.substr(0, 4) == "\x89PNG", jpeg = text.substr(0, 2) == "\xff\xd8";
+  context.progress(0, "Reading");
+  PageContent content;
+  Image picture;
+  SvgDrawing drawing;
+  if (png || jpeg) {
+    picture = read_picture(*input.bytes, input.file_name, "drawing");
+    double width = options.width_mm.value_or(0);
+    if (width <= 0 && png) width = read_png16(*input.bytes, input.file_name, "drawing").pixel_width_mm * picture.width;
+    if (width <= 0) throw Error(ErrorCode::invalid_input, "width_mm", "The picture does not tell its size: give its width.");
+    content = {&picture, nullptr, width, width * picture.height / picture.width};
+  } else {
+    drawing = read_svg_drawing(*input.bytes, {}, context);
+    const double width = options.width_mm.value_or(drawing.sheet.width_mm);
+    content = {nullptr, &drawing.sheet, width, width * drawing.sheet.height_mm / drawing.sheet.width_mm};
+  }
+  PageTiles tiles = make_page_tiles(content, options, context);
+  OperationResult result;
+  if (call.wants("pages.pdf")) result.outputs.push_back(make_output(outputs().front(), std::move(tiles.pdf)));
+  tiles.notes.insert(tiles.notes.begin(), drawing.notes.begin(), drawing.notes.end());
+  result.report["pages"] = tiles.columns * tiles.rows;
+  result.report["columns"] = tiles.columns;
+  result.report["rows"] = tiles.rows;
+  result.report["page_mm"] = {tiles.page_width_mm, tiles.page_height_mm};
+  result.report["size_mm"] = {content.width_mm, content.height_mm};
+  result.report["seconds_total"] = watch.seconds();
+  result.report["peak_memory_mb"] = context.peak_memory_mb();
+  result.report["notes"] = tiles.notes;
+  return result;
+}
+
+}  // namespace
+
+Operation page_tiles_operation() {
+  Operation operation;
+  operation.name = "page-tiles";
+  operation.title = "Pages";
+  operation.summary = "Lays a picture or a drawing at exact size onto a printer's pages, with marks to join them.";
+  InputInfo content;
+  content.name = "drawing";
+  content.label = "Picture or drawing";
+  content.help = "PNG or JPEG, or an SVG, whose lines are drawn in black.";
+  content.extensions = {"svg", "png", "jpg", "jpeg"};
+  operation.inputs = {content};
+  operation.parameters = describe_parameters<PageTilesOptions>();
+  operation.outputs = outputs();
+  operation.report = {{"pages", "Pages", "", "in all"},
+                      {"columns", "Columns", "", "of pages"},
+                      {"rows", "Rows", "", "of pages"},
+                      {"page_mm", "Page", "mm", "width and height as it lies"},
+                      {"size_mm", "Size", "mm", "of the whole"},
+                      {"seconds_total", "Time", "s", "for all"},
+                      {"peak_memory_mb", "Peak memory", "MB", "of the process"},
+                      {"notes", "Notes", "", "what to know, in words"}};
+  operation.check = [](const Json& parameters) { read_parameters<PageTilesOptions>(parameters); };
+  operation.run = run;
+  return operation;
+}
+
+}  // namespace formwright

@@ -46,7 +46,7 @@ extern "C" {
 
 EMSCRIPTEN_KEEPALIVE const char* fw_machine_options() {
   Json list = Json::array();
-  for (const ParameterInfo& info : describe_parameters<MachineOptions>()) {
+  for (const ParameterInfo& info : describe_parameters<DriverOptions>()) {
     list.push_back(parameter_schema(info));
     list.back()["name"] = info.name;
   }

@@ -149,8 +149,14 @@ void GrblDriver::hear_answer(std::optional<int> error, double now_s) {
 
 void GrblDriver::hear_report(const GrblReport& report, double now_s) {
   asked_s_ = std::min(asked_s_, now_s);
-  if (connection_ == MachineConnection::greeting && identifying_ == 0 && by_hand_.empty()) identify();
   phase_ = report.phase;
+  // A machine that works or is held reads no lines: what it is will be asked when it rests.
+  const bool reads_lines = phase_ == MachinePhase::idle || phase_ == MachinePhase::alarm;
+  const bool unknown_yet = connection_ == MachineConnection::greeting || (connection_ == MachineConnection::ready && settings_.empty());
+  if (unknown_yet && identifying_ == 0 && by_hand_.empty() && stream_.empty() && !job_active()) {
+    if (reads_lines) identify();
+    else connection_ = MachineConnection::ready;
+  }
   if (report.offset_mm) offset_mm_ = report.offset_mm;
   if (report.machine_mm) machine_mm_ = report.machine_mm;
   if (report.work_mm) work_mm_ = report.work_mm;
@@ -285,7 +291,7 @@ Json GrblDriver::state(double now_s) const {
   state["machine_mm"] = place(machine_mm_);
   state["work_mm"] = place(work_mm_);
   state["speed_mm_per_s"] = feed_mm_per_min_ / 60;
-  state["power_percent"] = 100 * power_ / setting(30, 1000);
+  state["power_percent"] = setting(30, 1000) > 0 ? 100 * power_ / setting(30, 1000) : 0;
   if (job_) state["job"]["careful_line"] = careful_line();
   if (alarm_) {
     const GrblWords words = grbl_alarm(*alarm_);

@@ -18,7 +18,7 @@ namespace formwright {
 
 class GrblDriver final : public MachineDriver {
  public:
-  explicit GrblDriver(const MachineOptions& options) : options_(options) {}
+  explicit GrblDriver(const DriverOptions& options) : options_(options) {}
 
   void opened(double now_s) override;
   void closed(double now_s) override;
@@ -70,7 +70,7 @@ class GrblDriver final : public MachineDriver {
   double speed_mm_per_min(const Json& command, double fallback_mm_per_s) const;
   bool homes() const { return setting(22, 0) != 0; }
 
-  MachineOptions options_;
+  DriverOptions options_;
   MachineConnection connection_ = MachineConnection::closed;
   MachinePhase phase_ = MachinePhase::unknown;
   std::string firmware_, option_letters_;

@@ -22,7 +22,7 @@ std::vector<std::string> k40_packets(std::string_view egv);
 
 class K40Driver final : public MachineDriver {
  public:
-  explicit K40Driver(const MachineOptions& options) : options_(options) {}
+  explicit K40Driver(const DriverOptions& options) : options_(options) {}
 
   void opened(double now_s) override;
   void closed(double now_s) override;
@@ -40,7 +40,7 @@ class K40Driver final : public MachineDriver {
   std::vector<std::string> possible_commands() const;
   MachinePhase phase() const;
 
-  MachineOptions options_;
+  DriverOptions options_;
   MachineConnection connection_ = MachineConnection::closed;
   std::vector<std::string> program_;
   std::string program_name_;

@@ -79,12 +79,12 @@ Json MachineDriver::common_state(const char* controller, MachineConnection conne
 }
 
 std::unique_ptr<MachineDriver> make_machine_driver(const Json& options) {
-  const auto read = read_parameters<MachineOptions>(options);
+  const auto read = read_parameters<DriverOptions>(options);
   switch (read.controller) {
-    case Controller::grbl: return std::make_unique<GrblDriver>(read);
-    case Controller::marlin: return std::make_unique<MarlinDriver>(read);
-    case Controller::k40: return std::make_unique<K40Driver>(read);
-    case Controller::ruida: return std::make_unique<RuidaDriver>(read);
+    case DriverController::grbl: return std::make_unique<GrblDriver>(read);
+    case DriverController::marlin: return std::make_unique<MarlinDriver>(read);
+    case DriverController::k40: return std::make_unique<K40Driver>(read);
+    case DriverController::ruida: return std::make_unique<RuidaDriver>(read);
   }
   machines_detail::refuse("controller", "There is no driver for this controller: choose another.");
 }

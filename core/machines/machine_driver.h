@@ -10,7 +10,7 @@
 
 #include "base/bytes.h"
 #include "base/json.h"
-#include "machines/machine_options.h"
+#include "machines/driver_options.h"
 
 namespace formwright {
 
@@ -81,7 +81,7 @@ class MachineDriver {
   Json events_ = Json::array();
 };
 
-/// `options` as MachineOptions. Throws Error invalid_input.
+/// `options` as DriverOptions. Throws Error invalid_input.
 std::unique_ptr<MachineDriver> make_machine_driver(const Json& options);
 
 // ---- what drivers share ----

@@ -18,7 +18,7 @@ std::string numbered_line(int number, std::string_view line);
 
 class MarlinDriver final : public MachineDriver {
  public:
-  explicit MarlinDriver(const MachineOptions& options) : options_(options) {}
+  explicit MarlinDriver(const DriverOptions& options) : options_(options) {}
 
   void opened(double now_s) override;
   void closed(double now_s) override;
@@ -51,7 +51,7 @@ class MarlinDriver final : public MachineDriver {
   void start(const Json& command, double now_s);
   void check_reach(const GcodeBounds& bounds) const;
 
-  MachineOptions options_;
+  DriverOptions options_;
   MachineConnection connection_ = MachineConnection::closed;
   std::string firmware_;
   GcodeProgram program_;

@@ -20,7 +20,7 @@ std::vector<Bytes> ruida_datagrams(ByteView rd_file);
 
 class RuidaDriver final : public MachineDriver {
  public:
-  explicit RuidaDriver(const MachineOptions& options) : options_(options) {}
+  explicit RuidaDriver(const DriverOptions& options) : options_(options) {}
 
   void opened(double now_s) override;
   void closed(double now_s) override;
@@ -38,7 +38,7 @@ class RuidaDriver final : public MachineDriver {
   std::vector<std::string> possible_commands() const;
   MachinePhase phase() const;
 
-  MachineOptions options_;
+  DriverOptions options_;
   MachineConnection connection_ = MachineConnection::closed;
   std::vector<Bytes> program_;
   std::string program_name_;

@@ -78,6 +78,7 @@ class VirtualGrbl {
   int act_on_setting(const std::string& line);
   int act_on_gcode(const std::string& line, bool jog);
   int add_arc(const std::array<double, 3>& to_mm, double i_mm, double j_mm, const Block& like);
+  int write_eeprom();
   int add_block(const Block& block);
   void report();
   void answer(int error);

@@ -71,8 +71,13 @@ int VirtualGrbl::act_on_setting(const std::string& line) {
   if (!settings_.contains(static_cast<int>(number))) return 3;
   if (value < 0) return 4;
   settings_[static_cast<int>(number)] = value;
-  deaf_until_s_ = time_s_ + options_.eeprom_s;
-  return 0;
+  return write_eeprom();
+}
+
+int VirtualGrbl::write_eeprom() {
+  // Nothing is heard meanwhile; the answer comes when it is written.
+  deaf_until_s_ = dwell_until_s_ = time_s_ + options_.eeprom_s;
+  return -1;
 }
 
 int VirtualGrbl::act_on_gcode(const std::string& line, bool jog) {
@@ -138,9 +143,8 @@ int VirtualGrbl::act_on_gcode(const std::string& line, bool jog) {
     for (std::size_t k = 0; k < 3; ++k)
       if (target[k]) next.offset_mm[k] = offset_absolute ? *target[k] : planned_mm_[k] - *target[k];
     modes_ = next;
-    deaf_until_s_ = time_s_ + options_.eeprom_s;
     reports_ = 0;
-    return 0;
+    return write_eeprom();
   }
   if (jog && (!moves || next.feed_mm_per_min <= 0)) return moves ? 22 : 26;
   const bool cuts = next.motion > 0;

@@ -36,6 +36,27 @@ TEST(GrblDriver, ConnectsToABoardThatDoesNotReset) {
   EXPECT_EQ(talk.phase(), "idle");
 }
 
+TEST(GrblDriver, ConnectsToAMachineThatIsHeld) {
+  VirtualGrblOptions options;
+  options.resets_on_open = false;
+  GrblTalk talk(options);
+  talk.connect_and_home();
+  talk.load(square);
+  talk.tell(start);
+  ASSERT_TRUE(talk.pass_until([&] { return talk.machine.beam(); }, 10));
+  talk.tell({{"do", "pause"}});
+  ASSERT_TRUE(talk.pass_until([&] { return talk.phase() == "paused"; }, 2));
+  talk.driver.closed(talk.now_s);
+  talk.driver.opened(talk.now_s);
+  talk.connect();
+  EXPECT_EQ(talk.phase(), "paused");
+  EXPECT_TRUE(talk.can("resume"));
+  talk.tell(stop);
+  talk.pass(3);
+  EXPECT_EQ(talk.phase(), "idle");
+  EXPECT_EQ(talk.state()["firmware"], "1.1h.20190825");  // asked for once it rests
+}
+
 TEST(GrblDriver, NothingMovesOrFiresWithoutConfirmation) {
   GrblTalk talk;
   talk.connect();

@@ -89,7 +89,7 @@ class VirtualBoard {
 };
 
 struct K40Talk {
-  explicit K40Talk(std::uint64_t seed = 1, double spoil = 0) : board(seed, spoil), driver({.controller = Controller::k40, .bed_x_mm = 300, .bed_y_mm = 200}) { driver.opened(0); }
+  explicit K40Talk(std::uint64_t seed = 1, double spoil = 0) : board(seed, spoil), driver({.controller = DriverController::k40, .bed_x_mm = 300, .bed_y_mm = 200}) { driver.opened(0); }
   void pass(double seconds) {
     for (const double end = now_s + seconds; now_s < end; now_s += 0.01) {
       for (const Bytes& packet : driver.take_output())
@@ -223,7 +223,7 @@ class VirtualRuida {
 };
 
 struct RuidaTalk {
-  explicit RuidaTalk(double lose = 0) : laser(1, lose), driver({.controller = Controller::ruida}) { driver.opened(0); }
+  explicit RuidaTalk(double lose = 0) : laser(1, lose), driver({.controller = DriverController::ruida}) { driver.opened(0); }
   void pass(double seconds) {
     for (const double end = now_s + seconds; now_s < end; now_s += 0.01) {
       for (const Bytes& packet : driver.take_output())

@@ -60,7 +60,7 @@ class VirtualMarlin {
 };
 
 struct MarlinTalk {
-  explicit MarlinTalk(double spoil = 0, std::uint64_t seed = 1, MachineTool tool = MachineTool::printer) : machine(seed, spoil), driver({.controller = Controller::marlin, .tool = tool}) { driver.opened(0); }
+  explicit MarlinTalk(double spoil = 0, std::uint64_t seed = 1, MachineTool tool = MachineTool::printer) : machine(seed, spoil), driver({.controller = DriverController::marlin, .tool = tool}) { driver.opened(0); }
   void pass(double seconds) {
     for (const double end = now_s + seconds; now_s < end; now_s += 0.01) {
       for (const Bytes& packet : driver.take_output()) machine.receive(as_text(packet));

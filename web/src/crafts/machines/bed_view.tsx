@@ -109,7 +109,7 @@ export function BedView({
 function words(session: MachinesSession): string {
   const plan = session.plan.value;
   if (plan === null) return 'The bed, empty';
-  const mm = (value: number) => formatNumber(value, 4);
+  const mm = (value: number) => formatNumber(value, 3);
   const bounds = workBounds(plan.toolPath);
   const bed = withUnit(plan.toolPath.bed_mm.map(mm).join(' × '), 'mm');
   const job = bounds

@@ -19,5 +19,11 @@ export const solverParts: readonly SolverPart[] = [
   { name: 'libpng', licence: 'libpng-2.0', use: 'pictures', include: 'png' },
   { name: 'libharu', licence: 'Zlib', use: 'pages to print', include: 'hpdf' },
   { name: 'stb_image', licence: 'MIT or public domain', use: 'JPEG pictures', include: 'stb_image' },
+  { name: 'pugixml', licence: 'MIT', use: 'drawings', include: 'pugixml' },
+  { name: 'SVG++', licence: 'BSL-1.0', use: 'drawings', include: 'svgpp' },
+  { name: 'Clipper', licence: 'BSL-1.0', use: 'kerf', include: 'polyclipping' },
+  { name: 'CUPS', licence: 'Apache-2.0', use: 'printers, in the native worker', include: 'cups' },
+  { name: 'QPDF', licence: 'Apache-2.0', use: 'pages to print, in the native worker', include: 'qpdf' },
+  { name: 'curl', licence: 'curl', use: 'uploads, in the native worker', include: 'curl' },
   { name: 'zlib', licence: 'Zlib', use: 'compressed files', include: 'zlib' },
 ];

@@ -93,6 +93,14 @@ function MaterialSection({ session }: { readonly session: MachinesSession }) {
   const fits = (parameters: JsonObject) =>
     Object.entries(parameters).every(([name, value]) => session.value(name) === value);
   const chosen = materials.findIndex(({ parameters }) => fits(parameters));
+  const start = session.services.catalog.value?.laser_materials;
+  const beginning = chosen < 0 ? start?.materials.find(({ parameters }) => fits(parameters)) : undefined;
+  const choose = (value: string) => {
+    const own = materials[Number(value)];
+    if (own) session.setParameters(own.parameters, `Use ${own.name}`);
+    const given = start?.materials.find(({ name }) => name === value);
+    if (given) session.setParameters(given.parameters, `Use ${given.title}`);
+  };
   const keep = (name: string) => {
     const others = materials.filter((material) => material.name !== name);
     profiles.put({ ...profiles.current, materials: [...others, { name, parameters: setNow() }] });
@@ -105,20 +113,37 @@ function MaterialSection({ session }: { readonly session: MachinesSession }) {
         <select
           id="material-preset"
           class="select"
-          value={String(chosen)}
-          onChange={(event) => {
-            const material = materials[Number(event.currentTarget.value)];
-            if (material) session.setParameters(material.parameters, `Use ${material.name}`);
-          }}
+          value={beginning?.name ?? String(chosen)}
+          onChange={(event) => choose(event.currentTarget.value)}
         >
-          <option value="-1">{materials.length === 0 ? 'None kept yet' : 'As set below'}</option>
-          {materials.map(({ name }, index) => (
-            <option key={name} value={String(index)}>
-              {name}
-            </option>
+          <option value="-1">As set below</option>
+          {materials.length > 0 ? (
+            <optgroup label={`Kept with ${profiles.current.name}`}>
+              {materials.map(({ name }, index) => (
+                <option key={name} value={String(index)}>
+                  {name}
+                </option>
+              ))}
+            </optgroup>
+          ) : null}
+          {start?.lasers.map((laser) => (
+            <optgroup key={laser.name} label={`To begin with: ${laser.title}`}>
+              {start.materials
+                .filter((material) => material.laser === laser.name)
+                .map(({ name, title }) => (
+                  <option key={name} value={name}>
+                    {title}
+                  </option>
+                ))}
+            </optgroup>
           ))}
         </select>
       </div>
+      {beginning ? (
+        <p class="hint">
+          {start?.note} {beginning.hint}
+        </p>
+      ) : null}
       <div class="material-actions">
         <Button size="small" kind="quiet" onClick={() => (naming.value = materials[chosen]?.name ?? '')}>
           Keep what is set as a material

@@ -128,6 +128,7 @@ TEST(print_media, database_ready_margins_and_names) {
       ippAddInteger(size, IPP_TAG_ZERO, IPP_TAG_INTEGER, "x-dimension", x);
       ippAddInteger(size, IPP_TAG_ZERO, IPP_TAG_INTEGER, "y-dimension", y);
       ippAddCollection(media, IPP_TAG_ZERO, "media-size", size);
+      ippDelete(size);
       for (const char* margin : {"media-left-margin", "media-right-margin"})
         ippAddInteger(media, IPP_TAG_ZERO, IPP_TAG_INTEGER, margin, side);
       for (const char* margin : {"media-top-margin", "media-bottom-margin"})
@@ -135,6 +136,7 @@ TEST(print_media, database_ready_margins_and_names) {
       all.push_back(media);
     }
     ippAddCollections(answer, IPP_TAG_PRINTER, name, static_cast<int>(all.size()), const_cast<const ipp_t**>(all.data()));
+    for (ipp_t* media : all) ippDelete(media);
   };
   add("media-col-database", {{21000, 29700, 300, 400}, {21000, 29700, 0, 0}, {29700, 42000, 300, 400}, {12345, 6789, 1, 2}});
   add("media-col-ready", {{21000, 29700, 300, 400}});

@@ -10,7 +10,7 @@ namespace formwright {
 namespace {
 
 struct Layout {
-  double page_width_mm, page_height_mm, room_x_mm, room_y_mm, step_x_mm, step_y_mm;
+  double page_width_mm, page_height_mm, left_mm, bottom_mm, room_x_mm, room_y_mm, step_x_mm, step_y_mm;
   int columns, rows;
 };
 
@@ -22,8 +22,14 @@ Layout layout_of(const PageContent& content, const PageTilesOptions& o, bool sid
   constexpr double sizes[][2] = {{210, 297}, {297, 420}, {420, 594}, {215.9, 279.4}, {279.4, 431.8}};
   const auto media = static_cast<std::size_t>(o.media);
   double width = o.media == PageMedia::custom ? o.media_width_mm : sizes[media][0], height = o.media == PageMedia::custom ? o.media_height_mm : sizes[media][1];
-  if (sideways) std::swap(width, height);
-  Layout layout{width, height, width - o.margin_left_mm - o.margin_right_mm, height - o.margin_top_mm - o.margin_bottom_mm, 0, 0, 0, 0};
+  double left = o.margin_left_mm, right = o.margin_right_mm, top = o.margin_top_mm, bottom = o.margin_bottom_mm;
+  if (sideways) {
+    std::swap(width, height);
+    const double across = std::max(o.margin_top_mm, o.margin_bottom_mm), along = std::max(o.margin_left_mm, o.margin_right_mm);
+    left = right = across;
+    top = bottom = along;
+  }
+  Layout layout{width, height, left, bottom, width - left - right, height - top - bottom, 0, 0, 0, 0};
   if (std::min(layout.room_x_mm, layout.room_y_mm) < 10)
     throw Error(ErrorCode::invalid_input, "margin_left_mm", "The margins leave less than 10 mm of the page: make them smaller.");
   layout.step_x_mm = layout.room_x_mm - o.overlap_mm;
@@ -82,17 +88,19 @@ PageTiles make_page_tiles(const PageContent& content, const PageTilesOptions& op
   tiles.rows = layout.rows;
   tiles.page_width_mm = layout.page_width_mm;
   tiles.page_height_mm = layout.page_height_mm;
+  tiles.room_width_mm = layout.room_x_mm;
+  tiles.room_height_mm = layout.room_y_mm;
   PdfDocument document("Pages");
   const int picture = content.picture != nullptr ? document.add_picture(*content.picture) : -1;
   const Drawing drawing = content.drawing != nullptr ? drawn(*content.drawing, content) : Drawing{};
   const Drawing marks = options.marks && options.overlap_mm >= 2 ? crosses(layout, options) : Drawing{};
-  const bool words = options.marks && options.margin_bottom_mm >= 4, has_ruler = options.ruler && options.margin_bottom_mm >= 4 && layout.room_x_mm >= 125;
+  const bool words = options.marks && layout.bottom_mm >= 4, has_ruler = options.ruler && layout.bottom_mm >= 4 && layout.room_x_mm >= 125;
   if (options.ruler && !has_ruler) tiles.notes.push_back("There is no room for the ruler: it needs a lower margin of 4 mm and a page 125 mm wide.");
   for (int r = 0; r < layout.rows; ++r)
     for (int c = 0; c < layout.columns; ++c) {
       context.progress(static_cast<double>(r * layout.columns + c) / (layout.rows * layout.columns), "Pages");
       document.add_page(layout.page_width_mm, layout.page_height_mm);
-      const Vec2 low(options.margin_left_mm, options.margin_bottom_mm), high = low + Vec2(layout.room_x_mm, layout.room_y_mm);
+      const Vec2 low(layout.left_mm, layout.bottom_mm), high = low + Vec2(layout.room_x_mm, layout.room_y_mm);
       // The content's upper left corner on this page; its middle stays where it is when it is mirrored.
       const Vec2 corner(low.x() - c * layout.step_x_mm, high.y() + r * layout.step_y_mm);
       const PagePlacement middle{corner + Vec2(content.width_mm / 2, -content.height_mm / 2), options.mirrored};

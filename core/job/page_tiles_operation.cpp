@@ -41,6 +41,7 @@ OperationResult run(const OperationCall& call) {
   result.report["columns"] = tiles.columns;
   result.report["rows"] = tiles.rows;
   result.report["page_mm"] = {tiles.page_width_mm, tiles.page_height_mm};
+  result.report["room_mm"] = {tiles.room_width_mm, tiles.room_height_mm};
   result.report["size_mm"] = {content.width_mm, content.height_mm};
   result.report["seconds_total"] = watch.seconds();
   result.report["peak_memory_mb"] = context.peak_memory_mb();
@@ -67,6 +68,7 @@ Operation page_tiles_operation() {
                       {"columns", "Columns", "", "of pages"},
                       {"rows", "Rows", "", "of pages"},
                       {"page_mm", "Page", "mm", "width and height as it lies"},
+                      {"room_mm", "Room", "mm", "on a page, within its margins"},
                       {"size_mm", "Size", "mm", "of the whole"},
                       {"seconds_total", "Time", "s", "for all"},
                       {"peak_memory_mb", "Peak memory", "MB", "of the process"},

@@ -326,6 +326,17 @@ class Pages(unittest.TestCase):
             wrong = ImageChops.difference(whole, meant).point(lambda v: 255 if v > 4 else 0)
             self.assertLess(sum(wrong.histogram()[128:]) / (3000 * 2500), 0.03)  # edges of the coarse pixels only
 
+    def test_a_page_that_lies_sideways_keeps_the_wider_margins(self):
+        (self.folder / "d.svg").write_text('<svg width="400mm" height="100mm" viewBox="0 0 400 100"><rect width="400" height="100" fill="black" stroke="red"/></svg>')
+        report, pages = self.pages(self.folder / "d.svg", "--turn", "sideways", "--margin-left-mm", "3", "--margin-right-mm", "5", "--margin-top-mm", "4", "--margin-bottom-mm", "14",
+                                   "--ruler", "off")
+        self.assertEqual(report["room_mm"], [297 - 28, 210 - 10])
+        for page in pages:
+            left, top, right, bottom = ImageOps.invert(page).point(lambda v: 255 if v > 200 else 0).getbbox()
+            self.assertGreaterEqual(left, 138)
+            self.assertGreaterEqual(top, 48)
+            self.assertLessEqual(right, 2970 - 138)
+
     def test_a_drawing_has_its_size_and_the_ruler_its_hundred_millimetres(self):
         (self.folder / "d.svg").write_text('<svg width="250mm" height="60mm" viewBox="0 0 250 60"><rect x="20" y="20" width="220" height="30" fill="none" stroke="red"/></svg>')
         report, pages = self.pages(self.folder / "d.svg", "--turn", "upright", "--marks", "off")

@@ -46,14 +46,20 @@ const PrintMedia& chosen_media(const PrinterDescription& printer, const std::str
   std::string list;
   for (const PrintMedia& m : printer.media)
     if (list.find(m.label) == std::string::npos && list.size() < 160) list += (list.empty() ? "" : ", ") + m.label;
-  refuse("media", printer_name + " does not take " + (name.empty() ? "a sheet without a name" : name) + ": choose one of " +
+  refuse("media", printer_name + " does not take " + name + ": choose one of " +
                       (list.empty() ? "those it is set to" : list) + ".");
+}
+
+/// The sheet that the pages were laid out for.
+const PrintMedia& media_for(const PrinterDescription& printer, const PageSize& page, const std::string& printer_name) {
+  for (const PrintMedia& m : printer.media)  // loaded ones first
+    if (page_matches(m, page)) return *find_print_media(printer.media, m.name);
+  refuse("media", printer_name + " has no sheet of " + millimetres(page) + ": lay the pages out for one that it has.");
 }
 
 /// What can be known before anything is sent.
 CheckedOrder check_order(const PrinterDescription& printer, const PrintOrder& order, const std::string& name) {
   CheckedOrder checked;
-  checked.media = chosen_media(printer, order.media, name);
   if (order.copies < 1 || order.copies > printer.most_copies)
     refuse("copies", name + " prints 1 to " + std::to_string(printer.most_copies) + " copies: choose a number of these.");
   if (order.quality == "draft")
@@ -65,6 +71,7 @@ CheckedOrder check_order(const PrinterDescription& printer, const PrintOrder& or
   if (!printer.qualities.empty() && std::find(printer.qualities.begin(), printer.qualities.end(), order.quality) == printer.qualities.end())
     refuse("quality", name + " has no quality called " + order.quality + ": choose " + printer.qualities.front() + ".");
   const DocumentPages document = read_document_pages(order.document);
+  checked.media = order.media.empty() ? media_for(printer, document.pages.front(), name) : chosen_media(printer, order.media, name);
   checked.media_type = document.media_type;
   if (std::find(printer.formats.begin(), printer.formats.end(), document.media_type) == printer.formats.end())
     refuse("sha256", name + " does not take " + document.media_type + ": add it to the system's printers, which convert, or send " +

@@ -32,7 +32,7 @@ Json printer_json(const PrinterDescription& description);
 struct PrintOrder {
   ByteView document;
   std::string title = "Formwright";
-  std::string media;  // of the printer's own, "A4" or "iso_a4_210x297mm"
+  std::string media;  // of the printer's own, "A4" or "iso_a4_210x297mm"; empty: the one that the first page fits
   int copies = 1;
   std::string quality = "normal";  // draft, normal or high
   bool mirrored = false;           // PDF only

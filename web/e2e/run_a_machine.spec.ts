@@ -255,9 +255,7 @@ test('wrong files are said in words and the work stays', async ({ page }) => {
   await input.setInputFiles(fileOf('notes.nc', 'no moves in here'));
   await expect(page.getByRole('alert').getByText('Could not read notes.nc')).toBeVisible();
   await input.setInputFiles(fileOf('line.nc', 'G21 G90\nM4 S500\nG1 X50 Y0 F3000\nG1 X50 Y20\nM5\n'));
-  await expect(
-    page.getByRole('img', { name: /job from 0\.0+, 0\.0+ to 50\.0+, 20\.0+\smm/ }),
-  ).toBeVisible();
+  await expect(page.getByRole('img', { name: /job from 0\.0+, 0\.0+ to 50\.0+, 20\.0+\smm/ })).toBeVisible();
 });
 
 test('a job that does not fit is said before anything moves', async ({ page }) => {

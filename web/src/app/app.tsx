@@ -2,7 +2,10 @@
 // The shell: top bar, rail, the page of the current place, and what belongs to all of them.
 import { signal, useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
+import type { PrintDialog as PrintDialogComponent } from '../crafts/common/print_dialog';
+import { toPrint, toSlice } from '../crafts/common/print_request';
 import type { Services } from '../crafts/common/services';
+import type { SliceDialog as SliceDialogComponent } from '../crafts/common/slice_dialog';
 import type { EvidencePage as EvidencePageComponent } from '../crafts/evidence/evidence_page';
 import type { MachinesPage as MachinesPageComponent } from '../crafts/machines/machines_page';
 import type { ReliefPage as ReliefPageComponent } from '../crafts/relief/relief_page';
@@ -56,6 +59,15 @@ const loadMachinesPage = () =>
     ({ MachinesPage }) => (machinesPage.value = { Page: MachinesPage }),
   );
 
+const printDialogs = signal<{
+  readonly Print: typeof PrintDialogComponent;
+  readonly Slice: typeof SliceDialogComponent;
+} | null>(null);
+const loadPrintDialogs = () =>
+  Promise.all([import('../crafts/common/print_dialog'), import('../crafts/common/slice_dialog')]).then(
+    ([{ PrintDialog }, { SliceDialog }]) => (printDialogs.value = { Print: PrintDialog, Slice: SliceDialog }),
+  );
+
 export interface AppProps {
   readonly services: Services;
   readonly sessions: Sessions;
@@ -106,6 +118,11 @@ export function App({ services, sessions }: AppProps) {
     if (where === 'evidence') void loadEvidencePage();
     if (where === 'machines') void loadMachinesPage();
   }, [where]);
+  const dialogWanted = toPrint.value !== null || toSlice.value !== null;
+  useEffect(() => {
+    if (dialogWanted) void loadPrintDialogs();
+  }, [dialogWanted]);
+  const Dialogs = printDialogs.value;
   const later = crafts.find((craft) => craft.place === where && !craft.available);
   const session = isRoom(where) ? sessions[where] : null;
   const hasInspector = session !== null && session.hasWork.value;
@@ -195,6 +212,12 @@ export function App({ services, sessions }: AppProps) {
       {dialog.value === 'keys' ? <KeysDialog onClose={() => (dialog.value = null)} /> : null}
       {dialog.value === 'worker' ? (
         <WorkerDialog services={services} onClose={() => (dialog.value = null)} />
+      ) : null}
+      {Dialogs && toPrint.value ? (
+        <Dialogs.Print services={services} printable={toPrint.value} onClose={() => (toPrint.value = null)} />
+      ) : null}
+      {Dialogs && toSlice.value ? (
+        <Dialogs.Slice services={services} solid={toSlice.value} onClose={() => (toSlice.value = null)} />
       ) : null}
       {where === 'machines' ? null : <MachineBar session={sessions.machines} />}
       <ToastLayer />

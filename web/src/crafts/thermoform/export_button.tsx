@@ -3,6 +3,7 @@
 import type { OutputDeclaration } from '../../jobs/contract';
 import { Button, formatBytes, formatDuration, Icon, Menu } from '../../ui';
 import { download, safeFileName } from '../common/download';
+import { printInPlastic, printOnPaper } from '../common/print_request';
 import { figure } from '../common/report';
 import { readyWorker } from '../common/services';
 import { bytesToSave } from './make_product';
@@ -35,7 +36,7 @@ function exportsOf(session: ThermoformSession): Export[] {
 }
 
 const named = ({ operation, output }: Export): string => {
-  const [of] = [{ [printing]: 'Print', [moulding]: 'Mould' }[operation]];
+  const of = { [printing]: 'Print', [moulding]: 'Mould' }[operation];
   if (output.name === 'draft.ply' || output.name === 'formed.glb') return output.label;
   return of ? `${of}, ${output.label}` : output.label;
 };
@@ -43,6 +44,20 @@ const named = ({ operation, output }: Export): string => {
 async function save(session: ThermoformSession, one: Export): Promise<void> {
   const bytes = await bytesToSave(session, one.operation, one.output.name, one.output.label);
   if (bytes) download(bytes, `${safeFileName(session.title)}-${one.output.name}`, one.output.media_type);
+}
+
+const offers = (session: ThermoformSession, operation: string, output: string): boolean =>
+  session.operationNamed(operation)?.outputs.some(({ name }) => name === output) === true;
+
+/** The picture at true size; its pages are laid out for the printer's own paper. */
+async function printPicture(session: ThermoformSession): Promise<void> {
+  const bytes = await bytesToSave(session, printing, 'print.png', 'print');
+  if (bytes) printOnPaper({ title: `the picture of ${session.title}`, fileName: 'print.png', bytes });
+}
+
+async function printMould(session: ThermoformSession): Promise<void> {
+  const bytes = await bytesToSave(session, moulding, 'mould.stl', 'mould');
+  if (bytes) printInPlastic({ title: `the mould of ${session.title}`, fileName: 'mould.stl', bytes });
 }
 
 export async function exportMain(session: ThermoformSession): Promise<void> {
@@ -104,15 +119,38 @@ export function MainButton({ session, onForm }: { session: ThermoformSession; on
           label="Export something else"
           buttonClass="button filled big"
           align="right"
-          items={all.map((one) => {
-            const bytes = keptBytes(session, one);
-            return {
-              label: named(one),
-              hint: bytes === null ? undefined : formatBytes(bytes),
-              disabledReason: busy,
-              onSelect: () => void save(session, one),
-            };
-          })}
+          items={[
+            ...(offers(session, printing, 'print.png')
+              ? [
+                  {
+                    label: 'Print the picture on paper',
+                    icon: 'print' as const,
+                    disabledReason: busy,
+                    onSelect: () => void printPicture(session),
+                  },
+                ]
+              : []),
+            ...(offers(session, moulding, 'mould.stl')
+              ? [
+                  {
+                    label: 'Send the mould to a 3D printer',
+                    icon: 'machines' as const,
+                    disabledReason: busy,
+                    onSelect: () => void printMould(session),
+                  },
+                ]
+              : []),
+            null,
+            ...all.map((one) => {
+              const bytes = keptBytes(session, one);
+              return {
+                label: named(one),
+                hint: bytes === null ? undefined : formatBytes(bytes),
+                disabledReason: busy,
+                onSelect: () => void save(session, one),
+              };
+            }),
+          ]}
         >
           <Icon name="chevronDown" small />
         </Menu>

@@ -4,6 +4,7 @@ import type { OutputDeclaration } from '../../jobs/contract';
 import { Button, formatBytes, formatDuration, Icon, Menu } from '../../ui';
 import { download, safeFileName } from '../common/download';
 import { outputOf, solveInFull } from '../common/full_solve';
+import { printOnPaper } from '../common/print_request';
 import { readyWorker } from '../common/services';
 import { planBytes, simulationBytes } from './make_product';
 import type { SendToMachine } from './send_sheet';
@@ -51,6 +52,21 @@ export async function exportMain(session: ZippableSession): Promise<void> {
   if (session.result.value === null) await solveInFull(session);
   const [main] = exportsOf(session);
   if (main && session.result.value) await save(session, main);
+}
+
+/** On paper at true size. The plan's sheets are as large as the bed: they become pages; the others are pages already. */
+const printables = [
+  { label: 'Print the plan on paper', output: 'plan.svg', words: 'plan' },
+  { label: 'Print the tape template', output: 'tape.pdf', words: 'tape template' },
+  { label: 'Print the assembly sheet', output: 'assembly.pdf', words: 'assembly sheet' },
+] as const;
+
+async function printPlan(
+  session: ZippableSession,
+  { output, words }: { readonly output: string; readonly words: string },
+): Promise<void> {
+  const bytes = await planBytes(session, output, words);
+  if (bytes) printOnPaper({ title: `the ${words} of ${session.title}`, fileName: output, bytes });
 }
 
 /** "Plan, SVG" says its format itself. */
@@ -102,6 +118,14 @@ export function MainButton({ session, onSolve, onSendToMachine }: MainButtonProp
     disabledReason: busy ?? (session.operationNamed(planning) ? undefined : 'No plans in this build'),
     onSelect: () => void sendSheet(session, sheet, onSendToMachine),
   }));
+  const prints = session.operationNamed(planning)
+    ? printables.map(({ label, ...what }) => ({
+        label,
+        icon: 'print' as const,
+        disabledReason: busy,
+        onSelect: () => void printPlan(session, what),
+      }))
+    : [];
   return (
     <>
       <div class="split">
@@ -120,6 +144,7 @@ export function MainButton({ session, onSolve, onSendToMachine }: MainButtonProp
           align="right"
           items={[
             ...sends,
+            ...prints,
             null,
             ...all.map((one) => {
               const { operation, output } = one;

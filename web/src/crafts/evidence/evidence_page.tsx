@@ -18,6 +18,7 @@ import { simulatedIn } from './residuals';
 import { ResultsStrip } from './results_strip';
 import { ScanInspector } from './scan_inspector';
 import { ScanPanel } from './scan_panel';
+import { PatternButton } from './pattern_dialog';
 import { VirtualObject } from './virtual_object';
 
 export interface EvidencePageProps {
@@ -91,6 +92,7 @@ function Empty({ session, onChooseFile }: EvidencePageProps) {
           Open a measured object
         </Button>
         {invention ? <VirtualObject session={session} operation={invention} /> : null}
+        <PatternButton session={session} />
       </div>
       <p class="aside">A photographed scan of a printed sheet, with its pattern.json, is measured first.</p>
     </div>

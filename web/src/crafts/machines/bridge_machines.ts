@@ -4,6 +4,8 @@ import { effect, signal } from '@preact/signals';
 import type { BridgeMachine } from '../../machines/links/bridge_link';
 import { listBridgeMachines, openBridge } from '../../machines/links/bridge_link';
 import type { MachineLink } from '../../machines/links/machine_link';
+import { readMachine } from '../../machines/printing/worker_tasks';
+import type { NativeConnection } from '../../jobs/native_connection';
 import type { Json } from '../../jobs/contract';
 import type { MachinesSession } from './machines_session';
 
@@ -18,7 +20,7 @@ export function followBridge(session: MachinesSession): () => void {
     clearTimeout(timer);
     const { worker, connection } = session.services;
     if (worker && connection.value?.state === 'ready')
-      found.value = await listBridgeMachines(worker).catch(() => found.value);
+      found.value = await lookAt(worker).catch(() => found.value);
     else found.value = [];
     if (!over) timer = setTimeout(() => void look(), asking_ms);
   };
@@ -31,6 +33,20 @@ export function followBridge(session: MachinesSession): () => void {
     clearTimeout(timer);
     stop();
   };
+}
+
+/** The list, with what print servers do now: that they are asked for one by one. */
+async function lookAt(worker: NativeConnection): Promise<BridgeMachine[]> {
+  const machines = await listBridgeMachines(worker);
+  const now = async (machine: BridgeMachine): Promise<BridgeMachine> => {
+    if (machine.kind !== 'octoprint' && machine.kind !== 'moonraker') return machine;
+    const state = await readMachine<{ state: string }>(worker, machine.id).then(
+      (server) => server.state,
+      () => 'off',
+    );
+    return { ...machine, state };
+  };
+  return await Promise.all(machines.map(now));
 }
 
 /** Those that a driver of this kind can talk to. */

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `formwright serve` on a fresh data folder; its address with the token goes to test-results/worker_address.
+// `formwright serve` on a fresh data folder; its address with the token goes to test-results/worker_address, the folder's name to
+// test-results/worker_data.
 import { spawn } from 'node:child_process';
 import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -19,6 +20,7 @@ worker.stdout.on('data', (text) => {
   const address = /http:\S+/.exec(String(text))?.[0];
   if (!address) return;
   mkdirSync(join(web, 'test-results'), { recursive: true });
+  writeFileSync(join(web, 'test-results/worker_data'), data);
   writeFileSync(join(web, 'test-results/worker_address'), address);
 });
 const stop = () => worker.kill('SIGTERM');

@@ -2,6 +2,7 @@
 #include "job_queue.h"
 
 #include <fcntl.h>
+#include <linux/close_range.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -88,6 +89,8 @@ void JobQueue::start_process() {
   if (process_ == 0) {
     ::dup2(to_child[0], STDIN_FILENO);
     ::dup2(from_child[1], STDOUT_FILENO);
+    // Sockets of pages are not its: one that it kept open would never end for the browser, however often we close it.
+    ::close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
     ::execl("/proc/self/exe", "formwright", "run-jobs", static_cast<char*>(nullptr));
     ::_exit(127);
   }

@@ -2,6 +2,7 @@
 #include "machines/slicer.h"
 
 #include <fcntl.h>
+#include <linux/close_range.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -77,6 +78,7 @@ pid_t start(const std::vector<std::string>& words, const std::filesystem::path& 
   ::dup2(null, STDIN_FILENO);
   ::dup2(out, STDOUT_FILENO);
   ::dup2(out, STDERR_FILENO);
+  ::close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);  // pages' sockets and machines' ports are not the slicer's
   const rlimit file_limit{most_gcode_bytes, most_gcode_bytes}, no_core{0, 0};
   ::setrlimit(RLIMIT_FSIZE, &file_limit);
   ::setrlimit(RLIMIT_CORE, &no_core);

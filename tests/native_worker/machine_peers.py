@@ -84,6 +84,7 @@ class Printer:
     SCRIPT = """#!/bin/sh
 env | grep '^IPP_' | sort > "$SPOOL/job-$$.env"
 cp "$1" "$SPOOL/job-$$.document"
+while [ -e "$SPOOL/slow" ]; do sleep 0.1; done
 mv "$SPOOL/job-$$.env" "$SPOOL/job-$$.done"
 """
 

@@ -236,6 +236,19 @@ class Survival(WorkerCase):
         self.assertEqual(detail["error"]["code"], "out_of_memory")
         self.assertEqual(self.worker.wait(waiting)["state"], "done")
 
+    def test_the_job_process_holds_no_socket_of_a_page(self):
+        # It would keep the line open after the worker has closed it, and the browser would wait on it for ever.
+        line = http.client.HTTPConnection("127.0.0.1", self.worker.port, timeout=60)
+        line.request("GET", "/api/status", headers={"Authorization": "Bearer " + self.worker.token})
+        line.getresponse().read()
+        self.worker.wait(self.worker.post_job(operation="import", inputs=PYRAMID))
+        os.kill(self.worker.job_process(), signal.SIGKILL)  # the next one is born while the line is open
+        self.worker.wait(self.worker.post_job(operation="import", inputs=PYRAMID))
+        folder = pathlib.Path(f"/proc/{self.worker.job_process()}/fd")
+        held = [os.readlink(descriptor) for descriptor in folder.iterdir()]
+        line.close()
+        self.assertEqual([name for name in held if name.startswith("socket:")], [])
+
     def test_a_crash_in_a_job_is_said(self):
         victim = self.worker.post_job(**LONG)
         self.worker.wait_running(victim)

@@ -128,7 +128,6 @@ test('without a printer: pages for the paper that is chosen, as a PDF', async ({
 });
 
 testEveryLook('the print dialog', async (page) => {
-  test.skip(backend !== 'wasm', 'the same with the worker');
   await openPage(page);
   await page.getByRole('link', { name: 'Evidence', exact: true }).click();
   await page.getByRole('button', { name: 'Print a pattern' }).click();

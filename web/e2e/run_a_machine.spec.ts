@@ -3,7 +3,10 @@ import type { Page } from '@playwright/test';
 import { readFileSync } from 'node:fs';
 import { backend, expect, expectAccessible, fileOf, openPage, strip, test, testEveryLook } from './page';
 
-test.skip(backend === 'mock', 'the mock makes reliefs only');
+test.skip(
+  backend !== 'wasm',
+  'the mock makes reliefs only; the worker’s own machines: machines_of_the_worker.spec.ts',
+);
 
 /** A square with a hole, and a mark: 40 by 40 mm. */
 const square = fileOf(

@@ -66,7 +66,7 @@ test('from the sample mountain to a printed picture', async ({ page }) => {
     await openDialog(page);
     await dialog(page).getByRole('combobox', { name: 'Printer' }).selectOption({ label: 'Studio' });
     await expect(dialog(page).getByRole('combobox', { name: 'Paper', exact: true })).toBeVisible();
-    await dialog(page).getByRole('combobox', { name: 'Paper', exact: true }).selectOption({ label: 'A4' });
+    await dialog(page).getByRole('combobox', { name: 'Paper', exact: true }).selectOption('iso_a4_210x297mm'); // fed by hand
     await dialog(page).getByRole('textbox', { name: 'Copies' }).fill('2');
     await dialog(page).getByRole('textbox', { name: 'Copies' }).press('Enter');
     await expect(dialog(page).getByRole('status')).toContainText('true size');
@@ -87,7 +87,7 @@ test('from the sample mountain to a printed picture', async ({ page }) => {
     expect(attributes).toContain('IPP_PRINT_SCALING=none');
     expect(attributes).toMatch(/x-dimension=21000/);
     const { media } = await askWorker<{ media: Media[] }>(`machines/${id}`);
-    const a4 = media.find(({ name, loaded }) => loaded && name.startsWith('iso_a4'));
+    const a4 = media.find(({ name }) => name === 'iso_a4_210x297mm');
     const read = resolve(import.meta.dirname, 'printed_picture.py');
     const told = execFileSync('/usr/bin/python3', [read, job, picture, JSON.stringify(a4?.margins_mm)], {
       encoding: 'utf8',

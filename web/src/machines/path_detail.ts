@@ -21,9 +21,15 @@ export const pointCount = ({ paths }: ToolPath): number =>
 
 /** Square of the distance of point `p` from the line between points `a` and `b`. */
 function distance2(points: ArrayLike<number>, p: number, a: number, b: number): number {
-  const at = (i: number, k: number) => points[3 * i + k] ?? 0;
-  const [dx, dy, dz] = [at(b, 0) - at(a, 0), at(b, 1) - at(a, 1), at(b, 2) - at(a, 2)];
-  const [px, py, pz] = [at(p, 0) - at(a, 0), at(p, 1) - at(a, 1), at(p, 2) - at(a, 2)];
+  const ax = points[3 * a] ?? 0;
+  const ay = points[3 * a + 1] ?? 0;
+  const az = points[3 * a + 2] ?? 0;
+  const dx = (points[3 * b] ?? 0) - ax;
+  const dy = (points[3 * b + 1] ?? 0) - ay;
+  const dz = (points[3 * b + 2] ?? 0) - az;
+  const px = (points[3 * p] ?? 0) - ax;
+  const py = (points[3 * p + 1] ?? 0) - ay;
+  const pz = (points[3 * p + 2] ?? 0) - az;
   const length2 = dx * dx + dy * dy + dz * dz;
   const t = length2 > 0 ? Math.min(1, Math.max(0, (px * dx + py * dy + pz * dz) / length2)) : 0;
   return (px - t * dx) ** 2 + (py - t * dy) ** 2 + (pz - t * dz) ** 2;
@@ -38,7 +44,11 @@ export function fewerPoints(points: ArrayLike<number>, tolerance_mm: number): Ui
   for (let from = 0; from < count - 1; from += piecePoints)
     spans.push(from, Math.min(count - 1, from + piecePoints));
   if (count > 0) needed[0] = needed[count - 1] = 1;
-  for (let b = spans.pop(), a = spans.pop(); a !== undefined && b !== undefined; b = spans.pop(), a = spans.pop()) {
+  for (
+    let b = spans.pop(), a = spans.pop();
+    a !== undefined && b !== undefined;
+    b = spans.pop(), a = spans.pop()
+  ) {
     needed[a] = needed[b] = 1;
     let [worst, farthest] = [-1, limit];
     for (let p = a + 1; p < b; ++p) {

@@ -11,6 +11,5 @@ export type ToolPathRequest = { readonly id: number; readonly bytes: Uint8Array<
     }
 );
 export type ToolPathReply = { readonly id: number } & (
-  | { readonly toolPath: ToolPath }
-  | { readonly error: string }
+  { readonly toolPath: ToolPath } | { readonly error: string }
 );

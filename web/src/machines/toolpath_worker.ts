@@ -31,7 +31,9 @@ self.onmessage = ({ data }: MessageEvent<ToolPathRequest>) => {
     const toolPath = read(data);
     const numbers = toolPath.paths.flatMap(({ points_mm, times_s, lines }) => [points_mm, times_s, lines]);
     const kept = (toolPath.details ?? []).flatMap((detail) => detail.kept);
-    const buffers = [...numbers, ...kept].flatMap((array) => (ArrayBuffer.isView(array) ? [array.buffer] : []));
+    const buffers = [...numbers, ...kept].flatMap((array) =>
+      ArrayBuffer.isView(array) ? [array.buffer] : [],
+    );
     reply({ id: data.id, toolPath }, buffers as ArrayBuffer[]);
   } catch (thrown) {
     reply({ id: data.id, error: thrown instanceof Error ? thrown.message : String(thrown) });

@@ -2,9 +2,9 @@
 // The maker's section as a plane, and the lines of a picture: curves as given, outlines of the cut.
 import type { Curve, Section, Vec3, Viewpoint } from './api';
 import type { LineStyle } from './lines';
-import { piecesOf } from './lines';
+import { piecesOf, pieceValues } from './lines';
 import { cutOutline } from './section';
-import type { PartName, Stage } from './stage';
+import type { Lines, PartName, Stage } from './stage';
 import { resolveColour } from './theme';
 import { dot, normalise, scale, viewerAxes } from './vector';
 
@@ -35,9 +35,10 @@ export function linesOf(
   parts: readonly PartName[],
   mmPerPx: number,
   element: Element,
-): { pieces: Float32Array; style: LineStyle; part?: PartName }[] {
-  const lines: { pieces: Float32Array; style: LineStyle; part?: PartName }[] = curves.map((curve) => ({
+): Lines[] {
+  const lines: Lines[] = curves.map((curve) => ({
     pieces: piecesOf(curve.positions, stage.origin, curve),
+    ...(curve.values ? { values: pieceValues(curve.values, curve) } : {}),
     style: {
       colour: resolveColour(curve.colour, element),
       widthPx: curve.widthPx ?? 2,

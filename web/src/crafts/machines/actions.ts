@@ -34,8 +34,7 @@ export function startReason(session: MachinesSession): string | undefined {
   if (state === null) return 'Connect a machine first';
   const wrong = wrongMachine(session);
   if (wrong) return wrong;
-  if (plan === null)
-    return session.subject.value ? 'Make the job first' : 'Open a drawing or a job first';
+  if (plan === null) return session.subject.value ? 'Make the job first' : 'Open a drawing or a job first';
   if (session.planning.value) return 'Ready when the job is made';
   if (plan.misfits.length > 0 || plan.job === null) return plan.misfits[0] ?? 'The job does not fit';
   if (!session.isCurrent.value)

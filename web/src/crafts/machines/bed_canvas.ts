@@ -25,11 +25,12 @@ export interface BedFrame {
 }
 
 const margin = { left: 44, top: 14, right: 18, bottom: 30 };
-const layerColours: Record<string, string> = {
+/** By layer, in every picture of the job. */
+export const layerColours: Readonly<Record<string, string>> = {
   cut: '--ink',
   mark: '--accent',
   engrave: '--live',
-  rough: '--ink-3',
+  rough: '--seg-b',
   finish: '--ink',
 };
 

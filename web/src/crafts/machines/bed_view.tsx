@@ -59,9 +59,7 @@ export function BedView({
         head_mm: head,
         showTravel,
         misfits: (plan?.misfits.length ?? 0) > 0,
-        chosen_mm: chosen
-          ? [chosen.x_mm, chosen.y_mm, chosen.x_mm + side_mm, chosen.y_mm + side_mm]
-          : null,
+        chosen_mm: chosen ? [chosen.x_mm, chosen.y_mm, chosen.x_mm + side_mm, chosen.y_mm + side_mm] : null,
       });
   }, [plan, bed[0], bed[1], time_s, head?.[0], head?.[1], showTravel, size.value, theme.value, chosen]);
 

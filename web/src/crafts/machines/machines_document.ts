@@ -68,8 +68,7 @@ class MachinesCommands extends RoomCommands<MachinesDocument> {
       const [from, to] = [operationFor(drawing), operationFor(work)];
       const [before, after] = [findOperation(catalog, from), findOperation(catalog, to)];
       if (before === undefined || after === undefined) return { drawing: work };
-      const begun =
-        from === to ? parameters : carriedOver(before, parameters, after, set_aside[to] ?? {});
+      const begun = from === to ? parameters : carriedOver(before, parameters, after, set_aside[to] ?? {});
       const changed: Partial<MachinesDocument> = {
         drawing: work,
         parameters: withoutDefaults(after, { ...begun, ...own }),
@@ -112,7 +111,11 @@ class MachinesCommands extends RoomCommands<MachinesDocument> {
       const mill = findOperation(catalog, millJob);
       const changed: Partial<MachinesDocument> =
         back?.kind === 'model' && mill
-          ? { drawing: back, parameters: carriedOver(test, parameters, mill, set_aside[millJob] ?? {}), set_aside: kept }
+          ? {
+              drawing: back,
+              parameters: carriedOver(test, parameters, mill, set_aside[millJob] ?? {}),
+              set_aside: kept,
+            }
           : { drawing: back, parameters: carried, set_aside: kept };
       return changed;
     });

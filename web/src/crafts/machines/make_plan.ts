@@ -26,8 +26,7 @@ export interface PlanRequest {
   readonly parameters: JsonObject;
 }
 
-export const sourceOf = (work: Work): string =>
-  `${work.kind} ${work.kind === 'test' ? '' : work.file.blob}`;
+export const sourceOf = (work: Work): string => `${work.kind} ${work.kind === 'test' ? '' : work.file.blob}`;
 export const keyOf = ({ work, parameters }: PlanRequest): string =>
   `${sourceOf(work)} ${JSON.stringify(parameters)}`;
 

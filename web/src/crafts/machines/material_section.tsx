@@ -12,10 +12,7 @@ export function MaterialSection({ session }: { readonly session: MachinesSession
   const { materials } = profiles.current;
   const operation = session.operation.value;
   const setNow = (): JsonObject =>
-    Object.fromEntries(
-      materialNames(operation)
-        .map((name) => [name, session.value(name)]),
-    );
+    Object.fromEntries(materialNames(operation).map((name) => [name, session.value(name)]));
   const fits = (parameters: JsonObject) =>
     Object.entries(parameters).every(([name, value]) => session.value(name) === value);
   const chosen = materials.findIndex(({ parameters }) => fits(parameters));

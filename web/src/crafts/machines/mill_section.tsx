@@ -37,7 +37,9 @@ export function MillSection({ session }: { readonly session: MachinesSession }) 
   return (
     <section class="section" aria-label="What is carved">
       <h3>What is carved</h3>
-      {session.isCurrent.value ? null : <p class="hint">Of the job before; what is set now is not made yet.</p>}
+      {session.isCurrent.value ? null : (
+        <p class="hint">Of the job before; what is set now is not made yet.</p>
+      )}
       <dl class="figures">
         {rows.map(({ name, label, help, text }) => (
           <div key={name} title={help}>

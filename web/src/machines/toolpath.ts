@@ -130,19 +130,27 @@ export function timeOfLine(toolPath: ToolPath, line: number): number {
 
 export interface LayerSummary {
   readonly layer: string;
-  readonly power_percent: number;
-  readonly speed_mm_per_s: number;
+  /** From the least to the most. */
+  readonly power_percent: readonly [number, number];
+  readonly speed_mm_per_s: readonly [number, number];
   readonly parts: number;
 }
 
+const widened = ([low, high]: readonly [number, number], value: number) =>
+  [Math.min(low, value), Math.max(high, value)] as const;
+
 /** The layers in the order in which they are worked. */
 export function layersOf(toolPath: ToolPath): LayerSummary[] {
-  const found = new Map<string, LayerSummary & { names: Set<string> }>();
-  for (const { kind, layer, part, power_percent, speed_mm_per_s } of toolPath.paths) {
+  const found = new Map<string, Omit<LayerSummary, 'parts'> & { readonly names: Set<string> }>();
+  for (const { kind, layer, part, power_percent: power, speed_mm_per_s: speed } of toolPath.paths) {
     if (kind !== 'work') continue;
     const known = found.get(layer);
-    if (known) known.names.add(part);
-    else found.set(layer, { layer, power_percent, speed_mm_per_s, parts: 0, names: new Set([part]) });
+    found.set(layer, {
+      layer,
+      power_percent: widened(known?.power_percent ?? [power, power], power),
+      speed_mm_per_s: widened(known?.speed_mm_per_s ?? [speed, speed], speed),
+      names: (known?.names ?? new Set()).add(part),
+    });
   }
   return [...found.values()].map(({ names, ...layer }) => ({ ...layer, parts: names.size }));
 }

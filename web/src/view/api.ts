@@ -147,7 +147,9 @@ export interface Curve {
   dashed?: boolean;
   /** Seen through the mesh, faintly. */
   ghost?: boolean;
-  /** A value per position that grows along the curve, as time does: what lies beyond `setReach` is faint. */
+  /** Mixed with a second colour along an axis: all of it from `toMm` on, none before `fromMm`. */
+  blend?: { axis: Vec3; fromMm: number; toMm: number; colour: string };
+  /** A value per position that grows along the curve, as time does: what lies beyond `setReach` is all but gone. */
   values?: ArrayLike<number>;
 }
 

@@ -54,6 +54,10 @@ uniform float uDash;     // mm; 0 is solid
 in float vValue;
 uniform float uReach;
 #endif
+#ifdef BLEND
+uniform vec4 uBlendAxis;  // along it 0 at the first end, 1 at the second
+uniform vec3 uBlendColour;
+#endif
 out vec4 outColour;
 void main() {
 #ifdef SECTIONED
@@ -62,10 +66,14 @@ void main() {
   if (uDash > 0.0 && fract(vRun / uDash) > 0.55) discard;
   float a = uOpacity;
 #ifdef VALUES
-  if (vValue > uReach) a *= 0.16;
+  if (vValue > uReach) a *= 0.05;
 #endif
   a *= clamp(0.5 * uWidth + 0.5 - abs(vSide), 0.0, 1.0);
-  outColour = vec4(uColour * a, a);
+  vec3 colour = uColour;
+#ifdef BLEND
+  colour = mix(colour, uBlendColour, clamp(dot(uBlendAxis, vec4(vPosition, 1.0)), 0.0, 1.0));
+#endif
+  outColour = vec4(colour * a, a);
 }
 `;
 

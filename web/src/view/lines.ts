@@ -15,6 +15,8 @@ export interface LineStyle {
   ghost?: boolean;
   /** Cut away with the section. */
   sectioned?: boolean;
+  /** A second colour where `axis` . (x, y, z, 1) reaches 1, from the scene's origin. */
+  blend?: { colour: Vec3; axis: readonly [number, number, number, number] };
 }
 
 const QUAD = Float32Array.of(0, -1, 0, 1, -1, 0, 1, 1, 0, 0, -1, 0, 1, 1, 0, 0, 1, 0);
@@ -59,7 +61,11 @@ export class LineSet {
     this.geometry.setAttribute('run', new THREE.InstancedBufferAttribute(run, 2));
     if (values) this.geometry.setAttribute('value', new THREE.InstancedBufferAttribute(values, 2));
     this.geometry.instanceCount = count;
-    const defines = { ...(style.sectioned ? { SECTIONED: 1 } : {}), ...(values ? { VALUES: 1 } : {}) };
+    const defines = {
+      ...(style.sectioned ? { SECTIONED: 1 } : {}),
+      ...(values ? { VALUES: 1 } : {}),
+      ...(style.blend ? { BLEND: 1 } : {}),
+    };
     this.layer(style, defines, picture, pixelRatio, false);
     if (style.ghost) this.layer(style, defines, picture, pixelRatio, true);
   }
@@ -85,6 +91,8 @@ export class LineSet {
         uOpacity: { value: ghost ? 0.28 : 1 },
         uDash: { value: style.dashMm ?? 0 },
         uReach: picture['uReach']!,
+        uBlendAxis: { value: new THREE.Vector4(...(style.blend?.axis ?? [0, 0, 0, 0])) },
+        uBlendColour: { value: new THREE.Vector3(...(style.blend?.colour ?? [0, 0, 0])) },
       },
       side: THREE.DoubleSide,
       transparent: true,

@@ -26,6 +26,16 @@ export function sectionPlane(section: Section, viewpoint: Pick<Viewpoint, 'direc
   return { normal: scale(axis, sign), offset: sign * section.positionMm };
 }
 
+function blendOf(
+  { axis, fromMm, toMm, colour }: NonNullable<Curve['blend']>,
+  origin: Vec3,
+  element: Element,
+): NonNullable<LineStyle['blend']> {
+  const [x, y, z] = scale(axis, 1 / (toMm - fromMm || 1));
+  const offset = dot([x, y, z], origin) - fromMm / (toMm - fromMm || 1);
+  return { colour: resolveColour(colour, element), axis: [x, y, z, offset] };
+}
+
 const OUTLINE: LineStyle = { colour: [0.42, 0.22, 0.06], widthPx: 1.6 };
 
 export function linesOf(
@@ -45,6 +55,7 @@ export function linesOf(
       dashMm: curve.dashed ? 10 * mmPerPx : 0,
       ghost: curve.ghost ?? false,
       sectioned: true,
+      ...(curve.blend ? { blend: blendOf(curve.blend, stage.origin, element) } : {}),
     },
   }));
   if (!plane) return lines;

@@ -141,11 +141,12 @@ function drawPaths(
       return at(path.points_mm[p] ?? 0, path.points_mm[p + 1] ?? 0);
     };
     context.strokeStyle = colour(travel ? '--ink-3' : (layerColours[path.layer] ?? '--ink'));
-    context.lineWidth = travel ? 0.6 : 1.6;
+    const milled = path.layer === 'rough' || path.layer === 'finish';
+    context.lineWidth = travel || milled ? 0.6 : 1.6;
     const stroke = (from: number, to: number, dashed: boolean, tip: boolean) => {
       if (to <= from && !tip) return;
       context.setLineDash(travel ? [2, 3] : dashed ? [4, 3] : []);
-      context.globalAlpha = dashed ? 0.5 : travel ? 0.7 : 1;
+      context.globalAlpha = milled ? (dashed ? 0.12 : 0.45) : dashed ? 0.5 : travel ? 0.7 : 1;
       context.beginPath();
       context.moveTo(...point(from));
       for (let i = from + 1; i <= to; ++i) context.lineTo(...point(i));

@@ -61,6 +61,10 @@ function openGroups(session: MachinesSession, { name }: Operation): readonly str
   return ['Placement'];
 }
 
+/** "20 %", "20 to 100 %". */
+const range = ([low, high]: readonly [number, number], digits: number, unit: string) =>
+  withUnit([...new Set([low, high])].map((value) => formatNumber(value, digits)).join(' to '), unit);
+
 function Layers({ session }: { readonly session: MachinesSession }) {
   const plan = session.plan.value;
   if (plan === null) return null;
@@ -81,8 +85,10 @@ function Layers({ session }: { readonly session: MachinesSession }) {
               {milled ? '' : `, ${parts === 1 ? '1 part' : `${parts} parts`}`}
             </span>
             <span>
-              {milled ? '' : `${withUnit(formatNumber(power_percent, 2), '%')}, `}
-              {withUnit(formatNumber(speed_mm_per_s, 3), 'mm/s')}
+              {milled ? '' : `${range(power_percent, 2, '%')}, `}
+              {milled
+                ? withUnit(formatNumber(speed_mm_per_s[1], 3), 'mm/s')
+                : range(speed_mm_per_s, 3, 'mm/s')}
             </span>
           </li>
         ))}

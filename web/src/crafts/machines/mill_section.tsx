@@ -40,7 +40,7 @@ export function MillSection({ session }: { readonly session: MachinesSession }) 
       {session.isCurrent.value ? null : (
         <p class="hint">Of the job before; what is set now is not made yet.</p>
       )}
-      <dl class="figures">
+      <dl class="mill-figures">
         {rows.map(({ name, label, help, text }) => (
           <div key={name} title={help}>
             <dt>{label}</dt>

@@ -45,8 +45,12 @@ export function pathCurves(
           for (let k = 0; k < 3; ++k) positions[6 * at + 3 * end + k] = path.points_mm[3 * point + k] ?? 0;
           values[2 * at + end] = path.times_s[point] ?? 0;
         }
-    const colour = layer === '' ? '--seg-a' : (layerColours[layer] ?? '--ink');
-    return { positions, values, separate: true, colour, widthPx: layer === '' ? 1 : 1.4 };
+    if (layer === '') return { positions, values, separate: true, colour: '--seg-a', widthPx: 1 };
+    const colour = layerColours[layer] ?? '--ink';
+    const depth = -workHeights(toolPath)[0];
+    // Pale at the top, as far as there is a depth: lines that lie close side by side show their heights.
+    const blend = { axis: [0, 0, 1] as const, fromMm: -depth, toMm: 0, colour: '--line-2' };
+    return { positions, values, separate: true, colour, widthPx: 1, ...(depth > 0 ? { blend } : {}) };
   });
 }
 
@@ -122,7 +126,7 @@ export interface ToolForm {
   readonly v_tip_mm: number;
 }
 
-/** Its outline from the tip outwards and up the shaft: radius and height, in pairs. */
+/** Its outline from the tip outwards and up the shaft, without the ends on the axis: radius and height, in pairs. */
 function profileOf({
   shape,
   diameter_mm,
@@ -133,45 +137,41 @@ function profileOf({
   const shaft = 5 * diameter_mm;
   if (shape === 'ball') {
     const steps = 8;
-    const arc = Array.from({ length: steps + 1 }, (_, i) => (Math.PI / 2) * (i / steps));
-    const round = arc.map((t) => [radius * Math.sin(t), radius * (1 - Math.cos(t))] as const);
-    return [...round, [radius, shaft], [0, shaft]];
+    const arc = Array.from({ length: steps }, (_, i) => (Math.PI / 2) * ((i + 1) / steps));
+    return [...arc.map((t) => [radius * Math.sin(t), radius * (1 - Math.cos(t))] as const), [radius, shaft]];
   }
   if (shape === 'v') {
     const tip = Math.min(v_tip_mm / 2, radius);
     const height = (radius - tip) / Math.tan((v_angle_degrees / 2) * (Math.PI / 180));
-    return [
-      [0, 0],
-      [tip, 0],
-      [radius, height],
-      [radius, height + shaft],
-      [0, height + shaft],
-    ];
+    return [...(tip > 0 ? [[tip, 0] as const] : []), [radius, height], [radius, height + shaft]];
   }
   return [
-    [0, 0],
     [radius, 0],
     [radius, shaft],
-    [0, shaft],
   ];
 }
 
-/** The tool with its tip at zero. */
+/** The tool with its tip at zero: rings around the axis, closed by a point on it at either end. */
 export function toolMesh(form: ToolForm): MeshData {
   const around = 24;
   const profile = profileOf(form);
-  const positions: number[] = [];
+  const top = profile.at(-1)?.[1] ?? 0;
+  const positions: number[] = [0, 0, 0, 0, 0, top];
   const indices: number[] = [];
   for (const [radius, height] of profile)
     for (let i = 0; i < around; ++i) {
       const angle = (2 * Math.PI * i) / around;
       positions.push(radius * Math.cos(angle), radius * Math.sin(angle), height);
     }
-  for (let row = 0; row + 1 < profile.length; ++row)
-    for (let i = 0; i < around; ++i) {
-      const [a, b] = [row * around + i, row * around + ((i + 1) % around)];
-      indices.push(a, b, b + around, a, b + around, a + around);
+  const ring = (row: number, i: number) => 2 + row * around + (i % around);
+  for (let i = 0; i < around; ++i) {
+    indices.push(0, ring(0, i + 1), ring(0, i));
+    for (let row = 0; row + 1 < profile.length; ++row) {
+      const [a, b, c, d] = [ring(row, i), ring(row, i + 1), ring(row + 1, i + 1), ring(row + 1, i)];
+      indices.push(a, b, c, a, c, d);
     }
+    indices.push(1, ring(profile.length - 1, i), ring(profile.length - 1, i + 1));
+  }
   return { positions: Float64Array.from(positions), indices: Uint32Array.from(indices) };
 }
 

@@ -22,8 +22,9 @@ const viewpoint: Viewpoint = {
   distanceMm: 900,
   fieldOfViewDeg: 20,
 };
+/** What floats stays off the path: tools above, the timeline below. */
 const insets = (): Insets =>
-  narrow() ? { left: 8, top: 8, right: 8, bottom: 8 } : { left: 24, top: 16, right: 24, bottom: 16 };
+  narrow() ? { left: 8, top: 66, right: 8, bottom: 110 } : { left: 24, top: 66, right: 24, bottom: 120 };
 
 export interface PathViewProps {
   readonly session: MachinesSession;

@@ -139,15 +139,9 @@ function KerfRead({ session }: Props) {
       <div class="use-square">
         <Button
           size="small"
-          disabledReason={
-            session.control.isBusy
-              ? 'The test is being run'
-              : read.value === null
-                ? 'Set what the scale says first'
-                : undefined
-          }
+          disabledReason={session.control.isBusy ? 'The test is being run' : undefined}
           onClick={() => {
-            const { value: kerf_mm } = read;
+            const kerf_mm = shown;
             if (kerf_mm === null) return;
             const words = `A kerf of ${withUnit(formatNumber(kerf_mm, 3), unit)} is set for cutting`;
             use(session, { kerf_mm }, 'Set the kerf from the test', words);

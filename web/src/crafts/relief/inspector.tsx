@@ -224,7 +224,12 @@ function ExportButton({ session, result, onSendToMill }: ExportProps) {
         {solidLine(result.report)}
         {size ? `, ${formatBytes(size)}` : ''}
       </p>
-      <Button icon="machines" disabledReason={busy} onClick={() => void sendRelief(session, onSendToMill)}>
+      <Button
+        class="send-on"
+        icon="machines"
+        disabledReason={busy}
+        onClick={() => void sendRelief(session, onSendToMill)}
+      >
         Send to a machine
       </Button>
     </>

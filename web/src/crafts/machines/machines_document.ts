@@ -51,14 +51,15 @@ const isOfMachine = (operation: Operation | undefined, name: string) =>
  * never set stays the default of `to` where the two differ, as a mill's speed and dialect do from a laser's.
  */
 export function carriedOver(from: Operation, before: JsonObject, to: Operation, own: JsonObject): JsonObject {
-  const carried: Record<string, JsonObject[string]> = { ...own };
+  const carried = new Map(Object.entries(own));
   for (const [name, schema] of Object.entries(to.parameters.properties)) {
     const other = from.parameters.properties[name];
     if (!isOfMachine(to, name) || !isOfMachine(from, name)) continue;
-    if (name in before) carried[name] = before[name] ?? null;
-    else if (jsonEqual(schema.default ?? null, other?.default ?? null)) delete carried[name];
+    const value = before[name];
+    if (value !== undefined) carried.set(name, value);
+    else if (jsonEqual(schema.default ?? null, other?.default ?? null)) carried.delete(name);
   }
-  return withoutDefaults(to, carried);
+  return withoutDefaults(to, Object.fromEntries(carried));
 }
 
 class MachinesCommands extends RoomCommands<MachinesDocument> {

@@ -19,10 +19,12 @@ const [laser, grid, mill] = ['laser-job', 'test-grid', 'mill-job'].map(operation
   ReturnType<typeof operation>,
 ];
 
+const square = { name: 'R1C1', power_percent: 20, speed_mm_per_s: 5, z_mm: 0, x_mm: 30, y_mm: 10 };
+
 describe('what a test tells', () => {
   const cells = cellsOf({
     cells: [
-      { name: 'R1C1', power_percent: 20, speed_mm_per_s: 5, z_mm: 0, x_mm: 30, y_mm: 10 },
+      square,
       { name: 'R1C2', power_percent: 40, speed_mm_per_s: 5, z_mm: 0, x_mm: 42, y_mm: 10 },
       'damaged',
     ],
@@ -35,10 +37,10 @@ describe('what a test tells', () => {
   });
 
   it('sets parameters that the laser’s jobs have', () => {
-    const found = settingsOf(cells[1]!, 'mark', 2);
+    const found = settingsOf(cells[1] ?? square, 'mark', 2);
     expect(found).toEqual({ mark_power_percent: 40, mark_speed_mm_per_s: 5, mark_passes: 2 });
     for (const layer of ['cut', 'mark', 'engrave'] as const)
-      for (const name of Object.keys(settingsOf(cells[0]!, layer, 1)))
+      for (const name of Object.keys(settingsOf(square, layer, 1)))
         expect(materialNames(laser)).toContain(name);
     expect(materialNames(laser)).toContain('kerf_mm');
     expect(materialNames(laser)).not.toContain('x_mm');

@@ -86,8 +86,10 @@ EMSCRIPTEN_KEEPALIVE std::size_t fw_machine_next_packet(int handle) {
   return packet.size();
 }
 
-EMSCRIPTEN_KEEPALIVE int fw_virtual_new(double bed_x_mm, double bed_y_mm, double now_s) {
+/// A laser, or with `mill` not 0 a mill (GRBL without its laser mode).
+EMSCRIPTEN_KEEPALIVE int fw_virtual_new(double bed_x_mm, double bed_y_mm, int mill, double now_s) {
   VirtualGrblOptions options;
+  options.laser_mode = mill == 0;
   options.origin_low = true;
   options.travel_x_mm = bed_x_mm;
   options.travel_y_mm = bed_y_mm;

@@ -15,17 +15,22 @@ struct MillRun {
 
 struct MillMotion {
   const MillOptions& options;
-  bool transposed;          // rows of the field run along y
-  std::string layer;        // "rough", "finish"
+  bool transposed;    // rows of the field run along y
+  std::string layer;  // "rough", "finish"
   double speed_mm_per_s;
 };
 
-/// Runs everything at the tips' heights: to and fro, from one stretch to the next along the surface where they are neighbours and over the
-/// safe height where they are not. `tips` has a height for every node, also between stretches. `material_mm`: how high the material stands
-/// at most; entries ramp down from there.
-void run_lines(ToolpathBuilder& builder, const HeightField& tips, const std::vector<MillRun>& runs, int stepover_rows, double material_mm, int pass, const MillMotion& motion);
+/// Runs everything at the tips' heights or up to `path_tolerance_mm` above: to and fro, from one stretch to the next
+/// along the surface where they are neighbours and over the safe height where they are not. `tips` has a height for
+/// every node, also between stretches. `material_mm`: how high the material stands at most; entries ramp down from
+/// there. `been` is lowered to where the tip has run over nodes.
+void run_lines(ToolpathBuilder& builder, const HeightField& tips, const std::vector<MillRun>& runs, int stepover_rows,
+               double material_mm, int pass, const MillMotion& motion, HeightField& been);
 
-/// The points that are needed: those left out lie at most `tolerance_mm` below the line that replaces them, never above it.
+/// Fewer points over the same way: nowhere below the line through `points`, at most `tolerance_mm` above each of them.
+/// Every point stands over one of `points`, rounded up to whole micrometres; both ends are just those. A hill of radius
+/// R is left by pieces of sqrt(8 R tolerance), tangents to it, which needs points that may rise. Needs at least one
+/// point.
 std::vector<Vec3> thinned(const std::vector<Vec3>& points, double tolerance_mm);
 
 }  // namespace formwright

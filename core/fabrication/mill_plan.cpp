@@ -22,8 +22,8 @@ void carve_rows(HeightField& field, const HeightField& tips, const MillTool& too
   carve(field, between, footprint(tool, field, 0.5), context);
 }
 
-/// Raises tips until places between two of a row do not cut into the surface, either: halfway, and for a V, whose surface has an edge at
-/// its tip, at the quarters.
+/// Raises tips until places between two of a row do not cut into the surface, either: halfway, and for a V, whose
+/// surface has an edge at its tip, at the quarters.
 void raise_between(HeightField& tips, const HeightField& surface, const MillTool& tool, const Context& context) {
   for (const float share : {0.5f, 0.25f, 0.75f}) {
     if (share != 0.5f && tool.shape != ToolShape::v) continue;
@@ -34,8 +34,10 @@ void raise_between(HeightField& tips, const HeightField& surface, const MillTool
         const float lack = least.at(r, c) - ((1 - share) * left + share * right);
         if (lack <= 0) continue;
         // The lower one of the two bears it: it is the foot of a wall.
-        if (left < right) left += lack / (1 - share);
-        else right += lack / share;
+        if (left < right)
+          left += lack / (1 - share);
+        else
+          right += lack / share;
       }
   }
 }
@@ -60,7 +62,8 @@ std::vector<int> raster_rows(int rows, int stepover) {
 
 class Planner {
  public:
-  Planner(const HeightField& surface, const MillOptions& options, Context& context) : surface_(surface), o_(options), context_(context), builder_(start(), options.travel_speed_mm_per_s) {
+  Planner(const HeightField& surface, const MillOptions& options, Context& context)
+      : surface_(surface), o_(options), context_(context), builder_(start(), options.travel_speed_mm_per_s) {
     builder_.travel_to({start().x(), start().y(), o_.safe_height_mm});
   }
 
@@ -89,8 +92,13 @@ class Planner {
       }
     time_moves(plan_.path, {o_.acceleration_mm_per_s2, o_.junction_deviation_mm, o_.planner_blocks});
     for (const ToolMove& move : plan_.path.moves)
-      if (move.work) (move.layer == "rough" ? plan_.rough_seconds : plan_.finish_seconds) += move.times_s.back() - move.times_s.front();
-    plan_.misfits = find_misfits(plan_.path, o_, std::max(o_.stages == MillStages::rough ? 0 : o_.diameter_mm, o_.stages == MillStages::finish ? 0 : o_.rough_diameter_mm), 0);
+      if (move.work)
+        (move.layer == "rough" ? plan_.rough_seconds : plan_.finish_seconds) +=
+            move.times_s.back() - move.times_s.front();
+    plan_.misfits = find_misfits(plan_.path, o_,
+                                 std::max(o_.stages == MillStages::rough ? 0 : o_.diameter_mm,
+                                          o_.stages == MillStages::finish ? 0 : o_.rough_diameter_mm),
+                                 0);
     plan_.deviation = deviation_of(carved, surface_);
     tool_alone(finish);
     plan_.carved = std::move(carved);
@@ -106,7 +114,8 @@ class Planner {
   void check_size(const MillTool& tool, const char* where) const {
     const double nodes = tool.diameter_mm * tool.diameter_mm / (surface_.pitch_x_mm * surface_.pitch_y_mm);
     if (nodes > 250'000)
-      throw Error(ErrorCode::invalid_input, where, "The tool is over 500 nodes of the grid wide: choose a coarser grid or a smaller tool.");
+      throw Error(ErrorCode::invalid_input, where,
+                  "The tool is over 500 nodes of the grid wide: choose a coarser grid or a smaller tool.");
   }
 
   void rough_out(const MillTool& tool, HeightField& carved) {
@@ -121,7 +130,8 @@ class Planner {
     plan_.layers = layers;
     for (int layer = 1; layer <= layers; ++layer) {
       context_.progress(static_cast<double>(layer) / (layers + 1));
-      const auto above = static_cast<float>(-(layer - 1) * o_.step_down_mm), floor = static_cast<float>(-layer * o_.step_down_mm);
+      const auto above = static_cast<float>(-(layer - 1) * o_.step_down_mm),
+                 floor = static_cast<float>(-layer * o_.step_down_mm);
       HeightField heights = tips;
       for (float& z : heights.z_mm) z = std::max(z, floor);
       std::vector<MillRun> runs;
@@ -137,13 +147,10 @@ class Planner {
         }
         if (!forth) std::reverse(row_runs.begin(), row_runs.end());
         forth = !forth;
-        for (const MillRun& run : row_runs) {
-          runs.push_back(run);
-          for (int c = run.from; c <= run.to; ++c) been.at(r, c) = heights.at(r, c);
-        }
+        runs.insert(runs.end(), row_runs.begin(), row_runs.end());
       }
       if (runs.empty()) continue;
-      run_lines(builder_, heights, runs, stepover, above, layer, {o_, false, "rough", o_.rough_speed_mm_per_s});
+      run_lines(builder_, heights, runs, stepover, above, layer, {o_, false, "rough", o_.rough_speed_mm_per_s}, been);
       carve_rows(carved, been, tool, context_);
     }
   }
@@ -159,10 +166,7 @@ class Planner {
       plan_.notes.push_back("Lines are as far apart as the height field's nodes: a finer grid brings them nearer.");
     std::vector<MillRun> runs;
     HeightField been = bare(turned, no_tip);
-    for (const int r : raster_rows(turned.rows, stepover)) {
-      runs.push_back({r, 0, turned.columns - 1});
-      for (int c = 0; c < turned.columns; ++c) been.at(r, c) = tips.at(r, c);
-    }
+    for (const int r : raster_rows(turned.rows, stepover)) runs.push_back({r, 0, turned.columns - 1});
     context_.progress(0.5);
     HeightField left = along_y ? carved.transposed() : carved;
     // How high the tip would stand on what roughing has left where the first line begins.
@@ -170,7 +174,7 @@ class Planner {
     for (const ToolFootprint::Node& node : footprint(tool, turned).nodes)
       if (node.row >= 0 && node.column >= 0 && node.row < left.rows && node.column < left.columns)
         material = std::max(material, left.at(node.row, node.column) - node.height_mm);
-    run_lines(builder_, tips, runs, stepover, material, 1, {o_, along_y, "finish", o_.finish_speed_mm_per_s});
+    run_lines(builder_, tips, runs, stepover, material, 1, {o_, along_y, "finish", o_.finish_speed_mm_per_s}, been);
     carve_rows(left, been, tool, context_);
     carved = along_y ? left.transposed() : std::move(left);
   }
@@ -178,7 +182,8 @@ class Planner {
   void tool_alone(const MillTool& tool) {
     const ToolFootprint foot = footprint(tool, surface_);
     if (static_cast<double>(foot.nodes.size()) * static_cast<double>(surface_.z_mm.size()) > 3e10) {
-      plan_.notes.push_back("What the tool's shape alone leaves was not worked out: the grid is too fine for so large a tool.");
+      plan_.notes.push_back(
+          "What the tool's shape alone leaves was not worked out: the grid is too fine for so large a tool.");
       return;
     }
     context_.progress(0.85, "Comparing");

@@ -1,7 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import type { Page } from '@playwright/test';
 import { readFileSync } from 'node:fs';
-import { backend, expect, expectAccessible, fileOf, openPage, strip, test, testEveryLook } from './page';
+import {
+  backend,
+  expect,
+  expectAccessible,
+  fileOf,
+  openPage,
+  openSample,
+  solve,
+  strip,
+  test,
+  testEveryLook,
+} from './page';
 
 test.skip(
   backend !== 'wasm',
@@ -252,6 +263,7 @@ test('wrong files are said in words and the work stays', async ({ page }) => {
   const input = page.getByLabel('Model or project file');
   await input.setInputFiles(fileOf('model.obj', 'v 0 0 0'));
   await expect(page.getByRole('alert').getByText('Could not open model.obj')).toBeVisible();
+  await expect(page.getByRole('alert').getByText(/for mills: choose or add a mill/)).toBeVisible();
   await expect(strip(page, 'Job ready')).toBeVisible();
   await input.setInputFiles(fileOf('notes.svg', 'this is no drawing'));
   await expect(page.getByRole('alert').getByText('Could not read notes.svg')).toBeVisible();
@@ -302,6 +314,121 @@ test('a profile goes out as a file and comes back', async ({ page }) => {
   await expect(menu).toHaveText('Workshop laser');
 });
 
+const showsTest = (page: Page) => page.getByRole('region', { name: 'What the test shows' });
+
+test('material is tested, and what the tests show is set and kept', async ({ page }) => {
+  test.setTimeout(420_000); // a small test is run to its end
+  await openDrawing(page);
+  await button(page, 'Keep as a material').click();
+  await dialog(page).getByLabel('Name').fill('Felt');
+  await dialog(page).getByRole('button', { name: 'Keep', exact: true }).click();
+  await expect(page.getByLabel('Preset').locator('option:checked')).toHaveText('Felt');
+
+  // Four squares, quick, run like any job.
+  await button(page, 'Test material').click();
+  await expect(page.getByRole('combobox', { name: 'Best square' }).locator('option')).toHaveCount(26);
+  for (const [name, value] of [
+    ['Powers', '2'],
+    ['Speeds', '2'],
+    ['Speed from', '50'],
+    ['Speed to', '100'],
+  ] as const) {
+    await page.getByRole('textbox', { name, exact: true }).fill(value);
+    await page.getByRole('textbox', { name, exact: true }).press('Enter');
+  }
+  await expect(page.getByRole('combobox', { name: 'Best square' }).locator('option')).toHaveCount(5);
+  await expect(strip(page, 'Job ready')).toBeVisible();
+  await makeReady(page);
+  await button(page, 'Frame').click();
+  await confirm(page, /^Frame the job/, 'Frame', /laser stays off/);
+  await expect(chip(page)).toHaveText('Ready', { timeout: 60_000 });
+  await startIt(page);
+  await expect(strip(page, 'Material test is done')).toBeVisible({ timeout: 240_000 });
+
+  // A click on a square chooses it, and so do the keys.
+  const bed = page.getByRole('img', { name: /^Bed of 400 × 400/ });
+  const box = await bed.boundingBox();
+  if (box === null) throw new Error('No bed.');
+  const scale = Math.min((box.width - 62) / 400, (box.height - 44) / 400);
+  const left = box.x + 44 + (box.width - 62 - 400 * scale) / 2;
+  const low = box.y + box.height - 30 - (box.height - 44 - 400 * scale) / 2;
+  const best = page.getByRole('combobox', { name: 'Best square' });
+  await best.selectOption('R1C1');
+  const [x, y] = [32, 14]; // about the first square's middle; its place is said in the report
+  await page.mouse.click(left + x * scale, low - y * scale);
+  await expect(best).toHaveValue('R1C1');
+  await best.focus();
+  await page.keyboard.press('ArrowDown');
+  await expect(best).toHaveValue('R1C2');
+  await showsTest(page).getByRole('button', { name: 'Use for cutting' }).click();
+  await expect(page.getByText('100 % at 50.0 mm/s is set for cutting, and kept with Felt.')).toBeVisible();
+  await expect(page.getByLabel('Preset').locator('option:checked')).toHaveText('Felt');
+  await expect(page.getByRole('region', { name: 'Layers, in order' })).toContainText(
+    /Cut, 2 parts100\s%, 50\.0\smm\/s/,
+  );
+
+  // What the kerf's scale says becomes the kerf.
+  await button(page, 'Test material').click();
+  await page.getByRole('combobox', { name: 'Test', exact: true }).selectOption('kerf');
+  await page.getByRole('textbox', { name: 'Kerf read from the scale' }).fill('0.2');
+  await page.getByRole('textbox', { name: 'Kerf read from the scale' }).press('Enter');
+  await button(page, 'Use as the kerf').click();
+  await expect(strip(page, 'Job ready')).toBeVisible();
+  await page.getByRole('button', { name: /^Cutting \d+$/ }).click();
+  await expect(page.getByRole('textbox', { name: 'Kerf', exact: true })).toHaveValue(/^0\.20+$/);
+});
+
+test('a relief goes to a mill: its job, its way in space, its first lines', async ({ page }) => {
+  test.setTimeout(420_000);
+  await openSample(page);
+  await page.getByRole('textbox', { name: 'Width', exact: true }).fill('40');
+  await page.getByRole('textbox', { name: 'Width', exact: true }).press('Enter');
+  await solve(page);
+  await button(page, 'Send to a machine').click();
+  await expect(page.locator('.profile-button')).toHaveText('Practice mill');
+  await expect(page.getByRole('textbox', { name: 'Width', exact: true })).toHaveValue('40');
+  await expect(page.getByRole('textbox', { name: 'Depth', exact: true })).toHaveValue('5.0');
+  await expect(page.getByRole('contentinfo').getByText('No job yet')).toBeVisible();
+  await button(page, 'Make the job').click();
+  await expect(strip(page, 'Job ready')).toBeVisible({ timeout: 150_000 });
+  const figures = page.getByRole('region', { name: 'What is carved' });
+  await expect(figures).toContainText('Mean deviation');
+  await expect(figures).toContainText(/Size40\.0 × 40\.0 × 5\.00\smm/);
+  await expect(page.getByRole('img', { name: /^Bed of 300 × 200/ })).toBeVisible();
+
+  await page.getByRole('radio', { name: '3D' }).click();
+  const view = page.getByRole('application', { name: 'Tool path' });
+  await view.focus();
+  await page.keyboard.press('ArrowLeft');
+  await page.getByLabel('Time in the job').focus();
+  await page.keyboard.press('Home');
+  await page.keyboard.press('PageUp');
+  await expect(page.locator('.path-view .fw-marker')).toBeVisible();
+
+  await button(page, 'Practise without a machine').click();
+  await expect(chip(page)).toHaveText('Locked');
+  await page.locator('.machine-buttons').getByRole('button', { name: 'Home' }).click();
+  await confirm(page, /^Home the machine/, 'Home', /moves to its switches/);
+  await expect(chip(page)).toHaveText('Ready');
+  await button(page, 'Set z here').click();
+  await startButton(page).click();
+  await confirm(page, /^Start /, 'Start with the spindle on', /spindle turns/);
+  await expect(chip(page)).toHaveText('Working');
+  await button(page, 'Stop').click();
+  await expect(
+    page
+      .getByRole('contentinfo')
+      .locator('strong')
+      .getByText(/^Job stopped at/),
+  ).toBeVisible();
+
+  // Another depth is another job: the old one cannot be started.
+  await page.getByRole('textbox', { name: 'Depth', exact: true }).fill('4');
+  await page.getByRole('textbox', { name: 'Depth', exact: true }).press('Enter');
+  await expect(button(page, 'Make the job')).toBeVisible();
+  await expect(startButton(page)).toHaveAttribute('aria-disabled', 'true');
+});
+
 testEveryLook('axe finds nothing serious in the room', async (page) => {
   await openRoom(page);
   await expectAccessible(page, 'empty');
@@ -315,6 +442,12 @@ testEveryLook('axe finds nothing serious in the room', async (page) => {
   await dialog(page).getByRole('button', { name: 'Home', exact: true }).click();
   await expect(chip(page)).toHaveText('Ready');
   await expectAccessible(page, 'ready');
+  await page.getByRole('radio', { name: '3D' }).click();
+  await expectAccessible(page, 'in space');
   await page.getByRole('radio', { name: 'Console' }).click();
   await expectAccessible(page, 'console');
+  await page.getByRole('radio', { name: 'Bed' }).click();
+  await button(page, 'Test material').click();
+  await expect(showsTest(page)).toBeVisible();
+  await expectAccessible(page, 'test');
 });

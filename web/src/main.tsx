@@ -29,6 +29,7 @@ async function start(root: HTMLElement): Promise<void> {
   effect(() => resumePending(sessions.relief));
   effect(() => resumePending(sessions.thermoform));
   effect(() => resumePending(sessions.zippable));
+  effect(() => resumePending(sessions.machines));
   effect(() => resumePending(sessions.evidence));
   if (!startRouting() && !services.projects.isBlank.value)
     go(placeOfWork(services.projects.document.value) ?? 'relief');

@@ -23,7 +23,7 @@ import { go, place } from './route';
 import { formatNames, StartPage } from './start_page';
 import type { Sessions } from './rooms';
 import { MachineBar } from '../crafts/machines/machine_bar';
-import { drawingEndings, jobEndings } from '../crafts/machines/machines_document';
+import { drawingEndings, heightMapEnding, jobEndings } from '../crafts/machines/machines_document';
 import { isRoom, placeOfWork, roomOf } from './rooms';
 import { TopBar } from './top_bar';
 
@@ -144,6 +144,10 @@ export function App({ services, sessions }: AppProps) {
           onChooseFile={chooseFile}
           onWorkerHelp={() => (dialog.value = 'worker')}
           onStart={() => go('start')}
+          onSendToMill={async (name, heightMap, size) => {
+            await sessions.machines.takeForMill(name, heightMap, size);
+            go('machines');
+          }}
         />
       ) : where === 'thermoform' && ThermoformPage ? (
         <ThermoformPage session={sessions.thermoform} onChooseFile={chooseFile} />
@@ -182,7 +186,7 @@ export function App({ services, sessions }: AppProps) {
               {where === 'evidence'
                 ? 'Measured objects: mould.obj, setup.json, measured.csv, their folder or zip'
                 : where === 'machines'
-                  ? `Drawings and jobs: ${[...drawingEndings, ...jobEndings].join(', ')}`
+                  ? `Drawings and jobs: ${[...drawingEndings, ...jobEndings].join(', ')}. For mills, models and height maps: ${heightMapEnding}`
                   : `Meshes: ${formatNames(services)}`}
               . Projects: .{projectExtension}.
             </p>

@@ -78,10 +78,18 @@ export const practiceLaser: MachineProfile = {
   materials: [],
 };
 
+export const practiceMill: MachineProfile = {
+  id: 'practice-mill',
+  name: 'Practice mill',
+  options: { controller: 'grbl', tool: 'mill' },
+  parameters: { controller: 'grbl_mill', bed_x_mm: 300, bed_y_mm: 200 },
+  materials: [],
+};
+
 /** The machines, the one in use, and where both are kept. */
 export class ProfileStore {
   readonly #storage: Pick<Storage, 'getItem' | 'setItem'>;
-  readonly profiles = signal<readonly MachineProfile[]>([practiceLaser]);
+  readonly profiles = signal<readonly MachineProfile[]>([practiceLaser, practiceMill]);
   readonly chosen = signal<string>(practiceLaser.id);
 
   constructor(storage: Pick<Storage, 'getItem' | 'setItem'>) {
@@ -107,6 +115,12 @@ export class ProfileStore {
   get current(): MachineProfile {
     const { value: all } = this.profiles;
     return all.find(({ id }) => id === this.chosen.value) ?? all[0] ?? practiceLaser;
+  }
+
+  /** One that carves: the one in use, else the first there is. */
+  get mill(): MachineProfile {
+    const isMill = ({ options }: MachineProfile) => options['tool'] === 'mill';
+    return [this.current, ...this.profiles.value].find(isMill) ?? practiceMill;
   }
 
   choose(id: string): void {

@@ -50,7 +50,9 @@ describe('a tool path', () => {
   });
   it('knows its bounds and layers, travel left out', () => {
     expect(workBounds(toolPath)).toEqual([10, 0, 20, 20]);
-    expect(layersOf(toolPath)).toEqual([{ layer: 'cut', power_percent: 80, speed_mm_per_s: 10, parts: 1 }]);
+    expect(layersOf(toolPath)).toEqual([
+      { layer: 'cut', power_percent: [80, 80], speed_mm_per_s: [10, 10], parts: 1 },
+    ]);
     expect(workBounds({ ...toolPath, paths: [] })).toBeNull();
   });
   it('refuses what it does not know', () => {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The way a machine's head will go, as `toolpath.json` tells it: where it is at a time, and when it does a line.
+import type { PathDetail } from './path_detail';
 
 export interface ToolPathPart {
   readonly kind: 'travel' | 'work';
@@ -9,11 +10,11 @@ export interface ToolPathPart {
   readonly power_percent: number;
   readonly speed_mm_per_s: number;
   /** x, y, z after one another. */
-  readonly points_mm: readonly number[];
+  readonly points_mm: ArrayLike<number>;
   /** One a point, from the job's start. */
-  readonly times_s: readonly number[];
+  readonly times_s: ArrayLike<number>;
   /** The line of the job that moves to each point, from 1. */
-  readonly lines: readonly number[];
+  readonly lines: ArrayLike<number>;
 }
 
 export type Rectangle = readonly [left: number, low: number, right: number, high: number];
@@ -23,6 +24,8 @@ export interface ToolPath {
   readonly no_go_mm: readonly Rectangle[];
   readonly seconds: number;
   readonly paths: readonly ToolPathPart[];
+  /** The same with fewer points, for pictures, the finest first; absent where there are few points. */
+  readonly details?: readonly PathDetail[];
 }
 
 export function readToolPath(text: string): ToolPath {
@@ -35,6 +38,17 @@ export function readToolPath(text: string): ToolPath {
     seconds: value.seconds ?? 0,
     paths: value.paths,
   };
+}
+
+/** Lowest and highest z of what is worked, 0 included: that is the material's surface. */
+export function workHeights(toolPath: ToolPath): readonly [number, number] {
+  let [low, high] = [0, 0];
+  for (const { kind, points_mm } of toolPath.paths)
+    for (let i = 2; i < points_mm.length && kind === 'work'; i += 3) {
+      low = Math.min(low, points_mm[i] ?? 0);
+      high = Math.max(high, points_mm[i] ?? 0);
+    }
+  return [low, high];
 }
 
 /** Of all that is drawn or cut; null where nothing is. */
@@ -54,7 +68,7 @@ export function workBounds(toolPath: ToolPath): Rectangle | null {
 }
 
 /** The index of the last of ascending `values` that is at most `value`; -1 where all are more. */
-export function lastAtMost(values: readonly number[], value: number): number {
+export function lastAtMost(values: ArrayLike<number>, value: number): number {
   let [low, high] = [0, values.length];
   while (low < high) {
     const middle = (low + high) >> 1;
@@ -71,6 +85,7 @@ export interface PathPlace {
   readonly fraction: number;
   readonly x_mm: number;
   readonly y_mm: number;
+  readonly z_mm: number;
 }
 
 /** Where the head is `time_s` after the start; null for an empty path. */
@@ -87,7 +102,7 @@ export function placeAt(toolPath: ToolPath, time_s: number): PathPlace | null {
     const [a = 0, b = 0] = [path.points_mm[3 * point + offset], path.points_mm[3 * next + offset]];
     return a + fraction * (b - a);
   };
-  return { path: index, point, fraction, x_mm: at(0), y_mm: at(1) };
+  return { path: index, point, fraction, x_mm: at(0), y_mm: at(1), z_mm: at(2) };
 }
 
 const starts = new WeakMap<ToolPath, number[]>();
@@ -99,12 +114,15 @@ function startTimes(toolPath: ToolPath): number[] {
   return made;
 }
 
+/** The path that is run at a time. */
+export const partAt = (toolPath: ToolPath, time_s: number): ToolPathPart | undefined =>
+  toolPath.paths[Math.max(0, lastAtMost(startTimes(toolPath), time_s))];
+
 /** When the machine has done this line of the job. */
 export function timeOfLine(toolPath: ToolPath, line: number): number {
   let time = 0;
   for (const { lines, times_s } of toolPath.paths) {
-    const [first = 0] = lines;
-    if (first > line) break;
+    if ((lines[0] ?? 0) > line) break;
     time = times_s[Math.max(0, lastAtMost(lines, line))] ?? time;
   }
   return time;
@@ -112,19 +130,27 @@ export function timeOfLine(toolPath: ToolPath, line: number): number {
 
 export interface LayerSummary {
   readonly layer: string;
-  readonly power_percent: number;
-  readonly speed_mm_per_s: number;
+  /** From the least to the most. */
+  readonly power_percent: readonly [number, number];
+  readonly speed_mm_per_s: readonly [number, number];
   readonly parts: number;
 }
 
+const widened = ([low, high]: readonly [number, number], value: number) =>
+  [Math.min(low, value), Math.max(high, value)] as const;
+
 /** The layers in the order in which they are worked. */
 export function layersOf(toolPath: ToolPath): LayerSummary[] {
-  const found = new Map<string, LayerSummary & { names: Set<string> }>();
-  for (const { kind, layer, part, power_percent, speed_mm_per_s } of toolPath.paths) {
+  const found = new Map<string, Omit<LayerSummary, 'parts'> & { readonly names: Set<string> }>();
+  for (const { kind, layer, part, power_percent: power, speed_mm_per_s: speed } of toolPath.paths) {
     if (kind !== 'work') continue;
     const known = found.get(layer);
-    if (known) known.names.add(part);
-    else found.set(layer, { layer, power_percent, speed_mm_per_s, parts: 0, names: new Set([part]) });
+    found.set(layer, {
+      layer,
+      power_percent: widened(known?.power_percent ?? [power, power], power),
+      speed_mm_per_s: widened(known?.speed_mm_per_s ?? [speed, speed], speed),
+      names: (known?.names ?? new Set()).add(part),
+    });
   }
   return [...found.values()].map(({ names, ...layer }) => ({ ...layer, parts: names.size }));
 }

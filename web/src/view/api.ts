@@ -147,6 +147,10 @@ export interface Curve {
   dashed?: boolean;
   /** Seen through the mesh, faintly. */
   ghost?: boolean;
+  /** Mixed with a second colour along an axis: all of it from `toMm` on, none before `fromMm`. */
+  blend?: { axis: Vec3; fromMm: number; toMm: number; colour: string };
+  /** A value per position that grows along the curve, as time does: what lies beyond `setReach` is all but gone. */
+  values?: ArrayLike<number>;
 }
 
 /** A dot kept at a place in the scene. `live` is amber: what is hovered, dragged, or the playhead. */
@@ -276,6 +280,10 @@ export interface ViewportApi {
   setErrorRange(minimum: number, maximum: number): void;
   setSection(section: Section | null): void;
   setCurves(curves: readonly Curve[]): void;
+  /** How far curves with values are drawn in full; null: to their end. As quick with a million pieces as with one. */
+  setReach(value: number | null): void;
+  /** How many pieces of curves this machine draws while the picture moves. */
+  readonly linePieces: number;
   setMarkers(markers: readonly Marker[]): void;
   setTheme(theme: Theme): void;
   setFreeRectangle(insets: Insets): void;

@@ -12,6 +12,10 @@ uniform mat4 projectionMatrix;
 uniform vec2 uViewport;   // device pixels
 uniform float uWidth;
 uniform float uNearer;
+#ifdef VALUES
+in vec2 value;         // at start and end
+out float vValue;
+#endif
 out vec3 vPosition;
 out float vRun;
 out float vSide;
@@ -31,6 +35,9 @@ void main() {
   vPosition = position.x < 0.5 ? start : end;
   vRun = position.x < 0.5 ? run.x : run.y;
   vSide = position.y * halfWidth;
+#ifdef VALUES
+  vValue = position.x < 0.5 ? value.x : value.y;
+#endif
   gl_Position = p;
 }
 `;
@@ -43,14 +50,30 @@ uniform vec3 uColour;
 uniform float uOpacity;
 uniform float uWidth;
 uniform float uDash;     // mm; 0 is solid
+#ifdef VALUES
+in float vValue;
+uniform float uReach;
+#endif
+#ifdef BLEND
+uniform vec4 uBlendAxis;  // along it 0 at the first end, 1 at the second
+uniform vec3 uBlendColour;
+#endif
 out vec4 outColour;
 void main() {
 #ifdef SECTIONED
   if (cutAway(vPosition)) discard;
 #endif
   if (uDash > 0.0 && fract(vRun / uDash) > 0.55) discard;
-  float a = uOpacity * clamp(0.5 * uWidth + 0.5 - abs(vSide), 0.0, 1.0);
-  outColour = vec4(uColour * a, a);
+  float a = uOpacity;
+#ifdef VALUES
+  if (vValue > uReach) a *= 0.05;
+#endif
+  a *= clamp(0.5 * uWidth + 0.5 - abs(vSide), 0.0, 1.0);
+  vec3 colour = uColour;
+#ifdef BLEND
+  colour = mix(colour, uBlendColour, clamp(dot(uBlendAxis, vec4(vPosition, 1.0)), 0.0, 1.0));
+#endif
+  outColour = vec4(colour * a, a);
 }
 `;
 

@@ -15,6 +15,8 @@ export interface LineStyle {
   ghost?: boolean;
   /** Cut away with the section. */
   sectioned?: boolean;
+  /** A second colour where `axis` . (x, y, z, 1) reaches 1, from the scene's origin. */
+  blend?: { colour: Vec3; axis: readonly [number, number, number, number] };
 }
 
 const QUAD = Float32Array.of(0, -1, 0, 1, -1, 0, 1, 1, 0, 0, -1, 0, 1, 1, 0, 0, 1, 0);
@@ -25,14 +27,25 @@ export class LineSet {
   private readonly geometry = new THREE.InstancedBufferGeometry();
   private readonly materials: THREE.RawShaderMaterial[] = [];
 
-  /** `pieces`: start x, y, z, end x, y, z, from the scene's origin. */
-  constructor(pieces: Float32Array, style: LineStyle, picture: Uniforms, pixelRatio: number) {
+  /** `pieces`: start x, y, z, end x, y, z, from the scene's origin. `values`: at the start and the end of each. */
+  constructor(
+    pieces: Float32Array,
+    style: LineStyle,
+    picture: Uniforms,
+    pixelRatio: number,
+    values?: Float32Array,
+  ) {
     const count = pieces.length / 6;
     const run = new Float32Array(2 * count);
     let total = 0;
     for (let i = 0; i < count; ++i) {
       const p = 6 * i;
-      if (i > 0 && [0, 1, 2].some((k) => pieces[p + k] !== pieces[p - 3 + k])) total = 0;
+      const goesOn =
+        i > 0 &&
+        pieces[p] === pieces[p - 3] &&
+        pieces[p + 1] === pieces[p - 2] &&
+        pieces[p + 2] === pieces[p - 1];
+      if (!goesOn) total = 0;
       run[2 * i] = total;
       total += Math.hypot(
         pieces[p + 3]! - pieces[p]!,
@@ -46,17 +59,29 @@ export class LineSet {
     this.geometry.setAttribute('start', new THREE.InterleavedBufferAttribute(ends, 3, 0));
     this.geometry.setAttribute('end', new THREE.InterleavedBufferAttribute(ends, 3, 3));
     this.geometry.setAttribute('run', new THREE.InstancedBufferAttribute(run, 2));
+    if (values) this.geometry.setAttribute('value', new THREE.InstancedBufferAttribute(values, 2));
     this.geometry.instanceCount = count;
-    this.layer(style, picture, pixelRatio, false);
-    if (style.ghost) this.layer(style, picture, pixelRatio, true);
+    const defines = {
+      ...(style.sectioned ? { SECTIONED: 1 } : {}),
+      ...(values ? { VALUES: 1 } : {}),
+      ...(style.blend ? { BLEND: 1 } : {}),
+    };
+    this.layer(style, defines, picture, pixelRatio, false);
+    if (style.ghost) this.layer(style, defines, picture, pixelRatio, true);
   }
 
-  private layer(style: LineStyle, picture: Uniforms, pixelRatio: number, ghost: boolean): void {
+  private layer(
+    style: LineStyle,
+    defines: Record<string, number>,
+    picture: Uniforms,
+    pixelRatio: number,
+    ghost: boolean,
+  ): void {
     const material = new THREE.RawShaderMaterial({
       glslVersion: THREE.GLSL3,
       vertexShader: lineVertex,
       fragmentShader: lineFragment,
-      defines: style.sectioned ? { SECTIONED: 1 } : {},
+      defines,
       uniforms: {
         uSection: picture['uSection']!,
         uViewport: picture['uViewport']!,
@@ -65,6 +90,9 @@ export class LineSet {
         uColour: { value: new THREE.Vector3(...style.colour) },
         uOpacity: { value: ghost ? 0.28 : 1 },
         uDash: { value: style.dashMm ?? 0 },
+        uReach: picture['uReach']!,
+        uBlendAxis: { value: new THREE.Vector4(...(style.blend?.axis ?? [0, 0, 0, 0])) },
+        uBlendColour: { value: new THREE.Vector3(...(style.blend?.colour ?? [0, 0, 0])) },
       },
       side: THREE.DoubleSide,
       transparent: true,
@@ -82,6 +110,22 @@ export class LineSet {
     this.geometry.dispose();
     for (const material of this.materials) material.dispose();
   }
+}
+
+/** Values per position as values at the two ends of each piece, in the order of `piecesOf`. */
+export function pieceValues(
+  values: ArrayLike<number>,
+  { closed, separate }: Pick<Curve, 'closed' | 'separate'>,
+): Float32Array {
+  if (separate) return Float32Array.from(values);
+  const count = values.length;
+  const pieces = Math.max(0, closed && count > 2 ? count : count - 1);
+  const out = new Float32Array(2 * pieces);
+  for (let i = 0; i < pieces; ++i) {
+    out[2 * i] = values[i]!;
+    out[2 * i + 1] = values[(i + 1) % count]!;
+  }
+  return out;
 }
 
 /** A polyline, or lines apart, as pieces. */

@@ -27,6 +27,8 @@ export interface Quality {
   readonly drawsAside: boolean;
   /** Drawing and solving share the processor: refine nothing while something is solved. */
   readonly yieldsToWork: boolean;
+  /** Pieces of lines that a moving picture bears. */
+  readonly linePieces: number;
   /** Rest of the hand before anything is refined, ms. */
   readonly restMs: number;
 }
@@ -46,6 +48,7 @@ export const FULL: Quality = {
   softLight: true,
   drawsAside: false,
   yieldsToWork: false,
+  linePieces: 600_000,
   restMs: 110,
 };
 
@@ -64,6 +67,7 @@ export const SPARING: Quality = {
   softLight: false,
   drawsAside: true,
   yieldsToWork: true,
+  linePieces: 40_000,
   restMs: 350,
 };
 

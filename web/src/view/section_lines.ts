@@ -2,9 +2,9 @@
 // The maker's section as a plane, and the lines of a picture: curves as given, outlines of the cut.
 import type { Curve, Section, Vec3, Viewpoint } from './api';
 import type { LineStyle } from './lines';
-import { piecesOf } from './lines';
+import { piecesOf, pieceValues } from './lines';
 import { cutOutline } from './section';
-import type { PartName, Stage } from './stage';
+import type { Lines, PartName, Stage } from './stage';
 import { resolveColour } from './theme';
 import { dot, normalise, scale, viewerAxes } from './vector';
 
@@ -26,6 +26,16 @@ export function sectionPlane(section: Section, viewpoint: Pick<Viewpoint, 'direc
   return { normal: scale(axis, sign), offset: sign * section.positionMm };
 }
 
+function blendOf(
+  { axis, fromMm, toMm, colour }: NonNullable<Curve['blend']>,
+  origin: Vec3,
+  element: Element,
+): NonNullable<LineStyle['blend']> {
+  const [x, y, z] = scale(axis, 1 / (toMm - fromMm || 1));
+  const offset = dot([x, y, z], origin) - fromMm / (toMm - fromMm || 1);
+  return { colour: resolveColour(colour, element), axis: [x, y, z, offset] };
+}
+
 const OUTLINE: LineStyle = { colour: [0.42, 0.22, 0.06], widthPx: 1.6 };
 
 export function linesOf(
@@ -35,15 +45,17 @@ export function linesOf(
   parts: readonly PartName[],
   mmPerPx: number,
   element: Element,
-): { pieces: Float32Array; style: LineStyle; part?: PartName }[] {
-  const lines: { pieces: Float32Array; style: LineStyle; part?: PartName }[] = curves.map((curve) => ({
+): Lines[] {
+  const lines: Lines[] = curves.map((curve) => ({
     pieces: piecesOf(curve.positions, stage.origin, curve),
+    ...(curve.values ? { values: pieceValues(curve.values, curve) } : {}),
     style: {
       colour: resolveColour(curve.colour, element),
       widthPx: curve.widthPx ?? 2,
       dashMm: curve.dashed ? 10 * mmPerPx : 0,
       ghost: curve.ghost ?? false,
       sectioned: true,
+      ...(curve.blend ? { blend: blendOf(curve.blend, stage.origin, element) } : {}),
     },
   }));
   if (!plane) return lines;

@@ -50,6 +50,14 @@ export interface Picture {
   ground: boolean;
 }
 
+/** Pieces of lines as `LineSet` takes them; without a part they are drawn with both. */
+export interface Lines {
+  readonly pieces: Float32Array;
+  readonly style: LineStyle;
+  readonly part?: PartName;
+  readonly values?: Float32Array;
+}
+
 const KEY = 0.86;
 const AMBIENT = 0.215;
 /** Half angle of the key light as seen from the object, degrees: how soft its shadows are. */
@@ -71,6 +79,7 @@ export class Stage {
     uAmbient: { value: AMBIENT },
     uNoise: { value: 0 },
     uViewport: { value: new THREE.Vector2(1, 1) },
+    uReach: { value: 3e38 },
   };
   private readonly compiling = new Set<THREE.Material>();
   private readonly bakeUniforms = newBakeUniforms();
@@ -277,10 +286,14 @@ export class Stage {
     this.sectionKey = value.toArray().join();
   }
 
-  setLines(lines: readonly { pieces: Float32Array; style: LineStyle; part?: PartName }[]): void {
+  setReach(value: number | null): void {
+    (this.picture['uReach'] as THREE.IUniform).value = value ?? 3e38;
+  }
+
+  setLines(lines: readonly Lines[]): void {
     for (const { set } of this.lines) set.dispose();
-    this.lines = lines.map(({ pieces, style, part }) => ({
-      set: new LineSet(pieces, style, this.picture, this.pixelRatio),
+    this.lines = lines.map(({ pieces, style, part, values }) => ({
+      set: new LineSet(pieces, style, this.picture, this.pixelRatio, values),
       part: part ?? null,
     }));
   }

@@ -293,6 +293,15 @@ export class Viewport implements ViewportApi {
     this.invalidate();
   }
 
+  get linePieces(): number {
+    return qualityHere().linePieces;
+  }
+
+  setReach(value: number | null): void {
+    this.stage?.setReach(value);
+    this.invalidate();
+  }
+
   setMarkers(markers: readonly Marker[]): void {
     this.furniture.setMarkers(markers);
     this.layOut();

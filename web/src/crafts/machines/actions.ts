@@ -10,8 +10,19 @@ import type { MachinesSession } from './machines_session';
 const eyes =
   'Lid closed or eyes protected, extraction on, something to put out a fire at hand. Stay with the machine.';
 
+const chips =
+  'Stock clamped down, the right tool in the spindle, eyes and ears protected, extraction on. Stay with the machine.';
+
 const isLaser = (session: MachinesSession): boolean =>
   (session.profiles.current.options['tool'] ?? 'laser') === 'laser';
+
+/** A laser's program must not run on a mill, nor a mill's on a laser. */
+function wrongMachine(session: MachinesSession): string | undefined {
+  const kind = session.document.value.drawing?.kind;
+  if (kind === 'model' && !session.isMill) return 'This job is for a mill: choose one as the machine';
+  if (kind === 'test' && !isLaser(session)) return 'This test is for a laser: choose one as the machine';
+  return undefined;
+}
 
 const millimetres = (mm: number) => withUnit(formatNumber(mm, 4), 'mm');
 
@@ -21,10 +32,15 @@ export function startReason(session: MachinesSession): string | undefined {
   const plan = session.plan.value;
   const state = control.state.value;
   if (state === null) return 'Connect a machine first';
-  if (plan === null) return 'Open a drawing or a job first';
+  const wrong = wrongMachine(session);
+  if (wrong) return wrong;
+  if (plan === null) return session.subject.value ? 'Make the job first' : 'Open a drawing or a job first';
   if (session.planning.value) return 'Ready when the job is made';
   if (plan.misfits.length > 0 || plan.job === null) return plan.misfits[0] ?? 'The job does not fit';
-  if (!session.isCurrent.value) return 'What is shown is not what is set: mend what is marked first';
+  if (!session.isCurrent.value)
+    return session.subject.value
+      ? 'What is shown is not what is set: make the job first'
+      : 'What is shown is not what is set: mend what is marked first';
   if (control.isBusy) return 'A job is running';
   if (state.phase === 'alarm') return 'The machine is in alarm: home it first';
   if (!state.position_known)
@@ -45,10 +61,10 @@ export function start(session: MachinesSession): void {
     sentences: [
       isLaser(session)
         ? `The head moves and the laser turns on, at up to ${withUnit(formatNumber(power, 2), '%')}, for about ${formatDuration(toolPath.seconds)}.`
-        : `The machine moves and its tool turns on, for about ${formatDuration(toolPath.seconds)}.`,
-      eyes,
+        : `The machine moves and its spindle turns, for about ${formatDuration(toolPath.seconds)}. Z is 0 on the stock's top, the tool at its corner.`,
+      isLaser(session) ? eyes : chips,
     ],
-    action: isLaser(session) ? 'Start with the laser on' : 'Start',
+    action: isLaser(session) ? 'Start with the laser on' : 'Start with the spindle on',
     danger: true,
     run: () => {
       session.playhead.value = null;
@@ -66,10 +82,12 @@ export function goOn(session: MachinesSession): void {
   ask({
     title: 'Cut the rest?',
     sentences: [
-      `The machine was homed again; it goes to the stroke that begins at line ${line}, turns the laser on and cuts from there. What was cut last is cut once more.`,
-      'This only fits where the material has not moved. ' + eyes,
+      isLaser(session)
+        ? `The machine was homed again; it goes to the stroke that begins at line ${line}, turns the laser on and cuts from there. What was cut last is cut once more.`
+        : `The machine was homed again; it rises, goes to the line that begins at line ${line} of the job, starts its spindle and sinks at feed rate. What was cut last is cut once more.`,
+      'This only fits where the material has not moved. ' + (isLaser(session) ? eyes : chips),
     ],
-    action: 'Go on with the laser on',
+    action: isLaser(session) ? 'Go on with the laser on' : 'Go on with the spindle on',
     danger: true,
     run: () => void session.control.start(session.title, key, job, line),
   });
@@ -82,7 +100,7 @@ export function frame(session: MachinesSession): void {
   ask({
     title: 'Frame the job?',
     sentences: [
-      `The head moves once around ${millimetres(bounds[2] - bounds[0])} by ${millimetres(bounds[3] - bounds[1])}, the laser stays off. Keep hands and clamps out of its way.`,
+      `The head moves once around ${millimetres(bounds[2] - bounds[0])} by ${millimetres(bounds[3] - bounds[1])}, ${isLaser(session) ? 'the laser stays off' : 'at the height where it stands now, the spindle off: raise it over stock and clamps first'}. Keep hands and clamps out of its way.`,
     ],
     action: 'Frame',
     run: () =>
@@ -123,8 +141,8 @@ export function resume(session: MachinesSession): void {
     sentences: [
       isLaser(session)
         ? 'The machine goes on where it was held, with the laser on.'
-        : 'The machine goes on where it was held.',
-      eyes,
+        : 'The machine goes on where it was held, with the spindle on.',
+      isLaser(session) ? eyes : chips,
     ],
     action: 'Go on',
     danger: true,

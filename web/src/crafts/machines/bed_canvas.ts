@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Draws the bed with the job on it. A canvas: jobs have a hundred thousand strokes, and the playhead moves through them.
-import type { PathPlace, Rectangle, ToolPath, ToolPathPart } from '../../machines/toolpath';
+import type { PathDetail } from '../../machines/path_detail';
+import { detailFor } from '../../machines/path_detail';
+import type { PathPlace, Rectangle, ToolPath } from '../../machines/toolpath';
 import { lastAtMost, placeAt } from '../../machines/toolpath';
 
 export interface BedPicture {
@@ -11,6 +13,8 @@ export interface BedPicture {
   readonly head_mm: readonly [number, number] | null;
   readonly showTravel: boolean;
   readonly misfits: boolean;
+  /** A square that was chosen. */
+  readonly chosen_mm: Rectangle | null;
 }
 
 /** From the bed's millimetres, y up, to the canvas's pixels. */
@@ -21,11 +25,12 @@ export interface BedFrame {
 }
 
 const margin = { left: 44, top: 14, right: 18, bottom: 30 };
-const layerColours: Record<string, string> = {
+/** By layer, in every picture of the job. */
+export const layerColours: Readonly<Record<string, string>> = {
   cut: '--ink',
   mark: '--accent',
   engrave: '--live',
-  rough: '--ink-3',
+  rough: '--seg-b',
   finish: '--ink',
 };
 
@@ -58,9 +63,17 @@ export function drawBed(canvas: HTMLCanvasElement, picture: BedPicture): void {
   if (picture.toolPath) {
     const now = picture.time_s === null ? null : placeAt(picture.toolPath, picture.time_s);
     for (const zone of picture.toolPath.no_go_mm) hatch(context, zone, at, colour('--danger'));
-    if (picture.showTravel) drawPaths(context, picture.toolPath.paths, 'travel', now, at, colour);
-    drawPaths(context, picture.toolPath.paths, 'work', now, at, colour);
+    const detail = detailFor(picture.toolPath, 1 / frame.scale / ratio);
+    if (picture.showTravel) drawPaths(context, picture.toolPath, detail, 'travel', now, at, colour);
+    drawPaths(context, picture.toolPath, detail, 'work', now, at, colour);
     if (now && picture.head_mm === null) drawHead(context, at(now.x_mm, now.y_mm), colour('--live'), null);
+  }
+  if (picture.chosen_mm) {
+    const [left, low, right, high] = picture.chosen_mm;
+    const [x, y] = at(left, high);
+    context.strokeStyle = colour('--live');
+    context.lineWidth = 3;
+    context.strokeRect(x - 4, y - 4, frame.scale * (right - left) + 8, frame.scale * (high - low) + 8);
   }
   if (picture.head_mm) {
     const [x, y] = at(...picture.head_mm);
@@ -107,34 +120,41 @@ type At = (x: number, y: number) => readonly [number, number];
 
 function drawPaths(
   context: CanvasRenderingContext2D,
-  paths: readonly ToolPathPart[],
+  { paths }: ToolPath,
+  detail: PathDetail | null,
   kind: 'travel' | 'work',
   now: PathPlace | null,
   at: At,
   colour: (name: string) => string,
 ): void {
+  const travel = kind === 'travel';
   for (const [index, path] of paths.entries()) {
     if (path.kind !== kind) continue;
-    const count = path.points_mm.length / 3;
-    const done = now === null || index < now.path ? count - 1 : index > now.path ? 0 : now.point;
-    context.strokeStyle = colour(kind === 'travel' ? '--ink-3' : (layerColours[path.layer] ?? '--ink'));
-    context.lineWidth = kind === 'travel' ? 0.6 : 1.6;
+    const kept = detail?.kept[index] ?? null;
+    const last = (kept?.length ?? path.times_s.length) - 1;
+    const here = now !== null && index === now.path;
+    // Of the points that are drawn, the last one that was reached.
+    const reached = here ? (kept ? lastAtMost(kept, now.point) : now.point) : 0;
+    const done = now === null || index < now.path ? last : index > now.path ? 0 : reached;
+    const point = (i: number): readonly [number, number] => {
+      const p = 3 * (kept ? (kept[i] ?? 0) : i);
+      return at(path.points_mm[p] ?? 0, path.points_mm[p + 1] ?? 0);
+    };
+    context.strokeStyle = colour(travel ? '--ink-3' : (layerColours[path.layer] ?? '--ink'));
+    const milled = path.layer === 'rough' || path.layer === 'finish';
+    context.lineWidth = travel || milled ? 0.6 : 1.6;
     const stroke = (from: number, to: number, dashed: boolean, tip: boolean) => {
       if (to <= from && !tip) return;
-      context.setLineDash(kind === 'travel' ? [2, 3] : dashed ? [4, 3] : []);
-      context.globalAlpha = dashed ? 0.5 : kind === 'travel' ? 0.7 : 1;
+      context.setLineDash(travel ? [2, 3] : dashed ? [4, 3] : []);
+      context.globalAlpha = milled ? (dashed ? 0.12 : 0.45) : dashed ? 0.5 : travel ? 0.7 : 1;
       context.beginPath();
-      for (let i = from; i <= to; ++i) {
-        const [x, y] = at(path.points_mm[3 * i] ?? 0, path.points_mm[3 * i + 1] ?? 0);
-        if (i === from) context.moveTo(x, y);
-        else context.lineTo(x, y);
-      }
+      context.moveTo(...point(from));
+      for (let i = from + 1; i <= to; ++i) context.lineTo(...point(i));
       if (tip && now) context.lineTo(...at(now.x_mm, now.y_mm));
       context.stroke();
     };
-    const here = now !== null && index === now.path;
     stroke(0, done, false, here);
-    if (now !== null && index >= now.path) stroke(done, count - 1, true, false);
+    if (now !== null && index >= now.path) stroke(done, last, true, false);
   }
   context.setLineDash([]);
   context.globalAlpha = 1;
@@ -186,15 +206,3 @@ function hatch(context: CanvasRenderingContext2D, [x0, y0, x1, y1]: Rectangle, a
   context.stroke();
   context.restore();
 }
-
-/** The times before which `paths` are done, for the steps of the timeline. */
-export const partAt = (toolPath: ToolPath, time_s: number): ToolPathPart | undefined =>
-  toolPath.paths[
-    Math.max(
-      0,
-      lastAtMost(
-        toolPath.paths.map(({ times_s }) => times_s[0] ?? 0),
-        time_s,
-      ),
-    )
-  ];

@@ -8,6 +8,7 @@ import { formatNumber, withUnit } from '../../ui';
 import { drawBed, frameOf } from './bed_canvas';
 import { timeShown } from './job_bar';
 import type { MachinesSession } from './machines_session';
+import { cellAt, cellsOf } from './test_results';
 
 const numberOf = (session: MachinesSession, name: string): number => {
   const value = session.value(name);
@@ -45,6 +46,10 @@ export function BedView({
       changes.disconnect();
     };
   }, []);
+  const test = session.document.value.drawing?.kind === 'test';
+  const side_mm = numberOf(session, 'cell_mm');
+  const cells = test && session.value('kind') === 'power_speed' ? cellsOf(plan?.report ?? {}) : [];
+  const chosen = cells.find(({ name }) => name === session.chosenCell.value);
   useEffect(() => {
     if (canvas.current)
       drawBed(canvas.current, {
@@ -54,13 +59,17 @@ export function BedView({
         head_mm: head,
         showTravel,
         misfits: (plan?.misfits.length ?? 0) > 0,
+        chosen_mm: chosen ? [chosen.x_mm, chosen.y_mm, chosen.x_mm + side_mm, chosen.y_mm + side_mm] : null,
       });
-  }, [plan, bed[0], bed[1], time_s, head?.[0], head?.[1], showTravel, size.value, theme.value]);
+  }, [plan, bed[0], bed[1], time_s, head?.[0], head?.[1], showTravel, size.value, theme.value, chosen]);
 
-  const movable = session.document.value.drawing?.kind === 'drawing' && !control.isBusy;
+  const movable = (test || session.document.value.drawing?.kind === 'drawing') && !control.isBusy;
   const place = (x_mm: number, y_mm: number, done: boolean) => {
-    const rounded = (mm: number) => Math.round(10 * mm) / 10;
-    session.setParameters({ x_mm: rounded(x_mm), y_mm: rounded(y_mm) }, 'Place the job', 'place');
+    const properties = session.operation.value?.parameters.properties;
+    const rounded = (name: 'x_mm' | 'y_mm', mm: number) =>
+      Math.max(properties?.[name]?.minimum ?? -Infinity, Math.round(10 * mm) / 10);
+    const placed = { x_mm: rounded('x_mm', x_mm), y_mm: rounded('y_mm', y_mm) };
+    session.setParameters(placed, 'Place the job', 'place');
     if (done) session.services.projects.commit();
   };
   const drag = (event: PointerEvent) => {
@@ -73,15 +82,29 @@ export function BedView({
       numberOf(session, 'y_mm'),
     ] as const;
     canvas.current.setPointerCapture(event.pointerId);
-    const move = (now: PointerEvent) =>
-      place(from[2] + (now.clientX - from[0]) / scale, from[3] - (now.clientY - from[1]) / scale, false);
-    const end = () => {
+    let dragged = false;
+    const move = (now: PointerEvent) => {
+      dragged ||= Math.hypot(now.clientX - from[0], now.clientY - from[1]) > 3;
+      if (dragged)
+        place(from[2] + (now.clientX - from[0]) / scale, from[3] - (now.clientY - from[1]) / scale, false);
+    };
+    const end = (now: PointerEvent) => {
       session.services.projects.commit();
       canvas.current?.removeEventListener('pointermove', move);
+      if (!dragged && now.type === 'pointerup') pick(now);
     };
     canvas.current.addEventListener('pointermove', move);
     canvas.current.addEventListener('pointerup', end, { once: true });
     canvas.current.addEventListener('pointercancel', end, { once: true });
+  };
+  /** The square of a test that was clicked. */
+  const pick = (event: PointerEvent) => {
+    if (cells.length === 0 || canvas.current === null) return;
+    const { left, low, scale } = frameOf(canvas.current.clientWidth, canvas.current.clientHeight, bed);
+    const box = canvas.current.getBoundingClientRect();
+    const [x, y] = [(event.clientX - box.left - left) / scale, (low - event.clientY + box.top) / scale];
+    const found = cellAt(cells, side_mm, x, y);
+    if (found) session.chosenCell.value = found.name;
   };
   const keys = (event: KeyboardEvent) => {
     const step = event.shiftKey ? 10 : 1;
@@ -117,5 +140,6 @@ function words(session: MachinesSession): string {
     : 'nothing to cut';
   const head = session.control.state.value?.position_known ? session.control.state.value.work_mm : null;
   const where = head ? `; the head at ${head.slice(0, 2).map(mm).join(', ')}` : '';
-  return `Bed of ${bed}: ${job}${where}. Arrows move the job.`;
+  const movable = session.document.value.drawing?.kind !== 'model';
+  return `Bed of ${bed}: ${job}${where}.${movable ? ' Arrows move the job.' : ''}`;
 }

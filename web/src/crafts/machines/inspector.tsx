@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The machine, the layers in the order they are worked, the material, and everything else that can be set.
-import { useSignal } from '@preact/signals';
-import type { JsonObject } from '../../jobs/contract';
+import type { Operation } from '../../jobs/contract';
 import { layersOf } from '../../machines/toolpath';
-import { Button, Dialog, formatNumber, withUnit } from '../../ui';
+import { formatNumber, withUnit } from '../../ui';
 import { ParameterPanel } from '../common/parameter_panel';
 import { MachinePanel, StartAndStop } from './machine_panel';
-import { OtherMachines } from './other_machines';
 import type { MachinesSession } from './machines_session';
+import { MaterialSection } from './material_section';
+import { MakeMillJob, MillSection } from './mill_section';
+import { OtherMachines } from './other_machines';
+import { TestSection } from './test_section';
 
 const layerTitles: Record<string, string> = {
   cut: 'Cut',
@@ -16,42 +18,58 @@ const layerTitles: Record<string, string> = {
   rough: 'Roughing',
   finish: 'Finishing',
 };
-const materialGroups = ['Cut', 'Mark', 'Engrave', 'Cutting'];
 
 export function Inspector({ session }: { readonly session: MachinesSession }) {
-  const { parameters, drawing } = session.document.value;
+  const kind = session.document.value.drawing?.kind ?? null;
   const operation = session.operation.value;
+  const toMake = kind === 'model' && !session.isCurrent.value && !session.control.isBusy;
   return (
     <>
       <div class="inspector-scroll" tabIndex={-1}>
         <MachinePanel session={session} />
+        {kind === 'test' ? <TestSection session={session} /> : null}
+        {kind === 'model' ? <MillSection session={session} /> : null}
         <Layers session={session} />
-        {operation && drawing?.kind === 'drawing' ? (
-          <>
-            <MaterialSection session={session} />
-            <ParameterPanel
-              operation={operation}
-              parameters={parameters}
-              errors={session.fieldErrors.value}
-              onPreview={(name, value) => session.preview(name, value)}
-              onCommit={() => session.services.projects.commit()}
-              openGroups={['Placement']}
-            />
-          </>
+        {kind === 'drawing' || (kind === null && !session.isMill) ? (
+          <MaterialSection session={session} />
+        ) : null}
+        {operation && kind !== null && kind !== 'job' ? (
+          <ParameterPanel
+            key={operation.name}
+            operation={operation}
+            parameters={session.document.value.parameters}
+            errors={session.fieldErrors.value}
+            onPreview={(name, value) => session.preview(name, value)}
+            onCommit={() => session.services.projects.commit()}
+            openGroups={openGroups(session, operation)}
+          />
         ) : null}
         <OtherMachines session={session} />
       </div>
       <div class="inspector-foot">
-        <StartAndStop session={session} />
+        {toMake ? <MakeMillJob session={session} /> : null}
+        {toMake && session.control.link.value === null ? null : <StartAndStop session={session} />}
       </div>
     </>
   );
 }
 
+/** What is set most often stands open, the rest is folded. */
+function openGroups(session: MachinesSession, { name }: Operation): readonly string[] {
+  if (name === 'mill-job') return ['Carving', 'Finishing', 'Roughing'];
+  if (name === 'test-grid') return ['Test', session.value('kind') === 'power_speed' ? 'Squares' : 'Lines'];
+  return ['Placement'];
+}
+
+/** "20 %", "20 to 100 %". */
+const range = ([low, high]: readonly [number, number], digits: number, unit: string) =>
+  withUnit([...new Set([low, high])].map((value) => formatNumber(value, digits)).join(' to '), unit);
+
 function Layers({ session }: { readonly session: MachinesSession }) {
   const plan = session.plan.value;
   if (plan === null) return null;
   const layers = layersOf(plan.toolPath);
+  const milled = session.document.value.drawing?.kind === 'model';
   return (
     <section class="section" aria-label="Layers, in order">
       <h3>Layers, in order</h3>
@@ -63,137 +81,18 @@ function Layers({ session }: { readonly session: MachinesSession }) {
           <li key={layer}>
             <i class={`layer-${layer}`} />
             <span>
-              {layerTitles[layer] ?? layer}, {parts === 1 ? '1 part' : `${parts} parts`}
+              {layerTitles[layer] ?? layer}
+              {milled ? '' : `, ${parts === 1 ? '1 part' : `${parts} parts`}`}
             </span>
             <span>
-              {withUnit(formatNumber(power_percent, 2), '%')},{' '}
-              {withUnit(formatNumber(speed_mm_per_s, 3), 'mm/s')}
+              {milled ? '' : `${range(power_percent, 2, '%')}, `}
+              {milled
+                ? withUnit(formatNumber(speed_mm_per_s[1], 3), 'mm/s')
+                : range(speed_mm_per_s, 3, 'mm/s')}
             </span>
           </li>
         ))}
       </ul>
-    </section>
-  );
-}
-
-/** Powers, speeds and kerf that belong to a material, kept with the machine. */
-function MaterialSection({ session }: { readonly session: MachinesSession }) {
-  const naming = useSignal<string | null>(null);
-  const { profiles } = session;
-  const { materials } = profiles.current;
-  const operation = session.operation.value;
-  const ofMaterial = (name: string) =>
-    materialGroups.includes(operation?.parameters.properties[name]?.['x-group'] ?? '');
-  const setNow = (): JsonObject =>
-    Object.fromEntries(
-      Object.keys(operation?.parameters.properties ?? {})
-        .filter(ofMaterial)
-        .map((name) => [name, session.value(name)]),
-    );
-  const fits = (parameters: JsonObject) =>
-    Object.entries(parameters).every(([name, value]) => session.value(name) === value);
-  const chosen = materials.findIndex(({ parameters }) => fits(parameters));
-  const start = session.services.catalog.value?.laser_materials;
-  const beginning = chosen < 0 ? start?.materials.find(({ parameters }) => fits(parameters)) : undefined;
-  const choose = (value: string) => {
-    const own = materials[Number(value)];
-    if (own) session.setParameters(own.parameters, `Use ${own.name}`);
-    const given = start?.materials.find(({ name }) => name === value);
-    if (given) session.setParameters(given.parameters, `Use ${given.title}`);
-  };
-  const keep = (name: string) => {
-    const others = materials.filter((material) => material.name !== name);
-    profiles.put({ ...profiles.current, materials: [...others, { name, parameters: setNow() }] });
-  };
-  return (
-    <section class="section" aria-label="Material">
-      <h3>Material</h3>
-      <div class="field-line">
-        <label for="material-preset">Preset</label>
-        <select
-          id="material-preset"
-          class="select"
-          value={beginning?.name ?? String(chosen)}
-          onChange={(event) => choose(event.currentTarget.value)}
-        >
-          <option value="-1">As set below</option>
-          {materials.length > 0 ? (
-            <optgroup label={`Kept with ${profiles.current.name}`}>
-              {materials.map(({ name }, index) => (
-                <option key={name} value={String(index)}>
-                  {name}
-                </option>
-              ))}
-            </optgroup>
-          ) : null}
-          {start?.lasers.map((laser) => (
-            <optgroup key={laser.name} label={`To begin with: ${laser.title}`}>
-              {start.materials
-                .filter((material) => material.laser === laser.name)
-                .map(({ name, title }) => (
-                  <option key={name} value={name}>
-                    {title}
-                  </option>
-                ))}
-            </optgroup>
-          ))}
-        </select>
-      </div>
-      {beginning ? (
-        <p class="hint">
-          {start?.note} {beginning.hint}
-        </p>
-      ) : null}
-      <div class="material-actions">
-        <Button size="small" kind="quiet" onClick={() => (naming.value = materials[chosen]?.name ?? '')}>
-          Keep what is set as a material
-        </Button>
-        {chosen >= 0 ? (
-          <Button
-            size="small"
-            kind="quiet"
-            onClick={() =>
-              profiles.put({
-                ...profiles.current,
-                materials: materials.filter((_, index) => index !== chosen),
-              })
-            }
-          >
-            Forget
-          </Button>
-        ) : null}
-      </div>
-      {naming.value !== null ? (
-        <Dialog title="Keep as a material" onClose={() => (naming.value = null)}>
-          <form
-            class="add-machine"
-            onSubmit={(event) => {
-              event.preventDefault();
-              const name = naming.value?.trim();
-              if (name) keep(name);
-              naming.value = null;
-            }}
-          >
-            <label>
-              Name
-              <input
-                type="text"
-                maxLength={80}
-                placeholder="Felt, 3 mm"
-                value={naming.value}
-                onInput={(event) => (naming.value = event.currentTarget.value)}
-              />
-            </label>
-            <p class="hint">Powers, speeds, passes and kerf are kept with {profiles.current.name}.</p>
-            <div class="dialog-actions">
-              <Button onClick={() => (naming.value = null)}>Cancel</Button>
-              <Button kind="filled" type="submit">
-                Keep
-              </Button>
-            </div>
-          </form>
-        </Dialog>
-      ) : null}
     </section>
   );
 }

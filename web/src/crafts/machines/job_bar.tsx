@@ -2,9 +2,8 @@
 // The job in time: to be played before, and followed while it runs.
 import { useSignal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
-import { timeOfLine } from '../../machines/toolpath';
+import { partAt, timeOfLine } from '../../machines/toolpath';
 import { IconButton } from '../../ui';
-import { partAt } from './bed_canvas';
 import type { MachinesSession } from './machines_session';
 
 /** The machine works on what is shown. */
@@ -45,7 +44,7 @@ export function partWords(session: MachinesSession, time_s: number): string {
   const plan = session.plan.value;
   const part = plan && partAt(plan.toolPath, time_s);
   if (!part) return '';
-  if (part.kind === 'travel') return 'Travel, laser off';
+  if (part.kind === 'travel') return session.isMill ? 'Travel' : 'Travel, laser off';
   const layer = layerWords[part.layer] ?? part.layer;
   return part.part ? `Part ${part.part}, ${layer}` : `${layer.charAt(0).toUpperCase()}${layer.slice(1)}`;
 }

@@ -262,7 +262,7 @@ export function ConnectMenu({ session }: { readonly session: MachinesSession }) 
       <p class="hint">
         {controller === 'ruida'
           ? 'Ruida lasers are reached over the network, through the native worker.'
-          : 'The practice laser behaves like a real one and moves nothing.'}
+          : 'The practice machine behaves like a real one and moves nothing.'}
       </p>
     </div>
   );

@@ -66,7 +66,7 @@ export function MachinePanel({ session }: { readonly session: MachinesSession })
           <ConnectMenu session={session} />
         ) : (
           <>
-            <Position state={state} />
+            <Position state={state} withZ={session.isMill} />
             <div class="machine-buttons">
               <Button
                 icon="home"
@@ -102,6 +102,14 @@ export function MachinePanel({ session }: { readonly session: MachinesSession })
               {control.can('focus_off') ? (
                 <Button icon="sun" onClick={() => void control.command({ do: 'focus_off' })}>
                   Laser off
+                </Button>
+              ) : session.isMill ? (
+                <Button
+                  disabledReason={cannot('set_origin', 'Only while the machine rests')}
+                  title="Where the tool’s tip stands now is the stock’s top"
+                  onClick={() => void control.command({ do: 'set_origin', axes: 'z' })}
+                >
+                  Set z here
                 </Button>
               ) : (
                 <Button
@@ -147,7 +155,7 @@ export function MachinePanel({ session }: { readonly session: MachinesSession })
   );
 }
 
-function Position({ state }: { readonly state: MachineState }) {
+function Position({ state, withZ }: { readonly state: MachineState; readonly withZ: boolean }) {
   const axis = (name: string, index: number) => (
     <div>
       <span>{name}</span>
@@ -155,14 +163,21 @@ function Position({ state }: { readonly state: MachineState }) {
     </div>
   );
   return (
-    <div class="machine-position" role="group" aria-label="Where the head stands, in millimetres">
+    <div
+      class={withZ ? 'machine-position three' : 'machine-position'}
+      role="group"
+      aria-label="Where the head stands, in millimetres"
+    >
       {axis('X', 0)}
       {axis('Y', 1)}
+      {withZ ? axis('Z', 2) : null}
     </div>
   );
 }
 
-const jogSpeed_mm_per_s = 60;
+/** Along x, y or z, by so many millimetres. */
+type Way = readonly [number, number, number];
+const speedOf = (z: number): number => (z === 0 ? 60 : 10);
 /** While a key is held the head is given this much of its way at a time: when the page hangs, it does not go far. Longer than
  *  the driver waits between two reports, which every jog begins anew. */
 const portion_s = 0.3;
@@ -174,33 +189,32 @@ function Jog({ session }: { readonly session: MachinesSession }) {
   const { control } = session;
   const timer = useRef<ReturnType<typeof setTimeout> | undefined>(undefined);
   const held = useRef<'no' | 'pressed' | 'moving'>('no');
-  const jog = (x: number, y: number, distance_mm: number) =>
+  const jog = ([x, y, z]: Way, distance_mm: number) =>
     control.command({
       do: 'jog',
-      x_mm: x * distance_mm,
-      y_mm: y * distance_mm,
-      speed_mm_per_s: jogSpeed_mm_per_s,
+      ...(z === 0 ? { x_mm: x * distance_mm, y_mm: y * distance_mm } : { z_mm: z * distance_mm }),
+      speed_mm_per_s: speedOf(z),
     });
-  const goOn = async (x: number, y: number) => {
+  const goOn = async (way: Way) => {
     const first = held.current !== 'moving';
     held.current = 'moving';
-    const taken = await jog(x, y, (portion_s + (first ? ahead_s : 0)) * jogSpeed_mm_per_s);
+    const taken = await jog(way, (portion_s + (first ? ahead_s : 0)) * speedOf(way[2]));
     if (held.current !== 'moving')
       void control.command({ do: 'jog_cancel' }); // let go meanwhile
-    else if (taken) timer.current = setTimeout(() => void goOn(x, y), 1000 * portion_s);
+    else if (taken) timer.current = setTimeout(() => void goOn(way), 1000 * portion_s);
   };
-  const press = (x: number, y: number) => {
+  const press = (way: Way) => {
     clearTimeout(timer.current);
     held.current = 'pressed';
-    timer.current = setTimeout(() => void goOn(x, y), heldAfter_ms);
+    timer.current = setTimeout(() => void goOn(way), heldAfter_ms);
   };
   const leave = () => {
     clearTimeout(timer.current);
     if (held.current === 'moving') void control.command({ do: 'jog_cancel' });
     held.current = 'no';
   };
-  const release = (x: number, y: number) => {
-    if (held.current === 'pressed') void jog(x, y, 1);
+  const release = (way: Way) => {
+    if (held.current === 'pressed') void jog(way, 1);
     leave();
   };
   useEffect(() => {
@@ -212,13 +226,14 @@ function Jog({ session }: { readonly session: MachinesSession }) {
     };
   }, []);
   const reason = control.can('jog') ? undefined : 'Only while the machine rests';
-  const arrows: Record<string, readonly [number, number]> = {
-    ArrowLeft: [-1, 0],
-    ArrowRight: [1, 0],
-    ArrowUp: [0, 1],
-    ArrowDown: [0, -1],
+  const arrows: Record<string, Way> = {
+    ArrowLeft: [-1, 0, 0],
+    ArrowRight: [1, 0, 0],
+    ArrowUp: [0, 1, 0],
+    ArrowDown: [0, -1, 0],
+    ...(session.isMill ? { PageUp: [0, 0, 1] as const, PageDown: [0, 0, -1] as const } : {}),
   };
-  const key = (name: string, x: number, y: number, area: string) => (
+  const key = (name: string, way: Way, area: string) => (
     <button
       type="button"
       class="jog-key"
@@ -228,13 +243,13 @@ function Jog({ session }: { readonly session: MachinesSession }) {
       onPointerDown={(event) => {
         if (reason || event.button !== 0) return;
         event.currentTarget.setPointerCapture(event.pointerId);
-        press(x, y);
+        press(way);
       }}
-      onPointerUp={() => (reason ? undefined : release(x, y))}
+      onPointerUp={() => (reason ? undefined : release(way))}
       onPointerCancel={leave}
       onClick={(event) => {
         // From the keyboard a click has no pointer.
-        if (!reason && event.detail === 0) void jog(x, y, event.shiftKey ? 10 : 1);
+        if (!reason && event.detail === 0) void jog(way, event.shiftKey ? 10 : 1);
       }}
     >
       <Icon name="arrow" small />
@@ -242,20 +257,22 @@ function Jog({ session }: { readonly session: MachinesSession }) {
   );
   return (
     <div
-      class="jog"
+      class={session.isMill ? 'jog with-z' : 'jog'}
       role="group"
-      aria-label="Move the head. Arrow keys move one millimetre, with Shift ten"
+      aria-label={`Move the head. Arrow keys${session.isMill ? ', Page Up and Page Down' : ''} move one millimetre, with Shift ten`}
       onKeyDown={(event) => {
         const by = arrows[event.key];
         if (by === undefined || reason) return;
         event.preventDefault();
-        void jog(by[0], by[1], event.shiftKey ? 10 : 1);
+        void jog(by, event.shiftKey ? 10 : 1);
       }}
     >
-      {key('back', 0, 1, 'up')}
-      {key('left', -1, 0, 'left')}
-      {key('right', 1, 0, 'right')}
-      {key('forward', 0, -1, 'down')}
+      {key('back', [0, 1, 0], 'up')}
+      {key('left', [-1, 0, 0], 'left')}
+      {key('right', [1, 0, 0], 'right')}
+      {key('forward', [0, -1, 0], 'down')}
+      {session.isMill ? key('the tool up', [0, 0, 1], 'raise') : null}
+      {session.isMill ? key('the tool down', [0, 0, -1], 'lower') : null}
       <p class="jog-hint">Press: 1 mm. Hold: until let go.</p>
     </div>
   );

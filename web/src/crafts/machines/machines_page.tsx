@@ -4,6 +4,7 @@ import { useEffect } from 'preact/hooks';
 import { Button, formatCount, formatDuration, JobStrip, Segmented, Sheet, Switch } from '../../ui';
 import { download } from '../common/download';
 import '../common/room.css';
+import { RunningStrip } from '../common/room_strip';
 import { goOn, start, startReason } from './actions';
 import { AlarmBar, MachineNotes } from './alarm_bar';
 import { BedView } from './bed_view';
@@ -14,6 +15,7 @@ import { Inspector } from './inspector';
 import { JobBar, partWords, timeShown } from './job_bar';
 import './machines.css';
 import type { MachinesSession } from './machines_session';
+import { PathView } from './path_view';
 
 export interface MachinesPageProps {
   readonly session: MachinesSession;
@@ -21,11 +23,12 @@ export interface MachinesPageProps {
 }
 
 export function MachinesPage({ session, onChooseFile }: MachinesPageProps) {
-  const shown = useSignal<'bed' | 'console'>('bed');
+  const shown = useSignal<'bed' | 'path' | 'console'>('bed');
   const travel = useSignal(false);
   useEffect(() => followBridge(session), [session]);
   useMachineKeys(session);
   const { drawing } = session.document.value;
+  const plan = session.plan.value;
   return (
     <>
       <main class="view machines-view" aria-label="Machines">
@@ -39,24 +42,29 @@ export function MachinesPage({ session, onChooseFile }: MachinesPageProps) {
             onChange={(value) => (shown.value = value)}
             options={[
               { value: 'bed', label: 'Bed' },
+              { value: 'path', label: '3D', disabledReason: plan ? undefined : 'Shown when there is a job' },
               { value: 'console', label: 'Console' },
             ]}
           />
-          {shown.value === 'bed' && session.plan.value ? (
+          {shown.value !== 'console' && plan ? (
             <div class="panel travel-switch">
               <Switch label="Travel" value={travel.value} onChange={(value) => (travel.value = value)} />
             </div>
           ) : null}
         </div>
-        {shown.value === 'bed' ? (
-          <BedView session={session} showTravel={travel.value} />
-        ) : (
+        {shown.value === 'console' ? (
           <Console session={session} />
+        ) : shown.value === 'path' && plan ? (
+          <PathView session={session} showTravel={travel.value} />
+        ) : (
+          <BedView session={session} showTravel={travel.value} />
         )}
-        {drawing === null && shown.value === 'bed' ? <Empty onChooseFile={onChooseFile} /> : null}
+        {drawing === null && shown.value === 'bed' ? (
+          <Empty session={session} onChooseFile={onChooseFile} />
+        ) : null}
         <div class="machines-foot">
           <MachineNotes session={session} onChooseFile={onChooseFile} />
-          {shown.value === 'bed' ? <JobBar session={session} /> : null}
+          {shown.value === 'console' ? null : <JobBar session={session} />}
         </div>
         <Confirmation />
       </main>
@@ -70,13 +78,19 @@ export function MachinesPage({ session, onChooseFile }: MachinesPageProps) {
   );
 }
 
-function Empty({ onChooseFile }: { readonly onChooseFile: () => void }) {
+function Empty({ session, onChooseFile }: MachinesPageProps) {
   return (
     <div class="machines-empty">
-      <p>Cutting plans come from Zippable; drawings (SVG) and jobs (G-code) from a file.</p>
-      <Button icon="upload" onClick={onChooseFile}>
-        Open a drawing or a job
-      </Button>
+      {session.isMill ? (
+        <p>Reliefs come from Relief; models, height maps (PNG) and jobs (G-code) from a file.</p>
+      ) : (
+        <p>Cutting plans come from Zippable; drawings (SVG) and jobs (G-code) from a file.</p>
+      )}
+      <div class="row">
+        <Button icon="upload" onClick={onChooseFile}>
+          {session.isMill ? 'Open a model or a job' : 'Open a drawing or a job'}
+        </Button>
+      </div>
     </div>
   );
 }
@@ -104,9 +118,18 @@ function Strip({ session, onChooseFile }: MachinesPageProps) {
   ) : null;
   const another = (
     <Button size="small" kind="quiet" icon="upload" onClick={onChooseFile}>
-      Another drawing
+      {session.isMill ? 'Another model' : 'Another drawing'}
     </Button>
   );
+  const activity = session.activity.value;
+  if (activity.kind !== 'idle')
+    return (
+      <RunningStrip
+        activity={activity}
+        titles={{ solving: 'Making the job', opening: 'Opening the model', exporting: 'Making the file' }}
+        onCancel={() => session.cancel()}
+      />
+    );
   if (job && control.isBusy) {
     const seconds = plan && ofThis ? plan.toolPath.seconds : 0;
     const time = plan && ofThis ? (timeShown(session) ?? 0) : 0;
@@ -162,7 +185,15 @@ function Strip({ session, onChooseFile }: MachinesPageProps) {
       <JobStrip
         state="idle"
         title={session.planning.value ? 'Making the job' : 'No job yet'}
-        detail={session.planning.value ? 'One moment' : 'Open a drawing or a job'}
+        detail={
+          session.planning.value
+            ? 'One moment'
+            : session.subject.value
+              ? 'Make it to see the way of the tool'
+              : session.isMill
+                ? 'Open a model or a job'
+                : 'Open a drawing or a job'
+        }
       />
     );
   const lines = plan.report['line_count'];
@@ -174,7 +205,9 @@ function Strip({ session, onChooseFile }: MachinesPageProps) {
           ? 'The job does not fit'
           : session.planning.value
             ? 'Making the job'
-            : 'Job ready'
+            : session.isCurrent.value
+              ? 'Job ready'
+              : 'The job before'
       }
       detail={`About ${formatDuration(plan.toolPath.seconds)}${typeof lines === 'number' ? `, ${formatCount(lines)} lines` : ''}`}
     >

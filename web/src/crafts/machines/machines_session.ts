@@ -2,52 +2,40 @@
 // Keeps the job in step with its drawing and parameters. The machine itself is held by MachineControl, whichever room is looked at.
 import { computed, effect, signal, untracked } from '@preact/signals';
 import type { JsonObject, Report } from '../../jobs/contract';
-import { asJobError, findOperation } from '../../jobs/contract';
+import { asJobError, cancelled, findOperation } from '../../jobs/contract';
 import { LatestOnly } from '../../jobs/latest_only';
-import { readGcodePath } from '../../machines/gcode_path';
 import { JobLog } from '../../machines/job_log';
 import { MachineControl } from '../../machines/machine_control';
+import { asOrigin } from '../../machines/places';
 import type { MachineProfile } from '../../machines/profiles';
 import { ProfileStore } from '../../machines/profiles';
-import { asOrigin } from '../../machines/places';
 import { listenForStop } from '../../machines/stop_keys';
-import type { ToolPath } from '../../machines/toolpath';
-import { readToolPath } from '../../machines/toolpath';
 import { jsonEqual } from '../../project/document';
 import type { CraftResult, Subject } from '../common/craft_document';
-import { nameProject, withoutDefaults } from '../common/craft_document';
-import { bytesOf } from '../common/import_model';
-import { sentences } from '../common/report';
+import { nameProject, sameRequest } from '../common/craft_document';
+import type { Measured } from '../common/estimate';
+import { estimateSeconds, recall } from '../common/estimate';
+import { figure } from '../common/report';
 import { RoomSession } from '../common/room_session';
-import type { Services } from '../common/services';
-import type { Drawing, MachinesDocument } from './machines_document';
-import { drawingEndings, jobEndings, laserJob, machines } from './machines_document';
-
-/** A job that is ready to be looked at, and to be sent unless it does not fit. */
-export interface Plan {
-  readonly key: string;
-  readonly report: Report;
-  readonly toolPath: ToolPath;
-  readonly job: Uint8Array<ArrayBuffer> | null;
-  readonly misfits: readonly string[];
-}
-
-interface Request {
-  readonly drawing: Drawing;
-  readonly parameters: JsonObject;
-}
-const keyOf = ({ drawing, parameters }: Request) =>
-  `${drawing.kind} ${drawing.file.blob} ${JSON.stringify(parameters)}`;
+import { readyWorker, type Services } from '../common/services';
+import type { FileWork, MachinesDocument } from './machines_document';
+import {
+  drawingEndings,
+  heightMapEnding,
+  jobEndings,
+  machines,
+  operationFor,
+  pictureSize,
+} from './machines_document';
+import type { Plan, PlanRequest } from './make_plan';
+import { keyOf, planOfJob, planOfLaser, planOfResult, sourceOf } from './make_plan';
 
 /** What the controller reads; the others read G-code. */
 const jobFormats: Readonly<Record<string, string>> = { k40: 'job.egv', ruida: 'job.rd' };
 
 export class MachinesSession extends RoomSession<MachinesDocument> {
   readonly document = computed(() => machines.of(this.services.projects.document.value));
-  readonly operation = computed(() => {
-    const catalog = this.services.catalog.value;
-    return (catalog && findOperation(catalog, laserJob)) ?? null;
-  });
+  readonly operation = computed(() => this.operationCalled(this.operationName));
   /** The machine's panel is there without a drawing. */
   readonly hasWork = signal(true);
   readonly profiles = new ProfileStore(localStorage);
@@ -57,10 +45,12 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
   readonly planning = signal(false);
   /** Seconds from the job's start that the bed shows; null: the end, or where the machine is. */
   readonly playhead = signal<number | null>(null);
+  /** The square of a test that came out best. */
+  readonly chosenCell = signal<string | null>(null);
   /** What is shown was made with the drawing and the parameters in force: only then it may be started. */
   readonly isCurrent = computed(() => {
-    const { drawing, parameters } = this.document.value;
-    return drawing !== null && this.plan.value?.key === keyOf({ drawing, parameters });
+    const request = this.#request();
+    return request !== null && this.plan.value?.key === keyOf(request);
   });
   /** Where the controller counts from. */
   readonly origin = computed(() => asOrigin(this.value('origin')));
@@ -68,17 +58,29 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
   get jobFormat(): string {
     return jobFormats[String(this.value('controller'))] ?? 'job.gcode';
   }
-  readonly #latest = new LatestOnly<Request>(
+  readonly #latest = new LatestOnly<PlanRequest>(
     (request, abort) => this.#make(request, abort),
-    (running, next) => running.drawing.file.blob !== next.drawing.file.blob,
+    (running, next) => sourceOf(running.work) !== sourceOf(next.work),
     (running, next) => keyOf(running) === keyOf(next),
   );
 
-  readonly operationName = laserJob;
-  readonly subject = computed<Subject | null>(() => null);
+  get operationName(): string {
+    return operationFor(this.document.value.drawing);
+  }
+  /** A mill's job takes its time: it is made when it is asked for, in the worker where there is one. */
+  readonly subject = computed<Subject | null>(() => {
+    const { drawing: work } = this.document.value;
+    if (work?.kind !== 'model') return null;
+    const model = { sha256: work.file.blob, file_name: work.file_name };
+    return { key: work.file.blob, inputs: { model } };
+  });
   readonly wantedOutputs = ['job.gcode', 'toolpath.json'];
   readonly asked = computed(() => this.document.value.parameters);
-  readonly result = computed<CraftResult | null>(() => null);
+  readonly result = computed<CraftResult | null>(() => {
+    const { results, parameters } = this.document.value;
+    const mesh = this.subject.value?.key;
+    return (mesh !== undefined && results.find((made) => sameRequest(made, { mesh, parameters }))) || null;
+  });
   readonly failedTitle = 'The job could not be made';
 
   constructor(services: Services) {
@@ -87,9 +89,21 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
     effect(() => this.follow());
   }
 
-  measured(): null {
-    return null;
+  /** Nodes of the height field stand for the vertices of a mesh. */
+  measured(report: Report): Measured | null {
+    const { size_mm: size, grid_mm: grid } = report;
+    const seconds = figure(report, 'seconds_plan');
+    if (!Array.isArray(size) || !Array.isArray(grid) || seconds === null) return null;
+    const vertices = (Number(size[0]) / Number(grid[0])) * (Number(size[1]) / Number(grid[1]));
+    return vertices > 0 ? { vertices, seconds } : null;
   }
+  /** Seconds that a mill's job may take; null where nothing is known yet. */
+  readonly estimate_s = computed<number | null>(() => {
+    const { drawing: work } = this.document.value;
+    const measured = recall(machines.craft, readyWorker(this.services) ? 'native' : 'wasm');
+    const nodes = work?.kind === 'model' ? (work.nodes ?? null) : null;
+    return measured && nodes ? estimateSeconds(measured, nodes) : null;
+  });
   cancelPreview(): void {
     this.#latest.cancel();
   }
@@ -99,41 +113,53 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
       this.services.projects.document.value.name
     );
   }
+  operationCalled(name: string) {
+    const catalog = this.services.catalog.value;
+    return (catalog && findOperation(catalog, name)) ?? null;
+  }
+
+  #request(): PlanRequest | null {
+    const { drawing: work, parameters } = this.document.value;
+    return work && { work, parameters };
+  }
 
   protected follow(): void {
-    const { drawing, parameters } = this.document.value;
-    if (drawing === null) {
+    this.cancelOutdatedSolve();
+    const request = this.#request();
+    if (request === null) {
       this.plan.value = null;
       return;
     }
     if (!this.active.value || this.operation.value === null) return;
-    const request = { drawing, parameters };
+    const { result } = this;
+    const made = request.work.kind !== 'model' || result.value !== null;
     untracked(() => {
       if (this.plan.value?.key === keyOf(request)) {
         this.#latest.cancel();
         this.fieldErrors.value = {};
-      } else this.#latest.request(request);
+      } else if (made) this.#latest.request(request);
+      else if (!this.plan.value?.key.startsWith(sourceOf(request.work))) this.plan.value = null;
     });
   }
 
-  async #make(request: Request, abort: AbortSignal): Promise<void> {
+  async #make(request: PlanRequest, abort: AbortSignal): Promise<void> {
     this.planning.value = true;
+    const { work } = request;
     try {
-      const made =
-        request.drawing.kind === 'job' ? await this.#readJob(request) : await this.#makeJob(request, abort);
+      const plan = await this.#planOf(request, abort);
       if (abort.aborted) return;
-      this.plan.value = { key: keyOf(request), ...made };
+      this.plan.value = plan;
       this.playhead.value = null;
       this.fieldErrors.value = {};
       this.problem.value = null;
     } catch (thrown) {
       const error = asJobError(thrown);
       if (error.code === 'cancelled') return;
-      if (error.where === 'drawing' || request.drawing.kind === 'job') {
+      if (error.where === 'drawing' || work.kind === 'job') {
         this.plan.value = null;
         this.problem.value = {
           kind: 'file',
-          title: `Could not read ${request.drawing.file_name}`,
+          title: `Could not read ${work.file_name}`,
           message: error.message,
         };
       } else this.report(error, this.failedTitle);
@@ -142,40 +168,51 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
     }
   }
 
-  async #makeJob({ drawing, parameters }: Request, signal: AbortSignal) {
-    const inputs = { drawing: { sha256: drawing.file.blob, file_name: drawing.file_name } };
-    const format = this.jobFormat;
-    const result = await this.services.browser.run(
-      { operation: laserJob, parameters, inputs, outputs: [format, 'toolpath.json'] },
-      { signal },
-    );
-    const toolPath = readToolPath(new TextDecoder().decode(await bytesOf(result, 'toolpath.json')));
-    const job = result.outputs.has(format) ? await bytesOf(result, format) : null;
-    return { report: result.report, toolPath, job, misfits: sentences(result.report, 'misfits') };
+  async #planOf(request: PlanRequest, signal: AbortSignal): Promise<Plan> {
+    const { work } = request;
+    const { blobs } = this.services.projects;
+    if (work.kind === 'job') {
+      const bed = [this.#number('bed_x_mm', 400), this.#number('bed_y_mm', 400)] as const;
+      return await planOfJob(blobs, { ...request, work }, bed, this.#number('power_max_s', 1000));
+    }
+    if (work.kind === 'model') {
+      const { parameters } = request;
+      const made = this.document
+        .peek()
+        .results.find((result) => sameRequest(result, { mesh: work.file.blob, parameters }));
+      if (made === undefined) throw cancelled();
+      return await planOfResult(blobs, request, made);
+    }
+    return await planOfLaser(this.services.browser, request, this.jobFormat, signal);
+  }
+  #number(name: string, otherwise: number): number {
+    const value = this.value(name);
+    return typeof value === 'number' ? value : otherwise;
   }
 
-  async #readJob({ drawing }: Request) {
-    const job = await this.services.projects.blobs.read(drawing.file.blob);
-    const number = (name: string) => {
-      const value = this.value(name);
-      return typeof value === 'number' ? value : 400;
-    };
-    const bed = [number('bed_x_mm'), number('bed_y_mm')] as const;
-    const toolPath = readGcodePath(new TextDecoder().decode(job), bed, number('power_max_s'));
-    return { report: {}, toolPath, job, misfits: [] };
+  // ---- files ----
+
+  get isMill(): boolean {
+    return this.profiles.current.options['tool'] === 'mill';
   }
 
-  /** Takes up one drawing or job; false where the file is neither. */
+  /** Takes up one drawing, job, or what a mill carves; false where the file is none of these. */
   async openFiles(files: readonly File[]): Promise<boolean> {
     const [file] = files;
     if (file === undefined) return false;
     const name = file.name.toLowerCase();
-    const kind = jobEndings.some((ending) => name.endsWith(ending)) ? 'job' : 'drawing';
-    if (kind === 'drawing' && !drawingEndings.some((ending) => name.endsWith(ending))) {
+    const isOne = (endings: readonly string[]) => endings.some((ending) => name.endsWith(ending));
+    const formats = this.services.catalog.value?.mesh_formats ?? [];
+    const model = isOne([heightMapEnding, ...formats.map(({ extension }) => `.${extension}`)]);
+    const kind = isOne(jobEndings) ? 'job' : isOne(drawingEndings) ? 'drawing' : model ? 'model' : null;
+    if (kind === null || (kind === 'model' && !this.isMill)) {
       this.problem.value = {
         kind: 'file',
         title: `Could not open ${file.name}`,
-        message: `Machines take drawings (${drawingEndings.join(', ')}) and jobs (${jobEndings.join(', ')}): models go to the other places, which make drawings of them.`,
+        message:
+          kind === 'model'
+            ? 'Models and height maps are for mills: choose or add a mill as the machine, then open it again.'
+            : `Machines take drawings (${drawingEndings.join(', ')}), jobs (${jobEndings.join(', ')}) and, for mills, models and height maps (${heightMapEnding}).`,
       };
       return false;
     }
@@ -183,16 +220,49 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
     return true;
   }
 
+  /** `own`: what is known of the work beside its bytes. */
   async take(
     file_name: string,
     bytes: Uint8Array<ArrayBuffer>,
-    kind: Drawing['kind'] = 'drawing',
+    kind: FileWork['kind'] = 'drawing',
+    own: JsonObject = {},
   ): Promise<void> {
-    const file = await this.keep(bytes, kind === 'job' ? 'text/x-gcode' : 'image/svg+xml');
+    const picture = kind === 'model' ? pictureSize(bytes) : null;
+    const types = { job: 'text/x-gcode', drawing: 'image/svg+xml', model: 'application/octet-stream' };
+    const file = await this.keep(bytes, picture ? 'image/png' : types[kind]);
     const blank = this.services.projects.isBlank.value;
     this.problem.value = null;
-    this.services.projects.do(machines.setDrawing({ file_name, kind, file }));
+    const nodes = picture ? { nodes: picture[0] * picture[1] } : {};
+    this.#setWork({ file_name, kind, file, ...nodes }, `Open ${file_name}`, own);
     if (blank) this.services.projects.do(nameProject(file_name.replace(/\.[^.]+$/, '')));
+  }
+
+  /** A height map or model for a mill: one is chosen where a laser was, unless that is connected. */
+  async takeForMill(file_name: string, bytes: Uint8Array<ArrayBuffer>, own: JsonObject): Promise<void> {
+    await this.take(file_name, bytes, 'model', own);
+    if (!this.isMill && this.control.link.value === null) this.useProfile(this.profiles.mill);
+  }
+
+  #setWork(work: FileWork, label: string, own: JsonObject): void {
+    const catalog = this.services.catalog.value;
+    if (catalog) this.services.projects.do(machines.setWork(catalog, work, label, own));
+  }
+
+  // ---- tests of the material ----
+
+  testMaterial(): void {
+    const catalog = this.services.catalog.value;
+    const { drawing } = this.document.value;
+    if (catalog === null || drawing?.kind === 'test') return;
+    const work = { file_name: 'Material test', kind: 'test', instead_of: drawing } as const;
+    this.services.projects.do(machines.setWork(catalog, work, 'Test the material'));
+    this.problem.value = null;
+  }
+
+  /** Back to what was there before, with what the test has told. */
+  endTest(values: JsonObject, label: string): void {
+    const catalog = this.services.catalog.value;
+    if (catalog) this.services.projects.do(machines.takeFromTest(catalog, values, label));
   }
 
   // ---- machines ----
@@ -200,24 +270,25 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
   /** Changes to this machine: its bed and speeds become the job's. */
   useProfile(profile: MachineProfile): void {
     this.profiles.put(profile);
-    const operation = this.operation.value;
-    if (operation === null) return;
-    const machineDefaults = Object.fromEntries(
-      Object.entries(operation.parameters.properties)
-        .filter(([, schema]) => schema['x-group'] === 'Machine')
-        .map(([name, schema]) => [name, schema.default ?? null]),
-    );
-    this.setParameters({ ...machineDefaults, ...profile.parameters }, `Use ${profile.name}`);
+    const catalog = this.services.catalog.value;
+    if (catalog)
+      this.services.projects.do(machines.setMachine(catalog, profile.parameters, `Use ${profile.name}`));
+    this.services.projects.commit();
   }
 
-  /** What is set now about the machine, as a profile keeps it. */
+  /** What is set now about the machine, as a profile keeps it: also what only other operations know. */
   machineParameters(): JsonObject {
     const operation = this.operation.value;
-    if (operation === null) return {};
-    const { parameters } = this.document.value;
-    const ofMachine = ([name]: readonly [string, unknown]) =>
-      operation.parameters.properties[name]?.['x-group'] === 'Machine';
-    return withoutDefaults(operation, Object.fromEntries(Object.entries(parameters).filter(ofMachine)));
+    const { parameters } = this.profiles.current;
+    if (operation === null) return parameters;
+    const kept = new Map(Object.entries(parameters));
+    for (const [name, schema] of Object.entries(operation.parameters.properties)) {
+      const value = this.value(name);
+      if (schema['x-group'] !== 'Machine' || jsonEqual(kept.get(name) ?? null, value)) continue;
+      if (jsonEqual(value, schema.default ?? null)) kept.delete(name);
+      else kept.set(name, value);
+    }
+    return Object.fromEntries(kept);
   }
 
   /** Are the machine's values other than its profile says? */

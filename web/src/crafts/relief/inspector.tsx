@@ -23,6 +23,8 @@ import { ModelRow } from '../common/model_row';
 import { outputOf } from '../common/full_solve';
 import { parametersOf } from './meshes';
 import type { ReliefSession } from './relief_session';
+import type { SendToMill } from './send_relief';
+import { sendRelief } from './send_relief';
 import { solidLine } from './report';
 import { atViewpoint, followCamera } from './viewport_panel';
 
@@ -32,9 +34,11 @@ export interface InspectorProps {
   readonly picture: string | null;
   readonly onReplace: () => void;
   readonly onSolve: () => void;
+  readonly onSendToMill: SendToMill;
 }
 
-export function Inspector({ session, viewport, picture, onReplace, onSolve }: InspectorProps) {
+export function Inspector(props: InspectorProps) {
+  const { session, viewport, picture, onReplace } = props;
   const { model, parameters } = session.document.value;
   const operation = session.operation.value;
   if (model === null || operation === null) return null;
@@ -53,7 +57,7 @@ export function Inspector({ session, viewport, picture, onReplace, onSolve }: In
         />
       </div>
       <div class="inspector-foot">
-        <MainButton session={session} onSolve={onSolve} />
+        <MainButton {...props} />
       </div>
     </>
   );
@@ -101,7 +105,7 @@ function ViewpointTools({ session, viewport }: { session: ReliefSession; viewpor
   );
 }
 
-function MainButton({ session, onSolve }: { session: ReliefSession; onSolve: () => void }) {
+function MainButton({ session, onSolve, onSendToMill }: InspectorProps) {
   const [confirm, setConfirm] = useState(false);
   const activity = session.activity.value;
   const result = session.result.value;
@@ -114,7 +118,7 @@ function MainButton({ session, onSolve }: { session: ReliefSession; onSolve: () 
         <p>Change anything to start again</p>
       </>
     );
-  if (result) return <ExportButton session={session} result={result} />;
+  if (result) return <ExportButton session={session} result={result} onSendToMill={onSendToMill} />;
   const estimate = session.estimate.value;
   const worker = readyWorker(session.services) !== null;
   const memory = estimate?.memory_mb ?? 0;
@@ -171,7 +175,13 @@ function timeLine(
   return [here ?? 'In the browser', there].filter(Boolean).join(', ');
 }
 
-function ExportButton({ session, result }: { session: ReliefSession; result: CraftResult }) {
+interface ExportProps {
+  readonly session: ReliefSession;
+  readonly result: CraftResult;
+  readonly onSendToMill: SendToMill;
+}
+
+function ExportButton({ session, result, onSendToMill }: ExportProps) {
   const all = session.operation.value?.outputs ?? [];
   const files = all.filter((output) => output.name !== 'relief.ply');
   const main = files.find((output) => output.name === 'relief.stl') ?? files[0];
@@ -214,6 +224,14 @@ function ExportButton({ session, result }: { session: ReliefSession; result: Cra
         {solidLine(result.report)}
         {size ? `, ${formatBytes(size)}` : ''}
       </p>
+      <Button
+        class="send-on"
+        icon="machines"
+        disabledReason={busy}
+        onClick={() => void sendRelief(session, onSendToMill)}
+      >
+        Send to a machine
+      </Button>
     </>
   );
 }

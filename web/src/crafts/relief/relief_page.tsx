@@ -9,6 +9,7 @@ import { solveInFull } from '../common/full_solve';
 import { useRoomKeys } from '../common/room_keys';
 import '../common/room.css';
 import type { ReliefSession } from './relief_session';
+import type { SendToMill } from './send_relief';
 import type { Look } from '../common/pictures';
 import { useModelPicture, useResultPictures } from '../common/pictures';
 import { ResultsStrip } from './results_strip';
@@ -19,11 +20,13 @@ export interface ReliefPageProps {
   readonly onChooseFile: () => void;
   readonly onWorkerHelp: () => void;
   readonly onStart: () => void;
+  readonly onSendToMill: SendToMill;
 }
 
 const threeQuarters: Look = { direction: [-0.5, -0.34, -1], up: [0, 1, 0] };
 
-export function ReliefPage({ session, onChooseFile, onWorkerHelp, onStart }: ReliefPageProps) {
+export function ReliefPage(props: ReliefPageProps) {
+  const { session, onChooseFile, onWorkerHelp, onStart } = props;
   const viewport = useSignal<Viewport | null>(null);
   const picture = useModelPicture(session, viewport, threeQuarters);
   const { shown } = session;
@@ -73,6 +76,7 @@ export function ReliefPage({ session, onChooseFile, onWorkerHelp, onStart }: Rel
             picture={picture.value}
             onReplace={onChooseFile}
             onSolve={() => void solveInFull(session)}
+            onSendToMill={props.onSendToMill}
           />
         </Sheet>
       ) : null}

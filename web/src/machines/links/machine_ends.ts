@@ -176,10 +176,11 @@ export async function openUsbEnd(usb: UsbLike, index: number, listener: EndListe
 export function openVirtualEnd(
   module: MachineModule,
   bed_mm: readonly [number, number],
+  mill: boolean,
   now_s: () => number,
   listener: EndListener,
 ): MachineEnd & { trip(): void } {
-  const handle = module.newVirtual(bed_mm, now_s());
+  const handle = module.newVirtual(bed_mm, mill, now_s());
   const hear = () => {
     const said = module.advanceVirtual(handle, now_s());
     if (said.length > 0) listener.received(said);

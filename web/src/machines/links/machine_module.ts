@@ -15,7 +15,7 @@ interface Emscripten {
   _fw_machine_call(handle: number, call: number, data: number, size: number, now_s: number): number;
   _fw_machine_next_packet(handle: number): number;
   _fw_machine_packet(): number;
-  _fw_virtual_new(bed_x_mm: number, bed_y_mm: number, now_s: number): number;
+  _fw_virtual_new(bed_x_mm: number, bed_y_mm: number, mill: number, now_s: number): number;
   _fw_virtual_drop(handle: number): void;
   _fw_virtual_receive(handle: number, data: number, size: number, now_s: number): void;
   _fw_virtual_advance(handle: number, now_s: number): number;
@@ -88,8 +88,8 @@ export class MachineModule {
     return { state, events, packets };
   }
 
-  newVirtual(bed_mm: readonly [number, number], now_s: number): number {
-    return this.#module._fw_virtual_new(bed_mm[0], bed_mm[1], now_s);
+  newVirtual(bed_mm: readonly [number, number], mill: boolean, now_s: number): number {
+    return this.#module._fw_virtual_new(bed_mm[0], bed_mm[1], mill ? 1 : 0, now_s);
   }
   dropVirtual(handle: number): void {
     this.#module._fw_virtual_drop(handle);

@@ -70,7 +70,13 @@ export class MachineRunner {
     };
     const { serial, usb } = this.#ports;
     if (end.kind === 'virtual')
-      this.#end = openVirtualEnd(this.#module, bedOf(options), this.#now_s, listener);
+      this.#end = openVirtualEnd(
+        this.#module,
+        bedOf(options),
+        options['tool'] === 'mill',
+        this.#now_s,
+        listener,
+      );
     else if (end.kind === 'serial' && serial)
       this.#end = await openSerialEnd(serial, end.index, end.baud, listener);
     else if (end.kind === 'usb' && usb) this.#end = await openUsbEnd(usb, end.index, listener);

@@ -55,6 +55,6 @@ export async function openUsb(options: Options): Promise<MachineLink | null> {
   return WorkerLink.open({ kind: 'usb', index }, options);
 }
 
-/** A GRBL laser that is not there, to practise on. */
+/** A GRBL laser or mill that is not there, to practise on. */
 export const openVirtual = (options: Options): Promise<WorkerLink> =>
   WorkerLink.open({ kind: 'virtual' }, { ...options, controller: 'grbl' });

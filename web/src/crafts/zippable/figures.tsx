@@ -16,6 +16,8 @@ const named = [
   'distortion_mean',
   'distortion_max',
   'isometry_error',
+  'fabric_area_mm2',
+  'interleaved_share',
   'orders',
   'handles_cut',
 ];

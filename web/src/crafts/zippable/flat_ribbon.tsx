@@ -7,6 +7,7 @@ import { figure } from '../common/report';
 import { boundaryEdges, partName } from './design';
 import type { FlatFit } from './flat_outline';
 import { edgePath, fitFlat, partLabels, partPaths, scaleBar } from './flat_outline';
+import { fabricName, fabricToken, paintedRibbon } from './paint';
 import { alongAt, flatOf, placeInFlat, seamAt } from './ribbon_places';
 import type { SendToMachine } from './send_sheet';
 import { Sheets } from './sheets';
@@ -142,10 +143,25 @@ function Drawing({ shown, fit, width, height }: DrawingProps) {
           <i style={{ width: `${bar.px}px` }} />
           {bar.text}
         </span>
+        {design.fabric ? <FabricKey /> : null}
         <span>Seam: {metres(design.zipper_mm)} on each side</span>
         <span>{said ?? ''}</span>
       </div>
     </>
+  );
+}
+
+/** Which colour on the drawing is which fabric. */
+function FabricKey() {
+  return (
+    <span class="fabric-key">
+      {[0, 1].map((fabric) => (
+        <span key={fabric}>
+          <i style={{ '--part': `var(${fabricToken(fabric)})` }} aria-hidden="true" />
+          {fabricName(fabric)}
+        </span>
+      ))}
+    </span>
   );
 }
 
@@ -163,19 +179,21 @@ function Shapes({ shown, chosen, line }: ShapesProps) {
   const { design, partOfTriangle } = shown;
   const shapes = useMemo(() => {
     const { flat } = design.ribbon;
+    const { ofTriangle, paints } = paintedRibbon(design, partOfTriangle);
+    const paths = partPaths(design.ribbon, ofTriangle, paints.length);
     return {
-      parts: partPaths(design.ribbon, partOfTriangle, design.parts.length),
+      painted: paints.map((paint, i) => ({ ...paint, path: paths[i] ?? '' })),
       zipper: edgePath(flat, boundaryEdges(design, 'zipper')),
       opening: edgePath(flat, boundaryEdges(design, 'opening')),
     };
   }, [shown]);
   return (
     <>
-      {shapes.parts.map((path, part) => (
+      {shapes.painted.map(({ part, token, path }, i) => (
         <path
-          key={part}
+          key={i}
           class={chosen === null || chosen === part ? 'flat-part' : 'flat-part faded'}
-          style={{ '--part': `var(${partToken(part)})` }}
+          style={{ '--part': `var(${token})` }}
           d={path}
         />
       ))}

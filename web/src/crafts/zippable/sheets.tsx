@@ -7,7 +7,7 @@ import { figure, sentences } from '../common/report';
 import { metres } from './flat_ribbon';
 import { planBytes } from './make_product';
 import type { SendToMachine } from './send_sheet';
-import { sendSheet, sheetCount } from './send_sheet';
+import { sendSheet, sheetCount, sheetName } from './send_sheet';
 import type { ZippableSession } from './zippable_session';
 
 /** Plans asked for already: what failed is not tried again before something changes. */
@@ -99,7 +99,7 @@ function SendButton({ session, onSendToMachine }: SheetsProps) {
     <Menu
       buttonClass="button small"
       items={Array.from({ length: count }, (_, sheet) => ({
-        label: `Sheet ${sheet + 1}`,
+        label: sheetName(session, sheet),
         disabledReason: idle ? undefined : 'Busy with a file',
         onSelect: () => send(sheet),
       }))}

@@ -22,6 +22,7 @@ const flatNames = [
   { value: 'ribbon', label: 'Ribbon' },
   { value: 'sheets', label: 'Sheets to cut' },
 ] as const;
+const rigName = { value: 'rig', label: 'Rig' } as const;
 
 export interface FlatRibbonProps {
   readonly session: ZippableSession;
@@ -45,18 +46,20 @@ export function FlatRibbon({ session, onSendToMachine }: FlatRibbonProps) {
     [shown, width, height],
   );
   const plans = session.operationNamed(planning) !== undefined;
-  const sheets = plans && flatView.value === 'sheets';
+  const rig = session.value('rig') === true;
+  const chosen = flatView.value === 'rig' && !rig ? 'sheets' : flatView.value;
+  const sheets = plans && chosen !== 'ribbon';
   return (
     <div ref={frame} class="flat-ribbon">
-      {shown && sheets ? <Sheets session={session} onSendToMachine={onSendToMachine} /> : null}
+      {shown && sheets ? <Sheets session={session} drawing={chosen === 'rig' ? 'rig.svg' : 'plan.svg'} onSendToMachine={onSendToMachine} /> : null}
       {shown && fit && !sheets ? <Drawing shown={shown} fit={fit} width={width} height={height} /> : null}
       {shown && plans ? (
         <div class="float top-left">
           <Segmented
             floating
             label="Flat"
-            options={flatNames}
-            value={flatView.value}
+            options={rig ? [...flatNames, rigName] : flatNames}
+            value={chosen}
             onChange={(value) => (flatView.value = value)}
           />
         </div>

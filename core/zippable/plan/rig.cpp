@@ -38,11 +38,11 @@ class PlateMaker {
     std::vector<std::vector<Vec2>> edges;
     std::vector<char> left;
     for (const TapeRun& run : runs)
-      if (run.piece == number_) {
-        edges.push_back(edge_of(design, ribbon, run));
-        left.push_back(run.left);
-      }
-    std::erase_if(edges, [](const auto& edge) { return edge.size() < 2; });
+      if (run.piece == number_)
+        if (std::vector<Vec2> edge = edge_of(design, ribbon, run); edge.size() > 1) {
+          edges.push_back(std::move(edge));
+          left.push_back(run.left);
+        }
     tracks_ = rig_tracks(piece_.outline_mm, edges, left, sizes_);
     for (const RigTrack& track : tracks_.tracks) {
       cut_out_.push_back({track.middle_mm, sizes_.track_mm});

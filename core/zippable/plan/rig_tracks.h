@@ -29,8 +29,8 @@ struct RigTrack {
 };
 
 /// Of one piece: `cloth_mm` its finished outline, `edges` the polylines of its zipper edges with the cloth to their left,
-/// `edge_left` which tape each takes. Tracks end where they would come nearer than a wall to another one, nearer to the
-/// cloth than the offset, or be shorter than 10 mm; `left_out_mm` says how much of the edges has none.
+/// `edge_left` which tape each takes. Tracks end where they would come nearer than a wall to another one, nearer to
+/// their edge than the offset, under the cloth, or be shorter than 10 mm; `left_out_mm` says how much of the edges has none.
 struct RigTracks {
   std::vector<RigTrack> tracks;
   double left_out_mm = 0;

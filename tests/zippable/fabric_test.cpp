@@ -136,7 +136,7 @@ TEST(Curve, BeginsAndEndsWhereItShould) {
     options.start_part = start, options.end_part = end;
     const ZippableDesign design = designed("star", options);
     const std::vector<int>& parts = design.traversal.traversal.parts;
-    if (start > 0) EXPECT_EQ(parts.front(), start - 1);
+    if (start > 0) { EXPECT_EQ(parts.front(), start - 1); }
     EXPECT_EQ(parts.back(), end - 1);
   }
   options.start_part = options.end_part = 1;

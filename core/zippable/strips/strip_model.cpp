@@ -11,6 +11,7 @@
 #include "fabrication/nesting.h"
 #include "fabrication/words.h"
 #include "geometry/adjacency.h"
+#include "geometry/point_distance.h"
 #include "zippable/plan/splitting.h"
 #include "zippable/polygon_dissection.h"
 #include "zippable/ribbon.h"
@@ -67,6 +68,86 @@ Strip filled(const std::vector<int>& walk, const std::vector<Vec3>& points, doub
   for (std::size_t i = 0; i < triangles.size(); ++i) strip.F.row(static_cast<Eigen::Index>(i)) << triangles[i][0], triangles[i][1], triangles[i][2];
   return strip;
 }
+
+/// From a corner of the walk over the band's edges to its vertex farthest from the walk: where a tip would be cut off, the band is slit as far as there.
+class Slitter {
+ public:
+  Slitter(const Bands& bands, double sample_mm) : bands_(bands), adjacency_(bands.mesh), sample_mm_(sample_mm), vertices_(std::size_t(bands.band_count)) {
+    for (int h = 0; h < 3 * bands.mesh.face_count(); ++h) vertices_[bands.band[h / 3]].insert(adjacency_.from(h));
+  }
+
+  /// The walk with the slit, both ways; the walk itself where the filled band comes near to all of it.
+  std::vector<int> slit(int band, const std::vector<int>& walk, const Strip& strip, double near_mm, std::vector<Vec3>& points) const {
+    TriangleMesh mesh;
+    mesh.V.resize(static_cast<Eigen::Index>(strip.positions.size()), 3);
+    for (std::size_t i = 0; i < strip.positions.size(); ++i) mesh.V.row(static_cast<Eigen::Index>(i)) = strip.positions[i];
+    mesh.F = strip.F;
+    const PointDistance surface(mesh);
+    int tip = -1;
+    double farthest = near_mm;
+    for (const int v : vertices_[band])
+      if (const double distance = surface.nearest(position(v))->distance; distance > farthest) farthest = distance, tip = v;
+    if (tip < 0) return walk;
+    std::vector<Vec3> way = way_to(band, tip, walk, points);
+    const auto foot = std::min_element(walk.begin(), walk.end(), [&](int a, int b) { return (points[a] - way.front()).squaredNorm() < (points[b] - way.front()).squaredNorm(); });
+    way.insert(way.begin(), points[*foot]);
+    std::vector<int> inward;
+    double along = 0, taken = 0, length = 0;
+    for (std::size_t i = 0; i + 1 < way.size(); ++i) length += (way[i + 1] - way[i]).norm();
+    const double step = length / std::max(1.0, std::round(length / sample_mm_));
+    for (std::size_t i = 1; i < way.size(); ++i) {
+      along += (way[i] - way[i - 1]).norm();
+      if (along - taken < step && i + 1 < way.size()) continue;
+      taken = along;
+      inward.push_back(static_cast<int>(points.size()));
+      points.push_back(way[i]);
+    }
+    std::vector<int> result(walk.begin(), foot + 1);
+    result.insert(result.end(), inward.begin(), inward.end());
+    result.insert(result.end(), inward.rbegin() + 1, inward.rend());
+    result.insert(result.end(), foot, walk.end());
+    return result;
+  }
+
+ private:
+  Vec3 position(int v) const { return bands_.mesh.V.row(v).transpose(); }
+
+  /// Along edges inside the band, from its border to the tip.
+  std::vector<Vec3> way_to(int band, int tip, const std::vector<int>& walk, const std::vector<Vec3>& points) const {
+    std::map<int, double> distance{{tip, 0}};
+    std::map<int, int> before;
+    std::set<std::pair<double, int>> open{{0, tip}};
+    int end = tip;
+    double least = 1e300;
+    while (!open.empty()) {
+      const auto [d, v] = *open.begin();
+      open.erase(open.begin());
+      // As far as to the border's nearest sample, however near that is.
+      double beyond = 1e300;
+      for (const int p : walk) beyond = std::min(beyond, (points[p] - position(v)).norm());
+      if (d + 2 * beyond < least) least = d + 2 * beyond, end = v;
+      if (d > least) break;
+      for (const int w : adjacency_.neighbours(v)) {
+        if (!vertices_[band].contains(w)) continue;
+        const double there = d + (position(w) - position(v)).norm();
+        const auto [known, fresh] = distance.try_emplace(w, there);
+        if (!fresh && known->second <= there) continue;
+        if (!fresh) open.erase({known->second, w});
+        known->second = there;
+        before[w] = v;
+        open.insert({there, w});
+      }
+    }
+    std::vector<Vec3> way{position(end)};
+    for (int v = end; v != tip;) way.push_back(position(v = before.at(v)));
+    return way;
+  }
+
+  const Bands& bands_;
+  Adjacency adjacency_;
+  double sample_mm_;
+  std::vector<std::set<int>> vertices_;  // per band
+};
 
 /// How many bands have a handle, which their borders alone do not show.
 int bands_with_handles(const Bands& bands, const BandNetwork& network) {
@@ -131,7 +212,8 @@ void add_pieces(const Strip& strip, const StripOptions& options, StripModel& mod
 StripModel make_strips(const TriangleMesh& mesh, const std::vector<int>& limb, const StripOptions& options, Context& context) {
   context.progress(0, "Dividing into bands");
   const Bands bands = distance_bands(mesh, limb, options.feature_degrees, options.width_mm, context);
-  const BandNetwork network = band_network(bands, 0.2 * options.width_mm);
+  BandNetwork network = band_network(bands, 0.2 * options.width_mm);
+  const Slitter slitter(bands, 0.2 * options.width_mm);
   StripModel model;
   model.parts = bands.part_count, model.bands = bands.band_count;
   int degenerate = 0;
@@ -146,7 +228,10 @@ StripModel make_strips(const TriangleMesh& mesh, const std::vector<int>& limb, c
       ++degenerate;
       continue;
     }
-    add_pieces(filled(walk, network.points_mm, options.width_mm), options, model, context);
+    Strip strip = filled(walk, network.points_mm, options.width_mm);
+    if (const std::vector<int> slit = slitter.slit(band, walk, strip, 0.25 * options.width_mm, network.points_mm); slit.size() > walk.size())
+      strip = filled(slit, network.points_mm, options.width_mm);
+    add_pieces(strip, options, model, context);
   }
   if (degenerate > 0) model.notes.push_back(std::to_string(degenerate) + " bands have no border to unfold them by and were left out.");
   if (const int handles = bands_with_handles(bands, network); handles > 0)

@@ -35,9 +35,9 @@ TEST(RigTracks, OfAStripRunBesideItsEdges) {
     EXPECT_NEAR(track.along_cloth_mm, 200, 1e-9);
     ASSERT_EQ(track.openings_mm.size(), 2u);
     for (const Vec2& p : track.middle_mm)
-      if (p.x() > -1e-9 && p.x() < 200 + 1e-9) EXPECT_NEAR(p.y(), track.left ? -sizes.offset_mm : 14 + sizes.offset_mm, 1e-9);
+      if (p.x() > -1e-9 && p.x() < 200 + 1e-9) { EXPECT_NEAR(p.y(), track.left ? -sizes.offset_mm : 14 + sizes.offset_mm, 1e-9); }
     for (const Vec2& p : track.slot_mm)
-      if (p.x() > -1e-9 && p.x() < 200 + 1e-9) EXPECT_NEAR(std::abs(p.y() - 7), 7 + sizes.offset_mm - sizes.track_mm / 2 + sizes.slot_mm / 2, 1e-9);
+      if (p.x() > -1e-9 && p.x() < 200 + 1e-9) { EXPECT_NEAR(std::abs(p.y() - 7), 7 + sizes.offset_mm - sizes.track_mm / 2 + sizes.slot_mm / 2, 1e-9); }
     for (const Vec2& opening : track.openings_mm) EXPECT_GT(nearest_on_line(sheet, true, opening).distance_mm, sizes.opening_mm / 2);
   }
 }
@@ -77,7 +77,7 @@ TEST(Rig, TracksKeepTheirWidthAndApart) {
     for (const RigPlate& plate : plan.rig->plates) {
       std::vector<std::pair<std::string, Polygon>> cuts;
       for (const CutPath& path : plate.paths) {
-        if (path.name.starts_with("marker-")) EXPECT_TRUE(markers.insert(path.name).second);
+        if (path.name.starts_with("marker-")) { EXPECT_TRUE(markers.insert(path.name).second); }
         for (const Vec2& p : path.points_mm) {
           EXPECT_GE(p.minCoeff(), -1e-6) << path.name;
           EXPECT_LE((p - plate.size_mm).maxCoeff(), 1e-6) << path.name;

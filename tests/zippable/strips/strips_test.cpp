@@ -108,7 +108,7 @@ TEST(Strips, NarrowerOnesComeNearerToASphere) {
     options.width_mm = width;
     const StripModel model = make_strips(mesh, no_limbs(mesh), options, context);
     const double distance = surface_distance(model.formed, PointDistance(mesh), 1, context).mean;
-    if (before > 0) EXPECT_GT(std::log2(before / distance), 1.5);  // second order
+    if (before > 0) { EXPECT_GT(std::log2(before / distance), 1.5); }  // second order
     before = distance;
   }
 }

@@ -27,7 +27,10 @@ const ofTwoFabrics = ['fabric_area_mm2', 'interleaved_share'];
 
 function written(value: Json, { unit = '' }: ReportField): string {
   if (Array.isArray(value))
-    return withUnit(value.map((item) => formatNumber(Number(item), 3)).join(unit === 'mm' ? ' × ' : ' and '), unit);
+    return withUnit(
+      value.map((item) => formatNumber(Number(item), 3)).join(unit === 'mm' ? ' × ' : ' and '),
+      unit,
+    );
   if (typeof value !== 'number') return '–';
   if (Number.isInteger(value)) return withUnit(formatCount(value), unit);
   if (Math.abs(value) < 1e-6) return value === 0 ? '0' : `under ${withUnit('10⁻⁶', unit)}`;

@@ -51,7 +51,13 @@ export function FlatRibbon({ session, onSendToMachine }: FlatRibbonProps) {
   const sheets = plans && chosen !== 'ribbon';
   return (
     <div ref={frame} class="flat-ribbon">
-      {shown && sheets ? <Sheets session={session} drawing={chosen === 'rig' ? 'rig.svg' : 'plan.svg'} onSendToMachine={onSendToMachine} /> : null}
+      {shown && sheets ? (
+        <Sheets
+          session={session}
+          drawing={chosen === 'rig' ? 'rig.svg' : 'plan.svg'}
+          onSendToMachine={onSendToMachine}
+        />
+      ) : null}
       {shown && fit && !sheets ? <Drawing shown={shown} fit={fit} width={width} height={height} /> : null}
       {shown && plans ? (
         <div class="float top-left">

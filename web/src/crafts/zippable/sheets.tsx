@@ -117,7 +117,9 @@ const many = (count: number, one: string) => `${formatCount(count)} ${one}${coun
 /** "15 plates on 4 boards; 36 screws". */
 export function rigWords(session: ZippableSession): string {
   const report = session.plan.value?.report ?? {};
-  const [plates, boards, screws] = ['rig_plates', 'rig_sheets', 'rig_screws'].map((name) => figure(report, name));
+  const [plates, boards, screws] = ['rig_plates', 'rig_sheets', 'rig_screws'].map((name) =>
+    figure(report, name),
+  );
   return plates && boards && screws
     ? `${many(plates, 'plate')} on ${many(boards, 'board')}; ${many(screws, 'screw')}`
     : '';

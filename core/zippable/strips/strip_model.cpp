@@ -153,13 +153,15 @@ class Slitter {
 int bands_with_handles(const Bands& bands, const BandNetwork& network) {
   const Adjacency adjacency(bands.mesh);
   std::vector<int> euler(std::size_t(bands.band_count), 0);
-  std::set<std::pair<int, int>> corners;
+  // A vertex where the band touches itself counts once for every fan of it, and each fan has one border leaving.
+  std::map<std::pair<int, int>, int> borders;
   for (int h = 0; h < 3 * bands.mesh.face_count(); ++h) {
     const int band = bands.band[h / 3], o = adjacency.opposite(h);
     if (h % 3 == 0) ++euler[band];
     if (o < h || bands.band[o / 3] != band) --euler[band];  // every edge once
-    if (corners.insert({band, adjacency.from(h)}).second) ++euler[band];
+    borders[{band, adjacency.from(h)}] += o < 0 || bands.band[o / 3] != band;
   }
+  for (const auto& [corner, leaving] : borders) euler[corner.first] += std::max(1, leaving);
   int count = 0;
   for (int band = 0; band < bands.band_count; ++band) count += 2 - static_cast<int>(network.loops[band].size()) - euler[band] >= 2;
   return count;
@@ -216,6 +218,7 @@ StripModel make_strips(const TriangleMesh& mesh, const std::vector<int>& limb, c
   const Slitter slitter(bands, 0.2 * options.width_mm);
   StripModel model;
   model.parts = bands.part_count, model.bands = bands.band_count;
+  constexpr int most_tips = 12;  // of a band
   int degenerate = 0;
   for (int band = 0; band < bands.band_count; ++band) {
     context.progress(static_cast<double>(band + 1) / (bands.band_count + 1), "Unfolding strips");
@@ -223,14 +226,18 @@ StripModel make_strips(const TriangleMesh& mesh, const std::vector<int>& limb, c
       ++degenerate;
       continue;
     }
-    const std::vector<int> walk = one_walk(network.loops[band], network.points_mm);
+    std::vector<int> walk = one_walk(network.loops[band], network.points_mm);
     if (walk.size() < 3) {
       ++degenerate;
       continue;
     }
     Strip strip = filled(walk, network.points_mm, options.width_mm);
-    if (const std::vector<int> slit = slitter.slit(band, walk, strip, 0.25 * options.width_mm, network.points_mm); slit.size() > walk.size())
-      strip = filled(slit, network.points_mm, options.width_mm);
+    for (int tips = 0; tips < most_tips; ++tips) {
+      std::vector<int> slit = slitter.slit(band, walk, strip, 0.25 * options.width_mm, network.points_mm);
+      if (slit.size() == walk.size()) break;
+      walk = std::move(slit);
+      strip = filled(walk, network.points_mm, options.width_mm);
+    }
     add_pieces(strip, options, model, context);
   }
   if (degenerate > 0) model.notes.push_back(std::to_string(degenerate) + " bands have no border to unfold them by and were left out.");

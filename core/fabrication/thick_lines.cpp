@@ -12,7 +12,8 @@ std::vector<Polygon> outlines_of(const std::vector<ThickLine>& lines, double tol
   ClipperLib::Clipper all;
   for (const ThickLine& line : lines) {
     ClipperLib::Path path;
-    for (const Vec2& p : line.points_mm) path.emplace_back(std::llround(units_per_mm * p.x()), std::llround(units_per_mm * p.y()));
+    for (const Vec2& p : line.points_mm)
+      path.emplace_back(std::llround(units_per_mm * p.x()), std::llround(units_per_mm * p.y()));
     ClipperLib::ClipperOffset offset(2, tolerance_mm * units_per_mm);
     offset.AddPath(path, ClipperLib::jtRound, ClipperLib::etOpenRound);
     ClipperLib::Paths thick;

@@ -6,15 +6,16 @@
 #include "geometry/measures.h"
 #include "job/model_input.h"
 #include "job/zippable_operation.h"
-#include "zippable/plan/zippable_plan.h"
 #include "zippable/design_files.h"
+#include "zippable/plan/zippable_plan.h"
 #include "zippable/strips/strip_model.h"
 
 namespace formwright {
 namespace {
 
 std::vector<OutputInfo> outputs() {
-  return {{"strips.svg", "image/svg+xml", "Strips, SVG", "All sheets side by side at true size; layers cut, engrave.", true},
+  return {{"strips.svg", "image/svg+xml", "Strips, SVG", "All sheets side by side at true size; layers cut, engrave.",
+           true},
           {"strips.ply", "application/x-ply", "Strips in space", "The model as the strips make it.", true}};
 }
 
@@ -32,7 +33,8 @@ std::vector<ReportField> report_fields() {
           {"zippable_pieces", "Pieces of the zippable", "", "as a paper model with the same width and bed"},
           {"zippable_cut_length_mm", "Cut length of the zippable", "mm", "the same"},
           {"zippable_narrowest_mm", "Narrowest piece of the zippable", "mm", "the same"},
-          {"zippable_hausdorff_mm", "Hausdorff distance of the zippable", "mm", "its openings, which strips do not have, included"},
+          {"zippable_hausdorff_mm", "Hausdorff distance of the zippable", "mm",
+           "its openings, which strips do not have, included"},
           {"zippable_to_model_mean_mm", "Mean distance of the zippable", "mm", "from it to the model"},
           {"model_to_zippable_mean_mm", "Mean distance to the zippable", "mm", "from the model"},
           {"zippable_ribbon_width_min_mm", "Least ruling of the zippable", "mm", "between windings"},
@@ -48,13 +50,15 @@ std::vector<int> limbs_on(const TriangleMesh& mesh, const Segmentation& s) {
   const PointDistance divided(s.mesh);
   std::vector<int> limb(std::size_t(mesh.face_count()), 0);
   for (int f = 0; f < mesh.face_count(); ++f) {
-    const Vec3 middle = (mesh.V.row(mesh.F(f, 0)) + mesh.V.row(mesh.F(f, 1)) + mesh.V.row(mesh.F(f, 2))).transpose() / 3;
+    const Vec3 middle =
+        (mesh.V.row(mesh.F(f, 0)) + mesh.V.row(mesh.F(f, 1)) + mesh.V.row(mesh.F(f, 2))).transpose() / 3;
     if (const auto nearest = divided.nearest(middle)) limb[f] = s.face_segment[nearest->face];
   }
   return limb;
 }
 
-void report_zippable(Json& report, ParameterisedModel& model, const ZippableOptions& options, const StripOptions& strips, Context& context) {
+void report_zippable(Json& report, ParameterisedModel& model, const ZippableOptions& options,
+                     const StripOptions& strips, Context& context) {
   model.parameterisation = parameterise(model.proposal.segmentation, {}, context);
   const ZippableDesign design = design_zippable(model, options, context);
   const FlatDesign flat = read_flat_design(write_design_json(model, design));
@@ -145,7 +149,8 @@ Operation zippable_baseline_operation() {
   Operation operation;
   operation.name = "zippable-baseline";
   operation.title = "Strips to compare with";
-  operation.summary = "The model as paper strips in the manner of Mitani & Suzuki 2004, with figures beside the zippable's.";
+  operation.summary =
+      "The model as paper strips in the manner of Mitani & Suzuki 2004, with figures beside the zippable's.";
   operation.inputs = {model_input_info()};
   operation.parameters = describe_parameters<StripOptions>();
   operation.outputs = outputs();

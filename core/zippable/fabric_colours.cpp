@@ -63,7 +63,8 @@ void colour_by_halves(const Adjacency& adjacency, const FaceTree& tree, const st
                       FabricColours& colours) {
   const std::size_t faces = area.size();
   std::vector<double> beyond = area;
-  for (std::size_t i = faces; i-- > 1;) beyond[adjacency.opposite(tree.way_back[tree.order[i]]) / 3] += beyond[tree.order[i]];
+  for (std::size_t i = faces; i-- > 1;)
+    beyond[adjacency.opposite(tree.way_back[tree.order[i]]) / 3] += beyond[tree.order[i]];
   const double half = beyond[tree.order[0]] / 2;
   int top = tree.order[1];
   for (std::size_t i = 1; i < faces; ++i)

@@ -3,8 +3,8 @@
 // A ribbon cut from two fabrics that are joined flat and interleave when it is zipped up: thesis Fig. 5.4.
 //
 // A Fermat spiral is two bands side by side: one has the left side of the zipper along both of its edges, the other the
-// right side. Left bands are cut from one fabric and right bands from the other, so that the zipper has another colour on
-// either side wherever such bands lie beside each other. Between them the ribbon changes its fabric at a ruling.
+// right side. Left bands are cut from one fabric and right bands from the other, so that the zipper has another colour
+// on either side wherever such bands lie beside each other. Between them the ribbon changes its fabric at a ruling.
 #include <vector>
 
 #include "zippable/ribbon.h"

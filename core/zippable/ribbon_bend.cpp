@@ -21,7 +21,9 @@ std::vector<CentreLine> centre_lines(const Ribbon& ribbon, const Adjacency& adja
     for (int h = 3 * f; h < 3 * f + 3; ++h) count += adjacency.opposite(h) >= 0;
     return count;
   };
-  const auto middle = [&](int h) { return Vec2((ribbon.flat_mm[adjacency.from(h)] + ribbon.flat_mm[adjacency.to(h)]) / 2); };
+  const auto middle = [&](int h) {
+    return Vec2((ribbon.flat_mm[adjacency.from(h)] + ribbon.flat_mm[adjacency.to(h)]) / 2);
+  };
   std::vector<CentreLine> lines;
   std::vector<char> walked(std::size_t(3 * adjacency.face_count()), 0);
   for (int f = 0; f < adjacency.face_count(); ++f) {
@@ -59,9 +61,11 @@ std::optional<RibbonBend> tightest_bend(const Ribbon& ribbon, double width_mm) {
   const double reach = width_mm / 2;
   for (const CentreLine& line : centre_lines(ribbon, Adjacency(ribbon.formed()))) {
     std::vector<double> along{0};
-    for (std::size_t i = 0; i + 1 < line.points.size(); ++i) along.push_back(along.back() + (line.points[i + 1] - line.points[i]).norm());
+    for (std::size_t i = 0; i + 1 < line.points.size(); ++i)
+      along.push_back(along.back() + (line.points[i + 1] - line.points[i]).norm());
     const auto at = [&](double place) {
-      const auto next = std::clamp<std::ptrdiff_t>(std::upper_bound(along.begin(), along.end(), place) - along.begin(), 1, static_cast<std::ptrdiff_t>(along.size()) - 1);
+      const auto next = std::clamp<std::ptrdiff_t>(std::upper_bound(along.begin(), along.end(), place) - along.begin(),
+                                                   1, static_cast<std::ptrdiff_t>(along.size()) - 1);
       const double step = along[next] - along[next - 1], share = step > 0 ? (place - along[next - 1]) / step : 0;
       return Vec2(line.points[next - 1] + share * (line.points[next] - line.points[next - 1]));
     };

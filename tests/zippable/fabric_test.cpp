@@ -38,7 +38,8 @@ double cost_of(const Ribbon& ribbon, const std::vector<int>& colour, double widt
   }
   for (int h = 0; h < 3 * adjacency.face_count(); ++h)
     if (const int o = adjacency.opposite(h); o > h && colour[h / 3] != colour[o / 3])
-      cost += 2 * width_mm * (ribbon.boundary[adjacency.from(h)].position_mm - ribbon.boundary[adjacency.to(h)].position_mm).norm();
+      cost += 2 * width_mm *
+              (ribbon.boundary[adjacency.from(h)].position_mm - ribbon.boundary[adjacency.to(h)].position_mm).norm();
   return cost;
 }
 
@@ -54,7 +55,8 @@ TEST(Fabrics, BandsOfFermatSpiralsDiffer) {
     for (int f = 0; f < design.ribbon.F.rows(); ++f) {
       int left = 0, right = 0;
       for (int k = 0; k < 3; ++k)
-        if (const RibbonVertex& v = design.ribbon.boundary[design.ribbon.F(f, k)]; v.sample >= 0) ++(v.left ? left : right);
+        if (const RibbonVertex& v = design.ribbon.boundary[design.ribbon.F(f, k)]; v.sample >= 0)
+          ++(v.left ? left : right);
       const double area = area_of(design.ribbon, f);
       all += area;
       if (left < 3 && right < 3) continue;
@@ -112,7 +114,10 @@ TEST(RibbonBend, OfAConeIsItsDistanceFromTheTip) {
   CurveOptions curve;
   curve.width_mm = 8, curve.sample_mm = 1;
   const double along = slant * (1 - top / radius);  // of the side that is there
-  const test::Zipped zipped = test::zip(test::alone(test::turned(96, 60, [&](double t) { return Vec2(radius + t * (top - radius), t * height * (1 - top / radius)); })), curve);
+  const test::Zipped zipped = test::zip(
+      test::alone(test::turned(
+          96, 60, [&](double t) { return Vec2(radius + t * (top - radius), t * height * (1 - top / radius)); })),
+      curve);
   const auto bend = tightest_bend(zipped.ribbon, curve.width_mm);
   ASSERT_TRUE(bend.has_value());
   const double nearest = slant - along;
@@ -137,7 +142,9 @@ TEST(Curve, BeginsAndEndsWhereItShould) {
     options.start_part = start, options.end_part = end;
     const ZippableDesign design = designed("star", options);
     const std::vector<int>& parts = design.traversal.traversal.parts;
-    if (start > 0) { EXPECT_EQ(parts.front(), start - 1); }
+    if (start > 0) {
+      EXPECT_EQ(parts.front(), start - 1);
+    }
     EXPECT_EQ(parts.back(), end - 1);
   }
   options.start_part = options.end_part = 1;
@@ -154,7 +161,8 @@ TEST(Curve, KeepsALeastRadiusOrSaysSo) {
   options.radius_least_mm = 1.02 * free.bend->radius_mm;
   const ZippableDesign bound = designed("star", options);
   const auto says = [](const ZippableDesign& design) {
-    return std::any_of(design.notes.begin(), design.notes.end(), [](const std::string& note) { return note.find("bends to a radius") != std::string::npos; });
+    return std::any_of(design.notes.begin(), design.notes.end(),
+                       [](const std::string& note) { return note.find("bends to a radius") != std::string::npos; });
   };
   EXPECT_NE(bound.bend->radius_mm >= *options.radius_least_mm, says(bound));
   options.radius_least_mm = 2000;

@@ -24,7 +24,8 @@ std::vector<Vec2> edge_of(const FlatDesign& design, const OffsetRibbon& ribbon, 
   std::vector<Vec2> points;
   const auto& vertex = run.left ? design.left_vertex : design.right_vertex;
   for (const int sample : design.pieces[std::size_t(run.zipper_piece)])
-    if (const double along = design.arclength_mm[sample]; along >= run.from_mm && along <= run.to_mm) points.push_back(ribbon.flat_mm[vertex[sample]]);
+    if (const double along = design.arclength_mm[sample]; along >= run.from_mm && along <= run.to_mm)
+      points.push_back(ribbon.flat_mm[vertex[sample]]);
   if (!run.left) std::reverse(points.begin(), points.end());
   return points;
 }
@@ -34,7 +35,8 @@ class PlateMaker {
   PlateMaker(const PlanPiece& piece, int number, const PlanOptions& options, const RigSizes& sizes, Rig& rig)
       : piece_(piece), number_(number), options_(options), sizes_(sizes), rig_(rig) {}
 
-  void make(const FlatDesign& design, const OffsetRibbon& ribbon, const Markers& markers, const std::vector<TapeRun>& runs) {
+  void make(const FlatDesign& design, const OffsetRibbon& ribbon, const Markers& markers,
+            const std::vector<TapeRun>& runs) {
     std::vector<std::vector<Vec2>> edges;
     std::vector<char> left;
     for (const TapeRun& run : runs)
@@ -50,8 +52,7 @@ class PlateMaker {
     }
     for (const TapeRun& run : runs)
       if (run.piece == number_)
-        for (int m = run.first_marker; m <= run.last_marker; ++m)
-          mark(markers.markers[m], run.left);
+        for (int m = run.first_marker; m <= run.last_marker; ++m) mark(markers.markers[m], run.left);
     outline_cloth();
     lay_on_plates();
     count();
@@ -74,14 +75,19 @@ class PlateMaker {
       from = side.flat_mm, to = from + mark_mm * side.inward;
       ++rig_.hidden_markers;
     }
-    cover_.push_back({CutLayer::mark, {from, to}, false, "marker-" + std::to_string(marker.number) + (left ? "-left" : "-right")});
+    cover_.push_back(
+        {CutLayer::mark, {from, to}, false, "marker-" + std::to_string(marker.number) + (left ? "-left" : "-right")});
     const std::string words = std::to_string(marker.number);
-    const double height = options_.text_height_mm, width = words_width_mm(words, height), radius = std::hypot(width, height) / 2;
+    const double height = options_.text_height_mm, width = words_width_mm(words, height),
+                 radius = std::hypot(width, height) / 2;
     const Vec2 centre = to + (beside ? -1 : 1) * (height / 2 + 0.6) * side.inward;
-    const bool meets = std::any_of(texts_.begin(), texts_.end(), [&](const auto& other) { return (other.first - centre).norm() < radius + other.second; });
+    const bool meets = std::any_of(texts_.begin(), texts_.end(), [&](const auto& other) {
+      return (other.first - centre).norm() < radius + other.second;
+    });
     if (!clear(centre, radius) || meets) return;
     texts_.emplace_back(centre, radius);
-    for (CutPath& path : word_paths(words, centre, side.along, height, CutLayer::engrave)) cover_.push_back(std::move(path));
+    for (CutPath& path : word_paths(words, centre, side.along, height, CutLayer::engrave))
+      cover_.push_back(std::move(path));
   }
 
   bool contains_cloth(const Vec2& p) const { return contains(piece_.outline_mm, p); }
@@ -91,7 +97,8 @@ class PlateMaker {
     std::vector<Vec2> stretch;
     int drawn = 0;
     const auto finish = [&] {
-      if (stretch.size() > 1) cover_.push_back({CutLayer::mark, stretch, false, "cloth-" + piece_.name + "-" + std::to_string(++drawn)});
+      if (stretch.size() > 1)
+        cover_.push_back({CutLayer::mark, stretch, false, "cloth-" + piece_.name + "-" + std::to_string(++drawn)});
       stretch.clear();
     };
     std::vector<ThickLine> slots;
@@ -108,8 +115,10 @@ class PlateMaker {
         const bool off = std::all_of(slots.begin(), slots.end(), [&](const ThickLine& slot) {
           return nearest_on_line(slot.points_mm, false, p).distance_mm > slot.width_mm / 2 + 0.1;
         });
-        if (off) stretch.push_back(p);
-        else finish();
+        if (off)
+          stretch.push_back(p);
+        else
+          finish();
       }
     }
     finish();
@@ -118,7 +127,8 @@ class PlateMaker {
   void lay_on_plates() {
     std::vector<Vec2> all = piece_.outline_mm;
     const auto reach = [&](const Vec2& p, double radius) {
-      for (const Vec2& corner : {Vec2(-1, -1), Vec2(1, -1), Vec2(1, 1), Vec2(-1, 1)}) all.push_back(p + radius * corner);
+      for (const Vec2& corner : {Vec2(-1, -1), Vec2(1, -1), Vec2(1, 1), Vec2(-1, 1)})
+        all.push_back(p + radius * corner);
     };
     for (const ThickLine& line : cut_out_)
       for (const Vec2& p : line.points_mm) reach(p, line.width_mm / 2);
@@ -126,10 +136,13 @@ class PlateMaker {
       for (const Vec2& p : path.points_mm) reach(p, 0);
     const Polygon hull = convex_hull(all);
     const double around = rim_width_mm(options_) + options_.kerf_mm;
-    const double free_x = options_.bed_x_mm - 2 * (options_.margin_mm + around) - 3 * cell_mm(), free_y = options_.bed_y_mm - 2 * (options_.margin_mm + around) - 3 * cell_mm();
+    const double free_x = options_.bed_x_mm - 2 * (options_.margin_mm + around) - 3 * cell_mm(),
+                 free_y = options_.bed_y_mm - 2 * (options_.margin_mm + around) - 3 * cell_mm();
     const std::vector<double> turns = fitting_turns(hull, free_x, free_y, false);
     if (turns.empty())
-      throw Error(ErrorCode::invalid_input, "bed_x_mm", "The rig of " + piece_.name + " does not fit the bed: give a larger bed, smaller openings or a smaller model.");
+      throw Error(ErrorCode::invalid_input, "bed_x_mm",
+                  "The rig of " + piece_.name +
+                      " does not fit the bed: give a larger bed, smaller openings or a smaller model.");
     const Eigen::Matrix2d turn = Eigen::Rotation2Dd(turns.front()).toRotationMatrix();
     Vec2 lower = Vec2::Constant(1e300), upper = -lower;
     for (const Vec2& p : hull) lower = lower.cwiseMin(turn * p), upper = upper.cwiseMax(turn * p);
@@ -146,11 +159,15 @@ class PlateMaker {
         for (std::size_t i = 0; i < tracks_.tracks.size(); ++i) {
           const RigTrack& track = tracks_.tracks[i];
           const std::string name = piece_.name + "-" + std::to_string(i + 1);
-          std::vector<ThickLine> lines{{cover ? track.slot_mm : track.middle_mm, (cover ? sizes_.slot_mm : sizes_.track_mm) - options_.kerf_mm}};
-          for (const Vec2& opening : track.openings_mm) lines.push_back({{opening}, sizes_.opening_mm - options_.kerf_mm});
+          std::vector<ThickLine> lines{
+              {cover ? track.slot_mm : track.middle_mm, (cover ? sizes_.slot_mm : sizes_.track_mm) - options_.kerf_mm}};
+          for (const Vec2& opening : track.openings_mm)
+            lines.push_back({{opening}, sizes_.opening_mm - options_.kerf_mm});
           const std::vector<Polygon> edges = outlines_of(lines);
           for (std::size_t k = 0; k < edges.size(); ++k)
-            plate.paths.push_back(place({CutLayer::cut, edges[k], true, (cover ? "slot-" : "track-") + name + (k > 0 ? "-" + std::to_string(k + 1) : "")}));
+            plate.paths.push_back(
+                place({CutLayer::cut, edges[k], true,
+                       (cover ? "slot-" : "track-") + name + (k > 0 ? "-" + std::to_string(k + 1) : "")}));
           if (!cover) plate.paths.push_back(place({CutLayer::note, track.middle_mm, false, "middle-" + name}));
         }
         if (cover)
@@ -160,20 +177,26 @@ class PlateMaker {
     }
   }
 
-  double cell_mm() const { return nesting_cell_mm({options_.bed_x_mm, options_.bed_y_mm, options_.margin_mm, options_.spacing_mm}); }
+  double cell_mm() const {
+    return nesting_cell_mm({options_.bed_x_mm, options_.bed_y_mm, options_.margin_mm, options_.spacing_mm});
+  }
 
   /// Outline, screw holes along the rim, and the plate's name.
   void frame(RigPlate& plate) {
     constexpr const char* names[rig_layer_count] = {"base", "tracks", "cover"};
     const std::string layer = names[static_cast<int>(plate.layer)];
     const double k = options_.kerf_mm / 2, rim = rim_width_mm(options_);
-    plate.paths.push_back({CutLayer::cut, {{-k, -k}, {size_.x() + k, -k}, {size_.x() + k, size_.y() + k}, {-k, size_.y() + k}}, true, layer + "-" + piece_.name});
+    plate.paths.push_back({CutLayer::cut,
+                           {{-k, -k}, {size_.x() + k, -k}, {size_.x() + k, size_.y() + k}, {-k, size_.y() + k}},
+                           true,
+                           layer + "-" + piece_.name});
     constexpr double longest_mm = 120;
-    const int along_x = std::max(1, static_cast<int>(std::ceil((size_.x() - rim) / longest_mm))), along_y = std::max(1, static_cast<int>(std::ceil((size_.y() - rim) / longest_mm)));
+    const int along_x = std::max(1, static_cast<int>(std::ceil((size_.x() - rim) / longest_mm))),
+              along_y = std::max(1, static_cast<int>(std::ceil((size_.y() - rim) / longest_mm)));
     int made = 0;
     const auto screw = [&](double x, double y) {
-      plate.paths.push_back({CutLayer::cut, outlines_of({{{Vec2(x, y)}, options_.screw_mm - options_.kerf_mm}}).front(), true,
-                             "screw-" + layer + "-" + piece_.name + "-" + std::to_string(++made)});
+      plate.paths.push_back({CutLayer::cut, outlines_of({{{Vec2(x, y)}, options_.screw_mm - options_.kerf_mm}}).front(),
+                             true, "screw-" + layer + "-" + piece_.name + "-" + std::to_string(++made)});
     };
     for (int i = 0; i <= along_x; ++i)
       for (const double y : {rim / 2, size_.y() - rim / 2}) screw(rim / 2 + (size_.x() - rim) * i / along_x, y);
@@ -183,8 +206,11 @@ class PlateMaker {
     std::string words = piece_.name + " " + layer;
     for (char& c : words) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     // In the rim, between the first two screws, or as wide as there is room.
-    const double room = (size_.x() - rim) / along_x - 2 * options_.screw_mm, height = std::min(0.5 * rim, 0.5 * rim * room / words_width_mm(words, 0.5 * rim));
-    for (CutPath& path : word_paths(words, Vec2(rim / 2 + (size_.x() - rim) / along_x / 2, rim / 2), Vec2::UnitX(), height, CutLayer::engrave)) plate.paths.push_back(std::move(path));
+    const double room = (size_.x() - rim) / along_x - 2 * options_.screw_mm,
+                 height = std::min(0.5 * rim, 0.5 * rim * room / words_width_mm(words, 0.5 * rim));
+    for (CutPath& path : word_paths(words, Vec2(rim / 2 + (size_.x() - rim) / along_x / 2, rim / 2), Vec2::UnitX(),
+                                    height, CutLayer::engrave))
+      plate.paths.push_back(std::move(path));
   }
 
   void count() {
@@ -204,9 +230,9 @@ class PlateMaker {
   const RigSizes& sizes_;
   Rig& rig_;
   RigTracks tracks_;
-  std::vector<ThickLine> cut_out_;                   // tracks and openings
-  std::vector<CutPath> cover_;                       // what is drawn on the cover, in the piece's plane
-  std::vector<std::pair<Vec2, double>> texts_;       // centre and radius
+  std::vector<ThickLine> cut_out_;              // tracks and openings
+  std::vector<CutPath> cover_;                  // what is drawn on the cover, in the piece's plane
+  std::vector<std::pair<Vec2, double>> texts_;  // centre and radius
   Vec2 size_{0, 0};
   int screws_ = 0;
 };
@@ -214,7 +240,8 @@ class PlateMaker {
 void lay_on_sheets(Rig& rig, const PlanOptions& options, Context& context) {
   std::vector<Polygon> outlines;
   for (const RigPlate& plate : rig.plates) outlines.push_back(plate.paths.front().points_mm);
-  const Nesting nesting = nest(outlines, {options.bed_x_mm, options.bed_y_mm, options.margin_mm, options.spacing_mm, false}, context);
+  const Nesting nesting =
+      nest(outlines, {options.bed_x_mm, options.bed_y_mm, options.margin_mm, options.spacing_mm, false}, context);
   rig.sheets.assign(std::size_t(nesting.sheet_count), CutSheet{title, options.bed_x_mm, options.bed_y_mm, {}});
   for (std::size_t i = 0; i < rig.plates.size(); ++i) {
     auto& paths = rig.sheets[nesting.places[i].sheet].paths;
@@ -232,22 +259,28 @@ void lay_on_sheets(Rig& rig, const PlanOptions& options, Context& context) {
 
 RigSizes rig_sizes(const PlanOptions& options, const ZipperModel& zipper) {
   if (!(zipper.tape_width_mm > 0))
-    throw Error(ErrorCode::invalid_input, "rig", "The rig holds a zipper: choose a coil or a tape width, or leave the rig out.");
+    throw Error(ErrorCode::invalid_input, "rig",
+                "The rig holds a zipper: choose a coil or a tape width, or leave the rig out.");
   RigSizes sizes;
   sizes.track_mm = options.track_width_mm, sizes.slot_mm = options.slot_width_mm;
   sizes.opening_mm = options.rig_opening_mm, sizes.offset_mm = zipper.offset_mm();
   if (sizes.track_mm / 2 > sizes.offset_mm - 0.2)
-    throw Error(ErrorCode::invalid_input, "track_width_mm", "The tracks would run under the cloth's edge: choose narrower tracks or a larger gap.");
+    throw Error(ErrorCode::invalid_input, "track_width_mm",
+                "The tracks would run under the cloth's edge: choose narrower tracks or a larger gap.");
   if (sizes.slot_mm >= sizes.track_mm)
-    throw Error(ErrorCode::invalid_input, "slot_width_mm", "The slots must be narrower than the tracks, so that the cover holds the teeth down.");
+    throw Error(ErrorCode::invalid_input, "slot_width_mm",
+                "The slots must be narrower than the tracks, so that the cover holds the teeth down.");
   if (sizes.slot_mm <= options.kerf_mm || options.screw_mm <= options.kerf_mm)
-    throw Error(ErrorCode::invalid_input, "kerf_mm", "The cut is wider than the rig's slots or screw holes: choose wider ones.");
+    throw Error(ErrorCode::invalid_input, "kerf_mm",
+                "The cut is wider than the rig's slots or screw holes: choose wider ones.");
   if (sizes.opening_mm < sizes.track_mm)
     throw Error(ErrorCode::invalid_input, "rig_opening_mm", "The openings must be at least as wide as the tracks.");
   return sizes;
 }
 
-double rig_rim_mm(const PlanOptions& options, const RigSizes& sizes) { return rig_reach_mm(sizes) + rim_width_mm(options) + options.text_height_mm; }
+double rig_rim_mm(const PlanOptions& options, const RigSizes& sizes) {
+  return rig_reach_mm(sizes) + rim_width_mm(options) + options.text_height_mm;
+}
 
 Rig make_rig(const FlatDesign& design, const OffsetRibbon& ribbon, const Markers& markers, const PlanPieces& pieces,
              const std::vector<TapeRun>& runs, const PlanOptions& options, const RigSizes& sizes, Context& context) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The fastening rig, thesis Sec. 5.3.1 and Fig. 5.19: for every piece of cloth a base, a layer with tracks for the teeth,
-// and a cover with slots for the tape, screwed together along their rim.
+// The fastening rig, thesis Sec. 5.3.1 and Fig. 5.19: for every piece of cloth a base, a layer with tracks for the
+// teeth, and a cover with slots for the tape, screwed together along their rim.
 #include <vector>
 
 #include "base/context.h"
@@ -40,9 +40,9 @@ RigSizes rig_sizes(const PlanOptions& options, const ZipperModel& zipper);
 double rig_rim_mm(const PlanOptions& options, const RigSizes& sizes);
 
 /// What is on a layer is named after it: outlines "base-P1", "tracks-P1", "cover-P1"; "track-P1-1", "slot-P1-1",
-/// "screw-base-P1-1", markers "marker-7-left" on the cover as on the cloth; on the layer note, of every track the middle
-/// "middle-P1-1". Cuts are moved by half the kerf into what falls out, outlines outwards.
-/// Throws Error: invalid_input ("bed_x_mm": a plate does not fit), cancelled.
+/// "screw-base-P1-1", markers "marker-7-left" on the cover as on the cloth; on the layer note, of every track the
+/// middle "middle-P1-1". Cuts are moved by half the kerf into what falls out, outlines outwards. Throws Error:
+/// invalid_input ("bed_x_mm": a plate does not fit), cancelled.
 Rig make_rig(const FlatDesign& design, const OffsetRibbon& ribbon, const Markers& markers, const PlanPieces& pieces,
              const std::vector<TapeRun>& runs, const PlanOptions& options, const RigSizes& sizes, Context& context);
 

@@ -22,7 +22,8 @@ struct TrackPoint {
   Vec2 middle, foot;
 };
 
-/// The edge moved to its right, rounded where it opens; where it closes, what comes nearer than the distance is taken out.
+/// The edge moved to its right, rounded where it opens; where it closes, what comes nearer than the distance is taken
+/// out.
 std::vector<TrackPoint> moved(const std::vector<Vec2>& edge, double distance_mm) {
   std::vector<TrackPoint> points;
   Vec2 before(0, 0);
@@ -68,8 +69,10 @@ class TrackMaker {
     for (const TrackPoint& point : points) {
       const bool gap = !stretch.empty() && (point.middle - stretch.back().middle).norm() > 3 * step_mm;
       if (gap) finish();
-      if (free(point.middle, stretch)) stretch.push_back(point);
-      else finish();
+      if (free(point.middle, stretch))
+        stretch.push_back(point);
+      else
+        finish();
     }
     finish();
     result.left_out_mm += std::max(0.0, path_length_mm(edge, false) - kept);
@@ -151,7 +154,8 @@ class TrackMaker {
     // Leads have no points of their own between their ends.
     return std::all_of(leads_.begin(), leads_.end(), [&](const std::vector<Vec2>& other) {
       if ((other.back() - centre).norm() < 2 * disc + sizes_.wall_mm) return false;
-      if (nearest_on_line(lead, false, other.back()).distance_mm < disc + sizes_.track_mm / 2 + sizes_.wall_mm) return false;
+      if (nearest_on_line(lead, false, other.back()).distance_mm < disc + sizes_.track_mm / 2 + sizes_.wall_mm)
+        return false;
       if (nearest_on_line(other, false, centre).distance_mm < disc + sizes_.track_mm / 2 + sizes_.wall_mm) return false;
       for (double share = 0; share <= 1; share += 0.125)
         if (nearest_on_line(other, false, end + share * (centre - end)).distance_mm < apart_mm()) return false;
@@ -169,8 +173,8 @@ class TrackMaker {
 
 double rig_reach_mm(const RigSizes& sizes) { return sizes.offset_mm + leads_mm[1] + sizes.opening_mm / 2; }
 
-RigTracks rig_tracks(const Polygon& cloth, const std::vector<std::vector<Vec2>>& edges, const std::vector<char>& edge_left,
-                     const RigSizes& sizes) {
+RigTracks rig_tracks(const Polygon& cloth, const std::vector<std::vector<Vec2>>& edges,
+                     const std::vector<char>& edge_left, const RigSizes& sizes) {
   TrackMaker maker(cloth, sizes);
   for (std::size_t i = 0; i < edges.size(); ++i) maker.add_edge(edges[i], edge_left[i] != 0);
   maker.make();

@@ -13,7 +13,11 @@ namespace {
 class NetworkBuilder {
  public:
   NetworkBuilder(const Bands& bands, double sample_mm)
-      : bands_(bands), adjacency_(bands.mesh), sample_mm_(sample_mm), chain_of_edge_(std::size_t(adjacency_.edge_count()), -1), forward_(std::size_t(adjacency_.edge_count()), 0),
+      : bands_(bands),
+        adjacency_(bands.mesh),
+        sample_mm_(sample_mm),
+        chain_of_edge_(std::size_t(adjacency_.edge_count()), -1),
+        forward_(std::size_t(adjacency_.edge_count()), 0),
         borders_at_(std::size_t(bands.mesh.vertex_count())) {}
 
   BandNetwork build() {
@@ -77,15 +81,18 @@ class NetworkBuilder {
 
   void sample(const std::vector<int>& vertices, bool smooth, Chain& chain) {
     std::vector<double> along{0};
-    for (std::size_t i = 0; i + 1 < vertices.size(); ++i) along.push_back(along.back() + (position(vertices[i + 1]) - position(vertices[i])).norm());
+    for (std::size_t i = 0; i + 1 < vertices.size(); ++i)
+      along.push_back(along.back() + (position(vertices[i + 1]) - position(vertices[i])).norm());
     const int least = chain.closed ? 4 : vertices.front() == vertices.back() ? 3 : 2;
     const int steps = std::max(least, static_cast<int>(std::lround(along.back() / sample_mm_)));
     std::vector<Vec3> points;
     for (int k = 0; k <= steps; ++k) {
       const double place = along.back() * k / steps;
-      const auto next = std::clamp<std::ptrdiff_t>(std::upper_bound(along.begin(), along.end(), place) - along.begin(), 1, static_cast<std::ptrdiff_t>(along.size()) - 1);
+      const auto next = std::clamp<std::ptrdiff_t>(std::upper_bound(along.begin(), along.end(), place) - along.begin(),
+                                                   1, static_cast<std::ptrdiff_t>(along.size()) - 1);
       const double length = along[next] - along[next - 1], share = length > 0 ? (place - along[next - 1]) / length : 0;
-      points.push_back(position(vertices[next - 1]) + share * (position(vertices[next]) - position(vertices[next - 1])));
+      points.push_back(position(vertices[next - 1]) +
+                       share * (position(vertices[next]) - position(vertices[next - 1])));
     }
     if (smooth && !chain.closed)
       for (int sweep = 0; sweep < 2; ++sweep) {
@@ -115,10 +122,13 @@ class NetworkBuilder {
       std::vector<int> loop;
       for (std::size_t i = 0; i < ring.size(); ++i) {
         const int e = adjacency_.edge_of(ring[i]);
-        if (i > 0 && chain_of_edge_[e] == chain_of_edge_[adjacency_.edge_of(ring[i - 1])] && !is_node(adjacency_.from(ring[i]))) continue;
+        if (i > 0 && chain_of_edge_[e] == chain_of_edge_[adjacency_.edge_of(ring[i - 1])] &&
+            !is_node(adjacency_.from(ring[i])))
+          continue;
         const Chain& chain = chains_[chain_of_edge_[e]];
         std::vector<int> points = chain.points;
-        if ((adjacency_.from(ring[i]) == adjacency_.edges()[e].lower) != (forward_[e] != 0)) std::reverse(points.begin(), points.end());
+        if ((adjacency_.from(ring[i]) == adjacency_.edges()[e].lower) != (forward_[e] != 0))
+          std::reverse(points.begin(), points.end());
         if (!chain.closed) points.pop_back();
         loop.insert(loop.end(), points.begin(), points.end());
       }

@@ -13,8 +13,9 @@ struct BandNetwork {
   std::vector<std::vector<std::vector<int>>> loops;
 };
 
-/// Borders run from where three bands meet to the next such place; each is sampled about every `sample_mm`, with a point
-/// between its ends at least, two on a closed one. Borders of parts, which follow edges, are smoothed along themselves.
+/// Borders run from where three bands meet to the next such place; each is sampled about every `sample_mm`, with a
+/// point between its ends at least, two on a closed one. Borders of parts, which follow edges, are smoothed along
+/// themselves.
 BandNetwork band_network(const Bands& bands, double sample_mm);
 
 }  // namespace formwright

@@ -22,7 +22,9 @@ namespace {
 
 constexpr double margin_mm = 5, spacing_mm = 2;
 
-NestingOptions nesting_of(const StripOptions& options) { return {options.bed_x_mm, options.bed_y_mm, margin_mm, spacing_mm, false}; }
+NestingOptions nesting_of(const StripOptions& options) {
+  return {options.bed_x_mm, options.bed_y_mm, margin_mm, spacing_mm, false};
+}
 
 /// One walk around a band: its loops, joined where they come nearest to each other by cuts that are walked both ways.
 std::vector<int> one_walk(std::vector<std::vector<int>> loops, const std::vector<Vec3>& points) {
@@ -35,7 +37,8 @@ std::vector<int> one_walk(std::vector<std::vector<int>> loops, const std::vector
     for (std::size_t l = 0; l < loops.size(); ++l)
       for (std::size_t i = 0; i < walk.size(); ++i)
         for (std::size_t j = 0; j < loops[l].size(); ++j)
-          if (const double distance = (points[walk[i]] - points[loops[l][j]]).squaredNorm(); distance < least) least = distance, which = l, at = i, from = j;
+          if (const double distance = (points[walk[i]] - points[loops[l][j]]).squaredNorm(); distance < least)
+            least = distance, which = l, at = i, from = j;
     std::vector<int> joined(walk.begin(), walk.begin() + static_cast<std::ptrdiff_t>(at) + 1);
     std::vector<int>& loop = loops[which];
     for (std::size_t j = 0; j <= loop.size(); ++j) joined.push_back(loop[(from + j) % loop.size()]);
@@ -62,34 +65,44 @@ Strip filled(const std::vector<int>& walk, const std::vector<Vec3>& points, doub
       places, [&](int a, int b) { return (position(a) - position(b)).norm(); },
       [&](int a, int b, int c) {
         const Vec3 ab = position(b) - position(a), ac = position(c) - position(a), bc = position(c) - position(b);
-        return ab.cross(ac).norm() > 1e-5 * std::max({ab.squaredNorm(), ac.squaredNorm(), bc.squaredNorm()}) ? 0.0 : 1e6 * width_mm;
+        return ab.cross(ac).norm() > 1e-5 * std::max({ab.squaredNorm(), ac.squaredNorm(), bc.squaredNorm()})
+                   ? 0.0
+                   : 1e6 * width_mm;
       });
   strip.F.resize(static_cast<Eigen::Index>(triangles.size()), 3);
-  for (std::size_t i = 0; i < triangles.size(); ++i) strip.F.row(static_cast<Eigen::Index>(i)) << triangles[i][0], triangles[i][1], triangles[i][2];
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    strip.F.row(static_cast<Eigen::Index>(i)) << triangles[i][0], triangles[i][1], triangles[i][2];
   return strip;
 }
 
-/// From a corner of the walk over the band's edges to its vertex farthest from the walk: where a tip would be cut off, the band is slit as far as there.
+/// From a corner of the walk over the band's edges to its vertex farthest from the walk: where a tip would be cut off,
+/// the band is slit as far as there.
 class Slitter {
  public:
-  Slitter(const Bands& bands, double sample_mm) : bands_(bands), adjacency_(bands.mesh), sample_mm_(sample_mm), vertices_(std::size_t(bands.band_count)) {
+  Slitter(const Bands& bands, double sample_mm)
+      : bands_(bands), adjacency_(bands.mesh), sample_mm_(sample_mm), vertices_(std::size_t(bands.band_count)) {
     for (int h = 0; h < 3 * bands.mesh.face_count(); ++h) vertices_[bands.band[h / 3]].insert(adjacency_.from(h));
   }
 
   /// The walk with the slit, both ways; the walk itself where the filled band comes near to all of it.
-  std::vector<int> slit(int band, const std::vector<int>& walk, const Strip& strip, double near_mm, std::vector<Vec3>& points) const {
+  std::vector<int> slit(int band, const std::vector<int>& walk, const Strip& strip, double near_mm,
+                        std::vector<Vec3>& points) const {
     TriangleMesh mesh;
     mesh.V.resize(static_cast<Eigen::Index>(strip.positions.size()), 3);
-    for (std::size_t i = 0; i < strip.positions.size(); ++i) mesh.V.row(static_cast<Eigen::Index>(i)) = strip.positions[i];
+    for (std::size_t i = 0; i < strip.positions.size(); ++i)
+      mesh.V.row(static_cast<Eigen::Index>(i)) = strip.positions[i];
     mesh.F = strip.F;
     const PointDistance surface(mesh);
     int tip = -1;
     double farthest = near_mm;
     for (const int v : vertices_[band])
-      if (const double distance = surface.nearest(position(v))->distance; distance > farthest) farthest = distance, tip = v;
+      if (const double distance = surface.nearest(position(v))->distance; distance > farthest)
+        farthest = distance, tip = v;
     if (tip < 0) return walk;
     std::vector<Vec3> way = way_to(band, tip, walk, points);
-    const auto foot = std::min_element(walk.begin(), walk.end(), [&](int a, int b) { return (points[a] - way.front()).squaredNorm() < (points[b] - way.front()).squaredNorm(); });
+    const auto foot = std::min_element(walk.begin(), walk.end(), [&](int a, int b) {
+      return (points[a] - way.front()).squaredNorm() < (points[b] - way.front()).squaredNorm();
+    });
     way.insert(way.begin(), points[*foot]);
     std::vector<int> inward;
     double along = 0, taken = 0, length = 0;
@@ -163,7 +176,8 @@ int bands_with_handles(const Bands& bands, const BandNetwork& network) {
   }
   for (const auto& [corner, leaving] : borders) euler[corner.first] += std::max(1, leaving);
   int count = 0;
-  for (int band = 0; band < bands.band_count; ++band) count += 2 - static_cast<int>(network.loops[band].size()) - euler[band] >= 2;
+  for (int band = 0; band < bands.band_count; ++band)
+    count += 2 - static_cast<int>(network.loops[band].size()) - euler[band] >= 2;
   return count;
 }
 
@@ -189,12 +203,14 @@ void add_pieces(const Strip& strip, const StripOptions& options, StripModel& mod
     for (int k = 0; k < 3; ++k) {
       const int a = strip.F(f, k), b = strip.F(f, (k + 1) % 3);
       const double length = (strip.positions[a] - strip.positions[b]).norm();
-      model.isometry_error = std::max(model.isometry_error, std::abs((flat[a] - flat[b]).norm() - length) / std::max(length, 1e-300));
+      model.isometry_error =
+          std::max(model.isometry_error, std::abs((flat[a] - flat[b]).norm() - length) / std::max(length, 1e-300));
     }
   const NestingOptions nesting = nesting_of(options);
   const double reserved = 2 * margin_mm + 4 * nesting_cell_mm(nesting);
   const auto fits = [&](const Polygon& hull) {
-    return hull.size() < 2 || !fitting_turns(hull, options.bed_x_mm - reserved, options.bed_y_mm - reserved, false).empty();
+    return hull.size() < 2 ||
+           !fitting_turns(hull, options.bed_x_mm - reserved, options.bed_y_mm - reserved, false).empty();
   };
   const Splitting splitting = split_ribbon(strip.F, flat, fits, 0, 0.01 * options.width_mm * options.width_mm, context);
   for (int piece = 0; piece < splitting.piece_count; ++piece) {
@@ -211,7 +227,8 @@ void add_pieces(const Strip& strip, const StripOptions& options, StripModel& mod
 
 }  // namespace
 
-StripModel make_strips(const TriangleMesh& mesh, const std::vector<int>& limb, const StripOptions& options, Context& context) {
+StripModel make_strips(const TriangleMesh& mesh, const std::vector<int>& limb, const StripOptions& options,
+                       Context& context) {
   context.progress(0, "Dividing into bands");
   const Bands bands = distance_bands(mesh, limb, options.feature_degrees, options.width_mm, context);
   BandNetwork network = band_network(bands, 0.2 * options.width_mm);
@@ -240,11 +257,14 @@ StripModel make_strips(const TriangleMesh& mesh, const std::vector<int>& limb, c
     }
     add_pieces(strip, options, model, context);
   }
-  if (degenerate > 0) model.notes.push_back(std::to_string(degenerate) + " bands have no border to unfold them by and were left out.");
+  if (degenerate > 0)
+    model.notes.push_back(std::to_string(degenerate) + " bands have no border to unfold them by and were left out.");
   if (const int handles = bands_with_handles(bands, network); handles > 0)
-    model.notes.push_back(std::to_string(handles) + " bands run around a handle and were filled without it: narrower strips mend it.");
+    model.notes.push_back(std::to_string(handles) +
+                          " bands run around a handle and were filled without it: narrower strips mend it.");
   int vertices = 0, faces = 0;
-  for (const StripPiece& piece : model.pieces) vertices += static_cast<int>(piece.positions_mm.size()), faces += static_cast<int>(piece.F.rows());
+  for (const StripPiece& piece : model.pieces)
+    vertices += static_cast<int>(piece.positions_mm.size()), faces += static_cast<int>(piece.F.rows());
   model.formed.V.resize(vertices, 3);
   model.formed.F.resize(faces, 3);
   vertices = faces = 0;
@@ -272,7 +292,8 @@ std::vector<CutSheet> strip_sheets(const StripModel& model, const StripOptions& 
   std::vector<Polygon> outlines;
   for (const StripPiece& piece : model.pieces) outlines.push_back(piece.outline_mm);
   const Nesting nesting = nest(outlines, nesting_of(options), context);
-  std::vector<CutSheet> sheets(std::size_t(nesting.sheet_count), CutSheet{"Strips", options.bed_x_mm, options.bed_y_mm, {}});
+  std::vector<CutSheet> sheets(std::size_t(nesting.sheet_count),
+                               CutSheet{"Strips", options.bed_x_mm, options.bed_y_mm, {}});
   for (std::size_t i = 0; i < outlines.size(); ++i) {
     auto& paths = sheets[nesting.places[i].sheet].paths;
     for (Vec2& p : outlines[i]) p = nesting.places[i](p);
@@ -282,11 +303,17 @@ std::vector<CutSheet> strip_sheets(const StripModel& model, const StripOptions& 
     Vec2 middle(0, 0), along(1, 0);
     for (Eigen::Index f = 0; f < piece.F.rows(); ++f)
       for (int k = 0; k < 3; ++k) {
-        const Vec2 a = nesting.places[i](piece.flat_mm[piece.F(f, k)]), b = nesting.places[i](piece.flat_mm[piece.F(f, (k + 1) % 3)]);
-        if ((b - a).norm() > longest) longest = (b - a).norm(), along = (b - a) / longest, middle = (nesting.places[i](piece.flat_mm[piece.F(f, 0)]) + nesting.places[i](piece.flat_mm[piece.F(f, 1)]) + nesting.places[i](piece.flat_mm[piece.F(f, 2)])) / 3;
+        const Vec2 a = nesting.places[i](piece.flat_mm[piece.F(f, k)]),
+                   b = nesting.places[i](piece.flat_mm[piece.F(f, (k + 1) % 3)]);
+        if ((b - a).norm() > longest)
+          longest = (b - a).norm(), along = (b - a) / longest,
+          middle = (nesting.places[i](piece.flat_mm[piece.F(f, 0)]) + nesting.places[i](piece.flat_mm[piece.F(f, 1)]) +
+                    nesting.places[i](piece.flat_mm[piece.F(f, 2)])) /
+                   3;
       }
     const double height = std::min(3.0, longest / 6);
-    for (CutPath& path : word_paths(std::to_string(i + 1), middle, along, height, CutLayer::engrave)) paths.push_back(std::move(path));
+    for (CutPath& path : word_paths(std::to_string(i + 1), middle, along, height, CutLayer::engrave))
+      paths.push_back(std::move(path));
     paths.push_back({CutLayer::cut, outlines[i], true, "strip-" + std::to_string(i + 1)});
   }
   return sheets;

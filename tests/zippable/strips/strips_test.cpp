@@ -84,14 +84,18 @@ TEST(Strips, OfSamplesAreFlatWholeAndOffThemselves) {
       // Disjoint triangles that fill the outline, so that it is crossed by nothing.
       double area = 0;
       for (Eigen::Index f = 0; f < piece.F.rows(); ++f) {
-        const auto corners = [&](Eigen::Index g) { return std::array<Vec2, 3>{piece.flat_mm[piece.F(g, 0)], piece.flat_mm[piece.F(g, 1)], piece.flat_mm[piece.F(g, 2)]}; };
+        const auto corners = [&](Eigen::Index g) {
+          return std::array<Vec2, 3>{piece.flat_mm[piece.F(g, 0)], piece.flat_mm[piece.F(g, 1)],
+                                     piece.flat_mm[piece.F(g, 2)]};
+        };
         const auto c = corners(f);
         area += signed_area_mm2({c[0], c[1], c[2]});
         for (Eigen::Index g = 0; g < f; ++g) EXPECT_FALSE(triangles_overlap(c, corners(g), 1e-6)) << sample;
       }
       EXPECT_NEAR(signed_area_mm2(piece.outline_mm), area, 1e-6 * area + 1e-9) << sample;
     }
-    const double there = surface_distance(model.formed, PointDistance(mesh), 3, context).mean, back = surface_distance(mesh, PointDistance(model.formed), 3, context).mean;
+    const double there = surface_distance(model.formed, PointDistance(mesh), 3, context).mean,
+                 back = surface_distance(mesh, PointDistance(model.formed), 3, context).mean;
     EXPECT_LT(std::max(there, back), 0.1 * options.width_mm) << sample;
   }
 }
@@ -108,7 +112,9 @@ TEST(Strips, NarrowerOnesComeNearerToASphere) {
     options.width_mm = width;
     const StripModel model = make_strips(mesh, no_limbs(mesh), options, context);
     const double distance = surface_distance(model.formed, PointDistance(mesh), 1, context).mean;
-    if (before > 0) { EXPECT_GT(std::log2(before / distance), 1.5); }  // second order
+    if (before > 0) {
+      EXPECT_GT(std::log2(before / distance), 1.5);
+    }  // second order
     before = distance;
   }
 }

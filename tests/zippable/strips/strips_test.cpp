@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <string_view>
 
 #include "geometry/adjacency.h"
 #include "geometry/point_distance.h"
@@ -78,7 +79,8 @@ TEST(Strips, OfSamplesAreFlatWholeAndOffThemselves) {
     options.width_mm = 14;
     const StripModel model = make_strips(mesh, no_limbs(mesh), options, context);
     EXPECT_LT(model.isometry_error, 1e-9) << sample;
-    EXPECT_TRUE(model.notes.empty()) << sample;
+    // The cat is of genus one, which a note says where a band holds the handle.
+    EXPECT_EQ(model.notes.size(), std::string_view(sample) == "cat" ? 1u : 0u) << sample;
     ASSERT_FALSE(model.pieces.empty());
     for (const StripPiece& piece : model.pieces) {
       // Disjoint triangles that fill the outline, so that it is crossed by nothing.

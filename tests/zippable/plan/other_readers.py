@@ -320,9 +320,9 @@ class Rigs(unittest.TestCase):
                     if not name.startswith("track-"):
                         continue
                     middle = middles.pop(name.removeprefix("track-"))
-                    self.assertLess(middle.buffer(TRACK_MM / 2 - 0.02, quad_segs=64).difference(hole).area, 1e-6, name)
+                    self.assertLess(middle.buffer(TRACK_MM / 2 - 0.02, resolution=64).difference(hole).area, 1e-6, name)
                     openings = [Point(middle.coords[k]).buffer(OPENING_MM / 2 + 0.02) for k in (0, -1)]
-                    beyond = hole.difference(middle.buffer(TRACK_MM / 2 + 0.02, quad_segs=64))
+                    beyond = hole.difference(middle.buffer(TRACK_MM / 2 + 0.02, resolution=64))
                     # Where an opening meets its track, the cutter's round leaves a corner of a few hundredths.
                     self.assertLess(beyond.difference(unary_union(openings).buffer(0.1)).area, 1e-6, name)
             self.assertFalse(middles)

@@ -24,6 +24,7 @@ const std::vector<Operation>& operations() {
       zippable_design_operation(),
       zippable_plan_operation(),
       zippable_simulate_operation(),
+      zippable_baseline_operation(),
       laser_job_operation(),
       mill_job_operation(),
       test_grid_operation(),

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "job/zippable_operation.h"
 
+#include <algorithm>
+
 #include "geometry/adjacency.h"
 #include "geometry/io/mesh_io.h"
 #include "job/model_input.h"
@@ -30,7 +32,8 @@ std::vector<OutputInfo> outputs() {
 std::vector<ReportField> report_fields() {
   return {{"vertices", "Vertices", "", "of the divided model"},
           {"faces", "Triangles", "", "of the divided model"},
-          {"parts", "Parts", "", "cylinders"},
+          {"parts", "Parts", "", "of the model"},
+          {"cylinders", "Cylinders", "", "how many of the parts are, which all must be"},
           {"interfaces", "Interfaces", "", "arcs that two parts share"},
           {"handles_cut", "Cut handles", "", "loops opened, which need another closure than the zipper"},
           {"distortion_mean", "Mean distortion", "", "symmetric Dirichlet energy over 4, weighted by area; 1 is none"},
@@ -39,6 +42,9 @@ std::vector<ReportField> report_fields() {
           {"constraint_residual_mm", "Constraint residual", "mm", "largest violation of seams, straight lines and interfaces"},
           {"order", "Order of parts", "", "as the zipper visits them, numbered from 0"},
           {"orders", "Possible orders", "", "to choose from with traversal"},
+          {"order_taken", "Order taken", "", "which of them, from 1"},
+          {"centre_radius_min_mm", "Tightest bend", "mm", "least radius of the flat ribbon's middle, over half its width to either side"},
+          {"centre_radius_min_part", "Part of the tightest bend", "", "counted from 1"},
           {"unevenness", "Unevenness of crossings", "", "eq. (5.7) over the parts between; 0 is even"},
           {"windings", "Windings", "", "of every part"},
           {"fermat_spirals", "Fermat spirals", "", "parts that the zipper enters and leaves"},
@@ -53,6 +59,9 @@ std::vector<ReportField> report_fields() {
           {"ribbon_to_model_max_mm", "Largest distance to the model", "mm", "from the zipped ribbon"},
           {"model_to_ribbon_mean_mm", "Mean distance to the ribbon", "mm", "from the model"},
           {"model_to_ribbon_max_mm", "Largest distance to the ribbon", "mm", "from the model"},
+          {"fabric_area_mm2", "Area of each fabric", "mm²", "of two colours, before room is made for the zipper"},
+          {"fabric_seams", "Seams between fabrics", "", "rulings where one colour is joined to the other"},
+          {"interleaved_share", "Zipper between two colours", "", "share of its length with another colour on either side"},
           {"size_mm", "Size", "mm", "of the zipped ribbon"},
           {"reused", "Parameterisation reused", "", "from an earlier job on the same model, parts and punctures"},
           {"seconds_read", "Reading", "s", "file to repaired model; 0 when known from before"},
@@ -65,6 +74,13 @@ std::vector<ReportField> report_fields() {
           {"peak_memory_mb", "Peak memory", "MB", "of the process"},
           {"repairs", "Repairs", "", "what was found in the model and mended, in words"},
           {"notes", "Notes", "", "what was decided for you, in words"}};
+}
+
+/// Of the part on whose lines the triangle has a corner, or the first one.
+int part_of_face(const ZippableDesign& design, int face) {
+  for (int k = 0; k < 3; ++k)
+    if (const int sample = design.ribbon.boundary[design.ribbon.F(face, k)].sample; sample >= 0) return design.curve.lines[design.curve.samples[sample].line].part;
+  return design.traversal.traversal.parts.front();
 }
 
 void report_design(Json& report, const ParameterisedModel& model, const ZippableDesign& design) {
@@ -81,6 +97,10 @@ void report_design(Json& report, const ParameterisedModel& model, const Zippable
   report["constraint_residual_mm"] = constraint_residual_mm(s, model.parameterisation);
   report["order"] = design.traversal.traversal.parts;
   report["orders"] = design.traversal_count;
+  report["order_taken"] = design.traversal_number;
+  report["cylinders"] = s.part_count();
+  report["centre_radius_min_mm"] = design.bend ? Json(design.bend->radius_mm) : Json(nullptr);
+  report["centre_radius_min_part"] = design.bend ? Json(part_of_face(design, design.bend->face) + 1) : Json(nullptr);
   report["unevenness"] = design.traversal.crossings.unevenness;
   report["windings"] = design.curve.windings;
   report["fermat_spirals"] = design.curve.fermat_spirals;
@@ -94,6 +114,11 @@ void report_design(Json& report, const ParameterisedModel& model, const Zippable
              size = (formed.colwise().maxCoeff() - formed.colwise().minCoeff()).transpose();
   report["ribbon_size_mm"] = {flat_size.x(), flat_size.y()};
   report["isometry_error"] = ribbon.isometry_error;
+  if (design.fabrics) {
+    report["fabric_area_mm2"] = design.fabrics->area_mm2;
+    report["fabric_seams"] = design.fabrics->seams;
+    report["interleaved_share"] = design.fabrics->interleaved_share;
+  }
   const auto distance = [&](const std::string& name, const std::optional<SurfaceDistance>& measured) {
     report[name + "_mean_mm"] = measured ? Json(measured->mean) : Json(nullptr);
     report[name + "_max_mm"] = measured ? Json(measured->maximum) : Json(nullptr);
@@ -104,6 +129,24 @@ void report_design(Json& report, const ParameterisedModel& model, const Zippable
   report["seconds_curve"] = design.seconds_curve;
   report["seconds_ribbon"] = design.seconds_ribbon;
   report["seconds_distance"] = design.seconds_distance;
+}
+
+/// The division alone, with what is wrong with its parts.
+OperationResult check_parts(const OperationCall& call, const LoadedModel& loaded, const ZippableParts& parts, const ZippableOptions& options) {
+  const ParameterisedModel model = divide_model(loaded.model.mesh, parts, options, call.context);
+  const Segmentation& s = model.proposal.segmentation;
+  OperationResult result;
+  if (call.wants("design.json")) result.outputs.push_back(make_output(outputs().front(), write_parts_json(model)));
+  std::vector<std::string> notes = model.proposal.notes;
+  for (int part = 0; part < s.part_count(); ++part)
+    if (!s.problems[part].empty()) notes.push_back("Part " + std::to_string(part + 1) + " is not a cylinder. " + s.problems[part]);
+  result.report["parts"] = s.part_count();
+  result.report["cylinders"] = std::count(s.problems.begin(), s.problems.end(), "");
+  result.report["handles_cut"] = model.proposal.handles_cut;
+  result.report["seconds_parts"] = model.seconds_parts;
+  result.report["repairs"] = loaded.repairs;
+  result.report["notes"] = notes;
+  return result;
 }
 
 OperationResult run(const OperationCall& call) {
@@ -120,6 +163,7 @@ OperationResult run(const OperationCall& call) {
     const auto span = context.span(0, 0.1, "Reading the model");
     loaded = load_model(call);
   }
+  if (options.check_parts) return check_parts(call, *loaded, parts, options);
   const std::string key = "zippable:" + loaded->key + ":" + parts_key + ":" + parameterisation_key(options);
   auto model = call.session.find<const ParameterisedModel>(key);
   const bool reused = model != nullptr;

@@ -6,4 +6,5 @@ namespace formwright {
 Operation zippable_design_operation();
 Operation zippable_plan_operation();
 Operation zippable_simulate_operation();
+Operation zippable_baseline_operation();
 }

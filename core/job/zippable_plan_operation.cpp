@@ -27,6 +27,9 @@ std::vector<OutputInfo> outputs() {
           {"sheets.zip", "application/zip", "Sheets", "sheet_1.svg, sheet_1.dxf, ...: a file for every sheet.", true},
           {"tape.pdf", "application/pdf", "Tape template", "Lay the zipper on it and copy its numbers: both tapes in rows. Print at 100 %.", true},
           {"tape.svg", "image/svg+xml", "Tape template, SVG", "The same, all pages side by side at true size.", true},
+          {"rig.svg", "image/svg+xml", "Rig, SVG", "With the rig: its boards side by side at true size; layers as in the plan.", true},
+          {"rig.dxf", "image/vnd.dxf", "Rig, DXF", "The same in mm, DXF R12.", true},
+          {"rig.pdf", "application/pdf", "Rig, PDF", "One page a board at true size.", true},
           {"assembly.pdf", "application/pdf", "Assembly sheet", "What is needed and what is joined to what, step by step with pictures.", true}};
 }
 
@@ -59,7 +62,8 @@ std::vector<ReportField> report_fields() {
           {"tabs", "Tabs", "", "of paper: how many, how many of them less deep, and stretches without"},
           {"tape_rows", "Rows of the template", "", "of the tapes, on its pages"},
           {"tape_row_mm", "Row", "mm", "of the template, along the zipper"},
-          {"pieces", "Pieces", "", "area of ribbon, sheet and letters of splits"},
+          {"pieces", "Pieces", "", "area of ribbon, sheet, letters of splits and, of two, which fabric"},
+          {"sheet_fabrics", "Fabrics of the sheets", "", "of two colours: 1 or 2 for every sheet"},
           {"splits", "Splits", "", "rulings at which the ribbon is cut"},
           {"crumbs_joined", "Crumbs joined", "", "pieces that were too small and joined to a neighbour"},
           {"crumbs_grown", "Crumbs grown", "", "pieces that were too small and grew at a neighbour's cost"},
@@ -69,6 +73,15 @@ std::vector<ReportField> report_fields() {
           {"outline_area_mm2", "Area of pieces", "mm²", "with seam allowances, without kerf"},
           {"cut_length_mm", "Cut length", "mm", "of all outlines"},
           {"kerf_mm", "Kerf", "mm", "of which half is added to outlines"},
+          {"rig_plates", "Plates of the rig", "", "three for every piece"},
+          {"rig_sheets", "Boards for the rig", "", "of the bed's size"},
+          {"rig_tracks", "Tracks", "", "of the rig"},
+          {"rig_tracks_blind", "Tracks without an opening", "", "into which the tape is laid from above"},
+          {"rig_openings", "Openings", "", "where a tape is slid in"},
+          {"rig_screws", "Screws", "", "of all pieces, each through three layers"},
+          {"rig_track_mm", "Length of tracks", "mm", "along the cloth"},
+          {"rig_left_out_mm", "Edges without a track", "mm", "where two tracks would meet"},
+          {"rig_markers_hidden", "Markers under the cloth", "", "on the cover, where there is no room beside the track"},
           {"seconds_read", "Reading", "s", "the design"},
           {"seconds_offset", "Room for the zipper", "s", "offsets and markers"},
           {"seconds_split", "Splitting", "s", "pieces and outlines"},
@@ -154,11 +167,17 @@ void report_pieces(Json& report, const ZippablePlan& plan, const PlanOptions& op
       if (const RibbonSplit& split = plan.splitting.splits[s]; split.left == static_cast<int>(i) || split.right == static_cast<int>(i))
         letters.push_back(split_letters(static_cast<int>(s)));
     pieces.push_back({{"name", piece.name}, {"sheet", plan.nesting.places[i].sheet + 1}, {"ribbon_area_mm2", piece.ribbon_area_mm2}, {"splits", letters}});
+    if (plan.fabrics > 1) pieces.back()["fabric"] = plan.fabric_of_piece[i] + 1;
     area += piece.ribbon_area_mm2;
     outline_area += signed_area_mm2(piece.outline_mm);
     for (std::size_t k = 0; k < piece.cut_mm.size(); ++k) cut_mm += (piece.cut_mm[(k + 1) % piece.cut_mm.size()] - piece.cut_mm[k]).norm();
   }
   report["pieces"] = pieces;
+  if (plan.fabrics > 1) {
+    Json fabrics = Json::array();
+    for (const int fabric : plan.fabric_of_sheet) fabrics.push_back(fabric + 1);
+    report["sheet_fabrics"] = fabrics;
+  }
   report["splits"] = plan.splitting.splits.size();
   report["crumbs_joined"] = plan.splitting.merged_crumbs;
   report["crumbs_grown"] = plan.splitting.moved_splits;
@@ -168,6 +187,18 @@ void report_pieces(Json& report, const ZippablePlan& plan, const PlanOptions& op
   report["outline_area_mm2"] = outline_area;
   report["cut_length_mm"] = cut_mm;
   report["kerf_mm"] = options.kerf_mm;
+}
+
+void report_rig(Json& report, const Rig& rig) {
+  report["rig_plates"] = rig.plates.size();
+  report["rig_sheets"] = rig.sheets.size();
+  report["rig_tracks"] = rig.tracks;
+  report["rig_tracks_blind"] = rig.blind_tracks;
+  report["rig_openings"] = rig.openings;
+  report["rig_screws"] = rig.screws;
+  report["rig_track_mm"] = rig.track_mm;
+  report["rig_left_out_mm"] = rig.left_out_mm;
+  report["rig_markers_hidden"] = rig.hidden_markers;
 }
 
 Bytes sheets_zip(const ZippablePlan& plan, const Context& context) {
@@ -216,6 +247,13 @@ OperationResult run(const OperationCall& call) {
   if (!plan.tape.sheets.empty()) {
     add("tape.pdf", [&] { return write_plan_pdf(plan.tape.sheets); });
     add("tape.svg", [&] { return write_svg(side_by_side(plan.tape.sheets, 20)); });
+  }
+  if (plan.rig) {
+    const CutSheet boards = side_by_side(plan.rig->sheets, 20);
+    add("rig.svg", [&] { return write_svg(boards); });
+    add("rig.dxf", [&] { return write_dxf(boards); });
+    add("rig.pdf", [&] { return write_plan_pdf(plan.rig->sheets); });
+    report_rig(result.report, *plan.rig);
   }
   report_lengths(result.report, design, plan);
   report_tape(result.report, design, plan);

@@ -33,6 +33,16 @@ std::vector<Vec3> read_points(const Json& list, const std::string& name) {
   return points;
 }
 
+/// Of every part whether it is a cylinder, and if not, why.
+Json parts_json(const Segmentation& s) {
+  Json parts = Json::array();
+  for (int part = 0; part < s.part_count(); ++part) {
+    const std::string& problem = s.problems[part];
+    parts.push_back({{"cylinder", problem.empty()}, {"why_not", problem.empty() ? Json(nullptr) : Json(problem)}});
+  }
+  return parts;
+}
+
 /// To a micrometre: what a laser can tell apart is a hundred times as much.
 double micrometres(double mm) { return std::round(1000 * mm) / 1000; }
 
@@ -64,9 +74,9 @@ ZippableParts read_segments(ByteView bytes) {
 Bytes write_design_json(const ParameterisedModel& model, const ZippableDesign& design) {
   const Segmentation& s = model.proposal.segmentation;
   const Parameterisation& p = model.parameterisation;
-  Json parts = Json::array();
+  Json parts = parts_json(s);
   for (int part = 0; part < s.part_count(); ++part)
-    parts.push_back({{"period_mm", p.period_mm[part]}, {"height_mm", p.height_mm[part]}, {"windings", design.curve.windings[part]}});
+    parts[std::size_t(part)].update(Json{{"period_mm", p.period_mm[part]}, {"height_mm", p.height_mm[part]}, {"windings", design.curve.windings[part]}});
   Json punctures = Json::array();
   for (std::size_t i = 0; i < model.proposal.punctures.size(); ++i)
     punctures.push_back({{"position_mm", vector_json(model.proposal.punctures[i])}, {"radius_mm", model.proposal.puncture_radius_mm[i]}});
@@ -83,6 +93,8 @@ Bytes write_design_json(const ParameterisedModel& model, const ZippableDesign& d
   Json faces = Json::array();
   for (Eigen::Index f = 0; f < design.ribbon.F.rows(); ++f)
     faces.push_back({design.ribbon.F(f, 0), design.ribbon.F(f, 1), design.ribbon.F(f, 2)});
+  Json ribbon = {{"boundary", boundary}, {"triangles", faces}};
+  if (design.fabrics) ribbon["fabric"] = design.fabrics->of_face;
   const Json json = {{"format", "formwright zippable design"},
                      {"version", 1},
                      {"scale", model.scale},
@@ -92,7 +104,12 @@ Bytes write_design_json(const ParameterisedModel& model, const ZippableDesign& d
                      {"handles_cut", model.proposal.handles_cut},
                      {"zipper_mm", design.ribbon.zipper_mm},
                      {"pieces", design.curve.pieces},
-                     {"ribbon", {{"boundary", boundary}, {"triangles", faces}}}};
+                     {"ribbon", ribbon}};
+  return to_bytes(json.dump());
+}
+
+Bytes write_parts_json(const ParameterisedModel& model) {
+  const Json json = {{"format", "formwright zippable design"}, {"version", 1}, {"scale", model.scale}, {"parts", parts_json(model.proposal.segmentation)}};
   return to_bytes(json.dump());
 }
 

@@ -16,6 +16,9 @@ ZippableParts read_segments(ByteView bytes);
 /// Everything that later steps need of a design: parts, the curve's samples, the ribbon in space and in the plane.
 Bytes write_design_json(const ParameterisedModel& model, const ZippableDesign& design);
 
+/// The parts alone, checked before anything is made of them: of each whether it is a cylinder, and if not, why.
+Bytes write_parts_json(const ParameterisedModel& model);
+
 /// The parts with u, v (mm), the part's number and the distortion of every vertex; vertices are split where parts meet and along cuts.
 Bytes write_parameterised_ply(const ParameterisedModel& model, Context& context);
 

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/json.h"
 #include "geometry/adjacency.h"
+#include "zippable/fabric_colours.h"
 
 namespace formwright {
 namespace {
@@ -105,6 +106,15 @@ FlatDesign read_flat_design(ByteView bytes) {
       design.F(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k)) = read_index(triangles[f][k], 0, count);
   }
   check_disc(design);
+  design.fabric_of_face.assign(triangles.size(), 0);
+  if (const Json fabric = ribbon.value("fabric", Json()); !fabric.is_null()) {
+    if (!fabric.is_array() || fabric.size() != triangles.size()) refuse("The design's fabrics are not those of its triangles");
+    for (std::size_t f = 0; f < fabric.size(); ++f) {
+      if (fabric[f] != 0 && fabric[f] != 1) refuse("A triangle of the design is of no fabric");
+      design.fabric_of_face[f] = fabric[f].get<int>();
+    }
+    design.fabrics = fabric_count;
+  }
   for (const Json& piece : pieces) {
     if (!piece.is_array() || piece.size() < 2) refuse("A piece of the zipper has no length");
     design.pieces.emplace_back();

@@ -18,6 +18,8 @@ struct FlatVertex {
 struct FlatDesign {
   std::vector<FlatVertex> boundary;      // counter-clockwise in the plane, all of the ribbon's vertices
   Triangles F;                           // over the boundary, counter-clockwise in the plane
+  std::vector<int> fabric_of_face;       // 0 or 1; all 0 where there is one fabric
+  int fabrics = 1;
   std::vector<std::vector<int>> pieces;  // zipper samples from opening to opening, in the order of the zipper
   // From here on made on reading:
   std::vector<int> left_vertex, right_vertex;  // per sample: on the boundary

@@ -189,10 +189,12 @@ Proposal drawn(const TriangleMesh& mesh, const ProposalOptions& options, Context
   }
   puncture_all(proposal, surface, places, options);
   proposal.segmentation = make_segmentation(surface.mesh, surface.face_label);
+  if (options.accept_all_parts) return proposal;
+  std::string problems;
   for (int part = 0; part < proposal.segmentation.part_count(); ++part)
     if (!proposal.segmentation.problems[part].empty())
-      throw Error(ErrorCode::invalid_input, "segments",
-                  "Part " + std::to_string(part + 1) + " of the curves is not a cylinder. " + proposal.segmentation.problems[part]);
+      problems += (problems.empty() ? "Part " : " Part ") + std::to_string(part + 1) + " of the curves is not a cylinder. " + proposal.segmentation.problems[part];
+  if (!problems.empty()) throw Error(ErrorCode::invalid_input, "segments", problems);
   if (traversals(proposal.segmentation, 1).empty())
     throw Error(ErrorCode::invalid_input, "segments", "No order visits every part of the curves once: let more of them share a border.");
   return proposal;

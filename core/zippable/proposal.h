@@ -17,6 +17,7 @@ struct ProposalOptions {
   double prominence = 0.08;
   std::vector<Vec3> tips_mm;       // where parts are to be punctured; empty: at the tips of limbs
   std::vector<DrawnCurve> curves;  // borders of the parts, in mm; empty: around the punctures or limbs
+  bool accept_all_parts = false;   // drawn parts that are no cylinders are not refused
 };
 
 struct Proposal {

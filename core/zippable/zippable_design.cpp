@@ -2,6 +2,7 @@
 #include "zippable/zippable_design.h"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "base/error.h"
 #include "base/number_list.h"
@@ -32,10 +33,44 @@ std::vector<double> part_windings(const std::string& text, int part_count) {
   return windings;
 }
 
+/// Those that begin and end where they should, the even ones first.
+std::vector<RankedTraversal> orders_asked_for(const Segmentation& s, const Parameterisation& parameterisation, const ZippableOptions& options) {
+  std::vector<RankedTraversal> ranked = ranked_traversals(s, parameterisation, options.width_mm);
+  if (ranked.empty())
+    throw Error(ErrorCode::invalid_input, "mesh", "No order visits every part once: join or move parts so that they form a chain.");
+  const auto keep = [&](int part, const char* where, const auto& end_of) {
+    if (part > s.part_count())
+      throw Error(ErrorCode::invalid_input, where, "There are only " + std::to_string(s.part_count()) + " parts: choose one of them.");
+    if (part > 0) std::erase_if(ranked, [&](const RankedTraversal& r) { return end_of(r.traversal) != part - 1; });
+    if (ranked.empty())
+      throw Error(ErrorCode::invalid_input, where, "No order that visits every part once has its ends there: choose another part.");
+  };
+  keep(options.start_part, "start_part", [](const Traversal& t) { return t.parts.front(); });
+  keep(options.end_part, "end_part", [](const Traversal& t) { return t.parts.back(); });
+  if (options.traversal > static_cast<int>(ranked.size()))
+    throw Error(ErrorCode::invalid_input, "traversal",
+                "There are only " + std::to_string(ranked.size()) + " orders of these parts: choose one of them.");
+  return ranked;
+}
+
+std::string figure(double mm) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", mm);
+  return text;
+}
+
+void say_how_it_bends(ZippableDesign& design, const ZippableOptions& options) {
+  if (!design.bend) return;
+  if (design.bend->radius_mm < *options.radius_least_mm)
+    design.notes.push_back("The ribbon's middle bends to a radius of " + figure(design.bend->radius_mm) + " mm, less than " + figure(*options.radius_least_mm) +
+                           " mm, whatever the order: a narrower ribbon, larger punctures or other borders of the parts mend it.");
+  else if (design.traversal_number != options.traversal)
+    design.notes.push_back("Order " + std::to_string(design.traversal_number) + " was taken, the first that keeps the least radius.");
+}
+
 }  // namespace
 
-ParameterisedModel parameterise_model(const TriangleMesh& given, const ZippableParts& parts, const ZippableOptions& options,
-                                      Context& context) {
+ParameterisedModel divide_model(const TriangleMesh& given, const ZippableParts& parts, const ZippableOptions& options, Context& context) {
   ParameterisedModel model;
   const double size = bounding_box(given).size().maxCoeff();
   if (!(size > 0)) throw Error(ErrorCode::invalid_input, "mesh", "The model has no size: give one with some extent.");
@@ -43,19 +78,28 @@ ParameterisedModel parameterise_model(const TriangleMesh& given, const ZippableP
   model.mesh = {given.V * model.scale, given.F};
   check_width(size * model.scale, options);
   Stopwatch watch;
+  ProposalOptions proposal;
+  proposal.puncture_radius_mm = 0.5 * options.hole_mm();
+  proposal.parts_max = options.parts_max;
+  proposal.prominence = 0.01 * options.prominence_percent;
+  proposal.accept_all_parts = options.check_parts;
+  for (const Vec3& tip : parts.punctures) proposal.tips_mm.push_back(model.scale * tip);
+  proposal.curves = parts.curves;
+  for (DrawnCurve& curve : proposal.curves)
+    for (Vec3& point : curve.points) point *= model.scale;
+  model.proposal = propose_segmentation(model.mesh, proposal, context);
+  model.seconds_parts = watch.lap();
+  return model;
+}
+
+ParameterisedModel parameterise_model(const TriangleMesh& given, const ZippableParts& parts, const ZippableOptions& options,
+                                      Context& context) {
+  ParameterisedModel model;
   {
     const auto span = context.span(0, 0.25, "Looking for limbs");
-    ProposalOptions proposal;
-    proposal.puncture_radius_mm = 0.5 * options.puncture_mm.value_or(0.5 * options.width_mm);
-    proposal.parts_max = options.parts_max;
-    proposal.prominence = 0.01 * options.prominence_percent;
-    for (const Vec3& tip : parts.punctures) proposal.tips_mm.push_back(model.scale * tip);
-    proposal.curves = parts.curves;
-    for (DrawnCurve& curve : proposal.curves)
-      for (Vec3& point : curve.points) point *= model.scale;
-    model.proposal = propose_segmentation(model.mesh, proposal, context);
+    model = divide_model(given, parts, options, context);
   }
-  model.seconds_parts = watch.lap();
+  Stopwatch watch;
   {
     const auto span = context.span(0.25, 1, "Parameterising");
     model.parameterisation = parameterise(model.proposal.segmentation, {}, context);
@@ -69,7 +113,7 @@ std::string parameterisation_key(const ZippableOptions& options) {
   relevant.size_mm = options.size_mm;
   relevant.parts_max = options.parts_max;
   relevant.prominence_percent = options.prominence_percent;
-  relevant.puncture_mm = options.puncture_mm.value_or(0.5 * options.width_mm);
+  relevant.puncture_mm = options.hole_mm();
   return write_parameters(relevant).dump();
 }
 
@@ -81,27 +125,45 @@ ZippableDesign design_zippable(const ParameterisedModel& model, const ZippableOp
   design.notes = model.proposal.notes;
   Stopwatch watch;
   context.progress(0, "Drawing the curve");
-  std::vector<RankedTraversal> ranked = ranked_traversals(s, model.parameterisation, options.width_mm);
+  const std::vector<RankedTraversal> ranked = orders_asked_for(s, model.parameterisation, options);
   design.traversal_count = static_cast<int>(ranked.size());
-  if (ranked.empty())
-    throw Error(ErrorCode::invalid_input, "mesh", "No order visits every part once: join or move parts so that they form a chain.");
-  if (options.traversal > design.traversal_count)
-    throw Error(ErrorCode::invalid_input, "traversal",
-                "There are only " + std::to_string(design.traversal_count) + " orders of these parts: choose one of them.");
-  design.traversal = std::move(ranked[options.traversal - 1]);
   CurveOptions curve;
   curve.width_mm = options.width_mm;
   curve.windings = options.windings;
   curve.part_windings = part_windings(options.part_windings, s.part_count());
   curve.sample_mm = options.sample_mm.value_or(0.2 * options.width_mm);
   const LineTracer tracer(s, model.parameterisation);
-  design.curve =
-      draw_zipper_curve(s, model.parameterisation, tracer, design.traversal.traversal, design.traversal.crossings, curve, context);
+  // The order that was chosen, and where it bends too tightly those after it.
+  constexpr std::size_t most_tries = 24;
+  const std::size_t first = static_cast<std::size_t>(options.traversal - 1), end = options.radius_least_mm ? std::min(ranked.size(), first + most_tries) : first + 1;
+  for (std::size_t i = first; i < end; ++i) {
+    ZippableDesign candidate;
+    candidate.traversal = ranked[i];
+    candidate.curve = draw_zipper_curve(s, model.parameterisation, tracer, ranked[i].traversal, ranked[i].crossings, curve, context);
+    design.seconds_curve += watch.lap();
+    if (i == first) context.progress(0.3, "Unfolding the ribbon");
+    candidate.ribbon = make_ribbon(s, model.parameterisation, tracer, candidate.curve, curve, context);
+    candidate.bend = tightest_bend(candidate.ribbon, options.width_mm);
+    design.seconds_ribbon += watch.lap();
+    if (i == first || (candidate.bend && design.bend && candidate.bend->radius_mm > design.bend->radius_mm)) {
+      design.traversal = std::move(candidate.traversal);
+      design.curve = std::move(candidate.curve);
+      design.ribbon = std::move(candidate.ribbon);
+      design.bend = candidate.bend;
+      design.traversal_number = static_cast<int>(i) + 1;
+    }
+    if (!design.bend || design.bend->radius_mm >= options.radius_least_mm.value_or(0)) break;
+  }
   design.notes.insert(design.notes.end(), design.curve.notes.begin(), design.curve.notes.end());
-  design.seconds_curve = watch.lap();
-  context.progress(0.3, "Unfolding the ribbon");
-  design.ribbon = make_ribbon(s, model.parameterisation, tracer, design.curve, curve, context);
-  design.seconds_ribbon = watch.lap();
+  if (options.radius_least_mm) say_how_it_bends(design, options);
+  if (options.fabrics == RibbonFabrics::two) {
+    design.fabrics = two_fabrics(design.ribbon, options.width_mm);
+    if (!design.fabrics->has_bands)
+      design.notes.push_back(
+          "The colours meet at one seam only: they interleave in parts that the zipper enters and leaves, and there is none that is "
+          "large enough. More parts, or another order of them, mend it.");
+  }
+  design.seconds_ribbon += watch.lap();
   if (!options.measure_distances) return design;
   context.progress(0.5, "Comparing with the model");
   // A few points across the ribbon and all corners: long triangles of narrow ribbons would else be sampled by the million.

@@ -7,8 +7,10 @@
 
 #include "base/context.h"
 #include "geometry/point_distance.h"
+#include "zippable/fabric_colours.h"
 #include "zippable/proposal.h"
 #include "zippable/ribbon.h"
+#include "zippable/ribbon_bend.h"
 #include "zippable/zippable_options.h"
 
 namespace formwright {
@@ -33,14 +35,22 @@ struct ParameterisedModel {
 ParameterisedModel parameterise_model(const TriangleMesh& mesh, const ZippableParts& parts, const ZippableOptions& options,
                                       Context& context);
 
+/// The division alone, whether or not its parts are cylinders: `proposal.segmentation.problems` says it.
+/// Throws Error as parameterise_model does, but not for a drawn part that is no cylinder.
+ParameterisedModel divide_model(const TriangleMesh& mesh, const ZippableParts& parts, const ZippableOptions& options,
+                                Context& context);
+
 /// Equal keys, equal parameterised models of equal meshes and parts.
 std::string parameterisation_key(const ZippableOptions& options);
 
 struct ZippableDesign {
   int traversal_count = 0;    // orders to choose from
+  int traversal_number = 1;   // which of them, from 1
   RankedTraversal traversal;  // the chosen one
+  std::optional<RibbonBend> bend;  // the tightest
   ZipperCurve curve;
   Ribbon ribbon;
+  std::optional<FabricColours> fabrics;                             // of two colours
   std::optional<SurfaceDistance> ribbon_to_model, model_to_ribbon;  // mm; only where options.measure_distances
   std::vector<std::string> notes;
   double seconds_curve = 0, seconds_ribbon = 0, seconds_distance = 0;

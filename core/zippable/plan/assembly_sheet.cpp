@@ -41,6 +41,7 @@ class AssemblyWriter {
         "and cut along it. Arrows show the grain. The side with the numbers becomes the outside: draw on cloth with a "
         "pen that washes out.");
     joins();
+    if (plan_.rig) rig();
     if (plan_.has_tape())
       tapes();
     else
@@ -77,12 +78,17 @@ class AssemblyWriter {
 
   void material() {
     flow_.heading("What you need");
-    double area = 0;
-    for (const PlanPiece& piece : plan_.pieces.pieces) area += signed_area_mm2(piece.outline_mm);
-    flow_.paragraph("- " + std::string(plan_.has_tape() ? "Cloth: " : "Paper or card: ") +
-                    count(plan_.sheets.size(), "sheet") + " of " + number(options_.bed_x_mm, 0) + " by " +
-                    number(options_.bed_y_mm, 0) + " mm; the pieces take " + number(area / 100, 0) +
-                    " square centimetres of it.");
+    for (int fabric = 0; fabric < plan_.fabrics; ++fabric) {
+      double area = 0;
+      for (std::size_t i = 0; i < plan_.pieces.pieces.size(); ++i)
+        if (plan_.fabric_of_piece[i] == fabric) area += signed_area_mm2(plan_.pieces.pieces[i].outline_mm);
+      const auto sheets = std::count(plan_.fabric_of_sheet.begin(), plan_.fabric_of_sheet.end(), fabric);
+      const std::string colour = plan_.fabrics > 1 ? ", " + fabric_name(fabric) : "";
+      flow_.paragraph("- " + std::string(plan_.has_tape() ? "Cloth" : "Paper or card") + colour + ": " +
+                      count(static_cast<std::size_t>(sheets), "sheet") + " of " + number(options_.bed_x_mm, 0) + " by " +
+                      number(options_.bed_y_mm, 0) + " mm; the pieces take " + number(area / 100, 0) +
+                      " square centimetres of it" + pieces_of(fabric) + ".");
+    }
     if (plan_.has_tape()) {
       const std::string coil =
           options_.coil == ZipperCoil::none
@@ -101,6 +107,15 @@ class AssemblyWriter {
                                                                    ? "; a blunt knife to score the folds of the tabs."
                                                                    : ", or adhesive tape behind the seams."));
     }
+  }
+
+  /// ": P1, P3" where there is more than one fabric.
+  std::string pieces_of(int fabric) const {
+    std::string names;
+    if (plan_.fabrics > 1)
+      for (std::size_t i = 0; i < plan_.pieces.pieces.size(); ++i)
+        if (plan_.fabric_of_piece[i] == fabric) names += (names.empty() ? ": " : ", ") + plan_.pieces.pieces[i].name;
+    return names;
   }
 
   void overview() {
@@ -195,6 +210,19 @@ class AssemblyWriter {
       }
       show(static_cast<int>(p), corner + Vec2(p % 2 == 0 ? 0 : size.x() + 8, 0), size, "", tags);
     }
+  }
+
+  void rig() {
+    const Rig& rig = *plan_.rig;
+    flow_.heading(step("Screw the rigs together"));
+    flow_.paragraph("Cut rig.svg, rig.dxf or rig.pdf from board or acrylic glass: for every piece a base, a layer with tracks " +
+                    number(options_.track_width_mm, 1) + " mm wide, as thick as the teeth, and a cover. " +
+                    count(static_cast<std::size_t>(rig.screws), "screw") + " of " + number(options_.screw_mm, 1) +
+                    " mm hold them; a piece whose rig is done lends its screws to the next.");
+    flow_.paragraph(
+        "Slide each tape in at an opening, teeth into the track, tape up through the slot, until its numbers stand at those of the cover. "
+        "Lay the piece into its outline, put glue on the tape, press it flat behind the cloth, and let it set before it leaves the rig. Cut "
+        "into the tape every few centimetres so that it lies flat on curves.");
   }
 
   void tapes() {

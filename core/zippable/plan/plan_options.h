@@ -57,6 +57,8 @@ struct PlanOptions {
   double kerf_mm = 0.15;
   PaperEdges edges = PaperEdges::plain;
   double tab_depth_mm = 5, tab_length_mm = 15;
+  bool rig = false;
+  double track_width_mm = 4, slot_width_mm = 1.6, rig_opening_mm = 10, screw_mm = 3.2;
   InstructionPaper paper = InstructionPaper::a4;
 
   static constexpr auto parameters = std::tuple{
@@ -80,7 +82,7 @@ struct PlanOptions {
                 "Sewing moves the edges in the plane; gluing along the curve's binormal, which keeps both sides as long as each other.")
           .group("Zipper"),
       parameter("marker_spacing_mm", &PlanOptions::marker_spacing_mm, "Markers every", unit::mm, 1, 10000,
-                "Along the zipper; automatic: 30 mm for sewing, 50 mm for gluing on the rig.")
+                "Along the zipper; automatic: 30 mm for sewing, 50 mm for gluing and on the rig.")
           .slider(10, 100)
           .group("Zipper"),
       parameter("text_height_mm", &PlanOptions::text_height_mm, "Text", unit::mm, 0.5, 100,
@@ -110,6 +112,26 @@ struct PlanOptions {
       parameter("tab_length_mm", &PlanOptions::tab_length_mm, "Length of tabs", unit::mm, 4, 1000, "Along the fold; less where the edge is curved.")
           .slider(5, 40)
           .group("Paper model"),
+      parameter("rig", &PlanOptions::rig, "Fastening rig",
+                "Also three layers of board for every piece, which hold zipper and cloth in place while they are joined.")
+          .group("Rig"),
+      parameter("track_width_mm", &PlanOptions::track_width_mm, "Track", unit::mm, 1, 20,
+                "Width of the tracks in the middle layer, which take the teeth of one tape.")
+          .slider(2, 8)
+          .group("Rig"),
+      parameter("slot_width_mm", &PlanOptions::slot_width_mm, "Slot", unit::mm, 0.2, 20,
+                "Width of the slots in the cover, through which the tape comes up; narrower than the track.")
+          .slider(0.5, 4)
+          .group("Rig")
+          .advanced(),
+      parameter("rig_opening_mm", &PlanOptions::rig_opening_mm, "Openings", unit::mm, 2, 60, "Diameter of the holes where a tape is slid in.")
+          .slider(6, 20)
+          .group("Rig")
+          .advanced(),
+      parameter("screw_mm", &PlanOptions::screw_mm, "Screw holes", unit::mm, 0.5, 20, "Diameter; the rig is screwed together along its rim.")
+          .slider(2, 6)
+          .group("Rig")
+          .advanced(),
       parameter("paper", &PlanOptions::paper, "Paper", "On which the tape's template and the assembly sheet are printed.").group("Sheets")};
 };
 

@@ -29,17 +29,20 @@ struct Growing {
 
 class Overlaps {
  public:
-  Overlaps(const Triangles& F, const std::vector<Vec2>& flat, double clearance_mm)
-      : F_(F), flat_(flat), clearance_mm_(clearance_mm), along_(flat.size() + 1, 0.0), boxes_(std::size_t(F.rows())) {
+  Overlaps(const Triangles& F, const std::vector<Vec2>& flat, double clearance_mm, const std::vector<int>& kind_of_face)
+      : F_(F), flat_(flat), clearance_mm_(clearance_mm), kind_of_face_(kind_of_face), along_(flat.size() + 1, 0.0), boxes_(std::size_t(F.rows())) {
     for (std::size_t v = 0; v < flat.size(); ++v) along_[v + 1] = along_[v] + (flat[(v + 1) % flat.size()] - flat[v]).norm();
     for (int f = 0; f < F.rows(); ++f)
       for (int k = 0; k < 3; ++k) boxes_[f].add({corner(f, k), corner(f, k)});
   }
 
   const Box& box(int f) const { return boxes_[f]; }
+  bool alike(int f, int g) const { return kind_of_face_.empty() || kind_of_face_[f] == kind_of_face_[g]; }
   Polygon corners(int f) const { return {corner(f, 0), corner(f, 1), corner(f, 2)}; }
 
+  /// May the two not be one piece?
   bool between(const Growing& a, const Growing& b) const {
+    if (!alike(a.faces.front(), b.faces.front())) return true;
     for (const int f : a.faces) {
       if (!boxes_[f].meets(b.box, clearance_mm_)) continue;
       for (const int g : b.faces)
@@ -70,6 +73,7 @@ class Overlaps {
   const Triangles& F_;
   const std::vector<Vec2>& flat_;
   double clearance_mm_;
+  const std::vector<int>& kind_of_face_;
   std::vector<double> along_;  // per vertex: place on the boundary; the last is its length
   std::vector<Box> boxes_;
 };
@@ -307,13 +311,13 @@ class CrumbSweeper {
 }  // namespace
 
 Splitting split_ribbon(const Triangles& F, const std::vector<Vec2>& flat, const std::function<bool(const Polygon&)>& fits,
-                       double clearance_mm, double least_mm2, Context& context) {
+                       double clearance_mm, double least_mm2, Context& context, const std::vector<int>& kind_of_face) {
   constexpr std::size_t most_tries = 8;
   TriangleMesh mesh;
   mesh.V = Positions::Zero(static_cast<Eigen::Index>(flat.size()), 3);
   mesh.F = F;
   const Adjacency adjacency(mesh);
-  const Overlaps overlaps(F, flat, clearance_mm);
+  const Overlaps overlaps(F, flat, clearance_mm, kind_of_face);
   const auto smallest_mm2 = [&](const Splitting& splitting) {
     std::vector<double> area(std::size_t(splitting.piece_count), 0.0);
     for (int f = 0; f < F.rows(); ++f) area[splitting.piece_of_face[f]] += signed_area_mm2(overlaps.corners(f));

@@ -2,9 +2,12 @@
 #include "zippable/plan/zippable_plan.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <tuple>
 
 #include "base/error.h"
+#include "fabrication/words.h"
 #include "imaging/pdf.h"
 
 namespace formwright {
@@ -21,6 +24,36 @@ double area_mm2(const Triangles& F, const std::vector<Vec2>& flat) {
   return twice / 2;
 }
 
+/// Pieces of one fabric lie on sheets of their own.
+void nest_by_fabric(ZippablePlan& plan, const NestingOptions& options, Context& context) {
+  plan.nesting.places.resize(plan.pieces.pieces.size());
+  for (int fabric = 0; fabric < plan.fabrics; ++fabric) {
+    std::vector<std::size_t> numbers;
+    std::vector<Polygon> outlines;
+    for (std::size_t i = 0; i < plan.pieces.pieces.size(); ++i)
+      if (plan.fabric_of_piece[i] == fabric) numbers.push_back(i), outlines.push_back(plan.pieces.pieces[i].cut_mm);
+    if (outlines.empty()) continue;
+    const auto span = context.span(static_cast<double>(fabric) / plan.fabrics, (fabric + 1.0) / plan.fabrics, "Nesting");
+    const Nesting nesting = nest(outlines, options, context);
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      plan.nesting.places[numbers[i]] = nesting.places[i];
+      plan.nesting.places[numbers[i]].sheet += plan.nesting.sheet_count;
+    }
+    plan.nesting.sheet_count += nesting.sheet_count;
+    plan.nesting.cell_mm = nesting.cell_mm;
+    plan.fabric_of_sheet.resize(std::size_t(plan.nesting.sheet_count), fabric);
+  }
+}
+
+/// Which fabric the sheet is cut from, in the lower margin or what there is of it, beside the arrow.
+void name_fabric(CutSheet& sheet, int fabric, double margin_mm) {
+  std::string words = fabric_name(fabric);
+  for (char& c : words) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  const double height = std::clamp(0.6 * margin_mm, 1.0, 6.0), width = words_width_mm(words, height);
+  const Vec2 centre(std::max(width / 2 + 1, sheet.width_mm / 2 - 26 - width / 2), std::max(margin_mm, 2.0) / 2);
+  for (CutPath& path : word_paths(words, centre, Vec2::UnitX(), height, CutLayer::note)) sheet.paths.push_back(std::move(path));
+}
+
 /// An arrow along the material's grain, in the lower margin or what there is of it.
 void draw_grain(CutSheet& sheet, double margin_mm) {
   const double y = margin_mm / 2, from = sheet.width_mm / 2 - 20, to = sheet.width_mm / 2 + 20, tip = std::min(1.5, margin_mm / 3);
@@ -28,7 +61,8 @@ void draw_grain(CutSheet& sheet, double margin_mm) {
   sheet.paths.push_back({CutLayer::note, {{to - 2, y - tip}, {to, y}, {to - 2, y + tip}}, false, "grain-tip"});
 }
 
-std::vector<CutSheet> lay_out(const PlanPieces& pieces, const Nesting& nesting, const PlanOptions& options) {
+std::vector<CutSheet> lay_out(const ZippablePlan& plan, const PlanOptions& options) {
+  const auto& [pieces, nesting] = std::tie(plan.pieces, plan.nesting);
   std::vector<CutSheet> sheets(std::size_t(nesting.sheet_count), CutSheet{title, options.bed_x_mm, options.bed_y_mm, {}});
   for (std::size_t i = 0; i < pieces.pieces.size(); ++i) {
     const PlanPiece& piece = pieces.pieces[i];
@@ -42,6 +76,11 @@ std::vector<CutSheet> lay_out(const PlanPieces& pieces, const Nesting& nesting, 
     for (const CutPath& path : piece.marks) add(path);
   }
   for (CutSheet& sheet : sheets) draw_grain(sheet, options.margin_mm);
+  if (plan.fabrics > 1)
+    for (std::size_t i = 0; i < sheets.size(); ++i) {
+      sheets[i].title += ", " + fabric_name(plan.fabric_of_sheet[i]);
+      name_fabric(sheets[i], plan.fabric_of_sheet[i], options.margin_mm);
+    }
   return sheets;
 }
 
@@ -69,11 +108,19 @@ void say_what_to_know(const PlanOptions& options, ZippablePlan& plan) {
   if (plan.tabs && plan.tabs->shortened + plan.tabs->left_out > 0)
     plan.notes.push_back(plural(plan.tabs->shortened, "tab is", "tabs are") + " shorter and " + plural(plan.tabs->left_out, "is", "are") +
                          " left out where the paper lies too close beside: wider spacing between windings or a smaller tab depth mends it.");
+  if (plan.rig && plan.rig->blind_tracks > 0)
+    plan.notes.push_back(plural(plan.rig->blind_tracks, "track", "tracks") +
+                         " of the rig found no room for an opening: lay the tape in before the cover is screwed on.");
+  if (plan.rig && plan.rig->left_out_mm > 1)
+    plan.notes.push_back("The rig has no track along " + std::to_string(static_cast<int>(std::lround(plan.rig->left_out_mm))) +
+                         " mm of the edges, where two tracks would meet: hold the tape there by hand.");
   if (!plan.tabs && options.coil == ZipperCoil::none && plan.zipper.offset_mm() == 0)
     plan.notes.push_back("Without a zipper the edges stay where they are: paper is joined edge to edge.");
 }
 
 }  // namespace
+
+std::string fabric_name(int fabric) { return "Colour " + std::to_string(fabric + 1); }
 
 Vec2 paper_size_mm(InstructionPaper paper) { return paper == InstructionPaper::a4 ? Vec2(210, 297) : Vec2(215.9, 279.4); }
 
@@ -87,16 +134,21 @@ ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& options,
   const bool tabs = options.edges == PaperEdges::tabs;
   if (tabs && (plan.has_tape() || plan.zipper.offset_mm() > 0))
     throw Error(ErrorCode::invalid_input, "edges", "Tabs are for paper that is glued without a zipper: choose no coil with them, or plain edges.");
+  std::optional<RigSizes> rig;
+  if (options.rig) rig = rig_sizes(options, plan.zipper);
   plan.ribbon = offset_ribbon(design, options.method, plan.zipper.offset_mm());
   plan.area_before_mm2 = area_mm2(design.F, plan.ribbon.flat_mm);
-  plan.marker_spacing_mm = options.marker_spacing_mm.value_or(options.method == ZipperOffset::sewing ? 30 : 50);
+  plan.marker_spacing_mm = options.marker_spacing_mm.value_or(options.method == ZipperOffset::sewing && !options.rig ? 30 : 50);
   plan.markers = place_markers(design, plan.ribbon, plan.marker_spacing_mm);
   plan.seconds_offset = watch.lap();
 
   const NestingOptions nesting{options.bed_x_mm, options.bed_y_mm, options.margin_mm, options.spacing_mm,
                                options.grain == GrainDirection::along_pieces};
   // Allowances, tabs and kerf are added after splitting; nesting needs a few cells to spare.
-  const double reserved = 2 * (options.margin_mm + std::max(options.seam_allowance_mm, tabs ? options.tab_depth_mm : 0.0) + options.kerf_mm) + 4 * nesting_cell_mm(nesting);
+  const double around = rig ? rig_rim_mm(options, *rig) : std::max(options.seam_allowance_mm, tabs ? options.tab_depth_mm : 0.0);
+  const double reserved = 2 * (options.margin_mm + around + options.kerf_mm) + 4 * nesting_cell_mm(nesting);
+  // Between windings there is the kerf; on the rig, a track for each of the two edges and a wall between them.
+  const double between = rig ? 2 * rig->offset_mm + rig->track_mm + rig->wall_mm : options.kerf_mm + 0.5;
   const double free_x = options.bed_x_mm - reserved, free_y = options.bed_y_mm - reserved;
   const auto fits = [&](const Polygon& hull) {
     return hull.size() < 2 || !fitting_turns(hull, free_x, free_y, nesting.keep_direction).empty();
@@ -105,8 +157,11 @@ ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& options,
   const double least_mm2 = plan.width_mean_mm * plan.width_mean_mm / 4;
   {
     const auto span = context.span(0, 0.5, "Splitting");
-    plan.splitting = split_ribbon(design.F, plan.ribbon.flat_mm, fits, options.kerf_mm + 0.5, least_mm2, context);
+    plan.splitting = split_ribbon(design.F, plan.ribbon.flat_mm, fits, between, least_mm2, context, design.fabric_of_face);
   }
+  plan.fabrics = design.fabrics;
+  plan.fabric_of_piece.assign(std::size_t(plan.splitting.piece_count), 0);
+  for (std::size_t f = 0; f < design.fabric_of_face.size(); ++f) plan.fabric_of_piece[plan.splitting.piece_of_face[f]] = design.fabric_of_face[f];
   plan.runs = tape_runs(design, plan.ribbon, plan.splitting, plan.markers);
   plan.seams = seams_in_order(plan.splitting, plan.ribbon.flat_mm, plan.runs, plan.markers, plan.has_tape());
   if (tabs)
@@ -117,13 +172,12 @@ ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& options,
   plan.seconds_split = watch.lap();
   {
     const auto span = context.span(0.5, 1, "Nesting");
-    std::vector<Polygon> outlines;
-    for (const PlanPiece& piece : plan.pieces.pieces) outlines.push_back(piece.cut_mm);
-    plan.nesting = nest(outlines, nesting, context);
+    nest_by_fabric(plan, nesting, context);
   }
-  plan.sheets = lay_out(plan.pieces, plan.nesting, options);
+  plan.sheets = lay_out(plan, options);
   const Vec2 paper = paper_size_mm(options.paper);
   plan.tape = make_tape_template(design, plan.zipper, plan.markers, plan.marker_spacing_mm, plan.runs, paper.y(), paper.x());
+  if (rig) plan.rig = make_rig(design, plan.ribbon, plan.markers, plan.pieces, plan.runs, options, *rig, context);
   plan.seconds_nest = watch.lap();
   say_what_to_know(options, plan);
   return plan;

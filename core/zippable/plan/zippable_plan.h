@@ -7,6 +7,7 @@
 #include "base/context.h"
 #include "fabrication/nesting.h"
 #include "zippable/plan/plan_pieces.h"
+#include "zippable/plan/rig.h"
 #include "zippable/plan/seams.h"
 #include "zippable/plan/tape_template.h"
 
@@ -19,12 +20,16 @@ struct ZippablePlan {
   Markers markers;
   Splitting splitting;
   PlanPieces pieces;
-  Nesting nesting;
+  Nesting nesting;                   // sheets of the first fabric before those of the second
+  std::vector<int> fabric_of_piece;  // 0 or 1
+  std::vector<int> fabric_of_sheet;
+  int fabrics = 1;
   std::vector<CutSheet> sheets;
   std::vector<TapeRun> runs;
   TapeTemplate tape;
   std::vector<Seam> seams;
   std::optional<GlueTabs> tabs;
+  std::optional<Rig> rig;
   double area_before_mm2 = 0;  // of the ribbon with room for the zipper, before splitting
   double width_mean_mm = 0;    // of the ribbon as designed: its area over the zipper's length
   std::vector<std::string> notes;
@@ -35,6 +40,9 @@ struct ZippablePlan {
 
 /// Width and height of the paper, upright, in mm.
 Vec2 paper_size_mm(InstructionPaper paper);
+
+/// "Colour 1": a fabric as a maker counts them.
+std::string fabric_name(int fabric);
 
 /// Throws Error: invalid_input (a parameter), cancelled.
 ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& options, Context& context);

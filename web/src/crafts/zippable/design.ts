@@ -35,6 +35,8 @@ export interface Design {
   /** Per sample: which piece of the zipper it is on. */
   readonly pieceOf: Int32Array;
   readonly ribbon: Ribbon;
+  /** Per triangle of the ribbon: which of two fabrics it is cut from; null where there is one. */
+  readonly fabric: Uint8Array | null;
 }
 
 interface DesignFile {
@@ -53,6 +55,7 @@ interface DesignFile {
       readonly side: string;
     }[];
     readonly triangles: number[][];
+    readonly fabric?: number[];
   };
 }
 
@@ -83,6 +86,7 @@ export function readDesign(bytes: Uint8Array): Design {
     along_mm: alongZipper(ribbon, file.pieces, samples),
     pieceOf,
     ribbon,
+    fabric: file.ribbon.fabric ? Uint8Array.from(file.ribbon.fabric) : null,
   };
 }
 

@@ -9,7 +9,9 @@ import { boundaryEdges } from './design';
 import { drawnLines, tool } from './draw_actions';
 import { positionOf } from './ribbon_places';
 import { frameAt } from './simulated';
-import { bend, chosenPart, course, distortionMapping, partToken, pointed, themeChanges, view } from './views';
+import type { Paint } from './paint';
+import { paintedRibbon, paintsOfParts } from './paint';
+import { bend, chosenPart, course, distortionMapping, pointed, themeChanges, view } from './views';
 import type { Zippable, ZippableSession } from './zippable_session';
 
 type Colour = readonly [number, number, number];
@@ -17,9 +19,9 @@ const paper: Colour = [0.86, 0.845, 0.815];
 /** How much of a part's colour is left while another part is chosen. */
 const faded = 0.25;
 
-/** A part's colour as the style sheet has it, 0..1. */
-function colourOf(part: number): Colour {
-  const text = getComputedStyle(document.documentElement).getPropertyValue(partToken(part)).trim();
+/** A colour as the style sheet has it, 0..1. */
+function colourOf({ part, token }: Paint): Colour {
+  const text = getComputedStyle(document.documentElement).getPropertyValue(token).trim();
   const six = /^#([0-9a-f]{6})$/i.exec(text)?.[1];
   const number = parseInt(six ?? '808080', 16);
   const full: Colour = [(number >> 16) / 255, ((number >> 8) & 255) / 255, (number & 255) / 255];
@@ -28,11 +30,12 @@ function colourOf(part: number): Colour {
   return full.map((c, k) => faded * c + (1 - faded) * (paper[k] ?? 0)) as unknown as Colour;
 }
 
-function coloursOf(parts: ArrayLike<number>, count: number): Float32Array {
-  const colours = Array.from({ length: count }, (_, part) => colourOf(part));
-  return Float32Array.from({ length: 3 * parts.length }, (_, i) => {
-    const part = colours[parts[Math.floor(i / 3)] ?? 0] ?? paper;
-    return part[(i % 3) as 0 | 1 | 2];
+/** Of what is painted in these, one after the other. */
+function coloursOf(painted: ArrayLike<number>, paints: readonly Paint[]): Float32Array {
+  const colours = paints.map(colourOf);
+  return Float32Array.from({ length: 3 * painted.length }, (_, i) => {
+    const colour = colours[painted[Math.floor(i / 3)] ?? 0] ?? paper;
+    return colour[(i % 3) as 0 | 1 | 2];
   });
 }
 
@@ -40,24 +43,27 @@ function coloursOf(parts: ArrayLike<number>, count: number): Float32Array {
 interface ColouredRibbon {
   readonly indices: Uint32Array;
   readonly source: Uint32Array;
-  readonly parts: Uint32Array;
+  /** Per vertex. */
+  readonly paint: Uint32Array;
+  readonly paints: readonly Paint[];
 }
 
-function apartByPart({ design, partOfTriangle }: Zippable): ColouredRibbon {
+function apartByPaint({ design, partOfTriangle }: Zippable): ColouredRibbon {
   const { triangles, sample } = design.ribbon;
+  const { ofTriangle, paints } = paintedRibbon(design, partOfTriangle);
   const numbers = new Map<number, number>();
-  const [source, parts]: [number[], number[]] = [[], []];
+  const [source, paint]: [number[], number[]] = [[], []];
   const indices = triangles.map((vertex, at) => {
-    const part = partOfTriangle[Math.floor(at / 3)] ?? 0;
-    const key = part * sample.length + vertex;
+    const mine = ofTriangle[Math.floor(at / 3)] ?? 0;
+    const key = mine * sample.length + vertex;
     const known = numbers.get(key);
     if (known !== undefined) return known;
     numbers.set(key, source.length);
     source.push(vertex);
-    parts.push(part);
+    paint.push(mine);
     return source.length - 1;
   });
-  return { indices, source: Uint32Array.from(source), parts: Uint32Array.from(parts) };
+  return { indices, source: Uint32Array.from(source), paint: Uint32Array.from(paint), paints };
 }
 
 const gathered = (positions: Float32Array, source: Uint32Array) =>
@@ -144,9 +150,9 @@ export function keepDrawn(viewport: Viewport, session: ZippableSession): () => v
     const style = styleNow();
     const positions = positionsNow(shown);
     if (coloured?.of !== shown || coloured.style !== style) {
-      const ribbon = apartByPart(shown);
-      const { indices, source, parts } = ribbon;
-      const colours = coloursOf(parts, shown.design.parts.length);
+      const ribbon = apartByPaint(shown);
+      const { indices, source, paint, paints } = ribbon;
+      const colours = coloursOf(paint, paints);
       viewport.setRelief({ positions: gathered(positions, source), indices, colours }, null);
       coloured = { of: shown, ribbon, style };
     } else viewport.updateRelief(gathered(positions, coloured.ribbon.source));
@@ -201,6 +207,6 @@ export function keepDrawn(viewport: Viewport, session: ZippableSession): () => v
 function modelData({ model, design }: Zippable): MeshData {
   const { positions, indices, attributes } = model.mesh;
   const segment = attributes['segment'] ?? new Float32Array(positions.length / 3);
-  const colours = coloursOf(segment, design.parts.length);
+  const colours = coloursOf(segment, paintsOfParts(design.parts.length));
   return { positions, indices, attributes, colours, ...shadingOf(model.mesh) };
 }

@@ -8,7 +8,7 @@ import { printOnPaper } from '../common/print_request';
 import { readyWorker } from '../common/services';
 import { planBytes, simulationBytes } from './make_product';
 import type { SendToMachine } from './send_sheet';
-import { sendSheet, sheetCount } from './send_sheet';
+import { sendSheet, sheetCount, sheetName } from './send_sheet';
 import { flatView } from './views';
 import { design, planning, simulating } from './zippable_document';
 import type { ZippableSession } from './zippable_session';
@@ -18,10 +18,14 @@ interface Export {
   readonly output: OutputDeclaration;
 }
 
+/** Made with the rig only. */
+const rigFiles = ['rig.svg', 'rig.dxf', 'rig.pdf'];
+
 /** In the order of the menu; a build offers those that its catalog names. */
 const menu: readonly (readonly [operation: string, outputs: readonly string[]])[] = [
   [design, ['ribbon.svg']],
   [planning, ['plan.svg', 'plan.dxf', 'plan.pdf', 'sheets.zip', 'tape.pdf', 'assembly.pdf']],
+  [planning, rigFiles],
   [simulating, ['zipped.ply', 'zipping.glb']],
   [design, ['design.json', 'parameterised.ply', 'formed.ply', 'curve.obj']],
 ];
@@ -30,13 +34,14 @@ const menu: readonly (readonly [operation: string, outputs: readonly string[]])[
 function exportsOf(session: ZippableSession): Export[] {
   const all = menu.flatMap(([operation, names]) => {
     const declared = session.operationNamed(operation)?.outputs ?? [];
+    if (names === rigFiles && session.value('rig') !== true) return [];
     return names.flatMap((name) => {
       const output = declared.find((one) => one.name === name);
       return output ? [{ operation, output }] : [];
     });
   });
-  const first = flatView.value === 'sheets' ? planning : design;
-  const main = all.find(({ operation }) => operation === first);
+  const first = { ribbon: 'ribbon.svg', sheets: 'plan.svg', rig: 'rig.svg' }[flatView.value];
+  const main = all.find(({ output }) => output.name === first);
   return main ? [main, ...all.filter((one) => one !== main)] : all;
 }
 
@@ -113,7 +118,7 @@ export function MainButton({ session, onSolve, onSendToMachine }: MainButtonProp
   if (main === undefined) return null;
   const count = sheetCount(session);
   const sends = Array.from({ length: count }, (_, sheet) => ({
-    label: count === 1 ? 'Send to a machine' : `Send sheet ${sheet + 1} to a machine`,
+    label: count === 1 ? 'Send to a machine' : `Send ${sheetName(session, sheet).toLowerCase()} to a machine`,
     icon: 'machines' as const,
     disabledReason: busy ?? (session.operationNamed(planning) ? undefined : 'No plans in this build'),
     onSelect: () => void sendSheet(session, sheet, onSendToMachine),

@@ -16,13 +16,21 @@ const named = [
   'distortion_mean',
   'distortion_max',
   'isometry_error',
+  'fabric_area_mm2',
+  'interleaved_share',
   'orders',
   'handles_cut',
 ];
 
+/** Not in the report of one fabric. */
+const ofTwoFabrics = ['fabric_area_mm2', 'interleaved_share'];
+
 function written(value: Json, { unit = '' }: ReportField): string {
   if (Array.isArray(value))
-    return withUnit(value.map((item) => formatNumber(Number(item), 3)).join(' × '), unit);
+    return withUnit(
+      value.map((item) => formatNumber(Number(item), 3)).join(unit === 'mm' ? ' × ' : ' and '),
+      unit,
+    );
   if (typeof value !== 'number') return '–';
   if (Number.isInteger(value)) return withUnit(formatCount(value), unit);
   if (Math.abs(value) < 1e-6) return value === 0 ? '0' : `under ${withUnit('10⁻⁶', unit)}`;
@@ -34,7 +42,9 @@ export function Figures({ session }: { session: ZippableSession }) {
   const report = shown && { ...shown, ...session.distances.value };
   const fields = session.operation.value?.report ?? [];
   if (report === undefined) return null;
-  const rows = named.flatMap((name) => fields.find((field) => field.name === name) ?? []);
+  const rows = named
+    .flatMap((name) => fields.find((field) => field.name === name) ?? [])
+    .filter(({ name }) => !ofTwoFabrics.includes(name) || report[name] !== undefined);
   return (
     <section class="section figures" aria-label="Lengths and errors">
       <h3>Lengths and errors</h3>

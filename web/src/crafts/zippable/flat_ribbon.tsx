@@ -7,6 +7,7 @@ import { figure } from '../common/report';
 import { boundaryEdges, partName } from './design';
 import type { FlatFit } from './flat_outline';
 import { edgePath, fitFlat, partLabels, partPaths, scaleBar } from './flat_outline';
+import { fabricName, fabricToken, paintedRibbon } from './paint';
 import { alongAt, flatOf, placeInFlat, seamAt } from './ribbon_places';
 import type { SendToMachine } from './send_sheet';
 import { Sheets } from './sheets';
@@ -21,6 +22,7 @@ const flatNames = [
   { value: 'ribbon', label: 'Ribbon' },
   { value: 'sheets', label: 'Sheets to cut' },
 ] as const;
+const rigName = { value: 'rig', label: 'Rig' } as const;
 
 export interface FlatRibbonProps {
   readonly session: ZippableSession;
@@ -44,18 +46,26 @@ export function FlatRibbon({ session, onSendToMachine }: FlatRibbonProps) {
     [shown, width, height],
   );
   const plans = session.operationNamed(planning) !== undefined;
-  const sheets = plans && flatView.value === 'sheets';
+  const rig = session.value('rig') === true;
+  const chosen = flatView.value === 'rig' && !rig ? 'sheets' : flatView.value;
+  const sheets = plans && chosen !== 'ribbon';
   return (
     <div ref={frame} class="flat-ribbon">
-      {shown && sheets ? <Sheets session={session} onSendToMachine={onSendToMachine} /> : null}
+      {shown && sheets ? (
+        <Sheets
+          session={session}
+          drawing={chosen === 'rig' ? 'rig.svg' : 'plan.svg'}
+          onSendToMachine={onSendToMachine}
+        />
+      ) : null}
       {shown && fit && !sheets ? <Drawing shown={shown} fit={fit} width={width} height={height} /> : null}
       {shown && plans ? (
         <div class="float top-left">
           <Segmented
             floating
             label="Flat"
-            options={flatNames}
-            value={flatView.value}
+            options={rig ? [...flatNames, rigName] : flatNames}
+            value={chosen}
             onChange={(value) => (flatView.value = value)}
           />
         </div>
@@ -142,10 +152,25 @@ function Drawing({ shown, fit, width, height }: DrawingProps) {
           <i style={{ width: `${bar.px}px` }} />
           {bar.text}
         </span>
+        {design.fabric ? <FabricKey /> : null}
         <span>Seam: {metres(design.zipper_mm)} on each side</span>
         <span>{said ?? ''}</span>
       </div>
     </>
+  );
+}
+
+/** Which colour on the drawing is which fabric. */
+function FabricKey() {
+  return (
+    <span class="fabric-key">
+      {[0, 1].map((fabric) => (
+        <span key={fabric}>
+          <i style={{ '--part': `var(${fabricToken(fabric)})` }} aria-hidden="true" />
+          {fabricName(fabric)}
+        </span>
+      ))}
+    </span>
   );
 }
 
@@ -163,19 +188,21 @@ function Shapes({ shown, chosen, line }: ShapesProps) {
   const { design, partOfTriangle } = shown;
   const shapes = useMemo(() => {
     const { flat } = design.ribbon;
+    const { ofTriangle, paints } = paintedRibbon(design, partOfTriangle);
+    const paths = partPaths(design.ribbon, ofTriangle, paints.length);
     return {
-      parts: partPaths(design.ribbon, partOfTriangle, design.parts.length),
+      painted: paints.map((paint, i) => ({ ...paint, path: paths[i] ?? '' })),
       zipper: edgePath(flat, boundaryEdges(design, 'zipper')),
       opening: edgePath(flat, boundaryEdges(design, 'opening')),
     };
   }, [shown]);
   return (
     <>
-      {shapes.parts.map((path, part) => (
+      {shapes.painted.map(({ part, token, path }, i) => (
         <path
-          key={part}
+          key={i}
           class={chosen === null || chosen === part ? 'flat-part' : 'flat-part faded'}
-          style={{ '--part': `var(${partToken(part)})` }}
+          style={{ '--part': `var(${token})` }}
           d={path}
         />
       ))}

@@ -39,7 +39,7 @@ function automaticValues(session: ZippableSession): Record<string, number> {
 
 /** What the right pane shows is what there is to set; the rest is folded away. */
 function openGroups(session: ZippableSession): string[] {
-  const operation = session.operationNamed(flatView.value === 'sheets' ? planning : design);
+  const operation = session.operationNamed(flatView.value === 'ribbon' ? design : planning);
   return Object.values(operation?.parameters.properties ?? {}).map((schema) => schema['x-group'] ?? '');
 }
 

@@ -22,7 +22,10 @@ async function madeOf(
 
 /** The bytes of a file of the plan. Null: failed or cancelled, which the page has said. */
 export const planBytes = (session: ZippableSession, output: string, label: string) =>
-  madeOf(session, planning, output, label, ['plan.svg']);
+  madeOf(session, planning, output, label, [
+    'plan.svg',
+    ...(session.value('rig') === true ? ['rig.svg'] : []),
+  ]);
 
 /** The same of a simulated zipping. */
 export const simulationBytes = (session: ZippableSession, output: string, label: string) =>

@@ -13,6 +13,13 @@ export type SendToMachine = (fileName: string, drawing: Uint8Array<ArrayBuffer>)
 export const sheetCount = (session: ZippableSession): number =>
   Math.max(1, figure(session.plan.value?.report ?? {}, 'sheets') ?? 1);
 
+/** "Sheet 2", of two fabrics "Sheet 2, colour 1". Counted from 0. */
+export function sheetName({ plan }: Pick<ZippableSession, 'plan'>, sheet: number): string {
+  const fabrics = plan.value?.report['sheet_fabrics'];
+  const fabric = Array.isArray(fabrics) ? fabrics[sheet] : undefined;
+  return `Sheet ${sheet + 1}${typeof fabric === 'number' ? `, colour ${fabric}` : ''}`;
+}
+
 /** Out of the plan's archive; undefined where it has no such sheet. Counted from 0. */
 export function sheetOf(archive: Uint8Array, sheet: number): Uint8Array<ArrayBuffer> | undefined {
   const name = `sheet_${sheet + 1}.svg`;
@@ -27,5 +34,5 @@ export async function sendSheet(session: ZippableSession, sheet: number, send: S
   if (sheetCount(session) === 1) return await send(`${title}.svg`, plan);
   const archive = await planBytes(session, 'sheets.zip', 'sheets');
   const drawing = archive && sheetOf(archive, sheet);
-  if (drawing) await send(`${title}, sheet ${sheet + 1}.svg`, drawing);
+  if (drawing) await send(`${title}, ${sheetName(session, sheet).toLowerCase()}.svg`, drawing);
 }

@@ -7,7 +7,7 @@ import { figure, sentences } from '../common/report';
 import { metres } from './flat_ribbon';
 import { planBytes } from './make_product';
 import type { SendToMachine } from './send_sheet';
-import { sendSheet, sheetCount } from './send_sheet';
+import { sendSheet, sheetCount, sheetName } from './send_sheet';
 import type { ZippableSession } from './zippable_session';
 
 /** Plans asked for already: what failed is not tried again before something changes. */
@@ -15,10 +15,11 @@ const tried = new Set<string>();
 
 export interface SheetsProps {
   readonly session: ZippableSession;
+  readonly drawing: 'plan.svg' | 'rig.svg';
   readonly onSendToMachine: SendToMachine;
 }
 
-export function Sheets({ session, onSendToMachine }: SheetsProps) {
+export function Sheets({ session, drawing, onSendToMachine }: SheetsProps) {
   const design = session.designFile.value;
   const plan = session.plan.value;
   const { parameters } = session.document.value;
@@ -29,7 +30,9 @@ export function Sheets({ session, onSendToMachine }: SheetsProps) {
     tried.add(key);
     void planBytes(session, 'plan.svg', 'plan');
   }, [design, plan, parameters, idle]);
-  const url = useDrawing(session);
+  const rig = drawing === 'rig.svg';
+  const words = rig ? rigWords(session) : planWords(session);
+  const url = useDrawing(session, drawing);
   if (design === null)
     return (
       <div class="sheets-empty">
@@ -46,8 +49,8 @@ export function Sheets({ session, onSendToMachine }: SheetsProps) {
   const notes = sentences(plan?.report ?? {}, 'notes');
   return (
     <>
-      <div class="sheets" tabIndex={0} role="group" aria-label="Sheets">
-        {plan && url ? <img src={url} alt={planWords(session)} /> : null}
+      <div class="sheets" tabIndex={0} role="group" aria-label={rig ? 'Rig' : 'Sheets'}>
+        {plan && url ? <img src={url} alt={words} /> : null}
         {plan === null && idle ? (
           <div class="sheets-empty">
             <p>No plan was made. Where a note says why, change that first.</p>
@@ -59,8 +62,8 @@ export function Sheets({ session, onSendToMachine }: SheetsProps) {
       </div>
       {plan ? (
         <div class="sheets-foot">
-          <p>{planWords(session)}</p>
-          <SendButton session={session} onSendToMachine={onSendToMachine} />
+          <p>{words}</p>
+          {rig ? null : <SendButton session={session} onSendToMachine={onSendToMachine} />}
           {notes.length > 0 ? (
             <details>
               <summary>
@@ -80,7 +83,7 @@ export function Sheets({ session, onSendToMachine }: SheetsProps) {
 }
 
 /** One sheet at once, of several the one that is chosen. */
-function SendButton({ session, onSendToMachine }: SheetsProps) {
+function SendButton({ session, onSendToMachine }: Omit<SheetsProps, 'drawing'>) {
   const idle = session.activity.value.kind === 'idle';
   const count = sheetCount(session);
   const send = (sheet: number) => void sendSheet(session, sheet, onSendToMachine);
@@ -99,7 +102,7 @@ function SendButton({ session, onSendToMachine }: SheetsProps) {
     <Menu
       buttonClass="button small"
       items={Array.from({ length: count }, (_, sheet) => ({
-        label: `Sheet ${sheet + 1}`,
+        label: sheetName(session, sheet),
         disabledReason: idle ? undefined : 'Busy with a file',
         onSelect: () => send(sheet),
       }))}
@@ -107,6 +110,19 @@ function SendButton({ session, onSendToMachine }: SheetsProps) {
       <Icon name="machines" /> Send to a machine <Icon name="chevronDown" small />
     </Menu>
   );
+}
+
+const many = (count: number, one: string) => `${formatCount(count)} ${one}${count === 1 ? '' : 's'}`;
+
+/** "15 plates on 4 boards; 36 screws". */
+export function rigWords(session: ZippableSession): string {
+  const report = session.plan.value?.report ?? {};
+  const [plates, boards, screws] = ['rig_plates', 'rig_sheets', 'rig_screws'].map((name) =>
+    figure(report, name),
+  );
+  return plates && boards && screws
+    ? `${many(plates, 'plate')} on ${many(boards, 'board')}; ${many(screws, 'screw')}`
+    : '';
 }
 
 /** "7 pieces on 2 sheets of 600 × 300 mm; zipper to cut: 2.57 m". */
@@ -117,7 +133,6 @@ export function planWords(session: ZippableSession): string {
   const bed = ['bed_x_mm', 'bed_y_mm']
     .map((name) => session.value(name))
     .filter((mm) => typeof mm === 'number');
-  const many = (count: number, one: string) => `${formatCount(count)} ${one}${count === 1 ? '' : 's'}`;
   const size =
     bed.length === 2 ? ` of ${withUnit(bed.map((mm) => formatNumber(mm, 3)).join(' × '), 'mm')}` : '';
   return [
@@ -136,9 +151,9 @@ const forTheEye = (svg: string): string =>
   );
 
 /** The address of the plan's drawing while it is shown. */
-function useDrawing(session: ZippableSession): string | null {
+function useDrawing(session: ZippableSession, name: string): string | null {
   const [url, setUrl] = useState<string | null>(null);
-  const drawing = session.plan.value?.outputs['plan.svg'];
+  const drawing = session.plan.value?.outputs[name];
   useEffect(() => {
     let made: string | null = null;
     let gone = false;

@@ -8,8 +8,8 @@ import type { Zippable } from './zippable_session';
 export type View = 'parts' | 'distortion' | 'ribbon';
 
 export const view = signal<View>('parts');
-/** What the right pane shows: the ribbon in one piece, or on the sheets that it is cut from. */
-export const flatView = signal<'ribbon' | 'sheets'>('ribbon');
+/** What the right pane shows: the ribbon in one piece, the sheets that it is cut from, or the boards of its rig. */
+export const flatView = signal<'ribbon' | 'sheets' | 'rig'>('ribbon');
 /** The part whose row is chosen; null: all alike. */
 export const chosenPart = signal<number | null>(null);
 /** Where the ribbon is pointed at; two places where that is the seam. */

@@ -14,9 +14,13 @@ export const design = 'zippable-design';
 export const planning = 'zippable-plan';
 export const simulating = 'zippable-simulate';
 
-/** The design with the parameters of what is made of it. */
-export const offered = (catalog: Catalog): Operation | null =>
-  offeredTogether(catalog, design, [planning, simulating]);
+/** The design with the parameters of what is made of it; the page always goes on from the parts to the ribbon. */
+export function offered(catalog: Catalog): Operation | null {
+  const operation = offeredTogether(catalog, design, [planning, simulating]);
+  if (operation === null) return null;
+  const { check_parts: _, ...properties } = operation.parameters.properties;
+  return { ...operation, parameters: { properties } };
+}
 
 /** What was drawn, on which model, and as the operation reads it. */
 export interface DrawnParts extends Drawn {

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "geometry/adjacency.h"
+#include "zippable/fabric_colours.h"
+#include "zippable/ribbon_bend.h"
+#include "zippable/zippable_design.h"
+#include "zippable/zippable_shapes.h"
+
+namespace formwright {
+namespace {
+
+ZippableDesign designed(const char* sample, ZippableOptions options) {
+  Context context;
+  options.size_mm = 150;
+  options.measure_distances = false;
+  const ParameterisedModel model = parameterise_model(make_sample(sample, 3000, context).mesh, {}, options, context);
+  return design_zippable(model, options, context);
+}
+
+double area_of(const Ribbon& ribbon, int f) {
+  const auto p = [&](int k) -> const Vec3& { return ribbon.boundary[ribbon.F(f, k)].position_mm; };
+  return (p(1) - p(0)).cross(p(2) - p(0)).norm() / 2;
+}
+
+/// What two_fabrics makes least, counted anew.
+double cost_of(const Ribbon& ribbon, const std::vector<int>& colour, double width_mm) {
+  const Adjacency adjacency(ribbon.formed());
+  double cost = 0;
+  for (int f = 0; f < adjacency.face_count(); ++f) {
+    int left = 0, right = 0;
+    for (int k = 0; k < 3; ++k)
+      if (const RibbonVertex& v = ribbon.boundary[ribbon.F(f, k)]; v.sample >= 0) ++(v.left ? left : right);
+    if ((left == 3 && colour[f] == 1) || (right == 3 && colour[f] == 0)) cost += area_of(ribbon, f);
+  }
+  for (int h = 0; h < 3 * adjacency.face_count(); ++h)
+    if (const int o = adjacency.opposite(h); o > h && colour[h / 3] != colour[o / 3])
+      cost += 2 * width_mm *
+              (ribbon.boundary[adjacency.from(h)].position_mm - ribbon.boundary[adjacency.to(h)].position_mm).norm();
+  return cost;
+}
+
+TEST(Fabrics, BandsOfFermatSpiralsDiffer) {
+  for (const char* sample : {"star", "octopus", "t_shape"}) {
+    ZippableOptions options;
+    options.width_mm = 10;
+    options.fabrics = RibbonFabrics::two;
+    const ZippableDesign design = designed(sample, options);
+    ASSERT_TRUE(design.fabrics.has_value());
+    EXPECT_TRUE(design.fabrics->has_bands) << sample;
+    double band[2]{}, own[2]{}, all = 0;
+    for (int f = 0; f < design.ribbon.F.rows(); ++f) {
+      int left = 0, right = 0;
+      for (int k = 0; k < 3; ++k)
+        if (const RibbonVertex& v = design.ribbon.boundary[design.ribbon.F(f, k)]; v.sample >= 0)
+          ++(v.left ? left : right);
+      const double area = area_of(design.ribbon, f);
+      all += area;
+      if (left < 3 && right < 3) continue;
+      const int side = left == 3 ? 0 : 1;
+      band[side] += area;
+      if (design.fabrics->of_face[f] == side) own[side] += area;
+    }
+    for (int side = 0; side < 2; ++side) EXPECT_GT(own[side], 0.98 * band[side]) << sample;
+    EXPECT_NEAR(design.fabrics->area_mm2[0] + design.fabrics->area_mm2[1], all, 1e-9 * all);
+    EXPECT_GT(design.fabrics->interleaved_share, 0.2) << sample;
+    EXPECT_GE(design.fabrics->seams, 1);
+  }
+}
+
+TEST(Fabrics, NothingIsCheaper) {
+  ZippableOptions options;
+  options.width_mm = 15;
+  options.fabrics = RibbonFabrics::two;
+  const ZippableDesign design = designed("star", options);
+  const std::vector<int>& colour = design.fabrics->of_face;
+  const double least = cost_of(design.ribbon, colour, options.width_mm);
+  // Everything beyond any one ruling turned over: among all neighbouring colourings none may be better.
+  const Adjacency adjacency(design.ribbon.formed());
+  for (int h = 0; h < 3 * adjacency.face_count(); ++h) {
+    if (adjacency.opposite(h) < 0) continue;
+    std::vector<int> other = colour;
+    std::vector<char> seen(colour.size(), 0);
+    seen[h / 3] = 1;
+    for (std::vector<int> open{adjacency.opposite(h) / 3}; !open.empty();) {
+      const int f = open.back();
+      open.pop_back();
+      if (seen[f]) continue;
+      seen[f] = 1;
+      other[f] = 1 - other[f];
+      for (int g = 3 * f; g < 3 * f + 3; ++g)
+        if (const int o = adjacency.opposite(g); o >= 0 && !seen[o / 3]) open.push_back(o / 3);
+    }
+    EXPECT_GE(cost_of(design.ribbon, other, options.width_mm), least * (1 - 1e-12));
+  }
+}
+
+TEST(Fabrics, OneCylinderChangesOnceHalfWay) {
+  CurveOptions curve;
+  curve.width_mm = 10, curve.sample_mm = 2;
+  const test::Zipped zipped = test::zip(test::alone(test::cylinder_side(20, 80, 40, 40)), curve);
+  const FabricColours colours = two_fabrics(zipped.ribbon, curve.width_mm);
+  EXPECT_FALSE(colours.has_bands);
+  EXPECT_EQ(colours.seams, 1);
+  EXPECT_NEAR(colours.area_mm2[0] / colours.area_mm2[1], 1, 0.02);
+}
+
+TEST(RibbonBend, OfAConeIsItsDistanceFromTheTip) {
+  // Unrolled, a cone's spiral turns about the tip: its centre line is nearest to it at the upper opening.
+  const double radius = 60, top = 24, height = 80, slant = std::hypot(radius, height);
+  CurveOptions curve;
+  curve.width_mm = 8, curve.sample_mm = 1;
+  const double along = slant * (1 - top / radius);  // of the side that is there
+  const test::Zipped zipped = test::zip(
+      test::alone(test::turned(
+          96, 60, [&](double t) { return Vec2(radius + t * (top - radius), t * height * (1 - top / radius)); })),
+      curve);
+  const auto bend = tightest_bend(zipped.ribbon, curve.width_mm);
+  ASSERT_TRUE(bend.has_value());
+  const double nearest = slant - along;
+  EXPECT_GT(bend->radius_mm, 0.8 * nearest);
+  EXPECT_LT(bend->radius_mm, nearest + 2 * curve.width_mm);
+}
+
+TEST(RibbonBend, OfACylinderIsLittle) {
+  CurveOptions curve;
+  curve.width_mm = 10, curve.sample_mm = 2;
+  const test::Zipped zipped = test::zip(test::alone(test::cylinder_side(20, 80, 40, 40)), curve);
+  const auto bend = tightest_bend(zipped.ribbon, curve.width_mm);
+  ASSERT_TRUE(bend.has_value());
+  // Its ribbon is straight; beside the openings, which cut it off aslant, the middles step aside a little.
+  EXPECT_GT(bend->radius_mm, 20 * curve.width_mm);
+}
+
+TEST(Curve, BeginsAndEndsWhereItShould) {
+  ZippableOptions options;
+  options.width_mm = 15;
+  for (const auto& [start, end] : {std::pair{2, 4}, std::pair{4, 2}, std::pair{0, 5}}) {
+    options.start_part = start, options.end_part = end;
+    const ZippableDesign design = designed("star", options);
+    const std::vector<int>& parts = design.traversal.traversal.parts;
+    if (start > 0) {
+      EXPECT_EQ(parts.front(), start - 1);
+    }
+    EXPECT_EQ(parts.back(), end - 1);
+  }
+  options.start_part = options.end_part = 1;
+  EXPECT_THROW(designed("star", options), Error);
+  options.start_part = 9;
+  EXPECT_THROW(designed("star", options), Error);
+}
+
+TEST(Curve, KeepsALeastRadiusOrSaysSo) {
+  ZippableOptions options;
+  options.width_mm = 15;
+  const ZippableDesign free = designed("star", options);
+  ASSERT_TRUE(free.bend.has_value());
+  options.radius_least_mm = 1.02 * free.bend->radius_mm;
+  const ZippableDesign bound = designed("star", options);
+  const auto says = [](const ZippableDesign& design) {
+    return std::any_of(design.notes.begin(), design.notes.end(),
+                       [](const std::string& note) { return note.find("bends to a radius") != std::string::npos; });
+  };
+  EXPECT_NE(bound.bend->radius_mm >= *options.radius_least_mm, says(bound));
+  options.radius_least_mm = 2000;
+  options.puncture_mm = 7;
+  EXPECT_TRUE(says(designed("star", options)));
+  options.radius_least_mm = 0.5;
+  EXPECT_FALSE(says(designed("star", options)));
+}
+
+}  // namespace
+}  // namespace formwright

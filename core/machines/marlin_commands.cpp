@@ -23,7 +23,8 @@ MachinePhase MarlinDriver::phase() const {
   if (connection_ != MachineConnection::ready) return MachinePhase::unknown;
   if (halted_) return MachinePhase::alarm;
   if (stopped_s_ >= 0) return MachinePhase::stopping;
-  if (homing_) return MachinePhase::homing;
+  if (settling_ == Settles::homing) return MachinePhase::homing;
+  if (settling_ == Settles::moving) return MachinePhase::jogging;
   if (job_active()) return paused_ ? MachinePhase::paused : MachinePhase::running;
   return MachinePhase::idle;
 }
@@ -66,6 +67,7 @@ void MarlinDriver::command(const Json& command, double now_s) {
   if (what == "home") {
     require_confirmation(command, "The head moves to its switches");
     queue("G28");
+    settle(Settles::homing);
   } else if (what == "jog") {
     std::string words;
     for (const auto& [name, letter] : {std::pair{"x_mm", " X"}, std::pair{"y_mm", " Y"}, std::pair{"z_mm", " Z"}})
@@ -80,6 +82,7 @@ void MarlinDriver::command(const Json& command, double now_s) {
     bounds.add({number_of(command, "x_mm", -farthest_mm, farthest_mm, absent), number_of(command, "y_mm", -farthest_mm, farthest_mm, absent), 0});
     check_reach(bounds);
     move("G90", " X" + decimal(bounds.low_mm[0]) + " Y" + decimal(bounds.low_mm[1]), speed(50));
+    settle(Settles::moving);
   } else if (what == "frame") {
     require_confirmation(command, "The head moves once around the job, laser off");
     const std::array<double, 4> b = machines_detail::bounds_of(command);
@@ -89,6 +92,7 @@ void MarlinDriver::command(const Json& command, double now_s) {
     check_reach(bounds);
     for (const auto& [x, y] : machines_detail::way_around(b))
       move("G90", " X" + decimal(x) + " Y" + decimal(y), speed(50));
+    settle(Settles::moving);
   } else if (what == "focus") {
     const double power = number_of(command, "power_percent", 0, options_.focus_power_percent, absent);
     require_confirmation(command, "The laser shines at " + decimal(power) + " % without moving: eyes protected");
@@ -112,6 +116,7 @@ void MarlinDriver::command(const Json& command, double now_s) {
     const LineEffect effect = effect_of(text);
     if (effect.moves || effect.fires) require_confirmation(command, "The line \"" + text + "\" may move the machine, heat it or turn its laser on");
     queue(text);
+    if (text.starts_with("G28")) settle(Settles::homing);
   } else if (what == "override") {
     if (command.contains("feed_percent")) queue("M220 S" + decimal(number_of(command, "feed_percent", 10, 200, 100)));
   }
@@ -132,7 +137,7 @@ void MarlinDriver::start(const Json& command, double now_s) {
   if (number_of(command, "from_line", 1, 1e9, 1) > 1) refuse("from_line", "Going on in the middle of a job is possible with GRBL machines only: start it anew.");
   refused_.reset();
   focus_until_s_.reset();
-  paused_ = draining_ = false;
+  paused_ = false;
   job_ = MachineJob{program_name_, program_.line_count(), 0, 0, 0, now_s, 0, ""};
   next_line_ = 0;
 }

@@ -21,7 +21,7 @@ constexpr const char* help_text =
     "Printers and machines of this computer and its network.\n\n"
     "  formwright machine list [--json]\n"
     "  formwright machine add --name N --url URL [--kind octoprint|moonraker] [--api-key-file F]\n"
-    "                         [--controller grbl|grbl_mill|marlin] [--baud N]\n"
+    "                         [--controller grbl|grbl_mill|marlin|marlin_printer] [--baud N]\n"
     "  formwright machine remove N\n"
     "  formwright machine print --machine M --file F --media A4 [--copies N] [--mirrored]\n"
     "                           [--quality draft|normal|high]\n"

@@ -79,6 +79,11 @@ std::vector<Machine> machines_from_json(const Json& list) {
 
 const char* to_string(MachineKind kind) { return kind_names[static_cast<std::size_t>(kind)]; }
 
+const SerialController* find_serial_controller(const std::string& name) {
+  const auto found = std::find_if(serial_controllers.begin(), serial_controllers.end(), [&](const SerialController& known) { return name == known.name; });
+  return found == serial_controllers.end() ? nullptr : found;
+}
+
 std::string Machine::detail() const {
   if (!url.empty()) return url.starts_with("serial:") ? url.substr(7) : url;
   if (!destination) return "";
@@ -139,8 +144,7 @@ Machine machine_from_words(const MachineWords& words) {
     refuse("--kind", "The address is that of a " + std::string(to_string(machine.kind)) + ": leave --kind out, or mend --url.");
   if (machine.kind == MachineKind::serial) {
     machine.controller = words.controller.empty() ? "grbl" : words.controller;
-    if (machine.controller != "grbl" && machine.controller != "grbl_mill" && machine.controller != "marlin")
-      refuse("--controller", "The controller must be grbl, grbl_mill or marlin.");
+    if (!find_serial_controller(machine.controller)) refuse("--controller", "The controller must be grbl, grbl_mill, marlin or marlin_printer.");
   } else if (machine.kind == MachineKind::ruida) {
     machine.controller = "ruida";
   } else if (!words.controller.empty()) {

@@ -4,6 +4,7 @@
 // page chooses among them by their names here; an address never comes from it.
 #include <cups/cups.h>
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -16,13 +17,22 @@ namespace formwright {
 enum class MachineKind { serial, ruida, printer, octoprint, moonraker, slicer };
 const char* to_string(MachineKind kind);
 
+/// What a serial machine may be registered as, and what its driver is told then.
+struct SerialController {
+  const char *name, *controller, *tool;
+};
+inline constexpr std::array<SerialController, 4> serial_controllers{
+    {{"grbl", "grbl", "laser"}, {"grbl_mill", "grbl", "mill"}, {"marlin", "marlin", "laser"}, {"marlin_printer", "marlin", "printer"}}};
+/// Null where there is none of that name.
+const SerialController* find_serial_controller(const std::string& name);
+
 struct Machine {
   std::string id;  // 16 hexadecimal digits, made from kind and address: the same after a restart
   std::string name;
   MachineKind kind = MachineKind::serial;
   std::string url;         // serial:/dev/..., tcp://host:port, ruida://host, ipp(s)://..., http(s)://...; empty for a CUPS destination
   std::string api_key;     // never leaves this computer but to the machine itself
-  std::string controller;  // serial: grbl, grbl_mill or marlin; ruida: ruida; empty otherwise
+  std::string controller;  // serial: one of serial_controllers; ruida: ruida; empty otherwise
   int baud = 115200;
   bool registered = false;
   std::string state;  // what the search found, may be empty

@@ -14,6 +14,7 @@
 #include "machines/gcode_program.h"
 #include "machines/machine_commands.h"
 #include "machines/machine_session.h"
+#include "machines/ruida_bounds.h"
 
 namespace formwright {
 namespace {
@@ -170,9 +171,11 @@ Machine driven_machine(const MachineRegistry& registry, const MachineFlags& flag
 Json options_of(const MachineFlags& flags) {
   Json options = Json::object();
   if (flags.given("--controller")) {
-    const std::string controller = flags.values.at("--controller");
-    options["controller"] = controller == "grbl_mill" ? "grbl" : controller;
-    if (controller == "grbl_mill") options["tool"] = "mill";
+    options["controller"] = flags.values.at("--controller");
+    if (const SerialController* known = find_serial_controller(flags.values.at("--controller"))) {
+      options["controller"] = known->controller;
+      options["tool"] = known->tool;
+    }
   }
   for (const auto& [flag, name] : {std::pair{"--bed-x-mm", "bed_x_mm"}, {"--bed-y-mm", "bed_y_mm"}}) {
     if (!flags.given(flag)) continue;
@@ -234,9 +237,9 @@ int machine_frame(const std::vector<std::string>& words, const std::atomic<bool>
   const MachineFlags flags = read_machine_flags(words, run_flags, {"--yes"});
   const MachineRegistry registry = registry_of(flags);
   const auto job = read_file(flags.needed("--job", "--job job.gcode"), "--job", most_job_bytes);
-  const GcodeBounds bounds = GcodeProgram::read(*job, 256).bounds();
-  if (bounds.empty) throw Error(ErrorCode::invalid_input, "--job", "The job moves nowhere: choose another.");
   const Machine machine = driven_machine(registry, flags);
+  const GcodeBounds bounds = machine.kind == MachineKind::ruida ? ruida_bounds(*job) : GcodeProgram::read(*job, 256).bounds();
+  if (bounds.empty) throw Error(ErrorCode::invalid_input, "--job", "The job moves nowhere: choose another.");
   Terminal terminal(registry, machine, options_of(flags), interrupted, flags.given("--yes"));
   terminal.connect();
   terminal.know_position();

@@ -19,8 +19,11 @@ Json driver_options(const Machine& machine, Json options) {
   if (options.is_null()) options = Json::object();
   if (!options.is_object()) throw Error(ErrorCode::invalid_input, "open", "open needs the machine's settings as an object.");
   if (!options.contains("controller")) {
-    options["controller"] = machine.controller == "grbl_mill" ? "grbl" : machine.controller;
-    if (machine.controller == "grbl_mill" && !options.contains("tool")) options["tool"] = "mill";
+    options["controller"] = machine.controller;
+    if (const SerialController* known = find_serial_controller(machine.controller)) {
+      options["controller"] = known->controller;
+      if (!options.contains("tool")) options["tool"] = known->tool;
+    }
   }
   if (!options.contains("baud") && machine.kind == MachineKind::serial) options["baud"] = machine.baud;
   const bool is_ruida = options["controller"] == "ruida";

@@ -43,6 +43,9 @@ TEST(driver_options, a_port_has_the_controllers_that_speak_over_it) {
   EXPECT_THROW(driver_options(serial, {{"controller", "ruida"}}), Error);
   EXPECT_THROW(driver_options(serial, {{"controller", "k40"}}), Error);
   EXPECT_THROW(driver_options(serial, Json::array()), Error);
+  serial.controller = "marlin_printer";
+  EXPECT_EQ(driver_options(serial, nullptr)["controller"], "marlin");
+  EXPECT_EQ(driver_options(serial, nullptr)["tool"], "printer");
   Machine ruida;
   ruida.kind = MachineKind::ruida;
   ruida.controller = "ruida";

@@ -132,11 +132,13 @@ void MarlinDriver::hear_error(std::string_view text, double now_s) {
 }
 
 void MarlinDriver::hear_report(const std::string& line, double now_s) {
-  for (const auto& [name, key] : {std::pair{"T:", "hotend_c"}, std::pair{"B:", "bed_c"}})
-    if (const auto value = number_after(line, name)) temperatures_[key] = *value;
   const auto x = number_after(line, "X:"), y = number_after(line, "Y:"), z = number_after(line, "Z:");
-  if (!x || !y || !z) return;
-  position_mm_ = {*x, *y, *z};
+  if (!x || !y || !z) {
+    for (const auto& [name, key] : {std::pair{"T:", "hotend_c"}, std::pair{"B:", "bed_c"}})
+      if (const auto value = number_after(line, name)) temperatures_[key] = *value;
+    return;
+  }
+  position_mm_ = {*x, *y, *z};  // motors may be called A, B, C behind it
   if (settling_number_) settled(now_s);
 }
 
@@ -205,8 +207,8 @@ void MarlinDriver::go_on_unanswered(double now_s) {
 }
 
 void MarlinDriver::halt(const std::string& text, double now_s) {
+  if (!halted_) halt_text_ = text;  // the first sentence tells the cause
   halted_ = true;
-  halt_text_ = text;
   position_known_ = false;
   by_hand_.clear();
   settling_ = Settles::nothing;

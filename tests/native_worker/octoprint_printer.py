@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """OctoPrint's virtual Marlin printer at a pseudo terminal, without the rest of OctoPrint. Prints the terminal's name.
 Usage: PEERS/bin/python octoprint_printer.py FOLDER [SETTING=JSON ...]
+The settings are the plugin's own, and spoil_percent: how many of the lines arrive with a letter changed. (Its own resend_ratio throws lines away
+that it does not ask for again.)
 
 What is read from stdin, one line each: "debug WORDS" goes to the printer as its own !!DEBUG command; "look" prints what it has done, as JSON."""
 import json
 import os
 import pathlib
 import pty
+import random
 import sys
 import threading
 import tty
@@ -67,6 +70,7 @@ def main() -> None:
     folder = pathlib.Path(sys.argv[1])
     folder.mkdir(parents=True, exist_ok=True)
     changed = dict((word.split("=", 1)[0], json.loads(word.split("=", 1)[1])) for word in sys.argv[2:])
+    spoil, chance = changed.pop("spoil_percent", 0) / 100, random.Random(1)
     printer = Printer(Settings(folder, changed), None, str(folder), None, 0.2)
     host, machine = pty.openpty()
     tty.setraw(machine)
@@ -85,7 +89,14 @@ def main() -> None:
             # It looks at one line a turn.
             while b"\n" in line:
                 one, line = line.split(b"\n", 1)
-                take(one + b"\n")
+                take(spoiled(one) + b"\n")
+
+    def spoiled(one: bytes) -> bytes:
+        first, last = one.find(b" "), one.rfind(b"*")
+        if not one.startswith(b"N") or last < first + 2 or chance.random() >= spoil:
+            return one
+        at = chance.randrange(first + 1, last)
+        return one[:at] + bytes([one[at] ^ 0x04]) + one[at + 1:]
 
     def take(one: bytes) -> None:
         while one and printer.incoming is not None:

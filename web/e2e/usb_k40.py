@@ -4,7 +4,6 @@ Usage: umockdev-wrapper /usr/bin/python3 usb_k40.py CHROMIUM FLAG...
 
 Prints a line of JSON for everything the laser hears. What is read from stdin: "spoil N" lets the next N packets arrive with a bit fallen over,
 "pull" pulls the cable. Ends with the end of stdin."""
-import ctypes
 import errno
 import fcntl
 import json
@@ -133,7 +132,7 @@ class Transfers:
             return -1, errno.ENODEV
         if number == SUBMIT:
             urb = client.get_arg().resolve(0, 56)
-            kind, endpoint, _, _, _, length = struct.unpack_from("<BBiIxxxxQi", bytes(urb.retrieve()), 0)[:6]
+            kind, endpoint, length = struct.unpack_from("<BB22xi", bytes(urb.retrieve()))
             buffer = urb.resolve(16, length) if length else None
             data = bytes(buffer.retrieve()) if buffer else b""
             answer, count = b"", length

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "files.h"
+#include "host.h"
 #include "http_server.h"
 #include "job/catalog.h"
 #include "job/run.h"
@@ -104,7 +105,7 @@ TextResponse text_response(const Head& head, http::status status, std::string bo
 }
 
 TextResponse error_response(const Head& head, http::status status, const std::string& code, const std::string& where, const std::string& message) {
-  return text_response(head, status, Json{{"error", {{"code", code}, {"where", where}, {"message", message}}}}.dump());
+  return text_response(head, status, json_text({{"error", {{"code", code}, {"where", where}, {"message", message}}}}));
 }
 
 Response HttpServer::answer(const Head& head, const std::string& body) {

@@ -24,6 +24,9 @@ struct PrinterDescription {
   bool colour = false, scaling_can_be_off = false;
 };
 
+/// What the answer to Get-Printer-Attributes says; what it leaves out is as in the struct.
+PrinterDescription read_printer_description(ipp_t* attributes);
+
 /// Throws as IppConnection does, and Error{could_not_solve, "machine"} for what is no printer.
 PrinterDescription describe_printer(const PrinterAddress& address, const std::atomic<bool>& cancelled);
 

@@ -2,19 +2,13 @@
 #pragma once
 // What every target does: read, and if it was read, check it and write it in every format. An Error is an answer;
 // any other exception, a sanitizer's finding, too much memory or time is a finding.
-#include <cstdint>
-#include <cstdlib>
-
 #include "base/error.h"
+#include "fuzz/fuzz_check.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/mesh_source.h"
 #include "geometry/io/model_file.h"
 
 namespace formwright::fuzz {
-
-inline void check(bool good) {
-  if (!good) std::abort();
-}
 
 inline void check_refusal(const Error& error) {
   const std::string_view message = error.what();

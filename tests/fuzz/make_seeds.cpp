@@ -97,4 +97,28 @@ int main(int argc, char** argv) {
   save("document_pages", "grey", write_png16(image));
   save("document_pages", "page", "%PDF-1.4\n1 0 obj<</Type/Catalog/Pages 2 0 R>>endobj\n2 0 obj<</Type/Pages/Kids[3 0 R]/Count 1>>endobj\n3 0 obj<</Type/Page/Parent 2 0 R/MediaBox[0 0 595 842]/Rotate 90/UserUnit 2>>endobj\n"
                                  "trailer<</Root 1 0 R/Size 4>>\n%%EOF\n");
+  // Version 1.1, ok, request 1; printer attributes: a media-col-database of A4 with its margins, a name that is no UTF-8, a range of copies.
+  const auto attribute = [](char tag, std::string_view name, std::string_view value) {
+    return std::string(1, tag) + '\0' + static_cast<char>(name.size()) + std::string(name) + '\0' + static_cast<char>(value.size()) + std::string(value);
+  };
+  const auto integer = [](int value) {
+    std::string bytes;
+    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift & 0xff);
+    return bytes;
+  };
+  const auto member = [&](std::string_view name, char tag, std::string_view value) { return attribute(0x4a, "", name) + attribute(tag, "", value); };
+  const std::string size = member("media-size", 0x34, "") + member("x-dimension", 0x21, integer(21000)) + member("y-dimension", 0x21, integer(29700)) + attribute(0x37, "", "");
+  const std::string media = size + member("media-left-margin", 0x21, integer(423)) + member("media-top-margin", 0x21, integer(300)) + member("media-source", 0x44, "manual") + attribute(0x37, "", "");
+  const std::string begin("\x01\x01\x00\x00\x00\x00\x00\x01\x04", 9);
+  save("printer_answer", "a4", begin + attribute(0x34, "media-col-database", "") + media + attribute(0x34, "media-col-ready", "") + media + attribute(0x41, "printer-make-and-model", "B\xfcro") +
+                                   attribute(0x23, "printer-state", integer(4)) + attribute(0x44, "printer-state-reasons", "media-empty-error") +
+                                   attribute(0x33, "copies-supported", integer(1) + integer(99)) + attribute(0x22, "color-supported", std::string_view("\x01", 1)) + attribute(0x23, "print-quality-supported", integer(4)) + "\x03");
+  save("printer_answer", "old", begin + attribute(0x44, "media-supported", "iso_a4_210x297mm") + attribute(0x44, "", "na_letter_8.5x11in") + attribute(0x21, "media-left-margin-supported", integer(500)) +
+                                    attribute(0x44, "media-source-supported", "by-pass-tray") + "\x03");
+  save("upload_answer", "octoprint", std::string("\x01\x01\x01") + R"({"done":true,"effectivePrint":true,"files":{"local":{"name":"mould.gcode","path":"mould.gcode"}}})");
+  save("upload_answer", "octoprint_state", std::string("\x05\x00\x00", 3) + R"({"state":{"text":"Operational","flags":{"operational":true,"printing":false}}})");
+  save("upload_answer", "octoprint_version", std::string("\x03\x00\x00", 3) + R"({"api":"0.1","server":"1.11.8"})");
+  save("upload_answer", "moonraker", std::string("\x00\x01\x01", 3) + R"({"result":{"item":{"path":"mould.gcode"},"print_started":true}})");
+  save("upload_answer", "moonraker_state", std::string("\x02\x00\x00", 3) + R"({"result":{"klippy_state":"ready","moonraker_version":"v0.9","status":{"print_stats":{"state":"paused"}}}})");
+  save("upload_answer", "refused", std::string("\x00\x05\x00", 3) + R"({"error":{"message":"\u00e4\u0000 busy"}})");
 }

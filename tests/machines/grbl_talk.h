@@ -82,11 +82,24 @@ class GrblTalk {
   }
   void load(const std::string& job) { driver.load("test", as_bytes(job)); }
 
+  /// What was on its way is lost; the machine goes on with what it has.
+  void pull_cable() {
+    driver.closed(now_s);
+    driver.take_output();
+    to_machine_.clear();
+    to_host_.clear();
+  }
+  void plug_in() {
+    machine.take_output();
+    driver.opened(now_s);
+    machine.open(now_s);
+  }
   void connect() {
     ASSERT_TRUE(pass_until([&] { return state()["connection"] == "ready"; }, 10)) << state().dump();
   }
   void connect_and_home() {
     connect();
+    ASSERT_TRUE(pass_until([&] { return can("home"); }, 5)) << state().dump();
     tell({{"do", "home"}, {"confirmed", true}});
     ASSERT_TRUE(pass_until([&] { return state()["position_known"] == true && phase() == "idle"; }, 20)) << state().dump();
     tell({{"do", "jog"}, {"x_mm", -300}, {"y_mm", -300}, {"speed_mm_per_s", 150}});

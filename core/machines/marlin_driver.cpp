@@ -26,8 +26,10 @@ std::optional<double> number_after(const std::string& line, const std::string& n
 }
 
 bool has_any(std::string text, std::initializer_list<const char*> words) {
-  std::transform(text.begin(), text.end(), text.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return std::any_of(words.begin(), words.end(), [&](const char* word) { return text.find(word) != std::string::npos; });
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return std::any_of(words.begin(), words.end(),
+                     [&](const char* word) { return text.find(word) != std::string::npos; });
 }
 
 /// "Marlin 2.1.2" of "FIRMWARE_NAME:Marlin 2.1.2 (Jan 1 2024) SOURCE_CODE_URL:..."; empty where there is none.
@@ -36,7 +38,8 @@ std::string firmware_name(const std::string& line) {
   const std::size_t start = line.find(field);
   if (start == std::string::npos) return "";
   std::string name = line.substr(start + field.size());
-  if (const std::size_t next = name.find(':'); next != std::string::npos) name.resize(std::min(name.rfind(' ', next), name.size()));
+  if (const std::size_t next = name.find(':'); next != std::string::npos)
+    name.resize(std::min(name.rfind(' ', next), name.size()));
   return name.substr(0, name.find(" ("));
 }
 
@@ -112,10 +115,14 @@ void MarlinDriver::hear(const std::string& line, double now_s) {
     }
     position_known_ = halted_ = false;
     if (line == "start" || !greeted_) greet(now_s);
-  } else if (line.starts_with("ok")) hear_ok(line, now_s);
-  else if (line.starts_with("Resend:") || line.starts_with("rs ")) hear_resend(std::atoi(line.c_str() + line.find_first_of(": ") + 1), now_s);
-  else if (line.starts_with("Error:") || line.starts_with("fatal:")) hear_error(std::string_view(line).substr(6), now_s);
-  else if (line.starts_with("!!")) hear_error(std::string_view(line).substr(2), now_s);
+  } else if (line.starts_with("ok"))
+    hear_ok(line, now_s);
+  else if (line.starts_with("Resend:") || line.starts_with("rs "))
+    hear_resend(std::atoi(line.c_str() + line.find_first_of(": ") + 1), now_s);
+  else if (line.starts_with("Error:") || line.starts_with("fatal:"))
+    hear_error(std::string_view(line).substr(6), now_s);
+  else if (line.starts_with("!!"))
+    hear_error(std::string_view(line).substr(2), now_s);
   else {
     if (const std::string name = firmware_name(line); !name.empty()) firmware_ = name;
     if (has_any(line, {"unknown command"})) refused_ = line;
@@ -127,8 +134,10 @@ void MarlinDriver::hear_error(std::string_view text, double now_s) {
   const std::string what(text.substr(std::min(text.find_first_not_of(' '), text.size())));
   // What is wrong with a line's number or sum: a request follows, or nothing at all.
   if (has_any(what, {"checksum", "line number", "expected line"})) return;
-  if (has_any(what, {"unknown command"})) refused_ = what;
-  else halt(what, now_s);
+  if (has_any(what, {"unknown command"}))
+    refused_ = what;
+  else
+    halt(what, now_s);
 }
 
 void MarlinDriver::hear_report(const std::string& line, double now_s) {
@@ -180,7 +189,8 @@ void MarlinDriver::hear_resend(int number, double now_s) {
     for (const std::string& line : lines_that_turn_off()) write_urgently(line + "\n");
     return halt("it asks for the same lines over and over. Check cable and line speed.", now_s);
   }
-  const auto found = std::find_if(sent_.begin(), sent_.end(), [&](const SentLine& line) { return line.number == number; });
+  const auto found =
+      std::find_if(sent_.begin(), sent_.end(), [&](const SentLine& line) { return line.number == number; });
   if (found == sent_.end() && number != next_number_) {
     note("The machine asks for a line that it has had long ago: it may have restarted.", now_s);
     stop("failed", now_s);
@@ -231,7 +241,9 @@ void MarlinDriver::send(const HandLine& line, int job_line, double now_s) {
 }
 
 void MarlinDriver::pump(double now_s) {
-  if (connection_ == MachineConnection::closed || connection_ == MachineConnection::silent || waiting_ || halted_ || !greeted_ || oks_to_swallow_ > 0) return;
+  if (connection_ == MachineConnection::closed || connection_ == MachineConnection::silent || waiting_ || halted_ ||
+      !greeted_ || oks_to_swallow_ > 0)
+    return;
   if (resend_at_ < sent_.size()) {
     const SentLine& again = sent_[resend_at_++];
     say("sent", again.text, now_s);
@@ -240,7 +252,9 @@ void MarlinDriver::pump(double now_s) {
     sent_s_ = now_s;
     return;
   }
-  if (by_hand_.empty() && job_active() && !paused_ && settling_ == Settles::nothing && next_line_ >= program_.line_count()) settle(Settles::job);
+  if (by_hand_.empty() && job_active() && !paused_ && settling_ == Settles::nothing &&
+      next_line_ >= program_.line_count())
+    settle(Settles::job);
   if (!by_hand_.empty()) {
     const HandLine line = by_hand_.front();
     by_hand_.pop_front();
@@ -276,8 +290,8 @@ void MarlinDriver::tick(double now_s) {
     write_urgently("M112\n");
     halt("it did not stop when asked, so it was sent M112.", now_s);
   }
-  if ((waiting_ || oks_to_swallow_ > 0) && connection_ == MachineConnection::ready && unanswered_in_a_row_ < most_unanswered &&
-      now_s - std::max(heard_s_, sent_s_) > lost_answer_s)
+  if ((waiting_ || oks_to_swallow_ > 0) && connection_ == MachineConnection::ready &&
+      unanswered_in_a_row_ < most_unanswered && now_s - std::max(heard_s_, sent_s_) > lost_answer_s)
     go_on_unanswered(now_s);
   const double patience = connection_ == MachineConnection::greeting ? greeting_s
                           : settling_ != Settles::nothing            ? silence_while_settling_s
@@ -286,7 +300,8 @@ void MarlinDriver::tick(double now_s) {
   if (connection_ != MachineConnection::silent && now_s - heard_s_ > patience) {
     connection_ = MachineConnection::silent;
     waiting_ = false;
-    note("Nothing answers: check that the machine is on, the controller chosen, and the line speed (115200 or 250000).", now_s);
+    note("Nothing answers: check that the machine is on, the controller chosen, and the line speed (115200 or 250000).",
+         now_s);
     if (job_active()) stop("cut_off", now_s);
     settling_ = Settles::nothing;
     settling_number_.reset();
@@ -309,7 +324,8 @@ std::vector<std::string> MarlinDriver::lines_that_turn_off() const {
   std::vector<std::string> lines;
   if (options_.tool != MachineTool::printer) lines.push_back("M5");
   // Lasers and mills on a printer's board may have heaters, too.
-  if (options_.tool == MachineTool::printer || !temperatures_.empty()) lines.insert(lines.end(), {"M104 S0", "M140 S0", "M107"});
+  if (options_.tool == MachineTool::printer || !temperatures_.empty())
+    lines.insert(lines.end(), {"M104 S0", "M140 S0", "M107"});
   return lines;
 }
 

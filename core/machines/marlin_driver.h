@@ -2,11 +2,13 @@
 #pragma once
 // Marlin: 3D printers, and the lasers and mills built on their boards.
 //
-// Lines are numbered and carry a checksum (reprap.org/wiki/G-code, "Checking"); the machine asks for a line again when one arrived badly,
-// and says "ok" once for every line and once more after each such request. One line is under way at a time.
+// Lines are numbered and carry a checksum (reprap.org/wiki/G-code, "Checking"); the machine asks for a line again when
+// one arrived badly, and says "ok" once for every line and once more after each such request. One line is under way at
+// a time.
 //
-// An ok means "taken in" and may be lost or come late, so it never tells that something has ended: what moved has ended when the machine
-// reports its place in answer to an M114 that was sent behind it (and behind an M400, which waits for all moves).
+// An ok means "taken in" and may be lost or come late, so it never tells that something has ended: what moved has ended
+// when the machine reports its place in answer to an M114 that was sent behind it (and behind an M400, which waits for
+// all moves).
 #include <array>
 #include <deque>
 #include <optional>
@@ -78,8 +80,8 @@ class MarlinDriver final : public MachineDriver {
   std::deque<SentLine> sent_;  // those that may be asked for again; the last `waiting_` of them are unanswered
   std::size_t resend_at_ = 0;  // index in sent_ of the next line to send again; sent_.size() when none
   int next_number_ = 0, oks_to_swallow_ = 0, resends_ = 0, unanswered_in_a_row_ = 0;
-  Settles settling_ = Settles::nothing;       // what is under way
-  std::optional<int> settling_number_;        // of the M114 behind it, once that was sent
+  Settles settling_ = Settles::nothing;  // what is under way
+  std::optional<int> settling_number_;   // of the M114 behind it, once that was sent
   bool waiting_ = false, paused_ = false, position_known_ = false, halted_ = false, greeted_ = false;
   std::string halt_text_;
   std::optional<std::array<double, 3>> position_mm_;

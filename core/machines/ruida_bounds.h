@@ -5,9 +5,9 @@
 
 namespace formwright {
 
-/// Of all that is burned, in mm from the machine's zero; z is 0. Throws Error invalid_input ("job") where the file is no Ruida job, is cut
-/// off, burns nothing, or does not say where: it starts from a place that is set at the laser's panel, repeats itself as an array, or moves
-/// by commands whose place is not in the file.
+/// Of all that is burned, in mm from the machine's zero; z is 0. Throws Error invalid_input ("job") where the file is
+/// no Ruida job, is cut off, burns nothing, or does not say where: it starts from a place that is set at the laser's
+/// panel, repeats itself as an array, or moves by commands whose place is not in the file.
 GcodeBounds ruida_bounds(ByteView rd_file);
 
 }  // namespace formwright

@@ -12,8 +12,8 @@ PrinterDescription describe_printer(const PrinterAddress& address, const std::at
   IppMessage request = connection.request(IPP_OP_GET_PRINTER_ATTRIBUTES);
   // media-col-database is not among "all" (PWG 5100.7): it has to be asked for by its name.
   static constexpr std::array<const char*, 2> wanted{"all", "media-col-database"};
-  ippAddStrings(request.get(), IPP_TAG_OPERATION, IPP_TAG_KEYWORD, "requested-attributes", static_cast<int>(wanted.size()), nullptr,
-                wanted.data());
+  ippAddStrings(request.get(), IPP_TAG_OPERATION, IPP_TAG_KEYWORD, "requested-attributes",
+                static_cast<int>(wanted.size()), nullptr, wanted.data());
   const auto answer = connection.ask(std::move(request));
   if (!answer.ok())
     throw Error(ErrorCode::could_not_solve, "machine",

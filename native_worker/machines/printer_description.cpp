@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 
-
 namespace formwright {
 namespace {
 
@@ -71,10 +70,12 @@ PrinterDescription read_printer_description(ipp_t* message) {
   result.media = read_print_media(message);
   result.formats = strings_of(message, "document-format-supported");
   ipp_attribute_t* quality = ippFindAttribute(message, "print-quality-supported", IPP_TAG_ENUM);
-  for (const auto& [value, name] : {std::pair{IPP_QUALITY_DRAFT, "draft"}, {IPP_QUALITY_NORMAL, "normal"}, {IPP_QUALITY_HIGH, "high"}})
+  for (const auto& [value, name] :
+       {std::pair{IPP_QUALITY_DRAFT, "draft"}, {IPP_QUALITY_NORMAL, "normal"}, {IPP_QUALITY_HIGH, "high"}})
     if (quality && ippContainsInteger(quality, value)) result.qualities.emplace_back(name);
   int upper = 1;
-  if (ipp_attribute_t* copies = ippFindAttribute(message, "copies-supported", IPP_TAG_RANGE)) ippGetRange(copies, 0, &upper);
+  if (ipp_attribute_t* copies = ippFindAttribute(message, "copies-supported", IPP_TAG_RANGE))
+    ippGetRange(copies, 0, &upper);
   result.most_copies = std::clamp(upper, 1, 9999);
   if (ipp_attribute_t* colour = ippFindAttribute(message, "color-supported", IPP_TAG_BOOLEAN))
     result.colour = ippGetBoolean(colour, 0) != 0;

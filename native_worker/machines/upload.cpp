@@ -48,7 +48,8 @@ std::size_t give_document(char* to, std::size_t size, std::size_t count, void* c
 
 int seek_document(void* conversation, curl_off_t offset, int origin) {
   auto& c = *static_cast<Conversation*>(conversation);
-  if (origin != SEEK_SET || offset < 0 || static_cast<std::size_t>(offset) > c.document.size()) return CURL_SEEKFUNC_FAIL;
+  if (origin != SEEK_SET || offset < 0 || static_cast<std::size_t>(offset) > c.document.size())
+    return CURL_SEEKFUNC_FAIL;
   c.sent = static_cast<std::size_t>(offset);
   return CURL_SEEKFUNC_OK;
 }
@@ -57,7 +58,8 @@ int look_for_cancel(void* conversation, curl_off_t, curl_off_t, curl_off_t, curl
   return *static_cast<Conversation*>(conversation)->cancelled ? 1 : 0;
 }
 
-/// One request to a registered machine. Nothing but http and https, no redirects (the key would travel along), no proxy.
+/// One request to a registered machine. Nothing but http and https, no redirects (the key would travel along), no
+/// proxy.
 class Request {
  public:
   Request(const Machine& machine, const std::string& path, const std::atomic<bool>& cancelled) : machine_(machine) {
@@ -101,7 +103,8 @@ class Request {
     curl_mime_name(part, "file");
     curl_mime_filename(part, file_name.c_str());
     curl_mime_type(part, "application/octet-stream");
-    curl_mime_data_cb(part, static_cast<curl_off_t>(document.size()), give_document, seek_document, nullptr, &conversation_);
+    curl_mime_data_cb(part, static_cast<curl_off_t>(document.size()), give_document, seek_document, nullptr,
+                      &conversation_);
     set(CURLOPT_TIMEOUT, upload_patience_s);
   }
   UploadReply perform() {
@@ -110,9 +113,11 @@ class Request {
     const CURLcode code = curl_easy_perform(curl_.get());
     if (*conversation_.cancelled) throw Error(ErrorCode::cancelled, "", "Cancelled.");
     if (code == CURLE_OPERATION_TIMEDOUT)
-      fail(machine_.name + " stayed silent at " + machine_.url + ": see whether it is switched on and reachable, and try again.");
+      fail(machine_.name + " stayed silent at " + machine_.url +
+           ": see whether it is switched on and reachable, and try again.");
     if (code == CURLE_PEER_FAILED_VERIFICATION)
-      fail("The certificate of " + machine_.name + " is not one this computer trusts: install it, or register the machine with http.");
+      fail("The certificate of " + machine_.name +
+           " is not one this computer trusts: install it, or register the machine with http.");
     if (code == CURLE_WRITE_ERROR)
       fail(machine_.name + " answered with more than 1 MB, which is no answer: see whether its address is right.");
     if (code != CURLE_OK)
@@ -144,8 +149,8 @@ class Request {
 }  // namespace
 
 std::string upload_file_name(const std::string& file_name) {
-  std::string name = file_name.substr(
-      std::min(file_name.size(), file_name.find_last_of("/\\") == std::string::npos ? 0 : file_name.find_last_of("/\\") + 1));
+  std::string name = file_name.substr(std::min(
+      file_name.size(), file_name.find_last_of("/\\") == std::string::npos ? 0 : file_name.find_last_of("/\\") + 1));
   for (char& c : name)
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '_' && c != '-') c = '_';
   name.erase(0, std::min(name.find_first_not_of('.'), name.size()));

@@ -14,9 +14,10 @@ namespace {
 std::string words_of(const Json& json) {
   if (!json.is_object() || !json.contains("error")) return "";
   const Json& error = json["error"];
-  std::string words = error.is_string()                                                                ? error.get<std::string>()
-                      : error.is_object() && error.contains("message") && error["message"].is_string() ? error["message"].get<std::string>()
-                                                                                                       : "";
+  std::string words = error.is_string() ? error.get<std::string>()
+                      : error.is_object() && error.contains("message") && error["message"].is_string()
+                          ? error["message"].get<std::string>()
+                          : "";
   std::replace_if(
       words.begin(), words.end(), [](unsigned char c) { return c < 32; }, ' ');
   return words.substr(0, 300);
@@ -47,7 +48,8 @@ bool flag_at(const Json& json, std::initializer_list<const char*> path) {
 }  // namespace
 
 UploadReply read_reply(const Machine& machine, long status, const std::string& answer) {
-  if (status >= 300 && status < 400) fail(machine.name + " says its address is another one: register it with that address.");
+  if (status >= 300 && status < 400)
+    fail(machine.name + " says its address is another one: register it with that address.");
   // OctoPrint takes a request with a key it does not know for one of a browser.
   if (status == 401 || status == 403 || (status == 400 && answer.find("CSRF") != std::string::npos))
     fail(machine.name + " does not know the key: register it anew with --api-key-file and a key from its settings.");
@@ -68,9 +70,13 @@ Json read_uploaded(const Machine& machine, bool print, const UploadReply& reply)
          ": see whether the address and --kind are right.");
   if (reply.status == 422) fail("The file arrived damaged at " + machine.name + quoted(words) + ": send it again.");
   if (reply.status < 200 || reply.status >= 300)
-    fail(machine.name + " refused the file (" + std::to_string(reply.status) + ")" + quoted(words) + ": see its own page for the reason.");
-  std::string kept = octoprint ? text_at(reply.json, {"files", "local", "name"}) : text_at(reply.json, {"item", "path"});
-  if (kept.empty()) kept = octoprint ? text_at(reply.json, {"files", "local", "path"}) : text_at(reply.json, {"result", "item", "path"});
+    fail(machine.name + " refused the file (" + std::to_string(reply.status) + ")" + quoted(words) +
+         ": see its own page for the reason.");
+  std::string kept =
+      octoprint ? text_at(reply.json, {"files", "local", "name"}) : text_at(reply.json, {"item", "path"});
+  if (kept.empty())
+    kept =
+        octoprint ? text_at(reply.json, {"files", "local", "path"}) : text_at(reply.json, {"result", "item", "path"});
   if (kept.empty())
     fail("What answers at " + machine.url + " is no " + (octoprint ? "OctoPrint" : "Moonraker") +
          ": see whether the address and --kind are right.");
@@ -82,7 +88,8 @@ Json read_uploaded(const Machine& machine, bool print, const UploadReply& reply)
   else if (print)
     printing = !at_path(reply.json, {"files", "local"}).is_null();
   if (print && !printing)
-    fail(machine.name + " has the file " + kept + " and did not start it: its printer is not ready. Start it there once it is.");
+    fail(machine.name + " has the file " + kept +
+         " and did not start it: its printer is not ready. Start it there once it is.");
   return {{"file_name", kept}, {"printing", printing}};
 }
 
@@ -109,9 +116,9 @@ bool read_moonraker_state(const Machine& machine, const UploadReply& info, Json&
   if (info.status != 200 || klippy.empty())
     fail("What answers at " + machine.url + " is no Moonraker: see whether the address and --kind are right.");
   state = {{"state", klippy == "ready"                           ? "ready"
-                          : klippy == "error" || klippy == "shutdown" ? "error"
-                                                                      : "disconnected"},
-                {"software", "Moonraker " + text_at(info.json, {"result", "moonraker_version"})}};
+                     : klippy == "error" || klippy == "shutdown" ? "error"
+                                                                 : "disconnected"},
+           {"software", "Moonraker " + text_at(info.json, {"result", "moonraker_version"})}};
   return klippy == "ready";
 }
 

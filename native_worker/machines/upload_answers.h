@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// What OctoPrint and Moonraker answer. Whatever they say, each of these gives a result or throws Error{could_not_solve, "machine"}.
+// What OctoPrint and Moonraker answer. Whatever they say, each of these gives a result or throws Error{could_not_solve,
+// "machine"}.
 #include <string>
 
 #include "base/json.h"

@@ -28,7 +28,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (std::size_t at = 0; at < talk.size(); at += 16) {
     driver->received(talk.subspan(at, std::min<std::size_t>(16, talk.size() - at)), now_s += 0.05);
     driver->tick(now_s += 0.05);
-    const Json command = {{"do", commands[std::to_integer<std::size_t>(talk[at]) % 8]}, {"confirmed", true}, {"x_mm", 1}, {"speed_mm_per_s", 10}, {"bounds_mm", {0, 0, 1, 1}}};
+    const Json command = {{"do", commands[std::to_integer<std::size_t>(talk[at]) % 8]},
+                          {"confirmed", true},
+                          {"x_mm", 1},
+                          {"speed_mm_per_s", 10},
+                          {"bounds_mm", {0, 0, 1, 1}}};
     if (at % 64 == 0) attempt([&] { driver->command(command, now_s); });
     driver->take_output();
     driver->take_events().dump();

@@ -36,7 +36,8 @@ void read_and_write(const std::uint8_t* data, std::size_t size, const Reader& re
   }
   read_model_materials(file, {}, options);
   check(file.model.mesh.face_count() > 0 && file.model.mesh.face_count() <= options.max_triangles);
-  for (const VertexColumn& column : file.columns) check(column.values.size() == file.model.mesh.V.rows() && column.values.allFinite());
+  for (const VertexColumn& column : file.columns)
+    check(column.values.size() == file.model.mesh.V.rows() && column.values.allFinite());
   // Throws Error{internal} for a model that is not sound, which ends the run.
   for (const auto& info : mesh_formats) write_model(file.model, info.format, context);
 }

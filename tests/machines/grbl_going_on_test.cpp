@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A cable is pulled in the middle of a job: connecting again, homing and going on from the careful line burns all that was not burned.
+// A cable is pulled in the middle of a job: connecting again, homing and going on from the careful line burns all that
+// was not burned.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -44,10 +45,13 @@ Job random_job(Random& random) {
     if (random.uniform() < 0.1) add("; layer cut part A" + std::to_string(i));
     const bool burns = random.uniform() < 0.75;
     char text[80];
-    std::snprintf(text, sizeof text, "G%dX%.3fY%.3f%s", burns ? 1 : 0, to[0], to[1], burns && random.uniform() < 0.2 ? "S300F6000" : "");
+    std::snprintf(text, sizeof text, "G%dX%.3fY%.3f%s", burns ? 1 : 0, to[0], to[1],
+                  burns && random.uniform() < 0.2 ? "S300F6000" : "");
     add(text);
-    if (burns) job.strokes.push_back({line, at, to});
-    else job.travels.push_back(line);
+    if (burns)
+      job.strokes.push_back({line, at, to});
+    else
+      job.travels.push_back(line);
     at = to;
   }
   add("M5"), add("M2");
@@ -56,7 +60,8 @@ Job random_job(Random& random) {
 
 /// The length of a stroke that no burn covers.
 double left_mm(const Stroke& stroke, const std::vector<VirtualGrbl::Burn>& burns, const Point& origin) {
-  const double length = stroke.length_mm(), ux = (stroke.to[0] - stroke.from[0]) / length, uy = (stroke.to[1] - stroke.from[1]) / length;
+  const double length = stroke.length_mm(), ux = (stroke.to[0] - stroke.from[0]) / length,
+               uy = (stroke.to[1] - stroke.from[1]) / length;
   std::vector<Point> covered;
   for (const auto& burn : burns) {
     std::array<double, 2> along{};
@@ -80,7 +85,8 @@ double left_mm(const Stroke& stroke, const std::vector<VirtualGrbl::Burn>& burns
 
 double length_of(const std::vector<VirtualGrbl::Burn>& burns, std::size_t from) {
   double sum = 0;
-  for (std::size_t i = from; i < burns.size(); ++i) sum += std::hypot(burns[i].to_mm[0] - burns[i].from_mm[0], burns[i].to_mm[1] - burns[i].from_mm[1]);
+  for (std::size_t i = from; i < burns.size(); ++i)
+    sum += std::hypot(burns[i].to_mm[0] - burns[i].from_mm[0], burns[i].to_mm[1] - burns[i].from_mm[1]);
   return sum;
 }
 
@@ -111,7 +117,8 @@ TEST(GrblGoingOn, AfterPulledCablesEverythingIsBurned) {
       EXPECT_TRUE(careful == 1 || std::count(job.travels.begin(), job.travels.end(), careful) == 1) << careful;
       EXPECT_LE(careful, std::max(1, job_state["line_now"].get<int>()));
       // The machine goes on with what it has, hears no more, and is reset when its port is opened again.
-      for (const double end = talk.now_s + random.uniform(0, 2); talk.now_s < end;) talk.machine.advance(talk.now_s += 1e-3);
+      for (const double end = talk.now_s + random.uniform(0, 2); talk.now_s < end;)
+        talk.machine.advance(talk.now_s += 1e-3);
       const double burned_by_then = length_of(talk.machine.burns(), burns_before);
       talk.plug_in();
       talk.connect();
@@ -130,7 +137,8 @@ TEST(GrblGoingOn, AfterPulledCablesEverythingIsBurned) {
     EXPECT_EQ(talk.machine.bytes_lost(), 0);
     double again_mm = 0;
     for (const Stroke& stroke : job.strokes) {
-      EXPECT_LT(left_mm(stroke, talk.machine.burns(), origin), 1e-5) << "line " << stroke.line << ", gone on from " << from_line;
+      EXPECT_LT(left_mm(stroke, talk.machine.burns(), origin), 1e-5)
+          << "line " << stroke.line << ", gone on from " << from_line;
       if (stroke.line >= from_line) again_mm += stroke.length_mm();
     }
     // The last run burned what lies behind its careful line, and nothing else.

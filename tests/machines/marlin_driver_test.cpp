@@ -52,12 +52,18 @@ class VirtualMarlin {
     last_ = number;
     done.push_back(text);
     if (text == unanswered) return;
-    if (text == "M105") output += "ok T:201.5 /210.0 B:60.1 /60.0 @:127 B@:0\n";
-    else if (text == "M114") output += "X:1.00 Y:2.00 Z:3.00 E:0.00 Count X:80 Y:160 Z:1200\nok\n";
-    else if (text == "M115") output += "FIRMWARE_NAME:Marlin 2.1.2 (Jan 1 2024) SOURCE_CODE_URL:x\nok\n";
-    else output += "ok\n";
+    if (text == "M105")
+      output += "ok T:201.5 /210.0 B:60.1 /60.0 @:127 B@:0\n";
+    else if (text == "M114")
+      output += "X:1.00 Y:2.00 Z:3.00 E:0.00 Count X:80 Y:160 Z:1200\nok\n";
+    else if (text == "M115")
+      output += "FIRMWARE_NAME:Marlin 2.1.2 (Jan 1 2024) SOURCE_CODE_URL:x\nok\n";
+    else
+      output += "ok\n";
   }
-  void again(const std::string& why) { output += why + std::to_string(last_) + "\nResend: " + std::to_string(last_ + 1) + "\nok\n"; }
+  void again(const std::string& why) {
+    output += why + std::to_string(last_) + "\nResend: " + std::to_string(last_ + 1) + "\nok\n";
+  }
 
   std::string line_;
   int last_ = 0;
@@ -66,7 +72,10 @@ class VirtualMarlin {
 };
 
 struct MarlinTalk {
-  explicit MarlinTalk(double spoil = 0, std::uint64_t seed = 1, MachineTool tool = MachineTool::printer) : machine(seed, spoil), driver({.controller = DriverController::marlin, .tool = tool}) { driver.opened(0); }
+  explicit MarlinTalk(double spoil = 0, std::uint64_t seed = 1, MachineTool tool = MachineTool::printer)
+      : machine(seed, spoil), driver({.controller = DriverController::marlin, .tool = tool}) {
+    driver.opened(0);
+  }
   void pass(double seconds) {
     for (const double end = now_s + seconds; now_s < end; now_s += 0.01) {
       for (const Bytes& packet : driver.take_output()) machine.receive(as_text(packet));
@@ -156,7 +165,8 @@ TEST(MarlinDriver, AMotorCalledBIsNoBed) {
 }
 
 TEST(MarlinDriver, MistakesInOtherWordsAreNoHalt) {
-  for (const char* words : {"Error: Checksum mismatch", "Error: expected line 7 got 8", "Error:No Line Number with checksum, Last Line: 4", "Error: Unknown command M5"}) {
+  for (const char* words : {"Error: Checksum mismatch", "Error: expected line 7 got 8",
+                            "Error:No Line Number with checksum, Last Line: 4", "Error: Unknown command M5"}) {
     MarlinTalk talk;
     talk.pass(3);
     talk.machine.output += std::string(words) + "\n";

@@ -24,7 +24,9 @@ struct RuidaJob {
     for (int i = bytes - 1; i >= 0; --i) plain += static_cast<char>(value >> (7 * i) & 0x7f);
     return *this;
   }
-  RuidaJob& begin() { return code({0xd8, 0x10}).code({0xe7, 0x04}).number(1, 2).number(1, 2).code({0xc9, 0x02}).number(20000, 5); }
+  RuidaJob& begin() {
+    return code({0xd8, 0x10}).code({0xe7, 0x04}).number(1, 2).number(1, 2).code({0xc9, 0x02}).number(20000, 5);
+  }
   RuidaJob& to(bool burn, int x_um, int y_um) { return code({burn ? 0xa8u : 0x88u}).number(x_um, 5).number(y_um, 5); }
   RuidaJob& by(bool burn, int x_um, int y_um) {
     const unsigned base = burn ? 0xa8 : 0x88;
@@ -53,7 +55,14 @@ std::string refusal(const RuidaJob& job) {
 
 TEST(RuidaBounds, AreThoseOfWhatIsBurned) {
   // Far travel is not burned; a cut begins where the head stands.
-  const GcodeBounds bounds = ruida_bounds(RuidaJob().begin().to(false, 900000, 900000).to(false, 10000, 20500).to(true, 30000, 20500).by(true, 0, -4250).to(false, 0, 0).file());
+  const GcodeBounds bounds = ruida_bounds(RuidaJob()
+                                              .begin()
+                                              .to(false, 900000, 900000)
+                                              .to(false, 10000, 20500)
+                                              .to(true, 30000, 20500)
+                                              .by(true, 0, -4250)
+                                              .to(false, 0, 0)
+                                              .file());
   EXPECT_EQ(bounds.low_mm, (std::array<double, 3>{10, 16.25, 0}));
   EXPECT_EQ(bounds.high_mm, (std::array<double, 3>{30, 20.5, 0}));
 }
@@ -94,11 +103,15 @@ TEST(RuidaBounds, RefuseWhereTheyCannotBeTold) {
   const auto burning = [](RuidaJob job) { return job.to(false, 0, 0).to(true, 5000, 5000); };
   EXPECT_EQ(refusal(burning(RuidaJob().begin())), "");
   EXPECT_NE(refusal(burning(RuidaJob().code({0xd8, 0x12}))).find("set at the laser's panel"), std::string::npos);
-  EXPECT_NE(refusal(burning(RuidaJob().begin().code({0xd8, 0x11}))).find("set at the laser's panel"), std::string::npos);
+  EXPECT_NE(refusal(burning(RuidaJob().begin().code({0xd8, 0x11}))).find("set at the laser's panel"),
+            std::string::npos);
   EXPECT_NE(refusal(burning(RuidaJob().code({0xf0}))).find("set at the laser's panel"), std::string::npos);
-  EXPECT_NE(refusal(burning(RuidaJob().begin().code({0xe7, 0x08}).number(3, 2).number(1, 2))).find("array"), std::string::npos);
-  EXPECT_NE(refusal(burning(RuidaJob().begin().code({0xd9, 0x10, 0}).number(0, 5).number(0, 5))).find("cannot be told"), std::string::npos);
-  EXPECT_NE(refusal(burning(RuidaJob().begin().code({0x80, 0x00}).number(0, 5))).find("cannot be told"), std::string::npos);
+  EXPECT_NE(refusal(burning(RuidaJob().begin().code({0xe7, 0x08}).number(3, 2).number(1, 2))).find("array"),
+            std::string::npos);
+  EXPECT_NE(refusal(burning(RuidaJob().begin().code({0xd9, 0x10, 0}).number(0, 5).number(0, 5))).find("cannot be told"),
+            std::string::npos);
+  EXPECT_NE(refusal(burning(RuidaJob().begin().code({0x80, 0x00}).number(0, 5))).find("cannot be told"),
+            std::string::npos);
   EXPECT_EQ(refusal(burning(RuidaJob().begin().code({0x80, 0x08}).number(0, 5))), "");  // the table
   EXPECT_NE(refusal(RuidaJob().begin().by(true, 100, 100)).find("before it has said where"), std::string::npos);
   EXPECT_NE(refusal(RuidaJob().begin().to(false, 1, 1)).find("burns nothing"), std::string::npos);

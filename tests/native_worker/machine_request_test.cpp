@@ -18,9 +18,10 @@ TEST(machine_request, the_four_kinds) {
 }
 
 TEST(machine_request, anything_else_is_refused_with_a_sentence) {
-  for (const std::string text : {"", "x", "{}", "[]", "{\"n\": 3}", "{\"open\": 3}", "{\"close\": false}",
-                                 "{\"open\": {}, \"close\": true}", "{\"n\": 1.5, \"close\": true}", "{\"n\": 1e99, \"close\": true}",
-                                 "{\"load\": {\"name\": \"a\", \"sha256\": \"../x\"}}", "{\"load\": {\"sha256\": 4}}", "{\"run\": {}}"}) {
+  for (const std::string text :
+       {"", "x", "{}", "[]", "{\"n\": 3}", "{\"open\": 3}", "{\"close\": false}", "{\"open\": {}, \"close\": true}",
+        "{\"n\": 1.5, \"close\": true}", "{\"n\": 1e99, \"close\": true}",
+        "{\"load\": {\"name\": \"a\", \"sha256\": \"../x\"}}", "{\"load\": {\"sha256\": 4}}", "{\"run\": {}}"}) {
     try {
       read_machine_request(text);
       ADD_FAILURE() << text;

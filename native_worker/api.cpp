@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "files.h"
+#include "host.h"
 #include "http_server.h"
 #include "job/catalog.h"
 #include "job/run.h"
@@ -31,8 +32,11 @@ void set_common_headers(auto& response, const Head& head) {
   const std::string host = text_of(head[http::field::host]);
   const bool plain = host.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789.:") == std::string::npos;
   response.set("Content-Security-Policy",
-               "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self' blob:; style-src 'self' 'unsafe-inline'; "
-               "img-src 'self' data: blob:; connect-src 'self' blob: " + (plain ? "ws://" + host : std::string()) + "; object-src 'none'; base-uri 'none'; frame-ancestors 'none'; form-action 'none'");
+               "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self' blob:; style-src 'self' "
+               "'unsafe-inline'; "
+               "img-src 'self' data: blob:; connect-src 'self' blob: " +
+                   (plain ? "ws://" + host : std::string()) +
+                   "; object-src 'none'; base-uri 'none'; frame-ancestors 'none'; form-action 'none'");
 }
 
 const char* media_type_of(const std::filesystem::path& path) {
@@ -72,8 +76,12 @@ Response file_response(const Head& head, const std::filesystem::path& path, cons
 }
 
 Json job_summary(const StoredJob& job) {
-  Json summary = {{"id", job.id}, {"state", to_string(job.state)}, {"operation", job.job.value("operation", "")},
-                  {"submitted_unix_s", job.submitted_unix_s}, {"finished_unix_s", job.finished_unix_s}, {"job", job.job}};
+  Json summary = {{"id", job.id},
+                  {"state", to_string(job.state)},
+                  {"operation", job.job.value("operation", "")},
+                  {"submitted_unix_s", job.submitted_unix_s},
+                  {"finished_unix_s", job.finished_unix_s},
+                  {"job", job.job}};
   summary["report"] = job.state == JobState::done ? job.result["report"] : Json(nullptr);
   return summary;
 }
@@ -81,13 +89,17 @@ Json job_summary(const StoredJob& job) {
 Json job_detail(const StoredJob& job) {
   Json detail = {{"id", job.id}, {"state", to_string(job.state)}, {"progress", job.progress}, {"job", job.job}};
   if (job.finished()) {
-    if (job.result.contains("error")) detail["error"] = job.result["error"];
-    else detail["result"] = job.result;
+    if (job.result.contains("error"))
+      detail["error"] = job.result["error"];
+    else
+      detail["result"] = job.result;
   }
   return detail;
 }
 
-double machine_memory_mb() { return static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGE_SIZE)) * 1e-6; }
+double machine_memory_mb() {
+  return static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGE_SIZE)) * 1e-6;
+}
 
 }  // namespace
 
@@ -103,8 +115,9 @@ TextResponse text_response(const Head& head, http::status status, std::string bo
   return response;
 }
 
-TextResponse error_response(const Head& head, http::status status, const std::string& code, const std::string& where, const std::string& message) {
-  return text_response(head, status, Json{{"error", {{"code", code}, {"where", where}, {"message", message}}}}.dump());
+TextResponse error_response(const Head& head, http::status status, const std::string& code, const std::string& where,
+                            const std::string& message) {
+  return text_response(head, status, json_text({{"error", {{"code", code}, {"where", where}, {"message", message}}}}));
 }
 
 Response HttpServer::answer(const Head& head, const std::string& body) {
@@ -112,14 +125,25 @@ Response HttpServer::answer(const Head& head, const std::string& body) {
   const std::string query = path.find('?') == std::string::npos ? "" : path.substr(path.find('?') + 1);
   path.resize(std::min(path.find('?'), path.size()));
   const bool reads = head.method() == http::verb::get || head.method() == http::verb::head;
-  if (!path.starts_with("/api/")) return reads ? page_file(head, path) : error_response(head, http::status::method_not_allowed, "invalid_input", "", "Only reading is possible here.");
+  if (!path.starts_with("/api/"))
+    return reads ? page_file(head, path)
+                 : error_response(head, http::status::method_not_allowed, "invalid_input", "",
+                                  "Only reading is possible here.");
   if (path == "/api/status" && reads)
     return text_response(head, http::status::ok,
-                         Json{{"version", version()}, {"cores", ::sysconf(_SC_NPROCESSORS_ONLN)}, {"memory_mb", machine_memory_mb()},
-                              {"jobs_running", queue_.running() ? 1 : 0}, {"jobs_queued", queue_.waiting()}, {"upload_limit_bytes", options_.upload_limit_bytes},
-                              {"triangle_limit", triangle_limit}}.dump());
+                         Json{{"version", version()},
+                              {"cores", ::sysconf(_SC_NPROCESSORS_ONLN)},
+                              {"memory_mb", machine_memory_mb()},
+                              {"jobs_running", queue_.running() ? 1 : 0},
+                              {"jobs_queued", queue_.waiting()},
+                              {"upload_limit_bytes", options_.upload_limit_bytes},
+                              {"triangle_limit", triangle_limit}}
+                             .dump());
   if (path == "/api/catalog" && reads) return text_response(head, http::status::ok, catalog_json().dump());
-  if (path.starts_with("/api/blobs/")) return reads ? answer_blob(head, path.substr(11)) : error_response(head, http::status::method_not_allowed, "invalid_input", "", "A blob is read, or put under its SHA-256.");
+  if (path.starts_with("/api/blobs/"))
+    return reads ? answer_blob(head, path.substr(11))
+                 : error_response(head, http::status::method_not_allowed, "invalid_input", "",
+                                  "A blob is read, or put under its SHA-256.");
   if (path == "/api/jobs" && reads) {
     std::size_t limit = 50;
     if (query.starts_with("limit=")) limit = static_cast<std::size_t>(std::clamp(std::atoi(query.c_str() + 6), 1, 500));
@@ -135,15 +159,21 @@ Response HttpServer::answer(const Head& head, const std::string& body) {
 Response HttpServer::answer_jobs(const Head& head, const std::string& path, const std::string& body) {
   const bool reads = head.method() == http::verb::get || head.method() == http::verb::head;
   if (path.empty()) {
-    if (head.method() != http::verb::post) return error_response(head, http::status::method_not_allowed, "invalid_input", "", "Jobs are listed or posted.");
+    if (head.method() != http::verb::post)
+      return error_response(head, http::status::method_not_allowed, "invalid_input", "", "Jobs are listed or posted.");
     const Json message = Json::parse(body, nullptr, false);
-    if (message.is_discarded()) return error_response(head, http::status::bad_request, "invalid_input", "", "The job is not JSON.");
-    if (const auto error = check_job(message)) return text_response(head, http::status::unprocessable_entity, error_json(*error).dump());
+    if (message.is_discarded())
+      return error_response(head, http::status::bad_request, "invalid_input", "", "The job is not JSON.");
+    if (const auto error = check_job(message))
+      return text_response(head, http::status::unprocessable_entity, error_json(*error).dump());
     const Json inputs = message.value("inputs", Json::object());
     for (const auto& [name, input] : inputs.items())
       if (input.contains("sha256") && !std::filesystem::exists(store_.blob_path(input["sha256"].get<std::string>())))
-        return error_response(head, http::status::unprocessable_entity, "invalid_input", name, "The file for the input " + name + " has not arrived: send it again.");
-    if (queue_.waiting() >= most_queued) return error_response(head, http::status::too_many_requests, "invalid_input", "", "Too many jobs are waiting: let some finish.");
+        return error_response(head, http::status::unprocessable_entity, "invalid_input", name,
+                              "The file for the input " + name + " has not arrived: send it again.");
+    if (queue_.waiting() >= most_queued)
+      return error_response(head, http::status::too_many_requests, "invalid_input", "",
+                            "Too many jobs are waiting: let some finish.");
     const std::string id = store_.add(message).id;
     store_.tidy(most_kept_jobs, most_blob_mb);  // now that the new job's blobs count as needed
     queue_.enqueue(id);
@@ -155,7 +185,9 @@ Response HttpServer::answer_jobs(const Head& head, const std::string& path, cons
   if (!job) return error_response(head, http::status::not_found, "invalid_input", "", "There is no such job.");
   if (rest.empty() && reads) return text_response(head, http::status::ok, job_detail(*job).dump());
   if (rest.empty() && head.method() == http::verb::delete_) {
-    if (!job->finished()) return error_response(head, http::status::conflict, "invalid_input", "", "The job is not finished: cancel it first.");
+    if (!job->finished())
+      return error_response(head, http::status::conflict, "invalid_input", "",
+                            "The job is not finished: cancel it first.");
     store_.remove(id);
     return text_response(head, http::status::no_content, "");
   }
@@ -168,34 +200,44 @@ Response HttpServer::answer_jobs(const Head& head, const std::string& path, cons
     // Only names that the result lists: what the client says never becomes a path by itself.
     const std::string name = rest.substr(outputs.size());
     if (job->state == JobState::done && job->result["outputs"].contains(name))
-      return file_response(head, store_.outputs_folder(id) / name, job->result["outputs"][name]["media_type"].get<std::string>());
+      return file_response(head, store_.outputs_folder(id) / name,
+                           job->result["outputs"][name]["media_type"].get<std::string>());
   }
   return error_response(head, http::status::not_found, "invalid_input", "", "There is nothing here.");
 }
 
 Response HttpServer::answer_blob(const Head& head, const std::string& sha256) {
-  if (!is_hex_name(sha256, 64)) return error_response(head, http::status::not_found, "invalid_input", "", "A blob's name is its SHA-256.");
+  if (!is_hex_name(sha256, 64))
+    return error_response(head, http::status::not_found, "invalid_input", "", "A blob's name is its SHA-256.");
   std::error_code status;
-  std::filesystem::last_write_time(store_.blob_path(sha256), std::filesystem::file_time_type::clock::now(), status);  // used just now
+  std::filesystem::last_write_time(store_.blob_path(sha256), std::filesystem::file_time_type::clock::now(),
+                                   status);  // used just now
   return file_response(head, store_.blob_path(sha256), "application/octet-stream");
 }
 
-Response HttpServer::accept_upload(const Head& head, const std::string& sha256, const std::filesystem::path& received, const std::string& found_hash) {
+Response HttpServer::accept_upload(const Head& head, const std::string& sha256, const std::filesystem::path& received,
+                                   const std::string& found_hash) {
   std::error_code status;
   if (found_hash != sha256)
-    return error_response(head, http::status::unprocessable_entity, "invalid_input", "sha256", "The bytes do not have the SHA-256 they were sent under: send them again.");
+    return error_response(head, http::status::unprocessable_entity, "invalid_input", "sha256",
+                          "The bytes do not have the SHA-256 they were sent under: send them again.");
   const bool known = std::filesystem::exists(store_.blob_path(sha256));
   std::filesystem::rename(received, store_.blob_path(sha256), status);
-  if (status) return error_response(head, http::status::insufficient_storage, "internal", "", "The file cannot be kept (" + status.message() + ").");
+  if (status)
+    return error_response(head, http::status::insufficient_storage, "internal", "",
+                          "The file cannot be kept (" + status.message() + ").");
   return text_response(head, known ? http::status::ok : http::status::created, Json{{"sha256", sha256}}.dump());
 }
 
 Response HttpServer::page_file(const Head& head, const std::string& path) {
   if (options_.web.empty() || !std::filesystem::exists(options_.web / "index.html"))
-    return error_response(head, http::status::not_found, "invalid_input", "", "The page is not built here: run make web, or name its folder with --web.");
+    return error_response(head, http::status::not_found, "invalid_input", "",
+                          "The page is not built here: run make web, or name its folder with --web.");
   // Only plain names, so that nothing outside the folder can be named.
-  const bool plain = path.starts_with('/') && path.find("..") == std::string::npos && path.find("//") == std::string::npos &&
-                     path.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-/@") == std::string::npos;
+  const bool plain = path.starts_with('/') && path.find("..") == std::string::npos &&
+                     path.find("//") == std::string::npos &&
+                     path.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-/@") ==
+                         std::string::npos;
   if (!plain) return error_response(head, http::status::not_found, "invalid_input", "", "There is nothing here.");
   std::filesystem::path file = options_.web / path.substr(1);
   if (path == "/" || std::filesystem::is_directory(file)) file /= "index.html";

@@ -23,7 +23,8 @@ MachinePhase MarlinDriver::phase() const {
   if (connection_ != MachineConnection::ready) return MachinePhase::unknown;
   if (halted_) return MachinePhase::alarm;
   if (stopped_s_ >= 0) return MachinePhase::stopping;
-  if (homing_) return MachinePhase::homing;
+  if (settling_ == Settles::homing) return MachinePhase::homing;
+  if (settling_ == Settles::moving) return MachinePhase::jogging;
   if (job_active()) return paused_ ? MachinePhase::paused : MachinePhase::running;
   return MachinePhase::idle;
 }
@@ -66,10 +67,12 @@ void MarlinDriver::command(const Json& command, double now_s) {
   if (what == "home") {
     require_confirmation(command, "The head moves to its switches");
     queue("G28");
+    settle(Settles::homing);
   } else if (what == "jog") {
     std::string words;
     for (const auto& [name, letter] : {std::pair{"x_mm", " X"}, std::pair{"y_mm", " Y"}, std::pair{"z_mm", " Z"}})
-      if (const double mm = number_of(command, name, -farthest_mm, farthest_mm, 0); mm != 0) words += letter + decimal(mm);
+      if (const double mm = number_of(command, name, -farthest_mm, farthest_mm, 0); mm != 0)
+        words += letter + decimal(mm);
     if (words.empty()) refuse("x_mm", "A jog needs x_mm, y_mm or z_mm.");
     if (by_hand_.size() < 12) move("G91", words, speed(absent));
   } else if (what == "set_origin") {
@@ -77,9 +80,11 @@ void MarlinDriver::command(const Json& command, double now_s) {
     position_known_ = true;
   } else if (what == "go_to") {
     GcodeBounds bounds;
-    bounds.add({number_of(command, "x_mm", -farthest_mm, farthest_mm, absent), number_of(command, "y_mm", -farthest_mm, farthest_mm, absent), 0});
+    bounds.add({number_of(command, "x_mm", -farthest_mm, farthest_mm, absent),
+                number_of(command, "y_mm", -farthest_mm, farthest_mm, absent), 0});
     check_reach(bounds);
     move("G90", " X" + decimal(bounds.low_mm[0]) + " Y" + decimal(bounds.low_mm[1]), speed(50));
+    settle(Settles::moving);
   } else if (what == "frame") {
     require_confirmation(command, "The head moves once around the job, laser off");
     const std::array<double, 4> b = machines_detail::bounds_of(command);
@@ -89,6 +94,7 @@ void MarlinDriver::command(const Json& command, double now_s) {
     check_reach(bounds);
     for (const auto& [x, y] : machines_detail::way_around(b))
       move("G90", " X" + decimal(x) + " Y" + decimal(y), speed(50));
+    settle(Settles::moving);
   } else if (what == "focus") {
     const double power = number_of(command, "power_percent", 0, options_.focus_power_percent, absent);
     require_confirmation(command, "The laser shines at " + decimal(power) + " % without moving: eyes protected");
@@ -97,7 +103,8 @@ void MarlinDriver::command(const Json& command, double now_s) {
   } else if (what == "focus_off") {
     focus_until_s_.reset();
     queue("M5");
-  } else if (what == "start") start(command, now_s);
+  } else if (what == "start")
+    start(command, now_s);
   else if (what == "pause") {
     paused_ = true;
     // What is planned is still done; a laser must not stay on where that ends.
@@ -106,12 +113,15 @@ void MarlinDriver::command(const Json& command, double now_s) {
     require_confirmation(command, "The machine goes on, with its laser or heaters on");
     paused_ = false;
     const GcodeState s = program_.state_before(next_line_);
-    if (options_.tool == MachineTool::laser && s.spindle != 5) queue("M" + std::to_string(s.spindle) + " S" + decimal(s.power));
+    if (options_.tool == MachineTool::laser && s.spindle != 5)
+      queue("M" + std::to_string(s.spindle) + " S" + decimal(s.power));
   } else if (what == "send") {
     const std::string text = machines_detail::line_of(command, longest_by_hand);
     const LineEffect effect = effect_of(text);
-    if (effect.moves || effect.fires) require_confirmation(command, "The line \"" + text + "\" may move the machine, heat it or turn its laser on");
+    if (effect.moves || effect.fires)
+      require_confirmation(command, "The line \"" + text + "\" may move the machine, heat it or turn its laser on");
     queue(text);
+    if (text.starts_with("G28")) settle(Settles::homing);
   } else if (what == "override") {
     if (command.contains("feed_percent")) queue("M220 S" + decimal(number_of(command, "feed_percent", 10, 200, 100)));
   }
@@ -122,17 +132,21 @@ void MarlinDriver::check_reach(const GcodeBounds& bounds) const {
   const double bed[] = {options_.bed_x_mm, options_.bed_y_mm};
   for (std::size_t axis = 0; axis < 2; ++axis)
     if (bounds.high_mm[axis] - bounds.low_mm[axis] > bed[axis] + 1e-3)
-      refuse("job", std::string("The job is ") + decimal(bounds.high_mm[axis] - bounds.low_mm[axis]) + " mm long in " + "xy"[axis] + ", the machine reaches " +
-                        decimal(bed[axis]) + " mm: make it smaller or turn it.");
+      refuse("job", std::string("The job is ") + decimal(bounds.high_mm[axis] - bounds.low_mm[axis]) + " mm long in " +
+                        "xy"[axis] + ", the machine reaches " + decimal(bed[axis]) +
+                        " mm: make it smaller or turn it.");
 }
 
 void MarlinDriver::start(const Json& command, double now_s) {
-  require_confirmation(command, options_.tool == MachineTool::printer ? "The printer heats up and moves" : "The machine moves and its laser or spindle turns on");
+  require_confirmation(command, options_.tool == MachineTool::printer
+                                    ? "The printer heats up and moves"
+                                    : "The machine moves and its laser or spindle turns on");
   if (options_.tool != MachineTool::printer) check_reach(program_.bounds());
-  if (number_of(command, "from_line", 1, 1e9, 1) > 1) refuse("from_line", "Going on in the middle of a job is possible with GRBL machines only: start it anew.");
+  if (number_of(command, "from_line", 1, 1e9, 1) > 1)
+    refuse("from_line", "Going on in the middle of a job is possible with GRBL machines only: start it anew.");
   refused_.reset();
   focus_until_s_.reset();
-  paused_ = draining_ = false;
+  paused_ = false;
   job_ = MachineJob{program_name_, program_.line_count(), 0, 0, 0, now_s, 0, ""};
   next_line_ = 0;
 }
@@ -143,8 +157,15 @@ Json MarlinDriver::state(double now_s) const {
   if (position_mm_) state["machine_mm"] = state["work_mm"] = *position_mm_;
   state["laser_on"] = focus_until_s_.has_value();
   state["temperatures"] = temperatures_;
-  if (halted_) state["alarm"] = {{"code", 0}, {"text", "The machine has halted: " + halt_text_}, {"mend", "Find the cause, then switch it off and on again."}};
-  if (refused_) state["error"] = {{"code", 0}, {"text", "The machine does not know a command of the job."}, {"line", *refused_}, {"line_number", job_ ? job_->line_now : 0}};
+  if (halted_)
+    state["alarm"] = {{"code", 0},
+                      {"text", "The machine has halted: " + halt_text_},
+                      {"mend", "Find the cause, then switch it off and on again."}};
+  if (refused_)
+    state["error"] = {{"code", 0},
+                      {"text", "The machine does not know a command of the job."},
+                      {"line", *refused_},
+                      {"line_number", job_ ? job_->line_now : 0}};
   if (job_active() && options_.tool == MachineTool::laser) state["laser_on"] = nullptr;  // Marlin does not tell
   state["can"] = possible_commands();
   return state;

@@ -9,8 +9,9 @@ namespace formwright {
 namespace {
 
 constexpr std::size_t longest_line = 80, kept_lines = 200;  // MAX_CMD_SIZE 96 has number and checksum in it
-constexpr double boot_s = 3, greeting_s = 15, silence_s = 25, asking_s = 2, escalation_s = 2, lost_answer_s = 10;
-constexpr int most_resends = 100;
+constexpr double boot_s = 3, greeting_s = 15, silence_s = 25, silence_in_job_s = 120, silence_while_settling_s = 600;
+constexpr double asking_s = 2, escalation_s = 2, lost_answer_s = 10, idle_s = 1;
+constexpr int most_resends = 100, most_unanswered = 3;
 
 /// The number behind `name` ("X:", "T:"), if it is there.
 std::optional<double> number_after(const std::string& line, const std::string& name) {
@@ -22,6 +23,24 @@ std::optional<double> number_after(const std::string& line, const std::string& n
     if (end != start && std::isfinite(value)) return value;
   }
   return std::nullopt;
+}
+
+bool has_any(std::string text, std::initializer_list<const char*> words) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return std::any_of(words.begin(), words.end(),
+                     [&](const char* word) { return text.find(word) != std::string::npos; });
+}
+
+/// "Marlin 2.1.2" of "FIRMWARE_NAME:Marlin 2.1.2 (Jan 1 2024) SOURCE_CODE_URL:..."; empty where there is none.
+std::string firmware_name(const std::string& line) {
+  const std::string field = "FIRMWARE_NAME:";
+  const std::size_t start = line.find(field);
+  if (start == std::string::npos) return "";
+  std::string name = line.substr(start + field.size());
+  if (const std::size_t next = name.find(':'); next != std::string::npos)
+    name.resize(std::min(name.rfind(' ', next), name.size()));
+  return name.substr(0, name.find(" ("));
 }
 
 }  // namespace
@@ -49,7 +68,9 @@ void MarlinDriver::closed(double now_s) {
   by_hand_.clear();
   sent_.clear();
   resend_at_ = 0;
-  waiting_ = paused_ = position_known_ = homing_ = draining_ = false;
+  waiting_ = paused_ = position_known_ = false;
+  settling_ = Settles::nothing;
+  settling_number_.reset();
   forget_half_lines();
   focus_until_s_.reset();
   connection_ = MachineConnection::closed;
@@ -64,13 +85,17 @@ void MarlinDriver::received(ByteView bytes, double now_s) {
 
 void MarlinDriver::start_numbering(double now_s) {
   sent_.clear();
-  resend_at_ = 0;
   next_number_ = 0;
   oks_to_swallow_ = 0;
-  waiting_ = false;
+  send({"M110 N0"}, -1, now_s);
+}
+
+void MarlinDriver::greet(double now_s) {
   greeted_ = true;
   by_hand_.clear();
-  send("M110 N0", -1, now_s);
+  settling_ = Settles::nothing;
+  settling_number_.reset();
+  start_numbering(now_s);
   for (const char* line : {"M115", "M105", "M114"}) queue(line);
 }
 
@@ -80,37 +105,62 @@ void MarlinDriver::hear(const std::string& line, double now_s) {
     connection_ = greeted_ ? MachineConnection::ready : MachineConnection::greeting;
     note("The machine answers again.", now_s);
   }
-  if (!line.starts_with("echo:busy")) say("received", line, now_s);
+  if (line == "wait") return hear_idle(now_s);
+  if (line.starts_with("echo:busy") || line.starts_with("busy:")) return;
+  say("received", line, now_s);
   if (line == "start" || line.starts_with("Marlin ")) {
     if (job_active()) {
       end("failed", now_s);
       note("The machine restarted by itself in the middle of the job: check its power supply and cable.", now_s);
     }
     position_known_ = halted_ = false;
-    if (line == "start" || !greeted_) start_numbering(now_s);
-  } else if (line.starts_with("ok")) hear_ok(line, now_s);
-  else if (line.starts_with("Resend:") || line.starts_with("rs ")) hear_resend(std::atoi(line.c_str() + line.find_first_of(": ") + 1), now_s);
-  else if (line.starts_with("Error:") || line.starts_with("!!")) {
-    const bool about_the_line = line.find("checksum") != std::string::npos || line.find("Line Number") != std::string::npos;
-    if (!about_the_line) halt(line.substr(line.starts_with("!!") ? 2 : 6), now_s);
-  } else {
-    if (line.find("FIRMWARE_NAME:") != std::string::npos) {
-      const std::size_t from = line.find("FIRMWARE_NAME:") + 14;
-      firmware_ = line.substr(from, std::min(line.find(" (", from), line.find(" SOURCE", from)) - from);
-    }
-    if (line.find("Unknown command") != std::string::npos) refused_ = line;
-    hear_temperatures(line);
-    if (const auto x = number_after(line, "X:"), y = number_after(line, "Y:"), z = number_after(line, "Z:"); x && y && z) position_mm_ = {*x, *y, *z};
+    if (line == "start" || !greeted_) greet(now_s);
+  } else if (line.starts_with("ok"))
+    hear_ok(line, now_s);
+  else if (line.starts_with("Resend:") || line.starts_with("rs "))
+    hear_resend(std::atoi(line.c_str() + line.find_first_of(": ") + 1), now_s);
+  else if (line.starts_with("Error:") || line.starts_with("fatal:"))
+    hear_error(std::string_view(line).substr(6), now_s);
+  else if (line.starts_with("!!"))
+    hear_error(std::string_view(line).substr(2), now_s);
+  else {
+    if (const std::string name = firmware_name(line); !name.empty()) firmware_ = name;
+    if (has_any(line, {"unknown command"})) refused_ = line;
+    hear_report(line, now_s);
   }
 }
 
-void MarlinDriver::hear_temperatures(const std::string& line) {
-  for (const auto& [name, key] : {std::pair{"T:", "hotend_c"}, std::pair{"B:", "bed_c"}})
-    if (const auto value = number_after(line, name)) temperatures_[key] = *value;
+void MarlinDriver::hear_error(std::string_view text, double now_s) {
+  const std::string what(text.substr(std::min(text.find_first_not_of(' '), text.size())));
+  // What is wrong with a line's number or sum: a request follows, or nothing at all.
+  if (has_any(what, {"checksum", "line number", "expected line"})) return;
+  if (has_any(what, {"unknown command"}))
+    refused_ = what;
+  else
+    halt(what, now_s);
+}
+
+void MarlinDriver::hear_report(const std::string& line, double now_s) {
+  const auto x = number_after(line, "X:"), y = number_after(line, "Y:"), z = number_after(line, "Z:");
+  if (!x || !y || !z) {
+    for (const auto& [name, key] : {std::pair{"T:", "hotend_c"}, std::pair{"B:", "bed_c"}})
+      if (const auto value = number_after(line, name)) temperatures_[key] = *value;
+    return;
+  }
+  position_mm_ = {*x, *y, *z};  // motors may be called A, B, C behind it
+  if (settling_number_) settled(now_s);
+}
+
+void MarlinDriver::settled(double now_s) {
+  if (settling_ == Settles::homing) position_known_ = true;
+  if (settling_ == Settles::job) end("done", now_s);
+  settling_ = Settles::nothing;
+  settling_number_.reset();
 }
 
 void MarlinDriver::hear_ok(const std::string& line, double now_s) {
-  hear_temperatures(line);
+  unanswered_in_a_row_ = 0;
+  hear_report(line, now_s);
   if (oks_to_swallow_ > 0) {
     --oks_to_swallow_;
     return;  // sending starts with this
@@ -121,24 +171,31 @@ void MarlinDriver::hear_ok(const std::string& line, double now_s) {
   if (connection_ == MachineConnection::greeting && by_hand_.empty()) connection_ = MachineConnection::ready;
   if (sent_.empty() || resend_at_ == 0) return;
   const SentLine& answered = sent_[resend_at_ - 1];
-  if (answered.text == "G28") homing_ = false, position_known_ = true;
-  if (answered.text == "M400" && draining_ && job_active() && next_line_ >= program_.line_count()) {
-    draining_ = false;
-    end("done", now_s);
-  }
+  // A machine that never tells its place has no other answer.
+  if (settling_number_ && answered.number >= *settling_number_ && !position_mm_) settled(now_s);
   if (answered.job_line >= 0 && job_active()) {
+    if (answered.text.starts_with("G28")) position_known_ = true;
     job_->acknowledged = std::max(job_->acknowledged, answered.job_line + 1);
     job_->line_now = program_.number(job_->acknowledged - 1);
   }
 }
 
 void MarlinDriver::hear_resend(int number, double now_s) {
-  const auto found = std::find_if(sent_.begin(), sent_.end(), [&](const SentLine& line) { return line.number == number; });
-  if (found == sent_.end() || ++resends_ > most_resends) {
-    note(resends_ > most_resends ? "The machine asks for the same lines over and over: the line is too noisy. Check cable and line speed."
-                                 : "The machine asks for a line that it has had long ago: it may have restarted.",
-         now_s);
+  if (halted_) return;
+  if (++resends_ > most_resends) {
+    // Lines with numbers do not get through: those that turn off go without.
+    end("failed", now_s);
+    for (const char* line : {"M108\n", "M410\n"}) write_urgently(line);
+    for (const std::string& line : lines_that_turn_off()) write_urgently(line + "\n");
+    return halt("it asks for the same lines over and over. Check cable and line speed.", now_s);
+  }
+  const auto found =
+      std::find_if(sent_.begin(), sent_.end(), [&](const SentLine& line) { return line.number == number; });
+  if (found == sent_.end() && number != next_number_) {
+    note("The machine asks for a line that it has had long ago: it may have restarted.", now_s);
     stop("failed", now_s);
+    start_numbering(now_s);
+    oks_to_swallow_ = 1;
     return;
   }
   resend_at_ = static_cast<std::size_t>(found - sent_.begin());
@@ -146,79 +203,108 @@ void MarlinDriver::hear_resend(int number, double now_s) {
   oks_to_swallow_ = 1;  // every request is followed by an ok of its own
 }
 
+void MarlinDriver::hear_idle(double now_s) {
+  // Said by a machine that has nothing to do: what was sent a while ago never came, or its answer did not.
+  if ((waiting_ || oks_to_swallow_ > 0) && now_s - sent_s_ > idle_s) go_on_unanswered(now_s);
+}
+
+void MarlinDriver::go_on_unanswered(double now_s) {
+  note("A line was not answered: going on, so that the machine asks for what it lacks.", now_s);
+  waiting_ = false;
+  oks_to_swallow_ = 0;
+  ++unanswered_in_a_row_;
+  sent_s_ = now_s;
+}
+
 void MarlinDriver::halt(const std::string& text, double now_s) {
+  if (!halted_) halt_text_ = text;  // the first sentence tells the cause
   halted_ = true;
-  halt_text_ = text;
   position_known_ = false;
   by_hand_.clear();
+  settling_ = Settles::nothing;
+  settling_number_.reset();
+  stopped_s_ = -1;
   end("failed", now_s);
 }
 
-void MarlinDriver::send(const std::string& text, int job_line, double now_s) {
-  say("sent", text, now_s);
+void MarlinDriver::send(const HandLine& line, int job_line, double now_s) {
+  say("sent", line.text, now_s);
   const int number = next_number_++;
-  write(numbered_line(number, text) + "\n");
-  sent_.push_back({number, job_line, text});
+  write(numbered_line(number, line.text) + "\n");
+  sent_.push_back({number, job_line, line.text});
   if (sent_.size() > kept_lines) sent_.pop_front();
   resend_at_ = sent_.size();
   waiting_ = true;
-  if (text == "G28") homing_ = true, position_known_ = false;
+  sent_s_ = now_s;
+  if (line.settles != Settles::nothing) settling_number_ = number;
+  if (line.text.starts_with("G28")) position_known_ = false;
 }
 
 void MarlinDriver::pump(double now_s) {
-  if (connection_ == MachineConnection::closed || connection_ == MachineConnection::silent || waiting_ || halted_ || !greeted_ || oks_to_swallow_ > 0) return;
+  if (connection_ == MachineConnection::closed || connection_ == MachineConnection::silent || waiting_ || halted_ ||
+      !greeted_ || oks_to_swallow_ > 0)
+    return;
   if (resend_at_ < sent_.size()) {
     const SentLine& again = sent_[resend_at_++];
     say("sent", again.text, now_s);
     write(numbered_line(again.number, again.text) + "\n");
     waiting_ = true;
+    sent_s_ = now_s;
     return;
   }
+  if (by_hand_.empty() && job_active() && !paused_ && settling_ == Settles::nothing &&
+      next_line_ >= program_.line_count())
+    settle(Settles::job);
   if (!by_hand_.empty()) {
-    const std::string line = by_hand_.front();
+    const HandLine line = by_hand_.front();
     by_hand_.pop_front();
     return send(line, -1, now_s);
   }
-  if (!job_active() || paused_) return;
-  if (next_line_ < program_.line_count()) {
-    send(std::string(program_.line(next_line_)), next_line_, now_s);
-    job_->sent = ++next_line_;
-  } else if (!draining_) {
-    draining_ = true;
-    send("M400", -1, now_s);  // answered when all moves are done
-  }
+  if (!job_active() || paused_ || next_line_ >= program_.line_count()) return;
+  send({std::string(program_.line(next_line_))}, next_line_, now_s);
+  job_->sent = ++next_line_;
+}
+
+void MarlinDriver::settle(Settles what) {
+  settling_ = what;
+  settling_number_.reset();
+  if (what != Settles::homing) queue("M400");  // answered when all moves are done
+  queue("M114", what);
 }
 
 void MarlinDriver::tick(double now_s) {
   if (connection_ == MachineConnection::closed) return;
-  if (!greeted_ && now_s - opened_s_ > boot_s) start_numbering(now_s);
+  if (!greeted_ && now_s - opened_s_ > boot_s) greet(now_s);
   if (greeted_ && by_hand_.empty() && !halted_ && now_s - asked_s_ > asking_s) {
     asked_s_ = now_s;
     queue("M105");
-    if (!job_active()) queue("M114");
+    if (!job_active() || settling_number_) queue("M114");
   }
   if (focus_until_s_ && now_s > *focus_until_s_) {
     focus_until_s_.reset();
     queue("M5");
   }
-  if (stopped_s_ >= 0 && (!waiting_ || now_s - stopped_s_ > escalation_s)) {
+  if (stopped_s_ >= 0 && !waiting_) stopped_s_ = -1;
+  if (stopped_s_ >= 0 && now_s - stopped_s_ > escalation_s) {
     // M410 was not heard: boards without an emergency parser take it in turn only. M112 ends everything.
-    if (waiting_) write_urgently("M112\n"), note("The machine did not stop when asked: it was halted (M112) and needs a reset.", now_s);
-    stopped_s_ = -1;
+    write_urgently("M112\n");
+    halt("it did not stop when asked, so it was sent M112.", now_s);
   }
-  // A lost answer, or a lost line: the next number tells the machine which, and it asks for what it lacks.
-  if ((waiting_ || oks_to_swallow_ > 0) && !homing_ && !draining_ && connection_ == MachineConnection::ready && now_s - heard_s_ > lost_answer_s) {
-    waiting_ = false;
-    oks_to_swallow_ = 0;
-    heard_s_ = now_s;
-    note("An answer was lost on the line: going on with the next line.", now_s);
-  }
-  const double patience = connection_ == MachineConnection::greeting ? greeting_s : homing_ || draining_ ? 600 : job_active() ? 120 : silence_s;
+  if ((waiting_ || oks_to_swallow_ > 0) && connection_ == MachineConnection::ready &&
+      unanswered_in_a_row_ < most_unanswered && now_s - std::max(heard_s_, sent_s_) > lost_answer_s)
+    go_on_unanswered(now_s);
+  const double patience = connection_ == MachineConnection::greeting ? greeting_s
+                          : settling_ != Settles::nothing            ? silence_while_settling_s
+                          : job_active()                             ? silence_in_job_s
+                                                                     : silence_s;
   if (connection_ != MachineConnection::silent && now_s - heard_s_ > patience) {
     connection_ = MachineConnection::silent;
-    waiting_ = homing_ = false;
-    note("Nothing answers: check that the machine is on, the controller chosen, and the line speed (115200 or 250000).", now_s);
+    waiting_ = false;
+    note("Nothing answers: check that the machine is on, the controller chosen, and the line speed (115200 or 250000).",
+         now_s);
     if (job_active()) stop("cut_off", now_s);
+    settling_ = Settles::nothing;
+    settling_number_.reset();
   }
   pump(now_s);
 }
@@ -231,28 +317,35 @@ void MarlinDriver::load(const std::string& name, ByteView job) {
 }
 
 void MarlinDriver::end(const char* how, double now_s) {
-  if (end_job(how, now_s)) paused_ = draining_ = false;
+  if (end_job(how, now_s)) paused_ = false;
+}
+
+std::vector<std::string> MarlinDriver::lines_that_turn_off() const {
+  std::vector<std::string> lines;
+  if (options_.tool != MachineTool::printer) lines.push_back("M5");
+  // Lasers and mills on a printer's board may have heaters, too.
+  if (options_.tool == MachineTool::printer || !temperatures_.empty())
+    lines.insert(lines.end(), {"M104 S0", "M140 S0", "M107"});
+  return lines;
 }
 
 void MarlinDriver::stop(const char* how, double now_s) {
   end(how, now_s);
   by_hand_.clear();
   drop_output();
-  // A line that did not leave will be asked for by its number: it must not move anything then.
+  // A line that did not leave or did not arrive will be asked for by its number: it must not move anything then.
   for (SentLine& line : sent_)
-    if (line.job_line >= 0) line.text = "M105", line.job_line = -1;
+    if (!line.text.starts_with("M110")) line = {line.number, -1, "M105"};
   resend_at_ = sent_.size();
-  position_known_ = homing_ = false;
+  position_known_ = false;
+  settling_ = Settles::nothing;
+  settling_number_.reset();
   focus_until_s_.reset();
-  // The first two need no turn where the firmware has an emergency parser; the others follow in any case.
+  // These need no turn where the firmware has an emergency parser; what turns off follows in any case.
   write_urgently("M108\n");
   write_urgently("M410\n");
   oks_to_swallow_ = 0;
-  for (const char* line : {"M5", "M104 S0", "M140 S0", "M107"}) {
-    if (options_.tool != MachineTool::printer && line[1] == '1') continue;
-    if (options_.tool == MachineTool::printer && line[1] == '5') continue;
-    queue(line);
-  }
+  for (const std::string& line : lines_that_turn_off()) queue(line);
   stopped_s_ = now_s;
 }
 

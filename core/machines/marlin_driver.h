@@ -2,8 +2,13 @@
 #pragma once
 // Marlin: 3D printers, and the lasers and mills built on their boards.
 //
-// Lines are numbered and carry a checksum (reprap.org/wiki/G-code, "Checking"); the machine asks for a line again when one arrived badly,
-// and says "ok" once for every line and once more after each such request. One line is under way at a time.
+// Lines are numbered and carry a checksum (reprap.org/wiki/G-code, "Checking"); the machine asks for a line again when
+// one arrived badly, and says "ok" once for every line and once more after each such request. One line is under way at
+// a time.
+//
+// An ok means "taken in" and may be lost or come late, so it never tells that something has ended: what moved has ended
+// when the machine reports its place in answer to an M114 that was sent behind it (and behind an M400, which waits for
+// all moves).
 #include <array>
 #include <deque>
 #include <optional>
@@ -29,6 +34,12 @@ class MarlinDriver final : public MachineDriver {
   Json state(double now_s) const override;
 
  private:
+  /// What has ended when the answer to a line's report of the place is there.
+  enum class Settles { nothing, homing, moving, job };
+  struct HandLine {
+    std::string text;
+    Settles settles = Settles::nothing;
+  };
   struct SentLine {
     int number, job_line;
     std::string text;
@@ -37,11 +48,18 @@ class MarlinDriver final : public MachineDriver {
   void hear(const std::string& line, double now_s);
   void hear_ok(const std::string& line, double now_s);
   void hear_resend(int number, double now_s);
-  void hear_temperatures(const std::string& line);
+  void hear_error(std::string_view text, double now_s);
+  void hear_report(const std::string& line, double now_s);
+  void hear_idle(double now_s);
+  void settled(double now_s);
+  void go_on_unanswered(double now_s);
   void pump(double now_s);
-  void send(const std::string& text, int job_line, double now_s);
+  void settle(Settles what);
+  void send(const HandLine& line, int job_line, double now_s);
+  void greet(double now_s);
   void start_numbering(double now_s);
-  void queue(const std::string& line) { by_hand_.push_back(line); }
+  void queue(const std::string& line, Settles settles = Settles::nothing) { by_hand_.push_back({line, settles}); }
+  std::vector<std::string> lines_that_turn_off() const;
   void move(const std::string& mode, const std::string& words, double speed_mm_per_s);
   void end(const char* how, double now_s);
   void stop(const char* how, double now_s);
@@ -58,16 +76,18 @@ class MarlinDriver final : public MachineDriver {
   std::string program_name_;
   int next_line_ = 0;
 
-  std::deque<std::string> by_hand_;
+  std::deque<HandLine> by_hand_;
   std::deque<SentLine> sent_;  // those that may be asked for again; the last `waiting_` of them are unanswered
   std::size_t resend_at_ = 0;  // index in sent_ of the next line to send again; sent_.size() when none
-  int next_number_ = 0, oks_to_swallow_ = 0, resends_ = 0;
-  bool waiting_ = false, paused_ = false, position_known_ = false, homing_ = false, halted_ = false, draining_ = false, greeted_ = false;
+  int next_number_ = 0, oks_to_swallow_ = 0, resends_ = 0, unanswered_in_a_row_ = 0;
+  Settles settling_ = Settles::nothing;  // what is under way
+  std::optional<int> settling_number_;   // of the M114 behind it, once that was sent
+  bool waiting_ = false, paused_ = false, position_known_ = false, halted_ = false, greeted_ = false;
   std::string halt_text_;
   std::optional<std::array<double, 3>> position_mm_;
   Json temperatures_ = Json::object();
   std::optional<std::string> refused_;
-  double opened_s_ = 0, heard_s_ = 0, asked_s_ = 0, stopped_s_ = -1;
+  double opened_s_ = 0, heard_s_ = 0, sent_s_ = 0, asked_s_ = 0, stopped_s_ = -1;
   std::optional<double> focus_until_s_;
 };
 

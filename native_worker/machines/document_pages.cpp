@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <cstddef>
 #include <qpdf/Buffer.hh>
 #include <qpdf/QPDF.hh>
 #include <qpdf/QPDFPageDocumentHelper.hh>
@@ -25,7 +25,8 @@ constexpr double most_mm = 20'000;
 
 PageSize checked(PageSize size) {
   if (!(size.width_mm >= 1 && size.width_mm <= most_mm && size.height_mm >= 1 && size.height_mm <= most_mm))
-    refuse("A page of the document is smaller than 1 mm or larger than 20 m: make it anew with its size in millimetres.");
+    refuse(
+        "A page of the document is smaller than 1 mm or larger than 20 m: make it anew with its size in millimetres.");
   return size;
 }
 
@@ -47,38 +48,34 @@ DocumentPages read_png(ByteView png) {
       height = big_endian(png, at + 12);
     } else if (name == "pHYs" && length >= 9 && width > 0 && png[at + 16] == std::byte{1}) {
       const double x_per_m = big_endian(png, at + 8), y_per_m = big_endian(png, at + 12);
-      if (x_per_m > 0 && y_per_m > 0) return {"image/png", {checked({1000 * width / x_per_m, 1000 * height / y_per_m})}};
+      if (x_per_m > 0 && y_per_m > 0)
+        return {"image/png", {checked({1000 * width / x_per_m, 1000 * height / y_per_m})}};
     } else if (name == "IDAT") {
       break;
     }
     at += length + 12;
   }
-  refuse("The PNG does not say how many pixels there are to a metre, so its true size is unknown: save it with a density, or print a PDF.");
+  refuse(
+      "The PNG does not say how many pixels there are to a metre, so its true size is unknown: save it with a density, "
+      "or print a PDF.");
 }
 
-struct RasterSource {
-  ByteView bytes;
-  std::size_t at = 0;
-};
-
-ssize_t read_raster(void* context, unsigned char* to, std::size_t count) {
-  auto& source = *static_cast<RasterSource*>(context);
-  const std::size_t taken = std::min(count, source.bytes.size() - source.at);
-  std::memcpy(to, source.bytes.data() + source.at, taken);
-  source.at += taken;
-  return static_cast<ssize_t>(taken);
-}
-
-/// The first page's header only: the pages behind it would have to be unpacked to find them, and printers take one size per job.
+/// The first page's header (PWG 5102.4, 4.3) only: the pages behind it would have to be unpacked to find them, and
+/// printers take one size per job. Not by libcups, which first sets aside as many bytes as the header claims a line to
+/// have, up to 4 GB.
 DocumentPages read_pwg_raster(ByteView raster) {
-  RasterSource source{raster};
-  cups_raster_t* stream = cupsRasterOpenIO(read_raster, &source, CUPS_RASTER_READ);
-  cups_page_header2_t header{};
-  const bool read = stream && cupsRasterReadHeader2(stream, &header) == 1;
-  if (stream) cupsRasterClose(stream);
-  if (!read || header.HWResolution[0] == 0 || header.HWResolution[1] == 0) refuse("The PWG raster cannot be read: make it anew.");
+  if (raster.size() < 4 + sizeof(cups_page_header2_t)) refuse("The PWG raster cannot be read: make it anew.");
+  const bool low_end_first = as_text(raster).starts_with("2SaR");
+  const auto number = [&](std::size_t offset) {
+    const std::uint32_t value = big_endian(raster, 4 + offset);
+    return low_end_first ? __builtin_bswap32(value) : value;
+  };
+  const std::size_t resolution = offsetof(cups_page_header2_t, HWResolution);
+  const double across = number(resolution), down = number(resolution + 4);
+  if (across == 0 || down == 0) refuse("The PWG raster cannot be read: make it anew.");
   return {"image/pwg-raster",
-          {checked({25.4 * header.cupsWidth / header.HWResolution[0], 25.4 * header.cupsHeight / header.HWResolution[1]})}};
+          {checked({25.4 * number(offsetof(cups_page_header2_t, cupsWidth)) / across,
+                    25.4 * number(offsetof(cups_page_header2_t, cupsHeight)) / down})}};
 }
 
 struct Box {
@@ -90,7 +87,8 @@ Box crop_box(QPDFPageObjectHelper& page) {
   if (!box.isRectangle()) refuse("A page of the PDF does not say how large it is: make it anew.");
   const auto r = box.getArrayAsRectangle();
   const Box found{std::min(r.llx, r.urx), std::min(r.lly, r.ury), std::max(r.llx, r.urx), std::max(r.lly, r.ury)};
-  if (!std::isfinite(found.x0 + found.y0 + found.x1 + found.y1)) refuse("A page of the PDF does not say how large it is: make it anew.");
+  if (!std::isfinite(found.x0 + found.y0 + found.x1 + found.y1))
+    refuse("A page of the PDF does not say how large it is: make it anew.");
   return found;
 }
 
@@ -100,7 +98,9 @@ void open_pdf(QPDF& pdf, ByteView document) {
   pdf.processMemoryFile("document", reinterpret_cast<const char*>(document.data()), document.size());
 }
 
-double number_or(QPDFObjectHandle value, double otherwise) { return value.isNumber() ? value.getNumericValue() : otherwise; }
+double number_or(QPDFObjectHandle value, double otherwise) {
+  return value.isNumber() ? value.getNumericValue() : otherwise;
+}
 
 DocumentPages read_pdf(ByteView document) {
   DocumentPages result{"application/pdf", {}};
@@ -112,7 +112,8 @@ DocumentPages read_pdf(ByteView document) {
       const Box box = crop_box(page);
       const double unit = number_or(page.getAttribute("/UserUnit", false), 1);
       PageSize size{(box.x1 - box.x0) * unit * mm_per_point, (box.y1 - box.y0) * unit * mm_per_point};
-      if (std::fmod(std::abs(number_or(page.getAttribute("/Rotate", false), 0)), 180) == 90) std::swap(size.width_mm, size.height_mm);
+      if (std::fmod(std::abs(number_or(page.getAttribute("/Rotate", false), 0)), 180) == 90)
+        std::swap(size.width_mm, size.height_mm);
       result.pages.push_back(checked(size));
     }
   } catch (const Error&) {
@@ -140,7 +141,8 @@ Bytes mirrored_pdf(ByteView document) {
     open_pdf(pdf, document);
     for (QPDFPageObjectHelper page : QPDFPageDocumentHelper(pdf).getAllPages()) {
       const Box box = crop_box(page);
-      // The crop box's own axis in the page's unturned frame: a page that is shown on its side is mirrored left to right as it is shown.
+      // The crop box's own axis in the page's unturned frame: a page that is shown on its side is mirrored left to
+      // right as it is shown.
       const bool on_its_side = std::fmod(std::abs(number_or(page.getAttribute("/Rotate", false), 0)), 180) == 90;
       char matrix[160];
       if (on_its_side)
@@ -158,7 +160,8 @@ Bytes mirrored_pdf(ByteView document) {
     const auto* begin = reinterpret_cast<const std::byte*>(buffer->getBuffer());
     return {begin, begin + buffer->getSize()};
   } catch (const std::exception&) {
-    throw Error(ErrorCode::invalid_input, "mirrored", "The PDF cannot be read, so that it cannot be mirrored: make it anew.");
+    throw Error(ErrorCode::invalid_input, "mirrored",
+                "The PDF cannot be read, so that it cannot be mirrored: make it anew.");
   }
 }
 

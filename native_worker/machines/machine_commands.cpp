@@ -21,7 +21,7 @@ constexpr const char* help_text =
     "Printers and machines of this computer and its network.\n\n"
     "  formwright machine list [--json]\n"
     "  formwright machine add --name N --url URL [--kind octoprint|moonraker] [--api-key-file F]\n"
-    "                         [--controller grbl|grbl_mill|marlin] [--baud N]\n"
+    "                         [--controller grbl|grbl_mill|marlin|marlin_printer] [--baud N]\n"
     "  formwright machine remove N\n"
     "  formwright machine print --machine M --file F --media A4 [--copies N] [--mirrored]\n"
     "                           [--quality draft|normal|high]\n"
@@ -35,7 +35,8 @@ constexpr const char* help_text =
     "--data DIR names the folder in which they are kept, the same as for formwright serve.\n";
 
 MachineRegistry registry_of(const MachineFlags& flags) {
-  return MachineRegistry(flags.given("--data") ? std::filesystem::path(flags.values.at("--data")) : default_data_folder());
+  return MachineRegistry(flags.given("--data") ? std::filesystem::path(flags.values.at("--data"))
+                                               : default_data_folder());
 }
 
 int list(const std::vector<std::string>& words) {
@@ -50,13 +51,14 @@ int list(const std::vector<std::string>& words) {
   for (const Machine& m : machines)
     std::printf("%s  %-10s %-24s %s%s\n", m.id.c_str(), to_string(m.kind), m.name.c_str(), m.detail().c_str(),
                 m.state.empty() ? "" : (" (" + m.state + ")").c_str());
-  if (machines.empty()) std::cout << "No machine was found. Plug one in, or add one: formwright machine add --name N --url URL\n";
+  if (machines.empty())
+    std::cout << "No machine was found. Plug one in, or add one: formwright machine add --name N --url URL\n";
   return 0;
 }
 
 int add(const std::vector<std::string>& words) {
-  const MachineFlags flags =
-      read_machine_flags(words, {"--data", "--name", "--url", "--kind", "--api-key-file", "--controller", "--baud"}, {});
+  const MachineFlags flags = read_machine_flags(
+      words, {"--data", "--name", "--url", "--kind", "--api-key-file", "--controller", "--baud"}, {});
   std::string key;
   if (flags.given("--api-key-file")) {
     key = std::string(as_text(*read_file(flags.values.at("--api-key-file"), "--api-key-file", 4096)));
@@ -65,8 +67,9 @@ int add(const std::vector<std::string>& words) {
       throw Error(ErrorCode::invalid_input, "--api-key-file",
                   "The file with the key is empty: copy the key from the machine's settings into it.");
   }
-  const Machine machine = machine_from_words({flags.value_or("--name", ""), flags.value_or("--url", ""), flags.value_or("--kind", ""),
-                                              flags.value_or("--controller", ""), key, flags.value_or("--baud", "")});
+  const Machine machine =
+      machine_from_words({flags.value_or("--name", ""), flags.value_or("--url", ""), flags.value_or("--kind", ""),
+                          flags.value_or("--controller", ""), key, flags.value_or("--baud", "")});
   registry_of(flags).add(machine);
   std::printf("%s  %-10s %s\n", machine.id.c_str(), to_string(machine.kind), machine.name.c_str());
   return 0;
@@ -93,7 +96,8 @@ int print(const std::vector<std::string>& words, const std::atomic<bool>& interr
   const MachineFlags flags =
       read_machine_flags(words, {"--data", "--machine", "--file", "--media", "--copies", "--quality"}, {"--mirrored"});
   const MachineRegistry registry = registry_of(flags);
-  const std::string name = flags.needed("--machine", "--machine Studio"), file = flags.needed("--file", "--file pages.pdf");
+  const std::string name = flags.needed("--machine", "--machine Studio"),
+                    file = flags.needed("--file", "--file pages.pdf");
   PrintOrder order;
   order.media = flags.needed("--media", "--media A4");
   order.quality = flags.value_or("--quality", "normal");
@@ -102,14 +106,16 @@ int print(const std::vector<std::string>& words, const std::atomic<bool>& interr
   char* end = nullptr;
   const std::string copies = flags.value_or("--copies", "1");
   order.copies = static_cast<int>(std::clamp(std::strtol(copies.c_str(), &end, 10), 0L, 10000L));
-  if (*end != '\0' || order.copies < 1) throw Error(ErrorCode::invalid_input, "--copies", "--copies must be a whole number from 1.");
+  if (*end != '\0' || order.copies < 1)
+    throw Error(ErrorCode::invalid_input, "--copies", "--copies must be a whole number from 1.");
   const auto document = read_file(file, "--file", std::uintmax_t{512} << 20);
   order.document = *document;
   const auto machines = find_machines(registry);
   const Machine& machine = choose_machine(machines, name);
   if (machine.kind != MachineKind::printer)
-    throw Error(ErrorCode::invalid_input, "machine",
-                machine.name + " is a " + to_string(machine.kind) + ", no printer: choose one from formwright machine list.");
+    throw Error(
+        ErrorCode::invalid_input, "machine",
+        machine.name + " is a " + to_string(machine.kind) + ", no printer: choose one from formwright machine list.");
   MachineLog log(registry.data());
   const auto note = [&](const std::string& state, const std::string& text) {
     log.append(machine, {{"event", "task"}, {"kind", "print"}, {"state", state}, {"text", text}}, true);
@@ -157,7 +163,9 @@ MachineFlags read_machine_flags(const std::vector<std::string>& words, const std
       value = flag.substr(equals + 1);
       flag.resize(equals);
     }
-    const auto among = [&](const std::vector<std::string>& list) { return std::find(list.begin(), list.end(), flag) != list.end(); };
+    const auto among = [&](const std::vector<std::string>& list) {
+      return std::find(list.begin(), list.end(), flag) != list.end();
+    };
     if (result.values.contains(flag)) throw Error(ErrorCode::invalid_input, flag, flag + " is given twice.");
     if (among(switches) && !joined)
       value = "on";
@@ -173,7 +181,8 @@ MachineFlags read_machine_flags(const std::vector<std::string>& words, const std
 }
 
 int machine_command(const std::vector<std::string>& words, const std::atomic<bool>& interrupted) {
-  if (words.empty() || std::any_of(words.begin(), words.end(), [](const std::string& w) { return w == "--help" || w == "-h"; })) {
+  if (words.empty() ||
+      std::any_of(words.begin(), words.end(), [](const std::string& w) { return w == "--help" || w == "-h"; })) {
     std::cout << help_text;
     return words.empty() ? 2 : 0;
   }
@@ -185,7 +194,8 @@ int machine_command(const std::vector<std::string>& words, const std::atomic<boo
   if (words[0] == "frame") return machine_frame(rest, interrupted);
   if (words[0] == "stop") return machine_stop(rest, interrupted);
   if (words[0] == "print") return print(rest, interrupted);
-  throw Error(ErrorCode::invalid_input, words[0], "There is no command machine " + words[0] + ": see formwright machine --help.");
+  throw Error(ErrorCode::invalid_input, words[0],
+              "There is no command machine " + words[0] + ": see formwright machine --help.");
 }
 
 }  // namespace formwright

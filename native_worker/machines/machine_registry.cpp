@@ -20,9 +20,12 @@ namespace formwright {
 namespace {
 
 constexpr std::array<const char*, 6> kind_names{"serial", "ruida", "printer", "octoprint", "moonraker", "slicer"};
-constexpr std::array<int, 12> baud_rates{9600, 19200, 38400, 57600, 76800, 115200, 230400, 250000, 460800, 500000, 921600, 1000000};
+constexpr std::array<int, 12> baud_rates{9600,   19200,  38400,  57600,  76800,  115200,
+                                         230400, 250000, 460800, 500000, 921600, 1000000};
 
-[[noreturn]] void refuse(const std::string& where, const std::string& sentence) { throw Error(ErrorCode::invalid_input, where, sentence); }
+[[noreturn]] void refuse(const std::string& where, const std::string& sentence) {
+  throw Error(ErrorCode::invalid_input, where, sentence);
+}
 
 std::string id_of(MachineKind kind, const std::string& address) {
   return sha256_hex(as_bytes(std::string(to_string(kind)) + "\n" + address)).substr(0, 16);
@@ -36,11 +39,12 @@ struct Address {
 Address read_address(const std::string& url) {
   char scheme[32] = "", user[256] = "", host[256] = "", resource[1024] = "";
   int port = 0;
-  const http_uri_status_t status = httpSeparateURI(HTTP_URI_CODING_ALL, url.c_str(), scheme, sizeof scheme, user, sizeof user, host,
-                                                   sizeof host, &port, resource, sizeof resource);
+  const http_uri_status_t status = httpSeparateURI(HTTP_URI_CODING_ALL, url.c_str(), scheme, sizeof scheme, user,
+                                                   sizeof user, host, sizeof host, &port, resource, sizeof resource);
   if (status < HTTP_URI_STATUS_OK)
     refuse("--url", "\"" + url +
-                        "\" is not an address: give one such as ipp://192.168.1.20/ipp/print, http://octopi.local, ruida://192.168.1.30, "
+                        "\" is not an address: give one such as ipp://192.168.1.20/ipp/print, http://octopi.local, "
+                        "ruida://192.168.1.30, "
                         "tcp://192.168.1.31:23 or serial:/dev/ttyUSB0.");
   return {scheme, user, host, resource, port};
 }
@@ -48,7 +52,8 @@ Address read_address(const std::string& url) {
 /// Keeps others out while the file is read, changed and written.
 class FileLock {
  public:
-  explicit FileLock(const std::filesystem::path& path) : descriptor_(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)) {
+  explicit FileLock(const std::filesystem::path& path)
+      : descriptor_(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)) {
     if (descriptor_ < 0 || ::flock(descriptor_, LOCK_EX) != 0)
       refuse("--data", path.parent_path().string() + " cannot be written: choose another folder with --data.");
   }
@@ -64,10 +69,12 @@ std::vector<Machine> machines_from_json(const Json& list) {
   std::vector<Machine> machines;
   for (const Json& entry : list) {
     const auto text = [&](const char* name) {
-      return entry.is_object() && entry.contains(name) && entry[name].is_string() ? entry[name].get<std::string>() : std::string();
+      return entry.is_object() && entry.contains(name) && entry[name].is_string() ? entry[name].get<std::string>()
+                                                                                  : std::string();
     };
     try {
-      machines.push_back(machine_from_words({text("name"), text("url"), text("kind"), text("controller"), text("api_key"), text("baud")}));
+      machines.push_back(machine_from_words(
+          {text("name"), text("url"), text("kind"), text("controller"), text("api_key"), text("baud")}));
     } catch (const Error&) {
       // Written by a later version, or by hand: the others count all the same.
     }
@@ -78,6 +85,12 @@ std::vector<Machine> machines_from_json(const Json& list) {
 }  // namespace
 
 const char* to_string(MachineKind kind) { return kind_names[static_cast<std::size_t>(kind)]; }
+
+const SerialController* find_serial_controller(const std::string& name) {
+  const auto found = std::find_if(serial_controllers.begin(), serial_controllers.end(),
+                                  [&](const SerialController& known) { return name == known.name; });
+  return found == serial_controllers.end() ? nullptr : found;
+}
 
 std::string Machine::detail() const {
   if (!url.empty()) return url.starts_with("serial:") ? url.substr(7) : url;
@@ -102,7 +115,8 @@ Machine machine_from_words(const MachineWords& words) {
     refuse("--name", "Give the machine a name of up to 80 letters: --name Studio.");
   if (words.url.empty())
     refuse("--url",
-           "Say where the machine is: --url ipp://ADDRESS, http://ADDRESS, ruida://ADDRESS, tcp://ADDRESS:PORT or serial:/dev/NAME.");
+           "Say where the machine is: --url ipp://ADDRESS, http://ADDRESS, ruida://ADDRESS, tcp://ADDRESS:PORT or "
+           "serial:/dev/NAME.");
   machine.url = words.url;
   machine.registered = true;
   machine.api_key = words.api_key;
@@ -118,7 +132,8 @@ Machine machine_from_words(const MachineWords& words) {
     const Address address = read_address(words.url);
     if (!address.user.empty())
       refuse("--url", "A name or password does not belong in the address: give the key in a file, --api-key-file.");
-    if (address.host.empty()) refuse("--url", "\"" + words.url + "\" names no machine: write its address behind the two slashes.");
+    if (address.host.empty())
+      refuse("--url", "\"" + words.url + "\" names no machine: write its address behind the two slashes.");
     if (address.scheme == "ipp" || address.scheme == "ipps")
       machine.kind = MachineKind::printer;
     else if (address.scheme == "ruida")
@@ -131,25 +146,30 @@ Machine machine_from_words(const MachineWords& words) {
       machine.kind = words.kind == "octoprint" ? MachineKind::octoprint : MachineKind::moonraker;
       while (machine.url.ends_with('/')) machine.url.pop_back();
     } else {
-      refuse("--url", "\"" + address.scheme + "\" is no kind of address known here: ipp, ipps, http, https, ruida, tcp or serial.");
+      refuse("--url", "\"" + address.scheme +
+                          "\" is no kind of address known here: ipp, ipps, http, https, ruida, tcp or serial.");
     }
-    if (address.scheme == "tcp" && address.port <= 0) refuse("--url", "Name the port too: tcp://" + address.host + ":23.");
+    if (address.scheme == "tcp" && address.port <= 0)
+      refuse("--url", "Name the port too: tcp://" + address.host + ":23.");
   }
   if (!words.kind.empty() && words.kind != to_string(machine.kind))
-    refuse("--kind", "The address is that of a " + std::string(to_string(machine.kind)) + ": leave --kind out, or mend --url.");
+    refuse("--kind",
+           "The address is that of a " + std::string(to_string(machine.kind)) + ": leave --kind out, or mend --url.");
   if (machine.kind == MachineKind::serial) {
     machine.controller = words.controller.empty() ? "grbl" : words.controller;
-    if (machine.controller != "grbl" && machine.controller != "grbl_mill" && machine.controller != "marlin")
-      refuse("--controller", "The controller must be grbl, grbl_mill or marlin.");
+    if (!find_serial_controller(machine.controller))
+      refuse("--controller", "The controller must be grbl, grbl_mill, marlin or marlin_printer.");
   } else if (machine.kind == MachineKind::ruida) {
     machine.controller = "ruida";
   } else if (!words.controller.empty()) {
-    refuse("--controller", "A " + std::string(to_string(machine.kind)) + " has no controller to choose: leave --controller out.");
+    refuse("--controller",
+           "A " + std::string(to_string(machine.kind)) + " has no controller to choose: leave --controller out.");
   }
   if (!words.baud.empty()) {
     int baud = 0;
     const auto [end, error] = std::from_chars(words.baud.data(), words.baud.data() + words.baud.size(), baud);
-    if (error != std::errc() || *end != '\0' || std::find(baud_rates.begin(), baud_rates.end(), baud) == baud_rates.end())
+    if (error != std::errc() || *end != '\0' ||
+        std::find(baud_rates.begin(), baud_rates.end(), baud) == baud_rates.end())
       refuse("--baud", "The baud rate must be one of 9600 to 1000000 that ports have, such as 115200 or 250000.");
     machine.baud = baud;
   }
@@ -163,7 +183,8 @@ std::vector<Machine> MachineRegistry::read() const {
   if (!std::filesystem::exists(path, status)) return {};
   const auto bytes = read_file(path, "--data", std::uintmax_t{4} << 20);
   const Json list = Json::parse(as_text(*bytes), nullptr, false);
-  if (!list.is_array()) refuse("--data", path.string() + " is not a list of machines: mend it, or move it away and add them again.");
+  if (!list.is_array())
+    refuse("--data", path.string() + " is not a list of machines: mend it, or move it away and add them again.");
   return machines_from_json(list);
 }
 
@@ -193,7 +214,8 @@ void MachineRegistry::add(const Machine& machine) const {
   auto machines = read();
   for (const Machine& m : machines) {
     if (::strcasecmp(m.name.c_str(), machine.name.c_str()) == 0)
-      refuse("--name", "There is a machine called " + m.name + " already: choose another name, or remove that one first.");
+      refuse("--name",
+             "There is a machine called " + m.name + " already: choose another name, or remove that one first.");
     if (m.id == machine.id) refuse("--url", "That address is registered already, as " + m.name + ".");
   }
   machines.push_back(machine);
@@ -205,9 +227,10 @@ void MachineRegistry::remove(const std::string& name) const {
   std::filesystem::create_directories(data_, status);
   const FileLock lock(data_ / "machines.lock");
   auto machines = read();
-  const auto count =
-      std::erase_if(machines, [&](const Machine& m) { return m.id == name || ::strcasecmp(m.name.c_str(), name.c_str()) == 0; });
-  if (count == 0) refuse("machine", "No machine called " + name + " was registered: formwright machine list shows them.");
+  const auto count = std::erase_if(
+      machines, [&](const Machine& m) { return m.id == name || ::strcasecmp(m.name.c_str(), name.c_str()) == 0; });
+  if (count == 0)
+    refuse("machine", "No machine called " + name + " was registered: formwright machine list shows them.");
   write(machines);
 }
 

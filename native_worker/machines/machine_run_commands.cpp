@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `formwright machine send | frame | stop`: a machine driven from the terminal. Nothing moves before a person typed yes.
+// `formwright machine send | frame | stop`: a machine driven from the terminal. Nothing moves before a person typed
+// yes.
 #include <poll.h>
 #include <unistd.h>
 
@@ -14,6 +15,7 @@
 #include "machines/gcode_program.h"
 #include "machines/machine_commands.h"
 #include "machines/machine_session.h"
+#include "machines/ruida_bounds.h"
 
 namespace formwright {
 namespace {
@@ -26,7 +28,8 @@ std::atomic<bool> stop_asked{false};  // by another process
 /// A session that is run from here, step by step.
 class Terminal {
  public:
-  Terminal(const MachineRegistry& registry, const Machine& machine, const Json& options, const std::atomic<bool>& interrupted, bool yes)
+  Terminal(const MachineRegistry& registry, const Machine& machine, const Json& options,
+           const std::atomic<bool>& interrupted, bool yes)
       : log_(registry.data()), machine_(machine), interrupted_(interrupted), yes_(yes) {
     const Json all = driver_options(machine, options);
     make_machine_driver(all);
@@ -57,7 +60,8 @@ class Terminal {
   /// Has the machine answered every line? (Serial controllers answer each with ok or error.)
   bool all_answered() const { return machine_.kind != MachineKind::serial || unanswered_ == 0; }
 
-  /// Runs until `done(state)` is true. Ctrl-C and a stop from elsewhere stop the machine first and then throw Error{cancelled}.
+  /// Runs until `done(state)` is true. Ctrl-C and a stop from elsewhere stop the machine first and then throw
+  /// Error{cancelled}.
   template <class Done>
   void run_until(const Done& done, double patience_s, const std::string& otherwise) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(patience_s);
@@ -73,7 +77,8 @@ class Terminal {
 
   void connect() {
     run_until([](const Json& s) { return s["connection"] == "ready" && s["phase"] != "unknown"; }, 15,
-              "Nothing answers at " + machine_.name + ": see whether it is on, and whether controller and baud rate are right.");
+              "Nothing answers at " + machine_.name +
+                  ": see whether it is on, and whether controller and baud rate are right.");
   }
 
   /// Asks and throws Error{cancelled} unless the answer is yes. The port is served meanwhile.
@@ -87,7 +92,8 @@ class Terminal {
     for (;;) {
       pollfd wait{STDIN_FILENO, POLLIN, 0};
       if (::poll(&wait, 1, 0) > 0) {
-        if (!std::getline(std::cin, answer) || answer != "yes") throw Error(ErrorCode::cancelled, "", "Not confirmed: nothing was moved.");
+        if (!std::getline(std::cin, answer) || answer != "yes")
+          throw Error(ErrorCode::cancelled, "", "Not confirmed: nothing was moved.");
         return;
       }
       run_until([](const Json&) { return true; }, 1, "");
@@ -98,25 +104,29 @@ class Terminal {
   void know_position() {
     const Json now = state();
     if (now["position_known"] == true) return;
-    const auto can = [&](const char* what) { return std::find(now["can"].begin(), now["can"].end(), what) != now["can"].end(); };
+    const auto can = [&](const char* what) {
+      return std::find(now["can"].begin(), now["can"].end(), what) != now["can"].end();
+    };
     if (can("home")) {
       confirm("Where the head stands is unknown. It moves to its switches now.");
       session_->command({{"do", "home"}, {"confirmed", true}});
-      run_until([](const Json& s) { return (s["phase"] == "idle" && s["position_known"] == true) || s["phase"] == "alarm"; }, 240,
-                "Homing does not end: switch the machine off and see what blocks it.");
+      run_until(
+          [](const Json& s) { return (s["phase"] == "idle" && s["position_known"] == true) || s["phase"] == "alarm"; },
+          240, "Homing does not end: switch the machine off and see what blocks it.");
       if (const Json s = state(); s["phase"] == "alarm")
         throw Error(ErrorCode::could_not_solve, "machine", sentence_of(s["alarm"], "Homing failed."));
     } else if (can("set_origin")) {
       confirm("This machine has no switches to home to. Does the head stand at the lower left corner of the material?");
       session_->command({{"do", "set_origin"}, {"axes", "xy"}});
-      run_until([](const Json& s) { return s["position_known"] == true; }, 5, "The machine does not take the origin: see its console.");
+      run_until([](const Json& s) { return s["position_known"] == true; }, 5,
+                "The machine does not take the origin: see its console.");
       // It was written to the board's memory, and some boards hear nothing while they write.
       const auto written = std::chrono::steady_clock::now() + 150ms;
       run_until([&](const Json&) { return std::chrono::steady_clock::now() > written; }, 5, "");
     } else {
-      throw Error(
-          ErrorCode::could_not_solve, "machine",
-          machine_.name + " is not ready (" + now["phase"].get<std::string>() + "): " + sentence_of(now["alarm"], "see what it shows."));
+      throw Error(ErrorCode::could_not_solve, "machine",
+                  machine_.name + " is not ready (" + now["phase"].get<std::string>() +
+                      "): " + sentence_of(now["alarm"], "see what it shows."));
     }
   }
 
@@ -139,7 +149,8 @@ class Terminal {
       io_.run_for(20ms);
     }
     session_->end(from_elsewhere ? "Stopped by another process." : "Stopped with Ctrl-C.");
-    throw Error(ErrorCode::cancelled, "", "Stopped: laser off, the rest of the job is not sent. Home the machine before the next job.");
+    throw Error(ErrorCode::cancelled, "",
+                "Stopped: laser off, the rest of the job is not sent. Home the machine before the next job.");
   }
 
  private:
@@ -154,7 +165,8 @@ class Terminal {
 };
 
 MachineRegistry registry_of(const MachineFlags& flags) {
-  return MachineRegistry(flags.given("--data") ? std::filesystem::path(flags.values.at("--data")) : default_data_folder());
+  return MachineRegistry(flags.given("--data") ? std::filesystem::path(flags.values.at("--data"))
+                                               : default_data_folder());
 }
 
 Machine driven_machine(const MachineRegistry& registry, const MachineFlags& flags) {
@@ -162,17 +174,20 @@ Machine driven_machine(const MachineRegistry& registry, const MachineFlags& flag
   const auto machines = find_machines(registry);
   const Machine machine = choose_machine(machines, name);
   if (machine.kind != MachineKind::serial && machine.kind != MachineKind::ruida)
-    throw Error(ErrorCode::invalid_input, "machine",
-                machine.name + " is a " + to_string(machine.kind) + ": only serial machines and Ruida are driven from here.");
+    throw Error(
+        ErrorCode::invalid_input, "machine",
+        machine.name + " is a " + to_string(machine.kind) + ": only serial machines and Ruida are driven from here.");
   return machine;
 }
 
 Json options_of(const MachineFlags& flags) {
   Json options = Json::object();
   if (flags.given("--controller")) {
-    const std::string controller = flags.values.at("--controller");
-    options["controller"] = controller == "grbl_mill" ? "grbl" : controller;
-    if (controller == "grbl_mill") options["tool"] = "mill";
+    options["controller"] = flags.values.at("--controller");
+    if (const SerialController* known = find_serial_controller(flags.values.at("--controller"))) {
+      options["controller"] = known->controller;
+      options["tool"] = known->tool;
+    }
   }
   for (const auto& [flag, name] : {std::pair{"--bed-x-mm", "bed_x_mm"}, {"--bed-y-mm", "bed_y_mm"}}) {
     if (!flags.given(flag)) continue;
@@ -191,8 +206,8 @@ void show_progress(const Json& state) {
   if (::isatty(STDERR_FILENO) != 1 || !state["job"].is_object()) return;
   const Json& job = state["job"];
   const int count = std::max(1, job["line_count"].get<int>()), done = job["acknowledged"].get<int>();
-  std::fprintf(stderr, "\r\033[K%3d %%  line %d of %d  %.0f s  %s", 100 * done / count, done, count, job["seconds"].get<double>(),
-               state["phase"].get<std::string>().c_str());
+  std::fprintf(stderr, "\r\033[K%3d %%  line %d of %d  %.0f s  %s", 100 * done / count, done, count,
+               job["seconds"].get<double>(), state["phase"].get<std::string>().c_str());
 }
 
 }  // namespace
@@ -221,12 +236,14 @@ int machine_send(const std::vector<std::string>& words, const std::atomic<bool>&
   const Json ended = terminal.state();
   const std::string how = ended["job"]["ended"].get<std::string>();
   if (how != "done") {
-    const std::string why =
-        ended["alarm"].is_object() ? Terminal::sentence_of(ended["alarm"], "") : Terminal::sentence_of(ended["error"], "");
+    const std::string why = ended["alarm"].is_object() ? Terminal::sentence_of(ended["alarm"], "")
+                                                       : Terminal::sentence_of(ended["error"], "");
     throw Error(ErrorCode::could_not_solve, "machine",
-                "The job ended before its end (" + how + ")" + (why.empty() ? "" : ": " + why) + " Home the machine before the next job.");
+                "The job ended before its end (" + how + ")" + (why.empty() ? "" : ": " + why) +
+                    " Home the machine before the next job.");
   }
-  std::printf("Done: %d lines in %.0f s.\n", ended["job"]["line_count"].get<int>(), ended["job"]["seconds"].get<double>());
+  std::printf("Done: %d lines in %.0f s.\n", ended["job"]["line_count"].get<int>(),
+              ended["job"]["seconds"].get<double>());
   return 0;
 }
 
@@ -234,18 +251,20 @@ int machine_frame(const std::vector<std::string>& words, const std::atomic<bool>
   const MachineFlags flags = read_machine_flags(words, run_flags, {"--yes"});
   const MachineRegistry registry = registry_of(flags);
   const auto job = read_file(flags.needed("--job", "--job job.gcode"), "--job", most_job_bytes);
-  const GcodeBounds bounds = GcodeProgram::read(*job, 256).bounds();
-  if (bounds.empty) throw Error(ErrorCode::invalid_input, "--job", "The job moves nowhere: choose another.");
   const Machine machine = driven_machine(registry, flags);
+  const GcodeBounds bounds =
+      machine.kind == MachineKind::ruida ? ruida_bounds(*job) : GcodeProgram::read(*job, 256).bounds();
+  if (bounds.empty) throw Error(ErrorCode::invalid_input, "--job", "The job moves nowhere: choose another.");
   Terminal terminal(registry, machine, options_of(flags), interrupted, flags.given("--yes"));
   terminal.connect();
   terminal.know_position();
   char place[128];
-  std::snprintf(place, sizeof place, "x %.1f to %.1f mm, y %.1f to %.1f mm", bounds.low_mm[0], bounds.high_mm[0], bounds.low_mm[1],
-                bounds.high_mm[1]);
+  std::snprintf(place, sizeof place, "x %.1f to %.1f mm, y %.1f to %.1f mm", bounds.low_mm[0], bounds.high_mm[0],
+                bounds.low_mm[1], bounds.high_mm[1]);
   terminal.confirm("The head moves once around the job (" + std::string(place) + "), laser off.");
-  terminal.session().command(
-      {{"do", "frame"}, {"bounds_mm", {bounds.low_mm[0], bounds.low_mm[1], bounds.high_mm[0], bounds.high_mm[1]}}, {"confirmed", true}});
+  terminal.session().command({{"do", "frame"},
+                              {"bounds_mm", {bounds.low_mm[0], bounds.low_mm[1], bounds.high_mm[0], bounds.high_mm[1]}},
+                              {"confirmed", true}});
   auto rests_since = std::chrono::steady_clock::now();
   terminal.run_until(
       [&](const Json& s) {
@@ -253,8 +272,9 @@ int machine_frame(const std::vector<std::string>& words, const std::atomic<bool>
           throw Error(ErrorCode::could_not_solve, "machine",
                       Terminal::sentence_of(s["alarm"], "The machine is in alarm: see what it shows."));
         if (s["error"].is_object())
-          throw Error(ErrorCode::could_not_solve, "machine",
-                      "The machine refused to go around the job: " + Terminal::sentence_of(s["error"], "see what it shows."));
+          throw Error(
+              ErrorCode::could_not_solve, "machine",
+              "The machine refused to go around the job: " + Terminal::sentence_of(s["error"], "see what it shows."));
         if (s["phase"] != "idle" || !terminal.all_answered()) rests_since = std::chrono::steady_clock::now();
         return std::chrono::steady_clock::now() - rests_since > 1500ms;  // reports come every half second
       },
@@ -264,7 +284,8 @@ int machine_frame(const std::vector<std::string>& words, const std::atomic<bool>
 }
 
 int machine_stop(const std::vector<std::string>& words, const std::atomic<bool>& interrupted) {
-  const MachineFlags flags = read_machine_flags(words, {"--data", "--machine", "--controller", "--bed-x-mm", "--bed-y-mm"}, {});
+  const MachineFlags flags =
+      read_machine_flags(words, {"--data", "--machine", "--controller", "--bed-x-mm", "--bed-y-mm"}, {});
   const MachineRegistry registry = registry_of(flags);
   const Machine machine = driven_machine(registry, flags);
   if (const int holder = MachineLock::ask_to_stop(registry.data(), machine); holder > 0) {

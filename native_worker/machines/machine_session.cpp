@@ -17,25 +17,36 @@ bool is_lasting(const std::string& what) { return what != "jog" && what != "jog_
 
 Json driver_options(const Machine& machine, Json options) {
   if (options.is_null()) options = Json::object();
-  if (!options.is_object()) throw Error(ErrorCode::invalid_input, "open", "open needs the machine's settings as an object.");
+  if (!options.is_object())
+    throw Error(ErrorCode::invalid_input, "open", "open needs the machine's settings as an object.");
   if (!options.contains("controller")) {
-    options["controller"] = machine.controller == "grbl_mill" ? "grbl" : machine.controller;
-    if (machine.controller == "grbl_mill" && !options.contains("tool")) options["tool"] = "mill";
+    options["controller"] = machine.controller;
+    if (const SerialController* known = find_serial_controller(machine.controller)) {
+      options["controller"] = known->controller;
+      if (!options.contains("tool")) options["tool"] = known->tool;
+    }
   }
   if (!options.contains("baud") && machine.kind == MachineKind::serial) options["baud"] = machine.baud;
   const bool is_ruida = options["controller"] == "ruida";
   if (options["controller"] == "k40")
-    throw Error(ErrorCode::invalid_input, "controller", "A K40 board is reached from the page over USB: connect it there.");
-  if (is_ruida != (machine.kind == MachineKind::ruida))
     throw Error(ErrorCode::invalid_input, "controller",
-                is_ruida ? "A Ruida is reached over the network: register it with formwright machine add --url ruida://ADDRESS."
-                         : machine.name + " is a Ruida: choose that controller.");
+                "A K40 board is reached from the page over USB: connect it there.");
+  if (is_ruida != (machine.kind == MachineKind::ruida))
+    throw Error(
+        ErrorCode::invalid_input, "controller",
+        is_ruida ? "A Ruida is reached over the network: register it with formwright machine add --url ruida://ADDRESS."
+                 : machine.name + " is a Ruida: choose that controller.");
   return options;
 }
 
-MachineSession::MachineSession(boost::asio::io_context& io, const Machine& machine, const Json& options, std::shared_ptr<MachinePort> port,
-                               std::unique_ptr<MachineLock> lock, MachineLog& log)
-    : timer_(io), machine_(machine), driver_(make_machine_driver(options)), port_(std::move(port)), lock_(std::move(lock)), log_(log) {}
+MachineSession::MachineSession(boost::asio::io_context& io, const Machine& machine, const Json& options,
+                               std::shared_ptr<MachinePort> port, std::unique_ptr<MachineLock> lock, MachineLog& log)
+    : timer_(io),
+      machine_(machine),
+      driver_(make_machine_driver(options)),
+      port_(std::move(port)),
+      lock_(std::move(lock)),
+      log_(log) {}
 
 MachineSession::~MachineSession() {
   if (!over_) port_->close();
@@ -68,8 +79,8 @@ void MachineSession::begin(Listener listener) {
 }
 
 void MachineSession::tick() {
-  timer_.expires_after(
-      std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(MachineDriver::tick_s)));
+  timer_.expires_after(std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+      std::chrono::duration<double>(MachineDriver::tick_s)));
   timer_.async_wait([this, self = weak_from_this()](const boost::system::error_code& error) {
     const auto alive = self.lock();
     if (error || !alive || over_) return;
@@ -95,7 +106,8 @@ void MachineSession::publish() {
   const double now = now_s();
   const Json state = driver_->state(now);
   std::string phase = state["phase"].get<std::string>() + "/" + state["connection"].get<std::string>();
-  if (state["job"].is_object() && state["job"]["ended"].is_string()) phase += "/" + state["job"]["ended"].get<std::string>();
+  if (state["job"].is_object() && state["job"]["ended"].is_string())
+    phase += "/" + state["job"]["ended"].get<std::string>();
   if (phase == told_phase_ && now - told_s_ < state_period_s) return;
   told_phase_ = phase;
   told_s_ = now;
@@ -104,8 +116,9 @@ void MachineSession::publish() {
 
 void MachineSession::command(const Json& command) {
   if (over_) throw Error(ErrorCode::invalid_input, "do", "The machine is not connected: connect it first.");
-  const std::string what =
-      command.is_object() && command.contains("do") && command["do"].is_string() ? command["do"].get<std::string>() : "";
+  const std::string what = command.is_object() && command.contains("do") && command["do"].is_string()
+                               ? command["do"].get<std::string>()
+                               : "";
   if (what == "stop") {
     driver_->command(command, now_s());  // before anything else, the disk included
     pump(true);

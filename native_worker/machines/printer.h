@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Printing at true size over IPP: what the printer takes is read first, the job is validated, sent with print-scaling=none and the
-// exact sheet, and followed to its end. Blocks: never on the server's thread.
+// Printing at true size over IPP: what the printer takes is read first, the job is validated, sent with
+// print-scaling=none and the exact sheet, and followed to its end. Blocks: never on the server's thread.
 #include <atomic>
 #include <functional>
 #include <string>
@@ -23,6 +23,9 @@ struct PrinterDescription {
   int most_copies = 1;
   bool colour = false, scaling_can_be_off = false;
 };
+
+/// What the answer to Get-Printer-Attributes says; what it leaves out is as in the struct.
+PrinterDescription read_printer_description(ipp_t* attributes);
 
 /// Throws as IppConnection does, and Error{could_not_solve, "machine"} for what is no printer.
 PrinterDescription describe_printer(const PrinterAddress& address, const std::atomic<bool>& cancelled);
@@ -46,13 +49,14 @@ struct PrintResult {
   std::vector<std::string> notes;  // sentences a person should read: fed by hand, scaling not promised
 };
 
-/// Returns when the printer says it is done. Refuses before anything is sent: Error{invalid_input} with where media, copies, quality,
-/// mirrored or sha256. Error{could_not_solve, "machine"}: the printer refused, stopped or vanished. Error{cancelled}: the job was
-/// taken back at the printer as well.
+/// Returns when the printer says it is done. Refuses before anything is sent: Error{invalid_input} with where media,
+/// copies, quality, mirrored or sha256. Error{could_not_solve, "machine"}: the printer refused, stopped or vanished.
+/// Error{cancelled}: the job was taken back at the printer as well.
 PrintResult print_document(const PrinterAddress& address, const PrintOrder& order, const std::atomic<bool>& cancelled,
                            const PrintProgress& progress);
 
-/// The sentence of one printer-state-reason or job-state-reason (RFC 8011, 5.4.12; PWG 5100.9): "media-empty" -> "it is out of paper".
+/// The sentence of one printer-state-reason or job-state-reason (RFC 8011, 5.4.12; PWG 5100.9): "media-empty" -> "it is
+/// out of paper".
 std::string printer_reason_sentence(const std::string& reason);
 
 }  // namespace formwright

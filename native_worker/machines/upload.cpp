@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/sha256.h"
+#include "machines/upload_answers.h"
 
 namespace formwright {
 namespace {
@@ -47,7 +48,8 @@ std::size_t give_document(char* to, std::size_t size, std::size_t count, void* c
 
 int seek_document(void* conversation, curl_off_t offset, int origin) {
   auto& c = *static_cast<Conversation*>(conversation);
-  if (origin != SEEK_SET || offset < 0 || static_cast<std::size_t>(offset) > c.document.size()) return CURL_SEEKFUNC_FAIL;
+  if (origin != SEEK_SET || offset < 0 || static_cast<std::size_t>(offset) > c.document.size())
+    return CURL_SEEKFUNC_FAIL;
   c.sent = static_cast<std::size_t>(offset);
   return CURL_SEEKFUNC_OK;
 }
@@ -56,12 +58,8 @@ int look_for_cancel(void* conversation, curl_off_t, curl_off_t, curl_off_t, curl
   return *static_cast<Conversation*>(conversation)->cancelled ? 1 : 0;
 }
 
-struct Reply {
-  long status = 0;
-  Json json;  // discarded when it is not JSON
-};
-
-/// One request to a registered machine. Nothing but http and https, no redirects (the key would travel along), no proxy.
+/// One request to a registered machine. Nothing but http and https, no redirects (the key would travel along), no
+/// proxy.
 class Request {
  public:
   Request(const Machine& machine, const std::string& path, const std::atomic<bool>& cancelled) : machine_(machine) {
@@ -105,31 +103,29 @@ class Request {
     curl_mime_name(part, "file");
     curl_mime_filename(part, file_name.c_str());
     curl_mime_type(part, "application/octet-stream");
-    curl_mime_data_cb(part, static_cast<curl_off_t>(document.size()), give_document, seek_document, nullptr, &conversation_);
+    curl_mime_data_cb(part, static_cast<curl_off_t>(document.size()), give_document, seek_document, nullptr,
+                      &conversation_);
     set(CURLOPT_TIMEOUT, upload_patience_s);
   }
-  Reply perform() {
+  UploadReply perform() {
     if (form_) set(CURLOPT_MIMEPOST, form_.get());
     set(CURLOPT_HTTPHEADER, headers_.get());
     const CURLcode code = curl_easy_perform(curl_.get());
     if (*conversation_.cancelled) throw Error(ErrorCode::cancelled, "", "Cancelled.");
     if (code == CURLE_OPERATION_TIMEDOUT)
-      fail(machine_.name + " stayed silent at " + machine_.url + ": see whether it is switched on and reachable, and try again.");
+      fail(machine_.name + " stayed silent at " + machine_.url +
+           ": see whether it is switched on and reachable, and try again.");
     if (code == CURLE_PEER_FAILED_VERIFICATION)
-      fail("The certificate of " + machine_.name + " is not one this computer trusts: install it, or register the machine with http.");
+      fail("The certificate of " + machine_.name +
+           " is not one this computer trusts: install it, or register the machine with http.");
     if (code == CURLE_WRITE_ERROR)
       fail(machine_.name + " answered with more than 1 MB, which is no answer: see whether its address is right.");
     if (code != CURLE_OK)
       fail(machine_.name + " cannot be reached at " + machine_.url + " (" + std::string(curl_easy_strerror(code)) +
            "): see whether it is switched on and its address is right.");
-    Reply reply;
-    curl_easy_getinfo(curl_.get(), CURLINFO_RESPONSE_CODE, &reply.status);
-    reply.json = Json::parse(conversation_.answer, nullptr, false);
-    if (reply.status >= 300 && reply.status < 400) fail(machine_.name + " says its address is another one: register it with that address.");
-    // OctoPrint takes a request with a key it does not know for one of a browser.
-    if (reply.status == 401 || reply.status == 403 || (reply.status == 400 && conversation_.answer.find("CSRF") != std::string::npos))
-      fail(machine_.name + " does not know the key: register it anew with --api-key-file and a key from its settings.");
-    return reply;
+    long status = 0;
+    curl_easy_getinfo(curl_.get(), CURLINFO_RESPONSE_CODE, &status);
+    return read_reply(machine_, status, conversation_.answer);
   }
 
  private:
@@ -150,45 +146,11 @@ class Request {
   std::unique_ptr<curl_mime, void (*)(curl_mime*)> form_{nullptr, curl_mime_free};
 };
 
-/// The machine's own words: OctoPrint says {"error": "..."}, Moonraker {"error": {"message": "..."}}.
-std::string words_of(const Json& json) {
-  if (!json.is_object() || !json.contains("error")) return "";
-  const Json& error = json["error"];
-  std::string words = error.is_string()                                                                ? error.get<std::string>()
-                      : error.is_object() && error.contains("message") && error["message"].is_string() ? error["message"].get<std::string>()
-                                                                                                       : "";
-  std::replace_if(
-      words.begin(), words.end(), [](unsigned char c) { return c < 32; }, ' ');
-  return words.substr(0, 300);
-}
-
-std::string quoted(const std::string& words) { return words.empty() ? "" : " (\"" + words + "\")"; }
-
-const Json& at_path(const Json& json, std::initializer_list<const char*> path) {
-  static const Json nothing;
-  const Json* here = &json;
-  for (const char* name : path) {
-    if (!here->is_object() || !here->contains(name)) return nothing;
-    here = &(*here)[name];
-  }
-  return *here;
-}
-
-std::string text_at(const Json& json, std::initializer_list<const char*> path) {
-  const Json& value = at_path(json, path);
-  return value.is_string() ? value.get<std::string>() : "";
-}
-
-bool flag_at(const Json& json, std::initializer_list<const char*> path) {
-  const Json& value = at_path(json, path);
-  return value.is_boolean() && value.get<bool>();
-}
-
 }  // namespace
 
 std::string upload_file_name(const std::string& file_name) {
-  std::string name = file_name.substr(
-      std::min(file_name.size(), file_name.find_last_of("/\\") == std::string::npos ? 0 : file_name.find_last_of("/\\") + 1));
+  std::string name = file_name.substr(std::min(
+      file_name.size(), file_name.find_last_of("/\\") == std::string::npos ? 0 : file_name.find_last_of("/\\") + 1));
   for (char& c : name)
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '_' && c != '-') c = '_';
   name.erase(0, std::min(name.find_first_not_of('.'), name.size()));
@@ -214,66 +176,17 @@ Json upload_gcode(const Machine& machine, const UploadOrder& order, const std::a
   }
   request.form_field("print", order.print ? "true" : "false");
   request.form_file(name, order.gcode, progress);
-  const Reply reply = request.perform();
-  const std::string words = words_of(reply.json);
-  if (reply.status == 409)
-    fail(machine.name + " cannot take the file now" + quoted(words) +
-         ": it prints that file, or is not connected to its printer. Wait or connect it.");
-  if (reply.status == 413 || reply.status == 507)
-    fail(machine.name + " has no room for the file" + quoted(words) + ": delete old ones there.");
-  if (reply.status == 415) fail(machine.name + " does not take such a file" + quoted(words) + ": send G-code.");
-  if (reply.status == 404)
-    fail("What answers at " + machine.url + " is no " + (octoprint ? "OctoPrint" : "Moonraker") +
-         ": see whether the address and --kind are right.");
-  if (reply.status == 422) fail("The file arrived damaged at " + machine.name + quoted(words) + ": send it again.");
-  if (reply.status < 200 || reply.status >= 300)
-    fail(machine.name + " refused the file (" + std::to_string(reply.status) + ")" + quoted(words) + ": see its own page for the reason.");
-  std::string kept = octoprint ? text_at(reply.json, {"files", "local", "name"}) : text_at(reply.json, {"item", "path"});
-  if (kept.empty()) kept = octoprint ? text_at(reply.json, {"files", "local", "path"}) : text_at(reply.json, {"result", "item", "path"});
-  if (kept.empty())
-    fail("What answers at " + machine.url + " is no " + (octoprint ? "OctoPrint" : "Moonraker") +
-         ": see whether the address and --kind are right.");
-  bool printing = order.print;
-  if (octoprint && at_path(reply.json, {"effectivePrint"}).is_boolean())
-    printing = flag_at(reply.json, {"effectivePrint"});
-  else if (!octoprint)
-    printing = flag_at(reply.json, {"print_started"}) || flag_at(reply.json, {"result", "print_started"});
-  else if (order.print)
-    printing = !at_path(reply.json, {"files", "local"}).is_null();
-  if (order.print && !printing)
-    fail(machine.name + " has the file " + kept + " and did not start it: its printer is not ready. Start it there once it is.");
-  return {{"file_name", kept}, {"printing", printing}};
+  return read_uploaded(machine, order.print, request.perform());
 }
 
 Json upload_machine_state(const Machine& machine, const std::atomic<bool>& cancelled) {
   if (machine.kind == MachineKind::octoprint) {
-    const Reply version = Request(machine, "/api/version", cancelled).perform();
-    if (version.status != 200 || text_at(version.json, {"server"}).empty())
-      fail("What answers at " + machine.url + " is no OctoPrint: see whether the address and --kind are right.");
-    const std::string software = "OctoPrint " + text_at(version.json, {"server"});
-    const Reply printer = Request(machine, "/api/printer?exclude=sd", cancelled).perform();
-    if (printer.status == 409) return {{"state", "disconnected"}, {"software", software}};
-    const auto flag = [&](const char* name) { return flag_at(printer.json, {"state", "flags", name}); };
-    const std::string state = flag("error") || flag("closedOrError")   ? "error"
-                              : flag("paused") || flag("pausing")      ? "paused"
-                              : flag("printing") || flag("cancelling") ? "printing"
-                              : flag("operational")                    ? "ready"
-                                                                       : "disconnected";
-    return {{"state", state}, {"software", software}, {"state_message", text_at(printer.json, {"state", "text"})}};
+    const std::string software = read_octoprint_version(machine, Request(machine, "/api/version", cancelled).perform());
+    return read_octoprint_state(software, Request(machine, "/api/printer?exclude=sd", cancelled).perform());
   }
-  const Reply info = Request(machine, "/server/info", cancelled).perform();
-  const std::string klippy = text_at(info.json, {"result", "klippy_state"});
-  if (info.status != 200 || klippy.empty())
-    fail("What answers at " + machine.url + " is no Moonraker: see whether the address and --kind are right.");
-  Json state = {{"state", klippy == "ready"                           ? "ready"
-                          : klippy == "error" || klippy == "shutdown" ? "error"
-                                                                      : "disconnected"},
-                {"software", "Moonraker " + text_at(info.json, {"result", "moonraker_version"})}};
-  if (klippy == "ready") {
-    const Reply printing = Request(machine, "/printer/objects/query?print_stats", cancelled).perform();
-    const std::string now = text_at(printing.json, {"result", "status", "print_stats", "state"});
-    if (now == "printing" || now == "paused" || now == "error") state["state"] = now;
-  }
+  Json state;
+  if (read_moonraker_state(machine, Request(machine, "/server/info", cancelled).perform(), state))
+    read_moonraker_printing(Request(machine, "/printer/objects/query?print_stats", cancelled).perform(), state);
   return state;
 }
 
@@ -281,10 +194,7 @@ void cancel_print(const Machine& machine, const std::atomic<bool>& cancelled) {
   const bool octoprint = machine.kind == MachineKind::octoprint;
   Request request(machine, octoprint ? "/api/job" : "/printer/print/cancel", cancelled);
   request.post_json(octoprint ? R"({"command": "cancel"})" : "{}");
-  const Reply reply = request.perform();
-  if (reply.status < 200 || reply.status >= 300)
-    fail(machine.name + " did not stop (" + std::to_string(reply.status) + ")" + quoted(words_of(reply.json)) +
-         ": if it prints, stop it at the machine.");
+  read_cancelled(machine, request.perform());
 }
 
 }  // namespace formwright

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // PDF, PNG and PWG raster that are to be printed.
 #include "base/error.h"
-#include "fuzz/fuzz_reader.h"
+#include "fuzz/fuzz_check.h"
 #include "machines/document_pages.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a machine, or whoever sits on its cable, may say to a driver; and what a job file may hold.
 #include "base/error.h"
-#include "fuzz/fuzz_reader.h"
+#include "fuzz/fuzz_check.h"
 #include "machines/machine_driver.h"
+#include "machines/ruida_bounds.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace formwright;
@@ -21,12 +22,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   double now_s = 0;
   driver->opened(now_s);
   attempt([&] { driver->load("job", bytes.first(job_bytes)); });
+  attempt([&] { fuzz::check(!ruida_bounds(bytes.first(job_bytes)).empty); });
   const ByteView talk = bytes.subspan(job_bytes);
   static constexpr const char* commands[] = {"home", "start", "pause", "resume", "jog", "frame", "unlock", "stop"};
   for (std::size_t at = 0; at < talk.size(); at += 16) {
     driver->received(talk.subspan(at, std::min<std::size_t>(16, talk.size() - at)), now_s += 0.05);
     driver->tick(now_s += 0.05);
-    const Json command = {{"do", commands[std::to_integer<std::size_t>(talk[at]) % 8]}, {"confirmed", true}, {"x_mm", 1}, {"speed_mm_per_s", 10}, {"bounds_mm", {0, 0, 1, 1}}};
+    const Json command = {{"do", commands[std::to_integer<std::size_t>(talk[at]) % 8]},
+                          {"confirmed", true},
+                          {"x_mm", 1},
+                          {"speed_mm_per_s", 10},
+                          {"bounds_mm", {0, 0, 1, 1}}};
     if (at % 64 == 0) attempt([&] { driver->command(command, now_s); });
     driver->take_output();
     driver->take_events().dump();

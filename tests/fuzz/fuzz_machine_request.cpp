@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a page, or whatever has the token, may say at a machine's socket.
 #include "base/error.h"
-#include "fuzz/fuzz_reader.h"
+#include "fuzz/fuzz_check.h"
 #include "machines/machine_page.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

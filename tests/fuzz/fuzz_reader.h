@@ -2,19 +2,13 @@
 #pragma once
 // What every target does: read, and if it was read, check it and write it in every format. An Error is an answer;
 // any other exception, a sanitizer's finding, too much memory or time is a finding.
-#include <cstdint>
-#include <cstdlib>
-
 #include "base/error.h"
+#include "fuzz/fuzz_check.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/mesh_source.h"
 #include "geometry/io/model_file.h"
 
 namespace formwright::fuzz {
-
-inline void check(bool good) {
-  if (!good) std::abort();
-}
 
 inline void check_refusal(const Error& error) {
   const std::string_view message = error.what();
@@ -42,7 +36,8 @@ void read_and_write(const std::uint8_t* data, std::size_t size, const Reader& re
   }
   read_model_materials(file, {}, options);
   check(file.model.mesh.face_count() > 0 && file.model.mesh.face_count() <= options.max_triangles);
-  for (const VertexColumn& column : file.columns) check(column.values.size() == file.model.mesh.V.rows() && column.values.allFinite());
+  for (const VertexColumn& column : file.columns)
+    check(column.values.size() == file.model.mesh.V.rows() && column.values.allFinite());
   // Throws Error{internal} for a model that is not sound, which ends the run.
   for (const auto& info : mesh_formats) write_model(file.model, info.format, context);
 }

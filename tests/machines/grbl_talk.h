@@ -21,8 +21,12 @@ struct LineFaults {
 
 class GrblTalk {
  public:
-  explicit GrblTalk(const VirtualGrblOptions& machine_options = {}, const LineFaults& faults = {}, std::uint64_t seed = 1)
-      : machine(machine_options), driver({.bed_x_mm = machine_options.travel_x_mm, .bed_y_mm = machine_options.travel_y_mm}), faults_(faults), random_(seed) {
+  explicit GrblTalk(const VirtualGrblOptions& machine_options = {}, const LineFaults& faults = {},
+                    std::uint64_t seed = 1)
+      : machine(machine_options),
+        driver({.bed_x_mm = machine_options.travel_x_mm, .bed_y_mm = machine_options.travel_y_mm}),
+        faults_(faults),
+        random_(seed) {
     driver.opened(now_s);
     machine.open(now_s);
   }
@@ -63,7 +67,10 @@ class GrblTalk {
 
   Json state() const { return driver.state(now_s); }
   std::string phase() const { return state()["phase"]; }
-  std::string ended() const { return state()["job"].is_null() || state()["job"]["ended"].is_null() ? "" : state()["job"]["ended"].get<std::string>(); }
+  std::string ended() const {
+    return state()["job"].is_null() || state()["job"]["ended"].is_null() ? ""
+                                                                         : state()["job"]["ended"].get<std::string>();
+  }
   bool can(const std::string& what) const {
     const Json names = state()["can"];
     for (const Json& name : names)
@@ -82,19 +89,35 @@ class GrblTalk {
   }
   void load(const std::string& job) { driver.load("test", as_bytes(job)); }
 
+  /// What was on its way is lost; the machine goes on with what it has.
+  void pull_cable() {
+    driver.closed(now_s);
+    driver.take_output();
+    to_machine_.clear();
+    to_host_.clear();
+  }
+  void plug_in() {
+    machine.take_output();
+    driver.opened(now_s);
+    machine.open(now_s);
+  }
   void connect() {
     ASSERT_TRUE(pass_until([&] { return state()["connection"] == "ready"; }, 10)) << state().dump();
   }
   void connect_and_home() {
     connect();
+    ASSERT_TRUE(pass_until([&] { return can("home"); }, 5)) << state().dump();
     tell({{"do", "home"}, {"confirmed", true}});
-    ASSERT_TRUE(pass_until([&] { return state()["position_known"] == true && phase() == "idle"; }, 20)) << state().dump();
+    ASSERT_TRUE(pass_until([&] { return state()["position_known"] == true && phase() == "idle"; }, 20))
+        << state().dump();
     tell({{"do", "jog"}, {"x_mm", -300}, {"y_mm", -300}, {"speed_mm_per_s", 150}});
     pass(0.5);
     ASSERT_TRUE(pass_until([&] { return phase() == "idle"; }, 20));
     tell({{"do", "set_origin"}, {"axes", "xy"}});
     pass(0.5);
-    ASSERT_TRUE(pass_until([&] { return phase() == "idle" && std::abs(state()["work_mm"][0].get<double>()) < 1e-9; }, 5)) << state().dump();
+    ASSERT_TRUE(
+        pass_until([&] { return phase() == "idle" && std::abs(state()["work_mm"][0].get<double>()) < 1e-9; }, 5))
+        << state().dump();
   }
 
   VirtualGrbl machine;

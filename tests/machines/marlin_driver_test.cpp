@@ -21,12 +21,17 @@ class VirtualMarlin {
         continue;
       }
       std::string line = std::exchange(line_, {});
+      ++heard;
+      if (dumb) continue;
       if (!line.empty() && random_.uniform() < spoil_) line[random_.below(line.size())] ^= 0x04;
       take(line);
     }
   }
   std::string output;
   std::vector<std::string> done;
+  int heard = 0;           // lines
+  std::string unanswered;  // what is done without a word
+  bool dumb = false;       // hears, does nothing, says nothing
 
  private:
   void take(const std::string& line) {
@@ -46,12 +51,19 @@ class VirtualMarlin {
     if (number != last_ + 1) return again("Error:Line Number is not Last Line Number+1, Last Line: ");
     last_ = number;
     done.push_back(text);
-    if (text == "M105") output += "ok T:201.5 /210.0 B:60.1 /60.0 @:127 B@:0\n";
-    else if (text == "M114") output += "X:1.00 Y:2.00 Z:3.00 E:0.00 Count X:80 Y:160 Z:1200\nok\n";
-    else if (text == "M115") output += "FIRMWARE_NAME:Marlin 2.1.2 (Jan 1 2024) SOURCE_CODE_URL:x\nok\n";
-    else output += "ok\n";
+    if (text == unanswered) return;
+    if (text == "M105")
+      output += "ok T:201.5 /210.0 B:60.1 /60.0 @:127 B@:0\n";
+    else if (text == "M114")
+      output += "X:1.00 Y:2.00 Z:3.00 E:0.00 Count X:80 Y:160 Z:1200\nok\n";
+    else if (text == "M115")
+      output += "FIRMWARE_NAME:Marlin 2.1.2 (Jan 1 2024) SOURCE_CODE_URL:x\nok\n";
+    else
+      output += "ok\n";
   }
-  void again(const std::string& why) { output += why + std::to_string(last_) + "\nResend: " + std::to_string(last_ + 1) + "\nok\n"; }
+  void again(const std::string& why) {
+    output += why + std::to_string(last_) + "\nResend: " + std::to_string(last_ + 1) + "\nok\n";
+  }
 
   std::string line_;
   int last_ = 0;
@@ -60,7 +72,10 @@ class VirtualMarlin {
 };
 
 struct MarlinTalk {
-  explicit MarlinTalk(double spoil = 0, std::uint64_t seed = 1, MachineTool tool = MachineTool::printer) : machine(seed, spoil), driver({.controller = DriverController::marlin, .tool = tool}) { driver.opened(0); }
+  explicit MarlinTalk(double spoil = 0, std::uint64_t seed = 1, MachineTool tool = MachineTool::printer)
+      : machine(seed, spoil), driver({.controller = DriverController::marlin, .tool = tool}) {
+    driver.opened(0);
+  }
   void pass(double seconds) {
     for (const double end = now_s + seconds; now_s < end; now_s += 0.01) {
       for (const Bytes& packet : driver.take_output()) machine.receive(as_text(packet));
@@ -137,6 +152,61 @@ TEST(MarlinDriver, AHaltIsSaid) {
   const Json state = talk.driver.state(talk.now_s);
   EXPECT_EQ(state["phase"], "alarm");
   EXPECT_NE(state["alarm"]["text"].get<std::string>().find("Thermal Runaway"), std::string::npos);
+}
+
+TEST(MarlinDriver, AMotorCalledBIsNoBed) {
+  MarlinTalk talk;
+  talk.pass(3);
+  talk.machine.output += "ok X:39.0 Y:3.0 Z:0 E:79.5 Count: A:3900 B:300 C:0\n";
+  talk.pass(0.05);
+  const Json state = talk.driver.state(talk.now_s);
+  EXPECT_DOUBLE_EQ(state["temperatures"]["bed_c"], 60.1);
+  EXPECT_DOUBLE_EQ(state["machine_mm"][0], 39);
+}
+
+TEST(MarlinDriver, MistakesInOtherWordsAreNoHalt) {
+  for (const char* words : {"Error: Checksum mismatch", "Error: expected line 7 got 8",
+                            "Error:No Line Number with checksum, Last Line: 4", "Error: Unknown command M5"}) {
+    MarlinTalk talk;
+    talk.pass(3);
+    talk.machine.output += std::string(words) + "\n";
+    talk.pass(0.1);
+    EXPECT_EQ(talk.driver.state(talk.now_s)["phase"], "idle") << words;
+  }
+}
+
+TEST(MarlinDriver, SilenceEndsAJobAndIsNotTalkedInto) {
+  MarlinTalk talk;
+  talk.pass(3);
+  std::string job;
+  for (int i = 0; i < 500; ++i) job += "G1 X" + std::to_string(i) + " F3000\n";
+  talk.driver.load("test", as_bytes(job));
+  talk.driver.command({{"do", "start"}, {"confirmed", true}}, talk.now_s);
+  talk.pass(0.5);
+  talk.machine.dumb = true;
+  const int heard = talk.machine.heard;
+  talk.pass(110);
+  EXPECT_TRUE(talk.driver.state(talk.now_s)["job"]["ended"].is_null());
+  EXPECT_LE(talk.machine.heard - heard, 5);
+  talk.pass(20);
+  const Json state = talk.driver.state(talk.now_s);
+  EXPECT_EQ(state["job"]["ended"], "cut_off");
+  EXPECT_EQ(state["connection"], "silent");
+  EXPECT_FALSE(state["position_known"]);
+}
+
+TEST(MarlinDriver, ALostAnswerDoesNotMakeAJobDone) {
+  // The answer to M400 never comes: the job is done when the machine tells its place behind it, and not before.
+  MarlinTalk talk;
+  talk.pass(3);
+  talk.driver.load("test", as_bytes("G1 X5 F3000\nG1 X6\n"));
+  talk.driver.command({{"do", "start"}, {"confirmed", true}}, talk.now_s);
+  talk.machine.unanswered = "M400";
+  talk.pass(9);
+  ASSERT_EQ(talk.machine.done.back(), "M400");
+  EXPECT_TRUE(talk.driver.state(talk.now_s)["job"]["ended"].is_null());
+  talk.pass(4);
+  EXPECT_EQ(talk.driver.state(talk.now_s)["job"]["ended"], "done");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <cups/raster.h>
 #include <gtest/gtest.h>
+#include <algorithm>
 
 #include <cstring>
 
@@ -76,16 +77,16 @@ std::string number(std::uint32_t value) {
 }
 
 TEST(document_pages, a_png_is_as_large_as_its_density_says) {
-  const std::string head =
-      std::string("\x89PNG\r\n\x1a\n", 8) + chunk("IHDR", number(2000) + number(1000) + "\x08\x02" + std::string(3, '\0'));
+  const std::string head = std::string("\x89PNG\r\n\x1a\n", 8) +
+                           chunk("IHDR", number(2000) + number(1000) + "\x08\x02" + std::string(3, '\0'));
   const auto pages = read_document_pages(to_bytes(head + chunk("pHYs", number(10000) + number(5000) + "\x01")));
   EXPECT_EQ(pages.media_type, "image/png");
   EXPECT_DOUBLE_EQ(pages.pages.at(0).width_mm, 200);
   EXPECT_DOUBLE_EQ(pages.pages.at(0).height_mm, 200);
   // A ratio only, after the pixels, or nothing: no size.
-  for (const std::string& tail :
-       {chunk("pHYs", number(1) + number(1) + std::string(1, '\0')),
-        chunk("IDAT", "x") + chunk("pHYs", number(10000) + number(5000) + "\x01"), std::string(), number(0xffffffff) + "pHYs"})
+  for (const std::string& tail : {chunk("pHYs", number(1) + number(1) + std::string(1, '\0')),
+                                  chunk("IDAT", "x") + chunk("pHYs", number(10000) + number(5000) + "\x01"),
+                                  std::string(), number(0xffffffff) + "pHYs"})
     EXPECT_THROW(read_document_pages(to_bytes(head + tail)), Error);
 }
 
@@ -135,10 +136,12 @@ TEST(print_media, database_ready_margins_and_names) {
         ippAddInteger(media, IPP_TAG_ZERO, IPP_TAG_INTEGER, margin, top);
       all.push_back(media);
     }
-    ippAddCollections(answer, IPP_TAG_PRINTER, name, static_cast<int>(all.size()), const_cast<const ipp_t**>(all.data()));
+    ippAddCollections(answer, IPP_TAG_PRINTER, name, static_cast<int>(all.size()),
+                      const_cast<const ipp_t**>(all.data()));
     for (ipp_t* media : all) ippDelete(media);
   };
-  add("media-col-database", {{21000, 29700, 300, 400}, {21000, 29700, 0, 0}, {29700, 42000, 300, 400}, {12345, 6789, 1, 2}});
+  add("media-col-database",
+      {{21000, 29700, 300, 400}, {21000, 29700, 0, 0}, {29700, 42000, 300, 400}, {12345, 6789, 1, 2}});
   add("media-col-ready", {{21000, 29700, 300, 400}});
   const auto media = read_print_media(answer);
   ippDelete(answer);
@@ -155,6 +158,29 @@ TEST(print_media, database_ready_margins_and_names) {
   EXPECT_TRUE(page_matches(*a4, {209.9, 297.04}));
   EXPECT_TRUE(page_matches(*a4, {297, 210}));
   EXPECT_FALSE(page_matches(*a4, {215.9, 279.4}));
+}
+
+TEST(document_pages, a_pwg_raster_in_either_order_of_bytes_whatever_it_claims_of_its_lines) {
+  // Found by fuzzing: libcups set aside what the header said of a line, here 1.3 GB, for a file of 21 kB.
+  cups_page_header2_t header{};
+  header.HWResolution[0] = header.HWResolution[1] = 300;
+  header.cupsWidth = 2480;
+  header.cupsHeight = 3508;
+  header.cupsBytesPerLine = 1349675374;
+  Bytes low_end_first = to_bytes("2SaR");
+  const auto* bytes = reinterpret_cast<const std::byte*>(&header);
+  low_end_first.insert(low_end_first.end(), bytes, bytes + sizeof header);
+  Bytes high_end_first = low_end_first;
+  for (std::size_t at = 0; at + 4 <= high_end_first.size(); at += 4)
+    std::reverse(high_end_first.begin() + static_cast<std::ptrdiff_t>(at),
+                 high_end_first.begin() + static_cast<std::ptrdiff_t>(at + 4));
+  for (const Bytes& raster : {low_end_first, high_end_first}) {
+    const DocumentPages pages = read_document_pages(raster);
+    ASSERT_EQ(pages.pages.size(), 1u);
+    EXPECT_NEAR(pages.pages[0].width_mm, 25.4 * 2480 / 300, 1e-9);
+    EXPECT_NEAR(pages.pages[0].height_mm, 25.4 * 3508 / 300, 1e-9);
+  }
+  EXPECT_THROW(read_document_pages(ByteView(low_end_first).first(1000)), Error);
 }
 
 }  // namespace

@@ -82,6 +82,26 @@ class Listeners(unittest.TestCase):
         answer = other.ask(open={"controller": "ruida"})
         self.assertIn("Port 40200", answer["error"]["message"])
 
+    def test_a_ruida_job_is_framed(self):
+        plate = self.folder / "plate.svg"
+        plate.write_text('<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="40mm" viewBox="0 0 60 40">'
+                         '<g id="cut" stroke="#ff0000" fill="none"><rect x="5" y="5" width="50" height="30"/></g></svg>')
+        made = subprocess.run([peers.PROGRAM, "laser-job", "--drawing", plate, "--controller", "ruida", "--kerf-mm", "0", "--x-mm", "100", "--y-mm", "50", "--outputs", "job.rd",
+                               "--out", self.folder / "job", "--quiet"], capture_output=True, text=True)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        meerk40t = self.started(peers.MeerK40t(self.folder / "meerk40t", "ruidacontrol"))
+        meerk40t.wait_for("Ruida Data Server opened on port 50200")
+        time.sleep(1)
+        peers.add_machine(self.data, "Ruida", "ruida://127.0.0.1")
+        run = peers.formwright("frame", "--machine", "Ruida", "--job", self.folder / "job/job.rd", "--yes", data=self.data)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("x 105.0 to 155.0 mm, y 55.0 to 85.0 mm", run.stdout)
+        # What cannot be framed is refused before anything is sent.
+        (self.folder / "job.gcode").write_bytes(JOB)
+        run = peers.formwright("frame", "--machine", "Ruida", "--job", self.folder / "job.gcode", "--yes", data=self.data)
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("not a Ruida job", run.stderr)
+
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)

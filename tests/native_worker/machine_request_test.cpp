@@ -18,9 +18,10 @@ TEST(machine_request, the_four_kinds) {
 }
 
 TEST(machine_request, anything_else_is_refused_with_a_sentence) {
-  for (const std::string text : {"", "x", "{}", "[]", "{\"n\": 3}", "{\"open\": 3}", "{\"close\": false}",
-                                 "{\"open\": {}, \"close\": true}", "{\"n\": 1.5, \"close\": true}", "{\"n\": 1e99, \"close\": true}",
-                                 "{\"load\": {\"name\": \"a\", \"sha256\": \"../x\"}}", "{\"load\": {\"sha256\": 4}}", "{\"run\": {}}"}) {
+  for (const std::string text :
+       {"", "x", "{}", "[]", "{\"n\": 3}", "{\"open\": 3}", "{\"close\": false}", "{\"open\": {}, \"close\": true}",
+        "{\"n\": 1.5, \"close\": true}", "{\"n\": 1e99, \"close\": true}",
+        "{\"load\": {\"name\": \"a\", \"sha256\": \"../x\"}}", "{\"load\": {\"sha256\": 4}}", "{\"run\": {}}"}) {
     try {
       read_machine_request(text);
       ADD_FAILURE() << text;
@@ -43,6 +44,9 @@ TEST(driver_options, a_port_has_the_controllers_that_speak_over_it) {
   EXPECT_THROW(driver_options(serial, {{"controller", "ruida"}}), Error);
   EXPECT_THROW(driver_options(serial, {{"controller", "k40"}}), Error);
   EXPECT_THROW(driver_options(serial, Json::array()), Error);
+  serial.controller = "marlin_printer";
+  EXPECT_EQ(driver_options(serial, nullptr)["controller"], "marlin");
+  EXPECT_EQ(driver_options(serial, nullptr)["tool"], "printer");
   Machine ruida;
   ruida.kind = MachineKind::ruida;
   ruida.controller = "ruida";

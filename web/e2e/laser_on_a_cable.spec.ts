@@ -2,20 +2,17 @@
 // The page's own serial line, through the browser's real Web Serial: umockdev shows a USB adapter that is not there, its port is a
 // pseudo-terminal, and behind that the virtual GRBL runs as a process of its own. Ending socat is pulling the cable.
 import type { Browser, Page } from '@playwright/test';
-import { chromium } from '@playwright/test';
 import type { ChildProcess } from 'node:child_process';
 import { spawn, spawnSync } from 'node:child_process';
-import { existsSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
-import { createServer } from 'node:net';
+import { existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
+import { allow, browserOf, chip, confirm, forbid, hasUmockdev, plate } from './machine_bench';
 import { address, backend, expect, fileOf, test } from './page';
 
 test.skip(backend !== 'wasm', 'the cable is the page’s own: solving does not come into it');
 
 const laser = resolve(import.meta.dirname, '../../build/tests/machines/virtual_grbl_stdio');
-const policies = '/etc/chromium/policies/managed';
-const policy = join(policies, 'formwright_test.json');
 
 const device = (port: string) => `P: /devices/pci0000:00/0000:00:14.0/usb1/1-2
 E: DEVTYPE=usb_device
@@ -42,14 +39,6 @@ E: SUBSYSTEM=tty
 A: dev=4:64\\n
 `;
 
-async function freePort(): Promise<number> {
-  const server = createServer();
-  await new Promise<void>((done) => server.listen(0, '127.0.0.1', done));
-  const { port } = server.address() as { port: number };
-  await new Promise((done) => server.close(done));
-  return port;
-}
-
 /** A browser that sees the adapter, and the cable to the laser. */
 class Bench {
   readonly folder = mkdtempSync(join(tmpdir(), 'formwright-cable-'));
@@ -68,44 +57,14 @@ class Bench {
   async open(): Promise<Page> {
     const description = join(this.folder, 'adapter.umockdev');
     writeFileSync(description, device(this.port));
-    const debugging = await freePort();
-    const program = process.env['CHROMIUM'] ?? 'chromium';
-    const flags = [
-      '--headless=new',
-      '--no-sandbox',
-      '--disable-gpu',
-      '--no-first-run',
-      '--disable-background-networking',
-    ];
-    // umockdev hands no pipes on: the browser is spoken to over its debugging port.
-    this.#chromium = spawn(
-      'umockdev-run',
-      [
-        '-d',
-        description,
-        '--',
-        program,
-        ...flags,
-        `--remote-debugging-port=${debugging}`,
-        `--user-data-dir=${join(this.folder, 'profile')}`,
-        'about:blank',
-      ],
-      { stdio: 'ignore', detached: true },
-    );
-    await expect
-      .poll(
-        () =>
-          fetch(`http://127.0.0.1:${debugging}/json/version`).then(
-            (answer) => answer.ok,
-            () => false,
-          ),
-        { timeout: 30_000 },
-      )
-      .toBe(true);
-    this.browser = await chromium.connectOverCDP(`http://127.0.0.1:${debugging}`);
-    const context = this.browser.contexts()[0];
-    if (context === undefined) throw new Error('The browser has no context.');
-    return await context.newPage();
+    const { browser, page } = await browserOf(this.folder, (words) => {
+      this.#chromium = spawn('umockdev-run', ['-d', description, '--', ...words], {
+        stdio: 'ignore',
+        detached: true,
+      });
+    });
+    this.browser = browser;
+    return page;
   }
 
   async end(): Promise<void> {
@@ -116,24 +75,16 @@ class Bench {
   }
 }
 
-const square = `<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="40mm" viewBox="0 0 60 40">
-<g id="cut" stroke="#ff0000" fill="none"><rect x="5" y="5" width="50" height="30"/><circle cx="30" cy="20" r="8"/></g></svg>`;
-
-const chip = (page: Page, words: string | RegExp) => page.locator('.state-chip').getByText(words);
-const confirm = (page: Page, name: string) =>
-  page.getByRole('dialog').getByRole('button', { name, exact: true }).click();
-
 test('a laser on a cable: connect, home, cut, hold, go on, and the cable pulled', async ({ baseURL }) => {
-  test.skip(spawnSync('umockdev-run', ['--version']).status !== 0, 'umockdev is not installed');
+  test.skip(!hasUmockdev(), 'umockdev is not installed');
   expect(existsSync(laser)).toBe(true); // built with the native tests
-  mkdirSync(policies, { recursive: true });
-  writeFileSync(policy, JSON.stringify({ SerialAllowAllPortsForUrls: [baseURL] })); // instead of the browser's own chooser
+  allow({ SerialAllowAllPortsForUrls: [baseURL] });
   const bench = new Bench();
   try {
     bench.plugIn();
     const page = await bench.open();
     await page.goto(`${baseURL}${address()}#/machines`);
-    await page.getByLabel('Model or project file').setInputFiles(fileOf('plate.svg', square));
+    await page.getByLabel('Model or project file').setInputFiles(fileOf('plate.svg', plate));
     await expect(page.getByRole('contentinfo').getByText('Job ready').first()).toBeVisible();
 
     await page.getByRole('button', { name: 'Connect by cable' }).click();
@@ -171,6 +122,6 @@ test('a laser on a cable: connect, home, cut, hold, go on, and the cable pulled'
     await expect(page.locator('.job-history')).toContainText('done');
   } finally {
     await bench.end();
-    rmSync(policy, { force: true });
+    forbid();
   }
 });

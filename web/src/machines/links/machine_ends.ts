@@ -161,7 +161,9 @@ export async function openUsbEnd(usb: UsbLike, index: number, listener: EndListe
             new Uint8Array(answer.data.buffer, answer.data.byteOffset, answer.data.byteLength),
           );
       } catch (thrown) {
-        gone(thrown instanceof Error ? thrown.message : String(thrown));
+        // The browser's own words for it are about transfers.
+        const unplugged = thrown instanceof DOMException;
+        gone(unplugged ? 'The cable was unplugged, or the laser switched off.' : (thrown as Error).message);
       }
     },
     close: async () => {

@@ -8,13 +8,17 @@ type Options = Readonly<Record<string, unknown>>;
 interface Allowed {
   getInfo?(): { usbVendorId?: number; usbProductId?: number };
 }
+interface AllowedDevice {
+  readonly vendorId: number;
+  readonly productId: number;
+}
 interface PortChooser {
   getPorts(): Promise<Allowed[]>;
   requestPort(options?: object): Promise<Allowed>;
 }
 interface DeviceChooser {
-  getDevices(): Promise<Allowed[]>;
-  requestDevice(options: object): Promise<Allowed>;
+  getDevices(): Promise<AllowedDevice[]>;
+  requestDevice(options: object): Promise<AllowedDevice>;
 }
 const chooser = () => navigator as unknown as { serial?: PortChooser; usb?: DeviceChooser };
 
@@ -43,13 +47,16 @@ export async function openSerial(options: Options, choose = false): Promise<Mach
   return WorkerLink.open({ kind: 'serial', index, baud }, options);
 }
 
-/** A K40 laser on its CH341 board; null where none was chosen. */
+/** A K40 laser on its CH341 board: the one that was allowed before, or one that the person chooses now; null where none was chosen. */
 export async function openUsb(options: Options): Promise<MachineLink | null> {
   const { usb } = chooser();
   if (usb === undefined) throw new Error('This browser has no WebUSB: use Chrome or Edge.');
-  const device = await usb
-    .requestDevice({ filters: [{ vendorId: 0x1a86, productId: 0x5512 }] })
-    .catch(cancelled);
+  const board = { vendorId: 0x1a86, productId: 0x5512 };
+  const before = (await usb.getDevices()).filter(
+    ({ vendorId, productId }) => vendorId === board.vendorId && productId === board.productId,
+  );
+  const device =
+    before.length === 1 ? before[0] : await usb.requestDevice({ filters: [board] }).catch(cancelled);
   if (!device) return null;
   const index = (await usb.getDevices()).indexOf(device);
   return WorkerLink.open({ kind: 'usb', index }, options);

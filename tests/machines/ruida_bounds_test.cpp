@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "machines/ruida_bounds.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "machines/ruida_driver.h"
+
+namespace formwright {
+namespace {
+
+/// A job as its bytes are before they are scrambled.
+struct RuidaJob {
+  std::string plain;
+
+  RuidaJob& code(std::initializer_list<unsigned> bytes) {
+    for (const unsigned byte : bytes) plain += static_cast<char>(byte);
+    return *this;
+  }
+  RuidaJob& number(std::int64_t value, int bytes) {
+    for (int i = bytes - 1; i >= 0; --i) plain += static_cast<char>(value >> (7 * i) & 0x7f);
+    return *this;
+  }
+  RuidaJob& begin() {
+    return code({0xd8, 0x10}).code({0xe7, 0x04}).number(1, 2).number(1, 2).code({0xc9, 0x02}).number(20000, 5);
+  }
+  RuidaJob& to(bool burn, int x_um, int y_um) { return code({burn ? 0xa8u : 0x88u}).number(x_um, 5).number(y_um, 5); }
+  RuidaJob& by(bool burn, int x_um, int y_um) {
+    const unsigned base = burn ? 0xa8 : 0x88;
+    if (y_um == 0) return code({base + 2}).number(x_um, 2);
+    if (x_um == 0) return code({base + 3}).number(y_um, 2);
+    return code({base + 1}).number(x_um, 2).number(y_um, 2);
+  }
+  Bytes file() const {
+    Bytes bytes;
+    for (const char c : plain) bytes.push_back(std::byte{ruida_swizzled(static_cast<unsigned char>(c))});
+    return bytes;
+  }
+};
+
+std::string refusal(const RuidaJob& job) {
+  try {
+    ruida_bounds(job.file());
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::invalid_input);
+    EXPECT_EQ(error.where(), "job");
+    EXPECT_TRUE(std::string(error.what()).ends_with('.')) << error.what();
+    return error.what();
+  }
+  return "";
+}
+
+TEST(RuidaBounds, AreThoseOfWhatIsBurned) {
+  // Far travel is not burned; a cut begins where the head stands.
+  const GcodeBounds bounds = ruida_bounds(RuidaJob()
+                                              .begin()
+                                              .to(false, 900000, 900000)
+                                              .to(false, 10000, 20500)
+                                              .to(true, 30000, 20500)
+                                              .by(true, 0, -4250)
+                                              .to(false, 0, 0)
+                                              .file());
+  EXPECT_EQ(bounds.low_mm, (std::array<double, 3>{10, 16.25, 0}));
+  EXPECT_EQ(bounds.high_mm, (std::array<double, 3>{30, 20.5, 0}));
+}
+
+TEST(RuidaBounds, FollowAbsoluteAndRelativeMovesOfEveryKind) {
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    Random random(seed);
+    RuidaJob job;
+    job.begin().to(false, 1000, 1000);
+    std::array<int, 2> at{1000, 1000}, low{1 << 30, 1 << 30}, high{-(1 << 30), -(1 << 30)};
+    const auto see = [&] {
+      for (std::size_t i = 0; i < 2; ++i) low[i] = std::min(low[i], at[i]), high[i] = std::max(high[i], at[i]);
+    };
+    for (int i = 0; i < 300; ++i) {
+      const bool burn = i == 0 || random.uniform() < 0.3;
+      if (burn) see();
+      if (random.uniform() < 0.1) {
+        at = {static_cast<int>(random.below(1000000)) - 100000, static_cast<int>(random.below(1000000)) - 100000};
+        job.to(burn, at[0], at[1]);
+      } else {
+        const int dx = static_cast<int>(random.below(16384)) - 8192, dy = static_cast<int>(random.below(16384)) - 8192;
+        const std::size_t kind = random.below(3);
+        const int x = kind == 1 ? 0 : dx, y = kind == 2 ? 0 : dy;
+        job.by(burn, x, y);
+        at[0] += x, at[1] += y;
+      }
+      if (burn) see();
+    }
+    const GcodeBounds bounds = ruida_bounds(job.file());
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_NEAR(bounds.low_mm[i], 1e-3 * low[i], 1e-9) << "seed " << seed;
+      EXPECT_NEAR(bounds.high_mm[i], 1e-3 * high[i], 1e-9) << "seed " << seed;
+    }
+  }
+}
+
+TEST(RuidaBounds, RefuseWhereTheyCannotBeTold) {
+  const auto burning = [](RuidaJob job) { return job.to(false, 0, 0).to(true, 5000, 5000); };
+  EXPECT_EQ(refusal(burning(RuidaJob().begin())), "");
+  EXPECT_NE(refusal(burning(RuidaJob().code({0xd8, 0x12}))).find("set at the laser's panel"), std::string::npos);
+  EXPECT_NE(refusal(burning(RuidaJob().begin().code({0xd8, 0x11}))).find("set at the laser's panel"),
+            std::string::npos);
+  EXPECT_NE(refusal(burning(RuidaJob().code({0xf0}))).find("set at the laser's panel"), std::string::npos);
+  EXPECT_NE(refusal(burning(RuidaJob().begin().code({0xe7, 0x08}).number(3, 2).number(1, 2))).find("array"),
+            std::string::npos);
+  EXPECT_NE(refusal(burning(RuidaJob().begin().code({0xd9, 0x10, 0}).number(0, 5).number(0, 5))).find("cannot be told"),
+            std::string::npos);
+  EXPECT_NE(refusal(burning(RuidaJob().begin().code({0x80, 0x00}).number(0, 5))).find("cannot be told"),
+            std::string::npos);
+  EXPECT_EQ(refusal(burning(RuidaJob().begin().code({0x80, 0x08}).number(0, 5))), "");  // the table
+  EXPECT_NE(refusal(RuidaJob().begin().by(true, 100, 100)).find("before it has said where"), std::string::npos);
+  EXPECT_NE(refusal(RuidaJob().begin().to(false, 1, 1)).find("burns nothing"), std::string::npos);
+  EXPECT_NE(refusal(RuidaJob().begin().to(false, 1, 1).code({0xa8, 1, 2, 3})).find("cut off"), std::string::npos);
+  EXPECT_NE(refusal(RuidaJob{"G1 X5"}).find("not a Ruida job"), std::string::npos);
+  EXPECT_NE(refusal(RuidaJob{}).find("not a Ruida job"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace formwright

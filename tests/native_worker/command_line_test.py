@@ -62,12 +62,16 @@ class CommandLine(unittest.TestCase):
         out = self.folder / "out"
         segments = self.folder / "segments.json"
         segments.write_text(json.dumps({"punctures": [[0, 0, 0], [50, 90, 0], [-50, 90, 0]]}))
-        run = self.run_program("zippable-design", "--sample", "t_shape", "--sample-vertices", 1500, "--width-mm", 18, "--segments", segments, "--out", out, "--quiet")
+        words = ("zippable-design", "--sample", "t_shape", "--sample-vertices", 1500, "--width-mm", 18, "--segments", segments, "--out", out, "--quiet")
+        self.assertEqual(self.run_program(*words, "--fabrics", "two").returncode, 0)
+        in_two = set(json.loads((out / "report.json").read_text()))
+        run = self.run_program(*words)
         self.assertEqual(run.returncode, 0, run.stderr)
         self.assertEqual(sorted(p.name for p in out.iterdir()), ["curve.obj", "design.json", "formed.ply", "parameterised.ply", "report.json", "ribbon.svg"])
         report = json.loads((out / "report.json").read_text())
         described = json.loads(self.run_program("describe", "zippable-design").stdout)
-        self.assertEqual(set(report), {f["name"] for f in described["report"]})
+        self.assertEqual(in_two, {f["name"] for f in described["report"]})
+        self.assertEqual(set(report), in_two - {"fabric_area_mm2", "fabric_seams", "interleaved_share"})
         self.assertEqual(report["parts"], 3)
         design = json.loads((out / "design.json").read_text())
         self.assertEqual(len(design["ribbon"]["triangles"]), len(design["ribbon"]["boundary"]) - 2)

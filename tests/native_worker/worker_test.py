@@ -241,9 +241,11 @@ class Survival(WorkerCase):
         line = http.client.HTTPConnection("127.0.0.1", self.worker.port, timeout=60)
         line.request("GET", "/api/status", headers={"Authorization": "Bearer " + self.worker.token})
         line.getresponse().read()
-        self.worker.wait(self.worker.post_job(operation="import", inputs=PYRAMID))
+        victim = self.worker.post_job(**LONG)
+        self.worker.wait_running(victim)
         os.kill(self.worker.job_process(), signal.SIGKILL)  # the next one is born while the line is open
-        self.worker.wait(self.worker.post_job(operation="import", inputs=PYRAMID))
+        self.worker.wait(victim)
+        self.worker.wait_running(self.worker.post_job(**LONG))
         folder = pathlib.Path(f"/proc/{self.worker.job_process()}/fd")
         held = [os.readlink(descriptor) for descriptor in folder.iterdir()]
         line.close()

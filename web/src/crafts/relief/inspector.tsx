@@ -20,6 +20,7 @@ import type { CraftResult } from '../common/craft_document';
 import { download, safeFileName } from '../common/download';
 import { browserMemory_mb } from '../common/estimate';
 import { ModelRow } from '../common/model_row';
+import { printInPlastic } from '../common/print_request';
 import { outputOf } from '../common/full_solve';
 import { parametersOf } from './meshes';
 import type { ReliefSession } from './relief_session';
@@ -208,14 +209,23 @@ function ExportButton({ session, result, onSendToMill }: ExportProps) {
           label="Export another format"
           buttonClass="button filled big"
           align="right"
-          items={[...files, ...all.filter((output) => output.name === 'relief.ply')].map((output) => {
-            const kept = result.outputs[output.name];
-            return {
-              label: output.name === 'relief.ply' ? `${output.label}, for measuring` : output.label,
-              hint: kept ? formatBytes(kept.bytes) : undefined,
-              onSelect: () => void save(output),
-            };
-          })}
+          items={[
+            {
+              label: 'Send to a 3D printer',
+              icon: 'machines' as const,
+              disabledReason: busy,
+              onSelect: () => void printSolid(session),
+            },
+            null,
+            ...[...files, ...all.filter((output) => output.name === 'relief.ply')].map((output) => {
+              const kept = result.outputs[output.name];
+              return {
+                label: output.name === 'relief.ply' ? `${output.label}, for measuring` : output.label,
+                hint: kept ? formatBytes(kept.bytes) : undefined,
+                onSelect: () => void save(output),
+              };
+            }),
+          ]}
         >
           <Icon name="chevronDown" small />
         </Menu>
@@ -234,6 +244,11 @@ function ExportButton({ session, result, onSendToMill }: ExportProps) {
       </Button>
     </>
   );
+}
+
+async function printSolid(session: ReliefSession): Promise<void> {
+  const bytes = await outputOf(session, 'relief.stl', 'relief');
+  if (bytes) printInPlastic({ title: `the relief of ${session.title}`, fileName: 'relief.stl', bytes });
 }
 
 export const exportMain = async (session: ReliefSession): Promise<void> => {

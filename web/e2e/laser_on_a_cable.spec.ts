@@ -120,6 +120,25 @@ test('a laser on a cable: connect, home, cut, hold, go on, and the cable pulled'
     await expect(page.locator('.job-history li')).toHaveCount(2);
     await expect(page.locator('.job-history')).toContainText('cut off');
     await expect(page.locator('.job-history')).toContainText('done');
+
+    // Plugged in again nothing goes on by itself; homed, the rest can be cut.
+    await page.getByRole('radio', { name: 'Bed' }).click();
+    const footer = page.getByRole('contentinfo');
+    await expect(footer.locator('strong').getByText(/^Job cut off at \d+ %$/)).toBeVisible();
+    bench.plugIn();
+    await page.getByRole('button', { name: 'Connect by cable' }).click();
+    await expect(chip(page, 'Locked')).toBeVisible({ timeout: 20_000 });
+    await expect(footer.getByRole('button', { name: /^Cut the rest/ })).toHaveAttribute(
+      'aria-disabled',
+      'true',
+    );
+    await page.locator('.machine-buttons').getByRole('button', { name: 'Home' }).click();
+    await confirm(page, 'Home');
+    await expect(chip(page, 'Ready')).toBeVisible({ timeout: 20_000 });
+    await page.getByRole('button', { name: 'Origin at the bed’s corner' }).click();
+    await footer.getByRole('button', { name: 'Cut the rest' }).click();
+    await confirm(page, 'Go on with the laser on');
+    await expect(footer.locator('strong').getByText('plate is done')).toBeVisible({ timeout: 90_000 });
   } finally {
     await bench.end();
     forbid();

@@ -4,7 +4,7 @@ import type { ReadonlySignal } from '@preact/signals';
 import { computed, effect, signal } from '@preact/signals';
 import type { JobLog } from './job_log';
 import type { MachineLink } from './links/machine_link';
-import type { MachineCommand, MachineState } from './links/machine_state';
+import type { MachineCommand, MachineJob, MachineState } from './links/machine_state';
 import type { MachineProfile } from './profiles';
 
 const lockName = 'formwright.machine';
@@ -29,6 +29,8 @@ export class MachineControl {
   readonly machineName = signal('');
   /** The job the driver holds: its name, and what it was made from. */
   readonly loaded = signal<string | null>(null);
+  /** The job that was under way when its machine went, and what it was made from: the next driver knows nothing of it. */
+  readonly cutOff = signal<{ readonly key: string; readonly job: MachineJob } | null>(null);
   readonly state: ReadonlySignal<MachineState | null> = computed(() => this.link.value?.state.value ?? null);
   #release: (() => void) | null = null;
   #jobId = '';
@@ -109,6 +111,7 @@ export class MachineControl {
       return false;
     }
     this.#jobId = crypto.randomUUID();
+    this.cutOff.value = null;
     return await this.command({
       do: 'start',
       confirmed: true,
@@ -118,6 +121,10 @@ export class MachineControl {
 
   #lost(why: string): void {
     this.#writeLog();
+    const job = this.state.peek()?.job;
+    const key = this.loaded.peek();
+    if (job && key !== null && job.ended !== 'done' && job.careful_line !== undefined)
+      this.cutOff.value = { key, job: { ...job, ended: job.ended ?? 'cut_off' } };
     this.link.value = null;
     this.loaded.value = null;
     if (why !== '')

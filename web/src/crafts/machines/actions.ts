@@ -76,7 +76,8 @@ export function start(session: MachinesSession): void {
 /** Goes on with a job that ended early, the careful way: from the beginning of a stroke before what may not have been done. */
 export function goOn(session: MachinesSession): void {
   const plan = session.plan.value;
-  const line = session.control.state.value?.job?.careful_line;
+  const { state, cutOff } = session.control;
+  const line = (state.value?.job ?? cutOff.value?.job)?.careful_line;
   if (!plan?.job || line === undefined) return;
   const { job, key } = plan;
   ask({
@@ -85,7 +86,8 @@ export function goOn(session: MachinesSession): void {
       isLaser(session)
         ? `The machine was homed again; it goes to the stroke that begins at line ${line}, turns the laser on and cuts from there. What was cut last is cut once more.`
         : `The machine was homed again; it rises, goes to the line that begins at line ${line} of the job, starts its spindle and sinks at feed rate. What was cut last is cut once more.`,
-      'This only fits where the material has not moved. ' + (isLaser(session) ? eyes : chips),
+      'This only fits where neither the material nor the origin has moved. ' +
+        (isLaser(session) ? eyes : chips),
     ],
     action: isLaser(session) ? 'Go on with the laser on' : 'Go on with the spindle on',
     danger: true,

@@ -98,8 +98,9 @@ function Empty({ session, onChooseFile }: MachinesPageProps) {
 function Strip({ session, onChooseFile }: MachinesPageProps) {
   const { control } = session;
   const plan = session.plan.value;
-  const job = control.state.value?.job;
-  const ofThis = control.loaded.value === plan?.key;
+  const { cutOff } = control;
+  const job = control.state.value?.job ?? cutOff.value?.job;
+  const ofThis = (control.state.value?.job ? control.loaded.value : cutOff.value?.key) === plan?.key;
   const exportJob = plan?.job ? (
     <Button
       size="small"

@@ -25,7 +25,7 @@ function(formwright_precompile result header)
   get_directory_property(options COMPILE_OPTIONS)
   list(FILTER options EXCLUDE REGEX "prefix-map")  # names the checkout
   list(APPEND flags ${options} -std=c++${CMAKE_CXX_STANDARD} ${ARGN})
-  foreach(library Eigen3::Eigen nlohmann_json::nlohmann_json fw::boost)
+  foreach(library Eigen3::Eigen nlohmann_json::nlohmann_json)
     get_target_property(folders ${library} INTERFACE_INCLUDE_DIRECTORIES)
     list(REMOVE_ITEM folders /usr/include)  # named once more it would come before the compiler's own
     list(TRANSFORM folders PREPEND "-isystem" OUTPUT_VARIABLE folders)
@@ -56,9 +56,6 @@ endfunction()
 
 formwright_precompile(core_header core.h)
 formwright_precompile(FORMWRIGHT_TEST_HEADER test.h -DGTEST_HAS_PTHREAD=1)
-if(NOT EMSCRIPTEN)
-  formwright_precompile(FORMWRIGHT_WORKER_HEADER worker.h)
-endif()
 set(own_flags $<BOOL:$<TARGET_PROPERTY:FORMWRIGHT_OWN_CODE_FLAGS>>)
 set(other_header $<BOOL:$<TARGET_PROPERTY:FORMWRIGHT_PRECOMPILED>>)
 set(is_cxx $<COMPILE_LANGUAGE:CXX>)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Keeps the job in step with its drawing and parameters. The machine itself is held by MachineControl, whichever room is looked at.
 import { computed, effect, signal, untracked } from '@preact/signals';
-import type { JsonObject, Report } from '../../jobs/contract';
+import type { Catalog, JsonObject, Report } from '../../jobs/contract';
 import { asJobError, cancelled, findOperation } from '../../jobs/contract';
 import { LatestOnly } from '../../jobs/latest_only';
 import { JobLog } from '../../machines/job_log';
@@ -233,7 +233,15 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
     const blank = this.services.projects.isBlank.value;
     this.problem.value = null;
     const nodes = picture ? { nodes: picture[0] * picture[1] } : {};
-    this.#setWork({ file_name, kind, file, ...nodes }, `Open ${file_name}`, own);
+    const catalog = await this.#catalogWhenThere();
+    if (catalog === null) {
+      const message = this.services.catalogError.peek() ?? '';
+      this.problem.value = { kind: 'file', title: `Could not open ${file_name}`, message };
+      return;
+    }
+    this.services.projects.do(
+      machines.setWork(catalog, { file_name, kind, file, ...nodes }, `Open ${file_name}`, own),
+    );
     if (blank) this.services.projects.do(nameProject(file_name.replace(/\.[^.]+$/, '')));
   }
 
@@ -243,9 +251,16 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
     if (!this.isMill && this.control.link.value === null) this.useProfile(this.profiles.mill);
   }
 
-  #setWork(work: FileWork, label: string, own: JsonObject): void {
-    const catalog = this.services.catalog.value;
-    if (catalog) this.services.projects.do(machines.setWork(catalog, work, label, own));
+  /** What is opened before the solver has told what it can do waits for that. Null: it never will. */
+  async #catalogWhenThere(): Promise<Catalog | null> {
+    const { catalog, catalogError } = this.services;
+    return await new Promise((resolve) => {
+      const stop = effect(() => {
+        if (catalog.value === null && catalogError.value === null) return;
+        resolve(catalog.value);
+        queueMicrotask(() => stop());
+      });
+    });
   }
 
   // ---- tests of the material ----

@@ -25,7 +25,7 @@ function(formwright_precompile result header)
   get_directory_property(options COMPILE_OPTIONS)
   list(FILTER options EXCLUDE REGEX "prefix-map")  # names the checkout
   list(APPEND flags ${options} -std=c++${CMAKE_CXX_STANDARD} ${ARGN})
-  foreach(library Eigen3::Eigen nlohmann_json::nlohmann_json)
+  foreach(library Eigen3::Eigen nlohmann_json::nlohmann_json fw::boost)
     get_target_property(folders ${library} INTERFACE_INCLUDE_DIRECTORIES)
     list(REMOVE_ITEM folders /usr/include)  # named once more it would come before the compiler's own
     list(TRANSFORM folders PREPEND "-isystem" OUTPUT_VARIABLE folders)

@@ -150,11 +150,7 @@ function Strip({ session, onChooseFile }: MachinesPageProps) {
   }
   if (job && job.ended !== null && job.ended !== 'done') {
     const percent = Math.round((100 * job.acknowledged) / Math.max(1, job.line_count));
-    const reason = !ofThis
-      ? 'The job was changed meanwhile'
-      : !control.can('start')
-        ? 'Home the machine first'
-        : undefined;
+    const reason = ofThis ? startReason(session) : 'The job was changed meanwhile';
     return (
       <JobStrip
         state="attention"

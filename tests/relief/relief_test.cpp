@@ -147,7 +147,8 @@ TEST(Relief, BothSolversAgree) {
 TEST(Relief, EveryPartRestsOnItsOwn) {
   // Two balls side by side and one behind: three components with free constants.
   const TriangleMesh ball = wavy_ball(3);
-  const TriangleMesh mesh = test::joined(test::joined(ball, test::moved(ball, Vec3(2.6, 0, 0))), test::moved(ball, Vec3(1.3, 1, -3)));
+  const TriangleMesh mesh =
+      test::joined(test::joined(ball, test::moved(ball, Vec3(2.6, 0, 0))), test::moved(ball, Vec3(1.3, 1, -3)));
   const ReliefOptions options = slab(5);
   const Relief relief = solve(mesh, options);
   EXPECT_LE(relief.bound_violation_max_mm, 5e-9);
@@ -220,17 +221,18 @@ TEST(Relief, AsksForCancelAllAlong) {
 TEST(Relief, StopsWhereverItIsCancelled) {
   const TriangleMesh mesh = wavy_ball(4);
   const ReliefOptions options = slab(1);
-  const auto questions_until = [&](long stop_at) {  // asked in all; no other is asked by the thread that was told to stop
-    std::atomic<long> asked{0};
-    Context context(Host{{}, [&] { return ++asked >= stop_at; }, {}});
-    try {
-      ReliefSolver(mesh, options, context).solve(options, context);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::cancelled);
-      return asked.load();
-    }
-    return -asked.load();
-  };
+  const auto questions_until =
+      [&](long stop_at) {  // asked in all; no other is asked by the thread that was told to stop
+        std::atomic<long> asked{0};
+        Context context(Host{{}, [&] { return ++asked >= stop_at; }, {}});
+        try {
+          ReliefSolver(mesh, options, context).solve(options, context);
+        } catch (const Error& error) {
+          EXPECT_EQ(error.code(), ErrorCode::cancelled);
+          return asked.load();
+        }
+        return -asked.load();
+      };
   const long all = -questions_until(std::numeric_limits<long>::max());
   ASSERT_GT(all, 20);
   for (const double share : {0.0, 0.2, 0.5, 0.8, 0.95}) {

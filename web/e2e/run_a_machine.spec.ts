@@ -368,8 +368,7 @@ test('material is tested, and what the tests show is set and kept', async ({ pag
   );
 });
 
-// Not yet run to its end.
-test.fixme('what the kerf’s scale says becomes the kerf', async ({ page }) => {
+test('what the kerf’s scale says becomes the kerf', async ({ page }) => {
   await openDrawing(page);
   await button(page, 'Test material').click();
   await page.getByRole('combobox', { name: 'Test', exact: true }).selectOption('kerf');

@@ -187,10 +187,12 @@ class Driven(unittest.TestCase):
         page.wait(lambda s: s["phase"] == "jogging")
         time.sleep(0.3)
         page.vanish()
-        time.sleep(0.7)
-        place = self.laser.look()["position_mm"]
-        time.sleep(0.4)
-        self.assertEqual(self.laser.look()["position_mm"], place)
+
+        def stands():
+            place = self.laser.look()["position_mm"]
+            time.sleep(0.4)
+            return self.laser.look()["position_mm"] == place
+        peers.wait_until(stands, 3, "the end of the jogging")  # the whole way takes 7.5 s
 
     def test_a_pulled_cable_is_said(self):
         page = self.ready(squares(40))

@@ -235,7 +235,7 @@ class Marlin(unittest.TestCase):
         self.assertIn("done", page.do("stop"))
         state = page.wait(lambda s: s["phase"] == "alarm", 10)
         self.assertIn("M112", state["alarm"]["text"])
-        self.assertTrue(printer.look()["halted"])
+        peers.wait_until(lambda: printer.look()["halted"], 5, "the printer hearing of it")
         self.assertEqual(state["job"]["ended"], "stopped")
 
     def test_a_halt_and_a_restart_end_the_job(self):

@@ -66,7 +66,6 @@ class Bench {
 /** Letters without what fills packets: F is used by no command but FNSE, the end. */
 const letters = (text: string) => text.replace(/[F\r\n-]/g, '');
 
-
 test('a K40 on USB: connect, home, cut through spoiled packets, and the cable pulled', async ({
   baseURL,
 }) => {

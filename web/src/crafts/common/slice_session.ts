@@ -7,7 +7,7 @@ import { listBridgeMachines } from '../../machines/links/bridge_link';
 import type { PrintFacts } from '../../machines/printing/gcode_facts';
 import { printFacts } from '../../machines/printing/gcode_facts';
 import type { WorkerTask } from '../../machines/printing/worker_tasks';
-import { readBlob, readMachine, runTask } from '../../machines/printing/worker_tasks';
+import { readBlob, readMachine, runTask, uploadGcode } from '../../machines/printing/worker_tasks';
 import { safeFileName } from './download';
 import type { Solid } from './print_request';
 import type { Services } from './services';
@@ -74,11 +74,10 @@ export class SliceSession {
     const server = this.servers.value.find(({ id }) => id === this.server.value);
     if (sliced === null || server === undefined) return;
     await this.#run(`Sending to ${server.name}`, async (worker, options) => {
-      const wishes = { file_name: this.fileName, ...(start ? { print: true, confirmed: true } : {}) };
-      const { file_name } = await runTask(worker, server.id, 'upload', sliced.gcode, wishes, options);
+      const kept = await uploadGcode(worker, server.id, sliced.gcode, this.fileName, start, options);
       this.done.value = start
-        ? `${server.name} is printing ${String(file_name)}.`
-        : `${String(file_name)} is at ${server.name}: start it there.`;
+        ? `${server.name} is printing ${kept}.`
+        : `${kept} is at ${server.name}: start it there.`;
       await this.chooseServer(server.id);
     });
   }

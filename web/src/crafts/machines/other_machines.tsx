@@ -3,7 +3,7 @@
 import { useSignal } from '@preact/signals';
 import { asJobError } from '../../jobs/contract';
 import type { BridgeMachine } from '../../machines/links/bridge_link';
-import { runTask, stopPrintServer } from '../../machines/printing/worker_tasks';
+import { stopPrintServer, uploadGcode } from '../../machines/printing/worker_tasks';
 import { Button, toast } from '../../ui';
 import { safeFileName } from '../common/download';
 import { found } from './bridge_machines';
@@ -84,12 +84,8 @@ function SendJob({ session, machine }: { session: MachinesSession; machine: Brid
   if (drawing?.kind !== 'job' || !job || worker === null) return null;
   const send = async (start: boolean) => {
     sending.value = true;
-    const wishes = {
-      file_name: `${safeFileName(session.title)}.gcode`,
-      ...(start ? { print: true, confirmed: true } : {}),
-    };
     try {
-      await runTask(worker, machine.id, 'upload', job, wishes);
+      await uploadGcode(worker, machine.id, job, `${safeFileName(session.title)}.gcode`, start);
       toast(
         start ? `${machine.name} is printing ${session.title}.` : `${session.title} is at ${machine.name}.`,
       );

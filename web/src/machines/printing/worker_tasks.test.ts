@@ -4,7 +4,7 @@ import { createHash } from 'node:crypto';
 import { expect, test } from 'vitest';
 import { JobError } from '../../jobs/contract';
 import type { NativeConnection } from '../../jobs/native_connection';
-import { runTask } from './worker_tasks';
+import { runTask, uploadGcode } from './worker_tasks';
 
 const file = new TextEncoder().encode('%PDF');
 const sha256 = createHash('sha256').update(file).digest('hex');
@@ -17,7 +17,7 @@ function worker(states: readonly object[]) {
     const { method = 'GET', body } = init;
     asked.push({ path, method, body: typeof body === 'string' ? JSON.parse(body) : (body ?? null) });
     return Promise.resolve(
-      method === 'POST' && path.endsWith('/print')
+      method === 'POST' && /\/(print|upload)$/.test(path)
         ? { id: 'j1' }
         : path.endsWith('/jobs/j1')
           ? states[Math.min(looks++, states.length - 1)]
@@ -51,6 +51,18 @@ test('the file goes first, then the order that names it, and the end is waited f
     { path: `blobs/${sha256}`, method: 'PUT', body: file },
     { path: 'machines/m%201/print', method: 'POST', body: { copies: 2, sha256 } },
   ]);
+});
+
+test('a print server starts only what is asked for, with its confirmation', async () => {
+  const done = { id: 'j1', state: 'done', sentence: '', fraction: 1, result: { file_name: 'cat-1.gcode' } };
+  for (const [start, rest] of [
+    [false, {}],
+    [true, { print: true, confirmed: true }],
+  ] as const) {
+    const { connection, asked } = worker([done]);
+    expect(await uploadGcode(connection, 'm', file, 'cat.gcode', start)).toBe('cat-1.gcode');
+    expect(asked[1]?.body).toEqual({ file_name: 'cat.gcode', sha256, ...rest });
+  }
 });
 
 test('a failure is the worker’s sentence', async () => {

@@ -58,6 +58,21 @@ export async function runTask(
   }
 }
 
+/** Gives a print server the G-code under that name, and has it printed at once where `start` is set: only after the person
+ *  has confirmed it. The name that the server keeps it under. */
+export async function uploadGcode(
+  worker: NativeConnection,
+  serverId: string,
+  gcode: Uint8Array<ArrayBuffer>,
+  fileName: string,
+  start: boolean,
+  options: TaskOptions = {},
+): Promise<string> {
+  const wishes = { file_name: fileName, ...(start ? { print: true, confirmed: true } : {}) };
+  const kept = await runTask(worker, serverId, 'upload', gcode, wishes, options);
+  return String(kept['file_name'] ?? fileName);
+}
+
 function restOrAbort(ms: number, signal: AbortSignal | undefined): Promise<void> {
   return new Promise((resolve) => {
     const end = () => {

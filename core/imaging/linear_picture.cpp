@@ -7,29 +7,12 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "imaging/light.h"
+#include "imaging/overlap_shares.h"
 
 namespace formwright {
 namespace {
 
 constexpr int most_probes = 16;
-
-/// What of a fine row or column goes into each coarse one: at most three neighbours, by overlap.
-struct Share {
-  int first = 0, count = 0;
-  std::array<float, 3> weight{};
-};
-std::vector<Share> shares(int fine, int coarse) {
-  std::vector<Share> all(static_cast<std::size_t>(coarse));
-  const double ratio = static_cast<double>(fine) / coarse;
-  for (int i = 0; i < coarse; ++i) {
-    Share& share = all[static_cast<std::size_t>(i)];
-    const double from = i * ratio, to = std::min<double>(fine, (i + 1) * ratio);
-    share.first = static_cast<int>(from);
-    for (int k = 0; k < 3 && share.first + k < fine && share.first + k < to - 1e-9; ++k, ++share.count)
-      share.weight[static_cast<std::size_t>(k)] = static_cast<float>((std::min<double>(to, share.first + k + 1) - std::max<double>(from, share.first + k)) / ratio);
-  }
-  return all;
-}
 
 }  // namespace
 
@@ -54,7 +37,7 @@ LinearPicture::Level LinearPicture::halved(const Level& fine, const Context& con
   coarse.width = std::max(1, fine.width / 2);
   coarse.height = std::max(1, fine.height / 2);
   coarse.texels.resize(static_cast<std::size_t>(coarse.width) * static_cast<std::size_t>(coarse.height));
-  const std::vector<Share> columns = shares(fine.width, coarse.width), rows = shares(fine.height, coarse.height);
+  const auto columns = overlap_shares<3>(fine.width, coarse.width), rows = overlap_shares<3>(fine.height, coarse.height);
   parallel_for(rows.size(), 64, [&](std::size_t begin, std::size_t end) {
     context.check_cancelled();
     for (std::size_t y = begin; y < end; ++y)

@@ -7,27 +7,10 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "imaging/overlap_shares.h"
 
 namespace formwright {
 namespace {
-
-/// What of a fine row or column goes into each coarse one, by overlap.
-struct Share {
-  int first = 0, count = 0;
-  std::array<float, 6> weight{};
-};
-std::vector<Share> shares(int fine, int coarse) {
-  std::vector<Share> all(static_cast<std::size_t>(coarse));
-  const double ratio = static_cast<double>(fine) / coarse;
-  for (int i = 0; i < coarse; ++i) {
-    Share& share = all[static_cast<std::size_t>(i)];
-    const double from = i * ratio, to = std::min<double>(fine, (i + 1) * ratio);
-    share.first = static_cast<int>(from);
-    for (int k = 0; k < 6 && share.first + k < fine && share.first + k < to - 1e-9; ++k, ++share.count)
-      share.weight[static_cast<std::size_t>(k)] = static_cast<float>((std::min<double>(to, share.first + k + 1) - std::max<double>(from, share.first + k)) / ratio);
-  }
-  return all;
-}
 
 /// Colours times their weight, the weight itself in lane 3.
 Float4 weighed(const Float4& p) { return Float4{p[0] * p[3], p[1] * p[3], p[2] * p[3], p[3]}; }
@@ -54,7 +37,7 @@ WeightedPicture reduced(const WeightedPicture& picture, int width, int height, c
   if (width < 1 || height < 1 || width > picture.width || height > picture.height || 4 * width < picture.width || 4 * height < picture.height)
     throw Error(ErrorCode::internal, "", "A picture can be reduced to a quarter at once, not further.");
   if (width == picture.width && height == picture.height) return picture;
-  const std::vector<Share> columns = shares(picture.width, width), rows = shares(picture.height, height);
+  const auto columns = overlap_shares<6>(picture.width, width), rows = overlap_shares<6>(picture.height, height);
   WeightedPicture result(width, height);
   parallel_for(static_cast<std::size_t>(height), rows_a_chunk, [&](std::size_t begin, std::size_t end) {
     context.check_cancelled();

@@ -2,6 +2,7 @@
 // How long and how large a full solve will be, from what was measured on this machine. Factorisations of
 // surface meshes grow like n^1.5 in time and n log n in memory (George 1973, nested dissection); of a whole
 // relief below a million vertices that is the smaller part, and 8k to 60k vertices took n^1.0 to n^1.2.
+import { formatDuration } from '../../ui';
 
 const timeExponent = 1.2;
 const memoryExponent = 1.15;
@@ -37,4 +38,27 @@ export function remember(craft: string, backend: string, measured: Measured): vo
   } catch {
     // Only an estimate is lost.
   }
+}
+
+export interface ExpectedTimes {
+  readonly browser_s: number | null;
+  readonly worker_s: number | null;
+}
+
+/** Of a full solve: from the last one here, else from the preview. */
+export function expectedTimes(craft: string, vertices: number, previewed: Measured | null): ExpectedTimes {
+  const worker = recall(craft, 'native');
+  const browser = recall(craft, 'wasm') ?? previewed;
+  return {
+    browser_s: browser && estimateSeconds(browser, vertices),
+    worker_s: worker && estimateSeconds(worker, vertices),
+  };
+}
+
+/** "About 8 s in the browser", "About 2 s with the worker". */
+export function timeLine(expected: ExpectedTimes | null, worker: boolean): string {
+  const seconds = worker ? expected?.worker_s : expected?.browser_s;
+  const where = worker ? 'with the worker' : 'in the browser';
+  if (seconds) return `About ${formatDuration(seconds)} ${where}`;
+  return worker ? 'With the native worker' : 'In the browser';
 }

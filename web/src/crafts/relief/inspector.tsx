@@ -18,7 +18,7 @@ import { ParameterPanel } from '../common/parameter_panel';
 import { readyWorker } from '../common/services';
 import type { CraftResult } from '../common/craft_document';
 import { download, safeFileName } from '../common/download';
-import { browserMemory_mb } from '../common/estimate';
+import { browserMemory_mb, timeLine } from '../common/estimate';
 import { ModelRow } from '../common/model_row';
 import { printInPlastic } from '../common/print_request';
 import { outputOf } from '../common/full_solve';
@@ -164,16 +164,6 @@ function MainButton({ session, onSolve, onSendToMill }: InspectorProps) {
       ) : null}
     </>
   );
-}
-
-function timeLine(
-  estimate: { browser_s: number | null; worker_s: number | null } | null,
-  worker: boolean,
-): string {
-  const here = estimate?.browser_s ? `About ${formatDuration(estimate.browser_s)} in the browser` : null;
-  const there = estimate?.worker_s ? `${formatDuration(estimate.worker_s)} with the worker` : null;
-  if (worker) return there ? `About ${there}` : 'With the native worker';
-  return [here ?? 'In the browser', there].filter(Boolean).join(', ');
 }
 
 interface ExportProps {

@@ -6,7 +6,7 @@ import { findOperation } from '../../jobs/contract';
 import { readPly } from '../../jobs/mesh_reader';
 import type { CraftDocument, CraftResult, Source } from '../common/craft_document';
 import type { Measured } from '../common/estimate';
-import { estimateMemory_mb, estimateSeconds, recall } from '../common/estimate';
+import { estimateMemory_mb, expectedTimes } from '../common/estimate';
 import { bytesOf } from '../common/import_model';
 import type { PreviewRequest, ShownWork } from '../common/previewing_session';
 import { PreviewingSession } from '../common/previewing_session';
@@ -95,11 +95,8 @@ export class ReliefSession extends PreviewingSession<CraftDocument, Shown> {
     const vertices = figure(this.document.value.model?.report ?? {}, 'vertices');
     const preview = this.#previewed.value;
     if (vertices === null) return null;
-    const worker = recall('relief', 'native');
-    const browser = recall('relief', 'wasm') ?? preview;
     return {
-      browser_s: browser ? estimateSeconds(browser, vertices) : null,
-      worker_s: worker ? estimateSeconds(worker, vertices) : null,
+      ...expectedTimes('relief', vertices, preview),
       memory_mb: preview ? estimateMemory_mb(this.#previewMemory_mb.value, preview.vertices, vertices) : null,
     };
   });

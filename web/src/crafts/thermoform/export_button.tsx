@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The one filled button: forms the sheet at full detail, then hands out what is made of it.
 import type { OutputDeclaration } from '../../jobs/contract';
-import { Button, formatBytes, formatDuration, Icon, Menu } from '../../ui';
+import { Button, formatBytes, Icon, Menu } from '../../ui';
 import { download, safeFileName } from '../common/download';
 import { printInPlastic, printOnPaper } from '../common/print_request';
+import { timeLine } from '../common/estimate';
 import { figure } from '../common/report';
 import { readyWorker } from '../common/services';
 import { bytesToSave } from './make_product';
@@ -95,7 +96,7 @@ export function MainButton({ session, onForm }: { session: ThermoformSession; on
         >
           Form at full detail
         </Button>
-        <p>{timeLine(session)}</p>
+        <p>{timeLine(session.estimate.value, readyWorker(session.services) !== null)}</p>
       </>
     );
   const all = exportsOf(session);
@@ -175,11 +176,4 @@ function printLine(session: ThermoformSession): string {
   ]
     .filter(Boolean)
     .join(', ');
-}
-
-function timeLine(session: ThermoformSession): string {
-  const { browser_s, worker_s } = session.estimate.value;
-  if (readyWorker(session.services) !== null)
-    return worker_s ? `About ${formatDuration(worker_s)} with the worker` : 'With the native worker';
-  return browser_s ? `About ${formatDuration(browser_s)} in the browser` : 'In the browser';
 }

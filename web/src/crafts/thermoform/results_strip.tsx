@@ -1,40 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-import { formatCount, formatDuration, formatNumber, JobStrip, useLasting, withUnit } from '../../ui';
+import { formatCount, formatDuration, formatNumber, withUnit } from '../../ui';
 import type { CraftResult } from '../common/craft_document';
+import { CraftStrip } from '../common/craft_strip';
 import { figure } from '../common/report';
-import { Results } from '../common/results';
-import { previewLine, RunningStrip } from '../common/room_strip';
 import { simulate, thermoform } from './thermoform_document';
 import type { ThermoformSession } from './thermoform_session';
 
 export function ResultsStrip({ session }: { session: ThermoformSession }) {
   const activity = session.activity.value;
-  const lasting = useLasting(activity.kind !== 'idle');
-  const result = session.result.value;
-  if (lasting && activity.kind !== 'idle') {
-    const titles = {
-      solving: 'Forming the sheet',
-      opening: 'Opening the model',
-      exporting: `Making the ${activity.name}`,
-    };
-    return <RunningStrip activity={activity} titles={titles} onCancel={() => session.cancel()} />;
-  }
   const own = session.operationNamed(simulate)?.parameters.properties ?? {};
-  const state = result
-    ? { state: 'done' as const, title: 'Sheet formed', detail: formedLine(result) }
-    : previewOf(session);
   return (
-    <JobStrip {...state}>
-      <Results
-        session={session}
-        current={result}
-        usualParameter="sheet_thickness_mm"
-        figureOf={(one) => ({ short: thinnest(one), spoken: `thinnest ${thinnest(one)}` })}
-        onChoose={(one, label) =>
-          session.services.projects.do(thermoform.restoreResult(one, label, (name) => name in own))
-        }
-      />
-    </JobStrip>
+    <CraftStrip
+      session={session}
+      titles={{
+        solving: 'Forming the sheet',
+        opening: 'Opening the model',
+        exporting: activity.kind === 'idle' ? '' : `Making the ${activity.name}`,
+        done: 'Sheet formed',
+        empty: 'No sheet yet',
+        failed: 'Not formed',
+      }}
+      detailOf={formedLine}
+      cornersOf={({ sheet }) => sheet.indices.length}
+      usualParameter="sheet_thickness_mm"
+      figureOf={thinnest}
+      figureName="thinnest"
+      onRestore={(one, label) =>
+        session.services.projects.do(thermoform.restoreResult(one, label, (name) => name in own))
+      }
+    />
   );
 }
 
@@ -50,13 +44,3 @@ function formedLine({ report, seconds, backend }: CraftResult): string {
   const time = `${formatDuration(seconds)} ${where}`;
   return triangles === null ? time : `${formatCount(triangles)} triangles, ${time}`;
 }
-
-const previewOf = (session: ThermoformSession) =>
-  previewLine({
-    error: Object.values(session.fieldErrors.value)[0],
-    failed: 'Not formed',
-    empty: 'No sheet yet',
-    corners: session.shown.value?.sheet.indices.length ?? null,
-    seconds: session.previewSeconds.value,
-    previewing: session.previewing.value,
-  });

@@ -10,7 +10,7 @@ import type { PlyMesh } from '../../jobs/ply';
 import type { CraftResult } from '../common/craft_document';
 import { inForce, known } from '../common/craft_document';
 import type { Measured } from '../common/estimate';
-import { estimateSeconds, recall } from '../common/estimate';
+import { expectedTimes } from '../common/estimate';
 import { bytesOf } from '../common/import_model';
 import type { PreviewRequest, ShownWork } from '../common/previewing_session';
 import { PreviewingSession } from '../common/previewing_session';
@@ -145,15 +145,7 @@ export class ThermoformSession extends PreviewingSession<ThermoformDocument, For
   }
 
   /** Seconds that forming in full may take; null where nothing is known yet. */
-  readonly estimate = computed(() => {
-    const vertices = Number(this.value('triangles') ?? 0) / 2;
-    const [worker, browser] = [
-      recall('thermoform', 'native'),
-      recall('thermoform', 'wasm') ?? this.#previewed.value,
-    ];
-    return {
-      browser_s: browser ? estimateSeconds(browser, vertices) : null,
-      worker_s: worker ? estimateSeconds(worker, vertices) : null,
-    };
-  });
+  readonly estimate = computed(() =>
+    expectedTimes('thermoform', Number(this.value('triangles') ?? 0) / 2, this.#previewed.value),
+  );
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The one filled button: makes the ribbon of the whole model, then hands out its files.
 import type { OutputDeclaration } from '../../jobs/contract';
-import { Button, formatBytes, formatDuration, Icon, Menu } from '../../ui';
+import { Button, formatBytes, Icon, Menu } from '../../ui';
 import { download, safeFileName } from '../common/download';
+import { timeLine } from '../common/estimate';
 import { outputOf, solveInFull } from '../common/full_solve';
 import { printOnPaper } from '../common/print_request';
 import { readyWorker } from '../common/services';
@@ -110,7 +111,7 @@ export function MainButton({ session, onSolve, onSendToMachine }: MainButtonProp
         >
           Make the ribbon
         </Button>
-        <p>{timeLine(session)}</p>
+        <p>{timeLine(session.estimate.value, readyWorker(session.services) !== null)}</p>
       </>
     );
   const all = exportsOf(session);
@@ -174,11 +175,4 @@ export function MainButton({ session, onSolve, onSendToMachine }: MainButtonProp
       </p>
     </>
   );
-}
-
-function timeLine(session: ZippableSession): string {
-  const { browser_s, worker_s } = session.estimate.value;
-  if (readyWorker(session.services) !== null)
-    return worker_s ? `About ${formatDuration(worker_s)} with the worker` : 'With the native worker';
-  return browser_s ? `About ${formatDuration(browser_s)} in the browser` : 'In the browser';
 }

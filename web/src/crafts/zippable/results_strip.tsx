@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-import { formatDuration, JobStrip, useLasting } from '../../ui';
+import { formatDuration } from '../../ui';
 import type { CraftResult } from '../common/craft_document';
+import { CraftStrip } from '../common/craft_strip';
 import { figure } from '../common/report';
-import { Results } from '../common/results';
-import { previewLine, RunningStrip } from '../common/room_strip';
 import { metres } from './flat_ribbon';
 import { zippable } from './zippable_document';
 import type { ZippableSession } from './zippable_session';
@@ -13,29 +12,25 @@ const lengthKept = 1e-9;
 
 export function ResultsStrip({ session }: { session: ZippableSession }) {
   const activity = session.activity.value;
-  const lasting = useLasting(activity.kind !== 'idle');
-  const result = session.result.value;
-  if (lasting && activity.kind !== 'idle') {
-    const titles = {
-      solving: 'Making the ribbon',
-      opening: 'Opening the model',
-      exporting: `Making the ${activity.name}`,
-    };
-    return <RunningStrip activity={activity} titles={titles} onCancel={() => session.cancel()} />;
-  }
-  const state = result
-    ? { state: 'done' as const, title: 'Ribbon unfolded', detail: madeLine(result) }
-    : previewOf(session);
   return (
-    <JobStrip {...state}>
-      <Results
-        session={session}
-        current={result}
-        usualParameter="width_mm"
-        figureOf={(one) => ({ short: zipperOf(one), spoken: `zipper ${zipperOf(one)}` })}
-        onChoose={(one, label) => session.services.projects.do(zippable.restoreResult(one, label))}
-      />
-    </JobStrip>
+    <CraftStrip
+      session={session}
+      titles={{
+        solving: 'Making the ribbon',
+        opening: 'Opening the model',
+        exporting: activity.kind === 'idle' ? '' : `Making the ${activity.name}`,
+        done: 'Ribbon unfolded',
+        empty: 'No ribbon yet',
+        failed: 'No ribbon',
+      }}
+      detailOf={madeLine}
+      error={session.problem.value?.message}
+      cornersOf={({ model }) => model.mesh.indices.length}
+      usualParameter="width_mm"
+      figureOf={zipperOf}
+      figureName="zipper"
+      onRestore={(one, label) => session.services.projects.do(zippable.restoreResult(one, label))}
+    />
   );
 }
 
@@ -50,13 +45,3 @@ function madeLine({ report, seconds, backend }: CraftResult): string {
   const kept = error !== null && error < lengthKept ? 'Every length kept. ' : '';
   return `${kept}${formatDuration(seconds)} ${backend === 'native' ? 'on the worker' : 'in the browser'}`;
 }
-
-const previewOf = (session: ZippableSession) =>
-  previewLine({
-    error: Object.values(session.fieldErrors.value)[0] ?? session.problem.value?.message,
-    failed: 'No ribbon',
-    empty: 'No ribbon yet',
-    corners: session.shown.value?.model.mesh.indices.length ?? null,
-    seconds: session.previewSeconds.value,
-    previewing: session.previewing.value,
-  });

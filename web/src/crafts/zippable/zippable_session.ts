@@ -10,7 +10,7 @@ import { readFilm, readPolylines } from '../../jobs/mesh_reader';
 import type { CraftResult } from '../common/craft_document';
 import { known } from '../common/craft_document';
 import type { Measured } from '../common/estimate';
-import { estimateSeconds, recall } from '../common/estimate';
+import { expectedTimes } from '../common/estimate';
 import { bytesOf } from '../common/import_model';
 import type { PreviewRequest, ShownWork } from '../common/previewing_session';
 import { PreviewingSession } from '../common/previewing_session';
@@ -219,12 +219,7 @@ export class ZippableSession extends PreviewingSession<ZippableDocument, Zippabl
   /** Seconds that the whole model may take; null where nothing is known yet. */
   readonly estimate = computed(() => {
     const vertices = figure(this.document.value.model?.report ?? {}, 'vertices') ?? 0;
-    const worker = recall('zippable', 'native');
-    const browser = recall('zippable', 'wasm') ?? this.#previewed.value;
-    return {
-      browser_s: browser ? estimateSeconds(browser, vertices) : null,
-      worker_s: worker ? estimateSeconds(worker, vertices) : null,
-    };
+    return expectedTimes('zippable', vertices, this.#previewed.value);
   });
 }
 

@@ -22,7 +22,7 @@ enum class PageTurn { automatic, upright, sideways };
 template <>
 struct EnumNames<PageTurn> {
   static constexpr std::array<std::string_view, 3> names{"automatic", "upright", "sideways"};
-  static constexpr std::array<std::string_view, 3> labels{"Whichever takes fewer pages", "Upright", "Sideways"};
+  static constexpr std::array<std::string_view, 3> labels{"Fewest pages", "Upright", "Sideways"};
 };
 
 struct PageTilesOptions {

@@ -261,9 +261,9 @@ test('what a tab controls no other tab does', async ({ page, context }) => {
 test('wrong files are said in words and the work stays', async ({ page }) => {
   await openDrawing(page);
   const input = page.getByLabel('Model or project file');
-  await input.setInputFiles(fileOf('model.obj', 'v 0 0 0'));
-  await expect(page.getByRole('alert').getByText('Could not open model.obj')).toBeVisible();
-  await expect(page.getByRole('alert').getByText(/for mills: choose or add a mill/)).toBeVisible();
+  await input.setInputFiles(fileOf('words.txt', 'hello'));
+  await expect(page.getByRole('alert').getByText('Could not open words.txt')).toBeVisible();
+  await expect(page.getByRole('alert').getByText(/^Machines take drawings \(\.svg\), jobs/)).toBeVisible();
   await expect(strip(page, 'Job ready')).toBeVisible();
   await input.setInputFiles(fileOf('notes.svg', 'this is no drawing'));
   await expect(page.getByRole('alert').getByText('Could not read notes.svg')).toBeVisible();
@@ -429,6 +429,15 @@ test('a relief goes to a mill: its job, its way in space, its first lines', asyn
   await page.getByRole('textbox', { name: 'Depth', exact: true }).press('Enter');
   await expect(button(page, 'Make the job')).toBeVisible();
   await expect(startButton(page)).toHaveAttribute('aria-disabled', 'true');
+
+  // A drawing is no work for a mill: not while it is connected, else a laser is chosen.
+  const input = page.getByLabel('Model or project file');
+  await input.setInputFiles(square);
+  await expect(page.getByRole('alert').getByText(/^Drawings are for lasers: disconnect the mill/)).toBeVisible();
+  await button(page, 'Disconnect').click();
+  await input.setInputFiles(square);
+  await expect(page.locator('.profile-button')).toHaveText('Practice laser');
+  await expect(strip(page, 'Job ready')).toBeVisible();
 });
 
 testEveryLook('axe finds nothing serious in the room', async (page) => {

@@ -145,7 +145,7 @@ export function App({ services, sessions }: AppProps) {
           onWorkerHelp={() => (dialog.value = 'worker')}
           onStart={() => go('start')}
           onSendToMill={async (name, heightMap, size) => {
-            await sessions.machines.takeForMill(name, heightMap, size);
+            await sessions.machines.take(name, heightMap, 'model', size);
             go('machines');
           }}
         />

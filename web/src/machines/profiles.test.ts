@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { describe, expect, it } from 'vitest';
-import { asProfile, practiceLaser, profileFile, ProfileStore } from './profiles';
+import { asProfile, practiceLaser, practiceMill, profileFile, ProfileStore } from './profiles';
 
 class Memory {
   readonly values = new Map<string, string>();
@@ -26,6 +26,18 @@ describe('machine profiles', () => {
     expect(again.current).toEqual(laser);
     again.remove('a');
     expect(new ProfileStore(memory).current.id).toBe('practice');
+  });
+  it('one that carves and one that does not: the one in use first', () => {
+    const store = new ProfileStore(new Memory());
+    const mill = { ...practiceMill, id: 'm', name: 'Workshop mill' };
+    store.put(mill);
+    expect(store.oneThat(true).name).toBe('Workshop mill');
+    expect(store.oneThat(false).name).toBe('Practice laser');
+    store.put(laser);
+    expect(store.oneThat(false).name).toBe('Workshop');
+    expect(store.oneThat(true).name).toBe('Practice mill');
+    for (const { id } of [practiceMill, mill]) store.remove(id);
+    expect(store.oneThat(true)).toEqual(practiceMill);
   });
   it('survive damaged storage', () => {
     const memory = new Memory();

@@ -86,6 +86,8 @@ export const practiceMill: MachineProfile = {
   materials: [],
 };
 
+export const isMill = ({ options }: MachineProfile): boolean => options['tool'] === 'mill';
+
 /** The machines, the one in use, and where both are kept. */
 export class ProfileStore {
   readonly #storage: Pick<Storage, 'getItem' | 'setItem'>;
@@ -117,10 +119,10 @@ export class ProfileStore {
     return all.find(({ id }) => id === this.chosen.value) ?? all[0] ?? practiceLaser;
   }
 
-  /** One that carves: the one in use, else the first there is. */
-  get mill(): MachineProfile {
-    const isMill = ({ options }: MachineProfile) => options['tool'] === 'mill';
-    return [this.current, ...this.profiles.value].find(isMill) ?? practiceMill;
+  /** One that carves, or one that does not: the one in use, else the first there is. */
+  oneThat(carves: boolean): MachineProfile {
+    const isIt = (profile: MachineProfile) => isMill(profile) === carves;
+    return [this.current, ...this.profiles.value].find(isIt) ?? (carves ? practiceMill : practiceLaser);
   }
 
   choose(id: string): void {

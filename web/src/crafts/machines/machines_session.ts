@@ -8,7 +8,7 @@ import { JobLog } from '../../machines/job_log';
 import { MachineControl } from '../../machines/machine_control';
 import { asOrigin } from '../../machines/places';
 import type { MachineProfile } from '../../machines/profiles';
-import { ProfileStore } from '../../machines/profiles';
+import { isMill, ProfileStore } from '../../machines/profiles';
 import { listenForStop } from '../../machines/stop_keys';
 import { jsonEqual } from '../../project/document';
 import type { CraftResult, Subject } from '../common/craft_document';
@@ -193,7 +193,7 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
   // ---- files ----
 
   get isMill(): boolean {
-    return this.profiles.current.options['tool'] === 'mill';
+    return isMill(this.profiles.current);
   }
 
   /** Takes up one drawing, job, or what a mill carves; false where the file is none of these. */
@@ -205,28 +205,37 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
     const formats = this.services.catalog.value?.mesh_formats ?? [];
     const model = isOne([heightMapEnding, ...formats.map(({ extension }) => `.${extension}`)]);
     const kind = isOne(jobEndings) ? 'job' : isOne(drawingEndings) ? 'drawing' : model ? 'model' : null;
-    if (kind === null || (kind === 'model' && !this.isMill)) {
+    if (kind === null) {
       this.problem.value = {
         kind: 'file',
         title: `Could not open ${file.name}`,
-        message:
-          kind === 'model'
-            ? 'Models and height maps are for mills: choose or add a mill as the machine, then open it again.'
-            : `Machines take drawings (${drawingEndings.join(', ')}), jobs (${jobEndings.join(', ')}) and, for mills, models and height maps (${heightMapEnding}).`,
+        message: `Machines take drawings (${drawingEndings.join(', ')}), jobs (${jobEndings.join(', ')}) and, for mills, models and height maps (${heightMapEnding}).`,
       };
       return false;
     }
-    await this.take(file.name, new Uint8Array(await file.arrayBuffer()), kind);
-    return true;
+    return await this.take(file.name, new Uint8Array(await file.arrayBuffer()), kind);
   }
 
-  /** `own`: what is known of the work beside its bytes. */
+  /** Drawings are work for lasers, models and height maps for mills: such a machine is chosen where the other kind was, unless
+   *  that one is connected; then the work is not taken, and the person told. `own`: what is known of it beside its bytes. */
   async take(
     file_name: string,
     bytes: Uint8Array<ArrayBuffer>,
     kind: FileWork['kind'] = 'drawing',
     own: JsonObject = {},
-  ): Promise<void> {
+  ): Promise<boolean> {
+    const suits = kind === 'job' || (kind === 'model') === this.isMill;
+    if (!suits && this.control.link.value !== null) {
+      this.problem.value = {
+        kind: 'file',
+        title: `Could not open ${file_name}`,
+        message:
+          kind === 'model'
+            ? 'Models and height maps are for mills: disconnect the laser first, then open it again.'
+            : 'Drawings are for lasers: disconnect the mill first, then open it again.',
+      };
+      return false;
+    }
     const picture = kind === 'model' ? pictureSize(bytes) : null;
     const types = { job: 'text/x-gcode', drawing: 'image/svg+xml', model: 'application/octet-stream' };
     const file = await this.keep(bytes, picture ? 'image/png' : types[kind]);
@@ -237,18 +246,14 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
     if (catalog === null) {
       const message = this.services.catalogError.peek() ?? '';
       this.problem.value = { kind: 'file', title: `Could not open ${file_name}`, message };
-      return;
+      return false;
     }
     this.services.projects.do(
       machines.setWork(catalog, { file_name, kind, file, ...nodes }, `Open ${file_name}`, own),
     );
+    if (!suits) this.useProfile(this.profiles.oneThat(kind === 'model'));
     if (blank) this.services.projects.do(nameProject(file_name.replace(/\.[^.]+$/, '')));
-  }
-
-  /** A height map or model for a mill: one is chosen where a laser was, unless that is connected. */
-  async takeForMill(file_name: string, bytes: Uint8Array<ArrayBuffer>, own: JsonObject): Promise<void> {
-    await this.take(file_name, bytes, 'model', own);
-    if (!this.isMill && this.control.link.value === null) this.useProfile(this.profiles.mill);
+    return true;
   }
 
   /** What is opened before the solver has told what it can do waits for that. Null: it never will. */

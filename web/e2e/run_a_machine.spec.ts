@@ -433,7 +433,9 @@ test('a relief goes to a mill: its job, its way in space, its first lines', asyn
   // A drawing is no work for a mill: not while it is connected, else a laser is chosen.
   const input = page.getByLabel('Model or project file');
   await input.setInputFiles(square);
-  await expect(page.getByRole('alert').getByText(/^Drawings are for lasers: disconnect the mill/)).toBeVisible();
+  await expect(
+    page.getByRole('alert').getByText(/^Drawings are for lasers: disconnect the mill/),
+  ).toBeVisible();
   await button(page, 'Disconnect').click();
   await input.setInputFiles(square);
   await expect(page.locator('.profile-button')).toHaveText('Practice laser');

@@ -289,6 +289,8 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
 
   /** Changes to this machine: its bed and speeds become the job's. */
   useProfile(profile: MachineProfile): void {
+    // The rest of a job lies on the machine that began it.
+    if (profile.id !== this.profiles.current.id) this.control.cutOff.value = null;
     this.profiles.put(profile);
     const catalog = this.services.catalog.value;
     if (catalog)

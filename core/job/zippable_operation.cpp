@@ -15,7 +15,7 @@ std::vector<InputInfo> inputs() {
   InputInfo segments;
   segments.name = "segments";
   segments.label = "Parts";
-  segments.help = "segments.json: punctures, loops and lines that bound the parts (docs/zippable.md). Without it limbs are found.";
+  segments.help = "segments.json: punctures, loops and lines that bound the parts, where the zipper begins and ends (docs/zippable.md). Without it limbs are found.";
   segments.extensions = {"json"};
   segments.required = false;
   return {model_input_info(), segments};
@@ -47,6 +47,10 @@ std::vector<ReportField> report_fields() {
           {"centre_radius_min_part", "Part of the tightest bend", "", "counted from 1"},
           {"unevenness", "Unevenness of crossings", "", "eq. (5.7) over the parts between; 0 is even"},
           {"windings", "Windings", "", "of every part"},
+          {"crease_mm", "Creases along windings", "mm", "how much of them runs nearly like the windings"},
+          {"crease_off_even_mm", "From even windings", "mm", "mean distance of these creases to the nearest even winding"},
+          {"crease_off_mm", "From windings", "mm", "the same, of windings as drawn"},
+          {"winding_spacing_least", "Least spacing", "", "of windings moved onto creases, of the even spacing"},
           {"fermat_spirals", "Fermat spirals", "", "parts that the zipper enters and leaves"},
           {"zipper_length_mm", "Zipper length", "mm", "one side of the ribbon, along its corners"},
           {"curve_length_mm", "Curve length", "mm", "on the model itself"},
@@ -103,6 +107,12 @@ void report_design(Json& report, const ParameterisedModel& model, const Zippable
   report["centre_radius_min_part"] = design.bend ? Json(part_of_face(design, design.bend->face) + 1) : Json(nullptr);
   report["unevenness"] = design.traversal.crossings.unevenness;
   report["windings"] = design.curve.windings;
+  if (design.alignment) {
+    report["crease_mm"] = design.alignment->crease_mm;
+    report["crease_off_even_mm"] = design.alignment->off_before_mm;
+    report["crease_off_mm"] = design.alignment->off_after_mm;
+    report["winding_spacing_least"] = design.alignment->spacing_least;
+  }
   report["fermat_spirals"] = design.curve.fermat_spirals;
   report["zipper_length_mm"] = ribbon.zipper_mm;
   report["curve_length_mm"] = design.curve.length_mm;
@@ -164,7 +174,7 @@ OperationResult run(const OperationCall& call) {
     loaded = load_model(call);
   }
   if (options.check_parts) return check_parts(call, *loaded, parts, options);
-  const std::string key = "zippable:" + loaded->key + ":" + parts_key + ":" + parameterisation_key(options);
+  const std::string key = "zippable:" + loaded->key + ":" + parts_key + ":" + parameterisation_key(options, parts);
   auto model = call.session.find<const ParameterisedModel>(key);
   const bool reused = model != nullptr;
   if (!reused) {

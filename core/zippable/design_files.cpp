@@ -18,19 +18,56 @@ namespace {
 
 Json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
+Vec3 read_point(const Json& item, const std::string& what) {
+  Vec3 point = Vec3::Zero();
+  bool good = item.is_array() && item.size() == 3;
+  for (int k = 0; k < 3 && good; ++k) {
+    good = item[k].is_number() && std::abs(item[k].get<double>()) < 1e9;
+    if (good) point[k] = item[k].get<double>();
+  }
+  if (!good) refuse("segments.json: " + what + " must be a point [x, y, z].");
+  return point;
+}
+
 std::vector<Vec3> read_points(const Json& list, const std::string& name) {
   std::vector<Vec3> points;
-  for (const Json& item : list) {
-    Vec3 point;
-    bool good = item.is_array() && item.size() == 3;
-    for (int k = 0; k < 3 && good; ++k) {
-      good = item[k].is_number() && std::abs(item[k].get<double>()) < 1e9;
-      if (good) point[k] = item[k].get<double>();
-    }
-    if (!good) refuse("segments.json: entry " + std::to_string(points.size() + 1) + " of " + name + " must be a point [x, y, z].");
-    points.push_back(point);
-  }
+  for (const Json& item : list) points.push_back(read_point(item, "entry " + std::to_string(points.size() + 1) + " of " + name));
   return points;
+}
+
+/// Holes are points, cuts are lists of two points or more.
+void read_punctures(const Json& list, ZippableParts& parts) {
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const bool cut = list[i].is_array() && !list[i].empty() && list[i][0].is_array();
+    const std::string name = "entry " + std::to_string(i + 1) + " of punctures";
+    if (!cut) {
+      parts.punctures.push_back(read_point(list[i], name));
+      continue;
+    }
+    if (list[i].size() < 2 || list[i].size() > 1000) refuse("segments.json: " + name + " is a cut and must have 2 to 1000 points [x, y, z].");
+    parts.cuts.push_back(read_points(list[i], name));
+  }
+}
+
+/// A list of points, or {"points": [...], "snap": true or false}.
+DrawnCurve read_curve(const Json& item, const std::string& name) {
+  const Json* points = &item;
+  DrawnCurve curve;
+  curve.closed = name == "loops";
+  if (item.is_object()) {
+    for (const auto& [key, value] : item.items())
+      if (key != "points" && key != "snap") refuse("segments.json: an entry of " + name + " has \"" + key + "\": it may have points and snap.");
+    if (const auto snap = item.find("snap"); snap != item.end()) {
+      if (!snap->is_boolean()) refuse("segments.json: snap of an entry of " + name + " must be true or false.");
+      curve.snap = snap->get<bool>();
+    }
+    const auto found = item.find("points");
+    if (found == item.end()) refuse("segments.json: an entry of " + name + " has no points.");
+    points = &*found;
+  }
+  if (!points->is_array() || points->size() > 1000) refuse("segments.json: each of " + name + " must be a list of up to 1000 points [x, y, z].");
+  curve.points = read_points(*points, name);
+  return curve;
 }
 
 /// Of every part whether it is a cylinder, and if not, why.
@@ -50,23 +87,23 @@ double micrometres(double mm) { return std::round(1000 * mm) / 1000; }
 
 ZippableParts read_segments(ByteView bytes) {
   const Json json = Json::parse(as_text(bytes), nullptr, false);
-  if (!json.is_object()) refuse("segments.json is not a JSON object: it holds punctures, loops and lines.");
+  if (!json.is_object()) refuse("segments.json is not a JSON object: it holds punctures, loops, lines, start and end.");
   ZippableParts parts;
   for (const auto& [name, value] : json.items()) {
-    if (name != "punctures" && name != "loops" && name != "lines")
-      refuse("segments.json has \"" + name + "\", which is not known: it may have punctures, loops and lines.");
-    if (!value.is_array() || value.size() > 100) refuse("segments.json: " + name + " must be a list of up to 100 entries.");
-    if (name == "punctures") {
-      parts.punctures = read_points(value, "punctures");
+    if (name == "start" || name == "end") {
+      (name == "start" ? parts.start : parts.end) = read_point(value, name);
       continue;
     }
-    for (const Json& item : value) {
-      if (!item.is_array() || item.size() > 1000)
-        refuse("segments.json: each of " + name + " must be a list of up to 1000 points [x, y, z].");
-      parts.curves.push_back({read_points(item, name), name == "loops"});
+    if (name != "punctures" && name != "loops" && name != "lines")
+      refuse("segments.json has \"" + name + "\", which is not known: it may have punctures, loops, lines, start and end.");
+    if (!value.is_array() || value.size() > 100) refuse("segments.json: " + name + " must be a list of up to 100 entries.");
+    if (name == "punctures") {
+      read_punctures(value, parts);
+      continue;
     }
+    for (const Json& item : value) parts.curves.push_back(read_curve(item, name));
   }
-  if (parts.punctures.empty() && parts.curves.empty())
+  if (parts.punctures.empty() && parts.cuts.empty() && parts.curves.empty() && !parts.start && !parts.end)
     refuse("segments.json says nothing: give punctures, loops or lines, or leave it out.");
   return parts;
 }
@@ -80,6 +117,11 @@ Bytes write_design_json(const ParameterisedModel& model, const ZippableDesign& d
   Json punctures = Json::array();
   for (std::size_t i = 0; i < model.proposal.punctures.size(); ++i)
     punctures.push_back({{"position_mm", vector_json(model.proposal.punctures[i])}, {"radius_mm", model.proposal.puncture_radius_mm[i]}});
+  for (const auto& slit : model.proposal.slits) {
+    Json path = Json::array();
+    for (const Vec3& point : slit) path.push_back(vector_json(point));
+    punctures.push_back({{"position_mm", vector_json(slit[slit.size() / 2])}, {"radius_mm", 0}, {"path_mm", path}});
+  }
   Json boundary = Json::array();
   for (std::size_t i = 0; i < design.ribbon.boundary.size(); ++i) {
     const RibbonVertex& v = design.ribbon.boundary[i];

@@ -8,9 +8,10 @@
 
 namespace formwright {
 
-/// segments.json: {"punctures": [[x, y, z], ...], "loops": [[[x, y, z], ...], ...], "lines": [[[x, y, z], ...], ...]}, each optional, in
-/// the model's coordinates: where parts are punctured, closed borders of parts, and borders that end on others. Throws Error{invalid_input,
-/// "segments"} naming what is wrong.
+/// segments.json: {"punctures": [[x, y, z] or [[x, y, z], ...], ...], "loops": [curve, ...], "lines": [curve, ...], "start": [x, y, z], "end":
+/// [x, y, z]}, each optional, in the model's coordinates: where parts are punctured (a hole, or a cut along a path), closed borders of parts,
+/// borders that end on others, and points in the first and the last part. A curve is a list of points or {"points": [...], "snap": true}.
+/// Throws Error{invalid_input, "segments"} naming what is wrong.
 ZippableParts read_segments(ByteView bytes);
 
 /// Everything that later steps need of a design: parts, the curve's samples, the ribbon in space and in the plane.

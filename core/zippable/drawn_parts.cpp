@@ -2,8 +2,10 @@
 #include "zippable/drawn_parts.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
-#include <queue>
+#include <map>
 #include <string>
 
 #include "base/error.h"
@@ -13,69 +15,10 @@
 #include "geometry/point_distance.h"
 #include "numerics/sparse_cholesky.h"
 #include "zippable/geodesic_distance.h"
+#include "zippable/surface_way.h"
 
 namespace formwright {
 namespace {
-
-int nearest_vertex(const TriangleMesh& mesh, const Vec3& point) {
-  Eigen::Index nearest = 0;
-  (mesh.V.rowwise() - point.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
-  return static_cast<int>(nearest);
-}
-
-/// Vertices of the shortest way along edges, both ends included; only the start where no way leads on.
-std::vector<int> edge_way(const TriangleMesh& mesh, const Adjacency& adjacency, int from, int to) {
-  std::vector<double> distance(mesh.vertex_count(), std::numeric_limits<double>::infinity());
-  std::vector<int> before(mesh.vertex_count(), -1);
-  using Entry = std::pair<double, int>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  distance[from] = 0;
-  queue.emplace(0, from);
-  while (!queue.empty()) {
-    const auto [d, v] = queue.top();
-    queue.pop();
-    if (v == to) break;
-    if (d > distance[v]) continue;
-    for (const int w : adjacency.neighbours(v)) {
-      const double reach = d + (mesh.V.row(w) - mesh.V.row(v)).norm();
-      if (reach < distance[w]) distance[w] = reach, before[w] = v, queue.emplace(reach, w);
-    }
-  }
-  if (from != to && before[to] < 0) return {from};
-  std::vector<int> way{to};
-  while (way.back() != from) way.push_back(before[way.back()]);
-  std::reverse(way.begin(), way.end());
-  return way;
-}
-
-/// `count` + 1 points at even steps along a polyline.
-std::vector<Vec3> even_points(const std::vector<Vec3>& line, int count) {
-  std::vector<double> along{0};
-  for (std::size_t i = 0; i + 1 < line.size(); ++i) along.push_back(along.back() + (line[i + 1] - line[i]).norm());
-  std::vector<Vec3> points;
-  std::size_t side = 0;
-  for (int k = 0; k <= count; ++k) {
-    const double wanted = along.back() * k / count;
-    while (side + 2 < line.size() && along[side + 1] < wanted) ++side;
-    const double length = along[side + 1] - along[side], t = length > 0 ? std::clamp((wanted - along[side]) / length, 0.0, 1.0) : 0.0;
-    points.push_back((1 - t) * line[side] + t * line[side + 1]);
-  }
-  return points;
-}
-
-/// Pulls a way straight on the surface: few points first, each to the middle between its neighbours and back onto the surface, then twice
-/// as many. Ends stay.
-std::vector<Vec3> straightened(std::vector<Vec3> line, const PointDistance& surface, double step_mm) {
-  double length = 0;
-  for (std::size_t i = 0; i + 1 < line.size(); ++i) length += (line[i + 1] - line[i]).norm();
-  for (int count = 2; count < 4096; count *= 2) {
-    line = even_points(line, count);
-    for (int sweep = 0; sweep < 20; ++sweep)
-      for (int i = 1; i < count; ++i) line[i] = surface.nearest(0.5 * (line[i - 1] + line[i + 1]))->point;
-    if (length / count < step_mm) break;
-  }
-  return line;
-}
 
 /// Marks the edges of a way between two vertices that is as straight as edges allow.
 void mark_way(const TriangleMesh& mesh, const Adjacency& adjacency, const PointDistance& surface, double step_mm, int from, int to,
@@ -96,6 +39,69 @@ void mark_way(const TriangleMesh& mesh, const Adjacency& adjacency, const PointD
     const std::vector<int> way = edge_way(mesh, adjacency, stops[i], stops[i + 1]);
     for (std::size_t k = 0; k + 1 < way.size(); ++k) wall[adjacency.find_edge(way[k], way[k + 1])] = 1;
   }
+}
+
+/// Marks the edges of the cheapest way: as they are along features, as straight as edges allow in between.
+void mark_snapped_way(const TriangleMesh& mesh, const Adjacency& adjacency, const PointDistance& surface, double step_mm, int from, int to,
+                      const FeatureLines& features, std::vector<char>& wall) {
+  const std::vector<int> way = edge_way(mesh, adjacency, from, to, &features);
+  std::size_t left = 0;  // where the way left the features
+  for (std::size_t k = 0; k + 1 < way.size(); ++k) {
+    const int edge = adjacency.find_edge(way[k], way[k + 1]);
+    if (std::abs(features.bend_rad[edge]) < features.options.least_rad) continue;
+    if (left < k) mark_way(mesh, adjacency, surface, step_mm, way[left], way[k], wall);
+    wall[edge] = 1;
+    left = k + 1;
+  }
+  if (left + 1 < way.size()) mark_way(mesh, adjacency, surface, step_mm, way[left], way.back(), wall);
+}
+
+/// The vertex that stands for a drawn point: on the nearest feature line in reach, or the nearest one.
+int snapped_vertex(const TriangleMesh& mesh, const SnapTargets& targets, const Vec3& point) {
+  int nearest = -1;
+  double least = targets.reach_mm;
+  for (const FeaturePoint& f : targets.features.points)
+    if (const double d = (mesh.V.row(f.vertex).transpose() - point).norm(); d < least) least = d, nearest = f.vertex;
+  return nearest >= 0 ? nearest : nearest_vertex(mesh, point);
+}
+
+/// Of every curve the vertices on its way. A point that a snapped curve moves is moved for all curves that share it.
+std::vector<std::vector<int>> stops_of(const TriangleMesh& mesh, const std::vector<DrawnCurve>& curves, const std::vector<char>& snaps,
+                                       const SnapTargets* targets) {
+  const auto key = [](const Vec3& p) { return std::array<double, 3>{p.x(), p.y(), p.z()}; };
+  std::map<std::array<double, 3>, int> moved;
+  for (std::size_t i = 0; i < curves.size(); ++i)
+    if (snaps[i])
+      for (const Vec3& point : curves[i].points) moved.try_emplace(key(point), snapped_vertex(mesh, *targets, point));
+  std::vector<std::vector<int>> result;
+  for (const DrawnCurve& curve : curves) {
+    std::vector<int> stops;
+    for (const Vec3& point : curve.points) {
+      const auto found = moved.find(key(point));
+      const int v = found != moved.end() ? found->second : nearest_vertex(mesh, point);
+      if (stops.empty() || stops.back() != v) stops.push_back(v);
+    }
+    if (curve.closed && stops.size() > 1 && stops.back() != stops.front()) stops.push_back(stops.front());
+    if (stops.size() < (curve.closed ? 4u : 2u))
+      throw Error(ErrorCode::invalid_input, "segments",
+                  "Curve " + std::to_string(result.size() + 1) + " of segments.json has too few different points: a loop needs three, a line two.");
+    result.push_back(std::move(stops));
+  }
+  return result;
+}
+
+/// Vertices within a run of walls along sharp edges, with different parts on both sides.
+std::vector<char> on_sharp_border(const Adjacency& adjacency, const std::vector<int>& part, const std::vector<char>& wall,
+                                  const std::vector<char>& sharp_wall) {
+  std::vector<char> keep(adjacency.vertex_count(), 0);
+  std::vector<int> walls(adjacency.vertex_count(), 0), sharp(adjacency.vertex_count(), 0);
+  for (int e = 0; e < adjacency.edge_count(); ++e) {
+    const auto halfedges = adjacency.halfedges_of_edge(e);
+    if (!wall[e] || halfedges.size() != 2 || part[halfedges[0] / 3] == part[halfedges[1] / 3]) continue;
+    for (const int v : {adjacency.edges()[e].lower, adjacency.edges()[e].higher}) ++walls[v], sharp[v] += sharp_wall[e];
+  }
+  for (int v = 0; v < adjacency.vertex_count(); ++v) keep[v] = walls[v] >= 2 && sharp[v] == walls[v] && !adjacency.is_boundary_vertex(v);
+  return keep;
 }
 
 /// Faces that are connected without crossing a wall.
@@ -121,9 +127,9 @@ std::vector<int> parts_between(const Adjacency& adjacency, const std::vector<cha
   return part;
 }
 
-/// Each part's indicator after diffusing over about two edges: n x parts, rows sum to 1.
+/// Each part's indicator after diffusing over about two edges: n x parts, rows sum to 1. It stays as it is on and beside what `keep` marks.
 Eigen::MatrixXd smooth_indicators(const TriangleMesh& mesh, const Adjacency& adjacency, const std::vector<int>& part, int count,
-                                  Context& context) {
+                                  const std::vector<char>& keep, Context& context) {
   const int n = mesh.vertex_count();
   const Eigen::VectorXd face_area = face_areas(mesh);
   Eigen::MatrixXd u = Eigen::MatrixXd::Zero(n, count);
@@ -132,7 +138,13 @@ Eigen::MatrixXd smooth_indicators(const TriangleMesh& mesh, const Adjacency& adj
     for (int k = 0; k < 3; ++k) u(mesh.F(f, k), part[f]) += face_area[f] / 3, area[mesh.F(f, k)] += face_area[f] / 3;
   const double edge = mean_edge_length(mesh), time = 4 * edge * edge;
   SparseMatrix system = time * cotangent_laplacian(mesh, adjacency);
-  for (int v = 0; v < n; ++v) system.coeffRef(v, v) += area[v] + 1e-12 * edge * edge;
+  for (int v = 0; v < n; ++v) {
+    const auto ring = adjacency.neighbours(v);
+    const bool fixed = keep[v] || std::any_of(ring.begin(), ring.end(), [&](int w) { return keep[w]; });
+    const double weight = fixed ? 1e4 : 1;
+    if (fixed) u.row(v) *= weight;
+    system.coeffRef(v, v) += weight * area[v] + 1e-12 * edge * edge;
+  }
   const SparseMatrix lower = system.triangularView<Eigen::Lower>();
   SparseCholesky cholesky;
   cholesky.analyze(lower, Positions(), context);
@@ -143,39 +155,40 @@ Eigen::MatrixXd smooth_indicators(const TriangleMesh& mesh, const Adjacency& adj
 
 }  // namespace
 
-LabelledSurface divide_along_curves(const TriangleMesh& mesh, const std::vector<DrawnCurve>& curves, Context& context) {
+LabelledSurface divide_along_curves(const TriangleMesh& mesh, const std::vector<DrawnCurve>& curves, const SnapTargets* targets, Context& context) {
   const Adjacency adjacency(mesh);
   const PointDistance surface(mesh);
   const double step_mm = mean_edge_length(mesh);
-  std::vector<char> wall(adjacency.edge_count(), 0);
-  for (std::size_t i = 0; i < curves.size(); ++i) {
-    std::vector<int> stops;
-    for (const Vec3& point : curves[i].points) {
-      const int v = nearest_vertex(mesh, point);
-      if (stops.empty() || stops.back() != v) stops.push_back(v);
-    }
-    if (curves[i].closed && stops.size() > 1 && stops.back() != stops.front()) stops.push_back(stops.front());
-    if (stops.size() < (curves[i].closed ? 4u : 2u))
-      throw Error(ErrorCode::invalid_input, "segments",
-                  "Curve " + std::to_string(i + 1) + " of segments.json has too few different points: a loop needs three, a line two.");
-    for (std::size_t k = 0; k + 1 < stops.size(); ++k) {
+  std::vector<char> snaps;
+  for (const DrawnCurve& curve : curves) snaps.push_back(targets && curve.snap.value_or(targets->by_default));
+  const auto stops = stops_of(mesh, curves, snaps, targets);
+  std::vector<char> wall(adjacency.edge_count(), 0), sharp_wall(adjacency.edge_count(), 0);
+  for (std::size_t i = 0; i < curves.size(); ++i)
+    for (std::size_t k = 0; k + 1 < stops[i].size(); ++k) {
       context.check_cancelled();
-      mark_way(mesh, adjacency, surface, step_mm, stops[k], stops[k + 1], wall);
+      if (!snaps[i]) {
+        mark_way(mesh, adjacency, surface, step_mm, stops[i][k], stops[i][k + 1], wall);
+        continue;
+      }
+      std::vector<char> own(adjacency.edge_count(), 0);
+      mark_snapped_way(mesh, adjacency, surface, step_mm, stops[i][k], stops[i][k + 1], targets->features, own);
+      for (int e = 0; e < adjacency.edge_count(); ++e)
+        if (own[e]) wall[e] = 1, sharp_wall[e] |= targets->features.sharp[e];
     }
-  }
   int count = 0;
   const std::vector<int> part = parts_between(adjacency, wall, count);
   if (count < 2)
     throw Error(ErrorCode::invalid_input, "segments",
                 "The curves of segments.json divide nothing: close them, or let each end on another.");
-  const Eigen::MatrixXd field = -smooth_indicators(mesh, adjacency, part, count, context);
+  const std::vector<char> keep = on_sharp_border(adjacency, part, wall, sharp_wall);
+  const Eigen::MatrixXd field = -smooth_indicators(mesh, adjacency, part, count, keep, context);
   std::vector<int> label(mesh.vertex_count());
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     Eigen::Index least = 0;
     field.row(v).minCoeff(&least);
     label[v] = static_cast<int>(least);
   }
-  LabelledSurface result = split_by_least_field(mesh, label, field);
+  LabelledSurface result = split_by_least_field(mesh, label, field, keep);
   // Slivers between ways that cross each other vanish under the smoothing: what is left is numbered anew.
   std::vector<int> number(count, -1);
   int next = 0;

@@ -26,12 +26,14 @@ double through(const Vec3& a, double da, const Vec3& b, double db, const Vec3& c
 
 }  // namespace
 
-Eigen::VectorXd geodesic_distance_mm(const TriangleMesh& mesh, const Adjacency& adjacency, const std::vector<int>& sources) {
+Eigen::VectorXd geodesic_distance_mm(const TriangleMesh& mesh, const Adjacency& adjacency, const std::vector<int>& sources,
+                                     const Eigen::VectorXd& slowness) {
   Eigen::VectorXd distance = Eigen::VectorXd::Constant(mesh.vertex_count(), std::numeric_limits<double>::infinity());
   std::vector<char> done(mesh.vertex_count(), 0);
   using Entry = std::pair<double, int>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
   for (const int v : sources) distance[v] = 0, queue.emplace(0, v);
+  const bool slow = slowness.size() > 0;
   const auto position = [&](int v) { return Vec3(mesh.V.row(v).transpose()); };
   const auto offer = [&](int v, double d) {
     if (d < distance[v]) distance[v] = d, queue.emplace(d, v);
@@ -42,11 +44,12 @@ Eigen::VectorXd geodesic_distance_mm(const TriangleMesh& mesh, const Adjacency& 
     if (done[v]) continue;
     done[v] = 1;
     for (const int w : adjacency.neighbours(v))
-      if (!done[w]) offer(w, d + (position(w) - position(v)).norm());
+      if (!done[w]) offer(w, d + (slow ? 0.5 * (slowness[v] + slowness[w]) : 1.0) * (position(w) - position(v)).norm());
     for (const int h : adjacency.outgoing(v)) {
       const int p = adjacency.to(h), q = adjacency.from(previous_halfedge(h));
-      if (done[p] && !done[q]) offer(q, through(position(v), d, position(p), distance[p], position(q)));
-      if (done[q] && !done[p]) offer(p, through(position(v), d, position(q), distance[q], position(p)));
+      const double s = slow ? (slowness[v] + slowness[p] + slowness[q]) / 3 : 1.0;
+      if (done[p] && !done[q]) offer(q, through(s * position(v), d, s * position(p), distance[p], s * position(q)));
+      if (done[q] && !done[p]) offer(p, through(s * position(v), d, s * position(q), distance[q], s * position(p)));
     }
   }
   return distance;

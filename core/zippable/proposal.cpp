@@ -13,6 +13,7 @@
 #include "base/parallel.h"
 #include "zippable/geodesic_distance.h"
 #include "zippable/handles.h"
+#include "zippable/slit.h"
 #include "zippable/surface_split.h"
 #include "zippable/traversal.h"
 
@@ -25,6 +26,12 @@ struct Seed {
   double prominence = 0;  // mm of mean distance; openings stay whatever theirs
   double reach_mm = 0;    // along the limb, from the tip to where it ends
 };
+
+/// What a millimetre counts for where found borders are to run in valleys.
+Eigen::VectorXd valley_slowness(const TriangleMesh& mesh, const Adjacency& adjacency, const ProposalOptions& options, Context& context) {
+  const FeatureLines lines = find_features(mesh, adjacency, options.features, context);
+  return 1 + 4 * (lines.valley_rad.array() / options.features.least_rad).min(4).square();
+}
 
 /// Mean distance to everywhere, from a few vertices spread over the surface, each standing for what is nearest to it.
 Eigen::VectorXd mean_distance(const TriangleMesh& mesh, const Adjacency& adjacency, Context& context) {
@@ -89,10 +96,11 @@ std::vector<Tip> prominent_maxima(const Adjacency& adjacency, const Eigen::Vecto
   return tips;
 }
 
-std::vector<Seed> find_seeds(const TriangleMesh& mesh, const Adjacency& adjacency, const ProposalOptions& options, Context& context) {
+std::vector<Seed> find_seeds(const TriangleMesh& mesh, const Adjacency& adjacency, const ProposalOptions& options, const Eigen::VectorXd& slowness,
+                             Context& context) {
   std::vector<Seed> seeds;
   for (auto& loop : boundary_loops(adjacency)) seeds.push_back({std::move(loop), true, std::numeric_limits<double>::infinity(), 0});
-  if (!options.tips_mm.empty()) {
+  if (!options.tips_mm.empty() || !options.cuts_mm.empty()) {
     for (const Vec3& tip : options.tips_mm) {
       Eigen::Index nearest = 0;
       (mesh.V.rowwise() - tip.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
@@ -114,7 +122,7 @@ std::vector<Seed> find_seeds(const TriangleMesh& mesh, const Adjacency& adjacenc
     for (const int w : adjacency.neighbours(tip.vertex)) beside |= adjacency.is_boundary_vertex(w);
     if (beside) continue;  // an opening is there already
     Seed seed{{tip.vertex}, false, tip.prominence, 0};
-    if (tip.saddle >= 0) seed.reach_mm = geodesic_distance_mm(mesh, adjacency, seed.vertices)[tip.saddle];
+    if (tip.saddle >= 0) seed.reach_mm = geodesic_distance_mm(mesh, adjacency, seed.vertices, slowness)[tip.saddle];
     seeds.push_back(std::move(seed));
   }
   if (options.parts_max < 3 && seeds.size() > 2 && !seeds[1].opening) seeds.resize(2);
@@ -171,7 +179,10 @@ Proposal divide(const TriangleMesh& mesh, const std::vector<Seed>& seeds, const 
 /// What the curves bound, punctured.
 Proposal drawn(const TriangleMesh& mesh, const ProposalOptions& options, Context& context) {
   Proposal proposal;
-  LabelledSurface surface = divide_along_curves(mesh, options.curves, context);
+  std::optional<SnapTargets> targets;
+  if (std::any_of(options.curves.begin(), options.curves.end(), [&](const DrawnCurve& c) { return c.snap.value_or(options.follow_creases); }))
+    targets = SnapTargets{find_features(mesh, Adjacency(mesh), options.features, context), options.snap_reach_mm, options.follow_creases};
+  LabelledSurface surface = divide_along_curves(mesh, options.curves, targets ? &*targets : nullptr, context);
   const int parts = 1 + *std::max_element(surface.face_label.begin(), surface.face_label.end());
   const Adjacency adjacency(surface.mesh);
   std::vector<int> places;
@@ -214,12 +225,14 @@ void note_cuts(Proposal& proposal, OpenedSurface& opened) {
 /// Parts around openings and tips, the least prominent tips given up one by one; nothing when only openings are left to give up.
 std::optional<Proposal> automatic(const OpenedSurface& opened, const ProposalOptions& options, Context& context, std::string& problem) {
   const Adjacency adjacency(opened.mesh);
-  std::vector<Seed> seeds = find_seeds(opened.mesh, adjacency, options, context);
+  Eigen::VectorXd slowness;
+  if (options.follow_creases) slowness = valley_slowness(opened.mesh, adjacency, options, context);
+  std::vector<Seed> seeds = find_seeds(opened.mesh, adjacency, options, slowness, context);
   const std::size_t found = seeds.size();
   Eigen::MatrixXd distance(opened.mesh.vertex_count(), static_cast<Eigen::Index>(found));
   parallel_for(found, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
-      distance.col(static_cast<Eigen::Index>(k)) = geodesic_distance_mm(opened.mesh, adjacency, seeds[k].vertices);
+      distance.col(static_cast<Eigen::Index>(k)) = geodesic_distance_mm(opened.mesh, adjacency, seeds[k].vertices, slowness);
   });
   // Where limbs end first; but then one part may surround others and be no cylinder, which plain nearness seldom does.
   constexpr std::array reach_shares{1.0, 0.5, 0.25, 0.0};
@@ -241,7 +254,7 @@ std::optional<Proposal> automatic(const OpenedSurface& opened, const ProposalOpt
       problem = error.what();
     }
     if (attempt % reach_shares.size() + 1 < reach_shares.size() && seeds.size() > 2) continue;
-    if (!options.tips_mm.empty())
+    if (!options.tips_mm.empty() || !options.cuts_mm.empty())
       throw Error(ErrorCode::invalid_input, "segments",
                   "The given punctures do not divide the model into cylinders (" + problem + "): move, add or drop some.");
     if (seeds.size() <= 2 || seeds.back().opening) return std::nullopt;
@@ -258,9 +271,11 @@ Proposal propose_segmentation(const TriangleMesh& mesh, const ProposalOptions& o
     throw Error(ErrorCode::invalid_input, "mesh", "The model is in several separate pieces: make each a zippable of its own.");
   context.progress(0, "Looking for limbs");
   OpenedSurface opened = cut_handles(mesh, context);
+  const auto slits = cut_slits(opened, options.cuts_mm, context);
   if (!options.curves.empty()) {
     Proposal proposal = drawn(opened.mesh, options, context);
     note_cuts(proposal, opened);
+    proposal.slits = slits;
     return proposal;
   }
   // One cylinder has two openings at most; slits between openings make fewer of them.
@@ -271,6 +286,7 @@ Proposal propose_segmentation(const TriangleMesh& mesh, const ProposalOptions& o
     std::string problem;
     if (std::optional<Proposal> proposal = automatic(opened, options, context, problem)) {
       note_cuts(*proposal, opened);
+      proposal->slits = slits;
       return std::move(*proposal);
     }
     if (boundary_loops(Adjacency(opened.mesh)).size() < 3 || !join_nearest_openings(opened, context))

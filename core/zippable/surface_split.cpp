@@ -3,20 +3,33 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
 
 #include "base/error.h"
-#include "geometry/adjacency.h"
 
 namespace formwright {
 namespace {
 
 constexpr double nearest_share = 0.1;  // of an edge: how close to its end a new vertex may lie
 
-/// Splits every face whose vertices differ in `label`; `level(a, b)` is where along the edge from a the labels change.
-/// `face_of`, per new face: the old one.
-LabelledSurface split(const TriangleMesh& mesh, const Adjacency& adjacency, const std::vector<int>& label,
-                      const std::function<double(int, int)>& level, std::vector<int>& face_of) {
+/// V - E + F of what lies wholly within a set of vertices; a disc when that is 1.
+int euler_within(const Adjacency& adjacency, const std::vector<int>& vertices, const std::vector<int>& mark, int own) {
+  int euler = 0;
+  for (const int v : vertices) {
+    ++euler;
+    for (const int w : adjacency.neighbours(v))
+      if (w > v && mark[w] == own) --euler;
+    for (const int h : adjacency.outgoing(v)) {
+      const int a = adjacency.to(h), b = adjacency.from(previous_halfedge(h));
+      if (a > v && b > v && mark[a] == own && mark[b] == own) ++euler;
+    }
+  }
+  return euler;
+}
+
+}  // namespace
+
+LabelledSurface split_at_levels(const TriangleMesh& mesh, const Adjacency& adjacency, const std::vector<int>& label,
+                                const std::function<double(int, int)>& level, std::vector<int>& face_of) {
   LabelledSurface result;
   std::vector<int> crossing(adjacency.edge_count(), -1);
   std::vector<Vec3> points;
@@ -24,7 +37,11 @@ LabelledSurface split(const TriangleMesh& mesh, const Adjacency& adjacency, cons
   for (int e = 0; e < adjacency.edge_count(); ++e) {
     const auto [a, b] = adjacency.edges()[e];
     if (label[a] == label[b]) continue;
-    const double t = std::clamp(level(a, b), nearest_share, 1 - nearest_share);
+    const double wanted = level(a, b), t = std::clamp(wanted, nearest_share, 1 - nearest_share);
+    if (wanted == 0 || wanted == 1) {
+      crossing[e] = wanted == 0 ? a : b;
+      continue;
+    }
     crossing[e] = n + static_cast<int>(points.size());
     points.push_back(((1 - t) * mesh.V.row(a) + t * mesh.V.row(b)).transpose());
   }
@@ -32,6 +49,7 @@ LabelledSurface split(const TriangleMesh& mesh, const Adjacency& adjacency, cons
   face_of.clear();
   int current = 0;
   const auto add = [&](int a, int b, int c, int of) {
+    if (a == b || b == c || c == a) return;  // beside a vertex that the border goes through
     faces.push_back({a, b, c});
     result.face_label.push_back(of);
     face_of.push_back(current);
@@ -76,32 +94,17 @@ LabelledSurface split(const TriangleMesh& mesh, const Adjacency& adjacency, cons
   return result;
 }
 
-/// V - E + F of what lies wholly within a set of vertices; a disc when that is 1.
-int euler_within(const Adjacency& adjacency, const std::vector<int>& vertices, const std::vector<int>& mark, int own) {
-  int euler = 0;
-  for (const int v : vertices) {
-    ++euler;
-    for (const int w : adjacency.neighbours(v))
-      if (w > v && mark[w] == own) --euler;
-    for (const int h : adjacency.outgoing(v)) {
-      const int a = adjacency.to(h), b = adjacency.from(previous_halfedge(h));
-      if (a > v && b > v && mark[a] == own && mark[b] == own) ++euler;
-    }
-  }
-  return euler;
-}
-
-}  // namespace
-
-LabelledSurface split_by_least_field(const TriangleMesh& mesh, const std::vector<int>& label, const Eigen::MatrixXd& field) {
+LabelledSurface split_by_least_field(const TriangleMesh& mesh, const std::vector<int>& label, const Eigen::MatrixXd& field,
+                                     const std::vector<char>& keep_to) {
   const Adjacency adjacency(mesh);
   std::vector<int> face_of;
-  return split(
+  return split_at_levels(
       mesh, adjacency, label,
       [&](int a, int b) {
+        if (!keep_to.empty() && (keep_to[a] || keep_to[b])) return keep_to[a] ? 0.0 : 1.0;
         // How much better the own label is than the other one, at either end.
         const double at_a = field(a, label[b]) - field(a, label[a]), at_b = field(b, label[a]) - field(b, label[b]);
-        return at_a + at_b > 0 ? at_a / (at_a + at_b) : 0.5;
+        return at_a + at_b > 0 ? std::clamp(at_a / (at_a + at_b), nearest_share, 1 - nearest_share) : 0.5;
       },
       face_of);
 }
@@ -171,13 +174,13 @@ std::vector<double> puncture(LabelledSurface& surface, const std::vector<int>& v
     }
   }
   std::vector<int> face_of;
-  LabelledSurface cut = split(
+  LabelledSurface cut = split_at_levels(
       mesh, adjacency, mark,
       [&](int a, int b) {
         const int own = std::max(mark[a], mark[b]) - 1;
         const auto distance = [&](int v) { return (mesh.V.row(v) - mesh.V.row(vertices[own])).norm(); };
         const double da = distance(a), db = distance(b);
-        return da == db ? 0.5 : (radii[own] - da) / (db - da);
+        return da == db ? 0.5 : std::clamp((radii[own] - da) / (db - da), nearest_share, 1 - nearest_share);
       },
       face_of);
   LabelledSurface result;

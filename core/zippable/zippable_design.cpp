@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <numbers>
 
 #include "base/error.h"
 #include "base/number_list.h"
@@ -33,9 +34,14 @@ std::vector<double> part_windings(const std::string& text, int part_count) {
   return windings;
 }
 
+FeatureOptions features_asked_for(const TriangleMesh& mesh, const ZippableOptions& options) {
+  return {feature_scale_mm(mesh, options.width_mm, options.crease_mm.value_or(0)), options.crease_degrees * std::numbers::pi / 180};
+}
+
 /// Those that begin and end where they should, the even ones first.
-std::vector<RankedTraversal> orders_asked_for(const Segmentation& s, const Parameterisation& parameterisation, const ZippableOptions& options) {
-  std::vector<RankedTraversal> ranked = ranked_traversals(s, parameterisation, options.width_mm);
+std::vector<RankedTraversal> orders_asked_for(const ParameterisedModel& model, const ZippableOptions& options) {
+  const Segmentation& s = model.proposal.segmentation;
+  std::vector<RankedTraversal> ranked = ranked_traversals(s, model.parameterisation, options.width_mm);
   if (ranked.empty())
     throw Error(ErrorCode::invalid_input, "mesh", "No order visits every part once: join or move parts so that they form a chain.");
   const auto keep = [&](int part, const char* where, const auto& end_of) {
@@ -45,8 +51,11 @@ std::vector<RankedTraversal> orders_asked_for(const Segmentation& s, const Param
     if (ranked.empty())
       throw Error(ErrorCode::invalid_input, where, "No order that visits every part once has its ends there: choose another part.");
   };
-  keep(options.start_part, "start_part", [](const Traversal& t) { return t.parts.front(); });
-  keep(options.end_part, "end_part", [](const Traversal& t) { return t.parts.back(); });
+  const auto front = [](const Traversal& t) { return t.parts.front(); };
+  const auto back = [](const Traversal& t) { return t.parts.back(); };
+  // A number given now goes before a point in segments.json.
+  options.start_part > 0 ? keep(options.start_part, "start_part", front) : keep(model.start_part, "segments", front);
+  options.end_part > 0 ? keep(options.end_part, "end_part", back) : keep(model.end_part, "segments", back);
   if (options.traversal > static_cast<int>(ranked.size()))
     throw Error(ErrorCode::invalid_input, "traversal",
                 "There are only " + std::to_string(ranked.size()) + " orders of these parts: choose one of them.");
@@ -83,11 +92,23 @@ ParameterisedModel divide_model(const TriangleMesh& given, const ZippableParts& 
   proposal.parts_max = options.parts_max;
   proposal.prominence = 0.01 * options.prominence_percent;
   proposal.accept_all_parts = options.check_parts;
+  proposal.follow_creases = options.borders == PartBorders::creases;
+  proposal.features = features_asked_for(model.mesh, options);
+  proposal.snap_reach_mm = 0.5 * options.width_mm;
   for (const Vec3& tip : parts.punctures) proposal.tips_mm.push_back(model.scale * tip);
   proposal.curves = parts.curves;
   for (DrawnCurve& curve : proposal.curves)
     for (Vec3& point : curve.points) point *= model.scale;
+  proposal.cuts_mm = parts.cuts;
+  for (auto& cut : proposal.cuts_mm)
+    for (Vec3& point : cut) point *= model.scale;
   model.proposal = propose_segmentation(model.mesh, proposal, context);
+  const auto part_at = [&](const std::optional<Vec3>& point) {
+    if (!point) return 0;
+    const Segmentation& s = model.proposal.segmentation;
+    return 1 + s.face_segment[PointDistance(s.mesh).nearest(model.scale * *point)->face];
+  };
+  model.start_part = part_at(parts.start), model.end_part = part_at(parts.end);
   model.seconds_parts = watch.lap();
   return model;
 }
@@ -104,16 +125,26 @@ ParameterisedModel parameterise_model(const TriangleMesh& given, const ZippableP
     const auto span = context.span(0.25, 1, "Parameterising");
     model.parameterisation = parameterise(model.proposal.segmentation, {}, context);
   }
+  if (options.winding_course == WindingCourse::creases) {
+    const TriangleMesh& mesh = model.proposal.segmentation.mesh;
+    model.features = find_features(mesh, Adjacency(mesh), features_asked_for(model.mesh, options), context);
+  }
   model.seconds_parameterisation = watch.lap();
   return model;
 }
 
-std::string parameterisation_key(const ZippableOptions& options) {
+std::string parameterisation_key(const ZippableOptions& options, const ZippableParts& parts) {
   ZippableOptions relevant;
   relevant.size_mm = options.size_mm;
   relevant.parts_max = options.parts_max;
   relevant.prominence_percent = options.prominence_percent;
   relevant.puncture_mm = options.hole_mm();
+  // Creases count at the ribbon's scale.
+  relevant.borders = options.borders, relevant.winding_course = options.winding_course;
+  const auto snaps = [](const DrawnCurve& curve) { return curve.snap.value_or(false); };
+  const bool creases = options.winding_course == WindingCourse::creases || options.borders == PartBorders::creases ||
+                       std::any_of(parts.curves.begin(), parts.curves.end(), snaps);
+  if (creases) relevant.width_mm = options.width_mm, relevant.crease_mm = options.crease_mm, relevant.crease_degrees = options.crease_degrees;
   return write_parameters(relevant).dump();
 }
 
@@ -125,29 +156,36 @@ ZippableDesign design_zippable(const ParameterisedModel& model, const ZippableOp
   design.notes = model.proposal.notes;
   Stopwatch watch;
   context.progress(0, "Drawing the curve");
-  const std::vector<RankedTraversal> ranked = orders_asked_for(s, model.parameterisation, options);
+  const std::vector<RankedTraversal> ranked = orders_asked_for(model, options);
   design.traversal_count = static_cast<int>(ranked.size());
   CurveOptions curve;
   curve.width_mm = options.width_mm;
   curve.windings = options.windings;
   curve.part_windings = part_windings(options.part_windings, s.part_count());
   curve.sample_mm = options.sample_mm.value_or(0.2 * options.width_mm);
-  const LineTracer tracer(s, model.parameterisation);
   // The order that was chosen, and where it bends too tightly those after it.
   constexpr std::size_t most_tries = 24;
   const std::size_t first = static_cast<std::size_t>(options.traversal - 1), end = options.radius_least_mm ? std::min(ranked.size(), first + most_tries) : first + 1;
   for (std::size_t i = first; i < end; ++i) {
     ZippableDesign candidate;
     candidate.traversal = ranked[i];
-    candidate.curve = draw_zipper_curve(s, model.parameterisation, tracer, ranked[i].traversal, ranked[i].crossings, curve, context);
+    if (model.features) {
+      ZipperCurve placed;
+      const auto lines = place_lines(s, model.parameterisation, ranked[i].traversal, ranked[i].crossings, curve, placed);
+      candidate.alignment = align_to_creases(s, model.parameterisation, *model.features, lines, {}, context);
+    }
+    const Parameterisation& chart = candidate.alignment ? candidate.alignment->parameterisation : model.parameterisation;
+    const LineTracer tracer(s, chart);
+    candidate.curve = draw_zipper_curve(s, chart, tracer, ranked[i].traversal, ranked[i].crossings, curve, context);
     design.seconds_curve += watch.lap();
     if (i == first) context.progress(0.3, "Unfolding the ribbon");
-    candidate.ribbon = make_ribbon(s, model.parameterisation, tracer, candidate.curve, curve, context);
+    candidate.ribbon = make_ribbon(s, chart, tracer, candidate.curve, curve, context);
     candidate.bend = tightest_bend(candidate.ribbon, options.width_mm);
     design.seconds_ribbon += watch.lap();
     if (i == first || (candidate.bend && design.bend && candidate.bend->radius_mm > design.bend->radius_mm)) {
       design.traversal = std::move(candidate.traversal);
       design.curve = std::move(candidate.curve);
+      design.alignment = std::move(candidate.alignment);
       design.ribbon = std::move(candidate.ribbon);
       design.bend = candidate.bend;
       design.traversal_number = static_cast<int>(i) + 1;
@@ -155,6 +193,8 @@ ZippableDesign design_zippable(const ParameterisedModel& model, const ZippableOp
     if (!design.bend || design.bend->radius_mm >= options.radius_least_mm.value_or(0)) break;
   }
   design.notes.insert(design.notes.end(), design.curve.notes.begin(), design.curve.notes.end());
+  if (design.alignment && design.alignment->crease_mm == 0)
+    design.notes.push_back("No crease runs nearly like the windings: they are even. A smaller least crease, or other parts, may mend it.");
   if (options.radius_least_mm) say_how_it_bends(design, options);
   if (options.fabrics == RibbonFabrics::two) {
     design.fabrics = two_fabrics(design.ribbon, options.width_mm);

@@ -7,6 +7,7 @@
 
 #include "base/context.h"
 #include "geometry/point_distance.h"
+#include "zippable/crease_alignment.h"
 #include "zippable/fabric_colours.h"
 #include "zippable/proposal.h"
 #include "zippable/ribbon.h"
@@ -19,6 +20,8 @@ namespace formwright {
 struct ZippableParts {
   std::vector<Vec3> punctures;     // in the mesh's coordinates
   std::vector<DrawnCurve> curves;  // in the mesh's coordinates
+  std::vector<std::vector<Vec3>> cuts = {};  // punctures that are cuts, in the mesh's coordinates
+  std::optional<Vec3> start = {}, end = {};  // in the parts where the zipper begins and ends
 };
 
 /// A model divided and parameterised: what does not depend on windings, order and sampling.
@@ -27,6 +30,8 @@ struct ParameterisedModel {
   TriangleMesh mesh;  // in mm, whole
   Proposal proposal;
   Parameterisation parameterisation;
+  int start_part = 0, end_part = 0;      // as the maker's points name them, from 1; 0: anywhere
+  std::optional<FeatureLines> features;  // where windings follow creases
   double seconds_parts = 0, seconds_parameterisation = 0;
 };
 
@@ -41,7 +46,7 @@ ParameterisedModel divide_model(const TriangleMesh& mesh, const ZippableParts& p
                                 Context& context);
 
 /// Equal keys, equal parameterised models of equal meshes and parts.
-std::string parameterisation_key(const ZippableOptions& options);
+std::string parameterisation_key(const ZippableOptions& options, const ZippableParts& parts = {});
 
 struct ZippableDesign {
   int traversal_count = 0;    // orders to choose from
@@ -49,6 +54,7 @@ struct ZippableDesign {
   RankedTraversal traversal;  // the chosen one
   std::optional<RibbonBend> bend;  // the tightest
   ZipperCurve curve;
+  std::optional<CreaseAlignment> alignment;  // where windings follow creases
   Ribbon ribbon;
   std::optional<FabricColours> fabrics;                             // of two colours
   std::optional<SurfaceDistance> ribbon_to_model, model_to_ribbon;  // mm; only where options.measure_distances

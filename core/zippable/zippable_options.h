@@ -18,6 +18,20 @@ struct EnumNames<RibbonFabrics> {
   static constexpr std::array<std::string_view, 2> labels{"One", "Two colours"};
 };
 
+enum class PartBorders { straight, creases };
+template <>
+struct EnumNames<PartBorders> {
+  static constexpr std::array<std::string_view, 2> names{"straight", "creases"};
+  static constexpr std::array<std::string_view, 2> labels{"Straight", "Along creases"};
+};
+
+enum class WindingCourse { even, creases };
+template <>
+struct EnumNames<WindingCourse> {
+  static constexpr std::array<std::string_view, 2> names{"even", "creases"};
+  static constexpr std::array<std::string_view, 2> labels{"Even", "Along creases"};
+};
+
 struct ZippableOptions {
   double width_mm = 20;
   std::optional<double> windings;
@@ -27,9 +41,13 @@ struct ZippableOptions {
   int parts_max = 10;
   double prominence_percent = 8;
   std::optional<double> puncture_mm;
+  PartBorders borders = PartBorders::straight;
+  double crease_degrees = 20;
+  std::optional<double> crease_mm;
   int traversal = 1;
   int start_part = 0, end_part = 0;
   std::optional<double> radius_least_mm;
+  WindingCourse winding_course = WindingCourse::even;
   std::optional<double> sample_mm;
   bool measure_distances = true;
   bool check_parts = false;
@@ -73,6 +91,19 @@ struct ZippableOptions {
                 "Diameter of the hole at the tip of each part, at most; automatic: half the ribbon's width, more for a least radius.")
           .slider(1, 50)
           .group("Parts"),
+      parameter("borders", &ZippableOptions::borders, "Borders",
+                "Along creases: drawn borders snap to edges, ridges and valleys near them; those that are found move into valleys.")
+          .group("Parts"),
+      parameter("crease_degrees", &ZippableOptions::crease_degrees, "Least crease", unit::degrees, 1, 120,
+                "How much the surface bends across a crease, at least, for anything to follow it.")
+          .slider(5, 60)
+          .group("Parts")
+          .advanced(),
+      parameter("crease_mm", &ZippableOptions::crease_mm, "Roundness of creases", unit::mm, 0.001, 1000,
+                "Over what width a crease may be rounded off; automatic: two edges' length, or a tenth of the ribbon's width.")
+          .slider(0.5, 20)
+          .group("Parts")
+          .advanced(),
       parameter("traversal", &ZippableOptions::traversal, "Order of parts", unit::none, 1, 100000,
                 "Which of the possible orders the zipper takes through the parts; 1 is the most even one.")
           .slider(1, 50)
@@ -88,6 +119,9 @@ struct ZippableOptions {
       parameter("radius_least_mm", &ZippableOptions::radius_least_mm, "Least radius", unit::mm, 0.1, 10000,
                 "How tightly the middle of the flat ribbon may bend; holes at the tips grow, and the first order that keeps it is taken.")
           .slider(5, 100)
+          .group("Curve"),
+      parameter("winding_course", &ZippableOptions::winding_course, "Course of windings",
+                "Along creases: windings move, by less than half their spacing, onto creases that run nearly as they do.")
           .group("Curve"),
       parameter("sample_mm", &ZippableOptions::sample_mm, "Sampling", unit::mm, 0.01, 1000,
                 "Between corners of the ribbon along the zipper, about; automatic: a fifth of its width.")

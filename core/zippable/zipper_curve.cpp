@@ -18,7 +18,8 @@ std::string figure(double value) {
   return text;
 }
 
-/// Where the curve's lines run in the parameter domain, in the order of the curve.
+}  // namespace
+
 std::vector<SpiralLine> place_lines(const Segmentation& s, const Parameterisation& p, const Traversal& traversal,
                                     const Crossings& crossings, const CurveOptions& options, ZipperCurve& curve) {
   std::vector<SpiralLine> lines;
@@ -59,8 +60,6 @@ std::vector<SpiralLine> place_lines(const Segmentation& s, const Parameterisatio
   }
   return lines;
 }
-
-}  // namespace
 
 std::vector<int> thinned_grid(int first, const std::vector<double>& local_mm, double sample_mm, int most) {
   std::vector<int> kept;

@@ -47,6 +47,10 @@ struct ZipperCurve {
   double length_mm = 0;  // of the traced polylines on the surface
 };
 
+/// Where the curve's lines run in the parameter domain, in the order of the curve, untraced; `curve` gets windings, notes and Fermat spirals.
+std::vector<SpiralLine> place_lines(const Segmentation& segmentation, const Parameterisation& parameterisation, const Traversal& traversal,
+                                    const Crossings& crossings, const CurveOptions& options, ZipperCurve& curve);
+
 /// A full turn at least is drawn in the first and the last part and three quarters in the others.
 /// Throws Error: invalid_input ("mesh": no traversal), cancelled.
 ZipperCurve draw_zipper_curve(const Segmentation& segmentation, const Parameterisation& parameterisation, const LineTracer& tracer,

@@ -62,7 +62,7 @@ inline Zipped zip(Segmentation segmentation, const CurveOptions& options) {
 
 inline Proposal proposed(std::string_view sample, int vertices, double puncture_radius_mm = 5, int parts_max = 10) {
   Context context;
-  return propose_segmentation(make_sample(sample, vertices, context).mesh, {puncture_radius_mm, parts_max, 0.08, {}, {}}, context);
+  return propose_segmentation(make_sample(sample, vertices, context).mesh, {puncture_radius_mm, parts_max, 0.08, {}, {}, {}}, context);
 }
 
 }  // namespace formwright::test

@@ -5,10 +5,12 @@ import type { ShadedMesh } from '../common/shaded_mesh';
 import type { Drawn, Handle, Place3 } from './drawn_parts';
 import {
   closedNow,
+  cutDone,
   moved,
   nothingDrawn,
   placeOf,
   segmentsJson,
+  withCutPoint,
   without,
   withOpening,
   withPoint,
@@ -17,7 +19,7 @@ import { SurfaceGraph } from './surface_path';
 import { drawnOn, setDrawn } from './zippable_document';
 import type { ZippableSession } from './zippable_session';
 
-export type Tool = 'border' | 'opening';
+export type Tool = 'border' | 'opening' | 'cut';
 
 /** Null: nothing is being drawn. Outlives a visit to another page. */
 export const tool = signal<Tool | null>(null);
@@ -84,6 +86,7 @@ const now = (session: ZippableSession): Drawn => drawnOn(session.document.peek()
 
 export function place(session: ZippableSession, at: Place3): Promise<void> {
   const drawn = now(session);
+  if (tool.peek() === 'cut') return change(session, withCutPoint(drawn, at), 'Draw a cut');
   return tool.peek() === 'opening'
     ? change(session, withOpening(drawn, at), 'Set an opening')
     : change(session, withPoint(drawn, at), 'Draw a border');
@@ -91,11 +94,14 @@ export function place(session: ZippableSession, at: Place3): Promise<void> {
 
 export function press(session: ZippableSession, handle: Handle): void {
   const at = placeOf(now(session), handle);
-  if (at && tool.peek() === 'border' && handle.kind !== 'opening') void place(session, at);
+  const ofCut = handle.kind === 'cut' || handle.kind === 'begun-cut';
+  const continues = tool.peek() === 'cut' ? handle.kind === 'begun-cut' : tool.peek() === 'border' && !ofCut;
+  if (at && continues && handle.kind !== 'opening') void place(session, at);
 }
 
 export const closeBorder = (session: ZippableSession) =>
   change(session, closedNow(now(session)), 'Close a border');
+export const endCut = (session: ZippableSession) => change(session, cutDone(now(session)), 'End a cut');
 export const startOver = (session: ZippableSession) =>
   change(session, nothingDrawn, 'Find the parts automatically');
 export const remove = (session: ZippableSession, handle: Handle) =>
@@ -129,28 +135,19 @@ export function takeFound(session: ZippableSession): Promise<void> {
 
 let graph: { readonly of: ShadedMesh; readonly graph: SurfaceGraph } | null = null;
 
-/** Borders as they will run, mm as shown; the last is the one that has not come round. */
+/** Borders and cuts as they will run, mm as shown; the last is the one that is not whole. */
 export function drawnLines(session: ZippableSession): Float32Array[] {
   const original = session.original.value;
   if (original === null) return [];
-  const { borders, begun } = drawnNow(session);
-  if (borders.length + begun.length === 0) return [];
+  const { borders, cuts, begun, begunCut } = drawnNow(session);
+  if (borders.length + cuts.length + begun.length + begunCut.length === 0) return [];
   const { mesh } = original;
   if (graph?.of !== mesh) graph = { of: mesh, graph: new SurfaceGraph(mesh.positions, mesh.indices) };
   const on = graph.graph;
   const scale = shownScale(session);
-  return [...borders, { points: begun, closed: false }].map(({ points, closed }) =>
-    linesOf(on, points, closed).map((x) => x * scale),
+  const open = (points: readonly Place3[]) => ({ points, closed: false });
+  const unfinished = begun.length > 0 && begunCut.length > 0 ? [begun, begunCut] : [[...begun, ...begunCut]];
+  return [...borders, ...cuts.map(open), ...unfinished.map(open)].map(({ points, closed }) =>
+    on.through(points, closed).map((x) => x * scale),
   );
-}
-
-const ways = new WeakMap<readonly Place3[], { readonly graph: SurfaceGraph; readonly line: Float32Array }>();
-
-/** Borders that did not move are not sought again. */
-function linesOf(on: SurfaceGraph, points: readonly Place3[], closed: boolean): Float32Array {
-  const known = ways.get(points);
-  if (known?.graph === on) return known.line;
-  const line = on.through(points, closed);
-  ways.set(points, { graph: on, line });
-  return line;
 }

@@ -8,6 +8,7 @@ import {
   closeBorder,
   drawnNow,
   drop,
+  endCut,
   fromShown,
   held,
   place,
@@ -18,8 +19,8 @@ import {
   toShown,
   tool,
 } from './draw_actions';
-import type { Handle } from './drawn_parts';
-import { fewestToClose, handleName, handlesOf, placeOf } from './drawn_parts';
+import type { Drawn, Handle } from './drawn_parts';
+import { fewestToClose, fewestToCut, handleName, handlesOf, placeOf } from './drawn_parts';
 import { cameraMoves, themeChanges } from './views';
 import type { ZippableSession } from './zippable_session';
 
@@ -31,6 +32,7 @@ interface ToolProps {
 const tools: readonly { readonly value: Tool; readonly label: string }[] = [
   { value: 'border', label: 'Border' },
   { value: 'opening', label: 'Opening' },
+  { value: 'cut', label: 'Cut' },
 ];
 
 export function DrawTool({ session, viewport }: ToolProps) {
@@ -48,11 +50,30 @@ export function DrawTool({ session, viewport }: ToolProps) {
   );
 }
 
+function wordsFor(what: Tool, { begun, begunCut }: Drawn): string {
+  if (what === 'opening')
+    return 'Click where a part is to be open. Every part needs one opening or gets one.';
+  if (what === 'cut')
+    return begunCut.length === 0
+      ? 'Click points along a cut that opens a part, instead of a hole: two for a straight one.'
+      : 'Go on along the cut. It ends on its last point.';
+  return begun.length === 0
+    ? 'Click points around a limb, on the model. Drag beside it to turn it.'
+    : 'Go all around. It closes on its first point.';
+}
+
 function Toolbar({ session, viewport }: { session: ZippableSession; viewport: Viewport }) {
   const drawn = drawnNow(session);
   const drawing = tool.value === 'border';
+  const cutting = tool.value === 'cut';
   const left = fewestToClose - drawn.begun.length;
-  const nothing = drawn.borders.length + drawn.openings.length + drawn.begun.length === 0;
+  const nothing =
+    drawn.borders.length +
+      drawn.openings.length +
+      drawn.cuts.length +
+      drawn.begun.length +
+      drawn.begunCut.length ===
+    0;
   const found = session.shown.value?.design.punctures.length ?? 0;
   /** For those who do not point: the middle of what is seen, from where arrow keys move it. */
   const addInTheMiddle = () => {
@@ -75,13 +96,7 @@ function Toolbar({ session, viewport }: { session: ZippableSession; viewport: Vi
         </Button>
       </div>
       <div class="panel draw-words">
-        <p>
-          {drawing
-            ? drawn.begun.length === 0
-              ? 'Click points around a limb, on the model. Drag beside it to turn it.'
-              : 'Go all around. It closes on its first point.'
-            : 'Click where a part is to be open. Every part needs one opening or gets one.'}
-        </p>
+        <p>{wordsFor(tool.value ?? 'border', drawn)}</p>
         <div class="row">
           {drawing && drawn.begun.length > 0 ? (
             <Button
@@ -93,7 +108,17 @@ function Toolbar({ session, viewport }: { session: ZippableSession; viewport: Vi
               Close it
             </Button>
           ) : null}
-          {!drawing && drawn.openings.length === 0 && found > 0 ? (
+          {cutting && drawn.begunCut.length > 0 ? (
+            <Button
+              size="small"
+              icon="check"
+              disabledReason={drawn.begunCut.length < fewestToCut ? '1 more point' : undefined}
+              onClick={() => void endCut(session)}
+            >
+              End it here
+            </Button>
+          ) : null}
+          {tool.value === 'opening' && drawn.openings.length === 0 && found > 0 ? (
             <Button size="small" icon="move" onClick={() => void takeFound(session)}>
               Move those found
             </Button>

@@ -3,11 +3,13 @@ import { describe, expect, it } from 'vitest';
 import type { Drawn, Place3 } from './drawn_parts';
 import {
   closedNow,
+  cutDone,
   handleName,
   handlesOf,
   moved,
   nothingDrawn,
   segmentsJson,
+  withCutPoint,
   without,
   withOpening,
   withPoint,
@@ -68,5 +70,27 @@ describe('parts drawn by hand', () => {
     const open = withOpening(withOpening(nothingDrawn, a), b);
     expect(without(open, { kind: 'opening', opening: 0 }).openings).toEqual([b]);
     expect(moved(open, { kind: 'opening', opening: 1 }, c).openings).toEqual([a, c]);
+  });
+
+  it('draws a cut point by point, ends it on its last one, and lets it go when a point is left', () => {
+    let drawn = withCutPoint(withCutPoint(nothingDrawn, a), b);
+    expect(cutDone(withCutPoint(nothingDrawn, a)).cuts).toEqual([]);
+    expect(segmentsJson(drawn)).toBeNull();
+    expect(handlesOf(drawn).map(handleName)).toEqual(['Point 1 of the new cut', 'Point 2 of the new cut']);
+    drawn = withCutPoint(drawn, b);
+    expect(drawn).toEqual({ ...nothingDrawn, cuts: [[a, b]] });
+    const both = withOpening(drawn, c);
+    expect(JSON.parse(segmentsJson(both) ?? '')).toEqual({ punctures: [c, [a, b]] });
+    expect(handlesOf(drawn).map(handleName)).toEqual(['Point 1 of cut 1', 'Point 2 of cut 1']);
+    expect(moved(drawn, { kind: 'cut', cut: 0, point: 1 }, d).cuts).toEqual([[a, d]]);
+    const longer = { ...drawn, cuts: [[a, b, c]] };
+    expect(without(longer, { kind: 'cut', cut: 0, point: 1 }).cuts).toEqual([[a, c]]);
+    expect(without(drawn, { kind: 'cut', cut: 0, point: 0 }).cuts).toEqual([]);
+    expect(moved({ ...nothingDrawn, begunCut: [a, b] }, { kind: 'begun-cut', point: 0 }, d).begunCut).toEqual(
+      [d, b],
+    );
+    expect(without({ ...nothingDrawn, begunCut: [a, b] }, { kind: 'begun-cut', point: 0 }).begunCut).toEqual([
+      b,
+    ]);
   });
 });

@@ -110,14 +110,14 @@ function OwnWindings({
 }
 
 function DrawRow({ session }: { session: ZippableSession }) {
-  const { borders, openings } = drawnOn(session.document.value);
-  const byHand = borders.length + openings.length > 0;
+  const { borders, openings, cuts } = drawnOn(session.document.value);
+  const byHand = borders.length + openings.length + cuts.length > 0;
   const count = (n: number, one: string) => (n === 0 ? [] : [`${n} ${one}${n === 1 ? '' : 's'}`]);
   return (
     <div class="row draw-row">
       <p class="grow">
         {byHand
-          ? `Drawn by hand: ${[...count(borders.length, 'border'), ...count(openings.length, 'opening')].join(', ')}`
+          ? `Drawn by hand: ${[...count(borders.length, 'border'), ...count(openings.length, 'opening'), ...count(cuts.length, 'cut')].join(', ')}`
           : 'Found automatically'}
       </p>
       {tool.value === null ? (

@@ -53,4 +53,11 @@ describe('the way between two points of a border', () => {
     expect(lengthOf(line)).toBeGreaterThan(lengthOf(graph.through(corners, false)) + 1.3);
     expect(graph.through(corners.slice(0, 1), false)).toHaveLength(0);
   });
+
+  it('is not sought again between points that stay', () => {
+    const graph = sheet(20, () => 0);
+    const [p, q] = [[-0.5, -0.5, 0] as const, [0.5, -0.5, 0] as const];
+    expect(graph.path(p, q)).toBe(graph.path(p, q));
+    expect(graph.path(p, [...q])).toEqual(graph.path(p, q));
+  });
 });

@@ -70,8 +70,21 @@ export class SurfaceGraph {
     return [start, end];
   }
 
+  /** Ways found before: while a point is dragged only the two that it ends are sought again. */
+  readonly #known = new WeakMap<Place3, WeakMap<Place3, readonly number[]>>();
+
   /** x, y, z of the points on the way, both ends exactly. */
-  path(a: Place3, b: Place3): number[] {
+  path(a: Place3, b: Place3): readonly number[] {
+    const from = this.#known.get(a) ?? new WeakMap<Place3, readonly number[]>();
+    this.#known.set(a, from);
+    const known = from.get(b);
+    if (known !== undefined) return known;
+    const way = this.#newPath(a, b);
+    from.set(b, way);
+    return way;
+  }
+
+  #newPath(a: Place3, b: Place3): number[] {
     const [start, end] = [this.#grid.nearest(a), this.#grid.nearest(b)];
     if (start < 0 || end < 0) return [...a, ...b];
     const between = this.#vertices(start, end).flatMap((v) => [

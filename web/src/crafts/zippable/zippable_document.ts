@@ -42,7 +42,9 @@ export const zippable = new CraftCommands<ZippableDocument>('zippable', {
 /** What is drawn on the model in force. */
 export function drawnOn({ model, drawn }: ZippableDocument): DrawnParts {
   const on = model?.mesh.blob ?? '';
-  return drawn?.on === on ? drawn : { ...nothingDrawn, on, segments: null };
+  if (drawn?.on !== on) return { ...nothingDrawn, on, segments: null };
+  // Projects of before there were cuts do not have all lists.
+  return 'cuts' in drawn ? drawn : { ...nothingDrawn, ...(drawn as DrawnParts) };
 }
 
 export const setDrawn = (drawn: DrawnParts, label: string) =>

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Windings along creases: the zipper's lines are moved a little along y, so that those beside a crease that runs nearly
+// like them lie on it. Thesis Sec. 5.5 leaves this open.
+//
+// Lines stay straight in coordinates (x, y + D). D is the smoothest field (least Dirichlet energy on the surface) that
+// is 0 on all borders and openings and takes every crease's vertices to the nearest line. A spiral falls by one spacing
+// a turn: it cannot stay on a ring all around, so that where the nearest line is farther than `release` spacings off
+// nothing is asked, and the line changes over there.
+#include "zippable/feature_lines.h"
+#include "zippable/zipper_curve.h"
+
+namespace formwright {
+
+struct CreaseAlignmentOptions {
+  double steepest_rad = 0.55;  // between a crease and the lines, for these to follow it
+  double release = 0.4;        // of the spacing of lines; less where the change-over would be shorter than two spacings
+  double least_spacing = 0.6;  // of the even spacing; the most is its inverse
+};
+
+struct CreaseAlignment {
+  Parameterisation parameterisation;           // with y + D for y
+  double crease_mm = 0;                        // how much of the creases runs like the lines
+  double off_before_mm = 0, off_after_mm = 0;  // mean distance in y from there to the nearest line
+  double spacing_least = 1, spacing_most = 1;  // of the even one, of any triangle
+};
+
+/// `features` of the segmentation's mesh, `lines` as they are placed. No triangle is turned over, borders do not move.
+/// Throws Error: cancelled.
+CreaseAlignment align_to_creases(const Segmentation& segmentation, const Parameterisation& parameterisation,
+                                 const FeatureLines& features, const std::vector<SpiralLine>& lines,
+                                 const CreaseAlignmentOptions& options, Context& context);
+
+}  // namespace formwright

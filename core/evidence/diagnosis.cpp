@@ -106,13 +106,7 @@ class Diagnostician {
 
   /// What was named stays; the base parameters are calibrated about it as those of the base model were.
   ParameterFit recalibrated(const ParameterFit& fit) {
-    // The base parameters come first in every fit, and what they do is known there.
-    const std::vector<int> base = model_.base_parameters();
-    std::vector<Sensitivities> known = fit.sensitivities;
-    for (Sensitivities& object : known) object.resize(base.size());
-    FitOptions options;
-    options.most_renewals = 0;
-    ParameterFit result = fit_parameters(bag_, *mean_distance_objective(model_, tried_.softness()), base, fit.u, std::move(known), options, context_, fitting_stage);
+    ParameterFit result = fit_parameters(bag_, *mean_distance_objective(model_, tried_.softness()), model_.base_parameters(), fit.u, {}, {}, context_, fitting_stage);
     for (std::size_t a = result.free.size(); a < fit.free.size(); ++a) {
       result.free.push_back(fit.free[a]);
       for (std::size_t object = 0; object < result.sensitivities.size(); ++object) result.sensitivities[object].push_back(fit.sensitivities[object][a]);

@@ -1,24 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hides effects in virtual objects and asks the diagnosis for them: one line of JSON for each case;
-// score_confusion_table.py counts them.
-//   confusion_table [--seed N] [--cases N | --repeat N] [--levels 1,0.5,0.25] [--noise 0.05,0.15] [--only CAUSE]
-//   [--mould NAME]
-//                   [--triangles N] [--pairs N] [--no-pairs] [--left-out] [--calibrated] [--unseen] [--results DIR]
-//                   [--verbose]
-// --pairs hides two causes at a time, --no-pairs does not look for two, --left-out takes the hidden cause off the list
-// that is asked,
-// --calibrated has a profile of the machine from when it was well. --results keeps simulations in a folder and takes
-// them from there: to try another diagnosis on the same data in a fraction of the time.
-#include <algorithm>
-#include <cmath>
+// Hides effects in virtual objects and asks the diagnosis for them: one line of JSON for each case; score_confusion_table.py counts them.
+//   confusion_table [--seed N] [--cases N | --repeat N] [--levels 1,0.5,0.25] [--noise 0.05,0.15] [--only CAUSE] [--mould NAME]
+//                   [--triangles N] [--pairs N] [--no-pairs] [--left-out] [--calibrated] [--unseen] [--verbose]
+// --pairs hides two causes at a time, --no-pairs does not look for two, --left-out takes the hidden cause off the list that is asked,
+// --calibrated has a profile of the machine from when it was well.
 #include <cstdio>
 #include <cstring>
-#include <ctime>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <algorithm>
+#include <cmath>
 #include <map>
-#include <mutex>
 #include <sstream>
 
 #include "evidence/calibration.h"
@@ -34,7 +24,7 @@ struct Arguments {
   unsigned seed = 1;
   int repeat = 1, cases = 0;
   std::vector<double> levels{1, 0.5, 0.25}, noise{0.05, 0.15};
-  std::string only, mould, results;
+  std::string only, mould;
   bool unseen = false, verbose = false, calibrated = false, pairs_searched = true, left_out = false;
   int pairs = 0, triangles = ThermoformModelOptions{}.triangles;
 };
@@ -46,52 +36,8 @@ std::vector<double> numbers(const char* text) {
   return list;
 }
 
-/// Processor time of this process, all threads, in seconds.
-double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
-
-/// Keeps simulations in `folder`, if one is given; with `verbose` tells on stderr how much each stage took.
-Host host_of(const std::string& folder, bool verbose) {
-  Host host;
-  struct Count {
-    std::mutex mutex;
-    int made = 0, found = 0;
-    std::string stage;
-    double since = processor_seconds();
-  };
-  const auto count = std::make_shared<Count>();
-  host.keep_result = [=](const std::string& key, const Bytes& bytes) {
-    const std::scoped_lock lock(count->mutex);
-    ++count->made;
-    if (!folder.empty())
-      std::ofstream(std::filesystem::path(folder) / key, std::ios::binary)
-          .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  };
-  host.find_result = [=](const std::string& key) -> std::optional<Bytes> {
-    if (folder.empty()) return std::nullopt;
-    std::ifstream in(std::filesystem::path(folder) / key, std::ios::binary);
-    if (!in) return std::nullopt;
-    const std::string text((std::istreambuf_iterator<char>(in)), {});
-    const auto bytes = as_bytes(text);
-    const std::scoped_lock lock(count->mutex);
-    ++count->found;
-    return Bytes(bytes.begin(), bytes.end());
-  };
-  if (verbose)
-    host.on_progress = [=](const Progress& p) {
-      const std::scoped_lock lock(count->mutex);
-      if (p.stage == count->stage) return;
-      std::fprintf(stderr, "   %-35s %4d simulations, %4d found, %6.1f s of processor time\n", count->stage.c_str(),
-                   count->made, count->found, processor_seconds() - count->since);
-      count->made = count->found = 0;
-      count->stage = p.stage;
-      count->since = processor_seconds();
-    };
-  return host;
-}
-
 /// One hidden truth and the answer to it.
-Json one_case(const std::vector<std::string>& hidden, double level, double sigma, unsigned seed,
-              const Arguments& arguments) {
+Json one_case(const std::vector<std::string>& hidden, double level, double sigma, unsigned seed, const Arguments& arguments) {
   std::mt19937 random(seed);
   const HiddenWorld world = draw_world(random);
   std::vector<HiddenEffect> effects;
@@ -110,8 +56,7 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
     ThermoformModelOptions well;
     well.fit_mould_place = true;
     well.triangles = 2500;
-    const ThermoformModel before(
-        {make_object(static_cast<Mould>((static_cast<int>(mould) + 2) % 4), world, {}, observation, random)}, well);
+    const ThermoformModel before({make_object(static_cast<Mould>((static_cast<int>(mould) + 2) % 4), world, {}, observation, random)}, well);
     SimulationBag before_bag(before);
     Context calibration;
     asked.profile = before.profile_at(calibrate(before_bag, calibration).u);
@@ -119,10 +64,9 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
   }
   ThermoformModel model({object}, asked);
   SimulationBag bag(model);
-  Context context(host_of(arguments.results, arguments.verbose));
+  Context context;
   DiagnosisOptions options;
   options.pairs = arguments.pairs_searched;
-  const double start = processor_seconds();
   const Diagnosis d = diagnose(bag, options, context);
   Json line;
   line["seed"] = seed;
@@ -138,14 +82,12 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
   Json verdict = Json::array();
   for (const int cause : d.verdict) verdict.push_back(model.causes()[static_cast<std::size_t>(cause)].name);
   line["verdict"] = verdict;
-  line["first"] =
-      verdict.empty() || d.reading == Reading::unknown ? reading_name(d.reading) : verdict[0].get<std::string>();
+  line["first"] = verdict.empty() || d.reading == Reading::unknown ? reading_name(d.reading) : verdict[0].get<std::string>();
   line["structure_mm"] = {d.unexplained_before, d.unexplained_after};
   line["held_out_mm"] = {d.held_out.before.mean, d.held_out.after.mean};
   line["noise_mm"] = {d.noise.front().sigma, d.noise_floor};
   line["simulations"] = d.simulations;
   line["seconds"] = d.seconds;
-  line["processor_seconds"] = processor_seconds() - start;
   Json top = Json::array();
   for (std::size_t i = 0; i < 3; ++i) {
     const CauseFinding& f = d.causes[i];
@@ -160,13 +102,9 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
     if (h.causes.empty() || h.unknown_structure) continue;
     std::vector<std::string> named;
     for (const int c : h.causes) named.push_back(model.causes()[static_cast<std::size_t>(c)].name);
-    const bool contains = std::all_of(hidden.begin(), hidden.end(), [&](const std::string& n) {
-      return std::find(named.begin(), named.end(), n) != named.end();
-    });
-    if (contains && named.size() == hidden.size())
-      right = std::max(right, h.log_evidence);
-    else if (!contains && named.size() <= std::max<std::size_t>(1, hidden.size()))
-      wrong = std::max(wrong, h.log_evidence);
+    const bool contains = std::all_of(hidden.begin(), hidden.end(), [&](const std::string& n) { return std::find(named.begin(), named.end(), n) != named.end(); });
+    if (contains && named.size() == hidden.size()) right = std::max(right, h.log_evidence);
+    else if (!contains && named.size() <= std::max<std::size_t>(1, hidden.size())) wrong = std::max(wrong, h.log_evidence);
   }
   line["over_none"] = {{"unknown", unknown - none}, {"right", right - none}, {"wrong", wrong - none}};
   // How strong each hidden cause would have to be to show in these data at all, as the diagnosis itself says.
@@ -177,28 +115,24 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
     for (const auto& [name, value] : e.values.items()) squares += std::pow(value.get<double>(), 2);
     line["strength"].push_back(std::sqrt(squares));
     for (const CauseFinding& f : d.causes)
-      if (model.causes()[static_cast<std::size_t>(f.cause)].name == e.cause)
-        line["least_visible"].push_back(std::isfinite(f.least_visible) ? Json(f.least_visible) : Json());
+      if (model.causes()[static_cast<std::size_t>(f.cause)].name == e.cause) line["least_visible"].push_back(std::isfinite(f.least_visible) ? Json(f.least_visible) : Json());
   }
   line["trials"] = Json::array();
   for (const HeldOutTrial& trial : d.trials) {
     std::string names;
-    for (const int c : trial.causes)
-      names += (names.empty() ? "" : "+") + model.causes()[static_cast<std::size_t>(c)].name;
-    line["trials"].push_back({names, trial.significant, trial.gain.before.mean, trial.gain.after.mean,
-                              trial.gain.gain_share, trial.gain.gain_low});
+    for (const int c : trial.causes) names += (names.empty() ? "" : "+") + model.causes()[static_cast<std::size_t>(c)].name;
+    line["trials"].push_back({names, trial.significant, trial.gain.before.mean, trial.gain.after.mean, trial.gain.gain_share, trial.gain.gain_low});
   }
   if (arguments.verbose) {
     for (std::size_t i = 0; i < std::min<std::size_t>(8, d.hypotheses.size()); ++i) {
       const Hypothesis& h = d.hypotheses[i];
       std::string names;
       for (const int c : h.causes) names += model.causes()[static_cast<std::size_t>(c)].name + " ";
-      std::fprintf(stderr, "   %-40s %s log evidence %9.1f structure %.3f p %.4f\n", names.c_str(),
-                   h.unknown_structure ? "+unknown" : "        ", h.log_evidence, h.structure, h.probability);
+      std::fprintf(stderr, "   %-40s %s log evidence %9.1f structure %.3f p %.4f\n", names.c_str(), h.unknown_structure ? "+unknown" : "        ", h.log_evidence, h.structure,
+                   h.probability);
     }
     for (std::size_t p = 0; p < 4; ++p)
-      std::fprintf(stderr, "   %-20s base %.3g extended %.3g\n", model.parameters()[p].name.c_str(),
-                   model.parameters()[p].value(d.base.u[static_cast<Eigen::Index>(p)]),
+      std::fprintf(stderr, "   %-20s base %.3g extended %.3g\n", model.parameters()[p].name.c_str(), model.parameters()[p].value(d.base.u[static_cast<Eigen::Index>(p)]),
                    model.parameters()[p].value(d.extended.u[static_cast<Eigen::Index>(p)]));
   }
   if (arguments.unseen) {
@@ -218,38 +152,21 @@ int main(int count, char** values) {
   for (int i = 1; i < count; ++i) {
     const std::string flag = values[i];
     const auto next = [&] { return values[++i]; };
-    if (flag == "--seed")
-      a.seed = static_cast<unsigned>(std::stoul(next()));
-    else if (flag == "--repeat")
-      a.repeat = std::stoi(next());
-    else if (flag == "--cases")
-      a.cases = std::stoi(next());
-    else if (flag == "--levels")
-      a.levels = numbers(next());
-    else if (flag == "--noise")
-      a.noise = numbers(next());
-    else if (flag == "--only")
-      a.only = next();
-    else if (flag == "--mould")
-      a.mould = next();
-    else if (flag == "--triangles")
-      a.triangles = std::stoi(next());
-    else if (flag == "--pairs")
-      a.pairs = std::stoi(next());
-    else if (flag == "--no-pairs")
-      a.pairs_searched = false;
-    else if (flag == "--calibrated")
-      a.calibrated = true;
-    else if (flag == "--left-out")
-      a.left_out = true;
-    else if (flag == "--unseen")
-      a.unseen = true;
-    else if (flag == "--results")
-      a.results = next();
-    else if (flag == "--verbose")
-      a.verbose = true;
-    else
-      return std::fprintf(stderr, "unknown flag %s\n", flag.c_str()), 2;
+    if (flag == "--seed") a.seed = static_cast<unsigned>(std::stoul(next()));
+    else if (flag == "--repeat") a.repeat = std::stoi(next());
+    else if (flag == "--cases") a.cases = std::stoi(next());
+    else if (flag == "--levels") a.levels = numbers(next());
+    else if (flag == "--noise") a.noise = numbers(next());
+    else if (flag == "--only") a.only = next();
+    else if (flag == "--mould") a.mould = next();
+    else if (flag == "--triangles") a.triangles = std::stoi(next());
+    else if (flag == "--pairs") a.pairs = std::stoi(next());
+    else if (flag == "--no-pairs") a.pairs_searched = false;
+    else if (flag == "--calibrated") a.calibrated = true;
+    else if (flag == "--left-out") a.left_out = true;
+    else if (flag == "--unseen") a.unseen = true;
+    else if (flag == "--verbose") a.verbose = true;
+    else return std::fprintf(stderr, "unknown flag %s\n", flag.c_str()), 2;
   }
   std::vector<std::string> names = cause_names();
   names.insert(names.begin(), "none");
@@ -268,15 +185,13 @@ int main(int count, char** values) {
     const std::string first = pick();
     std::string second = pick();
     while (second == first) second = pick();
-    tell({first, second}, a.levels[static_cast<std::size_t>(k) % a.levels.size()],
-         a.noise[static_cast<std::size_t>(k) % a.noise.size()]);
+    tell({first, second}, a.levels[static_cast<std::size_t>(k) % a.levels.size()], a.noise[static_cast<std::size_t>(k) % a.noise.size()]);
   }
   if (a.pairs > 0) return 0;
   if (a.cases > 0) {
     for (int k = 0; k < a.cases; ++k) {
       const std::string& cause = names[choice() % names.size()];
-      tell(cause == "none" ? std::vector<std::string>{} : std::vector<std::string>{cause},
-           a.levels[choice() % a.levels.size()], a.noise[choice() % a.noise.size()]);
+      tell(cause == "none" ? std::vector<std::string>{} : std::vector<std::string>{cause}, a.levels[choice() % a.levels.size()], a.noise[choice() % a.noise.size()]);
     }
     return 0;
   }
@@ -284,7 +199,6 @@ int main(int count, char** values) {
     for (const std::string& cause : names) {
       if (!a.only.empty() && cause != a.only) continue;
       for (const double level : a.levels)
-        for (const double sigma : a.noise)
-          tell(cause == "none" ? std::vector<std::string>{} : std::vector<std::string>{cause}, level, sigma);
+        for (const double sigma : a.noise) tell(cause == "none" ? std::vector<std::string>{} : std::vector<std::string>{cause}, level, sigma);
     }
 }

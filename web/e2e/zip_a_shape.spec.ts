@@ -146,7 +146,9 @@ test('what cannot be made is said in the core’s words, and undone', async ({ p
   await expect(page.locator('.model-row strong')).toHaveText('Star');
 });
 
-test('parts drawn by hand: a border with the mouse, an opening moved with the keyboard', async ({ page }) => {
+test('parts drawn by hand: a border and a cut with the mouse, an opening moved with the keyboard', async ({
+  page,
+}) => {
   await openSample(page, 'Heart');
   const parts = page.getByRole('list', { name: 'Parts' }).getByRole('button');
   await expect(parts).toHaveCount(3);
@@ -154,12 +156,12 @@ test('parts drawn by hand: a border with the mouse, an opening moved with the ke
   const pane = page.locator('.zippable-model');
   const box = await pane.boundingBox();
   if (box === null) throw new Error('The model is not to be seen.');
-  const points = page.getByRole('button', { name: /of the new border$/ });
-  const click = async (x: number, y: number, count: number) => {
+  const newPoints = (of: string) => page.getByRole('button', { name: new RegExp(`of the new ${of}$`) });
+  const click = async (x: number, y: number, count: number, of = 'border') => {
     // Until the search tree is there a click finds nothing.
     await expect(async () => {
       await page.mouse.click(box.x + x * box.width, box.y + y * box.height);
-      await expect(points).toHaveCount(count, { timeout: 1000 });
+      await expect(newPoints(of)).toHaveCount(count, { timeout: 1000 });
     }).toPass();
   };
   await click(0.4, 0.7, 1);
@@ -189,10 +191,23 @@ test('parts drawn by hand: a border with the mouse, an opening moved with the ke
   await expect(opening).toHaveAttribute('style', before ?? '');
   await page.keyboard.press('Delete');
   await expect(page.getByText('Drawn by hand: 1 border, 1 opening')).toBeVisible();
+  await page.getByRole('button', { name: 'Opening 1' }).focus();
+  await page.keyboard.press('Delete');
+  await expect(page.getByText('Drawn by hand: 1 border', { exact: true })).toBeVisible();
+
+  // The tip is opened along a cut instead.
+  await page.getByRole('radio', { name: 'Cut' }).click();
+  await click(0.48, 0.76, 1, 'cut');
+  await click(0.52, 0.79, 2, 'cut');
+  await page.getByRole('button', { name: 'End it here' }).click();
+  await expect(page.getByText('Drawn by hand: 1 border, 1 cut')).toBeVisible();
+  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  await expect(parts).toHaveCount(2);
+  await expectAccessible(page, 'cut');
 
   await expect(page.getByText('Saved', { exact: true })).toBeVisible();
   await page.reload();
-  await expect(page.getByText('Drawn by hand: 1 border, 1 opening')).toBeVisible();
+  await expect(page.getByText('Drawn by hand: 1 border, 1 cut')).toBeVisible();
   await expect(parts).toHaveCount(2);
   await page.getByRole('button', { name: 'Change', exact: true }).click();
   await page.getByRole('button', { name: 'Automatic' }).click();

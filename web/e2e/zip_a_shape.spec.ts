@@ -196,7 +196,7 @@ test('parts drawn by hand: a border and a cut with the mouse, an opening moved w
   await expect(page.getByText('Drawn by hand: 1 border', { exact: true })).toBeVisible();
 
   // The tip is opened along a cut instead.
-  await page.getByRole('radio', { name: 'Cut' }).click();
+  await page.getByRole('radio', { name: 'Cut', exact: true }).click();
   await click(0.48, 0.76, 1, 'cut');
   await click(0.52, 0.79, 2, 'cut');
   await page.getByRole('button', { name: 'End it here' }).click();

@@ -12,6 +12,12 @@
 namespace formwright {
 namespace {
 
+#if defined(__SANITIZE_ADDRESS__)
+constexpr int trials = 40;  // a trial takes ten times as long
+#else
+constexpr int trials = 200;
+#endif
+
 TEST(ZippableSweep, Seed20261122GivesOnlyValidDesigns) {
   test::Random random(20261122);
   const std::vector<std::string> names{"star", "heart", "t_shape", "torus", "cat", "bust", "fish", "hemisphere"};
@@ -19,7 +25,7 @@ TEST(ZippableSweep, Seed20261122GivesOnlyValidDesigns) {
   Context context;
   for (const std::string& name : names) meshes.push_back(make_sample(name, 900, context).mesh);
   int made = 0, refused = 0;
-  for (int trial = 0; trial < 200; ++trial) {
+  for (int trial = 0; trial < trials; ++trial) {
     const auto which = static_cast<std::size_t>(random.below(static_cast<int>(names.size())));
     const TriangleMesh& mesh = meshes[which];
     ZippableOptions options;
@@ -56,7 +62,7 @@ TEST(ZippableSweep, Seed20261122GivesOnlyValidDesigns) {
       EXPECT_EQ(std::string(error.what()).back(), '.') << error.what();
     }
   }
-  EXPECT_GT(made, 100);
+  EXPECT_GT(made, trials / 2);
   RecordProperty("made", made);
   RecordProperty("refused", refused);
 }

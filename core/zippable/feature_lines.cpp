@@ -24,19 +24,32 @@ Matrix3 tensor(const Eigen::MatrixXd& columns, int v) {
   return t;
 }
 
-/// Averaged over about `scale_mm`: (area + scale^2 L) u = sums.
-Eigen::MatrixXd averaged(const Positions& places, const Eigen::MatrixXd& sums, const SparseMatrix& laplacian,
-                         const Eigen::VectorXd& area, double scale_mm, Context& context) {
-  SparseMatrix system = scale_mm * scale_mm * laplacian;
-  for (int v = 0; v < system.rows(); ++v) system.coeffRef(v, v) += area[v];
-  const SparseMatrix lower = system.triangularView<Eigen::Lower>();
-  SparseCholesky cholesky;
-  cholesky.analyze(lower, places, context);
-  cholesky.factorize(lower, context);
-  Eigen::MatrixXd u = sums;
-  cholesky.solve(u);
-  return u;
-}
+/// Sums at vertices, averaged over about a scale: (area + scale^2 L) u = sums. The factor's pattern is the same for every scale.
+class Averaging {
+ public:
+  Averaging(const Positions& places, const SparseMatrix& laplacian, const Eigen::VectorXd& area, Context& context)
+      : laplacian_(laplacian), area_(area), context_(context) {
+    cholesky_.analyze(lower(1), places, context);
+  }
+
+  Eigen::MatrixXd operator()(Eigen::MatrixXd sums, double scale_mm) {
+    cholesky_.factorize(lower(scale_mm), context_);
+    cholesky_.solve(sums);
+    return sums;
+  }
+
+ private:
+  SparseMatrix lower(double scale_mm) const {
+    SparseMatrix system = scale_mm * scale_mm * laplacian_;
+    for (int v = 0; v < system.rows(); ++v) system.coeffRef(v, v) += area_[v];
+    return system.triangularView<Eigen::Lower>();
+  }
+
+  const SparseMatrix& laplacian_;
+  const Eigen::VectorXd& area_;
+  Context& context_;
+  SparseCholesky cholesky_;
+};
 
 /// How much more it bends across d than along it, in radians; both within the tangent plane.
 double bend_across(const Matrix3& t, const Vec3& d, const Vec3& normal) {
@@ -92,9 +105,9 @@ FeatureLines find_features(const TriangleMesh& mesh, const Adjacency& adjacency,
   }
   const SparseMatrix laplacian = safe_laplacian(mesh, adjacency);
   // A straight crease bent by an angle comes out as that angle over twice the scale.
-  const Eigen::MatrixXd bends = 2 * options.scale_mm *
-                                (averaged(mesh.V, sums, laplacian, area, options.scale_mm, context) -
-                                 averaged(mesh.V, sums, laplacian, area, around * options.scale_mm, context));
+  Averaging averaged(mesh.V, laplacian, area, context);
+  const Eigen::MatrixXd bends =
+      2 * options.scale_mm * (averaged(sums, options.scale_mm) - averaged(sums, around * options.scale_mm));
   FeatureLines lines;
   lines.options = options;
   std::vector<Bend> greatest(n);

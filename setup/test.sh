@@ -65,16 +65,28 @@ stage() {  # name, runner or -, command...
 }
 
 run_stories() { FORMWRIGHT_BACKEND="$1" npm --prefix web run e2e; }
-run_ctest() { ctest --preset "$@" --parallel "${FORMWRIGHT_JOBS:-$(nproc)}"; }
+
+# What failed, again and last: where only the end of a log is seen, it is what is needed.
+show_failed() {  # folder of a build
+  awk '/^[0-9]+\/[0-9]+ Testing: / { name = $3; count = 0 }
+       { lines[count++] = $0 }
+       /^Test (Failed|timeout)/ { print "--- " name; for (i = count > 30 ? count - 30 : 0; i < count; ++i) print lines[i] }' "$1/Testing/Temporary/LastTest.log"
+}
+run_ctest() {  # preset, folder of its build
+  local status=0
+  ctest --preset "$1" --parallel "${FORMWRIGHT_JOBS:-$(nproc)}" || status=$?
+  [ "$status" -eq 0 ] || show_failed "$2"
+  return "$status"
+}
 
 main() {
   stage 'set-up' - setup/all.sh --test
   stage 'native build' - setup/build.sh native
-  stage 'native tests' ctest run_ctest native
+  stage 'native tests' ctest run_ctest native build
   stage 'sanitizer build' - setup/build.sh asan
-  stage 'sanitizer tests' ctest run_ctest asan
+  stage 'sanitizer tests' ctest run_ctest asan build-asan
   stage 'WebAssembly build' - setup/build.sh wasm
-  stage 'WebAssembly tests' ctest run_ctest wasm
+  stage 'WebAssembly tests' ctest run_ctest wasm build-wasm
   stage 'page: packages' - setup/build.sh web-packages
   stage 'page: types' - npm --prefix web run types
   stage 'page: lint' - npm --prefix web run lint

@@ -149,8 +149,12 @@ Calibration calibrate(SimulationBag& bag, Context& context) {
     // What another, equally good simulation would do differently is not known any better than that.
     const std::vector<int> liberties = model.parameters_with(ParameterRole::discrepancy);
     const std::vector<Sensitivities> freedom = sensitivities_at(bag, fit.u, fit.predictions, liberties, context, "Finding what the data tell");
-    const std::vector<Eigen::VectorXd> weights = weights_with_liberties(model, take_noise(model, residuals(model, fit.predictions), result.noise), liberties, freedom);
-    const MisfitOfAll misfit(model, weights);
+    const std::vector<Eigen::VectorXd> weights = take_noise(model, residuals(model, fit.predictions), result.noise);
+    // Directions alike: what little the simulation errs across walls, the material would be made to answer for.
+    std::vector<Precisions> precisions = precisions_of(model, weights, movements_of(model, liberties, freedom));
+    for (std::size_t object = 0; object < precisions.size(); ++object)
+      precisions[object] = isotropic(mean_weights(precisions[object]), model.measurements()[object].measured.cols());
+    const MisfitOfAll misfit(model, precisions);
     const StructuredObjective objective(model, misfit, most_probable_structure(model, misfit, residuals(model, fit.predictions)), liberties, freedom);
     result.profiles = profile(bag, fit, objective, context);
   }

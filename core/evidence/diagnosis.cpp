@@ -34,18 +34,24 @@ class Diagnostician {
     result_.noise = tried_.noise();
     result_.hypotheses = tried_.hypotheses();
     judge();
-    result_.simulations = bag_.simulations();
+    result_.simulations = bag_.simulations() + tried_.cheap_simulations();
     result_.seconds = watch.seconds();
     return std::move(result_);
   }
 
  private:
   HeldOut held_out(const ParameterFit& fit) {
-    return hold_out(bag_, fit, tried_.weights(), tried_.nearest_size(model_.known_misfit()), tried_.liberties(), tried_.liberty_sensitivities(), context_);
+    return hold_out(bag_, fit, tried_.precisions(), tried_.nearest_size(model_.known_misfit()), tried_.liberties(), tried_.liberty_sensitivities(), context_);
+  }
+
+  std::vector<Eigen::VectorXd> weights() const {
+    std::vector<Eigen::VectorXd> list;
+    for (const Precisions& precisions : tried_.precisions()) list.push_back(mean_weights(precisions));
+    return list;
   }
 
   std::vector<Eigen::VectorXd> predicted(const ParameterFit& fit, const std::vector<int>& causes) const {
-    return predictive_errors(model_, fit, tried_.weights(), tried_.nearest_size(tried_.structure_left(causes)), tried_.liberties(), tried_.liberty_sensitivities());
+    return predictive_errors(model_, fit, tried_.precisions(), tried_.nearest_size(tried_.structure_left(causes)), tried_.liberties(), tried_.liberty_sensitivities());
   }
 
   /// The most probable explanation whose causes predict held-out data better than their absence does, all fitted alike.
@@ -70,7 +76,7 @@ class Diagnostician {
       result_.trials.push_back({h.causes, tried_.significant(h), {}});
       if (!result_.trials.back().significant) continue;
       const Explanations::Refit& r = tried_.refit_of(h.causes);
-      const HeldOutGain gain = compare_errors(model_, without, predicted(r.fit, h.causes), tried_.weights());
+      const HeldOutGain gain = compare_errors(model_, without, predicted(r.fit, h.causes), weights());
       result_.trials.back().gain = gain;
       if (gain.gain_probability < sure_gain || gain.gain_share < least_gain) continue;
       result_.verdict = h.causes;
@@ -148,7 +154,7 @@ class Diagnostician {
   }
 
   void find_causes() {
-    const GramByStructure gram = tried_.misfit().gram(residuals(model_, result_.base.predictions), tried_.sensitivities());
+    const GramByStructure gram = tried_.misfit().gram(residuals(model_, result_.base.predictions), side_by_side(tried_.sensitivities(), tried_.nominal_sensitivities()));
     double none = -std::numeric_limits<double>::infinity();
     for (const Hypothesis& h : result_.hypotheses)
       if (h.causes.empty()) none = std::max(none, h.log_evidence);
@@ -219,13 +225,14 @@ class Diagnostician {
   void measure_structure() {
     const Predictions left = residuals(model_, result_.base.predictions), left_after = residuals(model_, result_.extended.predictions);
     double sum = 0, count = 0;
-    for (std::size_t object = 0; object < tried_.weights().size(); ++object) {
-      result_.structure_before.push_back(test_structure(model_.measurements()[object], left[object], tried_.weights()[object]));
-      result_.structure_after.push_back(test_structure(model_.measurements()[object], left_after[object], tried_.weights()[object]));
+    for (std::size_t object = 0; object < tried_.precisions().size(); ++object) {
+      const Eigen::VectorXd weights = mean_weights(tried_.precisions()[object]);
+      result_.structure_before.push_back(test_structure(model_.measurements()[object], left[object], weights));
+      result_.structure_after.push_back(test_structure(model_.measurements()[object], left_after[object], weights));
       const double d = static_cast<double>(model_.measurements()[object].measured.cols());
       // Mean length of a d-dimensional Gaussian.
       const double per_sigma = std::sqrt(2.0) * std::exp(std::lgamma(0.5 * (d + 1)) - std::lgamma(0.5 * d));
-      for (const double w : tried_.weights()[object])
+      for (const double w : weights)
         if (w > 0) sum += per_sigma * result_.noise[object].sigma, count += 1;
     }
     result_.noise_floor = count > 0 ? sum / count : 0;

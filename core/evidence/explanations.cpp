@@ -7,40 +7,15 @@
 #include <set>
 
 #include "base/error.h"
+#include "evidence/free_fit.h"
 
 namespace formwright {
 namespace {
 
-constexpr std::size_t refitted_singles = 8, leader_count = 4;
-constexpr int refitted_pairs = 6, quick_iterations = 5, polishing_iterations = 8;
+constexpr std::size_t refitted_singles = 8, refitted_pairs = 6, pair_anchors = 4, leader_count = 4;
+constexpr FitOptions polishing_fit{8, 0.01, true};
 constexpr double out_of_reach = 60;     // log evidence that polishing does not make up for
 constexpr double least_movement = 0.5;  // of the known misfit
-
-std::vector<int> joined(std::vector<int> a, const std::vector<int>& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
-std::vector<int> parameters_of(const ForwardModel& model, const std::vector<int>& causes) {
-  std::vector<int> list = model.base_parameters();
-  for (const int cause : causes) list = joined(std::move(list), model.causes()[static_cast<std::size_t>(cause)].parameters);
-  return list;
-}
-
-/// Columns of `all` (in the order of `columns`) that belong to `wanted`.
-std::vector<Sensitivities> chosen(const std::vector<Sensitivities>& all, const std::vector<int>& columns, const std::vector<int>& wanted) {
-  std::vector<Sensitivities> result(all.size());
-  for (const int p : wanted) {
-    const auto at = static_cast<std::size_t>(std::find(columns.begin(), columns.end(), p) - columns.begin());
-    for (std::size_t object = 0; object < all.size(); ++object) result[object].push_back(all[object][at]);
-  }
-  return result;
-}
-
-std::vector<Sensitivities> side_by_side(std::vector<Sensitivities> a, const std::vector<Sensitivities>& b) {
-  for (std::size_t object = 0; object < a.size(); ++object) a[object].insert(a[object].end(), b[object].begin(), b[object].end());
-  return a;
-}
 
 }  // namespace
 
@@ -49,37 +24,64 @@ bool Explanations::is_refitted(const std::vector<int>& causes) const {
 }
 
 void Explanations::estimate_noise_about(const Predictions& predictions) {
-  weights_.clear();
   noise_.clear();
+  std::vector<Eigen::VectorXd> weights;
   const Predictions left = residuals(model_, predictions);
   for (std::size_t object = 0; object < left.size(); ++object) {
     noise_.push_back(estimate_noise(model_.measurements()[object], left[object]));
-    weights_.push_back(noise_.back().weights);
+    weights.push_back(noise_.back().weights);
   }
+  movements_.resize(left.size());
+  precisions_ = precisions_of(model_, weights, movements_);
+  misfit_.emplace(model_, precisions_);
 }
 
 void Explanations::calibrate() {
   const auto span = context_.span(0, 0.2, "Calibrating");
-  const auto at_nominal = bag_.run(model_.nominal(), context_, "Calibrating");
+  auto at_nominal = bag_.run(model_.nominal(), context_, "Calibrating");
   if (!at_nominal) throw Error(ErrorCode::could_not_solve, "", "The simulation fails with the set-up's own parameters: check mould and set-up.");
-  estimate_noise_about(*at_nominal);
+  at_nominal_ = std::move(*at_nominal);
+  estimate_noise_about(at_nominal_);
   base_ = fit_parameters(bag_, *mean_distance_objective(model_, softness()), model_.base_parameters(), model_.nominal(), {}, {}, context_, "Calibrating");
   estimate_noise_about(base_.predictions);
-  misfit_.emplace(model_, weights_);
 }
 
 void Explanations::screen() {
   const auto span = context_.span(0.2, 0.4, "Trying each effect");
   columns_.clear();
   for (std::size_t p = 0; p < model_.parameters().size(); ++p) columns_.push_back(static_cast<int>(p));
-  sensitivities_ = sensitivities_at(bag_, base_.u, base_.predictions, columns_, context_, "Trying each effect");
+  Probing about_base, about_nominal;
+  {
+    const auto half = context_.span(0, 0.5, "Trying each effect");
+    about_base = probe_around(bag_, base_.u, base_.predictions, columns_, context_, "Trying each effect");
+    sensitivities_ = about_base.sensitivities;
+  }
+  {
+    const auto half = context_.span(0.5, 1, "Trying each effect");
+    about_nominal = probe_around(bag_, model_.nominal(), at_nominal_, columns_, context_, "Trying each effect");
+    nominal_sensitivities_ = about_nominal.sensitivities;
+  }
   liberties_ = model_.parameters_with(ParameterRole::discrepancy);
-  liberty_sensitivities_ = chosen(sensitivities_, columns_, liberties_);
-  weights_ = weights_with_liberties(model_, std::move(weights_), liberties_, liberty_sensitivities_);
-  misfit_.emplace(model_, weights_);
-  const GramByStructure gram = misfit_->gram(residuals(model_, base_.predictions), sensitivities_);
+  liberty_sensitivities_ = sensitivities_of(liberties_, sensitivities_, columns_);
+  movements_ = movements_of(model_, liberties_, liberty_sensitivities_);
+  // A fit cannot settle what the simulation itself does by leaps: such places tell less.
+  for (std::size_t object = 0; object < movements_.size(); ++object)
+    for (const Probing* probing : {&about_base, &about_nominal})
+      for (const Eigen::MatrixXd& bend : probing->bends[object]) movements_[object].push_back(std::sqrt(0.5) * bend);
+  estimate_noise_about(freely_fitted(model_, base_.predictions, columns_, sensitivities_));
   screened_ = all_hypotheses(model_, pairs_);
-  for (Hypothesis& h : screened_) weigh(model_, gram, columns_, base_.u, h);
+  weigh_screened();
+}
+
+void Explanations::weigh_screened() {
+  const GramByStructure about_base = misfit_->gram(residuals(model_, base_.predictions), sensitivities_);
+  about_nominal_ = misfit_->gram(residuals(model_, at_nominal_), nominal_sensitivities_);
+  for (Hypothesis& h : screened_) {
+    Hypothesis other = h;
+    weigh(model_, about_base, columns_, base_.u, h);
+    weigh(model_, about_nominal_, columns_, model_.nominal(), other);
+    if (other.log_evidence > h.log_evidence) h = std::move(other);
+  }
   normalise(screened_);
 }
 
@@ -95,58 +97,47 @@ std::size_t Explanations::nearest_size(double structure) const {
   return best;
 }
 
-ParameterFit Explanations::fit_from(const std::vector<int>& causes, const std::vector<Eigen::VectorXd>& starts, std::vector<Sensitivities> known, int iterations) {
-  const std::vector<int> free = parameters_of(model_, causes);
+ParameterFit Explanations::fit_from(const std::vector<int>& causes, const std::vector<Eigen::VectorXd>& starts, std::vector<Sensitivities> known, const FitOptions& options) {
+  const std::vector<int> free = model_.base_and(causes);
   const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), liberties_, liberty_sensitivities_);
-  const auto predictions = bag_.run(starts, context_, fitting_stage);
-  std::size_t best = 0;
-  double best_value = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < starts.size(); ++i) {
-    if (!predictions[i]) continue;
-    const double value = objective.value(residuals(model_, *predictions[i]), starts[i]);
-    if (value < best_value) best = i, best_value = value;
-  }
-  FitOptions options;
-  options.most_iterations = iterations;
-  options.tolerance = 0.01;
-  options.renew_sensitivities = iterations > quick_iterations;
-  return fit_parameters(bag_, objective, free, starts[best], std::move(known), options, context_, fitting_stage);
+  return fit_from_best(bag_, objective, free, starts, std::move(known), options, context_, fitting_stage);
 }
 
-void Explanations::refit_with(const std::vector<int>& causes) {
+void Explanations::refit_with(const std::vector<int>& causes, const PairGuess* guess) {
   const Hypothesis& plain = screened(causes, false);
   const Hypothesis& rough = screened(causes, true);
   const Hypothesis& start = plain.probability >= rough.probability ? plain : rough;
-  const std::vector<int> free = parameters_of(model_, causes);
-  // Secants hold within a few probes: a longer way is gone in steps.
-  Eigen::VectorXd u = base_.u;
-  for (const int p : free) {
-    const double reach = 3 * model_.parameters()[static_cast<std::size_t>(p)].probe;
-    u[p] += std::clamp(start.u[p] - u[p], -reach, reach);
-  }
-  std::vector<Eigen::VectorXd> starts{base_.u, u};
+  const std::vector<int> free = model_.base_and(causes);
+  std::vector<Eigen::VectorXd> starts{base_.u, towards(model_, free, base_.u, start.u)};
+  if (guess != nullptr) starts.push_back(guess->u);
   for (const auto& r : refits_)  // a pair may start from what its parts are like alone
     if (causes.size() == 2 && r.causes.size() == 1 && (r.causes[0] == causes[0] || r.causes[0] == causes[1])) starts.push_back(r.fit.u);
-  refits_.push_back({fit_from(causes, starts, chosen(sensitivities_, columns_, free), quick_iterations), causes});
-  if (const Eigen::VectorXd far = far_start(causes); far.size() > 0) {
-    // The calibrated base may have swallowed an effect that only goes one way: nothing near it points back.
-    ParameterFit other = fit_from(causes, {far}, {}, quick_iterations);
-    if (other.value < refits_.back().fit.value) refits_.back().fit = std::move(other);
-  }
+  refits_.push_back({fit_from(causes, starts, guess != nullptr ? guess->sensitivities : sensitivities_of(free, sensitivities_, columns_), quick_fit), causes});
+  if (const auto other = fit_from_nominal(causes); other && other->value < refits_.back().fit.value) refits_.back().fit = *other;
   weigh_refit(refits_.back());
 }
 
-Eigen::VectorXd Explanations::far_start(const std::vector<int>& causes) {
-  if (causes.size() != 1) return {};
-  Eigen::VectorXd u = 0.5 * base_.u;
+std::optional<ParameterFit> Explanations::fit_from_nominal(const std::vector<int>& causes) {
+  if (causes.size() > 1) return {};
   bool one_sided = false;
-  for (const int p : model_.causes()[static_cast<std::size_t>(causes.front())].parameters) {
-    const ModelParameter& parameter = model_.parameters()[static_cast<std::size_t>(p)];
-    u[p] = parameter.prior_sd;
-    one_sided |= parameter.one_sided();
+  Eigen::VectorXd usual = model_.nominal();
+  for (const int cause : causes)
+    for (const int p : model_.causes()[static_cast<std::size_t>(cause)].parameters) {
+      const ModelParameter& parameter = model_.parameters()[static_cast<std::size_t>(p)];
+      one_sided |= parameter.one_sided();
+      usual[p] = parameter.prior_sd;
+    }
+  if (one_sided) {
+    // At zero it has a derivative on one side only, and that says little: start at its usual strength.
+    const Eigen::VectorXd half_way = within_ranges(model_, usual + 0.5 * base_.u);
+    usual = within_ranges(model_, usual);
+    if (!bag_.run(usual, context_, fitting_stage) && !bag_.run(half_way, context_, fitting_stage)) return {};
+    return fit_from(causes, {usual, half_way}, {}, quick_fit);
   }
-  u = within_ranges(model_, u);
-  return one_sided && bag_.run(u, context_, fitting_stage) ? u : Eigen::VectorXd();
+  Hypothesis h = screened(causes, false);
+  weigh(model_, about_nominal_, columns_, model_.nominal(), h);
+  const std::vector<int> free = model_.base_and(causes);
+  return fit_from(causes, {model_.nominal(), towards(model_, free, model_.nominal(), h.u)}, sensitivities_of(free, nominal_sensitivities_, columns_), quick_fit);
 }
 
 void Explanations::polish(Refit& refit) {
@@ -158,7 +149,7 @@ void Explanations::polish(Refit& refit) {
       if (std::find(refit.fit.free.begin(), refit.fit.free.end(), static_cast<int>(p)) == refit.fit.free.end()) u[static_cast<Eigen::Index>(p)] = 0;
     starts.push_back(u);
   }
-  refit.fit = fit_from(refit.causes, starts, {}, polishing_iterations);
+  refit.fit = fit_from(refit.causes, starts, {}, polishing_fit);
   weigh_refit(refit);
 }
 
@@ -174,12 +165,8 @@ void Explanations::weigh_refit(const Refit& refit) {
 }
 
 void Explanations::renew_noise() {
-  estimate_noise_about(refit_of(hypotheses_.front().causes).fit.predictions);
-  weights_ = weights_with_liberties(model_, std::move(weights_), liberties_, liberty_sensitivities_);
-  misfit_.emplace(model_, weights_);
-  const GramByStructure gram = misfit_->gram(residuals(model_, base_.predictions), sensitivities_);
-  for (Hypothesis& h : screened_) weigh(model_, gram, columns_, base_.u, h);
-  normalise(screened_);
+  estimate_noise_about(freely_fitted(model_, refit_of(hypotheses_.front().causes).fit.predictions, columns_, sensitivities_));
+  weigh_screened();
   for (const Refit& refit : refits_) weigh_refit(refit);
   normalise(hypotheses_);
 }
@@ -189,7 +176,7 @@ void Explanations::refit() {
   std::vector<std::vector<int>> singles{{}};
   for (const Hypothesis& h : screened_)
     if (h.causes.size() == 1 && std::find(singles.begin(), singles.end(), h.causes) == singles.end() && singles.size() <= refitted_singles) singles.push_back(h.causes);
-  const double parts = static_cast<double>(singles.size()) + (pairs_ ? refitted_pairs : 0) + 2 * leader_count;
+  const auto parts = static_cast<double>(singles.size() + (pairs_ ? 1 + refitted_pairs : 0) + 2 * leader_count);
   double part = 0;
   const auto stage = [&](auto&& work) {
     // More leaders may have to be polished than were counted on.
@@ -199,8 +186,9 @@ void Explanations::refit() {
   };
   for (const auto& causes : singles) stage([&] { refit_with(causes); });
   normalise(hypotheses_);
-  if (pairs_)
-    for (const std::vector<int>& pair : promising_pairs()) stage([&] { refit_with(pair); });
+  std::vector<PairGuess> pairs;
+  if (pairs_) stage([&] { pairs = promising_pairs(); });
+  for (const PairGuess& pair : pairs) stage([&] { refit_with(pair.causes, &pair); });
   normalise(hypotheses_);
   // The leaders, what they are parts of and have as parts, larger ones first.
   std::set<std::vector<int>> leaders{{}};
@@ -230,29 +218,18 @@ void Explanations::refit() {
   normalise(hypotheses_);
 }
 
-std::vector<std::vector<int>> Explanations::promising_pairs() const {
-  std::vector<Hypothesis> candidates;
-  for (const Hypothesis& h : screened_)
-    if (h.causes.size() == 2 && candidates.size() < static_cast<std::size_t>(refitted_pairs) / 3) candidates.push_back(h);
-  std::vector<Hypothesis> from_singles;
-  int leaders = 0;
-  for (const Hypothesis& leader : hypotheses_) {
-    if (leader.causes.size() != 1 || leaders >= 3) continue;
-    const auto r = std::find_if(refits_.begin(), refits_.end(), [&](const Refit& f) { return f.causes == leader.causes; });
-    const GramByStructure gram = misfit_->gram(residuals(model_, r->fit.predictions), sensitivities_);
-    for (Hypothesis h : all_hypotheses(model_, true)) {
-      if (h.causes.size() != 2 || (h.causes[0] != leader.causes[0] && h.causes[1] != leader.causes[0])) continue;
-      weigh(model_, gram, columns_, r->fit.u, h);
-      from_singles.push_back(h);
-    }
-    ++leaders;
+std::vector<PairGuess> Explanations::promising_pairs() {
+  std::vector<FittedSingle> singles;
+  for (const Hypothesis& h : hypotheses_) {
+    if (h.causes.size() != 1 || std::any_of(singles.begin(), singles.end(), [&](const FittedSingle& s) { return s.cause == h.causes[0]; })) continue;
+    const ParameterFit& fit = refit_of(h.causes).fit;
+    singles.push_back({h.causes[0], fit.u, fit.predictions});
   }
-  if (!from_singles.empty()) normalise(from_singles);
-  candidates.insert(candidates.end(), from_singles.begin(), from_singles.end());
-  std::vector<std::vector<int>> pairs;
-  for (const Hypothesis& h : candidates)
-    if (std::find(pairs.begin(), pairs.end(), h.causes) == pairs.end() && pairs.size() < static_cast<std::size_t>(refitted_pairs)) pairs.push_back(h.causes);
-  return pairs;
+  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), liberties_, liberty_sensitivities_);
+  PairSearch search = search_pairs(model_, *misfit_, objective, liberties_, liberty_sensitivities_, singles, pair_anchors, context_, "Searching for two causes");
+  cheap_simulations_ += search.simulations;
+  if (search.guesses.size() > refitted_pairs) search.guesses.resize(refitted_pairs);
+  return std::move(search.guesses);
 }
 
 const Explanations::Refit& Explanations::refit_of(const std::vector<int>& causes) const {

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "evidence/hypotheses.h"
+#include "evidence/pair_search.h"
 #include "evidence/structured_objective.h"
 
 namespace formwright {
@@ -29,11 +30,14 @@ class Explanations {
 
   const ParameterFit& base() const { return base_; }
   const std::vector<NoiseEstimate>& noise() const { return noise_; }
-  const std::vector<Eigen::VectorXd>& weights() const { return weights_; }
+  /// How well each point is known, the simulation's own unreliability counted in.
+  const std::vector<Precisions>& precisions() const { return precisions_; }
   const MisfitOfAll& misfit() const { return *misfit_; }
   /// All parameters, and what each does about the calibrated model.
   const std::vector<int>& columns() const { return columns_; }
   const std::vector<Sensitivities>& sensitivities() const { return sensitivities_; }
+  /// The same about the set-up's own material.
+  const std::vector<Sensitivities>& nominal_sensitivities() const { return nominal_sensitivities_; }
   const std::vector<int>& liberties() const { return liberties_; }
   const std::vector<Sensitivities>& liberty_sensitivities() const { return liberty_sensitivities_; }
   /// Most probable first.
@@ -47,29 +51,34 @@ class Explanations {
   double structure_left(const std::vector<int>& causes) const;
   /// Distance below which the mean distance is rounded off: the noise.
   double softness() const;
+  /// Simulations of the cheaper model.
+  int cheap_simulations() const { return cheap_simulations_; }
   /// RMS movement, in the measurement's unit, that a cause makes at u.
   double movement(int cause, const Eigen::VectorXd& u) const;
   /// Every cause of it does something: more than the model's own misfit could pass for.
   bool significant(const Hypothesis& h) const;
 
  private:
+  /// Fills noise_, precisions_ and misfit_.
   void estimate_noise_about(const Predictions& predictions);
+  /// What the linearised model says of every explanation, about the calibrated or the set-up's own material, whichever speaks better for it.
+  void weigh_screened();
   const Hypothesis& screened(const std::vector<int>& causes, bool unknown) const;
   /// Fits base parameters and those of `causes` together, from the best of `starts`. No more structure is allowed than the right causes
   /// would leave: with as much as there is, what the causes should explain would cost nothing unexplained.
-  ParameterFit fit_from(const std::vector<int>& causes, const std::vector<Eigen::VectorXd>& starts, std::vector<Sensitivities> known, int iterations);
-  /// From where the linearised model has them, with the sensitivities it was made of.
-  void refit_with(const std::vector<int>& causes);
-  /// The nominal model with a one-sided cause at its usual strength; empty for other causes, and where the model has no answer there.
-  Eigen::VectorXd far_start(const std::vector<int>& causes);
+  ParameterFit fit_from(const std::vector<int>& causes, const std::vector<Eigen::VectorXd>& starts, std::vector<Sensitivities> known, const FitOptions& options);
+  /// From where the linearised model has them, with the sensitivities it was made of; or from `guess`.
+  void refit_with(const std::vector<int>& causes, const PairGuess* guess = nullptr);
+  /// The same from the set-up's own material, for at most one cause: a fault that is not among the base parameters drags them far off, and nothing near there points back.
+  std::optional<ParameterFit> fit_from_nominal(const std::vector<int>& causes);
   /// Once more, with sensitivities taken where the fit stands; what was learnt with more causes counts for fewer.
   void polish(Refit& refit);
   /// The marginal likelihood of an explanation where its fit has it.
   void weigh_refit(const Refit& refit);
   /// What passed for outliers about the calibrated model may have been misfit that an explanation accounts for: once more about the best.
   void renew_noise();
-  /// Pairs that the linearised model likes, about the calibrated model and about the best single causes.
-  std::vector<std::vector<int>> promising_pairs() const;
+  /// The likeliest pairs with the best single causes, found on the cheaper model.
+  std::vector<PairGuess> promising_pairs();
 
   SimulationBag& bag_;
   const ForwardModel& model_;
@@ -77,14 +86,19 @@ class Explanations {
   Context& context_;
   ParameterFit base_;
   std::vector<NoiseEstimate> noise_;
-  std::vector<Eigen::VectorXd> weights_;
+  std::vector<Precisions> precisions_;
   std::optional<MisfitOfAll> misfit_;
   std::vector<int> columns_;
   std::vector<Sensitivities> sensitivities_;
   std::vector<int> liberties_;
   std::vector<Sensitivities> liberty_sensitivities_;
+  std::vector<std::vector<Eigen::MatrixXd>> movements_;  // what the simulation is not to be relied on by: model_covariance()
+  Predictions at_nominal_;
+  std::vector<Sensitivities> nominal_sensitivities_;
+  GramByStructure about_nominal_;
   std::vector<Hypothesis> screened_, hypotheses_;
   std::vector<Refit> refits_;
+  int cheap_simulations_ = 0;
 };
 
 }  // namespace formwright

@@ -20,6 +20,15 @@ std::vector<int> ForwardModel::parameters_with(ParameterRole role) const {
   return indices;
 }
 
+std::vector<int> ForwardModel::base_and(const std::vector<int>& causes_at_work) const {
+  std::vector<int> list = base_parameters();
+  for (const int cause : causes_at_work) {
+    const std::vector<int>& own = causes()[static_cast<std::size_t>(cause)].parameters;
+    list.insert(list.end(), own.begin(), own.end());
+  }
+  return list;
+}
+
 Eigen::VectorXd within_ranges(const ForwardModel& model, Eigen::VectorXd u) {
   for (Eigen::Index p = 0; p < u.size(); ++p) {
     const ModelParameter& parameter = model.parameters()[static_cast<std::size_t>(p)];

@@ -62,11 +62,15 @@ class ForwardModel {
   virtual Eigen::MatrixXd predict(int object, const Eigen::VectorXd& u, const Context& context) const = 0;
   /// False while another process makes this very prediction: ask for others first. From several threads at once.
   virtual bool claim(int /*object*/, const Eigen::VectorXd& /*u*/, const Context& /*context*/) const { return true; }
+  /// The same objects and parameters, simulated more coarsely and several times as fast, for searching; null where there is no such model.
+  virtual const ForwardModel* cheaper() const { return nullptr; }
   /// Size of structured misfit (in the measurement's unit) that the model is known to have without any fault of the machine.
   virtual double known_misfit() const = 0;
 
   std::vector<int> parameters_with(ParameterRole role) const;
   std::vector<int> base_parameters() const { return parameters_with(ParameterRole::base); }
+  /// Base parameters, then those of `causes` in their order: what is fitted together.
+  std::vector<int> base_and(const std::vector<int>& causes) const;
   Eigen::VectorXd nominal() const { return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parameters().size())); }
 };
 

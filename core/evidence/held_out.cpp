@@ -77,12 +77,34 @@ HeldOutGain compare_errors(const ForwardModel& model, const std::vector<Eigen::V
 
 namespace {
 
-/// `weights` without the points of a fold (-1: with all).
-std::vector<Eigen::VectorXd> weights_without(const ForwardModel& model, std::vector<Eigen::VectorXd> weights, int left_out) {
-  for (std::size_t object = 0; object < weights.size(); ++object)
-    for (Eigen::Index i = 0; i < weights[object].size(); ++i)
-      if (fold_of(block_of(model.measurements()[object], i)) == left_out) weights[object][i] = 0;
-  return weights;
+/// `precisions` without the points of a fold (-1: with all).
+std::vector<Precisions> without_fold(const ForwardModel& model, std::vector<Precisions> precisions, int left_out) {
+  for (std::size_t object = 0; object < precisions.size(); ++object)
+    for (Eigen::Index i = 0; i < precisions[object].rows(); ++i)
+      if (fold_of(block_of(model.measurements()[object], i)) == left_out) precisions[object].row(i).setZero();
+  return precisions;
+}
+
+/// Errors at the points that count.
+std::vector<Eigen::VectorXd> counted_errors(const Predictions& residuals, const std::vector<Precisions>& precisions) {
+  std::vector<Eigen::VectorXd> counts;
+  for (const Precisions& p : precisions) counts.push_back(p.col(0));
+  return point_errors(residuals, counts);
+}
+
+/// The same, each direction weighed as the point's precisions have it: sqrt(r^T W r / w), with w their mean weight.
+std::vector<Eigen::VectorXd> weighed_errors(const Predictions& residuals, const std::vector<Precisions>& precisions) {
+  std::vector<Eigen::VectorXd> errors = counted_errors(residuals, precisions);
+  for (std::size_t object = 0; object < residuals.size(); ++object) {
+    const Eigen::MatrixXd& r = residuals[object];
+    const Eigen::VectorXd weights = mean_weights(precisions[object]);
+    for (Eigen::Index i = 0; i < r.rows(); ++i)
+      if (weights[i] > 0) {
+        const Eigen::MatrixXd W = precisions[object].row(i).reshaped(r.cols(), r.cols());
+        errors[object][i] = std::sqrt(r.row(i).dot(W * r.row(i).transpose()) / weights[i]);
+      }
+  }
+  return errors;
 }
 
 /// Takes over `own` where a point is of the fold.
@@ -94,7 +116,7 @@ void take_fold(const ForwardModel& model, const std::vector<Eigen::VectorXd>& ow
 
 }  // namespace
 
-std::vector<Eigen::VectorXd> predictive_errors(const ForwardModel& model, const ParameterFit& fit, const std::vector<Eigen::VectorXd>& weights, std::size_t structure,
+std::vector<Eigen::VectorXd> predictive_errors(const ForwardModel& model, const ParameterFit& fit, const std::vector<Precisions>& precisions, std::size_t structure,
                                                const std::vector<int>& liberty_parameters, const std::vector<Sensitivities>& liberties) {
   std::vector<int> columns = fit.free;
   columns.insert(columns.end(), liberty_parameters.begin(), liberty_parameters.end());
@@ -103,9 +125,9 @@ std::vector<Eigen::VectorXd> predictive_errors(const ForwardModel& model, const 
     sensitivities[object].insert(sensitivities[object].end(), liberties[object].begin(), liberties[object].end());
   const Predictions left = residuals(model, fit.predictions);
   const auto k = static_cast<Eigen::Index>(columns.size());
-  std::vector<Eigen::VectorXd> errors = point_errors(left, weights);
+  std::vector<Eigen::VectorXd> errors = weighed_errors(left, precisions);
   for (int fold = 0; fold < fold_count; ++fold) {
-    const MisfitOfAll misfit(model, weights_without(model, weights, fold));
+    const MisfitOfAll misfit(model, without_fold(model, precisions, fold));
     Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(1 + k, 1 + k);
     for (std::size_t object = 0; object < left.size(); ++object) gram += misfit.objects()[object].gram_at(left[object], sensitivities[object], structure);
     Eigen::MatrixXd A = gram.bottomRightCorner(k, k);
@@ -122,12 +144,12 @@ std::vector<Eigen::VectorXd> predictive_errors(const ForwardModel& model, const 
       for (Eigen::Index a = 0; a < k; ++a) rest[object] -= step[a] * sensitivities[object][static_cast<std::size_t>(a)];
       rest[object] -= misfit.objects()[object].smooth(rest[object], structure);
     }
-    take_fold(model, point_errors(rest, weights), fold, errors);
+    take_fold(model, weighed_errors(rest, precisions), fold, errors);
   }
   return errors;
 }
 
-HeldOut hold_out(SimulationBag& bag, const ParameterFit& fit, const std::vector<Eigen::VectorXd>& weights, std::size_t structure,
+HeldOut hold_out(SimulationBag& bag, const ParameterFit& fit, const std::vector<Precisions>& precisions, std::size_t structure,
                  const std::vector<int>& liberty_parameters, const std::vector<Sensitivities>& liberties, Context& context) {
   const ForwardModel& model = bag.model();
   const Predictions at_fit = residuals(model, fit.predictions);
@@ -141,7 +163,7 @@ HeldOut hold_out(SimulationBag& bag, const ParameterFit& fit, const std::vector<
   // The step from the fit to where it would be without `left_out` (none: -1).
   const auto without = [&](int left_out) {
     Fold fold;
-    fold.misfit = std::make_unique<MisfitOfAll>(model, weights_without(model, weights, left_out));
+    fold.misfit = std::make_unique<MisfitOfAll>(model, without_fold(model, precisions, left_out));
     fold.objective = std::make_unique<StructuredObjective>(model, *fold.misfit, structure, liberty_parameters, liberties);
     fold.value = fold.objective->value(at_fit, fit.u);
     Eigen::VectorXd g, low(k), high(k);
@@ -158,7 +180,7 @@ HeldOut hold_out(SimulationBag& bag, const ParameterFit& fit, const std::vector<
   };
   // The fit is not at rest to the last digit, so its own step is taken off: what counts is the difference that the fold makes.
   const Eigen::VectorXd at_rest = without(-1).step;
-  HeldOut result{point_errors(at_fit, weights), Eigen::MatrixXd::Zero(k, fold_count)};
+  HeldOut result{counted_errors(at_fit, precisions), Eigen::MatrixXd::Zero(k, fold_count)};
   std::vector<Fold> folds;
   std::vector<int> open;
   for (int f = 0; f < fold_count; ++f) {
@@ -188,7 +210,7 @@ HeldOut hold_out(SimulationBag& bag, const ParameterFit& fit, const std::vector<
       }
       if (!predictions[i]) continue;  // the fit to all data stands in for it
       result.steps.col(f) = fold.step;
-      take_fold(model, point_errors(residuals(model, *predictions[i]), weights), f, result.errors);
+      take_fold(model, counted_errors(residuals(model, *predictions[i]), precisions), f, result.errors);
     }
     open = std::move(still_open);
   }

@@ -29,8 +29,9 @@ HeldOutGain compare_errors(const ForwardModel& model, const std::vector<Eigen::V
                            const std::vector<Eigen::VectorXd>& weights = {});
 
 /// What an explanation as a whole (its parameters, the simulation's liberties, structure of the size sizes()[structure]) predicts of each
-/// fold from the others, linearised about the fit: errors as of point_errors. No simulations.
-std::vector<Eigen::VectorXd> predictive_errors(const ForwardModel& model, const ParameterFit& fit, const std::vector<Eigen::VectorXd>& weights, std::size_t structure,
+/// fold from the others, linearised about the fit. Lengths of what is left, in which a direction counts by how well it is known; -1 for points
+/// that are left out. No simulations.
+std::vector<Eigen::VectorXd> predictive_errors(const ForwardModel& model, const ParameterFit& fit, const std::vector<Precisions>& precisions, std::size_t structure,
                                                const std::vector<int>& liberty_parameters, const std::vector<Sensitivities>& liberties);
 
 struct HeldOut {
@@ -39,7 +40,7 @@ struct HeldOut {
 };
 
 /// For each fold, fits `fit`'s free parameters to the other folds (linearised about the fit) and predicts the fold by a simulation of its own.
-HeldOut hold_out(SimulationBag& bag, const ParameterFit& fit, const std::vector<Eigen::VectorXd>& weights, std::size_t structure,
+HeldOut hold_out(SimulationBag& bag, const ParameterFit& fit, const std::vector<Precisions>& precisions, std::size_t structure,
                  const std::vector<int>& liberty_parameters, const std::vector<Sensitivities>& liberties, Context& context);
 
 }  // namespace formwright

@@ -191,8 +191,33 @@ double likeness(const ForwardModel& model, const GramByStructure& gram, std::siz
 
 double least_visible(const ForwardModel& model, const GramByStructure& gram, std::size_t structure, const std::vector<int>& columns, int cause) {
   constexpr double log_evidence = 8;  // half the square of the strength over its standard deviation: four of them
-  const Eigen::MatrixXd visible = Projection(model, gram.gram[structure], columns)(cause, cause);
-  const double weakest = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(visible).eigenvalues().minCoeff();
+  const Eigen::MatrixXd& G = gram.gram[structure];
+  const auto k = static_cast<Eigen::Index>(columns.size());
+  const std::vector<int> others = indices_of(model, columns, {});
+  std::vector<int> own;
+  for (const int c : indices_of(model, columns, {cause}))
+    if (std::find(others.begin(), others.end(), c) == others.end()) own.push_back(c);
+  Eigen::VectorXd precision(static_cast<Eigen::Index>(others.size()));
+  for (std::size_t i = 0; i < others.size(); ++i)
+    precision[static_cast<Eigen::Index>(i)] = std::pow(model.parameters()[static_cast<std::size_t>(columns[static_cast<std::size_t>(others[i])])].prior_sd, -2);
+  // At either place: what the others do of it, and what remains of it.
+  const auto block = [&](const std::vector<int>& rows, Eigen::Index place_of_rows, const std::vector<int>& cols, Eigen::Index place_of_cols) {
+    Eigen::MatrixXd M(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(cols.size()));
+    for (Eigen::Index i = 0; i < M.rows(); ++i)
+      for (Eigen::Index j = 0; j < M.cols(); ++j)
+        M(i, j) = G(1 + place_of_rows * k + rows[static_cast<std::size_t>(i)], 1 + place_of_cols * k + cols[static_cast<std::size_t>(j)]);
+    return M;
+  };
+  std::array<Eigen::MatrixXd, 2> imitated;
+  for (Eigen::Index place : {0, 1}) {
+    Eigen::MatrixXd A = block(others, place, others, place);
+    A.diagonal() += precision;
+    imitated[static_cast<std::size_t>(place)] = A.llt().solve(block(others, place, own, place));
+  }
+  const auto& [X, Y] = imitated;
+  const Eigen::MatrixXd shared = block(own, 0, own, 1) - block(own, 0, others, 1) * Y - X.transpose() * block(others, 0, own, 1) +
+                                 X.transpose() * (block(others, 0, others, 1) * Y + precision.asDiagonal() * Y);
+  const double weakest = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (shared + shared.transpose())).eigenvalues().minCoeff();
   return weakest > 0 ? std::sqrt(2 * log_evidence / weakest) : std::numeric_limits<double>::infinity();
 }
 

@@ -14,19 +14,19 @@
 namespace formwright {
 namespace {
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Median of chi-square with d degrees of freedom (Wilson and Hilferty).
 double chi_square_median(double d) { return d * std::pow(1 - 2 / (9 * d), 3); }
 
 constexpr double outlier_limit = 5;  // standard deviations, of the residual's length against its median
 
 }  // namespace
+
+double median_of(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
 
 NoiseEstimate estimate_noise(const Measurement& measurement, const Eigen::MatrixXd& residual) {
   const Eigen::Index n = residual.rows(), d = residual.cols();
@@ -51,8 +51,9 @@ NoiseEstimate estimate_noise(const Measurement& measurement, const Eigen::Matrix
   for (int round = 0; round < 8; ++round) {
     const Eigen::VectorXd weights = (trust.array() / (scale * sigma.array()).square()).matrix();
     const double size = std::sqrt(residual.squaredNorm() / static_cast<double>(n * d));
-    const StructuredMisfit structure(measurement, weights, {std::max(size, 1e-9)});
-    const Eigen::MatrixXd noise = residual - structure.smooth(residual, 0);
+    const StructuredMisfit structure(measurement, isotropic(weights, 1), {std::max(size, 1e-9)});
+    Eigen::MatrixXd noise = residual;
+    for (Eigen::Index c = 0; c < d; ++c) noise.col(c) -= structure.smooth(residual.col(c), 0);
     const Eigen::VectorXd leverage = structure.leverage(0);
     std::vector<double> squares;
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -81,25 +82,41 @@ NoiseEstimate estimate_noise(const Measurement& measurement, const Eigen::Matrix
   return result;
 }
 
-Eigen::VectorXd model_variance(const Measurement& measurement, const std::vector<Eigen::MatrixXd>& movements) {
+Eigen::MatrixXd model_covariance(const Measurement& measurement, const std::vector<Eigen::MatrixXd>& movements) {
   constexpr double share = 0.5;  // of a movement that stays even where its direction is accounted for
   constexpr int cells = 24;
-  const Eigen::Index n = measurement.measured.rows();
-  Eigen::VectorXd own = Eigen::VectorXd::Zero(n);
-  for (const Eigen::MatrixXd& movement : movements) own += movement.rowwise().squaredNorm() * (share * share / static_cast<double>(measurement.measured.cols()));
+  const Eigen::Index n = measurement.measured.rows(), d = measurement.measured.cols();
+  Eigen::MatrixXd own = Eigen::MatrixXd::Zero(n, d * d);
+  for (const Eigen::MatrixXd& movement : movements)
+    for (Eigen::Index p = 0; p < d; ++p)
+      for (Eigen::Index q = 0; q < d; ++q) own.col(p * d + q) += share * share * movement.col(p).cwiseProduct(movement.col(q));
   // Necks move: what happens to a point may as well happen to its neighbours.
-  Eigen::ArrayXXd sum = Eigen::ArrayXXd::Zero(cells + 2, cells + 2), count = sum;
+  std::vector<Eigen::MatrixXd> sum(static_cast<std::size_t>((cells + 2) * (cells + 2)), Eigen::MatrixXd::Zero(1, d * d));
+  std::vector<double> count(sum.size(), 0);
   const auto cell = [&](Eigen::Index i, int k) { return 1 + std::clamp(static_cast<int>(cells * measurement.place(i, k)), 0, cells - 1); };
+  const auto at = [&](int x, int y) { return static_cast<std::size_t>((cells + 2) * y + x); };
   for (Eigen::Index i = 0; i < n; ++i) {
-    sum(cell(i, 0), cell(i, 1)) += own[i];
-    count(cell(i, 0), cell(i, 1)) += 1;
+    sum[at(cell(i, 0), cell(i, 1))] += own.row(i);
+    count[at(cell(i, 0), cell(i, 1))] += 1;
   }
-  Eigen::VectorXd variance(n);
+  const auto trace = [&](const auto& block) {
+    double t = 0;
+    for (Eigen::Index c = 0; c < d; ++c) t += block(0, c * d + c);
+    return t;
+  };
+  Eigen::MatrixXd covariance = own;
   for (Eigen::Index i = 0; i < n; ++i) {
-    const auto around = [&](const Eigen::ArrayXXd& a) { return a.block(cell(i, 0) - 1, cell(i, 1) - 1, 3, 3).sum(); };
-    variance[i] = std::max(own[i], around(sum) / around(count));
+    Eigen::MatrixXd around = Eigen::MatrixXd::Zero(1, d * d);
+    double points = 0;
+    for (int x = -1; x <= 1; ++x)
+      for (int y = -1; y <= 1; ++y) {
+        around += sum[at(cell(i, 0) + x, cell(i, 1) + y)];
+        points += count[at(cell(i, 0) + x, cell(i, 1) + y)];
+      }
+    around /= points;
+    if (trace(around) > trace(own.row(i))) covariance.row(i) = around;
   }
-  return variance;
+  return covariance;
 }
 
 StructureTest test_structure(const Measurement& measurement, const Eigen::MatrixXd& residual, const Eigen::VectorXd& weights) {

@@ -16,12 +16,16 @@ struct NoiseEstimate {
   int outliers = 0;
 };
 
+/// The upper one of an even number; 0 of none.
+double median_of(std::vector<double> values);
+
 /// `residual` n x d of some model near the truth. What is smooth over the object is not noise, so it is taken off first, robustly.
 NoiseEstimate estimate_noise(const Measurement& measurement, const Eigen::MatrixXd& residual);
 
-/// Where equally good simulations disagree, a point is no evidence: variance of each of its d numbers (n) from what `movements` (n x d each, one
-/// standard deviation of a liberty of the simulation) do at it and around it. Thin necks of a sheet move by many millimetres with the mesh.
-Eigen::VectorXd model_variance(const Measurement& measurement, const std::vector<Eigen::MatrixXd>& movements);
+/// Where equally good simulations disagree, a point is no evidence in that direction: covariance of its d numbers (n rows of d x d) from what
+/// `movements` (n x d each, one standard deviation of a liberty of the simulation) do at it and around it. Thin necks of a sheet move by many
+/// millimetres with the mesh, along the wall of the mould; across it they do not.
+Eigen::MatrixXd model_covariance(const Measurement& measurement, const std::vector<Eigen::MatrixXd>& movements);
 
 /// Correlation of residuals between neighbours: is there structure beyond noise?
 struct StructureTest {

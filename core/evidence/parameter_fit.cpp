@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/error.h"
 
@@ -93,8 +94,7 @@ Eigen::VectorXd bounded_step(const Eigen::MatrixXd& H, const Eigen::VectorXd& g,
   return s;
 }
 
-std::vector<Sensitivities> sensitivities_at(SimulationBag& bag, const Eigen::VectorXd& u, const Predictions& at_u, const std::vector<int>& free, Context& context,
-                                            const std::string& stage) {
+Probing probe_around(SimulationBag& bag, const Eigen::VectorXd& u, const Predictions& at_u, const std::vector<int>& free, Context& context, const std::string& stage) {
   const ForwardModel& model = bag.model();
   std::vector<Eigen::VectorXd> points;
   for (const int p : free)
@@ -106,17 +106,26 @@ std::vector<Sensitivities> sensitivities_at(SimulationBag& bag, const Eigen::Vec
       points.push_back(switched ? u : within_ranges(model, moved));
     }
   const auto predictions = bag.run(points, context, stage);
-  std::vector<Sensitivities> result(at_u.size());
+  Probing result{std::vector<Sensitivities>(at_u.size()), std::vector<std::vector<Eigen::MatrixXd>>(at_u.size())};
   for (std::size_t i = 0; i < free.size(); ++i) {
     const Eigen::Index p = free[i];
     const bool plus = predictions[2 * i] && points[2 * i][p] != u[p], minus = predictions[2 * i + 1] && points[2 * i + 1][p] != u[p];
     if (!plus && !minus)
       throw Error(ErrorCode::could_not_solve, "", "The simulation fails on both sides of " + model.parameters()[static_cast<std::size_t>(p)].label + ".");
     const double upper = plus ? points[2 * i][p] : u[p], lower = minus ? points[2 * i + 1][p] : u[p];
-    for (std::size_t object = 0; object < at_u.size(); ++object)
-      result[object].push_back(((plus ? (*predictions[2 * i])[object] : at_u[object]) - (minus ? (*predictions[2 * i + 1])[object] : at_u[object])) / (upper - lower));
+    for (std::size_t object = 0; object < at_u.size(); ++object) {
+      const Eigen::MatrixXd& above = plus ? (*predictions[2 * i])[object] : at_u[object];
+      const Eigen::MatrixXd& below = minus ? (*predictions[2 * i + 1])[object] : at_u[object];
+      result.sensitivities[object].push_back((above - below) / (upper - lower));
+      if (plus && minus) result.bends[object].push_back(0.5 * (above + below) - at_u[object]);
+    }
   }
   return result;
+}
+
+std::vector<Sensitivities> sensitivities_at(SimulationBag& bag, const Eigen::VectorXd& u, const Predictions& at_u, const std::vector<int>& free, Context& context,
+                                            const std::string& stage) {
+  return probe_around(bag, u, at_u, free, context, stage).sensitivities;
 }
 
 ParameterFit fit_parameters(SimulationBag& bag, const FitObjective& objective, const std::vector<int>& free, const Eigen::VectorXd& start,
@@ -192,6 +201,48 @@ ParameterFit fit_parameters(SimulationBag& bag, const FitObjective& objective, c
     }
   }
   return fit;
+}
+
+Eigen::VectorXd towards(const ForwardModel& model, const std::vector<int>& free, const Eigen::VectorXd& from, const Eigen::VectorXd& to) {
+  Eigen::VectorXd u = from;
+  for (const int p : free) {
+    const double reach = 3 * model.parameters()[static_cast<std::size_t>(p)].probe;
+    u[p] += std::clamp(to[p] - from[p], -reach, reach);
+  }
+  return u;
+}
+
+ParameterFit fit_from_best(SimulationBag& bag, const FitObjective& objective, const std::vector<int>& free, const std::vector<Eigen::VectorXd>& starts,
+                           std::vector<Sensitivities> known, const FitOptions& options, Context& context, const std::string& stage) {
+  const auto predictions = bag.run(starts, context, stage);
+  std::size_t best = 0;
+  double best_value = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    const std::optional<Predictions>& there = predictions[i];
+    if (!there) continue;
+    const double value = objective.value(residuals(bag.model(), *there), starts[i]);
+    if (value < best_value) best = i, best_value = value;
+  }
+  return fit_parameters(bag, objective, free, starts[best], std::move(known), options, context, stage);
+}
+
+std::vector<Sensitivities> sensitivities_of(const std::vector<int>& wanted, const std::vector<Sensitivities>& all, const std::vector<int>& columns) {
+  std::vector<Sensitivities> result(all.size());
+  for (const int p : wanted) {
+    const auto at = static_cast<std::size_t>(std::find(columns.begin(), columns.end(), p) - columns.begin());
+    for (std::size_t object = 0; object < all.size(); ++object) result[object].push_back(all[object][at]);
+  }
+  return result;
+}
+
+std::vector<Sensitivities> side_by_side(std::vector<Sensitivities> a, const std::vector<Sensitivities>& b) {
+  for (std::size_t object = 0; object < a.size(); ++object) a[object].insert(a[object].end(), b[object].begin(), b[object].end());
+  return a;
+}
+
+std::vector<int> joined(std::vector<int> a, const std::vector<int>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
 }
 
 }  // namespace formwright

@@ -38,6 +38,9 @@ struct FitOptions {
   bool renew_sensitivities = true;  // take them afresh where secants lead nowhere; otherwise stop there
 };
 
+/// For searching: a handful of steps on the sensitivities that are known.
+inline constexpr FitOptions quick_fit{5, 0.01, false};
+
 struct ParameterFit {
   Eigen::VectorXd u;                        // all parameters
   Predictions predictions;                  // at u
@@ -46,13 +49,35 @@ struct ParameterFit {
   double value = 0;
 };
 
-/// One object's sensitivities to `free` at `u`, by steps of the parameters' probes: to both sides where the range allows it.
+/// What the model does around a place: slopes, and for each parameter that was stepped to both sides half the second difference, n x d: by how
+/// much a prediction misses the secant. It is small for what is smooth, and large where a simulation jumps, as a sheet that snaps into a corner.
+struct Probing {
+  std::vector<Sensitivities> sensitivities;        // each object, of the probed parameters
+  std::vector<std::vector<Eigen::MatrixXd>> bends;  // each object
+};
+
+/// Steps of the parameters' probes from `u`, to both sides where the range allows it.
 /// Throws Error{could_not_solve} where the model has no answer on either side.
+Probing probe_around(SimulationBag& bag, const Eigen::VectorXd& u, const Predictions& at_u, const std::vector<int>& free, Context& context, const std::string& stage);
+
+/// The slopes alone.
 std::vector<Sensitivities> sensitivities_at(SimulationBag& bag, const Eigen::VectorXd& u, const Predictions& at_u, const std::vector<int>& free, Context& context,
                                             const std::string& stage);
 
 /// Starts from `start`, whose predictions must exist (else Error{could_not_solve}). `known`: sensitivities to begin with, may be empty.
 ParameterFit fit_parameters(SimulationBag& bag, const FitObjective& objective, const std::vector<int>& free, const Eigen::VectorXd& start,
                             std::vector<Sensitivities> known, const FitOptions& options, Context& context, const std::string& stage);
+
+/// `from`, moved to `to` in the parameters `free`, but by three probes each at most: secants hold no farther, and a longer way is gone in steps.
+Eigen::VectorXd towards(const ForwardModel& model, const std::vector<int>& free, const Eigen::VectorXd& from, const Eigen::VectorXd& to);
+
+/// The same from the best of `starts`, none where the model has no answer.
+ParameterFit fit_from_best(SimulationBag& bag, const FitObjective& objective, const std::vector<int>& free, const std::vector<Eigen::VectorXd>& starts,
+                           std::vector<Sensitivities> known, const FitOptions& options, Context& context, const std::string& stage);
+
+/// Of `all`, in the order of `columns`, those of `wanted`.
+std::vector<Sensitivities> sensitivities_of(const std::vector<int>& wanted, const std::vector<Sensitivities>& all, const std::vector<int>& columns);
+std::vector<Sensitivities> side_by_side(std::vector<Sensitivities> a, const std::vector<Sensitivities>& b);
+std::vector<int> joined(std::vector<int> a, const std::vector<int>& b);
 
 }  // namespace formwright

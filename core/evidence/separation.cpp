@@ -16,17 +16,18 @@ Separation best_separation(SimulationBag& bag, const Diagnosis& diagnosis, const
   std::vector<int> columns = model.base_parameters();
   for (const int cause : {pair.cause_a, pair.cause_b})
     for (const int p : model.causes()[static_cast<std::size_t>(cause)].parameters) columns.push_back(p);
-  const auto gram_of = [&](SimulationBag& own, const std::vector<Eigen::VectorXd>& weights) -> std::optional<GramByStructure> {
+  const auto gram_of = [&](SimulationBag& own, const std::vector<Precisions>& precisions) -> std::optional<GramByStructure> {
     const auto at = own.run(diagnosis.base.u, context, "Looking for a measurement that tells");
     if (!at) return std::nullopt;
     const std::vector<Sensitivities> s = sensitivities_at(own, diagnosis.base.u, *at, columns, context, "Looking for a measurement that tells");
     Predictions zero = *at;
     for (Eigen::MatrixXd& object : zero) object.setZero();
-    return MisfitOfAll(own.model(), weights).gram(zero, s);
+    return MisfitOfAll(own.model(), precisions).gram(zero, s);
   };
-  std::vector<Eigen::VectorXd> weights;
-  for (const NoiseEstimate& noise : diagnosis.noise) weights.push_back(noise.weights);
-  const auto present = gram_of(bag, weights);
+  std::vector<Precisions> precisions;
+  for (std::size_t object = 0; object < diagnosis.noise.size(); ++object)
+    precisions.push_back(isotropic(diagnosis.noise[object].weights, model.measurements()[object].measured.cols()));
+  const auto present = gram_of(bag, precisions);
   Separation best;
   if (!present) return best;
   best.likeness = likeness(model, *present, diagnosis.structure, columns, pair.cause_a, pair.cause_b) - worth_it;
@@ -34,8 +35,9 @@ Separation best_separation(SimulationBag& bag, const Diagnosis& diagnosis, const
     const auto span = context.span(static_cast<double>(i) / static_cast<double>(proposals.size()), (static_cast<double>(i) + 1) / static_cast<double>(proposals.size()),
                                    "Looking for a measurement that tells");
     SimulationBag own(*proposals[i].model);
-    std::vector<Eigen::VectorXd> expected;
-    for (const Measurement& m : proposals[i].model->measurements()) expected.push_back(Eigen::VectorXd::Constant(m.measured.rows(), 1 / (sigma * sigma)));
+    std::vector<Precisions> expected;
+    for (const Measurement& m : proposals[i].model->measurements())
+      expected.push_back(isotropic(Eigen::VectorXd::Constant(m.measured.rows(), 1 / (sigma * sigma)), m.measured.cols()));
     auto together = gram_of(own, expected);
     if (!together) continue;
     *together += *present;

@@ -38,9 +38,34 @@ GramByStructure& GramByStructure::operator+=(const GramByStructure& other) {
   return *this;
 }
 
-StructuredMisfit::StructuredMisfit(const Measurement& measurement, Eigen::VectorXd weights, std::vector<double> tau)
-    : weights_(std::move(weights)), tau_(std::move(tau)), modes_(cosine_modes(measurement.place)) {
-  const Eigen::MatrixXd normal = modes_.transpose() * weights_.asDiagonal() * modes_;
+Precisions isotropic(const Eigen::VectorXd& weights, Eigen::Index d) {
+  Precisions precisions = Precisions::Zero(weights.size(), d * d);
+  for (Eigen::Index c = 0; c < d; ++c) precisions.col(c * d + c) = weights;
+  return precisions;
+}
+
+Eigen::VectorXd mean_weights(const Precisions& precisions) {
+  const auto d = static_cast<Eigen::Index>(std::lround(std::sqrt(static_cast<double>(precisions.cols()))));
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(precisions.rows());
+  for (Eigen::Index i = 0; i < weights.size(); ++i)
+    if (precisions(i, 0) > 0) weights[i] = static_cast<double>(d) / Eigen::MatrixXd(precisions.row(i).reshaped(d, d)).inverse().trace();
+  return weights;
+}
+
+StructuredMisfit::StructuredMisfit(const Measurement& measurement, Precisions precisions, std::vector<double> tau)
+    : precisions_(std::move(precisions)),
+      d_(static_cast<Eigen::Index>(std::lround(std::sqrt(static_cast<double>(precisions_.cols()))))),
+      tau_(std::move(tau)),
+      modes_(cosine_modes(measurement.place)) {
+  for (Eigen::Index i = 0; i < precisions_.rows(); ++i)
+    if (precisions_(i, 0) > 0) log_noise_ -= std::log(Eigen::MatrixXd(precisions_.row(i).reshaped(d_, d_)).determinant());
+  const Eigen::Index m = modes_.cols();
+  Eigen::MatrixXd normal(d_ * m, d_ * m);
+  for (Eigen::Index p = 0; p < d_; ++p)
+    for (Eigen::Index q = 0; q <= p; ++q) {
+      normal.block(p * m, q * m, m, m).noalias() = modes_.transpose() * (weight(p, q) * modes_);
+      if (q < p) normal.block(q * m, p * m, m, m) = normal.block(p * m, q * m, m, m).transpose();
+    }
   for (const double size : tau_) {
     factor_.emplace_back();
     if (size <= 0) continue;
@@ -50,65 +75,70 @@ StructuredMisfit::StructuredMisfit(const Measurement& measurement, Eigen::Vector
   }
 }
 
-/// Calls use(plain, projected): columns^T W columns and Phi^T W columns, for each of the d numbers of a point.
-template <class Use>
-void StructuredMisfit::for_each_number(const Eigen::MatrixXd& residual, std::span<const Eigen::MatrixXd> sensitivities, Use&& use) const {
+StructuredMisfit::Products StructuredMisfit::products(const Eigen::MatrixXd& residual, std::span<const Eigen::MatrixXd> sensitivities) const {
   const auto k = static_cast<Eigen::Index>(sensitivities.size());
-  Eigen::MatrixXd columns(residual.rows(), 1 + k);
-  for (Eigen::Index c = 0; c < residual.cols(); ++c) {
-    columns.col(0) = residual.col(c);
-    for (Eigen::Index j = 0; j < k; ++j) columns.col(1 + j) = sensitivities[static_cast<std::size_t>(j)].col(c);
-    const Eigen::MatrixXd weighted = weights_.asDiagonal() * columns;
-    use(Eigen::MatrixXd(columns.transpose() * weighted), Eigen::MatrixXd(modes_.transpose() * weighted));
+  std::vector<Eigen::MatrixXd> columns(static_cast<std::size_t>(d_), Eigen::MatrixXd(residual.rows(), 1 + k));
+  for (Eigen::Index c = 0; c < d_; ++c) {
+    Eigen::MatrixXd& own = columns[static_cast<std::size_t>(c)];
+    own.col(0) = residual.col(c);
+    for (Eigen::Index j = 0; j < k; ++j) own.col(1 + j) = sensitivities[static_cast<std::size_t>(j)].col(c);
   }
+  const Eigen::Index m = modes_.cols();
+  Products result{Eigen::MatrixXd::Zero(1 + k, 1 + k), Eigen::MatrixXd(d_ * m, 1 + k)};
+  for (Eigen::Index p = 0; p < d_; ++p) {
+    Eigen::MatrixXd weighted = weight(p, 0) * columns[0];
+    for (Eigen::Index q = 1; q < d_; ++q) weighted += weight(p, q) * columns[static_cast<std::size_t>(q)];
+    result.plain.noalias() += columns[static_cast<std::size_t>(p)].transpose() * weighted;
+    result.projected.middleRows(p * m, m).noalias() = modes_.transpose() * weighted;
+  }
+  return result;
 }
 
 GramByStructure StructuredMisfit::gram(const Eigen::MatrixXd& residual, std::span<const Eigen::MatrixXd> sensitivities) const {
-  const auto k = static_cast<Eigen::Index>(sensitivities.size());
+  const Products own = products(residual, sensitivities);
   GramByStructure result;
-  result.gram.assign(tau_.size(), Eigen::MatrixXd::Zero(1 + k, 1 + k));
-  result.log_determinant.assign(tau_.size(), 0);
-  double log_weights = 0;
-  for (const double w : weights_)
-    if (w > 0) log_weights += std::log(w);
-  for_each_number(residual, sensitivities, [&](const Eigen::MatrixXd& plain, const Eigen::MatrixXd& projected) {
-    for (std::size_t t = 0; t < tau_.size(); ++t) {
-      result.gram[t] += plain;
-      result.log_determinant[t] -= log_weights;
-      if (tau_[t] <= 0) continue;
-      // Woodbury: C^-1 = W - W Phi (I / tau^2 + Phi^T W Phi)^-1 Phi^T W.
-      const Eigen::MatrixXd half = factor_[t].triangularView<Eigen::Lower>().solve(projected);
-      result.gram[t].noalias() -= half.transpose() * half;
-      result.log_determinant[t] += 2 * factor_[t].diagonal().array().log().sum() + 2 * static_cast<double>(modes_.cols()) * std::log(tau_[t]);
-    }
-  });
+  for (std::size_t t = 0; t < tau_.size(); ++t) {
+    result.gram.push_back(own.plain);
+    result.log_determinant.push_back(log_noise_);
+    if (tau_[t] <= 0) continue;
+    // Woodbury: C^-1 = W - W Phi (I / tau^2 + Phi^T W Phi)^-1 Phi^T W.
+    const Eigen::MatrixXd half = factor_[t].triangularView<Eigen::Lower>().solve(own.projected);
+    result.gram[t].noalias() -= half.transpose() * half;
+    result.log_determinant[t] += 2 * factor_[t].diagonal().array().log().sum() + 2 * static_cast<double>(d_ * modes_.cols()) * std::log(tau_[t]);
+  }
   return result;
 }
 
 Eigen::MatrixXd StructuredMisfit::gram_at(const Eigen::MatrixXd& residual, std::span<const Eigen::MatrixXd> sensitivities, std::size_t index) const {
-  const auto k = static_cast<Eigen::Index>(sensitivities.size());
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(1 + k, 1 + k);
-  for_each_number(residual, sensitivities, [&](const Eigen::MatrixXd& plain, const Eigen::MatrixXd& projected) {
-    result += plain;
-    if (tau_[index] <= 0) return;
-    const Eigen::MatrixXd half = factor_[index].triangularView<Eigen::Lower>().solve(projected);
-    result.noalias() -= half.transpose() * half;
-  });
-  return result;
+  Products own = products(residual, sensitivities);
+  if (tau_[index] <= 0) return std::move(own.plain);
+  factor_[index].triangularView<Eigen::Lower>().solveInPlace(own.projected);
+  return own.plain - own.projected.transpose() * own.projected;
 }
 
 Eigen::MatrixXd StructuredMisfit::smooth(const Eigen::MatrixXd& residual, std::size_t index) const {
-  if (tau_[index] <= 0) return Eigen::MatrixXd::Zero(residual.rows(), residual.cols());
-  Eigen::MatrixXd coefficients = modes_.transpose() * (weights_.asDiagonal() * residual);
+  Eigen::MatrixXd field = Eigen::MatrixXd::Zero(residual.rows(), residual.cols());
+  if (tau_[index] <= 0) return field;
+  Eigen::VectorXd coefficients = products(residual, {}).projected.col(0);
   factor_[index].triangularView<Eigen::Lower>().solveInPlace(coefficients);
   factor_[index].transpose().triangularView<Eigen::Upper>().solveInPlace(coefficients);
-  return modes_ * coefficients;
+  for (Eigen::Index c = 0; c < d_; ++c) field.col(c) = modes_ * coefficients.segment(c * modes_.cols(), modes_.cols());
+  return field;
 }
 
 Eigen::VectorXd StructuredMisfit::leverage(std::size_t index) const {
-  if (tau_[index] <= 0) return Eigen::VectorXd::Zero(weights_.size());
-  const Eigen::MatrixXd half = factor_[index].triangularView<Eigen::Lower>().solve(modes_.transpose());
-  return (half.colwise().squaredNorm().transpose().array() * weights_.array()).matrix();
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(precisions_.rows());
+  if (tau_[index] <= 0) return sum;
+  std::vector<Eigen::MatrixXd> half;
+  for (Eigen::Index c = 0; c < d_; ++c) {
+    half.push_back(Eigen::MatrixXd::Zero(d_ * modes_.cols(), modes_.rows()));
+    half.back().middleRows(c * modes_.cols(), modes_.cols()) = modes_.transpose();
+    factor_[index].triangularView<Eigen::Lower>().solveInPlace(half.back());
+  }
+  for (Eigen::Index p = 0; p < d_; ++p)
+    for (Eigen::Index q = 0; q < d_; ++q)
+      sum += precisions_.col(p * d_ + q).cwiseProduct(half[static_cast<std::size_t>(p)].cwiseProduct(half[static_cast<std::size_t>(q)]).colwise().sum().transpose());
+  return sum / static_cast<double>(d_);
 }
 
 }  // namespace formwright

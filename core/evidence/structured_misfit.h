@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// What is left between a model and the data is noise, different at every point, and structure: smooth fields over the object that
-// no effect of the model makes. Both are Gaussian here: C = diag(1/w) + tau^2 (I_d x Phi S Phi^T), with Phi cosine modes over the
-// object and S falling off like a Matern 3/2 spectrum (Kennedy and O'Hagan 2001: without it, thousands of points would make any
+// What is left between a model and the data is noise, different at every point and in every direction, and structure: smooth fields over
+// the object that no effect of the model makes. Both are Gaussian here: C = W^-1 + tau^2 (I_d x Phi S Phi^T), with W a d x d block a point,
+// Phi cosine modes over the object and S falling off like a Matern 3/2 spectrum (Kennedy and O'Hagan 2001: without it, thousands of points would make any
 // hundredth of a millimetre of misfit a certain cause of something).
 #include <Eigen/Core>
 #include <span>
@@ -19,29 +19,42 @@ struct GramByStructure {
   GramByStructure& operator+=(const GramByStructure& other);  // another object, independent of this one
 };
 
+/// How well each point is known: n rows of d x d inverse covariances, symmetric; a row of zeros leaves the point out.
+using Precisions = Eigen::MatrixXd;
+
+/// The same inverse variance in every direction. `weights`: n.
+Precisions isotropic(const Eigen::VectorXd& weights, Eigen::Index d);
+/// n: inverses of the mean variances over directions, 0 for points that are left out.
+Eigen::VectorXd mean_weights(const Precisions& precisions);
+
 class StructuredMisfit {
  public:
-  /// `weights`: n, inverse variances of each of the d numbers of a point; 0 leaves the point out. `tau`: sizes, ascending, the first may be 0.
-  StructuredMisfit(const Measurement& measurement, Eigen::VectorXd weights, std::vector<double> tau);
+  /// `tau`: sizes, ascending, the first may be 0.
+  StructuredMisfit(const Measurement& measurement, Precisions precisions, std::vector<double> tau);
 
-  const Eigen::VectorXd& weights() const { return weights_; }
   /// `residual` n x d, `sensitivities` n x d each.
   GramByStructure gram(const Eigen::MatrixXd& residual, std::span<const Eigen::MatrixXd> sensitivities) const;
   /// The same for one size alone: tau[index].
   Eigen::MatrixXd gram_at(const Eigen::MatrixXd& residual, std::span<const Eigen::MatrixXd> sensitivities, std::size_t index) const;
   /// n x d: the smooth part of `residual`, as expected for structure of size tau[index].
   Eigen::MatrixXd smooth(const Eigen::MatrixXd& residual, std::size_t index) const;
-  /// n: how far, in variances of the noise's one number, smoothing takes a point with it (leverage in [0, 1)).
+  /// n: how far smoothing takes a point with it, mean over directions (leverage in [0, 1)).
   Eigen::VectorXd leverage(std::size_t index) const;
 
  private:
-  template <class Use>
-  void for_each_number(const Eigen::MatrixXd& residual, std::span<const Eigen::MatrixXd> sensitivities, Use&& use) const;
+  struct Products {
+    Eigen::MatrixXd plain;      // columns^T W columns, (1 + k) x (1 + k)
+    Eigen::MatrixXd projected;  // (I_d x Phi)^T W columns, d m x (1 + k)
+  };
+  Products products(const Eigen::MatrixXd& residual, std::span<const Eigen::MatrixXd> sensitivities) const;
+  auto weight(Eigen::Index row, Eigen::Index col) const { return precisions_.col(row * d_ + col).asDiagonal(); }
 
-  Eigen::VectorXd weights_;
+  Precisions precisions_;
+  Eigen::Index d_;
   std::vector<double> tau_;
-  Eigen::MatrixXd modes_;       // n x m, scaled by the square roots of S: unit tau gives a field of RMS about 1
-  std::vector<Eigen::MatrixXd> factor_;  // for each tau > 0: lower Cholesky factor of I / tau^2 + Phi^T W Phi
+  Eigen::MatrixXd modes_;                // n x m, scaled by the square roots of S: unit tau gives a field of RMS about 1
+  double log_noise_ = 0;                 // log determinant of W^-1
+  std::vector<Eigen::MatrixXd> factor_;  // for each tau > 0: lower Cholesky factor of I / tau^2 + (I_d x Phi)^T W (I_d x Phi)
 };
 
 }  // namespace formwright

@@ -7,8 +7,8 @@
 
 namespace formwright {
 
-MisfitOfAll::MisfitOfAll(const ForwardModel& model, const std::vector<Eigen::VectorXd>& weights) : sizes_(structure_sizes(model)) {
-  for (std::size_t object = 0; object < weights.size(); ++object) objects_.emplace_back(model.measurements()[object], weights[object], sizes_);
+MisfitOfAll::MisfitOfAll(const ForwardModel& model, const std::vector<Precisions>& precisions) : sizes_(structure_sizes(model)) {
+  for (std::size_t object = 0; object < precisions.size(); ++object) objects_.emplace_back(model.measurements()[object], precisions[object], sizes_);
 }
 
 GramByStructure MisfitOfAll::gram(const Predictions& residuals, const std::vector<Sensitivities>& sensitivities) const {
@@ -34,17 +34,30 @@ Eigen::MatrixXd StructuredObjective::reduced(const Predictions& residuals, const
   return all.topLeftCorner(1 + k, 1 + k) - cross.transpose() * own.llt().solve(cross);
 }
 
-std::vector<Eigen::VectorXd> weights_with_liberties(const ForwardModel& model, std::vector<Eigen::VectorXd> weights, const std::vector<int>& liberties,
-                                                    const std::vector<Sensitivities>& sensitivities) {
-  for (std::size_t object = 0; object < weights.size(); ++object) {
-    std::vector<Eigen::MatrixXd> movements;
+std::vector<std::vector<Eigen::MatrixXd>> movements_of(const ForwardModel& model, const std::vector<int>& liberties, const std::vector<Sensitivities>& sensitivities) {
+  std::vector<std::vector<Eigen::MatrixXd>> movements(sensitivities.size());
+  for (std::size_t object = 0; object < sensitivities.size(); ++object)
     for (std::size_t l = 0; l < liberties.size(); ++l)
-      movements.push_back(model.parameters()[static_cast<std::size_t>(liberties[l])].prior_sd * sensitivities[object][l]);
-    const Eigen::VectorXd variance = model_variance(model.measurements()[object], movements);
-    for (Eigen::Index i = 0; i < variance.size(); ++i)
-      if (weights[object][i] > 0) weights[object][i] = 1 / (1 / weights[object][i] + variance[i]);
+      movements[object].push_back(model.parameters()[static_cast<std::size_t>(liberties[l])].prior_sd * sensitivities[object][l]);
+  return movements;
+}
+
+std::vector<Precisions> precisions_of(const ForwardModel& model, const std::vector<Eigen::VectorXd>& weights,
+                                      const std::vector<std::vector<Eigen::MatrixXd>>& movements) {
+  std::vector<Precisions> result;
+  for (std::size_t object = 0; object < weights.size(); ++object) {
+    const Measurement& m = model.measurements()[object];
+    const Eigen::Index d = m.measured.cols();
+    const Eigen::MatrixXd covariance = model_covariance(m, movements[object]);
+    result.push_back(Precisions::Zero(covariance.rows(), d * d));
+    for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
+      if (!(weights[object][i] > 0)) continue;
+      Eigen::MatrixXd C = covariance.row(i).reshaped(d, d);
+      C.diagonal().array() += 1 / weights[object][i];
+      result.back().row(i) = C.inverse().reshaped(1, d * d);
+    }
   }
-  return weights;
+  return result;
 }
 
 double StructuredObjective::value(const Predictions& residuals, const Eigen::VectorXd& u) const {

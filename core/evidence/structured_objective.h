@@ -8,10 +8,10 @@
 
 namespace formwright {
 
-/// The misfits of all objects at one set of weights.
+/// The misfits of all objects at one set of precisions.
 class MisfitOfAll {
  public:
-  MisfitOfAll(const ForwardModel& model, const std::vector<Eigen::VectorXd>& weights);
+  MisfitOfAll(const ForwardModel& model, const std::vector<Precisions>& precisions);
   /// Sum over objects of the Gram matrices of residuals and sensitivities.
   GramByStructure gram(const Predictions& residuals, const std::vector<Sensitivities>& sensitivities) const;
   const std::vector<double>& sizes() const { return sizes_; }
@@ -22,9 +22,12 @@ class MisfitOfAll {
   std::vector<StructuredMisfit> objects_;
 };
 
-/// Where equally good simulations disagree, points weigh less (model_variance). `liberties`: discrepancy parameters; their sensitivities, each object.
-std::vector<Eigen::VectorXd> weights_with_liberties(const ForwardModel& model, std::vector<Eigen::VectorXd> weights, const std::vector<int>& liberties,
-                                                    const std::vector<Sensitivities>& sensitivities);
+/// What equally good simulations would move, a standard deviation each, for every object. `liberties`: discrepancy parameters; their sensitivities, each object.
+std::vector<std::vector<Eigen::MatrixXd>> movements_of(const ForwardModel& model, const std::vector<int>& liberties, const std::vector<Sensitivities>& sensitivities);
+
+/// Where the simulation is not to be relied on, points weigh less (model_covariance). `weights`: inverse variances of the noise; `movements`: each object.
+std::vector<Precisions> precisions_of(const ForwardModel& model, const std::vector<Eigen::VectorXd>& weights,
+                                      const std::vector<std::vector<Eigen::MatrixXd>>& movements);
 
 /// `liberties`: sensitivities to the discrepancy parameters, `structure`: index into MisfitOfAll::sizes(). Everything must outlive it.
 class StructuredObjective : public FitObjective {

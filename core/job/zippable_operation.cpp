@@ -36,6 +36,7 @@ std::vector<ReportField> report_fields() {
           {"cylinders", "Cylinders", "", "how many of the parts are, which all must be"},
           {"interfaces", "Interfaces", "", "arcs that two parts share"},
           {"handles_cut", "Cut handles", "", "loops opened, which need another closure than the zipper"},
+          {"hook_and_loop_mm_total", "Cuts to close by tape", "mm", "of cut handles and slits, along all of them; tape needed for each side"},
           {"distortion_mean", "Mean distortion", "", "symmetric Dirichlet energy over 4, weighted by area; 1 is none"},
           {"distortion_max", "Largest distortion", "", "of any triangle"},
           {"iterations", "Iterations", "", "Newton steps of the parameterisation"},
@@ -124,6 +125,11 @@ void report_design(Json& report, const ParameterisedModel& model, const Zippable
              size = (formed.colwise().maxCoeff() - formed.colwise().minCoeff()).transpose();
   report["ribbon_size_mm"] = {flat_size.x(), flat_size.y()};
   report["isometry_error"] = ribbon.isometry_error;
+  if (!ribbon.closures.empty()) {
+    double total_mm = 0;
+    for (const HandleClosure& closure : ribbon.closures) total_mm += closure.length_mm;
+    report["hook_and_loop_mm_total"] = total_mm;
+  }
   if (design.fabrics) {
     report["fabric_area_mm2"] = design.fabrics->area_mm2;
     report["fabric_seams"] = design.fabrics->seams;

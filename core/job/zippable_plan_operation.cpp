@@ -59,6 +59,9 @@ std::vector<ReportField> report_fields() {
           {"seams", "Seams", "", "in the order in which they are made: pieces, letters of a split, markers, lengths"},
           {"zipper_to_cut_mm", "Zipper to cut", "mm", "from the reel, with an end on either side to hold it by"},
           {"assembly_pages", "Assembly pages", "", "of the assembly sheet"},
+          {"hook_and_loop_mm_total", "Hook-and-loop tape", "mm", "along all cuts; of paper, what is joined there: needed for each side"},
+          {"hook_and_loop", "Cuts to close", "", "for every cut its length, numbers on either side, pieces of both sides"},
+          {"hook_and_loop_narrow_mm", "Too narrow for the tape", "mm", "of the edges that carry it within"},
           {"tabs", "Tabs", "", "of paper: how many, how many of them less deep, and stretches without"},
           {"tape_rows", "Rows of the template", "", "of the tapes, on its pages"},
           {"tape_row_mm", "Row", "mm", "of the template, along the zipper"},
@@ -189,6 +192,23 @@ void report_pieces(Json& report, const ZippablePlan& plan, const PlanOptions& op
   report["kerf_mm"] = options.kerf_mm;
 }
 
+void report_closures(Json& report, const ZippablePlan& plan) {
+  const ClosureMarks& closures = plan.closures;
+  Json cuts = Json::array();
+  for (std::size_t c = 0; c < closures.length_mm.size(); ++c) {
+    const int cut = static_cast<int>(c) + 1;
+    Json numbers = Json::array(), pieces = {Json::array(), Json::array()};
+    for (const ClosureMarker& marker : closures.markers)
+      if (marker.cut == cut) numbers.push_back(marker.number);
+    for (const ClosureStretch& stretch : closures.stretches)
+      if (stretch.cut == cut) pieces[static_cast<std::size_t>(stretch.side)].push_back(plan.pieces.pieces[stretch.piece].name);
+    cuts.push_back({{"length_mm", closures.length_mm[c]}, {"numbers", numbers}, {"pieces", pieces}});
+  }
+  report["hook_and_loop_mm_total"] = closures.total_mm();
+  report["hook_and_loop"] = cuts;
+  report["hook_and_loop_narrow_mm"] = closures.narrow_mm;
+}
+
 void report_rig(Json& report, const Rig& rig) {
   report["rig_plates"] = rig.plates.size();
   report["rig_sheets"] = rig.sheets.size();
@@ -258,6 +278,7 @@ OperationResult run(const OperationCall& call) {
   report_lengths(result.report, design, plan);
   report_tape(result.report, design, plan);
   report_pieces(result.report, plan, options);
+  if (!plan.closures.length_mm.empty()) report_closures(result.report, plan);
   result.report["seconds_read"] = seconds_read;
   result.report["seconds_offset"] = plan.seconds_offset;
   result.report["seconds_split"] = plan.seconds_split;

@@ -44,6 +44,7 @@ std::vector<ReportField> report_fields() {
           {"bending_energy_mj", "Bending energy", "mJ", "part of it"},
           {"crossings", "Crossings", "", "edges that pierce triangles at the end: cloth cannot, this one is not kept from it"},
           {"attempts", "Courses tried", "", "with other pressures from inside; the figures are the best one's"},
+          {"pressed_out", "Pressed out", "", "whether it was, from inside, before it came to rest; as a maker does with tucked-in corners"},
           {"held_open_percent", "Held open", "%", "in this course"},
           {"settled", "At rest", "", "the simulation ended because nothing moved"},
           {"triangles", "Triangles", "", "of the cloth"},
@@ -106,6 +107,7 @@ OperationResult run(const OperationCall& call) {
   report["bending_energy_mj"] = zipped.energies.bending_mj;
   report["crossings"] = zipped.crossings;
   report["attempts"] = zipped.attempts;
+  report["pressed_out"] = zipped.pressed_out;
   report["held_open_percent"] = zipped.held_open_percent;
   report["settled"] = zipped.settled;
   report["triangles"] = zipped.pattern.flat.face_count();

@@ -39,7 +39,7 @@ std::vector<std::string> GrblDriver::possible_commands() const {
   add({"jog", "jog_cancel", "set_origin", "send", "override"});
   if (position_known_) add({"go_to", "frame"});
   if (options_.tool == MachineTool::laser) add({focus_until_s_ ? "focus_off" : "focus"});
-  if (position_known_ && program_.line_count() > 0) add({"start"});
+  if (position_known_ && program_.line_count() > 0 && !waits("$J")) add({"start"});
   return can;
 }
 
@@ -54,6 +54,7 @@ void GrblDriver::command(const Json& command, double now_s) {
       refuse(what, homes() ? "Where the head stands is unknown: home the machine first."
                            : "Where the head stands is unknown: jog to the material's corner and set the origin first.");
     if (what == "start" && program_.line_count() == 0) refuse(what, "No job is loaded: choose one first.");
+    if (what == "start" && waits("$J")) refuse(what, "The head still moves: wait until it rests.");
     machines_detail::refuse_in_phase(what, phase_);
   }
   if (what == "home") {
@@ -122,9 +123,30 @@ void GrblDriver::frame(const Json& command) {
 void GrblDriver::set_origin(const Json& command) {
   if (command.value("at", Json("head")) == "corner") {
     if (!homes() || !position_known_) refuse("at", "Where the bed's corner is only a homed machine knows: home it first.");
-    return queue("G10L2P0X" + decimal(reach_low(0)) + "Y" + decimal(reach_low(1)));
+    queue("G10L2P0X" + decimal(reach_low(0)) + "Y" + decimal(reach_low(1)));
+    return expect_origin({reach_low(0), reach_low(1), std::nullopt});
   }
-  queue("G10L20P0" + machines_detail::zero_words(command, ""));
+  const std::string words = machines_detail::zero_words(command, "");
+  queue("G10L20P0" + words);
+  std::array<std::optional<double>, 3> head;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (machine_mm_ && words.find("XYZ"[axis]) != std::string::npos) head[axis] = (*machine_mm_)[axis];
+  expect_origin(head);
+}
+
+void GrblDriver::expect_origin(const std::array<std::optional<double>, 3>& machine_mm) {
+  if (!offset_mm_ || !machine_mm_) return;
+  work_mm_ = machine_mm_;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    (*offset_mm_)[axis] = machine_mm[axis].value_or((*offset_mm_)[axis]);
+    (*work_mm_)[axis] -= (*offset_mm_)[axis];
+  }
+}
+
+bool GrblDriver::origin_moves() const { return waits("G10"); }
+
+bool GrblDriver::waits(std::string_view beginning) const {
+  return stream_.waits_for(beginning) || std::any_of(by_hand_.begin(), by_hand_.end(), [&](const std::string& line) { return line.starts_with(beginning); });
 }
 
 void GrblDriver::focus(const Json& command, double now_s) {

@@ -135,7 +135,10 @@ void GrblDriver::hear_answer(std::optional<int> error, double now_s) {
     if (!error) alarm_.reset(), refused_.reset();
   }
   if (line->text == "$X" && !error) alarm_.reset();
+  // A report of rest may have passed it on the way: from here the machine moves, until a report says otherwise.
+  if (line->text.starts_with("$J") && !error && phase_ == MachinePhase::idle) phase_ = MachinePhase::jogging, idle_since_s_ = -1;
   if (line->text.starts_with("G10L20") && !error && !homes()) position_known_ = true;
+  if (line->text.starts_with("G10") && error) offset_mm_.reset();
   if (error) refused_ = {*error, line->text, line->job_line < 0 ? 0 : program_.number(line->job_line)};
   if (line->job_line < 0 || !job_active()) {
     if (error && job_active()) stop("failed", now_s);  // one of the lines that lead back to where a job goes on
@@ -157,7 +160,7 @@ void GrblDriver::hear_report(const GrblReport& report, double now_s) {
     if (reads_lines) identify();
     else connection_ = MachineConnection::ready;
   }
-  if (report.offset_mm) offset_mm_ = report.offset_mm;
+  if (report.offset_mm && !origin_moves()) offset_mm_ = report.offset_mm;
   if (report.machine_mm) machine_mm_ = report.machine_mm;
   if (report.work_mm) work_mm_ = report.work_mm;
   if (offset_mm_) {

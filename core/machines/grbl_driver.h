@@ -57,6 +57,11 @@ class GrblDriver final : public MachineDriver {
   void frame(const Json& command);
   void go_to(const Json& command);
   void set_origin(const Json& command);
+  /// Where the origin will be, of the axes given: known at once, while the machine tells of it only in a report to come.
+  void expect_origin(const std::array<std::optional<double>, 3>& machine_mm);
+  bool origin_moves() const;
+  /// Does a line that begins so wait to be sent, or to be answered?
+  bool waits(std::string_view beginning) const;
   void focus(const Json& command, double now_s);
   void focus_off();
   void send_by_hand(const Json& command);

@@ -2,9 +2,11 @@
 #pragma once
 // What lies in GRBL's serial buffer, as far as one can know: "character counting". Every line is answered once, in order, and frees its
 // bytes only then; a line goes out when all that is unanswered leaves room for it.
+#include <algorithm>
 #include <deque>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace formwright {
 
@@ -42,6 +44,10 @@ class GrblStream {
     unanswered_bytes_ = 0;
   }
   bool empty() const { return unanswered_.empty(); }
+  /// Is a line that begins so not answered yet?
+  bool waits_for(std::string_view beginning) const {
+    return std::any_of(unanswered_.begin(), unanswered_.end(), [&](const Line& line) { return line.text.starts_with(beginning); });
+  }
   int bytes() const { return unanswered_bytes_; }
   double patience_s() const {
     double sum = 0;

@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "geometry/measures.h"
-#include "numerics/sparse_cholesky.h"
 #include "zippable/safe_laplacian.h"
 
 namespace formwright {
@@ -22,21 +21,22 @@ struct Pull {
 
 class Aligner {
  public:
-  Aligner(const Segmentation& s, const Parameterisation& p, const FeatureLines& features,
+  Aligner(const Segmentation& s, const Parameterisation& p, CreaseSystem& system, const FeatureLines& features,
           const std::vector<SpiralLine>& lines, const CreaseAlignmentOptions& options)
       : s_(s),
         p_(p),
+        system_(system),
         features_(features),
         lines_(lines),
         options_(options),
-        adjacency_(s.mesh),
+        adjacency_(system.adjacency()),
         edge_mm_(mean_edge_length(s.mesh)) {}
 
   std::vector<Pull> pulls() const {
     std::vector<Pull> result;
     for (const FeaturePoint& point : features_.points) {
       const auto around = adjacency_.outgoing(point.vertex);
-      if (on_a_line(point.vertex) || around.empty()) continue;
+      if (system_.on_a_line(point.vertex) || around.empty()) continue;
       Pull pull;
       pull.vertex = point.vertex, pull.corner = around.front(), pull.part = s_.face_segment[around.front() / 3];
       if (nearest_line(pull, point)) result.push_back(pull);
@@ -44,34 +44,12 @@ class Aligner {
     return result;
   }
 
-  /// On a border of its part or an opening.
-  bool on_a_line(int v) const {
-    const auto around = adjacency_.outgoing(v);
-    return adjacency_.is_boundary_vertex(v) || std::any_of(around.begin(), around.end(), [&](int h) {
-             return s_.face_segment[h / 3] != s_.face_segment[around.front() / 3];
-           });
-  }
-
   /// D per vertex.
   Eigen::VectorXd field(const std::vector<Pull>& pulls, Context& context) const {
-    const int n = s_.mesh.vertex_count();
-    SparseMatrix system = safe_laplacian(s_.mesh, adjacency_);
-    Eigen::MatrixXd d = Eigen::MatrixXd::Zero(n, 1);
-    for (int v = 0; v < n; ++v) system.coeffRef(v, v) += on_a_line(v) ? 1e8 : 1e-9;
-    for (const Pull& pull : pulls) {
-      if (pull.released) continue;
-      const double weight = 20 * edge_mm_ / pull.spacing_mm;
-      system.coeffRef(pull.vertex, pull.vertex) += weight;
-      d(pull.vertex, 0) += weight * pull.shift_mm;
-    }
-    const SparseMatrix lower = system.triangularView<Eigen::Lower>();
-    SparseCholesky cholesky;
-    cholesky.analyze(lower, s_.mesh.V, context);
-    cholesky.factorize(lower, context);
-    cholesky.solve(d);
-    for (int v = 0; v < n; ++v)
-      if (on_a_line(v)) d(v, 0) = 0;
-    return d.col(0);
+    std::vector<CreaseSystem::Pull> springs;
+    for (const Pull& pull : pulls)
+      if (!pull.released) springs.push_back({pull.vertex, 20 * edge_mm_ / pull.spacing_mm, pull.shift_mm});
+    return system_.field(springs, context);
   }
 
   /// 1 + dD/dy of a triangle: how much closer together lines come, and its area's change.
@@ -135,21 +113,51 @@ class Aligner {
 
   const Segmentation& s_;
   const Parameterisation& p_;
+  CreaseSystem& system_;
   const FeatureLines& features_;
   const std::vector<SpiralLine>& lines_;
   const CreaseAlignmentOptions& options_;
-  Adjacency adjacency_;
+  const Adjacency& adjacency_;
   double edge_mm_;
 };
 
 }  // namespace
 
-CreaseAlignment align_to_creases(const Segmentation& s, const Parameterisation& p, const FeatureLines& features,
-                                 const std::vector<SpiralLine>& lines, const CreaseAlignmentOptions& options,
-                                 Context& context) {
+CreaseSystem::CreaseSystem(const Segmentation& s, Context& context) : adjacency_(s.mesh) {
+  const int n = s.mesh.vertex_count();
+  SparseMatrix system = safe_laplacian(s.mesh, adjacency_);
+  for (int v = 0; v < n; ++v) {
+    const auto around = adjacency_.outgoing(v);
+    on_a_line_.push_back(adjacency_.is_boundary_vertex(v) || std::any_of(around.begin(), around.end(), [&](int h) {
+                           return s.face_segment[h / 3] != s.face_segment[around.front() / 3];
+                         }));
+    system.coeffRef(v, v) += on_a_line_.back() ? 1e8 : 1e-9;
+  }
+  lower_ = system.triangularView<Eigen::Lower>();
+  cholesky_.analyze(lower_, s.mesh.V, context);
+}
+
+Eigen::VectorXd CreaseSystem::field(const std::vector<Pull>& pulls, Context& context) {
+  const std::scoped_lock lock(mutex_);
+  SparseMatrix system = lower_;
+  Eigen::MatrixXd d = Eigen::MatrixXd::Zero(system.rows(), 1);
+  for (const Pull& pull : pulls) {
+    system.coeffRef(pull.vertex, pull.vertex) += pull.spring;
+    d(pull.vertex, 0) += pull.spring * pull.value_mm;
+  }
+  cholesky_.factorize(system, context);
+  cholesky_.solve(d);
+  for (int v = 0; v < d.rows(); ++v)
+    if (on_a_line(v)) d(v, 0) = 0;
+  return d.col(0);
+}
+
+CreaseAlignment align_to_creases(const Segmentation& s, const Parameterisation& p, CreaseSystem& system,
+                                 const FeatureLines& features, const std::vector<SpiralLine>& lines,
+                                 const CreaseAlignmentOptions& options, Context& context) {
   CreaseAlignment result;
   result.parameterisation = p;
-  const Aligner aligner(s, p, features, lines, options);
+  const Aligner aligner(s, p, system, features, lines, options);
   std::vector<Pull> pulls = aligner.pulls();
   if (pulls.empty()) return result;
   const double edge_mm = mean_edge_length(s.mesh);

@@ -80,6 +80,21 @@ Json parts_json(const Segmentation& s) {
   return parts;
 }
 
+/// Per cut its length and both sides: runs of vertices that follow `first_vertex` on the boundary, and where they lie along the cut.
+Json closures_json(const std::vector<HandleClosure>& closures) {
+  Json list = Json::array();
+  for (const HandleClosure& closure : closures) {
+    Json sides = Json::array();
+    for (const auto& side : closure.sides) {
+      Json runs = Json::array();
+      for (const ClosureRun& run : side) runs.push_back({{"first_vertex", run.first_vertex}, {"along_mm", run.along_mm}});
+      sides.push_back(runs);
+    }
+    list.push_back({{"length_mm", closure.length_mm}, {"closed", closure.closed}, {"sides", sides}});
+  }
+  return list;
+}
+
 /// To a micrometre: what a laser can tell apart is a hundred times as much.
 double micrometres(double mm) { return std::round(1000 * mm) / 1000; }
 
@@ -137,16 +152,17 @@ Bytes write_design_json(const ParameterisedModel& model, const ZippableDesign& d
     faces.push_back({design.ribbon.F(f, 0), design.ribbon.F(f, 1), design.ribbon.F(f, 2)});
   Json ribbon = {{"boundary", boundary}, {"triangles", faces}};
   if (design.fabrics) ribbon["fabric"] = design.fabrics->of_face;
-  const Json json = {{"format", "formwright zippable design"},
-                     {"version", 1},
-                     {"scale", model.scale},
-                     {"order", design.traversal.traversal.parts},
-                     {"parts", parts},
-                     {"punctures", punctures},
-                     {"handles_cut", model.proposal.handles_cut},
-                     {"zipper_mm", design.ribbon.zipper_mm},
-                     {"pieces", design.curve.pieces},
-                     {"ribbon", ribbon}};
+  Json json = {{"format", "formwright zippable design"},
+               {"version", 1},
+               {"scale", model.scale},
+               {"order", design.traversal.traversal.parts},
+               {"parts", parts},
+               {"punctures", punctures},
+               {"handles_cut", model.proposal.handles_cut},
+               {"zipper_mm", design.ribbon.zipper_mm},
+               {"pieces", design.curve.pieces},
+               {"ribbon", ribbon}};
+  if (!design.ribbon.closures.empty()) json["handle_cuts"] = closures_json(design.ribbon.closures);
   return to_bytes(json.dump());
 }
 

@@ -68,6 +68,41 @@ void find_sides(FlatDesign& design, int samples) {
     if (vertex.sample >= 0 && design.piece_of[vertex.sample] < 0) refuse("A sample of the zipper is in none of its pieces");
 }
 
+ClosureRun read_run(const Json& json, const FlatDesign& design, double length_mm, bool rising) {
+  if (!json.is_object() || !json.contains("first_vertex") || !json.contains("along_mm")) refuse("A side of a cut says too little");
+  ClosureRun run;
+  run.first_vertex = read_index(json["first_vertex"], 0, design.vertex_count());
+  const Json& along = json["along_mm"];
+  if (!along.is_array() || along.size() < 2 || static_cast<int>(along.size()) > design.vertex_count()) refuse("A side of a cut has no edge or too many");
+  for (const Json& item : along) {
+    if (!item.is_number()) refuse("A place along a cut is no number");
+    const double mm = item.get<double>();
+    if (!(mm >= 0 && mm <= length_mm) || (!run.along_mm.empty() && !(rising ? mm > run.along_mm.back() : mm < run.along_mm.back())))
+      refuse("Places along a cut do not follow each other");
+    run.along_mm.push_back(mm);
+  }
+  for (int k = 0; k < run.edge_count(); ++k)
+    if (design.zipper_edge(design.vertex_of(run, k))) refuse("A cut of the design runs along the zipper");
+  return run;
+}
+
+void read_closures(const Json& list, FlatDesign& design) {
+  if (!list.is_array()) refuse("The design's cuts are no list");
+  for (const Json& item : list) {
+    const Json sides = item.is_object() ? item.value("sides", Json()) : Json(), length = item.is_object() ? item.value("length_mm", Json()) : Json();
+    if (!sides.is_array() || sides.size() != 2 || !length.is_number() || !(length.get<double>() > 0 && length.get<double>() < 1e9))
+      refuse("A cut of the design has not two sides and a length");
+    HandleClosure closure;
+    closure.length_mm = length.get<double>();
+    closure.closed = item.value("closed", Json(true)) != false;
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (!sides[side].is_array() || sides[side].empty()) refuse("A side of a cut is empty");
+      for (const Json& run : sides[side]) closure.sides[side].push_back(read_run(run, design, closure.length_mm, side == 0));
+    }
+    design.closures.push_back(std::move(closure));
+  }
+}
+
 }  // namespace
 
 bool FlatDesign::zipper_edge(int v) const {
@@ -121,6 +156,7 @@ FlatDesign read_flat_design(ByteView bytes) {
     for (const Json& sample : piece) design.pieces.back().push_back(read_index(sample, 0, samples));
   }
   find_sides(design, samples);
+  if (json.contains("handle_cuts")) read_closures(json["handle_cuts"], design);
   return design;
 }
 

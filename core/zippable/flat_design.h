@@ -5,6 +5,7 @@
 
 #include "base/bytes.h"
 #include "geometry/triangle_mesh.h"
+#include "zippable/handle_closure.h"
 
 namespace formwright {
 
@@ -21,6 +22,7 @@ struct FlatDesign {
   std::vector<int> fabric_of_face;       // 0 or 1; all 0 where there is one fabric
   int fabrics = 1;
   std::vector<std::vector<int>> pieces;  // zipper samples from opening to opening, in the order of the zipper
+  std::vector<HandleClosure> closures;   // what meets along the openings; none in files from before there were any
   // From here on made on reading:
   std::vector<int> left_vertex, right_vertex;  // per sample: on the boundary
   std::vector<int> piece_of;                   // per sample
@@ -31,6 +33,8 @@ struct FlatDesign {
   int next(int v) const { return v + 1 < vertex_count() ? v + 1 : 0; }
   /// Is the boundary's edge from v to the next vertex a side of the zipper (or along an opening)?
   bool zipper_edge(int v) const;
+  /// The boundary's vertex where edge `k` of a run begins; as many as edges: where the last one ends.
+  int vertex_of(const ClosureRun& run, int k) const { return (run.first_vertex + k) % vertex_count(); }
   double length_in_space_mm(int a, int b) const { return (boundary[a].position_mm - boundary[b].position_mm).norm(); }
 };
 

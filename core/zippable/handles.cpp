@@ -212,7 +212,8 @@ bool join_nearest_openings(OpenedSurface& surface, Context& context) {
   if (!after.is_manifold() || face_components(after).count != 1 || boundary_loops(after).size() + 1 != openings.size()) return false;
   surface.mesh = std::move(cut);
   surface.source_of = std::move(source_of);
-  ++surface.slits;
+  surface.slits.emplace_back();
+  for (const int v : best) surface.slits.back().push_back(surface.mesh.V.row(v).transpose());
   return true;
 }
 

@@ -12,7 +12,7 @@ struct OpenedSurface {
   TriangleMesh mesh;                   // the given vertices first, then second copies of those on cuts
   std::vector<int> source_of;          // per vertex: which one of the given mesh it is (a copy of)
   std::vector<std::vector<int>> cuts;  // per cut, the given vertices along the loop, the first not repeated
-  int slits = 0;                       // cuts between openings
+  std::vector<std::vector<Vec3>> slits;  // cuts between openings, from end to end
 };
 
 /// Cuts one loop a handle, so that the surface has genus 0; every cut adds two openings. A surface without handles comes back as it is.

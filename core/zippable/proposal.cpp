@@ -211,14 +211,19 @@ Proposal drawn(const TriangleMesh& mesh, const ProposalOptions& options, Context
   return proposal;
 }
 
-void note_cuts(Proposal& proposal, OpenedSurface& opened) {
+void note_cuts(Proposal& proposal, OpenedSurface& opened, const TriangleMesh& given) {
+  for (const auto& loop : opened.cuts) {
+    proposal.taped_cuts.push_back({{}, true});
+    for (const int v : loop) proposal.taped_cuts.back().points_mm.push_back(given.V.row(v).transpose());
+  }
+  for (const auto& slit : opened.slits) proposal.taped_cuts.push_back({slit, false});
   proposal.handles_cut = static_cast<int>(opened.cuts.size());
   proposal.handle_cuts = std::move(opened.cuts);
   if (proposal.handles_cut > 0)
     proposal.notes.push_back(std::to_string(proposal.handles_cut) + (proposal.handles_cut == 1 ? " handle was" : " handles were") +
                              " cut open: close the cut with hook-and-loop tape.");
-  if (opened.slits > 0)
-    proposal.notes.push_back("Between openings " + std::to_string(opened.slits) + (opened.slits == 1 ? " slit was" : " slits were") +
+  if (!opened.slits.empty())
+    proposal.notes.push_back("Between openings " + std::to_string(opened.slits.size()) + (opened.slits.size() == 1 ? " slit was" : " slits were") +
                              " cut, so that there are fewer of them: close these with hook-and-loop tape, too.");
 }
 
@@ -274,7 +279,7 @@ Proposal propose_segmentation(const TriangleMesh& mesh, const ProposalOptions& o
   const auto slits = cut_slits(opened, options.cuts_mm, context);
   if (!options.curves.empty()) {
     Proposal proposal = drawn(opened.mesh, options, context);
-    note_cuts(proposal, opened);
+    note_cuts(proposal, opened, mesh);
     proposal.slits = slits;
     return proposal;
   }
@@ -285,7 +290,7 @@ Proposal propose_segmentation(const TriangleMesh& mesh, const ProposalOptions& o
   for (;;) {
     std::string problem;
     if (std::optional<Proposal> proposal = automatic(opened, options, context, problem)) {
-      note_cuts(*proposal, opened);
+      note_cuts(*proposal, opened, mesh);
       proposal->slits = slits;
       return std::move(*proposal);
     }

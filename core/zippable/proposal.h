@@ -6,6 +6,7 @@
 
 #include "base/context.h"
 #include "zippable/drawn_parts.h"
+#include "zippable/handle_closure.h"
 #include "zippable/segmentation.h"
 
 namespace formwright {
@@ -28,6 +29,7 @@ struct Proposal {
   Segmentation segmentation;
   int handles_cut = 0;                        // loops opened, which need another closure than the zipper
   std::vector<std::vector<int>> handle_cuts;  // per cut handle, the vertices of the given mesh along the loop, closed
+  std::vector<TapedCut> taped_cuts;           // what needs that closure: these loops, then slits between openings
   std::vector<std::vector<Vec3>> slits;       // as cut along the given paths
   std::vector<Vec3> punctures;                // centres
   std::vector<double> puncture_radius_mm;

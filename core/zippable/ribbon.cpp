@@ -140,8 +140,9 @@ std::vector<Vec2> unfold(const std::vector<Vec3>& positions, const Triangles& F)
 }
 
 Ribbon make_ribbon(const Segmentation& s, const Parameterisation& p, const LineTracer& tracer, const ZipperCurve& curve,
-                   const CurveOptions& options, Context& context) {
-  RibbonBoundary boundary(s.part_count(), p, tracer, curve, options.sample_mm);
+                   const CurveOptions& options, Context& context, const std::vector<TapedCut>& cuts) {
+  TapedCuts taped(s, p, cuts);
+  RibbonBoundary boundary(s.part_count(), p, tracer, curve, options.sample_mm, taped);
   context.check_cancelled();
   const int count = static_cast<int>(boundary.vertices.size());
   Rulings rulings(s, p, curve, boundary);
@@ -186,7 +187,8 @@ Ribbon make_ribbon(const Segmentation& s, const Parameterisation& p, const LineT
   for (const auto& piece : curve.pieces)
     for (std::size_t i = 0; i + 1 < piece.size(); ++i)
       ribbon.zipper_mm += (curve.samples[piece[i + 1]].position_mm - curve.samples[piece[i]].position_mm).norm();
-  ribbon.opening_arcs = boundary.opening_arcs;
+  ribbon.opening_arcs = static_cast<int>(boundary.arcs.size());
+  ribbon.closures = taped.closures(boundary.arcs, count);
   ribbon.boundary = std::move(boundary.vertices);
   return ribbon;
 }

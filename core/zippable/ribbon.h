@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/context.h"
+#include "zippable/handle_closure.h"
 #include "zippable/zipper_curve.h"
 
 namespace formwright {
@@ -26,6 +27,7 @@ struct Ribbon {
   std::vector<Vec2> flat_mm;                   // unfolded, per boundary vertex
   int rulings = 0;                             // given by equal x
   int opening_arcs = 0;                        // stretches of the boundary along openings: two, and two a Fermat spiral
+  std::vector<HandleClosure> closures;         // which of them meet, at cuts that the zipper does not close
   double zipper_mm = 0;                        // length of one side
   double width_min_mm = 0, width_mean_mm = 0;  // of the rulings away from openings
   double isometry_error = 0;                   // largest change of an edge's length by unfolding, relative
@@ -34,9 +36,9 @@ struct Ribbon {
   TriangleMesh flat() const;    // z = 0
 };
 
-/// Throws Error: internal (the curve's lines cross), cancelled.
+/// `cuts`: what is closed by other means than the zipper. Throws Error: internal (the curve's lines cross), cancelled.
 Ribbon make_ribbon(const Segmentation& segmentation, const Parameterisation& parameterisation, const LineTracer& tracer,
-                   const ZipperCurve& curve, const CurveOptions& options, Context& context);
+                   const ZipperCurve& curve, const CurveOptions& options, Context& context, const std::vector<TapedCut>& cuts = {});
 
 /// Unfolds triangle by triangle into the plane; every edge keeps its length. Needs a triangulated disc without inner vertices.
 std::vector<Vec2> unfold(const std::vector<Vec3>& positions_mm, const Triangles& F);

@@ -12,7 +12,7 @@ namespace formwright {
 class RibbonBoundary {
  public:
   RibbonBoundary(int part_count, const Parameterisation& parameterisation, const LineTracer& tracer, const ZipperCurve& curve,
-                 double sample_mm);
+                 double sample_mm, TapedCuts& cuts);
 
   /// A strip lies between a line and the next one of its part, towards larger x, which may be a period on.
   struct Strip {
@@ -24,13 +24,14 @@ class RibbonBoundary {
 
   std::vector<RibbonVertex> vertices;
   std::vector<Strip> strips;
-  int opening_arcs = 0;
+  std::vector<OpeningArc> arcs;  // as they follow each other on the boundary
 
   /// Place on the boundary of a line's sample, on the side where x is larger (below the line) or smaller (above it).
   int place(int line, std::size_t sample, bool larger_x) const;
 
  private:
-  void add_opening(int part, bool upper, double x_from, double x_to, std::vector<std::pair<int, int>>* places);
+  std::vector<int> grid_along(const OpeningArc& arc) const;
+  void add_opening(OpeningArc& arc, std::vector<std::pair<int, int>>& ruled);
   void add_piece(std::size_t piece, bool left);
 
   const LineTracer& tracer_;

@@ -127,7 +127,8 @@ ParameterisedModel parameterise_model(const TriangleMesh& given, const ZippableP
   }
   if (options.winding_course == WindingCourse::creases) {
     const TriangleMesh& mesh = model.proposal.segmentation.mesh;
-    model.features = find_features(mesh, Adjacency(mesh), features_asked_for(model.mesh, options), context);
+    model.crease_system = std::make_shared<CreaseSystem>(model.proposal.segmentation, context);
+    model.features = find_features(mesh, model.crease_system->adjacency(), features_asked_for(model.mesh, options), context);
   }
   model.seconds_parameterisation = watch.lap();
   return model;
@@ -166,20 +167,22 @@ ZippableDesign design_zippable(const ParameterisedModel& model, const ZippableOp
   // The order that was chosen, and where it bends too tightly those after it.
   constexpr std::size_t most_tries = 24;
   const std::size_t first = static_cast<std::size_t>(options.traversal - 1), end = options.radius_least_mm ? std::min(ranked.size(), first + most_tries) : first + 1;
+  std::optional<LineTracer> tracer;  // one for all orders where windings are even
+  if (!model.features) tracer.emplace(s, model.parameterisation);
   for (std::size_t i = first; i < end; ++i) {
     ZippableDesign candidate;
     candidate.traversal = ranked[i];
     if (model.features) {
       ZipperCurve placed;
       const auto lines = place_lines(s, model.parameterisation, ranked[i].traversal, ranked[i].crossings, curve, placed);
-      candidate.alignment = align_to_creases(s, model.parameterisation, *model.features, lines, {}, context);
+      candidate.alignment = align_to_creases(s, model.parameterisation, *model.crease_system, *model.features, lines, {}, context);
     }
     const Parameterisation& chart = candidate.alignment ? candidate.alignment->parameterisation : model.parameterisation;
-    const LineTracer tracer(s, chart);
-    candidate.curve = draw_zipper_curve(s, chart, tracer, ranked[i].traversal, ranked[i].crossings, curve, context);
+    if (candidate.alignment) tracer.emplace(s, chart);
+    candidate.curve = draw_zipper_curve(s, chart, *tracer, ranked[i].traversal, ranked[i].crossings, curve, context);
     design.seconds_curve += watch.lap();
     if (i == first) context.progress(0.3, "Unfolding the ribbon");
-    candidate.ribbon = make_ribbon(s, chart, tracer, candidate.curve, curve, context);
+    candidate.ribbon = make_ribbon(s, chart, *tracer, candidate.curve, curve, context, model.proposal.taped_cuts);
     candidate.bend = tightest_bend(candidate.ribbon, options.width_mm);
     design.seconds_ribbon += watch.lap();
     if (i == first || (candidate.bend && design.bend && candidate.bend->radius_mm > design.bend->radius_mm)) {

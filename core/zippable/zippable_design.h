@@ -31,7 +31,9 @@ struct ParameterisedModel {
   Proposal proposal;
   Parameterisation parameterisation;
   int start_part = 0, end_part = 0;      // as the maker's points name them, from 1; 0: anywhere
-  std::optional<FeatureLines> features;  // where windings follow creases
+  // Where windings follow creases:
+  std::optional<FeatureLines> features;
+  std::shared_ptr<CreaseSystem> crease_system;
   double seconds_parts = 0, seconds_parameterisation = 0;
 };
 

@@ -21,6 +21,7 @@ void MachinePage::send_state(std::shared_ptr<const std::string> text) {
 }
 
 void MachinePage::push(std::shared_ptr<const std::string> text) {
+  if (!accepted_) return;
   if (outgoing_.size() > most_waiting) return hang_up();  // it does not read
   outgoing_.push_back(std::move(text));
   if (outgoing_.size() == 1) write_next();

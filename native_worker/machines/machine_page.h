@@ -33,6 +33,8 @@ class MachinePage : public std::enable_shared_from_this<MachinePage> {
   explicit MachinePage(beast::websocket::stream<beast::tcp_stream>&& stream) : stream_(std::move(stream)) {}
   beast::websocket::stream<beast::tcp_stream>& stream() { return stream_; }
 
+  /// The handshake is done. What is sent before is dropped: Beast would take itself for the client, and mask it.
+  void accepted() { accepted_ = true; }
   void send(const Json& message);
   /// A page that reads slowly gets the latest state, not each.
   void send_state(std::shared_ptr<const std::string> text);
@@ -51,6 +53,7 @@ class MachinePage : public std::enable_shared_from_this<MachinePage> {
   beast::websocket::stream<beast::tcp_stream> stream_;
   std::deque<std::shared_ptr<const std::string>> outgoing_;
   std::shared_ptr<const std::string> latest_state_;  // waits until the rest is written
+  bool accepted_ = false;
   int requests_ = 0, malformed_ = 0;
   double rate_budget_ = 200;
   std::chrono::steady_clock::time_point rate_time_ = std::chrono::steady_clock::now();

@@ -62,6 +62,7 @@ boost::asio::awaitable<void> MachineRooms::serve(std::shared_ptr<MachinePage> pa
   stream.read_message_max(MachinePage::most_message_bytes);
   boost::system::error_code error;
   co_await stream.async_accept(head, boost::asio::redirect_error(use_awaitable, error));
+  if (!error) page->accepted();
   try {
     if (!error && room->session) page->send({{"state", room->session->state()}});
     if (!error && !room->recent.empty()) page->send({{"events", Json(std::vector<Json>(room->recent.begin(), room->recent.end()))}});

@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <atomic>
 
 #include "base/error.h"
 #include "evidence/calibration.h"
 #include "evidence/diagnosis_report.h"
+#include "evidence/pair_search.h"
 #include "evidence/toy_model.h"
 
 namespace formwright {
@@ -63,6 +65,23 @@ TEST(ParameterFit, StaysWithinRanges) {
   options.most_iterations = 60;
   const ParameterFit fit = fit_parameters(bag, *mean_distance_objective(model, 0.01), model.base_parameters(), model.nominal(), {}, options, context, "");
   EXPECT_NEAR(fit.u[1], 5, 1e-6);
+}
+
+TEST(ParameterFit, ProbingSaysHowFarSecantsMiss) {
+  ToyModel model(50);
+  SimulationBag bag(model);
+  Context context;
+  const std::vector<int> columns{0, 1, 3};
+  const Probing probing = probe_around(bag, model.nominal(), *bag.run(model.nominal(), context, ""), columns, context, "");
+  ASSERT_EQ(probing.bends.front().size(), 2u);  // the ripple goes one way only
+  for (Eigen::Index i = 0; i < 50; ++i) {
+    const auto place = model.measurements().front().place.row(i);
+    // Height is e^u: half of e^h + e^-h - 2.
+    EXPECT_NEAR(probing.bends.front()[0](i, 0), (std::cosh(0.1) - 1) * std::sin(std::numbers::pi * place[0]), 1e-12);
+    EXPECT_NEAR(probing.bends.front()[0](i, 1), (std::cosh(0.1) - 1) * place[0] * place[1] / 2, 1e-12);
+    EXPECT_NEAR(probing.sensitivities.front()[0](i, 0), std::sinh(0.1) / 0.1 * std::sin(std::numbers::pi * place[0]), 1e-12);
+  }
+  EXPECT_LT(probing.bends.front()[1].cwiseAbs().maxCoeff(), 1e-12);  // the tilt is straight
 }
 
 TEST(SimulationBag, AsksForNothingTwiceAndStopsAtOnce) {
@@ -158,16 +177,153 @@ TEST(Diagnosis, NamesEachCauseItsStrengthAndTheGain) {
     }
 }
 
-TEST(Diagnosis, FindsPairs) {
-  ToyModel model(500);
+/// Hides a bump of 0.6 and a ripple of 0.4, which are to be named, and returns what is said.
+Diagnosis diagnosed_pair(ToyModel& model) {
   Eigen::VectorXd truth = model.nominal();
   truth[2] = 0.6;
   truth[3] = 0.4;
   model.measure(truth, 0.05, 12, 0.02);
-  const Diagnosis d = diagnosed(model);
+  Diagnosis d = diagnosed(model);
   std::vector<int> verdict = d.verdict;
   std::sort(verdict.begin(), verdict.end());
   EXPECT_EQ(verdict, (std::vector<int>{0, 1}));
+  return d;
+}
+
+/// A base parameter that can be turned until it does nearly what the drift does, and from where both ways back lead uphill.
+class SwallowingModel : public ToyModel {
+ public:
+  using ToyModel::ToyModel;
+  Eigen::MatrixXd predict(int object, const Eigen::VectorXd& u, const Context& context) const override {
+    const double tilt = std::clamp(u[1], 0.0, 2.0), share = 0.2 + 0.4 * tilt;
+    Eigen::VectorXd rest = u;
+    rest[1] = std::min(u[1], 0.0) + 0.2 * tilt * (2 - tilt);
+    Eigen::MatrixXd y = ToyModel::predict(object, rest, context);
+    const Eigen::VectorXd x = measurements().front().place.col(0);
+    return y.col(0) += 1.2 * share * share * (3 - 2 * share) * x.array().pow(2.6).matrix(), y;
+  }
+};
+
+TEST(Diagnosis, NamesWhatTheCalibrationHasSwallowed) {
+  SwallowingModel model(500);
+  Eigen::VectorXd truth = model.nominal();
+  truth[4] = 1.2;
+  model.measure(truth, 0.05, 3);
+  const Diagnosis d = diagnosed(model);
+  ASSERT_GT(d.base.u[1], 1.5);  // else the model does not do what it is for
+  ASSERT_EQ(d.verdict, std::vector<int>{2});
+  EXPECT_NEAR(d.extended.u[4], 1.2, 0.05);
+  EXPECT_NEAR(d.extended.u[1], 0, 0.05);
+}
+
+/// In one corner it does now this, now that, at the least change of any parameter: a sheet that snaps into a corner of the mould, or does not.
+class LeapingModel : public ToyModel {
+ public:
+  using ToyModel::ToyModel;
+  Eigen::MatrixXd predict(int object, const Eigen::VectorXd& u, const Context& context) const override {
+    Eigen::MatrixXd y = ToyModel::predict(object, u, context);
+    const double leap = std::sin(1e4 * u.sum()) > 0 ? 2 : -2;
+    for (Eigen::Index i = 0; i < y.rows(); ++i) {
+      const auto place = measurements().front().place.row(i);
+      if (place[0] > 0.7 && place[1] > 0.7) y(i, 0) += leap * (place[0] - 0.7) * (place[1] - 0.7) / 0.09;
+    }
+    return y;
+  }
+};
+
+TEST(Diagnosis, DoesNotRelyOnWhatTheModelDoesByLeaps) {
+  for (const unsigned seed : {3u, 4u, 5u}) {
+    LeapingModel model(500);
+    Eigen::VectorXd truth = model.nominal();
+    truth[0] = 0.23;
+    truth[2] = -0.25;
+    model.measure(truth, 0.05, seed);
+    const Diagnosis d = diagnosed(model);
+    ASSERT_EQ(d.verdict, std::vector<int>{0}) << seed;
+    EXPECT_NEAR(d.extended.u[2], -0.25, 0.05) << seed;
+    model.measure(model.nominal(), 0.05, seed);
+    EXPECT_EQ(diagnosed(model).reading, Reading::none) << seed;
+  }
+}
+
+/// Its fourth cause moves a narrow ring alone, by far: as a turned mould moves its walls, between plate and top that stay.
+class WalledModel : public ToyModel {
+ public:
+  WalledModel() : ToyModel(800, 1, true) {}
+  Eigen::MatrixXd predict(int object, const Eigen::VectorXd& u, const Context& context) const override {
+    Eigen::VectorXd rest = u;
+    rest[6] = 0;
+    Eigen::MatrixXd y = ToyModel::predict(object, rest, context);
+    for (Eigen::Index i = 0; i < y.rows(); ++i) {
+      const Eigen::Vector2d from_middle = measurements().front().place.row(i).transpose() - Eigen::Vector2d(0.5, 0.5);
+      const double size = from_middle.cwiseAbs().maxCoeff();
+      if (size > 0.3 && size < 0.32) y.row(i) += 4 * u[6] * Eigen::RowVector2d(-from_middle.y(), from_middle.x());
+    }
+    return y;
+  }
+};
+
+TEST(Diagnosis, TakesWhatACauseExplainsForNoOutliers) {
+  WalledModel model;
+  Eigen::VectorXd truth = model.nominal();
+  truth[0] = 0.15;
+  truth[6] = -0.5;
+  model.measure(truth, 0.05, 6, 0.02);
+  const Diagnosis d = diagnosed(model);
+  ASSERT_EQ(d.verdict, std::vector<int>{3});
+  EXPECT_NEAR(d.extended.u[6], -0.5, 0.03);
+  EXPECT_NEAR(d.noise.front().outliers, 16, 8);  // of 800; of the ring's points there are 35
+  EXPECT_NEAR(d.noise.front().sigma, 0.05, 0.005);
+}
+
+TEST(Diagnosis, FindsPairs) {
+  ToyModel model(500);
+  diagnosed_pair(model);
+}
+
+/// What a coarse mesh does: everything a little off, everywhere alike, effects a tenth too strong.
+class CoarseToy : public ToyModel {
+ public:
+  using ToyModel::ToyModel;
+  Eigen::MatrixXd predict(int object, const Eigen::VectorXd& u, const Context& context) const override {
+    ++asked;
+    Eigen::VectorXd stronger = u;
+    stronger.tail(u.size() - 2) *= 1.1;
+    return ToyModel::predict(object, stronger, context).array() + 0.7;
+  }
+  mutable std::atomic<int> asked{0};
+};
+
+class ToyWithCoarseSelf : public ToyModel {
+ public:
+  using ToyModel::ToyModel;
+  const ForwardModel* cheaper() const override { return &coarse; }
+  CoarseToy coarse;
+};
+
+TEST(PairSearch, ACheaperModelAgreesWhereItIsAnchored) {
+  const ToyModel full(200);
+  const CoarseToy coarse(200);
+  const Context context;
+  Eigen::VectorXd at = full.nominal();
+  at[2] = 0.5;
+  const AnchoredModel anchored(coarse, {full.predict(0, at, context) - coarse.predict(0, at, context)});
+  EXPECT_LT((anchored.predict(0, at, context) - full.predict(0, at, context)).cwiseAbs().maxCoeff(), 1e-12);
+  // Away from there only the effect's strength differs, by its tenth.
+  Eigen::VectorXd beyond = at;
+  beyond[2] += 0.2;
+  const Eigen::MatrixXd step = full.predict(0, beyond, context) - full.predict(0, at, context);
+  EXPECT_LT((anchored.predict(0, beyond, context) - anchored.predict(0, at, context) - 1.1 * step).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(PairSearch, FindsBothCausesThroughACoarserModel) {
+  ToyWithCoarseSelf model(500);
+  const Diagnosis d = diagnosed_pair(model);
+  EXPECT_GT(model.coarse.asked, 20);
+  EXPECT_GE(d.simulations, model.coarse.asked);
+  // What is decided is decided on the model itself: strengths are not a tenth off.
+  EXPECT_NEAR(std::abs(d.extended.u[2]), 0.6, 0.04);
+  EXPECT_NEAR(std::abs(d.extended.u[3]), 0.4, 0.03);
 }
 
 TEST(Diagnosis, SaysUnknownToWhatIsNotInTheList) {

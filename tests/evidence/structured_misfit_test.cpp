@@ -7,6 +7,7 @@
 
 #include "evidence/hypotheses.h"
 #include "evidence/noise_model.h"
+#include "evidence/structured_objective.h"
 #include "evidence/toy_model.h"
 
 namespace formwright {
@@ -26,12 +27,12 @@ TEST(StructuredMisfit, GramMatrixIsThatOfADenseCovariance) {
   ToyModel model(40);
   const Eigen::VectorXd weights = Eigen::VectorXd::LinSpaced(40, 50, 400);
   const std::vector<double> sizes{0, 0.1, 1};
-  const StructuredMisfit misfit(model.measurements().front(), weights, sizes);
+  const StructuredMisfit one(model.measurements().front(), isotropic(weights, 1), sizes), misfit(model.measurements().front(), isotropic(weights, 2), sizes);
   const Eigen::MatrixXd residual = Eigen::MatrixXd::Random(40, 2);
   const std::vector<Eigen::MatrixXd> columns{Eigen::MatrixXd::Random(40, 2), Eigen::MatrixXd::Random(40, 2)};
   const GramByStructure gram = misfit.gram(residual, columns);
   for (std::size_t t = 0; t < sizes.size(); ++t) {
-    const Eigen::MatrixXd inverse = inverse_covariance(misfit, 40, t);
+    const Eigen::MatrixXd inverse = inverse_covariance(one, 40, t);
     // The structure has the size it is said to have: the mean of C's diagonal is noise and tau^2.
     const Eigen::MatrixXd C = inverse.inverse();
     EXPECT_NEAR(C.diagonal().mean(), weights.cwiseInverse().mean() + sizes[t] * sizes[t], 0.35 * sizes[t] * sizes[t] + 1e-12);
@@ -41,12 +42,47 @@ TEST(StructuredMisfit, GramMatrixIsThatOfADenseCovariance) {
   }
 }
 
+TEST(StructuredMisfit, DirectionsOfAPointMayBeKnownDifferently) {
+  // Against a dense covariance of all numbers: W^-1 and tau^2 times the same structure for either direction.
+  constexpr Eigen::Index n = 30;
+  ToyModel model(n);
+  const Measurement& m = model.measurements().front();
+  const Eigen::VectorXd weights = Eigen::VectorXd::LinSpaced(n, 50, 400);
+  const std::vector<Eigen::MatrixXd> movements{0.3 * Eigen::MatrixXd::Random(n, 2), 0.1 * Eigen::MatrixXd::Random(n, 2)};
+  const double tau = 0.2;
+  const StructuredMisfit misfit(m, precisions_of(model, {weights}, {movements}).front(), {0, tau});
+  const StructuredMisfit plain(m, isotropic(Eigen::VectorXd::Ones(n), 1), {tau});
+  const Eigen::MatrixXd structure = inverse_covariance(plain, n, 0).inverse() - Eigen::MatrixXd::Identity(n, n);
+  const Eigen::MatrixXd variance = model_covariance(m, movements);
+  Eigen::MatrixXd C = Eigen::MatrixXd::Zero(2 * n, 2 * n);
+  C.topLeftCorner(n, n) = C.bottomRightCorner(n, n) = structure;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (int p = 0; p < 2; ++p)
+      for (int q = 0; q < 2; ++q) C(p * n + i, q * n + i) += variance(i, 2 * p + q) + (p == q) / weights[i];
+  }
+  const Eigen::MatrixXd residual = Eigen::MatrixXd::Random(n, 2), column = Eigen::MatrixXd::Random(n, 2);
+  const auto stacked = [](const Eigen::MatrixXd& a) { return Eigen::VectorXd(a.reshaped()); };
+  const Eigen::VectorXd solved = C.ldlt().solve(stacked(residual));
+  const GramByStructure gram = misfit.gram(residual, std::vector<Eigen::MatrixXd>{column});
+  EXPECT_NEAR(gram.gram[1](0, 0), stacked(residual).dot(solved), 1e-8 * gram.gram[1](0, 0));
+  EXPECT_NEAR(gram.gram[1](1, 0), stacked(column).dot(solved), 1e-8 * gram.gram[1](0, 0));
+  EXPECT_NEAR(gram.log_determinant[1], std::log(C.determinant()), 1e-6 * std::abs(gram.log_determinant[1]) + 1e-6);
+  // The smooth part is what structure would be expected to be, and the leverage how a point's own number moves it.
+  const Eigen::MatrixXd smooth = misfit.smooth(residual, 1);
+  Eigen::MatrixXd both = Eigen::MatrixXd::Zero(2 * n, 2 * n);
+  both.topLeftCorner(n, n) = both.bottomRightCorner(n, n) = structure;
+  EXPECT_LT((stacked(smooth) - both * solved).cwiseAbs().maxCoeff(), 1e-8);
+  const Eigen::MatrixXd hat = both * C.inverse();
+  const Eigen::VectorXd leverage = misfit.leverage(1);
+  for (Eigen::Index i = 0; i < n; ++i) EXPECT_NEAR(leverage[i], 0.5 * (hat(i, i) + hat(n + i, n + i)), 1e-8);
+}
+
 TEST(StructuredMisfit, PointsOfWeightZeroDoNotCount) {
   ToyModel model(60);
   Eigen::VectorXd weights = Eigen::VectorXd::Constant(60, 100);
   weights.tail(20).setZero();
   Eigen::MatrixXd residual = Eigen::MatrixXd::Random(60, 2);
-  const StructuredMisfit misfit(model.measurements().front(), weights, {0.2});
+  const StructuredMisfit misfit(model.measurements().front(), isotropic(weights, 2), {0.2});
   const double before = misfit.gram_at(residual, {}, 0)(0, 0);
   residual.bottomRows(20).setConstant(1e6);
   EXPECT_DOUBLE_EQ(misfit.gram_at(residual, {}, 0)(0, 0), before);
@@ -89,7 +125,8 @@ TEST(Hypotheses, EvidenceIsThatOfTheMarginalGaussian) {
   u[2] = 0.5;
   model.measure(u, 0.05, 2);
   const Eigen::VectorXd weights = Eigen::VectorXd::Constant(30, 400);
-  const StructuredMisfit misfit(model.measurements().front(), weights, structure_sizes(model));
+  const StructuredMisfit misfit(model.measurements().front(), isotropic(weights, 2), structure_sizes(model)),
+      one(model.measurements().front(), isotropic(weights, 1), structure_sizes(model));
   const Eigen::MatrixXd at = model.predict(0, model.nominal(), Context());
   const Eigen::MatrixXd r = model.measurements().front().measured - at;
   std::vector<Eigen::MatrixXd> columns;
@@ -107,7 +144,7 @@ TEST(Hypotheses, EvidenceIsThatOfTheMarginalGaussian) {
     double log_sum = -1e300, prior_sum = -1e300;
     const auto sizes = structure_sizes(model);
     for (std::size_t t = 0; t < sizes.size(); ++t) {
-      const Eigen::MatrixXd inverse = inverse_covariance(misfit, 30, t);
+      const Eigen::MatrixXd inverse = inverse_covariance(one, 30, t);
       Eigen::MatrixXd C = Eigen::MatrixXd::Zero(60, 60);
       C.topLeftCorner(30, 30) = C.bottomRightCorner(30, 30) = inverse.inverse();
       const auto stacked = [](const Eigen::MatrixXd& m) { return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(m.data(), m.size())); };

@@ -272,6 +272,52 @@ TEST(GrblDriver, JobsThatDoNotFitAreRefusedBeforeAnythingMoves) {
   EXPECT_EQ(talk.machine.position_mm(), there);
 }
 
+TEST(GrblDriver, AJobMayStartAtOnceFromAnOriginJustSet) {
+  GrblTalk talk;
+  talk.connect_and_home();
+  talk.load("G21G90\nG0X310Y0\nG0X0\n");  // does not fit from where the origin is: 301 mm from the end
+  EXPECT_NE(talk.refusal(start).find("leave the bed in x"), std::string::npos);
+  const double head_mm = talk.state()["machine_mm"][0];
+  // However long ago the last report was, which told of another origin.
+  for (int i = 0; i < 8; ++i) {
+    talk.tell({{"do", "set_origin"}, {"at", "corner"}});
+    EXPECT_DOUBLE_EQ(talk.state()["work_mm"][0], head_mm + 400);
+    for (int k = 0; k < 4; ++k) {
+      talk.pass(0.02);
+      EXPECT_DOUBLE_EQ(talk.state()["work_mm"][0], head_mm + 400);
+    }
+    talk.tell({{"do", "set_origin"}, {"axes", "xy"}});
+    EXPECT_DOUBLE_EQ(talk.state()["work_mm"][0], 0);
+    EXPECT_NE(talk.refusal(start), "");
+    talk.pass(0.137);
+  }
+  talk.tell({{"do", "set_origin"}, {"at", "corner"}});
+  EXPECT_EQ(talk.refusal(start), "");
+  ASSERT_TRUE(talk.pass_until([&] { return talk.ended() == "done"; }, 30));
+}
+
+TEST(GrblDriver, AJobNeverStartsIntoAFrameThatIsNotDone) {
+  GrblTalk talk({}, {.burst_s = 0.05});
+  talk.connect_and_home();
+  talk.load("G21G90\nG0X5Y5\nG0X0Y0\n");
+  int started = 0, refused = 0;
+  for (int i = 0; i < 60; ++i) {
+    ASSERT_TRUE(talk.pass_until([&] { return talk.can("frame"); }, 5));
+    talk.tell({{"do", "frame"}, {"bounds_mm", {0, 0, 10, 10}}, {"speed_mm_per_s", 50}, {"confirmed", true}});
+    talk.pass(0.04 * i);
+    if (talk.refusal(start) != "") {
+      ++refused;
+      talk.pass(1.5);
+      continue;
+    }
+    ++started;
+    ASSERT_TRUE(talk.pass_until([&] { return talk.ended() != ""; }, 10));
+    EXPECT_EQ(talk.ended(), "done") << "after " << 0.04 * i << " s: " << talk.state().dump();
+  }
+  EXPECT_GT(started, 5);
+  EXPECT_GT(refused, 5);
+}
+
 TEST(GrblDriver, GoesOnTheCarefulWay) {
   GrblTalk talk;
   talk.connect_and_home();

@@ -70,13 +70,17 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(sorted(p.name for p in out.iterdir()), ["curve.obj", "design.json", "formed.ply", "parameterised.ply", "report.json", "ribbon.svg"])
         report = json.loads((out / "report.json").read_text())
         described = json.loads(self.run_program("describe", "zippable-design").stdout)
-        self.assertEqual(whole, {f["name"] for f in described["report"]})
+        self.assertEqual(whole | {"hook_and_loop_mm_total"}, {f["name"] for f in described["report"]})  # the T has no handle
         two_fabrics, creases = {"fabric_area_mm2", "fabric_seams", "interleaved_share"}, {"crease_mm", "crease_off_mm", "crease_off_even_mm", "winding_spacing_least"}
         self.assertEqual(set(report), whole - two_fabrics - creases)
         self.assertEqual(report["parts"], 3)
         design = json.loads((out / "design.json").read_text())
         self.assertEqual(len(design["ribbon"]["triangles"]), len(design["ribbon"]["boundary"]) - 2)
         self.assertIn(f'width="{report["ribbon_size_mm"][0] + 10:.2f}'[:-1], (out / "ribbon.svg").read_text())
+        torus = self.folder / "torus"
+        self.assertEqual(self.run_program("zippable-design", "--sample", "torus", "--width-mm", 20, "--out", torus, "--quiet").returncode, 0)
+        cuts = json.loads((torus / "design.json").read_text())["handle_cuts"]
+        self.assertEqual(json.loads((torus / "report.json").read_text())["hook_and_loop_mm_total"], sum(cut["length_mm"] for cut in cuts))
         segments.write_text("{}")
         shutil.rmtree(out)
         self.expect_refused("segments.json says nothing", "zippable-design", "--sample", "t_shape", "--segments", segments, "--out", out)

@@ -13,6 +13,35 @@ import subprocess
 import time
 
 
+def runs_jobs(process: int) -> bool:
+    """Whether there is such a process, and it is a worker's child for jobs."""
+    try:
+        return "run-jobs" in pathlib.Path(f"/proc/{process}/cmdline").read_text()
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+
+
+def sockets_of(process: int) -> list[str]:
+    """What it holds open of the network."""
+    held = []
+    for descriptor in pathlib.Path(f"/proc/{process}/fd").iterdir():
+        try:
+            held.append(os.readlink(descriptor))
+        except FileNotFoundError:  # closed meanwhile
+            pass
+    return [name for name in held if name.startswith("socket:")]
+
+
+def eventually(condition) -> bool:
+    """Whether it comes true within ten seconds."""
+    end = time.monotonic() + 10
+    while not condition():
+        if time.monotonic() > end:
+            return False
+        time.sleep(0.01)
+    return True
+
+
 class Worker:
     def __init__(self, program: str, data: pathlib.Path, *flags: str):
         self.process = subprocess.Popen([program, "serve", "--port", "0", "--data", str(data), *flags],
@@ -66,17 +95,14 @@ class Worker:
         raise AssertionError(f"job {job} did not finish: {detail}")
 
     def wait_running(self, job: str) -> None:
-        for _ in range(400):
-            if self.json("GET", f"/api/jobs/{job}")[1]["state"] == "running":
-                return
-            time.sleep(0.02)
-        raise AssertionError("the job never ran")
+        assert eventually(lambda: self.json("GET", f"/api/jobs/{job}")[1]["state"] == "running"), "the job never ran"
 
     def job_process(self) -> int:
-        """The child in which jobs run."""
-        children = pathlib.Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children").read_text().split()
-        assert len(children) == 1, children
-        return int(children[0])
+        """The child in which jobs run, once it has become that program: between fork and exec it still is the worker, with all that it holds open."""
+        def found():
+            return [int(number) for number in pathlib.Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children").read_text().split()]
+        assert eventually(lambda: len(found()) == 1 and runs_jobs(found()[0])), found()
+        return found()[0]
 
 
 class PageSocket:
@@ -111,7 +137,8 @@ class PageSocket:
         text = b""
         while True:
             first, second = self._exactly(2)
-            length = second & 0x7F
+            assert second < 0x80, "a server masks nothing (RFC 6455, 5.1)"
+            length = second
             if length == 126:
                 length = struct.unpack(">H", self._exactly(2))[0]
             elif length == 127:

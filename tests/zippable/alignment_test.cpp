@@ -38,7 +38,11 @@ Aligned align(const TriangleMesh& mesh, const CurveOptions& curve, const CreaseA
   const FeatureLines features = find_features(a.segmentation.mesh, Adjacency(a.segmentation.mesh), {4, 0.35}, context);
   ZipperCurve placed;
   a.lines = place_lines(a.segmentation, a.parameterisation, order.traversal, order.crossings, curve, placed);
-  a.alignment = align_to_creases(a.segmentation, a.parameterisation, features, a.lines, options, context);
+  CreaseSystem system(a.segmentation, context);
+  a.alignment = align_to_creases(a.segmentation, a.parameterisation, system, features, a.lines, options, context);
+  // Other windings on the same model: what is kept between them leaves no trace.
+  const CreaseAlignment again = align_to_creases(a.segmentation, a.parameterisation, system, features, a.lines, options, context);
+  EXPECT_EQ(again.parameterisation.corners_mm, a.alignment.parameterisation.corners_mm);
   const LineTracer before(a.segmentation, a.parameterisation), after(a.segmentation, a.alignment.parameterisation);
   a.even =
       draw_zipper_curve(a.segmentation, a.parameterisation, before, order.traversal, order.crossings, curve, context);

@@ -187,15 +187,8 @@ TEST(ZippableFiles, ReadSegmentsOrSayWhatIsWrong) {
   ASSERT_EQ(parts.curves.size(), 2u);
   EXPECT_TRUE(parts.curves[0].closed && !parts.curves[1].closed);
   for (const char* wrong : {"", "[]", "{}", R"({"punctures": 3})", R"({"punctures": [[1, 2]]})", R"({"punctures": [[1, 2, "x"]]})",
-                            R"({"punctures": [[1, 2, 1e99]]})", R"({"loops": []})", R"({"loops": [[1, 2, 3]]})", R"({"rings": []})"}) {
-    try {
-      read_segments(to_bytes(wrong));
-      FAIL() << "accepted " << wrong;
-    } catch (const Error& error) {
-      EXPECT_EQ(error.where(), "segments");
-      EXPECT_EQ(std::string(error.what()).back(), '.');
-    }
-  }
+                            R"({"punctures": [[1, 2, 1e99]]})", R"({"loops": []})", R"({"loops": [[1, 2, 3]]})", R"({"rings": []})"})
+    test::expect_segments_refused(wrong);
 }
 
 }  // namespace

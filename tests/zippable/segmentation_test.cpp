@@ -111,7 +111,7 @@ TEST(Openings, AreJoinedBySlits) {
     ASSERT_TRUE(join_nearest_openings(opened, context));
   }
   EXPECT_FALSE(join_nearest_openings(opened, context));
-  EXPECT_EQ(opened.slits, 4);
+  EXPECT_EQ(opened.slits.size(), 4u);
   EXPECT_EQ(opened.mesh.face_count(), surface.mesh.face_count());
   for (int v = 0; v < opened.mesh.vertex_count(); ++v) EXPECT_EQ(opened.mesh.V.row(v), surface.mesh.V.row(opened.source_of[v]));
 }

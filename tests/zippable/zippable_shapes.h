@@ -1,14 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // Shapes whose parameterisation, curve and ribbon are known, and designs made of them.
+#include <gtest/gtest.h>
+
 #include <string_view>
 
+#include "base/error.h"
 #include "geometry/samples/samples.h"
 #include "geometry/test_meshes.h"
+#include "zippable/design_files.h"
 #include "zippable/proposal.h"
 #include "zippable/ribbon.h"
 
 namespace formwright::test {
+
+/// In one sentence that names the file's input.
+inline void expect_segments_refused(const char* text) {
+  try {
+    read_segments(to_bytes(text));
+    ADD_FAILURE() << "accepted " << text;
+  } catch (const Error& error) {
+    EXPECT_EQ(error.where(), "segments");
+    EXPECT_EQ(std::string(error.what()).back(), '.');
+  }
+}
 
 /// Open at both ends: radius(t) and height(t) for t in [0, 1], `rows` rows of `around` vertices, every other row turned by half a
 /// side so that no direction is preferred.

@@ -140,6 +140,7 @@ test('from the sample star to a finished laser job', async ({ page }) => {
   await setOrigin(page);
   await button(page, 'Frame').click();
   await confirm(page, /^Frame the job/, 'Frame', /laser stays off/);
+  await expect(chip(page)).toHaveText('Moving');
   await expect(chip(page)).toHaveText('Ready', { timeout: 60_000 });
   await startIt(page);
   await expect(page.getByRole('progressbar')).toBeVisible();
@@ -341,6 +342,7 @@ test('material is tested, and what the tests show is set and kept', async ({ pag
   await makeReady(page);
   await button(page, 'Frame').click();
   await confirm(page, /^Frame the job/, 'Frame', /laser stays off/);
+  await expect(chip(page)).toHaveText('Moving');
   await expect(chip(page)).toHaveText('Ready', { timeout: 60_000 });
   await startIt(page);
   await expect(strip(page, 'Material test is done')).toBeVisible({ timeout: 240_000 });

@@ -13,6 +13,7 @@ namespace formwright {
 namespace {
 
 constexpr std::size_t fewest_points = 30;
+constexpr int fewest_triangles = 1000;    // of the cheaper model
 constexpr std::size_t most_sheets = 200;  // kept at a time; about 0.2 MB each
 
 std::string figure(double value) {
@@ -136,6 +137,10 @@ ThermoformModel::ThermoformModel(std::vector<FormedObject> objects, ThermoformMo
     }
     measurements_.push_back(std::move(m));
   }
+  if (options_.triangles / 4 < fewest_triangles) return;
+  ThermoformModelOptions coarse = options_;
+  coarse.triangles /= 4;
+  cheaper_ = std::make_unique<ThermoformModel>(objects_, std::move(coarse));
 }
 
 ThermoformOptions ThermoformModel::simulation_options(int object, const Eigen::VectorXd& u) const {

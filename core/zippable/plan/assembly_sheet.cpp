@@ -46,6 +46,7 @@ class AssemblyWriter {
       tapes();
     else
       edges();
+    if (!plan_.closures.length_mm.empty()) cuts();
     AssemblySheet sheet;
     sheet.pages = flow_.finish();
     sheet.pdf = pdf_.finish();
@@ -102,6 +103,8 @@ class AssemblyWriter {
       flow_.paragraph(sewn() ? "- Thread, a sewing machine with a zipper foot, pins."
                              : "- Contact glue for cloth, clips.");
       flow_.paragraph("- tape.pdf, printed at 100 %, and a pen for the zipper.");
+      for (const double mm : plan_.closures.length_mm)
+        flow_.paragraph("- Hook-and-loop tape, " + number(options_.hook_and_loop_mm, 0) + " mm wide: 2 x " + number(mm, 0) + " mm.");
     } else {
       flow_.paragraph("- Glue that sets quickly" + std::string(plan_.tabs
                                                                    ? "; a blunt knife to score the folds of the tabs."
@@ -271,6 +274,37 @@ class AssemblyWriter {
         flow_.paragraph("Seam " + std::to_string(i + 1) + ": left edge of " + name(seam.piece) + " to right edge of " +
                             name(seam.other_piece) + ", " + marks(seam) + ", " + number(seam.tape_mm(), 0) + " mm.",
                         4);
+  }
+
+  /// What the zipper does not close: which pieces, and how.
+  void cuts() {
+    const std::size_t count_of = plan_.closures.length_mm.size();
+    const bool tape = plan_.has_tape();
+    flow_.heading(step(count_of == 1 ? "Close the cut" : "Close the cuts"));
+    if (tape)
+      flow_.paragraph(
+          std::string(sewn() ? "Sew" : "Glue") + " the hook tape behind the edges named HOOK, between the edge and the line beside it, and the loop tape " +
+          "onto the front of the allowance beyond the edges named LOOP, up to the line; both before the zipper is attached, as long as the cloth is flat. "
+          "When it is zipped up lay the HOOK edge onto the line of the LOOP edge, same numbers on each other, and press.");
+    else
+      flow_.paragraph(plan_.tabs ? "The zipped edges leave a cut. Fold the tabs of one of its edges named JOIN back and glue them behind the other, same numbers on each other."
+                                 : "The joined edges leave a cut. Its edges named JOIN meet edge to edge, same numbers on each other: put adhesive tape behind them.");
+    for (std::size_t c = 0; c < count_of; ++c) {
+      const int cut = static_cast<int>(c) + 1;
+      const auto pieces = [&](ClosureSide side) {
+        std::string names;
+        for (const ClosureStretch& stretch : plan_.closures.stretches)
+          if (stretch.cut == cut && stretch.side == side && names.find(name(stretch.piece) + ",") == std::string::npos) names += name(stretch.piece) + ", ";
+        return names.substr(0, names.size() - 2);
+      };
+      const auto markers = std::count_if(plan_.closures.markers.begin(), plan_.closures.markers.end(), [&](const ClosureMarker& m) { return m.cut == cut; });
+      flow_.paragraph("Cut " + std::to_string(cut) + ", " + number(plan_.closures.length_mm[c], 0) + " mm: " +
+                          closure_words(cut, ClosureSide::hook, tape) + " on " + pieces(ClosureSide::hook) + " and " +
+                          closure_words(cut, ClosureSide::loop, tape) + " on " + pieces(ClosureSide::loop) + ", " +
+                          count(static_cast<std::size_t>(markers), "number") + " on either, every " + number(plan_.marker_spacing_mm, 0) +
+                          " mm, from " + std::to_string(cut) + "-0 where the zipper meets it.",
+                      4);
+    }
   }
 
   const FlatDesign& design_;

@@ -54,6 +54,7 @@ struct PlanOptions {
   double bed_x_mm = 600, bed_y_mm = 300, margin_mm = 5, spacing_mm = 2;
   GrainDirection grain = GrainDirection::free;
   double seam_allowance_mm = 8;
+  double hook_and_loop_mm = 20;
   double kerf_mm = 0.15;
   PaperEdges edges = PaperEdges::plain;
   double tab_depth_mm = 5, tab_length_mm = 15;
@@ -99,6 +100,10 @@ struct PlanOptions {
       parameter("seam_allowance_mm", &PlanOptions::seam_allowance_mm, "Seam allowance", unit::mm, 0, 1000,
                 "Added beyond both edges where the ribbon is split, to join them again.")
           .slider(0, 20)
+          .group("Sheets"),
+      parameter("hook_and_loop_mm", &PlanOptions::hook_and_loop_mm, "Hook-and-loop tape", unit::mm, 5, 200,
+                "Width of the tape that closes cut handles; one of their sides gets an allowance as wide.")
+          .slider(10, 50)
           .group("Sheets"),
       parameter("kerf_mm", &PlanOptions::kerf_mm, "Kerf", unit::mm, 0, 10,
                 "Width of what the cut takes away: outlines grow by half of it.")

@@ -18,7 +18,7 @@ double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(
 class PieceMaker {
  public:
   PieceMaker(const Triangles& F, const std::vector<Vec2>& flat, const Splitting& splitting, const std::optional<GlueTabs>& tabs,
-             double allowance_mm, double kerf_mm, double text_height_mm, PlanPieces& result)
+             const std::vector<EdgeFlap>& flaps, double allowance_mm, double kerf_mm, double text_height_mm, PlanPieces& result)
       : F_(F), flat_(flat), splitting_(splitting), has_tabs_(tabs.has_value()), allowance_mm_(allowance_mm), kerf_mm_(kerf_mm), text_height_mm_(text_height_mm),
         result_(result), faces_(std::size_t(splitting.piece_count)), texts_(faces_.size()) {
     TriangleMesh mesh;
@@ -45,6 +45,10 @@ class PieceMaker {
       const Vec2 start = flat[edge];
       std::sort(list.begin(), list.end(), [&](const GlueTab* a, const GlueTab* b) { return (a->foot_from - start).norm() < (b->foot_from - start).norm(); });
     }
+    for (const EdgeFlap& flap : flaps) {
+      flaps_[flap.from_vertex] = &flap;
+      for (const auto& triangle : flap.triangles) tab_triangles_[flap.piece].push_back(triangle);
+    }
     for (std::size_t s = 0; s < splitting.splits.size(); ++s) {
       const RibbonSplit& split = splitting.splits[s];
       letters_[{split.left, split.from}] = letters_[{split.right, split.to}] = split_letters(static_cast<int>(s));
@@ -62,6 +66,9 @@ class PieceMaker {
       for (const GlueTab* tab : list)
         if (tab->piece == piece)
           for (int w = edge; w != tab->to_edge;) covered.insert(w = next_[piece].at(w).first);
+    for (const auto& [from, flap] : flaps_)
+      if (flap->piece == piece)
+        for (int w = next_[piece].at(from).first; w != flap->to_vertex; w = next_[piece].at(w).first) covered.insert(w);
     int first = next_[piece].begin()->first;
     while (covered.contains(first)) first = next_[piece].at(first).first;
     int v = first;
@@ -71,6 +78,8 @@ class PieceMaker {
       if (const auto list = tabs_.find(v); list != tabs_.end())
         for (const GlueTab* tab : list->second)
           if (tab->piece == piece) add_tab(piece, *tab);
+      if (const auto flap = flaps_.find(v); flap != flaps_.end() && flap->second->piece == piece)
+        for (const Vec2& corner : flap->second->outer_mm) made.outline_mm.push_back(corner);
       if (split) {
         for (const Vec2& corner : allowance(piece, v, to)) made.outline_mm.push_back(corner);
         const Vec2 u = (flat_[to] - flat_[v]).normalized();
@@ -94,7 +103,7 @@ class PieceMaker {
     made.marks.push_back(std::move(fold));
   }
 
-  void marker(const SideMark& mark, int number, const char* side) {
+  void marker(const SideMark& mark, const std::string& words, const std::string& name) {
     const int piece = splitting_.piece_of_face[face_of_edge_.at(mark.edge)];
     constexpr double length_mm = 2;
     double length = length_mm;
@@ -108,8 +117,43 @@ class PieceMaker {
     result_.pieces[piece].marks.push_back({CutLayer::mark,
                                            {mark.flat_mm, end},
                                            false,
-                                           "marker-" + std::to_string(number) + "-" + side});
-    text(piece, mark.flat_mm + (length + 0.4) * mark.inward, mark.along, std::to_string(number), 0);
+                                           name});
+    text(piece, mark.flat_mm + (length + 0.4) * mark.inward, mark.along, words, 0);
+  }
+
+  /// Where the tape goes, the edge of what lies below, and their names, twice where that is long.
+  void closure(const PieceClosures& closures) {
+    const ClosureMarks& marks = *closures.marks;
+    for (const ClosureMarker& marker_of : marks.markers)
+      for (const ClosureSide side : {ClosureSide::hook, ClosureSide::loop}) {
+        const std::string number = std::to_string(marker_of.cut) + "-" + std::to_string(marker_of.number);
+        marker(marker_of.sides[static_cast<std::size_t>(side)], number, "closure-" + number + (side == ClosureSide::hook ? "-hook" : "-loop"));
+      }
+    int count = 0;
+    for (const TapeEdge& edge : marks.tape_edges)
+      result_.pieces[edge.piece].marks.push_back({CutLayer::mark, edge.points_mm, false, "hook-" + std::to_string(edge.cut) + "-" + std::to_string(++count)});
+    count = 0;
+    for (const ClosureStretch& stretch : marks.stretches) {
+      constexpr double every_mm = 200;
+      CutPath path{CutLayer::mark, {}, false, "loop-" + std::to_string(stretch.cut) + "-" + std::to_string(++count)};
+      for (const int v : stretch.vertices) path.points_mm.push_back(flat_[v]);
+      double length = 0;
+      for (std::size_t i = 0; i + 1 < path.points_mm.size(); ++i) length += (path.points_mm[i + 1] - path.points_mm[i]).norm();
+      const int labels = std::max(1, static_cast<int>(std::lround(length / every_mm)));
+      double done = 0;
+      int written = 0;
+      for (std::size_t i = 0; i + 1 < path.points_mm.size() && written < labels; ++i) {
+        const Vec2 way = path.points_mm[i + 1] - path.points_mm[i];
+        const double step = way.norm(), wanted = length * (written + 0.5) / labels;
+        // Behind the numbers, which stand 2.4 mm from the edge.
+        if (done + step >= wanted && step > 0)
+          text(stretch.piece, path.points_mm[i] + (wanted - done) / step * way, way / step, closure_words(stretch.cut, stretch.side, closures.tape), 3.4 + text_height_mm_),
+              ++written;
+        done += step;
+      }
+      const bool below = std::any_of(marks.flaps.begin(), marks.flaps.end(), [&](const EdgeFlap& flap) { return flap.piece == stretch.piece; });
+      if (stretch.side == ClosureSide::loop && below) result_.pieces[stretch.piece].marks.push_back(std::move(path));
+    }
   }
 
  private:
@@ -211,6 +255,7 @@ class PieceMaker {
   std::vector<std::map<int, std::pair<int, bool>>> next_;   // per piece, by vertex: the next one around it, and whether a split lies between
   std::map<int, std::vector<const GlueTab*>> tabs_;         // by the boundary edge where their foot begins, as they follow each other
   std::map<int, std::vector<std::array<Vec2, 3>>> tab_triangles_;  // per piece
+  std::map<int, const EdgeFlap*> flaps_;                    // by the boundary's vertex where they begin
   int tab_number_ = 0;
   std::map<int, int> face_of_edge_;                         // by the boundary edge's first vertex
   std::map<std::pair<int, int>, std::string> letters_;      // by piece and the first vertex of its side of the split
@@ -225,15 +270,20 @@ std::string split_letters(int number) {
 }
 
 PlanPieces make_pieces(const Triangles& F, const std::vector<Vec2>& flat_mm, const Splitting& splitting, const Markers& markers,
-                       const std::optional<GlueTabs>& tabs, double seam_allowance_mm, double kerf_mm, double text_height_mm) {
+                       const std::optional<GlueTabs>& tabs, double seam_allowance_mm, double kerf_mm, double text_height_mm,
+                       const PieceClosures& closures) {
   PlanPieces result;
   result.pieces.resize(std::size_t(splitting.piece_count));
-  PieceMaker maker(F, flat_mm, splitting, tabs, seam_allowance_mm, kerf_mm, text_height_mm, result);
+  // The maker keeps pointers to them.
+  const std::vector<EdgeFlap> flaps = closures.marks ? closures.marks->flaps : std::vector<EdgeFlap>();
+  PieceMaker maker(F, flat_mm, splitting, tabs, flaps, seam_allowance_mm, kerf_mm, text_height_mm, result);
   for (int piece = 0; piece < splitting.piece_count; ++piece) maker.outline(piece);
   for (const Marker& marker : markers.markers) {
-    maker.marker(marker.left, marker.number, "left");
-    maker.marker(marker.right, marker.number, "right");
+    const std::string number = std::to_string(marker.number);
+    maker.marker(marker.left, number, "marker-" + number + "-left");
+    maker.marker(marker.right, number, "marker-" + number + "-right");
   }
+  if (closures.marks) maker.closure(closures);
   return result;
 }
 

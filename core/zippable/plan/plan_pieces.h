@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fabrication/cut_sheet.h"
+#include "zippable/plan/closure_marks.h"
 #include "zippable/plan/glue_tabs.h"
 #include "zippable/plan/markers.h"
 #include "zippable/plan/splitting.h"
@@ -29,8 +30,15 @@ struct PlanPieces {
 /// A, B, ..., Z, AA, AB, ...: the name of a split.
 std::string split_letters(int number);
 
+/// What closures add to the pieces; null: nothing. With tape, or of paper.
+struct PieceClosures {
+  const ClosureMarks* marks = nullptr;
+  bool tape = true;
+};
+
 /// `flat_mm`: as split. Kerf, allowance and text's height in mm. With tabs, splits have an allowance on their left side only: it is one.
 PlanPieces make_pieces(const Triangles& F, const std::vector<Vec2>& flat_mm, const Splitting& splitting, const Markers& markers,
-                       const std::optional<GlueTabs>& tabs, double seam_allowance_mm, double kerf_mm, double text_height_mm);
+                       const std::optional<GlueTabs>& tabs, double seam_allowance_mm, double kerf_mm, double text_height_mm,
+                       const PieceClosures& closures = {});
 
 }  // namespace formwright

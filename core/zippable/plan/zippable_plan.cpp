@@ -108,6 +108,13 @@ void say_what_to_know(const PlanOptions& options, ZippablePlan& plan) {
   if (plan.tabs && plan.tabs->shortened + plan.tabs->left_out > 0)
     plan.notes.push_back(plural(plan.tabs->shortened, "tab is", "tabs are") + " shorter and " + plural(plan.tabs->left_out, "is", "are") +
                          " left out where the paper lies too close beside: wider spacing between windings or a smaller tab depth mends it.");
+  const auto whole_mm = [](double mm) { return std::to_string(static_cast<int>(std::lround(mm))) + " mm"; };
+  if (plan.closures.narrow_mm > 1)
+    plan.notes.push_back("Along " + whole_mm(plan.closures.narrow_mm) +
+                         " of the edges named HOOK the cloth is narrower than the hook-and-loop tape, whose line ends there: trim the tape.");
+  if (plan.closures.shallow_mm > 1)
+    plan.notes.push_back("Along " + whole_mm(plan.closures.shallow_mm) + " of the edges named " + (plan.has_tape() ? "LOOP" : "JOIN") +
+                         " the allowance would have met its own piece and is less deep.");
   if (plan.rig && plan.rig->blind_tracks > 0)
     plan.notes.push_back(plural(plan.rig->blind_tracks, "track", "tracks") +
                          " of the rig found no room for an opening: lay the tape in before the cover is screwed on.");
@@ -145,7 +152,10 @@ ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& options,
   const NestingOptions nesting{options.bed_x_mm, options.bed_y_mm, options.margin_mm, options.spacing_mm,
                                options.grain == GrainDirection::along_pieces};
   // Allowances, tabs and kerf are added after splitting; nesting needs a few cells to spare.
-  const double around = rig ? rig_rim_mm(options, *rig) : std::max(options.seam_allowance_mm, tabs ? options.tab_depth_mm : 0.0);
+  ClosureMarkOptions closing{plan.has_tape() ? options.hook_and_loop_mm : 0.0, plan.has_tape() ? options.hook_and_loop_mm : tabs ? options.tab_depth_mm : 0.0,
+                             tabs ? options.tab_length_mm : 0.0, plan.marker_spacing_mm, options.kerf_mm + 0.1};
+  const double beyond = std::max(options.seam_allowance_mm, design.closures.empty() ? 0.0 : closing.flap_mm);
+  const double around = rig ? std::max(rig_rim_mm(options, *rig), beyond) : std::max(beyond, tabs ? options.tab_depth_mm : 0.0);
   const double reserved = 2 * (options.margin_mm + around + options.kerf_mm) + 4 * nesting_cell_mm(nesting);
   // Between windings there is the kerf; on the rig, a track for each of the two edges and a wall between them.
   const double between = rig ? 2 * rig->offset_mm + rig->track_mm + rig->wall_mm : options.kerf_mm + 0.5;
@@ -167,8 +177,9 @@ ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& options,
   if (tabs)
     plan.tabs = make_glue_tabs(design, plan.ribbon.flat_mm, plan.splitting, plan.seams,
                                {options.tab_depth_mm, options.tab_length_mm, options.kerf_mm + 0.1}, context);
+  plan.closures = mark_closures(design, plan.ribbon.flat_mm, plan.splitting, closing, context);
   plan.pieces = make_pieces(design.F, plan.ribbon.flat_mm, plan.splitting, plan.markers, plan.tabs, options.seam_allowance_mm, options.kerf_mm,
-                            options.text_height_mm);
+                            options.text_height_mm, {&plan.closures, plan.has_tape()});
   plan.seconds_split = watch.lap();
   {
     const auto span = context.span(0.5, 1, "Nesting");

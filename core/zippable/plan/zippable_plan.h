@@ -29,6 +29,7 @@ struct ZippablePlan {
   TapeTemplate tape;
   std::vector<Seam> seams;
   std::optional<GlueTabs> tabs;
+  ClosureMarks closures;  // of cuts that the zipper does not close
   std::optional<Rig> rig;
   double area_before_mm2 = 0;  // of the ribbon with room for the zipper, before splitting
   double width_mean_mm = 0;    // of the ribbon as designed: its area over the zipper's length

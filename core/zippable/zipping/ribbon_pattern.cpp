@@ -27,6 +27,43 @@ class Refinement {
     find_mates();
   }
 
+  /// Edges of both sides that meet become twins.
+  void join(const std::vector<HandleClosure>& closures, int boundary_count) {
+    for (std::size_t c = 0; c < closures.size(); ++c) {
+      std::array<std::map<double, std::array<int, 2>>, 2> edges;  // by where they begin, in the direction of the cut: both ends
+      std::array<std::map<double, double>, 2> end_of;
+      std::set<double> places;
+      for (std::size_t side = 0; side < 2; ++side)
+        for (const ClosureRun& run : closures[c].sides[side])
+          for (int k = 0; k < run.edge_count(); ++k) {
+            int a = (run.first_vertex + k) % boundary_count, b = (run.first_vertex + k + 1) % boundary_count;
+            double from = run.along_mm[k], to = run.along_mm[k + 1];
+            if (!faces_of_.contains(ends(a, b))) refuse("design.json: a cut runs along an edge that is not there: make the design again.");
+            if (from > to) std::swap(a, b), std::swap(from, to);
+            edges[side][from] = {a, b}, end_of[side][from] = to;
+            places.insert(from), places.insert(to);
+          }
+      const double hair = 1e-9 * closures[c].length_mm;
+      for (std::size_t side = 0; side < 2; ++side)
+        for (const double place : places) {
+          auto edge = edges[side].upper_bound(place - hair);
+          if (edge == edges[side].begin()) continue;
+          --edge;
+          const double from = edge->first, to = end_of[side].at(from);
+          if (place < from + hair || place > to - hair) continue;
+          const auto [a, b] = edge->second;
+          const int middle = split(a, b, (place - from) / (to - from), [](int, int) {});
+          edges[side][from] = {a, middle}, end_of[side][from] = place;
+          edges[side][place] = {middle, b}, end_of[side][place] = to;
+        }
+      for (const auto& [from, left] : edges[0]) {
+        const auto right = edges[1].lower_bound(from - hair);
+        if (right == edges[1].end() || right->first > from + hair) continue;
+        add_twins(left, right->second, static_cast<int>(c), from, end_of[0].at(from));
+      }
+    }
+  }
+
   void split_longer_than(double edge_mm, Context& context) {
     std::set<std::tuple<double, int, int>> queue;  // longest first
     const auto push = [&](int a, int b) {
@@ -38,16 +75,21 @@ class Refinement {
       if (count % 256 == 0) context.check_cancelled();
       const auto [key, a, b] = *queue.begin();
       queue.erase(queue.begin());
+      if (!faces_of_.contains({a, b})) continue;  // its twin's turn came first
+      if (const auto twin = twins_.find({a, b}); twin != twins_.end()) {
+        split_twins(a, b, push);
+        continue;
+      }
       const bool seam = on_seam(a, b);
       const int other_a = seam ? mate_[a] : -1, other_b = seam ? mate_[b] : -1;
-      const int middle = split(a, b, push);
+      const int middle = split(a, b, 0.5, push);
       if (!seam) continue;
       queue.erase({key, std::min(other_a, other_b), std::max(other_a, other_b)});
       // Rounding may give the two sides different keys: whatever is left over is no edge any more.
       std::erase_if(queue, [&](const auto& item) {
         return std::get<1>(item) == std::min(other_a, other_b) && std::get<2>(item) == std::max(other_a, other_b);
       });
-      const int other = split(other_a, other_b, push);
+      const int other = split(other_a, other_b, 0.5, push);
       mate_[middle] = other, mate_[other] = middle;
       along_[middle] = along_[other] = 0.5 * (along_[a] + along_[b]);
     }
@@ -83,6 +125,7 @@ class Refinement {
       a.length_mm += 0.5 * (b.along_mm - a.along_mm);
       b.length_mm += 0.5 * (b.along_mm - a.along_mm);
     }
+    add_closures(pattern);
     return pattern;
   }
 
@@ -94,6 +137,41 @@ class Refinement {
     auto& faces = faces_of_.try_emplace(ends(a, b), std::array{-1, -1}).first->second;
     if (faces[1] >= 0) refuse("design.json: three triangles share an edge of the ribbon: make the design again.");
     faces[faces[0] < 0 ? 0 : 1] = face;
+  }
+
+  struct Twin {
+    std::array<int, 2> left, right;  // edges, in the direction of the cut
+    int closure;
+    double from_mm, to_mm;
+  };
+
+  void add_twins(const std::array<int, 2>& left, const std::array<int, 2>& right, int closure, double from_mm, double to_mm) {
+    const Twin twin{left, right, closure, from_mm, to_mm};
+    twins_[ends(left[0], left[1])] = twins_[ends(right[0], right[1])] = twin;
+  }
+
+  template <class Push>
+  void split_twins(int a, int b, const Push& push) {
+    const Twin twin = twins_.at(ends(a, b));
+    twins_.erase(ends(twin.left[0], twin.left[1])), twins_.erase(ends(twin.right[0], twin.right[1]));
+    const int left = split(twin.left[0], twin.left[1], 0.5, push), right = split(twin.right[0], twin.right[1], 0.5, push);
+    const double middle = 0.5 * (twin.from_mm + twin.to_mm);
+    add_twins({twin.left[0], left}, {twin.right[0], right}, twin.closure, twin.from_mm, middle);
+    add_twins({left, twin.left[1]}, {right, twin.right[1]}, twin.closure, middle, twin.to_mm);
+  }
+
+  void add_closures(RibbonPattern& pattern) const {
+    std::map<std::tuple<int, double, int, int>, double> length;  // by cut, place along it, both vertices
+    for (const auto& [edge, twin] : twins_) {
+      if (edge != ends(twin.left[0], twin.left[1])) continue;  // each stands twice
+      const double half = 0.5 * (twin.to_mm - twin.from_mm);
+      length[{twin.closure, twin.from_mm, twin.left[0], twin.right[0]}] += half;
+      length[{twin.closure, twin.to_mm, twin.left[1], twin.right[1]}] += half;
+    }
+    for (const auto& [pair, mm] : length) {
+      const auto [closure, along, left, right] = pair;
+      pattern.closures.push_back({left, right, closure, along, mm});
+    }
   }
 
   void find_mates() {
@@ -123,11 +201,11 @@ class Refinement {
   }
 
   template <class Push>
-  int split(int a, int b, const Push& push) {
+  int split(int a, int b, double share, const Push& push) {
     const int middle = static_cast<int>(places_.size());
     RibbonEdgePlace place = places_[a];
-    place.flat_mm = 0.5 * (places_[a].flat_mm + places_[b].flat_mm);
-    place.predicted_mm = 0.5 * (places_[a].predicted_mm + places_[b].predicted_mm);
+    place.flat_mm = (1 - share) * places_[a].flat_mm + share * places_[b].flat_mm;
+    place.predicted_mm = (1 - share) * places_[a].predicted_mm + share * places_[b].predicted_mm;
     places_.push_back(place);
     mate_.push_back(-1), along_.push_back(std::max(along_[a], along_[b]));
     const auto around = faces_of_.extract(ends(a, b)).mapped();
@@ -152,6 +230,7 @@ class Refinement {
   std::vector<RibbonEdgePlace> places_;
   std::vector<std::array<int, 3>> faces_;
   std::map<Ends, std::array<int, 2>> faces_of_;
+  std::map<Ends, Twin> twins_;  // by the edge of either side
   std::vector<int> mate_;
   std::vector<double> along_;  // where the slider passes a place; off the zipper, the last place that it lies between
   double zipper_mm_ = 0;
@@ -162,12 +241,14 @@ class Refinement {
 RibbonDesign ribbon_of(const FlatDesign& design) {
   RibbonDesign ribbon;
   ribbon.triangles = design.F;
+  ribbon.closures = design.closures;
   for (const FlatVertex& v : design.boundary)
     ribbon.places.push_back({v.flat_mm, v.position_mm, v.sample, v.sample < 0 ? -1 : design.piece_of[static_cast<std::size_t>(v.sample)], v.left});
   return ribbon;
 }
 
-RibbonPattern make_ribbon_pattern(const std::vector<RibbonEdgePlace>& places, const Triangles& triangles, double edge_mm, Context& context) {
+RibbonPattern make_ribbon_pattern(const std::vector<RibbonEdgePlace>& places, const Triangles& triangles, double edge_mm, Context& context,
+                                  const std::vector<HandleClosure>& closures) {
   if (triangles.rows() == 0) refuse("design.json has no triangles: make the design again.");
   const int count = static_cast<int>(places.size());
   for (Eigen::Index f = 0; f < triangles.rows(); ++f) {
@@ -178,6 +259,7 @@ RibbonPattern make_ribbon_pattern(const std::vector<RibbonEdgePlace>& places, co
       refuse("design.json: triangle " + std::to_string(f) + " has no area or is turned over: make the design again.");
   }
   Refinement refinement(places, triangles);
+  refinement.join(closures, count);
   if (edge_mm > 0) refinement.split_longer_than(edge_mm, context);
   return refinement.result();
 }

@@ -19,6 +19,11 @@ constexpr double shortening = 0.1;
 /// The slider waits where threads are longer than this share of the width.
 constexpr double slack = 0.3;
 constexpr int newton_steps = 3;  // of the slider's step
+constexpr int newton_steps_of_rest = 10;
+constexpr int pressing_rounds = 60;  // most of them; a dozen is usual
+constexpr int settling_rounds = 100;
+/// Where each of them ends, of a course's time and of its animation.
+constexpr double passed_share = 0.8, closed_share = 0.85, settled_share = 0.9, pressed_share = 0.95;
 /// The pull back to where a place was a step before, over the cloth's stiffness and width: it keeps the free end from flying about.
 constexpr double anchor = 1e-3;
 /// As near as the cloth that was put into the shape, and that itself not too far off, in tolerances.
@@ -37,7 +42,7 @@ ClothMaterial material_of(const ZippingOptions& options) {
 class Zipping {
  public:
   Zipping(const RibbonPattern& pattern, const ZippingOptions& options, double hold_open_percent, Context& context)
-      : pattern_(pattern), options_(options), hold_open_percent_(hold_open_percent), context_(context), system_(pattern, material_of(options), context), x_(pattern.flat.V) {
+      : pattern_(pattern), options_(options), held_percent_(hold_open_percent), context_(context), system_(pattern, material_of(options), context), x_(pattern.flat.V) {
     Random random(static_cast<std::uint64_t>(options.seed));
     for (Eigen::Index i = 0; i < x_.rows(); ++i) x_(i, 2) = 1e-3 * pattern.width_mm * random.uniform(-1, 1);
     stiffness_ = seam_to_cloth * options.stretch_n_per_mm / pattern.width_mm;
@@ -45,7 +50,7 @@ class Zipping {
     under_pressure_.assign(static_cast<std::size_t>(pattern.flat.face_count()), 0);
   }
 
-  ZippingSystem& system() { return system_; }
+  const ZippingSystem& system() const { return system_; }
   const Positions& x() const { return x_; }
   std::vector<std::pair<double, Positions>> frames;
   bool settled = false;
@@ -53,9 +58,9 @@ class Zipping {
   /// From the prediction instead, all seams closed: whether it stays there.
   void rest_from(const Positions& predicted) {
     x_ = predicted;
-    for (std::size_t i = 0; i < pattern_.seams.size(); ++i) begin_thread(i), system_.threads[i].length_mm = 0;
+    for (std::size_t i = 0; i < system_.pairs().size(); ++i) begin_thread(i), system_.threads[i].length_mm = 0;
     system_.anchor_n_per_mm3 = anchor * options_.stretch_n_per_mm / (pattern_.width_mm * pattern_.width_mm);
-    settle();
+    settle(0, 1);
   }
 
   void run() {
@@ -74,17 +79,48 @@ class Zipping {
       all_short = shorten(passed);
       move(newton_steps, 1e-7);
       const double share = passed == pattern_.seams.size() ? 1 : std::min(slider / pattern_.zipper_mm, 1.0);
-      context_.progress(0.9 * share);
-      record(0.9 * share);
+      reached(passed_share * share);
     }
-    settle();
+    close_by_hand();
+    settle(closed_share, settled_share);
+    record(1);
+  }
+
+  /// As a maker does: corners and limbs that were tucked in on the way come out, and stay out.
+  void press_out() {
+    held_percent_ = options_.press_out_percent;
+    bool still = false;
+    for (int round = 0; round < pressing_rounds && !still; ++round) {
+      const auto progress = move(newton_steps_of_rest, 1e-9);
+      still = progress.settled && progress.iterations == 1;
+      context_.progress(settled_share + (pressed_share - settled_share) * round / pressing_rounds);
+    }
+    settle(pressed_share, 1);
     record(1);
   }
 
  private:
   void begin_thread(std::size_t i) {
-    const SeamPair& seam = pattern_.seams[i];
-    system_.threads[i] = {stiffness_ * std::max(seam.length_mm, 0.1 * pattern_.width_mm), (x_.row(seam.left) - x_.row(seam.right)).norm()};
+    const ZippingSystem::Pair& pair = system_.pairs()[i];
+    system_.threads[i] = {stiffness_ * std::max(pair.length_mm, 0.1 * pattern_.width_mm), (x_.row(pair.left) - x_.row(pair.right)).norm()};
+  }
+
+  /// Hook-and-loop tape along cut handles comes last, and a maker turns the ends towards each other first.
+  void close_by_hand() {
+    const std::size_t seams = pattern_.seams.size(), all = system_.pairs().size();
+    if (all == seams) return;
+    for (std::size_t i = seams; i < all; ++i) begin_thread(i);
+    const auto longest = [&] {
+      double length = 0;
+      for (std::size_t i = seams; i < all; ++i) length = std::max(length, system_.threads[i].length_mm);
+      return length;
+    };
+    const double at_first = std::max(longest(), 1e-9 * pattern_.width_mm);
+    for (bool all_short = false; !all_short;) {
+      all_short = shorten(all);
+      move(newton_steps, 1e-7);
+      reached(passed_share + (closed_share - passed_share) * (1 - longest() / at_first));
+    }
   }
 
   bool shorten(std::size_t passed) {
@@ -92,7 +128,7 @@ class Zipping {
     for (std::size_t i = 0; i < passed; ++i) {
       double& length = system_.threads[i].length_mm;
       length = std::max(0.0, length - std::max(shortening * pattern_.width_mm, 0.05 * length));
-      all_short = all_short && length <= (passed == pattern_.seams.size() ? 0 : slack * pattern_.width_mm);
+      all_short = all_short && length <= (passed >= pattern_.seams.size() ? 0 : slack * pattern_.width_mm);
     }
     return all_short;
   }
@@ -118,12 +154,14 @@ class Zipping {
   }
 
   void press() {
-    double pressure_mpa = 1e-6 * options_.stuffing_pressure_pa;
-    if (!resting_) pressure_mpa += 0.01 * hold_open_percent_ * options_.stretch_n_per_mm / std::sqrt(system_.vertex_area_mm2().sum());
-    if (pressure_mpa <= 0)
+    const double pressure_mpa = 1e-6 * options_.stuffing_pressure_pa + 0.01 * held_percent_ * options_.stretch_n_per_mm / std::sqrt(system_.vertex_area_mm2().sum());
+    if (pressure_mpa <= 0) {
       system_.outer_force_n.setZero();
-    else
-      system_.outer_force_n = pressure_force_n(pattern_.flat.F, x_, under_pressure_, enclosed_mm3() >= 0 ? pressure_mpa : -pressure_mpa);
+      return;
+    }
+    system_.outer_force_n = pressure_force_n(pattern_.flat.F, x_, under_pressure_, enclosed_mm3() >= 0 ? pressure_mpa : -pressure_mpa);
+    // On the way the pull back to where everything was holds it.
+    if (passed_) balance(system_.outer_force_n, x_, system_.vertex_area_mm2());
   }
 
   ZippingSystem::Progress move(int iterations, double tolerance) {
@@ -132,14 +170,21 @@ class Zipping {
     return system_.minimise(x_, iterations, tolerance * energy_unit_, context_);
   }
 
-  void settle() {
-    resting_ = true;
+  void settle(double from_share, double to_share) {
+    held_percent_ = 0;
+    settled = false;
+    passed_ = true;
     std::fill(under_pressure_.begin(), under_pressure_.end(), 1);
-    for (int round = 0; round < 100 && !settled; ++round) {
-      const auto progress = move(10, 1e-11);
+    for (int round = 0; round < settling_rounds && !settled; ++round) {
+      const auto progress = move(newton_steps_of_rest, 1e-11);
       settled = progress.settled && progress.iterations == 1;
-      context_.progress(0.9 + 0.1 * round / 100);
+      context_.progress(from_share + (to_share - from_share) * round / settling_rounds);
     }
+  }
+
+  void reached(double share) {
+    context_.progress(share);
+    record(share);
   }
 
   void record(double share) {
@@ -148,44 +193,47 @@ class Zipping {
 
   const RibbonPattern& pattern_;
   const ZippingOptions& options_;
-  double hold_open_percent_;
+  double held_percent_;  // now, of stretch stiffness over size
   Context& context_;
   ZippingSystem system_;
   Positions x_;
   double stiffness_ = 0, energy_unit_ = 1;
   std::vector<char> under_pressure_;
-  bool resting_ = false;
+  bool passed_ = false;  // by the slider, all of it
 };
 
-std::vector<int> places(const RibbonPattern& pattern) {
+/// Vertices that are one place when all is closed have one number.
+std::vector<int> places(const RibbonPattern& pattern, const std::vector<ZippingSystem::Pair>& pairs) {
   std::vector<int> place(static_cast<std::size_t>(pattern.flat.vertex_count()));
   for (std::size_t i = 0; i < place.size(); ++i) place[i] = static_cast<int>(i);
-  for (const SeamPair& seam : pattern.seams) place[static_cast<std::size_t>(seam.right)] = seam.left;
+  const auto root = [&](int v) {
+    while (place[static_cast<std::size_t>(v)] != v) v = place[static_cast<std::size_t>(v)];
+    return v;
+  };
+  for (const ZippingSystem::Pair& pair : pairs) place[static_cast<std::size_t>(root(pair.right))] = root(pair.left);
+  for (std::size_t i = 0; i < place.size(); ++i) place[i] = root(static_cast<int>(i));
   return place;
 }
 
-/// One course, without what is the same for all of them.
-ZippingResult zipped(const RibbonPattern& pattern, const ZippingOptions& options, double hold_open_percent, Context& context) {
+/// One course as it ended, before what only the best one of them is asked for.
+struct Attempt {
   ZippingResult result;
-  result.held_open_percent = hold_open_percent;
-  Zipping zipping(pattern, options, hold_open_percent, context);
-  zipping.run();
+  Positions x;
+  std::vector<std::pair<double, Positions>> frames;
+};
+
+Attempt as_it_is(const RibbonPattern& pattern, const Zipping& zipping) {
+  Attempt attempt{{}, zipping.x(), zipping.frames};
+  ZippingResult& result = attempt.result;
+  result.pattern = pattern;
   const ZippingSystem& system = zipping.system();
   result.energies = system.energies(zipping.x());
   result.settled = zipping.settled;
   result.newton_iterations = system.iterations();
   result.comparison = compare_shapes(zipping.x(), pattern.predicted_mm, system.vertex_area_mm2());
-  result.zipped_mm = result.comparison.motion(zipping.x());
-  // Nothing holds the cloth in its place on the way: each frame is turned onto the next one, the last onto the prediction.
-  Positions next = result.zipped_mm;
-  for (auto frame = zipping.frames.rbegin(); frame != zipping.frames.rend(); ++frame) {
-    next = best_motion(frame->second, next, system.vertex_area_mm2(), result.comparison.mirrored)(frame->second);
-    result.frames.push_back({next.cast<float>(), frame->first});
-  }
-  std::reverse(result.frames.begin(), result.frames.end());
   result.gap_allowed_mm = 0.01 * pattern.width_mm;
-  for (const SeamPair& seam : pattern.seams) {
-    const double gap = (zipping.x().row(seam.left) - zipping.x().row(seam.right)).norm();
+  for (const ZippingSystem::Pair& pair : system.pairs()) {
+    const double gap = (zipping.x().row(pair.left) - zipping.x().row(pair.right)).norm();
     result.gap_max_mm = std::max(result.gap_max_mm, gap);
     result.open_seams += gap > result.gap_allowed_mm;
   }
@@ -197,12 +245,32 @@ ZippingResult zipped(const RibbonPattern& pattern, const ZippingOptions& options
     area += t.area_mm2;
   }
   result.strain_mean /= area;
-  result.crossings = count_crossings({zipping.x(), pattern.flat.F}, places(pattern), context);
+  return attempt;
+}
+
+/// With its animation and where it runs through itself.
+ZippingResult whole(const Attempt& attempt, const RibbonPattern& pattern, const ZippingSystem& system, Context& context) {
+  ZippingResult result = attempt.result;
+  result.zipped_mm = result.comparison.motion(attempt.x);
+  // Nothing holds the cloth in its place on the way: each frame is turned onto the next one, the last onto the prediction.
+  Positions next = result.zipped_mm;
+  for (auto frame = attempt.frames.rbegin(); frame != attempt.frames.rend(); ++frame) {
+    next = best_motion(frame->second, next, system.vertex_area_mm2(), result.comparison.mirrored)(frame->second);
+    result.frames.push_back({next.cast<float>(), frame->first});
+  }
+  std::reverse(result.frames.begin(), result.frames.end());
+  result.crossings = count_crossings({attempt.x, pattern.flat.F}, places(pattern, system.pairs()), context);
   return result;
+}
+
+bool fits(const ZippingResult& result, double tolerance_percent) {
+  const ZippingOutcome outcome = zipping_outcome(result, tolerance_percent);
+  return outcome == ZippingOutcome::takes_shape || outcome == ZippingOutcome::as_the_cloth_does;
 }
 
 bool better(const ZippingResult& a, const ZippingResult& b) {
   if (a.closed() != b.closed()) return a.closed();
+  if (a.settled != b.settled) return a.settled;
   return a.comparison.percentile_95_mm < b.comparison.percentile_95_mm;
 }
 
@@ -222,30 +290,38 @@ ZippingOutcome zipping_outcome(const ZippingResult& result, double tolerance_per
 ZippingResult simulate_zipping(const RibbonDesign& design, const ZippingOptions& options, Context& context) {
   Stopwatch watch;
   context.progress(0, "Cutting the cloth");
-  const RibbonPattern pattern = make_ribbon_pattern(design.places, design.triangles, options.edge_mm, context);
-  ShapeComparison rest;
-  ZippingEnergies rest_energies;
+  const RibbonPattern pattern = make_ribbon_pattern(design.places, design.triangles, options.edge_mm, context, design.closures);
+  Zipping at_rest(pattern, options, 0, context);
   {
     const auto span = context.span(0, 0.1, "Resting in the intended shape");
-    Zipping at_rest(pattern, options, 0, context);
     at_rest.rest_from(pattern.predicted_mm);
-    rest = compare_shapes(at_rest.x(), pattern.predicted_mm, at_rest.system().vertex_area_mm2());
-    rest_energies = at_rest.system().energies(at_rest.x());
   }
+  const ShapeComparison rest = compare_shapes(at_rest.x(), pattern.predicted_mm, at_rest.system().vertex_area_mm2());
   const std::vector<double> holds = options.hold_open_percent ? std::vector{*options.hold_open_percent} : std::vector{40.0, 0.0, 15.0};
-  ZippingResult best;
+  std::optional<Attempt> nearest;
+  int attempts = 0;
+  const auto tried = [&](const Zipping& zipping, double held_open_percent, bool pressed_out) {
+    Attempt attempt = as_it_is(pattern, zipping);
+    attempt.result.held_open_percent = held_open_percent;
+    attempt.result.pressed_out = pressed_out;
+    attempt.result.rest = rest;
+    if (!nearest || better(attempt.result, nearest->result)) nearest = std::move(attempt);
+    return fits(nearest->result, options.tolerance_percent);
+  };
   for (std::size_t k = 0; k < holds.size(); ++k) {
     const double part = 0.9 / static_cast<double>(holds.size()), before = 0.1 + part * static_cast<double>(k);
     const auto span = context.span(before, before + part, k == 0 ? "Zipping" : "Zipping, held otherwise");
-    ZippingResult tried = zipped(pattern, options, holds[k], context);
-    if (k == 0 || better(tried, best)) best = std::move(tried);
-    best.attempts = static_cast<int>(k) + 1;
-    best.pattern = pattern;
-    best.rest = rest;
-    best.rest_energies = rest_energies;
-    const ZippingOutcome outcome = zipping_outcome(best, options.tolerance_percent);
-    if (outcome == ZippingOutcome::takes_shape || outcome == ZippingOutcome::as_the_cloth_does) break;
+    Zipping zipping(pattern, options, holds[k], context);
+    zipping.run();
+    ++attempts;
+    if (tried(zipping, holds[k], false)) break;
+    if (options.press_out_percent <= 0 || pattern.seams.empty()) continue;
+    zipping.press_out();
+    if (tried(zipping, holds[k], true)) break;
   }
+  ZippingResult best = whole(*nearest, pattern, at_rest.system(), context);
+  best.rest_energies = at_rest.system().energies(at_rest.x());
+  best.attempts = attempts;
   best.seconds = watch.seconds();
   return best;
 }

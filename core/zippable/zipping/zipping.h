@@ -23,6 +23,7 @@ struct ZippingOptions {
   std::optional<double> bending_n_mm;
   double stuffing_pressure_pa = 0;
   std::optional<double> hold_open_percent;
+  double press_out_percent = 300;
   double edge_mm = 0;
   int steps = 300;
   int seed = 1;
@@ -50,6 +51,10 @@ struct ZippingOptions {
                 "Zipping, what is closed is held open from inside, by a pressure of this share of stretch stiffness over size; not at the end. Automatic: 40, 0, 15, until it fits.")
           .slider(0, 100)
           .group("Simulation"),
+      parameter("press_out_percent", &ZippingOptions::press_out_percent, "Pressed out", unit::percent, 0, 5000,
+                "Where it has not taken its shape it is pressed out from inside once, as hands do with tucked-in corners, and let go; measured as Held open. 0: never.")
+          .slider(0, 1000)
+          .group("Simulation"),
       parameter("edge_mm", &ZippingOptions::edge_mm, "Longest edge", unit::mm, 0, 1000,
                 "Triangles with longer edges are halved, all seams alike; 0: as designed.")
           .slider(1, 20)
@@ -71,7 +76,7 @@ struct ZippingOptions {
 
 struct ZippingFrame {
   Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> V;  // mm
-  double zipped_share = 0;                                     // of the zipper behind the slider
+  double zipped_share = 0;                                     // of the course; at 0.8 the slider has passed everything
 };
 
 struct ZippingResult {
@@ -88,8 +93,9 @@ struct ZippingResult {
   double strain_mean = 0, strain_max = 0;  // of lengths, by area
   int crossings = 0;                      // edges that pierce triangles
   bool settled = false;
-  int attempts = 1;                       // courses tried, with other pressures from inside; this is the best
+  int attempts = 0;                       // courses tried, with other pressures from inside; this is the best
   double held_open_percent = 0;           // in this one
+  bool pressed_out = false;               // in this one, before it came to rest
   int newton_iterations = 0;
   double seconds = 0;
 

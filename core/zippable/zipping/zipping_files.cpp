@@ -92,15 +92,16 @@ std::string zipping_verdict(const ZippingResult& result, double tolerance_percen
   const ShapeComparison& c = result.comparison;
   const std::string figures = "95 % of it lie within " + rounded(c.percentile_95_mm) + " mm (" +
                               rounded(100 * c.percentile_95_mm / std::max(result.pattern.size_mm, 1e-9)) + " % of its size) of the prediction";
+  const std::string how = std::string(c.mirrored ? ", inside out" : "") + (result.pressed_out ? ", once it is pressed out from inside" : "");
   switch (zipping_outcome(result, tolerance_percent)) {
     case ZippingOutcome::open_seams:
       return "It does not zip up: " + std::to_string(result.open_seams) + " pairs of places that should meet stay up to " + rounded(result.gap_max_mm) +
              " mm apart; " + figures + ".";
     case ZippingOutcome::not_settled: return "It had not come to rest when the simulation ended, so nothing is certain; " + figures + ".";
     case ZippingOutcome::takes_shape:
-      return "It zips into the intended shape" + std::string(c.mirrored ? ", inside out" : "") + ": " + figures + ".";
+      return "It zips into the intended shape" + how + ": " + figures + ".";
     case ZippingOutcome::as_the_cloth_does:
-      return "It zips into the intended shape" + std::string(c.mirrored ? ", inside out" : "") + ", as nearly as this cloth keeps it: " + figures +
+      return "It zips into the intended shape" + how + ", as nearly as this cloth keeps it: " + figures +
              ", and put there it would rest " + rounded(result.rest.percentile_95_mm) + " mm off; stiffer cloth or stuffing comes nearer.";
     case ZippingOutcome::another_shape: break;
   }

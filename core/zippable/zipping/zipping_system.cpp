@@ -46,10 +46,26 @@ Positions pressure_force_n(const Triangles& F, const Positions& x, const std::ve
   return force;
 }
 
+void balance(Positions& force_n, const Positions& x, const Eigen::VectorXd& area) {
+  const Eigen::RowVector3d centre = area.transpose() * x / area.sum();
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
+  Vec3 moment = Vec3::Zero();
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    const Vec3 r = (x.row(i) - centre).transpose();
+    inertia += area[i] * (r.squaredNorm() * Eigen::Matrix3d::Identity() - r * r.transpose());
+    moment += r.cross(Vec3(force_n.row(i).transpose()));
+  }
+  const Eigen::RowVector3d push = force_n.colwise().sum() / area.sum();
+  const Vec3 turn = inertia.ldlt().solve(moment);
+  for (Eigen::Index i = 0; i < x.rows(); ++i) force_n.row(i) -= area[i] * (push + turn.cross(Vec3((x.row(i) - centre).transpose())).transpose());
+}
+
 ZippingSystem::ZippingSystem(const RibbonPattern& pattern, const ClothMaterial& material, Context& context)
-    : pattern_(pattern), material_(material), triangles_(cloth_triangles(pattern.flat)), hinges_(cloth_hinges(pattern.flat, material.bending_n_mm)) {
+    : material_(material), triangles_(cloth_triangles(pattern.flat)), hinges_(cloth_hinges(pattern.flat, material.bending_n_mm)) {
   const int n = pattern.flat.vertex_count();
-  threads.resize(pattern.seams.size());
+  for (const SeamPair& seam : pattern.seams) pairs_.push_back({seam.left, seam.right, seam.length_mm});
+  for (const ClosurePair& closure : pattern.closures) pairs_.push_back({closure.left, closure.right, closure.length_mm});
+  threads.resize(pairs_.size());
   outer_force_n = Positions::Zero(n, 3);
   anchor_mm = pattern.flat.V;
   area_ = Eigen::VectorXd::Zero(n);
@@ -63,7 +79,7 @@ ZippingSystem::ZippingSystem(const RibbonPattern& pattern, const ClothMaterial& 
       couple(t.vertex[k], t.vertex[(k + 1) % 3]);
     }
   for (const ClothHinge& hinge : hinges_) couple(hinge.vertex[2], hinge.vertex[3]);
-  for (const SeamPair& seam : pattern.seams) couple(seam.left, seam.right);
+  for (const Pair& pair : pairs_) couple(pair.left, pair.right);
   int entries = 0;
   for (auto& rows : below_) {
     std::sort(rows.begin(), rows.end());
@@ -91,8 +107,8 @@ ZippingSystem::ZippingSystem(const RibbonPattern& pattern, const ClothMaterial& 
   for (const ClothTriangle& t : triangles_)
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t j = 0; j <= i; ++j) triangle_slots_.push_back(slot(t.vertex[i], t.vertex[j]));
-  for (const SeamPair& seam : pattern.seams)
-    for (const Slot& s : {slot(seam.left, seam.left), slot(seam.right, seam.right), slot(seam.left, seam.right)}) seam_slots_.push_back(s);
+  for (const Pair& pair : pairs_)
+    for (const Slot& s : {slot(pair.left, pair.left), slot(pair.right, pair.right), slot(pair.left, pair.right)}) seam_slots_.push_back(s);
   terms_.resize(triangles_.size());
   cholesky_.analyze(lower_, {}, context);
 }
@@ -124,7 +140,7 @@ ZippingEnergies ZippingSystem::energies(const Positions& x) const {
   for (const ClothTriangle& t : triangles_) result.stretch_mj += stretch_energy_mj(t, material_, x);
   result.bending_mj = bending_energy_mj(hinges_, x);
   for (std::size_t i = 0; i < threads.size(); ++i)
-    result.seam_mj += thread_energy_mj(threads[i], (x.row(pattern_.seams[i].left) - x.row(pattern_.seams[i].right)).transpose());
+    result.seam_mj += thread_energy_mj(threads[i], (x.row(pairs_[i].left) - x.row(pairs_[i].right)).transpose());
   return result;
 }
 
@@ -147,7 +163,7 @@ Positions ZippingSystem::gradient_n(const Positions& x) const {
     for (std::size_t k = 0; k < 4; ++k) gradient.row(hinge.vertex[k]) += hinge.weight[static_cast<Eigen::Index>(k)] * bent.transpose();
   }
   for (std::size_t i = 0; i < threads.size(); ++i) {
-    const SeamPair& seam = pattern_.seams[i];
+    const Pair& seam = pairs_[i];
     const Vec3 g = thread_gradient_n(threads[i], (x.row(seam.left) - x.row(seam.right)).transpose(), nullptr);
     gradient.row(seam.left) += g.transpose();
     gradient.row(seam.right) -= g.transpose();
@@ -179,7 +195,7 @@ void ZippingSystem::assemble(const Positions& x, Positions& gradient) {
   Eigen::Matrix3d hessian;
   for (std::size_t i = 0; i < threads.size(); ++i) {
     if (threads[i].length_mm < 0) continue;
-    const SeamPair& seam = pattern_.seams[i];
+    const Pair& seam = pairs_[i];
     const Vec3 g = thread_gradient_n(threads[i], (x.row(seam.left) - x.row(seam.right)).transpose(), &hessian);
     gradient.row(seam.left) += g.transpose();
     gradient.row(seam.right) -= g.transpose();

@@ -29,12 +29,22 @@ Vec3 thread_gradient_n(const SeamThread& thread, const Vec3& difference, Eigen::
 /// n x 3, in N: a pressure along the outside of the triangles that `under_pressure` marks.
 Positions pressure_force_n(const Triangles& F, const Positions& x, const std::vector<char>& under_pressure, double pressure_mpa);
 
+/// Takes from `force_n` what would move or turn the whole: pressure on cloth with openings is a rocket, and a maker's hands hold it. `area`: n, weights.
+void balance(Positions& force_n, const Positions& x, const Eigen::VectorXd& area);
+
 class ZippingSystem {
  public:
   /// Finds the pattern and analyses it. Throws Error: cancelled, out_of_memory.
   ZippingSystem(const RibbonPattern& pattern, const ClothMaterial& material, Context& context);
 
-  std::vector<SeamThread> threads;  // one a seam pair of the pattern
+  /// Two vertices that a thread may draw together.
+  struct Pair {
+    int left = 0, right = 0;
+    double length_mm = 0;  // of the edge that it stands for
+  };
+  std::vector<SeamThread> threads;  // one a pair
+  /// The pattern's seams, in their order, then its closures.
+  const std::vector<Pair>& pairs() const { return pairs_; }
   Positions outer_force_n;          // n x 3, held while minimising
   Positions anchor_mm;              // n x 3; every vertex is drawn back to it weakly, which settles what nothing else does
   double anchor_n_per_mm3 = 0;      // that pull, for an area and a distance
@@ -68,7 +78,7 @@ class ZippingSystem {
   void add_diagonal(const Slot& slot, double value);
   void assemble(const Positions& x, Positions& gradient);
 
-  const RibbonPattern& pattern_;
+  std::vector<Pair> pairs_;
   ClothMaterial material_;
   std::vector<ClothTriangle> triangles_;
   std::vector<ClothHinge> hinges_;

@@ -1,14 +1,26 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Counts the lines of confusion_table: score_confusion_table.py FILE... prints tables for docs/evidence.md.
+"""Counts the lines of confusion_table: score_confusion_table.py FILE... [--engine N] prints tables for docs/evidence.md.
 
+Of every case the newest engine's answer counts, or that of engine N.
 A hidden cause is visible if it is stronger than `least_visible`, which the diagnosis states without knowing the truth."""
+import argparse
 import collections
 import json
 import statistics
-import sys
 
-cases = [json.loads(line) for name in sys.argv[1:] for line in open(name) if line.startswith("{")]
+parser = argparse.ArgumentParser()
+parser.add_argument("files", nargs="+")
+parser.add_argument("--engine", type=int)
+a = parser.parse_args()
+answers = [json.loads(line) for name in a.files for line in open(name) if line.startswith("{")]
+latest = {}
+for c in sorted(answers, key=lambda c: c.get("engine", 1)):
+    if a.engine in (None, c.get("engine", 1)):
+        latest[c["seed"]] = c
+cases = list(latest.values())
+by_engine = collections.Counter(c.get("engine", 1) for c in cases)
+print(f"{len(cases)} cases; answers of " + ", ".join(f"engine {engine}: {count}" for engine, count in sorted(by_engine.items())))
 failed = [c for c in cases if "error" in c]
 cases = [c for c in cases if "error" not in c]
 named_level = {1: "strong", 0.5: "medium", 0.25: "weak"}

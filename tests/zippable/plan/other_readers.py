@@ -49,7 +49,7 @@ class Plans(unittest.TestCase):
         cls.place = tempfile.TemporaryDirectory()
         cls.folder = pathlib.Path(cls.place.name)
         cls.plans = {}
-        for sample, width_mm in (("star", 30), ("t_shape", 35), ("octopus", 20)):
+        for sample, width_mm in (("star", 30), ("t_shape", 35), ("octopus", 20), ("torus", 40)):
             run(cls.folder / sample, "zippable-design", "--sample", sample, "--size-mm", "220", "--width-mm", str(width_mm))
             for method in ("sewing", "gluing"):
                 out = cls.folder / f"{sample}_{method}"
@@ -67,7 +67,7 @@ class Plans(unittest.TestCase):
     def papers(self):
         """Paper models with tabs on the same beds."""
         plans = []
-        for sample in ("star", "t_shape", "octopus"):
+        for sample in ("star", "t_shape", "octopus", "torus"):
             out = self.folder / f"{sample}_tabs"
             flags = self.plans[self.folder / f"{sample}_sewing"][1]
             plans.append((out, run(out, "zippable-plan", *flags, "--coil", "none", "--edges", "tabs", "--kerf-mm", str(KERF_MM))))
@@ -130,6 +130,20 @@ class Plans(unittest.TestCase):
             for letter, lengths in splits.items():
                 self.assertEqual(len(lengths), 2, letter)
                 self.assertAlmostEqual(*lengths, delta=1e-3)
+
+    def test_cut_handles_have_the_same_numbers_on_both_sides(self):
+        for out, report in self.each():
+            numbers = {"hook": set(), "loop": set()}
+            for svg, _ in self.sheets(out, report):
+                for name, _, _ in read_svg(svg)[1]["mark"]:
+                    if name and name.startswith("closure-"):
+                        _, cut, number, side = name.split("-")
+                        self.assertNotIn((cut, number), numbers[side])
+                        numbers[side].add((cut, number))
+            self.assertEqual(numbers["hook"], numbers["loop"])
+            self.assertEqual("hook_and_loop" in report, "torus" in out.name)
+            told = {(str(i + 1), str(n)) for i, cut in enumerate(report.get("hook_and_loop", [])) for n in cut["numbers"]}
+            self.assertEqual(numbers["hook"], told)
 
     def test_tabs_stand_on_folds_and_every_seam_is_said(self):
         for out, report in self.papers():

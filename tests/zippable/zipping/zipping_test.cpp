@@ -9,7 +9,9 @@
 #include "base/error.h"
 #include "base/json.h"
 #include "base/parallel.h"
+#include "base/random.h"
 #include "geometry/io/mesh_io.h"
+#include "zippable/plan/planned.h"
 #include "zippable/zipping/ribbons.h"
 #include "zippable/zipping/zipping_files.h"
 
@@ -147,6 +149,69 @@ TEST(Zipping, TriesOtherCoursesUntilOneFits) {
   EXPECT_EQ(zipping_outcome(any, 2), ZippingOutcome::takes_shape);
   EXPECT_LE(any.comparison.percentile_95_mm, one.comparison.percentile_95_mm);
   EXPECT_EQ(any.attempts > 1, zipping_outcome(one, 2) != ZippingOutcome::takes_shape);
+}
+
+TEST(Zipping, LimbsThatWereTuckedInComeOutWhenPressed) {
+  const RibbonDesign octopus = ribbon_of(test::designed("octopus", 15, 100));
+  ZippingOptions options = quick();
+  options.steps = 40;
+  options.hold_open_percent = 40;
+  options.press_out_percent = 0;
+  const ZippingResult tucked_in = simulated(octopus, options);
+  options.press_out_percent = 300;
+  const ZippingResult pressed = simulated(octopus, options);
+  EXPECT_TRUE(pressed.pressed_out && pressed.closed() && pressed.settled);
+  EXPECT_LT(pressed.comparison.percentile_95_mm, 0.5 * tucked_in.comparison.percentile_95_mm);
+  EXPECT_LT(pressed.crossings, tucked_in.crossings);
+  // Started alike, the two differ only in that.
+  EXPECT_EQ(pressed.held_open_percent, tucked_in.held_open_percent);
+}
+
+TEST(Zipping, CutHandlesAreClosedByHandLast) {
+  RibbonDesign torus = ribbon_of(test::designed("torus", 25, 100));
+  ASSERT_EQ(torus.closures.size(), 1u);
+  ZippingOptions once = quick();
+  once.hold_open_percent = 40;
+  once.press_out_percent = 0;
+  const ZippingResult closed = simulated(torus, once);
+  EXPECT_TRUE(closed.closed() && closed.settled);
+  ASSERT_FALSE(closed.pattern.closures.empty());
+  EXPECT_LT(closed.gap_max_mm, 0.01 * closed.pattern.width_mm);
+  EXPECT_LT(closed.comparison.percentile_95_mm, 0.01 * closed.pattern.size_mm);
+  EXPECT_EQ(closed.crossings, 0);
+  torus.closures.clear();
+  const ZippingResult open = simulated(torus, once);
+  EXPECT_GT(open.comparison.percentile_95_mm, 2 * closed.comparison.percentile_95_mm);
+}
+
+TEST(Zipping, StuffedClothWithOpeningsComesToRest) {
+  ZippingOptions stuffed = quick();
+  stuffed.stuffing_pressure_pa = 100;
+  stuffed.hold_open_percent = 0;
+  const ZippingResult result = simulated(test::cone_ribbon({100, 50, 2, 16, 0}, 80), stuffed);
+  EXPECT_TRUE(result.settled);
+}
+
+TEST(Balance, TakesForceAndMomentAndNothingElse) {
+  Random random(5);
+  Positions x(40, 3), force(40, 3);
+  Eigen::VectorXd area(40);
+  for (Eigen::Index i = 0; i < 40; ++i) {
+    for (int k = 0; k < 3; ++k) x(i, k) = random.uniform(-50, 50), force(i, k) = random.uniform(-1, 1);
+    area[i] = random.uniform(0.5, 2);
+  }
+  const auto moment = [&] {
+    Vec3 sum = Vec3::Zero();
+    for (Eigen::Index i = 0; i < 40; ++i) sum += Vec3(x.row(i)).cross(Vec3(force.row(i)));
+    return sum;
+  };
+  ASSERT_GT(moment().norm(), 1);
+  balance(force, x, area);
+  EXPECT_LT(force.colwise().sum().norm(), 1e-12);
+  EXPECT_LT(moment().norm(), 1e-10);
+  const Positions once = force;
+  balance(force, x, area);
+  EXPECT_LT((force - once).norm(), 1e-12);
 }
 
 TEST(RibbonPattern, HalvesBothSidesOfTheZipperAlike) {

@@ -111,12 +111,14 @@ export class MachineControl {
       return false;
     }
     this.#jobId = crypto.randomUUID();
-    this.cutOff.value = null;
-    return await this.command({
+    const started = await this.command({
       do: 'start',
       confirmed: true,
       ...(from_line === undefined ? {} : { from_line }),
     });
+    // Refused, the rest of the job before can still be cut.
+    if (started) this.cutOff.value = null;
+    return started;
   }
 
   #lost(why: string): void {

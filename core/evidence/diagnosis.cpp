@@ -16,9 +16,13 @@ namespace {
 constexpr double explained_share = 0.6;   // of what the base model leaves unexplained (its variance) that a named cause must explain
 constexpr double likely = 0.5;
 constexpr double most_left = 2;            // of the noise: with more left on held-out blocks a named cause is not all of it, or a relative of what it is
+constexpr double most_structure = 0.6;     // of the known misfit: right causes leave none, or the next smaller size of those that are considered
+constexpr double plain_strength = 2.5;     // half widths of its interval, which knows of the fit, and of the model only what leaving data out shows
 constexpr double least_gain = 0.01;        // of the held-out error
 constexpr double sure_gain = 0.8;          // probability that there is one
 constexpr double inseparable_likeness = 0.9;
+constexpr const char* stays_unexplained = "Part of the misfit stays unexplained.";
+constexpr const char* nearly_as_likely = "Another explanation is nearly as likely.";
 
 class Diagnostician {
  public:
@@ -80,7 +84,7 @@ class Diagnostician {
       result_.trials.back().gain = gain;
       if (gain.gain_probability < sure_gain || gain.gain_share < least_gain) continue;
       result_.verdict = h.causes;
-      result_.doubtful = h.unknown_structure;
+      if (h.unknown_structure) doubt(stays_unexplained);
       widen_by_jackknife(r.fit, held_out(r.fit).steps);
       result_.extended = recalibrated(r.fit);
       break;
@@ -96,9 +100,24 @@ class Diagnostician {
     }
     std::stable_sort(result_.verdict.begin(), result_.verdict.end(), [&](int a, int b) { return tried_.movement(a, result_.extended.u) > tried_.movement(b, result_.extended.u); });
     result_.reading = Reading::cause;
-    result_.doubtful |= finding_of(result_.verdict.front()).probability < likely || result_.held_out.after.mean > most_left * result_.noise_floor;
-    if (result_.doubtful && share_explained() < explained_share) result_.reading = Reading::unknown;
+    find_doubts();
+    if (result_.doubtful() && share_explained() < explained_share) result_.reading = Reading::unknown;
     find_twins();
+  }
+
+  void doubt(const char* why) {
+    if (std::find(result_.doubts.begin(), result_.doubts.end(), why) == result_.doubts.end()) result_.doubts.emplace_back(why);
+  }
+
+  /// Relatives of what is wrong leave something, or do so little that the fit's own error could be it.
+  void find_doubts() {
+    if (result_.unexplained_after > most_structure * model_.known_misfit()) doubt(stays_unexplained);
+    if (result_.held_out.after.mean > most_left * result_.noise_floor) doubt("On data that were held out more than twice the noise is left.");
+    for (const int cause : result_.verdict) {
+      const CauseFinding& finding = finding_of(cause);
+      if (finding.probability < likely) doubt(nearly_as_likely);
+      if (std::abs(finding.strength) < plain_strength * 0.5 * (finding.high - finding.low)) doubt("Its strength is hardly told from zero.");
+    }
   }
 
   /// Of what was unexplained (its variance): by the structure that is left, or, where that is beyond what is distinguished, by the error on held-out blocks above the noise.
@@ -154,7 +173,7 @@ class Diagnostician {
   }
 
   void find_causes() {
-    const GramByStructure gram = tried_.misfit().gram(residuals(model_, result_.base.predictions), side_by_side(tried_.sensitivities(), tried_.nominal_sensitivities()));
+    const GramByStructure gram = tried_.misfit().gram(residuals(model_, result_.base.predictions), side_by_side(tried_.sensitivities(), tried_.usual_sensitivities()));
     double none = -std::numeric_limits<double>::infinity();
     for (const Hypothesis& h : result_.hypotheses)
       if (h.causes.empty()) none = std::max(none, h.log_evidence);
@@ -218,7 +237,7 @@ class Diagnostician {
         if (alike > inseparable_likeness || (undecided && alike > 0.5)) result_.not_separable.push_back({named, other, alike});
         if (!undecided) continue;
         if (alike > 0.5 && result_.reading == Reading::cause) result_.reading = Reading::cannot_separate;
-        else if (alike <= 0.5) result_.doubtful = true;
+        else if (alike <= 0.5) doubt(nearly_as_likely);
       }
   }
 

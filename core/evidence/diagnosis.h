@@ -3,6 +3,7 @@
 // From measured data to the cause of a misfit: calibrate, show the misfit, name the cause, extend the model, measure the gain
 // (docs/evidence.md).
 #include <optional>
+#include <string>
 
 #include "evidence/held_out.h"
 #include "evidence/hypotheses.h"
@@ -42,7 +43,7 @@ struct HeldOutTrial {
 
 struct Diagnosis {
   Reading reading = Reading::none;
-  bool doubtful = false;                  // named, but part of the structure stays unexplained
+  std::vector<std::string> doubts;        // sentences: why what is named may be wrong, or not all
   std::vector<int> verdict;               // causes, the strongest first
   std::vector<CauseFinding> causes;       // all, most probable first
   std::vector<Hypothesis> hypotheses;     // most probable first
@@ -58,6 +59,8 @@ struct Diagnosis {
   std::vector<HeldOutTrial> trials;       // in the order they were asked
   int simulations = 0;
   double seconds_calibration = 0, seconds = 0;
+
+  bool doubtful() const { return !doubts.empty(); }
 };
 
 struct DiagnosisOptions {

@@ -50,7 +50,7 @@ std::string verdict_sentence(const DiagnosisReport& report) {
   if (d.verdict.size() > 1) text += ", and " + label(d.verdict[1]) + ", " + percent(probability(d.verdict[1]));
   text += ".";
   if (d.reading == Reading::cannot_separate) text += " These data cannot tell it from another cause.";
-  if (d.doubtful) text += " Part of the misfit stays unexplained.";
+  for (const std::string& doubt : d.doubts) text += " " + doubt;
   return text;
 }
 
@@ -65,7 +65,8 @@ Json diagnosis_json(const DiagnosisReport& report) {
   else
     for (const int cause : d.verdict) json["verdict"].push_back(name(cause));
   json["reading"] = reading_name(d.reading);
-  json["doubtful"] = d.doubtful;
+  json["doubtful"] = d.doubtful();
+  json["doubts"] = d.doubts;
   json["sentence"] = verdict_sentence(report);
   json["causes"] = Json::array();
   for (const CauseFinding& f : d.causes) {

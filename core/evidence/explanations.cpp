@@ -73,6 +73,28 @@ void Explanations::screen() {
   weigh_screened();
 }
 
+std::vector<Sensitivities> Explanations::usual_sensitivities() {
+  std::vector<Sensitivities> result = nominal_sensitivities_;
+  std::vector<std::size_t> one_sided;
+  std::vector<Eigen::VectorXd> points;
+  for (std::size_t p = 0; p < model_.parameters().size(); ++p) {
+    const ModelParameter& parameter = model_.parameters()[p];
+    if (parameter.role != ParameterRole::effect || !parameter.one_sided()) continue;
+    one_sided.push_back(p);
+    points.push_back(model_.nominal());
+    points.back()[static_cast<Eigen::Index>(p)] = parameter.prior_sd;
+    points.back() = within_ranges(model_, points.back());
+  }
+  const auto predictions = bag_.run(points, context_, "Predicting what was held out");
+  for (std::size_t i = 0; i < one_sided.size(); ++i) {
+    if (!predictions[i]) continue;  // what a little of it does stands for it
+    const auto p = static_cast<Eigen::Index>(one_sided[i]);
+    for (std::size_t object = 0; object < result.size(); ++object)
+      result[object][one_sided[i]] = ((*predictions[i])[object] - at_nominal_[object]) / (points[i][p] - model_.nominal()[p]);
+  }
+  return result;
+}
+
 void Explanations::weigh_screened() {
   const GramByStructure about_base = misfit_->gram(residuals(model_, base_.predictions), sensitivities_);
   about_nominal_ = misfit_->gram(residuals(model_, at_nominal_), nominal_sensitivities_);

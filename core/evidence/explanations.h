@@ -38,6 +38,8 @@ class Explanations {
   const std::vector<Sensitivities>& sensitivities() const { return sensitivities_; }
   /// The same about the set-up's own material.
   const std::vector<Sensitivities>& nominal_sensitivities() const { return nominal_sensitivities_; }
+  /// The same, where a cause that only goes one way is taken at its usual strength: what it does from there on to zero. Simulates these. Throws Error{cancelled}.
+  std::vector<Sensitivities> usual_sensitivities();
   const std::vector<int>& liberties() const { return liberties_; }
   const std::vector<Sensitivities>& liberty_sensitivities() const { return liberty_sensitivities_; }
   /// Most probable first.

@@ -13,7 +13,8 @@ std::vector<OutputInfo> diagnosis_outputs() {
 std::vector<ReportField> diagnosis_report_fields() {
   return {{"verdict", "Verdict", "", "one or more causes, none or unknown"},
           {"reading", "Reading", "", "none, cause, cannot_separate or unknown"},
-          {"doubtful", "Doubtful", "", "part of the misfit stays unexplained"},
+          {"doubtful", "Doubtful", "", "what is named may be wrong, or not all"},
+          {"doubts", "Doubts", "", "why, in words"},
           {"sentence", "In words", "", "what was found"},
           {"causes", "Causes", "", "name, label, probability, strength, unit, interval, values, remedy; the most probable first"},
           {"not_separable", "Not separable", "", "pairs of causes, how alike they are (0 to 1), the measurement that would tell"},

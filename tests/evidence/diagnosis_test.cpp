@@ -332,7 +332,7 @@ TEST(Diagnosis, SaysUnknownToWhatIsNotInTheList) {
   Measurement& m = model.measurement();
   for (Eigen::Index i = 0; i < m.measured.rows(); ++i) m.measured(i, 1) += 0.4 * std::sin(5 * m.place(i, 0)) * std::cos(4 * m.place(i, 1) + 1);
   const Diagnosis d = diagnosed(model);
-  EXPECT_TRUE(d.reading == Reading::unknown || d.doubtful);
+  EXPECT_TRUE(d.reading == Reading::unknown || d.doubtful());
 }
 
 TEST(Diagnosis, OwnsUpToTwins) {

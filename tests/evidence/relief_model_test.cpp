@@ -124,7 +124,7 @@ TEST(ReliefModel, NamesWhatWasDoneToIt) {
       told += "; tried " + model.causes()[static_cast<std::size_t>(t.causes.front())].name + (t.significant ? " gain " : " not significant ") + std::to_string(t.gain.gain_share) + " sure " + std::to_string(t.gain.gain_probability);
     SCOPED_TRACE(told);
     if (!named) std::printf("not named: %s\n", told.c_str());
-    EXPECT_TRUE(named || d.doubtful || d.reading == Reading::cannot_separate || d.reading == Reading::unknown) << c.cause;
+    EXPECT_TRUE(named || d.doubtful() || d.reading == Reading::cannot_separate || d.reading == Reading::unknown) << c.cause;
     if (named) {
       EXPECT_LT(d.held_out.after.mean, d.held_out.before.mean);
     }

@@ -216,7 +216,7 @@ TEST(ThermoformModel, ADrawnCauseIsNamedOrDoubted) {
       EXPECT_NE(d.reading, Reading::none) << "visible from " << finding.least_visible;
     }
   }
-  if (d.reading != Reading::none && d.reading != Reading::unknown && !d.doubtful && d.reading != Reading::cannot_separate) {
+  if (d.reading != Reading::none && d.reading != Reading::unknown && !d.doubtful() && d.reading != Reading::cannot_separate) {
     EXPECT_EQ(model.causes()[static_cast<std::size_t>(d.verdict.front())].name, cause);
   }
   if (!d.verdict.empty()) {

@@ -33,6 +33,7 @@ export default defineConfig({
   timeout: 180_000,
   expect: { timeout: 60_000 },
   workers: 1, // each page draws with a software WebGL and solves: one after the other
+  retries: process.env['CI'] ? 1 : 0, // what fails is reported and asked once more (setup/test.sh)
   reporter: process.env['CI'] ? 'dot' : 'list',
   use: {
     baseURL: server.url,

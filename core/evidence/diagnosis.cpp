@@ -26,20 +26,14 @@ constexpr const char* nearly_as_likely = "Another explanation is nearly as likel
 
 class Diagnostician {
  public:
-  Diagnostician(SimulationBag& bag, const DiagnosisOptions& options, Context& context) : bag_(bag), model_(bag.model()), context_(context), tried_(bag, options.pairs, context) {}
+  /// `tried` was fitted with `bag`.
+  Diagnostician(SimulationBag& bag, Explanations& tried, Context& context) : bag_(bag), model_(bag.model()), context_(context), tried_(tried) {}
 
   Diagnosis run() {
-    Stopwatch watch;
-    tried_.calibrate();
-    result_.seconds_calibration = watch.seconds();
-    tried_.screen();
-    tried_.refit();
     result_.base = tried_.base();
     result_.noise = tried_.noise();
     result_.hypotheses = tried_.hypotheses();
     judge();
-    result_.simulations = bag_.simulations() + tried_.cheap_simulations();
-    result_.seconds = watch.seconds();
     return std::move(result_);
   }
 
@@ -78,7 +72,7 @@ class Diagnostician {
       }
       if (!seen.insert(h.causes).second) continue;
       result_.trials.push_back({h.causes, tried_.significant(h), {}});
-      if (!result_.trials.back().significant) continue;
+      if (!result_.trials.back().significant || !tried_.is_refitted(h.causes)) continue;
       const Explanations::Refit& r = tried_.refit_of(h.causes);
       const HeldOutGain gain = compare_errors(model_, without, predicted(r.fit, h.causes), weights());
       result_.trials.back().gain = gain;
@@ -260,7 +254,7 @@ class Diagnostician {
   SimulationBag& bag_;
   const ForwardModel& model_;
   Context& context_;
-  Explanations tried_;
+  Explanations& tried_;
   Diagnosis result_;
 };
 
@@ -276,7 +270,31 @@ const char* reading_name(Reading reading) {
   return "";
 }
 
-Diagnosis diagnose(SimulationBag& bag, const DiagnosisOptions& options, Context& context) { return Diagnostician(bag, options, context).run(); }
+Diagnosis diagnose(SimulationBag& bag, const DiagnosisOptions& options, Context& context) {
+  Stopwatch watch;
+  Explanations tried(bag, options.pairs, context);
+  tried.calibrate();
+  const double seconds_calibration = watch.seconds();
+  tried.screen();
+  tried.refit();
+  const ForwardModel* const finer = tried.decided() ? nullptr : bag.model().finer();
+  Diagnosis result;
+  int simulations = 0;
+  if (finer == nullptr) {
+    result = Diagnostician(bag, tried, context).run();
+  } else {
+    SimulationBag fine_bag(*finer);
+    Explanations again(fine_bag, options.pairs, context);
+    again.look_again(tried);
+    result = Diagnostician(fine_bag, again, context).run();
+    simulations = fine_bag.simulations();
+  }
+  result.looked_again = finer != nullptr;
+  result.simulations = simulations + bag.simulations() + tried.cheap_simulations();
+  result.seconds_calibration = seconds_calibration;
+  result.seconds = watch.seconds();
+  return result;
+}
 
 HeldOutGain gain_on_unseen(SimulationBag& unseen, const ForwardModel& from, const Eigen::VectorXd& u_before, const Eigen::VectorXd& u_after, Context& context) {
   const ForwardModel& model = unseen.model();

@@ -14,8 +14,6 @@ namespace {
 
 constexpr std::size_t refitted_singles = 8, refitted_pairs = 6, pair_anchors = 4, leader_count = 4;
 constexpr FitOptions polishing_fit{8, 0.01, true};
-constexpr double out_of_reach = 60;     // log evidence that polishing does not make up for
-constexpr double least_movement = 0.5;  // of the known misfit
 
 }  // namespace
 
@@ -134,8 +132,11 @@ void Explanations::refit_with(const std::vector<int>& causes, const PairGuess* g
   if (guess != nullptr) starts.push_back(guess->u);
   for (const auto& r : refits_)  // a pair may start from what its parts are like alone
     if (causes.size() == 2 && r.causes.size() == 1 && (r.causes[0] == causes[0] || r.causes[0] == causes[1])) starts.push_back(r.fit.u);
-  refits_.push_back({fit_from(causes, starts, guess != nullptr ? guess->sensitivities : sensitivities_of(free, sensitivities_, columns_), quick_fit), causes});
-  if (const auto other = fit_from_nominal(causes); other && other->value < refits_.back().fit.value) refits_.back().fit = *other;
+  refits_.push_back({fit_from(causes, starts, guess != nullptr ? guess->sensitivities : sensitivities_of(free, sensitivities_, columns_), quick_fit), causes, {}});
+  if (auto other = fit_from_nominal(causes)) {
+    if (other->value < refits_.back().fit.value) std::swap(refits_.back().fit, *other);
+    refits_.back().other_way = std::move(other);
+  }
   weigh_refit(refits_.back());
 }
 
@@ -194,7 +195,7 @@ void Explanations::renew_noise() {
 }
 
 void Explanations::refit() {
-  const auto span = context_.span(0.4, 0.85, fitting_stage);
+  const auto span = context_.span(0.4, 0.7, fitting_stage);
   std::vector<std::vector<int>> singles{{}};
   for (const Hypothesis& h : screened_)
     if (h.causes.size() == 1 && std::find(singles.begin(), singles.end(), h.causes) == singles.end() && singles.size() <= refitted_singles) singles.push_back(h.causes);
@@ -212,19 +213,7 @@ void Explanations::refit() {
   if (pairs_) stage([&] { pairs = promising_pairs(); });
   for (const PairGuess& pair : pairs) stage([&] { refit_with(pair.causes, &pair); });
   normalise(hypotheses_);
-  // The leaders, what they are parts of and have as parts, larger ones first.
-  std::set<std::vector<int>> leaders{{}};
-  const double highest = hypotheses_.front().log_evidence;
-  for (const Hypothesis& h : hypotheses_) {
-    if (leaders.size() > leader_count || (leaders.size() > 2 && h.log_evidence < highest - out_of_reach)) break;
-    leaders.insert(h.causes);
-    if (h.causes.size() == 2)
-      for (const int cause : h.causes) leaders.insert({cause});
-  }
-  for (const std::size_t size : {2u, 1u, 0u})
-    for (Refit& r : refits_)
-      if (r.causes.size() == size && leaders.contains(r.causes)) stage([&] { polish(r); });
-  normalise(hypotheses_);
+  polish_leaders(leader_count, stage);
   renew_noise();
   // The others stay as the linearised model has them, but no better than the worst that was tried in earnest.
   double worst = std::numeric_limits<double>::infinity();
@@ -237,6 +226,21 @@ void Explanations::refit() {
   }
   // A pair of which one does nothing is the other alone, found on another way.
   std::erase_if(hypotheses_, [&](const Hypothesis& h) { return h.causes.size() == 2 && !significant(h); });
+  normalise(hypotheses_);
+}
+
+void Explanations::polish_leaders(std::size_t count, const std::function<void(const std::function<void()>&)>& stage) {
+  std::set<std::vector<int>> leaders{{}};
+  const double highest = hypotheses_.front().log_evidence;
+  for (const Hypothesis& h : hypotheses_) {
+    if (leaders.size() > count || (leaders.size() > 2 && h.log_evidence < highest - out_of_reach)) break;
+    leaders.insert(h.causes);
+    if (h.causes.size() == 2)
+      for (const int cause : h.causes) leaders.insert({cause});
+  }
+  for (const std::size_t size : {2u, 1u, 0u})
+    for (Refit& r : refits_)
+      if (r.causes.size() == size && leaders.contains(r.causes)) stage([&] { polish(r); });
   normalise(hypotheses_);
 }
 

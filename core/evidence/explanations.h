@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // The explanations a diagnosis compares: each fitted together with the base parameters, each with its marginal likelihood. For diagnosis.cpp.
+#include <functional>
 #include <optional>
 
 #include "evidence/hypotheses.h"
@@ -10,12 +11,15 @@
 namespace formwright {
 
 inline constexpr const char* fitting_stage = "Fitting the causes";
+inline constexpr double least_movement = 0.5;  // of the known misfit, that a cause must make
+inline constexpr double out_of_reach = 60;  // log evidence that polishing, or a finer simulation, does not make up for
 
 class Explanations {
  public:
   struct Refit {
     ParameterFit fit;
     std::vector<int> causes;
+    std::optional<ParameterFit> other_way;  // where the fit from the other material ended, which is worse
   };
 
   Explanations(SimulationBag& bag, bool pairs, Context& context) : bag_(bag), model_(bag.model()), pairs_(pairs), context_(context) {}
@@ -27,6 +31,11 @@ class Explanations {
   void screen();
   /// Fits the likeliest causes in earnest, then pairs, then the leaders once more; fills hypotheses().
   void refit();
+
+  /// One explanation leads all others by far and leaves nothing.
+  bool decided() const;
+  /// Instead of the three: weighs what `coarse`, of a coarser simulation of the same data, has found likely or nearly so, beginning from its fits. Fills everything.
+  void look_again(const Explanations& coarse);
 
   const ParameterFit& base() const { return base_; }
   const std::vector<NoiseEstimate>& noise() const { return noise_; }
@@ -71,6 +80,10 @@ class Explanations {
   ParameterFit fit_from(const std::vector<int>& causes, const std::vector<Eigen::VectorXd>& starts, std::vector<Sensitivities> known, const FitOptions& options);
   /// From where the linearised model has them, with the sensitivities it was made of; or from `guess`.
   void refit_with(const std::vector<int>& causes, const PairGuess* guess = nullptr);
+  /// Once more where a coarser simulation has it, unless it is out of reach or does nothing there.
+  void refit_as(const Refit& coarse);
+  /// Polishes the likeliest `count` explanations, what they are parts of and have as parts, larger ones first; `stage` counts the steps.
+  void polish_leaders(std::size_t count, const std::function<void(const std::function<void()>&)>& stage);
   /// The same from the set-up's own material, for at most one cause: a fault that is not among the base parameters drags them far off, and nothing near there points back.
   std::optional<ParameterFit> fit_from_nominal(const std::vector<int>& causes);
   /// Once more, with sensitivities taken where the fit stands; what was learnt with more causes counts for fewer.

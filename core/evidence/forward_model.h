@@ -64,6 +64,8 @@ class ForwardModel {
   virtual bool claim(int /*object*/, const Eigen::VectorXd& /*u*/, const Context& /*context*/) const { return true; }
   /// The same objects and parameters, simulated more coarsely and several times as fast, for searching; null where there is no such model.
   virtual const ForwardModel* cheaper() const { return nullptr; }
+  /// The same, simulated more finely, for what this one does not decide; null where there is no such model.
+  virtual const ForwardModel* finer() const { return nullptr; }
   /// Size of structured misfit (in the measurement's unit) that the model is known to have without any fault of the machine.
   virtual double known_misfit() const = 0;
 

@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t fewest_points = 30;
 constexpr int fewest_triangles = 1000;    // of the cheaper model
+constexpr int most_triangles = 5000;      // of a model that has a finer one
 constexpr std::size_t most_sheets = 200;  // kept at a time; about 0.2 MB each
 
 std::string figure(double value) {
@@ -141,6 +142,17 @@ ThermoformModel::ThermoformModel(std::vector<FormedObject> objects, ThermoformMo
   ThermoformModelOptions coarse = options_;
   coarse.triangles /= 4;
   cheaper_ = std::make_unique<ThermoformModel>(objects_, std::move(coarse));
+}
+
+const ForwardModel* ThermoformModel::finer() const {
+  if (options_.triangles > most_triangles) return nullptr;
+  const std::scoped_lock lock(mutex_);
+  if (!finer_) {
+    ThermoformModelOptions fine = options_;
+    fine.triangles *= 2;
+    finer_ = std::make_unique<ThermoformModel>(objects_, std::move(fine));
+  }
+  return finer_.get();
 }
 
 ThermoformOptions ThermoformModel::simulation_options(int object, const Eigen::VectorXd& u) const {

@@ -45,6 +45,8 @@ class ThermoformModel : public ForwardModel {
   double known_misfit() const override { return 0.08; }
   /// On a quarter of the triangles, where that leaves enough of them.
   const ForwardModel* cheaper() const override { return cheaper_.get(); }
+  /// On twice the triangles, where these are no more than most are content with.
+  const ForwardModel* finer() const override;
 
   const std::vector<FormedObject>& objects() const { return objects_; }
   /// The simulation's parameters for an object at u, and the measurement's.
@@ -66,6 +68,7 @@ class ThermoformModel : public ForwardModel {
   std::vector<Measurement> measurements_;
   std::unique_ptr<const ThermoformModel> cheaper_;
   mutable std::mutex mutex_;
+  mutable std::unique_ptr<const ThermoformModel> finer_;
   mutable std::map<std::string, std::shared_ptr<const FormedSheet>> sheets_;
 };
 

@@ -21,7 +21,7 @@ using namespace formwright;
 using namespace formwright::virtual_lab;
 
 /// Raised whenever the diagnosis comes to answer differently: run_confusion_table.py asks older lines again.
-constexpr int engine = 5;
+constexpr int engine = 6;
 
 struct Arguments {
   unsigned seed = 1;
@@ -93,6 +93,7 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
   line["noise_mm"] = {d.noise.front().sigma, d.noise_floor};
   line["simulations"] = d.simulations;
   line["seconds"] = d.seconds;
+  line["looked_again"] = d.looked_again;
   Json top = Json::array();
   for (std::size_t i = 0; i < 3; ++i) {
     const CauseFinding& f = d.causes[i];

@@ -280,24 +280,25 @@ Diagnosis diagnose(SimulationBag& bag, const DiagnosisOptions& options, Context&
   const ForwardModel* const finer = tried.decided() ? nullptr : bag.model().finer();
   Diagnosis result;
   int simulations = 0;
-  if (finer == nullptr) {
-    result = Diagnostician(bag, tried, context).run();
-  } else {
+  if (finer != nullptr) {
     SimulationBag fine_bag(*finer);
     Explanations again(fine_bag, options.pairs, context);
-    again.look_again(tried);
-    result = Diagnostician(fine_bag, again, context).run();
+    result.looked_again = again.look_again(tried);
+    if (result.looked_again) {
+      result = Diagnostician(fine_bag, again, context).run();
+      result.looked_again = true;
+    }
     simulations = fine_bag.simulations();
   }
-  result.looked_again = finer != nullptr;
+  if (!result.looked_again) result = Diagnostician(bag, tried, context).run();
   result.simulations = simulations + bag.simulations() + tried.cheap_simulations();
   result.seconds_calibration = seconds_calibration;
   result.seconds = watch.seconds();
   return result;
 }
 
-HeldOutGain gain_on_unseen(SimulationBag& unseen, const ForwardModel& from, const Eigen::VectorXd& u_before, const Eigen::VectorXd& u_after, Context& context) {
-  const ForwardModel& model = unseen.model();
+HeldOutGain gain_on_unseen(const ForwardModel& unseen, const ForwardModel& from, const Diagnosis& found, Context& context) {
+  const ForwardModel& model = found.looked_again && unseen.finer() != nullptr ? *unseen.finer() : unseen;
   const auto translated = [&](const Eigen::VectorXd& u) {
     Eigen::VectorXd own = model.nominal();
     for (std::size_t p = 0; p < model.parameters().size(); ++p)
@@ -306,7 +307,8 @@ HeldOutGain gain_on_unseen(SimulationBag& unseen, const ForwardModel& from, cons
           own[static_cast<Eigen::Index>(p)] = model.parameters()[p].coordinate(from.parameters()[q].value(u[static_cast<Eigen::Index>(q)]));
     return own;
   };
-  const auto predictions = unseen.run(std::vector<Eigen::VectorXd>{translated(u_before), translated(u_after)}, context, "Predicting the unseen object");
+  SimulationBag bag(model);
+  const auto predictions = bag.run(std::vector<Eigen::VectorXd>{translated(found.base.u), translated(found.extended.u)}, context, "Predicting the unseen object");
   if (!predictions[0] || !predictions[1]) throw Error(ErrorCode::could_not_solve, "unseen", "The unseen object cannot be simulated with the fitted parameters: check its mould and set-up.");
   std::vector<Eigen::VectorXd> weights;
   const Predictions after = residuals(model, *predictions[1]);

@@ -19,7 +19,7 @@ struct DiagnoseOptions {
   static constexpr auto parameters = std::tuple{
       parameter("pairs", &DiagnoseOptions::pairs, "Two causes at once", "Looks for two causes at work together as well.").group("Diagnosis"),
       parameter("separate", &DiagnoseOptions::separate, "Propose a measurement", "Where two causes look alike, looks for the measurement that would tell them apart.").group("Diagnosis"),
-      parameter("triangles", &DiagnoseOptions::triangles, "Triangles", unit::none, 500, 40000, "Of the simulated sheet.").group("Diagnosis").slider(1000, 10000)};
+      parameter("triangles", &DiagnoseOptions::triangles, "Triangles", unit::none, 500, 40000, "Of the simulated sheet; twice as many where up to 5,000 do not decide.").group("Diagnosis").slider(1000, 10000)};
 };
 
 std::vector<OutputInfo> outputs() {
@@ -84,9 +84,9 @@ OperationResult run(const OperationCall& call) {
     const auto span = call.context.span(0.95, 0.99, "Predicting the unseen object");
     for (const FormedObject& object : unseen) report.unseen_names.push_back(object.name);
     const ThermoformModel other(std::move(unseen), options);
-    SimulationBag other_bag(other);
-    report.unseen = gain_on_unseen(other_bag, model, diagnosis.base.u, diagnosis.extended.u, call.context);
+    report.unseen = gain_on_unseen(other, model, diagnosis, call.context);
   }
+  if (diagnosis.looked_again) report.notes.push_back("A sheet of " + std::to_string(o.triangles) + " triangles did not decide it: looked at again on twice as many.");
   for (const FormedObject& object : model.objects())
     for (const std::string& note : object.setup.notes) report.notes.push_back(object.name + ": " + note);
 

@@ -59,8 +59,7 @@ OperationResult run(const OperationCall& call) {
   if (!unseen.empty()) {
     for (const PhotographedRelief& relief : unseen) report.unseen_names.push_back(relief.name);
     const ReliefModel other(std::move(unseen));
-    SimulationBag other_bag(other);
-    report.unseen = gain_on_unseen(other_bag, model, diagnosis.base.u, diagnosis.extended.u, call.context);
+    report.unseen = gain_on_unseen(other, model, diagnosis, call.context);
   }
   report.notes.emplace_back("Brightness is counted in shares of the brightest point.");
   return diagnosis_result(call, report);

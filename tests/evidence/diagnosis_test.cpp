@@ -326,6 +326,81 @@ TEST(PairSearch, FindsBothCausesThroughACoarserModel) {
   EXPECT_NEAR(std::abs(d.extended.u[3]), 0.4, 0.03);
 }
 
+/// What a coarse mesh does to what slides: it slides elsewhere. Its finer self is right, or has no answer at all.
+class SlidingToy : public ToyModel {
+ public:
+  explicit SlidingToy(bool finer_fails = false) : ToyModel(500), fine(finer_fails) {}
+  Eigen::MatrixXd predict(int object, const Eigen::VectorXd& u, const Context& context) const override {
+    Eigen::VectorXd without = u;
+    without[3] = 0;
+    Eigen::MatrixXd y = ToyModel::predict(object, without, context);
+    const Eigen::ArrayXd z = measurements().front().place.col(1);
+    y.col(1).array() += u[3] * (3 * std::numbers::pi * z + 1.2).cos();
+    return y;
+  }
+  const ForwardModel* finer() const override { return &fine; }
+  void measure(const Eigen::VectorXd& u) {
+    fine.measure(u, 0.05, 4);
+    measurement() = fine.measurement();
+  }
+
+  class Fine : public ToyModel {
+   public:
+    explicit Fine(bool fails) : ToyModel(500), fails_(fails) {}
+    Eigen::MatrixXd predict(int object, const Eigen::VectorXd& u, const Context& context) const override {
+      ++asked;
+      if (fails_ && u.isZero()) throw Error(ErrorCode::could_not_solve, "", "no answer");
+      return ToyModel::predict(object, u, context);
+    }
+    mutable std::atomic<int> asked{0};
+
+   private:
+    bool fails_;
+  };
+  Fine fine;
+};
+
+TEST(Diagnosis, LooksAgainMoreFinelyAtWhatItCannotDecide) {
+  SlidingToy model;
+  Eigen::VectorXd truth = model.nominal();
+  truth[3] = 0.4;
+  model.measure(truth);
+  const Diagnosis d = diagnosed(model);
+  EXPECT_TRUE(d.looked_again);
+  ASSERT_EQ(d.verdict, std::vector<int>{1});
+  EXPECT_NEAR(d.extended.u[3], 0.4, 0.02);
+  EXPECT_EQ(d.reading, Reading::cause);
+  EXPECT_EQ(d.doubts, std::vector<std::string>{});
+  EXPECT_LT((residuals(model, d.extended.predictions).front()).cwiseAbs().mean(), 0.06);
+  // As fine are the predictions of what was not seen: coarsely they would be off by the ripple.
+  SlidingToy other;
+  other.measure(truth);
+  Context context;
+  EXPECT_LT(gain_on_unseen(other, model, d, context).after.mean, 0.08);
+}
+
+TEST(Diagnosis, WhatIsDecidedIsNotLookedAtAgain) {
+  SlidingToy model;
+  Eigen::VectorXd truth = model.nominal();
+  truth[2] = 0.5;
+  model.measure(truth);
+  model.fine.asked = 0;
+  const Diagnosis d = diagnosed(model);
+  EXPECT_FALSE(d.looked_again);
+  EXPECT_EQ(model.fine.asked, 0);
+  EXPECT_EQ(d.verdict, std::vector<int>{0});
+}
+
+TEST(Diagnosis, DoesWithoutAFinerSimulationThatHasNoAnswer) {
+  SlidingToy model(true);
+  Eigen::VectorXd truth = model.nominal();
+  truth[3] = 0.4;
+  model.measure(truth);
+  const Diagnosis d = diagnosed(model);
+  EXPECT_FALSE(d.looked_again);
+  EXPECT_TRUE(d.reading == Reading::unknown || d.doubtful());
+}
+
 TEST(Diagnosis, SaysUnknownToWhatIsNotInTheList) {
   ToyModel model(500);
   model.measure(model.nominal(), 0.04, 3);

@@ -144,8 +144,7 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
   if (arguments.unseen) {
     const auto other = static_cast<Mould>((static_cast<int>(mould) + 1) % 4);
     ThermoformModel second({make_object(other, world, effects, observation, random)}, asked);
-    SimulationBag second_bag(second);
-    const HeldOutGain gain = gain_on_unseen(second_bag, model, d.base.u, d.extended.u, context);
+    const HeldOutGain gain = gain_on_unseen(second, model, d, context);
     line["unseen_mm"] = {gain.before.mean, gain.after.mean};
   }
   return line;

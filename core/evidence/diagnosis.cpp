@@ -283,10 +283,13 @@ Diagnosis diagnose(SimulationBag& bag, const DiagnosisOptions& options, Context&
   if (finer != nullptr) {
     SimulationBag fine_bag(*finer);
     Explanations again(fine_bag, options.pairs, context);
-    result.looked_again = again.look_again(tried);
-    if (result.looked_again) {
+    try {
+      again.look_again(tried);
       result = Diagnostician(fine_bag, again, context).run();
       result.looked_again = true;
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::could_not_solve) throw;
+      // Where it has no answer the coarser one's stands, with its doubts.
     }
     simulations = fine_bag.simulations();
   }

@@ -34,9 +34,9 @@ class Explanations {
 
   /// One explanation leads all others by far and leaves nothing.
   bool decided() const;
-  /// Instead of the three: weighs what `coarse`, of a coarser simulation of the same data, has found likely or nearly so, beginning from its fits. Fills everything. False
-  /// where this simulation has no answer about the same material. Throws Error{could_not_solve} where it has none about a fit of its own, Error{cancelled}.
-  bool look_again(const Explanations& coarse);
+  /// Instead of the three: weighs what `coarse`, of a coarser simulation of the same data, has found likely or nearly so, beginning from its fits. Fills everything.
+  /// Throws Error{could_not_solve, cancelled}.
+  void look_again(const Explanations& coarse);
 
   const ParameterFit& base() const { return base_; }
   const std::vector<NoiseEstimate>& noise() const { return noise_; }

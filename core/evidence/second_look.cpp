@@ -2,6 +2,7 @@
 // What a coarse simulation does not decide: its likeliest explanations, fitted once more by a finer one.
 #include <algorithm>
 
+#include "base/error.h"
 #include "evidence/explanations.h"
 #include "evidence/free_fit.h"
 
@@ -47,11 +48,11 @@ void Explanations::refit_as(const Refit& coarse) {
   weigh_refit(refits_.back());
 }
 
-bool Explanations::look_again(const Explanations& coarse) {
+void Explanations::look_again(const Explanations& coarse) {
   const char* const looking = "Looking again, more finely";
   const auto span = context_.span(0.7, 0.85, looking);
   auto at_nominal = bag_.run(model_.nominal(), context_, looking);
-  if (!at_nominal || !bag_.run(coarse.base_.u, context_, looking)) return false;
+  if (!at_nominal) throw Error(ErrorCode::could_not_solve, "", "The finer simulation fails with the set-up's own parameters.");
   at_nominal_ = std::move(*at_nominal);
   columns_ = coarse.columns_;
   sensitivities_ = coarse.sensitivities_;
@@ -97,7 +98,6 @@ bool Explanations::look_again(const Explanations& coarse) {
   }
   std::erase_if(hypotheses_, [&](const Hypothesis& h) { return h.causes.size() == 2 && !significant(h); });
   normalise(hypotheses_);
-  return true;
 }
 
 }  // namespace formwright

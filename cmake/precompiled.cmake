@@ -1,7 +1,7 @@
 # The headers that nearly every file of ours reads take a third to most of the
-# time that compiling it takes. In the sanitizers' and the WebAssembly build
+# time that compiling it takes. In the builds that tests run from
 # (CMakePresets.json) they are read once, and kept outside the checkout, so that
-# what ccache has serves every checkout. The native build does without, which
+# what ccache has serves every checkout. The fuzz preset does without, which
 # shows that every file includes what it needs.
 #
 # A target whose own flags change what the compiler would make of the headers

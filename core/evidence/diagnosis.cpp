@@ -16,7 +16,6 @@ namespace {
 constexpr double explained_share = 0.6;   // of what the base model leaves unexplained (its variance) that a named cause must explain
 constexpr double likely = 0.5;
 constexpr double most_left = 2;            // of the noise: with more left on held-out blocks a named cause is not all of it, or a relative of what it is
-constexpr double most_structure = 0.6;     // of the known misfit: right causes leave none, or the next smaller size of those that are considered
 constexpr double plain_strength = 2.5;     // half widths of its interval, which knows of the fit, and of the model only what leaving data out shows
 constexpr double least_gain = 0.01;        // of the held-out error
 constexpr double sure_gain = 0.8;          // probability that there is one

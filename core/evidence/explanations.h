@@ -11,6 +11,8 @@
 namespace formwright {
 
 inline constexpr const char* fitting_stage = "Fitting the causes";
+/// Of the known misfit: right causes leave none, or the next smaller size of those that are considered.
+inline constexpr double most_structure = 0.6;
 inline constexpr double least_movement = 0.5;  // of the known misfit, that a cause must make
 inline constexpr double out_of_reach = 60;  // log evidence that polishing, or a finer simulation, does not make up for
 
@@ -46,9 +48,8 @@ class Explanations {
   /// All parameters, and what each does about the calibrated model.
   const std::vector<int>& columns() const { return columns_; }
   const std::vector<Sensitivities>& sensitivities() const { return sensitivities_; }
-  /// The same about the set-up's own material.
-  const std::vector<Sensitivities>& nominal_sensitivities() const { return nominal_sensitivities_; }
-  /// The same, where a cause that only goes one way is taken at its usual strength: what it does from there on to zero. Simulates these. Throws Error{cancelled}.
+  /// The same about the set-up's own material, where a cause that only goes one way is taken at its usual strength: what it does from there on to zero.
+  /// Simulates these. Throws Error{cancelled}.
   std::vector<Sensitivities> usual_sensitivities();
   const std::vector<int>& liberties() const { return liberties_; }
   const std::vector<Sensitivities>& liberty_sensitivities() const { return liberty_sensitivities_; }

@@ -9,8 +9,7 @@
 namespace formwright {
 namespace {
 
-constexpr double decisive = 40;           // of log evidence: meshes move it by less
-constexpr double most_structure = 0.6;    // of the known misfit, that a decided explanation leaves
+constexpr double decisive = 40;            // of log evidence: meshes move it by less
 constexpr std::size_t polished_again = 1;  // beside none
 
 const Hypothesis& plain_none(const std::vector<Hypothesis>& hypotheses) {

@@ -33,6 +33,7 @@ class Diagnostician {
     result_.noise = tried_.noise();
     result_.hypotheses = tried_.hypotheses();
     judge();
+    widen_by_model();
     return std::move(result_);
   }
 
@@ -151,6 +152,19 @@ class Diagnostician {
       const double wider = std::sqrt(half * half + 1.96 * 1.96 * variance);
       finding.low = finding.strength - wider;
       finding.high = finding.strength + wider;
+    }
+  }
+
+  /// Intervals, by what the model itself does not know: the misfit that it is known to have can pass for half of what is just visible (two of its standard deviations), and another
+  /// simulation makes other movements of the same cause. Doubts are about the fit, which is why this comes last.
+  void widen_by_model() {
+    for (CauseFinding& finding : result_.causes) {
+      if (finding.low == finding.high) continue;  // was not fitted
+      const double misfit = std::isfinite(finding.least_visible) ? 0.5 * finding.least_visible : 0;
+      const double gain = 1.96 * model_.causes()[static_cast<std::size_t>(finding.cause)].gain_error * finding.strength;
+      const double half = std::sqrt(std::pow(0.5 * (finding.high - finding.low), 2) + misfit * misfit + gain * gain);
+      finding.low = finding.strength - half;
+      finding.high = finding.strength + half;
     }
   }
 

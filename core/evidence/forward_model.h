@@ -40,6 +40,7 @@ struct Cause {
   std::string remedy;           // what to do at the machine, in a sentence
   std::vector<int> parameters;  // indices into ForwardModel::parameters()
   std::string unit;             // of its strength: the Euclidean norm of its parameters' values
+  double gain_error = 0;        // standard deviation, as a share of its strength: how differently equally good simulations turn it into movement
 };
 
 /// What was measured of one object. `place` are coordinates on the object, in [0, 1] x [0, 1] about, by which neighbours are known.

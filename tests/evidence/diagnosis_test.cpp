@@ -177,6 +177,38 @@ TEST(Diagnosis, NamesEachCauseItsStrengthAndTheGain) {
     }
 }
 
+/// The machine turns a cause into other movements than the model does, and has a misfit of the size that the model is known for.
+TEST(Diagnosis, IntervalsHoldTheStrengthThoughTheModelIsAnother) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> gain(1, 0.05);
+  std::uniform_real_distribution<double> turn(0, 2 * std::numbers::pi);
+  int inside = 0;
+  constexpr int cases = 10;
+  for (unsigned seed = 1; seed <= cases; ++seed) {
+    ToyModel model(400, seed);
+    model.set_gain_error(0.05);
+    Eigen::VectorXd truth = model.nominal();
+    truth[0] = 0.1;
+    truth[2] = 0.7 * gain(random);
+    model.measure(truth, 0.05, 60 + seed, 0.02);
+    // Waves of half the object to all of it.
+    const Eigen::MatrixX2d& place = model.measurements().front().place;
+    for (int wave = 0; wave < 6; ++wave) {
+      const double direction = turn(random), phase = turn(random), cycles = 1 + 0.2 * wave;
+      const Eigen::ArrayXd along = std::cos(direction) * place.col(0) + std::sin(direction) * place.col(1);
+      model.measurement().measured.col(wave % 2).array() += std::sqrt(2.0 / 3) * model.known_misfit() * (2 * std::numbers::pi * cycles * along + phase).sin();
+    }
+    const Diagnosis d = diagnosed(model);
+    ASSERT_FALSE(d.verdict.empty()) << "seed " << seed;
+    ASSERT_EQ(d.verdict.front(), 0) << "seed " << seed;
+    const CauseFinding& bump = *std::find_if(d.causes.begin(), d.causes.end(), [](const CauseFinding& f) { return f.cause == 0; });
+    EXPECT_GE(0.5 * (bump.high - bump.low), std::hypot(0.5 * bump.least_visible, 1.96 * 0.05 * bump.strength));
+    EXPECT_LT(bump.high - bump.low, 0.5);
+    inside += bump.low <= 0.7 && 0.7 <= bump.high;
+  }
+  EXPECT_GE(inside, cases - 2);  // 95 %, less two standard deviations of the count
+}
+
 /// Hides a bump of 0.6 and a ripple of 0.4, which are to be named, and returns what is said.
 Diagnosis diagnosed_pair(ToyModel& model) {
   Eigen::VectorXd truth = model.nominal();

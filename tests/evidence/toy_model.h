@@ -80,6 +80,9 @@ class ToyModel : public ForwardModel {
     }
   }
   Measurement& measurement() { return measurements_.front(); }
+  void set_gain_error(double share) {
+    for (Cause& cause : causes_) cause.gain_error = share;
+  }
 
  private:
   std::vector<ModelParameter> parameters_;

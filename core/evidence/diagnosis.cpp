@@ -16,7 +16,7 @@ namespace {
 constexpr double explained_share = 0.6;   // of what the base model leaves unexplained (its variance) that a named cause must explain
 constexpr double likely = 0.5;
 constexpr double most_left = 2;            // of the noise: with more left on held-out blocks a named cause is not all of it, or a relative of what it is
-constexpr double plain_strength = 2.5;     // half widths of its interval, which knows of the fit, and of the model only what leaving data out shows
+constexpr double plain_strength = 2.5;     // half widths of its interval
 constexpr double least_gain = 0.01;        // of the held-out error
 constexpr double sure_gain = 0.8;          // probability that there is one
 constexpr double inseparable_likeness = 0.9;
@@ -33,7 +33,6 @@ class Diagnostician {
     result_.noise = tried_.noise();
     result_.hypotheses = tried_.hypotheses();
     judge();
-    widen_by_model();
     return std::move(result_);
   }
 
@@ -83,6 +82,7 @@ class Diagnostician {
       result_.extended = recalibrated(r.fit);
       break;
     }
+    widen_by_model();
     const auto before = held_out(result_.base).errors;
     result_.held_out = compare_errors(model_, before, result_.verdict.empty() ? before : held_out(result_.extended).errors);
     result_.unexplained_after = tried_.structure_left(result_.verdict);
@@ -156,7 +156,7 @@ class Diagnostician {
   }
 
   /// Intervals, by what the model itself does not know: the misfit that it is known to have can pass for half of what is just visible (two of its standard deviations), and another
-  /// simulation makes other movements of the same cause. Doubts are about the fit, which is why this comes last.
+  /// simulation makes other movements of the same cause.
   void widen_by_model() {
     for (CauseFinding& finding : result_.causes) {
       if (finding.low == finding.high) continue;  // was not fitted

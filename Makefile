@@ -5,7 +5,7 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .NOTPARALLEL:
 .ONESHELL:
-.PHONY: help setup setup-test run test native asan wasm web bench fuzz lint format clean
+.PHONY: help setup setup-test run test test-all native asan wasm web bench fuzz lint format clean
 
 help: ## what can be made
 	@awk -F ':.*## ' '/^[a-z -]+:.*## / { printf "  make %-16s %s\n", $$1, $$2 }' Makefile
@@ -21,6 +21,9 @@ run: setup ## build, make an example, serve the app and print its address
 
 test: ## everything that a change must pass; ends with "N passed, N failed"
 	@setup/test.sh
+
+test-all: ## the same, and the crafts' own tests with sanitizers and in WebAssembly
+	@setup/test.sh --all
 
 native asan wasm: ## one C++ build: build/, build-asan/ or build-wasm/
 	@setup/build.sh $@

@@ -1,11 +1,17 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
-# Sets up, builds and runs every test, stopping at the first stage that fails.
+# Sets up, builds and runs what a change must pass, stopping at the first stage that fails.
 # The last line is "N passed, N failed", summed over all runners.
+#   setup/test.sh [--all]   with --all the crafts' own tests run with sanitizers and in WebAssembly, too: about 40 minutes more
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 cd "$FORMWRIGHT_ROOT"
+case "${1-}" in
+  '') ;;
+  --all) export FORMWRIGHT_CRAFT_TESTS=ON ;;
+  *) fail "test.sh does not know '$1'" "use --all or nothing" ;;
+esac
 
 PASSED=0
 FAILED=0

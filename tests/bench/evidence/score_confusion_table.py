@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Counts the lines of confusion_table: score_confusion_table.py FILE... [--engine N] prints tables for docs/evidence.md.
+"""Counts the lines of confusion_table and lists them: score_confusion_table.py FILE... [--engine N] prints docs/confusion_table.md.
 
 Of every case the newest engine's answer counts, or that of engine N.
 A hidden cause is visible if it is stronger than `least_visible`, which the diagnosis states without knowing the truth."""
@@ -9,20 +9,6 @@ import collections
 import json
 import statistics
 
-parser = argparse.ArgumentParser()
-parser.add_argument("files", nargs="+")
-parser.add_argument("--engine", type=int)
-a = parser.parse_args()
-answers = [json.loads(line) for name in a.files for line in open(name) if line.startswith("{")]
-latest = {}
-for c in sorted(answers, key=lambda c: c.get("engine", 1)):
-    if a.engine in (None, c.get("engine", 1)):
-        latest[c["seed"]] = c
-cases = list(latest.values())
-by_engine = collections.Counter(c.get("engine", 1) for c in cases)
-print(f"{len(cases)} cases; answers of " + ", ".join(f"engine {engine}: {count}" for engine, count in sorted(by_engine.items())))
-failed = [c for c in cases if "error" in c]
-cases = [c for c in cases if "error" not in c]
 named_level = {1: "strong", 0.5: "medium", 0.25: "weak"}
 
 
@@ -34,31 +20,98 @@ def visible(case):
     return all(least is not None and strength > least for strength, least in zip(case["strength"], case["least_visible"]))
 
 
-single = [c for c in cases if len(c["hidden"]) == 1 and not c["left_out"]]
-print("| hidden | strength | noise mm | answers (first name) | visible |\n|---|---|---|---|---|")
-rows = collections.defaultdict(list)
-for c in single:
-    rows[c["hidden"][0], c["level"], c["sigma_mm"]].append(c)
-for (cause, level, sigma), own in sorted(rows.items(), key=lambda row: (row[0][0], -row[0][1], row[0][2])):
-    answers = collections.Counter(c["first"] for c in own)
-    print(f"| {cause} | {named_level.get(level, level)} | {sigma} | {', '.join(f'{n} {a}' for a, n in answers.most_common())} | {sum(map(visible, own))} of {len(own)} |")
-print()
-for level in sorted({c["level"] for c in single}, reverse=True):
-    shown = [c for c in single if c["level"] == level and visible(c)]
-    print(f"- {named_level.get(level, level)}, visible: named first in {share([c for c in shown if c['first'] == c['hidden'][0]], shown)}; "
-          f"a wrong name without doubt in {share([c for c in shown if c['first'] not in (c['hidden'][0], 'none', 'unknown') and not c['doubtful'] and c['reading'] == 'cause'], shown)}")
-clean = [c for c in cases if not c["hidden"]]
-print(f"- false alarms on clean data: {share([c for c in clean if c['reading'] not in ('none',)], clean)}")
-missing = [c for c in cases if c["left_out"] and len(c["hidden"]) == 1]
-print(f"- cause left out of the list: unknown, none or doubt in {share([c for c in missing if c['reading'] != 'cause' or c['doubtful']], missing)}")
-pairs = [c for c in cases if len(c["hidden"]) == 2 and not c["left_out"]]
-print(f"- pairs: both named in {share([c for c in pairs if set(c['verdict']) == set(c['hidden'])], pairs)}; of those visible "
-      f"{share([c for c in pairs if visible(c) and set(c['verdict']) == set(c['hidden'])], [c for c in pairs if visible(c)])}")
-gains = [1 - c["unseen_mm"][1] / c["unseen_mm"][0] for c in single if "unseen_mm" in c and c["level"] == 1 and c["first"] == c["hidden"][0]]
-if gains:
-    print(f"- error on another object, strong cause named: falls by {100 * statistics.median(gains):.0f} % (median), by half or more in {share([g for g in gains if g >= 0.5], gains)}")
-ratios = [c["causes"][0][2] / c["strength"][0] for c in single if c["first"] == c["hidden"][0] and c["strength"][0]]
-if ratios:
-    print(f"- strength found over hidden: median {statistics.median(map(abs, ratios)):.2f}")
-if cases:
-    print(f"- seconds a diagnosis: median {statistics.median(c['seconds'] for c in cases):.0f}, longest {max(c['seconds'] for c in cases):.0f}; failed: {len(failed)}")
+def right(case):
+    return case["first"] == case["hidden"][0]
+
+
+def wrong_without_doubt(case):
+    return case["reading"] == "cause" and not case["doubtful"] and not set(case["verdict"]) <= set(case["hidden"])
+
+
+def number(value):
+    return f"{value:.3g}"
+
+
+def answer(case):
+    """What was named, with strength and half the width of its interval."""
+    if case["reading"] in ("none", "unknown"):
+        return case["reading"]
+    said = []
+    for name in case["verdict"]:
+        strength, low, high = next(c[1:] for c in [c[:1] + c[2:] for c in case["causes"]] if c[0] == name) if any(c[0] == name for c in case["causes"]) else (None,) * 3
+        said.append(name if strength is None else f"{name} {number(abs(strength))} ± {number((high - low) / 2)}")
+    return " and ".join(said) + (", in doubt" if case["doubtful"] else "") + (", or a twin" if case["reading"] == "cannot_separate" else "")
+
+
+def inside(case):
+    name, _, strength, low, high = case["causes"][0]
+    return abs(abs(strength) - case["strength"][0]) <= (high - low) / 2
+
+
+def hidden(case):
+    if not case["hidden"]:
+        return "nothing"
+    return " and ".join(f"{name} {number(strength)}" for name, strength in zip(case["hidden"], case["strength"]))
+
+
+def listed(cases, title):
+    if not cases:
+        return
+    print(f"\n## {title}\n\n| hidden | noise mm | mould | visible | answer | another object, mm | seed |\n|---|---:|---|---|---|---|---:|")
+    for c in cases:
+        gain = f"{c['unseen_mm'][0]:.2f} → {c['unseen_mm'][1]:.2f}" if "unseen_mm" in c else ""
+        mark = "" if not c["hidden"] or c["left_out"] or set(c["verdict"]) == set(c["hidden"]) or not visible(c) else " ✗"
+        print(f"| {hidden(c)} | {c['sigma_mm']} | {c['mould']} | {'yes' if c['hidden'] and visible(c) else '' if not c['hidden'] else 'no'} | {answer(c)}{mark} | {gain} | {c['seed'] // 1000} |")
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("files", nargs="+")
+    parser.add_argument("--engine", type=int)
+    a = parser.parse_args()
+    answers = [json.loads(line) for name in a.files for line in open(name) if line.startswith("{")]
+    latest = {}
+    for c in sorted(answers, key=lambda c: c.get("engine", 1)):
+        if a.engine in (None, c.get("engine", 1)):
+            latest[c["seed"]] = c
+    failed = [c for c in latest.values() if "error" in c]
+    cases = [c for c in latest.values() if "error" not in c]
+    by_engine = collections.Counter(c.get("engine", 1) for c in cases)
+    single = [c for c in cases if len(c["hidden"]) == 1 and not c["left_out"]]
+    clean = [c for c in cases if not c["hidden"]]
+    missing = [c for c in cases if c["left_out"] and len(c["hidden"]) == 1]
+    pairs = [c for c in cases if len(c["hidden"]) == 2 and not c["left_out"]]
+
+    print("# The confusion table\n\nMade by `score_confusion_table.py` from the answers in `tests/bench/evidence/confusion_table.jsonl`; [evidence.md](evidence.md) says how they are made and"
+          " what they mean.\n")
+    print(f"{len(cases)} cases; answers of " + ", ".join(f"engine {engine}: {count}" for engine, count in sorted(by_engine.items())) + ".\n")
+    print("| | |\n|---|---|")
+    for level in sorted({c["level"] for c in single}, reverse=True):
+        for sigma in sorted({c["sigma_mm"] for c in single}):
+            shown = [c for c in single if c["level"] == level and c["sigma_mm"] == sigma and visible(c)]
+            print(f"| {named_level.get(level, level)}, {sigma} mm, visible: named first | {share([c for c in shown if right(c)], shown)} |")
+    every = [c for c in single if visible(c)]
+    print(f"| a wrong name without doubt | {share([c for c in single if wrong_without_doubt(c)], single)} |")
+    print(f"| false alarms on clean data | {share([c for c in clean if c['reading'] != 'none'], clean)} |")
+    print(f"| cause left out of the list: unknown, none or doubt | {share([c for c in missing if c['reading'] != 'cause' or c['doubtful']], missing)} |")
+    shown = [c for c in pairs if visible(c)]
+    both = [c for c in pairs if set(c["verdict"]) == set(c["hidden"])]
+    print(f"| two strong causes: both named | {share(both, pairs)}; where both are visible {share([c for c in both if visible(c)], shown)} |")
+    found = [c for c in every if right(c)]
+    gains = [1 - c["unseen_mm"][1] / c["unseen_mm"][0] for c in found if "unseen_mm" in c and c["level"] == 1]
+    if gains:
+        print(f"| error on another object, strong cause named | falls by {100 * statistics.median(gains):.0f} % (median), by half or more in {share([g for g in gains if g >= 0.5], gains)} |")
+    if found:
+        print(f"| strength found over hidden | {statistics.median(abs(c['causes'][0][2]) / c['strength'][0] for c in found):.2f} (median) |")
+        print(f"| 95 % interval holds the hidden strength | {share([c for c in found if inside(c)], found)} |")
+    if cases:
+        print(f"| seconds a diagnosis, one processor | {statistics.median(c['seconds'] for c in cases):.0f} (median); failed: {len(failed)} |")
+    by_cause = lambda c: (c["hidden"], c["sigma_mm"], c["seed"])
+    for level in sorted({c["level"] for c in single}, reverse=True):
+        listed(sorted((c for c in single if c["level"] == level), key=by_cause), f"One cause, {named_level.get(level, level)}")
+    listed(sorted(missing, key=by_cause), "A cause that is not in the list")
+    listed(sorted(pairs, key=by_cause), "Two causes")
+    listed(sorted(clean, key=by_cause), "Clean")
+
+
+main()

@@ -3,7 +3,7 @@
 #
 # Sets up, builds and runs what a change must pass, stopping at the first stage that fails.
 # The last line is "N passed, N failed", summed over all runners.
-#   setup/test.sh [--all]   with --all the crafts' own tests run with sanitizers and in WebAssembly, too: about 40 minutes more
+#   setup/test.sh [--all]   with --all the crafts' own tests run with sanitizers and in WebAssembly, too
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 cd "$FORMWRIGHT_ROOT"

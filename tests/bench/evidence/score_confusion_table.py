@@ -36,10 +36,8 @@ def answer(case):
     """What was named, with strength and half the width of its interval."""
     if case["reading"] in ("none", "unknown"):
         return case["reading"]
-    said = []
-    for name in case["verdict"]:
-        strength, low, high = next(c[1:] for c in [c[:1] + c[2:] for c in case["causes"]] if c[0] == name) if any(c[0] == name for c in case["causes"]) else (None,) * 3
-        said.append(name if strength is None else f"{name} {number(abs(strength))} ± {number((high - low) / 2)}")
+    found = {name: f"{name} {number(abs(strength))} ± {number((high - low) / 2)}" for name, _, strength, low, high in case["causes"]}
+    said = [found.get(name, name) for name in case["verdict"]]  # only the likeliest causes are kept
     return " and ".join(said) + (", in doubt" if case["doubtful"] else "") + (", or a twin" if case["reading"] == "cannot_separate" else "")
 
 
@@ -57,11 +55,11 @@ def hidden(case):
 def listed(cases, title):
     if not cases:
         return
-    print(f"\n## {title}\n\n| hidden | noise mm | mould | visible | answer | another object, mm | seed |\n|---|---:|---|---|---|---|---:|")
+    print(f"\n## {title}\n\n| hidden | noise mm | mould | visible | answer | another object, mm | seed | engine |\n|---|---:|---|---|---|---|---:|---:|")
     for c in cases:
         gain = f"{c['unseen_mm'][0]:.2f} → {c['unseen_mm'][1]:.2f}" if "unseen_mm" in c else ""
         mark = "" if not c["hidden"] or c["left_out"] or set(c["verdict"]) == set(c["hidden"]) or not visible(c) else " ✗"
-        print(f"| {hidden(c)} | {c['sigma_mm']} | {c['mould']} | {'yes' if c['hidden'] and visible(c) else '' if not c['hidden'] else 'no'} | {answer(c)}{mark} | {gain} | {c['seed'] // 1000} |")
+        print(f"| {hidden(c)} | {c['sigma_mm']} | {c['mould']} | {'yes' if c['hidden'] and visible(c) else '' if not c['hidden'] else 'no'} | {answer(c)}{mark} | {gain} | {c['seed'] // 1000} | {c.get('engine', 1)} |")
 
 
 def main():

@@ -41,7 +41,7 @@ lint: ## formatting, static analysis, shell scripts, the page
 	@setup/lint.sh
 
 format: ## format the C++ sources in place
-	@git ls-files -z '*.cpp' '*.h' | xargs -0 clang-format -i
+	@setup/format.sh
 
 clean: ## remove what was built here; the cache folder stays (docs/toolchain.md)
 	rm -rf build build-asan build-wasm build-fuzz web/dist web/public/wasm

@@ -89,10 +89,8 @@ Json job_summary(const StoredJob& job) {
 Json job_detail(const StoredJob& job) {
   Json detail = {{"id", job.id}, {"state", to_string(job.state)}, {"progress", job.progress}, {"job", job.job}};
   if (job.finished()) {
-    if (job.result.contains("error"))
-      detail["error"] = job.result["error"];
-    else
-      detail["result"] = job.result;
+    if (job.result.contains("error")) detail["error"] = job.result["error"];
+    else detail["result"] = job.result;
   }
   return detail;
 }

@@ -29,13 +29,15 @@ int sample_vertices(const std::string& text) {
   char* end = nullptr;
   const long count = std::strtol(text.c_str(), &end, 10);
   if (text.empty() || *end != '\0' || count < 0 || count > 5'000'000)
-    throw Error(ErrorCode::invalid_input, "sample-vertices", "--sample-vertices must be a whole number up to 5000000, and is \"" + text + "\".");
+    throw Error(ErrorCode::invalid_input, "sample-vertices",
+                "--sample-vertices must be a whole number up to 5000000, and is \"" + text + "\".");
   return static_cast<int>(count);
 }
 
 std::size_t shown_width(const std::string& text) {
   // Bytes of UTF-8 that continue a character take no room of their own.
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
 }
 
 /// "  left        right", with `right` broken between words so that no line is longer than 100 columns.
@@ -62,7 +64,8 @@ std::string entry(const std::string& left, std::size_t left_width, const std::st
 std::string paragraph(const std::string& text) {
   std::string plain = entry("", 0, text);
   plain.erase(0, plain.find_first_not_of("\n "));
-  for (std::size_t at = plain.find("\n  "); at != std::string::npos; at = plain.find("\n  ", at + 1)) plain.erase(at + 1, 2);
+  for (std::size_t at = plain.find("\n  "); at != std::string::npos; at = plain.find("\n  ", at + 1))
+    plain.erase(at + 1, 2);
   return plain;
 }
 
@@ -94,14 +97,16 @@ std::string default_text(const ParameterInfo& info) {
 }
 
 bool takes_object(const Operation& operation) {
-  return std::any_of(operation.inputs.begin(), operation.inputs.end(), [](const InputInfo& input) { return input.name == "setup"; });
+  return std::any_of(operation.inputs.begin(), operation.inputs.end(),
+                     [](const InputInfo& input) { return input.name == "setup"; });
 }
 
 /// A file, or one more of the same; folders are for inputs that are packed from one.
 void add_file(const InputInfo& input, const std::string& value, ParsedCommand& command) {
   std::string name = input.name;
   for (int number = 2; command.files.contains(name); ++number) {
-    if (!input.repeatable) throw Error(ErrorCode::invalid_input, dashed(input.name), dashed(input.name) + " is given twice.");
+    if (!input.repeatable)
+      throw Error(ErrorCode::invalid_input, dashed(input.name), dashed(input.name) + " is given twice.");
     name = input.name + "_" + std::to_string(number);
   }
   if (!input.folder_files.empty() && std::filesystem::is_directory(value)) command.folders[name] = input.folder_files;
@@ -121,7 +126,9 @@ ParsedCommand parse_command(const Operation& operation, const std::vector<std::s
       command.help = true;
       return command;
     }
-    if (!flag.starts_with("--")) throw Error(ErrorCode::invalid_input, flag, "\"" + flag + "\" is not a flag: every value needs one, such as --mesh FILE.");
+    if (!flag.starts_with("--"))
+      throw Error(ErrorCode::invalid_input, flag,
+                  "\"" + flag + "\" is not a flag: every value needs one, such as --mesh FILE.");
     const std::size_t equals = flag.find('=');
     const bool joined = equals != std::string::npos;
     if (joined) {
@@ -132,10 +139,14 @@ ParsedCommand parse_command(const Operation& operation, const std::vector<std::s
       command.quiet = true;
       continue;
     }
-    const auto info = std::find_if(operation.parameters.begin(), operation.parameters.end(), [&](const ParameterInfo& p) { return flag_name(p) == flag; });
-    const auto input = std::find_if(operation.inputs.begin(), operation.inputs.end(), [&](const InputInfo& in) { return dashed(in.name) == flag; });
-    const bool known = info != operation.parameters.end() || input != operation.inputs.end() || flag == "--out" || flag == "--sample" ||
-                       flag == "--sample-vertices" || flag == "--outputs" || (flag == "--results" && operation.keeps_results) || (flag == "--object" && takes_object(operation));
+    const auto info = std::find_if(operation.parameters.begin(), operation.parameters.end(),
+                                   [&](const ParameterInfo& p) { return flag_name(p) == flag; });
+    const auto input = std::find_if(operation.inputs.begin(), operation.inputs.end(),
+                                    [&](const InputInfo& in) { return dashed(in.name) == flag; });
+    const bool known = info != operation.parameters.end() || input != operation.inputs.end() || flag == "--out" ||
+                       flag == "--sample" || flag == "--sample-vertices" || flag == "--outputs" ||
+                       (flag == "--results" && operation.keeps_results) ||
+                       (flag == "--object" && takes_object(operation));
     if (!known) {
       std::string name = flag.substr(2);
       std::replace(name.begin(), name.end(), '-', '_');
@@ -149,12 +160,16 @@ ParsedCommand parse_command(const Operation& operation, const std::vector<std::s
           hint = "; did you mean " + hint.substr(0, hint.size() - 1) + "?";
         }
       }
-      throw Error(ErrorCode::invalid_input, flag, "There is no flag " + flag + (hint.empty() ? ": see formwright " + operation.name + " --help." : hint));
+      throw Error(
+          ErrorCode::invalid_input, flag,
+          "There is no flag " + flag + (hint.empty() ? ": see formwright " + operation.name + " --help." : hint));
     }
     if (!joined) {
       // A boolean may stand alone: --depth-order means on.
       const bool last = i + 1 >= words.size();
-      if (info != operation.parameters.end() && info->kind == ParameterKind::boolean && (last || words[i + 1].starts_with("--"))) value = "on";
+      if (info != operation.parameters.end() && info->kind == ParameterKind::boolean &&
+          (last || words[i + 1].starts_with("--")))
+        value = "on";
       else if (last) throw Error(ErrorCode::invalid_input, flag, flag + " needs a value.");
       else value = words[++i];
     }
@@ -169,19 +184,28 @@ ParsedCommand parse_command(const Operation& operation, const std::vector<std::s
   }
   if (!object.empty()) {
     if (!std::filesystem::is_directory(object))
-      throw Error(ErrorCode::invalid_input, "--object", "There is no folder " + object + ": --object names one with mould.obj, setup.json and measured.csv.");
+      throw Error(ErrorCode::invalid_input, "--object",
+                  "There is no folder " + object + ": --object names one with mould.obj, setup.json and measured.csv.");
     for (const InputInfo& input : operation.inputs)
-      if (!input.object_file.empty() && !command.files.contains(input.name)) command.files[input.name] = std::filesystem::path(object) / input.object_file;
+      if (!input.object_file.empty() && !command.files.contains(input.name))
+        command.files[input.name] = std::filesystem::path(object) / input.object_file;
   }
   if (!sample.empty()) {
-    const auto input = std::find_if(operation.inputs.begin(), operation.inputs.end(), [](const InputInfo& in) { return in.accepts_sample; });
-    if (input == operation.inputs.end()) throw Error(ErrorCode::invalid_input, "--sample", operation.name + " takes no sample.");
-    if (command.files.contains(input->name)) throw Error(ErrorCode::invalid_input, "--sample", "Give either --sample or " + dashed(input->name) + ", not both.");
+    const auto input = std::find_if(operation.inputs.begin(), operation.inputs.end(),
+                                    [](const InputInfo& in) { return in.accepts_sample; });
+    if (input == operation.inputs.end())
+      throw Error(ErrorCode::invalid_input, "--sample", operation.name + " takes no sample.");
+    if (command.files.contains(input->name))
+      throw Error(ErrorCode::invalid_input, "--sample",
+                  "Give either --sample or " + dashed(input->name) + ", not both.");
     inputs[input->name] = {{"sample", sample}, {"vertices", vertices}};
   }
   for (const InputInfo& input : operation.inputs)
     if (input.required && !inputs.contains(input.name) && !command.files.contains(input.name))
-      throw Error(ErrorCode::invalid_input, dashed(input.name), "Say which file: " + dashed(input.name) + " FILE" + (input.accepts_sample ? ", or --sample NAME" : "") + (input.object_file.empty() ? "." : ", or --object DIR."));
+      throw Error(ErrorCode::invalid_input, dashed(input.name),
+                  "Say which file: " + dashed(input.name) + " FILE" +
+                      (input.accepts_sample ? ", or --sample NAME" : "") +
+                      (input.object_file.empty() ? "." : ", or --object DIR."));
   if (command.out.empty()) throw Error(ErrorCode::invalid_input, "--out", "Say where the results go: --out DIR.");
   command.message["operation"] = operation.name;
   command.message["parameters"] = parameters;
@@ -192,7 +216,8 @@ ParsedCommand parse_command(const Operation& operation, const std::vector<std::s
 std::string overview_text() {
   constexpr std::size_t width = 23;
   std::string text = std::string("formwright ") + version() + ": from a 3D model to something that can be made\n\n";
-  for (const Operation& operation : operations()) text += entry("formwright " + operation.name, width, operation.summary);
+  for (const Operation& operation : operations())
+    text += entry("formwright " + operation.name, width, operation.summary);
   text += "\n" + entry("formwright serve", width, "The page and the native worker, on this machine only.");
   text += entry("formwright machine", width, "Printers and machines: list, add, remove, print, send, frame, stop.");
   text += entry("formwright list", width, "The operations, one a line.");
@@ -212,11 +237,14 @@ std::string operation_help(const Operation& operation) {
     std::string list;
     for (const auto& extension : input.extensions) list += (list.empty() ? "" : ", ") + extension;
     const std::string what = input.folder_files.empty() ? " FILE" : " DIR";
-    text += entry(dashed(input.name) + what, width, input.help + (list.empty() ? "" : " (" + list + ")") + (input.repeatable ? " May be given several times." : ""));
+    text += entry(dashed(input.name) + what, width,
+                  input.help + (list.empty() ? "" : " (" + list + ")") +
+                      (input.repeatable ? " May be given several times." : ""));
     if (input.accepts_sample) {
       std::string names;
       const Json catalog = catalog_json();
-      for (const Json& sample : catalog["samples"]) names += (names.empty() ? "" : ", ") + sample["name"].get<std::string>();
+      for (const Json& sample : catalog["samples"])
+        names += (names.empty() ? "" : ", ") + sample["name"].get<std::string>();
       text += entry("--sample NAME", width, "A built-in shape instead of a file: " + names + ".");
       text += entry("--sample-vertices N", width, "Its resolution.");
     }
@@ -228,11 +256,14 @@ std::string operation_help(const Operation& operation) {
     text += entry("--object DIR", width, "The folder of a measured object instead of single files: " + names + ".");
   }
   std::string list;
-  for (const OutputInfo& output : operation.outputs) list += (list.empty() ? "" : ", ") + output.name + (output.made_by_default ? "*" : "");
+  for (const OutputInfo& output : operation.outputs)
+    list += (list.empty() ? "" : ", ") + output.name + (output.made_by_default ? "*" : "");
   text += "\nFiles\n" + entry("--out DIR", width, "Folder for the outputs and report.json.");
   text += entry("--outputs A,B", width, "Which to make: " + list + " (* without being asked).");
   if (operation.keeps_results)
-    text += entry("--results DIR", width, "Where simulations are kept and found again; OUT/simulations unless told. Several runs and machines may share it.");
+    text += entry(
+        "--results DIR", width,
+        "Where simulations are kept and found again; OUT/simulations unless told. Several runs and machines may share it.");
   text += entry("--quiet", width, "No progress.");
   std::string group;
   for (const ParameterInfo& info : operation.parameters) {
@@ -241,9 +272,11 @@ std::string operation_help(const Operation& operation) {
       text += "\n" + (group.empty() ? std::string("Parameters") : group) + "\n";
     }
     std::string range;
-    if (info.kind == ParameterKind::number || info.kind == ParameterKind::integer || info.kind == ParameterKind::optional_number)
+    if (info.kind == ParameterKind::number || info.kind == ParameterKind::integer ||
+        info.kind == ParameterKind::optional_number)
       range = number(info.minimum) + " to " + number(info.maximum) + (info.unit.empty() ? "" : " " + info.unit) + ", ";
-    text += entry(flag_name(info) + " " + value_text(info), width, info.help + " [" + range + "default " + default_text(info) + "]");
+    text += entry(flag_name(info) + " " + value_text(info), width,
+                  info.help + " [" + range + "default " + default_text(info) + "]");
   }
   return text;
 }

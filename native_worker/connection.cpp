@@ -35,7 +35,8 @@ std::string blob_hash(const Head& head) {
 std::string machine_of_socket(const Head& head) {
   const std::string target = text_of(head.target());
   constexpr std::string_view prefix = "/api/machines/", suffix = "/socket";
-  if (!target.starts_with(prefix) || !target.ends_with(suffix) || target.size() <= prefix.size() + suffix.size()) return "";
+  if (!target.starts_with(prefix) || !target.ends_with(suffix) || target.size() <= prefix.size() + suffix.size())
+    return "";
   const std::string id = target.substr(prefix.size(), target.size() - prefix.size() - suffix.size());
   return is_hex_name(id, 16) ? id : "";
 }
@@ -49,15 +50,22 @@ TextResponse last_answer(TextResponse response) {
 }
 
 TextResponse token_refusal(const Head& head) {
-  return error_response(head, http::status::unauthorized, "invalid_input", "token", "The token is missing or wrong: open the page from the address that the worker printed.");
+  return error_response(head, http::status::unauthorized, "invalid_input", "token",
+                        "The token is missing or wrong: open the page from the address that the worker printed.");
 }
 
 }  // namespace
 
 std::optional<TextResponse> HttpServer::refusal(const Head& head, std::optional<std::uint64_t> body_bytes) {
-  if (!host_allowed(head)) return error_response(head, http::status::misdirected_request, "invalid_input", "Host", "This server answers to its own address only.");
-  if (!origin_allowed(head)) return error_response(head, http::status::forbidden, "invalid_input", "Origin", "Another page may not use this worker.");
-  if (!within_rate()) return error_response(head, http::status::too_many_requests, "invalid_input", "", "Too many requests: wait a second.");
+  if (!host_allowed(head))
+    return error_response(head, http::status::misdirected_request, "invalid_input", "Host",
+                          "This server answers to its own address only.");
+  if (!origin_allowed(head))
+    return error_response(head, http::status::forbidden, "invalid_input", "Origin",
+                          "Another page may not use this worker.");
+  if (!within_rate())
+    return error_response(head, http::status::too_many_requests, "invalid_input", "",
+                          "Too many requests: wait a second.");
   if (beast::websocket::is_upgrade(head)) {
     if (text_of(head.target()) == "/api/socket" && token_in_subprotocol(head, "formwright.v1")) return std::nullopt;
     if (!machine_of_socket(head).empty() && token_in_subprotocol(head, "formwright.machine.v1")) return std::nullopt;
@@ -67,13 +75,15 @@ std::optional<TextResponse> HttpServer::refusal(const Head& head, std::optional<
   const std::uint64_t bytes = body_bytes.value_or(0);
   if (is_upload(head) && bytes > options_.upload_limit_bytes) return upload_too_large(head);
   if (!is_upload(head) && bytes > most_json_bytes)
-    return error_response(head, http::status::payload_too_large, "invalid_input", "", "The message is too large: send meshes as blobs.");
+    return error_response(head, http::status::payload_too_large, "invalid_input", "",
+                          "The message is too large: send meshes as blobs.");
   return std::nullopt;
 }
 
 TextResponse HttpServer::upload_too_large(const Head& head) const {
-  return error_response(head, http::status::payload_too_large, "invalid_input", "mesh",
-                        "The file is larger than " + std::to_string(options_.upload_limit_bytes >> 20) + " MB: simplify it first.");
+  return error_response(
+      head, http::status::payload_too_large, "invalid_input", "mesh",
+      "The file is larger than " + std::to_string(options_.upload_limit_bytes >> 20) + " MB: simplify it first.");
 }
 
 boost::asio::awaitable<void> HttpServer::serve_connection(Socket socket) {
@@ -94,7 +104,8 @@ boost::asio::awaitable<void> HttpServer::serve_connection(Socket socket) {
     Response response;
     if (auto refused = refusal(request, body_bytes)) {
       response = last_answer(std::move(*refused));
-    } else if (const std::string machine = machine_of_socket(request); beast::websocket::is_upgrade(request) && !machine.empty()) {
+    } else if (const std::string machine = machine_of_socket(request);
+               beast::websocket::is_upgrade(request) && !machine.empty()) {
       co_await bridge_.serve_socket(std::move(stream), request, machine);
       co_return;
     } else if (beast::websocket::is_upgrade(request)) {
@@ -106,7 +117,8 @@ boost::asio::awaitable<void> HttpServer::serve_connection(Socket socket) {
         response = co_await receive_and_answer(stream, buffer, head);
       } catch (const std::exception& mistake) {
         std::cerr << "formwright: " << text_of(request.target()) << ": " << mistake.what() << std::endl;
-        response = last_answer(error_response(request, http::status::internal_server_error, "internal", "", "The worker made a mistake: its terminal says which."));
+        response = last_answer(error_response(request, http::status::internal_server_error, "internal", "",
+                                              "The worker made a mistake: its terminal says which."));
       }
     }
     stream.expires_after(10min);
@@ -138,15 +150,18 @@ boost::asio::awaitable<void> HttpServer::finish_sending(beast::tcp_stream& strea
   std::uint64_t drained = 0;
   stream.expires_after(5s);
   while (!error && drained < most_drained_bytes)
-    drained += co_await stream.async_read_some(boost::asio::buffer(unread), boost::asio::redirect_error(use_awaitable, error));
+    drained +=
+        co_await stream.async_read_some(boost::asio::buffer(unread), boost::asio::redirect_error(use_awaitable, error));
 }
 
-boost::asio::awaitable<Response> HttpServer::receive_and_answer(beast::tcp_stream& stream, beast::flat_buffer& buffer, http::request_parser<http::empty_body>& head) {
+boost::asio::awaitable<Response> HttpServer::receive_and_answer(beast::tcp_stream& stream, beast::flat_buffer& buffer,
+                                                                http::request_parser<http::empty_body>& head) {
   const Head request = head.get();
   boost::system::error_code error;
   if (beast::iequals(request[http::field::expect], "100-continue")) {
     static constexpr std::string_view go_on = "HTTP/1.1 100 Continue\r\n\r\n";
-    co_await boost::asio::async_write(stream, boost::asio::buffer(go_on.data(), go_on.size()), boost::asio::redirect_error(use_awaitable, error));
+    co_await boost::asio::async_write(stream, boost::asio::buffer(go_on.data(), go_on.size()),
+                                      boost::asio::redirect_error(use_awaitable, error));
   }
   if (is_upload(request)) {
     Response answer = co_await receive_upload(stream, buffer, head);
@@ -157,8 +172,11 @@ boost::asio::awaitable<Response> HttpServer::receive_and_answer(beast::tcp_strea
   stream.expires_after(30s);
   co_await http::async_read(stream, buffer, parser, boost::asio::redirect_error(use_awaitable, error));
   if (error == http::error::body_limit || error == http::error::buffer_overflow)
-    co_return last_answer(error_response(request, http::status::payload_too_large, "invalid_input", "", "The message is too large: send meshes as blobs."));
-  if (error) co_return last_answer(error_response(request, http::status::bad_request, "invalid_input", "", "The request was cut off or is not HTTP."));
+    co_return last_answer(error_response(request, http::status::payload_too_large, "invalid_input", "",
+                                         "The message is too large: send meshes as blobs."));
+  if (error)
+    co_return last_answer(error_response(request, http::status::bad_request, "invalid_input", "",
+                                         "The request was cut off or is not HTTP."));
   constexpr std::string_view machines = "/api/machines";
   const std::string target = text_of(request.target()), path = target.substr(0, target.find('?'));
   if (path == machines || path.starts_with("/api/machines/")) {
@@ -169,7 +187,8 @@ boost::asio::awaitable<Response> HttpServer::receive_and_answer(beast::tcp_strea
   co_return answer(request, parser.get().body());
 }
 
-boost::asio::awaitable<Response> HttpServer::receive_upload(beast::tcp_stream& stream, beast::flat_buffer& buffer, http::request_parser<http::empty_body>& head) {
+boost::asio::awaitable<Response> HttpServer::receive_upload(beast::tcp_stream& stream, beast::flat_buffer& buffer,
+                                                            http::request_parser<http::empty_body>& head) {
   const Head request = head.get();
   const UploadFile received(store_.temporary_path());
   boost::system::error_code error;
@@ -182,11 +201,18 @@ boost::asio::awaitable<Response> HttpServer::receive_upload(beast::tcp_stream& s
   parser.get().body().close();
   if (error == http::error::body_limit) co_return last_answer(upload_too_large(request));
   if (error == boost::system::errc::no_space_on_device)
-    co_return last_answer(error_response(request, http::status::insufficient_storage, "internal", "", "The disk is full: make room and try again."));
-  if (error) co_return last_answer(error_response(request, http::status::bad_request, "invalid_input", "mesh", "The upload was cut off: try again."));
+    co_return last_answer(error_response(request, http::status::insufficient_storage, "internal", "",
+                                         "The disk is full: make room and try again."));
+  if (error)
+    co_return last_answer(error_response(request, http::status::bad_request, "invalid_input", "mesh",
+                                         "The upload was cut off: try again."));
   // Hashing a large file takes a moment, and others are waiting: not on this thread.
   const std::string found = co_await boost::asio::co_spawn(
-      hashing_, [](std::filesystem::path path) -> boost::asio::awaitable<std::string> { co_return sha256_of_file(path); }(received.path), use_awaitable);
+      hashing_,
+      [](std::filesystem::path path) -> boost::asio::awaitable<std::string> {
+        co_return sha256_of_file(path);
+      }(received.path),
+      use_awaitable);
   co_return accept_upload(request, blob_hash(request), received.path, found);
 }
 

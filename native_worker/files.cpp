@@ -21,12 +21,17 @@
 
 namespace formwright {
 
-std::shared_ptr<const Bytes> read_file(const std::filesystem::path& path, const std::string& where, std::uintmax_t limit_bytes) {
+std::shared_ptr<const Bytes> read_file(const std::filesystem::path& path, const std::string& where,
+                                       std::uintmax_t limit_bytes) {
   std::error_code status;
-  if (!std::filesystem::exists(path, status)) throw Error(ErrorCode::invalid_input, where, "There is no file " + path.string() + ": check the name.");
-  if (!std::filesystem::is_regular_file(path, status)) throw Error(ErrorCode::invalid_input, where, path.string() + " is not a file: name a mesh file.");
+  if (!std::filesystem::exists(path, status))
+    throw Error(ErrorCode::invalid_input, where, "There is no file " + path.string() + ": check the name.");
+  if (!std::filesystem::is_regular_file(path, status))
+    throw Error(ErrorCode::invalid_input, where, path.string() + " is not a file: name a mesh file.");
   const std::uintmax_t size = std::filesystem::file_size(path, status);
-  if (size > limit_bytes) throw Error(ErrorCode::invalid_input, where, path.string() + " is larger than " + std::to_string(limit_bytes >> 20) + " MB: simplify it first.");
+  if (size > limit_bytes)
+    throw Error(ErrorCode::invalid_input, where,
+                path.string() + " is larger than " + std::to_string(limit_bytes >> 20) + " MB: simplify it first.");
   std::ifstream stream(path, std::ios::binary);
   auto bytes = std::make_shared<Bytes>(static_cast<std::size_t>(size));
   stream.read(reinterpret_cast<char*>(bytes->data()), static_cast<std::streamsize>(size));
@@ -40,7 +45,8 @@ void write_file(const std::filesystem::path& path, ByteView bytes) {
     const std::string reason = std::strerror(errno);
     std::error_code ignored;
     std::filesystem::remove(temporary, ignored);
-    throw Error(ErrorCode::invalid_input, "out", path.string() + " cannot be " + what + " (" + reason + "): choose another folder or make room.");
+    throw Error(ErrorCode::invalid_input, "out",
+                path.string() + " cannot be " + what + " (" + reason + "): choose another folder or make room.");
   };
   const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (descriptor < 0) fail("written");
@@ -62,7 +68,8 @@ void write_file(const std::filesystem::path& path, ByteView bytes) {
   if (std::rename(temporary.c_str(), path.c_str()) != 0) fail("put in its place");
 }
 
-std::shared_ptr<const Bytes> pack_folder(const std::filesystem::path& folder, const std::vector<std::string>& names, const std::string& where) {
+std::shared_ptr<const Bytes> pack_folder(const std::filesystem::path& folder, const std::vector<std::string>& names,
+                                         const std::string& where) {
   std::vector<std::shared_ptr<const Bytes>> kept;
   std::map<std::string, ByteView> files;
   for (const std::string& name : names) {
@@ -88,7 +95,8 @@ void ResultFolder::keep(const std::string& key, const Bytes& result) const {
   std::filesystem::create_directories(folder_, status);
   try {
     // Threads of one process may keep the same key at once: each writes to a name of its own.
-    const std::filesystem::path own = folder_ / (key + "-" + std::to_string(std::hash<std::thread::id>{}(std::this_thread::get_id())));
+    const std::filesystem::path own =
+        folder_ / (key + "-" + std::to_string(std::hash<std::thread::id>{}(std::this_thread::get_id())));
     write_file(own, result);
     std::filesystem::rename(own, folder_ / key, status);
   } catch (const Error&) {
@@ -106,7 +114,8 @@ bool runs(long process) {
   std::string text;
   if (!std::getline(file, text)) return true;  // no /proc here, or not ours to read
   const std::size_t name_end = text.rfind(')');
-  return name_end == std::string::npos || name_end + 2 >= text.size() || (text[name_end + 2] != 'Z' && text[name_end + 2] != 'X');
+  return name_end == std::string::npos || name_end + 2 >= text.size() ||
+         (text[name_end + 2] != 'Z' && text[name_end + 2] != 'X');
 }
 
 }  // namespace
@@ -153,7 +162,9 @@ void share_results(const ResultFolder& folder, Host& host) {
 }
 
 std::string sha256_of_file(const std::filesystem::path& path) {
-  const auto fail = [&] { return Error(ErrorCode::internal, "", path.string() + " cannot be read (" + std::strerror(errno) + ")."); };
+  const auto fail = [&] {
+    return Error(ErrorCode::internal, "", path.string() + " cannot be read (" + std::strerror(errno) + ").");
+  };
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) throw fail();
   const std::size_t size = std::filesystem::file_size(path);

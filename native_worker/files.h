@@ -13,23 +13,28 @@
 namespace formwright {
 
 /// Throws Error{invalid_input, where} when the file cannot be read or is larger than `limit_bytes`.
-std::shared_ptr<const Bytes> read_file(const std::filesystem::path& path, const std::string& where, std::uintmax_t limit_bytes = std::uintmax_t{4} << 30);
+std::shared_ptr<const Bytes> read_file(const std::filesystem::path& path, const std::string& where,
+                                       std::uintmax_t limit_bytes = std::uintmax_t{4} << 30);
 
-/// Throws Error{invalid_input, "out"} when the file cannot be written (no space, no permission); nothing is left behind.
+/// Throws Error{invalid_input, "out"} when the file cannot be written (no space, no permission); nothing is left
+/// behind.
 void write_file(const std::filesystem::path& path, ByteView bytes);
 
-/// A zip of these files of a folder (job/file_pack.h). Throws Error{invalid_input, where} naming the file that is missing.
-std::shared_ptr<const Bytes> pack_folder(const std::filesystem::path& folder, const std::vector<std::string>& names, const std::string& where);
+/// A zip of these files of a folder (job/file_pack.h). Throws Error{invalid_input, where} naming the file that is
+/// missing.
+std::shared_ptr<const Bytes> pack_folder(const std::filesystem::path& folder, const std::vector<std::string>& names,
+                                         const std::string& where);
 
-/// Intermediate results as files in a folder, which is made when it is needed. Safe for several processes at once: results are put in
-/// their place whole, and the same key always means the same bytes. A folder that cannot be written keeps nothing.
+/// Intermediate results as files in a folder, which is made when it is needed. Safe for several processes at once:
+/// results are put in their place whole, and the same key always means the same bytes. A folder that cannot be written
+/// keeps nothing.
 class ResultFolder {
  public:
   explicit ResultFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
   std::optional<Bytes> find(const std::string& key) const;
   void keep(const std::string& key, const Bytes& result) const;
-  /// True for the first process that asks, until it keeps or releases. A claim whose process is gone (on this machine), or that is
-  /// older than ten minutes, counts no more.
+  /// True for the first process that asks, until it keeps or releases. A claim whose process is gone (on this machine),
+  /// or that is older than ten minutes, counts no more.
   bool claim(const std::string& key) const;
   void release(const std::string& key) const;
 

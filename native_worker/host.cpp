@@ -5,7 +5,9 @@
 
 namespace formwright {
 
-std::string json_text(const Json& value, int indent) { return value.dump(indent, ' ', false, Json::error_handler_t::replace); }
+std::string json_text(const Json& value, int indent) {
+  return value.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
 
 double peak_memory_mb() {
   rusage usage{};

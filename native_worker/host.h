@@ -5,7 +5,8 @@
 #include "base/json.h"
 
 namespace formwright {
-/// JSON as text. Bytes that are not UTF-8 (a file's name, a word of its content) are replaced: nlohmann's dump() throws.
+/// JSON as text. Bytes that are not UTF-8 (a file's name, a word of its content) are replaced: nlohmann's dump()
+/// throws.
 std::string json_text(const Json& value, int indent = -1);
 
 /// Largest resident size of this process so far.

@@ -22,8 +22,15 @@ constexpr double requests_per_second = 400, request_burst = 1200;
 }  // namespace
 
 HttpServer::HttpServer(boost::asio::io_context& io, const ServerOptions& options)
-    : io_(io), options_(options), acceptor_(io), token_(random_hex(24)), store_(options.data), queue_(io, store_, [this](const Json& m) { tell_pages(m); }), bridge_(io, options.data, store_),
-      rate_budget_(request_burst), rate_time_(std::chrono::steady_clock::now()) {
+    : io_(io),
+      options_(options),
+      acceptor_(io),
+      token_(random_hex(24)),
+      store_(options.data),
+      queue_(io, store_, [this](const Json& m) { tell_pages(m); }),
+      bridge_(io, options.data, store_),
+      rate_budget_(request_burst),
+      rate_time_(std::chrono::steady_clock::now()) {
   const boost::asio::ip::tcp::endpoint endpoint(boost::asio::ip::address_v4::loopback(), options.port);
   boost::system::error_code error;
   acceptor_.open(endpoint.protocol(), error);
@@ -31,7 +38,9 @@ HttpServer::HttpServer(boost::asio::io_context& io, const ServerOptions& options
   if (!error) acceptor_.bind(endpoint, error);
   if (!error) acceptor_.listen(boost::asio::socket_base::max_listen_connections, error);
   if (error)
-    throw Error(ErrorCode::invalid_input, "--port", "Port " + std::to_string(options.port) + " cannot be used (" + error.message() + "): choose another with --port, or 0 for any.");
+    throw Error(ErrorCode::invalid_input, "--port",
+                "Port " + std::to_string(options.port) + " cannot be used (" + error.message() +
+                    "): choose another with --port, or 0 for any.");
   port_ = acceptor_.local_endpoint().port();
 }
 
@@ -95,7 +104,8 @@ bool HttpServer::token_in_subprotocol(const Head& head, std::string_view wanted)
 
 bool HttpServer::within_rate() {
   const auto now = std::chrono::steady_clock::now();
-  rate_budget_ = std::min(request_burst, rate_budget_ + requests_per_second * std::chrono::duration<double>(now - rate_time_).count());
+  rate_budget_ = std::min(request_burst,
+                          rate_budget_ + requests_per_second * std::chrono::duration<double>(now - rate_time_).count());
   rate_time_ = now;
   if (rate_budget_ < 1) return false;
   rate_budget_ -= 1;

@@ -24,8 +24,8 @@
 namespace formwright {
 
 struct ServerOptions {
-  unsigned short port = 8731;              // 0: any free one
-  std::filesystem::path web;               // folder of the built page
+  unsigned short port = 8731;  // 0: any free one
+  std::filesystem::path web;   // folder of the built page
   std::filesystem::path data;
   std::uint64_t upload_limit_bytes = std::uint64_t{1} << 30;
 };
@@ -55,8 +55,10 @@ class HttpServer {
   boost::asio::awaitable<void> accept_loop();
   boost::asio::awaitable<void> serve_connection(Socket socket);
   boost::asio::awaitable<void> serve_page_socket(std::shared_ptr<PageSocket> page, Head head);
-  boost::asio::awaitable<Response> receive_and_answer(beast::tcp_stream& stream, beast::flat_buffer& buffer, http::request_parser<http::empty_body>& head);
-  boost::asio::awaitable<Response> receive_upload(beast::tcp_stream& stream, beast::flat_buffer& buffer, http::request_parser<http::empty_body>& head);
+  boost::asio::awaitable<Response> receive_and_answer(beast::tcp_stream& stream, beast::flat_buffer& buffer,
+                                                      http::request_parser<http::empty_body>& head);
+  boost::asio::awaitable<Response> receive_upload(beast::tcp_stream& stream, beast::flat_buffer& buffer,
+                                                  http::request_parser<http::empty_body>& head);
   boost::asio::awaitable<void> finish_sending(beast::tcp_stream& stream);
 
   // Who may speak. What is refused is refused before its body is read.
@@ -72,7 +74,8 @@ class HttpServer {
   Response answer(const Head& head, const std::string& body);
   Response answer_jobs(const Head& head, const std::string& path, const std::string& body);
   Response answer_blob(const Head& head, const std::string& sha256);
-  Response accept_upload(const Head& head, const std::string& sha256, const std::filesystem::path& received, const std::string& found_hash);
+  Response accept_upload(const Head& head, const std::string& sha256, const std::filesystem::path& received,
+                         const std::string& found_hash);
   Response page_file(const Head& head, const std::string& path);
   void tell_pages(const Json& message);
   void write_next(const std::shared_ptr<PageSocket>& page);

@@ -18,7 +18,8 @@ using Head = http::request<http::empty_body>;
 
 inline std::string text_of(boost::core::string_view view) { return {view.data(), view.size()}; }
 
-TextResponse text_response(const Head& head, http::status status, std::string body, const std::string& type = "application/json");
+TextResponse text_response(const Head& head, http::status status, std::string body,
+                           const std::string& type = "application/json");
 TextResponse error_response(const Head& head, http::status status, const std::string& code, const std::string& where,
                             const std::string& message);
 

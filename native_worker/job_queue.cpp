@@ -20,7 +20,9 @@ namespace {
 constexpr auto cancel_patience = std::chrono::milliseconds(1500);
 constexpr int most_attempts = 2;
 
-Json error_message(const char* code, const std::string& sentence) { return {{"error", {{"code", code}, {"where", ""}, {"message", sentence}}}}; }
+Json error_message(const char* code, const std::string& sentence) {
+  return {{"error", {{"code", code}, {"where", ""}, {"message", sentence}}}};
+}
 
 }  // namespace
 
@@ -75,7 +77,8 @@ void JobQueue::cancel(const std::string& id) {
 
 void JobQueue::start_process() {
   int to_child[2], from_child[2];
-  if (::pipe2(to_child, O_CLOEXEC) != 0) throw Error(ErrorCode::internal, "", "No pipe to the solver process could be made.");
+  if (::pipe2(to_child, O_CLOEXEC) != 0)
+    throw Error(ErrorCode::internal, "", "No pipe to the solver process could be made.");
   if (::pipe2(from_child, O_CLOEXEC) != 0) {
     ::close(to_child[0]);
     ::close(to_child[1]);
@@ -84,7 +87,8 @@ void JobQueue::start_process() {
   process_ = ::fork();
   if (process_ < 0) {
     for (const int descriptor : {to_child[0], to_child[1], from_child[0], from_child[1]}) ::close(descriptor);
-    throw Error(ErrorCode::internal, "", "The solver process could not be started: the system has no room for another.");
+    throw Error(ErrorCode::internal, "",
+                "The solver process could not be started: the system has no room for another.");
   }
   if (process_ == 0) {
     ::dup2(to_child[0], STDIN_FILENO);
@@ -111,7 +115,9 @@ void JobQueue::start_next() {
     StoredJob* job = store_.find(id);
     if (!job || job->finished()) continue;
     if (job->attempts >= most_attempts) {
-      finish(*job, error_message("internal", "This job stopped the solver twice and is not tried again: simplify the model, and report it."));
+      finish(*job, error_message(
+                       "internal",
+                       "This job stopped the solver twice and is not tried again: simplify the model, and report it."));
       continue;
     }
     try {
@@ -133,27 +139,38 @@ void JobQueue::start_next() {
     for (const auto& [name, input] : inputs.items())
       if (input.contains("sha256") && std::filesystem::exists(store_.blob_path(input["sha256"].get<std::string>())))
         blobs[input["sha256"].get<std::string>()] = store_.blob_path(input["sha256"].get<std::string>()).string();
-    send({{"run", id}, {"job", job->job}, {"blobs", blobs}, {"outputs", store_.outputs_folder(id).string()}, {"results", store_.results_folder().string()}});
+    send({{"run", id},
+          {"job", job->job},
+          {"blobs", blobs},
+          {"outputs", store_.outputs_folder(id).string()},
+          {"results", store_.results_folder().string()}});
   }
 }
 
 void JobQueue::read_line() {
-  boost::asio::async_read_until(*output_, boost::asio::dynamic_buffer(incoming_), '\n',
-                                [this, generation = generation_](const boost::system::error_code& error, std::size_t length) {
-                                  if (generation != generation_) return;
-                                  if (error == boost::asio::error::operation_aborted) return;
-                                  if (error) return process_ended();
-                                  const Json message = Json::parse(incoming_.substr(0, length), nullptr, false);
-                                  incoming_.erase(0, length);
-                                  if (message.is_object()) handle(message);
-                                  if (generation == generation_) read_line();
-                                });
+  boost::asio::async_read_until(
+      *output_, boost::asio::dynamic_buffer(incoming_), '\n',
+      [this, generation = generation_](const boost::system::error_code& error, std::size_t length) {
+        if (generation != generation_) return;
+        if (error == boost::asio::error::operation_aborted) return;
+        if (error) return process_ended();
+        const Json message = Json::parse(incoming_.substr(0, length), nullptr, false);
+        incoming_.erase(0, length);
+        if (message.is_object()) handle(message);
+        if (generation == generation_) read_line();
+      });
 }
 
 void JobQueue::handle(const Json& message) {
   if (message.contains("progress") && message["progress"] == running_) {
-    Json progress = {{"type", "progress"}, {"id", running_}, {"fraction", message["fraction"]}, {"stage", message["stage"]}, {"seconds_left", message["seconds_left"]}};
-    if (StoredJob* job = store_.find(running_)) job->progress = {{"fraction", message["fraction"]}, {"stage", message["stage"]}, {"seconds_left", message["seconds_left"]}};
+    Json progress = {{"type", "progress"},
+                     {"id", running_},
+                     {"fraction", message["fraction"]},
+                     {"stage", message["stage"]},
+                     {"seconds_left", message["seconds_left"]}};
+    if (StoredJob* job = store_.find(running_))
+      job->progress = {
+          {"fraction", message["fraction"]}, {"stage", message["stage"]}, {"seconds_left", message["seconds_left"]}};
     tell_(progress);
   } else if (message.contains("finished") && message["finished"] == running_) {
     StoredJob* job = store_.find(running_);
@@ -179,17 +196,28 @@ void JobQueue::process_ended() {
   patience_.cancel();
   StoredJob* job = running_.empty() ? nullptr : store_.find(running_);
   running_.clear();
-  if (job && stopped_by_us) finish(*job, error_message("cancelled", "Cancelled; the solver process had to be stopped."));
+  if (job && stopped_by_us)
+    finish(*job, error_message("cancelled", "Cancelled; the solver process had to be stopped."));
   else if (job && killed)
-    finish(*job, error_message("out_of_memory", "The system stopped the solver process, most likely for lack of memory: use a smaller model. Nothing else is lost."));
+    finish(
+        *job,
+        error_message(
+            "out_of_memory",
+            "The system stopped the solver process, most likely for lack of memory: use a smaller model. Nothing else is lost."));
   else if (job)
-    finish(*job, error_message("internal", "The solver process stopped unexpectedly. Nothing else is lost; try a smaller model, and report this one."));
+    finish(
+        *job,
+        error_message(
+            "internal",
+            "The solver process stopped unexpectedly. Nothing else is lost; try a smaller model, and report this one."));
   start_next();
 }
 
 void JobQueue::finish(StoredJob& job, Json result) {
   const Json error = result.value("error", Json());
-  job.state = !error.is_object() ? JobState::done : error.value("code", "") == "cancelled" ? JobState::cancelled : JobState::failed;
+  job.state = !error.is_object()                       ? JobState::done
+              : error.value("code", "") == "cancelled" ? JobState::cancelled
+                                                       : JobState::failed;
   job.result = std::move(result);
   job.progress = nullptr;
   store_.save(job);
@@ -206,11 +234,13 @@ void JobQueue::send(const Json& message) {
 }
 
 void JobQueue::flush() {
-  boost::asio::async_write(*input_, boost::asio::buffer(outgoing_.front()), [this, generation = generation_](const boost::system::error_code& error, std::size_t) {
-    if (generation != generation_ || error) return;  // a broken pipe shows as the end of the child's output too
-    outgoing_.pop_front();
-    if (!outgoing_.empty()) flush();
-  });
+  boost::asio::async_write(*input_, boost::asio::buffer(outgoing_.front()),
+                           [this, generation = generation_](const boost::system::error_code& error, std::size_t) {
+                             if (generation != generation_ || error)
+                               return;  // a broken pipe shows as the end of the child's output too
+                             outgoing_.pop_front();
+                             if (!outgoing_.empty()) flush();
+                           });
 }
 
 }  // namespace formwright

@@ -96,9 +96,12 @@ int run_jobs_for_server() {
     const Json request = inbox.next();
     const std::string id = request["run"].get<std::string>();
     Host host{[&](const Progress& p) {
-                      send({{"progress", id}, {"fraction", p.fraction}, {"stage", p.stage}, {"seconds_left", p.seconds_left ? Json(*p.seconds_left) : Json(nullptr)}});
-                    },
-                    [&] { return inbox.cancelled(); }, peak_memory_mb};
+                send({{"progress", id},
+                      {"fraction", p.fraction},
+                      {"stage", p.stage},
+                      {"seconds_left", p.seconds_left ? Json(*p.seconds_left) : Json(nullptr)}});
+              },
+              [&] { return inbox.cancelled(); }, peak_memory_mb};
     if (request.contains("results")) share_results(ResultFolder(request["results"].get<std::string>()), host);
     Json answer = run_one(request, session, host);
     send({{"finished", id}, {"result", std::move(answer)}});

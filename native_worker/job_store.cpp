@@ -37,10 +37,13 @@ void remove_oldest(const std::filesystem::path& folder, double most_mb, const st
   }
 }
 
-double unix_seconds() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
+double unix_seconds() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
 
 std::optional<JobState> state_of(const std::string& name) {
-  for (const JobState state : {JobState::queued, JobState::running, JobState::done, JobState::failed, JobState::cancelled})
+  for (const JobState state :
+       {JobState::queued, JobState::running, JobState::done, JobState::failed, JobState::cancelled})
     if (name == to_string(state)) return state;
   return std::nullopt;
 }
@@ -84,7 +87,9 @@ JobStore::JobStore(std::filesystem::path folder) : folder_(std::move(folder)) {
   for (const char* part : {"blobs", "jobs", "uploads"}) {
     std::filesystem::create_directories(folder_ / part, status);
     if (!std::filesystem::is_directory(folder_ / part))
-      throw Error(ErrorCode::invalid_input, "--data", "The folder " + folder_.string() + " cannot be used (" + status.message() + "): choose another with --data.");
+      throw Error(
+          ErrorCode::invalid_input, "--data",
+          "The folder " + folder_.string() + " cannot be used (" + status.message() + "): choose another with --data.");
   }
   if (made_here) std::filesystem::permissions(folder_, std::filesystem::perms::owner_all, status);
   // Two workers would run each other's jobs. The system drops the lock with the process, however it ends.
@@ -92,10 +97,15 @@ JobStore::JobStore(std::filesystem::path folder) : folder_(std::move(folder)) {
   if (lock_ < 0 || ::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
     const bool taken = lock_ >= 0 && errno == EWOULDBLOCK;
     if (lock_ >= 0) ::close(lock_);
-    if (taken) throw Error(ErrorCode::invalid_input, "--data", "Another worker keeps its jobs in " + folder_.string() + ": use that one, or name another folder with --data.");
-    throw Error(ErrorCode::invalid_input, "--data", "The folder " + folder_.string() + " cannot be written to: choose another with --data.");
+    if (taken)
+      throw Error(ErrorCode::invalid_input, "--data",
+                  "Another worker keeps its jobs in " + folder_.string() +
+                      ": use that one, or name another folder with --data.");
+    throw Error(ErrorCode::invalid_input, "--data",
+                "The folder " + folder_.string() + " cannot be written to: choose another with --data.");
   }
-  for (const auto& left_over : std::filesystem::directory_iterator(folder_ / "uploads", status)) std::filesystem::remove(left_over.path(), status);
+  for (const auto& left_over : std::filesystem::directory_iterator(folder_ / "uploads", status))
+    std::filesystem::remove(left_over.path(), status);
   for (const auto& entry : std::filesystem::directory_iterator(folder_ / "jobs", status)) {
     if (!is_hex_name(entry.path().filename().string(), 32)) continue;
     if (auto job = read_job(entry.path())) jobs_.emplace(job->id, std::move(*job));
@@ -126,7 +136,8 @@ StoredJob* JobStore::find(const std::string& id) {
 std::vector<const StoredJob*> JobStore::newest_first() const {
   std::vector<const StoredJob*> list;
   for (const auto& [id, job] : jobs_) list.push_back(&job);
-  std::sort(list.begin(), list.end(), [](const StoredJob* a, const StoredJob* b) { return a->submitted_unix_s > b->submitted_unix_s; });
+  std::sort(list.begin(), list.end(),
+            [](const StoredJob* a, const StoredJob* b) { return a->submitted_unix_s > b->submitted_unix_s; });
   return list;
 }
 
@@ -140,8 +151,11 @@ std::vector<std::string> JobStore::unfinished_oldest_first() const {
 
 void JobStore::save(StoredJob& job) {
   if (job.finished() && job.finished_unix_s == 0) job.finished_unix_s = unix_seconds();
-  const Json text = {{"state", to_string(job.state)}, {"submitted_unix_s", job.submitted_unix_s}, {"finished_unix_s", job.finished_unix_s},
-                     {"attempts", job.attempts}, {"job", job.job}};
+  const Json text = {{"state", to_string(job.state)},
+                     {"submitted_unix_s", job.submitted_unix_s},
+                     {"finished_unix_s", job.finished_unix_s},
+                     {"attempts", job.attempts},
+                     {"job", job.job}};
   const std::filesystem::path folder = folder_ / "jobs" / job.id;
   try {
     if (job.finished()) write_file(folder / "result.json", as_bytes(job.result.dump()));

@@ -20,16 +20,17 @@ struct StoredJob {
   std::string id;
   JobState state = JobState::queued;
   double submitted_unix_s = 0, finished_unix_s = 0;
-  int attempts = 0;      // how often it was started; a job that took the process down twice is not tried again
-  Json job;              // the message as it came
-  Json result;           // {"report", "outputs"} or {"error"}; null until finished
-  Json progress;         // last progress, in memory only
+  int attempts = 0;  // how often it was started; a job that took the process down twice is not tried again
+  Json job;          // the message as it came
+  Json result;       // {"report", "outputs"} or {"error"}; null until finished
+  Json progress;     // last progress, in memory only
   bool finished() const { return state == JobState::done || state == JobState::failed || state == JobState::cancelled; }
 };
 
 class JobStore {
  public:
-  /// Reads what is there. Throws Error{invalid_input, "--data"} when the folder cannot be used, or another worker uses it.
+  /// Reads what is there. Throws Error{invalid_input, "--data"} when the folder cannot be used, or another worker uses
+  /// it.
   explicit JobStore(std::filesystem::path folder);
   JobStore(const JobStore&) = delete;
   JobStore& operator=(const JobStore&) = delete;

@@ -36,7 +36,8 @@ class ProgressLine {
   void show(const Progress& progress) {
     if (quiet_) return;
     if (!terminal_) {
-      if (progress.stage != stage_) std::fprintf(stderr, "%3.0f %%  %s\n", 100 * progress.fraction, progress.stage.c_str());
+      if (progress.stage != stage_)
+        std::fprintf(stderr, "%3.0f %%  %s\n", 100 * progress.fraction, progress.stage.c_str());
       stage_ = progress.stage;
       return;
     }
@@ -45,7 +46,8 @@ class ProgressLine {
     std::string bar;
     for (int i = 0; i < width; ++i) bar += i < filled ? "█" : "░";
     std::fprintf(stderr, "\r\033[K%s %3.0f %%  %s", bar.c_str(), 100 * progress.fraction, progress.stage.c_str());
-    if (progress.seconds_left && *progress.seconds_left > 1) std::fprintf(stderr, ", about %.0f s left", *progress.seconds_left);
+    if (progress.seconds_left && *progress.seconds_left > 1)
+      std::fprintf(stderr, ", about %.0f s left", *progress.seconds_left);
     shown_ = true;
   }
   void clear() {
@@ -69,21 +71,24 @@ int run_operation(const Operation& operation, const std::vector<std::string>& wo
     const auto folder = command.folders.find(name);
     auto bytes = folder == command.folders.end() ? read_file(path, name) : pack_folder(path, folder->second, name);
     const std::string hash = sha256_hex(*bytes);
-    command.message["inputs"][name] = {{"sha256", hash}, {"file_name", (path.has_filename() ? path : path.parent_path()).filename().string()}};
+    command.message["inputs"][name] = {
+        {"sha256", hash}, {"file_name", (path.has_filename() ? path : path.parent_path()).filename().string()}};
     blobs[hash] = std::move(bytes);
   }
   if (const auto error = check_job(command.message)) throw Error(error->code, error->where, error->message);
   std::error_code status;
   std::filesystem::create_directories(command.out, status);
   if (!std::filesystem::is_directory(command.out))
-    throw Error(ErrorCode::invalid_input, "--out", "The folder " + command.out.string() + " cannot be made (" + status.message() + "): choose another.");
+    throw Error(ErrorCode::invalid_input, "--out",
+                "The folder " + command.out.string() + " cannot be made (" + status.message() + "): choose another.");
 
   ProgressLine line(command.quiet);
   Session session;
   Host host{[&](const Progress& progress) { line.show(progress); }, [] { return interrupted.load(); }, peak_memory_mb};
   const ResultFolder results(command.results.empty() ? command.out / "simulations" : command.results);
   if (operation.keeps_results) share_results(results, host);
-  JobResult result = run_job(command.message, [&](const std::string& hash) { return blobs[hash]; }, session, host);
+  JobResult result = run_job(
+      command.message, [&](const std::string& hash) { return blobs[hash]; }, session, host);
   line.clear();
   if (result.error) throw Error(result.error->code, result.error->where, result.error->message);
   const auto put = [&](const std::string& name, ByteView bytes) {
@@ -119,7 +124,8 @@ int run(const std::vector<std::string>& words) {
       std::cout << operation_json(*operation).dump(2) << "\n";
       return 0;
     }
-    throw Error(ErrorCode::invalid_input, words[1], "There is no operation called " + words[1] + ": see formwright list.");
+    throw Error(ErrorCode::invalid_input, words[1],
+                "There is no operation called " + words[1] + ": see formwright list.");
   }
   const std::vector<std::string> rest(words.begin() + 1, words.end());
   if (words[0] == "serve") return serve(rest);

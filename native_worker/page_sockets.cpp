@@ -14,7 +14,8 @@ boost::asio::awaitable<void> HttpServer::serve_page_socket(std::shared_ptr<PageS
   boost::system::error_code error;
   beast::get_lowest_layer(page->stream).expires_never();
   page->stream.set_option(beast::websocket::stream_base::timeout::suggested(beast::role_type::server));
-  page->stream.set_option(beast::websocket::stream_base::decorator([](beast::websocket::response_type& r) { r.set(http::field::sec_websocket_protocol, "formwright.v1"); }));
+  page->stream.set_option(beast::websocket::stream_base::decorator(
+      [](beast::websocket::response_type& r) { r.set(http::field::sec_websocket_protocol, "formwright.v1"); }));
   page->stream.read_message_max(64 * 1024);
   co_await page->stream.async_accept(head, boost::asio::redirect_error(use_awaitable, error));
   if (error) co_return;
@@ -48,10 +49,11 @@ void HttpServer::tell_pages(const Json& message) {
 
 void HttpServer::write_next(const std::shared_ptr<PageSocket>& page) {
   page->stream.text(true);
-  page->stream.async_write(boost::asio::buffer(*page->outgoing.front()), [this, page](const boost::system::error_code& error, std::size_t) {
-    page->outgoing.pop_front();
-    if (!error && !page->outgoing.empty()) write_next(page);
-  });
+  page->stream.async_write(boost::asio::buffer(*page->outgoing.front()),
+                           [this, page](const boost::system::error_code& error, std::size_t) {
+                             page->outgoing.pop_front();
+                             if (!error && !page->outgoing.empty()) write_next(page);
+                           });
 }
 
 void HttpServer::hear_page(const std::string& text) {

@@ -11,7 +11,8 @@ namespace formwright {
 std::string random_hex(int bytes) {
   std::array<unsigned char, 64> data{};
   const auto count = static_cast<std::size_t>(bytes);
-  if (count > data.size() || getrandom(data.data(), count, 0) != static_cast<ssize_t>(count)) throw std::runtime_error("the system gave no random numbers");
+  if (count > data.size() || getrandom(data.data(), count, 0) != static_cast<ssize_t>(count))
+    throw std::runtime_error("the system gave no random numbers");
   std::string text;
   for (std::size_t i = 0; i < count; ++i) {
     text += "0123456789abcdef"[data[i] >> 4];

@@ -18,7 +18,8 @@ namespace {
 std::filesystem::path default_web_folder() {
   std::error_code status;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", status).parent_path();
-  for (const auto& folder : {program / "web", program.parent_path() / "web/dist", program.parent_path() / "share/formwright/web"})
+  for (const auto& folder :
+       {program / "web", program.parent_path() / "web/dist", program.parent_path() / "share/formwright/web"})
     if (std::filesystem::exists(folder / "index.html", status)) return folder;
   return {};
 }
@@ -37,14 +38,20 @@ ServerOptions read_options(const std::vector<std::string>& words) {
       char* end = nullptr;
       const long number = std::strtol(text.c_str(), &end, 10);
       if (text.empty() || *end != '\0' || number < least || number > most)
-        throw Error(ErrorCode::invalid_input, flag, flag + " must be a whole number from " + std::to_string(least) + " to " + std::to_string(most) + ".");
+        throw Error(
+            ErrorCode::invalid_input, flag,
+            flag + " must be a whole number from " + std::to_string(least) + " to " + std::to_string(most) + ".");
       return number;
     };
     if (words[i] == "--port") options.port = static_cast<unsigned short>(whole("--port", 0, 65535));
     else if (words[i] == "--web") options.web = value();
     else if (words[i] == "--data") options.data = value();
-    else if (words[i] == "--upload-limit-mb") options.upload_limit_bytes = static_cast<std::uint64_t>(whole("--upload-limit-mb", 1, 65536)) << 20;
-    else throw Error(ErrorCode::invalid_input, words[i], "There is no flag " + words[i] + ": serve has --port N, --web DIR, --data DIR and --upload-limit-mb N.");
+    else if (words[i] == "--upload-limit-mb")
+      options.upload_limit_bytes = static_cast<std::uint64_t>(whole("--upload-limit-mb", 1, 65536)) << 20;
+    else
+      throw Error(
+          ErrorCode::invalid_input, words[i],
+          "There is no flag " + words[i] + ": serve has --port N, --web DIR, --data DIR and --upload-limit-mb N.");
   }
   return options;
 }

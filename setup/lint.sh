@@ -7,7 +7,7 @@ set -euo pipefail
 cd "$FORMWRIGHT_ROOT"
 setup/native.sh --test
 say "formatting"
-git ls-files -z '*.cpp' '*.h' | xargs -0 clang-format --dry-run --Werror
+setup/format.sh --check
 say "shell scripts"
 shellcheck -x --source-path=SCRIPTDIR setup/*.sh .ci/run
 say "clang-tidy"

@@ -92,6 +92,7 @@ run_ctest() {  # preset, folder of its build
 
 main() {
   stage 'set-up' - setup/all.sh --test
+  stage 'C++ formatting' - setup/format.sh --check
   stage 'native build' - setup/build.sh native
   stage 'native tests' ctest run_ctest native build
   stage 'sanitizer build' - setup/build.sh asan

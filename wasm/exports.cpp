@@ -48,7 +48,8 @@ EMSCRIPTEN_KEEPALIVE void fw_blob_drop(const char* sha256) { blobs.erase(sha256)
 EMSCRIPTEN_KEEPALIVE const char* fw_run(const char* job) {
   last = {};
   const Host host{[](const Progress& p) { tell_progress(p.fraction, p.stage.c_str(), p.seconds_left.value_or(-1)); },
-                  [] { return asked_to_cancel() != 0; }, [] { return static_cast<double>(emscripten_get_heap_size()) / 1e6; }};
+                  [] { return asked_to_cancel() != 0; },
+                  [] { return static_cast<double>(emscripten_get_heap_size()) / 1e6; }};
   const Json message = Json::parse(job, nullptr, false);
   const auto find = [](const std::string& hash) -> std::shared_ptr<const Bytes> {
     const auto it = blobs.find(hash);

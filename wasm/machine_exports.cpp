@@ -62,7 +62,8 @@ EMSCRIPTEN_KEEPALIVE const char* fw_machine_new(const char* options) {
 EMSCRIPTEN_KEEPALIVE void fw_machine_drop(int handle) { talks.erase(handle); }
 
 /// `call`: {"call": "opened" | "closed" | "received" | "tick" | "load" | "command", ...}; answers {"state", "events"}.
-EMSCRIPTEN_KEEPALIVE const char* fw_machine_call(int handle, const char* call, const std::byte* data, std::size_t size, double now_s) {
+EMSCRIPTEN_KEEPALIVE const char* fw_machine_call(int handle, const char* call, const std::byte* data, std::size_t size,
+                                                 double now_s) {
   return guarded([&] {
     Talk& talk = talks.at(handle);
     MachineDriver& driver = *talk.driver;
@@ -97,7 +98,9 @@ EMSCRIPTEN_KEEPALIVE int fw_virtual_new(double bed_x_mm, double bed_y_mm, int mi
   return last_handle;
 }
 EMSCRIPTEN_KEEPALIVE void fw_virtual_drop(int handle) { virtual_machines.erase(handle); }
-EMSCRIPTEN_KEEPALIVE void fw_virtual_receive(int handle, const char* data, std::size_t size, double now_s) { virtual_machines.at(handle).receive({data, size}, now_s); }
+EMSCRIPTEN_KEEPALIVE void fw_virtual_receive(int handle, const char* data, std::size_t size, double now_s) {
+  virtual_machines.at(handle).receive({data, size}, now_s);
+}
 /// Lets time pass; the size of what the machine says.
 EMSCRIPTEN_KEEPALIVE std::size_t fw_virtual_advance(int handle, double now_s) {
   virtual_machines.at(handle).advance(now_s);

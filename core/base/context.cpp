@@ -9,7 +9,8 @@ namespace formwright {
 
 Context::Context() : Context(Host{}) {}
 
-Context::Context(Host host) : host_(std::move(host)), start_(Clock::now()), last_message_(start_ - std::chrono::hours(1)) {}
+Context::Context(Host host)
+    : host_(std::move(host)), start_(Clock::now()), last_message_(start_ - std::chrono::hours(1)) {}
 
 bool Context::cancelled() const { return host_.cancel_requested && host_.cancel_requested(); }
 
@@ -53,7 +54,9 @@ Context::Span Context::span(double from, double to, const std::string& stage) {
   return Span(*this, from, to);
 }
 
-std::optional<Bytes> Context::find_result(const std::string& key) const { return host_.find_result ? host_.find_result(key) : std::nullopt; }
+std::optional<Bytes> Context::find_result(const std::string& key) const {
+  return host_.find_result ? host_.find_result(key) : std::nullopt;
+}
 
 void Context::keep_result(const std::string& key, const Bytes& result) const {
   if (host_.keep_result) host_.keep_result(key, result);

@@ -13,21 +13,22 @@
 namespace formwright {
 
 struct Progress {
-  double fraction = 0;                  // of the whole job, 0 to 1, never falling
-  std::string stage;                    // what is being done, for a person: "Factorising"
-  std::optional<double> seconds_left;   // an estimate, once there is ground for one
+  double fraction = 0;                 // of the whole job, 0 to 1, never falling
+  std::string stage;                   // what is being done, for a person: "Factorising"
+  std::optional<double> seconds_left;  // an estimate, once there is ground for one
 };
 
 /// What the host (command line, worker, WASM) lends to a computation.
 struct Host {
-  std::function<void(const Progress&)> on_progress = {};   // may be empty; called from the job's thread
-  std::function<bool()> cancel_requested = {};             // may be empty; cheap, callable from any thread
-  std::function<double()> peak_memory_mb = {};         // may be empty
-  /// Results that outlive the job, by the hash of what they were made from. May be empty; called from any thread, must not throw.
+  std::function<void(const Progress&)> on_progress = {};  // may be empty; called from the job's thread
+  std::function<bool()> cancel_requested = {};            // may be empty; cheap, callable from any thread
+  std::function<double()> peak_memory_mb = {};            // may be empty
+  /// Results that outlive the job, by the hash of what they were made from. May be empty; called from any thread, must
+  /// not throw.
   std::function<std::optional<Bytes>(const std::string& key)> find_result = {};
   std::function<void(const std::string& key, const Bytes& result)> keep_result = {};
-  /// Several processes may share kept results: true when this one is to make what is missing, false while another is at it.
-  /// Whoever claims keeps or releases.
+  /// Several processes may share kept results: true when this one is to make what is missing, false while another is at
+  /// it. Whoever claims keeps or releases.
   std::function<bool(const std::string& key)> claim_result = {};
   std::function<void(const std::string& key)> release_result = {};
 };
@@ -86,9 +87,7 @@ class Context {
 class Stopwatch {
  public:
   Stopwatch() : start_(std::chrono::steady_clock::now()) {}
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
   double lap() {
     const double elapsed = seconds();
     start_ = std::chrono::steady_clock::now();

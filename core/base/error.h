@@ -11,7 +11,7 @@ enum class ErrorCode {
   could_not_solve,  // the input is fine, the numbers are not: singular, infeasible, not converged
   cancelled,
   out_of_memory,
-  internal,         // a bug of ours
+  internal,  // a bug of ours
 };
 
 /// What went wrong, where (the name of a parameter, an input or an output; may be empty) and one

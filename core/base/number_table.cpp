@@ -29,8 +29,8 @@ std::vector<std::string_view> fields_of(std::string_view line) {
 
 }  // namespace
 
-std::vector<std::vector<double>> read_number_table(ByteView csv, const std::string& file_name, const std::string& where, const std::vector<ColumnRule>& columns,
-                                                   std::size_t most_rows) {
+std::vector<std::vector<double>> read_number_table(ByteView csv, const std::string& file_name, const std::string& where,
+                                                   const std::vector<ColumnRule>& columns, std::size_t most_rows) {
   std::string_view text = as_text(csv);
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   std::vector<int> place(columns.size(), -1);
@@ -65,12 +65,15 @@ std::vector<std::vector<double>> read_number_table(ByteView csv, const std::stri
       if (at >= fields.size()) refuse("there are only " + std::to_string(fields.size()) + " columns.");
       const char* last = fields[at].data() + fields[at].size();
       const auto parsed = fast_float::from_chars(fields[at].data(), last, row[i]);
-      if (parsed.ec != std::errc() || parsed.ptr != last || !std::isfinite(row[i])) refuse("“" + columns[i].name + "” is not a number.");
+      if (parsed.ec != std::errc() || parsed.ptr != last || !std::isfinite(row[i]))
+        refuse("“" + columns[i].name + "” is not a number.");
     }
     rows.push_back(std::move(row));
     if (rows.size() > most_rows) refuse("more than " + std::to_string(most_rows) + " rows: keep every tenth.");
   }
-  if (rows.empty()) throw Error(ErrorCode::invalid_input, where, file_name + " has no rows: it needs a header and one line for each measured point.");
+  if (rows.empty())
+    throw Error(ErrorCode::invalid_input, where,
+                file_name + " has no rows: it needs a header and one line for each measured point.");
   return rows;
 }
 

@@ -22,7 +22,8 @@ namespace {
 thread_local int thread_limit = std::numeric_limits<int>::max();
 
 void run_alone(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
-  for (std::size_t begin = 0; begin < count; begin += std::min(grain, count - begin)) body(begin, begin + std::min(grain, count - begin));
+  for (std::size_t begin = 0; begin < count; begin += std::min(grain, count - begin))
+    body(begin, begin + std::min(grain, count - begin));
 }
 
 }  // namespace
@@ -113,8 +114,8 @@ class Pool {
     // Only helpers that came in are waited for: one that is still asleep is not needed any more.
     std::uint32_t gate = gate_.fetch_and(~open, std::memory_order_acq_rel) & ~open;
     while ((gate & (low_bits & ~open)) != 0) gate = changed(gate_, gate);
-    // A helper that kept this thread waiting for longer than all of a short loop took has been put aside for another program:
-    // short loops go better without it for a while, the longer the more often it happens.
+    // A helper that kept this thread waiting for longer than all of a short loop took has been put aside for another
+    // program: short loops go better without it for a while, the longer the more often it happens.
     if (done - start > long_loop) return;
     if (const auto waited = Clock::now() - done; waited > std::chrono::microseconds(300) && waited > done - start) {
       alone_until_ = done + waited + pause_;
@@ -144,7 +145,8 @@ class Pool {
         gate = changed(gate_, gate);
         continue;
       }
-      if (!gate_.compare_exchange_weak(gate, gate + one_helper, std::memory_order_acq_rel, std::memory_order_acquire)) continue;
+      if (!gate_.compare_exchange_weak(gate, gate + one_helper, std::memory_order_acq_rel, std::memory_order_acquire))
+        continue;
       helped = gate & ~low_bits;
       if (seats_.fetch_sub(1, std::memory_order_relaxed) > 0) loop_->work();
       gate = gate_.fetch_sub(one_helper, std::memory_order_acq_rel) - one_helper;
@@ -155,7 +157,7 @@ class Pool {
   std::mutex in_use_;
   Clock::time_point alone_until_{};  // guarded by in_use_, as is the next
   Clock::duration pause_ = least_pause;
-  Loop* loop_ = nullptr;             // written while no helper is inside
+  Loop* loop_ = nullptr;  // written while no helper is inside
   std::atomic<int> seats_{0};
   std::atomic<std::uint32_t> gate_{0};
 };
@@ -170,7 +172,8 @@ int thread_count() {
 void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
   if (count == 0) return;
   grain = std::max<std::size_t>(grain, 1);
-  const std::size_t threads = std::min<std::size_t>(static_cast<std::size_t>(std::min(thread_count(), thread_limit)), (count - 1) / grain + 1);
+  const std::size_t threads =
+      std::min<std::size_t>(static_cast<std::size_t>(std::min(thread_count(), thread_limit)), (count - 1) / grain + 1);
   if (threads <= 1 || inside_loop) return run_alone(count, grain, body);
   Loop loop(count, grain, body);
   Pool::instance().run(loop, static_cast<int>(threads) - 1);

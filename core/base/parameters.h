@@ -46,7 +46,7 @@ struct ParameterInfo {
   std::string name, label, unit, help, group;
   ParameterKind kind = ParameterKind::number;
   bool advanced = false;
-  double minimum = 0, maximum = 0;          // number, optional_number, integer; inclusive
+  double minimum = 0, maximum = 0;                // number, optional_number, integer; inclusive
   double slider_minimum = 0, slider_maximum = 0;  // the useful part of the range
   std::vector<std::string> choices, choice_labels;
   Json default_value;
@@ -98,8 +98,12 @@ constexpr auto parameter(std::string_view name, T Options::*member, std::string_
 template <class Derived, class... Parameters>
 constexpr auto inherit_parameters(const std::tuple<Parameters...>& base) {
   const auto lift = []<class Base, class T>(const Parameter<Base, T>& p) {
-    return Parameter<Derived, T>{p.name,   static_cast<T Derived::*>(p.member), p.label, p.unit_, p.minimum, p.maximum, p.help,
-                                 p.group_, p.advanced_, p.slider_minimum, p.slider_maximum};
+    return Parameter<Derived, T>{p.name,          static_cast<T Derived::*>(p.member),
+                                 p.label,         p.unit_,
+                                 p.minimum,       p.maximum,
+                                 p.help,          p.group_,
+                                 p.advanced_,     p.slider_minimum,
+                                 p.slider_maximum};
   };
   return std::apply([&](const auto&... p) { return std::tuple{lift(p)...}; }, base);
 }
@@ -153,7 +157,8 @@ T from_json_value(const ParameterInfo& info, const Json& value) {
     std::array<double, 3> result{};
     if (!value.is_array() || value.size() != 3) reject(info, "must be three numbers, such as [0, 0, 1]");
     for (std::size_t i = 0; i < 3; ++i) {
-      if (!value[i].is_number() || !std::isfinite(value[i].template get<double>())) reject(info, "must be three finite numbers");
+      if (!value[i].is_number() || !std::isfinite(value[i].template get<double>()))
+        reject(info, "must be three finite numbers");
       result[i] = value[i].template get<double>();
     }
     return result;

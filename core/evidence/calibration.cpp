@@ -12,9 +12,11 @@ namespace formwright {
 namespace {
 
 constexpr double half_log_likelihood = 1.92;  // of chi-square with one degree of freedom, 95 %
-constexpr double identified_share = 0.5;      // of the searched range that an identified parameter's interval may take at most
+constexpr double identified_share =
+    0.5;  // of the searched range that an identified parameter's interval may take at most
 
-std::vector<Eigen::VectorXd> take_noise(const ForwardModel& model, const Predictions& left, std::vector<NoiseEstimate>& noise) {
+std::vector<Eigen::VectorXd> take_noise(const ForwardModel& model, const Predictions& left,
+                                        std::vector<NoiseEstimate>& noise) {
   std::vector<Eigen::VectorXd> weights;
   noise.clear();
   for (std::size_t object = 0; object < left.size(); ++object) {
@@ -24,8 +26,8 @@ std::vector<Eigen::VectorXd> take_noise(const ForwardModel& model, const Predict
   return weights;
 }
 
-/// The size of structure under which what is left is most probable, but no less than the model's own: contact alone makes simulations
-/// chatter by more than the mean of many points could tell.
+/// The size of structure under which what is left is most probable, but no less than the model's own: contact alone
+/// makes simulations chatter by more than the mean of many points could tell.
 std::size_t most_probable_structure(const ForwardModel& model, const MisfitOfAll& misfit, const Predictions& left) {
   const GramByStructure gram = misfit.gram(left, std::vector<Sensitivities>(left.size()));
   std::size_t best = 0;
@@ -51,8 +53,10 @@ double crossing(const std::vector<ProfilePoint>& points, std::size_t best, int s
   return points[inside].value;
 }
 
-/// Fixes each base parameter at values around the best, lets the others follow as the quadratic model has it, simulates, and compares.
-std::vector<ParameterProfile> profile(SimulationBag& bag, const ParameterFit& fit, const FitObjective& objective, Context& context) {
+/// Fixes each base parameter at values around the best, lets the others follow as the quadratic model has it,
+/// simulates, and compares.
+std::vector<ParameterProfile> profile(SimulationBag& bag, const ParameterFit& fit, const FitObjective& objective,
+                                      Context& context) {
   const ForwardModel& model = bag.model();
   static constexpr double offsets[] = {-6, -3, -1.5, -0.7, 0.7, 1.5, 3, 6};  // in probes
   const auto k = static_cast<Eigen::Index>(fit.free.size());
@@ -69,7 +73,9 @@ std::vector<ParameterProfile> profile(SimulationBag& bag, const ParameterFit& fi
         const ModelParameter& parameter = model.parameters()[static_cast<std::size_t>(p)];
         low[b] = std::max(parameter.low_u() - fit.u[p], -4 * parameter.probe);
         high[b] = std::min(parameter.high_u() - fit.u[p], 4 * parameter.probe);
-        if (b == a) low[b] = high[b] = std::clamp(offset * parameter.probe, parameter.low_u() - fit.u[p], parameter.high_u() - fit.u[p]);
+        if (b == a)
+          low[b] = high[b] =
+              std::clamp(offset * parameter.probe, parameter.low_u() - fit.u[p], parameter.high_u() - fit.u[p]);
       }
       if (low[a] == 0) continue;  // at the end of the range
       // The fit's own unrest is not the profile's.
@@ -88,9 +94,14 @@ std::vector<ParameterProfile> profile(SimulationBag& bag, const ParameterFit& fi
     own.parameter = static_cast<int>(p);
     own.points.push_back({parameter.value(fit.u[p]), -objective.value(residuals(model, fit.predictions), fit.u)});
     for (std::size_t i = 0; i < points.size(); ++i)
-      if (owner[i] == a && predictions[i]) own.points.push_back({parameter.value(points[i][p]), -objective.value(residuals(model, *predictions[i]), points[i])});
-    std::stable_sort(own.points.begin(), own.points.end(), [](const ProfilePoint& x, const ProfilePoint& y) { return x.value < y.value; });
-    const auto best = std::max_element(own.points.begin(), own.points.end(), [](const ProfilePoint& x, const ProfilePoint& y) { return x.log_likelihood < y.log_likelihood; });
+      if (owner[i] == a && predictions[i])
+        own.points.push_back(
+            {parameter.value(points[i][p]), -objective.value(residuals(model, *predictions[i]), points[i])});
+    std::stable_sort(own.points.begin(), own.points.end(),
+                     [](const ProfilePoint& x, const ProfilePoint& y) { return x.value < y.value; });
+    const auto best = std::max_element(
+        own.points.begin(), own.points.end(),
+        [](const ProfilePoint& x, const ProfilePoint& y) { return x.log_likelihood < y.log_likelihood; });
     const double highest = best->log_likelihood;
     const auto at = static_cast<std::size_t>(best - own.points.begin());
     for (ProfilePoint& point : own.points) point.log_likelihood -= highest;
@@ -98,7 +109,8 @@ std::vector<ParameterProfile> profile(SimulationBag& bag, const ParameterFit& fi
     // Least distances and greatest likelihood need not meet in one point: the interval has both.
     own.low = std::min(own.best, crossing(own.points, at, -1));
     own.high = std::max(own.best, crossing(own.points, at, 1));
-    const double reach = parameter.logarithmic ? std::log(own.points.back().value / own.points.front().value) : own.points.back().value - own.points.front().value;
+    const double reach = parameter.logarithmic ? std::log(own.points.back().value / own.points.front().value)
+                                               : own.points.back().value - own.points.front().value;
     const double width = parameter.logarithmic ? std::log(own.high / own.low) : own.high - own.low;
     own.identified = width < identified_share * reach;
     profiles.push_back(std::move(own));
@@ -110,7 +122,9 @@ std::vector<ParameterProfile> profile(SimulationBag& bag, const ParameterFit& fi
 Predictions at_nominal(SimulationBag& bag, Calibration& result, Context& context) {
   const ForwardModel& model = bag.model();
   auto nominal = bag.run(model.nominal(), context, "Simulating the set-up as it is");
-  if (!nominal) throw Error(ErrorCode::could_not_solve, "", "The simulation fails with the set-up's own parameters: check mould and set-up.");
+  if (!nominal)
+    throw Error(ErrorCode::could_not_solve, "",
+                "The simulation fails with the set-up's own parameters: check mould and set-up.");
   const Predictions left = residuals(model, *nominal);
   result.error_nominal = mean_distance(left);
   take_noise(model, left, result.noise);
@@ -138,7 +152,8 @@ Calibration calibrate(SimulationBag& bag, Context& context) {
   ParameterFit fit;
   {
     const auto span = context.span(0.05, 0.6, "Fitting");
-    fit = fit_parameters(bag, *mean_distance_objective(model, soft), model.base_parameters(), model.nominal(), {}, {}, context, "Fitting");
+    fit = fit_parameters(bag, *mean_distance_objective(model, soft), model.base_parameters(), model.nominal(), {}, {},
+                         context, "Fitting");
   }
   result.u = fit.u;
   result.predictions = fit.predictions;
@@ -148,14 +163,16 @@ Calibration calibrate(SimulationBag& bag, Context& context) {
     const auto span = context.span(0.6, 1, "Finding what the data tell");
     // What another, equally good simulation would do differently is not known any better than that.
     const std::vector<int> liberties = model.parameters_with(ParameterRole::discrepancy);
-    const std::vector<Sensitivities> freedom = sensitivities_at(bag, fit.u, fit.predictions, liberties, context, "Finding what the data tell");
+    const std::vector<Sensitivities> freedom =
+        sensitivities_at(bag, fit.u, fit.predictions, liberties, context, "Finding what the data tell");
     const std::vector<Eigen::VectorXd> weights = take_noise(model, residuals(model, fit.predictions), result.noise);
     // Directions alike: what little the simulation errs across walls, the material would be made to answer for.
     std::vector<Precisions> precisions = precisions_of(model, weights, movements_of(model, liberties, freedom));
     for (std::size_t object = 0; object < precisions.size(); ++object)
       precisions[object] = isotropic(mean_weights(precisions[object]), model.measurements()[object].measured.cols());
     const MisfitOfAll misfit(model, precisions);
-    const StructuredObjective objective(model, misfit, most_probable_structure(model, misfit, residuals(model, fit.predictions)), liberties, freedom);
+    const StructuredObjective objective(
+        model, misfit, most_probable_structure(model, misfit, residuals(model, fit.predictions)), liberties, freedom);
     result.profiles = profile(bag, fit, objective, context);
   }
   result.simulations = bag.simulations();
@@ -163,12 +180,14 @@ Calibration calibrate(SimulationBag& bag, Context& context) {
   return result;
 }
 
-Calibration grid_search(SimulationBag& bag, const std::vector<GridAxis>& axes, int per_side, const std::vector<int>& place_parameters, double reach, Context& context) {
+Calibration grid_search(SimulationBag& bag, const std::vector<GridAxis>& axes, int per_side,
+                        const std::vector<int>& place_parameters, double reach, Context& context) {
   Stopwatch watch;
   const ForwardModel& model = bag.model();
   Calibration result;
   const Predictions nominal = at_nominal(bag, result, context);
-  const std::vector<Sensitivities> moved = sensitivities_at(bag, model.nominal(), nominal, place_parameters, context, "Moving the mould");
+  const std::vector<Sensitivities> moved =
+      sensitivities_at(bag, model.nominal(), nominal, place_parameters, context, "Moving the mould");
 
   std::vector<Eigen::VectorXd> points{model.nominal()};
   for (const GridAxis& axis : axes) {
@@ -187,8 +206,11 @@ Calibration grid_search(SimulationBag& bag, const std::vector<GridAxis>& axes, i
   constexpr int steps = 4;  // of the translation, to each side
   for (std::size_t first = 0; first < points.size(); first += batch) {
     const std::size_t last = std::min(first + batch, points.size());
-    const auto span = context.span(static_cast<double>(first) / static_cast<double>(points.size()), static_cast<double>(last) / static_cast<double>(points.size()), "Searching the grid");
-    const std::vector<Eigen::VectorXd> part(points.begin() + static_cast<std::ptrdiff_t>(first), points.begin() + static_cast<std::ptrdiff_t>(last));
+    const auto span =
+        context.span(static_cast<double>(first) / static_cast<double>(points.size()),
+                     static_cast<double>(last) / static_cast<double>(points.size()), "Searching the grid");
+    const std::vector<Eigen::VectorXd> part(points.begin() + static_cast<std::ptrdiff_t>(first),
+                                            points.begin() + static_cast<std::ptrdiff_t>(last));
     const auto predictions = bag.run(part, context, "Searching the grid");
     bag.forget();
     for (std::size_t i = 0; i < part.size(); ++i) {
@@ -198,14 +220,17 @@ Calibration grid_search(SimulationBag& bag, const std::vector<GridAxis>& axes, i
       const auto try_shift = [&] {
         Predictions shifted = left;
         for (std::size_t object = 0; object < left.size(); ++object)
-          for (Eigen::Index a = 0; a < shift.size(); ++a) shifted[object] -= shift[a] * moved[object][static_cast<std::size_t>(a)];
+          for (Eigen::Index a = 0; a < shift.size(); ++a)
+            shifted[object] -= shift[a] * moved[object][static_cast<std::size_t>(a)];
         const double error = mean_distance(shifted);
         if (error >= result.error) return;
         result.error = error;
         result.u = part[i];
-        for (Eigen::Index a = 0; a < shift.size(); ++a) result.u[place_parameters[static_cast<std::size_t>(a)]] = shift[a];
+        for (Eigen::Index a = 0; a < shift.size(); ++a)
+          result.u[place_parameters[static_cast<std::size_t>(a)]] = shift[a];
         result.predictions = *predictions[i];
-        for (std::size_t object = 0; object < left.size(); ++object) result.predictions[object] = model.measurements()[object].measured - shifted[object];
+        for (std::size_t object = 0; object < left.size(); ++object)
+          result.predictions[object] = model.measurements()[object].measured - shifted[object];
       };
       if (place_parameters.empty()) {
         try_shift();
@@ -220,7 +245,8 @@ Calibration grid_search(SimulationBag& bag, const std::vector<GridAxis>& axes, i
         }
     }
   }
-  if (!std::isfinite(result.error)) throw Error(ErrorCode::could_not_solve, "", "The simulation fails everywhere on the grid: check mould and set-up.");
+  if (!std::isfinite(result.error))
+    throw Error(ErrorCode::could_not_solve, "", "The simulation fails everywhere on the grid: check mould and set-up.");
   result.simulations = bag.simulations();
   result.seconds = watch.seconds();
   return result;

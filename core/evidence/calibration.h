@@ -20,7 +20,7 @@ struct ParameterProfile {
 struct Calibration {
   Eigen::VectorXd u;
   Predictions predictions;
-  double error_nominal = 0, error = 0;     // mean distance of all points (thesis 4.2.3), before and after
+  double error_nominal = 0, error = 0;  // mean distance of all points (thesis 4.2.3), before and after
   double objective = 0;
   std::vector<NoiseEstimate> noise;        // each object
   std::vector<ParameterProfile> profiles;  // base parameters; empty after a grid search
@@ -31,13 +31,15 @@ struct Calibration {
 /// By Levenberg and Marquardt from the nominal values. Throws Error{could_not_solve, cancelled}.
 Calibration calibrate(SimulationBag& bag, Context& context);
 
-/// The thesis's way: `per_side` values of each of `grid_parameters` over `low` to `high` (values; as many as parameters), at each the best small
-/// translation of the mould by `place_parameters` (at most 2, each within `reach` of nominal, linearised about the nominal point).
+/// The thesis's way: `per_side` values of each of `grid_parameters` over `low` to `high` (values; as many as
+/// parameters), at each the best small translation of the mould by `place_parameters` (at most 2, each within `reach`
+/// of nominal, linearised about the nominal point).
 struct GridAxis {
   int parameter;
   double low, high;
 };
-Calibration grid_search(SimulationBag& bag, const std::vector<GridAxis>& axes, int per_side, const std::vector<int>& place_parameters, double reach, Context& context);
+Calibration grid_search(SimulationBag& bag, const std::vector<GridAxis>& axes, int per_side,
+                        const std::vector<int>& place_parameters, double reach, Context& context);
 
 /// Mean Euclidean distance over all points of all objects.
 double mean_distance(const Predictions& residuals);

@@ -13,12 +13,14 @@
 namespace formwright {
 namespace {
 
-constexpr double explained_share = 0.6;   // of what the base model leaves unexplained (its variance) that a named cause must explain
+constexpr double explained_share =
+    0.6;  // of what the base model leaves unexplained (its variance) that a named cause must explain
 constexpr double likely = 0.5;
-constexpr double most_left = 2;            // of the noise: with more left on held-out blocks a named cause is not all of it, or a relative of what it is
-constexpr double plain_strength = 2.5;     // half widths of its interval
-constexpr double least_gain = 0.01;        // of the held-out error
-constexpr double sure_gain = 0.8;          // probability that there is one
+constexpr double most_left =
+    2;  // of the noise: with more left on held-out blocks a named cause is not all of it, or a relative of what it is
+constexpr double plain_strength = 2.5;  // half widths of its interval
+constexpr double least_gain = 0.01;     // of the held-out error
+constexpr double sure_gain = 0.8;       // probability that there is one
 constexpr double inseparable_likeness = 0.9;
 constexpr const char* stays_unexplained = "Part of the misfit stays unexplained.";
 constexpr const char* nearly_as_likely = "Another explanation is nearly as likely.";
@@ -26,7 +28,8 @@ constexpr const char* nearly_as_likely = "Another explanation is nearly as likel
 class Diagnostician {
  public:
   /// `tried` was fitted with `bag`.
-  Diagnostician(SimulationBag& bag, Explanations& tried, Context& context) : bag_(bag), model_(bag.model()), context_(context), tried_(tried) {}
+  Diagnostician(SimulationBag& bag, Explanations& tried, Context& context)
+      : bag_(bag), model_(bag.model()), context_(context), tried_(tried) {}
 
   Diagnosis run() {
     result_.base = tried_.base();
@@ -38,7 +41,8 @@ class Diagnostician {
 
  private:
   HeldOut held_out(const ParameterFit& fit) {
-    return hold_out(bag_, fit, tried_.precisions(), tried_.nearest_size(model_.known_misfit()), tried_.liberties(), tried_.liberty_sensitivities(), context_);
+    return hold_out(bag_, fit, tried_.precisions(), tried_.nearest_size(model_.known_misfit()), tried_.liberties(),
+                    tried_.liberty_sensitivities(), context_);
   }
 
   std::vector<Eigen::VectorXd> weights() const {
@@ -48,7 +52,8 @@ class Diagnostician {
   }
 
   std::vector<Eigen::VectorXd> predicted(const ParameterFit& fit, const std::vector<int>& causes) const {
-    return predictive_errors(model_, fit, tried_.precisions(), tried_.nearest_size(tried_.structure_left(causes)), tried_.liberties(), tried_.liberty_sensitivities());
+    return predictive_errors(model_, fit, tried_.precisions(), tried_.nearest_size(tried_.structure_left(causes)),
+                             tried_.liberties(), tried_.liberty_sensitivities());
   }
 
   /// The most probable explanation whose causes predict held-out data better than their absence does, all fitted alike.
@@ -84,7 +89,8 @@ class Diagnostician {
     }
     widen_by_model();
     const auto before = held_out(result_.base).errors;
-    result_.held_out = compare_errors(model_, before, result_.verdict.empty() ? before : held_out(result_.extended).errors);
+    result_.held_out =
+        compare_errors(model_, before, result_.verdict.empty() ? before : held_out(result_.extended).errors);
     result_.unexplained_after = tried_.structure_left(result_.verdict);
     result_.structure = tried_.nearest_size(result_.unexplained_after);
     measure_structure();
@@ -92,7 +98,9 @@ class Diagnostician {
       result_.reading = only_structure ? Reading::unknown : Reading::none;
       return;
     }
-    std::stable_sort(result_.verdict.begin(), result_.verdict.end(), [&](int a, int b) { return tried_.movement(a, result_.extended.u) > tried_.movement(b, result_.extended.u); });
+    std::stable_sort(result_.verdict.begin(), result_.verdict.end(), [&](int a, int b) {
+      return tried_.movement(a, result_.extended.u) > tried_.movement(b, result_.extended.u);
+    });
     result_.reading = Reading::cause;
     find_doubts();
     if (result_.doubtful() && share_explained() < explained_share) result_.reading = Reading::unknown;
@@ -100,46 +108,57 @@ class Diagnostician {
   }
 
   void doubt(const char* why) {
-    if (std::find(result_.doubts.begin(), result_.doubts.end(), why) == result_.doubts.end()) result_.doubts.emplace_back(why);
+    if (std::find(result_.doubts.begin(), result_.doubts.end(), why) == result_.doubts.end())
+      result_.doubts.emplace_back(why);
   }
 
   /// Relatives of what is wrong leave something, or do so little that the fit's own error could be it.
   void find_doubts() {
     if (result_.unexplained_after > most_structure * model_.known_misfit()) doubt(stays_unexplained);
-    if (result_.held_out.after.mean > most_left * result_.noise_floor) doubt("On data that were held out more than twice the noise is left.");
+    if (result_.held_out.after.mean > most_left * result_.noise_floor)
+      doubt("On data that were held out more than twice the noise is left.");
     for (const int cause : result_.verdict) {
       const CauseFinding& finding = finding_of(cause);
       if (finding.probability < likely) doubt(nearly_as_likely);
-      if (std::abs(finding.strength) < plain_strength * 0.5 * (finding.high - finding.low)) doubt("Its strength is hardly told from zero.");
+      if (std::abs(finding.strength) < plain_strength * 0.5 * (finding.high - finding.low))
+        doubt("Its strength is hardly told from zero.");
     }
   }
 
-  /// Of what was unexplained (its variance): by the structure that is left, or, where that is beyond what is distinguished, by the error on held-out blocks above the noise.
+  /// Of what was unexplained (its variance): by the structure that is left, or, where that is beyond what is
+  /// distinguished, by the error on held-out blocks above the noise.
   double share_explained() const {
     const double structure = result_.unexplained_after / std::max(result_.unexplained_before, 1e-12);
     const double noise_squared = result_.noise_floor * result_.noise_floor;
-    const double before = std::pow(result_.held_out.before.mean, 2) - noise_squared, after = std::pow(result_.held_out.after.mean, 2) - noise_squared;
+    const double before = std::pow(result_.held_out.before.mean, 2) - noise_squared,
+                 after = std::pow(result_.held_out.after.mean, 2) - noise_squared;
     const double held_out = before > 0 ? 1 - std::max(0.0, after) / before : 0;
     return std::max(1 - structure * structure, held_out);
   }
 
   /// What was named stays; the base parameters are calibrated about it as those of the base model were.
   ParameterFit recalibrated(const ParameterFit& fit) {
-    ParameterFit result = fit_parameters(bag_, *mean_distance_objective(model_, tried_.softness()), model_.base_parameters(), fit.u, {}, {}, context_, fitting_stage);
+    ParameterFit result = fit_parameters(bag_, *mean_distance_objective(model_, tried_.softness()),
+                                         model_.base_parameters(), fit.u, {}, {}, context_, fitting_stage);
     for (std::size_t a = result.free.size(); a < fit.free.size(); ++a) {
       result.free.push_back(fit.free[a]);
-      for (std::size_t object = 0; object < result.sensitivities.size(); ++object) result.sensitivities[object].push_back(fit.sensitivities[object][a]);
+      for (std::size_t object = 0; object < result.sensitivities.size(); ++object)
+        result.sensitivities[object].push_back(fit.sensitivities[object][a]);
     }
     return result;
   }
 
-  /// Intervals of the named causes, by what leaving out a quarter of the data changes: that knows of misfits that no prior has.
+  /// Intervals of the named causes, by what leaving out a quarter of the data changes: that knows of misfits that no
+  /// prior has.
   void widen_by_jackknife(const ParameterFit& fit, const Eigen::MatrixXd& steps) {
     for (const int cause : result_.verdict) {
-      CauseFinding& finding = *std::find_if(result_.causes.begin(), result_.causes.end(), [&](const CauseFinding& f) { return f.cause == cause; });
+      CauseFinding& finding = *std::find_if(result_.causes.begin(), result_.causes.end(),
+                                            [&](const CauseFinding& f) { return f.cause == cause; });
       const std::vector<int>& own = model_.causes()[static_cast<std::size_t>(cause)].parameters;
       double variance = 0;
-      const double length = Eigen::Map<const Eigen::VectorXd>(finding.values.data(), static_cast<Eigen::Index>(finding.values.size())).norm();
+      const double length =
+          Eigen::Map<const Eigen::VectorXd>(finding.values.data(), static_cast<Eigen::Index>(finding.values.size()))
+              .norm();
       for (Eigen::Index f = 0; f < steps.cols(); ++f) {
         double along = 0;
         for (std::size_t i = 0; i < own.size(); ++i) {
@@ -155,8 +174,8 @@ class Diagnostician {
     }
   }
 
-  /// Intervals, by what the model itself does not know: the misfit that it is known to have can pass for half of what is just visible (two of its standard deviations), and another
-  /// simulation makes other movements of the same cause.
+  /// Intervals, by what the model itself does not know: the misfit that it is known to have can pass for half of what
+  /// is just visible (two of its standard deviations), and another simulation makes other movements of the same cause.
   void widen_by_model() {
     for (CauseFinding& finding : result_.causes) {
       if (finding.low == finding.high) continue;  // was not fitted
@@ -176,18 +195,22 @@ class Diagnostician {
   }
 
   const CauseFinding& finding_of(int cause) const {
-    return *std::find_if(result_.causes.begin(), result_.causes.end(), [&](const CauseFinding& f) { return f.cause == cause; });
+    return *std::find_if(result_.causes.begin(), result_.causes.end(),
+                         [&](const CauseFinding& f) { return f.cause == cause; });
   }
 
   void find_causes() {
-    const GramByStructure gram = tried_.misfit().gram(residuals(model_, result_.base.predictions), side_by_side(tried_.sensitivities(), tried_.usual_sensitivities()));
+    const GramByStructure gram =
+        tried_.misfit().gram(residuals(model_, result_.base.predictions),
+                             side_by_side(tried_.sensitivities(), tried_.usual_sensitivities()));
     double none = -std::numeric_limits<double>::infinity();
     for (const Hypothesis& h : result_.hypotheses)
       if (h.causes.empty()) none = std::max(none, h.log_evidence);
     for (int cause = 0; cause < static_cast<int>(model_.causes().size()); ++cause) {
       CauseFinding finding;
       finding.cause = cause;
-      finding.least_visible = formwright::least_visible(model_, gram, tried_.nearest_size(model_.known_misfit()), tried_.columns(), cause);
+      finding.least_visible =
+          formwright::least_visible(model_, gram, tried_.nearest_size(model_.known_misfit()), tried_.columns(), cause);
       const Hypothesis* at = nullptr;
       for (const Hypothesis& h : result_.hypotheses) {
         if (std::find(h.causes.begin(), h.causes.end(), cause) == h.causes.end()) continue;
@@ -199,13 +222,18 @@ class Diagnostician {
         // Far behind the others: where the linearised model has it.
         for (const int p : model_.causes()[static_cast<std::size_t>(cause)].parameters)
           finding.values.push_back(model_.parameters()[static_cast<std::size_t>(p)].value(at->u[p]));
-        finding.strength = finding.values.size() == 1 ? finding.values[0] : Eigen::Map<const Eigen::VectorXd>(finding.values.data(), static_cast<Eigen::Index>(finding.values.size())).norm();
+        finding.strength = finding.values.size() == 1
+                               ? finding.values[0]
+                               : Eigen::Map<const Eigen::VectorXd>(finding.values.data(),
+                                                                   static_cast<Eigen::Index>(finding.values.size()))
+                                     .norm();
         finding.low = finding.high = finding.strength;
         result_.causes.push_back(finding);
         continue;
       }
       const Explanations::Refit& r = tried_.refit_of(at->causes);
-      const StructuredObjective objective(model_, tried_.misfit(), tried_.nearest_size(at->structure), tried_.liberties(), tried_.liberty_sensitivities());
+      const StructuredObjective objective(model_, tried_.misfit(), tried_.nearest_size(at->structure),
+                                          tried_.liberties(), tried_.liberty_sensitivities());
       Eigen::VectorXd g;
       Eigen::MatrixXd H;
       objective.quadratic(residuals(model_, r.fit.predictions), r.fit.sensitivities, r.fit.free, r.fit.u, g, H);
@@ -214,9 +242,11 @@ class Diagnostician {
       Eigen::VectorXd value(static_cast<Eigen::Index>(own.size())), slope(value.size());
       Eigen::MatrixXd spread(value.size(), value.size());
       std::vector<Eigen::Index> at_index;
-      for (const int p : own) at_index.push_back(std::find(r.fit.free.begin(), r.fit.free.end(), p) - r.fit.free.begin());
+      for (const int p : own)
+        at_index.push_back(std::find(r.fit.free.begin(), r.fit.free.end(), p) - r.fit.free.begin());
       for (Eigen::Index i = 0; i < value.size(); ++i) {
-        const ModelParameter& parameter = model_.parameters()[static_cast<std::size_t>(own[static_cast<std::size_t>(i)])];
+        const ModelParameter& parameter =
+            model_.parameters()[static_cast<std::size_t>(own[static_cast<std::size_t>(i)])];
         value[i] = parameter.value(r.fit.u[own[static_cast<std::size_t>(i)]]);
         finding.values.push_back(value[i]);
         for (Eigen::Index j = 0; j < value.size(); ++j)
@@ -229,19 +259,22 @@ class Diagnostician {
       finding.high = finding.strength + half;
       result_.causes.push_back(finding);
     }
-    std::stable_sort(result_.causes.begin(), result_.causes.end(), [](const CauseFinding& a, const CauseFinding& b) { return a.probability > b.probability; });
+    std::stable_sort(result_.causes.begin(), result_.causes.end(),
+                     [](const CauseFinding& a, const CauseFinding& b) { return a.probability > b.probability; });
   }
 
   /// Causes that do the same as a named one as far as these data go.
   void find_twins() {
-    const GramByStructure gram = tried_.misfit().gram(residuals(model_, result_.base.predictions), tried_.sensitivities());
+    const GramByStructure gram =
+        tried_.misfit().gram(residuals(model_, result_.base.predictions), tried_.sensitivities());
     for (const int named : result_.verdict)
       for (int other = 0; other < static_cast<int>(model_.causes().size()); ++other) {
         if (std::find(result_.verdict.begin(), result_.verdict.end(), other) != result_.verdict.end()) continue;
         const double alike = likeness(model_, gram, result_.structure, tried_.columns(), named, other);
         // Alike in every respect, or not told apart by these very data.
         const bool undecided = finding_of(other).probability > 0.15 * finding_of(named).probability;
-        if (alike > inseparable_likeness || (undecided && alike > 0.5)) result_.not_separable.push_back({named, other, alike});
+        if (alike > inseparable_likeness || (undecided && alike > 0.5))
+          result_.not_separable.push_back({named, other, alike});
         if (!undecided) continue;
         if (alike > 0.5 && result_.reading == Reading::cause) result_.reading = Reading::cannot_separate;
         else if (alike <= 0.5) doubt(nearly_as_likely);
@@ -249,7 +282,8 @@ class Diagnostician {
   }
 
   void measure_structure() {
-    const Predictions left = residuals(model_, result_.base.predictions), left_after = residuals(model_, result_.extended.predictions);
+    const Predictions left = residuals(model_, result_.base.predictions),
+                      left_after = residuals(model_, result_.extended.predictions);
     double sum = 0, count = 0;
     for (std::size_t object = 0; object < tried_.precisions().size(); ++object) {
       const Eigen::VectorXd weights = mean_weights(tried_.precisions()[object]);
@@ -313,22 +347,29 @@ Diagnosis diagnose(SimulationBag& bag, const DiagnosisOptions& options, Context&
   return result;
 }
 
-HeldOutGain gain_on_unseen(const ForwardModel& unseen, const ForwardModel& from, const Diagnosis& found, Context& context) {
+HeldOutGain gain_on_unseen(const ForwardModel& unseen, const ForwardModel& from, const Diagnosis& found,
+                           Context& context) {
   const ForwardModel& model = found.looked_again && unseen.finer() != nullptr ? *unseen.finer() : unseen;
   const auto translated = [&](const Eigen::VectorXd& u) {
     Eigen::VectorXd own = model.nominal();
     for (std::size_t p = 0; p < model.parameters().size(); ++p)
       for (std::size_t q = 0; q < from.parameters().size(); ++q)
-        if (model.parameters()[p].name == from.parameters()[q].name && model.parameters()[p].role != ParameterRole::discrepancy)
-          own[static_cast<Eigen::Index>(p)] = model.parameters()[p].coordinate(from.parameters()[q].value(u[static_cast<Eigen::Index>(q)]));
+        if (model.parameters()[p].name == from.parameters()[q].name &&
+            model.parameters()[p].role != ParameterRole::discrepancy)
+          own[static_cast<Eigen::Index>(p)] =
+              model.parameters()[p].coordinate(from.parameters()[q].value(u[static_cast<Eigen::Index>(q)]));
     return own;
   };
   SimulationBag bag(model);
-  const auto predictions = bag.run(std::vector<Eigen::VectorXd>{translated(found.base.u), translated(found.extended.u)}, context, "Predicting the unseen object");
-  if (!predictions[0] || !predictions[1]) throw Error(ErrorCode::could_not_solve, "unseen", "The unseen object cannot be simulated with the fitted parameters: check its mould and set-up.");
+  const auto predictions = bag.run(std::vector<Eigen::VectorXd>{translated(found.base.u), translated(found.extended.u)},
+                                   context, "Predicting the unseen object");
+  if (!predictions[0] || !predictions[1])
+    throw Error(ErrorCode::could_not_solve, "unseen",
+                "The unseen object cannot be simulated with the fitted parameters: check its mould and set-up.");
   std::vector<Eigen::VectorXd> weights;
   const Predictions after = residuals(model, *predictions[1]);
-  for (std::size_t object = 0; object < after.size(); ++object) weights.push_back(estimate_noise(model.measurements()[object], after[object]).weights);
+  for (std::size_t object = 0; object < after.size(); ++object)
+    weights.push_back(estimate_noise(model.measurements()[object], after[object]).weights);
   return compare_errors(model, point_errors(residuals(model, *predictions[0]), weights), point_errors(after, weights));
 }
 

@@ -18,7 +18,10 @@ Json interval(double low, double high) { return Json::array({low, high}); }
 Json noise_json(const ForwardModel& model, const Diagnosis& d) {
   Json list = Json::array();
   for (std::size_t i = 0; i < d.noise.size(); ++i)
-    list.push_back({{"object", model.measurements()[i].name}, {"sigma_mm", d.noise[i].sigma}, {"stated_sigma_mm", d.noise[i].stated_sigma}, {"outliers", d.noise[i].outliers}});
+    list.push_back({{"object", model.measurements()[i].name},
+                    {"sigma_mm", d.noise[i].sigma},
+                    {"stated_sigma_mm", d.noise[i].stated_sigma},
+                    {"outliers", d.noise[i].outliers}});
   return list;
 }
 
@@ -38,9 +41,11 @@ std::string verdict_sentence(const DiagnosisReport& report) {
   const Diagnosis& d = report.diagnosis;
   const auto label = [&](int cause) { return report.model.causes()[static_cast<std::size_t>(cause)].label; };
   const auto probability = [&](int cause) {
-    return std::find_if(d.causes.begin(), d.causes.end(), [&](const CauseFinding& f) { return f.cause == cause; })->probability;
+    return std::find_if(d.causes.begin(), d.causes.end(), [&](const CauseFinding& f) { return f.cause == cause; })
+        ->probability;
   };
-  if (d.reading == Reading::none) return "Nothing is wrong that these data could show: the calibrated simulation explains them.";
+  if (d.reading == Reading::none)
+    return "Nothing is wrong that these data could show: the calibrated simulation explains them.";
   if (d.reading == Reading::unknown) {
     std::string text = "Something is wrong that none of the known causes explains.";
     if (!d.verdict.empty()) text += " Nearest to it: " + label(d.verdict.front()) + ".";
@@ -72,20 +77,34 @@ Json diagnosis_json(const DiagnosisReport& report) {
   for (const CauseFinding& f : d.causes) {
     const Cause& cause = model.causes()[static_cast<std::size_t>(f.cause)];
     Json values = Json::object();
-    for (std::size_t i = 0; i < cause.parameters.size(); ++i) values[model.parameters()[static_cast<std::size_t>(cause.parameters[i])].name] = f.values[i];
-    json["causes"].push_back({{"name", cause.name}, {"label", cause.label}, {"probability", f.probability}, {"strength", f.strength}, {"unit", cause.unit},
-                              {"interval", interval(f.low, f.high)}, {"values", values}, {"log_evidence", f.log_evidence},
-                              {"least_visible", std::isfinite(f.least_visible) ? Json(f.least_visible) : Json()}, {"explanation", cause.explanation}, {"remedy", cause.remedy}});
+    for (std::size_t i = 0; i < cause.parameters.size(); ++i)
+      values[model.parameters()[static_cast<std::size_t>(cause.parameters[i])].name] = f.values[i];
+    json["causes"].push_back({{"name", cause.name},
+                              {"label", cause.label},
+                              {"probability", f.probability},
+                              {"strength", f.strength},
+                              {"unit", cause.unit},
+                              {"interval", interval(f.low, f.high)},
+                              {"values", values},
+                              {"log_evidence", f.log_evidence},
+                              {"least_visible", std::isfinite(f.least_visible) ? Json(f.least_visible) : Json()},
+                              {"explanation", cause.explanation},
+                              {"remedy", cause.remedy}});
   }
   json["trials"] = Json::array();
   for (const HeldOutTrial& trial : d.trials) {
     Json causes = Json::array();
     for (const int cause : trial.causes) causes.push_back(name(cause));
-    json["trials"].push_back({{"causes", causes}, {"significant", trial.significant}, {"gain_share", trial.gain.gain_share}, {"gain_interval", interval(trial.gain.gain_low, trial.gain.gain_high)}});
+    json["trials"].push_back({{"causes", causes},
+                              {"significant", trial.significant},
+                              {"gain_share", trial.gain.gain_share},
+                              {"gain_interval", interval(trial.gain.gain_low, trial.gain.gain_high)}});
   }
   json["not_separable"] = Json::array();
   for (const SeparatedPair& s : report.separations)
-    json["not_separable"].push_back({{"causes", {name(s.pair.cause_a), name(s.pair.cause_b)}}, {"likeness", s.pair.likeness}, {"measurement", s.what},
+    json["not_separable"].push_back({{"causes", {name(s.pair.cause_a), name(s.pair.cause_b)}},
+                                     {"likeness", s.pair.likeness},
+                                     {"measurement", s.what},
                                      {"likeness_with_it", s.likeness}});
   const HeldOutGain& gain = d.held_out;
   json["error_before_mm"] = gain.before.mean;
@@ -94,7 +113,8 @@ Json diagnosis_json(const DiagnosisReport& report) {
   json["error_after_interval_mm"] = interval(gain.after.low, gain.after.high);
   json["gain_share"] = gain.gain_share;
   json["gain_interval"] = interval(gain.gain_low, gain.gain_high);
-  json["held_out"] = "Each object in 16 blocks; a quarter of them at a time left out of the fit and then predicted. Mean distance without outliers.";
+  json["held_out"] =
+      "Each object in 16 blocks; a quarter of them at a time left out of the fit and then predicted. Mean distance without outliers.";
   if (report.unseen)
     json["unseen"] = {{"objects", report.unseen_names},
                       {"error_before_mm", report.unseen->before.mean},
@@ -107,18 +127,25 @@ Json diagnosis_json(const DiagnosisReport& report) {
   json["noise"] = noise_json(model, d);
   json["unexplained_before_mm"] = d.unexplained_before;
   json["unexplained_after_mm"] = d.unexplained_after;
-  json["structure_test"] = {{"before", structure_json(model, d.structure_before)}, {"after", structure_json(model, d.structure_after)}};
+  json["structure_test"] = {{"before", structure_json(model, d.structure_before)},
+                            {"after", structure_json(model, d.structure_after)}};
   json["hypotheses"] = Json::array();
   for (const Hypothesis& h : d.hypotheses) {
     if (json["hypotheses"].size() >= 12) break;
     Json causes = Json::array();
     for (const int cause : h.causes) causes.push_back(name(cause));
-    json["hypotheses"].push_back({{"causes", causes}, {"unknown_structure", h.unknown_structure}, {"probability", h.probability}, {"log_evidence", h.log_evidence}});
+    json["hypotheses"].push_back({{"causes", causes},
+                                  {"unknown_structure", h.unknown_structure},
+                                  {"probability", h.probability},
+                                  {"log_evidence", h.log_evidence}});
   }
   json["parameters"] = Json::array();
   for (const int p : model.base_parameters()) {
     const ModelParameter& parameter = model.parameters()[static_cast<std::size_t>(p)];
-    json["parameters"].push_back({{"name", parameter.name}, {"label", parameter.label}, {"unit", parameter.unit}, {"calibrated", parameter.value(d.base.u[p])},
+    json["parameters"].push_back({{"name", parameter.name},
+                                  {"label", parameter.label},
+                                  {"unit", parameter.unit},
+                                  {"calibrated", parameter.value(d.base.u[p])},
                                   {"extended", parameter.value(d.extended.u[p])}});
   }
   json["simulations"] = d.simulations;

@@ -37,10 +37,13 @@ void Explanations::estimate_noise_about(const Predictions& predictions) {
 void Explanations::calibrate() {
   const auto span = context_.span(0, 0.2, "Calibrating");
   auto at_nominal = bag_.run(model_.nominal(), context_, "Calibrating");
-  if (!at_nominal) throw Error(ErrorCode::could_not_solve, "", "The simulation fails with the set-up's own parameters: check mould and set-up.");
+  if (!at_nominal)
+    throw Error(ErrorCode::could_not_solve, "",
+                "The simulation fails with the set-up's own parameters: check mould and set-up.");
   at_nominal_ = std::move(*at_nominal);
   estimate_noise_about(at_nominal_);
-  base_ = fit_parameters(bag_, *mean_distance_objective(model_, softness()), model_.base_parameters(), model_.nominal(), {}, {}, context_, "Calibrating");
+  base_ = fit_parameters(bag_, *mean_distance_objective(model_, softness()), model_.base_parameters(), model_.nominal(),
+                         {}, {}, context_, "Calibrating");
   estimate_noise_about(base_.predictions);
 }
 
@@ -88,7 +91,8 @@ std::vector<Sensitivities> Explanations::usual_sensitivities() {
     if (!predictions[i]) continue;  // what a little of it does stands for it
     const auto p = static_cast<Eigen::Index>(one_sided[i]);
     for (std::size_t object = 0; object < result.size(); ++object)
-      result[object][one_sided[i]] = ((*predictions[i])[object] - at_nominal_[object]) / (points[i][p] - model_.nominal()[p]);
+      result[object][one_sided[i]] =
+          ((*predictions[i])[object] - at_nominal_[object]) / (points[i][p] - model_.nominal()[p]);
   }
   return result;
 }
@@ -106,7 +110,8 @@ void Explanations::weigh_screened() {
 }
 
 const Hypothesis& Explanations::screened(const std::vector<int>& causes, bool unknown) const {
-  return *std::find_if(screened_.begin(), screened_.end(), [&](const Hypothesis& h) { return h.causes == causes && h.unknown_structure == unknown; });
+  return *std::find_if(screened_.begin(), screened_.end(),
+                       [&](const Hypothesis& h) { return h.causes == causes && h.unknown_structure == unknown; });
 }
 
 std::size_t Explanations::nearest_size(double structure) const {
@@ -117,9 +122,11 @@ std::size_t Explanations::nearest_size(double structure) const {
   return best;
 }
 
-ParameterFit Explanations::fit_from(const std::vector<int>& causes, const std::vector<Eigen::VectorXd>& starts, std::vector<Sensitivities> known, const FitOptions& options) {
+ParameterFit Explanations::fit_from(const std::vector<int>& causes, const std::vector<Eigen::VectorXd>& starts,
+                                    std::vector<Sensitivities> known, const FitOptions& options) {
   const std::vector<int> free = model_.base_and(causes);
-  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), liberties_, liberty_sensitivities_);
+  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), liberties_,
+                                      liberty_sensitivities_);
   return fit_from_best(bag_, objective, free, starts, std::move(known), options, context_, fitting_stage);
 }
 
@@ -131,8 +138,13 @@ void Explanations::refit_with(const std::vector<int>& causes, const PairGuess* g
   std::vector<Eigen::VectorXd> starts{base_.u, towards(model_, free, base_.u, start.u)};
   if (guess != nullptr) starts.push_back(guess->u);
   for (const auto& r : refits_)  // a pair may start from what its parts are like alone
-    if (causes.size() == 2 && r.causes.size() == 1 && (r.causes[0] == causes[0] || r.causes[0] == causes[1])) starts.push_back(r.fit.u);
-  refits_.push_back({fit_from(causes, starts, guess != nullptr ? guess->sensitivities : sensitivities_of(free, sensitivities_, columns_), quick_fit), causes, {}});
+    if (causes.size() == 2 && r.causes.size() == 1 && (r.causes[0] == causes[0] || r.causes[0] == causes[1]))
+      starts.push_back(r.fit.u);
+  refits_.push_back(
+      {fit_from(causes, starts,
+                guess != nullptr ? guess->sensitivities : sensitivities_of(free, sensitivities_, columns_), quick_fit),
+       causes,
+       {}});
   if (auto other = fit_from_nominal(causes)) {
     if (other->value < refits_.back().fit.value) std::swap(refits_.back().fit, *other);
     refits_.back().other_way = std::move(other);
@@ -160,16 +172,20 @@ std::optional<ParameterFit> Explanations::fit_from_nominal(const std::vector<int
   Hypothesis h = screened(causes, false);
   weigh(model_, about_nominal_, columns_, model_.nominal(), h);
   const std::vector<int> free = model_.base_and(causes);
-  return fit_from(causes, {model_.nominal(), towards(model_, free, model_.nominal(), h.u)}, sensitivities_of(free, nominal_sensitivities_, columns_), quick_fit);
+  return fit_from(causes, {model_.nominal(), towards(model_, free, model_.nominal(), h.u)},
+                  sensitivities_of(free, nominal_sensitivities_, columns_), quick_fit);
 }
 
 void Explanations::polish(Refit& refit) {
   std::vector<Eigen::VectorXd> starts{refit.fit.u};
   for (const Refit& larger : refits_) {
-    if (larger.causes.size() <= refit.causes.size() || !std::includes(larger.causes.begin(), larger.causes.end(), refit.causes.begin(), refit.causes.end())) continue;
+    if (larger.causes.size() <= refit.causes.size() ||
+        !std::includes(larger.causes.begin(), larger.causes.end(), refit.causes.begin(), refit.causes.end()))
+      continue;
     Eigen::VectorXd u = larger.fit.u;
     for (std::size_t p = 0; p < model_.parameters().size(); ++p)
-      if (std::find(refit.fit.free.begin(), refit.fit.free.end(), static_cast<int>(p)) == refit.fit.free.end()) u[static_cast<Eigen::Index>(p)] = 0;
+      if (std::find(refit.fit.free.begin(), refit.fit.free.end(), static_cast<int>(p)) == refit.fit.free.end())
+        u[static_cast<Eigen::Index>(p)] = 0;
     starts.push_back(u);
   }
   refit.fit = fit_from(refit.causes, starts, {}, polishing_fit);
@@ -178,9 +194,12 @@ void Explanations::polish(Refit& refit) {
 
 void Explanations::weigh_refit(const Refit& refit) {
   const std::vector<int> columns = joined(refit.fit.free, liberties_);
-  const GramByStructure gram = misfit_->gram(residuals(model_, refit.fit.predictions), side_by_side(refit.fit.sensitivities, liberty_sensitivities_));
+  const GramByStructure gram = misfit_->gram(residuals(model_, refit.fit.predictions),
+                                             side_by_side(refit.fit.sensitivities, liberty_sensitivities_));
   for (const bool unknown : {false, true}) {
-    auto at = std::find_if(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& h) { return h.causes == refit.causes && h.unknown_structure == unknown; });
+    auto at = std::find_if(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& h) {
+      return h.causes == refit.causes && h.unknown_structure == unknown;
+    });
     if (at == hypotheses_.end()) at = hypotheses_.insert(at, screened(refit.causes, unknown));
     weigh(model_, gram, columns, refit.fit.u, *at);
     at->u = refit.fit.u;
@@ -188,7 +207,8 @@ void Explanations::weigh_refit(const Refit& refit) {
 }
 
 void Explanations::renew_noise() {
-  estimate_noise_about(freely_fitted(model_, refit_of(hypotheses_.front().causes).fit.predictions, columns_, sensitivities_));
+  estimate_noise_about(
+      freely_fitted(model_, refit_of(hypotheses_.front().causes).fit.predictions, columns_, sensitivities_));
   weigh_screened();
   for (const Refit& refit : refits_) weigh_refit(refit);
   normalise(hypotheses_);
@@ -198,7 +218,9 @@ void Explanations::refit() {
   const auto span = context_.span(0.4, 0.7, fitting_stage);
   std::vector<std::vector<int>> singles{{}};
   for (const Hypothesis& h : screened_)
-    if (h.causes.size() == 1 && std::find(singles.begin(), singles.end(), h.causes) == singles.end() && singles.size() <= refitted_singles) singles.push_back(h.causes);
+    if (h.causes.size() == 1 && std::find(singles.begin(), singles.end(), h.causes) == singles.end() &&
+        singles.size() <= refitted_singles)
+      singles.push_back(h.causes);
   const auto parts = static_cast<double>(singles.size() + (pairs_ ? 1 + refitted_pairs : 0) + 2 * leader_count);
   double part = 0;
   const auto stage = [&](auto&& work) {
@@ -247,12 +269,16 @@ void Explanations::polish_leaders(std::size_t count, const std::function<void(co
 std::vector<PairGuess> Explanations::promising_pairs() {
   std::vector<FittedSingle> singles;
   for (const Hypothesis& h : hypotheses_) {
-    if (h.causes.size() != 1 || std::any_of(singles.begin(), singles.end(), [&](const FittedSingle& s) { return s.cause == h.causes[0]; })) continue;
+    if (h.causes.size() != 1 ||
+        std::any_of(singles.begin(), singles.end(), [&](const FittedSingle& s) { return s.cause == h.causes[0]; }))
+      continue;
     const ParameterFit& fit = refit_of(h.causes).fit;
     singles.push_back({h.causes[0], fit.u, fit.predictions});
   }
-  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), liberties_, liberty_sensitivities_);
-  PairSearch search = search_pairs(model_, *misfit_, objective, liberties_, liberty_sensitivities_, singles, pair_anchors, context_, "Searching for two causes");
+  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), liberties_,
+                                      liberty_sensitivities_);
+  PairSearch search = search_pairs(model_, *misfit_, objective, liberties_, liberty_sensitivities_, singles,
+                                   pair_anchors, context_, "Searching for two causes");
   cheap_simulations_ += search.simulations;
   if (search.guesses.size() > refitted_pairs) search.guesses.resize(refitted_pairs);
   return std::move(search.guesses);
@@ -280,7 +306,8 @@ double Explanations::movement(int cause, const Eigen::VectorXd& u) const {
   for (std::size_t object = 0; object < sensitivities_.size(); ++object) {
     const Measurement& m = model_.measurements()[object];
     Eigen::MatrixXd field = Eigen::MatrixXd::Zero(m.measured.rows(), m.measured.cols());
-    for (const int p : model_.causes()[static_cast<std::size_t>(cause)].parameters) field += u[p] * sensitivities_[object][static_cast<std::size_t>(p)];
+    for (const int p : model_.causes()[static_cast<std::size_t>(cause)].parameters)
+      field += u[p] * sensitivities_[object][static_cast<std::size_t>(p)];
     squares += field.squaredNorm();
     count += static_cast<double>(m.measured.rows());
   }
@@ -288,7 +315,8 @@ double Explanations::movement(int cause, const Eigen::VectorXd& u) const {
 }
 
 bool Explanations::significant(const Hypothesis& h) const {
-  return std::all_of(h.causes.begin(), h.causes.end(), [&](int cause) { return movement(cause, h.u) > least_movement * model_.known_misfit(); });
+  return std::all_of(h.causes.begin(), h.causes.end(),
+                     [&](int cause) { return movement(cause, h.u) > least_movement * model_.known_misfit(); });
 }
 
 }  // namespace formwright

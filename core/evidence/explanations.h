@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The explanations a diagnosis compares: each fitted together with the base parameters, each with its marginal likelihood. For diagnosis.cpp.
+// The explanations a diagnosis compares: each fitted together with the base parameters, each with its marginal
+// likelihood. For diagnosis.cpp.
 #include <functional>
 #include <optional>
 
@@ -24,7 +25,8 @@ class Explanations {
     std::optional<ParameterFit> other_way;  // where the fit from the other material ended, which is worse
   };
 
-  Explanations(SimulationBag& bag, bool pairs, Context& context) : bag_(bag), model_(bag.model()), pairs_(pairs), context_(context) {}
+  Explanations(SimulationBag& bag, bool pairs, Context& context)
+      : bag_(bag), model_(bag.model()), pairs_(pairs), context_(context) {}
 
   // In this order. Each throws Error{could_not_solve, cancelled}.
   /// Fits the base parameters alone, and finds the noise.
@@ -36,8 +38,8 @@ class Explanations {
 
   /// One explanation leads all others by far and leaves nothing.
   bool decided() const;
-  /// Instead of the three: weighs what `coarse`, of a coarser simulation of the same data, has found likely or nearly so, beginning from its fits. Fills everything.
-  /// Throws Error{could_not_solve, cancelled}.
+  /// Instead of the three: weighs what `coarse`, of a coarser simulation of the same data, has found likely or nearly
+  /// so, beginning from its fits. Fills everything. Throws Error{could_not_solve, cancelled}.
   void look_again(const Explanations& coarse);
 
   const ParameterFit& base() const { return base_; }
@@ -48,8 +50,8 @@ class Explanations {
   /// All parameters, and what each does about the calibrated model.
   const std::vector<int>& columns() const { return columns_; }
   const std::vector<Sensitivities>& sensitivities() const { return sensitivities_; }
-  /// The same about the set-up's own material, where a cause that only goes one way is taken at its usual strength: what it does from there on to zero.
-  /// Simulates these. Throws Error{cancelled}.
+  /// The same about the set-up's own material, where a cause that only goes one way is taken at its usual strength:
+  /// what it does from there on to zero. Simulates these. Throws Error{cancelled}.
   std::vector<Sensitivities> usual_sensitivities();
   const std::vector<int>& liberties() const { return liberties_; }
   const std::vector<Sensitivities>& liberty_sensitivities() const { return liberty_sensitivities_; }
@@ -74,25 +76,31 @@ class Explanations {
  private:
   /// Fills noise_, precisions_ and misfit_.
   void estimate_noise_about(const Predictions& predictions);
-  /// What the linearised model says of every explanation, about the calibrated or the set-up's own material, whichever speaks better for it.
+  /// What the linearised model says of every explanation, about the calibrated or the set-up's own material, whichever
+  /// speaks better for it.
   void weigh_screened();
   const Hypothesis& screened(const std::vector<int>& causes, bool unknown) const;
-  /// Fits base parameters and those of `causes` together, from the best of `starts`. No more structure is allowed than the right causes
-  /// would leave: with as much as there is, what the causes should explain would cost nothing unexplained.
-  ParameterFit fit_from(const std::vector<int>& causes, const std::vector<Eigen::VectorXd>& starts, std::vector<Sensitivities> known, const FitOptions& options);
+  /// Fits base parameters and those of `causes` together, from the best of `starts`. No more structure is allowed than
+  /// the right causes would leave: with as much as there is, what the causes should explain would cost nothing
+  /// unexplained.
+  ParameterFit fit_from(const std::vector<int>& causes, const std::vector<Eigen::VectorXd>& starts,
+                        std::vector<Sensitivities> known, const FitOptions& options);
   /// From where the linearised model has them, with the sensitivities it was made of; or from `guess`.
   void refit_with(const std::vector<int>& causes, const PairGuess* guess = nullptr);
   /// Once more where a coarser simulation has it, unless it is out of reach or does nothing there.
   void refit_as(const Refit& coarse);
-  /// Polishes the likeliest `count` explanations, what they are parts of and have as parts, larger ones first; `stage` counts the steps.
+  /// Polishes the likeliest `count` explanations, what they are parts of and have as parts, larger ones first; `stage`
+  /// counts the steps.
   void polish_leaders(std::size_t count, const std::function<void(const std::function<void()>&)>& stage);
-  /// The same from the set-up's own material, for at most one cause: a fault that is not among the base parameters drags them far off, and nothing near there points back.
+  /// The same from the set-up's own material, for at most one cause: a fault that is not among the base parameters
+  /// drags them far off, and nothing near there points back.
   std::optional<ParameterFit> fit_from_nominal(const std::vector<int>& causes);
   /// Once more, with sensitivities taken where the fit stands; what was learnt with more causes counts for fewer.
   void polish(Refit& refit);
   /// The marginal likelihood of an explanation where its fit has it.
   void weigh_refit(const Refit& refit);
-  /// What passed for outliers about the calibrated model may have been misfit that an explanation accounts for: once more about the best.
+  /// What passed for outliers about the calibrated model may have been misfit that an explanation accounts for: once
+  /// more about the best.
   void renew_noise();
   /// The likeliest pairs with the best single causes, found on the cheaper model.
   std::vector<PairGuess> promising_pairs();
@@ -109,7 +117,8 @@ class Explanations {
   std::vector<Sensitivities> sensitivities_;
   std::vector<int> liberties_;
   std::vector<Sensitivities> liberty_sensitivities_;
-  std::vector<std::vector<Eigen::MatrixXd>> movements_;  // what the simulation is not to be relied on by: model_covariance()
+  std::vector<std::vector<Eigen::MatrixXd>>
+      movements_;  // what the simulation is not to be relied on by: model_covariance()
   Predictions at_nominal_;
   std::vector<Sensitivities> nominal_sensitivities_;
   GramByStructure about_nominal_;

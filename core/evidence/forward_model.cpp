@@ -6,7 +6,9 @@
 
 namespace formwright {
 
-double ModelParameter::value(double u) const { return std::clamp(logarithmic ? nominal * std::exp(u) : nominal + u, low, high); }
+double ModelParameter::value(double u) const {
+  return std::clamp(logarithmic ? nominal * std::exp(u) : nominal + u, low, high);
+}
 
 double ModelParameter::coordinate(double value) const {
   // A logarithmic range may begin at zero: far enough below for nothing to change.

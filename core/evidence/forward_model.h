@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// What a diagnosis knows of a craft: a model that predicts measurable quantities from parameters, effects that extend it,
-// and data. Nothing here knows about sheets, reliefs or zippers.
+// What a diagnosis knows of a craft: a model that predicts measurable quantities from parameters, effects that extend
+// it, and data. Nothing here knows about sheets, reliefs or zippers.
 #include <Eigen/Core>
 #include <string>
 #include <vector>
@@ -13,18 +13,19 @@ namespace formwright {
 enum class ParameterRole {
   base,         // of the model itself: always fitted
   effect,       // of an extension: zero means absent
-  discrepancy,  // known liberties of the simulation (another law, a finer mesh): never fitted, but what they move is not evidence
+  discrepancy,  // known liberties of the simulation (another law, a finer mesh): never fitted, but what they move is
+                // not evidence
 };
 
-/// A parameter the engine may turn. It is searched in a coordinate u that is 0 at the nominal value: ln(value / nominal) if
-/// logarithmic, else value - nominal.
+/// A parameter the engine may turn. It is searched in a coordinate u that is 0 at the nominal value: ln(value /
+/// nominal) if logarithmic, else value - nominal.
 struct ModelParameter {
   std::string name, label, unit;
   ParameterRole role = ParameterRole::base;
   double nominal = 0, low = 0, high = 0;  // values
   bool logarithmic = false;
-  double prior_sd = 1;                    // of u: how far from the nominal value it may well be
-  double probe = 0.1;                     // a step in u that moves predictions visibly, and still about linearly
+  double prior_sd = 1;  // of u: how far from the nominal value it may well be
+  double probe = 0.1;   // a step in u that moves predictions visibly, and still about linearly
 
   double value(double u) const;
   double coordinate(double value) const;
@@ -40,10 +41,12 @@ struct Cause {
   std::string remedy;           // what to do at the machine, in a sentence
   std::vector<int> parameters;  // indices into ForwardModel::parameters()
   std::string unit;             // of its strength: the Euclidean norm of its parameters' values
-  double gain_error = 0;        // standard deviation, as a share of its strength: how differently equally good simulations turn it into movement
+  double gain_error = 0;  // standard deviation, as a share of its strength: how differently equally good simulations
+                          // turn it into movement
 };
 
-/// What was measured of one object. `place` are coordinates on the object, in [0, 1] x [0, 1] about, by which neighbours are known.
+/// What was measured of one object. `place` are coordinates on the object, in [0, 1] x [0, 1] about, by which
+/// neighbours are known.
 struct Measurement {
   std::string name;
   Eigen::MatrixX2d place;    // n x 2
@@ -58,16 +61,19 @@ class ForwardModel {
   virtual const std::vector<ModelParameter>& parameters() const = 0;
   virtual const std::vector<Cause>& causes() const = 0;
   virtual const std::vector<Measurement>& measurements() const = 0;
-  /// n x d: what would be measured of `object` at `u` (all parameters' coordinates). Called from several threads at once; the same
-  /// bits for the same u. Throws Error{could_not_solve} where the model has no answer there, Error{cancelled}.
+  /// n x d: what would be measured of `object` at `u` (all parameters' coordinates). Called from several threads at
+  /// once; the same bits for the same u. Throws Error{could_not_solve} where the model has no answer there,
+  /// Error{cancelled}.
   virtual Eigen::MatrixXd predict(int object, const Eigen::VectorXd& u, const Context& context) const = 0;
   /// False while another process makes this very prediction: ask for others first. From several threads at once.
   virtual bool claim(int /*object*/, const Eigen::VectorXd& /*u*/, const Context& /*context*/) const { return true; }
-  /// The same objects and parameters, simulated more coarsely and several times as fast, for searching; null where there is no such model.
+  /// The same objects and parameters, simulated more coarsely and several times as fast, for searching; null where
+  /// there is no such model.
   virtual const ForwardModel* cheaper() const { return nullptr; }
   /// The same, simulated more finely, for what this one does not decide; null where there is no such model.
   virtual const ForwardModel* finer() const { return nullptr; }
-  /// Size of structured misfit (in the measurement's unit) that the model is known to have without any fault of the machine.
+  /// Size of structured misfit (in the measurement's unit) that the model is known to have without any fault of the
+  /// machine.
   virtual double known_misfit() const = 0;
 
   std::vector<int> parameters_with(ParameterRole role) const;

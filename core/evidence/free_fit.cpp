@@ -14,13 +14,15 @@ constexpr double degrees = 4;  // of Student's t
 /// Residuals' squared lengths over their median.
 Eigen::VectorXd normalised_squares(const Measurement& measurement, const Eigen::MatrixXd& residual) {
   Eigen::VectorXd squares = residual.rowwise().squaredNorm();
-  if (measurement.sigma.maxCoeff() > 0) squares.array() /= measurement.sigma.array().max(0.1 * measurement.sigma.mean()).square();
+  if (measurement.sigma.maxCoeff() > 0)
+    squares.array() /= measurement.sigma.array().max(0.1 * measurement.sigma.mean()).square();
   return squares / std::max(1e-300, median_of({squares.begin(), squares.end()}));
 }
 
 }  // namespace
 
-Predictions freely_fitted(const ForwardModel& model, const Predictions& predictions, const std::vector<int>& columns, const std::vector<Sensitivities>& sensitivities) {
+Predictions freely_fitted(const ForwardModel& model, const Predictions& predictions, const std::vector<int>& columns,
+                          const std::vector<Sensitivities>& sensitivities) {
   const auto k = static_cast<Eigen::Index>(columns.size());
   const Predictions before = residuals(model, predictions);
   Predictions fitted = predictions;
@@ -39,11 +41,14 @@ Predictions freely_fitted(const ForwardModel& model, const Predictions& predicti
       gram += misfit.gram_at(before[object], sensitivities[object], 0);
     }
     Eigen::MatrixXd A = gram.bottomRightCorner(k, k);
-    for (Eigen::Index a = 0; a < k; ++a) A(a, a) += std::pow(model.parameters()[static_cast<std::size_t>(columns[static_cast<std::size_t>(a)])].prior_sd, -2);
+    for (Eigen::Index a = 0; a < k; ++a)
+      A(a, a) +=
+          std::pow(model.parameters()[static_cast<std::size_t>(columns[static_cast<std::size_t>(a)])].prior_sd, -2);
     const Eigen::VectorXd step = A.llt().solve(gram.col(0).tail(k));
     fitted = predictions;
     for (std::size_t object = 0; object < fitted.size(); ++object)
-      for (Eigen::Index a = 0; a < k; ++a) fitted[object] += step[a] * sensitivities[object][static_cast<std::size_t>(a)];
+      for (Eigen::Index a = 0; a < k; ++a)
+        fitted[object] += step[a] * sensitivities[object][static_cast<std::size_t>(a)];
   }
   return fitted;
 }

@@ -25,8 +25,8 @@ std::vector<Eigen::VectorXd> point_errors(const Predictions& residuals, const st
   return errors;
 }
 
-HeldOutGain compare_errors(const ForwardModel& model, const std::vector<Eigen::VectorXd>& before, const std::vector<Eigen::VectorXd>& after,
-                           const std::vector<Eigen::VectorXd>& weights) {
+HeldOutGain compare_errors(const ForwardModel& model, const std::vector<Eigen::VectorXd>& before,
+                           const std::vector<Eigen::VectorXd>& after, const std::vector<Eigen::VectorXd>& weights) {
   struct Block {
     double before = 0, after = 0, count = 0;
   };
@@ -48,7 +48,8 @@ HeldOutGain compare_errors(const ForwardModel& model, const std::vector<Eigen::V
   if (blocks.empty()) return gain;
   const auto sum = [](const std::vector<Block>& list) {
     Block total;
-    for (const Block& block : list) total.before += block.before, total.after += block.after, total.count += block.count;
+    for (const Block& block : list)
+      total.before += block.before, total.after += block.after, total.count += block.count;
     return total;
   };
   const Block all = sum(blocks);
@@ -69,7 +70,8 @@ HeldOutGain compare_errors(const ForwardModel& model, const std::vector<Eigen::V
   gain.before = {all.before / all.count, low(0), high(0)};
   gain.after = {all.after / all.count, low(1), high(1)};
   gain.gain_share = 1 - gain.after.mean / std::max(gain.before.mean, 1e-12);
-  gain.gain_probability = static_cast<double>(std::count_if(drawn[2].begin(), drawn[2].end(), [](double g) { return g > 0; })) / draws;
+  gain.gain_probability =
+      static_cast<double>(std::count_if(drawn[2].begin(), drawn[2].end(), [](double g) { return g > 0; })) / draws;
   gain.gain_low = low(2);
   gain.gain_high = high(2);
   return gain;
@@ -108,7 +110,8 @@ std::vector<Eigen::VectorXd> weighed_errors(const Predictions& residuals, const 
 }
 
 /// Takes over `own` where a point is of the fold.
-void take_fold(const ForwardModel& model, const std::vector<Eigen::VectorXd>& own, int fold, std::vector<Eigen::VectorXd>& errors) {
+void take_fold(const ForwardModel& model, const std::vector<Eigen::VectorXd>& own, int fold,
+               std::vector<Eigen::VectorXd>& errors) {
   for (std::size_t object = 0; object < own.size(); ++object)
     for (Eigen::Index i = 0; i < own[object].size(); ++i)
       if (fold_of(block_of(model.measurements()[object], i)) == fold) errors[object][i] = own[object][i];
@@ -116,8 +119,10 @@ void take_fold(const ForwardModel& model, const std::vector<Eigen::VectorXd>& ow
 
 }  // namespace
 
-std::vector<Eigen::VectorXd> predictive_errors(const ForwardModel& model, const ParameterFit& fit, const std::vector<Precisions>& precisions, std::size_t structure,
-                                               const std::vector<int>& liberty_parameters, const std::vector<Sensitivities>& liberties) {
+std::vector<Eigen::VectorXd> predictive_errors(const ForwardModel& model, const ParameterFit& fit,
+                                               const std::vector<Precisions>& precisions, std::size_t structure,
+                                               const std::vector<int>& liberty_parameters,
+                                               const std::vector<Sensitivities>& liberties) {
   std::vector<int> columns = fit.free;
   columns.insert(columns.end(), liberty_parameters.begin(), liberty_parameters.end());
   std::vector<Sensitivities> sensitivities = fit.sensitivities;
@@ -129,7 +134,8 @@ std::vector<Eigen::VectorXd> predictive_errors(const ForwardModel& model, const 
   for (int fold = 0; fold < fold_count; ++fold) {
     const MisfitOfAll misfit(model, without_fold(model, precisions, fold));
     Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(1 + k, 1 + k);
-    for (std::size_t object = 0; object < left.size(); ++object) gram += misfit.objects()[object].gram_at(left[object], sensitivities[object], structure);
+    for (std::size_t object = 0; object < left.size(); ++object)
+      gram += misfit.objects()[object].gram_at(left[object], sensitivities[object], structure);
     Eigen::MatrixXd A = gram.bottomRightCorner(k, k);
     Eigen::VectorXd b = gram.col(0).tail(k);
     for (Eigen::Index a = 0; a < k; ++a) {
@@ -149,22 +155,24 @@ std::vector<Eigen::VectorXd> predictive_errors(const ForwardModel& model, const 
   return errors;
 }
 
-HeldOut hold_out(SimulationBag& bag, const ParameterFit& fit, const std::vector<Precisions>& precisions, std::size_t structure,
-                 const std::vector<int>& liberty_parameters, const std::vector<Sensitivities>& liberties, Context& context) {
+HeldOut hold_out(SimulationBag& bag, const ParameterFit& fit, const std::vector<Precisions>& precisions,
+                 std::size_t structure, const std::vector<int>& liberty_parameters,
+                 const std::vector<Sensitivities>& liberties, Context& context) {
   const ForwardModel& model = bag.model();
   const Predictions at_fit = residuals(model, fit.predictions);
   const auto k = static_cast<Eigen::Index>(fit.free.size());
   struct Fold {
     std::unique_ptr<MisfitOfAll> misfit;
     std::unique_ptr<StructuredObjective> objective;
-    double value = 0;       // at the fit to all data
+    double value = 0;  // at the fit to all data
     Eigen::VectorXd step;
   };
   // The step from the fit to where it would be without `left_out` (none: -1).
   const auto without = [&](int left_out) {
     Fold fold;
     fold.misfit = std::make_unique<MisfitOfAll>(model, without_fold(model, precisions, left_out));
-    fold.objective = std::make_unique<StructuredObjective>(model, *fold.misfit, structure, liberty_parameters, liberties);
+    fold.objective =
+        std::make_unique<StructuredObjective>(model, *fold.misfit, structure, liberty_parameters, liberties);
     fold.value = fold.objective->value(at_fit, fit.u);
     Eigen::VectorXd g, low(k), high(k);
     Eigen::MatrixXd H;
@@ -178,7 +186,8 @@ HeldOut hold_out(SimulationBag& bag, const ParameterFit& fit, const std::vector<
     fold.step = bounded_step(H, g, low, high);
     return fold;
   };
-  // The fit is not at rest to the last digit, so its own step is taken off: what counts is the difference that the fold makes.
+  // The fit is not at rest to the last digit, so its own step is taken off: what counts is the difference that the fold
+  // makes.
   const Eigen::VectorXd at_rest = without(-1).step;
   HeldOut result{counted_errors(at_fit, precisions), Eigen::MatrixXd::Zero(k, fold_count)};
   std::vector<Fold> folds;
@@ -188,13 +197,15 @@ HeldOut hold_out(SimulationBag& bag, const ParameterFit& fit, const std::vector<
     folds.back().step -= at_rest;
     open.push_back(f);
   }
-  // Where the straight line misses, so that the other folds are served worse than before, half the way is gone, and half of that.
+  // Where the straight line misses, so that the other folds are served worse than before, half the way is gone, and
+  // half of that.
   constexpr int halvings = 2;
   for (int halved = 0; halved <= halvings && !open.empty(); ++halved) {
     std::vector<Eigen::VectorXd> points;
     for (const int f : open) {
       points.push_back(fit.u);
-      for (Eigen::Index a = 0; a < k; ++a) points.back()[fit.free[static_cast<std::size_t>(a)]] += folds[static_cast<std::size_t>(f)].step[a];
+      for (Eigen::Index a = 0; a < k; ++a)
+        points.back()[fit.free[static_cast<std::size_t>(a)]] += folds[static_cast<std::size_t>(f)].step[a];
       points.back() = within_ranges(model, points.back());
     }
     const auto predictions = bag.run(points, context, "Predicting what was held out");
@@ -202,7 +213,8 @@ HeldOut hold_out(SimulationBag& bag, const ParameterFit& fit, const std::vector<
     for (std::size_t i = 0; i < open.size(); ++i) {
       const int f = open[i];
       Fold& fold = folds[static_cast<std::size_t>(f)];
-      const bool worse = !predictions[i] || fold.objective->value(residuals(model, *predictions[i]), points[i]) > fold.value;
+      const bool worse =
+          !predictions[i] || fold.objective->value(residuals(model, *predictions[i]), points[i]) > fold.value;
       if (worse && halved < halvings) {
         fold.step *= 0.5;
         still_open.push_back(f);

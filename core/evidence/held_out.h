@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Errors on data that were not used: spatial blocks left out in turn, and other objects. Neighbouring points know of each other, so
-// single points left out would prove nothing (Roberts et al. 2017).
+// Errors on data that were not used: spatial blocks left out in turn, and other objects. Neighbouring points know of
+// each other, so single points left out would prove nothing (Roberts et al. 2017).
 #include "evidence/structured_objective.h"
 
 namespace formwright {
@@ -25,22 +25,27 @@ int fold_of(int block);
 std::vector<Eigen::VectorXd> point_errors(const Predictions& residuals, const std::vector<Eigen::VectorXd>& weights);
 
 /// With `weights` (inverse variances) points count by how far they may be trusted, else alike.
-HeldOutGain compare_errors(const ForwardModel& model, const std::vector<Eigen::VectorXd>& before, const std::vector<Eigen::VectorXd>& after,
-                           const std::vector<Eigen::VectorXd>& weights = {});
+HeldOutGain compare_errors(const ForwardModel& model, const std::vector<Eigen::VectorXd>& before,
+                           const std::vector<Eigen::VectorXd>& after, const std::vector<Eigen::VectorXd>& weights = {});
 
-/// What an explanation as a whole (its parameters, the simulation's liberties, structure of the size sizes()[structure]) predicts of each
-/// fold from the others, linearised about the fit. Lengths of what is left, in which a direction counts by how well it is known; -1 for points
-/// that are left out. No simulations.
-std::vector<Eigen::VectorXd> predictive_errors(const ForwardModel& model, const ParameterFit& fit, const std::vector<Precisions>& precisions, std::size_t structure,
-                                               const std::vector<int>& liberty_parameters, const std::vector<Sensitivities>& liberties);
+/// What an explanation as a whole (its parameters, the simulation's liberties, structure of the size
+/// sizes()[structure]) predicts of each fold from the others, linearised about the fit. Lengths of what is left, in
+/// which a direction counts by how well it is known; -1 for points that are left out. No simulations.
+std::vector<Eigen::VectorXd> predictive_errors(const ForwardModel& model, const ParameterFit& fit,
+                                               const std::vector<Precisions>& precisions, std::size_t structure,
+                                               const std::vector<int>& liberty_parameters,
+                                               const std::vector<Sensitivities>& liberties);
 
 struct HeldOut {
-  std::vector<Eigen::VectorXd> errors;  // each object, each point, predicted by a fit that did not see it; -1 for points of weight 0
-  Eigen::MatrixXd steps;                // free parameters x folds: how far the fit moves without the fold
+  std::vector<Eigen::VectorXd>
+      errors;             // each object, each point, predicted by a fit that did not see it; -1 for points of weight 0
+  Eigen::MatrixXd steps;  // free parameters x folds: how far the fit moves without the fold
 };
 
-/// For each fold, fits `fit`'s free parameters to the other folds (linearised about the fit) and predicts the fold by a simulation of its own.
-HeldOut hold_out(SimulationBag& bag, const ParameterFit& fit, const std::vector<Precisions>& precisions, std::size_t structure,
-                 const std::vector<int>& liberty_parameters, const std::vector<Sensitivities>& liberties, Context& context);
+/// For each fold, fits `fit`'s free parameters to the other folds (linearised about the fit) and predicts the fold by a
+/// simulation of its own.
+HeldOut hold_out(SimulationBag& bag, const ParameterFit& fit, const std::vector<Precisions>& precisions,
+                 std::size_t structure, const std::vector<int>& liberty_parameters,
+                 const std::vector<Sensitivities>& liberties, Context& context);
 
 }  // namespace formwright

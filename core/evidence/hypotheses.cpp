@@ -23,7 +23,8 @@ double log_sum_exp(const std::vector<double>& values) {
 
 double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
 
-std::vector<int> indices_of(const ForwardModel& model, const std::vector<int>& columns, const std::vector<int>& causes) {
+std::vector<int> indices_of(const ForwardModel& model, const std::vector<int>& columns,
+                            const std::vector<int>& causes) {
   std::vector<int> chosen;
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const bool always = model.parameters()[static_cast<std::size_t>(columns[c])].role != ParameterRole::effect;
@@ -42,8 +43,8 @@ struct Weighed {
 };
 
 /// Marginal likelihood at one size of structure, and the most probable step.
-Weighed weigh_at(const ForwardModel& model, const Eigen::MatrixXd& gram, double log_determinant, const std::vector<int>& columns, const std::vector<int>& chosen,
-                 const Eigen::VectorXd& u0) {
+Weighed weigh_at(const ForwardModel& model, const Eigen::MatrixXd& gram, double log_determinant,
+                 const std::vector<int>& columns, const std::vector<int>& chosen, const Eigen::VectorXd& u0) {
   const auto k = static_cast<Eigen::Index>(chosen.size());
   Eigen::MatrixXd A(k, k);
   Eigen::VectorXd b(k), precision(k), offset(k);
@@ -62,12 +63,14 @@ Weighed weigh_at(const ForwardModel& model, const Eigen::MatrixXd& gram, double 
   double log_share = 0;
   const Eigen::MatrixXd covariance = factor.solve(Eigen::MatrixXd::Identity(k, k));
   for (Eigen::Index i = 0; i < k; ++i) {
-    const ModelParameter& parameter = model.parameters()[static_cast<std::size_t>(columns[static_cast<std::size_t>(chosen[static_cast<std::size_t>(i)])])];
+    const ModelParameter& parameter = model.parameters()[static_cast<std::size_t>(
+        columns[static_cast<std::size_t>(chosen[static_cast<std::size_t>(i)])])];
     if (!parameter.one_sided() || parameter.role != ParameterRole::effect) continue;
     log_share += std::log(std::max(1e-30, 2 * normal_cdf((offset[i] + result.step[i]) / std::sqrt(covariance(i, i)))));
   }
   const double quadratic = gram(0, 0) + offset.cwiseProduct(precision).dot(offset) - b.dot(result.step);
-  const double occam = 2 * Eigen::MatrixXd(factor.matrixL()).diagonal().array().log().sum() - precision.array().log().sum();
+  const double occam =
+      2 * Eigen::MatrixXd(factor.matrixL()).diagonal().array().log().sum() - precision.array().log().sum();
   result.log_evidence = -0.5 * (quadratic + log_determinant + occam) + log_share;
   return result;
 }
@@ -80,14 +83,16 @@ std::vector<double> structure_sizes(const ForwardModel& model) {
   return sizes;
 }
 
-void weigh(const ForwardModel& model, const GramByStructure& gram, const std::vector<int>& columns, const Eigen::VectorXd& u0, Hypothesis& hypothesis) {
+void weigh(const ForwardModel& model, const GramByStructure& gram, const std::vector<int>& columns,
+           const Eigen::VectorXd& u0, Hypothesis& hypothesis) {
   const std::vector<int> chosen = indices_of(model, columns, hypothesis.causes);
   std::vector<double> terms, priors;
   std::vector<Weighed> weighed;
   for (std::size_t t = 0; t < multiples.size(); ++t) {
     const double multiple = multiples[t];
     double log_prior;
-    if (hypothesis.unknown_structure) log_prior = multiple >= unknown_from ? 0 : -std::numeric_limits<double>::infinity();
+    if (hypothesis.unknown_structure)
+      log_prior = multiple >= unknown_from ? 0 : -std::numeric_limits<double>::infinity();
     else log_prior = -0.5 * multiple * multiple;
     priors.push_back(log_prior);
     weighed.push_back(weigh_at(model, gram.gram[t], gram.log_determinant[t], columns, chosen, u0));
@@ -101,7 +106,8 @@ void weigh(const ForwardModel& model, const GramByStructure& gram, const std::ve
     if (terms[t] > terms[best]) best = t;
   }
   hypothesis.u = u0;
-  for (std::size_t i = 0; i < chosen.size(); ++i) hypothesis.u[columns[static_cast<std::size_t>(chosen[i])]] += weighed[best].step[static_cast<Eigen::Index>(i)];
+  for (std::size_t i = 0; i < chosen.size(); ++i)
+    hypothesis.u[columns[static_cast<std::size_t>(chosen[i])]] += weighed[best].step[static_cast<Eigen::Index>(i)];
   hypothesis.u = within_ranges(model, hypothesis.u);
 }
 
@@ -133,18 +139,22 @@ void normalise(std::vector<Hypothesis>& hypotheses) {
   for (const Hypothesis& h : hypotheses) terms.push_back(h.log_prior + h.log_evidence);
   const double total = log_sum_exp(terms);
   for (std::size_t i = 0; i < hypotheses.size(); ++i) hypotheses[i].probability = std::exp(terms[i] - total);
-  std::stable_sort(hypotheses.begin(), hypotheses.end(), [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
+  std::stable_sort(hypotheses.begin(), hypotheses.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
 }
 
 namespace {
 
-/// Gram matrices of what causes do, less what base parameters and discrepancies can imitate as far as their priors let them.
+/// Gram matrices of what causes do, less what base parameters and discrepancies can imitate as far as their priors let
+/// them.
 class Projection {
  public:
-  Projection(const ForwardModel& model, const Eigen::MatrixXd& gram, const std::vector<int>& columns) : model_(model), G_(gram), columns_(columns), others_(indices_of(model, columns, {})) {
+  Projection(const ForwardModel& model, const Eigen::MatrixXd& gram, const std::vector<int>& columns)
+      : model_(model), G_(gram), columns_(columns), others_(indices_of(model, columns, {})) {
     Eigen::MatrixXd base = block(others_, others_);
     for (std::size_t i = 0; i < others_.size(); ++i) {
-      const double sd = model.parameters()[static_cast<std::size_t>(columns[static_cast<std::size_t>(others_[i])])].prior_sd;
+      const double sd =
+          model.parameters()[static_cast<std::size_t>(columns[static_cast<std::size_t>(others_[i])])].prior_sd;
       base(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) += 1 / (sd * sd);
     }
     factor_.compute(base);
@@ -164,7 +174,8 @@ class Projection {
   Eigen::MatrixXd block(const std::vector<int>& rows, const std::vector<int>& cols) const {
     Eigen::MatrixXd M(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(cols.size()));
     for (Eigen::Index i = 0; i < M.rows(); ++i)
-      for (Eigen::Index j = 0; j < M.cols(); ++j) M(i, j) = G_(1 + rows[static_cast<std::size_t>(i)], 1 + cols[static_cast<std::size_t>(j)]);
+      for (Eigen::Index j = 0; j < M.cols(); ++j)
+        M(i, j) = G_(1 + rows[static_cast<std::size_t>(i)], 1 + cols[static_cast<std::size_t>(j)]);
     return M;
   }
 
@@ -177,19 +188,23 @@ class Projection {
 
 }  // namespace
 
-double likeness(const ForwardModel& model, const GramByStructure& gram, std::size_t structure, const std::vector<int>& columns, int cause_a, int cause_b) {
+double likeness(const ForwardModel& model, const GramByStructure& gram, std::size_t structure,
+                const std::vector<int>& columns, int cause_a, int cause_b) {
   const Projection projected(model, gram.gram[structure], columns);
   // The largest canonical correlation of the two spans.
   const auto root_inverse = [](const Eigen::MatrixXd& M) -> Eigen::MatrixXd {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(M);
     const double largest = std::max(eigen.eigenvalues().maxCoeff(), 1e-300);
-    return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(1e-9 * largest).cwiseSqrt().cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
+    return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(1e-9 * largest).cwiseSqrt().cwiseInverse().asDiagonal() *
+           eigen.eigenvectors().transpose();
   };
-  const Eigen::MatrixXd correlation = root_inverse(projected(cause_a, cause_a)) * projected(cause_a, cause_b) * root_inverse(projected(cause_b, cause_b));
+  const Eigen::MatrixXd correlation = root_inverse(projected(cause_a, cause_a)) * projected(cause_a, cause_b) *
+                                      root_inverse(projected(cause_b, cause_b));
   return std::min(1.0, Eigen::JacobiSVD<Eigen::MatrixXd>(correlation).singularValues().maxCoeff());
 }
 
-double least_visible(const ForwardModel& model, const GramByStructure& gram, std::size_t structure, const std::vector<int>& columns, int cause) {
+double least_visible(const ForwardModel& model, const GramByStructure& gram, std::size_t structure,
+                     const std::vector<int>& columns, int cause) {
   constexpr double log_evidence = 8;  // half the square of the strength over its standard deviation: four of them
   const Eigen::MatrixXd& G = gram.gram[structure];
   const auto k = static_cast<Eigen::Index>(columns.size());
@@ -199,13 +214,16 @@ double least_visible(const ForwardModel& model, const GramByStructure& gram, std
     if (std::find(others.begin(), others.end(), c) == others.end()) own.push_back(c);
   Eigen::VectorXd precision(static_cast<Eigen::Index>(others.size()));
   for (std::size_t i = 0; i < others.size(); ++i)
-    precision[static_cast<Eigen::Index>(i)] = std::pow(model.parameters()[static_cast<std::size_t>(columns[static_cast<std::size_t>(others[i])])].prior_sd, -2);
+    precision[static_cast<Eigen::Index>(i)] = std::pow(
+        model.parameters()[static_cast<std::size_t>(columns[static_cast<std::size_t>(others[i])])].prior_sd, -2);
   // At either place: what the others do of it, and what remains of it.
-  const auto block = [&](const std::vector<int>& rows, Eigen::Index place_of_rows, const std::vector<int>& cols, Eigen::Index place_of_cols) {
+  const auto block = [&](const std::vector<int>& rows, Eigen::Index place_of_rows, const std::vector<int>& cols,
+                         Eigen::Index place_of_cols) {
     Eigen::MatrixXd M(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(cols.size()));
     for (Eigen::Index i = 0; i < M.rows(); ++i)
       for (Eigen::Index j = 0; j < M.cols(); ++j)
-        M(i, j) = G(1 + place_of_rows * k + rows[static_cast<std::size_t>(i)], 1 + place_of_cols * k + cols[static_cast<std::size_t>(j)]);
+        M(i, j) = G(1 + place_of_rows * k + rows[static_cast<std::size_t>(i)],
+                    1 + place_of_cols * k + cols[static_cast<std::size_t>(j)]);
     return M;
   };
   std::array<Eigen::MatrixXd, 2> imitated;
@@ -215,9 +233,11 @@ double least_visible(const ForwardModel& model, const GramByStructure& gram, std
     imitated[static_cast<std::size_t>(place)] = A.llt().solve(block(others, place, own, place));
   }
   const auto& [X, Y] = imitated;
-  const Eigen::MatrixXd shared = block(own, 0, own, 1) - block(own, 0, others, 1) * Y - X.transpose() * block(others, 0, own, 1) +
+  const Eigen::MatrixXd shared = block(own, 0, own, 1) - block(own, 0, others, 1) * Y -
+                                 X.transpose() * block(others, 0, own, 1) +
                                  X.transpose() * (block(others, 0, others, 1) * Y + precision.asDiagonal() * Y);
-  const double weakest = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (shared + shared.transpose())).eigenvalues().minCoeff();
+  const double weakest =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (shared + shared.transpose())).eigenvalues().minCoeff();
   return weakest > 0 ? std::sqrt(2 * log_evidence / weakest) : std::numeric_limits<double>::infinity();
 }
 

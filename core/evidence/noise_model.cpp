@@ -45,7 +45,8 @@ NoiseEstimate estimate_noise(const Measurement& measurement, const Eigen::Matrix
   double scale = 0;
   {
     std::vector<double> lengths(static_cast<std::size_t>(n));
-    for (Eigen::Index i = 0; i < n; ++i) lengths[static_cast<std::size_t>(i)] = residual.row(i).squaredNorm() / (sigma[i] * sigma[i]);
+    for (Eigen::Index i = 0; i < n; ++i)
+      lengths[static_cast<std::size_t>(i)] = residual.row(i).squaredNorm() / (sigma[i] * sigma[i]);
     scale = std::sqrt(std::max(1e-12, median_of(lengths) / chi_square_median(static_cast<double>(d))));
   }
   for (int round = 0; round < 8; ++round) {
@@ -89,11 +90,15 @@ Eigen::MatrixXd model_covariance(const Measurement& measurement, const std::vect
   Eigen::MatrixXd own = Eigen::MatrixXd::Zero(n, d * d);
   for (const Eigen::MatrixXd& movement : movements)
     for (Eigen::Index p = 0; p < d; ++p)
-      for (Eigen::Index q = 0; q < d; ++q) own.col(p * d + q) += share * share * movement.col(p).cwiseProduct(movement.col(q));
+      for (Eigen::Index q = 0; q < d; ++q)
+        own.col(p * d + q) += share * share * movement.col(p).cwiseProduct(movement.col(q));
   // Necks move: what happens to a point may as well happen to its neighbours.
-  std::vector<Eigen::MatrixXd> sum(static_cast<std::size_t>((cells + 2) * (cells + 2)), Eigen::MatrixXd::Zero(1, d * d));
+  std::vector<Eigen::MatrixXd> sum(static_cast<std::size_t>((cells + 2) * (cells + 2)),
+                                   Eigen::MatrixXd::Zero(1, d * d));
   std::vector<double> count(sum.size(), 0);
-  const auto cell = [&](Eigen::Index i, int k) { return 1 + std::clamp(static_cast<int>(cells * measurement.place(i, k)), 0, cells - 1); };
+  const auto cell = [&](Eigen::Index i, int k) {
+    return 1 + std::clamp(static_cast<int>(cells * measurement.place(i, k)), 0, cells - 1);
+  };
   const auto at = [&](int x, int y) { return static_cast<std::size_t>((cells + 2) * y + x); };
   for (Eigen::Index i = 0; i < n; ++i) {
     sum[at(cell(i, 0), cell(i, 1))] += own.row(i);
@@ -119,7 +124,8 @@ Eigen::MatrixXd model_covariance(const Measurement& measurement, const std::vect
   return covariance;
 }
 
-StructureTest test_structure(const Measurement& measurement, const Eigen::MatrixXd& residual, const Eigen::VectorXd& weights) {
+StructureTest test_structure(const Measurement& measurement, const Eigen::MatrixXd& residual,
+                             const Eigen::VectorXd& weights) {
   StructureTest test;
   std::vector<Eigen::Index> used;
   for (Eigen::Index i = 0; i < weights.size(); ++i)
@@ -127,7 +133,8 @@ StructureTest test_structure(const Measurement& measurement, const Eigen::Matrix
   const auto n = static_cast<Eigen::Index>(used.size());
   if (n < 10) return test;
   Eigen::MatrixXd r(n, residual.cols());
-  for (Eigen::Index i = 0; i < n; ++i) r.row(i) = residual.row(used[static_cast<std::size_t>(i)]) * std::sqrt(weights[used[static_cast<std::size_t>(i)]]);
+  for (Eigen::Index i = 0; i < n; ++i)
+    r.row(i) = residual.row(used[static_cast<std::size_t>(i)]) * std::sqrt(weights[used[static_cast<std::size_t>(i)]]);
   const double variance = r.squaredNorm() / static_cast<double>(n);
   if (!(variance > 0)) return test;
 
@@ -139,7 +146,9 @@ StructureTest test_structure(const Measurement& measurement, const Eigen::Matrix
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto place = measurement.place.row(used[static_cast<std::size_t>(i)]);
     cell[static_cast<std::size_t>(i)] = {cell_of(place[0]), cell_of(place[1])};
-    members[static_cast<std::size_t>(cell[static_cast<std::size_t>(i)][0] * cells + cell[static_cast<std::size_t>(i)][1])].push_back(i);
+    members[static_cast<std::size_t>(cell[static_cast<std::size_t>(i)][0] * cells +
+                                     cell[static_cast<std::size_t>(i)][1])]
+        .push_back(i);
   }
   // Neighbours: the nearest other point in the same or an adjoining cell.
   std::vector<std::pair<Eigen::Index, Eigen::Index>> neighbours;
@@ -150,8 +159,9 @@ StructureTest test_structure(const Measurement& measurement, const Eigen::Matrix
     for (int x = std::max(0, cx - 1); x <= std::min(cells - 1, cx + 1); ++x)
       for (int y = std::max(0, cy - 1); y <= std::min(cells - 1, cy + 1); ++y)
         for (const Eigen::Index j : members[static_cast<std::size_t>(x * cells + y)]) {
-          const double distance =
-              (measurement.place.row(used[static_cast<std::size_t>(i)]) - measurement.place.row(used[static_cast<std::size_t>(j)])).squaredNorm();
+          const double distance = (measurement.place.row(used[static_cast<std::size_t>(i)]) -
+                                   measurement.place.row(used[static_cast<std::size_t>(j)]))
+                                      .squaredNorm();
           if (j != i && distance < best) best = distance, nearest = j;
         }
     if (nearest >= 0) neighbours.emplace_back(i, nearest);
@@ -159,7 +169,8 @@ StructureTest test_structure(const Measurement& measurement, const Eigen::Matrix
   if (neighbours.empty()) return test;
   const auto correlation = [&](const std::vector<Eigen::Index>& order) {
     double sum = 0;
-    for (const auto& [i, j] : neighbours) sum += r.row(order[static_cast<std::size_t>(i)]).dot(r.row(order[static_cast<std::size_t>(j)]));
+    for (const auto& [i, j] : neighbours)
+      sum += r.row(order[static_cast<std::size_t>(i)]).dot(r.row(order[static_cast<std::size_t>(j)]));
     return sum / static_cast<double>(neighbours.size()) / variance;
   };
   std::vector<Eigen::Index> order(static_cast<std::size_t>(n));
@@ -182,7 +193,9 @@ StructureTest test_structure(const Measurement& measurement, const Eigen::Matrix
   const Eigen::Index stride = std::max<Eigen::Index>(1, n / 700);
   for (Eigen::Index i = 0; i < n; i += stride)
     for (Eigen::Index j = 0; j < i; j += stride) {
-      const double distance = (measurement.place.row(used[static_cast<std::size_t>(i)]) - measurement.place.row(used[static_cast<std::size_t>(j)])).norm();
+      const double distance = (measurement.place.row(used[static_cast<std::size_t>(i)]) -
+                               measurement.place.row(used[static_cast<std::size_t>(j)]))
+                                  .norm();
       const int bin = static_cast<int>(distance / longest * bins);
       if (bin >= bins) continue;
       sum[static_cast<std::size_t>(bin)] += r.row(i).dot(r.row(j)) / variance;

@@ -9,18 +9,22 @@
 namespace formwright {
 namespace {
 
-constexpr std::size_t partners = 6;  // that the linear model likes best; those that only go one way are tried in any case
+constexpr std::size_t partners =
+    6;  // that the linear model likes best; those that only go one way are tried in any case
 
 bool one_sided(const ForwardModel& model, int cause) {
   const std::vector<int>& own = model.causes()[static_cast<std::size_t>(cause)].parameters;
-  return std::any_of(own.begin(), own.end(), [&](int p) { return model.parameters()[static_cast<std::size_t>(p)].one_sided(); });
+  return std::any_of(own.begin(), own.end(),
+                     [&](int p) { return model.parameters()[static_cast<std::size_t>(p)].one_sided(); });
 }
 
 /// One anchor's search.
 class Neighbourhood {
  public:
-  Neighbourhood(const ForwardModel& cheap, Predictions correction, const MisfitOfAll& misfit, const FitObjective& objective, const std::vector<int>& liberties,
-                const std::vector<Sensitivities>& liberty_sensitivities, const std::vector<FittedSingle>& singles, const FittedSingle& anchor)
+  Neighbourhood(const ForwardModel& cheap, Predictions correction, const MisfitOfAll& misfit,
+                const FitObjective& objective, const std::vector<int>& liberties,
+                const std::vector<Sensitivities>& liberty_sensitivities, const std::vector<FittedSingle>& singles,
+                const FittedSingle& anchor)
       : model_(cheap, std::move(correction)),
         bag_(model_),
         misfit_(misfit),
@@ -35,13 +39,17 @@ class Neighbourhood {
     for (std::size_t p = 0; p < model_.parameters().size(); ++p)
       if (model_.parameters()[p].role != ParameterRole::discrepancy) columns_.push_back(static_cast<int>(p));
     sensitivities_ = sensitivities_at(bag_, anchor_.u, anchor_.predictions, columns_, context, stage);
-    const GramByStructure gram = misfit_.gram(residuals(model_, anchor_.predictions), side_by_side(sensitivities_, liberty_sensitivities_));
+    const GramByStructure gram =
+        misfit_.gram(residuals(model_, anchor_.predictions), side_by_side(sensitivities_, liberty_sensitivities_));
     for (Hypothesis& h : all_hypotheses(model_, true)) {
-      if (h.unknown_structure || h.causes.size() != 2 || std::find(h.causes.begin(), h.causes.end(), anchor_.cause) == h.causes.end()) continue;
+      if (h.unknown_structure || h.causes.size() != 2 ||
+          std::find(h.causes.begin(), h.causes.end(), anchor_.cause) == h.causes.end())
+        continue;
       weigh(model_, gram, joined(columns_, liberties_), anchor_.u, h);
       linear_.push_back(std::move(h));
     }
-    std::stable_sort(linear_.begin(), linear_.end(), [](const Hypothesis& a, const Hypothesis& b) { return a.log_evidence > b.log_evidence; });
+    std::stable_sort(linear_.begin(), linear_.end(),
+                     [](const Hypothesis& a, const Hypothesis& b) { return a.log_evidence > b.log_evidence; });
     std::size_t rank = 0;
     std::erase_if(linear_, [&](const Hypothesis& h) { return rank++ >= partners && !one_sided(model_, partner(h)); });
   }
@@ -55,18 +63,23 @@ class Neighbourhood {
     std::vector<Eigen::VectorXd> starts{anchor_.u, towards(model_, free, anchor_.u, linear.u)};
     if (one_sided(model_, partner(linear))) {
       starts.push_back(anchor_.u);
-      for (const int p : model_.causes()[static_cast<std::size_t>(partner(linear))].parameters) starts.back()[p] = model_.parameters()[static_cast<std::size_t>(p)].prior_sd;
+      for (const int p : model_.causes()[static_cast<std::size_t>(partner(linear))].parameters)
+        starts.back()[p] = model_.parameters()[static_cast<std::size_t>(p)].prior_sd;
     }
     for (const FittedSingle& single : singles_) {
       // What the partner is like alone is no nearer in general, but on the right side of what these data hardly show.
       if (single.cause != partner(linear)) continue;
       starts.push_back(anchor_.u);
-      for (const int p : model_.causes()[static_cast<std::size_t>(single.cause)].parameters) starts.back()[p] = single.u[p];
+      for (const int p : model_.causes()[static_cast<std::size_t>(single.cause)].parameters)
+        starts.back()[p] = single.u[p];
     }
     for (Eigen::VectorXd& start : starts) start = within_ranges(model_, std::move(start));
-    ParameterFit fit = fit_from_best(bag_, objective_, free, starts, sensitivities_of(free, sensitivities_, columns_), quick_fit, context, stage);
+    ParameterFit fit = fit_from_best(bag_, objective_, free, starts, sensitivities_of(free, sensitivities_, columns_),
+                                     quick_fit, context, stage);
     Hypothesis h = linear;
-    weigh(model_, misfit_.gram(residuals(model_, fit.predictions), side_by_side(fit.sensitivities, liberty_sensitivities_)), joined(free, liberties_), fit.u, h);
+    weigh(model_,
+          misfit_.gram(residuals(model_, fit.predictions), side_by_side(fit.sensitivities, liberty_sensitivities_)),
+          joined(free, liberties_), fit.u, h);
     return {linear.causes, h.log_evidence, std::move(fit.u), std::move(fit.sensitivities)};
   }
 
@@ -89,19 +102,23 @@ class Neighbourhood {
 
 }  // namespace
 
-PairSearch search_pairs(const ForwardModel& model, const MisfitOfAll& misfit, const FitObjective& objective, const std::vector<int>& liberties,
-                        const std::vector<Sensitivities>& liberty_sensitivities, const std::vector<FittedSingle>& singles, std::size_t anchors, Context& context, const std::string& stage) {
+PairSearch search_pairs(const ForwardModel& model, const MisfitOfAll& misfit, const FitObjective& objective,
+                        const std::vector<int>& liberties, const std::vector<Sensitivities>& liberty_sensitivities,
+                        const std::vector<FittedSingle>& singles, std::size_t anchors, Context& context,
+                        const std::string& stage) {
   const ForwardModel& cheap = model.cheaper() != nullptr ? *model.cheaper() : model;
   PairSearch found;
   SimulationBag cheap_bag(cheap);
   anchors = std::min(anchors, singles.size());
   for (std::size_t a = 0; a < anchors; ++a) {
-    const auto span = context.span(static_cast<double>(a) / static_cast<double>(anchors), static_cast<double>(a + 1) / static_cast<double>(anchors), stage);
+    const auto span = context.span(static_cast<double>(a) / static_cast<double>(anchors),
+                                   static_cast<double>(a + 1) / static_cast<double>(anchors), stage);
     Predictions correction = singles[a].predictions;
     const auto at_anchor = cheap_bag.run(singles[a].u, context, stage);
     if (!at_anchor) continue;
     for (std::size_t object = 0; object < correction.size(); ++object) correction[object] -= (*at_anchor)[object];
-    Neighbourhood near(cheap, std::move(correction), misfit, objective, liberties, liberty_sensitivities, singles, singles[a]);
+    Neighbourhood near(cheap, std::move(correction), misfit, objective, liberties, liberty_sensitivities, singles,
+                       singles[a]);
     try {
       const auto part = context.span(0, 0.3, stage);
       near.linearise(context, stage);
@@ -111,16 +128,19 @@ PairSearch search_pairs(const ForwardModel& model, const MisfitOfAll& misfit, co
     }
     for (std::size_t i = 0; i < near.count(); ++i) {
       const double share = 0.7 / static_cast<double>(near.count());
-      const auto part = context.span(0.3 + share * static_cast<double>(i), 0.3 + share * static_cast<double>(i + 1), stage);
+      const auto part =
+          context.span(0.3 + share * static_cast<double>(i), 0.3 + share * static_cast<double>(i + 1), stage);
       PairGuess guess = near.fit(i, context, stage);
-      const auto known = std::find_if(found.guesses.begin(), found.guesses.end(), [&](const PairGuess& g) { return g.causes == guess.causes; });
+      const auto known = std::find_if(found.guesses.begin(), found.guesses.end(),
+                                      [&](const PairGuess& g) { return g.causes == guess.causes; });
       if (known == found.guesses.end()) found.guesses.push_back(std::move(guess));
       else if (guess.log_evidence > known->log_evidence) *known = std::move(guess);
     }
     found.simulations += near.simulations();
   }
   found.simulations += cheap_bag.simulations();
-  std::stable_sort(found.guesses.begin(), found.guesses.end(), [](const PairGuess& a, const PairGuess& b) { return a.log_evidence > b.log_evidence; });
+  std::stable_sort(found.guesses.begin(), found.guesses.end(),
+                   [](const PairGuess& a, const PairGuess& b) { return a.log_evidence > b.log_evidence; });
   return found;
 }
 

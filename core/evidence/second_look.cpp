@@ -13,27 +13,34 @@ constexpr double decisive = 40;            // of log evidence: meshes move it by
 constexpr std::size_t polished_again = 1;  // beside none
 
 const Hypothesis& plain_none(const std::vector<Hypothesis>& hypotheses) {
-  return *std::find_if(hypotheses.begin(), hypotheses.end(), [](const Hypothesis& h) { return h.causes.empty() && !h.unknown_structure; });
+  return *std::find_if(hypotheses.begin(), hypotheses.end(),
+                       [](const Hypothesis& h) { return h.causes.empty() && !h.unknown_structure; });
 }
 
 }  // namespace
 
 bool Explanations::decided() const {
   const Hypothesis& best = hypotheses_.front();
-  if (best.causes.empty() || best.unknown_structure || structure_left(best.causes) > most_structure * model_.known_misfit()) return false;
-  return std::all_of(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& h) { return h.causes == best.causes || h.log_evidence < best.log_evidence - decisive; });
+  if (best.causes.empty() || best.unknown_structure ||
+      structure_left(best.causes) > most_structure * model_.known_misfit())
+    return false;
+  return std::all_of(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& h) {
+    return h.causes == best.causes || h.log_evidence < best.log_evidence - decisive;
+  });
 }
 
 void Explanations::refit_as(const Refit& coarse) {
   std::vector<const ParameterFit*> ways{&coarse.fit};
   if (coarse.other_way) ways.push_back(&*coarse.other_way);
   std::erase_if(ways, [&](const ParameterFit* way) {
-    return std::any_of(coarse.causes.begin(), coarse.causes.end(), [&](int cause) { return movement(cause, way->u) <= least_movement * model_.known_misfit(); });
+    return std::any_of(coarse.causes.begin(), coarse.causes.end(),
+                       [&](int cause) { return movement(cause, way->u) <= least_movement * model_.known_misfit(); });
   });
   std::vector<Eigen::VectorXd> starts;
   for (const ParameterFit* way : ways) starts.push_back(way->u);
   if (starts.empty()) return;
-  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), liberties_, liberty_sensitivities_);
+  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), liberties_,
+                                      liberty_sensitivities_);
   const auto predictions = bag_.run(starts, context_, fitting_stage);
   double best_value = refit_of({}).fit.value + out_of_reach;
   const ParameterFit* best = nullptr;
@@ -51,7 +58,8 @@ void Explanations::look_again(const Explanations& coarse) {
   const char* const looking = "Looking again, more finely";
   const auto span = context_.span(0.7, 0.85, looking);
   auto at_nominal = bag_.run(model_.nominal(), context_, looking);
-  if (!at_nominal) throw Error(ErrorCode::could_not_solve, "", "The finer simulation fails with the set-up's own parameters.");
+  if (!at_nominal)
+    throw Error(ErrorCode::could_not_solve, "", "The finer simulation fails with the set-up's own parameters.");
   at_nominal_ = std::move(*at_nominal);
   columns_ = coarse.columns_;
   sensitivities_ = coarse.sensitivities_;
@@ -65,9 +73,11 @@ void Explanations::look_again(const Explanations& coarse) {
   movements_ = movements_of(model_, liberties_, liberty_sensitivities_);
   for (std::size_t object = 0; object < movements_.size(); ++object) {
     const std::vector<Eigen::MatrixXd>& all = coarse.movements_[object];
-    movements_[object].insert(movements_[object].end(), all.begin() + static_cast<std::ptrdiff_t>(coarse.liberties_.size()), all.end());
+    movements_[object].insert(movements_[object].end(),
+                              all.begin() + static_cast<std::ptrdiff_t>(coarse.liberties_.size()), all.end());
     for (std::size_t k = 0; k < liberties_.size(); ++k) {
-      const auto column = static_cast<std::size_t>(std::find(columns_.begin(), columns_.end(), liberties_[k]) - columns_.begin());
+      const auto column =
+          static_cast<std::size_t>(std::find(columns_.begin(), columns_.end(), liberties_[k]) - columns_.begin());
       sensitivities_[object][column] = liberty_sensitivities_[object][k];
     }
   }
@@ -82,7 +92,9 @@ void Explanations::look_again(const Explanations& coarse) {
   for (const Hypothesis& h : coarse.hypotheses_) best = std::max(best, h.log_evidence);
   for (const Refit& r : coarse.refits_) {
     if (r.causes.empty()) continue;
-    const bool near = std::any_of(coarse.hypotheses_.begin(), coarse.hypotheses_.end(), [&](const Hypothesis& h) { return h.causes == r.causes && h.log_evidence > best - out_of_reach; });
+    const bool near = std::any_of(coarse.hypotheses_.begin(), coarse.hypotheses_.end(), [&](const Hypothesis& h) {
+      return h.causes == r.causes && h.log_evidence > best - out_of_reach;
+    });
     if (near) refit_as(r);
   }
   normalise(hypotheses_);

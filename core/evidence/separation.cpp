@@ -10,16 +10,18 @@ constexpr double worth_it = 0.05;  // that the likeness must fall by
 
 }  // namespace
 
-Separation best_separation(SimulationBag& bag, const Diagnosis& diagnosis, const NotSeparable& pair, const std::vector<ProposedMeasurement>& proposals, double sigma,
-                           Context& context) {
+Separation best_separation(SimulationBag& bag, const Diagnosis& diagnosis, const NotSeparable& pair,
+                           const std::vector<ProposedMeasurement>& proposals, double sigma, Context& context) {
   const ForwardModel& model = bag.model();
   std::vector<int> columns = model.base_parameters();
   for (const int cause : {pair.cause_a, pair.cause_b})
     for (const int p : model.causes()[static_cast<std::size_t>(cause)].parameters) columns.push_back(p);
-  const auto gram_of = [&](SimulationBag& own, const std::vector<Precisions>& precisions) -> std::optional<GramByStructure> {
+  const auto gram_of = [&](SimulationBag& own,
+                           const std::vector<Precisions>& precisions) -> std::optional<GramByStructure> {
     const auto at = own.run(diagnosis.base.u, context, "Looking for a measurement that tells");
     if (!at) return std::nullopt;
-    const std::vector<Sensitivities> s = sensitivities_at(own, diagnosis.base.u, *at, columns, context, "Looking for a measurement that tells");
+    const std::vector<Sensitivities> s =
+        sensitivities_at(own, diagnosis.base.u, *at, columns, context, "Looking for a measurement that tells");
     Predictions zero = *at;
     for (Eigen::MatrixXd& object : zero) object.setZero();
     return MisfitOfAll(own.model(), precisions).gram(zero, s);
@@ -32,12 +34,14 @@ Separation best_separation(SimulationBag& bag, const Diagnosis& diagnosis, const
   if (!present) return best;
   best.likeness = likeness(model, *present, diagnosis.structure, columns, pair.cause_a, pair.cause_b) - worth_it;
   for (std::size_t i = 0; i < proposals.size(); ++i) {
-    const auto span = context.span(static_cast<double>(i) / static_cast<double>(proposals.size()), (static_cast<double>(i) + 1) / static_cast<double>(proposals.size()),
+    const auto span = context.span(static_cast<double>(i) / static_cast<double>(proposals.size()),
+                                   (static_cast<double>(i) + 1) / static_cast<double>(proposals.size()),
                                    "Looking for a measurement that tells");
     SimulationBag own(*proposals[i].model);
     std::vector<Precisions> expected;
     for (const Measurement& m : proposals[i].model->measurements())
-      expected.push_back(isotropic(Eigen::VectorXd::Constant(m.measured.rows(), 1 / (sigma * sigma)), m.measured.cols()));
+      expected.push_back(
+          isotropic(Eigen::VectorXd::Constant(m.measured.rows(), 1 / (sigma * sigma)), m.measured.cols()));
     auto together = gram_of(own, expected);
     if (!together) continue;
     *together += *present;

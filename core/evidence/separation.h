@@ -9,17 +9,17 @@ namespace formwright {
 
 /// A measurement that could be made, as a model that predicts it (its own `measured` is not looked at).
 struct ProposedMeasurement {
-  std::string what;  // a sentence: what to do
+  std::string what;                     // a sentence: what to do
   std::unique_ptr<ForwardModel> model;  // same parameters and causes as the diagnosed one
 };
 
 struct Separation {
-  int proposal = -1;     // index; -1 where none helps
-  double likeness = 1;   // of the two causes in old and proposed data together
+  int proposal = -1;    // index; -1 where none helps
+  double likeness = 1;  // of the two causes in old and proposed data together
 };
 
 /// Tries the proposals; `sigma` is the noise one expects of them.
-Separation best_separation(SimulationBag& bag, const Diagnosis& diagnosis, const NotSeparable& pair, const std::vector<ProposedMeasurement>& proposals, double sigma,
-                           Context& context);
+Separation best_separation(SimulationBag& bag, const Diagnosis& diagnosis, const NotSeparable& pair,
+                           const std::vector<ProposedMeasurement>& proposals, double sigma, Context& context);
 
 }  // namespace formwright

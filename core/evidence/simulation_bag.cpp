@@ -10,7 +10,8 @@
 
 namespace formwright {
 
-std::vector<std::optional<Predictions>> SimulationBag::run(const std::vector<Eigen::VectorXd>& points, Context& context, const std::string& stage) {
+std::vector<std::optional<Predictions>> SimulationBag::run(const std::vector<Eigen::VectorXd>& points, Context& context,
+                                                           const std::string& stage) {
   const std::size_t objects = model_.measurements().size();
   const auto key = [](const Eigen::VectorXd& u) { return std::vector<double>(u.data(), u.data() + u.size()); };
   std::vector<const Eigen::VectorXd*> missing;
@@ -37,7 +38,9 @@ std::vector<std::optional<Predictions>> SimulationBag::run(const std::vector<Eig
     const double fraction = static_cast<double>(++done) / static_cast<double>(jobs);
     if (std::this_thread::get_id() == job_thread) context.progress(fraction, stage);
   };
-  const auto claimed = [&](std::size_t job) { return model_.claim(static_cast<int>(job % objects), *missing[job / objects], context); };
+  const auto claimed = [&](std::size_t job) {
+    return model_.claim(static_cast<int>(job % objects), *missing[job / objects], context);
+  };
   try {
     context.progress(0, stage);
     parallel_for(jobs, 1, [&](std::size_t begin, std::size_t end) {
@@ -74,7 +77,8 @@ std::vector<std::optional<Predictions>> SimulationBag::run(const std::vector<Eig
   return result;
 }
 
-std::optional<Predictions> SimulationBag::run(const Eigen::VectorXd& point, Context& context, const std::string& stage) {
+std::optional<Predictions> SimulationBag::run(const Eigen::VectorXd& point, Context& context,
+                                              const std::string& stage) {
   return run(std::vector<Eigen::VectorXd>{point}, context, stage).front();
 }
 

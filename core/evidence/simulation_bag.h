@@ -18,9 +18,10 @@ class SimulationBag {
  public:
   explicit SimulationBag(const ForwardModel& model) : model_(model) {}
 
-  /// Predictions at each of `points`; those asked for before are not made again. `context` hears of progress from 0 to 1.
-  /// Where the model has no answer the place is empty. Throws Error{cancelled}.
-  std::vector<std::optional<Predictions>> run(const std::vector<Eigen::VectorXd>& points, Context& context, const std::string& stage);
+  /// Predictions at each of `points`; those asked for before are not made again. `context` hears of progress from 0
+  /// to 1. Where the model has no answer the place is empty. Throws Error{cancelled}.
+  std::vector<std::optional<Predictions>> run(const std::vector<Eigen::VectorXd>& points, Context& context,
+                                              const std::string& stage);
   std::optional<Predictions> run(const Eigen::VectorXd& point, Context& context, const std::string& stage);
 
   /// Drops what is kept: a long search asks for nothing twice.

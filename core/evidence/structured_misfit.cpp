@@ -18,11 +18,13 @@ Eigen::MatrixXd cosine_modes(const Eigen::MatrixX2d& place) {
   for (int a = 0; a < modes_per_side; ++a)
     for (int b = 0; b < modes_per_side; ++b) {
       const double k_squared = std::numbers::pi * std::numbers::pi * (a * a + b * b);
-      const double spectrum = std::pow(1 + correlation_length * correlation_length * k_squared / 3, -2.5);  // Matern 3/2 in the plane
+      const double spectrum =
+          std::pow(1 + correlation_length * correlation_length * k_squared / 3, -2.5);  // Matern 3/2 in the plane
       const double mean_square = (a > 0 ? 0.5 : 1.0) * (b > 0 ? 0.5 : 1.0);
       total += spectrum;
       const double scale = std::sqrt(spectrum / mean_square);
-      modes.col(a * modes_per_side + b) = scale * (std::numbers::pi * a * place.col(0).array()).cos() * (std::numbers::pi * b * place.col(1).array()).cos();
+      modes.col(a * modes_per_side + b) = scale * (std::numbers::pi * a * place.col(0).array()).cos() *
+                                          (std::numbers::pi * b * place.col(1).array()).cos();
     }
   return modes / std::sqrt(total);
 }
@@ -48,7 +50,8 @@ Eigen::VectorXd mean_weights(const Precisions& precisions) {
   const auto d = static_cast<Eigen::Index>(std::lround(std::sqrt(static_cast<double>(precisions.cols()))));
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(precisions.rows());
   for (Eigen::Index i = 0; i < weights.size(); ++i)
-    if (precisions(i, 0) > 0) weights[i] = static_cast<double>(d) / Eigen::MatrixXd(precisions.row(i).reshaped(d, d)).inverse().trace();
+    if (precisions(i, 0) > 0)
+      weights[i] = static_cast<double>(d) / Eigen::MatrixXd(precisions.row(i).reshaped(d, d)).inverse().trace();
   return weights;
 }
 
@@ -58,7 +61,8 @@ StructuredMisfit::StructuredMisfit(const Measurement& measurement, Precisions pr
       tau_(std::move(tau)),
       modes_(cosine_modes(measurement.place)) {
   for (Eigen::Index i = 0; i < precisions_.rows(); ++i)
-    if (precisions_(i, 0) > 0) log_noise_ -= std::log(Eigen::MatrixXd(precisions_.row(i).reshaped(d_, d_)).determinant());
+    if (precisions_(i, 0) > 0)
+      log_noise_ -= std::log(Eigen::MatrixXd(precisions_.row(i).reshaped(d_, d_)).determinant());
   const Eigen::Index m = modes_.cols();
   Eigen::MatrixXd normal(d_ * m, d_ * m);
   for (Eigen::Index p = 0; p < d_; ++p)
@@ -75,7 +79,8 @@ StructuredMisfit::StructuredMisfit(const Measurement& measurement, Precisions pr
   }
 }
 
-StructuredMisfit::Products StructuredMisfit::products(const Eigen::MatrixXd& residual, std::span<const Eigen::MatrixXd> sensitivities) const {
+StructuredMisfit::Products StructuredMisfit::products(const Eigen::MatrixXd& residual,
+                                                      std::span<const Eigen::MatrixXd> sensitivities) const {
   const auto k = static_cast<Eigen::Index>(sensitivities.size());
   std::vector<Eigen::MatrixXd> columns(static_cast<std::size_t>(d_), Eigen::MatrixXd(residual.rows(), 1 + k));
   for (Eigen::Index c = 0; c < d_; ++c) {
@@ -94,7 +99,8 @@ StructuredMisfit::Products StructuredMisfit::products(const Eigen::MatrixXd& res
   return result;
 }
 
-GramByStructure StructuredMisfit::gram(const Eigen::MatrixXd& residual, std::span<const Eigen::MatrixXd> sensitivities) const {
+GramByStructure StructuredMisfit::gram(const Eigen::MatrixXd& residual,
+                                       std::span<const Eigen::MatrixXd> sensitivities) const {
   const Products own = products(residual, sensitivities);
   GramByStructure result;
   for (std::size_t t = 0; t < tau_.size(); ++t) {
@@ -104,12 +110,14 @@ GramByStructure StructuredMisfit::gram(const Eigen::MatrixXd& residual, std::spa
     // Woodbury: C^-1 = W - W Phi (I / tau^2 + Phi^T W Phi)^-1 Phi^T W.
     const Eigen::MatrixXd half = factor_[t].triangularView<Eigen::Lower>().solve(own.projected);
     result.gram[t].noalias() -= half.transpose() * half;
-    result.log_determinant[t] += 2 * factor_[t].diagonal().array().log().sum() + 2 * static_cast<double>(d_ * modes_.cols()) * std::log(tau_[t]);
+    result.log_determinant[t] +=
+        2 * factor_[t].diagonal().array().log().sum() + 2 * static_cast<double>(d_ * modes_.cols()) * std::log(tau_[t]);
   }
   return result;
 }
 
-Eigen::MatrixXd StructuredMisfit::gram_at(const Eigen::MatrixXd& residual, std::span<const Eigen::MatrixXd> sensitivities, std::size_t index) const {
+Eigen::MatrixXd StructuredMisfit::gram_at(const Eigen::MatrixXd& residual,
+                                          std::span<const Eigen::MatrixXd> sensitivities, std::size_t index) const {
   Products own = products(residual, sensitivities);
   if (tau_[index] <= 0) return std::move(own.plain);
   factor_[index].triangularView<Eigen::Lower>().solveInPlace(own.projected);
@@ -137,7 +145,12 @@ Eigen::VectorXd StructuredMisfit::leverage(std::size_t index) const {
   }
   for (Eigen::Index p = 0; p < d_; ++p)
     for (Eigen::Index q = 0; q < d_; ++q)
-      sum += precisions_.col(p * d_ + q).cwiseProduct(half[static_cast<std::size_t>(p)].cwiseProduct(half[static_cast<std::size_t>(q)]).colwise().sum().transpose());
+      sum += precisions_.col(p * d_ + q)
+                 .cwiseProduct(half[static_cast<std::size_t>(p)]
+                                   .cwiseProduct(half[static_cast<std::size_t>(q)])
+                                   .colwise()
+                                   .sum()
+                                   .transpose());
   return sum / static_cast<double>(d_);
 }
 

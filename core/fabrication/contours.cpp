@@ -40,7 +40,8 @@ struct PathEnd {
 std::vector<int> pair_ends(const std::vector<CutPath>& paths, const std::vector<int>& open, double join_mm) {
   std::vector<PathEnd> ends;
   for (const int i : open)
-    for (const bool last : {false, true}) ends.push_back({last ? paths[i].points_mm.back() : paths[i].points_mm.front(), i, last});
+    for (const bool last : {false, true})
+      ends.push_back({last ? paths[i].points_mm.back() : paths[i].points_mm.front(), i, last});
   std::sort(ends.begin(), ends.end(), [](const PathEnd& a, const PathEnd& b) {
     return std::tuple(a.at.x(), a.at.y(), a.path, a.last) < std::tuple(b.at.x(), b.at.y(), b.path, b.last);
   });
@@ -130,12 +131,14 @@ bool contains(const Polygon& polygon, const Vec2& p) {
   bool inside = false;
   for (std::size_t i = 0, k = polygon.size() - 1; i < polygon.size(); k = i++) {
     const Vec2 &a = polygon[i], &b = polygon[k];
-    if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x()) inside = !inside;
+    if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x())
+      inside = !inside;
   }
   return inside;
 }
 
-std::vector<int> containing_contours(const std::vector<CutPath>& paths, const std::vector<int>& containers, const Context& context) {
+std::vector<int> containing_contours(const std::vector<CutPath>& paths, const std::vector<int>& containers,
+                                     const Context& context) {
   struct Box {
     Vec2 low, high;
   };
@@ -162,7 +165,8 @@ std::vector<int> containing_contours(const std::vector<CutPath>& paths, const st
       if ((inner.low.array() < outer.low.array()).any() || (inner.high.array() > outer.high.array()).any()) continue;
       int votes = 0;
       const std::size_t asked = std::min<std::size_t>(points.size(), 5);
-      for (std::size_t k = 0; k < asked; ++k) votes += contains(paths[c].points_mm, points[k * points.size() / asked]) ? 1 : -1;
+      for (std::size_t k = 0; k < asked; ++k)
+        votes += contains(paths[c].points_mm, points[k * points.size() / asked]) ? 1 : -1;
       if (votes > 0) {
         parents[i] = c;
         break;

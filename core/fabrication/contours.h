@@ -16,17 +16,19 @@ struct TidiedPaths {
   int ends_joined = 0;
 };
 
-/// Drops paths that lie exactly (to 1 um) on another one of their layer, and joins open paths of a layer whose ends are at most `join_mm`
-/// apart, the nearest ends first. A joined path has the name of its first one.
+/// Drops paths that lie exactly (to 1 um) on another one of their layer, and joins open paths of a layer whose ends are
+/// at most `join_mm` apart, the nearest ends first. A joined path has the name of its first one.
 TidiedPaths tidy_paths(const std::vector<CutPath>& paths, double join_mm, const Context& context);
 
-/// For every path, the smallest closed path among `containers` (indices into `paths`) that it lies in; -1: none. Paths that cross each
-/// other count by where most of their points are.
-std::vector<int> containing_contours(const std::vector<CutPath>& paths, const std::vector<int>& containers, const Context& context);
+/// For every path, the smallest closed path among `containers` (indices into `paths`) that it lies in; -1: none. Paths
+/// that cross each other count by where most of their points are.
+std::vector<int> containing_contours(const std::vector<CutPath>& paths, const std::vector<int>& containers,
+                                     const Context& context);
 
-/// The polygon with its edge moved outwards by `outward_mm` (inwards when negative), corners rounded where they open: exact to
-/// `tolerance_mm`. Shrinking can leave several polygons, or none. Counter-clockwise. The polygon may cross itself: what it winds around counts as its inside.
-/// Each starts at the corner nearest to the first point of the polygon.
+/// The polygon with its edge moved outwards by `outward_mm` (inwards when negative), corners rounded where they open:
+/// exact to `tolerance_mm`. Shrinking can leave several polygons, or none. Counter-clockwise. The polygon may cross
+/// itself: what it winds around counts as its inside. Each starts at the corner nearest to the first point of the
+/// polygon.
 std::vector<Polygon> offset_polygon(const Polygon& polygon, double outward_mm, double tolerance_mm = 0.002);
 
 /// Is p inside, by the even-odd rule?

@@ -42,7 +42,9 @@ void CurveFlattener::line_to(const Vec2& p) {
 void CurveFlattener::cubic_to(const Vec2& control_1, const Vec2& control_2, const Vec2& p) {
   begin_if_closed();
   const Vec2 from = current_;
-  const auto bend_mm = [&](const Vec2& a, const Vec2& b, const Vec2& c) { return (to_mm_.linear() * (a - 2 * b + c)).norm(); };
+  const auto bend_mm = [&](const Vec2& a, const Vec2& b, const Vec2& c) {
+    return (to_mm_.linear() * (a - 2 * b + c)).norm();
+  };
   const double bend = std::max(bend_mm(from, control_1, control_2), bend_mm(control_1, control_2, p));
   const double wanted = std::ceil(std::sqrt(6 * bend / (8 * tolerance_mm_)));
   const int steps = static_cast<int>(std::clamp(wanted, 1.0, static_cast<double>(most_steps)));
@@ -58,7 +60,8 @@ int CurveFlattener::arc_steps(double largest_radius, double angle) const {
   const double half_trace = square.trace() / 2;
   const double scale = std::sqrt(half_trace + std::sqrt(std::max(0.0, half_trace * half_trace - square.determinant())));
   const double step = std::sqrt(8 * tolerance_mm_ / std::max(largest_radius * scale, 1e-9));
-  return static_cast<int>(std::clamp(std::ceil(std::abs(angle) / std::min(step, std::numbers::pi / 4)), 1.0, static_cast<double>(most_steps)));
+  return static_cast<int>(std::clamp(std::ceil(std::abs(angle) / std::min(step, std::numbers::pi / 4)), 1.0,
+                                     static_cast<double>(most_steps)));
 }
 
 void CurveFlattener::arc_to(double rx, double ry, double turn_degrees, bool large, bool sweep, const Vec2& p) {
@@ -85,7 +88,9 @@ void CurveFlattener::arc_to(double rx, double ry, double turn_degrees, bool larg
   double angle = std::atan2(b.y(), b.x()) - first;
   if (sweep && angle < 0) angle += 2 * std::numbers::pi;
   if (!sweep && angle > 0) angle -= 2 * std::numbers::pi;
-  const auto back = [&](const Vec2& unit) -> Vec2 { return (from + p) / 2 + turn * Vec2(rx * unit.x(), ry * unit.y()); };
+  const auto back = [&](const Vec2& unit) -> Vec2 {
+    return (from + p) / 2 + turn * Vec2(rx * unit.x(), ry * unit.y());
+  };
   const int steps = arc_steps(std::max(rx, ry), angle);
   for (int i = 1; i < steps; ++i) {
     const double at = first + angle * i / steps;
@@ -97,7 +102,8 @@ void CurveFlattener::arc_to(double rx, double ry, double turn_degrees, bool larg
 void CurveFlattener::ellipse(const Vec2& centre, double rx, double ry) {
   move_to(centre + Vec2(rx, 0));
   begin_if_closed();
-  const int steps = 4 * ((arc_steps(std::max(rx, ry), 2 * std::numbers::pi) + 3) / 4);  // so that all four extremes are corners
+  const int steps =
+      4 * ((arc_steps(std::max(rx, ry), 2 * std::numbers::pi) + 3) / 4);  // so that all four extremes are corners
   for (int i = 1; i < steps; ++i) {
     const double at = 2 * std::numbers::pi * i / steps;
     add(centre + Vec2(rx * std::cos(at), ry * std::sin(at)));
@@ -109,7 +115,8 @@ void CurveFlattener::close() {
   if (open_) {
     Subpath& subpath = subpaths_.back();
     subpath.closed = true;
-    while (subpath.points_mm.size() > 1 && (subpath.points_mm.back() - subpath.points_mm.front()).norm() < 1e-5) subpath.points_mm.pop_back();
+    while (subpath.points_mm.size() > 1 && (subpath.points_mm.back() - subpath.points_mm.front()).norm() < 1e-5)
+      subpath.points_mm.pop_back();
   }
   open_ = false;
   current_ = start_;
@@ -120,7 +127,8 @@ std::vector<CurveFlattener::Subpath> CurveFlattener::take() {
   for (Subpath& subpath : subpaths_) {
     if (subpath.points_mm.size() < 2) continue;
     // A contour drawn back to its start is closed, whether it says so or not.
-    if (!subpath.closed && subpath.points_mm.size() > 3 && (subpath.points_mm.back() - subpath.points_mm.front()).norm() < 1e-5) {
+    if (!subpath.closed && subpath.points_mm.size() > 3 &&
+        (subpath.points_mm.back() - subpath.points_mm.front()).norm() < 1e-5) {
       subpath.points_mm.pop_back();
       subpath.closed = true;
     }

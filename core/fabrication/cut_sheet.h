@@ -35,8 +35,8 @@ struct CutSheet {
   std::vector<CutPath> paths;
 };
 
-/// Sheets side by side, `gap_mm` apart, as one drawing; each sheet's edge is drawn as a note "sheet-1", "sheet-2", ...; names get
-/// the sheet's number behind them only where they would stand twice.
+/// Sheets side by side, `gap_mm` apart, as one drawing; each sheet's edge is drawn as a note "sheet-1", "sheet-2", ...;
+/// names get the sheet's number behind them only where they would stand twice.
 CutSheet side_by_side(const std::vector<CutSheet>& sheets, double gap_mm);
 
 /// SVG 1.1 of exactly the sheet's size, 1 user unit = 1 mm, y down; a group a layer. Coordinates have four decimals.

@@ -44,12 +44,13 @@ Bytes write_dxf(const CutSheet& sheet) {
   dxf.pair(0, "ENDSEC");
   begin("TABLES");
   dxf.pair(0, "TABLE"), dxf.pair(2, "LTYPE"), dxf.pair(70, 1);
-  dxf.pair(0, "LTYPE"), dxf.pair(2, "CONTINUOUS"), dxf.pair(70, 0), dxf.pair(3, "Solid line"), dxf.pair(72, 65), dxf.pair(73, 0),
-      dxf.pair(40, 0.0);
+  dxf.pair(0, "LTYPE"), dxf.pair(2, "CONTINUOUS"), dxf.pair(70, 0), dxf.pair(3, "Solid line"), dxf.pair(72, 65),
+      dxf.pair(73, 0), dxf.pair(40, 0.0);
   dxf.pair(0, "ENDTAB");
   dxf.pair(0, "TABLE"), dxf.pair(2, "LAYER"), dxf.pair(70, cut_layer_count);
   for (const CutLayerStyle& style : cut_layer_styles)
-    dxf.pair(0, "LAYER"), dxf.pair(2, style.name), dxf.pair(70, 0), dxf.pair(62, style.colour_index), dxf.pair(6, "CONTINUOUS");
+    dxf.pair(0, "LAYER"), dxf.pair(2, style.name), dxf.pair(70, 0), dxf.pair(62, style.colour_index),
+        dxf.pair(6, "CONTINUOUS");
   dxf.pair(0, "ENDTAB");
   dxf.pair(0, "ENDSEC");
   begin("ENTITIES");
@@ -60,7 +61,8 @@ Bytes write_dxf(const CutSheet& sheet) {
       dxf.pair(0, "LINE"), dxf.pair(8, layer), dxf.point(path.points_mm[0]), dxf.point(path.points_mm[1], 1);
       continue;
     }
-    dxf.pair(0, "POLYLINE"), dxf.pair(8, layer), dxf.pair(66, 1), dxf.point(Vec2::Zero()), dxf.pair(70, path.closed ? 1 : 0);
+    dxf.pair(0, "POLYLINE"), dxf.pair(8, layer), dxf.pair(66, 1), dxf.point(Vec2::Zero()),
+        dxf.pair(70, path.closed ? 1 : 0);
     for (const Vec2& point : path.points_mm) dxf.pair(0, "VERTEX"), dxf.pair(8, layer), dxf.point(point);
     dxf.pair(0, "SEQEND"), dxf.pair(8, layer);
   }

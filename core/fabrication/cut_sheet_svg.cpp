@@ -52,9 +52,9 @@ CutSheet side_by_side(const std::vector<CutSheet>& sheets, double gap_mm) {
 Bytes write_svg(const CutSheet& sheet) {
   TextOut out;
   const double width = rounded(sheet.width_mm), height = rounded(sheet.height_mm);
-  out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" width=\"" << width
-      << "mm\" height=\"" << height << "mm\" viewBox=\"0 0 " << width << ' ' << height << "\">\n<title>" << escaped(sheet.title)
-      << "</title>\n";
+  out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" width=\""
+      << width << "mm\" height=\"" << height << "mm\" viewBox=\"0 0 " << width << ' ' << height << "\">\n<title>"
+      << escaped(sheet.title) << "</title>\n";
   for (int layer = 0; layer < cut_layer_count; ++layer) {
     const CutLayerStyle& style = cut_layer_styles[layer];
     out << "<g id=\"" << style.name << "\" fill=\"none\" stroke=\"" << style.colour << "\" stroke-width=\"0.1\">\n";
@@ -64,7 +64,8 @@ Bytes write_svg(const CutSheet& sheet) {
       if (!path.name.empty()) out << " id=\"" << path.name << '"';
       out << " d=\"";
       for (std::size_t k = 0; k < path.points_mm.size(); ++k)
-        out << (k == 0 ? 'M' : 'L') << rounded(path.points_mm[k].x()) << ' ' << rounded(sheet.height_mm - path.points_mm[k].y());
+        out << (k == 0 ? 'M' : 'L') << rounded(path.points_mm[k].x()) << ' '
+            << rounded(sheet.height_mm - path.points_mm[k].y());
       out << (path.closed ? "Z\"/>\n" : "\"/>\n");
     }
     out << "</g>\n";

@@ -10,12 +10,14 @@ namespace formwright {
 
 std::optional<CutLayer> layer_by_name(std::string_view name) {
   constexpr std::pair<std::string_view, CutLayer> words[] = {
-      {"cut", CutLayer::cut},         {"cuts", CutLayer::cut},           {"cutting", CutLayer::cut},        {"outline", CutLayer::cut},
-      {"mark", CutLayer::mark},       {"marks", CutLayer::mark},         {"marking", CutLayer::mark},       {"score", CutLayer::mark},
-      {"scores", CutLayer::mark},     {"fold", CutLayer::mark},          {"folds", CutLayer::mark},         {"crease", CutLayer::mark},
-      {"engrave", CutLayer::engrave}, {"engraving", CutLayer::engrave},  {"etch", CutLayer::engrave},       {"raster", CutLayer::engrave},
-      {"note", CutLayer::note},       {"notes", CutLayer::note},         {"guide", CutLayer::note},         {"guides", CutLayer::note},
-      {"comment", CutLayer::note},    {"construction", CutLayer::note}};
+      {"cut", CutLayer::cut},          {"cuts", CutLayer::cut},          {"cutting", CutLayer::cut},
+      {"outline", CutLayer::cut},      {"mark", CutLayer::mark},         {"marks", CutLayer::mark},
+      {"marking", CutLayer::mark},     {"score", CutLayer::mark},        {"scores", CutLayer::mark},
+      {"fold", CutLayer::mark},        {"folds", CutLayer::mark},        {"crease", CutLayer::mark},
+      {"engrave", CutLayer::engrave},  {"engraving", CutLayer::engrave}, {"etch", CutLayer::engrave},
+      {"raster", CutLayer::engrave},   {"note", CutLayer::note},         {"notes", CutLayer::note},
+      {"guide", CutLayer::note},       {"guides", CutLayer::note},       {"comment", CutLayer::note},
+      {"construction", CutLayer::note}};
   std::string word;
   for (std::size_t i = 0; i <= name.size(); ++i) {
     const bool letter = i < name.size() && std::isalpha(static_cast<unsigned char>(name[i]));

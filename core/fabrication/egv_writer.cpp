@@ -15,12 +15,15 @@ struct Steps {
 };
 
 Steps steps_of(const Vec3& p, const MachineOptions& machine) {
-  return {static_cast<int>(std::lround(p.x() / mm_per_step)), static_cast<int>(std::lround((machine.bed_y_mm - p.y()) / mm_per_step))};
+  return {static_cast<int>(std::lround(p.x() / mm_per_step)),
+          static_cast<int>(std::lround((machine.bed_y_mm - p.y()) / mm_per_step))};
 }
 
 std::string digits(int value, int places) {
   std::string text = std::to_string(value);
-  return text.size() < static_cast<std::size_t>(places) ? std::string(static_cast<std::size_t>(places) - text.size(), '0') + text : text;
+  return text.size() < static_cast<std::size_t>(places)
+             ? std::string(static_cast<std::size_t>(places) - text.size(), '0') + text
+             : text;
 }
 
 std::string two_bytes(double value) {
@@ -186,7 +189,9 @@ Bytes write_egv(const Toolpath& path, const MachineOptions& machine) {
   }
   program.end();
   program.idle_move({0, 0});
-  return to_bytes("Document type : LHYMICRO-GL file\nFile version: 1.0.01\nCopyright: Unknown\nCreator-Software: Formwright\n\n%0%0%0%0%\n" + program.take());
+  return to_bytes(
+      "Document type : LHYMICRO-GL file\nFile version: 1.0.01\nCopyright: Unknown\nCreator-Software: Formwright\n\n%0%0%0%0%\n" +
+      program.take());
 }
 
 }  // namespace formwright

@@ -18,7 +18,9 @@ class GcodeText {
   }
   GcodeText& word(char letter, double value) {
     char buffer[32];  // never 1e+05, which controllers do not read
-    const auto end = std::to_chars(buffer, buffer + sizeof buffer, std::round(1e3 * value) / 1e3 + 0.0, std::chars_format::fixed).ptr;
+    const auto end =
+        std::to_chars(buffer, buffer + sizeof buffer, std::round(1e3 * value) / 1e3 + 0.0, std::chars_format::fixed)
+            .ptr;
     row_ << (row_.text().empty() ? "" : " ") << letter << std::string_view(buffer, end);
     return *this;
   }
@@ -74,7 +76,8 @@ Bytes write_laser_gcode(Toolpath& path, const LaserMachineOptions& machine) {
     for (std::size_t i = 1; i < move.points_mm.size(); ++i) {
       text.command(move.work ? "G1" : "G0");
       coordinates(text, move.points_mm[i - 1], move.points_mm[i], machine);
-      if (move.work && i == 1) text.word('S', std::round(machine.power_max_s * move.power_percent / 100)).word('F', 60 * move.speed_mm_per_s);
+      if (move.work && i == 1)
+        text.word('S', std::round(machine.power_max_s * move.power_percent / 100)).word('F', 60 * move.speed_mm_per_s);
       if (!move.work && (i == 1 || marlin)) travel_words(move.speed_mm_per_s);
       text.end_row();
       move.lines.push_back(text.lines());

@@ -18,7 +18,9 @@ std::vector<std::vector<Vec2>> hatch(const std::vector<Polygon>& shapes, double 
   std::vector<std::vector<Vec2>> lines;
   if (low >= high) return lines;
   const double count = std::floor((high - low) / spacing_mm + 0.5);
-  if (count > 200'000) throw Error(ErrorCode::invalid_input, "engrave_line_mm", "Filling takes over 200,000 lines: set them farther apart.");
+  if (count > 200'000)
+    throw Error(ErrorCode::invalid_input, "engrave_line_mm",
+                "Filling takes over 200,000 lines: set them farther apart.");
   // An edge crosses the lines from its lower end, included, to its upper one, not included.
   std::vector<std::vector<double>> crossings(static_cast<std::size_t>(count));
   for (const Polygon& shape : shapes) {

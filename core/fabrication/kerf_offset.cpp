@@ -12,7 +12,8 @@ constexpr double units_per_mm = 1e5;  // Clipper counts in whole numbers: hundre
 
 ClipperLib::Path to_clipper(const Polygon& polygon) {
   ClipperLib::Path path;
-  for (const Vec2& p : polygon) path.emplace_back(std::llround(units_per_mm * p.x()), std::llround(units_per_mm * p.y()));
+  for (const Vec2& p : polygon)
+    path.emplace_back(std::llround(units_per_mm * p.x()), std::llround(units_per_mm * p.y()));
   return path;
 }
 
@@ -32,7 +33,8 @@ std::vector<Polygon> offset_polygon(const Polygon& polygon, double outward_mm, d
     ClipperLib::CleanPolygon(one, 10);  // points nearer than 0.1 um to their neighbours' line
     if (one.size() < 3 || !ClipperLib::Orientation(one)) continue;
     Polygon out;
-    for (const ClipperLib::IntPoint& p : one) out.emplace_back(static_cast<double>(p.X) / units_per_mm, static_cast<double>(p.Y) / units_per_mm);
+    for (const ClipperLib::IntPoint& p : one)
+      out.emplace_back(static_cast<double>(p.X) / units_per_mm, static_cast<double>(p.Y) / units_per_mm);
     const auto nearest = std::min_element(out.begin(), out.end(), [&](const Vec2& a, const Vec2& b) {
       return (a - polygon.front()).squaredNorm() < (b - polygon.front()).squaredNorm();
     });

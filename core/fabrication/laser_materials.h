@@ -16,8 +16,9 @@ struct LaserMaterial {
   std::string hint;         // what to mind with this material; may be empty
 };
 
-/// Values to begin a test with, never to cut with unseen: tubes, diodes, lenses and materials differ by a factor of two.
-/// CO2 after published tables (docs/fabrication.md names them), diodes by the ratio of powers and what is passed on among makers.
+/// Values to begin a test with, never to cut with unseen: tubes, diodes, lenses and materials differ by a factor of
+/// two. CO2 after published tables (docs/fabrication.md names them), diodes by the ratio of powers and what is passed
+/// on among makers.
 const std::vector<LaserMaterial>& laser_materials();
 
 /// {"note", "materials": [{"name", "title", "laser", "thickness_mm", "parameters", "hint"}]}

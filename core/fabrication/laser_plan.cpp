@@ -12,7 +12,9 @@
 namespace formwright {
 namespace {
 
-std::string counted(std::size_t count, const std::string& one, const std::string& many) { return std::to_string(count) + " " + (count == 1 ? one : many); }
+std::string counted(std::size_t count, const std::string& one, const std::string& many) {
+  return std::to_string(count) + " " + (count == 1 ? one : many);
+}
 
 /// The drawing on the bed: mirrored, turned, its page's lower left corner at the place.
 void place(std::vector<CutPath>& paths, const CutSheet& sheet, const LaserOptions& options) {
@@ -24,7 +26,9 @@ void place(std::vector<CutPath>& paths, const CutSheet& sheet, const LaserOption
     return Vec2(c * x - s * p.y(), s * x + c * p.y());
   };
   Vec2 low(1e300, 1e300);
-  for (const Vec2& corner : {Vec2(0, 0), Vec2(sheet.width_mm, 0), Vec2(0, sheet.height_mm), Vec2(sheet.width_mm, sheet.height_mm)}) low = low.cwiseMin(turned(corner));
+  for (const Vec2& corner :
+       {Vec2(0, 0), Vec2(sheet.width_mm, 0), Vec2(0, sheet.height_mm), Vec2(sheet.width_mm, sheet.height_mm)})
+    low = low.cwiseMin(turned(corner));
   const Vec2 shift = Vec2(options.x_mm, options.y_mm) - low;
   for (CutPath& path : paths)
     for (Vec2& p : path.points_mm) p = turned(p) + shift;
@@ -60,7 +64,7 @@ class Planner {
     const LayerSettings settings = settings_of(layer, options_);
     if (!settings.enabled) return result;
     if (layer == CutLayer::engrave && options_.engrave_fill) fill(settings, result);
-    std::map<int, int> stroke_of;  // the last one of a path
+    std::map<int, int> stroke_of;             // the last one of a path
     std::vector<std::pair<int, int>> wanted;  // stroke, the path that comes after it
     for (std::size_t i = 0; i < paths_.size(); ++i) {
       const CutPath& path = paths_[i];
@@ -91,7 +95,8 @@ class Planner {
   int too_small = 0, broken_up = 0;
 
  private:
-  static LaserStroke made(CutLayer layer, std::string part, const LayerSettings& settings, std::vector<Vec2> points, bool closed) {
+  static LaserStroke made(CutLayer layer, std::string part, const LayerSettings& settings, std::vector<Vec2> points,
+                          bool closed) {
     LaserStroke stroke;
     stroke.layer = cut_layer_styles[static_cast<int>(layer)].name;
     stroke.part = std::move(part);
@@ -109,7 +114,8 @@ class Planner {
     return levels;
   }
 
-  /// The outline that the path belongs to: openings belong to the part around them, what lies in an opening is a part of its own.
+  /// The outline that the path belongs to: openings belong to the part around them, what lies in an opening is a part
+  /// of its own.
   std::string part_of(int i) const {
     int root = i;
     if (paths_[i].layer != CutLayer::cut || !paths_[i].closed) root = inside_of_[i];
@@ -166,7 +172,8 @@ class Planner {
 
 }  // namespace
 
-LaserPlan run_strokes(const std::vector<std::vector<LaserStroke>>& layers, const LaserMachineOptions& machine, double kerf_mm, bool free_start, Context& context) {
+LaserPlan run_strokes(const std::vector<std::vector<LaserStroke>>& layers, const LaserMachineOptions& machine,
+                      double kerf_mm, bool free_start, Context& context) {
   LaserPlan plan;
   const Vec2 origin = origin_on_bed(machine);
   ToolpathBuilder builder({origin.x(), origin.y(), 0}, machine.travel_speed_mm_per_s);
@@ -184,7 +191,8 @@ LaserPlan run_strokes(const std::vector<std::vector<LaserStroke>>& layers, const
     for (LayerSummary& layer : plan.layers)
       if (move.work && move.layer == layer.layer) {
         layer.seconds += move.times_s.back() - move.times_s.front();
-        for (std::size_t i = 1; i < move.points_mm.size(); ++i) layer.length_mm += (move.points_mm[i] - move.points_mm[i - 1]).norm();
+        for (std::size_t i = 1; i < move.points_mm.size(); ++i)
+          layer.length_mm += (move.points_mm[i] - move.points_mm[i - 1]).norm();
       }
   plan.misfits = find_misfits(plan.path, machine, kerf_mm, kerf_mm);
   return plan;
@@ -194,7 +202,8 @@ LaserPlan plan_laser_job(const CutSheet& sheet, const LaserOptions& options, Con
   context.progress(0, "Joining lines");
   read_no_go(options.no_go);  // refused before the work
   CutSheet drawn = sheet;
-  std::erase_if(drawn.paths, [](const CutPath& path) { return path.layer == CutLayer::note || path.points_mm.size() < 2; });
+  std::erase_if(drawn.paths,
+                [](const CutPath& path) { return path.layer == CutLayer::note || path.points_mm.size() < 2; });
   if (options.take_as != TakeAs::as_drawn)
     for (CutPath& path : drawn.paths) path.layer = static_cast<CutLayer>(static_cast<int>(options.take_as) - 1);
   TidiedPaths tidied = tidy_paths(drawn.paths, options.join_mm, context);
@@ -208,8 +217,9 @@ LaserPlan plan_laser_job(const CutSheet& sheet, const LaserOptions& options, Con
     any = any || !layers.back().empty();
   }
   if (!any)
-    throw Error(ErrorCode::invalid_input, "drawing",
-                "Nothing in the drawing is on a layer that is run: colour its lines red to cut, blue to mark, black to engrave, or set take_as.");
+    throw Error(
+        ErrorCode::invalid_input, "drawing",
+        "Nothing in the drawing is on a layer that is run: colour its lines red to cut, blue to mark, black to engrave, or set take_as.");
   LaserPlan plan;
   {
     const auto span = context.span(0.2, 1, "Shortening the way");
@@ -218,10 +228,13 @@ LaserPlan plan_laser_job(const CutSheet& sheet, const LaserOptions& options, Con
   const auto note = [&](int count, const std::string& one, const std::string& many) {
     if (count > 0) plan.notes.push_back(counted(static_cast<std::size_t>(count), one, many));
   };
-  note(tidied.doubles_dropped, "path lay exactly on another one and is run once.", "paths lay exactly on others and are run once.");
+  note(tidied.doubles_dropped, "path lay exactly on another one and is run once.",
+       "paths lay exactly on others and are run once.");
   note(tidied.ends_joined, "pair of ends was joined.", "pairs of ends were joined.");
-  note(planner.too_small, "opening is narrower than the kerf and is cut on its line.", "openings are narrower than the kerf and are cut on their lines.");
-  note(planner.broken_up, "outline falls apart at places narrower than the kerf.", "outlines fall apart at places narrower than the kerf.");
+  note(planner.too_small, "opening is narrower than the kerf and is cut on its line.",
+       "openings are narrower than the kerf and are cut on their lines.");
+  note(planner.broken_up, "outline falls apart at places narrower than the kerf.",
+       "outlines fall apart at places narrower than the kerf.");
   return plan;
 }
 

@@ -25,6 +25,7 @@ struct LaserPlan {
 LaserPlan plan_laser_job(const CutSheet& sheet, const LaserOptions& options, Context& context);
 
 /// Strokes that are ready to run, in the order given by layer, into a plan with times and misfits.
-LaserPlan run_strokes(const std::vector<std::vector<LaserStroke>>& layers, const LaserMachineOptions& machine, double kerf_mm, bool free_start, Context& context);
+LaserPlan run_strokes(const std::vector<std::vector<LaserStroke>>& layers, const LaserMachineOptions& machine,
+                      double kerf_mm, bool free_start, Context& context);
 
 }  // namespace formwright

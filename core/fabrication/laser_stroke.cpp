@@ -13,7 +13,8 @@ namespace {
 class Ring {
  public:
   explicit Ring(std::vector<Vec2> points) : points_(std::move(points)), at_mm_{0} {
-    for (std::size_t i = 0; i < points_.size(); ++i) at_mm_.push_back(at_mm_.back() + (points_[(i + 1) % points_.size()] - points_[i]).norm());
+    for (std::size_t i = 0; i < points_.size(); ++i)
+      at_mm_.push_back(at_mm_.back() + (points_[(i + 1) % points_.size()] - points_[i]).norm());
   }
   double length_mm() const { return at_mm_.back(); }
   const std::vector<double>& corners_mm() const { return at_mm_; }

@@ -21,7 +21,8 @@ enum class Controller { grbl, grbl_mill, marlin, k40, ruida };
 template <>
 struct EnumNames<Controller> {
   static constexpr std::array<std::string_view, 5> names{"grbl", "grbl_mill", "marlin", "k40", "ruida"};
-  static constexpr std::array<std::string_view, 5> labels{"GRBL laser", "GRBL mill", "Marlin", "K40 (M2 Nano)", "Ruida"};
+  static constexpr std::array<std::string_view, 5> labels{"GRBL laser", "GRBL mill", "Marlin", "K40 (M2 Nano)",
+                                                          "Ruida"};
 };
 
 struct MachineOptions {
@@ -35,20 +36,43 @@ struct MachineOptions {
   std::string no_go = "";
 
   static constexpr auto parameters = std::tuple{
-      parameter("bed_x_mm", &MachineOptions::bed_x_mm, "Bed, x", unit::mm, 10, 20'000, "How far the machine reaches in x.").group("Machine").slider(100, 1500),
-      parameter("bed_y_mm", &MachineOptions::bed_y_mm, "Bed, y", unit::mm, 10, 20'000, "How far the machine reaches in y.").group("Machine").slider(100, 1500),
-      parameter("origin", &MachineOptions::origin, "Origin", "Where the controller counts from; upper left counts y downwards.").group("Machine"),
-      parameter("controller", &MachineOptions::controller, "Controller", "Whose dialect the job is written in.").group("Machine"),
-      parameter("travel_speed_mm_per_s", &MachineOptions::travel_speed_mm_per_s, "Travel speed", unit::mm_per_s, 0.1, 5000,
-                "Between one path and the next.").group("Machine").slider(10, 500),
-      parameter("acceleration_mm_per_s2", &MachineOptions::acceleration_mm_per_s2, "Acceleration", Unit{"mm/s²"}, 1, 100'000,
-                "Of the head; GRBL's $120 and $121. For the time it takes.").group("Machine").slider(50, 5000).advanced(),
-      parameter("junction_deviation_mm", &MachineOptions::junction_deviation_mm, "Junction deviation", unit::mm, 0.001, 2,
-                "GRBL's $11: how briskly corners are taken. For the time it takes.").group("Machine").slider(0.001, 0.1).advanced(),
+      parameter("bed_x_mm", &MachineOptions::bed_x_mm, "Bed, x", unit::mm, 10, 20'000,
+                "How far the machine reaches in x.")
+          .group("Machine")
+          .slider(100, 1500),
+      parameter("bed_y_mm", &MachineOptions::bed_y_mm, "Bed, y", unit::mm, 10, 20'000,
+                "How far the machine reaches in y.")
+          .group("Machine")
+          .slider(100, 1500),
+      parameter("origin", &MachineOptions::origin, "Origin",
+                "Where the controller counts from; upper left counts y downwards.")
+          .group("Machine"),
+      parameter("controller", &MachineOptions::controller, "Controller", "Whose dialect the job is written in.")
+          .group("Machine"),
+      parameter("travel_speed_mm_per_s", &MachineOptions::travel_speed_mm_per_s, "Travel speed", unit::mm_per_s, 0.1,
+                5000, "Between one path and the next.")
+          .group("Machine")
+          .slider(10, 500),
+      parameter("acceleration_mm_per_s2", &MachineOptions::acceleration_mm_per_s2, "Acceleration", Unit{"mm/s²"}, 1,
+                100'000, "Of the head; GRBL's $120 and $121. For the time it takes.")
+          .group("Machine")
+          .slider(50, 5000)
+          .advanced(),
+      parameter("junction_deviation_mm", &MachineOptions::junction_deviation_mm, "Junction deviation", unit::mm, 0.001,
+                2, "GRBL's $11: how briskly corners are taken. For the time it takes.")
+          .group("Machine")
+          .slider(0.001, 0.1)
+          .advanced(),
       parameter("planner_blocks", &MachineOptions::planner_blocks, "Planner's blocks", unit::none, 2, 1024,
-                "How many moves the controller looks ahead: GRBL on an Arduino 16. For the time it takes.").group("Machine").slider(8, 64).advanced(),
-      parameter("no_go", &MachineOptions::no_go, "No-go zones",
-                "Rectangles of the bed, in mm from its lower left, that nothing moves through: x0,y0,x1,y1; x0,y0,x1,y1 ...").group("Machine").advanced()};
+                "How many moves the controller looks ahead: GRBL on an Arduino 16. For the time it takes.")
+          .group("Machine")
+          .slider(8, 64)
+          .advanced(),
+      parameter(
+          "no_go", &MachineOptions::no_go, "No-go zones",
+          "Rectangles of the bed, in mm from its lower left, that nothing moves through: x0,y0,x1,y1; x0,y0,x1,y1 ...")
+          .group("Machine")
+          .advanced()};
 };
 
 struct BedRectangle {

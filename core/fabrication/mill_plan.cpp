@@ -34,10 +34,8 @@ void raise_between(HeightField& tips, const HeightField& surface, const MillTool
         const float lack = least.at(r, c) - ((1 - share) * left + share * right);
         if (lack <= 0) continue;
         // The lower one of the two bears it: it is the foot of a wall.
-        if (left < right)
-          left += lack / (1 - share);
-        else
-          right += lack / share;
+        if (left < right) left += lack / (1 - share);
+        else right += lack / share;
       }
   }
 }

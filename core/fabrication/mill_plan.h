@@ -15,21 +15,23 @@ struct Deviation {
 
 struct MillPlan {
   Toolpath path;
-  std::size_t tool_change = 0;   // index of the move before which the tool is changed; 0: never
+  std::size_t tool_change = 0;  // index of the move before which the tool is changed; 0: never
   HeightField carved;
   Deviation deviation;
-  std::optional<Deviation> of_tool;  // what the tool's shape alone leaves, with lines at every node; absent where it would take too long
+  std::optional<Deviation>
+      of_tool;  // what the tool's shape alone leaves, with lines at every node; absent where it would take too long
   double finish_stepover_mm = 0;
-  int layers = 0;                // of roughing
+  int layers = 0;  // of roughing
   double rough_seconds = 0, finish_seconds = 0;
   std::vector<std::string> misfits, notes;
 };
 
-/// `surface` has z <= 0 everywhere. Roughing in layers, each cut where the layer above left something, following the surface with the
-/// allowance kept; finishing line by line with the tip as low as the surface lets it. The tip runs from node to node, kept off steep walls
-/// by a node's distance (swept_footprint), and is raised where it would cut in halfway between two. What is left of cutting in is at most
-/// (p/2)^2 / 8 of a ball's second derivative, 0.6 um for 3 mm on a grid of p = 0.1 mm, and p/16 of a V's slope. Entries go down along the path on a ramp where there is room for one.
-/// Throws Error: invalid_input ("diameter_mm": over 4,000 nodes across), cancelled.
+/// `surface` has z <= 0 everywhere. Roughing in layers, each cut where the layer above left something, following the
+/// surface with the allowance kept; finishing line by line with the tip as low as the surface lets it. The tip runs
+/// from node to node, kept off steep walls by a node's distance (swept_footprint), and is raised where it would cut in
+/// halfway between two. What is left of cutting in is at most (p/2)^2 / 8 of a ball's second derivative, 0.6 um for 3
+/// mm on a grid of p = 0.1 mm, and p/16 of a V's slope. Entries go down along the path on a ramp where there is room
+/// for one. Throws Error: invalid_input ("diameter_mm": over 4,000 nodes across), cancelled.
 MillPlan plan_mill_job(const HeightField& surface, const MillOptions& options, Context& context);
 
 /// Of `carved` over `wanted`, with the same nodes.

@@ -21,7 +21,8 @@ double MillTool::profile_mm(double distance_mm) const {
   const double radius = diameter_mm / 2;
   if (distance_mm > radius) return std::numeric_limits<double>::infinity();
   if (shape == ToolShape::ball) return radius - std::sqrt(std::max(0.0, radius * radius - distance_mm * distance_mm));
-  if (shape == ToolShape::v) return std::max(0.0, distance_mm - v_tip_mm / 2) / std::tan(v_angle_degrees / 2 * std::numbers::pi / 180);
+  if (shape == ToolShape::v)
+    return std::max(0.0, distance_mm - v_tip_mm / 2) / std::tan(v_angle_degrees / 2 * std::numbers::pi / 180);
   return 0;
 }
 
@@ -32,7 +33,8 @@ ToolFootprint footprint(const MillTool& tool, const HeightField& grid, double sh
   result.reach_columns = static_cast<int>(radius / grid.pitch_x_mm) + 2;
   for (int r = -result.reach_rows; r <= result.reach_rows; ++r)
     for (int c = -result.reach_columns; c <= result.reach_columns; ++c) {
-      const double x = (c - shift_columns) * grid.pitch_x_mm, y = r * grid.pitch_y_mm, distance = std::sqrt(x * x + y * y);
+      const double x = (c - shift_columns) * grid.pitch_x_mm, y = r * grid.pitch_y_mm,
+                   distance = std::sqrt(x * x + y * y);
       // A node on the rim to the last bit counts as under the tool.
       if (distance > radius * (1 + 1e-12)) continue;
       result.nodes.push_back({r, c, static_cast<float>(tool.profile_mm(std::min(distance, radius)))});
@@ -49,10 +51,12 @@ ToolFootprint swept_footprint(const MillTool& tool, const HeightField& grid) {
     for (int c = -result.reach_columns; c <= result.reach_columns; ++c) {
       const double x = std::abs(c) * step, y = r * grid.pitch_y_mm;
       const auto distance = [&](double along) { return std::sqrt(along * along + y * y); };
-      double height = distance(x) <= radius * (1 + 1e-12) ? tool.profile_mm(std::min(distance(x), radius)) : std::numeric_limits<double>::infinity();
+      double height = distance(x) <= radius * (1 + 1e-12) ? tool.profile_mm(std::min(distance(x), radius))
+                                                          : std::numeric_limits<double>::infinity();
       // The profile grows with the distance: the nearest one of the swept part counts.
       const double nearest = std::max(distance(std::max(0.0, x - step)), ring);
-      if (nearest <= radius * (1 + 1e-12) && distance(x + step) >= ring) height = std::min(height, tool.profile_mm(std::min(nearest, radius)));
+      if (nearest <= radius * (1 + 1e-12) && distance(x + step) >= ring)
+        height = std::min(height, tool.profile_mm(std::min(nearest, radius)));
       if (std::isfinite(height)) result.nodes.push_back({r, c, static_cast<float>(height)});
     }
   return result;

@@ -26,7 +26,8 @@ double corner_speed_squared(const Vec3& before, const Vec3& after, const MotionL
 
 double block_seconds(const Block& block, double entry_squared, double exit_squared, double acceleration) {
   const double nominal_squared = block.speed_mm_per_s * block.speed_mm_per_s;
-  const double peak_squared = std::min(nominal_squared, (2 * acceleration * block.length_mm + entry_squared + exit_squared) / 2);
+  const double peak_squared =
+      std::min(nominal_squared, (2 * acceleration * block.length_mm + entry_squared + exit_squared) / 2);
   const double peak = std::sqrt(peak_squared), entry = std::sqrt(entry_squared), exit = std::sqrt(exit_squared);
   const double ramps_mm = (2 * peak_squared - entry_squared - exit_squared) / (2 * acceleration);
   return (2 * peak - entry - exit) / acceleration + std::max(0.0, block.length_mm - ramps_mm) / peak;
@@ -44,18 +45,23 @@ void time_moves(Toolpath& path, const MotionLimits& limits) {
     }
   const double a = limits.acceleration_mm_per_s2;
   const std::size_t n = blocks.size();
-  // While a block runs, the controller knows planner_blocks - 1 more and plans to stand still behind the last of them. That caps the speed
-  // at every junction by the way left to there; with these caps one pass over the whole job gives what its moving window gives.
+  // While a block runs, the controller knows planner_blocks - 1 more and plans to stand still behind the last of them.
+  // That caps the speed at every junction by the way left to there; with these caps one pass over the whole job gives
+  // what its moving window gives.
   const std::size_t ahead = static_cast<std::size_t>(std::max(1, limits.planner_blocks - 1));
   std::vector<double> from_start(n + 1, 0), speed_squared(n + 1, 0);  // speed_squared[i]: on entering block i
   for (std::size_t i = 0; i < n; ++i) from_start[i + 1] = from_start[i] + blocks[i].length_mm;
   for (std::size_t i = 1; i < n; ++i) {
     const double nominal = std::min(blocks[i - 1].speed_mm_per_s, blocks[i].speed_mm_per_s);
     const double seen_mm = from_start[std::min(n, i + ahead)] - from_start[i];
-    speed_squared[i] = std::min({nominal * nominal, corner_speed_squared(blocks[i - 1].direction, blocks[i].direction, limits), 2 * a * seen_mm});
+    speed_squared[i] =
+        std::min({nominal * nominal, corner_speed_squared(blocks[i - 1].direction, blocks[i].direction, limits),
+                  2 * a * seen_mm});
   }
-  for (std::size_t i = n; i-- > 0;) speed_squared[i] = std::min(speed_squared[i], speed_squared[i + 1] + 2 * a * blocks[i].length_mm);
-  for (std::size_t i = 0; i < n; ++i) speed_squared[i + 1] = std::min(speed_squared[i + 1], speed_squared[i] + 2 * a * blocks[i].length_mm);
+  for (std::size_t i = n; i-- > 0;)
+    speed_squared[i] = std::min(speed_squared[i], speed_squared[i + 1] + 2 * a * blocks[i].length_mm);
+  for (std::size_t i = 0; i < n; ++i)
+    speed_squared[i + 1] = std::min(speed_squared[i + 1], speed_squared[i] + 2 * a * blocks[i].length_mm);
 
   double now_s = 0;
   std::size_t at = 0;

@@ -17,7 +17,10 @@ namespace {
 class Bitmap {
  public:
   Bitmap(int cells_x, int cells_y)
-      : width(cells_x), height(cells_y), words((cells_x + 63) / 64), bits(std::size_t(words) * std::size_t(cells_y), 0) {}
+      : width(cells_x),
+        height(cells_y),
+        words((cells_x + 63) / 64),
+        bits(std::size_t(words) * std::size_t(cells_y), 0) {}
 
   int width, height, words;
 
@@ -61,10 +64,12 @@ TurnedShape rasterised(const Polygon& shape, double angle, double cell, double g
   const Eigen::Matrix2d turn = Eigen::Rotation2Dd(angle).toRotationMatrix();
   Polygon points;
   Vec2 lower = Vec2::Constant(1e300), upper = Vec2::Constant(-1e300);
-  for (const Vec2& p : shape) points.push_back(turn * p), lower = lower.cwiseMin(points.back()), upper = upper.cwiseMax(points.back());
+  for (const Vec2& p : shape)
+    points.push_back(turn * p), lower = lower.cwiseMin(points.back()), upper = upper.cwiseMax(points.back());
   lower -= Vec2::Constant(grow_mm), upper += Vec2::Constant(grow_mm);
   const Vec2 cells = (upper - lower) / cell;
-  TurnedShape result{turn, lower, Bitmap(static_cast<int>(std::ceil(cells.x())), static_cast<int>(std::ceil(cells.y())))};
+  TurnedShape result{turn, lower,
+                     Bitmap(static_cast<int>(std::ceil(cells.x())), static_cast<int>(std::ceil(cells.y())))};
   Bitmap& bitmap = result.bitmap;
   const auto centre = [&](int i) { return (i + 0.5) * cell; };
   const double reach = grow_mm + cell * std::numbers::sqrt2 / 2;
@@ -73,14 +78,17 @@ TurnedShape rasterised(const Polygon& shape, double angle, double cell, double g
     const Vec2 a = points[i] - lower, b = points[(i + 1) % points.size()] - lower, along = b - a;
     const Vec2 low = a.cwiseMin(b), high = a.cwiseMax(b);
     const auto cell_of = [&](double mm) { return static_cast<int>(std::floor(mm / cell)); };
-    for (int y = std::max(0, cell_of(low.y() - reach)); y <= std::min(bitmap.height - 1, cell_of(high.y() + reach)); ++y) {
-      for (int x = std::max(0, cell_of(low.x() - reach)); x <= std::min(bitmap.width - 1, cell_of(high.x() + reach)); ++x) {
+    for (int y = std::max(0, cell_of(low.y() - reach)); y <= std::min(bitmap.height - 1, cell_of(high.y() + reach));
+         ++y) {
+      for (int x = std::max(0, cell_of(low.x() - reach)); x <= std::min(bitmap.width - 1, cell_of(high.x() + reach));
+           ++x) {
         const Vec2 p(centre(x), centre(y));
         const double t = along.squaredNorm() > 0 ? std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0) : 0.0;
         if ((p - a - t * along).squaredNorm() <= reach * reach) bitmap.set(x, y);
       }
       const double level = centre(y);
-      if ((a.y() <= level) != (b.y() <= level)) crossings[std::size_t(y)].push_back(a.x() + (level - a.y()) / along.y() * along.x());
+      if ((a.y() <= level) != (b.y() <= level))
+        crossings[std::size_t(y)].push_back(a.x() + (level - a.y()) / along.y() * along.x());
     }
   }
   for (int y = 0; y < bitmap.height; ++y) {
@@ -124,7 +132,8 @@ std::vector<double> fitting_turns(const Polygon& hull, double x_mm, double y_mm,
       low_u = std::min(low_u, u.dot(p)), high_u = std::max(high_u, u.dot(p));
       low_v = std::min(low_v, v.dot(p)), high_v = std::max(high_v, v.dot(p));
     }
-    const double width = high_u - low_u, height = high_v - low_v, area = width * height, angle = -std::atan2(u.y(), u.x());
+    const double width = high_u - low_u, height = high_v - low_v, area = width * height,
+                 angle = -std::atan2(u.y(), u.x());
     const double quarter = std::numbers::pi / 2;
     const bool lies = width <= x_mm && height <= y_mm, stands = height <= x_mm && width <= y_mm;
     if (keep_direction) {
@@ -162,10 +171,13 @@ Nesting nest(const std::vector<Polygon>& shapes, const NestingOptions& options, 
     context.check_cancelled();
     const double spare = 3 * nesting.cell_mm;
     std::vector<TurnedShape> turned;
-    for (const double angle : fitting_turns(convex_hull(shapes[i]), free_x - spare, free_y - spare, options.keep_direction))
-      for (const double half : {0.0, std::numbers::pi}) turned.push_back(rasterised(shapes[i], angle + half, nesting.cell_mm, options.spacing_mm / 2));
+    for (const double angle :
+         fitting_turns(convex_hull(shapes[i]), free_x - spare, free_y - spare, options.keep_direction))
+      for (const double half : {0.0, std::numbers::pi})
+        turned.push_back(rasterised(shapes[i], angle + half, nesting.cell_mm, options.spacing_mm / 2));
     if (turned.empty())
-      throw Error(ErrorCode::invalid_input, "bed_x_mm", "A piece does not fit the bed: give a larger bed or smaller margins.");
+      throw Error(ErrorCode::invalid_input, "bed_x_mm",
+                  "A piece does not fit the bed: give a larger bed or smaller margins.");
     for (std::size_t s = 0;; ++s) {
       if (s == sheets.size()) sheets.emplace_back(std::max(width, 1), std::max(height, 1));
       const TurnedShape* best = nullptr;
@@ -180,8 +192,9 @@ Nesting nest(const std::vector<Polygon>& shapes, const NestingOptions& options, 
       if (!best) continue;
       sheets[s].add(best->bitmap, place.first, place.second);
       const double edge = options.margin_mm - options.spacing_mm / 2;
-      nesting.places[i] = {static_cast<int>(s), best->turn,
-                           Vec2(edge + place.first * nesting.cell_mm, edge + place.second * nesting.cell_mm) - best->lower_mm};
+      nesting.places[i] = {
+          static_cast<int>(s), best->turn,
+          Vec2(edge + place.first * nesting.cell_mm, edge + place.second * nesting.cell_mm) - best->lower_mm};
       break;
     }
   }

@@ -2,9 +2,9 @@
 #pragma once
 // Shapes laid onto as few sheets as they go, each as far to the left and then as low as it fits, the largest first.
 //
-// Sheets are bitmaps whose cells a shape takes wherever it, grown by half the spacing, might touch them: what does not share a cell keeps
-// the spacing, whatever the shape, hollows of spirals included. (libnest2d, the packaged library, brings Clipper, NLopt and Boost's R-tree
-// along for solutions that depend on its time limit.)
+// Sheets are bitmaps whose cells a shape takes wherever it, grown by half the spacing, might touch them: what does not
+// share a cell keeps the spacing, whatever the shape, hollows of spirals included. (libnest2d, the packaged library,
+// brings Clipper, NLopt and Boost's R-tree along for solutions that depend on its time limit.)
 #include <vector>
 
 #include "base/context.h"
@@ -37,8 +37,8 @@ struct Nesting {
 /// The side of a bitmap's cell: a shape fits its sheet when it has three of them to spare.
 double nesting_cell_mm(const NestingOptions& options);
 
-/// Directions that lay the shape with this convex hull into a rectangle of `x_mm` by `y_mm`: angles by which to turn it, in radians, at
-/// most four; the tightest first. Empty: it does not fit.
+/// Directions that lay the shape with this convex hull into a rectangle of `x_mm` by `y_mm`: angles by which to turn
+/// it, in radians, at most four; the tightest first. Empty: it does not fit.
 std::vector<double> fitting_turns(const Polygon& hull, double x_mm, double y_mm, bool keep_direction);
 
 /// Places simple polygons. Throws Error: invalid_input ("bed_x_mm": one of them does not fit a sheet), cancelled.

@@ -21,17 +21,20 @@ int pages_along(double length_mm, double room_mm, double step_mm) {
 Layout layout_of(const PageContent& content, const PageTilesOptions& o, bool sideways) {
   constexpr double sizes[][2] = {{210, 297}, {297, 420}, {420, 594}, {215.9, 279.4}, {279.4, 431.8}};
   const auto media = static_cast<std::size_t>(o.media);
-  double width = o.media == PageMedia::custom ? o.media_width_mm : sizes[media][0], height = o.media == PageMedia::custom ? o.media_height_mm : sizes[media][1];
+  double width = o.media == PageMedia::custom ? o.media_width_mm : sizes[media][0],
+         height = o.media == PageMedia::custom ? o.media_height_mm : sizes[media][1];
   double left = o.margin_left_mm, right = o.margin_right_mm, top = o.margin_top_mm, bottom = o.margin_bottom_mm;
   if (sideways) {
     std::swap(width, height);
-    const double across = std::max(o.margin_top_mm, o.margin_bottom_mm), along = std::max(o.margin_left_mm, o.margin_right_mm);
+    const double across = std::max(o.margin_top_mm, o.margin_bottom_mm),
+                 along = std::max(o.margin_left_mm, o.margin_right_mm);
     left = right = across;
     top = bottom = along;
   }
   Layout layout{width, height, left, bottom, width - left - right, height - top - bottom, 0, 0, 0, 0};
   if (std::min(layout.room_x_mm, layout.room_y_mm) < 10)
-    throw Error(ErrorCode::invalid_input, "margin_left_mm", "The margins leave less than 10 mm of the page: make them smaller.");
+    throw Error(ErrorCode::invalid_input, "margin_left_mm",
+                "The margins leave less than 10 mm of the page: make them smaller.");
   layout.step_x_mm = layout.room_x_mm - o.overlap_mm;
   layout.step_y_mm = layout.room_y_mm - o.overlap_mm;
   if (std::min(layout.step_x_mm, layout.step_y_mm) < 5)
@@ -54,18 +57,24 @@ Drawing drawn(const CutSheet& sheet, const PageContent& content) {
   const Vec2 middle(sheet.width_mm / 2, sheet.height_mm / 2);
   for (const CutPath& path : sheet.paths)
     for (std::size_t i = 0; i + (path.closed ? 0 : 1) < path.points_mm.size(); ++i)
-      drawing.line(scale * (path.points_mm[i] - middle), scale * (path.points_mm[(i + 1) % path.points_mm.size()] - middle), 0.2, path.layer == CutLayer::note);
+      drawing.line(scale * (path.points_mm[i] - middle),
+                   scale * (path.points_mm[(i + 1) % path.points_mm.size()] - middle), 0.2,
+                   path.layer == CutLayer::note);
   return drawing;
 }
 
-/// In the middle of every overlap, halfway along each page's side: both neighbours show the same cross. Not mirrored with the content.
+/// In the middle of every overlap, halfway along each page's side: both neighbours show the same cross. Not mirrored
+/// with the content.
 Drawing crosses(const Layout& layout, const PageTilesOptions& o) {
   Drawing drawing;
   for (int c = 0; c < layout.columns; ++c)
     for (int r = 0; r < layout.rows; ++r) {
-      const Vec2 corner(c * layout.step_x_mm, -r * layout.step_y_mm);  // of the page's room, from the content's upper left
-      if (c > 0) drawing.cross(corner + Vec2(o.overlap_mm / 2, -layout.room_y_mm / 2), std::min(3.0, o.overlap_mm / 2), 0.1);
-      if (r > 0) drawing.cross(corner + Vec2(layout.room_x_mm / 2, -o.overlap_mm / 2), std::min(3.0, o.overlap_mm / 2), 0.1);
+      const Vec2 corner(c * layout.step_x_mm,
+                        -r * layout.step_y_mm);  // of the page's room, from the content's upper left
+      if (c > 0)
+        drawing.cross(corner + Vec2(o.overlap_mm / 2, -layout.room_y_mm / 2), std::min(3.0, o.overlap_mm / 2), 0.1);
+      if (r > 0)
+        drawing.cross(corner + Vec2(layout.room_x_mm / 2, -o.overlap_mm / 2), std::min(3.0, o.overlap_mm / 2), 0.1);
     }
   return drawing;
 }
@@ -82,7 +91,9 @@ Drawing ruler(const Vec2& start) {
 
 PageTiles make_page_tiles(const PageContent& content, const PageTilesOptions& options, Context& context) {
   const Layout layout = best_layout(content, options);
-  if (layout.columns * layout.rows > 400) throw Error(ErrorCode::invalid_input, "width_mm", "It would take over 400 pages: make it smaller or take larger paper.");
+  if (layout.columns * layout.rows > 400)
+    throw Error(ErrorCode::invalid_input, "width_mm",
+                "It would take over 400 pages: make it smaller or take larger paper.");
   PageTiles tiles;
   tiles.columns = layout.columns;
   tiles.rows = layout.rows;
@@ -94,8 +105,10 @@ PageTiles make_page_tiles(const PageContent& content, const PageTilesOptions& op
   const int picture = content.picture != nullptr ? document.add_picture(*content.picture) : -1;
   const Drawing drawing = content.drawing != nullptr ? drawn(*content.drawing, content) : Drawing{};
   const Drawing marks = options.marks && options.overlap_mm >= 2 ? crosses(layout, options) : Drawing{};
-  const bool words = options.marks && layout.bottom_mm >= 4, has_ruler = options.ruler && layout.bottom_mm >= 4 && layout.room_x_mm >= 125;
-  if (options.ruler && !has_ruler) tiles.notes.push_back("There is no room for the ruler: it needs a lower margin of 4 mm and a page 125 mm wide.");
+  const bool words = options.marks && layout.bottom_mm >= 4,
+             has_ruler = options.ruler && layout.bottom_mm >= 4 && layout.room_x_mm >= 125;
+  if (options.ruler && !has_ruler)
+    tiles.notes.push_back("There is no room for the ruler: it needs a lower margin of 4 mm and a page 125 mm wide.");
   for (int r = 0; r < layout.rows; ++r)
     for (int c = 0; c < layout.columns; ++c) {
       context.progress(static_cast<double>(r * layout.columns + c) / (layout.rows * layout.columns), "Pages");
@@ -111,11 +124,14 @@ PageTiles make_page_tiles(const PageContent& content, const PageTilesOptions& op
       Drawing around;
       if (options.marks) around.rectangle(low, high, 0.05, true);
       if (words)
-        around.label({high.x() - 15, low.y() / 2}, 2, "row " + std::to_string(r + 1) + "/" + std::to_string(layout.rows) + " column " + std::to_string(c + 1) + "/" + std::to_string(layout.columns));
+        around.label({high.x() - 15, low.y() / 2}, 2,
+                     "row " + std::to_string(r + 1) + "/" + std::to_string(layout.rows) + " column " +
+                         std::to_string(c + 1) + "/" + std::to_string(layout.columns));
       if (has_ruler && r == 0 && c == 0) {
         const Drawing scale = ruler({low.x(), low.y() / 2 - 1});
         around.strokes.insert(around.strokes.end(), scale.strokes.begin(), scale.strokes.end());
-        if (layout.room_x_mm >= 150) around.labels.insert(around.labels.end(), scale.labels.begin(), scale.labels.end());
+        if (layout.room_x_mm >= 150)
+          around.labels.insert(around.labels.end(), scale.labels.begin(), scale.labels.end());
       }
       document.draw(around, {}, {0, 0}, page);
     }

@@ -36,18 +36,47 @@ struct PageTilesOptions {
 
   static constexpr auto parameters = std::tuple{
       parameter("media", &PageTilesOptions::media, "Paper", "What the printer is loaded with.").group("Pages"),
-      parameter("media_width_mm", &PageTilesOptions::media_width_mm, "Paper width", unit::mm, 30, 5000, "Of an own size.").group("Pages").slider(50, 1000),
-      parameter("media_height_mm", &PageTilesOptions::media_height_mm, "Paper height", unit::mm, 30, 5000, "Of an own size.").group("Pages").slider(50, 1500),
+      parameter("media_width_mm", &PageTilesOptions::media_width_mm, "Paper width", unit::mm, 30, 5000,
+                "Of an own size.")
+          .group("Pages")
+          .slider(50, 1000),
+      parameter("media_height_mm", &PageTilesOptions::media_height_mm, "Paper height", unit::mm, 30, 5000,
+                "Of an own size.")
+          .group("Pages")
+          .slider(50, 1500),
       parameter("turn", &PageTilesOptions::turn, "Turn", "Which way the pages lie.").group("Pages"),
-      parameter("margin_left_mm", &PageTilesOptions::margin_left_mm, "Left margin", unit::mm, 0, 200, "That the printer leaves white, with the paper upright.").group("Pages").slider(0, 25),
-      parameter("margin_right_mm", &PageTilesOptions::margin_right_mm, "Right margin", unit::mm, 0, 200, "That the printer leaves white, with the paper upright.").group("Pages").slider(0, 25),
-      parameter("margin_top_mm", &PageTilesOptions::margin_top_mm, "Top margin", unit::mm, 0, 200, "That the printer leaves white, with the paper upright.").group("Pages").slider(0, 25),
-      parameter("margin_bottom_mm", &PageTilesOptions::margin_bottom_mm, "Bottom margin", unit::mm, 0, 200, "That the printer leaves white, with the paper upright.").group("Pages").slider(0, 25),
-      parameter("overlap_mm", &PageTilesOptions::overlap_mm, "Overlap", unit::mm, 0, 100, "Of neighbouring pages, to glue them.").group("Pages").slider(0, 30),
-      parameter("width_mm", &PageTilesOptions::width_mm, "Width", unit::mm, 1, 20'000, "Of the whole; auto: as the file says.").group("Size").slider(20, 1000),
-      parameter("mirrored", &PageTilesOptions::mirrored, "Mirrored", "Left and right exchanged in the document: for transfer and for printing on the back.").group("Size"),
-      parameter("marks", &PageTilesOptions::marks, "Marks", "Crosses in the overlaps, a frame and the page's place.").group("Marks"),
-      parameter("ruler", &PageTilesOptions::ruler, "Ruler", "100 mm on the first page, to check that nothing has scaled it.").group("Marks")};
+      parameter("margin_left_mm", &PageTilesOptions::margin_left_mm, "Left margin", unit::mm, 0, 200,
+                "That the printer leaves white, with the paper upright.")
+          .group("Pages")
+          .slider(0, 25),
+      parameter("margin_right_mm", &PageTilesOptions::margin_right_mm, "Right margin", unit::mm, 0, 200,
+                "That the printer leaves white, with the paper upright.")
+          .group("Pages")
+          .slider(0, 25),
+      parameter("margin_top_mm", &PageTilesOptions::margin_top_mm, "Top margin", unit::mm, 0, 200,
+                "That the printer leaves white, with the paper upright.")
+          .group("Pages")
+          .slider(0, 25),
+      parameter("margin_bottom_mm", &PageTilesOptions::margin_bottom_mm, "Bottom margin", unit::mm, 0, 200,
+                "That the printer leaves white, with the paper upright.")
+          .group("Pages")
+          .slider(0, 25),
+      parameter("overlap_mm", &PageTilesOptions::overlap_mm, "Overlap", unit::mm, 0, 100,
+                "Of neighbouring pages, to glue them.")
+          .group("Pages")
+          .slider(0, 30),
+      parameter("width_mm", &PageTilesOptions::width_mm, "Width", unit::mm, 1, 20'000,
+                "Of the whole; auto: as the file says.")
+          .group("Size")
+          .slider(20, 1000),
+      parameter("mirrored", &PageTilesOptions::mirrored, "Mirrored",
+                "Left and right exchanged in the document: for transfer and for printing on the back.")
+          .group("Size"),
+      parameter("marks", &PageTilesOptions::marks, "Marks", "Crosses in the overlaps, a frame and the page's place.")
+          .group("Marks"),
+      parameter("ruler", &PageTilesOptions::ruler, "Ruler",
+                "100 mm on the first page, to check that nothing has scaled it.")
+          .group("Marks")};
 };
 
 /// What goes onto the pages: a picture with square pixels of `pixel_mm`, or a drawing.
@@ -65,9 +94,10 @@ struct PageTiles {
   std::vector<std::string> notes;
 };
 
-/// Pages from the upper left, row by row, each showing its part at exact size. A page that lies sideways keeps the wider of the two margins that
-/// may come to lie on a side: which way the printer turns it is not known. Throws Error: invalid_input ("overlap_mm", "margin_left_mm": no room is left
-/// on a page; "width_mm": over 400 pages), could_not_solve (libharu), cancelled.
+/// Pages from the upper left, row by row, each showing its part at exact size. A page that lies sideways keeps the
+/// wider of the two margins that may come to lie on a side: which way the printer turns it is not known. Throws Error:
+/// invalid_input ("overlap_mm", "margin_left_mm": no room is left on a page; "width_mm": over 400 pages),
+/// could_not_solve (libharu), cancelled.
 PageTiles make_page_tiles(const PageContent& content, const PageTilesOptions& options, Context& context);
 
 }  // namespace formwright

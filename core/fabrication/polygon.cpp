@@ -56,10 +56,8 @@ std::vector<Vec2> offset_steps(const Polygon& polygon, const std::vector<double>
     if (limit == 0) continue;
     // The step x has m . x = d and n . x = e.
     const double sine = cross(m, n);
-    if (std::abs(sine) > 1e-9)
-      steps[i] = Vec2(d * n.y() - e * m.y(), e * m.x() - d * n.x()) / sine;
-    else
-      steps[i] = (d * m + e * n) / 2;
+    if (std::abs(sine) > 1e-9) steps[i] = Vec2(d * n.y() - e * m.y(), e * m.x() - d * n.x()) / sine;
+    else steps[i] = (d * m + e * n) / 2;
     // Along nearly straight stretches with one distance both formulas agree; the first one is short of digits there.
     if (d == e && m.dot(n) > 0) steps[i] = (m + n) * (d / (1 + m.dot(n)));
     if (const double length = steps[i].norm(); length > limit) steps[i] *= limit / length;
@@ -77,7 +75,8 @@ bool triangles_overlap(const std::array<Vec2, 3>& a, const std::array<Vec2, 3>& 
       double low = 1e300, high = -1e300, other_low = 1e300, other_high = -1e300;
       for (std::size_t i = 0; i < 3; ++i) {
         const double x = normal.dot(of[i] - of[k]), y = normal.dot(other[i] - of[k]);
-        low = std::min(low, x), high = std::max(high, x), other_low = std::min(other_low, y), other_high = std::max(other_high, y);
+        low = std::min(low, x), high = std::max(high, x), other_low = std::min(other_low, y),
+        other_high = std::max(other_high, y);
       }
       if (std::min(high, other_high) - std::max(low, other_low) <= touching_mm) return true;
     }

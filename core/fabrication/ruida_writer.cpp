@@ -83,18 +83,30 @@ void write_head(Commands& out, const Extent& whole, const std::vector<std::pair<
     out.code({0xc9, 0x04, part}).speed(settings.second);
     for (const int which : {0x31, 0x32, 0x41, 0x42}) out.code({0xc6, which, part}).power(settings.first);
     out.code({0xca, 0x06, part}).number(0).code({0xca, 0x41, part, 0});
-    for (const int which : {0x52, 0x61}) out.code({0xe7, which, part}).point(extent.low).code({0xe7, which + 1, part}).point(extent.high);
+    for (const int which : {0x52, 0x61})
+      out.code({0xe7, which, part}).point(extent.low).code({0xe7, which + 1, part}).point(extent.high);
   }
   out.code({0xca, 0x22, static_cast<int>(layers.size()) - 1});
   for (const int which : {0x54, 0x55}) out.code({0xe7, which, 0}).number(0).code({0xe7, which, 1}).number(0);
   out.code({0xf1, 0x03}).number(0).number(0).code({0xe7, 0x0a}).number(0);
   out.code({0xea, 0}).code({0xe7, 0x60, 0}).code({0xe7, 0x0b, 0});
-  out.code({0xe7, 0x13}).point(whole.low).code({0xe7, 0x17}).point(whole.high).code({0xe7, 0x23}).number(0).number(0).code({0xe7, 0x24, 0});
+  out.code({0xe7, 0x13})
+      .point(whole.low)
+      .code({0xe7, 0x17})
+      .point(whole.high)
+      .code({0xe7, 0x23})
+      .number(0)
+      .number(0)
+      .code({0xe7, 0x24, 0});
   out.code({0xe7, 0x08}).small(1).small(1).small(0).small(1123).small(-3328).small(4).small(3480);
 }
 
 void write_settings(Commands& out, int part, const Settings& settings, bool air_assist) {
-  out.code({0xca, 0x02, part}).code({0xca, 0x01, 0x10}).code({0xca, 0x01, air_assist ? 0x13 : 0x12}).code({0xc9, 0x02}).speed(settings.second);
+  out.code({0xca, 0x02, part})
+      .code({0xca, 0x01, 0x10})
+      .code({0xca, 0x01, air_assist ? 0x13 : 0x12})
+      .code({0xc9, 0x02})
+      .speed(settings.second);
   out.code({0xc6, 0x12}).number(0).code({0xc6, 0x13}).number(0);
   for (const int which : {0x01, 0x02, 0x21, 0x22}) out.code({0xc6, which}).power(settings.first);
   out.code({0xca, 0x03, 1});
@@ -136,7 +148,8 @@ Bytes write_ruida(const Toolpath& path, const LaserMachineOptions& machine) {
     }
   }
   if (layers.size() > 128)
-    throw Error(ErrorCode::invalid_input, "controller", "The job has over 128 different powers and speeds, more than a Ruida file holds: use fewer.");
+    throw Error(ErrorCode::invalid_input, "controller",
+                "The job has over 128 different powers and speeds, more than a Ruida file holds: use fewer.");
   Commands out;
   write_head(out, whole, layers);
   int part = -1;

@@ -6,9 +6,9 @@
 
 namespace formwright {
 
-/// Every change of power or speed is a layer of the file, at most 128. Minimum and maximum power are the same. Positions in the
-/// controller's coordinates (`machine.origin`): whole micrometres, absolute where a path begins, so that nothing adds up.
-/// Throws Error{invalid_input, "controller"} for more layers.
+/// Every change of power or speed is a layer of the file, at most 128. Minimum and maximum power are the same.
+/// Positions in the controller's coordinates (`machine.origin`): whole micrometres, absolute where a path begins, so
+/// that nothing adds up. Throws Error{invalid_input, "controller"} for more layers.
 Bytes write_ruida(const Toolpath& path, const LaserMachineOptions& machine);
 
 /// As bytes go over the wire and lie in files, and back.

@@ -13,7 +13,11 @@ constexpr int most_nested = 100;
 class Order {
  public:
   Order(const std::vector<LaserStroke>& strokes, bool free_start, const Context& context)
-      : strokes_(strokes), free_start_(free_start), context_(context), insides_(strokes.size()), estimates_(strokes.size()) {
+      : strokes_(strokes),
+        free_start_(free_start),
+        context_(context),
+        insides_(strokes.size()),
+        estimates_(strokes.size()) {
     for (std::size_t i = 0; i < strokes.size(); ++i) {
       // Rings within rings beyond the hundredth are taken as one lot.
       int parent = strokes[i].inside_of, depth = 0;
@@ -45,10 +49,14 @@ class Order {
   RouteStop stop_of(int i) const {
     const LaserStroke& stroke = strokes_[static_cast<std::size_t>(i)];
     if (!insides_[static_cast<std::size_t>(i)].empty())
-      return {RouteStop::Kind::one_way, {estimates_[static_cast<std::size_t>(i)].entry, estimates_[static_cast<std::size_t>(i)].exit}};
+      return {RouteStop::Kind::one_way,
+              {estimates_[static_cast<std::size_t>(i)].entry, estimates_[static_cast<std::size_t>(i)].exit}};
     // An even number of passes ends where it began.
     const bool there_and_back = !stroke.closed && !stroke.fixed_way && stroke.passes % 2 == 0;
-    return {stroke.closed || there_and_back ? RouteStop::Kind::loop : stroke.fixed_way ? RouteStop::Kind::one_way : RouteStop::Kind::line, doors(stroke)};
+    return {stroke.closed || there_and_back ? RouteStop::Kind::loop
+            : stroke.fixed_way              ? RouteStop::Kind::one_way
+                                            : RouteStop::Kind::line,
+            doors(stroke)};
   }
 
   std::vector<RouteStep> route(const std::vector<int>& group, const Vec2& from) const {
@@ -75,8 +83,10 @@ class Order {
     for (const int k : inner) estimate(k);
     const Vec2 corner = strokes_[static_cast<std::size_t>(i)].points_mm.front();
     const auto steps = route(inner, corner);
-    const RouteStop first = stop_of(inner[static_cast<std::size_t>(steps.front().stop)]), last = stop_of(inner[static_cast<std::size_t>(steps.back().stop)]);
-    const Vec2 left = last.doors_mm[static_cast<std::size_t>(last.kind == RouteStop::Kind::loop ? steps.back().door : 1 - steps.back().door)];
+    const RouteStop first = stop_of(inner[static_cast<std::size_t>(steps.front().stop)]),
+                    last = stop_of(inner[static_cast<std::size_t>(steps.back().stop)]);
+    const Vec2 left = last.doors_mm[static_cast<std::size_t>(
+        last.kind == RouteStop::Kind::loop ? steps.back().door : 1 - steps.back().door)];
     const auto places = doors(strokes_[static_cast<std::size_t>(i)]);
     estimates_[static_cast<std::size_t>(i)] = {first.doors_mm[static_cast<std::size_t>(steps.front().door)],
                                                places[static_cast<std::size_t>(nearest_door(i, left, std::nullopt))]};
@@ -117,7 +127,8 @@ class Order {
 
 }  // namespace
 
-std::vector<StrokeRun> order_strokes(const std::vector<LaserStroke>& strokes, const Vec2& start_mm, bool free_start, const Context& context) {
+std::vector<StrokeRun> order_strokes(const std::vector<LaserStroke>& strokes, const Vec2& start_mm, bool free_start,
+                                     const Context& context) {
   return Order(strokes, free_start, context).run(start_mm);
 }
 

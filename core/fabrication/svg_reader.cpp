@@ -62,8 +62,10 @@ class Reader {
 
   Inherited within(const pugi::xml_node& node, const Inherited& outer) {
     Inherited inner = outer;
-    if (++inner.depth > most_nested) refuse("The drawing is nested more than 256 levels deep: ungroup it, or look for a <use> that shows itself.");
-    if (const auto transform = read_transform(node.attribute("transform").value())) inner.to_mm = outer.to_mm * *transform;
+    if (++inner.depth > most_nested)
+      refuse("The drawing is nested more than 256 levels deep: ungroup it, or look for a <use> that shows itself.");
+    if (const auto transform = read_transform(node.attribute("transform").value()))
+      inner.to_mm = outer.to_mm * *transform;
     else ++malformed;
     const auto inherit = [&](const char* name, std::string& value) {
       std::string own = style_.property(node, name);
@@ -72,18 +74,20 @@ class Reader {
     inherit("color", inner.colour);
     inherit("stroke", inner.stroke);
     inherit("fill", inner.fill);
-    if (const std::string own = style_.property(node, "visibility"); !own.empty() && own != "inherit") inner.visible = own == "visible";
+    if (const std::string own = style_.property(node, "visibility"); !own.empty() && own != "inherit")
+      inner.visible = own == "visible";
     if (!style_.property(node, "clip-path").empty() || !style_.property(node, "mask").empty()) ++clipped;
     return inner;
   }
 
   void element(const pugi::xml_node& node, const Inherited& outer) {
-    if (++elements_ > most_elements) refuse("The drawing has over a million elements: simplify it or split it into several files.");
+    if (++elements_ > most_elements)
+      refuse("The drawing has over a million elements: simplify it or split it into several files.");
     if (elements_ % 256 == 0) context_.check_cancelled();
     const std::string name = svg_local_name(node);
-    constexpr std::string_view never[] = {"defs",   "clipPath", "mask",  "marker", "pattern", "linearGradient", "radialGradient",
-                                          "symbol", "style",    "title", "desc",   "metadata", "filter",        "script",
-                                          "namedview", "foreignObject"};
+    constexpr std::string_view never[] = {
+        "defs",  "clipPath", "mask", "marker",   "pattern", "linearGradient", "radialGradient", "symbol",
+        "style", "title",    "desc", "metadata", "filter",  "script",         "namedview",      "foreignObject"};
     if (std::find(std::begin(never), std::end(never), name) != std::end(never)) return;
     if (style_.property(node, "display") == "none") return;
     Inherited inner = within(node, outer);
@@ -110,7 +114,8 @@ class Reader {
     if (!reference.starts_with('#')) return;
     const auto found = by_id_.find(reference.substr(1));
     if (found == by_id_.end()) return;
-    inner.to_mm.translate(Vec2(length(node, "x", inner.viewport.width, 0), length(node, "y", inner.viewport.height, 0)));
+    inner.to_mm.translate(
+        Vec2(length(node, "x", inner.viewport.width, 0), length(node, "y", inner.viewport.height, 0)));
     if (svg_local_name(found->second) != "symbol") return element(found->second, inner);
     Inherited symbol = within(found->second, inner);
     if (node.attribute("width")) symbol.viewport.width = length(node, "width", inner.viewport.width, 0);
@@ -154,7 +159,8 @@ class Reader {
       const double rx = x("rx"), ry = y("ry");
       if (rx > 0 && ry > 0) flattener.ellipse({x("cx"), y("cy")}, rx, ry);
     } else if (name == "rect") {
-      rectangle(flattener, {x("x"), y("y")}, {x("width"), y("height")}, length(node, "rx", w, -1), length(node, "ry", h, -1));
+      rectangle(flattener, {x("x"), y("y")}, {x("width"), y("height")}, length(node, "rx", w, -1),
+                length(node, "ry", h, -1));
     } else {
       return;
     }
@@ -202,9 +208,11 @@ class Reader {
       if (std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_') name += c == '_' ? '-' : c;
     for (CurveFlattener::Subpath& subpath : flattener.take()) {
       points += subpath.points_mm.size();
-      if (points > most_points) refuse("The drawing has over 2 million points: simplify its curves or split it into several files.");
+      if (points > most_points)
+        refuse("The drawing has over 2 million points: simplify its curves or split it into several files.");
       for (const Vec2& p : subpath.points_mm)
-        if (!p.allFinite() || p.cwiseAbs().maxCoeff() > 20'000) refuse("The drawing reaches farther than 20 m: check its units and its transforms.");
+        if (!p.allFinite() || p.cwiseAbs().maxCoeff() > 20'000)
+          refuse("The drawing reaches farther than 20 m: check its units and its transforms.");
       std::string unique = name;
       if (!name.empty())
         if (const int count = ++names_[name]; count > 1) unique += "-" + std::to_string(count);
@@ -224,15 +232,20 @@ pugi::xml_node root_of(pugi::xml_document& document, ByteView bytes) {
   const std::string_view text = as_text(bytes);
   if (text.empty()) refuse("The drawing is empty: choose another file.");
   if (text.starts_with("\x1f\x8b")) refuse("The drawing is compressed (SVGZ): save it as plain SVG.");
-  const pugi::xml_parse_result parsed = document.load_buffer(bytes.data(), bytes.size(), pugi::parse_default | pugi::parse_ws_pcdata_single);
+  const pugi::xml_parse_result parsed =
+      document.load_buffer(bytes.data(), bytes.size(), pugi::parse_default | pugi::parse_ws_pcdata_single);
   const pugi::xml_node root = document.document_element();
   if (!parsed || !root)
-    refuse("The drawing is not XML: " + std::string(parsed.description()) + " at byte " + std::to_string(parsed.offset) + "; save it as plain SVG.");
-  if (svg_local_name(root) != "svg") refuse("The drawing is not an SVG: its first element is <" + svg_local_name(root) + ">; save it as plain SVG.");
+    refuse("The drawing is not XML: " + std::string(parsed.description()) + " at byte " +
+           std::to_string(parsed.offset) + "; save it as plain SVG.");
+  if (svg_local_name(root) != "svg")
+    refuse("The drawing is not an SVG: its first element is <" + svg_local_name(root) + ">; save it as plain SVG.");
   return root;
 }
 
-std::string counted(std::size_t count, const std::string& one, const std::string& many) { return std::to_string(count) + " " + (count == 1 ? one : many); }
+std::string counted(std::size_t count, const std::string& one, const std::string& many) {
+  return std::to_string(count) + " " + (count == 1 ? one : many);
+}
 
 }  // namespace
 
@@ -262,11 +275,16 @@ SvgDrawing read_svg_drawing(ByteView bytes, const SvgReadOptions& options, const
   const auto note = [&](std::size_t count, const std::string& one, const std::string& many) {
     if (count > 0) drawing.notes.push_back(counted(count, one, many));
   };
-  note(reader.words, "text was left out: convert it to paths to have it on the material.", "texts were left out: convert them to paths to have them on the material.");
-  note(reader.pictures, "picture was left out: only lines are followed.", "pictures were left out: only lines are followed.");
-  note(reader.clipped, "clip or mask was not applied: what it hides is in the drawing.", "clips or masks were not applied: what they hide is in the drawing.");
-  note(reader.malformed, "element has a fault and was read as far as it goes.", "elements have a fault and were read as far as they go.");
-  note(reader.other_colours, "shape has a colour that names no layer (red cut, blue mark, black engrave) and is taken as a note.",
+  note(reader.words, "text was left out: convert it to paths to have it on the material.",
+       "texts were left out: convert them to paths to have them on the material.");
+  note(reader.pictures, "picture was left out: only lines are followed.",
+       "pictures were left out: only lines are followed.");
+  note(reader.clipped, "clip or mask was not applied: what it hides is in the drawing.",
+       "clips or masks were not applied: what they hide is in the drawing.");
+  note(reader.malformed, "element has a fault and was read as far as it goes.",
+       "elements have a fault and were read as far as they go.");
+  note(reader.other_colours,
+       "shape has a colour that names no layer (red cut, blue mark, black engrave) and is taken as a note.",
        "shapes have a colour that names no layer (red cut, blue mark, black engrave) and are taken as notes.");
   return drawing;
 }

@@ -16,12 +16,14 @@ enum class UserUnit { as_told, px, mm, pt, inch };
 template <>
 struct EnumNames<UserUnit> {
   static constexpr std::array<std::string_view, 5> names{"as_told", "px", "mm", "pt", "inch"};
-  static constexpr std::array<std::string_view, 5> labels{"As it says", "Pixels, 96 an inch", "Millimetres", "Points, 72 an inch", "Inches"};
+  static constexpr std::array<std::string_view, 5> labels{"As it says", "Pixels, 96 an inch", "Millimetres",
+                                                          "Points, 72 an inch", "Inches"};
 };
 
 struct SvgReadOptions {
-  double flatness_mm = 0.01;                // polylines keep this close to their curves
-  UserUnit user_unit = UserUnit::as_told;   // anything else overrides width, height and viewBox: one user unit is one of these
+  double flatness_mm = 0.01;  // polylines keep this close to their curves
+  UserUnit user_unit =
+      UserUnit::as_told;  // anything else overrides width, height and viewBox: one user unit is one of these
 };
 
 struct SvgDrawing {
@@ -29,11 +31,11 @@ struct SvgDrawing {
   std::vector<std::string> notes;  // what was left out or guessed, in sentences
 };
 
-/// Shapes, paths, groups, nested drawings and <use> with their transforms; shapes that are not painted are left out, as are pictures and words.
-/// A path's layer: the innermost group around it whose label or id names one (layer_by_name), else the colour of its stroke, of its fill
-/// without a stroke (layer_by_colour), else note.
-/// Throws Error{invalid_input, "drawing"}: not an SVG, no physical size ("user_unit" mends it), nothing drawn, words only, over 2 million
-/// points, over 20 m; cancelled.
+/// Shapes, paths, groups, nested drawings and <use> with their transforms; shapes that are not painted are left out, as
+/// are pictures and words. A path's layer: the innermost group around it whose label or id names one (layer_by_name),
+/// else the colour of its stroke, of its fill without a stroke (layer_by_colour), else note. Throws
+/// Error{invalid_input, "drawing"}: not an SVG, no physical size ("user_unit" mends it), nothing drawn, words only,
+/// over 2 million points, over 20 m; cancelled.
 SvgDrawing read_svg_drawing(ByteView bytes, const SvgReadOptions& options, const Context& context);
 
 }  // namespace formwright

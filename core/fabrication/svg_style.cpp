@@ -118,12 +118,14 @@ std::string StyleSheet::property(const pugi::xml_node& element, std::string_view
 
 std::optional<std::array<int, 3>> read_colour(std::string_view text) {
   std::string word = trimmed(text);
-  std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(word.begin(), word.end(), word.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (word.starts_with('#')) {
     if (word.find_first_not_of("0123456789abcdef", 1) != std::string::npos) return std::nullopt;
     const auto digit = [&](std::size_t i) { return word[i] <= '9' ? word[i] - '0' : word[i] - 'a' + 10; };
     if (word.size() == 4 || word.size() == 5) return std::array{17 * digit(1), 17 * digit(2), 17 * digit(3)};
-    if (word.size() == 7 || word.size() == 9) return std::array{16 * digit(1) + digit(2), 16 * digit(3) + digit(4), 16 * digit(5) + digit(6)};
+    if (word.size() == 7 || word.size() == 9)
+      return std::array{16 * digit(1) + digit(2), 16 * digit(3) + digit(4), 16 * digit(5) + digit(6)};
     return std::nullopt;
   }
   if (word.starts_with("rgb")) {
@@ -134,15 +136,18 @@ std::optional<std::array<int, 3>> read_colour(std::string_view text) {
     const auto numbers = read_number_list(std::string_view(word).substr(open + 1, close - open - 1));
     if (!numbers || numbers->size() < 3) return std::nullopt;
     std::array<int, 3> rgb{};
-    for (std::size_t i = 0; i < 3; ++i) rgb[i] = static_cast<int>(std::lround(std::clamp((*numbers)[i] * (percent ? 2.55 : 1), 0.0, 255.0)));
+    for (std::size_t i = 0; i < 3; ++i)
+      rgb[i] = static_cast<int>(std::lround(std::clamp((*numbers)[i] * (percent ? 2.55 : 1), 0.0, 255.0)));
     return rgb;
   }
   constexpr std::pair<std::string_view, std::array<int, 3>> names[] = {
-      {"black", {0, 0, 0}},        {"red", {255, 0, 0}},       {"blue", {0, 0, 255}},       {"green", {0, 128, 0}},      {"lime", {0, 255, 0}},
-      {"white", {255, 255, 255}},  {"gray", {128, 128, 128}},  {"grey", {128, 128, 128}},   {"silver", {192, 192, 192}}, {"maroon", {128, 0, 0}},
-      {"navy", {0, 0, 128}},       {"yellow", {255, 255, 0}},  {"magenta", {255, 0, 255}},  {"fuchsia", {255, 0, 255}},  {"cyan", {0, 255, 255}},
-      {"aqua", {0, 255, 255}},     {"orange", {255, 165, 0}},  {"purple", {128, 0, 128}},   {"teal", {0, 128, 128}},     {"olive", {128, 128, 0}},
-      {"darkred", {139, 0, 0}},    {"darkblue", {0, 0, 139}},  {"darkgreen", {0, 100, 0}},  {"crimson", {220, 20, 60}},  {"mediumblue", {0, 0, 205}}};
+      {"black", {0, 0, 0}},        {"red", {255, 0, 0}},       {"blue", {0, 0, 255}},      {"green", {0, 128, 0}},
+      {"lime", {0, 255, 0}},       {"white", {255, 255, 255}}, {"gray", {128, 128, 128}},  {"grey", {128, 128, 128}},
+      {"silver", {192, 192, 192}}, {"maroon", {128, 0, 0}},    {"navy", {0, 0, 128}},      {"yellow", {255, 255, 0}},
+      {"magenta", {255, 0, 255}},  {"fuchsia", {255, 0, 255}}, {"cyan", {0, 255, 255}},    {"aqua", {0, 255, 255}},
+      {"orange", {255, 165, 0}},   {"purple", {128, 0, 128}},  {"teal", {0, 128, 128}},    {"olive", {128, 128, 0}},
+      {"darkred", {139, 0, 0}},    {"darkblue", {0, 0, 139}},  {"darkgreen", {0, 100, 0}}, {"crimson", {220, 20, 60}},
+      {"mediumblue", {0, 0, 205}}};
   for (const auto& [name, rgb] : names)
     if (word == name) return rgb;
   return std::nullopt;

@@ -12,8 +12,8 @@
 
 namespace formwright {
 
-/// Rules of the document's <style> elements whose selector is an element, a class, an id or two of them joined ("path.st0"). Selectors
-/// that look at ancestors are not followed.
+/// Rules of the document's <style> elements whose selector is an element, a class, an id or two of them joined
+/// ("path.st0"). Selectors that look at ancestors are not followed.
 class StyleSheet {
  public:
   explicit StyleSheet(const pugi::xml_node& root);
@@ -30,7 +30,8 @@ class StyleSheet {
   std::vector<Rule> rules_;
 };
 
-/// "#f00", "#ff0000", "rgb(255, 0, 0)", "rgb(100%,0%,0%)" or one of the plain names. None for paints that are not one colour.
+/// "#f00", "#ff0000", "rgb(255, 0, 0)", "rgb(100%,0%,0%)" or one of the plain names. None for paints that are not one
+/// colour.
 std::optional<std::array<int, 3>> read_colour(std::string_view text);
 
 }  // namespace formwright

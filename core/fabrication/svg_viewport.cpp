@@ -17,7 +17,8 @@ struct ViewBox {
 
 std::optional<ViewBox> view_box_of(const pugi::xml_node& node) {
   std::string text = node.attribute("viewBox").value();
-  std::replace_if(text.begin(), text.end(), [](char c) { return c == '\n' || c == '\t' || c == '\r'; }, ' ');
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\t' || c == '\r'; }, ' ');
   const auto numbers = read_number_list(text);
   if (!numbers || numbers->size() != 4 || (*numbers)[2] <= 0 || (*numbers)[3] <= 0) return std::nullopt;
   return ViewBox{(*numbers)[0], (*numbers)[1], (*numbers)[2], (*numbers)[3]};
@@ -36,7 +37,8 @@ Eigen::Affine2d fit(const ViewBox& box, double width, double height, std::string
     if (preserve.find("YMax") != std::string_view::npos) before.y() = 1;
   }
   const Vec2 room(width - scale.x() * box.width, height - scale.y() * box.height);
-  return Eigen::Translation2d(before.cwiseProduct(room)) * Eigen::Scaling(scale.x(), scale.y()) * Eigen::Translation2d(-box.x, -box.y);
+  return Eigen::Translation2d(before.cwiseProduct(room)) * Eigen::Scaling(scale.x(), scale.y()) *
+         Eigen::Translation2d(-box.x, -box.y);
 }
 
 }  // namespace
@@ -49,8 +51,11 @@ std::string svg_local_name(const pugi::xml_node& node) {
 
 PageFrame read_page_frame(const pugi::xml_node& root, UserUnit unit, std::vector<std::string>& notes) {
   const auto box = view_box_of(root);
-  const auto width = read_length(root.attribute("width").value()), height = read_length(root.attribute("height").value());
-  const auto size_of = [](const std::optional<SvgLength>& length) { return length && !length->percent && length->value > 0 ? length->value : 0; };
+  const auto width = read_length(root.attribute("width").value()),
+             height = read_length(root.attribute("height").value());
+  const auto size_of = [](const std::optional<SvgLength>& length) {
+    return length && !length->percent && length->value > 0 ? length->value : 0;
+  };
   double width_px = size_of(width), height_px = size_of(height);
   PageFrame page;
   if (unit != UserUnit::as_told) {
@@ -63,12 +68,15 @@ PageFrame read_page_frame(const pugi::xml_node& root, UserUnit unit, std::vector
     page.height_mm = mm * whole.height;
     return page;
   }
-  const auto says_px = [&](const char* name) { return std::string_view(root.attribute(name).value()).find("px") != std::string_view::npos; };
+  const auto says_px = [&](const char* name) {
+    return std::string_view(root.attribute(name).value()).find("px") != std::string_view::npos;
+  };
   const bool pixels = says_px("width") || says_px("height");
   const bool absolute = (width && width->absolute) || (height && height->absolute);
   if (!absolute && !pixels)
-    throw Error(ErrorCode::invalid_input, "drawing",
-                "The drawing does not tell its size in millimetres: save it with a width and height such as 200mm, or set user_unit.");
+    throw Error(
+        ErrorCode::invalid_input, "drawing",
+        "The drawing does not tell its size in millimetres: save it with a width and height such as 200mm, or set user_unit.");
   // One of the two follows from the other and the viewBox.
   if (box && height_px <= 0) height_px = width_px * box->height / box->width;
   if (box && width_px <= 0) width_px = height_px * box->width / box->height;

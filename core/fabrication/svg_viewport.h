@@ -24,7 +24,8 @@ struct PageFrame {
 /// Without the prefix of its namespace.
 std::string svg_local_name(const pugi::xml_node& node);
 
-/// The outermost element's size. Throws Error{invalid_input, "drawing"} when it does not tell a physical one and `unit` does not either.
+/// The outermost element's size. Throws Error{invalid_input, "drawing"} when it does not tell a physical one and `unit`
+/// does not either.
 PageFrame read_page_frame(const pugi::xml_node& root, UserUnit unit, std::vector<std::string>& notes);
 
 /// A nested <svg>: its place and its viewBox; `viewport` is the outer one before and its own afterwards.

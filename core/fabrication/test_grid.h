@@ -36,31 +36,84 @@ struct TestGridOptions : LaserMachineOptions {
   static constexpr auto parameters = std::tuple_cat(
       inherit_parameters<TestGridOptions>(LaserMachineOptions::parameters),
       std::tuple{
-          parameter("kind", &TestGridOptions::kind, "Test", "Power and speed: a square for each pair. Kerf: pieces to push together. Focus: a line for each height.").group("Test"),
-          parameter("work", &TestGridOptions::work, "Squares", "What is done with the squares of the power and speed test.").group("Squares"),
-          parameter("x_mm", &TestGridOptions::x_mm, "Place, x", unit::mm, 0, 20'000, "Of the test's lower left corner on the bed.").group("Test").slider(0, 500),
-          parameter("y_mm", &TestGridOptions::y_mm, "Place, y", unit::mm, 0, 20'000, "Of the test's lower left corner on the bed.").group("Test").slider(0, 500),
-          parameter("columns", &TestGridOptions::columns, "Powers", unit::none, 1, 20, "Columns of the grid; lines of the focus test.").group("Squares").slider(2, 10),
-          parameter("rows", &TestGridOptions::rows, "Speeds", unit::none, 1, 20, "Rows of the grid.").group("Squares").slider(2, 10),
-          parameter("power_from_percent", &TestGridOptions::power_from_percent, "Power from", unit::percent, 0, 100, "Of the first column.").group("Squares"),
-          parameter("power_to_percent", &TestGridOptions::power_to_percent, "Power to", unit::percent, 0, 100, "Of the last column.").group("Squares"),
-          parameter("speed_from_mm_per_s", &TestGridOptions::speed_from_mm_per_s, "Speed from", unit::mm_per_s, 0.1, 2000, "Of the lowest row.").group("Squares").slider(1, 300),
-          parameter("speed_to_mm_per_s", &TestGridOptions::speed_to_mm_per_s, "Speed to", unit::mm_per_s, 0.1, 2000, "Of the highest row.").group("Squares").slider(1, 300),
-          parameter("cell_mm", &TestGridOptions::cell_mm, "Square", unit::mm, 1, 100, "Side of a square; length of a focus line is three of them.").group("Squares").slider(3, 20),
-          parameter("gap_mm", &TestGridOptions::gap_mm, "Gap", unit::mm, 0.5, 100, "Between squares.").group("Squares").slider(1, 10),
-          parameter("line_mm", &TestGridOptions::line_mm, "Line distance", unit::mm, 0.02, 5, "Of filled squares.").group("Squares").slider(0.05, 1),
-          parameter("passes", &TestGridOptions::passes, "Passes", unit::none, 1, 50, "How often every line is run.").group("Test").slider(1, 10),
-          parameter("power_percent", &TestGridOptions::power_percent, "Power", unit::percent, 0, 100, "Of the kerf and the focus test.").group("Lines"),
-          parameter("speed_mm_per_s", &TestGridOptions::speed_mm_per_s, "Speed", unit::mm_per_s, 0.1, 2000, "Of the kerf and the focus test.").group("Lines").slider(1, 100),
-          parameter("kerf_length_mm", &TestGridOptions::kerf_length_mm, "Kerf test", unit::mm, 40, 500, "Length of the ten pieces of the kerf test.").group("Lines").slider(50, 200),
-          parameter("focus_range_mm", &TestGridOptions::focus_range_mm, "Focus range", unit::mm, 0.1, 50, "Heights from this much below to this much above the surface's focus.").group("Lines").slider(1, 10),
-          parameter("label_mm", &TestGridOptions::label_mm, "Numbers", unit::mm, 1, 20, "Height of the numbers.").group("Numbers").slider(2, 6),
-          parameter("label_power_percent", &TestGridOptions::label_power_percent, "Power of numbers", unit::percent, 0, 100, "So that they show and do not cut.").group("Numbers"),
-          parameter("label_speed_mm_per_s", &TestGridOptions::label_speed_mm_per_s, "Speed of numbers", unit::mm_per_s, 0.1, 2000, "So that they show and do not cut.").group("Numbers").slider(5, 200)});
+          parameter(
+              "kind", &TestGridOptions::kind, "Test",
+              "Power and speed: a square for each pair. Kerf: pieces to push together. Focus: a line for each height.")
+              .group("Test"),
+          parameter("work", &TestGridOptions::work, "Squares",
+                    "What is done with the squares of the power and speed test.")
+              .group("Squares"),
+          parameter("x_mm", &TestGridOptions::x_mm, "Place, x", unit::mm, 0, 20'000,
+                    "Of the test's lower left corner on the bed.")
+              .group("Test")
+              .slider(0, 500),
+          parameter("y_mm", &TestGridOptions::y_mm, "Place, y", unit::mm, 0, 20'000,
+                    "Of the test's lower left corner on the bed.")
+              .group("Test")
+              .slider(0, 500),
+          parameter("columns", &TestGridOptions::columns, "Powers", unit::none, 1, 20,
+                    "Columns of the grid; lines of the focus test.")
+              .group("Squares")
+              .slider(2, 10),
+          parameter("rows", &TestGridOptions::rows, "Speeds", unit::none, 1, 20, "Rows of the grid.")
+              .group("Squares")
+              .slider(2, 10),
+          parameter("power_from_percent", &TestGridOptions::power_from_percent, "Power from", unit::percent, 0, 100,
+                    "Of the first column.")
+              .group("Squares"),
+          parameter("power_to_percent", &TestGridOptions::power_to_percent, "Power to", unit::percent, 0, 100,
+                    "Of the last column.")
+              .group("Squares"),
+          parameter("speed_from_mm_per_s", &TestGridOptions::speed_from_mm_per_s, "Speed from", unit::mm_per_s, 0.1,
+                    2000, "Of the lowest row.")
+              .group("Squares")
+              .slider(1, 300),
+          parameter("speed_to_mm_per_s", &TestGridOptions::speed_to_mm_per_s, "Speed to", unit::mm_per_s, 0.1, 2000,
+                    "Of the highest row.")
+              .group("Squares")
+              .slider(1, 300),
+          parameter("cell_mm", &TestGridOptions::cell_mm, "Square", unit::mm, 1, 100,
+                    "Side of a square; length of a focus line is three of them.")
+              .group("Squares")
+              .slider(3, 20),
+          parameter("gap_mm", &TestGridOptions::gap_mm, "Gap", unit::mm, 0.5, 100, "Between squares.")
+              .group("Squares")
+              .slider(1, 10),
+          parameter("line_mm", &TestGridOptions::line_mm, "Line distance", unit::mm, 0.02, 5, "Of filled squares.")
+              .group("Squares")
+              .slider(0.05, 1),
+          parameter("passes", &TestGridOptions::passes, "Passes", unit::none, 1, 50, "How often every line is run.")
+              .group("Test")
+              .slider(1, 10),
+          parameter("power_percent", &TestGridOptions::power_percent, "Power", unit::percent, 0, 100,
+                    "Of the kerf and the focus test.")
+              .group("Lines"),
+          parameter("speed_mm_per_s", &TestGridOptions::speed_mm_per_s, "Speed", unit::mm_per_s, 0.1, 2000,
+                    "Of the kerf and the focus test.")
+              .group("Lines")
+              .slider(1, 100),
+          parameter("kerf_length_mm", &TestGridOptions::kerf_length_mm, "Kerf test", unit::mm, 40, 500,
+                    "Length of the ten pieces of the kerf test.")
+              .group("Lines")
+              .slider(50, 200),
+          parameter("focus_range_mm", &TestGridOptions::focus_range_mm, "Focus range", unit::mm, 0.1, 50,
+                    "Heights from this much below to this much above the surface's focus.")
+              .group("Lines")
+              .slider(1, 10),
+          parameter("label_mm", &TestGridOptions::label_mm, "Numbers", unit::mm, 1, 20, "Height of the numbers.")
+              .group("Numbers")
+              .slider(2, 6),
+          parameter("label_power_percent", &TestGridOptions::label_power_percent, "Power of numbers", unit::percent, 0,
+                    100, "So that they show and do not cut.")
+              .group("Numbers"),
+          parameter("label_speed_mm_per_s", &TestGridOptions::label_speed_mm_per_s, "Speed of numbers", unit::mm_per_s,
+                    0.1, 2000, "So that they show and do not cut.")
+              .group("Numbers")
+              .slider(5, 200)});
 };
 
 struct TestCell {
-  std::string name;  // "R1C1"; the part's name in the tool path
+  std::string name;                                        // "R1C1"; the part's name in the tool path
   double power_percent, speed_mm_per_s, z_mm, x_mm, y_mm;  // lower left corner on the bed
 };
 
@@ -70,8 +123,8 @@ struct TestGrid {
   CutSheet drawing;  // what is run, on a sheet of the bed's size
 };
 
-/// The kerf test is a slot as long as ten pieces, cut apart by nine lines: pushed to the left, the pieces leave 11 kerfs free, and the last
-/// one's edge points at the kerf on the scale above it.
+/// The kerf test is a slot as long as ten pieces, cut apart by nine lines: pushed to the left, the pieces leave 11
+/// kerfs free, and the last one's edge points at the kerf on the scale above it.
 TestGrid make_test_grid(const TestGridOptions& options, const Context& context);
 
 }  // namespace formwright

@@ -10,11 +10,15 @@
 namespace formwright {
 namespace {
 
-Vec3 in_micrometres(const Vec3& p) { return {std::round(1e3 * p.x()) / 1e3, std::round(1e3 * p.y()) / 1e3, std::round(1e3 * p.z()) / 1e3}; }
+Vec3 in_micrometres(const Vec3& p) {
+  return {std::round(1e3 * p.x()) / 1e3, std::round(1e3 * p.y()) / 1e3, std::round(1e3 * p.z()) / 1e3};
+}
 
 std::string millimetres(double value) {
   char buffer[32];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, std::round(10 * value) / 10 + 0.0, std::chars_format::fixed, 1).ptr};
+  return {buffer,
+          std::to_chars(buffer, buffer + sizeof buffer, std::round(10 * value) / 10 + 0.0, std::chars_format::fixed, 1)
+              .ptr};
 }
 
 /// Does the segment touch the rectangle grown by `grown_mm`? Liang and Barsky's clipping.
@@ -75,7 +79,8 @@ void ToolpathBuilder::work(ToolMove move) {
   path_.moves.push_back(std::move(move));
 }
 
-std::vector<std::string> find_misfits(const Toolpath& path, const MachineOptions& machine, double width_mm, double edge_width_mm) {
+std::vector<std::string> find_misfits(const Toolpath& path, const MachineOptions& machine, double width_mm,
+                                      double edge_width_mm) {
   const auto zones = read_no_go(machine.no_go);
   double beyond[4] = {0, 0, 0, 0};
   constexpr const char* edges[4] = {"left", "right", "lower", "upper"};
@@ -94,16 +99,20 @@ std::vector<std::string> find_misfits(const Toolpath& path, const MachineOptions
       for (std::size_t z = 0; z < zones.size(); ++z)
         if (!told[z] && touches(before, p, zones[z], half_mm)) {
           told[z] = true;
-          const std::string who = !move.work ? "A travel" : move.part.empty() ? "A path on layer " + move.layer : "Part " + move.part;
-          misfits.push_back(who + " crosses no-go zone " + std::to_string(z + 1) + " (" + millimetres(zones[z].x0_mm) + ", " + millimetres(zones[z].y0_mm) + " to " +
-                            millimetres(zones[z].x1_mm) + ", " + millimetres(zones[z].y1_mm) + " mm): move or turn the drawing.");
+          const std::string who = !move.work          ? "A travel"
+                                  : move.part.empty() ? "A path on layer " + move.layer
+                                                      : "Part " + move.part;
+          misfits.push_back(who + " crosses no-go zone " + std::to_string(z + 1) + " (" + millimetres(zones[z].x0_mm) +
+                            ", " + millimetres(zones[z].y0_mm) + " to " + millimetres(zones[z].x1_mm) + ", " +
+                            millimetres(zones[z].y1_mm) + " mm): move or turn the drawing.");
         }
     }
   }
   for (int side = 0; side < 4; ++side)
     if (beyond[side] > 5e-4)
-      misfits.push_back(std::string("The job reaches ") + millimetres(std::max(0.1, beyond[side])) + " mm beyond the " + edges[side] + " edge of the bed (" +
-                        millimetres(machine.bed_x_mm) + " x " + millimetres(machine.bed_y_mm) + " mm): move, turn or shrink the drawing.");
+      misfits.push_back(std::string("The job reaches ") + millimetres(std::max(0.1, beyond[side])) + " mm beyond the " +
+                        edges[side] + " edge of the bed (" + millimetres(machine.bed_x_mm) + " x " +
+                        millimetres(machine.bed_y_mm) + " mm): move, turn or shrink the drawing.");
   return misfits;
 }
 
@@ -122,18 +131,21 @@ ToolpathBounds work_bounds(const Toolpath& path) {
 Bytes write_toolpath_json(const Toolpath& path, const MachineOptions& machine) {
   const auto rounded = [](double value) { return std::round(1e3 * value) / 1e3; };
   TextOut out;
-  out << "{\"version\":1,\"bed_mm\":[" << rounded(machine.bed_x_mm) << ',' << rounded(machine.bed_y_mm) << "],\"no_go_mm\":[";
+  out << "{\"version\":1,\"bed_mm\":[" << rounded(machine.bed_x_mm) << ',' << rounded(machine.bed_y_mm)
+      << "],\"no_go_mm\":[";
   bool first = true;
   for (const BedRectangle& zone : read_no_go(machine.no_go)) {
-    out << (first ? "[" : ",[") << rounded(zone.x0_mm) << ',' << rounded(zone.y0_mm) << ',' << rounded(zone.x1_mm) << ',' << rounded(zone.y1_mm) << ']';
+    out << (first ? "[" : ",[") << rounded(zone.x0_mm) << ',' << rounded(zone.y0_mm) << ',' << rounded(zone.x1_mm)
+        << ',' << rounded(zone.y1_mm) << ']';
     first = false;
   }
   out << "],\"seconds\":" << rounded(path.seconds) << ",\"paths\":[";
   for (std::size_t m = 0; m < path.moves.size(); ++m) {
     const ToolMove& move = path.moves[m];
-    out << (m == 0 ? "{" : ",{") << "\"kind\":\"" << (move.work ? "work" : "travel") << "\",\"layer\":\"" << move.layer << "\",\"part\":\"" << move.part
-        << "\",\"pass\":" << move.pass << ",\"power_percent\":" << rounded(move.power_percent) << ",\"speed_mm_per_s\":" << rounded(move.speed_mm_per_s)
-        << ",\"points_mm\":[";
+    out << (m == 0 ? "{" : ",{") << "\"kind\":\"" << (move.work ? "work" : "travel") << "\",\"layer\":\"" << move.layer
+        << "\",\"part\":\"" << move.part << "\",\"pass\":" << move.pass
+        << ",\"power_percent\":" << rounded(move.power_percent)
+        << ",\"speed_mm_per_s\":" << rounded(move.speed_mm_per_s) << ",\"points_mm\":[";
     for (std::size_t i = 0; i < move.points_mm.size(); ++i) {
       const Vec3& p = move.points_mm[i];
       out << (i == 0 ? "" : ",") << rounded(p.x()) << ',' << rounded(p.y()) << ',' << rounded(p.z());

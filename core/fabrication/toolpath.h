@@ -9,8 +9,9 @@
 
 namespace formwright {
 
-/// One travel, or one run of the tool along a path; it begins where the move before ended. Coordinates in mm from the bed's lower left
-/// corner, y up, z 0 at the material's surface, all of them whole micrometres: what is written with three decimals is exact.
+/// One travel, or one run of the tool along a path; it begins where the move before ended. Coordinates in mm from the
+/// bed's lower left corner, y up, z 0 at the material's surface, all of them whole micrometres: what is written with
+/// three decimals is exact.
 struct ToolMove {
   bool work = false;
   std::string layer;  // "cut", "mark", "engrave", "rough", "finish"; "" for travel
@@ -29,15 +30,18 @@ struct Toolpath {
   double length_mm(bool work) const;
 };
 
-/// Puts moves in a row: travels are added where one ends and the next does not begin; points are rounded to micrometres, repeated ones left out.
+/// Puts moves in a row: travels are added where one ends and the next does not begin; points are rounded to
+/// micrometres, repeated ones left out.
 class ToolpathBuilder {
  public:
-  ToolpathBuilder(const Vec3& start_mm, double travel_speed_mm_per_s) : at_(start_mm), travel_speed_mm_per_s_(travel_speed_mm_per_s) {}
+  ToolpathBuilder(const Vec3& start_mm, double travel_speed_mm_per_s)
+      : at_(start_mm), travel_speed_mm_per_s_(travel_speed_mm_per_s) {}
 
   void travel_to(const Vec3& p);
   /// Along all of the points without the tool working.
   void travel_along(const std::vector<Vec3>& points_mm);
-  /// Travels to the first of `move.points_mm` and works along the others; what is shorter than a micrometre is left out.
+  /// Travels to the first of `move.points_mm` and works along the others; what is shorter than a micrometre is left
+  /// out.
   void work(ToolMove move);
 
   const Vec3& at() const { return at_; }
@@ -52,17 +56,20 @@ class ToolpathBuilder {
 /// What the estimate needs to know of a controller.
 struct MotionLimits {
   double acceleration_mm_per_s2 = 500, junction_deviation_mm = 0.01;
-  int planner_blocks = 16;  // of the controller; moves beyond them are not seen, and it must be able to stop before them
+  int planner_blocks =
+      16;  // of the controller; moves beyond them are not seen, and it must be able to stop before them
 };
 
-/// Fills times_s and seconds as GRBL's planner runs the moves: trapezoids of speed at constant acceleration; in a corner the speed whose
-/// centripetal acceleration on a circle that leaves the corner by the junction deviation is the acceleration (Jeon 2009; grbl 1.1,
-/// planner.c); at rest at both ends.
+/// Fills times_s and seconds as GRBL's planner runs the moves: trapezoids of speed at constant acceleration; in a
+/// corner the speed whose centripetal acceleration on a circle that leaves the corner by the junction deviation is the
+/// acceleration (Jeon 2009; grbl 1.1, planner.c); at rest at both ends.
 void time_moves(Toolpath& path, const MotionLimits& limits);
 
-/// Sentences for everything that touches a no-go zone, the tool being `width_mm` wide where it works, or leaves the bed, by `edge_width_mm`
-/// (a beam burns over the edge; of a mill the axis must stay within the machine's reach). Empty: it fits.
-std::vector<std::string> find_misfits(const Toolpath& path, const MachineOptions& machine, double width_mm, double edge_width_mm);
+/// Sentences for everything that touches a no-go zone, the tool being `width_mm` wide where it works, or leaves the
+/// bed, by `edge_width_mm` (a beam burns over the edge; of a mill the axis must stay within the machine's reach).
+/// Empty: it fits.
+std::vector<std::string> find_misfits(const Toolpath& path, const MachineOptions& machine, double width_mm,
+                                      double edge_width_mm);
 
 struct ToolpathBounds {
   double x0_mm = 0, y0_mm = 0, x1_mm = 0, y1_mm = 0;

@@ -11,7 +11,8 @@ namespace {
 using Kind = RouteStop::Kind;
 
 const Vec2& exit_of(const RouteStop& stop, int door) {
-  return stop.kind == Kind::loop ? stop.doors_mm[static_cast<std::size_t>(door)] : stop.doors_mm[static_cast<std::size_t>(1 - door)];
+  return stop.kind == Kind::loop ? stop.doors_mm[static_cast<std::size_t>(door)]
+                                 : stop.doors_mm[static_cast<std::size_t>(1 - door)];
 }
 
 /// Doors in the cells of a grid, for the nearest one that is still to be visited.
@@ -28,7 +29,8 @@ class DoorGrid {
       }
     const Vec2 size = (high - low).cwiseMax(1e-3);
     low_ = low;
-    cell_mm_ = std::max(std::sqrt(size.x() * size.y() / static_cast<double>(std::max<std::size_t>(1, count)) * 2), size.maxCoeff() / 1000);
+    cell_mm_ = std::max(std::sqrt(size.x() * size.y() / static_cast<double>(std::max<std::size_t>(1, count)) * 2),
+                        size.maxCoeff() / 1000);
     columns_ = 1 + static_cast<int>(size.x() / cell_mm_);
     rows_ = 1 + static_cast<int>(size.y() / cell_mm_);
     cells_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
@@ -66,7 +68,9 @@ class DoorGrid {
   };
   int column(double x) const { return std::clamp(static_cast<int>((x - low_.x()) / cell_mm_), 0, columns_ - 1); }
   int row(double y) const { return std::clamp(static_cast<int>((y - low_.y()) / cell_mm_), 0, rows_ - 1); }
-  std::size_t cell(int c, int r) const { return static_cast<std::size_t>(r) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(c); }
+  std::size_t cell(int c, int r) const {
+    return static_cast<std::size_t>(r) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(c);
+  }
 
   void look(std::vector<Door>& doors, const Vec2& p, RouteStep& best, double& best_squared) {
     std::erase_if(doors, [&](const Door& door) { return !left_[static_cast<std::size_t>(door.step.stop)]; });
@@ -86,7 +90,8 @@ class DoorGrid {
 
 class Improver {
  public:
-  Improver(const std::vector<RouteStop>& stops, std::vector<RouteStep>& route, const Vec2& start, const Context& context)
+  Improver(const std::vector<RouteStop>& stops, std::vector<RouteStep>& route, const Vec2& start,
+           const Context& context)
       : stops_(stops), route_(route), start_(start), context_(context), n_(static_cast<int>(route.size())) {
     window_ = n_ <= 2000 ? n_ : std::max(50, 4'000'000 / n_);
   }
@@ -120,7 +125,8 @@ class Improver {
           const double old = k < n_ - 1 ? gap(from, entry(k + 1)) : 0;
           for (const bool turned : {false, true}) {
             if (turned && !turnable) continue;
-            const double added = gap(from, turned ? exit(last) : entry(i)) + (k < n_ - 1 ? gap(turned ? entry(i) : exit(last), entry(k + 1)) : 0) - old;
+            const double added = gap(from, turned ? exit(last) : entry(i)) +
+                                 (k < n_ - 1 ? gap(turned ? entry(i) : exit(last), entry(k + 1)) : 0) - old;
             if (gain - added > best) {
               best = gain - added;
               best_at = k;
@@ -154,7 +160,9 @@ class Improver {
  private:
   static double gap(const Vec2& a, const Vec2& b) { return (b - a).norm(); }
   Kind kind(int i) const { return stops_[static_cast<std::size_t>(route_[i].stop)].kind; }
-  const Vec2& entry(int i) const { return stops_[static_cast<std::size_t>(route_[i].stop)].doors_mm[static_cast<std::size_t>(route_[i].door)]; }
+  const Vec2& entry(int i) const {
+    return stops_[static_cast<std::size_t>(route_[i].stop)].doors_mm[static_cast<std::size_t>(route_[i].door)];
+  }
   const Vec2& exit(int i) const { return exit_of(stops_[static_cast<std::size_t>(route_[i].stop)], route_[i].door); }
   Vec2 before(int i) const { return i == 0 ? start_ : exit(i - 1); }
   double to_next(const Vec2& from, int i) const { return i + 1 < n_ ? gap(from, entry(i + 1)) : 0; }
@@ -185,7 +193,8 @@ double route_length_mm(const std::vector<RouteStop>& stops, const std::vector<Ro
   return sum;
 }
 
-std::vector<RouteStep> short_route(const std::vector<RouteStop>& stops, const Vec2& start_mm, const Context& context, int most_rounds) {
+std::vector<RouteStep> short_route(const std::vector<RouteStop>& stops, const Vec2& start_mm, const Context& context,
+                                   int most_rounds) {
   std::vector<RouteStep> route;
   if (stops.empty()) return route;
   DoorGrid grid(stops);

@@ -22,9 +22,10 @@ struct RouteStep {
   int stop = 0, door = 0;
 };
 
-/// Every stop once, beginning at `start_mm` and open at its end. Improves until a round gains less than a thousandth, or
-/// `most_rounds`; windows of neighbours in the row are searched, the whole row below 2,000 stops. Deterministic.
-std::vector<RouteStep> short_route(const std::vector<RouteStop>& stops, const Vec2& start_mm, const Context& context, int most_rounds = 20);
+/// Every stop once, beginning at `start_mm` and open at its end. Improves until a round gains less than a thousandth,
+/// or `most_rounds`; windows of neighbours in the row are searched, the whole row below 2,000 stops. Deterministic.
+std::vector<RouteStep> short_route(const std::vector<RouteStop>& stops, const Vec2& start_mm, const Context& context,
+                                   int most_rounds = 20);
 
 double route_length_mm(const std::vector<RouteStop>& stops, const std::vector<RouteStep>& route, const Vec2& start_mm);
 

@@ -15,10 +15,8 @@ std::vector<CutPath> word_paths(const std::string& words, const Vec2& centre, co
   const auto place = [&](const Vec2& p) { return Vec2(centre + p.x() * along + p.y() * up); };
   std::vector<CutPath> paths;
   for (const Stroke& s : outlined({Vec2::Zero(), height_mm, words}).strokes) {
-    if (!paths.empty() && paths.back().points_mm.back() == place(s.from))
-      paths.back().points_mm.push_back(place(s.to));
-    else
-      paths.push_back({layer, {place(s.from), place(s.to)}, false, ""});
+    if (!paths.empty() && paths.back().points_mm.back() == place(s.from)) paths.back().points_mm.push_back(place(s.to));
+    else paths.push_back({layer, {place(s.from), place(s.to)}, false, ""});
   }
   return paths;
 }

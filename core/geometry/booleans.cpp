@@ -96,9 +96,7 @@ ExactSolid boolean(const ExactSolid& a, const ExactSolid& b, Boolean kind, Conte
   const auto watched = CGAL::parameters::visitor(Watcher(context));
   bool manifold = false;
   switch (kind) {
-    case Boolean::unite:
-      manifold = processing::corefine_and_compute_union(first, second, result, watched);
-      break;
+    case Boolean::unite: manifold = processing::corefine_and_compute_union(first, second, result, watched); break;
     case Boolean::subtract:
       manifold = processing::corefine_and_compute_difference(first, second, result, watched);
       break;

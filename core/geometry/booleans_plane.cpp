@@ -222,10 +222,8 @@ ExactSolid ExactSolid::half(int axis, double offset_mm, bool upper, Context& con
   auto part = std::make_shared<Surface>(clipped(surface(), axis, offset_mm, upper, context));
   if (part->faces.empty()) return {};
   for (const auto& [a, b, c] : planar_filling(part->points, border_edges(*part), axis)) {
-    if (upper)
-      part->faces.push_back({a, c, b});
-    else
-      part->faces.push_back({a, b, c});
+    if (upper) part->faces.push_back({a, c, b});
+    else part->faces.push_back({a, b, c});
   }
   separate_fans(*part);
   if (!border_edges(*part).empty()) refuse_touching();

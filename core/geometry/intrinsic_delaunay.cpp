@@ -35,7 +35,8 @@ void mollify(IntrinsicTriangulation& t) {
 }
 
 double opposite_cotangent(const IntrinsicTriangulation& t, int h) {
-  return cotangent_from_lengths(t.length[index(h)], t.length[index(next_halfedge(h))], t.length[index(previous_halfedge(h))]);
+  return cotangent_from_lengths(t.length[index(h)], t.length[index(next_halfedge(h))],
+                                t.length[index(previous_halfedge(h))]);
 }
 
 /// Length of the other diagonal of the two triangles beside h, unfolded into the plane.
@@ -136,7 +137,8 @@ IntrinsicTriangulation intrinsic_delaunay(const TriangleMesh& mesh, Context& con
   while (!queue.empty()) {
     if ((++steps & 0xffff) == 0) context.check_cancelled();
     if (t.flips > limit)
-      throw Error(ErrorCode::could_not_solve, "mesh", "The triangles are too distorted to be improved; repair or remesh the mesh.");
+      throw Error(ErrorCode::could_not_solve, "mesh",
+                  "The triangles are too distorted to be improved; repair or remesh the mesh.");
     const int h = queue.front();
     queue.pop_front();
     queued[index(h)] = 0;
@@ -144,7 +146,8 @@ IntrinsicTriangulation intrinsic_delaunay(const TriangleMesh& mesh, Context& con
     if (g < 0 || h / 3 == g / 3) continue;  // an edge inside a vertex of degree one is always Delaunay
     if (!(opposite_cotangent(t, h) + opposite_cotangent(t, g) < -cotangent_tolerance)) continue;
     flip(t, h, g, flipped_length(t, h, g));
-    for (const int side : {next_halfedge(h), previous_halfedge(h), next_halfedge(g), previous_halfedge(g)}) enqueue(side);
+    for (const int side : {next_halfedge(h), previous_halfedge(h), next_halfedge(g), previous_halfedge(g)})
+      enqueue(side);
   }
   return t;
 }

@@ -69,7 +69,8 @@ void apply_floor(Eigen::VectorXd& areas, const std::vector<char>& used, double f
 
 }  // namespace
 
-SparseMatrix cotangent_laplacian(const TriangleMesh& mesh, const Adjacency& adjacency, const LaplacianOptions& options) {
+SparseMatrix cotangent_laplacian(const TriangleMesh& mesh, const Adjacency& adjacency,
+                                 const LaplacianOptions& options) {
   const std::vector<double> cotangents = half_cotangents(mesh, checked_limit(options));
   const int n = mesh.vertex_count();
   const IndexLists& rings = adjacency.one_rings();
@@ -119,7 +120,8 @@ SparseMatrix cotangent_laplacian(const IntrinsicTriangulation& t, const Laplacia
   entries.reserve(2 * t.from.size() + index(t.vertex_count));
   for (int v = 0; v < t.vertex_count; ++v) entries.emplace_back(v, v, 0.0);
   const auto cotangent = [&](int h) {
-    const double a = t.length[index(h)], b = t.length[index(next_halfedge(h))], c = t.length[index(previous_halfedge(h))];
+    const double a = t.length[index(h)], b = t.length[index(next_halfedge(h))],
+                 c = t.length[index(previous_halfedge(h))];
     return held_cotangent(b * b + (c - a) * (c + a), 4 * area_from_lengths(a, b, c), limit);
   };
   for (int h = 0; h < static_cast<int>(t.from.size()); ++h) {

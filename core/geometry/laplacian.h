@@ -23,7 +23,8 @@ struct LaplacianOptions {
 
 /// n x n, symmetric, both triangles stored; every diagonal entry is stored, also the zero of a vertex
 /// without faces. Rows sum to 0. Edges with three or more faces sum all their cotangents.
-SparseMatrix cotangent_laplacian(const TriangleMesh& mesh, const Adjacency& adjacency, const LaplacianOptions& options = {});
+SparseMatrix cotangent_laplacian(const TriangleMesh& mesh, const Adjacency& adjacency,
+                                 const LaplacianOptions& options = {});
 SparseMatrix cotangent_laplacian(const TriangleMesh& mesh, const LaplacianOptions& options = {});
 
 /// On the same vertices, with the edges of an intrinsic Delaunay triangulation: w_ij >= 0 along every
@@ -38,7 +39,8 @@ enum class VertexArea {
 
 /// n, in mm^2. Their sum is the surface's area while no entry is raised to the floor, which is
 /// `floor` times the mean over vertices that have faces; vertices without faces get the floor too.
-Eigen::VectorXd vertex_areas(const TriangleMesh& mesh, VertexArea kind = VertexArea::mixed_voronoi, double floor = 1e-3);
+Eigen::VectorXd vertex_areas(const TriangleMesh& mesh, VertexArea kind = VertexArea::mixed_voronoi,
+                             double floor = 1e-3);
 Eigen::VectorXd vertex_areas(const IntrinsicTriangulation& triangulation, VertexArea kind = VertexArea::mixed_voronoi,
                              double floor = 1e-3);
 

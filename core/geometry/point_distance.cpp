@@ -17,7 +17,8 @@ struct PointDistance::Implementation {
   TriangleBvh bvh;
 };
 
-PointDistance::PointDistance(const TriangleMesh& mesh) : implementation_(std::make_unique<Implementation>(Implementation{TriangleBvh(mesh)})) {
+PointDistance::PointDistance(const TriangleMesh& mesh)
+    : implementation_(std::make_unique<Implementation>(Implementation{TriangleBvh(mesh)})) {
   if (mesh.face_count() == 0)
     throw Error(ErrorCode::invalid_input, "mesh", "The mesh has no triangles to measure a distance to.");
 }
@@ -73,10 +74,12 @@ std::optional<NearestPoint> PointDistance::nearest(const Vec3& query, double lim
   double squared = limit * limit;
   implementation_->bvh.near_point(query, squared, [&](const TriangleBvh::Block& block) {
     for (std::size_t lane = 0; lane < TriangleBvh::width && block.face[lane] >= 0; ++lane) {
-      NearestPoint candidate = nearest_on_triangle(query, block.position(0, lane), block.position(1, lane), block.position(2, lane));
+      NearestPoint candidate =
+          nearest_on_triangle(query, block.position(0, lane), block.position(1, lane), block.position(2, lane));
       candidate.face = block.face[lane];
       if (best.face < 0 ? candidate.distance > limit
-                        : candidate.distance > best.distance || (candidate.distance == best.distance && candidate.face > best.face))
+                        : candidate.distance > best.distance ||
+                              (candidate.distance == best.distance && candidate.face > best.face))
         continue;
       best = candidate;
       // A little more than the square, so that a face at the same distance is still looked at.
@@ -87,7 +90,8 @@ std::optional<NearestPoint> PointDistance::nearest(const Vec3& query, double lim
 }
 
 SurfaceDistance surface_distance(const TriangleMesh& from, const PointDistance& to, double spacing, Context& context) {
-  if (!(spacing > 0)) throw Error(ErrorCode::invalid_input, "spacing", "The spacing between measured points must be positive.");
+  if (!(spacing > 0))
+    throw Error(ErrorCode::invalid_input, "spacing", "The spacing between measured points must be positive.");
   struct Sum {
     double maximum = 0, distance = 0, squared = 0, area = 0;
     void add(double d, double weight) {

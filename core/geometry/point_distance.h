@@ -14,7 +14,7 @@ struct NearestPoint {
   int face = -1;
   double distance = 0;  // mm
   Vec3 point;
-  Vec3 barycentric;     // of the face's three corners, none negative, sums to 1
+  Vec3 barycentric;  // of the face's three corners, none negative, sums to 1
 };
 
 class PointDistance {

@@ -12,7 +12,8 @@ struct RayCaster::Implementation {
   TriangleBvh bvh;
 };
 
-RayCaster::RayCaster(const TriangleMesh& mesh) : implementation_(std::make_unique<Implementation>(Implementation{TriangleBvh(mesh)})) {}
+RayCaster::RayCaster(const TriangleMesh& mesh)
+    : implementation_(std::make_unique<Implementation>(Implementation{TriangleBvh(mesh)})) {}
 RayCaster::~RayCaster() = default;
 RayCaster::RayCaster(RayCaster&&) noexcept = default;
 RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;

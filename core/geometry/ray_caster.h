@@ -18,8 +18,8 @@ namespace formwright {
 
 struct RayHit {
   int face = -1;
-  double distance = 0;   // along the unit direction, recomputed in double precision
-  Vec3 barycentric;      // of the face's three corners, sums to 1
+  double distance = 0;  // along the unit direction, recomputed in double precision
+  Vec3 barycentric;     // of the face's three corners, sums to 1
 };
 
 class RayCaster {

@@ -36,8 +36,8 @@ repair_steps::Draft checked_draft(const TriangleMesh& mesh, std::vector<std::str
       const int v = mesh.F(f, k);
       if (v < 0 || v >= mesh.vertex_count())
         throw Error(ErrorCode::invalid_input, "mesh",
-                    "A triangle names vertex " + std::to_string(v) + ", but the mesh has " + std::to_string(mesh.vertex_count()) +
-                        " vertices; export the mesh again.");
+                    "A triangle names vertex " + std::to_string(v) + ", but the mesh has " +
+                        std::to_string(mesh.vertex_count()) + " vertices; export the mesh again.");
       used[index(v)] = 1;
       if (!mesh.V.row(v).allFinite()) {
         dropped += keep[index(f)];
@@ -51,7 +51,8 @@ repair_steps::Draft checked_draft(const TriangleMesh& mesh, std::vector<std::str
     sentences.push_back("Removed " + triangles(dropped) + " with a corner that is not a number.");
   }
   if (const auto unused = static_cast<int>(std::count(used.begin(), used.end(), 0)); unused > 0)
-    sentences.push_back("Removed " + counted(unused, "vertex that no triangle uses", "vertices that no triangle uses") + ".");
+    sentences.push_back("Removed " + counted(unused, "vertex that no triangle uses", "vertices that no triangle uses") +
+                        ".");
   return draft;
 }
 
@@ -74,20 +75,25 @@ RepairedMesh repair(const TriangleMesh& mesh, const RepairOptions& options, Cont
   context.progress(0.15);
   const DegenerateCount degenerate = mend_degenerate_faces(draft, context);
   if (degenerate.removed > 0) say.push_back("Removed " + triangles(degenerate.removed) + " without area.");
-  if (degenerate.mended > 0) say.push_back("Mended " + triangles(degenerate.mended) + " without area by turning an edge.");
+  if (degenerate.mended > 0)
+    say.push_back("Mended " + triangles(degenerate.mended) + " without area by turning an edge.");
   if (draft.mesh.face_count() == 0)
-    throw Error(ErrorCode::invalid_input, "mesh", "No triangle of the mesh has an area; check that it is not flattened to a line or a point.");
+    throw Error(ErrorCode::invalid_input, "mesh",
+                "No triangle of the mesh has an area; check that it is not flattened to a line or a point.");
   context.progress(0.25);
   const DuplicateCount duplicate = remove_duplicate_faces(draft);
-  if (duplicate.removed > 0) say.push_back("Removed " + counted(duplicate.removed, "duplicate triangle", "duplicate triangles") + ".");
+  if (duplicate.removed > 0)
+    say.push_back("Removed " + counted(duplicate.removed, "duplicate triangle", "duplicate triangles") + ".");
   if (duplicate.second_sides > 0)
     say.push_back("Removed " + triangles(duplicate.second_sides) + " that repeated the surface for its other side.");
   context.progress(0.4);
   GluingCount gluing = make_manifold(draft, context);
   if (gluing.edges_cut > 0)
-    say.push_back("Separated the surface along " + counted(gluing.edges_cut, "edge", "edges") + " where more than two triangles met.");
+    say.push_back("Separated the surface along " + counted(gluing.edges_cut, "edge", "edges") +
+                  " where more than two triangles met.");
   if (gluing.vertices_split > 0)
-    say.push_back("Separated the surface at " + counted(gluing.vertices_split, "vertex where sheets", "vertices where sheets") + " only touched.");
+    say.push_back("Separated the surface at " +
+                  counted(gluing.vertices_split, "vertex where sheets", "vertices where sheets") + " only touched.");
   if (gluing.one_sided_edges > 0)
     say.push_back("The surface has only one side, like a Möbius band; it was cut along " +
                   counted(gluing.one_sided_edges, "edge", "edges") + ".");
@@ -98,7 +104,8 @@ RepairedMesh repair(const TriangleMesh& mesh, const RepairOptions& options, Cont
   if (options.drop_parts_below_percent > 0)
     if (const DropCount dropped = drop_small_parts(draft, options.drop_parts_below_percent / 100); dropped.parts > 0) {
       gluing.adjacency.reset();
-      say.push_back("Dropped " + counted(dropped.parts, "small part", "small parts") + " (" + triangles(dropped.faces) + ").");
+      say.push_back("Dropped " + counted(dropped.parts, "small part", "small parts") + " (" + triangles(dropped.faces) +
+                    ").");
     }
   if (options.fill_holes_up_to_edges > 0)
     if (const FillCount filled = fill_holes(draft, options.fill_holes_up_to_edges, context); filled.holes > 0) {

@@ -19,7 +19,8 @@ struct RepairOptions {
   double drop_parts_below_percent = 0;
 
   static constexpr auto parameters = std::tuple{
-      parameter("merge_duplicates", &RepairOptions::merge_duplicates, "Merge vertices", "Join vertices that lie at the same place."),
+      parameter("merge_duplicates", &RepairOptions::merge_duplicates, "Merge vertices",
+                "Join vertices that lie at the same place."),
       parameter("merge_tolerance_mm", &RepairOptions::merge_tolerance_mm, "Merge distance", unit::mm, 0, 1000,
                 "Vertices that lie at most this far apart are joined; 0 joins only those at exactly the same place.")
           .slider(0, 1)
@@ -27,19 +28,19 @@ struct RepairOptions {
       parameter("fill_holes_up_to_edges", &RepairOptions::fill_holes_up_to_edges, "Fill holes", unit::none, 0, 500,
                 "Holes with at most this many edges are filled; 0 fills none.")
           .slider(0, 100),
-      parameter("drop_parts_below_percent", &RepairOptions::drop_parts_below_percent, "Drop small parts", unit::percent, 0, 50,
-                "Separate parts with less than this share of the surface are dropped.")
+      parameter("drop_parts_below_percent", &RepairOptions::drop_parts_below_percent, "Drop small parts", unit::percent,
+                0, 50, "Separate parts with less than this share of the surface are dropped.")
           .slider(0, 5)};
 };
 
 struct RepairedMesh {
-  TriangleMesh mesh;            // manifold, with boundary; oriented alike within each part
-  std::vector<int> vertex_of;   // per vertex: the old one it stands for (the nearest one for a new vertex on an edge)
-  std::vector<int> face_of;     // per face: the old one it is, or is a part of; -1 where it fills a hole
-  std::vector<int> corner_of;   // per corner 3 f + k: the old corner 3 f' + k' whose attributes it takes
-  int part_count = 0;           // connected parts
-  int hole_count = 0;           // boundary loops
-  int genus = 0;                // handles, all parts together
+  TriangleMesh mesh;           // manifold, with boundary; oriented alike within each part
+  std::vector<int> vertex_of;  // per vertex: the old one it stands for (the nearest one for a new vertex on an edge)
+  std::vector<int> face_of;    // per face: the old one it is, or is a part of; -1 where it fills a hole
+  std::vector<int> corner_of;  // per corner 3 f + k: the old corner 3 f' + k' whose attributes it takes
+  int part_count = 0;          // connected parts
+  int hole_count = 0;          // boundary loops
+  int genus = 0;               // handles, all parts together
   std::vector<std::string> sentences;  // what was found and done; empty when there was nothing to say
 
   bool closed() const { return hole_count == 0; }

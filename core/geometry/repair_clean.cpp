@@ -20,7 +20,9 @@ std::uint64_t mixed(std::uint64_t z) {  // the finaliser of splitmix64
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
   return z ^ (z >> 31);
 }
-std::uint64_t hash_of(std::uint64_t a, std::uint64_t b, std::uint64_t c) { return mixed(a + 0x9e3779b97f4a7c15ull * mixed(b + 0x9e3779b97f4a7c15ull * mixed(c))); }
+std::uint64_t hash_of(std::uint64_t a, std::uint64_t b, std::uint64_t c) {
+  return mixed(a + 0x9e3779b97f4a7c15ull * mixed(b + 0x9e3779b97f4a7c15ull * mixed(c)));
+}
 
 /// Open addressing over integers that the caller compares; -1 is free.
 class HashTable {
@@ -70,13 +72,15 @@ std::vector<int> nearby(const Positions& V, const std::vector<char>& wanted, dou
   std::vector<std::array<std::int64_t, 3>> cell(index(n));
   HashTable table(index(n));
   const auto lookup = [&](const std::array<std::int64_t, 3>& c, int fresh) {
-    return table.find_or_store(hash_of(static_cast<std::uint64_t>(c[0]), static_cast<std::uint64_t>(c[1]), static_cast<std::uint64_t>(c[2])),
-                               fresh, [&](int u) { return cell[index(u)] == c; });
+    return table.find_or_store(
+        hash_of(static_cast<std::uint64_t>(c[0]), static_cast<std::uint64_t>(c[1]), static_cast<std::uint64_t>(c[2])),
+        fresh, [&](int u) { return cell[index(u)] == c; });
   };
   for (int v = 0; v < n; ++v) {
     first[index(v)] = v;
     if (!wanted[index(v)]) continue;
-    for (int k = 0; k < 3; ++k) cell[index(v)][index(k)] = static_cast<std::int64_t>(std::clamp(std::floor(V(v, k) / tolerance), -9e18, 9e18));
+    for (int k = 0; k < 3; ++k)
+      cell[index(v)][index(k)] = static_cast<std::int64_t>(std::clamp(std::floor(V(v, k) / tolerance), -9e18, 9e18));
     int best = -1;
     for (int step = 0; step < 27; ++step) {
       std::array<std::int64_t, 3> c = cell[index(v)];
@@ -96,12 +100,15 @@ std::vector<int> nearby(const Positions& V, const std::vector<char>& wanted, dou
   return first;
 }
 
-bool repeats_a_vertex(const Triangles& F, int f) { return F(f, 0) == F(f, 1) || F(f, 1) == F(f, 2) || F(f, 2) == F(f, 0); }
+bool repeats_a_vertex(const Triangles& F, int f) {
+  return F(f, 0) == F(f, 1) || F(f, 1) == F(f, 2) || F(f, 2) == F(f, 0);
+}
 
 /// Without area to round-off: the height is less than this share of the longest side.
 constexpr double flat_height = 1e-12;
 bool is_flat(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const double scale = std::max({(b - a).cwiseAbs().maxCoeff(), (c - b).cwiseAbs().maxCoeff(), (a - c).cwiseAbs().maxCoeff()});
+  const double scale =
+      std::max({(b - a).cwiseAbs().maxCoeff(), (c - b).cwiseAbs().maxCoeff(), (a - c).cwiseAbs().maxCoeff()});
   if (scale == 0) return true;
   const Vec3 u = (b - a) / scale, w = (c - a) / scale;  // keeps tiny and huge meshes in range
   const double longest = std::max({u.squaredNorm(), w.squaredNorm(), (w - u).squaredNorm()});
@@ -111,7 +118,8 @@ bool is_flat(const Vec3& a, const Vec3& b, const Vec3& c) {
 /// What one round of mending does to a flat face: its two nearest corners become one when they almost
 /// coincide; else its long side is turned, with the face beyond it, to end at the corner in between.
 enum class Mending { none, merged, turned };
-Mending mend(Draft& draft, const Adjacency& adjacency, int f, std::vector<char>& touched, std::vector<int>& merged_into) {
+Mending mend(Draft& draft, const Adjacency& adjacency, int f, std::vector<char>& touched,
+             std::vector<int>& merged_into) {
   Triangles& F = draft.mesh.F;
   int longest = 0, shortest = 0;
   std::array<double, 3> length{};
@@ -126,7 +134,8 @@ Mending mend(Draft& draft, const Adjacency& adjacency, int f, std::vector<char>&
     return false;
   };
   if (length[index(shortest)] <= 1e-6 * length[index(longest)]) {
-    const int a = std::min(F(f, shortest), F(f, (shortest + 1) % 3)), b = std::max(F(f, shortest), F(f, (shortest + 1) % 3));
+    const int a = std::min(F(f, shortest), F(f, (shortest + 1) % 3)),
+              b = std::max(F(f, shortest), F(f, (shortest + 1) % 3));
     if (around(a) || around(b)) return Mending::none;
     for (const int v : {a, b})
       for (const int h : adjacency.outgoing(v)) touched[index(h / 3)] = 1;
@@ -145,7 +154,8 @@ Mending mend(Draft& draft, const Adjacency& adjacency, int f, std::vector<char>&
     return Mending::none;
   // Two faces (p, middle, apex) and (middle, q, apex), oriented as the face beyond was.
   const int old_apex = draft.corner_of[index(previous_halfedge(g))], old_p = draft.corner_of[index(g)],
-            old_q = draft.corner_of[index(next_halfedge(g))], old_middle = draft.corner_of[index(3 * f + (longest + 2) % 3)];
+            old_q = draft.corner_of[index(next_halfedge(g))],
+            old_middle = draft.corner_of[index(3 * f + (longest + 2) % 3)];
   const std::array<int, 3> first{p, middle, apex}, second{middle, q, apex};
   const std::array<int, 3> first_old{old_p, old_middle, old_apex}, second_old{old_middle, old_q, old_apex};
   for (int k = 0; k < 3; ++k) {
@@ -182,7 +192,9 @@ DegenerateCount mend_degenerate_faces(Draft& draft, Context& context) {
     draft.keep_faces(keep);
     std::vector<int> flat;
     for (int f = 0; f < draft.mesh.face_count(); ++f)
-      if (is_flat(draft.position(draft.mesh.F(f, 0)), draft.position(draft.mesh.F(f, 1)), draft.position(draft.mesh.F(f, 2)))) flat.push_back(f);
+      if (is_flat(draft.position(draft.mesh.F(f, 0)), draft.position(draft.mesh.F(f, 1)),
+                  draft.position(draft.mesh.F(f, 2))))
+        flat.push_back(f);
     return flat;
   };
   std::vector<int> flat = flat_faces();
@@ -222,7 +234,8 @@ DuplicateCount remove_duplicate_faces(Draft& draft) {
   };
   HashTable table(index(m));
   const auto lookup = [&](const std::array<int, 3>& key, int fresh) {
-    return table.find_or_store(hash_of(static_cast<std::uint64_t>(key[0]), static_cast<std::uint64_t>(key[1]), static_cast<std::uint64_t>(key[2])),
+    return table.find_or_store(hash_of(static_cast<std::uint64_t>(key[0]), static_cast<std::uint64_t>(key[1]),
+                                       static_cast<std::uint64_t>(key[2])),
                                fresh, [&](int f) { return corners(f) == key; });
   };
   std::vector<char> keep(index(m), 1);
@@ -256,7 +269,8 @@ DuplicateCount remove_duplicate_faces(Draft& draft) {
       if (mirror[index(old_face[i])] < 0) all_pairs[index(parts.of[i])] = 0;
     const auto balanced = [&](int h) {
       int sum = 0;
-      for (const int g : adjacency.halfedges_of_edge(adjacency.edge_of(h))) sum += adjacency.from(g) < adjacency.to(g) ? 1 : -1;
+      for (const int g : adjacency.halfedges_of_edge(adjacency.edge_of(h)))
+        sum += adjacency.from(g) < adjacency.to(g) ? 1 : -1;
       return sum == 0;
     };
     for (std::size_t i = 0; i < old_face.size(); ++i) {

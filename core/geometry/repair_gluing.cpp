@@ -171,13 +171,15 @@ bool separate_edges_with_equal_ends(Draft& draft, const std::vector<int>& glue) 
     for (std::size_t i = 0; i < along.size(); ++i) {
       const int h = along[i], g = glue[index(h)];
       if (done[i]) continue;
-      for (std::size_t j = i; j < along.size(); ++j) done[j] = static_cast<char>(done[j] | (along[j] == h || along[j] == g ? 1 : 0));
+      for (std::size_t j = i; j < along.size(); ++j)
+        done[j] = static_cast<char>(done[j] | (along[j] == h || along[j] == g ? 1 : 0));
       if (first) {
         first = false;
         continue;
       }
       if (touched[index(h / 3)] || (g >= 0 && touched[index(g / 3)])) continue;  // next time
-      const int a = adjacency.from(h), b = adjacency.to(h), middle = draft.mesh.vertex_count() + static_cast<int>(positions.size());
+      const int a = adjacency.from(h), b = adjacency.to(h),
+                middle = draft.mesh.vertex_count() + static_cast<int>(positions.size());
       positions.push_back(0.5 * (draft.position(a) + draft.position(b)));
       stand_for.push_back(draft.vertex_of[index(std::min(a, b))]);
       split_face(h, middle);
@@ -217,7 +219,8 @@ GluingCount make_manifold(Draft& draft, Context& context) {
         for (int e = 0; e < adjacency->edge_count(); ++e) {
           const auto along = adjacency->halfedges_of_edge(e);
           if (along.size() < 2 || (along.size() == 2 && adjacency->opposite(along[0]) >= 0)) continue;
-          beside_cut[index(adjacency->edges()[index(e)].lower)] = beside_cut[index(adjacency->edges()[index(e)].higher)] = 1;
+          beside_cut[index(adjacency->edges()[index(e)].lower)] =
+              beside_cut[index(adjacency->edges()[index(e)].higher)] = 1;
         }
         for (const int v : adjacency->nonmanifold_vertices()) count.vertices_split += beside_cut[index(v)] ? 0 : 1;
       }
@@ -256,15 +259,18 @@ int turn_outwards(Draft& draft, const Adjacency& adjacency, const Components& pa
     const Vec3 point = draft.position(draft.mesh.F(first_face[index(part)], 0));
     bool within_a_box = false;
     for (int other = 0; other < parts.count; ++other)
-      within_a_box = within_a_box || (other != part && closed[index(other)] && (box[index(other)].lower.array() < point.array()).all() &&
+      within_a_box = within_a_box || (other != part && closed[index(other)] &&
+                                      (box[index(other)].lower.array() < point.array()).all() &&
                                       (point.array() < box[index(other)].upper.array()).all());
     int enclosing = 0;
     if (within_a_box) {
       if (!caster) caster = std::make_unique<RayCaster>(draft.mesh);
       std::vector<int> crossings(index(parts.count), 0);
       const Vec3 direction = Vec3(0.5377, 0.2138, 0.8156).normalized();  // along no axis, through no likely edge
-      for (const RayHit& hit : caster->all_hits(point, direction, 0, 1e300)) ++crossings[index(parts.of[index(hit.face)])];
-      for (int other = 0; other < parts.count; ++other) enclosing += other != part && closed[index(other)] ? crossings[index(other)] % 2 : 0;
+      for (const RayHit& hit : caster->all_hits(point, direction, 0, 1e300))
+        ++crossings[index(parts.of[index(hit.face)])];
+      for (int other = 0; other < parts.count; ++other)
+        enclosing += other != part && closed[index(other)] ? crossings[index(other)] % 2 : 0;
     }
     if (enclosing % 2 == 1) continue;
     turn[index(part)] = 1;
@@ -322,7 +328,8 @@ void Draft::add_vertices(const std::vector<Vec3>& positions, const std::vector<i
   vertex_of.insert(vertex_of.end(), stand_for.begin(), stand_for.end());
 }
 
-void Draft::add_faces(const std::vector<int>& corners, const std::vector<int>& old_faces, const std::vector<int>& old_corners) {
+void Draft::add_faces(const std::vector<int>& corners, const std::vector<int>& old_faces,
+                      const std::vector<int>& old_corners) {
   const Eigen::Index m = mesh.F.rows();
   mesh.F.conservativeResize(m + static_cast<Eigen::Index>(old_faces.size()), 3);
   std::copy(corners.begin(), corners.end(), mesh.F.data() + 3 * m);

@@ -18,7 +18,8 @@ struct Draft {
   Vec3 position(int v) const { return mesh.V.row(v); }
   void keep_faces(const std::vector<char>& keep);
   void add_vertices(const std::vector<Vec3>& positions, const std::vector<int>& stand_for);
-  void add_faces(const std::vector<int>& corners, const std::vector<int>& old_faces, const std::vector<int>& old_corners);
+  void add_faces(const std::vector<int>& corners, const std::vector<int>& old_faces,
+                 const std::vector<int>& old_corners);
   void reverse_face(int f);
   void drop_unused_vertices();
 };
@@ -34,16 +35,16 @@ struct DegenerateCount {
 DegenerateCount mend_degenerate_faces(Draft& draft, Context& context);
 
 struct DuplicateCount {
-  int removed = 0;        // copies
-  int second_sides = 0;   // mirrored copies of whole sheets, and those that bound no solid
+  int removed = 0;       // copies
+  int second_sides = 0;  // mirrored copies of whole sheets, and those that bound no solid
 };
 DuplicateCount remove_duplicate_faces(Draft& draft);
 
 struct GluingCount {
-  int edges_cut = 0;        // where more than two faces met
-  int vertices_split = 0;   // where separate sheets touched
-  int faces_turned = 0;     // to face as their neighbours do
-  int one_sided_edges = 0;  // cut because the surface had one side only
+  int edges_cut = 0;                     // where more than two faces met
+  int vertices_split = 0;                // where separate sheets touched
+  int faces_turned = 0;                  // to face as their neighbours do
+  int one_sided_edges = 0;               // cut because the surface had one side only
   std::unique_ptr<Adjacency> adjacency;  // of the draft as it is now; empty when it was cut or split
 };
 /// Afterwards the draft is manifold and faces are oriented alike.

@@ -61,12 +61,14 @@ class Queue {
       if (later_.empty()) return false;
       std::erase_if(later_, [&](const Candidate& c) { return !valid(c); });
       if (later_.empty()) return false;
-      const auto share = static_cast<std::ptrdiff_t>(std::min(later_.size(), std::max<std::size_t>(20000, later_.size() / 8)));
+      const auto share =
+          static_cast<std::ptrdiff_t>(std::min(later_.size(), std::max<std::size_t>(20000, later_.size() / 8)));
       std::vector<float> costs(later_.size());
       std::transform(later_.begin(), later_.end(), costs.begin(), [](const Candidate& c) { return c.cost; });
       std::nth_element(costs.begin(), costs.begin() + (share - 1), costs.end());
       limit_ = costs[static_cast<std::size_t>(share - 1)];
-      const auto waiting = std::partition(later_.begin(), later_.end(), [&](const Candidate& c) { return c.cost > limit_; });
+      const auto waiting =
+          std::partition(later_.begin(), later_.end(), [&](const Candidate& c) { return c.cost > limit_; });
       heap_.assign(waiting, later_.end());
       later_.erase(waiting, later_.end());
       std::make_heap(heap_.begin(), heap_.end(), costs_more);
@@ -85,7 +87,8 @@ class Queue {
 
 class Simplifier {
  public:
-  Simplifier(const TriangleMesh& mesh, const Adjacency& adjacency) : mesh_(adjacency), merged_into_(index(mesh.vertex_count()), -1) {
+  Simplifier(const TriangleMesh& mesh, const Adjacency& adjacency)
+      : mesh_(adjacency), merged_into_(index(mesh.vertex_count()), -1) {
     // Unit size about the origin: quadrics lose digits far from it.
     const BoundingBox box = bounding_box(mesh);
     centre_ = box.centre();
@@ -103,7 +106,8 @@ class Simplifier {
   void drop_small_parts(const TriangleMesh& mesh, const Adjacency& adjacency, int target) {
     const Components parts = face_components(adjacency);
     std::vector<BoundingBox> box(index(parts.count));
-    for (int h = 0; h < 3 * mesh.face_count(); ++h) box[index(parts.of[index(h / 3)])].add(mesh.V.row(adjacency.from(h)));
+    for (int h = 0; h < 3 * mesh.face_count(); ++h)
+      box[index(parts.of[index(h / 3)])].add(mesh.V.row(adjacency.from(h)));
     const double edge = std::sqrt(2 * surface_area(mesh) / (std::sqrt(3.0) * target));
     for (int f = 0; f < mesh.face_count(); ++f)
       if (box[index(parts.of[index(f)])].diagonal() < edge)
@@ -124,11 +128,13 @@ class Simplifier {
       if (g < 0 || g > h) enqueue(mesh_.from(h), mesh_.to(h));
     }
     const auto valid = [&](const Candidate& c) {
-      return mesh_.has_vertex(c.a) && mesh_.has_vertex(c.b) && (c.stamp & ~Candidate::weighed_bit) == stamp_of(c.a, c.b);
+      return mesh_.has_vertex(c.a) && mesh_.has_vertex(c.b) &&
+             (c.stamp & ~Candidate::weighed_bit) == stamp_of(c.a, c.b);
     };
     Candidate candidate{};
     for (long long steps = 0; vertices_ > target && queue_.pop(candidate, valid); ++steps) {
-      if ((steps & 0x1fff) == 0) context.progress(static_cast<double>(at_first - vertices_) / std::max(1, at_first - target));
+      if ((steps & 0x1fff) == 0)
+        context.progress(static_cast<double>(at_first - vertices_) / std::max(1, at_first - target));
       if (valid(candidate)) consider(candidate);
     }
   }
@@ -186,7 +192,8 @@ class Simplifier {
         const Vec3 &p = at(mesh_.from(h)), &r = at(mesh_.to(h)), along = r - p;
         const Vec3 across = along.cross(normal);
         if (!(across.norm() > 0)) continue;
-        const Quadric side = Quadric::plane((p + r) / 2, across.normalized(), normal_variance, boundary_weight * along.squaredNorm());
+        const Quadric side =
+            Quadric::plane((p + r) / 2, across.normalized(), normal_variance, boundary_weight * along.squaredNorm());
         quadric_[index(mesh_.from(h))] += side;
         quadric_[index(mesh_.to(h))] += side;
       }
@@ -277,13 +284,14 @@ class Simplifier {
   std::vector<std::uint32_t> stamp_;  // grows with every change of a vertex
   std::vector<int> merged_into_;      // -1 for none, -2 for dropped
   int vertices_ = 0;
-  double last_cost_ = 0;              // of a collapse
+  double last_cost_ = 0;  // of a collapse
   Queue queue_;
 };
 
 }  // namespace
 
-TriangleMesh simplify(const TriangleMesh& mesh, const SimplifyOptions& options, Context& context, std::vector<int>* new_vertex_of) {
+TriangleMesh simplify(const TriangleMesh& mesh, const SimplifyOptions& options, Context& context,
+                      std::vector<int>* new_vertex_of) {
   if (options.target_vertices < 4)
     throw Error(ErrorCode::invalid_input, "target_vertices", "At least 4 vertices are needed for a surface.");
   context.progress(0, "Simplifying");
@@ -294,10 +302,12 @@ TriangleMesh simplify(const TriangleMesh& mesh, const SimplifyOptions& options, 
     }
     return mesh;
   }
-  if (!mesh.V.allFinite()) throw Error(ErrorCode::invalid_input, "mesh", "The mesh has corners that are not numbers; repair it first.");
+  if (!mesh.V.allFinite())
+    throw Error(ErrorCode::invalid_input, "mesh", "The mesh has corners that are not numbers; repair it first.");
   const Adjacency adjacency(mesh);
   if (!adjacency.is_manifold())
-    throw Error(ErrorCode::invalid_input, "mesh", "The mesh is not manifold or its triangles face different ways; repair it first.");
+    throw Error(ErrorCode::invalid_input, "mesh",
+                "The mesh is not manifold or its triangles face different ways; repair it first.");
   Simplifier simplifier(mesh, adjacency);
   if (options.drop_small_parts) simplifier.drop_small_parts(mesh, adjacency, options.target_vertices);
   {

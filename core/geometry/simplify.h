@@ -16,13 +16,13 @@ struct SimplifyOptions {
   int target_vertices = 10000;
   bool drop_small_parts = false;
 
-  static constexpr auto parameters = std::tuple{
-      parameter("target_vertices", &SimplifyOptions::target_vertices, "Vertices", unit::none, 4, 10000000,
-                "How many vertices to keep, about.")
-          .slider(1000, 100000),
-      parameter("drop_small_parts", &SimplifyOptions::drop_small_parts, "Drop small parts",
-                "Leave out separate parts smaller than a triangle of the result.")
-          .advanced()};
+  static constexpr auto parameters =
+      std::tuple{parameter("target_vertices", &SimplifyOptions::target_vertices, "Vertices", unit::none, 4, 10000000,
+                           "How many vertices to keep, about.")
+                     .slider(1000, 100000),
+                 parameter("drop_small_parts", &SimplifyOptions::drop_small_parts, "Drop small parts",
+                           "Leave out separate parts smaller than a triangle of the result.")
+                     .advanced()};
 };
 
 /// At most target_vertices vertices, or as few as the topology allows: the Euler characteristic, the

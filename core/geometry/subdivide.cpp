@@ -95,7 +95,8 @@ Positions loop_positions(const Positions& V, const Adjacency& adjacency) {
     const Vec3 ends = V.row(edge.lower) + V.row(edge.higher);
     const auto along = adjacency.halfedges_of_edge(e);
     if (along.size() == 2) {
-      const Vec3 apexes = V.row(adjacency.from(previous_halfedge(along[0]))) + V.row(adjacency.from(previous_halfedge(along[1])));
+      const Vec3 apexes =
+          V.row(adjacency.from(previous_halfedge(along[0]))) + V.row(adjacency.from(previous_halfedge(along[1])));
       finer.row(n + e) = 0.375 * ends + 0.125 * apexes;
     } else {
       finer.row(n + e) = 0.5 * ends;

@@ -70,7 +70,8 @@ struct TriangleBvh::Builder {
     std::array<float, 3> first{}, scale{};
     {
       Box centres;
-      for (const Reference* r = begin; r < end; ++r) centres.add_point({r->box.middle(0), r->box.middle(1), r->box.middle(2)});
+      for (const Reference* r = begin; r < end; ++r)
+        centres.add_point({r->box.middle(0), r->box.middle(1), r->box.middle(2)});
       for (std::size_t k = 0; k < 3; ++k) {
         const float extent = centres.upper[k] - centres.lower[k];
         first[k] = centres.lower[k];
@@ -111,7 +112,8 @@ struct TriangleBvh::Builder {
         left.add(bins[k][b]);
         left_count += counts[k][b];
         if (left_count == 0 || right_count[b + 1] == 0) continue;
-        const float cost = left.half_area() * blocks(left_count) + right[b + 1].half_area() * blocks(right_count[b + 1]);
+        const float cost =
+            left.half_area() * blocks(left_count) + right[b + 1].half_area() * blocks(right_count[b + 1]);
         if (cost < best_cost) {
           best_cost = cost;
           best_axis = k;
@@ -204,13 +206,15 @@ struct TriangleBvh::Builder {
 TriangleBvh::TriangleBvh(const TriangleMesh& mesh) {
   const int count = mesh.face_count();
   if (count >= (1 << 28))
-    throw Error(ErrorCode::invalid_input, "mesh", "The mesh has more triangles than can be searched; simplify it first.");
+    throw Error(ErrorCode::invalid_input, "mesh",
+                "The mesh has more triangles than can be searched; simplify it first.");
   BoundingBox bounds;
   for (int f = 0; f < count; ++f)
     for (int k = 0; k < 3; ++k) {
       const int v = mesh.F(f, k);
       if (v < 0 || v >= mesh.vertex_count())
-        throw Error(ErrorCode::invalid_input, "mesh", "A triangle names a vertex that does not exist; export the mesh again.");
+        throw Error(ErrorCode::invalid_input, "mesh",
+                    "A triangle names a vertex that does not exist; export the mesh again.");
       if (!mesh.V.row(v).allFinite())
         throw Error(ErrorCode::invalid_input, "mesh", "A corner of a triangle is not a number; export the mesh again.");
       bounds.add(mesh.V.row(v));

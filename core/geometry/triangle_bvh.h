@@ -27,7 +27,9 @@ class TriangleBvh {
     std::array<std::array<Double4, 3>, 3> corner;  // [corner][axis]
     std::array<std::int32_t, width> face;          // in the mesh; -1 in an empty lane, whose corners are 0
 
-    Vec3 position(std::size_t k, std::size_t lane) const { return {corner[k][0][lane], corner[k][1][lane], corner[k][2][lane]}; }
+    Vec3 position(std::size_t k, std::size_t lane) const {
+      return {corner[k][0][lane], corner[k][1][lane], corner[k][2][lane]};
+    }
   };
 
   /// Copies the triangles. Throws Error{invalid_input, "mesh"} on indices out of range and on positions
@@ -83,7 +85,8 @@ inline void push_sorted(Entry* stack, int& top, const std::array<std::int32_t, 4
 }  // namespace bvh_detail
 
 template <class Visit>
-void TriangleBvh::along_ray(const Vec3& origin, const Vec3& direction, double near, const double& far, Visit&& visit) const {
+void TriangleBvh::along_ray(const Vec3& origin, const Vec3& direction, double near, const double& far,
+                            Visit&& visit) const {
   if (nodes_.empty()) return;
   // Distances count from where the ray passes closest to the centre: then |t| <= 2 radii however far the
   // eye is, three roundings move a slab by at most 3 * 2^-24 * 2 radii and that of the foot by 2^-24

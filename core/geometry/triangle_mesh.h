@@ -11,8 +11,8 @@ namespace formwright {
 
 using Vec2 = Eigen::Vector2d;
 using Vec3 = Eigen::Vector3d;
-using Positions = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;   // one vertex a row
-using Triangles = Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>;      // one face a row
+using Positions = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;  // one vertex a row
+using Triangles = Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>;     // one face a row
 using TextureCoordinates = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
 
 /// Faces are counter-clockwise seen from outside. Lengths in millimetres unless said otherwise.
@@ -43,7 +43,7 @@ struct Model {
   Triangles FT;              // per face, rows of UV; empty or m x 3
   Positions vertex_colours;  // n x 3, linear RGB 0 to 1
   std::vector<std::string> group_names;
-  std::vector<int> face_group;     // per face, index into group_names, -1 for none
+  std::vector<int> face_group;  // per face, index into group_names, -1 for none
   std::vector<Material> materials;
   std::vector<int> face_material;  // per face, index into materials, -1 for none
   std::vector<Texture> textures;

@@ -29,16 +29,21 @@ double ColourCorrection::light(const Vec2& place) const {
 }
 
 ColourCorrection fit_colour_correction(std::span<const ColourSample> samples) {
-  if (samples.size() < 8) throw Error(ErrorCode::could_not_solve, "", "Too few colour patches are in sight to correct the colours: photograph the whole sheet.");
+  if (samples.size() < 8)
+    throw Error(ErrorCode::could_not_solve, "",
+                "Too few colour patches are in sight to correct the colours: photograph the whole sheet.");
   const bool full = samples.size() >= 12, lit = samples.size() >= 30;
   ColourCorrection fit;
-  // Unknowns: rows of the matrix, offset, logarithm of the light. Gauss-Newton from the means; weights from the residuals so far.
+  // Unknowns: rows of the matrix, offset, logarithm of the light. Gauss-Newton from the means; weights from the
+  // residuals so far.
   Vec3 seen = Vec3::Zero(), expected = Vec3::Zero();
   for (const ColourSample& s : samples) {
     seen += s.seen;
     expected += s.expected;
   }
-  if (!(seen.minCoeff() > 1e-9)) throw Error(ErrorCode::could_not_solve, "", "The scan's texture is black where the colour patches should be: check the corners.");
+  if (!(seen.minCoeff() > 1e-9))
+    throw Error(ErrorCode::could_not_solve, "",
+                "The scan's texture is black where the colour patches should be: check the corners.");
   fit.matrix = expected.cwiseQuotient(seen).asDiagonal();
   std::vector<double> weights(samples.size(), 1);
   constexpr int unknowns = 17;
@@ -47,7 +52,8 @@ ColourCorrection fit_colour_correction(std::span<const ColourSample> samples) {
     Eigen::Matrix<double, unknowns, 1> right = Eigen::Matrix<double, unknowns, 1>::Zero();
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const ColourSample& s = samples[i];
-      const Vec3 even = s.seen / fit.light(s.place), residual = s.expected - fit(s.seen, s.place), slope = fit.matrix * even;
+      const Vec3 even = s.seen / fit.light(s.place), residual = s.expected - fit(s.seen, s.place),
+                 slope = fit.matrix * even;
       const auto terms = light_terms(s.place);
       for (int c = 0; c < 3; ++c) {
         const double gain = levels_per_light(s.expected[c]);
@@ -63,7 +69,9 @@ ColourCorrection fit_colour_correction(std::span<const ColourSample> samples) {
     // A little of the identity holds what the samples do not speak about where it is.
     normal.diagonal().array() += 1e-6 * normal.diagonal().maxCoeff() + 1e-12;
     const Eigen::Matrix<double, unknowns, 1> step = normal.ldlt().solve(right);
-    if (!step.allFinite()) throw Error(ErrorCode::could_not_solve, "", "The colours could not be corrected: the patches of the scan have no contrast.");
+    if (!step.allFinite())
+      throw Error(ErrorCode::could_not_solve, "",
+                  "The colours could not be corrected: the patches of the scan have no contrast.");
     for (int c = 0; c < 3; ++c) {
       for (int k = 0; k < 3; ++k) fit.matrix(c, k) += step[3 * c + k];
       fit.offset[c] += step[9 + c];

@@ -10,12 +10,13 @@
 namespace formwright {
 
 struct ColourSample {
-  Vec2 place;      // -1 to 1 across the picture
-  Vec3 seen;       // linear light, 1 is white
-  Vec3 expected;   // linear light
+  Vec2 place;     // -1 to 1 across the picture
+  Vec3 seen;      // linear light, 1 is white
+  Vec3 expected;  // linear light
 };
 
-/// expected = matrix * (seen / light(place)) + offset, light = exp of a polynomial of second degree without constant: a lamp to one side, a dark rim.
+/// expected = matrix * (seen / light(place)) + offset, light = exp of a polynomial of second degree without constant: a
+/// lamp to one side, a dark rim.
 struct ColourCorrection {
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();
   Vec3 offset = Vec3::Zero();
@@ -27,8 +28,9 @@ struct ColourCorrection {
   Vec3 operator()(const Vec3& seen, const Vec2& place) const { return matrix * (seen / light(place)) + offset; }
 };
 
-/// Robust (Tukey's weights), so that a patch out of sight spoils nothing. Needs at least 8 samples; with fewer than 30 the light stays even, and with fewer than 12
-/// the matrix diagonal. Throws Error{could_not_solve} where the samples have no contrast.
+/// Robust (Tukey's weights), so that a patch out of sight spoils nothing. Needs at least 8 samples; with fewer than 30
+/// the light stays even, and with fewer than 12 the matrix diagonal. Throws Error{could_not_solve} where the samples
+/// have no contrast.
 ColourCorrection fit_colour_correction(std::span<const ColourSample> samples);
 
 }  // namespace formwright

@@ -13,7 +13,9 @@ namespace {
 void draw_segment(Image& image, const Vec2& from, const Vec2& to, double width_px) {
   const double half = std::max(width_px, 1.0) / 2;
   const Vec2 lower = from.cwiseMin(to).array() - half - 1, upper = from.cwiseMax(to).array() + half + 1;
-  const auto clamped = [](double value, int size) { return static_cast<int>(std::clamp(value, 0.0, static_cast<double>(size))); };
+  const auto clamped = [](double value, int size) {
+    return static_cast<int>(std::clamp(value, 0.0, static_cast<double>(size)));
+  };
   const auto& light = light_of_byte();
   const auto& byte = byte_of_light();
   const Vec2 along = to - from;
@@ -22,7 +24,8 @@ void draw_segment(Image& image, const Vec2& from, const Vec2& to, double width_p
     for (int x = clamped(std::floor(lower.x()), image.width); x < clamped(std::ceil(upper.x()), image.width); ++x) {
       const Vec2 p(x + 0.5, y + 0.5);
       const double t = squared > 0 ? std::clamp((p - from).dot(along) / squared, 0.0, 1.0) : 0.0;
-      const double paper = std::clamp((p - from - t * along).norm() - half + 0.5, 0.0, 1.0);  // share of the pixel left as it is
+      const double paper =
+          std::clamp((p - from - t * along).norm() - half + 0.5, 0.0, 1.0);  // share of the pixel left as it is
       if (paper >= 1) continue;
       Rgba& pixel = image.at(x, y);
       for (std::size_t k = 0; k < 3; ++k) pixel[k] = byte[static_cast<std::size_t>(paper * light[pixel[k]])];
@@ -43,13 +46,17 @@ void Drawing::cross(const Vec2& centre, double arm_mm, double width_mm) {
 }
 
 void draw(Image& image, const Drawing& drawing, double pixel_mm) {
-  const auto pixel = [&](const Vec2& p) { return Vec2(image.width / 2.0 + p.x() / pixel_mm, image.height / 2.0 - p.y() / pixel_mm); };
+  const auto pixel = [&](const Vec2& p) {
+    return Vec2(image.width / 2.0 + p.x() / pixel_mm, image.height / 2.0 - p.y() / pixel_mm);
+  };
   const auto stroke = [&](const Stroke& s) {
     const double length = (s.to - s.from).norm();
     const int dashes = s.dashed ? static_cast<int>(std::clamp(std::ceil(length / (2 * dash_mm)), 1.0, 10000.0)) : 1;
     for (int i = 0; i < dashes; ++i) {
-      const double begin = s.dashed && length > 0 ? 2 * i * dash_mm / length : 0, end = s.dashed && length > 0 ? std::min(1.0, begin + dash_mm / length) : 1;
-      draw_segment(image, pixel(s.from + begin * (s.to - s.from)), pixel(s.from + end * (s.to - s.from)), s.width_mm / pixel_mm);
+      const double begin = s.dashed && length > 0 ? 2 * i * dash_mm / length : 0,
+                   end = s.dashed && length > 0 ? std::min(1.0, begin + dash_mm / length) : 1;
+      draw_segment(image, pixel(s.from + begin * (s.to - s.from)), pixel(s.from + end * (s.to - s.from)),
+                   s.width_mm / pixel_mm);
     }
   };
   for (const Stroke& s : drawing.strokes) stroke(s);

@@ -26,10 +26,14 @@ struct Drawing {
   std::vector<Stroke> strokes;
   std::vector<Label> labels;
 
-  void line(const Vec2& from, const Vec2& to, double width_mm, bool dashed = false) { strokes.push_back({from, to, width_mm, dashed}); }
+  void line(const Vec2& from, const Vec2& to, double width_mm, bool dashed = false) {
+    strokes.push_back({from, to, width_mm, dashed});
+  }
   void rectangle(const Vec2& lower, const Vec2& upper, double width_mm, bool dashed = false);
   void cross(const Vec2& centre, double arm_mm, double width_mm);
-  void label(const Vec2& centre, double height_mm, std::string text) { labels.push_back({centre, height_mm, std::move(text)}); }
+  void label(const Vec2& centre, double height_mm, std::string text) {
+    labels.push_back({centre, height_mm, std::move(text)});
+  }
 };
 
 /// Dash and gap of a dashed stroke, in mm.

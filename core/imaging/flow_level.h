@@ -14,7 +14,11 @@ struct Plane {
   std::vector<float> values;
 
   Plane() = default;
-  Plane(int w, int h) : width(w), height(h), stride(static_cast<std::size_t>(w) + 2), values(stride * (static_cast<std::size_t>(h) + 2), 0.0f) {}
+  Plane(int w, int h)
+      : width(w),
+        height(h),
+        stride(static_cast<std::size_t>(w) + 2),
+        values(stride * (static_cast<std::size_t>(h) + 2), 0.0f) {}
   float* row(int y) { return values.data() + (static_cast<std::size_t>(y) + 1) * stride + 1; }
   const float* row(int y) const { return values.data() + (static_cast<std::size_t>(y) + 1) * stride + 1; }
 };
@@ -27,11 +31,13 @@ struct MotionTensors {
 };
 
 /// Warps `second` by (u, v). Derivatives are means of those of both pictures, by central differences.
-MotionTensors motion_tensors(const WeightedPicture& first, const WeightedPicture& second, const Plane& u, const Plane& v, double gradient_weight, const Context& context);
+MotionTensors motion_tensors(const WeightedPicture& first, const WeightedPicture& second, const Plane& u,
+                             const Plane& v, double gradient_weight, const Context& context);
 
-/// Improves (u, v): options.inner_iterations times new robust weights, then options.sweeps of red-black successive over-relaxation, both components of a pixel
-/// at once.
-void relax(const MotionTensors& tensors, Plane& u, Plane& v, const VariationalFlowOptions& options, const Context& context);
+/// Improves (u, v): options.inner_iterations times new robust weights, then options.sweeps of red-black successive
+/// over-relaxation, both components of a pixel at once.
+void relax(const MotionTensors& tensors, Plane& u, Plane& v, const VariationalFlowOptions& options,
+           const Context& context);
 
 /// Rows that one thread takes at a time; small pictures stay on one.
 std::size_t rows_a_chunk(int width);

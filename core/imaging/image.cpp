@@ -11,11 +11,13 @@ namespace formwright {
 
 void mirror_left_right(Image& image) {
   const auto width = static_cast<std::ptrdiff_t>(image.width);
-  for (std::ptrdiff_t y = 0; y < image.height; ++y) std::reverse(image.pixels.begin() + y * width, image.pixels.begin() + (y + 1) * width);
+  for (std::ptrdiff_t y = 0; y < image.height; ++y)
+    std::reverse(image.pixels.begin() + y * width, image.pixels.begin() + (y + 1) * width);
 }
 
 Image shrunk(const Image& image, int side, const Context& context) {
-  if (image.width < 1 || image.height < 1 || side < 1) throw Error(ErrorCode::internal, "", "A picture without pixels cannot be shrunk.");
+  if (image.width < 1 || image.height < 1 || side < 1)
+    throw Error(ErrorCode::internal, "", "A picture without pixels cannot be shrunk.");
   Image small((image.width + side - 1) / side, (image.height + side - 1) / side, {255, 255, 255, 255});
   const auto& light = light_of_byte();
   const auto& byte = byte_of_light();
@@ -28,7 +30,8 @@ Image shrunk(const Image& image, int side, const Context& context) {
         for (int v = y * side; v < std::min(image.height, (y + 1) * side); ++v)
           for (int u = x * side; u < std::min(image.width, (x + 1) * side); ++u, ++count) {
             const Rgba& p = image.at(u, v);
-            for (std::size_t k = 0; k < 3; ++k) sum[k] += (static_cast<std::uint64_t>(light[p[k]]) * p[3] + 65535u * (255u - p[3])) / 255;
+            for (std::size_t k = 0; k < 3; ++k)
+              sum[k] += (static_cast<std::uint64_t>(light[p[k]]) * p[3] + 65535u * (255u - p[3])) / 255;
           }
         for (std::size_t k = 0; k < 3; ++k) small.at(x, y)[k] = byte[static_cast<std::size_t>(sum[k] / count)];
       }

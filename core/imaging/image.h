@@ -17,8 +17,11 @@ struct Image {
   std::vector<Rgba> pixels;
 
   Image() = default;
-  Image(int w, int h, Rgba fill) : width(w), height(h), pixels(static_cast<std::size_t>(w) * static_cast<std::size_t>(h), fill) {}
-  std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x); }
+  Image(int w, int h, Rgba fill)
+      : width(w), height(h), pixels(static_cast<std::size_t>(w) * static_cast<std::size_t>(h), fill) {}
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+  }
   Rgba& at(int x, int y) { return pixels[index(x, y)]; }
   const Rgba& at(int x, int y) const { return pixels[index(x, y)]; }
 };

@@ -16,7 +16,8 @@ inline constexpr double light_levels = 65535;
 inline const std::array<std::uint16_t, 256>& light_of_byte() {
   static const std::array<std::uint16_t, 256> table = [] {
     std::array<std::uint16_t, 256> t{};
-    for (std::size_t i = 0; i < t.size(); ++i) t[i] = static_cast<std::uint16_t>(std::lround(linear_of_srgb(static_cast<double>(i) / 255) * light_levels));
+    for (std::size_t i = 0; i < t.size(); ++i)
+      t[i] = static_cast<std::uint16_t>(std::lround(linear_of_srgb(static_cast<double>(i) / 255) * light_levels));
     return t;
   }();
   return table;
@@ -26,7 +27,8 @@ inline const std::array<std::uint16_t, 256>& light_of_byte() {
 inline const std::vector<std::uint8_t>& byte_of_light() {
   static const std::vector<std::uint8_t> table = [] {
     std::vector<std::uint8_t> t(65536);
-    for (std::size_t i = 0; i < t.size(); ++i) t[i] = byte_of_unit(srgb_of_linear(static_cast<double>(i) / light_levels));
+    for (std::size_t i = 0; i < t.size(); ++i)
+      t[i] = byte_of_unit(srgb_of_linear(static_cast<double>(i) / light_levels));
     return t;
   }();
   return table;

@@ -27,7 +27,9 @@ LinearPicture::LinearPicture(const Image& image, bool repeat, const Context& con
     context.check_cancelled();
     for (std::size_t i = begin; i < end; ++i)
       for (std::size_t k = 0; k < 3; ++k)  // the fourth stays 0
-        first.texels[i][k] = static_cast<std::uint16_t>((light[image.pixels[i][k]] * std::uint32_t{image.pixels[i][3]} + 65535u * (255u - image.pixels[i][3]) + 127u) / 255u);
+        first.texels[i][k] = static_cast<std::uint16_t>((light[image.pixels[i][k]] * std::uint32_t{image.pixels[i][3]} +
+                                                         65535u * (255u - image.pixels[i][3]) + 127u) /
+                                                        255u);
   });
   while (levels_.back().width > 1 || levels_.back().height > 1) levels_.push_back(halved(levels_.back(), context));
 }
@@ -37,7 +39,8 @@ LinearPicture::Level LinearPicture::halved(const Level& fine, const Context& con
   coarse.width = std::max(1, fine.width / 2);
   coarse.height = std::max(1, fine.height / 2);
   coarse.texels.resize(static_cast<std::size_t>(coarse.width) * static_cast<std::size_t>(coarse.height));
-  const auto columns = overlap_shares<3>(fine.width, coarse.width), rows = overlap_shares<3>(fine.height, coarse.height);
+  const auto columns = overlap_shares<3>(fine.width, coarse.width),
+             rows = overlap_shares<3>(fine.height, coarse.height);
   parallel_for(rows.size(), 64, [&](std::size_t begin, std::size_t end) {
     context.check_cancelled();
     for (std::size_t y = begin; y < end; ++y)
@@ -45,8 +48,11 @@ LinearPicture::Level LinearPicture::halved(const Level& fine, const Context& con
         Light sum{};
         for (int j = 0; j < rows[y].count; ++j)
           for (int i = 0; i < columns[x].count; ++i) {
-            const float weight = rows[y].weight[static_cast<std::size_t>(j)] * columns[x].weight[static_cast<std::size_t>(i)];
-            const auto& texel = fine.texels[static_cast<std::size_t>(rows[y].first + j) * static_cast<std::size_t>(fine.width) + static_cast<std::size_t>(columns[x].first + i)];
+            const float weight =
+                rows[y].weight[static_cast<std::size_t>(j)] * columns[x].weight[static_cast<std::size_t>(i)];
+            const auto& texel =
+                fine.texels[static_cast<std::size_t>(rows[y].first + j) * static_cast<std::size_t>(fine.width) +
+                            static_cast<std::size_t>(columns[x].first + i)];
             sum += weight * __builtin_convertvector(texel, Float4);
           }
         coarse.texels[y * columns.size() + x] = __builtin_convertvector(lesser(sum + 0.5f, Float4{} + 65535.0f), Texel);
@@ -67,7 +73,8 @@ LinearPicture::Footprint LinearPicture::footprint(const Eigen::Matrix2d& texels_
     return result;
   }
   if (longer <= 1) return result;  // enlarged: plain interpolation
-  result.probes = static_cast<int>(std::clamp(std::ceil(longer / std::max(shorter, 1.0) - 1e-9), 1.0, static_cast<double>(most_probes)));
+  result.probes = static_cast<int>(
+      std::clamp(std::ceil(longer / std::max(shorter, 1.0) - 1e-9), 1.0, static_cast<double>(most_probes)));
   const double diameter = std::max({longer / result.probes, shorter, 1.0});
   const double level = std::min(std::log2(diameter), static_cast<double>(levels_.size()) - 1);
   result.level = static_cast<int>(level);
@@ -88,7 +95,8 @@ Light LinearPicture::bilinear(const Level& level, const Vec2& place) const {
     return static_cast<std::size_t>(std::clamp(i - turns * size, 0.0, size - 1.0));
   };
   const std::size_t x0 = wrapped(left, level.width), x1 = wrapped(left + 1, level.width);
-  const std::size_t row0 = wrapped(top, level.height) * static_cast<std::size_t>(level.width), row1 = wrapped(top + 1, level.height) * static_cast<std::size_t>(level.width);
+  const std::size_t row0 = wrapped(top, level.height) * static_cast<std::size_t>(level.width),
+                    row1 = wrapped(top + 1, level.height) * static_cast<std::size_t>(level.width);
   const auto fx = static_cast<float>(x - left), fy = static_cast<float>(y - top);
   const auto texel = [&](std::size_t i) { return __builtin_convertvector(level.texels[i], Float4); };
   const Float4 upper = texel(row0 + x0) * (1 - fx) + texel(row0 + x1) * fx;

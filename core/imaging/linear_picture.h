@@ -14,7 +14,8 @@ using Light = Float4;  // linear RGB, 0 to 65535 (light.h); the fourth is not us
 
 class LinearPicture {
  public:
-  /// Transparent parts are taken as white paper behind. `repeat`: the picture tiles the plane; otherwise its border goes on.
+  /// Transparent parts are taken as white paper behind. `repeat`: the picture tiles the plane; otherwise its border
+  /// goes on.
   LinearPicture(const Image& image, bool repeat, const Context& context);
 
   int width() const { return levels_.front().width; }
@@ -22,10 +23,10 @@ class LinearPicture {
 
   /// How to filter where a dot covers the parallelogram with the sides of `texels_per_dot` (columns; in texels).
   struct Footprint {
-    int level = 0;       // the finer of two levels
-    float blend = 0;     // share of the coarser one
+    int level = 0;    // the finer of two levels
+    float blend = 0;  // share of the coarser one
     int probes = 1;
-    Vec2 step{0, 0};     // between probes, in whole pictures
+    Vec2 step{0, 0};  // between probes, in whole pictures
   };
   Footprint footprint(const Eigen::Matrix2d& texels_per_dot) const;
 

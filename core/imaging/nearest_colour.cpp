@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::int16_t none = 32767;
 
-/// Per pixel, how many rows further down (negative: up) the nearest painted pixel of its column is; `none` beyond reach.
+/// Per pixel, how many rows further down (negative: up) the nearest painted pixel of its column is; `none` beyond
+/// reach.
 std::vector<std::int16_t> along_columns(const Image& image, int reach, const Context& context) {
   std::vector<std::int16_t> offset(image.pixels.size(), none);
   parallel_for(static_cast<std::size_t>(image.width), 256, [&](std::size_t begin, std::size_t end) {
@@ -22,7 +23,8 @@ std::vector<std::int16_t> along_columns(const Image& image, int reach, const Con
       for (int x = first; x < last; ++x) {
         const std::size_t i = image.index(x, y);
         if (image.pixels[i][3] != 0) offset[i] = 0;
-        else if (y > 0 && offset[i - static_cast<std::size_t>(image.width)] != none && -offset[i - static_cast<std::size_t>(image.width)] < reach)
+        else if (y > 0 && offset[i - static_cast<std::size_t>(image.width)] != none &&
+                 -offset[i - static_cast<std::size_t>(image.width)] < reach)
           offset[i] = static_cast<std::int16_t>(offset[i - static_cast<std::size_t>(image.width)] - 1);
       }
     for (int y = image.height - 2; y >= 0; --y)
@@ -50,7 +52,10 @@ void spread_colours(Image& image, double radius_px, const Context& context) {
     std::vector<int> centre(static_cast<std::size_t>(image.width)), from(centre);
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       const std::size_t row = image.index(0, y);
-      const auto square = [&](int x) { const std::int64_t o = offset[row + static_cast<std::size_t>(x)]; return o * o; };
+      const auto square = [&](int x) {
+        const std::int64_t o = offset[row + static_cast<std::size_t>(x)];
+        return o * o;
+      };
       std::size_t count = 0;
       bool empty_ones = false;
       for (int x = 0; x < image.width; ++x) {
@@ -61,7 +66,8 @@ void spread_colours(Image& image, double radius_px, const Context& context) {
         while (count > 0) {
           const int c = centre[count - 1];
           // First whole x at which the new one is strictly lower.
-          const std::int64_t numerator = static_cast<std::int64_t>(x) * x - static_cast<std::int64_t>(c) * c + square(x) - square(c);
+          const std::int64_t numerator =
+              static_cast<std::int64_t>(x) * x - static_cast<std::int64_t>(c) * c + square(x) - square(c);
           const std::int64_t whole = 2 * static_cast<std::int64_t>(x - c);
           const std::int64_t crossing = numerator >= 0 ? numerator / whole + 1 : -((-numerator - 1) / whole);
           start = static_cast<int>(std::clamp<std::int64_t>(crossing, 0, image.width));

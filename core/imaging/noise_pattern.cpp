@@ -21,7 +21,8 @@ std::uint32_t hashed(std::uint32_t v) {
 
 /// A number of mean 0 and variance 1 for a node of a lattice: the sum of twelve bytes, near enough to Gaussian.
 float normal_of(std::uint32_t stream, std::int64_t column, std::int64_t row) {
-  std::uint32_t state = hashed(stream ^ hashed(static_cast<std::uint32_t>(column) * 0x9e3779b1U ^ hashed(static_cast<std::uint32_t>(row) + 0x85ebca6bU)));
+  std::uint32_t state = hashed(stream ^ hashed(static_cast<std::uint32_t>(column) * 0x9e3779b1U ^
+                                               hashed(static_cast<std::uint32_t>(row) + 0x85ebca6bU)));
   std::uint32_t sum = 0;
   for (int k = 0; k < 3; ++k) {
     sum += (state & 255) + (state >> 8 & 255) + (state >> 16 & 255) + (state >> 24);
@@ -37,7 +38,8 @@ std::array<float, 4> spline(float t) {
   return {s * s * s / 6, (4 - 6 * t * t + 3 * t * t * t) / 6, (4 - 6 * s * s + 3 * s * s * s) / 6, t * t * t / 6};
 }
 
-/// Standard deviation of that sum over all places: the square of the mean over t of the sum of the squared weights, one factor an axis.
+/// Standard deviation of that sum over all places: the square of the mean over t of the sum of the squared weights, one
+/// factor an axis.
 constexpr float spline_deviation = 151.0f / 315.0f;
 
 struct Tap {
@@ -68,7 +70,9 @@ Image noise_picture(const NoisePattern& pattern, int width, int height, const Co
     across.push_back(taps(width, pattern.pixel_mm, scale));
     down.push_back(taps(height, pattern.pixel_mm, scale));
   }
-  const float gain = static_cast<float>(255 * pattern.contrast / std::sqrt(static_cast<double>(pattern.scales_mm.size()))) / spline_deviation;
+  const float gain =
+      static_cast<float>(255 * pattern.contrast / std::sqrt(static_cast<double>(pattern.scales_mm.size()))) /
+      spline_deviation;
   parallel_for(static_cast<std::size_t>(height), 64, [&](std::size_t begin, std::size_t end) {
     context.check_cancelled();
     std::vector<float> sum(3 * static_cast<std::size_t>(width)), nodes;
@@ -81,23 +85,31 @@ Image noise_picture(const NoisePattern& pattern, int width, int height, const Co
         const auto count = static_cast<std::size_t>(columns.back().node - first) + 4;
         nodes.resize(count);
         for (std::size_t channel = 0; channel < 3; ++channel) {
-          const std::uint32_t stream = hashed(pattern.seed * 0x2545f491U + static_cast<std::uint32_t>(97 * s + 7 * channel + 1));
+          const std::uint32_t stream =
+              hashed(pattern.seed * 0x2545f491U + static_cast<std::uint32_t>(97 * s + 7 * channel + 1));
           for (std::size_t n = 0; n < count; ++n) {
             float value = 0;
-            for (std::size_t k = 0; k < 4; ++k) value += row.weight[k] * normal_of(stream, first + static_cast<std::int64_t>(n), row.node + static_cast<std::int64_t>(k));
+            for (std::size_t k = 0; k < 4; ++k)
+              value += row.weight[k] *
+                       normal_of(stream, first + static_cast<std::int64_t>(n), row.node + static_cast<std::int64_t>(k));
             nodes[n] = value;
           }
           for (std::size_t x = 0; x < columns.size(); ++x) {
             const float* node = nodes.data() + (columns[x].node - first);
             const std::array<float, 4>& weight = columns[x].weight;
-            sum[3 * x + channel] += weight[0] * node[0] + weight[1] * node[1] + weight[2] * node[2] + weight[3] * node[3];
+            sum[3 * x + channel] +=
+                weight[0] * node[0] + weight[1] * node[1] + weight[2] * node[2] + weight[3] * node[3];
           }
         }
       }
       for (std::size_t x = 0; x < static_cast<std::size_t>(width); ++x)
         for (std::size_t channel = 0; channel < 3; ++channel) {
           const float value = 127.5f + gain * sum[3 * x + channel];
-          image.at(static_cast<int>(x), static_cast<int>(y))[channel] = static_cast<std::uint8_t>((value < 10 ? 10 : value > 245 ? 245 : value) + 0.5f);
+          image.at(static_cast<int>(x), static_cast<int>(y))[channel] =
+              static_cast<std::uint8_t>((value < 10    ? 10
+                                         : value > 245 ? 245
+                                                       : value) +
+                                        0.5f);
         }
     }
   });

@@ -39,7 +39,8 @@ struct PdfDocument::Implementation {
   Implementation(const Implementation&) = delete;
 
   void clip(const Vec2& lower, const Vec2& upper) const {
-    HPDF_Page_Rectangle(page, points(lower.x()), points(lower.y()), points(upper.x() - lower.x()), points(upper.y() - lower.y()));
+    HPDF_Page_Rectangle(page, points(lower.x()), points(lower.y()), points(upper.x() - lower.x()),
+                        points(upper.y() - lower.y()));
     HPDF_Page_Clip(page);
     HPDF_Page_EndPath(page);
   }
@@ -61,8 +62,9 @@ int PdfDocument::add_picture(const Image& image) {
   std::vector<HPDF_BYTE> rgb(3 * image.pixels.size());
   for (std::size_t i = 0; i < image.pixels.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k) rgb[3 * i + k] = image.pixels[i][k];
-  implementation_->pictures.push_back(HPDF_LoadRawImageFromMem(implementation_->document, rgb.data(), static_cast<HPDF_UINT>(image.width),
-                                                               static_cast<HPDF_UINT>(image.height), HPDF_CS_DEVICE_RGB, 8));
+  implementation_->pictures.push_back(
+      HPDF_LoadRawImageFromMem(implementation_->document, rgb.data(), static_cast<HPDF_UINT>(image.width),
+                               static_cast<HPDF_UINT>(image.height), HPDF_CS_DEVICE_RGB, 8));
   implementation_->sizes.push_back({image.width, image.height});
   return static_cast<int>(implementation_->pictures.size()) - 1;
 }
@@ -73,7 +75,8 @@ void PdfDocument::add_page(double width_mm, double height_mm) {
   HPDF_Page_SetHeight(implementation_->page, points(height_mm));
 }
 
-void PdfDocument::show_picture(int picture, double pixel_mm, const PagePlacement& placement, const Vec2& clip_lower_mm, const Vec2& clip_upper_mm) {
+void PdfDocument::show_picture(int picture, double pixel_mm, const PagePlacement& placement, const Vec2& clip_lower_mm,
+                               const Vec2& clip_upper_mm) {
   const auto i = static_cast<std::size_t>(picture);
   const HPDF_Image image = implementation_->pictures.at(i);
   const HPDF_Page page = implementation_->page;
@@ -82,12 +85,14 @@ void PdfDocument::show_picture(int picture, double pixel_mm, const PagePlacement
   const Vec2 corner = placement(Vec2(-width_mm / 2, -height_mm / 2));
   HPDF_Page_GSave(page);
   implementation_->clip(clip_lower_mm, clip_upper_mm);
-  HPDF_Page_Concat(page, placement.mirrored ? -points(width_mm) : points(width_mm), 0, 0, points(height_mm), points(corner.x()), points(corner.y()));
+  HPDF_Page_Concat(page, placement.mirrored ? -points(width_mm) : points(width_mm), 0, 0, points(height_mm),
+                   points(corner.x()), points(corner.y()));
   HPDF_Page_ExecuteXObject(page, image);
   HPDF_Page_GRestore(page);
 }
 
-void PdfDocument::draw(const Drawing& drawing, const PagePlacement& placement, const Vec2& clip_lower_mm, const Vec2& clip_upper_mm) {
+void PdfDocument::draw(const Drawing& drawing, const PagePlacement& placement, const Vec2& clip_lower_mm,
+                       const Vec2& clip_upper_mm) {
   const HPDF_Page page = implementation_->page;
   if (page == nullptr) return;
   HPDF_Page_GSave(page);
@@ -119,7 +124,8 @@ void PdfDocument::draw(const Drawing& drawing, const PagePlacement& placement, c
 double PdfDocument::text_width_mm(const std::string& words, double height_mm) const {
   if (implementation_->font == nullptr) return 0;
   // In thousandths of the font's size.
-  const HPDF_TextWidth width = HPDF_Font_TextWidth(implementation_->font, reinterpret_cast<const HPDF_BYTE*>(words.c_str()), static_cast<HPDF_UINT>(words.size()));
+  const HPDF_TextWidth width = HPDF_Font_TextWidth(
+      implementation_->font, reinterpret_cast<const HPDF_BYTE*>(words.c_str()), static_cast<HPDF_UINT>(words.size()));
   return static_cast<double>(width.width) / 1000 * height_mm / capital_height;
 }
 
@@ -134,7 +140,8 @@ Bytes PdfDocument::finish() {
     if (pdf.first_error == 0 && size == bytes.size()) return bytes;
   }
   throw Error(ErrorCode::could_not_solve, "print.pdf",
-              "The pages could not be written (libharu says " + std::to_string(pdf.first_error) + "): choose fewer dots per inch or a smaller paper.");
+              "The pages could not be written (libharu says " + std::to_string(pdf.first_error) +
+                  "): choose fewer dots per inch or a smaller paper.");
 }
 
 }  // namespace formwright

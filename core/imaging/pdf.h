@@ -34,15 +34,18 @@ class PdfDocument {
 
   /// The whole picture with its middle at the placement's origin and pixels of `pixel_mm`, cut to the page's rectangle
   /// from `clip_lower_mm` to `clip_upper_mm`.
-  void show_picture(int picture, double pixel_mm, const PagePlacement& placement, const Vec2& clip_lower_mm, const Vec2& clip_upper_mm);
+  void show_picture(int picture, double pixel_mm, const PagePlacement& placement, const Vec2& clip_lower_mm,
+                    const Vec2& clip_upper_mm);
 
   /// The drawing in black, words in Helvetica, cut to the same kind of rectangle.
-  void draw(const Drawing& drawing, const PagePlacement& placement, const Vec2& clip_lower_mm, const Vec2& clip_upper_mm);
+  void draw(const Drawing& drawing, const PagePlacement& placement, const Vec2& clip_lower_mm,
+            const Vec2& clip_upper_mm);
 
   /// How wide a line of words is that is drawn with capitals of this height.
   double text_width_mm(const std::string& words, double height_mm) const;
 
-  /// The file. Throws Error{could_not_solve} when libharu has refused any of the above: a page longer than 5.08 m, no memory.
+  /// The file. Throws Error{could_not_solve} when libharu has refused any of the above: a page longer than 5.08 m, no
+  /// memory.
   Bytes finish();
 
  private:

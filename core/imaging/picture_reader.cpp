@@ -24,7 +24,8 @@ struct TooLarge {
 
 void check_size(std::int64_t width, std::int64_t height) {
   if (width < 1 || height < 1) throw Damaged("it has no pixels");
-  if (width > most_picture_side || height > most_picture_side || width * height > most_picture_pixels) throw TooLarge{width, height};
+  if (width > most_picture_side || height > most_picture_side || width * height > most_picture_pixels)
+    throw TooLarge{width, height};
 }
 
 Image read_png(ByteView bytes) {
@@ -45,7 +46,8 @@ Image read_png(ByteView bytes) {
   png_set_add_alpha(png, 255, PNG_FILLER_AFTER);
   const int passes = png_set_interlace_handling(png);
   png_read_update_info(png, info);
-  if (png_get_rowbytes(png, info) != 4 * static_cast<std::size_t>(width)) throw Damaged("its kind of pixels is not known");
+  if (png_get_rowbytes(png, info) != 4 * static_cast<std::size_t>(width))
+    throw Damaged("its kind of pixels is not known");
   Image image(static_cast<int>(width), static_cast<int>(height), {255, 255, 255, 255});
   for (int pass = 0; pass < passes; ++pass)
     for (int y = 0; y < image.height; ++y) png_read_row(png, image.at(0, y).data(), nullptr);
@@ -58,15 +60,19 @@ Image read_jpeg(ByteView bytes) {
   const auto* const data = reinterpret_cast<const stbi_uc*>(bytes.data());
   const int size = static_cast<int>(bytes.size());
   int width = 0, height = 0, channels = 0;
-  const auto reason = [] { return std::string(stbi_failure_reason() != nullptr ? stbi_failure_reason() : "no reason given"); };
+  const auto reason = [] {
+    return std::string(stbi_failure_reason() != nullptr ? stbi_failure_reason() : "no reason given");
+  };
   if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) throw Damaged(reason());
   check_size(width, height);
-  // Even a picture of one colour takes 4 bits of each block of 8 x 8 points: a file that claims more ends too early. stb
-  // itself fills what is missing with grey.
+  // Even a picture of one colour takes 4 bits of each block of 8 x 8 points: a file that claims more ends too early.
+  // stb itself fills what is missing with grey.
   if (std::int64_t{width} * height / 64 / 4 > std::int64_t{size}) throw Damaged("it ends too early");
   const std::string_view text = as_text(bytes);
-  if (text.substr(text.size() - std::min<std::size_t>(text.size(), 65536)).rfind("\xff\xd9") == std::string_view::npos) throw Damaged("it ends too early");
-  const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(stbi_load_from_memory(data, size, &width, &height, &channels, 4), stbi_image_free);
+  if (text.substr(text.size() - std::min<std::size_t>(text.size(), 65536)).rfind("\xff\xd9") == std::string_view::npos)
+    throw Damaged("it ends too early");
+  const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
+      stbi_load_from_memory(data, size, &width, &height, &channels, 4), stbi_image_free);
   if (!pixels) throw Damaged(reason());
   Image image(width, height, {});
   std::memcpy(image.pixels.data(), pixels.get(), image.pixels.size() * sizeof(Rgba));
@@ -77,15 +83,18 @@ Image read_jpeg(ByteView bytes) {
 
 Image read_picture(ByteView bytes, std::string_view file_name, std::string_view where) {
   const auto refuse = [&](const std::string& what) -> Error {
-    return {ErrorCode::invalid_input, std::string(where), (file_name.empty() ? std::string("The picture") : clean_text(file_name)) + ": " + what};
+    return {ErrorCode::invalid_input, std::string(where),
+            (file_name.empty() ? std::string("The picture") : clean_text(file_name)) + ": " + what};
   };
   const std::string kind = picture_media_type(bytes);
-  if (kind != "image/png" && kind != "image/jpeg") throw refuse("this is neither a PNG nor a JPEG picture; save it as one of them.");
+  if (kind != "image/png" && kind != "image/jpeg")
+    throw refuse("this is neither a PNG nor a JPEG picture; save it as one of them.");
   try {
     return kind == "image/png" ? read_png(bytes) : read_jpeg(bytes);
   } catch (const TooLarge& size) {
-    throw refuse("the picture has " + std::to_string(size.width) + " x " + std::to_string(size.height) + " pixels, more than fit; scale it down to at most " +
-                 std::to_string(most_picture_pixels / 1'000'000) + " million.");
+    throw refuse("the picture has " + std::to_string(size.width) + " x " + std::to_string(size.height) +
+                 " pixels, more than fit; scale it down to at most " + std::to_string(most_picture_pixels / 1'000'000) +
+                 " million.");
   } catch (const std::runtime_error& error) {
     throw refuse(std::string("the picture is damaged (") + clean_text(error.what()) + "); save or copy it again.");
   }

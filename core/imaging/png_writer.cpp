@@ -13,19 +13,24 @@ namespace formwright {
 int pixels_per_metre(double dots_per_inch) { return static_cast<int>(std::lround(dots_per_inch / 0.0254)); }
 
 Bytes write_png(const Image& image, int per_metre, const Context& context) {
-  if (image.width < 1 || image.height < 1 || image.pixels.size() != static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height))
+  if (image.width < 1 || image.height < 1 ||
+      image.pixels.size() != static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height))
     throw Error(ErrorCode::internal, "", "A picture to write does not have width times height pixels.");
   const bool opaque = std::all_of(image.pixels.begin(), image.pixels.end(), [](const Rgba& p) { return p[3] == 255; });
   Bytes bytes;
   try {
     const PngWriter writer(bytes);
     const png_structp png = writer.png();
-    png_set_IHDR(png, writer.info(), static_cast<png_uint_32>(image.width), static_cast<png_uint_32>(image.height), 8, opaque ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGBA, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_IHDR(png, writer.info(), static_cast<png_uint_32>(image.width), static_cast<png_uint_32>(image.height), 8,
+                 opaque ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGBA, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+                 PNG_FILTER_TYPE_DEFAULT);
     // Prints are large and mostly white or smooth: one filter and a fast level of deflate.
     png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_UP);
     png_set_compression_level(png, 3);
     png_set_sRGB(png, writer.info(), PNG_sRGB_INTENT_PERCEPTUAL);
-    if (per_metre > 0) png_set_pHYs(png, writer.info(), static_cast<png_uint_32>(per_metre), static_cast<png_uint_32>(per_metre), PNG_RESOLUTION_METER);
+    if (per_metre > 0)
+      png_set_pHYs(png, writer.info(), static_cast<png_uint_32>(per_metre), static_cast<png_uint_32>(per_metre),
+                   PNG_RESOLUTION_METER);
     png_write_info(png, writer.info());
     if (opaque) png_set_filler(png, 0, PNG_FILLER_AFTER);
     for (int y = 0; y < image.height; ++y) {

@@ -27,7 +27,8 @@ std::vector<Size> level_sizes(int width, int height, int coarsest_px, const Vari
   double scale = 1;
   for (;;) {
     const Size& finer = sizes.back();
-    scale *= std::max(finer.width, finer.height) > options.fine_above_px ? options.fine_pyramid_factor : options.pyramid_factor;
+    scale *= std::max(finer.width, finer.height) > options.fine_above_px ? options.fine_pyramid_factor
+                                                                         : options.pyramid_factor;
     const Size size{static_cast<int>(std::lround(width * scale)), static_cast<int>(std::lround(height * scale))};
     if (std::min(size.width, size.height) < coarsest_px) break;
     if (!(size == finer)) sizes.push_back(size);
@@ -43,7 +44,8 @@ class Octaves {
     const WeightedPicture* finest = &picture;
     all_.push_back(finest);
     while (std::min(all_.back()->width, all_.back()->height) >= 2 * coarsest_side_px) {
-      halves_.push_back(std::make_unique<WeightedPicture>(reduced(*all_.back(), (all_.back()->width + 1) / 2, (all_.back()->height + 1) / 2, context)));
+      halves_.push_back(std::make_unique<WeightedPicture>(
+          reduced(*all_.back(), (all_.back()->width + 1) / 2, (all_.back()->height + 1) / 2, context)));
       all_.push_back(halves_.back().get());
     }
   }
@@ -64,31 +66,38 @@ Plane resampled(const Plane& from, const Size& size, bool horizontal) {
   Plane to(size.width, size.height);
   const double sx = static_cast<double>(from.width) / size.width, sy = static_cast<double>(from.height) / size.height;
   const float gain = static_cast<float>(horizontal ? 1 / sx : 1 / sy);
-  parallel_for(static_cast<std::size_t>(size.height), flow_detail::rows_a_chunk(size.width), [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      const float fy = std::clamp(static_cast<float>((y + 0.5) * sy - 0.5), 0.0f, static_cast<float>(from.height - 1));
-      const int y0 = std::min(static_cast<int>(fy), std::max(from.height - 2, 0));
-      const float ty = fy - static_cast<float>(y0);
-      const float *upper = from.row(y0), *lower = from.row(std::min(y0 + 1, from.height - 1));
-      for (int x = 0; x < size.width; ++x) {
-        const float fx = std::clamp(static_cast<float>((x + 0.5) * sx - 0.5), 0.0f, static_cast<float>(from.width - 1));
-        const int x0 = std::min(static_cast<int>(fx), std::max(from.width - 2, 0)), x1 = std::min(x0 + 1, from.width - 1);
-        const float tx = fx - static_cast<float>(x0);
-        const float a = upper[x0] + tx * (upper[x1] - upper[x0]), b = lower[x0] + tx * (lower[x1] - lower[x0]);
-        to.row(y)[x] = gain * (a + ty * (b - a));
-      }
-    }
-  });
+  parallel_for(static_cast<std::size_t>(size.height), flow_detail::rows_a_chunk(size.width),
+               [&](std::size_t begin, std::size_t end) {
+                 for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+                   const float fy =
+                       std::clamp(static_cast<float>((y + 0.5) * sy - 0.5), 0.0f, static_cast<float>(from.height - 1));
+                   const int y0 = std::min(static_cast<int>(fy), std::max(from.height - 2, 0));
+                   const float ty = fy - static_cast<float>(y0);
+                   const float *upper = from.row(y0), *lower = from.row(std::min(y0 + 1, from.height - 1));
+                   for (int x = 0; x < size.width; ++x) {
+                     const float fx =
+                         std::clamp(static_cast<float>((x + 0.5) * sx - 0.5), 0.0f, static_cast<float>(from.width - 1));
+                     const int x0 = std::min(static_cast<int>(fx), std::max(from.width - 2, 0)),
+                               x1 = std::min(x0 + 1, from.width - 1);
+                     const float tx = fx - static_cast<float>(x0);
+                     const float a = upper[x0] + tx * (upper[x1] - upper[x0]),
+                                 b = lower[x0] + tx * (lower[x1] - lower[x0]);
+                     to.row(y)[x] = gain * (a + ty * (b - a));
+                   }
+                 }
+               });
   return to;
 }
 
 void check(const WeightedPicture& first, const WeightedPicture& second) {
   if (first.width != second.width || first.height != second.height)
     throw Error(ErrorCode::invalid_input, "", "Flow needs two pictures of the same size: reduce the larger one.");
-  if (std::min(first.width, first.height) < coarsest_side_px) throw Error(ErrorCode::invalid_input, "", "Flow needs pictures of at least 16 pixels either way.");
+  if (std::min(first.width, first.height) < coarsest_side_px)
+    throw Error(ErrorCode::invalid_input, "", "Flow needs pictures of at least 16 pixels either way.");
 }
 
-Flow run(const WeightedPicture& first, const WeightedPicture& second, Plane u, Plane v, int coarsest_px, const VariationalFlowOptions& options, Context& context) {
+Flow run(const WeightedPicture& first, const WeightedPicture& second, Plane u, Plane v, int coarsest_px,
+         const VariationalFlowOptions& options, Context& context) {
   const Octaves octaves_first(first, context), octaves_second(second, context);
   const std::vector<Size> sizes = level_sizes(first.width, first.height, coarsest_px, options);
   double work = 0, done = 0;
@@ -100,7 +109,8 @@ Flow run(const WeightedPicture& first, const WeightedPicture& second, Plane u, P
     v = resampled(v, size, false);
     const int warps = std::max(size.width, size.height) > options.fine_above_px ? options.fine_warps : 1;
     for (int k = 0; k < warps; ++k) {
-      const flow_detail::MotionTensors tensors = flow_detail::motion_tensors(a, b, u, v, options.gradient_weight, context);
+      const flow_detail::MotionTensors tensors =
+          flow_detail::motion_tensors(a, b, u, v, options.gradient_weight, context);
       flow_detail::relax(tensors, u, v, options, context);
     }
     done += static_cast<double>(size.width) * size.height;
@@ -116,28 +126,34 @@ Flow run(const WeightedPicture& first, const WeightedPicture& second, Plane u, P
 
 Plane plane(const std::vector<float>& values, int width, int height) {
   Plane result(width, height);
-  for (int y = 0; y < height; ++y) std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(y) * width, width, result.row(y));
+  for (int y = 0; y < height; ++y)
+    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(y) * width, width, result.row(y));
   return result;
 }
 
 }  // namespace
 
-Flow variational_flow(const WeightedPicture& first, const WeightedPicture& second, const VariationalFlowOptions& options, Context& context) {
+Flow variational_flow(const WeightedPicture& first, const WeightedPicture& second,
+                      const VariationalFlowOptions& options, Context& context) {
   check(first, second);
   return run(first, second, Plane(1, 1), Plane(1, 1), coarsest_side_px, options, context);
 }
 
-Flow refined_flow(const WeightedPicture& first, const WeightedPicture& second, const Flow& guess, double reach_px, const VariationalFlowOptions& options, Context& context) {
+Flow refined_flow(const WeightedPicture& first, const WeightedPicture& second, const Flow& guess, double reach_px,
+                  const VariationalFlowOptions& options, Context& context) {
   check(first, second);
-  if (guess.width != first.width || guess.height != first.height) throw Error(ErrorCode::invalid_input, "", "The first guess of a flow needs the size of the pictures.");
+  if (guess.width != first.width || guess.height != first.height)
+    throw Error(ErrorCode::invalid_input, "", "The first guess of a flow needs the size of the pictures.");
   const int side = std::min(first.width, first.height);
   const int coarsest_px = std::clamp(static_cast<int>(side / std::max(1.0, reach_px)), coarsest_side_px, side);
-  return run(first, second, plane(guess.u, guess.width, guess.height), plane(guess.v, guess.width, guess.height), coarsest_px, options, context);
+  return run(first, second, plane(guess.u, guess.width, guess.height), plane(guess.v, guess.width, guess.height),
+             coarsest_px, options, context);
 }
 
-FlowEvidence flow_evidence(const WeightedPicture& first, const WeightedPicture& second, const Flow& flow, const Context& context) {
-  const flow_detail::MotionTensors t =
-      flow_detail::motion_tensors(first, second, plane(flow.u, flow.width, flow.height), plane(flow.v, flow.width, flow.height), 0, context);
+FlowEvidence flow_evidence(const WeightedPicture& first, const WeightedPicture& second, const Flow& flow,
+                           const Context& context) {
+  const flow_detail::MotionTensors t = flow_detail::motion_tensors(
+      first, second, plane(flow.u, flow.width, flow.height), plane(flow.v, flow.width, flow.height), 0, context);
   FlowEvidence evidence;
   const auto flat = [&](const Plane& p) {
     std::vector<float> values;

@@ -17,19 +17,29 @@ namespace formwright {
 const char* version() { return FORMWRIGHT_VERSION; }
 
 const std::vector<Operation>& operations() {
-  static const std::vector<Operation> all = {
-      relief_operation(), thermoform_simulate_operation(), thermoform_texture_operation(), thermoform_mould_operation(), thermoform_compare_operation(),
-      evidence_pattern_operation(), evidence_register_operation(), evidence_calibrate_operation(), evidence_diagnose_operation(),
-      evidence_diagnose_relief_operation(), evidence_virtual_object_operation(),
-      zippable_design_operation(),
-      zippable_plan_operation(),
-      zippable_simulate_operation(),
-      zippable_baseline_operation(),
-      laser_job_operation(),
-      mill_job_operation(),
-      test_grid_operation(),
-      page_tiles_operation(),
-      import_operation(), simplify_operation(), subdivide_operation(), convert_operation()};
+  static const std::vector<Operation> all = {relief_operation(),
+                                             thermoform_simulate_operation(),
+                                             thermoform_texture_operation(),
+                                             thermoform_mould_operation(),
+                                             thermoform_compare_operation(),
+                                             evidence_pattern_operation(),
+                                             evidence_register_operation(),
+                                             evidence_calibrate_operation(),
+                                             evidence_diagnose_operation(),
+                                             evidence_diagnose_relief_operation(),
+                                             evidence_virtual_object_operation(),
+                                             zippable_design_operation(),
+                                             zippable_plan_operation(),
+                                             zippable_simulate_operation(),
+                                             zippable_baseline_operation(),
+                                             laser_job_operation(),
+                                             mill_job_operation(),
+                                             test_grid_operation(),
+                                             page_tiles_operation(),
+                                             import_operation(),
+                                             simplify_operation(),
+                                             subdivide_operation(),
+                                             convert_operation()};
   return all;
 }
 
@@ -42,30 +52,56 @@ const Operation* find_operation(const std::string& name) {
 Json operation_json(const Operation& operation) {
   Json inputs = Json::array(), properties = Json::object(), outputs = Json::array(), report = Json::array();
   for (const InputInfo& input : operation.inputs)
-    inputs.push_back({{"name", input.name}, {"label", input.label}, {"required", input.required}, {"extensions", input.extensions},
-                      {"accepts_sample", input.accepts_sample}, {"folder_files", input.folder_files}, {"repeatable", input.repeatable}, {"help", input.help}});
+    inputs.push_back({{"name", input.name},
+                      {"label", input.label},
+                      {"required", input.required},
+                      {"extensions", input.extensions},
+                      {"accepts_sample", input.accepts_sample},
+                      {"folder_files", input.folder_files},
+                      {"repeatable", input.repeatable},
+                      {"help", input.help}});
   for (const ParameterInfo& info : operation.parameters) properties[info.name] = parameter_schema(info);
   for (const OutputInfo& output : operation.outputs)
-    outputs.push_back({{"name", output.name}, {"media_type", output.media_type}, {"label", output.label}, {"help", output.help},
+    outputs.push_back({{"name", output.name},
+                       {"media_type", output.media_type},
+                       {"label", output.label},
+                       {"help", output.help},
                        {"default", output.made_by_default}});
   for (const ReportField& field : operation.report)
     report.push_back({{"name", field.name}, {"label", field.label}, {"unit", field.unit}, {"help", field.help}});
-  return {{"name", operation.name}, {"title", operation.title}, {"summary", operation.summary}, {"inputs", inputs},
-          {"parameters", {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"type", "object"}, {"additionalProperties", false}, {"properties", properties}}},
-          {"outputs", outputs}, {"report", report}};
+  return {{"name", operation.name},
+          {"title", operation.title},
+          {"summary", operation.summary},
+          {"inputs", inputs},
+          {"parameters",
+           {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+            {"type", "object"},
+            {"additionalProperties", false},
+            {"properties", properties}}},
+          {"outputs", outputs},
+          {"report", report}};
 }
 
 Json catalog_json() {
   Json all = Json::array(), samples = Json::array(), formats = Json::array();
   for (const Operation& operation : operations()) all.push_back(operation_json(operation));
   for (const SampleInfo& sample : sample_catalog())
-    samples.push_back({{"name", sample.name}, {"title", sample.title}, {"description", sample.description},
-                       {"default_vertices", sample.default_vertices}, {"closed", sample.closed}, {"has_texture", sample.has_texture},
-                       {"view_direction", {sample.view_direction.x(), sample.view_direction.y(), sample.view_direction.z()}},
-                       {"view_up", {sample.view_up.x(), sample.view_up.y(), sample.view_up.z()}}});
+    samples.push_back(
+        {{"name", sample.name},
+         {"title", sample.title},
+         {"description", sample.description},
+         {"default_vertices", sample.default_vertices},
+         {"closed", sample.closed},
+         {"has_texture", sample.has_texture},
+         {"view_direction", {sample.view_direction.x(), sample.view_direction.y(), sample.view_direction.z()}},
+         {"view_up", {sample.view_up.x(), sample.view_up.y(), sample.view_up.z()}}});
   for (const MeshFormatInfo& format : mesh_formats)
     formats.push_back({{"extension", format.extension}, {"media_type", format.media_type}, {"title", format.title}});
-  return {{"version", version()}, {"operations", all}, {"samples", samples}, {"mesh_formats", formats}, {"laser_materials", laser_materials_json()}};
+  return {{"version", version()},
+          {"operations", all},
+          {"samples", samples},
+          {"mesh_formats", formats},
+          {"laser_materials", laser_materials_json()}};
 }
 
 }  // namespace formwright

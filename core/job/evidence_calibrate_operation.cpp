@@ -24,14 +24,23 @@ struct CalibrateOptions {
   int grid_values = 5;
 
   static constexpr auto parameters = std::tuple{
-      parameter("method", &CalibrateOptions::method, "Method", "Fit: least distances by steps, with what the data can and cannot tell. Grid search: the thesis's way, every combination tried.")
+      parameter(
+          "method", &CalibrateOptions::method, "Method",
+          "Fit: least distances by steps, with what the data can and cannot tell. Grid search: the thesis's way, every combination tried.")
           .group("Calibration"),
-      parameter("triangles", &CalibrateOptions::triangles, "Triangles", unit::none, 500, 40000, "Of the simulated sheet.").group("Calibration").slider(1000, 10000),
-      parameter("grid_values", &CalibrateOptions::grid_values, "Grid values", unit::none, 2, 9, "Values of each parameter in a grid search; 5 make 625 simulations.").group("Calibration").advanced()};
+      parameter("triangles", &CalibrateOptions::triangles, "Triangles", unit::none, 500, 40000,
+                "Of the simulated sheet.")
+          .group("Calibration")
+          .slider(1000, 10000),
+      parameter("grid_values", &CalibrateOptions::grid_values, "Grid values", unit::none, 2, 9,
+                "Values of each parameter in a grid search; 5 make 625 simulations.")
+          .group("Calibration")
+          .advanced()};
 };
 
 std::vector<OutputInfo> outputs() {
-  return {{"profile.json", "application/json", "Machine profile", "The fitted material, for every later simulation (--profile).", true},
+  return {{"profile.json", "application/json", "Machine profile",
+           "The fitted material, for every later simulation (--profile).", true},
           {"calibration.json", "application/json", "Calibration", "Values, intervals, profile likelihoods.", true}};
 }
 
@@ -53,9 +62,11 @@ std::vector<ReportField> report_fields() {
 Json profile_json(const ForwardModel& model, const ParameterProfile& profile) {
   const ModelParameter& parameter = model.parameters()[static_cast<std::size_t>(profile.parameter)];
   Json points = Json::array();
-  for (const ProfilePoint& point : profile.points) points.push_back({{"value", point.value}, {"log_likelihood", point.log_likelihood}});
-  return {{"name", parameter.name}, {"label", parameter.label}, {"unit", parameter.unit}, {"value", profile.best}, {"low", profile.low}, {"high", profile.high},
-          {"identified", profile.identified}, {"profile", points}};
+  for (const ProfilePoint& point : profile.points)
+    points.push_back({{"value", point.value}, {"log_likelihood", point.log_likelihood}});
+  return {
+      {"name", parameter.name}, {"label", parameter.label}, {"unit", parameter.unit},           {"value", profile.best},
+      {"low", profile.low},     {"high", profile.high},     {"identified", profile.identified}, {"profile", points}};
 }
 
 int index_of(const ForwardModel& model, const std::string& name) {
@@ -68,9 +79,12 @@ Calibration search(SimulationBag& bag, const CalibrateOptions& o, Context& conte
   if (o.method == CalibrationMethod::fit) return calibrate(bag, context);
   const ForwardModel& model = bag.model();
   // The ranges of thesis 4.2.3.
-  const std::vector<GridAxis> axes{{index_of(model, "young_modulus_pa"), 5e5, 5e6}, {index_of(model, "creep_per_s"), 0, 1000},
-                                   {index_of(model, "yield_strain"), 0, 0.1}, {index_of(model, "viscosity_s"), 0, 1e-4}};
-  return grid_search(bag, axes, o.grid_values, {index_of(model, "mould_shift_x_mm"), index_of(model, "mould_shift_y_mm")}, 2, context);
+  const std::vector<GridAxis> axes{{index_of(model, "young_modulus_pa"), 5e5, 5e6},
+                                   {index_of(model, "creep_per_s"), 0, 1000},
+                                   {index_of(model, "yield_strain"), 0, 0.1},
+                                   {index_of(model, "viscosity_s"), 0, 1e-4}};
+  return grid_search(bag, axes, o.grid_values,
+                     {index_of(model, "mould_shift_x_mm"), index_of(model, "mould_shift_y_mm")}, 2, context);
 }
 
 OperationResult run(const OperationCall& call) {
@@ -100,7 +114,8 @@ OperationResult run(const OperationCall& call) {
   }
   if (calibration.profiles.empty()) parameters = parameter_values(model, calibration.u, ParameterRole::base);
   for (const Json& name : not_identified) {
-    const std::string sentence = "These data do not tell " + name.get<std::string>() + ": its value may be anywhere in its interval, and predictions hardly change.";
+    const std::string sentence = "These data do not tell " + name.get<std::string>() +
+                                 ": its value may be anywhere in its interval, and predictions hardly change.";
     notes.push_back(sentence);
     profile.notes.push_back(sentence);
   }
@@ -112,7 +127,8 @@ OperationResult run(const OperationCall& call) {
     noise_squares += std::pow(calibration.noise[i].sigma, 2) / static_cast<double>(calibration.noise.size());
     outliers += calibration.noise[i].outliers;
     if (calibration.noise[i].stated_sigma > 0 && (calibration.noise[i].scale > 1.5 || calibration.noise[i].scale < 0.6))
-      notes.push_back(model.objects()[i].name + ": the points scatter " + std::to_string(calibration.noise[i].scale).substr(0, 4) + " times as much as sigma_mm says.");
+      notes.push_back(model.objects()[i].name + ": the points scatter " +
+                      std::to_string(calibration.noise[i].scale).substr(0, 4) + " times as much as sigma_mm says.");
   }
   for (const FormedObject& object : model.objects())
     for (const std::string& note : object.setup.notes) notes.push_back(object.name + ": " + note);
@@ -147,7 +163,9 @@ Operation evidence_calibrate_operation() {
   operation.name = "evidence-calibrate";
   operation.title = "Calibrate";
   operation.summary = "Fits the hot sheet's material to measured objects and says what they cannot tell.";
-  operation.inputs = {object_input_info("object", "Measured object", "Folder of mould.obj, setup.json and measured.csv.", true, true), profile_input_info()};
+  operation.inputs = {
+      object_input_info("object", "Measured object", "Folder of mould.obj, setup.json and measured.csv.", true, true),
+      profile_input_info()};
   operation.parameters = describe_parameters<CalibrateOptions>();
   operation.outputs = outputs();
   operation.report = report_fields();

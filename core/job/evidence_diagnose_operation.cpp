@@ -16,21 +16,31 @@ struct DiagnoseOptions {
   bool separate = true;
   int triangles = 5000;
 
-  static constexpr auto parameters = std::tuple{
-      parameter("pairs", &DiagnoseOptions::pairs, "Two causes at once", "Looks for two causes at work together as well.").group("Diagnosis"),
-      parameter("separate", &DiagnoseOptions::separate, "Propose a measurement", "Where two causes look alike, looks for the measurement that would tell them apart.").group("Diagnosis"),
-      parameter("triangles", &DiagnoseOptions::triangles, "Triangles", unit::none, 500, 40000, "Of the simulated sheet; twice as many where up to 5,000 do not decide.").group("Diagnosis").slider(1000, 10000)};
+  static constexpr auto parameters =
+      std::tuple{parameter("pairs", &DiagnoseOptions::pairs, "Two causes at once",
+                           "Looks for two causes at work together as well.")
+                     .group("Diagnosis"),
+                 parameter("separate", &DiagnoseOptions::separate, "Propose a measurement",
+                           "Where two causes look alike, looks for the measurement that would tell them apart.")
+                     .group("Diagnosis"),
+                 parameter("triangles", &DiagnoseOptions::triangles, "Triangles", unit::none, 500, 40000,
+                           "Of the simulated sheet; twice as many where up to 5,000 do not decide.")
+                     .group("Diagnosis")
+                     .slider(1000, 10000)};
 };
 
 std::vector<OutputInfo> outputs() {
   std::vector<OutputInfo> list = diagnosis_outputs();
-  list.push_back({"profile.json", "application/json", "Machine profile", "Material and causes as found, for every later simulation (--profile).", true});
-  list.push_back({"residuals.csv", "text/csv", "Residuals", "Each measured point, and where the calibrated and the extended simulation have it.", true});
+  list.push_back({"profile.json", "application/json", "Machine profile",
+                  "Material and causes as found, for every later simulation (--profile).", true});
+  list.push_back({"residuals.csv", "text/csv", "Residuals",
+                  "Each measured point, and where the calibrated and the extended simulation have it.", true});
   return list;
 }
 
 std::string residuals_csv(const ThermoformModel& model, const Diagnosis& d) {
-  std::string text = "object,sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm,calibrated_x_mm,calibrated_y_mm,calibrated_z_mm,extended_x_mm,extended_y_mm,extended_z_mm,weight\n";
+  std::string text =
+      "object,sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm,calibrated_x_mm,calibrated_y_mm,calibrated_z_mm,extended_x_mm,extended_y_mm,extended_z_mm,weight\n";
   char line[320];
   for (std::size_t object = 0; object < model.objects().size(); ++object) {
     const FormedObject& own = model.objects()[object];
@@ -41,8 +51,9 @@ std::string residuals_csv(const ThermoformModel& model, const Diagnosis& d) {
       const MeasuredPoint& p = own.points[i];
       const auto row = static_cast<Eigen::Index>(i);
       const auto before = d.base.predictions[object].row(row), after = d.extended.predictions[object].row(row);
-      std::snprintf(line, sizeof line, ",%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.4g\n", p.sheet_mm.x(), p.sheet_mm.y(), p.place_mm.x(), p.place_mm.y(), p.place_mm.z(), before[0],
-                    before[1], before[2], after[0], after[1], after[2], d.noise[object].weights[row]);
+      std::snprintf(line, sizeof line, ",%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.4g\n", p.sheet_mm.x(),
+                    p.sheet_mm.y(), p.place_mm.x(), p.place_mm.y(), p.place_mm.z(), before[0], before[1], before[2],
+                    after[0], after[1], after[2], d.noise[object].weights[row]);
       text += name + line;
     }
   }
@@ -68,15 +79,19 @@ OperationResult run(const OperationCall& call) {
   if (!diagnosis.not_separable.empty()) {
     // The most alike first; more than two would only confuse.
     std::vector<NotSeparable> pairs = diagnosis.not_separable;
-    std::stable_sort(pairs.begin(), pairs.end(), [](const NotSeparable& a, const NotSeparable& b) { return a.likeness > b.likeness; });
+    std::stable_sort(pairs.begin(), pairs.end(),
+                     [](const NotSeparable& a, const NotSeparable& b) { return a.likeness > b.likeness; });
     if (pairs.size() > 2) pairs.resize(2);
     const auto span = call.context.span(0.85, 0.95, "Looking for a measurement that tells");
     std::vector<ProposedMeasurement> proposals;
     if (o.separate) proposals = proposed_measurements(model, options);
     for (const NotSeparable& pair : pairs) {
       SeparatedPair separated{pair, "", pair.likeness};
-      const Separation found = o.separate ? best_separation(bag, diagnosis, pair, proposals, std::max(diagnosis.noise.front().sigma, 1e-3), call.context) : Separation{};
-      if (found.proposal >= 0) separated.what = proposals[static_cast<std::size_t>(found.proposal)].what, separated.likeness = found.likeness;
+      const Separation found = o.separate ? best_separation(bag, diagnosis, pair, proposals,
+                                                            std::max(diagnosis.noise.front().sigma, 1e-3), call.context)
+                                          : Separation{};
+      if (found.proposal >= 0)
+        separated.what = proposals[static_cast<std::size_t>(found.proposal)].what, separated.likeness = found.likeness;
       report.separations.push_back(std::move(separated));
     }
   }
@@ -86,7 +101,9 @@ OperationResult run(const OperationCall& call) {
     const ThermoformModel other(std::move(unseen), options);
     report.unseen = gain_on_unseen(other, model, diagnosis, call.context);
   }
-  if (diagnosis.looked_again) report.notes.push_back("A sheet of " + std::to_string(o.triangles) + " triangles did not decide it: looked at again on twice as many.");
+  if (diagnosis.looked_again)
+    report.notes.push_back("A sheet of " + std::to_string(o.triangles) +
+                           " triangles did not decide it: looked at again on twice as many.");
   for (const FormedObject& object : model.objects())
     for (const std::string& note : object.setup.notes) report.notes.push_back(object.name + ": " + note);
 
@@ -111,8 +128,10 @@ Operation evidence_diagnose_operation() {
   operation.name = "evidence-diagnose";
   operation.title = "Diagnose";
   operation.summary = "Names what the simulation of measured objects gets wrong, and measures what naming it gains.";
-  operation.inputs = {object_input_info("object", "Measured object", "Folder of mould.obj, setup.json and measured.csv.", true, true),
-                      object_input_info("unseen", "Object not used", "Another folder, only to measure the gain on.", false, true), profile_input_info()};
+  operation.inputs = {
+      object_input_info("object", "Measured object", "Folder of mould.obj, setup.json and measured.csv.", true, true),
+      object_input_info("unseen", "Object not used", "Another folder, only to measure the gain on.", false, true),
+      profile_input_info()};
   operation.parameters = describe_parameters<DiagnoseOptions>();
   operation.outputs = outputs();
   operation.report = diagnosis_report_fields();

@@ -13,9 +13,14 @@ struct DiagnoseReliefOptions {
   bool pairs = true;
   int pixels = 240;
 
-  static constexpr auto parameters = std::tuple{
-      parameter("pairs", &DiagnoseReliefOptions::pairs, "Two causes at once", "Looks for two causes at work together as well.").group("Diagnosis"),
-      parameter("pixels", &DiagnoseReliefOptions::pixels, "Pixels", unit::none, 50, 1000, "Along the relief's longer side: how finely its heights are taken.").group("Diagnosis").advanced()};
+  static constexpr auto parameters =
+      std::tuple{parameter("pairs", &DiagnoseReliefOptions::pairs, "Two causes at once",
+                           "Looks for two causes at work together as well.")
+                     .group("Diagnosis"),
+                 parameter("pixels", &DiagnoseReliefOptions::pixels, "Pixels", unit::none, 50, 1000,
+                           "Along the relief's longer side: how finely its heights are taken.")
+                     .group("Diagnosis")
+                     .advanced()};
 };
 
 const std::vector<std::string> files_of_relief{"relief.obj", "setup.json", "shading.csv"};
@@ -78,8 +83,9 @@ Operation evidence_diagnose_relief_operation() {
   operation.name = "evidence-diagnose-relief";
   operation.title = "Diagnose a relief";
   operation.summary = "Names why a made relief, lit and photographed, does not look as it should.";
-  operation.inputs = {relief_input_info("object", "Photographed relief", "Folder of relief.obj, setup.json and shading.csv.", true),
-                      relief_input_info("unseen", "Relief not used", "Another folder, only to measure the gain on.", false)};
+  operation.inputs = {
+      relief_input_info("object", "Photographed relief", "Folder of relief.obj, setup.json and shading.csv.", true),
+      relief_input_info("unseen", "Relief not used", "Another folder, only to measure the gain on.", false)};
   operation.parameters = describe_parameters<DiagnoseReliefOptions>();
   operation.outputs = diagnosis_outputs();
   operation.report = diagnosis_report_fields();

@@ -10,12 +10,11 @@ namespace formwright {
 namespace {
 
 FormedObject read_object(const InputBlob& input, const std::string& where, OperationCall const& call) {
-  const std::map<std::string, Bytes> files = unpack_files(input, where, {"mould.obj", "setup.json", "measured.csv"}, call.context);
+  const std::map<std::string, Bytes> files =
+      unpack_files(input, where, {"mould.obj", "setup.json", "measured.csv"}, call.context);
   FormedObject object;
   object.name = pack_name(input, where);
-  const auto named = [&](const Error& error) {
-    return Error(error.code(), where, object.name + ": " + error.what());
-  };
+  const auto named = [&](const Error& error) { return Error(error.code(), where, object.name + ": " + error.what()); };
   try {
     object.setup = read_object_setup(files.at("setup.json"));
     object.points = read_measured_points(files.at("measured.csv"));
@@ -43,7 +42,8 @@ FormedObject read_object(const InputBlob& input, const std::string& where, Opera
 
 }  // namespace
 
-InputInfo object_input_info(const std::string& name, const std::string& label, const std::string& help, bool required, bool repeatable) {
+InputInfo object_input_info(const std::string& name, const std::string& label, const std::string& help, bool required,
+                            bool repeatable) {
   InputInfo info;
   info.name = name;
   info.label = label;
@@ -71,7 +71,10 @@ Json parameter_values(const ForwardModel& model, const Eigen::VectorXd& u, Param
   for (std::size_t p = 0; p < model.parameters().size(); ++p) {
     const ModelParameter& parameter = model.parameters()[p];
     if (parameter.role == role)
-      list.push_back({{"name", parameter.name}, {"label", parameter.label}, {"value", parameter.value(u[static_cast<Eigen::Index>(p)])}, {"unit", parameter.unit}});
+      list.push_back({{"name", parameter.name},
+                      {"label", parameter.label},
+                      {"value", parameter.value(u[static_cast<Eigen::Index>(p)])},
+                      {"unit", parameter.unit}});
   }
   return list;
 }

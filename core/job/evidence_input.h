@@ -9,9 +9,11 @@
 namespace formwright {
 
 /// A measured object's folder (docs/measured_data.md), packed.
-InputInfo object_input_info(const std::string& name, const std::string& label, const std::string& help, bool required, bool repeatable);
+InputInfo object_input_info(const std::string& name, const std::string& label, const std::string& help, bool required,
+                            bool repeatable);
 
-/// All inputs `name`, `name`_2, ... in order; empty where there is none. Throws Error{invalid_input, name} saying what is wrong with which.
+/// All inputs `name`, `name`_2, ... in order; empty where there is none. Throws Error{invalid_input, name} saying what
+/// is wrong with which.
 std::vector<FormedObject> read_formed_objects(const OperationCall& call, const std::string& name);
 
 /// The input "profile", or an empty profile.

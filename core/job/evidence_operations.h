@@ -4,8 +4,8 @@
 #include "job/operation.h"
 
 namespace formwright {
-Operation evidence_calibrate_operation();  // fits the material to measured objects
-Operation evidence_diagnose_operation();   // names the cause of a misfit
+Operation evidence_calibrate_operation();        // fits the material to measured objects
+Operation evidence_diagnose_operation();         // names the cause of a misfit
 Operation evidence_diagnose_relief_operation();  // the same for a relief's shading
 Operation evidence_virtual_object_operation();   // a measured object of a machine whose faults are chosen
 }  // namespace formwright

@@ -18,18 +18,33 @@ struct EvidencePatternOptions : CalibrationPatternOptions {
 
   static constexpr auto parameters = std::tuple_cat(
       inherit_parameters<EvidencePatternOptions>(CalibrationPatternOptions::parameters),
-      std::tuple{parameter("dots_per_inch", &EvidencePatternOptions::dots_per_inch, "Resolution", unit::dots_per_inch, 36, 1200, "Dots per inch of the print.").group("Print").slider(100, 600),
-                 parameter("mirror", &EvidencePatternOptions::mirror, "Mirror", "For transfer paper: the printed files left to right. pattern.json stays as seen on the sheet.").group("Print"),
-                 parameter("paper", &EvidencePatternOptions::paper, "Paper", "Of the PDF. On paper that is smaller than the sheet the pattern goes over several pages, to be joined.").group("Paper"),
-                 parameter("paper_margin_mm", &EvidencePatternOptions::paper_margin_mm, "Margin of the paper", unit::mm, 0, 50, "White rim that the printer cannot print on. Not used when the paper is as the sheet.")
-                     .group("Paper").slider(0, 15),
-                 parameter("overlap_mm", &EvidencePatternOptions::overlap_mm, "Overlap", unit::mm, 0, 50, "How much neighbouring pages have in common, to be joined by.").group("Paper").slider(0, 30)});
+      std::tuple{
+          parameter("dots_per_inch", &EvidencePatternOptions::dots_per_inch, "Resolution", unit::dots_per_inch, 36,
+                    1200, "Dots per inch of the print.")
+              .group("Print")
+              .slider(100, 600),
+          parameter("mirror", &EvidencePatternOptions::mirror, "Mirror",
+                    "For transfer paper: the printed files left to right. pattern.json stays as seen on the sheet.")
+              .group("Print"),
+          parameter(
+              "paper", &EvidencePatternOptions::paper, "Paper",
+              "Of the PDF. On paper that is smaller than the sheet the pattern goes over several pages, to be joined.")
+              .group("Paper"),
+          parameter("paper_margin_mm", &EvidencePatternOptions::paper_margin_mm, "Margin of the paper", unit::mm, 0, 50,
+                    "White rim that the printer cannot print on. Not used when the paper is as the sheet.")
+              .group("Paper")
+              .slider(0, 15),
+          parameter("overlap_mm", &EvidencePatternOptions::overlap_mm, "Overlap", unit::mm, 0, 50,
+                    "How much neighbouring pages have in common, to be joined by.")
+              .group("Paper")
+              .slider(0, 30)});
 };
 
 std::vector<OutputInfo> outputs() {
   return {{"pattern.png", "image/png", "Pattern", "The whole sheet; the file says its size.", true},
           {"pattern.pdf", "application/pdf", "Pages", "At true size on the paper chosen. Print at 100 %.", true},
-          {"pattern.json", "application/json", "Description", "All that evidence-register needs to know the pattern again. Keep it.", true}};
+          {"pattern.json", "application/json", "Description",
+           "All that evidence-register needs to know the pattern again. Keep it.", true}};
 }
 
 std::vector<ReportField> report_fields() {
@@ -81,7 +96,8 @@ OperationResult run_pattern(const OperationCall& call) {
   report["patches"] = pattern.patches.size();
   report["marks_mm"] = Json::array();
   for (const CornerMark& mark : pattern.marks) report["marks_mm"].push_back({mark.centre_mm.x(), mark.centre_mm.y()});
-  report["pixels_sha256"] = sha256_hex(ByteView(reinterpret_cast<const std::byte*>(picture.pixels.data()), sizeof(Rgba) * picture.pixels.size()));
+  report["pixels_sha256"] = sha256_hex(
+      ByteView(reinterpret_cast<const std::byte*>(picture.pixels.data()), sizeof(Rgba) * picture.pixels.size()));
   report["pages"] = layout.tiles.size();
   report["seconds_draw"] = watch.lap();
   context.progress(0.5, "Writing");
@@ -105,11 +121,14 @@ Operation evidence_pattern_operation() {
   Operation operation;
   operation.name = "evidence-pattern";
   operation.title = "Calibration pattern";
-  operation.summary = "Makes the pattern to print on a sheet, so that a scan of it, formed, shows where every point went.";
+  operation.summary =
+      "Makes the pattern to print on a sheet, so that a scan of it, formed, shows where every point went.";
   operation.parameters = describe_parameters<EvidencePatternOptions>();
   operation.outputs = outputs();
   operation.report = report_fields();
-  operation.check = [](const Json& parameters) { make_calibration_pattern(read_parameters<EvidencePatternOptions>(parameters)); };
+  operation.check = [](const Json& parameters) {
+    make_calibration_pattern(read_parameters<EvidencePatternOptions>(parameters));
+  };
   operation.run = run_pattern;
   return operation;
 }

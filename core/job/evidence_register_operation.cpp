@@ -19,51 +19,67 @@ std::vector<InputInfo> inputs() {
   scan.label = "Scan";
   scan.help = "The formed sheet with its picture: GLB, OBJ with texture, or PLY with colours.";
   scan.accepts_sample = false;
-  return {scan,
-          {"pattern", "Pattern", "pattern.json as evidence-pattern wrote it beside the print.", {"json"}, true, false, ""},
-          {"material", "Material file", "The MTL file of an OBJ.", {"mtl"}, false, false, ""},
-          {"texture", "Picture", "A PNG or JPEG, laid by the scan's texture coordinates in place of its own.", {"png", "jpg", "jpeg"}, false, false, ""}};
+  return {
+      scan,
+      {"pattern", "Pattern", "pattern.json as evidence-pattern wrote it beside the print.", {"json"}, true, false, ""},
+      {"material", "Material file", "The MTL file of an OBJ.", {"mtl"}, false, false, ""},
+      {"texture",
+       "Picture",
+       "A PNG or JPEG, laid by the scan's texture coordinates in place of its own.",
+       {"png", "jpg", "jpeg"},
+       false,
+       false,
+       ""}};
 }
 
 std::vector<OutputInfo> outputs() {
-  return {{"measured.csv", "text/csv", "Measured points", "Where each point of the flat sheet went, and how sure that is: docs/measured_data.md.", true},
-          {"aligned.png", "image/png", "Scan on the sheet", "The scan's colours carried back to the flat sheet; it should look like the pattern.", true},
-          {"flow.png", "image/png", "Displacement", "What was found beyond the four corners: hue is the direction, colour the length.", true}};
+  return {{"measured.csv", "text/csv", "Measured points",
+           "Where each point of the flat sheet went, and how sure that is: docs/measured_data.md.", true},
+          {"aligned.png", "image/png", "Scan on the sheet",
+           "The scan's colours carried back to the flat sheet; it should look like the pattern.", true},
+          {"flow.png", "image/png", "Displacement",
+           "What was found beyond the four corners: hue is the direction, colour the length.", true}};
 }
 
 std::vector<ReportField> report_fields() {
-  return {{"points", "Measured points", "", "rows of measured.csv"},
-          {"points_without_evidence", "Points left out", "", "not seen, without noise to see, or too uncertain"},
-          {"sigma_median_mm", "Uncertainty", "mm", "median of the points' standard deviation along the surface"},
-          {"sigma_95_mm", "95 % of uncertainties below", "mm", "percentile"},
-          {"coordinates", "Coordinates", "", "rim: the machine's; scan: the scanner's"},
-          {"rim_rms_mm", "Rim", "mm", "root mean square distance of the scanned rim from where the machine holds it; null without a rim"},
-          {"rim_scale", "Scale of the rim", "", "length on the sheet against length scanned; null without a rim"},
-          {"corner_likeness", "Likeness of the marks", "", "correlation of each corner mark; 0 where it was not found or given by hand"},
-          {"corner_px", "Corners in the picture", "px", "x and y of each corner mark in the scan's picture from its top left; null where the picture does not show it"},
-          {"corner_residual_mm", "Corner residuals", "mm", "from each mark as found to where the registration has it; -1 where not known"},
-          {"colour_rms_levels", "Colour fit", "", "grey levels left over of the mean colours after correction"},
-          {"colour_error_levels", "Colour error", "", "root mean square of the flow's residual over all pixels, in grey levels"},
-          {"likeness", "Likeness", "", "correlation of scan and pattern once matched, at most 1"},
-          {"blur_px", "Blur", "px", "by which the scan is less sharp than the print, in compared pixels"},
-          {"pixel_mm", "Compared pixel", "mm", "side on the sheet"},
-          {"displacement_first_mm", "Beyond the corners", "mm", "root mean square displacement that the first flow found"},
-          {"displacement_last_mm", "Last correction", "mm", "root mean square of the last flow"},
-          {"flow_full_colour_mm", "Full colour", "mm", "length of the fullest colour of flow.png"},
-          {"flattening_stretch_rms", "Flattening", "", "root mean square stretch of the flat scan, 0 is none"},
-          {"flattening_flipped", "Faces upside down", "", "of the flat scan"},
-          {"plane_scale", "Scale by the corners", "", "length on the sheet against length of the flat scan"},
-          {"scan_faces", "Faces", "", "of the scan"},
-          {"other_parts", "Other parts", "", "of the scan, left out"},
-          {"holes", "Holes", "", "in the sheet's scan"},
-          {"seconds_read", "Reading", "s", "scan and picture"},
-          {"seconds_flatten", "Flattening", "s", ""},
-          {"seconds_marks", "Marks", "s", ""},
-          {"seconds_draw", "Drawing", "s", "scan and pattern in the sheet's frame"},
-          {"seconds_flow", "Flow", "s", "three sizes together"},
-          {"seconds_points", "Points", "s", "evidence, points, pictures of the result"},
-          {"peak_memory_mb", "Peak memory", "MB", "of the process"},
-          {"notes", "Notes", "", "in words"}};
+  return {
+      {"points", "Measured points", "", "rows of measured.csv"},
+      {"points_without_evidence", "Points left out", "", "not seen, without noise to see, or too uncertain"},
+      {"sigma_median_mm", "Uncertainty", "mm", "median of the points' standard deviation along the surface"},
+      {"sigma_95_mm", "95 % of uncertainties below", "mm", "percentile"},
+      {"coordinates", "Coordinates", "", "rim: the machine's; scan: the scanner's"},
+      {"rim_rms_mm", "Rim", "mm",
+       "root mean square distance of the scanned rim from where the machine holds it; null without a rim"},
+      {"rim_scale", "Scale of the rim", "", "length on the sheet against length scanned; null without a rim"},
+      {"corner_likeness", "Likeness of the marks", "",
+       "correlation of each corner mark; 0 where it was not found or given by hand"},
+      {"corner_px", "Corners in the picture", "px",
+       "x and y of each corner mark in the scan's picture from its top left; null where the picture does not show it"},
+      {"corner_residual_mm", "Corner residuals", "mm",
+       "from each mark as found to where the registration has it; -1 where not known"},
+      {"colour_rms_levels", "Colour fit", "", "grey levels left over of the mean colours after correction"},
+      {"colour_error_levels", "Colour error", "",
+       "root mean square of the flow's residual over all pixels, in grey levels"},
+      {"likeness", "Likeness", "", "correlation of scan and pattern once matched, at most 1"},
+      {"blur_px", "Blur", "px", "by which the scan is less sharp than the print, in compared pixels"},
+      {"pixel_mm", "Compared pixel", "mm", "side on the sheet"},
+      {"displacement_first_mm", "Beyond the corners", "mm", "root mean square displacement that the first flow found"},
+      {"displacement_last_mm", "Last correction", "mm", "root mean square of the last flow"},
+      {"flow_full_colour_mm", "Full colour", "mm", "length of the fullest colour of flow.png"},
+      {"flattening_stretch_rms", "Flattening", "", "root mean square stretch of the flat scan, 0 is none"},
+      {"flattening_flipped", "Faces upside down", "", "of the flat scan"},
+      {"plane_scale", "Scale by the corners", "", "length on the sheet against length of the flat scan"},
+      {"scan_faces", "Faces", "", "of the scan"},
+      {"other_parts", "Other parts", "", "of the scan, left out"},
+      {"holes", "Holes", "", "in the sheet's scan"},
+      {"seconds_read", "Reading", "s", "scan and picture"},
+      {"seconds_flatten", "Flattening", "s", ""},
+      {"seconds_marks", "Marks", "s", ""},
+      {"seconds_draw", "Drawing", "s", "scan and pattern in the sheet's frame"},
+      {"seconds_flow", "Flow", "s", "three sizes together"},
+      {"seconds_points", "Points", "s", "evidence, points, pictures of the result"},
+      {"peak_memory_mb", "Peak memory", "MB", "of the process"},
+      {"notes", "Notes", "", "in words"}};
 }
 
 /// The scan with its material file and its picture as given.
@@ -80,7 +96,9 @@ Model with_pictures(const OperationCall& call, const LoadedModel& loaded) {
   }
   Model& model = file.model;
   if (const auto given = call.inputs.find("texture"); given != call.inputs.end()) {
-    if (model.FT.rows() == 0) throw Error(ErrorCode::invalid_input, "texture", "The scan has no texture coordinates to lay the picture by: export it with its UV map.");
+    if (model.FT.rows() == 0)
+      throw Error(ErrorCode::invalid_input, "texture",
+                  "The scan has no texture coordinates to lay the picture by: export it with its UV map.");
     const Texture texture{given->second.file_name, "", *given->second.bytes};
     model.textures.assign(1, texture);
     model.materials.clear();
@@ -88,7 +106,9 @@ Model with_pictures(const OperationCall& call, const LoadedModel& loaded) {
   }
   bool has_picture = model.vertex_colours.rows() > 0;
   for (const Texture& texture : model.textures) has_picture = has_picture || !texture.bytes.empty();
-  if (!has_picture) throw Error(ErrorCode::invalid_input, "texture", "The scan came without its picture: give the PNG or JPEG beside it, or a GLB that holds it.");
+  if (!has_picture)
+    throw Error(ErrorCode::invalid_input, "texture",
+                "The scan came without its picture: give the PNG or JPEG beside it, or a GLB that holds it.");
   return std::move(model);
 }
 
@@ -98,7 +118,8 @@ Bytes measured_csv(const std::vector<RegisteredPoint>& registered) {
   return to_bytes(write_measured_points(points));
 }
 
-void report_registration(Json& report, const ScanRegistration& r, const CalibrationPattern& pattern, const ScanRegistrationOptions& options) {
+void report_registration(Json& report, const ScanRegistration& r, const CalibrationPattern& pattern,
+                         const ScanRegistrationOptions& options) {
   std::vector<double> sigma;
   for (const RegisteredPoint& p : r.points) sigma.push_back(p.sigma_mm);
   std::sort(sigma.begin(), sigma.end());
@@ -111,7 +132,8 @@ void report_registration(Json& report, const ScanRegistration& r, const Calibrat
   report["rim_scale"] = r.rim_scale ? Json(*r.rim_scale) : Json(nullptr);
   report["corner_likeness"] = r.marks.likeness;
   report["corner_px"] = Json::array();
-  for (const std::optional<Vec2>& px : r.corner_px) report["corner_px"].push_back(px ? Json{px->x(), px->y()} : Json(nullptr));
+  for (const std::optional<Vec2>& px : r.corner_px)
+    report["corner_px"].push_back(px ? Json{px->x(), px->y()} : Json(nullptr));
   report["corner_residual_mm"] = r.corner_residual_mm;
   report["colour_rms_levels"] = r.colours.rms_levels;
   report["colour_error_levels"] = r.colour_error_levels;
@@ -178,7 +200,8 @@ Operation evidence_register_operation() {
   Operation operation;
   operation.name = "evidence-register";
   operation.title = "Measure a scan";
-  operation.summary = "Finds where every point of a printed sheet went, from a scan of the formed sheet and its pattern.";
+  operation.summary =
+      "Finds where every point of a printed sheet went, from a scan of the formed sheet and its pattern.";
   operation.inputs = inputs();
   operation.parameters = describe_parameters<ScanRegistrationOptions>();
   operation.outputs = outputs();

@@ -12,8 +12,10 @@ std::vector<OutputInfo> outputs() {
   return {{"mould.obj", "model/obj", "Mould", "As it should stand in the machine.", true},
           {"setup.json", "application/json", "Set-up", "What the machine was told to do; not its faults.", true},
           {"measured.csv", "text/csv", "Measured points", "What the virtual scan has: docs/measured_data.md.", true},
-          {"truth.json", "application/json", "Truth", "Every parameter the virtual machine was run with, to be opened after the diagnosis.", true},
-          {"object.zip", "application/zip", "Measured object", "mould.obj, setup.json and measured.csv in one file.", false}};
+          {"truth.json", "application/json", "Truth",
+           "Every parameter the virtual machine was run with, to be opened after the diagnosis.", true},
+          {"object.zip", "application/zip", "Measured object", "mould.obj, setup.json and measured.csv in one file.",
+           false}};
 }
 
 std::vector<ReportField> report_fields() {
@@ -27,7 +29,8 @@ std::vector<ReportField> report_fields() {
 struct GivenParameters {
   Json simulation, measurement, scan;
   explicit GivenParameters(const Json& parameters) {
-    const std::vector<ParameterInfo> measuring = describe_parameters<MeasurementEffects>(), scanning = describe_parameters<VirtualScan>();
+    const std::vector<ParameterInfo> measuring = describe_parameters<MeasurementEffects>(),
+                                     scanning = describe_parameters<VirtualScan>();
     measurement = parameters_among(parameters, measuring);
     scan = parameters_among(parameters, scanning);
     simulation = parameters_among(parameters_among(parameters, measuring, false), scanning, false);
@@ -45,11 +48,13 @@ OperationResult run(const OperationCall& call) {
   }
   const ThermoformOptions& o = simulation.options;
   constexpr MeasuredSurface surface = MeasuredSurface::outer;  // what a scanner sees
-  const std::vector<MeasuredPoint> points = scan_virtually(simulated.result->sheet, o, surface, effects, read_parameters<VirtualScan>(given.scan));
+  const std::vector<MeasuredPoint> points =
+      scan_virtually(simulated.result->sheet, o, surface, effects, read_parameters<VirtualScan>(given.scan));
   Model mould;
   mould.mesh = simulated.mould.placement(simulated.mould.shape->mesh);
   const Bytes obj = write_model(mould, MeshFormat::obj, call.context);
-  const Bytes setup = to_bytes(write_object_setup(o, surface).dump(1) + "\n"), measured = to_bytes(write_measured_points(points));
+  const Bytes setup = to_bytes(write_object_setup(o, surface).dump(1) + "\n"),
+              measured = to_bytes(write_measured_points(points));
   Json truth = write_parameters(o);
   truth.update(write_parameters(effects));
 
@@ -66,7 +71,9 @@ OperationResult run(const OperationCall& call) {
   add("setup.json", setup);
   add("measured.csv", measured);
   add("truth.json", to_bytes(truth.dump(1) + "\n"));
-  if (call.wants("object.zip")) add("object.zip", pack_files({{"mould.obj", obj}, {"setup.json", setup}, {"measured.csv", measured}}, call.context));
+  if (call.wants("object.zip"))
+    add("object.zip",
+        pack_files({{"mould.obj", obj}, {"setup.json", setup}, {"measured.csv", measured}}, call.context));
   return result;
 }
 
@@ -76,7 +83,8 @@ Operation evidence_virtual_object_operation() {
   Operation operation;
   operation.name = "evidence-virtual-object";
   operation.title = "Make a virtual object";
-  operation.summary = "Forms and measures an object on a virtual machine whose faults you choose, to rehearse a diagnosis.";
+  operation.summary =
+      "Forms and measures an object on a virtual machine whose faults you choose, to rehearse a diagnosis.";
   operation.inputs = {mould_input_info()};
   operation.parameters = describe_parameters<ThermoformOptions>();
   for (ParameterInfo& info : describe_parameters<MeasurementEffects>()) operation.parameters.push_back(std::move(info));

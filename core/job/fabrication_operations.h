@@ -7,4 +7,4 @@ Operation laser_job_operation();
 Operation mill_job_operation();
 Operation page_tiles_operation();
 Operation test_grid_operation();
-}
+}  // namespace formwright

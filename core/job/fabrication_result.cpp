@@ -12,9 +12,11 @@
 namespace formwright {
 
 std::vector<OutputInfo> laser_job_outputs() {
-  return {{"job.gcode", "text/x-gcode", "G-code", "For GRBL or Marlin, as the controller says; not written when the job does not fit.", true},
+  return {{"job.gcode", "text/x-gcode", "G-code",
+           "For GRBL or Marlin, as the controller says; not written when the job does not fit.", true},
           {"toolpath.json", "application/json", "Tool path", "What moves where and when, for the preview.", true},
-          {"job.egv", "application/x-egv", "EGV", "For K40 lasers with an M2 Nano board, which take their power from the dial.", false},
+          {"job.egv", "application/x-egv", "EGV",
+           "For K40 lasers with an M2 Nano board, which take their power from the dial.", false},
           {"job.rd", "application/octet-stream", "RD", "For Ruida controllers.", false},
           {"preview.svg", "image/svg+xml", "Preview", "The bed with what is worked and the travel between.", false}};
 }
@@ -42,7 +44,8 @@ void report_toolpath(Json& report, const Toolpath& path, const std::vector<std::
   report["line_count"] = lines;
 }
 
-void write_laser_result(OperationResult& result, const OperationCall& call, const std::vector<OutputInfo>& outputs, LaserPlan& plan, const LaserMachineOptions& machine) {
+void write_laser_result(OperationResult& result, const OperationCall& call, const std::vector<OutputInfo>& outputs,
+                        LaserPlan& plan, const LaserMachineOptions& machine) {
   const Bytes gcode = write_laser_gcode(plan.path, machine);
   const auto add = [&](const std::string& name, bool for_machine, const std::function<Bytes()>& bytes) {
     if (!call.wants(name) || (for_machine && !plan.misfits.empty())) return;
@@ -58,9 +61,12 @@ void write_laser_result(OperationResult& result, const OperationCall& call, cons
   report_toolpath(result.report, plan.path, plan.misfits, line_count(gcode));
   Json layers = Json::array();
   for (const LayerSummary& layer : plan.layers)
-    layers.push_back({{"layer", layer.layer}, {"paths", layer.paths}, {"length_mm", layer.length_mm}, {"seconds", layer.seconds}});
+    layers.push_back(
+        {{"layer", layer.layer}, {"paths", layer.paths}, {"length_mm", layer.length_mm}, {"seconds", layer.seconds}});
   result.report["layers"] = layers;
-  if (machine.controller == Controller::k40) plan.notes.push_back("The board takes its power from the dial on the machine: the layers' powers are not in job.egv.");
+  if (machine.controller == Controller::k40)
+    plan.notes.push_back(
+        "The board takes its power from the dial on the machine: the layers' powers are not in job.egv.");
   result.report["notes"] = plan.notes;
 }
 

@@ -19,7 +19,8 @@ Bytes pack_files(const std::map<std::string, ByteView>& files, const Context& co
   return writer.finish();
 }
 
-std::map<std::string, Bytes> unpack_files(const InputBlob& input, const std::string& where, const std::vector<std::string>& needed, Context& context) {
+std::map<std::string, Bytes> unpack_files(const InputBlob& input, const std::string& where,
+                                          const std::vector<std::string>& needed, Context& context) {
   ReadOptions options;
   options.where = where;
   const MeshSource source(*input.bytes, input.file_name, options, context);
@@ -35,7 +36,8 @@ std::map<std::string, Bytes> unpack_files(const InputBlob& input, const std::str
   std::string list;
   for (const std::string& name : needed) list += (list.empty() ? "" : ", ") + name;
   for (const std::string& name : needed)
-    if (!files.contains(name)) throw Error(ErrorCode::invalid_input, where, input.file_name + " has no " + name + ": it needs " + list + ".");
+    if (!files.contains(name))
+      throw Error(ErrorCode::invalid_input, where, input.file_name + " has no " + name + ": it needs " + list + ".");
   return files;
 }
 
@@ -49,7 +51,8 @@ std::vector<std::pair<std::string, const InputBlob*>> inputs_named(const Operati
 }
 
 std::string pack_name(const InputBlob& input, const std::string& otherwise) {
-  const std::string name = input.file_name.ends_with(".zip") ? input.file_name.substr(0, input.file_name.size() - 4) : input.file_name;
+  const std::string name =
+      input.file_name.ends_with(".zip") ? input.file_name.substr(0, input.file_name.size() - 4) : input.file_name;
   return name.empty() ? otherwise : name;
 }
 

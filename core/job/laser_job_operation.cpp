@@ -15,7 +15,8 @@ std::vector<InputInfo> inputs() {
   InputInfo drawing;
   drawing.name = "drawing";
   drawing.label = "Drawing";
-  drawing.help = "An SVG with its size in mm. Layers by the names of groups (cut, mark, engrave, note) or by colour (red, blue, black, green).";
+  drawing.help =
+      "An SVG with its size in mm. Layers by the names of groups (cut, mark, engrave, note) or by colour (red, blue, black, green).";
   drawing.extensions = {"svg"};
   return {drawing};
 }

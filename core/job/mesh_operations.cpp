@@ -19,13 +19,15 @@ struct SubdivideJobOptions {
   int levels = 1;
   SubdivisionScheme scheme = SubdivisionScheme::loop;
   static constexpr auto parameters = std::tuple{
-      parameter("levels", &SubdivideJobOptions::levels, "Levels", unit::none, 1, 6, "Each level makes four triangles of one."),
+      parameter("levels", &SubdivideJobOptions::levels, "Levels", unit::none, 1, 6,
+                "Each level makes four triangles of one."),
       parameter("scheme", &SubdivideJobOptions::scheme, "Scheme", "Midpoint keeps the shape, Loop rounds it.")};
 };
 
 /// An operation on the model input whose body fills report and outputs.
 template <class Options, class Body>
-Operation mesh_operation(std::string name, std::string title, std::string summary, std::vector<OutputInfo> outputs, std::vector<ReportField> report, Body body) {
+Operation mesh_operation(std::string name, std::string title, std::string summary, std::vector<OutputInfo> outputs,
+                         std::vector<ReportField> report, Body body) {
   Operation operation;
   operation.name = std::move(name);
   operation.title = std::move(title);
@@ -60,7 +62,8 @@ Json size_json(const TriangleMesh& mesh) {
 }
 
 std::vector<ReportField> with_counts(std::vector<ReportField> fields) {
-  fields.insert(fields.begin(), {{"vertices", "Vertices", "", "of the result"}, {"faces", "Triangles", "", "of the result"}});
+  fields.insert(fields.begin(),
+                {{"vertices", "Vertices", "", "of the result"}, {"faces", "Triangles", "", "of the result"}});
   fields.push_back({"seconds_work", "Working", "s", ""});
   fields.push_back({"seconds_write", "Writing", "s", ""});
   return fields;
@@ -84,18 +87,22 @@ Model describe_import(const LoadedModel& loaded, const NoOptions&, Json& report,
 }  // namespace
 
 Operation import_operation() {
-  return mesh_operation<NoOptions>(
-      "import", "Import", "Reads a model, repairs it and says what was found.", mesh_outputs("model", MeshFormat::ply),
-      with_counts({{"components", "Parts", "", "connected pieces"}, {"closed", "Closed", "", "no holes"}, {"repairs", "Repairs", "", "in words"},
-                   {"size_mm", "Size", "mm", "along x, y, z"}, {"file_format", "Format", "", "as found by content"},
-                   {"seconds_read", "Reading", "s", "0 when known from before"}, {"seconds_repair", "Repairing", "s", "0 when known from before"}}),
-      describe_import);
+  return mesh_operation<NoOptions>("import", "Import", "Reads a model, repairs it and says what was found.",
+                                   mesh_outputs("model", MeshFormat::ply),
+                                   with_counts({{"components", "Parts", "", "connected pieces"},
+                                                {"closed", "Closed", "", "no holes"},
+                                                {"repairs", "Repairs", "", "in words"},
+                                                {"size_mm", "Size", "mm", "along x, y, z"},
+                                                {"file_format", "Format", "", "as found by content"},
+                                                {"seconds_read", "Reading", "s", "0 when known from before"},
+                                                {"seconds_repair", "Repairing", "s", "0 when known from before"}}),
+                                   describe_import);
 }
 
 Operation simplify_operation() {
   return mesh_operation<SimplifyOptions>(
-      "simplify", "Simplify", "Keeps the shape with fewer vertices, for a preview.", mesh_outputs("simplified", MeshFormat::ply),
-      with_counts({}),
+      "simplify", "Simplify", "Keeps the shape with fewer vertices, for a preview.",
+      mesh_outputs("simplified", MeshFormat::ply), with_counts({}),
       [](const LoadedModel& loaded, const SimplifyOptions& options, Json& report, Context& context) {
         Model result;
         const auto span = context.span(0.4, 0.9, "Simplifying");
@@ -108,10 +115,12 @@ Operation simplify_operation() {
 
 Operation subdivide_operation() {
   return mesh_operation<SubdivideJobOptions>(
-      "subdivide", "Subdivide", "Makes four triangles of every one.", mesh_outputs("subdivided", MeshFormat::ply), with_counts({}),
+      "subdivide", "Subdivide", "Makes four triangles of every one.", mesh_outputs("subdivided", MeshFormat::ply),
+      with_counts({}),
       [](const LoadedModel& loaded, const SubdivideJobOptions& options, Json& report, Context& context) {
         if (static_cast<double>(loaded.model.mesh.face_count()) * std::pow(4.0, options.levels) > 20e6)
-          throw Error(ErrorCode::invalid_input, "levels", "The result would have more than 20 million triangles: choose fewer levels.");
+          throw Error(ErrorCode::invalid_input, "levels",
+                      "The result would have more than 20 million triangles: choose fewer levels.");
         Model result = subdivide(loaded.model, options.scheme, options.levels, context);
         report["vertices"] = result.mesh.vertex_count();
         report["faces"] = result.mesh.face_count();
@@ -120,8 +129,9 @@ Operation subdivide_operation() {
 }
 
 Operation convert_operation() {
-  return mesh_operation<NoOptions>("convert", "Convert", "Writes a model in another format, repaired.", mesh_outputs("model", MeshFormat::obj),
-                                   with_counts({}), [](const LoadedModel& loaded, const NoOptions&, Json& report, Context&) {
+  return mesh_operation<NoOptions>("convert", "Convert", "Writes a model in another format, repaired.",
+                                   mesh_outputs("model", MeshFormat::obj), with_counts({}),
+                                   [](const LoadedModel& loaded, const NoOptions&, Json& report, Context&) {
                                      report["vertices"] = loaded.model.mesh.vertex_count();
                                      report["faces"] = loaded.model.mesh.face_count();
                                      return loaded.model;

@@ -43,31 +43,43 @@ HeightMap height_map_of(const OperationCall& call, const MillOptions& options) {
   if (is_png(input)) {
     const Grey16Image image = read_png16(*input.bytes, input.file_name, "model");
     const double width = options.width_mm ? *options.width_mm : image.pixel_width_mm * (image.width - 1);
-    if (width <= 0) throw Error(ErrorCode::invalid_input, "width_mm", "The height map does not tell its size: give its width.");
-    if (image.width < 2 || image.height < 2) throw Error(ErrorCode::invalid_input, "model", "The height map is a single row of pixels: give a picture.");
+    if (width <= 0)
+      throw Error(ErrorCode::invalid_input, "width_mm", "The height map does not tell its size: give its width.");
+    if (image.width < 2 || image.height < 2)
+      throw Error(ErrorCode::invalid_input, "model", "The height map is a single row of pixels: give a picture.");
     map.columns = image.width;
     map.rows = image.height;
     map.pitch_x_mm = width / (image.width - 1);
-    map.pitch_y_mm = image.pixel_width_mm > 0 && image.pixel_height_mm > 0 ? map.pitch_x_mm * image.pixel_height_mm / image.pixel_width_mm : map.pitch_x_mm;
+    map.pitch_y_mm = image.pixel_width_mm > 0 && image.pixel_height_mm > 0
+                         ? map.pitch_x_mm * image.pixel_height_mm / image.pixel_width_mm
+                         : map.pitch_x_mm;
     map.height_mm.resize(image.levels.size());
     for (int r = 0; r < map.rows; ++r)
       for (int c = 0; c < map.columns; ++c)
-        map.at(r, c) = static_cast<float>(options.thickness_mm * image.levels[static_cast<std::size_t>(map.rows - 1 - r) * static_cast<std::size_t>(map.columns) + static_cast<std::size_t>(c)] / 65535);
+        map.at(r, c) = static_cast<float>(
+            options.thickness_mm *
+            image.levels[static_cast<std::size_t>(map.rows - 1 - r) * static_cast<std::size_t>(map.columns) +
+                         static_cast<std::size_t>(c)] /
+            65535);
   } else {
     const auto loaded = load_model(call, "model");
     const TriangleMesh& mesh = loaded->model.mesh;
     if (mesh.V.rows() == 0) throw Error(ErrorCode::invalid_input, "model", "The model is empty.");
     const Eigen::RowVector3d low = mesh.V.colwise().minCoeff(), high = mesh.V.colwise().maxCoeff();
     const Eigen::RowVector3d size = high - low;
-    if (size.x() <= 0 || size.y() <= 0) throw Error(ErrorCode::invalid_input, "model", "The model has no extent seen from above: turn it so that z is up.");
+    if (size.x() <= 0 || size.y() <= 0)
+      throw Error(ErrorCode::invalid_input, "model",
+                  "The model has no extent seen from above: turn it so that z is up.");
     const double scale = options.width_mm ? *options.width_mm / size.x() : 1;
     Positions moved(mesh.V.rows(), 3);
     moved.col(0) = mesh.V.col(0).array() - (low.x() + high.x()) / 2;
     moved.col(1) = mesh.V.col(1).array() - (low.y() + high.y()) / 2;
     moved.col(2) = low.z() - mesh.V.col(2).array();
     if (scale * scale * size.x() * size.y() > most_nodes * options.pixel_mm * options.pixel_mm)
-      throw Error(ErrorCode::invalid_input, "pixel_mm", "The grid would have over 16 million nodes: choose a coarser one or a smaller width.");
-    map = make_height_map(moved, mesh.F, scale, {scale * size.x(), scale * size.y()}, options.pixel_mm, scale * size.z(), call.context);
+      throw Error(ErrorCode::invalid_input, "pixel_mm",
+                  "The grid would have over 16 million nodes: choose a coarser one or a smaller width.");
+    map = make_height_map(moved, mesh.F, scale, {scale * size.x(), scale * size.y()}, options.pixel_mm,
+                          scale * size.z(), call.context);
   }
   if (static_cast<double>(map.columns) * map.rows > most_nodes)
     throw Error(ErrorCode::invalid_input, "model", "The height map has over 16 million pixels: make it smaller.");
@@ -86,7 +98,8 @@ OperationResult run(const OperationCall& call) {
   Stopwatch watch;
   context.progress(0, "Reading the model");
   HeightMap map = height_map_of(call, options);
-  const float top = *std::max_element(map.height_mm.begin(), map.height_mm.end()), bottom = *std::min_element(map.height_mm.begin(), map.height_mm.end());
+  const float top = *std::max_element(map.height_mm.begin(), map.height_mm.end()),
+              bottom = *std::min_element(map.height_mm.begin(), map.height_mm.end());
   HeightField surface{map.columns, map.rows, map.pitch_x_mm, map.pitch_y_mm, map.height_mm};
   for (float& z : surface.z_mm) z -= top + static_cast<float>(options.stock_over_mm);
   const double seconds_read = watch.lap();
@@ -109,7 +122,8 @@ OperationResult run(const OperationCall& call) {
   add("preview.svg", [&] { return write_toolpath_svg(plan.path, options); });
   add("carved.ply", [&] {
     // On a plate of 2 mm, so that it is a solid wherever the carving goes down to.
-    for (std::size_t i = 0; i < map.height_mm.size(); ++i) map.height_mm[i] = plan.carved.z_mm[i] + top + static_cast<float>(options.stock_over_mm) - bottom;
+    for (std::size_t i = 0; i < map.height_mm.size(); ++i)
+      map.height_mm[i] = plan.carved.z_mm[i] + top + static_cast<float>(options.stock_over_mm) - bottom;
     Model model;
     model.mesh = make_solid(map, 2, 0.01, context);
     return write_model(model, MeshFormat::ply, context);
@@ -122,7 +136,8 @@ OperationResult run(const OperationCall& call) {
   report["grid_mm"] = {map.pitch_x_mm, map.pitch_y_mm};
   report["layers"] = plan.layers;
   report["finish_stepover_mm"] = plan.finish_stepover_mm;
-  if (options.tool == ToolShape::ball && options.stages != MillStages::rough) report["scallop_mm"] = scallop_mm(options.diameter_mm, plan.finish_stepover_mm);
+  if (options.tool == ToolShape::ball && options.stages != MillStages::rough)
+    report["scallop_mm"] = scallop_mm(options.diameter_mm, plan.finish_stepover_mm);
   report_deviation(report, "deviation", plan.deviation);
   if (plan.of_tool && options.stages != MillStages::rough) report_deviation(report, "tool_deviation", *plan.of_tool);
   report["seconds_read"] = seconds_read;
@@ -143,22 +158,25 @@ std::vector<ReportField> report_fields() {
   rename("travel_mm", "Travel", "fast moves over the stock");
   rename("bounds_mm", "Bounds", "of the tool's axis, on the bed: x0, y0, x1, y1");
   rename("layers", "Layers", "of roughing");
-  const std::vector<ReportField> more = {{"seconds_rough", "Roughing", "s", "of the machine, without travel"},
-                                         {"seconds_finish", "Finishing", "s", "of the machine, without travel"},
-                                         {"size_mm", "Size", "mm", "width, height and depth of the carving"},
-                                         {"grid_mm", "Grid", "mm", "between nodes of the height field, in x and y"},
-                                         {"finish_stepover_mm", "Stepover", "mm", "between lines that finish, as carried out"},
-                                         {"scallop_mm", "Scallop", "mm", "height of the ridges a ball leaves on a plane"},
-                                         {"deviation_mean_mm", "Mean deviation", "mm", "of the simulated surface over the one wanted, at the grid's nodes"},
-                                         {"deviation_p95_mm", "95 % deviation", "mm", "the same, of all but the worst twentieth"},
-                                         {"deviation_max_mm", "Largest deviation", "mm", "the same"},
-                                         {"tool_deviation_mean_mm", "Mean due to the tool", "mm", "what its radius leaves in hollows, with lines at every node"},
-                                         {"tool_deviation_p95_mm", "95 % due to the tool", "mm", "the same, of all but the worst twentieth"},
-                                         {"tool_deviation_max_mm", "Largest due to the tool", "mm", "the same"},
-                                         {"seconds_read", "Reading", "s", "the model, and its heights"},
-                                         {"seconds_plan", "Planning", "s", "lines, times and simulation"},
-                                         {"seconds_write", "Writing", "s", "outputs into their formats"},
-                                         {"peak_memory_mb", "Peak memory", "MB", "of the process"}};
+  const std::vector<ReportField> more = {
+      {"seconds_rough", "Roughing", "s", "of the machine, without travel"},
+      {"seconds_finish", "Finishing", "s", "of the machine, without travel"},
+      {"size_mm", "Size", "mm", "width, height and depth of the carving"},
+      {"grid_mm", "Grid", "mm", "between nodes of the height field, in x and y"},
+      {"finish_stepover_mm", "Stepover", "mm", "between lines that finish, as carried out"},
+      {"scallop_mm", "Scallop", "mm", "height of the ridges a ball leaves on a plane"},
+      {"deviation_mean_mm", "Mean deviation", "mm",
+       "of the simulated surface over the one wanted, at the grid's nodes"},
+      {"deviation_p95_mm", "95 % deviation", "mm", "the same, of all but the worst twentieth"},
+      {"deviation_max_mm", "Largest deviation", "mm", "the same"},
+      {"tool_deviation_mean_mm", "Mean due to the tool", "mm",
+       "what its radius leaves in hollows, with lines at every node"},
+      {"tool_deviation_p95_mm", "95 % due to the tool", "mm", "the same, of all but the worst twentieth"},
+      {"tool_deviation_max_mm", "Largest due to the tool", "mm", "the same"},
+      {"seconds_read", "Reading", "s", "the model, and its heights"},
+      {"seconds_plan", "Planning", "s", "lines, times and simulation"},
+      {"seconds_write", "Writing", "s", "outputs into their formats"},
+      {"peak_memory_mb", "Peak memory", "MB", "of the process"}};
   fields.insert(fields.end(), more.begin(), more.end());
   return fields;
 }

@@ -9,8 +9,9 @@ namespace {
 
 double megabytes(const LoadedModel& loaded) {
   const Model& model = loaded.model;
-  double bytes = static_cast<double>(model.mesh.V.size() + model.UV.size() + model.vertex_colours.size()) * sizeof(double) +
-                 static_cast<double>(model.mesh.F.size() + model.FT.size()) * sizeof(int);
+  double bytes =
+      static_cast<double>(model.mesh.V.size() + model.UV.size() + model.vertex_colours.size()) * sizeof(double) +
+      static_cast<double>(model.mesh.F.size() + model.FT.size()) * sizeof(int);
   for (const Texture& texture : model.textures) bytes += static_cast<double>(texture.bytes.size());
   return bytes * 1e-6;
 }
@@ -75,15 +76,17 @@ OutputBlob make_output(const OutputInfo& info, Bytes bytes) {
 std::vector<OutputInfo> mesh_outputs(const std::string& stem, MeshFormat made_by_default) {
   std::vector<OutputInfo> outputs;
   for (const MeshFormatInfo& format : mesh_formats)
-    outputs.push_back({stem + "." + std::string(format.extension), std::string(format.media_type), std::string(format.title), "",
-                       format.format == made_by_default});
+    outputs.push_back({stem + "." + std::string(format.extension), std::string(format.media_type),
+                       std::string(format.title), "", format.format == made_by_default});
   return outputs;
 }
 
-std::vector<OutputBlob> write_mesh_outputs(const OperationCall& call, const std::vector<OutputInfo>& outputs, const Model& model) {
+std::vector<OutputBlob> write_mesh_outputs(const OperationCall& call, const std::vector<OutputInfo>& outputs,
+                                           const Model& model) {
   std::vector<OutputBlob> written;
   for (const OutputInfo& info : outputs)
-    if (call.wants(info.name)) written.push_back(make_output(info, write_model(model, *mesh_format_of_extension(info.name), call.context)));
+    if (call.wants(info.name))
+      written.push_back(make_output(info, write_model(model, *mesh_format_of_extension(info.name), call.context)));
   return written;
 }
 

@@ -11,9 +11,9 @@
 namespace formwright {
 
 struct LoadedModel {
-  Model model;                          // repaired
-  std::vector<std::string> repairs;     // sentences
-  std::string file_format;              // "obj", ...; "sample" for one of ours
+  Model model;                                  // repaired
+  std::vector<std::string> repairs;             // sentences
+  std::string file_format;                      // "obj", ...; "sample" for one of ours
   double seconds_read = 0, seconds_repair = 0;  // of the first time; 0 when found in the session
   std::string key;
 };
@@ -29,6 +29,7 @@ OutputBlob make_output(const OutputInfo& info, Bytes bytes);
 /// One output a format, "<stem>.<extension>"; the one of `made_by_default` without being asked for.
 std::vector<OutputInfo> mesh_outputs(const std::string& stem, MeshFormat made_by_default);
 /// Those of them that the call wants.
-std::vector<OutputBlob> write_mesh_outputs(const OperationCall& call, const std::vector<OutputInfo>& outputs, const Model& model);
+std::vector<OutputBlob> write_mesh_outputs(const OperationCall& call, const std::vector<OutputInfo>& outputs,
+                                           const Model& model);
 
 }  // namespace formwright

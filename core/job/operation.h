@@ -19,9 +19,11 @@ struct InputInfo {
   std::vector<std::string> extensions;
   bool required = true;
   bool accepts_sample = false;
-  std::string object_file = "";  // its name in the folder of a measured object, "" when it has none: --object DIR gives them all
-  std::vector<std::string> folder_files = {};  // a zip of these files, which the command line packs from a folder; empty for plain files
-  bool repeatable = false;                     // more of them as name_2, name_3, ...
+  std::string object_file =
+      "";  // its name in the folder of a measured object, "" when it has none: --object DIR gives them all
+  std::vector<std::string> folder_files =
+      {};                   // a zip of these files, which the command line packs from a folder; empty for plain files
+  bool repeatable = false;  // more of them as name_2, name_3, ...
 };
 
 struct OutputInfo {
@@ -38,7 +40,7 @@ struct InputBlob {
   std::string sha256, file_name;
   std::shared_ptr<const Bytes> bytes;  // null for a sample
   std::string sample;
-  int sample_vertices = 0;             // 0: the sample's default
+  int sample_vertices = 0;  // 0: the sample's default
   /// Names the content: equal keys, equal content.
   std::string key() const { return bytes ? sha256 : "sample:" + sample + ":" + std::to_string(sample_vertices); }
 };

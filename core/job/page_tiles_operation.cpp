@@ -9,7 +9,10 @@
 namespace formwright {
 namespace {
 
-std::vector<OutputInfo> outputs() { return {{"pages.pdf", "application/pdf", "Pages", "At exact size: print at 100 %, without fitting to the page.", true}}; }
+std::vector<OutputInfo> outputs() {
+  return {
+      {"pages.pdf", "application/pdf", "Pages", "At exact size: print at 100 %, without fitting to the page.", true}};
+}
 
 OperationResult run(const OperationCall& call) {
   const auto options = read_parameters<PageTilesOptions>(call.parameters);
@@ -26,7 +29,8 @@ OperationResult run(const OperationCall& call) {
     picture = read_picture(*input.bytes, input.file_name, "drawing");
     double width = options.width_mm.value_or(0);
     if (width <= 0 && png) width = read_png16(*input.bytes, input.file_name, "drawing").pixel_width_mm * picture.width;
-    if (width <= 0) throw Error(ErrorCode::invalid_input, "width_mm", "The picture does not tell its size: give its width.");
+    if (width <= 0)
+      throw Error(ErrorCode::invalid_input, "width_mm", "The picture does not tell its size: give its width.");
     content = {&picture, nullptr, width, width * picture.height / picture.width};
   } else {
     drawing = read_svg_drawing(*input.bytes, {}, context);

@@ -18,10 +18,12 @@ constexpr double solid_tolerance = 1e-3;
 constexpr double unbounded_mm = 1e30;  // stands for "no bound" in relief.ply, where infinity has no safe spelling
 
 std::vector<OutputInfo> outputs() {
-  return {{"relief.ply", "application/x-ply", "PLY", "The deformed model with lambda, its bounds, visibility and normal error of every vertex.", true},
+  return {{"relief.ply", "application/x-ply", "PLY",
+           "The deformed model with lambda, its bounds, visibility and normal error of every vertex.", true},
           {"relief.stl", "model/stl", "STL", "Watertight solid with its plate, lying on its back.", true},
           {"relief.glb", "model/gltf-binary", "GLB", "The deformed model on its plate, to look at.", true},
-          {"heightmap.png", "image/png", "Height map", "16-bit grey, white is the full thickness; its scale is in the report.", true},
+          {"heightmap.png", "image/png", "Height map",
+           "16-bit grey, white is the full thickness; its scale is in the report.", true},
           {"relief.3mf", "model/3mf", "3MF", "The same solid for a slicer.", false},
           {"relief.obj", "model/obj", "OBJ", "The same solid for a modeller.", false}};
 }
@@ -34,7 +36,8 @@ std::vector<ReportField> report_fields() {
           {"energy_linear", "Energy of linear compression", "", "eq. (3.13) for depths scaled into the same slab"},
           {"normal_error_mean_deg", "Normal error", "°", "mean over visible faces, weighted by area"},
           {"normal_error_linear_mean_deg", "Normal error of linear compression", "°", "the same"},
-          {"normal_error_mean_deg_image", "Normal error in the picture", "°", "mean over visible faces, weighted by projected area"},
+          {"normal_error_mean_deg_image", "Normal error in the picture", "°",
+           "mean over visible faces, weighted by projected area"},
           {"normal_error_linear_mean_deg_image", "Normal error of linear compression in the picture", "°", "the same"},
           {"bound_violation_max_mm", "Largest bound violation", "mm", "over all bounded vertices"},
           {"order_violation_max_mm", "Largest depth-order violation", "mm", "over all rows of eq. (3.12)"},
@@ -45,7 +48,8 @@ std::vector<ReportField> report_fields() {
           {"method_used", "Solver used", "", "exchange or interior_point"},
           {"factor_reused", "Factorisation reused", "", "from an earlier job on the same model and viewpoint"},
           {"scale_mm_per_unit", "Scale", "mm", "of the scaled model per unit of the file"},
-          {"viewpoint_mm", "Viewpoint", "mm", "in the scaled model's axes; straight on: a point of the plane from which lambda counts"},
+          {"viewpoint_mm", "Viewpoint", "mm",
+           "in the scaled model's axes; straight on: a point of the plane from which lambda counts"},
           {"direction", "Looking direction", "", "unit vector in the model's axes"},
           {"right", "Right", "", "unit vector in the model's axes"},
           {"up", "Up", "", "unit vector in the model's axes"},
@@ -54,7 +58,8 @@ std::vector<ReportField> report_fields() {
           {"size_mm", "Size of the solid", "mm", "width, height, depth with the plate"},
           {"watertight", "Watertight", "", "of the solid, checked"},
           {"heightmap_pixel_mm", "Height map pixel", "mm", "width and height of a pixel"},
-          {"heightmap_mm_per_level", "Height map level", "mm", "height of one of 65535 levels; level 0 is the plate's front"},
+          {"heightmap_mm_per_level", "Height map level", "mm",
+           "height of one of 65535 levels; level 0 is the plate's front"},
           {"seconds_read", "Reading", "s", "file to repaired model; 0 when known from before"},
           {"seconds_setup", "Set-up", "s", "viewpoint, rays and energy; 0 when known from before"},
           {"seconds_solve", "Solving", "s", "factorisation included"},
@@ -104,7 +109,8 @@ std::vector<VertexColumn> ply_columns(const ReliefSolver& solver, const Relief& 
           {"normal_error_deg", relief.normal_error.vertex_deg, ColumnKind::float64}};
 }
 
-void report_relief(Json& report, const LoadedModel& loaded, const ReliefSolver& solver, const Relief& relief, const ReliefOptions& options) {
+void report_relief(Json& report, const LoadedModel& loaded, const ReliefSolver& solver, const Relief& relief,
+                   const ReliefOptions& options) {
   const ViewFrame& frame = solver.frame();
   report["vertices"] = loaded.model.mesh.vertex_count();
   report["faces"] = loaded.model.mesh.face_count();
@@ -167,7 +173,8 @@ OperationResult run_relief(const OperationCall& call) {
   report["factor_reused"] = reused;
 
   const ViewFrame& frame = solver->frame();
-  const PlateSize plate{options.width_mm + 2 * options.margin_mm, frame.image_height * options.width_mm + 2 * options.margin_mm};
+  const PlateSize plate{options.width_mm + 2 * options.margin_mm,
+                        frame.image_height * options.width_mm + 2 * options.margin_mm};
   report["size_mm"] = {plate.width_mm, plate.height_mm, options.plate_mm + options.thickness_mm};
   const auto add = [&](const char* name, Bytes bytes) {
     for (const OutputInfo& info : outputs())
@@ -182,10 +189,12 @@ OperationResult run_relief(const OperationCall& call) {
     write.columns = columns;
     add("relief.ply", write_model(model, MeshFormat::ply, write, context));
   }
-  if (call.wants("relief.glb")) add("relief.glb", write_model(display_model(*solver, relief, plate, options), MeshFormat::glb, context));
+  if (call.wants("relief.glb"))
+    add("relief.glb", write_model(display_model(*solver, relief, plate, options), MeshFormat::glb, context));
   const bool wants_solid = call.wants("relief.stl") || call.wants("relief.3mf") || call.wants("relief.obj");
   if (wants_solid || call.wants("heightmap.png")) {
-    const HeightMap map = make_height_map(relief.moved, solver->F(), options.width_mm, plate, options.pixel_mm, options.thickness_mm, context);
+    const HeightMap map = make_height_map(relief.moved, solver->F(), options.width_mm, plate, options.pixel_mm,
+                                          options.thickness_mm, context);
     if (call.wants("heightmap.png")) {
       report["heightmap_pixel_mm"] = {map.pitch_x_mm, map.pitch_y_mm};
       report["heightmap_mm_per_level"] = options.thickness_mm / 65535;
@@ -197,7 +206,8 @@ OperationResult run_relief(const OperationCall& call) {
       image.levels.reserve(map.height_mm.size());
       for (int row = map.rows - 1; row >= 0; --row)  // pictures start at the top
         for (int column = 0; column < map.columns; ++column)
-          image.levels.push_back(static_cast<std::uint16_t>(std::lround(std::min(1.0, static_cast<double>(map.at(row, column)) / options.thickness_mm) * 65535)));
+          image.levels.push_back(static_cast<std::uint16_t>(
+              std::lround(std::min(1.0, static_cast<double>(map.at(row, column)) / options.thickness_mm) * 65535)));
       add("heightmap.png", write_png16(image));
     }
     if (wants_solid) {

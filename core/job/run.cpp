@@ -13,14 +13,17 @@
 namespace formwright {
 namespace {
 
-/// Eigen cuts matrix products into blocks by the caches it finds, and with them the order of sums: the same job would differ in its last bits from one processor to the
-/// next, and where a border is a tie, visibly. These are the sizes that Eigen takes where it cannot ask, as in WebAssembly.
+/// Eigen cuts matrix products into blocks by the caches it finds, and with them the order of sums: the same job would
+/// differ in its last bits from one processor to the next, and where a border is a tie, visibly. These are the sizes
+/// that Eigen takes where it cannot ask, as in WebAssembly.
 void sum_alike_on_every_processor() {
   static std::once_flag once;
   std::call_once(once, [] { Eigen::setCpuCacheSizes(32 << 10, 256 << 10, 2 << 20); });
 }
 
-Error invalid(const std::string& where, const std::string& sentence) { return {ErrorCode::invalid_input, where, sentence}; }
+Error invalid(const std::string& where, const std::string& sentence) {
+  return {ErrorCode::invalid_input, where, sentence};
+}
 
 const Operation& operation_of(const Json& message) {
   if (!message.is_object()) throw invalid("", "A job must be a JSON object.");
@@ -52,8 +55,10 @@ InputBlob read_input(const std::string& name, const Json& value) {
       throw invalid(name, "The number of vertices of a sample must be a whole number up to 5 million.");
     input.sample_vertices = it->get<int>();
   }
-  if (input.sha256.empty() == input.sample.empty()) throw invalid(name, "The input " + name + " must have either sha256 or sample.");
-  if (!input.sha256.empty() && (input.sha256.size() != 64 || input.sha256.find_first_not_of("0123456789abcdef") != std::string::npos))
+  if (input.sha256.empty() == input.sample.empty())
+    throw invalid(name, "The input " + name + " must have either sha256 or sample.");
+  if (!input.sha256.empty() &&
+      (input.sha256.size() != 64 || input.sha256.find_first_not_of("0123456789abcdef") != std::string::npos))
     throw invalid(name, "sha256 of the input " + name + " must be 64 lower-case hexadecimal digits.");
   return input;
 }
@@ -62,8 +67,10 @@ void check_sample(const std::string& input_name, const InputBlob& input) {
   std::string list;
   for (const SampleInfo& sample : sample_catalog()) {
     if (sample.name == input.sample) {
-      if (input.sample_vertices != 0 && (input.sample_vertices < least_sample_vertices || input.sample_vertices > most_sample_vertices))
-        throw invalid(input_name, "A sample has from " + std::to_string(least_sample_vertices) + " to " + std::to_string(most_sample_vertices) + " vertices.");
+      if (input.sample_vertices != 0 &&
+          (input.sample_vertices < least_sample_vertices || input.sample_vertices > most_sample_vertices))
+        throw invalid(input_name, "A sample has from " + std::to_string(least_sample_vertices) + " to " +
+                                      std::to_string(most_sample_vertices) + " vertices.");
       return;
     }
     list += (list.empty() ? "" : ", ") + sample.name;
@@ -75,8 +82,8 @@ void check_sample(const std::string& input_name, const InputBlob& input) {
 bool is_repeat_of(const std::string& name, const std::string& candidate) {
   if (!candidate.starts_with(name + "_")) return false;
   const std::string number = candidate.substr(name.size() + 1);
-  return !number.empty() && number.size() <= 2 && number.find_first_not_of("0123456789") == std::string::npos && number[0] != '0' && std::stoi(number) >= 2 &&
-         std::stoi(number) <= 64;
+  return !number.empty() && number.size() <= 2 && number.find_first_not_of("0123456789") == std::string::npos &&
+         number[0] != '0' && std::stoi(number) >= 2 && std::stoi(number) <= 64;
 }
 
 std::map<std::string, InputBlob> read_inputs(const Operation& operation, const Json& message) {
@@ -86,8 +93,11 @@ std::map<std::string, InputBlob> read_inputs(const Operation& operation, const J
   const Json& given = it == message.end() ? empty : *it;
   if (!given.is_object()) throw invalid("inputs", "The inputs must be a JSON object.");
   for (const auto& [name, value] : given.items()) {
-    const auto info = std::find_if(operation.inputs.begin(), operation.inputs.end(), [&n = name](const InputInfo& i) { return i.name == n || (i.repeatable && is_repeat_of(i.name, n)); });
-    if (info == operation.inputs.end()) throw invalid(name, "The operation " + operation.name + " has no input called " + name + ".");
+    const auto info = std::find_if(operation.inputs.begin(), operation.inputs.end(), [&n = name](const InputInfo& i) {
+      return i.name == n || (i.repeatable && is_repeat_of(i.name, n));
+    });
+    if (info == operation.inputs.end())
+      throw invalid(name, "The operation " + operation.name + " has no input called " + name + ".");
     InputBlob input = read_input(name, value);
     if (!input.sample.empty()) {
       if (!info->accepts_sample) throw invalid(name, "The input " + name + " must be a file, not a sample.");
@@ -97,7 +107,8 @@ std::map<std::string, InputBlob> read_inputs(const Operation& operation, const J
   }
   for (const InputInfo& info : operation.inputs)
     if (info.required && !inputs.contains(info.name))
-      throw invalid(info.name, "The operation " + operation.name + " needs an input called " + info.name + (info.accepts_sample ? ": a file or a sample." : "."));
+      throw invalid(info.name, "The operation " + operation.name + " needs an input called " + info.name +
+                                   (info.accepts_sample ? ": a file or a sample." : "."));
   return inputs;
 }
 
@@ -129,7 +140,8 @@ Json parameters_of(const Json& message) {
 /// NaN and infinity have no JSON: a report that holds one is a bug of ours, not an output.
 void require_finite(const Json& value, const std::string& path) {
   if (value.is_number_float() && !std::isfinite(value.get<double>()))
-    throw Error(ErrorCode::internal, path, "The figure " + path + " of the report is not finite: this is a bug in Formwright.");
+    throw Error(ErrorCode::internal, path,
+                "The figure " + path + " of the report is not finite: this is a bug in Formwright.");
   if (value.is_structured())
     for (const auto& [name, item] : value.items()) require_finite(item, path + (path.empty() ? "" : ".") + name);
 }
@@ -142,7 +154,8 @@ std::optional<JobError> caught(const Body& body) {
   } catch (const Error& error) {
     return JobError{error.code(), error.where(), error.what()};
   } catch (const std::bad_alloc&) {
-    return JobError{ErrorCode::out_of_memory, "", "There is not enough memory for this: use a smaller model, or the native worker."};
+    return JobError{ErrorCode::out_of_memory, "",
+                    "There is not enough memory for this: use a smaller model, or the native worker."};
   } catch (const std::exception& error) {
     return JobError{ErrorCode::internal, "", std::string("Formwright made a mistake: ") + error.what()};
   }
@@ -172,9 +185,13 @@ JobResult run_job(const Json& message, const BlobSource& blobs, Session& session
     for (auto& [name, input] : inputs) {
       if (!input.sample.empty()) continue;
       input.bytes = blobs(input.sha256);
-      if (!input.bytes) throw Error(ErrorCode::invalid_input, name, "The file for the input " + name + " has not arrived: send it again.");
+      if (!input.bytes)
+        throw Error(ErrorCode::invalid_input, name,
+                    "The file for the input " + name + " has not arrived: send it again.");
     }
-    const auto wants = [&](const std::string& name) { return std::find(wanted.begin(), wanted.end(), name) != wanted.end(); };
+    const auto wants = [&](const std::string& name) {
+      return std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+    };
     OperationResult made = operation.run({inputs, parameters, wants, session, context});
     if (const double memory = context.peak_memory_mb(); memory > 0) made.report["peak_memory_mb"] = memory;
     require_finite(made.report, "");
@@ -192,7 +209,8 @@ Json error_json(const JobError& error) {
 Json result_json(const JobResult& result) {
   if (result.error) return error_json(*result.error);
   Json outputs = Json::object();
-  for (const OutputBlob& output : result.outputs) outputs[output.name] = {{"media_type", output.media_type}, {"bytes", output.bytes->size()}};
+  for (const OutputBlob& output : result.outputs)
+    outputs[output.name] = {{"media_type", output.media_type}, {"bytes", output.bytes->size()}};
   return {{"report", result.report}, {"outputs", outputs}};
 }
 

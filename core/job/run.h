@@ -17,7 +17,7 @@ struct JobError {
 };
 
 struct JobResult {
-  std::optional<JobError> error;     // set: nothing else is
+  std::optional<JobError> error;  // set: nothing else is
   Json report;
   std::vector<OutputBlob> outputs;
 };

@@ -23,7 +23,12 @@ OperationResult run(const OperationCall& call) {
   if (call.wants("grid.svg")) result.outputs.push_back(make_output(outputs().back(), write_svg(grid.drawing)));
   Json cells = Json::array();
   for (const TestCell& cell : grid.cells)
-    cells.push_back({{"name", cell.name}, {"power_percent", cell.power_percent}, {"speed_mm_per_s", cell.speed_mm_per_s}, {"z_mm", cell.z_mm}, {"x_mm", cell.x_mm}, {"y_mm", cell.y_mm}});
+    cells.push_back({{"name", cell.name},
+                     {"power_percent", cell.power_percent},
+                     {"speed_mm_per_s", cell.speed_mm_per_s},
+                     {"z_mm", cell.z_mm},
+                     {"x_mm", cell.x_mm},
+                     {"y_mm", cell.y_mm}});
   result.report["cells"] = cells;
   result.report["seconds_plan"] = watch.seconds();
   result.report["peak_memory_mb"] = call.context.peak_memory_mb();

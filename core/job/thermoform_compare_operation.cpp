@@ -10,8 +10,10 @@ namespace formwright {
 namespace {
 
 std::vector<OutputInfo> outputs() {
-  return {{"errors.ply", "application/x-ply", "Error map", "The simulated sheet with the error around every vertex (−1 where nothing was measured).", true},
-          {"residuals.csv", "text/csv", "Residuals", "One line for each measured point: where the simulation has it and how far off.", true},
+  return {{"errors.ply", "application/x-ply", "Error map",
+           "The simulated sheet with the error around every vertex (−1 where nothing was measured).", true},
+          {"residuals.csv", "text/csv", "Residuals",
+           "One line for each measured point: where the simulation has it and how far off.", true},
           {"sheet.ply", "application/x-ply", "Formed sheet", "As thermoform-simulate writes it.", false}};
 }
 
@@ -23,9 +25,11 @@ std::vector<ReportField> report_fields() {
           {"error_90_mm", "90 % of errors below", "mm", "percentile"},
           {"error_95_mm", "95 % of errors below", "mm", "percentile"},
           {"error_max_mm", "Largest error", "mm", "over all points"},
-          {"error_mean_without_outliers_mm", "Mean error without outliers", "mm", "without points more than 5 robust standard deviations above the median"},
+          {"error_mean_without_outliers_mm", "Mean error without outliers", "mm",
+           "without points more than 5 robust standard deviations above the median"},
           {"outliers", "Outliers", "", "number of those points"},
-          {"error_along_normal_mean_mm", "Mean error along the normal", "mm", "signed: positive where the measured sheet lies outside of the simulated one"},
+          {"error_along_normal_mean_mm", "Mean error along the normal", "mm",
+           "signed: positive where the measured sheet lies outside of the simulated one"},
           {"sigma_mean_mm", "Mean measuring error", "mm", "mean of sigma_mm as measured"},
           {"measured_surface", "Measured surface", "", "mid or outer"},
           {"triangles", "Triangles", "", "of the sheet"},
@@ -46,7 +50,8 @@ InputInfo measured_input_info() {
 }
 
 /// The mean error of the points that fall on the faces around each vertex, weighted by nearness.
-Bytes error_map(const FormedSheet& sheet, const std::vector<MeasuredPoint>& points, const Comparison& comparison, double print_scale, Context& context) {
+Bytes error_map(const FormedSheet& sheet, const std::vector<MeasuredPoint>& points, const Comparison& comparison,
+                double print_scale, Context& context) {
   const SheetLookup lookup(sheet);
   const Eigen::Index n = sheet.mesh.V.rows();
   Eigen::VectorXd error = Eigen::VectorXd::Zero(n), weight = Eigen::VectorXd::Zero(n);
@@ -61,7 +66,8 @@ Bytes error_map(const FormedSheet& sheet, const std::vector<MeasuredPoint>& poin
   for (Eigen::Index v = 0; v < n; ++v) error[v] = weight[v] > 1e-9 ? error[v] / weight[v] : -1;
   Model model;
   model.mesh = sheet.mesh;
-  const std::vector<VertexColumn> columns = {{"error_mm", error, ColumnKind::float64}, {"measured_weight", weight, ColumnKind::float64}};
+  const std::vector<VertexColumn> columns = {{"error_mm", error, ColumnKind::float64},
+                                             {"measured_weight", weight, ColumnKind::float64}};
   WriteOptions write;
   write.columns = columns;
   return write_model(model, MeshFormat::ply, write, context);
@@ -73,8 +79,9 @@ Bytes residuals(const std::vector<MeasuredPoint>& points, const Comparison& comp
   for (std::size_t i = 0; i < points.size(); ++i) {
     const MeasuredPoint& p = points[i];
     const ComparedPoint& c = comparison.points[i];
-    std::snprintf(line, sizeof line, "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", p.sheet_mm.x(), p.sheet_mm.y(), p.place_mm.x(), p.place_mm.y(), p.place_mm.z(),
-                  c.simulated_mm.x(), c.simulated_mm.y(), c.simulated_mm.z(), c.error_mm);
+    std::snprintf(line, sizeof line, "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", p.sheet_mm.x(), p.sheet_mm.y(),
+                  p.place_mm.x(), p.place_mm.y(), p.place_mm.z(), c.simulated_mm.x(), c.simulated_mm.y(),
+                  c.simulated_mm.z(), c.error_mm);
     text += line;
   }
   const ByteView view = as_bytes(text);
@@ -102,8 +109,9 @@ OperationResult run(const OperationCall& call) {
   const ObjectSetup& setup = *simulation.setup;
   FormedSheet sheet = simulated.result->sheet;
   sheet.mesh.V.col(2).array() += setup.base_plate_end_z_mm;
-  const Comparison comparison = compare(sheet, points, setup.measured_surface, simulation.options.clamp_height_mm + setup.base_plate_end_z_mm,
-                                        simulation.options.sheet_thickness_mm, effects, setup.base_plate_end_z_mm, call.context);
+  const Comparison comparison =
+      compare(sheet, points, setup.measured_surface, simulation.options.clamp_height_mm + setup.base_plate_end_z_mm,
+              simulation.options.sheet_thickness_mm, effects, setup.base_plate_end_z_mm, call.context);
   OperationResult result;
   Json& report = result.report;
   double sigma = 0;
@@ -128,7 +136,8 @@ OperationResult run(const OperationCall& call) {
     for (const OutputInfo& info : outputs())
       if (info.name == name) result.outputs.push_back(make_output(info, std::move(bytes)));
   };
-  if (call.wants("errors.ply")) add("errors.ply", error_map(sheet, points, comparison, effects.print_scale, call.context));
+  if (call.wants("errors.ply"))
+    add("errors.ply", error_map(sheet, points, comparison, effects.print_scale, call.context));
   if (call.wants("residuals.csv")) add("residuals.csv", residuals(points, comparison));
   if (call.wants("sheet.ply")) add("sheet.ply", write_sheet_ply(sheet, 0, call.context));
   return result;

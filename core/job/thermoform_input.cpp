@@ -86,18 +86,23 @@ Json merged_parameters(const OperationCall& call, const Json& parameters, const 
 Json parameters_among(const Json& parameters, const std::vector<ParameterInfo>& infos, bool declared) {
   Json chosen = Json::object();
   for (const auto& [name, value] : parameters.items())
-    if (std::any_of(infos.begin(), infos.end(), [&n = name](const ParameterInfo& info) { return info.name == n; }) == declared) chosen[name] = value;
+    if (std::any_of(infos.begin(), infos.end(), [&n = name](const ParameterInfo& info) { return info.name == n; }) ==
+        declared)
+      chosen[name] = value;
   return chosen;
 }
 
 SimulationCall simulation_call(const OperationCall& call, const Json& parameters) {
   SimulationCall simulation;
-  if (const auto setup = call.inputs.find("setup"); setup != call.inputs.end()) simulation.setup = read_object_setup(*setup->second.bytes);
+  if (const auto setup = call.inputs.find("setup"); setup != call.inputs.end())
+    simulation.setup = read_object_setup(*setup->second.bytes);
   simulation.options = read_parameters<ThermoformOptions>(merged_parameters(call, parameters, simulation.setup));
   return simulation;
 }
 
-PlacedMould placed_mould(const OperationCall& call, const ThermoformOptions& options) { return placed(call, {options, std::nullopt}); }
+PlacedMould placed_mould(const OperationCall& call, const ThermoformOptions& options) {
+  return placed(call, {options, std::nullopt});
+}
 
 Simulated simulate(const OperationCall& call, const SimulationCall& simulation) {
   Simulated simulated;
@@ -105,15 +110,18 @@ Simulated simulate(const OperationCall& call, const SimulationCall& simulation) 
     const auto span = call.context.span(0, 0.1, "Reading the model");
     simulated.mould = placed(call, simulation);
   }
-  const std::string key = "formed:" + simulated.mould.loaded->key + (simulation.setup ? ":as-it-is" : "") + ":" + write_parameters(simulation.options).dump();
+  const std::string key = "formed:" + simulated.mould.loaded->key + (simulation.setup ? ":as-it-is" : "") + ":" +
+                          write_parameters(simulation.options).dump();
   if (auto known = call.session.find<const FormedResult>(key)) {
     simulated.result = std::move(known);
     simulated.reused = true;
     return simulated;
   }
   const auto span = call.context.span(0.1, 1, "Forming");
-  simulated.result = std::make_shared<const FormedResult>(form_sheet(simulated.mould.shape, simulated.mould.placement, simulation.options, call.context));
-  const double megabytes = static_cast<double>(simulated.result->frames.size() + 2) * static_cast<double>(simulated.result->sheet.mesh.V.rows()) * 28e-6;
+  simulated.result = std::make_shared<const FormedResult>(
+      form_sheet(simulated.mould.shape, simulated.mould.placement, simulation.options, call.context));
+  const double megabytes = static_cast<double>(simulated.result->frames.size() + 2) *
+                           static_cast<double>(simulated.result->sheet.mesh.V.rows()) * 28e-6;
   call.session.keep(key, simulated.result, megabytes);
   return simulated;
 }
@@ -125,7 +133,8 @@ FormedModel formed_model(const OperationCall& call, const ThermoformOptions& opt
     formed.loaded = std::move(mould.loaded);
     formed.placement = std::move(mould.placement);
     formed.real_placement = displaced(formed.placement, options);
-    formed.sheet = std::make_shared<const FormedSheet>(read_sheet_ply(*sheet->second.bytes, sheet->second.file_name, call.context));
+    formed.sheet = std::make_shared<const FormedSheet>(
+        read_sheet_ply(*sheet->second.bytes, sheet->second.file_name, call.context));
     return formed;
   }
   Simulated simulated = simulate(call, {options, std::nullopt});
@@ -159,7 +168,8 @@ FormedSheet read_sheet_ply(ByteView bytes, const std::string& file_name, Context
   const auto column = [&](const char* name) -> const Eigen::VectorXd& {
     for (const VertexColumn& candidate : file.columns)
       if (candidate.name == name) return candidate.values;
-    throw Error(ErrorCode::invalid_input, "sheet", file_name + ": there is no column “" + name + "”; give the sheet.ply that thermoform-simulate wrote.");
+    throw Error(ErrorCode::invalid_input, "sheet",
+                file_name + ": there is no column “" + name + "”; give the sheet.ply that thermoform-simulate wrote.");
   };
   sheet.sheet_mm.resize(sheet.mesh.V.rows(), 2);
   sheet.sheet_mm.col(0) = column(column_names[0]);

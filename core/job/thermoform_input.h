@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// What the thermoforming operations share: the model as it stands in the machine, and the sheet formed over it, computed once a
-// session or read from a file.
+// What the thermoforming operations share: the model as it stands in the machine, and the sheet formed over it,
+// computed once a session or read from a file.
 #include <memory>
 #include <optional>
 #include <string>
@@ -43,7 +43,8 @@ PlacedMould placed_mould(const OperationCall& call, const ThermoformOptions& opt
 std::optional<MachineProfile> machine_profile(const OperationCall& call);
 
 /// `parameters`, those given by name, over the profile's and the set-up's (with_profile, machine_profile.h).
-Json merged_parameters(const OperationCall& call, const Json& parameters, const std::optional<ObjectSetup>& setup = std::nullopt);
+Json merged_parameters(const OperationCall& call, const Json& parameters,
+                       const std::optional<ObjectSetup>& setup = std::nullopt);
 
 /// Those of `parameters` that `infos` declare; the others where `declared` is false.
 Json parameters_among(const Json& parameters, const std::vector<ParameterInfo>& infos, bool declared = true);

@@ -10,9 +10,12 @@ namespace formwright {
 namespace {
 
 std::vector<OutputInfo> outputs() {
-  return {{"sheet.ply", "application/x-ply", "Formed sheet", "Middle surface with the sheet's coordinates, thickness, stretch and time of contact of every vertex.", true},
-          {"forming.glb", "model/gltf-binary", "Animation", "The three phases as morph targets, coloured by thickness.", true},
-          {"mould.obj", "model/obj", "Placed model", "The model in machine coordinates.", false}};
+  return {
+      {"sheet.ply", "application/x-ply", "Formed sheet",
+       "Middle surface with the sheet's coordinates, thickness, stretch and time of contact of every vertex.", true},
+      {"forming.glb", "model/gltf-binary", "Animation", "The three phases as morph targets, coloured by thickness.",
+       true},
+      {"mould.obj", "model/obj", "Placed model", "The model in machine coordinates.", false}};
 }
 
 std::vector<ReportField> report_fields() {
@@ -34,9 +37,12 @@ std::vector<ReportField> report_fields() {
           {"formed_area_mm2", "Formed area", "mm²", "of triangles that touch with every corner"},
           {"unformed_area_mm2", "Unformed area", "mm²", "of the others: bridges, fillets in corners"},
           {"touching_share", "In contact", "", "share of the free vertices that touch"},
-          {"webbing_area_mm2", "Squeezed area", "mm²", "compressed by more than a tenth in some direction: folds and webs start here"},
-          {"mould_edge_penetration_mm", "Edge penetration", "mm", "deepest sharp point of the model beyond the sheet's inner face"},
-          {"vertex_distance_min_mm", "Smallest distance", "mm", "of the sheet's middle surface vertices from model and plate; half the thickness where it touches"},
+          {"webbing_area_mm2", "Squeezed area", "mm²",
+           "compressed by more than a tenth in some direction: folds and webs start here"},
+          {"mould_edge_penetration_mm", "Edge penetration", "mm",
+           "deepest sharp point of the model beyond the sheet's inner face"},
+          {"vertex_distance_min_mm", "Smallest distance", "mm",
+           "of the sheet's middle surface vertices from model and plate; half the thickness where it touches"},
           {"volume_drift", "Volume drift", "", "relative change of the plastic's volume"},
           {"elastic_energy_mj", "Elastic energy", "mJ", "stored in the sheet at the end"},
           {"steps", "Time steps", "", "accepted"},
@@ -68,11 +74,15 @@ Json warnings(const FormedResult& result, const ThermoformOptions& o, bool water
   Json list = Json::array();
   const double thin = 0.3 * o.sheet_thickness_mm;
   if (result.least_thickness_mm < thin)
-    list.push_back("The sheet thins to " + figure(result.least_thickness_mm) + " mm, less than a third of its thickness: it may tear there. A lower model, rounder edges or a thicker sheet help.");
+    list.push_back(
+        "The sheet thins to " + figure(result.least_thickness_mm) +
+        " mm, less than a third of its thickness: it may tear there. A lower model, rounder edges or a thicker sheet help.");
   if (result.webbing_area_mm2 > 0.005 * (result.formed_area_mm2 + result.unformed_area_mm2))
-    list.push_back("Parts of the sheet are squeezed (" + figure(result.webbing_area_mm2 / 100) + " cm²): it may fold into webs there. More distance between tall parts, or from the clamp, helps.");
+    list.push_back("Parts of the sheet are squeezed (" + figure(result.webbing_area_mm2 / 100) +
+                   " cm²): it may fold into webs there. More distance between tall parts, or from the clamp, helps.");
   if (result.unformed_area_mm2 > 0.02 * (result.formed_area_mm2 + result.unformed_area_mm2))
-    list.push_back(figure(result.unformed_area_mm2 / 100) + " cm² of the sheet do not reach the model or the plate: corners and gaps stay rounded there.");
+    list.push_back(figure(result.unformed_area_mm2 / 100) +
+                   " cm² of the sheet do not reach the model or the plate: corners and gaps stay rounded there.");
   if (result.reached_time_limit) list.push_back("The sheet was still moving when the time limit ended.");
   if (!watertight) list.push_back("The model has holes: it can be formed over, but a mould needs it closed.");
   return list;
@@ -98,7 +108,8 @@ OperationResult run(const OperationCall& call) {
     call.context.check_cancelled();
   };
   if (call.wants("sheet.ply")) add("sheet.ply", write_sheet_ply(formed.sheet, shift_z, call.context));
-  if (call.wants("forming.glb")) add("forming.glb", write_forming_glb(formed, placed, o.sheet_thickness_mm, call.context));
+  if (call.wants("forming.glb"))
+    add("forming.glb", write_forming_glb(formed, placed, o.sheet_thickness_mm, call.context));
   if (call.wants("mould.obj")) {
     Model model;
     model.mesh = placed;
@@ -128,7 +139,9 @@ OperationResult run(const OperationCall& call) {
   report["raise_end_s"] = formed.phase_end_s[1];
   report["forming_end_s"] = formed.phase_end_s[2];
   report["pressure_end_kpa"] = formed.pressure_end_kpa;
-  report["stopped_by"] = formed.reached_time_limit ? "time_limit" : formed.touching_share >= 1 ? "all_touching" : "at_rest";
+  report["stopped_by"] = formed.reached_time_limit    ? "time_limit"
+                         : formed.touching_share >= 1 ? "all_touching"
+                                                      : "at_rest";
   report["thickness_min_mm"] = formed.least_thickness_mm;
   report["thickness_mean_mm"] = formed.mean_thickness_mm;
   report["stretch_max"] = sheet.stretch.maxCoeff();

@@ -14,17 +14,29 @@ namespace {
 constexpr int formed_texture_px = 2048;
 
 std::vector<InputInfo> inputs() {
-  return {mould_input_info(), sheet_input_info(),
+  return {mould_input_info(),
+          sheet_input_info(),
           {"material", "Material file", "The MTL file of an OBJ.", {"mtl"}, false, false, ""},
-          {"texture", "Picture", "A PNG or JPEG, laid by the model's texture coordinates in place of its own.", {"png", "jpg", "jpeg"}, false, false, ""},
+          {"texture",
+           "Picture",
+           "A PNG or JPEG, laid by the model's texture coordinates in place of its own.",
+           {"png", "jpg", "jpeg"},
+           false,
+           false,
+           ""},
           profile_input_info()};
 }
 
 std::vector<OutputInfo> outputs() {
-  return {{"print.png", "image/png", "Picture", "The whole sheet with its marks; the file says its size.", true},
-          {"print.pdf", "application/pdf", "Pages", "At true size on the paper chosen, then where the marks are on the frame. Print at 100 %.", true},
-          {"formed.glb", "model/gltf-binary", "Formed sheet", "The formed sheet with the print on it, to look at; upright, y up.", true},
-          {"coverage.ply", "application/x-ply", "Coverage", "The model in machine coordinates: per vertex the reason (0 coloured, 1 hidden, 2 not touched, 3 below the plate, 4 outside), its place on the sheet and the gap to it.", false}};
+  return {
+      {"print.png", "image/png", "Picture", "The whole sheet with its marks; the file says its size.", true},
+      {"print.pdf", "application/pdf", "Pages",
+       "At true size on the paper chosen, then where the marks are on the frame. Print at 100 %.", true},
+      {"formed.glb", "model/gltf-binary", "Formed sheet",
+       "The formed sheet with the print on it, to look at; upright, y up.", true},
+      {"coverage.ply", "application/x-ply", "Coverage",
+       "The model in machine coordinates: per vertex the reason (0 coloured, 1 hidden, 2 not touched, 3 below the plate, 4 outside), its place on the sheet and the gap to it.",
+       false}};
 }
 
 std::vector<ReportField> report_fields() {
@@ -75,7 +87,8 @@ Bytes coverage_ply(const TexturePrint& print, Context& context) {
   Model model;
   model.mesh = print.surface.mesh;
   Eigen::VectorXd reason(model.mesh.vertex_count());
-  for (Eigen::Index i = 0; i < reason.size(); ++i) reason[i] = static_cast<int>(print.projected.vertex[static_cast<std::size_t>(i)]);
+  for (Eigen::Index i = 0; i < reason.size(); ++i)
+    reason[i] = static_cast<int>(print.projected.vertex[static_cast<std::size_t>(i)]);
   const std::vector<VertexColumn> columns = {{"reason", reason, ColumnKind::uint8},
                                              {"sheet_x_mm", print.projected.sheet_mm.col(0), ColumnKind::float32},
                                              {"sheet_y_mm", print.projected.sheet_mm.col(1), ColumnKind::float32},
@@ -85,7 +98,8 @@ Bytes coverage_ply(const TexturePrint& print, Context& context) {
   return write_model(model, MeshFormat::ply, write, context);
 }
 
-void report_print(Json& report, const TexturePrint& print, const PageLayout& layout, const ThermoformPrintOptions& options) {
+void report_print(Json& report, const TexturePrint& print, const PageLayout& layout,
+                  const ThermoformPrintOptions& options) {
   const auto area = [&](Coverage c) { return print.area_mm2[static_cast<std::size_t>(c)]; };
   const double pixel_mm = print.grid.pixel_mm();
   report["sheet_mm"] = {options.sheet_x_mm, options.sheet_y_mm};
@@ -123,7 +137,8 @@ OperationResult run_texture(const OperationCall& call) {
   const PageLayout layout = page_layout(options);
   print_grid(options);
   std::optional<Image> picture;
-  if (const auto given = call.inputs.find("texture"); given != call.inputs.end()) picture = read_picture(*given->second.bytes, given->second.file_name, "texture");
+  if (const auto given = call.inputs.find("texture"); given != call.inputs.end())
+    picture = read_picture(*given->second.bytes, given->second.file_name, "texture");
   Stopwatch watch;
   FormedModel formed;
   {
@@ -154,7 +169,8 @@ OperationResult run_texture(const OperationCall& call) {
       if (info.name == name) result.outputs.push_back(make_output(info, std::move(bytes)));
     context.check_cancelled();
   };
-  if (call.wants("print.png")) add("print.png", write_png(with_marks(print.picture, print.grid, options), print.grid.per_metre, context));
+  if (call.wants("print.png"))
+    add("print.png", write_png(with_marks(print.picture, print.grid, options), print.grid.per_metre, context));
   context.progress(0.9);
   if (call.wants("print.pdf")) add("print.pdf", write_print_pdf(print.picture, print.grid, layout, options, context));
   context.progress(0.95);

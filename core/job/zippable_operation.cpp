@@ -15,76 +15,84 @@ std::vector<InputInfo> inputs() {
   InputInfo segments;
   segments.name = "segments";
   segments.label = "Parts";
-  segments.help = "segments.json: punctures, loops and lines that bound the parts, where the zipper begins and ends (docs/zippable.md). Without it limbs are found.";
+  segments.help =
+      "segments.json: punctures, loops and lines that bound the parts, where the zipper begins and ends (docs/zippable.md). Without it limbs are found.";
   segments.extensions = {"json"};
   segments.required = false;
   return {model_input_info(), segments};
 }
 
 std::vector<OutputInfo> outputs() {
-  return {{"design.json", "application/json", "Design", "Parts, zipper and ribbon in space and in the plane, for the next steps.", true},
-          {"parameterised.ply", "application/x-ply", "Parameterised model", "The parts with u, v in mm, part number and distortion.", true},
+  return {{"design.json", "application/json", "Design",
+           "Parts, zipper and ribbon in space and in the plane, for the next steps.", true},
+          {"parameterised.ply", "application/x-ply", "Parameterised model",
+           "The parts with u, v in mm, part number and distortion.", true},
           {"curve.obj", "model/obj", "Zipper's course", "Polylines on the model.", true},
           {"formed.ply", "application/x-ply", "Zipped ribbon", "The ribbon as it lies in space.", true},
           {"ribbon.svg", "image/svg+xml", "Flat ribbon", "Unfolded at true size; parts of it may overlap.", true}};
 }
 
 std::vector<ReportField> report_fields() {
-  return {{"vertices", "Vertices", "", "of the divided model"},
-          {"faces", "Triangles", "", "of the divided model"},
-          {"parts", "Parts", "", "of the model"},
-          {"cylinders", "Cylinders", "", "how many of the parts are, which all must be"},
-          {"interfaces", "Interfaces", "", "arcs that two parts share"},
-          {"handles_cut", "Cut handles", "", "loops opened, which need another closure than the zipper"},
-          {"hook_and_loop_mm_total", "Cuts to close by tape", "mm", "of cut handles and slits, along all of them; tape needed for each side"},
-          {"distortion_mean", "Mean distortion", "", "symmetric Dirichlet energy over 4, weighted by area; 1 is none"},
-          {"distortion_max", "Largest distortion", "", "of any triangle"},
-          {"iterations", "Iterations", "", "Newton steps of the parameterisation"},
-          {"constraint_residual_mm", "Constraint residual", "mm", "largest violation of seams, straight lines and interfaces"},
-          {"order", "Order of parts", "", "as the zipper visits them, numbered from 0"},
-          {"orders", "Possible orders", "", "to choose from with traversal"},
-          {"order_taken", "Order taken", "", "which of them, from 1"},
-          {"centre_radius_min_mm", "Tightest bend", "mm", "least radius of the flat ribbon's middle, over half its width to either side"},
-          {"centre_radius_min_part", "Part of the tightest bend", "", "counted from 1"},
-          {"unevenness", "Unevenness of crossings", "", "eq. (5.7) over the parts between; 0 is even"},
-          {"windings", "Windings", "", "of every part"},
-          {"crease_mm", "Creases along windings", "mm", "how much of them runs nearly like the windings"},
-          {"crease_off_even_mm", "From even windings", "mm", "mean distance of these creases to the nearest even winding"},
-          {"crease_off_mm", "From windings", "mm", "the same, of windings as drawn"},
-          {"winding_spacing_least", "Least spacing", "", "of windings moved onto creases, of the even spacing"},
-          {"fermat_spirals", "Fermat spirals", "", "parts that the zipper enters and leaves"},
-          {"zipper_length_mm", "Zipper length", "mm", "one side of the ribbon, along its corners"},
-          {"curve_length_mm", "Curve length", "mm", "on the model itself"},
-          {"ribbon_width_mean_mm", "Mean width", "mm", "over the rulings between windings"},
-          {"ribbon_width_min_mm", "Least width", "mm", "the same"},
-          {"ribbon_triangles", "Ribbon triangles", "", "none has a corner off the boundary"},
-          {"ribbon_size_mm", "Flat size", "mm", "width and height of the unfolded ribbon"},
-          {"isometry_error", "Unfolding error", "", "largest relative change of an edge"},
-          {"ribbon_to_model_mean_mm", "Mean distance to the model", "mm", "from the zipped ribbon"},
-          {"ribbon_to_model_max_mm", "Largest distance to the model", "mm", "from the zipped ribbon"},
-          {"model_to_ribbon_mean_mm", "Mean distance to the ribbon", "mm", "from the model"},
-          {"model_to_ribbon_max_mm", "Largest distance to the ribbon", "mm", "from the model"},
-          {"fabric_area_mm2", "Area of each fabric", "mm²", "of two colours, before room is made for the zipper"},
-          {"fabric_seams", "Seams between fabrics", "", "rulings where one colour is joined to the other"},
-          {"interleaved_share", "Zipper between two colours", "", "share of its length with another colour on either side"},
-          {"size_mm", "Size", "mm", "of the zipped ribbon"},
-          {"reused", "Parameterisation reused", "", "from an earlier job on the same model, parts and punctures"},
-          {"seconds_read", "Reading", "s", "file to repaired model; 0 when known from before"},
-          {"seconds_parts", "Parts", "s", "handles, limbs, division, punctures"},
-          {"seconds_parameterisation", "Parameterisation", "s", "set-up, start and Newton steps"},
-          {"seconds_curve", "Curve", "s", "orders, crossings, tracing"},
-          {"seconds_ribbon", "Ribbon", "s", "rulings, triangles, unfolding"},
-          {"seconds_distance", "Distances", "s", "between ribbon and model"},
-          {"seconds_write", "Writing", "s", "outputs into their formats"},
-          {"peak_memory_mb", "Peak memory", "MB", "of the process"},
-          {"repairs", "Repairs", "", "what was found in the model and mended, in words"},
-          {"notes", "Notes", "", "what was decided for you, in words"}};
+  return {
+      {"vertices", "Vertices", "", "of the divided model"},
+      {"faces", "Triangles", "", "of the divided model"},
+      {"parts", "Parts", "", "of the model"},
+      {"cylinders", "Cylinders", "", "how many of the parts are, which all must be"},
+      {"interfaces", "Interfaces", "", "arcs that two parts share"},
+      {"handles_cut", "Cut handles", "", "loops opened, which need another closure than the zipper"},
+      {"hook_and_loop_mm_total", "Cuts to close by tape", "mm",
+       "of cut handles and slits, along all of them; tape needed for each side"},
+      {"distortion_mean", "Mean distortion", "", "symmetric Dirichlet energy over 4, weighted by area; 1 is none"},
+      {"distortion_max", "Largest distortion", "", "of any triangle"},
+      {"iterations", "Iterations", "", "Newton steps of the parameterisation"},
+      {"constraint_residual_mm", "Constraint residual", "mm",
+       "largest violation of seams, straight lines and interfaces"},
+      {"order", "Order of parts", "", "as the zipper visits them, numbered from 0"},
+      {"orders", "Possible orders", "", "to choose from with traversal"},
+      {"order_taken", "Order taken", "", "which of them, from 1"},
+      {"centre_radius_min_mm", "Tightest bend", "mm",
+       "least radius of the flat ribbon's middle, over half its width to either side"},
+      {"centre_radius_min_part", "Part of the tightest bend", "", "counted from 1"},
+      {"unevenness", "Unevenness of crossings", "", "eq. (5.7) over the parts between; 0 is even"},
+      {"windings", "Windings", "", "of every part"},
+      {"crease_mm", "Creases along windings", "mm", "how much of them runs nearly like the windings"},
+      {"crease_off_even_mm", "From even windings", "mm", "mean distance of these creases to the nearest even winding"},
+      {"crease_off_mm", "From windings", "mm", "the same, of windings as drawn"},
+      {"winding_spacing_least", "Least spacing", "", "of windings moved onto creases, of the even spacing"},
+      {"fermat_spirals", "Fermat spirals", "", "parts that the zipper enters and leaves"},
+      {"zipper_length_mm", "Zipper length", "mm", "one side of the ribbon, along its corners"},
+      {"curve_length_mm", "Curve length", "mm", "on the model itself"},
+      {"ribbon_width_mean_mm", "Mean width", "mm", "over the rulings between windings"},
+      {"ribbon_width_min_mm", "Least width", "mm", "the same"},
+      {"ribbon_triangles", "Ribbon triangles", "", "none has a corner off the boundary"},
+      {"ribbon_size_mm", "Flat size", "mm", "width and height of the unfolded ribbon"},
+      {"isometry_error", "Unfolding error", "", "largest relative change of an edge"},
+      {"ribbon_to_model_mean_mm", "Mean distance to the model", "mm", "from the zipped ribbon"},
+      {"ribbon_to_model_max_mm", "Largest distance to the model", "mm", "from the zipped ribbon"},
+      {"model_to_ribbon_mean_mm", "Mean distance to the ribbon", "mm", "from the model"},
+      {"model_to_ribbon_max_mm", "Largest distance to the ribbon", "mm", "from the model"},
+      {"fabric_area_mm2", "Area of each fabric", "mm²", "of two colours, before room is made for the zipper"},
+      {"fabric_seams", "Seams between fabrics", "", "rulings where one colour is joined to the other"},
+      {"interleaved_share", "Zipper between two colours", "", "share of its length with another colour on either side"},
+      {"size_mm", "Size", "mm", "of the zipped ribbon"},
+      {"reused", "Parameterisation reused", "", "from an earlier job on the same model, parts and punctures"},
+      {"seconds_read", "Reading", "s", "file to repaired model; 0 when known from before"},
+      {"seconds_parts", "Parts", "s", "handles, limbs, division, punctures"},
+      {"seconds_parameterisation", "Parameterisation", "s", "set-up, start and Newton steps"},
+      {"seconds_curve", "Curve", "s", "orders, crossings, tracing"},
+      {"seconds_ribbon", "Ribbon", "s", "rulings, triangles, unfolding"},
+      {"seconds_distance", "Distances", "s", "between ribbon and model"},
+      {"seconds_write", "Writing", "s", "outputs into their formats"},
+      {"peak_memory_mb", "Peak memory", "MB", "of the process"},
+      {"repairs", "Repairs", "", "what was found in the model and mended, in words"},
+      {"notes", "Notes", "", "what was decided for you, in words"}};
 }
 
 /// Of the part on whose lines the triangle has a corner, or the first one.
 int part_of_face(const ZippableDesign& design, int face) {
   for (int k = 0; k < 3; ++k)
-    if (const int sample = design.ribbon.boundary[design.ribbon.F(face, k)].sample; sample >= 0) return design.curve.lines[design.curve.samples[sample].line].part;
+    if (const int sample = design.ribbon.boundary[design.ribbon.F(face, k)].sample; sample >= 0)
+      return design.curve.lines[design.curve.samples[sample].line].part;
   return design.traversal.traversal.parts.front();
 }
 
@@ -148,14 +156,16 @@ void report_design(Json& report, const ParameterisedModel& model, const Zippable
 }
 
 /// The division alone, with what is wrong with its parts.
-OperationResult check_parts(const OperationCall& call, const LoadedModel& loaded, const ZippableParts& parts, const ZippableOptions& options) {
+OperationResult check_parts(const OperationCall& call, const LoadedModel& loaded, const ZippableParts& parts,
+                            const ZippableOptions& options) {
   const ParameterisedModel model = divide_model(loaded.model.mesh, parts, options, call.context);
   const Segmentation& s = model.proposal.segmentation;
   OperationResult result;
   if (call.wants("design.json")) result.outputs.push_back(make_output(outputs().front(), write_parts_json(model)));
   std::vector<std::string> notes = model.proposal.notes;
   for (int part = 0; part < s.part_count(); ++part)
-    if (!s.problems[part].empty()) notes.push_back("Part " + std::to_string(part + 1) + " is not a cylinder. " + s.problems[part]);
+    if (!s.problems[part].empty())
+      notes.push_back("Part " + std::to_string(part + 1) + " is not a cylinder. " + s.problems[part]);
   result.report["parts"] = s.part_count();
   result.report["cylinders"] = std::count(s.problems.begin(), s.problems.end(), "");
   result.report["handles_cut"] = model.proposal.handles_cut;

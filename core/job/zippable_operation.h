@@ -7,4 +7,4 @@ Operation zippable_design_operation();
 Operation zippable_plan_operation();
 Operation zippable_simulate_operation();
 Operation zippable_baseline_operation();
-}
+}  // namespace formwright

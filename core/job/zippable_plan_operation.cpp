@@ -21,82 +21,93 @@ std::vector<InputInfo> inputs() {
 }
 
 std::vector<OutputInfo> outputs() {
-  return {{"plan.svg", "image/svg+xml", "Plan, SVG", "All sheets side by side at true size; layers cut, mark, engrave, note.", true},
+  return {{"plan.svg", "image/svg+xml", "Plan, SVG",
+           "All sheets side by side at true size; layers cut, mark, engrave, note.", true},
           {"plan.dxf", "image/vnd.dxf", "Plan, DXF", "The same in mm, DXF R12.", true},
           {"plan.pdf", "application/pdf", "Plan, PDF", "One page a sheet at true size.", true},
           {"sheets.zip", "application/zip", "Sheets", "sheet_1.svg, sheet_1.dxf, ...: a file for every sheet.", true},
-          {"tape.pdf", "application/pdf", "Tape template", "Lay the zipper on it and copy its numbers: both tapes in rows. Print at 100 %.", true},
+          {"tape.pdf", "application/pdf", "Tape template",
+           "Lay the zipper on it and copy its numbers: both tapes in rows. Print at 100 %.", true},
           {"tape.svg", "image/svg+xml", "Tape template, SVG", "The same, all pages side by side at true size.", true},
-          {"rig.svg", "image/svg+xml", "Rig, SVG", "With the rig: its boards side by side at true size; layers as in the plan.", true},
+          {"rig.svg", "image/svg+xml", "Rig, SVG",
+           "With the rig: its boards side by side at true size; layers as in the plan.", true},
           {"rig.dxf", "image/vnd.dxf", "Rig, DXF", "The same in mm, DXF R12.", true},
           {"rig.pdf", "application/pdf", "Rig, PDF", "One page a board at true size.", true},
-          {"assembly.pdf", "application/pdf", "Assembly sheet", "What is needed and what is joined to what, step by step with pictures.", true}};
+          {"assembly.pdf", "application/pdf", "Assembly sheet",
+           "What is needed and what is joined to what, step by step with pictures.", true}};
 }
 
 std::vector<ReportField> report_fields() {
-  return {{"zipper_length_mm", "Zipper length", "mm", "of the design; tape needed for each side"},
-          {"left_length_mm", "Left side", "mm", "of the flat ribbon with room for the zipper"},
-          {"right_length_mm", "Right side", "mm", "the same"},
-          {"sides_difference_mm", "Difference of sides", "mm", "left minus right"},
-          {"length_error", "Length error", "", "the side that differs more from the zipper, relative to it"},
-          {"interval_error_max", "Largest error of an interval", "", "between markers, of either side, relative to the zipper"},
-          {"interval_difference_max_mm", "Largest difference in an interval", "mm", "between the two sides"},
-          {"tape_width_mm", "Tape", "mm", "of one side"},
-          {"teeth_width_mm", "Teeth", "mm", "closed"},
-          {"gap_mm", "Gap", "mm", "between teeth and fabric"},
-          {"offset_mm", "Offset", "mm", "half the teeth and the gap: how far each edge is moved"},
-          {"offset_mean_mm", "Mean offset", "mm", "as carried out"},
-          {"narrow_places", "Narrow places", "", "corners of the zipper where the edge is moved by less"},
-          {"offset_least_mm", "Least offset", "mm", "at the narrowest place"},
-          {"binormal_share", "Share along the binormal", "", "of the zipper's length; elsewhere along the surface (gluing)"},
-          {"sides_made_equal", "Sides made equal", "", "along the whole zipper (gluing)"},
-          {"shear_max_mm", "Largest shear", "mm", "of the tape, to make the sides equal (gluing)"},
-          {"ribbon_width_mean_mm", "Mean width", "mm", "of the ribbon as designed"},
-          {"markers", "Markers", "", "on each side"},
-          {"marker_spacing_mm", "Marker spacing", "mm", "along the zipper"},
-          {"intervals", "Intervals", "mm", "between markers: zipper, left side, right side"},
-          {"tape_runs", "Runs of tape", "", "stretches of a tape along one piece: side, piece, from and to on the tape, edge of the cloth, first and last marker"},
-          {"seams", "Seams", "", "in the order in which they are made: pieces, letters of a split, markers, lengths"},
-          {"zipper_to_cut_mm", "Zipper to cut", "mm", "from the reel, with an end on either side to hold it by"},
-          {"assembly_pages", "Assembly pages", "", "of the assembly sheet"},
-          {"hook_and_loop_mm_total", "Hook-and-loop tape", "mm", "along all cuts; of paper, what is joined there: needed for each side"},
-          {"hook_and_loop", "Cuts to close", "", "for every cut its length, numbers on either side, pieces of both sides"},
-          {"hook_and_loop_narrow_mm", "Too narrow for the tape", "mm", "of the edges that carry it within"},
-          {"tabs", "Tabs", "", "of paper: how many, how many of them less deep, and stretches without"},
-          {"tape_rows", "Rows of the template", "", "of the tapes, on its pages"},
-          {"tape_row_mm", "Row", "mm", "of the template, along the zipper"},
-          {"pieces", "Pieces", "", "area of ribbon, sheet, letters of splits and, of two, which fabric"},
-          {"sheet_fabrics", "Fabrics of the sheets", "", "of two colours: 1 or 2 for every sheet"},
-          {"splits", "Splits", "", "rulings at which the ribbon is cut"},
-          {"crumbs_joined", "Crumbs joined", "", "pieces that were too small and joined to a neighbour"},
-          {"crumbs_grown", "Crumbs grown", "", "pieces that were too small and grew at a neighbour's cost"},
-          {"sheets", "Sheets", "", "of the bed's size"},
-          {"area_before_mm2", "Area before splitting", "mm²", "of the ribbon with room for the zipper"},
-          {"area_after_mm2", "Area after splitting", "mm²", "of all pieces without allowances"},
-          {"outline_area_mm2", "Area of pieces", "mm²", "with seam allowances, without kerf"},
-          {"cut_length_mm", "Cut length", "mm", "of all outlines"},
-          {"kerf_mm", "Kerf", "mm", "of which half is added to outlines"},
-          {"rig_plates", "Plates of the rig", "", "three for every piece"},
-          {"rig_sheets", "Boards for the rig", "", "of the bed's size"},
-          {"rig_tracks", "Tracks", "", "of the rig"},
-          {"rig_tracks_blind", "Tracks without an opening", "", "into which the tape is laid from above"},
-          {"rig_openings", "Openings", "", "where a tape is slid in"},
-          {"rig_screws", "Screws", "", "of all pieces, each through three layers"},
-          {"rig_track_mm", "Length of tracks", "mm", "along the cloth"},
-          {"rig_left_out_mm", "Edges without a track", "mm", "where two tracks would meet"},
-          {"rig_markers_hidden", "Markers under the cloth", "", "on the cover, where there is no room beside the track"},
-          {"seconds_read", "Reading", "s", "the design"},
-          {"seconds_offset", "Room for the zipper", "s", "offsets and markers"},
-          {"seconds_split", "Splitting", "s", "pieces and outlines"},
-          {"seconds_nest", "Nesting", "s", "pieces onto sheets"},
-          {"seconds_write", "Writing", "s", "outputs into their formats"},
-          {"peak_memory_mb", "Peak memory", "MB", "of the process"},
-          {"notes", "Notes", "", "what to know, in words"}};
+  return {
+      {"zipper_length_mm", "Zipper length", "mm", "of the design; tape needed for each side"},
+      {"left_length_mm", "Left side", "mm", "of the flat ribbon with room for the zipper"},
+      {"right_length_mm", "Right side", "mm", "the same"},
+      {"sides_difference_mm", "Difference of sides", "mm", "left minus right"},
+      {"length_error", "Length error", "", "the side that differs more from the zipper, relative to it"},
+      {"interval_error_max", "Largest error of an interval", "",
+       "between markers, of either side, relative to the zipper"},
+      {"interval_difference_max_mm", "Largest difference in an interval", "mm", "between the two sides"},
+      {"tape_width_mm", "Tape", "mm", "of one side"},
+      {"teeth_width_mm", "Teeth", "mm", "closed"},
+      {"gap_mm", "Gap", "mm", "between teeth and fabric"},
+      {"offset_mm", "Offset", "mm", "half the teeth and the gap: how far each edge is moved"},
+      {"offset_mean_mm", "Mean offset", "mm", "as carried out"},
+      {"narrow_places", "Narrow places", "", "corners of the zipper where the edge is moved by less"},
+      {"offset_least_mm", "Least offset", "mm", "at the narrowest place"},
+      {"binormal_share", "Share along the binormal", "",
+       "of the zipper's length; elsewhere along the surface (gluing)"},
+      {"sides_made_equal", "Sides made equal", "", "along the whole zipper (gluing)"},
+      {"shear_max_mm", "Largest shear", "mm", "of the tape, to make the sides equal (gluing)"},
+      {"ribbon_width_mean_mm", "Mean width", "mm", "of the ribbon as designed"},
+      {"markers", "Markers", "", "on each side"},
+      {"marker_spacing_mm", "Marker spacing", "mm", "along the zipper"},
+      {"intervals", "Intervals", "mm", "between markers: zipper, left side, right side"},
+      {"tape_runs", "Runs of tape", "",
+       "stretches of a tape along one piece: side, piece, from and to on the tape, edge of the cloth, first and last marker"},
+      {"seams", "Seams", "", "in the order in which they are made: pieces, letters of a split, markers, lengths"},
+      {"zipper_to_cut_mm", "Zipper to cut", "mm", "from the reel, with an end on either side to hold it by"},
+      {"assembly_pages", "Assembly pages", "", "of the assembly sheet"},
+      {"hook_and_loop_mm_total", "Hook-and-loop tape", "mm",
+       "along all cuts; of paper, what is joined there: needed for each side"},
+      {"hook_and_loop", "Cuts to close", "", "for every cut its length, numbers on either side, pieces of both sides"},
+      {"hook_and_loop_narrow_mm", "Too narrow for the tape", "mm", "of the edges that carry it within"},
+      {"tabs", "Tabs", "", "of paper: how many, how many of them less deep, and stretches without"},
+      {"tape_rows", "Rows of the template", "", "of the tapes, on its pages"},
+      {"tape_row_mm", "Row", "mm", "of the template, along the zipper"},
+      {"pieces", "Pieces", "", "area of ribbon, sheet, letters of splits and, of two, which fabric"},
+      {"sheet_fabrics", "Fabrics of the sheets", "", "of two colours: 1 or 2 for every sheet"},
+      {"splits", "Splits", "", "rulings at which the ribbon is cut"},
+      {"crumbs_joined", "Crumbs joined", "", "pieces that were too small and joined to a neighbour"},
+      {"crumbs_grown", "Crumbs grown", "", "pieces that were too small and grew at a neighbour's cost"},
+      {"sheets", "Sheets", "", "of the bed's size"},
+      {"area_before_mm2", "Area before splitting", "mm²", "of the ribbon with room for the zipper"},
+      {"area_after_mm2", "Area after splitting", "mm²", "of all pieces without allowances"},
+      {"outline_area_mm2", "Area of pieces", "mm²", "with seam allowances, without kerf"},
+      {"cut_length_mm", "Cut length", "mm", "of all outlines"},
+      {"kerf_mm", "Kerf", "mm", "of which half is added to outlines"},
+      {"rig_plates", "Plates of the rig", "", "three for every piece"},
+      {"rig_sheets", "Boards for the rig", "", "of the bed's size"},
+      {"rig_tracks", "Tracks", "", "of the rig"},
+      {"rig_tracks_blind", "Tracks without an opening", "", "into which the tape is laid from above"},
+      {"rig_openings", "Openings", "", "where a tape is slid in"},
+      {"rig_screws", "Screws", "", "of all pieces, each through three layers"},
+      {"rig_track_mm", "Length of tracks", "mm", "along the cloth"},
+      {"rig_left_out_mm", "Edges without a track", "mm", "where two tracks would meet"},
+      {"rig_markers_hidden", "Markers under the cloth", "", "on the cover, where there is no room beside the track"},
+      {"seconds_read", "Reading", "s", "the design"},
+      {"seconds_offset", "Room for the zipper", "s", "offsets and markers"},
+      {"seconds_split", "Splitting", "s", "pieces and outlines"},
+      {"seconds_nest", "Nesting", "s", "pieces onto sheets"},
+      {"seconds_write", "Writing", "s", "outputs into their formats"},
+      {"peak_memory_mb", "Peak memory", "MB", "of the process"},
+      {"notes", "Notes", "", "what to know, in words"}};
 }
 
 void report_lengths(Json& report, const FlatDesign& design, const ZippablePlan& plan) {
   const OffsetRibbon& ribbon = plan.ribbon;
-  const auto relative = [&](double side_mm, double zipper_mm) { return zipper_mm > 1e-9 ? (side_mm - zipper_mm) / zipper_mm : 0.0; };
+  const auto relative = [&](double side_mm, double zipper_mm) {
+    return zipper_mm > 1e-9 ? (side_mm - zipper_mm) / zipper_mm : 0.0;
+  };
   report["zipper_length_mm"] = design.zipper_mm;
   report["left_length_mm"] = ribbon.left_mm;
   report["right_length_mm"] = ribbon.right_mm;
@@ -106,7 +117,8 @@ void report_lengths(Json& report, const FlatDesign& design, const ZippablePlan& 
   double error = 0, difference_mm = 0;
   Json intervals = Json::array();
   for (const MarkerInterval& interval : plan.markers.intervals) {
-    error = std::max({error, std::abs(relative(interval.left_mm, interval.zipper_mm)), std::abs(relative(interval.right_mm, interval.zipper_mm))});
+    error = std::max({error, std::abs(relative(interval.left_mm, interval.zipper_mm)),
+                      std::abs(relative(interval.right_mm, interval.zipper_mm))});
     difference_mm = std::max(difference_mm, std::abs(interval.left_mm - interval.right_mm));
     intervals.push_back({interval.zipper_mm, interval.left_mm, interval.right_mm});
   }
@@ -147,7 +159,9 @@ void report_tape(Json& report, const FlatDesign& design, const ZippablePlan& pla
                      {"kind", kinds[static_cast<int>(seam.kind)]},
                      {"letters", seam.letters},
                      {"pieces", {plan.pieces.pieces[seam.piece].name, plan.pieces.pieces[seam.other_piece].name}},
-                     {"side", seam.kind != SeamKind::tape ? "" : seam.left ? "left" : "right"},
+                     {"side", seam.kind != SeamKind::tape ? ""
+                              : seam.left                 ? "left"
+                                                          : "right"},
                      {"length_mm", seam.kind == SeamKind::join ? seam.cloth_mm : seam.tape_mm()},
                      {"cloth_mm", seam.cloth_mm},
                      {"first_marker", seam.first_marker},
@@ -167,13 +181,18 @@ void report_pieces(Json& report, const ZippablePlan& plan, const PlanOptions& op
     const PlanPiece& piece = plan.pieces.pieces[i];
     Json letters = Json::array();
     for (std::size_t s = 0; s < plan.splitting.splits.size(); ++s)
-      if (const RibbonSplit& split = plan.splitting.splits[s]; split.left == static_cast<int>(i) || split.right == static_cast<int>(i))
+      if (const RibbonSplit& split = plan.splitting.splits[s];
+          split.left == static_cast<int>(i) || split.right == static_cast<int>(i))
         letters.push_back(split_letters(static_cast<int>(s)));
-    pieces.push_back({{"name", piece.name}, {"sheet", plan.nesting.places[i].sheet + 1}, {"ribbon_area_mm2", piece.ribbon_area_mm2}, {"splits", letters}});
+    pieces.push_back({{"name", piece.name},
+                      {"sheet", plan.nesting.places[i].sheet + 1},
+                      {"ribbon_area_mm2", piece.ribbon_area_mm2},
+                      {"splits", letters}});
     if (plan.fabrics > 1) pieces.back()["fabric"] = plan.fabric_of_piece[i] + 1;
     area += piece.ribbon_area_mm2;
     outline_area += signed_area_mm2(piece.outline_mm);
-    for (std::size_t k = 0; k < piece.cut_mm.size(); ++k) cut_mm += (piece.cut_mm[(k + 1) % piece.cut_mm.size()] - piece.cut_mm[k]).norm();
+    for (std::size_t k = 0; k < piece.cut_mm.size(); ++k)
+      cut_mm += (piece.cut_mm[(k + 1) % piece.cut_mm.size()] - piece.cut_mm[k]).norm();
   }
   report["pieces"] = pieces;
   if (plan.fabrics > 1) {
@@ -201,7 +220,8 @@ void report_closures(Json& report, const ZippablePlan& plan) {
     for (const ClosureMarker& marker : closures.markers)
       if (marker.cut == cut) numbers.push_back(marker.number);
     for (const ClosureStretch& stretch : closures.stretches)
-      if (stretch.cut == cut) pieces[static_cast<std::size_t>(stretch.side)].push_back(plan.pieces.pieces[stretch.piece].name);
+      if (stretch.cut == cut)
+        pieces[static_cast<std::size_t>(stretch.side)].push_back(plan.pieces.pieces[stretch.piece].name);
     cuts.push_back({{"length_mm", closures.length_mm[c]}, {"numbers", numbers}, {"pieces", pieces}});
   }
   report["hook_and_loop_mm_total"] = closures.total_mm();

@@ -18,42 +18,49 @@ InputInfo design_input() {
 }
 
 std::vector<OutputInfo> outputs() {
-  return {{"zipped.ply", "application/x-ply", "Zipped cloth", "The simulated shape with its distance to the prediction and its strain at every vertex.", true},
-          {"zipping.glb", "model/gltf-binary", "Animation", "From flat to zipped as morph targets, coloured by the distance at the end.", true}};
+  return {{"zipped.ply", "application/x-ply", "Zipped cloth",
+           "The simulated shape with its distance to the prediction and its strain at every vertex.", true},
+          {"zipping.glb", "model/gltf-binary", "Animation",
+           "From flat to zipped as morph targets, coloured by the distance at the end.", true}};
 }
 
 std::vector<ReportField> report_fields() {
-  return {{"outcome", "Outcome", "", "takes_shape, as_the_cloth_does, another_shape, open_seams or not_settled"},
-          {"verdict", "Will it zip?", "", "the outcome in words"},
-          {"mirrored", "Inside out", "", "the mirror image, which flat cloth takes just as well, was nearer"},
-          {"distance_mean_mm", "Mean distance", "mm", "of places from where the design has them, after turning it there; by area"},
-          {"distance_95_mm", "Distance of 95 %", "mm", "no more than 5 % of the cloth is farther off"},
-          {"distance_max_mm", "Largest distance", "mm", "of any vertex"},
-          {"distance_mean_percent", "Mean distance", "%", "of the shape's size"},
-          {"distance_95_percent", "Distance of 95 %", "%", "of the shape's size"},
-          {"distance_max_percent", "Largest distance", "%", "of the shape's size"},
-          {"rest_distance_mean_mm", "Mean distance at rest", "mm", "when it starts zipped in the designed shape: its own sagging"},
-          {"rest_distance_95_mm", "Distance of 95 % at rest", "mm", "the same"},
-          {"rest_energy_mj", "Energy at rest", "mJ", "the same: less than energy_mj where zipping ends in a worse shape"},
-          {"gap_max_mm", "Largest gap", "mm", "between two places that should meet"},
-          {"open_pairs", "Open pairs", "", "with a gap of over a hundredth of the ribbon's width"},
-          {"seams_closed", "All seams closed", "", "no pair is open"},
-          {"strain_mean", "Mean strain", "", "of lengths, by area: 0.01 is a hundredth longer or shorter"},
-          {"strain_max", "Largest strain", "", "of any triangle"},
-          {"energy_mj", "Energy", "mJ", "of stretching, bending and seams at the end"},
-          {"bending_energy_mj", "Bending energy", "mJ", "part of it"},
-          {"crossings", "Crossings", "", "edges that pierce triangles at the end: cloth cannot, this one is not kept from it"},
-          {"attempts", "Courses tried", "", "with other pressures from inside; the figures are the best one's"},
-          {"pressed_out", "Pressed out", "", "whether it was, from inside, before it came to rest; as a maker does with tucked-in corners"},
-          {"held_open_percent", "Held open", "%", "in this course"},
-          {"settled", "At rest", "", "the simulation ended because nothing moved"},
-          {"triangles", "Triangles", "", "of the cloth"},
-          {"seam_pairs", "Pairs", "", "of places that the zipper brings together"},
-          {"size_mm", "Size", "mm", "largest dimension of the designed shape"},
-          {"newton_iterations", "Newton iterations", "", "all steps"},
-          {"seconds_simulation", "Simulation", "s", "all but reading and writing"},
-          {"seconds_write", "Writing", "s", "outputs into their formats"},
-          {"peak_memory_mb", "Peak memory", "MB", "of the process"}};
+  return {
+      {"outcome", "Outcome", "", "takes_shape, as_the_cloth_does, another_shape, open_seams or not_settled"},
+      {"verdict", "Will it zip?", "", "the outcome in words"},
+      {"mirrored", "Inside out", "", "the mirror image, which flat cloth takes just as well, was nearer"},
+      {"distance_mean_mm", "Mean distance", "mm",
+       "of places from where the design has them, after turning it there; by area"},
+      {"distance_95_mm", "Distance of 95 %", "mm", "no more than 5 % of the cloth is farther off"},
+      {"distance_max_mm", "Largest distance", "mm", "of any vertex"},
+      {"distance_mean_percent", "Mean distance", "%", "of the shape's size"},
+      {"distance_95_percent", "Distance of 95 %", "%", "of the shape's size"},
+      {"distance_max_percent", "Largest distance", "%", "of the shape's size"},
+      {"rest_distance_mean_mm", "Mean distance at rest", "mm",
+       "when it starts zipped in the designed shape: its own sagging"},
+      {"rest_distance_95_mm", "Distance of 95 % at rest", "mm", "the same"},
+      {"rest_energy_mj", "Energy at rest", "mJ", "the same: less than energy_mj where zipping ends in a worse shape"},
+      {"gap_max_mm", "Largest gap", "mm", "between two places that should meet"},
+      {"open_pairs", "Open pairs", "", "with a gap of over a hundredth of the ribbon's width"},
+      {"seams_closed", "All seams closed", "", "no pair is open"},
+      {"strain_mean", "Mean strain", "", "of lengths, by area: 0.01 is a hundredth longer or shorter"},
+      {"strain_max", "Largest strain", "", "of any triangle"},
+      {"energy_mj", "Energy", "mJ", "of stretching, bending and seams at the end"},
+      {"bending_energy_mj", "Bending energy", "mJ", "part of it"},
+      {"crossings", "Crossings", "",
+       "edges that pierce triangles at the end: cloth cannot, this one is not kept from it"},
+      {"attempts", "Courses tried", "", "with other pressures from inside; the figures are the best one's"},
+      {"pressed_out", "Pressed out", "",
+       "whether it was, from inside, before it came to rest; as a maker does with tucked-in corners"},
+      {"held_open_percent", "Held open", "%", "in this course"},
+      {"settled", "At rest", "", "the simulation ended because nothing moved"},
+      {"triangles", "Triangles", "", "of the cloth"},
+      {"seam_pairs", "Pairs", "", "of places that the zipper brings together"},
+      {"size_mm", "Size", "mm", "largest dimension of the designed shape"},
+      {"newton_iterations", "Newton iterations", "", "all steps"},
+      {"seconds_simulation", "Simulation", "s", "all but reading and writing"},
+      {"seconds_write", "Writing", "s", "outputs into their formats"},
+      {"peak_memory_mb", "Peak memory", "MB", "of the process"}};
 }
 
 const char* outcome_name(ZippingOutcome outcome) {
@@ -80,8 +87,8 @@ OperationResult run(const OperationCall& call) {
   OperationResult result;
   for (const OutputInfo& info : outputs()) {
     if (!call.wants(info.name)) continue;
-    result.outputs.push_back(
-        make_output(info, info.name == "zipped.ply" ? write_zipped_ply(zipped, call.context) : write_zipping_glb(zipped, call.context)));
+    result.outputs.push_back(make_output(info, info.name == "zipped.ply" ? write_zipped_ply(zipped, call.context)
+                                                                         : write_zipping_glb(zipped, call.context)));
   }
   Json& report = result.report;
   const ShapeComparison& c = zipped.comparison;

@@ -32,12 +32,15 @@ struct DriverOptions {
   static constexpr auto parameters = std::tuple{
       parameter("controller", &DriverOptions::controller, "Controller", "What the machine's board understands."),
       parameter("tool", &DriverOptions::tool, "Tool", "What the machine does with its material."),
-      parameter("baud", &DriverOptions::baud, "Line speed", unit::none, 1200, 2000000, "Bits a second on the serial line; 115200 for nearly all.")
+      parameter("baud", &DriverOptions::baud, "Line speed", unit::none, 1200, 2000000,
+                "Bits a second on the serial line; 115200 for nearly all.")
           .advanced(),
-      parameter("bed_x_mm", &DriverOptions::bed_x_mm, "Bed, x", unit::mm, 10, 10000, "How far the head reaches to the side."),
-      parameter("bed_y_mm", &DriverOptions::bed_y_mm, "Bed, y", unit::mm, 10, 10000, "How far the head reaches to the back."),
-      parameter("focus_power_percent", &DriverOptions::focus_power_percent, "Focus power, at most", unit::percent, 0.1, 20,
-                "The laser shines with no more than this while its spot is looked at.")
+      parameter("bed_x_mm", &DriverOptions::bed_x_mm, "Bed, x", unit::mm, 10, 10000,
+                "How far the head reaches to the side."),
+      parameter("bed_y_mm", &DriverOptions::bed_y_mm, "Bed, y", unit::mm, 10, 10000,
+                "How far the head reaches to the back."),
+      parameter("focus_power_percent", &DriverOptions::focus_power_percent, "Focus power, at most", unit::percent, 0.1,
+                20, "The laser shines with no more than this while its spot is looked at.")
           .advanced(),
       parameter("focus_seconds", &DriverOptions::focus_seconds, "Focus, at most", unit::seconds, 5, 600,
                 "The laser goes out by itself after so long.")

@@ -25,7 +25,8 @@ bool read_words(std::string_view line, std::vector<Word>& words) {
   while (i < line.size()) {
     const char letter = line[i++];
     if (letter < 'A' || letter > 'Z') return false;
-    // A few dozen characters at most: read by hand, because from_chars knows no leading "+" and strtod knows the locale.
+    // A few dozen characters at most: read by hand, because from_chars knows no leading "+" and strtod knows the
+    // locale.
     double sign = 1, value = 0, scale = 1;
     bool digits = false, fraction = false;
     if (i < line.size() && (line[i] == '-' || line[i] == '+')) sign = line[i++] == '-' ? -1 : 1;
@@ -46,7 +47,8 @@ bool read_words(std::string_view line, std::vector<Word>& words) {
 }
 
 /// Adds what an arc reaches beyond its ends: where it crosses the directions of the axes.
-void add_arc(GcodeBounds& bounds, const std::array<double, 3>& from, const std::array<double, 3>& to, double cx, double cy, bool clockwise) {
+void add_arc(GcodeBounds& bounds, const std::array<double, 3>& from, const std::array<double, 3>& to, double cx,
+             double cy, bool clockwise) {
   const double radius = std::hypot(from[0] - cx, from[1] - cy);
   double start = std::atan2(from[1] - cy, from[0] - cx), end = std::atan2(to[1] - cy, to[0] - cx);
   if (clockwise) std::swap(start, end);
@@ -62,7 +64,8 @@ struct Centre {
 };
 
 /// RS274's radius form: the shorter arc for R > 0.
-std::optional<Centre> centre_of_radius(const std::array<double, 3>& from, const std::array<double, 3>& to, double radius, bool clockwise) {
+std::optional<Centre> centre_of_radius(const std::array<double, 3>& from, const std::array<double, 3>& to,
+                                       double radius, bool clockwise) {
   const double dx = to[0] - from[0], dy = to[1] - from[1], chord = std::hypot(dx, dy);
   const double squared = radius * radius - chord * chord / 4;
   if (chord == 0 || squared < -1e-6 * radius * radius) return std::nullopt;
@@ -80,16 +83,33 @@ void act(const std::vector<Word>& words, GcodeState& s, GcodeBounds* bounds, boo
     const int tenths = static_cast<int>(std::lround(value * 10));
     if (letter == 'G') {
       switch (tenths) {
-        case 0: case 10: case 20: case 30: s.motion = tenths / 10; break;
+        case 0:
+        case 10:
+        case 20:
+        case 30: s.motion = tenths / 10; break;
         case 800: s.motion = 80; break;
-        case 170: case 180: case 190: s.plane = tenths / 10; break;
+        case 170:
+        case 180:
+        case 190: s.plane = tenths / 10; break;
         case 200: s.inches = true; break;
         case 210: s.inches = false; break;
         case 530: machine_coordinates = true; break;
-        case 540: case 550: case 560: case 570: case 580: case 590: s.work_system = tenths / 10; break;
+        case 540:
+        case 550:
+        case 560:
+        case 570:
+        case 580:
+        case 590: s.work_system = tenths / 10; break;
         case 900: s.relative = false; break;
         case 910: s.relative = true; break;
-        case 40: case 100: case 280: case 281: case 300: case 301: case 920: case 921: no_motion = true; break;
+        case 40:
+        case 100:
+        case 280:
+        case 281:
+        case 300:
+        case 301:
+        case 920:
+        case 921: no_motion = true; break;
         default: break;
       }
     } else if (letter == 'M') {
@@ -129,7 +149,8 @@ void act(const std::vector<Word>& words, GcodeState& s, GcodeBounds* bounds, boo
   if (middle) add_arc(*bounds, from, s.position_mm, middle->x, middle->y, clockwise);
 }
 
-/// Without comments, blanks and line number, letters large. False: a comment does not end, or a character belongs in no line.
+/// Without comments, blanks and line number, letters large. False: a comment does not end, or a character belongs in no
+/// line.
 bool strip(std::string_view line, std::string& out) {
   out.clear();
   bool comment = false;
@@ -146,7 +167,8 @@ bool strip(std::string_view line, std::string& out) {
     else return false;  // real-time commands among them: a job must not pause or reset the machine by accident
   }
   if (comment) return false;
-  if (out.size() > 1 && out[0] == 'N' && out[1] >= '0' && out[1] <= '9') out.erase(0, out.find_first_not_of("0123456789", 1));
+  if (out.size() > 1 && out[0] == 'N' && out[1] >= '0' && out[1] <= '9')
+    out.erase(0, out.find_first_not_of("0123456789", 1));
   if (out == "%") out.clear();
   return true;
 }
@@ -178,8 +200,10 @@ GcodeProgram GcodeProgram::read(ByteView file, std::size_t longest_line) {
     if (stripped.empty()) continue;
     if (stripped[0] == '$') bad("changes the machine's settings ($): send that by hand, not in a job.");
     if (stripped.size() > longest_line)
-      bad("has " + std::to_string(stripped.size()) + " characters, more than the " + std::to_string(longest_line) + " the machine takes.");
-    if (!read_words(stripped, words)) bad("is not G-code (\"" + stripped.substr(0, 30) + "\"): every letter needs a number.");
+      bad("has " + std::to_string(stripped.size()) + " characters, more than the " + std::to_string(longest_line) +
+          " the machine takes.");
+    if (!read_words(stripped, words))
+      bad("is not G-code (\"" + stripped.substr(0, 30) + "\"): every letter needs a number.");
     act(words, state, &program.bounds_, &program.fires_);
     program.starts_.push_back(program.text_.size());
     program.numbers_.push_back(number);

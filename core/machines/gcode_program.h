@@ -35,7 +35,8 @@ class GcodeProgram {
   GcodeProgram() = default;
   /// Reads a whole file. Comments in () and after ; go, as do blanks, empty lines, % and leading N numbers.
   /// `longest_line`: most characters of a line as it is sent, its end not counted.
-  /// Throws Error invalid_input ("job") naming the line: too long, a character no G-code has, a $ command, a word without a number.
+  /// Throws Error invalid_input ("job") naming the line: too long, a character no G-code has, a $ command, a word
+  /// without a number.
   static GcodeProgram read(ByteView file, std::size_t longest_line);
 
   int line_count() const { return static_cast<int>(numbers_.size()); }

@@ -31,7 +31,8 @@ std::vector<std::string> GrblDriver::possible_commands() const {
     if (homes()) add({"home"});
     add({"unlock", "send"});
   }
-  if (busy && (phase_ == MachinePhase::running || phase_ == MachinePhase::idle) && !pause_asked_) add({"pause", "override"});
+  if (busy && (phase_ == MachinePhase::running || phase_ == MachinePhase::idle) && !pause_asked_)
+    add({"pause", "override"});
   if (phase_ == MachinePhase::jogging) add({"jog_cancel", "jog", "pause"});
   if (phase_ == MachinePhase::paused || phase_ == MachinePhase::door) add({"resume", "override"});
   if (phase_ != MachinePhase::idle || busy) return can;
@@ -48,11 +49,15 @@ void GrblDriver::command(const Json& command, double now_s) {
   if (what == "stop") return stop("stopped", now_s);
   const std::vector<std::string> can = possible_commands();
   if (std::find(can.begin(), can.end(), what) == can.end()) {
-    if (connection_ != MachineConnection::ready) refuse(what, "The machine does not answer: check that it is on and connected.");
-    if (what == "home" && !homes()) refuse(what, "Homing is not switched on in this machine ($22): jog to the origin and set it there.");
-    if ((what == "start" || what == "frame" || what == "go_to") && phase_ == MachinePhase::idle && !job_active() && !position_known_)
-      refuse(what, homes() ? "Where the head stands is unknown: home the machine first."
-                           : "Where the head stands is unknown: jog to the material's corner and set the origin first.");
+    if (connection_ != MachineConnection::ready)
+      refuse(what, "The machine does not answer: check that it is on and connected.");
+    if (what == "home" && !homes())
+      refuse(what, "Homing is not switched on in this machine ($22): jog to the origin and set it there.");
+    if ((what == "start" || what == "frame" || what == "go_to") && phase_ == MachinePhase::idle && !job_active() &&
+        !position_known_)
+      refuse(what, homes()
+                       ? "Where the head stands is unknown: home the machine first."
+                       : "Where the head stands is unknown: jog to the material's corner and set the origin first.");
     if (what == "start" && program_.line_count() == 0) refuse(what, "No job is loaded: choose one first.");
     if (what == "start" && waits("$J")) refuse(what, "The head still moves: wait until it rests.");
     machines_detail::refuse_in_phase(what, phase_);
@@ -96,7 +101,8 @@ double GrblDriver::speed_mm_per_min(const Json& command, double fallback_mm_per_
 void GrblDriver::jog(const Json& command) {
   std::string words;
   for (const auto& [name, letter] : {std::pair{"x_mm", 'X'}, std::pair{"y_mm", 'Y'}, std::pair{"z_mm", 'Z'}})
-    if (const double mm = number_of(command, name, -farthest_mm, farthest_mm, 0); mm != 0) words += letter + decimal(mm);
+    if (const double mm = number_of(command, name, -farthest_mm, farthest_mm, 0); mm != 0)
+      words += letter + decimal(mm);
   if (words.empty()) refuse("x_mm", "A jog needs x_mm, y_mm or z_mm.");
   if (by_hand_.size() > 8) return;  // a key held down repeats faster than the head moves
   queue("$J=G91G21" + words + "F" + decimal(speed_mm_per_min(command, absent)));
@@ -104,9 +110,11 @@ void GrblDriver::jog(const Json& command) {
 
 void GrblDriver::go_to(const Json& command) {
   GcodeBounds bounds;
-  bounds.add({number_of(command, "x_mm", -farthest_mm, farthest_mm, absent), number_of(command, "y_mm", -farthest_mm, farthest_mm, absent), 0});
+  bounds.add({number_of(command, "x_mm", -farthest_mm, farthest_mm, absent),
+              number_of(command, "y_mm", -farthest_mm, farthest_mm, absent), 0});
   check_reach(bounds);
-  queue("$J=G90G21X" + decimal(bounds.low_mm[0]) + "Y" + decimal(bounds.low_mm[1]) + "F" + decimal(speed_mm_per_min(command, 50)));
+  queue("$J=G90G21X" + decimal(bounds.low_mm[0]) + "Y" + decimal(bounds.low_mm[1]) + "F" +
+        decimal(speed_mm_per_min(command, 50)));
 }
 
 void GrblDriver::frame(const Json& command) {
@@ -122,7 +130,8 @@ void GrblDriver::frame(const Json& command) {
 
 void GrblDriver::set_origin(const Json& command) {
   if (command.value("at", Json("head")) == "corner") {
-    if (!homes() || !position_known_) refuse("at", "Where the bed's corner is only a homed machine knows: home it first.");
+    if (!homes() || !position_known_)
+      refuse("at", "Where the bed's corner is only a homed machine knows: home it first.");
     queue("G10L2P0X" + decimal(reach_low(0)) + "Y" + decimal(reach_low(1)));
     return expect_origin({reach_low(0), reach_low(1), std::nullopt});
   }
@@ -146,7 +155,9 @@ void GrblDriver::expect_origin(const std::array<std::optional<double>, 3>& machi
 bool GrblDriver::origin_moves() const { return waits("G10"); }
 
 bool GrblDriver::waits(std::string_view beginning) const {
-  return stream_.waits_for(beginning) || std::any_of(by_hand_.begin(), by_hand_.end(), [&](const std::string& line) { return line.starts_with(beginning); });
+  return stream_.waits_for(beginning) || std::any_of(by_hand_.begin(), by_hand_.end(), [&](const std::string& line) {
+           return line.starts_with(beginning);
+         });
 }
 
 void GrblDriver::focus(const Json& command, double now_s) {
@@ -167,13 +178,17 @@ void GrblDriver::focus_off() {
 void GrblDriver::send_by_hand(const Json& command) {
   std::string line = machines_detail::line_of(command, 78);
   std::erase_if(line, [](char c) { return c == ' ' || c == '\t'; });
-  std::transform(line.begin(), line.end(), line.begin(), [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
+  std::transform(line.begin(), line.end(), line.begin(),
+                 [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
   if (line == "?") return send_now('?');
-  if (line.find_first_of("!~?") != std::string::npos) refuse("line", "Use the buttons to hold and to go on: they are watched over.");
+  if (line.find_first_of("!~?") != std::string::npos)
+    refuse("line", "Use the buttons to hold and to go on: they are watched over.");
   const LineEffect effect = effect_of(line);
   if (effect.moves || effect.fires)
-    require_confirmation(command, effect.fires ? "The line \"" + line + "\" may turn the laser or spindle on" : "The line \"" + line + "\" moves the machine");
-  if (line.starts_with("$RST") || (line.starts_with("$") && line.find('=') != std::string::npos && !line.starts_with("$J"))) {
+    require_confirmation(command, effect.fires ? "The line \"" + line + "\" may turn the laser or spindle on"
+                                               : "The line \"" + line + "\" moves the machine");
+  if (line.starts_with("$RST") ||
+      (line.starts_with("$") && line.find('=') != std::string::npos && !line.starts_with("$J"))) {
     settings_.clear();  // asked for again, so that what is known stays true
     queue(line);
     queue("$$");
@@ -193,9 +208,11 @@ void GrblDriver::override_speeds(const Json& command) {
     for (; now > wanted; --now) send_now(down1);
   };
   if (command.contains("feed_percent"))
-    steps(number_of(command, "feed_percent", 10, 200, 100), overrides_[0], char(0x90), char(0x91), char(0x92), char(0x93), char(0x94));
+    steps(number_of(command, "feed_percent", 10, 200, 100), overrides_[0], char(0x90), char(0x91), char(0x92),
+          char(0x93), char(0x94));
   if (command.contains("power_percent"))
-    steps(number_of(command, "power_percent", 10, 200, 100), overrides_[2], char(0x99), char(0x9a), char(0x9b), char(0x9c), char(0x9d));
+    steps(number_of(command, "power_percent", 10, 200, 100), overrides_[2], char(0x99), char(0x9a), char(0x9b),
+          char(0x9c), char(0x9d));
 }
 
 double GrblDriver::reach_low(int axis) const {
@@ -212,18 +229,22 @@ void GrblDriver::check_reach(const GcodeBounds& bounds) const {
     const std::string name(1, names[axis]);
     const double length = bounds.high_mm[axis] - bounds.low_mm[axis];
     if (length > bed[axis] + 1e-3)
-      refuse("job", "The job is " + decimal(length) + " mm long in " + name + ", the machine reaches " + decimal(bed[axis]) + " mm: make it smaller or turn it.");
+      refuse("job", "The job is " + decimal(length) + " mm long in " + name + ", the machine reaches " +
+                        decimal(bed[axis]) + " mm: make it smaller or turn it.");
     if (!homes() || !position_known_ || !offset_mm_) continue;
     const double low = reach_low(static_cast<int>(axis)), high = low + bed[axis], offset = (*offset_mm_)[axis];
     if (bounds.low_mm[axis] + offset < low - 1e-3 || bounds.high_mm[axis] + offset > high + 1e-3)
-      refuse("job", "The job would leave the bed in " + name + ": from the origin it may go from " + decimal(low - offset) + " to " + decimal(high - offset) +
-                        " mm, and goes from " + decimal(bounds.low_mm[axis]) + " to " + decimal(bounds.high_mm[axis]) + " mm. Move the origin or the job.");
+      refuse("job", "The job would leave the bed in " + name + ": from the origin it may go from " +
+                        decimal(low - offset) + " to " + decimal(high - offset) + " mm, and goes from " +
+                        decimal(bounds.low_mm[axis]) + " to " + decimal(bounds.high_mm[axis]) +
+                        " mm. Move the origin or the job.");
   }
 }
 
 int GrblDriver::careful_line() const {
   if (!job_) return 1;
-  // All before the planner's blocks is done; from there back to where a travel begins, so that a cut starts anew and not in its middle.
+  // All before the planner's blocks is done; from there back to where a travel begins, so that a cut starts anew and
+  // not in its middle.
   int index = std::max(job_->acknowledged - planner_blocks, 0);
   while (index > 0 && !program_.line(index).starts_with("G0")) --index;
   return program_.number(std::min(index, program_.line_count() - 1));
@@ -248,20 +269,25 @@ std::vector<std::string> GrblDriver::way_back_to(int index) const {
 }
 
 void GrblDriver::start(const Json& command, double now_s) {
-  require_confirmation(command, program_.fires() ? "The machine moves and its laser or spindle turns on" : "The machine moves");
+  require_confirmation(command,
+                       program_.fires() ? "The machine moves and its laser or spindle turns on" : "The machine moves");
   const double mode = setting(32, options_.tool == MachineTool::laser ? 1 : 0);
   if (program_.fires() && options_.tool == MachineTool::laser && mode == 0)
-    refuse("start", "Laser mode is off in the machine, so the beam would stay on at every corner and travel: send $32=1 first.");
+    refuse("start",
+           "Laser mode is off in the machine, so the beam would stay on at every corner and travel: send $32=1 first.");
   if (program_.fires() && options_.tool == MachineTool::mill && mode != 0)
     refuse("start", "Laser mode is on in the machine, so the spindle would stop at every travel: send $32=0 first.");
   check_reach(program_.bounds());
   const int from_line = static_cast<int>(number_of(command, "from_line", 1, 1e9, 1));
   const int index = program_.index_of(from_line);
-  if (index >= program_.line_count()) refuse("from_line", "The job has " + std::to_string(program_.number(program_.line_count() - 1)) + " lines: go on from one of them.");
+  if (index >= program_.line_count())
+    refuse("from_line", "The job has " + std::to_string(program_.number(program_.line_count() - 1)) +
+                            " lines: go on from one of them.");
   focus_until_s_.reset();
   refused_.reset();
   pause_asked_ = false;
-  job_ = MachineJob{program_name_, program_.line_count(), index, index, index > 0 ? program_.number(index - 1) : 0, now_s, 0, ""};
+  job_ = MachineJob{
+      program_name_, program_.line_count(), index, index, index > 0 ? program_.number(index - 1) : 0, now_s, 0, ""};
   next_line_ = index;
   progress_s_ = answered_s_ = now_s;
   idle_since_s_ = -1;

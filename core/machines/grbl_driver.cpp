@@ -10,8 +10,8 @@ namespace formwright {
 namespace {
 
 constexpr char ask_report = '?', feed_hold = '!', soft_reset = 0x18;
-constexpr std::size_t longest_line = 78;        // GRBL's line buffer has 80 with both ends
-constexpr double boot_s = 1.0;                  // boards that reset on opening print their banner within this
+constexpr std::size_t longest_line = 78;  // GRBL's line buffer has 80 with both ends
+constexpr double boot_s = 1.0;            // boards that reset on opening print their banner within this
 constexpr double greeting_s = 10, silence_s = 3, homing_s = 180;
 constexpr double asking_s = 0.2, asking_idle_s = 0.5;  // at most 5 Hz: reports cost the machine time
 constexpr double hold_before_reset_s = 0.5, reset_s = 2;
@@ -79,9 +79,11 @@ void GrblDriver::hear_message(const std::string& line, double now_s) {
     const std::string options = line.substr(5, line.size() - 6);
     const std::size_t comma = options.find(',');
     option_letters_ = options.substr(0, comma);
-    const auto numbers = comma == std::string::npos ? std::vector<double>{} : numbers_between_commas(options.substr(comma + 1));
+    const auto numbers =
+        comma == std::string::npos ? std::vector<double>{} : numbers_between_commas(options.substr(comma + 1));
     // One byte of the ring buffer tells full from empty.
-    if (numbers.size() >= 2 && numbers[1] >= 64) stream_.set_buffer_bytes(static_cast<int>(std::min(numbers[1], 65536.0)) - 1);
+    if (numbers.size() >= 2 && numbers[1] >= 64)
+      stream_.set_buffer_bytes(static_cast<int>(std::min(numbers[1], 65536.0)) - 1);
   }
   if (line.starts_with("[MSG:")) note(line.substr(5, line.size() - 6), now_s);
 }
@@ -91,7 +93,8 @@ void GrblDriver::hear_banner(const std::string& line, double now_s) {
   const bool asked_for = stopping_ == Stopping::resetting || !after_banner_.empty() || limits_hit_;
   if (!asked_for && job_active()) {
     end_job("failed", now_s);
-    note("The machine restarted by itself in the middle of the job: check its power supply and cable, then home it.", now_s);
+    note("The machine restarted by itself in the middle of the job: check its power supply and cable, then home it.",
+         now_s);
   }
   if (!asked_for) lose_position();
   stream_.clear();
@@ -136,7 +139,8 @@ void GrblDriver::hear_answer(std::optional<int> error, double now_s) {
   }
   if (line->text == "$X" && !error) alarm_.reset();
   // A report of rest may have passed it on the way: from here the machine moves, until a report says otherwise.
-  if (line->text.starts_with("$J") && !error && phase_ == MachinePhase::idle) phase_ = MachinePhase::jogging, idle_since_s_ = -1;
+  if (line->text.starts_with("$J") && !error && phase_ == MachinePhase::idle)
+    phase_ = MachinePhase::jogging, idle_since_s_ = -1;
   if (line->text.starts_with("G10L20") && !error && !homes()) position_known_ = true;
   if (line->text.starts_with("G10") && error) offset_mm_.reset();
   if (error) refused_ = {*error, line->text, line->job_line < 0 ? 0 : program_.number(line->job_line)};
@@ -155,7 +159,8 @@ void GrblDriver::hear_report(const GrblReport& report, double now_s) {
   phase_ = report.phase;
   // A machine that works or is held reads no lines: what it is will be asked when it rests.
   const bool reads_lines = phase_ == MachinePhase::idle || phase_ == MachinePhase::alarm;
-  const bool unknown_yet = connection_ == MachineConnection::greeting || (connection_ == MachineConnection::ready && settings_.empty());
+  const bool unknown_yet =
+      connection_ == MachineConnection::greeting || (connection_ == MachineConnection::ready && settings_.empty());
   if (unknown_yet && identifying_ == 0 && by_hand_.empty() && stream_.empty() && !job_active()) {
     if (reads_lines) identify();
     else connection_ = MachineConnection::ready;
@@ -165,7 +170,8 @@ void GrblDriver::hear_report(const GrblReport& report, double now_s) {
   if (report.work_mm) work_mm_ = report.work_mm;
   if (offset_mm_) {
     const auto combine = [&](const std::array<double, 3>& a, double sign) {
-      return std::array<double, 3>{a[0] + sign * (*offset_mm_)[0], a[1] + sign * (*offset_mm_)[1], a[2] + sign * (*offset_mm_)[2]};
+      return std::array<double, 3>{a[0] + sign * (*offset_mm_)[0], a[1] + sign * (*offset_mm_)[1],
+                                   a[2] + sign * (*offset_mm_)[2]};
     };
     if (report.machine_mm) work_mm_ = combine(*machine_mm_, -1);
     else if (report.work_mm) machine_mm_ = combine(*work_mm_, 1);
@@ -176,11 +182,16 @@ void GrblDriver::hear_report(const GrblReport& report, double now_s) {
   if (phase_ == MachinePhase::alarm && !alarm_) alarm_ = 0;
   if (phase_ != MachinePhase::idle) idle_since_s_ = -1;
   else if (idle_since_s_ < 0) idle_since_s_ = now_s;
-  if (phase_ == MachinePhase::idle || phase_ == MachinePhase::running || phase_ == MachinePhase::jogging) alarm_.reset();
-  if (stopping_ == Stopping::holding && phase_ != MachinePhase::pausing && phase_ != MachinePhase::running && phase_ != MachinePhase::jogging)
+  if (phase_ == MachinePhase::idle || phase_ == MachinePhase::running || phase_ == MachinePhase::jogging)
+    alarm_.reset();
+  if (stopping_ == Stopping::holding && phase_ != MachinePhase::pausing && phase_ != MachinePhase::running &&
+      phase_ != MachinePhase::jogging)
     reset(now_s);  // at rest: from here a reset loses no steps
-  if (phase_ == MachinePhase::paused || phase_ == MachinePhase::idle) pause_asked_ = pause_asked_ && phase_ == MachinePhase::paused;
-  if (!job_active() || stopping_ != Stopping::no || phase_ != MachinePhase::idle || !stream_.empty() || !by_hand_.empty()) return;
+  if (phase_ == MachinePhase::paused || phase_ == MachinePhase::idle)
+    pause_asked_ = pause_asked_ && phase_ == MachinePhase::paused;
+  if (!job_active() || stopping_ != Stopping::no || phase_ != MachinePhase::idle || !stream_.empty() ||
+      !by_hand_.empty())
+    return;
   // This report may have been on its way while the last answer was: only what was asked for later counts.
   if (next_line_ >= program_.line_count() && now_s - answered_s_ > 1.5 * asking_s) end_job("done", now_s);
 }
@@ -214,7 +225,8 @@ void GrblDriver::send(GrblStream::Line line, double now_s) {
   say("sent", line.text, now_s);
   write(line.text + "\n");
   if (line.text == "$H") homing_ = true, phase_ = MachinePhase::homing, lose_position();
-  if (line.text.starts_with("$J") && phase_ != MachinePhase::jogging) phase_ = MachinePhase::jogging, asked_s_ = now_s;  // before a report tells it
+  if (line.text.starts_with("$J") && phase_ != MachinePhase::jogging)
+    phase_ = MachinePhase::jogging, asked_s_ = now_s;  // before a report tells it
   if (stream_.empty()) progress_s_ = now_s;
   stream_.sent(std::move(line));
 }
@@ -224,12 +236,15 @@ void GrblDriver::pump(double now_s) {
   while (!by_hand_.empty()) {
     const std::string& line = by_hand_.front();
     const bool alone = writes_eeprom(line);
-    if (phase_ == MachinePhase::jogging && !line.starts_with("$J")) return;  // G-code is locked out until the jog has ended
+    if (phase_ == MachinePhase::jogging && !line.starts_with("$J"))
+      return;  // G-code is locked out until the jog has ended
     if (!stream_.has_room(line.size(), alone)) return;
     send({line, -1, alone, line == "$H" ? homing_s : dwell_s(line)}, now_s);
     by_hand_.pop_front();
   }
-  if (!job_active() || pause_asked_ || phase_ == MachinePhase::paused || phase_ == MachinePhase::pausing || phase_ == MachinePhase::door) return;
+  if (!job_active() || pause_asked_ || phase_ == MachinePhase::paused || phase_ == MachinePhase::pausing ||
+      phase_ == MachinePhase::door)
+    return;
   while (next_line_ < program_.line_count()) {
     const std::string line(program_.line(next_line_));
     const bool alone = writes_eeprom(line);
@@ -257,15 +272,19 @@ void GrblDriver::tick(double now_s) {
   if (connection_ != MachineConnection::silent && now_s - heard_s_ > patience) {
     connection_ = MachineConnection::silent;
     homing_ = false;
-    note(firmware_.empty() ? "Nothing answers: check that the machine is on, the controller chosen, and the line speed (115200 for most)."
-                           : "The machine does not answer any more: check the cable. If it moves, switch it off.",
-         now_s);
+    note(
+        firmware_.empty()
+            ? "Nothing answers: check that the machine is on, the controller chosen, and the line speed (115200 for most)."
+            : "The machine does not answer any more: check the cable. If it moves, switch it off.",
+        now_s);
     if (job_active()) stop("cut_off", now_s);
   }
   // At rest with lines unanswered: an answer, or a line, was lost. Waiting longer would wait for ever.
   const double since = std::max(progress_s_, idle_since_s_);
-  if (!stream_.empty() && phase_ == MachinePhase::idle && idle_since_s_ >= 0 && !homing_ && now_s - since > lost_answer_s + stream_.patience_s()) {
-    note("The machine rests, but did not answer what was sent: something was lost on the line. Check the cable.", now_s);
+  if (!stream_.empty() && phase_ == MachinePhase::idle && idle_since_s_ >= 0 && !homing_ &&
+      now_s - since > lost_answer_s + stream_.patience_s()) {
+    note("The machine rests, but did not answer what was sent: something was lost on the line. Check the cable.",
+         now_s);
     if (job_active()) stop("failed", now_s);
     else stream_.clear(), identifying_ = 0, connection_ = MachineConnection::ready;
   }
@@ -286,7 +305,7 @@ double GrblDriver::setting(int number, double fallback) const {
 
 Json GrblDriver::state(double now_s) const {
   const auto place = [&](const std::optional<std::array<double, 3>>& p) { return p ? Json(*p) : Json(nullptr); };
-  const MachinePhase shown = stopping_ != Stopping::no                                     ? MachinePhase::stopping
+  const MachinePhase shown = stopping_ != Stopping::no                         ? MachinePhase::stopping
                              : pause_asked_ && phase_ == MachinePhase::running ? MachinePhase::pausing
                                                                                : phase_;
   Json state = common_state("grbl", connection_, shown, position_known_, now_s);
@@ -301,8 +320,12 @@ Json GrblDriver::state(double now_s) const {
     state["alarm"] = {{"code", *alarm_}, {"text", words.text}, {"mend", words.mend}};
   }
   if (refused_)
-    state["error"] = {{"code", refused_->code}, {"text", grbl_error(refused_->code)}, {"line", refused_->line}, {"line_number", refused_->line_number}};
-  if (connection_ == MachineConnection::ready) state["laser_on"] = focus_until_s_.has_value() || (phase_ == MachinePhase::running && power_ > 0);
+    state["error"] = {{"code", refused_->code},
+                      {"text", grbl_error(refused_->code)},
+                      {"line", refused_->line},
+                      {"line_number", refused_->line_number}};
+  if (connection_ == MachineConnection::ready)
+    state["laser_on"] = focus_until_s_.has_value() || (phase_ == MachinePhase::running && power_ > 0);
   state["can"] = possible_commands();
   return state;
 }

@@ -2,8 +2,9 @@
 #pragma once
 // GRBL 1.1 and what speaks like it (grblHAL, FluidNC): lasers and mills on a serial line.
 //
-// Jobs are streamed by character counting (grbl/doc/markdown/interface.md, "Streaming a G-Code Program"). An "ok" says that a line was
-// taken in, not that it was done: a job is done when every line is answered and the machine reports that it rests.
+// Jobs are streamed by character counting (grbl/doc/markdown/interface.md, "Streaming a G-Code Program"). An "ok" says
+// that a line was taken in, not that it was done: a job is done when every line is answered and the machine reports
+// that it rests.
 #include <array>
 #include <deque>
 #include <map>
@@ -57,7 +58,8 @@ class GrblDriver final : public MachineDriver {
   void frame(const Json& command);
   void go_to(const Json& command);
   void set_origin(const Json& command);
-  /// Where the origin will be, of the axes given: known at once, while the machine tells of it only in a report to come.
+  /// Where the origin will be, of the axes given: known at once, while the machine tells of it only in a report to
+  /// come.
   void expect_origin(const std::array<std::optional<double>, 3>& machine_mm);
   bool origin_moves() const;
   /// Does a line that begins so wait to be sent, or to be answered?
@@ -102,7 +104,8 @@ class GrblDriver final : public MachineDriver {
     int line_number;
   };
   std::optional<RefusedLine> refused_;
-  double opened_s_ = 0, heard_s_ = 0, asked_s_ = -1, stopping_s_ = 0, progress_s_ = 0, answered_s_ = 0, idle_since_s_ = -1;
+  double opened_s_ = 0, heard_s_ = 0, asked_s_ = -1, stopping_s_ = 0, progress_s_ = 0, answered_s_ = 0,
+         idle_since_s_ = -1;
   std::optional<double> focus_until_s_;
 };
 

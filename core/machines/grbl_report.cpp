@@ -53,7 +53,8 @@ std::optional<GrblReport> read_grbl_report(std::string_view line) {
     const std::string_view field = line.substr(0, end);
     line.remove_prefix(std::min(end + 1, line.size()));
     const std::size_t colon = field.find(':');
-    const std::string_view name = field.substr(0, colon), value = colon == std::string_view::npos ? "" : field.substr(colon + 1);
+    const std::string_view name = field.substr(0, colon),
+                           value = colon == std::string_view::npos ? "" : field.substr(colon + 1);
     if (first) {
       const std::vector<double> detail = numbers_between_commas(value);
       report.detail = detail.empty() ? 0 : static_cast<int>(detail[0]);

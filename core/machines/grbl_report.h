@@ -11,7 +11,7 @@ namespace formwright {
 
 struct GrblReport {
   MachinePhase phase = MachinePhase::unknown;
-  int detail = 0;  // Hold:0 has come to rest, Hold:1 has not
+  int detail = 0;                                                       // Hold:0 has come to rest, Hold:1 has not
   std::optional<std::array<double, 3>> machine_mm, work_mm, offset_mm;  // offset: machine minus work, sent now and then
   std::optional<double> feed_mm_per_min, power;
   std::optional<std::array<int, 3>> overrides;  // feed, rapid, power in percent

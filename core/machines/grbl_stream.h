@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// What lies in GRBL's serial buffer, as far as one can know: "character counting". Every line is answered once, in order, and frees its
-// bytes only then; a line goes out when all that is unanswered leaves room for it.
+// What lies in GRBL's serial buffer, as far as one can know: "character counting". Every line is answered once, in
+// order, and frees its bytes only then; a line goes out when all that is unanswered leaves room for it.
 #include <algorithm>
 #include <deque>
 #include <optional>
@@ -13,10 +13,10 @@ namespace formwright {
 class GrblStream {
  public:
   struct Line {
-    std::string text;      // without its end
-    int job_line = -1;     // index in the job, or -1
-    bool alone = false;    // writes to the EEPROM: nothing may arrive meanwhile
-    double patience_s = 0; // how much longer than others it may take
+    std::string text;       // without its end
+    int job_line = -1;      // index in the job, or -1
+    bool alone = false;     // writes to the EEPROM: nothing may arrive meanwhile
+    double patience_s = 0;  // how much longer than others it may take
   };
 
   /// 127 of the 128 bytes of an Uno; some boards tell of more.
@@ -46,7 +46,8 @@ class GrblStream {
   bool empty() const { return unanswered_.empty(); }
   /// Is a line that begins so not answered yet?
   bool waits_for(std::string_view beginning) const {
-    return std::any_of(unanswered_.begin(), unanswered_.end(), [&](const Line& line) { return line.text.starts_with(beginning); });
+    return std::any_of(unanswered_.begin(), unanswered_.end(),
+                       [&](const Line& line) { return line.text.starts_with(beginning); });
   }
   int bytes() const { return unanswered_bytes_; }
   double patience_s() const {

@@ -16,7 +16,8 @@ using machines_detail::require_confirmation;
 constexpr std::size_t packet_letters = 30;
 constexpr char ask_status = static_cast<char>(0xa0);
 constexpr int status_ok = 206, status_checksum = 207, status_finished = 236, status_busy = 238, status_power = 239;
-constexpr double asking_s = 0.3, asking_busy_s = 0.02, silence_s = 3, rest_s = 1.0, settled_s = 0.3, mm_per_mil = 0.0254, absent = std::numeric_limits<double>::quiet_NaN();
+constexpr double asking_s = 0.3, asking_busy_s = 0.02, silence_s = 3, rest_s = 1.0, settled_s = 0.3,
+                 mm_per_mil = 0.0254, absent = std::numeric_limits<double>::quiet_NaN();
 constexpr int most_repeats = 10;
 
 /// LHYMICRO-GL: z is 255; up to 51 one or two letters; three digits beyond.
@@ -78,7 +79,9 @@ std::vector<std::string> k40_packets(std::string_view egv) {
       line.remove_prefix(mark + 1);
     }
     for (const char letter : line) {
-      const bool known = (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') || (letter >= '0' && letter <= '9') || letter == '|' || letter == '@' || letter == '$' || letter == '-';
+      const bool known = (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
+                         (letter >= '0' && letter <= '9') || letter == '|' || letter == '@' || letter == '$' ||
+                         letter == '-';
       if (!known) refuse("job", "The file is not in the K40's format (EGV): make the job again for this controller.");
       if (letter == '-') continue;  // "wait", which the end of the job does anyway
       open += letter;
@@ -102,7 +105,8 @@ void K40Driver::closed(double now_s) {
   if (connection_ == MachineConnection::closed) return;
   if (job_active()) {
     end_job("cut_off", now_s);
-    note("The laser is gone in the middle of the job. It goes on with what it has: open its lid or switch it off.", now_s);
+    note("The laser is gone in the middle of the job. It goes on with what it has: open its lid or switch it off.",
+         now_s);
   }
   drop_output();
   queue_.clear();
@@ -128,7 +132,9 @@ void K40Driver::received(ByteView bytes, double now_s) {
   connection_ = MachineConnection::ready;
   if (status_ == status_checksum && unconfirmed_) {
     if (++repeats_ > most_repeats) {
-      note("The laser says again and again that packets arrive spoiled: use a shorter cable, away from the laser's supply.", now_s);
+      note(
+          "The laser says again and again that packets arrive spoiled: use a shorter cable, away from the laser's supply.",
+          now_s);
       command({{"do", "stop"}}, now_s);
       return;
     }
@@ -146,7 +152,8 @@ void K40Driver::received(ByteView bytes, double now_s) {
   if (!queue_.empty() || unconfirmed_) return;
   // A job tells its end; homing and moves are over when the board has rested for a while.
   // Right behind the last packet the board may still tell of the job before.
-  if (job_active() && status_ == status_finished && now_s - sent_s_ > settled_s) end_job("done", now_s), doing_ = Doing::nothing;
+  if (job_active() && status_ == status_finished && now_s - sent_s_ > settled_s)
+    end_job("done", now_s), doing_ = Doing::nothing;
   else if (!job_active() && doing_ != Doing::nothing && now_s - sent_s_ > rest_s) {
     if (doing_ == Doing::homing) position_known_ = true, position_mm_ = {0, 0};
     doing_ = Doing::nothing;
@@ -202,13 +209,16 @@ std::vector<std::string> K40Driver::possible_commands() const {
 }
 
 void K40Driver::move(double right_mm, double front_mm) {
-  const int right = static_cast<int>(std::lround((position_mm_[0] + right_mm) / mm_per_mil)) - static_cast<int>(std::lround(position_mm_[0] / mm_per_mil));
-  const int front = static_cast<int>(std::lround((position_mm_[1] + front_mm) / mm_per_mil)) - static_cast<int>(std::lround(position_mm_[1] / mm_per_mil));
+  const int right = static_cast<int>(std::lround((position_mm_[0] + right_mm) / mm_per_mil)) -
+                    static_cast<int>(std::lround(position_mm_[0] / mm_per_mil));
+  const int front = static_cast<int>(std::lround((position_mm_[1] + front_mm) / mm_per_mil)) -
+                    static_cast<int>(std::lround(position_mm_[1] / mm_per_mil));
   if (right == 0 && front == 0) return;
   position_mm_[0] += right_mm;
   position_mm_[1] += front_mm;
   const std::string letters = k40_rapid_move(right, front);
-  for (std::size_t at = 0; at < letters.size(); at += packet_letters) queue_.push_back(letters.substr(at, packet_letters));
+  for (std::size_t at = 0; at < letters.size(); at += packet_letters)
+    queue_.push_back(letters.substr(at, packet_letters));
   doing_ = Doing::moving;
 }
 
@@ -227,14 +237,17 @@ void K40Driver::command(const Json& command, double now_s) {
   }
   const std::vector<std::string> can = possible_commands();
   if (std::find(can.begin(), can.end(), what) == can.end()) {
-    if (what == "focus" || what == "override") refuse(what, "A K40's power is set on its panel: use its test button at low power.");
-    if ((what == "start" || what == "frame" || what == "go_to") && !position_known_) refuse(what, "Where the head stands is unknown: home the laser first.");
+    if (what == "focus" || what == "override")
+      refuse(what, "A K40's power is set on its panel: use its test button at low power.");
+    if ((what == "start" || what == "frame" || what == "go_to") && !position_known_)
+      refuse(what, "Where the head stands is unknown: home the laser first.");
     if (what == "start" && program_.empty()) refuse(what, "No job is loaded: choose one first.");
     machines_detail::refuse_in_phase(what, phase());
   }
   const auto inside = [&](double right_mm, double front_mm) {
     if (right_mm < -1e-6 || front_mm < -1e-6 || right_mm > options_.bed_x_mm || front_mm > options_.bed_y_mm)
-      refuse("job", "This would leave the bed of " + machines_detail::decimal(options_.bed_x_mm) + " by " + machines_detail::decimal(options_.bed_y_mm) + " mm.");
+      refuse("job", "This would leave the bed of " + machines_detail::decimal(options_.bed_x_mm) + " by " +
+                        machines_detail::decimal(options_.bed_y_mm) + " mm.");
   };
   if (what == "home") {
     require_confirmation(command, "The head moves to its corner");
@@ -263,7 +276,8 @@ void K40Driver::command(const Json& command, double now_s) {
       move(x - position_mm_[0], options_.bed_y_mm - y - position_mm_[1]);
   } else if (what == "start") {
     require_confirmation(command, "The laser moves and its beam turns on");
-    if (number_of(command, "from_line", 1, 1e9, 1) > 1) refuse("from_line", "A K40 cannot go on in the middle of a job: start it anew.");
+    if (number_of(command, "from_line", 1, 1e9, 1) > 1)
+      refuse("from_line", "A K40 cannot go on in the middle of a job: start it anew.");
     const int count = static_cast<int>(program_.size());
     move(-position_mm_[0], -position_mm_[1]);  // jobs begin at home
     const int moves = static_cast<int>(queue_.size());
@@ -287,8 +301,11 @@ void K40Driver::load(const std::string& name, ByteView job) {
 
 Json K40Driver::state(double now_s) const {
   Json state = common_state("k40", connection_, phase(), position_known_, now_s);
-  if (position_known_) state["machine_mm"] = state["work_mm"] = {position_mm_[0], options_.bed_y_mm - position_mm_[1], 0};
-  if (status_ == status_power) state["alarm"] = {{"code", status_power}, {"text", "The laser's own supply is off."}, {"mend", "Switch it on and home it."}};
+  if (position_known_)
+    state["machine_mm"] = state["work_mm"] = {position_mm_[0], options_.bed_y_mm - position_mm_[1], 0};
+  if (status_ == status_power)
+    state["alarm"] = {
+        {"code", status_power}, {"text", "The laser's own supply is off."}, {"mend", "Switch it on and home it."}};
   state["can"] = possible_commands();
   return state;
 }

@@ -2,8 +2,9 @@
 #pragma once
 // K40 lasers with the M2Nano board: packets of 30 letters behind a CH341 chip, each asked after.
 //
-// A packet is "\x00" + 30 letters + their checksum; the chip's parallel mode (EPP) puts 0xA6 before every 31 bytes of a transfer, and
-// 0xA0 asks for the board's status. There is no position to read and no power to set: where the head is follows from what was sent.
+// A packet is "\x00" + 30 letters + their checksum; the chip's parallel mode (EPP) puts 0xA6 before every 31 bytes of a
+// transfer, and 0xA0 asks for the board's status. There is no position to read and no power to set: where the head is
+// follows from what was sent.
 #include <deque>
 #include <optional>
 
@@ -15,7 +16,8 @@ namespace formwright {
 unsigned char one_wire_crc(std::string_view letters);
 /// The USB transfer of up to 30 letters, padded with F.
 Bytes k40_transfer(std::string_view letters);
-/// Letters that move the head without light, from the board's home position: x to the right, y towards the front, in 1/1000 inch.
+/// Letters that move the head without light, from the board's home position: x to the right, y towards the front, in
+/// 1/1000 inch.
 std::string k40_rapid_move(int right_mil, int front_mil);
 /// The packets of an EGV file, its header left out. Throws Error invalid_input ("job").
 std::vector<std::string> k40_packets(std::string_view egv);

@@ -62,7 +62,8 @@ bool MachineDriver::end_job(const char* how, double now_s) {
   return true;
 }
 
-Json MachineDriver::common_state(const char* controller, MachineConnection connection, MachinePhase phase, bool position_known, double now_s) const {
+Json MachineDriver::common_state(const char* controller, MachineConnection connection, MachinePhase phase,
+                                 bool position_known, double now_s) const {
   return {{"controller", controller},
           {"connection", to_string(connection)},
           {"firmware", ""},
@@ -91,7 +92,9 @@ std::unique_ptr<MachineDriver> make_machine_driver(const Json& options) {
 
 namespace machines_detail {
 
-void refuse(const std::string& where, const std::string& sentence) { throw Error(ErrorCode::invalid_input, where, sentence); }
+void refuse(const std::string& where, const std::string& sentence) {
+  throw Error(ErrorCode::invalid_input, where, sentence);
+}
 
 void require_confirmation(const Json& command, const std::string& what_happens) {
   const auto confirmed = command.find("confirmed");
@@ -113,11 +116,13 @@ double number_of(const Json& command, const char* name, double minimum, double m
 
 std::string command_name(const Json& command, MachineConnection connection) {
   const auto found = command.is_object() ? command.find("do") : command.end();
-  if (!command.is_object() || found == command.end() || !found->is_string()) refuse("do", "A command is an object that says what to \"do\".");
+  if (!command.is_object() || found == command.end() || !found->is_string())
+    refuse("do", "A command is an object that says what to \"do\".");
   const std::string what = found->get<std::string>();
   static const char* known[] = {"stop",  "home",      "unlock", "jog",   "jog_cancel", "set_origin", "go_to",   "frame",
                                 "focus", "focus_off", "start",  "pause", "resume",     "send",       "override"};
-  if (std::none_of(std::begin(known), std::end(known), [&](const char* name) { return what == name; })) refuse("do", "There is no command \"" + what + "\".");
+  if (std::none_of(std::begin(known), std::end(known), [&](const char* name) { return what == name; }))
+    refuse("do", "There is no command \"" + what + "\".");
   if (connection == MachineConnection::closed) refuse(what, "The machine is not connected: connect it first.");
   return what;
 }
@@ -145,7 +150,8 @@ std::array<std::array<double, 2>, 5> way_around(const std::array<double, 4>& b) 
 std::string line_of(const Json& command, std::size_t longest) {
   const auto found = command.find("line");
   const std::string line = found != command.end() && found->is_string() ? found->get<std::string>() : "";
-  if (line.empty() || line.size() > longest || std::any_of(line.begin(), line.end(), [](char c) { return c < ' ' || c > '~'; }))
+  if (line.empty() || line.size() > longest ||
+      std::any_of(line.begin(), line.end(), [](char c) { return c < ' ' || c > '~'; }))
     refuse("line", "A line has 1 to " + std::to_string(longest) + " characters of plain text.");
   return line;
 }
@@ -155,7 +161,8 @@ std::string zero_words(const Json& command, const char* space) {
   const std::string axes = found == command.end() ? "xy" : found->is_string() ? found->get<std::string>() : "";
   std::string words;
   for (const char axis : std::string("xyz"))
-    if (axes.find(axis) != std::string::npos) words += space + std::string(1, static_cast<char>(axis - 'a' + 'A')) + "0";
+    if (axes.find(axis) != std::string::npos)
+      words += space + std::string(1, static_cast<char>(axis - 'a' + 'A')) + "0";
   if (words.empty()) refuse("axes", "axes must name x, y or z.");
   return words;
 }

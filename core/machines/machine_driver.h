@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// What all machines have in common for those who hold the port: a driver is told what arrived and what the person wants, and says what
-// to write. It has no clock and no port of its own, so the same one runs in the page, in the worker, on the command line and in tests.
+// What all machines have in common for those who hold the port: a driver is told what arrived and what the person
+// wants, and says what to write. It has no clock and no port of its own, so the same one runs in the page, in the
+// worker, on the command line and in tests.
 #include <array>
 #include <memory>
 #include <optional>
@@ -14,7 +15,20 @@
 
 namespace formwright {
 
-enum class MachinePhase { unknown, idle, homing, jogging, running, pausing, paused, stopping, alarm, door, check, sleep };
+enum class MachinePhase {
+  unknown,
+  idle,
+  homing,
+  jogging,
+  running,
+  pausing,
+  paused,
+  stopping,
+  alarm,
+  door,
+  check,
+  sleep
+};
 const char* to_string(MachinePhase phase);
 
 enum class MachineConnection { closed, greeting, ready, silent };
@@ -42,16 +56,16 @@ class MachineDriver {
   virtual void tick(double now_s) = 0;
   static constexpr double tick_s = 0.05;
 
-  /// What the person wants: {"do": NAME, ...}, docs/machines.md. Throws Error invalid_input (`where`: the field) where it cannot be done
-  /// now, or moves the machine or turns its laser on without "confirmed": true.
+  /// What the person wants: {"do": NAME, ...}, docs/machines.md. Throws Error invalid_input (`where`: the field) where
+  /// it cannot be done now, or moves the machine or turns its laser on without "confirmed": true.
   virtual void command(const Json& command, double now_s) = 0;
   /// Takes a job without starting it. Throws Error invalid_input ("job": with the line).
   virtual void load(const std::string& name, ByteView job) = 0;
   /// docs/machines.md, "State".
   virtual Json state(double now_s) const = 0;
 
-  /// Packets to be written in this order since the last call: those that stop something come first. Serial lines join them; USB and UDP
-  /// send each as one transfer.
+  /// Packets to be written in this order since the last call: those that stop something come first. Serial lines join
+  /// them; USB and UDP send each as one transfer.
   std::vector<Bytes> take_output();
   /// What was said since the last call: [{"event": "sent" | "received" | "note" | "ended", "text" or "how", "now_s"}].
   Json take_events();
@@ -68,7 +82,8 @@ class MachineDriver {
   /// False where no job was running.
   bool end_job(const char* how, double now_s);
   /// What every controller tells, of an unknown place; drivers put their own into it.
-  Json common_state(const char* controller, MachineConnection connection, MachinePhase phase, bool position_known, double now_s) const;
+  Json common_state(const char* controller, MachineConnection connection, MachinePhase phase, bool position_known,
+                    double now_s) const;
 
   std::optional<MachineJob> job_;
   void say(const char* event, std::string_view text, double now_s);

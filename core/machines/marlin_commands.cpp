@@ -103,8 +103,7 @@ void MarlinDriver::command(const Json& command, double now_s) {
   } else if (what == "focus_off") {
     focus_until_s_.reset();
     queue("M5");
-  } else if (what == "start")
-    start(command, now_s);
+  } else if (what == "start") start(command, now_s);
   else if (what == "pause") {
     paused_ = true;
     // What is planned is still done; a laser must not stay on where that ends.

@@ -115,14 +115,12 @@ void MarlinDriver::hear(const std::string& line, double now_s) {
     }
     position_known_ = halted_ = false;
     if (line == "start" || !greeted_) greet(now_s);
-  } else if (line.starts_with("ok"))
-    hear_ok(line, now_s);
+  } else if (line.starts_with("ok")) hear_ok(line, now_s);
   else if (line.starts_with("Resend:") || line.starts_with("rs "))
     hear_resend(std::atoi(line.c_str() + line.find_first_of(": ") + 1), now_s);
   else if (line.starts_with("Error:") || line.starts_with("fatal:"))
     hear_error(std::string_view(line).substr(6), now_s);
-  else if (line.starts_with("!!"))
-    hear_error(std::string_view(line).substr(2), now_s);
+  else if (line.starts_with("!!")) hear_error(std::string_view(line).substr(2), now_s);
   else {
     if (const std::string name = firmware_name(line); !name.empty()) firmware_ = name;
     if (has_any(line, {"unknown command"})) refused_ = line;
@@ -134,10 +132,8 @@ void MarlinDriver::hear_error(std::string_view text, double now_s) {
   const std::string what(text.substr(std::min(text.find_first_not_of(' '), text.size())));
   // What is wrong with a line's number or sum: a request follows, or nothing at all.
   if (has_any(what, {"checksum", "line number", "expected line"})) return;
-  if (has_any(what, {"unknown command"}))
-    refused_ = what;
-  else
-    halt(what, now_s);
+  if (has_any(what, {"unknown command"})) refused_ = what;
+  else halt(what, now_s);
 }
 
 void MarlinDriver::hear_report(const std::string& line, double now_s) {

@@ -36,10 +36,8 @@ class Reader {
   void take(const Command& command) {
     const unsigned what = command.code;
     if ((what >= 0x88 && what <= 0x8b) || (what >= 0xa8 && what <= 0xab)) return move(command, what >= 0xa8);
-    if (command.is(0xd8, 0x10))
-      from_zero_ = true;
-    else if (command.is(0xd8, 0x11) || command.is(0xd8, 0x12))
-      from_panel_ = true;
+    if (command.is(0xd8, 0x10)) from_zero_ = true;
+    else if (command.is(0xd8, 0x11) || command.is(0xd8, 0x12)) from_panel_ = true;
     // Copies across and along; files of one copy say 0 or 1.
     else if ((command.is(0xe7, 0x04) || command.is(0xe7, 0x08) || command.is(0xf2, 0x05)) &&
              (command.number(1, 2) > 1 || command.number(3, 2) > 1))

@@ -27,7 +27,9 @@ std::string coordinate(double mm) {
   return bytes;
 }
 
-std::string read_memory(int address) { return {static_cast<char>(0xda), 0, static_cast<char>(address >> 8), static_cast<char>(address & 0xff)}; }
+std::string read_memory(int address) {
+  return {static_cast<char>(0xda), 0, static_cast<char>(address >> 8), static_cast<char>(address & 0xff)};
+}
 
 }  // namespace
 
@@ -62,9 +64,11 @@ Bytes ruida_datagram(std::string_view plain) {
 
 std::vector<Bytes> ruida_datagrams(ByteView rd_file) {
   std::string plain;
-  for (const std::byte byte : rd_file) plain += static_cast<char>(ruida_unswizzled(std::to_integer<unsigned char>(byte)));
+  for (const std::byte byte : rd_file)
+    plain += static_cast<char>(ruida_unswizzled(std::to_integer<unsigned char>(byte)));
   const auto begins_command = [](char c) { return (static_cast<unsigned char>(c) & 0x80u) != 0; };
-  if (plain.empty() || !begins_command(plain[0])) refuse("job", "The file is not a Ruida job (.rd): make the job again for this controller.");
+  if (plain.empty() || !begins_command(plain[0]))
+    refuse("job", "The file is not a Ruida job (.rd): make the job again for this controller.");
   std::vector<Bytes> datagrams;
   for (std::size_t start = 0; start < plain.size();) {
     std::size_t end = std::min(start + datagram_bytes - 2, plain.size());
@@ -142,7 +146,8 @@ void RuidaDriver::received(ByteView datagram, double now_s) {
   const bool resting = (status_ & (status_moving | status_running)) == 0;
   if (job_active() && job_left_ == 0) {
     seen_running_ = seen_running_ || !resting;
-    if (resting && (seen_running_ || now_s - uploaded_s_ > rest_s) && now_s - uploaded_s_ > asking_s) end("done", now_s);
+    if (resting && (seen_running_ || now_s - uploaded_s_ > rest_s) && now_s - uploaded_s_ > asking_s)
+      end("done", now_s);
   }
   if (homing_ && resting && now_s - homing_s_ > rest_s) homing_ = false, homed_ = true;
 }
@@ -188,7 +193,9 @@ MachinePhase RuidaDriver::phase() const {
   if (connection_ != MachineConnection::ready) return MachinePhase::unknown;
   if (homing_) return MachinePhase::homing;
   if (job_active()) return paused_ ? MachinePhase::paused : MachinePhase::running;
-  return status_ & status_running ? MachinePhase::running : status_ & status_moving ? MachinePhase::jogging : MachinePhase::idle;
+  return status_ & status_running  ? MachinePhase::running
+         : status_ & status_moving ? MachinePhase::jogging
+                                   : MachinePhase::idle;
 }
 
 std::vector<std::string> RuidaDriver::possible_commands() const {
@@ -218,14 +225,17 @@ void RuidaDriver::command(const Json& command, double now_s) {
   }
   const std::vector<std::string> can = possible_commands();
   if (std::find(can.begin(), can.end(), what) == can.end()) {
-    if ((what == "start" || what == "frame" || what == "go_to") && phase() == MachinePhase::idle && !homed_) refuse(what, "Where the head stands is unknown: home the laser first.");
+    if ((what == "start" || what == "frame" || what == "go_to") && phase() == MachinePhase::idle && !homed_)
+      refuse(what, "Where the head stands is unknown: home the laser first.");
     if (what == "start" && program_.empty()) refuse(what, "No job is loaded: choose one first.");
-    if (what == "focus" || what == "set_origin" || what == "override") refuse(what, "This is done at the laser's own panel.");
+    if (what == "focus" || what == "set_origin" || what == "override")
+      refuse(what, "This is done at the laser's own panel.");
     machines_detail::refuse_in_phase(what, phase());
   }
   const auto go = [&](double x_mm, double y_mm) {
     if (x_mm < -1e-6 || y_mm < -1e-6 || x_mm > options_.bed_x_mm || y_mm > options_.bed_y_mm)
-      refuse("job", "This would leave the bed of " + machines_detail::decimal(options_.bed_x_mm) + " by " + machines_detail::decimal(options_.bed_y_mm) + " mm.");
+      refuse("job", "This would leave the bed of " + machines_detail::decimal(options_.bed_x_mm) + " by " +
+                        machines_detail::decimal(options_.bed_y_mm) + " mm.");
     queue(std::string("\xd9\x10\x00", 3) + coordinate(x_mm) + coordinate(y_mm));
   };
   if (what == "home") {
@@ -236,15 +246,18 @@ void RuidaDriver::command(const Json& command, double now_s) {
     homing_s_ = now_s;
   } else if (what == "jog") {
     if (!position_mm_[0] || !position_mm_[1]) refuse("jog", "The laser has not said where it is yet: wait a moment.");
-    go(*position_mm_[0] + number_of(command, "x_mm", -2000, 2000, 0), *position_mm_[1] + number_of(command, "y_mm", -2000, 2000, 0));
-  } else if (what == "go_to") go(number_of(command, "x_mm", 0, 2000, absent), number_of(command, "y_mm", 0, 2000, absent));
+    go(*position_mm_[0] + number_of(command, "x_mm", -2000, 2000, 0),
+       *position_mm_[1] + number_of(command, "y_mm", -2000, 2000, 0));
+  } else if (what == "go_to")
+    go(number_of(command, "x_mm", 0, 2000, absent), number_of(command, "y_mm", 0, 2000, absent));
   else if (what == "frame") {
     require_confirmation(command, "The head moves once around the job, laser off");
     const std::array<double, 4> b = machines_detail::bounds_of(command);
     for (const auto& [x, y] : machines_detail::way_around(b)) go(x, y);
   } else if (what == "start") {
     require_confirmation(command, "The laser moves and its beam turns on");
-    if (number_of(command, "from_line", 1, 1e9, 1) > 1) refuse("from_line", "A Ruida laser goes on in the middle of a job at its own panel only: start it anew.");
+    if (number_of(command, "from_line", 1, 1e9, 1) > 1)
+      refuse("from_line", "A Ruida laser goes on in the middle of a job at its own panel only: start it anew.");
     queue_.insert(queue_.end(), program_.begin(), program_.end());
     job_left_ = program_.size();
     const int count = static_cast<int>(program_.size());
@@ -269,7 +282,8 @@ void RuidaDriver::load(const std::string& name, ByteView job) {
 
 Json RuidaDriver::state(double now_s) const {
   Json state = common_state("ruida", connection_, phase(), homed_, now_s);
-  if (position_mm_[0] && position_mm_[1]) state["machine_mm"] = state["work_mm"] = {*position_mm_[0], *position_mm_[1], 0};
+  if (position_mm_[0] && position_mm_[1])
+    state["machine_mm"] = state["work_mm"] = {*position_mm_[0], *position_mm_[1], 0};
   state["can"] = possible_commands();
   return state;
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Ruida controllers over UDP: the board answers on port 40200 what arrives on 50200. A datagram is at most 1470 bytes: a 16-bit big-endian
-// sum of the bytes behind it, and those bytes scrambled ("swizzled") with the model's number. Every datagram is acknowledged.
+// Ruida controllers over UDP: the board answers on port 40200 what arrives on 50200. A datagram is at most 1470 bytes:
+// a 16-bit big-endian sum of the bytes behind it, and those bytes scrambled ("swizzled") with the model's number. Every
+// datagram is acknowledged.
 #include <array>
 #include <cstdint>
 #include <deque>

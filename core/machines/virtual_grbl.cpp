@@ -11,17 +11,48 @@ namespace {
 constexpr std::size_t rx_bytes = 128;
 constexpr double step_s = 1e-3;
 
-double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
+double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
 
 }  // namespace
 
 VirtualGrbl::VirtualGrbl(const VirtualGrblOptions& options) : options_(options) {
   const double rapid = 60 * options.rapid_mm_per_s;
-  settings_ = {{0, 10},   {1, 25},   {2, 0},   {3, 0},     {4, 0},     {5, 0},   {6, 0},   {10, 1},  {11, 0.01}, {12, 0.002}, {13, 0},
-               {20, options.soft_limits ? 1 : 0}, {21, 0}, {22, options.homes ? 1 : 0}, {23, options.origin_low ? 3 : 0}, {24, 100}, {25, 1500}, {26, 250}, {27, 1},
-               {30, 1000}, {31, 0},  {32, options.laser_mode ? 1 : 0},       {100, 80}, {101, 80}, {102, 400},
-               {110, rapid}, {111, rapid}, {112, 600}, {120, options.acceleration_mm_per_s2}, {121, options.acceleration_mm_per_s2}, {122, 50},
-               {130, options.travel_x_mm}, {131, options.travel_y_mm}, {132, options.travel_z_mm}};
+  settings_ = {{0, 10},
+               {1, 25},
+               {2, 0},
+               {3, 0},
+               {4, 0},
+               {5, 0},
+               {6, 0},
+               {10, 1},
+               {11, 0.01},
+               {12, 0.002},
+               {13, 0},
+               {20, options.soft_limits ? 1 : 0},
+               {21, 0},
+               {22, options.homes ? 1 : 0},
+               {23, options.origin_low ? 3 : 0},
+               {24, 100},
+               {25, 1500},
+               {26, 250},
+               {27, 1},
+               {30, 1000},
+               {31, 0},
+               {32, options.laser_mode ? 1 : 0},
+               {100, 80},
+               {101, 80},
+               {102, 400},
+               {110, rapid},
+               {111, rapid},
+               {112, 600},
+               {120, options.acceleration_mm_per_s2},
+               {121, options.acceleration_mm_per_s2},
+               {122, 50},
+               {130, options.travel_x_mm},
+               {131, options.travel_y_mm},
+               {132, options.travel_z_mm}};
 }
 
 void VirtualGrbl::open(double now_s) {
@@ -126,12 +157,14 @@ void VirtualGrbl::report() {
   char text[200];
   std::string state = state_;
   if (state_ == "Hold") state += speed_mm_per_s_ > 0 ? ":1" : ":0";
-  std::snprintf(text, sizeof text, "<%s|MPos:%.3f,%.3f,%.3f|Bf:%d,%d|FS:%.0f,%.0f", state.c_str(), position_mm_[0], position_mm_[1], position_mm_[2],
-                static_cast<int>(15 - std::min<std::size_t>(planner_.size(), 15)), static_cast<int>(rx_bytes - rx_.size()), 60 * speed_mm_per_s_,
+  std::snprintf(text, sizeof text, "<%s|MPos:%.3f,%.3f,%.3f|Bf:%d,%d|FS:%.0f,%.0f", state.c_str(), position_mm_[0],
+                position_mm_[1], position_mm_[2], static_cast<int>(15 - std::min<std::size_t>(planner_.size(), 15)),
+                static_cast<int>(rx_bytes - rx_.size()), 60 * speed_mm_per_s_,
                 beam_ ? planner_.empty() ? modes_.power : planner_.front().power : 0.0);
   output_ += text;
   if (reports_ % 10 == 0) {
-    std::snprintf(text, sizeof text, "|WCO:%.3f,%.3f,%.3f", modes_.offset_mm[0], modes_.offset_mm[1], modes_.offset_mm[2]);
+    std::snprintf(text, sizeof text, "|WCO:%.3f,%.3f,%.3f", modes_.offset_mm[0], modes_.offset_mm[1],
+                  modes_.offset_mm[2]);
     output_ += text;
   } else if (reports_ % 10 == 1) {
     std::snprintf(text, sizeof text, "|Ov:%d,%d,%d", overrides_[0], overrides_[1], overrides_[2]);
@@ -159,7 +192,9 @@ void VirtualGrbl::step(double dt_s) {
   }
   if (state_ == "Home") {
     if (time_s_ < homes_at_s_) return;
-    position_mm_ = planned_mm_ = options_.origin_low ? std::array<double, 3>{0, 0, 0} : std::array<double, 3>{-settings_[27], -settings_[27], -settings_[27]};
+    position_mm_ = planned_mm_ = options_.origin_low
+                                     ? std::array<double, 3>{0, 0, 0}
+                                     : std::array<double, 3>{-settings_[27], -settings_[27], -settings_[27]};
     locked_ = false;
     state_ = "Idle";
     answer(0);
@@ -212,7 +247,8 @@ void VirtualGrbl::move(double dt_s) {
     const Block& block = planner_.front();
     const double nominal = block.speed_mm_per_s * (block.burns || !block.jog ? overrides_[0] / 100.0 : 1);
     const double limit = stops ? 0 : std::min(nominal, std::sqrt(2 * a * stopping_distance_mm()) + 0.5 * a * dt_s);
-    speed_mm_per_s_ = speed_mm_per_s_ < limit ? std::min(limit, speed_mm_per_s_ + a * left_s) : std::max(limit, speed_mm_per_s_ - 2 * a * left_s);
+    speed_mm_per_s_ = speed_mm_per_s_ < limit ? std::min(limit, speed_mm_per_s_ + a * left_s)
+                                              : std::max(limit, speed_mm_per_s_ - 2 * a * left_s);
     if (stops && speed_mm_per_s_ <= 0) {
       speed_mm_per_s_ = 0;
       beam_ = false;
@@ -235,7 +271,9 @@ void VirtualGrbl::move(double dt_s) {
       left_s = 0;
     }
     if (beam_ && distance(before, position_mm_) > 0) {
-      if (!burns_.empty() && burns_.back().to_mm == before && burns_.back().power == block.power && burn_from_mm_ == block.to_mm) burns_.back().to_mm = position_mm_;
+      if (!burns_.empty() && burns_.back().to_mm == before && burns_.back().power == block.power &&
+          burn_from_mm_ == block.to_mm)
+        burns_.back().to_mm = position_mm_;
       else burns_.push_back({before, position_mm_, block.power});
       burn_from_mm_ = block.to_mm;
     }

@@ -2,9 +2,10 @@
 #pragma once
 // A GRBL 1.1 laser that is not there: to practise on, and a strict judge of whoever sends to it.
 //
-// It has what makes senders fail: a serial buffer of 128 bytes that loses what does not fit, a planner of 15 blocks, an EEPROM during
-// whose writing nothing is heard, real-time commands that overtake, holds that take time, resets that lose steps, locks after alarms.
-// Behaviour from GRBL's own documentation (doc/markdown/interface.md, commands.md, settings.md) and sources, none of which is used here.
+// It has what makes senders fail: a serial buffer of 128 bytes that loses what does not fit, a planner of 15 blocks, an
+// EEPROM during whose writing nothing is heard, real-time commands that overtake, holds that take time, resets that
+// lose steps, locks after alarms. Behaviour from GRBL's own documentation (doc/markdown/interface.md, commands.md,
+// settings.md) and sources, none of which is used here.
 #include <array>
 #include <cstdint>
 #include <deque>
@@ -19,7 +20,8 @@ namespace formwright {
 struct VirtualGrblOptions {
   double travel_x_mm = 400, travel_y_mm = 400, travel_z_mm = 80;
   bool homes = true, laser_mode = true, soft_limits = false;
-  bool origin_low = false;  // homes to its lower left corner and calls that 0, as most small lasers do; else to the upper right
+  bool origin_low =
+      false;  // homes to its lower left corner and calls that 0, as most small lasers do; else to the upper right
   double boot_s = 0.6, eeprom_s = 0.02, homing_s = 2.5;
   double acceleration_mm_per_s2 = 500;
   double rapid_mm_per_s = 150;

@@ -28,7 +28,8 @@ void VirtualGrbl::read_line() {
 
 int VirtualGrbl::act(const std::string& line) {
   if (line[0] != '$') return state_ == "Alarm" || state_ == "Jog" ? 9 : act_on_gcode(line, false);
-  if (line.starts_with("$J=")) return state_ == "Idle" || state_ == "Jog" ? act_on_gcode(line.substr(3), true) : state_ == "Alarm" ? 9 : 8;
+  if (line.starts_with("$J="))
+    return state_ == "Idle" || state_ == "Jog" ? act_on_gcode(line.substr(3), true) : state_ == "Alarm" ? 9 : 8;
   if (state_ != "Idle" && state_ != "Alarm") return 8;
   return act_on_setting(line);
 }
@@ -37,18 +38,21 @@ int VirtualGrbl::act_on_setting(const std::string& line) {
   char text[96];
   if (line == "$$") {
     for (const auto& [number, value] : settings_) {
-      std::snprintf(text, sizeof text, number < 100 && value == std::floor(value) ? "$%d=%.0f\r\n" : "$%d=%.3f\r\n", number, value);
+      std::snprintf(text, sizeof text, number < 100 && value == std::floor(value) ? "$%d=%.0f\r\n" : "$%d=%.3f\r\n",
+                    number, value);
       output_ += text;
     }
     return 0;
   }
   if (line == "$I") {
-    output_ += std::string("[VER:1.1h.20190825:Practice]\r\n[OPT:V") + (options_.origin_low ? "Z" : "") + ",15,128]\r\n";
+    output_ +=
+        std::string("[VER:1.1h.20190825:Practice]\r\n[OPT:V") + (options_.origin_low ? "Z" : "") + ",15,128]\r\n";
     return 0;
   }
   if (line == "$G") {
-    std::snprintf(text, sizeof text, "[GC:G%d G54 G17 G%d G%d G94 M%d M9 T0 F%.0f S%.0f]\r\n", modes_.motion, modes_.inches ? 20 : 21, modes_.relative ? 91 : 90,
-                  modes_.spindle, modes_.feed_mm_per_min, modes_.power);
+    std::snprintf(text, sizeof text, "[GC:G%d G54 G17 G%d G%d G94 M%d M9 T0 F%.0f S%.0f]\r\n", modes_.motion,
+                  modes_.inches ? 20 : 21, modes_.relative ? 91 : 90, modes_.spindle, modes_.feed_mm_per_min,
+                  modes_.power);
     output_ += text;
     return 0;
   }
@@ -84,7 +88,8 @@ int VirtualGrbl::act_on_gcode(const std::string& line, bool jog) {
   Modes next = modes_;
   std::array<std::optional<double>, 3> target;
   double i = 0, j = 0, p = 0;
-  bool arc_centre = false, dwell = false, set_offset = false, offset_absolute = false, pause = false, end = false, machine = false;
+  bool arc_centre = false, dwell = false, set_offset = false, offset_absolute = false, pause = false, end = false,
+       machine = false;
   int groups = 0;
   for (const char* at = line.c_str(); *at != '\0';) {
     const char letter = *at++;
@@ -118,7 +123,9 @@ int VirtualGrbl::act_on_gcode(const std::string& line, bool jog) {
         else if (whole == 2 || whole == 30) end = true;
         else if (whole != 7 && whole != 8 && whole != 9) return 20;
         break;
-      case 'X': case 'Y': case 'Z': target[static_cast<std::size_t>(letter - 'X')] = mm; break;
+      case 'X':
+      case 'Y':
+      case 'Z': target[static_cast<std::size_t>(letter - 'X')] = mm; break;
       case 'I': i = mm, arc_centre = true; break;
       case 'J': j = mm, arc_centre = true; break;
       case 'F':
@@ -131,7 +138,8 @@ int VirtualGrbl::act_on_gcode(const std::string& line, bool jog) {
         break;
       case 'P': p = value; break;
       case 'L': offset_absolute = whole == 2; break;
-      case 'N': case 'T': break;
+      case 'N':
+      case 'T': break;
       default: return 20;
     }
   }
@@ -202,13 +210,19 @@ int VirtualGrbl::add_arc(const std::array<double, 3>& to_mm, double i_mm, double
   const bool clockwise = modes_.motion == 2;
   const double start = std::atan2(-j_mm, -i_mm);
   double sweep = std::atan2(to_mm[1] - cy, to_mm[0] - cx) - start;
-  if (clockwise) while (sweep >= -1e-9) sweep -= 2 * std::numbers::pi;
-  else while (sweep <= 1e-9) sweep += 2 * std::numbers::pi;
-  const int segments = std::max(1, static_cast<int>(std::ceil(std::abs(sweep) / (2 * std::acos(1 - std::min(1.0, 0.002 / std::max(radius, 0.002)))))));
+  if (clockwise)
+    while (sweep >= -1e-9) sweep -= 2 * std::numbers::pi;
+  else
+    while (sweep <= 1e-9) sweep += 2 * std::numbers::pi;
+  const int segments =
+      std::max(1, static_cast<int>(std::ceil(std::abs(sweep) /
+                                             (2 * std::acos(1 - std::min(1.0, 0.002 / std::max(radius, 0.002)))))));
   Block block = like;
   for (int s = 1; s <= segments; ++s) {
     const double angle = start + sweep * s / segments, t = static_cast<double>(s) / segments;
-    block.to_mm = s == segments ? to_mm : std::array<double, 3>{cx + radius * std::cos(angle), cy + radius * std::sin(angle), planned_mm_[2] + (to_mm[2] - planned_mm_[2]) * t};
+    block.to_mm = s == segments ? to_mm
+                                : std::array<double, 3>{cx + radius * std::cos(angle), cy + radius * std::sin(angle),
+                                                        planned_mm_[2] + (to_mm[2] - planned_mm_[2]) * t};
     add_block(block);
   }
   return 0;

@@ -18,12 +18,13 @@ namespace formwright {
 using namespace bounded_qp_detail;
 
 namespace {
-constexpr std::size_t many_equalities = 32;   // from here on they leave the factorisation instead of filling the pool
+constexpr std::size_t many_equalities = 32;  // from here on they leave the factorisation instead of filling the pool
 constexpr int rounds_before_interior_point = 4;
 constexpr int stages_before_interior_point = 40;
 constexpr int order_rounds = 20;
-constexpr double round_off_room = 1e3;        // of the tolerance, for order rows
-constexpr double real_force = 1e-10;          // of the largest stiffness times the largest displacement: smaller ones are round-off
+constexpr double round_off_room = 1e3;  // of the tolerance, for order rows
+constexpr double real_force =
+    1e-10;  // of the largest stiffness times the largest displacement: smaller ones are round-off
 
 std::vector<RowKey> equal_bounds(const Rows& rows) {
   const BoundedQpConstraints& c = rows.constraints();
@@ -44,7 +45,8 @@ void add_up(const ExchangeResult& before, ExchangeResult& result) {
   result.seconds.sweeps += before.seconds.sweeps;
 }
 
-// Relative to the largest force. Where nothing pushes, force and Q u are both round-off: relative to what cancels there.
+// Relative to the largest force. Where nothing pushes, force and Q u are both round-off: relative to what cancels
+// there.
 double kkt_residual(const Energy& energy, const Eigen::VectorXd& u, const Eigen::VectorXd& force) {
   if (u.size() == 0) return 0;
   const double left = (energy.apply(u) - force).cwiseAbs().maxCoeff();
@@ -74,25 +76,29 @@ BoundedQp::~BoundedQp() = default;
 BoundedQp::BoundedQp(BoundedQp&&) noexcept = default;
 BoundedQp& BoundedQp::operator=(BoundedQp&&) noexcept = default;
 
-void BoundedQp::set_energy(const SparseMatrix& lower_Q, std::vector<int> component, const Positions& positions, Context& context) {
+void BoundedQp::set_energy(const SparseMatrix& lower_Q, std::vector<int> component, const Positions& positions,
+                           Context& context) {
   auto& I = *implementation_;
   I.energy.set(lower_Q, std::move(component), positions, {}, context);
   I.exchange.forget();
   I.energy.factorize_pinned({}, context);
 }
 
-BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve(const Rows& rows, const BoundedQpOptions& options, Context& context) {
+BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve(const Rows& rows, const BoundedQpOptions& options,
+                                                                    Context& context) {
   std::vector<RowKey> base = equal_bounds(rows);
   if (base.size() < many_equalities) base.clear();
   ExchangeSettings settings;
   settings.violation_tolerance = options.violation_tolerance;
   settings.max_rounds = options.max_rounds;
   if (options.method != QpMethod::interior_point) settings.most_active = options.most_active_in_pool;
-  if (options.method == QpMethod::interior_point) settings.max_rounds = std::min(options.max_rounds, rounds_before_interior_point);
+  if (options.method == QpMethod::interior_point)
+    settings.max_rounds = std::min(options.max_rounds, rounds_before_interior_point);
   settings.may_stop = true;
   Outcome outcome;
   outcome.result = exchange.solve(rows, base, settings, context);
-  if (options.method == QpMethod::interior_point) return solve_densely(rows, std::move(outcome.result), options, context);
+  if (options.method == QpMethod::interior_point)
+    return solve_densely(rows, std::move(outcome.result), options, context);
   if (!outcome.result.stopped) {
     add_base_reactions(energy, rows, base, outcome.result);
     return outcome;
@@ -104,10 +110,12 @@ BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve(const Rows& 
   }
   const int stages = options.method == QpMethod::exchange ? options.max_rounds : stages_before_interior_point;
   auto dense = exchange_on_base(energy, rows, base, settings, stages, context);
-  if (!dense && options.method == QpMethod::automatic) return solve_densely(rows, std::move(outcome.result), options, context);
+  if (!dense && options.method == QpMethod::automatic)
+    return solve_densely(rows, std::move(outcome.result), options, context);
   if (!dense) {
-    throw Error(ErrorCode::could_not_solve, "max_rounds",
-                "The contacts did not settle in " + std::to_string(stages) + " stages: allow more rounds or widen the bounds.");
+    throw Error(
+        ErrorCode::could_not_solve, "max_rounds",
+        "The contacts did not settle in " + std::to_string(stages) + " stages: allow more rounds or widen the bounds.");
   }
   add_up(outcome.result, *dense);
   outcome.result = std::move(*dense);
@@ -115,7 +123,8 @@ BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve(const Rows& 
 }
 
 // Interior point on all bounds and those order rows that turn out to matter, then the exact active set.
-BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve_densely(const Rows& rows, ExchangeResult so_far, const BoundedQpOptions& options,
+BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve_densely(const Rows& rows, ExchangeResult so_far,
+                                                                            const BoundedQpOptions& options,
                                                                             Context& context) {
   Outcome outcome;
   outcome.method = QpMethod::interior_point;
@@ -134,7 +143,8 @@ BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve_densely(cons
     rows.evaluate(point.u, point.m, violations);
     const std::size_t before = order.size();
     for (const RowKey key : rows.worth_adding(violations, options.violation_tolerance)) {
-      if (key.side == Side::order && std::find(order.begin(), order.end(), key.index) == order.end()) order.push_back(key.index);
+      if (key.side == Side::order && std::find(order.begin(), order.end(), key.index) == order.end())
+        order.push_back(key.index);
     }
     if (order.size() == before || round == order_rounds) break;
     start = {point.u, point.m, {}, {}};
@@ -144,10 +154,12 @@ BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve_densely(cons
       force.push_back(y);
     };
     for (int i = 0; i < rows.size(); ++i) {
-      if (point.force_lower[i] > 0 && point.force_lower[i] >= point.force_upper[i]) note({Side::lower, i}, point.force_lower[i]);
+      if (point.force_lower[i] > 0 && point.force_lower[i] >= point.force_upper[i])
+        note({Side::lower, i}, point.force_lower[i]);
       else if (point.force_upper[i] > 0) note({Side::upper, i}, point.force_upper[i]);
     }
-    for (std::size_t k = 0; k < point.order.size(); ++k) note({Side::order, point.order[k]}, point.order_force[static_cast<Eigen::Index>(k)]);
+    for (std::size_t k = 0; k < point.order.size(); ++k)
+      note({Side::order, point.order[k]}, point.order_force[static_cast<Eigen::Index>(k)]);
     start.multiplier = Eigen::Map<const Eigen::VectorXd>(force.data(), static_cast<Eigen::Index>(force.size()));
   }
   const double seconds_interior_point = watch.lap();
@@ -158,7 +170,9 @@ BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve_densely(cons
   exact.may_stop = true;
   auto crossed = crossover(energy, rows, point, exact, context);
   if (!crossed) {
-    throw Error(ErrorCode::could_not_solve, "constraints", "Too many constraints are neither clearly in contact nor clearly free: widen the bounds or use a coarser mesh.");
+    throw Error(
+        ErrorCode::could_not_solve, "constraints",
+        "Too many constraints are neither clearly in contact nor clearly free: widen the bounds or use a coarser mesh.");
   }
   add_up(so_far, *crossed);
   outcome.result = std::move(*crossed);
@@ -166,9 +180,11 @@ BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve_densely(cons
   return outcome;
 }
 
-BoundedQpSolution BoundedQp::solve(const BoundedQpConstraints& constraints, const BoundedQpOptions& options, Context& context) {
+BoundedQpSolution BoundedQp::solve(const BoundedQpConstraints& constraints, const BoundedQpOptions& options,
+                                   Context& context) {
   auto& I = *implementation_;
-  if (!(options.violation_tolerance > 0)) throw Error(ErrorCode::invalid_input, "violation_tolerance", "The tolerance must be positive.");
+  if (!(options.violation_tolerance > 0))
+    throw Error(ErrorCode::invalid_input, "violation_tolerance", "The tolerance must be positive.");
   const Rows rows(constraints, I.energy);
   I.seconds_interior = 0;
   auto [found, method, iterations] = I.solve(rows, options, context);
@@ -183,7 +199,8 @@ BoundedQpSolution BoundedQp::solve(const BoundedQpConstraints& constraints, cons
   // Bounds hold exactly after clipping; order rows on a badly conditioned energy only to round-off, which is reported.
   if (!(violations.max <= round_off_room * options.violation_tolerance)) {
     throw Error(ErrorCode::could_not_solve, "violation_tolerance",
-                "Round-off leaves order rows violated by " + std::to_string(violations.max / options.violation_tolerance) + " times the tolerance: allow more.");
+                "Round-off leaves order rows violated by " +
+                    std::to_string(violations.max / options.violation_tolerance) + " times the tolerance: allow more.");
   }
   solution.objective = I.energy.energy(solution.u);
   solution.kkt_residual = kkt_residual(I.energy, solution.u, found.force);
@@ -197,6 +214,8 @@ BoundedQpSolution BoundedQp::solve(const BoundedQpConstraints& constraints, cons
   return solution;
 }
 
-double BoundedQp::memory_mb() const { return implementation_->energy.memory_mb() + implementation_->exchange.memory_mb(); }
+double BoundedQp::memory_mb() const {
+  return implementation_->energy.memory_mb() + implementation_->exchange.memory_mb();
+}
 
 }  // namespace formwright

@@ -20,7 +20,7 @@ namespace formwright {
 struct InequalityRow {
   std::vector<int> index;
   std::vector<double> coefficient;
-  double slope = 0;   // of m_group
+  double slope = 0;  // of m_group
   int group = 0;
   double bound = 0;
 };
@@ -31,7 +31,7 @@ struct BoundedQpConstraints {
   std::vector<int> group;                    // n; which m a bound moves with
   int group_count = 1;
   std::vector<InequalityRow> rows;
-  Eigen::VectorXd gauge;                     // n
+  Eigen::VectorXd gauge;  // n
 };
 
 enum class QpMethod { automatic, exchange, interior_point };
@@ -43,15 +43,16 @@ struct EnumNames<QpMethod> {
 
 struct BoundedQpOptions {
   QpMethod method = QpMethod::automatic;
-  double violation_tolerance = 1e-9;  // in units of u, absolute: what rounds strive for; bounds hold exactly, see violation_max
+  double violation_tolerance =
+      1e-9;  // in units of u, absolute: what rounds strive for; bounds hold exactly, see violation_max
   int max_rounds = 200;
-  int most_active_in_pool = 6000;     // more rows in contact: bounds that hold leave the factorisation (docs/numerics.md)
+  int most_active_in_pool = 6000;  // more rows in contact: bounds that hold leave the factorisation (docs/numerics.md)
 };
 
 struct BoundedQpRound {
-  double violation_max = 0;    // of the constraints outside the pool, before new ones enter
-  int pool = 0, active = 0;    // constraints considered, constraints held
-  int linear_systems = 0;      // small dense ones
+  double violation_max = 0;  // of the constraints outside the pool, before new ones enter
+  int pool = 0, active = 0;  // constraints considered, constraints held
+  int linear_systems = 0;    // small dense ones
 };
 
 struct BoundedQpSeconds {
@@ -64,10 +65,10 @@ struct BoundedQpSeconds {
 
 struct BoundedQpSolution {
   Eigen::VectorXd u, m;
-  double objective = 0;        // 1/2 u^T Q u
-  double violation_max = 0;    // over all constraints, after the last round
-  double kkt_residual = 0;     // max |Q u - G^T y| / max |G^T y|, with y >= 0 and complementary by construction
-  int rounds = 0;              // of the exchange
+  double objective = 0;      // 1/2 u^T Q u
+  double violation_max = 0;  // over all constraints, after the last round
+  double kkt_residual = 0;   // max |Q u - G^T y| / max |G^T y|, with y >= 0 and complementary by construction
+  int rounds = 0;            // of the exchange
   int interior_point_iterations = 0;
   int active_constraints = 0;  // with a positive multiplier
   QpMethod method_used = QpMethod::exchange;
@@ -85,7 +86,8 @@ class BoundedQp {
 
   /// `lower_Q`: lower triangle of Q. `component`: n, the connected part of each unknown, 0-based.
   /// `positions`: n x 3 hint for the ordering. Factors once.
-  void set_energy(const SparseMatrix& lower_Q, std::vector<int> component, const Positions& positions, Context& context);
+  void set_energy(const SparseMatrix& lower_Q, std::vector<int> component, const Positions& positions,
+                  Context& context);
 
   /// Warm-started from the previous active set when there is one of the same size.
   /// Throws Error: could_not_solve (infeasible, not converged: says which), cancelled, out_of_memory.

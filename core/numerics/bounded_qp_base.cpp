@@ -12,7 +12,8 @@ constexpr double round_off = 1e-11;  // of the largest force: a multiplier no sm
 bool by_index(RowKey a, RowKey b) { return a.index < b.index; }
 }  // namespace
 
-std::vector<RowKey> add_base_reactions(const Energy& energy, const Rows& rows, std::span<const RowKey> base, ExchangeResult& result) {
+std::vector<RowKey> add_base_reactions(const Energy& energy, const Rows& rows, std::span<const RowKey> base,
+                                       ExchangeResult& result) {
   const Eigen::VectorXd reaction = energy.apply(result.u) - result.force;
   const double size = std::max(result.force.cwiseAbs().maxCoeff(), reaction.cwiseAbs().maxCoeff());
   const auto in_pool = static_cast<Eigen::Index>(result.active.size());
@@ -34,8 +35,8 @@ std::vector<RowKey> add_base_reactions(const Energy& energy, const Rows& rows, s
   return pulling;
 }
 
-std::optional<ExchangeResult> exchange_on_base(Energy& energy, const Rows& rows, std::vector<RowKey> base, ExchangeSettings settings,
-                                               int stages_most, Context& context) {
+std::optional<ExchangeResult> exchange_on_base(Energy& energy, const Rows& rows, std::vector<RowKey> base,
+                                               ExchangeSettings settings, int stages_most, Context& context) {
   settings.may_stop = true;
   const int most_active = settings.most_active;
   std::vector<char> kept_out(static_cast<std::size_t>(energy.size()), 0);  // unknowns of order rows that matter

@@ -10,12 +10,13 @@
 namespace formwright::bounded_qp_detail {
 
 namespace {
-constexpr double sure = 1e4;  // (multiplier / typical multiplier) : (slack / typical slack) of a bound that surely holds
+constexpr double sure =
+    1e4;  // (multiplier / typical multiplier) : (slack / typical slack) of a bound that surely holds
 constexpr int stages_most = 60;
 }  // namespace
 
-std::optional<ExchangeResult> crossover(Energy& energy, const Rows& rows, const InteriorPointResult& point, const ExchangeSettings& settings,
-                                        Context& context) {
+std::optional<ExchangeResult> crossover(Energy& energy, const Rows& rows, const InteriorPointResult& point,
+                                        const ExchangeSettings& settings, Context& context) {
   // Far from the optimum slack and multiplier of a row have typical sizes; their product goes to zero along the path,
   // so that one of the two is far below its size.
   const BoundedQpConstraints& c = rows.constraints();
@@ -45,7 +46,8 @@ std::optional<ExchangeResult> crossover(Energy& energy, const Rows& rows, const 
     }
     const std::size_t before = base.size();
     if (std::isfinite(c.lower[i])) place({Side::lower, i}, point.slack_lower[i], point.force_lower[i]);
-    if (base.size() == before && std::isfinite(c.upper[i])) place({Side::upper, i}, point.slack_upper[i], point.force_upper[i]);
+    if (base.size() == before && std::isfinite(c.upper[i]))
+      place({Side::upper, i}, point.slack_upper[i], point.force_upper[i]);
   }
   for (std::size_t k = 0; k < point.order.size(); ++k) {
     const auto r = static_cast<Eigen::Index>(k);

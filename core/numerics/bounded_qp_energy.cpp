@@ -19,10 +19,12 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 void Energy::set(const SparseMatrix& lower_Q, std::vector<int> component, const Positions& positions,
                  std::span<const int> pins, Context& context) {
-  if (lower_Q.rows() != lower_Q.cols()) throw Error(ErrorCode::invalid_input, "lower_Q", "The energy must be a square matrix.");
+  if (lower_Q.rows() != lower_Q.cols())
+    throw Error(ErrorCode::invalid_input, "lower_Q", "The energy must be a square matrix.");
   n_ = static_cast<int>(lower_Q.rows());
   if (component.size() != at(n_)) {
-    throw Error(ErrorCode::invalid_input, "component", "Give the component of each of the " + std::to_string(n_) + " unknowns.");
+    throw Error(ErrorCode::invalid_input, "component",
+                "Give the component of each of the " + std::to_string(n_) + " unknowns.");
   }
   pinned_ = false;
   component_ = std::move(component);
@@ -37,8 +39,10 @@ void Energy::set(const SparseMatrix& lower_Q, std::vector<int> component, const 
     bool has_diagonal = false;
     for (SparseMatrix::InnerIterator it(lower_, j); it; ++it) {
       const int i = static_cast<int>(it.row());
-      if (i < j) throw Error(ErrorCode::invalid_input, "lower_Q", "Only the lower triangle of the energy may be stored.");
-      if (!std::isfinite(it.value())) throw Error(ErrorCode::invalid_input, "lower_Q", "The energy holds a value that is not finite.");
+      if (i < j)
+        throw Error(ErrorCode::invalid_input, "lower_Q", "Only the lower triangle of the energy may be stored.");
+      if (!std::isfinite(it.value()))
+        throw Error(ErrorCode::invalid_input, "lower_Q", "The energy holds a value that is not finite.");
       if (i == j) {
         has_diagonal = true;
         stored_diagonal[i] = it.value();
@@ -50,7 +54,8 @@ void Energy::set(const SparseMatrix& lower_Q, std::vector<int> component, const 
       ++start_[at(i) + 1];
       ++start_[at(j) + 1];
     }
-    if (!has_diagonal) throw Error(ErrorCode::invalid_input, "lower_Q", "Store every diagonal entry of the energy, zero or not.");
+    if (!has_diagonal)
+      throw Error(ErrorCode::invalid_input, "lower_Q", "Store every diagonal entry of the energy, zero or not.");
   }
   for (std::size_t i = 0; i < at(n_); ++i) start_[i + 1] += start_[i];
   index_.resize(at(start_.back()));
@@ -115,9 +120,8 @@ void Energy::choose_pins(std::span<const int> pins) {
   for (int i = 0; i < n_; ++i) members[at(component_[at(i)])].push_back(i);
   for (std::size_t k = 0; k < members.size(); ++k) {
     auto middle = members[k].begin() + static_cast<std::ptrdiff_t>(members[k].size() / 2);
-    std::nth_element(members[k].begin(), middle, members[k].end(), [&](int a, int b) {
-      return diagonal_[a] != diagonal_[b] ? diagonal_[a] < diagonal_[b] : a < b;
-    });
+    std::nth_element(members[k].begin(), middle, members[k].end(),
+                     [&](int a, int b) { return diagonal_[a] != diagonal_[b] ? diagonal_[a] < diagonal_[b] : a < b; });
     pin_[k] = *middle;
   }
 }
@@ -176,7 +180,8 @@ void Energy::factorize_shifted(const Eigen::VectorXd& shift, const std::vector<c
   factor_.factorize(lower_, context);
 }
 
-// Writes the matrix to factor: Q (+ shift) with the rows and columns of fixed unknowns replaced by those of the identity.
+// Writes the matrix to factor: Q (+ shift) with the rows and columns of fixed unknowns replaced by those of the
+// identity.
 void Energy::load(const Eigen::VectorXd* shift) {
   pinned_ = false;
   double* value = lower_.valuePtr();

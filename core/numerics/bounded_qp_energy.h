@@ -62,11 +62,11 @@ class Energy {
   void choose_pins(std::span<const int> pins);
 
   int n_ = 0;
-  SparseMatrix lower_;                  // as given; its values are overwritten by the matrix to factor
-  std::vector<double> lower_values_;    // the values as given
-  std::vector<int> start_, index_;      // the whole symmetric pattern without the diagonal, by rows
+  SparseMatrix lower_;                // as given; its values are overwritten by the matrix to factor
+  std::vector<double> lower_values_;  // the values as given
+  std::vector<int> start_, index_;    // the whole symmetric pattern without the diagonal, by rows
   std::vector<double> value_;
-  Eigen::VectorXd diagonal_;            // minus the sum of the row's other entries
+  Eigen::VectorXd diagonal_;  // minus the sum of the row's other entries
   double absolute_sum_ = 0;
   std::vector<int> component_, component_size_, pin_;
   std::vector<char> base_, fixed_, free_constant_;

@@ -14,7 +14,8 @@ namespace formwright::bounded_qp_detail {
 namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t unknowns_per_chunk = 8192;
-constexpr std::ptrdiff_t few = 100;  // violated bounds that enter together: it saves the last rounds, which creep from neighbour to neighbour
+constexpr std::ptrdiff_t few =
+    100;  // violated bounds that enter together: it saves the last rounds, which creep from neighbour to neighbour
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 [[noreturn]] void reject(const std::string& where, const std::string& message) {
@@ -32,7 +33,8 @@ Rows::Rows(const BoundedQpConstraints& constraints, const Energy& energy) : c_(c
       high = std::max(high, b);
     }
   }
-  for (const InequalityRow& row : c_.rows) high = std::max(high, std::isfinite(low) ? low + std::abs(row.bound) : std::abs(row.bound));
+  for (const InequalityRow& row : c_.rows)
+    high = std::max(high, std::isfinite(low) ? low + std::abs(row.bound) : std::abs(row.bound));
   if (!std::isfinite(low)) low = 0;
   scale_ = std::max({high - low, 1e-300});
   if (!std::isfinite(scale_)) scale_ = 1;
@@ -67,17 +69,21 @@ void Rows::check() const {
     else if (gap > 0) ++crossed;
   }
   if (crossed > 0) {
-    reject("lower", "The lower bound is above the upper bound for " + std::to_string(crossed) + " unknowns: raise the upper or lower the lower bound.");
+    reject("lower", "The lower bound is above the upper bound for " + std::to_string(crossed) +
+                        " unknowns: raise the upper or lower the lower bound.");
   }
   for (std::size_t g = 0; g < least.size(); ++g) {
     if (least[g] > most[g] + 1e-12 * (std::abs(least[g]) + std::abs(most[g]))) {
-      throw Error(ErrorCode::could_not_solve, "lower", "No offset lets the bounds of group " + std::to_string(g) + " open for all its unknowns: widen them.");
+      throw Error(
+          ErrorCode::could_not_solve, "lower",
+          "No offset lets the bounds of group " + std::to_string(g) + " open for all its unknowns: widen them.");
     }
   }
   for (const InequalityRow& row : c_.rows) {
     if (row.index.size() != row.coefficient.size()) reject("rows", "A row needs one coefficient for each index.");
     if (row.group < 0 || row.group >= c_.group_count) reject("rows", "A row names a group that does not exist.");
-    if (!std::isfinite(row.slope) || std::isnan(row.bound) || row.bound == infinity) reject("rows", "A row holds a value that is not finite.");
+    if (!std::isfinite(row.slope) || std::isnan(row.bound) || row.bound == infinity)
+      reject("rows", "A row holds a value that is not finite.");
     for (const int i : row.index) {
       if (i < 0 || i >= size()) reject("rows", "A row names an unknown that does not exist.");
     }
@@ -87,7 +93,9 @@ void Rows::check() const {
   }
 }
 
-int Rows::group(RowKey key) const { return key.side == Side::order ? c_.rows[at(key.index)].group : c_.group[at(key.index)]; }
+int Rows::group(RowKey key) const {
+  return key.side == Side::order ? c_.rows[at(key.index)].group : c_.group[at(key.index)];
+}
 
 double Rows::bound(RowKey key) const {
   switch (key.side) {
@@ -143,10 +151,12 @@ void Rows::evaluate(const Eigen::VectorXd& u, const Eigen::VectorXd& m, Violatio
     for (std::size_t k = begin; k < end; ++k) {
       const auto i = static_cast<Eigen::Index>(k);
       const double mg = m[c_.group[k]];
-      const double below = c_.lower[i] + c_.lower_slope[i] * mg - u[i], above = u[i] - (c_.upper[i] + c_.upper_slope[i] * mg);
+      const double below = c_.lower[i] + c_.lower_slope[i] * mg - u[i],
+                   above = u[i] - (c_.upper[i] + c_.upper_slope[i] * mg);
       out.bound[k] = std::max(below, above);
       out.side[k] = below > above ? Side::lower : Side::upper;
-      if (out.bound[k] > 0 && c_.lower[i] == c_.upper[i] && c_.lower_slope[i] == c_.upper_slope[i]) out.side[k] = Side::both;
+      if (out.bound[k] > 0 && c_.lower[i] == c_.upper[i] && c_.lower_slope[i] == c_.upper_slope[i])
+        out.side[k] = Side::both;
       most = std::max(most, out.bound[k]);
     }
     worst[begin / unknowns_per_chunk] = most;
@@ -161,7 +171,7 @@ void Rows::evaluate(const Eigen::VectorXd& u, const Eigen::VectorXd& m, Violatio
 }
 
 std::vector<RowKey> Rows::worth_adding(const Violations& v, double least) const {
-  std::vector<std::pair<double, RowKey>> found; 
+  std::vector<std::pair<double, RowKey>> found;
   const bool all = std::count_if(v.bound.begin(), v.bound.end(), [&](double x) { return x > least; }) <= few;
   for (int i = 0; i < size(); ++i) {
     const double here = v.bound[at(i)];
@@ -213,7 +223,8 @@ Eigen::VectorXd Rows::centred_m() const {
   for (int i = 0; i < size(); ++i) {
     const std::size_t g = at(c_.group[at(i)]);
     if (std::isfinite(c_.upper[i]) && c_.upper_slope[i] > 0) up[g] = std::max(up[g], -c_.upper[i] / c_.upper_slope[i]);
-    if (std::isfinite(c_.lower[i]) && c_.lower_slope[i] > 0) down[g] = std::min(down[g], -c_.lower[i] / c_.lower_slope[i]);
+    if (std::isfinite(c_.lower[i]) && c_.lower_slope[i] > 0)
+      down[g] = std::min(down[g], -c_.lower[i] / c_.lower_slope[i]);
   }
   for (int g = 0; g < groups(); ++g) {
     const double a = up[at(g)], b = down[at(g)];

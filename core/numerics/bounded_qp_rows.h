@@ -43,9 +43,9 @@ class Rows {
 
   /// Violations of everything at once.
   struct Violations {
-    std::vector<double> bound;   // n; of the worse side
-    std::vector<Side> side;      // n; which side that is
-    std::vector<double> order;   // of every order row
+    std::vector<double> bound;  // n; of the worse side
+    std::vector<Side> side;     // n; which side that is
+    std::vector<double> order;  // of every order row
     double max = 0, max_order = 0;
   };
   void evaluate(const Eigen::VectorXd& u, const Eigen::VectorXd& m, Violations& out) const;

@@ -56,8 +56,8 @@ Eigen::MatrixXd free_directions(const Energy& energy, const Rows& rows, std::spa
 }
 }  // namespace
 
-int break_ties(const Energy& energy, const Rows& rows, std::span<const RowKey> pushing, double tolerance, Eigen::VectorXd& u,
-               Eigen::VectorXd& m, Context& context) {
+int break_ties(const Energy& energy, const Rows& rows, std::span<const RowKey> pushing, double tolerance,
+               Eigen::VectorXd& u, Eigen::VectorXd& m, Context& context) {
   const int components = energy.component_count(), groups = rows.groups();
   const Eigen::MatrixXd N = free_directions(energy, rows, pushing);
   const auto freedom = N.cols();
@@ -89,7 +89,8 @@ int break_ties(const Energy& energy, const Rows& rows, std::span<const RowKey> p
     std::vector<int> worst(at(components) * at(groups) * 2, -1);
     for (int i = 0; i < energy.size(); ++i) {
       if (!(violations.bound[at(i)] > tolerance)) continue;
-      const std::size_t slot = (at(energy.component(i)) * at(groups) + at(rows.constraints().group[at(i)])) * 2 + (violations.side[at(i)] == Side::upper ? 1 : 0);
+      const std::size_t slot = (at(energy.component(i)) * at(groups) + at(rows.constraints().group[at(i)])) * 2 +
+                               (violations.side[at(i)] == Side::upper ? 1 : 0);
       if (worst[slot] < 0 || violations.bound[at(i)] > violations.bound[at(worst[slot])]) worst[slot] = i;
     }
     std::vector<RowKey> found;
@@ -130,7 +131,8 @@ int break_ties(const Energy& energy, const Rows& rows, std::span<const RowKey> p
     qp.set_problem(gram, problem, false);
     const PoolSolution solution = qp.solve(active, Eigen::VectorXd(), 0.1 * tolerance, context);
     if (solution.contradictory) {
-      throw Error(ErrorCode::could_not_solve, "constraints", "The constraints contradict each other: no offset of the parts satisfies them all.");
+      throw Error(ErrorCode::could_not_solve, "constraints",
+                  "The constraints contradict each other: no offset of the parts satisfies them all.");
     }
     active = solution.active;
     t = t_free + factor.matrixL().transpose().solve(Y * solution.y);

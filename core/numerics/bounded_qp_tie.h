@@ -14,7 +14,7 @@ namespace formwright::bounded_qp_detail {
 /// those with a force that matters) tie some of these together; where any freedom is left, moves (u, m) to the
 /// feasible optimum that minimises |u|^2 + |m|^2: parts that touch nothing return to where they came from, as far
 /// as their bounds allow. Returns the number of free directions. Throws Error: could_not_solve, cancelled.
-int break_ties(const Energy& energy, const Rows& rows, std::span<const RowKey> pushing, double tolerance, Eigen::VectorXd& u,
-               Eigen::VectorXd& m, Context& context);
+int break_ties(const Energy& energy, const Rows& rows, std::span<const RowKey> pushing, double tolerance,
+               Eigen::VectorXd& u, Eigen::VectorXd& m, Context& context);
 
 }  // namespace formwright::bounded_qp_detail

@@ -79,7 +79,8 @@ SmallTriangle small_triangle(const double* l, std::size_t stride, int columns) {
   SmallTriangle t{};
   for (int j = 0; j < columns; ++j) {
     t.inverse[j] = 1 / l[static_cast<std::size_t>(j) * stride + static_cast<std::size_t>(j)];
-    for (int i = j + 1; i < columns; ++i) t.below[i][j] = l[static_cast<std::size_t>(j) * stride + static_cast<std::size_t>(i)];
+    for (int i = j + 1; i < columns; ++i)
+      t.below[i][j] = l[static_cast<std::size_t>(j) * stride + static_cast<std::size_t>(i)];
   }
   return t;
 }
@@ -118,7 +119,8 @@ int factor_diagonal(double* a, std::size_t stride, int columns, const double* le
       column[p] = root;
       for (int i = p + 1; i < width; ++i) column[i] *= inverse;
     }
-    if (j + 4 < rows) solve_strip(small_triangle(corner + j, stride, width), width, corner + j + 4, stride, rows - j - 4);
+    if (j + 4 < rows)
+      solve_strip(small_triangle(corner + j, stride, width), width, corner + j + 4, stride, rows - j - 4);
   }
   return -1;
 }
@@ -128,7 +130,8 @@ void solve_rows(const double* l, std::size_t l_stride, int columns, double* x, s
     const int width = std::min(4, columns - j);
     double* target = x + static_cast<std::size_t>(j) * x_stride;
     if (j > 0) strip(target, x_stride, panel_rows(x, x_stride), l + j, l_stride, j, 0, rows, width, Update::subtract);
-    solve_strip(small_triangle(l + static_cast<std::size_t>(j) * l_stride + j, l_stride, width), width, target, x_stride, rows);
+    solve_strip(small_triangle(l + static_cast<std::size_t>(j) * l_stride + j, l_stride, width), width, target,
+                x_stride, rows);
   }
 }
 
@@ -157,8 +160,8 @@ void update_lower(double* c, std::size_t stride, const Rows& a, int depth, int r
       const int rows = std::min(tile_rows, row_end - row);
       for (int j = first; j < last && j < row + rows; j += 4) {
         const double* b = a.data + static_cast<std::size_t>(j / 4) * a.sliver_stride;
-        strip(c + static_cast<std::size_t>(j) * stride, stride, a, b, a.column_stride, depth, std::max(row, j), row + rows,
-              std::min(4, last - j), update);
+        strip(c + static_cast<std::size_t>(j) * stride, stride, a, b, a.column_stride, depth, std::max(row, j),
+              row + rows, std::min(4, last - j), update);
       }
       row += rows;
     }

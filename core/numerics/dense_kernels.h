@@ -26,7 +26,9 @@ struct Rows {
   std::size_t column_stride;
 };
 inline Rows panel_rows(const double* a, std::size_t stride) { return {a, 4, stride}; }
-inline Rows packed_rows(const double* packed, int columns) { return {packed, 4 * static_cast<std::size_t>(columns), 4}; }
+inline Rows packed_rows(const double* packed, int columns) {
+  return {packed, 4 * static_cast<std::size_t>(columns), 4};
+}
 
 enum class Update { subtract, overwrite };
 

@@ -20,7 +20,8 @@ void subtract_strip(const double* l, std::size_t stride, const double* y, int ro
     for (int j = 0; j < Width; ++j) factor[j] = splat(-y[j]);
     for (int i = row_begin; i < row_end; i += 4) {
       Vector sum = load(z + i);
-      for (int j = 0; j < Width; ++j) sum = multiply_add(load(l + static_cast<std::size_t>(j) * stride + i), factor[j], sum);
+      for (int j = 0; j < Width; ++j)
+        sum = multiply_add(load(l + static_cast<std::size_t>(j) * stride + i), factor[j], sum);
       store(z + i, sum);
     }
   } else {
@@ -49,7 +50,8 @@ void subtract_products(const double* l, std::size_t stride, const double* z, int
     Vector sum[Width] = {};
     for (int i = row_begin; i < row_end; i += 4) {
       const Vector right = load(z + i);
-      for (int j = 0; j < Width; ++j) sum[j] = multiply_add(load(l + static_cast<std::size_t>(j) * stride + i), right, sum[j]);
+      for (int j = 0; j < Width; ++j)
+        sum[j] = multiply_add(load(l + static_cast<std::size_t>(j) * stride + i), right, sum[j]);
     }
     for (int j = 0; j < Width; ++j) y[j] -= (sum[j][0] + sum[j][1]) + (sum[j][2] + sum[j][3]);
   } else {

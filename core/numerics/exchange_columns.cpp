@@ -33,7 +33,8 @@ void ExchangeColumns::append(std::span<const SparseVector> columns, Context& con
       panel.column.push_back(before + c);
       panel.value.resize(panel.value.size() + at(panel_height), 0.0);
       double* value = panel.value.data() + panel.value.size() - panel_height;
-      for (; p < y.index.size() && y.index[p] / panel_height == number; ++p) value[y.index[p] - number * panel_height] = y.value[p];
+      for (; p < y.index.size() && y.index[p] / panel_height == number; ++p)
+        value[y.index[p] - number * panel_height] = y.value[p];
     }
   }
   count_ = before + added;
@@ -61,7 +62,8 @@ void ExchangeColumns::append(std::span<const SparseVector> columns, Context& con
         product.noalias() = Y.transpose() * Y.rightCols(fresh);
         for (Eigen::Index b = 0; b < fresh; ++b) {
           const int column = panel.column[static_cast<std::size_t>(first_new + b)] - before;
-          for (Eigen::Index a = 0; a < all; ++a) sum(panel.column[static_cast<std::size_t>(a)], column) += product(a, b);
+          for (Eigen::Index a = 0; a < all; ++a)
+            sum(panel.column[static_cast<std::size_t>(a)], column) += product(a, b);
         }
       }
     }
@@ -79,7 +81,8 @@ void ExchangeColumns::keep(std::span<const int> columns) {
     for (std::size_t c = 0; c < panel.column.size(); ++c) {
       if (place[at(panel.column[c])] < 0) continue;
       panel.column[kept] = place[at(panel.column[c])];
-      if (kept != c) std::copy_n(panel.value.data() + c * panel_height, panel_height, panel.value.data() + kept * panel_height);
+      if (kept != c)
+        std::copy_n(panel.value.data() + c * panel_height, panel_height, panel.value.data() + kept * panel_height);
       ++kept;
     }
     panel.column.resize(kept);
@@ -138,7 +141,8 @@ Eigen::VectorXd ExchangeColumns::project(const Eigen::VectorXd& z) const {
 double ExchangeColumns::memory_mb() const {
   double bytes = static_cast<double>(gram_.size()) * 8;
   for (const Panel& panel : panels_) {
-    bytes += static_cast<double>(panel.column.capacity() * sizeof(int) + panel.value.capacity() * sizeof(double) + sizeof(Panel));
+    bytes += static_cast<double>(panel.column.capacity() * sizeof(int) + panel.value.capacity() * sizeof(double) +
+                                 sizeof(Panel));
   }
   return 1e-6 * bytes;
 }

@@ -10,15 +10,16 @@ namespace formwright::bounded_qp_detail {
 
 namespace {
 constexpr double proximal_most = 1e-5;
-constexpr int border_least = 16;        // dropped rows are kept in L up to this number,
-constexpr int border_part = 8;          // or up to this part of L
+constexpr int border_least = 16;  // dropped rows are kept in L up to this number,
+constexpr int border_part = 8;    // or up to this part of L
 // Dropping a row that others nearly repeat through the border cancels digits that L without it keeps: round-off in y
 // grows by (S'^-1)_aa S'_aa. A step of refinement gives back about as many digits as are left.
 constexpr double cancellation_most = 1e10;
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
-PoolFactor::PoolFactor(Gram gram, const Eigen::VectorXd& row_diagonal, const Eigen::MatrixXd& B, const Eigen::MatrixXd& P)
+PoolFactor::PoolFactor(Gram gram, const Eigen::VectorXd& row_diagonal, const Eigen::MatrixXd& B,
+                       const Eigen::MatrixXd& P)
     : gram_(std::move(gram)), row_diagonal_(row_diagonal), B_(B), P_(P) {}
 
 void PoolFactor::restart(int rows, double proximal) {
@@ -65,7 +66,8 @@ void PoolFactor::compact(const std::vector<char>& active, int valid) {
   cancellation_ = 1;
   while (!grow(from)) {
     if (proximal_ >= proximal_most) {
-      throw Error(ErrorCode::could_not_solve, "constraints", "The constraints in contact cannot be told apart numerically: remove duplicates.");
+      throw Error(ErrorCode::could_not_solve, "constraints",
+                  "The constraints in contact cannot be told apart numerically: remove duplicates.");
     }
     proximal_ *= 100;
     from = 0;
@@ -111,7 +113,8 @@ bool PoolFactor::update_border(const std::vector<char>& active, int old_size) {
   std::vector<int> dropped;
   for (std::size_t c = 0; c < dropped_.size(); ++c) {
     if (active[at(order_[at(dropped_[c])])]) continue;
-    if (kept != static_cast<Eigen::Index>(c)) U_.col(kept).head(old_size) = U_.col(static_cast<Eigen::Index>(c)).head(old_size);
+    if (kept != static_cast<Eigen::Index>(c))
+      U_.col(kept).head(old_size) = U_.col(static_cast<Eigen::Index>(c)).head(old_size);
     dropped.push_back(dropped_[c]);
     ++kept;
   }
@@ -120,7 +123,8 @@ bool PoolFactor::update_border(const std::vector<char>& active, int old_size) {
     if (!active[at(order_[at(p)])] && std::find(before.begin(), before.end(), p) == before.end()) dropped.push_back(p);
   }
   const auto columns = static_cast<Eigen::Index>(dropped.size());
-  if (U_.rows() < L_.rows() || U_.cols() < columns) U_.conservativeResize(L_.rows(), std::max<Eigen::Index>(columns, U_.cols() + U_.cols() / 2));
+  if (U_.rows() < L_.rows() || U_.cols() < columns)
+    U_.conservativeResize(L_.rows(), std::max<Eigen::Index>(columns, U_.cols() + U_.cols() / 2));
   if (kept > 0 && fresh > 0) {
     auto below = U_.block(old_size, 0, fresh, kept);
     below.noalias() = -L_.block(old_size, 0, fresh, old_size) * U_.topLeftCorner(old_size, kept);
@@ -137,7 +141,8 @@ bool PoolFactor::update_border(const std::vector<char>& active, int old_size) {
   }
   cancellation_ = 1;
   for (Eigen::Index c = 0; c < columns; ++c) {
-    cancellation_ = std::max(cancellation_, U_.col(c).head(k).squaredNorm() * row_diagonal_[order_[at(dropped_[static_cast<std::size_t>(c)])]]);
+    cancellation_ = std::max(cancellation_, U_.col(c).head(k).squaredNorm() *
+                                                row_diagonal_[order_[at(dropped_[static_cast<std::size_t>(c)])]]);
   }
   return cancellation_ <= cancellation_most;
 }
@@ -156,7 +161,8 @@ void PoolFactor::factor_border() {
   border_.compute(T);
 }
 
-void PoolFactor::solve(const Eigen::VectorXd& f, const Eigen::VectorXd& balance, Eigen::VectorXd& y, Eigen::VectorXd& w) const {
+void PoolFactor::solve(const Eigen::VectorXd& f, const Eigen::VectorXd& balance, Eigen::VectorXd& y,
+                       Eigen::VectorXd& w) const {
   const Eigen::Index k = size(), d = B_.cols(), q = static_cast<Eigen::Index>(dropped_.size());
   Eigen::VectorXd x(k), z(d + q);
   for (Eigen::Index a = 0; a < k; ++a) x[a] = f[order_[static_cast<std::size_t>(a)]];

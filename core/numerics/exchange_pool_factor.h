@@ -53,10 +53,10 @@ class PoolFactor {
   const Eigen::MatrixXd& B_;
   const Eigen::MatrixXd& P_;
   double proximal_ = 0, cancellation_ = 1;
-  std::vector<int> order_;      // rows in L
-  std::vector<int> place_;      // of every row in order_, or -1
-  std::vector<int> dropped_;    // places in L of rows held at y = 0, one column of U_ each
-  Eigen::MatrixXd L_, V_, U_;   // V = L^-1 B_A, U = L^-1 E_dropped
+  std::vector<int> order_;     // rows in L
+  std::vector<int> place_;     // of every row in order_, or -1
+  std::vector<int> dropped_;   // places in L of rows held at y = 0, one column of U_ each
+  Eigen::MatrixXd L_, V_, U_;  // V = L^-1 B_A, U = L^-1 E_dropped
   Eigen::LLT<Eigen::MatrixXd> border_;
 };
 

@@ -28,7 +28,8 @@ constexpr int block_rounds_without_gain = 4;
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
-PoolQp::PoolQp() : factor_([this](int b, std::span<const int> rows, double* out) { gram(b, rows, out); }, row_diagonal_, p_.B, P_) {}
+PoolQp::PoolQp()
+    : factor_([this](int b, std::span<const int> rows, double* out) { gram(b, rows, out); }, row_diagonal_, p_.B, P_) {}
 
 void PoolQp::set_problem(Eigen::Ref<const Eigen::MatrixXd> gram, PoolProblem problem, bool grown) {
   const int rows_before = p_.rows();
@@ -48,7 +49,8 @@ void PoolQp::set_problem(Eigen::Ref<const Eigen::MatrixXd> gram, PoolProblem pro
     if (p_.P.row(j).isZero(0) && p_.r[j] == 0) augment[j] = scale / square;
     proximal_w_[j] = proximal_driver * std::max(stiffness, p_.P(j, j));
     // Its size hardly matters, but any change is a new matrix to factor.
-    if (grown && !(augment[j] <= augment_change * augment_[j] && augment_[j] <= augment_change * augment[j])) grown = false;
+    if (grown && !(augment[j] <= augment_change * augment_[j] && augment_[j] <= augment_change * augment[j]))
+      grown = false;
   }
   if (!grown) augment_ = augment;
   P_ = p_.P;
@@ -64,7 +66,8 @@ void PoolQp::set_problem(Eigen::Ref<const Eigen::MatrixXd> gram, PoolProblem pro
 
 void PoolQp::gram(int b, std::span<const int> rows, double* out) const {
   const double* column = gram_.col(p_.column[at(b)]).data();
-  for (std::size_t k = 0; k < rows.size(); ++k) out[k] = p_.sign[at(b)] * p_.sign[at(rows[k])] * column[p_.column[at(rows[k])]];
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    out[k] = p_.sign[at(b)] * p_.sign[at(rows[k])] * column[p_.column[at(rows[k])]];
   for (Eigen::Index j = 0; j < p_.B.cols(); ++j) {
     const double weight = augment_[j] * p_.B(b, j);
     if (weight == 0) continue;
@@ -77,7 +80,8 @@ void PoolQp::solve_active(const std::vector<char>& active) {
   active_ = active;
   factor_.set_active(active);
   ++pivots_;
-  const Eigen::VectorXd f = p_.d + factor_.proximal() * row_diagonal_.cwiseProduct(centre_y_), balance = p_.r - proximal_w_.cwiseProduct(centre_w_);
+  const Eigen::VectorXd f = p_.d + factor_.proximal() * row_diagonal_.cwiseProduct(centre_y_),
+                        balance = p_.r - proximal_w_.cwiseProduct(centre_w_);
   factor_.solve(f, balance, y_, w_);
   if (factor_.cancellation() < cancellation_to_refine) return;
   const Eigen::VectorXd push = augment_.cwiseProduct(p_.B.transpose() * y_);
@@ -88,7 +92,8 @@ void PoolQp::solve_active(const std::vector<char>& active) {
   w_ += dw;
 }
 
-std::pair<Eigen::VectorXd, Eigen::VectorXd> PoolQp::correct(const Eigen::VectorXd& slack_error, const Eigen::VectorXd& balance_error) const {
+std::pair<Eigen::VectorXd, Eigen::VectorXd> PoolQp::correct(const Eigen::VectorXd& slack_error,
+                                                            const Eigen::VectorXd& balance_error) const {
   std::pair<Eigen::VectorXd, Eigen::VectorXd> step;
   factor_.solve(slack_error, balance_error, step.first, step.second);
   return step;
@@ -179,7 +184,8 @@ void PoolQp::lawson_hanson(double tolerance, Context& context) {
       }
     }
     y = y_;
-    if (entered >= 0 && !active[at(entered)]) aside[at(entered)] = 1;  // round-off pushed it in, round-off pushed it out
+    if (entered >= 0 && !active[at(entered)])
+      aside[at(entered)] = 1;  // round-off pushed it in, round-off pushed it out
     const Eigen::VectorXd s = slack();
     const double value = y.dot(p_.d - 0.5 * (s + p_.d - p_.B * w_)) - 0.5 * w_.dot(p_.P * w_);
     idle = value > best + 1e-13 * std::abs(best) ? 0 : idle + 1;
@@ -195,7 +201,8 @@ void PoolQp::lawson_hanson(double tolerance, Context& context) {
   }
 }
 
-PoolSolution PoolQp::solve(const std::vector<char>& start, const Eigen::VectorXd& w, double tolerance, Context& context) {
+PoolSolution PoolQp::solve(const std::vector<char>& start, const Eigen::VectorXd& w, double tolerance,
+                           Context& context) {
   const int k = p_.rows();
   active_ = start;
   for (int a = 0; a < k; ++a) {
@@ -212,13 +219,15 @@ PoolSolution PoolQp::solve(const std::vector<char>& start, const Eigen::VectorXd
     result.residual = 0;
     for (int a = 0; a < k; ++a) {
       if (!active_[at(a)]) continue;
-      result.residual = std::max(result.residual, factor_.proximal() * row_diagonal_[a] * std::abs(y_[a] - centre_y_[a]));
+      result.residual =
+          std::max(result.residual, factor_.proximal() * row_diagonal_[a] * std::abs(y_[a] - centre_y_[a]));
     }
     double imbalance = 0;
     for (int j = 0; j < p_.drivers(); ++j) {
       const double force = p_.B.col(j).cwiseAbs().dot(y_.cwiseAbs());
       const double left = proximal_w_[j] * std::abs(w_[j] - centre_w_[j]);
-      if (left > 1e-14 * force) imbalance = std::max(imbalance, left / std::max(force, std::numeric_limits<double>::min()));
+      if (left > 1e-14 * force)
+        imbalance = std::max(imbalance, left / std::max(force, std::numeric_limits<double>::min()));
     }
     centre_y_ = y_;
     centre_w_ = w_;

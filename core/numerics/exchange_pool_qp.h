@@ -17,25 +17,25 @@
 namespace formwright::bounded_qp_detail {
 
 struct PoolProblem {
-  Eigen::MatrixXd B;            // rows x drivers
-  Eigen::VectorXd d;            // rows
-  std::vector<int> column;      // rows; which column of the Gram matrix
-  std::vector<double> sign;     // rows; g_j = sign * the column's vector
-  std::vector<char> equality;   // rows
-  Eigen::MatrixXd P;            // drivers x drivers, positive semidefinite
-  Eigen::VectorXd r;            // drivers
+  Eigen::MatrixXd B;           // rows x drivers
+  Eigen::VectorXd d;           // rows
+  std::vector<int> column;     // rows; which column of the Gram matrix
+  std::vector<double> sign;    // rows; g_j = sign * the column's vector
+  std::vector<char> equality;  // rows
+  Eigen::MatrixXd P;           // drivers x drivers, positive semidefinite
+  Eigen::VectorXd r;           // drivers
   int rows() const { return static_cast<int>(d.size()); }
   int drivers() const { return static_cast<int>(B.cols()); }
 };
 
 struct PoolSolution {
-  Eigen::VectorXd y;         // rows; zero where inactive
-  Eigen::VectorXd w;         // drivers; where the rows leave a choice, the nearest to the start
-  std::vector<char> active;  // rows held with equality
-  Eigen::VectorXd push;      // rows; by about how much y moves its own row, in units of d
-  double residual = 0;       // how far active rows are from being held, in units of d
+  Eigen::VectorXd y;           // rows; zero where inactive
+  Eigen::VectorXd w;           // drivers; where the rows leave a choice, the nearest to the start
+  std::vector<char> active;    // rows held with equality
+  Eigen::VectorXd push;        // rows; by about how much y moves its own row, in units of d
+  double residual = 0;         // how far active rows are from being held, in units of d
   bool contradictory = false;  // no w and v satisfy all rows (as far as double precision tells)
-  int pivots = 0;            // linear systems solved
+  int pivots = 0;              // linear systems solved
 };
 
 class PoolQp {
@@ -54,7 +54,8 @@ class PoolQp {
   /// One step of iterative refinement on the last active set, with the same factor: solves
   ///   S_AA dy + B_A dw = slack_error_A,   B_A^T dy - P dw = balance_error.
   /// Returns dy (rows; zero where inactive) and dw.
-  std::pair<Eigen::VectorXd, Eigen::VectorXd> correct(const Eigen::VectorXd& slack_error, const Eigen::VectorXd& balance_error) const;
+  std::pair<Eigen::VectorXd, Eigen::VectorXd> correct(const Eigen::VectorXd& slack_error,
+                                                      const Eigen::VectorXd& balance_error) const;
 
  private:
   void gram(int b, std::span<const int> rows, double* out) const;
@@ -67,10 +68,10 @@ class PoolQp {
   using Gram = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
   Gram gram_{nullptr, 0, 0, Eigen::OuterStride<>(0)};
   PoolProblem p_;
-  Eigen::VectorXd augment_;            // per driver: S' = S + B diag(augment) B^T
-  Eigen::VectorXd proximal_w_;         // per driver
-  Eigen::VectorXd row_diagonal_;       // diagonal of S'
-  Eigen::MatrixXd P_;                  // P + diag(proximal_w)
+  Eigen::VectorXd augment_;       // per driver: S' = S + B diag(augment) B^T
+  Eigen::VectorXd proximal_w_;    // per driver
+  Eigen::VectorXd row_diagonal_;  // diagonal of S'
+  Eigen::MatrixXd P_;             // P + diag(proximal_w)
   Eigen::VectorXd centre_y_, centre_w_;
   std::vector<char> active_;
   PoolFactor factor_;

@@ -95,7 +95,8 @@ void ExchangeSolver::start(const Rows& rows, const std::vector<RowKey>& base, Co
     base_slope_ = held.leftCols(groups);
   }
   const double gauge_size = rows.constraints().gauge.cwiseAbs().sum();
-  const Eigen::VectorXd gauge = gauge_size > 0 ? Eigen::VectorXd(rows.constraints().gauge / gauge_size) : Eigen::VectorXd();
+  const Eigen::VectorXd gauge =
+      gauge_size > 0 ? Eigen::VectorXd(rows.constraints().gauge / gauge_size) : Eigen::VectorXd();
   if (gauge.size() == 0) {
     gauge_column_ = -1;
   } else if (gauge_column_ < 0 || gauge_ != gauge) {
@@ -114,7 +115,9 @@ void ExchangeSolver::start(const Rows& rows, const std::vector<RowKey>& base, Co
   std::vector<char> active;
   for (std::size_t k = 0; k < pool_.size(); ++k) {
     const RowKey key = pool_[k];
-    if (key.side == Side::order && (at(key.index) >= rows.constraints().rows.size() || column_of(rows, key) != pool_column_[k])) continue;
+    if (key.side == Side::order &&
+        (at(key.index) >= rows.constraints().rows.size() || column_of(rows, key) != pool_column_[k]))
+      continue;
     if (!std::isfinite(rows.bound(key))) continue;
     kept.push_back(key);
     active.push_back(active_[k]);
@@ -167,13 +170,15 @@ void ExchangeSolver::add_to_pool(const Rows& rows, std::span<const RowKey> keys,
   for (std::size_t first = 0; first < forces.size(); first += batch) {
     context.check_cancelled();
     const std::size_t last = std::min(forces.size(), first + batch);
-    columns_.append(energy_.factor().forward(std::vector<SparseVector>(forces.begin() + static_cast<std::ptrdiff_t>(first),
-                                                                       forces.begin() + static_cast<std::ptrdiff_t>(last))),
-                    context);
+    columns_.append(
+        energy_.factor().forward(std::vector<SparseVector>(forces.begin() + static_cast<std::ptrdiff_t>(first),
+                                                           forces.begin() + static_cast<std::ptrdiff_t>(last))),
+        context);
   }
 }
 
-// The gauge, then the pool's rows, so that new ones come last. Every row reads g^T (offset + slope m + sum_k c_k 1_k + v) + slope m >= bound.
+// The gauge, then the pool's rows, so that new ones come last. Every row reads g^T (offset + slope m + sum_k c_k 1_k +
+// v) + slope m >= bound.
 PoolProblem ExchangeSolver::pool_problem(const Rows& rows) const {
   const int groups = rows.groups(), drivers = static_cast<int>(drivers_.size()), constants = drivers - groups;
   const Eigen::Index first = gauge_rows(), k = first + static_cast<Eigen::Index>(pool_.size());
@@ -242,7 +247,8 @@ void ExchangeSolver::add_drivers(const Eigen::VectorXd& w, Eigen::VectorXd& u) c
 Eigen::VectorXd ExchangeSolver::forces(const Rows& rows, const PoolSolution& pool) const {
   Eigen::VectorXd f = Eigen::VectorXd::Zero(energy_.size());
   const Eigen::Index first = gauge_rows();
-  for (std::size_t k = 0; k < pool_.size(); ++k) rows.add_force(pool_[k], pool.y[first + static_cast<Eigen::Index>(k)], f);
+  for (std::size_t k = 0; k < pool_.size(); ++k)
+    rows.add_force(pool_[k], pool.y[first + static_cast<Eigen::Index>(k)], f);
   if (first > 0) f += pool.y[0] * gauge_;
   return f;
 }
@@ -265,7 +271,8 @@ bool ExchangeSolver::on_guess(const Rows& rows, RowKey key) const {
 
 // One step of iterative refinement of the whole KKT system on the active set: the factor of Q is exact to round-off
 // times its condition number, which for a fourth-order energy on a poor mesh is not enough.
-void ExchangeSolver::refine(const Rows& rows, const PoolProblem& problem, const PoolQp& qp, PoolSolution& pool, Eigen::VectorXd& u) const {
+void ExchangeSolver::refine(const Rows& rows, const PoolProblem& problem, const PoolQp& qp, PoolSolution& pool,
+                            Eigen::VectorXd& u) const {
   const Eigen::Index groups = rows.groups();
   const Eigen::VectorXd force = forces(rows, pool);
   Eigen::VectorXd z = force - energy_.apply(u);
@@ -293,7 +300,8 @@ void ExchangeSolver::refine(const Rows& rows, const PoolProblem& problem, const 
   }
 }
 
-ExchangeResult ExchangeSolver::solve(const Rows& rows, const std::vector<RowKey>& base, const ExchangeSettings& settings, Context& context) {
+ExchangeResult ExchangeSolver::solve(const Rows& rows, const std::vector<RowKey>& base,
+                                     const ExchangeSettings& settings, Context& context) {
   try {
     return run(rows, base, settings, context);
   } catch (...) {
@@ -302,7 +310,8 @@ ExchangeResult ExchangeSolver::solve(const Rows& rows, const std::vector<RowKey>
   }
 }
 
-ExchangeResult ExchangeSolver::run(const Rows& rows, const std::vector<RowKey>& base, const ExchangeSettings& settings, Context& context) {
+ExchangeResult ExchangeSolver::run(const Rows& rows, const std::vector<RowKey>& base, const ExchangeSettings& settings,
+                                   Context& context) {
   ExchangeResult result;
   Stopwatch watch;
   start(rows, base, context);
@@ -331,7 +340,8 @@ ExchangeResult ExchangeSolver::run(const Rows& rows, const std::vector<RowKey>& 
       grown = true;
       pool = qp.solve(start_active, drivers_, target, context);
       if (pool.contradictory) {
-        throw Error(ErrorCode::could_not_solve, "constraints", "The constraints contradict each other: no displacement satisfies them all.");
+        throw Error(ErrorCode::could_not_solve, "constraints",
+                    "The constraints contradict each other: no displacement satisfies them all.");
       }
       active_.assign(pool.active.begin() + gauge_rows(), pool.active.end());
       drivers_ = pool.w;
@@ -361,11 +371,14 @@ ExchangeResult ExchangeSolver::run(const Rows& rows, const std::vector<RowKey>& 
       }
       for (const RowKey key : keys) left = std::max(left, rows.violation(key, result.u, result.m));
       if (left > 10 * held) break;
-      if (held <= 0.1 * settings.violation_tolerance && (!keys.empty() || force_residual(rows, pool, result.u) <= force_tolerance)) break;
+      if (held <= 0.1 * settings.violation_tolerance &&
+          (!keys.empty() || force_residual(rows, pool, result.u) <= force_tolerance))
+        break;
       refine(rows, problem, qp, pool, result.u);
     }
     result.seconds.sweeps += watch.lap();
-    result.history.push_back({violations.max, static_cast<int>(pool_.size()), static_cast<int>(std::count(active_.begin(), active_.end(), 1)), pool.pivots});
+    result.history.push_back({violations.max, static_cast<int>(pool_.size()),
+                              static_cast<int>(std::count(active_.begin(), active_.end(), 1)), pool.pivots});
     if (keys.empty()) {
       result.stopped = !result.blocked.empty();
       break;
@@ -382,7 +395,8 @@ ExchangeResult ExchangeSolver::run(const Rows& rows, const std::vector<RowKey>& 
   }
   if (result.stopped && !settings.may_stop && violations.max > settings.violation_tolerance) {
     throw Error(ErrorCode::could_not_solve, "max_rounds",
-                "The contacts did not settle in " + std::to_string(settings.max_rounds) + " rounds: allow more rounds or widen the bounds.");
+                "The contacts did not settle in " + std::to_string(settings.max_rounds) +
+                    " rounds: allow more rounds or widen the bounds.");
   }
   result.violation_max = violations.max;
   result.columns = columns_.count();
@@ -395,7 +409,8 @@ ExchangeResult ExchangeSolver::run(const Rows& rows, const std::vector<RowKey>& 
     multiplier.push_back(y);
     if (std::abs(pool.push[row]) > settings.violation_tolerance) result.pushing.push_back(pool_[k]);
   }
-  result.multiplier = Eigen::Map<const Eigen::VectorXd>(multiplier.data(), static_cast<Eigen::Index>(multiplier.size()));
+  result.multiplier =
+      Eigen::Map<const Eigen::VectorXd>(multiplier.data(), static_cast<Eigen::Index>(multiplier.size()));
   result.force = pool.y.size() > 0 ? forces(rows, pool) : Eigen::VectorXd::Zero(energy_.size());
   return result;
 }

@@ -11,19 +11,18 @@ namespace formwright {
 namespace {
 
 constexpr int block_width = SupernodalForm::block_width;
-constexpr double parallel_work = 4e6;   // flops below which a step is not worth waking other threads
-constexpr int rows_together = 96;       // of a panel; they stay in the second-level cache while they are solved
-constexpr int pack_rows_from = 64;      // packing pays for panels at least that high ...
-constexpr int pack_columns_from = 32;   // ... and wide
+constexpr double parallel_work = 4e6;  // flops below which a step is not worth waking other threads
+constexpr int rows_together = 96;      // of a panel; they stay in the second-level cache while they are solved
+constexpr int pack_rows_from = 64;     // packing pays for panels at least that high ...
+constexpr int pack_columns_from = 32;  // ... and wide
 
 void for_chunks(bool parallel, int count, int grain, const std::function<void(int, int)>& body) {
   if (!parallel) {
     body(0, count);
     return;
   }
-  parallel_for(static_cast<std::size_t>(count), static_cast<std::size_t>(grain), [&](std::size_t begin, std::size_t end) {
-    body(static_cast<int>(begin), static_cast<int>(end));
-  });
+  parallel_for(static_cast<std::size_t>(count), static_cast<std::size_t>(grain),
+               [&](std::size_t begin, std::size_t end) { body(static_cast<int>(begin), static_cast<int>(end)); });
 }
 
 // Columns of a front, whether they lie in the factor or in the update matrix: pointers such that
@@ -65,7 +64,8 @@ void FrontFactorization::add_child(int s, const Child& child, const UpdateMatrix
   }
   const int run_count = static_cast<int>(runs.size());
   const bool spread = parallel && static_cast<double>(count) * count > 2e5;
-  const std::size_t grain = spread ? static_cast<std::size_t>(std::max(1, run_count / 32)) : static_cast<std::size_t>(run_count);
+  const std::size_t grain =
+      spread ? static_cast<std::size_t>(std::max(1, run_count / 32)) : static_cast<std::size_t>(run_count);
   const auto add = [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) {
       for (int k = 0; k < runs[r].length; ++k) {
@@ -147,8 +147,9 @@ void FrontFactorization::eliminate_block(int s, int block, const UpdateMatrix& u
   std::vector<Region> regions;
   for (int b = block + 1; b * block_width < columns; ++b) {
     const int start = b * block_width;
-    regions.push_back({storage + block_offset(b, height), static_cast<std::size_t>(height - start), start - first - width,
-                       height - start, std::min(block_width, columns - start), dense::Update::subtract});
+    regions.push_back({storage + block_offset(b, height), static_cast<std::size_t>(height - start),
+                       start - first - width, height - start, std::min(block_width, columns - start),
+                       dense::Update::subtract});
   }
   if (update.size > 0) {
     const int size = padded(update.size);
@@ -157,8 +158,10 @@ void FrontFactorization::eliminate_block(int s, int block, const UpdateMatrix& u
                        overwrite ? dense::Update::overwrite : dense::Update::subtract});
   }
   const auto apply = [&](const Region& region, int row_begin, int row_end, int column_begin, int column_end) {
-    const dense::Rows shifted{a.data + static_cast<std::size_t>(region.offset / 4) * a.sliver_stride, a.sliver_stride, a.column_stride};
-    dense::update_lower(region.value, region.stride, shifted, width, row_begin, row_end, column_begin, column_end, region.mode);
+    const dense::Rows shifted{a.data + static_cast<std::size_t>(region.offset / 4) * a.sliver_stride, a.sliver_stride,
+                              a.column_stride};
+    dense::update_lower(region.value, region.stride, shifted, width, row_begin, row_end, column_begin, column_end,
+                        region.mode);
   };
   if (work < parallel_work) {
     for (const Region& region : regions) apply(region, 0, region.rows, 0, region.columns);

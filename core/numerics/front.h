@@ -17,7 +17,7 @@ struct UpdateMatrix {
 
 /// Working memory of one thread.
 struct FrontScratch {
-  std::vector<int> target;                      // row of L -> padded row of the current front
+  std::vector<int> target;  // row of L -> padded row of the current front
   std::vector<double> packed;
   std::vector<double> least;
   struct Run {
@@ -39,12 +39,15 @@ class FrontFactorization {
     int supernode;
     UpdateMatrix update;
   };
-  int run(int s, const std::vector<Child>& children, const UpdateMatrix& update, bool parallel, FrontScratch& scratch) const;
+  int run(int s, const std::vector<Child>& children, const UpdateMatrix& update, bool parallel,
+          FrontScratch& scratch) const;
 
  private:
-  void assemble(int s, const std::vector<Child>& children, const UpdateMatrix& update, bool parallel, FrontScratch& scratch) const;
+  void assemble(int s, const std::vector<Child>& children, const UpdateMatrix& update, bool parallel,
+                FrontScratch& scratch) const;
   void add_child(int s, const Child& child, const UpdateMatrix& update, bool parallel, FrontScratch& scratch) const;
-  void eliminate_block(int s, int block, const UpdateMatrix& update, bool fresh, bool parallel, FrontScratch& scratch) const;
+  void eliminate_block(int s, int block, const UpdateMatrix& update, bool fresh, bool parallel,
+                       FrontScratch& scratch) const;
 
   const SupernodalForm& form_;
   const AssemblyMap& map_;

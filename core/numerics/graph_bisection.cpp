@@ -125,16 +125,19 @@ SeparatorRefinement::State state_of(const Graph& graph, const std::vector<Side>&
   return state;
 }
 
-double improve(const Graph& graph, SeparatorRefinement& refinement, SeparatorRefinement::State& state, const SeparatorOptions& options) {
+double improve(const Graph& graph, SeparatorRefinement& refinement, SeparatorRefinement::State& state,
+               const SeparatorOptions& options) {
   refinement.refine(state, options);
-  if (graph.size() <= flow_size_max && improve_by_flow(graph, refinement.side, {.layers = 6, .side_max = options.side_max})) {
+  if (graph.size() <= flow_size_max &&
+      improve_by_flow(graph, refinement.side, {.layers = 6, .side_max = options.side_max})) {
     state = state_of(graph, refinement.side);
     refinement.refine(state, options);
   }
   return separator_score(state.weight);
 }
 
-double split_coarsest(const Graph& graph, const BisectionOptions& options, Random& random, std::vector<Side>& best_side) {
+double split_coarsest(const Graph& graph, const BisectionOptions& options, Random& random,
+                      std::vector<Side>& best_side) {
   std::vector<int> vertices(graph.size());
   std::iota(vertices.begin(), vertices.end(), 0);
   SeparatorRefinement refinement(graph);

@@ -12,9 +12,9 @@
 namespace formwright::bounded_qp_detail {
 
 namespace {
-constexpr double proximal = 1e-13;     // of the diagonal of Q, in the matrix only: components that touch nothing
+constexpr double proximal = 1e-13;  // of the diagonal of Q, in the matrix only: components that touch nothing
 constexpr double boundary_part = 0.9995;
-constexpr double start_slack = 0.05;   // of the distance between the bounds
+constexpr double start_slack = 0.05;  // of the distance between the bounds
 constexpr double balance_tolerance = 1e-9;
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -39,14 +39,16 @@ class InteriorPoint {
   double step_length() const;
   double complementarity() const { return bounds_.s.dot(bounds_.y) + order_.s.dot(order_.y); }
   double count() const { return static_cast<double>(bounds_.key.size() + order_.key.size()); }
-  double moved(RowKey key, const Eigen::VectorXd& u, const Eigen::VectorXd& m) const { return rows_.apply(key, u) + rows_.slope(key) * m[rows_.group(key)]; }
+  double moved(RowKey key, const Eigen::VectorXd& u, const Eigen::VectorXd& m) const {
+    return rows_.apply(key, u) + rows_.slope(key) * m[rows_.group(key)];
+  }
 
   Energy& energy_;
   const Rows& rows_;
-  int n_, groups_, borders_;       // borders: m, the gauge, the order rows
+  int n_, groups_, borders_;  // borders: m, the gauge, the order rows
   Eigen::VectorXd gauge_;
-  std::vector<char> fixed_;        // unknowns with lower = upper
-  Eigen::MatrixXd fixed_slope_;    // n x groups: their du/dm
+  std::vector<char> fixed_;      // unknowns with lower = upper
+  Eigen::MatrixXd fixed_slope_;  // n x groups: their du/dm
   Family bounds_, order_;
   Eigen::VectorXd u_, m_, du_, dm_;
   double gauge_force_ = 0, dgauge_ = 0;
@@ -57,7 +59,8 @@ class InteriorPoint {
   Eigen::PartialPivLU<Eigen::MatrixXd> schur_;
 };
 
-InteriorPoint::InteriorPoint(Energy& energy, const Rows& rows, std::span<const int> order, const InteriorPointStart& start)
+InteriorPoint::InteriorPoint(Energy& energy, const Rows& rows, std::span<const int> order,
+                             const InteriorPointStart& start)
     : energy_(energy), rows_(rows), n_(energy.size()), groups_(rows.groups()) {
   const BoundedQpConstraints& c = rows.constraints();
   const double size = c.gauge.cwiseAbs().sum();
@@ -86,11 +89,13 @@ void InteriorPoint::begin(const InteriorPointStart& start) {
     if (fixed_[at(i)]) u_[i] = c.lower[i] + c.lower_slope[i] * m_[c.group[at(i)]];
   }
   // A known multiplier times the slack its row starts with is how far from the end the start is.
-  Eigen::VectorXd known = Eigen::VectorXd::Zero(n_), known_order = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(c.rows.size()));
+  Eigen::VectorXd known = Eigen::VectorXd::Zero(n_),
+                  known_order = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(c.rows.size()));
   std::vector<Side> side(at(n_), Side::order);
   for (std::size_t k = 0; k < start.active.size(); ++k) {
     const RowKey key = start.active[k];
-    (key.side == Side::order ? known_order : known)[key.index] = std::max(0.0, start.multiplier[static_cast<Eigen::Index>(k)]);
+    (key.side == Side::order ? known_order : known)[key.index] =
+        std::max(0.0, start.multiplier[static_cast<Eigen::Index>(k)]);
     if (key.side != Side::order) side[at(key.index)] = key.side;
   }
   double product = 0;
@@ -106,7 +111,8 @@ void InteriorPoint::begin(const InteriorPointStart& start) {
       if (key.side != Side::order && std::isfinite(c.lower[i]) && std::isfinite(c.upper[i])) {
         width = std::min(width, c.upper[i] - c.lower[i] + (c.upper_slope[i] - c.lower_slope[i]) * m_[c.group[at(i)]]);
       }
-      family->s[a] = std::max(moved(key, u_, m_) - rows_.bound(key), std::max(start_slack * width, 1e-6 * rows_.scale()));
+      family->s[a] =
+          std::max(moved(key, u_, m_) - rows_.bound(key), std::max(start_slack * width, 1e-6 * rows_.scale()));
       if (key.side == Side::order) family->y[a] = known_order[i];
       else if (side[at(i)] == key.side) family->y[a] = known[i];
       if (family->y[a] > 0) {
@@ -116,7 +122,9 @@ void InteriorPoint::begin(const InteriorPointStart& start) {
     }
   }
   double mu = products > 0 ? product / products : 0;
-  if (!(mu > 0)) mu = std::max(energy_.energy(u_), 1e-12 * energy_.absolute_sum() * rows_.scale() * rows_.scale()) / std::max(1.0, count());
+  if (!(mu > 0))
+    mu = std::max(energy_.energy(u_), 1e-12 * energy_.absolute_sum() * rows_.scale() * rows_.scale()) /
+         std::max(1.0, count());
   for (Family* family : {&bounds_, &order_}) {
     for (Eigen::Index a = 0; a < family->s.size(); ++a) family->y[a] = std::max(family->y[a], mu / family->s[a]);
   }
@@ -158,7 +166,8 @@ void InteriorPoint::assemble(Context& context) {
   for (std::size_t a = 0; a < bounds_.key.size(); ++a) {
     const RowKey key = bounds_.key[a];
     const auto k = static_cast<Eigen::Index>(a);
-    const double weight = bounds_.y[k] / bounds_.s[k], sign = key.side == Side::upper ? -1 : 1, slope = rows_.slope(key);
+    const double weight = bounds_.y[k] / bounds_.s[k], sign = key.side == Side::upper ? -1 : 1,
+                 slope = rows_.slope(key);
     const int g = rows_.group(key);
     diagonal_[key.index] += weight;
     border_dense_(key.index, g) += weight * sign * slope;
@@ -196,7 +205,8 @@ void InteriorPoint::assemble(Context& context) {
     if (fixed_[at(i)]) border_dense_.row(i).setZero();
   }
   energy_.factorize_shifted(diagonal_, fixed_, context);
-  for (Eigen::Index c = 0; c < border_dense_.cols(); ++c) energy_.factor().forward(Eigen::Ref<Eigen::VectorXd>(border_dense_.col(c)));
+  for (Eigen::Index c = 0; c < border_dense_.cols(); ++c)
+    energy_.factor().forward(Eigen::Ref<Eigen::VectorXd>(border_dense_.col(c)));
   border_sparse_.reset(n_);
   border_sparse_.append(energy_.factor().forward(forces), context);
   E.topLeftCorner(first_order, first_order) -= border_dense_.transpose() * border_dense_;
@@ -226,7 +236,8 @@ void InteriorPoint::direction() {
     c[rows_.group(key)] += rows_.slope(key) * push;
   }
   if (gauge_border >= 0) c[gauge_border] = gauge_.dot(u_);
-  for (Eigen::Index k = 0; k < order_.s.size(); ++k) c[first_order + k] = order_.gap[k] - order_.target[k] / order_.y[k];
+  for (Eigen::Index k = 0; k < order_.s.size(); ++k)
+    c[first_order + k] = order_.gap[k] - order_.target[k] / order_.y[k];
   energy_.factor().forward(Eigen::Ref<Eigen::VectorXd>(a));
   Eigen::VectorXd rhs = c;
   rhs.head(first_order) -= border_dense_.transpose() * a;
@@ -244,7 +255,8 @@ void InteriorPoint::direction() {
   for (Family* family : {&bounds_, &order_}) {
     family->ds.resize(family->s.size());
     for (std::size_t b = 0; b < family->key.size(); ++b) {
-      family->ds[static_cast<Eigen::Index>(b)] = moved(family->key[b], du_, dm_) + family->gap[static_cast<Eigen::Index>(b)];
+      family->ds[static_cast<Eigen::Index>(b)] =
+          moved(family->key[b], du_, dm_) + family->gap[static_cast<Eigen::Index>(b)];
     }
     family->dy = ((family->target.array() - family->y.array() * family->ds.array()) / family->s.array()).matrix();
   }
@@ -274,7 +286,8 @@ InteriorPointResult InteriorPoint::run(const InteriorPointSettings& settings, Co
     }
     const double unbalanced = force_left_.cwiseAbs().maxCoeff();
     result.relative_gap = gap / std::max(energy, std::numeric_limits<double>::min());
-    result.converged = result.relative_gap <= settings.relative_gap && open <= balance_tolerance * rows_.scale() && unbalanced <= balance_tolerance * force;
+    result.converged = result.relative_gap <= settings.relative_gap && open <= balance_tolerance * rows_.scale() &&
+                       unbalanced <= balance_tolerance * force;
     context.progress(result.iterations / (result.iterations + 10.0), "Pressing into the bounds");
     if (result.converged || result.iterations >= settings.max_iterations || count() == 0) break;
     try {
@@ -287,10 +300,12 @@ InteriorPointResult InteriorPoint::run(const InteriorPointSettings& settings, Co
     for (Family* family : {&bounds_, &order_}) family->target = -family->s.cwiseProduct(family->y);
     direction();
     double step = std::min(1.0, step_length()), after = 0;
-    for (const Family* family : {&bounds_, &order_}) after += (family->s + step * family->ds).dot(family->y + step * family->dy);
+    for (const Family* family : {&bounds_, &order_})
+      after += (family->s + step * family->ds).dot(family->y + step * family->dy);
     const double sigma = std::pow(std::clamp(after / gap, 0.0, 1.0), 3);
     for (Family* family : {&bounds_, &order_}) {
-      family->target = (sigma * mu - family->s.array() * family->y.array() - family->ds.array() * family->dy.array()).matrix();
+      family->target =
+          (sigma * mu - family->s.array() * family->y.array() - family->ds.array() * family->dy.array()).matrix();
     }
     direction();
     step = std::min(1.0, boundary_part * step_length());
@@ -321,8 +336,9 @@ InteriorPointResult InteriorPoint::run(const InteriorPointSettings& settings, Co
 }
 }  // namespace
 
-InteriorPointResult solve_interior_point(Energy& energy, const Rows& rows, std::span<const int> order, const InteriorPointStart& start,
-                                         const InteriorPointSettings& settings, Context& context) {
+InteriorPointResult solve_interior_point(Energy& energy, const Rows& rows, std::span<const int> order,
+                                         const InteriorPointStart& start, const InteriorPointSettings& settings,
+                                         Context& context) {
   return InteriorPoint(energy, rows, order, start).run(settings, context);
 }
 

@@ -37,7 +37,8 @@ struct InteriorPointResult {
 
 /// Bounds, the gauge and the listed order rows; other order rows are left out. Leaves the energy factored with the last
 /// diagonal. Throws Error: could_not_solve, cancelled.
-InteriorPointResult solve_interior_point(Energy& energy, const Rows& rows, std::span<const int> order, const InteriorPointStart& start,
-                                         const InteriorPointSettings& settings, Context& context);
+InteriorPointResult solve_interior_point(Energy& energy, const Rows& rows, std::span<const int> order,
+                                         const InteriorPointStart& start, const InteriorPointSettings& settings,
+                                         Context& context);
 
 }  // namespace formwright::bounded_qp_detail

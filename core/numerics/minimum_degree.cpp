@@ -33,10 +33,10 @@ class QuotientGraph {
   void emit(int variable);
 
   int n_, inner_;
-  int left_;                 // inner vertices not yet eliminated
-  int halo_left_ = 0;        // halo vertices
-  std::vector<int> lists_;   // every variable: its elements, then its variables; every element: its variables
-  std::size_t used_ = 0;     // of lists_
+  int left_;                // inner vertices not yet eliminated
+  int halo_left_ = 0;       // halo vertices
+  std::vector<int> lists_;  // every variable: its elements, then its variables; every element: its variables
+  std::size_t used_ = 0;    // of lists_
   std::vector<std::size_t> begin_;
   std::vector<int> length_, elements_;  // of the list; of it, how many are elements
   std::vector<int> size_;               // vertices in a variable; negative while it belongs to the pivot's element
@@ -203,7 +203,8 @@ void QuotientGraph::update_degrees(int pivot) {
       }
     }
     const std::size_t after_elements = write;
-    for (std::size_t q = first + static_cast<std::size_t>(elements_[i]); q < first + static_cast<std::size_t>(length_[i]); ++q) {
+    for (std::size_t q = first + static_cast<std::size_t>(elements_[i]);
+         q < first + static_cast<std::size_t>(length_[i]); ++q) {
       const int j = lists_[q];
       if (size_[j] <= 0) continue;
       degree += size_[j];

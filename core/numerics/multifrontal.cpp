@@ -65,8 +65,7 @@ class Multifrontal {
   void done(int s);
   void fail(int column) {
     int best = failed_.load();
-    while ((best == -1 || column < best) && !failed_.compare_exchange_weak(best, column)) {
-    }
+    while ((best == -1 || column < best) && !failed_.compare_exchange_weak(best, column)) {}
   }
 
   const SupernodalForm& form_;
@@ -211,13 +210,15 @@ AssemblyMap map_assembly(const SparseMatrix& lower, const Graph& graph, const Su
   parallel_for(static_cast<std::size_t>(count), chunk, [&](std::size_t begin, std::size_t end) {
     std::vector<int> target(form.n);
     for (std::size_t s = begin; s < end; ++s) {
-      const int node = static_cast<int>(s), first = form.first_column[s], columns = form.columns(node), height = form.height(node);
+      const int node = static_cast<int>(s), first = form.first_column[s], columns = form.columns(node),
+                height = form.height(node);
       for (int j = 0; j < columns; ++j) target[first + j] = j;
       const auto rows = form.rows_below(node);
       for (std::size_t i = 0; i < rows.size(); ++i) target[rows[i]] = padded(columns) + static_cast<int>(i);
       std::size_t next = map.first[s];
       for (int j = 0; j < columns; ++j) {
-        const int v = order[first + j], block = j / SupernodalForm::block_width, start = block * SupernodalForm::block_width;
+        const int v = order[first + j], block = j / SupernodalForm::block_width,
+                  start = block * SupernodalForm::block_width;
         const std::size_t column = block_offset(block, height) +
                                    static_cast<std::size_t>(j - start) * static_cast<std::size_t>(height - start);
         map.source[next] = find(v, v);
@@ -225,7 +226,8 @@ AssemblyMap map_assembly(const SparseMatrix& lower, const Graph& graph, const Su
         for (const int u : graph.neighbours(v)) {
           if (position[u] <= first + j) continue;
           map.source[next] = find(std::max(u, v), std::min(u, v));
-          map.target[next++] = static_cast<std::uint32_t>(column + static_cast<std::size_t>(target[position[u]] - start));
+          map.target[next++] =
+              static_cast<std::uint32_t>(column + static_cast<std::size_t>(target[position[u]] - start));
         }
       }
     }

@@ -20,7 +20,7 @@ struct Part {
   Graph quotient;
   std::vector<int> first_member;  // per patch, into members; one more at the end
   std::vector<int> members;
-  int place = 0;                  // in the order, of the part's first vertex
+  int place = 0;  // in the order, of the part's first vertex
   unsigned seed = 1;
 
   int size() const { return static_cast<int>(members.size()); }
@@ -48,7 +48,9 @@ std::vector<int> make_patches(const Graph& graph, const std::vector<int>& vertic
     if (candidates.size() < 2) {  // hemmed in: join a patch nearby
       int best = -1;
       for (const int u : graph.neighbours(v)) {
-        if (eligible[u] && patch[u] != -1 && size[patch[u]] < 2 * patch_size && (best == -1 || size[patch[u]] < size[best])) best = patch[u];
+        if (eligible[u] && patch[u] != -1 && size[patch[u]] < 2 * patch_size &&
+            (best == -1 || size[patch[u]] < size[best]))
+          best = patch[u];
       }
       if (best != -1) {
         patch[v] = best;

@@ -13,7 +13,8 @@ struct NestedDissectionOptions {
   bool parallel = true;
 };
 
-/// Returns the vertices, first eliminated first. With `parallel` it uses all threads; the result does not depend on their number.
+/// Returns the vertices, first eliminated first. With `parallel` it uses all threads; the result does not depend on
+/// their number.
 std::vector<int> nested_dissection(const Graph& graph, const NestedDissectionOptions& options, Context& context);
 
 }  // namespace formwright

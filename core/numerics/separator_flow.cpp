@@ -24,7 +24,8 @@ class BandFlow {
   struct Arc {
     int to, capacity;
   };
-  void grow_band(const std::vector<Side>& side, Side which, std::int64_t weight_max, const SeparatorFlowOptions& options);
+  void grow_band(const std::vector<Side>& side, Side which, std::int64_t weight_max,
+                 const SeparatorFlowOptions& options);
   void connect(int from, int to, int capacity);
   void build_arcs();
   bool find_levels();
@@ -58,7 +59,9 @@ BandFlow::BandFlow(const Graph& graph, const std::vector<Side>& side, const Sepa
   const double total = static_cast<double>(weight[0] + weight[1] + weight[2]);
   const auto least = static_cast<std::int64_t>((1 - options.side_max) * total);
   for (const Side which : {Side::left, Side::right}) {
-    grow_band(side, which, std::max<std::int64_t>(weight[static_cast<int>(which)] - least, weight[static_cast<int>(which)] / 4), options);
+    grow_band(side, which,
+              std::max<std::int64_t>(weight[static_cast<int>(which)] - least, weight[static_cast<int>(which)] / 4),
+              options);
   }
   // Terminals: band vertices next to a vertex of their own side beyond the band.
   const int count = static_cast<int>(band_.size());

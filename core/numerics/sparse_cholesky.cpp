@@ -45,10 +45,13 @@ void check_lower(const SparseMatrix& lower) {
   for (int j = 0; j < static_cast<int>(lower.cols()); ++j) {
     const SparseMatrix::InnerIterator it(lower, j);
     if (it && it.row() < j) {
-      throw Error(ErrorCode::invalid_input, "matrix", "Only the lower triangle may be stored, but column " + std::to_string(j) + " has an entry above the diagonal.");
+      throw Error(ErrorCode::invalid_input, "matrix",
+                  "Only the lower triangle may be stored, but column " + std::to_string(j) +
+                      " has an entry above the diagonal.");
     }
     if (!it || it.row() != j) {
-      throw Error(ErrorCode::invalid_input, "matrix", "The diagonal must be stored, but row " + std::to_string(j) + " has none.");
+      throw Error(ErrorCode::invalid_input, "matrix",
+                  "The diagonal must be stored, but row " + std::to_string(j) + " has none.");
     }
   }
 }

@@ -10,8 +10,8 @@ namespace {
 // A supernode while supernodes are being merged.
 struct Node {
   int columns = 0;
-  int below = 0;      // rows below
-  double zeros = 0;   // entries stored that are not in L
+  int below = 0;     // rows below
+  double zeros = 0;  // entries stored that are not in L
   int parent = -1;
   int first_child = -1, next_sibling = -1;
   int first_part = -1, next_part = -1;  // the fundamental supernodes merged into this one, itself excluded
@@ -165,13 +165,15 @@ Numbering number(const Tree& tree) {
   std::sort(roots.begin(), roots.end());
   for (const int root : roots) {
     const int begin = static_cast<int>(result.sequence.size());
-    walk(root, [](int) { return true; }, result.sequence);
+    walk(
+        root, [](int) { return true; }, result.sequence);
     result.subtrees.push_back({begin, static_cast<int>(result.sequence.size()), work[root]});
   }
   result.first_top = static_cast<int>(result.sequence.size());
   for (int s = 0; s < count; ++s) {
     if (nodes[s].merged || nodes[s].parent != -1 || work[s] <= most) continue;
-    walk(s, [&](int c) { return work[c] > most; }, result.sequence);
+    walk(
+        s, [&](int c) { return work[c] > most; }, result.sequence);
   }
   // Many tiny subtrees (separate parts of a mesh, say) share one task.
   std::vector<SupernodalForm::Subtree> joined;
@@ -260,9 +262,9 @@ SupernodalForm find_supernodes(const Graph& graph, std::vector<int> order, Conte
     below[s] = node.below;
     const int height = padded(node.columns) + padded(node.below);
     const int full = node.columns / SupernodalForm::block_width, rest = node.columns % SupernodalForm::block_width;
-    form.first_value[s + 1] = form.first_value[s] + block_offset(full, height) +
-                              static_cast<std::size_t>(rest) *
-                                  static_cast<std::size_t>(height - full * SupernodalForm::block_width);
+    form.first_value[s + 1] =
+        form.first_value[s] + block_offset(full, height) +
+        static_cast<std::size_t>(rest) * static_cast<std::size_t>(height - full * SupernodalForm::block_width);
     form.entries += trapezoid(node.columns, node.below);
     form.flops += factor_work(node.columns, node.below);
   }

@@ -38,8 +38,8 @@ struct SupernodalForm {
   std::vector<int> row;                  // ascending within a supernode, in elimination order
   std::vector<std::size_t> first_value;  // supernodes + 1: where the storage of each begins
   std::vector<Subtree> subtrees;
-  int first_top = 0;                     // supernodes from here on belong to no subtree
-  double entries = 0, flops = 0;         // of L as stored without padding rows; additions and multiplications
+  int first_top = 0;              // supernodes from here on belong to no subtree
+  double entries = 0, flops = 0;  // of L as stored without padding rows; additions and multiplications
 
   int count() const { return static_cast<int>(parent.size()); }
   int columns(int s) const { return first_column[s + 1] - first_column[s]; }

@@ -18,7 +18,8 @@ void forward_supernode(const SupernodalForm& form, const double* factor, int s, 
   const double* storage = factor + form.first_value[s];
   for (int block = 0, first = 0; first < columns; ++block, first += SupernodalForm::block_width) {
     dense::forward_block<Sides>(storage + block_offset(block, height), static_cast<std::size_t>(height - first),
-                                std::min(SupernodalForm::block_width, columns - first), height - first, z + first * Sides);
+                                std::min(SupernodalForm::block_width, columns - first), height - first,
+                                z + first * Sides);
   }
 }
 
@@ -29,7 +30,8 @@ void backward_supernode(const SupernodalForm& form, const double* factor, int s,
   for (int block = (columns - 1) / SupernodalForm::block_width; block >= 0; --block) {
     const int first = block * SupernodalForm::block_width;
     dense::backward_block<Sides>(storage + block_offset(block, height), static_cast<std::size_t>(height - first),
-                                 std::min(SupernodalForm::block_width, columns - first), height - first, z + first * Sides);
+                                 std::min(SupernodalForm::block_width, columns - first), height - first,
+                                 z + first * Sides);
   }
 }
 
@@ -158,10 +160,11 @@ void sparse_forward_together(const SupernodalForm& form, const double* factor, s
   std::vector<double> z;
   for (std::size_t t = 0; t < path.size(); ++t) {
     std::size_t at = t + 1;  // rows ascend, and so do the supernodes of the path that hold them
-    forward_step<Sides>(form, factor, path[t], local.data() + static_cast<std::size_t>(offset[t]) * sides, z, [&](int r) {
-      while (r >= form.first_column[path[at] + 1]) ++at;
-      return local.data() + static_cast<std::size_t>(offset[at] + r - form.first_column[path[at]]) * sides;
-    });
+    forward_step<Sides>(
+        form, factor, path[t], local.data() + static_cast<std::size_t>(offset[t]) * sides, z, [&](int r) {
+          while (r >= form.first_column[path[at] + 1]) ++at;
+          return local.data() + static_cast<std::size_t>(offset[at] + r - form.first_column[path[at]]) * sides;
+        });
   }
   for (std::size_t c = 0; c < y.size(); ++c) {
     y[c]->index.clear();

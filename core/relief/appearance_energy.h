@@ -25,11 +25,11 @@ class AppearanceEnergy {
   SparseMatrix lower_hessian(Context& context) const;
 
  private:
-  Positions rays_;                   // e_z + kappa p_j, n x 3
-  Eigen::VectorXd row_weight_;       // w_i^2 / A_i
+  Positions rays_;                      // e_z + kappa p_j, n x 3
+  Eigen::VectorXd row_weight_;          // w_i^2 / A_i
   std::vector<int> ring_start_, ring_;  // one-ring of each vertex, compressed
-  std::vector<double> ring_weight_;  // cotangent weight of each ring entry
-  Positions star_sum_;               // sum_j weight_ij ray_j
+  std::vector<double> ring_weight_;     // cotangent weight of each ring entry
+  Positions star_sum_;                  // sum_j weight_ij ray_j
 };
 
 }  // namespace formwright

@@ -30,18 +30,21 @@ Eigen::VectorXd linear_compression(const ViewFrame& frame, double thickness, con
   return to_u(frame, fitted_to_slab(frame.P.col(2), thickness, bounded));
 }
 
-Eigen::VectorXd gradient_domain_compression(const ViewFrame& frame, const Triangles& F, const Visibility& visibility, double thickness,
-                                            const GradientCompressionOptions& options, Context& context) {
+Eigen::VectorXd gradient_domain_compression(const ViewFrame& frame, const Triangles& F, const Visibility& visibility,
+                                            double thickness, const GradientCompressionOptions& options,
+                                            Context& context) {
   const Eigen::Index n = frame.P.rows();
   const Eigen::VectorXd linear = fitted_to_slab(frame.P.col(2), thickness, visibility.vertex);
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::VectorXd rhs = Eigen::VectorXd::Zero(n), diagonal = Eigen::VectorXd::Zero(n);
   Positions picture(n, 3);
-  for (Eigen::Index i = 0; i < n; ++i) picture.row(i) << frame.P.row(i).head<2>() / (1 + frame.kappa * frame.P(i, 2)), 0.0;
+  for (Eigen::Index i = 0; i < n; ++i)
+    picture.row(i) << frame.P.row(i).head<2>() / (1 + frame.kappa * frame.P(i, 2)), 0.0;
 
   for (Eigen::Index f = 0; f < F.rows(); ++f) {
     if (!visibility.face[static_cast<std::size_t>(f)]) continue;
-    const Eigen::RowVector2d a = picture.row(F(f, 0)).head<2>(), b = picture.row(F(f, 1)).head<2>(), c = picture.row(F(f, 2)).head<2>();
+    const Eigen::RowVector2d a = picture.row(F(f, 0)).head<2>(), b = picture.row(F(f, 1)).head<2>(),
+                             c = picture.row(F(f, 2)).head<2>();
     const double doubled = (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
     if (std::abs(doubled) < 1e-14) continue;  // edge-on: no gradient in the picture
     Eigen::Matrix<double, 3, 2> shape;        // gradients of the three hat functions

@@ -18,9 +18,10 @@ struct GradientCompressionOptions {
 
 /// Gradient-domain compression in the manner of Weyrich et al. 2007 on the triangles instead of pixels, as in
 /// thesis Fig. 3.11, without sharpening: depth gradients on the picture plane, silhouette steps removed, their
-/// lengths compressed by C(g) = log(1 + a g) / a, depth restored by a Poisson solve over the visible faces, scaled to the slab.
-/// Hidden vertices keep linear compression. Throws Error: could_not_solve, cancelled.
-Eigen::VectorXd gradient_domain_compression(const ViewFrame& frame, const Triangles& F, const Visibility& visibility, double thickness,
-                                            const GradientCompressionOptions& options, Context& context);
+/// lengths compressed by C(g) = log(1 + a g) / a, depth restored by a Poisson solve over the visible faces, scaled to
+/// the slab. Hidden vertices keep linear compression. Throws Error: could_not_solve, cancelled.
+Eigen::VectorXd gradient_domain_compression(const ViewFrame& frame, const Triangles& F, const Visibility& visibility,
+                                            double thickness, const GradientCompressionOptions& options,
+                                            Context& context);
 
 }  // namespace formwright

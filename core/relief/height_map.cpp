@@ -6,11 +6,15 @@
 
 namespace formwright {
 
-HeightMap make_height_map(const Positions& moved, const Triangles& F, double size_mm, PlateSize plate, double pixel_mm, double top_mm, Context& context) {
+HeightMap make_height_map(const Positions& moved, const Triangles& F, double size_mm, PlateSize plate, double pixel_mm,
+                          double top_mm, Context& context) {
   HeightMap map;
-  const double nodes_x = std::ceil(plate.width_mm / pixel_mm - 1e-9) + 1, nodes_y = std::ceil(plate.height_mm / pixel_mm - 1e-9) + 1;
+  const double nodes_x = std::ceil(plate.width_mm / pixel_mm - 1e-9) + 1,
+               nodes_y = std::ceil(plate.height_mm / pixel_mm - 1e-9) + 1;
   if (nodes_x * nodes_y > 64e6)
-    throw Error(ErrorCode::invalid_input, "pixel_mm", "The grid of the solid would have more than 64 million nodes: choose a coarser grid or a smaller width.");
+    throw Error(
+        ErrorCode::invalid_input, "pixel_mm",
+        "The grid of the solid would have more than 64 million nodes: choose a coarser grid or a smaller width.");
   map.columns = std::max(2, static_cast<int>(nodes_x));
   map.rows = std::max(2, static_cast<int>(nodes_y));
   map.pitch_x_mm = plate.width_mm / (map.columns - 1);

@@ -16,8 +16,14 @@ struct HeightMap {
 
   double width_mm() const { return pitch_x_mm * (columns - 1); }
   double depth_mm() const { return pitch_y_mm * (rows - 1); }
-  float& at(int row, int column) { return height_mm[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column)]; }
-  float at(int row, int column) const { return height_mm[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column)]; }
+  float& at(int row, int column) {
+    return height_mm[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+                     static_cast<std::size_t>(column)];
+  }
+  float at(int row, int column) const {
+    return height_mm[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+                     static_cast<std::size_t>(column)];
+  }
 };
 
 struct PlateSize {
@@ -28,7 +34,8 @@ struct PlateSize {
 /// `moved` is in view coordinates; `size_mm` per normalised unit. Vertices within a millionth of `top_mm` of the
 /// top also raise their nearest node, so that the thickness asked for is reached exactly.
 /// Throws Error{invalid_input, "pixel_mm"} for a grid over 64 million nodes.
-HeightMap make_height_map(const Positions& moved, const Triangles& F, double size_mm, PlateSize plate, double pixel_mm, double top_mm, Context& context);
+HeightMap make_height_map(const Positions& moved, const Triangles& F, double size_mm, PlateSize plate, double pixel_mm,
+                          double top_mm, Context& context);
 
 /// A watertight solid: the height field on a plate `plate_mm` thick, x right, y up, z towards the viewer, lower
 /// left corner of the plate's back at the origin. Flat and smooth parts are covered by larger triangles: a

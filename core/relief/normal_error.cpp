@@ -29,7 +29,8 @@ double image_area(const ViewFrame& frame, const Triangles& F, Eigen::Index f) {
 
 }  // namespace
 
-NormalError normal_error(const ViewFrame& frame, const Triangles& F, const Visibility& visibility, const Positions& moved) {
+NormalError normal_error(const ViewFrame& frame, const Triangles& F, const Visibility& visibility,
+                         const Positions& moved) {
   const Eigen::Index n = frame.P.rows();
   NormalError result;
   Positions before = Positions::Zero(n, 3), after = Positions::Zero(n, 3);
@@ -41,7 +42,8 @@ NormalError normal_error(const ViewFrame& frame, const Triangles& F, const Visib
       after.row(F(f, k)) += new_normal.transpose();
     }
     if (!visibility.face[static_cast<std::size_t>(f)]) continue;
-    const double angle = angle_deg(old_normal, new_normal), area = 0.5 * old_normal.norm(), picture = image_area(frame, F, f);
+    const double angle = angle_deg(old_normal, new_normal), area = 0.5 * old_normal.norm(),
+                 picture = image_area(frame, F, f);
     area_sum += area;
     area_angle += area * angle;
     image_sum += picture;
@@ -50,7 +52,8 @@ NormalError normal_error(const ViewFrame& frame, const Triangles& F, const Visib
   if (area_sum > 0) result.mean_deg = area_angle / area_sum;
   if (image_sum > 0) result.mean_deg_image = image_angle / image_sum;
   result.vertex_deg.resize(n);
-  for (Eigen::Index i = 0; i < n; ++i) result.vertex_deg[i] = angle_deg(before.row(i).transpose(), after.row(i).transpose());
+  for (Eigen::Index i = 0; i < n; ++i)
+    result.vertex_deg[i] = angle_deg(before.row(i).transpose(), after.row(i).transpose());
   return result;
 }
 

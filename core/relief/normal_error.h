@@ -13,6 +13,7 @@ struct NormalError {
 };
 
 /// `moved`: n x 3 positions in view coordinates. Means are 0 when no face is visible.
-NormalError normal_error(const ViewFrame& frame, const Triangles& F, const Visibility& visibility, const Positions& moved);
+NormalError normal_error(const ViewFrame& frame, const Triangles& F, const Visibility& visibility,
+                         const Positions& moved);
 
 }  // namespace formwright

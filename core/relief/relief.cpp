@@ -74,7 +74,8 @@ Eigen::VectorXd ray_lengths(const ViewFrame& frame, const Eigen::VectorXd& u) {
   if (frame.kappa == 0) return frame.P.col(2) + u - Eigen::VectorXd::Constant(u.size(), frame.P.col(2).minCoeff() - 1);
   Eigen::VectorXd lambda(u.size());
   const Vec3 viewpoint(0, 0, -1 / frame.kappa);
-  for (Eigen::Index i = 0; i < u.size(); ++i) lambda[i] = (frame.P.row(i).transpose() - viewpoint).norm() * (1 + frame.kappa * u[i]);
+  for (Eigen::Index i = 0; i < u.size(); ++i)
+    lambda[i] = (frame.P.row(i).transpose() - viewpoint).norm() * (1 + frame.kappa * u[i]);
   return lambda;
 }
 
@@ -84,7 +85,8 @@ ReliefSolver::~ReliefSolver() = default;
 
 std::string ReliefSolver::key(const ReliefOptions& options) {
   // The viewing distance counts in units of the width; everything else here is free of the size.
-  Json key = {write_parameters(options).at("projection"), options.direction, options.up, options.hidden_weight, options.depth_order};
+  Json key = {write_parameters(options).at("projection"), options.direction, options.up, options.hidden_weight,
+              options.depth_order};
   if (options.projection == Projection::perspective) {
     if (options.distance_mm) key.push_back(*options.distance_mm / options.width_mm);
     else key.push_back(Json{options.field_of_view_deg});
@@ -95,8 +97,9 @@ std::string ReliefSolver::key(const ReliefOptions& options) {
 ReliefSolver::ReliefSolver(const TriangleMesh& mesh, const ReliefOptions& options, Context& context) : F_(mesh.F) {
   if (mesh.vertex_count() > most_vertices) {
     throw Error(ErrorCode::invalid_input, "mesh",
-                "The model has " + std::to_string(mesh.vertex_count()) + " vertices, and a relief is solved for at most " +
-                    std::to_string(most_vertices) + " here: simplify it first; 300000 show all that can be printed.");
+                "The model has " + std::to_string(mesh.vertex_count()) +
+                    " vertices, and a relief is solved for at most " + std::to_string(most_vertices) +
+                    " here: simplify it first; 300000 show all that can be printed.");
   }
   Stopwatch watch;
   context.progress(0, "Looking from the viewpoint");
@@ -107,7 +110,8 @@ ReliefSolver::ReliefSolver(const TriangleMesh& mesh, const ReliefOptions& option
     if (options.depth_order) order_rows_ = depth_order_rows(frame_, F_, caster, context);
   }
   if (visibility_.visible_vertices == 0)
-    throw Error(ErrorCode::invalid_input, "direction", "Nothing of the model is visible from this viewpoint: choose another looking direction.");
+    throw Error(ErrorCode::invalid_input, "direction",
+                "Nothing of the model is visible from this viewpoint: choose another looking direction.");
   context.progress(0.25, "Measuring the surface");
   Eigen::VectorXd weights = Eigen::VectorXd::Ones(frame_.P.rows());
   for (Eigen::Index i = 0; i < weights.size(); ++i)
@@ -126,7 +130,9 @@ ReliefSolver::ReliefSolver(const TriangleMesh& mesh, const ReliefOptions& option
 Relief ReliefSolver::solve(const ReliefOptions& options, Context& context) {
   const double thickness = options.thickness_mm / options.width_mm;
   if (frame_.kappa * thickness >= 0.5)
-    throw Error(ErrorCode::invalid_input, "thickness_mm", "The relief would reach more than half-way to the viewpoint: choose a smaller thickness or look from further away.");
+    throw Error(
+        ErrorCode::invalid_input, "thickness_mm",
+        "The relief would reach more than half-way to the viewpoint: choose a smaller thickness or look from further away.");
   SlabBounds slab = slab_bounds(frame_, visibility_, options.bounded_vertices, thickness);
   // Lent, not copied: at 300k vertices the rows are tens of megabytes.
   slab.constraints.rows.swap(order_rows_);
@@ -156,16 +162,21 @@ Relief ReliefSolver::solve(const ReliefOptions& options, Context& context) {
   relief.lambda_mm = size * ray_lengths(frame_, relief.u);
   relief.lambda_min_mm = Eigen::VectorXd::Zero(relief.u.size());
   relief.lambda_max_mm = Eigen::VectorXd::Constant(relief.u.size(), infinity);
-  const Eigen::VectorXd lowest = ray_lengths(frame_, slab.constraints.lower), highest = ray_lengths(frame_, slab.constraints.upper);
+  const Eigen::VectorXd lowest = ray_lengths(frame_, slab.constraints.lower),
+                        highest = ray_lengths(frame_, slab.constraints.upper);
   for (Eigen::Index i = 0; i < relief.u.size(); ++i) {
     if (!slab.bounded[static_cast<std::size_t>(i)]) continue;
     relief.lambda_min_mm[i] = size * lowest[i];
     relief.lambda_max_mm[i] = size * highest[i];
-    relief.bound_violation_max_mm = std::max({relief.bound_violation_max_mm, relief.lambda_min_mm[i] - relief.lambda_mm[i], relief.lambda_mm[i] - relief.lambda_max_mm[i]});
+    relief.bound_violation_max_mm =
+        std::max({relief.bound_violation_max_mm, relief.lambda_min_mm[i] - relief.lambda_mm[i],
+                  relief.lambda_mm[i] - relief.lambda_max_mm[i]});
   }
   relief.order_rows = static_cast<int>(slab.constraints.rows.size());
   relief.order_violation_max_mm = size * order_violation(slab.constraints.rows, relief.u);
-  if (!relief.u.allFinite()) throw Error(ErrorCode::could_not_solve, "", "The solver lost its footing on this model: simplify or repair it and try again.");
+  if (!relief.u.allFinite())
+    throw Error(ErrorCode::could_not_solve, "",
+                "The solver lost its footing on this model: simplify or repair it and try again.");
   return relief;
 }
 

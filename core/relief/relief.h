@@ -17,16 +17,16 @@ namespace formwright {
 
 /// A solved relief. Normalised lengths are in units of the width; `*_mm` are in millimetres.
 struct Relief {
-  Eigen::VectorXd u;                       // n, depth parameter of ViewFrame, within its bounds exactly
-  Positions moved;                         // n x 3, view coordinates
-  Eigen::VectorXd lambda_mm;               // n, distance from the viewpoint along the ray
+  Eigen::VectorXd u;                             // n, depth parameter of ViewFrame, within its bounds exactly
+  Positions moved;                               // n x 3, view coordinates
+  Eigen::VectorXd lambda_mm;                     // n, distance from the viewpoint along the ray
   Eigen::VectorXd lambda_min_mm, lambda_max_mm;  // 0 and +inf where no bound applies
-  double energy = 0, energy_linear = 0;    // eq. (3.13), free of units
+  double energy = 0, energy_linear = 0;          // eq. (3.13), free of units
   NormalError normal_error, normal_error_linear;
-  double bound_violation_max_mm = 0;       // over all bounded vertices, of the final positions
-  double order_violation_max_mm = 0;       // over all depth-order rows
+  double bound_violation_max_mm = 0;  // over all bounded vertices, of the final positions
+  double order_violation_max_mm = 0;  // over all depth-order rows
   int order_rows = 0;
-  BoundedQpSolution qp;                    // statistics; qp.u is in the gauge of mean s = 1
+  BoundedQpSolution qp;  // statistics; qp.u is in the gauge of mean s = 1
 };
 
 /// Everything that depends on the mesh and the viewpoint alone, the factorisation included: other bounds
@@ -34,7 +34,8 @@ struct Relief {
 class ReliefSolver {
  public:
   /// `mesh`: manifold and oriented (repair it first), in any unit.
-  /// Throws Error: invalid_input (see make_view_frame; nothing visible; too many vertices), could_not_solve, cancelled, out_of_memory.
+  /// Throws Error: invalid_input (see make_view_frame; nothing visible; too many vertices), could_not_solve, cancelled,
+  /// out_of_memory.
   ReliefSolver(const TriangleMesh& mesh, const ReliefOptions& options, Context& context);
 
   /// Options with equal keys share a solver.

@@ -35,17 +35,26 @@ class Network {
       else a.x = a.y = c.y = size_;
       while ((id >>= 1) > 1) {
         const Node m{(a.x + b.x) / 2, (a.y + b.y) / 2};
-        if (id & 1) { b = a; a = c; }
-        else { a = b; b = c; }
+        if (id & 1) {
+          b = a;
+          a = c;
+        } else {
+          a = b;
+          b = c;
+        }
         c = m;
       }
       if (outside(a, b, c)) continue;
       float& bound = bound_at({(a.x + b.x) / 2, (a.y + b.y) / 2});
-      if (crosses_edge(a, b, c)) { bound = INFINITY; continue; }
+      if (crosses_edge(a, b, c)) {
+        bound = INFINITY;
+        continue;
+      }
       // The children leave the parent's plane by `own` at most, and what they drop lies near their planes.
       const Node m{(a.x + b.x) / 2, (a.y + b.y) / 2};
       float total = std::abs(0.5f * (height(a) + height(b)) - height(m));
-      if (i < parents) total += std::max(bound_at({(a.x + c.x) / 2, (a.y + c.y) / 2}), bound_at({(b.x + c.x) / 2, (b.y + c.y) / 2}));
+      if (i < parents)
+        total += std::max(bound_at({(a.x + c.x) / 2, (a.y + c.y) / 2}), bound_at({(b.x + c.x) / 2, (b.y + c.y) / 2}));
       bound = std::max(bound, total);
     }
   }
@@ -59,7 +68,9 @@ class Network {
 
  private:
   float height(Node p) const { return map_.at(p.y, p.x); }
-  float& bound_at(Node p) { return bound_[static_cast<std::size_t>(p.y) * static_cast<std::size_t>(size_ + 1) + static_cast<std::size_t>(p.x)]; }
+  float& bound_at(Node p) {
+    return bound_[static_cast<std::size_t>(p.y) * static_cast<std::size_t>(size_ + 1) + static_cast<std::size_t>(p.x)];
+  }
   bool outside(Node a, Node b, Node c) const {
     return std::min({a.x, b.x, c.x}) >= map_.columns - 1 || std::min({a.y, b.y, c.y}) >= map_.rows - 1;
   }
@@ -91,7 +102,8 @@ class Network {
 std::vector<int> rim_vertices(const HeightMap& map, const std::vector<int>& vertex_of) {
   std::vector<int> rim;
   const auto visit = [&](int x, int y) {
-    const int vertex = vertex_of[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.columns) + static_cast<std::size_t>(x)];
+    const int vertex =
+        vertex_of[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.columns) + static_cast<std::size_t>(x)];
     if (vertex >= 0) rim.push_back(vertex);
   };
   for (int x = 0; x + 1 < map.columns; ++x) visit(x, 0);
@@ -116,10 +128,12 @@ TriangleMesh make_solid(const HeightMap& map, double plate_mm, double tolerance_
     Eigen::Vector3i face;
     for (int k = 0; k < 3; ++k) {
       const Node p = network.corners[t + static_cast<std::size_t>(k)];
-      int& vertex = vertex_of[static_cast<std::size_t>(p.y) * static_cast<std::size_t>(map.columns) + static_cast<std::size_t>(p.x)];
+      int& vertex = vertex_of[static_cast<std::size_t>(p.y) * static_cast<std::size_t>(map.columns) +
+                              static_cast<std::size_t>(p.x)];
       if (vertex < 0) {
         vertex = static_cast<int>(vertices.size());
-        vertices.emplace_back(p.x * map.pitch_x_mm, p.y * map.pitch_y_mm, plate_mm + static_cast<double>(map.at(p.y, p.x)));
+        vertices.emplace_back(p.x * map.pitch_x_mm, p.y * map.pitch_y_mm,
+                              plate_mm + static_cast<double>(map.at(p.y, p.x)));
       }
       face[k] = vertex;
     }
@@ -128,7 +142,9 @@ TriangleMesh make_solid(const HeightMap& map, double plate_mm, double tolerance_
 
   const std::vector<int> rim = rim_vertices(map, vertex_of);
   const int below = static_cast<int>(vertices.size());
-  for (const int top : rim) vertices.emplace_back(vertices[static_cast<std::size_t>(top)].x(), vertices[static_cast<std::size_t>(top)].y(), 0.0);
+  for (const int top : rim)
+    vertices.emplace_back(vertices[static_cast<std::size_t>(top)].x(), vertices[static_cast<std::size_t>(top)].y(),
+                          0.0);
   const int centre = static_cast<int>(vertices.size());
   vertices.emplace_back(0.5 * map.width_mm(), 0.5 * map.depth_mm(), 0.0);
   const int count = static_cast<int>(rim.size());

@@ -33,11 +33,16 @@ Extent seen_extent(const Positions& P, double distance) {
 Eigen::Matrix3d view_axes(const ReliefOptions& options) {
   const Vec3 direction(options.direction[0], options.direction[1], options.direction[2]);
   const Vec3 up(options.up[0], options.up[1], options.up[2]);
-  if (!(direction.norm() > 0)) throw Error(ErrorCode::invalid_input, "direction", "The looking direction has no length: give three numbers that are not all 0.");
-  if (!(up.norm() > 0)) throw Error(ErrorCode::invalid_input, "up", "The up direction has no length: give three numbers that are not all 0.");
+  if (!(direction.norm() > 0))
+    throw Error(ErrorCode::invalid_input, "direction",
+                "The looking direction has no length: give three numbers that are not all 0.");
+  if (!(up.norm() > 0))
+    throw Error(ErrorCode::invalid_input, "up",
+                "The up direction has no length: give three numbers that are not all 0.");
   const Vec3 forward = direction.stableNormalized();
   const Vec3 right = forward.cross(up.stableNormalized());
-  if (right.norm() < 1e-6) throw Error(ErrorCode::invalid_input, "up", "Up lies along the looking direction: choose another up direction.");
+  if (right.norm() < 1e-6)
+    throw Error(ErrorCode::invalid_input, "up", "Up lies along the looking direction: choose another up direction.");
   Eigen::Matrix3d axes;
   axes.row(0) = right.normalized();
   axes.row(1) = right.normalized().cross(forward);
@@ -60,10 +65,14 @@ double distance_for_ratio(const Positions& P, double ratio, const ReliefOptions&
   if (front < 0 && ratio_at(nearest) > ratio) {
     const double least = ratio_at(nearest);
     const std::string where = options.distance_mm ? "distance_mm" : "field_of_view_deg";
-    const std::string mend = options.distance_mm
-                                 ? "give a distance of at least " + number(std::ceil(least * options.width_mm)) + " mm"
-                                 : "give a field of view of at most " + number(std::floor(2 * std::atan(0.5 / least) * 180 / std::numbers::pi * 10) / 10) + "°";
-    throw Error(ErrorCode::invalid_input, where, "The viewpoint lies inside the model or too close to it: " + mend + ", or look from far (orthographic).");
+    const std::string mend =
+        options.distance_mm
+            ? "give a distance of at least " + number(std::ceil(least * options.width_mm)) + " mm"
+            : "give a field of view of at most " +
+                  number(std::floor(2 * std::atan(0.5 / least) * 180 / std::numbers::pi * 10) / 10) + "°";
+    throw Error(
+        ErrorCode::invalid_input, where,
+        "The viewpoint lies inside the model or too close to it: " + mend + ", or look from far (orthographic).");
   }
   double low = std::max(nearest, 0.0), high = std::max(2 * low, seen_extent(P, INFINITY).width());
   while (ratio_at(high) < ratio) high *= 2;
@@ -108,7 +117,8 @@ ViewFrame make_view_frame(const TriangleMesh& mesh, const ReliefOptions& options
 
   const Extent e = seen_extent(P, distance);
   if (!(e.width() > 1e-9 * diagonal) || !(e.height() > 1e-9 * diagonal))
-    throw Error(ErrorCode::invalid_input, "direction", "Seen from this direction the model is only a line: choose another looking direction.");
+    throw Error(ErrorCode::invalid_input, "direction",
+                "Seen from this direction the model is only a line: choose another looking direction.");
   frame.scale = 1 / e.width();
   frame.P = P * frame.scale;
   frame.kappa = std::isinf(distance) ? 0.0 : 1 / (distance * frame.scale);

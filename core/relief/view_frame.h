@@ -14,12 +14,12 @@ namespace formwright {
 /// A vertex p moves along its ray by a depth parameter u:   p + u (e_z + kappa p)
 /// which in the thesis's terms is lambda / lambda0 = 1 + kappa u.
 struct ViewFrame {
-  Positions P;                 // n x 3, the model in these coordinates
+  Positions P;  // n x 3, the model in these coordinates
   double kappa = 0;
-  Eigen::Matrix3d axes;        // rows: right, up, looking direction, in the model's axes
-  Vec3 centre;                 // the model point that became (0, 0, 0)
-  double scale = 1;            // normalised length = scale * model length
-  double image_height = 0;     // height of the model seen on the plate, its width being 1
+  Eigen::Matrix3d axes;     // rows: right, up, looking direction, in the model's axes
+  Vec3 centre;              // the model point that became (0, 0, 0)
+  double scale = 1;         // normalised length = scale * model length
+  double image_height = 0;  // height of the model seen on the plate, its width being 1
 
   /// Moved positions for u (n), in view coordinates.
   Positions moved(const Eigen::VectorXd& u) const;

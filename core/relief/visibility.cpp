@@ -58,25 +58,29 @@ Visibility find_visibility(const ViewFrame& frame, const Triangles& F, const Ray
   for (const char visible : result.vertex) result.visible_vertices += visible;
   result.face.assign(static_cast<std::size_t>(F.rows()), 0);
   for (Eigen::Index f = 0; f < F.rows(); ++f)
-    result.face[static_cast<std::size_t>(f)] = result.vertex[static_cast<std::size_t>(F(f, 0))] && result.vertex[static_cast<std::size_t>(F(f, 1))] &&
-                                               result.vertex[static_cast<std::size_t>(F(f, 2))] && faces_viewer(frame, frame.P, F, f);
+    result.face[static_cast<std::size_t>(f)] =
+        result.vertex[static_cast<std::size_t>(F(f, 0))] && result.vertex[static_cast<std::size_t>(F(f, 1))] &&
+        result.vertex[static_cast<std::size_t>(F(f, 2))] && faces_viewer(frame, frame.P, F, f);
   return result;
 }
 
-std::vector<InequalityRow> depth_order_rows(const ViewFrame& frame, const Triangles& F, const RayCaster& caster, Context& context) {
+std::vector<InequalityRow> depth_order_rows(const ViewFrame& frame, const Triangles& F, const RayCaster& caster,
+                                            Context& context) {
   const auto n = static_cast<std::size_t>(frame.P.rows());
   const double front = frame.P.col(2).minCoeff() - 1;
   const double far = 4 * (frame.P.rowwise().norm().maxCoeff() + 1) + (frame.kappa > 0 ? 1 / frame.kappa : 0);
   std::vector<std::vector<InequalityRow>> chunks((n + grain - 1) / grain);
 
   // z_near + q_near u_near <= z_far + q_far u_far, with q = 1 + kappa z.
-  const auto add_row = [&](std::vector<InequalityRow>& rows, int vertex, const RayHit& hit, const Ray& ray, bool hit_is_behind) {
+  const auto add_row = [&](std::vector<InequalityRow>& rows, int vertex, const RayHit& hit, const Ray& ray,
+                           bool hit_is_behind) {
     const double z_vertex = frame.P(vertex, 2), z_hit = (ray.origin + hit.distance * ray.direction).z();
     const double sign = hit_is_behind ? 1 : -1;
     const double q_vertex = 1 + frame.kappa * z_vertex, q_hit = 1 + frame.kappa * z_hit;
     InequalityRow row;
     row.index = {vertex, F(hit.face, 0), F(hit.face, 1), F(hit.face, 2)};
-    row.coefficient = {-sign * q_vertex, sign * q_hit * hit.barycentric[0], sign * q_hit * hit.barycentric[1], sign * q_hit * hit.barycentric[2]};
+    row.coefficient = {-sign * q_vertex, sign * q_hit * hit.barycentric[0], sign * q_hit * hit.barycentric[1],
+                       sign * q_hit * hit.barycentric[2]};
     row.bound = sign * (z_vertex - z_hit);
     rows.push_back(std::move(row));
   };

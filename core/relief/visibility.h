@@ -22,7 +22,8 @@ Visibility find_visibility(const ViewFrame& frame, const Triangles& F, const Ray
 /// Eq. (3.12): along the ray of every vertex, the next surface in front and the next behind keep their order.
 /// A hit inside a face is written in the face's three u by barycentric interpolation of s along the ray,
 /// which is exact for a uniform scaling and keeps the rows linear.
-std::vector<InequalityRow> depth_order_rows(const ViewFrame& frame, const Triangles& F, const RayCaster& caster, Context& context);
+std::vector<InequalityRow> depth_order_rows(const ViewFrame& frame, const Triangles& F, const RayCaster& caster,
+                                            Context& context);
 
 /// 1 where a face's outside is turned to the viewer, for any positions in view coordinates.
 bool faces_viewer(const ViewFrame& frame, const Positions& P, const Triangles& F, Eigen::Index face);

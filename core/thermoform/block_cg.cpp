@@ -15,13 +15,16 @@ std::array<Float4, 3> inverse_of(const std::array<Float4, 3>& block) {
   // A block that rounding has made singular is replaced by its diagonal.
   if (!(determinant > 1e-12 * a * d * f)) {
     std::array<Float4, 3> result{};
-    for (int k = 0; k < 3; ++k) result[static_cast<std::size_t>(k)][k] = block[static_cast<std::size_t>(k)][k] > 0 ? 1 / block[static_cast<std::size_t>(k)][k] : 0;
+    for (int k = 0; k < 3; ++k)
+      result[static_cast<std::size_t>(k)][k] =
+          block[static_cast<std::size_t>(k)][k] > 0 ? 1 / block[static_cast<std::size_t>(k)][k] : 0;
     return result;
   }
   const double s = 1 / determinant;
   const auto number = [&](double value) { return static_cast<float>(value * s); };
   const float xy = number(bb), xz = number(cc), yz = number(b * c - a * e);
-  return {Float4{number(aa), xy, xz, 0}, Float4{xy, number(a * f - c * c), yz, 0}, Float4{xz, yz, number(a * d - b * b), 0}};
+  return {Float4{number(aa), xy, xz, 0}, Float4{xy, number(a * f - c * c), yz, 0},
+          Float4{xz, yz, number(a * d - b * b), 0}};
 }
 
 inline Float4 times(const std::array<Float4, 3>& m, const Float4& v) { return m[0] * v[0] + m[1] * v[1] + m[2] * v[2]; }
@@ -44,20 +47,24 @@ BlockCg::BlockCg(int vertex_count) {
   inverse_.resize(n);
 }
 
-int BlockCg::solve(const BlockMatrix& A, const BlockVector& right_side, std::span<const int> rows, double tolerance, int most_iterations, BlockVector& x) {
+int BlockCg::solve(const BlockMatrix& A, const BlockVector& right_side, std::span<const int> rows, double tolerance,
+                   int most_iterations, BlockVector& x) {
   std::fill(x.begin(), x.end(), Float4{});
   std::fill(p_.begin(), p_.end(), Float4{});
   partial_.resize(rows.size() / row_grain + 1);
   // By plain pointers: what is written must not make the compiler look up where the vectors are.
   const BlockMatrix::Rows matrix = A.rows();
-  Float4 *const solution = x.data(), *const residual = r_.data(), *const preconditioned = z_.data(), *const direction = p_.data(), *const image = q_.data();
+  Float4 *const solution = x.data(), *const residual = r_.data(), *const preconditioned = z_.data(),
+                *const direction = p_.data(), *const image = q_.data();
   std::array<Float4, 3>* const inverse = inverse_.data();
-  // The sum of what body(i) returns for every row i; chunks of rows are summed one by one, so that threads do not matter.
+  // The sum of what body(i) returns for every row i; chunks of rows are summed one by one, so that threads do not
+  // matter.
   const auto sum_over_rows = [&](const auto& body) {
     parallel_for(rows.size(), row_grain, [&](std::size_t begin, std::size_t end) {
       const auto each = body;
       double sum = 0;
-      for (const int row : rows.subspan(begin, end - begin)) sum += static_cast<double>(each(static_cast<std::size_t>(row)));
+      for (const int row : rows.subspan(begin, end - begin))
+        sum += static_cast<double>(each(static_cast<std::size_t>(row)));
       partial_[begin / row_grain] = sum;
     });
     double sum = 0;

@@ -19,7 +19,8 @@ BlockMatrix::BlockMatrix(int vertex_count, std::span<const int> element_vertices
     auto& row = neighbours[i];
     std::sort(row.begin(), row.end());
     row.erase(std::unique(row.begin(), row.end()), row.end());
-    diagonal_.push_back(first_.back() + static_cast<int>(std::lower_bound(row.begin(), row.end(), static_cast<int>(i)) - row.begin()));
+    diagonal_.push_back(first_.back() +
+                        static_cast<int>(std::lower_bound(row.begin(), row.end(), static_cast<int>(i)) - row.begin()));
     column_.insert(column_.end(), row.begin(), row.end());
     first_.push_back(static_cast<int>(column_.size()));
   }

@@ -22,7 +22,8 @@ ContactChill::ContactChill(const SheetMesh& sheet, double strength)
   for (Eigen::Index f = 0; f < sheet.F.rows(); ++f)
     for (int k = 0; k < 3; ++k) {
       const int a = sheet.F(f, k), b = sheet.F(f, (k + 1) % 3), c = sheet.F(f, (k + 2) % 3);
-      const Vec2 u = (sheet.flat_mm.row(a) - sheet.flat_mm.row(c)).transpose(), v = (sheet.flat_mm.row(b) - sheet.flat_mm.row(c)).transpose();
+      const Vec2 u = (sheet.flat_mm.row(a) - sheet.flat_mm.row(c)).transpose(),
+                 v = (sheet.flat_mm.row(b) - sheet.flat_mm.row(c)).transpose();
       const double doubled_area = std::abs(u.x() * v.y() - u.y() * v.x());
       area_mm2_[static_cast<std::size_t>(c)] += doubled_area / 6;
       // A negative weight (an obtuse corner) would make chill out of nothing.
@@ -43,7 +44,8 @@ void ContactChill::advance(double dt_s, const HeldVertices& held) {
   if (!any) return;
   const double spread = dt_s * chill_reach_mm * chill_reach_mm / chill_time_s;
   for (const Edge& edge : edges_)
-    for (const int v : edge.vertex) diagonal[static_cast<std::size_t>(v)] += spread * edge.weight / area_mm2_[static_cast<std::size_t>(v)];
+    for (const int v : edge.vertex)
+      diagonal[static_cast<std::size_t>(v)] += spread * edge.weight / area_mm2_[static_cast<std::size_t>(v)];
   // Implicit Euler by Jacobi's sweeps, which treat mirrored vertices alike and keep chill between 0 and 1.
   std::vector<double> now = chill_, inflow(n);
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {

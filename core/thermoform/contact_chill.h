@@ -2,10 +2,10 @@
 #pragma once
 // The cold mould chills the sheet where it touches, and a little around: what has grown cold is stiffer and flows less.
 //
-// The chill c (0 hot, 1 as cold as the mould gets it) follows dc/dt = (1 - c)/tau where the sheet touches, and everywhere
-// dc/dt = (L^2/tau) laplacian c over the flat sheet. What touches with every corner is stuck and does not care; what counts is the
-// sheet beside it, which the mould's cold air and radiation reach before the mould does. L stands for all of that: the
-// plastic itself conducts a hundred times more slowly.
+// The chill c (0 hot, 1 as cold as the mould gets it) follows dc/dt = (1 - c)/tau where the sheet touches, and
+// everywhere dc/dt = (L^2/tau) laplacian c over the flat sheet. What touches with every corner is stuck and does not
+// care; what counts is the sheet beside it, which the mould's cold air and radiation reach before the mould does. L
+// stands for all of that: the plastic itself conducts a hundred times more slowly.
 #include <array>
 #include <vector>
 

@@ -16,11 +16,13 @@ FaceStrips::FaceStrips(const Triangles& F, int faces_at_least) {
   const auto groups = static_cast<std::size_t>((faces + group - 1) / group);
   std::vector<int> least(groups + 1, std::numeric_limits<int>::max()), highest(groups + 1, -1);
   for (std::size_t g = groups; g-- > 0;) {
-    const Eigen::Index first = group * static_cast<Eigen::Index>(g), count = std::min<Eigen::Index>(group, faces - first);
+    const Eigen::Index first = group * static_cast<Eigen::Index>(g),
+                       count = std::min<Eigen::Index>(group, faces - first);
     least[g] = std::min(least[g + 1], F.middleRows(first, count).minCoeff());
   }
   for (std::size_t g = 0; g < groups; ++g) {
-    const Eigen::Index first = group * static_cast<Eigen::Index>(g), count = std::min<Eigen::Index>(group, faces - first);
+    const Eigen::Index first = group * static_cast<Eigen::Index>(g),
+                       count = std::min<Eigen::Index>(group, faces - first);
     highest[g + 1] = std::max(highest[g], F.middleRows(first, count).maxCoeff());
   }
   // A strip ends where the faces after it no longer reach those before it.

@@ -11,13 +11,13 @@ namespace formwright {
 
 class FaceStrips {
  public:
-  /// Strips begin at multiples of four faces and hold at least `faces_at_least`. A sheet whose faces are numbered row by row falls into many;
-  /// one without such an order in one or two.
+  /// Strips begin at multiples of four faces and hold at least `faces_at_least`. A sheet whose faces are numbered row
+  /// by row falls into many; one without such an order in one or two.
   FaceStrips(const Triangles& F, int faces_at_least);
   FaceStrips() = default;
 
-  /// body(first_face, end_face) for every strip: first those of even number, then the others. No two that run at the same time share
-  /// a vertex.
+  /// body(first_face, end_face) for every strip: first those of even number, then the others. No two that run at the
+  /// same time share a vertex.
   void for_each(const std::function<void(int first_face, int end_face)>& body) const;
 
   int count() const { return static_cast<int>(first_.size()) - 1; }

@@ -6,18 +6,23 @@
 namespace formwright {
 
 FrameRecorder::FrameRecorder(const ThermoformOptions& options, double start_z_mm)
-    : start_z_mm_(start_z_mm), speed_mm_per_s_(options.mould_speed_mm_per_s), raise_begins_s_(options.relaxation_s), most_frames_(std::max(2, options.frames)) {}
+    : start_z_mm_(start_z_mm),
+      speed_mm_per_s_(options.mould_speed_mm_per_s),
+      raise_begins_s_(options.relaxation_s),
+      most_frames_(std::max(2, options.frames)) {}
 
 FormingFrame FrameRecorder::frame(const SheetDynamics& dynamics, FormingPhase phase) const {
   FormingFrame result;
   result.time_s = dynamics.time_s();
   result.phase = phase;
-  result.platform_z_mm = std::min(0.0, start_z_mm_ + speed_mm_per_s_ * std::max(0.0, dynamics.time_s() - raise_begins_s_));
+  result.platform_z_mm =
+      std::min(0.0, start_z_mm_ + speed_mm_per_s_ * std::max(0.0, dynamics.time_s() - raise_begins_s_));
   result.V = dynamics.x();
   const std::vector<double> thickness = dynamics.vertex_thickness_mm(dynamics.x());
   result.thickness_mm.assign(thickness.begin(), thickness.end());
   const auto movable = std::count(dynamics.sheet().clamped.begin(), dynamics.sheet().clamped.end(), 0);
-  result.touching_share = movable > 0 ? 1 - static_cast<double>(dynamics.free_count()) / static_cast<double>(movable) : 1;
+  result.touching_share =
+      movable > 0 ? 1 - static_cast<double>(dynamics.free_count()) / static_cast<double>(movable) : 1;
   return result;
 }
 
@@ -48,7 +53,8 @@ std::vector<FormingFrame> FrameRecorder::finish(const SheetDynamics& dynamics) {
   if (all.size() <= room) {
     chosen = std::move(all);
   } else {
-    for (std::size_t i = 0; i < room; ++i) chosen.push_back(std::move(all[room > 1 ? i * (all.size() - 1) / (room - 1) : 0]));
+    for (std::size_t i = 0; i < room; ++i)
+      chosen.push_back(std::move(all[room > 1 ? i * (all.size() - 1) / (room - 1) : 0]));
   }
   chosen.push_back(std::move(last));
   return chosen;

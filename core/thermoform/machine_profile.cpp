@@ -12,7 +12,9 @@ namespace {
 constexpr const char* format_name = "formwright-machine-profile";
 constexpr int newest_version = 1;
 
-[[noreturn]] void refuse(const std::string& sentence) { throw Error(ErrorCode::invalid_input, "profile", "The machine profile: " + sentence); }
+[[noreturn]] void refuse(const std::string& sentence) {
+  throw Error(ErrorCode::invalid_input, "profile", "The machine profile: " + sentence);
+}
 
 std::vector<std::string> sentences_of(const Json& value, const std::string& key) {
   std::vector<std::string> list;
@@ -28,8 +30,10 @@ void check_parameters(const Json& parameters) {
   if (!parameters.is_object()) refuse("“parameters” must be an object of names and values.");
   for (const ParameterInfo& info : describe_parameters<PlacementOptions>())
     if (parameters.contains(info.name))
-      refuse("“" + info.name + "” places a model and belongs to a job: take it out; what a machine does to every mould is mould_shift_x_mm, mould_shift_y_mm, "
-             "mould_rotation_deg and mould_scale.");
+      refuse(
+          "“" + info.name +
+          "” places a model and belongs to a job: take it out; what a machine does to every mould is mould_shift_x_mm, mould_shift_y_mm, "
+          "mould_rotation_deg and mould_scale.");
   try {
     read_parameters<ThermoformOptions>(parameters);
   } catch (const Error& error) {
@@ -48,7 +52,8 @@ MachineProfile read_machine_profile(ByteView bytes) {
   const Json json = Json::parse(as_text(bytes), nullptr, false);
   if (!json.is_object() || !json.contains("format") || json["format"] != format_name)
     refuse("this file is none: it must be a JSON object with \"format\": \"" + std::string(format_name) + "\".");
-  if (!json.contains("version") || json["version"] != newest_version) refuse("only version " + std::to_string(newest_version) + " is known here: use a newer Formwright.");
+  if (!json.contains("version") || json["version"] != newest_version)
+    refuse("only version " + std::to_string(newest_version) + " is known here: use a newer Formwright.");
   MachineProfile profile;
   for (const auto& [key, value] : json.items()) {
     if (key == "format" || key == "version") continue;
@@ -91,7 +96,8 @@ std::string write_machine_profile(const MachineProfile& profile) {
 Json with_profile(const Json& setup_parameters, const MachineProfile& profile) {
   Json merged = setup_parameters;
   for (const ParameterInfo& info : describe_parameters<ThermoformOptions>())
-    if (profile.parameters.contains(info.name) && (is_the_machines_own(info) || !merged.contains(info.name))) merged[info.name] = profile.parameters[info.name];
+    if (profile.parameters.contains(info.name) && (is_the_machines_own(info) || !merged.contains(info.name)))
+      merged[info.name] = profile.parameters[info.name];
   return merged;
 }
 

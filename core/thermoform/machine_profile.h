@@ -15,20 +15,20 @@ struct MachineProfile {
   std::string name;
   Json parameters = Json::object();  // of ThermoformOptions, as far as they are known; never of the placement
   MeasurementEffects measurement;
-  std::vector<std::string> from;     // the objects it was learnt from
+  std::vector<std::string> from;  // the objects it was learnt from
   std::vector<std::string> notes;
 };
 
-/// Throws Error{invalid_input, "profile"}, naming the key: no profile, another version, unknown names, values out of range,
-/// placements.
+/// Throws Error{invalid_input, "profile"}, naming the key: no profile, another version, unknown names, values out of
+/// range, placements.
 MachineProfile read_machine_profile(ByteView json);
 
 /// As read_machine_profile reads it. Throws Error{invalid_input, "profile"} for what that would refuse.
 std::string write_machine_profile(const MachineProfile& profile);
 
-/// The set-up's parameters with the profile's. A set-up says what a machine was told, a profile what it does: where both have a
-/// value, the profile's material, effects and vacuum ramp win, the set-up's other values do. What a person gives by name goes
-/// over both.
+/// The set-up's parameters with the profile's. A set-up says what a machine was told, a profile what it does: where
+/// both have a value, the profile's material, effects and vacuum ramp win, the set-up's other values do. What a person
+/// gives by name goes over both.
 Json with_profile(const Json& setup_parameters, const MachineProfile& profile);
 
 }  // namespace formwright

@@ -13,7 +13,9 @@
 namespace formwright {
 namespace {
 
-[[noreturn]] void refuse_setup(const std::string& sentence) { throw Error(ErrorCode::invalid_input, "setup", "setup.json: " + sentence); }
+[[noreturn]] void refuse_setup(const std::string& sentence) {
+  throw Error(ErrorCode::invalid_input, "setup", "setup.json: " + sentence);
+}
 
 double number(const Json& value, const std::string& key) {
   if (!value.is_number() || !std::isfinite(value.get<double>())) refuse_setup("“" + key + "” must be a number.");
@@ -51,7 +53,8 @@ ObjectSetup read_object_setup(ByteView bytes) {
     } else if (key == "sheet_turned") {
       if (!value.is_boolean()) refuse_setup("“sheet_turned” must be true or false.");
       setup.sheet_turned = value.get<bool>();
-    } else if (std::any_of(known.begin(), known.end(), [&k = key](const ParameterInfo& info) { return info.name == k; })) {
+    } else if (std::any_of(known.begin(), known.end(),
+                           [&k = key](const ParameterInfo& info) { return info.name == k; })) {
       setup.parameters[key] = value;
     } else {
       setup.notes.push_back("“" + key + "” in setup.json is not known and was left out.");
@@ -59,10 +62,12 @@ ObjectSetup read_object_setup(ByteView bytes) {
   }
   setup.base_plate_end_z_mm = end_z;
   if (has_start) {
-    if (!(end_z > start_z)) refuse_setup("the base plate must start below its end: base_plate_start_z_mm < base_plate_end_z_mm.");
+    if (!(end_z > start_z))
+      refuse_setup("the base plate must start below its end: base_plate_start_z_mm < base_plate_end_z_mm.");
     setup.parameters["platform_travel_mm"] = end_z - start_z;
   }
-  if (setup.parameters.contains("clamp_height_mm")) setup.parameters["clamp_height_mm"] = number(setup.parameters["clamp_height_mm"], "clamp_height_mm") - end_z;
+  if (setup.parameters.contains("clamp_height_mm"))
+    setup.parameters["clamp_height_mm"] = number(setup.parameters["clamp_height_mm"], "clamp_height_mm") - end_z;
   read_parameters<ThermoformOptions>(setup.parameters);  // throws with the parameter's name
   return setup;
 }
@@ -83,12 +88,14 @@ Json write_object_setup(const ThermoformOptions& o, MeasuredSurface surface) {
 }
 
 std::vector<MeasuredPoint> read_measured_points(ByteView csv) {
-  const auto rows = read_number_table(csv, "measured.csv", "measured",
-                                      {{"sheet_x_mm"}, {"sheet_y_mm"}, {"x_mm"}, {"y_mm"}, {"z_mm"}, {"sigma_mm", false}});
+  const auto rows =
+      read_number_table(csv, "measured.csv", "measured",
+                        {{"sheet_x_mm"}, {"sheet_y_mm"}, {"x_mm"}, {"y_mm"}, {"z_mm"}, {"sigma_mm", false}});
   std::vector<MeasuredPoint> points;
   for (const std::vector<double>& row : rows) {
     if (row[5] < 0)
-      throw Error(ErrorCode::invalid_input, "measured", "measured.csv, point " + std::to_string(points.size() + 1) + ": “sigma_mm” is negative.");
+      throw Error(ErrorCode::invalid_input, "measured",
+                  "measured.csv, point " + std::to_string(points.size() + 1) + ": “sigma_mm” is negative.");
     points.push_back({Vec2(row[0], row[1]), Vec3(row[2], row[3], row[4]), row[5]});
   }
   return points;
@@ -98,7 +105,8 @@ std::string write_measured_points(const std::vector<MeasuredPoint>& points) {
   std::string text = "sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm,sigma_mm\n";
   char line[160];
   for (const MeasuredPoint& p : points) {
-    std::snprintf(line, sizeof line, "%.7g,%.7g,%.7g,%.7g,%.7g,%.4g\n", p.sheet_mm.x(), p.sheet_mm.y(), p.place_mm.x(), p.place_mm.y(), p.place_mm.z(), p.sigma_mm);
+    std::snprintf(line, sizeof line, "%.7g,%.7g,%.7g,%.7g,%.7g,%.4g\n", p.sheet_mm.x(), p.sheet_mm.y(), p.place_mm.x(),
+                  p.place_mm.y(), p.place_mm.z(), p.sigma_mm);
     text += line;
   }
   return text;
@@ -114,9 +122,12 @@ struct Predicted {
 /// Predicts one point after another.
 class Prediction {
  public:
-  Prediction(const FormedSheet& sheet, MeasuredSurface surface, double clamp_z_mm, double sheet_thickness_mm, const MeasurementEffects& effects,
-             double base_plate_z_mm)
-      : lookup_(sheet), effects_(effects), outer_(surface == MeasuredSurface::outer), origin_(0, 0, base_plate_z_mm),
+  Prediction(const FormedSheet& sheet, MeasuredSurface surface, double clamp_z_mm, double sheet_thickness_mm,
+             const MeasurementEffects& effects, double base_plate_z_mm)
+      : lookup_(sheet),
+        effects_(effects),
+        outer_(surface == MeasuredSurface::outer),
+        origin_(0, 0, base_plate_z_mm),
         clamped_z_mm_(clamp_z_mm + (outer_ ? 0.5 * sheet_thickness_mm : 0)) {}
 
   Predicted operator()(const Vec2& printed_mm) const {
@@ -128,7 +139,8 @@ class Prediction {
       predicted.inside = true;
       if ((outer - middle).norm() > 1e-12) predicted.normal = (outer - middle).normalized();
     }
-    predicted.place_mm += effects_.scan_scale * (predicted.place_mm - origin_) + Vec3(effects_.scan_shift_x_mm, effects_.scan_shift_y_mm, effects_.scan_shift_z_mm);
+    predicted.place_mm += effects_.scan_scale * (predicted.place_mm - origin_) +
+                          Vec3(effects_.scan_shift_x_mm, effects_.scan_shift_y_mm, effects_.scan_shift_z_mm);
     return predicted;
   }
 
@@ -142,16 +154,19 @@ class Prediction {
 
 }  // namespace
 
-Positions predict_measured(const FormedSheet& sheet, const TextureCoordinates& sheet_mm, MeasuredSurface surface, double clamp_z_mm,
-                           double sheet_thickness_mm, const MeasurementEffects& effects, double base_plate_z_mm) {
+Positions predict_measured(const FormedSheet& sheet, const TextureCoordinates& sheet_mm, MeasuredSurface surface,
+                           double clamp_z_mm, double sheet_thickness_mm, const MeasurementEffects& effects,
+                           double base_plate_z_mm) {
   const Prediction predict(sheet, surface, clamp_z_mm, sheet_thickness_mm, effects, base_plate_z_mm);
   Positions places(sheet_mm.rows(), 3);
-  for (Eigen::Index i = 0; i < places.rows(); ++i) places.row(i) = predict(sheet_mm.row(i).transpose()).place_mm.transpose();
+  for (Eigen::Index i = 0; i < places.rows(); ++i)
+    places.row(i) = predict(sheet_mm.row(i).transpose()).place_mm.transpose();
   return places;
 }
 
-Comparison compare(const FormedSheet& sheet, const std::vector<MeasuredPoint>& points, MeasuredSurface surface, double clamp_z_mm, double sheet_thickness_mm,
-                   const MeasurementEffects& effects, double base_plate_z_mm, Context& context) {
+Comparison compare(const FormedSheet& sheet, const std::vector<MeasuredPoint>& points, MeasuredSurface surface,
+                   double clamp_z_mm, double sheet_thickness_mm, const MeasurementEffects& effects,
+                   double base_plate_z_mm, Context& context) {
   const Prediction predict(sheet, surface, clamp_z_mm, sheet_thickness_mm, effects, base_plate_z_mm);
   Comparison result;
   result.points.reserve(points.size());

@@ -15,7 +15,8 @@ using namespace membrane_detail;
 Membrane::~Membrane() = default;
 Membrane::Membrane(Membrane&&) noexcept = default;
 
-Membrane::Membrane(const TextureCoordinates& flat_mm, const Triangles& F, double thickness_mm, const MembraneMaterial& material, const SheetVariation& variation)
+Membrane::Membrane(const TextureCoordinates& flat_mm, const Triangles& F, double thickness_mm,
+                   const MembraneMaterial& material, const SheetVariation& variation)
     : F_(F), material_(material), thickness_mm_(static_cast<std::size_t>(F.rows()), thickness_mm) {
   for (std::size_t f = 0; f < variation.thickness.size(); ++f) thickness_mm_[f] *= variation.thickness[f];
   along_ = std::sqrt(1 + material.anisotropy);
@@ -61,7 +62,8 @@ void Membrane::begin_step(const Positions& x, const HeldVertices& held) {
   for (Group& g : groups_) {
     char& active = active_[static_cast<std::size_t>(g.first_face / 4)] = 0;
     for (int l = 0; l < g.lanes; ++l)
-      for (const auto& corner : g.vertex) active |= held[static_cast<std::size_t>(corner[static_cast<std::size_t>(l)])] == 0;
+      for (const auto& corner : g.vertex)
+        active |= held[static_cast<std::size_t>(corner[static_cast<std::size_t>(l)])] == 0;
     if (!active) continue;
     deform(g, x, false, d);
     const Strain& e = d.strain;
@@ -99,7 +101,8 @@ void Membrane::end_step(const Positions& x, double dt_s, std::span<const double>
     deform(g, x, false, d);
     flow(d.strain, g.creep, dt_s, material_.yield_rule, material_.yield_strain, f);
     if (!chill.empty()) {
-      // What grows stiffer goes on pulling as hard as it did: the elastic strain that it no longer needs becomes permanent.
+      // What grows stiffer goes on pulling as hard as it did: the elastic strain that it no longer needs becomes
+      // permanent.
       for (int l = 0; l < 4; ++l) {
         const double now = chill[static_cast<std::size_t>(std::min(g.first_face + l, face_count() - 1))];
         f.kept[l] *= g.chill[l] / now;
@@ -111,8 +114,10 @@ void Membrane::end_step(const Positions& x, double dt_s, std::span<const double>
     const Double4 n00 = 1.0 + part * d.strain.e00, n01 = part * d.strain.e01, n11 = 1.0 + part * d.strain.e11;
     if (along_ != across_) {
       // Stiffer along x: the frame must not turn with the flow, so U is the symmetric root.
-      const Double4 size = root(most(n00 * n11 - n01 * n01, Double4{} + 1e-12)), scale = 1.0 / root(n00 + n11 + 2.0 * size);
-      const Double4 r00 = scale * (n00 + size), r01 = scale * n01, r11 = scale * (n11 + size), determinant = r00 * r11 - r01 * r01;
+      const Double4 size = root(most(n00 * n11 - n01 * n01, Double4{} + 1e-12)),
+                    scale = 1.0 / root(n00 + n11 + 2.0 * size);
+      const Double4 r00 = scale * (n00 + size), r01 = scale * n01, r11 = scale * (n11 + size),
+                    determinant = r00 * r11 - r01 * r01;
       const Double4 c00 = (g.b00 * r11 - g.b01 * r01) / determinant, c10 = (g.b10 * r11 - g.b11 * r01) / determinant;
       g.b01 = (g.b01 * r00 - g.b00 * r01) / determinant;
       g.b11 = (g.b11 * r00 - g.b10 * r01) / determinant;
@@ -137,11 +142,13 @@ void Membrane::use_matrix(const BlockMatrix& matrix) {
   slots_.resize(static_cast<std::size_t>(face_count()));
   for (int f = 0; f < face_count(); ++f)
     for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b) slots_[static_cast<std::size_t>(f)][static_cast<std::size_t>(3 * a + b)] = matrix.slot(F_(f, a), F_(f, b));
+      for (int b = 0; b < 3; ++b)
+        slots_[static_cast<std::size_t>(f)][static_cast<std::size_t>(3 * a + b)] = matrix.slot(F_(f, a), F_(f, b));
 }
 
 template <ElasticLaw law, bool with_matrix>
-void Membrane::add_group(const Group& g, const Positions& x, double dt_s, int begin, int end, Positions& force, BlockMatrix* matrix) const {
+void Membrane::add_group(const Group& g, const Positions& x, double dt_s, int begin, int end, Positions& force,
+                         BlockMatrix* matrix) const {
   Deformation d;
   deform(g, x, false, d);
   Flow f;
@@ -165,7 +172,8 @@ void Membrane::add_group(const Group& g, const Positions& x, double dt_s, int be
     const Lame l = lame(material_);
     const Double4 c00 = 1.0 + 2.0 * f.kept * e.e00, c01 = 2.0 * f.kept * e.e01, c11 = 1.0 + 2.0 * f.kept * e.e11;
     const Double4 determinant = most(c00 * c11 - c01 * c01, Double4{} + 1e-9);
-    const Double4 J = root(determinant), i00 = c11 / determinant, i01 = -c01 / determinant, i11 = c00 / determinant, zero{};
+    const Double4 J = root(determinant), i00 = c11 / determinant, i01 = -c01 / determinant, i11 = c00 / determinant,
+                  zero{};
     const Double4 p = (l.lambda * (J - 1.0) - l.mu) * J;
     s00 = l.mu + p * i00;
     s01 = p * i01;
@@ -180,7 +188,8 @@ void Membrane::add_group(const Group& g, const Positions& x, double dt_s, int be
   }
   if constexpr (with_matrix) {
     // d(kept eps) = kept (d eps) less what flows along eps itself; made symmetric in the metric of D.
-    const Double4 q0 = d00 * e.e00 + d01 * e.e11 + 2.0 * d02 * e.e01, q1 = d01 * e.e00 + d11 * e.e11 + 2.0 * d12 * e.e01;
+    const Double4 q0 = d00 * e.e00 + d01 * e.e11 + 2.0 * d02 * e.e01,
+                  q1 = d01 * e.e00 + d11 * e.e11 + 2.0 * d12 * e.e01;
     const Double4 q2 = d02 * e.e00 + d12 * e.e11 + 2.0 * d22 * e.e01;
     const Double4 lost = f.lost / most(q0 * e.e00 + q1 * e.e11 + 2.0 * q2 * e.e01, Double4{} + 1e-30);
     d00 = f.kept * d00 - lost * q0 * q0 + viscous * plane;
@@ -227,7 +236,8 @@ void Membrane::add_group(const Group& g, const Positions& x, double dt_s, int be
     const Double4 radius = root(half * half + s01 * s01);
     const Double4 small = middle - radius, share = most(middle + radius, zero) / most(2.0 * radius, Double4{} + 1e-30);
     const auto pulled = small >= zero;
-    const Double4 t00 = pulled ? s00 : share * (s00 - small), t01 = pulled ? s01 : share * s01, t11 = pulled ? s11 : share * (s11 - small);
+    const Double4 t00 = pulled ? s00 : share * (s00 - small), t01 = pulled ? s01 : share * s01,
+                  t11 = pulled ? s11 : share * (s11 - small);
 
     const auto single = [](const Double4& value) -> Float4 { return __builtin_convertvector(value, Float4); };
     const StiffnessParts parts{
@@ -252,7 +262,8 @@ void Membrane::add_group(const Group& g, const Positions& x, double dt_s, int be
   }
 }
 
-void Membrane::add_any(std::size_t group, const Positions& x, double dt_s, int begin, int end, Positions& force, BlockMatrix* matrix) const {
+void Membrane::add_any(std::size_t group, const Positions& x, double dt_s, int begin, int end, Positions& force,
+                       BlockMatrix* matrix) const {
   const Group& g = groups_[group];
   if (g.most_vertex < begin || g.least_vertex >= end) return;
   if (material_.elastic_law == ElasticLaw::st_venant_kirchhoff) {
@@ -264,12 +275,14 @@ void Membrane::add_any(std::size_t group, const Positions& x, double dt_s, int b
   }
 }
 
-void Membrane::add_forces(const Positions& x, double dt_s, int begin, int end, Positions& force, BlockMatrix* matrix) const {
+void Membrane::add_forces(const Positions& x, double dt_s, int begin, int end, Positions& force,
+                          BlockMatrix* matrix) const {
   for (std::size_t g = 0; g < groups_.size(); ++g)
     if (active_[g]) add_any(g, x, dt_s, begin, end, force, matrix);
 }
 
-void Membrane::add_forces_of(int first_face, int end_face, const Positions& x, double dt_s, Positions& force, BlockMatrix* matrix) const {
+void Membrane::add_forces_of(int first_face, int end_face, const Positions& x, double dt_s, Positions& force,
+                             BlockMatrix* matrix) const {
   for (auto g = static_cast<std::size_t>(first_face / 4); g < static_cast<std::size_t>((end_face + 3) / 4); ++g)
     if (active_[g]) add_any(g, x, dt_s, 0, std::numeric_limits<int>::max(), force, matrix);
 }

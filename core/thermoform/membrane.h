@@ -23,7 +23,8 @@ struct MembraneMaterial {
   double yield_strain = 0.1;
   double viscosity_s = 2.5e-5;
   double flow_stop_mm = 0.2;
-  double anisotropy = 0;  // stiffness along x times 1 + anisotropy, along y times 1 - anisotropy, between them their geometric mean
+  double anisotropy =
+      0;  // stiffness along x times 1 + anisotropy, along y times 1 - anisotropy, between them their geometric mean
 };
 
 /// What varies over the sheet: factors, one a triangle; nothing where all are 1.
@@ -44,7 +45,8 @@ using HeldVertices = std::vector<char>;
 class Membrane {
  public:
   /// `flat_mm`: n x 2, the undeformed sheet, whose triangles have positive area.
-  Membrane(const TextureCoordinates& flat_mm, const Triangles& F, double thickness_mm, const MembraneMaterial& material, const SheetVariation& variation = {});
+  Membrane(const TextureCoordinates& flat_mm, const Triangles& F, double thickness_mm, const MembraneMaterial& material,
+           const SheetVariation& variation = {});
 
   /// Looks up where add_forces will write; `matrix` must live, and keep its pattern, as long as it is used.
   void use_matrix(const BlockMatrix& matrix);
@@ -59,14 +61,16 @@ class Membrane {
   void add_forces(const Positions& x, double dt_s, int begin, int end, Positions& force, BlockMatrix* matrix) const;
 
   /// The same of the triangles first_face <= f < end_face alone, to any row; first_face is a multiple of four.
-  void add_forces_of(int first_face, int end_face, const Positions& x, double dt_s, Positions& force, BlockMatrix* matrix) const;
+  void add_forces_of(int first_face, int end_face, const Positions& x, double dt_s, Positions& force,
+                     BlockMatrix* matrix) const;
 
   /// The energy (mJ) whose gradient add_forces gives, where nothing flows within the step (dt_s = infinity leaves
   /// viscosity out; creep is ignored).
   double energy(const Positions& x, double dt_s) const;
 
-  /// Plastic flow of a step of `dt_s` that ended at `x`: eps_p += dt c_creep eps_e, implicitly. `chill` (m, or empty for as before):
-  /// from now on a triangle's stiffness is that many times its own, its flow that many times slower, its stress as it was.
+  /// Plastic flow of a step of `dt_s` that ended at `x`: eps_p += dt c_creep eps_e, implicitly. `chill` (m, or empty
+  /// for as before): from now on a triangle's stiffness is that many times its own, its flow that many times slower,
+  /// its stress as it was.
   void end_step(const Positions& x, double dt_s, std::span<const double> chill = {});
 
   const std::vector<double>& thickness_mm() const { return thickness_mm_; }  // m, of the last begin_step
@@ -86,9 +90,11 @@ class Membrane {
   /// What the even law sees of a strain.
   membrane_detail::Strain scaled(const membrane_detail::Strain& strain) const;
   template <ElasticLaw law, bool with_matrix>
-  void add_group(const Group& group, const Positions& x, double dt_s, int begin, int end, Positions& force, BlockMatrix* matrix) const;
+  void add_group(const Group& group, const Positions& x, double dt_s, int begin, int end, Positions& force,
+                 BlockMatrix* matrix) const;
 
-  void add_any(std::size_t group, const Positions& x, double dt_s, int begin, int end, Positions& force, BlockMatrix* matrix) const;
+  void add_any(std::size_t group, const Positions& x, double dt_s, int begin, int end, Positions& force,
+               BlockMatrix* matrix) const;
 
   Triangles F_;
   MembraneMaterial material_;
@@ -96,7 +102,7 @@ class Membrane {
   std::vector<char> active_;  // per group: some vertex is free
   std::vector<double> thickness_mm_, volume_mm3_;
   double along_ = 1, across_ = 1, diagonal_ = 1;  // square roots of the stiffness's factors in x, in y, between
-  std::vector<std::array<int, 9>> slots_;  // per triangle, of corner a with corner b
+  std::vector<std::array<int, 9>> slots_;         // per triangle, of corner a with corner b
 
  public:
   ~Membrane();

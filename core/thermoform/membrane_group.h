@@ -37,10 +37,13 @@ struct Deformation {
 
 inline void gather(const Positions& x, const std::array<int, 4>& vertex, Double4 (&out)[3]) {
   for (int k = 0; k < 3; ++k)
-    out[k] = Double4{x.data()[3 * vertex[0] + k], x.data()[3 * vertex[1] + k], x.data()[3 * vertex[2] + k], x.data()[3 * vertex[3] + k]};
+    out[k] = Double4{x.data()[3 * vertex[0] + k], x.data()[3 * vertex[1] + k], x.data()[3 * vertex[2] + k],
+                     x.data()[3 * vertex[3] + k]};
 }
 
-inline Double4 root(const Double4& a) { return Double4{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])}; }
+inline Double4 root(const Double4& a) {
+  return Double4{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
+}
 inline Double4 most(const Double4& a, const Double4& b) { return a > b ? a : b; }
 
 /// Green strain, eq. (4.1), in an orthonormal frame of the rest triangle: (F^T F - 1)/2.
@@ -73,7 +76,8 @@ inline Double4 norm(const Strain& e) { return root(e.e00 * e.e00 + 2.0 * e.e01 *
 struct Flow {
   Double4 kept, lost;
 };
-inline void flow(const Strain& trial, const Double4& creep, double dt_s, YieldRule rule, double yield_strain, Flow& result) {
+inline void flow(const Strain& trial, const Double4& creep, double dt_s, YieldRule rule, double yield_strain,
+                 Flow& result) {
   const Double4 one = Double4{} + 1.0, zero{};
   if (!std::isfinite(dt_s)) {
     result = {one, zero};

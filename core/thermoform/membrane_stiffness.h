@@ -18,7 +18,8 @@ struct StiffnessParts {
 /// [corner][corner][row][column], a triangle a lane.
 using CornerBlocks = Float4[3][3][3][3];
 
-/// K_ab = B_a^T D B_b + g_a^T S g_b, with B_a's rows g_a0 f0, g_a1 f1, g_a0 f1 + g_a1 f0; those of corner 0 from sums of 0.
+/// K_ab = B_a^T D B_b + g_a^T S g_b, with B_a's rows g_a0 f0, g_a1 f1, g_a0 f1 + g_a1 f0; those of corner 0 from sums
+/// of 0.
 inline void corner_blocks(const StiffnessParts& p, CornerBlocks& K) {
   const auto& g = p.gradient;
   const auto& D = p.tangent;
@@ -37,7 +38,8 @@ inline void corner_blocks(const StiffnessParts& p, CornerBlocks& K) {
       image[2][k] = D[2] * rows[b][0][k] + D[4] * rows[b][1][k] + D[5] * rows[b][2][k];
     }
     for (int a = 0; a <= b; ++a) {
-      const Float4 geometric = g[a][0] * (p.stress[0] * g[b][0] + p.stress[1] * g[b][1]) + g[a][1] * (p.stress[1] * g[b][0] + p.stress[2] * g[b][1]);
+      const Float4 geometric = g[a][0] * (p.stress[0] * g[b][0] + p.stress[1] * g[b][1]) +
+                               g[a][1] * (p.stress[1] * g[b][0] + p.stress[2] * g[b][1]);
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) {
           Float4 sum = rows[a][0][i] * image[0][j] + rows[a][1][i] * image[1][j] + rows[a][2][i] * image[2][j];
@@ -58,12 +60,15 @@ inline void corner_blocks(const StiffnessParts& p, CornerBlocks& K) {
 }
 
 /// Four triangles' blocks, column by column (x, y, z, 0), out of vectors of a triangle a lane: 4 x 4 transposes.
-inline void one_by_one(const CornerBlocks& K, std::size_t a, std::size_t b, std::array<std::array<Float4, 3>, 4>& block) {
+inline void one_by_one(const CornerBlocks& K, std::size_t a, std::size_t b,
+                       std::array<std::array<Float4, 3>, 4>& block) {
   const Float4 none{};
   for (std::size_t j = 0; j < 3; ++j) {
     const Float4 &kx = K[a][b][0][j], &ky = K[a][b][1][j], &kz = K[a][b][2][j];
-    const Float4 xy_low = __builtin_shufflevector(kx, ky, 0, 4, 1, 5), xy_high = __builtin_shufflevector(kx, ky, 2, 6, 3, 7);
-    const Float4 z_low = __builtin_shufflevector(kz, none, 0, 4, 1, 5), z_high = __builtin_shufflevector(kz, none, 2, 6, 3, 7);
+    const Float4 xy_low = __builtin_shufflevector(kx, ky, 0, 4, 1, 5),
+                 xy_high = __builtin_shufflevector(kx, ky, 2, 6, 3, 7);
+    const Float4 z_low = __builtin_shufflevector(kz, none, 0, 4, 1, 5),
+                 z_high = __builtin_shufflevector(kz, none, 2, 6, 3, 7);
     block[0][j] = __builtin_shufflevector(xy_low, z_low, 0, 1, 4, 5);
     block[1][j] = __builtin_shufflevector(xy_low, z_low, 2, 3, 6, 7);
     block[2][j] = __builtin_shufflevector(xy_high, z_high, 0, 1, 4, 5);

@@ -12,7 +12,8 @@
 namespace formwright {
 namespace {
 
-constexpr double farthest_mm = 25;  // distances beyond this are not looked for: what moves 1 mm a step asks again in time
+constexpr double farthest_mm =
+    25;  // distances beyond this are not looked for: what moves 1 mm a step asks again in time
 
 /// Keeps points at least `spacing` apart, first come, first kept.
 class SparsePoints {
@@ -44,9 +45,15 @@ class SparsePoints {
 
 }  // namespace
 
-MouldContact::MouldContact(std::shared_ptr<const MouldShape> shape, const Placement& placement, const Vec2& opening_mm, double tolerance_mm)
-    : shape_(std::move(shape)), placement_(placement), to_model_(placement.linear.inverse()), wall_mm_(0.5 * opening_mm), tolerance_mm_(tolerance_mm) {
-  for (Eigen::Index i = 0; i < shape_->mesh.V.rows(); ++i) top_mm_ = std::max(top_mm_, placement_(shape_->mesh.V.row(i).transpose()).z());
+MouldContact::MouldContact(std::shared_ptr<const MouldShape> shape, const Placement& placement, const Vec2& opening_mm,
+                           double tolerance_mm)
+    : shape_(std::move(shape)),
+      placement_(placement),
+      to_model_(placement.linear.inverse()),
+      wall_mm_(0.5 * opening_mm),
+      tolerance_mm_(tolerance_mm) {
+  for (Eigen::Index i = 0; i < shape_->mesh.V.rows(); ++i)
+    top_mm_ = std::max(top_mm_, placement_(shape_->mesh.V.row(i).transpose()).z());
 }
 
 std::optional<double> MouldContact::distance_mm(const Vec3& p, double limit_mm) const {
@@ -56,9 +63,12 @@ std::optional<double> MouldContact::distance_mm(const Vec3& p, double limit_mm) 
   return nearest->distance * placement_.scale;
 }
 
-MouldContact::Known MouldContact::survey(const Vec3& p) const { return {p, distance_mm(p, farthest_mm).value_or(farthest_mm)}; }
+MouldContact::Known MouldContact::survey(const Vec3& p) const {
+  return {p, distance_mm(p, farthest_mm).value_or(farthest_mm)};
+}
 
-std::optional<double> MouldContact::first_touch(const Vec3& from, const Vec3& to, double radius_mm, Known& known) const {
+std::optional<double> MouldContact::first_touch(const Vec3& from, const Vec3& to, double radius_mm,
+                                                Known& known) const {
   // The plate: an exact moment.
   std::optional<double> plate;
   if (to.z() < radius_mm + tolerance_mm_)
@@ -76,7 +86,9 @@ std::optional<double> MouldContact::first_touch(const Vec3& from, const Vec3& to
   const double length = path.norm(), until = plate.value_or(1.0);
   double t = 0;
   // Enough may be known already: the path lies within two balls around its ends' distances.
-  if (known.at(from) + known.at(to) - 2 * (radius_mm + tolerance_mm_) > length && known.at(from) > radius_mm + tolerance_mm_) return plate;
+  if (known.at(from) + known.at(to) - 2 * (radius_mm + tolerance_mm_) > length &&
+      known.at(from) > radius_mm + tolerance_mm_)
+    return plate;
   for (;;) {
     const Vec3 here = from + t * path;
     double clear = known.at(here) - radius_mm;
@@ -99,7 +111,8 @@ Vec3 MouldContact::normal(const Vec3& p, double radius_mm) const {
       away = -std::copysign(1.0, p[k]) * Vec3::Unit(k);
     }
   if (!shape_) return away;
-  const auto nearest = shape_->distance.nearest(to_model_ * (p - placement_.translation), (std::max(clear, 0.0) + radius_mm) / placement_.scale);
+  const auto nearest = shape_->distance.nearest(to_model_ * (p - placement_.translation),
+                                                (std::max(clear, 0.0) + radius_mm) / placement_.scale);
   if (!nearest || nearest->distance * placement_.scale - radius_mm > clear) return away;
   const Vec3 from_mould = p - placement_(nearest->point);
   return from_mould.norm() > 1e-9 ? from_mould.normalized() : away;
@@ -134,7 +147,8 @@ std::vector<Vec3> MouldContact::sharp_points(double edge_mm, double allowed_mm, 
   const Eigen::VectorXd angles = dihedral_angles(mesh, adjacency);
   const Eigen::VectorXd areas = face_areas(mesh);
   std::vector<double> area_beside(static_cast<std::size_t>(adjacency.edge_count()));
-  for (int h = 0; h < 3 * adjacency.face_count(); ++h) area_beside[static_cast<std::size_t>(adjacency.edge_of(h))] += areas[h / 3];
+  for (int h = 0; h < 3 * adjacency.face_count(); ++h)
+    area_beside[static_cast<std::size_t>(adjacency.edge_of(h))] += areas[h / 3];
   // The turn of the surface over one sheet edge, from that over the two triangles beside a mould edge: a sheet edge
   // of length e that rests on an edge of turn a stands off by e/2 tan(a/2) on each side.
   const double allowed_turn = 4 * std::atan(2 * allowed_mm / edge_mm);
@@ -154,7 +168,9 @@ std::vector<Vec3> MouldContact::sharp_points(double edge_mm, double allowed_mm, 
     const double turn = angles[e] * std::clamp(edge_mm / width, 1.0, 16.0);
     if (turn > allowed_turn) candidates.push_back({turn, e});
   }
-  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.turn != b.turn ? a.turn > b.turn : a.edge < b.edge; });
+  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    return a.turn != b.turn ? a.turn > b.turn : a.edge < b.edge;
+  });
   SparsePoints points(spacing_mm);
   const auto add = [&](const Vec3& p) {
     if (p.z() > 0) points.add(p);

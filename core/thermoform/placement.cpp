@@ -16,7 +16,8 @@ constexpr double least_size_mm = 10, usual_size_mm = 100;
 /// whoever stands before the machine.
 Eigen::Matrix3d standing(const std::array<double, 3>& up_option) {
   Vec3 up(up_option[0], up_option[1], up_option[2]);
-  if (!(up.norm() > 1e-12)) throw Error(ErrorCode::invalid_input, "up", "The up direction must not be 0, 0, 0: 0, 1, 0 and 0, 0, 1 are usual.");
+  if (!(up.norm() > 1e-12))
+    throw Error(ErrorCode::invalid_input, "up", "The up direction must not be 0, 0, 0: 0, 1, 0 and 0, 0, 1 are usual.");
   up.normalize();
   // The front: +z of the model, or -y where that is up (then the model is z-up already, and stays as it is).
   Vec3 front = std::abs(up.z()) < 0.9 ? Vec3(0, 0, 1) : Vec3(0, up.z() > 0 ? -1 : 1, 0);
@@ -55,20 +56,25 @@ Placement place(const TriangleMesh& mesh, const PlacementOptions& options, const
     turned.add(turn * p);
   }
   const double extent = straight.size().maxCoeff();
-  if (!(extent > 0) || !std::isfinite(extent)) throw Error(ErrorCode::invalid_input, "mould", "The model has no extent: choose another file.");
+  if (!(extent > 0) || !std::isfinite(extent))
+    throw Error(ErrorCode::invalid_input, "mould", "The model has no extent: choose another file.");
   if (options.size_mm) {
     placement.scale = *options.size_mm / extent;
   } else if (extent < least_size_mm || straight.size().x() > opening_mm.x() || straight.size().y() > opening_mm.y()) {
     placement.scale = usual_size_mm / extent;
-    placement.notes.push_back("The file's own size, " + millimetres(extent) + ", does not suit the machine: the longest side is now " +
-                              millimetres(usual_size_mm) + ".");
+    placement.notes.push_back("The file's own size, " + millimetres(extent) +
+                              ", does not suit the machine: the longest side is now " + millimetres(usual_size_mm) +
+                              ".");
   }
   placement.linear = placement.scale * turn * upright;
   const Vec3 centre = turned.centre() * placement.scale;
-  placement.translation = Vec3(options.x_mm - centre.x(), options.y_mm - centre.y(), -turned.lower.z() * placement.scale - options.sink_mm);
+  placement.translation =
+      Vec3(options.x_mm - centre.x(), options.y_mm - centre.y(), -turned.lower.z() * placement.scale - options.sink_mm);
   const double height = turned.size().z() * placement.scale;
   if (options.sink_mm >= height)
-    throw Error(ErrorCode::invalid_input, "sink_mm", "The model is " + millimetres(height) + " high, so that nothing of it would stand above the plate: sink it less.");
+    throw Error(ErrorCode::invalid_input, "sink_mm",
+                "The model is " + millimetres(height) +
+                    " high, so that nothing of it would stand above the plate: sink it less.");
   return placement;
 }
 

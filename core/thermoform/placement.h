@@ -24,31 +24,40 @@ struct PlacementOptions {
   double sink_mm = 0;
 
   static constexpr auto parameters = std::tuple{
-      parameter("size_mm", &PlacementOptions::size_mm, "Size", unit::mm, 1, 2000,
-                "Longest side of the model as it stands, sunk part included. Automatic: as in the file where that is between 10 mm and the clamp opening, else 100 mm.")
-          .group("Placement").slider(20, 220),
+      parameter(
+          "size_mm", &PlacementOptions::size_mm, "Size", unit::mm, 1, 2000,
+          "Longest side of the model as it stands, sunk part included. Automatic: as in the file where that is between 10 mm and the clamp opening, else 100 mm.")
+          .group("Placement")
+          .slider(20, 220),
       parameter("sink_mm", &PlacementOptions::sink_mm, "Sink", unit::mm, 0, 1000,
                 "How much of the model's underside disappears below the base plate.")
-          .group("Placement").slider(0, 60),
+          .group("Placement")
+          .slider(0, 60),
       parameter("turn_deg", &PlacementOptions::turn_deg, "Turn", unit::degrees, -360, 360,
                 "Turns the model about the vertical axis, counter-clockwise seen from above.")
-          .group("Placement").slider(-180, 180),
+          .group("Placement")
+          .slider(-180, 180),
       parameter("x_mm", &PlacementOptions::x_mm, "Shift in x", unit::mm, -1000, 1000,
                 "Moves the centre of the model's outline away from the centre of the clamp.")
-          .group("Placement").slider(-80, 80).advanced(),
+          .group("Placement")
+          .slider(-80, 80)
+          .advanced(),
       parameter("y_mm", &PlacementOptions::y_mm, "Shift in y", unit::mm, -1000, 1000,
                 "Moves the centre of the model's outline away from the centre of the clamp.")
-          .group("Placement").slider(-80, 80).advanced(),
+          .group("Placement")
+          .slider(-80, 80)
+          .advanced(),
       parameter("up", &PlacementOptions::up, "Up", "The direction of the model's axes that points up on the machine.")
-          .group("Placement").advanced()};
+          .group("Placement")
+          .advanced()};
 };
 
 /// x_machine = linear * x_model + translation; linear is a rotation times a positive scale.
 struct Placement {
   Eigen::Matrix3d linear = Eigen::Matrix3d::Identity();
   Vec3 translation = Vec3::Zero();
-  double scale = 1;                  // mm per unit of the file
-  std::vector<std::string> notes;    // what was decided for the maker, one sentence each
+  double scale = 1;                // mm per unit of the file
+  std::vector<std::string> notes;  // what was decided for the maker, one sentence each
 
   Vec3 operator()(const Vec3& p) const { return linear * p + translation; }
   TriangleMesh operator()(const TriangleMesh& mesh) const;

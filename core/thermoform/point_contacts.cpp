@@ -15,12 +15,15 @@ namespace {
 
 constexpr double offset_cells = 1 << 19;
 constexpr double share_beside = 0.02;  // of a slid contact's stiffness along the face: about the sheet's own
-constexpr char met = 1, settled = 2;  // of points: in the step that is being tried, or before it
+constexpr char met = 1, settled = 2;   // of points: in the step that is being tried, or before it
 
 std::uint64_t key(int x, int y, int z) {
-  return static_cast<std::uint64_t>(z & 0xfffff) << 40 | static_cast<std::uint64_t>(y & 0xfffff) << 20 | static_cast<std::uint64_t>(x & 0xfffff);
+  return static_cast<std::uint64_t>(z & 0xfffff) << 40 | static_cast<std::uint64_t>(y & 0xfffff) << 20 |
+         static_cast<std::uint64_t>(x & 0xfffff);
 }
-int cell_of(double value, double size) { return static_cast<int>(std::clamp(std::floor(value / size) + offset_cells, 0.0, 2 * offset_cells - 1)); }
+int cell_of(double value, double size) {
+  return static_cast<int>(std::clamp(std::floor(value / size) + offset_cells, 0.0, 2 * offset_cells - 1));
+}
 
 /// First moment at which a triangle, its corners going straight from a to b, comes within `radius` of `q`.
 struct Touch {
@@ -36,7 +39,8 @@ Vec3 face_normal(int face, const Triangles& F, const Positions& x) {
   const Vec3 a = x.row(F(face, 0)), b = x.row(F(face, 1)), c = x.row(F(face, 2));
   return (b - a).cross(c - a).normalized();
 }
-std::optional<Touch> first_touch(const Vec3& q, const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, double radius, double tolerance) {
+std::optional<Touch> first_touch(const Vec3& q, const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b,
+                                 double radius, double tolerance) {
   double speed = 0;
   for (std::size_t k = 0; k < 3; ++k) speed = std::max(speed, (b[k] - a[k]).norm());
   double t = 0;
@@ -54,12 +58,14 @@ std::optional<Touch> first_touch(const Vec3& q, const std::array<Vec3, 3>& a, co
 class Disc {
  public:
   explicit Disc(const std::array<Vec3, 3>& corner)
-      : middle_((corner[0] + corner[1] + corner[2]) / 3), normal_((corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized()) {
+      : middle_((corner[0] + corner[1] + corner[2]) / 3),
+        normal_((corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized()) {
     for (const Vec3& c : corner) radius_ = std::max(radius_, (c - middle_).norm());
   }
   double distance(const Vec3& q) const {
     const Vec3 away = q - middle_;
-    const double height = away.dot(normal_), beside = std::max(0.0, std::sqrt(std::max(0.0, away.squaredNorm() - height * height)) - radius_);
+    const double height = away.dot(normal_),
+                 beside = std::max(0.0, std::sqrt(std::max(0.0, away.squaredNorm() - height * height)) - radius_);
     return std::sqrt(height * height + beside * beside);
   }
 
@@ -74,9 +80,11 @@ PointContacts::PointContacts(std::vector<Vec3> points, double cell_mm, double st
     : points_(std::move(points)), used_(points_.size()), cell_mm_(cell_mm), stiffness_(stiffness) {
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Vec3& p = points_[i];
-    cells_.push_back({key(cell_of(p.x(), cell_mm_), cell_of(p.y(), cell_mm_), cell_of(p.z(), cell_mm_)), static_cast<int>(i)});
+    cells_.push_back(
+        {key(cell_of(p.x(), cell_mm_), cell_of(p.y(), cell_mm_), cell_of(p.z(), cell_mm_)), static_cast<int>(i)});
   }
-  std::sort(cells_.begin(), cells_.end(), [](const Cell& a, const Cell& b) { return a.key != b.key ? a.key < b.key : a.point < b.point; });
+  std::sort(cells_.begin(), cells_.end(),
+            [](const Cell& a, const Cell& b) { return a.key != b.key ? a.key < b.key : a.point < b.point; });
 }
 
 template <class Visit>
@@ -85,7 +93,8 @@ void PointContacts::collect(const Vec3& lower, const Vec3& upper, Visit&& visit)
   for (int z = cell_of(lower.z(), cell_mm_); z <= cell_of(upper.z(), cell_mm_); ++z)
     for (int y = cell_of(lower.y(), cell_mm_); y <= cell_of(upper.y(), cell_mm_); ++y) {
       const std::uint64_t last = key(x1, y, z);
-      for (auto it = std::lower_bound(cells_.begin(), cells_.end(), key(x0, y, z), [](const Cell& c, std::uint64_t k) { return c.key < k; });
+      for (auto it = std::lower_bound(cells_.begin(), cells_.end(), key(x0, y, z),
+                                      [](const Cell&c, std::uint64_t k) { return c.key < k; });
            it != cells_.end() && it->key <= last; ++it) {
         const Vec3& q = points_[static_cast<std::size_t>(it->point)];
         if ((q.array() >= lower.array()).all() && (q.array() <= upper.array()).all()) visit(it->point);
@@ -98,7 +107,8 @@ void PointContacts::survey(const std::array<Vec3, 3>& corner, double reach_mm, N
   around.reach_mm = reach_mm;
   around.points.clear();
   const Disc disc(corner);
-  const Vec3 lower = corner[0].cwiseMin(corner[1]).cwiseMin(corner[2]), upper = corner[0].cwiseMax(corner[1]).cwiseMax(corner[2]);
+  const Vec3 lower = corner[0].cwiseMin(corner[1]).cwiseMin(corner[2]),
+             upper = corner[0].cwiseMax(corner[1]).cwiseMax(corner[2]);
   collect(lower.array() - reach_mm, upper.array() + reach_mm, [&](int point) {
     if (used_[static_cast<std::size_t>(point)] == settled) return;
     const double distance = disc.distance(points_[static_cast<std::size_t>(point)]);
@@ -109,8 +119,9 @@ void PointContacts::survey(const std::array<Vec3, 3>& corner, double reach_mm, N
   });
 }
 
-void PointContacts::look(const Triangles& F, int face, const Positions& from, const Positions& to, double radius_mm, const HeldVertices& held,
-                         double tolerance_mm, const std::function<double(int)>& clear_mm, std::vector<Candidate>& found) {
+void PointContacts::look(const Triangles& F, int face, const Positions& from, const Positions& to, double radius_mm,
+                         const HeldVertices& held, double tolerance_mm, const std::function<double(int)>& clear_mm,
+                         std::vector<Candidate>& found) {
   const auto at = static_cast<std::size_t>(face);
   bool all_held = true;
   for (int k = 0; k < 3; ++k) all_held &= held[static_cast<std::size_t>(F(face, k))] != 0;
@@ -134,7 +145,9 @@ void PointContacts::look(const Triangles& F, int face, const Positions& from, co
   std::optional<Disc> disc;
   const auto try_point = [&](int point) {
     const Vec3& q = points_[static_cast<std::size_t>(point)];
-    if (used_[static_cast<std::size_t>(point)] || (q.array() < lower.array()).any() || (q.array() > upper.array()).any()) return;
+    if (used_[static_cast<std::size_t>(point)] || (q.array() < lower.array()).any() ||
+        (q.array() > upper.array()).any())
+      return;
     if (!disc) disc.emplace(a);
     if (disc->distance(q) > way + reach) return;
     const auto touch = first_touch(q, a, b, radius_mm, tolerance_mm);
@@ -172,8 +185,9 @@ void PointContacts::look(const Triangles& F, int face, const Positions& from, co
   }
 }
 
-int PointContacts::find(const Triangles& F, const Positions& from, const Positions& to, std::span<const double> thickness_mm, const HeldVertices& held,
-                        double tolerance_mm, const std::function<double(int)>& clear_mm) {
+int PointContacts::find(const Triangles& F, const Positions& from, const Positions& to,
+                        std::span<const double> thickness_mm, const HeldVertices& held, double tolerance_mm,
+                        const std::function<double(int)>& clear_mm) {
   if (points_.empty()) return 0;
   const auto faces = static_cast<std::size_t>(F.rows());
   if (around_.size() != faces) {
@@ -192,7 +206,9 @@ int PointContacts::find(const Triangles& F, const Positions& from, const Positio
   std::vector<std::vector<Candidate>> lists((faces + grain - 1) / grain);
   parallel_for(faces, grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f)
-      if (due_mm_[f] <= travel) look(F, static_cast<int>(f), from, to, 0.5 * thickness_mm[f], held, tolerance_mm, clear_mm, lists[begin / grain]);
+      if (due_mm_[f] <= travel)
+        look(F, static_cast<int>(f), from, to, 0.5 * thickness_mm[f], held, tolerance_mm, clear_mm,
+             lists[begin / grain]);
   });
   std::vector<Candidate> found;
   for (const auto& list : lists) found.insert(found.end(), list.begin(), list.end());
@@ -231,7 +247,8 @@ void PointContacts::add_forces(const Triangles& F, const Positions& x, Positions
           block[static_cast<std::size_t>(j)][j] += contact.slid ? static_cast<float>(share_beside * stiffness) : value;
           if (!contact.slid) continue;
           for (int i = 0; i < 3; ++i)
-            block[static_cast<std::size_t>(j)][i] += static_cast<float>((1 - share_beside) * stiffness * contact.normal[i] * contact.normal[j]);
+            block[static_cast<std::size_t>(j)][i] +=
+                static_cast<float>((1 - share_beside) * stiffness * contact.normal[i] * contact.normal[j]);
         }
       }
     }
@@ -240,10 +257,12 @@ void PointContacts::add_forces(const Triangles& F, const Positions& x, Positions
 
 Vec3 PointContacts::pull_of(const PointContact& contact, const Triangles& F, const Positions& x) const {
   const Vec3 pull = stiffness_ * (contact.place - on_face(contact, F, x));
-  return contact.slid ? Vec3(share_beside * pull + (1 - share_beside) * pull.dot(contact.normal) * contact.normal) : pull;
+  return contact.slid ? Vec3(share_beside * pull + (1 - share_beside) * pull.dot(contact.normal) * contact.normal)
+                      : pull;
 }
 
-void PointContacts::slide(const Triangles& F, const Positions& x, double friction, const std::vector<std::vector<int>>& faces_of) {
+void PointContacts::slide(const Triangles& F, const Positions& x, double friction,
+                          const std::vector<std::vector<int>>& faces_of) {
   for (PointContact& contact : contacts_) {
     const Vec3 here = on_face(contact, F, x), pull = pull_of(contact, F, x);
     const Vec3 normal = contact.slid ? contact.normal : face_normal(contact.face, F, x);
@@ -269,7 +288,8 @@ void PointContacts::slide(const Triangles& F, const Positions& x, double frictio
     contact.normal = face_normal(best.face, F, x);
     const Vec3 now = on_face(contact, F, x), beside = along - along.dot(contact.normal) * contact.normal;
     contact.place = now + (reach_mm - (now - point).dot(contact.normal)) * contact.normal;
-    if (beside.norm() > 0) contact.place += std::min(most, along.norm()) / (share_beside * stiffness_ * beside.norm()) * beside;
+    if (beside.norm() > 0)
+      contact.place += std::min(most, along.norm()) / (share_beside * stiffness_ * beside.norm()) * beside;
   }
 }
 

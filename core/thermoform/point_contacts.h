@@ -15,7 +15,7 @@ namespace formwright {
 struct PointContact {
   int point = -1, face = -1;
   Vec3 barycentric;
-  Vec3 place;  // where that point of the face is held
+  Vec3 place;           // where that point of the face is held
   double fraction = 0;  // of the step in which it was met
   // Where friction is finite: what has slid is held by the full stiffness along `normal` only, and softly beside.
   bool slid = false;
@@ -27,17 +27,17 @@ class PointContacts {
   /// `points`: at rest, as the mould is. `cell_mm`: about an edge of the sheet's triangles. `stiffness`: N/mm.
   PointContacts(std::vector<Vec3> points, double cell_mm, double stiffness);
 
-  /// Finds points that faces of `F` come within half their thickness (m) of while their corners go straight from `from` to `to`.
-  /// Faces whose corners are all held are left out. `clear_mm(v)` is any lower bound of the distance of from's vertex v from
-  /// all points. New contacts are appended. Returns their number.
-  int find(const Triangles& F, const Positions& from, const Positions& to, std::span<const double> thickness_mm, const HeldVertices& held,
-           double tolerance_mm, const std::function<double(int vertex)>& clear_mm);
+  /// Finds points that faces of `F` come within half their thickness (m) of while their corners go straight from `from`
+  /// to `to`. Faces whose corners are all held are left out. `clear_mm(v)` is any lower bound of the distance of from's
+  /// vertex v from all points. New contacts are appended. Returns their number.
+  int find(const Triangles& F, const Positions& from, const Positions& to, std::span<const double> thickness_mm,
+           const HeldVertices& held, double tolerance_mm, const std::function<double(int vertex)>& clear_mm);
 
   /// Adds the springs' forces and, unless null, their stiffness.
   void add_forces(const Triangles& F, const Positions& x, Positions& force, BlockMatrix* matrix) const;
 
-  /// After a step that ended at `x`: where the pull along the face exceeds `friction` times that across it, the sheet slides over
-  /// the point until it does not. `faces_of`: the triangles around a vertex.
+  /// After a step that ended at `x`: where the pull along the face exceeds `friction` times that across it, the sheet
+  /// slides over the point until it does not. `faces_of`: the triangles around a vertex.
   void slide(const Triangles& F, const Positions& x, double friction, const std::vector<std::vector<int>>& faces_of);
 
   const std::vector<PointContact>& contacts() const { return contacts_; }
@@ -65,8 +65,9 @@ class PointContacts {
     std::vector<Near> points;
   };
   void survey(const std::array<Vec3, 3>& corner, double reach_mm, Neighbourhood& around) const;
-  void look(const Triangles& F, int face, const Positions& from, const Positions& to, double radius_mm, const HeldVertices& held, double tolerance_mm,
-            const std::function<double(int)>& clear_mm, std::vector<Candidate>& found);
+  void look(const Triangles& F, int face, const Positions& from, const Positions& to, double radius_mm,
+            const HeldVertices& held, double tolerance_mm, const std::function<double(int)>& clear_mm,
+            std::vector<Candidate>& found);
   /// Calls visit(point) for the points in a box, ascending within each cell.
   template <class Visit>
   void collect(const Vec3& lower, const Vec3& upper, Visit&& visit) const;

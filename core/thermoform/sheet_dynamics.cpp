@@ -12,25 +12,31 @@
 namespace formwright {
 namespace {
 
-constexpr double cg_tolerance = 0.1;       // of Newton's directions: the next iteration mends the rest
+constexpr double cg_tolerance = 0.1;  // of Newton's directions: the next iteration mends the rest
 constexpr int most_cg_iterations = 400;
 constexpr int most_newton_iterations = 12;
 constexpr int most_sliding_iterations = 5;
-constexpr double settled_share = 0.05;     // of the step's limit: an increment this small ends the iteration
-constexpr double wrinkle_share = 0.2;      // so much a few vertices may go on moving: squeezed triangles buckle back and forth
+constexpr double settled_share = 0.05;  // of the step's limit: an increment this small ends the iteration
+constexpr double wrinkle_share =
+    0.2;  // so much a few vertices may go on moving: squeezed triangles buckle back and forth
 
 constexpr std::size_t vertex_grain = 512;
 constexpr int faces_per_strip = 512;
 
 MembraneMaterial material_of(const ThermoformOptions& o) {
-  return {o.elastic_law, o.yield_rule, o.young_modulus_pa * 1e-6, o.poisson_ratio, o.creep_per_s, o.yield_strain, o.viscosity_s, o.flow_stop_mm, o.anisotropy};
+  return {o.elastic_law,   o.yield_rule,   o.young_modulus_pa * 1e-6,
+          o.poisson_ratio, o.creep_per_s,  o.yield_strain,
+          o.viscosity_s,   o.flow_stop_mm, o.anisotropy};
 }
 
 /// Stiffness and thickness at the triangles' middles.
 SheetVariation variation_of(const SheetMesh& sheet, const ThermoformOptions& o) {
   SheetVariation variation;
   for (Eigen::Index f = 0; f < sheet.F.rows(); ++f) {
-    const Vec2 middle = (sheet.flat_mm.row(sheet.F(f, 0)) + sheet.flat_mm.row(sheet.F(f, 1)) + sheet.flat_mm.row(sheet.F(f, 2))).transpose() / 3;
+    const Vec2 middle =
+        (sheet.flat_mm.row(sheet.F(f, 0)) + sheet.flat_mm.row(sheet.F(f, 1)) + sheet.flat_mm.row(sheet.F(f, 2)))
+            .transpose() /
+        3;
     const double xi = 2 * middle.x() / o.clamp_opening_x_mm, eta = 2 * middle.y() / o.clamp_opening_y_mm;
     variation.stiffness.push_back(stiffness_factor(o, xi, eta));
     variation.thickness.push_back(thickness_factor(o, xi, eta));
@@ -38,15 +44,16 @@ SheetVariation variation_of(const SheetMesh& sheet, const ThermoformOptions& o) 
   return variation;
 }
 
-/// Where the rim has gone, per mm by which the clamp gives way: inwards on every side, at the corners from both, and between so
-/// smoothly that no triangle at the rim is turned over.
+/// Where the rim has gone, per mm by which the clamp gives way: inwards on every side, at the corners from both, and
+/// between so smoothly that no triangle at the rim is turned over.
 Vec2 way_in(const Vec2& flat_mm, const ThermoformOptions& o) {
   const double xi = 2 * flat_mm.x() / o.clamp_opening_x_mm, eta = 2 * flat_mm.y() / o.clamp_opening_y_mm;
   return {-xi * xi * xi, -eta * eta * eta};
 }
 
 double shortest_edge(const SheetMesh& sheet) {
-  const Vec2 a = sheet.flat_mm.row(sheet.F(0, 0)), b = sheet.flat_mm.row(sheet.F(0, 1)), c = sheet.flat_mm.row(sheet.F(0, 2));
+  const Vec2 a = sheet.flat_mm.row(sheet.F(0, 0)), b = sheet.flat_mm.row(sheet.F(0, 1)),
+             c = sheet.flat_mm.row(sheet.F(0, 2));
   return std::min({(a - b).norm(), (b - c).norm(), (c - a).norm()});
 }
 
@@ -63,19 +70,22 @@ std::vector<Vec3> sharp_points(const MouldContact* contact, double edge_mm) {
 
 }  // namespace
 
-SheetDynamics::SheetDynamics(const SheetMesh& sheet, const ThermoformOptions& options, double height_mm, std::shared_ptr<const MouldContact> contact)
+SheetDynamics::SheetDynamics(const SheetMesh& sheet, const ThermoformOptions& options, double height_mm,
+                             std::shared_ptr<const MouldContact> contact)
     : sheet_(sheet),
       options_(options),
       contact_(std::move(contact)),
       membrane_(sheet.flat_mm, sheet.F, options.sheet_thickness_mm, material_of(options), variation_of(sheet, options)),
       strips_(sheet.F, faces_per_strip),
-      points_(sharp_points(contact_.get(), shortest_edge(sheet)), shortest_edge(sheet), 50 * options.young_modulus_pa * 1e-6 * options.sheet_thickness_mm),
+      points_(sharp_points(contact_.get(), shortest_edge(sheet)), shortest_edge(sheet),
+              50 * options.young_modulus_pa * 1e-6 * options.sheet_thickness_mm),
       cg_(static_cast<int>(sheet.flat_mm.rows())),
       edge_mm_(shortest_edge(sheet)),
       step_limit_mm_(options.step_mm.value_or(std::max(1.0, 0.3 * shortest_edge(sheet)))) {
   const Eigen::Index n = sheet.flat_mm.rows();
   if (options.bending)
-    bending_ = std::make_unique<HingeBending>(sheet.F, static_cast<int>(n), options.young_modulus_pa * 1e-6, options.poisson_ratio, options.viscosity_s);
+    bending_ = std::make_unique<HingeBending>(sheet.F, static_cast<int>(n), options.young_modulus_pa * 1e-6,
+                                              options.poisson_ratio, options.viscosity_s);
   matrix_ = make_matrix(sheet, bending_.get());
   membrane_.use_matrix(matrix_);
   x_.resize(n, 3);
@@ -84,7 +94,9 @@ SheetDynamics::SheetDynamics(const SheetMesh& sheet, const ThermoformOptions& op
   v_ = Positions::Zero(n, 3);
   mass_.assign(static_cast<std::size_t>(n), 0);
   for (int f = 0; f < membrane_.face_count(); ++f)
-    for (int k = 0; k < 3; ++k) mass_[static_cast<std::size_t>(sheet.F(f, k))] += options.density_kg_per_m3 * 1e-12 * membrane_.volume_mm3()[static_cast<std::size_t>(f)] / 3;
+    for (int k = 0; k < 3; ++k)
+      mass_[static_cast<std::size_t>(sheet.F(f, k))] +=
+          options.density_kg_per_m3 * 1e-12 * membrane_.volume_mm3()[static_cast<std::size_t>(f)] / 3;
   for (const double m : mass_) mass_total_ += m;
   held_ = sheet.clamped;
   contact_time_.assign(static_cast<std::size_t>(n), -1);
@@ -92,11 +104,14 @@ SheetDynamics::SheetDynamics(const SheetMesh& sheet, const ThermoformOptions& op
     if (held_[i]) contact_time_[i] = 0;
   known_.resize(static_cast<std::size_t>(n));
   if (options.cooling > 0) chill_ = std::make_unique<ContactChill>(sheet, options.cooling);
-  if (options.slip > 0 && contact_) friction_ = std::make_unique<SheetFriction>(sheet, 1 / options.slip, options.young_modulus_pa * 1e-6 * options.sheet_thickness_mm);
+  if (options.slip > 0 && contact_)
+    friction_ = std::make_unique<SheetFriction>(sheet, 1 / options.slip,
+                                                options.young_modulus_pa * 1e-6 * options.sheet_thickness_mm);
   none_held_.assign(held_.size(), moves_freely);
   if (contact_)
     parallel_for(known_.size(), vertex_grain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) known_[i] = contact_->survey(x_.row(static_cast<Eigen::Index>(i)).transpose());
+      for (std::size_t i = begin; i < end; ++i)
+        known_[i] = contact_->survey(x_.row(static_cast<Eigen::Index>(i)).transpose());
     });
   collect_free();
 }
@@ -134,21 +149,26 @@ std::vector<double> SheetDynamics::vertex_thickness_mm(const Positions& x) const
   return volume;
 }
 
-void SheetDynamics::assemble(const Positions& x, double dt_s, const StepLoad& load, Positions& force, BlockMatrix* matrix) {
+void SheetDynamics::assemble(const Positions& x, double dt_s, const StepLoad& load, Positions& force,
+                             BlockMatrix* matrix) {
   const auto n = static_cast<std::size_t>(x.rows());
   parallel_for(n, vertex_grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) force.row(static_cast<Eigen::Index>(i)) << 0, 0, -mass_[i] * load.gravity_mm_per_s2;
+    for (std::size_t i = begin; i < end; ++i)
+      force.row(static_cast<Eigen::Index>(i)) << 0, 0, -mass_[i] * load.gravity_mm_per_s2;
   });
   if (matrix)
-    parallel_for(free_.size(), vertex_grain,
-                 [&](std::size_t begin, std::size_t end) { matrix->set_zero(std::span<const int>(free_).subspan(begin, end - begin)); });
+    parallel_for(free_.size(), vertex_grain, [&](std::size_t begin, std::size_t end) {
+      matrix->set_zero(std::span<const int>(free_).subspan(begin, end - begin));
+    });
   strips_.for_each([&](int first_face, int end_face) {
     membrane_.add_forces_of(first_face, end_face, x, dt_s, force, matrix);
     if (load.pressure_mpa == 0) return;
     for (int f = first_face; f < end_face; ++f) {
       // The gradient of the volume under the face: a third of its area vector for each corner.
       const int a = sheet_.F(f, 0), b = sheet_.F(f, 1), c = sheet_.F(f, 2);
-      if (!friction_ && held_[static_cast<std::size_t>(a)] && held_[static_cast<std::size_t>(b)] && held_[static_cast<std::size_t>(c)]) continue;
+      if (!friction_ && held_[static_cast<std::size_t>(a)] && held_[static_cast<std::size_t>(b)] &&
+          held_[static_cast<std::size_t>(c)])
+        continue;
       const Vec3 pa = x.row(a), pb = x.row(b), pc = x.row(c);
       const Vec3 push = -load.pressure_mpa / 6 * (pb - pa).cross(pc - pa);
       force.row(a) += push.transpose();
@@ -225,7 +245,8 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
   for (Eigen::Index i = 0; i < x.rows(); ++i) {
     if (sheet_.clamped[static_cast<std::size_t>(i)]) {
       x.row(i) += load.clamp_shift.transpose();
-      if (load.clamp_slip_mm != 0) x.row(i).head<2>() += load.clamp_slip_mm * way_in(sheet_.flat_mm.row(i).transpose(), options_).transpose();
+      if (load.clamp_slip_mm != 0)
+        x.row(i).head<2>() += load.clamp_slip_mm * way_in(sheet_.flat_mm.row(i).transpose(), options_).transpose();
     } else if (!held_[static_cast<std::size_t>(i)]) {
       if (has_guess) x.row(i) = guess_.row(i);
       else x.row(i) += dt_s * v_.row(i);
@@ -264,7 +285,8 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
       auto& diagonal = matrix_.block(matrix_.diagonal_slot(i));
       for (std::size_t k = 0; k < 3; ++k) diagonal[k][k] += static_cast<float>(m);
       if (held_[v] == sliding) friction_->constrain(i, (x.row(i) - from.row(i)).transpose(), dt_s, residual, diagonal);
-      right_side[v] = Float4{static_cast<float>(residual.x()), static_cast<float>(residual.y()), static_cast<float>(residual.z()), 0};
+      right_side[v] = Float4{static_cast<float>(residual.x()), static_cast<float>(residual.y()),
+                             static_cast<float>(residual.z()), 0};
     }
     statistics_.seconds_assembly += watch.lap();
     statistics_.cg_iterations += cg_.solve(matrix_, right_side, free_, cg_tolerance, most_cg_iterations, direction);
@@ -279,7 +301,8 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
       if (held_[static_cast<std::size_t>(i)] == sliding) {
         delta = slide(i, x.row(i).transpose(), delta, radius[static_cast<std::size_t>(i)]);
         // One that still goes to and fro, as between the plate and the model, is done for this step.
-        if (iteration >= most_sliding_iterations && held_[static_cast<std::size_t>(i)] == sliding && delta.norm() > settled_share * step_limit_mm_) {
+        if (iteration >= most_sliding_iterations && held_[static_cast<std::size_t>(i)] == sliding &&
+            delta.norm() > settled_share * step_limit_mm_) {
           held_[static_cast<std::size_t>(i)] = stuck;
           ++cornered;
         }
@@ -287,14 +310,16 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
       x.row(i) += delta.transpose();
       increment_squared = std::max(increment_squared, delta.squaredNorm());
       sum_squared += delta.squaredNorm();
-      moved_squared = std::max(moved_squared, (x.row(i).transpose() - from.row(i).transpose() - load.clamp_shift).squaredNorm());
+      moved_squared =
+          std::max(moved_squared, (x.row(i).transpose() - from.row(i).transpose() - load.clamp_shift).squaredNorm());
     }
     moved = std::sqrt(moved_squared);
     if (!std::isfinite(increment_squared)) return give_up(Outcome::not_converged);
     if (moved > 1.5 * most_move_mm) return give_up(Outcome::moved_too_far);
     const double mean_squared = sum_squared / std::max<double>(1, static_cast<double>(free_.size()));
     settled = std::sqrt(increment_squared) < settled_share * step_limit_mm_ ||
-              (iteration >= 2 && std::sqrt(increment_squared) < wrinkle_share * step_limit_mm_ && std::sqrt(mean_squared) < 0.2 * settled_share * step_limit_mm_);
+              (iteration >= 2 && std::sqrt(increment_squared) < wrinkle_share * step_limit_mm_ &&
+               std::sqrt(mean_squared) < 0.2 * settled_share * step_limit_mm_);
     const int touched = find_contacts(from, x, radius) + cornered;
     statistics_.seconds_contact += watch.lap();
     if (touched > 0) {
@@ -316,7 +341,8 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
     }
   }
   if (chill_) chill_->advance(dt_s, held_);
-  membrane_.end_step(x, dt_s, chill_ ? std::span<const double>(chill_->stiffness_factors()) : std::span<const double>());
+  membrane_.end_step(x, dt_s,
+                     chill_ ? std::span<const double>(chill_->stiffness_factors()) : std::span<const double>());
   x_ = std::move(x);
   if (friction_) {
     begin_membrane_step();

@@ -22,11 +22,11 @@ namespace formwright {
 /// What acts on the sheet during one step.
 struct StepLoad {
   double gravity_mm_per_s2 = 9806.65;
-  double pressure_mpa = 0;     // difference across the sheet at the end of the step, pushing against the faces' normals
+  double pressure_mpa = 0;  // difference across the sheet at the end of the step, pushing against the faces' normals
   Vec3 clamp_shift = Vec3::Zero();  // mm, of the rim in this step
-  double clamp_slip_mm = 0;    // by which the clamp gives way in this step: its rim moves in
-  bool settling = false;       // nothing grows any more: what slides is to come to rest (SheetFriction::decide)
-  bool quasi_static = false;   // leave inertia out
+  double clamp_slip_mm = 0;         // by which the clamp gives way in this step: its rim moves in
+  bool settling = false;            // nothing grows any more: what slides is to come to rest (SheetFriction::decide)
+  bool quasi_static = false;        // leave inertia out
 };
 
 struct DynamicsStatistics {
@@ -37,10 +37,12 @@ struct DynamicsStatistics {
 class SheetDynamics {
  public:
   /// The sheet lies flat at height `height_mm` above the plate. `contact` may be null. Throws Error{invalid_input}.
-  SheetDynamics(const SheetMesh& sheet, const ThermoformOptions& options, double height_mm, std::shared_ptr<const MouldContact> contact);
+  SheetDynamics(const SheetMesh& sheet, const ThermoformOptions& options, double height_mm,
+                std::shared_ptr<const MouldContact> contact);
 
   enum class Outcome { done, moved_too_far, not_converged };
-  /// Tries one step; unless done, nothing has changed. No free vertex may move farther than `most_move_mm` beside the clamp's shift.
+  /// Tries one step; unless done, nothing has changed. No free vertex may move farther than `most_move_mm` beside the
+  /// clamp's shift.
   Outcome step(double dt_s, const StepLoad& load, double most_move_mm, Context& context);
 
   /// Adds to the velocities of vertices that are not held: the platform's change of speed.
@@ -57,8 +59,8 @@ class SheetDynamics {
   double time_s() const { return time_; }
   double last_step_s() const { return last_step_; }
   double step_limit_mm() const { return step_limit_mm_; }  // options.step_mm, or what it is automatically
-  double last_move_mm() const { return last_move_; }  // farthest, beside the clamp's shift
-  int free_count() const;  // vertices that touch nothing
+  double last_move_mm() const { return last_move_; }       // farthest, beside the clamp's shift
+  int free_count() const;                                  // vertices that touch nothing
   bool all_stuck() const { return free_.empty(); }
   const Membrane& membrane() const { return membrane_; }
   const SheetMesh& sheet() const { return sheet_; }

@@ -12,14 +12,20 @@ constexpr double firmer_each_time = 0.5;
 }  // namespace
 
 SheetFriction::SheetFriction(const SheetMesh& sheet, double coefficient, double stiffness)
-    : coefficient_(coefficient), stiffness_(stiffness), clamped_(sheet.clamped), starts_(sheet.clamped.size()), normal_(sheet.clamped.size(), Vec3::UnitZ()), drag_(sheet.clamped.size(), Vec3::Zero()){
+    : coefficient_(coefficient),
+      stiffness_(stiffness),
+      clamped_(sheet.clamped),
+      starts_(sheet.clamped.size()),
+      normal_(sheet.clamped.size(), Vec3::UnitZ()),
+      drag_(sheet.clamped.size(), Vec3::Zero()) {
   auto faces_of = std::make_shared<std::vector<std::vector<int>>>(clamped_.size());
   for (int f = 0; f < static_cast<int>(sheet.F.rows()); ++f)
     for (int k = 0; k < 3; ++k) (*faces_of)[static_cast<std::size_t>(sheet.F(f, k))].push_back(f);
   faces_of_ = std::move(faces_of);
 }
 
-void SheetFriction::constrain(int vertex, const Vec3& way_mm, double dt_s, Vec3& force, std::array<Float4, 3>& diagonal) const {
+void SheetFriction::constrain(int vertex, const Vec3& way_mm, double dt_s, Vec3& force,
+                              std::array<Float4, 3>& diagonal) const {
   const auto v = static_cast<std::size_t>(vertex);
   const Vec3& n = normal_[v];
   const double lag = stiffness_ * slide_lag_s / dt_s;
@@ -28,7 +34,8 @@ void SheetFriction::constrain(int vertex, const Vec3& way_mm, double dt_s, Vec3&
   const float across = stiffness_across * (diagonal[0][0] + diagonal[1][1] + diagonal[2][2]);
   for (std::size_t i = 0; i < 3; ++i) diagonal[i][i] += static_cast<float>(lag);
   for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j) diagonal[j][i] += across * static_cast<float>(n[static_cast<int>(i)] * n[static_cast<int>(j)]);
+    for (std::size_t j = 0; j < 3; ++j)
+      diagonal[j][i] += across * static_cast<float>(n[static_cast<int>(i)] * n[static_cast<int>(j)]);
 }
 
 void SheetFriction::decide(const Positions& force, bool settling, HeldVertices& held) {

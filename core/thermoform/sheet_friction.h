@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Finite friction between sheet and mould. A vertex that touches sticks while what the sheet pulls along the surface is at
-// most mu times what presses across it; beyond, it slides: it moves along the surface only, against a drag of mu times that
-// force. Which vertices slide, and their drags, are decided at the end of every step, for the next one.
+// Finite friction between sheet and mould. A vertex that touches sticks while what the sheet pulls along the surface is
+// at most mu times what presses across it; beyond, it slides: it moves along the surface only, against a drag of mu
+// times that force. Which vertices slide, and their drags, are decided at the end of every step, for the next one.
 //
-// A vertex that the sheet pulls off the surface still adheres, and is dragged as if pressed with the same force, so that
-// mu -> infinity is the infinite adhesion of thesis 4.2.2.
+// A vertex that the sheet pulls off the surface still adheres, and is dragged as if pressed with the same force, so
+// that mu -> infinity is the infinite adhesion of thesis 4.2.2.
 #include <memory>
 #include <vector>
 
@@ -23,20 +23,20 @@ constexpr double slide_lag_s = 1e-3;
 class SheetFriction {
  public:
   /// `coefficient`: mu, above 0.
-  /// `stiffness`: of the sheet (N/mm), for the lag: what slides is also held back by stiffness times slide_lag_s times its
-  /// speed, so that short steps slide little and always end.
+  /// `stiffness`: of the sheet (N/mm), for the lag: what slides is also held back by stiffness times slide_lag_s times
+  /// its speed, so that short steps slide little and always end.
   SheetFriction(const SheetMesh& sheet, double coefficient, double stiffness);
 
   /// The surface's normal where a vertex touches; to be kept up to date.
   Vec3& normal(int vertex) { return normal_[static_cast<std::size_t>(vertex)]; }
 
-  /// Makes Newton's equation of a sliding vertex, which went `way_mm` in this step of `dt_s` so far, one along the surface: drag
-  /// and lag into the force, nothing across, and a stiffness across that lets it go nowhere.
+  /// Makes Newton's equation of a sliding vertex, which went `way_mm` in this step of `dt_s` so far, one along the
+  /// surface: drag and lag into the force, nothing across, and a stiffness across that lets it go nowhere.
   void constrain(int vertex, const Vec3& way_mm, double dt_s, Vec3& force, std::array<Float4, 3>& diagonal) const;
 
   /// Who slides from now on, by the forces (n x 3, N) that act on the vertices besides those of the mould. While all is
-  /// `settling`, every time that a vertex starts to slide takes a larger force than the time before, as contacts that rest grow
-  /// firmer; without that a few in corners and webs would hop for ever.
+  /// `settling`, every time that a vertex starts to slide takes a larger force than the time before, as contacts that
+  /// rest grow firmer; without that a few in corners and webs would hop for ever.
   void decide(const Positions& force, bool settling, HeldVertices& held);
 
   double coefficient() const { return coefficient_; }

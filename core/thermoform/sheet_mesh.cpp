@@ -8,7 +8,9 @@ namespace formwright {
 
 SheetMesh make_sheet_mesh(const Vec2& opening_mm, int triangles) {
   const double cell_mm = std::sqrt(2 * opening_mm.x() * opening_mm.y() / std::max(triangles, 8));
-  const auto even_cells = [&](double side_mm) { return std::max(2, 2 * static_cast<int>(std::lround(side_mm / (2 * cell_mm)))); };
+  const auto even_cells = [&](double side_mm) {
+    return std::max(2, 2 * static_cast<int>(std::lround(side_mm / (2 * cell_mm))));
+  };
   const int nx = even_cells(opening_mm.x());
   int ny = even_cells(opening_mm.y());
   // Diagonals cross in the middle at every size, so that sheets of different fineness belong to one family.

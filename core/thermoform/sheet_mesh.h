@@ -8,10 +8,10 @@
 namespace formwright {
 
 struct SheetMesh {
-  TextureCoordinates flat_mm;   // n x 2, centred on the opening
-  Triangles F;                  // counter-clockwise seen from above
-  std::vector<char> clamped;    // n: on the rim
-  int columns = 0, rows = 0;    // of vertices
+  TextureCoordinates flat_mm;  // n x 2, centred on the opening
+  Triangles F;                 // counter-clockwise seen from above
+  std::vector<char> clamped;   // n: on the rim
+  int columns = 0, rows = 0;   // of vertices
 };
 
 /// Squares cut along diagonals that alternate like a chessboard's fields, so that the mesh has all the symmetries of

@@ -28,7 +28,8 @@ class CreaseSystem {
   /// Throws Error: cancelled, out_of_memory.
   CreaseSystem(const Segmentation& segmentation, Context& context);
 
-  /// D per vertex: `spring` pulls it to `value` at a vertex. From several threads, one after the other. Throws Error: cancelled.
+  /// D per vertex: `spring` pulls it to `value` at a vertex. From several threads, one after the other. Throws Error:
+  /// cancelled.
   struct Pull {
     int vertex = 0;
     double spring = 0, value_mm = 0;
@@ -54,8 +55,8 @@ struct CreaseAlignment {
   double spacing_least = 1, spacing_most = 1;  // of the even one, of any triangle
 };
 
-/// `system` and `features` of the segmentation's mesh, `lines` as they are placed. No triangle is turned over, borders do not move.
-/// Throws Error: cancelled.
+/// `system` and `features` of the segmentation's mesh, `lines` as they are placed. No triangle is turned over, borders
+/// do not move. Throws Error: cancelled.
 CreaseAlignment align_to_creases(const Segmentation& segmentation, const Parameterisation& parameterisation,
                                  CreaseSystem& system, const FeatureLines& features,
                                  const std::vector<SpiralLine>& lines, const CreaseAlignmentOptions& options,

@@ -31,7 +31,8 @@ Vec3 read_point(const Json& item, const std::string& what) {
 
 std::vector<Vec3> read_points(const Json& list, const std::string& name) {
   std::vector<Vec3> points;
-  for (const Json& item : list) points.push_back(read_point(item, "entry " + std::to_string(points.size() + 1) + " of " + name));
+  for (const Json& item : list)
+    points.push_back(read_point(item, "entry " + std::to_string(points.size() + 1) + " of " + name));
   return points;
 }
 
@@ -44,7 +45,8 @@ void read_punctures(const Json& list, ZippableParts& parts) {
       parts.punctures.push_back(read_point(list[i], name));
       continue;
     }
-    if (list[i].size() < 2 || list[i].size() > 1000) refuse("segments.json: " + name + " is a cut and must have 2 to 1000 points [x, y, z].");
+    if (list[i].size() < 2 || list[i].size() > 1000)
+      refuse("segments.json: " + name + " is a cut and must have 2 to 1000 points [x, y, z].");
     parts.cuts.push_back(read_points(list[i], name));
   }
 }
@@ -56,7 +58,8 @@ DrawnCurve read_curve(const Json& item, const std::string& name) {
   curve.closed = name == "loops";
   if (item.is_object()) {
     for (const auto& [key, value] : item.items())
-      if (key != "points" && key != "snap") refuse("segments.json: an entry of " + name + " has \"" + key + "\": it may have points and snap.");
+      if (key != "points" && key != "snap")
+        refuse("segments.json: an entry of " + name + " has \"" + key + "\": it may have points and snap.");
     if (const auto snap = item.find("snap"); snap != item.end()) {
       if (!snap->is_boolean()) refuse("segments.json: snap of an entry of " + name + " must be true or false.");
       curve.snap = snap->get<bool>();
@@ -65,7 +68,8 @@ DrawnCurve read_curve(const Json& item, const std::string& name) {
     if (found == item.end()) refuse("segments.json: an entry of " + name + " has no points.");
     points = &*found;
   }
-  if (!points->is_array() || points->size() > 1000) refuse("segments.json: each of " + name + " must be a list of up to 1000 points [x, y, z].");
+  if (!points->is_array() || points->size() > 1000)
+    refuse("segments.json: each of " + name + " must be a list of up to 1000 points [x, y, z].");
   curve.points = read_points(*points, name);
   return curve;
 }
@@ -80,14 +84,16 @@ Json parts_json(const Segmentation& s) {
   return parts;
 }
 
-/// Per cut its length and both sides: runs of vertices that follow `first_vertex` on the boundary, and where they lie along the cut.
+/// Per cut its length and both sides: runs of vertices that follow `first_vertex` on the boundary, and where they lie
+/// along the cut.
 Json closures_json(const std::vector<HandleClosure>& closures) {
   Json list = Json::array();
   for (const HandleClosure& closure : closures) {
     Json sides = Json::array();
     for (const auto& side : closure.sides) {
       Json runs = Json::array();
-      for (const ClosureRun& run : side) runs.push_back({{"first_vertex", run.first_vertex}, {"along_mm", run.along_mm}});
+      for (const ClosureRun& run : side)
+        runs.push_back({{"first_vertex", run.first_vertex}, {"along_mm", run.along_mm}});
       sides.push_back(runs);
     }
     list.push_back({{"length_mm", closure.length_mm}, {"closed", closure.closed}, {"sides", sides}});
@@ -110,8 +116,10 @@ ZippableParts read_segments(ByteView bytes) {
       continue;
     }
     if (name != "punctures" && name != "loops" && name != "lines")
-      refuse("segments.json has \"" + name + "\", which is not known: it may have punctures, loops, lines, start and end.");
-    if (!value.is_array() || value.size() > 100) refuse("segments.json: " + name + " must be a list of up to 100 entries.");
+      refuse("segments.json has \"" + name +
+             "\", which is not known: it may have punctures, loops, lines, start and end.");
+    if (!value.is_array() || value.size() > 100)
+      refuse("segments.json: " + name + " must be a list of up to 100 entries.");
     if (name == "punctures") {
       read_punctures(value, parts);
       continue;
@@ -128,10 +136,12 @@ Bytes write_design_json(const ParameterisedModel& model, const ZippableDesign& d
   const Parameterisation& p = model.parameterisation;
   Json parts = parts_json(s);
   for (int part = 0; part < s.part_count(); ++part)
-    parts[std::size_t(part)].update(Json{{"period_mm", p.period_mm[part]}, {"height_mm", p.height_mm[part]}, {"windings", design.curve.windings[part]}});
+    parts[std::size_t(part)].update(Json{
+        {"period_mm", p.period_mm[part]}, {"height_mm", p.height_mm[part]}, {"windings", design.curve.windings[part]}});
   Json punctures = Json::array();
   for (std::size_t i = 0; i < model.proposal.punctures.size(); ++i)
-    punctures.push_back({{"position_mm", vector_json(model.proposal.punctures[i])}, {"radius_mm", model.proposal.puncture_radius_mm[i]}});
+    punctures.push_back({{"position_mm", vector_json(model.proposal.punctures[i])},
+                         {"radius_mm", model.proposal.puncture_radius_mm[i]}});
   for (const auto& slit : model.proposal.slits) {
     Json path = Json::array();
     for (const Vec3& point : slit) path.push_back(vector_json(point));
@@ -167,7 +177,10 @@ Bytes write_design_json(const ParameterisedModel& model, const ZippableDesign& d
 }
 
 Bytes write_parts_json(const ParameterisedModel& model) {
-  const Json json = {{"format", "formwright zippable design"}, {"version", 1}, {"scale", model.scale}, {"parts", parts_json(model.proposal.segmentation)}};
+  const Json json = {{"format", "formwright zippable design"},
+                     {"version", 1},
+                     {"scale", model.scale},
+                     {"parts", parts_json(model.proposal.segmentation)}};
   return to_bytes(json.dump());
 }
 
@@ -240,12 +253,14 @@ Bytes write_ribbon_svg(const ZippableDesign& design) {
   for (const Vec2& q : ribbon.flat_mm) lower = lower.cwiseMin(q), upper = upper.cwiseMax(q);
   const Vec2 size = upper - lower + Vec2::Constant(2 * margin_mm);
   const auto x = [&](int i) { return micrometres(ribbon.flat_mm[i].x() - lower.x() + margin_mm); };
-  const auto y = [&](int i) { return micrometres(upper.y() + margin_mm - ribbon.flat_mm[i].y()); };  // SVG's y runs down
+  const auto y = [&](int i) {
+    return micrometres(upper.y() + margin_mm - ribbon.flat_mm[i].y());
+  };  // SVG's y runs down
   const int count = static_cast<int>(ribbon.boundary.size());
   TextOut out;
-  out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << micrometres(size.x())
-      << "mm\" height=\"" << micrometres(size.y()) << "mm\" viewBox=\"0 0 " << micrometres(size.x()) << ' ' << micrometres(size.y())
-      << "\">\n<title>Zippable ribbon</title>\n";
+  out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\""
+      << micrometres(size.x()) << "mm\" height=\"" << micrometres(size.y()) << "mm\" viewBox=\"0 0 "
+      << micrometres(size.x()) << ' ' << micrometres(size.y()) << "\">\n<title>Zippable ribbon</title>\n";
   const auto begin = [&](const char* id, const char* colour) {
     out << "<path id=\"" << id << "\" fill=\"none\" stroke=\"" << colour << "\" stroke-width=\"0.2\" d=\"";
   };

@@ -21,8 +21,8 @@ namespace formwright {
 namespace {
 
 /// Marks the edges of a way between two vertices that is as straight as edges allow.
-void mark_way(const TriangleMesh& mesh, const Adjacency& adjacency, const PointDistance& surface, double step_mm, int from, int to,
-              std::vector<char>& wall) {
+void mark_way(const TriangleMesh& mesh, const Adjacency& adjacency, const PointDistance& surface, double step_mm,
+              int from, int to, std::vector<char>& wall) {
   std::vector<Vec3> line;
   for (const int v : edge_way(mesh, adjacency, from, to)) line.push_back(mesh.V.row(v).transpose());
   if (line.size() < 2) return;
@@ -42,8 +42,8 @@ void mark_way(const TriangleMesh& mesh, const Adjacency& adjacency, const PointD
 }
 
 /// Marks the edges of the cheapest way: as they are along features, as straight as edges allow in between.
-void mark_snapped_way(const TriangleMesh& mesh, const Adjacency& adjacency, const PointDistance& surface, double step_mm, int from, int to,
-                      const FeatureLines& features, std::vector<char>& wall) {
+void mark_snapped_way(const TriangleMesh& mesh, const Adjacency& adjacency, const PointDistance& surface,
+                      double step_mm, int from, int to, const FeatureLines& features, std::vector<char>& wall) {
   const std::vector<int> way = edge_way(mesh, adjacency, from, to, &features);
   std::size_t left = 0;  // where the way left the features
   for (std::size_t k = 0; k + 1 < way.size(); ++k) {
@@ -66,8 +66,8 @@ int snapped_vertex(const TriangleMesh& mesh, const SnapTargets& targets, const V
 }
 
 /// Of every curve the vertices on its way. A point that a snapped curve moves is moved for all curves that share it.
-std::vector<std::vector<int>> stops_of(const TriangleMesh& mesh, const std::vector<DrawnCurve>& curves, const std::vector<char>& snaps,
-                                       const SnapTargets* targets) {
+std::vector<std::vector<int>> stops_of(const TriangleMesh& mesh, const std::vector<DrawnCurve>& curves,
+                                       const std::vector<char>& snaps, const SnapTargets* targets) {
   const auto key = [](const Vec3& p) { return std::array<double, 3>{p.x(), p.y(), p.z()}; };
   std::map<std::array<double, 3>, int> moved;
   for (std::size_t i = 0; i < curves.size(); ++i)
@@ -84,15 +84,16 @@ std::vector<std::vector<int>> stops_of(const TriangleMesh& mesh, const std::vect
     if (curve.closed && stops.size() > 1 && stops.back() != stops.front()) stops.push_back(stops.front());
     if (stops.size() < (curve.closed ? 4u : 2u))
       throw Error(ErrorCode::invalid_input, "segments",
-                  "Curve " + std::to_string(result.size() + 1) + " of segments.json has too few different points: a loop needs three, a line two.");
+                  "Curve " + std::to_string(result.size() + 1) +
+                      " of segments.json has too few different points: a loop needs three, a line two.");
     result.push_back(std::move(stops));
   }
   return result;
 }
 
 /// Vertices within a run of walls along sharp edges, with different parts on both sides.
-std::vector<char> on_sharp_border(const Adjacency& adjacency, const std::vector<int>& part, const std::vector<char>& wall,
-                                  const std::vector<char>& sharp_wall) {
+std::vector<char> on_sharp_border(const Adjacency& adjacency, const std::vector<int>& part,
+                                  const std::vector<char>& wall, const std::vector<char>& sharp_wall) {
   std::vector<char> keep(adjacency.vertex_count(), 0);
   std::vector<int> walls(adjacency.vertex_count(), 0), sharp(adjacency.vertex_count(), 0);
   for (int e = 0; e < adjacency.edge_count(); ++e) {
@@ -100,7 +101,8 @@ std::vector<char> on_sharp_border(const Adjacency& adjacency, const std::vector<
     if (!wall[e] || halfedges.size() != 2 || part[halfedges[0] / 3] == part[halfedges[1] / 3]) continue;
     for (const int v : {adjacency.edges()[e].lower, adjacency.edges()[e].higher}) ++walls[v], sharp[v] += sharp_wall[e];
   }
-  for (int v = 0; v < adjacency.vertex_count(); ++v) keep[v] = walls[v] >= 2 && sharp[v] == walls[v] && !adjacency.is_boundary_vertex(v);
+  for (int v = 0; v < adjacency.vertex_count(); ++v)
+    keep[v] = walls[v] >= 2 && sharp[v] == walls[v] && !adjacency.is_boundary_vertex(v);
   return keep;
 }
 
@@ -127,9 +129,10 @@ std::vector<int> parts_between(const Adjacency& adjacency, const std::vector<cha
   return part;
 }
 
-/// Each part's indicator after diffusing over about two edges: n x parts, rows sum to 1. It stays as it is on and beside what `keep` marks.
-Eigen::MatrixXd smooth_indicators(const TriangleMesh& mesh, const Adjacency& adjacency, const std::vector<int>& part, int count,
-                                  const std::vector<char>& keep, Context& context) {
+/// Each part's indicator after diffusing over about two edges: n x parts, rows sum to 1. It stays as it is on and
+/// beside what `keep` marks.
+Eigen::MatrixXd smooth_indicators(const TriangleMesh& mesh, const Adjacency& adjacency, const std::vector<int>& part,
+                                  int count, const std::vector<char>& keep, Context& context) {
   const int n = mesh.vertex_count();
   const Eigen::VectorXd face_area = face_areas(mesh);
   Eigen::MatrixXd u = Eigen::MatrixXd::Zero(n, count);
@@ -155,7 +158,8 @@ Eigen::MatrixXd smooth_indicators(const TriangleMesh& mesh, const Adjacency& adj
 
 }  // namespace
 
-LabelledSurface divide_along_curves(const TriangleMesh& mesh, const std::vector<DrawnCurve>& curves, const SnapTargets* targets, Context& context) {
+LabelledSurface divide_along_curves(const TriangleMesh& mesh, const std::vector<DrawnCurve>& curves,
+                                    const SnapTargets* targets, Context& context) {
   const Adjacency adjacency(mesh);
   const PointDistance surface(mesh);
   const double step_mm = mean_edge_length(mesh);

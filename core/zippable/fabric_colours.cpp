@@ -119,10 +119,8 @@ FabricColours two_fabrics(const Ribbon& ribbon, double width_mm) {
   const FaceTree tree = tree_of(adjacency);
   const double least_band_mm2 = 2 * width_mm * width_mm;
   colours.has_bands = std::min(on_side[0], on_side[1]) > least_band_mm2;
-  if (colours.has_bands)
-    colour_by_bands(adjacency, tree, band, area, seam_cost, colours);
-  else
-    colour_by_halves(adjacency, tree, area, colours);
+  if (colours.has_bands) colour_by_bands(adjacency, tree, band, area, seam_cost, colours);
+  else colour_by_halves(adjacency, tree, area, colours);
   for (std::size_t f = 0; f < faces; ++f) colours.area_mm2[colours.of_face[f]] += area[f];
   for (int h = 0; h < 3 * adjacency.face_count(); ++h)
     if (const int o = adjacency.opposite(h); o > h && colours.of_face[h / 3] != colours.of_face[o / 3]) ++colours.seams;

@@ -24,7 +24,8 @@ Matrix3 tensor(const Eigen::MatrixXd& columns, int v) {
   return t;
 }
 
-/// Sums at vertices, averaged over about a scale: (area + scale^2 L) u = sums. The factor's pattern is the same for every scale.
+/// Sums at vertices, averaged over about a scale: (area + scale^2 L) u = sums. The factor's pattern is the same for
+/// every scale.
 class Averaging {
  public:
   Averaging(const Positions& places, const SparseMatrix& laplacian, const Eigen::VectorXd& area, Context& context)

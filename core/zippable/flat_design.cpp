@@ -65,19 +65,23 @@ void find_sides(FlatDesign& design, int samples) {
       design.arclength_mm[sample] = design.zipper_mm;
     }
   for (const FlatVertex& vertex : design.boundary)
-    if (vertex.sample >= 0 && design.piece_of[vertex.sample] < 0) refuse("A sample of the zipper is in none of its pieces");
+    if (vertex.sample >= 0 && design.piece_of[vertex.sample] < 0)
+      refuse("A sample of the zipper is in none of its pieces");
 }
 
 ClosureRun read_run(const Json& json, const FlatDesign& design, double length_mm, bool rising) {
-  if (!json.is_object() || !json.contains("first_vertex") || !json.contains("along_mm")) refuse("A side of a cut says too little");
+  if (!json.is_object() || !json.contains("first_vertex") || !json.contains("along_mm"))
+    refuse("A side of a cut says too little");
   ClosureRun run;
   run.first_vertex = read_index(json["first_vertex"], 0, design.vertex_count());
   const Json& along = json["along_mm"];
-  if (!along.is_array() || along.size() < 2 || static_cast<int>(along.size()) > design.vertex_count()) refuse("A side of a cut has no edge or too many");
+  if (!along.is_array() || along.size() < 2 || static_cast<int>(along.size()) > design.vertex_count())
+    refuse("A side of a cut has no edge or too many");
   for (const Json& item : along) {
     if (!item.is_number()) refuse("A place along a cut is no number");
     const double mm = item.get<double>();
-    if (!(mm >= 0 && mm <= length_mm) || (!run.along_mm.empty() && !(rising ? mm > run.along_mm.back() : mm < run.along_mm.back())))
+    if (!(mm >= 0 && mm <= length_mm) ||
+        (!run.along_mm.empty() && !(rising ? mm > run.along_mm.back() : mm < run.along_mm.back())))
       refuse("Places along a cut do not follow each other");
     run.along_mm.push_back(mm);
   }
@@ -89,15 +93,18 @@ ClosureRun read_run(const Json& json, const FlatDesign& design, double length_mm
 void read_closures(const Json& list, FlatDesign& design) {
   if (!list.is_array()) refuse("The design's cuts are no list");
   for (const Json& item : list) {
-    const Json sides = item.is_object() ? item.value("sides", Json()) : Json(), length = item.is_object() ? item.value("length_mm", Json()) : Json();
-    if (!sides.is_array() || sides.size() != 2 || !length.is_number() || !(length.get<double>() > 0 && length.get<double>() < 1e9))
+    const Json sides = item.is_object() ? item.value("sides", Json()) : Json(),
+               length = item.is_object() ? item.value("length_mm", Json()) : Json();
+    if (!sides.is_array() || sides.size() != 2 || !length.is_number() ||
+        !(length.get<double>() > 0 && length.get<double>() < 1e9))
       refuse("A cut of the design has not two sides and a length");
     HandleClosure closure;
     closure.length_mm = length.get<double>();
     closure.closed = item.value("closed", Json(true)) != false;
     for (std::size_t side = 0; side < 2; ++side) {
       if (!sides[side].is_array() || sides[side].empty()) refuse("A side of a cut is empty");
-      for (const Json& run : sides[side]) closure.sides[side].push_back(read_run(run, design, closure.length_mm, side == 0));
+      for (const Json& run : sides[side])
+        closure.sides[side].push_back(read_run(run, design, closure.length_mm, side == 0));
     }
     design.closures.push_back(std::move(closure));
   }
@@ -112,7 +119,8 @@ bool FlatDesign::zipper_edge(int v) const {
 
 FlatDesign read_flat_design(ByteView bytes) {
   const Json json = Json::parse(as_text(bytes), nullptr, false);
-  if (!json.is_object() || json.value("format", Json()) != "formwright zippable design" || json.value("version", Json()) != 1)
+  if (!json.is_object() || json.value("format", Json()) != "formwright zippable design" ||
+      json.value("version", Json()) != 1)
     refuse("This is no zippable design");
   const Json ribbon = json.value("ribbon", Json()), pieces = json.value("pieces", Json());
   if (!ribbon.is_object() || !ribbon.contains("boundary") || !ribbon.contains("triangles") || !pieces.is_array())
@@ -124,7 +132,8 @@ FlatDesign read_flat_design(ByteView bytes) {
   const int count = static_cast<int>(boundary.size());
   int samples = 0;
   for (const Json& item : boundary) {
-    if (!item.is_object() || !item.contains("position_mm") || !item.contains("flat_mm") || !item.contains("zipper_sample"))
+    if (!item.is_object() || !item.contains("position_mm") || !item.contains("flat_mm") ||
+        !item.contains("zipper_sample"))
       refuse("A vertex of the ribbon says too little");
     FlatVertex vertex;
     vertex.position_mm = read_point<3>(item["position_mm"]);
@@ -143,7 +152,8 @@ FlatDesign read_flat_design(ByteView bytes) {
   check_disc(design);
   design.fabric_of_face.assign(triangles.size(), 0);
   if (const Json fabric = ribbon.value("fabric", Json()); !fabric.is_null()) {
-    if (!fabric.is_array() || fabric.size() != triangles.size()) refuse("The design's fabrics are not those of its triangles");
+    if (!fabric.is_array() || fabric.size() != triangles.size())
+      refuse("The design's fabrics are not those of its triangles");
     for (std::size_t f = 0; f < fabric.size(); ++f) {
       if (fabric[f] != 0 && fabric[f] != 1) refuse("A triangle of the design is of no fabric");
       design.fabric_of_face[f] = fabric[f].get<int>();

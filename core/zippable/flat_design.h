@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A zippable design as its plans and its simulation need it: the ribbon's boundary, its zipper sides and its triangles, from design.json.
+// A zippable design as its plans and its simulation need it: the ribbon's boundary, its zipper sides and its triangles,
+// from design.json.
 #include <vector>
 
 #include "base/bytes.h"
@@ -17,9 +18,9 @@ struct FlatVertex {
 };
 
 struct FlatDesign {
-  std::vector<FlatVertex> boundary;      // counter-clockwise in the plane, all of the ribbon's vertices
-  Triangles F;                           // over the boundary, counter-clockwise in the plane
-  std::vector<int> fabric_of_face;       // 0 or 1; all 0 where there is one fabric
+  std::vector<FlatVertex> boundary;  // counter-clockwise in the plane, all of the ribbon's vertices
+  Triangles F;                       // over the boundary, counter-clockwise in the plane
+  std::vector<int> fabric_of_face;   // 0 or 1; all 0 where there is one fabric
   int fabrics = 1;
   std::vector<std::vector<int>> pieces;  // zipper samples from opening to opening, in the order of the zipper
   std::vector<HandleClosure> closures;   // what meets along the openings; none in files from before there were any
@@ -38,8 +39,8 @@ struct FlatDesign {
   double length_in_space_mm(int a, int b) const { return (boundary[a].position_mm - boundary[b].position_mm).norm(); }
 };
 
-/// What zippable-design has written. Throws Error{invalid_input, "design"}: not such a file, a ribbon that is no disc with every vertex on
-/// its boundary, numbers that are not finite, sides that differ.
+/// What zippable-design has written. Throws Error{invalid_input, "design"}: not such a file, a ribbon that is no disc
+/// with every vertex on its boundary, numbers that are not finite, sides that differ.
 FlatDesign read_flat_design(ByteView bytes);
 
 }  // namespace formwright

@@ -18,7 +18,8 @@ double through(const Vec3& a, double da, const Vec3& b, double db, const Vec3& c
   const double x = (da * da - db * db + length * length) / (2 * length);
   const double y_squared = da * da - x * x;
   if (y_squared < 0) return std::numeric_limits<double>::infinity();
-  const double cx = ac.dot(ab) / length, cy = std::sqrt(std::max(0.0, ac.squaredNorm() - cx * cx)), y = std::sqrt(y_squared);
+  const double cx = ac.dot(ab) / length, cy = std::sqrt(std::max(0.0, ac.squaredNorm() - cx * cx)),
+               y = std::sqrt(y_squared);
   const double crossing = x + (cx - x) * (y + cy > 0 ? y / (y + cy) : 0.0);
   if (crossing < 0 || crossing > length) return std::numeric_limits<double>::infinity();
   return std::hypot(cx - x, cy + y);
@@ -26,8 +27,8 @@ double through(const Vec3& a, double da, const Vec3& b, double db, const Vec3& c
 
 }  // namespace
 
-Eigen::VectorXd geodesic_distance_mm(const TriangleMesh& mesh, const Adjacency& adjacency, const std::vector<int>& sources,
-                                     const Eigen::VectorXd& slowness) {
+Eigen::VectorXd geodesic_distance_mm(const TriangleMesh& mesh, const Adjacency& adjacency,
+                                     const std::vector<int>& sources, const Eigen::VectorXd& slowness) {
   Eigen::VectorXd distance = Eigen::VectorXd::Constant(mesh.vertex_count(), std::numeric_limits<double>::infinity());
   std::vector<char> done(mesh.vertex_count(), 0);
   using Entry = std::pair<double, int>;

@@ -11,7 +11,7 @@ namespace formwright {
 
 /// Per vertex in mm, 0 at the sources, infinite where no source leads. Obtuse triangles fall back to their sides.
 /// `slowness` (per vertex; empty: 1): what a millimetre there counts for.
-Eigen::VectorXd geodesic_distance_mm(const TriangleMesh& mesh, const Adjacency& adjacency, const std::vector<int>& sources,
-                                     const Eigen::VectorXd& slowness = {});
+Eigen::VectorXd geodesic_distance_mm(const TriangleMesh& mesh, const Adjacency& adjacency,
+                                     const std::vector<int>& sources, const Eigen::VectorXd& slowness = {});
 
 }  // namespace formwright

@@ -21,7 +21,8 @@ double TapedCuts::Cut::apart_mm(double a, double b) const {
   return closed ? std::min(way, length_mm - way) : way;
 }
 
-TapedCuts::TapedCuts(const Segmentation& s, const Parameterisation& p, const std::vector<TapedCut>& cuts) : period_mm_(p.period_mm) {
+TapedCuts::TapedCuts(const Segmentation& s, const Parameterisation& p, const std::vector<TapedCut>& cuts)
+    : period_mm_(p.period_mm) {
   struct Step {
     int cut;
     double from_mm, to_mm;
@@ -43,7 +44,8 @@ TapedCuts::TapedCuts(const Segmentation& s, const Parameterisation& p, const std
   const Adjacency adjacency(s.mesh);
   for (int h = 0; h < 3 * s.mesh.face_count(); ++h) {
     if (adjacency.opposite(h) >= 0) continue;
-    const Key a = key_of(s.mesh.V.row(adjacency.from(h)).transpose()), b = key_of(s.mesh.V.row(adjacency.to(h)).transpose());
+    const Key a = key_of(s.mesh.V.row(adjacency.from(h)).transpose()),
+              b = key_of(s.mesh.V.row(adjacency.to(h)).transpose());
     const auto ahead = steps.find({a, b}), against = steps.find({b, a});
     if (ahead == steps.end() && against == steps.end()) continue;
     const bool left = ahead != steps.end();
@@ -64,7 +66,8 @@ TapedCuts::TapedCuts(const Segmentation& s, const Parameterisation& p, const std
         const bool goes_on = std::any_of(spans.begin(), spans.end(), [&](const Span& other) {
           const double there = end ? other.from_mm : other.to_mm, turns = (x - there) / period;
           return other.cut == span.cut && other.side == span.side && std::abs(turns - std::round(turns)) < 1e-9 &&
-                 cuts_[span.cut].apart_mm(end ? other.along_from_mm : other.along_to_mm, along) < 1e-9 * cuts_[span.cut].length_mm;
+                 cuts_[span.cut].apart_mm(end ? other.along_from_mm : other.along_to_mm, along) <
+                     1e-9 * cuts_[span.cut].length_mm;
         });
         if (!goes_on) cuts_[span.cut].corners_mm.push_back(along);
       }
@@ -82,13 +85,16 @@ std::optional<TapedCuts::Place> TapedCuts::at(int part, bool upper, double x, do
   for (const Span& span : line(part, upper)) {
     const double shift = period * std::floor((inside - span.from_mm) / period);
     if (inside - shift >= span.to_mm) continue;
-    return Place{span.cut, span.side, std::clamp(span.along_at(x - shift), std::min(span.along_from_mm, span.along_to_mm), std::max(span.along_from_mm, span.along_to_mm))};
+    return Place{span.cut, span.side,
+                 std::clamp(span.along_at(x - shift), std::min(span.along_from_mm, span.along_to_mm),
+                            std::max(span.along_from_mm, span.along_to_mm))};
   }
   return std::nullopt;
 }
 
 void TapedCuts::place_on(OpeningArc& arc, double grid_step_mm) const {
-  const double period = period_mm_[arc.part], low = std::min(arc.from_mm, arc.to_mm), high = std::max(arc.from_mm, arc.to_mm), hair = 1e-9 * period;
+  const double period = period_mm_[arc.part], low = std::min(arc.from_mm, arc.to_mm),
+               high = std::max(arc.from_mm, arc.to_mm), hair = 1e-9 * period;
   std::vector<double> places;
   for (const Span& span : line(arc.part, arc.upper)) {
     const Cut& cut = cuts_[span.cut];
@@ -103,11 +109,13 @@ void TapedCuts::place_on(OpeningArc& arc, double grid_step_mm) const {
   }
   for (const int i : arc.grid) {
     const double x = i * grid_step_mm;
-    const bool beside = std::any_of(places.begin(), places.end(), [&](double other) { return std::abs(other - x) < 0.3 * grid_step_mm; });
+    const bool beside = std::any_of(places.begin(), places.end(),
+                                    [&](double other) { return std::abs(other - x) < 0.3 * grid_step_mm; });
     if (!beside && !at(arc.part, arc.upper, x, x + hair)) places.push_back(x);
   }
   std::sort(places.begin(), places.end());
-  places.erase(std::unique(places.begin(), places.end(), [&](double a, double b) { return b - a < hair; }), places.end());
+  places.erase(std::unique(places.begin(), places.end(), [&](double a, double b) { return b - a < hair; }),
+               places.end());
   if (arc.to_mm < arc.from_mm) std::reverse(places.begin(), places.end());
   // Rulings go from the nearest corner, in the same order.
   std::vector<int> grid(places.size(), no_grid);
@@ -130,7 +138,8 @@ void TapedCuts::share_places(std::vector<OpeningArc>& arcs, const std::vector<do
       if (!place) continue;
       Cut& cut = cuts_[place->cut];
       cut.corners_mm.push_back(place->along_mm);
-      if (cut.closed && place->side < origin_side[place->cut]) cut.origin_mm = place->along_mm, origin_side[place->cut] = place->side;
+      if (cut.closed && place->side < origin_side[place->cut])
+        cut.origin_mm = place->along_mm, origin_side[place->cut] = place->side;
     }
   for (Cut& cut : cuts_) {
     for (double& corner : cut.corners_mm)
@@ -142,8 +151,9 @@ void TapedCuts::share_places(std::vector<OpeningArc>& arcs, const std::vector<do
     }
     // Exactly one of them, so that a loop begins at 0 and ends at its length.
     if (cut.closed && !cut.shared_mm.empty())
-      cut.origin_mm = *std::min_element(cut.shared_mm.begin(), cut.shared_mm.end(),
-                                        [&](double a, double b) { return cut.apart_mm(a, cut.origin_mm) < cut.apart_mm(b, cut.origin_mm); });
+      cut.origin_mm = *std::min_element(cut.shared_mm.begin(), cut.shared_mm.end(), [&](double a, double b) {
+        return cut.apart_mm(a, cut.origin_mm) < cut.apart_mm(b, cut.origin_mm);
+      });
   }
   for (const OpeningArc& arc : arcs)
     for (const int i : arc.grid) {
@@ -178,7 +188,8 @@ std::vector<HandleClosure> TapedCuts::closures(const std::vector<OpeningArc>& ar
     int run_cut = -1, run_side = -1;
     for (std::size_t k = 0; k + 1 < x.size(); ++k) {
       const double middle = 0.5 * (x[k] + x[k + 1]);
-      const auto here = at(arc.part, arc.upper, middle, x[k + 1]), from = at(arc.part, arc.upper, x[k], middle), to = at(arc.part, arc.upper, x[k + 1], middle);
+      const auto here = at(arc.part, arc.upper, middle, x[k + 1]), from = at(arc.part, arc.upper, x[k], middle),
+                 to = at(arc.part, arc.upper, x[k + 1], middle);
       if (!here || !from || !to || from->cut != here->cut || to->cut != here->cut) {
         run = nullptr;
         continue;
@@ -195,7 +206,8 @@ std::vector<HandleClosure> TapedCuts::closures(const std::vector<OpeningArc>& ar
       run->along_mm.push_back(b);
     }
   }
-  std::erase_if(result, [](const HandleClosure& closure) { return closure.sides[0].empty() || closure.sides[1].empty(); });
+  std::erase_if(result,
+                [](const HandleClosure& closure) { return closure.sides[0].empty() || closure.sides[1].empty(); });
   return result;
 }
 

@@ -25,7 +25,8 @@ int root_of(std::vector<int>& parent, int i) {
   return i;
 }
 
-/// The shortest of the generators that a tree of shortest ways from `root` gives. Openings count as faces; ways keep off them.
+/// The shortest of the generators that a tree of shortest ways from `root` gives. Openings count as faces; ways keep
+/// off them.
 Loop shortest_loop(const TriangleMesh& mesh, const Adjacency& adjacency, int root) {
   const int n = mesh.vertex_count(), m = mesh.face_count();
   std::vector<double> distance(n, infinite);
@@ -55,7 +56,8 @@ Loop shortest_loop(const TriangleMesh& mesh, const Adjacency& adjacency, int roo
   }
   std::vector<double> length(adjacency.edge_count(), 0);
   for (const int e : order) length[e] = loop_length(e);
-  std::sort(order.begin(), order.end(), [&](int a, int b) { return length[a] != length[b] ? length[a] > length[b] : a < b; });
+  std::sort(order.begin(), order.end(),
+            [&](int a, int b) { return length[a] != length[b] ? length[a] > length[b] : a < b; });
   const auto openings = boundary_loops(adjacency);
   std::vector<int> opening_of(n, -1);
   for (std::size_t i = 0; i < openings.size(); ++i)
@@ -65,7 +67,8 @@ Loop shortest_loop(const TriangleMesh& mesh, const Adjacency& adjacency, int roo
   Loop best;
   for (const int e : order) {
     const auto halfedges = adjacency.halfedges_of_edge(e);
-    const int left = halfedges[0] / 3, right = halfedges.size() == 2 ? halfedges[1] / 3 : m + opening_of[adjacency.edges()[e].lower];
+    const int left = halfedges[0] / 3,
+              right = halfedges.size() == 2 ? halfedges[1] / 3 : m + opening_of[adjacency.edges()[e].lower];
     const int a = root_of(parent, left), b = root_of(parent, right);
     if (a != b) {
       parent[a] = b;
@@ -79,7 +82,8 @@ Loop shortest_loop(const TriangleMesh& mesh, const Adjacency& adjacency, int roo
       return path;
     };
     std::vector<int> one = way(adjacency.edges()[e].lower), other = way(adjacency.edges()[e].higher);
-    while (one.size() > 1 && other.size() > 1 && one[one.size() - 2] == other[other.size() - 2]) one.pop_back(), other.pop_back();
+    while (one.size() > 1 && other.size() > 1 && one[one.size() - 2] == other[other.size() - 2])
+      one.pop_back(), other.pop_back();
     best.vertices = one;
     best.vertices.insert(best.vertices.end(), other.rbegin() + 1, other.rend());
     best.length = length[e];
@@ -92,10 +96,12 @@ Loop shortest_loop(const TriangleMesh& mesh, const Adjacency& adjacency, int roo
 }
 
 /// Gives the faces on the right of the walk, a loop or from one opening to another, vertices of their own.
-void cut_along(TriangleMesh& mesh, const Adjacency& adjacency, const std::vector<int>& loop, bool closed, std::vector<int>& source_of) {
+void cut_along(TriangleMesh& mesh, const Adjacency& adjacency, const std::vector<int>& loop, bool closed,
+               std::vector<int>& source_of) {
   const std::size_t count = loop.size();
   std::vector<char> wall(adjacency.edge_count(), 0);
-  for (std::size_t i = 0; i + (closed ? 0 : 1) < count; ++i) wall[adjacency.find_edge(loop[i], loop[(i + 1) % count])] = 1;
+  for (std::size_t i = 0; i + (closed ? 0 : 1) < count; ++i)
+    wall[adjacency.find_edge(loop[i], loop[(i + 1) % count])] = 1;
   const Eigen::Index old = mesh.V.rows();
   mesh.V.conservativeResize(old + static_cast<Eigen::Index>(count), 3);
   Triangles faces = mesh.F;
@@ -116,7 +122,8 @@ void cut_along(TriangleMesh& mesh, const Adjacency& adjacency, const std::vector
         if (adjacency.from(h) != v || faces(f, h % 3) == copy) continue;
         faces(f, h % 3) = copy;
         for (const int side : {h, previous_halfedge(h)})
-          if (!wall[adjacency.edge_of(side)] && adjacency.opposite(side) >= 0) stack.push_back(adjacency.opposite(side) / 3);
+          if (!wall[adjacency.edge_of(side)] && adjacency.opposite(side) >= 0)
+            stack.push_back(adjacency.opposite(side) / 3);
       }
     }
   }
@@ -164,7 +171,8 @@ OpenedSurface cut_handles(const TriangleMesh& mesh, Context& context) {
       opened = after.is_manifold() && face_components(after).count == 1 && genus(after) == handles - 1;
     }
     if (!opened)
-      throw Error(ErrorCode::invalid_input, "mesh", "A handle of the model is too coarse to be cut open: subdivide the model first.");
+      throw Error(ErrorCode::invalid_input, "mesh",
+                  "A handle of the model is too coarse to be cut open: subdivide the model first.");
     std::vector<int> given;
     for (const int v : best.vertices) given.push_back(result.source_of[v]);
     result.cuts.push_back(std::move(given));
@@ -209,7 +217,8 @@ bool join_nearest_openings(OpenedSurface& surface, Context& context) {
   std::vector<int> source_of = surface.source_of;
   cut_along(cut, adjacency, best, false, source_of);
   const Adjacency after(cut);
-  if (!after.is_manifold() || face_components(after).count != 1 || boundary_loops(after).size() + 1 != openings.size()) return false;
+  if (!after.is_manifold() || face_components(after).count != 1 || boundary_loops(after).size() + 1 != openings.size())
+    return false;
   surface.mesh = std::move(cut);
   surface.source_of = std::move(source_of);
   surface.slits.emplace_back();

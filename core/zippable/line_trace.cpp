@@ -78,11 +78,16 @@ TracedLine LineTracer::trace(int part, double x_low, double x_high) const {
     line.x_mm.push_back(x);
     line.position_mm.push_back(position);
   };
-  const auto point = [&](int corner, double shift) { return Vec2(p_.corners_mm(corner, 0) + shift, p_.corners_mm(corner, 1)); };
-  const auto side_of = [&](const Vec2& q) { return along.x() * (q.y() - start.y()) - along.y() * (q.x() - start.x()); };  // > 0: left
+  const auto point = [&](int corner, double shift) {
+    return Vec2(p_.corners_mm(corner, 0) + shift, p_.corners_mm(corner, 1));
+  };
+  const auto side_of = [&](const Vec2& q) {
+    return along.x() * (q.y() - start.y()) - along.y() * (q.x() - start.x());
+  };  // > 0: left
   add(x_low, on_line(part, false, x_low));
   auto [h, shift] = side_at(part, false, x_low);
-  const int most = 4 * s_.mesh.face_count() + static_cast<int>(8.0 * (x_high - x_low) / p_.period_mm[part] * s_.mesh.face_count());
+  const int most =
+      4 * s_.mesh.face_count() + static_cast<int>(8.0 * (x_high - x_low) / p_.period_mm[part] * s_.mesh.face_count());
   for (int step = 0; step < most; ++step) {
     // Entering over h, whose start lies left of the way and whose end right: the third corner decides how to leave.
     const int next = next_halfedge(h), last = previous_halfedge(h);
@@ -92,8 +97,8 @@ TracedLine LineTracer::trace(int part, double x_low, double x_high) const {
     const Vec2 pl = point(left, shift), pr = point(right, shift);
     const double sl = std::max(side_of(pl), 0.0), sr = std::max(-side_of(pr), 0.0);
     const double t = sl + sr > 0 ? sl / (sl + sr) : 0.5;
-    const Vec3 position =
-        (1 - t) * s_.mesh.V.row(adjacency_.from(left)).transpose() + t * s_.mesh.V.row(adjacency_.from(right)).transpose();
+    const Vec3 position = (1 - t) * s_.mesh.V.row(adjacency_.from(left)).transpose() +
+                          t * s_.mesh.V.row(adjacency_.from(right)).transpose();
     const int o = adjacency_.opposite(out);
     if (o < 0 || s_.face_segment[o / 3] != part) {
       if (std::abs((1 - t) * pl.y() + t * pr.y() - height) > 1e-6 * height) break;  // back at the lower line

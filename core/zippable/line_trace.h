@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Straight lines of the parameter domain on the surface: from the lower line of a part up to its upper line, through as many periods
-// as they take.
+// Straight lines of the parameter domain on the surface: from the lower line of a part up to its upper line, through as
+// many periods as they take.
 #include <vector>
 
 #include "zippable/parameterisation.h"

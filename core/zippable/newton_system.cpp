@@ -10,7 +10,9 @@
 namespace formwright {
 namespace {
 
-const ChartCoordinate& coordinate(const SeamlessChart& chart, int face, int i) { return chart.coordinate(3 * face + i / 2, i % 2); }
+const ChartCoordinate& coordinate(const SeamlessChart& chart, int face, int i) {
+  return chart.coordinate(3 * face + i / 2, i % 2);
+}
 
 }  // namespace
 

@@ -36,7 +36,8 @@ class NewtonSystem {
   const Eigen::VectorXd& gradient_local() const { return gradient_; }
   const Eigen::VectorXd& gradient_shared() const { return gradient_shared_; }
   /// H times a vector, for tests.
-  void apply(const Eigen::VectorXd& local, const Eigen::VectorXd& shared, Eigen::VectorXd& out_local, Eigen::VectorXd& out_shared) const;
+  void apply(const Eigen::VectorXd& local, const Eigen::VectorXd& shared, Eigen::VectorXd& out_local,
+             Eigen::VectorXd& out_shared) const;
 
   /// False when the matrix is not positive definite. Diagonal entries of local variables count 1 + `damping` times.
   bool solve(NewtonStep& step, double damping, Context& context);
@@ -45,7 +46,8 @@ class NewtonSystem {
  private:
   const SeamlessChart& chart_;
   SparseMatrix lower_;
-  std::vector<int> slot_;      // per triangle 36: place of the pair of corner coordinates among the values; -1: none or above the diagonal
+  std::vector<int> slot_;      // per triangle 36: place of the pair of corner coordinates among the values; -1: none or
+                               // above the diagonal
   std::vector<int> bordered_;  // triangles that touch a shared variable
   std::vector<DirichletTerms> terms_;
   Eigen::VectorXd gradient_, gradient_shared_;

@@ -43,7 +43,8 @@ class Solver {
     const std::size_t m = s.mesh.face_count();
     reference_.resize(m);
     for (std::size_t f = 0; f < m; ++f)
-      reference_[f] = reference_triangle(intrinsic.length[3 * f], intrinsic.length[3 * f + 1], intrinsic.length[3 * f + 2]);
+      reference_[f] =
+          reference_triangle(intrinsic.length[3 * f], intrinsic.length[3 * f + 1], intrinsic.length[3 * f + 2]);
     total_area_ = sum_over_faces(m, [&](std::size_t f) { return reference_[f].area; });
   }
 
@@ -69,13 +70,14 @@ class Solver {
       for (int i = 0; i < static_cast<int>(s_.interfaces.size()); ++i)
         shared_[chart_.length_of(i)] = walk_length_mm(s_.mesh, s_.interfaces[i].vertices, false);
     }
-    for (int part = 0; part < s_.part_count(); ++part) shared_[chart_.height_of(part)] = chart_.period_mm(part, shared_);
+    for (int part = 0; part < s_.part_count(); ++part)
+      shared_[chart_.height_of(part)] = chart_.period_mm(part, shared_);
     for (const auto& [interface, place, local] : chart_.interface_variables()) {
       const auto& walk = s_.interfaces[interface].vertices;
       local_[local] = walk_length_mm(s_.mesh, {walk.begin(), walk.begin() + place + 1}, false);
     }
-    // Tutte: half a spring a side and triangle, so that a side on a line counts half of one inside. That is the embedding
-    // of the surface doubled along its free lines, a torus.
+    // Tutte: half a spring a side and triangle, so that a side on a line counts half of one inside. That is the
+    // embedding of the surface doubled along its free lines, a torus.
     const CornerCoordinates uv = chart_.corners(local_, shared_);
     system_.assemble([&](int f) {
       DirichletTerms t;
@@ -101,21 +103,23 @@ class Solver {
     const CornerCoordinates embedded = chart_.corners(local_, shared_);
     for (std::size_t f = 0; f < reference_.size(); ++f)
       if (!(jacobian(reference_[f], corners_of(embedded, f)).determinant() > 0))
-        throw Error(ErrorCode::could_not_solve, "mesh",
-                    "The start of the parameterisation folds over: larger punctures or another division into parts help.");
+        throw Error(
+            ErrorCode::could_not_solve, "mesh",
+            "The start of the parameterisation folds over: larger punctures or another division into parts help.");
     rescale(embedded);
     result_.energy_start = energy(chart_.corners(local_, shared_)) / 4;
   }
 
-  /// The best scale along x for all parts together and along y for each, in closed form: with rows r1, r2 of J, the energy
-  /// under (a, b) is a^2 |r1|^2 + b^2 |r2|^2 + |r2|^2 / (a det)^2 + |r1|^2 / (b det)^2.
+  /// The best scale along x for all parts together and along y for each, in closed form: with rows r1, r2 of J, the
+  /// energy under (a, b) is a^2 |r1|^2 + b^2 |r2|^2 + |r2|^2 / (a det)^2 + |r1|^2 / (b det)^2.
   void rescale(const CornerCoordinates& uv) {
     const auto scales = [&](int part) {
       Eigen::Array4d sums = Eigen::Array4d::Zero();
       for (std::size_t f = 0; f < reference_.size(); ++f) {
         if (part >= 0 && s_.face_segment[f] != part) continue;
         const Eigen::Matrix2d J = jacobian(reference_[f], corners_of(uv, f));
-        const double det = J.determinant(), weight = reference_[f].area, r1 = J.row(0).squaredNorm(), r2 = J.row(1).squaredNorm();
+        const double det = J.determinant(), weight = reference_[f].area, r1 = J.row(0).squaredNorm(),
+                     r2 = J.row(1).squaredNorm();
         sums += weight * Eigen::Array4d(r1, r2, r2 / (det * det), r1 / (det * det));
       }
       return Vec2(std::pow(sums[2] / sums[0], 0.25), std::pow(sums[3] / sums[1], 0.25));
@@ -133,9 +137,10 @@ class Solver {
   }
 
   double energy(const CornerCoordinates& uv) const {
-    return sum_over_faces(
-               reference_.size(),
-               [&](std::size_t f) { return reference_[f].area * symmetric_dirichlet(jacobian(reference_[f], corners_of(uv, f))); }) /
+    return sum_over_faces(reference_.size(),
+                          [&](std::size_t f) {
+                            return reference_[f].area * symmetric_dirichlet(jacobian(reference_[f], corners_of(uv, f)));
+                          }) /
            total_area_;
   }
 
@@ -208,7 +213,8 @@ class Solver {
   Parameterisation result_;
 };
 
-/// A tube squeezed to a millionth of its size is so much stiffer than the rest that rounding makes the matrix look singular.
+/// A tube squeezed to a millionth of its size is so much stiffer than the rest that rounding makes the matrix look
+/// singular.
 bool Solver::solve_damped(NewtonStep& step) {
   for (const double damping : {0.0, 1e-12, 1e-10, 1e-8, 1e-6})
     if (system_.solve(step, damping, context_) && step.slope < 0) return true;
@@ -255,7 +261,8 @@ void Solver::finish() {
     result_.period_mm.push_back(chart_.period_mm(part, shared_));
     result_.height_mm.push_back(shared_[chart_.height_of(part)]);
   }
-  for (int i = 0; i < static_cast<int>(s_.interfaces.size()); ++i) result_.interface_length_mm.push_back(shared_[chart_.length_of(i)]);
+  for (int i = 0; i < static_cast<int>(s_.interfaces.size()); ++i)
+    result_.interface_length_mm.push_back(shared_[chart_.length_of(i)]);
   result_.face_distortion.resize(reference_.size());
   double sum = 0;
   for (std::size_t f = 0; f < reference_.size(); ++f) {
@@ -269,7 +276,8 @@ void Solver::finish() {
 
 }  // namespace
 
-Parameterisation parameterise(const Segmentation& segmentation, const ParameterisationOptions& options, Context& context) {
+Parameterisation parameterise(const Segmentation& segmentation, const ParameterisationOptions& options,
+                              Context& context) {
   for (int part = 0; part < segmentation.part_count(); ++part)
     if (!segmentation.problems[part].empty())
       throw Error(ErrorCode::invalid_input, "mesh",

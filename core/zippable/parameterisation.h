@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The seamless parameterisation of all parts, thesis Sec. 5.2.2, eq. (5.1) to (5.5): the least symmetric Dirichlet energy
-// under the constraints, by projected Newton steps (Shtengel et al. 2017; Teran et al. 2005) from Tutte's embedding.
+// The seamless parameterisation of all parts, thesis Sec. 5.2.2, eq. (5.1) to (5.5): the least symmetric Dirichlet
+// energy under the constraints, by projected Newton steps (Shtengel et al. 2017; Teran et al. 2005) from Tutte's
+// embedding.
 #include <vector>
 
 #include "base/context.h"
@@ -31,9 +32,10 @@ struct Parameterisation {
   double seconds_start = 0, seconds_newton = 0;
 };
 
-/// Needs a valid segmentation. Throws Error: invalid_input (not valid: names the part), could_not_solve ("mesh": the start
-/// is not an embedding, or the iteration does not settle), cancelled.
-Parameterisation parameterise(const Segmentation& segmentation, const ParameterisationOptions& options, Context& context);
+/// Needs a valid segmentation. Throws Error: invalid_input (not valid: names the part), could_not_solve ("mesh": the
+/// start is not an embedding, or the iteration does not settle), cancelled.
+Parameterisation parameterise(const Segmentation& segmentation, const ParameterisationOptions& options,
+                              Context& context);
 
 /// Largest violation of (5.2) to (5.4) in mm, recomputed from corners alone: seams, straight lines, interfaces.
 double constraint_residual_mm(const Segmentation& segmentation, const Parameterisation& parameterisation);

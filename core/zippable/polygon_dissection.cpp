@@ -17,7 +17,8 @@ class ChordSet {
     // The shorter side of the walk is looked through for a chord that leaves it.
     const int count = static_cast<int>(ends_.size());
     const bool inside = chord.to - chord.from <= count / 2;
-    const int length = inside ? chord.to - chord.from : count - (chord.to - chord.from), start = inside ? chord.from : chord.to;
+    const int length = inside ? chord.to - chord.from : count - (chord.to - chord.from),
+              start = inside ? chord.from : chord.to;
     for (int k = 1; k < length; ++k)
       for (const int other : ends_[(start + k) % count]) {
         const bool other_inside = other > chord.from && other < chord.to;
@@ -71,7 +72,8 @@ std::vector<std::vector<int>> dissect(int count, const std::vector<Chord>& chord
   return pieces;
 }
 
-std::vector<std::array<int, 3>> cheapest_triangulation(const std::vector<int>& polygon, const std::function<double(int, int)>& side,
+std::vector<std::array<int, 3>> cheapest_triangulation(const std::vector<int>& polygon,
+                                                       const std::function<double(int, int)>& side,
                                                        const std::function<double(int, int, int)>& triangle) {
   const int n = static_cast<int>(polygon.size());
   std::vector<std::array<int, 3>> triangles;

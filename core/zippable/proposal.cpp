@@ -28,7 +28,8 @@ struct Seed {
 };
 
 /// What a millimetre counts for where found borders are to run in valleys.
-Eigen::VectorXd valley_slowness(const TriangleMesh& mesh, const Adjacency& adjacency, const ProposalOptions& options, Context& context) {
+Eigen::VectorXd valley_slowness(const TriangleMesh& mesh, const Adjacency& adjacency, const ProposalOptions& options,
+                                Context& context) {
   const FeatureLines lines = find_features(mesh, adjacency, options.features, context);
   return 1 + 4 * (lines.valley_rad.array() / options.features.least_rad).min(4).square();
 }
@@ -52,7 +53,8 @@ Eigen::VectorXd mean_distance(const TriangleMesh& mesh, const Adjacency& adjacen
   }
   std::vector<double> weight(distances.size(), 0);
   for (int f = 0; f < mesh.face_count(); ++f) {
-    const Vec3 a = mesh.V.row(mesh.F(f, 0)).transpose(), b = mesh.V.row(mesh.F(f, 1)).transpose(), c = mesh.V.row(mesh.F(f, 2)).transpose();
+    const Vec3 a = mesh.V.row(mesh.F(f, 0)).transpose(), b = mesh.V.row(mesh.F(f, 1)).transpose(),
+               c = mesh.V.row(mesh.F(f, 2)).transpose();
     for (int k = 0; k < 3; ++k) weight[owner[mesh.F(f, k)]] += (b - a).cross(c - a).norm();
   }
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(n);
@@ -96,10 +98,11 @@ std::vector<Tip> prominent_maxima(const Adjacency& adjacency, const Eigen::Vecto
   return tips;
 }
 
-std::vector<Seed> find_seeds(const TriangleMesh& mesh, const Adjacency& adjacency, const ProposalOptions& options, const Eigen::VectorXd& slowness,
-                             Context& context) {
+std::vector<Seed> find_seeds(const TriangleMesh& mesh, const Adjacency& adjacency, const ProposalOptions& options,
+                             const Eigen::VectorXd& slowness, Context& context) {
   std::vector<Seed> seeds;
-  for (auto& loop : boundary_loops(adjacency)) seeds.push_back({std::move(loop), true, std::numeric_limits<double>::infinity(), 0});
+  for (auto& loop : boundary_loops(adjacency))
+    seeds.push_back({std::move(loop), true, std::numeric_limits<double>::infinity(), 0});
   if (!options.tips_mm.empty() || !options.cuts_mm.empty()) {
     for (const Vec3& tip : options.tips_mm) {
       Eigen::Index nearest = 0;
@@ -112,7 +115,8 @@ std::vector<Seed> find_seeds(const TriangleMesh& mesh, const Adjacency& adjacenc
                     "Two punctures lie on the same vertex or opening: move one, or subdivide the model.");
       seeds.push_back({{static_cast<int>(nearest)}, false, 0, 0});
     }
-    if (seeds.size() < 2) throw Error(ErrorCode::invalid_input, "segments", "A single puncture makes no cylinder: give two at least.");
+    if (seeds.size() < 2)
+      throw Error(ErrorCode::invalid_input, "segments", "A single puncture makes no cylinder: give two at least.");
     return seeds;
   }
   const Eigen::VectorXd mean = mean_distance(mesh, adjacency, context);
@@ -142,14 +146,16 @@ std::vector<Seed> find_seeds(const TriangleMesh& mesh, const Adjacency& adjacenc
   return seeds;
 }
 
-void puncture_all(Proposal& proposal, LabelledSurface& surface, const std::vector<int>& places, const ProposalOptions& options) {
+void puncture_all(Proposal& proposal, LabelledSurface& surface, const std::vector<int>& places,
+                  const ProposalOptions& options) {
   for (const int v : places) proposal.punctures.push_back(surface.mesh.V.row(v).transpose());
   proposal.puncture_radius_mm = puncture(surface, places, options.puncture_radius_mm);
 }
 
-/// Parts around the seeds by `distance` (n x seeds or more), less `reach_share` of each seed's reach; punctured at the tips.
-Proposal divide(const TriangleMesh& mesh, const std::vector<Seed>& seeds, const Eigen::MatrixXd& distance, double reach_share,
-                const ProposalOptions& options) {
+/// Parts around the seeds by `distance` (n x seeds or more), less `reach_share` of each seed's reach; punctured at the
+/// tips.
+Proposal divide(const TriangleMesh& mesh, const std::vector<Seed>& seeds, const Eigen::MatrixXd& distance,
+                double reach_share, const ProposalOptions& options) {
   LabelledSurface surface;
   const int parts = seeds.size() == 2 ? 1 : static_cast<int>(seeds.size());
   if (parts == 1) {
@@ -180,8 +186,10 @@ Proposal divide(const TriangleMesh& mesh, const std::vector<Seed>& seeds, const 
 Proposal drawn(const TriangleMesh& mesh, const ProposalOptions& options, Context& context) {
   Proposal proposal;
   std::optional<SnapTargets> targets;
-  if (std::any_of(options.curves.begin(), options.curves.end(), [&](const DrawnCurve& c) { return c.snap.value_or(options.follow_creases); }))
-    targets = SnapTargets{find_features(mesh, Adjacency(mesh), options.features, context), options.snap_reach_mm, options.follow_creases};
+  if (std::any_of(options.curves.begin(), options.curves.end(),
+                  [&](const DrawnCurve& c) { return c.snap.value_or(options.follow_creases); }))
+    targets = SnapTargets{find_features(mesh, Adjacency(mesh), options.features, context), options.snap_reach_mm,
+                          options.follow_creases};
   LabelledSurface surface = divide_along_curves(mesh, options.curves, targets ? &*targets : nullptr, context);
   const int parts = 1 + *std::max_element(surface.face_label.begin(), surface.face_label.end());
   const Adjacency adjacency(surface.mesh);
@@ -194,7 +202,9 @@ Proposal drawn(const TriangleMesh& mesh, const ProposalOptions& options, Context
       (surface.mesh.V.rowwise() - tip.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
       const int v = static_cast<int>(nearest);
       const auto faces = adjacency.outgoing(v);
-      if (!faces.empty() && std::all_of(faces.begin(), faces.end(), [&](int h) { return surface.face_label[h / 3] == part; })) place = v;
+      if (!faces.empty() &&
+          std::all_of(faces.begin(), faces.end(), [&](int h) { return surface.face_label[h / 3] == part; }))
+        place = v;
     }
     places.push_back(place);
   }
@@ -204,10 +214,12 @@ Proposal drawn(const TriangleMesh& mesh, const ProposalOptions& options, Context
   std::string problems;
   for (int part = 0; part < proposal.segmentation.part_count(); ++part)
     if (!proposal.segmentation.problems[part].empty())
-      problems += (problems.empty() ? "Part " : " Part ") + std::to_string(part + 1) + " of the curves is not a cylinder. " + proposal.segmentation.problems[part];
+      problems += (problems.empty() ? "Part " : " Part ") + std::to_string(part + 1) +
+                  " of the curves is not a cylinder. " + proposal.segmentation.problems[part];
   if (!problems.empty()) throw Error(ErrorCode::invalid_input, "segments", problems);
   if (traversals(proposal.segmentation, 1).empty())
-    throw Error(ErrorCode::invalid_input, "segments", "No order visits every part of the curves once: let more of them share a border.");
+    throw Error(ErrorCode::invalid_input, "segments",
+                "No order visits every part of the curves once: let more of them share a border.");
   return proposal;
 }
 
@@ -220,15 +232,19 @@ void note_cuts(Proposal& proposal, OpenedSurface& opened, const TriangleMesh& gi
   proposal.handles_cut = static_cast<int>(opened.cuts.size());
   proposal.handle_cuts = std::move(opened.cuts);
   if (proposal.handles_cut > 0)
-    proposal.notes.push_back(std::to_string(proposal.handles_cut) + (proposal.handles_cut == 1 ? " handle was" : " handles were") +
+    proposal.notes.push_back(std::to_string(proposal.handles_cut) +
+                             (proposal.handles_cut == 1 ? " handle was" : " handles were") +
                              " cut open: close the cut with hook-and-loop tape.");
   if (!opened.slits.empty())
-    proposal.notes.push_back("Between openings " + std::to_string(opened.slits.size()) + (opened.slits.size() == 1 ? " slit was" : " slits were") +
+    proposal.notes.push_back("Between openings " + std::to_string(opened.slits.size()) +
+                             (opened.slits.size() == 1 ? " slit was" : " slits were") +
                              " cut, so that there are fewer of them: close these with hook-and-loop tape, too.");
 }
 
-/// Parts around openings and tips, the least prominent tips given up one by one; nothing when only openings are left to give up.
-std::optional<Proposal> automatic(const OpenedSurface& opened, const ProposalOptions& options, Context& context, std::string& problem) {
+/// Parts around openings and tips, the least prominent tips given up one by one; nothing when only openings are left to
+/// give up.
+std::optional<Proposal> automatic(const OpenedSurface& opened, const ProposalOptions& options, Context& context,
+                                  std::string& problem) {
   const Adjacency adjacency(opened.mesh);
   Eigen::VectorXd slowness;
   if (options.follow_creases) slowness = valley_slowness(opened.mesh, adjacency, options, context);
@@ -237,7 +253,8 @@ std::optional<Proposal> automatic(const OpenedSurface& opened, const ProposalOpt
   Eigen::MatrixXd distance(opened.mesh.vertex_count(), static_cast<Eigen::Index>(found));
   parallel_for(found, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
-      distance.col(static_cast<Eigen::Index>(k)) = geodesic_distance_mm(opened.mesh, adjacency, seeds[k].vertices, slowness);
+      distance.col(static_cast<Eigen::Index>(k)) =
+          geodesic_distance_mm(opened.mesh, adjacency, seeds[k].vertices, slowness);
   });
   // Where limbs end first; but then one part may surround others and be no cylinder, which plain nearness seldom does.
   constexpr std::array reach_shares{1.0, 0.5, 0.25, 0.0};
@@ -248,7 +265,8 @@ std::optional<Proposal> automatic(const OpenedSurface& opened, const ProposalOpt
       Proposal proposal = divide(opened.mesh, seeds, distance, reach_shares[attempt % reach_shares.size()], options);
       if (proposal.segmentation.valid() && !traversals(proposal.segmentation, 1).empty()) {
         if (seeds.size() < found)
-          proposal.notes.push_back("Of " + std::to_string(found) + " tips and openings " + std::to_string(seeds.size()) +
+          proposal.notes.push_back("Of " + std::to_string(found) + " tips and openings " +
+                                   std::to_string(seeds.size()) +
                                    " became parts; the rest would not have made cylinders.");
         return proposal;
       }
@@ -260,8 +278,9 @@ std::optional<Proposal> automatic(const OpenedSurface& opened, const ProposalOpt
     }
     if (attempt % reach_shares.size() + 1 < reach_shares.size() && seeds.size() > 2) continue;
     if (!options.tips_mm.empty() || !options.cuts_mm.empty())
-      throw Error(ErrorCode::invalid_input, "segments",
-                  "The given punctures do not divide the model into cylinders (" + problem + "): move, add or drop some.");
+      throw Error(
+          ErrorCode::invalid_input, "segments",
+          "The given punctures do not divide the model into cylinders (" + problem + "): move, add or drop some.");
     if (seeds.size() <= 2 || seeds.back().opening) return std::nullopt;
     seeds.pop_back();
   }
@@ -271,9 +290,11 @@ std::optional<Proposal> automatic(const OpenedSurface& opened, const ProposalOpt
 
 Proposal propose_segmentation(const TriangleMesh& mesh, const ProposalOptions& options, Context& context) {
   const Adjacency given(mesh);
-  if (!given.is_manifold()) throw Error(ErrorCode::invalid_input, "mesh", "The mesh is not a manifold: repair it first.");
+  if (!given.is_manifold())
+    throw Error(ErrorCode::invalid_input, "mesh", "The mesh is not a manifold: repair it first.");
   if (face_components(given).count != 1)
-    throw Error(ErrorCode::invalid_input, "mesh", "The model is in several separate pieces: make each a zippable of its own.");
+    throw Error(ErrorCode::invalid_input, "mesh",
+                "The model is in several separate pieces: make each a zippable of its own.");
   context.progress(0, "Looking for limbs");
   OpenedSurface opened = cut_handles(mesh, context);
   const auto slits = cut_slits(opened, options.cuts_mm, context);
@@ -285,8 +306,7 @@ Proposal propose_segmentation(const TriangleMesh& mesh, const ProposalOptions& o
   }
   // One cylinder has two openings at most; slits between openings make fewer of them.
   const auto most = static_cast<std::size_t>(std::max(2, options.parts_max));
-  while (boundary_loops(Adjacency(opened.mesh)).size() > most && join_nearest_openings(opened, context)) {
-  }
+  while (boundary_loops(Adjacency(opened.mesh)).size() > most && join_nearest_openings(opened, context)) {}
   for (;;) {
     std::string problem;
     if (std::optional<Proposal> proposal = automatic(opened, options, context, problem)) {
@@ -296,7 +316,8 @@ Proposal propose_segmentation(const TriangleMesh& mesh, const ProposalOptions& o
     }
     if (boundary_loops(Adjacency(opened.mesh)).size() < 3 || !join_nearest_openings(opened, context))
       throw Error(ErrorCode::invalid_input, "mesh",
-                  "The model could not be divided into cylinders (" + problem + "): close its holes, or give the parts in segments.json.");
+                  "The model could not be divided into cylinders (" + problem +
+                      "): close its holes, or give the parts in segments.json.");
   }
 }
 

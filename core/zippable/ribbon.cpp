@@ -34,7 +34,8 @@ class Rulings {
         if (const int j = sample_at(strip.right_line, grid - strip.right_shift); j >= 0)
           add(place, boundary_.place(strip.right_line, j, false));
       for (const auto& [grid, place] : strip.lower)
-        if (const int j = sample_at(strip.left_line, grid); j >= 0) add(place, boundary_.place(strip.left_line, j, true));
+        if (const int j = sample_at(strip.left_line, grid); j >= 0)
+          add(place, boundary_.place(strip.left_line, j, true));
     }
     if (s_.part_count() > 1)
       for (const auto& strip : boundary_.strips) across(strip);
@@ -57,7 +58,8 @@ class Rulings {
     return k + 1 == spiral.grid.size() ? spiral.x_high_mm : spiral.grid[k] * curve_.grid_step_mm[spiral.part];
   }
 
-  /// Between the lower line and the first winding above it, rulings go on into the neighbouring part, to its first winding.
+  /// Between the lower line and the first winding above it, rulings go on into the neighbouring part, to its first
+  /// winding.
   void across(const RibbonBoundary::Strip& strip) {
     const int part = line(strip.left_line).part;
     const double end = line(strip.right_line).x_low_mm + strip.right_offset_mm;
@@ -98,7 +100,8 @@ TriangleMesh Ribbon::formed() const {
 TriangleMesh Ribbon::flat() const {
   TriangleMesh mesh;
   mesh.V.resize(static_cast<Eigen::Index>(flat_mm.size()), 3);
-  for (std::size_t i = 0; i < flat_mm.size(); ++i) mesh.V.row(static_cast<Eigen::Index>(i)) << flat_mm[i].x(), flat_mm[i].y(), 0;
+  for (std::size_t i = 0; i < flat_mm.size(); ++i)
+    mesh.V.row(static_cast<Eigen::Index>(i)) << flat_mm[i].x(), flat_mm[i].y(), 0;
   mesh.F = F;
   return mesh;
 }
@@ -159,8 +162,8 @@ Ribbon make_ribbon(const Segmentation& s, const Parameterisation& p, const LineT
   ribbon.rulings = static_cast<int>(kept.size());
   std::vector<std::array<int, 3>> faces;
   const auto side = [&](int a, int b) { return (position(a) - position(b)).norm(); };
-  // Places on one straight stretch, or both copies of one place on the zipper, make triangles without area: only where nothing else is
-  // left.
+  // Places on one straight stretch, or both copies of one place on the zipper, make triangles without area: only where
+  // nothing else is left.
   const auto flatness = [&](int a, int b, int c) {
     const Vec3 ab = position(b) - position(a), ac = position(c) - position(a), bc = position(c) - position(b);
     const double longest_squared = std::max({ab.squaredNorm(), ac.squaredNorm(), bc.squaredNorm()});
@@ -182,7 +185,8 @@ Ribbon make_ribbon(const Segmentation& s, const Parameterisation& p, const LineT
       const int a = face[k], b = face[(k + 1) % 3];
       const double length = (positions[a] - positions[b]).norm();
       ribbon.isometry_error =
-          std::max(ribbon.isometry_error, std::abs((ribbon.flat_mm[a] - ribbon.flat_mm[b]).norm() - length) / std::max(length, 1e-300));
+          std::max(ribbon.isometry_error,
+                   std::abs((ribbon.flat_mm[a] - ribbon.flat_mm[b]).norm() - length) / std::max(length, 1e-300));
     }
   for (const auto& piece : curve.pieces)
     for (std::size_t i = 0; i + 1 < piece.size(); ++i)

@@ -3,9 +3,9 @@
 // The surface cut along the zipper's course and made developable: a triangulated disc all of whose vertices lie on its
 // boundary, thesis Sec. 5.2.4.
 //
-// Rulings join points of neighbouring windings over equal x, across interfaces too, where the way on is found on the other side;
-// openings are joined to the winding beside them alike. Between rulings, and where parts meet and there are none, the triangles
-// with the shortest sides fill in.
+// Rulings join points of neighbouring windings over equal x, across interfaces too, where the way on is found on the
+// other side; openings are joined to the winding beside them alike. Between rulings, and where parts meet and there are
+// none, the triangles with the shortest sides fill in.
 #include <vector>
 
 #include "base/context.h"
@@ -38,9 +38,11 @@ struct Ribbon {
 
 /// `cuts`: what is closed by other means than the zipper. Throws Error: internal (the curve's lines cross), cancelled.
 Ribbon make_ribbon(const Segmentation& segmentation, const Parameterisation& parameterisation, const LineTracer& tracer,
-                   const ZipperCurve& curve, const CurveOptions& options, Context& context, const std::vector<TapedCut>& cuts = {});
+                   const ZipperCurve& curve, const CurveOptions& options, Context& context,
+                   const std::vector<TapedCut>& cuts = {});
 
-/// Unfolds triangle by triangle into the plane; every edge keeps its length. Needs a triangulated disc without inner vertices.
+/// Unfolds triangle by triangle into the plane; every edge keeps its length. Needs a triangulated disc without inner
+/// vertices.
 std::vector<Vec2> unfold(const std::vector<Vec3>& positions_mm, const Triangles& F);
 
 }  // namespace formwright

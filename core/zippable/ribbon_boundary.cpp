@@ -6,9 +6,13 @@
 
 namespace formwright {
 
-RibbonBoundary::RibbonBoundary(int part_count, const Parameterisation& p, const LineTracer& tracer, const ZipperCurve& curve,
-                               double sample_mm, TapedCuts& cuts)
-    : tracer_(tracer), curve_(curve), sample_mm_(sample_mm), left_place_(curve.samples.size(), -1), right_place_(curve.samples.size(), -1) {
+RibbonBoundary::RibbonBoundary(int part_count, const Parameterisation& p, const LineTracer& tracer,
+                               const ZipperCurve& curve, double sample_mm, TapedCuts& cuts)
+    : tracer_(tracer),
+      curve_(curve),
+      sample_mm_(sample_mm),
+      left_place_(curve.samples.size(), -1),
+      right_place_(curve.samples.size(), -1) {
   // Strips of each part: lines in the order of x, then the first again, a period on.
   std::vector<std::vector<int>> lines_of(part_count);
   for (int l = 0; l < static_cast<int>(curve.lines.size()); ++l) lines_of[curve.lines[l].part].push_back(l);
@@ -17,13 +21,19 @@ RibbonBoundary::RibbonBoundary(int part_count, const Parameterisation& p, const 
     const auto& lines = lines_of[part];
     for (std::size_t k = 0; k < lines.size(); ++k) {
       const bool around = k + 1 == lines.size();
-      Strip strip{lines[k], lines[around ? 0 : k + 1], around ? curve.grid_count[part] : 0, around ? p.period_mm[part] : 0.0, {}, {}};
+      Strip strip{lines[k],
+                  lines[around ? 0 : k + 1],
+                  around ? curve.grid_count[part] : 0,
+                  around ? p.period_mm[part] : 0.0,
+                  {},
+                  {}};
       strip_right_of[strip.left_line] = strip_left_of[strip.right_line] = static_cast<int>(strips.size());
       strips.push_back(std::move(strip));
     }
   }
   const auto upper_end = [&](int l) { return curve.lines[l].x_high_mm; };
-  // With the surface to the left, upper lines are walked towards smaller x: over the strip on the left of where the line ends.
+  // With the surface to the left, upper lines are walked towards smaller x: over the strip on the left of where the
+  // line ends.
   std::vector<std::vector<std::pair<int, int>>*> ruled;  // per arc
   const auto plan_upper = [&](int line) {
     Strip& strip = strips[strip_left_of[line]];
@@ -64,10 +74,13 @@ void RibbonBoundary::add_piece(std::size_t piece, bool left) {
 std::vector<int> RibbonBoundary::grid_along(const OpeningArc& arc) const {
   const double step = curve_.grid_step_mm[arc.part];
   const double low = std::min(arc.from_mm, arc.to_mm), high = std::max(arc.from_mm, arc.to_mm);
-  const int first = static_cast<int>(std::ceil(low / step + 0.3)), last = static_cast<int>(std::floor(high / step - 0.3));
+  const int first = static_cast<int>(std::ceil(low / step + 0.3)),
+            last = static_cast<int>(std::floor(high / step - 0.3));
   std::vector<double> local;
   for (int i = first; i <= last; ++i)
-    local.push_back((tracer_.on_line(arc.part, arc.upper, (i + 0.5) * step) - tracer_.on_line(arc.part, arc.upper, (i - 0.5) * step)).norm());
+    local.push_back((tracer_.on_line(arc.part, arc.upper, (i + 0.5) * step) -
+                     tracer_.on_line(arc.part, arc.upper, (i - 0.5) * step))
+                        .norm());
   std::vector<int> grid = thinned_grid(first, local, sample_mm_, 8);
   if (arc.to_mm < arc.from_mm) std::reverse(grid.begin(), grid.end());
   return grid;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The walk around the ribbon: along the left side of the curve to its end, back along the right side, and along the openings that
-// it touches on its way.
+// The walk around the ribbon: along the left side of the curve to its end, back along the right side, and along the
+// openings that it touches on its way.
 #include <map>
 #include <vector>
 
@@ -11,8 +11,8 @@ namespace formwright {
 
 class RibbonBoundary {
  public:
-  RibbonBoundary(int part_count, const Parameterisation& parameterisation, const LineTracer& tracer, const ZipperCurve& curve,
-                 double sample_mm, TapedCuts& cuts);
+  RibbonBoundary(int part_count, const Parameterisation& parameterisation, const LineTracer& tracer,
+                 const ZipperCurve& curve, double sample_mm, TapedCuts& cuts);
 
   /// A strip lies between a line and the next one of its part, towards larger x, which may be a period on.
   struct Strip {

@@ -14,10 +14,8 @@ int SeamlessChart::intern(std::vector<SharedTerm> sum) {
   std::sort(sum.begin(), sum.end());
   std::vector<SharedTerm> merged;
   for (const SharedTerm& term : sum) {
-    if (!merged.empty() && merged.back().shared == term.shared)
-      merged.back().factor += term.factor;
-    else
-      merged.push_back(term);
+    if (!merged.empty() && merged.back().shared == term.shared) merged.back().factor += term.factor;
+    else merged.push_back(term);
   }
   std::erase_if(merged, [](const SharedTerm& t) { return t.factor == 0; });
   const auto [found, fresh] = known_.try_emplace(merged, static_cast<int>(sums_.size()));
@@ -25,7 +23,8 @@ int SeamlessChart::intern(std::vector<SharedTerm> sum) {
   return found->second;
 }
 
-void SeamlessChart::cut_part(const Segmentation& s, const Adjacency& adjacency, int part, std::vector<char>& shifted) const {
+void SeamlessChart::cut_part(const Segmentation& s, const Adjacency& adjacency, int part,
+                             std::vector<char>& shifted) const {
   // Shortest way along inner edges from the lower line's first vertex to the upper line, touching neither between.
   const Segment& segment = s.segments[part];
   constexpr double far = std::numeric_limits<double>::infinity();
@@ -56,8 +55,9 @@ void SeamlessChart::cut_part(const Segmentation& s, const Adjacency& adjacency, 
     }
   }
   if (end < 0)
-    throw Error(ErrorCode::could_not_solve, "mesh",
-                "Part " + std::to_string(part + 1) + " is too coarse to be cut from line to line: subdivide the model.");
+    throw Error(
+        ErrorCode::could_not_solve, "mesh",
+        "Part " + std::to_string(part + 1) + " is too coarse to be cut from line to line: subdivide the model.");
   std::vector<int> path;
   for (int v = end; v != start; v = adjacency.from(path.back())) path.push_back(arriving[v]);
   std::vector<char> wall(adjacency.edge_count(), 0);
@@ -95,7 +95,8 @@ void SeamlessChart::place_lines(const Segmentation& s) {
   }
   shared_count_ = part_count_ + static_cast<int>(s.interfaces.size());
   for (int part = 0; part < part_count_; ++part)
-    for (const InterfaceUse& use : s.segments[part].bottom.uses) periods_[part].push_back({length_of(use.interface), 1.0});
+    for (const InterfaceUse& use : s.segments[part].bottom.uses)
+      periods_[part].push_back({length_of(use.interface), 1.0});
   interface_locals_.resize(s.interfaces.size());
   for (int i = 0; i < static_cast<int>(s.interfaces.size()); ++i) {
     const int count = static_cast<int>(s.interfaces[i].vertices.size());

@@ -4,9 +4,10 @@
 // a sum of at most one variable of its own and a few that whole parts share, so that whatever values the variables
 // take, seams match, lines are straight and interfaces meet under a half turn.
 //
-// Variables: x and y of a vertex inside a part; x on an opening (its height is shared); one position along an interface,
-// which is x on both sides, from either end. Shared: the height of each part (its lower line lies at 0), the length of
-// each interface, or the period of a part that is alone. A corner on the left of a part's cut gets the period on top.
+// Variables: x and y of a vertex inside a part; x on an opening (its height is shared); one position along an
+// interface, which is x on both sides, from either end. Shared: the height of each part (its lower line lies at 0), the
+// length of each interface, or the period of a part that is alone. A corner on the left of a part's cut gets the period
+// on top.
 #include <Eigen/Core>
 #include <array>
 #include <map>
@@ -16,12 +17,15 @@
 
 namespace formwright {
 
-using CornerCoordinates = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;  // corner 3 f + k of face f a row, mm
+using CornerCoordinates =
+    Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;  // corner 3 f + k of face f a row, mm
 
 struct SharedTerm {
   int shared;  // index of a shared variable
   double factor;
-  bool operator<(const SharedTerm& other) const { return shared != other.shared ? shared < other.shared : factor < other.factor; }
+  bool operator<(const SharedTerm& other) const {
+    return shared != other.shared ? shared < other.shared : factor < other.factor;
+  }
 };
 
 /// sign * local variable + sum of shared ones.
@@ -45,8 +49,10 @@ class SeamlessChart {
   /// The corners of a choice of variables (linear, without a constant part). Parallel.
   CornerCoordinates corners(const Eigen::VectorXd& local, const Eigen::VectorXd& shared) const;
 
-  int height_of(int part) const { return part; }                          // shared variable
-  int length_of(int interface) const { return part_count_ + interface; }  // shared variable; of a part alone, 0 is its period
+  int height_of(int part) const { return part; }  // shared variable
+  int length_of(int interface) const {
+    return part_count_ + interface;
+  }  // shared variable; of a part alone, 0 is its period
   double period_mm(int part, const Eigen::VectorXd& shared) const;
 
   /// Variables along the interfaces: (interface, place in its vertices, local variable).

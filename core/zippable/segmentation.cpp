@@ -46,7 +46,8 @@ struct PartTopology {
 };
 
 PartTopology topology_of_part(const Adjacency& adjacency, const std::vector<int>& face_segment, int part) {
-  std::vector<char> vertex(adjacency.vertex_count(), 0), edge(adjacency.edge_count(), 0), face(adjacency.face_count(), 0);
+  std::vector<char> vertex(adjacency.vertex_count(), 0), edge(adjacency.edge_count(), 0),
+      face(adjacency.face_count(), 0);
   PartTopology result;
   std::vector<int> stack;
   for (int f = 0; f < adjacency.face_count(); ++f) {
@@ -83,19 +84,22 @@ class Builder {
 
   std::string build(int part) {
     const PartTopology topology = topology_of_part(adjacency_, result_.face_segment, part);
-    if (topology.pieces != 1) return "It is in " + std::to_string(topology.pieces) + " pieces: give each a part of its own.";
+    if (topology.pieces != 1)
+      return "It is in " + std::to_string(topology.pieces) + " pieces: give each a part of its own.";
     const PartLoops found = loops_of_part(adjacency_, result_.face_segment, part);
     if (found.pinched) return "Its boundary touches itself at a vertex: move the loop away from there.";
     if (topology.euler != 0 || found.loops.size() != 2) {
       const int handles = (2 - topology.euler - static_cast<int>(found.loops.size())) / 2;
       if (handles > 0) return "It has a handle: cut the handle open first.";
-      return found.loops.size() < 2 ? "It has " + std::to_string(found.loops.size()) + " boundary loops instead of two: puncture it."
-                                    : "It has " + std::to_string(found.loops.size()) + " boundary loops instead of two: divide it.";
+      return found.loops.size() < 2
+                 ? "It has " + std::to_string(found.loops.size()) + " boundary loops instead of two: puncture it."
+                 : "It has " + std::to_string(found.loops.size()) + " boundary loops instead of two: divide it.";
     }
     int open_loops = 0;
     for (const auto& loop : found.loops) {
       const auto open = std::count_if(loop.begin(), loop.end(), [&](int h) { return adjacency_.opposite(h) < 0; });
-      if (open != 0 && open != static_cast<std::ptrdiff_t>(loop.size())) return "Its opening touches the next part: move one of them.";
+      if (open != 0 && open != static_cast<std::ptrdiff_t>(loop.size()))
+        return "Its opening touches the next part: move one of them.";
       if (open != 0) ++open_loops;
     }
     const bool alone = result_.part_count() == 1;
@@ -106,10 +110,8 @@ class Builder {
     const bool first_is_top = !alone && adjacency_.opposite(found.loops[0].front()) < 0;
     segment.top.vertices = vertices_of(adjacency_, found.loops[first_is_top ? 0 : 1]);
     const std::vector<int>& bottom = found.loops[first_is_top ? 1 : 0];
-    if (alone)
-      segment.bottom.vertices = vertices_of(adjacency_, bottom);
-    else
-      build_transition(part, bottom);
+    if (alone) segment.bottom.vertices = vertices_of(adjacency_, bottom);
+    else build_transition(part, bottom);
     return "";
   }
 
@@ -154,7 +156,8 @@ class Builder {
   std::vector<int> interface_of_edge_;
 };
 
-/// Per vertex and part: which line of the part it lies on. Parts share lines, so that one number a vertex is not enough.
+/// Per vertex and part: which line of the part it lies on. Parts share lines, so that one number a vertex is not
+/// enough.
 std::vector<std::vector<std::pair<int, int>>> lines_at_vertices(const Segmentation& s) {
   std::vector<std::vector<std::pair<int, int>>> lines(s.mesh.vertex_count());
   for (int part = 0; part < s.part_count(); ++part) {
@@ -165,7 +168,8 @@ std::vector<std::vector<std::pair<int, int>>> lines_at_vertices(const Segmentati
 }
 
 /// Splits inner edges that join two vertices of one line; true if there were any.
-bool split_chords(TriangleMesh& mesh, std::vector<int>& face_segment, const Adjacency& adjacency, const Segmentation& s) {
+bool split_chords(TriangleMesh& mesh, std::vector<int>& face_segment, const Adjacency& adjacency,
+                  const Segmentation& s) {
   const auto lines = lines_at_vertices(s);
   std::vector<int> middle(adjacency.edge_count(), -1);
   std::vector<Vec3> points;
@@ -232,17 +236,21 @@ Segmentation derive(TriangleMesh mesh, std::vector<int> face_segment, const Adja
 }  // namespace
 
 bool Segmentation::valid() const {
-  return !segments.empty() && std::all_of(problems.begin(), problems.end(), [](const std::string& p) { return p.empty(); });
+  return !segments.empty() &&
+         std::all_of(problems.begin(), problems.end(), [](const std::string& p) { return p.empty(); });
 }
 
 Segmentation make_segmentation(const TriangleMesh& mesh, const std::vector<int>& face_segment) {
   const Adjacency adjacency(mesh);
   if (mesh.face_count() == 0 || static_cast<int>(face_segment.size()) != mesh.face_count())
     throw Error(ErrorCode::invalid_input, "mesh", "Every triangle needs the number of its part.");
-  if (!adjacency.is_manifold()) throw Error(ErrorCode::invalid_input, "mesh", "The mesh is not a manifold: repair it first.");
+  if (!adjacency.is_manifold())
+    throw Error(ErrorCode::invalid_input, "mesh", "The mesh is not a manifold: repair it first.");
   if (face_components(adjacency).count != 1)
-    throw Error(ErrorCode::invalid_input, "mesh", "The model is in several separate pieces: make each a zippable of its own.");
-  if (adjacency.boundary_edge_count() == 0) throw Error(ErrorCode::invalid_input, "mesh", "The surface has no opening: puncture it.");
+    throw Error(ErrorCode::invalid_input, "mesh",
+                "The model is in several separate pieces: make each a zippable of its own.");
+  if (adjacency.boundary_edge_count() == 0)
+    throw Error(ErrorCode::invalid_input, "mesh", "The surface has no opening: puncture it.");
   if (*std::min_element(face_segment.begin(), face_segment.end()) < 0)
     throw Error(ErrorCode::invalid_input, "mesh", "Parts are numbered from 0.");
   Segmentation result = derive(mesh, face_segment, adjacency);
@@ -256,7 +264,8 @@ Segmentation make_segmentation(const TriangleMesh& mesh, const std::vector<int>&
 
 double walk_length_mm(const TriangleMesh& mesh, const std::vector<int>& vertices, bool closed) {
   double length = 0;
-  for (std::size_t i = 0; i + 1 < vertices.size(); ++i) length += (mesh.V.row(vertices[i + 1]) - mesh.V.row(vertices[i])).norm();
+  for (std::size_t i = 0; i + 1 < vertices.size(); ++i)
+    length += (mesh.V.row(vertices[i + 1]) - mesh.V.row(vertices[i])).norm();
   if (closed && !vertices.empty()) length += (mesh.V.row(vertices.front()) - mesh.V.row(vertices.back())).norm();
   return length;
 }

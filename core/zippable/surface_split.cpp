@@ -94,8 +94,8 @@ LabelledSurface split_at_levels(const TriangleMesh& mesh, const Adjacency& adjac
   return result;
 }
 
-LabelledSurface split_by_least_field(const TriangleMesh& mesh, const std::vector<int>& label, const Eigen::MatrixXd& field,
-                                     const std::vector<char>& keep_to) {
+LabelledSurface split_by_least_field(const TriangleMesh& mesh, const std::vector<int>& label,
+                                     const Eigen::MatrixXd& field, const std::vector<char>& keep_to) {
   const Adjacency adjacency(mesh);
   std::vector<int> face_of;
   return split_at_levels(
@@ -136,7 +136,8 @@ TriangleMesh kept_faces(const TriangleMesh& mesh, const std::vector<char>& keep,
 std::vector<double> puncture(LabelledSurface& surface, const std::vector<int>& vertices, double radius_mm) {
   const TriangleMesh& mesh = surface.mesh;
   const Adjacency adjacency(mesh);
-  std::vector<char> usable(mesh.vertex_count(), 1);  // inside its label, off every opening and away from other punctures
+  std::vector<char> usable(mesh.vertex_count(),
+                           1);  // inside its label, off every opening and away from other punctures
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     const auto around = adjacency.outgoing(v);
     if (adjacency.is_boundary_vertex(v)) usable[v] = 0;
@@ -148,7 +149,8 @@ std::vector<double> puncture(LabelledSurface& surface, const std::vector<int>& v
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const int centre = vertices[i], own = static_cast<int>(i) + 1;
     if (!usable[centre])
-      throw Error(ErrorCode::invalid_input, "mesh", "A puncture lies on the border of its part or beside another: move it inside.");
+      throw Error(ErrorCode::invalid_input, "mesh",
+                  "A puncture lies on the border of its part or beside another: move it inside.");
     const auto distance = [&](int v) { return (mesh.V.row(v) - mesh.V.row(centre)).norm(); };
     double least_ring = 1e300;
     for (const int w : adjacency.neighbours(centre)) least_ring = std::min(least_ring, distance(w));

@@ -49,7 +49,8 @@ double symmetric_dirichlet(const Eigen::Matrix2d& J) {
   return J.squaredNorm() * (1 + 1 / (det * det));
 }
 
-DirichletTerms symmetric_dirichlet_terms(const ReferenceTriangle& reference, const std::array<Vec2, 3>& u, bool convex) {
+DirichletTerms symmetric_dirichlet_terms(const ReferenceTriangle& reference, const std::array<Vec2, 3>& u,
+                                         bool convex) {
   const Singular s = singular_values(jacobian(reference, u));
   const double a = s.larger, b = s.smaller;
   const Vec2 u2 = quarter_turn(s.u1), v2 = quarter_turn(s.v1);
@@ -59,7 +60,8 @@ DirichletTerms symmetric_dirichlet_terms(const ReferenceTriangle& reference, con
   const double cubes = a * a * a * b * b * b;
   double twist = 2 - 2 * (a * a - a * b + b * b) / cubes;
   if (convex) twist = std::max(twist, 0.0);
-  const std::array<double, 4> eigenvalue{2 + 6 / (a * a * a * a), 2 + 6 / (b * b * b * b), 2 + 2 * (a * a + a * b + b * b) / cubes, twist};
+  const std::array<double, 4> eigenvalue{2 + 6 / (a * a * a * a), 2 + 6 / (b * b * b * b),
+                                         2 + 2 * (a * a + a * b + b * b) / cubes, twist};
   std::array<Eigen::Matrix<double, 6, 1>, 4> mode;
   for (int k = 0; k < 3; ++k) {
     const double along = s.v1.dot(reference.g[k]), across = v2.dot(reference.g[k]);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // The symmetric Dirichlet energy of a triangle's map into the plane, |J|^2 + |J^-1|^2 (Smith & Schaefer 2015), with its
-// gradient and Hessian from the singular values of J (Smith, de Goes, Kim 2019, "Analytic Eigensystems"): stretching and
-// flipping modes are always convex, only the twist may not be.
+// gradient and Hessian from the singular values of J (Smith, de Goes, Kim 2019, "Analytic Eigensystems"): stretching
+// and flipping modes are always convex, only the twist may not be.
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <array>
@@ -31,8 +31,8 @@ struct DirichletTerms {
   Eigen::Matrix<double, 6, 6> hessian;
 };
 
-/// Needs a positively oriented map. With `convex`, a negative twist eigenvalue counts as 0: the Hessian is then positive
-/// semidefinite.
+/// Needs a positively oriented map. With `convex`, a negative twist eigenvalue counts as 0: the Hessian is then
+/// positive semidefinite.
 DirichletTerms symmetric_dirichlet_terms(const ReferenceTriangle& reference, const std::array<Vec2, 3>& u, bool convex);
 
 }  // namespace formwright

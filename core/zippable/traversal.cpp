@@ -73,7 +73,8 @@ Crossings best_crossings(const Segmentation& s, const Parameterisation& p, const
   for (int i = 1; i + 1 < parts; ++i) {
     const int part = traversal.parts[i];
     const double period = p.period_mm[part];
-    const LinePlace in = place_on_line(s, p, part, traversal.interfaces[i - 1]), out = place_on_line(s, p, part, traversal.interfaces[i]);
+    const LinePlace in = place_on_line(s, p, part, traversal.interfaces[i - 1]),
+                    out = place_on_line(s, p, part, traversal.interfaces[i]);
     // Both ends stay on their own interfaces, so that which comes first along the line never changes.
     const double difference = out.offset + out.sign * middle[i] - in.offset - in.sign * middle[i - 1];
     const double turns = difference < 0 ? period : 0;
@@ -87,7 +88,8 @@ Crossings best_crossings(const Segmentation& s, const Parameterisation& p, const
       double slope = pull * (result.along_mm[i] - middle[i]) / (length * length), curvature = pull / (length * length);
       const auto add = [&](int k, double factor) {
         if (k < 0 || k >= static_cast<int>(between.size())) return;
-        const double misfit = between[k].constant + between[k].in * result.along_mm[k] + between[k].out * result.along_mm[k + 1];
+        const double misfit =
+            between[k].constant + between[k].in * result.along_mm[k] + between[k].out * result.along_mm[k + 1];
         slope += factor * misfit, curvature += factor * factor;
       };
       if (i < static_cast<int>(between.size())) add(i, between[i].in);
@@ -136,7 +138,8 @@ LinePoint across_interface(const Segmentation& s, const Parameterisation& p, Lin
   return point;
 }
 
-std::vector<RankedTraversal> ranked_traversals(const Segmentation& s, const Parameterisation& p, double width_mm, int limit) {
+std::vector<RankedTraversal> ranked_traversals(const Segmentation& s, const Parameterisation& p, double width_mm,
+                                               int limit) {
   std::vector<RankedTraversal> ranked;
   for (Traversal& traversal : traversals(s, limit)) {
     RankedTraversal r;
@@ -146,11 +149,13 @@ std::vector<RankedTraversal> ranked_traversals(const Segmentation& s, const Para
       const double lack = 1 - p.interface_length_mm[interface] / width_mm;
       if (lack > 0) r.cost += lack * lack;
     }
-    r.cost = 1e-6 * std::round(1e6 * r.cost);  // orders as even as each other stay in their own order, whatever the rounding
+    r.cost =
+        1e-6 * std::round(1e6 * r.cost);  // orders as even as each other stay in their own order, whatever the rounding
     r.traversal = std::move(traversal);
     ranked.push_back(std::move(r));
   }
-  std::stable_sort(ranked.begin(), ranked.end(), [](const RankedTraversal& a, const RankedTraversal& b) { return a.cost < b.cost; });
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const RankedTraversal& a, const RankedTraversal& b) { return a.cost < b.cost; });
   return ranked;
 }
 

@@ -13,24 +13,24 @@ struct Traversal {
   std::vector<int> interfaces;  // between consecutive parts; one less
 };
 
-/// All Hamiltonian paths over the parts, each in both directions, leaving every part by another interface than the one it was
-/// entered by; at most `limit`, in lexicographic order. One part alone gives one path.
+/// All Hamiltonian paths over the parts, each in both directions, leaving every part by another interface than the one
+/// it was entered by; at most `limit`, in lexicographic order. One part alone gives one path.
 std::vector<Traversal> traversals(const Segmentation& segmentation, int limit = 2000);
 
 struct Crossings {
   /// Per interface passed: the distance in mm from the interface's first end.
   std::vector<double> along_mm;
-  /// Per part passed: x of the entry and of the exit on its lower line, exit in (entry, entry + period]; the first part has no entry
-  /// and the last no exit (0).
+  /// Per part passed: x of the entry and of the exit on its lower line, exit in (entry, entry + period]; the first part
+  /// has no entry and the last no exit (0).
   std::vector<double> entry_mm, exit_mm;
   /// Mean of ((exit - entry) / period - 1/2)^2 over the parts between the first and the last: eq. (5.7), 0 is even.
   double unevenness = 0;
 };
 
-/// Minimises (5.7) exactly: a convex problem with bounds that keep `margin` (a share) off either end of each interface; where it leaves a
-/// freedom, the middle.
-Crossings best_crossings(const Segmentation& segmentation, const Parameterisation& parameterisation, const Traversal& traversal,
-                         double margin = 0.1);
+/// Minimises (5.7) exactly: a convex problem with bounds that keep `margin` (a share) off either end of each interface;
+/// where it leaves a freedom, the middle.
+Crossings best_crossings(const Segmentation& segmentation, const Parameterisation& parameterisation,
+                         const Traversal& traversal, double margin = 0.1);
 
 struct LinePoint {
   int part = 0;
@@ -47,7 +47,8 @@ struct RankedTraversal {
 };
 
 /// The even ones first; the cost is unevenness plus a penalty where an interface is short against the ribbon's width.
-std::vector<RankedTraversal> ranked_traversals(const Segmentation& segmentation, const Parameterisation& parameterisation, double width_mm,
+std::vector<RankedTraversal> ranked_traversals(const Segmentation& segmentation,
+                                               const Parameterisation& parameterisation, double width_mm,
                                                int limit = 2000);
 
 }  // namespace formwright

@@ -25,17 +25,21 @@ void check_width(double size_mm, const ZippableOptions& options) {
 std::vector<double> part_windings(const std::string& text, int part_count) {
   const auto given = read_number_list(text);
   const auto count = static_cast<std::size_t>(part_count);
-  if (!given || std::any_of(given->begin(), given->end(), [](double windings) { return windings < 0 || windings > 1000; }))
-    throw Error(ErrorCode::invalid_input, "part_windings", "Windings by part must be numbers from 0 to 1000, such as “3 0 2.5”.");
+  if (!given ||
+      std::any_of(given->begin(), given->end(), [](double windings) { return windings < 0 || windings > 1000; }))
+    throw Error(ErrorCode::invalid_input, "part_windings",
+                "Windings by part must be numbers from 0 to 1000, such as “3 0 2.5”.");
   if (given->size() > count)
-    throw Error(ErrorCode::invalid_input, "part_windings", "There are only " + std::to_string(part_count) + " parts: give windings for these.");
+    throw Error(ErrorCode::invalid_input, "part_windings",
+                "There are only " + std::to_string(part_count) + " parts: give windings for these.");
   std::vector<double> windings = *given;
   windings.resize(count, 0);
   return windings;
 }
 
 FeatureOptions features_asked_for(const TriangleMesh& mesh, const ZippableOptions& options) {
-  return {feature_scale_mm(mesh, options.width_mm, options.crease_mm.value_or(0)), options.crease_degrees * std::numbers::pi / 180};
+  return {feature_scale_mm(mesh, options.width_mm, options.crease_mm.value_or(0)),
+          options.crease_degrees * std::numbers::pi / 180};
 }
 
 /// Those that begin and end where they should, the even ones first.
@@ -43,13 +47,16 @@ std::vector<RankedTraversal> orders_asked_for(const ParameterisedModel& model, c
   const Segmentation& s = model.proposal.segmentation;
   std::vector<RankedTraversal> ranked = ranked_traversals(s, model.parameterisation, options.width_mm);
   if (ranked.empty())
-    throw Error(ErrorCode::invalid_input, "mesh", "No order visits every part once: join or move parts so that they form a chain.");
+    throw Error(ErrorCode::invalid_input, "mesh",
+                "No order visits every part once: join or move parts so that they form a chain.");
   const auto keep = [&](int part, const char* where, const auto& end_of) {
     if (part > s.part_count())
-      throw Error(ErrorCode::invalid_input, where, "There are only " + std::to_string(s.part_count()) + " parts: choose one of them.");
+      throw Error(ErrorCode::invalid_input, where,
+                  "There are only " + std::to_string(s.part_count()) + " parts: choose one of them.");
     if (part > 0) std::erase_if(ranked, [&](const RankedTraversal& r) { return end_of(r.traversal) != part - 1; });
     if (ranked.empty())
-      throw Error(ErrorCode::invalid_input, where, "No order that visits every part once has its ends there: choose another part.");
+      throw Error(ErrorCode::invalid_input, where,
+                  "No order that visits every part once has its ends there: choose another part.");
   };
   const auto front = [](const Traversal& t) { return t.parts.front(); };
   const auto back = [](const Traversal& t) { return t.parts.back(); };
@@ -71,15 +78,19 @@ std::string figure(double mm) {
 void say_how_it_bends(ZippableDesign& design, const ZippableOptions& options) {
   if (!design.bend) return;
   if (design.bend->radius_mm < *options.radius_least_mm)
-    design.notes.push_back("The ribbon's middle bends to a radius of " + figure(design.bend->radius_mm) + " mm, less than " + figure(*options.radius_least_mm) +
-                           " mm, whatever the order: a narrower ribbon, larger punctures or other borders of the parts mend it.");
+    design.notes.push_back(
+        "The ribbon's middle bends to a radius of " + figure(design.bend->radius_mm) + " mm, less than " +
+        figure(*options.radius_least_mm) +
+        " mm, whatever the order: a narrower ribbon, larger punctures or other borders of the parts mend it.");
   else if (design.traversal_number != options.traversal)
-    design.notes.push_back("Order " + std::to_string(design.traversal_number) + " was taken, the first that keeps the least radius.");
+    design.notes.push_back("Order " + std::to_string(design.traversal_number) +
+                           " was taken, the first that keeps the least radius.");
 }
 
 }  // namespace
 
-ParameterisedModel divide_model(const TriangleMesh& given, const ZippableParts& parts, const ZippableOptions& options, Context& context) {
+ParameterisedModel divide_model(const TriangleMesh& given, const ZippableParts& parts, const ZippableOptions& options,
+                                Context& context) {
   ParameterisedModel model;
   const double size = bounding_box(given).size().maxCoeff();
   if (!(size > 0)) throw Error(ErrorCode::invalid_input, "mesh", "The model has no size: give one with some extent.");
@@ -113,8 +124,8 @@ ParameterisedModel divide_model(const TriangleMesh& given, const ZippableParts& 
   return model;
 }
 
-ParameterisedModel parameterise_model(const TriangleMesh& given, const ZippableParts& parts, const ZippableOptions& options,
-                                      Context& context) {
+ParameterisedModel parameterise_model(const TriangleMesh& given, const ZippableParts& parts,
+                                      const ZippableOptions& options, Context& context) {
   ParameterisedModel model;
   {
     const auto span = context.span(0, 0.25, "Looking for limbs");
@@ -128,7 +139,8 @@ ParameterisedModel parameterise_model(const TriangleMesh& given, const ZippableP
   if (options.winding_course == WindingCourse::creases) {
     const TriangleMesh& mesh = model.proposal.segmentation.mesh;
     model.crease_system = std::make_shared<CreaseSystem>(model.proposal.segmentation, context);
-    model.features = find_features(mesh, model.crease_system->adjacency(), features_asked_for(model.mesh, options), context);
+    model.features =
+        find_features(mesh, model.crease_system->adjacency(), features_asked_for(model.mesh, options), context);
   }
   model.seconds_parameterisation = watch.lap();
   return model;
@@ -145,7 +157,9 @@ std::string parameterisation_key(const ZippableOptions& options, const ZippableP
   const auto snaps = [](const DrawnCurve& curve) { return curve.snap.value_or(false); };
   const bool creases = options.winding_course == WindingCourse::creases || options.borders == PartBorders::creases ||
                        std::any_of(parts.curves.begin(), parts.curves.end(), snaps);
-  if (creases) relevant.width_mm = options.width_mm, relevant.crease_mm = options.crease_mm, relevant.crease_degrees = options.crease_degrees;
+  if (creases)
+    relevant.width_mm = options.width_mm, relevant.crease_mm = options.crease_mm,
+    relevant.crease_degrees = options.crease_degrees;
   return write_parameters(relevant).dump();
 }
 
@@ -166,7 +180,8 @@ ZippableDesign design_zippable(const ParameterisedModel& model, const ZippableOp
   curve.sample_mm = options.sample_mm.value_or(0.2 * options.width_mm);
   // The order that was chosen, and where it bends too tightly those after it.
   constexpr std::size_t most_tries = 24;
-  const std::size_t first = static_cast<std::size_t>(options.traversal - 1), end = options.radius_least_mm ? std::min(ranked.size(), first + most_tries) : first + 1;
+  const std::size_t first = static_cast<std::size_t>(options.traversal - 1),
+                    end = options.radius_least_mm ? std::min(ranked.size(), first + most_tries) : first + 1;
   std::optional<LineTracer> tracer;  // one for all orders where windings are even
   if (!model.features) tracer.emplace(s, model.parameterisation);
   for (std::size_t i = first; i < end; ++i) {
@@ -174,10 +189,13 @@ ZippableDesign design_zippable(const ParameterisedModel& model, const ZippableOp
     candidate.traversal = ranked[i];
     if (model.features) {
       ZipperCurve placed;
-      const auto lines = place_lines(s, model.parameterisation, ranked[i].traversal, ranked[i].crossings, curve, placed);
-      candidate.alignment = align_to_creases(s, model.parameterisation, *model.crease_system, *model.features, lines, {}, context);
+      const auto lines =
+          place_lines(s, model.parameterisation, ranked[i].traversal, ranked[i].crossings, curve, placed);
+      candidate.alignment =
+          align_to_creases(s, model.parameterisation, *model.crease_system, *model.features, lines, {}, context);
     }
-    const Parameterisation& chart = candidate.alignment ? candidate.alignment->parameterisation : model.parameterisation;
+    const Parameterisation& chart =
+        candidate.alignment ? candidate.alignment->parameterisation : model.parameterisation;
     if (candidate.alignment) tracer.emplace(s, chart);
     candidate.curve = draw_zipper_curve(s, chart, *tracer, ranked[i].traversal, ranked[i].crossings, curve, context);
     design.seconds_curve += watch.lap();
@@ -197,7 +215,8 @@ ZippableDesign design_zippable(const ParameterisedModel& model, const ZippableOp
   }
   design.notes.insert(design.notes.end(), design.curve.notes.begin(), design.curve.notes.end());
   if (design.alignment && design.alignment->crease_mm == 0)
-    design.notes.push_back("No crease runs nearly like the windings: they are even. A smaller least crease, or other parts, may mend it.");
+    design.notes.push_back(
+        "No crease runs nearly like the windings: they are even. A smaller least crease, or other parts, may mend it.");
   if (options.radius_least_mm) say_how_it_bends(design, options);
   if (options.fabrics == RibbonFabrics::two) {
     design.fabrics = two_fabrics(design.ribbon, options.width_mm);
@@ -209,7 +228,8 @@ ZippableDesign design_zippable(const ParameterisedModel& model, const ZippableOp
   design.seconds_ribbon += watch.lap();
   if (!options.measure_distances) return design;
   context.progress(0.5, "Comparing with the model");
-  // A few points across the ribbon and all corners: long triangles of narrow ribbons would else be sampled by the million.
+  // A few points across the ribbon and all corners: long triangles of narrow ribbons would else be sampled by the
+  // million.
   const double spacing = std::max(0.25 * options.width_mm, 5e-3 * size_mm);
   const TriangleMesh formed = design.ribbon.formed();
   design.ribbon_to_model = surface_distance(formed, PointDistance(model.mesh), spacing, context);

@@ -18,8 +18,8 @@ namespace formwright {
 
 /// What a maker has decided about the parts; empty: limbs are found.
 struct ZippableParts {
-  std::vector<Vec3> punctures;     // in the mesh's coordinates
-  std::vector<DrawnCurve> curves;  // in the mesh's coordinates
+  std::vector<Vec3> punctures;               // in the mesh's coordinates
+  std::vector<DrawnCurve> curves;            // in the mesh's coordinates
   std::vector<std::vector<Vec3>> cuts = {};  // punctures that are cuts, in the mesh's coordinates
   std::optional<Vec3> start = {}, end = {};  // in the parts where the zipper begins and ends
 };
@@ -30,7 +30,7 @@ struct ParameterisedModel {
   TriangleMesh mesh;  // in mm, whole
   Proposal proposal;
   Parameterisation parameterisation;
-  int start_part = 0, end_part = 0;      // as the maker's points name them, from 1; 0: anywhere
+  int start_part = 0, end_part = 0;  // as the maker's points name them, from 1; 0: anywhere
   // Where windings follow creases:
   std::optional<FeatureLines> features;
   std::shared_ptr<CreaseSystem> crease_system;
@@ -39,8 +39,8 @@ struct ParameterisedModel {
 
 /// `mesh`: connected, manifold, oriented.
 /// Throws Error: invalid_input ("mesh", "segments", or a parameter), could_not_solve, cancelled.
-ParameterisedModel parameterise_model(const TriangleMesh& mesh, const ZippableParts& parts, const ZippableOptions& options,
-                                      Context& context);
+ParameterisedModel parameterise_model(const TriangleMesh& mesh, const ZippableParts& parts,
+                                      const ZippableOptions& options, Context& context);
 
 /// The division alone, whether or not its parts are cylinders: `proposal.segmentation.problems` says it.
 /// Throws Error as parameterise_model does, but not for a drawn part that is no cylinder.
@@ -51,9 +51,9 @@ ParameterisedModel divide_model(const TriangleMesh& mesh, const ZippableParts& p
 std::string parameterisation_key(const ZippableOptions& options, const ZippableParts& parts = {});
 
 struct ZippableDesign {
-  int traversal_count = 0;    // orders to choose from
-  int traversal_number = 1;   // which of them, from 1
-  RankedTraversal traversal;  // the chosen one
+  int traversal_count = 0;         // orders to choose from
+  int traversal_number = 1;        // which of them, from 1
+  RankedTraversal traversal;       // the chosen one
   std::optional<RibbonBend> bend;  // the tightest
   ZipperCurve curve;
   std::optional<CreaseAlignment> alignment;  // where windings follow creases

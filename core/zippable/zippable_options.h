@@ -52,15 +52,17 @@ struct ZippableOptions {
   bool measure_distances = true;
   bool check_parts = false;
 
-  /// Diameter of the holes at the tips: as given; else half the ribbon's width, or more where the ribbon's middle may not bend more tightly.
+  /// Diameter of the holes at the tips: as given; else half the ribbon's width, or more where the ribbon's middle may
+  /// not bend more tightly.
   double hole_mm() const {
     const double inner = radius_least_mm ? 2 * *radius_least_mm - width_mm : 0;
     return puncture_mm.value_or(inner > 0.5 * width_mm ? inner : 0.5 * width_mm);
   }
 
   static constexpr auto parameters = std::tuple{
-      parameter("width_mm", &ZippableOptions::width_mm, "Ribbon width", unit::mm, 0.1, 10000,
-                "Between one winding of the zipper and the next, about: narrower follows the model better and takes more zipper.")
+      parameter(
+          "width_mm", &ZippableOptions::width_mm, "Ribbon width", unit::mm, 0.1, 10000,
+          "Between one winding of the zipper and the next, about: narrower follows the model better and takes more zipper.")
           .slider(5, 100)
           .group("Ribbon"),
       parameter("windings", &ZippableOptions::windings, "Windings", unit::none, 0.1, 1000,
@@ -87,20 +89,23 @@ struct ZippableOptions {
           .slider(2, 30)
           .group("Parts")
           .advanced(),
-      parameter("puncture_mm", &ZippableOptions::puncture_mm, "Puncture", unit::mm, 0.01, 10000,
-                "Diameter of the hole at the tip of each part, at most; automatic: half the ribbon's width, more for a least radius.")
+      parameter(
+          "puncture_mm", &ZippableOptions::puncture_mm, "Puncture", unit::mm, 0.01, 10000,
+          "Diameter of the hole at the tip of each part, at most; automatic: half the ribbon's width, more for a least radius.")
           .slider(1, 50)
           .group("Parts"),
-      parameter("borders", &ZippableOptions::borders, "Borders",
-                "Along creases: drawn borders snap to edges, ridges and valleys near them; those that are found move into valleys.")
+      parameter(
+          "borders", &ZippableOptions::borders, "Borders",
+          "Along creases: drawn borders snap to edges, ridges and valleys near them; those that are found move into valleys.")
           .group("Parts"),
       parameter("crease_degrees", &ZippableOptions::crease_degrees, "Least crease", unit::degrees, 1, 120,
                 "How much the surface bends across a crease, at least, for anything to follow it.")
           .slider(5, 60)
           .group("Parts")
           .advanced(),
-      parameter("crease_mm", &ZippableOptions::crease_mm, "Roundness of creases", unit::mm, 0.001, 1000,
-                "Over what width a crease may be rounded off; automatic: two edges' length, or a tenth of the ribbon's width.")
+      parameter(
+          "crease_mm", &ZippableOptions::crease_mm, "Roundness of creases", unit::mm, 0.001, 1000,
+          "Over what width a crease may be rounded off; automatic: two edges' length, or a tenth of the ribbon's width.")
           .slider(0.5, 20)
           .group("Parts")
           .advanced(),
@@ -116,12 +121,14 @@ struct ZippableOptions {
                 "Where the zipper ends: only orders that do are counted; 0: anywhere.")
           .slider(0, 12)
           .group("Curve"),
-      parameter("radius_least_mm", &ZippableOptions::radius_least_mm, "Least radius", unit::mm, 0.1, 10000,
-                "How tightly the middle of the flat ribbon may bend; holes at the tips grow, and the first order that keeps it is taken.")
+      parameter(
+          "radius_least_mm", &ZippableOptions::radius_least_mm, "Least radius", unit::mm, 0.1, 10000,
+          "How tightly the middle of the flat ribbon may bend; holes at the tips grow, and the first order that keeps it is taken.")
           .slider(5, 100)
           .group("Curve"),
-      parameter("winding_course", &ZippableOptions::winding_course, "Course of windings",
-                "Along creases: windings move, by less than half their spacing, onto creases that run nearly as they do.")
+      parameter(
+          "winding_course", &ZippableOptions::winding_course, "Course of windings",
+          "Along creases: windings move, by less than half their spacing, onto creases that run nearly as they do.")
           .group("Curve"),
       parameter("sample_mm", &ZippableOptions::sample_mm, "Sampling", unit::mm, 0.01, 1000,
                 "Between corners of the ribbon along the zipper, about; automatic: a fifth of its width.")
@@ -132,8 +139,9 @@ struct ZippableOptions {
                 "Between the zipped ribbon and the model; takes longer than another number of windings does.")
           .group("Curve")
           .advanced(),
-      parameter("check_parts", &ZippableOptions::check_parts, "Check parts only",
-                "Stops after the division; design.json then says of every part whether it is a cylinder, and if not, why.")
+      parameter(
+          "check_parts", &ZippableOptions::check_parts, "Check parts only",
+          "Stops after the division; design.json then says of every part whether it is a cylinder, and if not, why.")
           .group("Parts")
           .advanced()};
 };

@@ -35,11 +35,15 @@ std::vector<SpiralLine> place_lines(const Segmentation& s, const Parameterisatio
     const double period = p.period_mm[part];
     const bool fermat = i > 0 && i + 1 < count;
     const double least = fermat ? least_fermat_windings : least_spiral_windings;
-    const double own = static_cast<std::size_t>(part) < options.part_windings.size() ? options.part_windings[static_cast<std::size_t>(part)] : 0;
-    double windings = own > 0 ? own : options.windings ? *options.windings : p.height_mm[part] / (fermat ? 2 * options.width_mm : options.width_mm);
+    const double own = static_cast<std::size_t>(part) < options.part_windings.size()
+                           ? options.part_windings[static_cast<std::size_t>(part)]
+                           : 0;
+    double windings = own > 0            ? own
+                      : options.windings ? *options.windings
+                                         : p.height_mm[part] / (fermat ? 2 * options.width_mm : options.width_mm);
     if (windings < least) {
-      curve.notes.push_back("Part " + std::to_string(part + 1) + " got " + figure(least) + " windings instead of " + figure(windings) +
-                            ", the fewest that make a ribbon: it is narrower there.");
+      curve.notes.push_back("Part " + std::to_string(part + 1) + " got " + figure(least) + " windings instead of " +
+                            figure(windings) + ", the fewest that make a ribbon: it is narrower there.");
       windings = least;
     }
     curve.windings[part] = windings;
@@ -72,10 +76,12 @@ std::vector<int> thinned_grid(int first, const std::vector<double>& local_mm, do
   return kept;
 }
 
-ZipperCurve draw_zipper_curve(const Segmentation& s, const Parameterisation& p, const LineTracer& tracer, const Traversal& traversal,
-                              const Crossings& crossings, const CurveOptions& options, Context& context) {
+ZipperCurve draw_zipper_curve(const Segmentation& s, const Parameterisation& p, const LineTracer& tracer,
+                              const Traversal& traversal, const Crossings& crossings, const CurveOptions& options,
+                              Context& context) {
   if (traversal.parts.empty())
-    throw Error(ErrorCode::invalid_input, "mesh", "No order visits every part once: join or move parts so that they form a chain.");
+    throw Error(ErrorCode::invalid_input, "mesh",
+                "No order visits every part once: join or move parts so that they form a chain.");
   ZipperCurve curve;
   curve.lines = place_lines(s, p, traversal, crossings, options, curve);
   context.check_cancelled();
@@ -96,7 +102,8 @@ ZipperCurve draw_zipper_curve(const Segmentation& s, const Parameterisation& p, 
     const int first = static_cast<int>(std::ceil(line.x_low_mm / step + 0.3)),
               last = static_cast<int>(std::floor(line.x_high_mm / step - 0.3));
     std::vector<double> local;
-    for (int i = first; i <= last; ++i) local.push_back((line.trace.at((i + 0.5) * step) - line.trace.at((i - 0.5) * step)).norm());
+    for (int i = first; i <= last; ++i)
+      local.push_back((line.trace.at((i + 0.5) * step) - line.trace.at((i - 0.5) * step)).norm());
     std::vector<int> places = thinned_grid(first, local, options.sample_mm, 8);
     places.insert(places.begin(), no_grid);
     places.push_back(no_grid);

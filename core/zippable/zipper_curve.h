@@ -13,10 +13,10 @@
 namespace formwright {
 
 struct CurveOptions {
-  double width_mm = 20;            // of the ribbon, where no number of windings is given
-  std::optional<double> windings;  // of every part
+  double width_mm = 20;               // of the ribbon, where no number of windings is given
+  std::optional<double> windings;     // of every part
   std::vector<double> part_windings;  // of each on its own where above 0
-  double sample_mm = 5;            // between vertices of the ribbon along the zipper, about
+  double sample_mm = 5;               // between vertices of the ribbon along the zipper, about
 };
 
 /// A line of a part from its lower line to its upper one.
@@ -47,17 +47,21 @@ struct ZipperCurve {
   double length_mm = 0;  // of the traced polylines on the surface
 };
 
-/// Where the curve's lines run in the parameter domain, in the order of the curve, untraced; `curve` gets windings, notes and Fermat spirals.
-std::vector<SpiralLine> place_lines(const Segmentation& segmentation, const Parameterisation& parameterisation, const Traversal& traversal,
-                                    const Crossings& crossings, const CurveOptions& options, ZipperCurve& curve);
+/// Where the curve's lines run in the parameter domain, in the order of the curve, untraced; `curve` gets windings,
+/// notes and Fermat spirals.
+std::vector<SpiralLine> place_lines(const Segmentation& segmentation, const Parameterisation& parameterisation,
+                                    const Traversal& traversal, const Crossings& crossings, const CurveOptions& options,
+                                    ZipperCurve& curve);
 
 /// A full turn at least is drawn in the first and the last part and three quarters in the others.
 /// Throws Error: invalid_input ("mesh": no traversal), cancelled.
-ZipperCurve draw_zipper_curve(const Segmentation& segmentation, const Parameterisation& parameterisation, const LineTracer& tracer,
-                              const Traversal& traversal, const Crossings& crossings, const CurveOptions& options, Context& context);
+ZipperCurve draw_zipper_curve(const Segmentation& segmentation, const Parameterisation& parameterisation,
+                              const LineTracer& tracer, const Traversal& traversal, const Crossings& crossings,
+                              const CurveOptions& options, Context& context);
 
-/// Of grid places along something that is `local_mm[i]` long between i and i + 1 (the first is number `first`), those to use so that they
-/// are not much closer than `sample_mm`: all multiples of a power of two, the same wherever lengths are alike.
+/// Of grid places along something that is `local_mm[i]` long between i and i + 1 (the first is number `first`), those
+/// to use so that they are not much closer than `sample_mm`: all multiples of a power of two, the same wherever lengths
+/// are alike.
 std::vector<int> thinned_grid(int first, const std::vector<double>& local_mm, double sample_mm, int most);
 
 }  // namespace formwright

@@ -145,10 +145,8 @@ Bytes mirrored_pdf(ByteView document) {
       // right as it is shown.
       const bool on_its_side = std::fmod(std::abs(number_or(page.getAttribute("/Rotate", false), 0)), 180) == 90;
       char matrix[160];
-      if (on_its_side)
-        std::snprintf(matrix, sizeof matrix, "q 1 0 0 -1 0 %.6f cm\n", box.y0 + box.y1);
-      else
-        std::snprintf(matrix, sizeof matrix, "q -1 0 0 1 %.6f 0 cm\n", box.x0 + box.x1);
+      if (on_its_side) std::snprintf(matrix, sizeof matrix, "q 1 0 0 -1 0 %.6f cm\n", box.y0 + box.y1);
+      else std::snprintf(matrix, sizeof matrix, "q -1 0 0 1 %.6f 0 cm\n", box.x0 + box.x1);
       page.addPageContents(pdf.newStream(std::string(matrix)), true);
       page.addPageContents(pdf.newStream("\nQ\n"), false);
     }

@@ -10,7 +10,8 @@ namespace formwright {
 namespace {
 
 constexpr int connect_patience_ms = 10'000;
-constexpr double answer_patience_s = 30, look_up_s = 0.5;  // how long it may be silent; how often a cancel is looked for
+constexpr double answer_patience_s = 30,
+                 look_up_s = 0.5;  // how long it may be silent; how often a cancel is looked for
 
 /// libcups asks on the terminal unless told not to: a worker has nobody to ask.
 const char* no_password(const char*, http_t*, const char*, const char*, void*) { return nullptr; }
@@ -48,7 +49,8 @@ IppConnection::IppConnection(const PrinterAddress& address, const std::atomic<bo
     if (!http_) connect_to_uri();
   } catch (const Error&) {
     if (!found_encrypted || cancelled_) throw;
-    // Printers that announce encryption and cannot do it are common; nobody vouches for the certificates of the others either.
+    // Printers that announce encryption and cannot do it are common; nobody vouches for the certificates of the others
+    // either.
     uri_.erase(3, 1);
     connect_to_uri();
   }
@@ -68,26 +70,29 @@ void IppConnection::connect_to_destination(const cups_dest_t& destination) {
   char resource[1024] = "";
   // A destination with a queue is reached through the print service; one found on the network is spoken to itself.
   const std::string queue = option("printer-uri-supported");
-  http_ = cupsConnectDest(copy, queue.empty() ? CUPS_DEST_FLAGS_DEVICE : CUPS_DEST_FLAGS_NONE, connect_patience_ms, nullptr, resource,
-                          sizeof resource, nullptr, nullptr);
+  http_ = cupsConnectDest(copy, queue.empty() ? CUPS_DEST_FLAGS_DEVICE : CUPS_DEST_FLAGS_NONE, connect_patience_ms,
+                          nullptr, resource, sizeof resource, nullptr, nullptr);
   if (!http_) fail(name_ + " cannot be reached: see whether it is switched on and on the network, and try again.");
   resource_ = resource;
   uri_ = queue;
   if (!queue.empty()) return;
   // Connecting has found out its address, which is then as good as a registered one.
   uri_ = option("device-uri");
-  if (!uri_.starts_with("ipp")) fail(name_ + " does not speak IPP, by what the network says of it: add it to the system's printers.");
+  if (!uri_.starts_with("ipp"))
+    fail(name_ + " does not speak IPP, by what the network says of it: add it to the system's printers.");
   httpClose(std::exchange(http_, nullptr));
 }
 
 void IppConnection::connect_to_uri() {
   char scheme[32] = "", user[256] = "", host[256] = "", resource[1024] = "";
   int port = 0;
-  if (httpSeparateURI(HTTP_URI_CODING_ALL, uri_.c_str(), scheme, sizeof scheme, user, sizeof user, host, sizeof host, &port, resource,
-                      sizeof resource) < HTTP_URI_STATUS_OK)
-    fail("The address " + uri_ + " of " + name_ + " is not one: register it anew, such as ipp://192.168.1.20/ipp/print.");
+  if (httpSeparateURI(HTTP_URI_CODING_ALL, uri_.c_str(), scheme, sizeof scheme, user, sizeof user, host, sizeof host,
+                      &port, resource, sizeof resource) < HTTP_URI_STATUS_OK)
+    fail("The address " + uri_ + " of " + name_ +
+         " is not one: register it anew, such as ipp://192.168.1.20/ipp/print.");
   resource_ = resource;
-  const http_encryption_t encryption = std::string(scheme) == "ipps" ? HTTP_ENCRYPTION_ALWAYS : HTTP_ENCRYPTION_IF_REQUESTED;
+  const http_encryption_t encryption =
+      std::string(scheme) == "ipps" ? HTTP_ENCRYPTION_ALWAYS : HTTP_ENCRYPTION_IF_REQUESTED;
   http_ = httpConnect2(host, port, nullptr, AF_UNSPEC, encryption, 1, connect_patience_ms, nullptr);
   if (http_) return;
   const std::string reason = last_words();
@@ -125,16 +130,19 @@ IppConnection::Answer IppConnection::ask(IppMessage message, ByteView document) 
   check(cancelled_);
   if (!answer.message) {
     const http_status_t status = httpGetStatus(http_);
-    if (status == HTTP_STATUS_UNAUTHORIZED || sent == HTTP_STATUS_UNAUTHORIZED || status == HTTP_STATUS_CUPS_AUTHORIZATION_CANCELED ||
-        status == HTTP_STATUS_FORBIDDEN)
-      fail(name_ + " asks for a password: let it print without one, or add it to the system's printers and choose it there.");
+    if (status == HTTP_STATUS_UNAUTHORIZED || sent == HTTP_STATUS_UNAUTHORIZED ||
+        status == HTTP_STATUS_CUPS_AUTHORIZATION_CANCELED || status == HTTP_STATUS_FORBIDDEN)
+      fail(name_ +
+           " asks for a password: let it print without one, or add it to the system's printers and choose it there.");
     if (status == HTTP_STATUS_SERVICE_UNAVAILABLE) {
       answer.status = IPP_STATUS_ERROR_BUSY;
       answer.message.reset(ippNew());
       return answer;
     }
-    if (status == HTTP_STATUS_NOT_FOUND) fail("There is no printer at " + uri_ + ": most have theirs at /ipp/print; register it anew.");
-    if (silent_s_ >= answer_patience_s) fail(name_ + " was asked and stayed silent for 30 s: switch it off and on, and try again.");
+    if (status == HTTP_STATUS_NOT_FOUND)
+      fail("There is no printer at " + uri_ + ": most have theirs at /ipp/print; register it anew.");
+    if (silent_s_ >= answer_patience_s)
+      fail(name_ + " was asked and stayed silent for 30 s: switch it off and on, and try again.");
     fail("The connection to " + name_ + " broke off (" + last_words() + "): try again.");
   }
   answer.status = ippGetStatusCode(answer.message.get());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// One conversation with an IPP printer (RFC 8010, 8011) over libcups. Everything here blocks: never on the server's thread.
+// One conversation with an IPP printer (RFC 8010, 8011) over libcups. Everything here blocks: never on the server's
+// thread.
 #include <cups/cups.h>
 
 #include <atomic>
@@ -12,7 +13,8 @@
 
 namespace formwright {
 
-/// Where a printer is: the address a person registered, or a destination the system's print service knows or found on the network.
+/// Where a printer is: the address a person registered, or a destination the system's print service knows or found on
+/// the network.
 struct PrinterAddress {
   std::string name;  // for sentences
   std::string uri;   // ipp://... or ipps://...; empty for a destination
@@ -23,8 +25,8 @@ using IppMessage = std::unique_ptr<ipp_t, void (*)(ipp_t*)>;
 
 class IppConnection {
  public:
-  /// `cancelled` must outlive it. Throws Error{could_not_solve, "machine"} with a sentence when nobody answers within 10 s, and
-  /// Error{cancelled}.
+  /// `cancelled` must outlive it. Throws Error{could_not_solve, "machine"} with a sentence when nobody answers within
+  /// 10 s, and Error{cancelled}.
   IppConnection(const PrinterAddress& address, const std::atomic<bool>& cancelled);
   IppConnection(const IppConnection&) = delete;
   IppConnection& operator=(const IppConnection&) = delete;
@@ -39,11 +41,13 @@ class IppConnection {
     std::string text;  // the printer's own words, may be empty
     bool ok() const { return status < IPP_STATUS_REDIRECTION_OTHER_SITE; }
     bool busy() const {
-      return status == IPP_STATUS_ERROR_BUSY || status == IPP_STATUS_ERROR_TEMPORARY || status == IPP_STATUS_ERROR_SERVICE_UNAVAILABLE;
+      return status == IPP_STATUS_ERROR_BUSY || status == IPP_STATUS_ERROR_TEMPORARY ||
+             status == IPP_STATUS_ERROR_SERVICE_UNAVAILABLE;
     }
   };
-  /// Sends it with the document behind it and waits up to 30 s for each step. Throws Error{could_not_solve, "machine"} when the
-  /// connection breaks, the printer asks for a password or stays silent, and Error{cancelled}. What the printer refuses is an Answer.
+  /// Sends it with the document behind it and waits up to 30 s for each step. Throws Error{could_not_solve, "machine"}
+  /// when the connection breaks, the printer asks for a password or stays silent, and Error{cancelled}. What the
+  /// printer refuses is an Answer.
   Answer ask(IppMessage request, ByteView document = {});
 
  private:

@@ -28,21 +28,19 @@ constexpr double slice_limit_s = 900;
 http::status status_of(const Error& error) {
   if (error.where() == "machine" && error.code() == ErrorCode::invalid_input) return http::status::not_found;
   switch (error.code()) {
-    case ErrorCode::invalid_input:
-      return http::status::unprocessable_entity;
-    case ErrorCode::could_not_solve:
-      return http::status::bad_gateway;
-    case ErrorCode::cancelled:
-      return http::status::conflict;
-    default:
-      return http::status::internal_server_error;
+    case ErrorCode::invalid_input: return http::status::unprocessable_entity;
+    case ErrorCode::could_not_solve: return http::status::bad_gateway;
+    case ErrorCode::cancelled: return http::status::conflict;
+    default: return http::status::internal_server_error;
   }
 }
 
 Response refused(const Head& head, const Error& error) {
   return error_response(head, status_of(error), to_string(error.code()), error.where(), error.what());
 }
-Response accepted(const Head& head, const std::string& id) { return text_response(head, http::status::accepted, Json{{"id", id}}.dump()); }
+Response accepted(const Head& head, const std::string& id) {
+  return text_response(head, http::status::accepted, Json{{"id", id}}.dump());
+}
 Response too_many(const Head& head) {
   return error_response(head, http::status::too_many_requests, "invalid_input", "",
                         "Too many prints and uploads are under way: let some finish.");
@@ -51,7 +49,9 @@ Response nothing_here(const Head& head) {
   return error_response(head, http::status::not_found, "invalid_input", "", "There is nothing here.");
 }
 
-[[noreturn]] void refuse(const std::string& where, const std::string& sentence) { throw Error(ErrorCode::invalid_input, where, sentence); }
+[[noreturn]] void refuse(const std::string& where, const std::string& sentence) {
+  throw Error(ErrorCode::invalid_input, where, sentence);
+}
 
 std::string text_in(const Json& order, const char* name, const std::string& otherwise) {
   if (!order.contains(name)) return otherwise;
@@ -93,13 +93,14 @@ boost::asio::awaitable<void> MachineBridge::serve_socket(beast::tcp_stream strea
     if (found->kind != MachineKind::serial && found->kind != MachineKind::ruida)
       refuse("machine", found->name + " has no socket: it is a " + std::string(to_string(found->kind)) + ".");
     if (rooms_.full(found->id))
-      refusal =
-          error_response(head, http::status::too_many_requests, "invalid_input", "", "Too many pages are at this machine: close some.");
+      refusal = error_response(head, http::status::too_many_requests, "invalid_input", "",
+                               "Too many pages are at this machine: close some.");
   } catch (const Error& error) {
     refusal = error_response(head, http::status::not_found, to_string(error.code()), error.where(), error.what());
   }
   if (!refusal) {
-    co_await rooms_.serve(std::make_shared<MachinePage>(beast::websocket::stream<beast::tcp_stream>(std::move(stream))), head, *found);
+    co_await rooms_.serve(std::make_shared<MachinePage>(beast::websocket::stream<beast::tcp_stream>(std::move(stream))),
+                          head, *found);
     co_return;
   }
   boost::system::error_code ignored;
@@ -112,7 +113,8 @@ boost::asio::awaitable<void> MachineBridge::serve_socket(beast::tcp_stream strea
 template <class Result>
 boost::asio::awaitable<Result> MachineBridge::aside(std::function<Result()> work) {
   co_return co_await boost::asio::co_spawn(
-      asking_, [](std::function<Result()> w) -> boost::asio::awaitable<Result> { co_return w(); }(std::move(work)), use_awaitable);
+      asking_, [](std::function<Result()> w) -> boost::asio::awaitable<Result> { co_return w(); }(std::move(work)),
+      use_awaitable);
 }
 
 boost::asio::awaitable<std::vector<Machine>> MachineBridge::machines(bool search_again) {
@@ -131,10 +133,12 @@ boost::asio::awaitable<Machine> MachineBridge::machine(std::string id) {
   for (const bool again : {false, true})
     for (const Machine& m : co_await machines(again))
       if (m.id == id && !m.registered) co_return m;
-  refuse("machine", "That machine is no longer there: see whether it is plugged in or registered, and look at the list again.");
+  refuse("machine",
+         "That machine is no longer there: see whether it is plugged in or registered, and look at the list again.");
 }
 
-boost::asio::awaitable<Response> MachineBridge::answer(Head head, std::string path, std::string query, std::string body) {
+boost::asio::awaitable<Response> MachineBridge::answer(Head head, std::string path, std::string query,
+                                                       std::string body) {
   const bool reads = head.method() == http::verb::get || head.method() == http::verb::head;
   std::optional<Error> failed;
   try {
@@ -148,8 +152,9 @@ boost::asio::awaitable<Response> MachineBridge::answer(Head head, std::string pa
       co_return text_response(head, http::status::ok, json_text(list));
     }
     if (path == "/log" && reads) {
-      const std::size_t limit =
-          query.starts_with("limit=") ? static_cast<std::size_t>(std::clamp(std::atoi(query.c_str() + 6), 1, 5000)) : 200;
+      const std::size_t limit = query.starts_with("limit=")
+                                    ? static_cast<std::size_t>(std::clamp(std::atoi(query.c_str() + 6), 1, 5000))
+                                    : 200;
       const bool lines = query.find("lines=1") != std::string::npos;
       const std::function<std::string()> read = [this, limit, lines] { return json_text(log_.newest(limit, lines)); };
       co_return text_response(head, http::status::ok, co_await aside(read));
@@ -164,19 +169,19 @@ boost::asio::awaitable<Response> MachineBridge::answer(Head head, std::string pa
   co_return failed ? refused(head, *failed) : nothing_here(head);
 }
 
-boost::asio::awaitable<Response> MachineBridge::answer_machine(Head head, std::string id, std::string rest, std::string body) {
+boost::asio::awaitable<Response> MachineBridge::answer_machine(Head head, std::string id, std::string rest,
+                                                               std::string body) {
   const Machine m = co_await machine(id);
-  const bool reads = head.method() == http::verb::get || head.method() == http::verb::head, posts = head.method() == http::verb::post;
+  const bool reads = head.method() == http::verb::get || head.method() == http::verb::head,
+             posts = head.method() == http::verb::post;
   if (rest.empty() && reads) {
     const std::function<Json()> describe = [this, m] {
       const std::atomic<bool> go_on{false};
       Json json = machine_json(m);
-      if (m.kind == MachineKind::printer)
-        json.update(printer_json(describe_printer(address_of(m), go_on)));
+      if (m.kind == MachineKind::printer) json.update(printer_json(describe_printer(address_of(m), go_on)));
       else if (m.kind == MachineKind::octoprint || m.kind == MachineKind::moonraker)
         json.update(upload_machine_state(m, go_on));
-      else if (m.kind == MachineKind::slicer)
-        json["profiles"] = slicer_profiles(registry_.data());
+      else if (m.kind == MachineKind::slicer) json["profiles"] = slicer_profiles(registry_.data());
       return json;
     };
     co_return text_response(head, http::status::ok, json_text(co_await aside(describe)));
@@ -184,7 +189,8 @@ boost::asio::awaitable<Response> MachineBridge::answer_machine(Head head, std::s
   if (rest == "/jobs" || rest.starts_with("/jobs/")) co_return answer_tasks(head, m, rest.substr(5));
   if (!posts) co_return nothing_here(head);
   const Json order = body.empty() ? Json::object() : Json::parse(body, nullptr, false);
-  if (order.is_discarded()) co_return error_response(head, http::status::bad_request, "invalid_input", "", "The order is not JSON.");
+  if (order.is_discarded())
+    co_return error_response(head, http::status::bad_request, "invalid_input", "", "The order is not JSON.");
   if (rest == "/print" && m.kind == MachineKind::printer) co_return print(head, m, order);
   const bool uploads = m.kind == MachineKind::octoprint || m.kind == MachineKind::moonraker;
   if (rest == "/upload" && uploads) co_return upload(head, m, order);
@@ -206,7 +212,8 @@ std::shared_ptr<const Bytes> MachineBridge::blob(const Json& order) const {
   const std::string hash = text_in(order, "sha256", "");
   if (!is_hex_name(hash, 64)) refuse("sha256", "Name the file by its SHA-256, and send it as a blob before.");
   std::error_code status;
-  if (!std::filesystem::exists(store_.blob_path(hash), status)) refuse("sha256", "The file has not arrived: send it again.");
+  if (!std::filesystem::exists(store_.blob_path(hash), status))
+    refuse("sha256", "The file has not arrived: send it again.");
   return read_file(store_.blob_path(hash), "sha256", most_document_bytes);
 }
 
@@ -225,8 +232,9 @@ Response MachineBridge::print(const Head& head, const Machine& m, const Json& or
   const auto document = blob(order);
   const auto task = tasks_.start(m, "print", [m, print, document](MachineTask& running) mutable -> Json {
     print.document = *document;
-    const PrintResult result = print_document(address_of(m), print, running.cancelled,
-                                              [&](const std::string& state, const std::string& sentence) { running.say(state, sentence); });
+    const PrintResult result =
+        print_document(address_of(m), print, running.cancelled,
+                       [&](const std::string& state, const std::string& sentence) { running.say(state, sentence); });
     return {{"job_id", result.job_id}, {"sheets", result.sheets}, {"notes", result.notes}};
   });
   return task ? accepted(head, task->id) : too_many(head);
@@ -271,9 +279,10 @@ boost::asio::awaitable<Response> MachineBridge::slice(Head head, Machine m, Json
   while (!task->finished()) co_await over->async_wait(boost::asio::redirect_error(use_awaitable, ignored));
   const Json ended = task->json();
   if (ended["state"] != "done")
-    co_return text_response(head,
-                            ended["error"]["code"] == "invalid_input" ? http::status::unprocessable_entity : http::status::bad_gateway,
-                            json_text({{"error", ended["error"]}}));
+    co_return text_response(
+        head,
+        ended["error"]["code"] == "invalid_input" ? http::status::unprocessable_entity : http::status::bad_gateway,
+        json_text({{"error", ended["error"]}}));
   Json result = ended["result"];
   result["id"] = task->id;
   co_return text_response(head, http::status::ok, json_text(result));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Machines behind the worker's HTTP interface (docs/machine_bridge.md). Lives on the server's thread; what blocks runs beside it.
+// Machines behind the worker's HTTP interface (docs/machine_bridge.md). Lives on the server's thread; what blocks runs
+// beside it.
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/thread_pool.hpp>
@@ -24,9 +25,11 @@ namespace formwright {
 class MachineBridge {
  public:
   MachineBridge(boost::asio::io_context& io, std::filesystem::path data, JobStore& store);
-  /// `path`: behind /api/machines, without the query. The request has passed the server's checks of Host, Origin and token.
+  /// `path`: behind /api/machines, without the query. The request has passed the server's checks of Host, Origin and
+  /// token.
   boost::asio::awaitable<Response> answer(Head head, std::string path, std::string query, std::string body);
-  /// The WebSocket of one machine. Returns when the page is gone; answers with an HTTP error when there is no such machine.
+  /// The WebSocket of one machine. Returns when the page is gone; answers with an HTTP error when there is no such
+  /// machine.
   boost::asio::awaitable<void> serve_socket(beast::tcp_stream stream, Head head, std::string id);
   /// Another process asked for a stop (SIGUSR1).
   void look_for_stops() { rooms_.look_for_stops(); }

@@ -80,10 +80,8 @@ int remove(const std::vector<std::string>& words) {
   std::string name;
   for (std::size_t i = 0; i < words.size(); ++i) {
     const bool flag = words[i].starts_with("--");
-    if (!flag && name.empty())
-      name = words[i];
-    else
-      rest.push_back(words[i]);
+    if (!flag && name.empty()) name = words[i];
+    else rest.push_back(words[i]);
     if (flag && words[i].find('=') == std::string::npos && i + 1 < words.size()) rest.push_back(words[++i]);
   }
   const MachineFlags flags = read_machine_flags(rest, {"--data", "--name"}, {});
@@ -167,14 +165,11 @@ MachineFlags read_machine_flags(const std::vector<std::string>& words, const std
       return std::find(list.begin(), list.end(), flag) != list.end();
     };
     if (result.values.contains(flag)) throw Error(ErrorCode::invalid_input, flag, flag + " is given twice.");
-    if (among(switches) && !joined)
-      value = "on";
+    if (among(switches) && !joined) value = "on";
     else if (!among(flags))
       throw Error(ErrorCode::invalid_input, flag, "There is no flag " + flag + " here: see formwright machine --help.");
-    else if (!joined && i + 1 >= words.size())
-      throw Error(ErrorCode::invalid_input, flag, flag + " needs a value.");
-    else if (!joined)
-      value = words[++i];
+    else if (!joined && i + 1 >= words.size()) throw Error(ErrorCode::invalid_input, flag, flag + " needs a value.");
+    else if (!joined) value = words[++i];
     result.values[flag] = value;
   }
   return result;

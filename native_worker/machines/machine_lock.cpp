@@ -32,7 +32,8 @@ MachineLock::MachineLock(const std::filesystem::path& data, const Machine& machi
   stop_file_ = path.string() + ".stop";
   descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   if (descriptor_ < 0)
-    throw Error(ErrorCode::could_not_solve, "machine", "The folder " + data.string() + " cannot be written: choose another with --data.");
+    throw Error(ErrorCode::could_not_solve, "machine",
+                "The folder " + data.string() + " cannot be written: choose another with --data.");
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
     const int holder = holder_of(descriptor_);
     ::close(descriptor_);
@@ -81,9 +82,9 @@ int MachineLock::ask_to_stop(const std::filesystem::path& data, const Machine& m
     if (!std::filesystem::exists(stop_file, status)) return holder;
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
-  throw Error(
-      ErrorCode::could_not_solve, "machine",
-      "The program that drives " + machine.name + " (process " + std::to_string(holder) + ") does not hear: switch the machine off.");
+  throw Error(ErrorCode::could_not_solve, "machine",
+              "The program that drives " + machine.name + " (process " + std::to_string(holder) +
+                  ") does not hear: switch the machine off.");
 }
 
 }  // namespace formwright

@@ -18,7 +18,9 @@ namespace {
 constexpr std::uintmax_t most_bytes = std::uintmax_t{512} << 20;  // of all logs together; the oldest go
 constexpr std::streamoff tail_bytes = 4 << 20;                    // of a file, when the newest are asked for
 
-double unix_seconds() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
+double unix_seconds() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
 
 std::string day_now() {
   const std::time_t now = std::time(nullptr);
@@ -87,12 +89,13 @@ void MachineLog::append(const Machine& machine, Json entry, bool lasting) {
   const std::scoped_lock lock(mutex_);
   const int descriptor = descriptor_for(day_now() + "-" + machine.id + ".jsonl");
   // One write a line: whatever happens to this program, a line is there whole or not at all.
-  const bool written = descriptor >= 0 && ::write(descriptor, line.data(), line.size()) == static_cast<ssize_t>(line.size()) &&
+  const bool written = descriptor >= 0 &&
+                       ::write(descriptor, line.data(), line.size()) == static_cast<ssize_t>(line.size()) &&
                        (!lasting || ::fdatasync(descriptor) == 0);
   if (!written && !complained_) {
     complained_ = true;
-    std::cerr << "formwright: the machine log in " << folder_.string() << " cannot be written: make room, or mend its permissions."
-              << std::endl;
+    std::cerr << "formwright: the machine log in " << folder_.string()
+              << " cannot be written: make room, or mend its permissions." << std::endl;
   }
 }
 
@@ -101,12 +104,13 @@ Json MachineLog::newest(std::size_t limit, bool lines) const {
   auto files = files_oldest_first(folder_);
   // Several machines may have a file for the same day, whose entries interleave: whole days are read.
   for (std::size_t i = files.size(); i-- > 0;) {
-    const bool new_day =
-        i + 1 >= files.size() || files[i].filename().string().substr(0, 10) != files[i + 1].filename().string().substr(0, 10);
+    const bool new_day = i + 1 >= files.size() ||
+                         files[i].filename().string().substr(0, 10) != files[i + 1].filename().string().substr(0, 10);
     if (new_day && entries.size() >= limit) break;
     for (const std::string& line : last_lines(files[i])) {
       Json entry = Json::parse(line, nullptr, false);
-      if (!entry.is_object() || !entry.contains("unix_s") || !entry["unix_s"].is_number()) continue;  // cut off by a power failure
+      if (!entry.is_object() || !entry.contains("unix_s") || !entry["unix_s"].is_number())
+        continue;  // cut off by a power failure
       const Json event = entry.value("event", Json());
       if (!lines && (event == "sent" || event == "received")) continue;
       entries.push_back(std::move(entry));

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// What every machine was told and did, in DATA/machine_log/DAY-ID.jsonl: one JSON object a line, handed to the system line by line, so
-// that a crash of this program loses nothing; entries that say what began or ended are on the disk when the call returns.
+// What every machine was told and did, in DATA/machine_log/DAY-ID.jsonl: one JSON object a line, handed to the system
+// line by line, so that a crash of this program loses nothing; entries that say what began or ended are on the disk
+// when the call returns.
 #include <filesystem>
 #include <map>
 #include <mutex>
@@ -19,8 +20,8 @@ class MachineLog {
   MachineLog& operator=(const MachineLog&) = delete;
   ~MachineLog();
 
-  /// Adds the time (unix_s), the machine's id and name. From any thread. `lasting`: wait until the disk has it. A disk that cannot be
-  /// written stops no machine: that is said once on standard error.
+  /// Adds the time (unix_s), the machine's id and name. From any thread. `lasting`: wait until the disk has it. A disk
+  /// that cannot be written stops no machine: that is said once on standard error.
   void append(const Machine& machine, Json entry, bool lasting = false);
 
   /// The newest entries first. `lines`: also each line sent and received.

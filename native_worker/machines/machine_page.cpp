@@ -14,10 +14,8 @@ constexpr double requests_per_second = 100, request_burst = 200;
 void MachinePage::send(const Json& message) { push(std::make_shared<const std::string>(json_text(message))); }
 
 void MachinePage::send_state(std::shared_ptr<const std::string> text) {
-  if (outgoing_.size() < 4)
-    push(std::move(text));
-  else
-    latest_state_ = std::move(text);
+  if (outgoing_.size() < 4) push(std::move(text));
+  else latest_state_ = std::move(text);
 }
 
 void MachinePage::push(std::shared_ptr<const std::string> text) {
@@ -33,14 +31,16 @@ void MachinePage::write_next() {
                       [this, self = shared_from_this()](const boost::system::error_code& error, std::size_t) {
                         outgoing_.pop_front();
                         if (error) return outgoing_.clear();
-                        if (outgoing_.empty() && latest_state_) outgoing_.push_back(std::exchange(latest_state_, nullptr));
+                        if (outgoing_.empty() && latest_state_)
+                          outgoing_.push_back(std::exchange(latest_state_, nullptr));
                         if (!outgoing_.empty()) write_next();
                       });
 }
 
 bool MachinePage::within_rate() {
   const auto now = std::chrono::steady_clock::now();
-  rate_budget_ = std::min(request_burst, rate_budget_ + requests_per_second * std::chrono::duration<double>(now - rate_time_).count());
+  rate_budget_ = std::min(request_burst,
+                          rate_budget_ + requests_per_second * std::chrono::duration<double>(now - rate_time_).count());
   rate_time_ = now;
   if (rate_budget_ < 1) return false;
   rate_budget_ -= 1;

@@ -22,7 +22,8 @@ constexpr int flush_patience_ms = 300;
 /// A serial port or a TCP connection.
 class StreamPort final : public MachinePort, public std::enable_shared_from_this<StreamPort> {
  public:
-  StreamPort(boost::asio::io_context& io, int descriptor, std::string name) : stream_(io, descriptor), name_(std::move(name)) {}
+  StreamPort(boost::asio::io_context& io, int descriptor, std::string name)
+      : stream_(io, descriptor), name_(std::move(name)) {}
 
   void start(Received received, Closed closed) override {
     received_ = std::move(received);
@@ -41,8 +42,8 @@ class StreamPort final : public MachinePort, public std::enable_shared_from_this
   }
   void flush() override {
     if (!open_) return;
-    // Not over the io_context, which may not run again. Its write may have got through in part: reals repeat nothing, so that part is
-    // skipped.
+    // Not over the io_context, which may not run again. Its write may have got through in part: reals repeat nothing,
+    // so that part is skipped.
     stream_.native_non_blocking(true);
     for (std::size_t i = writing_ ? 1 : 0; i < outgoing_.size(); ++i) {
       std::size_t done = 0;
@@ -71,13 +72,14 @@ class StreamPort final : public MachinePort, public std::enable_shared_from_this
 
  private:
   void read() {
-    stream_.async_read_some(boost::asio::buffer(incoming_), [this, self = shared_from_this()](const error_code& error, std::size_t count) {
-      if (!open_) return;
-      if (error) return end();
-      const auto received = received_;  // it may close the port, and with it itself
-      received(ByteView(incoming_.data(), count));
-      if (open_) read();
-    });
+    stream_.async_read_some(boost::asio::buffer(incoming_),
+                            [this, self = shared_from_this()](const error_code& error, std::size_t count) {
+                              if (!open_) return;
+                              if (error) return end();
+                              const auto received = received_;  // it may close the port, and with it itself
+                              received(ByteView(incoming_.data(), count));
+                              if (open_) read();
+                            });
   }
   void write_next() {
     if (outgoing_.empty()) return;
@@ -118,16 +120,19 @@ class UdpPort final : public MachinePort, public std::enable_shared_from_this<Ud
     const auto found = resolver.resolve(udp::v4(), host, std::to_string(port > 0 ? port : machine_port), error);
     if (error || found.empty())
       throw Error(ErrorCode::could_not_solve, "machine",
-                  "The name " + host + " of " + name + " is not known on this network: register the machine with its address in numbers.");
+                  "The name " + host + " of " + name +
+                      " is not known on this network: register the machine with its address in numbers.");
     machine_ = found.begin()->endpoint();
     socket_.open(udp::v4(), error);
     // Answers of a machine on this computer need not be heard from elsewhere.
-    const auto from = machine_.address().is_loopback() ? boost::asio::ip::address(boost::asio::ip::address_v4::loopback())
-                                                       : boost::asio::ip::address(boost::asio::ip::address_v4::any());
+    const auto from = machine_.address().is_loopback()
+                          ? boost::asio::ip::address(boost::asio::ip::address_v4::loopback())
+                          : boost::asio::ip::address(boost::asio::ip::address_v4::any());
     if (!error) socket_.bind({from, answer_port}, error);
     if (error)
       throw Error(ErrorCode::could_not_solve, "machine",
-                  "Port 40200, to which " + name + " answers, is used by another program (" + error.message() + "): close that one first.");
+                  "Port 40200, to which " + name + " answers, is used by another program (" + error.message() +
+                      "): close that one first.");
     socket_.non_blocking(true, error);
   }
   void start(Received received, Closed) override {
@@ -155,8 +160,8 @@ class UdpPort final : public MachinePort, public std::enable_shared_from_this<Ud
     socket_.async_receive_from(boost::asio::buffer(incoming_), from_,
                                [this, self = shared_from_this()](const error_code& error, std::size_t count) {
                                  if (!open_ || error == boost::asio::error::operation_aborted) return;
-                                 // "Connection refused" is an answer of the network to what was sent: a machine that is off. The driver
-                                 // waits and says so.
+                                 // "Connection refused" is an answer of the network to what was sent: a machine that is
+                                 // off. The driver waits and says so.
                                  if (!error && from_.address() == machine_.address()) {
                                    const auto received = received_;
                                    received(ByteView(incoming_.data(), count));
@@ -180,11 +185,13 @@ std::shared_ptr<MachinePort> open_machine_port(boost::asio::io_context& io, cons
     return std::make_shared<StreamPort>(io, open_serial(machine.url.substr(7), baud, machine.name), machine.name);
   char scheme[32] = "", user[256] = "", host[256] = "", resource[1024] = "";
   int port = 0;
-  if (httpSeparateURI(HTTP_URI_CODING_ALL, machine.url.c_str(), scheme, sizeof scheme, user, sizeof user, host, sizeof host, &port,
-                      resource, sizeof resource) < HTTP_URI_STATUS_OK)
-    throw Error(ErrorCode::could_not_solve, "machine", "The address of " + machine.name + " cannot be read: register it anew.");
+  if (httpSeparateURI(HTTP_URI_CODING_ALL, machine.url.c_str(), scheme, sizeof scheme, user, sizeof user, host,
+                      sizeof host, &port, resource, sizeof resource) < HTTP_URI_STATUS_OK)
+    throw Error(ErrorCode::could_not_solve, "machine",
+                "The address of " + machine.name + " cannot be read: register it anew.");
   if (machine.kind == MachineKind::ruida) return std::make_shared<UdpPort>(io, host, port, machine.name);
-  if (std::string(scheme) == "tcp") return std::make_shared<StreamPort>(io, connect_tcp(host, port, machine.name), machine.name);
+  if (std::string(scheme) == "tcp")
+    return std::make_shared<StreamPort>(io, connect_tcp(host, port, machine.name), machine.name);
   throw Error(ErrorCode::invalid_input, "machine",
               machine.name + " is a " + std::string(to_string(machine.kind)) + ": it is not driven line by line.");
 }

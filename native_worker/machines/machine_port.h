@@ -18,10 +18,12 @@ class MachinePort {
  public:
   virtual ~MachinePort() = default;
   using Received = std::function<void(ByteView)>;
-  using Closed = std::function<void(const std::string& sentence)>;  // the cable was pulled, the other side is gone; at most once
+  using Closed =
+      std::function<void(const std::string& sentence)>;  // the cable was pulled, the other side is gone; at most once
 
   virtual void start(Received received, Closed closed) = 0;
-  /// In this order. Serial lines join the packets, UDP sends each as one datagram. `first`: what still waits is thrown away.
+  /// In this order. Serial lines join the packets, UDP sends each as one datagram. `first`: what still waits is thrown
+  /// away.
   virtual void write(std::vector<Bytes> packets, bool first) = 0;
   /// Writes what waits for up to 300 ms, for a program that is about to end.
   virtual void flush() = 0;
@@ -29,8 +31,9 @@ class MachinePort {
   virtual std::size_t waiting_bytes() const = 0;
 };
 
-/// Opens the machine's port for this program alone, 8N1 without flow control; nothing is sent. Blocks for up to 5 s (TCP).
-/// Throws Error{could_not_solve, "machine"} with what to do: no such port, no permission, used by another program, nobody there.
+/// Opens the machine's port for this program alone, 8N1 without flow control; nothing is sent. Blocks for up to 5 s
+/// (TCP). Throws Error{could_not_solve, "machine"} with what to do: no such port, no permission, used by another
+/// program, nobody there.
 std::shared_ptr<MachinePort> open_machine_port(boost::asio::io_context& io, const Machine& machine, int baud);
 
 namespace machine_port_detail {

@@ -134,12 +134,9 @@ Machine machine_from_words(const MachineWords& words) {
       refuse("--url", "A name or password does not belong in the address: give the key in a file, --api-key-file.");
     if (address.host.empty())
       refuse("--url", "\"" + words.url + "\" names no machine: write its address behind the two slashes.");
-    if (address.scheme == "ipp" || address.scheme == "ipps")
-      machine.kind = MachineKind::printer;
-    else if (address.scheme == "ruida")
-      machine.kind = MachineKind::ruida;
-    else if (address.scheme == "tcp")
-      machine.kind = MachineKind::serial;
+    if (address.scheme == "ipp" || address.scheme == "ipps") machine.kind = MachineKind::printer;
+    else if (address.scheme == "ruida") machine.kind = MachineKind::ruida;
+    else if (address.scheme == "tcp") machine.kind = MachineKind::serial;
     else if (address.scheme == "http" || address.scheme == "https") {
       if (words.kind != "octoprint" && words.kind != "moonraker")
         refuse("--kind", "Say what answers there: --kind octoprint or --kind moonraker.");

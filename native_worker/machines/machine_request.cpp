@@ -6,7 +6,9 @@
 
 namespace formwright {
 namespace {
-[[noreturn]] void refuse(const std::string& where, const std::string& sentence) { throw Error(ErrorCode::invalid_input, where, sentence); }
+[[noreturn]] void refuse(const std::string& where, const std::string& sentence) {
+  throw Error(ErrorCode::invalid_input, where, sentence);
+}
 }  // namespace
 
 MachineRequest read_machine_request(const std::string& text) {
@@ -16,21 +18,17 @@ MachineRequest read_machine_request(const std::string& text) {
   int count = 0;
   for (const auto& [name, value] : message.items()) {
     if (name == "n") {
-      if (!value.is_number_integer() || value < 0 || value > 1'000'000'000) refuse("n", "n must be a whole number from 0.");
+      if (!value.is_number_integer() || value < 0 || value > 1'000'000'000)
+        refuse("n", "n must be a whole number from 0.");
       request.number = value.get<int>();
       continue;
     }
     ++count;
-    if (name == "open")
-      request.kind = MachineRequest::Kind::open;
-    else if (name == "command")
-      request.kind = MachineRequest::Kind::command;
-    else if (name == "load")
-      request.kind = MachineRequest::Kind::load;
-    else if (name == "close")
-      request.kind = MachineRequest::Kind::close;
-    else
-      refuse("", "A request is one of open, command, load and close.");
+    if (name == "open") request.kind = MachineRequest::Kind::open;
+    else if (name == "command") request.kind = MachineRequest::Kind::command;
+    else if (name == "load") request.kind = MachineRequest::Kind::load;
+    else if (name == "close") request.kind = MachineRequest::Kind::close;
+    else refuse("", "A request is one of open, command, load and close.");
     if (request.kind == MachineRequest::Kind::close) {
       if (value != true) refuse("close", "close must be true.");
       continue;
@@ -41,11 +39,13 @@ MachineRequest read_machine_request(const std::string& text) {
       continue;
     }
     for (const auto& [field, content] : value.items()) {
-      if ((field != "name" && field != "sha256") || !content.is_string()) refuse("load", "load needs name and sha256, both text.");
+      if ((field != "name" && field != "sha256") || !content.is_string())
+        refuse("load", "load needs name and sha256, both text.");
       (field == "name" ? request.name : request.sha256) = content.get<std::string>();
     }
     if (request.name.empty() || request.name.size() > 200) refuse("name", "The job needs a name of up to 200 letters.");
-    if (!is_hex_name(request.sha256, 64)) refuse("sha256", "Name the job by its SHA-256, and send it as a blob before.");
+    if (!is_hex_name(request.sha256, 64))
+      refuse("sha256", "Name the job by its SHA-256, and send it as a blob before.");
   }
   if (count != 1) refuse("", "A request is exactly one of open, command, load and close.");
   return request;

@@ -45,7 +45,8 @@ bool MachineRooms::full(const std::string& machine_id) const {
 
 std::string MachineRooms::state_of(const std::string& machine_id) const {
   const auto found = rooms_.find(machine_id);
-  return found == rooms_.end() || !found->second->session ? "" : found->second->session->state()["phase"].get<std::string>();
+  return found == rooms_.end() || !found->second->session ? ""
+                                                          : found->second->session->state()["phase"].get<std::string>();
 }
 
 boost::asio::awaitable<void> MachineRooms::serve(std::shared_ptr<MachinePage> page, Head head, Machine machine) {
@@ -65,7 +66,8 @@ boost::asio::awaitable<void> MachineRooms::serve(std::shared_ptr<MachinePage> pa
   if (!error) page->accepted();
   try {
     if (!error && room->session) page->send({{"state", room->session->state()}});
-    if (!error && !room->recent.empty()) page->send({{"events", Json(std::vector<Json>(room->recent.begin(), room->recent.end()))}});
+    if (!error && !room->recent.empty())
+      page->send({{"events", Json(std::vector<Json>(room->recent.begin(), room->recent.end()))}});
     while (!error) {
       beast::flat_buffer buffer;
       co_await stream.async_read(buffer, boost::asio::redirect_error(use_awaitable, error));
@@ -74,7 +76,8 @@ boost::asio::awaitable<void> MachineRooms::serve(std::shared_ptr<MachinePage> pa
       std::optional<MachineRequest> request;
       std::optional<Json> answer;
       try {
-        if (!page->within_rate()) throw Error(ErrorCode::invalid_input, "", "Too many requests at once: wait a second.");
+        if (!page->within_rate())
+          throw Error(ErrorCode::invalid_input, "", "Too many requests at once: wait a second.");
         request = read_machine_request(beast::buffers_to_string(buffer.data()));
       } catch (const Error& refused) {
         answer = error_of(to_string(refused.code()), refused.where(), refused.what(), counted);
@@ -100,15 +103,19 @@ boost::asio::awaitable<void> MachineRooms::serve(std::shared_ptr<MachinePage> pa
   }
   leave(room, page);
   // Said before the line goes dead, so that what it was told last still arrives.
-  if (!error) co_await stream.async_close(beast::websocket::close_code::policy_error, boost::asio::redirect_error(use_awaitable, error));
+  if (!error)
+    co_await stream.async_close(beast::websocket::close_code::policy_error,
+                                boost::asio::redirect_error(use_awaitable, error));
   page->hang_up();
 }
 
-boost::asio::awaitable<void> MachineRooms::handle(std::shared_ptr<Room> room, std::shared_ptr<MachinePage> page, MachineRequest request) {
+boost::asio::awaitable<void> MachineRooms::handle(std::shared_ptr<Room> room, std::shared_ptr<MachinePage> page,
+                                                  MachineRequest request) {
   const bool steers = room->steering == page;
   if (request.kind == MachineRequest::Kind::open) {
     if (room->steering && !steers)
-      throw Busy{"Another page steers " + room->machine.name + ": you see what it does. Close that page to steer here."};
+      throw Busy{"Another page steers " + room->machine.name +
+                 ": you see what it does. Close that page to steer here."};
     co_await open(room, page, std::move(request.content));
     co_return;
   }
@@ -117,9 +124,7 @@ boost::asio::awaitable<void> MachineRooms::handle(std::shared_ptr<Room> room, st
     throw Busy{room->steering ? "Another page steers " + room->machine.name + ": only pause and stop work here."
                               : "Take the machine over first: connect it here."};
   switch (request.kind) {
-    case MachineRequest::Kind::command:
-      room->session->command(request.content);
-      break;
+    case MachineRequest::Kind::command: room->session->command(request.content); break;
     case MachineRequest::Kind::load: {
       std::error_code status;
       const auto path = store_.blob_path(request.sha256);
@@ -137,10 +142,12 @@ boost::asio::awaitable<void> MachineRooms::handle(std::shared_ptr<Room> room, st
   }
 }
 
-boost::asio::awaitable<void> MachineRooms::open(std::shared_ptr<Room> room, std::shared_ptr<MachinePage> page, Json options) {
+boost::asio::awaitable<void> MachineRooms::open(std::shared_ptr<Room> room, std::shared_ptr<MachinePage> page,
+                                                Json options) {
   if (room->session) {  // held for it
     room->steering = page;
-    if (!room->held_because.empty()) page->send({{"events", {{{"event", "note"}, {"text", room->held_because}, {"now_s", 0}}}}});
+    if (!room->held_because.empty())
+      page->send({{"events", {{{"event", "note"}, {"text", room->held_because}, {"now_s", 0}}}}});
     room->held_because.clear();
     page->send({{"state", room->session->state()}});
     co_return;
@@ -148,7 +155,8 @@ boost::asio::awaitable<void> MachineRooms::open(std::shared_ptr<Room> room, std:
   if (room->opening) throw Busy{"Another page connects " + room->machine.name + " at this moment: wait for it."};
   options = driver_options(room->machine, std::move(options));
   make_machine_driver(options);  // says what is wrong with them before a port is touched
-  const int baud = options.contains("baud") && options["baud"].is_number_integer() ? options["baud"].get<int>() : room->machine.baud;
+  const int baud =
+      options.contains("baud") && options["baud"].is_number_integer() ? options["baud"].get<int>() : room->machine.baud;
   room->opening = true;
   room->steering = page;
   std::shared_ptr<MachineSession> session;
@@ -157,7 +165,8 @@ boost::asio::awaitable<void> MachineRooms::open(std::shared_ptr<Room> room, std:
     auto lock = std::make_unique<MachineLock>(data_, room->machine);
     const auto port = co_await boost::asio::co_spawn(
         asking_,
-        [](boost::asio::io_context& io, Machine machine, int speed) -> boost::asio::awaitable<std::shared_ptr<MachinePort>> {
+        [](boost::asio::io_context& io, Machine machine,
+           int speed) -> boost::asio::awaitable<std::shared_ptr<MachinePort>> {
           co_return open_machine_port(io, machine, speed);
         }(io_, room->machine, baud),
         use_awaitable);
@@ -197,7 +206,8 @@ void MachineRooms::begin(const std::shared_ptr<Room>& room, std::shared_ptr<Mach
                     here->session = nullptr;
                     here->steering = nullptr;
                     for (const auto& page : here->pages)
-                      page->send({{"error", {{"code", "could_not_solve"}, {"where", "machine"}, {"message", sentence}}}, {"closed", true}});
+                      page->send({{"error", {{"code", "could_not_solve"}, {"where", "machine"}, {"message", sentence}}},
+                                  {"closed", true}});
                   }});
 }
 
@@ -225,7 +235,8 @@ void MachineRooms::leave(const std::shared_ptr<Room>& room, const std::shared_pt
                              before["job"]["name"].get<std::string>() + ": the machine was held, laser off.";
         tell_events(*room, Json::array({{{"event", "note"}, {"text", room->held_because}, {"now_s", 0}}}));
       } else {
-        room->session->end(moved ? "The page that steered is gone; what moved was stopped." : "The page that steered is gone.");
+        room->session->end(moved ? "The page that steered is gone; what moved was stopped."
+                                 : "The page that steered is gone.");
         room->session = nullptr;
         for (const auto& other : room->pages) other->send({{"closed", true}});
       }
@@ -253,7 +264,8 @@ void MachineRooms::stop() {
   }
   const auto end = std::chrono::steady_clock::now() + 2s;
   const auto stopping = [&] {
-    return std::any_of(sessions.begin(), sessions.end(), [](const auto& s) { return !s->over() && s->state()["phase"] == "stopping"; });
+    return std::any_of(sessions.begin(), sessions.end(),
+                       [](const auto& s) { return !s->over() && s->state()["phase"] == "stopping"; });
   };
   while (stopping() && std::chrono::steady_clock::now() < end) {
     io_.restart();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Machines that are driven over sockets: one page steers, others watch. When the one that steers vanishes, the machine is held.
+// Machines that are driven over sockets: one page steers, others watch. When the one that steers vanishes, the machine
+// is held.
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/thread_pool.hpp>
@@ -18,7 +19,8 @@ namespace formwright {
 
 class MachineRooms {
  public:
-  MachineRooms(boost::asio::io_context& io, boost::asio::thread_pool& asking, std::filesystem::path data, JobStore& store, MachineLog& log)
+  MachineRooms(boost::asio::io_context& io, boost::asio::thread_pool& asking, std::filesystem::path data,
+               JobStore& store, MachineLog& log)
       : io_(io), asking_(asking), data_(std::move(data)), store_(store), log_(log) {}
 
   /// Accepts the page and serves it until it is gone. The request has passed the server's checks.
@@ -40,7 +42,8 @@ class MachineRooms {
     std::string held_because;  // for the next page that steers
     bool opening = false;
   };
-  boost::asio::awaitable<void> handle(std::shared_ptr<Room> room, std::shared_ptr<MachinePage> page, MachineRequest request);
+  boost::asio::awaitable<void> handle(std::shared_ptr<Room> room, std::shared_ptr<MachinePage> page,
+                                      MachineRequest request);
   boost::asio::awaitable<void> open(std::shared_ptr<Room> room, std::shared_ptr<MachinePage> page, Json options);
   void begin(const std::shared_ptr<Room>& room, std::shared_ptr<MachineSession> session);
   void leave(const std::shared_ptr<Room>& room, const std::shared_ptr<MachinePage>& page);

@@ -139,10 +139,8 @@ class Terminal {
 
   [[noreturn]] void stop_and_throw() {
     const bool from_elsewhere = stop_asked;
-    if (from_elsewhere)
-      session_->look_for_stop();
-    else if (!session_->over())
-      session_->command({{"do", "stop"}});
+    if (from_elsewhere) session_->look_for_stop();
+    else if (!session_->over()) session_->command({{"do", "stop"}});
     const auto end = std::chrono::steady_clock::now() + 3s;
     while (!session_->over() && session_->state()["phase"] == "stopping" && std::chrono::steady_clock::now() < end) {
       io_.restart();

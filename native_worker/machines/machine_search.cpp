@@ -47,7 +47,8 @@ std::vector<Machine> find_serial_ports(const std::filesystem::path& devices) {
   const auto names_in = [](const std::filesystem::path& folder) {
     std::set<std::filesystem::path> names;
     std::error_code status;
-    for (std::filesystem::directory_iterator it(folder, status), end; !status && it != end; it.increment(status)) names.insert(it->path());
+    for (std::filesystem::directory_iterator it(folder, status), end; !status && it != end; it.increment(status))
+      names.insert(it->path());
     return names;
   };
   for (const auto& path : names_in(devices / "serial/by-id")) add(path, readable_port_name(path.filename().string()));
@@ -67,7 +68,8 @@ std::vector<Machine> find_printers(int patience_ms) {
     if (std::any_of(all.begin(), all.end(), [&](const Machine& m) { return m.id == machine.id; })) return 1;
     if (const char* info = cupsGetOption("printer-info", destination->num_options, destination->options); info && *info)
       machine.name = info;
-    if (const char* state = cupsGetOption("printer-state", destination->num_options, destination->options); state && *state)
+    if (const char* state = cupsGetOption("printer-state", destination->num_options, destination->options);
+        state && *state)
       machine.state = *state == '5' ? "stopped" : *state == '4' ? "printing" : "idle";
     cups_dest_t* copy = nullptr;
     if (cupsCopyDest(destination, 0, &copy) != 1) return 1;

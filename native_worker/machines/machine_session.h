@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A driver of core/machines at an open port: time, bytes, the log, and what happens when the one who steers is gone. The same for the
-// worker and the command line. All calls on the thread that runs the io_context.
+// A driver of core/machines at an open port: time, bytes, the log, and what happens when the one who steers is gone.
+// The same for the worker and the command line. All calls on the thread that runs the io_context.
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
@@ -26,8 +26,8 @@ class MachineLock {
   ~MachineLock();
   /// Another process asked this one to stop the machine (`ask_to_stop`, then SIGUSR1). Tells that it was heard.
   bool stop_asked();
-  /// Asks the process that has the machine to stop it and waits up to 3 s for it to hear. 0: nobody has it; else its number.
-  /// Throws Error{could_not_solve, "machine"} when it does not hear.
+  /// Asks the process that has the machine to stop it and waits up to 3 s for it to hear. 0: nobody has it; else its
+  /// number. Throws Error{could_not_solve, "machine"} when it does not hear.
   static int ask_to_stop(const std::filesystem::path& data, const Machine& machine);
 
  private:
@@ -35,8 +35,8 @@ class MachineLock {
   int descriptor_ = -1;
 };
 
-/// What the driver is told of this machine: `options` of the caller, with controller and speed as registered where they are absent.
-/// Throws Error{invalid_input, "controller"} for one that does not speak over such a port.
+/// What the driver is told of this machine: `options` of the caller, with controller and speed as registered where they
+/// are absent. Throws Error{invalid_input, "controller"} for one that does not speak over such a port.
 Json driver_options(const Machine& machine, Json options);
 
 class MachineSession : public std::enable_shared_from_this<MachineSession> {
@@ -47,8 +47,8 @@ class MachineSession : public std::enable_shared_from_this<MachineSession> {
     std::function<void(const std::string& sentence)> gone;  // the port closed by itself; the session is over
   };
   /// Throws Error{invalid_input} for options the driver does not take.
-  MachineSession(boost::asio::io_context& io, const Machine& machine, const Json& options, std::shared_ptr<MachinePort> port,
-                 std::unique_ptr<MachineLock> lock, MachineLog& log);
+  MachineSession(boost::asio::io_context& io, const Machine& machine, const Json& options,
+                 std::shared_ptr<MachinePort> port, std::unique_ptr<MachineLock> lock, MachineLog& log);
   ~MachineSession();
 
   void begin(Listener listener);

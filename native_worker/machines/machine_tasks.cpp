@@ -55,7 +55,8 @@ Json MachineTask::json() const {
   return json;
 }
 
-std::shared_ptr<MachineTask> MachineTasks::start(const Machine& machine, const std::string& kind, Work work, std::function<void()> ended) {
+std::shared_ptr<MachineTask> MachineTasks::start(const Machine& machine, const std::string& kind, Work work,
+                                                 std::function<void()> ended) {
   auto task = std::make_shared<MachineTask>(machine, kind);
   {
     const std::scoped_lock lock(mutex_);
@@ -70,7 +71,8 @@ std::shared_ptr<MachineTask> MachineTasks::start(const Machine& machine, const s
   boost::asio::post(threads_, [this, task, work = std::move(work), ended = std::move(ended)] {
     const auto fail = [&](ErrorCode code, const std::string& where, const std::string& message) {
       const bool cancelled = code == ErrorCode::cancelled;
-      task->end(cancelled ? "cancelled" : "failed", nullptr, {{"code", to_string(code)}, {"where", where}, {"message", message}});
+      task->end(cancelled ? "cancelled" : "failed", nullptr,
+                {{"code", to_string(code)}, {"where", where}, {"message", message}});
     };
     try {
       if (task->cancelled) throw Error(ErrorCode::cancelled, "", "Cancelled.");
@@ -85,7 +87,12 @@ std::shared_ptr<MachineTask> MachineTasks::start(const Machine& machine, const s
     }
     const Json now = task->json();
     log_.append(task->machine,
-                {{"event", "task"}, {"kind", task->kind}, {"task", task->id}, {"state", now["state"]}, {"text", now["sentence"]}}, true);
+                {{"event", "task"},
+                 {"kind", task->kind},
+                 {"task", task->id},
+                 {"state", now["state"]},
+                 {"text", now["sentence"]}},
+                true);
     if (ended) ended();
   });
   return task;
@@ -93,7 +100,8 @@ std::shared_ptr<MachineTask> MachineTasks::start(const Machine& machine, const s
 
 std::shared_ptr<MachineTask> MachineTasks::find(const std::string& machine_id, const std::string& id) const {
   const std::scoped_lock lock(mutex_);
-  const auto it = std::find_if(tasks_.begin(), tasks_.end(), [&](const auto& t) { return t->id == id && t->machine.id == machine_id; });
+  const auto it = std::find_if(tasks_.begin(), tasks_.end(),
+                               [&](const auto& t) { return t->id == id && t->machine.id == machine_id; });
   return it == tasks_.end() ? nullptr : *it;
 }
 
@@ -115,7 +123,8 @@ void MachineTasks::stop() {
     return std::all_of(tasks_.begin(), tasks_.end(), [](const auto& t) { return t->finished(); });
   };
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(3);
-  while (!all_finished() && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  while (!all_finished() && std::chrono::steady_clock::now() < end)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
 }
 
 }  // namespace formwright

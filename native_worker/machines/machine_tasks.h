@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Prints, uploads and slicings that run beside the server's thread, each in a state that can be asked for and with a cancel.
+// Prints, uploads and slicings that run beside the server's thread, each in a state that can be asked for and with a
+// cancel.
 #include <atomic>
 #include <boost/asio/thread_pool.hpp>
 #include <deque>
@@ -44,7 +45,8 @@ class MachineTasks {
   ~MachineTasks() { stop(); }
 
   /// Null when too many are under way. `ended` is called from another thread once the task has finished.
-  std::shared_ptr<MachineTask> start(const Machine& machine, const std::string& kind, Work work, std::function<void()> ended = {});
+  std::shared_ptr<MachineTask> start(const Machine& machine, const std::string& kind, Work work,
+                                     std::function<void()> ended = {});
   std::shared_ptr<MachineTask> find(const std::string& machine_id, const std::string& id) const;
   Json list(const std::string& machine_id) const;  // newest first
   /// Cancels all and waits for them, but no longer than 3 s: a printer that is being connected to may take more.

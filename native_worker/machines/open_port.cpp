@@ -33,17 +33,21 @@ constexpr int connect_patience_ms = 5000;
 int open_serial(const std::string& path, int baud, const std::string& name) {
   const int descriptor = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0 && (errno == EACCES || errno == EPERM))
-    fail(descriptor, name + " may not be opened by you: join the group of " + path + " (often dialout), and log in again.");
+    fail(descriptor,
+         name + " may not be opened by you: join the group of " + path + " (often dialout), and log in again.");
   if (descriptor < 0 && errno == EBUSY) fail(descriptor, name + " is used by another program: close that one first.");
-  if (descriptor < 0) fail(descriptor, name + " is not there (" + std::string(std::strerror(errno)) + "): plug it in and switch it on.");
+  if (descriptor < 0)
+    fail(descriptor, name + " is not there (" + std::string(std::strerror(errno)) + "): plug it in and switch it on.");
   struct stat status {};
   if (::fstat(descriptor, &status) != 0 || !S_ISCHR(status.st_mode) || ::isatty(descriptor) != 1)
     fail(descriptor, path + " is no serial port: register the machine with the right one.");
   // Both: others of this program's kind look at the lock, programs of other makers at TIOCEXCL.
-  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) fail(descriptor, name + " is used by another program: close that one first.");
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0)
+    fail(descriptor, name + " is used by another program: close that one first.");
   ::ioctl(descriptor, TIOCEXCL);
   termios settings{};
-  if (::tcgetattr(descriptor, &settings) != 0) fail(descriptor, name + " does not answer as a serial port does: plug it in again.");
+  if (::tcgetattr(descriptor, &settings) != 0)
+    fail(descriptor, name + " does not answer as a serial port does: plug it in again.");
   ::cfmakeraw(&settings);
   settings.c_cflag |= CLOCAL | CREAD | CS8;
   // Without HUPCL, DTR stays up when the port is closed: the next opening does not reset the board.
@@ -63,7 +67,8 @@ int connect_tcp(const std::string& host, int port, const std::string& name) {
   hints.ai_socktype = SOCK_STREAM;
   addrinfo* list = nullptr;
   if (::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &list) != 0)
-    fail(-1, "The name " + host + " of " + name + " is not known on this network: register the machine with its address in numbers.");
+    fail(-1, "The name " + host + " of " + name +
+                 " is not known on this network: register the machine with its address in numbers.");
   const std::unique_ptr<addrinfo, void (*)(addrinfo*)> owned(list, ::freeaddrinfo);
   std::string reason = "nobody there";
   for (const addrinfo* a = list; a; a = a->ai_next) {

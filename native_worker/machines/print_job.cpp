@@ -17,7 +17,9 @@ constexpr std::chrono::minutes busy_patience{5}, print_patience{120};
 constexpr std::chrono::milliseconds retry_pause{1500}, look_pause{700};
 constexpr int most_failures = 8;
 
-[[noreturn]] void refuse(const std::string& where, const std::string& sentence) { throw Error(ErrorCode::invalid_input, where, sentence); }
+[[noreturn]] void refuse(const std::string& where, const std::string& sentence) {
+  throw Error(ErrorCode::invalid_input, where, sentence);
+}
 [[noreturn]] void fail(const std::string& sentence) { throw Error(ErrorCode::could_not_solve, "machine", sentence); }
 
 void pause_for(std::chrono::milliseconds time, const std::atomic<bool>& cancelled) {
@@ -41,7 +43,8 @@ struct CheckedOrder {
   std::vector<std::string> notes;
 };
 
-const PrintMedia& chosen_media(const PrinterDescription& printer, const std::string& name, const std::string& printer_name) {
+const PrintMedia& chosen_media(const PrinterDescription& printer, const std::string& name,
+                               const std::string& printer_name) {
   if (const PrintMedia* media = find_print_media(printer.media, name)) return *media;
   std::string list;
   for (const PrintMedia& m : printer.media)
@@ -61,30 +64,33 @@ const PrintMedia& media_for(const PrinterDescription& printer, const PageSize& p
 CheckedOrder check_order(const PrinterDescription& printer, const PrintOrder& order, const std::string& name) {
   CheckedOrder checked;
   if (order.copies < 1 || order.copies > printer.most_copies)
-    refuse("copies", name + " prints 1 to " + std::to_string(printer.most_copies) + " copies: choose a number of these.");
-  if (order.quality == "draft")
-    checked.quality = IPP_QUALITY_DRAFT;
-  else if (order.quality == "high")
-    checked.quality = IPP_QUALITY_HIGH;
-  else if (order.quality != "normal")
-    refuse("quality", "The quality must be draft, normal or high.");
-  if (!printer.qualities.empty() && std::find(printer.qualities.begin(), printer.qualities.end(), order.quality) == printer.qualities.end())
+    refuse("copies",
+           name + " prints 1 to " + std::to_string(printer.most_copies) + " copies: choose a number of these.");
+  if (order.quality == "draft") checked.quality = IPP_QUALITY_DRAFT;
+  else if (order.quality == "high") checked.quality = IPP_QUALITY_HIGH;
+  else if (order.quality != "normal") refuse("quality", "The quality must be draft, normal or high.");
+  if (!printer.qualities.empty() &&
+      std::find(printer.qualities.begin(), printer.qualities.end(), order.quality) == printer.qualities.end())
     refuse("quality", name + " has no quality called " + order.quality + ": choose " + printer.qualities.front() + ".");
   const DocumentPages document = read_document_pages(order.document);
-  checked.media = order.media.empty() ? media_for(printer, document.pages.front(), name) : chosen_media(printer, order.media, name);
+  checked.media =
+      order.media.empty() ? media_for(printer, document.pages.front(), name) : chosen_media(printer, order.media, name);
   checked.media_type = document.media_type;
   if (std::find(printer.formats.begin(), printer.formats.end(), document.media_type) == printer.formats.end())
-    refuse("sha256", name + " does not take " + document.media_type + ": add it to the system's printers, which convert, or send " +
+    refuse("sha256", name + " does not take " + document.media_type +
+                         ": add it to the system's printers, which convert, or send " +
                          (printer.formats.empty() ? "something else" : printer.formats.back()) + ".");
   for (const PageSize& page : document.pages) {
     const bool picture = document.media_type == "image/png";
     // A picture smaller than the sheet stays its own size; a page says which sheet it is meant for.
     const PageSize sheet{checked.media.width_mm(), checked.media.height_mm()};
-    const bool fits = picture && std::min(page.width_mm, page.height_mm) <= std::min(sheet.width_mm, sheet.height_mm) + 1 &&
+    const bool fits = picture &&
+                      std::min(page.width_mm, page.height_mm) <= std::min(sheet.width_mm, sheet.height_mm) + 1 &&
                       std::max(page.width_mm, page.height_mm) <= std::max(sheet.width_mm, sheet.height_mm) + 1;
     if (!fits && !page_matches(checked.media, page))
-      refuse("media", "The document's page is " + millimetres(page) + ", the sheet " + checked.media.label + " is " + millimetres(sheet) +
-                          ", and nothing is scaled: choose that sheet, or lay the pages out for " + checked.media.label + ".");
+      refuse("media", "The document's page is " + millimetres(page) + ", the sheet " + checked.media.label + " is " +
+                          millimetres(sheet) + ", and nothing is scaled: choose that sheet, or lay the pages out for " +
+                          checked.media.label + ".");
   }
   const PageSize& first = document.pages.front();
   checked.turned = (first.width_mm > first.height_mm) != (checked.media.width_mm() > checked.media.height_mm()) &&
@@ -94,7 +100,8 @@ CheckedOrder check_order(const PrinterDescription& printer, const PrintOrder& or
       std::string loaded;
       for (const PrintMedia& m : printer.media)
         if (m.loaded && loaded.find(m.label) == std::string::npos) loaded += (loaded.empty() ? "" : ", ") + m.label;
-      refuse("media", checked.media.label + " is not loaded in " + name + (loaded.empty() ? "" : ", which has " + loaded) +
+      refuse("media", checked.media.label + " is not loaded in " + name +
+                          (loaded.empty() ? "" : ", which has " + loaded) +
                           ": load it and tell the printer, or lay the pages out for what it has.");
     }
     checked.feeds_by_hand = true;
@@ -105,7 +112,8 @@ CheckedOrder check_order(const PrinterDescription& printer, const PrintOrder& or
       refuse("mirrored", "Only a PDF is mirrored here: export the picture as PDF, or mirrored.");
     checked.mirrored = mirrored_pdf(order.document);
   }
-  if (!printer.scaling_can_be_off) checked.notes.push_back(name + " does not promise to leave the size alone: measure the first page.");
+  if (!printer.scaling_can_be_off)
+    checked.notes.push_back(name + " does not promise to leave the size alone: measure the first page.");
   return checked;
 }
 
@@ -134,7 +142,8 @@ void add_job_attributes(ipp_t* request, const CheckedOrder& checked, const Print
 [[noreturn]] void fail_refused(const IppConnection::Answer& answer, const std::string& name, const PrintMedia& media) {
   const std::string words = answer.text.empty() ? ippErrorString(answer.status) : answer.text;
   if (answer.status == IPP_STATUS_ERROR_DOCUMENT_FORMAT_NOT_SUPPORTED)
-    fail(name + " does not take this kind of document (\"" + words + "\"): add it to the system's printers, which convert.");
+    fail(name + " does not take this kind of document (\"" + words +
+         "\"): add it to the system's printers, which convert.");
   if (answer.status == IPP_STATUS_ERROR_NOT_ACCEPTING_JOBS)
     fail(name + " takes no jobs now (\"" + words + "\"): switch it on, or resume it in the system's printers.");
   if (answer.status == IPP_STATUS_ERROR_ATTRIBUTES_OR_VALUES)
@@ -146,8 +155,10 @@ void add_job_attributes(ipp_t* request, const CheckedOrder& checked, const Print
 /// A printer that would take another sheet instead says so in the group of unsupported attributes.
 void check_media_kept(const IppConnection::Answer& answer, const std::string& name, const PrintMedia& media) {
   for (ipp_attribute_t* a = ippFirstAttribute(answer.message.get()); a; a = ippNextAttribute(answer.message.get()))
-    if (ippGetGroupTag(a) == IPP_TAG_UNSUPPORTED_GROUP && ippGetName(a) && std::string(ippGetName(a)).starts_with("media"))
-      fail(name + " would take another sheet than " + media.label + ": choose one that it has, or load " + media.label + ".");
+    if (ippGetGroupTag(a) == IPP_TAG_UNSUPPORTED_GROUP && ippGetName(a) &&
+        std::string(ippGetName(a)).starts_with("media"))
+      fail(name + " would take another sheet than " + media.label + ": choose one that it has, or load " + media.label +
+           ".");
 }
 
 /// Asks until the printer is no longer busy.
@@ -161,7 +172,8 @@ IppConnection::Answer ask_patiently(const PrinterAddress& address, const MakeReq
       auto answer = connection.ask(make(connection), document);
       if (!answer.busy()) return answer;
     }
-    if (Clock::now() > end) fail(address.name + " has been busy for 5 minutes: try again when its other jobs are done.");
+    if (Clock::now() > end)
+      fail(address.name + " has been busy for 5 minutes: try again when its other jobs are done.");
     progress("waiting", address.name + " is busy; asking again.");
     pause_for(retry_pause, cancelled);
   }
@@ -194,17 +206,20 @@ std::string reasons_of(ipp_t* message) {
 
 int sheets_of(ipp_t* message) {
   for (const char* name : {"job-impressions-completed", "job-media-sheets-completed"})
-    if (ipp_attribute_t* count = ippFindAttribute(message, name, IPP_TAG_INTEGER)) return std::max(0, ippGetInteger(count, 0));
+    if (ipp_attribute_t* count = ippFindAttribute(message, name, IPP_TAG_INTEGER))
+      return std::max(0, ippGetInteger(count, 0));
   return 0;
 }
 
-int follow(const PrinterAddress& address, int job_id, const std::atomic<bool>& cancelled, const PrintProgress& progress) {
+int follow(const PrinterAddress& address, int job_id, const std::atomic<bool>& cancelled,
+           const PrintProgress& progress) {
   const auto end = Clock::now() + print_patience;
   int failures = 0, sheets = 0;
   for (;;) {
     pause_for(look_pause, cancelled);
     if (Clock::now() > end)
-      fail(address.name + " has had the job for two hours and is not done: look at the printer; the job is not followed any longer.");
+      fail(address.name +
+           " has had the job for two hours and is not done: look at the printer; the job is not followed any longer.");
     IppConnection::Answer answer;
     try {
       IppConnection connection(address, cancelled);
@@ -228,19 +243,21 @@ int follow(const PrinterAddress& address, int job_id, const std::atomic<bool>& c
     sheets = std::max(sheets, sheets_of(answer.message.get()));
     const std::string reasons = reasons_of(answer.message.get());
     switch (ippGetInteger(state, 0)) {
-      case IPP_JSTATE_COMPLETED:
-        return sheets;
+      case IPP_JSTATE_COMPLETED: return sheets;
       case IPP_JSTATE_CANCELED:
-        fail("The job was cancelled at " + address.name + (reasons.empty() ? "" : ": " + reasons) + ". Print again when it is ready.");
+        fail("The job was cancelled at " + address.name + (reasons.empty() ? "" : ": " + reasons) +
+             ". Print again when it is ready.");
       case IPP_JSTATE_ABORTED:
-        fail(address.name + " gave the job up" + (reasons.empty() ? "" : ": " + reasons) + ". Mend that at the printer, and print again.");
+        fail(address.name + " gave the job up" + (reasons.empty() ? "" : ": " + reasons) +
+             ". Mend that at the printer, and print again.");
       case IPP_JSTATE_STOPPED:
       case IPP_JSTATE_HELD:
-        progress("waiting", address.name + " stopped" + (reasons.empty() ? "" : ": " + reasons) + ". It goes on when that is mended.");
+        progress("waiting", address.name + " stopped" + (reasons.empty() ? "" : ": " + reasons) +
+                                ". It goes on when that is mended.");
         break;
       default:
-        progress("printing",
-                 "Printing" + (sheets > 0 ? ", sheet " + std::to_string(sheets) : "") + (reasons.empty() ? "" : "; " + reasons) + ".");
+        progress("printing", "Printing" + (sheets > 0 ? ", sheet " + std::to_string(sheets) : "") +
+                                 (reasons.empty() ? "" : "; " + reasons) + ".");
     }
   }
 }
@@ -252,7 +269,8 @@ PrintResult print_document(const PrinterAddress& address, const PrintOrder& orde
   progress("waiting", "Asking " + address.name + " what it takes.");
   const PrinterDescription printer = describe_printer(address, cancelled);
   const CheckedOrder checked = check_order(printer, order, address.name);
-  if (!printer.accepting) fail(address.name + " takes no jobs now: switch it on, or resume it in the system's printers.");
+  if (!printer.accepting)
+    fail(address.name + " takes no jobs now: switch it on, or resume it in the system's printers.");
   const ByteView document = checked.mirrored.empty() ? order.document : ByteView(checked.mirrored);
   const auto make = [&](ipp_op_t operation) {
     return [&, operation](const IppConnection& connection) {
@@ -262,7 +280,8 @@ PrintResult print_document(const PrinterAddress& address, const PrintOrder& orde
     };
   };
   auto answer = ask_patiently(address, make(IPP_OP_VALIDATE_JOB), {}, cancelled, progress);
-  if (!answer.ok() && answer.status != IPP_STATUS_ERROR_OPERATION_NOT_SUPPORTED) fail_refused(answer, address.name, checked.media);
+  if (!answer.ok() && answer.status != IPP_STATUS_ERROR_OPERATION_NOT_SUPPORTED)
+    fail_refused(answer, address.name, checked.media);
   check_media_kept(answer, address.name, checked.media);
   progress("sending", "Sending the document to " + address.name + ".");
   answer = ask_patiently(address, make(IPP_OP_PRINT_JOB), document, cancelled, progress);

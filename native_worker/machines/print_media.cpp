@@ -27,7 +27,8 @@ void name_media(PrintMedia& media) {
     if (known->pwg) media.name = known->pwg;
     if (known->ppd) media.label = known->ppd;
   }
-  if (media.name.empty() && pwgFormatSizeName(name, sizeof name, "custom", nullptr, media.width_hmm, media.height_hmm, "mm") == 1)
+  if (media.name.empty() &&
+      pwgFormatSizeName(name, sizeof name, "custom", nullptr, media.width_hmm, media.height_hmm, "mm") == 1)
     media.name = name;
   if (media.label.empty() || media.label.starts_with("Custom")) {
     std::snprintf(name, sizeof name, "%g x %g mm", media.width_mm(), media.height_mm());
@@ -76,7 +77,8 @@ bool same_size(const PrintMedia& a, const PrintMedia& b) {
 }
 
 bool same_margins(const PrintMedia& a, const PrintMedia& b) {
-  return a.left_hmm == b.left_hmm && a.right_hmm == b.right_hmm && a.top_hmm == b.top_hmm && a.bottom_hmm == b.bottom_hmm;
+  return a.left_hmm == b.left_hmm && a.right_hmm == b.right_hmm && a.top_hmm == b.top_hmm &&
+         a.bottom_hmm == b.bottom_hmm;
 }
 
 bool has_keyword(ipp_t* attributes, const char* name, const char* value) {
@@ -106,10 +108,12 @@ std::vector<PrintMedia> read_print_media(ipp_t* attributes) {
     }
   }
   for (const PrintMedia& r : ready)
-    if (std::none_of(all.begin(), all.end(), [&](const PrintMedia& m) { return same_size(m, r) && same_margins(m, r); })) all.push_back(r);
+    if (std::none_of(all.begin(), all.end(),
+                     [&](const PrintMedia& m) { return same_size(m, r) && same_margins(m, r); }))
+      all.push_back(r);
   const bool knows_ready = !ready.empty();
-  const bool feeds_by_hand =
-      has_keyword(attributes, "media-source-supported", "manual") || has_keyword(attributes, "media-source-supported", "by-pass-tray");
+  const bool feeds_by_hand = has_keyword(attributes, "media-source-supported", "manual") ||
+                             has_keyword(attributes, "media-source-supported", "by-pass-tray");
   PrintMedia widest;
   widest.left_hmm = largest_of(attributes, "media-left-margin-supported");
   widest.right_hmm = largest_of(attributes, "media-right-margin-supported");
@@ -122,13 +126,15 @@ std::vector<PrintMedia> read_print_media(ipp_t* attributes) {
       m.left_hmm = widest.left_hmm, m.right_hmm = widest.right_hmm;
       m.top_hmm = widest.top_hmm, m.bottom_hmm = widest.bottom_hmm;
     }
-    m.loaded = !knows_ready || std::any_of(ready.begin(), ready.end(), [&](const PrintMedia& r) { return same_size(r, m); });
+    m.loaded =
+        !knows_ready || std::any_of(ready.begin(), ready.end(), [&](const PrintMedia& r) { return same_size(r, m); });
     m.by_hand = m.by_hand || feeds_by_hand;
-    const auto known =
-        std::find_if(result.begin(), result.end(), [&](const PrintMedia& r) { return same_size(r, m) && same_margins(r, m); });
+    const auto known = std::find_if(result.begin(), result.end(),
+                                    [&](const PrintMedia& r) { return same_size(r, m) && same_margins(r, m); });
     if (known == result.end()) result.push_back(m);
   }
-  std::stable_sort(result.begin(), result.end(), [](const PrintMedia& a, const PrintMedia& b) { return a.loaded > b.loaded; });
+  std::stable_sort(result.begin(), result.end(),
+                   [](const PrintMedia& a, const PrintMedia& b) { return a.loaded > b.loaded; });
   return result;
 }
 
@@ -136,7 +142,8 @@ const PrintMedia* find_print_media(const std::vector<PrintMedia>& media, const s
   const PrintMedia* best = nullptr;
   for (const PrintMedia& m : media) {
     if (::strcasecmp(m.name.c_str(), name.c_str()) != 0 && ::strcasecmp(m.label.c_str(), name.c_str()) != 0) continue;
-    if (!best || (m.loaded && !best->loaded) || (m.loaded == best->loaded && margin_sum(m) > margin_sum(*best))) best = &m;
+    if (!best || (m.loaded && !best->loaded) || (m.loaded == best->loaded && margin_sum(m) > margin_sum(*best)))
+      best = &m;
   }
   return best;
 }
@@ -147,7 +154,10 @@ Json print_media_json(const PrintMedia& m) {
           {"width_mm", m.width_mm()},
           {"height_mm", m.height_mm()},
           {"margins_mm",
-           {{"left", m.left_hmm / 100.0}, {"right", m.right_hmm / 100.0}, {"top", m.top_hmm / 100.0}, {"bottom", m.bottom_hmm / 100.0}}},
+           {{"left", m.left_hmm / 100.0},
+            {"right", m.right_hmm / 100.0},
+            {"top", m.top_hmm / 100.0},
+            {"bottom", m.bottom_hmm / 100.0}}},
           {"loaded", m.loaded},
           {"by_hand", m.by_hand}};
 }

@@ -22,17 +22,18 @@ struct PrintMedia {
   double height_mm() const { return height_hmm / 100.0; }
 };
 
-/// What the answer to Get-Printer-Attributes says: media-col-database, else media-size-supported, else media-supported. One entry a
-/// size and margins, loaded ones first. Sizes that are ranges (a roll) are left out.
+/// What the answer to Get-Printer-Attributes says: media-col-database, else media-size-supported, else media-supported.
+/// One entry a size and margins, loaded ones first. Sizes that are ranges (a roll) are left out.
 std::vector<PrintMedia> read_print_media(ipp_t* attributes);
 
-/// The entry called `name` ("A4" or "iso_a4_210x297mm", upper or lower case), preferring the loaded and, among those, the widest
-/// margins, which every tray keeps. nullptr when there is none.
+/// The entry called `name` ("A4" or "iso_a4_210x297mm", upper or lower case), preferring the loaded and, among those,
+/// the widest margins, which every tray keeps. nullptr when there is none.
 const PrintMedia* find_print_media(const std::vector<PrintMedia>& media, const std::string& name);
 
 Json print_media_json(const PrintMedia& media);
 
-/// True when a page lies on the sheet as it is, upright or turned, to within 1 mm (points are whole numbers in many PDFs).
+/// True when a page lies on the sheet as it is, upright or turned, to within 1 mm (points are whole numbers in many
+/// PDFs).
 bool page_matches(const PrintMedia& media, const PageSize& page);
 
 }  // namespace formwright

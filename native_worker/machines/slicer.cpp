@@ -30,7 +30,8 @@ class WorkFolder {
     std::filesystem::create_directories(path / "home", status);
     std::filesystem::permissions(path, std::filesystem::perms::owner_all, status);
     if (!std::filesystem::is_directory(path / "home"))
-      throw Error(ErrorCode::could_not_solve, "machine", "There is no room to slice in " + data.string() + ": free some.");
+      throw Error(ErrorCode::could_not_solve, "machine",
+                  "There is no room to slice in " + data.string() + ": free some.");
   }
   WorkFolder(const WorkFolder&) = delete;
   WorkFolder& operator=(const WorkFolder&) = delete;
@@ -43,8 +44,9 @@ class WorkFolder {
 
 bool plain_profile_name(const std::string& name) {
   return !name.empty() && name.size() <= 80 && name[0] != '.' && name[0] != '-' &&
-         std::all_of(name.begin(), name.end(),
-                     [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-' || c == ' ' || c == '.' || c == '@'; });
+         std::all_of(name.begin(), name.end(), [](unsigned char c) {
+           return std::isalnum(c) || c == '_' || c == '-' || c == ' ' || c == '.' || c == '@';
+         });
 }
 
 /// The last lines the program wrote, without its time stamps.
@@ -74,11 +76,13 @@ pid_t start(const std::vector<std::string>& words, const std::filesystem::path& 
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(127);
-  const int null = ::open("/dev/null", O_RDONLY | O_CLOEXEC), out = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  const int null = ::open("/dev/null", O_RDONLY | O_CLOEXEC),
+            out = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
   ::dup2(null, STDIN_FILENO);
   ::dup2(out, STDOUT_FILENO);
   ::dup2(out, STDERR_FILENO);
-  ::close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);  // pages' sockets and machines' ports are not the slicer's
+  ::close_range(STDERR_FILENO + 1, ~0U,
+                CLOSE_RANGE_CLOEXEC);  // pages' sockets and machines' ports are not the slicer's
   const rlimit file_limit{most_gcode_bytes, most_gcode_bytes}, no_core{0, 0};
   ::setrlimit(RLIMIT_FSIZE, &file_limit);
   ::setrlimit(RLIMIT_CORE, &no_core);
@@ -103,8 +107,10 @@ std::string slicer_program() {
 std::vector<std::string> slicer_profiles(const std::filesystem::path& data) {
   std::vector<std::string> names;
   std::error_code status;
-  for (std::filesystem::directory_iterator it(data / "slicer_profiles", status), end; !status && it != end; it.increment(status))
-    if (it->path().extension() == ".ini" && plain_profile_name(it->path().stem().string())) names.push_back(it->path().stem().string());
+  for (std::filesystem::directory_iterator it(data / "slicer_profiles", status), end; !status && it != end;
+       it.increment(status))
+    if (it->path().extension() == ".ini" && plain_profile_name(it->path().stem().string()))
+      names.push_back(it->path().stem().string());
   std::sort(names.begin(), names.end());
   return names;
 }
@@ -113,18 +119,22 @@ Bytes slice_model(ByteView model, const std::string& profile, const std::filesys
                   const std::atomic<bool>& cancelled) {
   const std::string program = slicer_program();
   if (program.empty())
-    throw Error(ErrorCode::invalid_input, "machine", "PrusaSlicer is not installed: install prusa-slicer, or slice the STL yourself.");
+    throw Error(ErrorCode::invalid_input, "machine",
+                "PrusaSlicer is not installed: install prusa-slicer, or slice the STL yourself.");
   std::filesystem::path profile_file;
   if (!profile.empty()) {
     const auto names = slicer_profiles(data);
     if (std::find(names.begin(), names.end(), profile) == names.end())
       throw Error(ErrorCode::invalid_input, "profile",
-                  "There is no profile of that name: export it from PrusaSlicer into " + (data / "slicer_profiles").string() + ".");
+                  "There is no profile of that name: export it from PrusaSlicer into " +
+                      (data / "slicer_profiles").string() + ".");
     profile_file = data / "slicer_profiles" / (profile + ".ini");
   }
-  if (model.size() < 84) throw Error(ErrorCode::invalid_input, "sha256", "That is no model: give an STL or a 3MF file.");
+  if (model.size() < 84)
+    throw Error(ErrorCode::invalid_input, "sha256", "That is no model: give an STL or a 3MF file.");
   const WorkFolder folder(std::filesystem::absolute(data));
-  const auto input = folder.path / (as_text(model).starts_with("PK") ? "model.3mf" : "model.stl"), output = folder.path / "sliced.gcode";
+  const auto input = folder.path / (as_text(model).starts_with("PK") ? "model.3mf" : "model.stl"),
+             output = folder.path / "sliced.gcode";
   write_file(input, model);
   std::vector<std::string> words{program, "--export-gcode"};
   if (!profile_file.empty()) words.insert(words.end(), {"--load", std::filesystem::absolute(profile_file).string()});
@@ -132,7 +142,8 @@ Bytes slice_model(ByteView model, const std::string& profile, const std::filesys
   words.insert(words.end(), {"--post-process", "", "--output", output.string(), input.string()});
   const pid_t child = start(words, folder.path);
   if (child < 0)
-    throw Error(ErrorCode::could_not_solve, "machine", "PrusaSlicer could not be started: the system has no room for another program.");
+    throw Error(ErrorCode::could_not_solve, "machine",
+                "PrusaSlicer could not be started: the system has no room for another program.");
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds_limit);
   int status = 0;
   bool late = false;
@@ -149,9 +160,9 @@ Bytes slice_model(ByteView model, const std::string& profile, const std::filesys
   ::kill(-child, SIGKILL);  // what it may have left behind
   if (cancelled) throw Error(ErrorCode::cancelled, "", "Cancelled.");
   if (late)
-    throw Error(
-        ErrorCode::could_not_solve, "sha256",
-        "PrusaSlicer was not done after " + std::to_string(static_cast<int>(seconds_limit)) + " s and was ended: give it a simpler model.");
+    throw Error(ErrorCode::could_not_solve, "sha256",
+                "PrusaSlicer was not done after " + std::to_string(static_cast<int>(seconds_limit)) +
+                    " s and was ended: give it a simpler model.");
   std::error_code ignored;
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || !std::filesystem::exists(output, ignored)) {
     const std::string said = last_words(folder.path / "log");

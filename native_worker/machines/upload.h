@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// G-code to a printer's own server: OctoPrint (POST /api/files/local, X-Api-Key) and Moonraker (POST /server/files/upload with a
-// SHA-256 checksum). Blocks: never on the server's thread.
+// G-code to a printer's own server: OctoPrint (POST /api/files/local, X-Api-Key) and Moonraker (POST
+// /server/files/upload with a SHA-256 checksum). Blocks: never on the server's thread.
 #include <atomic>
 #include <functional>
 #include <string>
@@ -22,12 +22,14 @@ struct UploadOrder {
 /// Throws Error{invalid_input, "file_name"} when nothing is left.
 std::string upload_file_name(const std::string& file_name);
 
-/// {"file_name", "printing": bool}. Throws Error{could_not_solve, "machine"} when nobody answers, the key is wrong, the machine refuses
-/// (busy, no room, another kind of server); Error{invalid_input}; Error{cancelled}. `progress`: share sent, 0 to 1.
+/// {"file_name", "printing": bool}. Throws Error{could_not_solve, "machine"} when nobody answers, the key is wrong, the
+/// machine refuses (busy, no room, another kind of server); Error{invalid_input}; Error{cancelled}. `progress`: share
+/// sent, 0 to 1.
 Json upload_gcode(const Machine& machine, const UploadOrder& order, const std::atomic<bool>& cancelled,
                   const std::function<void(double)>& progress);
 
-/// {"state": "ready"|"printing"|"paused"|"error"|"disconnected", "software": "OctoPrint 1.11", ...}. Throws like upload_gcode.
+/// {"state": "ready"|"printing"|"paused"|"error"|"disconnected", "software": "OctoPrint 1.11", ...}. Throws like
+/// upload_gcode.
 Json upload_machine_state(const Machine& machine, const std::atomic<bool>& cancelled);
 
 /// Stops the print that runs there. Throws like upload_gcode.

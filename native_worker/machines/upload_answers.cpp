@@ -85,8 +85,7 @@ Json read_uploaded(const Machine& machine, bool print, const UploadReply& reply)
     printing = flag_at(reply.json, {"effectivePrint"});
   else if (!octoprint)
     printing = flag_at(reply.json, {"print_started"}) || flag_at(reply.json, {"result", "print_started"});
-  else if (print)
-    printing = !at_path(reply.json, {"files", "local"}).is_null();
+  else if (print) printing = !at_path(reply.json, {"files", "local"}).is_null();
   if (print && !printing)
     fail(machine.name + " has the file " + kept +
          " and did not start it: its printer is not ready. Start it there once it is.");

@@ -13,7 +13,8 @@ TEST(NumberList, TakesBlanksCommasAndSemicolons) {
 }
 
 TEST(NumberList, RefusesWhatIsNoFiniteNumber) {
-  for (const char* text : {"a", "1 x", "1..2", "nan", "inf 3", "1e999", "1-", "--2"}) EXPECT_FALSE(read_number_list(text)) << text;
+  for (const char* text : {"a", "1 x", "1..2", "nan", "inf 3", "1e999", "1-", "--2"})
+    EXPECT_FALSE(read_number_list(text)) << text;
 }
 
 }  // namespace

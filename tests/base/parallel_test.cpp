@@ -78,7 +78,8 @@ TEST(ParallelFor, SeveralThreadsLoopAtOnce) {
   for (std::thread& thread : threads) thread.join();
   long each = 0;
   for (int loop = 0; loop < loops; ++loop) each += 200 + loop % 7;
-  for (int caller = 0; caller < callers; ++caller) EXPECT_EQ(sums[static_cast<std::size_t>(caller)], (caller + 1) * each);
+  for (int caller = 0; caller < callers; ++caller)
+    EXPECT_EQ(sums[static_cast<std::size_t>(caller)], (caller + 1) * each);
 }
 #endif
 

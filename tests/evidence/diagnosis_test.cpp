@@ -47,7 +47,8 @@ TEST(ParameterFit, RecoversBaseParametersDespiteOutliers) {
   model.measure(truth, 0.02, 7, 0.05);
   SimulationBag bag(model);
   Context context;
-  const ParameterFit fit = fit_parameters(bag, *mean_distance_objective(model, 0.02), model.base_parameters(), model.nominal(), {}, {}, context, "");
+  const ParameterFit fit = fit_parameters(bag, *mean_distance_objective(model, 0.02), model.base_parameters(),
+                                          model.nominal(), {}, {}, context, "");
   EXPECT_NEAR(fit.u[0], 0.4, 0.01);
   EXPECT_NEAR(fit.u[1], -0.7, 0.01);
   EXPECT_LT(bag.simulations(), 40);
@@ -63,7 +64,8 @@ TEST(ParameterFit, StaysWithinRanges) {
   Context context;
   FitOptions options;
   options.most_iterations = 60;
-  const ParameterFit fit = fit_parameters(bag, *mean_distance_objective(model, 0.01), model.base_parameters(), model.nominal(), {}, options, context, "");
+  const ParameterFit fit = fit_parameters(bag, *mean_distance_objective(model, 0.01), model.base_parameters(),
+                                          model.nominal(), {}, options, context, "");
   EXPECT_NEAR(fit.u[1], 5, 1e-6);
 }
 
@@ -72,14 +74,16 @@ TEST(ParameterFit, ProbingSaysHowFarSecantsMiss) {
   SimulationBag bag(model);
   Context context;
   const std::vector<int> columns{0, 1, 3};
-  const Probing probing = probe_around(bag, model.nominal(), *bag.run(model.nominal(), context, ""), columns, context, "");
+  const Probing probing =
+      probe_around(bag, model.nominal(), *bag.run(model.nominal(), context, ""), columns, context, "");
   ASSERT_EQ(probing.bends.front().size(), 2u);  // the ripple goes one way only
   for (Eigen::Index i = 0; i < 50; ++i) {
     const auto place = model.measurements().front().place.row(i);
     // Height is e^u: half of e^h + e^-h - 2.
     EXPECT_NEAR(probing.bends.front()[0](i, 0), (std::cosh(0.1) - 1) * std::sin(std::numbers::pi * place[0]), 1e-12);
     EXPECT_NEAR(probing.bends.front()[0](i, 1), (std::cosh(0.1) - 1) * place[0] * place[1] / 2, 1e-12);
-    EXPECT_NEAR(probing.sensitivities.front()[0](i, 0), std::sinh(0.1) / 0.1 * std::sin(std::numbers::pi * place[0]), 1e-12);
+    EXPECT_NEAR(probing.sensitivities.front()[0](i, 0), std::sinh(0.1) / 0.1 * std::sin(std::numbers::pi * place[0]),
+                1e-12);
   }
   EXPECT_LT(probing.bends.front()[1].cwiseAbs().maxCoeff(), 1e-12);  // the tilt is straight
 }
@@ -177,7 +181,8 @@ TEST(Diagnosis, NamesEachCauseItsStrengthAndTheGain) {
     }
 }
 
-/// The machine turns a cause into other movements than the model does, and has a misfit of the size that the model is known for.
+/// The machine turns a cause into other movements than the model does, and has a misfit of the size that the model is
+/// known for.
 TEST(Diagnosis, IntervalsHoldTheStrengthThoughTheModelIsAnother) {
   std::mt19937 random(5);
   std::normal_distribution<double> gain(1, 0.05);
@@ -196,12 +201,14 @@ TEST(Diagnosis, IntervalsHoldTheStrengthThoughTheModelIsAnother) {
     for (int wave = 0; wave < 6; ++wave) {
       const double direction = turn(random), phase = turn(random), cycles = 1 + 0.2 * wave;
       const Eigen::ArrayXd along = std::cos(direction) * place.col(0) + std::sin(direction) * place.col(1);
-      model.measurement().measured.col(wave % 2).array() += std::sqrt(2.0 / 3) * model.known_misfit() * (2 * std::numbers::pi * cycles * along + phase).sin();
+      model.measurement().measured.col(wave % 2).array() +=
+          std::sqrt(2.0 / 3) * model.known_misfit() * (2 * std::numbers::pi * cycles * along + phase).sin();
     }
     const Diagnosis d = diagnosed(model);
     ASSERT_FALSE(d.verdict.empty()) << "seed " << seed;
     ASSERT_EQ(d.verdict.front(), 0) << "seed " << seed;
-    const CauseFinding& bump = *std::find_if(d.causes.begin(), d.causes.end(), [](const CauseFinding& f) { return f.cause == 0; });
+    const CauseFinding& bump =
+        *std::find_if(d.causes.begin(), d.causes.end(), [](const CauseFinding& f) { return f.cause == 0; });
     EXPECT_GE(0.5 * (bump.high - bump.low), std::hypot(0.5 * bump.least_visible, 1.96 * 0.05 * bump.strength));
     EXPECT_LT(bump.high - bump.low, 0.5);
     inside += bump.low <= 0.7 && 0.7 <= bump.high;
@@ -222,7 +229,8 @@ Diagnosis diagnosed_pair(ToyModel& model) {
   return d;
 }
 
-/// A base parameter that can be turned until it does nearly what the drift does, and from where both ways back lead uphill.
+/// A base parameter that can be turned until it does nearly what the drift does, and from where both ways back lead
+/// uphill.
 class SwallowingModel : public ToyModel {
  public:
   using ToyModel::ToyModel;
@@ -248,7 +256,8 @@ TEST(Diagnosis, NamesWhatTheCalibrationHasSwallowed) {
   EXPECT_NEAR(d.extended.u[1], 0, 0.05);
 }
 
-/// In one corner it does now this, now that, at the least change of any parameter: a sheet that snaps into a corner of the mould, or does not.
+/// In one corner it does now this, now that, at the least change of any parameter: a sheet that snaps into a corner of
+/// the mould, or does not.
 class LeapingModel : public ToyModel {
  public:
   using ToyModel::ToyModel;
@@ -278,7 +287,8 @@ TEST(Diagnosis, DoesNotRelyOnWhatTheModelDoesByLeaps) {
   }
 }
 
-/// Its fourth cause moves a narrow ring alone, by far: as a turned mould moves its walls, between plate and top that stay.
+/// Its fourth cause moves a narrow ring alone, by far: as a turned mould moves its walls, between plate and top that
+/// stay.
 class WalledModel : public ToyModel {
  public:
   WalledModel() : ToyModel(800, 1, true) {}
@@ -345,7 +355,9 @@ TEST(PairSearch, ACheaperModelAgreesWhereItIsAnchored) {
   Eigen::VectorXd beyond = at;
   beyond[2] += 0.2;
   const Eigen::MatrixXd step = full.predict(0, beyond, context) - full.predict(0, at, context);
-  EXPECT_LT((anchored.predict(0, beyond, context) - anchored.predict(0, at, context) - 1.1 * step).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_LT(
+      (anchored.predict(0, beyond, context) - anchored.predict(0, at, context) - 1.1 * step).cwiseAbs().maxCoeff(),
+      1e-12);
 }
 
 TEST(PairSearch, FindsBothCausesThroughACoarserModel) {
@@ -437,7 +449,8 @@ TEST(Diagnosis, SaysUnknownToWhatIsNotInTheList) {
   ToyModel model(500);
   model.measure(model.nominal(), 0.04, 3);
   Measurement& m = model.measurement();
-  for (Eigen::Index i = 0; i < m.measured.rows(); ++i) m.measured(i, 1) += 0.4 * std::sin(5 * m.place(i, 0)) * std::cos(4 * m.place(i, 1) + 1);
+  for (Eigen::Index i = 0; i < m.measured.rows(); ++i)
+    m.measured(i, 1) += 0.4 * std::sin(5 * m.place(i, 0)) * std::cos(4 * m.place(i, 1) + 1);
   const Diagnosis d = diagnosed(model);
   EXPECT_TRUE(d.reading == Reading::unknown || d.doubtful());
 }

@@ -15,8 +15,10 @@ namespace {
 
 /// Hills, a step and fine grooves, 100 mm wide and 8 mm deep.
 double landscape(double x, double y) {
-  const double hills = 3 * std::sin(0.09 * x + 0.5) * std::cos(0.07 * y) + 2 * std::exp(-0.005 * ((x - 60) * (x - 60) + (y - 55) * (y - 55)));
-  const double step = 1.5 * std::tanh(0.8 * (x - 30 - 0.2 * y)), grooves = 0.25 * std::sin(1.1 * y) * std::exp(-0.002 * (x - 75) * (x - 75));
+  const double hills = 3 * std::sin(0.09 * x + 0.5) * std::cos(0.07 * y) +
+                       2 * std::exp(-0.005 * ((x - 60) * (x - 60) + (y - 55) * (y - 55)));
+  const double step = 1.5 * std::tanh(0.8 * (x - 30 - 0.2 * y)),
+               grooves = 0.25 * std::sin(1.1 * y) * std::exp(-0.002 * (x - 75) * (x - 75));
   return hills + step + grooves;
 }
 
@@ -27,7 +29,9 @@ ReliefSurface surface_of(double pixel_mm) {
   const auto n = static_cast<Eigen::Index>(100 / pixel_mm);
   s.height_mm.resize(n, n);
   for (Eigen::Index r = 0; r < n; ++r)
-    for (Eigen::Index c = 0; c < n; ++c) s.height_mm(r, c) = landscape(s.lower_mm.x() + pixel_mm * static_cast<double>(c), s.lower_mm.y() + pixel_mm * static_cast<double>(r));
+    for (Eigen::Index c = 0; c < n; ++c)
+      s.height_mm(r, c) = landscape(s.lower_mm.x() + pixel_mm * static_cast<double>(c),
+                                    s.lower_mm.y() + pixel_mm * static_cast<double>(r));
   return s;
 }
 
@@ -52,7 +56,8 @@ int index_of(const ForwardModel& model, const std::string& name) {
 TEST(ReliefModel, APlaneHasTheBrightnessOfLambertsLaw) {
   PhotographedRelief r = relief(1, 50, 1);
   for (Eigen::Index row = 0; row < r.surface.height_mm.rows(); ++row)
-    for (Eigen::Index c = 0; c < r.surface.height_mm.cols(); ++c) r.surface.height_mm(row, c) = 0.3 * static_cast<double>(c);
+    for (Eigen::Index c = 0; c < r.surface.height_mm.cols(); ++c)
+      r.surface.height_mm(row, c) = 0.3 * static_cast<double>(c);
   const ReliefModel model({r});
   const Vec3 normal = Vec3(-0.3, 0, 1).normalized();
   const double expected = 0.1 + 0.9 * normal.dot(r.setup.light_direction.normalized());
@@ -76,7 +81,8 @@ TEST(ReliefModel, AWallThrowsAShadowAsLongAsTheSunIsLow) {
 TEST(ReliefModel, BlurKeepsTheMeanOfAWaveAndDampsItAsAGaussianDoes) {
   Eigen::MatrixXd wave(256, 256);
   for (Eigen::Index r = 0; r < 256; ++r)
-    for (Eigen::Index c = 0; c < 256; ++c) wave(r, c) = 1 + std::sin(2 * std::numbers::pi * static_cast<double>(c) / 32);
+    for (Eigen::Index c = 0; c < 256; ++c)
+      wave(r, c) = 1 + std::sin(2 * std::numbers::pi * static_cast<double>(c) / 32);
   const Eigen::MatrixXd soft = blurred(wave, 4);
   EXPECT_NEAR(soft.middleRows(64, 128).middleCols(64, 128).mean(), 1, 1e-6);
   const double damped = (soft.row(128).segment(64, 128).maxCoeff() - soft.row(128).segment(64, 128).minCoeff()) / 2;
@@ -88,8 +94,12 @@ TEST(ReliefModel, NamesWhatWasDoneToIt) {
     const char *cause, *parameter;
     double value;
   };
-  static constexpr Case cases[] = {{"light_direction", "light_tilt_x_deg", 8}, {"light_distance", "light_nearness_per_m", 3}, {"gloss", "gloss", 0.4},
-                                   {"cast_shadow", "cast_shadow", 0.8},        {"printer_blur", "printer_blur_mm", 0.9},      {"depth_shrinkage", "depth_shrinkage", 0.2},
+  static constexpr Case cases[] = {{"light_direction", "light_tilt_x_deg", 8},
+                                   {"light_distance", "light_nearness_per_m", 3},
+                                   {"gloss", "gloss", 0.4},
+                                   {"cast_shadow", "cast_shadow", 0.8},
+                                   {"printer_blur", "printer_blur_mm", 0.9},
+                                   {"depth_shrinkage", "depth_shrinkage", 0.2},
                                    {"viewer_offset", "viewer_offset_y_mm", 80}};
   int right = 0;
   for (const Case& c : cases) {
@@ -107,24 +117,30 @@ TEST(ReliefModel, NamesWhatWasDoneToIt) {
     seen.setup.light_direction = fine.setup.light_direction;
     std::mt19937 random(5);
     std::normal_distribution<double> noise(0, 0.01);
-    for (std::size_t i = 0; i < seen.points.size(); ++i) seen.points[i].brightness = std::max(0.0, brightness(static_cast<Eigen::Index>(i), 0) + noise(random));
+    for (std::size_t i = 0; i < seen.points.size(); ++i)
+      seen.points[i].brightness = std::max(0.0, brightness(static_cast<Eigen::Index>(i), 0) + noise(random));
     const ReliefModel model({seen});
     SimulationBag bag(model);
     Context context;
     DiagnosisOptions options;
     options.pairs = false;
     const Diagnosis d = diagnose(bag, options, context);
-    const bool named = !d.verdict.empty() && model.causes()[static_cast<std::size_t>(d.verdict.front())].name == c.cause;
+    const bool named =
+        !d.verdict.empty() && model.causes()[static_cast<std::size_t>(d.verdict.front())].name == c.cause;
     right += named;
     std::string told = c.cause;
     for (const CauseFinding& f : d.causes)
-      told += "; " + model.causes()[static_cast<std::size_t>(f.cause)].name + " p " + std::to_string(f.probability) + " strength " + std::to_string(f.strength) + " evidence " +
-              std::to_string(f.log_evidence) + " visible from " + std::to_string(f.least_visible);
+      told += "; " + model.causes()[static_cast<std::size_t>(f.cause)].name + " p " + std::to_string(f.probability) +
+              " strength " + std::to_string(f.strength) + " evidence " + std::to_string(f.log_evidence) +
+              " visible from " + std::to_string(f.least_visible);
     for (const HeldOutTrial& t : d.trials)
-      told += "; tried " + model.causes()[static_cast<std::size_t>(t.causes.front())].name + (t.significant ? " gain " : " not significant ") + std::to_string(t.gain.gain_share) + " sure " + std::to_string(t.gain.gain_probability);
+      told += "; tried " + model.causes()[static_cast<std::size_t>(t.causes.front())].name +
+              (t.significant ? " gain " : " not significant ") + std::to_string(t.gain.gain_share) + " sure " +
+              std::to_string(t.gain.gain_probability);
     SCOPED_TRACE(told);
     if (!named) std::printf("not named: %s\n", told.c_str());
-    EXPECT_TRUE(named || d.doubtful() || d.reading == Reading::cannot_separate || d.reading == Reading::unknown) << c.cause;
+    EXPECT_TRUE(named || d.doubtful() || d.reading == Reading::cannot_separate || d.reading == Reading::unknown)
+        << c.cause;
     if (named) {
       EXPECT_LT(d.held_out.after.mean, d.held_out.before.mean);
     }

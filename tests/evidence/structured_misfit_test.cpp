@@ -27,7 +27,8 @@ TEST(StructuredMisfit, GramMatrixIsThatOfADenseCovariance) {
   ToyModel model(40);
   const Eigen::VectorXd weights = Eigen::VectorXd::LinSpaced(40, 50, 400);
   const std::vector<double> sizes{0, 0.1, 1};
-  const StructuredMisfit one(model.measurements().front(), isotropic(weights, 1), sizes), misfit(model.measurements().front(), isotropic(weights, 2), sizes);
+  const StructuredMisfit one(model.measurements().front(), isotropic(weights, 1), sizes),
+      misfit(model.measurements().front(), isotropic(weights, 2), sizes);
   const Eigen::MatrixXd residual = Eigen::MatrixXd::Random(40, 2);
   const std::vector<Eigen::MatrixXd> columns{Eigen::MatrixXd::Random(40, 2), Eigen::MatrixXd::Random(40, 2)};
   const GramByStructure gram = misfit.gram(residual, columns);
@@ -35,10 +36,12 @@ TEST(StructuredMisfit, GramMatrixIsThatOfADenseCovariance) {
     const Eigen::MatrixXd inverse = inverse_covariance(one, 40, t);
     // The structure has the size it is said to have: the mean of C's diagonal is noise and tau^2.
     const Eigen::MatrixXd C = inverse.inverse();
-    EXPECT_NEAR(C.diagonal().mean(), weights.cwiseInverse().mean() + sizes[t] * sizes[t], 0.35 * sizes[t] * sizes[t] + 1e-12);
+    EXPECT_NEAR(C.diagonal().mean(), weights.cwiseInverse().mean() + sizes[t] * sizes[t],
+                0.35 * sizes[t] * sizes[t] + 1e-12);
     EXPECT_NEAR(gram.gram[t](0, 0), (residual.transpose() * inverse * residual).trace(), 1e-6 * gram.gram[t](0, 0));
     EXPECT_NEAR(gram.gram[t](1, 2), (columns[0].transpose() * inverse * columns[1]).trace(), 1e-6 * gram.gram[t](1, 1));
-    EXPECT_NEAR(gram.log_determinant[t], -2 * std::log(inverse.determinant()), 1e-6 * std::abs(gram.log_determinant[t]) + 1e-6);
+    EXPECT_NEAR(gram.log_determinant[t], -2 * std::log(inverse.determinant()),
+                1e-6 * std::abs(gram.log_determinant[t]) + 1e-6);
   }
 }
 
@@ -48,7 +51,8 @@ TEST(StructuredMisfit, DirectionsOfAPointMayBeKnownDifferently) {
   ToyModel model(n);
   const Measurement& m = model.measurements().front();
   const Eigen::VectorXd weights = Eigen::VectorXd::LinSpaced(n, 50, 400);
-  const std::vector<Eigen::MatrixXd> movements{0.3 * Eigen::MatrixXd::Random(n, 2), 0.1 * Eigen::MatrixXd::Random(n, 2)};
+  const std::vector<Eigen::MatrixXd> movements{0.3 * Eigen::MatrixXd::Random(n, 2),
+                                               0.1 * Eigen::MatrixXd::Random(n, 2)};
   const double tau = 0.2;
   const StructuredMisfit misfit(m, precisions_of(model, {weights}, {movements}).front(), {0, tau});
   const StructuredMisfit plain(m, isotropic(Eigen::VectorXd::Ones(n), 1), {tau});
@@ -118,7 +122,8 @@ TEST(NoiseModel, StructureIsToldFromNoise) {
 }
 
 TEST(Hypotheses, EvidenceIsThatOfTheMarginalGaussian) {
-  // One base parameter and one effect in a linear model: log p(y) = log N(y; 0, C + J S J^T), up to what the data alone decide.
+  // One base parameter and one effect in a linear model: log p(y) = log N(y; 0, C + J S J^T), up to what the data alone
+  // decide.
   ToyModel model(30);
   Eigen::VectorXd u = model.nominal();
   u[1] = 0.3;
@@ -147,7 +152,9 @@ TEST(Hypotheses, EvidenceIsThatOfTheMarginalGaussian) {
       const Eigen::MatrixXd inverse = inverse_covariance(one, 30, t);
       Eigen::MatrixXd C = Eigen::MatrixXd::Zero(60, 60);
       C.topLeftCorner(30, 30) = C.bottomRightCorner(30, 30) = inverse.inverse();
-      const auto stacked = [](const Eigen::MatrixXd& m) { return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(m.data(), m.size())); };
+      const auto stacked = [](const Eigen::MatrixXd& m) {
+        return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(m.data(), m.size()));
+      };
       C += stacked(columns[0]) * stacked(columns[0]).transpose();
       if (with_bump) C += stacked(columns[1]) * stacked(columns[1]).transpose();
       const double prior = -0.5 * std::pow(sizes[t] / model.known_misfit(), 2);

@@ -22,7 +22,8 @@ namespace {
 using namespace virtual_lab;
 
 /// A small object of few points, quick to simulate.
-FormedObject small_object(unsigned seed, const std::vector<HiddenEffect>& effects, double sigma_mm = 0.05, Mould mould = Mould::pyramid) {
+FormedObject small_object(unsigned seed, const std::vector<HiddenEffect>& effects, double sigma_mm = 0.05,
+                          Mould mould = Mould::pyramid) {
   std::mt19937 random(seed);
   HiddenWorld world;
   world.triangles = 3000;
@@ -73,7 +74,8 @@ TEST(ThermoformModel, PredictsWhatTheComparisonDoes) {
   const Eigen::MatrixXd predicted = model.predict(0, model.nominal(), context);
   ThermoformOptions o = model.simulation_options(0, model.nominal());
   const FormedResult formed = form_sheet(object.mould, Placement{}, o, context);
-  const Comparison compared = compare(formed.sheet, object.points, object.setup.measured_surface, o.clamp_height_mm, o.sheet_thickness_mm, MeasurementEffects{}, 0, context);
+  const Comparison compared = compare(formed.sheet, object.points, object.setup.measured_surface, o.clamp_height_mm,
+                                      o.sheet_thickness_mm, MeasurementEffects{}, 0, context);
   for (std::size_t i = 0; i < object.points.size(); ++i)
     EXPECT_LT((predicted.row(static_cast<Eigen::Index>(i)).transpose() - compared.points[i].simulated_mm).norm(), 1e-4);
 }
@@ -182,7 +184,8 @@ TEST(ThermoformModel, CalibrationRecoversTheMaterialOrSaysItCannot) {
   for (const ParameterProfile& profile : c.profiles) {
     const ModelParameter& p = model.parameters()[static_cast<std::size_t>(profile.parameter)];
     const double right = p.value(u[profile.parameter]);
-    EXPECT_TRUE(!profile.identified || (right >= profile.low - 0.1 * std::abs(right) - 1e-12 && right <= profile.high + 0.1 * std::abs(right) + 1e-12))
+    EXPECT_TRUE(!profile.identified || (right >= profile.low - 0.1 * std::abs(right) - 1e-12 &&
+                                        right <= profile.high + 0.1 * std::abs(right) + 1e-12))
         << p.name << " " << right << " not in " << profile.low << " to " << profile.high;
     if (p.name == "yield_strain") {
       EXPECT_TRUE(profile.identified);
@@ -190,7 +193,8 @@ TEST(ThermoformModel, CalibrationRecoversTheMaterialOrSaysItCannot) {
   }
 }
 
-/// One cause drawn afresh at every run, twice as large as what the table calls strong; the whole table is tests/bench/evidence/confusion_table.
+/// One cause drawn afresh at every run, twice as large as what the table calls strong; the whole table is
+/// tests/bench/evidence/confusion_table.
 TEST(ThermoformModel, ADrawnCauseIsNamedOrDoubted) {
   const char* again = std::getenv("FORMWRIGHT_SEED");
   const unsigned seed = again != nullptr ? static_cast<unsigned>(std::stoul(again)) : std::random_device{}();
@@ -211,12 +215,14 @@ TEST(ThermoformModel, ADrawnCauseIsNamedOrDoubted) {
     if (model.causes()[static_cast<std::size_t>(finding.cause)].name != cause) continue;
     double size_squared = 0;
     for (const auto& [name, value] : hidden.values.items()) size_squared += std::pow(value.get<double>(), 2);
-    // Nothing may be found where the diagnosis itself says that it could not see as much; a margin, since it knows that only linearly.
+    // Nothing may be found where the diagnosis itself says that it could not see as much; a margin, since it knows that
+    // only linearly.
     if (std::sqrt(size_squared) > 1.25 * finding.least_visible) {
       EXPECT_NE(d.reading, Reading::none) << "visible from " << finding.least_visible;
     }
   }
-  if (d.reading != Reading::none && d.reading != Reading::unknown && !d.doubtful() && d.reading != Reading::cannot_separate) {
+  if (d.reading != Reading::none && d.reading != Reading::unknown && !d.doubtful() &&
+      d.reading != Reading::cannot_separate) {
     EXPECT_EQ(model.causes()[static_cast<std::size_t>(d.verdict.front())].name, cause);
   }
   if (!d.verdict.empty()) {

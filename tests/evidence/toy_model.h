@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A forward model in closed form: fields over the unit square, linear in most parameters, on which every answer is known.
+// A forward model in closed form: fields over the unit square, linear in most parameters, on which every answer is
+// known.
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -9,11 +10,13 @@
 
 namespace formwright::evidence_test {
 
-/// Base: height (logarithmic) and tilt. Causes: bump, ripple (one-sided), drift (two parameters), and `twin`, which does nearly what bump does.
+/// Base: height (logarithmic) and tilt. Causes: bump, ripple (one-sided), drift (two parameters), and `twin`, which
+/// does nearly what bump does.
 class ToyModel : public ForwardModel {
  public:
   explicit ToyModel(int points = 500, unsigned seed = 1, bool with_twin = false) {
-    const auto add = [&](const char* name, ParameterRole role, double nominal, double low, double high, bool logarithmic, double sd, double probe) {
+    const auto add = [&](const char* name, ParameterRole role, double nominal, double low, double high,
+                         bool logarithmic, double sd, double probe) {
       ModelParameter p;
       p.name = p.label = name;
       p.role = role;
@@ -31,7 +34,9 @@ class ToyModel : public ForwardModel {
     add("ripple", ParameterRole::effect, 0, 0, 3, false, 1, 0.3);
     add("drift_x", ParameterRole::effect, 0, -3, 3, false, 1, 0.3);
     add("drift_y", ParameterRole::effect, 0, -3, 3, false, 1, 0.3);
-    causes_ = {{"bump", "Bump", "", "", {2}, "mm"}, {"ripple", "Ripple", "", "", {3}, "mm"}, {"drift", "Drift", "", "", {4, 5}, "mm"}};
+    causes_ = {{"bump", "Bump", "", "", {2}, "mm"},
+               {"ripple", "Ripple", "", "", {3}, "mm"},
+               {"drift", "Drift", "", "", {4, 5}, "mm"}};
     if (with_twin) {
       add("twin", ParameterRole::effect, 0, -3, 3, false, 1, 0.3);
       causes_.push_back({"twin", "Twin", "", "", {6}, "mm"});

@@ -7,7 +7,9 @@
 namespace formwright::virtual_lab {
 namespace {
 
-double uniform(std::mt19937& random, double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
+double uniform(std::mt19937& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
 
 /// A prism over a polygon, tapered: the top is the polygon scaled about `centre` by `taper`, at height `height`.
 TriangleMesh frustum(const std::vector<Vec2>& polygon, const Vec2& centre, double taper, double height) {
@@ -36,7 +38,19 @@ TriangleMesh make_mould(Mould mould) {
     case Mould::box: return frustum({{-45, -35}, {45, -35}, {45, 35}, {-45, 35}}, {0, 0}, 0.85, 45);
     case Mould::ridge: return frustum({{-60, -30}, {60, -30}, {60, 30}, {-60, 30}}, {10, 5}, 0.3, 50);
     case Mould::cross:
-      return frustum({{-20, -60}, {20, -60}, {20, -20}, {60, -20}, {60, 20}, {20, 20}, {20, 60}, {-20, 60}, {-20, 20}, {-60, 20}, {-60, -20}, {-20, -20}}, {0, 0}, 0.7, 45);
+      return frustum({{-20, -60},
+                      {20, -60},
+                      {20, -20},
+                      {60, -20},
+                      {60, 20},
+                      {20, 20},
+                      {20, 60},
+                      {-20, 60},
+                      {-20, 20},
+                      {-60, 20},
+                      {-60, -20},
+                      {-20, -20}},
+                     {0, 0}, 0.7, 45);
   }
   return {};
 }
@@ -91,12 +105,14 @@ HiddenWorld draw_world(std::mt19937& random) {
 }
 
 ObjectSetup usual_setup() {
-  return read_object_setup(as_bytes(std::string_view(R"({"sheet_mm": [240, 260], "sheet_thickness_mm": 1, "clamp_opening_mm": [220, 240], "clamp_height_mm": 1,
+  return read_object_setup(as_bytes(std::string_view(
+      R"({"sheet_mm": [240, 260], "sheet_thickness_mm": 1, "clamp_opening_mm": [220, 240], "clamp_height_mm": 1,
     "base_plate_start_z_mm": -120, "base_plate_end_z_mm": 0, "mould_speed_mm_per_s": 100, "relaxation_s": 1, "vacuum_kpa": 80,
     "density_kg_per_m3": 1330, "poisson_ratio": 0.35, "measured_surface": "outer"})")));
 }
 
-FormedObject make_object(Mould mould, const HiddenWorld& world, const std::vector<HiddenEffect>& effects, const Observation& observation, std::mt19937& random) {
+FormedObject make_object(Mould mould, const HiddenWorld& world, const std::vector<HiddenEffect>& effects,
+                         const Observation& observation, std::mt19937& random) {
   FormedObject object;
   object.name = mould_names[static_cast<std::size_t>(mould)];
   object.key = object.name;
@@ -105,7 +121,8 @@ FormedObject make_object(Mould mould, const HiddenWorld& world, const std::vecto
   Json values = object.setup.parameters;
   Json measurement = write_parameters(MeasurementEffects{});
   for (const HiddenEffect& effect : effects)
-    for (const auto& [name, value] : effect.values.items()) (measurement.contains(name) ? measurement : values)[name] = value;
+    for (const auto& [name, value] : effect.values.items())
+      (measurement.contains(name) ? measurement : values)[name] = value;
   auto o = read_parameters<ThermoformOptions>(values);
   o.young_modulus_pa *= world.young_factor;
   o.creep_per_s *= world.creep_factor;
@@ -119,9 +136,11 @@ FormedObject make_object(Mould mould, const HiddenWorld& world, const std::vecto
   const FormedResult formed = form_sheet(object.mould, Placement{}, o, context);
   TextureCoordinates places(observation.points, 2);
   for (Eigen::Index i = 0; i < places.rows(); ++i)
-    places.row(i) << uniform(random, -0.49, 0.49) * o.clamp_opening_x_mm, uniform(random, -0.49, 0.49) * o.clamp_opening_y_mm;
-  const Positions measured = predict_measured(formed.sheet, places, object.setup.measured_surface, o.clamp_height_mm, o.sheet_thickness_mm,
-                                              read_parameters<MeasurementEffects>(measurement), 0);
+    places.row(i) << uniform(random, -0.49, 0.49) * o.clamp_opening_x_mm,
+        uniform(random, -0.49, 0.49) * o.clamp_opening_y_mm;
+  const Positions measured =
+      predict_measured(formed.sheet, places, object.setup.measured_surface, o.clamp_height_mm, o.sheet_thickness_mm,
+                       read_parameters<MeasurementEffects>(measurement), 0);
   std::normal_distribution<double> noise(0, 1);
   for (Eigen::Index i = 0; i < places.rows(); ++i) {
     Vec3 place = measured.row(i).transpose();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Measured objects with a known truth. They are made by another model than the one under diagnosis: a finer sheet, shorter steps,
-// another elastic law, a slower vacuum, other material constants, noise and outliers.
+// Measured objects with a known truth. They are made by another model than the one under diagnosis: a finer sheet,
+// shorter steps, another elastic law, a slower vacuum, other material constants, noise and outliers.
 #include <random>
 #include <string>
 #include <vector>
@@ -47,6 +47,7 @@ struct Observation {
 ObjectSetup usual_setup();
 
 /// Forms the object and measures it.
-FormedObject make_object(Mould mould, const HiddenWorld& world, const std::vector<HiddenEffect>& effects, const Observation& observation, std::mt19937& random);
+FormedObject make_object(Mould mould, const HiddenWorld& world, const std::vector<HiddenEffect>& effects,
+                         const Observation& observation, std::mt19937& random);
 
 }  // namespace formwright::virtual_lab

@@ -21,8 +21,8 @@ TEST(Contours, LinesThatMeetAreOneOutline) {
     if (i % 2 == 1) std::swap(side.points_mm[0], side.points_mm[1]);
     paths.push_back(side);
   }
-  paths.push_back({CutLayer::mark, {{10, 10}, {20, 10}}, false, ""});           // another layer
-  paths.push_back({CutLayer::cut, {{10.5, 10}, {20, 10}}, false, ""});          // too far
+  paths.push_back({CutLayer::mark, {{10, 10}, {20, 10}}, false, ""});              // another layer
+  paths.push_back({CutLayer::cut, {{10.5, 10}, {20, 10}}, false, ""});             // too far
   paths.push_back({CutLayer::cut, {{20, 10.03}, {30, 10}, {30, 20}}, false, ""});  // near enough
   const TidiedPaths tidied = tidy_paths(paths, 0.05, Context());
   ASSERT_EQ(tidied.paths.size(), 3u);
@@ -37,16 +37,25 @@ TEST(Contours, DoublesAreDroppedWhicheverWayRound) {
   Polygon turned = square;
   std::rotate(turned.begin(), turned.begin() + 2, turned.end());
   std::reverse(turned.begin(), turned.end());
-  const std::vector<CutPath> paths{{CutLayer::cut, square, true, ""}, {CutLayer::cut, turned, true, ""}, {CutLayer::mark, square, true, ""},
-                                   {CutLayer::cut, {{1, 1}, {5, 5}}, false, ""}, {CutLayer::cut, {{5, 5}, {1, 1}}, false, ""}};
+  const std::vector<CutPath> paths{{CutLayer::cut, square, true, ""},
+                                   {CutLayer::cut, turned, true, ""},
+                                   {CutLayer::mark, square, true, ""},
+                                   {CutLayer::cut, {{1, 1}, {5, 5}}, false, ""},
+                                   {CutLayer::cut, {{5, 5}, {1, 1}}, false, ""}};
   const TidiedPaths tidied = tidy_paths(paths, 0, Context());
   EXPECT_EQ(tidied.paths.size(), 3u);
   EXPECT_EQ(tidied.doubles_dropped, 2);
 }
 
 TEST(Contours, TheSmallestContourAroundIsFound) {
-  const auto ring = [](double x, double y, double half) { return CutPath{CutLayer::cut, {{x - half, y - half}, {x + half, y - half}, {x + half, y + half}, {x - half, y + half}}, true, ""}; };
-  const std::vector<CutPath> paths{ring(0, 0, 1), ring(0, 0, 50), ring(0, 0, 10), ring(30, 0, 5), ring(100, 0, 5), {CutLayer::mark, {{29, 0}, {31, 0}}, false, ""}};
+  const auto ring = [](double x, double y, double half) {
+    return CutPath{CutLayer::cut,
+                   {{x - half, y - half}, {x + half, y - half}, {x + half, y + half}, {x - half, y + half}},
+                   true,
+                   ""};
+  };
+  const std::vector<CutPath> paths{ring(0, 0, 1),  ring(0, 0, 50),  ring(0, 0, 10),
+                                   ring(30, 0, 5), ring(100, 0, 5), {CutLayer::mark, {{29, 0}, {31, 0}}, false, ""}};
   EXPECT_EQ(containing_contours(paths, {0, 1, 2, 3, 4}, Context()), (std::vector<int>{2, -1, 1, 1, -1, 3}));
 }
 
@@ -72,7 +81,8 @@ TEST(Contours, OffsetsAreExactAndConverge) {
   }
   EXPECT_TRUE(offset_polygon(square, -5.01).empty());
   // A dumb-bell falls apart at its bar.
-  const Polygon bell{{0, 0}, {10, 0}, {10, 4.9}, {20, 4.9}, {20, 0}, {30, 0}, {30, 10}, {20, 10}, {20, 5.1}, {10, 5.1}, {10, 10}, {0, 10}};
+  const Polygon bell{{0, 0},   {10, 0},  {10, 4.9}, {20, 4.9}, {20, 0},  {30, 0},
+                     {30, 10}, {20, 10}, {20, 5.1}, {10, 5.1}, {10, 10}, {0, 10}};
   EXPECT_EQ(offset_polygon(bell, -0.2).size(), 2u);
 }
 
@@ -115,7 +125,8 @@ TEST(Hatching, CoversTheAreaAndLeavesHolesOut) {
     EXPECT_NEAR(covered, 64, 1e-9);
   }
   Polygon circle;
-  for (int i = 0; i < 720; ++i) circle.emplace_back(10 * std::cos(i * std::numbers::pi / 360), 10 * std::sin(i * std::numbers::pi / 360));
+  for (int i = 0; i < 720; ++i)
+    circle.emplace_back(10 * std::cos(i * std::numbers::pi / 360), 10 * std::sin(i * std::numbers::pi / 360));
   double covered = 0;
   for (const auto& line : hatch({circle}, 0.05, Context())) covered += 0.05 * (line[1] - line[0]).norm();
   EXPECT_NEAR(covered, 100 * std::numbers::pi, 0.1);

@@ -10,7 +10,11 @@ namespace formwright {
 namespace {
 
 CutSheet example() {
-  return {"A & B", 120, 80, {{CutLayer::cut, {{10, 10}, {60.25, 10}, {60.25, 40}}, true, "piece-P1"}, {CutLayer::mark, {{20, 15}, {20, 17.5}}, false, ""}}};
+  return {"A & B",
+          120,
+          80,
+          {{CutLayer::cut, {{10, 10}, {60.25, 10}, {60.25, 40}}, true, "piece-P1"},
+           {CutLayer::mark, {{20, 15}, {20, 17.5}}, false, ""}}};
 }
 
 TEST(CutSheet, SvgIsTrueToSizeWithYDown) {
@@ -21,7 +25,8 @@ TEST(CutSheet, SvgIsTrueToSizeWithYDown) {
   EXPECT_NE(svg.find("<path d=\"M20 65L20 62.5\"/>"), std::string::npos);
   EXPECT_NE(svg.find("A &amp; B"), std::string::npos);
   for (const CutLayerStyle& style : cut_layer_styles)
-    EXPECT_NE(svg.find("<g id=\"" + std::string(style.name) + "\" fill=\"none\" stroke=\"" + style.colour), std::string::npos);
+    EXPECT_NE(svg.find("<g id=\"" + std::string(style.name) + "\" fill=\"none\" stroke=\"" + style.colour),
+              std::string::npos);
 }
 
 TEST(CutSheet, DxfIsPairsInMillimetresOnItsLayers) {

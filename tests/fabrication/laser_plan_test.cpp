@@ -15,7 +15,8 @@
 namespace formwright {
 namespace {
 
-CutPath box(double x, double y, double width, double height, const std::string& name = "", CutLayer layer = CutLayer::cut) {
+CutPath box(double x, double y, double width, double height, const std::string& name = "",
+            CutLayer layer = CutLayer::cut) {
   return {layer, {{x, y}, {x + width, y}, {x + width, y + height}, {x, y + height}}, true, name};
 }
 
@@ -84,7 +85,9 @@ TEST(LaserPlan, InsidesComeFirstAndPartsAreFinishedTogether) {
     for (std::size_t k = i; k < i + 6; ++k) EXPECT_EQ(plates[k], plates[i]) << "a part is left unfinished";
     EXPECT_GT(size[i + 5], 4900);  // the outline last
     const auto at = [&](double area) {
-      return std::find_if(size.begin() + static_cast<long>(i), size.begin() + static_cast<long>(i) + 6, [&](double s) { return std::abs(s - area) < 0.1 * area + 1; }) - size.begin();
+      return std::find_if(size.begin() + static_cast<long>(i), size.begin() + static_cast<long>(i) + 6,
+                          [&](double s) { return std::abs(s - area) < 0.1 * area + 1; }) -
+             size.begin();
     };
     EXPECT_LT(at(25), at(400));
     EXPECT_LT(at(400), at(1600));
@@ -92,7 +95,8 @@ TEST(LaserPlan, InsidesComeFirstAndPartsAreFinishedTogether) {
 }
 
 TEST(LaserPlan, EngraveThenMarkThenCutAndNotesNever) {
-  std::vector<CutPath> paths{box(10, 10, 20, 20), box(12, 12, 5, 5, "", CutLayer::engrave), box(20, 20, 5, 5, "", CutLayer::mark), box(0, 0, 200, 150, "", CutLayer::note)};
+  std::vector<CutPath> paths{box(10, 10, 20, 20), box(12, 12, 5, 5, "", CutLayer::engrave),
+                             box(20, 20, 5, 5, "", CutLayer::mark), box(0, 0, 200, 150, "", CutLayer::note)};
   LaserOptions options;
   const LaserPlan plan = planned(paths, options);
   std::vector<std::string> layers;
@@ -119,7 +123,8 @@ TEST(LaserPlan, TabsAreLeftInTheLastPassAwayFromCorners) {
   for (std::size_t m = 0; m < plan.path.moves.size(); ++m) {
     const ToolMove& move = plan.path.moves[m];
     if (!move.work || (move.points_mm[0].head<2>() - Vec2(50, 45)).norm() < 20) continue;  // the outline only
-    for (std::size_t i = 1; i < move.points_mm.size(); ++i) burned[move.pass] += (move.points_mm[i] - move.points_mm[i - 1]).norm();
+    for (std::size_t i = 1; i < move.points_mm.size(); ++i)
+      burned[move.pass] += (move.points_mm[i] - move.points_mm[i - 1]).norm();
   }
   const double round_trip = 360 + 0.2 * std::numbers::pi;
   EXPECT_NEAR(burned[1], round_trip, 0.01);
@@ -173,7 +178,8 @@ TEST(LaserPlan, WhatDoesNotFitIsSaid) {
   options.bed_x_mm = 200;
   options.bed_y_mm = 150;
   EXPECT_TRUE(planned({box(0.2, 0.2, 199.6, 149.6)}, options).misfits.empty());
-  const auto beyond = planned({box(0, 0.3, 100, 100)}, options).misfits;  // half the kerf and half of it again burn over the edge
+  const auto beyond =
+      planned({box(0, 0.3, 100, 100)}, options).misfits;  // half the kerf and half of it again burn over the edge
   ASSERT_EQ(beyond.size(), 1u);
   EXPECT_NE(beyond[0].find("0.2 mm beyond the left edge"), std::string::npos) << beyond[0];
   options.no_go = "150,0,160,150";
@@ -200,7 +206,8 @@ struct Machine {
       Vec2 to = at;
       bool rapid = false, feed = false;
       for (std::size_t i = 0; i < line.size(); ++i) {
-        // Cut out first: strtod would read "0X5" as hexadecimal, and not every library's from_chars knows numbers with a point.
+        // Cut out first: strtod would read "0X5" as hexadecimal, and not every library's from_chars knows numbers with
+        // a point.
         const std::size_t end = std::min(line.find_first_not_of("+-.0123456789", i + 1), line.size());
         const double value = std::strtod(std::string(line.substr(i + 1, end - i - 1)).c_str(), nullptr);
         if (line[i] == 'G') rapid = value == 0, feed = value == 1;
@@ -248,14 +255,16 @@ TEST(LaserPlan, GcodeIsTheToolPathForEveryOrigin) {
         for (const ToolMove& move : plan.path.moves)
           for (std::size_t i = 1; i < move.points_mm.size(); ++i, ++at) {
             // The bed's middle is at half a micrometre: rounding once is all there may be.
-            EXPECT_LE((machine.path.at(at) - to_controller(move.points_mm[i].head<2>(), options)).cwiseAbs().maxCoeff(), 5.001e-4);
+            EXPECT_LE((machine.path.at(at) - to_controller(move.points_mm[i].head<2>(), options)).cwiseAbs().maxCoeff(),
+                      5.001e-4);
           }
         EXPECT_EQ(at + 1, machine.path.size());  // and the last line, back to the origin
         EXPECT_LE(machine.longest, 80);
       }
       // Lines are those that move to the points.
       std::vector<std::string> lines;
-      for (std::string_view rest = as_text(gcode); !rest.empty(); rest.remove_prefix(rest.find('\n') + 1)) lines.emplace_back(rest.substr(0, rest.find('\n')));
+      for (std::string_view rest = as_text(gcode); !rest.empty(); rest.remove_prefix(rest.find('\n') + 1))
+        lines.emplace_back(rest.substr(0, rest.find('\n')));
       EXPECT_EQ(line_count(gcode), static_cast<int>(lines.size()));
       for (const ToolMove& move : plan.path.moves)
         for (std::size_t i = 1; i < move.points_mm.size(); ++i)

@@ -31,7 +31,7 @@ const MotionLimits limits{500, 0.01, 16};
 TEST(MotionTiming, OneLineIsATrapezoidOrATriangle) {
   // 50 mm/s takes 0.1 s and 2.5 mm to reach.
   EXPECT_NEAR(seconds({{0, 0, 0}, {105, 0, 0}}, 50, limits), 0.1 + 2 + 0.1, 1e-12);
-  EXPECT_NEAR(seconds({{0, 0, 0}, {3, 4, 0}}, 50, limits), 0.2, 1e-12);         // just reached
+  EXPECT_NEAR(seconds({{0, 0, 0}, {3, 4, 0}}, 50, limits), 0.2, 1e-12);                       // just reached
   EXPECT_NEAR(seconds({{0, 0, 0}, {0, 0, 2}}, 50, limits), 2 * std::sqrt(2 / 500.0), 1e-12);  // not reached
 }
 
@@ -43,7 +43,9 @@ TEST(MotionTiming, CornersAreTakenAsFastAsTheirDeviationAllows) {
     ASSERT_LT(corner, 50);
     const double ramp_up_mm = 2.5, ramp_down_mm = (2500 - corner * corner) / 1000;
     const double expected = 2 * (0.1 + (50 - corner) / 500 + (100 - ramp_up_mm - ramp_down_mm) / 50);
-    EXPECT_NEAR(seconds({{0, 0, 0}, {100, 0, 0}, {100 - 100 * std::cos(theta), 100 * std::sin(theta), 0}}, 50, limits), expected, 1e-9) << degrees;
+    EXPECT_NEAR(seconds({{0, 0, 0}, {100, 0, 0}, {100 - 100 * std::cos(theta), 100 * std::sin(theta), 0}}, 50, limits),
+                expected, 1e-9)
+        << degrees;
   }
   const double there_and_back = seconds({{0, 0, 0}, {100, 0, 0}, {0, 0, 0}}, 50, limits);
   EXPECT_NEAR(there_and_back, 2 * seconds({{0, 0, 0}, {100, 0, 0}}, 50, limits), 1e-9);

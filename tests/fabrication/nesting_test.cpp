@@ -22,7 +22,8 @@ bool contains(const Polygon& polygon, const Vec2& p) {
   bool inside = false;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Vec2 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-    if ((a.y() <= p.y()) != (b.y() <= p.y()) && p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) inside = !inside;
+    if ((a.y() <= p.y()) != (b.y() <= p.y()) && p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()))
+      inside = !inside;
   }
   return inside;
 }
@@ -33,7 +34,8 @@ double gap_mm(const Polygon& a, const Polygon& b) {
   for (const auto& [corners, edges] : {std::pair(&a, &b), std::pair(&b, &a)})
     for (const Vec2& p : *corners) {
       if (contains(*edges, p)) return 0;
-      for (std::size_t i = 0; i < edges->size(); ++i) least = std::min(least, distance_mm(p, (*edges)[i], (*edges)[(i + 1) % edges->size()]));
+      for (std::size_t i = 0; i < edges->size(); ++i)
+        least = std::min(least, distance_mm(p, (*edges)[i], (*edges)[(i + 1) % edges->size()]));
     }
   return least;
 }
@@ -49,7 +51,8 @@ void expect_valid(const std::vector<Polygon>& shapes, const Nesting& nesting, co
       EXPECT_LE(q.x(), options.bed_x_mm - options.margin_mm + 1e-9);
       EXPECT_LE(q.y(), options.bed_y_mm - options.margin_mm + 1e-9);
     }
-    EXPECT_NEAR(signed_area_mm2(placed.back()), signed_area_mm2(shapes[i]), 1e-9 * std::abs(signed_area_mm2(shapes[i])));  // not mirrored
+    EXPECT_NEAR(signed_area_mm2(placed.back()), signed_area_mm2(shapes[i]),
+                1e-9 * std::abs(signed_area_mm2(shapes[i])));  // not mirrored
     for (std::size_t j = 0; j < i; ++j)
       if (nesting.places[i].sheet == nesting.places[j].sheet) {
         EXPECT_GE(gap_mm(placed[i], placed[j]), options.spacing_mm - 1e-9) << i << ' ' << j;
@@ -61,7 +64,8 @@ void expect_valid(const std::vector<Polygon>& shapes, const Nesting& nesting, co
 Polygon arc(double radius_mm, double width_mm, double turn) {
   Polygon polygon;
   const int steps = 40;
-  for (int i = 0; i <= steps; ++i) polygon.emplace_back(radius_mm * Vec2(std::cos(turn * i / steps), std::sin(turn * i / steps)));
+  for (int i = 0; i <= steps; ++i)
+    polygon.emplace_back(radius_mm * Vec2(std::cos(turn * i / steps), std::sin(turn * i / steps)));
   for (int i = steps; i >= 0; --i)
     polygon.emplace_back((radius_mm - width_mm) * Vec2(std::cos(turn * i / steps), std::sin(turn * i / steps)));
   return polygon;

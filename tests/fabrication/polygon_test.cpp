@@ -62,7 +62,8 @@ TEST(Polygon, OffsetLengthConvergesToThatOfTheParallelCurve) {
       for (std::size_t i = 0; i < p.size(); ++i) sum += (p[(i + 1) % p.size()] - p[i]).norm();
       return sum;
     };
-    return std::abs(length(ellipse) - length(moved(ellipse, std::vector<double>(std::size_t(sides), 2.0))) - 4 * std::numbers::pi);
+    return std::abs(length(ellipse) - length(moved(ellipse, std::vector<double>(std::size_t(sides), 2.0))) -
+                    4 * std::numbers::pi);
   };
   const double coarse = error(100), fine = error(200);
   EXPECT_LT(fine, 0.01);

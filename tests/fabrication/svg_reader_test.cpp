@@ -14,11 +14,16 @@
 namespace formwright {
 namespace {
 
-SvgDrawing read(const std::string& svg, const SvgReadOptions& options = {}) { return read_svg_drawing(as_bytes(svg), options, Context()); }
+SvgDrawing read(const std::string& svg, const SvgReadOptions& options = {}) {
+  return read_svg_drawing(as_bytes(svg), options, Context());
+}
 
 /// A drawing of 100 x 60 mm whose unit is the millimetre.
 SvgDrawing read_body(const std::string& body, const SvgReadOptions& options = {}) {
-  return read("<svg xmlns='http://www.w3.org/2000/svg' width='100mm' height='60mm' viewBox='0 0 100 60' fill='none' stroke='red'>" + body + "</svg>", options);
+  return read(
+      "<svg xmlns='http://www.w3.org/2000/svg' width='100mm' height='60mm' viewBox='0 0 100 60' fill='none' stroke='red'>" +
+          body + "</svg>",
+      options);
 }
 
 std::string refusal(const std::string& svg) {
@@ -49,13 +54,16 @@ TEST(SvgReader, EveryUnitIsItsMillimetres) {
     std::string size;
     double mm;
   };
-  for (const Case& c : {Case{"500mm", 500}, Case{"25cm", 250}, Case{"4in", 101.6}, Case{"72pt", 25.4}, Case{"6pc", 25.4}, Case{"96px", 25.4}, Case{"40Q", 10}}) {
+  for (const Case& c : {Case{"500mm", 500}, Case{"25cm", 250}, Case{"4in", 101.6}, Case{"72pt", 25.4},
+                        Case{"6pc", 25.4}, Case{"96px", 25.4}, Case{"40Q", 10}}) {
     // With a viewBox the whole of it is that size, without one a unit is a px.
-    const SvgDrawing boxed = read("<svg width='" + c.size + "' height='" + c.size + "' viewBox='0 0 2 2'><path stroke='red' d='M0 0L1 2'/></svg>");
+    const SvgDrawing boxed = read("<svg width='" + c.size + "' height='" + c.size +
+                                  "' viewBox='0 0 2 2'><path stroke='red' d='M0 0L1 2'/></svg>");
     EXPECT_NEAR(boxed.sheet.width_mm, c.mm, 1e-9) << c.size;
     EXPECT_NEAR(boxed.sheet.paths.at(0).points_mm[1].x(), c.mm / 2, 1e-6) << c.size;
     EXPECT_NEAR(boxed.sheet.paths.at(0).points_mm[1].y(), 0, 1e-6) << c.size;
-    const SvgDrawing plain = read("<svg width='" + c.size + "' height='" + c.size + "'><path stroke='red' d='M0 0L96 0'/></svg>");
+    const SvgDrawing plain =
+        read("<svg width='" + c.size + "' height='" + c.size + "'><path stroke='red' d='M0 0L96 0'/></svg>");
     EXPECT_NEAR(plain.sheet.paths.at(0).points_mm[1].x(), 25.4, 1e-6) << c.size;
     // Lengths of shapes have units of their own.
     const SvgDrawing shape = read("<svg width='10mm' height='10mm'><line stroke='red' x2='" + c.size + "'/></svg>");
@@ -65,7 +73,9 @@ TEST(SvgReader, EveryUnitIsItsMillimetres) {
 
 TEST(SvgReader, ViewBoxesKeepTheirAspectAsTheySay) {
   const std::string body = "<path stroke='red' d='M0 0L10 10'/></svg>";
-  const auto first = [](const SvgDrawing& d) { return Vec2(d.sheet.paths.at(0).points_mm[0].x(), d.sheet.height_mm - d.sheet.paths.at(0).points_mm[0].y()); };
+  const auto first = [](const SvgDrawing& d) {
+    return Vec2(d.sheet.paths.at(0).points_mm[0].x(), d.sheet.height_mm - d.sheet.paths.at(0).points_mm[0].y());
+  };
   const std::string head = "<svg width='200mm' height='100mm' viewBox='0 0 10 10' ";
   EXPECT_NEAR((first(read(head + ">" + body)) - Vec2(50, 0)).norm(), 0, 1e-6);
   EXPECT_NEAR((first(read(head + "preserveAspectRatio='xMinYMin meet'>" + body)) - Vec2(0, 0)).norm(), 0, 1e-6);
@@ -77,12 +87,18 @@ TEST(SvgReader, ViewBoxesKeepTheirAspectAsTheySay) {
 }
 
 TEST(SvgReader, TransformsNest) {
-  const SvgDrawing drawing = read_body("<g transform='translate(10,5) scale(2)'><g transform='rotate(90 1 1)'><path d='M1 1h3'/></g></g>");
+  const SvgDrawing drawing =
+      read_body("<g transform='translate(10,5) scale(2)'><g transform='rotate(90 1 1)'><path d='M1 1h3'/></g></g>");
   expect_points(drawing, {{12, 7}, {12, 13}});
   expect_points(read_body("<path transform='matrix(0 1 -1 0 20 0)' d='M1,2 3,4'/>"), {{18, 1}, {16, 3}});
-  expect_points(read_body("<svg x='10' y='10' width='20' height='10' viewBox='0 0 2 1'><path d='M1 0v1'/></svg>"), {{20, 10}, {20, 20}});
-  expect_points(read_body("<defs><path id='p' d='M0 0h5'/></defs><use href='#p' x='3' y='4' transform='scale(2)'/>"), {{6, 8}, {16, 8}});
-  expect_points(read_body("<symbol id='s' viewBox='0 0 10 10'><path d='M0 0h10'/></symbol><use href='#s' x='1' width='30' height='30'/>"), {{1, 0}, {31, 0}});
+  expect_points(read_body("<svg x='10' y='10' width='20' height='10' viewBox='0 0 2 1'><path d='M1 0v1'/></svg>"),
+                {{20, 10}, {20, 20}});
+  expect_points(read_body("<defs><path id='p' d='M0 0h5'/></defs><use href='#p' x='3' y='4' transform='scale(2)'/>"),
+                {{6, 8}, {16, 8}});
+  expect_points(
+      read_body(
+          "<symbol id='s' viewBox='0 0 10 10'><path d='M0 0h10'/></symbol><use href='#s' x='1' width='30' height='30'/>"),
+      {{1, 0}, {31, 0}});
 }
 
 TEST(SvgReader, ShapesHaveTheirExactAreas) {
@@ -108,9 +124,9 @@ TEST(SvgReader, ShapesHaveTheirExactAreas) {
                            {"<path d='M0 0C0 20 30 20 30 0z'/>", 360},
                            {"<path d='M0 0Q15 30 30 0z'/>", 300}};
   for (const Curved& c : curved) {
-
     // Chords of a convex curve lose area in proportion to the tolerance.
-    const double coarse = c.area - area(c.body, 0.04), fine = c.area - area(c.body, 0.01), finest = c.area - area(c.body, 0.0025);
+    const double coarse = c.area - area(c.body, 0.04), fine = c.area - area(c.body, 0.01),
+                 finest = c.area - area(c.body, 0.0025);
     EXPECT_GT(fine, 0) << c.body;
     EXPECT_LT(fine, 0.01 * 130) << c.body;  // two thirds of tolerance times length, at most
     EXPECT_NEAR(coarse / fine, 4, 1.3) << c.body;
@@ -120,12 +136,14 @@ TEST(SvgReader, ShapesHaveTheirExactAreas) {
 
 TEST(SvgReader, CurvesAreWithinTheTolerance) {
   const SvgDrawing drawing = read_body("<g transform='scale(1 0.5) rotate(30)'><circle r='30'/></g>");
-  // Back through the map, the middle of every chord is on the circle within the tolerance, 0.01 mm, seen at most 2 times as large.
+  // Back through the map, the middle of every chord is on the circle within the tolerance, 0.01 mm, seen at most 2
+  // times as large.
   const Eigen::Affine2d map = Eigen::Scaling(1.0, 0.5) * Eigen::Affine2d(Eigen::Rotation2Dd(std::numbers::pi / 6));
   const auto& points = drawing.sheet.paths.at(0).points_mm;
   double worst = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vec2 a(points[i].x(), 60 - points[i].y()), b(points[(i + 1) % points.size()].x(), 60 - points[(i + 1) % points.size()].y());
+    const Vec2 a(points[i].x(), 60 - points[i].y()),
+        b(points[(i + 1) % points.size()].x(), 60 - points[(i + 1) % points.size()].y());
     EXPECT_NEAR((map.inverse() * a).norm(), 30, 1e-5);
     worst = std::max(worst, 30 - (map.inverse() * Vec2((a + b) / 2)).norm());
   }
@@ -142,14 +160,18 @@ TEST(SvgReader, LayersAreNamedOrColoured) {
       "<g display='none'><path stroke='red' d='M0 8h1'/></g><path fill='#111' d='M0 9h1v1z'/></svg>");
   std::vector<CutLayer> layers;
   for (const CutPath& path : drawing.sheet.paths) layers.push_back(path.layer);
-  EXPECT_EQ(layers, (std::vector<CutLayer>{CutLayer::cut, CutLayer::mark, CutLayer::mark, CutLayer::engrave, CutLayer::cut, CutLayer::note, CutLayer::note,
-                                           CutLayer::engrave}));
+  EXPECT_EQ(layers, (std::vector<CutLayer>{CutLayer::cut, CutLayer::mark, CutLayer::mark, CutLayer::engrave,
+                                           CutLayer::cut, CutLayer::note, CutLayer::note, CutLayer::engrave}));
   ASSERT_EQ(drawing.notes.size(), 1u);
   EXPECT_NE(drawing.notes[0].find("names no layer"), std::string::npos);
 }
 
 TEST(SvgReader, ReadsWhatWeWrite) {
-  const CutSheet sheet{"t", 120, 80, {{CutLayer::cut, {{10, 10}, {60.25, 10}, {60.25, 40}}, true, "piece-P1"}, {CutLayer::note, {{20, 15}, {20, 17.5}}, false, ""}}};
+  const CutSheet sheet{"t",
+                       120,
+                       80,
+                       {{CutLayer::cut, {{10, 10}, {60.25, 10}, {60.25, 40}}, true, "piece-P1"},
+                        {CutLayer::note, {{20, 15}, {20, 17.5}}, false, ""}}};
   const Bytes bytes = write_svg(sheet);
   const SvgDrawing drawing = read_svg_drawing(bytes, {}, Context());
   EXPECT_EQ(drawing.sheet.width_mm, 120);
@@ -160,7 +182,8 @@ TEST(SvgReader, ReadsWhatWeWrite) {
     EXPECT_EQ(drawing.sheet.paths[i].closed, sheet.paths[i].closed);
     EXPECT_EQ(drawing.sheet.paths[i].name, sheet.paths[i].name);
     ASSERT_EQ(drawing.sheet.paths[i].points_mm.size(), sheet.paths[i].points_mm.size());
-    for (std::size_t k = 0; k < sheet.paths[i].points_mm.size(); ++k) EXPECT_EQ(drawing.sheet.paths[i].points_mm[k], sheet.paths[i].points_mm[k]);
+    for (std::size_t k = 0; k < sheet.paths[i].points_mm.size(); ++k)
+      EXPECT_EQ(drawing.sheet.paths[i].points_mm[k], sheet.paths[i].points_mm[k]);
   }
 }
 
@@ -170,14 +193,20 @@ TEST(SvgReader, RefusesWithTheMend) {
   EXPECT_NE(refusal("<html/>").find("<html>"), std::string::npos);
   EXPECT_NE(refusal("\x1f\x8b rest").find("SVGZ"), std::string::npos);
   EXPECT_NE(refusal("<svg width='10mm' height='10mm'/>").find("Nothing is drawn"), std::string::npos);
-  EXPECT_NE(refusal("<svg width='10mm' height='10mm'><text>a</text></svg>").find("convert text to paths"), std::string::npos);
+  EXPECT_NE(refusal("<svg width='10mm' height='10mm'><text>a</text></svg>").find("convert text to paths"),
+            std::string::npos);
   EXPECT_NE(refusal("<svg width='10mm' height='10mm'><image/></svg>").find("pictures"), std::string::npos);
   const std::string line = "<path stroke='red' d='M0 0h10'/></svg>";
   EXPECT_NE(refusal("<svg viewBox='0 0 10 10'>" + line).find("user_unit"), std::string::npos);
-  EXPECT_NE(refusal("<svg width='100%' height='100%' viewBox='0 0 10 10'>" + line).find("user_unit"), std::string::npos);
+  EXPECT_NE(refusal("<svg width='100%' height='100%' viewBox='0 0 10 10'>" + line).find("user_unit"),
+            std::string::npos);
   EXPECT_NE(refusal("<svg width='30000mm' height='10mm'>" + line).find("larger than 20 m"), std::string::npos);
-  EXPECT_NE(refusal("<svg width='10mm' height='10mm'><g transform='scale(1e9)'>" + line.substr(0, line.size() - 6) + "</g></svg>").find("farther than 20 m"), std::string::npos);
-  EXPECT_NE(refusal("<svg width='10mm' height='10mm'><g id='a'><use href='#a'/></g></svg>").find("nested"), std::string::npos);
+  EXPECT_NE(refusal("<svg width='10mm' height='10mm'><g transform='scale(1e9)'>" + line.substr(0, line.size() - 6) +
+                    "</g></svg>")
+                .find("farther than 20 m"),
+            std::string::npos);
+  EXPECT_NE(refusal("<svg width='10mm' height='10mm'><g id='a'><use href='#a'/></g></svg>").find("nested"),
+            std::string::npos);
   SvgReadOptions inches;
   inches.user_unit = UserUnit::inch;
   EXPECT_NEAR(read("<svg viewBox='0 0 10 10'>" + line, inches).sheet.width_mm, 254, 1e-9);

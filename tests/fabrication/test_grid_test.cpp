@@ -32,7 +32,8 @@ TEST(TestGrid, EverySquareHasItsOwnPowerAndSpeed) {
     std::map<std::string, double> length;
     for (const ToolMove& move : plan.path.moves) {
       if (!move.work || move.part == "numbers") continue;
-      const auto cell = std::find_if(grid.cells.begin(), grid.cells.end(), [&](const TestCell& c) { return c.name == move.part; });
+      const auto cell =
+          std::find_if(grid.cells.begin(), grid.cells.end(), [&](const TestCell& c) { return c.name == move.part; });
       ASSERT_NE(cell, grid.cells.end());
       EXPECT_EQ(move.power_percent, cell->power_percent);
       EXPECT_EQ(move.speed_mm_per_s, cell->speed_mm_per_s);
@@ -43,7 +44,8 @@ TEST(TestGrid, EverySquareHasItsOwnPowerAndSpeed) {
       }
     }
     EXPECT_EQ(length.size(), 12u);
-    for (const auto& [name, mm] : length) EXPECT_NEAR(mm, 2 * (work == GridWork::cut ? 32 : 8 * 53), 1e-6) << name;  // 8 mm of lines 0.15 mm apart
+    for (const auto& [name, mm] : length)
+      EXPECT_NEAR(mm, 2 * (work == GridWork::cut ? 32 : 8 * 53), 1e-6) << name;  // 8 mm of lines 0.15 mm apart
     EXPECT_EQ(grid.cells.front().power_percent, 20);
     EXPECT_EQ(grid.cells.back().power_percent, 100);
     EXPECT_EQ(grid.cells.front().speed_mm_per_s, 5);
@@ -67,7 +69,8 @@ TEST(TestGrid, NumbersKeepOutOfEachOtherAndOfTheSquares) {
       for (const Vec2& p : label.points_mm) {
         left = std::min(left, p.x());
         for (const TestCell& cell : grid.cells)
-          EXPECT_FALSE(p.x() > cell.x_mm && p.x() < cell.x_mm + options.cell_mm && p.y() > cell.y_mm && p.y() < cell.y_mm + options.cell_mm);
+          EXPECT_FALSE(p.x() > cell.x_mm && p.x() < cell.x_mm + options.cell_mm && p.y() > cell.y_mm &&
+                       p.y() < cell.y_mm + options.cell_mm);
       }
     EXPECT_GE(left, options.x_mm - 1e-9);
   }
@@ -91,12 +94,16 @@ TEST(TestGrid, TheKerfTestShowsTheKerf) {
   const double edge = left - kerf / 2 + pieces;
   std::vector<double> ticks;
   for (const LaserStroke& label : grid.labels)
-    if (label.points_mm.size() == 2 && label.points_mm[0].x() == label.points_mm[1].x() && label.points_mm[0].y() == options.y_mm + 2 * options.cell_mm + 1) ticks.push_back(label.points_mm[0].x());
+    if (label.points_mm.size() == 2 && label.points_mm[0].x() == label.points_mm[1].x() &&
+        label.points_mm[0].y() == options.y_mm + 2 * options.cell_mm + 1)
+      ticks.push_back(label.points_mm[0].x());
   ASSERT_EQ(ticks.size(), 11u);
   EXPECT_NEAR(ticks[4], edge, 1e-9);  // 0.05 mm a tick
   // The slot comes last.
   const LaserPlan plan = run(grid, options);
-  EXPECT_EQ(std::find_if(plan.path.moves.rbegin(), plan.path.moves.rend(), [](const ToolMove& m) { return m.work; })->part, "slot");
+  EXPECT_EQ(
+      std::find_if(plan.path.moves.rbegin(), plan.path.moves.rend(), [](const ToolMove& m) { return m.work; })->part,
+      "slot");
 }
 
 TEST(TestGrid, FocusLinesAreAtTheirHeights) {
@@ -118,7 +125,8 @@ TEST(LaserMaterials, AreParametersOfTheJob) {
   std::set<std::string> names;
   for (const LaserMaterial& material : laser_materials()) {
     EXPECT_TRUE(names.insert(material.name).second) << material.name;
-    const auto options = read_parameters<LaserOptions>(material.parameters);  // throws for a name or a value that is none
+    const auto options =
+        read_parameters<LaserOptions>(material.parameters);  // throws for a name or a value that is none
     EXPECT_EQ(options.cut_enabled, material.thickness_mm > 0);
     EXPECT_LE(options.mark_power_percent / options.mark_speed_mm_per_s, 1);
   }

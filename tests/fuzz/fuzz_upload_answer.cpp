@@ -22,23 +22,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     Json told = Json::object();
     switch (what) {
       case 0:
-      case 1:
-        told = read_uploaded(machine, data[2] % 2, reply);
-        break;
+      case 1: told = read_uploaded(machine, data[2] % 2, reply); break;
       case 2:
         if (read_moonraker_state(machine, reply, told)) read_moonraker_printing(reply, told);
         break;
-      case 3:
-        told = read_octoprint_state(read_octoprint_version(machine, reply), reply);
-        break;
-      case 4:
-        read_moonraker_printing(reply, told);
-        break;
-      case 5:
-        told = read_octoprint_state("OctoPrint", reply);
-        break;
-      default:
-        read_cancelled(machine, reply);
+      case 3: told = read_octoprint_state(read_octoprint_version(machine, reply), reply); break;
+      case 4: read_moonraker_printing(reply, told); break;
+      case 5: told = read_octoprint_state("OctoPrint", reply); break;
+      default: read_cancelled(machine, reply);
     }
     fuzz::check(Json::parse(json_text(told)).is_object());
   } catch (const Error& error) {

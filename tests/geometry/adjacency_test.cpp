@@ -80,7 +80,8 @@ TEST(Adjacency, BoundaryRunsWithTheFaces) {
 
 TEST(Adjacency, BoundaryStaysInOneFanAtATouchingVertex) {
   // Two triangles that share vertex 0 only: two loops of three, not one of six.
-  const TriangleMesh bow = make_mesh({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}}, {{{0, 1, 2}}, {{0, 3, 4}}});
+  const TriangleMesh bow =
+      make_mesh({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}}, {{{0, 1, 2}}, {{0, 3, 4}}});
   const Adjacency adjacency(bow);
   EXPECT_EQ(adjacency.nonmanifold_vertices(), std::vector<int>{0});
   EXPECT_FALSE(adjacency.is_manifold());
@@ -91,8 +92,8 @@ TEST(Adjacency, BoundaryStaysInOneFanAtATouchingVertex) {
 
 TEST(Adjacency, CountsWhatIsNotManifold) {
   // Three pages of a book.
-  const TriangleMesh book = make_mesh({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}},
-                                      {{{0, 1, 2}}, {{0, 1, 3}}, {{0, 1, 4}}});
+  const TriangleMesh book =
+      make_mesh({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}}, {{{0, 1, 2}}, {{0, 1, 3}}, {{0, 1, 4}}});
   const Adjacency pages(book);
   EXPECT_EQ(pages.nonmanifold_edge_count(), 1);
   EXPECT_EQ(pages.boundary_edge_count(), 6);

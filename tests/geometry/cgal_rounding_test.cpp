@@ -38,9 +38,11 @@ TEST(CgalRounding, NearlyCollinearPoints) {
     for (int i = 0; i < 64; ++i)
       for (int j = 0; j < 64; ++j) {
         const double px = 0.5 + i * ulp, py = 0.5 + j * ulp;
-        const Integer a = scaled(qx) - scaled(px), b = scaled(qx) - scaled(py), c = scaled(rx) - scaled(px), d = scaled(rx) - scaled(py);
+        const Integer a = scaled(qx) - scaled(px), b = scaled(qx) - scaled(py), c = scaled(rx) - scaled(px),
+                      d = scaled(rx) - scaled(py);
         const int expected = sign(Integer(a * d - b * c));
-        const int found = sign(CGAL::orientation(Kernel::Point_2(px, py), Kernel::Point_2(qx, qx), Kernel::Point_2(rx, rx)));
+        const int found =
+            sign(CGAL::orientation(Kernel::Point_2(px, py), Kernel::Point_2(qx, qx), Kernel::Point_2(rx, rx)));
         wrong += found != expected ? 1 : 0;
         zero += expected == 0 ? 1 : 0;
       }
@@ -53,7 +55,8 @@ TEST(CgalRounding, NearlyCocircularPoints) {
   int wrong = 0, zero = 0;
   for (int trial = 0; trial < 4000; ++trial) {
     // Four points of a circle with integer coordinates (5-12-13, 3-4-5 triangles), moved by an ulp or none.
-    const std::array<std::pair<double, double>, 8> circle{{{5, 12}, {-5, 12}, {12, 5}, {12, -5}, {0, 13}, {13, 0}, {-12, -5}, {-13, 0}}};
+    const std::array<std::pair<double, double>, 8> circle{
+        {{5, 12}, {-5, 12}, {12, 5}, {12, -5}, {0, 13}, {13, 0}, {-12, -5}, {-13, 0}}};
     std::array<double, 8> p{};
     const double cx = random.uniform(-1, 1), cy = random.uniform(-1, 1), size = std::ldexp(1.0, -random.below(20));
     for (std::size_t i = 0; i < 4; ++i) {
@@ -65,10 +68,13 @@ TEST(CgalRounding, NearlyCocircularPoints) {
       for (double& x : p) x = std::round(x * 64) / 64;
     const auto [ax, ay, bx, by, qx, qy, dx, dy] = p;
     const Integer X = scaled(dx), Y = scaled(dy);
-    const Integer a = scaled(ax) - X, b = scaled(ay) - Y, c = scaled(bx) - X, d = scaled(by) - Y, e = scaled(qx) - X, f = scaled(qy) - Y;
-    const Integer determinant = (a * a + b * b) * (c * f - d * e) - (c * c + d * d) * (a * f - b * e) + (e * e + f * f) * (a * d - b * c);
+    const Integer a = scaled(ax) - X, b = scaled(ay) - Y, c = scaled(bx) - X, d = scaled(by) - Y, e = scaled(qx) - X,
+                  f = scaled(qy) - Y;
+    const Integer determinant =
+        (a * a + b * b) * (c * f - d * e) - (c * c + d * d) * (a * f - b * e) + (e * e + f * f) * (a * d - b * c);
     const int expected = sign(determinant);
-    const int found = sign(CGAL::side_of_oriented_circle(Kernel::Point_2(ax, ay), Kernel::Point_2(bx, by), Kernel::Point_2(qx, qy), Kernel::Point_2(dx, dy)));
+    const int found = sign(CGAL::side_of_oriented_circle(Kernel::Point_2(ax, ay), Kernel::Point_2(bx, by),
+                                                         Kernel::Point_2(qx, qy), Kernel::Point_2(dx, dy)));
     wrong += found != expected ? 1 : 0;
     zero += expected == 0 ? 1 : 0;
   }
@@ -93,7 +99,8 @@ TEST(CgalRounding, NearlyCoplanarPoints) {
         const auto k = static_cast<int>(c);
         m[r][c] = scaled(p[r + 1][k]) - scaled(p[0][k]);
       }
-    const Integer determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+    const Integer determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                                m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
                                 m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
     const auto point = [&](std::size_t i) { return Kernel::Point_3(p[i][0], p[i][1], p[i][2]); };
     const int expected = sign(determinant), found = sign(CGAL::orientation(point(0), point(1), point(2), point(3)));

@@ -18,7 +18,12 @@ using std::numbers::pi;
 constexpr LaplacianOptions unlimited{1e12};
 
 std::vector<TriangleMesh> zoo() {
-  return {tetrahedron(), cube(), icosphere(2), torus(15, 8), grid(6, 5, 0.3), tube(9, 4),
+  return {tetrahedron(),
+          cube(),
+          icosphere(2),
+          torus(15, 8),
+          grid(6, 5, 0.3),
+          tube(9, 4),
           joined(tetrahedron(), moved(icosphere(1), Vec3(3, 0, 0)))};
 }
 
@@ -69,7 +74,8 @@ TEST(CotangentLaplacian, EnergyIsTheIntegralOfTheGradient) {
     const Vec3 a = mesh.V.row(mesh.F(f, 0)), b = mesh.V.row(mesh.F(f, 1)), c = mesh.V.row(mesh.F(f, 2));
     const Vec3 area = 0.5 * (b - a).cross(c - a);
     const Vec3 gradient = (u[mesh.F(f, 0)] * area.cross(c - b) + u[mesh.F(f, 1)] * area.cross(a - c) +
-                           u[mesh.F(f, 2)] * area.cross(b - a)) / (2 * area.squaredNorm());
+                           u[mesh.F(f, 2)] * area.cross(b - a)) /
+                          (2 * area.squaredNorm());
     energy += gradient.squaredNorm() * area.norm();
   }
   EXPECT_NEAR(u.dot(cotangent_laplacian(mesh) * u), energy, 1e-12 * energy);
@@ -208,12 +214,14 @@ TEST(IntrinsicDelaunay, WeightsAreNeverNegative) {
     const Adjacency adjacency(mesh);
     for (int j = 0; j < L.cols(); ++j)
       for (SparseMatrix::InnerIterator it(L, j); it; ++it)
-        if (const int e = adjacency.find_edge(j, static_cast<int>(it.row())); it.row() != j && !(e >= 0 && adjacency.is_boundary_edge(e))) {
+        if (const int e = adjacency.find_edge(j, static_cast<int>(it.row()));
+            it.row() != j && !(e >= 0 && adjacency.is_boundary_edge(e))) {
           EXPECT_LE(it.value(), 0);  // no flip can mend a boundary edge
         }
     EXPECT_LT((L * Eigen::VectorXd::Ones(L.cols())).cwiseAbs().maxCoeff(), 1e-9);
     const Eigen::MatrixXd before = cotangent_laplacian(mesh, unlimited);
-    some_negative_before = some_negative_before || (before - Eigen::MatrixXd(before.diagonal().asDiagonal())).maxCoeff() > 1e-6;
+    some_negative_before =
+        some_negative_before || (before - Eigen::MatrixXd(before.diagonal().asDiagonal())).maxCoeff() > 1e-6;
     // The metric is the same: areas and total angle at each vertex survive the flips.
     EXPECT_EQ(t.lengthened_by, 0);
     EXPECT_NEAR(vertex_areas(t, VertexArea::mixed_voronoi, 0).sum(), surface_area(mesh), 1e-9 * surface_area(mesh));

@@ -56,7 +56,8 @@ TEST(Measures, RigidMotionAndScale) {
 TEST(Measures, AnglesObeyGaussAndBonnet) {
   // Sum over vertices of (2 pi - angles) = 2 pi chi: an identity, so it holds to round-off.
   for (const auto& [mesh, chi] : {std::pair{icosphere(3), 2}, std::pair{torus(20, 10), 0}, std::pair{cube(), 2}})
-    EXPECT_NEAR(2 * pi * mesh.vertex_count() - corner_angles(mesh).sum(), 2 * pi * chi, 1e-10);  // thousands of angles, each rounded by the library's atan2
+    EXPECT_NEAR(2 * pi * mesh.vertex_count() - corner_angles(mesh).sum(), 2 * pi * chi,
+                1e-10);  // thousands of angles, each rounded by the library's atan2
 }
 
 TEST(Measures, NormalsPointOutwards) {
@@ -90,8 +91,15 @@ TEST(Measures, DihedralAngles) {
 
 TEST(Measures, NothingIsNotANumber) {
   // Repeated points, collinear points, tiny and huge triangles, an unused vertex.
-  TriangleMesh mesh = make_mesh({{0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1e-200, 0}, {1e-200, 0, 0}, {1e150, 0, 0},
-                                 {0, 1e150, 0}, {7, 7, 7}},
+  TriangleMesh mesh = make_mesh({{0, 0, 0},
+                                 {0, 0, 0},
+                                 {1, 0, 0},
+                                 {2, 0, 0},
+                                 {0, 1e-200, 0},
+                                 {1e-200, 0, 0},
+                                 {1e150, 0, 0},
+                                 {0, 1e150, 0},
+                                 {7, 7, 7}},
                                 {{{0, 1, 2}}, {{0, 2, 3}}, {{0, 5, 4}}, {{0, 6, 7}}, {{0, 1, 0}}});
   EXPECT_TRUE(face_normals(mesh).allFinite());
   EXPECT_TRUE(vertex_normals(mesh).allFinite());

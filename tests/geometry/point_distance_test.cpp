@@ -32,7 +32,8 @@ TEST(PointDistance, EveryRegionOfATriangle) {
     const NearestPoint nearest = nearest_on_triangle(q, a, b, c);
     double sampled = 1e9;
     for (int i = 0; i <= 60; ++i)
-      for (int j = 0; i + j <= 60; ++j) sampled = std::min(sampled, (q - a - i / 60.0 * (b - a) - j / 60.0 * (c - a)).norm());
+      for (int j = 0; i + j <= 60; ++j)
+        sampled = std::min(sampled, (q - a - i / 60.0 * (b - a) - j / 60.0 * (c - a)).norm());
     EXPECT_LE(nearest.distance, sampled + 1e-14);
     EXPECT_GT(nearest.distance, sampled - 0.08);
     EXPECT_GE(nearest.barycentric.minCoeff(), 0);
@@ -56,11 +57,13 @@ TEST(PointDistance, SameAsLookingAtEveryTriangle) {
     const PointDistance tree(mesh);
     const BoundingBox box = bounding_box(mesh);
     for (int trial = 0; trial < 300; ++trial) {
-      const Vec3 q = trial % 10 == 0 ? Vec3(mesh.V.row(random.below(mesh.vertex_count())))
-                                     : Vec3(box.centre() + box.diagonal() * (trial % 3 == 0 ? 10 : 0.6) * random.in_cube());
+      const Vec3 q = trial % 10 == 0
+                         ? Vec3(mesh.V.row(random.below(mesh.vertex_count())))
+                         : Vec3(box.centre() + box.diagonal() * (trial % 3 == 0 ? 10 : 0.6) * random.in_cube());
       NearestPoint expected;
       for (int f = 0; f < mesh.face_count(); ++f) {
-        const NearestPoint one = nearest_on_triangle(q, mesh.V.row(mesh.F(f, 0)), mesh.V.row(mesh.F(f, 1)), mesh.V.row(mesh.F(f, 2)));
+        const NearestPoint one =
+            nearest_on_triangle(q, mesh.V.row(mesh.F(f, 0)), mesh.V.row(mesh.F(f, 1)), mesh.V.row(mesh.F(f, 2)));
         if (expected.face >= 0 && one.distance >= expected.distance) continue;
         expected = one;
         expected.face = f;
@@ -95,7 +98,8 @@ TEST(SurfaceDistance, HausdorffIsSymmetricAndMeetsTheBound) {
   EXPECT_EQ(hausdorff_distance(flat, spike, 0.01, context), hausdorff_distance(spike, flat, 0.01, context));
   // From the flat side the farthest point lies inside a face, where only sampling sees it; finer is larger.
   const PointDistance to(spike);
-  const double coarse = surface_distance(flat, to, 0.2, context).maximum, fine = surface_distance(flat, to, 0.01, context).maximum;
+  const double coarse = surface_distance(flat, to, 0.2, context).maximum,
+               fine = surface_distance(flat, to, 0.01, context).maximum;
   EXPECT_GT(fine, 0.1);
   EXPECT_LT(std::abs(fine - coarse), 0.2);
 }

@@ -27,9 +27,15 @@ std::vector<Shape> shapes() {
   for (int v = 0; v < bumpy.vertex_count(); ++v) bumpy.V.row(v) *= random.uniform(0.8, 1.2);
   TriangleMesh slivers = torus(60, 8);
   slivers.V.col(2) *= 1e-3;
-  return {{"cube", cube()}, {"sphere", icosphere(3)}, {"torus", torus(40, 24)}, {"bumpy", bumpy}, {"slivers", slivers},
-          {"grid", grid(16, 16, 0.3)}, {"far away", moved(torus(30, 20), Vec3(1e5, -2e5, 3e5))},
-          {"tiny", moved(icosphere(2), Vec3(0, 0, 0), 1e-7)}, {"huge", moved(icosphere(2), Vec3(0, 0, 0), 1e9)}};
+  return {{"cube", cube()},
+          {"sphere", icosphere(3)},
+          {"torus", torus(40, 24)},
+          {"bumpy", bumpy},
+          {"slivers", slivers},
+          {"grid", grid(16, 16, 0.3)},
+          {"far away", moved(torus(30, 20), Vec3(1e5, -2e5, 3e5))},
+          {"tiny", moved(icosphere(2), Vec3(0, 0, 0), 1e-7)},
+          {"huge", moved(icosphere(2), Vec3(0, 0, 0), 1e9)}};
 }
 
 struct Ray {
@@ -77,7 +83,8 @@ TEST(RayCaster, NothingSlipsThroughAClosedSurface) {
   // From inside, through every vertex, every edge and every face.
   for (const auto& [name, mesh] : shapes()) {
     if (surface_area(mesh) > 0 && !Adjacency(mesh).is_closed()) continue;
-    if (std::string(name).starts_with("torus") || std::string(name) == "far away" || std::string(name) == "slivers") continue;
+    if (std::string(name).starts_with("torus") || std::string(name) == "far away" || std::string(name) == "slivers")
+      continue;
     SCOPED_TRACE(name);
     const RayCaster caster(mesh);
     const BoundingBox box = bounding_box(mesh);
@@ -122,7 +129,8 @@ std::vector<Ray> awkward_rays(const TriangleMesh& mesh, int count, std::uint64_t
     const Vec3 a = mesh.V.row(mesh.F(f, 0)), b = mesh.V.row(mesh.F(f, 1)), c = mesh.V.row(mesh.F(f, 2));
     rays.push_back(ray_between(origin, i % 2 == 0 ? a : Vec3(a + random.uniform() * (b - a))));
     const Vec3 tangent = random.uniform(-1, 1) * (b - a) + random.uniform(-1, 1) * (c - a);
-    rays.push_back(ray_between((a + b + c) / 3 - 5 * tangent, (a + b + c) / 3 + tangent + 1e-9 * radius * random.in_cube()));
+    rays.push_back(
+        ray_between((a + b + c) / 3 - 5 * tangent, (a + b + c) / 3 + tangent + 1e-9 * radius * random.in_cube()));
     Vec3 axis = Vec3::Zero();
     axis[i % 3] = i % 2 == 0 ? 1 : -1;
     rays.push_back({a - 3 * radius * axis, axis});
@@ -132,24 +140,26 @@ std::vector<Ray> awkward_rays(const TriangleMesh& mesh, int count, std::uint64_t
 
 /// Where a ray's line meets the plane of a face, in extended precision.
 struct Crossing {
-  double margin;     // least barycentric coordinate: near 0 at an edge, negative outside
-  double distance;   // along the ray
+  double margin;                        // least barycentric coordinate: near 0 at an edge, negative outside
+  double distance;                      // along the ray
   double position_error, margin_error;  // that round-off of the ray and of the corners may cause
 };
 Crossing crossing(const TriangleMesh& mesh, int face, const Ray& ray) {
   using V = Eigen::Matrix<long double, 3, 1>;
   const auto corner = [&](int k) { return V(mesh.V.row(mesh.F(face, k)).transpose().cast<long double>()); };
-  const V a = corner(0), b = corner(1), c = corner(2), o = ray.origin.cast<long double>(), d = ray.direction.cast<long double>();
+  const V a = corner(0), b = corner(1), c = corner(2), o = ray.origin.cast<long double>(),
+          d = ray.direction.cast<long double>();
   const V normal = (b - a).cross(c - a);
   const long double slope = std::abs(normal.dot(d)) / normal.norm();
   const long double t = normal.dot(a - o) / normal.dot(d);
   const V p = o + d * t;
-  const long double u = normal.dot((c - b).cross(p - b)), v = normal.dot((a - c).cross(p - c)), w = normal.dot((b - a).cross(p - a));
+  const long double u = normal.dot((c - b).cross(p - b)), v = normal.dot((a - c).cross(p - c)),
+                    w = normal.dot((b - a).cross(p - a));
   const long double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
   const long double size = std::max({o.cwiseAbs().maxCoeff(), a.cwiseAbs().maxCoeff(), longest});
   const long double error = 100 * std::numeric_limits<double>::epsilon() * size / slope;
-  return {static_cast<double>(std::min({u, v, w}) / normal.squaredNorm()), static_cast<double>(t), static_cast<double>(error),
-          static_cast<double>(error * longest / normal.norm())};
+  return {static_cast<double>(std::min({u, v, w}) / normal.squaredNorm()), static_cast<double>(t),
+          static_cast<double>(error), static_cast<double>(error * longest / normal.norm())};
 }
 
 TEST(RayCaster, SameHitsAsExactPredicates) {
@@ -166,7 +176,8 @@ TEST(RayCaster, SameHitsAsExactPredicates) {
         EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end());
         std::vector<int> difference;
         const std::vector<int> expected = exact.all_faces(ray.origin, ray.direction);
-        std::set_symmetric_difference(found.begin(), found.end(), expected.begin(), expected.end(), std::back_inserter(difference));
+        std::set_symmetric_difference(found.begin(), found.end(), expected.begin(), expected.end(),
+                                      std::back_inserter(difference));
         for (const int face : difference) {
           // Only where round-off decides: the ray passes an edge, or begins on the face.
           const Crossing c = crossing(mesh, face, ray);
@@ -212,7 +223,8 @@ TEST(RayCaster, HitsLieOnTheirTriangles) {
         EXPECT_GE(hit.barycentric.minCoeff(), 0);
         EXPECT_NEAR(hit.barycentric.sum(), 1, 1e-14);
         const Vec3 on_triangle = mesh.V(mesh.F.row(hit.face), Eigen::all).transpose() * hit.barycentric;
-        EXPECT_LT((ray.origin + hit.distance * ray.direction - on_triangle).norm(), 1e-12 * size + crossing(mesh, hit.face, ray).position_error);
+        EXPECT_LT((ray.origin + hit.distance * ray.direction - on_triangle).norm(),
+                  1e-12 * size + crossing(mesh, hit.face, ray).position_error);
       }
     }
   }
@@ -231,7 +243,8 @@ TEST(RayCaster, SameHitsAsEmbree) {
       const auto hit = ours.first_hit(ray.origin, ray.direction, 0, infinity);
       const auto other = embree.first_hit(ray.origin, ray.direction);
       ++compared;
-      const bool same = hit.has_value() == other.has_value() && (!hit || std::abs(hit->distance - other->distance) < 1e-4 * size);
+      const bool same =
+          hit.has_value() == other.has_value() && (!hit || std::abs(hit->distance - other->distance) < 1e-4 * size);
       different += same ? 0 : 1;
     }
     // Single precision differs at silhouettes: for one ray in a thousand at most.

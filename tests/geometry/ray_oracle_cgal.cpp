@@ -47,7 +47,8 @@ CgalRays::~CgalRays() = default;
 
 std::vector<int> CgalRays::all_faces(const Vec3& origin, const Vec3& direction) const {
   std::vector<Iterator> primitives;
-  implementation_->tree.all_intersected_primitives(ray(origin, direction, implementation_->size), std::back_inserter(primitives));
+  implementation_->tree.all_intersected_primitives(ray(origin, direction, implementation_->size),
+                                                   std::back_inserter(primitives));
   std::vector<int> faces;
   for (const Iterator it : primitives) faces.push_back(static_cast<int>(it - implementation_->triangles.cbegin()));
   std::sort(faces.begin(), faces.end());
@@ -58,7 +59,8 @@ std::optional<double> CgalRays::first_distance(const Vec3& origin, const Vec3& d
   const Kernel::Point_3 o(origin[0], origin[1], origin[2]);
   const auto found = implementation_->tree.first_intersection(ray(origin, direction, implementation_->size));
   if (!found) return std::nullopt;
-  if (const auto* point = std::get_if<Kernel::Point_3>(&found->first)) return std::sqrt(CGAL::squared_distance(o, *point));
+  if (const auto* point = std::get_if<Kernel::Point_3>(&found->first))
+    return std::sqrt(CGAL::squared_distance(o, *point));
   const auto* segment = std::get_if<Kernel::Segment_3>(&found->first);
   return std::sqrt(CGAL::squared_distance(o, *segment));
 }

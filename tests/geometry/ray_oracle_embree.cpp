@@ -20,11 +20,12 @@ EmbreeRays::EmbreeRays(const TriangleMesh& mesh) : implementation_(std::make_uni
   const RTCScene scene = implementation_->scene;
   rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
   const RTCGeometry geometry = rtcNewGeometry(implementation_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12,
-                                                                static_cast<std::size_t>(mesh.vertex_count())));
-  std::transform(mesh.V.data(), mesh.V.data() + mesh.V.size(), positions, [](double x) { return static_cast<float>(x); });
-  auto* corners = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12,
-                                                                 static_cast<std::size_t>(mesh.face_count())));
+  auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                                12, static_cast<std::size_t>(mesh.vertex_count())));
+  std::transform(mesh.V.data(), mesh.V.data() + mesh.V.size(), positions,
+                 [](double x) { return static_cast<float>(x); });
+  auto* corners = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                 12, static_cast<std::size_t>(mesh.face_count())));
   std::transform(mesh.F.data(), mesh.F.data() + mesh.F.size(), corners, [](int v) { return static_cast<unsigned>(v); });
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene, geometry);

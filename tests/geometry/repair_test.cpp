@@ -58,7 +58,8 @@ void expect_sound(const TriangleMesh& before, const RepairedMesh& after) {
 }
 
 TEST(Repair, SoundMeshesComeBackUnchanged) {
-  for (const TriangleMesh& mesh : {cube(), icosphere(3), torus(20, 12), joined(cube(), moved(torus(9, 7), Vec3(5, 0, 0)))}) {
+  for (const TriangleMesh& mesh :
+       {cube(), icosphere(3), torus(20, 12), joined(cube(), moved(torus(9, 7), Vec3(5, 0, 0)))}) {
     const RepairedMesh result = repaired(mesh);
     EXPECT_EQ(result.mesh.V, mesh.V);
     EXPECT_EQ(result.mesh.F, mesh.F);
@@ -127,7 +128,8 @@ TEST(Repair, TurnsAnEdgeInsteadOfOpeningACrack) {
   ASSERT_TRUE(Adjacency(mesh).is_manifold());
   const RepairedMesh result = repaired(mesh);
   expect_sound(mesh, result);
-  EXPECT_EQ(said(result), "Mended 1 triangle without area by turning an edge.\nThe surface has 1 hole; it is not closed.\n");
+  EXPECT_EQ(said(result),
+            "Mended 1 triangle without area by turning an edge.\nThe surface has 1 hole; it is not closed.\n");
   EXPECT_EQ(result.mesh.face_count(), 4);
   EXPECT_GT(face_areas(result.mesh).minCoeff(), 0.4);
   EXPECT_NEAR(surface_area(result.mesh), 4, 1e-15);
@@ -214,16 +216,18 @@ TEST(Repair, WallInsideASolidComesOff) {
 }
 
 TEST(Repair, ThreePagesComeApart) {
-  const TriangleMesh book = make_mesh({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, -1, 0}},
-                                      {{{0, 1, 2}}, {{1, 0, 3}}, {{0, 1, 4}}});
+  const TriangleMesh book =
+      make_mesh({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, -1, 0}}, {{{0, 1, 2}}, {{1, 0, 3}}, {{0, 1, 4}}});
   const RepairedMesh result = repaired(book);
   expect_sound(book, result);
   EXPECT_EQ(result.mesh.face_count(), 3);
-  EXPECT_NE(said(result).find("Separated the surface along 1 edge where more than two triangles met."), std::string::npos);
+  EXPECT_NE(said(result).find("Separated the surface along 1 edge where more than two triangles met."),
+            std::string::npos);
 }
 
 TEST(Repair, SheetsThatTouchAtAVertex) {
-  const TriangleMesh bow = make_mesh({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}}, {{{0, 1, 2}}, {{0, 3, 4}}});
+  const TriangleMesh bow =
+      make_mesh({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}}, {{{0, 1, 2}}, {{0, 3, 4}}});
   const RepairedMesh result = repaired(bow);
   expect_sound(bow, result);
   EXPECT_EQ(result.mesh.vertex_count(), 6);

@@ -94,7 +94,8 @@ TEST(Simplify, SharpEdgesStay) {
     }
     finer.F.resize(4 * fine.F.rows(), 3);
     for (int f = 0; f < fine.face_count(); ++f) {
-      const int ab = n + adjacency.edge_of(3 * f), bc = n + adjacency.edge_of(3 * f + 1), ca = n + adjacency.edge_of(3 * f + 2);
+      const int ab = n + adjacency.edge_of(3 * f), bc = n + adjacency.edge_of(3 * f + 1),
+                ca = n + adjacency.edge_of(3 * f + 2);
       finer.F.row(4 * f) << fine.F(f, 0), ab, ca;
       finer.F.row(4 * f + 1) << ab, fine.F(f, 1), bc;
       finer.F.row(4 * f + 2) << ca, bc, fine.F(f, 2);
@@ -134,7 +135,9 @@ TEST(Simplify, TrianglesAreWellShaped) {
   };
   // Measured 33.8, 35.4, 49.6; 11.4, 14.9, 36.6 (the waves of the torus stretch its triangles); 16.5, 21.0, 46.1.
   // The bunny to 5000 vertices has 12, 21, 44; without the improvement at the end it had 11, 16, 39.
-  for (const Case& c : std::vector<Case>{{"sphere", icosphere(5), 30, 33, 48}, {"torus", bumpy_torus(120, 60), 10, 14, 35.5}, {"grid", grid(80, 80, 0.3), 15, 19.5, 45}}) {
+  for (const Case& c : std::vector<Case>{{"sphere", icosphere(5), 30, 33, 48},
+                                         {"torus", bumpy_torus(120, 60), 10, 14, 35.5},
+                                         {"grid", grid(80, 80, 0.3), 15, 19.5, 45}}) {
     SCOPED_TRACE(c.name);
     const TriangleMesh result = simplified(c.mesh, c.mesh.vertex_count() / 10);
     const Eigen::VectorXd least = corner_angles(result).rowwise().minCoeff() * (180 / std::numbers::pi);
@@ -150,7 +153,8 @@ TEST(Simplify, NoFaceTurnsOver) {
   const TriangleMesh mesh = icosphere(5), result = simplified(mesh, 150);
   const Positions normals = face_normals(result);
   for (int f = 0; f < result.face_count(); ++f) {
-    const Vec3 centre = (result.V.row(result.F(f, 0)) + result.V.row(result.F(f, 1)) + result.V.row(result.F(f, 2))) / 3;
+    const Vec3 centre =
+        (result.V.row(result.F(f, 0)) + result.V.row(result.F(f, 1)) + result.V.row(result.F(f, 2))) / 3;
     EXPECT_GT(centre.normalized().dot(Vec3(normals.row(f))), 0.8);
   }
 }

@@ -62,7 +62,8 @@ TEST(Subdivide, LoopIsAffinelyInvariant) {
   TriangleMesh bent = mesh;
   bent.V = ((mesh.V * A.transpose()).rowwise() + Eigen::RowVector3d(1, 2, 3)).eval();
   const Positions direct = subdivide(bent, SubdivisionScheme::loop, 2, context).V;
-  const Positions mapped = ((subdivide(mesh, SubdivisionScheme::loop, 2, context).V * A.transpose()).rowwise() + Eigen::RowVector3d(1, 2, 3));
+  const Positions mapped = ((subdivide(mesh, SubdivisionScheme::loop, 2, context).V * A.transpose()).rowwise() +
+                            Eigen::RowVector3d(1, 2, 3));
   EXPECT_LT((direct - mapped).cwiseAbs().maxCoeff(), 1e-13);
 }
 
@@ -100,7 +101,8 @@ TEST(Subdivide, LoopVolumeConverges) {
   Context context;
   double previous_change = 0, volume = signed_volume(subdivide(cube(), SubdivisionScheme::loop, 1, context));
   for (int level = 2; level <= 5; ++level) {
-    const double finer = signed_volume(subdivide(cube(), SubdivisionScheme::loop, level, context)), change = std::abs(finer - volume);
+    const double finer = signed_volume(subdivide(cube(), SubdivisionScheme::loop, level, context)),
+                 change = std::abs(finer - volume);
     if (level > 2) {
       EXPECT_NEAR(std::log2(previous_change / change), 2, 0.3);
     }

@@ -60,20 +60,30 @@ inline TriangleMesh tetrahedron() {
 inline TriangleMesh cube() {
   std::vector<Vec3> points;
   for (int i = 0; i < 8; ++i) points.emplace_back(i & 1, (i >> 1) & 1, (i >> 2) & 1);
-  return make_mesh(points, {{{0, 2, 3}}, {{0, 3, 1}}, {{4, 5, 7}}, {{4, 7, 6}}, {{0, 1, 5}}, {{0, 5, 4}},
-                            {{2, 6, 7}}, {{2, 7, 3}}, {{0, 4, 6}}, {{0, 6, 2}}, {{1, 3, 7}}, {{1, 7, 5}}});
+  return make_mesh(points, {{{0, 2, 3}},
+                            {{0, 3, 1}},
+                            {{4, 5, 7}},
+                            {{4, 7, 6}},
+                            {{0, 1, 5}},
+                            {{0, 5, 4}},
+                            {{2, 6, 7}},
+                            {{2, 7, 3}},
+                            {{0, 4, 6}},
+                            {{0, 6, 2}},
+                            {{1, 3, 7}},
+                            {{1, 7, 5}}});
 }
 
 /// Icosahedron split `levels` times and pushed to the unit sphere: 10 * 4^levels + 2 vertices.
 inline TriangleMesh icosphere(int levels) {
   const double t = std::numbers::phi;
-  std::vector<Vec3> points{{-1, t, 0}, {1, t, 0}, {-1, -t, 0}, {1, -t, 0}, {0, -1, t}, {0, 1, t},
-                           {0, -1, -t}, {0, 1, -t}, {t, 0, -1}, {t, 0, 1}, {-t, 0, -1}, {-t, 0, 1}};
+  std::vector<Vec3> points{{-1, t, 0},  {1, t, 0},  {-1, -t, 0}, {1, -t, 0}, {0, -1, t},  {0, 1, t},
+                           {0, -1, -t}, {0, 1, -t}, {t, 0, -1},  {t, 0, 1},  {-t, 0, -1}, {-t, 0, 1}};
   for (Vec3& p : points) p.normalize();
-  std::vector<std::array<int, 3>> faces{
-      {{0, 11, 5}}, {{0, 5, 1}}, {{0, 1, 7}}, {{0, 7, 10}}, {{0, 10, 11}}, {{1, 5, 9}}, {{5, 11, 4}},
-      {{11, 10, 2}}, {{10, 7, 6}}, {{7, 1, 8}}, {{3, 9, 4}}, {{3, 4, 2}}, {{3, 2, 6}}, {{3, 6, 8}},
-      {{3, 8, 9}}, {{4, 9, 5}}, {{2, 4, 11}}, {{6, 2, 10}}, {{8, 6, 7}}, {{9, 8, 1}}};
+  std::vector<std::array<int, 3>> faces{{{0, 11, 5}}, {{0, 5, 1}},  {{0, 1, 7}},   {{0, 7, 10}}, {{0, 10, 11}},
+                                        {{1, 5, 9}},  {{5, 11, 4}}, {{11, 10, 2}}, {{10, 7, 6}}, {{7, 1, 8}},
+                                        {{3, 9, 4}},  {{3, 4, 2}},  {{3, 2, 6}},   {{3, 6, 8}},  {{3, 8, 9}},
+                                        {{4, 9, 5}},  {{2, 4, 11}}, {{6, 2, 10}},  {{8, 6, 7}},  {{9, 8, 1}}};
   for (int level = 0; level < levels; ++level) {
     std::map<std::pair<int, int>, int> middle;
     const auto midpoint = [&](int a, int b) {

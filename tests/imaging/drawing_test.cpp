@@ -37,7 +37,8 @@ TEST(Drawing, DashesLeaveGaps) {
   b.line(Vec2(-20, 0), Vec2(20, 0), 0.5, true);
   draw(whole, a, 0.1);
   draw(dashed, b, 0.1);
-  EXPECT_NEAR(ink_mm2(dashed, 0.1) / ink_mm2(whole, 0.1), (2 * 0.5 + 0.25 * std::acos(-1.0) * 0.25) / (4 * 0.5), 0.01);  // with their round ends
+  EXPECT_NEAR(ink_mm2(dashed, 0.1) / ink_mm2(whole, 0.1), (2 * 0.5 + 0.25 * std::acos(-1.0) * 0.25) / (4 * 0.5),
+              0.01);  // with their round ends
 }
 
 TEST(Drawing, EveryLetterIsDifferentAndWithinItsHeight) {

@@ -29,8 +29,10 @@ TEST(LinearPicture, TexelsAreExactWhereNothingIsFiltered) {
   const LinearPicture picture(image, false, Context());
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
-      const Light light = picture.sample(Vec2((x + 0.5) / image.width, (y + 0.5) / image.height), picture.footprint(Eigen::Matrix2d::Identity() * 0.5));
-      for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(static_cast<double>(light[k]), light_of_byte()[image.at(x, y)[k]], 0.1);
+      const Light light = picture.sample(Vec2((x + 0.5) / image.width, (y + 0.5) / image.height),
+                                         picture.footprint(Eigen::Matrix2d::Identity() * 0.5));
+      for (std::size_t k = 0; k < 3; ++k)
+        EXPECT_NEAR(static_cast<double>(light[k]), light_of_byte()[image.at(x, y)[k]], 0.1);
     }
 }
 
@@ -40,7 +42,8 @@ TEST(LinearPicture, AFootprintOverAllOfItGivesItsMeanLight) {
     const LinearPicture picture(image, true, Context());
     const double size = 4.0 * std::max(width, height);
     const Light light = picture.sample(Vec2(0.4, 0.6), picture.footprint(Eigen::Matrix2d::Identity() * size));
-    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(static_cast<double>(light[k]), mean_light(image, k), 12);  // rounding of some levels
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_NEAR(static_cast<double>(light[k]), mean_light(image, k), 12);  // rounding of some levels
   }
 }
 
@@ -63,7 +66,8 @@ TEST(LinearPicture, LongFootprintsBlurAlongOneDirectionOnly) {
   const LinearPicture picture(image, true, Context());
   const auto contrast = [&](double along_u, double along_v) {
     const auto footprint = picture.footprint(Eigen::Vector2d(along_u, along_v).asDiagonal());
-    const float dark = picture.sample(Vec2(0.5, 68.0 / 128), footprint)[0], bright = picture.sample(Vec2(0.5, 60.0 / 128), footprint)[0];
+    const float dark = picture.sample(Vec2(0.5, 68.0 / 128), footprint)[0],
+                bright = picture.sample(Vec2(0.5, 60.0 / 128), footprint)[0];
     return std::abs(bright - dark) / 65535;
   };
   EXPECT_GT(contrast(12, 1), 0.99f);
@@ -74,7 +78,9 @@ TEST(LinearPicture, BordersGoOnOrRepeat) {
   Image image(2, 1, {255, 0, 0, 255});
   image.at(1, 0) = {0, 0, 255, 255};
   const LinearPicture clamped(image, false, Context()), tiled(image, true, Context());
-  const auto red = [](const LinearPicture& p, double u) { return p.sample(Vec2(u, 0.5), p.footprint(Eigen::Matrix2d::Identity()))[0]; };
+  const auto red = [](const LinearPicture& p, double u) {
+    return p.sample(Vec2(u, 0.5), p.footprint(Eigen::Matrix2d::Identity()))[0];
+  };
   EXPECT_EQ(red(clamped, 1.25), 0);
   EXPECT_EQ(red(tiled, 1.25), 65535);
   EXPECT_EQ(red(clamped, 0.01), 65535);

@@ -13,7 +13,8 @@ Image scattered(int width, int height, int painted, unsigned seed) {
   Image image(width, height, {255, 255, 255, 0});
   std::mt19937 random(seed);
   for (int i = 0; i < painted; ++i) {
-    const int x = static_cast<int>(random() % static_cast<unsigned>(width)), y = static_cast<int>(random() % static_cast<unsigned>(height));
+    const int x = static_cast<int>(random() % static_cast<unsigned>(width)),
+              y = static_cast<int>(random() % static_cast<unsigned>(height));
     image.at(x, y) = {static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y), 7, 255};  // says where it was
   }
   return image;

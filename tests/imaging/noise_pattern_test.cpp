@@ -51,7 +51,8 @@ TEST(NoisePattern, IsTheSameNoiseAtAnyResolutionAndSize) {
   NoisePattern fine = pattern();
   fine.pixel_mm /= 2;
   const WeightedPicture coarse = weighted_picture(noise_picture(pattern(), 200, 160, Context()));
-  const WeightedPicture reduced_fine = reduced(weighted_picture(noise_picture(fine, 400, 320, Context())), 200, 160, Context());
+  const WeightedPicture reduced_fine =
+      reduced(weighted_picture(noise_picture(fine, 400, 320, Context())), 200, 160, Context());
   const Image larger = noise_picture(pattern(), 240, 180, Context());
   double squared = 0;
   for (int y = 0; y < 160; ++y)
@@ -66,9 +67,11 @@ TEST(NoisePattern, IsTheSameNoiseAtAnyResolutionAndSize) {
 std::vector<ColourSample> seen_colours(const ColourCorrection& camera_inverse, int outliers) {
   std::vector<ColourSample> samples;
   for (int i = 0; i < 120; ++i) {
-    const Vec3 expected(0.1 + 0.8 * ((i * 37) % 100) / 100.0, 0.1 + 0.8 * ((i * 59) % 100) / 100.0, 0.1 + 0.8 * ((i * 83) % 100) / 100.0);
+    const Vec3 expected(0.1 + 0.8 * ((i * 37) % 100) / 100.0, 0.1 + 0.8 * ((i * 59) % 100) / 100.0,
+                        0.1 + 0.8 * ((i * 83) % 100) / 100.0);
     const Vec2 place(-1 + 2 * ((i * 29) % 120) / 119.0, -1 + 2 * ((i * 71) % 120) / 119.0);
-    const Vec3 seen = camera_inverse.matrix.inverse() * (expected - camera_inverse.offset) * camera_inverse.light(place);
+    const Vec3 seen =
+        camera_inverse.matrix.inverse() * (expected - camera_inverse.offset) * camera_inverse.light(place);
     samples.push_back({place, i < outliers ? Vec3(0.2, 0.2, 0.2) : seen, expected});
   }
   return samples;
@@ -83,7 +86,8 @@ TEST(ColourCorrection, CastAndLightAreFoundExactlyDespiteForeignPatches) {
     const std::vector<ColourSample> samples = seen_colours(truth, outliers);
     const ColourCorrection found = fit_colour_correction(samples);
     double worst = 0;
-    for (std::size_t i = static_cast<std::size_t>(outliers); i < samples.size(); ++i) worst = std::max(worst, (found(samples[i].seen, samples[i].place) - samples[i].expected).cwiseAbs().maxCoeff());
+    for (std::size_t i = static_cast<std::size_t>(outliers); i < samples.size(); ++i)
+      worst = std::max(worst, (found(samples[i].seen, samples[i].place) - samples[i].expected).cwiseAbs().maxCoeff());
     EXPECT_LT(worst, 1e-4) << outliers;
     EXPECT_GE(found.rejected, outliers * 9 / 10);
   }

@@ -14,7 +14,8 @@
 namespace formwright {
 namespace {
 
-/// 24 x 16 pixels, left two thirds (200, 60, 30), the rest (20, 90, 220): progressive JPEG, quality 95, written by Pillow.
+/// 24 x 16 pixels, left two thirds (200, 60, 30), the rest (20, 90, 220): progressive JPEG, quality 95, written by
+/// Pillow.
 constexpr std::string_view progressive_jpeg =
     "ffd8ffe000104a46494600010100000100010000ffdb0043000201010101010201010102020202020403020202020504040304060506060605060606"
     "070908060709070606080b08090a0a0a0a0a06080b0c0b0a0c090a0a0affdb004301020202020202050303050a0706070a0a0a0a0a0a0a0a0a0a0a0a"
@@ -28,7 +29,8 @@ constexpr std::string_view progressive_jpeg =
 
 Bytes of_hexadecimal(std::string_view text) {
   Bytes bytes;
-  for (std::size_t i = 0; i + 1 < text.size(); i += 2) bytes.push_back(static_cast<std::byte>(std::stoi(std::string(text.substr(i, 2)), nullptr, 16)));
+  for (std::size_t i = 0; i + 1 < text.size(); i += 2)
+    bytes.push_back(static_cast<std::byte>(std::stoi(std::string(text.substr(i, 2)), nullptr, 16)));
   return bytes;
 }
 
@@ -44,7 +46,9 @@ Image noise(int width, int height, bool with_alpha) {
 Image ramp(int width, int height) {
   Image image(width, height, {0, 0, 0, 255});
   for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) image.at(x, y) = {static_cast<std::uint8_t>(255 * x / width), static_cast<std::uint8_t>(255 * y / height), 90, 255};
+    for (int x = 0; x < width; ++x)
+      image.at(x, y) = {static_cast<std::uint8_t>(255 * x / width), static_cast<std::uint8_t>(255 * y / height), 90,
+                        255};
   return image;
 }
 
@@ -114,18 +118,21 @@ TEST(PictureFiles, ProgressiveJpegIsRead) {
 }
 
 TEST(PictureFiles, TruncatedFilesAreRefused) {
-  const Bytes png = write_png(noise(60, 40, false), 0, Context()), jpeg = baseline_jpeg(ramp(60, 40)), progressive = of_hexadecimal(progressive_jpeg);
+  const Bytes png = write_png(noise(60, 40, false), 0, Context()), jpeg = baseline_jpeg(ramp(60, 40)),
+              progressive = of_hexadecimal(progressive_jpeg);
   for (const Bytes* whole : {&png, &jpeg, &progressive})
     for (const double share : {0.1, 0.3, 0.6, 0.9, 0.999}) {
       const auto size = static_cast<std::size_t>(share * static_cast<double>(whole->size()));
-      EXPECT_NE(refused(ByteView(whole->data(), size)).find("save"), std::string::npos) << size << " of " << whole->size();
+      EXPECT_NE(refused(ByteView(whole->data(), size)).find("save"), std::string::npos)
+          << size << " of " << whole->size();
     }
 }
 
 TEST(PictureFiles, DamagedFilesAreRefusedOrReadNeverWorse) {
   std::mt19937 random(11);
   int refusals = 0;
-  for (const Bytes& whole : {write_png(noise(30, 20, true), 0, Context()), baseline_jpeg(ramp(64, 40)), of_hexadecimal(progressive_jpeg)})
+  for (const Bytes& whole :
+       {write_png(noise(30, 20, true), 0, Context()), baseline_jpeg(ramp(64, 40)), of_hexadecimal(progressive_jpeg)})
     for (int i = 0; i < 200; ++i) {
       Bytes damaged = whole;
       for (int k = 0; k < 3; ++k) damaged[8 + random() % (damaged.size() - 8)] = static_cast<std::byte>(random());

@@ -26,7 +26,9 @@ WeightedPicture transposed(const WeightedPicture& picture) {
   return result;
 }
 
-const auto affine = [](const Vec2& p) { return Vec2(0.03 * p.x() + 0.02 * p.y() + 1.7, -0.02 * p.x() - 0.02 * p.y() - 2.4); };
+const auto affine = [](const Vec2& p) {
+  return Vec2(0.03 * p.x() + 0.02 * p.y() + 1.7, -0.02 * p.x() - 0.02 * p.y() - 2.4);
+};
 
 TEST(VariationalFlow, EqualPicturesDoNotMove) {
   const test::WarpedPair pair = warped_pair(120, 90, [](const Vec2&) { return Vec2(0, 0); }, {});
@@ -60,7 +62,8 @@ TEST(VariationalFlow, ErrorFallsWithNoiseAndWithPixels) {
     EXPECT_LT(error, 0.9 * before) << noise;
     before = error;
   }
-  // The same warp and pattern, seen with more pixels: the error as a share of the picture falls at least as fast as pixels shrink.
+  // The same warp and pattern, seen with more pixels: the error as a share of the picture falls at least as fast as
+  // pixels shrink.
   double share_before = 1e9;
   for (const int side : {96, 192, 384}) {
     const test::WarpedPair pair = warped_pair(side, side, test::waves(0.012 * side, 0.6 * side), {.noise = 2});
@@ -73,7 +76,8 @@ TEST(VariationalFlow, ErrorFallsWithNoiseAndWithPixels) {
 TEST(VariationalFlow, AxesMayBeExchanged) {
   const test::WarpedPair pair = warped_pair(150, 110, test::waves(3, 90), {.noise = 4});
   Context context;
-  const Flow flow = flow_of(pair), other = variational_flow(transposed(pair.first), transposed(pair.second), {}, context);
+  const Flow flow = flow_of(pair),
+             other = variational_flow(transposed(pair.first), transposed(pair.second), {}, context);
   double worst = 0;
   for (int y = 0; y < flow.height; ++y)
     for (int x = 0; x < flow.width; ++x) {
@@ -134,7 +138,8 @@ TEST(VariationalFlow, GivesTheSameBitsOnEveryMachine) {
   const Flow flow = flow_of(pair);
   std::vector<float> both = flow.u;
   both.insert(both.end(), flow.v.begin(), flow.v.end());
-  EXPECT_EQ(sha256_hex(ByteView(reinterpret_cast<const std::byte*>(both.data()), sizeof(float) * both.size())), "6d0d9b9dffe2b5366cc89f1ea88900f143aed99bfe0f6a73cb58e1c00693f048");
+  EXPECT_EQ(sha256_hex(ByteView(reinterpret_cast<const std::byte*>(both.data()), sizeof(float) * both.size())),
+            "6d0d9b9dffe2b5366cc89f1ea88900f143aed99bfe0f6a73cb58e1c00693f048");
 }
 
 TEST(VariationalFlow, RefusesPicturesThatDoNotBelongTogether) {

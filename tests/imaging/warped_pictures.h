@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Pairs of pictures with known displacement: a noise pattern, and the same seen through a smooth warp, blurred, lit and noisy as a camera does it.
+// Pairs of pictures with known displacement: a noise pattern, and the same seen through a smooth warp, blurred, lit and
+// noisy as a camera does it.
 #include <cmath>
 #include <functional>
 #include <random>
@@ -17,25 +18,28 @@ struct WarpedPair {
 };
 
 struct Camera {
-  double noise = 0;      // grey levels
+  double noise = 0;  // grey levels
   double blur_px = 0;
-  double lighting = 0;   // share by which brightness changes across the picture
+  double lighting = 0;  // share by which brightness changes across the picture
 };
 
-/// `back(y)`: where the place y of the second picture comes from, relative to y, in pixels from the middle. It must change slowly enough to be inverted by
-/// repetition.
-inline WarpedPair warped_pair(int width, int height, const std::function<Vec2(const Vec2&)>& back, const Camera& camera, unsigned seed = 1) {
+/// `back(y)`: where the place y of the second picture comes from, relative to y, in pixels from the middle. It must
+/// change slowly enough to be inverted by repetition.
+inline WarpedPair warped_pair(int width, int height, const std::function<Vec2(const Vec2&)>& back, const Camera& camera,
+                              unsigned seed = 1) {
   const Context context;
   NoisePattern pattern;
   pattern.seed = seed;
   pattern.pixel_mm = 0.5;
   pattern.scales_mm = octaves_mm(5, 0.2 * std::min(width, height));
   constexpr int border = 40;  // pixels, so that warps do not leave it
-  const WeightedPicture fine = weighted_picture(noise_picture(pattern, 2 * (width + 2 * border), 2 * (height + 2 * border), context));
+  const WeightedPicture fine =
+      weighted_picture(noise_picture(pattern, 2 * (width + 2 * border), 2 * (height + 2 * border), context));
   const WeightedPicture plain = reduced(fine, width + 2 * border, height + 2 * border, context);
   WarpedPair pair;
   pair.first = pair.second = WeightedPicture(width, height);
-  pair.truth = {width, height, std::vector<float>(pair.first.pixels.size()), std::vector<float>(pair.first.pixels.size())};
+  pair.truth = {width, height, std::vector<float>(pair.first.pixels.size()),
+                std::vector<float>(pair.first.pixels.size())};
   const Vec2 middle(0.5 * width, 0.5 * height);
   std::mt19937 random(seed);
   std::normal_distribution<float> normal;
@@ -60,7 +64,8 @@ inline WarpedPair warped_pair(int width, int height, const std::function<Vec2(co
     for (int x = 0; x < width; ++x) {
       const float light = static_cast<float>(1 + camera.lighting * (static_cast<double>(x) / width - 0.5));
       Float4& p = pair.second.at(x, y);
-      for (int c = 0; c < 3; ++c) p[c] = std::min(255.0f, std::max(0.0f, p[c] * light + static_cast<float>(camera.noise) * normal(random)));
+      for (int c = 0; c < 3; ++c)
+        p[c] = std::min(255.0f, std::max(0.0f, p[c] * light + static_cast<float>(camera.noise) * normal(random)));
     }
   return pair;
 }
@@ -93,7 +98,8 @@ inline EndPointError end_point_error(const Flow& flow, const Flow& truth, int ma
 inline std::function<Vec2(const Vec2&)> waves(double amplitude, double wave) {
   return [=](const Vec2& p) {
     const double k = 2 * 3.14159265358979 / wave;
-    return Vec2(amplitude * std::sin(k * (p.x() + 0.3 * p.y())) * std::cos(0.7 * k * p.y()), amplitude * std::cos(k * (0.8 * p.x() - 0.5 * p.y()) + 1));
+    return Vec2(amplitude * std::sin(k * (p.x() + 0.3 * p.y())) * std::cos(0.7 * k * p.y()),
+                amplitude * std::cos(k * (0.8 * p.x() - 0.5 * p.y()) + 1));
   };
 }
 

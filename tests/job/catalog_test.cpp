@@ -68,17 +68,25 @@ TEST(RunJob, AnswersEveryWrongMessageWithTheFieldConcerned) {
   EXPECT_EQ(error_of({{"operation", "carve"}})["where"], "operation");
   EXPECT_EQ(error_of({{"operation", "relief"}, {"extra", 1}})["where"], "extra");
   EXPECT_EQ(error_of({{"operation", "relief"}})["where"], "mesh");
-  EXPECT_EQ(error_of({{"operation", "relief"}, {"inputs", {{"mesh", {{"sample", "nobody"}}}}}})["code"], "invalid_input");
-  EXPECT_EQ(error_of({{"operation", "relief"}, {"inputs", {{"mesh", {{"sample", "bust"}, {"sha256", std::string(64, 'a')}}}}}})["where"], "mesh");
-  EXPECT_EQ(error_of({{"operation", "relief"}, {"inputs", {{"mesh", {{"sha256", std::string(64, 'a')}}}}}})["where"], "mesh");
-  EXPECT_EQ(error_of({{"operation", "relief"}, {"inputs", mesh}, {"parameters", {{"thickness_mm", 0}}}})["where"], "thickness_mm");
-  EXPECT_EQ(error_of({{"operation", "relief"}, {"inputs", mesh}, {"parameters", {{"thicknes_mm", 1}}}})["where"], "thicknes_mm");
+  EXPECT_EQ(error_of({{"operation", "relief"}, {"inputs", {{"mesh", {{"sample", "nobody"}}}}}})["code"],
+            "invalid_input");
+  EXPECT_EQ(error_of({{"operation", "relief"},
+                      {"inputs", {{"mesh", {{"sample", "bust"}, {"sha256", std::string(64, 'a')}}}}}})["where"],
+            "mesh");
+  EXPECT_EQ(error_of({{"operation", "relief"}, {"inputs", {{"mesh", {{"sha256", std::string(64, 'a')}}}}}})["where"],
+            "mesh");
+  EXPECT_EQ(error_of({{"operation", "relief"}, {"inputs", mesh}, {"parameters", {{"thickness_mm", 0}}}})["where"],
+            "thickness_mm");
+  EXPECT_EQ(error_of({{"operation", "relief"}, {"inputs", mesh}, {"parameters", {{"thicknes_mm", 1}}}})["where"],
+            "thicknes_mm");
   EXPECT_EQ(error_of({{"operation", "relief"}, {"inputs", mesh}, {"outputs", {"relief.xyz"}}})["where"], "outputs");
 }
 
 TEST(RunJob, MakesOnlyWhatIsAskedFor) {
   Session session;
-  const Json message = {{"operation", "import"}, {"inputs", {{"mesh", {{"sample", "star"}, {"vertices", 600}}}}}, {"outputs", {"model.stl"}}};
+  const Json message = {{"operation", "import"},
+                        {"inputs", {{"mesh", {{"sample", "star"}, {"vertices", 600}}}}},
+                        {"outputs", {"model.stl"}}};
   const JobResult result = run_job(message, [](const std::string&) { return nullptr; }, session, {});
   ASSERT_FALSE(result.error) << result.error->message;
   ASSERT_EQ(result.outputs.size(), 1u);
@@ -91,7 +99,13 @@ struct PrintedSheet {
 
   explicit PrintedSheet(Session& session) {
     const Json message = {{"operation", "evidence-pattern"},
-                          {"parameters", {{"sheet_x_mm", 90}, {"sheet_y_mm", 100}, {"clamp_opening_x_mm", 78}, {"clamp_opening_y_mm", 88}, {"coarsest_mm", 20}, {"dots_per_inch", 150}}}};
+                          {"parameters",
+                           {{"sheet_x_mm", 90},
+                            {"sheet_y_mm", 100},
+                            {"clamp_opening_x_mm", 78},
+                            {"clamp_opening_y_mm", 88},
+                            {"coarsest_mm", 20},
+                            {"dots_per_inch", 150}}}};
     const JobResult result = run_job(message, [](const std::string&) { return nullptr; }, session, {});
     for (const OutputBlob& output : result.outputs) {
       if (output.name == "pattern.json") pattern = *output.bytes;
@@ -101,7 +115,8 @@ struct PrintedSheet {
     constexpr int n = 20;
     for (int j = 0; j <= n; ++j)
       for (int i = 0; i <= n; ++i)
-        text += "v " + std::to_string(90.0 * i / n) + " " + std::to_string(100.0 * j / n) + " 0\nvt " + std::to_string(1.0 * i / n) + " " + std::to_string(1.0 * j / n) + "\n";
+        text += "v " + std::to_string(90.0 * i / n) + " " + std::to_string(100.0 * j / n) + " 0\nvt " +
+                std::to_string(1.0 * i / n) + " " + std::to_string(1.0 * j / n) + "\n";
     const auto corner = [](int index) { return " " + std::to_string(index) + "/" + std::to_string(index); };
     for (int j = 0; j < n; ++j)
       for (int i = 0; i < n; ++i) {
@@ -110,7 +125,9 @@ struct PrintedSheet {
       }
     scan = to_bytes(text);
   }
-  const Bytes* of(const std::string& input) const { return input == "scan" ? &scan : input == "pattern" ? &pattern : input == "texture" ? &texture : nullptr; }
+  const Bytes* of(const std::string& input) const {
+    return input == "scan" ? &scan : input == "pattern" ? &pattern : input == "texture" ? &texture : nullptr;
+  }
 };
 
 /// A measured object, and a photographed relief, as small as they can be, packed.
@@ -121,13 +138,26 @@ struct MeasuredObjects {
     const Json message = {{"operation", "evidence-virtual-object"},
                           {"inputs", {{"mould", {{"sample", "pyramid"}}}}},
                           {"outputs", {"object.zip"}},
-                          {"parameters", {{"size_mm", 50}, {"sheet_x_mm", 100}, {"sheet_y_mm", 100}, {"clamp_opening_x_mm", 90}, {"clamp_opening_y_mm", 90}, {"points", 60}, {"triangles", 500}}}};
+                          {"parameters",
+                           {{"size_mm", 50},
+                            {"sheet_x_mm", 100},
+                            {"sheet_y_mm", 100},
+                            {"clamp_opening_x_mm", 90},
+                            {"clamp_opening_y_mm", 90},
+                            {"points", 60},
+                            {"triangles", 500}}}};
     const JobResult result = run_job(message, [](const std::string&) { return nullptr; }, session, {});
-    for (const OutputBlob& output : result.outputs) of_operation["evidence-calibrate"] = of_operation["evidence-diagnose"] = *output.bytes;
+    for (const OutputBlob& output : result.outputs)
+      of_operation["evidence-calibrate"] = of_operation["evidence-diagnose"] = *output.bytes;
     std::string points = "x_mm,y_mm,brightness\n";
-    for (int i = 0; i < 64; ++i) points += std::to_string(5 + 5 * (i % 8)) + "," + std::to_string(5 + 5 * (i / 8)) + "," + std::to_string(0.6 + 0.001 * i) + "\n";
-    const std::string relief = "v 0 0 0\nv 45 0 4\nv 45 45 6\nv 0 45 1\nf 1 2 3\nf 1 3 4\n", setup = R"({"light_direction": [-1, 1, 1]})";
-    of_operation["evidence-diagnose-relief"] = pack_files({{"relief.obj", as_bytes(relief)}, {"setup.json", as_bytes(setup)}, {"shading.csv", as_bytes(points)}}, Context());
+    for (int i = 0; i < 64; ++i)
+      points += std::to_string(5 + 5 * (i % 8)) + "," + std::to_string(5 + 5 * (i / 8)) + "," +
+                std::to_string(0.6 + 0.001 * i) + "\n";
+    const std::string relief = "v 0 0 0\nv 45 0 4\nv 45 45 6\nv 0 45 1\nf 1 2 3\nf 1 3 4\n",
+                      setup = R"({"light_direction": [-1, 1, 1]})";
+    of_operation["evidence-diagnose-relief"] = pack_files(
+        {{"relief.obj", as_bytes(relief)}, {"setup.json", as_bytes(setup)}, {"shading.csv", as_bytes(points)}},
+        Context());
   }
 };
 
@@ -146,7 +176,8 @@ TEST(RunJob, ReportsOnlyDeclaredFigures) {
   const MeasuredObjects measured(session);
   for (const Operation& operation : operations()) {
     Json message = {{"operation", operation.name}};
-    if (!operation.inputs.empty() && operation.inputs.front().accepts_sample) message["inputs"][operation.inputs.front().name] = {{"sample", "hemisphere"}, {"vertices", 800}};
+    if (!operation.inputs.empty() && operation.inputs.front().accepts_sample)
+      message["inputs"][operation.inputs.front().name] = {{"sample", "hemisphere"}, {"vertices", 800}};
     if (operation.name == "mill-job") message["parameters"] = {{"width_mm", 20}};
     std::map<std::string, std::shared_ptr<const Bytes>> files;
     for (const InputInfo& input : operation.inputs) {
@@ -163,7 +194,8 @@ TEST(RunJob, ReportsOnlyDeclaredFigures) {
         files[hash] = std::make_shared<const Bytes>(pack->second);
         message["inputs"][input.name] = {{"sha256", hash}, {"file_name", "object.zip"}};
         // The thesis's grid needs the fewest simulations where only the report's form matters.
-        if (operation.name == "evidence-calibrate") message["parameters"] = {{"triangles", 500}, {"method", "grid"}, {"grid_values", 2}};
+        if (operation.name == "evidence-calibrate")
+          message["parameters"] = {{"triangles", 500}, {"method", "grid"}, {"grid_values", 2}};
         else if (operation.name == "evidence-diagnose") message["parameters"] = {{"triangles", 500}, {"pairs", false}};
         else message["parameters"] = {{"pairs", false}};
         continue;
@@ -172,18 +204,22 @@ TEST(RunJob, ReportsOnlyDeclaredFigures) {
         const std::string hash(64, 'd');
         files[hash] = std::make_shared<const Bytes>(zippable_design(session));
         message["inputs"][input.name] = {{"sha256", hash}, {"file_name", "design.json"}};
-        if (operation.name == "zippable-simulate") message["parameters"] = {{"steps", 20}, {"hold_open_percent", 0}, {"frames", 2}};
+        if (operation.name == "zippable-simulate")
+          message["parameters"] = {{"steps", 20}, {"hold_open_percent", 0}, {"frames", 2}};
         continue;
       }
       if (input.name == "drawing") {
-        const ByteView drawing = as_bytes("<svg width='50mm' height='50mm'><rect x='9' y='9' width='50' height='20' fill='none' stroke='red'/></svg>");
+        const ByteView drawing = as_bytes(
+            "<svg width='50mm' height='50mm'><rect x='9' y='9' width='50' height='20' fill='none' stroke='red'/></svg>");
         const std::string hash(64, 'c');
         files[hash] = std::make_shared<const Bytes>(drawing.begin(), drawing.end());
         message["inputs"][input.name] = {{"sha256", hash}, {"file_name", "drawing.svg"}};
         continue;
       }
       // What a measured object consists of, as small as it can be.
-      const std::string text = input.name == "setup" ? R"({"clamp_height_mm": 2, "triangles": 400})" : "sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm,sigma_mm\n0,0,0,0,50,0.1\n";
+      const std::string text = input.name == "setup"
+                                   ? R"({"clamp_height_mm": 2, "triangles": 400})"
+                                   : "sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm,sigma_mm\n0,0,0,0,50,0.1\n";
       const ByteView bytes = as_bytes(text);
       const std::string hash(64, static_cast<char>('a' + static_cast<char>(files.size())));
       files[hash] = std::make_shared<const Bytes>(bytes.begin(), bytes.end());
@@ -193,7 +229,8 @@ TEST(RunJob, ReportsOnlyDeclaredFigures) {
     ASSERT_FALSE(result.error) << operation.name << ": " << result.error->message;
     std::set<std::string> declared;
     for (const ReportField& field : operation.report) declared.insert(field.name);
-    for (const auto& [name, value] : result.report.items()) EXPECT_TRUE(declared.contains(name)) << operation.name << " " << name;
+    for (const auto& [name, value] : result.report.items())
+      EXPECT_TRUE(declared.contains(name)) << operation.name << " " << name;
     for (const OutputBlob& output : result.outputs) EXPECT_NE(operation.output(output.name), nullptr);
   }
 }
@@ -216,7 +253,9 @@ TEST(Session, KeepsTheNewestWithinItsCapacity) {
 
 TEST(Relief, ASecondThicknessReusesTheFactorisation) {
   Session session;
-  Json message = {{"operation", "relief"}, {"inputs", {{"mesh", {{"sample", "star"}, {"vertices", 1500}}}}}, {"outputs", Json::array()}};
+  Json message = {{"operation", "relief"},
+                  {"inputs", {{"mesh", {{"sample", "star"}, {"vertices", 1500}}}}},
+                  {"outputs", Json::array()}};
   const auto run = [&] { return run_job(message, [](const std::string&) { return nullptr; }, session, {}); };
   EXPECT_FALSE(run().report["factor_reused"]);
   message["parameters"] = {{"thickness_mm", 2}};

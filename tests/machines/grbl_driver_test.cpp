@@ -192,7 +192,8 @@ TEST(GrblDriver, AlarmsAreSaidInWords) {
   EXPECT_FALSE(talk.state()["position_known"]);
   // The machine hears nothing but a reset now; homing sends it by itself.
   talk.tell({{"do", "home"}, {"confirmed", true}});
-  ASSERT_TRUE(talk.pass_until([&] { return talk.phase() == "idle" && talk.state()["position_known"] == true; }, 20)) << talk.state().dump();
+  ASSERT_TRUE(talk.pass_until([&] { return talk.phase() == "idle" && talk.state()["position_known"] == true; }, 20))
+      << talk.state().dump();
   EXPECT_TRUE(talk.state()["alarm"].is_null());
 }
 
@@ -208,7 +209,8 @@ TEST(GrblDriver, ARestartInTheJobIsNoticed) {
   EXPECT_EQ(talk.ended(), "failed");
   EXPECT_FALSE(talk.state()["position_known"]);
   talk.pass(5);
-  for (std::size_t i = lines; i < talk.machine.lines().size(); ++i) EXPECT_EQ(talk.machine.lines()[i].substr(0, 1), "$");  // nothing of the job follows
+  for (std::size_t i = lines; i < talk.machine.lines().size(); ++i)
+    EXPECT_EQ(talk.machine.lines()[i].substr(0, 1), "$");  // nothing of the job follows
 }
 
 TEST(GrblDriver, AnUnpluggedCableClearsTheQueue) {
@@ -230,10 +232,12 @@ TEST(GrblDriver, FramesWithoutLightAndJogsUntilLetGo) {
   talk.tell({{"do", "frame"}, {"bounds_mm", {5, 5, 60, 40}}, {"speed_mm_per_s", 100}, {"confirmed", true}});
   talk.pass(0.3);
   double far = -1e9;
-  ASSERT_TRUE(talk.pass_until([&] {
-    far = std::max(far, talk.machine.position_mm()[0]);
-    return talk.phase() == "idle";
-  }, 20));
+  ASSERT_TRUE(talk.pass_until(
+      [&] {
+        far = std::max(far, talk.machine.position_mm()[0]);
+        return talk.phase() == "idle";
+      },
+      20));
   EXPECT_NEAR(far, -301 + 60, 1);
   EXPECT_NEAR(talk.machine.position_mm()[0], -301 + 5, 1e-6);
   EXPECT_TRUE(talk.machine.burns().empty());
@@ -267,7 +271,10 @@ TEST(GrblDriver, JobsThatDoNotFitAreRefusedBeforeAnythingMoves) {
   EXPECT_NE(talk.refusal(start).find("500 mm long"), std::string::npos);
   talk.load("G21G90\nG0X310Y0\nG0X0\n");  // 310 mm from an origin 301 mm from the end
   EXPECT_NE(talk.refusal(start).find("leave the bed in x"), std::string::npos);
-  EXPECT_NE(talk.refusal({{"do", "frame"}, {"bounds_mm", {-150, 0, 20, 20}}, {"speed_mm_per_s", 50}, {"confirmed", true}}).find("bed"), std::string::npos);
+  EXPECT_NE(
+      talk.refusal({{"do", "frame"}, {"bounds_mm", {-150, 0, 20, 20}}, {"speed_mm_per_s", 50}, {"confirmed", true}})
+          .find("bed"),
+      std::string::npos);
   talk.pass(1);
   EXPECT_EQ(talk.machine.position_mm(), there);
 }
@@ -335,7 +342,8 @@ TEST(GrblDriver, GoesOnTheCarefulWay) {
   const int from = talk.state()["job"]["careful_line"];
   EXPECT_GT(from, 10);
   EXPECT_LE(from, 40 - 16 + 2);
-  EXPECT_NE(talk.refusal({{"do", "start"}, {"confirmed", true}, {"from_line", from}}), "");  // where the head stands is unknown
+  EXPECT_NE(talk.refusal({{"do", "start"}, {"confirmed", true}, {"from_line", from}}),
+            "");  // where the head stands is unknown
   talk.tell({{"do", "home"}, {"confirmed", true}});
   ASSERT_TRUE(talk.pass_until([&] { return talk.phase() == "idle" && talk.state()["position_known"] == true; }, 20));
   const std::size_t burns_before = talk.machine.burns().size();

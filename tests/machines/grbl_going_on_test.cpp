@@ -48,10 +48,8 @@ Job random_job(Random& random) {
     std::snprintf(text, sizeof text, "G%dX%.3fY%.3f%s", burns ? 1 : 0, to[0], to[1],
                   burns && random.uniform() < 0.2 ? "S300F6000" : "");
     add(text);
-    if (burns)
-      job.strokes.push_back({line, at, to});
-    else
-      job.travels.push_back(line);
+    if (burns) job.strokes.push_back({line, at, to});
+    else job.travels.push_back(line);
     at = to;
   }
   add("M5"), add("M2");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whatever the line does: the machine's buffer is never overrun, every byte is accounted for, a job is either done whole or said not to be.
+// Whatever the line does: the machine's buffer is never overrun, every byte is accounted for, a job is either done
+// whole or said not to be.
 #include <cmath>
 #include <cstdlib>
 
@@ -18,12 +19,14 @@ std::string random_job(Random& random, int lines, double& length_mm) {
   double x = 0, y = 0;
   length_mm = 0;
   for (int i = 0; i < lines; ++i) {
-    const double nx = std::round(random.uniform(0, 30) * 1000) / 1000, ny = std::round(random.uniform(0, 30) * 1000) / 1000;
+    const double nx = std::round(random.uniform(0, 30) * 1000) / 1000,
+                 ny = std::round(random.uniform(0, 30) * 1000) / 1000;
     const bool burns = random.uniform() < 0.7;
     char line[80];
     if (random.uniform() < 0.05) job += "; layer cut part A" + std::to_string(i) + "\n";
     if (random.uniform() < 0.02) job += "G4P0.05\n";
-    std::snprintf(line, sizeof line, random.uniform() < 0.5 ? "G%d X%.3f Y%.3f\n" : "G%dX%.3fY%.3f\n", burns ? 1 : 0, nx, ny);
+    std::snprintf(line, sizeof line, random.uniform() < 0.5 ? "G%d X%.3f Y%.3f\n" : "G%dX%.3fY%.3f\n", burns ? 1 : 0,
+                  nx, ny);
     job += line;
     if (burns) length_mm += std::hypot(nx - x, ny - y);
     x = nx, y = ny;
@@ -33,7 +36,8 @@ std::string random_job(Random& random, int lines, double& length_mm) {
 
 double burned(const VirtualGrbl& machine) {
   double sum = 0;
-  for (const auto& burn : machine.burns()) sum += std::hypot(burn.to_mm[0] - burn.from_mm[0], burn.to_mm[1] - burn.from_mm[1]);
+  for (const auto& burn : machine.burns())
+    sum += std::hypot(burn.to_mm[0] - burn.from_mm[0], burn.to_mm[1] - burn.from_mm[1]);
   return sum;
 }
 
@@ -47,13 +51,17 @@ TEST(GrblProperty, JobsArriveWholeOverSlowAndBurstyLines) {
     talk.connect_and_home();
     talk.load(job);
     talk.tell({{"do", "start"}, {"confirmed", true}});
-    ASSERT_TRUE(talk.pass_until([&] {
-      EXPECT_EQ(talk.machine.bytes_lost(), 0);
-      if (random.uniform() < 0.001) talk.refusal({{"do", "override"}, {"feed_percent", 80 + static_cast<double>(random.below(60))}});
-      if (talk.phase() == "paused") talk.tell({{"do", "resume"}, {"confirmed", true}});
-      else if (random.uniform() < 0.002) talk.refusal({{"do", "pause"}});
-      return !talk.ended().empty();
-    }, 400)) << talk.state().dump();
+    ASSERT_TRUE(talk.pass_until(
+        [&] {
+          EXPECT_EQ(talk.machine.bytes_lost(), 0);
+          if (random.uniform() < 0.001)
+            talk.refusal({{"do", "override"}, {"feed_percent", 80 + static_cast<double>(random.below(60))}});
+          if (talk.phase() == "paused") talk.tell({{"do", "resume"}, {"confirmed", true}});
+          else if (random.uniform() < 0.002) talk.refusal({{"do", "pause"}});
+          return !talk.ended().empty();
+        },
+        400))
+        << talk.state().dump();
     EXPECT_EQ(talk.ended(), "done") << talk.state().dump();
     EXPECT_NEAR(burned(talk.machine), length, 1e-6 * length);
   }
@@ -78,10 +86,13 @@ TEST(GrblProperty, WhateverHappensTheQueueEndsAndTheBeamGoesOut) {
       case 1: talk.machine.brown_out(talk.now_s); break;
       case 2: talk.machine.refuse_next(1 + static_cast<int>(random.below(38))); break;
       case 3: talk.tell({{"do", "stop"}}); break;
-      case 4: talk.driver.closed(talk.now_s), talk.machine.receive("\x18", talk.now_s), talk.driver.opened(talk.now_s); break;
+      case 4:
+        talk.driver.closed(talk.now_s), talk.machine.receive("\x18", talk.now_s), talk.driver.opened(talk.now_s);
+        break;
       default: break;
     }
-    ASSERT_TRUE(talk.pass_until([&] { return !talk.ended().empty() || talk.state()["job"].is_null(); }, 100)) << talk.state().dump();
+    ASSERT_TRUE(talk.pass_until([&] { return !talk.ended().empty() || talk.state()["job"].is_null(); }, 100))
+        << talk.state().dump();
     EXPECT_EQ(talk.machine.bytes_lost(), 0);
     talk.pass(3);
     EXPECT_FALSE(talk.machine.beam());
@@ -89,7 +100,8 @@ TEST(GrblProperty, WhateverHappensTheQueueEndsAndTheBeamGoesOut) {
     const std::size_t lines = talk.machine.lines().size();
     talk.pass(3);
     EXPECT_EQ(talk.machine.position_mm(), there);
-    for (std::size_t i = lines; i < talk.machine.lines().size(); ++i) EXPECT_EQ(talk.machine.lines()[i].substr(0, 1), "$");
+    for (std::size_t i = lines; i < talk.machine.lines().size(); ++i)
+      EXPECT_EQ(talk.machine.lines()[i].substr(0, 1), "$");
     if (talk.ended() == "done") {
       ++done;
       EXPECT_NEAR(burned(talk.machine), length, 1e-6 * length);
@@ -113,7 +125,8 @@ TEST(GrblProperty, LostBytesNeverPassForADoneJob) {
     GrblTalk talk({}, {.lose_to_host = 0.0015}, random.next());
     if (!talk.pass_until([&] { return talk.state()["connection"] == "ready"; }, 60)) continue;
     if (!talk.refusal({{"do", "home"}, {"confirmed", true}}).empty()) continue;
-    if (!talk.pass_until([&] { return talk.state()["position_known"] == true && talk.phase() == "idle"; }, 20)) continue;
+    if (!talk.pass_until([&] { return talk.state()["position_known"] == true && talk.phase() == "idle"; }, 20))
+      continue;
     talk.tell({{"do", "jog"}, {"x_mm", -300}, {"y_mm", -300}, {"speed_mm_per_s", 150}});
     talk.pass(6);
     talk.refusal({{"do", "set_origin"}, {"axes", "xy"}});

@@ -44,7 +44,8 @@ TEST(K40, MovesAreWrittenInItsLetters) {
 }
 
 TEST(K40, ReadsEgvFiles) {
-  const auto packets = k40_packets("Document type : LHYMICRO-GL file\nFile version: 1.0.01\nCreator-Software: X\n\n%0%0%0%0%IBzzzS1P\nICV1752241000000003GAACBaRaFNSE-\n");
+  const auto packets = k40_packets(
+      "Document type : LHYMICRO-GL file\nFile version: 1.0.01\nCreator-Software: X\n\n%0%0%0%0%IBzzzS1P\nICV1752241000000003GAACBaRaFNSE-\n");
   ASSERT_EQ(packets.size(), 3u);
   EXPECT_EQ(packets[0], "IBzzzS1P");
   EXPECT_EQ(packets[1], "ICV1752241000000003GAACBaRaFNS");
@@ -89,7 +90,10 @@ class VirtualBoard {
 };
 
 struct K40Talk {
-  explicit K40Talk(std::uint64_t seed = 1, double spoil = 0) : board(seed, spoil), driver({.controller = DriverController::k40, .bed_x_mm = 300, .bed_y_mm = 200}) { driver.opened(0); }
+  explicit K40Talk(std::uint64_t seed = 1, double spoil = 0)
+      : board(seed, spoil), driver({.controller = DriverController::k40, .bed_x_mm = 300, .bed_y_mm = 200}) {
+    driver.opened(0);
+  }
   void pass(double seconds) {
     for (const double end = now_s + seconds; now_s < end; now_s += 0.01) {
       for (const Bytes& packet : driver.take_output())
@@ -120,7 +124,8 @@ TEST(K40, JobsArriveWholeThroughSpoiledPackets) {
     talk.pass(10);
     EXPECT_EQ(talk.driver.state(talk.now_s)["job"]["ended"], "done") << talk.driver.state(talk.now_s).dump();
     ASSERT_EQ(talk.board.heard.size() - before, 41u);
-    for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(talk.board.heard[before + i], std::string(30, static_cast<char>('A' + static_cast<int>(i) % 26)));
+    for (std::size_t i = 0; i < 40; ++i)
+      EXPECT_EQ(talk.board.heard[before + i], std::string(30, static_cast<char>('A' + static_cast<int>(i) % 26)));
   }
 }
 
@@ -153,7 +158,8 @@ TEST(K40, KeepsInsideItsBed) {
 }
 
 TEST(Ruida, ScramblesAndSums) {
-  const unsigned char plain[] = {0xda, 0, 5, 0x7e, 0xcc, 0xd8, 1, 0x2a}, swizzled[] = {0xd4, 0x89, 0x0d, 0xf7, 0xc6, 0xd2, 0x09, 0xa3};
+  const unsigned char plain[] = {0xda, 0, 5, 0x7e, 0xcc, 0xd8, 1, 0x2a},
+                      swizzled[] = {0xd4, 0x89, 0x0d, 0xf7, 0xc6, 0xd2, 0x09, 0xa3};
   for (std::size_t i = 0; i < 8; ++i) {
     EXPECT_EQ(ruida_swizzled(plain[i]), swizzled[i]);
     EXPECT_EQ(ruida_unswizzled(swizzled[i]), plain[i]);
@@ -179,7 +185,8 @@ TEST(Ruida, CutsFilesBetweenCommands) {
     for (std::size_t i = 2; i < datagram.size(); ++i) sum += std::to_integer<unsigned>(datagram[i]);
     EXPECT_EQ(sum & 0xffff, std::to_integer<unsigned>(datagram[0]) << 8 | std::to_integer<unsigned>(datagram[1]));
     EXPECT_GE(ruida_unswizzled(std::to_integer<unsigned char>(datagram[2])), 0x80);
-    for (std::size_t i = 2; i < datagram.size(); ++i) back += static_cast<char>(ruida_unswizzled(std::to_integer<unsigned char>(datagram[i])));
+    for (std::size_t i = 2; i < datagram.size(); ++i)
+      back += static_cast<char>(ruida_unswizzled(std::to_integer<unsigned char>(datagram[i])));
   }
   EXPECT_EQ(back, plain);
   EXPECT_THROW(ruida_datagrams(as_bytes("G1 X5\n")), Error);
@@ -192,7 +199,8 @@ class VirtualRuida {
   std::vector<Bytes> receive(ByteView datagram) {
     if (random_.uniform() < lose_) return {};
     std::string plain;
-    for (const std::byte byte : datagram.subspan(2)) plain += static_cast<char>(ruida_unswizzled(std::to_integer<unsigned char>(byte)));
+    for (const std::byte byte : datagram.subspan(2))
+      plain += static_cast<char>(ruida_unswizzled(std::to_integer<unsigned char>(byte)));
     std::vector<Bytes> replies;
     if (plain == last_) replies = last_replies_;  // a repetition of what had arrived
     else {
@@ -223,7 +231,9 @@ class VirtualRuida {
 };
 
 struct RuidaTalk {
-  explicit RuidaTalk(double lose = 0) : laser(1, lose), driver({.controller = DriverController::ruida}) { driver.opened(0); }
+  explicit RuidaTalk(double lose = 0) : laser(1, lose), driver({.controller = DriverController::ruida}) {
+    driver.opened(0);
+  }
   void pass(double seconds) {
     for (const double end = now_s + seconds; now_s < end; now_s += 0.01) {
       for (const Bytes& packet : driver.take_output())
@@ -243,7 +253,8 @@ TEST(Ruida, JobsArriveInOrderOverALossyNetwork) {
   EXPECT_NEAR(talk.driver.state(talk.now_s)["machine_mm"][0].get<double>(), 123.456, 1e-9);
   Bytes file;
   std::string plain;
-  for (int i = 0; i < 3000; ++i) plain += '\x88', plain += static_cast<char>(i & 0x7f), plain += static_cast<char>(i >> 7 & 0x7f);
+  for (int i = 0; i < 3000; ++i)
+    plain += '\x88', plain += static_cast<char>(i & 0x7f), plain += static_cast<char>(i >> 7 & 0x7f);
   for (const char c : plain) file.push_back(std::byte{ruida_swizzled(static_cast<unsigned char>(c))});
   talk.driver.load("job.rd", file);
   EXPECT_THROW(talk.driver.command({{"do", "start"}, {"confirmed", true}}, talk.now_s), Error);

@@ -52,14 +52,10 @@ class VirtualMarlin {
     last_ = number;
     done.push_back(text);
     if (text == unanswered) return;
-    if (text == "M105")
-      output += "ok T:201.5 /210.0 B:60.1 /60.0 @:127 B@:0\n";
-    else if (text == "M114")
-      output += "X:1.00 Y:2.00 Z:3.00 E:0.00 Count X:80 Y:160 Z:1200\nok\n";
-    else if (text == "M115")
-      output += "FIRMWARE_NAME:Marlin 2.1.2 (Jan 1 2024) SOURCE_CODE_URL:x\nok\n";
-    else
-      output += "ok\n";
+    if (text == "M105") output += "ok T:201.5 /210.0 B:60.1 /60.0 @:127 B@:0\n";
+    else if (text == "M114") output += "X:1.00 Y:2.00 Z:3.00 E:0.00 Count X:80 Y:160 Z:1200\nok\n";
+    else if (text == "M115") output += "FIRMWARE_NAME:Marlin 2.1.2 (Jan 1 2024) SOURCE_CODE_URL:x\nok\n";
+    else output += "ok\n";
   }
   void again(const std::string& why) {
     output += why + std::to_string(last_) + "\nResend: " + std::to_string(last_ + 1) + "\nok\n";

@@ -69,7 +69,8 @@ TEST(machine_registry, what_is_added_is_there_again_and_unreadable_to_others) {
   registry.remove("PRINTER");
   EXPECT_EQ(registry.read().size(), 1u);
   EXPECT_THROW(registry.remove("Printer"), Error);
-  std::ofstream(folder.path / "machines.json") << "[{\"name\": 5}, 7, {\"name\": \"B\", \"url\": \"ipp://b/ipp/print\", \"later\": true}]";
+  std::ofstream(folder.path / "machines.json")
+      << "[{\"name\": 5}, 7, {\"name\": \"B\", \"url\": \"ipp://b/ipp/print\", \"later\": true}]";
   ASSERT_EQ(registry.read().size(), 1u);
   EXPECT_EQ(registry.read()[0].name, "B");
 }

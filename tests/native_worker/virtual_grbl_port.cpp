@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The strict virtual GRBL of core/machines at a pseudo terminal, in real time. Prints the port's name; for every line on standard input
-// it answers with what it saw, as JSON. Ends with its standard input, which is the cable being pulled.
+// The strict virtual GRBL of core/machines at a pseudo terminal, in real time. Prints the port's name; for every line
+// on standard input it answers with what it saw, as JSON. Ends with its standard input, which is the cable being
+// pulled.
 #include <fcntl.h>
 #include <poll.h>
 #include <stdlib.h>
@@ -48,7 +49,8 @@ int main(int argc, char** argv) {
       const ssize_t count = ::read(STDIN_FILENO, buffer, sizeof buffer);
       if (count <= 0) return 0;
       double burnt_mm = 0;
-      for (const auto& burn : machine.burns()) burnt_mm += std::hypot(burn.to_mm[0] - burn.from_mm[0], burn.to_mm[1] - burn.from_mm[1]);
+      for (const auto& burn : machine.burns())
+        burnt_mm += std::hypot(burn.to_mm[0] - burn.from_mm[0], burn.to_mm[1] - burn.from_mm[1]);
       std::cout << Json{{"state", machine.state()},
                         {"beam", machine.beam()},
                         {"burns", machine.burns().size()},

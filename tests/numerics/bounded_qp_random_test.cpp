@@ -48,7 +48,8 @@ std::vector<Case> cases() {
   all.push_back({"parts and groups", {.size = 30, .components = 3, .groups = 2}});
   all.push_back({"groups across parts", {.size = 30, .components = 2, .groups = 4, .rows = 8}});
   all.push_back({"perspective", {.size = 24, .groups = 2, .rows = 6, .perspective = true}});
-  all.push_back({"perspective parts", {.size = 30, .components = 3, .groups = 1, .rows = 6, .perspective = true, .tightness = 0.9}});
+  all.push_back({"perspective parts",
+                 {.size = 30, .components = 3, .groups = 1, .rows = 6, .perspective = true, .tightness = 0.9}});
   all.push_back({"equal bounds", {.size = 24, .rows = 4, .equal_bounds = 0.2}});
   all.push_back({"mostly free", {.size = 24, .components = 4, .groups = 2, .rows = 3, .free_bounds = 0.8}});
   all.push_back({"tiny", {.size = 4, .components = 2, .rows = 1}});
@@ -69,7 +70,8 @@ TEST(BoundedQpRandom, EqualsDenseReference) {
       EXPECT_NEAR(p.constraints.gauge.dot(s.u), 0, 1e-9);
       EXPECT_NEAR(0.5 * s.u.dot(p.Q * s.u), reference.objective, 2e-6 * (1 + reference.objective));
       // Summed here without care for cancellation.
-      EXPECT_NEAR(s.objective, 0.5 * s.u.dot(p.Q * s.u), 1e-12 + 1e-14 * s.u.cwiseAbs().dot(p.Q.cwiseAbs() * s.u.cwiseAbs()));
+      EXPECT_NEAR(s.objective, 0.5 * s.u.dot(p.Q * s.u),
+                  1e-12 + 1e-14 * s.u.cwiseAbs().dot(p.Q.cwiseAbs() * s.u.cwiseAbs()));
       Eigen::VectorXd x(s.u.size() + s.m.size());
       x << s.u, s.m;
       if (s.objective > 1e-12) {

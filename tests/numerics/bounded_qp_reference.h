@@ -95,10 +95,12 @@ inline DenseSolution solve_dense(const DenseProblem& p) {
   double best = infinity;
   int unimproved = 0;
   for (int iteration = 0; iteration < 200; ++iteration) {
-    const Eigen::VectorXd rd = p.H * x - p.A.transpose() * z - p.E.transpose() * y, re = p.E * x, rp = p.A * x - p.b - s;
+    const Eigen::VectorXd rd = p.H * x - p.A.transpose() * z - p.E.transpose() * y, re = p.E * x,
+                          rp = p.A * x - p.b - s;
     const double mu = m > 0 ? s.dot(z) / static_cast<double>(m) : 0;
     // Near the end round-off in K stops all progress: the best iterate counts.
-    const double merit = s.dot(z) + rd.cwiseAbs().maxCoeff() + re.cwiseAbs().maxCoeff() + (m > 0 ? rp.cwiseAbs().maxCoeff() : 0);
+    const double merit =
+        s.dot(z) + rd.cwiseAbs().maxCoeff() + re.cwiseAbs().maxCoeff() + (m > 0 ? rp.cwiseAbs().maxCoeff() : 0);
     if (merit < best) {
       best = merit;
       result.x = x;
@@ -116,7 +118,8 @@ inline DenseSolution solve_dense(const DenseProblem& p) {
     const Eigen::FullPivLU<Eigen::MatrixXd> lu(K);
     const auto direction = [&](const Eigen::VectorXd& target) {  // wanted s z
       Eigen::VectorXd rhs(n + e);
-      rhs.head(n) = -rd + p.A.transpose() * ((target.array() - s.array() * z.array() - z.array() * rp.array()) / s.array()).matrix();
+      rhs.head(n) = -rd + p.A.transpose() *
+                              ((target.array() - s.array() * z.array() - z.array() * rp.array()) / s.array()).matrix();
       rhs.tail(e) = re;
       return Eigen::VectorXd(lu.solve(rhs));
     };
@@ -149,8 +152,8 @@ inline DenseSolution solve_dense(const DenseProblem& p) {
   return result;
 }
 
-/// Proof of optimality: the smallest max |H x - A^T z - E^T y| / max |H x| over z >= 0 on the rows that x touches (within
-/// `touching`), by Lawson and Hanson's NNLS. Zero up to round-off if and only if a feasible x is optimal.
+/// Proof of optimality: the smallest max |H x - A^T z - E^T y| / max |H x| over z >= 0 on the rows that x touches
+/// (within `touching`), by Lawson and Hanson's NNLS. Zero up to round-off if and only if a feasible x is optimal.
 inline double stationarity_gap(const DenseProblem& p, const Eigen::VectorXd& x, double touching) {
   const Eigen::VectorXd force = p.H * x, slack = p.A * x - p.b;
   std::vector<Eigen::VectorXd> columns;
@@ -171,7 +174,9 @@ inline double stationarity_gap(const DenseProblem& p, const Eigen::VectorXd& x, 
     const Eigen::VectorXd pull = C.transpose() * (force - C * z);
     Eigen::Index enter = -1;
     for (Eigen::Index j = 0; j < k; ++j) {
-      if (std::find(passive.begin(), passive.end(), j) == passive.end() && pull[j] > 1e-13 * size && (enter < 0 || pull[j] > pull[enter])) enter = j;
+      if (std::find(passive.begin(), passive.end(), j) == passive.end() && pull[j] > 1e-13 * size &&
+          (enter < 0 || pull[j] > pull[enter]))
+        enter = j;
     }
     if (enter < 0) break;
     passive.push_back(enter);
@@ -184,7 +189,8 @@ inline double stationarity_gap(const DenseProblem& p, const Eigen::VectorXd& x, 
         const double now = z[passive[j]], to = goal[static_cast<Eigen::Index>(j)];
         if (to <= 0) step = std::min(step, now > 0 ? now / (now - to) : 0.0);
       }
-      for (std::size_t j = 0; j < passive.size(); ++j) z[passive[j]] += step * (goal[static_cast<Eigen::Index>(j)] - z[passive[j]]);
+      for (std::size_t j = 0; j < passive.size(); ++j)
+        z[passive[j]] += step * (goal[static_cast<Eigen::Index>(j)] - z[passive[j]]);
       if (step >= 1) break;
       std::vector<Eigen::Index> kept;
       for (const Eigen::Index j : passive) {
@@ -207,10 +213,10 @@ struct RandomProblem {
 
 struct RandomProblemSettings {
   int size = 24, components = 1, groups = 1, rows = 0;
-  bool perspective = false;       // slopes 1 + kappa bound
-  double free_bounds = 0.2;       // share of bounds that are infinite
-  double equal_bounds = 0;        // share of unknowns with lower = upper
-  double tightness = 0.5;         // 0: the feasible point is wide of its bounds
+  bool perspective = false;  // slopes 1 + kappa bound
+  double free_bounds = 0.2;  // share of bounds that are infinite
+  double equal_bounds = 0;   // share of unknowns with lower = upper
+  double tightness = 0.5;    // 0: the feasible point is wide of its bounds
 };
 
 inline RandomProblem random_problem(std::uint64_t seed, const RandomProblemSettings& settings) {
@@ -235,7 +241,8 @@ inline RandomProblem random_problem(std::uint64_t seed, const RandomProblemSetti
   }
   for (int extra = 0; extra < n; ++extra) {
     const int a = random.below(n), b = random.below(n);
-    if (a != b && p.component[static_cast<std::size_t>(a)] == p.component[static_cast<std::size_t>(b)]) join(a, b, random.between(0.5, 2));
+    if (a != b && p.component[static_cast<std::size_t>(a)] == p.component[static_cast<std::size_t>(b)])
+      join(a, b, random.between(0.5, 2));
   }
   Eigen::VectorXd weight(n);
   for (int i = 0; i < n; ++i) weight[i] = random.between(0.3, 3);

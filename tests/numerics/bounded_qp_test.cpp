@@ -90,9 +90,11 @@ Eigen::VectorXd bumps(int width, int height, std::uint64_t seed, double size) {
   Random random(seed);
   Eigen::VectorXd z = Eigen::VectorXd::Zero(width * height);
   for (int k = 0; k < 12; ++k) {
-    const double cx = random.unit() * width, cy = random.unit() * height, r = random.between(0.05, 0.3) * width, h = random.between(-1, 1) * size;
+    const double cx = random.unit() * width, cy = random.unit() * height, r = random.between(0.05, 0.3) * width,
+                 h = random.between(-1, 1) * size;
     for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) z[y * width + x] += h * std::exp(-((x - cx) * (x - cx) + (y - cy) * (y - cy)) / (r * r));
+      for (int x = 0; x < width; ++x)
+        z[y * width + x] += h * std::exp(-((x - cx) * (x - cx) + (y - cy) * (y - cy)) / (r * r));
     }
   }
   return z;
@@ -100,7 +102,8 @@ Eigen::VectorXd bumps(int width, int height, std::uint64_t seed, double size) {
 
 Problem relief(int width, int height, double thickness, std::uint64_t seed = 1) {
   const SparseMatrix L = graph_laplacian(width * height, grid(width, height));
-  return {lower_of(L * L), std::vector<int>(static_cast<std::size_t>(width * height), 0), slab(bumps(width, height, seed, 10), thickness)};
+  return {lower_of(L * L), std::vector<int>(static_cast<std::size_t>(width * height), 0),
+          slab(bumps(width, height, seed, 10), thickness)};
 }
 
 TEST(BoundedQp, SpringFillsTheSlab) {
@@ -122,7 +125,8 @@ TEST(BoundedQp, StringOverObstaclesIsTheirConcaveHull) {
       const int n = 60;
       Problem p{lower_of(graph_laplacian(n, path(n))), std::vector<int>(n, 0), unbounded(n)};
       Eigen::VectorXd obstacle(n);
-      for (int i = 0; i < n; ++i) obstacle[i] = 8 - 0.009 * (i - 20.0) * (i - 20.0) + random.unit() - 4 * random.unit() * (i % 3);
+      for (int i = 0; i < n; ++i)
+        obstacle[i] = 8 - 0.009 * (i - 20.0) * (i - 20.0) + random.unit() - 4 * random.unit() * (i % 3);
       obstacle[0] = obstacle[n - 1] = 0;
       p.constraints.lower = obstacle;
       p.constraints.upper[0] = p.constraints.upper[n - 1] = 0;
@@ -138,7 +142,8 @@ TEST(BoundedQp, StringOverObstaclesIsTheirConcaveHull) {
       const auto s = solve(p, method);
       for (std::size_t k = 1; k < hull.size(); ++k) {
         const int a = hull[k - 1], b = hull[k];
-        for (int i = a; i <= b; ++i) EXPECT_NEAR(s.u[i], obstacle[a] + (obstacle[b] - obstacle[a]) * (i - a) / (b - a), 1e-11);
+        for (int i = a; i <= b; ++i)
+          EXPECT_NEAR(s.u[i], obstacle[a] + (obstacle[b] - obstacle[a]) * (i - a) / (b - a), 1e-11);
       }
     }
   }
@@ -254,7 +259,8 @@ TEST(BoundedQp, NumberingDoesNotMatter) {
   Random random(5);
   std::vector<int> to(n);
   for (int i = 0; i < n; ++i) to[static_cast<std::size_t>(i)] = i;
-  for (int i = n - 1; i > 0; --i) std::swap(to[static_cast<std::size_t>(i)], to[static_cast<std::size_t>(random.below(i + 1))]);
+  for (int i = n - 1; i > 0; --i)
+    std::swap(to[static_cast<std::size_t>(i)], to[static_cast<std::size_t>(random.below(i + 1))]);
   std::vector<std::pair<int, int>> edges = grid(width, height);
   for (auto& [x, y] : edges) {
     x = to[static_cast<std::size_t>(x)];
@@ -335,7 +341,8 @@ TEST(BoundedQp, GroupsOfSeparatePartsDoNotMix) {
   c.upper_slope.setOnes();
   c.gauge.setOnes();
   c.group_count = 2;
-  for (int i = n; i < n + k; ++i) both.component[static_cast<std::size_t>(i)] = c.group[static_cast<std::size_t>(i)] = 1;
+  for (int i = n; i < n + k; ++i)
+    both.component[static_cast<std::size_t>(i)] = c.group[static_cast<std::size_t>(i)] = 1;
   const auto a = solve(p), b = solve(q), s = solve(both);
   // One gauge for both leaves one move free: both parts against each other, each with its own m.
   const double shift_a = (s.u.head(n) - a.u).mean(), shift_b = (s.u.tail(k) - b.u).mean();
@@ -355,8 +362,8 @@ TEST(BoundedQp, PartsSharingASlabFitTogether) {
   Problem p{lower_of(Q), {0, 0, 1, 1}, slab(Eigen::Vector4d(0, 3, -100, -99), 2)};
   const auto s = solve(p);
   const Eigen::Vector4d z(0, 3, -100, -99), moved = z + s.u;
-  EXPECT_NEAR(moved[1] - moved[0], 2, 1e-12);   // squashed from 3 to 2
-  EXPECT_NEAR(moved[3] - moved[2], 1, 1e-12);   // fits
+  EXPECT_NEAR(moved[1] - moved[0], 2, 1e-12);  // squashed from 3 to 2
+  EXPECT_NEAR(moved[3] - moved[2], 1, 1e-12);  // fits
   EXPECT_NEAR(s.u[2] - s.u[3], 0, 1e-12);
   EXPECT_LE(moved.maxCoeff() - moved.minCoeff(), 2 + 1e-12);
   EXPECT_NEAR(s.objective, 0.5, 1e-12);
@@ -367,8 +374,8 @@ TEST(BoundedQp, PartsSharingASlabFitTogether) {
 TEST(BoundedQp, FreePartsStayWhereTheyAreOrAsNearAsTheyMay) {
   const SparseMatrix Q = graph_laplacian(6, {{0, 1}, {2, 3}, {4, 5}});
   Problem p{lower_of(Q), {0, 0, 1, 1, 2, 2}, unbounded(6)};
-  p.constraints.lower[2] = 3;   // part 1 must rise to 3, and does so without a change of shape
-  p.constraints.upper[4] = 5;   // part 2 need not move
+  p.constraints.lower[2] = 3;  // part 1 must rise to 3, and does so without a change of shape
+  p.constraints.upper[4] = 5;  // part 2 need not move
   const auto s = solve(p);
   const Eigen::VectorXd expected = (Eigen::VectorXd(6) << 0, 0, 3, 3, 0, 0).finished();
   EXPECT_LT((s.u - expected).cwiseAbs().maxCoeff(), 1e-9);
@@ -409,7 +416,8 @@ TEST(BoundedQp, RepeatedAndRedundantRowsDoNoHarm) {
   Problem p = relief(15, 12, 0.5);
   const auto a = solve(p);
   for (int copy = 0; copy < 3; ++copy) {
-    for (int i = 0; i < 180; ++i) p.constraints.rows.push_back({{i}, {1.0}, -1.0, 0, p.constraints.lower[i]});  // the lower bounds again
+    for (int i = 0; i < 180; ++i)
+      p.constraints.rows.push_back({{i}, {1.0}, -1.0, 0, p.constraints.lower[i]});  // the lower bounds again
   }
   const auto b = solve(p);
   EXPECT_LT((a.u - b.u).cwiseAbs().maxCoeff(), 1e-8);
@@ -455,7 +463,8 @@ TEST(BoundedQp, BadInputNamesItsPlace) {
   Context context;
   const Problem good = relief(6, 5, 0.5);
   BoundedQp qp;
-  EXPECT_EQ(code_of([&] { qp.set_energy(good.lower_Q, std::vector<int>(7, 0), {}, context); }), ErrorCode::invalid_input);
+  EXPECT_EQ(code_of([&] { qp.set_energy(good.lower_Q, std::vector<int>(7, 0), {}, context); }),
+            ErrorCode::invalid_input);
   SparseMatrix shifted = good.lower_Q;
   for (int i = 0; i < 30; ++i) shifted.coeffRef(i, i) += 1;  // constants no longer free
   EXPECT_EQ(code_of([&] { qp.set_energy(shifted, good.component, {}, context); }), ErrorCode::invalid_input);

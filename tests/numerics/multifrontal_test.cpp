@@ -36,8 +36,8 @@ TEST(DenseKernels, UpdateSubtractsTheProductOnTheLowerTriangle) {
       dense::update_lower(overwritten.data(), stride, slivers, depth, 0, size, 0, size, dense::Update::overwrite);
       for (int column = 0; column < size; column += 36) {
         for (int row = 0; row < size; row += 20) {
-          dense::update_lower(in_pieces.data(), stride, panel, depth, std::max(row, column), std::min(size, row + 20), column,
-                              std::min(size, column + 36), dense::Update::subtract);
+          dense::update_lower(in_pieces.data(), stride, panel, depth, std::max(row, column), std::min(size, row + 20),
+                              column, std::min(size, column + 36), dense::Update::subtract);
         }
       }
       for (int j = 0; j < size; ++j) {
@@ -83,7 +83,8 @@ TEST(DenseKernels, FactorsAndSolvesAPanel) {
         dense::forward_block<dense::many_sides>(panel.data(), stride, width, height, forward.data());
         dense::backward_block<dense::many_sides>(panel.data(), stride, width, height, backward.data());
       }
-      const Eigen::MatrixXd z1 = z.leftCols(width).transpose(), z2 = z.rightCols(below).transpose(), L2 = panel.bottomRows(below);
+      const Eigen::MatrixXd z1 = z.leftCols(width).transpose(), z2 = z.rightCols(below).transpose(),
+                            L2 = panel.bottomRows(below);
       const Eigen::MatrixXd y1 = L.triangularView<Eigen::Lower>().solve(z1);
       const Eigen::MatrixXd x1 = L.transpose().triangularView<Eigen::Upper>().solve(z1 - L2.transpose() * z2);
       EXPECT_LE((forward.leftCols(width).transpose() - y1).norm(), 1e-13 * z1.norm());
@@ -114,8 +115,8 @@ Factorization factored(const SparseMatrix& A, bool parallel, int leaf_size) {
   result.form = find_supernodes(graph, nested_dissection(graph, {.leaf_size = leaf_size}, context), context);
   const AssemblyMap map = map_assembly(A, graph, result.form);
   const Eigen::VectorXd diagonal = A.diagonal();
-  factorize_multifrontal(result.form, map, A.valuePtr(), {diagonal.data(), diagonal.data() + diagonal.size()}, result.factor,
-                         {.parallel = parallel}, context);
+  factorize_multifrontal(result.form, map, A.valuePtr(), {diagonal.data(), diagonal.data() + diagonal.size()},
+                         result.factor, {.parallel = parallel}, context);
   return result;
 }
 
@@ -130,7 +131,8 @@ Eigen::MatrixXd dense_factor(const Factorization& f) {
                              static_cast<std::size_t>(j - start) * static_cast<std::size_t>(height - start) - start;
       for (int i = j; i < columns; ++i) L(first + i, first + j) = column[i];
       const auto rows = f.form.rows_below(s);
-      for (std::size_t i = 0; i < rows.size(); ++i) L(rows[i], first + j) = column[static_cast<std::size_t>(padded(columns)) + i];
+      for (std::size_t i = 0; i < rows.size(); ++i)
+        L(rows[i], first + j) = column[static_cast<std::size_t>(padded(columns)) + i];
     }
   }
   return L;
@@ -145,7 +147,8 @@ TEST(Multifrontal, TheFactorReproducesTheMatrix) {
     const Eigen::MatrixXd L = dense_factor(f), dense = test::dense_of(A);
     Eigen::MatrixXd permuted(f.form.n, f.form.n);
     for (int i = 0; i < f.form.n; ++i) {
-      for (int j = 0; j < f.form.n; ++j) permuted(i, j) = dense(f.form.permutation.order[i], f.form.permutation.order[j]);
+      for (int j = 0; j < f.form.n; ++j)
+        permuted(i, j) = dense(f.form.permutation.order[i], f.form.permutation.order[j]);
     }
     EXPECT_LE((L * L.transpose() - permuted).norm(), 1e-14 * permuted.norm());
   }

@@ -76,7 +76,8 @@ TEST(SparseCholesky, SolvesLikeDenseCholesky) {
 TEST(SparseCholesky, SolvesAFullMatrix) {
   const int n = 400;  // more than three blocks of columns
   const Eigen::MatrixXd half = random_matrix(n, n, 3);
-  const SparseMatrix full = Eigen::MatrixXd(half * half.transpose() + 20 * Eigen::MatrixXd::Identity(n, n)).sparseView();
+  const SparseMatrix full =
+      Eigen::MatrixXd(half * half.transpose() + 20 * Eigen::MatrixXd::Identity(n, n)).sparseView();
   SparseMatrix A = full.triangularView<Eigen::Lower>();
   A.makeCompressed();
   const Eigen::MatrixXd b = random_matrix(n, 1, 4);
@@ -177,7 +178,8 @@ TEST(SparseCholesky, DisconnectedPartsAreSolvedApart) {
   int n = 0;
   const auto add = [&](const SparseMatrix& block) {
     for (int j = 0; j < block.cols(); ++j) {
-      for (SparseMatrix::InnerIterator it(block, j); it; ++it) entries.emplace_back(n + static_cast<int>(it.row()), n + j, it.value());
+      for (SparseMatrix::InnerIterator it(block, j); it; ++it)
+        entries.emplace_back(n + static_cast<int>(it.row()), n + j, it.value());
     }
     n += static_cast<int>(block.cols());
   };
@@ -222,7 +224,8 @@ TEST(SparseCholesky, AnArrowStaysSparse) {
 
 TEST(SparseCholesky, NamesTheRowThatIsNotPositiveDefinite) {
   SparseMatrix A = test::torus_bilaplacian(40, 40, 1.0);
-  for (const double bad : {0.0, -3.0, -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+  for (const double bad :
+       {0.0, -3.0, -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
     std::vector<Eigen::Triplet<double>> entries;
     for (int i = 0; i < 50; ++i) entries.emplace_back(i, i, i == 37 ? bad : 1.0);
     Context context;

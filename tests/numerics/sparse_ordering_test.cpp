@@ -72,8 +72,8 @@ std::vector<Graph> zoo() {
   graphs.push_back(path_graph(1));
   graphs.push_back(path_graph(700));
   graphs.push_back(random_tree(2000, 1));
-  graphs.push_back(graph_of(test::random_spd(900, 2.0, 2)));   // falls apart into many pieces
-  graphs.push_back(graph_of(test::random_spd(900, 30.0, 3)));  // has no small separators
+  graphs.push_back(graph_of(test::random_spd(900, 2.0, 2)));    // falls apart into many pieces
+  graphs.push_back(graph_of(test::random_spd(900, 30.0, 3)));   // has no small separators
   graphs.push_back(graph_of(test::random_spd(350, 690.0, 4)));  // nearly complete
   graphs.push_back(graph_of(test::torus_bilaplacian(90, 40, 1.0)));
   std::vector<Eigen::Triplet<double>> star;
@@ -193,7 +193,8 @@ TEST(NestedDissection, OrdersEveryGraphAlways) {
 TEST(NestedDissection, DoesNotDependOnTheThreads) {
   Context context;
   const Graph graph = graph_of(test::torus_bilaplacian(150, 100, 1.0));
-  EXPECT_EQ(nested_dissection(graph, {.parallel = true}, context), nested_dissection(graph, {.parallel = false}, context));
+  EXPECT_EQ(nested_dissection(graph, {.parallel = true}, context),
+            nested_dissection(graph, {.parallel = false}, context));
 }
 
 TEST(NestedDissection, StaysWithinGeorgesBoundOnGrids) {

@@ -29,7 +29,8 @@ Eigen::VectorXd random_vector(Eigen::Index n, std::uint64_t seed, double size) {
 }
 
 /// Eq. (3.13) as it is written, from lambda, in the thesis's own symbols.
-double thesis_energy(const ViewFrame& frame, const Triangles& F, const Eigen::VectorXd& w, const Eigen::VectorXd& lambda) {
+double thesis_energy(const ViewFrame& frame, const Triangles& F, const Eigen::VectorXd& w,
+                     const Eigen::VectorXd& lambda) {
   const Eigen::Index n = frame.P.rows();
   Positions V = frame.P;  // seen from o = 0
   V.col(2).array() += 1 / frame.kappa;
@@ -40,7 +41,8 @@ double thesis_energy(const ViewFrame& frame, const Triangles& F, const Eigen::Ve
   const Eigen::SparseMatrix<double> L = A.cwiseInverse().asDiagonal() * cotangent_laplacian(mesh);
   const Positions now = L * (lambda.asDiagonal() * V_hat), before = L * (lambda0.asDiagonal() * V_hat);
   double sum = 0;
-  for (Eigen::Index i = 0; i < n; ++i) sum += w[i] * w[i] * A[i] * (now.row(i) - before.row(i) * lambda[i] / lambda0[i]).squaredNorm();
+  for (Eigen::Index i = 0; i < n; ++i)
+    sum += w[i] * w[i] * A[i] * (now.row(i) - before.row(i) * lambda[i] / lambda0[i]).squaredNorm();
   return sum;
 }
 
@@ -107,7 +109,8 @@ TEST(AppearanceEnergy, TheHessianIsTheEnergysSecondDifference) {
 
 TEST(AppearanceEnergy, DoesNotDependOnScaleOrPlace) {
   TriangleMesh mesh = test::icosphere(2);
-  const auto value = [](const TriangleMesh& m, const std::array<double, 3>& direction, const std::array<double, 3>& up) {
+  const auto value = [](const TriangleMesh& m, const std::array<double, 3>& direction,
+                        const std::array<double, 3>& up) {
     ReliefOptions options;
     options.direction = direction;
     options.up = up;
@@ -127,7 +130,8 @@ TEST(AppearanceEnergy, ConvergesToTheOrthographicEnergy) {
   const double limit = AppearanceEnergy(frame_of(mesh, Projection::orthographic), mesh.F, ones)(u);
   double previous = 0, order = 0;
   for (const double angle : {0.4, 0.2, 0.1, 0.05}) {
-    const double difference = std::abs(AppearanceEnergy(frame_of(mesh, Projection::perspective, angle), mesh.F, ones)(u) - limit);
+    const double difference =
+        std::abs(AppearanceEnergy(frame_of(mesh, Projection::perspective, angle), mesh.F, ones)(u) - limit);
     order = std::log2(previous / difference);
     previous = difference;
   }

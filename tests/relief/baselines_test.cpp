@@ -43,7 +43,8 @@ TEST(LinearCompression, OfAFlatModelIsFlat) {
 TEST(GradientDomain, FillsTheSlabOverTheVisiblePart) {
   const Scene s = scene(test::icosphere(4), Projection::perspective);
   Context context;
-  const Eigen::VectorXd z = s.frame.depth(gradient_domain_compression(s.frame, s.mesh.F, s.visibility, 0.04, {}, context));
+  const Eigen::VectorXd z =
+      s.frame.depth(gradient_domain_compression(s.frame, s.mesh.F, s.visibility, 0.04, {}, context));
   double low = 1, high = -1;
   for (Eigen::Index i = 0; i < z.size(); ++i)
     if (s.visibility.vertex[static_cast<std::size_t>(i)]) low = std::min(low, z[i]), high = std::max(high, z[i]);
@@ -54,10 +55,12 @@ TEST(GradientDomain, FillsTheSlabOverTheVisiblePart) {
 TEST(GradientDomain, OfGentleSlopesIsLinear) {
   // C(g) ~ g for small gradients: a gently tilted, wavy sheet is only scaled.
   TriangleMesh mesh = test::grid(20, 20);
-  for (Eigen::Index i = 0; i < mesh.V.rows(); ++i) mesh.V(i, 2) = 1e-5 * std::sin(4 * mesh.V(i, 0)) * std::cos(3 * mesh.V(i, 1));
+  for (Eigen::Index i = 0; i < mesh.V.rows(); ++i)
+    mesh.V(i, 2) = 1e-5 * std::sin(4 * mesh.V(i, 0)) * std::cos(3 * mesh.V(i, 1));
   const Scene s = scene(mesh, Projection::orthographic);
   Context context;
-  const Eigen::VectorXd gradient = s.frame.depth(gradient_domain_compression(s.frame, mesh.F, s.visibility, 0.05, {}, context));
+  const Eigen::VectorXd gradient =
+      s.frame.depth(gradient_domain_compression(s.frame, mesh.F, s.visibility, 0.05, {}, context));
   const Eigen::VectorXd linear = s.frame.depth(linear_compression(s.frame, 0.05, s.visibility.vertex));
   EXPECT_LT((gradient - linear).cwiseAbs().maxCoeff(), 2e-4 * 0.05);
 }

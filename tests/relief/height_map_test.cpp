@@ -34,15 +34,18 @@ class TopSurface {
       Eigen::Matrix3d T;
       for (int k = 0; k < 3; ++k) T.row(k) = solid.V.row(solid.F(f, k));
       if (T.col(2).minCoeff() < plate - 1e-9) continue;
-      const double ax = T(0, 0) / map.pitch_x_mm, ay = T(0, 1) / map.pitch_y_mm, bx = T(1, 0) / map.pitch_x_mm, by = T(1, 1) / map.pitch_y_mm,
-                   cx = T(2, 0) / map.pitch_x_mm, cy = T(2, 1) / map.pitch_y_mm;
+      const double ax = T(0, 0) / map.pitch_x_mm, ay = T(0, 1) / map.pitch_y_mm, bx = T(1, 0) / map.pitch_x_mm,
+                   by = T(1, 1) / map.pitch_y_mm, cx = T(2, 0) / map.pitch_x_mm, cy = T(2, 1) / map.pitch_y_mm;
       const double doubled = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
       EXPECT_GT(doubled, 0) << "a top triangle is turned over";
       for (int y = static_cast<int>(std::floor(std::min({ay, by, cy}))); y <= std::ceil(std::max({ay, by, cy})); ++y)
-        for (int x = static_cast<int>(std::floor(std::min({ax, bx, cx}))); x <= std::ceil(std::max({ax, bx, cx})); ++x) {
-          const double wb = ((x - ax) * (cy - ay) - (y - ay) * (cx - ax)) / doubled, wc = ((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / doubled;
+        for (int x = static_cast<int>(std::floor(std::min({ax, bx, cx}))); x <= std::ceil(std::max({ax, bx, cx}));
+             ++x) {
+          const double wb = ((x - ax) * (cy - ay) - (y - ay) * (cx - ax)) / doubled,
+                       wc = ((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / doubled;
           if (wb < -1e-9 || wc < -1e-9 || wb + wc > 1 + 1e-9) continue;
-          height_[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.columns) + static_cast<std::size_t>(x)] = T(0, 2) + wb * (T(1, 2) - T(0, 2)) + wc * (T(2, 2) - T(0, 2)) - plate;
+          height_[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.columns) + static_cast<std::size_t>(x)] =
+              T(0, 2) + wb * (T(1, 2) - T(0, 2)) + wc * (T(2, 2) - T(0, 2)) - plate;
         }
     }
   }
@@ -61,7 +64,8 @@ TEST(Solid, IsClosedAndWithinToleranceForEverySize) {
       EXPECT_TRUE(Adjacency(solid).is_closed()) << columns << "x" << rows;
       EXPECT_EQ(euler_characteristic(Adjacency(solid)), 2);
       const TopSurface top(solid, map, 3);
-      for (std::size_t node = 0; node < map.height_mm.size(); ++node) EXPECT_NEAR(top.at(node), map.height_mm[node], tolerance + 1e-5) << node;
+      for (std::size_t node = 0; node < map.height_mm.size(); ++node)
+        EXPECT_NEAR(top.at(node), map.height_mm[node], tolerance + 1e-5) << node;
       EXPECT_NEAR(solid.V.col(0).maxCoeff(), map.width_mm(), 1e-12);
       EXPECT_NEAR(solid.V.col(1).maxCoeff(), map.depth_mm(), 1e-12);
       EXPECT_EQ(solid.V.minCoeff(), 0);
@@ -95,10 +99,10 @@ TEST(HeightMap, IsTheUpperEnvelopeOverThePlate) {
   EXPECT_EQ(map.columns, 201);
   EXPECT_EQ(map.rows, 81);
   EXPECT_NEAR(map.width_mm(), 100, 1e-12);
-  EXPECT_NEAR(map.at(40, 40), 2, 1e-6);    // x = -30 mm: the lower square
-  EXPECT_NEAR(map.at(40, 100), 5, 1e-6);   // x = 0: the higher one covers it
+  EXPECT_NEAR(map.at(40, 40), 2, 1e-6);   // x = -30 mm: the lower square
+  EXPECT_NEAR(map.at(40, 100), 5, 1e-6);  // x = 0: the higher one covers it
   EXPECT_NEAR(map.at(40, 150), 5, 1e-6);
-  EXPECT_EQ(map.at(40, 190), 0);           // bare plate; what is behind it does not show
+  EXPECT_EQ(map.at(40, 190), 0);  // bare plate; what is behind it does not show
 }
 
 TEST(HeightMap, ReachesTheAskedThicknessBetweenNodes) {
@@ -113,7 +117,8 @@ TEST(HeightMap, ReachesTheAskedThicknessBetweenNodes) {
 
 TEST(HeightMap, RefusesAGridThatWouldNotFit) {
   Context context;
-  EXPECT_THROW(make_height_map(Positions::Zero(3, 3), Triangles::Zero(0, 3), 100, {10000, 10000}, 0.01, 5, context), Error);
+  EXPECT_THROW(make_height_map(Positions::Zero(3, 3), Triangles::Zero(0, 3), 100, {10000, 10000}, 0.01, 5, context),
+               Error);
 }
 
 }  // namespace

@@ -47,7 +47,8 @@ TEST(NormalError, CountsVisibleFacesOnlyAndWeighsThemByArea) {
   for (Eigen::Index i = 0; i < moved.rows(); ++i) moved(i, 2) = std::max(0.0, moved(i, 0));
   EXPECT_NEAR(normal_error(s.frame, s.F, s.visibility, moved).mean_deg, 22.5, 1e-9);
   for (Eigen::Index f = 0; f < s.F.rows(); ++f)
-    if (s.frame.P(s.F(f, 0), 0) + s.frame.P(s.F(f, 1), 0) + s.frame.P(s.F(f, 2), 0) > 0) s.visibility.face[static_cast<std::size_t>(f)] = 0;
+    if (s.frame.P(s.F(f, 0), 0) + s.frame.P(s.F(f, 1), 0) + s.frame.P(s.F(f, 2), 0) > 0)
+      s.visibility.face[static_cast<std::size_t>(f)] = 0;
   EXPECT_EQ(normal_error(s.frame, s.F, s.visibility, moved).mean_deg, 0);
 }
 

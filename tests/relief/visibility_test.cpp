@@ -31,7 +31,8 @@ TEST(Visibility, OfASphereIsTheCapTheViewerSees) {
       const Vec3 p = frame.P.row(i).transpose();
       const double turned = -(p - centre).normalized().dot(frame.ray_direction(p));
       if (std::abs(turned) < 0.1) continue;
-      EXPECT_EQ(visibility.vertex[static_cast<std::size_t>(i)] != 0, turned > 0) << "vertex " << i << ", radius " << radius;
+      EXPECT_EQ(visibility.vertex[static_cast<std::size_t>(i)] != 0, turned > 0)
+          << "vertex " << i << ", radius " << radius;
     }
     for (Eigen::Index f = 0; f < mesh.F.rows(); ++f)
       if (visibility.face[static_cast<std::size_t>(f)]) {
@@ -55,7 +56,8 @@ TEST(Visibility, WhatIsBehindIsHidden) {
   const Eigen::Index half = mesh.V.rows() / 2;
   for (Eigen::Index i = 0; i < half; ++i) EXPECT_TRUE(visibility.vertex[static_cast<std::size_t>(i)]);
   for (Eigen::Index i = half; i < mesh.V.rows(); ++i) {
-    const bool covered = mesh.V(i, 0) < mesh.V.col(0).head(half).maxCoeff() && mesh.V(i, 1) < mesh.V.col(1).head(half).maxCoeff();
+    const bool covered =
+        mesh.V(i, 0) < mesh.V.col(0).head(half).maxCoeff() && mesh.V(i, 1) < mesh.V.col(1).head(half).maxCoeff();
     EXPECT_EQ(visibility.vertex[static_cast<std::size_t>(i)] != 0, !covered) << i;
   }
 }

@@ -69,9 +69,11 @@ TEST(Forming, dome_has_half_the_mean_thickness) {
     Vec2 centre(0, 0);
     for (int k = 0; k < 3; ++k) centre += sheet.sheet_mm.row(sheet.mesh.F(f, k)).transpose() / 3;
     if (centre.norm() > R) continue;
-    const Vec3 a = sheet.mesh.V.row(sheet.mesh.F(f, 0)), b = sheet.mesh.V.row(sheet.mesh.F(f, 1)), c = sheet.mesh.V.row(sheet.mesh.F(f, 2));
+    const Vec3 a = sheet.mesh.V.row(sheet.mesh.F(f, 0)), b = sheet.mesh.V.row(sheet.mesh.F(f, 1)),
+               c = sheet.mesh.V.row(sheet.mesh.F(f, 2));
     area += 0.5 * (b - a).cross(c - a).norm();
-    const Vec2 e1 = (sheet.sheet_mm.row(sheet.mesh.F(f, 1)) - sheet.sheet_mm.row(sheet.mesh.F(f, 0))).transpose(), e2 = (sheet.sheet_mm.row(sheet.mesh.F(f, 2)) - sheet.sheet_mm.row(sheet.mesh.F(f, 0))).transpose();
+    const Vec2 e1 = (sheet.sheet_mm.row(sheet.mesh.F(f, 1)) - sheet.sheet_mm.row(sheet.mesh.F(f, 0))).transpose(),
+               e2 = (sheet.sheet_mm.row(sheet.mesh.F(f, 2)) - sheet.sheet_mm.row(sheet.mesh.F(f, 0))).transpose();
     flat += 0.5 * (e1.x() * e2.y() - e1.y() * e2.x());
   }
   EXPECT_NEAR(flat / area, 0.5, 0.02);
@@ -81,11 +83,12 @@ TEST(Forming, dome_has_half_the_mean_thickness) {
 TEST(Forming, cone_wall_thins_as_a_sticking_cap_does) {
   // h/h0 = (1 + cos alpha)/2 (1 - S sin(alpha)/H)^(sec(alpha) - 1) at slant S, for a free cap of even thickness.
   const double alpha = std::numbers::pi / 3, R = 40, H = R * std::tan(alpha);
-  const FormedResult result = form(block_with_cavity(59.9, 75, std::vector<std::pair<double, double>>{{R, 0}, {0, H}}, 128), [&] {
-    ThermoformOptions o = blow_down(12000, 75);
-    o.platform_travel_mm = 90;
-    return o;
-  }());
+  const FormedResult result =
+      form(block_with_cavity(59.9, 75, std::vector<std::pair<double, double>>{{R, 0}, {0, H}}, 128), [&] {
+        ThermoformOptions o = blow_down(12000, 75);
+        o.platform_travel_mm = 90;
+        return o;
+      }());
   double error = 0, worst = 0;
   int count = 0;
   const FormedSheet& sheet = result.sheet;
@@ -93,7 +96,8 @@ TEST(Forming, cone_wall_thins_as_a_sticking_cap_does) {
     const double radius = sheet.mesh.V.row(i).head<2>().norm(), depth = 75 - sheet.mesh.V(i, 2);
     if (sheet.contact_s[i] <= 0 || depth < 0.15 * H || depth > 0.7 * H || radius > R) continue;
     const double S = depth / std::sin(alpha);
-    const double expected = 0.5 * (1 + std::cos(alpha)) * std::pow(1 - S * std::sin(alpha) / H, 1 / std::cos(alpha) - 1);
+    const double expected =
+        0.5 * (1 + std::cos(alpha)) * std::pow(1 - S * std::sin(alpha) / H, 1 / std::cos(alpha) - 1);
     const double off = sheet.thickness_mm[i] - expected;
     error += std::abs(off);
     worst = std::max(worst, std::abs(off));
@@ -108,7 +112,9 @@ TEST(Forming, cone_wall_thins_as_a_sticking_cap_does) {
 TEST(Forming, plastic_is_neither_made_nor_lost) {
   const FormedResult result = form(pyramid(60, 40), small_machine(2500));
   EXPECT_LT(result.volume_drift, 1e-12);
-  const double volume = (result.sheet.thickness_mm.array() > 0).all() ? result.mean_thickness_mm * (result.formed_area_mm2 + result.unformed_area_mm2) : 0;
+  const double volume = (result.sheet.thickness_mm.array() > 0).all()
+                            ? result.mean_thickness_mm * (result.formed_area_mm2 + result.unformed_area_mm2)
+                            : 0;
   EXPECT_NEAR(volume, 120 * 120 * 1.0, 1e-9 * 14400);
 }
 
@@ -177,18 +183,21 @@ TEST(Forming, finer_sheets_and_shorter_steps_converge) {
     return form_sheet(std::make_shared<const MouldShape>(dome), place(dome, o, clamp_opening_mm(o)), o, context);
   };
   const FormedResult finest = run(16000, 1);
-  const double coarse = mean_distance(run(1000, 1).sheet, finest.sheet), middle = mean_distance(run(4000, 1).sheet, finest.sheet);
+  const double coarse = mean_distance(run(1000, 1).sheet, finest.sheet),
+               middle = mean_distance(run(4000, 1).sheet, finest.sheet);
   EXPECT_LT(middle, 0.15);
   EXPECT_GT(std::log2(coarse / middle), 0.8) << coarse << " " << middle;  // per halving of the edges
   RecordProperty("order_h", std::to_string(std::log2(coarse / middle)));
   const FormedResult patient = run(4000, 0.1);
-  const double long_steps = mean_distance(run(4000, 1.6).sheet, patient.sheet), short_steps = mean_distance(run(4000, 0.4).sheet, patient.sheet);
+  const double long_steps = mean_distance(run(4000, 1.6).sheet, patient.sheet),
+               short_steps = mean_distance(run(4000, 0.4).sheet, patient.sheet);
   EXPECT_GT(std::log2(long_steps / short_steps) / 2, 0.5) << long_steps << " " << short_steps;
   RecordProperty("order_dt", std::to_string(std::log2(long_steps / short_steps) / 2));
 }
 
 TEST(Forming, models_that_do_not_fit_are_refused_with_the_reason) {
-  const auto refused = [](const TriangleMesh& mesh, const ThermoformOptions& o, const std::string& where, const std::string& words) {
+  const auto refused = [](const TriangleMesh& mesh, const ThermoformOptions& o, const std::string& where,
+                          const std::string& words) {
     try {
       form(mesh, o);
       FAIL() << "not refused: " << words;
@@ -238,7 +247,8 @@ TEST(Forming, corners_of_the_parameters_ranges_all_finish) {
   }
 }
 
-/// Long steps of a stiff sheet that flows at once: Newton's overshoot once met the wall of the box a metre above the sheet and stuck there.
+/// Long steps of a stiff sheet that flows at once: Newton's overshoot once met the wall of the box a metre above the
+/// sheet and stuck there.
 TEST(Forming, a_stiff_sheet_that_flows_stays_in_its_box) {
   for (const double stiffness : {1e7, 9.9e6, 8e6}) {
     ThermoformOptions o;

@@ -33,7 +33,9 @@ TEST(PredictMeasured, scales_and_shifts_are_those_of_their_declaration) {
   effects.scan_shift_x_mm = 1;
   effects.scan_shift_z_mm = -2;
   const Positions predicted = predict_measured(slope(), places, MeasuredSurface::mid, 5, 1, effects, 3);
-  const auto scanned = [](double x, double y, double z) { return Vec3(0.99 * x + 1, 0.99 * y, 3 + 0.99 * (z - 3) - 2); };
+  const auto scanned = [](double x, double y, double z) {
+    return Vec3(0.99 * x + 1, 0.99 * y, 3 + 0.99 * (z - 3) - 2);
+  };
   EXPECT_LT((predicted.row(0).transpose() - scanned(10.2, -20.4, 21.02)).norm(), 1e-9);
   EXPECT_LT((predicted.row(1).transpose() - scanned(0, 0, 20)).norm(), 1e-9);
   EXPECT_LT((predicted.row(2).transpose() - scanned(61.2, 0, 5)).norm(), 1e-9);
@@ -61,7 +63,8 @@ TEST(PredictMeasured, comparison_with_its_own_prediction_finds_no_error) {
 MachineProfile some_profile() {
   MachineProfile profile;
   profile.name = "Formech in the cellar";
-  profile.parameters = {{"yield_strain", 0.07}, {"heating_gradient_x", 0.25}, {"vacuum_kpa", 70}, {"vacuum_ramp_s", 0.4}};
+  profile.parameters = {
+      {"yield_strain", 0.07}, {"heating_gradient_x", 0.25}, {"vacuum_kpa", 70}, {"vacuum_ramp_s", 0.4}};
   profile.measurement.scan_scale = 0.0125;
   profile.from = {"pyramid 1"};
   profile.notes = {"The left heater is weak."};

@@ -52,7 +52,8 @@ TEST_P(EveryLaw, forces_are_the_negative_gradient_of_the_energy) {
 TEST_P(EveryLaw, stiffness_in_tension_is_the_derivative_of_the_forces) {
   const SheetMesh sheet = small_sheet();
   Membrane membrane(sheet.flat_mm, sheet.F, 0.8, material(GetParam()));
-  BlockMatrix matrix(static_cast<int>(sheet.flat_mm.rows()), std::span(sheet.F.data(), static_cast<std::size_t>(sheet.F.size())), 3);
+  BlockMatrix matrix(static_cast<int>(sheet.flat_mm.rows()),
+                     std::span(sheet.F.data(), static_cast<std::size_t>(sheet.F.size())), 3);
   membrane.use_matrix(matrix);
   Positions x = shaken(sheet, 0.02, 3);
   membrane.begin_step(x, none_held(sheet));
@@ -60,7 +61,8 @@ TEST_P(EveryLaw, stiffness_in_tension_is_the_derivative_of_the_forces) {
   Positions force = Positions::Zero(n, 3);
   membrane.add_forces(x, for_ever, 0, n, force, &matrix);
   double largest = 0;
-  for (int i = 0; i < n; ++i) largest = std::max(largest, static_cast<double>(matrix.block(matrix.diagonal_slot(i))[0][0]));
+  for (int i = 0; i < n; ++i)
+    largest = std::max(largest, static_cast<double>(matrix.block(matrix.diagonal_slot(i))[0][0]));
   const double step = 1e-5;
   for (int j = 0; j < n; j += 5)
     for (int l = 0; l < 3; ++l) {
@@ -95,7 +97,9 @@ TEST_P(EveryLaw, stiffness_is_symmetric_and_has_no_negative_curvature) {
   for (int i = 0; i < n; ++i)
     for (const int j : matrix.columns(i))
       for (int k = 0; k < 3; ++k)
-        for (int l = 0; l < 3; ++l) dense(3 * i + k, 3 * j + l) = static_cast<double>(matrix.block(matrix.slot(i, j))[static_cast<std::size_t>(l)][k]);
+        for (int l = 0; l < 3; ++l)
+          dense(3 * i + k, 3 * j + l) =
+              static_cast<double>(matrix.block(matrix.slot(i, j))[static_cast<std::size_t>(l)][k]);
   const double size = dense.cwiseAbs().maxCoeff();
   EXPECT_LT((dense - dense.transpose()).cwiseAbs().maxCoeff(), 1e-5 * size);
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense).eigenvalues().minCoeff(), -1e-5 * size);
@@ -126,7 +130,8 @@ TEST_P(EveryLaw, small_stretch_has_plane_stress_stiffness) {
     Positions x = Positions::Zero(sheet.flat_mm.rows(), 3);
     membrane.begin_step((x.leftCols(2) = sheet.flat_mm, x), none_held(sheet));
     x.leftCols(2) *= 1 + strain;
-    const double energy = membrane.energy(x, for_ever), expected = 400 * m.young_mpa / (1 - m.poisson_ratio) * strain * strain;
+    const double energy = membrane.energy(x, for_ever),
+                 expected = 400 * m.young_mpa / (1 - m.poisson_ratio) * strain * strain;
     const double error = std::abs(energy / expected - 1);
     EXPECT_LT(error, 3 * strain);
     if (last > 0) {
@@ -154,7 +159,8 @@ TEST(Membrane, sheet_over_four_triangles_and_over_many_has_the_same_energy) {
   const Eigen::Matrix2d strain = 0.5 * (A.transpose() * A - Eigen::Matrix2d::Identity());
   const MembraneMaterial m;
   const double nu = m.poisson_ratio;
-  const double exact = 0.5 * 120 * m.young_mpa / (1 - nu * nu) * ((1 - nu) * (strain * strain).trace() + nu * strain.trace() * strain.trace());
+  const double exact = 0.5 * 120 * m.young_mpa / (1 - nu * nu) *
+                       ((1 - nu) * (strain * strain).trace() + nu * strain.trace() * strain.trace());
   EXPECT_NEAR(first, exact, 1e-12 * exact);
 }
 
@@ -256,7 +262,8 @@ TEST(HingeBending, angle_and_gradient) {
       EXPECT_NEAR(gradient[v][k], (above - below) / 2e-6, 1e-8);
     }
   // A right angle, exactly.
-  EXPECT_NEAR(hinge_angle(Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, -1), nullptr), std::numbers::pi / 2, 1e-15);
+  EXPECT_NEAR(hinge_angle(Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, -1), nullptr), std::numbers::pi / 2,
+              1e-15);
 }
 
 TEST(HingeBending, forces_are_the_negative_gradient_of_the_energy) {

@@ -20,11 +20,14 @@ constexpr double tolerance_mm = 0.01, thickness_mm = 0.8;
 
 /// Distance of a point from a face at a moment of the step.
 double distance(const Triangles& F, int face, const Positions& from, const Positions& to, double t, const Vec3& q) {
-  const auto corner = [&](int k) -> Vec3 { return (from.row(F(face, k)) + t * (to.row(F(face, k)) - from.row(F(face, k)))).transpose(); };
+  const auto corner = [&](int k) -> Vec3 {
+    return (from.row(F(face, k)) + t * (to.row(F(face, k)) - from.row(F(face, k)))).transpose();
+  };
   return nearest_on_triangle(q, corner(0), corner(1), corner(2)).distance;
 }
 
-/// A sheet sinks, waving, through a cloud of points, with steps from a hair to several edges, some of them tried in vain.
+/// A sheet sinks, waving, through a cloud of points, with steps from a hair to several edges, some of them tried in
+/// vain.
 void expect_every_point_met(unsigned seed, bool bounds_known) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -50,7 +53,8 @@ void expect_every_point_met(unsigned seed, bool bounds_known) {
   for (int step = 0; step < 28; ++step) {
     Positions to = from;
     const double sink = sinks_mm[step % 6];
-    for (Eigen::Index i = 0; i < to.rows(); ++i) to.row(i) += Vec3(0.2 * unit(random), -0.2 * unit(random), -sink * (0.5 + unit(random))).transpose();
+    for (Eigen::Index i = 0; i < to.rows(); ++i)
+      to.row(i) += Vec3(0.2 * unit(random), -0.2 * unit(random), -sink * (0.5 + unit(random))).transpose();
     if (step % 4 == 1) {  // tried in vain
       const std::size_t before = contacts.contacts().size();
       contacts.find(sheet.F, from, to + (to - from), thickness, held, tolerance_mm, clear);
@@ -61,13 +65,16 @@ void expect_every_point_met(unsigned seed, bool bounds_known) {
     for (std::size_t c = before; c < contacts.contacts().size(); ++c) {
       const PointContact& contact = contacts.contacts()[c];
       EXPECT_TRUE(met.insert(contact.point).second) << "a point met twice";
-      EXPECT_LT(distance(sheet.F, contact.face, from, to, contact.fraction, points[static_cast<std::size_t>(contact.point)]), 0.5 * thickness_mm + tolerance_mm + 1e-9);
+      EXPECT_LT(
+          distance(sheet.F, contact.face, from, to, contact.fraction, points[static_cast<std::size_t>(contact.point)]),
+          0.5 * thickness_mm + tolerance_mm + 1e-9);
     }
     for (int p = 0; p < static_cast<int>(points.size()); ++p) {
       if (met.count(p)) continue;
       for (int f = 0; f < static_cast<int>(faces); ++f)
         for (int k = 0; k <= 20; ++k)
-          ASSERT_GE(distance(sheet.F, f, from, to, 0.05 * k, points[static_cast<std::size_t>(p)]), 0.5 * thickness_mm) << "step " << step << ", point " << p << ", face " << f;
+          ASSERT_GE(distance(sheet.F, f, from, to, 0.05 * k, points[static_cast<std::size_t>(p)]), 0.5 * thickness_mm)
+              << "step " << step << ", point " << p << ", face " << f;
     }
     from = to;
   }

@@ -40,18 +40,19 @@ SheetMesh disc(double radius_mm, int rings) {
   return sheet;
 }
 
-/// Deflection in the middle of a clamped circular membrane over its radius, per (q a / (E h))^(1/3): Hencky 1915, with the
-/// coefficients as corrected by Fichter 1997.
+/// Deflection in the middle of a clamped circular membrane over its radius, per (q a / (E h))^(1/3): Hencky 1915, with
+/// the coefficients as corrected by Fichter 1997.
 double hencky(double nu) {
   const auto edge = [&](double b) {  // radial displacement at the edge
-    return (1 - nu) * b - (3 - nu) / std::pow(b, 2) - (5 - nu) * 2 / (3 * std::pow(b, 5)) - (7 - nu) * 13 / (18 * std::pow(b, 8)) -
-           (9 - nu) * 17 / (18 * std::pow(b, 11)) - (11 - nu) * 37 / (27 * std::pow(b, 14)) - (13 - nu) * 1205 / (567 * std::pow(b, 17));
+    return (1 - nu) * b - (3 - nu) / std::pow(b, 2) - (5 - nu) * 2 / (3 * std::pow(b, 5)) -
+           (7 - nu) * 13 / (18 * std::pow(b, 8)) - (9 - nu) * 17 / (18 * std::pow(b, 11)) -
+           (11 - nu) * 37 / (27 * std::pow(b, 14)) - (13 - nu) * 1205 / (567 * std::pow(b, 17));
   };
   double low = 1, high = 3;
   for (int i = 0; i < 100; ++i) (edge(0.5 * (low + high)) < 0 ? low : high) = 0.5 * (low + high);
   const double b = low;
-  return 1 / b + 1 / (2 * std::pow(b, 4)) + 5 / (9 * std::pow(b, 7)) + 55 / (72 * std::pow(b, 10)) + 7 / (6 * std::pow(b, 13)) +
-         205 / (108 * std::pow(b, 16)) + 17051 / (5292 * std::pow(b, 19));
+  return 1 / b + 1 / (2 * std::pow(b, 4)) + 5 / (9 * std::pow(b, 7)) + 55 / (72 * std::pow(b, 10)) +
+         7 / (6 * std::pow(b, 13)) + 205 / (108 * std::pow(b, 16)) + 17051 / (5292 * std::pow(b, 19));
 }
 
 ThermoformOptions elastic() {
@@ -71,13 +72,15 @@ TEST(SheetDynamics, circular_membrane_sags_as_hencky_says_and_converges) {
   // A weight that strains the sheet by some 1e-4: Hencky's theory is that of small strain.
   load.gravity_mm_per_s2 = 0.3;
   const double q = o.density_kg_per_m3 * 1e-12 * load.gravity_mm_per_s2 * o.sheet_thickness_mm;
-  const double expected = hencky(o.poisson_ratio) * a * std::cbrt(q * a / (o.young_modulus_pa * 1e-6 * o.sheet_thickness_mm));
+  const double expected =
+      hencky(o.poisson_ratio) * a * std::cbrt(q * a / (o.young_modulus_pa * 1e-6 * o.sheet_thickness_mm));
   EXPECT_NEAR(hencky(0.3), 0.653, 0.001);
   std::vector<double> errors;
   for (const int rings : {6, 12, 24}) {
     SheetDynamics dynamics(disc(a, rings), o, 0, nullptr);
     Positions guess = dynamics.x();
-    for (Eigen::Index i = 0; i < guess.rows(); ++i) guess(i, 2) -= 0.9 * expected * (1 - guess.row(i).head<2>().squaredNorm() / (a * a));
+    for (Eigen::Index i = 0; i < guess.rows(); ++i)
+      guess(i, 2) -= 0.9 * expected * (1 - guess.row(i).head<2>().squaredNorm() / (a * a));
     SheetDynamics::Outcome outcome = SheetDynamics::Outcome::not_converged;
     for (int attempt = 0; attempt < 40 && outcome != SheetDynamics::Outcome::done; ++attempt) {
       dynamics.guess(guess);
@@ -107,7 +110,8 @@ TEST(SheetDynamics, newtonian_sheet_sags_with_the_cube_root_of_time) {
   load.quasi_static = true;
   load.gravity_mm_per_s2 = 10;
   Positions guess = dynamics.x();
-  for (Eigen::Index i = 0; i < guess.rows(); ++i) guess(i, 2) -= 1.0 * (1 - std::pow(guess(i, 0) / 100, 2)) * (1 - std::pow(guess(i, 1) / 100, 2));
+  for (Eigen::Index i = 0; i < guess.rows(); ++i)
+    guess(i, 2) -= 1.0 * (1 - std::pow(guess(i, 0) / 100, 2)) * (1 - std::pow(guess(i, 1) / 100, 2));
   std::vector<double> sag;
   double dt = 1e-4;
   for (const double until : {0.02, 0.04, 0.08, 0.16}) {
@@ -124,7 +128,8 @@ TEST(SheetDynamics, newtonian_sheet_sags_with_the_cube_root_of_time) {
     }
     sag.push_back(-dynamics.x().col(2).minCoeff());
   }
-  for (std::size_t i = 0; i + 1 < sag.size(); ++i) EXPECT_NEAR(std::log2(sag[i + 1] / sag[i]), 1.0 / 3, 0.02) << "at doubling " << i;
+  for (std::size_t i = 0; i + 1 < sag.size(); ++i)
+    EXPECT_NEAR(std::log2(sag[i + 1] / sag[i]), 1.0 / 3, 0.02) << "at doubling " << i;
 }
 
 /// The hinges' stiffness at rest, for movements across the sheet.
@@ -142,9 +147,11 @@ double plate_deflection(int triangles, double a, double young_mpa, double nu, do
     if (sheet.flat_mm.row(i).norm() < a) unknown[static_cast<std::size_t>(i)] = free++;
   Eigen::VectorXd load = Eigen::VectorXd::Zero(free);
   for (int f = 0; f < sheet.F.rows(); ++f) {
-    const Vec2 e1 = (sheet.flat_mm.row(sheet.F(f, 1)) - sheet.flat_mm.row(sheet.F(f, 0))).transpose(), e2 = (sheet.flat_mm.row(sheet.F(f, 2)) - sheet.flat_mm.row(sheet.F(f, 0))).transpose();
+    const Vec2 e1 = (sheet.flat_mm.row(sheet.F(f, 1)) - sheet.flat_mm.row(sheet.F(f, 0))).transpose(),
+               e2 = (sheet.flat_mm.row(sheet.F(f, 2)) - sheet.flat_mm.row(sheet.F(f, 0))).transpose();
     for (int k = 0; k < 3; ++k)
-      if (const int row = unknown[static_cast<std::size_t>(sheet.F(f, k))]; row >= 0) load[row] += q * (e1.x() * e2.y() - e1.y() * e2.x()) / 6;
+      if (const int row = unknown[static_cast<std::size_t>(sheet.F(f, k))]; row >= 0)
+        load[row] += q * (e1.x() * e2.y() - e1.y() * e2.x()) / 6;
   }
   std::vector<Eigen::Triplet<double>> entries;
   const std::vector<double> stiffness = bending.stiffness_mj();
@@ -155,7 +162,8 @@ double plate_deflection(int triangles, double a, double young_mpa, double nu, do
     for (std::size_t i = 0; i < 4; ++i)
       for (std::size_t j = 0; j < 4; ++j) {
         const int row = unknown[static_cast<std::size_t>(v[i])], column = unknown[static_cast<std::size_t>(v[j])];
-        if (row >= 0 && column >= 0) entries.emplace_back(row, column, 2 * stiffness[hinge] * gradient[i].z() * gradient[j].z());
+        if (row >= 0 && column >= 0)
+          entries.emplace_back(row, column, 2 * stiffness[hinge] * gradient[i].z() * gradient[j].z());
       }
   }
   Eigen::SparseMatrix<double> K(free, free);
@@ -168,7 +176,8 @@ TEST(SheetDynamics, hinges_bend_like_a_clamped_circular_plate) {
   const double a = 50, young = 2.75, nu = 0.35, h = 1, q = 1e-6;
   const double D = young * h * h * h / (12 * (1 - nu * nu)), expected = q * std::pow(a, 4) / (64 * D);
   std::vector<double> ratio;
-  for (const int triangles : {2500, 10000, 40000}) ratio.push_back(plate_deflection(triangles, a, young, nu, h, q) / expected);
+  for (const int triangles : {2500, 10000, 40000})
+    ratio.push_back(plate_deflection(triangles, a, young, nu, h, q) / expected);
   RecordProperty("ratios", std::to_string(ratio[0]) + " " + std::to_string(ratio[1]) + " " + std::to_string(ratio[2]));
   // The rim is a staircase, and hinges on this mesh of alternating diagonals tend to a plate some 4 % too stiff.
   EXPECT_NEAR(ratio[1], 1, 0.05) << ratio[0];

@@ -28,16 +28,19 @@ ThermoformOptions small_machine(int triangles) {
   return o;
 }
 
-double mean_movement(const FormedResult& a, const FormedResult& b) { return (a.sheet.mesh.V - b.sheet.mesh.V).rowwise().norm().mean(); }
+double mean_movement(const FormedResult& a, const FormedResult& b) {
+  return (a.sheet.mesh.V - b.sheet.mesh.V).rowwise().norm().mean();
+}
 
 TEST(SheetEffects, next_to_nothing_of_any_effect_gives_the_same_bits_as_none) {
   const TriangleMesh shape = pyramid(60, 40);
   const FormedResult none = form(shape, small_machine(800));
   constexpr double next_to_nothing = 1e-300;  // runs each effect's code, and rounds to nothing
   for (double SheetEffects::*effect :
-       {&SheetEffects::heating_gradient_x, &SheetEffects::heating_gradient_y, &SheetEffects::heating_centre, &SheetEffects::thickness_wedge_x,
-        &SheetEffects::thickness_wedge_y, &SheetEffects::anisotropy, &SheetEffects::slip, &SheetEffects::cooling, &SheetEffects::weak_vacuum,
-        &SheetEffects::clamp_slip_mm, &SheetEffects::mould_shift_x_mm, &SheetEffects::mould_rotation_deg, &SheetEffects::mould_scale}) {
+       {&SheetEffects::heating_gradient_x, &SheetEffects::heating_gradient_y, &SheetEffects::heating_centre,
+        &SheetEffects::thickness_wedge_x, &SheetEffects::thickness_wedge_y, &SheetEffects::anisotropy,
+        &SheetEffects::slip, &SheetEffects::cooling, &SheetEffects::weak_vacuum, &SheetEffects::clamp_slip_mm,
+        &SheetEffects::mould_shift_x_mm, &SheetEffects::mould_rotation_deg, &SheetEffects::mould_scale}) {
     ThermoformOptions o = small_machine(800);
     static_cast<SheetEffects&>(o).*effect = next_to_nothing;
     EXPECT_EQ(form(shape, o).sheet.mesh.V, none.sheet.mesh.V);
@@ -73,7 +76,8 @@ TEST(SheetEffects, turning_the_machine_turns_the_result) {
   // What is along x here is along y there; a square sheet's mesh maps onto itself.
   const TriangleMesh shape = pyramid(60, 40);
   const SheetMesh mesh = make_sheet_mesh(Vec2(120, 120), 1500);
-  const auto turned = [&](const std::function<void(ThermoformOptions&)>& along_x, const std::function<void(ThermoformOptions&)>& along_y) {
+  const auto turned = [&](const std::function<void(ThermoformOptions&)>& along_x,
+                          const std::function<void(ThermoformOptions&)>& along_y) {
     ThermoformOptions a = small_machine(1500), b = a;
     along_x(a);
     along_y(b);
@@ -82,14 +86,20 @@ TEST(SheetEffects, turning_the_machine_turns_the_result) {
     for (int row = 0; row < mesh.rows; ++row)
       for (int column = 0; column < mesh.columns; ++column) {
         // (x, y) -> (-y, x)
-        const Vec3 p = in_x.sheet.mesh.V.row(row * mesh.columns + column), q = in_y.sheet.mesh.V.row(column * mesh.columns + mesh.columns - 1 - row);
+        const Vec3 p = in_x.sheet.mesh.V.row(row * mesh.columns + column),
+                   q = in_y.sheet.mesh.V.row(column * mesh.columns + mesh.columns - 1 - row);
         sum += (Vec3(-p.y(), p.x(), p.z()) - q).norm();
       }
     return sum / static_cast<double>(mesh.rows * mesh.columns) / moved;
   };
-  EXPECT_LT(turned([](ThermoformOptions& o) { o.heating_gradient_x = 0.4; }, [](ThermoformOptions& o) { o.heating_gradient_y = 0.4; }), 0.1);
-  EXPECT_LT(turned([](ThermoformOptions& o) { o.thickness_wedge_x = 0.4; }, [](ThermoformOptions& o) { o.thickness_wedge_y = 0.4; }), 0.1);
-  EXPECT_LT(turned([](ThermoformOptions& o) { o.anisotropy = 0.4; }, [](ThermoformOptions& o) { o.anisotropy = -0.4; }), 0.15);
+  EXPECT_LT(turned([](ThermoformOptions& o) { o.heating_gradient_x = 0.4; },
+                   [](ThermoformOptions& o) { o.heating_gradient_y = 0.4; }),
+            0.1);
+  EXPECT_LT(turned([](ThermoformOptions& o) { o.thickness_wedge_x = 0.4; },
+                   [](ThermoformOptions& o) { o.thickness_wedge_y = 0.4; }),
+            0.1);
+  EXPECT_LT(turned([](ThermoformOptions& o) { o.anisotropy = 0.4; }, [](ThermoformOptions& o) { o.anisotropy = -0.4; }),
+            0.15);
 }
 
 TEST(SheetEffects, effects_move_points_the_way_they_should) {
@@ -103,7 +113,8 @@ TEST(SheetEffects, effects_move_points_the_way_they_should) {
   // A colder right side stretches less: it stays thicker there, and the sheet's middle moves to it.
   const FormedResult heated = with([](ThermoformOptions& o) { o.heating_gradient_x = 0.4; });
   double right = 0, left = 0;
-  for (Eigen::Index i = 0; i < heated.sheet.mesh.V.rows(); ++i) (heated.sheet.sheet_mm(i, 0) > 0 ? right : left) += heated.sheet.thickness_mm[i] - none.sheet.thickness_mm[i];
+  for (Eigen::Index i = 0; i < heated.sheet.mesh.V.rows(); ++i)
+    (heated.sheet.sheet_mm(i, 0) > 0 ? right : left) += heated.sheet.thickness_mm[i] - none.sheet.thickness_mm[i];
   EXPECT_GT(right, left);
   EXPECT_GT((heated.sheet.mesh.V - none.sheet.mesh.V).col(0).mean(), 0.02);
   // A clamp that gives way leaves the sheet thicker in the mean; the rim has come in by as much.
@@ -119,7 +130,8 @@ TEST(SheetEffects, effects_move_points_the_way_they_should) {
   const FormedResult sliding = with([](ThermoformOptions& o) { o.slip = 5; });
   double fallen = 0, counted = 0;
   for (Eigen::Index i = 0; i < none.sheet.mesh.V.rows(); ++i)
-    if (none.sheet.mesh.V(i, 2) > 5 && none.sheet.contact_s[i] > 0) fallen += none.sheet.mesh.V(i, 2) - sliding.sheet.mesh.V(i, 2), ++counted;
+    if (none.sheet.mesh.V(i, 2) > 5 && none.sheet.contact_s[i] > 0)
+      fallen += none.sheet.mesh.V(i, 2) - sliding.sheet.mesh.V(i, 2), ++counted;
   EXPECT_GT(fallen / counted, 0.2);
 }
 
@@ -156,15 +168,18 @@ TEST(SheetEffects, half_an_effect_moves_points_half_as_far_the_same_way) {
   o.step_mm = 0.5;
   const Placement placement = place(sample, o, clamp_opening_mm(o));
   const Positions reference = form_sheet(shape, placement, o, context).sheet.mesh.V;
-  for (double SheetEffects::*effect : {&SheetEffects::heating_gradient_x, &SheetEffects::heating_centre, &SheetEffects::thickness_wedge_x, &SheetEffects::anisotropy,
-                                       &SheetEffects::cooling, &SheetEffects::clamp_slip_mm}) {
+  for (double SheetEffects::*effect :
+       {&SheetEffects::heating_gradient_x, &SheetEffects::heating_centre, &SheetEffects::thickness_wedge_x,
+        &SheetEffects::anisotropy, &SheetEffects::cooling, &SheetEffects::clamp_slip_mm}) {
     ThermoformOptions with = o;
     static_cast<SheetEffects&>(with).*effect = 0.25;
     const Positions half = form_sheet(shape, placement, with, context).sheet.mesh.V - reference;
     static_cast<SheetEffects&>(with).*effect = 0.5;
     const Positions full = form_sheet(shape, placement, with, context).sheet.mesh.V - reference;
     // Anisotropy pulls vertices across the pyramid's edges, where sticking decides for one side or the other.
-    EXPECT_GT(half.cwiseProduct(full).sum() / (half.norm() * full.norm()), effect == &SheetEffects::anisotropy ? 0.85 : 0.95) << info(effect);
+    EXPECT_GT(half.cwiseProduct(full).sum() / (half.norm() * full.norm()),
+              effect == &SheetEffects::anisotropy ? 0.85 : 0.95)
+        << info(effect);
     EXPECT_NEAR(half.norm() / full.norm(), 0.5, 0.15) << info(effect);
   }
 }
@@ -185,7 +200,9 @@ TEST(SheetEffects, a_shifted_mould_on_a_huge_sheet_shifts_the_result) {
     for (int column = 0; column + 2 < mesh.columns; ++column) {
       const Eigen::Index i = row * mesh.columns + column;
       if (mesh.flat_mm.row(i).norm() > 8) continue;
-      worst = std::max(worst, (shifted.sheet.mesh.V.row(i + 2) - straight.sheet.mesh.V.row(i) - Eigen::RowVector3d(2 * cell, 0, 0)).norm());
+      worst = std::max(
+          worst,
+          (shifted.sheet.mesh.V.row(i + 2) - straight.sheet.mesh.V.row(i) - Eigen::RowVector3d(2 * cell, 0, 0)).norm());
     }
   EXPECT_LT(worst, 0.25 * 2 * cell);
 }
@@ -208,7 +225,8 @@ TEST(SheetEffects, a_wedge_keeps_its_volume) {
   o.thickness_wedge_y = -0.3;
   const FormedResult result = form(pyramid(60, 40), o);
   EXPECT_LT(result.volume_drift, 1e-12);
-  EXPECT_NEAR(result.mean_thickness_mm * (result.formed_area_mm2 + result.unformed_area_mm2), 120 * 120 * 1.0, 1e-9 * 14400);
+  EXPECT_NEAR(result.mean_thickness_mm * (result.formed_area_mm2 + result.unformed_area_mm2), 120 * 120 * 1.0,
+              1e-9 * 14400);
   // The flat sheet's corners in the clamp keep what they had.
   EXPECT_GT(result.sheet.thickness_mm.maxCoeff(), 1.4);
   EXPECT_NEAR(result.sheet.stretch.minCoeff(), 1, 0.35);
@@ -238,7 +256,8 @@ TEST(SheetEffects, forces_are_gradients_with_heat_wedge_anisotropy_and_chill) {
     membrane.begin_step(x, free);
     x = shaken(sheet, 0.3, 2);
     Positions force = Positions::Zero(x.rows(), 3);
-    BlockMatrix matrix(static_cast<int>(x.rows()), std::span(sheet.F.data(), static_cast<std::size_t>(sheet.F.size())), 3);
+    BlockMatrix matrix(static_cast<int>(x.rows()), std::span(sheet.F.data(), static_cast<std::size_t>(sheet.F.size())),
+                       3);
     membrane.use_matrix(matrix);
     matrix.set_zero();
     membrane.add_forces(x, 1e-2, 0, static_cast<int>(x.rows()), force, &matrix);
@@ -261,7 +280,8 @@ TEST(SheetEffects, forces_are_gradients_with_heat_wedge_anisotropy_and_chill) {
       for (std::size_t c = 0; c < matrix.columns(row).size(); ++c)
         for (int i = 0; i < 3; ++i)
           for (int j = 0; j < 3; ++j)
-            dense(3 * row + i, 3 * matrix.columns(row)[c] + j) = static_cast<double>(matrix.block(matrix.first_slot(row) + static_cast<int>(c))[static_cast<std::size_t>(j)][i]);
+            dense(3 * row + i, 3 * matrix.columns(row)[c] + j) = static_cast<double>(
+                matrix.block(matrix.first_slot(row) + static_cast<int>(c))[static_cast<std::size_t>(j)][i]);
     const Eigen::VectorXd eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense).eigenvalues();
     EXPECT_GT(eigenvalues.minCoeff(), -1e-5 * eigenvalues.maxCoeff());
   }
@@ -277,7 +297,8 @@ TEST(SheetEffects, what_grows_stiff_goes_on_pulling_as_hard) {
   const auto pull = [&](const Positions& place) {
     Positions force = Positions::Zero(place.rows(), 3);
     membrane.begin_step(x, free);
-    membrane.add_forces(place, std::numeric_limits<double>::infinity(), 0, static_cast<int>(place.rows()), force, nullptr);
+    membrane.add_forces(place, std::numeric_limits<double>::infinity(), 0, static_cast<int>(place.rows()), force,
+                        nullptr);
     return force;
   };
   const Positions hot = pull(x), hot_farther = pull(1.01 * x) - hot;
@@ -304,7 +325,9 @@ TEST(SheetEffects, chill_comes_as_the_exponential_and_spreads_the_same_on_finer_
       if (sheet.flat_mm.row(static_cast<Eigen::Index>(i)).norm() < 40) least = std::min(least, everywhere.chill()[i]);
       EXPECT_GE(half.chill()[i], 0);
       EXPECT_LE(half.chill()[i], 1);
-      if (const double away = (sheet.flat_mm.row(static_cast<Eigen::Index>(i)) - Eigen::RowVector2d(-6, 0)).norm(); away < nearest) nearest = away, at = half.chill()[i];
+      if (const double away = (sheet.flat_mm.row(static_cast<Eigen::Index>(i)) - Eigen::RowVector2d(-6, 0)).norm();
+          away < nearest)
+        nearest = away, at = half.chill()[i];
     }
     EXPECT_NEAR(least, 1 - std::exp(-2.0), 0.01);
     beside.push_back(at);

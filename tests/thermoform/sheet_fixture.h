@@ -22,8 +22,8 @@ inline Positions shaken(const SheetMesh& sheet, double amplitude_mm, unsigned se
   return x;
 }
 
-/// Surface of revolution about z from a profile (radius, height), closed at both ends on the axis. A negative radius stands for half
-/// the side of a square ring.
+/// Surface of revolution about z from a profile (radius, height), closed at both ends on the axis. A negative radius
+/// stands for half the side of a square ring.
 template <class Profile>
 TriangleMesh revolved(const Profile& profile, int around) {
   TriangleMesh mesh;
@@ -41,11 +41,14 @@ TriangleMesh revolved(const Profile& profile, int around) {
     }
   }
   for (int ring = 0; ring + 1 < rings; ++ring) {
-    const bool lower_point = profile[static_cast<std::size_t>(ring)].first == 0, upper_point = profile[static_cast<std::size_t>(ring) + 1].first == 0;
+    const bool lower_point = profile[static_cast<std::size_t>(ring)].first == 0,
+               upper_point = profile[static_cast<std::size_t>(ring) + 1].first == 0;
     for (int k = 0; k < around; ++k) {
       const int next = (k + 1) % around;
-      const int a = first[static_cast<std::size_t>(ring)] + (lower_point ? 0 : k), b = first[static_cast<std::size_t>(ring)] + (lower_point ? 0 : next);
-      const int c = first[static_cast<std::size_t>(ring) + 1] + (upper_point ? 0 : k), d = first[static_cast<std::size_t>(ring) + 1] + (upper_point ? 0 : next);
+      const int a = first[static_cast<std::size_t>(ring)] + (lower_point ? 0 : k),
+                b = first[static_cast<std::size_t>(ring)] + (lower_point ? 0 : next);
+      const int c = first[static_cast<std::size_t>(ring) + 1] + (upper_point ? 0 : k),
+                d = first[static_cast<std::size_t>(ring) + 1] + (upper_point ? 0 : next);
       if (!lower_point) F.emplace_back(a, b, upper_point ? c : d);
       if (!upper_point) F.emplace_back(a, d, c);
     }

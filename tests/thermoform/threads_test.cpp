@@ -37,7 +37,8 @@ void expect_apart(const FaceStrips& strips, const Triangles& F) {
         ++visits[static_cast<std::size_t>(f)];
         for (int k = 0; k < 3; ++k) own.insert(F(f, k));
       }
-      for (const int v : own) EXPECT_TRUE(taken.insert(v).second) << "strips " << s << " and another share vertex " << v;
+      for (const int v : own)
+        EXPECT_TRUE(taken.insert(v).second) << "strips " << s << " and another share vertex " << v;
     }
   }
   EXPECT_EQ(std::count(visits.begin(), visits.end(), 1), F.rows());
@@ -66,13 +67,16 @@ TEST(Membrane, strips_add_up_to_the_whole) {
   const SheetMesh sheet = make_sheet_mesh(Vec2(100, 120), 1500);
   const int n = static_cast<int>(sheet.flat_mm.rows());
   Membrane membrane(sheet.flat_mm, sheet.F, 1, {});
-  BlockMatrix whole_matrix(n, std::span(sheet.F.data(), static_cast<std::size_t>(sheet.F.size())), 3), matrix = whole_matrix;
+  BlockMatrix whole_matrix(n, std::span(sheet.F.data(), static_cast<std::size_t>(sheet.F.size())), 3),
+      matrix = whole_matrix;
   membrane.use_matrix(matrix);
   membrane.begin_step(shaken(sheet, 0.1, 1), HeldVertices(static_cast<std::size_t>(n), 0));
   const Positions x = shaken(sheet, 0.3, 2);
   Positions whole = Positions::Zero(n, 3), force = whole;
   membrane.add_forces(x, 1e-3, 0, n, whole, &whole_matrix);
-  FaceStrips(sheet.F, 64).for_each([&](int first, int end) { membrane.add_forces_of(first, end, x, 1e-3, force, &matrix); });
+  FaceStrips(sheet.F, 64).for_each([&](int first, int end) {
+    membrane.add_forces_of(first, end, x, 1e-3, force, &matrix);
+  });
   EXPECT_LT((force - whole).cwiseAbs().maxCoeff(), 1e-13 * whole.cwiseAbs().maxCoeff());
   for (int i = 0; i < n; ++i)
     for (int k = 0; k < 3; ++k) {

@@ -41,7 +41,8 @@ Aligned align(const TriangleMesh& mesh, const CurveOptions& curve, const CreaseA
   CreaseSystem system(a.segmentation, context);
   a.alignment = align_to_creases(a.segmentation, a.parameterisation, system, features, a.lines, options, context);
   // Other windings on the same model: what is kept between them leaves no trace.
-  const CreaseAlignment again = align_to_creases(a.segmentation, a.parameterisation, system, features, a.lines, options, context);
+  const CreaseAlignment again =
+      align_to_creases(a.segmentation, a.parameterisation, system, features, a.lines, options, context);
   EXPECT_EQ(again.parameterisation.corners_mm, a.alignment.parameterisation.corners_mm);
   const LineTracer before(a.segmentation, a.parameterisation), after(a.segmentation, a.alignment.parameterisation);
   a.even =

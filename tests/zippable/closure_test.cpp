@@ -64,8 +64,11 @@ double expect_sides_meet(const Ribbon& ribbon, const HandleClosure& closure) {
       continue;
     }
     for (std::size_t end = 0; end < 2; ++end)
-      apart = std::max(apart, (ribbon.boundary[left[end]].position_mm - ribbon.boundary[right->second[end]].position_mm).norm());
-    const auto flat = [&](const std::array<int, 2>& edge) { return (ribbon.flat_mm[edge[0]] - ribbon.flat_mm[edge[1]]).norm(); };
+      apart = std::max(
+          apart, (ribbon.boundary[left[end]].position_mm - ribbon.boundary[right->second[end]].position_mm).norm());
+    const auto flat = [&](const std::array<int, 2>& edge) {
+      return (ribbon.flat_mm[edge[0]] - ribbon.flat_mm[edge[1]]).norm();
+    };
     EXPECT_NEAR(flat(left), flat(right->second), 1e-9 * closure.length_mm);
   }
   return apart / closure.length_mm;
@@ -104,7 +107,8 @@ TEST(HandleClosure, MovesAndGrowsWithTheModel) {
   TriangleMesh other = torus;
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   other.V = (2 * torus.V * turn.transpose()).rowwise() + Eigen::RowVector3d(5, -3, 11);
-  const HandleClosure a = designed(torus, 15).design.ribbon.closures.at(0), b = designed(other, 30).design.ribbon.closures.at(0);
+  const HandleClosure a = designed(torus, 15).design.ribbon.closures.at(0),
+                      b = designed(other, 30).design.ribbon.closures.at(0);
   EXPECT_NEAR(b.length_mm, 2 * a.length_mm, 1e-8 * a.length_mm);
   for (std::size_t side = 0; side < 2; ++side) {
     ASSERT_EQ(a.sides[side].size(), b.sides[side].size());
@@ -127,7 +131,8 @@ TEST(HandleClosure, IsReadAgainOrRefused) {
   EXPECT_EQ(flat.closures[0].length_mm, made.length_mm);
   for (std::size_t side = 0; side < 2; ++side) {
     ASSERT_EQ(flat.closures[0].sides[side].size(), made.sides[side].size());
-    for (std::size_t r = 0; r < made.sides[side].size(); ++r) EXPECT_EQ(flat.closures[0].sides[side][r].along_mm, made.sides[side][r].along_mm);
+    for (std::size_t r = 0; r < made.sides[side].size(); ++r)
+      EXPECT_EQ(flat.closures[0].sides[side][r].along_mm, made.sides[side][r].along_mm);
   }
   // Files from before there were any.
   Json json = Json::parse(as_text(written));
@@ -149,7 +154,8 @@ TEST(HandleClosure, IsReadAgainOrRefused) {
   EXPECT_TRUE(refused([](Json& cut) { cut["sides"][1] = Json::array(); }));
   EXPECT_TRUE(refused([](Json& cut) { cut["sides"][0][0]["first_vertex"] = 1 << 20; }));
   EXPECT_TRUE(refused([](Json& cut) { cut["sides"][0][0]["first_vertex"] = 0; }));  // along the zipper
-  EXPECT_TRUE(refused([](Json& cut) { std::swap(cut["sides"][0][0]["along_mm"][1], cut["sides"][0][0]["along_mm"][2]); }));
+  EXPECT_TRUE(
+      refused([](Json& cut) { std::swap(cut["sides"][0][0]["along_mm"][1], cut["sides"][0][0]["along_mm"][2]); }));
 }
 
 }  // namespace

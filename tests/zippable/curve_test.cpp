@@ -33,9 +33,9 @@ Vec3 lifted(const Segmentation& s, const Parameterisation& p, int part, double x
       const double least = std::min({w.x(), w.y(), 1 - w.x() - w.y()});
       if (least <= best) continue;
       best = least;
-      result =
-          (s.mesh.V.row(s.mesh.F(f, 0)) * (1 - w.x() - w.y()) + s.mesh.V.row(s.mesh.F(f, 1)) * w.x() + s.mesh.V.row(s.mesh.F(f, 2)) * w.y())
-              .transpose();
+      result = (s.mesh.V.row(s.mesh.F(f, 0)) * (1 - w.x() - w.y()) + s.mesh.V.row(s.mesh.F(f, 1)) * w.x() +
+                s.mesh.V.row(s.mesh.F(f, 2)) * w.y())
+                   .transpose();
     }
   }
   return result;
@@ -55,7 +55,9 @@ TEST(LineTrace, OnACylinderIsTheHelix) {
     EXPECT_NEAR(line.position_mm[i].z(), turns / 7.3, 1e-9);
     // On the prism a share of a side is a share of its chord.
     const double sides = turns * around, whole = std::floor(sides + 1e-9), share = sides - whole;
-    const auto corner = [&](double k) { return Vec2(std::cos(start + 2 * pi * k / around), std::sin(start + 2 * pi * k / around)); };
+    const auto corner = [&](double k) {
+      return Vec2(std::cos(start + 2 * pi * k / around), std::sin(start + 2 * pi * k / around));
+    };
     const Vec2 expected = (1 - share) * corner(whole) + share * corner(whole + 1);
     EXPECT_LE((line.position_mm[i].head<2>() - expected).norm(), 1e-8);
   }
@@ -69,7 +71,8 @@ TEST(LineTrace, LiesOverTheStraightLineOnEveryPart) {
     test::Random random(3);
     for (int trial = 0; trial < 12; ++trial) {
       const int part = random.below(s.part_count());
-      const double low = random.uniform(-2, 3) * p.period_mm[part], high = low + random.uniform(0.01, 6) * p.period_mm[part];
+      const double low = random.uniform(-2, 3) * p.period_mm[part],
+                   high = low + random.uniform(0.01, 6) * p.period_mm[part];
       const TracedLine line = tracer.trace(part, low, high);
       EXPECT_TRUE(std::is_sorted(line.x_mm.begin(), line.x_mm.end()));
       for (int k = 0; k <= 8; ++k) {
@@ -94,7 +97,8 @@ TEST(Traversals, AreTheHamiltonianPaths) {
     for (int i = 0; i < s.part_count(); ++i) EXPECT_EQ(sorted[i], i);
     for (std::size_t i = 0; i < traversal.interfaces.size(); ++i) {
       const Interface& interface = s.interfaces[traversal.interfaces[i]];
-      const std::pair sides = std::minmax(interface.left, interface.right), parts = std::minmax(traversal.parts[i], traversal.parts[i + 1]);
+      const std::pair sides = std::minmax(interface.left, interface.right),
+                      parts = std::minmax(traversal.parts[i], traversal.parts[i + 1]);
       EXPECT_EQ(sides, parts);
     }
   }
@@ -160,8 +164,9 @@ TEST(ZipperCurve, IsOneCurveFromOpeningToOpening) {
     SCOPED_TRACE(sample);
     CurveOptions options;
     options.width_mm = 8, options.sample_mm = 2;
-    const test::Zipped z = std::string_view(sample) == "sphere" ? test::zip(test::alone(test::cylinder_side(30, 80, 40, 30)), options)
-                                                                : test::zip(test::proposed(sample, 4000, 3).segmentation, options);
+    const test::Zipped z = std::string_view(sample) == "sphere"
+                               ? test::zip(test::alone(test::cylinder_side(30, 80, 40, 30)), options)
+                               : test::zip(test::proposed(sample, 4000, 3).segmentation, options);
     const int parts = z.segmentation.part_count();
     EXPECT_EQ(z.curve.lines.size(), parts == 1 ? 1u : static_cast<std::size_t>(2 * parts - 2));
     EXPECT_EQ(z.curve.pieces.size(), parts == 1 ? 1u : static_cast<std::size_t>(parts - 1));
@@ -169,7 +174,8 @@ TEST(ZipperCurve, IsOneCurveFromOpeningToOpening) {
     // Along a piece no step is longer than a few samples: crossings join.
     for (const auto& piece : z.curve.pieces)
       for (std::size_t i = 0; i + 1 < piece.size(); ++i)
-        EXPECT_LE((z.curve.samples[piece[i]].position_mm - z.curve.samples[piece[i + 1]].position_mm).norm(), 5 * options.sample_mm);
+        EXPECT_LE((z.curve.samples[piece[i]].position_mm - z.curve.samples[piece[i + 1]].position_mm).norm(),
+                  5 * options.sample_mm);
     // Both lines of a Fermat spiral reach the opening half a period apart.
     for (std::size_t l = 0; l + 1 < z.curve.lines.size(); ++l) {
       const SpiralLine &in = z.curve.lines[l], &out = z.curve.lines[l + 1];

@@ -59,7 +59,8 @@ TEST(ZippableDesign, FollowsGivenPunctures) {
 }
 
 TEST(ZippableDesign, FollowsDrawnCurves) {
-  // A ball cut along its equator, then one half into quarters: the borders come out smooth, less than an edge from the great circles.
+  // A ball cut along its equator, then one half into quarters: the borders come out smooth, less than an edge from the
+  // great circles.
   Context context;
   TriangleMesh ball = test::icosphere(5);
   ball.V *= 50;
@@ -78,7 +79,8 @@ TEST(ZippableDesign, FollowsDrawnCurves) {
   ASSERT_EQ(two.interfaces.size(), 1u);
   EXPECT_TRUE(two.interfaces[0].is_closed());
   for (const int v : two.interfaces[0].vertices) EXPECT_LT(std::abs(two.mesh.V(v, 2)), 0.8 * mean_edge_length(ball));
-  EXPECT_NEAR(walk_length_mm(two.mesh, two.interfaces[0].vertices, false), 2 * std::numbers::pi * 50, 0.02 * 2 * std::numbers::pi * 50);
+  EXPECT_NEAR(walk_length_mm(two.mesh, two.interfaces[0].vertices, false), 2 * std::numbers::pi * 50,
+              0.02 * 2 * std::numbers::pi * 50);
   EXPECT_EQ(design_zippable(halves, options, context).ribbon.opening_arcs, 2);
   parts.curves.push_back(meridian);
   const ParameterisedModel thirds = parameterise_model(ball, parts, options, context);
@@ -116,7 +118,8 @@ TEST(ZippableDesign, TakesWindingsPartByPart) {
   options.part_windings = "3.5 3.5 3.5";
   ZippableOptions all;
   all.windings = 3.5;
-  EXPECT_EQ(design_zippable(given.model, options, context).ribbon.zipper_mm, design_zippable(given.model, all, context).ribbon.zipper_mm);
+  EXPECT_EQ(design_zippable(given.model, options, context).ribbon.zipper_mm,
+            design_zippable(given.model, all, context).ribbon.zipper_mm);
   // The same parts on the same parameterisation, measured or not.
   EXPECT_EQ(parameterisation_key(options), parameterisation_key({}));
   options.measure_distances = false;
@@ -153,7 +156,8 @@ TEST(ZippableDesign, RefusesInOneSentence) {
   EXPECT_EQ(refused({}, {{0, 0, 0}, {0, 0, 0}}), "segments");
   Context context;
   const TriangleMesh ball = test::icosphere(2);
-  EXPECT_THROW(parameterise_model(test::joined(ball, test::moved(ball, Vec3(3, 0, 0))), {}, ZippableOptions{}, context), Error);
+  EXPECT_THROW(parameterise_model(test::joined(ball, test::moved(ball, Vec3(3, 0, 0))), {}, ZippableOptions{}, context),
+               Error);
 }
 
 TEST(ZippableFiles, TellTheDesign) {
@@ -186,8 +190,9 @@ TEST(ZippableFiles, ReadSegmentsOrSayWhatIsWrong) {
   EXPECT_EQ(parts.punctures[1], Vec3(4, 5.5, -6));
   ASSERT_EQ(parts.curves.size(), 2u);
   EXPECT_TRUE(parts.curves[0].closed && !parts.curves[1].closed);
-  for (const char* wrong : {"", "[]", "{}", R"({"punctures": 3})", R"({"punctures": [[1, 2]]})", R"({"punctures": [[1, 2, "x"]]})",
-                            R"({"punctures": [[1, 2, 1e99]]})", R"({"loops": []})", R"({"loops": [[1, 2, 3]]})", R"({"rings": []})"})
+  for (const char* wrong :
+       {"", "[]", "{}", R"({"punctures": 3})", R"({"punctures": [[1, 2]]})", R"({"punctures": [[1, 2, "x"]]})",
+        R"({"punctures": [[1, 2, 1e99]]})", R"({"loops": []})", R"({"loops": [[1, 2, 3]]})", R"({"rings": []})"})
     test::expect_segments_refused(wrong);
 }
 

@@ -23,7 +23,8 @@ Parameterisation solve(const Segmentation& s, double tolerance = 1e-14) {
 double least_determinant(const Segmentation& s, const Parameterisation& p) {
   double least = 1e300;
   for (int f = 0; f < s.mesh.face_count(); ++f) {
-    const Vec2 e1 = p.corners_mm.row(3 * f + 1) - p.corners_mm.row(3 * f), e2 = p.corners_mm.row(3 * f + 2) - p.corners_mm.row(3 * f);
+    const Vec2 e1 = p.corners_mm.row(3 * f + 1) - p.corners_mm.row(3 * f),
+               e2 = p.corners_mm.row(3 * f + 2) - p.corners_mm.row(3 * f);
     least = std::min(least, e1.x() * e2.y() - e1.y() * e2.x());
   }
   return least;
@@ -36,7 +37,8 @@ TEST(Parameterisation, OfACylinderIsItsUnrolling) {
   const Segmentation s = test::alone(test::cylinder_side(radius, height, around, 30));
   const Parameterisation p = solve(s);
   const double perimeter = around * 2 * radius * std::sin(pi / around);
-  // Rows turned against each other are antiprisms, which are a little longer than upright: compare with a fine mesh instead.
+  // Rows turned against each other are antiprisms, which are a little longer than upright: compare with a fine mesh
+  // instead.
   EXPECT_NEAR(p.period_mm[0], perimeter, 2e-3 * perimeter);
   EXPECT_NEAR(p.height_mm[0], height, 2e-3 * height);
   EXPECT_LT(p.distortion_max, 1 + 2e-4);
@@ -50,14 +52,17 @@ TEST(Parameterisation, OfACylinderIsItsUnrolling) {
 }
 
 TEST(Parameterisation, OfAConeIsTheBestRotationallySymmetricMap) {
-  // A frustum of radii r1 > r2 and slant L: by symmetry x = p t, y = y(s). With c(s) = p / (2 pi r(s)) and a = y'(s) the energy
-  // is the integral of r (c^2 + 1/c^2 + a^2 + 1/a^2): a = 1, and p^4 = (2 pi)^4 (integral of r^3) / (integral of 1/r).
+  // A frustum of radii r1 > r2 and slant L: by symmetry x = p t, y = y(s). With c(s) = p / (2 pi r(s)) and a = y'(s)
+  // the energy is the integral of r (c^2 + 1/c^2 + a^2 + 1/a^2): a = 1, and p^4 = (2 pi)^4 (integral of r^3) /
+  // (integral of 1/r).
   const double r1 = 50, r2 = 20, rise = 60, slant = std::hypot(rise, r1 - r2);
-  const auto radius3 = (std::pow(r1, 4) - std::pow(r2, 4)) / 4 / (r1 - r2) * slant, inverse = std::log(r1 / r2) / (r1 - r2) * slant;
+  const auto radius3 = (std::pow(r1, 4) - std::pow(r2, 4)) / 4 / (r1 - r2) * slant,
+             inverse = std::log(r1 / r2) / (r1 - r2) * slant;
   const double period = 2 * pi * std::pow(radius3 / inverse, 0.25);
   double error = 1;
   for (const int around : {24, 48, 96}) {
-    const Segmentation s = test::alone(test::turned(around, around / 2, [&](double t) { return Vec2(r1 + t * (r2 - r1), t * rise); }));
+    const Segmentation s =
+        test::alone(test::turned(around, around / 2, [&](double t) { return Vec2(r1 + t * (r2 - r1), t * rise); }));
     const Parameterisation p = solve(s);
     const double now = std::abs(p.period_mm[0] / period - 1) + std::abs(p.height_mm[0] / slant - 1);
     EXPECT_LT(now, 0.4 * error) << around;  // second order
@@ -115,7 +120,8 @@ TEST(Parameterisation, GradientAndHessianInTheVariablesAreThoseOfFiniteDifferenc
   NewtonSystem system(chart, context);
   // A smooth energy of the corners that is no parameterisation's: what is tested is how corners depend on variables.
   test::Random random(5);
-  Eigen::VectorXd local(chart.local_count()), shared(chart.shared_count()), along(local.size()), along_shared(shared.size());
+  Eigen::VectorXd local(chart.local_count()), shared(chart.shared_count()), along(local.size()),
+      along_shared(shared.size());
   for (double& x : local) x = random.uniform(-1, 1);
   for (double& x : shared) x = random.uniform(-1, 1);
   for (double& x : along) x = random.uniform(-1, 1);

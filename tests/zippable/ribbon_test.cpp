@@ -47,7 +47,8 @@ void expect_sound(const test::Zipped& z) {
   EXPECT_NEAR(left, ribbon.zipper_mm, 1e-9 * left);
   // Flat triangles face the way of those in space: none is turned over or without area.
   for (int f = 0; f < formed.face_count(); ++f) {
-    const Vec2 a = ribbon.flat_mm[formed.F(f, 0)], e1 = ribbon.flat_mm[formed.F(f, 1)] - a, e2 = ribbon.flat_mm[formed.F(f, 2)] - a;
+    const Vec2 a = ribbon.flat_mm[formed.F(f, 0)], e1 = ribbon.flat_mm[formed.F(f, 1)] - a,
+               e2 = ribbon.flat_mm[formed.F(f, 2)] - a;
     EXPECT_GT(e1.x() * e2.y() - e1.y() * e2.x(), 0);
   }
 }
@@ -81,7 +82,8 @@ TEST(PolygonDissection, FillsAPolygonWithTheShortestDiagonals) {
 }
 
 TEST(PolygonDissection, DropsWhatCrosses) {
-  const std::vector<Chord> kept = without_crossings({{0, 5}, {2, 7}, {0, 5}, {1, 2}, {5, 9}, {6, 9}, {0, 9}, {1, 4}, {0, 8}}, 10);
+  const std::vector<Chord> kept =
+      without_crossings({{0, 5}, {2, 7}, {0, 5}, {1, 2}, {5, 9}, {6, 9}, {0, 9}, {1, 4}, {0, 8}}, 10);
   const auto pieces = dissect(10, kept);
   ASSERT_EQ(kept.size(), 4u);  // 0-5, 5-9, 6-9, 1-4; 0-8 crosses 5-9
   EXPECT_EQ(pieces.size(), 5u);
@@ -110,7 +112,8 @@ TEST(Ribbon, OfACylinderIsAStraightStrip) {
   const Segmentation s = test::alone(test::tube(around, 24));
   const double period = around * 2 * std::sin(pi / around), windings = 5;
   CurveOptions options;
-  options.width_mm = 1 / windings, options.windings = windings, options.sample_mm = period / (around - 0.5);  // one a side of the prism
+  options.width_mm = 1 / windings, options.windings = windings,
+  options.sample_mm = period / (around - 0.5);  // one a side of the prism
   const test::Zipped z = test::zip(s, options);
   expect_sound(z);
   // Sides of the prism are bent along its upright edges only, which are rulings: the strip is the parallelogram of the
@@ -141,18 +144,20 @@ TEST(Ribbon, OnAConeAndASphereHasTheKnownSpacing) {
   options.windings = windings, options.sample_mm = 0.05;
   const double slant = std::hypot(2.0, 1.0);
   options.width_mm = slant / windings;
-  const test::Zipped cone = test::zip(test::alone(test::turned(64, 40, [](double t) { return Vec2(2 - t, 2 * t); })), options);
+  const test::Zipped cone =
+      test::zip(test::alone(test::turned(64, 40, [](double t) { return Vec2(2 - t, 2 * t); })), options);
   expect_sound(cone);
   EXPECT_NEAR(cone.ribbon.width_mean_mm, slant / windings, 0.01 * slant / windings);
   EXPECT_GT(cone.ribbon.width_min_mm, 0.97 * slant / windings);
   const double arc = (pi - 0.4) / windings;
   options.width_mm = arc;
-  const test::Zipped sphere = test::zip(test::alone(test::turned(64, 48,
-                                                                 [](double t) {
-                                                                   const double colatitude = pi - 0.2 - t * (pi - 0.4);
-                                                                   return Vec2(std::sin(colatitude), std::cos(colatitude));
-                                                                 })),
-                                        options);
+  const test::Zipped sphere =
+      test::zip(test::alone(test::turned(64, 48,
+                                         [](double t) {
+                                           const double colatitude = pi - 0.2 - t * (pi - 0.4);
+                                           return Vec2(std::sin(colatitude), std::cos(colatitude));
+                                         })),
+                options);
   expect_sound(sphere);
   EXPECT_NEAR(sphere.ribbon.width_mean_mm, 2 * std::sin(arc / 2), 0.02 * arc);
 }
@@ -201,7 +206,8 @@ TEST(Ribbon, MovesAndGrowsWithTheModel) {
   const test::Zipped y = test::zip(make_segmentation(other, s.face_segment), options);
   ASSERT_EQ(z.ribbon.flat_mm.size(), y.ribbon.flat_mm.size());
   EXPECT_EQ(z.ribbon.F, y.ribbon.F);
-  for (std::size_t i = 0; i < z.ribbon.flat_mm.size(); ++i) EXPECT_LE((2.5 * z.ribbon.flat_mm[i] - y.ribbon.flat_mm[i]).norm(), 1e-2);
+  for (std::size_t i = 0; i < z.ribbon.flat_mm.size(); ++i)
+    EXPECT_LE((2.5 * z.ribbon.flat_mm[i] - y.ribbon.flat_mm[i]).norm(), 1e-2);
 }
 
 }  // namespace

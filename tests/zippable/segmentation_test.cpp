@@ -48,7 +48,8 @@ TEST(SurfaceSplit, CutsWhereTheFieldsAreEqual) {
   EXPECT_TRUE(Adjacency(split.mesh).is_manifold());
   double area = 0, wrong = 0;
   for (int f = 0; f < split.mesh.face_count(); ++f) {
-    const Vec3 a = split.mesh.V.row(split.mesh.F(f, 0)).transpose(), b = split.mesh.V.row(split.mesh.F(f, 1)).transpose(),
+    const Vec3 a = split.mesh.V.row(split.mesh.F(f, 0)).transpose(),
+               b = split.mesh.V.row(split.mesh.F(f, 1)).transpose(),
                c = split.mesh.V.row(split.mesh.F(f, 2)).transpose();
     const double size = 0.5 * (b - a).cross(c - a).z();
     EXPECT_GT(size, 0);
@@ -74,7 +75,8 @@ TEST(Puncture, IsARoundHoleOfItsRadius) {
 TEST(Puncture, ShrinksUntilItFits) {
   LabelledSurface surface{test::icosphere(4), {}};
   surface.face_label.assign(surface.mesh.face_count(), 0);
-  const std::vector<double> radii = puncture(surface, {3, 0}, 5);  // larger than the whole sphere; the second must keep off the first
+  const std::vector<double> radii =
+      puncture(surface, {3, 0}, 5);  // larger than the whole sphere; the second must keep off the first
   EXPECT_LT(radii[0], 2);
   EXPECT_LT(radii[1], 2);
   const Adjacency adjacency(surface.mesh);
@@ -113,7 +115,8 @@ TEST(Openings, AreJoinedBySlits) {
   EXPECT_FALSE(join_nearest_openings(opened, context));
   EXPECT_EQ(opened.slits.size(), 4u);
   EXPECT_EQ(opened.mesh.face_count(), surface.mesh.face_count());
-  for (int v = 0; v < opened.mesh.vertex_count(); ++v) EXPECT_EQ(opened.mesh.V.row(v), surface.mesh.V.row(opened.source_of[v]));
+  for (int v = 0; v < opened.mesh.vertex_count(); ++v)
+    EXPECT_EQ(opened.mesh.V.row(v), surface.mesh.V.row(opened.source_of[v]));
 }
 
 TEST(Proposal, JoinsOpeningsThatAreTooMany) {
@@ -154,7 +157,8 @@ TEST(Segmentation, SaysWhyAPartIsNoCylinder) {
   EXPECT_TRUE(make_segmentation(tube, halves).valid());
   EXPECT_NE(problem(tube, pieces, 0).find("in 2 pieces"), std::string::npos);
   EXPECT_NE(problem(tube, pieces, 1).find("It has no opening"), std::string::npos);
-  EXPECT_NE(problem(test::grid(4, 4), std::vector<int>(32, 0), 0).find("1 boundary loops instead of two: puncture it"), std::string::npos);
+  EXPECT_NE(problem(test::grid(4, 4), std::vector<int>(32, 0), 0).find("1 boundary loops instead of two: puncture it"),
+            std::string::npos);
 }
 
 TEST(Segmentation, BothSidesOfAnInterfaceAgree) {
@@ -171,7 +175,8 @@ TEST(Segmentation, BothSidesOfAnInterfaceAgree) {
         EXPECT_EQ(use.forward ? interface.left : interface.right, part);
         ++used[use.interface];
         const std::size_t count = interface.vertices.size();
-        for (std::size_t k = 0; k + 1 < count; ++k) EXPECT_EQ(line.vertices[place++], interface.vertices[use.forward ? k : count - 1 - k]);
+        for (std::size_t k = 0; k + 1 < count; ++k)
+          EXPECT_EQ(line.vertices[place++], interface.vertices[use.forward ? k : count - 1 - k]);
       }
       EXPECT_EQ(place, line.vertices.size());
     }

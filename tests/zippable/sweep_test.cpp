@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hundreds of designs by chance: whatever the punctures, the order, the width and the number of windings, the ribbon is one disc
-// that unfolds without distortion, or the refusal is one sentence with its mend.
+// Hundreds of designs by chance: whatever the punctures, the order, the width and the number of windings, the ribbon is
+// one disc that unfolds without distortion, or the refusal is one sentence with its mend.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -38,7 +38,8 @@ TEST(ZippableSweep, Seed20261122GivesOnlyValidDesigns) {
     if (random.below(4) == 0) options.sample_mm = options.width_mm * random.uniform(0.05, 2);
     std::vector<Vec3> tips;
     if (random.below(2) == 0)
-      for (int k = 2 + random.below(5); k > 0; --k) tips.push_back(mesh.V.row(random.below(mesh.vertex_count())).transpose());
+      for (int k = 2 + random.below(5); k > 0; --k)
+        tips.push_back(mesh.V.row(random.below(mesh.vertex_count())).transpose());
     SCOPED_TRACE(names[which] + ", trial " + std::to_string(trial) + ", width " + std::to_string(options.width_mm));
     try {
       const ParameterisedModel model = parameterise_model(mesh, {tips, {}}, options, context);
@@ -57,7 +58,8 @@ TEST(ZippableSweep, Seed20261122GivesOnlyValidDesigns) {
       EXPECT_TRUE(std::isfinite(design.ribbon.zipper_mm) && design.ribbon.zipper_mm > 0);
     } catch (const Error& error) {
       ++refused;
-      EXPECT_TRUE(error.code() == ErrorCode::invalid_input || error.code() == ErrorCode::could_not_solve) << error.what();
+      EXPECT_TRUE(error.code() == ErrorCode::invalid_input || error.code() == ErrorCode::could_not_solve)
+          << error.what();
       EXPECT_NE(std::string(error.what()).find(':'), std::string::npos) << error.what();  // what is wrong: what helps
       EXPECT_EQ(std::string(error.what()).back(), '.') << error.what();
     }

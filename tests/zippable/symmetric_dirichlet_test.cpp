@@ -52,9 +52,11 @@ TEST(SymmetricDirichlet, DerivativesAreThoseOfFiniteDifferences) {
       const double step = 1e-6;
       auto plus = u, minus = u;
       plus[i / 2][i % 2] += step, minus[i / 2][i % 2] -= step;
-      const DirichletTerms p = symmetric_dirichlet_terms(reference, plus, false), m = symmetric_dirichlet_terms(reference, minus, false);
+      const DirichletTerms p = symmetric_dirichlet_terms(reference, plus, false),
+                           m = symmetric_dirichlet_terms(reference, minus, false);
       EXPECT_NEAR(t.gradient[i], (p.energy - m.energy) / (2 * step), 1e-5 * (1 + t.gradient.norm()));
-      for (int j = 0; j < 6; ++j) EXPECT_NEAR(t.hessian(j, i), (p.gradient[j] - m.gradient[j]) / (2 * step), 1e-5 * (1 + t.hessian.norm()));
+      for (int j = 0; j < 6; ++j)
+        EXPECT_NEAR(t.hessian(j, i), (p.gradient[j] - m.gradient[j]) / (2 * step), 1e-5 * (1 + t.hessian.norm()));
     }
   }
 }
@@ -65,14 +67,14 @@ TEST(SymmetricDirichlet, OnlyTheTwistIsProjected) {
   for (int trial = 0; trial < 500; ++trial) {
     const ReferenceTriangle reference = random_reference(random);
     const auto u = random_image(random);
-    const DirichletTerms exact = symmetric_dirichlet_terms(reference, u, false), convex = symmetric_dirichlet_terms(reference, u, true);
+    const DirichletTerms exact = symmetric_dirichlet_terms(reference, u, false),
+                         convex = symmetric_dirichlet_terms(reference, u, true);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> of_exact(exact.hessian), of_convex(convex.hessian);
     EXPECT_GE(of_convex.eigenvalues()[0], -1e-9 * of_convex.eigenvalues()[5]);
     const double least = of_exact.eigenvalues()[0];
     EXPECT_EQ((of_exact.eigenvalues().array() < -1e-9 * of_exact.eigenvalues()[5]).count(),
               least < -1e-9 * of_exact.eigenvalues()[5] ? 1 : 0);
-    if (least < -1e-6)
-      ++projected;
+    if (least < -1e-6) ++projected;
     else if (least > -1e-12 * of_exact.eigenvalues()[5]) {
       EXPECT_LE((exact.hessian - convex.hessian).norm(), 1e-9 * exact.hessian.norm());
     }

@@ -25,8 +25,8 @@ inline void expect_segments_refused(const char* text) {
   }
 }
 
-/// Open at both ends: radius(t) and height(t) for t in [0, 1], `rows` rows of `around` vertices, every other row turned by half a
-/// side so that no direction is preferred.
+/// Open at both ends: radius(t) and height(t) for t in [0, 1], `rows` rows of `around` vertices, every other row turned
+/// by half a side so that no direction is preferred.
 template <class Profile>
 TriangleMesh turned(int around, int rows, const Profile& profile) {
   std::vector<Vec3> points;
@@ -40,10 +40,8 @@ TriangleMesh turned(int around, int rows, const Profile& profile) {
     if (j == rows) break;
     for (int i = 0; i < around; ++i) {
       const int a = j * around + i, b = j * around + (i + 1) % around, c = a + around, d = b + around;
-      if (j % 2 == 0)
-        faces.push_back({a, b, c}), faces.push_back({b, d, c});
-      else
-        faces.push_back({a, b, d}), faces.push_back({a, d, c});
+      if (j % 2 == 0) faces.push_back({a, b, c}), faces.push_back({b, d, c});
+      else faces.push_back({a, b, d}), faces.push_back({a, d, c});
     }
   }
   return make_mesh(points, faces);
@@ -53,7 +51,9 @@ inline TriangleMesh cylinder_side(double radius, double height, int around, int 
   return turned(around, rows, [&](double t) { return Vec2(radius, t * height); });
 }
 
-inline Segmentation alone(const TriangleMesh& mesh) { return make_segmentation(mesh, std::vector<int>(mesh.face_count(), 0)); }
+inline Segmentation alone(const TriangleMesh& mesh) {
+  return make_segmentation(mesh, std::vector<int>(mesh.face_count(), 0));
+}
 
 struct Zipped {
   Segmentation segmentation;
@@ -70,14 +70,16 @@ inline Zipped zip(Segmentation segmentation, const CurveOptions& options) {
   z.parameterisation = parameterise(z.segmentation, {1e-13}, context);
   z.traversal = ranked_traversals(z.segmentation, z.parameterisation, options.width_mm).at(0);
   const LineTracer tracer(z.segmentation, z.parameterisation);
-  z.curve = draw_zipper_curve(z.segmentation, z.parameterisation, tracer, z.traversal.traversal, z.traversal.crossings, options, context);
+  z.curve = draw_zipper_curve(z.segmentation, z.parameterisation, tracer, z.traversal.traversal, z.traversal.crossings,
+                              options, context);
   z.ribbon = make_ribbon(z.segmentation, z.parameterisation, tracer, z.curve, options, context);
   return z;
 }
 
 inline Proposal proposed(std::string_view sample, int vertices, double puncture_radius_mm = 5, int parts_max = 10) {
   Context context;
-  return propose_segmentation(make_sample(sample, vertices, context).mesh, {puncture_radius_mm, parts_max, 0.08, {}, {}, {}}, context);
+  return propose_segmentation(make_sample(sample, vertices, context).mesh,
+                              {puncture_radius_mm, parts_max, 0.08, {}, {}, {}}, context);
 }
 
 }  // namespace formwright::test

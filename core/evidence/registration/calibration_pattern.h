@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The picture that is printed on a sheet to see where each of its points went (thesis 4.2.3): noise, colour patches and four corner marks.
-// Sheet coordinates: mm, x to the right and y to the back, centred on the sheet.
+// The picture that is printed on a sheet to see where each of its points went (thesis 4.2.3): noise, colour patches and
+// four corner marks. Sheet coordinates: mm, x to the right and y to the back, centred on the sheet.
 #include <array>
 #include <string>
 #include <vector>
@@ -21,23 +21,44 @@ struct CalibrationPatternOptions {
   double finest_mm = 1.2, coarsest_mm = 40;
   double margin_mm = 3;
 
-  static constexpr auto parameters = std::tuple{
-      parameter("seed", &CalibrationPatternOptions::seed, "Seed", unit::none, 0, 2147483647, "Equal seeds give equal noise.").group("Pattern").slider(1, 100),
-      parameter("finest_mm", &CalibrationPatternOptions::finest_mm, "Finest noise", unit::mm, 0.2, 20, "Spacing of the finest noise; it has to survive printing, heat and camera.")
-          .group("Pattern").slider(0.5, 4),
-      parameter("coarsest_mm", &CalibrationPatternOptions::coarsest_mm, "Coarsest noise", unit::mm, 1, 500, "Largest spacing; each scale is twice the one before.")
-          .group("Pattern").slider(10, 80),
-      parameter("margin_mm", &CalibrationPatternOptions::margin_mm, "Margin", unit::mm, 0, 100, "From the clamp opening's edge inwards to marks and colour patches.")
-          .group("Pattern").slider(0, 15),
-      parameter("sheet_x_mm", &CalibrationPatternOptions::sheet_x_mm, "Sheet width", unit::mm, 60, 3000, "Width of the flat sheet, clamped rim included.").group("Sheet").slider(100, 600),
-      parameter("sheet_y_mm", &CalibrationPatternOptions::sheet_y_mm, "Sheet length", unit::mm, 60, 3000, "Length of the flat sheet, front to back.").group("Sheet").slider(100, 600),
-      parameter("clamp_opening_x_mm", &CalibrationPatternOptions::clamp_opening_x_mm, "Opening width", unit::mm, 50, 3000, "Width of the clamp's opening.").group("Sheet").slider(100, 600),
-      parameter("clamp_opening_y_mm", &CalibrationPatternOptions::clamp_opening_y_mm, "Opening length", unit::mm, 50, 3000, "Length of the clamp's opening.").group("Sheet").slider(100, 600)};
+  static constexpr auto parameters =
+      std::tuple{parameter("seed", &CalibrationPatternOptions::seed, "Seed", unit::none, 0, 2147483647,
+                           "Equal seeds give equal noise.")
+                     .group("Pattern")
+                     .slider(1, 100),
+                 parameter("finest_mm", &CalibrationPatternOptions::finest_mm, "Finest noise", unit::mm, 0.2, 20,
+                           "Spacing of the finest noise; it has to survive printing, heat and camera.")
+                     .group("Pattern")
+                     .slider(0.5, 4),
+                 parameter("coarsest_mm", &CalibrationPatternOptions::coarsest_mm, "Coarsest noise", unit::mm, 1, 500,
+                           "Largest spacing; each scale is twice the one before.")
+                     .group("Pattern")
+                     .slider(10, 80),
+                 parameter("margin_mm", &CalibrationPatternOptions::margin_mm, "Margin", unit::mm, 0, 100,
+                           "From the clamp opening's edge inwards to marks and colour patches.")
+                     .group("Pattern")
+                     .slider(0, 15),
+                 parameter("sheet_x_mm", &CalibrationPatternOptions::sheet_x_mm, "Sheet width", unit::mm, 60, 3000,
+                           "Width of the flat sheet, clamped rim included.")
+                     .group("Sheet")
+                     .slider(100, 600),
+                 parameter("sheet_y_mm", &CalibrationPatternOptions::sheet_y_mm, "Sheet length", unit::mm, 60, 3000,
+                           "Length of the flat sheet, front to back.")
+                     .group("Sheet")
+                     .slider(100, 600),
+                 parameter("clamp_opening_x_mm", &CalibrationPatternOptions::clamp_opening_x_mm, "Opening width",
+                           unit::mm, 50, 3000, "Width of the clamp's opening.")
+                     .group("Sheet")
+                     .slider(100, 600),
+                 parameter("clamp_opening_y_mm", &CalibrationPatternOptions::clamp_opening_y_mm, "Opening length",
+                           unit::mm, 50, 3000, "Length of the clamp's opening.")
+                     .group("Sheet")
+                     .slider(100, 600)};
 };
 
 /// A disc of concentric rings, black and white: the same from all sides, unlike the other three.
 struct CornerMark {
-  std::string name;      // "front left", ...
+  std::string name;  // "front left", ...
   Vec2 centre_mm;
   double radius_mm = 8;  // of the white rim around the outermost black ring
   int code = 0;          // 0 to 3
@@ -65,8 +86,10 @@ struct CalibrationPattern {
 /// Throws Error{invalid_input}: an opening larger than the sheet, scales in the wrong order, no room within the margin.
 CalibrationPattern make_calibration_pattern(const CalibrationPatternOptions& options);
 
-/// width x height pixels of `pixel_mm`, the sheet's middle in the middle of the picture, y upwards in it. Every machine draws the same bits.
-Image draw_calibration_pattern(const CalibrationPattern& pattern, int width, int height, double pixel_mm, const Context& context);
+/// width x height pixels of `pixel_mm`, the sheet's middle in the middle of the picture, y upwards in it. Every machine
+/// draws the same bits.
+Image draw_calibration_pattern(const CalibrationPattern& pattern, int width, int height, double pixel_mm,
+                               const Context& context);
 
 Json calibration_pattern_json(const CalibrationPattern& pattern);
 /// Throws Error{invalid_input, "pattern"}, naming the key that is wrong or missing.

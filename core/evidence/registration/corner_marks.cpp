@@ -34,7 +34,11 @@ Stencil stencil(const CornerMark& mark, double radius_px) {
     for (int x = -reach; x <= reach; ++x) {
       if (std::hypot(x, y) > radius_px) continue;
       double white = 0;
-      for (int k = 0; k < 16; ++k) white += mark_is_black(mark.code, std::min(1.0, std::hypot(x + (k % 4 - 1.5) / 4, y + (k / 4 - 1.5) / 4) / radius_px)) ? 0 : 1.0 / 16;
+      for (int k = 0; k < 16; ++k)
+        white += mark_is_black(mark.code,
+                               std::min(1.0, std::hypot(x + (k % 4 - 1.5) / 4, y + (k / 4 - 1.5) / 4) / radius_px))
+                     ? 0
+                     : 1.0 / 16;
       s.offset.emplace_back(x, y);
       s.value.push_back(static_cast<float>(white));
     }
@@ -64,11 +68,13 @@ double likeness(const WeightedPicture& picture, const Stencil& s, int x, int y) 
   const auto n = static_cast<float>(s.offset.size());
   const Float4 variance = sum_squared - sum * sum / n;
   double total = 0;
-  for (int c = 0; c < 3; ++c) total += variance[c] > 1e-6f * n ? static_cast<double>(product[c] / (std::sqrt(variance[c]) * s.norm)) : 0;
+  for (int c = 0; c < 3; ++c)
+    total += variance[c] > 1e-6f * n ? static_cast<double>(product[c] / (std::sqrt(variance[c]) * s.norm)) : 0;
   return total / 3;
 }
 
-std::vector<Candidate> best_places(const CornerMark& mark, const WeightedPicture& picture, double pixel_mm, const Context& context) {
+std::vector<Candidate> best_places(const CornerMark& mark, const WeightedPicture& picture, double pixel_mm,
+                                   const Context& context) {
   std::vector<float> map(picture.pixels.size(), -1);
   std::vector<Stencil> stencils;
   for (const double size : sizes) stencils.push_back(stencil(mark, size * mark.radius_mm / pixel_mm));
@@ -88,10 +94,13 @@ std::vector<Candidate> best_places(const CornerMark& mark, const WeightedPicture
   for (int y = 0; y < picture.height; ++y)
     for (int x = 0; x < picture.width; ++x)
       if (map[picture.index(x, y)] > 0.3f) peaks.push_back({map[picture.index(x, y)], x, y});
-  std::stable_sort(peaks.begin(), peaks.end(), [](const Candidate& a, const Candidate& b) { return a.likeness > b.likeness; });
+  std::stable_sort(peaks.begin(), peaks.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.likeness > b.likeness; });
   std::vector<Candidate> kept;
   for (const Candidate& p : peaks) {
-    const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const Candidate& k) { return std::abs(k.x - p.x) <= apart && std::abs(k.y - p.y) <= apart; });
+    const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const Candidate& k) {
+      return std::abs(k.x - p.x) <= apart && std::abs(k.y - p.y) <= apart;
+    });
     if (is_new) kept.push_back(p);
     if (kept.size() == candidates_a_mark) break;
   }
@@ -119,7 +128,8 @@ Vec2 refined(const WeightedPicture& picture, const CornerMark& mark, const Candi
 
 }  // namespace
 
-FoundMarks find_marks(const CalibrationPattern& pattern, const WeightedPicture& flat, const PlaneFrame& frame, Context& context) {
+FoundMarks find_marks(const CalibrationPattern& pattern, const WeightedPicture& flat, const PlaneFrame& frame,
+                      Context& context) {
   std::array<std::vector<Candidate>, 4> candidates;
   for (std::size_t k = 0; k < 4; ++k) {
     candidates[k] = best_places(pattern.marks[k], flat, frame.pixel_mm, context);
@@ -146,7 +156,8 @@ FoundMarks find_marks(const CalibrationPattern& pattern, const WeightedPicture& 
       }
       if (sum <= best) return;
       const Vec2 a = p[three[1]] - p[three[0]], b = p[three[2]] - p[three[0]];
-      const Vec2 c = pattern.marks[three[1]].centre_mm - pattern.marks[three[0]].centre_mm, d = pattern.marks[three[2]].centre_mm - pattern.marks[three[0]].centre_mm;
+      const Vec2 c = pattern.marks[three[1]].centre_mm - pattern.marks[three[0]].centre_mm,
+                 d = pattern.marks[three[2]].centre_mm - pattern.marks[three[0]].centre_mm;
       best = sum;
       chosen = pick;
       mirrored = (a.x() * b.y() - a.y() * b.x()) * (c.x() * d.y() - c.y() * d.x()) < 0;
@@ -162,7 +173,8 @@ FoundMarks find_marks(const CalibrationPattern& pattern, const WeightedPicture& 
       bool fits = true;
       for (std::size_t j = 0; j < k && fits; ++j) {
         if (!seen(j, pick[j])) continue;
-        const double ratio = (place(k, i) - place(j, pick[j])).norm() / (pattern.marks[k].centre_mm - pattern.marks[j].centre_mm).norm();
+        const double ratio =
+            (place(k, i) - place(j, pick[j])).norm() / (pattern.marks[k].centre_mm - pattern.marks[j].centre_mm).norm();
         fits = ratio > 1 / most_distortion && ratio < most_distortion;
       }
       if (fits) self(self, k + 1, missing);
@@ -170,8 +182,9 @@ FoundMarks find_marks(const CalibrationPattern& pattern, const WeightedPicture& 
   };
   try_all(try_all, 0, 0);
   if (best < 0)
-    throw Error(ErrorCode::invalid_input, "corners",
-                "Fewer than three corner marks were found in the scan: check that it is in mm, its texture sharp and the pattern the right one, or give the four corners by hand.");
+    throw Error(
+        ErrorCode::invalid_input, "corners",
+        "Fewer than three corner marks were found in the scan: check that it is in mm, its texture sharp and the pattern the right one, or give the four corners by hand.");
   FoundMarks found;
   found.mirrored = mirrored;
   std::size_t hidden = 4;
@@ -186,7 +199,9 @@ FoundMarks find_marks(const CalibrationPattern& pattern, const WeightedPicture& 
     found.likeness[k] = c.likeness;
   }
   // The four are a rectangle on the sheet, so the fourth corner follows from the others.
-  if (hidden < 4) found.place_mm[hidden] = found.place_mm[(hidden + 1) % 4] + found.place_mm[(hidden + 3) % 4] - found.place_mm[(hidden + 2) % 4];
+  if (hidden < 4)
+    found.place_mm[hidden] =
+        found.place_mm[(hidden + 1) % 4] + found.place_mm[(hidden + 3) % 4] - found.place_mm[(hidden + 2) % 4];
   return found;
 }
 
@@ -209,7 +224,9 @@ Eigen::Matrix3d homography(const std::array<Vec2, 4>& from, const std::array<Vec
   m << h[0], h[1], h[2] * size, h[3], h[4], h[5] * size, h[6] / size, h[7] / size, 1;
   bool sound = lu.isInvertible() && m.allFinite();
   for (std::size_t k = 0; k < 4 && sound; ++k) sound = m.row(2).dot(Vec3(from[k].x(), from[k].y(), 1)) > 0.05;
-  if (!sound) throw Error(ErrorCode::invalid_input, "corners", "The four corners do not make a quadrilateral: give front left, front right, back right, back left.");
+  if (!sound)
+    throw Error(ErrorCode::invalid_input, "corners",
+                "The four corners do not make a quadrilateral: give front left, front right, back right, back left.");
   return m;
 }
 

@@ -18,7 +18,8 @@ using Frame = Eigen::Matrix<double, 3, 2>;  // a triangle's corners in its own p
 Frame own_plane(const TriangleMesh& mesh, int f) {
   const Vec3 a = mesh.V.row(mesh.F(f, 0)), b = mesh.V.row(mesh.F(f, 1)), c = mesh.V.row(mesh.F(f, 2));
   const Vec3 ab = b - a, ac = c - a;
-  const double length = ab.norm(), along = length > 0 ? ac.dot(ab) / length : 0, height = length > 0 ? ab.cross(ac).norm() / length : 0;
+  const double length = ab.norm(), along = length > 0 ? ac.dot(ab) / length : 0,
+               height = length > 0 ? ab.cross(ac).norm() / length : 0;
   Frame frame;
   frame << 0, 0, length, 0, along, height;
   return frame;
@@ -34,7 +35,8 @@ std::vector<int> longest_border(const TriangleMesh& mesh, const Adjacency& adjac
   double most = -1;
   for (auto& loop : boundary_loops(adjacency)) {
     double length = 0;
-    for (std::size_t i = 0; i < loop.size(); ++i) length += (mesh.V.row(loop[i]) - mesh.V.row(loop[(i + 1) % loop.size()])).norm();
+    for (std::size_t i = 0; i < loop.size(); ++i)
+      length += (mesh.V.row(loop[i]) - mesh.V.row(loop[(i + 1) % loop.size()])).norm();
     if (length > most) {
       most = length;
       longest = std::move(loop);
@@ -44,14 +46,17 @@ std::vector<int> longest_border(const TriangleMesh& mesh, const Adjacency& adjac
 }
 
 bool crosses_itself(const std::vector<Vec2>& loop) {
-  const auto side = [](const Vec2& a, const Vec2& b, const Vec2& c) { return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x()); };
+  const auto side = [](const Vec2& a, const Vec2& b, const Vec2& c) {
+    return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+  };
   const std::size_t n = loop.size();
   // Sorted by x, so that only neighbours in x are compared.
   std::vector<std::size_t> order(n);
   for (std::size_t i = 0; i < n; ++i) order[i] = i;
   const auto left = [&](std::size_t i) { return std::min(loop[i].x(), loop[(i + 1) % n].x()); };
   const auto right = [&](std::size_t i) { return std::max(loop[i].x(), loop[(i + 1) % n].x()); };
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return left(a) < left(b) || (left(a) == left(b) && a < b); });
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return left(a) < left(b) || (left(a) == left(b) && a < b); });
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = i + 1; j < n && left(order[j]) <= right(order[i]); ++j) {
       const std::size_t p = order[i], q = order[j];
@@ -76,7 +81,8 @@ std::vector<Vec2> border_places(const TriangleMesh& mesh, const std::vector<int>
   std::vector<Vec2> places(n);
   if (normal.norm() > 1e-3 * length * length / 12) {
     normal.normalize();
-    const Vec3 x = (std::abs(normal.x()) < 0.8 ? Vec3::UnitX() : Vec3::UnitY()).cross(normal).normalized(), y = normal.cross(x);
+    const Vec3 x = (std::abs(normal.x()) < 0.8 ? Vec3::UnitX() : Vec3::UnitY()).cross(normal).normalized(),
+               y = normal.cross(x);
     for (std::size_t i = 0; i < n; ++i) {
       const Vec3 d = mesh.V.row(border[i]).transpose() - middle;
       places[i] = {d.dot(x), d.dot(y)};
@@ -92,13 +98,16 @@ std::vector<Vec2> border_places(const TriangleMesh& mesh, const std::vector<int>
   return places;
 }
 
-/// L with every row and column of `fixed` replaced by the unit one; the rest's coupling to them is given back. `regular` is added to the diagonal.
-SparseMatrix without_fixed(const SparseMatrix& full, const std::vector<char>& fixed, std::vector<Eigen::Triplet<double>>& coupling, double regular) {
+/// L with every row and column of `fixed` replaced by the unit one; the rest's coupling to them is given back.
+/// `regular` is added to the diagonal.
+SparseMatrix without_fixed(const SparseMatrix& full, const std::vector<char>& fixed,
+                           std::vector<Eigen::Triplet<double>>& coupling, double regular) {
   std::vector<Eigen::Triplet<double>> entries;
   for (int column = 0; column < full.outerSize(); ++column)
     for (SparseMatrix::InnerIterator it(full, column); it; ++it) {
       const int row = static_cast<int>(it.row());
-      const bool row_fixed = fixed[static_cast<std::size_t>(row)] != 0, column_fixed = fixed[static_cast<std::size_t>(column)] != 0;
+      const bool row_fixed = fixed[static_cast<std::size_t>(row)] != 0,
+                 column_fixed = fixed[static_cast<std::size_t>(column)] != 0;
       if (!row_fixed && column_fixed) coupling.emplace_back(row, column, it.value());
       if (row < column || row_fixed != column_fixed || (row_fixed && row != column)) continue;
       entries.emplace_back(row, column, row_fixed ? 1.0 : it.value() + (row == column ? regular : 0.0));
@@ -108,14 +117,16 @@ SparseMatrix without_fixed(const SparseMatrix& full, const std::vector<char>& fi
   return lower;
 }
 
-Eigen::MatrixXd harmonic(const TriangleMesh& mesh, const Adjacency& adjacency, const std::vector<int>& border, const std::vector<Vec2>& places, Context& context) {
+Eigen::MatrixXd harmonic(const TriangleMesh& mesh, const Adjacency& adjacency, const std::vector<int>& border,
+                         const std::vector<Vec2>& places, Context& context) {
   SparseMatrix laplacian(mesh.vertex_count(), mesh.vertex_count());
   std::vector<Eigen::Triplet<double>> entries;
   for (const Edge& e : adjacency.edges()) {
     // Cotangents held positive: the shape of the surface counts, and the maximum principle still holds.
     double weight = 0;
     for (const int h : adjacency.halfedges_of_edge(adjacency.find_edge(e.lower, e.higher))) {
-      const Vec3 a = mesh.V.row(adjacency.from(h)), b = mesh.V.row(adjacency.to(h)), c = mesh.V.row(adjacency.from(previous_halfedge(h)));
+      const Vec3 a = mesh.V.row(adjacency.from(h)), b = mesh.V.row(adjacency.to(h)),
+                 c = mesh.V.row(adjacency.from(previous_halfedge(h)));
       weight += 0.5 * (a - c).dot(b - c) / std::max(1e-12, (a - c).cross(b - c).norm());
     }
     weight = std::clamp(weight, 0.05, 20.0);
@@ -148,10 +159,12 @@ ScanPart sheet_part(const Model& model) {
   const Adjacency adjacency(model.mesh);
   const Components parts = face_components(adjacency);
   std::vector<double> area(static_cast<std::size_t>(parts.count), 0);
-  for (int f = 0; f < model.mesh.face_count(); ++f) area[static_cast<std::size_t>(parts.of[static_cast<std::size_t>(f)])] += face_area(model.mesh, f);
+  for (int f = 0; f < model.mesh.face_count(); ++f)
+    area[static_cast<std::size_t>(parts.of[static_cast<std::size_t>(f)])] += face_area(model.mesh, f);
   std::vector<int> order(area.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return area[static_cast<std::size_t>(a)] > area[static_cast<std::size_t>(b)]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return area[static_cast<std::size_t>(a)] > area[static_cast<std::size_t>(b)]; });
   for (std::size_t rank = 0; rank < std::min<std::size_t>(order.size(), 10); ++rank) {
     std::vector<int> faces, vertex(static_cast<std::size_t>(model.mesh.vertex_count()), -1), vertices;
     for (int f = 0; f < model.mesh.face_count(); ++f)
@@ -182,19 +195,29 @@ ScanPart sheet_part(const Model& model) {
       for (const int f : faces) out.face_material.push_back(model.face_material[static_cast<std::size_t>(f)]);
     part.other_parts = parts.count - 1;
     part.holes = loops - 1;
-    if (rank > 0) part.notes.push_back("The scan's largest part is closed or has handles, so it is not a sheet; the next one that is was taken.");
+    if (rank > 0)
+      part.notes.push_back(
+          "The scan's largest part is closed or has handles, so it is not a sheet; the next one that is was taken.");
     if (part.other_parts > 0)
-      part.notes.push_back(std::to_string(part.other_parts) + (part.other_parts == 1 ? " smaller part" : " smaller parts") + " of the scan, not joined to the sheet, were left out.");
-    if (part.holes > 0) part.notes.push_back("The scan has " + std::to_string(part.holes) + (part.holes == 1 ? " hole" : " holes") + ", which stay without points.");
+      part.notes.push_back(std::to_string(part.other_parts) +
+                           (part.other_parts == 1 ? " smaller part" : " smaller parts") +
+                           " of the scan, not joined to the sheet, were left out.");
+    if (part.holes > 0)
+      part.notes.push_back("The scan has " + std::to_string(part.holes) + (part.holes == 1 ? " hole" : " holes") +
+                           ", which stay without points.");
     return part;
   }
-  throw Error(ErrorCode::invalid_input, "scan", "The scan is closed or has handles, so it cannot be laid flat: cut it to the outer face of the sheet, with one border.");
+  throw Error(
+      ErrorCode::invalid_input, "scan",
+      "The scan is closed or has handles, so it cannot be laid flat: cut it to the outer face of the sheet, with one border.");
 }
 
 FlatScan flatten(const TriangleMesh& mesh, int iterations, Context& context) {
   const Adjacency adjacency(mesh);
   const std::vector<int> border = longest_border(mesh, adjacency);
-  if (border.size() < 3) throw Error(ErrorCode::invalid_input, "scan", "The scan has no border to lay it flat by: cut it to the outer face of the sheet.");
+  if (border.size() < 3)
+    throw Error(ErrorCode::invalid_input, "scan",
+                "The scan has no border to lay it flat by: cut it to the outer face of the sheet.");
   context.progress(0, "Laying the scan flat");
   Eigen::MatrixXd place = harmonic(mesh, adjacency, border, border_places(mesh, border), context);
   context.progress(0.3);
@@ -283,7 +306,8 @@ FlatScan flatten(const TriangleMesh& mesh, int iterations, Context& context) {
   for (int f = 0; f < faces; ++f) {
     const auto i = static_cast<std::size_t>(f);
     Eigen::Matrix2d now, then;
-    now << (place.row(mesh.F(f, 1)) - place.row(mesh.F(f, 0))).transpose(), (place.row(mesh.F(f, 2)) - place.row(mesh.F(f, 0))).transpose();
+    now << (place.row(mesh.F(f, 1)) - place.row(mesh.F(f, 0))).transpose(),
+        (place.row(mesh.F(f, 2)) - place.row(mesh.F(f, 0))).transpose();
     then << (frames[i].row(1) - frames[i].row(0)).transpose(), (frames[i].row(2) - frames[i].row(0)).transpose();
     if (now.determinant() <= 0) ++flat.flipped;
     if (then.determinant() < 1e-12 * size_mm * size_mm) continue;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A scan laid flat: as-rigid-as-possible parameterisation, Liu, Zhang, Xu, Gotsman, Gortler 2008 "A Local/Global Approach to Mesh Parameterization".
+// A scan laid flat: as-rigid-as-possible parameterisation, Liu, Zhang, Xu, Gotsman, Gortler 2008 "A Local/Global
+// Approach to Mesh Parameterization".
 #include <string>
 #include <vector>
 
@@ -17,8 +18,9 @@ struct ScanPart {
   std::vector<std::string> notes;  // in words
 };
 
-/// The part of largest area among those that are discs (genus 0, with a border). `model` must be repaired: manifold, oriented.
-/// Throws Error{invalid_input, "scan"} when there is none: a closed or many-handled scan has to be cut to the sheet's outer face first.
+/// The part of largest area among those that are discs (genus 0, with a border). `model` must be repaired: manifold,
+/// oriented. Throws Error{invalid_input, "scan"} when there is none: a closed or many-handled scan has to be cut to the
+/// sheet's outer face first.
 ScanPart sheet_part(const Model& model);
 
 struct FlatScan {
@@ -28,9 +30,8 @@ struct FlatScan {
   int iterations = 0;
 };
 
-/// Lays a disc flat, as nearly rigid as it goes. Starts from a harmonic map whose outer border is the border's shadow on its best plane (or a circle, where
-/// that shadow crosses itself).
-/// Throws Error: could_not_solve, cancelled.
+/// Lays a disc flat, as nearly rigid as it goes. Starts from a harmonic map whose outer border is the border's shadow
+/// on its best plane (or a circle, where that shadow crosses itself). Throws Error: could_not_solve, cancelled.
 FlatScan flatten(const TriangleMesh& mesh, int iterations, Context& context);
 
 }  // namespace formwright

@@ -8,11 +8,14 @@
 
 namespace formwright {
 
-std::array<Vec2, 4> plane_corners(const std::string& text, const Model& scan, const ScanColours& colours, const TextureCoordinates& flat_mm) {
+std::array<Vec2, 4> plane_corners(const std::string& text, const Model& scan, const ScanColours& colours,
+                                  const TextureCoordinates& flat_mm) {
   const auto refuse = [](const std::string& message) { throw Error(ErrorCode::invalid_input, "corners", message); };
   const auto numbers = read_number_list(text);
-  if (!numbers || numbers->size() != 8) refuse("The corners must be four pairs of numbers, such as “120,80 1900,95 1880,2010 110,1990”.");
-  if (scan.FT.rows() != scan.mesh.F.rows()) refuse("The scan has no picture that corners could be pixels of: leave them out.");
+  if (!numbers || numbers->size() != 8)
+    refuse("The corners must be four pairs of numbers, such as “120,80 1900,95 1880,2010 110,1990”.");
+  if (scan.FT.rows() != scan.mesh.F.rows())
+    refuse("The scan has no picture that corners could be pixels of: leave them out.");
   std::array<Vec2, 4> places;
   for (std::size_t k = 0; k < 4; ++k) {
     bool found = false;
@@ -23,18 +26,22 @@ std::array<Vec2, 4> plane_corners(const std::string& text, const Model& scan, co
       const auto cross = [](const Vec2& p, const Vec2& q) { return p.x() * q.y() - p.y() * q.x(); };
       const double doubled = cross(b - a, c - a);
       if (!(std::abs(doubled) > 1e-16)) continue;
-      const Vec3 bary(cross(b - uv, c - uv) / doubled, cross(c - uv, a - uv) / doubled, cross(a - uv, b - uv) / doubled);
+      const Vec3 bary(cross(b - uv, c - uv) / doubled, cross(c - uv, a - uv) / doubled,
+                      cross(a - uv, b - uv) / doubled);
       if (bary.minCoeff() < -1e-9) continue;
       places[k].setZero();
       for (int i = 0; i < 3; ++i) places[k] += bary[i] * flat_mm.row(scan.mesh.F(f, i)).transpose();
       found = true;
     }
-    if (!found) refuse("Corner " + std::to_string(k + 1) + " lies on no part of the scan: give pixels of its picture, counted from the top left.");
+    if (!found)
+      refuse("Corner " + std::to_string(k + 1) +
+             " lies on no part of the scan: give pixels of its picture, counted from the top left.");
   }
   return places;
 }
 
-std::array<std::optional<Vec2>, 4> picture_corners(const std::array<Vec2, 4>& place_mm, const Model& scan, const ScanColours& colours, const TextureCoordinates& flat_mm) {
+std::array<std::optional<Vec2>, 4> picture_corners(const std::array<Vec2, 4>& place_mm, const Model& scan,
+                                                   const ScanColours& colours, const TextureCoordinates& flat_mm) {
   std::array<std::optional<Vec2>, 4> pixels;
   if (scan.FT.rows() != scan.mesh.F.rows()) return pixels;
   const PlaneLookup lookup(scan.mesh.F, flat_mm);

@@ -11,20 +11,21 @@ namespace formwright {
 namespace {
 
 constexpr double pi = 3.14159265358979324;
-constexpr double least_sigma_px = 0.06;        // interpolation between pixels
-constexpr double most_residual_share = 0.5;    // of the pattern's variance; chance alone gives 2
-constexpr double least_known_share = 0.7;      // of the area that a point is judged by
-constexpr double most_foreign_share = 0.08;    // of a wider area that shows something else than the print
-constexpr double kernel_share = 0.25;           // half the second moment, 2 l^2, over the square of the step, 2 l
+constexpr double least_sigma_px = 0.06;      // interpolation between pixels
+constexpr double most_residual_share = 0.5;  // of the pattern's variance; chance alone gives 2
+constexpr double least_known_share = 0.7;    // of the area that a point is judged by
+constexpr double most_foreign_share = 0.08;  // of a wider area that shows something else than the print
+constexpr double kernel_share = 0.25;        // half the second moment, 2 l^2, over the square of the step, 2 l
 constexpr double plain_margin_mm = 1;
-constexpr double rim_inside_mm = 1;            // the sheet gives way a little at the clamp's edge
+constexpr double rim_inside_mm = 1;  // the sheet gives way a little at the clamp's edge
 
 /// Sums over a Gaussian window about a pixel.
 struct Window {
   double trusted = 0, foreign = 0, xx = 0, xy = 0, yy = 0, residual_squared = 0;
 };
 /// `foreign_squared`: from which squared residual a pixel shows something that is not the print.
-Window window_about(const FlowEvidence& e, const Flow& flow, double column, double row, double sigma_px, double foreign_squared) {
+Window window_about(const FlowEvidence& e, const Flow& flow, double column, double row, double sigma_px,
+                    double foreign_squared) {
   Window w;
   const int reach = static_cast<int>(std::ceil(2.5 * sigma_px));
   const int cx = static_cast<int>(std::lround(column)), cy = static_cast<int>(std::lround(row));
@@ -43,7 +44,8 @@ Window window_about(const FlowEvidence& e, const Flow& flow, double column, doub
   return w;
 }
 
-/// Medians over the pixels that were seen: of the squared residual (all channels) and of half the trace of the derivatives' products.
+/// Medians over the pixels that were seen: of the squared residual (all channels) and of half the trace of the
+/// derivatives' products.
 struct Typical {
   double residual_squared = 0, information = 0;
 };
@@ -64,9 +66,14 @@ Typical typical(const FlowEvidence& e) {
 
 /// In a mark or a colour patch, where there is no noise to see.
 bool is_plain(const CalibrationPattern& pattern, const Vec2& sheet_mm) {
-  const auto in_mark = [&](const CornerMark& m) { return (sheet_mm - m.centre_mm).norm() < m.radius_mm + plain_margin_mm; };
-  const auto in_patch = [&](const ColourPatch& p) { return (sheet_mm - p.centre_mm).cwiseAbs().maxCoeff() < p.side_mm / 2 + plain_margin_mm; };
-  return std::any_of(pattern.marks.begin(), pattern.marks.end(), in_mark) || std::any_of(pattern.patches.begin(), pattern.patches.end(), in_patch);
+  const auto in_mark = [&](const CornerMark& m) {
+    return (sheet_mm - m.centre_mm).norm() < m.radius_mm + plain_margin_mm;
+  };
+  const auto in_patch = [&](const ColourPatch& p) {
+    return (sheet_mm - p.centre_mm).cwiseAbs().maxCoeff() < p.side_mm / 2 + plain_margin_mm;
+  };
+  return std::any_of(pattern.marks.begin(), pattern.marks.end(), in_mark) ||
+         std::any_of(pattern.patches.begin(), pattern.patches.end(), in_patch);
 }
 
 }  // namespace
@@ -74,11 +81,14 @@ bool is_plain(const CalibrationPattern& pattern, const Vec2& sheet_mm) {
 Vec2 displacement_mm(const Flow& flow, const PlaneFrame& frame, const Vec2& place_mm) {
   const Vec2 p = frame.pixel(place_mm);
   const double x = std::clamp(p.x(), 0.0, flow.width - 1.0), y = std::clamp(p.y(), 0.0, flow.height - 1.0);
-  const int x0 = std::min(static_cast<int>(x), std::max(0, flow.width - 2)), y0 = std::min(static_cast<int>(y), std::max(0, flow.height - 2));
+  const int x0 = std::min(static_cast<int>(x), std::max(0, flow.width - 2)),
+            y0 = std::min(static_cast<int>(y), std::max(0, flow.height - 2));
   const int x1 = std::min(x0 + 1, flow.width - 1), y1 = std::min(y0 + 1, flow.height - 1);
   const auto at = [&](const std::vector<float>& values) {
-    const double upper = static_cast<double>(values[flow.index(x0, y0)]) * (x0 + 1 - x) + static_cast<double>(values[flow.index(x1, y0)]) * (x - x0);
-    const double lower = static_cast<double>(values[flow.index(x0, y1)]) * (x0 + 1 - x) + static_cast<double>(values[flow.index(x1, y1)]) * (x - x0);
+    const double upper = static_cast<double>(values[flow.index(x0, y0)]) * (x0 + 1 - x) +
+                         static_cast<double>(values[flow.index(x1, y0)]) * (x - x0);
+    const double lower = static_cast<double>(values[flow.index(x0, y1)]) * (x0 + 1 - x) +
+                         static_cast<double>(values[flow.index(x1, y1)]) * (x - x0);
     return upper * (y0 + 1 - y) + lower * (y - y0);
   };
   return frame.pixel_mm * Vec2(at(flow.u), -at(flow.v));
@@ -103,7 +113,8 @@ MatchStatistics match_statistics(const WeightedPicture& first, const WeightedPic
     if (!(difference.pixels[i][3] > 0.5f)) continue;
     ++seen;
     for (int c = 0; c < 3; ++c) {
-      const double a = static_cast<double>(first.pixels[i][c]) - 128, b = a + static_cast<double>(difference.pixels[i][c]);
+      const double a = static_cast<double>(first.pixels[i][c]) - 128,
+                   b = a + static_cast<double>(difference.pixels[i][c]);
       sum_first[c] += a;
       sum[c] += b;
       square_first[c] += a * a;
@@ -112,13 +123,18 @@ MatchStatistics match_statistics(const WeightedPicture& first, const WeightedPic
     }
   }
   for (int c = 0; c < 3 && seen > 0; ++c) {
-    const double variance = (square_first[c] - sum_first[c] * sum_first[c] / seen) * (square[c] - sum[c] * sum[c] / seen);
+    const double variance =
+        (square_first[c] - sum_first[c] * sum_first[c] / seen) * (square[c] - sum[c] * sum[c] / seen);
     if (variance > 0) result.likeness += (both[c] - sum_first[c] * sum[c] / seen) / std::sqrt(variance) / 3;
   }
   double squared = 0, across = 0, down = 0, pairs_across = 0, pairs_down = 0, count = 0;
-  const auto product = [](const Float4& a, const Float4& b) { return static_cast<double>(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]); };
+  const auto product = [](const Float4& a, const Float4& b) {
+    return static_cast<double>(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+  };
   // What is far off (a missing patch) is not noise.
-  const auto is_noise = [](const Float4& p) { return p[3] > 0.5f && p[0] * p[0] + p[1] * p[1] + p[2] * p[2] < 3 * 60.0f * 60.0f; };
+  const auto is_noise = [](const Float4& p) {
+    return p[3] > 0.5f && p[0] * p[0] + p[1] * p[1] + p[2] * p[2] < 3 * 60.0f * 60.0f;
+  };
   for (int y = 0; y + 1 < h; ++y)
     for (int x = 0; x + 1 < w; ++x) {
       const Float4 &here = difference.at(x, y), &right = difference.at(x + 1, y), &below = difference.at(x, y + 1);
@@ -141,16 +157,20 @@ MatchStatistics match_statistics(const WeightedPicture& first, const WeightedPic
   return result;
 }
 
-void add_points(ScanRegistration& result, const TriangleMesh& mesh, const TextureCoordinates& place_mm, const PlaneFrame& frame, const Flow& flow,
-                const FlowEvidence& evidence, const CalibrationPattern& pattern, const ScanRegistrationOptions& options) {
+void add_points(ScanRegistration& result, const TriangleMesh& mesh, const TextureCoordinates& place_mm,
+                const PlaneFrame& frame, const Flow& flow, const FlowEvidence& evidence,
+                const CalibrationPattern& pattern, const ScanRegistrationOptions& options) {
   const PlaneLookup lookup(mesh.F, place_mm);
   const double pattern_variance = std::pow(255 * pattern.contrast, 2);
   const Typical usual = typical(evidence);
   const double foreign_squared = std::max(12 * usual.residual_squared, 300.0);
   // The length over which this flow averages, the same everywhere: where a place has less to tell, it is less certain.
-  const double data = usual.information * (1 + 0.3 * options.gradient_weight) / std::sqrt(usual.residual_squared + options.data_epsilon * options.data_epsilon);
-  const double reach_px = std::clamp(std::sqrt(options.smoothness / options.smoothness_epsilon / std::max(data, 1e-9)), 2.0, 16.0);
-  const int columns = static_cast<int>(std::floor(pattern.sheet_mm.x() / 2 / options.grid_mm)), rows = static_cast<int>(std::floor(pattern.sheet_mm.y() / 2 / options.grid_mm));
+  const double data = usual.information * (1 + 0.3 * options.gradient_weight) /
+                      std::sqrt(usual.residual_squared + options.data_epsilon * options.data_epsilon);
+  const double reach_px =
+      std::clamp(std::sqrt(options.smoothness / options.smoothness_epsilon / std::max(data, 1e-9)), 2.0, 16.0);
+  const int columns = static_cast<int>(std::floor(pattern.sheet_mm.x() / 2 / options.grid_mm)),
+            rows = static_cast<int>(std::floor(pattern.sheet_mm.y() / 2 / options.grid_mm));
   const auto place_of = [&](const Vec2& s) -> std::optional<Vec3> {
     const PlaneLookup::Found at = lookup.find(s + displacement_mm(flow, frame, s));
     if (at.face < 0) return std::nullopt;
@@ -160,7 +180,8 @@ void add_points(ScanRegistration& result, const TriangleMesh& mesh, const Textur
   };
   for (int j = -rows; j <= rows; ++j)
     for (int i = -columns; i <= columns; ++i) {
-      const Vec2 sheet(i * options.grid_mm, j * options.grid_mm), there = sheet + displacement_mm(flow, frame, sheet), pixel = frame.pixel(sheet);
+      const Vec2 sheet(i * options.grid_mm, j * options.grid_mm), there = sheet + displacement_mm(flow, frame, sheet),
+                                                                  pixel = frame.pixel(sheet);
       const PlaneLookup::Found found = lookup.find(there);
       ++result.points_without_evidence;
       if (found.face < 0 || is_plain(pattern, sheet)) continue;
@@ -175,7 +196,8 @@ void add_points(ScanRegistration& result, const TriangleMesh& mesh, const Textur
       information *= 4 * pi * reach_px * reach_px / near.trusted;
       if (!(information.determinant() > 1e-9)) continue;
       const double alike = std::min(result.residual_correlation_px, 4 * pi * reach_px * reach_px);
-      Eigen::Matrix2d covariance = variance * alike * information.inverse() + least_sigma_px * least_sigma_px * Eigen::Matrix2d::Identity();
+      Eigen::Matrix2d covariance =
+          variance * alike * information.inverse() + least_sigma_px * least_sigma_px * Eigen::Matrix2d::Identity();
       covariance *= frame.pixel_mm * frame.pixel_mm;
       covariance(0, 1) = covariance(1, 0) = -covariance(0, 1);  // rows run down
       // From the plane to the surface.
@@ -186,17 +208,20 @@ void add_points(ScanRegistration& result, const TriangleMesh& mesh, const Textur
       Eigen::Matrix<double, 3, 2> sides;
       sides << corner(1) - corner(0), corner(2) - corner(0);
       const Eigen::Matrix<double, 3, 2> slope = sides * edges.inverse();
-      // Smoothing rounds off sudden changes of stretch: half the kernel's second moment times the second derivative of the map, along the surface.
+      // Smoothing rounds off sudden changes of stretch: half the kernel's second moment times the second derivative of
+      // the map, along the surface.
       double rounded_squared = 0;
       const double step_mm = 2 * reach_px * frame.pixel_mm;
       const Vec3 outwards = slope.col(0).cross(slope.col(1)).normalized();
       for (const Vec2& step : {Vec2(step_mm, 0), Vec2(0, step_mm)}) {
-        const std::optional<Vec3> before = place_of(sheet - step), here = place_of(sheet), after = place_of(sheet + step);
+        const std::optional<Vec3> before = place_of(sheet - step), here = place_of(sheet),
+                                  after = place_of(sheet + step);
         if (!before || !here || !after) continue;
         const Vec3 bend = *before - 2 * *here + *after;
         rounded_squared += std::pow(kernel_share, 2) * (bend - outwards.dot(bend) * outwards).squaredNorm();
       }
-      const double sigma = std::sqrt(0.5 * (slope * covariance * slope.transpose()).trace() + rounded_squared + options.scan_sigma_mm * options.scan_sigma_mm);
+      const double sigma = std::sqrt(0.5 * (slope * covariance * slope.transpose()).trace() + rounded_squared +
+                                     options.scan_sigma_mm * options.scan_sigma_mm);
       if (!(sigma <= options.most_sigma_mm)) continue;
       Vec3 place = Vec3::Zero();
       for (int k = 0; k < 3; ++k) place += found.barycentric[k] * corner(k);
@@ -220,12 +245,16 @@ void align_by_rim(ScanRegistration& result, const CalibrationPattern& pattern, c
   }
   const int seen_sides = (sides & 1) + (sides >> 1 & 1) + (sides >> 2 & 1) + (sides >> 3 & 1);
   if (rim.size() < 12 || seen_sides < 3) {
-    result.notes.push_back("The clamped rim was not scanned on three sides at least, so the points keep the scan's coordinates: align them with the machine's before comparing.");
+    result.notes.push_back(
+        "The clamped rim was not scanned on three sides at least, so the points keep the scan's coordinates: align them with the machine's before comparing.");
     return;
   }
   Eigen::Matrix4d move = Eigen::Matrix4d::Identity(), scaled = move;
   const auto at = [&](const Vec3& p) { return Vec3((move * p.homogeneous()).head<3>()); };
-  const auto held = [&](std::size_t i) { return Vec3(result.points[i].sheet_mm.x(), result.points[i].sheet_mm.y(), options.clamp_height_mm + options.sheet_thickness_mm / 2); };
+  const auto held = [&](std::size_t i) {
+    return Vec3(result.points[i].sheet_mm.x(), result.points[i].sheet_mm.y(),
+                options.clamp_height_mm + options.sheet_thickness_mm / 2);
+  };
   const auto miss = [&](std::size_t i) { return (at(result.points[i].place_mm) - held(i)).norm(); };
   double squared = 0;
   for (int pass = 0; pass < 3; ++pass) {
@@ -251,8 +280,9 @@ void align_by_rim(ScanRegistration& result, const CalibrationPattern& pattern, c
   for (RegisteredPoint& p : result.points) p.place_mm = at(p.place_mm);
   result.in_machine_coordinates = true;
   if (std::abs(*result.rim_scale - 1) > 0.01)
-    result.notes.push_back("The rim is " + std::to_string(static_cast<int>(std::lround(100 * std::abs(1 - 1 / *result.rim_scale)))) + " % too " + (*result.rim_scale > 1 ? "small" : "large") +
-                           " in the scan: mend its scale, or scan_unit_mm.");
+    result.notes.push_back(
+        "The rim is " + std::to_string(static_cast<int>(std::lround(100 * std::abs(1 - 1 / *result.rim_scale)))) +
+        " % too " + (*result.rim_scale > 1 ? "small" : "large") + " in the scan: mend its scale, or scan_unit_mm.");
 }
 
 }  // namespace formwright

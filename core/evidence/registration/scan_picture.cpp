@@ -31,7 +31,9 @@ ScanColours::ScanColours(const Model& model, const Context& context) : model_(mo
     }
   bool any = model.vertex_colours.rows() > 0;
   for (const Sheet& sheet : sheets_) any = any || sheet.picture;
-  if (!any) throw Error(ErrorCode::invalid_input, "scan", "The scan has no colours: give its picture as texture, and the material file of an OBJ.");
+  if (!any)
+    throw Error(ErrorCode::invalid_input, "scan",
+                "The scan has no colours: give its picture as texture, and the material file of an OBJ.");
 }
 
 const ScanColours::Sheet* ScanColours::sheet_of(int face) const {
@@ -53,7 +55,8 @@ LinearPicture::Footprint ScanColours::footprint(int face, const std::array<Vec2,
   if (!sheet) return {};
   Eigen::Matrix2d edges, change;
   edges << pixels[1] - pixels[0], pixels[2] - pixels[0];
-  const Vec2 a = model_.UV.row(model_.FT(face, 0)), b = model_.UV.row(model_.FT(face, 1)), c = model_.UV.row(model_.FT(face, 2));
+  const Vec2 a = model_.UV.row(model_.FT(face, 0)), b = model_.UV.row(model_.FT(face, 1)),
+             c = model_.UV.row(model_.FT(face, 2));
   change << b - a, c - a;
   change.row(0) *= sheet->image.width;
   change.row(1) *= -sheet->image.height;
@@ -80,7 +83,8 @@ Float4 ScanColours::at(int face, const Vec3& barycentric, const LinearPicture::F
   return Float4{static_cast<float>(colour.x()), static_cast<float>(colour.y()), static_cast<float>(colour.z()), 1.0f};
 }
 
-WeightedPicture draw_scan(const Model& model, const ScanColours& colours, const TextureCoordinates& place_mm, const PlaneFrame& frame, const Context& context) {
+WeightedPicture draw_scan(const Model& model, const ScanColours& colours, const TextureCoordinates& place_mm,
+                          const PlaneFrame& frame, const Context& context) {
   WeightedPicture picture(frame.width, frame.height);
   const Triangles& F = model.mesh.F;
   const int bands = (frame.height + band_rows - 1) / band_rows;
@@ -93,28 +97,38 @@ WeightedPicture draw_scan(const Model& model, const ScanColours& colours, const 
     const double top = std::min({c[0].y(), c[1].y(), c[2].y()}), bottom = std::max({c[0].y(), c[1].y(), c[2].y()});
     const double left = std::min({c[0].x(), c[1].x(), c[2].x()}), right = std::max({c[0].x(), c[1].x(), c[2].x()});
     if (!(bottom >= 0 && top <= frame.height && right >= 0 && left <= frame.width)) continue;
-    const int from = std::clamp(static_cast<int>(std::max(0.0, top)) / band_rows, 0, bands - 1), to = std::clamp(static_cast<int>(std::min<double>(frame.height, bottom)) / band_rows, 0, bands - 1);
+    const int from = std::clamp(static_cast<int>(std::max(0.0, top)) / band_rows, 0, bands - 1),
+              to = std::clamp(static_cast<int>(std::min<double>(frame.height, bottom)) / band_rows, 0, bands - 1);
     for (int b = from; b <= to; ++b) faces_of[static_cast<std::size_t>(b)].push_back(static_cast<int>(f));
   }
   parallel_for(static_cast<std::size_t>(bands), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t band = begin; band < end; ++band) {
       context.check_cancelled();
-      const int row_from = static_cast<int>(band) * band_rows, row_to = std::min(frame.height, row_from + band_rows) - 1;
+      const int row_from = static_cast<int>(band) * band_rows,
+                row_to = std::min(frame.height, row_from + band_rows) - 1;
       std::vector<char> drawn(static_cast<std::size_t>(frame.width) * band_rows, 0);
       for (const int f : faces_of[band]) {
         const auto& c = corner[static_cast<std::size_t>(f)];
         const double doubled = cross2(c[1] - c[0], c[2] - c[0]);
         const LinearPicture::Footprint footprint = colours.footprint(f, c);
-        const int y0 = std::max(row_from, static_cast<int>(std::ceil(std::max(-1.0, std::min({c[0].y(), c[1].y(), c[2].y()})))));
-        const int y1 = std::min(row_to, static_cast<int>(std::floor(std::min<double>(frame.height, std::max({c[0].y(), c[1].y(), c[2].y()})))));
-        const int x0 = std::max(0, static_cast<int>(std::ceil(std::max(-1.0, std::min({c[0].x(), c[1].x(), c[2].x()})))));
-        const int x1 = std::min(frame.width - 1, static_cast<int>(std::floor(std::min<double>(frame.width, std::max({c[0].x(), c[1].x(), c[2].x()})))));
+        const int y0 =
+            std::max(row_from, static_cast<int>(std::ceil(std::max(-1.0, std::min({c[0].y(), c[1].y(), c[2].y()})))));
+        const int y1 = std::min(
+            row_to,
+            static_cast<int>(std::floor(std::min<double>(frame.height, std::max({c[0].y(), c[1].y(), c[2].y()})))));
+        const int x0 =
+            std::max(0, static_cast<int>(std::ceil(std::max(-1.0, std::min({c[0].x(), c[1].x(), c[2].x()})))));
+        const int x1 = std::min(
+            frame.width - 1,
+            static_cast<int>(std::floor(std::min<double>(frame.width, std::max({c[0].x(), c[1].x(), c[2].x()})))));
         for (int y = y0; y <= y1; ++y)
           for (int x = x0; x <= x1; ++x) {
             const Vec2 p(x, y);
-            const Vec3 bary(cross2(c[1] - p, c[2] - p) / doubled, cross2(c[2] - p, c[0] - p) / doubled, cross2(c[0] - p, c[1] - p) / doubled);
+            const Vec3 bary(cross2(c[1] - p, c[2] - p) / doubled, cross2(c[2] - p, c[0] - p) / doubled,
+                            cross2(c[0] - p, c[1] - p) / doubled);
             if (!(bary.minCoeff() >= -1e-9)) continue;
-            char& seen = drawn[static_cast<std::size_t>(y - row_from) * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(x)];
+            char& seen = drawn[static_cast<std::size_t>(y - row_from) * static_cast<std::size_t>(frame.width) +
+                               static_cast<std::size_t>(x)];
             if (seen) continue;
             seen = 1;
             picture.at(x, y) = colours.at(f, bary, footprint);
@@ -125,7 +139,8 @@ WeightedPicture draw_scan(const Model& model, const ScanColours& colours, const 
   return picture;
 }
 
-PlaneLookup::PlaneLookup(const Triangles& faces, const TextureCoordinates& place_mm) : faces_(faces), place_mm_(place_mm) {
+PlaneLookup::PlaneLookup(const Triangles& faces, const TextureCoordinates& place_mm)
+    : faces_(faces), place_mm_(place_mm) {
   lower_ = place_mm.colwise().minCoeff();
   const Vec2 size = place_mm.colwise().maxCoeff().transpose() - lower_;
   cell_mm_ = std::max(1e-9, std::sqrt(std::max(size.x() * size.y(), 1e-12) / static_cast<double>(faces.rows()) * 2));
@@ -138,28 +153,35 @@ PlaneLookup::PlaneLookup(const Triangles& faces, const TextureCoordinates& place
       low = low.cwiseMin(place_mm.row(faces(f, k)).transpose());
       high = high.cwiseMax(place_mm.row(faces(f, k)).transpose());
     }
-    const auto at = [&](double place, double from, int count) { return std::clamp(static_cast<int>((place - from) / cell_mm_), 0, count - 1); };
+    const auto at = [&](double place, double from, int count) {
+      return std::clamp(static_cast<int>((place - from) / cell_mm_), 0, count - 1);
+    };
     for (int y = at(low.y(), lower_.y(), rows_); y <= at(high.y(), lower_.y(), rows_); ++y)
-      for (int x = at(low.x(), lower_.x(), columns_); x <= at(high.x(), lower_.x(), columns_); ++x) visit(static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x));
+      for (int x = at(low.x(), lower_.x(), columns_); x <= at(high.x(), lower_.x(), columns_); ++x)
+        visit(static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x));
   };
   first_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) + 1, 0);
   for (Eigen::Index f = 0; f < faces.rows(); ++f) over_cells(f, [&](std::size_t cell) { ++first_[cell + 1]; });
   for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
   items_.resize(static_cast<std::size_t>(first_.back()));
   std::vector<int> next(first_.begin(), first_.end() - 1);
-  for (Eigen::Index f = 0; f < faces.rows(); ++f) over_cells(f, [&](std::size_t cell) { items_[static_cast<std::size_t>(next[cell]++)] = static_cast<int>(f); });
+  for (Eigen::Index f = 0; f < faces.rows(); ++f)
+    over_cells(f, [&](std::size_t cell) { items_[static_cast<std::size_t>(next[cell]++)] = static_cast<int>(f); });
 }
 
 PlaneLookup::Found PlaneLookup::find(const Vec2& place) const {
   const Vec2 at = (place - lower_) / cell_mm_;
   if (!(at.x() >= 0 && at.y() >= 0 && at.x() <= columns_ && at.y() <= rows_)) return {-1, Vec3::Zero()};
-  const std::size_t cell = static_cast<std::size_t>(std::min(static_cast<int>(at.y()), rows_ - 1)) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(std::min(static_cast<int>(at.x()), columns_ - 1));
+  const std::size_t cell =
+      static_cast<std::size_t>(std::min(static_cast<int>(at.y()), rows_ - 1)) * static_cast<std::size_t>(columns_) +
+      static_cast<std::size_t>(std::min(static_cast<int>(at.x()), columns_ - 1));
   for (int i = first_[cell]; i < first_[cell + 1]; ++i) {
     const int f = items_[static_cast<std::size_t>(i)];
     const Vec2 a = place_mm_.row(faces_(f, 0)), b = place_mm_.row(faces_(f, 1)), c = place_mm_.row(faces_(f, 2));
     const double doubled = cross2(b - a, c - a);
     if (!(doubled > 0)) continue;
-    const Vec3 bary(cross2(b - place, c - place) / doubled, cross2(c - place, a - place) / doubled, cross2(a - place, b - place) / doubled);
+    const Vec3 bary(cross2(b - place, c - place) / doubled, cross2(c - place, a - place) / doubled,
+                    cross2(a - place, b - place) / doubled);
     if (bary.minCoeff() >= -1e-9) return {f, bary};
   }
   return {-1, Vec3::Zero()};

@@ -13,7 +13,8 @@ namespace formwright {
 /// The colours that a scan was photographed with: textures by UV, or colours of its vertices.
 class ScanColours {
  public:
-  /// Keeps a reference to `model`. Throws Error{invalid_input, "scan"}: neither a picture with texture coordinates nor vertex colours.
+  /// Keeps a reference to `model`. Throws Error{invalid_input, "scan"}: neither a picture with texture coordinates nor
+  /// vertex colours.
   ScanColours(const Model& model, const Context& context);
 
   /// How a face is filtered where it is drawn with its corners at `pixels`.
@@ -21,7 +22,7 @@ class ScanColours {
   /// Linear light 0 to 1, and the weight in lane 3: 0 where the picture is transparent or the face has none.
   Float4 at(int face, const Vec3& barycentric, const LinearPicture::Footprint& footprint) const;
 
-  int width(int face) const;   // of a face's picture, in pixels; 0 without one
+  int width(int face) const;  // of a face's picture, in pixels; 0 without one
   int height(int face) const;
 
  private:
@@ -40,13 +41,19 @@ struct PlaneFrame {
   double pixel_mm = 1;
   Vec2 centre_mm{0, 0};
 
-  Vec2 pixel(const Vec2& place) const { return {0.5 * width + (place.x() - centre_mm.x()) / pixel_mm - 0.5, 0.5 * height - (place.y() - centre_mm.y()) / pixel_mm - 0.5}; }
-  Vec2 place(double column, double row) const { return centre_mm + Vec2((column + 0.5 - 0.5 * width) * pixel_mm, (0.5 * height - row - 0.5) * pixel_mm); }
+  Vec2 pixel(const Vec2& place) const {
+    return {0.5 * width + (place.x() - centre_mm.x()) / pixel_mm - 0.5,
+            0.5 * height - (place.y() - centre_mm.y()) / pixel_mm - 0.5};
+  }
+  Vec2 place(double column, double row) const {
+    return centre_mm + Vec2((column + 0.5 - 0.5 * width) * pixel_mm, (0.5 * height - row - 0.5) * pixel_mm);
+  }
 };
 
-/// Draws the faces at `place_mm` (n x 2): linear light 0 to 1 in the lanes, 0 weight where nothing is seen. Faces upside down are left out; of several over one
-/// pixel the first counts.
-WeightedPicture draw_scan(const Model& model, const ScanColours& colours, const TextureCoordinates& place_mm, const PlaneFrame& frame, const Context& context);
+/// Draws the faces at `place_mm` (n x 2): linear light 0 to 1 in the lanes, 0 weight where nothing is seen. Faces
+/// upside down are left out; of several over one pixel the first counts.
+WeightedPicture draw_scan(const Model& model, const ScanColours& colours, const TextureCoordinates& place_mm,
+                          const PlaneFrame& frame, const Context& context);
 
 /// From places of the plane to the face that lies there.
 class PlaneLookup {

@@ -18,7 +18,7 @@ namespace {
 constexpr int first_side_px = 512, second_side_px = 1024;
 constexpr double second_reach_px = 32, last_reach_px = 16;
 constexpr double least_likeness = 0.7;  // of another pattern, however far bent: 0.5
-constexpr int cells_across = 40;  // in which mean colours are compared once places are known
+constexpr int cells_across = 40;        // in which mean colours are compared once places are known
 
 using Places = TextureCoordinates;
 
@@ -30,15 +30,23 @@ PlaneFrame sheet_frame(const CalibrationPattern& pattern, int side_px) {
   return frame;
 }
 
-Vec2 relative(const PlaneFrame& frame, int x, int y) { return {(2.0 * x + 1) / frame.width - 1, (2.0 * y + 1) / frame.height - 1}; }
+Vec2 relative(const PlaneFrame& frame, int x, int y) {
+  return {(2.0 * x + 1) / frame.width - 1, (2.0 * y + 1) / frame.height - 1};
+}
 
-Vec3 colour_of(const Float4& p) { return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])}; }
-Vec3 light_of(const Rgba& p) { return Vec3(light_of_byte()[p[0]], light_of_byte()[p[1]], light_of_byte()[p[2]]) / light_levels; }
+Vec3 colour_of(const Float4& p) {
+  return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
+}
+Vec3 light_of(const Rgba& p) {
+  return Vec3(light_of_byte()[p[0]], light_of_byte()[p[1]], light_of_byte()[p[2]]) / light_levels;
+}
 
 /// Linear light to grey levels of sRGB, with the correction in between.
-WeightedPicture corrected(const WeightedPicture& light, const ColourCorrection& correction, const PlaneFrame& frame, const Context& context) {
+WeightedPicture corrected(const WeightedPicture& light, const ColourCorrection& correction, const PlaneFrame& frame,
+                          const Context& context) {
   std::array<float, 4097> level{};
-  for (std::size_t i = 0; i < level.size(); ++i) level[i] = static_cast<float>(255 * srgb_of_linear(std::pow(static_cast<double>(i) / 4096, 2)));
+  for (std::size_t i = 0; i < level.size(); ++i)
+    level[i] = static_cast<float>(255 * srgb_of_linear(std::pow(static_cast<double>(i) / 4096, 2)));
   WeightedPicture result(light.width, light.height);
   parallel_for(static_cast<std::size_t>(light.height), 32, [&](std::size_t begin, std::size_t end) {
     context.check_cancelled();
@@ -49,7 +57,8 @@ WeightedPicture corrected(const WeightedPicture& light, const ColourCorrection& 
         const Vec3 c = correction(colour_of(p), relative(frame, x, y));
         Float4& out = result.at(x, y);
         for (int k = 0; k < 3; ++k) {
-          const double place = 4096 * std::sqrt(std::clamp(c[k], 0.0, 1.0));  // the table is even in the root, as levels nearly are
+          const double place =
+              4096 * std::sqrt(std::clamp(c[k], 0.0, 1.0));  // the table is even in the root, as levels nearly are
           const auto i = std::min<std::size_t>(4095, static_cast<std::size_t>(place));
           const float t = static_cast<float>(place - static_cast<double>(i));
           out[k] = level[i] + t * (level[i + 1] - level[i]);
@@ -60,7 +69,8 @@ WeightedPicture corrected(const WeightedPicture& light, const ColourCorrection& 
   return result;
 }
 
-std::vector<ColourSample> patch_samples(const CalibrationPattern& pattern, const WeightedPicture& light, const PlaneFrame& frame) {
+std::vector<ColourSample> patch_samples(const CalibrationPattern& pattern, const WeightedPicture& light,
+                                        const PlaneFrame& frame) {
   std::vector<ColourSample> samples;
   for (const ColourPatch& patch : pattern.patches) {
     const Vec2 middle = frame.pixel(patch.centre_mm);
@@ -69,7 +79,8 @@ std::vector<ColourSample> patch_samples(const CalibrationPattern& pattern, const
     for (int y = static_cast<int>(middle.y()) - reach; y <= middle.y() + reach; ++y)
       for (int x = static_cast<int>(middle.x()) - reach; x <= middle.x() + reach; ++x) {
         if (x < 0 || y < 0 || x >= frame.width || y >= frame.height || !(light.at(x, y)[3] > 0)) continue;
-        for (int c = 0; c < 3; ++c) values[static_cast<std::size_t>(c)].push_back(static_cast<double>(light.at(x, y)[c]));
+        for (int c = 0; c < 3; ++c)
+          values[static_cast<std::size_t>(c)].push_back(static_cast<double>(light.at(x, y)[c]));
       }
     if (values[0].empty()) continue;
     Vec3 seen;
@@ -78,13 +89,15 @@ std::vector<ColourSample> patch_samples(const CalibrationPattern& pattern, const
       std::nth_element(values[c].begin(), half, values[c].end());
       seen[static_cast<int>(c)] = *half;
     }
-    samples.push_back({relative(frame, static_cast<int>(middle.x()), static_cast<int>(middle.y())), seen, light_of(patch.colour)});
+    samples.push_back(
+        {relative(frame, static_cast<int>(middle.x()), static_cast<int>(middle.y())), seen, light_of(patch.colour)});
   }
   return samples;
 }
 
 /// Mean colours of small cells, once flow says where they are seen.
-std::vector<ColourSample> cell_samples(const Image& reference, const WeightedPicture& light, const Flow& flow, const PlaneFrame& frame) {
+std::vector<ColourSample> cell_samples(const Image& reference, const WeightedPicture& light, const Flow& flow,
+                                       const PlaneFrame& frame) {
   std::vector<ColourSample> samples;
   const int side = std::max(4, frame.width / cells_across);
   for (int y0 = 0; y0 + side <= frame.height; y0 += side)
@@ -95,7 +108,9 @@ std::vector<ColourSample> cell_samples(const Image& reference, const WeightedPic
         for (int x = x0; x < x0 + side; ++x) {
           const std::size_t i = flow.index(x, y);
           const float px = static_cast<float>(x) + flow.u[i], py = static_cast<float>(y) + flow.v[i];
-          if (!(px >= 0 && py >= 0 && px <= static_cast<float>(frame.width - 1) && py <= static_cast<float>(frame.height - 1))) continue;
+          if (!(px >= 0 && py >= 0 && px <= static_cast<float>(frame.width - 1) &&
+                py <= static_cast<float>(frame.height - 1)))
+            continue;
           const Float4 p = bilinear(light, px, py);
           if (p[3] < 0.999f) continue;
           seen += colour_of(p);
@@ -137,7 +152,8 @@ double displacement_rms_mm(const Flow& flow, const WeightedPicture& seen, double
 }
 
 /// Standard deviation of the blur, in pixels, after which the reference looks most like the scan.
-double best_blur_px(const WeightedPicture& reference, const WeightedPicture& scan, const Flow& flow, const Context& context) {
+double best_blur_px(const WeightedPicture& reference, const WeightedPicture& scan, const Flow& flow,
+                    const Context& context) {
   double best = 0, least = 1e300;
   for (const double sigma : {0.0, 0.5, 0.8, 1.2, 1.7, 2.4, 3.4}) {
     const FlowEvidence e = flow_evidence(smoothed(reference, sigma, context), scan, flow, context);
@@ -155,17 +171,21 @@ Image bytes_of(const WeightedPicture& picture) {
   for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
     const Float4& p = picture.pixels[i];
     if (!(p[3] > 0)) continue;
-    for (std::size_t c = 0; c < 3; ++c) image.pixels[i][c] = static_cast<std::uint8_t>(std::lround(std::clamp(p[static_cast<int>(c)], 0.0f, 255.0f)));
+    for (std::size_t c = 0; c < 3; ++c)
+      image.pixels[i][c] = static_cast<std::uint8_t>(std::lround(std::clamp(p[static_cast<int>(c)], 0.0f, 255.0f)));
     image.pixels[i][3] = 255;
   }
   return image;
 }
 
-/// Hue for the direction, saturation for the length (Baker et al. 2011 show flow so); what is not known stays transparent.
-void draw_displacement(ScanRegistration& result, const Triangles& faces, const Places& last, const Places& after_corners, const CalibrationPattern& pattern) {
+/// Hue for the direction, saturation for the length (Baker et al. 2011 show flow so); what is not known stays
+/// transparent.
+void draw_displacement(ScanRegistration& result, const Triangles& faces, const Places& last,
+                       const Places& after_corners, const CalibrationPattern& pattern) {
   const PlaneFrame frame = sheet_frame(pattern, 512);
   const PlaneLookup lookup(faces, last);
-  std::vector<Vec2> moved(static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height), Vec2(NAN, NAN));
+  std::vector<Vec2> moved(static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height),
+                          Vec2(NAN, NAN));
   std::vector<double> lengths;
   for (int y = 0; y < frame.height; ++y)
     for (int x = 0; x < frame.width; ++x) {
@@ -174,16 +194,19 @@ void draw_displacement(ScanRegistration& result, const Triangles& faces, const P
       if (found.face < 0) continue;
       Vec2 before = Vec2::Zero();
       for (int k = 0; k < 3; ++k) before += found.barycentric[k] * after_corners.row(faces(found.face, k)).transpose();
-      moved[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(x)] = before - s;
+      moved[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(x)] =
+          before - s;
       lengths.push_back((before - s).norm());
     }
   result.displacement = Image(frame.width, frame.height, {0, 0, 0, 0});
   if (lengths.empty()) return;
-  std::nth_element(lengths.begin(), lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() * 98 / 100), lengths.end());
+  std::nth_element(lengths.begin(), lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() * 98 / 100),
+                   lengths.end());
   result.displacement_full_mm = std::max(1e-6, lengths[lengths.size() * 98 / 100]);
   for (std::size_t i = 0; i < moved.size(); ++i) {
     if (!std::isfinite(moved[i].x())) continue;
-    const double share = std::min(1.0, moved[i].norm() / result.displacement_full_mm), hue = std::atan2(moved[i].y(), moved[i].x()) / (2 * 3.14159265358979324) + 1;
+    const double share = std::min(1.0, moved[i].norm() / result.displacement_full_mm),
+                 hue = std::atan2(moved[i].y(), moved[i].x()) / (2 * 3.14159265358979324) + 1;
     Rgba& pixel = result.displacement.pixels[i];
     for (std::size_t c = 0; c < 3; ++c) {
       const double wheel = std::abs(std::fmod(6 * hue + 6 - 2 * static_cast<double>(c), 6.0) - 3) - 1;
@@ -195,7 +218,8 @@ void draw_displacement(ScanRegistration& result, const Triangles& faces, const P
 
 }  // namespace
 
-ScanRegistration register_scan(const Model& scan, const CalibrationPattern& pattern, const ScanRegistrationOptions& options, Context& context) {
+ScanRegistration register_scan(const Model& scan, const CalibrationPattern& pattern,
+                               const ScanRegistrationOptions& options, Context& context) {
   ScanRegistration result;
   Stopwatch watch;
   ScanPart part = sheet_part(scan);
@@ -223,7 +247,8 @@ ScanRegistration register_scan(const Model& scan, const CalibrationPattern& patt
     frame.width = static_cast<int>(std::ceil((high - low).x() / frame.pixel_mm)) + 2;
     frame.height = static_cast<int>(std::ceil((high - low).y() / frame.pixel_mm)) + 2;
     result.marks = find_marks(pattern, draw_scan(model, colours, flat, frame, context), frame, context);
-    if (*std::min_element(result.marks.likeness.begin(), result.marks.likeness.end()) == 0) result.notes.push_back("One corner mark was not found; its place follows from the other three.");
+    if (*std::min_element(result.marks.likeness.begin(), result.marks.likeness.end()) == 0)
+      result.notes.push_back("One corner mark was not found; its place follows from the other three.");
   } else {
     result.marks.place_mm = plane_corners(options.corners, model, colours, flat);
     const auto& p = result.marks.place_mm;
@@ -256,16 +281,27 @@ ScanRegistration register_scan(const Model& scan, const CalibrationPattern& patt
   PlaneFrame frame;
   WeightedPicture reference, seen;
   Flow flow;
-  const std::array<int, 3> sides{std::min(first_side_px, options.picture_px), std::min(second_side_px, options.picture_px), options.picture_px};
+  const std::array<int, 3> sides{std::min(first_side_px, options.picture_px),
+                                 std::min(second_side_px, options.picture_px), options.picture_px};
   for (std::size_t round = 0; round < 3; ++round) {
-    const auto span = context.span(round == 0 ? 0.3 : round == 1 ? 0.4 : 0.55, round == 0 ? 0.4 : round == 1 ? 0.55 : 0.95, "Comparing with the pattern");
+    const auto span = context.span(round == 0   ? 0.3
+                                   : round == 1 ? 0.4
+                                                : 0.55,
+                                   round == 0   ? 0.4
+                                   : round == 1 ? 0.55
+                                                : 0.95,
+                                   "Comparing with the pattern");
     frame = sheet_frame(pattern, sides[round]);
     const Image drawn = draw_calibration_pattern(pattern, frame.width, frame.height, frame.pixel_mm, context);
     reference = weighted_picture(drawn);
     const WeightedPicture light = draw_scan(model, colours, places, frame, context);
     if (round == 0) {
       std::vector<ColourSample> samples = patch_samples(pattern, light, frame);
-      if (samples.size() < 8) samples = cell_samples(drawn, light, {frame.width, frame.height, std::vector<float>(drawn.pixels.size(), 0), std::vector<float>(drawn.pixels.size(), 0)}, frame);
+      if (samples.size() < 8)
+        samples = cell_samples(drawn, light,
+                               {frame.width, frame.height, std::vector<float>(drawn.pixels.size(), 0),
+                                std::vector<float>(drawn.pixels.size(), 0)},
+                               frame);
       result.colours = fit_colour_correction(samples);
     }
     seen = corrected(light, result.colours, frame, context);
@@ -275,7 +311,8 @@ ScanRegistration register_scan(const Model& scan, const CalibrationPattern& patt
       result.first_displacement_rms_mm = displacement_rms_mm(flow, seen, frame.pixel_mm);
     } else {
       if (result.blur_px > 0) reference = smoothed(reference, result.blur_px * sides[round] / sides[1], context);
-      const Flow none{frame.width, frame.height, std::vector<float>(drawn.pixels.size(), 0), std::vector<float>(drawn.pixels.size(), 0)};
+      const Flow none{frame.width, frame.height, std::vector<float>(drawn.pixels.size(), 0),
+                      std::vector<float>(drawn.pixels.size(), 0)};
       flow = refined_flow(reference, seen, none, round == 1 ? second_reach_px : last_reach_px, options, context);
     }
     result.seconds_flow += watch.lap();
@@ -284,7 +321,8 @@ ScanRegistration register_scan(const Model& scan, const CalibrationPattern& patt
       result.colours = fit_colour_correction(samples);
       result.colour_samples = static_cast<int>(samples.size());
     }
-    if (round == 1) result.blur_px = best_blur_px(reference, corrected(light, result.colours, frame, context), flow, context);
+    if (round == 1)
+      result.blur_px = best_blur_px(reference, corrected(light, result.colours, frame, context), flow, context);
     places = carried(places, flow, frame);
   }
   result.blur_px *= static_cast<double>(sides[2]) / sides[1];
@@ -296,15 +334,22 @@ ScanRegistration register_scan(const Model& scan, const CalibrationPattern& patt
     squared += static_cast<double>(evidence.residual_squared[i]);
     weight += static_cast<double>(evidence.weight[i]);
   }
-  if (weight < 0.05 * static_cast<double>(evidence.weight.size())) throw Error(ErrorCode::could_not_solve, "scan", "Almost nothing of the scan lies where the pattern should be: check the corners and the pattern.");
+  if (weight < 0.05 * static_cast<double>(evidence.weight.size()))
+    throw Error(ErrorCode::could_not_solve, "scan",
+                "Almost nothing of the scan lies where the pattern should be: check the corners and the pattern.");
   result.colour_error_levels = std::sqrt(squared / (3 * weight));
   const MatchStatistics match = match_statistics(reference, seen, flow);
   result.likeness = match.likeness;
   result.residual_correlation_px = match.residual_alike_px;
   if (match.likeness < least_likeness)
-    throw Error(ErrorCode::could_not_solve, "pattern", "The scan does not look like this pattern: give the pattern.json of the print that was formed, and check the corners.");
+    throw Error(
+        ErrorCode::could_not_solve, "pattern",
+        "The scan does not look like this pattern: give the pattern.json of the print that was formed, and check the corners.");
   add_points(result, model.mesh, places, frame, flow, evidence, pattern, options);
-  if (result.points.empty()) throw Error(ErrorCode::could_not_solve, "scan", "No point of the scan could be matched with the pattern: check that it is the one that was printed, and the corners.");
+  if (result.points.empty())
+    throw Error(
+        ErrorCode::could_not_solve, "scan",
+        "No point of the scan could be matched with the pattern: check that it is the one that was printed, and the corners.");
 
   const PlaneLookup lookup(model.mesh.F, places);
   for (std::size_t k = 0; k < 4; ++k) {

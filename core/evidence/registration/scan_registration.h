@@ -33,64 +33,89 @@ struct ScanRegistrationOptions : VariationalFlowOptions {
   int flatten_iterations = 60;
 
   static constexpr auto parameters = std::tuple_cat(
-      std::tuple{parameter("grid_mm", &ScanRegistrationOptions::grid_mm, "Point spacing", unit::mm, 0.2, 100, "Distance between measured points on the flat sheet.").group("Points").slider(1, 10),
-                 parameter("coordinates", &ScanRegistrationOptions::coordinates, "Coordinates",
-                           "Of the points. By the rim: turned and moved so that the clamped rim lies where the machine holds it; as scanned where no rim was scanned.")
-                     .group("Points"),
-                 parameter("clamp_height_mm", &ScanRegistrationOptions::clamp_height_mm, "Clamp height", unit::mm, -500, 500, "Middle of the clamped sheet above the raised plate.")
-                     .group("Points").slider(0, 10),
-                 parameter("sheet_thickness_mm", &ScanRegistrationOptions::sheet_thickness_mm, "Thickness", unit::mm, 0, 20, "Of the rim; the scan shows its upper face.").group("Points").slider(0.2, 3),
-                 parameter("most_sigma_mm", &ScanRegistrationOptions::most_sigma_mm, "Largest uncertainty", unit::mm, 0.01, 100, "Points less certain than this are left out.")
-                     .group("Points").slider(0.2, 3),
-                 parameter("scan_sigma_mm", &ScanRegistrationOptions::scan_sigma_mm, "Scan noise", unit::mm, 0, 10, "Standard deviation of the scan's own shape, added to every point's.")
-                     .group("Points").slider(0, 0.5),
-                 parameter("scan_unit_mm", &ScanRegistrationOptions::scan_unit_mm, "Unit of the scan", unit::mm, 0.0001, 10000, "How long 1 of the scan's file is; 1000 for metres.")
-                     .group("Scan").slider(0.1, 1000),
-                 parameter("corners", &ScanRegistrationOptions::corners, "Corners",
-                           "Where the four corner marks are if they are not found: pixels of the scan's picture from its top left, as x,y x,y x,y x,y: front left, front right, back right, back left.")
-                     .group("Scan"),
-                 parameter("flatten_iterations", &ScanRegistrationOptions::flatten_iterations, "Flattening steps", unit::none, 0, 1000, "Of the as-rigid-as-possible map; 0 leaves the harmonic one.")
-                     .group("Scan").advanced(),
-                 parameter("picture_px", &ScanRegistrationOptions::picture_px, "Picture size", unit::none, 64, 8192, "Longer side of the pictures that are compared, in pixels.")
-                     .group("Flow").slider(512, 4096)},
+      std::tuple{
+          parameter("grid_mm", &ScanRegistrationOptions::grid_mm, "Point spacing", unit::mm, 0.2, 100,
+                    "Distance between measured points on the flat sheet.")
+              .group("Points")
+              .slider(1, 10),
+          parameter(
+              "coordinates", &ScanRegistrationOptions::coordinates, "Coordinates",
+              "Of the points. By the rim: turned and moved so that the clamped rim lies where the machine holds it; as scanned where no rim was scanned.")
+              .group("Points"),
+          parameter("clamp_height_mm", &ScanRegistrationOptions::clamp_height_mm, "Clamp height", unit::mm, -500, 500,
+                    "Middle of the clamped sheet above the raised plate.")
+              .group("Points")
+              .slider(0, 10),
+          parameter("sheet_thickness_mm", &ScanRegistrationOptions::sheet_thickness_mm, "Thickness", unit::mm, 0, 20,
+                    "Of the rim; the scan shows its upper face.")
+              .group("Points")
+              .slider(0.2, 3),
+          parameter("most_sigma_mm", &ScanRegistrationOptions::most_sigma_mm, "Largest uncertainty", unit::mm, 0.01,
+                    100, "Points less certain than this are left out.")
+              .group("Points")
+              .slider(0.2, 3),
+          parameter("scan_sigma_mm", &ScanRegistrationOptions::scan_sigma_mm, "Scan noise", unit::mm, 0, 10,
+                    "Standard deviation of the scan's own shape, added to every point's.")
+              .group("Points")
+              .slider(0, 0.5),
+          parameter("scan_unit_mm", &ScanRegistrationOptions::scan_unit_mm, "Unit of the scan", unit::mm, 0.0001, 10000,
+                    "How long 1 of the scan's file is; 1000 for metres.")
+              .group("Scan")
+              .slider(0.1, 1000),
+          parameter(
+              "corners", &ScanRegistrationOptions::corners, "Corners",
+              "Where the four corner marks are if they are not found: pixels of the scan's picture from its top left, as x,y x,y x,y x,y: front left, front right, back right, back left.")
+              .group("Scan"),
+          parameter("flatten_iterations", &ScanRegistrationOptions::flatten_iterations, "Flattening steps", unit::none,
+                    0, 1000, "Of the as-rigid-as-possible map; 0 leaves the harmonic one.")
+              .group("Scan")
+              .advanced(),
+          parameter("picture_px", &ScanRegistrationOptions::picture_px, "Picture size", unit::none, 64, 8192,
+                    "Longer side of the pictures that are compared, in pixels.")
+              .group("Flow")
+              .slider(512, 4096)},
       inherit_parameters<ScanRegistrationOptions>(VariationalFlowOptions::parameters));
 };
 
 struct RegisteredPoint {
-  Vec2 sheet_mm;     // on the flat sheet, centred on it
+  Vec2 sheet_mm;  // on the flat sheet, centred on it
   Vec3 place_mm;
-  double sigma_mm;   // standard deviation along the surface, per direction, and of the scan
+  double sigma_mm;  // standard deviation along the surface, per direction, and of the scan
 };
 
 struct ScanRegistration {
   std::vector<RegisteredPoint> points;
   int points_without_evidence = 0;
   FoundMarks marks;
-  std::array<std::optional<Vec2>, 4> corner_px{};  // where the scan's picture shows them, from its top left; none without a picture
-  std::array<double, 4> corner_residual_mm{};  // from each mark as found to where the registration has it; -1 where that is not known
-  double plane_scale = 1;                      // mean length on the sheet of 1 mm of the flat scan, at the corners
+  std::array<std::optional<Vec2>, 4>
+      corner_px{};  // where the scan's picture shows them, from its top left; none without a picture
+  std::array<double, 4>
+      corner_residual_mm{};  // from each mark as found to where the registration has it; -1 where that is not known
+  double plane_scale = 1;    // mean length on the sheet of 1 mm of the flat scan, at the corners
   ColourCorrection colours;
   int colour_samples = 0;
-  double colour_error_levels = 0;              // root mean square over all compared pixels, all three channels
-  double likeness = 0;                         // correlation of scan and pattern once matched, at most 1
-  double residual_correlation_px = 1;          // pixels over which what is left is alike
-  double blur_px = 0;                          // by which the scan is less sharp than the print
+  double colour_error_levels = 0;      // root mean square over all compared pixels, all three channels
+  double likeness = 0;                 // correlation of scan and pattern once matched, at most 1
+  double residual_correlation_px = 1;  // pixels over which what is left is alike
+  double blur_px = 0;                  // by which the scan is less sharp than the print
   FlatScan flat;
   int holes = 0, other_parts = 0, scan_faces = 0;
-  double first_displacement_rms_mm = 0;        // of the flow after the corners alone
-  double last_displacement_rms_mm = 0;         // of the last correction
-  std::optional<double> rim_rms_mm, rim_scale; // of the rim's points from where the machine holds them; length there against length scanned
+  double first_displacement_rms_mm = 0;  // of the flow after the corners alone
+  double last_displacement_rms_mm = 0;   // of the last correction
+  std::optional<double> rim_rms_mm,
+      rim_scale;  // of the rim's points from where the machine holds them; length there against length scanned
   bool in_machine_coordinates = false;
-  Image aligned;                               // the scan's colours in the sheet's frame
-  Image displacement;                          // how far each point had to be moved after the corners: hue is the direction, colour the length
-  double displacement_full_mm = 0;             // of full colour
+  Image aligned;       // the scan's colours in the sheet's frame
+  Image displacement;  // how far each point had to be moved after the corners: hue is the direction, colour the length
+  double displacement_full_mm = 0;  // of full colour
   std::vector<std::string> notes;
   double seconds_flatten = 0, seconds_marks = 0, seconds_draw = 0, seconds_flow = 0, seconds_points = 0;
 };
 
 /// `scan`: repaired, with its pictures. Faces look out of the printed side; a scan that looks the other way is turned.
-/// Throws Error: invalid_input ("scan": not a sheet, no colours; "corners": marks not found, not four points), could_not_solve (not the pattern's print, or too
-/// little of it), cancelled.
-ScanRegistration register_scan(const Model& scan, const CalibrationPattern& pattern, const ScanRegistrationOptions& options, Context& context);
+/// Throws Error: invalid_input ("scan": not a sheet, no colours; "corners": marks not found, not four points),
+/// could_not_solve (not the pattern's print, or too little of it), cancelled.
+ScanRegistration register_scan(const Model& scan, const CalibrationPattern& pattern,
+                               const ScanRegistrationOptions& options, Context& context);
 
 }  // namespace formwright

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A made relief under a known light as a forward model: from how it was printed, lit and looked at to the brightness of its points.
+// A made relief under a known light as a forward model: from how it was printed, lit and looked at to the brightness of
+// its points.
 #include <string>
 #include <vector>
 
@@ -16,7 +17,8 @@ struct ReliefSurface {
   Vec2 lower_mm = Vec2::Zero();  // of the first height
   Eigen::MatrixXd height_mm;     // rows: y, columns: x
 
-  /// The uppermost surface of `mesh` (mm, z towards the viewer), `pixels` along its longer side. Where the mesh leaves holes, its lowest height.
+  /// The uppermost surface of `mesh` (mm, z towards the viewer), `pixels` along its longer side. Where the mesh leaves
+  /// holes, its lowest height.
   static ReliefSurface of(const TriangleMesh& mesh, int pixels, Context& context);
 };
 
@@ -42,11 +44,13 @@ struct PhotographedRelief {
 
 /// shading.csv: header x_mm,y_mm,brightness[,sigma]. Throws Error{invalid_input, "object"} with the line.
 std::vector<ShadedPoint> read_shaded_points(ByteView csv);
-/// setup.json: light_direction [x, y, z], light_distance_mm, camera_height_mm. Throws Error{invalid_input, "object"}, naming the key.
+/// setup.json: light_direction [x, y, z], light_distance_mm, camera_height_mm. Throws Error{invalid_input, "object"},
+/// naming the key.
 ShadingSetup read_shading_setup(ByteView json);
 
-/// The base is a matt surface: brightness = exposure (ambient + (1 - ambient) max(0, n . l)), without shadows that one part casts on another.
-/// Causes: light_direction, light_distance, gloss, cast_shadow, printer_blur, depth_shrinkage, viewer_offset.
+/// The base is a matt surface: brightness = exposure (ambient + (1 - ambient) max(0, n . l)), without shadows that one
+/// part casts on another. Causes: light_direction, light_distance, gloss, cast_shadow, printer_blur, depth_shrinkage,
+/// viewer_offset.
 class ReliefModel : public ForwardModel {
  public:
   /// At least one relief, of at least 30 points each. Throws Error{invalid_input, "object"}.
@@ -68,7 +72,8 @@ class ReliefModel : public ForwardModel {
 /// Gaussian blur of heights, sigma in mm; the edge is continued.
 Eigen::MatrixXd blurred(const Eigen::MatrixXd& height, double sigma_pixels);
 
-/// 1 where the light reaches a height, 0 in the shadow of another, between at its edge; `light`: unit vector towards it.
+/// 1 where the light reaches a height, 0 in the shadow of another, between at its edge; `light`: unit vector towards
+/// it.
 Eigen::MatrixXd lit(const ReliefSurface& surface, const Vec3& light);
 
 }  // namespace formwright

@@ -5,7 +5,8 @@
 
 namespace formwright {
 
-std::vector<ProposedMeasurement> proposed_measurements(const ThermoformModel& model, const ThermoformModelOptions& options) {
+std::vector<ProposedMeasurement> proposed_measurements(const ThermoformModel& model,
+                                                       const ThermoformModelOptions& options) {
   const FormedObject& first = model.objects().front();
   const auto own = read_parameters<ThermoformOptions>(first.setup.parameters);
   std::vector<ProposedMeasurement> proposals;
@@ -17,11 +18,13 @@ std::vector<ProposedMeasurement> proposed_measurements(const ThermoformModel& mo
     turned.setup.sheet_turned = !turned.setup.sheet_turned;
     for (MeasuredPoint& point : turned.points) point.sheet_mm = -point.sheet_mm;
     add("Form and measure the same mould once more with the sheet turned by half a turn (\"sheet_turned\": true in its setup.json): what comes with the sheet turns with it, "
-        "what the machine does stays.", turned);
+        "what the machine does stays.",
+        turned);
   }
   const auto moved = [&](const std::string& what, const char* suffix, auto&& change) {
     TriangleMesh mesh = first.mould->mesh;
-    for (Eigen::Index i = 0; i < mesh.V.rows(); ++i) mesh.V.row(i) = change(Vec3(mesh.V.row(i).transpose())).transpose();
+    for (Eigen::Index i = 0; i < mesh.V.rows(); ++i)
+      mesh.V.row(i) = change(Vec3(mesh.V.row(i).transpose())).transpose();
     FormedObject object = first;
     object.key += suffix;
     object.mould = std::make_shared<const MouldShape>(std::move(mesh));
@@ -29,7 +32,8 @@ std::vector<ProposedMeasurement> proposed_measurements(const ThermoformModel& mo
   };
   const double reach = first.mould->mesh.V.leftCols<2>().cwiseAbs().maxCoeff();
   if (reach < 0.48 * std::min(own.clamp_opening_x_mm, own.clamp_opening_y_mm))
-    moved("Form and measure the same mould once more, turned by a quarter turn on the platform.", ":quarter-turn", [](const Vec3& p) { return Vec3(-p.y(), p.x(), p.z()); });
+    moved("Form and measure the same mould once more, turned by a quarter turn on the platform.", ":quarter-turn",
+          [](const Vec3& p) { return Vec3(-p.y(), p.x(), p.z()); });
   const double plate = first.setup.base_plate_end_z_mm, height = first.mould->mesh.V.col(2).maxCoeff() - plate;
   const double taller = std::min(1.5, 0.85 * own.platform_travel_mm / std::max(height, 1.0));
   if (taller > 1.1)

@@ -5,7 +5,9 @@
 
 namespace formwright {
 
-/// Measurements a maker could add to those of `model`: the same mould with the sheet turned, the mould turned, a higher mould.
-std::vector<ProposedMeasurement> proposed_measurements(const ThermoformModel& model, const ThermoformModelOptions& options);
+/// Measurements a maker could add to those of `model`: the same mould with the sheet turned, the mould turned, a higher
+/// mould.
+std::vector<ProposedMeasurement> proposed_measurements(const ThermoformModel& model,
+                                                       const ThermoformModelOptions& options);
 
 }  // namespace formwright

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a diagnosis may turn in a thermoforming simulation. Names, labels, units and ranges are those of the simulation's own parameters.
+// What a diagnosis may turn in a thermoforming simulation. Names, labels, units and ranges are those of the
+// simulation's own parameters.
 #include <algorithm>
 
 #include "evidence/thermoform/thermoform_model.h"
@@ -20,9 +21,11 @@ constexpr Turned base_parameters[] = {{"young_modulus_pa", true, 2.5e5, 1e7, 0.6
                                       {"yield_strain", false, 0, 0.3, 0.05, 0.02},
                                       {"viscosity_s", true, 1e-7, 1e-3, 1, 1}};
 
-constexpr Turned mould_place[] = {{"mould_shift_x_mm", false, -4, 4, 1, 0.5}, {"mould_shift_y_mm", false, -4, 4, 1, 0.5}};
+constexpr Turned mould_place[] = {{"mould_shift_x_mm", false, -4, 4, 1, 0.5},
+                                  {"mould_shift_y_mm", false, -4, 4, 1, 0.5}};
 
-/// Of causes that act through the sheet, as virtual machines with another elastic law, mesh and vacuum have it (docs/evidence.md, the confusion table).
+/// Of causes that act through the sheet, as virtual machines with another elastic law, mesh and vacuum have it
+/// (docs/evidence.md, the confusion table).
 constexpr double sheet_gain_error = 0.05;
 
 struct CauseTable {
@@ -32,37 +35,78 @@ struct CauseTable {
 
 const std::vector<CauseTable>& cause_table() {
   static const std::vector<CauseTable> table = {
-      {"heating_gradient", "Uneven heating, side to side", "One side of the sheet was colder, so stiffer, than the other.",
+      {"heating_gradient",
+       "Uneven heating, side to side",
+       "One side of the sheet was colder, so stiffer, than the other.",
        "Turn the heater, shield the hot side, or heat longer so that the sheet evens out; shut out draughts.",
        {{"heating_gradient_x", false, -0.8, 0.8, 0.35, 0.2}, {"heating_gradient_y", false, -0.8, 0.8, 0.35, 0.2}}},
-      {"heating_centre", "Uneven heating, centre to rim", "The middle of the sheet and its rim were not equally hot.",
+      {"heating_centre",
+       "Uneven heating, centre to rim",
+       "The middle of the sheet and its rim were not equally hot.",
        "Change the heater's distance, reflectors or zones; a longer soak evens out the middle and the rim.",
        {{"heating_centre", false, -0.8, 0.8, 0.35, 0.2}}},
-      {"slip", "Sheet slides on the mould", "Where the sheet touched the mould it slid on instead of sticking.",
-       "Roughen or warm the mould, leave out release agent, or accept it: a print made with this profile accounts for it.", {{"slip", false, 0, 10, 1.5, 0.7}}},
-      {"anisotropy", "Sheet stiffer in one direction", "The sheet stretches more easily along one direction, as extruded sheet does.",
-       "Put the sheets in always the same way round, mark their extrusion direction, or order cast sheet.", {{"anisotropy", false, -0.8, 0.8, 0.4, 0.2}}},
-      {"thickness_wedge", "Sheet thicker on one side", "The flat sheet was not equally thick.",
+      {"slip",
+       "Sheet slides on the mould",
+       "Where the sheet touched the mould it slid on instead of sticking.",
+       "Roughen or warm the mould, leave out release agent, or accept it: a print made with this profile accounts for it.",
+       {{"slip", false, 0, 10, 1.5, 0.7}}},
+      {"anisotropy",
+       "Sheet stiffer in one direction",
+       "The sheet stretches more easily along one direction, as extruded sheet does.",
+       "Put the sheets in always the same way round, mark their extrusion direction, or order cast sheet.",
+       {{"anisotropy", false, -0.8, 0.8, 0.4, 0.2}}},
+      {"thickness_wedge",
+       "Sheet thicker on one side",
+       "The flat sheet was not equally thick.",
        "Measure the sheets at four corners before use and put the thick side where it is least in the way.",
        {{"thickness_wedge_x", false, -0.8, 0.8, 0.3, 0.15}, {"thickness_wedge_y", false, -0.8, 0.8, 0.3, 0.15}}},
-      {"cooling", "Sheet chills on the mould", "The mould was cold: what touched it stiffened and stopped flowing.",
-       "Warm the mould, or raise it faster and draw the vacuum sooner.", {{"cooling", false, 0, 8, 1, 0.5}}},
-      {"weak_vacuum", "Vacuum too weak", "Less vacuum reached the sheet than the gauge says.",
-       "Look for leaks at the clamp and the platform's seal, add vent holes, check the pump.", {{"weak_vacuum", false, 0, 0.9, 0.35, 0.2}}},
-      {"clamp_slip", "Sheet slips in the clamp", "The vacuum drew the sheet's rim in from under the clamp.",
-       "Tighten the clamp, renew its rubber, or use a larger sheet so that there is more to hold.", {{"clamp_slip_mm", false, 0, 15, 2, 1}}},
-      {"mould_shift", "Mould off its place", "The mould stood beside the place it should have.",
-       "Use stops or a drawn outline on the platform.", {{"mould_shift_x_mm", false, -15, 15, 1.5, 0.75}, {"mould_shift_y_mm", false, -15, 15, 1.5, 0.75}}},
-      {"mould_rotation", "Mould turned", "The mould stood turned about the vertical.", "Use two stops on the platform, not one.",
+      {"cooling",
+       "Sheet chills on the mould",
+       "The mould was cold: what touched it stiffened and stopped flowing.",
+       "Warm the mould, or raise it faster and draw the vacuum sooner.",
+       {{"cooling", false, 0, 8, 1, 0.5}}},
+      {"weak_vacuum",
+       "Vacuum too weak",
+       "Less vacuum reached the sheet than the gauge says.",
+       "Look for leaks at the clamp and the platform's seal, add vent holes, check the pump.",
+       {{"weak_vacuum", false, 0, 0.9, 0.35, 0.2}}},
+      {"clamp_slip",
+       "Sheet slips in the clamp",
+       "The vacuum drew the sheet's rim in from under the clamp.",
+       "Tighten the clamp, renew its rubber, or use a larger sheet so that there is more to hold.",
+       {{"clamp_slip_mm", false, 0, 15, 2, 1}}},
+      {"mould_shift",
+       "Mould off its place",
+       "The mould stood beside the place it should have.",
+       "Use stops or a drawn outline on the platform.",
+       {{"mould_shift_x_mm", false, -15, 15, 1.5, 0.75}, {"mould_shift_y_mm", false, -15, 15, 1.5, 0.75}}},
+      {"mould_rotation",
+       "Mould turned",
+       "The mould stood turned about the vertical.",
+       "Use two stops on the platform, not one.",
        {{"mould_rotation_deg", false, -30, 30, 4, 2}}},
-      {"mould_scale", "Mould of another size", "The mould is larger or smaller than its model: printed parts and gypsum shrink or swell.",
-       "Measure the mould and correct the scale it is made with.", {{"mould_scale", false, -0.15, 0.15, 0.02, 0.012}}},
-      {"print_scale", "Pattern printed at another size", "The printer, or the paper's transfer, scaled the picture.",
-       "Print at 100 % without fitting to the page, measure a printed ruler, and correct the printer's scale.", {{"print_scale", false, -0.1, 0.1, 0.012, 0.008}}},
-      {"scan_scale", "Scan at another size", "The 3D scan is larger or smaller than the object.", "Put a known length into the scan and scale by it.",
+      {"mould_scale",
+       "Mould of another size",
+       "The mould is larger or smaller than its model: printed parts and gypsum shrink or swell.",
+       "Measure the mould and correct the scale it is made with.",
+       {{"mould_scale", false, -0.15, 0.15, 0.02, 0.012}}},
+      {"print_scale",
+       "Pattern printed at another size",
+       "The printer, or the paper's transfer, scaled the picture.",
+       "Print at 100 % without fitting to the page, measure a printed ruler, and correct the printer's scale.",
+       {{"print_scale", false, -0.1, 0.1, 0.012, 0.008}}},
+      {"scan_scale",
+       "Scan at another size",
+       "The 3D scan is larger or smaller than the object.",
+       "Put a known length into the scan and scale by it.",
        {{"scan_scale", false, -0.1, 0.1, 0.01, 0.008}}},
-      {"scan_shift", "Scan off its place", "The scan is not in the machine's coordinates, but shifted.", "Align the scan by the clamp's rim or by marks on the platform.",
-       {{"scan_shift_x_mm", false, -10, 10, 1, 0.7}, {"scan_shift_y_mm", false, -10, 10, 1, 0.7}, {"scan_shift_z_mm", false, -10, 10, 1, 0.7}}}};
+      {"scan_shift",
+       "Scan off its place",
+       "The scan is not in the machine's coordinates, but shifted.",
+       "Align the scan by the clamp's rim or by marks on the platform.",
+       {{"scan_shift_x_mm", false, -10, 10, 1, 0.7},
+        {"scan_shift_y_mm", false, -10, 10, 1, 0.7},
+        {"scan_shift_z_mm", false, -10, 10, 1, 0.7}}}};
   return table;
 }
 
@@ -74,7 +118,8 @@ void declare_thermoform_parameters(const Json& nominal, bool fit_mould_place, co
   const std::size_t of_the_sheet = infos.size();
   for (ParameterInfo& info : describe_parameters<MeasurementEffects>()) infos.push_back(std::move(info));
   const auto add = [&](const Turned& turned, ParameterRole role) {
-    const auto info = std::find_if(infos.begin(), infos.end(), [&](const ParameterInfo& i) { return i.name == turned.name; });
+    const auto info =
+        std::find_if(infos.begin(), infos.end(), [&](const ParameterInfo& i) { return i.name == turned.name; });
     ModelParameter p;
     p.name = info->name;
     p.label = info->label;
@@ -99,7 +144,8 @@ void declare_thermoform_parameters(const Json& nominal, bool fit_mould_place, co
     Cause cause{row.name, row.label, row.explanation, row.remedy, {}, ""};
     for (const Turned& turned : row.parameters) cause.parameters.push_back(add(turned, ParameterRole::effect));
     cause.unit = parameters.back().unit;
-    if (std::any_of(infos.begin(), infos.begin() + static_cast<std::ptrdiff_t>(of_the_sheet), [&](const ParameterInfo& i) { return i.name == parameters.back().name; }))
+    if (std::any_of(infos.begin(), infos.begin() + static_cast<std::ptrdiff_t>(of_the_sheet),
+                    [&](const ParameterInfo& i) { return i.name == parameters.back().name; }))
       cause.gain_error = sheet_gain_error;
     causes.push_back(std::move(cause));
   }

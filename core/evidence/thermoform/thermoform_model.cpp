@@ -26,7 +26,8 @@ std::string figure(double value) {
 /// What later readers of a stored simulation must find unchanged; raised when the simulation computes something else.
 constexpr const char* simulation_version = "thermoform-2:";
 
-/// Vertices and thicknesses in single precision, as they are kept between runs; what is computed afresh is rounded alike.
+/// Vertices and thicknesses in single precision, as they are kept between runs; what is computed afresh is rounded
+/// alike.
 Bytes packed(const FormedSheet& sheet) {
   const Eigen::Index n = sheet.mesh.V.rows();
   std::vector<float> numbers;
@@ -73,50 +74,62 @@ double spread(const std::vector<MeasuredPoint>& points, bool on_sheet) {
 }  // namespace
 
 void check_measured_object(const FormedObject& object) {
-  const auto refuse = [&](const std::string& sentence) { throw Error(ErrorCode::invalid_input, "object", object.name + ": " + sentence); };
+  const auto refuse = [&](const std::string& sentence) {
+    throw Error(ErrorCode::invalid_input, "object", object.name + ": " + sentence);
+  };
   if (object.points.size() < fewest_points)
-    refuse("measured.csv has " + std::to_string(object.points.size()) + " points; at least " + std::to_string(fewest_points) + ", spread over the sheet, are needed.");
+    refuse("measured.csv has " + std::to_string(object.points.size()) + " points; at least " +
+           std::to_string(fewest_points) + ", spread over the sheet, are needed.");
   const auto options = read_parameters<ThermoformOptions>(object.setup.parameters);
   const double on_sheet = spread(object.points, true), in_space = spread(object.points, false);
-  if (!(on_sheet > 0) || !(in_space > 0)) refuse("all measured points lie in one place; measure points all over the sheet.");
+  if (!(on_sheet > 0) || !(in_space > 0))
+    refuse("all measured points lie in one place; measure points all over the sheet.");
   struct UnitName {
     double factor;
     const char* name;
   };
-  static constexpr std::array<UnitName, 4> units{{{1e-3, "metres"}, {1 / 25.4, "inches"}, {0.1, "centimetres"}, {1e3, "micrometres"}}};
+  static constexpr std::array<UnitName, 4> units{
+      {{1e-3, "metres"}, {1 / 25.4, "inches"}, {0.1, "centimetres"}, {1e3, "micrometres"}}};
   // The rim stays where it is: over the sheet a spread in space cannot differ much from that on the sheet.
   for (const UnitName& unit : units)
     if (std::abs(std::log(in_space / on_sheet / unit.factor)) < 0.35)
-      refuse(std::string("x_mm, y_mm, z_mm of measured.csv seem to be in ") + unit.name + " (they spread over " + figure(in_space) + ", the sheet's over " + figure(on_sheet) +
-             " mm): convert them to millimetres.");
+      refuse(std::string("x_mm, y_mm, z_mm of measured.csv seem to be in ") + unit.name + " (they spread over " +
+             figure(in_space) + ", the sheet's over " + figure(on_sheet) + " mm): convert them to millimetres.");
   const double sheet_side = std::max(options.sheet_x_mm, options.sheet_y_mm);
   for (const UnitName& unit : units)
-    if (std::abs(std::log(on_sheet / sheet_side / unit.factor)) < 0.35 && on_sheet < 0.2 * sheet_side && in_space < 0.2 * sheet_side)
-      refuse(std::string("all coordinates of measured.csv seem to be in ") + unit.name + ": convert them to millimetres.");
+    if (std::abs(std::log(on_sheet / sheet_side / unit.factor)) < 0.35 && on_sheet < 0.2 * sheet_side &&
+        in_space < 0.2 * sheet_side)
+      refuse(std::string("all coordinates of measured.csv seem to be in ") + unit.name +
+             ": convert them to millimetres.");
   int outside = 0;
   double far = 0;
   std::vector<double> offsets;
   for (const MeasuredPoint& p : object.points) {
-    if (std::abs(p.sheet_mm.x()) > 0.5 * options.sheet_x_mm + 1 || std::abs(p.sheet_mm.y()) > 0.5 * options.sheet_y_mm + 1) ++outside;
+    if (std::abs(p.sheet_mm.x()) > 0.5 * options.sheet_x_mm + 1 ||
+        std::abs(p.sheet_mm.y()) > 0.5 * options.sheet_y_mm + 1)
+      ++outside;
     offsets.push_back((p.place_mm.head<2>() - p.sheet_mm).norm());
   }
   if (2 * outside > static_cast<int>(object.points.size()))
-    refuse("most of the measured points lie beyond the sheet of " + figure(options.sheet_x_mm) + " x " + figure(options.sheet_y_mm) +
-           " mm: sheet_x_mm and sheet_y_mm count from the sheet's centre, in mm.");
+    refuse("most of the measured points lie beyond the sheet of " + figure(options.sheet_x_mm) + " x " +
+           figure(options.sheet_y_mm) + " mm: sheet_x_mm and sheet_y_mm count from the sheet's centre, in mm.");
   std::nth_element(offsets.begin(), offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2), offsets.end());
   far = offsets[offsets.size() / 2];
   if (far > 0.35 * sheet_side)
-    refuse("the measured points lie " + figure(far) + " mm beside their places on the sheet: bring the scan into the machine's coordinates, origin in the middle of the clamp "
-           "opening, x and y as on the sheet.");
+    refuse(
+        "the measured points lie " + figure(far) +
+        " mm beside their places on the sheet: bring the scan into the machine's coordinates, origin in the middle of the clamp "
+        "opening, x and y as on the sheet.");
 }
 
-ThermoformModel::ThermoformModel(std::vector<FormedObject> objects, ThermoformModelOptions options) : objects_(std::move(objects)), options_(std::move(options)) {
+ThermoformModel::ThermoformModel(std::vector<FormedObject> objects, ThermoformModelOptions options)
+    : objects_(std::move(objects)), options_(std::move(options)) {
   Json nominal = with_profile(objects_.front().setup.parameters, options_.profile);
   const Json measurement = write_parameters(options_.profile.measurement);
   for (const auto& [name, value] : measurement.items()) nominal[name] = value;
   declare_thermoform_parameters(nominal, options_.fit_mould_place, options_.without, parameters_, causes_);
-  // What a profile says of the material was measured, on a machine that was well: far more than a guess, and the only thing that tells a
-  // weak vacuum from a stiff sheet.
+  // What a profile says of the material was measured, on a machine that was well: far more than a guess, and the only
+  // thing that tells a weak vacuum from a stiff sheet.
   constexpr double known_share = 0.3;
   for (ModelParameter& p : parameters_)
     if (p.role == ParameterRole::base && options_.profile.parameters.contains(p.name)) p.prior_sd *= known_share;
@@ -175,8 +188,10 @@ ThermoformOptions ThermoformModel::simulation_options(int object, const Eigen::V
     const std::string& name = parameters_[i].name;
     if (parameters_[i].role != ParameterRole::discrepancy || u[static_cast<Eigen::Index>(i)] < 0.5) continue;
     if (name == "other_elastic_law")
-      o.elastic_law = o.elastic_law == ElasticLaw::st_venant_kirchhoff ? ElasticLaw::stable_neo_hookean : ElasticLaw::st_venant_kirchhoff;
-    if (name == "other_yield_rule") o.yield_rule = o.yield_rule == YieldRule::elastic_excess ? YieldRule::total_strain : YieldRule::elastic_excess;
+      o.elastic_law = o.elastic_law == ElasticLaw::st_venant_kirchhoff ? ElasticLaw::stable_neo_hookean
+                                                                       : ElasticLaw::st_venant_kirchhoff;
+    if (name == "other_yield_rule")
+      o.yield_rule = o.yield_rule == YieldRule::elastic_excess ? YieldRule::total_strain : YieldRule::elastic_excess;
     if (name == "slower_vacuum") o.vacuum_ramp_s = std::max(0.05, 2 * o.vacuum_ramp_s);
     if (name == "finer_sheet") o.triangles *= 2;
   }
@@ -190,12 +205,14 @@ ThermoformOptions ThermoformModel::simulation_options(int object, const Eigen::V
 MeasurementEffects ThermoformModel::measurement_effects(const Eigen::VectorXd& u) const {
   Json values = write_parameters(options_.profile.measurement);
   for (std::size_t i = 0; i < parameters_.size(); ++i)
-    if (values.contains(parameters_[i].name)) values[parameters_[i].name] = parameters_[i].value(u[static_cast<Eigen::Index>(i)]);
+    if (values.contains(parameters_[i].name))
+      values[parameters_[i].name] = parameters_[i].value(u[static_cast<Eigen::Index>(i)]);
   return read_parameters<MeasurementEffects>(values);
 }
 
 std::string ThermoformModel::key_of(const FormedObject& object, const ThermoformOptions& o) const {
-  const std::string text = simulation_version + object.key + ":" + std::to_string(object.setup.base_plate_end_z_mm) + ":" + write_parameters(o).dump();
+  const std::string text = simulation_version + object.key + ":" + std::to_string(object.setup.base_plate_end_z_mm) +
+                           ":" + write_parameters(o).dump();
   return sha256_hex(as_bytes(text));
 }
 
@@ -208,7 +225,8 @@ bool ThermoformModel::claim(int object, const Eigen::VectorXd& u, const Context&
   return context.find_result(key).has_value() || context.claim_result(key);
 }
 
-std::shared_ptr<const FormedSheet> ThermoformModel::formed(int object, const Eigen::VectorXd& u, const Context& context) const {
+std::shared_ptr<const FormedSheet> ThermoformModel::formed(int object, const Eigen::VectorXd& u,
+                                                           const Context& context) const {
   const FormedObject& own = objects_[static_cast<std::size_t>(object)];
   const ThermoformOptions o = simulation_options(object, u);
   const std::string key = key_of(own, o);
@@ -231,7 +249,8 @@ std::shared_ptr<const FormedSheet> ThermoformModel::formed(int object, const Eig
     } catch (const Error& error) {
       context.release_result(key);
       // A mould pushed out of the opening is no fault of the maker's here, but a place where there is no answer.
-      if (error.code() == ErrorCode::invalid_input && u.cwiseAbs().maxCoeff() > 0) throw Error(ErrorCode::could_not_solve, error.where(), error.what());
+      if (error.code() == ErrorCode::invalid_input && u.cwiseAbs().maxCoeff() > 0)
+        throw Error(ErrorCode::could_not_solve, error.where(), error.what());
       throw;
     }
     const Bytes bytes = packed(result.sheet);
@@ -251,11 +270,13 @@ Eigen::MatrixXd ThermoformModel::predict(int object, const Eigen::VectorXd& u, c
   const ThermoformOptions o = simulation_options(object, u);
   TextureCoordinates places(static_cast<Eigen::Index>(own.points.size()), 2);
   const double sign = own.setup.sheet_turned ? -1 : 1;
-  for (Eigen::Index i = 0; i < places.rows(); ++i) places.row(i) = sign * own.points[static_cast<std::size_t>(i)].sheet_mm.transpose();
+  for (Eigen::Index i = 0; i < places.rows(); ++i)
+    places.row(i) = sign * own.points[static_cast<std::size_t>(i)].sheet_mm.transpose();
   const double plate_z = own.setup.base_plate_end_z_mm;
   FormedSheet raised = *sheet;
   raised.mesh.V.col(2).array() += plate_z;
-  return predict_measured(raised, places, own.setup.measured_surface, o.clamp_height_mm + plate_z, o.sheet_thickness_mm, measurement_effects(u), plate_z);
+  return predict_measured(raised, places, own.setup.measured_surface, o.clamp_height_mm + plate_z, o.sheet_thickness_mm,
+                          measurement_effects(u), plate_z);
 }
 
 MachineProfile ThermoformModel::profile_at(const Eigen::VectorXd& u) const {

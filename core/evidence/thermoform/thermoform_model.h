@@ -22,13 +22,14 @@ struct FormedObject {
   std::vector<MeasuredPoint> points;
 };
 
-/// Throws Error{invalid_input, "object"}: too few points, or points that are not in mm or not where the machine is, with the likely reason.
+/// Throws Error{invalid_input, "object"}: too few points, or points that are not in mm or not where the machine is,
+/// with the likely reason.
 void check_measured_object(const FormedObject& object);
 
 struct ThermoformModelOptions {
   int triangles = 5000;
-  bool fit_mould_place = false;  // as calibration does: the mould's place is a base parameter, no cause
-  MachineProfile profile;        // what is known of the machine; empty where nothing is
+  bool fit_mould_place = false;      // as calibration does: the mould's place is a base parameter, no cause
+  MachineProfile profile;            // what is known of the machine; empty where nothing is
   std::vector<std::string> without;  // causes that are not considered
 };
 

@@ -5,15 +5,16 @@
 
 namespace formwright {
 
-std::vector<MeasuredPoint> scan_virtually(const FormedSheet& sheet, const ThermoformOptions& o, MeasuredSurface surface, const MeasurementEffects& effects,
-                                          const VirtualScan& scan) {
+std::vector<MeasuredPoint> scan_virtually(const FormedSheet& sheet, const ThermoformOptions& o, MeasuredSurface surface,
+                                          const MeasurementEffects& effects, const VirtualScan& scan) {
   Random random(static_cast<std::uint64_t>(scan.seed));
   TextureCoordinates places(scan.points, 2);
   for (Eigen::Index i = 0; i < places.rows(); ++i) {
     places(i, 0) = random.uniform(-0.49, 0.49) * o.clamp_opening_x_mm;
     places(i, 1) = random.uniform(-0.49, 0.49) * o.clamp_opening_y_mm;
   }
-  const Positions true_places = predict_measured(sheet, places, surface, o.clamp_height_mm, o.sheet_thickness_mm, effects, 0);
+  const Positions true_places =
+      predict_measured(sheet, places, surface, o.clamp_height_mm, o.sheet_thickness_mm, effects, 0);
   constexpr double outlier_mm = 4;
   std::vector<MeasuredPoint> points;
   for (Eigen::Index i = 0; i < places.rows(); ++i) {

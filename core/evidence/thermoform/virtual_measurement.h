@@ -8,20 +8,32 @@ namespace formwright {
 
 struct VirtualScan {
   int points = 1200;
-  double noise_mm = 0.05;       // standard deviation of one coordinate, about: points are not equally good
-  double outlier_percent = 2;   // points that are off by some 4 mm
+  double noise_mm = 0.05;      // standard deviation of one coordinate, about: points are not equally good
+  double outlier_percent = 2;  // points that are off by some 4 mm
   int seed = 1;
 
   static constexpr std::string_view group_title = "Virtual scan";
-  static constexpr auto parameters = std::tuple{
-      parameter("points", &VirtualScan::points, "Points", unit::none, 30, 100000, "Measured points, all over the sheet.").group(group_title).slider(200, 5000),
-      parameter("noise_mm", &VirtualScan::noise_mm, "Noise", unit::mm, 0, 5, "Standard deviation of each coordinate of a measured point.").group(group_title).slider(0, 0.3),
-      parameter("outlier_percent", &VirtualScan::outlier_percent, "Outliers", unit::percent, 0, 30, "Points that are far off, as badly matched ones are.").group(group_title).slider(0, 10),
-      parameter("seed", &VirtualScan::seed, "Seed", unit::none, 0, 1000000, "Another seed draws other points and other noise.").group(group_title)};
+  static constexpr auto parameters =
+      std::tuple{parameter("points", &VirtualScan::points, "Points", unit::none, 30, 100000,
+                           "Measured points, all over the sheet.")
+                     .group(group_title)
+                     .slider(200, 5000),
+                 parameter("noise_mm", &VirtualScan::noise_mm, "Noise", unit::mm, 0, 5,
+                           "Standard deviation of each coordinate of a measured point.")
+                     .group(group_title)
+                     .slider(0, 0.3),
+                 parameter("outlier_percent", &VirtualScan::outlier_percent, "Outliers", unit::percent, 0, 30,
+                           "Points that are far off, as badly matched ones are.")
+                     .group(group_title)
+                     .slider(0, 10),
+                 parameter("seed", &VirtualScan::seed, "Seed", unit::none, 0, 1000000,
+                           "Another seed draws other points and other noise.")
+                     .group(group_title)};
 };
 
-/// Points of `sheet` (raised base plate at z = 0) as a scan has them, `o` being what it was formed with. The same seed gives the same points.
-std::vector<MeasuredPoint> scan_virtually(const FormedSheet& sheet, const ThermoformOptions& o, MeasuredSurface surface, const MeasurementEffects& effects,
-                                          const VirtualScan& scan);
+/// Points of `sheet` (raised base plate at z = 0) as a scan has them, `o` being what it was formed with. The same seed
+/// gives the same points.
+std::vector<MeasuredPoint> scan_virtually(const FormedSheet& sheet, const ThermoformOptions& o, MeasuredSurface surface,
+                                          const MeasurementEffects& effects, const VirtualScan& scan);
 
 }  // namespace formwright

@@ -30,7 +30,8 @@ int component_count(std::string_view type) {
 const std::byte* fitting(ByteView view, std::int64_t offset, std::int64_t count, std::size_t stride, std::size_t size) {
   const auto bytes = static_cast<std::int64_t>(view.size());
   if (offset > bytes || count > bytes || stride > 65536) return nullptr;  // so that nothing below overflows
-  if ((count - 1) * static_cast<std::int64_t>(stride) + static_cast<std::int64_t>(size) > bytes - offset) return nullptr;
+  if ((count - 1) * static_cast<std::int64_t>(stride) + static_cast<std::int64_t>(size) > bytes - offset)
+    return nullptr;
   return view.data() + offset;
 }
 
@@ -69,7 +70,9 @@ GltfAccessor::GltfAccessor(const GltfDocument& document, std::int64_t index) {
 
 void GltfAccessor::apply_sparse(const GltfDocument& document, const GltfDocument::Object& sparse, std::int64_t index) {
   const MeshSource& source = document.source();
-  const auto damaged = [&] { source.refuse("the sparse part of accessor " + std::to_string(index) + " in it is damaged; export it again."); };
+  const auto damaged = [&] {
+    source.refuse("the sparse part of accessor " + std::to_string(index) + " in it is damaged; export it again.");
+  };
   const auto indices = sparse.find("indices"), values = sparse.find("values");
   if (indices == sparse.end() || values == sparse.end() || !indices->is_object() || !values->is_object()) damaged();
   const std::int64_t changes = document.integer(sparse, "count", 0);
@@ -78,14 +81,16 @@ void GltfAccessor::apply_sparse(const GltfDocument& document, const GltfDocument
   const std::size_t size = component_bytes_ * static_cast<std::size_t>(components_);
   const ByteView index_view = document.view(document.integer(*indices, "bufferView", 0));
   const ByteView value_view = document.view(document.integer(*values, "bufferView", 0));
-  const std::byte* const places = fitting(index_view, document.integer(*indices, "byteOffset", 0), changes, component_size(type), component_size(type));
+  const std::byte* const places = fitting(index_view, document.integer(*indices, "byteOffset", 0), changes,
+                                          component_size(type), component_size(type));
   const std::byte* const news = fitting(value_view, document.integer(*values, "byteOffset", 0), changes, size, size);
   if (places == nullptr || news == nullptr) damaged();
 
   own_.assign(static_cast<std::size_t>(count_) * size, std::byte{0});
   if (data_ != nullptr)
     for (std::int64_t i = 0; i < count_; ++i)
-      std::memcpy(own_.data() + static_cast<std::size_t>(i) * size, data_ + static_cast<std::size_t>(i) * stride_, size);
+      std::memcpy(own_.data() + static_cast<std::size_t>(i) * size, data_ + static_cast<std::size_t>(i) * stride_,
+                  size);
   for (std::int64_t i = 0; i < changes; ++i) {
     std::uint32_t element = 0;  // little endian: the low bytes come first
     std::memcpy(&element, places + static_cast<std::size_t>(i) * component_size(type), component_size(type));

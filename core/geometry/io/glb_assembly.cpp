@@ -7,7 +7,8 @@ namespace formwright {
 
 int GlbAssembly::add_view(std::size_t bytes, Target target) {
   binary_.resize((binary_.size() + 3) / 4 * 4);
-  if (binary_.size() + bytes > std::numeric_limits<std::uint32_t>::max() - 1'000'000u) throw Error(ErrorCode::invalid_input, where_, too_large_);
+  if (binary_.size() + bytes > std::numeric_limits<std::uint32_t>::max() - 1'000'000u)
+    throw Error(ErrorCode::invalid_input, where_, too_large_);
   Json view = {{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", bytes}};
   if (target != Target::none) view["target"] = static_cast<int>(target);
   views_.push_back(std::move(view));

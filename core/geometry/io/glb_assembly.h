@@ -18,14 +18,15 @@ class GlbAssembly {
   /// `where`, `too_large`: of the Error{invalid_input} when the file would exceed the 4 GB of its format.
   GlbAssembly(std::string where, std::string too_large) : where_(std::move(where)), too_large_(std::move(too_large)) {}
 
-  /// An accessor of count x components floats, value(i, k); `shape` is glTF's word for it. With `bounds`, of the numbers as stored,
-  /// which positions and times need.
+  /// An accessor of count x components floats, value(i, k); `shape` is glTF's word for it. With `bounds`, of the
+  /// numbers as stored, which positions and times need.
   template <class Value>
   int add_floats(std::size_t count, int components, const char* shape, bool bounds, Target target, const Value& value) {
     const std::size_t bytes = 4 * count * static_cast<std::size_t>(components);
     const int view = add_view(bytes, target);
     std::byte* at = binary_.data() + (binary_.size() - bytes);
-    std::vector<float> low(static_cast<std::size_t>(components), std::numeric_limits<float>::max()), high(low.size(), std::numeric_limits<float>::lowest());
+    std::vector<float> low(static_cast<std::size_t>(components), std::numeric_limits<float>::max()),
+        high(low.size(), std::numeric_limits<float>::lowest());
     for (std::size_t i = 0; i < count; ++i)
       for (int k = 0; k < components; ++k, at += 4) {
         const auto number = static_cast<float>(value(static_cast<Eigen::Index>(i), k));

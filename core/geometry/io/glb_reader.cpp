@@ -31,7 +31,8 @@ struct Primitive {
 /// "_NORMAL_ERROR_DEG" as "normal_error_deg".
 std::string column_name(std::string_view attribute) {
   std::string name(attribute.substr(1));
-  std::ranges::transform(name, name.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  std::ranges::transform(name, name.begin(),
+                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
   return clean_text(name);
 }
 
@@ -86,8 +87,13 @@ class GlbReader {
       const std::int64_t indices = document_.integer(entry, "indices", -1);
       const std::int64_t corners = GltfAccessor(document_, indices >= 0 ? indices : positions).count();
       const std::int64_t material = document_.integer(entry, "material", -1);
-      if (material >= document_.count("materials")) source_.refuse("it refers to a material that does not exist; export it again.");
-      const Primitive primitive{&*attributes,       positions, indices, mode == 4 ? corners / 3 : corners - 2, static_cast<Topology>(mode),
+      if (material >= document_.count("materials"))
+        source_.refuse("it refers to a material that does not exist; export it again.");
+      const Primitive primitive{&*attributes,
+                                positions,
+                                indices,
+                                mode == 4 ? corners / 3 : corners - 2,
+                                static_cast<Topology>(mode),
                                 static_cast<int>(material)};
       if (primitive.triangles > 0) known->push_back(primitive);
     }
@@ -114,13 +120,15 @@ class GlbReader {
     any_texture_ = any_texture_ || attributes.contains(texture_set(primitive));
     std::set<std::string> scalars;
     for (const auto& [name, accessor] : attributes.items())
-      if (name.size() > 1 && name[0] == '_' && accessor.is_number_unsigned() && GltfAccessor(document_, accessor.get<std::int64_t>()).components() == 1)
+      if (name.size() > 1 && name[0] == '_' && accessor.is_number_unsigned() &&
+          GltfAccessor(document_, accessor.get<std::int64_t>()).components() == 1)
         scalars.insert(name);
     if (!columns_) columns_ = std::move(scalars);
     else std::erase_if(*columns_, [&](const std::string& name) { return !scalars.contains(name); });
   }
 
-  std::optional<GltfAccessor> attribute(const Primitive& primitive, const std::string& name, std::int64_t count, int least, int most) const {
+  std::optional<GltfAccessor> attribute(const Primitive& primitive, const std::string& name, std::int64_t count,
+                                        int least, int most) const {
     const std::int64_t index = document_.integer(*primitive.attributes, name.c_str(), -1);
     if (index < 0) return std::nullopt;
     GltfAccessor accessor(document_, index);
@@ -148,24 +156,29 @@ class GlbReader {
     model_.face_group.resize(F_.size() / 3, static_cast<int>(model_.group_names.size()) - 1);
   }
 
-  void add_primitive(const Primitive& primitive, const Eigen::Matrix4d& to_mm, bool mirrored, int first_vertex, VertexMerger& merger) {
+  void add_primitive(const Primitive& primitive, const Eigen::Matrix4d& to_mm, bool mirrored, int first_vertex,
+                     VertexMerger& merger) {
     const GltfAccessor positions(document_, primitive.positions);
     if (positions.components() != 3) source_.refuse("positions in it are not of three numbers; export it again.");
     std::optional<GltfAccessor> indices;
     if (primitive.indices >= 0) indices.emplace(document_, primitive.indices);
-    if (indices && (!indices->is_unsigned_integer() || indices->components() != 1)) source_.refuse("indices in it are not whole numbers; export it again.");
+    if (indices && (!indices->is_unsigned_integer() || indices->components() != 1))
+      source_.refuse("indices in it are not whole numbers; export it again.");
     const auto colours = attribute(primitive, "COLOR_0", positions.count(), 3, 4);
     const auto texture = attribute(primitive, texture_set(primitive), positions.count(), 2, 2);
     std::vector<GltfAccessor> columns;
-    for (const std::string& name : *columns_) columns.push_back(std::move(*attribute(primitive, name, positions.count(), 1, 1)));
+    for (const std::string& name : *columns_)
+      columns.push_back(std::move(*attribute(primitive, name, positions.count(), 1, 1)));
     column_values_.resize(columns.size());
 
     // Only vertices that faces use come along: primitives often share one large buffer.
     ++stamp_;
-    if (static_cast<std::size_t>(positions.count()) > seen_.size()) seen_.resize(static_cast<std::size_t>(positions.count()));
+    if (static_cast<std::size_t>(positions.count()) > seen_.size())
+      seen_.resize(static_cast<std::size_t>(positions.count()));
     const auto vertex = [&](std::uint32_t corner) -> const Seen& {
       if (corner >= positions.count())
-        source_.refuse("a face in it refers to vertex " + std::to_string(corner) + ", but there are " + std::to_string(positions.count()) + "; export it again.");
+        source_.refuse("a face in it refers to vertex " + std::to_string(corner) + ", but there are " +
+                       std::to_string(positions.count()) + "; export it again.");
       Seen& seen = seen_[corner];
       if (seen.stamp == stamp_) return seen;
       Eigen::Vector4d p(0, 0, 0, 1);
@@ -173,7 +186,8 @@ class GlbReader {
       const Vec3 q = (to_mm * p).head<3>();
       for (const double c : q)
         if (!is_sane_coordinate(c)) source_.refuse(insane_coordinate("vertex", corner, c));
-      const int index = source_.options().merge_duplicates ? first_vertex + merger.add(q) : static_cast<int>(V_.size() / 3);
+      const int index =
+          source_.options().merge_duplicates ? first_vertex + merger.add(q) : static_cast<int>(V_.size() / 3);
       if (static_cast<std::size_t>(index) == V_.size() / 3) {
         V_.insert(V_.end(), {q.x(), q.y(), q.z()});
         if (any_colours_)
@@ -216,7 +230,8 @@ class GlbReader {
       Material material;
       material.name = clean_text(document_.text(object, "name"));
       // Other formats know materials by their names.
-      if (material.name.empty() || names.contains(material.name)) material.name += (material.name.empty() ? "material " : " ") + std::to_string(i);
+      if (material.name.empty() || names.contains(material.name))
+        material.name += (material.name.empty() ? "material " : " ") + std::to_string(i);
       names.insert(material.name);
       material.diffuse = Vec3::Ones();
       const auto pbr = object.find("pbrMetallicRoughness");
@@ -238,7 +253,8 @@ class GlbReader {
   std::int64_t image_of_texture(std::int64_t index) const {
     const Object& texture = document_.at("textures", index);
     std::int64_t image = document_.integer(texture, "source", -1);
-    if (const auto extensions = texture.find("extensions"); image < 0 && extensions != texture.end() && extensions->is_object())
+    if (const auto extensions = texture.find("extensions");
+        image < 0 && extensions != texture.end() && extensions->is_object())
       for (const char* name : {"EXT_texture_webp", "EXT_texture_avif", "KHR_texture_basisu"})
         if (const auto extension = extensions->find(name); extension != extensions->end() && extension->is_object())
           image = document_.integer(*extension, "source", image);
@@ -258,7 +274,9 @@ class GlbReader {
     picture_bytes += bytes.size();
     if (uri.empty() && picture_bytes > source_.bytes().size()) source_.refuse("its pictures overlap; export it again.");
     texture.bytes.assign(bytes.begin(), bytes.end());
-    if (texture.name.empty()) texture.name = uri.empty() || uri.starts_with("data:") ? "texture " + std::to_string(index) : clean_text(uri, 1000);
+    if (texture.name.empty())
+      texture.name =
+          uri.empty() || uri.starts_with("data:") ? "texture " + std::to_string(index) : clean_text(uri, 1000);
     if (const std::string found = picture_media_type(texture.bytes); !found.empty()) texture.media_type = found;
     model_.textures.push_back(std::move(texture));
   }
@@ -279,7 +297,9 @@ class GlbReader {
       const auto& values = column_values_[k++];
       VertexColumn column{column_name(name), Eigen::Map<const Eigen::VectorXd>(values.data(), n), ColumnKind::float32};
       if (column.values.allFinite()) file_.columns.push_back(std::move(column));
-      else file_.notes.push_back("The attribute “" + clean_text(name, 40) + "” holds values that are not numbers and was left out.");
+      else
+        file_.notes.push_back("The attribute “" + clean_text(name, 40) +
+                              "” holds values that are not numbers and was left out.");
     }
     if (left_out_) file_.notes.push_back("Points and lines were left out.");
     if (document_.count("skins") > 0) file_.notes.push_back("The model has a skeleton; it was read in its rest pose.");

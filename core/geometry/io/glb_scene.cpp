@@ -67,7 +67,8 @@ GltfDocument::GltfDocument(const MeshSource& source) : source_(source) {
     for (const Object& extension : *required) {
       if (!extension.is_string()) continue;
       const auto& name = extension.get_ref<const std::string&>();
-      if (name == "KHR_draco_mesh_compression" || name.starts_with("EXT_meshopt_compression") || name.starts_with("KHR_meshopt"))
+      if (name == "KHR_draco_mesh_compression" || name.starts_with("EXT_meshopt_compression") ||
+          name.starts_with("KHR_meshopt"))
         source_.refuse("its meshes are compressed (" + name + "); export it without mesh compression.");
     }
   }
@@ -83,7 +84,8 @@ void GltfDocument::open_container() {
   }
   const auto cut_short = [&] { source_.refuse("it ends too early; export it or copy it again."); };
   if (bytes.size() < 20) cut_short();
-  if (load<std::uint32_t>(bytes.data() + 4) != 2) source_.refuse("it is not of glTF version 2; export it with a newer program.");
+  if (load<std::uint32_t>(bytes.data() + 4) != 2)
+    source_.refuse("it is not of glTF version 2; export it with a newer program.");
   const std::size_t length = load<std::uint32_t>(bytes.data() + 8);
   if (length > bytes.size()) cut_short();
   for (std::size_t at = 12; at + 8 <= length;) {
@@ -109,7 +111,8 @@ void GltfDocument::load_buffers() {
     else if (!name.empty()) bytes = uri(name);
     if (static_cast<std::uint64_t>(length) > bytes.size()) {
       if (!name.empty() && !name.starts_with("data:"))
-        source_.refuse("its geometry is in another file, “" + clean_text(name, 60) + "”; export it as one GLB file with everything in it.");
+        source_.refuse("its geometry is in another file, “" + clean_text(name, 60) +
+                       "”; export it as one GLB file with everything in it.");
       source_.refuse("a buffer in it is shorter than it should be; export it or copy it again.");
     }
     buffers_.push_back(bytes.first(static_cast<std::size_t>(length)));
@@ -123,9 +126,11 @@ std::int64_t GltfDocument::count(const char* array) const {
 
 const GltfDocument::Object& GltfDocument::at(const char* array, std::int64_t index) const {
   if (index < 0 || index >= count(array))
-    source_.refuse("it refers to number " + std::to_string(index) + " of its " + array + ", which does not exist; export it again.");
+    source_.refuse("it refers to number " + std::to_string(index) + " of its " + array +
+                   ", which does not exist; export it again.");
   const Object& object = json_.find(array)->at(static_cast<std::size_t>(index));
-  if (!object.is_object()) source_.refuse("number " + std::to_string(index) + " of its " + array + " is damaged; export it again.");
+  if (!object.is_object())
+    source_.refuse("number " + std::to_string(index) + " of its " + array + " is damaged; export it again.");
   return object;
 }
 
@@ -147,7 +152,8 @@ bool GltfDocument::numbers(const Object& object, const char* key, double* values
     if (good) values[k] = (*found)[k].get<double>();
     good = good && std::isfinite(values[k]);
   }
-  if (!good) source_.refuse("“" + std::string(key) + "” in it must be " + std::to_string(size) + " numbers; export it again.");
+  if (!good)
+    source_.refuse("“" + std::string(key) + "” in it must be " + std::to_string(size) + " numbers; export it again.");
   return true;
 }
 
@@ -158,13 +164,15 @@ std::string GltfDocument::text(const Object& object, const char* key) const {
 
 ByteView GltfDocument::view(std::int64_t index) const {
   const Object& view = at("bufferViews", index);
-  const std::int64_t buffer = integer(view, "buffer", -1), offset = integer(view, "byteOffset", 0), length = integer(view, "byteLength", -1);
+  const std::int64_t buffer = integer(view, "buffer", -1), offset = integer(view, "byteOffset", 0),
+                     length = integer(view, "byteLength", -1);
   if (buffer < 0 || buffer >= static_cast<std::int64_t>(buffers_.size()) || length < 0)
     source_.refuse("buffer view " + std::to_string(index) + " in it is damaged; export it again.");
   const ByteView bytes = buffers_[static_cast<std::size_t>(buffer)];
   const auto size = static_cast<std::int64_t>(bytes.size());
   if (offset > size || length > size - offset)
-    source_.refuse("buffer view " + std::to_string(index) + " in it reaches beyond its data; export it or copy it again.");
+    source_.refuse("buffer view " + std::to_string(index) +
+                   " in it reaches beyond its data; export it or copy it again.");
   return bytes.subspan(static_cast<std::size_t>(offset), static_cast<std::size_t>(length));
 }
 
@@ -203,12 +211,14 @@ std::vector<GltfInstance> scene_instances(const GltfDocument& document) {
   } else {
     std::vector<char> is_child(static_cast<std::size_t>(nodes), 0);
     for (std::int64_t i = 0; i < nodes; ++i)
-      for (const std::int64_t child : children(document.at("nodes", i), "children")) is_child[static_cast<std::size_t>(child)] = 1;
+      for (const std::int64_t child : children(document.at("nodes", i), "children"))
+        is_child[static_cast<std::size_t>(child)] = 1;
     for (std::int64_t i = 0; i < nodes; ++i)
       if (!is_child[static_cast<std::size_t>(i)]) roots.push_back(i);
   }
   if (nodes == 0)
-    for (std::int64_t i = 0; i < document.count("meshes"); ++i) instances.push_back({i, "", Eigen::Matrix4d::Identity()});
+    for (std::int64_t i = 0; i < document.count("meshes"); ++i)
+      instances.push_back({i, "", Eigen::Matrix4d::Identity()});
 
   for (auto root = roots.rbegin(); root != roots.rend(); ++root) stack.emplace_back(*root, Eigen::Matrix4d::Identity());
   std::vector<char> reached(static_cast<std::size_t>(nodes), 0);
@@ -219,7 +229,8 @@ std::vector<GltfInstance> scene_instances(const GltfDocument& document) {
       source.refuse("node " + std::to_string(index) + " in it stands twice in the scene's tree; export it again.");
     const auto& node = document.at("nodes", index);
     const Eigen::Matrix4d transform = above * node_transform(document, node);
-    if (node.contains("mesh")) instances.push_back({document.integer(node, "mesh", 0), clean_text(document.text(node, "name")), transform});
+    if (node.contains("mesh"))
+      instances.push_back({document.integer(node, "mesh", 0), clean_text(document.text(node, "name")), transform});
     const auto below = children(node, "children");
     for (auto child = below.rbegin(); child != below.rend(); ++child) stack.emplace_back(*child, transform);
   }

@@ -23,26 +23,33 @@ std::string attribute_name(std::string_view column) {
 
 class GlbWriter {
  public:
-  GlbWriter(const Model& model, const WriteOptions& options, Context& context) : model_(model), options_(options), context_(context) {}
+  GlbWriter(const Model& model, const WriteOptions& options, Context& context)
+      : model_(model), options_(options), context_(context) {}
 
   Bytes write() {
     split_vertices();
     context_.check_cancelled();
     Json attributes = Json::object();
-    attributes["POSITION"] = add_vertices(3, "VEC3", [&](int vertex, int, int k) { return model_.mesh.V(vertex, k); }, true);
+    attributes["POSITION"] = add_vertices(
+        3, "VEC3", [&](int vertex, int, int k) { return model_.mesh.V(vertex, k); }, true);
     const Positions normals = vertex_normals(model_.mesh);
     attributes["NORMAL"] = add_vertices(3, "VEC3", [&](int vertex, int, int k) {
-      return normals.row(vertex).isZero(0) ? (k == 2 ? 1.0 : 0.0) : normals(vertex, k);  // of unit length, as the standard wants, for unused vertices too
+      return normals.row(vertex).isZero(0)
+                 ? (k == 2 ? 1.0 : 0.0)
+                 : normals(vertex, k);  // of unit length, as the standard wants, for unused vertices too
     });
     if (model_.vertex_colours.rows() > 0)
-      attributes["COLOR_0"] = add_vertices(3, "VEC3", [&](int vertex, int, int k) { return std::clamp(model_.vertex_colours(vertex, k), 0.0, 1.0); });
+      attributes["COLOR_0"] = add_vertices(
+          3, "VEC3", [&](int vertex, int, int k) { return std::clamp(model_.vertex_colours(vertex, k), 0.0, 1.0); });
     if (model_.FT.rows() > 0)
       attributes["TEXCOORD_0"] = add_vertices(2, "VEC2", [&](int, int t, int k) {
         return t < 0 ? 0.0 : k == 0 ? model_.UV(t, 0) : 1 - model_.UV(t, 1);  // glTF's v points down
       });
     for (const VertexColumn& column : options_.columns) {
       const std::string name = attribute_name(column.name);
-      if (attributes.contains(name)) throw Error(ErrorCode::internal, "", "The column “" + clean_text(column.name) + "” cannot be written: its name is taken.");
+      if (attributes.contains(name))
+        throw Error(ErrorCode::internal, "",
+                    "The column “" + clean_text(column.name) + "” cannot be written: its name is taken.");
       attributes[name] = add_vertices(1, "SCALAR", [&](int vertex, int, int) { return column.values[vertex]; });
     }
     Json primitives = Json::array();
@@ -52,7 +59,8 @@ class GlbWriter {
     json_["scene"] = 0;
     json_["scenes"] = Json::array({{{"nodes", {0}}}});
     // The mesh is in mm, glTF in metres.
-    json_["nodes"] = Json::array({{{"name", clean_text(options_.name)}, {"mesh", 0}, {"scale", {0.001, 0.001, 0.001}}}});
+    json_["nodes"] =
+        Json::array({{{"name", clean_text(options_.name)}, {"mesh", 0}, {"scale", {0.001, 0.001, 0.001}}}});
     json_["meshes"] = Json::array({{{"name", clean_text(options_.name)}, {"primitives", primitives}}});
     return glb_.finish(json_);
   }
@@ -96,10 +104,11 @@ class GlbWriter {
 
   template <class Value>
   int add_vertices(int components, const char* shape, const Value& value, bool bounds = false) {
-    return glb_.add_floats(vertex_.size(), components, shape, bounds, GlbAssembly::Target::vertices, [&](Eigen::Index i, int k) {
-      const auto at = static_cast<std::size_t>(i);
-      return value(vertex_[at], texture_.empty() ? -1 : texture_[at], k);
-    });
+    return glb_.add_floats(vertex_.size(), components, shape, bounds, GlbAssembly::Target::vertices,
+                           [&](Eigen::Index i, int k) {
+                             const auto at = static_cast<std::size_t>(i);
+                             return value(vertex_[at], texture_.empty() ? -1 : texture_[at], k);
+                           });
   }
 
   /// One primitive for each material in use, over the same vertices.
@@ -113,7 +122,9 @@ class GlbWriter {
     for (int group = 0; group < groups; ++group) {
       const auto& list = faces[static_cast<std::size_t>(group)];
       if (list.empty()) continue;
-      const int indices = glb_.add_indices(3 * list.size(), vertex_.size(), [&](std::size_t i) { return corner_(list[i / 3], static_cast<int>(i % 3)); });
+      const int indices = glb_.add_indices(3 * list.size(), vertex_.size(), [&](std::size_t i) {
+        return corner_(list[i / 3], static_cast<int>(i % 3));
+      });
       const bool plain = group == groups - 1;
       if (plain) has_plain_faces_ = true;
       primitives.push_back({{"attributes", attributes}, {"indices", indices}, {"material", group}});
@@ -134,12 +145,15 @@ class GlbWriter {
     }
     // Without a statement glTF's materials are polished metal.
     const auto add = [&](const std::string& name, const Vec3& colour, int texture) {
-      Json surface = {{"baseColorFactor", {colour.x(), colour.y(), colour.z(), 1.0}}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.8}};
+      Json surface = {{"baseColorFactor", {colour.x(), colour.y(), colour.z(), 1.0}},
+                      {"metallicFactor", 0.0},
+                      {"roughnessFactor", 0.8}};
       if (texture >= 0) surface["baseColorTexture"] = {{"index", texture}};
       materials.push_back({{"name", clean_text(name)}, {"pbrMetallicRoughness", surface}, {"doubleSided", true}});
     };
     for (const Material& material : model_.materials)
-      add(material.name, material.diffuse.cwiseMax(0.0).cwiseMin(1.0), material.diffuse_texture < 0 ? -1 : texture_of[static_cast<std::size_t>(material.diffuse_texture)]);
+      add(material.name, material.diffuse.cwiseMax(0.0).cwiseMin(1.0),
+          material.diffuse_texture < 0 ? -1 : texture_of[static_cast<std::size_t>(material.diffuse_texture)]);
     if (has_plain_faces_) add("plain", model_.vertex_colours.rows() > 0 ? Vec3(1, 1, 1) : Vec3(0.8, 0.8, 0.8), -1);
     json_["materials"] = materials;
     if (!images.empty()) json_["textures"] = textures, json_["images"] = images;
@@ -157,6 +171,8 @@ class GlbWriter {
 
 }  // namespace
 
-Bytes write_glb(const Model& model, const WriteOptions& options, Context& context) { return GlbWriter(model, options, context).write(); }
+Bytes write_glb(const Model& model, const WriteOptions& options, Context& context) {
+  return GlbWriter(model, options, context).write();
+}
 
 }  // namespace formwright

@@ -34,7 +34,7 @@ constexpr std::array<ForeignFormat, 16> foreign_formats{{{"Kaydara FBX Binary", 
 
 /// Whether the first lines read like an OBJ's: known keywords, a vertex or a face among them.
 bool looks_like_obj(std::string_view text) {
-  constexpr std::array<std::string_view, 12> keywords{"v",  "vt", "vn", "f",      "g",      "o",
+  constexpr std::array<std::string_view, 12> keywords{"v", "vt", "vn", "f",      "g",      "o",
                                                       "s", "l",  "p",  "usemtl", "mtllib", "vp"};
   bool geometry = false;
   int lines = 0;
@@ -59,7 +59,8 @@ std::optional<MeshFormat> mesh_format_of_content(ByteView bytes) {
   if (has_stl_size(bytes)) return MeshFormat::stl;
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   text = trimmed(text.substr(0, 100'000));
-  if (equal_ignoring_case(text.substr(0, 5), "solid") && (text.size() == 5 || is_space(text[5]))) return MeshFormat::stl;
+  if (equal_ignoring_case(text.substr(0, 5), "solid") && (text.size() == 5 || is_space(text[5])))
+    return MeshFormat::stl;
   if (text.starts_with("{") && text.find("\"asset\"") != std::string_view::npos) return MeshFormat::glb;
   if (looks_like_obj(text)) return MeshFormat::obj;
   return std::nullopt;
@@ -77,14 +78,16 @@ std::optional<MeshFormat> mesh_format_of_extension(std::string_view file_name) {
 
 MeshFormat detect_mesh_format(ByteView bytes, std::string_view file_name, std::string_view where) {
   const auto refuse = [&](const std::string& what) {
-    throw Error(ErrorCode::invalid_input, std::string(where), clean_text(file_name.empty() ? "The file" : file_name) + ": " + what);
+    throw Error(ErrorCode::invalid_input, std::string(where),
+                clean_text(file_name.empty() ? "The file" : file_name) + ": " + what);
   };
   if (bytes.empty()) refuse("it is empty; export the model again.");
   if (const auto format = mesh_format_of_content(bytes)) return *format;
   const std::string_view text = as_text(bytes);
   for (const auto& foreign : foreign_formats)
     if (text.starts_with(foreign.start))
-      refuse("this is " + std::string(foreign.name) + ", which is not read here; export the model as OBJ, STL, PLY, GLB or 3MF.");
+      refuse("this is " + std::string(foreign.name) +
+             ", which is not read here; export the model as OBJ, STL, PLY, GLB or 3MF.");
   if (const auto format = mesh_format_of_extension(file_name)) return *format;
   refuse("this is not a mesh that can be read here; export the model as OBJ, STL, PLY, GLB or 3MF.");
   return MeshFormat::obj;  // never reached

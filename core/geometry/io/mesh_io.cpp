@@ -17,11 +17,14 @@ namespace formwright {
 namespace {
 
 const Companion* find_companion(std::span<const Companion> companions, std::string_view name) {
-  const auto found = std::ranges::find_if(companions, [&](const Companion& c) { return bare_name(c.name) == bare_name(name); });
+  const auto found =
+      std::ranges::find_if(companions, [&](const Companion& c) { return bare_name(c.name) == bare_name(name); });
   return found == companions.end() ? nullptr : &*found;
 }
 
-bool indices_within(const Triangles& F, Eigen::Index rows) { return F.rows() == 0 || (F.minCoeff() >= 0 && F.maxCoeff() < rows); }
+bool indices_within(const Triangles& F, Eigen::Index rows) {
+  return F.rows() == 0 || (F.minCoeff() >= 0 && F.maxCoeff() < rows);
+}
 
 bool numbers_within(const std::vector<int>& values, std::size_t size) {
   return std::ranges::all_of(values, [&](int value) { return value >= -1 && value < static_cast<int>(size); });
@@ -39,20 +42,30 @@ void check_model(const Model& model, std::span<const VertexColumn> columns) {
   require(model.FT.rows() == 0 || model.FT.rows() == m, "texture corners are not one row a face");
   require(indices_within(model.FT, model.UV.rows()), "a face refers to a texture vertex that does not exist");
   require(model.UV.allFinite(), "a texture coordinate is not finite");
-  require(model.vertex_colours.rows() == 0 || (model.vertex_colours.rows() == n && model.vertex_colours.allFinite()), "colours are not one a vertex");
-  require(model.face_group.empty() || (static_cast<Eigen::Index>(model.face_group.size()) == m && numbers_within(model.face_group, model.group_names.size())), "groups are not one a face");
-  require(model.face_material.empty() || (static_cast<Eigen::Index>(model.face_material.size()) == m && numbers_within(model.face_material, model.materials.size())), "materials are not one a face");
+  require(model.vertex_colours.rows() == 0 || (model.vertex_colours.rows() == n && model.vertex_colours.allFinite()),
+          "colours are not one a vertex");
+  require(model.face_group.empty() || (static_cast<Eigen::Index>(model.face_group.size()) == m &&
+                                       numbers_within(model.face_group, model.group_names.size())),
+          "groups are not one a face");
+  require(model.face_material.empty() || (static_cast<Eigen::Index>(model.face_material.size()) == m &&
+                                          numbers_within(model.face_material, model.materials.size())),
+          "materials are not one a face");
   for (const Material& material : model.materials)
-    require(material.diffuse_texture >= -1 && material.diffuse_texture < static_cast<int>(model.textures.size()) && material.diffuse.allFinite(), "a material has a texture or colour that does not exist");
-  for (const VertexColumn& column : columns) require(column.values.size() == n && column.values.allFinite(), "a column is not one finite number a vertex");
+    require(material.diffuse_texture >= -1 && material.diffuse_texture < static_cast<int>(model.textures.size()) &&
+                material.diffuse.allFinite(),
+            "a material has a texture or colour that does not exist");
+  for (const VertexColumn& column : columns)
+    require(column.values.size() == n && column.values.allFinite(), "a column is not one finite number a vertex");
 }
 
 /// Materials of all libraries that are there. A line may name one file with blanks in it, or several without.
-std::vector<MtlMaterial> load_libraries(ModelFile& file, std::span<const Companion> companions, const ReadOptions& options) {
+std::vector<MtlMaterial> load_libraries(ModelFile& file, std::span<const Companion> companions,
+                                        const ReadOptions& options) {
   std::vector<MtlMaterial> materials;
   Context silent;
   const auto load = [&](const Companion& companion) {
-    for (MtlMaterial& material : read_mtl(MeshSource(companion.bytes, companion.name, options, silent))) materials.push_back(std::move(material));
+    for (MtlMaterial& material : read_mtl(MeshSource(companion.bytes, companion.name, options, silent)))
+      materials.push_back(std::move(material));
   };
   for (const std::string& line : file.material_libraries) {
     if (const Companion* const whole = find_companion(companions, line)) {
@@ -99,7 +112,8 @@ void read_model_materials(ModelFile& file, std::span<const Companion> companions
   Model& model = file.model;
   const std::vector<MtlMaterial> library = load_libraries(file, companions, options);
   for (Material& material : model.materials) {
-    const auto found = std::ranges::find(library, material.name, [](const MtlMaterial& m) -> const std::string& { return m.material.name; });
+    const auto found = std::ranges::find(library, material.name,
+                                         [](const MtlMaterial& m) -> const std::string& { return m.material.name; });
     if (found == library.end()) continue;
     material = found->material;
     if (found->texture.empty()) continue;
@@ -131,6 +145,8 @@ Bytes write_model(const Model& model, MeshFormat format, const WriteOptions& opt
   return {};
 }
 
-Bytes write_model(const Model& model, MeshFormat format, Context& context) { return write_model(model, format, {}, context); }
+Bytes write_model(const Model& model, MeshFormat format, Context& context) {
+  return write_model(model, format, {}, context);
+}
 
 }  // namespace formwright

@@ -28,7 +28,8 @@ class MeshSource {
   const ReadOptions& options() const { return options_; }
   Context& context() const { return context_; }
 
-  /// Throws Error{invalid_input, where}: "bunny.obj: <what>". `what` goes on in lower case, names the mend, ends in ".".
+  /// Throws Error{invalid_input, where}: "bunny.obj: <what>". `what` goes on in lower case, names the mend, ends in
+  /// ".".
   [[noreturn]] void refuse(const std::string& what) const;
   /// The same with the number of the line in which byte `offset` stands: "bunny.obj, line 12: <what>".
   [[noreturn]] void refuse_line(std::size_t offset, const std::string& what) const;

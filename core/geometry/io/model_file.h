@@ -18,7 +18,7 @@ namespace formwright {
 enum class ColumnKind { uint8, int32, float32, float64 };
 struct VertexColumn {
   std::string name;
-  Eigen::VectorXd values;  // one a vertex, finite
+  Eigen::VectorXd values;                 // one a vertex, finite
   ColumnKind kind = ColumnKind::float64;  // how it was, and will be, stored
 };
 
@@ -45,9 +45,9 @@ inline constexpr std::int64_t default_max_triangles = sizeof(void*) == 4 ? 4'000
 
 struct ReadOptions {
   std::int64_t max_triangles = default_max_triangles;  // a file with more is refused
-  bool merge_duplicates = true;  // STL, GLB: vertices at exactly the same place become one
+  bool merge_duplicates = true;                        // STL, GLB: vertices at exactly the same place become one
   std::span<const Companion> companions;
-  std::string where = "mesh";    // the input's name, for errors
+  std::string where = "mesh";  // the input's name, for errors
 };
 
 struct WriteOptions {

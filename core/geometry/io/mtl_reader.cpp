@@ -12,7 +12,8 @@ namespace {
 
 /// File name of a map statement: what is left after its options, spaces and all.
 std::string map_name(TextScan scan) {
-  constexpr std::array<std::string_view, 8> one_word{"-blendu", "-blendv", "-cc", "-clamp", "-bm", "-boost", "-texres", "-imfchan"};
+  constexpr std::array<std::string_view, 8> one_word{"-blendu", "-blendv", "-cc",     "-clamp",
+                                                     "-bm",     "-boost",  "-texres", "-imfchan"};
   while (true) {
     scan.skip_blanks();
     TextScan ahead = scan;
@@ -39,7 +40,8 @@ std::string map_name(TextScan scan) {
 
 std::vector<MtlMaterial> read_mtl(const MeshSource& source) {
   const std::string_view text = source.text();
-  if (text.substr(0, 4096).find('\0') != std::string_view::npos) source.refuse("it is not a text file, as a material library must be.");
+  if (text.substr(0, 4096).find('\0') != std::string_view::npos)
+    source.refuse("it is not a text file, as a material library must be.");
   std::vector<MtlMaterial> materials;
   bool has_colour = false;
   for (std::size_t at = 0; at < text.size();) {

@@ -96,9 +96,11 @@ class ChunkReader {
   /// What is left of the line, as a view into the file: names must outlive the line. A continued name is cut.
   std::string_view in_file(const TextScan& rest, const ObjLines& lines) const {
     const char* const text = source_.text().data();
-    const bool inside = std::greater_equal<>{}(rest.at, text) && std::less_equal<>{}(rest.end, text + source_.text().size());
+    const bool inside =
+        std::greater_equal<>{}(rest.at, text) && std::less_equal<>{}(rest.end, text + source_.text().size());
     if (inside) return trimmed(rest.rest());
-    const char* const stop = static_cast<const char*>(std::memchr(lines.start(), '\\', static_cast<std::size_t>(chunk_.end - lines.start())));
+    const char* const stop = static_cast<const char*>(
+        std::memchr(lines.start(), '\\', static_cast<std::size_t>(chunk_.end - lines.start())));
     const std::string_view line = trimmed({lines.start(), static_cast<std::size_t>(stop - lines.start())});
     return trimmed(line.substr(std::min(line.size(), line.find_first_of(" \t"))));
   }
@@ -117,7 +119,8 @@ class ChunkReader {
       }
     }
     if (count >= least) return count;
-    fail(std::string(what) + " has " + counted(count, "number", "numbers") + " instead of " + std::to_string(least) + "; export the model again.");
+    fail(std::string(what) + " has " + counted(count, "number", "numbers") + " instead of " + std::to_string(least) +
+         "; export the model again.");
     return -1;
   }
 
@@ -141,17 +144,20 @@ class ChunkReader {
     std::array<double, 2> values{0, 0};
     if (numbers(rest, values.data(), 1, 2, "a texture vertex") < 0) return;
     for (const double value : values)
-      if (!is_sane_coordinate(value)) return fail(insane_coordinate("texture vertex", now_.texture_vertices + 1, value));
+      if (!is_sane_coordinate(value))
+        return fail(insane_coordinate("texture vertex", now_.texture_vertices + 1, value));
     model_.UV.row(static_cast<Eigen::Index>(now_.texture_vertices++)) << values[0], values[1];
   }
 
   /// 0-based index of what a face calls `written`; counts from 1, or backwards from the newest with -1.
   bool resolve(std::int64_t written, std::int64_t so_far, std::int64_t all, const char* what, int& index) {
     const std::int64_t i = written > 0 ? written - 1 : so_far + written;
-    if (written == 0) fail(std::string("a face refers to ") + what + " 0, but OBJ counts from 1; export the model again.");
+    if (written == 0)
+      fail(std::string("a face refers to ") + what + " 0, but OBJ counts from 1; export the model again.");
     else if (i < 0 || i >= all)
       fail(std::string("a face refers to ") + what + ' ' + std::to_string(written) + ", but the file has " +
-           std::to_string(written > 0 ? all : so_far) + (written > 0 ? "" : " up to there") + "; export the model again.");
+           std::to_string(written > 0 ? all : so_far) + (written > 0 ? "" : " up to there") +
+           "; export the model again.");
     index = static_cast<int>(i);
     return !chunk_.failure;
   }
@@ -165,7 +171,9 @@ class ChunkReader {
     texture = -1;
     if (good && !scan.done() && *scan.at == '/') {
       ++scan.at;
-      if (scan.integer(number) && !resolve(number, now_.texture_vertices, total_.texture_vertices, "texture vertex", texture)) return false;
+      if (scan.integer(number) &&
+          !resolve(number, now_.texture_vertices, total_.texture_vertices, "texture vertex", texture))
+        return false;
       if (!scan.done() && *scan.at == '/') {
         ++scan.at;
         scan.integer(number);
@@ -256,7 +264,8 @@ void assign_switches(const std::vector<Chunk>& chunks, std::int64_t triangles, M
         else if (fresh) model.group_names.push_back(name);
       }
       per_face.resize(static_cast<std::size_t>(triangles), -1);
-      std::fill(per_face.begin() + static_cast<std::ptrdiff_t>(from), per_face.begin() + static_cast<std::ptrdiff_t>(to), number);
+      std::fill(per_face.begin() + static_cast<std::ptrdiff_t>(from),
+                per_face.begin() + static_cast<std::ptrdiff_t>(to), number);
       from = to;
     };
     for (const Chunk& chunk : chunks) {
@@ -329,9 +338,13 @@ ModelFile read_obj(const MeshSource& source) {
     for (const std::string_view library : chunk.libraries) file.material_libraries.push_back(clean_text(library, 1000));
   }
   if (total.triangles == 0)
-    source.refuse_empty(free_form ? "free-form curves and surfaces" : lines ? "points and lines" : total.vertices > 0 ? "a cloud of points" : "");
+    source.refuse_empty(free_form            ? "free-form curves and surfaces"
+                        : lines              ? "points and lines"
+                        : total.vertices > 0 ? "a cloud of points"
+                                             : "");
 
-  parallel_for(chunks.size(), 1, [&](std::size_t begin, std::size_t) { triangulate_fans(chunks[begin].polygons, model, context); });
+  parallel_for(chunks.size(), 1,
+               [&](std::size_t begin, std::size_t) { triangulate_fans(chunks[begin].polygons, model, context); });
   assign_switches(chunks, total.triangles, model);
   if (coloured) {
     const double scale = large_colours ? 1.0 / 255 : 1.0;
@@ -339,7 +352,8 @@ ModelFile read_obj(const MeshSource& source) {
   }
   if (!textured) model.UV.resize(0, 2), model.FT.resize(0, 3);
   else if (untextured == 0) model.UV.conservativeResize(model.UV.rows() - 1, 2);
-  if (short_faces > 0) file.notes.push_back(counted(short_faces, "face", "faces") + " with fewer than three corners left out.");
+  if (short_faces > 0)
+    file.notes.push_back(counted(short_faces, "face", "faces") + " with fewer than three corners left out.");
   if (textured && untextured > 0)
     file.notes.push_back(counted(untextured, "face has", "faces have") + " no texture coordinates and got (0, 0).");
   if (free_form) file.notes.push_back("Free-form curves and surfaces were left out.");

@@ -29,32 +29,36 @@ Bytes write_obj(const Model& model, const WriteOptions& options, Context& contex
   if (model.face_group.empty()) head << "o " << obj_name(options.name) << '\n';
   pieces.push_back(std::move(head.text()));
 
-  add(format_rows(static_cast<std::size_t>(V.rows()), colours.rows() > 0 ? 72 : 48, context, [&](TextOut& out, std::size_t i) {
-    const auto v = static_cast<Eigen::Index>(i);
-    out << "v " << V(v, 0) << ' ' << V(v, 1) << ' ' << V(v, 2);
-    if (colours.rows() > 0)  // as float: nobody's colours are finer
-      for (int k = 0; k < 3; ++k) out << ' ' << static_cast<float>(srgb_of_linear(colours(v, k)));
-    out << '\n';
-  }));
+  add(format_rows(static_cast<std::size_t>(V.rows()), colours.rows() > 0 ? 72 : 48, context,
+                  [&](TextOut& out, std::size_t i) {
+                    const auto v = static_cast<Eigen::Index>(i);
+                    out << "v " << V(v, 0) << ' ' << V(v, 1) << ' ' << V(v, 2);
+                    if (colours.rows() > 0)  // as float: nobody's colours are finer
+                      for (int k = 0; k < 3; ++k) out << ' ' << static_cast<float>(srgb_of_linear(colours(v, k)));
+                    out << '\n';
+                  }));
   add(format_rows(static_cast<std::size_t>(model.UV.rows()), 36, context, [&](TextOut& out, std::size_t i) {
     const auto t = static_cast<Eigen::Index>(i);
     out << "vt " << model.UV(t, 0) << ' ' << model.UV(t, 1) << '\n';
   }));
   const bool with_texture = model.FT.rows() > 0;
-  add(format_rows(static_cast<std::size_t>(F.rows()), with_texture ? 48 : 26, context, [&](TextOut& out, std::size_t i) {
-    const int group = at_or(model.face_group, i), material = with_materials ? at_or(model.face_material, i) : -1;
-    if (!model.face_group.empty() && (i == 0 || group != at_or(model.face_group, i - 1)))
-      out << "g " << (group < 0 ? "default" : obj_name(model.group_names[static_cast<std::size_t>(group)])) << '\n';
-    if (with_materials && (i == 0 || material != at_or(model.face_material, i - 1)))
-      out << "usemtl " << (material < 0 ? "default" : obj_name(model.materials[static_cast<std::size_t>(material)].name)) << '\n';
-    const auto f = static_cast<Eigen::Index>(i);
-    out << 'f';
-    for (int k = 0; k < 3; ++k) {
-      out << ' ' << F(f, k) + 1;
-      if (with_texture) out << '/' << model.FT(f, k) + 1;
-    }
-    out << '\n';
-  }));
+  add(format_rows(
+      static_cast<std::size_t>(F.rows()), with_texture ? 48 : 26, context, [&](TextOut& out, std::size_t i) {
+        const int group = at_or(model.face_group, i), material = with_materials ? at_or(model.face_material, i) : -1;
+        if (!model.face_group.empty() && (i == 0 || group != at_or(model.face_group, i - 1)))
+          out << "g " << (group < 0 ? "default" : obj_name(model.group_names[static_cast<std::size_t>(group)])) << '\n';
+        if (with_materials && (i == 0 || material != at_or(model.face_material, i - 1)))
+          out << "usemtl "
+              << (material < 0 ? "default" : obj_name(model.materials[static_cast<std::size_t>(material)].name))
+              << '\n';
+        const auto f = static_cast<Eigen::Index>(i);
+        out << 'f';
+        for (int k = 0; k < 3; ++k) {
+          out << ' ' << F(f, k) + 1;
+          if (with_texture) out << '/' << model.FT(f, k) + 1;
+        }
+        out << '\n';
+      }));
   return concatenate(pieces);
 }
 

@@ -46,7 +46,8 @@ class HeaderReader {
       else if (keyword == "element") element(scan);
       else if (keyword == "property") property(scan);
       else if (keyword == "comment" || keyword == "obj_info") comment(scan);
-      else if (!keyword.empty()) refuse("“" + clean_text(keyword, 40) + "” is not a word of a PLY header; export it again.");
+      else if (!keyword.empty())
+        refuse("“" + clean_text(keyword, 40) + "” is not a word of a PLY header; export it again.");
     }
     source_.refuse("its header has no end (“end_header”); export it or copy it again.");
   }
@@ -89,7 +90,8 @@ class HeaderReader {
     scan.skip_blanks();
     if (element.name.empty() || !scan.integer(element.count) || element.count < 0 || !trimmed(scan.rest()).empty())
       refuse("an element needs a name and a count; export it again.");
-    if (header_.element(element.name) != nullptr) refuse("the element “" + clean_text(element.name, 40) + "” is declared twice; export it again.");
+    if (header_.element(element.name) != nullptr)
+      refuse("the element “" + clean_text(element.name, 40) + "” is declared twice; export it again.");
     header_.elements.push_back(std::move(element));
   }
 
@@ -126,7 +128,8 @@ class HeaderReader {
     double least = ascii ? -1 : 0;  // the last number of a text needs no blank after it
     for (const PlyElement& element : header_.elements) {
       double row = 0;
-      for (const PlyProperty& property : element.properties) row += ascii ? 2 : static_cast<double>(size_of(property.count_type.value_or(property.type)));
+      for (const PlyProperty& property : element.properties)
+        row += ascii ? 2 : static_cast<double>(size_of(property.count_type.value_or(property.type)));
       least += row * static_cast<double>(element.count);
       if (least > left)
         source_.refuse("it declares " + counted(element.count, "row", "rows") + " of “" + clean_text(element.name, 40) +

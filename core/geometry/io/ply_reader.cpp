@@ -31,7 +31,9 @@ class AsciiBody {
     return value;
   }
   bool can_hold(std::int64_t count, PlyType) const { return count <= static_cast<std::int64_t>(scan_.end - scan_.at); }
-  double fraction() const { return static_cast<double>(scan_.at - source_.text().data()) / static_cast<double>(source_.bytes().size()); }
+  double fraction() const {
+    return static_cast<double>(scan_.at - source_.text().data()) / static_cast<double>(source_.bytes().size());
+  }
   [[noreturn]] void refuse(const std::string& what) const {
     source_.refuse_line(static_cast<std::size_t>(from_ - source_.text().data()), what);
   }
@@ -45,7 +47,8 @@ class AsciiBody {
 template <bool swap_bytes>
 class BinaryBody {
  public:
-  BinaryBody(const MeshSource& source, std::size_t body) : source_(source), at_(source.bytes().data() + body), end_(source.bytes().data() + source.bytes().size()) {}
+  BinaryBody(const MeshSource& source, std::size_t body)
+      : source_(source), at_(source.bytes().data() + body), end_(source.bytes().data() + source.bytes().size()) {}
 
   double next(PlyType type) {
     switch (type) {
@@ -60,14 +63,17 @@ class BinaryBody {
     }
     return 0;
   }
-  bool can_hold(std::int64_t count, PlyType type) const { return count <= (end_ - at_) / static_cast<std::int64_t>(size_of(type)); }
+  bool can_hold(std::int64_t count, PlyType type) const {
+    return count <= (end_ - at_) / static_cast<std::int64_t>(size_of(type));
+  }
   double fraction() const { return 1 - static_cast<double>(end_ - at_) / static_cast<double>(source_.bytes().size()); }
   [[noreturn]] void refuse(const std::string& what) const { source_.refuse(what); }
 
  private:
   template <class Number>
   double take() {
-    if (static_cast<std::size_t>(end_ - at_) < sizeof(Number)) source_.refuse("it ends too early; export it or copy it again.");
+    if (static_cast<std::size_t>(end_ - at_) < sizeof(Number))
+      source_.refuse("it ends too early; export it or copy it again.");
     const Number value = swap_bytes ? load_swapped<Number>(at_) : load<Number>(at_);
     at_ += sizeof(Number);
     return static_cast<double>(value);
@@ -81,7 +87,7 @@ class BinaryBody {
 struct Target {
   double* data = nullptr;  // nullptr: nowhere
   std::ptrdiff_t stride = 1;
-  double scale = 1;        // integer colours: 1/255, 1/65535
+  double scale = 1;  // integer colours: 1/255, 1/65535
   bool coordinate = false;
 };
 
@@ -108,7 +114,8 @@ double colour_scale(PlyType type) {
 template <class Body>
 class PlyReader {
  public:
-  PlyReader(const MeshSource& source, const PlyHeader& header) : source_(source), header_(header), body_(source, header.body), model_(file_.model) {}
+  PlyReader(const MeshSource& source, const PlyHeader& header)
+      : source_(source), header_(header), body_(source, header.body), model_(file_.model) {}
 
   ModelFile read() {
     file_.format = MeshFormat::ply;
@@ -133,7 +140,8 @@ class PlyReader {
 
   std::int64_t list_length(const PlyProperty& property) {
     const double length = body_.next(*property.count_type);
-    if (!(length >= 0) || length != std::floor(length) || !body_.can_hold(static_cast<std::int64_t>(std::min(length, 1e15)), property.type))
+    if (!(length >= 0) || length != std::floor(length) ||
+        !body_.can_hold(static_cast<std::int64_t>(std::min(length, 1e15)), property.type))
       body_.refuse("a list in it is longer than the file; export it or copy it again.");
     return static_cast<std::int64_t>(length);
   }
@@ -151,12 +159,14 @@ class PlyReader {
   }
 
   /// Sends the named properties to the columns of a row-major matrix; `data` is null when it has no rows.
-  static void aim(const PlyElement& element, std::vector<Target>& targets, std::initializer_list<std::string_view> names, double* data, bool colour, bool coordinate) {
+  static void aim(const PlyElement& element, std::vector<Target>& targets,
+                  std::initializer_list<std::string_view> names, double* data, bool colour, bool coordinate) {
     std::ptrdiff_t k = 0;
     for (const std::string_view name : names) {
       const auto place = std::ranges::find(element.properties, name, &PlyProperty::name);
       Target& target = targets[static_cast<std::size_t>(place - element.properties.begin())];
-      target = {data == nullptr ? nullptr : data + k, static_cast<std::ptrdiff_t>(names.size()), colour ? colour_scale(place->type) : 1, coordinate};
+      target = {data == nullptr ? nullptr : data + k, static_cast<std::ptrdiff_t>(names.size()),
+                colour ? colour_scale(place->type) : 1, coordinate};
       ++k;
     }
   }
@@ -174,12 +184,14 @@ class PlyReader {
     std::vector<Target> targets(element.properties.size());
     model_.mesh.V.resize(n, 3);
     aim(element, targets, {"x", "y", "z"}, model_.mesh.V.data(), false, true);
-    for (const auto& names : {std::array{"red", "green", "blue"}, std::array{"diffuse_red", "diffuse_green", "diffuse_blue"}, std::array{"r", "g", "b"}})
+    for (const auto& names : {std::array{"red", "green", "blue"},
+                              std::array{"diffuse_red", "diffuse_green", "diffuse_blue"}, std::array{"r", "g", "b"}})
       if (model_.vertex_colours.rows() == 0 && has(element, {names[0], names[1], names[2]})) {
         model_.vertex_colours.resize(n, 3);
         aim(element, targets, {names[0], names[1], names[2]}, model_.vertex_colours.data(), true, false);
       }
-    for (const auto& names : {std::array{"s", "t"}, std::array{"u", "v"}, std::array{"texture_u", "texture_v"}, std::array{"texture_s", "texture_t"}})
+    for (const auto& names : {std::array{"s", "t"}, std::array{"u", "v"}, std::array{"texture_u", "texture_v"},
+                              std::array{"texture_s", "texture_t"}})
       if (model_.UV.rows() == 0 && has(element, {names[0], names[1]})) {
         model_.UV.resize(n, 2);
         aim(element, targets, {names[0], names[1]}, model_.UV.data(), false, true);
@@ -210,8 +222,10 @@ class PlyReader {
   int vertex_index(const PlyProperty& property, std::int64_t row) {
     const double index = body_.next(property.type);
     if (!(index >= 0 && index < static_cast<double>(vertex_count_)) || index != std::floor(index))
-      body_.refuse("face " + std::to_string(row + 1) + " refers to vertex " + (std::isfinite(index) ? std::to_string(static_cast<std::int64_t>(std::clamp(index, -1e15, 1e15))) : "NaN") +
-                   ", but the vertices count from 0 to " + std::to_string(vertex_count_ - 1) + "; export it again.");
+      body_.refuse(
+          "face " + std::to_string(row + 1) + " refers to vertex " +
+          (std::isfinite(index) ? std::to_string(static_cast<std::int64_t>(std::clamp(index, -1e15, 1e15))) : "NaN") +
+          ", but the vertices count from 0 to " + std::to_string(vertex_count_ - 1) + "; export it again.");
     return static_cast<int>(index);
   }
 
@@ -219,8 +233,10 @@ class PlyReader {
     const auto is_list = [](const PlyProperty& p, std::initializer_list<std::string_view> names) {
       return p.count_type && std::ranges::find(names, std::string_view(p.name)) != names.end();
     };
-    const bool with_texture = std::ranges::any_of(element.properties, [&](const auto& p) { return is_list(p, {"texcoord"}); });
-    F_.reserve(3 * static_cast<std::size_t>(std::min<std::int64_t>(element.count, static_cast<std::int64_t>(source_.bytes().size() / 4))));
+    const bool with_texture =
+        std::ranges::any_of(element.properties, [&](const auto& p) { return is_list(p, {"texcoord"}); });
+    F_.reserve(3 * static_cast<std::size_t>(
+                       std::min<std::int64_t>(element.count, static_cast<std::int64_t>(source_.bytes().size() / 4))));
     std::vector<int> corners;
     std::vector<double> texture;
     for (std::int64_t row = 0; row < element.count; ++row) {
@@ -228,9 +244,11 @@ class PlyReader {
       corners.clear(), texture.clear();
       for (const PlyProperty& property : element.properties) {
         if (is_list(property, {"vertex_indices", "vertex_index"})) {
-          for (std::int64_t count = list_length(property); count > 0; --count) corners.push_back(vertex_index(property, row));
+          for (std::int64_t count = list_length(property); count > 0; --count)
+            corners.push_back(vertex_index(property, row));
         } else if (is_list(property, {"texcoord"})) {
-          for (std::int64_t count = list_length(property); count > 0; --count) texture.push_back(body_.next(property.type));
+          for (std::int64_t count = list_length(property); count > 0; --count)
+            texture.push_back(body_.next(property.type));
         } else {
           skip_property(property);
         }
@@ -297,14 +315,18 @@ class PlyReader {
     std::vector<int>().swap(F_);
     if (static_cast<Eigen::Index>(FT_.size() / 3) == m && untextured_ < m) {
       model_.FT = Eigen::Map<const Triangles>(FT_.data(), m, 3);
-      model_.UV = Eigen::Map<const TextureCoordinates>(wedge_uv_.data(), static_cast<Eigen::Index>(wedge_uv_.size() / 2), 2);
-      if (untextured_ > 0) file_.notes.push_back(counted(untextured_, "face has", "faces have") + " no texture coordinates and got (0, 0).");
+      model_.UV =
+          Eigen::Map<const TextureCoordinates>(wedge_uv_.data(), static_cast<Eigen::Index>(wedge_uv_.size() / 2), 2);
+      if (untextured_ > 0)
+        file_.notes.push_back(counted(untextured_, "face has", "faces have") +
+                              " no texture coordinates and got (0, 0).");
     } else if (model_.UV.rows() > 0) {
       model_.FT = model_.mesh.F;
     }
     triangulate_fans(fans_, model_, source_.context());
     if (model_.vertex_colours.rows() > 0)
-      model_.vertex_colours = model_.vertex_colours.unaryExpr([](double c) { return c >= 0 ? linear_of_srgb(c) : 0.0; }).eval();
+      model_.vertex_colours =
+          model_.vertex_colours.unaryExpr([](double c) { return c >= 0 ? linear_of_srgb(c) : 0.0; }).eval();
     std::erase_if(file_.columns, [&](const VertexColumn& column) {
       if (column.values.allFinite()) return false;
       file_.notes.push_back("The column “" + column.name + "” holds values that are not numbers and was left out.");
@@ -316,7 +338,8 @@ class PlyReader {
       model_.materials.push_back({"texture", Vec3::Ones(), 0});
       model_.face_material.assign(static_cast<std::size_t>(m), 0);
     }
-    if (short_faces_ > 0) file_.notes.push_back(counted(short_faces_, "face", "faces") + " with fewer than three corners left out.");
+    if (short_faces_ > 0)
+      file_.notes.push_back(counted(short_faces_, "face", "faces") + " with fewer than three corners left out.");
   }
 
   const MeshSource& source_;

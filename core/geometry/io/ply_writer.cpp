@@ -61,18 +61,29 @@ struct TextRow {
 class PlyWriter {
  public:
   PlyWriter(const Model& model, const WriteOptions& options, Context& context)
-      : model_(model), options_(options), context_(context), uv_(model.FT.rows() > 0), colours_(model.vertex_colours.rows() > 0) {
+      : model_(model),
+        options_(options),
+        context_(context),
+        uv_(model.FT.rows() > 0),
+        colours_(model.vertex_colours.rows() > 0) {
     // Texture coordinates per vertex if each corner of a face takes the vertex's own row.
     per_vertex_uv_ = uv_ && model.UV.rows() == model.mesh.V.rows() && model.FT == model.mesh.F;
   }
 
   Bytes write() const {
-    const auto vertices = static_cast<std::size_t>(model_.mesh.V.rows()), faces = static_cast<std::size_t>(model_.mesh.F.rows());
+    const auto vertices = static_cast<std::size_t>(model_.mesh.V.rows()),
+               faces = static_cast<std::size_t>(model_.mesh.F.rows());
     std::vector<std::string> pieces{header()};
     if (options_.ascii) {
-      for (auto& text : format_rows(vertices, 60, context_, [&](TextOut& out, std::size_t i) { TextRow row{out}; vertex(row, i); }))
+      for (auto& text : format_rows(vertices, 60, context_, [&](TextOut&out, std::size_t i) {
+             TextRow row{out};
+             vertex(row, i);
+           }))
         pieces.push_back(std::move(text));
-      for (auto& text : format_rows(faces, 28, context_, [&](TextOut& out, std::size_t i) { TextRow row{out}; face(row, i); }))
+      for (auto& text : format_rows(faces, 28, context_, [&](TextOut&out, std::size_t i) {
+             TextRow row{out};
+             face(row, i);
+           }))
         pieces.push_back(std::move(text));
       return concatenate(pieces);
     }
@@ -90,17 +101,20 @@ class PlyWriter {
       });
     };
     fill(vertices, vertex_bytes, bytes.data() + body, [&](BinaryRow& row, std::size_t i) { vertex(row, i); });
-    fill(faces, face_bytes, bytes.data() + body + vertices * vertex_bytes, [&](BinaryRow& row, std::size_t i) { face(row, i); });
+    fill(faces, face_bytes, bytes.data() + body + vertices * vertex_bytes,
+         [&](BinaryRow& row, std::size_t i) { face(row, i); });
     return bytes;
   }
 
  private:
   std::string header() const {
     TextOut out;
-    out << "ply\nformat " << (options_.ascii ? "ascii" : "binary_little_endian") << " 1.0\ncomment Formwright, lengths in mm\n";
+    out << "ply\nformat " << (options_.ascii ? "ascii" : "binary_little_endian")
+        << " 1.0\ncomment Formwright, lengths in mm\n";
     if (uv_)
       for (const Texture& texture : model_.textures) out << "comment TextureFile " << clean_text(texture.name) << '\n';
-    out << "element vertex " << static_cast<int>(model_.mesh.V.rows()) << "\nproperty double x\nproperty double y\nproperty double z\n";
+    out << "element vertex " << static_cast<int>(model_.mesh.V.rows())
+        << "\nproperty double x\nproperty double y\nproperty double z\n";
     if (colours_) out << "property uchar red\nproperty uchar green\nproperty uchar blue\n";
     if (per_vertex_uv_) out << "property double s\nproperty double t\n";
     std::vector<std::string> names{"x", "y", "z", "red", "green", "blue", "s", "t"};
@@ -108,7 +122,8 @@ class PlyWriter {
       std::string name = clean_text(column.name);
       std::ranges::replace_if(name, is_space, '_');
       if (name.empty() || std::ranges::find(names, name) != names.end())
-        throw Error(ErrorCode::internal, "", "The column “" + name + "” cannot be written: its name is empty or taken.");
+        throw Error(ErrorCode::internal, "",
+                    "The column “" + name + "” cannot be written: its name is empty or taken.");
       out << "property " << type_name(column.kind) << ' ' << name << '\n';
       names.push_back(name);
     }
@@ -159,6 +174,8 @@ class PlyWriter {
 
 }  // namespace
 
-Bytes write_ply(const Model& model, const WriteOptions& options, Context& context) { return PlyWriter(model, options, context).write(); }
+Bytes write_ply(const Model& model, const WriteOptions& options, Context& context) {
+  return PlyWriter(model, options, context).write();
+}
 
 }  // namespace formwright

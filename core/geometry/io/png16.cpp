@@ -22,8 +22,10 @@ Bytes write_png16(const Grey16Image& image, const Context& context) {
   Bytes bytes;
   try {
     const PngWriter writer(bytes);
-    png_set_IHDR(writer.png(), writer.info(), static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 16, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    // Height maps are smooth: the Up and Paeth filters with the fast levels of deflate come within 5 % of the slow ones.
+    png_set_IHDR(writer.png(), writer.info(), static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 16,
+                 PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    // Height maps are smooth: the Up and Paeth filters with the fast levels of deflate come within 5 % of the slow
+    // ones.
     png_set_filter(writer.png(), PNG_FILTER_TYPE_BASE, PNG_FILTER_UP | PNG_FILTER_PAETH);
     png_set_compression_level(writer.png(), 4);
     const double px = image.pixel_width_mm, py = image.pixel_height_mm;
@@ -46,7 +48,8 @@ Bytes write_png16(const Grey16Image& image, const Context& context) {
 
 Grey16Image read_png16(ByteView bytes, std::string_view file_name, std::string_view where) {
   const auto refuse = [&](const std::string& what) -> Error {
-    return {ErrorCode::invalid_input, std::string(where), clean_text(file_name.empty() ? "The file" : file_name) + ": " + what};
+    return {ErrorCode::invalid_input, std::string(where),
+            clean_text(file_name.empty() ? "The file" : file_name) + ": " + what};
   };
   if (bytes.size() < 8 || png_sig_cmp(reinterpret_cast<png_const_bytep>(bytes.data()), 0, 8) != 0)
     throw refuse("this is not a PNG picture; save the picture as PNG.");
@@ -60,13 +63,15 @@ Grey16Image read_png16(ByteView bytes, std::string_view file_name, std::string_v
     png_read_info(png, info);
     const std::size_t width = png_get_image_width(png, info), height = png_get_image_height(png, info);
     // Deflate packs at most 1032 to 1, so no small file can ask for a large picture.
-    const std::size_t channels_bits = static_cast<std::size_t>(png_get_channels(png, info)) * png_get_bit_depth(png, info);
+    const std::size_t channels_bits =
+        static_cast<std::size_t>(png_get_channels(png, info)) * png_get_bit_depth(png, info);
     if (width * height > 256'000'000) throw std::runtime_error("it has more than 256 million pixels");
     if (width * height / 8 * channels_bits / 1032 > bytes.size()) throw std::runtime_error("it ends too early");
     png_set_expand(png);
     png_set_strip_alpha(png);
     png_set_expand_16(png);
-    if ((png_get_color_type(png, info) & PNG_COLOR_MASK_COLOR) != 0) png_set_rgb_to_gray(png, PNG_ERROR_ACTION_NONE, 0.2126, 0.7152);
+    if ((png_get_color_type(png, info) & PNG_COLOR_MASK_COLOR) != 0)
+      png_set_rgb_to_gray(png, PNG_ERROR_ACTION_NONE, 0.2126, 0.7152);
     png_set_swap(png);
     const int passes = png_set_interlace_handling(png);
     png_read_update_info(png, info);
@@ -74,7 +79,8 @@ Grey16Image read_png16(ByteView bytes, std::string_view file_name, std::string_v
     image.width = static_cast<int>(width), image.height = static_cast<int>(height);
     image.levels.assign(width * height, 0);
     for (int pass = 0; pass < passes; ++pass)
-      for (std::size_t row = 0; row < height; ++row) png_read_row(png, reinterpret_cast<png_bytep>(image.levels.data() + row * width), nullptr);
+      for (std::size_t row = 0; row < height; ++row)
+        png_read_row(png, reinterpret_cast<png_bytep>(image.levels.data() + row * width), nullptr);
     png_read_end(png, nullptr);
     png_uint_32 x = 0, y = 0;
     int unit = 0;

@@ -18,7 +18,8 @@ inline void png_warned(png_structp, png_const_charp) {}
 
 class PngWriter {
  public:
-  explicit PngWriter(Bytes& out) : png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, png_failed, png_warned)) {
+  explicit PngWriter(Bytes& out)
+      : png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, png_failed, png_warned)) {
     if (png_ != nullptr) info_ = png_create_info_struct(png_);
     if (info_ == nullptr) throw std::bad_alloc();
     png_set_write_fn(png_, &out, append_bytes, nullptr);
@@ -42,7 +43,8 @@ class PngWriter {
 
 class PngReader {
  public:
-  explicit PngReader(ByteView bytes) : left_(bytes), png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, png_failed, png_warned)) {
+  explicit PngReader(ByteView bytes)
+      : left_(bytes), png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, png_failed, png_warned)) {
     if (png_ != nullptr) info_ = png_create_info_struct(png_);
     if (info_ == nullptr) throw std::bad_alloc();
     png_set_read_fn(png_, this, take_bytes);

@@ -153,7 +153,8 @@ bool PolygonTriangulator::blocked(int corner) {
   const Vec2& d = points_[static_cast<std::size_t>(next_[c])];
   const Vec2 low = a.cwiseMin(b).cwiseMin(d), high = a.cwiseMax(b).cwiseMax(d);
   const double slack = tolerance * std::max({(b - a).squaredNorm(), (d - b).squaredNorm(), (d - a).squaredNorm()});
-  const Vec2 from = (low - grid_origin_).cwiseProduct(grid_scale_), to = (high - grid_origin_).cwiseProduct(grid_scale_);
+  const Vec2 from = (low - grid_origin_).cwiseProduct(grid_scale_),
+             to = (high - grid_origin_).cwiseProduct(grid_scale_);
   const int x0 = std::clamp(static_cast<int>(from.x() - 1e-6), 0, grid_columns_ - 1);
   const int x1 = std::clamp(static_cast<int>(to.x() + 1e-6), 0, grid_columns_ - 1);
   const int y0 = std::clamp(static_cast<int>(from.y() - 1e-6), 0, grid_rows_ - 1);

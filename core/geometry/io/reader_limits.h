@@ -26,7 +26,8 @@ inline std::string insane_coordinate(std::string_view what, std::int64_t number,
 /// Vertices are numbered with 32 bits.
 inline void check_vertex_count(const MeshSource& source, std::int64_t count) {
   if (count > std::numeric_limits<int>::max() / 3)
-    source.refuse("it holds " + counted(count, "vertex", "vertices") + ", more than can be numbered; simplify the mesh first.");
+    source.refuse("it holds " + counted(count, "vertex", "vertices") +
+                  ", more than can be numbered; simplify the mesh first.");
 }
 
 }  // namespace formwright

@@ -34,7 +34,9 @@ class CornerSink {
 
   TriangleMesh mesh() const {
     TriangleMesh mesh;
-    mesh.V = merge_ ? merger_.positions() : Positions(Eigen::Map<const Positions>(soup_.data(), static_cast<Eigen::Index>(soup_.size() / 3), 3));
+    mesh.V = merge_
+                 ? merger_.positions()
+                 : Positions(Eigen::Map<const Positions>(soup_.data(), static_cast<Eigen::Index>(soup_.size() / 3), 3));
     mesh.F = Eigen::Map<const Triangles>(F_.data(), static_cast<Eigen::Index>(F_.size() / 3), 3);
     return mesh;
   }
@@ -90,7 +92,9 @@ ModelFile read_binary(const MeshSource& source) {
 class AsciiReader {
  public:
   explicit AsciiReader(const MeshSource& source)
-      : source_(source), scan_(source.text()), sink_(source, std::min<std::size_t>(source.bytes().size() / 150, 100'000'000)) {}
+      : source_(source),
+        scan_(source.text()),
+        sink_(source, std::min<std::size_t>(source.bytes().size() / 150, 100'000'000)) {}
 
   ModelFile read() {
     if (source_.text().starts_with("\xef\xbb\xbf")) scan_.at += 3;
@@ -101,10 +105,12 @@ class AsciiReader {
       else if (equal_ignoring_case(word, "endfacet")) end_facet();
       else if (equal_ignoring_case(word, "solid")) solid();
       else if (equal_ignoring_case(word, "endsolid")) end_solid();
-      else if (!equal_ignoring_case(word, "outer") && !equal_ignoring_case(word, "loop") && !equal_ignoring_case(word, "endloop"))
+      else if (!equal_ignoring_case(word, "outer") && !equal_ignoring_case(word, "loop") &&
+               !equal_ignoring_case(word, "endloop"))
         refuse("“" + clean_text(word, 40) + "” is not a word of STL; export it again.");
     }
-    if (in_facet_ || in_solid_) source_.refuse("it ends before “endsolid”, so a part is missing; export it or copy it again.");
+    if (in_facet_ || in_solid_)
+      source_.refuse("it ends before “endsolid”, so a part is missing; export it or copy it again.");
     const auto triangles = static_cast<std::int64_t>(sink_.corner_count() / 3);
     if (triangles == 0) source_.refuse_empty("");
     ModelFile file;
@@ -114,7 +120,8 @@ class AsciiReader {
       file.model.face_group.reserve(static_cast<std::size_t>(triangles));
       for (std::size_t s = 0; s < solids_.size(); ++s) {
         file.model.group_names.push_back(solids_[s].name);
-        const std::size_t end = s + 1 < solids_.size() ? solids_[s + 1].first_triangle : static_cast<std::size_t>(triangles);
+        const std::size_t end =
+            s + 1 < solids_.size() ? solids_[s + 1].first_triangle : static_cast<std::size_t>(triangles);
         file.model.face_group.resize(end, static_cast<int>(s));
       }
     }
@@ -156,7 +163,8 @@ class AsciiReader {
     corners_ = 0;
     if (++facets_ % 4096 == 0) {
       source_.check_triangle_count(facets_);
-      source_.context().progress(static_cast<double>(scan_.at - source_.text().data()) / static_cast<double>(source_.bytes().size()));
+      source_.context().progress(static_cast<double>(scan_.at - source_.text().data()) /
+                                 static_cast<double>(source_.bytes().size()));
     }
     rest_of_line_numbers();
   }
@@ -184,7 +192,8 @@ class AsciiReader {
   }
 
   void end_facet() {
-    if (!in_facet_ || corners_ != 3) refuse("a facet has " + std::to_string(corners_) + " vertices instead of three; export it again.");
+    if (!in_facet_ || corners_ != 3)
+      refuse("a facet has " + std::to_string(corners_) + " vertices instead of three; export it again.");
     in_facet_ = false;
   }
 

@@ -54,7 +54,9 @@ Bytes write_stl(const Model& model, const WriteOptions& options, Context& contex
   if (!options.ascii) return write_binary(model.mesh, context);
   const std::string name = clean_text(options.name);
   std::vector<std::string> pieces{"solid " + name + "\n"};
-  const auto vector = [](TextOut& out, const Eigen::Vector3f& v) { out << ' ' << v.x() << ' ' << v.y() << ' ' << v.z() << '\n'; };
+  const auto vector = [](TextOut& out, const Eigen::Vector3f& v) {
+    out << ' ' << v.x() << ' ' << v.y() << ' ' << v.z() << '\n';
+  };
   std::ranges::move(format_rows(static_cast<std::size_t>(model.mesh.F.rows()), 220, context,
                                 [&](TextOut& out, std::size_t i) {
                                   const Facet facet = facet_of(model.mesh, i);

@@ -42,7 +42,8 @@ class TextOut {
 
 /// Calls format_row(out, i) for every i in [0, count) in chunks, and returns the chunks' text in order.
 template <class FormatRow>
-std::vector<std::string> format_rows(std::size_t count, std::size_t bytes_per_row, const Context& context, const FormatRow& format_row) {
+std::vector<std::string> format_rows(std::size_t count, std::size_t bytes_per_row, const Context& context,
+                                     const FormatRow& format_row) {
   constexpr std::size_t rows_per_chunk = 16384;
   std::vector<std::string> chunks((count + rows_per_chunk - 1) / rows_per_chunk);
   parallel_for(count, rows_per_chunk, [&](std::size_t begin, std::size_t end) {

@@ -26,9 +26,9 @@ Bytes write_three_mf(const Model& model, const WriteOptions& options, Context& c
 using ThreeMfId = std::pair<int, std::int64_t>;
 
 struct ThreeMfCorner {
-  std::int64_t property = -1;            // id of a property group, -1 for none
-  std::array<std::int64_t, 3> index{};   // one a corner
-  bool per_corner = false;               // told apart, rather than the first for all
+  std::int64_t property = -1;           // id of a property group, -1 for none
+  std::array<std::int64_t, 3> index{};  // one a corner
+  bool per_corner = false;              // told apart, rather than the first for all
 };
 
 struct ThreeMfComponent {
@@ -48,10 +48,10 @@ struct ThreeMfObject {
 
 struct ThreeMfProperties {
   enum class Kind { base_materials, colours, texture } kind = Kind::base_materials;
-  std::vector<std::string> names;       // base materials
-  std::vector<Vec3> colours;            // linear; base materials, colours
-  std::vector<Vec2> coordinates;        // texture
-  std::int64_t texture = -1;            // id of the texture
+  std::vector<std::string> names;  // base materials
+  std::vector<Vec3> colours;       // linear; base materials, colours
+  std::vector<Vec2> coordinates;   // texture
+  std::int64_t texture = -1;       // id of the texture
 };
 
 struct ThreeMfContent {

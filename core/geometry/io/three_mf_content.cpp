@@ -15,7 +15,8 @@ struct UnitOfLength {
   std::string_view name;
   double mm;
 };
-constexpr std::array<UnitOfLength, 6> units{{{"micron", 0.001}, {"millimeter", 1}, {"centimeter", 10}, {"inch", 25.4}, {"foot", 304.8}, {"meter", 1000}}};
+constexpr std::array<UnitOfLength, 6> units{
+    {{"micron", 0.001}, {"millimeter", 1}, {"centimeter", 10}, {"inch", 25.4}, {"foot", 304.8}, {"meter", 1000}}};
 
 /// A path inside the archive, from a reference in `base` ("/3D/x.model" or "x.model" next to it).
 std::string resolved(std::string_view path, std::string_view base) {
@@ -34,7 +35,8 @@ class PartReader {
     std::string unit = xml_.text_attribute("unit");
     if (unit.empty()) unit = "millimeter";
     const auto known = std::ranges::find(units, unit, &UnitOfLength::name);
-    if (known == units.end()) xml_.refuse("“" + clean_text(unit, 40) + "” is not a unit of length; export it in millimeters.");
+    if (known == units.end())
+      xml_.refuse("“" + clean_text(unit, 40) + "” is not a unit of length; export it in millimeters.");
     unit_mm_ = known->mm;
     if (number_ == 0) content_.unit = unit;
     while (xml_.next()) {
@@ -54,7 +56,9 @@ class PartReader {
     else if (name == "basematerials") group(ThreeMfProperties::Kind::base_materials);
     else if (name == "colorgroup") group(ThreeMfProperties::Kind::colours);
     else if (name == "texture2dgroup") group(ThreeMfProperties::Kind::texture);
-    else if (name == "texture2d") content_.texture_paths[{number_, integer("id")}] = resolved(xml_.text_attribute("path"), content_.parts[static_cast<std::size_t>(number_)]);
+    else if (name == "texture2d")
+      content_.texture_paths[{number_, integer("id")}] =
+          resolved(xml_.text_attribute("path"), content_.parts[static_cast<std::size_t>(number_)]);
     else if (name == "base" || name == "color" || name == "tex2coord") property(name);
     else if (name == "beamlattice") content_.beams = true;
   }
@@ -65,7 +69,8 @@ class PartReader {
     TextScan scan(value);
     std::int64_t number = -1;
     if (!scan.integer(number) || !scan.done() || number < 0)
-      xml_.refuse("“" + std::string(attribute) + "” must be a whole number, not “" + clean_text(value, 40) + "”; export it again.");
+      xml_.refuse("“" + std::string(attribute) + "” must be a whole number, not “" + clean_text(value, 40) +
+                  "”; export it again.");
     return number;
   }
 
@@ -73,7 +78,8 @@ class PartReader {
     TextScan scan(trimmed(xml_.attribute(attribute)));
     double value = 0;
     if (!scan.number(value) || !scan.done())
-      xml_.refuse("“" + std::string(attribute) + "” must be a number, not “" + clean_text(xml_.attribute(attribute), 40) + "”; export it again.");
+      xml_.refuse("“" + std::string(attribute) + "” must be a number, not “" +
+                  clean_text(xml_.attribute(attribute), 40) + "”; export it again.");
     return value;
   }
 
@@ -85,7 +91,8 @@ class PartReader {
     for (int k = 0; k < 12; ++k) {
       double value = 0;
       scan.skip_spaces();
-      if (!scan.number(value) || !is_sane_coordinate(value)) xml_.refuse("a transform is not twelve numbers; export it again.");
+      if (!scan.number(value) || !is_sane_coordinate(value))
+        xml_.refuse("a transform is not twelve numbers; export it again.");
       matrix(k % 3, k / 3) = value;
     }
     matrix.topRightCorner<3, 1>() *= unit_mm_;
@@ -135,7 +142,8 @@ class PartReader {
     for (const char* corner : {"v1", "v2", "v3"}) {
       const std::int64_t vertex = integer(corner);
       if (vertex >= vertices_)
-        xml_.refuse("a triangle refers to vertex " + std::to_string(vertex) + ", but its object has " + counted(vertices_, "vertex", "vertices") + "; export it again.");
+        xml_.refuse("a triangle refers to vertex " + std::to_string(vertex) + ", but its object has " +
+                    counted(vertices_, "vertex", "vertices") + "; export it again.");
       object_->F.push_back(static_cast<int>(vertex));
     }
     ThreeMfCorner properties = object_default_;
@@ -158,7 +166,8 @@ class PartReader {
   }
 
   void item() {
-    if (number_ == 0) content_.items.push_back({{part_of(xml_.text_attribute("path")), integer("objectid")}, transform()});
+    if (number_ == 0)
+      content_.items.push_back({{part_of(xml_.text_attribute("path")), integer("objectid")}, transform()});
   }
 
   void group(ThreeMfProperties::Kind kind) {
@@ -172,10 +181,12 @@ class PartReader {
   Vec3 colour(const char* attribute) const {
     const std::string_view text = trimmed(xml_.attribute(attribute));
     std::uint32_t value = 0;
-    const auto result = std::from_chars(text.data() + std::min<std::size_t>(text.size(), 1), text.data() + std::min<std::size_t>(text.size(), 7), value, 16);
+    const auto result = std::from_chars(text.data() + std::min<std::size_t>(text.size(), 1),
+                                        text.data() + std::min<std::size_t>(text.size(), 7), value, 16);
     if ((text.size() != 7 && text.size() != 9) || text[0] != '#' || result.ptr != text.data() + 7)
       xml_.refuse("“" + clean_text(text, 40) + "” is not a colour; export it again.");
-    return {linear_of_srgb((value >> 16) / 255.0), linear_of_srgb((value >> 8 & 255) / 255.0), linear_of_srgb((value & 255) / 255.0)};
+    return {linear_of_srgb((value >> 16) / 255.0), linear_of_srgb((value >> 8 & 255) / 255.0),
+            linear_of_srgb((value & 255) / 255.0)};
   }
 
   void property(std::string_view name) {
@@ -206,7 +217,9 @@ class PartReader {
 };
 
 /// Bytes that a part may unpack to: 75 a triangle are usual, properties and digits may treble that.
-std::uint64_t most_part_bytes(const ReadOptions& options) { return (64u << 20) + 220 * static_cast<std::uint64_t>(options.max_triangles); }
+std::uint64_t most_part_bytes(const ReadOptions& options) {
+  return (64u << 20) + 220 * static_cast<std::uint64_t>(options.max_triangles);
+}
 
 /// The root model part is the target of a relationship of the archive (OPC); it is "3D/3dmodel.model" nearly always.
 std::string root_part(const MeshSource& source, const ZipArchive& archive) {
@@ -214,7 +227,8 @@ std::string root_part(const MeshSource& source, const ZipArchive& archive) {
     const Bytes bytes = archive.read(*entry, 1 << 20);
     const MeshSource part(bytes, source.name() + " (_rels/.rels)", source.options(), source.context());
     for (XmlReader xml(part); xml.next();)
-      if (xml.tag() == XmlReader::Tag::start && xml.name() == "Relationship" && xml.attribute("Type").ends_with("/3dmodel"))
+      if (xml.tag() == XmlReader::Tag::start && xml.name() == "Relationship" &&
+          xml.attribute("Type").ends_with("/3dmodel"))
         return resolved(xml.text_attribute("Target"), "");
   }
   for (const auto& entry : archive.entries())

@@ -32,8 +32,10 @@ class ThreeMfReader {
       const Size size = size_of(item.object, 0);
       triangles += size.triangles, vertices += size.vertices, instances += size.instances;
       source_.check_triangle_count(triangles);
-      if (vertices > 3 * source_.options().max_triangles) source_.refuse("it holds far more vertices than triangles; export it again.");
-      if (instances > most_instances) source_.refuse("its objects are repeated more than a million times; export it as one mesh.");
+      if (vertices > 3 * source_.options().max_triangles)
+        source_.refuse("it holds far more vertices than triangles; export it again.");
+      if (instances > most_instances)
+        source_.refuse("its objects are repeated more than a million times; export it as one mesh.");
     }
     if (triangles == 0) source_.refuse_empty(content_.beams ? "beams" : "");
     F_.reserve(3 * static_cast<std::size_t>(triangles));
@@ -58,7 +60,8 @@ class ThreeMfReader {
 
   const ThreeMfObject& object(const ThreeMfId& id) const {
     const auto found = content_.objects.find(id);
-    if (found == content_.objects.end()) source_.refuse("it refers to object " + std::to_string(id.second) + ", which does not exist; export it again.");
+    if (found == content_.objects.end())
+      source_.refuse("it refers to object " + std::to_string(id.second) + ", which does not exist; export it again.");
     return found->second;
   }
 
@@ -77,7 +80,10 @@ class ThreeMfReader {
   /// double one another forty times are refused at once. Cycles show as nesting without end.
   Size size_of(const ThreeMfId& id, int depth) {
     if (const auto known = sizes_.find(id); known != sizes_.end()) return known->second;
-    const auto refuse_nesting = [&] { source_.refuse("its objects contain one another in a circle, or are nested more than 64 deep; export it as one mesh."); };
+    const auto refuse_nesting = [&] {
+      source_.refuse(
+          "its objects contain one another in a circle, or are nested more than 64 deep; export it as one mesh.");
+    };
     if (depth > deepest_nesting) refuse_nesting();
     const ThreeMfObject& whole = object(id);
     Size size;
@@ -85,8 +91,11 @@ class ThreeMfReader {
       size = {static_cast<std::int64_t>(whole.F.size() / 3), static_cast<std::int64_t>(whole.V.size() / 3), 1, 0};
       for (const ThreeMfComponent& component : whole.components) {
         const Size part = size_of(component.object, depth + 1);
-        const auto add_up = [](std::int64_t& sum, std::int64_t more) { sum = std::min<std::int64_t>(sum + more, 1'000'000'000'000'000'000); };
-        add_up(size.triangles, part.triangles), add_up(size.vertices, part.vertices), add_up(size.instances, part.instances);
+        const auto add_up = [](std::int64_t& sum, std::int64_t more) {
+          sum = std::min<std::int64_t>(sum + more, 1'000'000'000'000'000'000);
+        };
+        add_up(size.triangles, part.triangles), add_up(size.vertices, part.vertices),
+            add_up(size.instances, part.instances);
         size.height = std::max(size.height, part.height + 1);
       }
       if (size.height > deepest_nesting) refuse_nesting();
@@ -110,7 +119,8 @@ class ThreeMfReader {
       if (group.kind == ThreeMfProperties::Kind::texture) {
         if (!with_texture_) continue;
         for (const Vec2& t : group.coordinates) UV_.insert(UV_.end(), {t.x(), t.y()});
-        model_.materials.push_back({"texture " + std::to_string(id.second), Vec3::Ones(), texture({id.first, group.texture})});
+        model_.materials.push_back(
+            {"texture " + std::to_string(id.second), Vec3::Ones(), texture({id.first, group.texture})});
       } else if (group.kind == ThreeMfProperties::Kind::base_materials || !vertex_colours_) {
         for (std::size_t k = 0; k < group.colours.size(); ++k) {
           const bool named = k < group.names.size() && !group.names[k].empty();
@@ -140,7 +150,8 @@ class ThreeMfReader {
       picture.name = clean_text(path->second.substr(path->second.find_last_of('/') + 1));
       if (const auto* const entry = archive_.find(path->second)) {
         texture_bytes_ += entry->bytes;
-        if (texture_bytes_ > (256u << 20)) source_.refuse("its pictures take more than 256 MB; export it with smaller ones.");
+        if (texture_bytes_ > (256u << 20))
+          source_.refuse("its pictures take more than 256 MB; export it with smaller ones.");
         picture.bytes = archive_.read(*entry, 256u << 20);
       }
       picture.media_type = picture_media_type(picture.bytes);
@@ -173,7 +184,8 @@ class ThreeMfReader {
       Eigen::Vector4d p(whole.V[v], whole.V[v + 1], whole.V[v + 2], 1);
       if (moved) p = transform * p;
       for (int k = 0; k < 3; ++k) {
-        if (!is_sane_coordinate(p[k])) source_.refuse(insane_coordinate("vertex", static_cast<std::int64_t>(v / 3) + 1, p[k]));
+        if (!is_sane_coordinate(p[k]))
+          source_.refuse(insane_coordinate("vertex", static_cast<std::int64_t>(v / 3) + 1, p[k]));
         V_.push_back(p[k]);
       }
     }
@@ -197,14 +209,19 @@ class ThreeMfReader {
     int material = -1;
     std::array<int, 3> texture_vertices{spare, spare, spare};
     if (group != nullptr) {
-      const auto size = static_cast<std::int64_t>(group->kind == Kind::texture ? group->coordinates.size() : group->colours.size());
+      const auto size =
+          static_cast<std::int64_t>(group->kind == Kind::texture ? group->coordinates.size() : group->colours.size());
       for (const std::int64_t index : corner.index)
-        if (index >= size) source_.refuse("a face refers to property " + std::to_string(index) + " of group " + std::to_string(corner.property) + ", which does not exist; export it again.");
+        if (index >= size)
+          source_.refuse("a face refers to property " + std::to_string(index) + " of group " +
+                         std::to_string(corner.property) + ", which does not exist; export it again.");
       const int base = first_material_.at(group_id);
-      if (group->kind == Kind::base_materials || (group->kind == Kind::colours && !vertex_colours_)) material = base + static_cast<int>(corner.index[0]);
+      if (group->kind == Kind::base_materials || (group->kind == Kind::colours && !vertex_colours_))
+        material = base + static_cast<int>(corner.index[0]);
       if (group->kind == Kind::texture) {
         material = base;
-        for (std::size_t k = 0; k < 3; ++k) texture_vertices[k] = first_uv_.at(group_id) + static_cast<int>(corner.index[order[k]]);
+        for (std::size_t k = 0; k < 3; ++k)
+          texture_vertices[k] = first_uv_.at(group_id) + static_cast<int>(corner.index[order[k]]);
       }
       if (group->kind == Kind::colours && vertex_colours_)
         for (std::size_t k = 0; k < 3; ++k) {
@@ -224,7 +241,8 @@ class ThreeMfReader {
     if (with_texture_) {
       model_.UV = Eigen::Map<const TextureCoordinates>(UV_.data(), static_cast<Eigen::Index>(UV_.size() / 2), 2);
       model_.FT = Eigen::Map<const Triangles>(FT_.data(), m, 3);
-      if ((model_.FT.array() != static_cast<int>(UV_.size() / 2) - 1).all()) model_.UV.conservativeResize(model_.UV.rows() - 1, 2);
+      if ((model_.FT.array() != static_cast<int>(UV_.size() / 2) - 1).all())
+        model_.UV.conservativeResize(model_.UV.rows() - 1, 2);
     }
     if (model_.group_names.size() < 2) model_.group_names.clear(), model_.face_group.clear();
     if (supports_) file_.notes.push_back("Supports and other objects that are not printed were left out.");

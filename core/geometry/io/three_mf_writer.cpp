@@ -49,7 +49,8 @@ constexpr std::string_view relationships_begin = R"(<?xml version="1.0" encoding
 
 class ThreeMfWriter {
  public:
-  ThreeMfWriter(const Model& model, const WriteOptions& options, Context& context) : model_(model), options_(options), context_(context) {}
+  ThreeMfWriter(const Model& model, const WriteOptions& options, Context& context)
+      : model_(model), options_(options), context_(context) {}
 
   Bytes write() {
     prepare_textures();
@@ -58,15 +59,23 @@ class ThreeMfWriter {
     const auto& [V, F] = model_.mesh;
     std::string items;
     for (const Object& object : objects()) {
-      const auto written = [](const auto& list, std::size_t i) { return list.empty() ? static_cast<Eigen::Index>(i) : static_cast<Eigen::Index>(list[i]); };
-      const auto count = [](const auto& list, Eigen::Index all) { return list.empty() ? static_cast<std::size_t>(all) : list.size(); };
-      pieces.push_back("<object id=\"" + std::to_string(object.id) + "\" type=\"model\" name=\"" + xml_text(object.name) + "\">\n<mesh>\n<vertices>\n");
+      const auto written = [](const auto& list, std::size_t i) {
+        return list.empty() ? static_cast<Eigen::Index>(i) : static_cast<Eigen::Index>(list[i]);
+      };
+      const auto count = [](const auto& list, Eigen::Index all) {
+        return list.empty() ? static_cast<std::size_t>(all) : list.size();
+      };
+      pieces.push_back("<object id=\"" + std::to_string(object.id) + "\" type=\"model\" name=\"" +
+                       xml_text(object.name) + "\">\n<mesh>\n<vertices>\n");
       add(format_rows(count(object.vertices, V.rows()), 56, context_, [&](TextOut& out, std::size_t i) {
         const Eigen::Index v = written(object.vertices, i);
-        out << "<vertex x=\"" << static_cast<float>(V(v, 0)) << "\" y=\"" << static_cast<float>(V(v, 1)) << "\" z=\"" << static_cast<float>(V(v, 2)) << "\"/>\n";
+        out << "<vertex x=\"" << static_cast<float>(V(v, 0)) << "\" y=\"" << static_cast<float>(V(v, 1)) << "\" z=\""
+            << static_cast<float>(V(v, 2)) << "\"/>\n";
       }));
       pieces.emplace_back("</vertices>\n<triangles>\n");
-      const auto index = [&](Eigen::Index f, int k) { return object.vertices.empty() ? F(f, k) : local_vertex_[static_cast<std::size_t>(F(f, k))]; };
+      const auto index = [&](Eigen::Index f, int k) {
+        return object.vertices.empty() ? F(f, k) : local_vertex_[static_cast<std::size_t>(F(f, k))];
+      };
       add(format_rows(count(object.faces, F.rows()), 56, context_, [&](TextOut& out, std::size_t i) {
         const Eigen::Index f = written(object.faces, i);
         out << "<triangle v1=\"" << index(f, 0) << "\" v2=\"" << index(f, 1) << "\" v3=\"" << index(f, 2) << '"';
@@ -80,12 +89,18 @@ class ThreeMfWriter {
 
     ZipWriter zip;
     zip.add("[Content_Types].xml", content_types, context_);
-    zip.add("_rels/.rels", std::string(relationships_begin) + "<Relationship Id=\"rel0\" Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\" Target=\"/3D/3dmodel.model\"/>\n</Relationships>\n", context_);
+    zip.add(
+        "_rels/.rels",
+        std::string(relationships_begin) +
+            "<Relationship Id=\"rel0\" Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\" Target=\"/3D/3dmodel.model\"/>\n</Relationships>\n",
+        context_);
     std::string texture_relationships(relationships_begin);
     for (std::size_t i = 0; i < texture_paths_.size(); ++i) {
       if (texture_paths_[i].empty()) continue;
       zip.add_stored(texture_paths_[i], model_.textures[i].bytes);
-      texture_relationships += "<Relationship Id=\"tex" + std::to_string(i) + "\" Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dtexture\" Target=\"/" + texture_paths_[i] + "\"/>\n";
+      texture_relationships += "<Relationship Id=\"tex" + std::to_string(i) +
+                               "\" Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dtexture\" Target=\"/" +
+                               texture_paths_[i] + "\"/>\n";
     }
     if (textured_) zip.add("3D/_rels/3dmodel.model.rels", texture_relationships + "</Relationships>\n", context_);
     zip.add("3D/3dmodel.model", pieces, context_);
@@ -108,7 +123,9 @@ class ThreeMfWriter {
     const std::size_t count = model_.group_names.size();
     if (!options_.object_per_group || count < 2 || model_.face_group.empty()) return {{1, options_.name, {}, {}}};
     std::vector<Object> objects;
-    for (std::size_t g = 0; g < count; ++g) objects.push_back({g == 0 ? 1 : picture_id(model_.textures.size()) + static_cast<int>(g), model_.group_names[g], {}, {}});
+    for (std::size_t g = 0; g < count; ++g)
+      objects.push_back(
+          {g == 0 ? 1 : picture_id(model_.textures.size()) + static_cast<int>(g), model_.group_names[g], {}, {}});
     local_vertex_.resize(static_cast<std::size_t>(model_.mesh.V.rows()), -1);
     std::vector<int> owner(local_vertex_.size(), -1);
     for (std::size_t f = 0; f < model_.face_group.size(); ++f) {
@@ -116,7 +133,8 @@ class ThreeMfWriter {
       objects[g].faces.push_back(static_cast<int>(f));
       for (const int v : model_.mesh.F.row(static_cast<Eigen::Index>(f))) {
         int& first = owner[static_cast<std::size_t>(v)];
-        if (first >= 0 && first != static_cast<int>(g)) return {{1, options_.name, {}, {}}};  // groups of one surface stay together
+        if (first >= 0 && first != static_cast<int>(g))
+          return {{1, options_.name, {}, {}}};  // groups of one surface stay together
         if (first >= 0) continue;
         first = static_cast<int>(g);
         local_vertex_[static_cast<std::size_t>(v)] = static_cast<int>(objects[g].vertices.size());
@@ -148,7 +166,8 @@ class ThreeMfWriter {
     if (!model_.materials.empty()) {
       out << "<basematerials id=\"2\">\n";
       for (const Material& material : model_.materials)
-        out << "<base name=\"" << xml_text(material.name.empty() ? "unnamed" : material.name) << "\" displaycolor=\"" << hexadecimal(material.diffuse) << "\"/>\n";
+        out << "<base name=\"" << xml_text(material.name.empty() ? "unnamed" : material.name) << "\" displaycolor=\""
+            << hexadecimal(material.diffuse) << "\"/>\n";
       out << "</basematerials>\n";
     }
     if (coloured) {
@@ -166,10 +185,12 @@ class ThreeMfWriter {
     for (std::size_t i = 0; i < texture_paths_.size(); ++i) {
       const std::string& path = texture_paths_[i];
       if (path.empty()) continue;
-      out << "<m:texture2d id=\"" << picture_id(i) << "\" path=\"/" << path << "\" contenttype=\"" << (path.ends_with(".png") ? "image/png" : "image/jpeg") << "\"/>\n"
+      out << "<m:texture2d id=\"" << picture_id(i) << "\" path=\"/" << path << "\" contenttype=\""
+          << (path.ends_with(".png") ? "image/png" : "image/jpeg") << "\"/>\n"
           << "<m:texture2dgroup id=\"" << coordinates_id(i) << "\" texid=\"" << picture_id(i) << "\">\n";
       for (Eigen::Index t = 0; t < model_.UV.rows(); ++t)
-        out << "<m:tex2coord u=\"" << static_cast<float>(model_.UV(t, 0)) << "\" v=\"" << static_cast<float>(model_.UV(t, 1)) << "\"/>\n";
+        out << "<m:tex2coord u=\"" << static_cast<float>(model_.UV(t, 0)) << "\" v=\""
+            << static_cast<float>(model_.UV(t, 1)) << "\"/>\n";
       out << "</m:texture2dgroup>\n";
     }
     return std::move(out.text());
@@ -179,7 +200,9 @@ class ThreeMfWriter {
   void properties(TextOut& out, Eigen::Index f) const {
     const int material = model_.face_material.empty() ? -1 : model_.face_material[static_cast<std::size_t>(f)];
     const int texture = material < 0 ? -1 : model_.materials[static_cast<std::size_t>(material)].diffuse_texture;
-    const auto write = [&](int group, int p1, int p2, int p3) { out << " pid=\"" << group << "\" p1=\"" << p1 << "\" p2=\"" << p2 << "\" p3=\"" << p3 << '"'; };
+    const auto write = [&](int group, int p1, int p2, int p3) {
+      out << " pid=\"" << group << "\" p1=\"" << p1 << "\" p2=\"" << p2 << "\" p3=\"" << p3 << '"';
+    };
     const auto& F = model_.mesh.F;
     const auto colour = [&](int k) { return colour_of_vertex_[static_cast<std::size_t>(F(f, k))]; };
     if (texture >= 0 && !texture_paths_[static_cast<std::size_t>(texture)].empty())
@@ -191,13 +214,15 @@ class ThreeMfWriter {
   const Model& model_;
   const WriteOptions& options_;
   const Context& context_;
-  std::vector<std::string> texture_paths_;  // "" for those that are not written
+  std::vector<std::string> texture_paths_;            // "" for those that are not written
   std::vector<int> colour_of_vertex_, local_vertex_;  // local_vertex_: its number within its object
   bool textured_ = false;
 };
 
 }  // namespace
 
-Bytes write_three_mf(const Model& model, const WriteOptions& options, Context& context) { return ThreeMfWriter(model, options, context).write(); }
+Bytes write_three_mf(const Model& model, const WriteOptions& options, Context& context) {
+  return ThreeMfWriter(model, options, context).write();
+}
 
 }  // namespace formwright

@@ -17,13 +17,15 @@ void append_utf8(std::string& text, std::uint32_t code) {
   if (code < 0x80) put(code);
   else if (code < 0x800) put(0xC0 | code >> 6), put(0x80 | (code & 0x3F));
   else if (code < 0x10000) put(0xE0 | code >> 12), put(0x80 | (code >> 6 & 0x3F)), put(0x80 | (code & 0x3F));
-  else put(0xF0 | code >> 18), put(0x80 | (code >> 12 & 0x3F)), put(0x80 | (code >> 6 & 0x3F)), put(0x80 | (code & 0x3F));
+  else
+    put(0xF0 | code >> 18), put(0x80 | (code >> 12 & 0x3F)), put(0x80 | (code >> 6 & 0x3F)), put(0x80 | (code & 0x3F));
 }
 
 }  // namespace
 
 XmlReader::XmlReader(const MeshSource& source) : source_(source), text_(source.text()) {
-  if (text_.starts_with("\xfe\xff") || text_.starts_with("\xff\xfe")) source.refuse("its XML is in UTF-16; export it in UTF-8.");
+  if (text_.starts_with("\xfe\xff") || text_.starts_with("\xff\xfe"))
+    source.refuse("its XML is in UTF-16; export it in UTF-8.");
 }
 
 void XmlReader::refuse(const std::string& what) const { source_.refuse_line(tag_at_, what); }
@@ -60,7 +62,9 @@ void XmlReader::skip_past(std::string_view terminator) {
 
 std::string_view XmlReader::read_name() {
   const std::size_t from = at_;
-  const auto ends = [](char c) { return is_space(c) || c == '=' || c == '/' || c == '>' || c == '<' || c == '"' || c == '\''; };
+  const auto ends = [](char c) {
+    return is_space(c) || c == '=' || c == '/' || c == '>' || c == '<' || c == '"' || c == '\'';
+  };
   while (at_ < text_.size() && !ends(text_[at_])) ++at_;
   if (at_ == from) refuse("its XML is damaged; export it or copy it again.");
   return text_.substr(from, at_ - from);
@@ -101,7 +105,8 @@ void XmlReader::read_start_tag() {
     if (at_ == text_.size() || text_[at_] != '=') refuse("its XML is damaged; export it or copy it again.");
     ++at_;
     while (at_ < text_.size() && is_space(text_[at_])) ++at_;
-    if (at_ == text_.size() || (text_[at_] != '"' && text_[at_] != '\'')) refuse("its XML is damaged; export it or copy it again.");
+    if (at_ == text_.size() || (text_[at_] != '"' && text_[at_] != '\''))
+      refuse("its XML is damaged; export it or copy it again.");
     const std::size_t from = at_ + 1, stop = text_.find(text_[at_], from);
     if (stop == std::string_view::npos) source_.refuse("its XML ends too early; export it or copy it again.");
     attributes_.push_back({local(attribute), text_.substr(from, stop - from)});
@@ -121,7 +126,8 @@ bool XmlReader::has(std::string_view name) const {
 }
 
 std::string XmlReader::text_attribute(std::string_view name) const {
-  constexpr std::array<std::pair<std::string_view, char>, 5> entities{{{"lt", '<'}, {"gt", '>'}, {"amp", '&'}, {"quot", '"'}, {"apos", '\''}}};
+  constexpr std::array<std::pair<std::string_view, char>, 5> entities{
+      {{"lt", '<'}, {"gt", '>'}, {"amp", '&'}, {"quot", '"'}, {"apos", '\''}}};
   std::string text;
   std::string_view value = attribute(name);
   while (!value.empty()) {

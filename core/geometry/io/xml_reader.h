@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// XML as a stream of tags. A 3MF of a million triangles holds 1.5 million elements: pugixml's tree of them takes several
-// times the text's memory, this takes none. No document types, so no entities to expand; namespaces' prefixes are cut off.
+// XML as a stream of tags. A 3MF of a million triangles holds 1.5 million elements: pugixml's tree of them takes
+// several times the text's memory, this takes none. No document types, so no entities to expand; namespaces' prefixes
+// are cut off.
 #include <optional>
 #include <string>
 #include <string_view>

@@ -60,7 +60,9 @@ class Inflater {
 ZipArchive::ZipArchive(const MeshSource& source) : source_(source) {
   const ByteView bytes = source.bytes();
   const auto cut_short = [&] { source.refuse("its zip archive ends too early; export it or copy it again."); };
-  const auto damaged = [&] { source.refuse("the directory of its zip archive is damaged; export it or copy it again."); };
+  const auto damaged = [&] {
+    source.refuse("the directory of its zip archive is damaged; export it or copy it again.");
+  };
   if (bytes.size() < end_bytes) cut_short();
   // The end record is the last, but for a comment of at most 65535 bytes.
   std::size_t end = bytes.size() - end_bytes;
@@ -70,13 +72,16 @@ ZipArchive::ZipArchive(const MeshSource& source) : source_(source) {
     --end;
   }
   std::uint64_t count = u16(bytes.data() + end + 10), offset = u32(bytes.data() + end + 16);
-  if ((count == 0xFFFF || offset == 0xFFFFFFFF) && end >= locator64_bytes && u32(bytes.data() + end - locator64_bytes) == locator64_signature) {
+  if ((count == 0xFFFF || offset == 0xFFFFFFFF) && end >= locator64_bytes &&
+      u32(bytes.data() + end - locator64_bytes) == locator64_signature) {
     const std::uint64_t end64 = u64(bytes.data() + end - locator64_bytes + 8);
-    if (end64 > bytes.size() || bytes.size() - end64 < end64_bytes || u32(bytes.data() + end64) != end64_signature) damaged();
+    if (end64 > bytes.size() || bytes.size() - end64 < end64_bytes || u32(bytes.data() + end64) != end64_signature)
+      damaged();
     count = u64(bytes.data() + end64 + 32), offset = u64(bytes.data() + end64 + 48);
   }
   for (std::uint64_t at = offset; count > 0; --count) {
-    if (at > bytes.size() || bytes.size() - at < central_bytes || u32(bytes.data() + at) != central_signature) damaged();
+    if (at > bytes.size() || bytes.size() - at < central_bytes || u32(bytes.data() + at) != central_signature)
+      damaged();
     const std::byte* const record = bytes.data() + at;
     const std::size_t name = u16(record + 28), extra = u16(record + 30), comment = u16(record + 32);
     if (bytes.size() - at - central_bytes < name + extra + comment) damaged();
@@ -104,8 +109,11 @@ Bytes ZipArchive::read(const Entry& entry, std::uint64_t most_bytes) const {
   const std::string part = "the part “" + clean_text(entry.name, 60) + "” of its zip archive ";
   const auto damaged = [&] { source_.refuse(part + "is damaged; export it or copy it again."); };
   if (entry.encrypted) source_.refuse(part + "is encrypted; export it without a password.");
-  if (entry.method != 0 && entry.method != 8) source_.refuse(part + "is packed in an unusual way; export it or pack it again as ordinary zip.");
-  if (entry.offset > bytes.size() || bytes.size() - entry.offset < local_bytes || u32(bytes.data() + entry.offset) != local_signature) damaged();
+  if (entry.method != 0 && entry.method != 8)
+    source_.refuse(part + "is packed in an unusual way; export it or pack it again as ordinary zip.");
+  if (entry.offset > bytes.size() || bytes.size() - entry.offset < local_bytes ||
+      u32(bytes.data() + entry.offset) != local_signature)
+    damaged();
   const std::byte* const record = bytes.data() + entry.offset;
   const std::uint64_t start = entry.offset + local_bytes + u16(record + 26) + u16(record + 28);
   if (start > bytes.size() || entry.packed_bytes > bytes.size() - start) damaged();
@@ -113,7 +121,8 @@ Bytes ZipArchive::read(const Entry& entry, std::uint64_t most_bytes) const {
   const auto too_much = [&](std::uint64_t size) {
     // Text of numbers packs 5 to 20 times; a bomb a thousand times.
     if (size > most_bytes || (size > (256u << 20) && size / 200 > packed.size()))
-      source_.refuse(part + "unpacks to more than " + std::to_string(size >> 20) + " MB; simplify the mesh or export it again.");
+      source_.refuse(part + "unpacks to more than " + std::to_string(size >> 20) +
+                     " MB; simplify the mesh or export it again.");
   };
 
   Bytes result;
@@ -124,14 +133,17 @@ Bytes ZipArchive::read(const Entry& entry, std::uint64_t most_bytes) const {
     Inflater inflater;
     z_stream& stream = inflater.stream();
     constexpr std::size_t step = 64u << 20;  // zlib counts with 32 bits
-    result.resize(static_cast<std::size_t>(std::min<std::uint64_t>({entry.bytes, 1032 * entry.packed_bytes, step})) + 1);
+    result.resize(static_cast<std::size_t>(std::min<std::uint64_t>({entry.bytes, 1032 * entry.packed_bytes, step})) +
+                  1);
     std::size_t in = 0, out = 0;
     int status = Z_OK;
     while (status != Z_STREAM_END) {
       source_.context().check_cancelled();
       if (out == result.size()) {
         too_much(out);
-        result.resize(std::max<std::size_t>(std::min(2 * out, static_cast<std::size_t>(std::min<std::uint64_t>(entry.bytes, most_bytes)) + 1), out + (out >> 2) + 65536));
+        result.resize(std::max<std::size_t>(
+            std::min(2 * out, static_cast<std::size_t>(std::min<std::uint64_t>(entry.bytes, most_bytes)) + 1),
+            out + (out >> 2) + 65536));
       }
       stream.next_in = zbytes(packed.data() + in);
       stream.avail_in = static_cast<uInt>(std::min(packed.size() - in, step));
@@ -141,7 +153,8 @@ Bytes ZipArchive::read(const Entry& entry, std::uint64_t most_bytes) const {
       status = inflate(&stream, Z_NO_FLUSH);
       in += in_before - stream.avail_in, out += out_before - stream.avail_out;
       if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR) damaged();
-      if (in_before == stream.avail_in && out_before == stream.avail_out && status != Z_STREAM_END) damaged();  // no more to come
+      if (in_before == stream.avail_in && out_before == stream.avail_out && status != Z_STREAM_END)
+        damaged();  // no more to come
     }
     too_much(out);
     result.resize(out);
@@ -178,7 +191,9 @@ void ZipWriter::add(std::string_view name, std::span<const std::string> pieces, 
     // Level 1: on meshes' text the best takes eight times as long for a sixth less.
     if (deflateInit2(&stream, 1, Z_DEFLATED, -MAX_WBITS, 9, Z_DEFAULT_STRATEGY) != Z_OK) throw std::bad_alloc();
     if (i > 0) {
-      const std::string_view before = std::string_view(pieces[i - 1]).substr(pieces[i - 1].size() - std::min<std::size_t>(pieces[i - 1].size(), 32768));
+      const std::string_view before =
+          std::string_view(pieces[i - 1])
+              .substr(pieces[i - 1].size() - std::min<std::size_t>(pieces[i - 1].size(), 32768));
       deflateSetDictionary(&stream, reinterpret_cast<const Bytef*>(before.data()), static_cast<uInt>(before.size()));
     }
     packed[i].resize(deflateBound(&stream, static_cast<uLong>(piece.size())) + 16);
@@ -211,7 +226,8 @@ void ZipWriter::add(std::string_view name, std::string_view text, const Context&
 }
 
 void ZipWriter::add_stored(std::string_view name, ByteView bytes) {
-  begin({std::string(name), static_cast<std::uint32_t>(crc32_z(0, zbytes(bytes.data()), bytes.size())), bytes.size(), bytes.size(), bytes_.size(), 0});
+  begin({std::string(name), static_cast<std::uint32_t>(crc32_z(0, zbytes(bytes.data()), bytes.size())), bytes.size(),
+         bytes.size(), bytes_.size(), 0});
   bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
 }
 
@@ -235,7 +251,8 @@ Bytes ZipWriter::finish() {
     const ByteView name = as_bytes(entry.name);
     bytes_.insert(bytes_.end(), name.begin(), name.end());
     if (entry.bytes > 0xFFFFFFFE || directory > 0xFFFFFFFE)
-      throw Error(ErrorCode::invalid_input, "mesh", "The mesh is too large for a zip archive of 4 GB; choose PLY or simplify it.");
+      throw Error(ErrorCode::invalid_input, "mesh",
+                  "The mesh is too large for a zip archive of 4 GB; choose PLY or simplify it.");
   }
   const std::uint64_t size = bytes_.size() - directory;
   append(bytes_, end_signature);

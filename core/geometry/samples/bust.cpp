@@ -35,7 +35,8 @@ void model_skull(Sculpture& s) {
 void model_brow_and_nose(Sculpture& s) {
   const std::vector<Point> brow = curve({{0.7, 12.9, 9.0}, {2.4, 13.35, 9.1}, {4.3, 13.3, 8.1}, {5.7, 12.2, 6.2}}, 3);
   Tube ridge{brow, {}, {}, 1, 0, 0, 0};
-  for (std::size_t i = 0; i < brow.size(); ++i) ridge.radius.push_back(0.75 - 0.35 * static_cast<double>(i) / static_cast<double>(brow.size()));
+  for (std::size_t i = 0; i < brow.size(); ++i)
+    ridge.radius.push_back(0.75 - 0.35 * static_cast<double>(i) / static_cast<double>(brow.size()));
   Point c;
   double r;
   ridge.enclose(c, r);
@@ -64,11 +65,16 @@ void model_eyes(Sculpture& s) {
     return smooth_max(smooth_max(arc(0.62, 1), arc(0.5, -1), 0.12), 0.3 - (p.z - eye.z), 0.2);
   };
   s.add_ellipsoid(0.8, posed(eye, 0), {ball + lid, ball + lid, ball + lid}, true);
-  s.line(0.07, 0.28, curve({{1.55, 11.35, 8.5}, {2.3, 11.95, 9.0}, {3.15, 12.1, 9.1}, {4.0, 11.95, 8.8}, {4.8, 11.45, 8.1}}, 4), 0.1, true);
-  s.line(-0.2, 0.34, curve({{1.6, 12.0, 8.5}, {2.4, 12.5, 8.9}, {3.2, 12.65, 8.9}, {4.2, 12.45, 8.5}, {5.0, 11.8, 7.6}}, 4), 0.2, true);
+  s.line(0.07, 0.28,
+         curve({{1.55, 11.35, 8.5}, {2.3, 11.95, 9.0}, {3.15, 12.1, 9.1}, {4.0, 11.95, 8.8}, {4.8, 11.45, 8.1}}, 4),
+         0.1, true);
+  s.line(-0.2, 0.34,
+         curve({{1.6, 12.0, 8.5}, {2.4, 12.5, 8.9}, {3.2, 12.65, 8.9}, {4.2, 12.45, 8.5}, {5.0, 11.8, 7.6}}, 4), 0.2,
+         true);
   for (int side = 0; side < 2; ++side) {
     const Point c = side == 0 ? eye : mirrored(eye);
-    s.carve(0.08, c + Point{0, 0, 1.5}, 1.9, [opening, side](const Point& p) { return opening(side == 0 ? p : mirrored(p)); });
+    s.carve(0.08, c + Point{0, 0, 1.5}, 1.9,
+            [opening, side](const Point& p) { return opening(side == 0 ? p : mirrored(p)); });
     // The iris is engraved and the pupil drilled, as in imperial Rome: it gives the gaze.
     s.unite(0.03, c, ball, [c](const Point& p) {
       const Point q = p - c - Point{0, 0.05, 0};
@@ -100,7 +106,14 @@ void model_mouth(Sculpture& s) {
   };
   lip(upper, 0.42);
   lip(lower, 0.5);
-  const std::vector<Point> slit = curve({{2.7, 4.6, 8.3}, {1.5, 4.4, 9.4}, {0.5, 4.5, 9.95}, {0, 4.42, 10.0}, {-0.5, 4.5, 9.95}, {-1.5, 4.4, 9.4}, {-2.7, 4.6, 8.3}}, 4);
+  const std::vector<Point> slit = curve({{2.7, 4.6, 8.3},
+                                         {1.5, 4.4, 9.4},
+                                         {0.5, 4.5, 9.95},
+                                         {0, 4.42, 10.0},
+                                         {-0.5, 4.5, 9.95},
+                                         {-1.5, 4.4, 9.4},
+                                         {-2.7, 4.6, 8.3}},
+                                        4);
   s.line(-0.35, 0.32, slit, 0.1);
 }
 
@@ -131,8 +144,17 @@ void model_ears(Sculpture& s) {
   Frame shell = ear;
   shell.o = ear.global({-0.5, 0.2, 0.15});
   s.add_ellipsoid(0.6, shell, {1.7, 2.8, 0.6}, true);
-  tube({{0.2, 0.0, 0.3}, {0.85, 0.9, 0.3}, {0.7, 2.2, 0.35}, {-0.35, 2.75, 0.45}, {-1.5, 2.2, 0.5}, {-1.8, 0.8, 0.5}, {-1.4, -0.9, 0.45}, {-0.7, -2.1, 0.4}}, 0.32, 0.36, 0.25);
-  tube({{0.0, 1.9, 0.35}, {-0.75, 1.3, 0.45}, {-0.95, 0.1, 0.5}, {-0.6, -1.1, 0.45}, {0.1, -1.4, 0.4}}, 0.22, 0.3, 0.25);
+  tube({{0.2, 0.0, 0.3},
+        {0.85, 0.9, 0.3},
+        {0.7, 2.2, 0.35},
+        {-0.35, 2.75, 0.45},
+        {-1.5, 2.2, 0.5},
+        {-1.8, 0.8, 0.5},
+        {-1.4, -0.9, 0.45},
+        {-0.7, -2.1, 0.4}},
+       0.32, 0.36, 0.25);
+  tube({{0.0, 1.9, 0.35}, {-0.75, 1.3, 0.45}, {-0.95, 0.1, 0.5}, {-0.6, -1.1, 0.45}, {0.1, -1.4, 0.4}}, 0.22, 0.3,
+       0.25);
   tube({{-0.4, -2.2, 0.4}, {0.15, -2.6, 0.4}, {0.5, -2.1, 0.3}}, 0.5, 0.4, 0.3);
   Frame concha = ear;
   concha.o = ear.global({0.05, -0.25, 0.75});
@@ -145,10 +167,10 @@ void model_ears(Sculpture& s) {
 // How far inside the hair a point of the head is, in units; negative on the bare skin.
 double hair_depth(const Point& p) {
   const double azimuth = std::fabs(arc_tangent(p.x, p.z + 0.8)) * 180 / pi;
-  const double line = azimuth < 38 ? mix(18.4, 17.6, azimuth / 38)
-                      : azimuth < 62 ? mix(17.6, 14.0, (azimuth - 38) / 24)
-                      : azimuth < 78 ? mix(14.0, 9.8, (azimuth - 62) / 16)
-                      : azimuth < 88 ? mix(9.8, 13.2, (azimuth - 78) / 10)
+  const double line = azimuth < 38    ? mix(18.4, 17.6, azimuth / 38)
+                      : azimuth < 62  ? mix(17.6, 14.0, (azimuth - 38) / 24)
+                      : azimuth < 78  ? mix(14.0, 9.8, (azimuth - 62) / 16)
+                      : azimuth < 88  ? mix(9.8, 13.2, (azimuth - 78) / 10)
                       : azimuth < 104 ? 13.4
                       : azimuth < 122 ? mix(13.4, 6.0, (azimuth - 104) / 18)
                                       : mix(6.0, 4.0, (azimuth - 122) / 58);
@@ -227,7 +249,13 @@ void lay_beard(LockLayer& layer, const Sculpture& skin) {
       style.root = 0.25;
       style.tip_width = 0.4;
       const double low = k * 0.22, out = (k % 2) * 0.45;
-      layer.lay(skin, curve({{side * (0.18 + out), 6.25 - low, 10.1 - 0.3 * out}, {side * (1.25 + out), 5.85 - low, 9.7 - 0.3 * out}, {side * (2.75 + 0.6 * out), 5.0 - low, 8.6}, {side * (3.3 + 0.8 * out), 3.5 - 0.6 * low, 8.0}}, 4), style, 1.3 * k + side);
+      layer.lay(skin,
+                curve({{side * (0.18 + out), 6.25 - low, 10.1 - 0.3 * out},
+                       {side * (1.25 + out), 5.85 - low, 9.7 - 0.3 * out},
+                       {side * (2.75 + 0.6 * out), 5.0 - low, 8.6},
+                       {side * (3.3 + 0.8 * out), 3.5 - 0.6 * low, 8.0}},
+                      4),
+                style, 1.3 * k + side);
     }
   for (int side = -1; side <= 1; side += 2)
     for (int k = 0; k < 2; ++k) {  // under the lower lip
@@ -247,7 +275,8 @@ void lay_beard(LockLayer& layer, const Sculpture& skin) {
       style.width = 0.3;
       style.height = 0.2 * (1 - 0.5 * t);
       style.strands = 2;
-      layer.lay(skin, Point{side * mix(0.9, 4.6, t), 13.0 + 0.75 * t - 0.7 * t * t * t, 10.0 - 1.9 * t * t}, Point{side * 1.0, 0.7 - 1.0 * t, -0.4}, style, k);
+      layer.lay(skin, Point{side * mix(0.9, 4.6, t), 13.0 + 0.75 * t - 0.7 * t * t * t, 10.0 - 1.9 * t * t},
+                Point{side * 1.0, 0.7 - 1.0 * t, -0.4}, style, k);
     }
 }
 
@@ -282,7 +311,8 @@ void model_socle(Sculpture& s) {
 
 void lay_cloak(LockLayer& layer, const Sculpture& skin) {
   const Point brooch{-9.2, -8.1, 1.6};
-  const auto fold = [&](const std::vector<Point>& knots, double width, double height, double phase, double tip_height = 0.9) {
+  const auto fold = [&](const std::vector<Point>& knots, double width, double height, double phase,
+                        double tip_height = 0.9) {
     LockStyle style;
     style.width = width;
     style.height = height;
@@ -300,24 +330,38 @@ void lay_cloak(LockLayer& layer, const Sculpture& skin) {
     const double t = k / 9.0;
     const Point end{mix(13.5, -5, t), mix(-7.0, -20, std::sqrt(t)), mix(-1.5, 1, t)};
     const Point middle = mix(brooch, end, 0.5) + Point{-1.5 * t, -2.9 + 1.0 * t, 7};
-    fold({brooch, middle, end, Point{end.x * 0.6 + 2, -20.2, -3}}, 0.85 + 0.25 * (k % 2), 0.8 + 0.35 * ((k + 1) % 2), k);
+    fold({brooch, middle, end, Point{end.x * 0.6 + 2, -20.2, -3}}, 0.85 + 0.25 * (k % 2), 0.8 + 0.35 * ((k + 1) % 2),
+         k);
   }
   // Over the left shoulder: a few come to the front and die out, the rest fall along the arm.
   for (int k = 0; k < 3; ++k) {
     const double x = 8.6 + 1.7 * k;
-    fold({{x * 0.85, -4.2 - 0.3 * k, -7.5}, {x * 0.9, -3.7 - 0.5 * k, -3.5}, {x, -7 - 0.4 * k, 2.5}, {x * 0.95, -10.5, 4.5}}, 0.75, 0.75, k, 0.05);
+    fold({{x * 0.85, -4.2 - 0.3 * k, -7.5},
+          {x * 0.9, -3.7 - 0.5 * k, -3.5},
+          {x, -7 - 0.4 * k, 2.5},
+          {x * 0.95, -10.5, 4.5}},
+         0.75, 0.75, k, 0.05);
   }
   for (int side = -1; side <= 1; side += 2)
     for (int k = 0; k < 9; ++k) {
       const double azimuth = side * (42 + 11.0 * k) * pi / 180;
       const Point out{sine(azimuth), 0, cosine(azimuth)};
-      const Point top = side > 0 ? Point{9.5 + 0.35 * k, -4.2 - 0.2 * k, -2.5 - 0.35 * k} : mix(brooch, Point{-11, -6.5, -5}, k / 8.0);
-      fold({top, Point{out.x * 15.5, -8.5, -3 + 9 * out.z}, Point{out.x * 16.5, -13, -3 + 9 * out.z}, Point{out.x * 8, -20.2, -3 + 5 * out.z}}, 0.85, 0.65 + 0.35 * (k % 2), k);
+      const Point top = side > 0 ? Point{9.5 + 0.35 * k, -4.2 - 0.2 * k, -2.5 - 0.35 * k}
+                                 : mix(brooch, Point{-11, -6.5, -5}, k / 8.0);
+      fold({top, Point{out.x * 15.5, -8.5, -3 + 9 * out.z}, Point{out.x * 16.5, -13, -3 + 9 * out.z},
+            Point{out.x * 8, -20.2, -3 + 5 * out.z}},
+           0.85, 0.65 + 0.35 * (k % 2), k);
     }
   // The back hangs in shallow bows.
   for (int k = 0; k < 9; ++k) {
     const double y = -5.0 - 1.9 * k;
-    fold({{-17.5, y + 1, -4}, {-12.5, y + 0.6, -9}, {-5, y - 1.3, -13}, {4, y - 1.2, -13}, {12, y + 1.5, -9}, {16.5, y + 3, -4}}, 0.8, 0.55 + 0.2 * (k % 2), k);
+    fold({{-17.5, y + 1, -4},
+          {-12.5, y + 0.6, -9},
+          {-5, y - 1.3, -13},
+          {4, y - 1.2, -13},
+          {12, y + 1.5, -9},
+          {16.5, y + 3, -4}},
+         0.8, 0.55 + 0.2 * (k % 2), k);
   }
 }
 
@@ -359,7 +403,8 @@ Model make_bust(int vertices, Context& context) {
   }
   context.check_cancelled();
   cloak.finish(std::max(0.5, 0.4 * edge), folds);
-  s.raise({0, -14, -3}, 24, [&cloak, folds](const Point& p) { return folds * cloak(p); }, cloak.greatest_height());
+  s.raise(
+      {0, -14, -3}, 24, [&cloak, folds](const Point& p) { return folds * cloak(p); }, cloak.greatest_height());
   add_brooch(s);
   model_skull(s);
   model_brow_and_nose(s);
@@ -376,10 +421,13 @@ Model make_bust(int vertices, Context& context) {
   }
   context.check_cancelled();
   hair.finish(std::max(0.08, 0.3 * edge), strands);
-  s.raise({0, 11, 0}, 20, [&hair, locks](const Point& p) {
-    const double cap = locks < 1 ? (1 - locks) * 0.6 * smooth_step(-0.2, 1.2, hair_depth(p)) : 0;
-    return locks * hair(p) + cap;
-  }, hair.greatest_height());
+  s.raise(
+      {0, 11, 0}, 20,
+      [&hair, locks](const Point& p) {
+        const double cap = locks < 1 ? (1 - locks) * 0.6 * smooth_step(-0.2, 1.2, hair_depth(p)) : 0;
+        return locks * hair(p) + cap;
+      },
+      hair.greatest_height());
   model_ears(s);
   model_socle(s);
   s.finish();
@@ -387,7 +435,8 @@ Model make_bust(int vertices, Context& context) {
   shape.field = [&s](const Point& p) { return s(p); };
   shape.bounds = {bounds.low * unit_mm, bounds.high * unit_mm};
   const Point plaster = srgb(232, 226, 214);
-  return finished(mesh_implicit(shape, area_mm2, vertices, context), [&](const Point&, const Point&) { return plaster; });
+  return finished(mesh_implicit(shape, area_mm2, vertices, context),
+                  [&](const Point&, const Point&) { return plaster; });
 }
 
 }  // namespace formwright::samples

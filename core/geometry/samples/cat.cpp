@@ -15,8 +15,15 @@ const Point nose_tip{0, 30.1, 9.1};
 const Point left_eye{2.2, 31.9, 5.85};
 
 const std::vector<Point>& tail_path() {
-  static const std::vector<Point> path = curve(
-      {{0, 4.5, -11.5}, {4.5, 2.2, -12.0}, {8.9, 1.7, -7.5}, {9.5, 1.55, -1.5}, {8.3, 1.5, 4.0}, {6.6, 1.45, 7.4}, {4.6, 1.5, 9.3}, {2.6, 1.7, 9.6}}, 5);
+  static const std::vector<Point> path = curve({{0, 4.5, -11.5},
+                                                {4.5, 2.2, -12.0},
+                                                {8.9, 1.7, -7.5},
+                                                {9.5, 1.55, -1.5},
+                                                {8.3, 1.5, 4.0},
+                                                {6.6, 1.45, 7.4},
+                                                {4.6, 1.5, 9.3},
+                                                {2.6, 1.7, 9.6}},
+                                               5);
   return path;
 }
 
@@ -89,7 +96,8 @@ void model_eyes(Sculpture& s) {
   s.add_ellipsoid(0.8, posed(left_eye, 0), {ball + lid, ball + lid, ball + lid}, true);
   for (int side = 0; side < 2; ++side) {
     const Point c = side == 0 ? left_eye : mirrored(left_eye);
-    s.carve(0.1, c + Point{0, 0, 1.2}, 1.7, [opening, side](const Point& p) { return opening(side == 0 ? p : mirrored(p)); });
+    s.carve(0.1, c + Point{0, 0, 1.2}, 1.7,
+            [opening, side](const Point& p) { return opening(side == 0 ? p : mirrored(p)); });
     s.unite(0.03, c, ball, [c](const Point& p) {
       const Point q = p - c - Point{c.x > 0 ? 0.05 : -0.05, 0.08, 0};
       const double rim = q.z > 0 ? 0.05 * bell((std::sqrt(q.x * q.x + q.y * q.y) - 0.78) / 0.12) : 0;
@@ -154,9 +162,11 @@ void lay_fur(LockLayer& fur, const Sculpture& skin, const Box& bounds, Context& 
   std::size_t laid = 0;
   for (const Point& root : roots.points) {
     if ((laid++ & 0x3f) == 0) context.check_cancelled();
-    const double size = dice.uniform(0.8, 1.2), turn = 0.35 * dice.bell(), phase = dice.uniform(0, 6.28), skip = dice.uniform();
+    const double size = dice.uniform(0.8, 1.2), turn = 0.35 * dice.bell(), phase = dice.uniform(0, 6.28),
+                 skip = dice.uniform();
     const Point side{std::fabs(root.x), root.y, root.z};
-    if (length(side - left_eye) < 2.0 || length(root - nose_tip) < 2.6 || root.y < 0.4 || root.y > 35.2 || skip < 0.15) continue;
+    if (length(side - left_eye) < 2.0 || length(root - nose_tip) < 2.6 || root.y < 0.4 || root.y > 35.2 || skip < 0.15)
+      continue;
     if (root.y < 2.4 && root.z > 5.8 && std::fabs(root.x) < 8 && side.x > 0.9) continue;  // toes
     const double chest = smooth_step(1, 3, root.z) * smooth_step(13, 17, root.y) * smooth_step(29, 26, root.y);
     const double cheek = smooth_step(2.6, 3.6, side.x) * smooth_step(27.5, 28.5, root.y) * smooth_step(32, 31, root.y);
@@ -186,9 +196,9 @@ double stripe(double phase, double share) {
 
 // The coat of a mackerel tabby; p in model units.
 Point tabby(const Point& p) {
-  static const Point sand = srgb(190, 150, 108), warm = srgb(206, 168, 124), dark = srgb(74, 54, 40), white = srgb(243, 237, 226),
-                     pink = srgb(214, 140, 130), inner = srgb(222, 176, 160), iris = srgb(150, 170, 70), gold = srgb(196, 178, 86),
-                     black = srgb(18, 16, 15);
+  static const Point sand = srgb(190, 150, 108), warm = srgb(206, 168, 124), dark = srgb(74, 54, 40),
+                     white = srgb(243, 237, 226), pink = srgb(214, 140, 130), inner = srgb(222, 176, 160),
+                     iris = srgb(150, 170, 70), gold = srgb(196, 178, 86), black = srgb(18, 16, 15);
   const double ax = std::fabs(p.x);
   const double wobble = noise(p * 0.23, 5) * 0.55 + noise(p * 0.6, 6) * 0.16;
   const double hair = noise(Point{p.x * 5, p.y * 1.7, p.z * 5}, 8);
@@ -224,8 +234,10 @@ Point tabby(const Point& p) {
   coat = mix(coat, dark, clamp(mark, 0, 1) * 0.88);
   // White: muzzle and chin, bib, paws.
   const double muzzle = smooth_step(3.0, 2.2, length(Point{p.x, 1.15 * (p.y - 28.7), p.z - 7.2}));
-  const double bib = smooth_step(2.8, 1.6, ax + 0.9 * wobble) * smooth_step(2.6, 4.2, p.z) * smooth_step(27, 25, p.y) * smooth_step(12, 15, p.y);
-  const double paws = smooth_step(3.2 + wobble, 2.4 + wobble, p.y) * smooth_step(3.2, 4.2, p.z) * (p.y < 3.4 && ax < 7.4 && length(Point{p.x - 5.6, 0, p.z - 8.5}) > 2.2 ? 1 : 0);
+  const double bib = smooth_step(2.8, 1.6, ax + 0.9 * wobble) * smooth_step(2.6, 4.2, p.z) * smooth_step(27, 25, p.y) *
+                     smooth_step(12, 15, p.y);
+  const double paws = smooth_step(3.2 + wobble, 2.4 + wobble, p.y) * smooth_step(3.2, 4.2, p.z) *
+                      (p.y < 3.4 && ax < 7.4 && length(Point{p.x - 5.6, 0, p.z - 8.5}) > 2.2 ? 1 : 0);
   coat = mix(coat, white, std::max({muzzle, bib, paws}));
   coat = coat * (1 + 0.16 * hair);
   const double nose = smooth_step(0.95, 0.75, length(Point{p.x, 1.5 * (p.y - 30.15), 0.8 * (p.z - 9.2)}));
@@ -236,7 +248,8 @@ Point tabby(const Point& p) {
   if (depth < 1.56 && eye.z > 0.3) {
     const double r = std::sqrt(eye.x * eye.x + eye.y * eye.y);
     const double slit = std::sqrt((eye.x - 0.05) * (eye.x - 0.05) / 0.045 + (eye.y - 0.08) * (eye.y - 0.08) / 0.42);
-    const Point ball = mix(mix(mix(gold, iris, smooth_step(0.2, 0.7, r)), black, smooth_step(0.85, 1.05, r)), black, smooth_step(1.05, 0.9, slit));
+    const Point ball = mix(mix(mix(gold, iris, smooth_step(0.2, 0.7, r)), black, smooth_step(0.85, 1.05, r)), black,
+                           smooth_step(1.05, 0.9, slit));
     coat = mix(ball, coat, smooth_step(1.51, 1.55, depth));
   }
   // Inside the ears.
@@ -265,7 +278,8 @@ Model make_cat(int vertices, Context& context) {
     context.check_cancelled();
     fur.finish(0.05, strands);
     context.check_cancelled();
-    s.raise({0, 20, -1}, 30, [&fur, tufts](const Point& p) { return tufts * fur(p); }, fur.greatest_height());
+    s.raise(
+        {0, 20, -1}, 30, [&fur, tufts](const Point& p) { return tufts * fur(p); }, fur.greatest_height());
   }
   model_eyes(s);
   s.carve(0.3, {0, -10, 0}, 60, [](const Point& p) { return p.y; });  // flat on the ground
@@ -284,7 +298,9 @@ Model make_cat(int vertices, Context& context) {
                  c = s({q.x - step, q.y + step, q.z - step}), d = s({q.x + step, q.y + step, q.z + step});
     return Point{a - b - c + d, c + d - a - b, b + d - a - c};
   };
-  paint_texture(model, broad, [&](const Point& p, const Point& n) { return colour(p + shift, n); }, vertices < 20000 ? 512 : 1024, "tabby", context);
+  paint_texture(
+      model, broad, [&](const Point& p, const Point& n) { return colour(p + shift, n); }, vertices < 20000 ? 512 : 1024,
+      "tabby", context);
   return model;
 }
 

@@ -38,11 +38,16 @@ const std::vector<Letter>& alphabet() {
   static const std::vector<Letter> letters{
       {'F', {{{0, 0}, {0, 6}}, {{0, 6}, {3.4, 6}}, {{0, 3.2}, {2.7, 3.2}}}},
       {'O', {{{2, 6}, {0.6, 5.2}, {0, 3}, {0.6, 0.8}, {2, 0}, {3.4, 0.8}, {4, 3}, {3.4, 5.2}, {2, 6}}}},
-      {'R', {{{0, 0}, {0, 6}}, {{0, 6}, {2.4, 6}, {3.3, 5.4}, {3.5, 4.5}, {3.2, 3.6}, {2.3, 3.1}, {0, 3.1}}, {{1.8, 3.1}, {3.6, 0}}}},
+      {'R',
+       {{{0, 0}, {0, 6}},
+        {{0, 6}, {2.4, 6}, {3.3, 5.4}, {3.5, 4.5}, {3.2, 3.6}, {2.3, 3.1}, {0, 3.1}},
+        {{1.8, 3.1}, {3.6, 0}}}},
       {'M', {{{0, 0}, {0, 6}}, {{0, 6}, {2.1, 2.2}}, {{2.1, 2.2}, {4.2, 6}}, {{4.2, 6}, {4.2, 0}}}},
       {'W', {{{0, 6}, {1.2, 0}}, {{1.2, 0}, {2.4, 4.4}}, {{2.4, 4.4}, {3.6, 0}}, {{3.6, 0}, {4.8, 6}}}},
       {'I', {{{1, 0}, {1, 6}}}},
-      {'G', {{{3.8, 4.9}, {2.9, 5.8}, {1.9, 6}, {0.6, 5.1}, {0, 3}, {0.6, 0.9}, {2, 0}, {3.3, 0.5}, {3.8, 1.4}, {3.8, 2.7}}, {{3.8, 2.7}, {2.4, 2.7}}}},
+      {'G',
+       {{{3.8, 4.9}, {2.9, 5.8}, {1.9, 6}, {0.6, 5.1}, {0, 3}, {0.6, 0.9}, {2, 0}, {3.3, 0.5}, {3.8, 1.4}, {3.8, 2.7}},
+        {{3.8, 2.7}, {2.4, 2.7}}}},
       {'H', {{{0, 0}, {0, 6}}, {{3.6, 0}, {3.6, 6}}, {{0, 3.1}, {3.6, 3.1}}}},
       {'T', {{{0, 6}, {4, 6}}, {{2, 6}, {2, 0}}}}};
   return letters;
@@ -78,17 +83,20 @@ void write_around(Sculpture& s, const char* text, double baseline) {
 }
 
 void model_owl(Sculpture& s) {
-  const auto egg = [&](double x, double y, double z, double roll, double rx, double ry, double rz, double soft, bool twin = false) {
+  const auto egg = [&](double x, double y, double z, double roll, double rx, double ry, double rz, double soft,
+                       bool twin = false) {
     s.add_ellipsoid(soft, posed({x, y, z}, 0, 0, roll), {rx, ry, rz}, twin);
   };
-  egg(0, -6, 3.0, 0, 11.5, 17, 4.4, 0.6);        // body
-  egg(0, 12.5, 3.2, 0, 10.6, 9.2, 4.8, 1.4);     // head
+  egg(0, -6, 3.0, 0, 11.5, 17, 4.4, 0.6);             // body
+  egg(0, 12.5, 3.2, 0, 10.6, 9.2, 4.8, 1.4);          // head
   egg(9.2, -7.5, 3.6, 9, 4.6, 14.5, 3.6, 0.5, true);  // wings
-  egg(0, -25, 2.8, 0, 4.6, 6.5, 2.6, 0.6);       // tail
+  egg(0, -25, 2.8, 0, 4.6, 6.5, 2.6, 0.6);            // tail
   // Face: two discs, eyes, brows, beak.
   for (double side : {1.0, -1.0}) {
     const Point c{side * 4.5, 13.2, 6.9};
-    s.carve(0.8, {c.x, c.y, c.z + 1.4}, 4.4, [c](const Point& p) { return ellipsoid(p - c - Point{0, 0, 1.6}, {4.3, 4.3, 2.2}); });
+    s.carve(0.8, {c.x, c.y, c.z + 1.4}, 4.4, [c](const Point& p) {
+      return ellipsoid(p - c - Point{0, 0, 1.6}, {4.3, 4.3, 2.2});
+    });
     s.unite(0.4, c, 5, [c](const Point& p) {
       const double r = std::sqrt((p.x - c.x) * (p.x - c.x) + (p.y - c.y) * (p.y - c.y)) - 4.2;
       return std::sqrt(r * r + (p.z - c.z + 0.2) * (p.z - c.z + 0.2)) - 0.55;
@@ -104,7 +112,8 @@ void model_owl(Sculpture& s) {
   s.add_cone(0.5, {-19, -27.6, 3.4}, {18, -26.4, 3.4}, 1.5, 1.1);
   for (double side : {1.0, -1.0}) {
     s.add_cone(0.6, {side * 4.6, -20, 4.6}, {side * 4.8, -25, 4.6}, 2.3, 1.3);
-    for (int toe = -1; toe <= 1; ++toe) s.add_cone(0.25, {side * 4.8 + 0.4 * toe, -25, 4.8}, {side * 4.8 + 1.5 * toe, -28.4, 4.4}, 0.85, 0.5);
+    for (int toe = -1; toe <= 1; ++toe)
+      s.add_cone(0.25, {side * 4.8 + 0.4 * toe, -25, 4.8}, {side * 4.8 + 1.5 * toe, -28.4, 4.4}, 0.85, 0.5);
   }
 }
 
@@ -127,9 +136,11 @@ void lay_feathers(LockLayer& layer, const Sculpture& skin) {
       if (std::fabs(x) < 6.2) feather(x, -18 + 2.9 * row, 0, -1, 2.9, 1.1, 0.5);
     }
   for (double side : {1.0, -1.0}) {
-    for (int k = 0; k < 6; ++k) feather(side * (6.6 + 1.15 * k), -4 + 0.6 * k, side * 0.05, -1, 14.5 - 0.7 * k, 0.85, 0.75);  // pinions
+    for (int k = 0; k < 6; ++k)
+      feather(side * (6.6 + 1.15 * k), -4 + 0.6 * k, side * 0.05, -1, 14.5 - 0.7 * k, 0.85, 0.75);  // pinions
     for (int row = 0; row < 3; ++row)
-      for (int k = 0; k < 5; ++k) feather(side * (6.6 + 1.35 * k + 0.5 * (row % 2)), -2 + 2.6 * row + 0.5 * k, side * 0.08, -1, 3.4, 0.95, 0.65);
+      for (int k = 0; k < 5; ++k)
+        feather(side * (6.6 + 1.35 * k + 0.5 * (row % 2)), -2 + 2.6 * row + 0.5 * k, side * 0.08, -1, 3.4, 0.95, 0.65);
     for (int k = 0; k < 5; ++k) {  // crown
       feather(side * (1.2 + 1.7 * k), 21 - 0.35 * k * k, side * (0.15 + 0.1 * k), -1, 2.6, 0.8, 0.35);
     }
@@ -138,7 +149,12 @@ void lay_feathers(LockLayer& layer, const Sculpture& skin) {
 }
 
 void add_sprig(Sculpture& s, double mirror) {
-  const std::vector<Point> stem = curve({{mirror * 5, -36.5, face}, {mirror * 18, -32.5, face}, {mirror * 28.5, -23.5, face}, {mirror * 34.5, -10, face}, {mirror * 36, 0, face}}, 5);
+  const std::vector<Point> stem = curve({{mirror * 5, -36.5, face},
+                                         {mirror * 18, -32.5, face},
+                                         {mirror * 28.5, -23.5, face},
+                                         {mirror * 34.5, -10, face},
+                                         {mirror * 36, 0, face}},
+                                        5);
   for (std::size_t k = 0; k + 1 < stem.size(); ++k) s.add_cone(0.2, stem[k], stem[k + 1], 0.65, 0.6);
   for (std::size_t k = 2; k < stem.size(); k += 2) {
     const Point along = normalized(stem[k] - stem[k - 1]);
@@ -197,7 +213,9 @@ Model make_coin(int vertices, Context& context) {
     lay_feathers(feathers, skin);
     context.check_cancelled();
     feathers.finish(0.06, plumage);
-    s.raise({0, -4, 4}, 32, [&feathers, plumage](const Point& p) { return p.z > 2 ? plumage * feathers(p) : 0; }, feathers.greatest_height());
+    s.raise(
+        {0, -4, 4}, 32, [&feathers, plumage](const Point& p) { return p.z > 2 ? plumage * feathers(p) : 0; },
+        feathers.greatest_height());
   }
   write_around(s, "FORMWRIGHT", 31.2);
   add_sprig(s, 1);
@@ -212,7 +230,8 @@ Model make_coin(int vertices, Context& context) {
   return finished(mesh_implicit(shape, area_mm2, vertices, context), [](const Point& p, const Point& n) {
     const double raised = smooth_step(face - 0.1, face + 2.5, std::fabs(p.z));
     const double steep = 1 - std::fabs(n.z);
-    return mix(mix(mix(dark, green, 0.35 * smooth_step(0.2, 0.7, steep)), bronze, 0.35 + 0.65 * raised), dark, 0.35 * steep);
+    return mix(mix(mix(dark, green, 0.35 * smooth_step(0.2, 0.7, steep)), bronze, 0.35 + 0.65 * raised), dark,
+               0.35 * steep);
   });
 }
 

@@ -52,7 +52,8 @@ void ErodedTerrain::resize(int n) {
   drainage_.assign(count, 0);
   for (int j = 1; j + 1 < n; ++j)
     for (int i = 1; i + 1 < n; ++i) {
-      const std::uint32_t h = hash(static_cast<std::uint32_t>(i) * 7919U + static_cast<std::uint32_t>(j) * 104729U + static_cast<std::uint32_t>(n));
+      const std::uint32_t h = hash(static_cast<std::uint32_t>(i) * 7919U + static_cast<std::uint32_t>(j) * 104729U +
+                                   static_cast<std::uint32_t>(n));
       jitter_x_[node(i, j)] = static_cast<float>(0.6 * ((h & 0xffffU) / 65536.0 - 0.5));
       jitter_z_[node(i, j)] = static_cast<float>(0.6 * ((h >> 16) / 65536.0 - 0.5));
     }
@@ -61,9 +62,11 @@ void ErodedTerrain::resize(int n) {
     for (std::size_t k = from; k < to; ++k) {
       const int i = static_cast<int>(k) % n, j = static_cast<int>(k) / n;
       if (i == 0 || j == 0 || i == n - 1 || j == n - 1) continue;
-      const double x = ((i + static_cast<double>(jitter_x_[k])) / (n - 1) - 0.5) * side_, z = ((j + static_cast<double>(jitter_z_[k])) / (n - 1) - 0.5) * side_;
+      const double x = ((i + static_cast<double>(jitter_x_[k])) / (n - 1) - 0.5) * side_,
+                   z = ((j + static_cast<double>(jitter_z_[k])) / (n - 1) - 0.5) * side_;
       // A grain of noise starts the new, smaller valleys.
-      height_[k] = std::max(0.0, coarse.at(x, z).height + 0.003 * noise(x * 0.9, z * 0.9, static_cast<std::uint32_t>(n)));
+      height_[k] =
+          std::max(0.0, coarse.at(x, z).height + 0.003 * noise(x * 0.9, z * 0.9, static_cast<std::uint32_t>(n)));
     }
   });
 }
@@ -134,7 +137,8 @@ void ErodedTerrain::erode(int steps, double time_step, Context& context) {
       for (std::size_t k = from; k < to; ++k) {
         if (rim(k)) continue;
         double sum = 0;
-        for (std::size_t b = 0; b < 4; ++b) sum += smooth[static_cast<std::size_t>(static_cast<std::ptrdiff_t>(k) + beside[b])];
+        for (std::size_t b = 0; b < 4; ++b)
+          sum += smooth[static_cast<std::size_t>(static_cast<std::ptrdiff_t>(k) + beside[b])];
         height_[k] += creep * (sum - 4 * smooth[k]);
       }
     });
@@ -180,7 +184,8 @@ ErodedTerrain::Sample ErodedTerrain::at(double x, double z) const {
   Sample sample{0, 0};
   for (int b = 0; b < 4; ++b)
     for (int a = 0; a < 4; ++a) {
-      const std::size_t k = inside ? node(i - 1 + a, j - 1 + b) : node(std::clamp(i - 1 + a, 0, n_ - 1), std::clamp(j - 1 + b, 0, n_ - 1));
+      const std::size_t k = inside ? node(i - 1 + a, j - 1 + b)
+                                   : node(std::clamp(i - 1 + a, 0, n_ - 1), std::clamp(j - 1 + b, 0, n_ - 1));
       const double w = ws[a] * wt[b];
       sample.height += w * height_[k];
       sample.drainage += w * drainage_[k];

@@ -28,7 +28,9 @@ class ErodedTerrain {
   std::vector<double> height_, drainage_;
   void resize(int n);
   void erode(int steps, double time_step, Context& context);
-  std::size_t node(int i, int j) const { return static_cast<std::size_t>(j) * static_cast<std::size_t>(n_) + static_cast<std::size_t>(i); }
+  std::size_t node(int i, int j) const {
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(n_) + static_cast<std::size_t>(i);
+  }
 };
 
 }  // namespace formwright::samples

@@ -39,13 +39,18 @@ const std::vector<Fin>& fins() {
   static const std::vector<Fin> all = [] {
     std::vector<Fin> list;
     const auto upright = [](const Point& o, double roll) { return posed(o, 0, 0, roll); };
-    list.push_back({upright({-43, 8.2, 0}, -38), {14.5, 6.6, 2.0}, {11, -1, 0}, 26, 1.6});   // tail, upper lobe
-    list.push_back({upright({-43, -9.4, 0}, 38), {14.5, 6.2, 2.0}, {11, 1, 0}, 26, 1.6});    // tail, lower lobe
-    list.push_back({upright({3, 17.5, 0}, -9), {21, 11.5, 2.1}, {8, -26, 0}, 30, 1.2});      // back
-    list.push_back({upright({-17, -11.5, 0}, 28), {9.5, 7, 1.8}, {5, 14, 0}, 24, 1.0});      // anal
+    list.push_back({upright({-43, 8.2, 0}, -38), {14.5, 6.6, 2.0}, {11, -1, 0}, 26, 1.6});  // tail, upper lobe
+    list.push_back({upright({-43, -9.4, 0}, 38), {14.5, 6.2, 2.0}, {11, 1, 0}, 26, 1.6});   // tail, lower lobe
+    list.push_back({upright({3, 17.5, 0}, -9), {21, 11.5, 2.1}, {8, -26, 0}, 30, 1.2});     // back
+    list.push_back({upright({-17, -11.5, 0}, 28), {9.5, 7, 1.8}, {5, 14, 0}, 24, 1.0});     // anal
     for (double side : {1.0, -1.0}) {
-      list.push_back({posed({13.5, -7.5, side * 11.5}, side * 40, side * 18, -24), {10.5, 4.8, 1.5}, {10, 1.5, 0}, 30, 1.0});  // breast
-      list.push_back({posed({4, -18, side * 5.2}, side * 12, side * -28, 36), {7.5, 4.2, 1.5}, {7, 2, 0}, 30, 0.9});          // belly
+      list.push_back({posed({13.5, -7.5, side * 11.5}, side * 40, side * 18, -24),
+                      {10.5, 4.8, 1.5},
+                      {10, 1.5, 0},
+                      30,
+                      1.0});  // breast
+      list.push_back(
+          {posed({4, -18, side * 5.2}, side * 12, side * -28, 36), {7.5, 4.2, 1.5}, {7, 2, 0}, 30, 0.9});  // belly
     }
     return list;
   }();
@@ -62,7 +67,8 @@ void add_fins(Sculpture& s, double fine) {
       const double out = std::sqrt(u * u + v * v);
       const double edge = (out - 1) * fin.radii.y;
       const double ridge = 0.5 + 0.5 * cosine(2 * fin.rays * angle);
-      const double from_root = std::sqrt((q.x - fin.root.x) * (q.x - fin.root.x) + (q.y - fin.root.y) * (q.y - fin.root.y));
+      const double from_root =
+          std::sqrt((q.x - fin.root.x) * (q.x - fin.root.x) + (q.y - fin.root.y) * (q.y - fin.root.y));
       const double ray = 0.42 * fine * ridge * ridge * smooth_step(4, 11, from_root);  // they would crowd at the root
       const double thick = fin.radii.z * (1 - 0.35 * clamp(out, 0, 1)) - 0.3 + ray;
       return smooth_max(edge, std::fabs(q.z) - thick, 1.0) * 0.85;
@@ -76,7 +82,7 @@ struct Scale {
   std::uint32_t id;
 };
 Scale scale_at(const Point& p) {
-  constexpr double row = 2.5;   // mm between rows
+  constexpr double row = 2.5;    // mm between rows
   constexpr double around = 28;  // scales around the body
   const double u = -p.x / row, v = arc_tangent(p.z, (p.y - middle(p.x)) / tall) * around / (2 * pi);
   Scale best{0, 0};
@@ -89,7 +95,8 @@ Scale scale_at(const Point& p) {
     const double r = std::sqrt((du > 0 ? du * du * 0.42 : 0) + dv * dv * 2.6);
     if (du < -0.2 || r >= 1) continue;
     const double h = (0.3 + 0.7 * clamp(du / 1.5, 0, 1)) * smooth_step(1, 0.82, r) * smooth_step(-0.2, 0.1, du);
-    if (h > best.height) best = {h, hash(static_cast<std::uint32_t>(static_cast<int>(i) * 131 + (static_cast<int>(j) + 60) % 28))};
+    if (h > best.height)
+      best = {h, hash(static_cast<std::uint32_t>(static_cast<int>(i) * 131 + (static_cast<int>(j) + 60) % 28))};
   }
   return best;
 }
@@ -98,12 +105,15 @@ double scaled_skin(const Point& p) {  // where the scales are
 }
 
 Point fish_colour(const Point& p) {
-  static const Point back = srgb(34, 86, 110), flank = srgb(64, 150, 160), belly = srgb(236, 232, 214), fin = srgb(232, 130, 52),
-                     fin_edge = srgb(248, 190, 96), gold = srgb(230, 184, 84), black = srgb(16, 18, 22);
+  static const Point back = srgb(34, 86, 110), flank = srgb(64, 150, 160), belly = srgb(236, 232, 214),
+                     fin = srgb(232, 130, 52), fin_edge = srgb(248, 190, 96), gold = srgb(230, 184, 84),
+                     black = srgb(16, 18, 22);
   const double d = body(p);
   const double y = (p.y - middle(clamp(p.x, -34, 44))) / (tall * half_width(clamp(p.x, -34, 44)));
-  Point c = mix(mix(belly, flank, smooth_step(-0.75, -0.2, y)), back, smooth_step(0.1, 0.75, y + 0.25 * noise(p / 9, 3)));
-  const double stripe = smooth_step(0.55, 0.85, 0.5 + 0.5 * cosine(2 * pi * (p.x / 13 + 0.25 * noise(p / 12, 4)))) * smooth_step(-0.5, 0, y);
+  Point c =
+      mix(mix(belly, flank, smooth_step(-0.75, -0.2, y)), back, smooth_step(0.1, 0.75, y + 0.25 * noise(p / 9, 3)));
+  const double stripe = smooth_step(0.55, 0.85, 0.5 + 0.5 * cosine(2 * pi * (p.x / 13 + 0.25 * noise(p / 12, 4)))) *
+                        smooth_step(-0.5, 0, y);
   c = mix(c, back * 0.7, 0.6 * stripe * smooth_step(28, 24, p.x));
   const Scale scale = scale_at(p);
   const double shade = ((scale.id >> 8 & 255U) / 255.0 - 0.5) * 0.25 + 0.35 * (scale.height - 0.5);
@@ -112,7 +122,8 @@ Point fish_colour(const Point& p) {
   c = mix(c, mix(fin, fin_edge, smooth_step(2, 14, d)), on_fin);
   const Point e = Point{p.x, p.y, std::fabs(p.z)} - left_eye;
   const double r = std::sqrt(e.x * e.x + e.y * e.y);
-  if (length(e) < 3.25 && e.z > 0.2) c = mix(mix(black, gold, smooth_step(1.25, 1.45, r)), black, smooth_step(2.55, 2.75, r));
+  if (length(e) < 3.25 && e.z > 0.2)
+    c = mix(mix(black, gold, smooth_step(1.25, 1.45, r)), black, smooth_step(2.55, 2.75, r));
   return c;
 }
 
@@ -126,7 +137,9 @@ Model make_fish(int vertices, Context& context) {
   s.unite(0, {5, 0, 0}, 60, body);
   // Gill covers, mouth, cheeks.
   s.swell(1.0, posed({27, -0.5, 7.5}, 0), {9, 13, 7}, true);
-  const auto mark = [&](double height, double width, const std::vector<Point>& knots) { s.line(height, width, s.dropped(curve(knots, 5)), 0.15, true); };
+  const auto mark = [&](double height, double width, const std::vector<Point>& knots) {
+    s.line(height, width, s.dropped(curve(knots, 5)), 0.15, true);
+  };
   mark(-0.95, 1.5, {{23.0, 15, 3}, {20.4, 8, 9}, {19.6, 1, 11}, {20.2, -6, 10}, {23.5, -13, 6}, {28, -16, 1.5}});
   mark(0.5, 2.4, {{25.4, 13, 4}, {22.8, 7, 9}, {22.0, 1, 11}, {22.6, -5, 10}, {25.5, -11, 6}});
   mark(-0.55, 1.1, {{29.5, 9, 6}, {27.3, 3, 9}, {27.8, -4, 9}, {31.5, -10, 6}});
@@ -134,10 +147,13 @@ Model make_fish(int vertices, Context& context) {
   mark(0.5, 1.4, {{38.8, -4.6, 6}, {41.6, -3.2, 5}, {44.4, -1.6, 2}, {45, -1.2, 0}});
   mark(0.5, 1.4, {{38.5, -8.4, 5}, {41.2, -7.0, 4.5}, {43.6, -5.4, 2}, {44.4, -5.0, 0}});
   if (scales > 0) {
-    s.raise({-4, 0, 0}, 45, [scales](const Point& p) {
-      const double mask = scaled_skin(p);
-      return mask > 0 ? 0.62 * scales * mask * scale_at(p).height : 0;
-    }, 0.7);
+    s.raise(
+        {-4, 0, 0}, 45,
+        [scales](const Point& p) {
+          const double mask = scaled_skin(p);
+          return mask > 0 ? 0.62 * scales * mask * scale_at(p).height : 0;
+        },
+        0.7);
   }
   add_fins(s, rays);
   for (double side : {1.0, -1.0}) {
@@ -156,7 +172,8 @@ Model make_fish(int vertices, Context& context) {
   shape.bounds = bounds;
   shape.lipschitz = 1.8;
   shape.largest_cell_mm = 1.1;
-  return finished(mesh_implicit(shape, area_mm2, vertices, context), [](const Point& p, const Point&) { return fish_colour(p); });
+  return finished(mesh_implicit(shape, area_mm2, vertices, context),
+                  [](const Point& p, const Point&) { return fish_colour(p); });
 }
 
 }  // namespace formwright::samples

@@ -180,7 +180,8 @@ Surface HalfedgeSurface::compact(std::vector<int>* patch) const {
   if (patch != nullptr) patch->clear();
   for (int f = 0; 3 * f < halfedge_slots(); ++f)
     if (alive(3 * f)) {
-      surface.triangles.push_back({fresh[index(start(3 * f))], fresh[index(start(3 * f + 1))], fresh[index(start(3 * f + 2))]});
+      surface.triangles.push_back(
+          {fresh[index(start(3 * f))], fresh[index(start(3 * f + 1))], fresh[index(start(3 * f + 2))]});
       if (patch != nullptr) patch->push_back(patch_[index(f)]);
     }
   return surface;

@@ -74,12 +74,14 @@ void LockLayer::finish(double softness, double groove_scale) {
   cells_[0] = static_cast<int>(extent.x / cell_) + 1;
   cells_[1] = static_cast<int>(extent.y / cell_) + 1;
   cells_[2] = static_cast<int>(extent.z / cell_) + 1;
-  const std::size_t count = static_cast<std::size_t>(cells_[0]) * static_cast<std::size_t>(cells_[1]) * static_cast<std::size_t>(cells_[2]);
+  const std::size_t count =
+      static_cast<std::size_t>(cells_[0]) * static_cast<std::size_t>(cells_[1]) * static_cast<std::size_t>(cells_[2]);
   const double half = cell_ * 0.5, around = cell_ * 0.8661;
   std::vector<std::pair<int, int>> pairs;  // cell, segment
   for (std::size_t s = 0; s < segments_.size(); ++s) {
     const Segment& segment = segments_[s];
-    const double ball = std::sqrt(segment.ball2), widest = std::max(segment.width, segment.width + segment.width_change);
+    const double ball = std::sqrt(segment.ball2),
+                 widest = std::max(segment.width, segment.width + segment.width_change);
     const auto range = [&](double centre, double low, int cells, int& from, int& to) {
       from = std::max(0, static_cast<int>(std::floor((centre - ball - low) / cell_)));
       to = std::min(cells - 1, static_cast<int>(std::floor((centre + ball - low) / cell_)));
@@ -95,7 +97,9 @@ void LockLayer::finish(double softness, double groove_scale) {
           const double t = clamp(dot(c - segment.a, segment.ab) * segment.inverse, 0, 1);
           const Point o = c - segment.a - segment.ab * t;
           const double rise = dot(o, segment.up + segment.up_change * t);
-          if (std::fabs(rise) > 1.5 * widest + around || length2(o) - rise * rise > (widest + around) * (widest + around)) continue;
+          if (std::fabs(rise) > 1.5 * widest + around ||
+              length2(o) - rise * rise > (widest + around) * (widest + around))
+            continue;
           pairs.emplace_back((k * cells_[1] + j) * cells_[0] + i, static_cast<int>(s));
         }
   }
@@ -104,7 +108,8 @@ void LockLayer::finish(double softness, double groove_scale) {
   for (std::size_t c = 0; c < count; ++c) first_[c + 1] += first_[c];
   entries_.resize(pairs.size());
   std::vector<int> fill(first_.begin(), first_.end() - 1);
-  for (const auto& pair : pairs) entries_[static_cast<std::size_t>(fill[static_cast<std::size_t>(pair.first)]++)] = pair.second;
+  for (const auto& pair : pairs)
+    entries_[static_cast<std::size_t>(fill[static_cast<std::size_t>(pair.first)]++)] = pair.second;
 }
 
 double LockLayer::operator()(const Point& p) const {
@@ -120,13 +125,15 @@ double LockLayer::operator()(const Point& p) const {
   const auto flush = [&] {
     if (current < 0 || best >= 1) return;
     const Lock& lock = locks_[static_cast<std::size_t>(current)];
-    double h = (nearest->height + nearest->height_change * best_t) * (1 - best) * (1 + 0.35 * best);  // a full round section
+    double h =
+        (nearest->height + nearest->height_change * best_t) * (1 - best) * (1 + 0.35 * best);  // a full round section
     if (h <= thickness - softness_) return;
     const double groove = groove_scale_ * lock.groove;
     if (groove > 0) {
       const Point flat = p - nearest->a - nearest->ab * best_t;
       const double width = nearest->width + nearest->width_change * best_t;
-      const double side = dot(flat, cross(nearest->ab, nearest->up + nearest->up_change * best_t)) * std::sqrt(nearest->inverse) / width;
+      const double side = dot(flat, cross(nearest->ab, nearest->up + nearest->up_change * best_t)) *
+                          std::sqrt(nearest->inverse) / width;
       const double along = nearest->joint - lock.first + best_t;
       const double bend = 0.4 * sine(0.9 * along + 3 * lock.phase);
       h *= 1 - groove * (0.5 - 0.5 * cosine(pi * lock.strands * side + lock.phase + bend));

@@ -103,7 +103,8 @@ struct CubeTables {
         seen[static_cast<std::size_t>(at)] = true;
         loop.push_back(at);
       }
-      if (!triangulate(loop, list)) throw Error(ErrorCode::internal, "sample", "A marching cubes case has no triangulation.");
+      if (!triangulate(loop, list))
+        throw Error(ErrorCode::internal, "sample", "A marching cubes case has no triangulation.");
     }
   }
 };
@@ -137,7 +138,8 @@ std::vector<Block> reachable_blocks(const ImplicitShape& shape, double cell, int
       for (std::size_t n = from; n < to; ++n) {
         const Block& b = children[n];
         const Point corner = shape.bounds.low + Point{b.i * cell, b.j * cell, b.k * cell};
-        if (corner.x > shape.bounds.high.x || corner.y > shape.bounds.high.y || corner.z > shape.bounds.high.z) continue;
+        if (corner.x > shape.bounds.high.x || corner.y > shape.bounds.high.y || corner.z > shape.bounds.high.z)
+          continue;
         const double h = 0.5 * half * cell;
         keep[n] = std::fabs(shape.field(corner + Point{h, h, h})) <= reach ? 1 : 0;
       }
@@ -168,7 +170,8 @@ void march(const ImplicitShape& shape, double cell, const Block& block, Patch& p
   for (int k = 0; k < n; ++k)
     for (int j = 0; j < n; ++j)
       for (int i = 0; i < n; ++i)
-        value[k][j][i] = shape.field(shape.bounds.low + Point{(block.i + i) * cell, (block.j + j) * cell, (block.k + k) * cell});
+        value[k][j][i] =
+            shape.field(shape.bounds.low + Point{(block.i + i) * cell, (block.j + j) * cell, (block.k + k) * cell});
   int vertex_on[3][n][n][n];
   std::fill(&vertex_on[0][0][0][0], &vertex_on[0][0][0][0] + 3 * n * n * n, -1);
   const CubeTables& tables = cube_tables();
@@ -190,7 +193,8 @@ void march(const ImplicitShape& shape, double cell, const Block& block, Patch& p
               const double f0 = value[z][y][x];
               const double f1 = value[z + (axis == 2)][y + (axis == 1)][x + (axis == 0)];
               const double t = clamp(f0 / (f0 - f1), 0.2, 0.8);
-              Point p{static_cast<double>(block.i + x), static_cast<double>(block.j + y), static_cast<double>(block.k + z)};
+              Point p{static_cast<double>(block.i + x), static_cast<double>(block.j + y),
+                      static_cast<double>(block.k + z)};
               (axis == 0 ? p.x : axis == 1 ? p.y : p.z) += t;
               patch.points.push_back(shape.bounds.low + p * cell);
               patch.edges.push_back(edge_key(block.i + x, block.j + y, block.k + z, axis));

@@ -32,9 +32,11 @@ class Mountain {
   }
 
   Point colour(double x, double y, double z, const Point& normal) const {
-    static const Point snow = srgb(244, 247, 250), rock = srgb(146, 136, 126), dark = srgb(104, 96, 92), scree = srgb(158, 146, 128),
-                       grass = srgb(132, 148, 82), forest = srgb(66, 94, 60), water = srgb(92, 138, 160);
-    const double patch = fractal_noise({x / 9, y / 9, z / 9}, 4, 0.55, 70), grain = noise(Point{x / 0.7, y / 0.7, z / 0.7}, 75);
+    static const Point snow = srgb(244, 247, 250), rock = srgb(146, 136, 126), dark = srgb(104, 96, 92),
+                       scree = srgb(158, 146, 128), grass = srgb(132, 148, 82), forest = srgb(66, 94, 60),
+                       water = srgb(92, 138, 160);
+    const double patch = fractal_noise({x / 9, y / 9, z / 9}, 4, 0.55, 70),
+                 grain = noise(Point{x / 0.7, y / 0.7, z / 0.7}, 75);
     const double flat = normal.y;
     const double strata = 0.5 + 0.5 * sine(2 * pi * (y / 2.6 + 0.5 * patch));
     Point c = mix(dark, rock, clamp(0.35 + 0.5 * strata + 0.3 * patch, 0, 1));
@@ -43,7 +45,8 @@ class Mountain {
     c = mix(c, mix(grass, forest, smooth_step(-0.05, 0.25, noise(x / 3.3, z / 3.3, 77) + 0.4 * patch)), green);
     const double stream = smooth_step(0.006, 0.02, terrain_.at(x, z).drainage) * smooth_step(18, 10, y);
     c = mix(c, water, 0.85 * stream);
-    const double white = smooth_step(20, 25, y + 5 * patch + 1.5 * grain) * smooth_step(0.18, 0.42, flat + 0.12 * patch);
+    const double white =
+        smooth_step(20, 25, y + 5 * patch + 1.5 * grain) * smooth_step(0.18, 0.42, flat + 0.12 * patch);
     return mix(c * (1 + 0.12 * grain), snow, white);
   }
 
@@ -68,7 +71,8 @@ class MountainTarget : public TargetShape {
     }
     const double h = mountain_.height(q.x, q.z, edge_);
     if (slope == Point{}) {
-      const double hx = (mountain_.height(q.x + step, q.z, edge_) - h) / step, hz = (mountain_.height(q.x, q.z + step, edge_) - h) / step;
+      const double hx = (mountain_.height(q.x + step, q.z, edge_) - h) / step,
+                   hz = (mountain_.height(q.x, q.z + step, edge_) - h) / step;
       slope = Point{-hx, 1, -hz} / (1 + hx * hx + hz * hz);
     }
     return q - slope * (q.y - h);
@@ -81,7 +85,8 @@ class MountainTarget : public TargetShape {
 
 // Rows of equilateral triangles over the square, every second row shifted by half and closed with half triangles.
 Surface lattice(int vertices, const Mountain& mountain, double edge, Context& context) {
-  const int rows = std::max(4, static_cast<int>(std::sqrt(vertices / 0.866))), columns = static_cast<int>(rows * 0.866 + 0.5);
+  const int rows = std::max(4, static_cast<int>(std::sqrt(vertices / 0.866))),
+            columns = static_cast<int>(rows * 0.866 + 0.5);
   Surface surface;
   std::vector<int> first;
   for (int r = 0; r <= rows; ++r) {
@@ -94,12 +99,16 @@ Surface lattice(int vertices, const Mountain& mountain, double edge, Context& co
   }
   parallel_for(surface.points.size(), 1024, [&](std::size_t from, std::size_t to) {
     context.check_cancelled();
-    for (std::size_t v = from; v < to; ++v) surface.points[v].y = mountain.height(surface.points[v].x, surface.points[v].z, edge);
+    for (std::size_t v = from; v < to; ++v)
+      surface.points[v].y = mountain.height(surface.points[v].x, surface.points[v].z, edge);
   });
   for (int r = 0; r < rows; ++r) {
     const bool even = r % 2 == 0;
-    const int a = first[static_cast<std::size_t>(even ? r : r + 1)], b = first[static_cast<std::size_t>(even ? r + 1 : r)];
-    const auto add = [&](int p, int q, int s) { surface.triangles.push_back(even ? Corners{p, q, s} : Corners{p, s, q}); };
+    const int a = first[static_cast<std::size_t>(even ? r : r + 1)],
+              b = first[static_cast<std::size_t>(even ? r + 1 : r)];
+    const auto add = [&](int p, int q, int s) {
+      surface.triangles.push_back(even ? Corners{p, q, s} : Corners{p, s, q});
+    };
     for (int c = 0; c <= columns; ++c) {
       add(a + c, b + c, b + c + 1);
       if (c < columns) add(a + c, b + c + 1, a + c + 1);
@@ -119,7 +128,8 @@ Model make_mountain(int vertices, Context& context) {
     const double x = a.x + b.x, z = a.z + b.z;
     return std::fabs(x) > std::fabs(z) ? (x < 0 ? 0 : 1) : (z < 0 ? 2 : 3);
   };
-  const Surface surface = remesh_open(lattice(vertices, mountain, edge, context), side, MountainTarget(mountain, edge), vertices, context);
+  const Surface surface =
+      remesh_open(lattice(vertices, mountain, edge, context), side, MountainTarget(mountain, edge), vertices, context);
   const double step = std::max(edge, 0.1);
   const auto colour = [&](double x, double z, double reach) {
     const double y = mountain.height(x, z, reach);
@@ -127,7 +137,9 @@ Model make_mountain(int vertices, Context& context) {
     return mountain.colour(x, y, z, normalized(Point{-dx, reach, -dz}));
   };
   Model model = finished(surface, [&](const Point& p, const Point&) { return colour(p.x, p.z, step); });
-  paint_from_above(model, side_mm, [&](double x, double z) { return colour(x, z, 0.2); }, vertices < 20000 ? 512 : 1024, "mountain", context);
+  paint_from_above(
+      model, side_mm, [&](double x, double z) { return colour(x, z, 0.2); }, vertices < 20000 ? 512 : 1024, "mountain",
+      context);
   return model;
 }
 

@@ -26,8 +26,7 @@ double noise(const Point& p, std::uint32_t seed) {
   const double fx = std::floor(p.x), fy = std::floor(p.y), fz = std::floor(p.z);
   const double x = p.x - fx, y = p.y - fy, z = p.z - fz;
   const double u = fade(x), v = fade(y), w = fade(z);
-  const auto i = static_cast<std::int32_t>(fx), j = static_cast<std::int32_t>(fy),
-             k = static_cast<std::int32_t>(fz);
+  const auto i = static_cast<std::int32_t>(fx), j = static_cast<std::int32_t>(fy), k = static_cast<std::int32_t>(fz);
   double corner[2][2][2];
   for (int a = 0; a < 2; ++a)
     for (int b = 0; b < 2; ++b)
@@ -58,8 +57,7 @@ CellDistances cell_noise(const Point& p, std::uint32_t seed) {
     for (int b = -1; b <= 1; ++b)
       for (int c = -1; c <= 1; ++c) {
         const std::uint32_t h = lattice_hash(i + a, j + b, k + c, seed);
-        const double ux = (h & 1023U) / 1024.0, uy = ((h >> 10) & 1023U) / 1024.0,
-                     uz = ((h >> 20) & 1023U) / 1024.0;
+        const double ux = (h & 1023U) / 1024.0, uy = ((h >> 10) & 1023U) / 1024.0, uz = ((h >> 20) & 1023U) / 1024.0;
         const double d = distance2(p, Point{i + a + ux, j + b + uy, k + c + uz});
         if (d < result.nearest) {
           result = {d, result.nearest, h};

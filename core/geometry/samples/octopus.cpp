@@ -24,7 +24,7 @@ Arm make_arm(int k) {
   struct Bend {
     double azimuth, swing, curl, lift;
   };
-  static const Bend bends[8] = {{8, 26, 300, 3},   {54, 20, -250, 11}, {98, 30, 290, 3},   {146, 24, -230, 10},
+  static const Bend bends[8] = {{8, 26, 300, 3},    {54, 20, -250, 11}, {98, 30, 290, 3},   {146, 24, -230, 10},
                                 {-170, 28, 270, 3}, {-124, 22, 250, 9}, {-80, 30, -260, 4}, {-36, 20, 300, 12}};
   const Bend& bend = bends[k];
   constexpr int steps = 40;
@@ -42,7 +42,8 @@ Arm make_arm(int k) {
     const double gait = bend.swing * 0.16 * sine(2 * pi * s);
     const double tip = smooth_step(0.45, 0.95, s);
     heading += gait + bend.curl / steps * 3.2 * tip * tip;
-    p += Point{sine(heading * pi / 180), 0, cosine(heading * pi / 180)} * (reach / steps * mix(0.8, 1, smooth_step(0, 0.3, s)));
+    p += Point{sine(heading * pi / 180), 0, cosine(heading * pi / 180)} *
+         (reach / steps * mix(0.8, 1, smooth_step(0, 0.3, s)));
   }
   return arm;
 }
@@ -66,7 +67,8 @@ void add_suckers(Sculpture& s, const Arm& arm) {
         s.unite(0.25 * size, rim.o, 1.4 * size, [rim, size](const Point& p) {
           const Point q = rim.local(p);
           const double r = std::sqrt(q.x * q.x + q.y * q.y);
-          const double ring = std::sqrt((r - 0.68 * size) * (r - 0.68 * size) + (q.z - 0.12 * size) * (q.z - 0.12 * size)) - 0.3 * size;
+          const double ring =
+              std::sqrt((r - 0.68 * size) * (r - 0.68 * size) + (q.z - 0.12 * size) * (q.z - 0.12 * size)) - 0.3 * size;
           return ring;
         });
       }
@@ -104,7 +106,8 @@ void model_eyes(Sculpture& s, double edge) {
     });
     s.unite(0.1, eye.o, eye_ball, [eye, edge](const Point& p) {
       const Point q = eye.local(p);
-      const double slit = q.z > 0 ? 0.45 * bell(std::sqrt(q.x * q.x / 5.5 + q.y * q.y / std::max(0.8, edge * edge))) : 0;
+      const double slit =
+          q.z > 0 ? 0.45 * bell(std::sqrt(q.x * q.x / 5.5 + q.y * q.y / std::max(0.8, edge * edge))) : 0;
       return length(q) - eye_ball + slit;
     });
   }
@@ -112,7 +115,8 @@ void model_eyes(Sculpture& s, double edge) {
 
 // Warts and wrinkles of the skin, in mm.
 double skin_relief(const Point& p, double fine) {
-  const double mantle = smooth_step(20, 34, p.y) * smooth_step(7, 9, length(Point{std::fabs(p.x), p.y, p.z} - left_eye));
+  const double mantle =
+      smooth_step(20, 34, p.y) * smooth_step(7, 9, length(Point{std::fabs(p.x), p.y, p.z} - left_eye));
   const CellDistances warts = cell_noise(p / 4.6, 4);
   const double dome = smooth_step(0.42, 0.1, warts.nearest) * ((warts.nearest_id >> 7 & 3U) != 0U ? 1.0 : 0.4);
   const double folds = noise(Point{p.x / 6, p.y / 3.2, p.z / 6}, 2);
@@ -121,8 +125,8 @@ double skin_relief(const Point& p, double fine) {
 }
 
 Point skin_colour(const Point& p, const Point& normal) {
-  static const Point ochre = srgb(201, 104, 66), rust = srgb(150, 58, 46), cream = srgb(243, 214, 184), ring = srgb(88, 40, 46),
-                     gold = srgb(222, 180, 92), black = srgb(20, 16, 18);
+  static const Point ochre = srgb(201, 104, 66), rust = srgb(150, 58, 46), cream = srgb(243, 214, 184),
+                     ring = srgb(88, 40, 46), gold = srgb(222, 180, 92), black = srgb(20, 16, 18);
   const double mottled = clamp(0.5 + 0.75 * fractal_noise(p / 13, 3, 0.5, 11), 0, 1);
   Point skin = mix(ochre, rust, mottled);
   const CellDistances spots = cell_noise(p / 7.5, 9);
@@ -136,7 +140,8 @@ Point skin_colour(const Point& p, const Point& normal) {
     if (depth > eye_ball + 0.2 || ahead < 0.5) continue;
     const Point u = normalized(cross(Point{0, 1, 0}, gaze));
     const double x = dot(q, u), y = dot(q, cross(gaze, u));
-    skin = mix(mix(black, gold, smooth_step(0.85, 1.15, std::sqrt(x * x / 5.5 + y * y / 0.8))), skin, smooth_step(eye_ball + 0.05, eye_ball + 0.15, depth));
+    skin = mix(mix(black, gold, smooth_step(0.85, 1.15, std::sqrt(x * x / 5.5 + y * y / 0.8))), skin,
+               smooth_step(eye_ball + 0.05, eye_ball + 0.15, depth));
   }
   return skin;
 }
@@ -145,7 +150,8 @@ Point skin_colour(const Point& p, const Point& normal) {
 
 Model make_octopus(int vertices, Context& context) {
   const double edge = edge_length_of(area_mm2, vertices) / unit_mm;
-  const double warts = 1 - smooth_step(1.2, 3, edge), grain = 1 - smooth_step(0.3, 0.7, edge), suckers = smooth_step(1.4, 0.9, edge);
+  const double warts = 1 - smooth_step(1.2, 3, edge), grain = 1 - smooth_step(0.3, 0.7, edge),
+               suckers = smooth_step(1.4, 0.9, edge);
   const Box bounds{{-80, -5, -80}, {80, 76, 80}};
   Sculpture s(unit_mm, bounds);
   model_head(s);
@@ -154,11 +160,14 @@ Model make_octopus(int vertices, Context& context) {
     // In pieces, so that a point looks only at what is near.
     for (std::size_t i = 0; i + 1 < arm.tube.path.size(); ++i) {
       const double softness = mix(7, 0.5, smooth_step(0, 0.4, static_cast<double>(i) / 40));
-      s.add_cone(i == 0 ? 7 : std::min(softness, 3.0), arm.tube.path[i], arm.tube.path[i + 1], arm.tube.radius[i], arm.tube.radius[i + 1]);
+      s.add_cone(i == 0 ? 7 : std::min(softness, 3.0), arm.tube.path[i], arm.tube.path[i + 1], arm.tube.radius[i],
+                 arm.tube.radius[i + 1]);
     }
     if (suckers > 0) add_suckers(s, arm);
   }
-  if (warts > 0) s.raise({0, 30, 0}, 90, [warts, grain](const Point& p) { return warts * skin_relief(p, grain); }, 1.2);
+  if (warts > 0)
+    s.raise(
+        {0, 30, 0}, 90, [warts, grain](const Point& p) { return warts * skin_relief(p, grain); }, 1.2);
   model_eyes(s, edge);
   s.carve(0.8, {0, -40, 0}, 160, [](const Point& p) { return p.y; });
   s.finish();
@@ -166,7 +175,8 @@ Model make_octopus(int vertices, Context& context) {
   shape.field = [&s](const Point& p) { return s(p); };
   shape.bounds = {bounds.low * unit_mm, bounds.high * unit_mm};
   shape.largest_cell_mm = 1.3;
-  return finished(mesh_implicit(shape, area_mm2, vertices, context), [](const Point& p, const Point& n) { return skin_colour(p / unit_mm, n); });
+  return finished(mesh_implicit(shape, area_mm2, vertices, context),
+                  [](const Point& p, const Point& n) { return skin_colour(p / unit_mm, n); });
 }
 
 }  // namespace formwright::samples

@@ -15,7 +15,8 @@ Model plain(const Surface& surface) {
   for (std::size_t v = 0; v < surface.points.size(); ++v)
     model.mesh.V.row(static_cast<Eigen::Index>(v)) << surface.points[v].x, surface.points[v].y, surface.points[v].z;
   for (std::size_t f = 0; f < surface.triangles.size(); ++f)
-    model.mesh.F.row(static_cast<Eigen::Index>(f)) << surface.triangles[f][0], surface.triangles[f][1], surface.triangles[f][2];
+    model.mesh.F.row(static_cast<Eigen::Index>(f)) << surface.triangles[f][0], surface.triangles[f][1],
+        surface.triangles[f][2];
   return model;
 }
 
@@ -35,7 +36,8 @@ PyramidGrid pyramid_grid(int vertices) {
     for (int k = n % 2; k <= n; k += 2) {
       const PyramidGrid grid{n, k};
       // Even n is fully symmetric: let it win unless it is off by more than a percent.
-      const double off = std::fabs(grid.vertex_count() - static_cast<double>(vertices)) / vertices + (n % 2 == 0 ? 0 : 0.01);
+      const double off =
+          std::fabs(grid.vertex_count() - static_cast<double>(vertices)) / vertices + (n % 2 == 0 ? 0 : 0.01);
       if (off < gap) {
         gap = off;
         best = grid;
@@ -74,7 +76,8 @@ Surface pyramid(const PyramidGrid& grid) {
     for (int side = 0; side < 4; ++side)
       for (int i = 0; i < n - j; ++i) {
         s.triangles.push_back({ring(j, side, i), ring(j, side, i + 1), ring(j + 1, side, i)});
-        if (i + 1 < n - j) s.triangles.push_back({ring(j, side, i + 1), ring(j + 1, side, i + 1), ring(j + 1, side, i)});
+        if (i + 1 < n - j)
+          s.triangles.push_back({ring(j, side, i + 1), ring(j + 1, side, i + 1), ring(j + 1, side, i)});
       }
   // Base, seen from below.
   const int inner = static_cast<int>(s.points.size());
@@ -94,7 +97,9 @@ Surface pyramid(const PyramidGrid& grid) {
       if (a >= edge && b >= edge && a < edge + grid.k && b < edge + grid.k) {
         const int centre = static_cast<int>(s.points.size());
         s.points.push_back({half * (2 * a + 1 - n) / n, 0, half * (2 * b + 1 - n) / n});
-        for (const Corners& side : {Corners{p, q, centre}, Corners{q, r, centre}, Corners{r, t, centre}, Corners{t, p, centre}}) s.triangles.push_back(side);
+        for (const Corners& side :
+             {Corners{p, q, centre}, Corners{q, r, centre}, Corners{r, t, centre}, Corners{t, p, centre}})
+          s.triangles.push_back(side);
         continue;
       }
       // Diagonals point to the middle; on the axes of an odd grid they follow the quarter turn.
@@ -117,7 +122,8 @@ struct SidePlane {
   int axis;  // 0 x, 1 y, 2 z
   double at;
 };
-constexpr SidePlane t_planes[10] = {{1, 0}, {0, 15}, {1, 70}, {0, 50}, {1, 100}, {0, -50}, {1, 70}, {0, -15}, {2, 15}, {2, -15}};
+constexpr SidePlane t_planes[10] = {{1, 0},   {0, 15}, {1, 70},  {0, 50}, {1, 100},
+                                    {0, -50}, {1, 70}, {0, -15}, {2, 15}, {2, -15}};
 
 class TShapeTarget : public TargetShape {
  public:

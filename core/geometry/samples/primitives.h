@@ -18,9 +18,7 @@ inline double smooth_min(double a, double b, double softness) {
 }
 inline double smooth_max(double a, double b, double softness) { return -smooth_min(-a, -b, softness); }
 
-inline double sphere(const Point& p, const Point& centre, double radius) {
-  return length(p - centre) - radius;
-}
+inline double sphere(const Point& p, const Point& centre, double radius) { return length(p - centre) - radius; }
 
 /// Axis-aligned ellipsoid about the origin with semi-axes r.
 inline double ellipsoid(const Point& p, const Point& r) {
@@ -63,8 +61,7 @@ struct RoundCone {
 };
 
 inline double round_box(const Point& p, const Point& half, double radius) {
-  const Point q{std::fabs(p.x) - half.x + radius, std::fabs(p.y) - half.y + radius,
-                std::fabs(p.z) - half.z + radius};
+  const Point q{std::fabs(p.x) - half.x + radius, std::fabs(p.y) - half.y + radius, std::fabs(p.z) - half.z + radius};
   const Point out{q.x > 0 ? q.x : 0, q.y > 0 ? q.y : 0, q.z > 0 ? q.z : 0};
   const double inside = q.x > q.y ? (q.x > q.z ? q.x : q.z) : (q.y > q.z ? q.y : q.z);
   return length(out) + (inside < 0 ? inside : 0) - radius;

@@ -32,12 +32,14 @@ bool agree(const Point& a, const Point& b, double least) {
 
 class Remesher {
  public:
-  Remesher(const Surface& surface, const std::vector<int>& patch, const TargetShape& shape, int target, int ghost, Context& context)
+  Remesher(const Surface& surface, const std::vector<int>& patch, const TargetShape& shape, int target, int ghost,
+           Context& context)
       : s_(surface, patch), shape_(shape), target_(target + (ghost >= 0 ? 1 : 0)), ghost_(ghost), context_(context) {
     // n vertices carry 2 n triangles of area sqrt(3)/4 edge^2.
     double area = 0;
     for (int h = 0; h < s_.halfedge_slots(); h += 3)
-      if (!touches_ghost(h)) area += 0.5 * length(normal_of(s_.point(s_.start(h)), s_.point(s_.start(h + 1)), s_.point(s_.start(h + 2))));
+      if (!touches_ghost(h))
+        area += 0.5 * length(normal_of(s_.point(s_.start(h)), s_.point(s_.start(h + 1)), s_.point(s_.start(h + 2))));
     edge_ = std::sqrt(area * 2 / (std::sqrt(3.0) * target));
   }
 
@@ -180,7 +182,8 @@ class Remesher {
     for (int h = 0; h < s_.halfedge_slots(); ++h) {
       poll(h);
       if (!real(h) || h > s_.twin(h)) continue;
-      const int t = s_.twin(h), u = s_.start(h), v = s_.start(t), a = s_.start(s_.previous(h)), b = s_.start(s_.previous(t));
+      const int t = s_.twin(h), u = s_.start(h), v = s_.start(t), a = s_.start(s_.previous(h)),
+                b = s_.start(s_.previous(t));
       if (valence[index(u)] <= 4 || valence[index(v)] <= 4) continue;
       const int before = excess(u, 0) + excess(v, 0) + excess(a, 0) + excess(b, 0);
       const int after = excess(u, -1) + excess(v, -1) + excess(a, 1) + excess(b, 1);
@@ -202,7 +205,8 @@ class Remesher {
       for (int h = 0; h < s_.halfedge_slots(); ++h) {
         poll(h);
         if (!real(h) || h > s_.twin(h) || s_.is_feature(h)) continue;
-        const int t = s_.twin(h), u = s_.start(h), v = s_.start(t), a = s_.start(s_.previous(h)), b = s_.start(s_.previous(t));
+        const int t = s_.twin(h), u = s_.start(h), v = s_.start(t), a = s_.start(s_.previous(h)),
+                  b = s_.start(s_.previous(t));
         const Point &pu = s_.point(u), &pv = s_.point(v), &pa = s_.point(a), &pb = s_.point(b);
         const double weight = cotangent(pa, pu, pv) + cotangent(pb, pu, pv);
         if (weight >= -1e-6 || s_.valence(u) <= 3 || s_.valence(v) <= 3 || !can_flip(h)) continue;
@@ -221,7 +225,8 @@ class Remesher {
     parallel_for(index(faces), grain, [&](std::size_t from, std::size_t to) {
       for (std::size_t f = from; f < to; ++f) {
         const int h = static_cast<int>(3 * f);
-        if (s_.alive(h)) normals_[f] = normal_of(s_.point(s_.start(h)), s_.point(s_.start(h + 1)), s_.point(s_.start(h + 2)));
+        if (s_.alive(h))
+          normals_[f] = normal_of(s_.point(s_.start(h)), s_.point(s_.start(h + 1)), s_.point(s_.start(h + 2)));
       }
     });
     moved_.resize(index(vertices));
@@ -230,7 +235,8 @@ class Remesher {
     parallel_for(index(vertices), grain, [&](std::size_t from, std::size_t to) {
       context_.check_cancelled();
       for (std::size_t v = from; v < to; ++v)
-        if (s_.vertex_alive(static_cast<int>(v)) && static_cast<int>(v) != ghost_) moved_[v] = relaxed(static_cast<int>(v), step, slopes_[v]);
+        if (s_.vertex_alive(static_cast<int>(v)) && static_cast<int>(v) != ghost_)
+          moved_[v] = relaxed(static_cast<int>(v), step, slopes_[v]);
     });
     for (int v = 0; v < vertices; ++v)
       if (s_.vertex_alive(v) && v != ghost_) s_.move(v, moved_[index(v)]);
@@ -348,7 +354,8 @@ Point ImplicitTarget::project(const Point& p, std::uint32_t, double step, Point&
   return p - slope * field_(p);
 }
 
-Surface remesh(const Surface& surface, std::vector<int>& patch, const TargetShape& target, int vertex_count, Context& context) {
+Surface remesh(const Surface& surface, std::vector<int>& patch, const TargetShape& target, int vertex_count,
+               Context& context) {
   return Remesher(surface, patch, target, vertex_count, -1, context).run(patch);
 }
 

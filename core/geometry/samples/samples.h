@@ -18,9 +18,9 @@ struct SampleInfo {
   std::string title;        // for a person: "Bust"
   std::string description;  // one line
   int default_vertices;
-  bool closed;              // watertight; otherwise one boundary loop
-  bool has_texture;         // UV and a PNG beside the vertex colours
-  Vec3 view_direction;      // suggested, from the viewer into the scene, unit length
+  bool closed;          // watertight; otherwise one boundary loop
+  bool has_texture;     // UV and a PNG beside the vertex colours
+  Vec3 view_direction;  // suggested, from the viewer into the scene, unit length
   Vec3 view_up;
 };
 

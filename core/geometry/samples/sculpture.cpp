@@ -45,8 +45,8 @@ void Sculpture::add_cone(double softness, const Point& a, const Point& b, double
 void Sculpture::swell(double height, const Frame& frame, const Point& radii, bool twin) {
   const auto bump = [frame, radii, height](const Point& p) {
     const Point q = frame.local(p);
-    const double u = 1 - (q.x * q.x / (radii.x * radii.x) + q.y * q.y / (radii.y * radii.y) +
-                          q.z * q.z / (radii.z * radii.z));
+    const double u =
+        1 - (q.x * q.x / (radii.x * radii.x) + q.y * q.y / (radii.y * radii.y) + q.z * q.z / (radii.z * radii.z));
     return u > 0 ? height * u * u * u : 0;
   };
   raise(frame.o, largest(radii), bump);
@@ -100,8 +100,8 @@ void Sculpture::finish() {
   cells_[0] = static_cast<int>(extent.x / cell_) + 1;
   cells_[1] = static_cast<int>(extent.y / cell_) + 1;
   cells_[2] = static_cast<int>(extent.z / cell_) + 1;
-  const std::size_t count = static_cast<std::size_t>(cells_[0]) * static_cast<std::size_t>(cells_[1]) *
-                            static_cast<std::size_t>(cells_[2]);
+  const std::size_t count =
+      static_cast<std::size_t>(cells_[0]) * static_cast<std::size_t>(cells_[1]) * static_cast<std::size_t>(cells_[2]);
   std::vector<std::vector<int>> lists(count);
   for (std::size_t s = 0; s < strokes_.size(); ++s) {
     const Stroke& stroke = strokes_[s];

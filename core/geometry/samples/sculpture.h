@@ -15,9 +15,9 @@ using Field = std::function<double(const Point&)>;
 
 /// What the surface extraction and the remesher need to know of a shape.
 struct ImplicitShape {
-  Field field;             // mm, negative inside, gradient near 1 at the surface
-  Box bounds;              // encloses the surface with some room
-  double lipschitz = 1.5;  // |f(p) - f(q)| <= lipschitz |p - q| wherever |f| is small
+  Field field;                 // mm, negative inside, gradient near 1 at the surface
+  Box bounds;                  // encloses the surface with some room
+  double lipschitz = 1.5;      // |f(p) - f(q)| <= lipschitz |p - q| wherever |f| is small
   double largest_cell_mm = 2;  // a coarser grid could miss limbs or merge them
 };
 
@@ -71,7 +71,7 @@ class Sculpture {
   double cell_ = 1;
   int cells_[3] = {0, 0, 0};
   std::vector<Stroke> strokes_;
-  std::vector<int> first_;   // per cell, into entries_
+  std::vector<int> first_;  // per cell, into entries_
   std::vector<int> entries_;
 };
 
@@ -81,11 +81,11 @@ std::vector<Point> curve(const std::vector<Point>& knots, int per_span = 6);
 /// A strip of clay along a curve: a lock of hair, a fold, a limb.
 struct Tube {
   std::vector<Point> path;
-  std::vector<double> radius;   // per path point
-  std::vector<Point> up;        // per path point, unit normals of what it lies on; may be empty
-  double flatness = 1;          // height over width of the section along `up`
-  double strands = 0;           // grooves across the width
-  double groove = 0;            // their depth, as a fraction of the local radius
+  std::vector<double> radius;  // per path point
+  std::vector<Point> up;       // per path point, unit normals of what it lies on; may be empty
+  double flatness = 1;         // height over width of the section along `up`
+  double strands = 0;          // grooves across the width
+  double groove = 0;           // their depth, as a fraction of the local radius
   double phase = 0;
 
   double operator()(const Point& p) const;

@@ -32,14 +32,16 @@ Model finished(const Surface& surface, const Colouring& colouring, Point* shift_
   const Point shift{(low.x + high.x) / 2, low.y, (low.z + high.z) / 2};
   if (shift_out != nullptr) *shift_out = shift;
   Model model;
-  const auto vertices = static_cast<Eigen::Index>(surface.points.size()), faces = static_cast<Eigen::Index>(surface.triangles.size());
+  const auto vertices = static_cast<Eigen::Index>(surface.points.size()),
+             faces = static_cast<Eigen::Index>(surface.triangles.size());
   model.mesh.V.resize(vertices, 3);
   model.mesh.F.resize(faces, 3);
   std::vector<Point> normals(surface.points.size(), Point{0, 0, 0});
   for (Eigen::Index f = 0; f < faces; ++f) {
     const Corners& t = surface.triangles[static_cast<std::size_t>(f)];
     model.mesh.F.row(f) << t[0], t[1], t[2];
-    const Point &a = surface.points[static_cast<std::size_t>(t[0])], &b = surface.points[static_cast<std::size_t>(t[1])],
+    const Point &a = surface.points[static_cast<std::size_t>(t[0])],
+                &b = surface.points[static_cast<std::size_t>(t[1])],
                 &c = surface.points[static_cast<std::size_t>(t[2])];
     const Point n = cross(b - a, c - a);
     for (int corner : t) normals[static_cast<std::size_t>(corner)] += n;

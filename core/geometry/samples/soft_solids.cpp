@@ -22,7 +22,8 @@ double blended(const std::array<double, n>& d, double k) {
   return least - k * log;
 }
 
-Model meshed(const Field& field, const Box& bounds, double area_mm2, int vertices, const Colouring& colouring, Context& context) {
+Model meshed(const Field& field, const Box& bounds, double area_mm2, int vertices, const Colouring& colouring,
+             Context& context) {
   ImplicitShape shape;
   shape.field = field;
   shape.bounds = bounds;
@@ -46,12 +47,15 @@ Model make_star(int vertices, Context& context) {
     return blended(d, 2.6) / 1.3;
   };
   static const Point gold = srgb(244, 190, 72), amber = srgb(224, 128, 44), cream = srgb(255, 236, 184);
-  return meshed(field, {{-58, -50, -20}, {58, 60, 20}}, 9000, vertices, [](const Point& p, const Point&) {
-    const double r = std::sqrt(p.x * p.x + p.y * p.y);
-    const CellDistances dots = cell_noise(Point{p.x, p.y, p.z} / 6.5, 3);
-    const Point ground = mix(gold, amber, smooth_step(8, 46, r + 4 * noise(p / 9, 2)));
-    return mix(ground, cream, 0.8 * smooth_step(0.3, 0.22, dots.nearest));
-  }, context);
+  return meshed(
+      field, {{-58, -50, -20}, {58, 60, 20}}, 9000, vertices,
+      [](const Point& p, const Point&) {
+        const double r = std::sqrt(p.x * p.x + p.y * p.y);
+        const CellDistances dots = cell_noise(Point{p.x, p.y, p.z} / 6.5, 3);
+        const Point ground = mix(gold, amber, smooth_step(8, 46, r + 4 * noise(p / 9, 2)));
+        return mix(ground, cream, 0.8 * smooth_step(0.3, 0.22, dots.nearest));
+      },
+      context);
 }
 
 Model make_heart(int vertices, Context& context) {
@@ -63,10 +67,14 @@ Model make_heart(int vertices, Context& context) {
     return blended(d, 3.5) / 1.1;
   };
   static const Point red = srgb(190, 32, 48), deep = srgb(122, 14, 36), blush = srgb(232, 88, 92);
-  return meshed(field, {{-56, -56, -34}, {56, 58, 34}}, 16700, vertices, [](const Point& p, const Point&) {
-    const double cloud = 0.5 + 0.7 * fractal_noise(p / 30, 4, 0.5, 5);
-    return mix(mix(deep, red, smooth_step(-50, 10, p.y)), blush, 0.45 * clamp(cloud, 0, 1) * smooth_step(0, 30, p.y));
-  }, context);
+  return meshed(
+      field, {{-56, -56, -34}, {56, 58, 34}}, 16700, vertices,
+      [](const Point& p, const Point&) {
+        const double cloud = 0.5 + 0.7 * fractal_noise(p / 30, 4, 0.5, 5);
+        return mix(mix(deep, red, smooth_step(-50, 10, p.y)), blush,
+                   0.45 * clamp(cloud, 0, 1) * smooth_step(0, 30, p.y));
+      },
+      context);
 }
 
 Model make_torus(int vertices, Context& context) {
@@ -76,12 +84,15 @@ Model make_torus(int vertices, Context& context) {
     return std::sqrt(r * r + p.z * p.z) - tube;
   };
   static const Point teal = srgb(60, 140, 150), sand = srgb(236, 214, 170);
-  return meshed(field, {{-54, -54, -18}, {54, 54, 18}}, 4 * pi * pi * ring * tube, vertices, [](const Point& p, const Point&) {
-    const double around = arc_tangent(p.y, p.x) / (2 * pi), r = std::sqrt(p.x * p.x + p.y * p.y) - ring,
-                 tube_angle = arc_tangent(p.z, r) / (2 * pi);
-    const double band = 0.5 + 0.5 * cosine(2 * pi * (12 * around + tube_angle));
-    return mix(teal, sand, smooth_step(0.35, 0.65, band));
-  }, context);
+  return meshed(
+      field, {{-54, -54, -18}, {54, 54, 18}}, 4 * pi * pi * ring * tube, vertices,
+      [](const Point& p, const Point&) {
+        const double around = arc_tangent(p.y, p.x) / (2 * pi), r = std::sqrt(p.x * p.x + p.y * p.y) - ring,
+                     tube_angle = arc_tangent(p.z, r) / (2 * pi);
+        const double band = 0.5 + 0.5 * cosine(2 * pi * (12 * around + tube_angle));
+        return mix(teal, sand, smooth_step(0.35, 0.65, band));
+      },
+      context);
 }
 
 }  // namespace formwright::samples

@@ -51,7 +51,8 @@ std::vector<std::array<int, 3>> neighbours_of(const Triangles& F) {
       const auto a = static_cast<std::uint64_t>(F(f, c)), b = static_cast<std::uint64_t>(F(f, (c + 1) % 3));
       sides.push_back({std::min(a, b) << 32 | std::max(a, b), f, c});
     }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.key != b.key ? a.key < b.key : a.face < b.face; });
+  std::sort(sides.begin(), sides.end(),
+            [](const Side& a, const Side& b) { return a.key != b.key ? a.key < b.key : a.face < b.face; });
   std::vector<std::array<int, 3>> beside(static_cast<std::size_t>(F.rows()), {-1, -1, -1});
   for (std::size_t k = 0; k + 1 < sides.size(); ++k)
     if (sides[k].key == sides[k + 1].key) {
@@ -78,7 +79,8 @@ class Atlas {
   double pack(double gap) {
     std::vector<int> order(charts_.size());
     std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return charts_[index(a)].height() > charts_[index(b)].height(); });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](int a, int b) { return charts_[index(a)].height() > charts_[index(b)].height(); });
     double area = 0, widest = 0;
     for (const Chart& c : charts_) {
       area += (c.width() + gap) * (c.height() + gap);
@@ -111,7 +113,8 @@ class Atlas {
       for (std::size_t f = from; f < to; ++f) {
         const int i = static_cast<int>(f);
         const Point centre = (corner(i, 0) + corner(i, 1) + corner(i, 2)) / 3;
-        const Point n = normalized(normalized(broad_normal(centre)) * 1.5 + normalized(cross(corner(i, 1) - corner(i, 0), corner(i, 2) - corner(i, 0))));
+        const Point n = normalized(normalized(broad_normal(centre)) * 1.5 +
+                                   normalized(cross(corner(i, 1) - corner(i, 0), corner(i, 2) - corner(i, 0))));
         // The front gets more than its share: it is what is looked at.
         const double score[6] = {n.x, -n.x, n.y * 0.9, -n.y * 0.9, n.z * 1.25, -n.z};
         view_[f] = static_cast<int>(std::max_element(score, score + 6) - score);
@@ -125,7 +128,8 @@ class Atlas {
         const auto& n = beside_[index(f)];
         for (std::size_t c = 0; c < 3; ++c) {
           const int a = n[c], b = n[(c + 1) % 3];
-          if (a >= 0 && b >= 0 && before[index(a)] == before[index(b)] && faces_viewer(f, before[index(a)])) view_[index(f)] = before[index(a)];
+          if (a >= 0 && b >= 0 && before[index(a)] == before[index(b)] && faces_viewer(f, before[index(a)]))
+            view_[index(f)] = before[index(a)];
         }
       }
     }
@@ -148,7 +152,9 @@ class Atlas {
       low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
       high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
     }
-    const double reach = std::max({std::fabs(low.x), std::fabs(low.y), std::fabs(low.z), std::fabs(high.x), std::fabs(high.y), std::fabs(high.z)}) + 1;
+    const double reach = std::max({std::fabs(low.x), std::fabs(low.y), std::fabs(low.z), std::fabs(high.x),
+                                   std::fabs(high.y), std::fabs(high.z)}) +
+                         1;
     const int n = static_cast<int>(2 * reach / cell) + 2;
     parallel_for(6, 1, [&](std::size_t from, std::size_t) {
       const int view = static_cast<int>(from);
@@ -173,7 +179,8 @@ class Atlas {
         for (int f = 0; f < faces; ++f) {
           if (view_[index(f)] != view || layer_[index(f)] != layer) continue;
           const Point centre = seen(view, (corner(f, 0) + corner(f, 1) + corner(f, 2)) / 3);
-          const double before = static_cast<double>(front[index(cell_of(centre.y)) * index(n) + index(cell_of(centre.x))]);
+          const double before =
+              static_cast<double>(front[index(cell_of(centre.y)) * index(n) + index(cell_of(centre.x))]);
           // Steep faces reach far back within one cell.
           const Point a = seen(view, corner(f, 0)), b = seen(view, corner(f, 1)), c = seen(view, corner(f, 2));
           const double spread = std::max({a.z, b.z, c.z}) - std::min({a.z, b.z, c.z});
@@ -204,7 +211,8 @@ class Atlas {
           stack.pop_back();
           c.faces.push_back(f);
           for (int g : beside_[index(f)])
-            if (g >= 0 && chart[index(g)] < 0 && view_[index(g)] == view_[index(f)] && layer_[index(g)] == layer_[index(f)]) {
+            if (g >= 0 && chart[index(g)] < 0 && view_[index(g)] == view_[index(f)] &&
+                layer_[index(g)] == layer_[index(f)]) {
               chart[index(g)] = id;
               stack.push_back(g);
             }
@@ -231,7 +239,8 @@ class Atlas {
         std::stable_sort(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
         for (const auto& [key, count] : votes) {
           const int view = key / 16;
-          const auto visible = std::count_if(c.faces.begin(), c.faces.end(), [&](int f) { return faces_viewer(f, view); });
+          const auto visible =
+              std::count_if(c.faces.begin(), c.faces.end(), [&](int f) { return faces_viewer(f, view); });
           if (static_cast<std::size_t>(visible) * 10 < c.faces.size() * 9) continue;
           for (int f : c.faces) {
             view_[index(f)] = view;
@@ -313,8 +322,10 @@ void paint_texture(Model& model, const std::function<Point(const Point&)>& broad
         z += seen(chart.view, atlas.corner(f, c)).z / 3;
       }
       constexpr double rim = 3;
-      const int x0 = std::max(0, static_cast<int>(std::min({x[0], x[1], x[2]}) - rim)), x1 = std::min(pixels - 1, static_cast<int>(std::max({x[0], x[1], x[2]}) + rim));
-      const int y0 = std::max(0, static_cast<int>(std::min({y[0], y[1], y[2]}) - rim)), y1 = std::min(pixels - 1, static_cast<int>(std::max({y[0], y[1], y[2]}) + rim));
+      const int x0 = std::max(0, static_cast<int>(std::min({x[0], x[1], x[2]}) - rim)),
+                x1 = std::min(pixels - 1, static_cast<int>(std::max({x[0], x[1], x[2]}) + rim));
+      const int y0 = std::max(0, static_cast<int>(std::min({y[0], y[1], y[2]}) - rim)),
+                y1 = std::min(pixels - 1, static_cast<int>(std::max({y[0], y[1], y[2]}) + rim));
       for (int j = y0; j <= y1; ++j)
         for (int i = x0; i <= x1; ++i) {
           const double px = i + 0.5, py = j + 0.5;
@@ -350,7 +361,8 @@ void paint_texture(Model& model, const std::function<Point(const Point&)>& broad
     for (std::size_t at = from * index(pixels); at < to * index(pixels); ++at) {
       const int f = painter[at];
       if (f < 0) continue;
-      const double u = (static_cast<double>(at % index(pixels)) + 0.5) / pixels, v = 1 - (static_cast<double>(at / index(pixels)) + 0.5) / pixels;
+      const double u = (static_cast<double>(at % index(pixels)) + 0.5) / pixels,
+                   v = 1 - (static_cast<double>(at / index(pixels)) + 0.5) / pixels;
       const Point &a = uv[index(model.FT(f, 0))], &b = uv[index(model.FT(f, 1))], &c = uv[index(model.FT(f, 2))];
       const double twice = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
       double s = 1.0 / 3, t = 1.0 / 3;
@@ -377,7 +389,8 @@ void paint_from_above(Model& model, double side_mm, const std::function<Point(do
     context.check_cancelled();
     for (std::size_t j = from; j < to; ++j)
       for (std::size_t i = 0; i < index(pixels); ++i)
-        image[j * index(pixels) + i] = colouring(side_mm * ((static_cast<double>(i) + 0.5) / pixels - 0.5), side_mm * ((static_cast<double>(j) + 0.5) / pixels - 0.5));
+        image[j * index(pixels) + i] = colouring(side_mm * ((static_cast<double>(i) + 0.5) / pixels - 0.5),
+                                                 side_mm * ((static_cast<double>(j) + 0.5) / pixels - 0.5));
   });
   context.check_cancelled();
   attach(model, encode_png(image, pixels), name);
@@ -387,7 +400,9 @@ Bytes encode_png(const std::vector<Point>& image, int pixels) {
   // Linear light to sRGB bytes by the nearest of the 256 levels.
   std::array<double, 255> middle{};
   for (int b = 0; b < 255; ++b) middle[index(b)] = 0.5 * (srgb(b, 0, 0).x + srgb(b + 1, 0, 0).x);
-  const auto level = [&](double v) { return static_cast<unsigned char>(std::upper_bound(middle.begin(), middle.end(), v) - middle.begin()); };
+  const auto level = [&](double v) {
+    return static_cast<unsigned char>(std::upper_bound(middle.begin(), middle.end(), v) - middle.begin());
+  };
   const std::size_t row = 3 * index(pixels);
   std::vector<unsigned char> raw(row * index(pixels)), filtered;
   parallel_for(index(pixels), 8, [&](std::size_t from, std::size_t to) {
@@ -400,7 +415,8 @@ Bytes encode_png(const std::vector<Point>& image, int pixels) {
   filtered.reserve((row + 1) * index(pixels));
   for (std::size_t j = 0; j < index(pixels); ++j) {
     filtered.push_back(1);  // the filter "Sub": differences along the row
-    for (std::size_t i = 0; i < row; ++i) filtered.push_back(static_cast<unsigned char>(raw[j * row + i] - (i < 3 ? 0 : raw[j * row + i - 3])));
+    for (std::size_t i = 0; i < row; ++i)
+      filtered.push_back(static_cast<unsigned char>(raw[j * row + i] - (i < 3 ? 0 : raw[j * row + i - 3])));
   }
   uLongf size = compressBound(static_cast<uLong>(filtered.size()));
   std::vector<unsigned char> packed(size);
@@ -415,7 +431,8 @@ Bytes encode_png(const std::vector<Point>& image, int pixels) {
   const auto chunk = [&](const char* type, const std::vector<unsigned char>& data) {
     word(data.size());
     uLong crc = crc32(0, reinterpret_cast<const Bytef*>(type), 4);
-    if (!data.empty()) crc = crc32(crc, data.data(), static_cast<uInt>(data.size()));  // of no bytes it would begin again
+    if (!data.empty())
+      crc = crc32(crc, data.data(), static_cast<uInt>(data.size()));  // of no bytes it would begin again
     for (int k = 0; k < 4; ++k) byte(static_cast<unsigned char>(type[k]));
     for (unsigned char v : data) byte(v);
     word(crc);

@@ -137,8 +137,7 @@ void describe(DraftMap& map, const Positions& normals, const Eigen::VectorXd& ar
     if (map.below_3_deg_area_mm2 > 0.005 * map.area_mm2)
       map.sentences.push_back(rounded_text(map.below_3_deg_area_mm2 / 100, "%.1f") +
                               " cm² of wall have less than 3 degrees of draft: the shell will come off hard.");
-    else
-      map.sentences.emplace_back("The walls lean outwards by 3 degrees or more: the shell will come off.");
+    else map.sentences.emplace_back("The walls lean outwards by 3 degrees or more: the shell will come off.");
   } else {
     map.sentences.emplace_back("Sink the model to its widest place, turn it, or plan to break the mould out.");
   }
@@ -223,10 +222,8 @@ double depth_to_width_at(const HeightGrid& grid, const Vec3& point, double least
     while (i < left.size() && j < right.size()) {
       const double level = std::min(left[i].height_mm, right[j].height_mm);
       best = std::max(best, (level - p.z()) / std::max(least_width_mm, left[i].distance_mm + right[j].distance_mm));
-      if (left[i].height_mm <= right[j].height_mm)
-        ++i;
-      else
-        ++j;
+      if (left[i].height_mm <= right[j].height_mm) ++i;
+      else ++j;
     }
   }
   return best > least_ratio ? best : 0;

@@ -17,7 +17,8 @@ const Vec3 paper(1, 1, 1), ink(0.02, 0.02, 0.02), checker_light(0.86, 0.78, 0.55
 
 Light light_of(const Vec3& unit) {
   Light light{};
-  for (std::size_t k = 0; k < 3; ++k) light[k] = static_cast<float>(std::clamp(unit[static_cast<Eigen::Index>(k)], 0.0, 1.0) * light_levels);
+  for (std::size_t k = 0; k < 3; ++k)
+    light[k] = static_cast<float>(std::clamp(unit[static_cast<Eigen::Index>(k)], 0.0, 1.0) * light_levels);
   return light;
 }
 
@@ -33,19 +34,26 @@ bool usable(const Model& model, const std::vector<std::unique_ptr<LinearPicture>
 
 }  // namespace
 
-ModelColours::ModelColours(const Model& model, const TriangleMesh& placed, const std::optional<Image>& own_picture, const ThermoformPrintOptions& options, Context& context)
+ModelColours::ModelColours(const Model& model, const TriangleMesh& placed, const std::optional<Image>& own_picture,
+                           const ThermoformPrintOptions& options, Context& context)
     : model_(model), placed_(placed), pattern_mm_(options.pattern_mm), kind_(options.colours) {
   if (own_picture && model.FT.rows() == 0)
-    throw Error(ErrorCode::invalid_input, "texture", "The model says nowhere how a picture lies on it: give one with texture coordinates (OBJ, GLB or PLY), or no picture.");
+    throw Error(
+        ErrorCode::invalid_input, "texture",
+        "The model says nowhere how a picture lies on it: give one with texture coordinates (OBJ, GLB or PLY), or no picture.");
   if (kind_ == PrintColours::automatic || kind_ == PrintColours::picture) load_pictures(own_picture, context);
-  const bool painted = std::ranges::any_of(model.materials, [](const Material& m) { return !m.diffuse.isApprox(Material().diffuse); });
+  const bool painted =
+      std::ranges::any_of(model.materials, [](const Material& m) { return !m.diffuse.isApprox(Material().diffuse); });
   if (kind_ == PrintColours::automatic)
-    kind_ = usable(model, pictures_) ? PrintColours::picture
+    kind_ = usable(model, pictures_)          ? PrintColours::picture
             : model.vertex_colours.rows() > 0 ? PrintColours::vertex_colours
             : painted                         ? PrintColours::material_colours
                                               : PrintColours::checker;
-  const auto refuse = [](const std::string& what) { throw Error(ErrorCode::invalid_input, "colours", "The model has no " + what + ": choose other colours."); };
-  if (kind_ == PrintColours::picture && !usable(model, pictures_)) refuse("picture to print (an OBJ needs its MTL and picture files beside it)");
+  const auto refuse = [](const std::string& what) {
+    throw Error(ErrorCode::invalid_input, "colours", "The model has no " + what + ": choose other colours.");
+  };
+  if (kind_ == PrintColours::picture && !usable(model, pictures_))
+    refuse("picture to print (an OBJ needs its MTL and picture files beside it)");
   if (kind_ == PrintColours::vertex_colours && model.vertex_colours.rows() == 0) refuse("colours at its vertices");
   if (kind_ == PrintColours::material_colours && model.face_material.empty()) refuse("materials");
 }
@@ -61,8 +69,11 @@ void ModelColours::load_pictures(const std::optional<Image>& own_picture, Contex
   }
   for (const Texture& texture : model_.textures) {
     pictures_.emplace_back();
-    if (texture.bytes.empty()) notes_.push_back("The picture " + texture.name + " that the model names was not given: give it as texture.");
-    else pictures_.back() = std::make_unique<LinearPicture>(read_picture(texture.bytes, texture.name, "mould"), repeat, context);
+    if (texture.bytes.empty())
+      notes_.push_back("The picture " + texture.name + " that the model names was not given: give it as texture.");
+    else
+      pictures_.back() =
+          std::make_unique<LinearPicture>(read_picture(texture.bytes, texture.name, "mould"), repeat, context);
   }
 }
 
@@ -94,7 +105,9 @@ FaceColour ModelColours::face(const RefinedSurface& surface, std::size_t f, cons
     std::array<Vec3, 3> corner;
     for (std::size_t k = 0; k < 3; ++k) {
       const double b = static_cast<double>(surface.place[f][k].x()), c = static_cast<double>(surface.place[f][k].y());
-      const auto value = ((1 - b - c) * rows.row(indices(old, 0)) + b * rows.row(indices(old, 1)) + c * rows.row(indices(old, 2))).eval();
+      const auto value =
+          ((1 - b - c) * rows.row(indices(old, 0)) + b * rows.row(indices(old, 1)) + c * rows.row(indices(old, 2)))
+              .eval();
       corner[k].setZero();
       corner[k].head(value.size()) = value.transpose();
     }
@@ -118,7 +131,8 @@ FaceColour ModelColours::face(const RefinedSurface& surface, std::size_t f, cons
       vary(model_.UV, model_.FT);
       result.value.y() = 1 - result.value.y();
       result.per_pixel.row(1) *= -1;
-      result.footprint = picture->footprint(Vec2(picture->width(), picture->height()).asDiagonal() * result.per_pixel.topRows<2>());
+      result.footprint =
+          picture->footprint(Vec2(picture->width(), picture->height()).asDiagonal() * result.per_pixel.topRows<2>());
       return result;
     }
   result.per_pixel.setZero();
@@ -135,7 +149,8 @@ Light ModelColours::colour(const FaceColour& face, const Vec2& place) const {
   const Vec3 value = face.at(place);
   switch (face.kind) {
     case FaceColour::Kind::picture: {
-      const Light factor{static_cast<float>(face.factor[0]), static_cast<float>(face.factor[1]), static_cast<float>(face.factor[2]), 0};
+      const Light factor{static_cast<float>(face.factor[0]), static_cast<float>(face.factor[1]),
+                         static_cast<float>(face.factor[2]), 0};
       return face.picture->sample(value.head<2>(), face.footprint) * factor;
     }
     case FaceColour::Kind::checker: {

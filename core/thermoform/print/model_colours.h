@@ -12,10 +12,11 @@
 
 namespace formwright {
 
-/// A face of the refined surface, made ready to be coloured at places of the print: what colours it varies linearly there.
+/// A face of the refined surface, made ready to be coloured at places of the print: what colours it varies linearly
+/// there.
 struct FaceColour {
   enum class Kind { flat, interpolated, picture, checker, contours } kind = Kind::flat;
-  Vec3 value;                             // at `pixel`: linear RGB 0 to 1; texture place (u right, v down); position in mm
+  Vec3 value;  // at `pixel`: linear RGB 0 to 1; texture place (u right, v down); position in mm
   Vec2 pixel;
   Eigen::Matrix<double, 3, 2> per_pixel;  // its change; 0 for a face that is only a line in the print
   Vec3 factor{1, 1, 1};                   // of a picture
@@ -36,7 +37,8 @@ class ModelColours {
   /// coordinates have it.
   /// Throws Error{invalid_input} with where = "colours" when the model does not have the colours that are asked for,
   /// "texture" for a picture without texture coordinates to lay it by, "mould" for a damaged picture within the model.
-  ModelColours(const Model& model, const TriangleMesh& placed, const std::optional<Image>& own_picture, const ThermoformPrintOptions& options, Context& context);
+  ModelColours(const Model& model, const TriangleMesh& placed, const std::optional<Image>& own_picture,
+               const ThermoformPrintOptions& options, Context& context);
 
   /// What was chosen: never automatic.
   PrintColours kind() const { return kind_; }

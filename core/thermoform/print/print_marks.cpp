@@ -16,7 +16,10 @@ struct Rim {
   double width;
 
   explicit Rim(const ThermoformPrintOptions& options)
-      : sheet(options.sheet_x_mm / 2, options.sheet_y_mm / 2), opening(options.clamp_opening_x_mm / 2, options.clamp_opening_y_mm / 2), middle((sheet + opening) / 2), width((sheet - opening).minCoeff()) {}
+      : sheet(options.sheet_x_mm / 2, options.sheet_y_mm / 2),
+        opening(options.clamp_opening_x_mm / 2, options.clamp_opening_y_mm / 2),
+        middle((sheet + opening) / 2),
+        width((sheet - opening).minCoeff()) {}
   double arm_mm() const { return std::min(3.0, 0.35 * width); }
   double letters_mm() const { return std::min(4.0, 0.4 * width); }
 };
@@ -37,7 +40,8 @@ void add_marks(Drawing& drawing, const ThermoformPrintOptions& options) {
     const Vec2 step = on_side ? Vec2(0, away) : Vec2(mark.place_mm.x() > 1e-9 ? -away : away, 0);
     drawing.label(mark.place_mm + step, rim.letters_mm(), mark.name);
   }
-  if (rim.width >= narrowest_rim_mm) drawing.label(Vec2(-rim.middle.x() / 2, -rim.middle.y()), rim.letters_mm(), "FRONT");
+  if (rim.width >= narrowest_rim_mm)
+    drawing.label(Vec2(-rim.middle.x() / 2, -rim.middle.y()), rim.letters_mm(), "FRONT");
 }
 
 }  // namespace
@@ -47,7 +51,8 @@ std::vector<RegistrationMark> registration_marks(const ThermoformPrintOptions& o
   if (rim.width < narrowest_rim_mm) return {};
   constexpr double sign[8][2] = {{-1, -1}, {0, -1}, {1, -1}, {1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}};
   std::vector<RegistrationMark> marks;
-  for (const auto& s : sign) marks.push_back({std::to_string(marks.size() + 1), Vec2(s[0] * rim.middle.x(), s[1] * rim.middle.y())});
+  for (const auto& s : sign)
+    marks.push_back({std::to_string(marks.size() + 1), Vec2(s[0] * rim.middle.x(), s[1] * rim.middle.y())});
   return marks;
 }
 
@@ -86,7 +91,8 @@ Drawing frame_template(const ThermoformPrintOptions& options) {
   say(text("OPENING %.1f x %.1f MM", options.clamp_opening_x_mm, options.clamp_opening_y_mm));
   say(text("SHEET %.1f x %.1f MM", options.sheet_x_mm, options.sheet_y_mm));
   say("MARKS FROM THE MIDDLE OF THE OPENING, IN MM:");
-  for (const RegistrationMark& mark : registration_marks(options)) say(mark.name + "   " + text("%+.2f   %+.2f", mark.place_mm.x(), mark.place_mm.y()));
+  for (const RegistrationMark& mark : registration_marks(options))
+    say(mark.name + "   " + text("%+.2f   %+.2f", mark.place_mm.x(), mark.place_mm.y()));
   const double ruler = 2 * rim.opening.x() >= 110 ? 100 : 2 * rim.opening.x() >= 60 ? 50 : 5;
   const Vec2 from(-ruler / 2, -0.8 * rim.opening.y()), to(ruler / 2, from.y());
   drawing.line(from, to, 2 * outline_mm);

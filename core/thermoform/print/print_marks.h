@@ -11,7 +11,7 @@
 namespace formwright {
 
 struct RegistrationMark {
-  std::string name;   // "1" at the front left, then counter-clockwise seen from above
+  std::string name;  // "1" at the front left, then counter-clockwise seen from above
   Vec2 place_mm;
 };
 

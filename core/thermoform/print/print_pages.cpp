@@ -11,8 +11,8 @@ namespace formwright {
 namespace {
 
 constexpr int most_pages = 400;
-constexpr double frame_mm = 5;       // around each tile, for its joining marks and its name
-constexpr double name_mm = 2.2;      // height of its letters
+constexpr double frame_mm = 5;   // around each tile, for its joining marks and its name
+constexpr double name_mm = 2.2;  // height of its letters
 constexpr double tick_from_mm = 0.7, tick_to_mm = 2.2, tick_line_mm = 0.15;
 
 Vec2 paper_mm(const ThermoformPrintOptions& options) {
@@ -39,7 +39,9 @@ struct Division {
 };
 Division divide(double sheet_mm, double usable_mm, double overlap_mm) {
   Division division;
-  if (sheet_mm > usable_mm + 1e-9) division.count = static_cast<int>(std::min(1e6, std::ceil((sheet_mm - overlap_mm) / (usable_mm - overlap_mm) - 1e-9)));
+  if (sheet_mm > usable_mm + 1e-9)
+    division.count =
+        static_cast<int>(std::min(1e6, std::ceil((sheet_mm - overlap_mm) / (usable_mm - overlap_mm) - 1e-9)));
   division.size_mm = (sheet_mm + (division.count - 1) * overlap_mm) / division.count;
   return division;
 }
@@ -68,13 +70,17 @@ std::string joining_order(const PageLayout& layout) {
   if (layout.tiles.size() == 1) return "PRINT AT 100 %";
   std::string order = "PRINT AT 100 %, JOIN " + layout.tiles.front().name;
   if (layout.columns > 1) order += " TO " + row_name(0) + std::to_string(layout.columns) + " FROM THE LEFT";
-  if (layout.rows > 1) order += std::string(layout.columns > 1 ? ", THEN ROWS A" : "") + " TO " + row_name(layout.rows - 1) + " FROM THE TOP";
+  if (layout.rows > 1)
+    order +=
+        std::string(layout.columns > 1 ? ", THEN ROWS A" : "") + " TO " + row_name(layout.rows - 1) + " FROM THE TOP";
   return order + ", TICKS ON TICKS";
 }
 
 }  // namespace
 
-Vec2 PageLayout::origin_mm(const Tile& tile) const { return Vec2(width_mm, height_mm) / 2 - (tile.lower_mm + tile.upper_mm) / 2; }
+Vec2 PageLayout::origin_mm(const Tile& tile) const {
+  return Vec2(width_mm, height_mm) / 2 - (tile.lower_mm + tile.upper_mm) / 2;
+}
 
 PageLayout page_layout(const ThermoformPrintOptions& options) {
   const Vec2 sheet(options.sheet_x_mm, options.sheet_y_mm), paper = paper_mm(options);
@@ -90,24 +96,28 @@ PageLayout page_layout(const ThermoformPrintOptions& options) {
       const Vec2 turned = landscape ? Vec2(paper.y(), paper.x()) : paper;
       const Vec2 usable = turned.array() - 2 * (options.paper_margin_mm + frame_mm);
       // The widest margins leave 100 mm of the smallest paper, and overlaps end at 50 mm.
-      const Division x = divide(sheet.x(), usable.x(), options.overlap_mm), y = divide(sheet.y(), usable.y(), options.overlap_mm);
+      const Division x = divide(sheet.x(), usable.x(), options.overlap_mm),
+                     y = divide(sheet.y(), usable.y(), options.overlap_mm);
       const long long pages = static_cast<long long>(x.count) * y.count;
       if (pages >= fewest) continue;
       fewest = pages;
       best = {turned.x(), turned.y(), landscape, x.count, y.count, {}};
       tile_size = {x.size_mm, y.size_mm};
     }
-    if (fewest > most_pages) throw Error(ErrorCode::invalid_input, "paper", "The sheet would need more than 400 pages: choose larger paper.");
+    if (fewest > most_pages)
+      throw Error(ErrorCode::invalid_input, "paper", "The sheet would need more than 400 pages: choose larger paper.");
   }
   for (int row = 0; row < best.rows; ++row)
     for (int column = 0; column < best.columns; ++column) {
-      const Vec2 lower(-sheet.x() / 2 + column * (tile_size.x() - options.overlap_mm), sheet.y() / 2 - tile_size.y() - row * (tile_size.y() - options.overlap_mm));
+      const Vec2 lower(-sheet.x() / 2 + column * (tile_size.x() - options.overlap_mm),
+                       sheet.y() / 2 - tile_size.y() - row * (tile_size.y() - options.overlap_mm));
       best.tiles.push_back({row_name(row) + std::to_string(column + 1), lower, lower + tile_size});
     }
   return best;
 }
 
-Bytes write_print_pdf(const Image& picture, const PrintGrid& grid, const PageLayout& layout, const ThermoformPrintOptions& options, Context& context) {
+Bytes write_print_pdf(const Image& picture, const PrintGrid& grid, const PageLayout& layout,
+                      const ThermoformPrintOptions& options, Context& context) {
   PdfDocument pdf("Thermoforming print");
   const int stored = pdf.add_picture(picture);
   context.check_cancelled();
@@ -125,8 +135,10 @@ Bytes write_print_pdf(const Image& picture, const PrintGrid& grid, const PageLay
       if (!plain.labels.empty()) pdf.draw(plain, {origin, false}, lower, upper);
       if (!framed) continue;
       Drawing around = joining_marks(tile, half, options.overlap_mm);
-      std::string name = tile.name + (is_print ? "" : " OF THE FRAME") + (mirrored ? " MIRRORED" : "") + " - " + joining_order(layout);
-      around.label(Vec2((tile.lower_mm + tile.upper_mm).x() / 2, tile.lower_mm.y() - frame_mm + name_mm / 2 + 0.2), name_mm, std::move(name));
+      std::string name =
+          tile.name + (is_print ? "" : " OF THE FRAME") + (mirrored ? " MIRRORED" : "") + " - " + joining_order(layout);
+      around.label(Vec2((tile.lower_mm + tile.upper_mm).x() / 2, tile.lower_mm.y() - frame_mm + name_mm / 2 + 0.2),
+                   name_mm, std::move(name));
       pdf.draw(around, {origin, false}, Vec2(0, 0), page);
       context.check_cancelled();
     }

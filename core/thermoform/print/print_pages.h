@@ -17,7 +17,7 @@ struct PageLayout {
   double width_mm = 0, height_mm = 0;  // of the paper as it is turned
   bool landscape = false;
   int columns = 1, rows = 1;
-  std::vector<Tile> tiles;             // in the order in which they are joined: row by row
+  std::vector<Tile> tiles;  // in the order in which they are joined: row by row
 
   /// Where the middle of the sheet lies on a tile's page, in mm from its lower left corner.
   Vec2 origin_mm(const Tile& tile) const;
@@ -30,7 +30,8 @@ PageLayout page_layout(const ThermoformPrintOptions& options);
 
 /// All tiles of `picture` (the print without marks, not mirrored), then those of the frame's template where marks are
 /// asked for. Lines and words are vectors.
-Bytes write_print_pdf(const Image& picture, const PrintGrid& grid, const PageLayout& layout, const ThermoformPrintOptions& options, Context& context);
+Bytes write_print_pdf(const Image& picture, const PrintGrid& grid, const PageLayout& layout,
+                      const ThermoformPrintOptions& options, Context& context);
 
 /// The picture as one file would show it: with marks, and mirrored where asked for.
 Image with_marks(const Image& picture, const PrintGrid& grid, const ThermoformPrintOptions& options);

@@ -14,27 +14,35 @@ namespace formwright {
 namespace {
 
 constexpr int band_rows = 64;
-constexpr int sides = 2;                 // points along a pixel's side
-constexpr std::int64_t fraction = 256;   // corners are rounded to this part of a point's distance: exact edge tests
+constexpr int sides = 2;                // points along a pixel's side
+constexpr std::int64_t fraction = 256;  // corners are rounded to this part of a point's distance: exact edge tests
 
 using Whole = Eigen::Matrix<std::int64_t, 2, 1>;
 
 /// Twice the signed area of a, b, p.
-std::int64_t area(const Whole& a, const Whole& b, const Whole& p) { return (b.x() - a.x()) * (p.y() - a.y()) - (b.y() - a.y()) * (p.x() - a.x()); }
+std::int64_t area(const Whole& a, const Whole& b, const Whole& p) {
+  return (b.x() - a.x()) * (p.y() - a.y()) - (b.y() - a.y()) * (p.x() - a.x());
+}
 
-/// One band of rows: which face shows at every point, and how far it is from the sheet. Colours come last, where they show.
+/// One band of rows: which face shows at every point, and how far it is from the sheet. Colours come last, where they
+/// show.
 class Band {
  public:
   Band(const PrintGrid& grid, int first_row, int left, int right)
-      : first_row_(first_row), last_row_(std::min(grid.height, first_row + band_rows)), left_(left), columns_(right - left) {
-    const auto points = static_cast<std::size_t>(columns_) * sides * static_cast<std::size_t>(last_row_ - first_row_) * sides;
+      : first_row_(first_row),
+        last_row_(std::min(grid.height, first_row + band_rows)),
+        left_(left),
+        columns_(right - left) {
+    const auto points =
+        static_cast<std::size_t>(columns_) * sides * static_cast<std::size_t>(last_row_ - first_row_) * sides;
     gap_.assign(points, std::numeric_limits<float>::infinity());
     face_.assign(points, -1);
   }
 
   void draw(int face, const std::array<Vec2, 3>& pixels, const std::array<double, 3>& gap_mm) {
     std::array<Whole, 3> p;
-    for (std::size_t k = 0; k < 3; ++k) p[k] = Whole(std::llround(pixels[k].x() * sides * fraction), std::llround(pixels[k].y() * sides * fraction));
+    for (std::size_t k = 0; k < 3; ++k)
+      p[k] = Whole(std::llround(pixels[k].x() * sides * fraction), std::llround(pixels[k].y() * sides * fraction));
     if (area(p[0], p[1], p[2]) < 0) {
       std::swap(p[1], p[2]);
       draw_positive(face, p, {gap_mm[0], gap_mm[2], gap_mm[1]});
@@ -76,7 +84,9 @@ class Band {
         }
         if (count == 0) continue;
         Rgba& pixel = image.at(x, y);
-        for (std::size_t k = 0; k < 3; ++k) pixel[k] = byte[static_cast<std::size_t>(std::clamp(sum[k] / static_cast<float>(count) + 0.5f, 0.0f, 65535.0f))];
+        for (std::size_t k = 0; k < 3; ++k)
+          pixel[k] =
+              byte[static_cast<std::size_t>(std::clamp(sum[k] / static_cast<float>(count) + 0.5f, 0.0f, 65535.0f))];
         pixel[3] = 255;
       }
   }
@@ -85,9 +95,12 @@ class Band {
   static_assert(sides == 2, "colour() takes four points a pixel");
 
   std::size_t point(int u, int v) const {
-    return static_cast<std::size_t>(v - first_row_ * sides) * static_cast<std::size_t>(columns_) * sides + static_cast<std::size_t>(u - left_ * sides);
+    return static_cast<std::size_t>(v - first_row_ * sides) * static_cast<std::size_t>(columns_) * sides +
+           static_cast<std::size_t>(u - left_ * sides);
   }
-  static Vec2 place(int x, int y, std::size_t i) { return {x + (i % 2 == 0 ? 0.25 : 0.75), y + (i / 2 == 0 ? 0.25 : 0.75)}; }
+  static Vec2 place(int x, int y, std::size_t i) {
+    return {x + (i % 2 == 0 ? 0.25 : 0.75), y + (i / 2 == 0 ? 0.25 : 0.75)};
+  }
 
   /// Points (in rows of points) whose middles lie within, edges included: what two faces share goes to the nearer one
   /// and then to the first.
@@ -99,9 +112,11 @@ class Band {
     const auto last = [](std::int64_t high) { return (high - fraction / 2) >> 8; };
     static_assert(fraction == 1 << 8);
     const std::int64_t v0 = std::max<std::int64_t>(first_row_ * sides, first(std::min({p[0].y(), p[1].y(), p[2].y()})));
-    const std::int64_t v1 = std::min<std::int64_t>(last_row_ * sides - 1, last(std::max({p[0].y(), p[1].y(), p[2].y()})));
+    const std::int64_t v1 =
+        std::min<std::int64_t>(last_row_ * sides - 1, last(std::max({p[0].y(), p[1].y(), p[2].y()})));
     const std::int64_t u0 = std::max<std::int64_t>(left_ * sides, first(std::min({p[0].x(), p[1].x(), p[2].x()})));
-    const std::int64_t u1 = std::min<std::int64_t>((left_ + columns_) * sides - 1, last(std::max({p[0].x(), p[1].x(), p[2].x()})));
+    const std::int64_t u1 =
+        std::min<std::int64_t>((left_ + columns_) * sides - 1, last(std::max({p[0].x(), p[1].x(), p[2].x()})));
     const double scale = 1.0 / static_cast<double>(whole);
     const std::int64_t step_a = -(p[2].y() - p[1].y()) * fraction, step_b = -(p[0].y() - p[2].y()) * fraction;
     for (std::int64_t v = v0; v <= v1; ++v) {
@@ -111,7 +126,9 @@ class Band {
       for (std::int64_t u = u0; u <= u1; ++u, ++i, a += step_a, b += step_b) {
         const std::int64_t c = whole - a - b;
         if ((a | b | c) < 0) continue;
-        const auto gap = static_cast<float>((static_cast<double>(a) * gap_mm[0] + static_cast<double>(b) * gap_mm[1] + static_cast<double>(c) * gap_mm[2]) * scale);
+        const auto gap = static_cast<float>((static_cast<double>(a) * gap_mm[0] + static_cast<double>(b) * gap_mm[1] +
+                                             static_cast<double>(c) * gap_mm[2]) *
+                                            scale);
         if (!(gap < gap_[i])) continue;
         gap_[i] = gap;
         face_[i] = face;
@@ -129,21 +146,26 @@ class Band {
 PrintGrid print_grid(const ThermoformPrintOptions& options) {
   PrintGrid grid;
   grid.per_metre = pixels_per_metre(options.dots_per_inch);
-  const double width = std::round(options.sheet_x_mm * grid.per_metre / 1000), height = std::round(options.sheet_y_mm * grid.per_metre / 1000);
+  const double width = std::round(options.sheet_x_mm * grid.per_metre / 1000),
+               height = std::round(options.sheet_y_mm * grid.per_metre / 1000);
   if (width * height > static_cast<double>(most_pixels))
     throw Error(ErrorCode::invalid_input, "dots_per_inch",
-                "The print would have " + std::to_string(static_cast<long long>(width * height * 1e-6)) + " million pixels, and " + std::to_string(most_pixels / 1'000'000) +
+                "The print would have " + std::to_string(static_cast<long long>(width * height * 1e-6)) +
+                    " million pixels, and " + std::to_string(most_pixels / 1'000'000) +
                     " million fit: choose fewer dots per inch.");
   grid.width = std::max(1, static_cast<int>(width));
   grid.height = std::max(1, static_cast<int>(height));
   return grid;
 }
 
-Image render_print(const RefinedSurface& surface, const ProjectedSurface& projected, const ModelColours& colours, const PrintGrid& grid, Context& context) {
+Image render_print(const RefinedSurface& surface, const ProjectedSurface& projected, const ModelColours& colours,
+                   const PrintGrid& grid, Context& context) {
   context.progress(0, "Drawing the print");
   const auto corners = [&](std::size_t f) {
     std::array<Vec2, 3> pixels;
-    for (std::size_t k = 0; k < 3; ++k) pixels[k] = grid.pixel(projected.sheet_mm.row(surface.mesh.F(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k))));
+    for (std::size_t k = 0; k < 3; ++k)
+      pixels[k] = grid.pixel(
+          projected.sheet_mm.row(surface.mesh.F(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k))));
     return pixels;
   };
   // Faces by the bands they touch, in their own order.
@@ -157,11 +179,13 @@ Image render_print(const RefinedSurface& surface, const ProjectedSurface& projec
     if (!(bottom >= 0) || !(top <= grid.height)) continue;
     left = std::min({left, p[0].x(), p[1].x(), p[2].x()});
     right = std::max({right, p[0].x(), p[1].x(), p[2].x()});
-    const auto first = static_cast<std::size_t>(std::max(0.0, top) / band_rows), last = std::min(bands - 1, static_cast<std::size_t>(std::max(0.0, bottom) / band_rows));
+    const auto first = static_cast<std::size_t>(std::max(0.0, top) / band_rows),
+               last = std::min(bands - 1, static_cast<std::size_t>(std::max(0.0, bottom) / band_rows));
     for (std::size_t band = first; band <= last; ++band) faces[band].push_back(static_cast<std::uint32_t>(f));
   }
   Image image(grid.width, grid.height, {255, 255, 255, 0});
-  const int from = std::max(0, static_cast<int>(std::floor(left)) - 1), to = std::min(grid.width, static_cast<int>(std::ceil(right)) + 1);
+  const int from = std::max(0, static_cast<int>(std::floor(left)) - 1),
+            to = std::min(grid.width, static_cast<int>(std::ceil(right)) + 1);
   if (from >= to) return image;
   parallel_for(bands, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
@@ -173,7 +197,8 @@ Image render_print(const RefinedSurface& surface, const ProjectedSurface& projec
       for (const std::uint32_t f : faces[b]) {
         const std::array<Vec2, 3> pixels = corners(f);
         std::array<double, 3> gap{};
-        for (std::size_t k = 0; k < 3; ++k) gap[k] = projected.gap_mm[surface.mesh.F(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k))];
+        for (std::size_t k = 0; k < 3; ++k)
+          gap[k] = projected.gap_mm[surface.mesh.F(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k))];
         band.draw(static_cast<int>(ready.size()), pixels, gap);
         ready.push_back(colours.face(surface, f, pixels));
       }

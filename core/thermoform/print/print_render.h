@@ -15,7 +15,9 @@ struct PrintGrid {
 
   double pixel_mm() const { return 1000.0 / per_metre; }
   /// From sheet coordinates (mm, y up, origin in the middle) to pixels from the top left.
-  Vec2 pixel(const Vec2& sheet_mm) const { return {width / 2.0 + sheet_mm.x() / pixel_mm(), height / 2.0 - sheet_mm.y() / pixel_mm()}; }
+  Vec2 pixel(const Vec2& sheet_mm) const {
+    return {width / 2.0 + sheet_mm.x() / pixel_mm(), height / 2.0 - sheet_mm.y() / pixel_mm()};
+  }
 };
 
 /// Throws Error{invalid_input, "dots_per_inch"} when the picture would have more than most_pixels.
@@ -24,6 +26,7 @@ PrintGrid print_grid(const ThermoformPrintOptions& options);
 /// Draws the coloured faces at their places on the flat sheet; where faces overlap, the one nearest to the formed sheet
 /// shows. Pixels are means of the covered ones of 2 x 2 points, in linear light; a picture is filtered over each
 /// pixel's footprint. Pixels without any have alpha 0, the others 255.
-Image render_print(const RefinedSurface& surface, const ProjectedSurface& projected, const ModelColours& colours, const PrintGrid& grid, Context& context);
+Image render_print(const RefinedSurface& surface, const ProjectedSurface& projected, const ModelColours& colours,
+                   const PrintGrid& grid, Context& context);
 
 }  // namespace formwright

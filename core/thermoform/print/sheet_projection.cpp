@@ -23,10 +23,14 @@ constexpr double torn_factor = 2.5;
 
 TriangleMesh inner_surface(const FormedSheet& sheet, double& thickest_mm) {
   const Eigen::Index n = sheet.mesh.V.rows();
-  if (sheet.mesh.F.rows() == 0 || sheet.sheet_mm.rows() != n || sheet.thickness_mm.size() != n || sheet.stretch.size() != n)
-    throw Error(ErrorCode::invalid_input, "sheet", "The formed sheet is incomplete: use the sheet.ply that the simulation wrote.");
-  if (!sheet.sheet_mm.allFinite() || !sheet.thickness_mm.allFinite() || !sheet.stretch.allFinite() || sheet.thickness_mm.minCoeff() < 0)
-    throw Error(ErrorCode::invalid_input, "sheet", "The formed sheet holds numbers that cannot be: use the sheet.ply that the simulation wrote.");
+  if (sheet.mesh.F.rows() == 0 || sheet.sheet_mm.rows() != n || sheet.thickness_mm.size() != n ||
+      sheet.stretch.size() != n)
+    throw Error(ErrorCode::invalid_input, "sheet",
+                "The formed sheet is incomplete: use the sheet.ply that the simulation wrote.");
+  if (!sheet.sheet_mm.allFinite() || !sheet.thickness_mm.allFinite() || !sheet.stretch.allFinite() ||
+      sheet.thickness_mm.minCoeff() < 0)
+    throw Error(ErrorCode::invalid_input, "sheet",
+                "The formed sheet holds numbers that cannot be: use the sheet.ply that the simulation wrote.");
   TriangleMesh inner = sheet.mesh;
   inner.V -= (sheet.thickness_mm / 2).asDiagonal() * vertex_normals(sheet.mesh);
   thickest_mm = sheet.thickness_mm.maxCoeff();
@@ -39,7 +43,8 @@ std::vector<double> shrinkage(const FormedSheet& sheet) {
   for (Eigen::Index f = 0; f < sheet.mesh.F.rows(); ++f) {
     const int i = sheet.mesh.F(f, 0), j = sheet.mesh.F(f, 1), k = sheet.mesh.F(f, 2);
     const Vec3 a = sheet.mesh.V.row(j) - sheet.mesh.V.row(i), b = sheet.mesh.V.row(k) - sheet.mesh.V.row(i);
-    const double length = a.norm(), along = length > 0 ? a.dot(b) / length : 0, height = length > 0 ? a.cross(b).norm() / length : 0;
+    const double length = a.norm(), along = length > 0 ? a.dot(b) / length : 0,
+                 height = length > 0 ? a.cross(b).norm() / length : 0;
     if (!(height > 1e-9)) continue;
     Eigen::Matrix2d now, flat;
     now << length, along, 0, height;
@@ -56,17 +61,24 @@ std::vector<double> shrinkage(const FormedSheet& sheet) {
 class Projector {
  public:
   Projector(const FormedSheet& sheet, const ThermoformPrintOptions& options)
-      : options_(options), inner_(inner_surface(sheet, thickest_mm_)), normals_(face_normals(sheet.mesh)), bvh_(inner_) {
+      : options_(options),
+        inner_(inner_surface(sheet, thickest_mm_)),
+        normals_(face_normals(sheet.mesh)),
+        bvh_(inner_) {
     if (options.projection == SheetProjectionMethod::along_normal) rays_.emplace(inner_);
   }
 
   double thickest_mm() const { return thickest_mm_; }
 
   /// Nothing when no face that looks the same way is near enough.
-  std::optional<NearestPoint> operator()(const Vec3& p, const Vec3& normal) const { return rays_ ? along_normal(p, normal) : nearest(p, normal); }
+  std::optional<NearestPoint> operator()(const Vec3& p, const Vec3& normal) const {
+    return rays_ ? along_normal(p, normal) : nearest(p, normal);
+  }
 
  private:
-  bool agrees(int face, const Vec3& normal) const { return normals_.row(face).dot(normal.transpose()) > least_agreement; }
+  bool agrees(int face, const Vec3& normal) const {
+    return normals_.row(face).dot(normal.transpose()) > least_agreement;
+  }
 
   std::optional<NearestPoint> nearest(const Vec3& p, const Vec3& normal) const {
     NearestPoint best;
@@ -74,10 +86,12 @@ class Projector {
     bvh_.near_point(p, squared, [&](const TriangleBvh::Block& block) {
       for (std::size_t lane = 0; lane < TriangleBvh::width && block.face[lane] >= 0; ++lane) {
         if (!agrees(block.face[lane], normal)) continue;
-        NearestPoint candidate = nearest_on_triangle(p, block.position(0, lane), block.position(1, lane), block.position(2, lane));
+        NearestPoint candidate =
+            nearest_on_triangle(p, block.position(0, lane), block.position(1, lane), block.position(2, lane));
         candidate.face = block.face[lane];
         const bool better = best.face < 0 ? candidate.distance <= options_.gap_mm
-                                          : candidate.distance < best.distance || (candidate.distance == best.distance && candidate.face < best.face);
+                                          : candidate.distance < best.distance ||
+                                                (candidate.distance == best.distance && candidate.face < best.face);
         if (!better) continue;
         best = candidate;
         squared = best.distance * best.distance * (1 + 1e-14);
@@ -119,21 +133,24 @@ Coverage worst(Coverage a, Coverage b) { return a == Coverage::coloured ? b : a;
 
 }  // namespace
 
-ProjectedSurface project_onto_sheet(const RefinedSurface& surface, const FormedSheet& sheet, const ThermoformPrintOptions& options, Context& context) {
+ProjectedSurface project_onto_sheet(const RefinedSurface& surface, const FormedSheet& sheet,
+                                    const ThermoformPrintOptions& options, Context& context) {
   context.progress(0, "Carrying the surface to the sheet");
   const Projector projector(sheet, options);
   const std::vector<double> shrunk_by = shrinkage(sheet);
   const RayCaster model(surface.undivided);
   const Positions normals = normals_above(surface);
   const Eigen::Index n = surface.mesh.V.rows(), m = surface.mesh.F.rows();
-  const Vec2 opening_lower = sheet.sheet_mm.colwise().minCoeff().transpose(), opening_upper = sheet.sheet_mm.colwise().maxCoeff().transpose();
+  const Vec2 opening_lower = sheet.sheet_mm.colwise().minCoeff().transpose(),
+             opening_upper = sheet.sheet_mm.colwise().maxCoeff().transpose();
   ProjectedSurface result;
   result.vertex.assign(static_cast<std::size_t>(n), Coverage::below_plate);
   result.sheet_mm = TextureCoordinates::Zero(n, 2);
   result.gap_mm = result.stretch = Eigen::VectorXd::Zero(n);
   std::vector<char> above(static_cast<std::size_t>(n), 0);
   for (Eigen::Index f = 0; f < m; ++f)
-    for (int k = 0; k < 3 && !surface.below_plate[static_cast<std::size_t>(f)]; ++k) above[static_cast<std::size_t>(surface.mesh.F(f, k))] = 1;
+    for (int k = 0; k < 3 && !surface.below_plate[static_cast<std::size_t>(f)]; ++k)
+      above[static_cast<std::size_t>(surface.mesh.F(f, k))] = 1;
 
   std::vector<int> landed(static_cast<std::size_t>(n), -1);
   constexpr std::size_t grain = 1024;
@@ -154,9 +171,11 @@ ProjectedSurface project_onto_sheet(const RefinedSurface& surface, const FormedS
         }
         continue;
       }
-      const bool within = (p.head<2>().array() >= opening_lower.array()).all() && (p.head<2>().array() <= opening_upper.array()).all();
+      const bool within =
+          (p.head<2>().array() >= opening_lower.array()).all() && (p.head<2>().array() <= opening_upper.array()).all();
       if (!within) result.vertex[i] = Coverage::outside;
-      else if (normal.z() < 0 || model.first_hit(p + off_surface_mm * normal, Vec3::UnitZ(), off_surface_mm, 1e6)) result.vertex[i] = Coverage::hidden;
+      else if (normal.z() < 0 || model.first_hit(p + off_surface_mm * normal, Vec3::UnitZ(), off_surface_mm, 1e6))
+        result.vertex[i] = Coverage::hidden;
       else result.vertex[i] = Coverage::not_touched;
     }
   });
@@ -173,10 +192,13 @@ ProjectedSurface project_onto_sheet(const RefinedSurface& surface, const FormedS
       const int at_i = landed[static_cast<std::size_t>(i)], at_j = landed[static_cast<std::size_t>(j)];
       if (at_i < 0 || at_j < 0) continue;
       const double length = (surface.mesh.V.row(i) - surface.mesh.V.row(j)).norm() + projector.thickest_mm();
-      const double reach = torn_factor * std::max(shrunk_by[static_cast<std::size_t>(at_i)], shrunk_by[static_cast<std::size_t>(at_j)]) * length;
+      const double reach =
+          torn_factor * std::max(shrunk_by[static_cast<std::size_t>(at_i)], shrunk_by[static_cast<std::size_t>(at_j)]) *
+          length;
       torn = torn || (result.sheet_mm.row(i) - result.sheet_mm.row(j)).norm() > reach;
     }
-    result.face[static_cast<std::size_t>(f)] = coverage == Coverage::coloured && torn ? Coverage::not_touched : coverage;
+    result.face[static_cast<std::size_t>(f)] =
+        coverage == Coverage::coloured && torn ? Coverage::not_touched : coverage;
   }
   return result;
 }

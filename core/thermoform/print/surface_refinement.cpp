@@ -22,16 +22,20 @@ class Refiner {
       if (std::abs(V_.back().z()) < rounding_mm) V_.back().z() = 0;  // no slivers where the model stands on the plate
     }
     for (Eigen::Index f = 0; f < mesh.F.rows(); ++f)
-      faces_.push_back({{mesh.F(f, 0), mesh.F(f, 1), mesh.F(f, 2)}, static_cast<int>(f), {Eigen::Vector2f(0, 0), Eigen::Vector2f(1, 0), Eigen::Vector2f(0, 1)}});
+      faces_.push_back({{mesh.F(f, 0), mesh.F(f, 1), mesh.F(f, 2)},
+                        static_cast<int>(f),
+                        {Eigen::Vector2f(0, 0), Eigen::Vector2f(1, 0), Eigen::Vector2f(0, 1)}});
   }
 
   /// Splits every edge that passes through z = 0.
   void cut_at_plate() {
-    split([&](const Vec3& a, const Vec3& b, double& t) {
-      if (!((a.z() < 0 && b.z() > 0) || (a.z() > 0 && b.z() < 0))) return false;
-      t = a.z() / (a.z() - b.z());
-      return true;
-    }, true);
+    split(
+        [&](const Vec3& a, const Vec3& b, double& t) {
+          if (!((a.z() < 0 && b.z() > 0) || (a.z() > 0 && b.z() < 0))) return false;
+          t = a.z() / (a.z() - b.z());
+          return true;
+        },
+        true);
   }
 
   /// One pass of bisection; false when there was nothing left to do, or no room for it.
@@ -42,10 +46,12 @@ class Refiner {
       for (std::size_t k = 0; k < 3 && !is_below(face); ++k)
         if ((at(face.v[k]) - at(face.v[(k + 1) % 3])).squaredNorm() > squared) ++added;
     if (added == 0 || faces_.size() + added > static_cast<std::size_t>(most_triangles)) return false;
-    split([&](const Vec3& a, const Vec3& b, double& t) {
-      t = 0.5;
-      return (a - b).squaredNorm() > squared;
-    }, false);
+    split(
+        [&](const Vec3& a, const Vec3& b, double& t) {
+          t = 0.5;
+          return (a - b).squaredNorm() > squared;
+        },
+        false);
     return true;
   }
 
@@ -57,11 +63,13 @@ class Refiner {
     double squared = 0;
     for (std::size_t f = 0; f < faces_.size(); ++f) {
       const Face& face = faces_[f];
-      for (std::size_t k = 0; k < 3; ++k) refined.mesh.F(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k)) = face.v[k];
+      for (std::size_t k = 0; k < 3; ++k)
+        refined.mesh.F(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k)) = face.v[k];
       refined.face_of.push_back(face.origin);
       refined.place.push_back(face.place);
       refined.below_plate.push_back(is_below(face));
-      for (std::size_t k = 0; k < 3 && !is_below(face); ++k) squared = std::max(squared, (at(face.v[k]) - at(face.v[(k + 1) % 3])).squaredNorm());
+      for (std::size_t k = 0; k < 3 && !is_below(face); ++k)
+        squared = std::max(squared, (at(face.v[k]) - at(face.v[(k + 1) % 3])).squaredNorm());
     }
     refined.edge_mm = std::sqrt(squared);
     return refined;
@@ -90,14 +98,17 @@ class Refiner {
     now.V.resize(static_cast<Eigen::Index>(V_.size()), 3);  // only counted
     now.F.resize(static_cast<Eigen::Index>(faces_.size()), 3);
     for (std::size_t f = 0; f < faces_.size(); ++f)
-      for (std::size_t k = 0; k < 3; ++k) now.F(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k)) = faces_[f].v[k];
+      for (std::size_t k = 0; k < 3; ++k)
+        now.F(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k)) = faces_[f].v[k];
     const Adjacency adjacency(now);
     context_.check_cancelled();
     std::vector<int> middle(static_cast<std::size_t>(adjacency.edge_count()), -1);
     std::vector<double> weight(middle.size(), 0);
     for (std::size_t e = 0; e < middle.size(); ++e) {
       const Edge edge = adjacency.edges()[e];
-      const bool above = std::ranges::any_of(adjacency.halfedges_of_edge(static_cast<int>(e)), [&](int h) { return onto_plate || !is_below(faces_[static_cast<std::size_t>(h / 3)]); });
+      const bool above = std::ranges::any_of(adjacency.halfedges_of_edge(static_cast<int>(e)), [&](int h) {
+        return onto_plate || !is_below(faces_[static_cast<std::size_t>(h / 3)]);
+      });
       if (double t = 0; above && wants(at(edge.lower), at(edge.higher), t)) {
         middle[e] = static_cast<int>(V_.size());
         weight[e] = t;
@@ -127,7 +138,8 @@ class Refiner {
   }
 
   void divide(const Face& face, const std::array<int, 3>& m, const std::array<Eigen::Vector2f, 3>& place, int count) {
-    const auto add = [&](int a, int b, int c, const Eigen::Vector2f& pa, const Eigen::Vector2f& pb, const Eigen::Vector2f& pc) {
+    const auto add = [&](int a, int b, int c, const Eigen::Vector2f& pa, const Eigen::Vector2f& pb,
+                         const Eigen::Vector2f& pc) {
       faces_.push_back({{a, b, c}, face.origin, {pa, pb, pc}});
     };
     if (count == 0) {
@@ -135,7 +147,8 @@ class Refiner {
       return;
     }
     if (count == 3) {
-      for (std::size_t k = 0; k < 3; ++k) add(face.v[k], m[k], m[(k + 2) % 3], face.place[k], place[k], place[(k + 2) % 3]);
+      for (std::size_t k = 0; k < 3; ++k)
+        add(face.v[k], m[k], m[(k + 2) % 3], face.place[k], place[k], place[(k + 2) % 3]);
       add(m[0], m[1], m[2], place[0], place[1], place[2]);
       return;
     }
@@ -167,7 +180,8 @@ class Refiner {
 
 }  // namespace
 
-RefinedSurface refine_above_plate(const TriangleMesh& mesh, double longest_edge_mm, int most_triangles, Context& context) {
+RefinedSurface refine_above_plate(const TriangleMesh& mesh, double longest_edge_mm, int most_triangles,
+                                  Context& context) {
   Refiner refiner(mesh, context);
   refiner.cut_at_plate();
   while (refiner.bisect(longest_edge_mm, most_triangles)) {}

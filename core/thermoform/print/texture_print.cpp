@@ -65,21 +65,26 @@ void say(TexturePrint& print, const ThermoformPrintOptions& options) {
     if (area(c) > 1e-3 * total) add(number("%.1f %% of the surface above the plate ", 100 * area(c) / total) + what);
   };
   share(Coverage::hidden, "is hidden from the sheet (undercuts) and stays without colour.");
-  share(Coverage::not_touched, "lies where the sheet spans a corner and stays without colour: allow a wider gap, or model it less deep.");
+  share(Coverage::not_touched,
+        "lies where the sheet spans a corner and stays without colour: allow a wider gap, or model it less deep.");
   share(Coverage::outside, "lies outside of the clamp's opening: make the model smaller.");
   if (print.surface.edge_mm > 1.001 * options.map_edge_mm)
-    add("The model was divided to edges of " + number("%.2f", print.surface.edge_mm) + " mm only, to stay below 3 million triangles.");
+    add("The model was divided to edges of " + number("%.2f", print.surface.edge_mm) +
+        " mm only, to stay below 3 million triangles.");
   if (print.stretch_max > pale_stretch)
-    add("The print is stretched up to " + number("%.1f", print.stretch_max) + " times in area: colours look paler there.");
+    add("The print is stretched up to " + number("%.1f", print.stretch_max) +
+        " times in area: colours look paler there.");
   if (options.marks && registration_marks(options).empty())
-    add("The clamped rim is narrower than " + number("%.0f", narrowest_rim_mm) + " mm, which leaves no room for registration marks.");
+    add("The clamped rim is narrower than " + number("%.0f", narrowest_rim_mm) +
+        " mm, which leaves no room for registration marks.");
 }
 
 }  // namespace
 
 double TexturePrint::uncoloured_mm2() const {
   double sum = 0;
-  for (const Coverage c : {Coverage::hidden, Coverage::not_touched, Coverage::outside}) sum += area_mm2[static_cast<std::size_t>(c)];
+  for (const Coverage c : {Coverage::hidden, Coverage::not_touched, Coverage::outside})
+    sum += area_mm2[static_cast<std::size_t>(c)];
   return sum;
 }
 
@@ -88,8 +93,9 @@ double TexturePrint::uncoloured_share() const {
   return total > 0 ? uncoloured_mm2() / total : 0;
 }
 
-TexturePrint make_texture_print(const Model& model, const TriangleMesh& placed, const FormedSheet& sheet, const std::optional<Image>& own_picture,
-                                const ThermoformPrintOptions& options, Context& context) {
+TexturePrint make_texture_print(const Model& model, const TriangleMesh& placed, const FormedSheet& sheet,
+                                const std::optional<Image>& own_picture, const ThermoformPrintOptions& options,
+                                Context& context) {
   TexturePrint print;
   print.grid = print_grid(options);
   Stopwatch watch;

@@ -42,10 +42,8 @@ class AssemblyWriter {
         "pen that washes out.");
     joins();
     if (plan_.rig) rig();
-    if (plan_.has_tape())
-      tapes();
-    else
-      edges();
+    if (plan_.has_tape()) tapes();
+    else edges();
     if (!plan_.closures.length_mm.empty()) cuts();
     AssemblySheet sheet;
     sheet.pages = flow_.finish();
@@ -86,8 +84,8 @@ class AssemblyWriter {
       const auto sheets = std::count(plan_.fabric_of_sheet.begin(), plan_.fabric_of_sheet.end(), fabric);
       const std::string colour = plan_.fabrics > 1 ? ", " + fabric_name(fabric) : "";
       flow_.paragraph("- " + std::string(plan_.has_tape() ? "Cloth" : "Paper or card") + colour + ": " +
-                      count(static_cast<std::size_t>(sheets), "sheet") + " of " + number(options_.bed_x_mm, 0) + " by " +
-                      number(options_.bed_y_mm, 0) + " mm; the pieces take " + number(area / 100, 0) +
+                      count(static_cast<std::size_t>(sheets), "sheet") + " of " + number(options_.bed_x_mm, 0) +
+                      " by " + number(options_.bed_y_mm, 0) + " mm; the pieces take " + number(area / 100, 0) +
                       " square centimetres of it" + pieces_of(fabric) + ".");
     }
     if (plan_.has_tape()) {
@@ -104,7 +102,8 @@ class AssemblyWriter {
                              : "- Contact glue for cloth, clips.");
       flow_.paragraph("- tape.pdf, printed at 100 %, and a pen for the zipper.");
       for (const double mm : plan_.closures.length_mm)
-        flow_.paragraph("- Hook-and-loop tape, " + number(options_.hook_and_loop_mm, 0) + " mm wide: 2 x " + number(mm, 0) + " mm.");
+        flow_.paragraph("- Hook-and-loop tape, " + number(options_.hook_and_loop_mm, 0) + " mm wide: 2 x " +
+                        number(mm, 0) + " mm.");
     } else {
       flow_.paragraph("- Glue that sets quickly" + std::string(plan_.tabs
                                                                    ? "; a blunt knife to score the folds of the tabs."
@@ -218,10 +217,11 @@ class AssemblyWriter {
   void rig() {
     const Rig& rig = *plan_.rig;
     flow_.heading(step("Screw the rigs together"));
-    flow_.paragraph("Cut rig.svg, rig.dxf or rig.pdf from board or acrylic glass: for every piece a base, a layer with tracks " +
-                    number(options_.track_width_mm, 1) + " mm wide, as thick as the teeth, and a cover. " +
-                    count(static_cast<std::size_t>(rig.screws), "screw") + " of " + number(options_.screw_mm, 1) +
-                    " mm hold them; a piece whose rig is done lends its screws to the next.");
+    flow_.paragraph(
+        "Cut rig.svg, rig.dxf or rig.pdf from board or acrylic glass: for every piece a base, a layer with tracks " +
+        number(options_.track_width_mm, 1) + " mm wide, as thick as the teeth, and a cover. " +
+        count(static_cast<std::size_t>(rig.screws), "screw") + " of " + number(options_.screw_mm, 1) +
+        " mm hold them; a piece whose rig is done lends its screws to the next.");
     flow_.paragraph(
         "Slide each tape in at an opening, teeth into the track, tape up through the slot, until its numbers stand at those of the cover. "
         "Lay the piece into its outline, put glue on the tape, press it flat behind the cloth, and let it set before it leaves the rig. Cut "
@@ -283,26 +283,32 @@ class AssemblyWriter {
     flow_.heading(step(count_of == 1 ? "Close the cut" : "Close the cuts"));
     if (tape)
       flow_.paragraph(
-          std::string(sewn() ? "Sew" : "Glue") + " the hook tape behind the edges named HOOK, between the edge and the line beside it, and the loop tape " +
+          std::string(sewn() ? "Sew" : "Glue") +
+          " the hook tape behind the edges named HOOK, between the edge and the line beside it, and the loop tape " +
           "onto the front of the allowance beyond the edges named LOOP, up to the line; both before the zipper is attached, as long as the cloth is flat. "
           "When it is zipped up lay the HOOK edge onto the line of the LOOP edge, same numbers on each other, and press.");
     else
-      flow_.paragraph(plan_.tabs ? "The zipped edges leave a cut. Fold the tabs of one of its edges named JOIN back and glue them behind the other, same numbers on each other."
-                                 : "The joined edges leave a cut. Its edges named JOIN meet edge to edge, same numbers on each other: put adhesive tape behind them.");
+      flow_.paragraph(
+          plan_.tabs
+              ? "The zipped edges leave a cut. Fold the tabs of one of its edges named JOIN back and glue them behind the other, same numbers on each other."
+              : "The joined edges leave a cut. Its edges named JOIN meet edge to edge, same numbers on each other: put adhesive tape behind them.");
     for (std::size_t c = 0; c < count_of; ++c) {
       const int cut = static_cast<int>(c) + 1;
       const auto pieces = [&](ClosureSide side) {
         std::string names;
         for (const ClosureStretch& stretch : plan_.closures.stretches)
-          if (stretch.cut == cut && stretch.side == side && names.find(name(stretch.piece) + ",") == std::string::npos) names += name(stretch.piece) + ", ";
+          if (stretch.cut == cut && stretch.side == side && names.find(name(stretch.piece) + ",") == std::string::npos)
+            names += name(stretch.piece) + ", ";
         return names.substr(0, names.size() - 2);
       };
-      const auto markers = std::count_if(plan_.closures.markers.begin(), plan_.closures.markers.end(), [&](const ClosureMarker& m) { return m.cut == cut; });
-      flow_.paragraph("Cut " + std::to_string(cut) + ", " + number(plan_.closures.length_mm[c], 0) + " mm: " +
-                          closure_words(cut, ClosureSide::hook, tape) + " on " + pieces(ClosureSide::hook) + " and " +
-                          closure_words(cut, ClosureSide::loop, tape) + " on " + pieces(ClosureSide::loop) + ", " +
-                          count(static_cast<std::size_t>(markers), "number") + " on either, every " + number(plan_.marker_spacing_mm, 0) +
-                          " mm, from " + std::to_string(cut) + "-0 where the zipper meets it.",
+      const auto markers = std::count_if(plan_.closures.markers.begin(), plan_.closures.markers.end(),
+                                         [&](const ClosureMarker& m) { return m.cut == cut; });
+      flow_.paragraph("Cut " + std::to_string(cut) + ", " + number(plan_.closures.length_mm[c], 0) +
+                          " mm: " + closure_words(cut, ClosureSide::hook, tape) + " on " + pieces(ClosureSide::hook) +
+                          " and " + closure_words(cut, ClosureSide::loop, tape) + " on " + pieces(ClosureSide::loop) +
+                          ", " + count(static_cast<std::size_t>(markers), "number") + " on either, every " +
+                          number(plan_.marker_spacing_mm, 0) + " mm, from " + std::to_string(cut) +
+                          "-0 where the zipper meets it.",
                       4);
     }
   }

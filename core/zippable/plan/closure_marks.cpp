@@ -13,7 +13,8 @@ namespace {
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// Per point of an open polyline, how far it moves for edges to move by 1 to the left: to where they meet, by 2 at most.
+/// Per point of an open polyline, how far it moves for edges to move by 1 to the left: to where they meet, by 2 at
+/// most.
 std::vector<Vec2> miters(const std::vector<Vec2>& points) {
   std::vector<Vec2> result;
   const auto normal = [&](std::size_t i) {
@@ -21,7 +22,8 @@ std::vector<Vec2> miters(const std::vector<Vec2>& points) {
     return Vec2(Vec2(-way.y(), way.x()) / std::max(way.norm(), 1e-12));
   };
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vec2 before = normal(i > 0 ? i - 1 : 0), after = normal(i + 1 < points.size() ? i : i - 1), sum = before + after;
+    const Vec2 before = normal(i > 0 ? i - 1 : 0), after = normal(i + 1 < points.size() ? i : i - 1),
+               sum = before + after;
     result.push_back(sum / std::max(1 + before.dot(after), 0.5 * sum.norm()));
   }
   return result;
@@ -39,8 +41,14 @@ double distance_to_mm(const std::vector<Vec2>& line, const Vec2& p) {
 
 class Marking {
  public:
-  Marking(const FlatDesign& design, const std::vector<Vec2>& flat, const Splitting& splitting, const ClosureMarkOptions& options, const Context& context)
-      : design_(design), flat_(flat), splitting_(splitting), options_(options), context_(context), faces_(std::size_t(splitting.piece_count)) {
+  Marking(const FlatDesign& design, const std::vector<Vec2>& flat, const Splitting& splitting,
+          const ClosureMarkOptions& options, const Context& context)
+      : design_(design),
+        flat_(flat),
+        splitting_(splitting),
+        options_(options),
+        context_(context),
+        faces_(std::size_t(splitting.piece_count)) {
     for (int f = 0; f < design.F.rows(); ++f) faces_[splitting.piece_of_face[f]].push_back(f);
   }
 
@@ -49,7 +57,8 @@ class Marking {
   void mark(int cut, const HandleClosure& closure) {
     marks.length_mm.push_back(closure.length_mm);
     const std::size_t first = marks.stretches.size();
-    for (const ClosureSide side : {ClosureSide::hook, ClosureSide::loop}) add_stretches(cut, side, closure.sides[static_cast<std::size_t>(side)]);
+    for (const ClosureSide side : {ClosureSide::hook, ClosureSide::loop})
+      add_stretches(cut, side, closure.sides[static_cast<std::size_t>(side)]);
     for (std::size_t i = first; i < marks.stretches.size(); ++i) {
       context_.check_cancelled();
       const ClosureStretch& stretch = marks.stretches[i];
@@ -81,8 +90,8 @@ class Marking {
       }
   }
 
-  /// On an edge's line, as far from its ends in the plane as the cut's place is from theirs in space: where room was made for the zipper the
-  /// edge's end has moved along it. None where the place is gone with that.
+  /// On an edge's line, as far from its ends in the plane as the cut's place is from theirs in space: where room was
+  /// made for the zipper the edge's end has moved along it. None where the place is gone with that.
   std::optional<SideMark> place(const std::vector<ClosureRun>& runs, double along) const {
     for (const ClosureRun& run : runs)
       for (int k = 0; k < run.edge_count(); ++k) {
@@ -170,7 +179,8 @@ class Marking {
   void add_flap(const ClosureStretch& stretch) {
     constexpr int most_rounds = 8;
     const std::vector<Vec2> edge = line_of(stretch);
-    const double length = std::inner_product(edge.begin() + 1, edge.end(), edge.begin(), 0.0, std::plus<>(), [](const Vec2& a, const Vec2& b) { return (a - b).norm(); });
+    const double length = std::inner_product(edge.begin() + 1, edge.end(), edge.begin(), 0.0, std::plus<>(),
+                                             [](const Vec2& a, const Vec2& b) { return (a - b).norm(); });
     const double depth = std::min(options_.flap_mm, 0.25 * length);
     if (!(depth > 1e-3)) return;
     std::vector<Vec2> foot{edge.front()};
@@ -204,13 +214,16 @@ class Marking {
       const Vec2 way = foot[j + 1] - foot[j];
       if (!mine.empty() && !((outer(j + 1) - outer(j)).dot(way) > 0.05 * way.squaredNorm())) return true;
       const auto meets = [&](const Triangle& other, double touching_mm) {
-        return std::any_of(mine.begin(), mine.end(), [&](const Triangle& t) { return triangles_overlap(t, other, touching_mm); });
+        return std::any_of(mine.begin(), mine.end(),
+                           [&](const Triangle& t) { return triangles_overlap(t, other, touching_mm); });
       };
       const int count = design_.vertex_count(), v = stretch.vertices[vertex[j]];
       for (const int f : faces_[stretch.piece]) {
         bool beside = false;
         for (int k = 0; k < 3; ++k) beside |= (design_.F(f, k) - v + 1 + count) % count <= 3;
-        if (meets({flat_[design_.F(f, 0)], flat_[design_.F(f, 1)], flat_[design_.F(f, 2)]}, beside ? 1e-7 : -options_.clearance_mm)) return true;
+        if (meets({flat_[design_.F(f, 0)], flat_[design_.F(f, 1)], flat_[design_.F(f, 2)]},
+                  beside ? 1e-7 : -options_.clearance_mm))
+          return true;
       }
       for (const EdgeFlap& flap : marks.flaps) {
         if (flap.piece != stretch.piece) continue;
@@ -252,8 +265,8 @@ class Marking {
 
 double ClosureMarks::total_mm() const { return std::accumulate(length_mm.begin(), length_mm.end(), 0.0); }
 
-ClosureMarks mark_closures(const FlatDesign& design, const std::vector<Vec2>& flat_mm, const Splitting& splitting, const ClosureMarkOptions& options,
-                           const Context& context) {
+ClosureMarks mark_closures(const FlatDesign& design, const std::vector<Vec2>& flat_mm, const Splitting& splitting,
+                           const ClosureMarkOptions& options, const Context& context) {
   Marking marking(design, flat_mm, splitting, options, context);
   for (std::size_t i = 0; i < design.closures.size(); ++i) marking.mark(static_cast<int>(i) + 1, design.closures[i]);
   return std::move(marking.marks);

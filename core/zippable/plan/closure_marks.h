@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// What the zipper does not close: cut handles and slits, laid one edge over the other with hook-and-loop tape, and what is marked on the
-// cloth for it. Thesis Sec. 5.5, Fig. 5.3.
+// What the zipper does not close: cut handles and slits, laid one edge over the other with hook-and-loop tape, and what
+// is marked on the cloth for it. Thesis Sec. 5.5, Fig. 5.3.
 #include <array>
 #include <string>
 #include <vector>
@@ -16,8 +16,8 @@ namespace formwright {
 enum class ClosureSide { hook, loop };
 
 struct ClosureMarkOptions {
-  double tape_mm = 20;      // width of the hook-and-loop tape; 0: edges are joined without one
-  double flap_mm = 20;      // depth of the allowance along the loop side; 0: none
+  double tape_mm = 20;        // width of the hook-and-loop tape; 0: edges are joined without one
+  double flap_mm = 20;        // depth of the allowance along the loop side; 0: none
   double flap_length_mm = 0;  // along the edge, about, of one flap; 0: as long as the edge
   double marker_spacing_mm = 30;
   double clearance_mm = 0.25;  // between cuts that are not neighbours
@@ -28,8 +28,9 @@ struct ClosureStretch {
   int cut = 0;  // from 1
   ClosureSide side = ClosureSide::hook;
   int piece = 0;
-  std::vector<int> vertices;     // of the boundary
-  double from_mm = 0, to_mm = 0;  // along the cut; from above to on the loop side; around a loop's origin where not ordered so
+  std::vector<int> vertices;  // of the boundary
+  double from_mm = 0,
+         to_mm = 0;  // along the cut; from above to on the loop side; around a loop's origin where not ordered so
 };
 
 /// What is added beyond an edge: its outer corners from one end to the other.
@@ -66,8 +67,8 @@ struct ClosureMarks {
 };
 
 /// `flat_mm`: with room for the zipper, as split. Throws Error: cancelled.
-ClosureMarks mark_closures(const FlatDesign& design, const std::vector<Vec2>& flat_mm, const Splitting& splitting, const ClosureMarkOptions& options,
-                           const Context& context);
+ClosureMarks mark_closures(const FlatDesign& design, const std::vector<Vec2>& flat_mm, const Splitting& splitting,
+                           const ClosureMarkOptions& options, const Context& context);
 
 /// "HOOK 1", "LOOP 1"; "JOIN 1" of paper.
 std::string closure_words(int cut, ClosureSide side, bool tape);

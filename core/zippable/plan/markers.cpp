@@ -32,7 +32,8 @@ class Side {
   }
 
   SideMark mark(const ZipperPlace& place) const {
-    const Vec2 way = (left_ ? 1 : -1) * (at(place.after) - at(place.before));  // the boundary runs back along the right side
+    const Vec2 way =
+        (left_ ? 1 : -1) * (at(place.after) - at(place.before));  // the boundary runs back along the right side
     const Vec2 along = way.norm() > 0 ? Vec2(way.normalized()) : Vec2(1, 0);
     return {at(place.before) + place.share * (at(place.after) - at(place.before)), along, Vec2(-along.y(), along.x()),
             vertex_[left_ ? place.before : place.after]};
@@ -63,7 +64,8 @@ SideMark side_mark(const FlatDesign& design, const std::vector<Vec2>& flat_mm, b
 
 Markers place_markers(const FlatDesign& design, const OffsetRibbon& ribbon, double spacing_mm) {
   if (design.zipper_mm / spacing_mm > 9999)
-    throw Error(ErrorCode::invalid_input, "marker_spacing_mm", "That would be more than 9999 markers: place them farther apart.");
+    throw Error(ErrorCode::invalid_input, "marker_spacing_mm",
+                "That would be more than 9999 markers: place them farther apart.");
   Markers result;
   const Side left(design, ribbon.flat_mm, true), right(design, ribbon.flat_mm, false);
   double last_arclength = 0, last_left = 0, last_right = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Numbered marks at regular distances along the zipper, on both sides of the ribbon, and how long the sides are between them.
+// Numbered marks at regular distances along the zipper, on both sides of the ribbon, and how long the sides are between
+// them.
 #include <vector>
 
 #include "zippable/plan/zipper_offset.h"
@@ -30,7 +31,8 @@ struct Markers {
   std::vector<MarkerInterval> intervals;
 };
 
-/// At every multiple of `spacing_mm` along the zipper. Throws Error{invalid_input, "marker_spacing_mm"} above 9999 of them.
+/// At every multiple of `spacing_mm` along the zipper. Throws Error{invalid_input, "marker_spacing_mm"} above 9999 of
+/// them.
 Markers place_markers(const FlatDesign& design, const OffsetRibbon& ribbon, double spacing_mm);
 
 /// The place on one moved side of the ribbon that belongs to a place of the zipper.

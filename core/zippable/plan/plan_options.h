@@ -63,7 +63,9 @@ struct PlanOptions {
   InstructionPaper paper = InstructionPaper::a4;
 
   static constexpr auto parameters = std::tuple{
-      parameter("coil", &PlanOptions::coil, "Zipper", "Size of the coil zipper, which sets tape, teeth and gap; none for paper.").group("Zipper"),
+      parameter("coil", &PlanOptions::coil, "Zipper",
+                "Size of the coil zipper, which sets tape, teeth and gap; none for paper.")
+          .group("Zipper"),
       parameter("tape_width_mm", &PlanOptions::tape_width_mm, "Tape", unit::mm, 0, 1000,
                 "Width of the fabric tape of one side, without teeth; automatic: of the coil's size.")
           .slider(5, 30)
@@ -79,8 +81,9 @@ struct PlanOptions {
           .slider(0, 5)
           .group("Zipper")
           .advanced(),
-      parameter("method", &PlanOptions::method, "Zipper attached by",
-                "Sewing moves the edges in the plane; gluing along the curve's binormal, which keeps both sides as long as each other.")
+      parameter(
+          "method", &PlanOptions::method, "Zipper attached by",
+          "Sewing moves the edges in the plane; gluing along the curve's binormal, which keeps both sides as long as each other.")
           .group("Zipper"),
       parameter("marker_spacing_mm", &PlanOptions::marker_spacing_mm, "Markers every", unit::mm, 1, 10000,
                 "Along the zipper; automatic: 30 mm for sewing, 50 mm for gluing and on the rig.")
@@ -91,11 +94,22 @@ struct PlanOptions {
           .slider(1, 10)
           .group("Sheets")
           .advanced(),
-      parameter("bed_x_mm", &PlanOptions::bed_x_mm, "Bed, x", unit::mm, 20, 10000, "Width of one sheet of material.").slider(100, 1500).group("Sheets"),
-      parameter("bed_y_mm", &PlanOptions::bed_y_mm, "Bed, y", unit::mm, 20, 10000, "Depth of one sheet of material.").slider(100, 1500).group("Sheets"),
-      parameter("margin_mm", &PlanOptions::margin_mm, "Margin", unit::mm, 0, 1000, "Kept free along the edges of a sheet.").slider(0, 30).group("Sheets"),
-      parameter("spacing_mm", &PlanOptions::spacing_mm, "Spacing", unit::mm, 0.5, 1000, "Between pieces on a sheet, at least.").slider(0.5, 20).group("Sheets"),
-      parameter("grain", &PlanOptions::grain, "Grain", "Whether pieces lie with their long side along the material's grain, which runs along x.")
+      parameter("bed_x_mm", &PlanOptions::bed_x_mm, "Bed, x", unit::mm, 20, 10000, "Width of one sheet of material.")
+          .slider(100, 1500)
+          .group("Sheets"),
+      parameter("bed_y_mm", &PlanOptions::bed_y_mm, "Bed, y", unit::mm, 20, 10000, "Depth of one sheet of material.")
+          .slider(100, 1500)
+          .group("Sheets"),
+      parameter("margin_mm", &PlanOptions::margin_mm, "Margin", unit::mm, 0, 1000,
+                "Kept free along the edges of a sheet.")
+          .slider(0, 30)
+          .group("Sheets"),
+      parameter("spacing_mm", &PlanOptions::spacing_mm, "Spacing", unit::mm, 0.5, 1000,
+                "Between pieces on a sheet, at least.")
+          .slider(0.5, 20)
+          .group("Sheets"),
+      parameter("grain", &PlanOptions::grain, "Grain",
+                "Whether pieces lie with their long side along the material's grain, which runs along x.")
           .group("Sheets"),
       parameter("seam_allowance_mm", &PlanOptions::seam_allowance_mm, "Seam allowance", unit::mm, 0, 1000,
                 "Added beyond both edges where the ribbon is split, to join them again.")
@@ -109,16 +123,21 @@ struct PlanOptions {
                 "Width of what the cut takes away: outlines grow by half of it.")
           .slider(0, 1)
           .group("Sheets"),
-      parameter("edges", &PlanOptions::edges, "Edges", "Of paper, without a zipper: plain, to be joined edge to edge, or with tabs along one edge of every seam.")
+      parameter(
+          "edges", &PlanOptions::edges, "Edges",
+          "Of paper, without a zipper: plain, to be joined edge to edge, or with tabs along one edge of every seam.")
           .group("Paper model"),
-      parameter("tab_depth_mm", &PlanOptions::tab_depth_mm, "Depth of tabs", unit::mm, 1, 100, "From fold to outer edge; less where there is no room.")
+      parameter("tab_depth_mm", &PlanOptions::tab_depth_mm, "Depth of tabs", unit::mm, 1, 100,
+                "From fold to outer edge; less where there is no room.")
           .slider(3, 15)
           .group("Paper model"),
-      parameter("tab_length_mm", &PlanOptions::tab_length_mm, "Length of tabs", unit::mm, 4, 1000, "Along the fold; less where the edge is curved.")
+      parameter("tab_length_mm", &PlanOptions::tab_length_mm, "Length of tabs", unit::mm, 4, 1000,
+                "Along the fold; less where the edge is curved.")
           .slider(5, 40)
           .group("Paper model"),
-      parameter("rig", &PlanOptions::rig, "Fastening rig",
-                "Also three layers of board for every piece, which hold zipper and cloth in place while they are joined.")
+      parameter(
+          "rig", &PlanOptions::rig, "Fastening rig",
+          "Also three layers of board for every piece, which hold zipper and cloth in place while they are joined.")
           .group("Rig"),
       parameter("track_width_mm", &PlanOptions::track_width_mm, "Track", unit::mm, 1, 20,
                 "Width of the tracks in the middle layer, which take the teeth of one tape.")
@@ -129,15 +148,19 @@ struct PlanOptions {
           .slider(0.5, 4)
           .group("Rig")
           .advanced(),
-      parameter("rig_opening_mm", &PlanOptions::rig_opening_mm, "Openings", unit::mm, 2, 60, "Diameter of the holes where a tape is slid in.")
+      parameter("rig_opening_mm", &PlanOptions::rig_opening_mm, "Openings", unit::mm, 2, 60,
+                "Diameter of the holes where a tape is slid in.")
           .slider(6, 20)
           .group("Rig")
           .advanced(),
-      parameter("screw_mm", &PlanOptions::screw_mm, "Screw holes", unit::mm, 0.5, 20, "Diameter; the rig is screwed together along its rim.")
+      parameter("screw_mm", &PlanOptions::screw_mm, "Screw holes", unit::mm, 0.5, 20,
+                "Diameter; the rig is screwed together along its rim.")
           .slider(2, 6)
           .group("Rig")
           .advanced(),
-      parameter("paper", &PlanOptions::paper, "Paper", "On which the tape's template and the assembly sheet are printed.").group("Sheets")};
+      parameter("paper", &PlanOptions::paper, "Paper",
+                "On which the tape's template and the assembly sheet are printed.")
+          .group("Sheets")};
 };
 
 }  // namespace formwright

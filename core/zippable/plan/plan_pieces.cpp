@@ -17,10 +17,19 @@ double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(
 
 class PieceMaker {
  public:
-  PieceMaker(const Triangles& F, const std::vector<Vec2>& flat, const Splitting& splitting, const std::optional<GlueTabs>& tabs,
-             const std::vector<EdgeFlap>& flaps, double allowance_mm, double kerf_mm, double text_height_mm, PlanPieces& result)
-      : F_(F), flat_(flat), splitting_(splitting), has_tabs_(tabs.has_value()), allowance_mm_(allowance_mm), kerf_mm_(kerf_mm), text_height_mm_(text_height_mm),
-        result_(result), faces_(std::size_t(splitting.piece_count)), texts_(faces_.size()) {
+  PieceMaker(const Triangles& F, const std::vector<Vec2>& flat, const Splitting& splitting,
+             const std::optional<GlueTabs>& tabs, const std::vector<EdgeFlap>& flaps, double allowance_mm,
+             double kerf_mm, double text_height_mm, PlanPieces& result)
+      : F_(F),
+        flat_(flat),
+        splitting_(splitting),
+        has_tabs_(tabs.has_value()),
+        allowance_mm_(allowance_mm),
+        kerf_mm_(kerf_mm),
+        text_height_mm_(text_height_mm),
+        result_(result),
+        faces_(std::size_t(splitting.piece_count)),
+        texts_(faces_.size()) {
     TriangleMesh mesh;
     mesh.V = Positions::Zero(static_cast<Eigen::Index>(flat.size()), 3);
     mesh.F = F;
@@ -43,7 +52,9 @@ class PieceMaker {
       }
     for (auto& [edge, list] : tabs_) {
       const Vec2 start = flat[edge];
-      std::sort(list.begin(), list.end(), [&](const GlueTab* a, const GlueTab* b) { return (a->foot_from - start).norm() < (b->foot_from - start).norm(); });
+      std::sort(list.begin(), list.end(), [&](const GlueTab* a, const GlueTab* b) {
+        return (a->foot_from - start).norm() < (b->foot_from - start).norm();
+      });
     }
     for (const EdgeFlap& flap : flaps) {
       flaps_[flap.from_vertex] = &flap;
@@ -83,12 +94,14 @@ class PieceMaker {
       if (split) {
         for (const Vec2& corner : allowance(piece, v, to)) made.outline_mm.push_back(corner);
         const Vec2 u = (flat_[to] - flat_[v]).normalized();
-        made.marks.push_back({CutLayer::mark, {flat_[v], flat_[to]}, false, "split-" + letters_.at({piece, v}) + "-" + made.name});
+        made.marks.push_back(
+            {CutLayer::mark, {flat_[v], flat_[to]}, false, "split-" + letters_.at({piece, v}) + "-" + made.name});
         text(piece, (flat_[v] + flat_[to]) / 2, u, letters_.at({piece, v}), 0.6 * text_height_mm_);
       }
       v = to;
     } while (v != first);
-    const std::vector<Vec2> steps = offset_steps(made.outline_mm, std::vector<double>(made.outline_mm.size(), -kerf_mm_ / 2));
+    const std::vector<Vec2> steps =
+        offset_steps(made.outline_mm, std::vector<double>(made.outline_mm.size(), -kerf_mm_ / 2));
     for (std::size_t i = 0; i < steps.size(); ++i) made.cut_mm.push_back(made.outline_mm[i] + steps[i]);
     name_piece(piece);
   }
@@ -96,7 +109,8 @@ class PieceMaker {
   /// A tab's corners instead of its foot, where it is folded.
   void add_tab(int piece, const GlueTab& tab) {
     PlanPiece& made = result_.pieces[piece];
-    for (const Vec2& corner : {tab.foot_from, tab.corner_from, tab.corner_to, tab.foot_to}) add_corner(made.outline_mm, corner);
+    for (const Vec2& corner : {tab.foot_from, tab.corner_from, tab.corner_to, tab.foot_to})
+      add_corner(made.outline_mm, corner);
     CutPath fold{CutLayer::mark, {tab.foot_from}, false, "tab-" + std::to_string(++tab_number_)};
     for (int w = tab.from_edge; w != tab.to_edge;) add_corner(fold.points_mm, flat_[w = next_[piece].at(w).first]);
     add_corner(fold.points_mm, tab.foot_to);
@@ -114,10 +128,7 @@ class PieceMaker {
       const Vec2 middle = (flat_[F_(f, 0)] + flat_[F_(f, 1)] + flat_[F_(f, 2)]) / 3 - mark.flat_mm;
       end = mark.flat_mm + std::min(1.0, length_mm / std::max(middle.norm(), 1e-9)) * middle;
     }
-    result_.pieces[piece].marks.push_back({CutLayer::mark,
-                                           {mark.flat_mm, end},
-                                           false,
-                                           name});
+    result_.pieces[piece].marks.push_back({CutLayer::mark, {mark.flat_mm, end}, false, name});
     text(piece, mark.flat_mm + (length + 0.4) * mark.inward, mark.along, words, 0);
   }
 
@@ -127,18 +138,21 @@ class PieceMaker {
     for (const ClosureMarker& marker_of : marks.markers)
       for (const ClosureSide side : {ClosureSide::hook, ClosureSide::loop}) {
         const std::string number = std::to_string(marker_of.cut) + "-" + std::to_string(marker_of.number);
-        marker(marker_of.sides[static_cast<std::size_t>(side)], number, "closure-" + number + (side == ClosureSide::hook ? "-hook" : "-loop"));
+        marker(marker_of.sides[static_cast<std::size_t>(side)], number,
+               "closure-" + number + (side == ClosureSide::hook ? "-hook" : "-loop"));
       }
     int count = 0;
     for (const TapeEdge& edge : marks.tape_edges)
-      result_.pieces[edge.piece].marks.push_back({CutLayer::mark, edge.points_mm, false, "hook-" + std::to_string(edge.cut) + "-" + std::to_string(++count)});
+      result_.pieces[edge.piece].marks.push_back(
+          {CutLayer::mark, edge.points_mm, false, "hook-" + std::to_string(edge.cut) + "-" + std::to_string(++count)});
     count = 0;
     for (const ClosureStretch& stretch : marks.stretches) {
       constexpr double every_mm = 200;
       CutPath path{CutLayer::mark, {}, false, "loop-" + std::to_string(stretch.cut) + "-" + std::to_string(++count)};
       for (const int v : stretch.vertices) path.points_mm.push_back(flat_[v]);
       double length = 0;
-      for (std::size_t i = 0; i + 1 < path.points_mm.size(); ++i) length += (path.points_mm[i + 1] - path.points_mm[i]).norm();
+      for (std::size_t i = 0; i + 1 < path.points_mm.size(); ++i)
+        length += (path.points_mm[i + 1] - path.points_mm[i]).norm();
       const int labels = std::max(1, static_cast<int>(std::lround(length / every_mm)));
       double done = 0;
       int written = 0;
@@ -147,20 +161,23 @@ class PieceMaker {
         const double step = way.norm(), wanted = length * (written + 0.5) / labels;
         // Behind the numbers, which stand 2.4 mm from the edge.
         if (done + step >= wanted && step > 0)
-          text(stretch.piece, path.points_mm[i] + (wanted - done) / step * way, way / step, closure_words(stretch.cut, stretch.side, closures.tape), 3.4 + text_height_mm_),
+          text(stretch.piece, path.points_mm[i] + (wanted - done) / step * way, way / step,
+               closure_words(stretch.cut, stretch.side, closures.tape), 3.4 + text_height_mm_),
               ++written;
         done += step;
       }
-      const bool below = std::any_of(marks.flaps.begin(), marks.flaps.end(), [&](const EdgeFlap& flap) { return flap.piece == stretch.piece; });
+      const bool below = std::any_of(marks.flaps.begin(), marks.flaps.end(),
+                                     [&](const EdgeFlap& flap) { return flap.piece == stretch.piece; });
       if (stretch.side == ClosureSide::loop && below) result_.pieces[stretch.piece].marks.push_back(std::move(path));
     }
   }
 
  private:
-  /// Neighbouring tabs meet in one corner; where a foot ends just before a corner of the edge, growing by the kerf would turn the short edge
-  /// between them over.
+  /// Neighbouring tabs meet in one corner; where a foot ends just before a corner of the edge, growing by the kerf
+  /// would turn the short edge between them over.
   void add_corner(Polygon& polygon, const Vec2& corner) const {
-    if (polygon.empty() || !has_tabs_ || (polygon.back() - corner).norm() > std::max(0.02, 0.75 * kerf_mm_)) polygon.push_back(corner);
+    if (polygon.empty() || !has_tabs_ || (polygon.back() - corner).norm() > std::max(0.02, 0.75 * kerf_mm_))
+      polygon.push_back(corner);
   }
 
   bool inside(int piece, const Vec2& p) const {
@@ -177,9 +194,10 @@ class PieceMaker {
   Polygon allowance(int piece, int from, int to) {
     const Vec2 a = flat_[from], b = flat_[to], along = b - a;
     const double length = along.norm();
-    const bool other_has_it = has_tabs_ && std::none_of(splitting_.splits.begin(), splitting_.splits.end(), [&](const RibbonSplit& split) {
-      return split.left == piece && split.from == from && split.to == to;
-    });
+    const bool other_has_it =
+        has_tabs_ && std::none_of(splitting_.splits.begin(), splitting_.splits.end(), [&](const RibbonSplit& split) {
+          return split.left == piece && split.from == from && split.to == to;
+        });
     if (!(length > 0) || other_has_it) return {};
     const Vec2 u = along / length, out(u.y(), -u.x());
     for (const double share : {1.0, 0.5, 0.25}) {
@@ -192,9 +210,10 @@ class PieceMaker {
         const std::array<Vec2, 3> face{flat_[F_(f, 0)], flat_[F_(f, 1)], flat_[F_(f, 2)]};
         return triangles_overlap({a, c, b}, face, touching_mm) || triangles_overlap({a, d, c}, face, touching_mm);
       });
-      const bool meets_tab = std::any_of(tab_triangles_[piece].begin(), tab_triangles_[piece].end(), [&](const auto& tab) {
-        return triangles_overlap({a, c, b}, tab, 1e-7) || triangles_overlap({c, d, a}, tab, -(kerf_mm_ + 0.1));
-      });
+      const bool meets_tab =
+          std::any_of(tab_triangles_[piece].begin(), tab_triangles_[piece].end(), [&](const auto& tab) {
+            return triangles_overlap({a, c, b}, tab, 1e-7) || triangles_overlap({c, d, a}, tab, -(kerf_mm_ + 0.1));
+          });
       if (!meets && !meets_tab) {
         result_.shortened_allowances += share < 1;
         return {d, c};
@@ -204,8 +223,8 @@ class PieceMaker {
     return {};
   }
 
-  /// Words begin `clear_mm` beyond `foot`, into the piece, along `u`; moved along and made smaller until they are inside and clear of
-  /// others, left out when that is too small to read.
+  /// Words begin `clear_mm` beyond `foot`, into the piece, along `u`; moved along and made smaller until they are
+  /// inside and clear of others, left out when that is too small to read.
   void text(int piece, const Vec2& foot, const Vec2& u, const std::string& words, double clear_mm) {
     const Vec2 inward(-u.y(), u.x());
     for (double height = text_height_mm_; height >= 0.3 * text_height_mm_; height *= 0.8) {
@@ -219,7 +238,8 @@ class PieceMaker {
         if (collides) continue;
         std::vector<CutPath> paths = word_paths(words, centre, u, height, CutLayer::engrave);
         if (!std::all_of(paths.begin(), paths.end(), [&](const CutPath& path) {
-              return std::all_of(path.points_mm.begin(), path.points_mm.end(), [&](const Vec2& p) { return inside(piece, p); });
+              return std::all_of(path.points_mm.begin(), path.points_mm.end(),
+                                 [&](const Vec2& p) { return inside(piece, p); });
             }))
           continue;
         texts_[piece].emplace_back(centre, radius);
@@ -250,28 +270,31 @@ class PieceMaker {
   bool has_tabs_;
   double allowance_mm_, kerf_mm_, text_height_mm_;
   PlanPieces& result_;
-  std::vector<std::vector<int>> faces_;                     // per piece
-  std::vector<std::vector<std::pair<Vec2, double>>> texts_; // per piece: centre and radius of what is written
-  std::vector<std::map<int, std::pair<int, bool>>> next_;   // per piece, by vertex: the next one around it, and whether a split lies between
-  std::map<int, std::vector<const GlueTab*>> tabs_;         // by the boundary edge where their foot begins, as they follow each other
+  std::vector<std::vector<int>> faces_;                      // per piece
+  std::vector<std::vector<std::pair<Vec2, double>>> texts_;  // per piece: centre and radius of what is written
+  std::vector<std::map<int, std::pair<int, bool>>>
+      next_;  // per piece, by vertex: the next one around it, and whether a split lies between
+  std::map<int, std::vector<const GlueTab*>>
+      tabs_;  // by the boundary edge where their foot begins, as they follow each other
   std::map<int, std::vector<std::array<Vec2, 3>>> tab_triangles_;  // per piece
-  std::map<int, const EdgeFlap*> flaps_;                    // by the boundary's vertex where they begin
+  std::map<int, const EdgeFlap*> flaps_;                           // by the boundary's vertex where they begin
   int tab_number_ = 0;
-  std::map<int, int> face_of_edge_;                         // by the boundary edge's first vertex
-  std::map<std::pair<int, int>, std::string> letters_;      // by piece and the first vertex of its side of the split
+  std::map<int, int> face_of_edge_;                     // by the boundary edge's first vertex
+  std::map<std::pair<int, int>, std::string> letters_;  // by piece and the first vertex of its side of the split
 };
 
 }  // namespace
 
 std::string split_letters(int number) {
   std::string letters;
-  for (int rest = number; rest >= 0; rest = rest / 26 - 1) letters.insert(letters.begin(), static_cast<char>('A' + rest % 26));
+  for (int rest = number; rest >= 0; rest = rest / 26 - 1)
+    letters.insert(letters.begin(), static_cast<char>('A' + rest % 26));
   return letters;
 }
 
-PlanPieces make_pieces(const Triangles& F, const std::vector<Vec2>& flat_mm, const Splitting& splitting, const Markers& markers,
-                       const std::optional<GlueTabs>& tabs, double seam_allowance_mm, double kerf_mm, double text_height_mm,
-                       const PieceClosures& closures) {
+PlanPieces make_pieces(const Triangles& F, const std::vector<Vec2>& flat_mm, const Splitting& splitting,
+                       const Markers& markers, const std::optional<GlueTabs>& tabs, double seam_allowance_mm,
+                       double kerf_mm, double text_height_mm, const PieceClosures& closures) {
   PlanPieces result;
   result.pieces.resize(std::size_t(splitting.piece_count));
   // The maker keeps pointers to them.

@@ -14,11 +14,11 @@
 namespace formwright {
 
 struct PlanPiece {
-  std::string name;           // "P1", ...
+  std::string name;  // "P1", ...
   double ribbon_area_mm2 = 0;
-  Polygon outline_mm;         // finished size: with seam allowances, without kerf
-  Polygon cut_mm;             // where the cutter's middle runs
-  std::vector<CutPath> marks; // everything but the cut, in the ribbon's plane
+  Polygon outline_mm;          // finished size: with seam allowances, without kerf
+  Polygon cut_mm;              // where the cutter's middle runs
+  std::vector<CutPath> marks;  // everything but the cut, in the ribbon's plane
 };
 
 struct PlanPieces {
@@ -36,9 +36,10 @@ struct PieceClosures {
   bool tape = true;
 };
 
-/// `flat_mm`: as split. Kerf, allowance and text's height in mm. With tabs, splits have an allowance on their left side only: it is one.
-PlanPieces make_pieces(const Triangles& F, const std::vector<Vec2>& flat_mm, const Splitting& splitting, const Markers& markers,
-                       const std::optional<GlueTabs>& tabs, double seam_allowance_mm, double kerf_mm, double text_height_mm,
-                       const PieceClosures& closures = {});
+/// `flat_mm`: as split. Kerf, allowance and text's height in mm. With tabs, splits have an allowance on their left side
+/// only: it is one.
+PlanPieces make_pieces(const Triangles& F, const std::vector<Vec2>& flat_mm, const Splitting& splitting,
+                       const Markers& markers, const std::optional<GlueTabs>& tabs, double seam_allowance_mm,
+                       double kerf_mm, double text_height_mm, const PieceClosures& closures = {});
 
 }  // namespace formwright

@@ -115,10 +115,8 @@ class PlateMaker {
         const bool off = std::all_of(slots.begin(), slots.end(), [&](const ThickLine& slot) {
           return nearest_on_line(slot.points_mm, false, p).distance_mm > slot.width_mm / 2 + 0.1;
         });
-        if (off)
-          stretch.push_back(p);
-        else
-          finish();
+        if (off) stretch.push_back(p);
+        else finish();
       }
     }
     finish();

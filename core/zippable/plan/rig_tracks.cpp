@@ -69,10 +69,8 @@ class TrackMaker {
     for (const TrackPoint& point : points) {
       const bool gap = !stretch.empty() && (point.middle - stretch.back().middle).norm() > 3 * step_mm;
       if (gap) finish();
-      if (free(point.middle, stretch))
-        stretch.push_back(point);
-      else
-        finish();
+      if (free(point.middle, stretch)) stretch.push_back(point);
+      else finish();
     }
     finish();
     result.left_out_mm += std::max(0.0, path_length_mm(edge, false) - kept);

@@ -16,7 +16,8 @@ struct Box {
 
   void add(const Box& other) { lower = lower.cwiseMin(other.lower), upper = upper.cwiseMax(other.upper); }
   bool meets(const Box& other, double margin) const {
-    return (lower.array() <= other.upper.array() + margin).all() && (other.lower.array() <= upper.array() + margin).all();
+    return (lower.array() <= other.upper.array() + margin).all() &&
+           (other.lower.array() <= upper.array() + margin).all();
   }
 };
 
@@ -30,8 +31,14 @@ struct Growing {
 class Overlaps {
  public:
   Overlaps(const Triangles& F, const std::vector<Vec2>& flat, double clearance_mm, const std::vector<int>& kind_of_face)
-      : F_(F), flat_(flat), clearance_mm_(clearance_mm), kind_of_face_(kind_of_face), along_(flat.size() + 1, 0.0), boxes_(std::size_t(F.rows())) {
-    for (std::size_t v = 0; v < flat.size(); ++v) along_[v + 1] = along_[v] + (flat[(v + 1) % flat.size()] - flat[v]).norm();
+      : F_(F),
+        flat_(flat),
+        clearance_mm_(clearance_mm),
+        kind_of_face_(kind_of_face),
+        along_(flat.size() + 1, 0.0),
+        boxes_(std::size_t(F.rows())) {
+    for (std::size_t v = 0; v < flat.size(); ++v)
+      along_[v + 1] = along_[v] + (flat[(v + 1) % flat.size()] - flat[v]).norm();
     for (int f = 0; f < F.rows(); ++f)
       for (int k = 0; k < 3; ++k) boxes_[f].add({corner(f, k), corner(f, k)});
   }
@@ -55,7 +62,8 @@ class Overlaps {
   const Vec2& corner(int f, int k) const { return flat_[F_(f, k)]; }
 
   bool between(int f, int g) const {
-    // Where the boundary leads from one to the other within a few millimetres or corners they may touch; elsewhere they keep apart.
+    // Where the boundary leads from one to the other within a few millimetres or corners they may touch; elsewhere they
+    // keep apart.
     constexpr int near_corners = 6;
     double nearest = 1e300;
     int corners = std::numeric_limits<int>::max();
@@ -67,7 +75,8 @@ class Overlaps {
         corners = std::min({corners, count, static_cast<int>(flat_.size()) - count});
       }
     const double touching_mm = nearest <= 4 * clearance_mm_ || corners <= near_corners ? 1e-7 : -clearance_mm_;
-    return triangles_overlap({corner(f, 0), corner(f, 1), corner(f, 2)}, {corner(g, 0), corner(g, 1), corner(g, 2)}, touching_mm);
+    return triangles_overlap({corner(f, 0), corner(f, 1), corner(f, 2)}, {corner(g, 0), corner(g, 1), corner(g, 2)},
+                             touching_mm);
   }
 
   const Triangles& F_;
@@ -78,7 +87,8 @@ class Overlaps {
   std::vector<Box> boxes_;
 };
 
-/// Triangles from an end of the ribbon on, each before its neighbours that are farther away, and the half-edge that leads back.
+/// Triangles from an end of the ribbon on, each before its neighbours that are farther away, and the half-edge that
+/// leads back.
 struct Tree {
   std::vector<int> order, parent_halfedge;
 };
@@ -115,8 +125,8 @@ void sort_along_boundary(std::vector<RibbonSplit>& splits) {
   });
 }
 
-Splitting split_towards(int root, const Adjacency& adjacency, const Overlaps& overlaps, const std::function<bool(const Polygon&)>& fits,
-                        Context& context) {
+Splitting split_towards(int root, const Adjacency& adjacency, const Overlaps& overlaps,
+                        const std::function<bool(const Polygon&)>& fits, Context& context) {
   const Tree tree = tree_of(adjacency, root);
   const std::size_t count = tree.order.size();
   std::vector<Growing> growing(count);
@@ -127,7 +137,8 @@ Splitting split_towards(int root, const Adjacency& adjacency, const Overlaps& ov
     if (i % 64 == 0) context.progress(1 - static_cast<double>(i) / static_cast<double>(count));
     Growing mine{{face}, convex_hull(overlaps.corners(face)), overlaps.box(face)};
     if (!fits(mine.hull))
-      throw Error(ErrorCode::invalid_input, "bed_x_mm", "The ribbon is wider than the bed: give a larger bed or a narrower ribbon.");
+      throw Error(ErrorCode::invalid_input, "bed_x_mm",
+                  "The ribbon is wider than the bed: give a larger bed or a narrower ribbon.");
     // The largest first: what cannot be joined is cut off and done with.
     std::stable_sort(children[face].begin(), children[face].end(),
                      [&](int a, int b) { return growing[a].faces.size() > growing[b].faces.size(); });
@@ -156,7 +167,8 @@ Splitting split_towards(int root, const Adjacency& adjacency, const Overlaps& ov
     const int h = tree.parent_halfedge[face];
     result.piece_of_face[face] = is_top[face] ? result.piece_count++ : result.piece_of_face[adjacency.opposite(h) / 3];
     if (is_top[face] && h >= 0)
-      result.splits.push_back({adjacency.from(h), adjacency.to(h), result.piece_of_face[face], result.piece_of_face[adjacency.opposite(h) / 3]});
+      result.splits.push_back({adjacency.from(h), adjacency.to(h), result.piece_of_face[face],
+                               result.piece_of_face[adjacency.opposite(h) / 3]});
   }
   sort_along_boundary(result.splits);
   return result;
@@ -165,9 +177,15 @@ Splitting split_towards(int root, const Adjacency& adjacency, const Overlaps& ov
 /// Joins pieces that are too small to others, or moves the splits beside them.
 class CrumbSweeper {
  public:
-  CrumbSweeper(const Adjacency& adjacency, const Overlaps& overlaps, const std::function<bool(const Polygon&)>& fits, double least_mm2, Splitting& splitting)
-      : adjacency_(adjacency), overlaps_(overlaps), fits_(fits), least_mm2_(least_mm2), splitting_(splitting),
-        pieces_(std::size_t(splitting.piece_count)), area_mm2_(pieces_.size(), 0.0) {
+  CrumbSweeper(const Adjacency& adjacency, const Overlaps& overlaps, const std::function<bool(const Polygon&)>& fits,
+               double least_mm2, Splitting& splitting)
+      : adjacency_(adjacency),
+        overlaps_(overlaps),
+        fits_(fits),
+        least_mm2_(least_mm2),
+        splitting_(splitting),
+        pieces_(std::size_t(splitting.piece_count)),
+        area_mm2_(pieces_.size(), 0.0) {
     for (int f = 0; f < adjacency.face_count(); ++f) add(splitting.piece_of_face[f], f);
   }
 
@@ -260,11 +278,14 @@ class CrumbSweeper {
   std::vector<int> ways_on(int face, int into) const {
     std::vector<int> ways;
     for (int g = 3 * face; g < 3 * face + 3; ++g)
-      if (const int o = adjacency_.opposite(g); g != into && o >= 0 && splitting_.piece_of_face[o / 3] == splitting_.piece_of_face[face]) ways.push_back(o);
+      if (const int o = adjacency_.opposite(g);
+          g != into && o >= 0 && splitting_.piece_of_face[o / 3] == splitting_.piece_of_face[face])
+        ways.push_back(o);
     return ways;
   }
 
-  bool take_a_side(const std::vector<int>& sides, const Growing& grown, double rest_mm2, std::vector<int>& taken) const {
+  bool take_a_side(const std::vector<int>& sides, const Growing& grown, double rest_mm2,
+                   std::vector<int>& taken) const {
     for (const int first : sides) {
       Growing side;
       double area = 0;
@@ -294,7 +315,8 @@ class CrumbSweeper {
     for (int& piece : splitting_.piece_of_face) piece = number[piece];
     splitting_.splits.clear();
     for (int h = 0; h < 3 * adjacency_.face_count(); ++h)
-      if (const int o = adjacency_.opposite(h), a = splitting_.piece_of_face[h / 3]; o > h && splitting_.piece_of_face[o / 3] != a)
+      if (const int o = adjacency_.opposite(h), a = splitting_.piece_of_face[h / 3];
+          o > h && splitting_.piece_of_face[o / 3] != a)
         splitting_.splits.push_back({adjacency_.from(h), adjacency_.to(h), a, splitting_.piece_of_face[o / 3]});
     sort_along_boundary(splitting_.splits);
   }
@@ -310,8 +332,9 @@ class CrumbSweeper {
 
 }  // namespace
 
-Splitting split_ribbon(const Triangles& F, const std::vector<Vec2>& flat, const std::function<bool(const Polygon&)>& fits,
-                       double clearance_mm, double least_mm2, Context& context, const std::vector<int>& kind_of_face) {
+Splitting split_ribbon(const Triangles& F, const std::vector<Vec2>& flat,
+                       const std::function<bool(const Polygon&)>& fits, double clearance_mm, double least_mm2,
+                       Context& context, const std::vector<int>& kind_of_face) {
   constexpr std::size_t most_tries = 8;
   TriangleMesh mesh;
   mesh.V = Positions::Zero(static_cast<Eigen::Index>(flat.size()), 3);
@@ -328,7 +351,8 @@ Splitting split_ribbon(const Triangles& F, const std::vector<Vec2>& flat, const 
   std::pair<int, double> best_value;
   Splitting best;
   for (std::size_t i = 0; i < tries; ++i) {
-    const auto span = context.span(static_cast<double>(i) / static_cast<double>(tries), static_cast<double>(i + 1) / static_cast<double>(tries), "Splitting");
+    const auto span = context.span(static_cast<double>(i) / static_cast<double>(tries),
+                                   static_cast<double>(i + 1) / static_cast<double>(tries), "Splitting");
     Splitting splitting = split_towards(ends[i * ends.size() / tries], adjacency, overlaps, fits, context);
     CrumbSweeper(adjacency, overlaps, fits, least_mm2, splitting).sweep(context);
     const std::pair value(-splitting.piece_count, smallest_mm2(splitting));

@@ -33,7 +33,8 @@ void nest_by_fabric(ZippablePlan& plan, const NestingOptions& options, Context& 
     for (std::size_t i = 0; i < plan.pieces.pieces.size(); ++i)
       if (plan.fabric_of_piece[i] == fabric) numbers.push_back(i), outlines.push_back(plan.pieces.pieces[i].cut_mm);
     if (outlines.empty()) continue;
-    const auto span = context.span(static_cast<double>(fabric) / plan.fabrics, (fabric + 1.0) / plan.fabrics, "Nesting");
+    const auto span =
+        context.span(static_cast<double>(fabric) / plan.fabrics, (fabric + 1.0) / plan.fabrics, "Nesting");
     const Nesting nesting = nest(outlines, options, context);
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       plan.nesting.places[numbers[i]] = nesting.places[i];
@@ -51,19 +52,22 @@ void name_fabric(CutSheet& sheet, int fabric, double margin_mm) {
   for (char& c : words) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   const double height = std::clamp(0.6 * margin_mm, 1.0, 6.0), width = words_width_mm(words, height);
   const Vec2 centre(std::max(width / 2 + 1, sheet.width_mm / 2 - 26 - width / 2), std::max(margin_mm, 2.0) / 2);
-  for (CutPath& path : word_paths(words, centre, Vec2::UnitX(), height, CutLayer::note)) sheet.paths.push_back(std::move(path));
+  for (CutPath& path : word_paths(words, centre, Vec2::UnitX(), height, CutLayer::note))
+    sheet.paths.push_back(std::move(path));
 }
 
 /// An arrow along the material's grain, in the lower margin or what there is of it.
 void draw_grain(CutSheet& sheet, double margin_mm) {
-  const double y = margin_mm / 2, from = sheet.width_mm / 2 - 20, to = sheet.width_mm / 2 + 20, tip = std::min(1.5, margin_mm / 3);
+  const double y = margin_mm / 2, from = sheet.width_mm / 2 - 20, to = sheet.width_mm / 2 + 20,
+               tip = std::min(1.5, margin_mm / 3);
   sheet.paths.push_back({CutLayer::note, {{from, y}, {to, y}}, false, "grain"});
   sheet.paths.push_back({CutLayer::note, {{to - 2, y - tip}, {to, y}, {to - 2, y + tip}}, false, "grain-tip"});
 }
 
 std::vector<CutSheet> lay_out(const ZippablePlan& plan, const PlanOptions& options) {
   const auto& [pieces, nesting] = std::tie(plan.pieces, plan.nesting);
-  std::vector<CutSheet> sheets(std::size_t(nesting.sheet_count), CutSheet{title, options.bed_x_mm, options.bed_y_mm, {}});
+  std::vector<CutSheet> sheets(std::size_t(nesting.sheet_count),
+                               CutSheet{title, options.bed_x_mm, options.bed_y_mm, {}});
   for (std::size_t i = 0; i < pieces.pieces.size(); ++i) {
     const PlanPiece& piece = pieces.pieces[i];
     const Nested& place = nesting.places[i];
@@ -89,10 +93,12 @@ void say_what_to_know(const PlanOptions& options, ZippablePlan& plan) {
     return count == 1 ? "1 " + one : std::to_string(count) + " " + many;
   };
   if (plan.ribbon.narrow_samples > 0)
-    plan.notes.push_back("The ribbon is too narrow for the zipper at " + plural(plan.ribbon.narrow_samples, "place", "places") +
-                         "; there the edge is moved by less, and the zipper sits closer: a smaller coil or a wider ribbon mends it.");
+    plan.notes.push_back(
+        "The ribbon is too narrow for the zipper at " + plural(plan.ribbon.narrow_samples, "place", "places") +
+        "; there the edge is moved by less, and the zipper sits closer: a smaller coil or a wider ribbon mends it.");
   if (2 * plan.zipper.tape_width_mm > plan.width_mean_mm)
-    plan.notes.push_back("The two tapes are wider than the ribbon and overlap behind it: trim them or use a wider ribbon.");
+    plan.notes.push_back(
+        "The two tapes are wider than the ribbon and overlap behind it: trim them or use a wider ribbon.");
   constexpr double crumb_mm2 = 20;
   const auto crumbs = std::count_if(plan.pieces.pieces.begin(), plan.pieces.pieces.end(),
                                     [](const PlanPiece& piece) { return piece.ribbon_area_mm2 < crumb_mm2; });
@@ -106,20 +112,25 @@ void say_what_to_know(const PlanOptions& options, ZippablePlan& plan) {
     plan.notes.push_back(plural(plan.pieces.left_out_texts, "number or letter", "numbers and letters") +
                          " found no room: choose a smaller text.");
   if (plan.tabs && plan.tabs->shortened + plan.tabs->left_out > 0)
-    plan.notes.push_back(plural(plan.tabs->shortened, "tab is", "tabs are") + " shorter and " + plural(plan.tabs->left_out, "is", "are") +
-                         " left out where the paper lies too close beside: wider spacing between windings or a smaller tab depth mends it.");
+    plan.notes.push_back(
+        plural(plan.tabs->shortened, "tab is", "tabs are") + " shorter and " +
+        plural(plan.tabs->left_out, "is", "are") +
+        " left out where the paper lies too close beside: wider spacing between windings or a smaller tab depth mends it.");
   const auto whole_mm = [](double mm) { return std::to_string(static_cast<int>(std::lround(mm))) + " mm"; };
   if (plan.closures.narrow_mm > 1)
-    plan.notes.push_back("Along " + whole_mm(plan.closures.narrow_mm) +
-                         " of the edges named HOOK the cloth is narrower than the hook-and-loop tape, whose line ends there: trim the tape.");
+    plan.notes.push_back(
+        "Along " + whole_mm(plan.closures.narrow_mm) +
+        " of the edges named HOOK the cloth is narrower than the hook-and-loop tape, whose line ends there: trim the tape.");
   if (plan.closures.shallow_mm > 1)
-    plan.notes.push_back("Along " + whole_mm(plan.closures.shallow_mm) + " of the edges named " + (plan.has_tape() ? "LOOP" : "JOIN") +
+    plan.notes.push_back("Along " + whole_mm(plan.closures.shallow_mm) + " of the edges named " +
+                         (plan.has_tape() ? "LOOP" : "JOIN") +
                          " the allowance would have met its own piece and is less deep.");
   if (plan.rig && plan.rig->blind_tracks > 0)
     plan.notes.push_back(plural(plan.rig->blind_tracks, "track", "tracks") +
                          " of the rig found no room for an opening: lay the tape in before the cover is screwed on.");
   if (plan.rig && plan.rig->left_out_mm > 1)
-    plan.notes.push_back("The rig has no track along " + std::to_string(static_cast<int>(std::lround(plan.rig->left_out_mm))) +
+    plan.notes.push_back("The rig has no track along " +
+                         std::to_string(static_cast<int>(std::lround(plan.rig->left_out_mm))) +
                          " mm of the edges, where two tracks would meet: hold the tape there by hand.");
   if (!plan.tabs && options.coil == ZipperCoil::none && plan.zipper.offset_mm() == 0)
     plan.notes.push_back("Without a zipper the edges stay where they are: paper is joined edge to edge.");
@@ -129,7 +140,9 @@ void say_what_to_know(const PlanOptions& options, ZippablePlan& plan) {
 
 std::string fabric_name(int fabric) { return "Colour " + std::to_string(fabric + 1); }
 
-Vec2 paper_size_mm(InstructionPaper paper) { return paper == InstructionPaper::a4 ? Vec2(210, 297) : Vec2(215.9, 279.4); }
+Vec2 paper_size_mm(InstructionPaper paper) {
+  return paper == InstructionPaper::a4 ? Vec2(210, 297) : Vec2(215.9, 279.4);
+}
 
 ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& options, Context& context) {
   ZippablePlan plan;
@@ -140,22 +153,28 @@ ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& options,
   plan.zipper = zipper_model(options);
   const bool tabs = options.edges == PaperEdges::tabs;
   if (tabs && (plan.has_tape() || plan.zipper.offset_mm() > 0))
-    throw Error(ErrorCode::invalid_input, "edges", "Tabs are for paper that is glued without a zipper: choose no coil with them, or plain edges.");
+    throw Error(ErrorCode::invalid_input, "edges",
+                "Tabs are for paper that is glued without a zipper: choose no coil with them, or plain edges.");
   std::optional<RigSizes> rig;
   if (options.rig) rig = rig_sizes(options, plan.zipper);
   plan.ribbon = offset_ribbon(design, options.method, plan.zipper.offset_mm());
   plan.area_before_mm2 = area_mm2(design.F, plan.ribbon.flat_mm);
-  plan.marker_spacing_mm = options.marker_spacing_mm.value_or(options.method == ZipperOffset::sewing && !options.rig ? 30 : 50);
+  plan.marker_spacing_mm =
+      options.marker_spacing_mm.value_or(options.method == ZipperOffset::sewing && !options.rig ? 30 : 50);
   plan.markers = place_markers(design, plan.ribbon, plan.marker_spacing_mm);
   plan.seconds_offset = watch.lap();
 
   const NestingOptions nesting{options.bed_x_mm, options.bed_y_mm, options.margin_mm, options.spacing_mm,
                                options.grain == GrainDirection::along_pieces};
   // Allowances, tabs and kerf are added after splitting; nesting needs a few cells to spare.
-  ClosureMarkOptions closing{plan.has_tape() ? options.hook_and_loop_mm : 0.0, plan.has_tape() ? options.hook_and_loop_mm : tabs ? options.tab_depth_mm : 0.0,
+  ClosureMarkOptions closing{plan.has_tape() ? options.hook_and_loop_mm : 0.0,
+                             plan.has_tape() ? options.hook_and_loop_mm
+                             : tabs          ? options.tab_depth_mm
+                                             : 0.0,
                              tabs ? options.tab_length_mm : 0.0, plan.marker_spacing_mm, options.kerf_mm + 0.1};
   const double beyond = std::max(options.seam_allowance_mm, design.closures.empty() ? 0.0 : closing.flap_mm);
-  const double around = rig ? std::max(rig_rim_mm(options, *rig), beyond) : std::max(beyond, tabs ? options.tab_depth_mm : 0.0);
+  const double around =
+      rig ? std::max(rig_rim_mm(options, *rig), beyond) : std::max(beyond, tabs ? options.tab_depth_mm : 0.0);
   const double reserved = 2 * (options.margin_mm + around + options.kerf_mm) + 4 * nesting_cell_mm(nesting);
   // Between windings there is the kerf; on the rig, a track for each of the two edges and a wall between them.
   const double between = rig ? 2 * rig->offset_mm + rig->track_mm + rig->wall_mm : options.kerf_mm + 0.5;
@@ -167,19 +186,22 @@ ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& options,
   const double least_mm2 = plan.width_mean_mm * plan.width_mean_mm / 4;
   {
     const auto span = context.span(0, 0.5, "Splitting");
-    plan.splitting = split_ribbon(design.F, plan.ribbon.flat_mm, fits, between, least_mm2, context, design.fabric_of_face);
+    plan.splitting =
+        split_ribbon(design.F, plan.ribbon.flat_mm, fits, between, least_mm2, context, design.fabric_of_face);
   }
   plan.fabrics = design.fabrics;
   plan.fabric_of_piece.assign(std::size_t(plan.splitting.piece_count), 0);
-  for (std::size_t f = 0; f < design.fabric_of_face.size(); ++f) plan.fabric_of_piece[plan.splitting.piece_of_face[f]] = design.fabric_of_face[f];
+  for (std::size_t f = 0; f < design.fabric_of_face.size(); ++f)
+    plan.fabric_of_piece[plan.splitting.piece_of_face[f]] = design.fabric_of_face[f];
   plan.runs = tape_runs(design, plan.ribbon, plan.splitting, plan.markers);
   plan.seams = seams_in_order(plan.splitting, plan.ribbon.flat_mm, plan.runs, plan.markers, plan.has_tape());
   if (tabs)
     plan.tabs = make_glue_tabs(design, plan.ribbon.flat_mm, plan.splitting, plan.seams,
                                {options.tab_depth_mm, options.tab_length_mm, options.kerf_mm + 0.1}, context);
   plan.closures = mark_closures(design, plan.ribbon.flat_mm, plan.splitting, closing, context);
-  plan.pieces = make_pieces(design.F, plan.ribbon.flat_mm, plan.splitting, plan.markers, plan.tabs, options.seam_allowance_mm, options.kerf_mm,
-                            options.text_height_mm, {&plan.closures, plan.has_tape()});
+  plan.pieces =
+      make_pieces(design.F, plan.ribbon.flat_mm, plan.splitting, plan.markers, plan.tabs, options.seam_allowance_mm,
+                  options.kerf_mm, options.text_height_mm, {&plan.closures, plan.has_tape()});
   plan.seconds_split = watch.lap();
   {
     const auto span = context.span(0.5, 1, "Nesting");
@@ -187,7 +209,8 @@ ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& options,
   }
   plan.sheets = lay_out(plan, options);
   const Vec2 paper = paper_size_mm(options.paper);
-  plan.tape = make_tape_template(design, plan.zipper, plan.markers, plan.marker_spacing_mm, plan.runs, paper.y(), paper.x());
+  plan.tape =
+      make_tape_template(design, plan.zipper, plan.markers, plan.marker_spacing_mm, plan.runs, paper.y(), paper.x());
   if (rig) plan.rig = make_rig(design, plan.ribbon, plan.markers, plan.pieces, plan.runs, options, *rig, context);
   plan.seconds_nest = watch.lap();
   say_what_to_know(options, plan);
@@ -201,7 +224,8 @@ Bytes write_plan_pdf(const std::vector<CutSheet>& sheets) {
     Drawing drawing;
     for (const CutPath& path : sheet.paths) {
       const double width_mm = path.layer == CutLayer::cut ? 0.2 : 0.1;
-      for (std::size_t k = 0; k + 1 < path.points_mm.size(); ++k) drawing.line(path.points_mm[k], path.points_mm[k + 1], width_mm);
+      for (std::size_t k = 0; k + 1 < path.points_mm.size(); ++k)
+        drawing.line(path.points_mm[k], path.points_mm[k + 1], width_mm);
       if (path.closed) drawing.line(path.points_mm.back(), path.points_mm.front(), width_mm);
     }
     pdf.draw(drawing, {}, Vec2::Zero(), Vec2(sheet.width_mm, sheet.height_mm));

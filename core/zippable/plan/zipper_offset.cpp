@@ -17,7 +17,8 @@ namespace {
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// Unit vectors to the left of the zipper along the formed ribbon, per sample: across the mean of the triangles on both sides.
+/// Unit vectors to the left of the zipper along the formed ribbon, per sample: across the mean of the triangles on both
+/// sides.
 std::vector<Vec3> left_along_surface(const FlatDesign& design) {
   std::vector<Vec3> normal(design.left_vertex.size(), Vec3::Zero()), left = normal;
   for (Eigen::Index f = 0; f < design.F.rows(); ++f) {
@@ -28,7 +29,9 @@ std::vector<Vec3> left_along_surface(const FlatDesign& design) {
   }
   for (const auto& piece : design.pieces)
     for (std::size_t k = 0; k < piece.size(); ++k) {
-      const auto position = [&](std::size_t i) -> const Vec3& { return design.boundary[design.left_vertex[piece[i]]].position_mm; };
+      const auto position = [&](std::size_t i) -> const Vec3& {
+        return design.boundary[design.left_vertex[piece[i]]].position_mm;
+      };
       const Vec3 along = position(std::min(k + 1, piece.size() - 1)) - position(k > 0 ? k - 1 : 0);
       const Vec3 across = normal[piece[k]].cross(along);
       left[piece[k]] = across.norm() > 0 ? Vec3(across.normalized()) : k > 0 ? left[piece[k - 1]] : Vec3(Vec3::UnitX());
@@ -36,9 +39,10 @@ std::vector<Vec3> left_along_surface(const FlatDesign& design) {
   return left;
 }
 
-/// Changes directions `from` to `end` (excluded) by least squares so that t . (d[i + 1] - d[i]) = 0 on every segment, t its direction:
-/// then offsets to both sides are equally long.
-void make_sides_equal(const std::vector<Vec3>& points, std::size_t from, std::size_t end, std::vector<Vec3>& directions) {
+/// Changes directions `from` to `end` (excluded) by least squares so that t . (d[i + 1] - d[i]) = 0 on every segment, t
+/// its direction: then offsets to both sides are equally long.
+void make_sides_equal(const std::vector<Vec3>& points, std::size_t from, std::size_t end,
+                      std::vector<Vec3>& directions) {
   const std::size_t count = end - from;
   if (count < 2) return;
   std::vector<Vec3> along;
@@ -46,7 +50,8 @@ void make_sides_equal(const std::vector<Vec3>& points, std::size_t from, std::si
     const Vec3 step = points[i + 1] - points[i];
     along.push_back(step.norm() > 0 ? Vec3(step.normalized()) : Vec3(Vec3::Zero()));
   }
-  // Normal equations of the constraints: tridiagonal, 2 on the diagonal, minus the cosine between neighbouring segments beside it.
+  // Normal equations of the constraints: tridiagonal, 2 on the diagonal, minus the cosine between neighbouring segments
+  // beside it.
   const std::size_t rows = along.size();
   std::vector<double> diagonal(rows), upper(rows, 0.0), value(rows);
   for (std::size_t i = 0; i < rows; ++i) {
@@ -60,7 +65,8 @@ void make_sides_equal(const std::vector<Vec3>& points, std::size_t from, std::si
       value[i] -= factor * value[i - 1];
     }
   }
-  for (std::size_t i = rows; i-- > 0;) value[i] = (value[i] - (i + 1 < rows ? upper[i] * value[i + 1] : 0.0)) / diagonal[i];
+  for (std::size_t i = rows; i-- > 0;)
+    value[i] = (value[i] - (i + 1 < rows ? upper[i] * value[i + 1] : 0.0)) / diagonal[i];
   for (std::size_t i = 0; i < rows; ++i) {
     directions[from + i] += value[i] * along[i];
     directions[from + i + 1] -= value[i] * along[i];
@@ -70,7 +76,8 @@ void make_sides_equal(const std::vector<Vec3>& points, std::size_t from, std::si
 /// Twice the areas after and before, of triangle f.
 using AreaPair = std::pair<double, double>;
 
-/// Lets shares rise and fall along the zipper only so fast that the moved edge leaves the old one's direction by a tenth.
+/// Lets shares rise and fall along the zipper only so fast that the moved edge leaves the old one's direction by a
+/// tenth.
 void smooth_shares(const FlatDesign& design, double offset_mm, std::vector<double>& shares) {
   for (const auto& piece : design.pieces) {
     const auto limit = [&](int at, int beside) {
@@ -82,7 +89,8 @@ void smooth_shares(const FlatDesign& design, double offset_mm, std::vector<doubl
   }
 }
 
-/// Lowers shares at triangles that would lose too much of their area, until none does. False: at some no share was left to lower.
+/// Lowers shares at triangles that would lose too much of their area, until none does. False: at some no share was left
+/// to lower.
 bool make_room(const FlatDesign& design, double offset_mm, OffsetRibbon& ribbon, const std::function<void()>& move,
                const std::function<AreaPair(Eigen::Index)>& areas) {
   bool all_have_room = true;
@@ -122,12 +130,14 @@ void move_in_plane(const FlatDesign& design, double offset_mm, OffsetRibbon& rib
   const auto move = [&] {
     ribbon.flat_mm = outline;
     for (std::size_t v = 0; v < outline.size(); ++v)
-      if (const int sample = design.boundary[v].sample; sample >= 0) ribbon.flat_mm[v] += ribbon.offset_share[sample] * steps[v];
+      if (const int sample = design.boundary[v].sample; sample >= 0)
+        ribbon.flat_mm[v] += ribbon.offset_share[sample] * steps[v];
   };
   const auto area = [&](const std::vector<Vec2>& flat, Eigen::Index f) {
     return cross(flat[design.F(f, 1)] - flat[design.F(f, 0)], flat[design.F(f, 2)] - flat[design.F(f, 0)]);
   };
-  make_room(design, offset_mm, ribbon, move, [&](Eigen::Index f) { return AreaPair(area(ribbon.flat_mm, f), area(outline, f)); });
+  make_room(design, offset_mm, ribbon, move,
+            [&](Eigen::Index f) { return AreaPair(area(ribbon.flat_mm, f), area(outline, f)); });
 }
 
 void move_in_space(const FlatDesign& design, double offset_mm, OffsetRibbon& ribbon) {
@@ -138,7 +148,8 @@ void move_in_space(const FlatDesign& design, double offset_mm, OffsetRibbon& rib
   for (std::size_t p = 0; p < design.pieces.size(); ++p) {
     const auto& piece = design.pieces[p];
     std::vector<Vec3> lefts;
-    for (const int sample : piece) points[p].push_back(design.boundary[design.left_vertex[sample]].position_mm), lefts.push_back(surface[sample]);
+    for (const int sample : piece)
+      points[p].push_back(design.boundary[design.left_vertex[sample]].position_mm), lefts.push_back(surface[sample]);
     const BinormalField field = binormals(points[p], lefts, 2 * offset_mm);
     for (std::size_t k = 0; k < piece.size(); ++k) direction[piece[k]] = field.left[k];
     for (std::size_t k = 0; k + 1 < piece.size(); ++k)
@@ -172,7 +183,8 @@ void move_in_space(const FlatDesign& design, double offset_mm, OffsetRibbon& rib
                after = (positions[b] - positions[a]).cross(positions[c] - positions[a]);
     return AreaPair(before.norm() > 0 ? after.dot(before.normalized()) : 0.0, before.norm());
   };
-  // Where the ribbon is too narrow even for the change that makes sides equal, or that would be larger than the offset, they stay unequal.
+  // Where the ribbon is too narrow even for the change that makes sides equal, or that would be larger than the offset,
+  // they stay unequal.
   if (!make_room(design, offset_mm, ribbon, move, areas) || ribbon.shear_max_mm > offset_mm) {
     equal_sides = false;
     ribbon.offset_share.assign(ribbon.offset_share.size(), 1.0);
@@ -205,7 +217,8 @@ BinormalField binormals(const std::vector<Vec3>& points, const std::vector<Vec3>
     for (double window = window_mm; !field.usable[i]; window *= 2) {
       // Near an end both windows are as long as the shorter one.
       std::size_t behind = 1, ahead = 1;
-      while (behind < i && i + ahead + 1 < count && at[i] - at[i - behind] < window && at[i + ahead] - at[i] < window) ++behind, ++ahead;
+      while (behind < i && i + ahead + 1 < count && at[i] - at[i - behind] < window && at[i + ahead] - at[i] < window)
+        ++behind, ++ahead;
       const Vec3 a = points[i] - points[i - behind], b = points[i + ahead] - points[i], c = a.cross(b);
       if (c.norm() > least_sine * a.norm() * b.norm()) {
         const Vec3 binormal = c.normalized() * (c.dot(left_on_surface[i]) < 0 ? -1.0 : 1.0);
@@ -234,7 +247,8 @@ OffsetRibbon offset_ribbon(const FlatDesign& design, ZipperOffset method, double
     if (method == ZipperOffset::sewing) move_in_plane(design, offset_mm, ribbon);
     else move_in_space(design, offset_mm, ribbon);
   }
-  for (const double share : ribbon.offset_share) ribbon.offset_mean_mm += offset_mm * share / static_cast<double>(ribbon.offset_share.size());
+  for (const double share : ribbon.offset_share)
+    ribbon.offset_mean_mm += offset_mm * share / static_cast<double>(ribbon.offset_share.size());
   if (ribbon.offset_mean_mm < 0.5 * offset_mm) {
     char room[32];
     std::snprintf(room, sizeof room, "%.1f", 2 * offset_mm);
@@ -244,7 +258,8 @@ OffsetRibbon offset_ribbon(const FlatDesign& design, ZipperOffset method, double
   }
   for (int v = 0; v < design.vertex_count(); ++v)
     if (design.zipper_edge(v))
-      (design.boundary[v].left ? ribbon.left_mm : ribbon.right_mm) += (ribbon.flat_mm[design.next(v)] - ribbon.flat_mm[v]).norm();
+      (design.boundary[v].left ? ribbon.left_mm : ribbon.right_mm) +=
+          (ribbon.flat_mm[design.next(v)] - ribbon.flat_mm[v]).norm();
   return ribbon;
 }
 

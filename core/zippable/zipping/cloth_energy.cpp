@@ -69,12 +69,13 @@ std::vector<ClothHinge> cloth_hinges(const TriangleMesh& flat, double bending_n_
     const int other = adjacency.opposite(h);
     if (other <= h) continue;
     ClothHinge hinge;
-    hinge.vertex = {adjacency.from(h), adjacency.to(h), adjacency.from(previous_halfedge(h)), adjacency.from(previous_halfedge(other))};
+    hinge.vertex = {adjacency.from(h), adjacency.to(h), adjacency.from(previous_halfedge(h)),
+                    adjacency.from(previous_halfedge(other))};
     std::array<Vec3, 4> p;
     for (std::size_t k = 0; k < 4; ++k) p[k] = flat.V.row(hinge.vertex[k]);
     const Vec3 edge = p[1] - p[0];
-    const double at0_left = cotangent(edge, p[2] - p[0]), at0_right = cotangent(edge, p[3] - p[0]), at1_left = cotangent(-edge, p[2] - p[1]),
-                 at1_right = cotangent(-edge, p[3] - p[1]);
+    const double at0_left = cotangent(edge, p[2] - p[0]), at0_right = cotangent(edge, p[3] - p[0]),
+                 at1_left = cotangent(-edge, p[2] - p[1]), at1_right = cotangent(-edge, p[3] - p[1]);
     hinge.weight << at1_left + at1_right, at0_left + at0_right, -at0_left - at1_left, -at0_right - at1_right;
     const double areas = 0.5 * (edge.cross(p[2] - p[0]).norm() + edge.cross(p[3] - p[0]).norm());
     hinge.stiffness_n_per_mm = bending_n_mm / areas;
@@ -110,7 +111,8 @@ void stretch_terms(const ClothTriangle& t, const ClothMaterial& material, const 
   }
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j <= i; ++j) {
-      const double along = t.area_mm2 * t.gradient.row(static_cast<Eigen::Index>(i)).dot(pulling * t.gradient.row(static_cast<Eigen::Index>(j)).transpose());
+      const double along = t.area_mm2 * t.gradient.row(static_cast<Eigen::Index>(i))
+                                            .dot(pulling * t.gradient.row(static_cast<Eigen::Index>(j)).transpose());
       terms.block[i][j] = B[i].transpose() * DB[j];
       terms.block[i][j].diagonal().array() += along;
     }

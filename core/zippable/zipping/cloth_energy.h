@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Flat cloth: stretching of linear triangles from their flat rest shape (St. Venant-Kirchhoff, plane stress) and bending with
-// zero rest angle, quadratic in the positions because the cloth hardly stretches: Bergou, Wardetzky, Harmon, Zorin,
-// Grinspun 2006, "A Quadratic Bending Model for Inextensible Surfaces".
+// Flat cloth: stretching of linear triangles from their flat rest shape (St. Venant-Kirchhoff, plane stress) and
+// bending with zero rest angle, quadratic in the positions because the cloth hardly stretches: Bergou, Wardetzky,
+// Harmon, Zorin, Grinspun 2006, "A Quadratic Bending Model for Inextensible Surfaces".
 //
-// The paper's factor 3 is left out: a cylinder of curvature k then has the plate's D k^2 / 2 an area on equilateral triangles and on
-// strips along its rulings alike, which are what a ribbon consists of.
+// The paper's factor 3 is left out: a cylinder of curvature k then has the plate's D k^2 / 2 an area on equilateral
+// triangles and on strips along its rulings alike, which are what a ribbon consists of.
 #include <Eigen/Core>
 #include <array>
 #include <vector>
@@ -27,9 +27,9 @@ struct ClothTriangle {
 };
 
 struct ClothHinge {
-  std::array<int, 4> vertex{};     // the edge's ends, then the corners opposite
-  Eigen::Vector4d weight;          // bending vector: sum of weight times position, zero where flat
-  double stiffness_n_per_mm = 0;   // energy: half of it times the squared bending vector
+  std::array<int, 4> vertex{};    // the edge's ends, then the corners opposite
+  Eigen::Vector4d weight;         // bending vector: sum of weight times position, zero where flat
+  double stiffness_n_per_mm = 0;  // energy: half of it times the squared bending vector
 };
 
 /// Energy of one triangle with its derivatives by the corners' positions. `block` [i][j] for j <= i only.
@@ -45,7 +45,8 @@ std::vector<ClothHinge> cloth_hinges(const TriangleMesh& flat, double bending_n_
 
 double stretch_energy_mj(const ClothTriangle& triangle, const ClothMaterial& material, const Positions& x);
 /// The Hessian is made positive semidefinite: of the stress, what pushes is left out of it.
-void stretch_terms(const ClothTriangle& triangle, const ClothMaterial& material, const Positions& x, StretchTerms& terms);
+void stretch_terms(const ClothTriangle& triangle, const ClothMaterial& material, const Positions& x,
+                   StretchTerms& terms);
 
 /// Largest principal strain by amount, of lengths: 0.01 where a line got a hundredth longer or shorter.
 double largest_strain(const ClothTriangle& triangle, const Positions& x);

@@ -15,13 +15,16 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& sentence) { throw Error(ErrorCode::invalid_input, "design", sentence); }
 
-double twice_area(const Vec2& a, const Vec2& b, const Vec2& c) { return (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x(); }
+double twice_area(const Vec2& a, const Vec2& b, const Vec2& c) {
+  return (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
+}
 
 /// Halves edges and keeps both sides of the zipper alike.
 class Refinement {
  public:
   Refinement(const std::vector<RibbonEdgePlace>& places, const Triangles& triangles) : places_(places) {
-    for (Eigen::Index f = 0; f < triangles.rows(); ++f) faces_.push_back({triangles(f, 0), triangles(f, 1), triangles(f, 2)});
+    for (Eigen::Index f = 0; f < triangles.rows(); ++f)
+      faces_.push_back({triangles(f, 0), triangles(f, 1), triangles(f, 2)});
     for (int f = 0; f < static_cast<int>(faces_.size()); ++f)
       for (int k = 0; k < 3; ++k) attach(faces_[f][k], faces_[f][(k + 1) % 3], f);
     find_mates();
@@ -30,7 +33,8 @@ class Refinement {
   /// Edges of both sides that meet become twins.
   void join(const std::vector<HandleClosure>& closures, int boundary_count) {
     for (std::size_t c = 0; c < closures.size(); ++c) {
-      std::array<std::map<double, std::array<int, 2>>, 2> edges;  // by where they begin, in the direction of the cut: both ends
+      std::array<std::map<double, std::array<int, 2>>, 2>
+          edges;  // by where they begin, in the direction of the cut: both ends
       std::array<std::map<double, double>, 2> end_of;
       std::set<double> places;
       for (std::size_t side = 0; side < 2; ++side)
@@ -38,7 +42,8 @@ class Refinement {
           for (int k = 0; k < run.edge_count(); ++k) {
             int a = (run.first_vertex + k) % boundary_count, b = (run.first_vertex + k + 1) % boundary_count;
             double from = run.along_mm[k], to = run.along_mm[k + 1];
-            if (!faces_of_.contains(ends(a, b))) refuse("design.json: a cut runs along an edge that is not there: make the design again.");
+            if (!faces_of_.contains(ends(a, b)))
+              refuse("design.json: a cut runs along an edge that is not there: make the design again.");
             if (from > to) std::swap(a, b), std::swap(from, to);
             edges[side][from] = {a, b}, end_of[side][from] = to;
             places.insert(from), places.insert(to);
@@ -114,11 +119,13 @@ class Refinement {
     }
     pattern.zipper_mm = zipper_mm_;
     pattern.width_mm = zipper_mm_ > 0 ? area / zipper_mm_ : std::sqrt(area);
-    pattern.size_mm = (pattern.predicted_mm.colwise().maxCoeff() - pattern.predicted_mm.colwise().minCoeff()).maxCoeff();
+    pattern.size_mm =
+        (pattern.predicted_mm.colwise().maxCoeff() - pattern.predicted_mm.colwise().minCoeff()).maxCoeff();
     for (int v = 0; v < static_cast<int>(places_.size()); ++v)
       if (places_[v].left && mate_[v] >= 0) pattern.seams.push_back({v, mate_[v], along_[v], 0});
-    std::sort(pattern.seams.begin(), pattern.seams.end(),
-              [](const SeamPair& a, const SeamPair& b) { return std::tie(a.along_mm, a.left) < std::tie(b.along_mm, b.left); });
+    std::sort(pattern.seams.begin(), pattern.seams.end(), [](const SeamPair& a, const SeamPair& b) {
+      return std::tie(a.along_mm, a.left) < std::tie(b.along_mm, b.left);
+    });
     for (std::size_t i = 0; i + 1 < pattern.seams.size(); ++i) {
       SeamPair &a = pattern.seams[i], &b = pattern.seams[i + 1];
       if (places_[a.left].piece != places_[b.left].piece) continue;
@@ -145,7 +152,8 @@ class Refinement {
     double from_mm, to_mm;
   };
 
-  void add_twins(const std::array<int, 2>& left, const std::array<int, 2>& right, int closure, double from_mm, double to_mm) {
+  void add_twins(const std::array<int, 2>& left, const std::array<int, 2>& right, int closure, double from_mm,
+                 double to_mm) {
     const Twin twin{left, right, closure, from_mm, to_mm};
     twins_[ends(left[0], left[1])] = twins_[ends(right[0], right[1])] = twin;
   }
@@ -154,7 +162,8 @@ class Refinement {
   void split_twins(int a, int b, const Push& push) {
     const Twin twin = twins_.at(ends(a, b));
     twins_.erase(ends(twin.left[0], twin.left[1])), twins_.erase(ends(twin.right[0], twin.right[1]));
-    const int left = split(twin.left[0], twin.left[1], 0.5, push), right = split(twin.right[0], twin.right[1], 0.5, push);
+    const int left = split(twin.left[0], twin.left[1], 0.5, push),
+              right = split(twin.right[0], twin.right[1], 0.5, push);
     const double middle = 0.5 * (twin.from_mm + twin.to_mm);
     add_twins({twin.left[0], left}, {twin.right[0], right}, twin.closure, twin.from_mm, middle);
     add_twins({left, twin.left[1]}, {right, twin.right[1]}, twin.closure, middle, twin.to_mm);
@@ -180,15 +189,18 @@ class Refinement {
     std::map<std::pair<int, bool>, int> place_of;
     for (int v = 0; v < static_cast<int>(count); ++v)
       if (places_[v].sample >= 0 && !place_of.try_emplace({places_[v].sample, places_[v].left}, v).second)
-        refuse("design.json: sample " + std::to_string(places_[v].sample) + " of the zipper stands twice on one side: make the design again.");
+        refuse("design.json: sample " + std::to_string(places_[v].sample) +
+               " of the zipper stands twice on one side: make the design again.");
     int before = -1;
     for (const auto& [key, v] : place_of) {  // ascending samples
       const auto other = place_of.find({key.first, !key.second});
       if (other == place_of.end())
-        refuse("design.json: sample " + std::to_string(key.first) + " of the zipper has no place opposite: make the design again.");
+        refuse("design.json: sample " + std::to_string(key.first) +
+               " of the zipper has no place opposite: make the design again.");
       mate_[v] = other->second;
       if (!places_[v].left) continue;
-      if (before >= 0 && places_[before].piece == places_[v].piece) zipper_mm_ += (places_[v].flat_mm - places_[before].flat_mm).norm();
+      if (before >= 0 && places_[before].piece == places_[v].piece)
+        zipper_mm_ += (places_[v].flat_mm - places_[before].flat_mm).norm();
       along_[v] = along_[other->second] = zipper_mm_;
       before = v;
     }
@@ -196,8 +208,9 @@ class Refinement {
 
   /// Both ends on one side of one stretch of the zipper, and on the ribbon's edge.
   bool on_seam(int a, int b) const {
-    return mate_[a] >= 0 && mate_[b] >= 0 && places_[a].piece == places_[b].piece && places_[a].left == places_[b].left &&
-           faces_of_.at(ends(a, b))[1] < 0 && faces_of_.contains(ends(mate_[a], mate_[b]));
+    return mate_[a] >= 0 && mate_[b] >= 0 && places_[a].piece == places_[b].piece &&
+           places_[a].left == places_[b].left && faces_of_.at(ends(a, b))[1] < 0 &&
+           faces_of_.contains(ends(mate_[a], mate_[b]));
   }
 
   template <class Push>
@@ -243,19 +256,22 @@ RibbonDesign ribbon_of(const FlatDesign& design) {
   ribbon.triangles = design.F;
   ribbon.closures = design.closures;
   for (const FlatVertex& v : design.boundary)
-    ribbon.places.push_back({v.flat_mm, v.position_mm, v.sample, v.sample < 0 ? -1 : design.piece_of[static_cast<std::size_t>(v.sample)], v.left});
+    ribbon.places.push_back({v.flat_mm, v.position_mm, v.sample,
+                             v.sample < 0 ? -1 : design.piece_of[static_cast<std::size_t>(v.sample)], v.left});
   return ribbon;
 }
 
-RibbonPattern make_ribbon_pattern(const std::vector<RibbonEdgePlace>& places, const Triangles& triangles, double edge_mm, Context& context,
-                                  const std::vector<HandleClosure>& closures) {
+RibbonPattern make_ribbon_pattern(const std::vector<RibbonEdgePlace>& places, const Triangles& triangles,
+                                  double edge_mm, Context& context, const std::vector<HandleClosure>& closures) {
   if (triangles.rows() == 0) refuse("design.json has no triangles: make the design again.");
   const int count = static_cast<int>(places.size());
   for (Eigen::Index f = 0; f < triangles.rows(); ++f) {
     for (int k = 0; k < 3; ++k)
       if (triangles(f, k) < 0 || triangles(f, k) >= count)
-        refuse("design.json: triangle " + std::to_string(f) + " names a place that is not there: make the design again.");
-    if (!(twice_area(places[triangles(f, 0)].flat_mm, places[triangles(f, 1)].flat_mm, places[triangles(f, 2)].flat_mm) > 0))
+        refuse("design.json: triangle " + std::to_string(f) +
+               " names a place that is not there: make the design again.");
+    if (!(twice_area(places[triangles(f, 0)].flat_mm, places[triangles(f, 1)].flat_mm,
+                     places[triangles(f, 2)].flat_mm) > 0))
       refuse("design.json: triangle " + std::to_string(f) + " has no area or is turned over: make the design again.");
   }
   Refinement refinement(places, triangles);

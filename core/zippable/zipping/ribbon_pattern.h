@@ -26,14 +26,14 @@ struct ClosurePair {
 };
 
 struct RibbonPattern {
-  TriangleMesh flat;            // z = 0; oriented like the surface: its outside is up
-  Positions predicted_mm;       // per vertex, as designed; no triangle is stretched by it
-  std::vector<SeamPair> seams;  // in the order of the slider
+  TriangleMesh flat;                  // z = 0; oriented like the surface: its outside is up
+  Positions predicted_mm;             // per vertex, as designed; no triangle is stretched by it
+  std::vector<SeamPair> seams;        // in the order of the slider
   std::vector<ClosurePair> closures;  // cut by cut, along each
-  std::vector<double> closed_at_mm;  // per triangle: where the slider is when it has passed all around it
-  double zipper_mm = 0;         // length of one side
-  double width_mm = 0;          // mean width: area over length
-  double size_mm = 0;           // largest dimension of the predicted shape
+  std::vector<double> closed_at_mm;   // per triangle: where the slider is when it has passed all around it
+  double zipper_mm = 0;               // length of one side
+  double width_mm = 0;                // mean width: area over length
+  double size_mm = 0;                 // largest dimension of the predicted shape
 };
 
 /// A place of the ribbon's edge before pairs are formed.
@@ -45,12 +45,12 @@ struct RibbonEdgePlace {
   bool left = true;
 };
 
-/// Edges longer than `edge_mm` are halved, the longest first, seams and closures on both sides alike; 0: triangles as they are. Where one
-/// side of a closure has a vertex that the other lacks, the other's edge is divided there.
-/// Throws Error{invalid_input, "design"}: a triangle that names no place or has no area, a place of the zipper with no one place
-/// opposite, nothing at all. Throws cancelled.
-RibbonPattern make_ribbon_pattern(const std::vector<RibbonEdgePlace>& places, const Triangles& triangles, double edge_mm, Context& context,
-                                  const std::vector<HandleClosure>& closures = {});
+/// Edges longer than `edge_mm` are halved, the longest first, seams and closures on both sides alike; 0: triangles as
+/// they are. Where one side of a closure has a vertex that the other lacks, the other's edge is divided there. Throws
+/// Error{invalid_input, "design"}: a triangle that names no place or has no area, a place of the zipper with no one
+/// place opposite, nothing at all. Throws cancelled.
+RibbonPattern make_ribbon_pattern(const std::vector<RibbonEdgePlace>& places, const Triangles& triangles,
+                                  double edge_mm, Context& context, const std::vector<HandleClosure>& closures = {});
 
 struct RibbonDesign {
   std::vector<RibbonEdgePlace> places;

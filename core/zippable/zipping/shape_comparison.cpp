@@ -13,11 +13,12 @@ namespace formwright {
 RigidMotion best_motion(const Positions& from, const Positions& to, const Eigen::VectorXd& weight, bool mirrored) {
   const double total = weight.sum();
   const Vec3 centre_from = from.transpose() * weight / total, centre_to = to.transpose() * weight / total;
-  const Eigen::Matrix3d moment =
-      (to.rowwise() - centre_to.transpose()).transpose() * weight.asDiagonal() * (from.rowwise() - centre_from.transpose());
+  const Eigen::Matrix3d moment = (to.rowwise() - centre_to.transpose()).transpose() * weight.asDiagonal() *
+                                 (from.rowwise() - centre_from.transpose());
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(moment, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Matrix3d turn = svd.matrixU() * svd.matrixV().transpose();
-  if ((turn.determinant() < 0) != mirrored) turn = svd.matrixU() * Vec3(1, 1, -1).asDiagonal() * svd.matrixV().transpose();
+  if ((turn.determinant() < 0) != mirrored)
+    turn = svd.matrixU() * Vec3(1, 1, -1).asDiagonal() * svd.matrixV().transpose();
   return {turn, centre_to - turn * centre_from};
 }
 
@@ -59,7 +60,8 @@ int count_crossings(const TriangleMesh& mesh, const std::vector<int>& place_of, 
       bool apart = true;
       for (int k = 0; k < 3; ++k) {
         const int place = place_of[static_cast<std::size_t>(mesh.F(hit.face, k))];
-        apart = apart && place != place_of[static_cast<std::size_t>(edge.lower)] && place != place_of[static_cast<std::size_t>(edge.higher)];
+        apart = apart && place != place_of[static_cast<std::size_t>(edge.lower)] &&
+                place != place_of[static_cast<std::size_t>(edge.higher)];
       }
       count += apart;
     }

@@ -16,13 +16,14 @@ struct RigidMotion {
   Positions operator()(const Positions& x) const { return (x * linear.transpose()).rowwise() + shift.transpose(); }
 };
 
-/// The motion that brings `from` onto `to` with the least mean squared distance under `weight` (Kabsch 1976); a mirroring where `mirrored`.
+/// The motion that brings `from` onto `to` with the least mean squared distance under `weight` (Kabsch 1976); a
+/// mirroring where `mirrored`.
 RigidMotion best_motion(const Positions& from, const Positions& to, const Eigen::VectorXd& weight, bool mirrored);
 
 struct ShapeComparison {
-  RigidMotion motion;    // onto the prediction, the better of both kinds
-  bool mirrored = false;  // inside out
-  Eigen::VectorXd distance_mm;                             // per vertex
+  RigidMotion motion;                                        // onto the prediction, the better of both kinds
+  bool mirrored = false;                                     // inside out
+  Eigen::VectorXd distance_mm;                               // per vertex
   double mean_mm = 0, percentile_95_mm = 0, largest_mm = 0;  // weighted, but for the last
 };
 

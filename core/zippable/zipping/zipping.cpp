@@ -24,7 +24,8 @@ constexpr int pressing_rounds = 60;  // most of them; a dozen is usual
 constexpr int settling_rounds = 100;
 /// Where each of them ends, of a course's time and of its animation.
 constexpr double passed_share = 0.8, closed_share = 0.85, settled_share = 0.9, pressed_share = 0.95;
-/// The pull back to where a place was a step before, over the cloth's stiffness and width: it keeps the free end from flying about.
+/// The pull back to where a place was a step before, over the cloth's stiffness and width: it keeps the free end from
+/// flying about.
 constexpr double anchor = 1e-3;
 /// As near as the cloth that was put into the shape, and that itself not too far off, in tolerances.
 constexpr double most_over_rest = 1.25, most_of_its_own = 3;
@@ -33,8 +34,9 @@ ClothMaterial material_of(const ZippingOptions& options) {
   ClothMaterial material;
   material.stretch_n_per_mm = options.stretch_n_per_mm;
   material.poisson_ratio = poisson_ratio;
-  material.bending_n_mm = options.bending_n_mm.value_or(options.stretch_n_per_mm * options.thickness_mm * options.thickness_mm /
-                                                        (12 * (1 - poisson_ratio * poisson_ratio)));
+  material.bending_n_mm =
+      options.bending_n_mm.value_or(options.stretch_n_per_mm * options.thickness_mm * options.thickness_mm /
+                                    (12 * (1 - poisson_ratio * poisson_ratio)));
   return material;
 }
 
@@ -42,7 +44,12 @@ ClothMaterial material_of(const ZippingOptions& options) {
 class Zipping {
  public:
   Zipping(const RibbonPattern& pattern, const ZippingOptions& options, double hold_open_percent, Context& context)
-      : pattern_(pattern), options_(options), held_percent_(hold_open_percent), context_(context), system_(pattern, material_of(options), context), x_(pattern.flat.V) {
+      : pattern_(pattern),
+        options_(options),
+        held_percent_(hold_open_percent),
+        context_(context),
+        system_(pattern, material_of(options), context),
+        x_(pattern.flat.V) {
     Random random(static_cast<std::uint64_t>(options.seed));
     for (Eigen::Index i = 0; i < x_.rows(); ++i) x_(i, 2) = 1e-3 * pattern.width_mm * random.uniform(-1, 1);
     stiffness_ = seam_to_cloth * options.stretch_n_per_mm / pattern.width_mm;
@@ -73,7 +80,8 @@ class Zipping {
     while (passed < pattern_.seams.size() || !all_short) {
       if (all_short) {
         slider += advance;
-        for (; passed < pattern_.seams.size() && pattern_.seams[passed].along_mm <= slider; ++passed) begin_thread(passed);
+        for (; passed < pattern_.seams.size() && pattern_.seams[passed].along_mm <= slider; ++passed)
+          begin_thread(passed);
       }
       for (std::size_t f = 0; f < under_pressure_.size(); ++f) under_pressure_[f] = pattern_.closed_at_mm[f] <= slider;
       all_short = shorten(passed);
@@ -102,7 +110,8 @@ class Zipping {
  private:
   void begin_thread(std::size_t i) {
     const ZippingSystem::Pair& pair = system_.pairs()[i];
-    system_.threads[i] = {stiffness_ * std::max(pair.length_mm, 0.1 * pattern_.width_mm), (x_.row(pair.left) - x_.row(pair.right)).norm()};
+    system_.threads[i] = {stiffness_ * std::max(pair.length_mm, 0.1 * pattern_.width_mm),
+                          (x_.row(pair.left) - x_.row(pair.right)).norm()};
   }
 
   /// Hook-and-loop tape along cut handles comes last, and a maker turns the ends towards each other first.
@@ -133,7 +142,8 @@ class Zipping {
     return all_short;
   }
 
-  /// Nobody knows before which side of the flat cloth will be the inside: negative where the normals point into what is closed.
+  /// Nobody knows before which side of the flat cloth will be the inside: negative where the normals point into what is
+  /// closed.
   double enclosed_mm3() const {
     Vec3 centre = Vec3::Zero();
     double area = 0, six_volumes = 0;
@@ -147,19 +157,23 @@ class Zipping {
     for (std::size_t f = 0; f < under_pressure_.size(); ++f) {
       if (!under_pressure_[f]) continue;
       const auto& v = system_.triangles()[f].vertex;
-      const Vec3 a = x_.row(v[0]).transpose() - centre, b = x_.row(v[1]).transpose() - centre, c = x_.row(v[2]).transpose() - centre;
+      const Vec3 a = x_.row(v[0]).transpose() - centre, b = x_.row(v[1]).transpose() - centre,
+                 c = x_.row(v[2]).transpose() - centre;
       six_volumes += a.dot(b.cross(c));
     }
     return six_volumes / 6;
   }
 
   void press() {
-    const double pressure_mpa = 1e-6 * options_.stuffing_pressure_pa + 0.01 * held_percent_ * options_.stretch_n_per_mm / std::sqrt(system_.vertex_area_mm2().sum());
+    const double pressure_mpa = 1e-6 * options_.stuffing_pressure_pa + 0.01 * held_percent_ *
+                                                                           options_.stretch_n_per_mm /
+                                                                           std::sqrt(system_.vertex_area_mm2().sum());
     if (pressure_mpa <= 0) {
       system_.outer_force_n.setZero();
       return;
     }
-    system_.outer_force_n = pressure_force_n(pattern_.flat.F, x_, under_pressure_, enclosed_mm3() >= 0 ? pressure_mpa : -pressure_mpa);
+    system_.outer_force_n =
+        pressure_force_n(pattern_.flat.F, x_, under_pressure_, enclosed_mm3() >= 0 ? pressure_mpa : -pressure_mpa);
     // On the way the pull back to where everything was holds it.
     if (passed_) balance(system_.outer_force_n, x_, system_.vertex_area_mm2());
   }
@@ -188,7 +202,8 @@ class Zipping {
   }
 
   void record(double share) {
-    if (frames.empty() || share >= 1 || share * (options_.frames - 1) >= static_cast<double>(frames.size())) frames.emplace_back(share, x_);
+    if (frames.empty() || share >= 1 || share * (options_.frames - 1) >= static_cast<double>(frames.size()))
+      frames.emplace_back(share, x_);
   }
 
   const RibbonPattern& pattern_;
@@ -249,10 +264,12 @@ Attempt as_it_is(const RibbonPattern& pattern, const Zipping& zipping) {
 }
 
 /// With its animation and where it runs through itself.
-ZippingResult whole(const Attempt& attempt, const RibbonPattern& pattern, const ZippingSystem& system, Context& context) {
+ZippingResult whole(const Attempt& attempt, const RibbonPattern& pattern, const ZippingSystem& system,
+                    Context& context) {
   ZippingResult result = attempt.result;
   result.zipped_mm = result.comparison.motion(attempt.x);
-  // Nothing holds the cloth in its place on the way: each frame is turned onto the next one, the last onto the prediction.
+  // Nothing holds the cloth in its place on the way: each frame is turned onto the next one, the last onto the
+  // prediction.
   Positions next = result.zipped_mm;
   for (auto frame = attempt.frames.rbegin(); frame != attempt.frames.rend(); ++frame) {
     next = best_motion(frame->second, next, system.vertex_area_mm2(), result.comparison.mirrored)(frame->second);
@@ -284,20 +301,24 @@ ZippingOutcome zipping_outcome(const ZippingResult& result, double tolerance_per
   const double off_mm = result.comparison.percentile_95_mm, own_mm = result.rest.percentile_95_mm;
   if (off_mm <= tolerance_mm) return ZippingOutcome::takes_shape;
   // Zipping cannot do better than the cloth does that was put there.
-  return off_mm <= most_over_rest * own_mm && own_mm <= most_of_its_own * tolerance_mm ? ZippingOutcome::as_the_cloth_does : ZippingOutcome::another_shape;
+  return off_mm <= most_over_rest * own_mm && own_mm <= most_of_its_own * tolerance_mm
+             ? ZippingOutcome::as_the_cloth_does
+             : ZippingOutcome::another_shape;
 }
 
 ZippingResult simulate_zipping(const RibbonDesign& design, const ZippingOptions& options, Context& context) {
   Stopwatch watch;
   context.progress(0, "Cutting the cloth");
-  const RibbonPattern pattern = make_ribbon_pattern(design.places, design.triangles, options.edge_mm, context, design.closures);
+  const RibbonPattern pattern =
+      make_ribbon_pattern(design.places, design.triangles, options.edge_mm, context, design.closures);
   Zipping at_rest(pattern, options, 0, context);
   {
     const auto span = context.span(0, 0.1, "Resting in the intended shape");
     at_rest.rest_from(pattern.predicted_mm);
   }
   const ShapeComparison rest = compare_shapes(at_rest.x(), pattern.predicted_mm, at_rest.system().vertex_area_mm2());
-  const std::vector<double> holds = options.hold_open_percent ? std::vector{*options.hold_open_percent} : std::vector{40.0, 0.0, 15.0};
+  const std::vector<double> holds =
+      options.hold_open_percent ? std::vector{*options.hold_open_percent} : std::vector{40.0, 0.0, 15.0};
   std::optional<Attempt> nearest;
   int attempts = 0;
   const auto tried = [&](const Zipping& zipping, double held_open_percent, bool pressed_out) {

@@ -30,12 +30,14 @@ Vec3 thread_gradient_n(const SeamThread& thread, const Vec3& difference, Eigen::
   const double share = thread.length_mm > 0 ? thread.length_mm / distance : 0;
   if (hessian) {
     *hessian = thread.stiffness_n_per_mm * (1 - share) * Eigen::Matrix3d::Identity();
-    if (share > 0) *hessian += thread.stiffness_n_per_mm * share / (distance * distance) * difference * difference.transpose();
+    if (share > 0)
+      *hessian += thread.stiffness_n_per_mm * share / (distance * distance) * difference * difference.transpose();
   }
   return thread.stiffness_n_per_mm * (1 - share) * difference;
 }
 
-Positions pressure_force_n(const Triangles& F, const Positions& x, const std::vector<char>& under_pressure, double pressure_mpa) {
+Positions pressure_force_n(const Triangles& F, const Positions& x, const std::vector<char>& under_pressure,
+                           double pressure_mpa) {
   Positions force = Positions::Zero(x.rows(), 3);
   for (Eigen::Index f = 0; f < F.rows(); ++f) {
     if (!under_pressure[static_cast<std::size_t>(f)]) continue;
@@ -57,14 +59,18 @@ void balance(Positions& force_n, const Positions& x, const Eigen::VectorXd& area
   }
   const Eigen::RowVector3d push = force_n.colwise().sum() / area.sum();
   const Vec3 turn = inertia.ldlt().solve(moment);
-  for (Eigen::Index i = 0; i < x.rows(); ++i) force_n.row(i) -= area[i] * (push + turn.cross(Vec3((x.row(i) - centre).transpose())).transpose());
+  for (Eigen::Index i = 0; i < x.rows(); ++i)
+    force_n.row(i) -= area[i] * (push + turn.cross(Vec3((x.row(i) - centre).transpose())).transpose());
 }
 
 ZippingSystem::ZippingSystem(const RibbonPattern& pattern, const ClothMaterial& material, Context& context)
-    : material_(material), triangles_(cloth_triangles(pattern.flat)), hinges_(cloth_hinges(pattern.flat, material.bending_n_mm)) {
+    : material_(material),
+      triangles_(cloth_triangles(pattern.flat)),
+      hinges_(cloth_hinges(pattern.flat, material.bending_n_mm)) {
   const int n = pattern.flat.vertex_count();
   for (const SeamPair& seam : pattern.seams) pairs_.push_back({seam.left, seam.right, seam.length_mm});
-  for (const ClosurePair& closure : pattern.closures) pairs_.push_back({closure.left, closure.right, closure.length_mm});
+  for (const ClosurePair& closure : pattern.closures)
+    pairs_.push_back({closure.left, closure.right, closure.length_mm});
   threads.resize(pairs_.size());
   outer_force_n = Positions::Zero(n, 3);
   anchor_mm = pattern.flat.V;
@@ -101,14 +107,16 @@ ZippingSystem::ZippingSystem(const RibbonPattern& pattern, const ClothMaterial& 
   for (const ClothHinge& hinge : hinges_)
     for (std::size_t i = 0; i < 4; ++i)
       for (std::size_t j = 0; j <= i; ++j)
-        add_diagonal(slot(hinge.vertex[i], hinge.vertex[j]),
-                     hinge.stiffness_n_per_mm * hinge.weight[static_cast<Eigen::Index>(i)] * hinge.weight[static_cast<Eigen::Index>(j)]);
+        add_diagonal(slot(hinge.vertex[i], hinge.vertex[j]), hinge.stiffness_n_per_mm *
+                                                                 hinge.weight[static_cast<Eigen::Index>(i)] *
+                                                                 hinge.weight[static_cast<Eigen::Index>(j)]);
   bending_.assign(lower_.valuePtr(), lower_.valuePtr() + lower_.nonZeros());
   for (const ClothTriangle& t : triangles_)
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t j = 0; j <= i; ++j) triangle_slots_.push_back(slot(t.vertex[i], t.vertex[j]));
   for (const Pair& pair : pairs_)
-    for (const Slot& s : {slot(pair.left, pair.left), slot(pair.right, pair.right), slot(pair.left, pair.right)}) seam_slots_.push_back(s);
+    for (const Slot& s : {slot(pair.left, pair.left), slot(pair.right, pair.right), slot(pair.left, pair.right)})
+      seam_slots_.push_back(s);
   terms_.resize(triangles_.size());
   cholesky_.analyze(lower_, {}, context);
 }
@@ -132,7 +140,8 @@ void ZippingSystem::add_block(const Slot& s, const Eigen::Matrix3d& block) {
 }
 
 void ZippingSystem::add_diagonal(const Slot& s, double value) {
-  for (int k = 0; k < 3; ++k) lower_.valuePtr()[lower_.outerIndexPtr()[3 * s.low + k] + (s.place < 0 ? 0 : 3 - k + 3 * s.place + k)] += value;
+  for (int k = 0; k < 3; ++k)
+    lower_.valuePtr()[lower_.outerIndexPtr()[3 * s.low + k] + (s.place < 0 ? 0 : 3 - k + 3 * s.place + k)] += value;
 }
 
 ZippingEnergies ZippingSystem::energies(const Positions& x) const {
@@ -146,13 +155,15 @@ ZippingEnergies ZippingSystem::energies(const Positions& x) const {
 
 double ZippingSystem::objective_mj(const Positions& x) const {
   double sum = energies(x).inner_mj() - outer_force_n.cwiseProduct(x - anchor_mm).sum();
-  for (Eigen::Index i = 0; i < x.rows(); ++i) sum += 0.5 * anchor_n_per_mm3 * area_[i] * (x.row(i) - anchor_mm.row(i)).squaredNorm();
+  for (Eigen::Index i = 0; i < x.rows(); ++i)
+    sum += 0.5 * anchor_n_per_mm3 * area_[i] * (x.row(i) - anchor_mm.row(i)).squaredNorm();
   return sum;
 }
 
 Positions ZippingSystem::gradient_n(const Positions& x) const {
   Positions gradient = -outer_force_n;
-  for (Eigen::Index i = 0; i < x.rows(); ++i) gradient.row(i) += anchor_n_per_mm3 * area_[i] * (x.row(i) - anchor_mm.row(i));
+  for (Eigen::Index i = 0; i < x.rows(); ++i)
+    gradient.row(i) += anchor_n_per_mm3 * area_[i] * (x.row(i) - anchor_mm.row(i));
   StretchTerms terms;
   for (const ClothTriangle& t : triangles_) {
     stretch_terms(t, material_, x, terms);
@@ -160,7 +171,8 @@ Positions ZippingSystem::gradient_n(const Positions& x) const {
   }
   for (const ClothHinge& hinge : hinges_) {
     const Vec3 bent = hinge.stiffness_n_per_mm * bending_vector(hinge, x);
-    for (std::size_t k = 0; k < 4; ++k) gradient.row(hinge.vertex[k]) += hinge.weight[static_cast<Eigen::Index>(k)] * bent.transpose();
+    for (std::size_t k = 0; k < 4; ++k)
+      gradient.row(hinge.vertex[k]) += hinge.weight[static_cast<Eigen::Index>(k)] * bent.transpose();
   }
   for (std::size_t i = 0; i < threads.size(); ++i) {
     const Pair& seam = pairs_[i];
@@ -190,7 +202,8 @@ void ZippingSystem::assemble(const Positions& x, Positions& gradient) {
     }
   for (const ClothHinge& hinge : hinges_) {
     const Vec3 bent = hinge.stiffness_n_per_mm * bending_vector(hinge, x);
-    for (std::size_t k = 0; k < 4; ++k) gradient.row(hinge.vertex[k]) += hinge.weight[static_cast<Eigen::Index>(k)] * bent.transpose();
+    for (std::size_t k = 0; k < 4; ++k)
+      gradient.row(hinge.vertex[k]) += hinge.weight[static_cast<Eigen::Index>(k)] * bent.transpose();
   }
   Eigen::Matrix3d hessian;
   for (std::size_t i = 0; i < threads.size(); ++i) {
@@ -205,7 +218,8 @@ void ZippingSystem::assemble(const Positions& x, Positions& gradient) {
   }
 }
 
-ZippingSystem::Progress ZippingSystem::minimise(Positions& x, int iterations_max, double decrement_mj, Context& context) {
+ZippingSystem::Progress ZippingSystem::minimise(Positions& x, int iterations_max, double decrement_mj,
+                                                Context& context) {
   Progress progress;
   Positions gradient(x.rows(), 3), trial(x.rows(), 3);
   Eigen::VectorXd step(3 * x.rows());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The cloth with its seams as one system: energy, gradient, and Newton's iteration with a line search on a sparse Cholesky
-// factor whose pattern is analysed once, with all seams that will ever close.
+// The cloth with its seams as one system: energy, gradient, and Newton's iteration with a line search on a sparse
+// Cholesky factor whose pattern is analysed once, with all seams that will ever close.
 #include <vector>
 
 #include "numerics/sparse_cholesky.h"
@@ -21,15 +21,17 @@ struct ZippingEnergies {
   double inner_mj() const { return stretch_mj + bending_mj + seam_mj; }
 };
 
-/// Half `stiffness` times the square of what `difference` is longer than `length_mm`; gradient and positive semidefinite Hessian by the
-/// first place, those by the second are their opposites.
+/// Half `stiffness` times the square of what `difference` is longer than `length_mm`; gradient and positive
+/// semidefinite Hessian by the first place, those by the second are their opposites.
 double thread_energy_mj(const SeamThread& thread, const Vec3& difference);
 Vec3 thread_gradient_n(const SeamThread& thread, const Vec3& difference, Eigen::Matrix3d* hessian_n_per_mm);
 
 /// n x 3, in N: a pressure along the outside of the triangles that `under_pressure` marks.
-Positions pressure_force_n(const Triangles& F, const Positions& x, const std::vector<char>& under_pressure, double pressure_mpa);
+Positions pressure_force_n(const Triangles& F, const Positions& x, const std::vector<char>& under_pressure,
+                           double pressure_mpa);
 
-/// Takes from `force_n` what would move or turn the whole: pressure on cloth with openings is a rocket, and a maker's hands hold it. `area`: n, weights.
+/// Takes from `force_n` what would move or turn the whole: pressure on cloth with openings is a rocket, and a maker's
+/// hands hold it. `area`: n, weights.
 void balance(Positions& force_n, const Positions& x, const Eigen::VectorXd& area);
 
 class ZippingSystem {
@@ -45,9 +47,9 @@ class ZippingSystem {
   std::vector<SeamThread> threads;  // one a pair
   /// The pattern's seams, in their order, then its closures.
   const std::vector<Pair>& pairs() const { return pairs_; }
-  Positions outer_force_n;          // n x 3, held while minimising
-  Positions anchor_mm;              // n x 3; every vertex is drawn back to it weakly, which settles what nothing else does
-  double anchor_n_per_mm3 = 0;      // that pull, for an area and a distance
+  Positions outer_force_n;      // n x 3, held while minimising
+  Positions anchor_mm;          // n x 3; every vertex is drawn back to it weakly, which settles what nothing else does
+  double anchor_n_per_mm3 = 0;  // that pull, for an area and a distance
 
   ZippingEnergies energies(const Positions& x) const;
   /// Everything that is minimised: energies, anchors, outer force.

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hides effects in virtual objects and asks the diagnosis for them: one line of JSON for each case; score_confusion_table.py counts them.
-//   confusion_table [--seed N] [--cases N | --repeat N] [--levels 1,0.5,0.25] [--noise 0.05,0.15] [--only CAUSE] [--mould NAME]
+// Hides effects in virtual objects and asks the diagnosis for them: one line of JSON for each case;
+// score_confusion_table.py counts them.
+//   confusion_table [--seed N] [--cases N | --repeat N] [--levels 1,0.5,0.25] [--noise 0.05,0.15] [--only CAUSE]
+//   [--mould NAME]
 //                   [--triangles N] [--pairs N] [--no-pairs] [--left-out] [--calibrated] [--unseen] [--verbose]
-// --pairs hides two causes at a time, --no-pairs does not look for two, --left-out takes the hidden cause off the list that is asked,
+// --pairs hides two causes at a time, --no-pairs does not look for two, --left-out takes the hidden cause off the list
+// that is asked,
 // --calibrated has a profile of the machine from when it was well; --engine only says which engine answers.
 #include <cstdio>
 #include <cstring>
@@ -40,7 +43,8 @@ std::vector<double> numbers(const char* text) {
 }
 
 /// One hidden truth and the answer to it.
-Json one_case(const std::vector<std::string>& hidden, double level, double sigma, unsigned seed, const Arguments& arguments) {
+Json one_case(const std::vector<std::string>& hidden, double level, double sigma, unsigned seed,
+              const Arguments& arguments) {
   std::mt19937 random(seed);
   const HiddenWorld world = draw_world(random);
   std::vector<HiddenEffect> effects;
@@ -59,7 +63,8 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
     ThermoformModelOptions well;
     well.fit_mould_place = true;
     well.triangles = 2500;
-    const ThermoformModel before({make_object(static_cast<Mould>((static_cast<int>(mould) + 2) % 4), world, {}, observation, random)}, well);
+    const ThermoformModel before(
+        {make_object(static_cast<Mould>((static_cast<int>(mould) + 2) % 4), world, {}, observation, random)}, well);
     SimulationBag before_bag(before);
     Context calibration;
     asked.profile = before.profile_at(calibrate(before_bag, calibration).u);
@@ -87,7 +92,8 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
   Json verdict = Json::array();
   for (const int cause : d.verdict) verdict.push_back(model.causes()[static_cast<std::size_t>(cause)].name);
   line["verdict"] = verdict;
-  line["first"] = verdict.empty() || d.reading == Reading::unknown ? reading_name(d.reading) : verdict[0].get<std::string>();
+  line["first"] =
+      verdict.empty() || d.reading == Reading::unknown ? reading_name(d.reading) : verdict[0].get<std::string>();
   line["structure_mm"] = {d.unexplained_before, d.unexplained_after};
   line["held_out_mm"] = {d.held_out.before.mean, d.held_out.after.mean};
   line["noise_mm"] = {d.noise.front().sigma, d.noise_floor};
@@ -108,9 +114,12 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
     if (h.causes.empty() || h.unknown_structure) continue;
     std::vector<std::string> named;
     for (const int c : h.causes) named.push_back(model.causes()[static_cast<std::size_t>(c)].name);
-    const bool contains = std::all_of(hidden.begin(), hidden.end(), [&](const std::string& n) { return std::find(named.begin(), named.end(), n) != named.end(); });
+    const bool contains = std::all_of(hidden.begin(), hidden.end(), [&](const std::string& n) {
+      return std::find(named.begin(), named.end(), n) != named.end();
+    });
     if (contains && named.size() == hidden.size()) right = std::max(right, h.log_evidence);
-    else if (!contains && named.size() <= std::max<std::size_t>(1, hidden.size())) wrong = std::max(wrong, h.log_evidence);
+    else if (!contains && named.size() <= std::max<std::size_t>(1, hidden.size()))
+      wrong = std::max(wrong, h.log_evidence);
   }
   line["over_none"] = {{"unknown", unknown - none}, {"right", right - none}, {"wrong", wrong - none}};
   // How strong each hidden cause would have to be to show in these data at all, as the diagnosis itself says.
@@ -121,24 +130,28 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
     for (const auto& [name, value] : e.values.items()) squares += std::pow(value.get<double>(), 2);
     line["strength"].push_back(std::sqrt(squares));
     for (const CauseFinding& f : d.causes)
-      if (model.causes()[static_cast<std::size_t>(f.cause)].name == e.cause) line["least_visible"].push_back(std::isfinite(f.least_visible) ? Json(f.least_visible) : Json());
+      if (model.causes()[static_cast<std::size_t>(f.cause)].name == e.cause)
+        line["least_visible"].push_back(std::isfinite(f.least_visible) ? Json(f.least_visible) : Json());
   }
   line["trials"] = Json::array();
   for (const HeldOutTrial& trial : d.trials) {
     std::string names;
-    for (const int c : trial.causes) names += (names.empty() ? "" : "+") + model.causes()[static_cast<std::size_t>(c)].name;
-    line["trials"].push_back({names, trial.significant, trial.gain.before.mean, trial.gain.after.mean, trial.gain.gain_share, trial.gain.gain_low});
+    for (const int c : trial.causes)
+      names += (names.empty() ? "" : "+") + model.causes()[static_cast<std::size_t>(c)].name;
+    line["trials"].push_back({names, trial.significant, trial.gain.before.mean, trial.gain.after.mean,
+                              trial.gain.gain_share, trial.gain.gain_low});
   }
   if (arguments.verbose) {
     for (std::size_t i = 0; i < std::min<std::size_t>(8, d.hypotheses.size()); ++i) {
       const Hypothesis& h = d.hypotheses[i];
       std::string names;
       for (const int c : h.causes) names += model.causes()[static_cast<std::size_t>(c)].name + " ";
-      std::fprintf(stderr, "   %-40s %s log evidence %9.1f structure %.3f p %.4f\n", names.c_str(), h.unknown_structure ? "+unknown" : "        ", h.log_evidence, h.structure,
-                   h.probability);
+      std::fprintf(stderr, "   %-40s %s log evidence %9.1f structure %.3f p %.4f\n", names.c_str(),
+                   h.unknown_structure ? "+unknown" : "        ", h.log_evidence, h.structure, h.probability);
     }
     for (std::size_t p = 0; p < 4; ++p)
-      std::fprintf(stderr, "   %-20s base %.3g extended %.3g\n", model.parameters()[p].name.c_str(), model.parameters()[p].value(d.base.u[static_cast<Eigen::Index>(p)]),
+      std::fprintf(stderr, "   %-20s base %.3g extended %.3g\n", model.parameters()[p].name.c_str(),
+                   model.parameters()[p].value(d.base.u[static_cast<Eigen::Index>(p)]),
                    model.parameters()[p].value(d.extended.u[static_cast<Eigen::Index>(p)]));
   }
   if (arguments.unseen) {
@@ -191,13 +204,15 @@ int main(int count, char** values) {
     const std::string first = pick();
     std::string second = pick();
     while (second == first) second = pick();
-    tell({first, second}, a.levels[static_cast<std::size_t>(k) % a.levels.size()], a.noise[static_cast<std::size_t>(k) % a.noise.size()]);
+    tell({first, second}, a.levels[static_cast<std::size_t>(k) % a.levels.size()],
+         a.noise[static_cast<std::size_t>(k) % a.noise.size()]);
   }
   if (a.pairs > 0) return 0;
   if (a.cases > 0) {
     for (int k = 0; k < a.cases; ++k) {
       const std::string& cause = names[choice() % names.size()];
-      tell(cause == "none" ? std::vector<std::string>{} : std::vector<std::string>{cause}, a.levels[choice() % a.levels.size()], a.noise[choice() % a.noise.size()]);
+      tell(cause == "none" ? std::vector<std::string>{} : std::vector<std::string>{cause},
+           a.levels[choice() % a.levels.size()], a.noise[choice() % a.noise.size()]);
     }
     return 0;
   }
@@ -205,6 +220,7 @@ int main(int count, char** values) {
     for (const std::string& cause : names) {
       if (!a.only.empty() && cause != a.only) continue;
       for (const double level : a.levels)
-        for (const double sigma : a.noise) tell(cause == "none" ? std::vector<std::string>{} : std::vector<std::string>{cause}, level, sigma);
+        for (const double sigma : a.noise)
+          tell(cause == "none" ? std::vector<std::string>{} : std::vector<std::string>{cause}, level, sigma);
     }
 }

@@ -97,7 +97,9 @@ Json shape_report(const TriangleMesh& mesh) {
   const Eigen::VectorXd least = corner_angles(mesh).rowwise().minCoeff() * (180 / std::numbers::pi);
   std::vector<double> sorted(least.begin(), least.end());
   std::sort(sorted.begin(), sorted.end());
-  const auto part = [&](double share) { return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))]; };
+  const auto part = [&](double share) {
+    return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
+  };
   return {{"least", part(0)}, {"1_percent", part(0.01)}, {"median", part(0.5)}};
 }
 
@@ -158,12 +160,19 @@ int main(int argc, char** argv) {
     for (int v = 0; v < n; ++v) to.nearest(mesh.V.row(v));
   });
 
-  Json report{{"mesh", from_file ? what : "generated"}, {"vertices", n}, {"faces", mesh.face_count()}, {"threads", thread_count()},
-              {"rounds", rounds}, {"seconds", bench.seconds}, {"repair_sentences", repaired.sentences}};
-  report["simplified"] = {{"vertices", small.vertex_count()}, {"least_angle_degrees", shape_report(small)},
+  Json report{{"mesh", from_file ? what : "generated"},
+              {"vertices", n},
+              {"faces", mesh.face_count()},
+              {"threads", thread_count()},
+              {"rounds", rounds},
+              {"seconds", bench.seconds},
+              {"repair_sentences", repaired.sentences}};
+  report["simplified"] = {{"vertices", small.vertex_count()},
+                          {"least_angle_degrees", shape_report(small)},
                           {"least_angle_degrees_before", shape_report(sound)}};
   const SurfaceDistance off = surface_distance(sound, PointDistance(small), infinity, context);
-  report["simplified"]["distance_percent_of_diagonal"] = {{"maximum", 100 * off.maximum / box.diagonal()}, {"mean", 100 * off.mean / box.diagonal()}};
+  report["simplified"]["distance_percent_of_diagonal"] = {{"maximum", 100 * off.maximum / box.diagonal()},
+                                                          {"mean", 100 * off.mean / box.diagonal()}};
   report["hits"] = {{"ours", hits}, {"cgal", cgal_hits}};
 #ifndef __EMSCRIPTEN__
   rusage usage{};

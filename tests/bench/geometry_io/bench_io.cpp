@@ -60,10 +60,15 @@ int main(int argc, char** argv) {
   Model plain = textured;
   plain.UV.resize(0, 2), plain.FT.resize(0, 3);
   const std::vector<VertexColumn> columns = test::sample_columns(plain);
-  Json result = {{"machine", {{"cores", std::thread::hardware_concurrency()}}}, {"vertices", plain.mesh.vertex_count()}, {"faces", plain.mesh.face_count()}};
+  Json result = {{"machine", {{"cores", std::thread::hardware_concurrency()}}},
+                 {"vertices", plain.mesh.vertex_count()},
+                 {"faces", plain.mesh.face_count()}};
   Context context;
-  const Case cases[] = {{"obj", MeshFormat::obj}, {"obj with uv", MeshFormat::obj, false, true}, {"stl", MeshFormat::stl}, {"stl ascii", MeshFormat::stl, true},
-                        {"ply", MeshFormat::ply}, {"ply ascii", MeshFormat::ply, true}, {"glb", MeshFormat::glb}, {"glb with uv", MeshFormat::glb, false, true}, {"3mf", MeshFormat::three_mf}};
+  const Case cases[] = {{"obj", MeshFormat::obj},     {"obj with uv", MeshFormat::obj, false, true},
+                        {"stl", MeshFormat::stl},     {"stl ascii", MeshFormat::stl, true},
+                        {"ply", MeshFormat::ply},     {"ply ascii", MeshFormat::ply, true},
+                        {"glb", MeshFormat::glb},     {"glb with uv", MeshFormat::glb, false, true},
+                        {"3mf", MeshFormat::three_mf}};
   for (const Case& c : cases) {
     WriteOptions options;
     options.ascii = c.ascii;
@@ -72,7 +77,10 @@ int main(int argc, char** argv) {
     const Model& model = c.textured ? textured : plain;
     const Json write = best_seconds(rounds, [&] { bytes = write_model(model, c.format, options, context); });
     const Json read = best_seconds(rounds, [&] { read_model(bytes, "bench", context); });
-    Json row = {{"format", c.name}, {"megabytes", static_cast<double>(bytes.size()) / 1e6}, {"seconds_write", write}, {"seconds_read", read}};
+    Json row = {{"format", c.name},
+                {"megabytes", static_cast<double>(bytes.size()) / 1e6},
+                {"seconds_write", write},
+                {"seconds_read", read}};
     if (c.format == MeshFormat::obj) {
       row["seconds_read_tinyobjloader"] = best_seconds(std::min(rounds, 2), [&] {
         std::istringstream stream{std::string(as_text(bytes))};
@@ -89,10 +97,14 @@ int main(int argc, char** argv) {
   image.width = image.height = 2000;
   image.pixel_width_mm = image.pixel_height_mm = 0.1;
   for (int y = 0; y < 2000; ++y)
-    for (int x = 0; x < 2000; ++x) image.levels.push_back(static_cast<std::uint16_t>(32767 + 32000 * std::sin(0.004 * x) * std::cos(0.003 * y)));
+    for (int x = 0; x < 2000; ++x)
+      image.levels.push_back(static_cast<std::uint16_t>(32767 + 32000 * std::sin(0.004 * x) * std::cos(0.003 * y)));
   Bytes png;
   const Json png_write = best_seconds(rounds, [&] { png = write_png16(image); });
-  result["formats"].push_back({{"format", "png16 of 2000 x 2000"}, {"megabytes", static_cast<double>(png.size()) / 1e6}, {"seconds_write", png_write}, {"seconds_read", best_seconds(rounds, [&] { read_png16(png, "bench"); })}});
+  result["formats"].push_back({{"format", "png16 of 2000 x 2000"},
+                               {"megabytes", static_cast<double>(png.size()) / 1e6},
+                               {"seconds_write", png_write},
+                               {"seconds_read", best_seconds(rounds, [&] { read_png16(png, "bench"); })}});
   result["peak_memory_mb"] = peak_mb();
   // One format a line.
   const Json formats = result["formats"];

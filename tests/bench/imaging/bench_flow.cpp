@@ -18,11 +18,14 @@ namespace {
 Image bytes_of(const WeightedPicture& picture) {
   Image image(picture.width, picture.height, {0, 0, 0, 255});
   for (std::size_t i = 0; i < picture.pixels.size(); ++i)
-    for (std::size_t c = 0; c < 3; ++c) image.pixels[i][c] = static_cast<std::uint8_t>(std::lround(picture.pixels[i][c]));
+    for (std::size_t c = 0; c < 3; ++c)
+      image.pixels[i][c] = static_cast<std::uint8_t>(std::lround(picture.pixels[i][c]));
   return image;
 }
 
-void save(const std::string& path, const void* data, std::size_t size) { std::ofstream(path, std::ios::binary).write(static_cast<const char*>(data), static_cast<std::streamsize>(size)); }
+void save(const std::string& path, const void* data, std::size_t size) {
+  std::ofstream(path, std::ios::binary).write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
+}
 
 }  // namespace
 
@@ -33,7 +36,8 @@ int main(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     if (std::strcmp(argv[i], "--side") == 0 && i + 1 < argc) side = std::stoi(argv[++i]);
     else if (std::strcmp(argv[i], "--write") == 0 && i + 1 < argc) folder = argv[++i];
-    else if (const char* equal = std::strchr(argv[i], '=')) values[std::string(argv[i], static_cast<std::size_t>(equal - argv[i]))] = std::stod(equal + 1);
+    else if (const char* equal = std::strchr(argv[i], '='))
+      values[std::string(argv[i], static_cast<std::size_t>(equal - argv[i]))] = std::stod(equal + 1);
   }
   const auto options = read_parameters<VariationalFlowOptions>(values);
   struct Case {
@@ -42,12 +46,15 @@ int main(int argc, char** argv) {
     test::Camera camera;
   };
   const double s = side / 2048.0;
-  const Case cases[] = {{"translation", [](const Vec2&) { return Vec2(-7.3, 4.6); }, {}},
-                        {"affine", [](const Vec2& p) { return Vec2(0.02 * p.x() + 0.015 * p.y(), -0.01 * p.x() - 0.015 * p.y()); }, {2, 0.5, 0.05}},
-                        {"waves", test::waves(14 * s, 700 * s), {2, 0.5, 0.05}},
-                        {"short waves", test::waves(3 * s, 160 * s), {2, 0.5, 0.05}},
-                        {"bulge", test::bulge(150 * s, 500 * s), {4, 0.8, 0.1}},
-                        {"noisy bulge", test::bulge(150 * s, 500 * s), {12, 1.2, 0.1}}};
+  const Case cases[] = {
+      {"translation", [](const Vec2&) { return Vec2(-7.3, 4.6); }, {}},
+      {"affine",
+       [](const Vec2& p) { return Vec2(0.02 * p.x() + 0.015 * p.y(), -0.01 * p.x() - 0.015 * p.y()); },
+       {2, 0.5, 0.05}},
+      {"waves", test::waves(14 * s, 700 * s), {2, 0.5, 0.05}},
+      {"short waves", test::waves(3 * s, 160 * s), {2, 0.5, 0.05}},
+      {"bulge", test::bulge(150 * s, 500 * s), {4, 0.8, 0.1}},
+      {"noisy bulge", test::bulge(150 * s, 500 * s), {12, 1.2, 0.1}}};
   Json result = Json::array();
   for (const Case& c : cases) {
     test::WarpedPair pair = test::warped_pair(side, side, c.back, c.camera);
@@ -57,11 +64,19 @@ int main(int argc, char** argv) {
     const Stopwatch watch;
     const std::clock_t processor = std::clock();
     const Flow flow = variational_flow(a, b, options, context);
-    const double seconds = watch.seconds(), processor_seconds = static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC;
+    const double seconds = watch.seconds(),
+                 processor_seconds = static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC;
     const int margin = side / 40;
     const test::EndPointError e = test::end_point_error(flow, pair.truth, margin);
-    result.push_back({{"pair", c.name}, {"side_px", side}, {"seconds", seconds}, {"processor_seconds", processor_seconds}, {"error_mean_px", e.mean}, {"error_rms_px", e.root_mean_square}, {"error_95_px", e.percentile_95}});
-    std::fprintf(stderr, "%-12s %6.2f s (%.2f s of all processors)  mean %.4f  rms %.4f  95 %% %.4f px\n", c.name, seconds, processor_seconds, e.mean, e.root_mean_square, e.percentile_95);
+    result.push_back({{"pair", c.name},
+                      {"side_px", side},
+                      {"seconds", seconds},
+                      {"processor_seconds", processor_seconds},
+                      {"error_mean_px", e.mean},
+                      {"error_rms_px", e.root_mean_square},
+                      {"error_95_px", e.percentile_95}});
+    std::fprintf(stderr, "%-12s %6.2f s (%.2f s of all processors)  mean %.4f  rms %.4f  95 %% %.4f px\n", c.name,
+                 seconds, processor_seconds, e.mean, e.root_mean_square, e.percentile_95);
     if (folder.empty()) continue;
     const std::string stem = folder + "/" + c.name;
     for (const auto& [suffix, image] : {std::pair{"_1.png", &first}, {"_2.png", &second}}) {

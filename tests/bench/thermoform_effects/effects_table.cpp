@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How far each effect moves the points of the formed sample pyramid, how straight it does, and which effects look alike.
+// How far each effect moves the points of the formed sample pyramid, how straight it does, and which effects look
+// alike.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -55,7 +56,8 @@ int main(int count, char** words) {
   const int side = 60;
   TextureCoordinates places(side * side, 2);
   for (int i = 0; i < side * side; ++i)
-    places.row(i) << base.clamp_opening_x_mm * ((i % side + 0.5) / side - 0.5) * 0.97, base.clamp_opening_y_mm * ((i / side + 0.5) / side - 0.5) * 0.97;
+    places.row(i) << base.clamp_opening_x_mm * ((i % side + 0.5) / side - 0.5) * 0.97,
+        base.clamp_opening_y_mm * ((i / side + 0.5) / side - 0.5) * 0.97;
   const auto measured = [&](const Effect* effect, double share, double& seconds, int& steps) {
     ThermoformOptions o = base;
     MeasurementEffects m;
@@ -69,15 +71,20 @@ int main(int count, char** words) {
   int steps = 0;
   const Positions nominal = measured(nullptr, 0, seconds, steps);
   std::printf("base %.2f s, %d steps\n", seconds, steps);
-  const auto cosine = [](const Positions& a, const Positions& b) { return a.cwiseProduct(b).sum() / std::max(1e-30, a.norm() * b.norm()); };
+  const auto cosine = [](const Positions& a, const Positions& b) {
+    return a.cwiseProduct(b).sum() / std::max(1e-30, a.norm() * b.norm());
+  };
   std::vector<Positions> fields;
   std::vector<std::string> names;
   std::printf("%-20s %8s %8s %8s %8s %8s %8s\n", "effect", "strength", "rms mm", "max mm", "half/full", "cosine", "s");
   for (const Effect& effect : effects()) {
     if (count > 3 && std::string(words[3]) != "all" && std::string(words[3]) != effect.name) continue;
-    const Positions half = measured(&effect, 0.5, seconds, steps) - nominal, full = measured(&effect, 1, seconds, steps) - nominal;
-    std::printf("%-20s %8.3g %8.3f %8.3f %8.3f %8.3f %8.2f %d\n", effect.name, effect.strength, std::sqrt(full.squaredNorm() / static_cast<double>(full.rows())),
-                std::sqrt(full.rowwise().squaredNorm().maxCoeff()), half.norm() / full.norm(), cosine(half, full), seconds, steps);
+    const Positions half = measured(&effect, 0.5, seconds, steps) - nominal,
+                    full = measured(&effect, 1, seconds, steps) - nominal;
+    std::printf("%-20s %8.3g %8.3f %8.3f %8.3f %8.3f %8.2f %d\n", effect.name, effect.strength,
+                std::sqrt(full.squaredNorm() / static_cast<double>(full.rows())),
+                std::sqrt(full.rowwise().squaredNorm().maxCoeff()), half.norm() / full.norm(), cosine(half, full),
+                seconds, steps);
     fields.push_back(full);
     names.emplace_back(effect.name);
   }

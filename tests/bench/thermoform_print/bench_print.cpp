@@ -41,11 +41,26 @@ int main(int argc, char** argv) {
       const Bytes glb = formed_picture(sheet, print, 2048, context);
       const double seconds_glb = watch.lap();
       if (!best.is_null() && best["seconds"] < whole) continue;
-      best = {{"sample", c.sample}, {"dots_per_inch", c.dots_per_inch}, {"threads", thread_count()}, {"triangles", print.surface.mesh.face_count()},
-              {"pixels", {print.grid.width, print.grid.height}}, {"area_coloured_mm2", print.area_mm2[0]}, {"uncoloured_percent", 100 * print.uncoloured_share()}, {"gap_mean_mm", print.gap_mean_mm},
-              {"seconds", whole}, {"seconds_refine", print.seconds_refine}, {"seconds_project", print.seconds_project}, {"seconds_colours", print.seconds_colours},
-              {"seconds_render", print.seconds_render}, {"seconds_bleed", print.seconds_bleed}, {"seconds_png", seconds_png}, {"seconds_pdf", seconds_pdf}, {"seconds_glb", seconds_glb},
-              {"png_mb", static_cast<double>(png.size()) * 1e-6}, {"pdf_mb", static_cast<double>(pdf.size()) * 1e-6}, {"glb_mb", static_cast<double>(glb.size()) * 1e-6}};
+      best = {{"sample", c.sample},
+              {"dots_per_inch", c.dots_per_inch},
+              {"threads", thread_count()},
+              {"triangles", print.surface.mesh.face_count()},
+              {"pixels", {print.grid.width, print.grid.height}},
+              {"area_coloured_mm2", print.area_mm2[0]},
+              {"uncoloured_percent", 100 * print.uncoloured_share()},
+              {"gap_mean_mm", print.gap_mean_mm},
+              {"seconds", whole},
+              {"seconds_refine", print.seconds_refine},
+              {"seconds_project", print.seconds_project},
+              {"seconds_colours", print.seconds_colours},
+              {"seconds_render", print.seconds_render},
+              {"seconds_bleed", print.seconds_bleed},
+              {"seconds_png", seconds_png},
+              {"seconds_pdf", seconds_pdf},
+              {"seconds_glb", seconds_glb},
+              {"png_mb", static_cast<double>(png.size()) * 1e-6},
+              {"pdf_mb", static_cast<double>(pdf.size()) * 1e-6},
+              {"glb_mb", static_cast<double>(glb.size()) * 1e-6}};
     }
     all.push_back(best);
   }

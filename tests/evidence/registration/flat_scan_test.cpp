@@ -13,7 +13,8 @@ namespace formwright {
 namespace {
 
 /// A grid over [-w, w] x [-h, h], each point where `place` puts it; cells that `skip` names are left out.
-TriangleMesh grid(double w, double h, int n, const std::function<Vec3(double, double)>& place, const std::function<bool(double, double)>& skip = {}) {
+TriangleMesh grid(double w, double h, int n, const std::function<Vec3(double, double)>& place,
+                  const std::function<bool(double, double)>& skip = {}) {
   TriangleMesh mesh;
   std::vector<Eigen::RowVector3i> faces;
   mesh.V.resize((n + 1) * (n + 1), 3);
@@ -58,7 +59,8 @@ TEST(FlatScan, HolesStayHoles) {
 
 TEST(FlatScan, MoreStepsComeNearerToRigid) {
   Context context;
-  const TriangleMesh mesh = grid(50, 50, 40, [](double x, double y) { return Vec3(x, y, 25 * std::exp(-(x * x + y * y) / 500)); });
+  const TriangleMesh mesh =
+      grid(50, 50, 40, [](double x, double y) { return Vec3(x, y, 25 * std::exp(-(x * x + y * y) / 500)); });
   double before = 1e9;
   for (const int steps : {0, 1, 3, 30}) {
     const FlatScan flat = flatten(mesh, steps, context);

@@ -25,18 +25,23 @@ TEST(CalibrationPattern, ItsDescriptionDrawsItAgain) {
   const CalibrationPattern pattern = small_pattern();
   const std::string text = calibration_pattern_json(pattern).dump();
   const CalibrationPattern again = read_calibration_pattern(as_bytes(text));
-  EXPECT_EQ(draw_calibration_pattern(pattern, 300, 325, 0.4, Context()).pixels, draw_calibration_pattern(again, 300, 325, 0.4, Context()).pixels);
+  EXPECT_EQ(draw_calibration_pattern(pattern, 300, 325, 0.4, Context()).pixels,
+            draw_calibration_pattern(again, 300, 325, 0.4, Context()).pixels);
   EXPECT_EQ(calibration_pattern_json(again), calibration_pattern_json(pattern));
 }
 
 TEST(CalibrationPattern, EverythingLiesWithinTheOpeningAndApart) {
   const CalibrationPattern pattern = small_pattern();
-  for (const CornerMark& m : pattern.marks) EXPECT_LE((m.centre_mm.cwiseAbs() + Vec2::Constant(m.radius_mm) - pattern.opening_mm / 2).maxCoeff(), 1e-9) << m.name;
+  for (const CornerMark& m : pattern.marks)
+    EXPECT_LE((m.centre_mm.cwiseAbs() + Vec2::Constant(m.radius_mm) - pattern.opening_mm / 2).maxCoeff(), 1e-9)
+        << m.name;
   for (std::size_t i = 0; i < pattern.patches.size(); ++i) {
     const ColourPatch& p = pattern.patches[i];
     EXPECT_LE((p.centre_mm.cwiseAbs() + Vec2::Constant(p.side_mm / 2) - pattern.opening_mm / 2).maxCoeff(), 1e-9);
-    for (std::size_t j = 0; j < i; ++j) EXPECT_GE((p.centre_mm - pattern.patches[j].centre_mm).cwiseAbs().maxCoeff(), p.side_mm - 1e-9);
-    for (const CornerMark& m : pattern.marks) EXPECT_GE((p.centre_mm - m.centre_mm).cwiseAbs().maxCoeff(), p.side_mm / 2 + m.radius_mm - 1e-9);
+    for (std::size_t j = 0; j < i; ++j)
+      EXPECT_GE((p.centre_mm - pattern.patches[j].centre_mm).cwiseAbs().maxCoeff(), p.side_mm - 1e-9);
+    for (const CornerMark& m : pattern.marks)
+      EXPECT_GE((p.centre_mm - m.centre_mm).cwiseAbs().maxCoeff(), p.side_mm / 2 + m.radius_mm - 1e-9);
   }
 }
 
@@ -62,7 +67,8 @@ TEST(CalibrationPattern, RefusesWhatDoesNotFitWithTheNameOfTheKey) {
 }
 
 /// The pattern as linear light, turned by `angle` about its middle and stretched; mirrored where asked for.
-WeightedPicture turned(const CalibrationPattern& pattern, const PlaneFrame& frame, const Eigen::Matrix2d& linear, const Vec2& shift, double noise) {
+WeightedPicture turned(const CalibrationPattern& pattern, const PlaneFrame& frame, const Eigen::Matrix2d& linear,
+                       const Vec2& shift, double noise) {
   const double pixel_mm = 0.25;
   const WeightedPicture print = weighted_picture(draw_calibration_pattern(pattern, 480, 520, pixel_mm, Context()));
   WeightedPicture picture(frame.width, frame.height);
@@ -73,8 +79,11 @@ WeightedPicture turned(const CalibrationPattern& pattern, const PlaneFrame& fram
     for (int x = 0; x < frame.width; ++x) {
       const Vec2 s = inverse * (frame.place(x, y) - shift);
       if (std::abs(s.x()) > 59 || std::abs(s.y()) > 64) continue;
-      Float4 c = bilinear(print, static_cast<float>(240 + s.x() / pixel_mm - 0.5), static_cast<float>(260 - s.y() / pixel_mm - 0.5)) / 255.0f;
-      for (int k = 0; k < 3; ++k) c[k] = c[k] * c[k] * (0.4f + 0.2f * static_cast<float>(k)) + 0.02f + static_cast<float>(noise) * normal(random);
+      Float4 c = bilinear(print, static_cast<float>(240 + s.x() / pixel_mm - 0.5),
+                          static_cast<float>(260 - s.y() / pixel_mm - 0.5)) /
+                 255.0f;
+      for (int k = 0; k < 3; ++k)
+        c[k] = c[k] * c[k] * (0.4f + 0.2f * static_cast<float>(k)) + 0.02f + static_cast<float>(noise) * normal(random);
       c[3] = 1;
       picture.at(x, y) = c;
     }
@@ -87,12 +96,14 @@ TEST(CornerMarks, AreFoundHoweverTheScanLies) {
   Context context;
   for (const double angle : {0.0, 0.7, 1.9, -2.8})
     for (const bool mirror : {false, true}) {
-      Eigen::Matrix2d linear = Eigen::Rotation2Dd(angle).toRotationMatrix() * Eigen::Vector2d(mirror ? -1.04 : 1.04, 0.96).asDiagonal();
+      Eigen::Matrix2d linear =
+          Eigen::Rotation2Dd(angle).toRotationMatrix() * Eigen::Vector2d(mirror ? -1.04 : 1.04, 0.96).asDiagonal();
       const Vec2 shift(4, -7);
       const FoundMarks found = find_marks(pattern, turned(pattern, frame, linear, shift, 0.02), frame, context);
       EXPECT_EQ(found.mirrored, mirror);
       for (std::size_t k = 0; k < 4; ++k) {
-        EXPECT_LT((found.place_mm[k] - (linear * pattern.marks[k].centre_mm + shift)).norm(), 0.3) << angle << " " << mirror << " " << k;
+        EXPECT_LT((found.place_mm[k] - (linear * pattern.marks[k].centre_mm + shift)).norm(), 0.3)
+            << angle << " " << mirror << " " << k;
         EXPECT_GT(found.likeness[k], 0.6);
       }
     }
@@ -106,7 +117,8 @@ TEST(CornerMarks, OneMayBeHiddenButNotTwo) {
   const auto hide = [&](std::size_t k) {
     const Vec2 p = frame.pixel(pattern.marks[k].centre_mm);
     for (int y = -14; y <= 14; ++y)
-      for (int x = -14; x <= 14; ++x) picture.at(static_cast<int>(p.x()) + x, static_cast<int>(p.y()) + y) = Float4{0.3f, 0.3f, 0.3f, 1};
+      for (int x = -14; x <= 14; ++x)
+        picture.at(static_cast<int>(p.x()) + x, static_cast<int>(p.y()) + y) = Float4{0.3f, 0.3f, 0.3f, 1};
   };
   hide(2);
   const FoundMarks found = find_marks(pattern, picture, frame, context);
@@ -122,7 +134,8 @@ TEST(CornerMarks, OneMayBeHiddenButNotTwo) {
 }
 
 TEST(CornerMarks, HomographiesAreExact) {
-  const std::array<Vec2, 4> from{Vec2(-50, -60), Vec2(55, -58), Vec2(48, 66), Vec2(-52, 61)}, to{Vec2(-40, -50), Vec2(40, -50), Vec2(40, 50), Vec2(-40, 50)};
+  const std::array<Vec2, 4> from{Vec2(-50, -60), Vec2(55, -58), Vec2(48, 66), Vec2(-52, 61)},
+      to{Vec2(-40, -50), Vec2(40, -50), Vec2(40, 50), Vec2(-40, 50)};
   const Eigen::Matrix3d h = homography(from, to);
   for (std::size_t k = 0; k < 4; ++k) EXPECT_LT((mapped(h, from[k]) - to[k]).norm(), 1e-10);
   // Lines stay lines: the diagonals' crossing goes to the middle.

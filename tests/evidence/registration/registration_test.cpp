@@ -40,7 +40,8 @@ test::ScanCamera small_camera() {
   return camera;
 }
 
-ScanRegistration registered(const test::FormedSurface& surface, const test::ScanCamera& camera, const ScanRegistrationOptions& options = small_options()) {
+ScanRegistration registered(const test::FormedSurface& surface, const test::ScanCamera& camera,
+                            const ScanRegistrationOptions& options = small_options()) {
   Context context;
   const CalibrationPattern pattern = small_pattern();
   return register_scan(virtual_scan(surface, pattern, camera), pattern, options, context);
@@ -89,7 +90,8 @@ TEST(Registration, AThermoformedSheetIsRecovered) {
   options.size_mm = 55;
   options.triangles = 2500;
   const Model mould = make_sample("pyramid", 500, context);
-  const FormedResult formed = form_sheet(std::make_shared<const MouldShape>(mould.mesh), place(mould.mesh, options, clamp_opening_mm(options)), options, context);
+  const FormedResult formed = form_sheet(std::make_shared<const MouldShape>(mould.mesh),
+                                         place(mould.mesh, options, clamp_opening_mm(options)), options, context);
   const SheetLookup lookup(formed.sheet);
   const double rim_z = options.clamp_height_mm + options.sheet_thickness_mm / 2;
   const test::FormedSurface surface = [&](const Vec2& s) {
@@ -142,7 +144,9 @@ TEST(Registration, CornersByHandDoAsWell) {
     // The texture place of the scan's vertex nearest to the mark.
     double nearest = 1e9;
     Vec2 uv;
-    Eigen::Matrix3d turn = (Eigen::AngleAxisd(2.2, Vec3::UnitZ()) * Eigen::AngleAxisd(0.4, Vec3(1, 0.3, 0).normalized())).toRotationMatrix();
+    Eigen::Matrix3d turn =
+        (Eigen::AngleAxisd(2.2, Vec3::UnitZ()) * Eigen::AngleAxisd(0.4, Vec3(1, 0.3, 0).normalized()))
+            .toRotationMatrix();
     const Vec3 place = turn * surface(mark.centre_mm) + Vec3(300, -120, 55);
     for (int f = 0; f < scan.mesh.face_count(); ++f)
       for (int k = 0; k < 3; ++k)

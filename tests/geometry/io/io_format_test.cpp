@@ -41,7 +41,11 @@ TEST(MeshFormat, TheNameDecidesWhereTheContentDoesNot) {
 }
 
 TEST(MeshFormat, ForeignFilesAreNamed) {
-  const std::pair<std::string_view, const char*> files[] = {{"Kaydara FBX Binary  ", "an FBX file"}, {"ISO-10303-21;\nHEADER;", "a STEP file"}, {"OFF\n3 1 0\n", "an OFF file"}, {"<?xml version=\"1.0\"?><COLLADA/>", "an XML file"}, {"\x1f\x8b\x08", "a gzip archive"}};
+  const std::pair<std::string_view, const char*> files[] = {{"Kaydara FBX Binary  ", "an FBX file"},
+                                                            {"ISO-10303-21;\nHEADER;", "a STEP file"},
+                                                            {"OFF\n3 1 0\n", "an OFF file"},
+                                                            {"<?xml version=\"1.0\"?><COLLADA/>", "an XML file"},
+                                                            {"\x1f\x8b\x08", "a gzip archive"}};
   for (const auto& [text, name] : files) expect_refused(as_bytes(text), "model.obj", name);
   expect_refused({}, "nothing.stl", "it is empty");
 }

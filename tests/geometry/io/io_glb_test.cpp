@@ -44,14 +44,17 @@ TEST(Glb, EveryTypeOfIndexAndNone) {
 
 TEST(Glb, NodeTransformsAreMultiplied) {
   Triangle triangle;
-  triangle.json["nodes"] = Json::parse(R"([{"children":[1,2],"translation":[1,2,3]},{"mesh":0,"name":"turned","rotation":[0,0,0.7071067811865476,0.7071067811865476],"scale":[2,1,1]},
+  triangle.json["nodes"] = Json::parse(
+      R"([{"children":[1,2],"translation":[1,2,3]},{"mesh":0,"name":"turned","rotation":[0,0,0.7071067811865476,0.7071067811865476],"scale":[2,1,1]},
                                           {"mesh":0,"matrix":[-1,0,0,0, 0,1,0,0, 0,0,1,0, 5,0,0,1]}])");
   const Model model = triangle.read().model;
   ASSERT_EQ(model.mesh.face_count(), 2);
   // Scaled by 2 along x, turned by 90° about z, moved.
-  EXPECT_TRUE(model.mesh.V.topRows(3).isApprox((Positions(3, 3) << 1000, 2000, 3000, 1000, 4000, 3000, -1000, 2000, 3000).finished(), 1e-12));
+  EXPECT_TRUE(model.mesh.V.topRows(3).isApprox(
+      (Positions(3, 3) << 1000, 2000, 3000, 1000, 4000, 3000, -1000, 2000, 3000).finished(), 1e-12));
   // Mirrored, so the corners are turned to keep the front in front.
-  const Vec3 a = model.mesh.V.row(model.mesh.F(1, 0)), b = model.mesh.V.row(model.mesh.F(1, 1)), c = model.mesh.V.row(model.mesh.F(1, 2));
+  const Vec3 a = model.mesh.V.row(model.mesh.F(1, 0)), b = model.mesh.V.row(model.mesh.F(1, 1)),
+             c = model.mesh.V.row(model.mesh.F(1, 2));
   EXPECT_GT((b - a).cross(c - a).z(), 0);
   EXPECT_EQ(model.group_names, (std::vector<std::string>{"turned", "mesh 0"}));
   EXPECT_EQ(model.face_group, (std::vector<int>{0, 1}));
@@ -78,15 +81,26 @@ TEST(Glb, StridedSparseAndNormalisedAccessors) {
   binary.resize(36);
   put(binary, std::uint8_t{0}, std::uint8_t{1}, std::uint8_t{2}, std::uint8_t{0});
   const std::size_t interleaved = binary.size();  // position, colour of three normalised bytes and padding
-  for (int i = 0; i < 3; ++i) put(binary, 1.f * static_cast<float>(i == 1), 2.f * static_cast<float>(i == 2), 0.f, std::uint8_t{255}, std::uint8_t{51}, static_cast<std::uint8_t>(i), std::uint8_t{0});
+  for (int i = 0; i < 3; ++i)
+    put(binary, 1.f * static_cast<float>(i == 1), 2.f * static_cast<float>(i == 2), 0.f, std::uint8_t{255},
+        std::uint8_t{51}, static_cast<std::uint8_t>(i), std::uint8_t{0});
   const std::size_t sparse = binary.size();
   put(binary, std::uint16_t{2}, std::uint16_t{0}, 7.f, 8.f, 9.f);
   Json& json = triangle.json;
   json["buffers"][0]["byteLength"] = binary.size();
-  json["bufferViews"] = Json::array({{{"buffer", 0}, {"byteOffset", interleaved}, {"byteLength", 48}, {"byteStride", 16}}, {{"buffer", 0}, {"byteOffset", 36}, {"byteLength", 3}},
-                                     {{"buffer", 0}, {"byteOffset", sparse}, {"byteLength", 2}}, {{"buffer", 0}, {"byteOffset", sparse + 4}, {"byteLength", 12}}});
-  json["accessors"][0]["sparse"] = {{"count", 1}, {"indices", {{"bufferView", 2}, {"componentType", 5123}}}, {"values", {{"bufferView", 3}}}};
-  json["accessors"].push_back({{"bufferView", 0}, {"byteOffset", 12}, {"componentType", 5121}, {"normalized", true}, {"count", 3}, {"type", "VEC3"}});
+  json["bufferViews"] =
+      Json::array({{{"buffer", 0}, {"byteOffset", interleaved}, {"byteLength", 48}, {"byteStride", 16}},
+                   {{"buffer", 0}, {"byteOffset", 36}, {"byteLength", 3}},
+                   {{"buffer", 0}, {"byteOffset", sparse}, {"byteLength", 2}},
+                   {{"buffer", 0}, {"byteOffset", sparse + 4}, {"byteLength", 12}}});
+  json["accessors"][0]["sparse"] = {
+      {"count", 1}, {"indices", {{"bufferView", 2}, {"componentType", 5123}}}, {"values", {{"bufferView", 3}}}};
+  json["accessors"].push_back({{"bufferView", 0},
+                               {"byteOffset", 12},
+                               {"componentType", 5121},
+                               {"normalized", true},
+                               {"count", 3},
+                               {"type", "VEC3"}});
   json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = 2;
   const Model model = triangle.read().model;
   EXPECT_EQ(model.mesh.V, (Positions(3, 3) << 0, 0, 0, 1000, 0, 0, 7000, 8000, 9000).finished());
@@ -125,7 +139,8 @@ TEST(Glb, ColumnsAndColours) {
   Model model = wavy_torus(9, 7);
   model.UV.resize(0, 2), model.FT.resize(0, 3);
   add_colours(model);
-  const std::vector<VertexColumn> columns{{"normal_error_deg", Eigen::VectorXd::LinSpaced(63, 0, 1), ColumnKind::float64}};
+  const std::vector<VertexColumn> columns{
+      {"normal_error_deg", Eigen::VectorXd::LinSpaced(63, 0, 1), ColumnKind::float64}};
   WriteOptions options;
   options.columns = columns;
   const Bytes bytes = write(model, MeshFormat::glb, options);
@@ -172,13 +187,15 @@ TEST(Glb, WrittenFilesKeepTheRules) {
       EXPECT_EQ(position["max"][static_cast<std::size_t>(k)].get<float>(), column.maxCoeff());
     }
     const Json& normal = json["accessors"][attributes["NORMAL"].get<std::size_t>()];
-    const std::size_t offset = binary + json["bufferViews"][normal["bufferView"].get<std::size_t>()]["byteOffset"].get<std::size_t>();
+    const std::size_t offset =
+        binary + json["bufferViews"][normal["bufferView"].get<std::size_t>()]["byteOffset"].get<std::size_t>();
     for (std::size_t i = 0; i < normal["count"].get<std::size_t>(); ++i) {
       double square = 0;
       for (std::size_t k = 0; k < 3; ++k) square += std::pow(load<float>(bytes.data() + offset + 12 * i + 4 * k), 2);
       ASSERT_NEAR(square, 1, 1e-5);
     }
-    for (const Json& primitive : json["meshes"][0]["primitives"]) EXPECT_LT(primitive["material"].get<std::size_t>(), json["materials"].size());
+    for (const Json& primitive : json["meshes"][0]["primitives"])
+      EXPECT_LT(primitive["material"].get<std::size_t>(), json["materials"].size());
   }
 }
 
@@ -187,7 +204,8 @@ TEST(Glb, TextFormWithEmbeddedDataAndCompanions) {
   triangle.json["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64(triangle.binary);
   EXPECT_EQ(read_text(triangle.json.dump(), "a.gltf").model.mesh.face_count(), 1);
   triangle.json["buffers"][0]["uri"] = "scene%20data.bin";
-  expect_refused(as_bytes(triangle.json.dump()), "a.gltf", "its geometry is in another file, “scene%20data.bin”; export it as one GLB file");
+  expect_refused(as_bytes(triangle.json.dump()), "a.gltf",
+                 "its geometry is in another file, “scene%20data.bin”; export it as one GLB file");
   const std::vector<Companion> companions{{"scene%20data.bin", triangle.binary}};
   ReadOptions options;
   options.companions = companions;
@@ -196,7 +214,8 @@ TEST(Glb, TextFormWithEmbeddedDataAndCompanions) {
 
 TEST(Glb, ExternalPicturesAreReportedNotFatal) {
   Triangle triangle;
-  triangle.json["materials"] = Json::parse(R"([{"pbrMetallicRoughness":{"baseColorFactor":[0.5,0.25,1,1],"baseColorTexture":{"index":0}}}])");
+  triangle.json["materials"] =
+      Json::parse(R"([{"pbrMetallicRoughness":{"baseColorFactor":[0.5,0.25,1,1],"baseColorTexture":{"index":0}}}])");
   triangle.json["textures"] = Json::parse(R"([{"source":0}])");
   triangle.json["images"] = Json::parse(R"([{"uri":"textures/skin.png"}])");
   triangle.json["meshes"][0]["primitives"][0]["material"] = 0;
@@ -219,7 +238,8 @@ TEST(Glb, BadFilesAreRefused) {
     refused([&](Triangle& t) { t.json[Json::json_pointer(pointer)] = value; }, part);
   };
   Bytes cut = Triangle().bytes();
-  for (const std::size_t size : {10u, 19u, 30u, 200u}) expect_refused(ByteView(cut).first(size), "bad.glb", "it ends too early");
+  for (const std::size_t size : {10u, 19u, 30u, 200u})
+    expect_refused(ByteView(cut).first(size), "bad.glb", "it ends too early");
   Bytes old = cut;
   store(old.data() + 4, 1u);
   expect_refused(old, "bad.glb", "not of glTF version 2");
@@ -248,9 +268,13 @@ TEST(Glb, BadFilesAreRefused) {
   spoiled("/meshes/0/primitives/0/material", 2, "a material that does not exist");
   spoiled("/meshes/0/primitives/0/mode", 1, "it holds points and lines but no triangles");
   spoiled("/scenes/0/nodes", Json::array(), "it holds no triangles");
-  refused([](Triangle& t) { t.json["accessors"][0].erase("bufferView"), t.json["accessors"][0]["count"] = 4'000'000'000u; }, "declares more elements than the file can hold");
-  refused([](Triangle& t) { store(t.binary.data() + 40, std::uint16_t{3}); }, "a face in it refers to vertex 3, but there are 3");
-  refused([](Triangle& t) { store(t.binary.data() + 16, std::numeric_limits<float>::quiet_NaN()); }, "a coordinate of vertex 1 is not a number");
+  refused(
+      [](Triangle& t) { t.json["accessors"][0].erase("bufferView"), t.json["accessors"][0]["count"] = 4'000'000'000u; },
+      "declares more elements than the file can hold");
+  refused([](Triangle& t) { store(t.binary.data() + 40, std::uint16_t{3}); },
+          "a face in it refers to vertex 3, but there are 3");
+  refused([](Triangle& t) { store(t.binary.data() + 16, std::numeric_limits<float>::quiet_NaN()); },
+          "a coordinate of vertex 1 is not a number");
   ReadOptions options;
   options.max_triangles = 1;
   Triangle twice;

@@ -42,7 +42,8 @@ std::vector<Sample> samples() {
     options.material_library = "m.mtl";
     result.push_back({std::string(info.extension), write(model, info.format, options)});
     options.ascii = true;
-    if (info.format == MeshFormat::stl || info.format == MeshFormat::ply) result.push_back({std::string(info.extension) + " ascii", write(model, info.format, options)});
+    if (info.format == MeshFormat::stl || info.format == MeshFormat::ply)
+      result.push_back({std::string(info.extension) + " ascii", write(model, info.format, options)});
   }
   return result;
 }
@@ -60,13 +61,18 @@ TEST_P(Mutation, NeverDoesAnythingElse) {
     if (kind == 1)
       for (std::size_t k = 1 + below(8); k > 0; --k) bytes[below(bytes.size())] = static_cast<std::byte>(random());
     if (kind == 2) {  // in the first part, where headers are
-      for (std::size_t k = 1 + below(4); k > 0; --k) bytes[below(std::min<std::size_t>(bytes.size(), 400))] ^= static_cast<std::byte>(1u << below(8));
+      for (std::size_t k = 1 + below(4); k > 0; --k)
+        bytes[below(std::min<std::size_t>(bytes.size(), 400))] ^= static_cast<std::byte>(1u << below(8));
     }
     if (kind == 3) {  // a piece doubled or cut out
       const std::size_t from = below(bytes.size()), size = std::min(bytes.size() - from, 1 + below(100));
-      const Bytes piece(bytes.begin() + static_cast<std::ptrdiff_t>(from), bytes.begin() + static_cast<std::ptrdiff_t>(from + size));
-      if (seed % 8 < 4) bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(below(bytes.size())), piece.begin(), piece.end());
-      else bytes.erase(bytes.begin() + static_cast<std::ptrdiff_t>(from), bytes.begin() + static_cast<std::ptrdiff_t>(from + size));
+      const Bytes piece(bytes.begin() + static_cast<std::ptrdiff_t>(from),
+                        bytes.begin() + static_cast<std::ptrdiff_t>(from + size));
+      if (seed % 8 < 4)
+        bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(below(bytes.size())), piece.begin(), piece.end());
+      else
+        bytes.erase(bytes.begin() + static_cast<std::ptrdiff_t>(from),
+                    bytes.begin() + static_cast<std::ptrdiff_t>(from + size));
     }
     expect_sound_or_refused(bytes, GetParam().name + ", seed " + std::to_string(seed));
   }
@@ -93,7 +99,8 @@ TEST(Mutation, TheModelWithinA3mf) {
     std::string changed(as_text(text));
     for (std::size_t k = 1 + random() % 5; k > 0; --k) {
       constexpr std::string_view alphabet = "0123456789<>/\"' =-.#&;apvtxy";
-      changed[random() % changed.size()] = seed % 2 ? alphabet[random() % alphabet.size()] : static_cast<char>(random());
+      changed[random() % changed.size()] =
+          seed % 2 ? alphabet[random() % alphabet.size()] : static_cast<char>(random());
     }
     if (seed % 5 == 0) changed.resize(random() % changed.size());
     ZipWriter zip;
@@ -108,7 +115,8 @@ TEST(Mutation, Noise) {
     Bytes bytes(random() % 400);
     for (auto& byte : bytes) byte = static_cast<std::byte>(random());
     // With each format's beginning, so that its reader gets it.
-    const std::string_view starts[] = {"", "ply\nformat binary_little_endian 1.0\n", "glTF\x02", "PK\x03\x04", "solid ", "v 1 2 3\n"};
+    const std::string_view starts[] = {
+        "", "ply\nformat binary_little_endian 1.0\n", "glTF\x02", "PK\x03\x04", "solid ", "v 1 2 3\n"};
     const std::string_view start = starts[seed % 6];
     bytes.insert(bytes.begin(), as_bytes(start).begin(), as_bytes(start).end());
     expect_sound_or_refused(bytes, "seed " + std::to_string(seed));

@@ -11,7 +11,8 @@ using namespace test;
 constexpr std::string_view square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 TEST(Obj, VerticesAndTriangles) {
-  const Model model = read_text("# comment\no thing\nv 1.5 -2e-3 +3\nv 1 0 0 1.0\nv\t0  1 0 \nvn 0 0 1\nf 1 2 3\n", "a.obj").model;
+  const Model model =
+      read_text("# comment\no thing\nv 1.5 -2e-3 +3\nv 1 0 0 1.0\nv\t0  1 0 \nvn 0 0 1\nf 1 2 3\n", "a.obj").model;
   ASSERT_EQ(model.mesh.vertex_count(), 3);
   EXPECT_EQ(model.mesh.V(0, 0), 1.5);
   EXPECT_EQ(model.mesh.V(0, 1), -2e-3);
@@ -22,7 +23,12 @@ TEST(Obj, VerticesAndTriangles) {
 }
 
 TEST(Obj, EveryFormOfCorner) {
-  const Model model = read_text(std::string(square) + "vt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\nf 1/1 2/2 3/3\nf 1/1/1 3/3/1 4/2/1\nf -4/-3 -3/-2 -2/-1\nf 1//1 2//1 3//1\nf 1 2 4\n", "a.obj").model;
+  const Model model =
+      read_text(
+          std::string(square) +
+              "vt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\nf 1/1 2/2 3/3\nf 1/1/1 3/3/1 4/2/1\nf -4/-3 -3/-2 -2/-1\nf 1//1 2//1 3//1\nf 1 2 4\n",
+          "a.obj")
+          .model;
   ASSERT_EQ(model.mesh.face_count(), 5);
   EXPECT_EQ(model.mesh.F.row(2), Eigen::RowVector3i(0, 1, 2));
   EXPECT_EQ(model.FT.row(1), Eigen::RowVector3i(0, 2, 1));
@@ -34,7 +40,9 @@ TEST(Obj, EveryFormOfCorner) {
 }
 
 TEST(Obj, RelativeIndicesCountFromWhereTheyStand) {
-  const Model model = read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 5 0 0\nv 6 0 0\nv 5 1 0\nf -3 -2 -1\nf 1 -2 -1\n", "a.obj").model;
+  const Model model =
+      read_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 5 0 0\nv 6 0 0\nv 5 1 0\nf -3 -2 -1\nf 1 -2 -1\n", "a.obj")
+          .model;
   EXPECT_EQ(model.mesh.F.row(0), Eigen::RowVector3i(0, 1, 2));
   EXPECT_EQ(model.mesh.F.row(1), Eigen::RowVector3i(3, 4, 5));
   EXPECT_EQ(model.mesh.F.row(2), Eigen::RowVector3i(0, 4, 5));
@@ -55,11 +63,16 @@ TEST(Obj, LineEndsContinuationsAndComments) {
 
 TEST(Obj, ConcavePolygonsAreNotFans) {
   // A U: a fan from the first corner covers the gap. Its area is 7.
-  const Model model = read_text("v 0 0 0\nv 3 0 0\nv 3 3 0\nv 2 3 0\nv 2 1 0\nv 1 1 0\nv 1 3 0\nv 0 3 0\nvt 0 0\nf 1/1 2/1 3/1 4/1 5/1 6/1 7/1 8/1\n", "u.obj").model;
+  const Model model =
+      read_text(
+          "v 0 0 0\nv 3 0 0\nv 3 3 0\nv 2 3 0\nv 2 1 0\nv 1 1 0\nv 1 3 0\nv 0 3 0\nvt 0 0\nf 1/1 2/1 3/1 4/1 5/1 6/1 7/1 8/1\n",
+          "u.obj")
+          .model;
   ASSERT_EQ(model.mesh.face_count(), 6);
   double area = 0;
   for (int f = 0; f < 6; ++f) {
-    const Vec3 a = model.mesh.V.row(model.mesh.F(f, 0)), b = model.mesh.V.row(model.mesh.F(f, 1)), c = model.mesh.V.row(model.mesh.F(f, 2));
+    const Vec3 a = model.mesh.V.row(model.mesh.F(f, 0)), b = model.mesh.V.row(model.mesh.F(f, 1)),
+               c = model.mesh.V.row(model.mesh.F(f, 2));
     const double z = (b - a).cross(c - a).z() / 2;
     EXPECT_GT(z, 0);
     area += z;
@@ -69,16 +82,18 @@ TEST(Obj, ConcavePolygonsAreNotFans) {
 
 TEST(Obj, TextureCornersFollowTheTriangulation) {
   // Each vertex has its own texture vertex: wherever a corner goes, both go.
-  std::string text = "v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\nv -1 1 0\nvt 1 0\nvt 2 0\nvt 3 0\nvt 4 0\nvt 5 0\nf 5/5 1/1 2/2 3/3 4/4\n";
+  std::string text =
+      "v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\nv -1 1 0\nvt 1 0\nvt 2 0\nvt 3 0\nvt 4 0\nvt 5 0\nf 5/5 1/1 2/2 3/3 4/4\n";
   const Model model = read_text(text, "a.obj").model;
   ASSERT_EQ(model.mesh.face_count(), 3);
   EXPECT_TRUE(model.FT == model.mesh.F);
 }
 
 TEST(Obj, GroupsAndMaterials) {
-  const ModelFile file = read_text(std::string("mtllib my materials.mtl other.mtl\n") + std::string(square) +
-                                       "f 1 2 3\no first  name\nusemtl red\nf 1 3 4\ng\ng second\nusemtl blue\nf 2 3 4\nusemtl red\nf 1 2 4\ng unused\n",
-                                   "a.obj");
+  const ModelFile file = read_text(
+      std::string("mtllib my materials.mtl other.mtl\n") + std::string(square) +
+          "f 1 2 3\no first  name\nusemtl red\nf 1 3 4\ng\ng second\nusemtl blue\nf 2 3 4\nusemtl red\nf 1 2 4\ng unused\n",
+      "a.obj");
   const Model& model = file.model;
   EXPECT_EQ(model.group_names, (std::vector<std::string>{"first  name", "second"}));
   EXPECT_EQ(model.face_group, (std::vector<int>{-1, 0, 1, 1}));
@@ -90,12 +105,15 @@ TEST(Obj, GroupsAndMaterials) {
 }
 
 TEST(Obj, MaterialsComeFromCompanions) {
-  const std::string_view mtl = "newmtl red\nKd 1 0 0.5\nmap_Kd -s 1 1 1 -o 0.5 -clamp on Textures\\My Picture.PNG\nnewmtl unused\nKd 0 0 0\nnewmtl plain\nmap_Kd missing.jpg\n";
+  const std::string_view mtl =
+      "newmtl red\nKd 1 0 0.5\nmap_Kd -s 1 1 1 -o 0.5 -clamp on Textures\\My Picture.PNG\nnewmtl unused\nKd 0 0 0\nnewmtl plain\nmap_Kd missing.jpg\n";
   const Bytes picture = red_pixel_png();
   const std::vector<Companion> companions{{"folder/MATERIALS.MTL", as_bytes(mtl)}, {"my picture.png", picture}};
   ReadOptions options;
   options.companions = companions;
-  const ModelFile file = read_text("mtllib materials.mtl\n" + std::string(square) + "usemtl red\nf 1 2 3\nusemtl plain\nf 1 3 4\n", "a.obj", options);
+  const ModelFile file =
+      read_text("mtllib materials.mtl\n" + std::string(square) + "usemtl red\nf 1 2 3\nusemtl plain\nf 1 3 4\n",
+                "a.obj", options);
   ASSERT_EQ(file.model.materials.size(), 2u);
   EXPECT_TRUE(file.model.materials[0].diffuse.isApprox(Vec3(1, 0, linear_of_srgb(0.5))));
   ASSERT_EQ(file.model.textures.size(), 2u);
@@ -124,7 +142,11 @@ TEST(Obj, WhatIsLeftOutIsSaid) {
 }
 
 TEST(Obj, NamesBecomeUtf8) {
-  const ModelFile file = read_text(std::string(square) + "g Gr\xFC\xDF" "e\nf 1 2 3\ng Gr\xC3\xBC\xC3\x9F" "e\nf 1 3 4\n", "a.obj");
+  const ModelFile file = read_text(std::string(square) +
+                                       "g Gr\xFC\xDF"
+                                       "e\nf 1 2 3\ng Gr\xC3\xBC\xC3\x9F"
+                                       "e\nf 1 3 4\n",
+                                   "a.obj");
   EXPECT_EQ(file.model.group_names, std::vector<std::string>{"Grüße"});
 }
 
@@ -153,12 +175,15 @@ TEST(Obj, ChunksDoNotShow) {
   }
   const Model long_file = read_text(text, "long.obj").model;
   ASSERT_EQ(long_file.mesh.vertex_count(), vertices);
-  for (int f = 0; f < long_file.mesh.face_count(); ++f) ASSERT_EQ(long_file.mesh.F.row(f), Eigen::RowVector3i(3 * f, 3 * f + 1, 3 * f + 2));
+  for (int f = 0; f < long_file.mesh.face_count(); ++f)
+    ASSERT_EQ(long_file.mesh.F.row(f), Eigen::RowVector3i(3 * f, 3 * f + 1, 3 * f + 2));
 }
 
 TEST(Obj, BadFilesAreRefusedWithTheLine) {
   const std::string good(square);
-  const auto refused = [](const std::string& text, const std::string& part) { expect_refused(as_bytes(text), "bad.obj", part); };
+  const auto refused = [](const std::string& text, const std::string& part) {
+    expect_refused(as_bytes(text), "bad.obj", part);
+  };
   refused(good + "f 1 2 5\n", "line 5: a face refers to vertex 5, but the file has 4");
   refused(good + "\n# x\nf 1 2 -5\n", "line 7: a face refers to vertex -5, but the file has 4 up to there");
   refused(good + "f 0 1 2\n", "vertex 0, but OBJ counts from 1");
@@ -189,7 +214,8 @@ TEST(Obj, TooManyTrianglesAreRefusedBeforeTheyAreRead) {
   ReadOptions options;
   options.max_triangles = 3;
   options.where = "shape";
-  expect_refused(as_bytes(std::string(square) + "f 1 2 3 4\nf 1 2 3 4\n"), "large.obj", "it holds 4 triangles, and at most 3 are read here", options);
+  expect_refused(as_bytes(std::string(square) + "f 1 2 3 4\nf 1 2 3 4\n"), "large.obj",
+                 "it holds 4 triangles, and at most 3 are read here", options);
   EXPECT_EQ(read_text(std::string(square) + "f 1 2 3 4\nf 1 2 3\n", "fits.obj", options).model.mesh.face_count(), 3);
 }
 
@@ -207,7 +233,8 @@ TEST(Obj, CancelReachesTheReader) {
 TEST(Mtl, ColoursAndOptions) {
   Context context;
   const ReadOptions options;
-  const std::string_view text = "# c\nKd 1 1 1\nnewmtl a b\nKa 1 1 1\nKd 0.5\nnewmtl c\nKd spectral file.rfl 1\nmap_Kd -mm 0 1 -texres 512 -o 1 2 3 9 lives.png\n";
+  const std::string_view text =
+      "# c\nKd 1 1 1\nnewmtl a b\nKa 1 1 1\nKd 0.5\nnewmtl c\nKd spectral file.rfl 1\nmap_Kd -mm 0 1 -texres 512 -o 1 2 3 9 lives.png\n";
   const auto materials = read_mtl(MeshSource(as_bytes(text), "x.mtl", options, context));
   ASSERT_EQ(materials.size(), 2u);
   EXPECT_EQ(materials[0].material.name, "a b");

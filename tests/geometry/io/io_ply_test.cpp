@@ -28,9 +28,10 @@ TEST(Ply, AsciiWithPropertiesInAnyOrder) {
 /// One file of every type of number, in one byte order.
 template <bool big_endian>
 Bytes every_type() {
-  Bytes bytes = to_bytes(std::string("ply\r\nformat ") + (big_endian ? "binary_big_endian" : "binary_little_endian") +
-                         " 1.0\r\nelement other 2\r\nproperty list ushort double junk\r\nelement vertex 3\r\nproperty char x\r\nproperty ushort y\r\nproperty double z\r\n"
-                         "property short a\r\nproperty uint b\r\nproperty int c\r\nproperty uchar d\r\nproperty float e\r\nelement face 1\r\nproperty list int short vertex_indices\r\nend_header\r\n");
+  Bytes bytes = to_bytes(
+      std::string("ply\r\nformat ") + (big_endian ? "binary_big_endian" : "binary_little_endian") +
+      " 1.0\r\nelement other 2\r\nproperty list ushort double junk\r\nelement vertex 3\r\nproperty char x\r\nproperty ushort y\r\nproperty double z\r\n"
+      "property short a\r\nproperty uint b\r\nproperty int c\r\nproperty uchar d\r\nproperty float e\r\nelement face 1\r\nproperty list int short vertex_indices\r\nend_header\r\n");
   const auto put = [&](auto value) {
     auto raw = std::bit_cast<std::array<std::byte, sizeof(value)>>(value);
     if (big_endian) std::ranges::reverse(raw);
@@ -39,7 +40,8 @@ Bytes every_type() {
   put(std::uint16_t{0}), put(std::uint16_t{2}), put(1.5), put(2.5);
   for (int i = 0; i < 3; ++i) {
     put(static_cast<std::int8_t>(-i)), put(static_cast<std::uint16_t>(60000 + i)), put(0.1 * i * i);
-    put(std::int16_t{-300}), put(std::uint32_t{4'000'000'000u}), put(std::int32_t{-2'000'000'000}), put(std::uint8_t{200}), put(0.25f);
+    put(std::int16_t{-300}), put(std::uint32_t{4'000'000'000u}), put(std::int32_t{-2'000'000'000}),
+        put(std::uint8_t{200}), put(0.25f);
   }
   put(std::int32_t{3}), put(std::int16_t{2}), put(std::int16_t{0}), put(std::int16_t{1});
   return bytes;
@@ -52,7 +54,8 @@ TEST(Ply, EveryTypeInBothByteOrders) {
     EXPECT_EQ(file.model.mesh.F.row(0), Eigen::RowVector3i(2, 0, 1));
     ASSERT_EQ(file.columns.size(), 5u);
     const double expected[] = {-300, 4e9, -2e9, 200, 0.25};
-    const ColumnKind kinds[] = {ColumnKind::int32, ColumnKind::float64, ColumnKind::int32, ColumnKind::uint8, ColumnKind::float32};
+    const ColumnKind kinds[] = {ColumnKind::int32, ColumnKind::float64, ColumnKind::int32, ColumnKind::uint8,
+                                ColumnKind::float32};
     for (std::size_t k = 0; k < 5; ++k) {
       EXPECT_EQ(file.columns[k].values, Eigen::VectorXd::Constant(3, expected[k]));
       EXPECT_EQ(file.columns[k].kind, kinds[k]);
@@ -64,14 +67,16 @@ constexpr std::string_view quad_header = "element vertex 4\nproperty float x\npr
 
 TEST(Ply, PolygonsAndTextureOfCorners) {
   // A concave quadrangle, with MeshLab's texture coordinates per corner, and a triangle without any.
-  const ModelFile file = read_text("ply\nformat ascii 1.0\ncomment TextureFile my picture.png\n" + std::string(quad_header) +
-                                       "element face 2\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n"
-                                       "0 0 0\n4 0 0\n1 1 0\n0 4 0\n4 1 2 3 0 8 0.1 0.9 0.2 0.8 0.3 0.7 0 1\n3 0 1 2 0\n",
-                                   "a.ply");
+  const ModelFile file = read_text(
+      "ply\nformat ascii 1.0\ncomment TextureFile my picture.png\n" + std::string(quad_header) +
+          "element face 2\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n"
+          "0 0 0\n4 0 0\n1 1 0\n0 4 0\n4 1 2 3 0 8 0.1 0.9 0.2 0.8 0.3 0.7 0 1\n3 0 1 2 0\n",
+      "a.ply");
   const Model& model = file.model;
   ASSERT_EQ(model.mesh.face_count(), 3);
   for (int f = 0; f < 2; ++f)
-    for (int k = 0; k < 3; ++k) EXPECT_FLOAT_EQ(static_cast<float>(model.UV(model.FT(f, k), 0)), 0.1f * static_cast<float>(model.mesh.F(f, k)));
+    for (int k = 0; k < 3; ++k)
+      EXPECT_FLOAT_EQ(static_cast<float>(model.UV(model.FT(f, k), 0)), 0.1f * static_cast<float>(model.mesh.F(f, k)));
   EXPECT_GT(signed_volume({model.mesh.V.rowwise() + Eigen::RowVector3d(0, 0, 1), model.mesh.F.topRows(2)}), 0);
   EXPECT_EQ(model.textures.at(0).name, "my picture.png");
   EXPECT_EQ(file.missing_companions, std::vector<std::string>{"my picture.png"});
@@ -80,8 +85,10 @@ TEST(Ply, PolygonsAndTextureOfCorners) {
 
 TEST(Ply, TextureOfVertices) {
   for (const char* names : {"s t", "u v", "texture_u texture_v"}) {
-    std::string text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float " + std::string(names) +
-                       "\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 0.25 0.5\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n";
+    std::string text =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float " +
+        std::string(names) +
+        "\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 0.25 0.5\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n";
     text.replace(text.find(std::string(names)) + std::string(names).find(' '), 1, "\nproperty float ");
     const Model model = read_text(text, "a.ply").model;
     EXPECT_EQ(model.UV.row(0), Eigen::RowVector2d(0.25, 0.5)) << names;
@@ -90,19 +97,29 @@ TEST(Ply, TextureOfVertices) {
 }
 
 TEST(Ply, TriangleStrips) {
-  const Model model = read_text("ply\nformat ascii 1.0\n" + std::string(quad_header) + "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n8 0 1 2 3 -1 2 1 3\n", "a.ply").model;
+  const Model model =
+      read_text(
+          "ply\nformat ascii 1.0\n" + std::string(quad_header) +
+              "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n8 0 1 2 3 -1 2 1 3\n",
+          "a.ply")
+          .model;
   EXPECT_EQ(model.mesh.F, (Triangles(3, 3) << 0, 1, 2, 2, 1, 3, 2, 1, 3).finished());
 }
 
 TEST(Ply, FacesBeforeVertices) {
-  const Model model = read_text("ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\n" + std::string(quad_header) + "end_header\n4 0 1 2 3\n0 0 0\n4 0 0\n1 1 0\n0 4 0\n", "a.ply").model;
+  const Model model = read_text("ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\n" +
+                                    std::string(quad_header) + "end_header\n4 0 1 2 3\n0 0 0\n4 0 0\n1 1 0\n0 4 0\n",
+                                "a.ply")
+                          .model;
   EXPECT_EQ(model.mesh.face_count(), 2);
   EXPECT_TRUE(model.mesh.F(0, 0) == 2 || model.mesh.F(0, 1) == 2 || model.mesh.F(0, 2) == 2);
 }
 
 TEST(Ply, ColumnsThatAreNotNumbersAreLeftOut) {
-  const ModelFile file = read_text("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float q\nproperty float r\nelement face 1\n"
-                                   "property list uchar int vertex_indices\nend_header\n0 0 0 nan 1\n1 0 0 0 2\n0 1 0 0 3\n3 0 1 2\n", "a.ply");
+  const ModelFile file = read_text(
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float q\nproperty float r\nelement face 1\n"
+      "property list uchar int vertex_indices\nend_header\n0 0 0 nan 1\n1 0 0 0 2\n0 1 0 0 3\n3 0 1 2\n",
+      "a.ply");
   ASSERT_EQ(file.columns.size(), 1u);
   EXPECT_EQ(file.columns[0].name, "r");
   EXPECT_EQ(file.notes.size(), 1u);
@@ -119,7 +136,8 @@ TEST(Ply, WritesWhatItReads) {
     const ModelFile file = read_bytes(write(model, MeshFormat::ply, options), "torus.ply");
     EXPECT_TRUE(file.model.mesh.V == model.mesh.V);  // every bit of a double
     EXPECT_TRUE(file.model.mesh.F == model.mesh.F);
-    EXPECT_LT((file.model.vertex_colours - model.vertex_colours).cwiseAbs().maxCoeff(), 0.5 / 255 * 2.4);  // half a step times the curve's slope
+    EXPECT_LT((file.model.vertex_colours - model.vertex_colours).cwiseAbs().maxCoeff(),
+              0.5 / 255 * 2.4);  // half a step times the curve's slope
     ASSERT_EQ(file.columns.size(), columns.size());
     for (std::size_t k = 0; k < columns.size(); ++k) {
       EXPECT_EQ(file.columns[k].name, columns[k].name);
@@ -128,7 +146,8 @@ TEST(Ply, WritesWhatItReads) {
       EXPECT_LE(error, columns[k].kind == ColumnKind::float32 ? 1e-7 : 0);
     }
     for (int f = 0; f < model.mesh.face_count(); ++f)
-      for (int k = 0; k < 3; ++k) EXPECT_LT((file.model.UV.row(file.model.FT(f, k)) - model.UV.row(model.FT(f, k))).norm(), 1e-7);
+      for (int k = 0; k < 3; ++k)
+        EXPECT_LT((file.model.UV.row(file.model.FT(f, k)) - model.UV.row(model.FT(f, k))).norm(), 1e-7);
   }
 }
 
@@ -152,8 +171,11 @@ TEST(Ply, ColumnNamesThatAreTakenAreRefused) {
 }
 
 TEST(Ply, BadFilesAreRefused) {
-  const auto refused = [](const std::string& text, const std::string& part) { expect_refused(as_bytes(text), "bad.ply", part); };
-  const std::string ascii = "ply\nformat ascii 1.0\n", vertices(quad_header), faces = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  const auto refused = [](const std::string& text, const std::string& part) {
+    expect_refused(as_bytes(text), "bad.ply", part);
+  };
+  const std::string ascii = "ply\nformat ascii 1.0\n", vertices(quad_header),
+                    faces = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
   const std::string points = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
   refused("ply\nformat ascii 1.0\nelement vertex 4\n", "its header has no end");
   refused("ply\nformat morse 1.0\nend_header\n", "line 2: “morse” is not a format");
@@ -164,22 +186,33 @@ TEST(Ply, BadFilesAreRefused) {
   refused(ascii + "property float x\nend_header\n", "before any element");
   refused(ascii + "element vertex 0\nproperty list float int x\nend_header\n", "length of a list");
   refused(ascii + "nonsense\nend_header\n", "line 3: “nonsense”");
-  refused(ascii + "element vertex 4\nproperty float x\nproperty float y\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0\n1 0\n1 1\n0 1\n3 0 1 2\n", "no x, y and z");
-  refused(ascii + vertices + faces + points + "3 0 1 4\n", "line 14: face 1 refers to vertex 4, but the vertices count from 0 to 3");
+  refused(
+      ascii +
+          "element vertex 4\nproperty float x\nproperty float y\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0\n1 0\n1 1\n0 1\n3 0 1 2\n",
+      "no x, y and z");
+  refused(ascii + vertices + faces + points + "3 0 1 4\n",
+          "line 14: face 1 refers to vertex 4, but the vertices count from 0 to 3");
   refused(ascii + vertices + faces + points + "3 0 1 -1\n", "face 1 refers to vertex -1");
   refused(ascii + vertices + faces + points + "3 0 1 0.5\n", "face 1 refers to vertex 0");
   refused(ascii + vertices + faces + points + "3 0 1 nan\n", "refers to vertex NaN");
-  refused(ascii + vertices + faces + "0 0 0\n1 inf 0\n1 1 0\n0 1 0\n3 0 1 2\n", "line 11: a coordinate of vertex 2 is infinite");
+  refused(ascii + vertices + faces + "0 0 0\n1 inf 0\n1 1 0\n0 1 0\n3 0 1 2\n",
+          "line 11: a coordinate of vertex 2 is infinite");
   refused(ascii + vertices + faces + "0 0 0\n1 zwei 0\n1 1 0\n0 1 0\n3 0 1 2\n", "line 11: “zwei” is not a number");
   refused(ascii + vertices + faces + points + "3 0 1", "it ends too early");
   refused(ascii + vertices + faces + points + "3000000000 0 1 2\n", "a list in it is longer than the file");
   refused(ascii + vertices + "end_header\n" + points, "a cloud of points");
   refused(ascii + vertices + faces + points + "2 0 1\n", "no triangles");
-  refused(ascii + "element vertex 0\nproperty float x\nproperty float y\nproperty float z\nend_header\n", "no triangles");
+  refused(ascii + "element vertex 0\nproperty float x\nproperty float y\nproperty float z\nend_header\n",
+          "no triangles");
   // A header of a hundred bytes with four billion vertices must not ask for memory.
   for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
-    refused("ply\nformat " + std::string(format) + " 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n", "it declares 4 000 000 000 rows");
-    refused("ply\nformat " + std::string(format) + " 1.0\nelement face 999999999999999\nproperty list uchar int vertex_indices\nend_header\n0\n", "more than it holds");
+    refused(
+        "ply\nformat " + std::string(format) +
+            " 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n",
+        "it declares 4 000 000 000 rows");
+    refused("ply\nformat " + std::string(format) +
+                " 1.0\nelement face 999999999999999\nproperty list uchar int vertex_indices\nend_header\n0\n",
+            "more than it holds");
   }
   std::string binary = "ply\nformat binary_little_endian 1.0\n" + vertices + faces;
   binary += std::string(48, '\0');
@@ -190,7 +223,8 @@ TEST(Ply, BadFilesAreRefused) {
   expect_refused(nan, "bad.ply", "a coordinate of vertex 4 is not a number");
   ReadOptions options;
   options.max_triangles = 1;
-  expect_refused(as_bytes(ascii + vertices + faces + points + "4 0 1 2 3\n"), "large.ply", "at most 1 is read", options);
+  expect_refused(as_bytes(ascii + vertices + faces + points + "4 0 1 2 3\n"), "large.ply", "at most 1 is read",
+                 options);
 }
 
 }  // namespace

@@ -33,7 +33,8 @@ TEST(Png16, IsBigEndianGreyWithSize) {
   EXPECT_EQ(text.substr(24, 2), (std::string{16, 0}));  // depth, grey
   const std::size_t size = text.find("pHYs");
   ASSERT_NE(size, std::string::npos);
-  EXPECT_EQ(text.substr(size + 4, 9), (std::string{0, 0, 0x27, 0x10, 0, 0, 0x0f, '\xa0', 1}));  // 10000 and 4000 a metre
+  EXPECT_EQ(text.substr(size + 4, 9),
+            (std::string{0, 0, 0x27, 0x10, 0, 0, 0x0f, '\xa0', 1}));  // 10000 and 4000 a metre
   image.pixel_width_mm = 0;
   EXPECT_EQ(as_text(write_png16(image)).find("pHYs"), std::string_view::npos);
 }

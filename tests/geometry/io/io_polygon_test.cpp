@@ -29,7 +29,9 @@ void expect_triangulates(const std::vector<Vec3>& corners, const std::string& wh
   double sum = 0;
   std::set<int> used;
   for (const auto& t : triangles) {
-    const double area = area_vector(corners[static_cast<std::size_t>(t[0])], corners[static_cast<std::size_t>(t[1])], corners[static_cast<std::size_t>(t[2])]).dot(normal);
+    const double area = area_vector(corners[static_cast<std::size_t>(t[0])], corners[static_cast<std::size_t>(t[1])],
+                                    corners[static_cast<std::size_t>(t[2])])
+                            .dot(normal);
     EXPECT_GE(area, -1e-12 * whole.norm()) << what;
     sum += std::abs(area);
     used.insert(t.begin(), t.end());
@@ -41,14 +43,16 @@ void expect_triangulates(const std::vector<Vec3>& corners, const std::string& wh
 std::vector<Vec3> on_plane(const std::vector<Vec2>& flat, int seed) {
   std::mt19937 random(static_cast<unsigned>(seed));
   std::normal_distribution<double> normal;
-  const Eigen::Quaterniond turn = Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random)).normalized();
+  const Eigen::Quaterniond turn =
+      Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random)).normalized();
   std::vector<Vec3> points;
   for (const Vec2& p : flat) points.push_back(turn * Vec3(p.x(), p.y(), 0) + Vec3(100, -20, 3));
   return points;
 }
 
 TEST(PolygonTriangulation, ArrowheadWhoseFanWouldTurnOver) {
-  // Concave at corner 2 (or, started elsewhere, at any other): a fan from corner 0 overlaps itself for two of four starts.
+  // Concave at corner 2 (or, started elsewhere, at any other): a fan from corner 0 overlaps itself for two of four
+  // starts.
   const std::vector<Vec2> arrow{{0, 0}, {4, -3}, {1, 0}, {4, 3}};
   for (std::size_t start = 0; start < 4; ++start) {
     std::vector<Vec2> turned;
@@ -74,19 +78,26 @@ TEST(PolygonTriangulation, StarsCombsAndSpirals) {
     expect_triangulates(on_plane(star, spikes), "star " + std::to_string(spikes));
   }
   std::vector<Vec2> comb{{0, -1}, {200, -1}};
-  for (int i = 100; i-- > 0;) comb.insert(comb.end(), {{2.0 * i + 1.5, 10.0}, {2.0 * i + 1.0, 0.0}, {2.0 * i + 0.5, 10.0}});
+  for (int i = 100; i-- > 0;)
+    comb.insert(comb.end(), {{2.0 * i + 1.5, 10.0}, {2.0 * i + 1.0, 0.0}, {2.0 * i + 0.5, 10.0}});
   expect_triangulates(on_plane(comb, 3), "comb");
   std::vector<Vec2> spiral;
-  for (int i = 0; i <= 600; ++i) spiral.emplace_back((1 + 0.01 * i) * std::cos(0.05 * i), (1 + 0.01 * i) * std::sin(0.05 * i));
-  for (int i = 600; i >= 0; --i) spiral.emplace_back((0.5 + 0.01 * i) * std::cos(0.05 * i), (0.5 + 0.01 * i) * std::sin(0.05 * i));
+  for (int i = 0; i <= 600; ++i)
+    spiral.emplace_back((1 + 0.01 * i) * std::cos(0.05 * i), (1 + 0.01 * i) * std::sin(0.05 * i));
+  for (int i = 600; i >= 0; --i)
+    spiral.emplace_back((0.5 + 0.01 * i) * std::cos(0.05 * i), (0.5 + 0.01 * i) * std::sin(0.05 * i));
   expect_triangulates(on_plane(spiral, 4), "spiral");
 }
 
 TEST(PolygonTriangulation, CornersOnStraightEdgesGiveNoDegenerateTriangles) {
-  const std::vector<Vec3> square{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}};
+  const std::vector<Vec3> square{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0},
+                                 {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}};
   PolygonTriangulator triangulator;
   for (const auto& t : triangulator.triangulate(square))
-    EXPECT_GT(area_vector(square[static_cast<std::size_t>(t[0])], square[static_cast<std::size_t>(t[1])], square[static_cast<std::size_t>(t[2])]).z(), 0.1);
+    EXPECT_GT(area_vector(square[static_cast<std::size_t>(t[0])], square[static_cast<std::size_t>(t[1])],
+                          square[static_cast<std::size_t>(t[2])])
+                  .z(),
+              0.1);
   expect_triangulates(square, "square with midpoints");
 }
 
@@ -115,10 +126,14 @@ TEST(PolygonTriangulation, SlightlyBentPolygonsKeepTheirSide) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> off(-0.02, 0.02);
   std::vector<Vec3> bent;
-  for (int i = 0; i < 12; ++i) bent.emplace_back(std::cos(i * std::numbers::pi / 6), std::sin(i * std::numbers::pi / 6), off(random));
+  for (int i = 0; i < 12; ++i)
+    bent.emplace_back(std::cos(i * std::numbers::pi / 6), std::sin(i * std::numbers::pi / 6), off(random));
   PolygonTriangulator triangulator;
   for (const auto& t : triangulator.triangulate(bent))
-    EXPECT_GT(area_vector(bent[static_cast<std::size_t>(t[0])], bent[static_cast<std::size_t>(t[1])], bent[static_cast<std::size_t>(t[2])]).z(), 0);
+    EXPECT_GT(area_vector(bent[static_cast<std::size_t>(t[0])], bent[static_cast<std::size_t>(t[1])],
+                          bent[static_cast<std::size_t>(t[2])])
+                  .z(),
+              0);
 }
 
 TEST(PolygonTriangulation, HopelessPolygonsStillEnd) {

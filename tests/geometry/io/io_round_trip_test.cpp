@@ -48,7 +48,8 @@ std::map<std::array<float, 9>, Eigen::Matrix<double, 3, 2>> texture_by_place(con
     std::array<float, 9> place;
     Eigen::Matrix<double, 3, 2> texture;
     for (int k = 0; k < 3; ++k) {
-      for (int c = 0; c < 3; ++c) place[static_cast<std::size_t>(3 * k + c)] = static_cast<float>(model.mesh.V(model.mesh.F(f, k), c));
+      for (int c = 0; c < 3; ++c)
+        place[static_cast<std::size_t>(3 * k + c)] = static_cast<float>(model.mesh.V(model.mesh.F(f, k), c));
       texture.row(k) = model.UV.row(model.FT(f, k));
     }
     result[place] = texture;
@@ -88,7 +89,8 @@ TEST_P(RoundTrip, ShapeTextureAndColours) {
   if (has_colours(first) && has_colours(second)) {
     const auto expected = colours_by_place(coloured), found = colours_by_place(back);
     ASSERT_EQ(found.size(), expected.size());
-    for (const auto& [place, colour] : expected) EXPECT_LT((found.at(place) - colour).cwiseAbs().maxCoeff(), 0.5 / 255 * 2.4 + 1e-6);
+    for (const auto& [place, colour] : expected)
+      EXPECT_LT((found.at(place) - colour).cwiseAbs().maxCoeff(), 0.5 / 255 * 2.4 + 1e-6);
   } else {
     EXPECT_EQ(back.vertex_colours.rows(), 0);
   }
@@ -119,7 +121,8 @@ std::vector<Route> all_routes() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, RoundTrip, testing::ValuesIn(all_routes()), [](const auto& instance) {
-  return std::string(mesh_format_info(instance.param.first).extension) + "_to_" + std::string(mesh_format_info(instance.param.second).extension);
+  return std::string(mesh_format_info(instance.param.first).extension) + "_to_" +
+         std::string(mesh_format_info(instance.param.second).extension);
 });
 
 }  // namespace

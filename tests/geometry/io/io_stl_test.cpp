@@ -7,14 +7,17 @@ namespace formwright {
 namespace {
 using namespace test;
 
-constexpr std::string_view facet = "facet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 1 0 0\n  vertex 0 1 0\n endloop\nendfacet\n";
+constexpr std::string_view facet =
+    "facet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 1 0 0\n  vertex 0 1 0\n endloop\nendfacet\n";
 
 Bytes binary_stl(const std::string& header, std::uint32_t declared, int triangles) {
   Bytes bytes = to_bytes(header);
   bytes.resize(80);
   append(bytes, declared);
   for (int i = 0; i < triangles; ++i) {
-    for (const float x : {0.f, 0.f, 1.f, 0.f, 0.f, static_cast<float>(i), 1.f, 0.f, static_cast<float>(i), 0.f, 1.f, static_cast<float>(i)}) append(bytes, x);
+    for (const float x : {0.f, 0.f, 1.f, 0.f, 0.f, static_cast<float>(i), 1.f, 0.f, static_cast<float>(i), 0.f, 1.f,
+                          static_cast<float>(i)})
+      append(bytes, x);
     append(bytes, std::uint16_t{0});
   }
   return bytes;
@@ -45,8 +48,12 @@ TEST(Stl, WithoutMergingItIsASoup) {
 }
 
 TEST(Stl, BothZerosAreOnePlace) {
-  const Model model = read_text("solid\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
-                                "facet normal 0 0 0\nouter loop\nvertex -0 -0.0 0\nvertex 0 1 -0\nvertex -1 0 0\nendloop\nendfacet\nendsolid\n", "a.stl").model;
+  const Model model =
+      read_text(
+          "solid\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+          "facet normal 0 0 0\nouter loop\nvertex -0 -0.0 0\nvertex 0 1 -0\nvertex -1 0 0\nendloop\nendfacet\nendsolid\n",
+          "a.stl")
+          .model;
   EXPECT_EQ(model.mesh.vertex_count(), 4);
 }
 
@@ -71,9 +78,11 @@ TEST(Stl, WrongCountsAreReadByTheSize) {
 }
 
 TEST(Stl, AsciiDialects) {
-  for (const char* text : {"SOLID A\nFACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 0 0 0\nVERTEX 1 0 0\nVERTEX 0 1 0\nENDLOOP\nENDFACET\nENDSOLID A\n",
-                           "\n  solid\r\n facet normal nan nan nan\r\n outer loop\r\n vertex 0.0e+00 0 0\r\n vertex +1 0 0\r\n vertex 0 1. 0\r\n endloop\r\n endfacet\r\n endsolid",
-                           "solid facet normal vertex endsolid\nfacet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet\nendsolid facet vertex\n"}) {
+  for (
+      const char* text :
+      {"SOLID A\nFACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 0 0 0\nVERTEX 1 0 0\nVERTEX 0 1 0\nENDLOOP\nENDFACET\nENDSOLID A\n",
+       "\n  solid\r\n facet normal nan nan nan\r\n outer loop\r\n vertex 0.0e+00 0 0\r\n vertex +1 0 0\r\n vertex 0 1. 0\r\n endloop\r\n endfacet\r\n endsolid",
+       "solid facet normal vertex endsolid\nfacet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet\nendsolid facet vertex\n"}) {
     const Model model = read_text(text, "a.stl").model;
     EXPECT_EQ(model.mesh.face_count(), 1) << text;
     EXPECT_EQ(model.mesh.V, (Positions(3, 3) << 0, 0, 0, 1, 0, 0, 0, 1, 0).finished()) << text;
@@ -81,7 +90,8 @@ TEST(Stl, AsciiDialects) {
 }
 
 TEST(Stl, SeveralSolidsAreGroups) {
-  const std::string text = "solid a\n" + std::string(facet) + "endsolid a\nsolid b c\n" + std::string(facet) + std::string(facet) + "endsolid\n";
+  const std::string text = "solid a\n" + std::string(facet) + "endsolid a\nsolid b c\n" + std::string(facet) +
+                           std::string(facet) + "endsolid\n";
   const Model model = read_text(text, "a.stl").model;
   EXPECT_EQ(model.group_names, (std::vector<std::string>{"a", "b c"}));
   EXPECT_EQ(model.face_group, (std::vector<int>{0, 1, 1}));
@@ -89,7 +99,9 @@ TEST(Stl, SeveralSolidsAreGroups) {
 
 TEST(Stl, BadFilesAreRefused) {
   const auto refused = [](const Bytes& bytes, const std::string& part) { expect_refused(bytes, "bad.stl", part); };
-  const auto refused_text = [](const std::string& text, const std::string& part) { expect_refused(as_bytes(text), "bad.stl", part); };
+  const auto refused_text = [](const std::string& text, const std::string& part) {
+    expect_refused(as_bytes(text), "bad.stl", part);
+  };
   refused(binary_stl("x", 0, 0), "it holds no triangles");
   refused_text("solid of 0 triangles\nendsolid\n", "it holds no triangles");
   Bytes cut = binary_stl("x", 5, 5);
@@ -104,10 +116,14 @@ TEST(Stl, BadFilesAreRefused) {
   const std::string f(facet);
   refused_text("solid x\n" + f + f, "it ends before “endsolid”");
   refused_text("solid x\n" + f + f.substr(0, 60), "it ends before “endsolid”");
-  refused_text("solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\nendfacet\nendsolid\n", "line 7: a facet has 2 vertices");
-  refused_text("solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n", "line 7: a facet has more than three vertices");
+  refused_text("solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\nendfacet\nendsolid\n",
+               "line 7: a facet has 2 vertices");
+  refused_text(
+      "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n",
+      "line 7: a facet has more than three vertices");
   refused_text("solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 zero 0\n", "line 4: “zero” is not a coordinate");
-  refused_text("solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 nan 0\n", "line 4: a coordinate of triangle 1 is not a number");
+  refused_text("solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 nan 0\n",
+               "line 4: a coordinate of triangle 1 is not a number");
   refused_text("solid x\nwhatever\n", "line 2: “whatever” is not a word of STL");
   ReadOptions options;
   options.max_triangles = 4;

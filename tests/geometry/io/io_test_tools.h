@@ -29,7 +29,8 @@ inline Bytes write(const Model& model, MeshFormat format, const WriteOptions& op
 }
 
 /// Reading must end in Error{invalid_input, "mesh"} of one sentence that names the file and holds `part`.
-inline void expect_refused(ByteView bytes, const std::string& name, const std::string& part, const ReadOptions& options = {}) {
+inline void expect_refused(ByteView bytes, const std::string& name, const std::string& part,
+                           const ReadOptions& options = {}) {
   Context context;
   try {
     const ModelFile file = read_model_file(bytes, name, options, context);
@@ -52,7 +53,8 @@ inline std::multiset<std::array<std::array<double, 3>, 3>> faces_by_place(const 
   for (Eigen::Index f = 0; f < mesh.F.rows(); ++f) {
     std::array<std::array<double, 3>, 3> corners;
     for (int k = 0; k < 3; ++k)
-      for (int c = 0; c < 3; ++c) corners[static_cast<std::size_t>(k)][static_cast<std::size_t>(c)] = mesh.V(mesh.F(f, k), c);
+      for (int c = 0; c < 3; ++c)
+        corners[static_cast<std::size_t>(k)][static_cast<std::size_t>(c)] = mesh.V(mesh.F(f, k), c);
     std::ranges::rotate(corners, std::ranges::min_element(corners));
     faces.insert(corners);
   }

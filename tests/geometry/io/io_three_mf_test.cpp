@@ -12,7 +12,8 @@ using namespace test;
 
 constexpr std::string_view relationships =
     R"(<?xml version="1.0"?><Relationships xmlns="x"><Relationship Target="/3D/3dmodel.model" Id="r" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>)";
-constexpr std::string_view triangle_mesh = R"(<mesh><vertices><vertex x="0" y="0" z="0"/><vertex x="1" y="0" z="0"/><vertex x="0" y="2" z="0"/></vertices>
+constexpr std::string_view triangle_mesh =
+    R"(<mesh><vertices><vertex x="0" y="0" z="0"/><vertex x="1" y="0" z="0"/><vertex x="0" y="2" z="0"/></vertices>
 <triangles><triangle v1="0" v2="1" v3="2"/></triangles></mesh>)";
 
 Bytes package(const std::string& model, const std::vector<std::pair<std::string, std::string>>& more = {}) {
@@ -25,14 +26,17 @@ Bytes package(const std::string& model, const std::vector<std::pair<std::string,
 }
 
 std::string model_of(const std::string& resources, const std::string& build, const std::string& attributes = "") {
-  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- a comment with <tags> -->\n<model " + attributes + " xmlns=\"c\"><resources>\n" + resources + "\n</resources>\n<build>" + build + "</build></model>";
+  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- a comment with <tags> -->\n<model " + attributes +
+         " xmlns=\"c\"><resources>\n" + resources + "\n</resources>\n<build>" + build + "</build></model>";
 }
 
 Model read_parts(const std::string& resources, const std::string& build, const std::string& attributes = "") {
   return read_bytes(package(model_of(resources, build, attributes)), "a.3mf").model;
 }
 
-std::string object(int id, const std::string& inside, const std::string& attributes = "") { return "<object id=\"" + std::to_string(id) + "\" " + attributes + ">" + inside + "</object>"; }
+std::string object(int id, const std::string& inside, const std::string& attributes = "") {
+  return "<object id=\"" + std::to_string(id) + "\" " + attributes + ">" + inside + "</object>";
+}
 
 TEST(ThreeMf, GroupsAsObjectsOfTheirOwn) {
   Model model;
@@ -47,16 +51,21 @@ TEST(ThreeMf, GroupsAsObjectsOfTheirOwn) {
   EXPECT_EQ(again.face_group, model.face_group);
   for (int f = 0; f < 2; ++f)
     for (int k = 0; k < 3; ++k) EXPECT_EQ(again.mesh.V.row(again.mesh.F(f, k)), model.mesh.V.row(model.mesh.F(f, k)));
-  EXPECT_EQ(read_bytes(write(model, MeshFormat::three_mf, {}), "a.3mf").model.group_names.size(), 0u);  // unless asked for, one object
+  EXPECT_EQ(read_bytes(write(model, MeshFormat::three_mf, {}), "a.3mf").model.group_names.size(),
+            0u);           // unless asked for, one object
   model.mesh.F(1, 0) = 3;  // groups of one surface stay together
   EXPECT_EQ(read_bytes(write(model, MeshFormat::three_mf, options), "a.3mf").model.mesh.vertex_count(), 6);
   EXPECT_EQ(read_bytes(write(model, MeshFormat::three_mf, options), "a.3mf").model.group_names.size(), 0u);
 }
 
 TEST(ThreeMf, UnitsBecomeMillimetres) {
-  const std::pair<const char*, double> units[] = {{"micron", 0.001}, {"millimeter", 1}, {"centimeter", 10}, {"inch", 25.4}, {"foot", 304.8}, {"meter", 1000}};
+  const std::pair<const char*, double> units[] = {{"micron", 0.001}, {"millimeter", 1}, {"centimeter", 10},
+                                                  {"inch", 25.4},    {"foot", 304.8},   {"meter", 1000}};
   for (const auto& [name, mm] : units) {
-    const ModelFile file = read_bytes(package(model_of(object(1, std::string(triangle_mesh)), "<item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 10 0 0\"/>", std::string("unit=\"") + name + "\"")), "a.3mf");
+    const ModelFile file = read_bytes(package(model_of(object(1, std::string(triangle_mesh)),
+                                                       "<item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 10 0 0\"/>",
+                                                       std::string("unit=\"") + name + "\"")),
+                                      "a.3mf");
     EXPECT_EQ(file.unit, name);
     EXPECT_TRUE(file.model.mesh.V.isApprox((Positions(3, 3) << 10, 0, 0, 11, 0, 0, 10, 2, 0).finished() * mm, 1e-14));
   }
@@ -65,13 +74,18 @@ TEST(ThreeMf, UnitsBecomeMillimetres) {
 
 TEST(ThreeMf, ComponentsAndTransforms) {
   // Row vectors: the item's matrix acts after the component's.
-  const Model model = read_parts(object(1, std::string(triangle_mesh), "name=\"part &amp; piece\"") +
-                                     object(2, "<components><component objectid=\"1\" transform=\"0 1 0 -1 0 0 0 0 1 5 0 0\"/><component objectid=\"1\" transform=\"-1 0 0 0 1 0 0 0 1 0 0 0\"/></components>"),
-                                 "<item objectid=\"2\" transform=\"2 0 0 0 2 0 0 0 2 0 0 100\"/><item objectid=\"1\"/>");
+  const Model model = read_parts(
+      object(1, std::string(triangle_mesh), "name=\"part &amp; piece\"") +
+          object(
+              2,
+              "<components><component objectid=\"1\" transform=\"0 1 0 -1 0 0 0 0 1 5 0 0\"/><component objectid=\"1\" transform=\"-1 0 0 0 1 0 0 0 1 0 0 0\"/></components>"),
+      "<item objectid=\"2\" transform=\"2 0 0 0 2 0 0 0 2 0 0 100\"/><item objectid=\"1\"/>");
   ASSERT_EQ(model.mesh.face_count(), 3);
-  EXPECT_TRUE(model.mesh.V.topRows(3).isApprox((Positions(3, 3) << 10, 0, 100, 10, 2, 100, 6, 0, 100).finished(), 1e-14));
+  EXPECT_TRUE(
+      model.mesh.V.topRows(3).isApprox((Positions(3, 3) << 10, 0, 100, 10, 2, 100, 6, 0, 100).finished(), 1e-14));
   for (int f = 0; f < 3; ++f) {  // the mirrored one too
-    const Vec3 a = model.mesh.V.row(model.mesh.F(f, 0)), b = model.mesh.V.row(model.mesh.F(f, 1)), c = model.mesh.V.row(model.mesh.F(f, 2));
+    const Vec3 a = model.mesh.V.row(model.mesh.F(f, 0)), b = model.mesh.V.row(model.mesh.F(f, 1)),
+               c = model.mesh.V.row(model.mesh.F(f, 2));
     EXPECT_GT((b - a).cross(c - a).z(), 0);
   }
   EXPECT_EQ(model.group_names, (std::vector<std::string>{"object 2", "part & piece"}));
@@ -80,31 +94,51 @@ TEST(ThreeMf, ComponentsAndTransforms) {
 
 TEST(ThreeMf, ObjectsInOtherParts) {
   // The production extension, as Bambu Studio and newer PrusaSlicers write it; here the other part is in inches.
-  const Bytes bytes = package(model_of(object(7, "<components><component objectid=\"1\" p:path=\"/3D/Objects/a.model\"/></components>"), "<item objectid=\"7\"/>"),
-                              {{"3D/Objects/a.model", model_of(object(1, std::string(triangle_mesh)), "", "unit=\"inch\"")}});
+  const Bytes bytes =
+      package(model_of(object(7, "<components><component objectid=\"1\" p:path=\"/3D/Objects/a.model\"/></components>"),
+                       "<item objectid=\"7\"/>"),
+              {{"3D/Objects/a.model", model_of(object(1, std::string(triangle_mesh)), "", "unit=\"inch\"")}});
   EXPECT_DOUBLE_EQ(read_bytes(bytes, "a.3mf").model.mesh.V(1, 0), 25.4);
-  expect_refused(package(model_of(object(7, "<components><component objectid=\"1\" p:path=\"/3D/gone.model\"/></components>"), "<item objectid=\"7\"/>")), "bad.3mf", "the part “3D/gone.model” is missing");
+  expect_refused(
+      package(model_of(object(7, "<components><component objectid=\"1\" p:path=\"/3D/gone.model\"/></components>"),
+                       "<item objectid=\"7\"/>")),
+      "bad.3mf", "the part “3D/gone.model” is missing");
 }
 
 TEST(ThreeMf, BaseMaterialsAndColours) {
-  const std::string vertices = "<mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/><vertex x=\"0\" y=\"2\" z=\"0\"/></vertices><triangles>";
-  const std::string groups = "<basematerials id=\"5\"><base name=\"red\" displaycolor=\"#FF0000\"/><base name=\"blue\" displaycolor=\"#0000FF80\"/></basematerials>"
-                             "<m:colorgroup id=\"6\"><m:color color=\"#00FF00\"/><m:color color=\"#336699\"/></m:colorgroup>";
-  const Model materials = read_parts(groups + object(1, vertices + "<triangle v1=\"0\" v2=\"1\" v3=\"2\"/><triangle v1=\"0\" v2=\"1\" v3=\"2\" p1=\"0\"/><triangle v1=\"0\" v2=\"1\" v3=\"2\" pid=\"6\" p1=\"1\"/></triangles></mesh>", "pid=\"5\" pindex=\"1\""),
-                                     "<item objectid=\"1\"/>");
+  const std::string vertices =
+      "<mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/><vertex x=\"0\" y=\"2\" z=\"0\"/></vertices><triangles>";
+  const std::string groups =
+      "<basematerials id=\"5\"><base name=\"red\" displaycolor=\"#FF0000\"/><base name=\"blue\" displaycolor=\"#0000FF80\"/></basematerials>"
+      "<m:colorgroup id=\"6\"><m:color color=\"#00FF00\"/><m:color color=\"#336699\"/></m:colorgroup>";
+  const Model materials = read_parts(
+      groups +
+          object(
+              1,
+              vertices +
+                  "<triangle v1=\"0\" v2=\"1\" v3=\"2\"/><triangle v1=\"0\" v2=\"1\" v3=\"2\" p1=\"0\"/><triangle v1=\"0\" v2=\"1\" v3=\"2\" pid=\"6\" p1=\"1\"/></triangles></mesh>",
+              "pid=\"5\" pindex=\"1\""),
+      "<item objectid=\"1\"/>");
   ASSERT_EQ(materials.face_material.size(), 3u);
   EXPECT_EQ(materials.materials[static_cast<std::size_t>(materials.face_material[0])].name, "blue");
   EXPECT_EQ(materials.materials[static_cast<std::size_t>(materials.face_material[1])].name, "red");
   EXPECT_EQ(materials.materials[static_cast<std::size_t>(materials.face_material[2])].name, "#336699");
   EXPECT_EQ(materials.vertex_colours.rows(), 0);
-  const Model corners = read_parts(groups + object(1, vertices + "<triangle v1=\"0\" v2=\"1\" v3=\"2\" pid=\"6\" p1=\"1\" p2=\"0\" p3=\"1\"/></triangles></mesh>"), "<item objectid=\"1\"/>");
+  const Model corners = read_parts(
+      groups +
+          object(1,
+                 vertices +
+                     "<triangle v1=\"0\" v2=\"1\" v3=\"2\" pid=\"6\" p1=\"1\" p2=\"0\" p3=\"1\"/></triangles></mesh>"),
+      "<item objectid=\"1\"/>");
   ASSERT_EQ(corners.vertex_colours.rows(), 3);
   EXPECT_EQ(corners.vertex_colours.row(1), Eigen::RowVector3d(0, 1, 0));
-  EXPECT_TRUE(corners.vertex_colours.row(2).isApprox(Eigen::RowVector3d(linear_of_srgb(0.2), linear_of_srgb(0.4), linear_of_srgb(0.6))));
+  EXPECT_TRUE(corners.vertex_colours.row(2).isApprox(
+      Eigen::RowVector3d(linear_of_srgb(0.2), linear_of_srgb(0.4), linear_of_srgb(0.6))));
 }
 
 TEST(ThreeMf, SupportsAreLeftOutAndAnEmptyPlateIsAll) {
-  const std::string two = object(1, std::string(triangle_mesh)) + object(2, std::string(triangle_mesh), "type=\"support\"");
+  const std::string two =
+      object(1, std::string(triangle_mesh)) + object(2, std::string(triangle_mesh), "type=\"support\"");
   EXPECT_EQ(read_parts(two, "<item objectid=\"1\"/><item objectid=\"2\"/>").mesh.face_count(), 1);
   EXPECT_EQ(read_parts(two, "").mesh.face_count(), 1);
 }
@@ -123,12 +157,14 @@ TEST(ThreeMf, WritesWhatItReads) {
   ASSERT_EQ(textured.textures.size(), 1u);
   EXPECT_EQ(textured.textures[0].bytes, model.textures[0].bytes);
   for (int f = 0; f < model.mesh.face_count(); ++f) {
-    const Material& material = textured.materials[static_cast<std::size_t>(textured.face_material[static_cast<std::size_t>(f)])];
+    const Material& material =
+        textured.materials[static_cast<std::size_t>(textured.face_material[static_cast<std::size_t>(f)])];
     EXPECT_EQ(material.diffuse_texture, model.face_material[static_cast<std::size_t>(f)] == 1 ? 0 : -1);
     if (material.diffuse_texture < 0) {
       EXPECT_EQ(material.name, "grey");
     } else {
-      for (int k = 0; k < 3; ++k) EXPECT_LT((textured.UV.row(textured.FT(f, k)) - model.UV.row(model.FT(f, k))).norm(), 1e-6);
+      for (int k = 0; k < 3; ++k)
+        EXPECT_LT((textured.UV.row(textured.FT(f, k)) - model.UV.row(model.FT(f, k))).norm(), 1e-6);
     }
   }
 }
@@ -143,7 +179,8 @@ TEST(ThreeMf, LargePartsArePackedInPieces) {
 }
 
 TEST(ThreeMf, BadFilesAreRefused) {
-  const auto refused = [](const std::string& resources, const std::string& build, const std::string& part, const std::string& attributes = "") {
+  const auto refused = [](const std::string& resources, const std::string& build, const std::string& part,
+                          const std::string& attributes = "") {
     expect_refused(package(model_of(resources, build, attributes)), "bad.3mf", part);
   };
   const std::string mesh(triangle_mesh), item = "<item objectid=\"1\"/>";
@@ -152,7 +189,8 @@ TEST(ThreeMf, BadFilesAreRefused) {
     text.replace(text.find(from), from.size(), to);
     return object(1, text);
   };
-  refused(spoiled("v3=\"2\"", "v3=\"3\""), item, "(3D/3dmodel.model), line 5: a triangle refers to vertex 3, but its object has 3 vertices");
+  refused(spoiled("v3=\"2\"", "v3=\"3\""), item,
+          "(3D/3dmodel.model), line 5: a triangle refers to vertex 3, but its object has 3 vertices");
   refused(spoiled("v3=\"2\"", "v3=\"-1\""), item, "“v3” must be a whole number, not “-1”");
   refused(spoiled("v3=\"2\"", ""), item, "“v3” must be a whole number, not “”");
   refused(spoiled("y=\"2\"", "y=\"two\""), item, "“y” must be a number, not “two”");
@@ -163,7 +201,8 @@ TEST(ThreeMf, BadFilesAreRefused) {
   refused(object(1, mesh), "<item objectid=\"1\" transform=\"1 0 0\"/>", "a transform is not twelve numbers");
   refused(object(1, mesh), item, "“furlong” is not a unit", "unit=\"furlong\"");
   refused(object(1, ""), item, "it holds no triangles");
-  refused(object(1, mesh, "pid=\"4\"") + "<basematerials id=\"4\"></basematerials>", item, "refers to property 0 of group 4");
+  refused(object(1, mesh, "pid=\"4\"") + "<basematerials id=\"4\"></basematerials>", item,
+          "refers to property 0 of group 4");
   refused("<m:colorgroup id=\"6\"><m:color color=\"red\"/></m:colorgroup>", "", "“red” is not a colour");
   refused("<object id=\"1\">" + mesh.substr(0, mesh.find("</mesh>")), item, "does not match its beginning");
   expect_refused(package(model_of(object(1, mesh), item).substr(0, 250)), "bad.3mf", "its XML ends too early");
@@ -175,18 +214,27 @@ TEST(ThreeMf, BadFilesAreRefused) {
 TEST(ThreeMf, CirclesAndDoublingAreRefusedAtOnce) {
   const std::string mesh(triangle_mesh);
   const auto component = [](int id) { return "<component objectid=\"" + std::to_string(id) + "\"/>"; };
-  expect_refused(package(model_of(object(1, "<components>" + component(2) + "</components>") + object(2, "<components>" + component(1) + "</components>"), "<item objectid=\"1\"/>")), "bad.3mf", "in a circle");
-  expect_refused(package(model_of(object(1, "<components>" + component(1) + "</components>"), "<item objectid=\"1\"/>")), "bad.3mf", "in a circle");
+  expect_refused(package(model_of(object(1, "<components>" + component(2) + "</components>") +
+                                      object(2, "<components>" + component(1) + "</components>"),
+                                  "<item objectid=\"1\"/>")),
+                 "bad.3mf", "in a circle");
+  expect_refused(
+      package(model_of(object(1, "<components>" + component(1) + "</components>"), "<item objectid=\"1\"/>")),
+      "bad.3mf", "in a circle");
   // Forty objects, each twice the one before: a billion triangles from five kilobytes.
   for (const bool empty : {false, true}) {
     std::string doubling = object(1, empty ? std::string() : mesh);
-    for (int i = 2; i <= 40; ++i) doubling += object(i, "<components>" + component(i - 1) + component(i - 1) + "</components>");
+    for (int i = 2; i <= 40; ++i)
+      doubling += object(i, "<components>" + component(i - 1) + component(i - 1) + "</components>");
     doubling += object(41, mesh);
-    expect_refused(package(model_of(doubling, "<item objectid=\"40\"/><item objectid=\"41\"/>")), "bad.3mf", empty ? "repeated more than a million times" : "at most");
+    expect_refused(package(model_of(doubling, "<item objectid=\"40\"/><item objectid=\"41\"/>")), "bad.3mf",
+                   empty ? "repeated more than a million times" : "at most");
   }
   // A deep tree is refused even if every level has been counted before.
   std::string chain = object(1, mesh), items;
-  for (int i = 2; i <= 100; ++i) chain += object(i, "<components>" + component(i - 1) + "</components>"), items += "<item objectid=\"" + std::to_string(i) + "\"/>";
+  for (int i = 2; i <= 100; ++i)
+    chain += object(i, "<components>" + component(i - 1) + "</components>"),
+        items += "<item objectid=\"" + std::to_string(i) + "\"/>";
   expect_refused(package(model_of(chain, items)), "bad.3mf", "nested more than 64 deep");
 }
 
@@ -209,7 +257,8 @@ TEST(ThreeMf, LimitsHold) {
 TEST(Zip, DamagedArchivesAreRefused) {
   const Bytes good = package(model_of(object(1, std::string(triangle_mesh)), "<item objectid=\"1\"/>"));
   EXPECT_EQ(read_bytes(good, "a.3mf").model.mesh.face_count(), 1);
-  for (const std::size_t size : {30u, 200u}) expect_refused(ByteView(good).first(size), "cut.3mf", "zip archive ends too early");
+  for (const std::size_t size : {30u, 200u})
+    expect_refused(ByteView(good).first(size), "cut.3mf", "zip archive ends too early");
   expect_refused(to_bytes("PK\x03\x04"), "cut.3mf", "ends too early");
   Bytes flipped = good;
   flipped[good.size() / 2] ^= std::byte{0xff};
@@ -218,10 +267,12 @@ TEST(Zip, DamagedArchivesAreRefused) {
   zip.add("readme.txt", "nothing", Context());
   expect_refused(zip.finish(), "other.3mf", "this zip archive holds no 3MF model");
   // Encrypted, or packed by a method other than deflate: flags and method in the directory's entries.
-  for (const auto& [place, value, part] : {std::tuple{8u, 1u, "is encrypted"}, std::tuple{10u, 14u, "packed in an unusual way"}}) {
+  for (const auto& [place, value, part] :
+       {std::tuple{8u, 1u, "is encrypted"}, std::tuple{10u, 14u, "packed in an unusual way"}}) {
     Bytes marked = good;
     for (std::size_t i = 0; i + 4 < marked.size(); ++i)
-      if (load<std::uint32_t>(marked.data() + i) == 0x02014b50) store(marked.data() + i + place, static_cast<std::uint16_t>(value));
+      if (load<std::uint32_t>(marked.data() + i) == 0x02014b50)
+        store(marked.data() + i + place, static_cast<std::uint16_t>(value));
     expect_refused(marked, "marked.3mf", part);
   }
 }
@@ -230,13 +281,16 @@ TEST(Zip, CommentsAndZip64AreRead) {
   Bytes bytes = package(model_of(object(1, std::string(triangle_mesh)), "<item objectid=\"1\"/>"));
   const std::size_t end = bytes.size() - 22;
   // Move directory offset and entry count into a Zip64 end record, as some writers do for any size.
-  const std::uint64_t count = load<std::uint16_t>(bytes.data() + end + 10), directory = load<std::uint32_t>(bytes.data() + end + 16), size = end - directory;
+  const std::uint64_t count = load<std::uint16_t>(bytes.data() + end + 10),
+                      directory = load<std::uint32_t>(bytes.data() + end + 16), size = end - directory;
   bytes.resize(end);
   const std::uint64_t end64 = bytes.size();
-  append(bytes, 0x06064b50u), append(bytes, std::uint64_t{44}), append(bytes, std::uint16_t{45}), append(bytes, std::uint16_t{45}), append(bytes, 0u), append(bytes, 0u);
+  append(bytes, 0x06064b50u), append(bytes, std::uint64_t{44}), append(bytes, std::uint16_t{45}),
+      append(bytes, std::uint16_t{45}), append(bytes, 0u), append(bytes, 0u);
   append(bytes, count), append(bytes, count), append(bytes, size), append(bytes, directory);
   append(bytes, 0x07064b50u), append(bytes, 0u), append(bytes, end64), append(bytes, 1u);
-  append(bytes, 0x06054b50u), append(bytes, 0u), append(bytes, std::uint16_t{0xFFFF}), append(bytes, std::uint16_t{0xFFFF}), append(bytes, static_cast<std::uint32_t>(size)), append(bytes, 0xFFFFFFFFu);
+  append(bytes, 0x06054b50u), append(bytes, 0u), append(bytes, std::uint16_t{0xFFFF}),
+      append(bytes, std::uint16_t{0xFFFF}), append(bytes, static_cast<std::uint32_t>(size)), append(bytes, 0xFFFFFFFFu);
   append(bytes, std::uint16_t{7});
   for (const char c : std::string_view("comment")) bytes.push_back(static_cast<std::byte>(c));
   EXPECT_EQ(read_bytes(bytes, "a.3mf").model.mesh.face_count(), 1);
@@ -245,7 +299,8 @@ TEST(Zip, CommentsAndZip64AreRead) {
 TEST(Xml, EntitiesCommentsAndCdata) {
   const ReadOptions options;
   Context context;
-  const std::string_view text = "<?xml version='1.0'?><!-- <x> --><a:root one='1 &lt;&#x41;&#66;&amp;amp;' b:two = \"'\"><![CDATA[</root>]]><leaf/></a:root> junk";
+  const std::string_view text =
+      "<?xml version='1.0'?><!-- <x> --><a:root one='1 &lt;&#x41;&#66;&amp;amp;' b:two = \"'\"><![CDATA[</root>]]><leaf/></a:root> junk";
   const MeshSource source(as_bytes(text), "x.xml", options, context);
   XmlReader xml(source);
   ASSERT_TRUE(xml.next());

@@ -24,10 +24,18 @@ Bytes load_file(const std::string& path) {
 Json describe(const ModelFile& file) {
   const TriangleMesh& mesh = file.model.mesh;
   const Eigen::RowVector3d low = mesh.V.colwise().minCoeff(), high = mesh.V.colwise().maxCoeff();
-  return {{"format", mesh_format_info(file.format).extension}, {"unit", file.unit}, {"vertices", mesh.vertex_count()}, {"faces", mesh.face_count()},
-          {"unmatched_edges", test::unmatched_edges(mesh)}, {"volume_mm3", test::signed_volume(mesh)},
-          {"low", {low.x(), low.y(), low.z()}}, {"high", {high.x(), high.y(), high.z()}}, {"texture_vertices", file.model.UV.rows()},
-          {"coloured", file.model.vertex_colours.rows() > 0}, {"materials", file.model.materials.size()}, {"notes", file.notes}};
+  return {{"format", mesh_format_info(file.format).extension},
+          {"unit", file.unit},
+          {"vertices", mesh.vertex_count()},
+          {"faces", mesh.face_count()},
+          {"unmatched_edges", test::unmatched_edges(mesh)},
+          {"volume_mm3", test::signed_volume(mesh)},
+          {"low", {low.x(), low.y(), low.z()}},
+          {"high", {high.x(), high.y(), high.z()}},
+          {"texture_vertices", file.model.UV.rows()},
+          {"coloured", file.model.vertex_colours.rows() > 0},
+          {"materials", file.model.materials.size()},
+          {"notes", file.notes}};
 }
 
 }  // namespace
@@ -38,7 +46,9 @@ int main(int argc, char** argv) {
     if (words.size() == 2 && words[0] == "read") {
       const Bytes bytes = load_file(words[1]);
       Context context;
-      std::cout << describe(read_model_file(bytes, std::filesystem::path(words[1]).filename().string(), {}, context)).dump() << '\n';
+      std::cout
+          << describe(read_model_file(bytes, std::filesystem::path(words[1]).filename().string(), {}, context)).dump()
+          << '\n';
       return 0;
     }
     if (words.size() >= 3 && words[0] == "write") {
@@ -46,12 +56,15 @@ int main(int argc, char** argv) {
       if (!format) return 2;
       Model model = test::wavy_torus(24, 16);
       const auto flag = [&](const char* name) { return std::ranges::find(words, name) != words.end(); };
-      if (flag("-p") || *format == MeshFormat::stl || *format == MeshFormat::three_mf) model.UV.resize(0, 2), model.FT.resize(0, 3);
-      if (*format == MeshFormat::ply && !flag("-p")) test::add_colours(model), model.UV = model.mesh.V.leftCols<2>() / 100, model.FT = model.mesh.F;
+      if (flag("-p") || *format == MeshFormat::stl || *format == MeshFormat::three_mf)
+        model.UV.resize(0, 2), model.FT.resize(0, 3);
+      if (*format == MeshFormat::ply && !flag("-p"))
+        test::add_colours(model), model.UV = model.mesh.V.leftCols<2>() / 100, model.FT = model.mesh.F;
       WriteOptions options;
       options.ascii = flag("-a");
       const Bytes bytes = test::write(model, *format, options);
-      std::ofstream(words[2], std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+      std::ofstream(words[2], std::ios::binary)
+          .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
       ModelFile file;
       file.model = std::move(model), file.format = *format;
       std::cout << describe(file).dump() << '\n';

@@ -18,11 +18,13 @@ inline Model wavy_torus(int rows, int columns) {
   for (int i = 0; i < rows; ++i)
     for (int j = 0; j < columns; ++j) {
       const double u = tau * i / rows, v = tau * j / columns, tube = 10 + std::sin(3 * u + 0.3) * std::cos(2 * v + 0.7);
-      model.mesh.V.row(i * columns + j) << (30 + tube * std::cos(v)) * std::cos(u), (30 + tube * std::cos(v)) * std::sin(u), tube * std::sin(v) + 0.1;
+      model.mesh.V.row(i * columns + j) << (30 + tube * std::cos(v)) * std::cos(u),
+          (30 + tube * std::cos(v)) * std::sin(u), tube * std::sin(v) + 0.1;
     }
   model.UV.resize((rows + 1) * (columns + 1), 2);
   for (int i = 0; i <= rows; ++i)
-    for (int j = 0; j <= columns; ++j) model.UV.row(i * (columns + 1) + j) << static_cast<double>(i) / rows, static_cast<double>(j) / columns;
+    for (int j = 0; j <= columns; ++j)
+      model.UV.row(i * (columns + 1) + j) << static_cast<double>(i) / rows, static_cast<double>(j) / columns;
   model.mesh.F.resize(2 * rows * columns, 3);
   model.FT.resize(2 * rows * columns, 3);
   for (int i = 0; i < rows; ++i)
@@ -47,10 +49,11 @@ inline void add_colours(Model& model) {
 
 /// The smallest PNG: one red pixel. (Signature, IHDR, IDAT, IEND.)
 inline Bytes red_pixel_png() {
-  constexpr unsigned char bytes[] = {0x89, 'P',  'N',  'G',  '\r', '\n', 0x1a, '\n', 0,    0,    0,    13,   'I',  'H',  'D',  'R',  0,    0,
-                                     0,    1,    0,    0,    0,    1,    8,    2,    0,    0,    0,    0x90, 0x77, 0x53, 0xde, 0,    0,    0,
-                                     12,   'I',  'D',  'A',  'T',  0x08, 0xd7, 0x63, 0xf8, 0xcf, 0xc0, 0,    0,    0x03, 0x01, 0x01, 0,    0x18,
-                                     0xdd, 0x8d, 0xb0, 0,    0,    0,    0,    'I',  'E',  'N',  'D',  0xae, 0x42, 0x60, 0x82};
+  constexpr unsigned char bytes[] = {0x89, 'P',  'N',  'G',  '\r', '\n', 0x1a, '\n', 0,    0,    0,    13,   'I',  'H',
+                                     'D',  'R',  0,    0,    0,    1,    0,    0,    0,    1,    8,    2,    0,    0,
+                                     0,    0x90, 0x77, 0x53, 0xde, 0,    0,    0,    12,   'I',  'D',  'A',  'T',  0x08,
+                                     0xd7, 0x63, 0xf8, 0xcf, 0xc0, 0,    0,    0x03, 0x01, 0x01, 0,    0x18, 0xdd, 0x8d,
+                                     0xb0, 0,    0,    0,    0,    'I',  'E',  'N',  'D',  0xae, 0x42, 0x60, 0x82};
   const auto* const from = reinterpret_cast<const std::byte*>(bytes);
   return {from, from + sizeof bytes};
 }
@@ -71,8 +74,12 @@ inline void add_materials_and_groups(Model& model) {
 inline std::vector<VertexColumn> sample_columns(const Model& model) {
   const auto n = model.mesh.V.rows();
   Eigen::VectorXd wave(n), flags(n);
-  for (Eigen::Index v = 0; v < n; ++v) wave[v] = std::cos(0.01 * static_cast<double>(v)) / 3, flags[v] = static_cast<double>(v % 2);
-  return {{"lambda_mm", wave, ColumnKind::float64}, {"visible", flags, ColumnKind::uint8}, {"error", wave, ColumnKind::float32}, {"number", 1000 * flags, ColumnKind::int32}};
+  for (Eigen::Index v = 0; v < n; ++v)
+    wave[v] = std::cos(0.01 * static_cast<double>(v)) / 3, flags[v] = static_cast<double>(v % 2);
+  return {{"lambda_mm", wave, ColumnKind::float64},
+          {"visible", flags, ColumnKind::uint8},
+          {"error", wave, ColumnKind::float32},
+          {"number", 1000 * flags, ColumnKind::int32}};
 }
 
 /// Sum of signed tetrahedra: positive for outward faces.

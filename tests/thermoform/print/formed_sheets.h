@@ -24,7 +24,8 @@ inline TriangleMesh grid_mesh(double x_mm, double y_mm, int columns, int rows) {
   mesh.V.resize((columns + 1) * (rows + 1), 3);
   mesh.F.resize(2 * columns * rows, 3);
   for (int j = 0; j <= rows; ++j)
-    for (int i = 0; i <= columns; ++i) mesh.V.row(j * (columns + 1) + i) << x_mm * (2.0 * i / columns - 1), y_mm * (2.0 * j / rows - 1), 0;
+    for (int i = 0; i <= columns; ++i)
+      mesh.V.row(j * (columns + 1) + i) << x_mm * (2.0 * i / columns - 1), y_mm * (2.0 * j / rows - 1), 0;
   for (int j = 0; j < rows; ++j)
     for (int i = 0; i < columns; ++i) {
       const int a = j * (columns + 1) + i, f = 2 * (j * columns + i);
@@ -42,7 +43,9 @@ struct Cone {
 
   double height_mm() const { return radius_mm * std::tan(alpha); }
   double flat_radius_mm(double u) const { return radius_mm * std::pow(u, (1 / std::cos(alpha) + 1) / 2); }
-  double thickness_mm(double u) const { return sheet_mm * (1 + std::cos(alpha)) / 2 * std::pow(u, 1 / std::cos(alpha) - 1); }
+  double thickness_mm(double u) const {
+    return sheet_mm * (1 + std::cos(alpha)) / 2 * std::pow(u, 1 / std::cos(alpha) - 1);
+  }
   Vec3 surface(double u, double angle) const {
     const double r = radius_mm * u;
     return {r * std::cos(angle), r * std::sin(angle), height_mm() * (1 - u)};
@@ -58,7 +61,9 @@ struct Cone {
     cone.V.resize(rings * sectors + 1, 3);
     cone.F.resize((2 * rings - 1) * sectors, 3);
     for (int i = 0; i < rings; ++i)
-      for (int j = 0; j < sectors; ++j) cone.V.row(i * sectors + j) = surface(1 - static_cast<double>(i) / rings, 2 * std::numbers::pi * j / sectors).transpose();
+      for (int j = 0; j < sectors; ++j)
+        cone.V.row(i * sectors + j) =
+            surface(1 - static_cast<double>(i) / rings, 2 * std::numbers::pi * j / sectors).transpose();
     const int apex = rings * sectors;
     cone.V.row(apex) = surface(0, 0).transpose();
     Eigen::Index f = 0;
@@ -90,8 +95,8 @@ struct Cone {
   }
 };
 
-/// A sheet that has come straight down onto a model in machine coordinates, `cells` squares a side: sheet_mm is where it
-/// came from. Not how sheets behave, but any map will do to print by.
+/// A sheet that has come straight down onto a model in machine coordinates, `cells` squares a side: sheet_mm is where
+/// it came from. Not how sheets behave, but any map will do to print by.
 inline FormedSheet dropped_sheet(const TriangleMesh& model, double side_mm, int cells, double thickness_mm) {
   FormedSheet sheet;
   sheet.mesh = grid_mesh(side_mm / 2, side_mm / 2, cells, cells);

@@ -16,7 +16,8 @@ struct MapError {
   double mean = 0, maximum = 0;
 };
 
-/// Over the middles of all faces that stay away from apex and rim, where a map that is linear within each face errs most.
+/// Over the middles of all faces that stay away from apex and rim, where a map that is linear within each face errs
+/// most.
 MapError cone_error(const Cone& cone, double edge_mm, int sheet_rings, SheetProjectionMethod method) {
   ThermoformPrintOptions options;
   options.projection = method;
@@ -32,7 +33,9 @@ MapError cone_error(const Cone& cone, double edge_mm, int sheet_rings, SheetProj
     for (int k = 0; k < 3; ++k) {
       middle += surface.mesh.V.row(surface.mesh.F(f, k)).transpose() / 3;
       landed += projected.sheet_mm.row(surface.mesh.F(f, k)).transpose() / 3;
-      longest = std::max(longest, (surface.mesh.V.row(surface.mesh.F(f, k)) - surface.mesh.V.row(surface.mesh.F(f, (k + 1) % 3))).norm());
+      longest = std::max(
+          longest,
+          (surface.mesh.V.row(surface.mesh.F(f, k)) - surface.mesh.V.row(surface.mesh.F(f, (k + 1) % 3))).norm());
     }
     const double u = middle.head<2>().norm() / cone.radius_mm;
     if (u < 0.15 || u > 0.9) continue;
@@ -61,12 +64,14 @@ TEST(PrintMap, ErrsWithTheSquareOfTheMapsTriangles) {
   const double coarse = cone_error(Cone{}, 16, 200, SheetProjectionMethod::nearest).mean;
   const double middle = cone_error(Cone{}, 8, 200, SheetProjectionMethod::nearest).mean;
   const double fine = cone_error(Cone{}, 4, 200, SheetProjectionMethod::nearest).mean;
-  for (const auto& [name, error] : {std::pair{"mean_um_16", coarse}, {"mean_um_8", middle}, {"mean_um_4", fine}}) RecordProperty(name, static_cast<int>(1000 * error));
+  for (const auto& [name, error] : {std::pair{"mean_um_16", coarse}, {"mean_um_8", middle}, {"mean_um_4", fine}})
+    RecordProperty(name, static_cast<int>(1000 * error));
   EXPECT_GT(std::log2(coarse / middle), 1.5) << coarse << " " << middle;
   EXPECT_GT(std::log2(middle / fine), 1.5) << middle << " " << fine;
 }
 
-/// Two walls of 20 mm that meet at a right angle along y, and a sheet that spans the corner with a gap of `gap` on each.
+/// Two walls of 20 mm that meet at a right angle along y, and a sheet that spans the corner with a gap of `gap` on
+/// each.
 struct Corner {
   TriangleMesh model;
   FormedSheet sheet;
@@ -107,14 +112,16 @@ double claimed_twice(SheetProjectionMethod method, double gap) {
   for (Eigen::Index i = 0; i < surface.mesh.V.rows(); ++i) {
     const Vec3 p = surface.mesh.V.row(i);
     if (projected.vertex[static_cast<std::size_t>(i)] != Coverage::coloured || std::abs(p.y()) > 15) continue;
-    if (p.x() > 1e-6 && std::abs(p.z() - 5) < 1e-6) lowest_of_floor = std::min(lowest_of_floor, projected.sheet_mm(i, 0));
+    if (p.x() > 1e-6 && std::abs(p.z() - 5) < 1e-6)
+      lowest_of_floor = std::min(lowest_of_floor, projected.sheet_mm(i, 0));
     if (p.x() < 1e-6 && p.z() > 5 + 1e-6) highest_of_wall = std::max(highest_of_wall, projected.sheet_mm(i, 0));
   }
   return std::max(0.0, highest_of_wall - lowest_of_floor) / (2 * gap);
 }
 
 TEST(PrintMap, NearestPointsShareASpannedCornerWhereRaysClaimItTwice) {
-  const double nearest = claimed_twice(SheetProjectionMethod::nearest, 1), rays = claimed_twice(SheetProjectionMethod::along_normal, 1);
+  const double nearest = claimed_twice(SheetProjectionMethod::nearest, 1),
+               rays = claimed_twice(SheetProjectionMethod::along_normal, 1);
   RecordProperty("twice_nearest_percent", static_cast<int>(100 * nearest));
   RecordProperty("twice_rays_percent", static_cast<int>(100 * rays));
   EXPECT_LT(nearest, 0.01);
@@ -123,7 +130,8 @@ TEST(PrintMap, NearestPointsShareASpannedCornerWhereRaysClaimItTwice) {
 
 TEST(PrintMap, SaysWhyAPointHasNoPlace) {
   // A table of 40 x 40 at height 20 on a leg: the sheet lies on the table only. Beside it a plate beyond the opening.
-  TriangleMesh table = test::grid_mesh(20, 20, 20, 20), under = table, step = test::grid_mesh(5, 5, 4, 4), beyond = step;
+  TriangleMesh table = test::grid_mesh(20, 20, 20, 20), under = table, step = test::grid_mesh(5, 5, 4, 4),
+               beyond = step;
   table.V.col(2).array() = 20;
   under.V.col(2).array() = 18;
   under.F.col(1).swap(under.F.col(2));
@@ -156,7 +164,11 @@ TEST(PrintMap, SaysWhyAPointHasNoPlace) {
   std::array<int, coverage_kinds> expected{}, agreed{};
   for (Eigen::Index f = 0; f < surface.mesh.F.rows(); ++f) {
     const Vec3 p = surface.mesh.V.row(surface.mesh.F(f, 0));
-    const Coverage should = p.z() < 0 ? Coverage::below_plate : p.x() > 60 ? Coverage::outside : p.x() > 25 ? Coverage::not_touched : p.z() < 19 ? Coverage::hidden : Coverage::coloured;
+    const Coverage should = p.z() < 0    ? Coverage::below_plate
+                            : p.x() > 60 ? Coverage::outside
+                            : p.x() > 25 ? Coverage::not_touched
+                            : p.z() < 19 ? Coverage::hidden
+                                         : Coverage::coloured;
     ++expected[static_cast<std::size_t>(should)];
     agreed[static_cast<std::size_t>(should)] += projected.face[static_cast<std::size_t>(f)] == should;
   }
@@ -181,7 +193,8 @@ TEST(PrintMap, TheUndersideHasNoSayAlongTheFoot) {
   Context context;
   const RefinedSurface surface = refine_above_plate(model, 3, 1'000'000, context);
   const ProjectedSurface projected = project_onto_sheet(surface, cone.sheet(60, 64), {}, context);
-  for (std::size_t f = 0; f < projected.face.size(); ++f) EXPECT_EQ(projected.face[f], surface.below_plate[f] ? Coverage::below_plate : Coverage::coloured);
+  for (std::size_t f = 0; f < projected.face.size(); ++f)
+    EXPECT_EQ(projected.face[f], surface.below_plate[f] ? Coverage::below_plate : Coverage::coloured);
 }
 
 TEST(PrintMap, DoesNotPaintAcrossAFold) {
@@ -210,7 +223,9 @@ TEST(PrintMap, DoesNotPaintAcrossAFold) {
   for (Eigen::Index f = 0; f < surface.mesh.F.rows(); ++f) {
     double longest = 0, middle = 0;
     for (int k = 0; k < 3; ++k) {
-      longest = std::max(longest, (projected.sheet_mm.row(surface.mesh.F(f, k)) - projected.sheet_mm.row(surface.mesh.F(f, (k + 1) % 3))).norm());
+      longest = std::max(longest, (projected.sheet_mm.row(surface.mesh.F(f, k)) -
+                                   projected.sheet_mm.row(surface.mesh.F(f, (k + 1) % 3)))
+                                      .norm());
       middle += surface.mesh.V(surface.mesh.F(f, k), 0) / 3;
     }
     const bool coloured = projected.face[static_cast<std::size_t>(f)] == Coverage::coloured;
@@ -239,7 +254,8 @@ TEST(PrintMap, DividesWithoutCracksAndKeepsArea) {
       else EXPECT_GE(p.z(), 0);
       const Eigen::Vector2d w = surface.place[static_cast<std::size_t>(f)][static_cast<std::size_t>(k)].cast<double>();
       const int old = surface.face_of[static_cast<std::size_t>(f)];
-      const Vec3 again = (1 - w.sum()) * mesh.V.row(mesh.F(old, 0)) + w.x() * mesh.V.row(mesh.F(old, 1)) + w.y() * mesh.V.row(mesh.F(old, 2));
+      const Vec3 again = (1 - w.sum()) * mesh.V.row(mesh.F(old, 0)) + w.x() * mesh.V.row(mesh.F(old, 1)) +
+                         w.y() * mesh.V.row(mesh.F(old, 2));
       EXPECT_NEAR((again - p).norm(), 0, 1e-4);
     }
   // No room: it stays coarse, and says how coarse.

@@ -31,7 +31,8 @@ TEST(Print, DotsOnAConeLandWhereTheClosedFormSays) {
   Image picture = white(3000);
   std::vector<Vec2> dots;
   for (int ring = 0; ring < 5; ++ring)
-    for (int k = 0; k < 12; ++k) dots.push_back(Vec2(std::cos(0.5 * k + ring), std::sin(0.5 * k + ring)) * (14 + 9.5 * ring));
+    for (int k = 0; k < 12; ++k)
+      dots.push_back(Vec2(std::cos(0.5 * k + ring), std::sin(0.5 * k + ring)) * (14 + 9.5 * ring));
   const auto texels = static_cast<double>(picture.width) / (2 * half_mm);
   for (const Vec2& dot : dots) {
     const Vec2 centre((dot.x() + half_mm) * texels, (half_mm - dot.y()) * texels);
@@ -83,17 +84,23 @@ TEST(Print, CarriedBackOntoTheSheetItIsTheModelAgain) {
     if (print.projected.face[f] != Coverage::coloured) continue;
     Vec2 at = Vec2::Zero(), uv = Vec2::Zero();
     for (std::size_t k = 0; k < 3; ++k) {
-      at += print.projected.sheet_mm.row(print.surface.mesh.F(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k))).transpose() / 3;
+      at +=
+          print.projected.sheet_mm.row(print.surface.mesh.F(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k)))
+              .transpose() /
+          3;
       const Eigen::Vector2d w = print.surface.place[f][k].cast<double>();
       const auto corner = [&](int c) -> Vec2 { return model.UV.row(model.FT(print.surface.face_of[f], c)); };
       uv += ((1 - w.sum()) * corner(0) + w.x() * corner(1) + w.y() * corner(2)) / 3;
     }
-    const Light own = picture.sample(Vec2(uv.x(), 1 - uv.y()), picture.footprint(Eigen::Matrix2d::Identity() * (100.0 / print.grid.per_metre * picture.width() / 10)));
+    const Light own = picture.sample(
+        Vec2(uv.x(), 1 - uv.y()),
+        picture.footprint(Eigen::Matrix2d::Identity() * (100.0 / print.grid.per_metre * picture.width() / 10)));
     const auto differ = [&](const Vec2& place) {
       const Vec2 pixel = print.grid.pixel(place);
       const Rgba& printed = print.picture.at(static_cast<int>(pixel.x()), static_cast<int>(pixel.y()));
       double sum = 0;
-      for (std::size_t k = 0; k < 3; ++k) sum += std::abs(printed[k] - byte_of_light()[static_cast<std::size_t>(own[k])]) / 3.0;
+      for (std::size_t k = 0; k < 3; ++k)
+        sum += std::abs(printed[k] - byte_of_light()[static_cast<std::size_t>(own[k])]) / 3.0;
       return sum;
     };
     error += differ(at);
@@ -102,7 +109,7 @@ TEST(Print, CarriedBackOntoTheSheetItIsTheModelAgain) {
   }
   ASSERT_GT(count, 1000);
   RecordProperty("mean_levels", static_cast<int>(100 * error / count));
-  EXPECT_LT(error / count, 4);                         // of 255: a pixel's worth of texture
+  EXPECT_LT(error / count, 4);                            // of 255: a pixel's worth of texture
   EXPECT_GT(error_shifted / count, 1.3 * error / count);  // half a mm off would show
 }
 
@@ -156,10 +163,13 @@ TEST(Print, TheFormedSheetWearsThePrint) {
     const Vec3 a = worn.mesh.V.row(worn.mesh.F(f, 0)), machine = sheet.mesh.V.row(sheet.mesh.F(f, 0));
     EXPECT_NEAR((a - Vec3(machine.x(), machine.z(), -machine.y())).norm(), 0, 1e-3);
     const Vec2 uv = worn.UV.row(worn.FT(f, 0));
-    const Vec2 texel(uv.x() * texture.width, (1 - uv.y()) * texture.height), pixel = print.grid.pixel(sheet.sheet_mm.row(sheet.mesh.F(f, 0)));
+    const Vec2 texel(uv.x() * texture.width, (1 - uv.y()) * texture.height),
+        pixel = print.grid.pixel(sheet.sheet_mm.row(sheet.mesh.F(f, 0)));
     EXPECT_NEAR((texel * std::ceil(scale) - pixel).norm(), 0, 0.01);
-    const int x = std::clamp(static_cast<int>(texel.x()), 0, texture.width - 1), y = std::clamp(static_cast<int>(texel.y()), 0, texture.height - 1);
-    const Rgba own = print.picture.at(std::clamp(static_cast<int>(pixel.x()), 0, print.grid.width - 1), std::clamp(static_cast<int>(pixel.y()), 0, print.grid.height - 1));
+    const int x = std::clamp(static_cast<int>(texel.x()), 0, texture.width - 1),
+              y = std::clamp(static_cast<int>(texel.y()), 0, texture.height - 1);
+    const Rgba own = print.picture.at(std::clamp(static_cast<int>(pixel.x()), 0, print.grid.width - 1),
+                                      std::clamp(static_cast<int>(pixel.y()), 0, print.grid.height - 1));
     ++compared;
     agreed += std::abs(texture.at(x, y)[0] - own[0]) < 20;
   }
@@ -246,7 +256,9 @@ TEST(Print, TilesCoverTheSheetOnceAndOverlapAsAsked) {
         EXPECT_LE(upper.x(), layout.width_mm - margin);
         EXPECT_LE(upper.y(), layout.height_mm - margin);
         const double from_x = column == 0 ? -half.x() : layout.tiles[i - 1].upper_mm.x() - options.overlap_mm;
-        const double from_y = row == 0 ? half.y() : layout.tiles[i - static_cast<std::size_t>(layout.columns)].lower_mm.y() + options.overlap_mm;
+        const double from_y =
+            row == 0 ? half.y()
+                     : layout.tiles[i - static_cast<std::size_t>(layout.columns)].lower_mm.y() + options.overlap_mm;
         EXPECT_NEAR(tile.lower_mm.x(), from_x, 1e-9);
         EXPECT_NEAR(tile.upper_mm.y(), from_y, 1e-9);
         const bool last_column = column + 1 == layout.columns, last_row = row + 1 == layout.rows;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// print_tool FOLDER PAPER MIRROR(0|1): writes print.png, print.pdf, picture.png (without marks, as printed) and formed.glb of
-// a made-up print, and on standard output what another program must find in them.
+// print_tool FOLDER PAPER MIRROR(0|1): writes print.png, print.pdf, picture.png (without marks, as printed) and
+// formed.glb of a made-up print, and on standard output what another program must find in them.
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
@@ -45,11 +45,20 @@ int main(int argc, char** argv) {
   Json tiles = Json::array(), marks = Json::array();
   for (const Tile& tile : layout.tiles) {
     const Vec2 origin = layout.origin_mm(tile);
-    tiles.push_back({{"name", tile.name}, {"lower_mm", {tile.lower_mm.x(), tile.lower_mm.y()}}, {"upper_mm", {tile.upper_mm.x(), tile.upper_mm.y()}}, {"origin_mm", {origin.x(), origin.y()}}});
+    tiles.push_back({{"name", tile.name},
+                     {"lower_mm", {tile.lower_mm.x(), tile.lower_mm.y()}},
+                     {"upper_mm", {tile.upper_mm.x(), tile.upper_mm.y()}},
+                     {"origin_mm", {origin.x(), origin.y()}}});
   }
-  for (const RegistrationMark& mark : registration_marks(options)) marks.push_back({{"name", mark.name}, {"place_mm", {mark.place_mm.x(), mark.place_mm.y()}}});
-  std::cout << Json({{"pixels", {print.grid.width, print.grid.height}}, {"per_metre", print.grid.per_metre}, {"sheet_mm", {options.sheet_x_mm, options.sheet_y_mm}},
-                     {"page_mm", {layout.width_mm, layout.height_mm}}, {"tiles", tiles}, {"marks", marks}, {"mirrored", options.mirror}})
+  for (const RegistrationMark& mark : registration_marks(options))
+    marks.push_back({{"name", mark.name}, {"place_mm", {mark.place_mm.x(), mark.place_mm.y()}}});
+  std::cout << Json({{"pixels", {print.grid.width, print.grid.height}},
+                     {"per_metre", print.grid.per_metre},
+                     {"sheet_mm", {options.sheet_x_mm, options.sheet_y_mm}},
+                     {"page_mm", {layout.width_mm, layout.height_mm}},
+                     {"tiles", tiles},
+                     {"marks", marks},
+                     {"mirrored", options.mirror}})
             << "\n";
   return 0;
 }

@@ -16,7 +16,8 @@ bool within(const Polygon& polygon, const Vec2& p) {
   bool in = false;
   for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
     const Vec2 &a = polygon[i], &b = polygon[j];
-    if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x()) in = !in;
+    if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x())
+      in = !in;
   }
   return in;
 }
@@ -68,7 +69,8 @@ TEST(ClosureMarks, NumbersPairUpAtTheSamePlacesOfTheCut) {
         }
       }
     for (const ClosureMarker& marker : plan.closures.markers)
-      for (const char* side : {"-hook", "-loop"}) EXPECT_EQ(names["closure-1-" + std::to_string(marker.number) + side], 1);
+      for (const char* side : {"-hook", "-loop"})
+        EXPECT_EQ(names["closure-1-" + std::to_string(marker.number) + side], 1);
   }
 }
 
@@ -84,7 +86,8 @@ TEST(ClosureMarks, TheLowerSideIsDeeperByTheTape) {
       double nearest = 1e300;
       for (int v = flap.from_vertex; v != flap.to_vertex; v = design.next(v)) {
         const Vec2 a = plan.ribbon.flat_mm[v], way = plan.ribbon.flat_mm[design.next(v)] - a;
-        nearest = std::min(nearest, (corner - a - std::clamp((corner - a).dot(way) / way.squaredNorm(), 0.0, 1.0) * way).norm());
+        nearest = std::min(nearest,
+                           (corner - a - std::clamp((corner - a).dot(way) / way.squaredNorm(), 0.0, 1.0) * way).norm());
       }
       EXPECT_LE(nearest, 2 * 16 + 1e-9);  // at a bend, where the moved edges meet
     }
@@ -96,20 +99,24 @@ TEST(ClosureMarks, TheLowerSideIsDeeperByTheTape) {
       for (const ClosureStretch& stretch : plan.closures.stretches)
         if (stretch.side == ClosureSide::hook && stretch.piece == edge.piece)
           for (std::size_t k = 0; k + 1 < stretch.vertices.size(); ++k) {
-            const Vec2 a = plan.ribbon.flat_mm[stretch.vertices[k]], way = plan.ribbon.flat_mm[stretch.vertices[k + 1]] - a;
-            nearest = std::min(nearest, (p - a - std::clamp((p - a).dot(way) / way.squaredNorm(), 0.0, 1.0) * way).norm());
+            const Vec2 a = plan.ribbon.flat_mm[stretch.vertices[k]],
+                       way = plan.ribbon.flat_mm[stretch.vertices[k + 1]] - a;
+            nearest =
+                std::min(nearest, (p - a - std::clamp((p - a).dot(way) / way.squaredNorm(), 0.0, 1.0) * way).norm());
           }
       EXPECT_GE(nearest, 0.98 * 16);
       EXPECT_LE(nearest, 1.25 * 16);  // at a bend, where the moved edges meet
     }
   // Pieces grow by their allowances, and stay simple enough to be cut: area of outline and of what it is made of agree.
   double outlines = 0, flaps = 0;
-  for (const PlanPiece& piece : plan.pieces.pieces) outlines += signed_area_mm2(piece.outline_mm) - piece.ribbon_area_mm2;
+  for (const PlanPiece& piece : plan.pieces.pieces)
+    outlines += signed_area_mm2(piece.outline_mm) - piece.ribbon_area_mm2;
   for (const EdgeFlap& flap : plan.closures.flaps)
     for (const auto& t : flap.triangles) flaps += std::abs(signed_area_mm2({t[0], t[1], t[2]}));
   double allowances = 0;
   for (const RibbonSplit& split : plan.splitting.splits)
-    allowances += 2 * options.seam_allowance_mm * (plan.ribbon.flat_mm[split.from] - plan.ribbon.flat_mm[split.to]).norm();
+    allowances +=
+        2 * options.seam_allowance_mm * (plan.ribbon.flat_mm[split.from] - plan.ribbon.flat_mm[split.to]).norm();
   EXPECT_GT(flaps, 0.5 * 16 * design.closures[0].length_mm);
   EXPECT_GE(outlines, flaps - 1e-6);
   EXPECT_LE(outlines, flaps + allowances);

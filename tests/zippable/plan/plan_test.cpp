@@ -32,7 +32,8 @@ TEST(Markers, IntervalsSumUpToTheSides) {
   const OffsetRibbon ribbon = offset_ribbon(design, ZipperOffset::gluing, 2.9);
   const Markers markers = place_markers(design, ribbon, 30);
   MarkerInterval sum;
-  for (const MarkerInterval& i : markers.intervals) sum.zipper_mm += i.zipper_mm, sum.left_mm += i.left_mm, sum.right_mm += i.right_mm;
+  for (const MarkerInterval& i : markers.intervals)
+    sum.zipper_mm += i.zipper_mm, sum.left_mm += i.left_mm, sum.right_mm += i.right_mm;
   EXPECT_NEAR(sum.zipper_mm, design.zipper_mm, 1e-8);
   EXPECT_NEAR(sum.left_mm, ribbon.left_mm, 1e-8);
   EXPECT_NEAR(sum.right_mm, ribbon.right_mm, 1e-8);
@@ -73,7 +74,8 @@ TEST(Plan, EverythingIsThereOnceAndInsideItsSheet) {
           }
         }
       for (const Marker& marker : plan.markers.markers)
-        for (const char* side : {"-left", "-right"}) EXPECT_EQ(names.count("marker-" + std::to_string(marker.number) + side), 1u);
+        for (const char* side : {"-left", "-right"})
+          EXPECT_EQ(names.count("marker-" + std::to_string(marker.number) + side), 1u);
       for (std::size_t s = 0; s < plan.splitting.splits.size(); ++s) {
         const auto from = names.lower_bound("split-" + split_letters(static_cast<int>(s)) + "-"),
                    to = names.lower_bound("split-" + split_letters(static_cast<int>(s)) + ".");
@@ -136,8 +138,10 @@ TEST(FlatDesign, WrongFilesAreRefusedByName) {
     }
     return "accepted";
   };
-  for (const char* text : {"", "[]", "{}", R"({"format":"formwright zippable design","version":1})",
-                           R"({"format":"formwright zippable design","version":1,"pieces":[],"ribbon":{"boundary":[1,2,3],"triangles":[]}})"})
+  for (
+      const char* text :
+      {"", "[]", "{}", R"({"format":"formwright zippable design","version":1})",
+       R"({"format":"formwright zippable design","version":1,"pieces":[],"ribbon":{"boundary":[1,2,3],"triangles":[]}})"})
     EXPECT_NE(message(text).find("design.json"), std::string::npos) << text;
 }
 

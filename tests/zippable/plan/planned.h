@@ -14,12 +14,14 @@ inline FlatDesign designed(std::string_view sample, double width_mm, double size
   ZippableOptions options;
   options.width_mm = width_mm;
   options.size_mm = size_mm;
-  const ParameterisedModel model = parameterise_model(make_sample(sample, vertices, context).mesh, {}, options, context);
+  const ParameterisedModel model =
+      parameterise_model(make_sample(sample, vertices, context).mesh, {}, options, context);
   const ZippableDesign design = design_zippable(model, options, context);
   return read_flat_design(write_design_json(model, design));
 }
 
-/// A flat strip in the plane z = 0 along x, whose left zipper side is its lower edge; sides of the same zipper that do not meet in space.
+/// A flat strip in the plane z = 0 along x, whose left zipper side is its lower edge; sides of the same zipper that do
+/// not meet in space.
 inline FlatDesign strip(double length_mm, double width_mm, int samples) {
   FlatDesign design;
   design.pieces.emplace_back();

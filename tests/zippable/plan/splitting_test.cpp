@@ -29,7 +29,8 @@ std::vector<Vec2> bent(const FlatDesign& strip, double radius, double width, dou
   const double length = strip.zipper_mm;
   for (const FlatVertex& v : strip.boundary) {
     // Counter-clockwise with the inner side to the left: the lower edge is outside.
-    const double angle = 2 * std::numbers::pi * turns * v.flat_mm.x() / length, r = radius - v.flat_mm.y() / width * width;
+    const double angle = 2 * std::numbers::pi * turns * v.flat_mm.x() / length,
+                 r = radius - v.flat_mm.y() / width * width;
     flat.emplace_back(r * std::cos(angle), r * std::sin(angle));
   }
   return flat;
@@ -57,7 +58,9 @@ TEST(Splitting, ARingOverItselfIsCutOnceATurn) {
 TEST(Splitting, NarrowerThanASingleTriangleIsRefused) {
   const FlatDesign strip = test::strip(100, 20, 21);
   Context context;
-  EXPECT_THROW(split_ribbon(strip.F, flat_of(strip), [](const Polygon&) { return false; }, 0.5, 0, context), Error);
+  EXPECT_THROW(split_ribbon(
+                   strip.F, flat_of(strip), [](const Polygon&) { return false; }, 0.5, 0, context),
+               Error);
 }
 
 TEST(Splitting, PiecesOfSamplesNeitherOverlapNorLoseTriangles) {
@@ -67,12 +70,16 @@ TEST(Splitting, PiecesOfSamplesNeitherOverlapNorLoseTriangles) {
     const std::vector<Vec2> flat = flat_of(design);
     const Splitting splitting = split_ribbon(design.F, flat, any_size, 0.5, 0, context);
     EXPECT_EQ(static_cast<int>(splitting.splits.size()), splitting.piece_count - 1);
-    EXPECT_EQ(std::set<int>(splitting.piece_of_face.begin(), splitting.piece_of_face.end()).size(), std::size_t(splitting.piece_count));
-    const auto corners = [&](Eigen::Index f) { return std::array<Vec2, 3>{flat[design.F(f, 0)], flat[design.F(f, 1)], flat[design.F(f, 2)]}; };
+    EXPECT_EQ(std::set<int>(splitting.piece_of_face.begin(), splitting.piece_of_face.end()).size(),
+              std::size_t(splitting.piece_count));
+    const auto corners = [&](Eigen::Index f) {
+      return std::array<Vec2, 3>{flat[design.F(f, 0)], flat[design.F(f, 1)], flat[design.F(f, 2)]};
+    };
     int overlaps = 0;
     for (Eigen::Index f = 0; f < design.F.rows(); ++f)
       for (Eigen::Index g = 0; g < f; ++g)
-        if (splitting.piece_of_face[f] == splitting.piece_of_face[g]) overlaps += triangles_overlap(corners(f), corners(g), 1e-6);
+        if (splitting.piece_of_face[f] == splitting.piece_of_face[g])
+          overlaps += triangles_overlap(corners(f), corners(g), 1e-6);
     EXPECT_EQ(overlaps, 0) << sample;
   }
 }
@@ -86,10 +93,12 @@ TEST(Splitting, CrumbsGrowAtTheirNeighboursCost) {
   const auto smallest = [&](const Splitting& splitting) {
     std::vector<double> area(std::size_t(splitting.piece_count), 0.0);
     for (Eigen::Index f = 0; f < strip.F.rows(); ++f)
-      area[splitting.piece_of_face[f]] += signed_area_mm2({flat[strip.F(f, 0)], flat[strip.F(f, 1)], flat[strip.F(f, 2)]});
+      area[splitting.piece_of_face[f]] +=
+          signed_area_mm2({flat[strip.F(f, 0)], flat[strip.F(f, 1)], flat[strip.F(f, 2)]});
     return *std::min_element(area.begin(), area.end());
   };
-  const Splitting with_crumb = split_ribbon(strip.F, flat, any_size, 0.5, 0, context), swept = split_ribbon(strip.F, flat, any_size, 0.5, least_mm2, context);
+  const Splitting with_crumb = split_ribbon(strip.F, flat, any_size, 0.5, 0, context),
+                  swept = split_ribbon(strip.F, flat, any_size, 0.5, least_mm2, context);
   EXPECT_LT(smallest(with_crumb), least_mm2);
   EXPECT_GE(smallest(swept), least_mm2);
   EXPECT_EQ(swept.piece_count, with_crumb.piece_count);

@@ -31,15 +31,17 @@ Curve sampled(int count, const std::function<Vec3(double)>& point, const std::fu
 
 Curve helix(int count, double radius, double rise, double turns) {
   const auto angle = [=](double t) { return 2 * std::numbers::pi * turns * t; };
-  return sampled(count, [=](double t) { return Vec3(radius * std::cos(angle(t)), radius * std::sin(angle(t)), rise * turns * t); },
-                 [=](double t) { return Vec3(std::cos(angle(t)), std::sin(angle(t)), 0); });
+  return sampled(
+      count, [=](double t) { return Vec3(radius * std::cos(angle(t)), radius * std::sin(angle(t)), rise * turns * t); },
+      [=](double t) { return Vec3(std::cos(angle(t)), std::sin(angle(t)), 0); });
 }
 
 Curve spiral_on_cone(int count) {
   const auto radius = [](double t) { return 40 - 25 * t; };
   const auto angle = [](double t) { return 8 * std::numbers::pi * t; };
-  return sampled(count, [=](double t) { return Vec3(radius(t) * std::cos(angle(t)), radius(t) * std::sin(angle(t)), 100 * t); },
-                 [=](double t) { return Vec3(std::cos(angle(t)), std::sin(angle(t)), 0.25); });
+  return sampled(
+      count, [=](double t) { return Vec3(radius(t) * std::cos(angle(t)), radius(t) * std::sin(angle(t)), 100 * t); },
+      [=](double t) { return Vec3(std::cos(angle(t)), std::sin(angle(t)), 0.25); });
 }
 
 double moved_length(const Curve& curve, const BinormalField& field, double distance) {
@@ -52,7 +54,8 @@ double moved_length(const Curve& curve, const BinormalField& field, double dista
 TEST(Binormals, OfAHelixAreItsOwnAndLengthsTendToTheFormula) {
   // Speed of the offset: sqrt(1 + (w torsion)^2), torsion = c / (r^2 + c^2) with c the rise by radian (Appendix C).
   const double radius = 30, rise = 60, turns = 3, w = 4, c = rise / (2 * std::numbers::pi);
-  const double exact = 2 * std::numbers::pi * turns * std::hypot(radius, c) * std::hypot(1.0, w * c / (radius * radius + c * c));
+  const double exact =
+      2 * std::numbers::pi * turns * std::hypot(radius, c) * std::hypot(1.0, w * c / (radius * radius + c * c));
   const auto error = [&](int count) {
     const Curve curve = helix(count, radius, rise, turns);
     const BinormalField field = binormals(curve.points, curve.left, 0);
@@ -89,7 +92,8 @@ TEST(Binormals, TheyTendToThoseOfTheCurveWithSampling) {
     return Vec3(r * std::cos(a), r * std::sin(a), 100 * t);
   };
   const double h = 1e-4;
-  const Vec3 first = (point(0.5 + h) - point(0.5 - h)) / (2 * h), second = (point(0.5 + h) - 2 * point(0.5) + point(0.5 - h)) / (h * h);
+  const Vec3 first = (point(0.5 + h) - point(0.5 - h)) / (2 * h),
+             second = (point(0.5 + h) - 2 * point(0.5) + point(0.5 - h)) / (h * h);
   const Vec3 exact = first.cross(second).normalized();
   const auto error = [&](int count) {
     const Curve curve = spiral_on_cone(count);

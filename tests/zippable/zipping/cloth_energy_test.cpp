@@ -17,14 +17,13 @@ TriangleMesh equilateral_patch(int columns, int rows, double edge_mm) {
   std::vector<Vec3> points;
   std::vector<std::array<int, 3>> faces;
   for (int j = 0; j <= rows; ++j)
-    for (int i = 0; i <= columns; ++i) points.emplace_back(edge_mm * (i + 0.5 * (j % 2)), edge_mm * std::sqrt(0.75) * j, 0.0);
+    for (int i = 0; i <= columns; ++i)
+      points.emplace_back(edge_mm * (i + 0.5 * (j % 2)), edge_mm * std::sqrt(0.75) * j, 0.0);
   for (int j = 0; j < rows; ++j)
     for (int i = 0; i < columns; ++i) {
       const int a = j * (columns + 1) + i, b = a + 1, c = a + columns + 1, d = c + 1;
-      if (j % 2 == 0)
-        faces.push_back({a, b, c}), faces.push_back({b, d, c});
-      else
-        faces.push_back({a, b, d}), faces.push_back({a, d, c});
+      if (j % 2 == 0) faces.push_back({a, b, c}), faces.push_back({b, d, c});
+      else faces.push_back({a, b, d}), faces.push_back({a, d, c});
     }
   return test::make_mesh(points, faces);
 }
@@ -58,7 +57,8 @@ TEST(ClothEnergy, OfBendingTendsToThePlatesOnACylinder) {
     const TriangleMesh flat = equilateral_patch(n, n, 20.0 / n);
     const Positions& u = flat.V;
     Positions x = u;
-    for (Eigen::Index i = 0; i < x.rows(); ++i) x.row(i) << radius * std::sin(u(i, 0) / radius), u(i, 1), radius * std::cos(u(i, 0) / radius);
+    for (Eigen::Index i = 0; i < x.rows(); ++i)
+      x.row(i) << radius * std::sin(u(i, 0) / radius), u(i, 1), radius * std::cos(u(i, 0) / radius);
     // Only hinges count: the outermost half triangles have fewer, which is a share of 1 / n.
     const auto hinges = cloth_hinges(flat, bending);
     double area = 0;
@@ -110,8 +110,10 @@ TEST(SeamThread, PullsOnlyWhereItIsTight) {
     const Vec3 gradient = thread_gradient_n({3, length}, d, &hessian);
     for (int k = 0; k < 3; ++k) {
       const Vec3 h = 1e-5 * Vec3::Unit(k);
-      EXPECT_NEAR(gradient[k], (thread_energy_mj({3, length}, d + h) - thread_energy_mj({3, length}, d - h)) / 2e-5, 1e-8);
-      const Vec3 change = (thread_gradient_n({3, length}, d + h, nullptr) - thread_gradient_n({3, length}, d - h, nullptr)) / 2e-5;
+      EXPECT_NEAR(gradient[k], (thread_energy_mj({3, length}, d + h) - thread_energy_mj({3, length}, d - h)) / 2e-5,
+                  1e-8);
+      const Vec3 change =
+          (thread_gradient_n({3, length}, d + h, nullptr) - thread_gradient_n({3, length}, d - h, nullptr)) / 2e-5;
       EXPECT_LT((hessian.col(k) - change).norm(), 1e-8);
     }
   }
@@ -120,7 +122,8 @@ TEST(SeamThread, PullsOnlyWhereItIsTight) {
 TEST(Pressure, DoesTheWorkOfTheVolume) {
   const TriangleMesh ball = test::tetrahedron();
   const double pressure = 0.7;
-  const Positions force = pressure_force_n(ball.F, ball.V, std::vector<char>(static_cast<std::size_t>(ball.face_count()), 1), pressure);
+  const Positions force =
+      pressure_force_n(ball.F, ball.V, std::vector<char>(static_cast<std::size_t>(ball.face_count()), 1), pressure);
   EXPECT_LT(force.colwise().sum().norm(), 1e-12);
   const auto volume = [&](const Positions& x) {
     double six = 0;
@@ -131,7 +134,8 @@ TEST(Pressure, DoesTheWorkOfTheVolume) {
     return six / 6;
   };
   const Positions move = jostled(Positions::Zero(ball.V.rows(), 3), 1, 5);
-  EXPECT_NEAR(force.cwiseProduct(move).sum(), pressure * (volume(ball.V + 1e-5 * move) - volume(ball.V - 1e-5 * move)) / 2e-5, 1e-8);
+  EXPECT_NEAR(force.cwiseProduct(move).sum(),
+              pressure * (volume(ball.V + 1e-5 * move) - volume(ball.V - 1e-5 * move)) / 2e-5, 1e-8);
 }
 
 TEST(ZippingSystem, GradientOfAllAgreesWithDifferences) {

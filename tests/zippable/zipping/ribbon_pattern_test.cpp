@@ -38,7 +38,8 @@ TEST(RibbonPattern, PairsOfACutHandleMeetWhereTheyAreDesigned) {
   ASSERT_EQ(design.closures.size(), 1u);
   std::size_t count = 0;
   for (const double edge_mm : {0.0, 2.5, 1.2}) {
-    const RibbonPattern pattern = make_ribbon_pattern(design.places, design.triangles, edge_mm, context, design.closures);
+    const RibbonPattern pattern =
+        make_ribbon_pattern(design.places, design.triangles, edge_mm, context, design.closures);
     EXPECT_GT(pattern.closures.size(), count);
     count = pattern.closures.size();
     EXPECT_LT(largest_gap(pattern, design.closures[0].length_mm), 1e-6);

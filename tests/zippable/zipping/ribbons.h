@@ -33,7 +33,9 @@ RibbonDesign helix_ribbon(const HelixShape& shape, const Flat& flat, const Space
   for (int i = 0; i <= columns; ++i) {
     const double x = column_mm * i;
     if (i < columns) upper.push_back(i <= zipper ? add(x, rise_mm * i, i, true) : add(x, shape.height_mm, -1, true));
-    if (i > 0) lower.push_back(i >= shape.around ? add(x, rise_mm * (i - shape.around), i - shape.around - shape.shift, false) : add(x, 0, -1, true));
+    if (i > 0)
+      lower.push_back(i >= shape.around ? add(x, rise_mm * (i - shape.around), i - shape.around - shape.shift, false)
+                                        : add(x, 0, -1, true));
   }
   lower.insert(lower.begin(), upper.front());  // the strip begins and ends in a point
   upper.push_back(lower.back());
@@ -43,7 +45,8 @@ RibbonDesign helix_ribbon(const HelixShape& shape, const Flat& flat, const Space
     if (i + 2 < upper.size()) faces.push_back({upper[i], lower[i + 1], upper[i + 1]});
   }
   design.triangles.resize(static_cast<Eigen::Index>(faces.size()), 3);
-  for (std::size_t f = 0; f < faces.size(); ++f) design.triangles.row(static_cast<Eigen::Index>(f)) << faces[f][0], faces[f][1], faces[f][2];
+  for (std::size_t f = 0; f < faces.size(); ++f)
+    design.triangles.row(static_cast<Eigen::Index>(f)) << faces[f][0], faces[f][1], faces[f][2];
   return design;
 }
 

@@ -45,7 +45,8 @@ TEST(Zipping, OfAHelixRibbonIsTheCylinderAndTendsToItWithTheSquareOfItsColumns) 
     double radius = 0;
     int count = 0;
     for (Eigen::Index i = 0; i < result.zipped_mm.rows(); ++i)
-      if (result.zipped_mm(i, 2) > 15 && result.zipped_mm(i, 2) < 45) radius += result.zipped_mm.row(i).head<2>().norm(), ++count;
+      if (result.zipped_mm(i, 2) > 15 && result.zipped_mm(i, 2) < 45)
+        radius += result.zipped_mm.row(i).head<2>().norm(), ++count;
     EXPECT_NEAR(radius / count, 100 / (2 * std::numbers::pi), 60.0 / (around * around));
   }
   EXPECT_LT(error[2], 0.15);
@@ -87,7 +88,8 @@ TEST(Zipping, DependsOnNothingThatItShouldNot) {
     turned.places[i].flat_mm = Eigen::Rotation2Dd(1.1) * design.places[i].flat_mm + Vec2(30, -7);
     turned.places[i].predicted_mm = turn * design.places[i].predicted_mm + Vec3(5, 6, 7);
   }
-  // Twice the size with the same stretch stiffness and four times the bending stiffness is the same shape, twice as large.
+  // Twice the size with the same stretch stiffness and four times the bending stiffness is the same shape, twice as
+  // large.
   ZippingOptions stiffer = quick();
   stiffer.bending_n_mm = 4 * *quick().bending_n_mm;
   EXPECT_LT((simulated(twice, stiffer).zipped_mm - 2 * result.zipped_mm).cwiseAbs().maxCoeff(), 1e-6);
@@ -135,7 +137,9 @@ TEST(Zipping, FramesStayInTheirPlace) {
   for (std::size_t f = 0; f + 1 < result.frames.size(); ++f) {
     const Eigen::MatrixXd here = result.frames[f].V.cast<double>(), next = result.frames[f + 1].V.cast<double>();
     // Turned on as well as can be, no place can go farther than the cloth is long.
-    EXPECT_LT((here - next).rowwise().norm().maxCoeff(), 2 * (here.colwise().maxCoeff() - here.colwise().minCoeff()).norm()) << f;
+    EXPECT_LT((here - next).rowwise().norm().maxCoeff(),
+              2 * (here.colwise().maxCoeff() - here.colwise().minCoeff()).norm())
+        << f;
     EXPECT_LT((here.colwise().mean() - next.colwise().mean()).norm(), 0.5 * result.pattern.size_mm) << f;
   }
 }
@@ -252,7 +256,9 @@ TEST(RibbonPattern, RefusesWhatIsNoRibbon) {
   for (RibbonEdgePlace& place : bad.places)
     if (place.sample == 3 && place.left) place.sample = -1;
   expect_refused(bad);
-  for (const char* text : {"", "{}", R"({"format": "formwright zippable design", "pieces": [], "ribbon": {"boundary": [1], "triangles": []}})"})
+  for (const char* text :
+       {"", "{}",
+        R"({"format": "formwright zippable design", "pieces": [], "ribbon": {"boundary": [1], "triangles": []}})"})
     EXPECT_THROW(read_flat_design(as_bytes(std::string(text))), Error);
 }
 

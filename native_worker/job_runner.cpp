@@ -88,6 +88,7 @@ Json run_one(const Json& request, Session& session, const Host& host) {
 int run_jobs_for_server() {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   std::signal(SIGINT, SIG_IGN);  // Ctrl+C in the terminal is the server's to handle
+  std::signal(SIGHUP, SIG_IGN);  // and so is its end: the job would count as failed
   std::signal(SIGTERM, SIG_DFL);
   Inbox inbox;
   std::thread([&] { inbox.read_all(); }).detach();

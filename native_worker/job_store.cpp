@@ -18,22 +18,47 @@ namespace formwright {
 namespace {
 
 constexpr double most_results_mb = 1000;
+constexpr std::chrono::minutes making_lasts{10};  // as long as a claim counts (files.h)
+
+struct KeptFile {
+  std::filesystem::file_time_type used;
+  std::filesystem::path path;
+  double mb = 0;
+};
+
+/// The longest unused first. Files alone: a folder (lost+found) has no size to speak of, nor has what vanishes
+/// meanwhile.
+std::vector<KeptFile> files_longest_unused_first(const std::filesystem::path& folder) {
+  std::vector<KeptFile> files;
+  std::error_code listed, known;
+  for (std::filesystem::directory_iterator it(folder, listed), end; !listed && it != end; it.increment(listed)) {
+    const std::uintmax_t bytes = it->file_size(known);
+    if (known) continue;
+    const auto used = it->last_write_time(known);
+    if (!known) files.push_back({used, it->path(), 1e-6 * static_cast<double>(bytes)});
+  }
+  std::sort(files.begin(), files.end(), [](const KeptFile& a, const KeptFile& b) { return a.used < b.used; });
+  return files;
+}
+
+/// What a process works at (files.h): a claim, or a file under the name it has until it is whole.
+bool in_the_making(const KeptFile& file) {
+  const std::string name = file.path.filename().string();
+  return (name.ends_with(".claim") || name.find(".part-") != std::string::npos) &&
+         std::filesystem::file_time_type::clock::now() - file.used < making_lasts;
+}
 
 /// Removes the longest unused files of `folder` that are not `needed`, until the rest is no larger than `most_mb`.
 void remove_oldest(const std::filesystem::path& folder, double most_mb, const std::set<std::string>& needed) {
-  std::error_code status;
-  std::vector<std::pair<std::filesystem::file_time_type, std::filesystem::path>> files;
+  const auto files = files_longest_unused_first(folder);
   double total_mb = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, status)) {
-    total_mb += 1e-6 * static_cast<double>(entry.file_size(status));
-    files.emplace_back(entry.last_write_time(status), entry.path());
-  }
-  std::sort(files.begin(), files.end());
-  for (const auto& [time, path] : files) {
+  for (const KeptFile& file : files) total_mb += file.mb;
+  for (const KeptFile& file : files) {
     if (total_mb <= most_mb) break;
-    if (needed.contains(path.filename().string())) continue;
-    total_mb -= 1e-6 * static_cast<double>(std::filesystem::file_size(path, status));
-    std::filesystem::remove(path, status);
+    if (needed.contains(file.path.filename().string()) || in_the_making(file)) continue;
+    std::error_code status;
+    std::filesystem::remove(file.path, status);
+    total_mb -= file.mb;  // also where it cannot go: no others do in its stead
   }
 }
 

@@ -141,6 +141,8 @@ int run(const std::vector<std::string>& words) {
 int main(int argc, char** argv) {
   std::signal(SIGINT, [](int) { formwright::interrupted = true; });
   std::signal(SIGTERM, [](int) { formwright::interrupted = true; });
+  // The terminal was closed, or the line to it dropped.
+  if (!formwright::hangup_is_ignored()) std::signal(SIGHUP, [](int) { formwright::interrupted = true; });
   try {
     return formwright::run({argv + 1, argv + argc});
   } catch (const formwright::Error& error) {

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "files.h"
+#include "host.h"
 #include "http_server.h"
 
 namespace formwright {
@@ -72,6 +73,7 @@ int serve(const std::vector<std::string>& words) {
   HttpServer server(io, options);
   server.start();
   boost::asio::signal_set signals(io, SIGINT, SIGTERM);
+  if (!hangup_is_ignored()) signals.add(SIGHUP);  // its terminal was closed: machines are to be stopped then, too
   signals.async_wait([&](const boost::system::error_code&, int) { io.stop(); });
   boost::asio::signal_set stops(io, SIGUSR1);  // formwright machine stop, from another process
   const std::function<void()> listen = [&] {

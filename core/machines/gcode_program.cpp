@@ -13,6 +13,8 @@ namespace {
 
 using machines_detail::refuse;
 
+constexpr double at_origin_mm = 0.1;  // machines stop at whole steps, of coarse ones 0.04 mm
+
 struct Word {
   char letter;
   double value;
@@ -131,6 +133,9 @@ void act(const std::vector<Word>& words, GcodeState& s, GcodeBounds* bounds, boo
   if (fires && s.spindle != 5) *fires = true;
   if (no_motion || s.motion == 80) return;
   const std::array<double, 3> from = s.position_mm;
+  const bool arc = (s.motion == 2 || s.motion == 3) && (target[0] || target[1] || centre[0] || centre[1]);
+  for (std::size_t axis = 0; axis < 2; ++axis)
+    if (!s.moved[axis] && !machine_coordinates && (arc || (s.relative && target[axis]))) s.from_here = true;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (!target[axis]) continue;
     moves = true;
@@ -138,8 +143,7 @@ void act(const std::vector<Word>& words, GcodeState& s, GcodeBounds* bounds, boo
     s.position_mm[axis] = s.relative ? from[axis] + *target[axis] : *target[axis];
     s.moved[axis] = true;
   }
-  const bool arc = s.motion == 2 || s.motion == 3;
-  if (!bounds || machine_coordinates || (!moves && !(arc && (centre[0] || centre[1])))) return;
+  if (!bounds || machine_coordinates || (!moves && !arc)) return;
   bounds->add(s.position_mm);
   if (!arc || s.plane != 17) return;
   const bool clockwise = s.motion == 2;
@@ -210,6 +214,7 @@ GcodeProgram GcodeProgram::read(ByteView file, std::size_t longest_line) {
     program.text_ += stripped;
   }
   if (program.numbers_.empty()) refuse("job", "The job has no G-code in it: choose another file.");
+  program.from_here_ = state.from_here;
   program.starts_.push_back(program.text_.size());
   return program;
 }
@@ -229,6 +234,15 @@ GcodeState GcodeProgram::state_before(int index) const {
   for (int i = 0; i < index; ++i)
     if (read_words(line(i), words)) act(words, state, nullptr, nullptr);
   return state;
+}
+
+void require_head_at_origin(const GcodeProgram& program, int index,
+                            const std::optional<std::array<double, 3>>& head_mm) {
+  if (!program.from_here()) return;
+  // Gone on with behind its first moves, it is led back to where these ended.
+  if (const GcodeState s = program.state_before(index); s.moved[0] || s.moved[1]) return;
+  if (!head_mm || std::hypot((*head_mm)[0], (*head_mm)[1]) > at_origin_mm)
+    refuse("start", "The job counts from where the head stands (G91): move to x 0, y 0 first, or set the origin here.");
 }
 
 double dwell_s(std::string_view line) {

@@ -3,6 +3,7 @@
 // G-code as a sender needs it: lines without comments, how far they reach, and the state that a line begins in.
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +20,7 @@ struct GcodeState {
   int spindle = 5;  // M3, M4, M5
   std::array<double, 3> position_mm{0, 0, 0};
   std::array<bool, 3> moved{};  // has the program said where this axis goes?
+  bool from_here = false;       // did it count x or y from where the head stood, before it had said where that is?
   double feed_mm_per_min = 0;
   double power = 0;  // S
   bool mist = false, flood = false;
@@ -46,8 +48,11 @@ class GcodeProgram {
   /// Index of the first line whose number is `number` or more; line_count() past the end.
   int index_of(int number) const;
 
-  /// Of all moves, arcs with their bulges, in work coordinates.
+  /// Of all moves, arcs with their bulges, in work coordinates: of a program that counts `from_here`, as if it began at
+  /// the origin.
   const GcodeBounds& bounds() const { return bounds_; }
+  /// Does the way in x and y depend on where the head stands at the start (G91)?
+  bool from_here() const { return from_here_; }
   /// Is the laser or spindle ever turned on?
   bool fires() const { return fires_; }
   GcodeState state_before(int index) const;
@@ -57,8 +62,13 @@ class GcodeProgram {
   std::vector<std::size_t> starts_;
   std::vector<int> numbers_;
   GcodeBounds bounds_;
-  bool fires_ = false;
+  bool fires_ = false, from_here_ = false;
 };
+
+/// How far a program reaches that counts from where the head stands is known only when that is the origin. `index`: of
+/// the line it starts with; `head_mm`: in work coordinates. Throws Error invalid_input ("start").
+void require_head_at_origin(const GcodeProgram& program, int index,
+                            const std::optional<std::array<double, 3>>& head_mm);
 
 /// Seconds that a G4 in this line waits, 0 without one.
 double dwell_s(std::string_view line);

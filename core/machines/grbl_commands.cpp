@@ -277,12 +277,13 @@ void GrblDriver::start(const Json& command, double now_s) {
            "Laser mode is off in the machine, so the beam would stay on at every corner and travel: send $32=1 first.");
   if (program_.fires() && options_.tool == MachineTool::mill && mode != 0)
     refuse("start", "Laser mode is on in the machine, so the spindle would stop at every travel: send $32=0 first.");
-  check_reach(program_.bounds());
   const int from_line = static_cast<int>(number_of(command, "from_line", 1, 1e9, 1));
   const int index = program_.index_of(from_line);
   if (index >= program_.line_count())
     refuse("from_line", "The job has " + std::to_string(program_.number(program_.line_count() - 1)) +
                             " lines: go on from one of them.");
+  require_head_at_origin(program_, index, work_mm_);
+  check_reach(program_.bounds());
   focus_until_s_.reset();
   refused_.reset();
   pause_asked_ = false;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <utility>
 
 namespace formwright {
 namespace {
@@ -111,7 +112,7 @@ void K40Driver::closed(double now_s) {
   drop_output();
   queue_.clear();
   unconfirmed_.reset();
-  asked_ = paused_ = position_known_ = false;
+  asked_ = paused_ = position_known_ = stale_answer_ = false;
   doing_ = Doing::nothing;
   connection_ = MachineConnection::closed;
 }
@@ -128,27 +129,23 @@ void K40Driver::received(ByteView bytes, double now_s) {
   if (connection_ == MachineConnection::closed || bytes.size() < 2) return;
   asked_ = false;
   heard_s_ = now_s;
-  status_ = std::to_integer<int>(bytes[1]);
   connection_ = MachineConnection::ready;
-  if (status_ == status_checksum && unconfirmed_) {
-    if (++repeats_ > most_repeats) {
-      note(
-          "The laser says again and again that packets arrive spoiled: use a shorter cable, away from the laser's supply.",
-          now_s);
-      command({{"do", "stop"}}, now_s);
-      return;
-    }
-    write(as_text(k40_transfer(*unconfirmed_)));
-    return ask(now_s);
-  }
+  if (std::exchange(stale_answer_, false)) return;
+  status_ = std::to_integer<int>(bytes[1]);
+  const bool stopping = doing_ == Doing::stopping;
+  // A stop empties the board: one that stays busy has not heard it.
+  const bool unheard = stopping && status_ == status_busy && now_s - sent_s_ > rest_s;
+  if (unconfirmed_ && (status_ == status_checksum || unheard)) return repeat(now_s);
   if (status_ == status_power) note("The laser's own supply is off: the board lives on USB only.", now_s);
   if (status_ == status_busy) return;  // asked again by the next tick
-  if (unconfirmed_ && (status_ == status_ok || status_ == status_finished)) {
+  if (unconfirmed_ && (status_ == status_ok || status_ == status_finished || (stopping && status_ == status_power))) {
     unconfirmed_.reset();
     repeats_ = 0;
+    if (stopping) doing_ = Doing::nothing;
     if (job_active()) job_->acknowledged = job_->line_now = job_->line_count - static_cast<int>(queue_.size());
   }
-  if (status_ == status_ok || status_ == status_finished) send_next(now_s);
+  // Spoiled, and nothing unconfirmed: what that was has been given up.
+  if (status_ == status_ok || status_ == status_finished || status_ == status_checksum) send_next(now_s);
   if (!queue_.empty() || unconfirmed_) return;
   // A job tells its end; homing and moves are over when the board has rested for a while.
   // Right behind the last packet the board may still tell of the job before.
@@ -158,6 +155,23 @@ void K40Driver::received(ByteView bytes, double now_s) {
     if (doing_ == Doing::homing) position_known_ = true, position_mm_ = {0, 0};
     doing_ = Doing::nothing;
   }
+}
+
+void K40Driver::repeat(double now_s) {
+  if (++repeats_ <= most_repeats) {
+    write(as_text(k40_transfer(*unconfirmed_)));
+    sent_s_ = now_s;
+    return ask(now_s);
+  }
+  if (doing_ != Doing::stopping) {
+    note(
+        "The laser says again and again that packets arrive spoiled: use a shorter cable, away from the laser's supply.",
+        now_s);
+    return stop("failed", now_s);
+  }
+  note("The laser does not take the stop: switch it off.", now_s);
+  unconfirmed_.reset();
+  doing_ = Doing::nothing;
 }
 
 void K40Driver::send_next(double now_s) {
@@ -178,7 +192,9 @@ void K40Driver::tick(double now_s) {
   if (connection_ != MachineConnection::silent && now_s - heard_s_ > silence_s) {
     connection_ = MachineConnection::silent;
     asked_ = false;
-    note("The laser does not answer: check that it is on and its cable plugged in.", now_s);
+    note(doing_ == Doing::stopping ? "The laser does not answer the stop: switch it off."
+                                   : "The laser does not answer: check that it is on and its cable plugged in.",
+         now_s);
     if (job_active()) end_job("cut_off", now_s), queue_.clear(), position_known_ = false;
   }
   if (connection_ == MachineConnection::silent && now_s - asked_s_ > silence_s) asked_ = false;
@@ -187,6 +203,7 @@ void K40Driver::tick(double now_s) {
 MachinePhase K40Driver::phase() const {
   if (connection_ != MachineConnection::ready) return MachinePhase::unknown;
   if (status_ == status_power) return MachinePhase::alarm;
+  if (doing_ == Doing::stopping) return MachinePhase::stopping;
   if (paused_) return MachinePhase::paused;
   if (doing_ == Doing::homing) return MachinePhase::homing;
   if (job_active()) return MachinePhase::running;
@@ -222,19 +239,23 @@ void K40Driver::move(double right_mm, double front_mm) {
   doing_ = Doing::moving;
 }
 
+void K40Driver::stop(const char* how, double now_s) {
+  end_job(how, now_s);
+  queue_.clear();
+  paused_ = position_known_ = false;
+  doing_ = Doing::stopping;
+  drop_output();
+  unconfirmed_ = "I";  // the board drops everything it has
+  repeats_ = 0;
+  sent_s_ = now_s;
+  write_urgently(as_text(k40_transfer(*unconfirmed_)));
+  stale_answer_ = stale_answer_ || asked_;
+  asked_ = false;
+}
+
 void K40Driver::command(const Json& command, double now_s) {
   const std::string what = machines_detail::command_name(command, connection_);
-  if (what == "stop") {
-    end_job("stopped", now_s);
-    queue_.clear();
-    unconfirmed_.reset();
-    paused_ = position_known_ = false;
-    doing_ = Doing::nothing;
-    drop_output();
-    write_urgently(as_text(k40_transfer("I")));  // the board drops everything it has
-    asked_ = false;
-    return;
-  }
+  if (what == "stop") return stop("stopped", now_s);
   const std::vector<std::string> can = possible_commands();
   if (std::find(can.begin(), can.end(), what) == can.end()) {
     if (what == "focus" || what == "override")

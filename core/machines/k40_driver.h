@@ -35,9 +35,11 @@ class K40Driver final : public MachineDriver {
   Json state(double now_s) const override;
 
  private:
-  enum class Doing { nothing, homing, moving, working };
+  enum class Doing { nothing, homing, moving, working, stopping };
   void ask(double now_s);
   void send_next(double now_s);
+  void repeat(double now_s);
+  void stop(const char* how, double now_s);
   void move(double right_mm, double front_mm);
   std::vector<std::string> possible_commands() const;
   MachinePhase phase() const;
@@ -51,6 +53,7 @@ class K40Driver final : public MachineDriver {
   Doing doing_ = Doing::nothing;
   int status_ = 0, repeats_ = 0;
   bool asked_ = false, paused_ = false, position_known_ = false;
+  bool stale_answer_ = false;  // the next one tells of the time before the stop
   double asked_s_ = 0, heard_s_ = 0, sent_s_ = 0;
   std::array<double, 2> position_mm_{0, 0};  // from home: right, front
 };

@@ -16,17 +16,24 @@ using machines_detail::require_confirmation;
 
 constexpr double absent = std::numeric_limits<double>::quiet_NaN(), farthest_mm = 10000;
 constexpr std::size_t longest_by_hand = 80;
+constexpr double jog_starts_s = 0.3;  // until the line is there and the head is as fast as it should be
 
 }  // namespace
 
 MachinePhase MarlinDriver::phase() const {
-  if (connection_ != MachineConnection::ready) return MachinePhase::unknown;
-  if (halted_) return MachinePhase::alarm;
+  const bool ready = connection_ == MachineConnection::ready;
+  if (ready && halted_) return MachinePhase::alarm;
   if (stopped_s_ >= 0) return MachinePhase::stopping;
+  if (!ready) return MachinePhase::unknown;
   if (settling_ == Settles::homing) return MachinePhase::homing;
   if (settling_ == Settles::moving) return MachinePhase::jogging;
   if (job_active()) return paused_ ? MachinePhase::paused : MachinePhase::running;
-  return MachinePhase::idle;
+  return jogging_until_s_ ? MachinePhase::jogging : MachinePhase::idle;
+}
+
+bool MarlinDriver::is_free() const {
+  const MachinePhase now = phase();
+  return now == MachinePhase::idle || (now == MachinePhase::jogging && settling_ == Settles::nothing);
 }
 
 std::vector<std::string> MarlinDriver::possible_commands() const {
@@ -37,12 +44,14 @@ std::vector<std::string> MarlinDriver::possible_commands() const {
   const auto add = [&](std::initializer_list<const char*> names) { can.insert(can.end(), names.begin(), names.end()); };
   if (now == MachinePhase::running) add({"pause", "override"});
   if (now == MachinePhase::paused) add({"resume", "override"});
-  if (now != MachinePhase::idle) return can;
+  if (!is_free()) return can;
   add({"home", "jog", "set_origin", "send", "override"});
   if (position_known_) add({"go_to", "frame"});
   if (options_.tool == MachineTool::laser) add({focus_until_s_ ? "focus_off" : "focus"});
   // A printer's own G-code homes it.
-  if (program_.line_count() > 0 && (position_known_ || options_.tool == MachineTool::printer)) add({"start"});
+  if (now == MachinePhase::idle && program_.line_count() > 0 &&
+      (position_known_ || options_.tool == MachineTool::printer))
+    add({"start"});
   return can;
 }
 
@@ -58,7 +67,7 @@ void MarlinDriver::command(const Json& command, double now_s) {
   const std::vector<std::string> can = possible_commands();
   if (std::find(can.begin(), can.end(), what) == can.end()) {
     if (what == "unlock" || halted_) refuse(what, "The machine has halted: switch it off and on again.");
-    if ((what == "start" || what == "frame" || what == "go_to") && phase() == MachinePhase::idle && !position_known_)
+    if ((what == "start" || what == "frame" || what == "go_to") && is_free() && !position_known_)
       refuse(what, "Where the head stands is unknown: home the machine first.");
     if (what == "start" && program_.line_count() == 0) refuse(what, "No job is loaded: choose one first.");
     machines_detail::refuse_in_phase(what, phase());
@@ -68,17 +77,9 @@ void MarlinDriver::command(const Json& command, double now_s) {
     require_confirmation(command, "The head moves to its switches");
     queue("G28");
     settle(Settles::homing);
-  } else if (what == "jog") {
-    std::string words;
-    for (const auto& [name, letter] : {std::pair{"x_mm", " X"}, std::pair{"y_mm", " Y"}, std::pair{"z_mm", " Z"}})
-      if (const double mm = number_of(command, name, -farthest_mm, farthest_mm, 0); mm != 0)
-        words += letter + decimal(mm);
-    if (words.empty()) refuse("x_mm", "A jog needs x_mm, y_mm or z_mm.");
-    if (by_hand_.size() < 12) move("G91", words, speed(absent));
-  } else if (what == "set_origin") {
-    queue("G92" + machines_detail::zero_words(command, " "));
-    position_known_ = true;
-  } else if (what == "go_to") {
+  } else if (what == "jog") jog(command, now_s);
+  else if (what == "set_origin") set_origin(command);
+  else if (what == "go_to") {
     GcodeBounds bounds;
     bounds.add({number_of(command, "x_mm", -farthest_mm, farthest_mm, absent),
                 number_of(command, "y_mm", -farthest_mm, farthest_mm, absent), 0});
@@ -100,10 +101,8 @@ void MarlinDriver::command(const Json& command, double now_s) {
     require_confirmation(command, "The laser shines at " + decimal(power) + " % without moving: eyes protected");
     queue("M3 S" + decimal(2.55 * power));
     focus_until_s_ = now_s + options_.focus_seconds;
-  } else if (what == "focus_off") {
-    focus_until_s_.reset();
-    queue("M5");
-  } else if (what == "start") start(command, now_s);
+  } else if (what == "focus_off") focus_off(now_s);
+  else if (what == "start") start(command, now_s);
   else if (what == "pause") {
     paused_ = true;
     // What is planned is still done; a laser must not stay on where that ends.
@@ -120,11 +119,38 @@ void MarlinDriver::command(const Json& command, double now_s) {
     if (effect.moves || effect.fires)
       require_confirmation(command, "The line \"" + text + "\" may move the machine, heat it or turn its laser on");
     queue(text);
+    ask_soon();  // it may move the head
     if (text.starts_with("G28")) settle(Settles::homing);
   } else if (what == "override") {
     if (command.contains("feed_percent")) queue("M220 S" + decimal(number_of(command, "feed_percent", 10, 200, 100)));
   }
   pump(now_s);
+}
+
+void MarlinDriver::jog(const Json& command, double now_s) {
+  std::string words;
+  double squared_mm = 0;
+  for (const auto& [name, letter] : {std::pair{"x_mm", " X"}, std::pair{"y_mm", " Y"}, std::pair{"z_mm", " Z"}})
+    if (const double mm = number_of(command, name, -farthest_mm, farthest_mm, 0); mm != 0) {
+      words += letter + decimal(mm);
+      squared_mm += mm * mm;
+    }
+  if (words.empty()) refuse("x_mm", "A jog needs x_mm, y_mm or z_mm.");
+  const double speed_mm_per_s = number_of(command, "speed_mm_per_s", 0.01, 2000, absent);
+  if (by_hand_.size() >= 12) return;  // a key held down repeats faster than the head moves
+  move("G91", words, speed_mm_per_s);
+  jogging_until_s_ =
+      std::max(jogging_until_s_.value_or(0), now_s + jog_starts_s) + std::sqrt(squared_mm) / speed_mm_per_s;
+}
+
+void MarlinDriver::set_origin(const Json& command) {
+  const std::string words = machines_detail::zero_words(command, " ");
+  queue("G92" + words);
+  position_known_ = true;
+  // Known at once; the machine tells of it only when it is asked again.
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (position_mm_ && words.find("XYZ"[axis]) != std::string::npos) (*position_mm_)[axis] = 0;
+  ask_soon();
 }
 
 void MarlinDriver::check_reach(const GcodeBounds& bounds) const {
@@ -140,9 +166,12 @@ void MarlinDriver::start(const Json& command, double now_s) {
   require_confirmation(command, options_.tool == MachineTool::printer
                                     ? "The printer heats up and moves"
                                     : "The machine moves and its laser or spindle turns on");
-  if (options_.tool != MachineTool::printer) check_reach(program_.bounds());
   if (number_of(command, "from_line", 1, 1e9, 1) > 1)
     refuse("from_line", "Going on in the middle of a job is possible with GRBL machines only: start it anew.");
+  if (options_.tool != MachineTool::printer) {  // its jobs home it themselves
+    require_head_at_origin(program_, 0, position_mm_);
+    check_reach(program_.bounds());
+  }
   refused_.reset();
   focus_until_s_.reset();
   paused_ = false;

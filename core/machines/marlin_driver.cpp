@@ -11,6 +11,7 @@ namespace {
 constexpr std::size_t longest_line = 80, kept_lines = 200;  // MAX_CMD_SIZE 96 has number and checksum in it
 constexpr double boot_s = 3, greeting_s = 15, silence_s = 25, silence_in_job_s = 120, silence_while_settling_s = 600;
 constexpr double asking_s = 2, escalation_s = 2, lost_answer_s = 10, idle_s = 1;
+constexpr double quiet_s = 1.5;  // an M410 may take a second to be answered
 constexpr int most_resends = 100, most_unanswered = 3;
 
 /// The number behind `name` ("X:", "T:"), if it is there.
@@ -73,6 +74,9 @@ void MarlinDriver::closed(double now_s) {
   settling_number_.reset();
   forget_half_lines();
   focus_until_s_.reset();
+  jogging_until_s_.reset();
+  unnumbered_ = 0;
+  stopped_s_ = -1;
   connection_ = MachineConnection::closed;
   position_mm_.reset();
 }
@@ -93,6 +97,8 @@ void MarlinDriver::start_numbering(double now_s) {
 void MarlinDriver::greet(double now_s) {
   greeted_ = true;
   by_hand_.clear();
+  unnumbered_ = 0;
+  stopped_s_ = -1;  // what has just begun has nothing on, and may be slow to answer: no emergency
   settling_ = Settles::nothing;
   settling_number_.reset();
   start_numbering(now_s);
@@ -161,7 +167,11 @@ void MarlinDriver::hear_ok(const std::string& line, double now_s) {
     --oks_to_swallow_;
     return;  // sending starts with this
   }
-  if (!waiting_) return;
+  if (unnumbered_ > 0) unnumbered_s_ = now_s;
+  if (!waiting_) {
+    unnumbered_ = std::max(unnumbered_ - 1, 0);
+    return;
+  }
   waiting_ = false;
   resends_ = 0;
   if (connection_ == MachineConnection::greeting && by_hand_.empty()) connection_ = MachineConnection::ready;
@@ -179,10 +189,9 @@ void MarlinDriver::hear_ok(const std::string& line, double now_s) {
 void MarlinDriver::hear_resend(int number, double now_s) {
   if (halted_) return;
   if (++resends_ > most_resends) {
-    // Lines with numbers do not get through: those that turn off go without.
+    // Lines with numbers do not get through.
     end("failed", now_s);
-    for (const char* line : {"M108\n", "M410\n"}) write_urgently(line);
-    for (const std::string& line : lines_that_turn_off()) write_urgently(line + "\n");
+    turn_all_off_at_once(now_s);
     return halt("it asks for the same lines over and over. Check cable and line speed.", now_s);
   }
   const auto found =
@@ -238,7 +247,7 @@ void MarlinDriver::send(const HandLine& line, int job_line, double now_s) {
 
 void MarlinDriver::pump(double now_s) {
   if (connection_ == MachineConnection::closed || connection_ == MachineConnection::silent || waiting_ || halted_ ||
-      !greeted_ || oks_to_swallow_ > 0)
+      !greeted_ || oks_to_swallow_ > 0 || unnumbered_ > 0)
     return;
   if (resend_at_ < sent_.size()) {
     const SentLine& again = sent_[resend_at_++];
@@ -271,21 +280,17 @@ void MarlinDriver::settle(Settles what) {
 void MarlinDriver::tick(double now_s) {
   if (connection_ == MachineConnection::closed) return;
   if (!greeted_ && now_s - opened_s_ > boot_s) greet(now_s);
+  if (jogging_until_s_ && now_s > *jogging_until_s_) {
+    jogging_until_s_.reset();
+    ask_soon();
+  }
   if (greeted_ && by_hand_.empty() && !halted_ && now_s - asked_s_ > asking_s) {
     asked_s_ = now_s;
     queue("M105");
     if (!job_active() || settling_number_) queue("M114");
   }
-  if (focus_until_s_ && now_s > *focus_until_s_) {
-    focus_until_s_.reset();
-    queue("M5");
-  }
-  if (stopped_s_ >= 0 && !waiting_) stopped_s_ = -1;
-  if (stopped_s_ >= 0 && now_s - stopped_s_ > escalation_s) {
-    // M410 was not heard: boards without an emergency parser take it in turn only. M112 ends everything.
-    write_urgently("M112\n");
-    halt("it did not stop when asked, so it was sent M112.", now_s);
-  }
+  if (focus_until_s_ && now_s > *focus_until_s_) focus_off(now_s);
+  watch_over_stop(now_s);
   if ((waiting_ || oks_to_swallow_ > 0) && connection_ == MachineConnection::ready &&
       unanswered_in_a_row_ < most_unanswered && now_s - std::max(heard_s_, sent_s_) > lost_answer_s)
     go_on_unanswered(now_s);
@@ -303,6 +308,19 @@ void MarlinDriver::tick(double now_s) {
     settling_number_.reset();
   }
   pump(now_s);
+}
+
+void MarlinDriver::watch_over_stop(double now_s) {
+  if (unnumbered_ > 0 && !waiting_ && now_s - unnumbered_s_ > quiet_s) unnumbered_ = 0;  // these were not answered
+  if (stopped_s_ < 0) return;
+  // Where nothing can be sent now, nothing is waited for.
+  const bool sends = greeted_ && !halted_ && connection_ != MachineConnection::silent;
+  if (!waiting_ && unnumbered_ == 0 && (by_hand_.empty() || !sends)) stopped_s_ = -1;
+  else if (waiting_ && now_s - std::max(stopped_s_, sent_s_) > escalation_s) {
+    // M410 was not heard: boards without an emergency parser take it in turn only. M112 ends everything.
+    write_urgently("M112\n");
+    halt("it did not stop when asked, so it was sent M112.", now_s);
+  }
 }
 
 void MarlinDriver::load(const std::string& name, ByteView job) {
@@ -325,6 +343,26 @@ std::vector<std::string> MarlinDriver::lines_that_turn_off() const {
   return lines;
 }
 
+void MarlinDriver::write_unnumbered(const std::string& line, double now_s) {
+  write_urgently(line + "\n");
+  ++unnumbered_;
+  unnumbered_s_ = now_s;
+}
+
+void MarlinDriver::turn_all_off_at_once(double now_s) {
+  // The first two need no turn where the firmware has an emergency parser.
+  for (const char* line : {"M108", "M410"}) write_unnumbered(line, now_s);
+  for (const std::string& line : lines_that_turn_off()) write_unnumbered(line, now_s);
+}
+
+void MarlinDriver::focus_off(double now_s) {
+  focus_until_s_.reset();
+  // A light that is not on yet never comes on.
+  std::erase_if(by_hand_, [](const HandLine& line) { return line.text.starts_with("M3 "); });
+  write_unnumbered("M5", now_s);
+  queue("M5");
+}
+
 void MarlinDriver::stop(const char* how, double now_s) {
   end(how, now_s);
   by_hand_.clear();
@@ -337,10 +375,9 @@ void MarlinDriver::stop(const char* how, double now_s) {
   settling_ = Settles::nothing;
   settling_number_.reset();
   focus_until_s_.reset();
-  // These need no turn where the firmware has an emergency parser; what turns off follows in any case.
-  write_urgently("M108\n");
-  write_urgently("M410\n");
+  jogging_until_s_.reset();
   oks_to_swallow_ = 0;
+  turn_all_off_at_once(now_s);
   for (const std::string& line : lines_that_turn_off()) queue(line);
   stopped_s_ = now_s;
 }

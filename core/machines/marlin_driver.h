@@ -9,6 +9,10 @@
 // An ok means "taken in" and may be lost or come late, so it never tells that something has ended: what moved has ended
 // when the machine reports its place in answer to an M114 that was sent behind it (and behind an M400, which waits for
 // all moves).
+//
+// What turns something off leaves twice: at once and without a number, because the port may close before its turn, and
+// in its turn with one, because only those are asked for again. Lines without a number are answered, too: until these
+// answers are there no line is sent, so that none of them passes for its answer.
 #include <array>
 #include <deque>
 #include <optional>
@@ -60,12 +64,21 @@ class MarlinDriver final : public MachineDriver {
   void start_numbering(double now_s);
   void queue(const std::string& line, Settles settles = Settles::nothing) { by_hand_.push_back({line, settles}); }
   std::vector<std::string> lines_that_turn_off() const;
+  void write_unnumbered(const std::string& line, double now_s);
+  void turn_all_off_at_once(double now_s);
+  void focus_off(double now_s);
+  void watch_over_stop(double now_s);
+  void ask_soon() { asked_s_ = -1e9; }  // where the head is, as soon as nothing else waits
   void move(const std::string& mode, const std::string& words, double speed_mm_per_s);
   void end(const char* how, double now_s);
   void stop(const char* how, double now_s);
   void halt(const std::string& text, double now_s);
   MachinePhase phase() const;
+  /// Nothing is under way that must end first: lines are done in their order, so they may follow a jog.
+  bool is_free() const;
   std::vector<std::string> possible_commands() const;
+  void jog(const Json& command, double now_s);
+  void set_origin(const Json& command);
   void start(const Json& command, double now_s);
   void check_reach(const GcodeBounds& bounds) const;
 
@@ -80,6 +93,8 @@ class MarlinDriver final : public MachineDriver {
   std::deque<SentLine> sent_;  // those that may be asked for again; the last `waiting_` of them are unanswered
   std::size_t resend_at_ = 0;  // index in sent_ of the next line to send again; sent_.size() when none
   int next_number_ = 0, oks_to_swallow_ = 0, resends_ = 0, unanswered_in_a_row_ = 0;
+  int unnumbered_ = 0;                   // lines without a number that are not answered yet
+  double unnumbered_s_ = 0;              // when one was written or answered last
   Settles settling_ = Settles::nothing;  // what is under way
   std::optional<int> settling_number_;   // of the M114 behind it, once that was sent
   bool waiting_ = false, paused_ = false, position_known_ = false, halted_ = false, greeted_ = false;
@@ -89,6 +104,7 @@ class MarlinDriver final : public MachineDriver {
   std::optional<std::string> refused_;
   double opened_s_ = 0, heard_s_ = 0, sent_s_ = 0, asked_s_ = 0, stopped_s_ = -1;
   std::optional<double> focus_until_s_;
+  std::optional<double> jogging_until_s_;  // by its length and speed: an M400 would halt a key held down at every step
 };
 
 }  // namespace formwright

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace formwright {
 namespace {
@@ -97,7 +98,7 @@ void RuidaDriver::closed(double now_s) {
   drop_output();
   queue_.clear();
   unconfirmed_.reset();
-  homed_ = paused_ = homing_ = false;
+  homed_ = paused_ = homing_ = stopping_ = stale_answer_ = false;
   position_mm_ = {};
   connection_ = MachineConnection::closed;
 }
@@ -116,27 +117,8 @@ void RuidaDriver::received(ByteView datagram, double now_s) {
   connection_ = MachineConnection::ready;
   std::vector<unsigned char> plain;
   for (const std::byte byte : datagram) plain.push_back(ruida_unswizzled(std::to_integer<unsigned char>(byte)));
-  if (plain.size() == 1 && (plain[0] == acknowledged || plain[0] == refused)) {
-    if (!unconfirmed_) return;
-    if (plain[0] == refused) {
-      if (++repeats_ <= most_repeats) {
-        write(as_text(*unconfirmed_));
-        sent_s_ = now_s;
-        return;
-      }
-      note("The laser refuses what is sent: is it another model of controller?", now_s);
-      queue_.clear();
-      end("failed", now_s);
-    }
-    unconfirmed_.reset();
-    repeats_ = 0;
-    if (job_active() && job_left_ > 0 && job_left_ > queue_.size()) {
-      --job_left_;
-      job_->acknowledged = job_->line_now = job_->line_count - static_cast<int>(job_left_);
-      if (job_left_ == 0) uploaded_s_ = now_s;
-    }
-    return send_next(now_s);
-  }
+  if (plain.size() == 1 && (plain[0] == acknowledged || plain[0] == refused))
+    return hear_answer(plain[0] == acknowledged, now_s);
   // A reply to a question: DA 01, address, five bytes of seven bits.
   if (plain.size() >= 9 && plain[0] == 0xda && plain[1] == 0x01) {
     std::int64_t value = 0;
@@ -152,6 +134,40 @@ void RuidaDriver::received(ByteView datagram, double now_s) {
   if (homing_ && resting && now_s - homing_s_ > rest_s) homing_ = false, homed_ = true;
 }
 
+void RuidaDriver::hear_answer(bool taken, double now_s) {
+  if (!unconfirmed_ || std::exchange(stale_answer_, false)) return;
+  if (!taken) {
+    if (++repeats_ <= most_repeats) return repeat(now_s);
+    return give_up("failed",
+                   stopping_ ? "The laser refuses to stop: stop it at its own panel or switch it off."
+                             : "The laser refuses what is sent: is it another model of controller?",
+                   now_s);
+  }
+  unconfirmed_.reset();
+  repeats_ = 0;
+  stopping_ = false;
+  if (job_active() && job_left_ > 0 && job_left_ > queue_.size()) {
+    --job_left_;
+    job_->acknowledged = job_->line_now = job_->line_count - static_cast<int>(job_left_);
+    if (job_left_ == 0) uploaded_s_ = now_s;
+  }
+  send_next(now_s);
+}
+
+void RuidaDriver::repeat(double now_s) {
+  write(as_text(*unconfirmed_));
+  sent_s_ = now_s;
+}
+
+void RuidaDriver::give_up(const char* how, const char* why, double now_s) {
+  note(why, now_s);
+  queue_.clear();
+  unconfirmed_.reset();
+  repeats_ = 0;
+  stopping_ = stale_answer_ = false;
+  end(how, now_s);
+}
+
 void RuidaDriver::hear_memory(int address, std::int64_t value) {
   if (address == machine_status) status_ = value;
   if (value & (std::int64_t{1} << 34)) value -= std::int64_t{1} << 35;
@@ -165,16 +181,14 @@ void RuidaDriver::tick(double now_s) {
     // A datagram or its answer was lost.
     if (++repeats_ > most_repeats) {
       connection_ = MachineConnection::silent;
-      note("The laser does not answer: check that it is on, its network cable, and its address.", now_s);
-      queue_.clear();
-      unconfirmed_.reset();
-      repeats_ = 0;
       homed_ = false;
-      end("cut_off", now_s);
-      return;
+      return give_up("cut_off",
+                     stopping_
+                         ? "The laser does not answer the stop: if it moves, stop it at its own panel or switch it off."
+                         : "The laser does not answer: check that it is on, its network cable, and its address.",
+                     now_s);
     }
-    write(as_text(*unconfirmed_));
-    sent_s_ = now_s;
+    repeat(now_s);
   }
   if (queue_.empty() && !unconfirmed_ && now_s - asked_s_ > asking_s) {
     asked_s_ = now_s;
@@ -190,6 +204,7 @@ void RuidaDriver::end(const char* how, double now_s) {
 }
 
 MachinePhase RuidaDriver::phase() const {
+  if (stopping_) return MachinePhase::stopping;
   if (connection_ != MachineConnection::ready) return MachinePhase::unknown;
   if (homing_) return MachinePhase::homing;
   if (job_active()) return paused_ ? MachinePhase::paused : MachinePhase::running;
@@ -212,17 +227,22 @@ std::vector<std::string> RuidaDriver::possible_commands() const {
   return can;
 }
 
+void RuidaDriver::stop(double now_s) {
+  end("stopped", now_s);
+  queue_.clear();
+  drop_output();
+  homed_ = homing_ = paused_ = false;
+  stale_answer_ = stale_answer_ || (unconfirmed_ && !stopping_);
+  stopping_ = true;
+  repeats_ = 0;
+  unconfirmed_ = ruida_datagram("\xd8\x01");
+  sent_s_ = now_s;
+  write_urgently(as_text(*unconfirmed_));
+}
+
 void RuidaDriver::command(const Json& command, double now_s) {
   const std::string what = machines_detail::command_name(command, connection_);
-  if (what == "stop") {
-    end("stopped", now_s);
-    queue_.clear();
-    unconfirmed_.reset();
-    drop_output();
-    homed_ = homing_ = paused_ = false;
-    write_urgently(as_text(ruida_datagram("\xd8\x01")));
-    return;
-  }
+  if (what == "stop") return stop(now_s);
   const std::vector<std::string> can = possible_commands();
   if (std::find(can.begin(), can.end(), what) == can.end()) {
     if ((what == "start" || what == "frame" || what == "go_to") && phase() == MachinePhase::idle && !homed_)

@@ -34,6 +34,10 @@ class RuidaDriver final : public MachineDriver {
  private:
   void queue(std::string_view plain) { queue_.push_back(ruida_datagram(plain)); }
   void send_next(double now_s);
+  void stop(double now_s);
+  void hear_answer(bool taken, double now_s);
+  void repeat(double now_s);
+  void give_up(const char* how, const char* why, double now_s);
   void hear_memory(int address, std::int64_t value);
   void end(const char* how, double now_s);
   std::vector<std::string> possible_commands() const;
@@ -48,6 +52,8 @@ class RuidaDriver final : public MachineDriver {
   std::size_t job_left_ = 0;
   std::int64_t status_ = 0;
   int repeats_ = 0;
+  bool stopping_ = false;      // what is unconfirmed is the stop
+  bool stale_answer_ = false;  // to what was under way when the stop left: answers do not tell to what they are
   std::array<std::optional<double>, 2> position_mm_;
   bool paused_ = false, homed_ = false, homing_ = false, seen_running_ = false;
   double sent_s_ = 0, heard_s_ = 0, asked_s_ = 0, uploaded_s_ = -1, homing_s_ = 0;

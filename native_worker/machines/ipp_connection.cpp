@@ -36,7 +36,8 @@ void IppConnection::fail(const std::string& what) const {
 int IppConnection::still_wanted(http_t*, void* self) {
   auto& connection = *static_cast<IppConnection*>(self);
   connection.silent_s_ += look_up_s;
-  return !connection.cancelled_ && connection.silent_s_ < answer_patience_s ? 1 : 0;
+  const bool wanted = connection.may_have_job_ || !connection.cancelled_;
+  return wanted && connection.silent_s_ < answer_patience_s ? 1 : 0;
 }
 
 IppConnection::IppConnection(const PrinterAddress& address, const std::atomic<bool>& cancelled)
@@ -111,11 +112,12 @@ IppMessage IppConnection::request(ipp_op_t operation) const {
   return message;
 }
 
-IppConnection::Answer IppConnection::ask(IppMessage message, ByteView document) {
+http_status_t IppConnection::send(ipp_t* message, ByteView document) {
+  may_have_job_ = false;
   check(cancelled_);
   silent_s_ = 0;
-  const std::size_t length = ippLength(message.get()) + document.size();
-  http_status_t sent = cupsSendRequest(http_, message.get(), resource_.c_str(), length);
+  const std::size_t length = ippLength(message) + document.size();
+  http_status_t sent = cupsSendRequest(http_, message, resource_.c_str(), length);
   for (std::size_t at = 0; at < document.size() && sent == HTTP_STATUS_CONTINUE;) {
     check(cancelled_);
     silent_s_ = 0;
@@ -123,29 +125,44 @@ IppConnection::Answer IppConnection::ask(IppMessage message, ByteView document) 
     sent = cupsWriteRequestData(http_, reinterpret_cast<const char*>(document.data() + at), part);
     at += part;
   }
+  return sent;
+}
+
+void IppConnection::fail_unanswered(http_status_t sent, http_status_t status) const {
+  if (cancelled_ && may_have_job_ && status < HTTP_STATUS_BAD_REQUEST)
+    throw Error(
+        ErrorCode::cancelled, "",
+        "Cancelled, but " + name_ + " has the whole document and says nothing: see whether its sheets come out.");
+  if (status == HTTP_STATUS_UNAUTHORIZED || sent == HTTP_STATUS_UNAUTHORIZED ||
+      status == HTTP_STATUS_CUPS_AUTHORIZATION_CANCELED || status == HTTP_STATUS_FORBIDDEN)
+    fail(name_ +
+         " asks for a password: let it print without one, or add it to the system's printers and choose it there.");
+  if (status == HTTP_STATUS_NOT_FOUND)
+    fail("There is no printer at " + uri_ + ": most have theirs at /ipp/print; register it anew.");
+  if (silent_s_ >= answer_patience_s)
+    fail(name_ + " was asked and stayed silent for 30 s: switch it off and on, and try again.");
+  fail("The connection to " + name_ + " broke off (" + last_words() + "): try again.");
+}
+
+IppConnection::Answer IppConnection::ask(IppMessage message, ByteView document) {
+  const http_status_t sent = send(message.get(), document);
   silent_s_ = 0;
+  // OK: the printer was so quick that the end of the document met its answer.
+  may_have_job_ = !document.empty() && (sent == HTTP_STATUS_CONTINUE || sent == HTTP_STATUS_OK);
   Answer answer;
   // A refusal in the middle of the document is in the response all the same.
   answer.message.reset(cupsGetResponse(http_, resource_.c_str()));
-  check(cancelled_);
+  if (!may_have_job_) check(cancelled_);
   if (!answer.message) {
     const http_status_t status = httpGetStatus(http_);
-    if (status == HTTP_STATUS_UNAUTHORIZED || sent == HTTP_STATUS_UNAUTHORIZED ||
-        status == HTTP_STATUS_CUPS_AUTHORIZATION_CANCELED || status == HTTP_STATUS_FORBIDDEN)
-      fail(name_ +
-           " asks for a password: let it print without one, or add it to the system's printers and choose it there.");
-    if (status == HTTP_STATUS_SERVICE_UNAVAILABLE) {
-      answer.status = IPP_STATUS_ERROR_BUSY;
-      answer.message.reset(ippNew());
-      return answer;
-    }
-    if (status == HTTP_STATUS_NOT_FOUND)
-      fail("There is no printer at " + uri_ + ": most have theirs at /ipp/print; register it anew.");
-    if (silent_s_ >= answer_patience_s)
-      fail(name_ + " was asked and stayed silent for 30 s: switch it off and on, and try again.");
-    fail("The connection to " + name_ + " broke off (" + last_words() + "): try again.");
+    if (status != HTTP_STATUS_SERVICE_UNAVAILABLE) fail_unanswered(sent, status);
+    check(cancelled_);
+    answer.status = IPP_STATUS_ERROR_BUSY;
+    answer.message.reset(ippNew());
+    return answer;
   }
   answer.status = ippGetStatusCode(answer.message.get());
+  if (!answer.ok()) check(cancelled_);  // it refused, and made no job
   if (ipp_attribute_t* text = ippFindAttribute(answer.message.get(), "status-message", IPP_TAG_ZERO))
     if (const char* words = ippGetString(text, 0, nullptr)) answer.text = words;
   if (answer.status == IPP_STATUS_ERROR_NOT_AUTHENTICATED || answer.status == IPP_STATUS_ERROR_NOT_AUTHORIZED ||

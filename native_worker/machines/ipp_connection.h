@@ -47,19 +47,24 @@ class IppConnection {
   };
   /// Sends it with the document behind it and waits up to 30 s for each step. Throws Error{could_not_solve, "machine"}
   /// when the connection breaks, the printer asks for a password or stays silent, and Error{cancelled}. What the
-  /// printer refuses is an Answer.
+  /// printer refuses is an Answer. A cancel is heard at once until the document is out. From then on the printer may
+  /// have made a job of it, which only its answer can name: that is waited for as if nobody had cancelled, and given
+  /// back when it took the document, for the caller to take back the job.
   Answer ask(IppMessage request, ByteView document = {});
 
  private:
   void connect_to_destination(const cups_dest_t& destination);
   void connect_to_uri();
+  http_status_t send(ipp_t* message, ByteView document);
   [[noreturn]] void fail(const std::string& what) const;
+  [[noreturn]] void fail_unanswered(http_status_t sent, http_status_t status) const;
   static int still_wanted(http_t* http, void* self);
 
   std::string name_, uri_, resource_;
   const std::atomic<bool>& cancelled_;
   http_t* http_ = nullptr;
   double silent_s_ = 0;
+  bool may_have_job_ = false;  // the document is out
 };
 
 }  // namespace formwright

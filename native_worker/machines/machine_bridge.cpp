@@ -78,7 +78,7 @@ PrinterAddress address_of(const Machine& m) { return {m.name, m.url, m.destinati
 }  // namespace
 
 MachineBridge::MachineBridge(boost::asio::io_context& io, std::filesystem::path data, JobStore& store)
-    : io_(io), store_(store), registry_(data), log_(data), rooms_(io, asking_, data, store, log_) {}
+    : io_(io), store_(store), registry_(data), log_(data), rooms_(io, acting_, data, store, log_) {}
 
 void MachineBridge::stop() {
   rooms_.stop();  // first: they move
@@ -111,16 +111,16 @@ boost::asio::awaitable<void> MachineBridge::serve_socket(beast::tcp_stream strea
 }
 
 template <class Result>
-boost::asio::awaitable<Result> MachineBridge::aside(std::function<Result()> work) {
+boost::asio::awaitable<Result> MachineBridge::aside(boost::asio::thread_pool& threads, std::function<Result()> work) {
   co_return co_await boost::asio::co_spawn(
-      asking_, [](std::function<Result()> w) -> boost::asio::awaitable<Result> { co_return w(); }(std::move(work)),
+      threads, [](std::function<Result()> w) -> boost::asio::awaitable<Result> { co_return w(); }(std::move(work)),
       use_awaitable);
 }
 
 boost::asio::awaitable<std::vector<Machine>> MachineBridge::machines(bool search_again) {
   if (search_again || std::chrono::steady_clock::now() - found_when_ > search_lasts) {
     const std::function<std::vector<Machine>()> search = [this] { return find_machines(registry_); };
-    found_ = co_await aside(search);
+    found_ = co_await aside(looking_, search);
     found_when_ = std::chrono::steady_clock::now();
   }
   co_return found_;
@@ -157,7 +157,7 @@ boost::asio::awaitable<Response> MachineBridge::answer(Head head, std::string pa
                                     : 200;
       const bool lines = query.find("lines=1") != std::string::npos;
       const std::function<std::string()> read = [this, limit, lines] { return json_text(log_.newest(limit, lines)); };
-      co_return text_response(head, http::status::ok, co_await aside(read));
+      co_return text_response(head, http::status::ok, co_await aside(looking_, read));
     }
     if (path.size() > 1 && path[0] == '/') {
       const std::size_t end = std::min(path.find('/', 1), path.size());
@@ -174,6 +174,8 @@ boost::asio::awaitable<Response> MachineBridge::answer_machine(Head head, std::s
   const Machine m = co_await machine(id);
   const bool reads = head.method() == http::verb::get || head.method() == http::verb::head,
              posts = head.method() == http::verb::post;
+  const bool uploads = m.kind == MachineKind::octoprint || m.kind == MachineKind::moonraker,
+             elsewhere = uploads || m.kind == MachineKind::printer;
   if (rest.empty() && reads) {
     const std::function<Json()> describe = [this, m] {
       const std::atomic<bool> go_on{false};
@@ -184,7 +186,8 @@ boost::asio::awaitable<Response> MachineBridge::answer_machine(Head head, std::s
       else if (m.kind == MachineKind::slicer) json["profiles"] = slicer_profiles(registry_.data());
       return json;
     };
-    co_return text_response(head, http::status::ok, json_text(co_await aside(describe)));
+    boost::asio::thread_pool& threads = elsewhere ? asking_ : looking_;
+    co_return text_response(head, http::status::ok, json_text(co_await aside(threads, describe)));
   }
   if (rest == "/jobs" || rest.starts_with("/jobs/")) co_return answer_tasks(head, m, rest.substr(5));
   if (!posts) co_return nothing_here(head);
@@ -192,7 +195,6 @@ boost::asio::awaitable<Response> MachineBridge::answer_machine(Head head, std::s
   if (order.is_discarded())
     co_return error_response(head, http::status::bad_request, "invalid_input", "", "The order is not JSON.");
   if (rest == "/print" && m.kind == MachineKind::printer) co_return print(head, m, order);
-  const bool uploads = m.kind == MachineKind::octoprint || m.kind == MachineKind::moonraker;
   if (rest == "/upload" && uploads) co_return upload(head, m, order);
   if (rest == "/stop" && uploads) {
     log_.append(m, {{"event", "command"}, {"command", {{"do", "stop"}}}}, true);
@@ -201,7 +203,7 @@ boost::asio::awaitable<Response> MachineBridge::answer_machine(Head head, std::s
       cancel_print(m, go_on);
       return true;
     };
-    co_await aside(end);
+    co_await aside(acting_, end);
     co_return text_response(head, http::status::ok, "{}");
   }
   if (rest == "/slice" && m.kind == MachineKind::slicer) co_return co_await slice(head, m, order);

@@ -38,7 +38,7 @@ class MachineBridge {
 
  private:
   template <class Result>
-  boost::asio::awaitable<Result> aside(std::function<Result()> work);
+  static boost::asio::awaitable<Result> aside(boost::asio::thread_pool& threads, std::function<Result()> work);
   boost::asio::awaitable<std::vector<Machine>> machines(bool search_again);
   boost::asio::awaitable<Machine> machine(std::string id);
   boost::asio::awaitable<Response> answer_machine(Head head, std::string id, std::string rest, std::string body);
@@ -53,7 +53,11 @@ class MachineBridge {
   MachineRegistry registry_;
   MachineLog log_;
   MachineTasks tasks_{log_};
-  boost::asio::thread_pool asking_{4};
+  // Threads apart: a machine that is switched off keeps the one that asks it for half a minute, and neither a stop nor
+  // a port that is to be opened may wait behind that; nor the search, which finds the port.
+  boost::asio::thread_pool asking_{4};   // machines elsewhere: what they are and do
+  boost::asio::thread_pool acting_{4};   // stops, and ports that are opened
+  boost::asio::thread_pool looking_{2};  // what this computer knows: the search, the log
   MachineRooms rooms_;
   std::vector<Machine> found_;
   std::chrono::steady_clock::time_point found_when_{};

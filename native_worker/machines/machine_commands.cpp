@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <iostream>
 
@@ -181,6 +182,8 @@ int machine_command(const std::vector<std::string>& words, const std::atomic<boo
     std::cout << help_text;
     return words.empty() ? 2 : 0;
   }
+  // Whoever reads our sentences may be gone first; the machine must still be stopped, the print be taken back.
+  std::signal(SIGPIPE, SIG_IGN);
   const std::vector<std::string> rest(words.begin() + 1, words.end());
   if (words[0] == "list") return list(rest);
   if (words[0] == "add") return add(rest);

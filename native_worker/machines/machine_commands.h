@@ -8,7 +8,8 @@
 
 namespace formwright {
 
-/// `words`: what follows "machine". Returns the exit code; throws Error. `interrupted`: Ctrl-C was pressed.
+/// `words`: what follows "machine". Returns the exit code; throws Error. `interrupted`: Ctrl-C was pressed, or the
+/// terminal closed.
 int machine_command(const std::vector<std::string>& words, const std::atomic<bool>& interrupted);
 
 /// machine_run_commands.cpp

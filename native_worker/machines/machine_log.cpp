@@ -17,18 +17,10 @@ namespace {
 
 constexpr std::uintmax_t most_bytes = std::uintmax_t{512} << 20;  // of all logs together; the oldest go
 constexpr std::streamoff tail_bytes = 4 << 20;                    // of a file, when the newest are asked for
+constexpr std::size_t most_open = 32;                             // machines at once
 
 double unix_seconds() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
-std::string day_now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  ::gmtime_r(&now, &utc);
-  char text[16];
-  std::strftime(text, sizeof text, "%Y-%m-%d", &utc);
-  return text;
 }
 
 std::vector<std::filesystem::path> files_oldest_first(const std::filesystem::path& folder) {
@@ -55,29 +47,48 @@ std::vector<std::string> last_lines(const std::filesystem::path& file) {
 
 }  // namespace
 
-MachineLog::~MachineLog() {
-  for (const auto& [name, descriptor] : open_) ::close(descriptor);
+std::string MachineLog::utc_day() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  ::gmtime_r(&now, &utc);
+  char text[16];
+  std::strftime(text, sizeof text, "%Y-%m-%d", &utc);
+  return text;
+}
+
+MachineLog::~MachineLog() { close_all(); }
+
+void MachineLog::close_all() {
+  for (const auto& [machine, descriptor] : open_) ::close(descriptor);
+  open_.clear();
 }
 
 void MachineLog::tidy() const {
-  std::error_code status;
   std::uintmax_t total = 0;
-  auto files = files_oldest_first(folder_);
+  const auto files = files_oldest_first(folder_);
   for (std::size_t i = files.size(); i-- > 0;) {
-    total += std::filesystem::file_size(files[i], status);
-    if (total > most_bytes && i + 1 < files.size()) std::filesystem::remove(files[i], status);
+    std::error_code status;
+    const std::uintmax_t bytes = std::filesystem::file_size(files[i], status);
+    if (status) continue;  // gone meanwhile
+    total += bytes;
+    // Today's are written, by this program or another: what is put into a removed file is lost.
+    const bool kept = i + 1 == files.size() || files[i].filename().string().starts_with(open_day_);
+    if (total > most_bytes && !kept) std::filesystem::remove(files[i], status);
   }
 }
 
-int MachineLog::descriptor_for(const std::string& name) {
-  if (const auto known = open_.find(name); known != open_.end()) return known->second;
-  for (const auto& [other, descriptor] : open_) ::close(descriptor);  // yesterday's, or another machine's
-  open_.clear();
+int MachineLog::descriptor_for(const Machine& machine) {
+  const std::string day = day_();
+  if (day != open_day_) close_all();
+  open_day_ = day;
+  if (const auto known = open_.find(machine.id); known != open_.end()) return known->second;
+  if (open_.size() >= most_open) close_all();
   std::error_code status;
   std::filesystem::create_directories(folder_, status);
   tidy();
-  const int descriptor = ::open((folder_ / name).c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
-  if (descriptor >= 0) open_[name] = descriptor;
+  const auto path = folder_ / (day + "-" + machine.id + ".jsonl");
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
+  if (descriptor >= 0) open_[machine.id] = descriptor;
   return descriptor;
 }
 
@@ -87,7 +98,7 @@ void MachineLog::append(const Machine& machine, Json entry, bool lasting) {
   entry["name"] = machine.name;
   const std::string line = json_text(entry) + "\n";
   const std::scoped_lock lock(mutex_);
-  const int descriptor = descriptor_for(day_now() + "-" + machine.id + ".jsonl");
+  const int descriptor = descriptor_for(machine);
   // One write a line: whatever happens to this program, a line is there whole or not at all.
   const bool written = descriptor >= 0 &&
                        ::write(descriptor, line.data(), line.size()) == static_cast<ssize_t>(line.size()) &&

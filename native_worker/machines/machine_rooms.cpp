@@ -164,7 +164,7 @@ boost::asio::awaitable<void> MachineRooms::open(std::shared_ptr<Room> room, std:
   try {
     auto lock = std::make_unique<MachineLock>(data_, room->machine);
     const auto port = co_await boost::asio::co_spawn(
-        asking_,
+        opening_,
         [](boost::asio::io_context& io, Machine machine,
            int speed) -> boost::asio::awaitable<std::shared_ptr<MachinePort>> {
           co_return open_machine_port(io, machine, speed);

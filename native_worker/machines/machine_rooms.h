@@ -19,9 +19,10 @@ namespace formwright {
 
 class MachineRooms {
  public:
-  MachineRooms(boost::asio::io_context& io, boost::asio::thread_pool& asking, std::filesystem::path data,
+  /// `opening`: threads on which ports are opened, which blocks.
+  MachineRooms(boost::asio::io_context& io, boost::asio::thread_pool& opening, std::filesystem::path data,
                JobStore& store, MachineLog& log)
-      : io_(io), asking_(asking), data_(std::move(data)), store_(store), log_(log) {}
+      : io_(io), opening_(opening), data_(std::move(data)), store_(store), log_(log) {}
 
   /// Accepts the page and serves it until it is gone. The request has passed the server's checks.
   boost::asio::awaitable<void> serve(std::shared_ptr<MachinePage> page, Head head, Machine machine);
@@ -50,7 +51,7 @@ class MachineRooms {
   static void tell_events(Room& room, const Json& events);
 
   boost::asio::io_context& io_;
-  boost::asio::thread_pool& asking_;
+  boost::asio::thread_pool& opening_;
   const std::filesystem::path data_;
   JobStore& store_;
   MachineLog& log_;

@@ -60,8 +60,8 @@ class Terminal {
   /// Has the machine answered every line? (Serial controllers answer each with ok or error.)
   bool all_answered() const { return machine_.kind != MachineKind::serial || unanswered_ == 0; }
 
-  /// Runs until `done(state)` is true. Ctrl-C and a stop from elsewhere stop the machine first and then throw
-  /// Error{cancelled}.
+  /// Runs until `done(state)` is true. Ctrl-C, a closed terminal and a stop from elsewhere stop the machine first and
+  /// then throw Error{cancelled}.
   template <class Done>
   void run_until(const Done& done, double patience_s, const std::string& otherwise) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(patience_s);
@@ -146,7 +146,7 @@ class Terminal {
       io_.restart();
       io_.run_for(20ms);
     }
-    session_->end(from_elsewhere ? "Stopped by another process." : "Stopped with Ctrl-C.");
+    session_->end(from_elsewhere ? "Stopped by another process." : "Stopped with Ctrl-C, or its terminal was closed.");
     throw Error(ErrorCode::cancelled, "",
                 "Stopped: laser off, the rest of the job is not sent. Home the machine before the next job.");
   }

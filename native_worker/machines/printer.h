@@ -51,7 +51,8 @@ struct PrintResult {
 
 /// Returns when the printer says it is done. Refuses before anything is sent: Error{invalid_input} with where media,
 /// copies, quality, mirrored or sha256. Error{could_not_solve, "machine"}: the printer refused, stopped or vanished.
-/// Error{cancelled}: the job was taken back at the printer as well.
+/// Error{cancelled}: the job was taken back at the printer as well. Once the document is out, that needs the printer's
+/// answer, for which a cancel waits up to 30 s; where none comes, the sentence says that sheets may come out.
 PrintResult print_document(const PrinterAddress& address, const PrintOrder& order, const std::atomic<bool>& cancelled,
                            const PrintProgress& progress);
 

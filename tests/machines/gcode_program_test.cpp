@@ -46,6 +46,7 @@ TEST(GcodeProgram, BoundsHoldUnitsRelativeMovesAndArcs) {
   const GcodeProgram inches = program("G20\nG0X1Y2");
   EXPECT_NEAR(inches.bounds().high_mm[0], 25.4, 1e-12);
   EXPECT_NEAR(inches.bounds().high_mm[1], 50.8, 1e-12);
+  // As if the head stood at the origin, from where alone such a job is started.
   const GcodeProgram relative = program("G91\nG1X10F100\nX10\nY-5");
   EXPECT_NEAR(relative.bounds().high_mm[0], 20, 1e-12);
   EXPECT_NEAR(relative.bounds().low_mm[1], -5, 1e-12);
@@ -60,6 +61,17 @@ TEST(GcodeProgram, BoundsHoldUnitsRelativeMovesAndArcs) {
   EXPECT_NEAR(circle.bounds().high_mm[1], 10, 1e-9);
   // Machine coordinates say nothing about work coordinates.
   EXPECT_TRUE(program("G53G0X-5").bounds().empty);
+}
+
+TEST(GcodeProgram, KnowsWhetherItCountsFromWhereTheHeadStands) {
+  for (const char* text :
+       {"G91\nG1X10F100", "G21G91M4S300\nG1X100F1000", "G0X1\nG91\nY5", "G2X10Y0I5F100", "G3I5F100", "G0Y1\nG2X10I5"})
+    EXPECT_TRUE(program(text).from_here()) << text;
+  // Only x and y count, and only until the program has said where they go. The last is as Formwright's own jobs begin.
+  for (const char* text : {"G91\nG0Z5\nG90\nG0X1Y2", "G91G0Z5\nG90G0X1Y2\nG91X5", "G0X1Y2\nG91\nX2Y-5",
+                           "G91G28X0Y0\nG90G0X1Y1\nG2X3I1", "G90.1G91.1\nG0X5", "G53G0X-5", "G91G53G0X-5",
+                           "G21\nG90\nG94\nM4 S0\nG0 X1 Y2 S0\nG1 X3 Y2 S9 F60\nM5\nG0 X0 Y0\nM2"})
+    EXPECT_FALSE(program(text).from_here()) << text;
 }
 
 TEST(GcodeProgram, KnowsTheStateALineBeginsIn) {

@@ -279,6 +279,61 @@ TEST(GrblDriver, JobsThatDoNotFitAreRefusedBeforeAnythingMoves) {
   EXPECT_EQ(talk.machine.position_mm(), there);
 }
 
+TEST(GrblDriver, AJobThatCountsFromTheHeadStartsAtTheOriginOnly) {
+  GrblTalk talk;
+  talk.connect_and_home();
+  const double origin_mm = talk.machine.position_mm()[0];
+  const auto rest = [&] {
+    talk.pass(0.5);
+    ASSERT_TRUE(talk.pass_until([&] { return talk.phase() == "idle" && talk.can("start"); }, 20));
+  };
+  talk.load("G21G91M4S300\nG1X100F6000\nM5\n");
+  talk.tell({{"do", "jog"}, {"x_mm", 250}, {"y_mm", 250}, {"speed_mm_per_s", 150}});
+  rest();
+  // From here it would go to x 350, and the bed ends at 301.
+  EXPECT_NE(talk.refusal(start).find("G91"), std::string::npos);
+  talk.tell({{"do", "go_to"}, {"x_mm", 0}, {"y_mm", 0}, {"speed_mm_per_s", 150}});
+  rest();
+  EXPECT_EQ(talk.refusal(start), "");
+  ASSERT_TRUE(talk.pass_until([&] { return !talk.ended().empty(); }, 30));
+  EXPECT_EQ(talk.ended(), "done");
+  EXPECT_NEAR(talk.machine.position_mm()[0], origin_mm + 100, 1e-9);
+  rest();
+  EXPECT_NE(talk.refusal(start), "");
+  talk.tell({{"do", "set_origin"}, {"axes", "xy"}});
+  EXPECT_EQ(talk.refusal(start), "");
+  ASSERT_TRUE(talk.pass_until([&] { return talk.ended() == "done"; }, 30));
+  EXPECT_NEAR(talk.machine.position_mm()[0], origin_mm + 200, 1e-9);
+  // A tool that is lifted first does not make such a job.
+  talk.load("G21G91\nG0Z-5\nG90\nG0X10Y10\nG0X0Y0\n");
+  rest();
+  EXPECT_EQ(talk.refusal(start), "");
+}
+
+TEST(GrblDriver, AJobThatCountsFromTheHeadGoesOnFromAnywhere) {
+  GrblTalk talk;
+  talk.connect_and_home();
+  const auto origin = talk.machine.position_mm();
+  std::string job = "G21G91\nM4S400\n";
+  for (int i = 0; i < 20; ++i) job += "G0Y2\nG1X20F3000\nG0Y2\nG1X-20\n";
+  talk.load(job + "M5\n");
+  talk.tell(start);
+  ASSERT_TRUE(talk.pass_until([&] { return talk.state()["job"]["acknowledged"] > 40; }, 60));
+  talk.tell(stop);
+  talk.pass(2);
+  const int from = talk.state()["job"]["careful_line"];
+  ASSERT_GT(from, 10);
+  talk.tell({{"do", "home"}, {"confirmed", true}});
+  ASSERT_TRUE(talk.pass_until([&] { return talk.phase() == "idle" && talk.state()["position_known"] == true; }, 20));
+  talk.pass(1);
+  EXPECT_NE(talk.refusal(start), "");
+  EXPECT_EQ(talk.refusal({{"do", "start"}, {"confirmed", true}, {"from_line", from}}), "");
+  ASSERT_TRUE(talk.pass_until([&] { return !talk.ended().empty(); }, 120));
+  EXPECT_EQ(talk.ended(), "done");
+  EXPECT_NEAR(talk.machine.position_mm()[0], origin[0], 1e-6);
+  EXPECT_NEAR(talk.machine.position_mm()[1], origin[1] + 80, 1e-6);
+}
+
 TEST(GrblDriver, AJobMayStartAtOnceFromAnOriginJustSet) {
   GrblTalk talk;
   talk.connect_and_home();

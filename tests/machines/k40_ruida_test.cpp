@@ -54,6 +54,14 @@ TEST(K40, ReadsEgvFiles) {
   EXPECT_THROW(k40_packets(""), Error);
 }
 
+std::string notes_of(MachineDriver& driver) {
+  std::string notes;
+  const Json events = driver.take_events();
+  for (const Json& event : events)
+    if (event["event"] == "note") notes += event["text"].get<std::string>() + "\n";
+  return notes;
+}
+
 /// The board's side: judges every transfer, is busy now and then, and hears badly.
 class VirtualBoard {
  public:
@@ -70,7 +78,8 @@ class VirtualBoard {
     EXPECT_EQ(bytes[0], std::byte{0xa6});
     EXPECT_EQ(bytes[32], std::byte{0xa6});
     std::string letters(as_text(bytes).substr(2, 30));
-    if (random_.uniform() < spoil_) letters[random_.below(30)] ^= 1;
+    if (random_.uniform() < spoil_ || spoil_next > 0) letters[random_.below(30)] ^= 1, ++spoiled;
+    if (spoil_next > 0) --spoil_next;
     if (one_wire_crc(letters) != std::to_integer<unsigned char>(bytes[33])) {
       status_ = 207;
       return {};
@@ -82,6 +91,7 @@ class VirtualBoard {
     return {};
   }
   std::vector<std::string> heard;
+  int spoil_next = 0, spoiled = 0;  // packets
 
  private:
   Random random_;
@@ -101,6 +111,16 @@ struct K40Talk {
       driver.tick(now_s);
     }
   }
+  void start_job() {
+    pass(1);
+    driver.command({{"do", "home"}, {"confirmed", true}}, now_s);
+    pass(3);
+    driver.load("job.egv", as_bytes(std::string(30 * 500, 'B')));
+    driver.command({{"do", "start"}, {"confirmed", true}}, now_s);
+    pass(0.3);
+  }
+  std::string phase() const { return driver.state(now_s)["phase"]; }
+
   VirtualBoard board;
   K40Driver driver;
   double now_s = 0;
@@ -143,6 +163,66 @@ TEST(K40, StopOvertakesAndNothingFollows) {
   EXPECT_LT(talk.board.heard.size(), 100u);
   EXPECT_FALSE(talk.driver.state(talk.now_s)["position_known"]);
   EXPECT_EQ(talk.driver.state(talk.now_s)["job"]["ended"], "stopped");
+}
+
+TEST(K40, AStopThatArrivesSpoiledIsSentAgain) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    K40Talk talk(seed);
+    talk.start_job();
+    talk.board.spoil_next = 2;
+    talk.driver.command({{"do", "stop"}}, talk.now_s);
+    EXPECT_EQ(talk.phase(), "stopping");
+    talk.pass(1);
+    EXPECT_EQ(talk.board.spoiled, 2);
+    EXPECT_EQ(talk.board.heard.back(), padded("I"));
+    EXPECT_EQ(talk.phase(), "idle");
+  }
+}
+
+TEST(K40, AnAnswerFromBeforeTheStopDoesNotConfirmIt) {
+  K40Driver driver({.controller = DriverController::k40});
+  const auto answer = [](int status) { return Bytes{std::byte{255}, static_cast<std::byte>(status)}; };
+  driver.opened(0);
+  driver.take_output();  // the board is asked
+  driver.command({{"do", "stop"}}, 0.01);
+  driver.received(answer(206), 0.02);
+  EXPECT_EQ(driver.state(0.02)["phase"], "stopping");
+  driver.tick(0.1);
+  driver.take_output();
+  driver.received(answer(207), 0.11);
+  EXPECT_EQ(driver.state(0.11)["phase"], "stopping");
+  EXPECT_EQ(driver.take_output().at(0), k40_transfer("I"));
+  driver.received(answer(206), 0.12);
+  EXPECT_EQ(driver.state(0.12)["phase"], "idle");
+}
+
+TEST(K40, AStopThatNeverArrivesIsSaid) {
+  K40Talk talk;
+  talk.start_job();
+  talk.board.spoil_next = 1000;
+  talk.driver.command({{"do", "stop"}}, talk.now_s);
+  talk.pass(3);
+  EXPECT_EQ(talk.board.spoiled, 11);  // and not for ever
+  EXPECT_NE(notes_of(talk.driver).find("switch it off"), std::string::npos);
+  EXPECT_EQ(talk.driver.state(talk.now_s)["job"]["ended"], "stopped");
+  EXPECT_EQ(talk.phase(), "idle");
+  // It can be used again when its cable is better.
+  talk.board.spoil_next = 0;
+  talk.driver.command({{"do", "home"}, {"confirmed", true}}, talk.now_s);
+  talk.pass(3);
+  EXPECT_TRUE(talk.driver.state(talk.now_s)["position_known"]);
+}
+
+TEST(K40, AJobThatNeverArrivesIsStopped) {
+  K40Talk talk;
+  talk.start_job();
+  talk.board.spoil_next = 1000;
+  talk.pass(5);
+  EXPECT_EQ(talk.driver.state(talk.now_s)["job"]["ended"], "failed");
+  EXPECT_EQ(talk.board.spoiled, 22);  // a packet of the job, then the stop
+  const std::string notes = notes_of(talk.driver);
+  EXPECT_NE(notes.find("shorter cable"), std::string::npos);
+  EXPECT_NE(notes.find("switch it off"), std::string::npos);
 }
 
 TEST(K40, KeepsInsideItsBed) {
@@ -197,10 +277,16 @@ class VirtualRuida {
  public:
   VirtualRuida(std::uint64_t seed, double lose) : random_(seed), lose_(lose) {}
   std::vector<Bytes> receive(ByteView datagram) {
-    if (random_.uniform() < lose_) return {};
     std::string plain;
     for (const std::byte byte : datagram.subspan(2))
       plain += static_cast<char>(ruida_unswizzled(std::to_integer<unsigned char>(byte)));
+    stops += plain == "\xd8\x01";
+    if (random_.uniform() < lose_) return {};
+    if (lose_next > 0) {
+      --lose_next;
+      return {};
+    }
+    if (refuses) return {Bytes{std::byte{ruida_swizzled(0xcf)}}};
     std::vector<Bytes> replies;
     if (plain == last_) replies = last_replies_;  // a repetition of what had arrived
     else {
@@ -222,6 +308,8 @@ class VirtualRuida {
     return replies;
   }
   std::string heard;
+  int lose_next = 0, stops = 0;  // datagrams; those that are lost count as well
+  bool refuses = false;
 
  private:
   Random random_;
@@ -241,6 +329,8 @@ struct RuidaTalk {
       driver.tick(now_s);
     }
   }
+  std::string phase() const { return driver.state(now_s)["phase"]; }
+
   VirtualRuida laser;
   RuidaDriver driver;
   double now_s = 0;
@@ -266,6 +356,60 @@ TEST(Ruida, JobsArriveInOrderOverALossyNetwork) {
   talk.pass(40);
   EXPECT_EQ(talk.driver.state(talk.now_s)["job"]["ended"], "done") << talk.driver.state(talk.now_s).dump();
   EXPECT_EQ(talk.laser.heard, plain);
+}
+
+TEST(Ruida, AStopThatIsLostIsSentAgain) {
+  RuidaTalk talk;
+  talk.pass(2);
+  talk.laser.lose_next = 2;
+  talk.driver.command({{"do", "stop"}}, talk.now_s);
+  talk.pass(0.5);
+  EXPECT_EQ(talk.laser.heard, "");
+  EXPECT_EQ(talk.phase(), "stopping");
+  talk.pass(4);
+  EXPECT_EQ(talk.laser.heard, "\xd8\x01");
+  EXPECT_EQ(talk.phase(), "idle");
+}
+
+TEST(Ruida, TheAnswerToWhatWasUnderWayDoesNotConfirmAStop) {
+  RuidaDriver driver({.controller = DriverController::ruida});
+  const Bytes taken{std::byte{ruida_swizzled(0xcc)}}, stop = ruida_datagram("\xd8\x01");
+  driver.opened(0);
+  driver.take_output();  // a question is under way
+  driver.command({{"do", "stop"}}, 0.1);
+  EXPECT_EQ(driver.take_output(), std::vector<Bytes>{stop});
+  driver.received(taken, 0.2);
+  EXPECT_EQ(driver.state(0.2)["phase"], "stopping");
+  driver.tick(1.3);
+  EXPECT_EQ(driver.take_output(), std::vector<Bytes>{stop});
+  driver.received(taken, 1.4);
+  EXPECT_EQ(driver.state(1.4)["phase"], "idle");
+}
+
+TEST(Ruida, AStopThatIsRefusedIsSaid) {
+  RuidaTalk talk;
+  talk.pass(2);
+  talk.laser.refuses = true;
+  talk.driver.command({{"do", "stop"}}, talk.now_s);
+  talk.pass(3);
+  EXPECT_NE(notes_of(talk.driver).find("refuses to stop"), std::string::npos);
+  EXPECT_NE(talk.phase(), "stopping");
+  const int stops = talk.laser.stops;
+  EXPECT_GE(stops, 5);
+  EXPECT_LE(stops, 6);  // the first answer may have been to a question
+  talk.pass(3);
+  EXPECT_EQ(talk.laser.stops, stops);
+}
+
+TEST(Ruida, AStopThatIsNotAnsweredIsSaid) {
+  RuidaTalk talk;
+  talk.pass(2);
+  talk.laser.lose_next = 1000;
+  talk.driver.command({{"do", "stop"}}, talk.now_s);
+  talk.pass(8);
+  EXPECT_EQ(talk.laser.stops, 5);
+  EXPECT_NE(notes_of(talk.driver).find("does not answer the stop"), std::string::npos);
+  EXPECT_EQ(talk.driver.state(talk.now_s)["connection"], "silent");
 }
 
 TEST(Ruida, SaysSoWhenNothingAnswers) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <deque>
+
 #include "base/error.h"
 #include "base/random.h"
 
@@ -21,22 +23,38 @@ class VirtualMarlin {
         continue;
       }
       std::string line = std::exchange(line_, {});
-      ++heard;
+      heard.push_back(line);
       if (dumb) continue;
       if (!line.empty() && random_.uniform() < spoil_) line[random_.below(line.size())] ^= 0x04;
-      take(line);
+      inbox_.push_back(line);
     }
+    while (!slow && !inbox_.empty()) work();
   }
+  /// Does one line of those that have arrived.
+  void work() {
+    if (inbox_.empty()) return;
+    const auto numbered =
+        std::count_if(inbox_.begin(), inbox_.end(), [](const std::string& line) { return line.starts_with('N'); });
+    most_numbered = std::max(most_numbered, numbered);
+    const std::string line = inbox_.front();
+    inbox_.pop_front();
+    take(line);
+  }
+  long done_times(const std::string& line) const { return std::count(done.begin(), done.end(), line); }
+  long heard_times(const std::string& line) const { return std::count(heard.begin(), heard.end(), line); }
+
   std::string output;
-  std::vector<std::string> done;
-  int heard = 0;           // lines
-  std::string unanswered;  // what is done without a word
-  bool dumb = false;       // hears, does nothing, says nothing
+  std::vector<std::string> done, heard;
+  std::ptrdiff_t most_numbered = 0;  // lines with a number that waited at a time
+  std::string unanswered;            // what is done without a word
+  bool dumb = false;                 // hears, does nothing, says nothing
+  bool slow = false;                 // does a line when it is told to work()
+  bool emergency_parser = false;     // takes M108 and M410 out of the line without an answer
 
  private:
   void take(const std::string& line) {
-    if (line == "M108" || line == "M410") {
-      output += "ok\n";
+    if (!line.starts_with('N') && line.find('*') == std::string::npos) {  // may come without a number
+      if (!emergency_parser || (line != "M108" && line != "M410")) output += "ok\n";
       done.push_back(line);
       return;
     }
@@ -62,19 +80,54 @@ class VirtualMarlin {
   }
 
   std::string line_;
+  std::deque<std::string> inbox_;
   int last_ = 0;
   Random random_;
   double spoil_;
 };
 
 struct MarlinTalk {
-  explicit MarlinTalk(double spoil = 0, std::uint64_t seed = 1, MachineTool tool = MachineTool::printer)
-      : machine(seed, spoil), driver({.controller = DriverController::marlin, .tool = tool}) {
+  explicit MarlinTalk(double spoil = 0, std::uint64_t seed = 1, MachineTool tool = MachineTool::printer,
+                      double focus_seconds = 60)
+      : machine(seed, spoil),
+        driver({.controller = DriverController::marlin, .tool = tool, .focus_seconds = focus_seconds}) {
     driver.opened(0);
+  }
+  void hand_over() {
+    for (const Bytes& packet : driver.take_output()) machine.receive(as_text(packet));
+  }
+  /// What still leaves when the port is closed now.
+  std::string leaves() {
+    std::string text = "\n";
+    for (const Bytes& packet : driver.take_output()) text += as_text(packet);
+    return text;
+  }
+  std::string phase() const { return driver.state(now_s)["phase"]; }
+  bool can(const std::string& what) const {
+    const Json names = driver.state(now_s)["can"];
+    return std::find(names.begin(), names.end(), what) != names.end();
+  }
+  void tell(const Json& command) { driver.command(command, now_s); }
+  std::string refusal(const Json& command) {
+    try {
+      tell(command);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  }
+  /// A job of many moves, under way.
+  void start_moves() {
+    std::string job;
+    for (int i = 0; i < 5000; ++i) job += "G1 X" + std::to_string(i) + " F3000\n";
+    driver.load("test", as_bytes(job));
+    tell({{"do", "start"}, {"confirmed", true}});
+    pass(0.5);
   }
   void pass(double seconds) {
     for (const double end = now_s + seconds; now_s < end; now_s += 0.01) {
-      for (const Bytes& packet : driver.take_output()) machine.receive(as_text(packet));
+      hand_over();
+      if (machine.slow) machine.work();
       driver.received(as_bytes(std::exchange(machine.output, {})), now_s);
       driver.tick(now_s);
     }
@@ -180,15 +233,148 @@ TEST(MarlinDriver, SilenceEndsAJobAndIsNotTalkedInto) {
   talk.driver.command({{"do", "start"}, {"confirmed", true}}, talk.now_s);
   talk.pass(0.5);
   talk.machine.dumb = true;
-  const int heard = talk.machine.heard;
+  const std::size_t heard = talk.machine.heard.size();
   talk.pass(110);
   EXPECT_TRUE(talk.driver.state(talk.now_s)["job"]["ended"].is_null());
-  EXPECT_LE(talk.machine.heard - heard, 5);
+  EXPECT_LE(talk.machine.heard.size() - heard, 5u);
   talk.pass(20);
   const Json state = talk.driver.state(talk.now_s);
   EXPECT_EQ(state["job"]["ended"], "cut_off");
   EXPECT_EQ(state["connection"], "silent");
   EXPECT_FALSE(state["position_known"]);
+  EXPECT_EQ(talk.machine.heard_times("M104 S0"), 1);
+  EXPECT_EQ(talk.machine.heard_times("M112"), 0);  // it may have been the cable
+}
+
+TEST(MarlinDriver, WhatTurnsOffLeavesBeforeThePortCloses) {
+  MarlinTalk talk;
+  talk.pass(3);
+  talk.start_moves();
+  talk.tell({{"do", "pause"}});
+  talk.pass(0.5);
+  ASSERT_EQ(talk.phase(), "paused");
+  talk.tell({{"do", "stop"}});
+  const std::string text = talk.leaves();
+  for (const char* line : {"\nM108\n", "\nM410\n", "\nM104 S0\n", "\nM140 S0\n", "\nM107\n"})
+    EXPECT_NE(text.find(line), std::string::npos) << line << " is not in " << text;
+}
+
+TEST(MarlinDriver, AStopIsOverWhenAllIsTurnedOff) {
+  MarlinTalk talk;
+  talk.pass(3);
+  talk.tell({{"do", "stop"}});
+  EXPECT_EQ(talk.phase(), "stopping");
+  for (int i = 0; i < 400 && talk.phase() == "stopping"; ++i) talk.pass(0.01);
+  EXPECT_EQ(talk.phase(), "idle");
+  // Once at once, and once with a number, which it asks for until it is there.
+  for (const char* line : {"M104 S0", "M140 S0", "M107"}) EXPECT_EQ(talk.machine.done_times(line), 2) << line;
+  EXPECT_EQ(talk.machine.heard_times("M112"), 0);
+}
+
+TEST(MarlinDriver, AnswersToLinesWithoutANumberPassForNoOthers) {
+  for (const bool emergency_parser : {false, true}) {
+    SCOPED_TRACE(emergency_parser);
+    MarlinTalk talk;
+    talk.pass(3);
+    talk.machine.slow = true;
+    talk.machine.emergency_parser = emergency_parser;
+    talk.start_moves();
+    talk.hand_over();  // a line is under way
+    talk.machine.most_numbered = 0;
+    talk.tell({{"do", "stop"}});
+    talk.pass(4);
+    EXPECT_EQ(talk.phase(), "idle");
+    EXPECT_EQ(talk.machine.most_numbered, 1);
+    EXPECT_EQ(talk.machine.done_times("M104 S0"), 2);
+    EXPECT_EQ(talk.machine.heard_times("M112"), 0);
+  }
+}
+
+TEST(MarlinDriver, AStopBeforeTheGreetingIsNoEmergency) {
+  MarlinTalk talk;
+  talk.machine.output.clear();  // a board that does not restart when its port is opened
+  talk.tell({{"do", "stop"}});
+  EXPECT_EQ(talk.phase(), "stopping");
+  EXPECT_NE(talk.leaves().find("\nM140 S0\n"), std::string::npos);
+  talk.pass(6);
+  EXPECT_EQ(talk.machine.heard_times("M112"), 0);
+  EXPECT_EQ(talk.phase(), "idle");
+}
+
+TEST(MarlinDriver, AStopThatIsNotHeardBecomesAnEmergency) {
+  MarlinTalk talk;
+  talk.pass(3);
+  talk.start_moves();
+  talk.machine.dumb = true;
+  talk.hand_over();
+  talk.tell({{"do", "stop"}});
+  talk.pass(1.9);
+  EXPECT_EQ(talk.machine.heard_times("M112"), 0);
+  talk.pass(0.3);
+  EXPECT_EQ(talk.machine.heard_times("M112"), 1);
+  EXPECT_EQ(talk.phase(), "alarm");
+}
+
+TEST(MarlinDriver, TheFocusLightGoesOutThoughALineIsUnanswered) {
+  MarlinTalk talk(0, 1, MachineTool::laser, 5);
+  const Json focus = {{"do", "focus"}, {"power_percent", 1}, {"confirmed", true}};
+  talk.pass(3);
+  talk.tell(focus);
+  talk.pass(0.5);
+  ASSERT_EQ(talk.machine.done_times("M3 S2.55"), 1);
+  talk.tell({{"do", "focus_off"}});
+  talk.pass(0.5);
+  EXPECT_EQ(talk.machine.done_times("M5"), 2);
+  talk.tell(focus);
+  talk.machine.unanswered = "M105";  // asked for every two seconds
+  talk.pass(4.5);
+  EXPECT_EQ(talk.machine.done_times("M5"), 2);
+  talk.pass(0.7);  // it goes out by itself
+  EXPECT_EQ(talk.machine.done_times("M5"), 3);
+  // By hand, and the port is closed at once.
+  MarlinTalk other(0, 1, MachineTool::laser);
+  other.pass(3);
+  other.tell(focus);
+  other.machine.unanswered = "M105";
+  other.pass(2.5);
+  other.tell({{"do", "focus_off"}});
+  EXPECT_NE(other.leaves().find("\nM5\n"), std::string::npos);
+}
+
+TEST(MarlinDriver, AJogIsAMoveUntilItIsDone) {
+  MarlinTalk talk(0, 1, MachineTool::laser);
+  talk.pass(3);
+  talk.tell({{"do", "set_origin"}});
+  talk.driver.load("test", as_bytes("G21\nG90\nG1 X5 F3000\n"));
+  EXPECT_TRUE(talk.can("start"));
+  talk.tell({{"do", "jog"}, {"x_mm", 30}, {"speed_mm_per_s", 20}});
+  EXPECT_EQ(talk.phase(), "jogging");  // who ends the session stops the machine first
+  EXPECT_TRUE(talk.can("jog"));
+  EXPECT_FALSE(talk.can("start"));
+  talk.pass(1.5);
+  EXPECT_EQ(talk.phase(), "jogging");
+  talk.pass(0.5);
+  EXPECT_EQ(talk.phase(), "idle");
+  EXPECT_TRUE(talk.can("start"));
+}
+
+TEST(MarlinDriver, AJobThatCountsFromTheHeadStartsAtTheOriginOnly) {
+  const std::string job = "G21\nG91\nM4 S100\nG1 X100 F1000\n";
+  const Json start = {{"do", "start"}, {"confirmed", true}};
+  MarlinTalk talk(0, 1, MachineTool::laser);
+  talk.pass(3);
+  talk.tell({{"do", "home"}, {"confirmed", true}});
+  talk.pass(1);
+  ASSERT_TRUE(talk.driver.state(talk.now_s)["position_known"]);
+  talk.driver.load("test", as_bytes(job));
+  EXPECT_NE(talk.refusal(start).find("G91"), std::string::npos);  // it says x 1, y 2
+  talk.tell({{"do", "set_origin"}});
+  EXPECT_EQ(talk.refusal(start), "");
+  // A printer's job homes it by itself.
+  MarlinTalk printer;
+  printer.pass(3);
+  printer.driver.load("test", as_bytes(job));
+  EXPECT_EQ(printer.refusal(start), "");
 }
 
 TEST(MarlinDriver, ALostAnswerDoesNotMakeAJobDone) {

@@ -17,7 +17,7 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import machine_peers as peers
-from worker import PageSocket, Worker
+from worker import HEARS_HANGUPS, PageSocket, Worker
 
 
 def squares(count: int, size_mm: float = 10) -> bytes:
@@ -206,14 +206,25 @@ class Driven(unittest.TestCase):
         entries = [json.loads(line) for log in (self.data / "machine_log").glob("*.jsonl") for line in log.read_text().splitlines()]
         self.assertTrue(any(e["event"] == "ended" and e["how"] == "cut_off" for e in entries), entries[-3:])
 
-    def test_a_worker_that_is_ended_stops_the_machine(self):
+    def ended_by(self, signal_number: int):
         page = self.ready(squares(40))
-        self.worker.stop()
+        self.worker.process.stdout.close()  # nobody reads what it says, as when the terminal is gone
+        self.worker.process.send_signal(signal_number)
+        self.assertEqual(self.worker.process.wait(10), 0)
         page.vanish()
         peers.wait_until(lambda: not self.laser.look()["beam"], 3, "the beam going out")
         place = self.laser.look()
         time.sleep(0.5)
         self.assertEqual(self.laser.look()["position_mm"], place["position_mm"])
+        entries = [json.loads(line) for log in (self.data / "machine_log").glob("*.jsonl") for line in log.read_text().splitlines()]
+        self.assertTrue(any(e["event"] == "ended" and e["how"] == "stopped" for e in entries), entries[-3:])
+        self.assertEqual((entries[-1]["event"], entries[-1]["text"]), ("close", "The worker ended."))
+
+    def test_a_worker_that_is_ended_stops_the_machine(self):
+        self.ended_by(signal.SIGTERM)
+
+    def test_a_worker_whose_terminal_is_closed_stops_the_machine(self):
+        self.ended_by(signal.SIGHUP)
 
     def test_the_log_survives_a_killed_worker(self):
         page = self.ready(squares(40))
@@ -401,14 +412,11 @@ class CommandLine(unittest.TestCase):
                 self.assertEqual(self.laser.look()["position_mm"], before)
         self.assertEqual(self.laser.look()["burns"], 0)
 
-    def test_ctrl_c_stops_the_machine(self):
+    def send(self, *before: str, **streams) -> subprocess.Popen:
         self.job.write_bytes(squares(60))
-        process = subprocess.Popen([peers.PROGRAM, "machine", "send", "--data", self.data, "--machine", "laser", "--job", self.job, "--yes"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        peers.wait_until(lambda: self.laser.look()["burns"] > 3, 30, "the burning")
-        process.send_signal(signal.SIGINT)
-        out, said = process.communicate(timeout=20)
-        self.assertEqual(process.returncode, 130, said)
-        self.assertIn("Stopped: laser off", said)
+        return subprocess.Popen([*HEARS_HANGUPS, *before, peers.PROGRAM, "machine", "send", "--data", self.data, "--machine", "laser", "--job", self.job, "--yes"], text=True, **streams)
+
+    def assert_stopped(self):
         seen = self.laser.look()
         self.assertFalse(seen["beam"])
         time.sleep(0.5)
@@ -416,6 +424,38 @@ class CommandLine(unittest.TestCase):
         entries = self.entries()
         self.assertTrue(any(e["event"] == "ended" and e["how"] == "stopped" for e in entries))
         self.assertEqual(entries[-1]["event"], "close")
+
+    def test_ctrl_c_stops_the_machine(self):
+        process = self.send(stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        peers.wait_until(lambda: self.laser.look()["burns"] > 3, 30, "the burning")
+        process.send_signal(signal.SIGINT)
+        out, said = process.communicate(timeout=20)
+        self.assertEqual(process.returncode, 130, said)
+        self.assertIn("Stopped: laser off", said)
+        self.assert_stopped()
+
+    def test_a_closed_terminal_stops_the_machine(self):
+        terminal, theirs = pty.openpty()
+        process = self.send("setsid", "--ctty", stdin=theirs, stdout=theirs, stderr=theirs)
+        os.close(theirs)
+
+        def burns():
+            while select.select([terminal], [], [], 0)[0]:  # its progress: a terminal nobody reads would hold it up
+                os.read(terminal, 4096)
+            return self.laser.look()["burns"] > 3
+        peers.wait_until(burns, 30, "the burning")
+        os.close(terminal)  # the window is closed, the line drops
+        self.assertEqual(process.wait(20), 130)
+        self.assert_stopped()
+
+    def test_a_hangup_stops_the_machine_though_nobody_reads_what_it_says(self):
+        process = self.send(stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        peers.wait_until(lambda: self.laser.look()["burns"] > 3, 30, "the burning")
+        process.stdout.close()
+        process.stderr.close()
+        process.send_signal(signal.SIGHUP)
+        self.assertEqual(process.wait(20), 130)
+        self.assert_stopped()
 
     def test_mistakes_are_named(self):
         for part, words in (("There is no machine called X", ("send", "--machine", "X", "--job", self.job)), ("There is no file", ("send", "--machine", "laser", "--job", "/nothing")),

@@ -6,8 +6,10 @@ import json
 import os
 import pathlib
 import queue
+import re
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -124,10 +126,72 @@ mv "$SPOOL/job-$$.env" "$SPOOL/job-$$.done"
             found.append((done.with_suffix(".document").read_bytes(), attributes))
         return found
 
+    def state_of(self, job: int) -> str:
+        """What the printer says of it: completed, canceled, processing..."""
+        question = self.folder / "job.test"
+        question.write_text("{ OPERATION Get-Job-Attributes GROUP operation-attributes-tag ATTR charset attributes-charset utf-8 ATTR language attributes-natural-language en "
+                            f"ATTR uri printer-uri $uri ATTR integer job-id {job} ATTR name requesting-user-name $user }}")
+        told = subprocess.run(["ipptool", "-tv", self.url, question], capture_output=True, text=True).stdout
+        return re.search(r"job-state \(enum\) = (\S+)", told).group(1)
+
     def stop(self) -> None:
         for process in reversed(self.processes):
             end(process)
         self.log.close()
+
+
+class LateLine:
+    """A line to what listens at another port here. Once the words went out over a connection, what comes back on it waits for `through`."""
+
+    def __init__(self, to: int, words: bytes):
+        self.to, self.words = to, words
+        self.asked, self.through = threading.Event(), threading.Event()
+        self.answered = b""  # what came back on connections over which the words went
+        self.listener = socket.create_server(("127.0.0.1", 0))
+        self.port = self.listener.getsockname()[1]
+        self.open = [self.listener]
+        threading.Thread(target=self._serve, daemon=True).start()
+
+    def _serve(self) -> None:
+        while True:
+            try:
+                near = self.listener.accept()[0]
+            except OSError:  # stopped
+                return
+            far, held = socket.create_connection(("127.0.0.1", self.to)), threading.Event()
+            self.open += [near, far]
+            for work, *ends in ((self._ask, near, far, held), (self._answer, far, near, held)):
+                threading.Thread(target=self._until_closed, args=(work, *ends), daemon=True).start()
+
+    @staticmethod
+    def _until_closed(work, source: socket.socket, sink: socket.socket, held: threading.Event) -> None:
+        try:
+            work(source, sink, held)
+            sink.shutdown(socket.SHUT_WR)
+        except OSError:
+            pass
+
+    def _ask(self, near: socket.socket, far: socket.socket, held: threading.Event) -> None:
+        said = b""
+        while data := near.recv(65536):
+            said += data
+            if self.words in said:
+                held.set()  # before it goes on, so that no answer overtakes
+            far.sendall(data)
+            if held.is_set():
+                self.asked.set()
+
+    def _answer(self, far: socket.socket, near: socket.socket, held: threading.Event) -> None:
+        while data := far.recv(65536):
+            if held.is_set():
+                self.answered += data
+                self.through.wait()
+            near.sendall(data)
+
+    def stop(self) -> None:
+        self.through.set()
+        for one in self.open:
+            one.close()
 
 
 class OctoPrint:

@@ -70,14 +70,14 @@ class Printing(unittest.TestCase):
         cls.printer.stop()
         cls.temporary.cleanup()
 
-    def order(self, document: bytes, **order):
-        status, answer = self.worker.json("POST", f"/api/machines/{self.id}/print", {"sha256": self.worker.put_blob(document), **order})
+    def order(self, document: bytes, machine: str | None = None, **order):
+        status, answer = self.worker.json("POST", f"/api/machines/{machine or self.id}/print", {"sha256": self.worker.put_blob(document), **order})
         self.assertEqual(status, 202, answer)
         return answer["id"]
 
-    def wait(self, job: str):
+    def wait(self, job: str, machine: str | None = None):
         def ended():
-            state = self.worker.json("GET", f"/api/machines/{self.id}/jobs/{job}")[1]
+            state = self.worker.json("GET", f"/api/machines/{machine or self.id}/jobs/{job}")[1]
             self.seen.add(state["state"])
             return state if state["state"] in ("done", "failed", "cancelled") else None
         self.seen: set[str] = set()
@@ -186,6 +186,41 @@ class Printing(unittest.TestCase):
         self.assertEqual(self.wait(job)["state"], "cancelled")
         told = peers.wait_until(lambda: re.search(r"Cancel-Job", (self.printer.folder / "printer.log").read_text()), 10, "the printer's cancel")
         self.assertTrue(told)
+
+    def cancelled_while_taken_in(self, name: str):
+        """The line, the machine at its end and the job: sent whole, not answered, cancelled."""
+        line = peers.LateLine(8631, b"%%EOF")
+        self.addCleanup(line.stop)
+        machine = peers.add_machine(self.data, name, f"ipp://localhost:{line.port}/ipp/print")
+        self.addCleanup(peers.formwright, "remove", name, data=self.data)
+        job = self.order(page(215.9, 279.4), machine, media="Letter")
+        self.assertTrue(line.asked.wait(40))
+        self.assertEqual(self.worker.json("POST", f"/api/machines/{machine}/jobs/{job}/cancel")[0], 202)
+        return line, machine, job
+
+    def test_a_print_that_is_cancelled_while_the_printer_takes_it_in_is_taken_back(self):
+        def number_on(line) -> int:
+            found = re.search(rb"job-id\x00\x04(.{4})", line.answered, re.S)
+            return int.from_bytes(found.group(1), "big") if found else 0
+        never, silent, lost = self.cancelled_while_taken_in("Silent")
+        start = time.monotonic()
+        # Its number does not arrive here: nobody can take that one back.
+        peers.wait_until(lambda: number_on(never) and self.printer.state_of(number_on(never)) == "completed", 60, "its sheet")
+        slow = self.printer.spool / "slow"
+        slow.touch()
+        self.addCleanup(slow.unlink, missing_ok=True)
+        line, late, job = self.cancelled_while_taken_in("Late")
+        time.sleep(1.5)  # cancels are looked for twice a second
+        self.assertEqual(self.worker.json("GET", f"/api/machines/{late}/jobs/{job}")[1]["state"], "sending")
+        line.through.set()
+        self.assertEqual(self.wait(job, late)["state"], "cancelled")
+        slow.unlink()
+        peers.wait_until(lambda: self.printer.state_of(number_on(line)) == "canceled", 10, "the printer's cancel")
+        # One that never answers is not waited for for ever, and it is not claimed that nothing comes out.
+        ended = self.wait(lost, silent)
+        self.assertLess(time.monotonic() - start, 100)  # 30 s of silence; the rest is a busy machine's
+        self.assertEqual(ended["state"], "cancelled")
+        self.assertIn("see whether its sheets come out", ended["error"]["message"])
 
     def test_one_that_is_not_there_is_said(self):
         off = peers.add_machine(self.data, "Off", "ipp://localhost:8999/ipp/print")

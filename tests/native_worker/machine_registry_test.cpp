@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 
 #include <fstream>
+#include <set>
 
 #include "base/error.h"
 #include "machines/machine_log.h"
@@ -105,6 +106,87 @@ TEST(machine_log, lines_are_whole_newest_first_and_half_ones_are_left_out) {
   EXPECT_GE(all[0]["unix_s"].get<double>(), all[3]["unix_s"].get<double>());
   EXPECT_EQ(notes.size(), 5u);
   EXPECT_EQ(notes[0]["name"], "Laser");
+}
+
+Machine machine_called(const std::string& id) {
+  Machine machine;
+  machine.id = id;
+  machine.name = "Machine " + id;
+  return machine;
+}
+
+/// Names of the files below `folder` that this process holds open.
+std::set<std::string> held_open(const std::filesystem::path& folder) {
+  std::set<std::string> names;
+  for (const auto& descriptor : std::filesystem::directory_iterator("/proc/self/fd")) {
+    std::error_code status;
+    const auto file = std::filesystem::read_symlink(descriptor.path(), status);
+    if (!status && file.parent_path() == std::filesystem::canonical(folder)) names.insert(file.filename().string());
+  }
+  return names;
+}
+
+std::vector<std::string> texts_in(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::vector<std::string> texts;
+  for (std::string line; std::getline(stream, line);) texts.push_back(Json::parse(line)["text"].get<std::string>());
+  return texts;
+}
+
+TEST(machine_log, two_machines_at_once_have_their_files_open_until_the_day_is_over) {
+  const Folder folder;
+  const auto logs = folder.path / "machine_log";
+  const Machine first = machine_called("0123456789abcdef"), second = machine_called("fedcba9876543210");
+  std::string day = "2026-11-23";
+  MachineLog log(folder.path, [&] { return day; });
+  std::vector<std::string> said;
+  for (int i = 0; i < 50; ++i) {
+    said.push_back("line " + std::to_string(i));
+    log.append(first, {{"event", "sent"}, {"text", said.back()}});
+    log.append(second, {{"event", "received"}, {"text", said.back()}});
+    // Neither is closed for the other: opening lists the folder, and a machine that is fed waits for that.
+    const std::set<std::string> both{day + "-" + first.id + ".jsonl", day + "-" + second.id + ".jsonl"};
+    ASSERT_EQ(held_open(logs), both) << i;
+  }
+  day = "2026-11-24";
+  log.append(second, {{"event", "note"}, {"text", "next day"}});
+  EXPECT_EQ(held_open(logs), std::set<std::string>{day + "-" + second.id + ".jsonl"});
+  EXPECT_EQ(texts_in(logs / ("2026-11-23-" + first.id + ".jsonl")), said);
+  EXPECT_EQ(texts_in(logs / ("2026-11-23-" + second.id + ".jsonl")), said);
+  EXPECT_EQ(texts_in(logs / ("2026-11-24-" + second.id + ".jsonl")), std::vector<std::string>{"next day"});
+  EXPECT_EQ(log.newest(1, false)[0]["text"], "next day");
+}
+
+TEST(machine_log, many_machines_do_not_use_up_the_descriptors) {
+  const Folder folder;
+  MachineLog log(folder.path);
+  for (int turn = 0; turn < 2; ++turn)
+    for (int i = 0; i < 100; ++i)
+      log.append(machine_called(std::to_string(1000 + i)), {{"event", "note"}, {"text", "x"}});
+  EXPECT_LE(held_open(folder.path / "machine_log").size(), 32u);
+  EXPECT_EQ(log.newest(500, false).size(), 200u);
+}
+
+TEST(machine_log, the_oldest_days_go_and_never_what_is_being_written) {
+  const Folder folder;
+  const auto logs = folder.path / "machine_log";
+  std::filesystem::create_directories(logs);
+  // No block of these is ever written.
+  for (const char* name : {"2026-11-20-a.jsonl", "2026-11-22-a.jsonl", "2026-11-23-a.jsonl"}) {
+    std::ofstream(logs / name).close();
+    std::filesystem::resize_file(logs / name, std::uintmax_t{300} << 20);
+  }
+  std::filesystem::create_directories(logs / "2026-11-21-folder.jsonl");  // weighs nothing
+  MachineLog log(folder.path, [] { return std::string("2026-11-23"); });
+  log.append(machine_called("b"), {{"event", "note"}, {"text", "x"}});
+  EXPECT_FALSE(std::filesystem::exists(logs / "2026-11-20-a.jsonl"));
+  EXPECT_FALSE(std::filesystem::exists(logs / "2026-11-22-a.jsonl"));
+  EXPECT_TRUE(std::filesystem::exists(logs / "2026-11-21-folder.jsonl"));
+  EXPECT_TRUE(std::filesystem::exists(logs / "2026-11-23-a.jsonl"));
+  std::filesystem::resize_file(logs / "2026-11-23-a.jsonl", std::uintmax_t{600} << 20);
+  log.append(machine_called("c"), {{"event", "note"}, {"text", "x"}});
+  EXPECT_TRUE(std::filesystem::exists(logs / "2026-11-23-a.jsonl"));  // another program may be at it
+  EXPECT_TRUE(std::filesystem::exists(logs / "2026-11-23-b.jsonl"));
 }
 
 TEST(upload, file_names_are_plain) {

@@ -2,22 +2,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Uploads to a real OctoPrint with its virtual printer, and slicing with a real PrusaSlicer.
 Usage: machine_upload_test.py PROGRAM VIRTUAL_GRBL PEERS"""
+import concurrent.futures
 import hashlib
 import http.server
 import io
 import json
 import pathlib
 import re
+import select
+import socket
 import struct
 import subprocess
 import sys
 import tempfile
 import threading
+import time
 import unittest
 import zipfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import machine_peers as peers
+from machine_driven_test import MachineSocket
 from worker import Worker
 
 SLOW = b"M105\n" + b"G4 P400\nM105\n" * 200
@@ -105,6 +110,7 @@ class StrictMoonraker(http.server.BaseHTTPRequestHandler):
     """What Moonraker's documentation says of POST /server/files/upload, to the letter; no real Moonraker runs without a printer's firmware."""
     kept: dict[str, bytes] = {}
     started: list[str] = []
+    cancels = 0
     protocol_version = "HTTP/1.1"
 
     def log_message(self, *words):
@@ -121,6 +127,10 @@ class StrictMoonraker(http.server.BaseHTTPRequestHandler):
     def do_POST(self):
         if self.headers["X-Api-Key"] != "moon":
             return self.answer(401, {"error": {"code": 401, "message": "Unauthorized"}})
+        if self.path == "/printer/print/cancel":
+            self.rfile.read(int(self.headers["Content-Length"]))
+            StrictMoonraker.cancels += 1
+            return self.answer(200, {"result": "ok"})
         boundary = re.fullmatch(r"multipart/form-data; boundary=(\S+)", self.headers["Content-Type"]).group(1).encode()
         body = self.rfile.read(int(self.headers["Content-Length"]))
         fields, name = {}, ""
@@ -162,6 +172,50 @@ class Moonraker(WorkerCase):
         finally:
             server.shutdown()
             server.server_close()
+
+
+class Silent(WorkerCase):
+    """Machines that are asked and never answer, as those that are switched off: nothing that is urgent waits behind them."""
+
+    def setUp(self):
+        self.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), StrictMoonraker)
+        threading.Thread(target=self.server.serve_forever, daemon=True).start()
+        (self.folder / "key").write_text("moon")
+        self.printing = peers.add_machine(self.data, "Voron", f"http://127.0.0.1:{self.server.server_port}", "--kind", "moonraker", "--api-key-file", str(self.folder / "key"))
+        self.laser = peers.VirtualGrbl()
+        self.laser_id = peers.add_machine(self.data, "Laser", f"serial:{self.laser.port}")
+        self.silent = [socket.create_server(("127.0.0.1", 0)) for _ in range(8)]
+        self.silent_ids = [peers.add_machine(self.data, f"Off {i}", f"http://127.0.0.1:{listener.getsockname()[1]}", "--kind", "octoprint" if i % 2 else "moonraker")
+                           for i, listener in enumerate(self.silent)]
+
+    def tearDown(self):
+        self.server.shutdown()
+        self.server.server_close()
+        self.laser.stop()
+
+    def within(self, seconds: float, work):
+        start = time.monotonic()
+        result = work()
+        self.assertLess(time.monotonic() - start, seconds)
+        return result
+
+    def test_a_stop_and_an_opening_do_not_wait_behind_them(self):
+        with concurrent.futures.ThreadPoolExecutor(len(self.silent)) as pages:
+            states = [pages.submit(self.worker.json, "GET", f"/api/machines/{machine}") for machine in self.silent_ids]
+            try:
+                peers.wait_until(lambda: len(select.select(self.silent, [], [], 0)[0]) >= 4, 10, "the asking")
+                self.assertEqual(self.within(5, lambda: self.worker.json("POST", f"/api/machines/{self.printing}/stop", {}))[0], 200)
+                self.assertEqual(StrictMoonraker.cancels, 1)
+                page = self.within(5, lambda: MachineSocket(self.worker, self.laser_id))
+                self.assertEqual(self.within(5, lambda: page.ask(open={"controller": "grbl"})), {"done": 1})
+                self.assertEqual(self.within(5, lambda: self.worker.json("GET", "/api/machines?search=again"))[0], 200)
+                self.assertEqual(self.within(5, lambda: self.worker.json("GET", f"/api/machines/{self.laser_id}"))[0], 200)
+                self.assertEqual(self.within(5, lambda: self.worker.json("GET", "/api/machines/log"))[0], 200)
+                self.assertFalse(any(state.done() for state in states))  # they were silent all the while
+            finally:
+                for listener in self.silent:  # which hangs up on all that wait there
+                    listener.close()
+        self.assertEqual({state.result()[0] for state in states}, {502})
 
 
 def cube_stl(size: float) -> bytes:

@@ -21,6 +21,12 @@ def runs_jobs(process: int) -> bool:
         return False
 
 
+def ignores(process: int, number: int) -> bool:
+    """Whether it has said that this signal is nothing to it."""
+    mask = re.search(r"SigIgn:\s*(\w+)", pathlib.Path(f"/proc/{process}/status").read_text()).group(1)
+    return bool(int(mask, 16) >> (number - 1) & 1)
+
+
 def sockets_of(process: int) -> list[str]:
     """What it holds open of the network."""
     held = []
@@ -42,9 +48,13 @@ def eventually(condition) -> bool:
     return True
 
 
+# These tests may themselves run under nohup, whose children ignore that their terminal is closed.
+HEARS_HANGUPS = ("env", "--default-signal=HUP")
+
+
 class Worker:
-    def __init__(self, program: str, data: pathlib.Path, *flags: str):
-        self.process = subprocess.Popen([program, "serve", "--port", "0", "--data", str(data), *flags],
+    def __init__(self, program: str, data: pathlib.Path, *flags: str, before: tuple[str, ...] = HEARS_HANGUPS):
+        self.process = subprocess.Popen([*before, program, "serve", "--port", "0", "--data", str(data), *flags],
                                         stdout=subprocess.PIPE, text=True)
         for line in self.process.stdout:
             if match := re.match(r"http://127\.0\.0\.1:(\d+)/#token=([0-9a-f]+)$", line.strip()):

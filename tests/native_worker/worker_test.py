@@ -16,7 +16,7 @@ import time
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from worker import PageSocket, Worker, eventually, runs_jobs, sockets_of
+from worker import PageSocket, Worker, eventually, ignores, runs_jobs, sockets_of
 
 PROGRAM = sys.argv.pop(1)
 PYRAMID = {"mesh": {"sample": "pyramid", "vertices": 1500}}
@@ -297,6 +297,28 @@ class Survival(WorkerCase):
             self.worker = Worker(PROGRAM, self.data)
         self.assertEqual(self.worker.wait(running)["error"]["code"], "internal")
 
+    def test_a_closed_terminal_costs_no_job(self):
+        job = self.worker.post_job(**LONG)
+        self.worker.wait_running(job)
+        child = self.worker.job_process()
+        self.assertTrue(eventually(lambda: ignores(child, signal.SIGINT)))  # it is set up
+        os.kill(child, signal.SIGHUP)  # all that ran in the terminal hears of it
+        time.sleep(0.3)
+        self.assertTrue(runs_jobs(child))
+        self.assertEqual(self.worker.json("GET", f"/api/jobs/{job}")[1]["state"], "running")
+        self.worker.process.send_signal(signal.SIGHUP)
+        self.assertEqual(self.worker.process.wait(10), 0)
+        self.worker.process.stdout.close()
+        self.worker = Worker(PROGRAM, self.data)
+        self.worker.wait_running(job)
+
+    def test_nohup_stays_nohup(self):
+        self.worker.stop()
+        self.worker = Worker(PROGRAM, self.data, before=("nohup",))
+        self.worker.process.send_signal(signal.SIGHUP)
+        time.sleep(0.5)
+        self.assertEqual(self.worker.request("GET", "/api/status")[0], 200)
+
     def refused_start(self, *flags: str) -> str:
         run = subprocess.run([PROGRAM, "serve", *flags], capture_output=True, text=True, timeout=60)
         self.assertEqual(run.returncode, 2, run.stderr)
@@ -312,7 +334,7 @@ class Survival(WorkerCase):
         self.assertIn("no flag --prot", self.refused_start("--prot", "1"))
 
     def test_a_folder_is_free_again_however_the_worker_ended(self):
-        for end in (signal.SIGTERM, signal.SIGINT, signal.SIGKILL):
+        for end in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGKILL):
             job = self.worker.post_job(**LONG)
             self.worker.wait_running(job)
             child = self.worker.job_process()

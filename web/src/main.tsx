@@ -10,11 +10,13 @@ import { placeOfWork } from './app/rooms';
 import { go, place, startRouting } from './app/route';
 import { followSystemTheme } from './app/theme';
 import { resumePending } from './crafts/common/full_solve';
+import type { Services } from './crafts/common/services';
 import { EvidenceSession } from './crafts/evidence/evidence_session';
 import { MachinesSession } from './crafts/machines/machines_session';
 import { ReliefSession } from './crafts/relief/relief_session';
 import { ThermoformSession } from './crafts/thermoform/thermoform_session';
 import { ZippableSession } from './crafts/zippable/zippable_session';
+import { toast } from './ui';
 
 async function start(root: HTMLElement): Promise<void> {
   followSystemTheme();
@@ -31,7 +33,7 @@ async function start(root: HTMLElement): Promise<void> {
   effect(() => resumePending(sessions.zippable));
   effect(() => resumePending(sessions.machines));
   effect(() => resumePending(sessions.evidence));
-  if (!startRouting() && !services.projects.isBlank.value)
+  if (!startRouting(() => everythingSaved(services)) && !services.projects.isBlank.value)
     go(placeOfWork(services.projects.document.value) ?? 'relief');
   effect(() => {
     for (const [room, { active }] of Object.entries(sessions)) active.value = place.value === room;
@@ -44,6 +46,13 @@ async function start(root: HTMLElement): Promise<void> {
   // The worker serves the page itself, always the one that fits it; elsewhere the page keeps itself.
   if (import.meta.env.PROD && services.native === null && 'serviceWorker' in navigator)
     void navigator.serviceWorker.register('./sw.js').catch(() => undefined);
+}
+
+async function everythingSaved({ projects }: Services): Promise<boolean> {
+  await projects.flush();
+  const saved = projects.saveState.value;
+  if (saved.state === 'failed') toast(saved.message, true);
+  return saved.state !== 'failed';
 }
 
 const root = document.getElementById('root');

@@ -25,6 +25,7 @@ import type { Sessions } from './rooms';
 import { MachineBar } from '../crafts/machines/machine_bar';
 import { drawingEndings, heightMapEnding, jobEndings } from '../crafts/machines/machines_document';
 import { isRoom, placeOfWork, roomOf } from './rooms';
+import { sentenceOf } from './told';
 import { TopBar } from './top_bar';
 
 /** Materials and pictures that may come with a model. */
@@ -87,7 +88,7 @@ export function App({ services, sessions }: AppProps) {
         go(placeOfWork(services.projects.document.value) ?? 'relief');
         toast(`Opened ${services.projects.document.value.name}.`);
       } catch (thrown) {
-        const message = thrown instanceof Error ? thrown.message : String(thrown);
+        const message = sentenceOf(thrown);
         const where = roomOf(place.value);
         sessions[where].problem.value = { kind: 'file', title: `Could not open ${project.name}`, message };
         go(where);
@@ -95,7 +96,12 @@ export function App({ services, sessions }: AppProps) {
       return;
     }
     if (files.length === 0) return;
-    if (place.value === 'start' && !services.projects.isBlank.value) await services.projects.create();
+    try {
+      if (place.value === 'start' && !services.projects.isBlank.value) await services.projects.create();
+    } catch (thrown) {
+      toast(sentenceOf(thrown), true); // what is open could not be saved, and stays
+      return;
+    }
     const where = roomOf(place.value);
     go(where);
     await sessions[where].openFiles(files);

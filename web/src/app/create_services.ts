@@ -11,9 +11,11 @@ import { takeToken } from '../jobs/native_connection';
 import { WasmBackend } from '../jobs/wasm_backend';
 import { BlobStore } from '../project/blob_store';
 import { openStorage } from '../project/open_storage';
+import { ProjectLocks } from '../project/project_locks';
 import { ProjectStore } from '../project/project_store';
-
-const lastProjectKey = 'formwright.project';
+import { toast } from '../ui';
+import { lastProject, rememberProject } from './last_project';
+import { askBeforeLeaving } from './leaving';
 
 const moduleUrl = () => new URL('wasm/formwright.mjs', document.baseURI.replace(/#.*/, '')).href;
 
@@ -42,7 +44,7 @@ async function sweepWhenAlone(projects: ProjectStore): Promise<void> {
 export async function createServices(): Promise<Services> {
   const storage = await openStorage();
   const blobs = new BlobStore(storage);
-  const projects = new ProjectStore(storage, blobs);
+  const projects = new ProjectStore(storage, blobs, new ProjectLocks(navigator.locks));
   const token = takeToken(location, sessionStorage, (url) => history.replaceState(null, '', url));
   const connection = signal<ConnectionState | null>(null);
   const native = token
@@ -70,16 +72,13 @@ export async function createServices(): Promise<Services> {
       (thrown: unknown) => (catalogError.value = asJobError(thrown).message),
     );
 
-  const load = projects.load(localStorage.getItem(lastProjectKey));
+  const load = projects.load(lastProject(sessionStorage, localStorage)).then((instead) => {
+    if (instead !== null) toast(instead);
+  });
   await (native === null ? load : Promise.all([load, ready]));
   void sweepWhenAlone(projects);
-  projects.document.subscribe(({ id }) => {
-    try {
-      localStorage.setItem(lastProjectKey, id);
-    } catch {
-      // The project is still in the list.
-    }
-  });
+  rememberProject(projects, sessionStorage, localStorage);
+  askBeforeLeaving(projects, window);
   return {
     projects,
     catalog,

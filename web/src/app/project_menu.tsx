@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { useState } from 'preact/hooks';
 import type { Services } from '../crafts/common/services';
-import { download, safeFileName } from '../crafts/common/download';
-import { projectExtension } from '../project/archive';
-import { Button, Dialog, Icon, Menu, toast } from '../ui';
+import { Button, Dialog, Icon, Menu } from '../ui';
+import { saveAsFile } from './project_file';
 import { placeOfWork } from './rooms';
 import { go } from './route';
+import { told } from './told';
 
 const listedProjects = 8;
 
@@ -14,11 +14,6 @@ export function ProjectMenu({ services, onOpenFile }: { services: Services; onOp
   const { id, name } = projects.document.value;
   const [dialog, setDialog] = useState<'rename' | 'delete' | null>(null);
   const blank = projects.isBlank.value ? 'Nothing in it yet' : undefined;
-  const save = async () => {
-    const bytes = await projects.exportFile();
-    download(bytes, `${safeFileName(name)}.${projectExtension}`, 'application/zip');
-    toast('Project saved as a file.');
-  };
   const open = async (other: string) => {
     await projects.open(other);
     go(placeOfWork(projects.document.value) ?? 'relief');
@@ -33,17 +28,22 @@ export function ProjectMenu({ services, onOpenFile }: { services: Services; onOp
           {
             label: 'New project',
             icon: 'plus',
-            onSelect: () => void projects.create().then(() => go('start')),
+            onSelect: () => told(projects.create().then(() => go('start'))),
           },
           { label: 'Open a file', hint: 'Ctrl + O', icon: 'upload', onSelect: onOpenFile },
-          { label: 'Save as a file', icon: 'download', disabledReason: blank, onSelect: () => void save() },
+          {
+            label: 'Save as a file',
+            icon: 'download',
+            disabledReason: blank,
+            onSelect: () => told(saveAsFile(projects)),
+          },
           null,
           { label: 'Rename', icon: 'pencil', disabledReason: blank, onSelect: () => setDialog('rename') },
           {
             label: 'Duplicate',
             icon: 'copy',
             disabledReason: blank,
-            onSelect: () => void projects.duplicate(),
+            onSelect: () => told(projects.duplicate()),
           },
           {
             label: 'Delete',
@@ -57,7 +57,7 @@ export function ProjectMenu({ services, onOpenFile }: { services: Services; onOp
             label: other.name,
             hint: dateOf(other.modified_unix_s),
             checked: other.id === id,
-            onSelect: () => void open(other.id),
+            onSelect: () => told(open(other.id)),
           })),
         ]}
       >
@@ -93,7 +93,7 @@ export function ProjectMenu({ services, onOpenFile }: { services: Services; onOp
               kind="danger"
               onClick={() => {
                 setDialog(null);
-                void projects.remove(id).then(() => go('start'));
+                told(projects.remove(id).then(() => go('start')));
               }}
             >
               Delete

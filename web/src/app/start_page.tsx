@@ -7,6 +7,7 @@ import { warmUp } from '../crafts/relief/warm_up';
 import { Button, Icon } from '../ui';
 import { crafts, notYet } from './crafts';
 import { go } from './route';
+import { told } from './told';
 
 export interface StartPageProps {
   readonly services: Services;
@@ -33,8 +34,12 @@ export function StartPage({ services, session, onChooseFile }: StartPageProps) {
     };
   }, [catalog]);
   const open = (sample: string, title: string) => {
-    go('relief');
-    void services.projects.create().then(() => session.openSample(sample, title));
+    const begin = async () => {
+      await services.projects.create();
+      go('relief');
+      await session.openSample(sample, title);
+    };
+    told(begin());
   };
   return (
     <main class="view start" aria-label="Start">

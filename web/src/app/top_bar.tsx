@@ -3,6 +3,7 @@ import type { Services } from '../crafts/common/services';
 import { IconButton, Menu, Icon, tipHandlers } from '../ui';
 import { ProjectMenu } from './project_menu';
 import { go } from './route';
+import { SaveState } from './save_state';
 import { chooseTheme, theme } from './theme';
 
 export interface TopBarProps {
@@ -37,7 +38,7 @@ export function TopBar({ services, solving, onOpenFile, onKeys, onWorker }: TopB
         </svg>
       </a>
       <ProjectMenu services={services} onOpenFile={onOpenFile} />
-      <SaveState services={services} />
+      <SaveState projects={projects} />
       <span class="grow" />
       <IconButton
         icon="undo"
@@ -75,23 +76,6 @@ export function TopBar({ services, solving, onOpenFile, onKeys, onWorker }: TopB
         <Icon name="help" />
       </Menu>
     </header>
-  );
-}
-
-function SaveState({ services }: { services: Services }) {
-  const { projects } = services;
-  const save = projects.saveState.value;
-  if (projects.isBlank.value) return null;
-  const failed = save.state === 'failed';
-  const words = { saved: 'Saved', saving: 'Saving', unsaved: 'Saving', failed: 'Not saved' }[save.state];
-  return (
-    <span
-      class={failed ? 'saved failed' : 'saved'}
-      role="status"
-      {...tipHandlers(failed ? save.message : undefined)}
-    >
-      {words}
-    </span>
   );
 }
 

@@ -14,7 +14,11 @@ export interface Result {
   readonly outputs: ReadonlyMap<string, Output>;
 }
 
+/** Why a signal was aborted: nobody waits here any more, but a job that outlives the page is to go on, for `resume` to find. */
+export const leaving = Symbol('leaving');
+
 export interface RunOptions {
+  /** Ends the job, except where it is aborted for `leaving` and the job has a lasting name. */
   readonly signal?: AbortSignal;
   readonly onProgress?: (progress: Progress) => void;
   /** Told as soon as the backend has a lasting name for the job, under which `resume` finds it again. */

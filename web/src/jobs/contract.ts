@@ -27,7 +27,7 @@ export interface Progress {
   readonly seconds_left: number | null;
 }
 
-/** The contract's codes, and `unreachable`: the backend itself is gone. */
+/** The contract's codes, and `unreachable`: the backend itself is gone, or does not know this page. */
 export type ErrorCode =
   'invalid_input' | 'could_not_solve' | 'cancelled' | 'out_of_memory' | 'internal' | 'unreachable';
 

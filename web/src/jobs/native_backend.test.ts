@@ -7,10 +7,12 @@ import type { AddressInfo } from 'node:net';
 import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import type { WebSocket as ServerSocket } from 'ws';
 import { WebSocket as NodeSocket, WebSocketServer } from 'ws';
+import { leaving } from './backend';
 import type { Job } from './contract';
+import type { NativeBackendOptions } from './native_backend';
 import { NativeBackend } from './native_backend';
 import type { ConnectionState } from './native_connection';
-import { takeToken } from './native_connection';
+import { takeToken, tokenIn } from './native_connection';
 
 const hash = 'ab'.repeat(32);
 const job: Job = {
@@ -35,6 +37,7 @@ class FakeServer {
   readonly requests: string[] = [];
   cancelledIds: string[] = [];
   full = false;
+  token = 'secret';
   #server: Server = createServer((request, response) => void this.#answer(request, response));
   #sockets = new WebSocketServer({ noServer: true });
 
@@ -78,7 +81,8 @@ class FakeServer {
       response.writeHead(code, { 'Content-Type': 'application/json' });
       response.end(JSON.stringify(body));
     };
-    if (request.headers.authorization !== 'Bearer secret') return send(401);
+    if (request.headers.authorization !== `Bearer ${this.token}`)
+      return send(401, { error: { code: 'invalid_input', where: 'token', message: 'The token is wrong.' } });
     if (path === 'status') return send(200, status);
     const [kind, id = '', part] = path.split('/');
     if (kind === 'blobs') {
@@ -112,7 +116,7 @@ let native: NativeBackend;
 const read = vi.fn(() => Promise.resolve(new Uint8Array([1, 2, 3])));
 const wait = (condition: () => boolean) =>
   vi.waitFor(() => expect(condition()).toBe(true), { timeout: 5000, interval: 5 });
-const connect = (token = 'secret') =>
+const connect = (token = 'secret', more: Partial<NativeBackendOptions> = {}) =>
   new NativeBackend({
     origin: `http://127.0.0.1:${port}`,
     token,
@@ -120,6 +124,7 @@ const connect = (token = 'secret') =>
     onState: (state) => states.push(state),
     WebSocket: NodeSocket as unknown as typeof WebSocket,
     pace: 0.02,
+    ...more,
   });
 
 beforeEach(async () => {
@@ -183,6 +188,55 @@ describe('NativeBackend', () => {
     await wait(() => server.cancelledIds.includes('job0'));
   });
 
+  it('leaves a job to itself where the page turned to something else', async () => {
+    const abort = new AbortController();
+    const running = native.run(job, { signal: abort.signal });
+    await wait(() => server.requests.includes('GET jobs/job0'));
+    abort.abort(leaving);
+    await expect(running).rejects.toMatchObject({ code: 'cancelled' });
+    const ended = new AbortController();
+    const another = native.run(job, { signal: ended.signal }).catch(() => undefined);
+    await wait(() => server.requests.includes('GET jobs/job1'));
+    ended.abort(); // by the same line, so that a word about the first one would have come before
+    await another;
+    await wait(() => server.cancelledIds.length > 0);
+    expect(server.cancelledIds).toEqual(['job1']);
+  });
+
+  it('ends a job that was left before anyone was told its name', async () => {
+    const abort = new AbortController();
+    const accepted = vi.fn();
+    const tooLate: typeof fetch = async (input, init) => {
+      const answer = await fetch(input, { ...init, signal: null });
+      if (init?.method === 'POST' && String(input).endsWith('/jobs')) abort.abort(leaving);
+      return answer;
+    };
+    const other = connect('secret', { fetch: tooLate });
+    await wait(() => states.filter(({ state }) => state === 'ready').length === 2);
+    const running = other.run(job, { signal: abort.signal, onAccepted: accepted });
+    await expect(running).rejects.toMatchObject({ code: 'cancelled' });
+    await wait(() => server.cancelledIds.includes('job0'));
+    expect(accepted).not.toHaveBeenCalled();
+    other.dispose();
+  });
+
+  it('keeps nobody waiting for a worker that was started again with another token', async () => {
+    const running = native.run(job);
+    await wait(() => server.requests.includes('GET jobs/job0'));
+    server.token = 'new';
+    server.drop();
+    await expect(running).rejects.toMatchObject({ code: 'unreachable', message: 'The token is wrong.' });
+    expect(states.at(-1)).toEqual({ state: 'refused', message: 'The token is wrong.' });
+  });
+
+  it('finds no fault in a job that it may not ask about', async () => {
+    server.finish('done');
+    const { outputs } = await native.resume('done');
+    server.token = 'new';
+    await expect(native.resume('done')).rejects.toMatchObject({ code: 'unreachable' });
+    await expect(outputs.get('relief.ply')?.read()).rejects.toMatchObject({ code: 'unreachable' });
+  });
+
   it('passes on the job’s own error, and says when the queue is full', async () => {
     server.jobs.set('bad', {
       id: 'bad',
@@ -218,5 +272,15 @@ describe('takeToken', () => {
     expect(replace).toHaveBeenCalledWith('/');
     expect(takeToken({ ...place, hash: '#/relief' }, storage, replace)).toBe('a+b');
     expect(replace).toHaveBeenCalledTimes(1);
+  });
+
+  it('is not asked twice for the same one: the address has none afterwards', () => {
+    const storage = { getItem: () => null, setItem: () => undefined };
+    for (const hash of ['#token=a', '#/relief&token=a', '#token=a&/x']) {
+      expect(tokenIn(hash)?.[1]).toBe('a');
+      const replace = vi.fn();
+      takeToken({ hash, pathname: '/', search: '' }, storage, replace);
+      expect(tokenIn(new URL(String(replace.mock.calls[0]?.[0]), 'http://a').hash)).toBeNull();
+    }
   });
 });

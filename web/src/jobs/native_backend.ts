@@ -2,10 +2,11 @@
 // The native worker on this machine: docs/job_contract.md, "In the worker". Jobs outlive the page and
 // are found again; a line that breaks is mended and every job waited for is asked about anew.
 import type { Backend, BlobSource, Output, Result, RunOptions } from './backend';
+import { leaving } from './backend';
 import type { Catalog, ErrorMessage, Job, OutputDescription, Progress, Report } from './contract';
 import { asJobError, cancelled, JobError } from './contract';
 import type { ConnectionState, SocketMessage } from './native_connection';
-import { NativeConnection } from './native_connection';
+import { isRefusal, NativeConnection } from './native_connection';
 
 interface JobRecord {
   readonly id: string;
@@ -73,6 +74,10 @@ export class NativeBackend implements Backend {
         body: JSON.stringify(job),
         signal,
       });
+      if (signal?.aborted) {
+        this.#cancel(id); // nobody was told its name, so nobody could find it again
+        throw cancelled();
+      }
       options.onAccepted?.(id);
       return await this.resume(id, options);
     } catch (thrown) {
@@ -83,7 +88,10 @@ export class NativeBackend implements Backend {
 
   resume(id: string, options: RunOptions = {}): Promise<Result> {
     return new Promise<Result>((resolve, reject) => {
-      const cancel = () => this.#cancel(id);
+      const cancel = () => {
+        if (options.signal?.reason === leaving) this.#waiting.get(id)?.reject(cancelled());
+        else this.#cancel(id);
+      };
       const settle = () => {
         this.#waiting.delete(id);
         options.signal?.removeEventListener('abort', cancel);
@@ -133,6 +141,11 @@ export class NativeBackend implements Backend {
       for (const id of this.#waiting.keys()) void this.#ask(id);
     }
     this.#options.onState?.(state);
+    // It does not ask again by itself, so nobody may be kept waiting; after the state, so that nobody asks this worker once more.
+    if (state.state === 'refused') {
+      const refusal = new JobError({ code: 'unreachable', where: 'token', message: state.message });
+      for (const waiting of [...this.#waiting.values()]) waiting.reject(refusal);
+    }
   }
 
   #receive(message: SocketMessage): void {
@@ -153,7 +166,7 @@ export class NativeBackend implements Backend {
       else if (record.error) waiting.reject(new JobError(record.error));
     } catch (thrown) {
       const error = asJobError(thrown);
-      if (error.code === 'unreachable') return; // asked again when the line is back
+      if (error.code === 'unreachable' && !isRefusal(error)) return; // asked again when the line is back
       this.#waiting.get(id)?.reject(error);
     }
   }

@@ -26,13 +26,16 @@ export type SocketMessage =
 
 const tokenKey = 'formwright.token';
 
+/** The part of an address's fragment that holds a token, and the token. */
+export const tokenIn = (hash: string) => /(?:^#|&)token=([^&]+)/.exec(hash);
+
 /** Takes `#token=…` out of the address into the session, so that it is neither shared nor bookmarked. */
 export function takeToken(
   place: Pick<Location, 'hash' | 'pathname' | 'search'>,
   storage: Pick<Storage, 'getItem' | 'setItem'>,
   replaceAddress: (url: string) => void,
 ): string | null {
-  const found = /(?:^#|&)token=([^&]+)/.exec(place.hash);
+  const found = tokenIn(place.hash);
   if (found?.[1] !== undefined) {
     storage.setItem(tokenKey, decodeURIComponent(found[1]));
     const rest = place.hash.replace(found[0].replace(/^#/, ''), '').replace(/^#&?$/, '');
@@ -133,7 +136,7 @@ export class NativeConnection {
       status = await this.status();
     } catch (thrown) {
       if (this.#closed) return;
-      if (thrown instanceof JobError && thrown.code !== 'unreachable') {
+      if (thrown instanceof JobError && (thrown.code !== 'unreachable' || isRefusal(thrown))) {
         onState({ state: 'refused', message: thrown.message });
         return;
       }
@@ -162,10 +165,15 @@ export class NativeConnection {
   }
 }
 
+/** The worker answers, but not to this page: it was started again, with another token. */
+export const isRefusal = ({ code, where }: JobError): boolean => code === 'unreachable' && where === 'token';
+
 async function errorOf(response: Response): Promise<ErrorMessage> {
+  // No fault of the job: whoever has the token finds it again.
+  const refusal = response.status === 401 ? ({ code: 'unreachable', where: 'token' } as const) : {};
   try {
     const body = (await response.json()) as { error?: ErrorMessage };
-    if (body.error?.message) return body.error;
+    if (body.error?.message) return { ...body.error, ...refusal };
   } catch {
     // Not JSON: said from the status below.
   }
@@ -174,6 +182,7 @@ async function errorOf(response: Response): Promise<ErrorMessage> {
       code: 'invalid_input',
       where: 'token',
       message: 'The worker did not accept this page; open the address it printed when it started.',
+      ...refusal,
     };
   if (response.status === 413)
     return { code: 'invalid_input', where: 'mesh', message: 'The model is larger than the worker accepts.' };

@@ -39,6 +39,65 @@ describe('machine profiles', () => {
     for (const { id } of [practiceMill, mill]) store.remove(id);
     expect(store.oneThat(true)).toEqual(practiceMill);
   });
+  describe('in two tabs', () => {
+    const felt = { name: 'Felt 3 mm', parameters: { cut_power_percent: 45 } };
+    const plain = { ...laser, materials: [] };
+    it('stay when another tab chooses or adds a machine', () => {
+      const memory = new Memory();
+      const [one, two] = [new ProfileStore(memory), new ProfileStore(memory)];
+      one.put(plain);
+      one.put({ ...plain, materials: [felt] });
+      two.choose(practiceMill.id);
+      two.put({ ...practiceMill, id: 'm', name: 'Workshop mill' });
+      expect(two.current.name).toBe('Workshop mill');
+      const stored = new ProfileStore(memory);
+      expect(stored.profiles.value.map(({ name }) => name)).toEqual([
+        'Practice laser',
+        'Practice mill',
+        'Workshop',
+        'Workshop mill',
+      ]);
+      expect(stored.profiles.value.find(({ id }) => id === 'a')?.materials).toEqual([felt]);
+    });
+    it('keep what one measured when the other takes the machine up as it knew it', () => {
+      const memory = new Memory();
+      new ProfileStore(memory).put(plain);
+      const [one, two] = [new ProfileStore(memory), new ProfileStore(memory)];
+      one.put({ ...plain, materials: [felt] });
+      two.put(plain); // as the menu does when it is chosen
+      expect(two.current.materials).toEqual([felt]);
+      expect(new ProfileStore(memory).current.materials).toEqual([felt]);
+    });
+    it('are told of each other, and each keeps the one it uses', () => {
+      const [memory, tabs] = [new Memory(), new EventTarget()];
+      const [one, two] = [new ProfileStore(memory), new ProfileStore(memory, tabs)];
+      const told = () =>
+        tabs.dispatchEvent(Object.assign(new Event('storage'), { key: 'formwright.machines' }));
+      one.put(laser);
+      told();
+      expect(two.profiles.value.map(({ id }) => id)).toContain('a');
+      expect(two.current.id).toBe('practice');
+      two.choose('a');
+      one.remove('a');
+      told();
+      expect(one.profiles.value.map(({ id }) => id)).not.toContain('a');
+      expect(two.current).toEqual(laser); // a job may be under way on it
+    });
+    it('are written later where there was no room', () => {
+      const memory = new Memory();
+      const { setItem } = memory;
+      const [one, two] = [new ProfileStore(memory), new ProfileStore(memory)];
+      memory.setItem = () => {
+        throw new DOMException('full', 'QuotaExceededError');
+      };
+      one.put(laser);
+      one.remove(practiceMill.id);
+      memory.setItem = setItem;
+      two.choose(practiceLaser.id);
+      one.choose('a');
+      expect(new ProfileStore(memory).profiles.value.map(({ id }) => id)).toEqual(['practice', 'a']);
+    });
+  });
   it('survive damaged storage', () => {
     const memory = new Memory();
     memory.setItem(

@@ -2,6 +2,7 @@
 // Machines that a person has: what is known of each, kept in the browser and shared as a file.
 import { signal } from '@preact/signals';
 import type { Json, JsonObject } from '../jobs/contract';
+import { jsonEqual } from '../project/document';
 
 export const profileExtension = 'formwright-machine.json';
 
@@ -88,30 +89,52 @@ export const practiceMill: MachineProfile = {
 
 export const isMill = ({ options }: MachineProfile): boolean => options['tool'] === 'mill';
 
-/** The machines, the one in use, and where both are kept. */
+interface Kept {
+  readonly profiles: readonly MachineProfile[];
+  readonly chosen: string | null;
+}
+
+/** What a tab has stored, or null where there is nothing to be read. */
+function asKept(text: string | null): Kept | null {
+  let stored: unknown = null;
+  try {
+    stored = JSON.parse(text ?? 'null');
+  } catch {
+    // Damaged storage: as if there were none.
+  }
+  if (!isObject(stored) || !Array.isArray(stored['profiles'])) return null;
+  const profiles = stored['profiles'].flatMap((profile: unknown) => {
+    try {
+      return [asProfile(profile)];
+    } catch {
+      return [];
+    }
+  });
+  const chosen = typeof stored['chosen'] === 'string' ? stored['chosen'] : null;
+  return { profiles, chosen };
+}
+
+type Edit = (all: readonly MachineProfile[]) => readonly MachineProfile[];
+
+/** The machines, the one in use, and where both are kept. Tabs share the machines; each has its own in use. */
 export class ProfileStore {
   readonly #storage: Pick<Storage, 'getItem' | 'setItem'>;
+  /** What this tab changed and storage has not taken. */
+  #unsaved: Edit[] = [];
   readonly profiles = signal<readonly MachineProfile[]>([practiceLaser, practiceMill]);
   readonly chosen = signal<string>(practiceLaser.id);
 
-  constructor(storage: Pick<Storage, 'getItem' | 'setItem'>) {
+  constructor(
+    storage: Pick<Storage, 'getItem' | 'setItem'>,
+    tabs: Partial<Pick<EventTarget, 'addEventListener'>> = globalThis,
+  ) {
     this.#storage = storage;
-    try {
-      const stored: unknown = JSON.parse(storage.getItem(key) ?? 'null');
-      if (isObject(stored) && Array.isArray(stored['profiles'])) {
-        const read = stored['profiles'].flatMap((profile: unknown) => {
-          try {
-            return [asProfile(profile)];
-          } catch {
-            return [];
-          }
-        });
-        if (read.length > 0) this.profiles.value = read;
-        if (typeof stored['chosen'] === 'string') this.chosen.value = stored['chosen'];
-      }
-    } catch {
-      // Damaged storage: the practice laser is there again.
-    }
+    const stored = this.#stored();
+    if (stored !== null && stored.profiles.length > 0) this.profiles.value = stored.profiles;
+    if (stored?.chosen) this.chosen.value = stored.chosen;
+    tabs.addEventListener?.('storage', (event) => {
+      if ((event as StorageEvent).key === key) this.#catchUp();
+    });
   }
 
   get current(): MachineProfile {
@@ -127,28 +150,56 @@ export class ProfileStore {
 
   choose(id: string): void {
     this.chosen.value = id;
-    this.#save();
+    this.#change((all) => all);
   }
   /** Adds the machine, or changes the one with its id; it is in use then. */
   put(profile: MachineProfile): void {
-    const others = this.profiles.value;
-    this.profiles.value = others.some(({ id }) => id === profile.id)
-      ? others.map((old) => (old.id === profile.id ? profile : old))
-      : [...others, profile];
-    this.choose(profile.id);
+    const known = this.profiles.value.find(({ id }) => id === profile.id);
+    if (known && jsonEqual(known as unknown as Json, profile as unknown as Json))
+      return this.choose(profile.id); // another tab may know more of it
+    this.chosen.value = profile.id;
+    this.#change((all) =>
+      all.some(({ id }) => id === profile.id)
+        ? all.map((old) => (old.id === profile.id ? profile : old))
+        : [...all, profile],
+    );
   }
   remove(id: string): void {
-    const rest = this.profiles.value.filter((profile) => profile.id !== id);
-    this.profiles.value = rest.length > 0 ? rest : [practiceLaser];
+    this.#change((all) => {
+      const rest = all.filter((profile) => profile.id !== id);
+      return rest.length > 0 ? rest : [practiceLaser];
+    });
     this.choose(this.profiles.value[0]?.id ?? practiceLaser.id);
   }
 
-  #save(): void {
+  #stored(): Kept | null {
+    try {
+      return asKept(this.#storage.getItem(key));
+    } catch {
+      return null; // no storage: the machines last as long as the page
+    }
+  }
+  /** Takes up what other tabs wrote, with what this one changed over it. The machine in use here stays, also
+   *  when another tab removed it: a job may be under way on it. */
+  #catchUp(): void {
+    const stored = this.#stored();
+    if (stored === null || stored.profiles.length === 0) return;
+    const all = this.#unsaved.reduce((before, edit) => edit(before), stored.profiles);
+    const inUse = this.profiles.value.find(({ id }) => id === this.chosen.value);
+    const isGone = inUse !== undefined && all.every(({ id }) => id !== inUse.id);
+    this.profiles.value = isGone ? [...all, inUse] : all;
+  }
+  /** Every tab writes all machines: what others wrote is read again first. */
+  #change(edit: Edit): void {
+    this.#catchUp();
+    this.profiles.value = edit(this.profiles.value);
+    this.#unsaved.push(edit);
     const profiles = this.profiles.value.map((profile) => ({ format, version: 1, ...profile }));
     try {
       this.#storage.setItem(key, JSON.stringify({ profiles, chosen: this.chosen.value }));
+      this.#unsaved = [];
     } catch {
-      // No room: the machines last as long as the page.
+      // No room: they are written with the next change that fits.
     }
   }
 }

@@ -6,6 +6,7 @@ import { sha256Hex } from '../jobs/hash';
 import type { BlobStore } from './blob_store';
 import type { ProjectDocument } from './document';
 import { asDocument, blobsOf } from './document';
+import { storageSentence } from './storage';
 
 export const projectExtension = 'formwright';
 
@@ -47,7 +48,9 @@ export async function unpackProject(
     if (content === undefined) continue; // an output that was never kept; it can be made again
     if ((await sha256Hex(content)) !== sha256)
       throw new Error('This project file is damaged: a model in it does not match its checksum.');
-    await blobs.put(content);
+    await blobs.put(content).catch((thrown: unknown) => {
+      throw new Error(storageSentence(thrown));
+    });
   }
   return document;
 }

@@ -34,6 +34,13 @@ export class History<T> {
   get document(): T {
     return this.#document;
   }
+  /** The document, and whatever undo and redo can bring back, each value under its own name. */
+  *values(): Generator<unknown> {
+    yield this.#document;
+    for (const { changes } of [...this.#done, ...this.#undone])
+      for (const { path, before, after } of changes)
+        for (const value of [before, after]) yield { [path.at(-1) ?? '']: value };
+  }
   /** Label of what undo would take back, or null. */
   get undoLabel(): string | null {
     return this.#done.at(-1)?.label ?? null;

@@ -76,7 +76,7 @@ export abstract class CraftSession<D extends CraftDocument = CraftDocument> exte
         const operation = await this.#needOperation();
         const model: CraftModel = await importModel(browser, projects.blobs, await getSource(), options);
         const first = projects.isBlank.value && projects.document.value.name === 'New project';
-        projects.do(
+        options.do(
           this.commands.openModel(
             this.operation.value ?? operation,
             model,
@@ -85,7 +85,7 @@ export abstract class CraftSession<D extends CraftDocument = CraftDocument> exte
             (parameter) => this.forgets(parameter),
           ),
         );
-        if (first) projects.do(nameProject(name.replace(/\.[^.]+$/, '')));
+        if (first) options.do(nameProject(name.replace(/\.[^.]+$/, '')));
         this.repairsOpen.value = sentences(model.report, 'repairs').length > 0;
         return true;
       },

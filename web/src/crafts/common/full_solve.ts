@@ -2,10 +2,11 @@
 // Full solves: in the native worker while it answers, else in the browser; found again after a reload.
 import { untracked } from '@preact/signals';
 import type { Backend, Result, RunOptions } from '../../jobs/backend';
-import type { Job, JsonObject } from '../../jobs/contract';
-import { findOperation, JobError } from '../../jobs/contract';
+import { leaving } from '../../jobs/backend';
+import type { Job } from '../../jobs/contract';
+import { asJobError, findOperation, JobError } from '../../jobs/contract';
 import type { BlobReference } from '../../project/document';
-import type { RoomDocument, Subject } from './craft_document';
+import type { RoomDocument, SolveRequest, Subject } from './craft_document';
 import { requestKey } from './craft_document';
 import { remember } from './estimate';
 import { bytesOf } from './import_model';
@@ -33,21 +34,22 @@ function declaredOutputs<D extends RoomDocument>({ services, operationName }: Ro
   return operation?.outputs.map(({ name }) => name) ?? [];
 }
 
+/** Nothing happens while something runs: a key pressed once more must not throw away how far it has come. */
 export async function solveInFull<D extends RoomDocument>(session: RoomSession<D>): Promise<void> {
   const subject = session.subject.value;
-  if (subject === null || session.result.value !== null) return;
+  if (subject === null || session.result.value !== null || session.activity.value.kind !== 'idle') return;
   const { services } = session;
   const parameters = session.asked.value;
   const worker = readyWorker(services);
   const backend = worker ?? services.browser;
   const job = jobOf(session, subject, worker ? declaredOutputs(session) : session.wantedOutputs);
-  const mesh = subject.key;
-  await solveWith(session, backend, mesh, parameters, (options) =>
-    backend.run(job, {
-      ...options,
-      onAccepted: (id) => services.projects.do(session.commands.setPending({ job: id, mesh, parameters })),
-    }),
-  );
+  await solveWith(session, {
+    backend,
+    mesh: subject.key,
+    parameters,
+    job: null,
+    run: (options) => backend.run(job, options),
+  });
 }
 
 /** A solve that was still running in the worker when the page was closed is waited for again. */
@@ -59,56 +61,73 @@ export function resumePending<D extends RoomDocument>(session: RoomSession<D>): 
   untracked(() => {
     if (session.activity.value.kind !== 'idle') return;
     const { job, mesh, parameters } = pending;
-    void solveWith(session, worker, mesh, parameters, (options) => resume(job, options));
+    void solveWith(session, {
+      backend: worker,
+      mesh,
+      parameters,
+      job,
+      run: (options) => resume(job, options),
+    });
   });
 }
 
-async function solveWith<D extends RoomDocument>(
-  session: RoomSession<D>,
-  backend: Backend,
-  mesh: string,
-  parameters: JsonObject,
-  run: (options: RunOptions) => Promise<Result>,
-): Promise<void> {
+interface Solve extends SolveRequest {
+  readonly backend: Backend;
+  /** The worker's name for it; null until it has one. */
+  readonly job: string | null;
+  readonly run: (options: RunOptions) => Promise<Result>;
+}
+
+async function solveWith<D extends RoomDocument>(session: RoomSession<D>, solve: Solve): Promise<void> {
   const { commands } = session;
   const { projects } = session.services;
+  const { backend, mesh, parameters, run } = solve;
+  const own = requestKey(mesh, parameters);
+  let { job } = solve;
   session.cancelPreview();
   const start = performance.now();
   await session.busy(
     'solving',
     backend.kind,
     async (options) => {
-      session.solvingFor = requestKey(mesh, parameters);
-      const done = await run(options);
-      const seconds = (performance.now() - start) / 1000;
-      const outputs: Record<string, BlobReference> = {};
-      for (const output of done.outputs.values())
-        if (session.wantedOutputs.includes(output.name))
-          outputs[output.name] = await session.keep(await output.read(), output.mediaType);
-      const measured = session.measured(done.report);
-      if (measured) remember(commands.craft, backend.kind, measured);
-      const { pending } = session.document.value;
-      const made = {
-        id: crypto.randomUUID(),
-        made_unix_s: Math.round(Date.now() / 1000),
-        backend: backend.kind,
-        seconds,
-        mesh,
-        parameters,
-        report: done.report,
-        outputs,
-        ...(backend.kind === 'native' && pending ? { job: pending.job } : {}),
+      session.solvingFor = own;
+      const onAccepted = (id: string) => {
+        job = id;
+        options.do(commands.setPending({ job: id, mesh, parameters }));
       };
-      projects.do(commands.addResult(made));
+      try {
+        const done = await run({ ...options, onAccepted });
+        const seconds = (performance.now() - start) / 1000;
+        const outputs: Record<string, BlobReference> = {};
+        for (const output of done.outputs.values())
+          if (session.wantedOutputs.includes(output.name))
+            outputs[output.name] = await session.keep(await output.read(), output.mediaType);
+        const made = {
+          id: crypto.randomUUID(),
+          made_unix_s: Math.round(Date.now() / 1000),
+          backend: backend.kind,
+          seconds,
+          mesh,
+          parameters,
+          report: done.report,
+          outputs,
+          ...(job === null ? {} : { job }),
+        };
+        options.do(commands.addResult(made));
+        const measured = session.measured(done.report);
+        if (measured) remember(commands.craft, backend.kind, measured);
+      } catch (thrown) {
+        // What goes on in the worker, or has ended there unseen, is found again by what is pending.
+        const goesOn = options.signal.reason === leaving || asJobError(thrown).code === 'unreachable';
+        // Compared by name: another project that is open by now may have its own.
+        const isPending = session.document.value.pending?.job === job;
+        if (!goesOn && isPending) projects.do(commands.setPending(null));
+        throw thrown;
+      }
     },
-    (error) => {
-      if (error.code !== 'unreachable') projects.do(commands.setPending(null));
-      session.report(error, session.failedTitle);
-    },
+    (error) => session.report(error, session.failedTitle),
   );
-  session.solvingFor = null;
-  if (session.document.value.pending && backend.kind === 'native' && !session.result.value)
-    projects.do(commands.setPending(null)); // cancelled
+  if (session.solvingFor === own) session.solvingFor = null;
 }
 
 /** The bytes of an output of the current result: kept, still in the worker, or made now. */
@@ -137,7 +156,7 @@ export async function outputOf<D extends RoomDocument>(
       if (mediaType === undefined)
         throw new JobError({ code: 'internal', where: name, message: 'No output.' });
       const reference = await session.keep(bytes, mediaType);
-      session.services.projects.do(
+      options.do(
         session.commands.amendResult(result.id, (before) => ({
           ...before,
           outputs: { ...before.outputs, [name]: reference },

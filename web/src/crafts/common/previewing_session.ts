@@ -49,6 +49,7 @@ export abstract class PreviewingSession<
 
   /** To be called once everything is set up. */
   protected startFollowing(): void {
+    this.result = this.unlessLost(this.result);
     effect(() => {
       const from = this.document.value.model?.mesh.blob ?? null;
       if (from === null) this.shown.value = null;
@@ -102,10 +103,7 @@ export abstract class PreviewingSession<
       const shown = await this.readResult(result);
       if (this.result.value?.id === result.id) this.show(shown);
     } catch {
-      // Its bytes were not kept; a preview stands in for it.
-      const model = this.document.value.model;
-      if (model)
-        this.#preview.request({ subject: this.#previewSubject(model), parameters: result.parameters });
+      this.lose(result); // its bytes were not kept; a preview follows, and it can be made again
     }
   }
 

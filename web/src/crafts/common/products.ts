@@ -98,7 +98,7 @@ export async function productBytes<D extends RoomWithProducts>(
       const own = made[output];
       if (own === undefined)
         throw new JobError({ code: 'internal', where: output, message: `The solver made no ${output}.` });
-      projects.do(
+      options.do(
         addProduct(session.commands, {
           id: crypto.randomUUID(),
           operation: operation.name,

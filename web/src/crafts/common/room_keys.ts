@@ -33,7 +33,7 @@ export function useRoomKeys<D extends RoomDocument>(session: RoomSession<D>, key
       const action = actionOf(event);
       if (action === undefined) return;
       event.preventDefault();
-      action();
+      if (!event.repeat) action(); // all of these are meant once, however long the key is held
     };
     document.addEventListener('keydown', onKey);
     return () => document.removeEventListener('keydown', onKey);

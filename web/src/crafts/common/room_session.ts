@@ -2,11 +2,13 @@
 // What every room does: it runs one task at a time that the strip shows and Esc cancels, says what went wrong,
 // changes parameters. It holds no state that matters; that is in the project document.
 import type { ReadonlySignal } from '@preact/signals';
-import { signal, untracked } from '@preact/signals';
+import { computed, effect, signal, untracked } from '@preact/signals';
+import { leaving } from '../../jobs/backend';
 import type { JobError, Json, JsonObject, Operation, Progress, Report } from '../../jobs/contract';
-import { asJobError } from '../../jobs/contract';
-import type { BlobReference } from '../../project/document';
+import { asJobError, cancelled } from '../../jobs/contract';
+import type { BlobReference, ProjectDocument } from '../../project/document';
 import { jsonEqual } from '../../project/document';
+import type { Command } from '../../project/history';
 import type { CraftResult, RoomCommands, RoomDocument, Subject } from './craft_document';
 import { inForce, requestKey } from './craft_document';
 import type { Measured } from './estimate';
@@ -26,6 +28,15 @@ export type Activity =
 export interface BusyOptions {
   readonly signal: AbortSignal;
   readonly onProgress: (progress: Progress) => void;
+  /** Changes the project that the task was begun in; throws `cancelled` where another one is open by now, or the task was ended. */
+  readonly do: (command: Command<ProjectDocument>) => void;
+}
+
+interface Task {
+  readonly kind: Exclude<Activity['kind'], 'idle'>;
+  readonly abort: AbortController;
+  /** The project it was begun in. */
+  readonly home: string;
 }
 
 export interface Problem {
@@ -47,20 +58,26 @@ export abstract class RoomSession<D extends RoomDocument = RoomDocument> {
   readonly activity = signal<Activity>({ kind: 'idle' });
   readonly problem = signal<Problem | null>(null);
   readonly fieldErrors = signal<Readonly<Record<string, string>>>({});
-  #abort: AbortController | null = null;
+  #task: Task | null = null;
+  readonly #lost = signal<ReadonlySet<string>>(new Set());
 
   constructor(services: Services, commands: RoomCommands<D>) {
     this.services = services;
     this.commands = commands;
+    // The first effect that a session has: all others that follow the document find that what ran before has been left.
+    effect(() => {
+      void services.projects.document.value;
+      untracked(() => this.#leaveOtherProject());
+    });
   }
 
   /** The operation that a full solve runs, what it is about, and what of its outputs is kept. */
   abstract readonly operationName: string;
   abstract readonly subject: ReadonlySignal<Subject | null>;
   abstract readonly wantedOutputs: readonly string[];
-  /** The parameters that the solve depends on, and the result made with them and the subject in force. */
+  /** The parameters that the solve depends on, and the result made with them and the subject in force: null where its bytes are lost. */
   abstract readonly asked: ReadonlySignal<JsonObject>;
-  abstract readonly result: ReadonlySignal<CraftResult | null>;
+  abstract result: ReadonlySignal<CraftResult | null>;
   abstract readonly failedTitle: string;
   /** The request being solved in full; any change to it ends the solve. */
   solvingFor: Json = null;
@@ -77,27 +94,35 @@ export abstract class RoomSession<D extends RoomDocument = RoomDocument> {
   /** Runs one task that the strip shows and Esc cancels. Null when it failed, of which `failed` is told, or
    *  was cancelled. */
   async busy<T>(
-    kind: 'opening' | 'solving' | 'exporting',
+    kind: Task['kind'],
     name: string,
     task: (options: BusyOptions) => Promise<T>,
     failed: (error: JobError) => void,
   ): Promise<T | null> {
     this.cancel();
-    const abort = (this.#abort = new AbortController());
+    const { projects } = this.services;
+    const own: Task = { kind, abort: new AbortController(), home: projects.document.peek().id };
+    const { signal } = own.abort;
+    this.#task = own;
     this.problem.value = null;
     this.activity.value = { kind, name, progress: null };
     const onProgress = (progress: Progress) => {
-      if (this.#abort === abort) this.activity.value = { kind, name, progress };
+      if (this.#task === own) this.activity.value = { kind, name, progress };
+    };
+    const change = (command: Command<ProjectDocument>) => {
+      // What is open is compared as well: a task that was ended may come to its last step all the same.
+      if (signal.aborted || projects.document.peek().id !== own.home) throw cancelled();
+      projects.do(command);
     };
     try {
-      return await task({ signal: abort.signal, onProgress });
+      return await task({ signal, onProgress, do: change });
     } catch (thrown) {
       const error = asJobError(thrown);
-      if (error.code !== 'cancelled') failed(error);
+      if (error.code !== 'cancelled' && !signal.aborted) failed(error);
       return null;
     } finally {
-      if (this.#abort === abort) {
-        this.#abort = null;
+      if (this.#task === own) {
+        this.#task = null;
         this.activity.value = { kind: 'idle' };
         this.follow();
       }
@@ -105,7 +130,17 @@ export abstract class RoomSession<D extends RoomDocument = RoomDocument> {
   }
 
   cancel(): void {
-    this.#abort?.abort();
+    this.#task?.abort.abort();
+  }
+
+  /** Another project was opened: what runs here was asked for in the one before, and its end must not be written into this one. A solve
+   *  that the worker has goes on there, where the project it belongs to finds it; anything else ends. */
+  #leaveOtherProject(): void {
+    const task = this.#task;
+    if (task === null || task.home === this.services.projects.document.peek().id) return;
+    this.#task = null;
+    this.activity.value = { kind: 'idle' };
+    task.abort.abort(task.kind === 'solving' ? leaving : undefined);
   }
 
   /** Ends a full solve of what is no longer asked for. */
@@ -152,10 +187,26 @@ export abstract class RoomSession<D extends RoomDocument = RoomDocument> {
 
   // ---- what is kept ----
 
+  /** A result whose bytes cannot be read stays in the document, but counts as not made: it can only be made again. */
+  protected lose({ id }: CraftResult): void {
+    this.#lost.value = new Set([...this.#lost.peek(), id]);
+  }
+
+  /** Of a result that the document lists, what `result` is. */
+  protected unlessLost(listed: ReadonlySignal<CraftResult | null>): ReadonlySignal<CraftResult | null> {
+    return computed(() => {
+      const found = listed.value;
+      return found !== null && this.#lost.value.has(found.id) ? null : found;
+    });
+  }
+
   async keepPicture(resultId: string, picture: Blob): Promise<void> {
+    const { projects } = this.services;
+    const home = projects.document.peek().id;
     const reference = await this.keep(new Uint8Array(await picture.arrayBuffer()), picture.type);
     const amend = (old: CraftResult) => ({ ...old, picture: reference });
-    this.services.projects.do(this.commands.amendResult(resultId, amend));
+    // The command alone would make something of a blank project.
+    if (projects.document.peek().id === home) projects.do(this.commands.amendResult(resultId, amend));
   }
 
   keep(bytes: Uint8Array<ArrayBuffer>, media_type: string): Promise<BlobReference> {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From a solid to a 3D printer: slice, look at time and filament, send, start.
 import { useSignal } from '@preact/signals';
-import { useMemo } from 'preact/hooks';
+import { useEffect, useMemo } from 'preact/hooks';
 import { Button, Dialog, formatBytes, formatDuration, formatNumber, Icon, withUnit } from '../../ui';
 import { download } from './download';
 import './print_dialog.css';
@@ -16,9 +16,10 @@ export interface SliceDialogProps {
 }
 
 export function SliceDialog({ services, solid, onClose }: SliceDialogProps) {
-  const session = useMemo(() => new SliceSession(services, solid), [solid]);
+  const session = useMemo(() => SliceSession.of(services, solid), [solid]);
+  useEffect(() => () => session.close(), [session]);
   return (
-    <Dialog title={`Print ${solid.title} in plastic`} onClose={onClose}>
+    <Dialog title={`Print ${session.solid.title} in plastic`} onClose={onClose}>
       {session.slicer.value ? <Slicing session={session} /> : <NoSlicer session={session} />}
       {session.current.value ? <Sending session={session} /> : null}
       <div class="print-foot">

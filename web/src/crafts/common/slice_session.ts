@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A solid on its way to a 3D printer: sliced by the PrusaSlicer of this computer, then kept as G-code or handed to a print server.
+// What is under way goes on when the dialog is closed.
 import { computed, signal } from '@preact/signals';
 import { asJobError } from '../../jobs/contract';
 import type { BridgeMachine } from '../../machines/links/bridge_link';
@@ -8,6 +9,7 @@ import type { PrintFacts } from '../../machines/printing/gcode_facts';
 import { printFacts } from '../../machines/printing/gcode_facts';
 import type { WorkerTask } from '../../machines/printing/worker_tasks';
 import { readBlob, readMachine, runTask, uploadGcode } from '../../machines/printing/worker_tasks';
+import { toast } from '../../ui';
 import { safeFileName } from './download';
 import type { Solid } from './print_request';
 import type { Services } from './services';
@@ -24,6 +26,9 @@ export interface PrintServer {
   readonly software?: string;
 }
 
+/** The one that slices or sends now, where one does. */
+const underWay = new Set<SliceSession>();
+
 export class SliceSession {
   readonly services: Services;
   readonly solid: Solid;
@@ -39,6 +44,7 @@ export class SliceSession {
   readonly problem = signal<string | null>(null);
   readonly done = signal<string | null>(null);
   #abort: AbortController | null = null;
+  #open = true;
 
   /** Sliced with the profile in force. */
   readonly current = computed(() => {
@@ -50,6 +56,14 @@ export class SliceSession {
     this.services = services;
     this.solid = solid;
     void this.#look();
+  }
+
+  /** For a dialog that opens: what is under way is shown again, so that it can be cancelled, whatever the new solid. */
+  static of(services: Services, solid: Solid): SliceSession {
+    const [running] = underWay;
+    if (running === undefined) return new SliceSession(services, solid);
+    running.#open = true;
+    return running;
   }
 
   get fileName(): string {
@@ -99,6 +113,11 @@ export class SliceSession {
     this.#abort?.abort();
   }
 
+  /** The dialog is gone: what is under way goes on, and its end is told in a toast. */
+  close(): void {
+    this.#open = false;
+  }
+
   async #run(
     words: string,
     run: (
@@ -108,16 +127,23 @@ export class SliceSession {
   ): Promise<void> {
     const { worker } = this.services;
     if (worker === null || this.task.value !== null) return;
+    underWay.add(this);
     const abort = (this.#abort = new AbortController());
     this.problem.value = this.done.value = null;
     this.task.value = { id: '', state: 'sending', sentence: `${words}.`, fraction: 0 };
     try {
       await run(worker, { signal: abort.signal, onTask: (task) => (this.task.value = task) });
+      if (!this.#open && this.done.value) toast(this.done.value);
     } catch (thrown) {
       const error = asJobError(thrown);
-      if (error.code !== 'cancelled') this.problem.value = error.message;
+      // A request that is broken off says so in the browser's own words.
+      if (error.code !== 'cancelled' && !abort.signal.aborted) {
+        this.problem.value = error.message;
+        if (!this.#open) toast(`${words}: ${error.message}`, true);
+      }
     } finally {
       this.task.value = null;
+      underWay.delete(this);
     }
   }
 

@@ -258,9 +258,12 @@ export class EvidenceSession extends RoomSession<EvidenceDocument> {
   // ---- runs ----
 
   async solve(): Promise<void> {
+    const { document } = this.services.projects;
+    const home = document.value.id;
     this.stopped.value = false;
     await solveInFull(this);
-    this.stopped.value = this.result.value === null && this.problem.value === null;
+    const isOpen = document.value.id === home; // of another project nothing was stopped
+    this.stopped.value = isOpen && this.result.value === null && this.problem.value === null;
   }
 
   measured(report: Report): Measured | null {

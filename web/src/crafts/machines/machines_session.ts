@@ -11,7 +11,7 @@ import type { MachineProfile } from '../../machines/profiles';
 import { isMill, ProfileStore } from '../../machines/profiles';
 import { listenForStop } from '../../machines/stop_keys';
 import { jsonEqual } from '../../project/document';
-import type { CraftResult, Subject } from '../common/craft_document';
+import type { CraftResult, SolveRequest, Subject } from '../common/craft_document';
 import { nameProject, sameRequest } from '../common/craft_document';
 import type { Measured } from '../common/estimate';
 import { estimateSeconds, recall } from '../common/estimate';
@@ -76,11 +76,13 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
   });
   readonly wantedOutputs = ['job.gcode', 'toolpath.json'];
   readonly asked = computed(() => this.document.value.parameters);
-  readonly result = computed<CraftResult | null>(() => {
-    const { results, parameters } = this.document.value;
-    const mesh = this.subject.value?.key;
-    return (mesh !== undefined && results.find((made) => sameRequest(made, { mesh, parameters }))) || null;
-  });
+  readonly result = this.unlessLost(
+    computed<CraftResult | null>(() => {
+      const { parameters } = this.document.value;
+      const mesh = this.subject.value?.key;
+      return mesh === undefined ? null : this.#madeOf({ mesh, parameters });
+    }),
+  );
   readonly failedTitle = 'The job could not be made';
 
   constructor(services: Services) {
@@ -162,10 +164,20 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
           title: `Could not read ${work.file_name}`,
           message: error.message,
         };
+      } else if (work.kind === 'model') {
+        const made = this.#madeOf({ mesh: work.file.blob, parameters: request.parameters });
+        if (made) this.lose(made);
+        const message = 'Its files are missing in this browser, or damaged: make it again.';
+        this.problem.value = { kind: 'solve', title: 'The job cannot be read', message };
       } else this.report(error, this.failedTitle);
     } finally {
       this.planning.value = false;
     }
+  }
+
+  /** The job that a mill's request was answered with. */
+  #madeOf(request: SolveRequest): CraftResult | null {
+    return this.document.value.results.find((made) => sameRequest(made, request)) ?? null;
   }
 
   async #planOf(request: PlanRequest, signal: AbortSignal): Promise<Plan> {
@@ -176,11 +188,8 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
       return await planOfJob(blobs, { ...request, work }, bed, this.#number('power_max_s', 1000));
     }
     if (work.kind === 'model') {
-      const { parameters } = request;
-      const made = this.document
-        .peek()
-        .results.find((result) => sameRequest(result, { mesh: work.file.blob, parameters }));
-      if (made === undefined) throw cancelled();
+      const made = this.#madeOf({ mesh: work.file.blob, parameters: request.parameters });
+      if (made === null) throw cancelled();
       return await planOfResult(blobs, request, made);
     }
     return await planOfLaser(this.services.browser, request, this.jobFormat, signal);

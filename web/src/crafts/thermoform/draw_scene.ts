@@ -76,7 +76,7 @@ export function keepDrawn(viewport: Viewport, session: ThermoformSession, extras
     const original = session.original.value;
     const shown = session.shown.value;
     const placement = placementNow(session);
-    const draft = view.value === 'undercut' ? extras().draft : null;
+    const draft = view.value === 'undercut' ? (extras().draft?.mesh ?? null) : null;
     if (original === null || shown === null || placement === null) {
       viewport.setOriginal(null);
       viewport.setFixtures([]);

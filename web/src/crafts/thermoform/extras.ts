@@ -4,35 +4,52 @@
 import { effect, signal } from '@preact/signals';
 import { readPly, readPrinted } from '../../jobs/mesh_reader';
 import type { MeshData } from '../../view';
+import { sameRequest } from '../common/craft_document';
 import { bytesToSave } from './make_product';
 import type { Product } from '../common/products';
 import { moulding, printing } from './thermoform_document';
 import type { Formed, ThermoformSession } from './thermoform_session';
+import type { View } from './views';
 import { view } from './views';
 
+/** What it was read for and from: another sheet, or a print made with other settings, is not shown by it. */
+interface ReadFor {
+  readonly of: Formed;
+  /** The file's hash. */
+  readonly file: string;
+}
+
 export interface Extras {
-  /** The print, laid onto the sheet `of`. */
-  readonly printed: {
-    readonly of: Formed;
-    readonly uvs: Float32Array;
-    readonly texture: ImageBitmap;
-    readonly url: string;
-  } | null;
+  /** The print, laid onto the sheet. */
+  readonly printed:
+    (ReadFor & { readonly uvs: Float32Array; readonly texture: ImageBitmap; readonly url: string }) | null;
   /** The model with its draft, in the machine. */
-  readonly draft: MeshData | null;
+  readonly draft: (ReadFor & { readonly mesh: MeshData }) | null;
 }
 
 const none: Extras = { printed: null, draft: null };
+/** A slider that moves again within this was not at rest: nothing is made of where it was. */
+const rest_ms = 400;
+
+const hashOf = (product: Product | null, output: string): string | null =>
+  product?.outputs[output]?.blob ?? null;
+const isOf = (read: ReadFor | null, formed: Formed, file: string | null): boolean =>
+  read !== null && read.of === formed && read.file === file;
 
 /** Follows the session; what a view needs and nobody has made is made once. */
 export function watchExtras(session: ThermoformSession) {
   const extras = signal<Extras>(none);
   const tried = new Set<string>();
-  const make = (operation: string, output: string, label: string): void => {
-    const key = JSON.stringify([operation, session.document.peek().parameters, session.result.peek()?.id]);
-    if (tried.has(key) || session.activity.value.kind !== 'idle') return;
-    tried.add(key);
-    void bytesToSave(session, operation, output, label);
+  /** Once nothing else runs. What is given back calls it off. */
+  const makeLater = (operation: string, output: string, label: string, wait_ms: number) => {
+    const key = JSON.stringify([operation, session.document.value.parameters, session.result.value?.id]);
+    if (session.activity.value.kind !== 'idle' || tried.has(key)) return undefined;
+    const make = () => {
+      tried.add(key);
+      void bytesToSave(session, operation, output, label);
+    };
+    const waiting = setTimeout(make, wait_ms);
+    return () => clearTimeout(waiting);
   };
   let urls: string[] = [];
   const forget = () => {
@@ -40,46 +57,54 @@ export function watchExtras(session: ThermoformSession) {
     urls = [];
   };
 
-  const readPrint = async (print: Product, formed: Formed): Promise<void> => {
-    const glb = print.outputs['formed.glb'];
-    if (glb === undefined) return;
-    const read = await readPrinted(await session.services.projects.blobs.read(glb.blob));
-    if (read.positions.length !== formed.sheet.positions.length) return; // of another sheet
+  const readPrint = async ({ of, file }: ReadFor): Promise<void> => {
+    const read = await readPrinted(await session.services.projects.blobs.read(file));
+    if (read.positions.length !== of.sheet.positions.length) return; // of another sheet
     const picture = new Blob([read.picture], { type: read.media_type });
     const texture = await createImageBitmap(picture, { imageOrientation: 'flipY' });
-    if (session.shown.value !== formed) return;
+    if (session.shown.value !== of || hashOf(session.print.value, 'formed.glb') !== file) return;
     forget();
     const url = URL.createObjectURL(picture);
     urls.push(url);
-    extras.value = { ...extras.peek(), printed: { of: formed, uvs: read.uvs, texture, url } };
+    extras.value = { ...extras.peek(), printed: { of, file, uvs: read.uvs, texture, url } };
   };
-  const readDraft = async (mould: Product): Promise<void> => {
-    const ply = mould.outputs['draft.ply'];
-    if (ply === undefined) return;
+  const readDraft = async ({ of, file }: ReadFor): Promise<void> => {
     const { positions, indices, attributes } = await readPly(
-      await session.services.projects.blobs.read(ply.blob),
+      await session.services.projects.blobs.read(file),
     );
+    if (session.shown.value !== of || hashOf(session.mould.value, 'draft.ply') !== file) return;
     const draft_deg = attributes['draft_deg'] ?? new Float32Array(positions.length / 3);
     const overhang_deg = draft_deg.map((angle) => -angle);
-    extras.value = { ...extras.peek(), draft: { positions, indices, attributes: { overhang_deg } } };
+    const mesh = { positions, indices, attributes: { overhang_deg } };
+    extras.value = { ...extras.peek(), draft: { of, file, mesh } };
   };
 
+  let looked: View | null = null;
   const stop = effect(() => {
-    const shown = session.shown.value;
-    const { print, mould } = { print: session.print.value, mould: session.mould.value };
+    const of = session.shown.value;
+    const print = hashOf(session.print.value, 'formed.glb');
+    const mould = hashOf(session.mould.value, 'draft.ply');
     const wanted = view.value;
-    if (shown?.kind !== 'full' || session.result.value === null) {
+    const wait_ms = wanted === looked ? rest_ms : 0; // a view just chosen waits for nothing
+    looked = wanted;
+    const result = session.result.value;
+    // While another result is being read, print and mould are that one's already.
+    if (of?.kind !== 'full' || result === null || !sameRequest(result, { ...of, mesh: of.from })) {
       if (extras.peek() !== none) extras.value = none;
-      return;
+      return undefined;
     }
-    if (wanted === 'texture' && extras.peek().printed?.of !== shown && session.operationNamed(printing)) {
-      if (print?.outputs['formed.glb']) void readPrint(print, shown).catch(() => undefined);
-      else make(printing, 'formed.glb', 'print');
+    const { printed, draft } = extras.peek();
+    if (wanted === 'texture' && !isOf(printed, of, print) && session.operationNamed(printing)) {
+      if (printed) extras.value = { ...extras.peek(), printed: null };
+      if (print === null) return makeLater(printing, 'formed.glb', 'print', wait_ms);
+      void readPrint({ of, file: print }).catch(() => undefined);
     }
-    if (wanted === 'undercut' && extras.peek().draft === null && session.operationNamed(moulding)) {
-      if (mould?.outputs['draft.ply']) void readDraft(mould).catch(() => undefined);
-      else make(moulding, 'draft.ply', 'draft map');
+    if (wanted === 'undercut' && !isOf(draft, of, mould) && session.operationNamed(moulding)) {
+      if (draft) extras.value = { ...extras.peek(), draft: null };
+      if (mould === null) return makeLater(moulding, 'draft.ply', 'draft map', wait_ms);
+      void readDraft({ of, file: mould }).catch(() => undefined);
     }
+    return undefined;
   });
   return {
     extras,

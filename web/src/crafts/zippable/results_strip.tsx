@@ -4,7 +4,7 @@ import type { CraftResult } from '../common/craft_document';
 import { CraftStrip } from '../common/craft_strip';
 import { figure } from '../common/report';
 import { metres } from './flat_ribbon';
-import { zippable } from './zippable_document';
+import { design, zippable } from './zippable_document';
 import type { ZippableSession } from './zippable_session';
 
 /** Edges keep their lengths to rounding; more would be a fault that must not be hidden. */
@@ -12,6 +12,8 @@ const lengthKept = 1e-9;
 
 export function ResultsStrip({ session }: { session: ZippableSession }) {
   const activity = session.activity.value;
+  // A ribbon says nothing of zipper, bed and rig: these stay as they are set.
+  const own = session.operationNamed(design)?.parameters.properties ?? {};
   return (
     <CraftStrip
       session={session}
@@ -29,7 +31,9 @@ export function ResultsStrip({ session }: { session: ZippableSession }) {
       usualParameter="width_mm"
       figureOf={zipperOf}
       figureName="zipper"
-      onRestore={(one, label) => session.services.projects.do(zippable.restoreResult(one, label))}
+      onRestore={(one, label) =>
+        session.services.projects.do(zippable.restoreResult(one, label, (name) => name in own))
+      }
     />
   );
 }

@@ -152,6 +152,8 @@ export async function openUsbEnd(usb: UsbLike, index: number, listener: EndListe
   const askStatus = 0xa0;
   return {
     write: async (packet) => {
+      // Once it is gone nothing is asked any more; a stop that waited behind a question still leaves.
+      if (!open && packet[0] === askStatus) return;
       try {
         await within(5000, device.transferOut(ch341.write, packet), 'The laser takes nothing any more.');
         if (packet[0] !== askStatus) return;

@@ -7,6 +7,10 @@ import { MachineRefusal } from './machine_module';
 import type { MachineCommand, MachineEvent, MachineState } from './machine_state';
 
 const keptEvents = 2000;
+/** For a worker to close its line: longer than a transfer is waited for, so that a stop behind one still leaves. */
+const patience_ms = 6000;
+/** Workers that may still hold a port or a device. */
+const leaving = new Set<Promise<void>>();
 
 export interface MachineLink {
   /** Null until the driver has spoken. */
@@ -45,6 +49,8 @@ export class WorkerLink implements MachineLink {
   readonly #worker: Worker;
   readonly #waiting = new Map<number, Waiting>();
   #nextId = 1;
+  #opened = false;
+  #left: Promise<void> | null = null;
 
   private constructor(worker: Worker) {
     this.#worker = worker;
@@ -55,6 +61,7 @@ export class WorkerLink implements MachineLink {
   }
 
   static async open(end: EndChoice, options: Readonly<Record<string, unknown>>): Promise<WorkerLink> {
+    await Promise.all(leaving); // one of them may hold this very device
     const worker = new Worker(new URL('./machine_worker.ts', import.meta.url), {
       type: 'module',
       name: 'machine',
@@ -63,8 +70,9 @@ export class WorkerLink implements MachineLink {
     const module = new URL('wasm/machines.mjs', document.baseURI).href;
     try {
       await link.#ask({ type: 'open', module, options, end });
+      link.#opened = true;
     } catch (thrown) {
-      worker.terminate();
+      link.#end('');
       throw thrown;
     }
     return link;
@@ -76,9 +84,8 @@ export class WorkerLink implements MachineLink {
   trip = (): Promise<void> => this.#ask({ type: 'trip' });
 
   async close(): Promise<void> {
-    await this.#ask({ type: 'close' }).catch(() => undefined);
+    await this.#leave();
     this.#end('');
-    this.#worker.terminate();
   }
 
   #ask(message: WithoutId<ToMachineWorker>): Promise<void> {
@@ -101,9 +108,35 @@ export class WorkerLink implements MachineLink {
   }
 
   #end(why: string): void {
-    if (this.gone.value === null) this.gone.value = why;
+    if (this.gone.value !== null) return;
+    this.gone.value = why;
     for (const { reject } of this.#waiting.values())
       reject(new Error(why === '' ? 'The machine was disconnected.' : why));
     this.#waiting.clear();
+    void this.#leave();
+  }
+
+  /** Ends the worker, however the line came to its end: while it lives, port and device stay with it. */
+  #leave(): Promise<void> {
+    if (this.#left !== null) return this.#left;
+    const left = this.#lineClosed().then(() => {
+      this.#worker.terminate();
+      leaving.delete(left);
+    });
+    leaving.add(left);
+    return (this.#left = left);
+  }
+
+  /** Resolves once the worker has written what waited and closed its line, or when that takes too long. */
+  #lineClosed(): Promise<void> {
+    if (!this.#opened) return Promise.resolve();
+    const id = this.#nextId++;
+    return new Promise((resolve) => {
+      this.#worker.addEventListener('message', ({ data }: MessageEvent<FromMachineWorker>) => {
+        if (data.type === 'done' && data.id === id) resolve();
+      });
+      this.#worker.postMessage({ type: 'close', id } satisfies ToMachineWorker);
+      setTimeout(resolve, patience_ms);
+    });
   }
 }

@@ -27,6 +27,8 @@ export class MachineRunner {
   #module: MachineModule | null = null;
   #driver = 0;
   #end: (MachineEnd & { trip?(): void }) | null = null;
+  /** A line that is gone, until it is closed: it may still hold the device, and a stop may still wait to leave by it. */
+  #lost: MachineEnd | null = null;
   #timer: ReturnType<typeof setInterval> | null = null;
   #told_ms = 0;
   #toldPhase = '';
@@ -110,15 +112,22 @@ export class MachineRunner {
 
   #gone(why: string | null): void {
     if (this.#end === null) return;
+    if (why !== null) this.#lost = this.#end;
     this.#end = null;
     if (this.#timer !== null) clearInterval(this.#timer);
-    this.#call({ call: 'closed' });
+    try {
+      this.#call({ call: 'closed' });
+    } catch {
+      // The driver itself broke: the page hears that the line is gone all the same.
+    }
     this.#tell();
     this.#post({ type: 'gone', why });
   }
 
+  /** What was written before leaves first, a stop above all. */
   async #close(): Promise<void> {
-    const end = this.#end;
+    const end = this.#end ?? this.#lost;
+    this.#lost = null;
     await this.#writing.catch(() => undefined);
     await end?.close();
   }

@@ -1,0 +1,22 @@
+// @vitest-environment happy-dom
+// SPDX-License-Identifier: GPL-3.0-or-later
+import { expect, it } from 'vitest';
+import { solveInFull } from '../common/full_solve';
+import { resultOf, settled, testCatalog, testServices } from '../common/test_room';
+import { laserJob, machines, millJob } from './machines_document';
+import { MachinesSession } from './machines_session';
+
+it('a mill’s job whose files are gone is said, and can be made again', async () => {
+  const services = testServices(testCatalog(laserJob, millJob));
+  const session = new MachinesSession(services);
+  const file = { blob: 'lion', bytes: 3, media_type: 'application/octet-stream' };
+  const work = { file_name: 'lion.stl', kind: 'model', file } as const;
+  services.projects.do(machines.setWork(testCatalog(laserJob, millJob), work, 'Open'));
+  services.projects.do(machines.addResult(resultOf('lion')));
+  session.active.value = true;
+  await settled();
+  expect(session.problem.value?.title).toBe('The job cannot be read');
+  expect(session.isCurrent.value).toBe(false);
+  void solveInFull(session);
+  expect(services.browser.runs).toMatchObject([{ asked: { operation: millJob } }]);
+});

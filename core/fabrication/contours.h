@@ -26,7 +26,8 @@ std::vector<int> containing_contours(const std::vector<CutPath>& paths, const st
                                      const Context& context);
 
 /// The polygon with its edge moved outwards by `outward_mm` (inwards when negative), corners rounded where they open:
-/// exact to `tolerance_mm`. Shrinking can leave several polygons, or none. Counter-clockwise. The polygon may cross
+/// exact to `tolerance_mm`. Shrinking can leave several polygons, or none; growing can close a bay's mouth, and what is
+/// left of the bay is a polygon of its own, clockwise where the others are counter-clockwise. The polygon may cross
 /// itself: what it winds around counts as its inside. Each starts at the corner nearest to the first point of the
 /// polygon.
 std::vector<Polygon> offset_polygon(const Polygon& polygon, double outward_mm, double tolerance_mm = 0.002);

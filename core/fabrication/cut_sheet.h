@@ -33,13 +33,17 @@ struct CutSheet {
   std::string title;
   double width_mm = 0, height_mm = 0;
   std::vector<CutPath> paths;
+  double kerf_mm = 0;  // for which closed cuts are moved already: outlines by half of it outwards, openings inwards
 };
 
+inline constexpr const char* kerf_attribute = "data-formwright-kerf-mm";
+
 /// Sheets side by side, `gap_mm` apart, as one drawing; each sheet's edge is drawn as a note "sheet-1", "sheet-2", ...;
-/// names get the sheet's number behind them only where they would stand twice.
+/// names get the sheet's number behind them only where they would stand twice. The sheets have one kerf.
 CutSheet side_by_side(const std::vector<CutSheet>& sheets, double gap_mm);
 
-/// SVG 1.1 of exactly the sheet's size, 1 user unit = 1 mm, y down; a group a layer. Coordinates have four decimals.
+/// SVG 1.1 of exactly the sheet's size, 1 user unit = 1 mm, y down; a group a layer. Coordinates have four decimals. A
+/// kerf that the cuts are moved for stands in the root's kerf_attribute, in mm, so that nobody moves them again.
 Bytes write_svg(const CutSheet& sheet);
 
 /// ASCII DXF R12 in mm ($INSUNITS 4), y up: LINE for two points, POLYLINE for more, the layers in the layer table.

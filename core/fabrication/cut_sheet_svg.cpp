@@ -30,7 +30,7 @@ CutSheet side_by_side(const std::vector<CutSheet>& sheets, double gap_mm) {
   for (std::size_t i = 0; i < sheets.size(); ++i) {
     const CutSheet& sheet = sheets[i];
     if (i > 0) all.width_mm += gap_mm;
-    else all.title = sheet.title;
+    else all.title = sheet.title, all.kerf_mm = sheet.kerf_mm;
     const Vec2 corner(all.width_mm, 0);
     const std::string number = std::to_string(i + 1);
     all.paths.push_back({CutLayer::note,
@@ -53,8 +53,9 @@ Bytes write_svg(const CutSheet& sheet) {
   TextOut out;
   const double width = rounded(sheet.width_mm), height = rounded(sheet.height_mm);
   out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" width=\""
-      << width << "mm\" height=\"" << height << "mm\" viewBox=\"0 0 " << width << ' ' << height << "\">\n<title>"
-      << escaped(sheet.title) << "</title>\n";
+      << width << "mm\" height=\"" << height << "mm\" viewBox=\"0 0 " << width << ' ' << height << '"';
+  if (sheet.kerf_mm > 0) out << ' ' << kerf_attribute << "=\"" << rounded(sheet.kerf_mm) << '"';
+  out << ">\n<title>" << escaped(sheet.title) << "</title>\n";
   for (int layer = 0; layer < cut_layer_count; ++layer) {
     const CutLayerStyle& style = cut_layer_styles[layer];
     out << "<g id=\"" << style.name << "\" fill=\"none\" stroke=\"" << style.colour << "\" stroke-width=\"0.1\">\n";

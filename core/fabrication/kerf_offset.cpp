@@ -31,7 +31,7 @@ std::vector<Polygon> offset_polygon(const Polygon& polygon, double outward_mm, d
   std::vector<Polygon> result;
   for (ClipperLib::Path& one : moved) {
     ClipperLib::CleanPolygon(one, 10);  // points nearer than 0.1 um to their neighbours' line
-    if (one.size() < 3 || !ClipperLib::Orientation(one)) continue;
+    if (one.size() < 3) continue;
     Polygon out;
     for (const ClipperLib::IntPoint& p : one)
       out.emplace_back(static_cast<double>(p.X) / units_per_mm, static_cast<double>(p.Y) / units_per_mm);

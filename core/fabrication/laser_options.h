@@ -144,7 +144,7 @@ struct LaserOptions : LaserMachineOptions {
               .group("Engrave")
               .slider(0.05, 1),
           parameter("kerf_mm", &LaserOptions::kerf_mm, "Kerf", unit::mm, 0, 5,
-                    "How wide the beam burns; measure it with the kerf test.")
+                    "How wide the beam burns; measure it with the kerf test. 0 follows the lines as drawn.")
               .group("Cutting")
               .slider(0, 0.5),
           parameter("kerf_side", &LaserOptions::kerf_side, "Sizes",

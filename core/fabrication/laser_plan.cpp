@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <numbers>
 
@@ -48,8 +49,10 @@ LayerSettings settings_of(CutLayer layer, const LaserOptions& o) {
 
 class Planner {
  public:
-  Planner(std::vector<CutPath> paths, const LaserOptions& options, Context& context)
+  Planner(std::vector<CutPath> paths, double drawn_kerf_mm, const LaserOptions& options, Context& context)
       : paths_(std::move(paths)), options_(options), context_(context) {
+    if (options.kerf_side != KerfSide::centre && options.kerf_mm > 0)
+      outward_mm_ = (options.kerf_side == KerfSide::parts ? options.kerf_mm : -options.kerf_mm) / 2 - drawn_kerf_mm / 2;
     std::vector<int> closed_cuts;
     for (std::size_t i = 0; i < paths_.size(); ++i)
       if (paths_[i].layer == CutLayer::cut && paths_[i].closed) closed_cuts.push_back(static_cast<int>(i));
@@ -69,18 +72,23 @@ class Planner {
     for (std::size_t i = 0; i < paths_.size(); ++i) {
       const CutPath& path = paths_[i];
       if (path.layer != layer || (layer == CutLayer::engrave && options_.engrave_fill && path.closed)) continue;
-      for (std::vector<Vec2>& points : shaped(static_cast<int>(i))) {
-        LaserStroke stroke = made(path.layer, part_of(static_cast<int>(i)), settings, std::move(points), path.closed);
+      const Shaped shape = shaped(static_cast<int>(i));
+      const auto run = [&](const std::vector<Vec2>& points, bool outline, int inside_of) {
+        LaserStroke stroke = made(path.layer, part_of(static_cast<int>(i)), settings, points, path.closed);
         if (layer == CutLayer::cut) {
           stroke.step_down_mm = options_.cut_step_down_mm;
           stroke.overcut_mm = options_.overcut_mm;
-          if (path.closed && depth(static_cast<int>(i)) % 2 == 0) stroke.tabs = options_.tabs_count;
+          if (outline && path.closed && depth(static_cast<int>(i)) % 2 == 0) stroke.tabs = options_.tabs_count;
           stroke.tab_gap_mm = options_.tab_width_mm + options_.kerf_mm;
         }
-        stroke_of[static_cast<int>(i)] = static_cast<int>(result.size());
-        wanted.emplace_back(static_cast<int>(result.size()), inside_of_[i]);
+        wanted.emplace_back(static_cast<int>(result.size()), inside_of);
         result.push_back(std::move(stroke));
+      };
+      for (const std::vector<Vec2>& points : shape.outlines) {
+        stroke_of[static_cast<int>(i)] = static_cast<int>(result.size());
+        run(points, true, inside_of_[i]);
       }
+      for (const std::vector<Vec2>& points : shape.closed_off) run(points, false, static_cast<int>(i));
     }
     if (layer == CutLayer::cut && options_.inner_first)
       for (const auto& [stroke, after] : wanted)
@@ -92,9 +100,13 @@ class Planner {
     return result;
   }
 
-  int too_small = 0, broken_up = 0;
+  int too_small = 0, broken_up = 0, mouths_closed = 0;
 
  private:
+  struct Shaped {
+    std::vector<Polygon> outlines, closed_off;  // what lies behind a mouth that the kerf closes is cut of its own
+  };
+
   static LaserStroke made(CutLayer layer, std::string part, const LayerSettings& settings, std::vector<Vec2> points,
                           bool closed) {
     LaserStroke stroke;
@@ -124,28 +136,29 @@ class Planner {
   }
 
   /// Where the beam's middle goes.
-  std::vector<std::vector<Vec2>> shaped(int i) {
+  Shaped shaped(int i) {
     const CutPath& path = paths_[i];
-    if (!path.closed || path.layer != CutLayer::cut) return {path.points_mm};
+    if (!path.closed || path.layer != CutLayer::cut) return {{path.points_mm}, {}};
     const bool opening = depth(i) % 2 == 1;
-    double outward_mm = options_.kerf_mm / 2 * (opening ? -1 : 1);
-    if (options_.kerf_side == KerfSide::openings) outward_mm = -outward_mm;
-    std::vector<Polygon> moved;
-    if (options_.kerf_side == KerfSide::centre || options_.kerf_mm <= 0) {
-      moved = {path.points_mm};
-      if (signed_area_mm2(moved[0]) < 0) std::reverse(moved[0].begin() + 1, moved[0].end());
+    Shaped shape;
+    if (std::abs(outward_mm_) < 1e-9) {
+      shape.outlines = {path.points_mm};
+      if (signed_area_mm2(path.points_mm) < 0) std::reverse(shape.outlines[0].begin() + 1, shape.outlines[0].end());
     } else {
-      moved = offset_polygon(path.points_mm, outward_mm);
-      if (moved.empty()) {
+      for (Polygon& one : offset_polygon(path.points_mm, opening ? -outward_mm_ : outward_mm_))
+        (signed_area_mm2(one) > 0 ? shape.outlines : shape.closed_off).push_back(std::move(one));
+      if (shape.outlines.empty()) {
         ++too_small;
-        moved = {path.points_mm};
+        shape.outlines = {path.points_mm};
       }
-      if (moved.size() > 1) ++broken_up;
+      if (shape.outlines.size() > 1) ++broken_up;
+      if (!shape.closed_off.empty()) ++mouths_closed;
     }
     // The part lies to the left of the beam: outlines counter-clockwise, openings clockwise; both keep their start.
-    for (Polygon& one : moved)
-      if (opening) std::reverse(one.begin() + 1, one.end());
-    return moved;
+    if (opening)
+      for (auto* polygons : {&shape.outlines, &shape.closed_off})
+        for (Polygon& one : *polygons) std::reverse(one.begin() + 1, one.end());
+    return shape;
   }
 
   void fill(const LayerSettings& settings, std::vector<LaserStroke>& result) {
@@ -168,6 +181,7 @@ class Planner {
   const LaserOptions& options_;
   Context& context_;
   std::vector<int> inside_of_;
+  double outward_mm_ = 0;  // outlines; openings the other way
 };
 
 }  // namespace
@@ -209,7 +223,7 @@ LaserPlan plan_laser_job(const CutSheet& sheet, const LaserOptions& options, Con
   TidiedPaths tidied = tidy_paths(drawn.paths, options.join_mm, context);
   place(tidied.paths, sheet, options);
   context.progress(0.1, "Moving by the kerf");
-  Planner planner(std::move(tidied.paths), options, context);
+  Planner planner(std::move(tidied.paths), sheet.kerf_mm, options, context);
   std::vector<std::vector<LaserStroke>> layers;
   bool any = false;
   for (const CutLayer layer : {CutLayer::engrave, CutLayer::mark, CutLayer::cut}) {
@@ -235,6 +249,14 @@ LaserPlan plan_laser_job(const CutSheet& sheet, const LaserOptions& options, Con
        "openings are narrower than the kerf and are cut on their lines.");
   note(planner.broken_up, "outline falls apart at places narrower than the kerf.",
        "outlines fall apart at places narrower than the kerf.");
+  note(planner.mouths_closed, "outline has a mouth narrower than the kerf; what lies behind it is cut by itself.",
+       "outlines have mouths narrower than the kerf; what lies behind them is cut by itself.");
+  if (sheet.kerf_mm > 0 && options.kerf_mm > 0 && options.kerf_side != KerfSide::centre) {
+    char kerf[32];
+    std::snprintf(kerf, sizeof kerf, "%.3g", sheet.kerf_mm);
+    plan.notes.push_back(std::string("The drawing's cuts make room for a kerf of ") + kerf +
+                         " mm already: they are moved by what this kerf differs.");
+  }
   return plan;
 }
 

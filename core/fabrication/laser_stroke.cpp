@@ -111,11 +111,13 @@ void run_stroke(ToolpathBuilder& builder, const LaserStroke& stroke, int first) 
     const double length = ring.length_mm();
     for (int pass = 0; pass < stroke.passes; ++pass) {
       const bool last = pass + 1 == stroke.passes;
-      const double end = last ? length + std::min(stroke.overcut_mm, length) : length;
+      double end = last ? length + std::min(stroke.overcut_mm, length) : length;
       double from = 0;
       if (last && stroke.tabs > 0) {
         const double half = stroke.tab_gap_mm / 2, z = stroke.z_mm - pass * stroke.step_down_mm;
-        for (const double middle : place_tabs(points, stroke.tabs, stroke.tab_gap_mm)) {
+        const std::vector<double> tabs = place_tabs(points, stroke.tabs, stroke.tab_gap_mm);
+        if (!tabs.empty()) end = std::min(end, length + std::max(0.0, tabs.front() - half));
+        for (const double middle : tabs) {
           work(ring.piece(from, middle - half), pass);
           builder.travel_along(at_height(ring.piece(middle - half, middle + half), z));
           from = middle + half;

@@ -19,7 +19,7 @@ struct LaserStroke {
   double step_down_mm = 0;  // lower with every further pass
   int tabs = 0;             // gaps of a closed path's last pass
   double tab_gap_mm = 0;    // of the beam's middle
-  double overcut_mm = 0;    // of a closed path's last pass, past its start
+  double overcut_mm = 0;    // of a closed path's last pass, past its start, up to the first gap
   int inside_of = -1;       // index of the stroke that must come after this one; -1: none
   bool fixed_way = false;   // an open path that is run as given
 };

@@ -88,6 +88,12 @@ class Planner {
         plan_.tool_change = i > 0 && !plan_.path.moves[i - 1].work ? i - 1 : i;
         break;
       }
+    const auto is_rough = [](const ToolMove& move) { return move.work && move.layer == "rough"; };
+    if (o_.stages == MillStages::both && other_tool &&
+        std::none_of(plan_.path.moves.begin(), plan_.path.moves.end(), is_rough)) {
+      plan_.tool_change = 0;
+      plan_.notes.push_back("Nothing is deep enough for roughing: mount the finishing tool from the start.");
+    }
     time_moves(plan_.path, {o_.acceleration_mm_per_s2, o_.junction_deviation_mm, o_.planner_blocks});
     for (const ToolMove& move : plan_.path.moves)
       if (move.work)

@@ -270,6 +270,10 @@ SvgDrawing read_svg_drawing(ByteView bytes, const SvgReadOptions& options, const
   sheet.width_mm = page.width_mm;
   sheet.height_mm = page.height_mm;
   sheet.paths = std::move(reader.paths);
+  // Told to be of another size, a drawing's kerf is not what its outlines were moved for.
+  if (options.user_unit == UserUnit::as_told || options.user_unit == UserUnit::mm)
+    if (const double kerf_mm = root.attribute(kerf_attribute).as_double(); kerf_mm > 0 && kerf_mm <= 10)
+      sheet.kerf_mm = kerf_mm;
   for (CutPath& path : sheet.paths)
     for (Vec2& p : path.points_mm) p.y() = std::round(1e6 * (page.height_mm - p.y())) / 1e6;
   const auto note = [&](std::size_t count, const std::string& one, const std::string& many) {

@@ -18,6 +18,8 @@ struct PagePlacement {
   Vec2 operator()(const Vec2& p) const { return origin_mm + Vec2(mirrored ? -p.x() : p.x(), p.y()); }
 };
 
+inline constexpr double longest_pdf_page_mm = 5080;  // 14400 points
+
 /// Numbers in the file have 5 decimals of a point (1/72 inch), and pages are at most 5.08 m long.
 class PdfDocument {
  public:

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "imaging/pdf.h"
 #include "job/file_pack.h"
 #include "job/model_input.h"
 #include "job/zippable_operation.h"
@@ -277,7 +278,10 @@ OperationResult run(const OperationCall& call) {
   };
   add("plan.svg", [&] { return write_svg(all); });
   add("plan.dxf", [&] { return write_dxf(all); });
-  add("plan.pdf", [&] { return write_plan_pdf(plan.sheets); });
+  // What is longer than any PDF page is still a job for a roll cutter.
+  const bool pages_fit = std::max(options.bed_x_mm, options.bed_y_mm) <= longest_pdf_page_mm;
+  if (pages_fit) add("plan.pdf", [&] { return write_plan_pdf(plan.sheets); });
+  else plan.notes.push_back("There is no PDF of the sheets: its pages end at 5.08 m. Use the SVG or the DXF.");
   add("sheets.zip", [&] { return sheets_zip(plan, context); });
   add("assembly.pdf", [&] {
     AssemblySheet sheet = write_assembly_sheet(design, plan, options, context);
@@ -292,7 +296,7 @@ OperationResult run(const OperationCall& call) {
     const CutSheet boards = side_by_side(plan.rig->sheets, 20);
     add("rig.svg", [&] { return write_svg(boards); });
     add("rig.dxf", [&] { return write_dxf(boards); });
-    add("rig.pdf", [&] { return write_plan_pdf(plan.rig->sheets); });
+    if (pages_fit) add("rig.pdf", [&] { return write_plan_pdf(plan.rig->sheets); });
     report_rig(result.report, *plan.rig);
   }
   report_lengths(result.report, design, plan);

@@ -84,6 +84,14 @@ TEST(Contours, OffsetsAreExactAndConverge) {
   const Polygon bell{{0, 0},   {10, 0},  {10, 4.9}, {20, 4.9}, {20, 0},  {30, 0},
                      {30, 10}, {20, 10}, {20, 5.1}, {10, 5.1}, {10, 10}, {0, 10}};
   EXPECT_EQ(offset_polygon(bell, -0.2).size(), 2u);
+  // A bay whose mouth closes stays open inside, the other way round.
+  const Polygon bay{{0, 0}, {10, 0}, {10, 4.95}, {8, 4.95},  {8, 3},   {4, 3},
+                    {4, 7}, {8, 7},  {8, 5.05},  {10, 5.05}, {10, 10}, {0, 10}};
+  const auto closed = offset_polygon(bay, 0.1);
+  ASSERT_EQ(closed.size(), 2u);
+  const auto [inner, outer] = std::minmax({signed_area_mm2(closed[0]), signed_area_mm2(closed[1])});
+  EXPECT_NEAR(inner, -3.8 * 3.8, 0.01);
+  EXPECT_GT(outer, 100);
 }
 
 TEST(Contours, OffsetStaysTheDistanceAway) {

@@ -11,6 +11,7 @@
 #include "base/random.h"
 #include "fabrication/contours.h"
 #include "fabrication/gcode_writer.h"
+#include "fabrication/svg_reader.h"
 
 namespace formwright {
 namespace {
@@ -56,6 +57,91 @@ TEST(LaserPlan, KerfGoesToTheSideThatKeepsItsSize) {
   EXPECT_NEAR(areas(KerfSide::centre).first, 200, 1e-6);
   EXPECT_NEAR(areas(KerfSide::centre).second, 8000, 1e-6);
   EXPECT_NEAR(areas(KerfSide::openings).second, 99.8 * 79.8, 0.01);
+}
+
+TEST(LaserPlan, KerfThatTheDrawingHoldsIsNotAddedAgain) {
+  // A plate of 100 x 80 with an opening of 20 x 10, drawn for a kerf of 0.15.
+  Context context;
+  CutSheet sheet{"t", 200, 150, {box(9.925, 9.925, 100.15, 80.15), box(40.075, 40.075, 19.85, 9.85)}, 0.15};
+  const auto areas = [&](double kerf_mm, KerfSide side) {
+    LaserOptions options;
+    options.kerf_mm = kerf_mm;
+    options.kerf_side = side;
+    const LaserPlan plan = plan_laser_job(sheet, options, context);
+    const auto work = work_of(plan);
+    EXPECT_EQ(work.size(), 2u);
+    return std::pair(-area_of(*work[0]), area_of(*work[1]));
+  };
+  for (const double kerf : {0.1, 0.15, 0.3}) {
+    const auto [opening, outline] = areas(kerf, KerfSide::parts);
+    EXPECT_NEAR(opening, (20 - kerf) * (10 - kerf), 0.02) << kerf;
+    EXPECT_NEAR(outline, (100 + kerf) * (80 + kerf), 0.02) << kerf;
+  }
+  EXPECT_NEAR(areas(0.3, KerfSide::openings).second, 99.7 * 79.7, 0.02);
+  // The lines as they are, where that is asked for.
+  EXPECT_NEAR(areas(0.3, KerfSide::centre).second, 100.15 * 80.15, 1e-6);
+  EXPECT_NEAR(areas(0, KerfSide::parts).second, 100.15 * 80.15, 1e-6);
+  // What we write says it, whoever reads it.
+  const SvgDrawing again = read_svg_drawing(write_svg(sheet), {}, context);
+  EXPECT_DOUBLE_EQ(again.sheet.kerf_mm, 0.15);
+  EXPECT_DOUBLE_EQ(side_by_side({sheet, sheet}, 20).kerf_mm, 0.15);
+  EXPECT_EQ(read_svg_drawing(write_svg(sheet), {0.01, UserUnit::inch}, context).sheet.kerf_mm, 0);
+  sheet.kerf_mm = 0;
+  EXPECT_EQ(read_svg_drawing(write_svg(sheet), {}, context).sheet.kerf_mm, 0);
+}
+
+TEST(LaserPlan, WhatLiesBehindAMouthNarrowerThanTheKerfIsCut) {
+  // A plate whose 10 x 10 window opens to its edge by a slit 0.05 wide.
+  const CutPath keyhole{CutLayer::cut,
+                        {{10, 10},
+                         {70, 10},
+                         {70, 29.975},
+                         {60, 29.975},
+                         {60, 25},
+                         {50, 25},
+                         {50, 35},
+                         {60, 35},
+                         {60, 30.025},
+                         {70, 30.025},
+                         {70, 50},
+                         {10, 50}},
+                        true,
+                        "plate"};
+  LaserOptions options;
+  options.kerf_mm = 0.1;
+  options.tabs_count = 2;
+  const LaserPlan plan = planned({keyhole}, options);
+  const auto work = work_of(plan);
+  ASSERT_EQ(work.size(), 4u);  // the window first and whole, then the outline in three pieces between its tabs
+  EXPECT_EQ(work[0]->part, "plate");
+  EXPECT_NEAR(-area_of(*work[0]), 9.9 * 9.9, 0.02);
+  ASSERT_FALSE(plan.notes.empty());
+  EXPECT_NE(plan.notes.back().find("mouth narrower than the kerf"), std::string::npos);
+}
+
+TEST(LaserPlan, OvercutLeavesTheTabsStanding) {
+  LaserOptions options;
+  options.kerf_mm = 0.1;
+  options.tabs_count = 12;
+  options.tab_width_mm = 0.5;
+  options.overcut_mm = 2;
+  options.free_start = false;
+  const LaserPlan plan = planned({box(10, 10, 10, 10)}, options);
+  const Vec2 first = work_of(plan).front()->points_mm.front().head<2>();
+  Polygon ring = offset_polygon(box(10, 10, 10, 10).points_mm, 0.05).at(0);
+  std::rotate(ring.begin(),
+              std::min_element(ring.begin(), ring.end(),
+                               [&](const Vec2& a, const Vec2& b) { return (a - first).norm() < (b - first).norm(); }),
+              ring.end());
+  const double length = path_length_mm(ring, true);
+  double burned = 0;
+  for (const ToolMove* move : work_of(plan))
+    for (std::size_t i = 1; i < move->points_mm.size(); ++i)
+      burned += (move->points_mm[i] - move->points_mm[i - 1]).norm();
+  const auto middles = place_tabs(ring, 12, 0.6);
+  ASSERT_EQ(middles.size(), 12u);
+  EXPECT_NEAR(burned, length - 12 * 0.6 + (middles[0] - 0.3), 0.01);
+  EXPECT_LT(middles[0] - 0.3, 2);
 }
 
 TEST(LaserPlan, InsidesComeFirstAndPartsAreFinishedTogether) {

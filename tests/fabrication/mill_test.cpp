@@ -227,6 +227,19 @@ TEST(Mill, RoughingLeavesTheAllowanceAndFinishingTakesIt) {
     for (int c = 5; c < 96; ++c) EXPECT_LT(both.carved.at(r, c) - surface.at(r, c), 0.03);
 }
 
+TEST(Mill, WhatNeedsNoRoughingSaysWhichToolToMount) {
+  const HeightField surface = field(61, 41, 0.2, [](double x, double) { return -0.1 + 0.1 * std::sin(0.3 * x); });
+  MillOptions options = small(ToolShape::ball, 2);
+  options.rough_diameter_mm = 4;
+  options.allowance_mm = 0.3;
+  Context context;
+  const MillPlan plan = plan_mill_job(surface, options, context);
+  EXPECT_EQ(plan.rough_seconds, 0);
+  EXPECT_EQ(plan.tool_change, 0u);
+  ASSERT_FALSE(plan.notes.empty());
+  EXPECT_NE(plan.notes.back().find("mount the finishing tool"), std::string::npos);
+}
+
 TEST(Mill, RampsComeToAnEndOnEverySlope) {
   for (const double slope : {0.0, 0.05, 0.0874, 0.1, 1.0, 20.0})
     for (const double degrees : {1.0, 5.0, 45.0, 90.0}) {

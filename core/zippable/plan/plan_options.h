@@ -120,7 +120,7 @@ struct PlanOptions {
           .slider(10, 50)
           .group("Sheets"),
       parameter("kerf_mm", &PlanOptions::kerf_mm, "Kerf", unit::mm, 0, 10,
-                "Width of what the cut takes away: outlines grow by half of it.")
+                "Width of what the cut takes away: outlines grow by half. Laser jobs do not add it again.")
           .slider(0, 1)
           .group("Sheets"),
       parameter(

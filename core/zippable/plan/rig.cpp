@@ -240,7 +240,8 @@ void lay_on_sheets(Rig& rig, const PlanOptions& options, Context& context) {
   for (const RigPlate& plate : rig.plates) outlines.push_back(plate.paths.front().points_mm);
   const Nesting nesting =
       nest(outlines, {options.bed_x_mm, options.bed_y_mm, options.margin_mm, options.spacing_mm, false}, context);
-  rig.sheets.assign(std::size_t(nesting.sheet_count), CutSheet{title, options.bed_x_mm, options.bed_y_mm, {}});
+  rig.sheets.assign(std::size_t(nesting.sheet_count),
+                    CutSheet{title, options.bed_x_mm, options.bed_y_mm, {}, options.kerf_mm});
   for (std::size_t i = 0; i < rig.plates.size(); ++i) {
     auto& paths = rig.sheets[nesting.places[i].sheet].paths;
     // What is inside is cut before the outline.

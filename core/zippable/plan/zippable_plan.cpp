@@ -67,7 +67,7 @@ void draw_grain(CutSheet& sheet, double margin_mm) {
 std::vector<CutSheet> lay_out(const ZippablePlan& plan, const PlanOptions& options) {
   const auto& [pieces, nesting] = std::tie(plan.pieces, plan.nesting);
   std::vector<CutSheet> sheets(std::size_t(nesting.sheet_count),
-                               CutSheet{title, options.bed_x_mm, options.bed_y_mm, {}});
+                               CutSheet{title, options.bed_x_mm, options.bed_y_mm, {}, options.kerf_mm});
   for (std::size_t i = 0; i < pieces.pieces.size(); ++i) {
     const PlanPiece& piece = pieces.pieces[i];
     const Nested& place = nesting.places[i];

@@ -200,6 +200,18 @@ class Plans(unittest.TestCase):
             self.assertAlmostEqual(width, BED_X_MM, delta=0.01)
             self.assertAlmostEqual(height, BED_Y_MM, delta=0.01)
 
+    def test_a_sheet_longer_than_a_pdf_page_is_drawn_without_one(self):
+        out = self.folder / "roll"
+        report = run(out, "zippable-plan", "--design", str(self.folder / "star" / "design.json"), "--bed-x-mm", "6000")
+        self.assertTrue((out / "plan.svg").exists() and (out / "plan.dxf").exists())
+        self.assertFalse((out / "plan.pdf").exists())
+        self.assertTrue(any("5.08 m" in note for note in report["notes"]), report["notes"])
+
+    def test_kerf_is_said_to_who_cuts(self):
+        for out, report in self.each():
+            root = ElementTree.parse(out / "plan.svg").getroot()
+            self.assertEqual(float(root.get("data-formwright-kerf-mm")), KERF_MM)
+
     def test_tape_template_numbers_both_sides_at_true_distances(self):
         for out, report in self.each():
             (width, _), layers = read_svg((out / "tape.svg").read_text())

@@ -98,7 +98,10 @@ OperationResult run(const OperationCall& call) {
     measurement.update(given);
   }
   const auto effects = read_parameters<MeasurementEffects>(measurement);
-  std::vector<MeasuredPoint> points = read_measured_points(*call.inputs.at("measured").bytes);
+  const std::vector<MeasuredPoint> points = read_measured_points(*call.inputs.at("measured").bytes);
+  std::vector<MeasuredPoint> in_clamp = points;
+  if (simulation.setup->sheet_turned)
+    for (MeasuredPoint& point : in_clamp) point.sheet_mm = -point.sheet_mm;
   Simulated simulated;
   {
     const auto span = call.context.span(0, 0.9, "Forming");
@@ -110,7 +113,7 @@ OperationResult run(const OperationCall& call) {
   FormedSheet sheet = simulated.result->sheet;
   sheet.mesh.V.col(2).array() += setup.base_plate_end_z_mm;
   const Comparison comparison =
-      compare(sheet, points, setup.measured_surface, simulation.options.clamp_height_mm + setup.base_plate_end_z_mm,
+      compare(sheet, in_clamp, setup.measured_surface, simulation.options.clamp_height_mm + setup.base_plate_end_z_mm,
               simulation.options.sheet_thickness_mm, effects, setup.base_plate_end_z_mm, call.context);
   OperationResult result;
   Json& report = result.report;
@@ -137,7 +140,7 @@ OperationResult run(const OperationCall& call) {
       if (info.name == name) result.outputs.push_back(make_output(info, std::move(bytes)));
   };
   if (call.wants("errors.ply"))
-    add("errors.ply", error_map(sheet, points, comparison, effects.print_scale, call.context));
+    add("errors.ply", error_map(sheet, in_clamp, comparison, effects.print_scale, call.context));
   if (call.wants("residuals.csv")) add("residuals.csv", residuals(points, comparison));
   if (call.wants("sheet.ply")) add("sheet.ply", write_sheet_ply(sheet, 0, call.context));
   return result;

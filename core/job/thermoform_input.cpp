@@ -97,6 +97,10 @@ SimulationCall simulation_call(const OperationCall& call, const Json& parameters
   if (const auto setup = call.inputs.find("setup"); setup != call.inputs.end())
     simulation.setup = read_object_setup(*setup->second.bytes);
   simulation.options = read_parameters<ThermoformOptions>(merged_parameters(call, parameters, simulation.setup));
+  if (simulation.setup && simulation.setup->sheet_turned) {  // a wedge is the sheet's and turns with it
+    simulation.options.thickness_wedge_x *= -1;
+    simulation.options.thickness_wedge_y *= -1;
+  }
   return simulation;
 }
 
@@ -110,8 +114,10 @@ Simulated simulate(const OperationCall& call, const SimulationCall& simulation) 
     const auto span = call.context.span(0, 0.1, "Reading the model");
     simulated.mould = placed(call, simulation);
   }
-  const std::string key = "formed:" + simulated.mould.loaded->key + (simulation.setup ? ":as-it-is" : "") + ":" +
-                          write_parameters(simulation.options).dump();
+  const std::string standing =
+      simulation.setup ? ":as it is, plate at " + Json(simulation.setup->base_plate_end_z_mm).dump() : "";
+  const std::string key =
+      "formed:" + simulated.mould.loaded->key + standing + ":" + write_parameters(simulation.options).dump();
   if (auto known = call.session.find<const FormedResult>(key)) {
     simulated.result = std::move(known);
     simulated.reused = true;

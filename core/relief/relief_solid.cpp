@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "relief/height_map.h"
 
@@ -19,43 +20,27 @@ class Network {
   Network(const HeightMap& map, double tolerance) : map_(map), tolerance_(static_cast<float>(tolerance)) {
     const auto longest = static_cast<unsigned>(std::max(map.columns, map.rows) - 1);
     size_ = static_cast<int>(std::bit_ceil(longest));
-    bound_.assign(static_cast<std::size_t>(size_ + 1) * static_cast<std::size_t>(size_ + 1), 0.0f);
+    bound_.assign(map.height_mm.size(), 0.0f);
   }
 
+  /// Children before their parents: in squares of every size, from small to large, first the four triangles over the
+  /// sides, then the two over the diagonal, which runs to the middle of the square of twice the size.
   void find_bounds(Context& context) {
-    // Triangle number i descends from one of two halves of the square by the bits of i + 2; larger numbers are
-    // smaller triangles, so going down sees children before their parents.
-    const std::size_t count = 2 * static_cast<std::size_t>(size_) * static_cast<std::size_t>(size_) - 2;
-    const std::size_t parents = count - static_cast<std::size_t>(size_) * static_cast<std::size_t>(size_);
-    for (std::size_t i = count; i-- > 0;) {
-      if (i % (1u << 20) == 0) context.check_cancelled();
-      Node a{}, b{}, c{};
-      std::size_t id = i + 2;
-      if (id & 1) b.x = b.y = c.x = size_;
-      else a.x = a.y = c.y = size_;
-      while ((id >>= 1) > 1) {
-        const Node m{(a.x + b.x) / 2, (a.y + b.y) / 2};
-        if (id & 1) {
-          b = a;
-          a = c;
-        } else {
-          a = b;
-          b = c;
+    for (int side = 2; side <= size_; side *= 2) {
+      for_squares(side, context, [&](int x, int y) {
+        const Node middle{x + side / 2, y + side / 2};
+        const Node corner[4] = {{x, y}, {x + side, y}, {x + side, y + side}, {x, y + side}};
+        for (int k = 0; k < 4; ++k) raise_bound(corner[k], corner[(k + 1) % 4], middle, side > 2);
+      });
+      for_squares(side, context, [&](int x, int y) {
+        Node a{x, y}, b{x + side, y + side}, c{x + side, y}, d{x, y + side};
+        if ((x / side + y / side) % 2 != 0) {
+          std::swap(a, c);
+          std::swap(b, d);
         }
-        c = m;
-      }
-      if (outside(a, b, c)) continue;
-      float& bound = bound_at({(a.x + b.x) / 2, (a.y + b.y) / 2});
-      if (crosses_edge(a, b, c)) {
-        bound = INFINITY;
-        continue;
-      }
-      // The children leave the parent's plane by `own` at most, and what they drop lies near their planes.
-      const Node m{(a.x + b.x) / 2, (a.y + b.y) / 2};
-      float total = std::abs(0.5f * (height(a) + height(b)) - height(m));
-      if (i < parents)
-        total += std::max(bound_at({(a.x + c.x) / 2, (a.y + c.y) / 2}), bound_at({(b.x + c.x) / 2, (b.y + c.y) / 2}));
-      bound = std::max(bound, total);
+        raise_bound(a, b, c, true);
+        raise_bound(a, b, d, true);
+      });
     }
   }
 
@@ -67,10 +52,34 @@ class Network {
   }
 
  private:
+  /// Those that lie on the map at least in part.
+  template <class Visit>
+  void for_squares(int side, Context& context, Visit&& visit) const {
+    for (int y = 0; y < map_.rows - 1; y += side) {
+      context.check_cancelled();
+      for (int x = 0; x < map_.columns - 1; x += side) visit(x, y);
+    }
+  }
+  void raise_bound(Node a, Node b, Node c, bool has_children) {
+    const Node m = between(a, b);
+    if (outside(a, b, c) || beyond(m)) return;
+    float& bound = bound_at(m);
+    if (crosses_edge(a, b, c)) {
+      bound = INFINITY;
+      return;
+    }
+    // The children leave the parent's plane by `own` at most, and what they drop lies near their planes.
+    const float own = std::abs(0.5f * (height(a) + height(b)) - height(m));
+    const float theirs = has_children ? std::max(bound_at(between(a, c)), bound_at(between(b, c))) : 0.0f;
+    bound = std::max(bound, own + theirs);
+  }
+  static Node between(Node a, Node b) { return {(a.x + b.x) / 2, (a.y + b.y) / 2}; }
   float height(Node p) const { return map_.at(p.y, p.x); }
   float& bound_at(Node p) {
-    return bound_[static_cast<std::size_t>(p.y) * static_cast<std::size_t>(size_ + 1) + static_cast<std::size_t>(p.x)];
+    return bound_[static_cast<std::size_t>(p.y) * static_cast<std::size_t>(map_.columns) +
+                  static_cast<std::size_t>(p.x)];
   }
+  bool beyond(Node p) const { return p.x >= map_.columns || p.y >= map_.rows; }
   bool outside(Node a, Node b, Node c) const {
     return std::min({a.x, b.x, c.x}) >= map_.columns - 1 || std::min({a.y, b.y, c.y}) >= map_.rows - 1;
   }
@@ -79,8 +88,9 @@ class Network {
   }
   void descend(Node a, Node b, Node c) {
     if (outside(a, b, c)) return;
-    const Node m{(a.x + b.x) / 2, (a.y + b.y) / 2};
-    if (std::abs(a.x - c.x) + std::abs(a.y - c.y) > 1 && bound_at(m) > tolerance_) {
+    const Node m = between(a, b);
+    // Beyond the map's edge there are no bounds: a triangle that reaches there is split.
+    if (std::abs(a.x - c.x) + std::abs(a.y - c.y) > 1 && (beyond(m) || bound_at(m) > tolerance_)) {
       descend(c, a, m);
       descend(b, c, m);
       return;

@@ -217,7 +217,7 @@ Proposal drawn(const TriangleMesh& mesh, const ProposalOptions& options, Context
       problems += (problems.empty() ? "Part " : " Part ") + std::to_string(part + 1) +
                   " of the curves is not a cylinder. " + proposal.segmentation.problems[part];
   if (!problems.empty()) throw Error(ErrorCode::invalid_input, "segments", problems);
-  if (traversals(proposal.segmentation, 1).empty())
+  if (traversals(proposal.segmentation, context, 1).empty())
     throw Error(ErrorCode::invalid_input, "segments",
                 "No order visits every part of the curves once: let more of them share a border.");
   return proposal;
@@ -263,7 +263,7 @@ std::optional<Proposal> automatic(const OpenedSurface& opened, const ProposalOpt
     problem = "no order visits every part once";
     try {
       Proposal proposal = divide(opened.mesh, seeds, distance, reach_shares[attempt % reach_shares.size()], options);
-      if (proposal.segmentation.valid() && !traversals(proposal.segmentation, 1).empty()) {
+      if (proposal.segmentation.valid() && !traversals(proposal.segmentation, context, 1).empty()) {
         if (seeds.size() < found)
           proposal.notes.push_back("Of " + std::to_string(found) + " tips and openings " +
                                    std::to_string(seeds.size()) +

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 namespace formwright {
 namespace {
@@ -25,34 +24,78 @@ LinePlace place_on_line(const Segmentation& s, const Parameterisation& p, int pa
 
 double wrapped(double x, double period) { return x - period * std::floor(x / period); }
 
+/// Depth first, in lexicographic order; ways that cannot be gone on to the end are left where that shows.
+class TraversalSearch {
+ public:
+  TraversalSearch(const Segmentation& s, int limit, const Context& context)
+      : limit_(static_cast<std::size_t>(limit)), context_(context), ways_(s.part_count()), visited_(s.part_count(), 0) {
+    for (int i = 0; i < static_cast<int>(s.interfaces.size()); ++i) {
+      ways_[s.interfaces[i].left].emplace_back(s.interfaces[i].right, i);
+      ways_[s.interfaces[i].right].emplace_back(s.interfaces[i].left, i);
+    }
+    for (auto& list : ways_) std::sort(list.begin(), list.end());
+  }
+
+  std::vector<Traversal> run() {
+    for (int part = 0; part < static_cast<int>(ways_.size()) && !done(); ++part) visit(part);
+    return std::move(found_);
+  }
+
+ private:
+  bool done() const { return found_.size() >= limit_ || steps_ > most_steps; }
+
+  void visit(int part) {
+    if (++steps_ % 1024 == 0) context_.check_cancelled();
+    visited_[part] = 1;
+    current_.parts.push_back(part);
+    if (current_.parts.size() == ways_.size()) found_.push_back(current_);
+    else if (can_be_finished(part))
+      for (const auto& [next, interface] : ways_[part]) {
+        if (done()) break;
+        if (visited_[next]) continue;
+        current_.interfaces.push_back(interface);
+        visit(next);
+        current_.interfaces.pop_back();
+      }
+    current_.parts.pop_back();
+    visited_[part] = 0;
+  }
+
+  /// Every part that is left is reached from here over parts that are left, and at most one is a dead end.
+  bool can_be_finished(int here) const {
+    std::vector<char> seen = visited_;
+    std::vector<int> open{here};
+    std::size_t reached = current_.parts.size();
+    int dead_ends = 0;
+    while (!open.empty()) {
+      const int part = open.back();
+      open.pop_back();
+      int ways_on = 0, last = -1;
+      for (const auto& [next, interface] : ways_[part]) {
+        if ((!visited_[next] || next == here) && next != last) ++ways_on, last = next;
+        if (seen[next]) continue;
+        seen[next] = 1;
+        ++reached;
+        open.push_back(next);
+      }
+      if (part != here && ways_on < 2 && ++dead_ends > 1) return false;
+    }
+    return reached == ways_.size();
+  }
+
+  static constexpr std::size_t most_steps = 3'000'000;  // some seconds; only graphs that nobody draws take more
+  std::size_t limit_, steps_ = 0;
+  const Context& context_;
+  std::vector<std::vector<std::pair<int, int>>> ways_;  // neighbour, interface
+  std::vector<char> visited_;
+  Traversal current_;
+  std::vector<Traversal> found_;
+};
+
 }  // namespace
 
-std::vector<Traversal> traversals(const Segmentation& s, int limit) {
-  const int parts = s.part_count();
-  std::vector<Traversal> found;
-  std::vector<std::vector<std::pair<int, int>>> ways(parts);  // neighbour, interface
-  for (int i = 0; i < static_cast<int>(s.interfaces.size()); ++i) {
-    ways[s.interfaces[i].left].emplace_back(s.interfaces[i].right, i);
-    ways[s.interfaces[i].right].emplace_back(s.interfaces[i].left, i);
-  }
-  for (auto& list : ways) std::sort(list.begin(), list.end());
-  Traversal current;
-  std::vector<char> visited(parts, 0);
-  const std::function<void(int)> visit = [&](int part) {
-    visited[part] = 1;
-    current.parts.push_back(part);
-    if (static_cast<int>(current.parts.size()) == parts) found.push_back(current);
-    for (const auto& [next, interface] : ways[part]) {
-      if (visited[next] || static_cast<int>(found.size()) >= limit) continue;
-      current.interfaces.push_back(interface);
-      visit(next);
-      current.interfaces.pop_back();
-    }
-    current.parts.pop_back();
-    visited[part] = 0;
-  };
-  for (int part = 0; part < parts; ++part) visit(part);
-  return found;
+std::vector<Traversal> traversals(const Segmentation& s, const Context& context, int limit) {
+  return TraversalSearch(s, limit, context).run();
 }
 
 Crossings best_crossings(const Segmentation& s, const Parameterisation& p, const Traversal& traversal, double margin) {
@@ -139,9 +182,9 @@ LinePoint across_interface(const Segmentation& s, const Parameterisation& p, Lin
 }
 
 std::vector<RankedTraversal> ranked_traversals(const Segmentation& s, const Parameterisation& p, double width_mm,
-                                               int limit) {
+                                               const Context& context, int limit) {
   std::vector<RankedTraversal> ranked;
-  for (Traversal& traversal : traversals(s, limit)) {
+  for (Traversal& traversal : traversals(s, context, limit)) {
     RankedTraversal r;
     r.crossings = best_crossings(s, p, traversal);
     r.cost = r.crossings.unevenness;

@@ -3,6 +3,7 @@
 // The order in which the curve visits the parts, and where it crosses from one into the next: thesis Sec. 5.2.3.
 #include <vector>
 
+#include "base/context.h"
 #include "zippable/parameterisation.h"
 #include "zippable/segmentation.h"
 
@@ -14,8 +15,9 @@ struct Traversal {
 };
 
 /// All Hamiltonian paths over the parts, each in both directions, leaving every part by another interface than the one
-/// it was entered by; at most `limit`, in lexicographic order. One part alone gives one path.
-std::vector<Traversal> traversals(const Segmentation& segmentation, int limit = 2000);
+/// it was entered by; at most `limit`, in lexicographic order, of those that three million steps find. One part alone
+/// gives one path. Throws cancelled.
+std::vector<Traversal> traversals(const Segmentation& segmentation, const Context& context, int limit = 2000);
 
 struct Crossings {
   /// Per interface passed: the distance in mm from the interface's first end.
@@ -49,6 +51,6 @@ struct RankedTraversal {
 /// The even ones first; the cost is unevenness plus a penalty where an interface is short against the ribbon's width.
 std::vector<RankedTraversal> ranked_traversals(const Segmentation& segmentation,
                                                const Parameterisation& parameterisation, double width_mm,
-                                               int limit = 2000);
+                                               const Context& context, int limit = 2000);
 
 }  // namespace formwright

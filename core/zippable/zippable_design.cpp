@@ -43,9 +43,10 @@ FeatureOptions features_asked_for(const TriangleMesh& mesh, const ZippableOption
 }
 
 /// Those that begin and end where they should, the even ones first.
-std::vector<RankedTraversal> orders_asked_for(const ParameterisedModel& model, const ZippableOptions& options) {
+std::vector<RankedTraversal> orders_asked_for(const ParameterisedModel& model, const ZippableOptions& options,
+                                              const Context& context) {
   const Segmentation& s = model.proposal.segmentation;
-  std::vector<RankedTraversal> ranked = ranked_traversals(s, model.parameterisation, options.width_mm);
+  std::vector<RankedTraversal> ranked = ranked_traversals(s, model.parameterisation, options.width_mm, context);
   if (ranked.empty())
     throw Error(ErrorCode::invalid_input, "mesh",
                 "No order visits every part once: join or move parts so that they form a chain.");
@@ -171,7 +172,7 @@ ZippableDesign design_zippable(const ParameterisedModel& model, const ZippableOp
   design.notes = model.proposal.notes;
   Stopwatch watch;
   context.progress(0, "Drawing the curve");
-  const std::vector<RankedTraversal> ranked = orders_asked_for(model, options);
+  const std::vector<RankedTraversal> ranked = orders_asked_for(model, options, context);
   design.traversal_count = static_cast<int>(ranked.size());
   CurveOptions curve;
   curve.width_mm = options.width_mm;

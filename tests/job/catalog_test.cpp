@@ -266,5 +266,34 @@ TEST(Relief, ASecondThicknessReusesTheFactorisation) {
   EXPECT_FALSE(run().report["factor_reused"]);
 }
 
+TEST(Thermoform, AnotherPlateHeightIsFormedAnew) {
+  // The mould stands in machine coordinates: the same travel from another height is another forming.
+  Session session;
+  const auto run = [&](double plate_mm) {
+    const Json setup = {{"triangles", 400},
+                        {"base_plate_start_z_mm", plate_mm - 120},
+                        {"base_plate_end_z_mm", plate_mm},
+                        {"clamp_height_mm", plate_mm + 1}};
+    const std::string rows = "sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm\n0,0,0,0,50\n";
+    const auto blob = [](std::string_view text) {
+      return std::make_shared<const Bytes>(as_bytes(text).begin(), as_bytes(text).end());
+    };
+    const std::map<std::string, std::shared_ptr<const Bytes>> files{{std::string(64, 'a'), blob(setup.dump())},
+                                                                    {std::string(64, 'b'), blob(rows)}};
+    const Json message = {{"operation", "thermoform-compare"},
+                          {"inputs",
+                           {{"mould", {{"sample", "hemisphere"}, {"vertices", 800}}},
+                            {"setup", {{"sha256", std::string(64, 'a')}, {"file_name", "setup.json"}}},
+                            {"measured", {{"sha256", std::string(64, 'b')}, {"file_name", "measured.csv"}}}}},
+                          {"outputs", Json::array()}};
+    const JobResult result = run_job(message, [&](const std::string& hash) { return files.at(hash); }, session, {});
+    EXPECT_FALSE(result.error) << result.error->message;
+    return result.report.value("seconds_simulation", -1.0);
+  };
+  EXPECT_GT(run(0), 0);
+  EXPECT_EQ(run(0), 0);
+  EXPECT_GT(run(2), 0);
+}
+
 }  // namespace
 }  // namespace formwright

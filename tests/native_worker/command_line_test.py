@@ -166,6 +166,22 @@ class CommandLine(unittest.TestCase):
         self.assertTrue(0.2 < report["error_mean_mm"] <= 0.55, report["error_mean_mm"])
         self.assertAlmostEqual(report["error_along_normal_mean_mm"], -report["error_mean_mm"], places=3)
 
+    def test_a_turned_sheets_points_are_where_it_turned_them(self):
+        places = [(x, y) for x in range(-55, 56, 11) for y in range(-60, 61, 12)]
+        folder = self.measured_object([(x, y, 0, 0, 0, 0.1) for x, y in places], thickness_wedge_x=0.4)
+        run = self.run_program("thermoform-compare", "--object", folder, "--out", self.folder / "straight", "--quiet")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        lines = (self.folder / "straight" / "residuals.csv").read_text().splitlines()
+        simulated = [tuple(map(float, line.split(",")))[5:8] for line in lines[1:]]
+        # The same object with the sheet laid in the other way round: its coordinates and its wedge are turned.
+        self.measured_object([(-x, -y, *p, 0.1) for (x, y), p in zip(places, simulated)], thickness_wedge_x=-0.4, sheet_turned=True)
+        run = self.run_program("thermoform-compare", "--object", folder, "--out", self.folder / "turned", "--quiet")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        report = json.loads((self.folder / "turned" / "report.json").read_text())
+        self.assertLess(report["error_max_mm"], 1e-6)
+        row = (self.folder / "turned" / "residuals.csv").read_text().splitlines()[1].split(",")
+        self.assertEqual((float(row[0]), float(row[1])), (55, 60))  # as measured
+
     def test_a_measured_objects_mistakes_are_named(self):
         folder = self.measured_object([(0, 0, 0, 0, 30, 0.1)], vacuum_kpa="much")
         self.expect_refused("vacuum_kpa", "thermoform-simulate", "--object", folder, "--out", self.folder / "out")

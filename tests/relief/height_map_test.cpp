@@ -72,6 +72,19 @@ TEST(Solid, IsClosedAndWithinToleranceForEverySize) {
     }
 }
 
+TEST(Solid, OfALongFriezeTakesNoMoreThanItsOwnNodes) {
+  // The square around it would have four thousand million.
+  Context context;
+  const HeightMap map = bumps(60'001, 5, 0.25);
+  const TriangleMesh solid = make_solid(map, 3, 0.02, context);
+  EXPECT_TRUE(Adjacency(solid).is_closed());
+  const TopSurface top(solid, map, 3);
+  double worst = 0;
+  for (std::size_t node = 0; node < map.height_mm.size(); ++node)
+    worst = std::max(worst, std::abs(top.at(node) - static_cast<double>(map.height_mm[node])));
+  EXPECT_LT(worst, 0.02 + 1e-5);
+}
+
 TEST(Solid, OfABarePlateIsABoxOfFewTriangles) {
   Context context;
   HeightMap map = bumps(129, 65, 0.5);

@@ -34,7 +34,7 @@ Aligned align(const TriangleMesh& mesh, const CurveOptions& curve, const CreaseA
   Aligned a;
   a.segmentation = test::alone(mesh);
   a.parameterisation = parameterise(a.segmentation, {1e-10}, context);
-  const RankedTraversal order = ranked_traversals(a.segmentation, a.parameterisation, curve.width_mm).at(0);
+  const RankedTraversal order = ranked_traversals(a.segmentation, a.parameterisation, curve.width_mm, Context()).at(0);
   const FeatureLines features = find_features(a.segmentation.mesh, Adjacency(a.segmentation.mesh), {4, 0.35}, context);
   ZipperCurve placed;
   a.lines = place_lines(a.segmentation, a.parameterisation, order.traversal, order.crossings, curve, placed);

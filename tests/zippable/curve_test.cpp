@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "base/random.h"
 #include "zippable/zippable_shapes.h"
 
 namespace formwright {
@@ -86,9 +88,9 @@ TEST(LineTrace, LiesOverTheStraightLineOnEveryPart) {
 
 TEST(Traversals, AreTheHamiltonianPaths) {
   const Segmentation t = test::proposed("t_shape", 1500).segmentation;
-  EXPECT_EQ(traversals(t).size(), 6u);  // three parts, each beside both others
+  EXPECT_EQ(traversals(t, Context()).size(), 6u);  // three parts, each beside both others
   const Segmentation s = test::proposed("octopus", 6000).segmentation;
-  const auto all = traversals(s, 100000);
+  const auto all = traversals(s, Context(), 100000);
   EXPECT_GT(all.size(), 100u);
   for (const Traversal& traversal : all) {
     ASSERT_EQ(traversal.parts.size(), static_cast<std::size_t>(s.part_count()));
@@ -102,14 +104,69 @@ TEST(Traversals, AreTheHamiltonianPaths) {
       EXPECT_EQ(sides, parts);
     }
   }
-  EXPECT_EQ(traversals(test::alone(test::tube(12, 4))).size(), 1u);
+  EXPECT_EQ(traversals(test::alone(test::tube(12, 4)), Context()).size(), 1u);
+}
+
+/// Parts that only share what the list of pairs says.
+Segmentation parts_sharing(int parts, const std::vector<std::pair<int, int>>& borders) {
+  Segmentation s;
+  s.segments.resize(static_cast<std::size_t>(parts));
+  for (const auto& [left, right] : borders) {
+    Interface interface;
+    interface.left = left, interface.right = right;
+    s.interfaces.push_back(interface);
+  }
+  return s;
+}
+
+TEST(Traversals, AreAllOfSmallGraphs) {
+  // Against every order of the parts, for random graphs.
+  Random random(7);
+  for (int round = 0; round < 200; ++round) {
+    const int parts = 2 + static_cast<int>(random.below(5));
+    std::vector<std::pair<int, int>> borders;
+    for (int a = 0; a < parts; ++a)
+      for (int b = a + 1; b < parts; ++b)
+        if (random.below(2) == 0) borders.emplace_back(a, b);
+    std::vector<int> order(static_cast<std::size_t>(parts));
+    std::iota(order.begin(), order.end(), 0);
+    std::vector<std::vector<int>> expected, found;
+    do {
+      bool joined = true;
+      for (std::size_t i = 0; i + 1 < order.size(); ++i)
+        joined = joined && std::find(borders.begin(), borders.end(),
+                                     std::pair<int, int>(std::minmax(order[i], order[i + 1]))) != borders.end();
+      if (joined) expected.push_back(order);
+    } while (std::next_permutation(order.begin(), order.end()));
+    for (const Traversal& traversal : traversals(parts_sharing(parts, borders), Context()))
+      found.push_back(traversal.parts);
+    EXPECT_EQ(found, expected) << round;
+  }
+}
+
+TEST(Traversals, WithoutAnOrderAreGivenUpSoon) {
+  // A rich graph of forty parts with three tips: no order has more than two ends, which plain search never finds out.
+  std::vector<std::pair<int, int>> borders;
+  for (int a = 0; a < 37; ++a)
+    for (int b = a + 1; b < 37; ++b)
+      if (b - a < 6) borders.emplace_back(a, b);
+  for (int tip = 37; tip < 40; ++tip) borders.emplace_back(tip - 20, tip);
+  EXPECT_TRUE(traversals(parts_sharing(40, borders), Context(), 1).empty());
+  // 14 parts against 17 have none either, since a path would have to alternate; that does not show soon, so it can be
+  // cancelled.
+  Host host;
+  host.cancel_requested = [] { return true; };
+  std::vector<std::pair<int, int>> two_sided;
+  for (int a = 0; a < 14; ++a)
+    for (int b = 14; b < 31; ++b) two_sided.emplace_back(a, b);
+  EXPECT_THROW(traversals(parts_sharing(31, two_sided), Context(host), 1), Error);
 }
 
 TEST(Crossings, AreTheSamePointOnBothSides) {
   const Segmentation s = test::proposed("star", 3000).segmentation;
   const Parameterisation p = solve(s);
   const LineTracer tracer(s, p);
-  for (const RankedTraversal& ranked : ranked_traversals(s, p, 10, 40)) {
+  for (const RankedTraversal& ranked : ranked_traversals(s, p, 10, Context(), 40)) {
     const auto& [traversal, crossings, cost] = ranked;
     for (std::size_t i = 0; i + 1 < traversal.parts.size(); ++i) {
       const Vec3 out = tracer.on_line(traversal.parts[i], false, crossings.exit_mm[i]),
@@ -144,7 +201,7 @@ TEST(Crossings, NoOtherPlacesAreMoreEven) {
     }
     return sum;
   };
-  const auto all = traversals(s, 30);
+  const auto all = traversals(s, Context(), 30);
   for (const Traversal& traversal : all) {
     const Crossings best = best_crossings(s, p, traversal);
     EXPECT_NEAR(best.unevenness, unevenness(traversal, best.along_mm), 1e-12);

@@ -68,7 +68,7 @@ inline Zipped zip(Segmentation segmentation, const CurveOptions& options) {
   Zipped z;
   z.segmentation = std::move(segmentation);
   z.parameterisation = parameterise(z.segmentation, {1e-13}, context);
-  z.traversal = ranked_traversals(z.segmentation, z.parameterisation, options.width_mm).at(0);
+  z.traversal = ranked_traversals(z.segmentation, z.parameterisation, options.width_mm, Context()).at(0);
   const LineTracer tracer(z.segmentation, z.parameterisation);
   z.curve = draw_zipper_curve(z.segmentation, z.parameterisation, tracer, z.traversal.traversal, z.traversal.crossings,
                               options, context);

@@ -8,6 +8,7 @@
 
 #include "geometry/io/glb.h"
 #include "geometry/io/glb_accessors.h"
+#include "geometry/io/gltf_texture_place.h"
 #include "geometry/io/media_type.h"
 #include "geometry/io/reader_limits.h"
 #include "geometry/io/vertex_merge.h"
@@ -100,10 +101,10 @@ class GlbReader {
     return *known;
   }
 
-  std::string texture_set(const Primitive& primitive) const {
-    if (primitive.material < 0) return "TEXCOORD_0";
+  GltfTexturePlace texture_place(const Primitive& primitive) const {
+    if (primitive.material < 0) return {};
     const Object* const texture = base_texture(document_.at("materials", primitive.material));
-    return "TEXCOORD_" + std::to_string(texture == nullptr ? 0 : document_.integer(*texture, "texCoord", 0));
+    return texture == nullptr ? GltfTexturePlace{} : read_texture_place(document_, *texture);
   }
 
   static const Object* base_texture(const Object& material) {
@@ -117,7 +118,7 @@ class GlbReader {
   void note_attributes(const Primitive& primitive) {
     const Object& attributes = *primitive.attributes;
     any_colours_ = any_colours_ || attributes.contains("COLOR_0");
-    any_texture_ = any_texture_ || attributes.contains(texture_set(primitive));
+    any_texture_ = any_texture_ || attributes.contains(texture_place(primitive).attribute);
     std::set<std::string> scalars;
     for (const auto& [name, accessor] : attributes.items())
       if (name.size() > 1 && name[0] == '_' && accessor.is_number_unsigned() &&
@@ -165,7 +166,8 @@ class GlbReader {
     if (indices && (!indices->is_unsigned_integer() || indices->components() != 1))
       source_.refuse("indices in it are not whole numbers; export it again.");
     const auto colours = attribute(primitive, "COLOR_0", positions.count(), 3, 4);
-    const auto texture = attribute(primitive, texture_set(primitive), positions.count(), 2, 2);
+    const GltfTexturePlace place = texture_place(primitive);
+    const auto texture = attribute(primitive, place.attribute, positions.count(), 2, 2);
     std::vector<GltfAccessor> columns;
     for (const std::string& name : *columns_)
       columns.push_back(std::move(*attribute(primitive, name, positions.count(), 1, 1)));
@@ -198,12 +200,13 @@ class GlbReader {
         for (std::size_t k = 0; k < columns.size(); ++k) column_values_[k].push_back(columns[k].number(corner, 0));
       }
       seen = {stamp_, index, static_cast<int>(UV_.size() / 2)};
-      if (any_texture_)
-        for (int k = 0; k < 2; ++k) {
-          const double t = texture ? texture->number(corner, k) : 0;
+      if (any_texture_) {
+        std::array<double, 2> uv{0, 1};
+        if (texture) uv = place({texture->number(corner, 0), texture->number(corner, 1)});
+        for (const double t : uv)
           if (!is_sane_coordinate(t)) source_.refuse(insane_coordinate("texture vertex", corner, t));
-          UV_.push_back(k == 0 || !texture ? t : 1 - t);  // glTF's v points down
-        }
+        UV_.insert(UV_.end(), {uv[0], 1 - uv[1]});  // glTF's v points down
+      }
       return seen;
     };
     for (std::int64_t t = 0; t < primitive.triangles; ++t) {

@@ -212,6 +212,39 @@ TEST(Glb, TextFormWithEmbeddedDataAndCompanions) {
   EXPECT_EQ(read_text(triangle.json.dump(), "a.gltf", options).model.mesh.face_count(), 1);
 }
 
+TEST(Glb, PicturesLieWhereTheirTransformPutsThem) {
+  Triangle triangle;
+  Bytes& binary = triangle.binary;
+  const std::size_t at = binary.size();
+  put(binary, 0.f, 0.f, 1.f, 0.f, 0.f, 1.f);  // TEXCOORD_0
+  put(binary, 9.f, 9.f, 9.f, 9.f, 9.f, 9.f);  // TEXCOORD_1
+  Json& json = triangle.json;
+  json["buffers"][0]["byteLength"] = binary.size();
+  json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", at}, {"byteLength", 48}});
+  for (const std::size_t offset : {std::size_t{0}, std::size_t{24}})
+    json["accessors"].push_back({{"bufferView", json["bufferViews"].size() - 1},
+                                 {"byteOffset", offset},
+                                 {"componentType", 5126},
+                                 {"count", 3},
+                                 {"type", "VEC2"}});
+  auto& primitive = json["meshes"][0]["primitives"][0];
+  primitive["attributes"]["TEXCOORD_0"] = json["accessors"].size() - 2;
+  primitive["attributes"]["TEXCOORD_1"] = json["accessors"].size() - 1;
+  primitive["material"] = 0;
+  json["textures"] = Json::parse(R"([{"source":0}])");
+  json["images"] = Json::array({{{"uri", "data:image/png;base64," + base64(red_pixel_png())}}});
+  // Scaled by (2, 3), turned by a quarter (u to -v, v to u), moved by (0.5, 0.25); its own set goes before texCoord.
+  json["materials"] = Json::parse(R"([{"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"texCoord":1,"extensions":
+    {"KHR_texture_transform":{"offset":[0.5,0.25],"rotation":1.5707963267948966,"scale":[2,3],"texCoord":0}}}}}])");
+  const Model model = triangle.read().model;
+  ASSERT_EQ(model.UV.rows(), 3);
+  const TextureCoordinates expected = (TextureCoordinates(3, 2) << 0.5, 0.75, 0.5, 2.75, 3.5, 0.75).finished();
+  for (int k = 0; k < 3; ++k)
+    EXPECT_LT((model.UV.row(model.FT(0, k)) - expected.row(model.mesh.F(0, k))).norm(), 1e-6) << k;
+  json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"]["scale"] = 2;
+  EXPECT_THROW(triangle.read(), Error);
+}
+
 TEST(Glb, ExternalPicturesAreReportedNotFatal) {
   Triangle triangle;
   triangle.json["materials"] =

@@ -37,6 +37,26 @@ test('a value out of range marks its field and keeps the last good one', async (
   await expect(thickness).toHaveValue('5.0');
 });
 
+test('two tabs keep out of each other’s way', async ({ page, context }) => {
+  await openSample(page);
+  await expect(page.getByText('Saved', { exact: true })).toBeVisible();
+  const other = await context.newPage();
+  await openPage(other);
+  await expect(other.getByText(/is open in another tab; here is a new project/)).toBeVisible();
+  await other.locator('.gallery button', { hasText: 'Star' }).click();
+  await expect(strip(other, 'Preview up to date')).toBeVisible();
+  await expect(other.getByText('Saved', { exact: true })).toBeVisible();
+  // What the first tab deletes is its own: the other’s model, which it has never seen, stays.
+  await page.locator('.project').click();
+  await page.getByRole('menuitem', { name: 'Delete' }).click();
+  await page.getByRole('dialog').getByRole('button', { name: 'Delete' }).click();
+  await expect(page.getByRole('dialog')).toBeHidden();
+  await other.reload();
+  await expect(strip(other, 'Preview up to date')).toBeVisible();
+  await expect(other.locator('.model-row strong')).toHaveText(/Star/);
+  await other.close();
+});
+
 test('a project goes through a file', async ({ page }) => {
   await openSample(page);
   await page.locator('.project').click();

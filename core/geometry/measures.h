@@ -17,6 +17,10 @@ struct BoundingBox {
   Vec3 size() const { return empty() ? Vec3(0, 0, 0) : Vec3(upper - lower); }
   Vec3 centre() const { return empty() ? Vec3(0, 0, 0) : Vec3(lower + 0.5 * (upper - lower)); }
   double diagonal() const { return size().norm(); }
+  /// Strictly: not on its border.
+  bool surrounds(const Vec3& point) const {
+    return (lower.array() < point.array()).all() && (point.array() < upper.array()).all();
+  }
   void add(const Vec3& point) {
     lower = lower.cwiseMin(point);
     upper = upper.cwiseMax(point);

@@ -119,7 +119,7 @@ RepairedMesh repair(const TriangleMesh& mesh, const RepairOptions& options, Cont
   result.hole_count = static_cast<int>(boundary_loops(adjacency).size());
   result.genus = (2 * result.part_count - euler_characteristic(adjacency) - result.hole_count) / 2;
   context.progress(0.9);
-  if (const int turned = turn_outwards(draft, adjacency, parts); turned > 0)
+  if (const int turned = turn_outwards(draft, adjacency, parts, context); turned > 0)
     say.push_back("Turned " + counted(turned, "closed part", "closed parts") + " to face outwards.");
   draft.drop_unused_vertices();
   if (result.hole_count > 0)

@@ -233,7 +233,7 @@ GluingCount make_manifold(Draft& draft, Context& context) {
   }
 }
 
-int turn_outwards(Draft& draft, const Adjacency& adjacency, const Components& parts) {
+int turn_outwards(Draft& draft, const Adjacency& adjacency, const Components& parts, Context& context) {
   std::vector<char> closed(index(parts.count), 1);
   std::vector<BoundingBox> box(index(parts.count));
   for (int h = 0; h < 3 * draft.mesh.face_count(); ++h) {
@@ -250,27 +250,30 @@ int turn_outwards(Draft& draft, const Adjacency& adjacency, const Components& pa
                c = draft.position(draft.mesh.F(f, 2)) - centre;
     volume[part] += a.dot(b.cross(c));
   }
+  const int closed_parts = static_cast<int>(std::count(closed.begin(), closed.end(), 1));
   std::vector<char> turn(index(parts.count), 0);
   std::unique_ptr<RayCaster> caster;
   int count = 0;
   for (int part = 0; part < parts.count; ++part) {
     if (!closed[index(part)] || volume[index(part)] >= 0) continue;
-    // A cavity lies within an odd number of other closed parts.
-    const Vec3 point = draft.position(draft.mesh.F(first_face[index(part)], 0));
-    bool within_a_box = false;
-    for (int other = 0; other < parts.count; ++other)
-      within_a_box = within_a_box || (other != part && closed[index(other)] &&
-                                      (box[index(other)].lower.array() < point.array()).all() &&
-                                      (point.array() < box[index(other)].upper.array()).all());
+    // A cavity lies within an odd number of other closed parts. Parts may be very many (foam, a scan's
+    // crumbs): only those that the ray meets are looked at.
     int enclosing = 0;
-    if (within_a_box) {
+    if (closed_parts > 1) {
+      context.check_cancelled();
       if (!caster) caster = std::make_unique<RayCaster>(draft.mesh);
-      std::vector<int> crossings(index(parts.count), 0);
+      const Vec3 point = draft.position(draft.mesh.F(first_face[index(part)], 0));
       const Vec3 direction = Vec3(0.5377, 0.2138, 0.8156).normalized();  // along no axis, through no likely edge
-      for (const RayHit& hit : caster->all_hits(point, direction, 0, 1e300))
-        ++crossings[index(parts.of[index(hit.face)])];
-      for (int other = 0; other < parts.count; ++other)
-        enclosing += other != part && closed[index(other)] ? crossings[index(other)] % 2 : 0;
+      std::vector<int> crossed;
+      for (const RayHit& hit : caster->all_hits(point, direction, 0, 1e300)) {
+        const int other = parts.of[index(hit.face)];
+        if (other != part && closed[index(other)] && box[index(other)].surrounds(point)) crossed.push_back(other);
+      }
+      std::sort(crossed.begin(), crossed.end());
+      for (std::size_t i = 0, next = 0; i < crossed.size(); i = next) {
+        while (next < crossed.size() && crossed[next] == crossed[i]) ++next;
+        enclosing += static_cast<int>(next - i) % 2;
+      }
     }
     if (enclosing % 2 == 1) continue;
     turn[index(part)] = 1;

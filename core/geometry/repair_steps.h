@@ -51,7 +51,7 @@ struct GluingCount {
 GluingCount make_manifold(Draft& draft, Context& context);
 
 /// Turns closed parts (numbered per face) outwards unless they are cavities; returns how many were turned.
-int turn_outwards(Draft& draft, const Adjacency& adjacency, const Components& parts);
+int turn_outwards(Draft& draft, const Adjacency& adjacency, const Components& parts, Context& context);
 
 struct DropCount {
   int parts = 0, faces = 0;

@@ -153,6 +153,19 @@ void act(const std::vector<Word>& words, GcodeState& s, GcodeBounds* bounds, boo
   if (middle) add_arc(*bounds, from, s.position_mm, middle->x, middle->y, clockwise);
 }
 
+/// Does the line say where the origin is? An extruder's (G92 E0) is none; G10 without L is a printer's retraction.
+bool moves_origin(const std::vector<Word>& words) {
+  bool offset = false, system = false, axis = false, extruder = false, system_word = false;
+  for (const auto& [letter, value] : words) {
+    offset = offset || (letter == 'G' && std::floor(value) == 92);
+    system = system || (letter == 'G' && value == 10);
+    axis = axis || (letter >= 'X' && letter <= 'Z');
+    extruder = extruder || letter == 'E';
+    system_word = system_word || letter == 'L';
+  }
+  return (offset && (axis || !extruder)) || (system && system_word);
+}
+
 /// Without comments, blanks and line number, letters large. False: a comment does not end, or a character belongs in no
 /// line.
 bool strip(std::string_view line, std::string& out) {
@@ -209,6 +222,7 @@ GcodeProgram GcodeProgram::read(ByteView file, std::size_t longest_line) {
     if (!read_words(stripped, words))
       bad("is not G-code (\"" + stripped.substr(0, 30) + "\"): every letter needs a number.");
     act(words, state, &program.bounds_, &program.fires_);
+    if (program.origin_line_ == 0 && moves_origin(words)) program.origin_line_ = number;
     program.starts_.push_back(program.text_.size());
     program.numbers_.push_back(number);
     program.text_ += stripped;
@@ -243,6 +257,13 @@ void require_head_at_origin(const GcodeProgram& program, int index,
   if (const GcodeState s = program.state_before(index); s.moved[0] || s.moved[1]) return;
   if (!head_mm || std::hypot((*head_mm)[0], (*head_mm)[1]) > at_origin_mm)
     refuse("start", "The job counts from where the head stands (G91): move to x 0, y 0 first, or set the origin here.");
+}
+
+void require_fixed_origin(const GcodeProgram& program) {
+  if (program.origin_line() > 0)
+    refuse("job", "Line " + std::to_string(program.origin_line()) +
+                      " moves the origin (G92 or G10), so that nobody can say where the job goes: take that line out "
+                      "and set the origin on the machine.");
 }
 
 double dwell_s(std::string_view line) {

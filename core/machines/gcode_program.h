@@ -53,6 +53,9 @@ class GcodeProgram {
   const GcodeBounds& bounds() const { return bounds_; }
   /// Does the way in x and y depend on where the head stands at the start (G91)?
   bool from_here() const { return from_here_; }
+  /// Number of the first line that says where the origin is (G92, G10 L2, G10 L20), 0 without one: behind it
+  /// `bounds()` means nothing to the machine.
+  int origin_line() const { return origin_line_; }
   /// Is the laser or spindle ever turned on?
   bool fires() const { return fires_; }
   GcodeState state_before(int index) const;
@@ -61,6 +64,7 @@ class GcodeProgram {
   std::string text_;
   std::vector<std::size_t> starts_;
   std::vector<int> numbers_;
+  int origin_line_ = 0;
   GcodeBounds bounds_;
   bool fires_ = false, from_here_ = false;
 };
@@ -69,6 +73,9 @@ class GcodeProgram {
 /// the line it starts with; `head_mm`: in work coordinates. Throws Error invalid_input ("start").
 void require_head_at_origin(const GcodeProgram& program, int index,
                             const std::optional<std::array<double, 3>>& head_mm);
+
+/// How far a program reaches is known only while its origin stays where it is. Throws Error invalid_input ("job").
+void require_fixed_origin(const GcodeProgram& program);
 
 /// Seconds that a G4 in this line waits, 0 without one.
 double dwell_s(std::string_view line);

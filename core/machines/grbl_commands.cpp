@@ -255,7 +255,12 @@ std::vector<std::string> GrblDriver::way_back_to(int index) const {
   std::vector<std::string> lines = {"G21G90G94G" + std::to_string(s.plane), "G" + std::to_string(s.work_system), "M5"};
   const bool mill = options_.tool == MachineTool::mill;
   if (mill && s.moved[2]) lines.push_back("G0Z" + decimal(program_.bounds().high_mm[2]));
-  if (s.moved[0] || s.moved[1]) lines.push_back("G0X" + decimal(s.position_mm[0]) + "Y" + decimal(s.position_mm[1]));
+  // On an axis that the job has not named yet the head stays where it is; jobs that count from here begin at 0.
+  std::string way;
+  const bool any = s.moved[0] || s.moved[1], from_zero = any && program_.from_here();
+  if (s.moved[0] || from_zero) way += "X" + decimal(s.position_mm[0]);
+  if (s.moved[1] || from_zero) way += "Y" + decimal(s.position_mm[1]);
+  if (!way.empty()) lines.push_back("G0" + way);
   if (s.mist) lines.push_back("M7");
   if (s.flood) lines.push_back("M8");
   if (s.spindle != 5) lines.push_back("M" + std::to_string(s.spindle) + "S" + decimal(s.power));
@@ -284,7 +289,7 @@ void GrblDriver::start(const Json& command, double now_s) {
                             " lines: go on from one of them.");
   require_head_at_origin(program_, index, work_mm_);
   check_reach(program_.bounds());
-  focus_until_s_.reset();
+  if (focus_until_s_) focus_off();  // before the job, whose own first move may come late
   refused_.reset();
   pause_asked_ = false;
   job_ = MachineJob{

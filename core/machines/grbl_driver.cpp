@@ -293,7 +293,9 @@ void GrblDriver::tick(double now_s) {
 
 void GrblDriver::load(const std::string& name, ByteView job) {
   if (job_active()) machines_detail::refuse("job", "A job is running: stop it before another is loaded.");
-  program_ = GcodeProgram::read(job, longest_line);
+  GcodeProgram program = GcodeProgram::read(job, longest_line);
+  require_fixed_origin(program);
+  program_ = std::move(program);
   program_name_ = name;
   job_.reset();
 }

@@ -17,7 +17,7 @@ using machines_detail::require_confirmation;
 constexpr std::size_t packet_letters = 30;
 constexpr char ask_status = static_cast<char>(0xa0);
 constexpr int status_ok = 206, status_checksum = 207, status_finished = 236, status_busy = 238, status_power = 239;
-constexpr double asking_s = 0.3, asking_busy_s = 0.02, silence_s = 3, rest_s = 1.0, settled_s = 0.3,
+constexpr double asking_s = 0.3, asking_busy_s = 0.02, silence_s = 3, rest_s = 1.0, settled_s = 0.3, rejection_s = 0.5,
                  mm_per_mil = 0.0254, absent = std::numeric_limits<double>::quiet_NaN();
 constexpr int most_repeats = 10;
 
@@ -112,7 +112,7 @@ void K40Driver::closed(double now_s) {
   drop_output();
   queue_.clear();
   unconfirmed_.reset();
-  asked_ = paused_ = position_known_ = stale_answer_ = false;
+  asked_ = paused_ = position_known_ = stale_answer_ = switch_due_ = switch_unconfirmed_ = false;
   doing_ = Doing::nothing;
   connection_ = MachineConnection::closed;
 }
@@ -135,8 +135,16 @@ void K40Driver::received(ByteView bytes, double now_s) {
   const bool stopping = doing_ == Doing::stopping;
   // A stop empties the board: one that stays busy has not heard it.
   const bool unheard = stopping && status_ == status_busy && now_s - sent_s_ > rest_s;
-  if (unconfirmed_ && (status_ == status_checksum || unheard)) return repeat(now_s);
+  // A rejection is of what went out last, be it the packet that holds or one of the job.
+  if ((unconfirmed_ || switch_unconfirmed_) && (status_ == status_checksum || unheard)) return repeat(now_s);
+  if (switch_unconfirmed_ && status_ != status_busy) {
+    switch_unconfirmed_ = false;
+    repeats_ = 0;
+  }
   if (status_ == status_power) note("The laser's own supply is off: the board lives on USB only.", now_s);
+  // "Busy" comes before a rejection, too: only after a while is the packet before surely in.
+  const bool certain = (!unconfirmed_ && !switch_unconfirmed_) || status_ != status_busy;
+  if (switch_due_ && (certain || now_s - sent_s_ > rejection_s)) send_switch(now_s);
   if (status_ == status_busy) return;  // asked again by the next tick
   if (unconfirmed_ && (status_ == status_ok || status_ == status_finished || (stopping && status_ == status_power))) {
     unconfirmed_.reset();
@@ -159,7 +167,7 @@ void K40Driver::received(ByteView bytes, double now_s) {
 
 void K40Driver::repeat(double now_s) {
   if (++repeats_ <= most_repeats) {
-    write(as_text(k40_transfer(*unconfirmed_)));
+    write(as_text(k40_transfer(switch_unconfirmed_ ? "PN" : *unconfirmed_)));
     sent_s_ = now_s;
     return ask(now_s);
   }
@@ -174,8 +182,18 @@ void K40Driver::repeat(double now_s) {
   doing_ = Doing::nothing;
 }
 
+void K40Driver::send_switch(double now_s) {
+  switch_due_ = false;
+  switch_unconfirmed_ = true;
+  repeats_ = 0;
+  say("sent", "PN", now_s);
+  write_urgently(as_text(k40_transfer("PN")));
+  sent_s_ = now_s;
+  ask(now_s);
+}
+
 void K40Driver::send_next(double now_s) {
-  if (queue_.empty() || unconfirmed_ || paused_) return;
+  if (queue_.empty() || unconfirmed_ || paused_ || switch_due_ || switch_unconfirmed_) return;
   unconfirmed_ = queue_.front();
   queue_.pop_front();
   say("sent", *unconfirmed_, now_s);
@@ -196,6 +214,7 @@ void K40Driver::tick(double now_s) {
                                    : "The laser does not answer: check that it is on and its cable plugged in.",
          now_s);
     if (job_active()) end_job("cut_off", now_s), queue_.clear(), position_known_ = false;
+    if (std::exchange(switch_due_, false)) paused_ = !paused_;  // it never went out
   }
   if (connection_ == MachineConnection::silent && now_s - asked_s_ > silence_s) asked_ = false;
 }
@@ -242,7 +261,7 @@ void K40Driver::move(double right_mm, double front_mm) {
 void K40Driver::stop(const char* how, double now_s) {
   end_job(how, now_s);
   queue_.clear();
-  paused_ = position_known_ = false;
+  paused_ = position_known_ = switch_due_ = switch_unconfirmed_ = false;
   doing_ = Doing::stopping;
   drop_output();
   unconfirmed_ = "I";  // the board drops everything it has
@@ -308,7 +327,10 @@ void K40Driver::command(const Json& command, double now_s) {
   } else if (what == "pause" || what == "resume") {
     if (what == "resume") require_confirmation(command, "The laser goes on, with its beam on");
     paused_ = what == "pause";
-    write_urgently(as_text(k40_transfer("PN")));  // the same packet holds and lets go
+    // The same packet holds and lets go: two that have not gone out cancel each other. It waits for what is known of
+    // the packet before, some milliseconds, so that a rejection is never taken for the wrong one's.
+    switch_due_ = !switch_due_;
+    if (switch_due_ && !asked_ && !unconfirmed_ && !switch_unconfirmed_) send_switch(now_s);
   }
   ask(now_s);
 }

@@ -39,6 +39,7 @@ class K40Driver final : public MachineDriver {
   void ask(double now_s);
   void send_next(double now_s);
   void repeat(double now_s);
+  void send_switch(double now_s);
   void stop(const char* how, double now_s);
   void move(double right_mm, double front_mm);
   std::vector<std::string> possible_commands() const;
@@ -54,6 +55,8 @@ class K40Driver final : public MachineDriver {
   int status_ = 0, repeats_ = 0;
   bool asked_ = false, paused_ = false, position_known_ = false;
   bool stale_answer_ = false;  // the next one tells of the time before the stop
+  // Of "PN", which holds and lets go: asked for and not sent yet; sent and not known to have arrived whole.
+  bool switch_due_ = false, switch_unconfirmed_ = false;
   double asked_s_ = 0, heard_s_ = 0, sent_s_ = 0;
   std::array<double, 2> position_mm_{0, 0};  // from home: right, front
 };

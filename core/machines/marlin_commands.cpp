@@ -173,7 +173,7 @@ void MarlinDriver::start(const Json& command, double now_s) {
     check_reach(program_.bounds());
   }
   refused_.reset();
-  focus_until_s_.reset();
+  if (focus_until_s_) focus_off(now_s);  // before the job, whose own first move may come late
   paused_ = false;
   job_ = MachineJob{program_name_, program_.line_count(), 0, 0, 0, now_s, 0, ""};
   next_line_ = 0;

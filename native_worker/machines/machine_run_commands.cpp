@@ -250,8 +250,12 @@ int machine_frame(const std::vector<std::string>& words, const std::atomic<bool>
   const MachineRegistry registry = registry_of(flags);
   const auto job = read_file(flags.needed("--job", "--job job.gcode"), "--job", most_job_bytes);
   const Machine machine = driven_machine(registry, flags);
-  const GcodeBounds bounds =
-      machine.kind == MachineKind::ruida ? ruida_bounds(*job) : GcodeProgram::read(*job, 256).bounds();
+  const auto gcode_bounds = [&] {
+    const GcodeProgram program = GcodeProgram::read(*job, 256);
+    require_fixed_origin(program);
+    return program.bounds();
+  };
+  const GcodeBounds bounds = machine.kind == MachineKind::ruida ? ruida_bounds(*job) : gcode_bounds();
   if (bounds.empty) throw Error(ErrorCode::invalid_input, "--job", "The job moves nowhere: choose another.");
   Terminal terminal(registry, machine, options_of(flags), interrupted, flags.given("--yes"));
   terminal.connect();

@@ -273,6 +273,26 @@ TEST(Repair, CavitiesStayInsideOut) {
   // Beside, not inside: turned.
   const TriangleMesh beside = joined(icosphere(2), reversed(moved(icosphere(1), Vec3(3, 0, 0), 0.5)));
   EXPECT_EQ(said(repaired(beside)), "Turned 1 closed part to face outwards.\n");
+  // Loose in the cavity: two parts lie around it, so it is a solid again.
+  EXPECT_EQ(said(repaired(joined(hollow, reversed(moved(icosphere(1), Vec3(0, 0, 0), 0.2))))),
+            "Turned 1 closed part to face outwards.\n");
+}
+
+TEST(Repair, ManyPartsAreTurnedWithoutComparingEachWithAll) {
+  // 8,000 crumbs inside out in the cavity of a ball: by pairs that would be 64 million comparisons.
+  const int n = 20;
+  const TriangleMesh crumb = reversed(moved(icosphere(0), Vec3(0, 0, 0), 0.01));
+  TriangleMesh mesh = joined(icosphere(2), reversed(moved(icosphere(1), Vec3(0, 0, 0), 0.9)));
+  const int first = mesh.vertex_count(), first_face = mesh.face_count(), crumbs = n * n * n;
+  mesh.V.conservativeResize(first + crumbs * crumb.vertex_count(), 3);
+  mesh.F.conservativeResize(first_face + crumbs * crumb.face_count(), 3);
+  for (int i = 0; i < crumbs; ++i) {
+    const Vec3 place = 0.04 * Vec3(i % n - 9.5, i / n % n - 9.5, i / n / n - 9.5);
+    const int v = first + i * crumb.vertex_count();
+    mesh.V.middleRows(v, crumb.vertex_count()) = crumb.V.rowwise() + place.transpose();
+    mesh.F.middleRows(first_face + i * crumb.face_count(), crumb.face_count()) = crumb.F.array() + v;
+  }
+  EXPECT_EQ(said(repaired(mesh)), "Turned 8000 closed parts to face outwards.\n");
 }
 
 TEST(Repair, OneSidedSurfacesAreCutOpen) {

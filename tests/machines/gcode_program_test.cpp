@@ -42,6 +42,24 @@ TEST(GcodeProgram, SaysWhatIsWrongAndWhere) {
   EXPECT_NE(sentence_of("G0 X1 (never closed\n").find("Line 1"), std::string::npos);
 }
 
+TEST(GcodeProgram, AnOriginThatMovesIsNamed) {
+  for (const char* text :
+       {"G0X1\nG92X0Y0\nG1X5F100", "G21\nG10L20P0X0Y0", "G21\nG10L2P1X5", "G21\nG92.1", "G21\nG92", "G21\nG92E0X5"}) {
+    const GcodeProgram p = program(text);
+    EXPECT_EQ(p.origin_line(), 2) << text;
+    try {
+      require_fixed_origin(p);
+      ADD_FAILURE() << text;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("Line 2 moves the origin"), std::string::npos) << error.what();
+    }
+  }
+  for (const char* text : {"G92E0\nG1X5F100", "G10\nG11", "G0X92Y10"}) {
+    EXPECT_EQ(program(text).origin_line(), 0) << text;
+    EXPECT_NO_THROW(require_fixed_origin(program(text)));
+  }
+}
+
 TEST(GcodeProgram, BoundsHoldUnitsRelativeMovesAndArcs) {
   const GcodeProgram inches = program("G20\nG0X1Y2");
   EXPECT_NEAR(inches.bounds().high_mm[0], 25.4, 1e-12);

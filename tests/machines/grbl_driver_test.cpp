@@ -263,6 +263,35 @@ TEST(GrblDriver, FocusIsWeakAndGoesOutByItself) {
   EXPECT_FALSE(talk.state()["laser_on"]);
 }
 
+TEST(GrblDriver, TheFocusLightIsOutBeforeAJobBegins) {
+  GrblTalk talk;
+  talk.connect_and_home();
+  talk.tell({{"do", "focus"}, {"power_percent", 1}, {"confirmed", true}});
+  talk.pass(0.5);
+  ASSERT_TRUE(talk.machine.beam());
+  talk.load("G21G90\nG4P5\nG0X5Y5\n");  // says nothing of the beam, and waits
+  talk.tell(start);
+  talk.pass(1);
+  EXPECT_FALSE(talk.machine.beam());
+  EXPECT_TRUE(talk.pass_until([&] { return talk.ended() == "done"; }, 20));
+  EXPECT_TRUE(talk.machine.burns().empty());
+}
+
+TEST(GrblDriver, GoingOnLeavesAnUnnamedAxisWhereItIs) {
+  GrblTalk talk;
+  talk.connect_and_home();
+  talk.tell({{"do", "go_to"}, {"x_mm", 10}, {"y_mm", 20}, {"speed_mm_per_s", 50}});
+  talk.pass(3);
+  const double y = talk.machine.position_mm()[1], x = talk.machine.position_mm()[0] - 10;
+  talk.load("G21G90\nG0X15\nG0X30\nG0X40\n");
+  Json from = start;
+  from["from_line"] = 3;
+  talk.tell(from);
+  EXPECT_TRUE(talk.pass_until([&] { return talk.ended() == "done"; }, 20));
+  EXPECT_NEAR(talk.machine.position_mm()[0], x + 40, 1e-6);
+  EXPECT_NEAR(talk.machine.position_mm()[1], y, 1e-6);
+}
+
 TEST(GrblDriver, JobsThatDoNotFitAreRefusedBeforeAnythingMoves) {
   GrblTalk talk;
   talk.connect_and_home();

@@ -2,6 +2,7 @@
 // Vectors were made with MeerK40t 0.9.9 (its checksum, distances and scrambling), which shares no code with ours.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <deque>
 
 #include "base/error.h"
@@ -147,6 +148,80 @@ TEST(K40, JobsArriveWholeThroughSpoiledPackets) {
     for (std::size_t i = 0; i < 40; ++i)
       EXPECT_EQ(talk.board.heard[before + i], std::string(30, static_cast<char>('A' + static_cast<int>(i) % 26)));
   }
+}
+
+TEST(K40, PausesArriveOnceThroughSpoiledPackets) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    K40Talk talk(seed, 0.2);
+    talk.pass(1);
+    talk.driver.command({{"do", "home"}, {"confirmed", true}}, talk.now_s);
+    talk.pass(3);
+    const auto letters = [](int i) {
+      return std::string(28, 'B') + static_cast<char>('A' + i / 26) + static_cast<char>('A' + i % 26);
+    };
+    std::string egv;
+    for (int i = 0; i < 200; ++i) egv += letters(i) + "\n";
+    talk.driver.load("job.egv", as_bytes(egv + "FNSE-\n"));
+    const std::size_t before = talk.board.heard.size();
+    talk.driver.command({{"do", "start"}, {"confirmed", true}}, talk.now_s);
+    std::size_t holds = 0;
+    for (int pause = 0; pause < 3; ++pause) {
+      talk.pass(0.11 + 0.07 * static_cast<double>(seed));
+      talk.driver.command({{"do", "pause"}}, talk.now_s);
+      talk.board.spoil_next = pause;  // what goes out next, be it the job's or the one that holds
+      talk.pass(1);
+      EXPECT_EQ(talk.phase(), "paused");
+      ++holds;
+      EXPECT_EQ(std::count(talk.board.heard.begin(), talk.board.heard.end(), padded("PN")), static_cast<int>(holds));
+      const std::size_t held = talk.board.heard.size();
+      talk.pass(1);
+      EXPECT_EQ(talk.board.heard.size(), held);  // nothing follows while it is held
+      talk.driver.command({{"do", "resume"}, {"confirmed", true}}, talk.now_s);
+      ++holds;
+    }
+    talk.pass(40);
+    EXPECT_EQ(talk.driver.state(talk.now_s)["job"]["ended"], "done") << talk.driver.state(talk.now_s).dump();
+    std::vector<std::string> job;
+    for (std::size_t i = before; i < talk.board.heard.size(); ++i)
+      if (talk.board.heard[i] != padded("PN")) job.push_back(talk.board.heard[i]);
+    EXPECT_EQ(talk.board.heard.size() - before, job.size() + holds);
+    ASSERT_EQ(job.size(), 201u);  // each once, in order
+    for (int i = 0; i < 200; ++i) EXPECT_EQ(job[static_cast<std::size_t>(i)], letters(i));
+  }
+}
+
+TEST(K40, APauseIsNotKeptWaitingByABusyBoard) {
+  K40Driver driver({.controller = DriverController::k40});
+  const auto answer = [](int status) { return Bytes{std::byte{255}, static_cast<std::byte>(status)}; };
+  double now = 0;
+  const auto hear = [&](int status, double after = 0.01) {
+    driver.take_output();
+    driver.received(answer(status), now += after);
+    driver.tick(now += 0.03);
+  };
+  const auto sent = [&](const std::string& letters) {
+    const auto output = driver.take_output();
+    return std::count(output.begin(), output.end(), k40_transfer(letters));
+  };
+  driver.opened(now);
+  hear(206);
+  driver.command({{"do", "home"}, {"confirmed", true}}, now);
+  for (int i = 0; i < 60; ++i) hear(206, 0.05);
+  driver.load("job.egv", as_bytes(std::string("ABC\nDEF\n")));
+  driver.command({{"do", "start"}, {"confirmed", true}}, now);
+  hear(206);
+  driver.command({{"do", "pause"}}, now);
+  hear(238);
+  EXPECT_EQ(sent("PN"), 0);  // "ABC" may still be rejected
+  while (now < 6) {
+    hear(238, 0.1);
+    if (sent("PN") > 0) break;
+  }
+  ASSERT_LT(now, 6);  // half a second later it surely is in
+  hear(207);
+  const auto output = driver.take_output();
+  EXPECT_EQ(std::count(output.begin(), output.end(), k40_transfer("ABC")), 0);
+  EXPECT_EQ(std::count(output.begin(), output.end(), k40_transfer("PN")), 1);
 }
 
 TEST(K40, StopOvertakesAndNothingFollows) {

@@ -341,6 +341,28 @@ TEST(MarlinDriver, TheFocusLightGoesOutThoughALineIsUnanswered) {
   EXPECT_NE(other.leaves().find("\nM5\n"), std::string::npos);
 }
 
+TEST(MarlinDriver, TheFocusLightIsOutBeforeAJobBegins) {
+  MarlinTalk talk(0, 1, MachineTool::laser);
+  talk.pass(3);
+  talk.tell({{"do", "set_origin"}});
+  talk.tell({{"do", "focus"}, {"power_percent", 1}, {"confirmed", true}});
+  talk.pass(0.5);
+  ASSERT_EQ(talk.machine.done_times("M3 S2.55"), 1);
+  const int before = talk.machine.done_times("M5");
+  talk.driver.load("test", as_bytes("G21\nG90\nG1 X5 F3000\n"));
+  talk.tell({{"do", "start"}, {"confirmed", true}});
+  EXPECT_FALSE(talk.driver.state(talk.now_s)["laser_on"].is_boolean());  // a running job: Marlin does not tell
+  talk.pass(1);
+  EXPECT_GT(talk.machine.done_times("M5"), before);
+}
+
+TEST(MarlinDriver, AJobThatMovesTheOriginIsAPrintersOnly) {
+  const std::string job = "G28\nG92 X0 Y0\nG1 X5 F3000\n";
+  MarlinTalk laser(0, 1, MachineTool::laser), printer(0, 1, MachineTool::printer);
+  EXPECT_THROW(laser.driver.load("test", as_bytes(job)), Error);
+  EXPECT_NO_THROW(printer.driver.load("test", as_bytes(job)));
+}
+
 TEST(MarlinDriver, AJogIsAMoveUntilItIsDone) {
   MarlinTalk talk(0, 1, MachineTool::laser);
   talk.pass(3);

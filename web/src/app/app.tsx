@@ -151,8 +151,8 @@ export function App({ services, sessions }: AppProps) {
           onWorkerHelp={() => (dialog.value = 'worker')}
           onStart={() => go('start')}
           onSendToMill={async (name, heightMap, size) => {
-            await sessions.machines.take(name, heightMap, 'model', size);
-            go('machines');
+            const taken = await sessions.machines.take(name, heightMap, 'model', size);
+            if (taken || sessions.machines.problem.value !== null) go('machines');
           }}
         />
       ) : where === 'thermoform' && ThermoformPage ? (
@@ -162,8 +162,8 @@ export function App({ services, sessions }: AppProps) {
           session={sessions.zippable}
           onChooseFile={chooseFile}
           onSendToMachine={async (name, drawing) => {
-            await sessions.machines.take(name, drawing);
-            go('machines');
+            const taken = await sessions.machines.take(name, drawing);
+            if (taken || sessions.machines.problem.value !== null) go('machines');
           }}
         />
       ) : where === 'evidence' && EvidencePage ? (

@@ -7,7 +7,7 @@ import { askBeforeLeaving } from './leaving';
 it('the browser asks while a project could not be saved, also while that is tried again', () => {
   const saveState = signal<SaveState>({ state: 'saved' });
   const page = new EventTarget();
-  askBeforeLeaving({ saveState }, page);
+  askBeforeLeaving({ saveState, isBlank: signal(false), lasts: true }, page);
   const asks = () => !page.dispatchEvent(new Event('beforeunload', { cancelable: true }));
   expect(asks()).toBe(false);
   saveState.value = { state: 'unsaved' };
@@ -17,5 +17,17 @@ it('the browser asks while a project could not be saved, also while that is trie
   saveState.value = { state: 'saving' };
   expect(asks()).toBe(true);
   saveState.value = { state: 'saved' };
+  expect(asks()).toBe(false);
+});
+
+it('the browser asks before work is lost that only this tab has', () => {
+  const isBlank = signal(true);
+  const page = new EventTarget();
+  askBeforeLeaving({ saveState: signal<SaveState>({ state: 'saved' }), isBlank, lasts: false }, page);
+  const asks = () => !page.dispatchEvent(new Event('beforeunload', { cancelable: true }));
+  expect(asks()).toBe(false);
+  isBlank.value = false;
+  expect(asks()).toBe(true);
+  isBlank.value = true;
   expect(asks()).toBe(false);
 });

@@ -13,6 +13,7 @@ const button = (words: string) =>
   [...document.querySelectorAll('button')].find(({ textContent }) => textContent?.trim() === words);
 
 class FullStorage extends MemoryStorage {
+  override readonly kind = 'opfs';
   full = false;
   override async writeProject(id: string, value: object): Promise<void> {
     if (this.full) throw new DOMException('full', 'QuotaExceededError');
@@ -73,4 +74,18 @@ it('it gives the reason, and the way out: room is made, and the project saved', 
   expect(projects.saveState.value.state).toBe('saved');
   expect(projects.projects.value.map(({ name }) => name)).toEqual(['Bust']);
   expect(document.querySelector('dialog')).toBeNull();
+});
+
+it('what only the tab has is not called saved, and can be saved as a file', async () => {
+  const memory = new MemoryStorage();
+  projects = new ProjectStore(memory, new BlobStore(memory));
+  await work('Vase');
+  document.body.innerHTML = '<div class="top"></div>';
+  render(<SaveState projects={projects} />, document.querySelector('.top') as Element);
+  expect(projects.saveState.value.state).toBe('saved');
+  expect(document.querySelector('.top')?.textContent).toBe('Not kept');
+  button('Not kept')?.click();
+  await settle();
+  expect(document.querySelector('dialog')?.textContent).toMatch(/until the tab is closed/);
+  expect(button('Save as a file')).toBeDefined();
 });

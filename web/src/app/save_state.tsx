@@ -13,6 +13,7 @@ export function SaveState({ projects }: { projects: ProjectStore }) {
   const [shown, setShown] = useState(false);
   const failed = save.state === 'failed';
   if (projects.isBlank.value) return null;
+  if (!projects.lasts) return <NotKept projects={projects} />;
   return (
     <>
       <span class={failed ? 'saved failed' : 'saved'} role="status">
@@ -25,6 +26,39 @@ export function SaveState({ projects }: { projects: ProjectStore }) {
         )}
       </span>
       {shown ? <NotSaved projects={projects} onClose={() => setShown(false)} /> : null}
+    </>
+  );
+}
+
+/** No storage of the browser's can be written: the project ends with the tab. */
+function NotKept({ projects }: { projects: ProjectStore }) {
+  const [shown, setShown] = useState(false);
+  const [problem, setProblem] = useState<string | null>(null);
+  const save = () => {
+    setProblem(null);
+    saveAsFile(projects).catch((thrown: unknown) => setProblem(sentenceOf(thrown)));
+  };
+  return (
+    <>
+      <span class="saved failed">
+        <button type="button" aria-haspopup="dialog" onClick={() => setShown(true)}>
+          Not kept
+        </button>
+      </span>
+      {shown ? (
+        <Dialog title="This project lasts until the tab is closed" onClose={() => setShown(false)}>
+          <p>
+            This browser does not let the page keep files, as in a private window. Save the project as a file,
+            and open that file later to go on.
+          </p>
+          {problem === null ? null : <p role="alert">{problem}</p>}
+          <div class="row end">
+            <Button kind="filled" onClick={save}>
+              Save as a file
+            </Button>
+          </div>
+        </Dialog>
+      ) : null}
     </>
   );
 }

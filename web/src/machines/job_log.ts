@@ -23,17 +23,23 @@ export class JobLog {
 
   constructor(storage: Pick<Storage, 'getItem' | 'setItem'>) {
     this.#storage = storage;
+    this.jobs.value = this.#stored() ?? [];
+  }
+
+  /** Null where there is no log that can be read: a damaged one begins anew. */
+  #stored(): readonly LoggedJob[] | null {
     try {
-      const stored: unknown = JSON.parse(storage.getItem(key) ?? '[]');
-      if (Array.isArray(stored)) this.jobs.value = stored as LoggedJob[];
+      const stored: unknown = JSON.parse(this.#storage.getItem(key) ?? 'null');
+      return Array.isArray(stored) ? (stored as LoggedJob[]) : null;
     } catch {
-      // A damaged log begins anew.
+      return null;
     }
   }
 
   /** Adds the job, or changes the one with its id; newest first. */
   put(job: LoggedJob): void {
-    this.jobs.value = [job, ...this.jobs.value.filter(({ id }) => id !== job.id)].slice(0, kept);
+    const before = this.#stored() ?? this.jobs.peek(); // other tabs write, too
+    this.jobs.value = [job, ...before.filter(({ id }) => id !== job.id)].slice(0, kept);
     try {
       this.#storage.setItem(key, JSON.stringify(this.jobs.value));
     } catch {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import type { ProjectStorage } from './storage';
 
+const hashOfNothing = 'e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855';
 const isNotFound = (thrown: unknown) => thrown instanceof DOMException && thrown.name === 'NotFoundError';
 
 async function writeFile(folder: FileSystemDirectoryHandle, name: string, content: FileSystemWriteChunkType) {
@@ -69,10 +70,13 @@ export class OpfsStorage implements ProjectStorage {
     }
   }
   async hasBlob(sha256: string): Promise<boolean> {
-    return await this.#blobs.getFileHandle(sha256).then(
-      () => true,
-      () => false,
-    );
+    try {
+      // A file is there, without content, before it is written: where the page ended between the two it holds nothing.
+      const { size } = await (await this.#blobs.getFileHandle(sha256)).getFile();
+      return size > 0 || sha256 === hashOfNothing;
+    } catch {
+      return false;
+    }
   }
   writeBlob(sha256: string, bytes: Uint8Array<ArrayBuffer>): Promise<void> {
     return writeFile(this.#blobs, sha256, bytes);

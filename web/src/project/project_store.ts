@@ -31,6 +31,8 @@ const now_s = () => Math.round(Date.now() / 1000);
 
 export class ProjectStore {
   readonly blobs: BlobStore;
+  /** What is saved is still there when the page is opened again. */
+  readonly lasts: boolean;
   readonly #storage: ProjectStorage;
   readonly #locks: ProjectLocks;
   readonly #stored = new Map<string, Stored>();
@@ -48,6 +50,7 @@ export class ProjectStore {
 
   constructor(storage: ProjectStorage, blobs: BlobStore, locks = new ProjectLocks()) {
     this.#storage = storage;
+    this.lasts = storage.kind !== 'memory';
     this.#locks = locks;
     this.blobs = blobs;
     this.#history = new History(newDocument(crypto.randomUUID(), 'New project', now_s()));

@@ -26,7 +26,7 @@ export function storageSentence(thrown: unknown): string {
 }
 
 export class MemoryStorage implements ProjectStorage {
-  readonly kind = 'memory';
+  readonly kind: ProjectStorage['kind'] = 'memory';
   readonly #projects = new Map<string, string>();
   readonly #blobs = new Map<string, Uint8Array<ArrayBuffer>>();
 

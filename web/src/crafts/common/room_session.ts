@@ -25,11 +25,13 @@ export type Activity =
       readonly progress: Progress | null;
     };
 
+export type Change = (command: Command<ProjectDocument>) => void;
+
 export interface BusyOptions {
   readonly signal: AbortSignal;
   readonly onProgress: (progress: Progress) => void;
   /** Changes the project that the task was begun in; throws `cancelled` where another one is open by now, or the task was ended. */
-  readonly do: (command: Command<ProjectDocument>) => void;
+  readonly do: Change;
 }
 
 interface Task {
@@ -109,10 +111,10 @@ export abstract class RoomSession<D extends RoomDocument = RoomDocument> {
     const onProgress = (progress: Progress) => {
       if (this.#task === own) this.activity.value = { kind, name, progress };
     };
-    const change = (command: Command<ProjectDocument>) => {
-      // What is open is compared as well: a task that was ended may come to its last step all the same.
-      if (signal.aborted || projects.document.peek().id !== own.home) throw cancelled();
-      projects.do(command);
+    const changeHome = this.changesHere();
+    const change: Change = (command) => {
+      if (signal.aborted) throw cancelled();
+      changeHome(command);
     };
     try {
       return await task({ signal, onProgress, do: change });
@@ -127,6 +129,16 @@ export abstract class RoomSession<D extends RoomDocument = RoomDocument> {
         this.follow();
       }
     }
+  }
+
+  /** Changes the project that is open now, however late: throws `cancelled` where another one has been opened meanwhile. */
+  changesHere(): Change {
+    const { projects } = this.services;
+    const home = projects.document.peek().id;
+    return (command) => {
+      if (projects.document.peek().id !== home) throw cancelled();
+      projects.do(command);
+    };
   }
 
   cancel(): void {

@@ -238,10 +238,10 @@ export class EvidenceSession extends RoomSession<EvidenceDocument> {
     const opened = await this.busy(
       'opening',
       name,
-      async () => {
+      async (options) => {
         const { objects, scan, strange } = await sortFiles(files);
-        if (scan.length > 0) await takeScan(this, scan);
-        for (const found of objects) await takeObject(this, found);
+        if (scan.length > 0) await takeScan(this, scan, options.do);
+        for (const found of objects) await takeObject(this, found, options.do);
         if (strange.length > 0 && objects.length + scan.length === 0)
           throw new JobError({
             code: 'invalid_input',

@@ -108,7 +108,7 @@ export async function measureScan(session: EvidenceSession, scan: Scan): Promise
         points: await session.keep(await bytesOf(done, 'measured.csv'), 'text/csv'),
         aligned: await session.keep(await bytesOf(done, 'aligned.png'), 'image/png'),
       };
-      session.services.projects.do(evidence.keepMeasuredScan(measured));
+      options.do(evidence.keepMeasuredScan(measured));
     },
     ({ message }) =>
       (session.problem.value = { kind: 'solve', title: 'Could not measure the scan', message }),
@@ -121,9 +121,15 @@ export async function takePoints(
   scan: Scan,
   { points }: MeasuredScan,
 ): Promise<void> {
-  const { projects } = session.services;
-  const bytes = await projects.blobs.read(points.blob);
   const name = scan.files.find(({ input }) => input === 'scan')?.file_name.replace(/\.[^.]+$/, '') ?? 'Scan';
-  await takeObject(session, { name, files: { 'measured.csv': bytes } });
-  projects.do(evidence.setScan(null, 'Use the measured points'));
+  await session.busy(
+    'opening',
+    name,
+    async (options) => {
+      const bytes = await session.services.projects.blobs.read(points.blob);
+      await takeObject(session, { name, files: { 'measured.csv': bytes } }, options.do);
+      options.do(evidence.setScan(null, 'Use the measured points'));
+    },
+    (error) => session.report(error, 'Could not use the measured points'),
+  );
 }

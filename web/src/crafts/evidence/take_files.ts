@@ -4,6 +4,7 @@ import type { JsonObject } from '../../jobs/contract';
 import { toast } from '../../ui';
 import { nameProject } from '../common/craft_document';
 import { bytesOf } from '../common/import_model';
+import type { Change } from '../common/room_session';
 import type { MeasuredObject, ObjectFile, Scan } from './evidence_document';
 import { evidence, freeName, inventing, objectFiles, registering } from './evidence_document';
 import type { EvidenceSession } from './evidence_session';
@@ -12,7 +13,11 @@ import { countPoints, missingFrom, objectsInArchive, packObject, plainName } fro
 import { scanInputs } from './scan_files';
 
 /** Together with files that came before, where it is not complete. */
-export async function takeObject(session: EvidenceSession, { name: own, files }: Found): Promise<void> {
+export async function takeObject(
+  session: EvidenceSession,
+  { name: own, files }: Found,
+  change: Change,
+): Promise<void> {
   const { projects } = session.services;
   const { draft, objects } = session.document.value;
   const name = draft && own === plainName ? draft.name : own;
@@ -36,7 +41,7 @@ export async function takeObject(session: EvidenceSession, { name: own, files }:
   const kept = Object.fromEntries(references.flat());
   const first = projects.isBlank.value && projects.document.value.name === 'New project';
   if (missingFrom(whole) !== '') {
-    projects.do(evidence.setDraft({ name, files: kept }, `Open ${name}`));
+    change(evidence.setDraft({ name, files: kept }, `Open ${name}`));
     return;
   }
   const pack = await session.keep(packObject(whole as Record<ObjectFile, Bytes>), 'application/zip');
@@ -54,12 +59,16 @@ export async function takeObject(session: EvidenceSession, { name: own, files }:
     points: countPoints(whole['measured.csv'] as Bytes),
     use: 'fit',
   };
-  projects.do(evidence.addObject(object));
-  if (first) projects.do(nameProject(object.name));
+  change(evidence.addObject(object));
+  if (first) change(nameProject(object.name));
   session.chosenId.value = object.id;
 }
 
-export async function takeScan(session: EvidenceSession, dropped: readonly File[]): Promise<void> {
+export async function takeScan(
+  session: EvidenceSession,
+  dropped: readonly File[],
+  change: Change,
+): Promise<void> {
   const operation = session.operationNamed(registering);
   const kept = session.document.value.scan?.files ?? [];
   const added = await Promise.all(
@@ -76,7 +85,7 @@ export async function takeScan(session: EvidenceSession, dropped: readonly File[
   const files = [...others, ...added];
   const parameters = session.document.value.scan?.parameters ?? {};
   const scan: Scan = { files, corners: null, parameters, measured: null };
-  session.services.projects.do(evidence.setScan(scan, 'Open a scan'));
+  change(evidence.setScan(scan, 'Open a scan'));
 }
 
 /** An object that nobody made, with faults that are known. */
@@ -94,7 +103,7 @@ export async function inventObject(
         options,
       );
       for (const found of objectsInArchive(await bytesOf(done, 'object.zip'), `virtual ${sample}.zip`))
-        await takeObject(session, found);
+        await takeObject(session, found, options.do);
       return true;
     },
     (error) => session.report(error, 'Could not make a virtual object'),

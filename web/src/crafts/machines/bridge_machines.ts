@@ -19,8 +19,7 @@ export function followBridge(session: MachinesSession): () => void {
   const look = async () => {
     clearTimeout(timer);
     const { worker, connection } = session.services;
-    if (worker && connection.value?.state === 'ready')
-      found.value = await lookAt(worker).catch(() => found.value);
+    if (worker && connection.value?.state === 'ready') await lookAt(worker).catch(() => undefined);
     else found.value = [];
     if (!over) timer = setTimeout(() => void look(), asking_ms);
   };
@@ -35,18 +34,26 @@ export function followBridge(session: MachinesSession): () => void {
   };
 }
 
-/** The list, with what print servers do now: that they are asked for one by one. */
-async function lookAt(worker: NativeConnection): Promise<BridgeMachine[]> {
-  const machines = await listBridgeMachines(worker);
-  const now = async (machine: BridgeMachine): Promise<BridgeMachine> => {
-    if (machine.kind !== 'octoprint' && machine.kind !== 'moonraker') return machine;
-    const state = await readMachine<{ state: string }>(worker, machine.id).then(
-      (server) => server.state,
-      () => 'off',
-    );
-    return { ...machine, state };
+/** The list, then what print servers do now. Two are asked at a time: a browser has six connections to the worker, and while dead
+ *  servers are waited for, a machine's stop must find one free. */
+async function lookAt(worker: NativeConnection): Promise<void> {
+  const known = new Map(found.peek().map(({ id, state }) => [id, state]));
+  const listed = await listBridgeMachines(worker);
+  const servers = listed.filter(({ kind }) => kind === 'octoprint' || kind === 'moonraker');
+  found.value = listed.map((machine) =>
+    servers.includes(machine) ? { ...machine, state: known.get(machine.id) ?? machine.state } : machine,
+  );
+  const askOn = async (): Promise<void> => {
+    for (let server = servers.shift(); server !== undefined; server = servers.shift()) {
+      const { id } = server;
+      const state = await readMachine<{ state: string }>(worker, id).then(
+        (answer) => answer.state,
+        () => 'off',
+      );
+      found.value = found.peek().map((machine) => (machine.id === id ? { ...machine, state } : machine));
+    }
   };
-  return await Promise.all(machines.map(now));
+  await Promise.all([askOn(), askOn()]);
 }
 
 /** Those that a driver of this kind can talk to. */

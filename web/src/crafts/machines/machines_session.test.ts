@@ -1,6 +1,6 @@
 // @vitest-environment happy-dom
 // SPDX-License-Identifier: GPL-3.0-or-later
-import { expect, it } from 'vitest';
+import { expect, it, vi } from 'vitest';
 import { solveInFull } from '../common/full_solve';
 import { resultOf, settled, testCatalog, testServices } from '../common/test_room';
 import { laserJob, machines, millJob } from './machines_document';
@@ -19,4 +19,21 @@ it('a mill’s job whose files are gone is said, and can be made again', async (
   expect(session.isCurrent.value).toBe(false);
   void solveInFull(session);
   expect(services.browser.runs).toMatchObject([{ asked: { operation: millJob } }]);
+});
+
+it('a drawing that is still being kept when another project is opened is not written into that one', async () => {
+  const services = testServices(testCatalog(laserJob, millJob));
+  const session = new MachinesSession(services);
+  const file = { blob: 'star', bytes: 3, media_type: 'image/svg+xml' };
+  services.projects.do(
+    machines.setWork(testCatalog(laserJob, millJob), { file_name: 'own.svg', kind: 'drawing', file }, 'Open'),
+  );
+  const first = services.projects.document.value.id;
+  vi.spyOn(session, 'keep').mockImplementation(async () => {
+    await services.projects.create();
+    return file;
+  });
+  expect(await session.take('star.svg', new Uint8Array(3))).toBe(false);
+  expect(services.projects.document.value.id).not.toBe(first);
+  expect(services.projects.isBlank.value).toBe(true);
 });

@@ -233,6 +233,7 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
     kind: FileWork['kind'] = 'drawing',
     own: JsonObject = {},
   ): Promise<boolean> {
+    const change = this.changesHere();
     const suits = kind === 'job' || (kind === 'model') === this.isMill;
     if (!suits && this.control.link.value !== null) {
       this.problem.value = {
@@ -248,7 +249,6 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
     const picture = kind === 'model' ? pictureSize(bytes) : null;
     const types = { job: 'text/x-gcode', drawing: 'image/svg+xml', model: 'application/octet-stream' };
     const file = await this.keep(bytes, picture ? 'image/png' : types[kind]);
-    const blank = this.services.projects.isBlank.value;
     this.problem.value = null;
     const nodes = picture ? { nodes: picture[0] * picture[1] } : {};
     const catalog = await this.#catalogWhenThere();
@@ -257,11 +257,15 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
       this.problem.value = { kind: 'file', title: `Could not open ${file_name}`, message };
       return false;
     }
-    this.services.projects.do(
-      machines.setWork(catalog, { file_name, kind, file, ...nodes }, `Open ${file_name}`, own),
-    );
+    const blank = this.services.projects.isBlank.value;
+    try {
+      change(machines.setWork(catalog, { file_name, kind, file, ...nodes }, `Open ${file_name}`, own));
+    } catch (thrown) {
+      if (asJobError(thrown).code === 'cancelled') return false; // the person went on to another project
+      throw thrown;
+    }
     if (!suits) this.useProfile(this.profiles.oneThat(kind === 'model'));
-    if (blank) this.services.projects.do(nameProject(file_name.replace(/\.[^.]+$/, '')));
+    if (blank) change(nameProject(file_name.replace(/\.[^.]+$/, '')));
     return true;
   }
 

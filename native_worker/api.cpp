@@ -165,10 +165,15 @@ Response HttpServer::answer_jobs(const Head& head, const std::string& path, cons
     if (const auto error = check_job(message))
       return text_response(head, http::status::unprocessable_entity, error_json(*error).dump());
     const Json inputs = message.value("inputs", Json::object());
-    for (const auto& [name, input] : inputs.items())
-      if (input.contains("sha256") && !std::filesystem::exists(store_.blob_path(input["sha256"].get<std::string>())))
+    for (const auto& [name, input] : inputs.items()) {
+      if (!input.contains("sha256")) continue;
+      std::error_code missing;  // a model that is worked on is never the one that was unused longest
+      std::filesystem::last_write_time(store_.blob_path(input["sha256"].get<std::string>()),
+                                       std::filesystem::file_time_type::clock::now(), missing);
+      if (missing)
         return error_response(head, http::status::unprocessable_entity, "invalid_input", name,
                               "The file for the input " + name + " has not arrived: send it again.");
+    }
     if (queue_.waiting() >= most_queued)
       return error_response(head, http::status::too_many_requests, "invalid_input", "",
                             "Too many jobs are waiting: let some finish.");

@@ -5,6 +5,7 @@
 
 #include <cstring>
 #include <map>
+#include <new>
 
 #include "job/catalog.h"
 #include "job/run.h"
@@ -37,10 +38,14 @@ extern "C" {
 EMSCRIPTEN_KEEPALIVE const char* fw_catalog() { return keep(catalog_json().dump()); }
 
 EMSCRIPTEN_KEEPALIVE void* fw_blob_new(const char* sha256, std::size_t bytes) {
-  auto blob = std::make_shared<Bytes>(bytes);
-  void* data = blob->data();
-  blobs[sha256] = std::move(blob);
-  return data;
+  try {
+    auto blob = std::make_shared<Bytes>(bytes);
+    void* data = blob->data();
+    blobs[sha256] = std::move(blob);
+    return data;
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
 }
 EMSCRIPTEN_KEEPALIVE int fw_blob_has(const char* sha256) { return blobs.contains(sha256) ? 1 : 0; }
 EMSCRIPTEN_KEEPALIVE void fw_blob_drop(const char* sha256) { blobs.erase(sha256); }

@@ -186,7 +186,8 @@ std::string diagnosis_page(const DiagnosisReport& report) {
   big("Noise alone would give", with_unit(d.noise_floor), "mean distance");
   html += "</div>";
 
-  if (!d.verdict.empty()) {
+  // Of a cause that does not explain the data nothing is advised.
+  if (!d.verdict.empty() && d.reading != Reading::unknown) {
     html += "<h2>What to do</h2>";
     for (const int cause : d.verdict) {
       const Cause& c = model.causes()[static_cast<std::size_t>(cause)];

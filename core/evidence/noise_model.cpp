@@ -32,12 +32,18 @@ NoiseEstimate estimate_noise(const Measurement& measurement, const Eigen::Matrix
   const Eigen::Index n = residual.rows(), d = residual.cols();
   NoiseEstimate result;
   const bool stated = measurement.sigma.maxCoeff() > 0;
-  double floor = 0;
+  Eigen::VectorXd sigma = Eigen::VectorXd::Ones(n);
   if (stated) {
-    result.stated_sigma = std::sqrt(measurement.sigma.squaredNorm() / static_cast<double>(n));
-    floor = 0.1 * result.stated_sigma;  // a point said to be perfect is as good as the others at best
+    std::vector<double> known;
+    double squares = 0;
+    for (const double own : measurement.sigma)
+      if (own > 0) known.push_back(own), squares += own * own;
+    result.stated_sigma = std::sqrt(squares / static_cast<double>(known.size()));
+    const double usual = median_of(known);
+    // 0 means that it is not known: as good as the others. No point is ten times as good as these.
+    for (Eigen::Index i = 0; i < n; ++i)
+      sigma[i] = measurement.sigma[i] > 0 ? std::max(measurement.sigma[i], 0.1 * result.stated_sigma) : usual;
   }
-  Eigen::VectorXd sigma = stated ? measurement.sigma.cwiseMax(floor).eval() : Eigen::VectorXd::Ones(n).eval();
 
   // Smooth part and scale by turns, with weights as of Student's t, so that outliers bend neither.
   Eigen::VectorXd trust = Eigen::VectorXd::Ones(n);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "base/error.h"
+
 namespace formwright {
 namespace {
 
@@ -20,11 +22,16 @@ Separation best_separation(SimulationBag& bag, const Diagnosis& diagnosis, const
                            const std::vector<Precisions>& precisions) -> std::optional<GramByStructure> {
     const auto at = own.run(diagnosis.base.u, context, "Looking for a measurement that tells");
     if (!at) return std::nullopt;
-    const std::vector<Sensitivities> s =
-        sensitivities_at(own, diagnosis.base.u, *at, columns, context, "Looking for a measurement that tells");
-    Predictions zero = *at;
-    for (Eigen::MatrixXd& object : zero) object.setZero();
-    return MisfitOfAll(own.model(), precisions).gram(zero, s);
+    try {
+      const std::vector<Sensitivities> s =
+          sensitivities_at(own, diagnosis.base.u, *at, columns, context, "Looking for a measurement that tells");
+      Predictions zero = *at;
+      for (Eigen::MatrixXd& object : zero) object.setZero();
+      return MisfitOfAll(own.model(), precisions).gram(zero, s);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::could_not_solve) throw;
+      return std::nullopt;  // what is only proposed may be impossible
+    }
   };
   std::vector<Precisions> precisions;
   for (std::size_t object = 0; object < diagnosis.noise.size(); ++object)

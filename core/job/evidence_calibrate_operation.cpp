@@ -89,6 +89,7 @@ Calibration search(SimulationBag& bag, const CalibrateOptions& o, Context& conte
 
 OperationResult run(const OperationCall& call) {
   const auto o = read_parameters<CalibrateOptions>(call.parameters);
+  require_each_once(call, "measured.csv");
   std::vector<FormedObject> objects = read_formed_objects(call, "object");
   ThermoformModelOptions options;
   options.triangles = o.triangles;

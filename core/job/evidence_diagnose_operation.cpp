@@ -62,15 +62,24 @@ std::string residuals_csv(const ThermoformModel& model, const Diagnosis& d) {
 
 OperationResult run(const OperationCall& call) {
   const auto o = read_parameters<DiagnoseOptions>(call.parameters);
+  require_each_once(call, "measured.csv");
   ThermoformModelOptions options;
   options.triangles = o.triangles;
   options.profile = read_profile_input(call);
   std::vector<FormedObject> unseen = read_formed_objects(call, "unseen");
   const ThermoformModel model(read_formed_objects(call, "object"), options);
+  // An object that cannot be formed at all is told before the minutes, not after.
+  std::unique_ptr<const ThermoformModel> other;
+  if (!unseen.empty()) {
+    const auto span = call.context.span(0, 0.02, "Looking at the unseen object");
+    other = std::make_unique<const ThermoformModel>(std::move(unseen), options);
+    for (std::size_t i = 0; i < other->objects().size(); ++i)
+      other->predict(static_cast<int>(i), other->nominal(), call.context);
+  }
   SimulationBag bag(model);
   Diagnosis diagnosis;
   {
-    const auto span = call.context.span(0, o.separate ? 0.85 : 0.95, "Diagnosing");
+    const auto span = call.context.span(other ? 0.02 : 0, o.separate ? 0.85 : 0.95, "Diagnosing");
     DiagnosisOptions own;
     own.pairs = o.pairs;
     diagnosis = diagnose(bag, own, call.context);
@@ -95,11 +104,16 @@ OperationResult run(const OperationCall& call) {
       report.separations.push_back(std::move(separated));
     }
   }
-  if (!unseen.empty()) {
+  if (other) {
     const auto span = call.context.span(0.95, 0.99, "Predicting the unseen object");
-    for (const FormedObject& object : unseen) report.unseen_names.push_back(object.name);
-    const ThermoformModel other(std::move(unseen), options);
-    report.unseen = gain_on_unseen(other, model, diagnosis, call.context);
+    for (const FormedObject& object : other->objects()) report.unseen_names.push_back(object.name);
+    try {
+      report.unseen = gain_on_unseen(*other, model, diagnosis, call.context);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::could_not_solve) throw;
+      report.unseen_names.clear();
+      report.notes.emplace_back(error.what());
+    }
   }
   if (diagnosis.looked_again)
     report.notes.push_back("A sheet of " + std::to_string(o.triangles) +
@@ -107,7 +121,9 @@ OperationResult run(const OperationCall& call) {
   for (const FormedObject& object : model.objects())
     for (const std::string& note : object.setup.notes) report.notes.push_back(object.name + ": " + note);
 
-  MachineProfile profile = model.profile_at(diagnosis.extended.u);
+  // A cause that does not explain the data is not the machine's.
+  const bool known = diagnosis.reading != Reading::unknown;
+  MachineProfile profile = model.profile_at(known ? diagnosis.extended.u : diagnosis.base.u);
   if (profile.name.empty()) profile.name = "Diagnosed machine";
   profile.notes.push_back(verdict_sentence(report));
 

@@ -49,6 +49,7 @@ std::vector<PhotographedRelief> read_reliefs(const OperationCall& call, const st
 
 OperationResult run(const OperationCall& call) {
   const auto o = read_parameters<DiagnoseReliefOptions>(call.parameters);
+  require_each_once(call, "shading.csv");
   std::vector<PhotographedRelief> unseen = read_reliefs(call, "unseen", o.pixels);
   const ReliefModel model(read_reliefs(call, "object", o.pixels));
   SimulationBag bag(model);

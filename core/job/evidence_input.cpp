@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "job/evidence_input.h"
 
+#include <map>
+
 #include "base/sha256.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/repair.h"
@@ -34,6 +36,8 @@ FormedObject read_object(const InputBlob& input, const std::string& where, Opera
   }
   try {
     check_measured_object(object);
+    check_mould_of(object);
+    if (const std::string note = rim_note(object); !note.empty()) object.setup.notes.push_back(note);
   } catch (const Error& error) {
     throw Error(error.code(), where, error.what());
   }
@@ -59,6 +63,19 @@ std::vector<FormedObject> read_formed_objects(const OperationCall& call, const s
   std::vector<FormedObject> objects;
   for (const auto& [own, input] : inputs_named(call, name)) objects.push_back(read_object(*input, own, call));
   return objects;
+}
+
+void require_each_once(const OperationCall& call, const std::string& file) {
+  std::map<Bytes, std::string> names;  // by content
+  for (const char* role : {"object", "unseen"})
+    for (const auto& [own, input] : inputs_named(call, role)) {
+      const std::string name = pack_name(*input, own);
+      const auto [before, is_new] = names.emplace(unpack_files(*input, own, {file}, call.context).at(file), name);
+      if (!is_new)
+        throw Error(ErrorCode::invalid_input, own,
+                    name + " has the same " + file + " as " + before->second +
+                        ": give every measurement once; what was fitted says nothing about the gain.");
+    }
 }
 
 MachineProfile read_profile_input(const OperationCall& call) {

@@ -41,9 +41,11 @@ void check_parameters(const Json& parameters) {
   }
 }
 
+bool is_of_the_material(const ParameterInfo& info) { return info.group == "Material" || info.name == "vacuum_ramp_s"; }
+
 /// What a profile knows better than a set-up.
 bool is_the_machines_own(const ParameterInfo& info) {
-  return info.group == "Material" || info.group == SheetEffects::group_title || info.name == "vacuum_ramp_s";
+  return is_of_the_material(info) || info.group == SheetEffects::group_title;
 }
 
 }  // namespace
@@ -91,6 +93,13 @@ std::string write_machine_profile(const MachineProfile& profile) {
   json["from"] = profile.from;
   json["notes"] = profile.notes;
   return json.dump(2) + "\n";
+}
+
+std::vector<std::string> names_of_material() {
+  std::vector<std::string> names;
+  for (const ParameterInfo& info : describe_parameters<ThermoformOptions>())
+    if (is_of_the_material(info)) names.push_back(info.name);
+  return names;
 }
 
 Json with_profile(const Json& setup_parameters, const MachineProfile& profile) {

@@ -26,6 +26,10 @@ MachineProfile read_machine_profile(ByteView json);
 /// As read_machine_profile reads it. Throws Error{invalid_input, "profile"} for what that would refuse.
 std::string write_machine_profile(const MachineProfile& profile);
 
+/// Parameters of the material and of how it is loaded, which belong together: numbers fitted with one elastic law are
+/// not another's.
+std::vector<std::string> names_of_material();
+
 /// The set-up's parameters with the profile's. A set-up says what a machine was told, a profile what it does: where
 /// both have a value, the profile's material, effects and vacuum ramp win, the set-up's other values do. What a person
 /// gives by name goes over both.

@@ -41,7 +41,11 @@ ObjectSetup read_object_setup(ByteView bytes) {
     setup.parameters[x] = number(value[0], key);
     setup.parameters[y] = number(value[1], key);
   };
-  const std::vector<ParameterInfo> known = describe_parameters<ThermoformOptions>();
+  const std::vector<ParameterInfo> known = describe_parameters<ThermoformOptions>(),
+                                   placements = describe_parameters<PlacementOptions>();
+  const auto is_among = [](const std::vector<ParameterInfo>& infos, const std::string& key) {
+    return std::any_of(infos.begin(), infos.end(), [&](const ParameterInfo& info) { return info.name == key; });
+  };
   for (const auto& [key, value] : json.items()) {
     if (key == "sheet_mm") pair(value, key, "sheet_x_mm", "sheet_y_mm");
     else if (key == "clamp_opening_mm") pair(value, key, "clamp_opening_x_mm", "clamp_opening_y_mm");
@@ -53,8 +57,11 @@ ObjectSetup read_object_setup(ByteView bytes) {
     } else if (key == "sheet_turned") {
       if (!value.is_boolean()) refuse_setup("“sheet_turned” must be true or false.");
       setup.sheet_turned = value.get<bool>();
-    } else if (std::any_of(known.begin(), known.end(),
-                           [&k = key](const ParameterInfo& info) { return info.name == k; })) {
+    } else if (is_among(placements, key)) {
+      setup.notes.push_back("“" + key +
+                            "” in setup.json was left out: mould.obj is in machine coordinates, as the mould stood. "
+                            "Turn or move the mould itself.");
+    } else if (is_among(known, key)) {
       setup.parameters[key] = value;
     } else {
       setup.notes.push_back("“" + key + "” in setup.json is not known and was left out.");

@@ -67,6 +67,80 @@ TEST(ThermoformModel, WrongDataGetAClearSentence) {
   expect_refused(tiny, "at least 30");
 }
 
+TEST(ThermoformModel, ATurnedSheetIsReadAsItLay) {
+  const FormedObject straight = small_object(1, {});
+  FormedObject turned = straight;
+  for (MeasuredPoint& p : turned.points) p.sheet_mm = -p.sheet_mm;
+  expect_refused(turned, "\"sheet_turned\": true");
+  turned.setup.sheet_turned = true;
+  EXPECT_NO_THROW(check_measured_object(turned));
+  Context context;
+  const ThermoformModel one({straight}, coarse()), other({turned}, coarse());
+  EXPECT_LT((one.predict(0, one.nominal(), context) - other.predict(0, other.nominal(), context)).norm(), 1e-9);
+  FormedObject said_so = straight;
+  said_so.setup.sheet_turned = true;
+  expect_refused(said_so, "not turned");
+}
+
+TEST(ThermoformModel, AMouldInAnotherUnitIsRefused) {
+  FormedObject object = small_object(1, {});
+  EXPECT_NO_THROW(check_mould_of(object));
+  const TriangleMesh mould = object.mould->mesh;
+  for (const auto& [factor, unit] : {std::pair{1e-3, "metres"}, std::pair{1 / 25.4, "inches"}}) {
+    TriangleMesh scaled = mould;
+    scaled.V *= factor;
+    object.mould = std::make_shared<const MouldShape>(scaled);
+    try {
+      check_mould_of(object);
+      ADD_FAILURE() << unit;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(unit), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST(ThermoformModel, ARimThatIsNotWhereTheSetUpHasItIsNoted) {
+  FormedObject object = small_object(1, {});
+  const auto o = read_parameters<ThermoformOptions>(object.setup.parameters);
+  const double z =
+      o.clamp_height_mm + (object.setup.measured_surface == MeasuredSurface::outer ? 0.5 * o.sheet_thickness_mm : 0.0);
+  object.points.clear();
+  for (int i = 0; i < 20; ++i) {
+    const Vec2 place(0.5 * o.clamp_opening_x_mm + 2, 3.0 * i - 30);
+    object.points.push_back({place, Vec3(place.x(), place.y(), z), 0.05});
+  }
+  EXPECT_EQ(rim_note(object), "");
+  for (MeasuredPoint& p : object.points) p.place_mm.z() -= 1.75;
+  EXPECT_NE(rim_note(object).find("1.75 mm below"), std::string::npos) << rim_note(object);
+}
+
+TEST(ThermoformModel, WhatASetUpSaysOfItsOwnObjectStays) {
+  const FormedObject first = small_object(1, {});
+  FormedObject second = first;
+  second.setup.parameters["mould_shift_x_mm"] = 2.0;
+  const ThermoformModel both({first, second}, coarse()), alone({second}, coarse());
+  Context context;
+  const Eigen::MatrixXd expected = alone.predict(0, alone.nominal(), context);
+  EXPECT_LT((both.predict(1, both.nominal(), context) - expected).norm(), 1e-9);
+  EXPECT_GT((both.predict(0, both.nominal(), context) - expected).norm(), 1);
+}
+
+TEST(ThermoformModel, AProfileSaysWithWhichLawItWasFitted) {
+  FormedObject object = small_object(5, {});
+  object.setup.parameters["elastic_law"] = "stable_neo_hookean";
+  object.setup.parameters["vacuum_ramp_s"] = 0.6;
+  const ThermoformModel model({object}, coarse());
+  const MachineProfile profile = model.profile_at(model.nominal());
+  EXPECT_EQ(profile.parameters["elastic_law"], "stable_neo_hookean");
+  EXPECT_EQ(profile.parameters["vacuum_ramp_s"], 0.6);
+  EXPECT_TRUE(profile.notes.empty());
+  FormedObject other = object;
+  other.setup.parameters["vacuum_ramp_s"] = 0.2;
+  const ThermoformModel two({object, other}, coarse());
+  ASSERT_EQ(two.profile_at(two.nominal()).notes.size(), 1u);
+  EXPECT_NE(two.profile_at(two.nominal()).notes[0].find("vacuum_ramp_s"), std::string::npos);
+}
+
 TEST(ThermoformModel, PredictsWhatTheComparisonDoes) {
   const FormedObject object = small_object(2, {});
   const ThermoformModel model({object}, coarse());

@@ -224,6 +224,92 @@ TEST(K40, APauseIsNotKeptWaitingByABusyBoard) {
   EXPECT_EQ(std::count(output.begin(), output.end(), k40_transfer("PN")), 1);
 }
 
+/// A driver whose board's every answer is the test's, with a job of "ABC", "DEF" and "GHI" begun.
+struct K40Told {
+  using Packets = std::vector<std::string>;
+
+  K40Told() {
+    driver.opened(now_s);
+    hear(206);
+    driver.command({{"do", "home"}, {"confirmed", true}}, now_s);
+    for (int i = 0; i < 60; ++i) hear(206);
+    driver.load("job.egv", as_bytes(std::string("ABC\nDEF\nGHI\n")));
+    driver.command({{"do", "start"}, {"confirmed", true}}, now_s);
+  }
+  /// The packets that went out since the last call.
+  Packets sent() {
+    Packets packets;
+    for (const Bytes& transfer : driver.take_output())
+      if (transfer.size() == 34) packets.emplace_back(as_text(transfer).substr(2, 30));
+    return packets;
+  }
+  /// Those that go out upon an answer.
+  Packets hear(int status) {
+    driver.take_output();
+    const Bytes answer{std::byte{255}, static_cast<std::byte>(status)};
+    driver.received(answer, now_s += 0.04);
+    return sent();
+  }
+  void resume() { driver.command({{"do", "resume"}, {"confirmed", true}}, now_s); }
+  std::string phase() const { return driver.state(now_s)["phase"]; }
+
+  K40Driver driver{DriverOptions{.controller = DriverController::k40}};
+  double now_s = 0;
+};
+
+TEST(K40, APauseThatArrivesSpoiledIsSentAgainAndNotTheJob) {
+  K40Told told;
+  EXPECT_EQ(told.hear(206), K40Told::Packets{padded("ABC")});
+  EXPECT_EQ(told.hear(206), K40Told::Packets{padded("DEF")});
+  told.driver.command({{"do", "pause"}}, told.now_s);
+  EXPECT_EQ(told.hear(206), K40Told::Packets{padded("PN")});  // "DEF" is in
+  EXPECT_EQ(told.hear(207), K40Told::Packets{padded("PN")});
+  EXPECT_EQ(told.hear(238), K40Told::Packets{});
+  EXPECT_EQ(told.hear(207), K40Told::Packets{padded("PN")});
+  EXPECT_EQ(told.hear(206), K40Told::Packets{});
+  EXPECT_EQ(told.phase(), "paused");
+  told.resume();
+  EXPECT_EQ(told.sent(), K40Told::Packets{padded("PN")});
+  EXPECT_EQ(told.hear(207), K40Told::Packets{padded("PN")});
+  EXPECT_EQ(told.hear(206), K40Told::Packets{padded("GHI")});
+  EXPECT_EQ(told.phase(), "running");
+}
+
+TEST(K40, APauseWaitsForAPacketOfTheJobThatIsSpoiled) {
+  K40Told told;
+  EXPECT_EQ(told.hear(206), K40Told::Packets{padded("ABC")});
+  told.driver.command({{"do", "pause"}}, told.now_s);
+  EXPECT_EQ(told.sent(), K40Told::Packets{});
+  EXPECT_EQ(told.hear(207), K40Told::Packets{padded("ABC")});
+  EXPECT_EQ(told.hear(238), K40Told::Packets{});
+  EXPECT_EQ(told.hear(207), K40Told::Packets{padded("ABC")});
+  EXPECT_EQ(told.hear(206), K40Told::Packets{padded("PN")});
+  EXPECT_EQ(told.hear(206), K40Told::Packets{});
+  EXPECT_EQ(told.phase(), "paused");
+  told.resume();
+  EXPECT_EQ(told.sent(), K40Told::Packets{padded("PN")});
+  EXPECT_EQ(told.hear(206), K40Told::Packets{padded("DEF")});
+}
+
+TEST(K40, AStopDoesNotWaitForAPause) {
+  for (const bool pause_is_out : {false, true}) {
+    SCOPED_TRACE(pause_is_out);
+    K40Told told;
+    EXPECT_EQ(told.hear(206), K40Told::Packets{padded("ABC")});
+    told.driver.command({{"do", "pause"}}, told.now_s);
+    if (pause_is_out) {
+      EXPECT_EQ(told.hear(206), K40Told::Packets{padded("PN")});
+    }
+    told.driver.command({{"do", "stop"}}, told.now_s);
+    EXPECT_EQ(told.sent(), K40Told::Packets{padded("I")});
+    told.hear(206);  // to what was asked before
+    EXPECT_EQ(told.phase(), "stopping");
+    EXPECT_EQ(told.hear(207), K40Told::Packets{padded("I")});
+    EXPECT_EQ(told.hear(206), K40Told::Packets{});
+    EXPECT_EQ(told.phase(), "idle");
+  }
+}
+
 TEST(K40, StopOvertakesAndNothingFollows) {
   K40Talk talk;
   talk.pass(1);

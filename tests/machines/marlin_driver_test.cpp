@@ -348,12 +348,16 @@ TEST(MarlinDriver, TheFocusLightIsOutBeforeAJobBegins) {
   talk.tell({{"do", "focus"}, {"power_percent", 1}, {"confirmed", true}});
   talk.pass(0.5);
   ASSERT_EQ(talk.machine.done_times("M3 S2.55"), 1);
-  const int before = talk.machine.done_times("M5");
+  const long before = talk.machine.done_times("M5");
   talk.driver.load("test", as_bytes("G21\nG90\nG1 X5 F3000\n"));
   talk.tell({{"do", "start"}, {"confirmed", true}});
   EXPECT_FALSE(talk.driver.state(talk.now_s)["laser_on"].is_boolean());  // a running job: Marlin does not tell
   talk.pass(1);
   EXPECT_GT(talk.machine.done_times("M5"), before);
+  const auto& done = talk.machine.done;
+  const auto light = std::find(done.begin(), done.end(), "M3 S2.55"), job = std::find(light, done.end(), "G21");
+  ASSERT_NE(job, done.end());
+  EXPECT_NE(std::find(light, job, "M5"), job);
 }
 
 TEST(MarlinDriver, AJobThatMovesTheOriginIsAPrintersOnly) {

@@ -23,13 +23,15 @@ PLACES = [(x, y) for x in range(-52, 53, 8) for y in range(-52, 53, 8)]
 
 
 class Evidence(unittest.TestCase):
+    stiffer = ("--young-modulus-pa", 3.4e6, "--yield-strain", 0.16, "--triangles", 1000)
+
     @classmethod
     def setUpClass(cls):
         cls.temporary = tempfile.TemporaryDirectory()
         cls.folder = pathlib.Path(cls.temporary.name)
         # What the simulation itself measures with a stiffer sheet.
         cls.write(cls.folder / "first", [(x, y, x, y, 1) for x, y in PLACES])
-        simulated = cls.simulated(cls.folder / "first", "--young-modulus-pa", 3.4e6, "--yield-strain", 0.16, "--triangles", 1000)
+        simulated = cls.simulated(cls.folder / "first", *cls.stiffer)
         draw = random.Random(3)
         cls.points = [(x, y, *(v + draw.gauss(0, 0.04) for v in p)) for (x, y), p in zip(PLACES, simulated)]
         cls.object = cls.write(cls.folder / "lamp", cls.points)
@@ -111,7 +113,13 @@ class Evidence(unittest.TestCase):
 
     def test_a_diagnosis_names_the_shift(self):
         out = self.folder / "diagnosed"
-        other = self.write(self.folder / "other", self.shifted_points, vacuum_kpa=80)
+        # Another sheet, scanned on the same bench.
+        thin = {"sheet_thickness_mm": 0.8}
+        blank = self.write(self.folder / "blank", [(x, y, x, y, 1) for x, y in PLACES], **thin)
+        formed = self.simulated(blank, *self.stiffer)
+        draw = random.Random(4)
+        points = [(x, y, *(v + draw.gauss(0, 0.04) + shift for v, shift in zip(p, (1.5, 0, 0)))) for (x, y), p in zip(PLACES, formed)]
+        other = self.write(self.folder / "other", points, **thin)
         self.run_program("evidence-diagnose", "--object", self.shifted, "--unseen", other, "--triangles", 500, "--pairs", "off", "--out", out)
         diagnosis = json.loads((out / "diagnosis.json").read_text())
         self.assertEqual(diagnosis["verdict"][0], "scan_shift")
@@ -137,6 +145,9 @@ class Evidence(unittest.TestCase):
         self.expect_refused("line 2", *calibrate, broken)
         (broken / "measured.csv").unlink()
         self.expect_refused("measured.csv", *calibrate, broken)
+        again = self.write(self.folder / "again", self.points)
+        self.expect_refused("same measured.csv", *calibrate, self.object, "--object", again)
+        self.expect_refused("same measured.csv", "evidence-diagnose", "--object", self.object, "--unseen", again, "--out", self.folder / "refused")
         not_zip = self.folder / "object.zip"
         not_zip.write_text("no archive")
         self.expect_refused("object.zip", *calibrate, not_zip)

@@ -46,6 +46,16 @@ async function start(root: HTMLElement): Promise<void> {
   // The worker serves the page itself, always the one that fits it; elsewhere the page keeps itself.
   if (import.meta.env.PROD && services.native === null && 'serviceWorker' in navigator)
     void navigator.serviceWorker.register('./sw.js').catch(() => undefined);
+  if (services.native !== null) void forgetKeptPage().catch(() => undefined);
+}
+
+/** Opened at the worker's address without its token, the page was kept there: an older one would be shown after an update. */
+async function forgetKeptPage(): Promise<void> {
+  if (!('serviceWorker' in navigator)) return;
+  const registrations = await navigator.serviceWorker.getRegistrations();
+  if (registrations.length === 0) return;
+  await Promise.all(registrations.map((registration) => registration.unregister()));
+  for (const name of await caches.keys()) if (name.startsWith('formwright-')) await caches.delete(name);
 }
 
 async function everythingSaved({ projects }: Services): Promise<boolean> {

@@ -252,8 +252,8 @@ void align_by_rim(ScanRegistration& result, const CalibrationPattern& pattern, c
   Eigen::Matrix4d move = Eigen::Matrix4d::Identity(), scaled = move;
   const auto at = [&](const Vec3& p) { return Vec3((move * p.homogeneous()).head<3>()); };
   const auto held = [&](std::size_t i) {
-    return Vec3(result.points[i].sheet_mm.x(), result.points[i].sheet_mm.y(),
-                options.clamp_height_mm + options.sheet_thickness_mm / 2);
+    const Vec2 place = (options.sheet_turned ? -1.0 : 1.0) * result.points[i].sheet_mm;
+    return Vec3(place.x(), place.y(), options.clamp_height_mm + options.sheet_thickness_mm / 2);
   };
   const auto miss = [&](std::size_t i) { return (at(result.points[i].place_mm) - held(i)).norm(); };
   double squared = 0;

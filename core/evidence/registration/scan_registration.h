@@ -23,6 +23,7 @@ struct EnumNames<ScanCoordinates> {
 struct ScanRegistrationOptions : VariationalFlowOptions {
   double grid_mm = 4;
   ScanCoordinates coordinates = ScanCoordinates::rim;
+  bool sheet_turned = false;
   double clamp_height_mm = 1;
   double sheet_thickness_mm = 1;
   double scan_unit_mm = 1;
@@ -41,6 +42,9 @@ struct ScanRegistrationOptions : VariationalFlowOptions {
           parameter(
               "coordinates", &ScanRegistrationOptions::coordinates, "Coordinates",
               "Of the points. By the rim: turned and moved so that the clamped rim lies where the machine holds it; as scanned where no rim was scanned.")
+              .group("Points"),
+          parameter("sheet_turned", &ScanRegistrationOptions::sheet_turned, "Sheet was turned",
+                    "The sheet lay in the clamp turned by half a turn; its set-up says the same.")
               .group("Points"),
           parameter("clamp_height_mm", &ScanRegistrationOptions::clamp_height_mm, "Clamp height", unit::mm, -500, 500,
                     "Middle of the clamped sheet above the raised plate.")

@@ -32,8 +32,10 @@ std::vector<ProposedMeasurement> proposed_measurements(const ThermoformModel& mo
   };
   const double reach = first.mould->mesh.V.leftCols<2>().cwiseAbs().maxCoeff();
   if (reach < 0.48 * std::min(own.clamp_opening_x_mm, own.clamp_opening_y_mm))
-    moved("Form and measure the same mould once more, turned by a quarter turn on the platform.", ":quarter-turn",
-          [](const Vec3& p) { return Vec3(-p.y(), p.x(), p.z()); });
+    moved(
+        "Form and measure the same mould once more, turned by a quarter turn on the platform (its mould.obj turned "
+        "likewise).",
+        ":quarter-turn", [](const Vec3& p) { return Vec3(-p.y(), p.x(), p.z()); });
   const double plate = first.setup.base_plate_end_z_mm, height = first.mould->mesh.V.col(2).maxCoeff() - plate;
   const double taller = std::min(1.5, 0.85 * own.platform_travel_mm / std::max(height, 1.0));
   if (taller > 1.1)

@@ -59,6 +59,13 @@ std::shared_ptr<const FormedSheet> unpacked(const Bytes& bytes, const Thermoform
   return sheet;
 }
 
+struct UnitName {
+  double factor;
+  const char* name;
+};
+constexpr std::array<UnitName, 4> other_units{
+    {{1e-3, "metres"}, {1 / 25.4, "inches"}, {0.1, "centimetres"}, {1e3, "micrometres"}}};
+
 double spread(const std::vector<MeasuredPoint>& points, bool on_sheet) {
   // The range between the 5th and the 95th of a hundred, so that outliers do not count.
   double widest = 0;
@@ -69,6 +76,11 @@ double spread(const std::vector<MeasuredPoint>& points, bool on_sheet) {
     widest = std::max(widest, values[values.size() * 19 / 20] - values[values.size() / 20]);
   }
   return widest;
+}
+
+/// Not of the material, which all objects share.
+bool is_deed(const ModelParameter& p) {
+  return p.role == ParameterRole::effect || (p.role == ParameterRole::base && p.name.starts_with("mould_"));
 }
 
 }  // namespace
@@ -84,42 +96,85 @@ void check_measured_object(const FormedObject& object) {
   const double on_sheet = spread(object.points, true), in_space = spread(object.points, false);
   if (!(on_sheet > 0) || !(in_space > 0))
     refuse("all measured points lie in one place; measure points all over the sheet.");
-  struct UnitName {
-    double factor;
-    const char* name;
-  };
-  static constexpr std::array<UnitName, 4> units{
-      {{1e-3, "metres"}, {1 / 25.4, "inches"}, {0.1, "centimetres"}, {1e3, "micrometres"}}};
   // The rim stays where it is: over the sheet a spread in space cannot differ much from that on the sheet.
-  for (const UnitName& unit : units)
+  for (const UnitName& unit : other_units)
     if (std::abs(std::log(in_space / on_sheet / unit.factor)) < 0.35)
       refuse(std::string("x_mm, y_mm, z_mm of measured.csv seem to be in ") + unit.name + " (they spread over " +
              figure(in_space) + ", the sheet's over " + figure(on_sheet) + " mm): convert them to millimetres.");
   const double sheet_side = std::max(options.sheet_x_mm, options.sheet_y_mm);
-  for (const UnitName& unit : units)
+  for (const UnitName& unit : other_units)
     if (std::abs(std::log(on_sheet / sheet_side / unit.factor)) < 0.35 && on_sheet < 0.2 * sheet_side &&
         in_space < 0.2 * sheet_side)
       refuse(std::string("all coordinates of measured.csv seem to be in ") + unit.name +
              ": convert them to millimetres.");
   int outside = 0;
   double far = 0;
-  std::vector<double> offsets;
+  const double turn = object.setup.sheet_turned ? -1 : 1;
+  std::vector<double> offsets, other_way;
   for (const MeasuredPoint& p : object.points) {
     if (std::abs(p.sheet_mm.x()) > 0.5 * options.sheet_x_mm + 1 ||
         std::abs(p.sheet_mm.y()) > 0.5 * options.sheet_y_mm + 1)
       ++outside;
-    offsets.push_back((p.place_mm.head<2>() - p.sheet_mm).norm());
+    offsets.push_back((p.place_mm.head<2>() - turn * p.sheet_mm).norm());
+    other_way.push_back((p.place_mm.head<2>() + turn * p.sheet_mm).norm());
   }
   if (2 * outside > static_cast<int>(object.points.size()))
     refuse("most of the measured points lie beyond the sheet of " + figure(options.sheet_x_mm) + " x " +
            figure(options.sheet_y_mm) + " mm: sheet_x_mm and sheet_y_mm count from the sheet's centre, in mm.");
-  std::nth_element(offsets.begin(), offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2), offsets.end());
-  far = offsets[offsets.size() / 2];
+  const auto middle_of = [](std::vector<double>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+  };
+  far = middle_of(offsets);
+  if (far > 0.35 * sheet_side && middle_of(other_way) < 0.35 * sheet_side)
+    refuse(object.setup.sheet_turned
+               ? "the points lie as on a sheet that was not turned: take “sheet_turned” out of setup.json."
+               : "the points lie as on a sheet turned by half a turn: add \"sheet_turned\": true to setup.json.");
   if (far > 0.35 * sheet_side)
     refuse(
         "the measured points lie " + figure(far) +
         " mm beside their places on the sheet: bring the scan into the machine's coordinates, origin in the middle of the clamp "
         "opening, x and y as on the sheet.");
+}
+
+void check_mould_of(const FormedObject& object) {
+  if (object.mould == nullptr || object.mould->mesh.V.rows() == 0) return;
+  const double plate = object.setup.base_plate_end_z_mm, top = object.mould->mesh.V.col(2).maxCoeff() - plate;
+  std::vector<double> heights;
+  for (const MeasuredPoint& p : object.points) heights.push_back(p.place_mm.z() - plate);
+  const auto high = heights.begin() + static_cast<std::ptrdiff_t>(0.98 * static_cast<double>(heights.size() - 1));
+  std::nth_element(heights.begin(), high, heights.end());
+  constexpr double least_height_mm = 5;  // below that the sheet's thickness and the clamp's height count as well
+  if (*high < least_height_mm || top <= 0) return;
+  for (const UnitName& unit : other_units)
+    if (std::abs(std::log(top / *high / unit.factor)) < 0.5)
+      throw Error(ErrorCode::invalid_input, "object",
+                  object.name + ": mould.obj seems to be in " + unit.name + " (its top is at " + figure(top) +
+                      ", measured points reach " + figure(*high) + " mm): convert it to millimetres.");
+}
+
+std::string rim_note(const FormedObject& object) {
+  const auto o = read_parameters<ThermoformOptions>(object.setup.parameters);
+  const bool outer = object.setup.measured_surface == MeasuredSurface::outer;
+  const double held = o.clamp_height_mm + object.setup.base_plate_end_z_mm + (outer ? 0.5 * o.sheet_thickness_mm : 0.0);
+  std::vector<double> heights;
+  double sigma = 0;
+  for (const MeasuredPoint& p : object.points)
+    if (std::abs(p.sheet_mm.x()) > 0.5 * o.clamp_opening_x_mm + 1 ||
+        std::abs(p.sheet_mm.y()) > 0.5 * o.clamp_opening_y_mm + 1) {
+      heights.push_back(p.place_mm.z());
+      sigma = std::max(sigma, p.sigma_mm);
+    }
+  constexpr std::size_t fewest_of_rim = 12;
+  if (heights.size() < fewest_of_rim) return {};
+  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
+  std::nth_element(heights.begin(), middle, heights.end());
+  const double off = *middle - held;
+  if (std::abs(off) < std::max(0.3, 3 * sigma / std::sqrt(static_cast<double>(heights.size())))) return {};
+  return "The clamped rim was measured " + figure(std::abs(off)) + " mm " + (off > 0 ? "above" : "below") +
+         " where setup.json has it (clamp_height_mm, sheet_thickness_mm, measured_surface): if the scan was aligned by "
+         "its rim, register it again with the same values; else the whole scan may be off its place.";
 }
 
 ThermoformModel::ThermoformModel(std::vector<FormedObject> objects, ThermoformModelOptions options)
@@ -181,7 +236,12 @@ ThermoformOptions ThermoformModel::simulation_options(int object, const Eigen::V
     const double at = u[static_cast<Eigen::Index>(i)];
     if (p.role == ParameterRole::discrepancy || measurement.contains(p.name)) continue;
     // What is not turned keeps its value to the last bit, which is what stored results are known by.
-    values[p.name] = at == 0 ? p.nominal : p.value(at);
+    const double value = at == 0 ? p.nominal : p.value(at);
+    // A mould that was set beside its mark on purpose, or another such deed, is of this object alone: what is found
+    // comes on top. The material is one.
+    const bool of_this_object = object > 0 && is_deed(p) && values.contains(p.name);
+    values[p.name] =
+        of_this_object ? std::clamp(values[p.name].get<double>() + value - p.nominal, p.low, p.high) : value;
   }
   auto o = read_parameters<ThermoformOptions>(values);
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
@@ -251,6 +311,11 @@ std::shared_ptr<const FormedSheet> ThermoformModel::formed(int object, const Eig
       // A mould pushed out of the opening is no fault of the maker's here, but a place where there is no answer.
       if (error.code() == ErrorCode::invalid_input && u.cwiseAbs().maxCoeff() > 0)
         throw Error(ErrorCode::could_not_solve, error.where(), error.what());
+      if (error.code() == ErrorCode::invalid_input)
+        throw Error(error.code(), error.where(), own.name + ": " + error.what());
+      throw;
+    } catch (...) {
+      context.release_result(key);
       throw;
     }
     const Bytes bytes = packed(result.sheet);
@@ -281,6 +346,17 @@ Eigen::MatrixXd ThermoformModel::predict(int object, const Eigen::VectorXd& u, c
 
 MachineProfile ThermoformModel::profile_at(const Eigen::VectorXd& u) const {
   MachineProfile profile = options_.profile;
+  // The law and the ramp that the numbers were fitted with: with others they mean another sheet.
+  const Json first = with_profile(objects_.front().setup.parameters, options_.profile);
+  for (const std::string& name : names_of_material())
+    if (first.contains(name)) {
+      profile.parameters[name] = first[name];
+      for (const FormedObject& object : objects_)
+        if (const Json own = with_profile(object.setup.parameters, options_.profile);
+            !own.contains(name) || own[name] != first[name])
+          profile.notes.push_back("The objects' set-ups differ in " + name + ": the value of " + objects_.front().name +
+                                  " was taken for all.");
+    }
   Json measurement = write_parameters(profile.measurement);
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     const ModelParameter& p = parameters_[i];

@@ -26,6 +26,12 @@ struct FormedObject {
 /// with the likely reason.
 void check_measured_object(const FormedObject& object);
 
+/// Throws Error{invalid_input, "object"} where the mould is in another unit than the measured points.
+void check_mould_of(const FormedObject& object);
+
+/// A sentence where the clamped rim was not measured where the set-up has it; else empty.
+std::string rim_note(const FormedObject& object);
+
 struct ThermoformModelOptions {
   int triangles = 5000;
   bool fit_mould_place = false;      // as calibration does: the mould's place is a base parameter, no cause

@@ -166,6 +166,27 @@ describe('WasmBackend', () => {
     expect(worker().ended).toBe(true);
   });
 
+  it('fails a job whose solver ends between two inputs, and runs the next one', async () => {
+    const wasm = backend();
+    let second: (bytes: Uint8Array<ArrayBuffer>) => void = () => expect.fail('not asked for');
+    read.mockImplementation((sha256) =>
+      sha256 === hash('b')
+        ? new Promise((resolve) => (second = resolve))
+        : Promise.resolve(new Uint8Array([9])),
+    );
+    const two = job('a');
+    const sheet = { sha256: hash('b'), file_name: 'b.obj' };
+    const running = wasm.run({ ...two, inputs: { ...two.inputs, sheet } });
+    await until(() => read.mock.calls.length === 2);
+    worker().say({ type: 'failed', id: null, error: { code: 'out_of_memory', where: '', message: 'full' } });
+    second(new Uint8Array([9]));
+    await expect(running).rejects.toMatchObject({ code: 'out_of_memory' });
+    const next = wasm.run(job('c'));
+    await until(() => worker().runs().length === 1);
+    worker().finish();
+    expect((await next).report).toEqual({ vertices: 3 });
+  });
+
   it('drops the oldest models from the heap', async () => {
     const wasm = backend();
     for (const digit of '0123456789') {

@@ -34,6 +34,7 @@ interface Instance {
   readonly knownBlobs: Set<string>;
   readonly cancelFlag: Int32Array | null;
   fail(error: JobError): void;
+  ended: JobError | null;
 }
 
 interface Running {
@@ -81,6 +82,8 @@ export class WasmBackend implements Backend {
     for (const input of Object.values(job.inputs)) {
       if (!('sha256' in input) || instance.knownBlobs.has(input.sha256)) continue;
       const bytes = await this.#options.blobs.read(input.sha256);
+      // Ended meanwhile: `ready` has settled long ago, so what ended it is told here.
+      if (this.#instance !== instance) throw instance.ended ?? cancelled();
       // Copied by the message, not transferred: the source may keep its bytes in memory.
       instance.worker.postMessage({ type: 'blob', sha256: input.sha256, bytes });
       instance.knownBlobs.add(input.sha256);
@@ -152,7 +155,7 @@ export class WasmBackend implements Backend {
     });
     ready.catch(() => undefined);
     const cancelFlag = shared === null ? null : new Int32Array(shared);
-    this.#instance = { worker, ready, knownBlobs: new Set(), cancelFlag, fail };
+    this.#instance = { worker, ready, knownBlobs: new Set(), cancelFlag, fail, ended: null };
     worker.postMessage({ type: 'load', url: this.#options.moduleUrl, cancelFlag: shared });
     return this.#instance;
   }
@@ -188,6 +191,7 @@ export class WasmBackend implements Backend {
   #discard(error: JobError): void {
     const instance = this.#instance;
     this.#instance = null;
+    if (instance !== null) instance.ended = error;
     instance?.worker.terminate();
     instance?.fail(error);
     this.#running?.reject(error);

@@ -36,7 +36,10 @@ export class OpfsStorage implements ProjectStorage {
     const root = await navigator.storage.getDirectory();
     const projects = await root.getDirectoryHandle('projects', { create: true });
     const blobs = await root.getDirectoryHandle('blobs', { create: true });
-    await writeFile(root, 'probe', 'x');
+    await writeFile(root, 'probe', 'x').catch((thrown: unknown) => {
+      // On a full disk the projects are still here, and can be deleted to make room.
+      if (!(thrown instanceof DOMException) || thrown.name !== 'QuotaExceededError') throw thrown;
+    });
     return new OpfsStorage(projects, blobs);
   }
 

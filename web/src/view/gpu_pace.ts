@@ -39,6 +39,11 @@ export class GpuPace {
     return false;
   }
 
+  /** The context was lost: what was marked on it is neither done nor told of. */
+  forget(): void {
+    this.sync = null;
+  }
+
   /** Resolves when the work marked last is done. */
   async done(): Promise<void> {
     while (this.busy) await new Promise((resolve) => setTimeout(resolve, POLL_MS));

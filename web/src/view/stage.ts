@@ -503,6 +503,7 @@ export class Stage {
 
   /** The context was lost: everything on the card must be made again. */
   forgetGpu(): void {
+    this.pace.forget();
     this.parts.original.subject.forgetGpu();
     this.parts.relief.subject.forgetGpu();
     this.sky.dispose();

@@ -171,7 +171,7 @@ export class EvidenceSession extends RoomSession<EvidenceDocument> {
       };
     } catch {
       // Its points were not kept; the quick look stands in for them.
-      this.#lookQuickly(object);
+      if (this.chosen.value?.id === object.id) this.#lookQuickly(object);
     }
   }
 
@@ -312,11 +312,18 @@ export class EvidenceSession extends RoomSession<EvidenceDocument> {
   async useProfile(): Promise<void> {
     const file = this.result.value?.outputs['profile.json'];
     if (file === undefined) return;
-    const { projects } = this.services;
-    const profile = JSON.parse(new TextDecoder().decode(await projects.blobs.read(file.blob))) as unknown;
-    const name = isObject(profile) && typeof profile['name'] === 'string' ? profile['name'] : 'Machine';
     const from = this.diagnosis.value?.sentence ?? 'Calibrated material.';
-    projects.do(machineProfile.use({ name, from, file }));
+    await this.busy(
+      'opening',
+      'the machine profile',
+      async (options) => {
+        const bytes = await this.services.projects.blobs.read(file.blob);
+        const profile = JSON.parse(new TextDecoder().decode(bytes)) as unknown;
+        const name = isObject(profile) && typeof profile['name'] === 'string' ? profile['name'] : 'Machine';
+        options.do(machineProfile.use({ name, from, file }));
+      },
+      ({ message }) => (this.problem.value = { kind: 'file', title: 'The profile cannot be read', message }),
+    );
   }
 
   readonly profileUsed = computed(() => {

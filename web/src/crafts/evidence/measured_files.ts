@@ -73,10 +73,13 @@ export async function sortFiles(files: readonly File[]): Promise<Sorted> {
   }
   for (const [folder, members] of groups) {
     const hasPicture = members.some(({ name }) => endsIn(name, pictureEndings));
+    // Beside a whole object pictures are its maker's, not a scan's.
+    const whole = objectFiles.every((file) => members.some(({ name }) => name.toLowerCase() === file));
     const ofScan = ({ name }: File) =>
-      endsIn(name, [...scanEndings, ...pictureEndings]) ||
-      name.toLowerCase() === 'pattern.json' ||
-      (hasPicture && endsIn(name, ['.obj']) && name.toLowerCase() !== 'mould.obj');
+      !whole &&
+      (endsIn(name, [...scanEndings, ...pictureEndings]) ||
+        name.toLowerCase() === 'pattern.json' ||
+        (hasPicture && endsIn(name, ['.obj']) && name.toLowerCase() !== 'mould.obj'));
     scan.push(...members.filter(ofScan));
     const found: Partial<Record<ObjectFile, Bytes>> = {};
     const names: string[] = [];

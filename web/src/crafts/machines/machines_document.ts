@@ -62,6 +62,8 @@ export function carriedOver(from: Operation, before: JsonObject, to: Operation, 
   return withoutDefaults(to, Object.fromEntries(carried));
 }
 
+const sizeOfWork: readonly string[] = ['width_mm', 'thickness_mm'];
+
 class MachinesCommands extends RoomCommands<MachinesDocument> {
   /** Parameters follow the operation: those of the one before are kept aside. `own`: what the new work says of itself. */
   setWork(catalog: Catalog, work: Work, label: string, own: JsonObject = {}) {
@@ -69,7 +71,12 @@ class MachinesCommands extends RoomCommands<MachinesDocument> {
       const [from, to] = [operationFor(drawing), operationFor(work)];
       const [before, after] = [findOperation(catalog, from), findOperation(catalog, to)];
       if (before === undefined || after === undefined) return { drawing: work };
-      const begun = from === to ? parameters : carriedOver(before, parameters, after, set_aside[to] ?? {});
+      const kept = from === to ? parameters : carriedOver(before, parameters, after, set_aside[to] ?? {});
+      // Its size is the work's own: what another one was sent with would scale this one.
+      const begun =
+        work.kind === 'model'
+          ? Object.fromEntries(Object.entries(kept).filter(([name]) => !sizeOfWork.includes(name)))
+          : kept;
       const changed: Partial<MachinesDocument> = {
         drawing: work,
         parameters: withoutDefaults(after, { ...begun, ...own }),

@@ -37,3 +37,26 @@ it('a drawing that is still being kept when another project is opened is not wri
   expect(services.projects.document.value.id).not.toBe(first);
   expect(services.projects.isBlank.value).toBe(true);
 });
+
+it('what a relief was sent to the mill with does not scale the file that is opened next', () => {
+  const catalog = {
+    ...testCatalog(laserJob, millJob),
+    operations: testCatalog(laserJob, millJob).operations.map((operation) => ({
+      ...operation,
+      parameters: { properties: { width_mm: { title: 'Width' }, thickness_mm: { title: 'Depth' } } },
+    })),
+  };
+  const services = testServices(catalog as unknown as Parameters<typeof testServices>[0]);
+  const file = { blob: 'a', bytes: 3, media_type: 'image/png' };
+  const open = (file_name: string, kind: 'model' | 'drawing', own = {}) =>
+    services.projects.do(machines.setWork(catalog as never, { file_name, kind, file }, 'Open', own));
+  const parameters = () => machines.of(services.projects.document.value).parameters;
+  open('relief.png', 'model', { width_mm: 120, thickness_mm: 8 });
+  expect(parameters()).toEqual({ width_mm: 120, thickness_mm: 8 });
+  open('cat.stl', 'model');
+  expect(parameters()).toEqual({});
+  open('relief.png', 'model', { width_mm: 120, thickness_mm: 8 });
+  open('star.svg', 'drawing');
+  open('cat.stl', 'model');
+  expect(parameters()).toEqual({});
+});

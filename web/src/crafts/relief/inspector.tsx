@@ -178,8 +178,9 @@ function ExportButton({ session, result, onSendToMill }: ExportProps) {
   const main = files.find((output) => output.name === 'relief.stl') ?? files[0];
   const busy = session.activity.value.kind === 'idle' ? undefined : 'Busy with another file';
   const save = async (output: OutputDeclaration) => {
+    const fileName = fileNameOf(session, output.name); // as it is now: making the file may take a while
     const bytes = await outputOf(session, output.name, output.label);
-    if (bytes) download(bytes, fileNameOf(session, output.name), output.media_type);
+    if (bytes) download(bytes, fileName, output.media_type);
   };
   if (main === undefined) return null;
   const size = result.outputs[main.name]?.bytes;
@@ -212,6 +213,7 @@ function ExportButton({ session, result, onSendToMill }: ExportProps) {
               return {
                 label: output.name === 'relief.ply' ? `${output.label}, for measuring` : output.label,
                 hint: kept ? formatBytes(kept.bytes) : undefined,
+                disabledReason: busy,
                 onSelect: () => void save(output),
               };
             }),
@@ -243,8 +245,10 @@ async function printSolid(session: ReliefSession): Promise<void> {
 
 export const exportMain = async (session: ReliefSession): Promise<void> => {
   const output = session.operation.value?.outputs.find(({ name }) => name === 'relief.stl');
+  if (session.activity.value.kind !== 'idle') return;
+  const fileName = fileNameOf(session, 'relief.stl');
   const bytes = output ? await outputOf(session, output.name, output.label) : null;
-  if (bytes && output) download(bytes, fileNameOf(session, output.name), output.media_type);
+  if (bytes && output) download(bytes, fileName, output.media_type);
 };
 
 /** "lion-relief-5mm.stl". */

@@ -15,8 +15,8 @@ export type SendToMill = (
 /** Of the result in force: white is its thickness, and pixels stand where the relief's own are. */
 export async function sendRelief(session: ReliefSession, send: SendToMill): Promise<void> {
   const thickness_mm = session.value('thickness_mm');
+  const size = session.result.value?.report['size_mm']; // another may be chosen while the file is made
   const heightMap = await outputOf(session, 'heightmap.png', 'height map');
-  const size = session.result.value?.report['size_mm'];
   const width = Array.isArray(size) && typeof size[0] === 'number' ? { width_mm: size[0] } : {};
   if (heightMap) await send(`${safeFileName(session.title)}.png`, heightMap, { thickness_mm, ...width });
 }

@@ -97,12 +97,13 @@ export function watchExtras(session: ThermoformSession) {
     if (wanted === 'texture' && !isOf(printed, of, print) && session.operationNamed(printing)) {
       if (printed) extras.value = { ...extras.peek(), printed: null };
       if (print === null) return makeLater(printing, 'formed.glb', 'print', wait_ms);
-      void readPrint({ of, file: print }).catch(() => undefined);
+      // What is lost is made again.
+      void readPrint({ of, file: print }).catch(() => makeLater(printing, 'formed.glb', 'print', 0));
     }
     if (wanted === 'undercut' && !isOf(draft, of, mould) && session.operationNamed(moulding)) {
       if (draft) extras.value = { ...extras.peek(), draft: null };
       if (mould === null) return makeLater(moulding, 'draft.ply', 'draft map', wait_ms);
-      void readDraft({ of, file: mould }).catch(() => undefined);
+      void readDraft({ of, file: mould }).catch(() => makeLater(moulding, 'draft.ply', 'draft map', 0));
     }
     return undefined;
   });

@@ -173,8 +173,8 @@ OperationResult run_mould(const OperationCall& call) {
   watch.lap();
   std::vector<Vent> vents;
   if (options.vents > 0)
-    vents = find_vents(placed->mesh, *formed.sheet, options.vents, options.vent_diameter_mm, options.vent_spacing_mm,
-                       context);
+    vents = find_vents(placed->mesh, about_the_model(*formed.sheet, formed.placement, formed.real_placement),
+                       options.vents, options.vent_diameter_mm, options.vent_spacing_mm, context);
   Mould mould;
   {
     const auto span = context.span(0.6, 0.8, "Making the mould");

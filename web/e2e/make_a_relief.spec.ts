@@ -73,3 +73,33 @@ test('other formats from the menu', async ({ page }) => {
     expect(bytes.toString('latin1', 0, magic.length)).toBe(magic);
   }
 });
+
+test('a viewpoint set from the view stays as far away', async ({ page }) => {
+  test.skip(backend === 'mock', 'the mock knows one viewpoint');
+  await openPage(page);
+  await page.locator('input[type=file]').setInputFiles(fileOf('ball.obj', ballObj()));
+  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  await page.getByRole('button', { name: /^Advanced/ }).click();
+  const angle = page.getByRole('textbox', { name: 'Field of view' });
+  await expect(angle).toHaveValue(/^20/);
+  const set = page.getByRole('button', { name: 'Set from this view' });
+  for (let turn = 0; turn < 3; ++turn) {
+    await page.locator('.viewport canvas').first().focus();
+    await page.keyboard.press('Shift+ArrowRight');
+    await page.keyboard.press('+'); // coming nearer to look is not coming nearer with the eye
+    await set.click();
+    await expect(strip(page, 'Preview up to date')).toBeVisible();
+    await expect(set).toBeDisabled();
+  }
+  const now = Number((await angle.inputValue()).replace(',', '.'));
+  expect(Math.abs(now - 20)).toBeLessThan(2.5); // the ball is a little wider from some sides
+});
+
+test('following the view ends with the model it was followed for', async ({ page }) => {
+  await openSample(page, 'Bust');
+  await page.getByText('Follow the view', { exact: true }).click();
+  await expect(page.getByRole('switch', { name: 'Follow the view' })).toBeChecked();
+  await page.locator('input[type=file]').setInputFiles(fileOf('ball.obj', ballObj()));
+  await expect(page.getByText('ball.obj')).toBeVisible();
+  await expect(page.getByRole('switch', { name: 'Follow the view' })).not.toBeChecked();
+});

@@ -46,6 +46,14 @@ std::vector<char> latest_patches(const Adjacency& adjacency, const Eigen::Vector
 
 }  // namespace
 
+FormedSheet about_the_model(FormedSheet sheet, const Placement& nominal, const Placement& real) {
+  if (real.linear == nominal.linear && real.translation == nominal.translation) return sheet;
+  const Eigen::Matrix3d back = nominal.linear * real.linear.inverse();
+  const Vec3 shift = nominal.translation - back * real.translation;
+  sheet.mesh.V = ((sheet.mesh.V * back.transpose()).rowwise() + shift.transpose()).eval();
+  return sheet;
+}
+
 std::vector<Vent> find_vents(const TriangleMesh& solid, const FormedSheet& sheet, int count, double diameter_mm,
                              double spacing_mm, Context& context) {
   std::vector<Vent> vents;

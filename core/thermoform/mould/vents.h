@@ -6,6 +6,7 @@
 
 #include "base/context.h"
 #include "thermoform/formed_sheet.h"
+#include "thermoform/placement.h"
 
 namespace formwright {
 
@@ -14,6 +15,10 @@ struct Vent {
   double contact_s = -1;            // when the sheet arrived there; -1: it never did
   double gap_mm = 0;                // between sheet and model, straight down, less half the sheet's thickness
 };
+
+/// A sheet that was formed over a model standing at `real`, moved to where the model should stand: the machine shifts,
+/// turns and scales the mould (sheet_effects.h), and a hole belongs into the mould.
+FormedSheet about_the_model(FormedSheet sheet, const Placement& nominal, const Placement& real);
 
 /// At most `count` places of `solid` (closed, on z = 0) below local maxima of the time of contact, the latest first and
 /// those that were never reached, by their gap, before them; equally late ones by how deep they lie among their

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "geometry/test_meshes.h"
 #include "thermoform/mould/solid_shapes.h"
+#include "thermoform/sheet_effects.h"
 
 namespace formwright {
 namespace {
@@ -72,6 +73,34 @@ TEST(Vents, HollowsBeforePlains) {
   const auto vents = find_vents(block, sheet, 1, 1, 5, context);
   ASSERT_EQ(vents.size(), 1u);
   EXPECT_NEAR((vents[0].position_mm - Vec3(6, -4, 10)).norm(), 0, 1e-9);
+}
+
+TEST(Vents, OfAMouldThatTheMachineDisplacesLieInTheMouldItself) {
+  Context context;
+  const FormedSheet sheet =
+      flat_sheet([](double x, double y) { return 1 + 2 * hill(x, y, 10, 5) + hill(x, y, -12, -7); });
+  Placement nominal;
+  nominal.linear = 0.5 * Eigen::AngleAxisd(0.3, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  nominal.translation = {4, -2, 7};
+  SheetEffects machine;
+  machine.mould_shift_x_mm = 6;
+  machine.mould_shift_y_mm = -3;
+  machine.mould_rotation_deg = 5;
+  machine.mould_scale = 0.04;
+  const Placement real = displaced(nominal, machine);
+  FormedSheet formed = sheet;  // all of it moved as the mould is, as in an opening without end
+  for (Eigen::Index i = 0; i < formed.mesh.V.rows(); ++i) {
+    const Vec3 p = sheet.mesh.V.row(i), in_file = nominal.linear.inverse() * (p - nominal.translation);
+    formed.mesh.V.row(i) = real(in_file);
+  }
+  const auto vents = find_vents(block, about_the_model(formed, nominal, real), 10, 1, 5, context);
+  ASSERT_EQ(vents.size(), 2u);
+  EXPECT_NEAR((vents[0].position_mm - Vec3(10, 5, 10)).norm(), 0, 1e-9);
+  EXPECT_NEAR((vents[1].position_mm - Vec3(-12, -7, 10)).norm(), 0, 1e-9);
+  // The places on the plate itself are others.
+  const auto beside = find_vents(block, formed, 10, 1, 5, context);
+  ASSERT_FALSE(beside.empty());
+  EXPECT_GT((beside[0].position_mm - vents[0].position_mm).head<2>().norm(), 4);
 }
 
 TEST(Vents, NotThroughASide) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { expect, it } from 'vitest';
+import { JobError } from '../../jobs/contract';
 import { solveInFull } from './full_solve';
 import { resultOf, settled, testCraft, TestRoom } from './test_room';
 
@@ -32,4 +33,20 @@ it('a result whose bytes are there is shown without a preview', async () => {
   await settled();
   expect(room.shown.value?.kind).toBe('full');
   expect(room.result.value?.id).toBe('of mesh');
+});
+
+it('a model that is refused does not leave the one before on the page; a value that is refused does', async () => {
+  const room = new TestRoom();
+  room.active.value = true;
+  room.take('mesh');
+  await settled();
+  expect(room.shown.value?.from).toBe('mesh');
+  room.refuses = new JobError({ code: 'invalid_input', where: '', message: 'No.' });
+  room.projects.do(testCraft.command({ label: 'Set' }, () => ({ parameters: { size_mm: 3 } })));
+  await settled();
+  expect(room.shown.value?.from).toBe('mesh');
+  room.take('other');
+  await settled();
+  expect(room.problem.value?.message).toBe('No.');
+  expect(room.shown.value).toBeNull();
 });

@@ -123,7 +123,11 @@ export abstract class PreviewingSession<
       if (this.result.value === null) this.show(shown);
     } catch (thrown) {
       const error = asJobError(thrown);
-      if (error.code !== 'cancelled' && !abort.aborted) this.report(error, this.previewFailedTitle);
+      if (error.code === 'cancelled' || abort.aborted) return;
+      // What was made of another model says nothing of the one that is refused.
+      const of = [request.subject.key, this.subject.value?.key];
+      if (!of.includes(this.shown.value?.from)) this.shown.value = null;
+      this.report(error, this.previewFailedTitle);
     } finally {
       this.previewing.value = false;
     }

@@ -88,6 +88,8 @@ export class TestRoom extends PreviewingSession<TestDocument, ShownWork> {
     const request = { mesh: this.subject.value?.key ?? '', parameters: this.asked.value };
     return this.document.value.results.find((made) => sameRequest(made, request)) ?? null;
   });
+  /** Why no preview is made, where none is. */
+  refuses: JobError | null = null;
   readonly projects: ProjectStore;
   readonly browser: HeldBackend;
   readonly native: HeldBackend;
@@ -109,6 +111,7 @@ export class TestRoom extends PreviewingSession<TestDocument, ShownWork> {
   protected override loadOriginal = () => Promise.resolve();
 
   protected async makePreview({ subject, parameters }: PreviewRequest): Promise<ShownWork> {
+    if (this.refuses) throw this.refuses;
     return { kind: 'preview', report: {}, parameters, from: subject.key };
   }
 

@@ -319,8 +319,10 @@ export class EvidenceSession extends RoomSession<EvidenceDocument> {
       async (options) => {
         const bytes = await this.services.projects.blobs.read(file.blob);
         const profile = JSON.parse(new TextDecoder().decode(bytes)) as unknown;
-        const name = isObject(profile) && typeof profile['name'] === 'string' ? profile['name'] : 'Machine';
-        options.do(machineProfile.use({ name, from, file }));
+        const said = isObject(profile) ? profile : {};
+        const name = typeof said['name'] === 'string' ? said['name'] : 'Machine';
+        const parameters = isObject(said['parameters']) ? said['parameters'] : {};
+        options.do(machineProfile.use({ name, from, file, parameters }));
       },
       ({ message }) => (this.problem.value = { kind: 'file', title: 'The profile cannot be read', message }),
     );

@@ -22,7 +22,6 @@ import { browserMemory_mb, timeLine } from '../common/estimate';
 import { ModelRow } from '../common/model_row';
 import { printInPlastic } from '../common/print_request';
 import { outputOf } from '../common/full_solve';
-import { parametersOf } from './meshes';
 import type { ReliefSession } from './relief_session';
 import type { SendToMill } from './send_relief';
 import { sendRelief } from './send_relief';
@@ -76,7 +75,7 @@ function ViewpointTools({ session, viewport }: { session: ReliefSession; viewpor
           title="Make the relief for the picture you see now"
           onClick={() => {
             if (viewport === null) return;
-            session.setViewpoint(parametersOf(viewport.getCameraAsViewpoint()));
+            session.setViewpoint(viewport.getCameraAsViewpoint());
             viewport.setViewpoint(viewport.getCameraAsViewpoint());
             atViewpoint.value = true;
           }}
@@ -98,7 +97,7 @@ function ViewpointTools({ session, viewport }: { session: ReliefSession; viewpor
         value={followCamera.value}
         onChange={(value) => {
           followCamera.value = value;
-          if (value && viewport) session.setViewpoint(parametersOf(viewport.getCameraAsViewpoint()));
+          if (value && viewport) session.setViewpoint(viewport.getCameraAsViewpoint());
           else session.services.projects.commit();
         }}
       />

@@ -3,6 +3,7 @@
 import type { PlyMesh } from '../../jobs/ply';
 import type { Report } from '../../jobs/contract';
 import type { ColourMapping, MeshData, Plate, Vec3, Viewpoint } from '../../view';
+import { along, viewerAxes } from '../../view/vector';
 import { figure, vectorOf } from '../common/report';
 import type { ShadedMesh } from '../common/shaded_mesh';
 import { shadingOf } from '../common/shaded_mesh';
@@ -62,18 +63,68 @@ export function viewpointOf(report: Report, fieldOfViewDeg: number): Viewpoint |
   };
 }
 
-/** A camera as parameters of the relief; a distance typed earlier gives way to the field of view. */
-export function parametersOf(camera: Viewpoint): Record<string, string | number | number[] | null> {
+/** A camera as parameters of the relief; a distance typed earlier gives way to the field of view. `positions` times
+ *  `scale` is the model as it is drawn, mm. */
+export function parametersOf(
+  camera: Viewpoint,
+  positions: ArrayLike<number>,
+  scale: number,
+): Record<string, string | number | number[] | null> {
   const rounded = (v: Vec3) => v.map((x) => Number(x.toFixed(5)));
   return {
     direction: rounded(camera.direction),
     up: rounded(camera.up),
     projection: camera.projection,
     ...(camera.projection === 'perspective'
-      ? {
-          field_of_view_deg: Number(Math.min(120, Math.max(0.1, camera.fieldOfViewDeg)).toFixed(2)),
-          distance_mm: null,
-        }
+      ? { field_of_view_deg: Number(fieldOfViewDeg(camera, positions, scale).toFixed(2)), distance_mm: null }
       : {}),
   };
 }
+
+/** The angle that the parameter means: under which the model's width is seen, on the plane through the middle of its depth, from an eye
+ *  before the middle of its picture. Zoom and the window's shape do not matter. */
+function fieldOfViewDeg(camera: Viewpoint, positions: ArrayLike<number>, scale: number): number {
+  const { right, up, forward } = viewerAxes(camera.direction, camera.up);
+  const [ex, ey, ez] = along(camera.targetMm, forward, -camera.distanceMm).map((mm) => mm / scale) as [
+    number,
+    number,
+    number,
+  ];
+  const local = (i: number, axis: Vec3) =>
+    (at(positions, i) - ex) * axis[0] +
+    (at(positions, i + 1) - ey) * axis[1] +
+    (at(positions, i + 2) - ez) * axis[2];
+  let [front, back] = [Infinity, -Infinity];
+  for (let i = 0; i + 2 < positions.length; i += 3) {
+    const depth = local(i, forward);
+    front = Math.min(front, depth);
+    back = Math.max(back, depth);
+  }
+  const distance = 0.5 * (front + back);
+  let [x, y, width] = [0, 0, 0];
+  for (let pass = 0; pass < passes; ++pass) {
+    let [left, rightmost, low, high] = [Infinity, -Infinity, Infinity, -Infinity];
+    for (let i = 0; i + 2 < positions.length; i += 3) {
+      const towards = distance / local(i, forward);
+      const a = (local(i, right) - x) * towards;
+      const b = (local(i, up) - y) * towards;
+      left = Math.min(left, a);
+      rightmost = Math.max(rightmost, a);
+      low = Math.min(low, b);
+      high = Math.max(high, b);
+    }
+    width = rightmost - left;
+    const [dx, dy] = [0.5 * (left + rightmost), 0.5 * (low + high)];
+    x += dx;
+    y += dy;
+    if (Math.abs(dx) + Math.abs(dy) < 1e-6 * width) break;
+  }
+  // An eye within the model has no such angle: the operation says so of the widest one.
+  if (!(front > 0) || !Number.isFinite(width)) return widest_deg;
+  const angle = (2 * Math.atan((0.5 * width) / distance) * 180) / Math.PI;
+  return Math.min(widest_deg, Math.max(0.1, angle));
+}
+
+const passes = 12;
+const widest_deg = 120;
+const at = (values: ArrayLike<number>, i: number): number => values[i] ?? 0;

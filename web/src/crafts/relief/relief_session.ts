@@ -14,6 +14,8 @@ import { readMesh } from '../common/read_mesh';
 import { figure } from '../common/report';
 import type { Services } from '../common/services';
 import type { ShadedMesh } from '../common/shaded_mesh';
+import type { Viewpoint } from '../../view';
+import { parametersOf } from './meshes';
 import { currentResult, relief } from './relief_document';
 import { solverSeconds } from './report';
 
@@ -59,7 +61,25 @@ export class ReliefSession extends PreviewingSession<CraftDocument, Shown> {
     };
   }
 
-  setViewpoint(values: JsonObject, coalesce?: string): void {
+  /** What is shown was made of the model that is open. */
+  readonly fits = computed(() => {
+    const { model } = this.document.value;
+    const from = this.shown.value?.from;
+    return from !== undefined && (from === model?.mesh.blob || from === model?.preview.blob);
+  });
+
+  /** Millimetres a unit of the model, as it is drawn beside its relief. */
+  readonly drawnScale = computed(() => {
+    const positions = this.original.value?.mesh.positions;
+    const told = this.fits.value ? figure(this.shown.value?.report ?? {}, 'scale_mm_per_unit') : null;
+    return told ?? (positions ? provisionalScale(positions, Number(this.value('width_mm') ?? 100)) : 1);
+  });
+
+  /** The relief is to be made for what this camera sees; `coalesce` while it moves. */
+  setViewpoint(camera: Viewpoint, coalesce?: string): void {
+    const positions = this.original.peek()?.mesh.positions;
+    if (positions === undefined) return;
+    const values = parametersOf(camera, positions, this.drawnScale.peek());
     this.setParameters(values, 'Set the viewpoint', coalesce);
   }
 
@@ -100,4 +120,14 @@ export class ReliefSession extends PreviewingSession<CraftDocument, Shown> {
       memory_mb: preview ? estimateMemory_mb(this.#previewMemory_mb.value, preview.vertices, vertices) : null,
     };
   });
+}
+
+/** Until the first relief says the scale: the model's x extent as the width. */
+function provisionalScale(positions: Float32Array, width_mm: number): number {
+  let [low, high] = [Infinity, -Infinity];
+  for (let i = 0; i < positions.length; i += 3) {
+    low = Math.min(low, positions[i] ?? 0);
+    high = Math.max(high, positions[i] ?? 0);
+  }
+  return high > low ? width_mm / (high - low) : 1;
 }

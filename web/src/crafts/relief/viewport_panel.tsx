@@ -10,7 +10,7 @@ import { Legend } from '../common/legend';
 import { narrow } from '../common/narrow';
 import { figure } from '../common/report';
 import { originalData, scaled } from '../common/shaded_mesh';
-import { errorMapping, errorOf, parametersOf, plateOf, reliefData, viewpointOf } from './meshes';
+import { errorMapping, errorOf, plateOf, reliefData, viewpointOf } from './meshes';
 import type { ReliefSession, Shown } from './relief_session';
 
 /** The viewport's own state outlives a visit to another page. */
@@ -18,6 +18,15 @@ export const mode = signal<ViewMode>('swipe');
 export const light = signal<LightDirection>({ azimuthDeg: 135, elevationDeg: 35, follows: 'object' });
 export const atViewpoint = signal(true);
 export const followCamera = signal(false);
+let followed = '';
+
+/** The camera is followed for one model of one project: opening another, it only comes to see it. */
+function followOnly(session: ReliefSession): void {
+  const { id } = session.services.projects.document.value;
+  const which = `${id} ${session.document.value.model?.mesh.blob}`;
+  if (which !== followed) followCamera.value = false;
+  followed = which;
+}
 
 const modes: readonly { value: ViewMode; label: string }[] = [
   { value: 'swipe', label: 'Swipe' },
@@ -52,7 +61,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
       label: 'Model and relief',
       onViewpointChange: (camera, at) => {
         atViewpoint.value = at;
-        if (followCamera.value && !at) session.setViewpoint(parametersOf(camera), 'viewpoint');
+        if (followCamera.value && !at) session.setViewpoint(camera, 'viewpoint');
       },
       onStatus: ({ state }) => (drawing.value = state === 'ready'),
     });
@@ -66,6 +75,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
     side.current?.append(inset.element);
     viewport.setColourMapping(errorMapping);
     const stop = [
+      effect(() => followOnly(session)),
       effect(() => viewport.setMode(mode.value)),
       keepDrawn(viewport, session, (thickness) => inset.update(thickness)),
       effect(() => viewport.setResting(session.previewing.value || session.activity.value.kind !== 'idle')),
@@ -157,17 +167,12 @@ function keepDrawn(
       drawnOriginal = drawnRelief = drawnModel = null;
       return;
     }
-    const current = session.document.peek().model;
-    const fits =
-      shown !== null && (shown.from === current?.mesh.blob || shown.from === current?.preview.blob);
-    const width = Number(session.value('width_mm') ?? 100);
-    const scale =
-      (fits ? figure(shown.report, 'scale_mm_per_unit') : null) ??
-      provisionalScale(original.mesh.positions, width);
+    const fits = session.fits.value;
+    const scale = session.drawnScale.value;
     if (drawnOriginal?.from !== original.from) viewport.setOriginal(originalData(original.mesh, scale));
     else if (drawnOriginal.scale !== scale) viewport.rescaleOriginal(scaled(original.mesh.positions, scale));
     drawnOriginal = { from: original.from, scale };
-    if (!fits) {
+    if (shown === null || !fits) {
       if (drawnRelief) viewport.setRelief(null, null);
       drawnRelief = null;
       if (drawnModel !== original.from) viewport.fit(false);
@@ -197,14 +202,4 @@ function keepDrawn(
 function inForceOf(session: ReliefSession, shown: Shown, name: string) {
   const schema = session.operation.peek()?.parameters.properties[name];
   return shown.parameters[name] ?? schema?.default ?? null;
-}
-
-/** Until the first relief says the scale: the model's x extent as the width. */
-function provisionalScale(positions: Float32Array, width_mm: number): number {
-  let [low, high] = [Infinity, -Infinity];
-  for (let i = 0; i < positions.length; i += 3) {
-    low = Math.min(low, positions[i] ?? 0);
-    high = Math.max(high, positions[i] ?? 0);
-  }
-  return high > low ? width_mm / (high - low) : 1;
 }

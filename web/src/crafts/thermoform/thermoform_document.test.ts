@@ -4,8 +4,8 @@ import type { Catalog, Operation, ParameterSchema } from '../../jobs/contract';
 import type { ProjectDocument } from '../../project/document';
 import { newDocument } from '../../project/document';
 import type { CraftModel, CraftResult } from '../common/craft_document';
-import { CraftCommands, emptyCraft, known, subjectOf } from '../common/craft_document';
-import { machineProfile, profileInputs } from '../common/machine_profile';
+import { CraftCommands, emptyCraft, inForce, known, subjectOf } from '../common/craft_document';
+import { machineProfile, profileInputs, withProfile } from '../common/machine_profile';
 import type { Product } from '../common/products';
 import { addProduct, productOf } from '../common/products';
 import { formedSheet, offered, printing, simulate, thermoform } from './thermoform_document';
@@ -80,6 +80,21 @@ describe('the thermoform in a project', () => {
     const used = machineProfile.use(profile).apply(document);
     expect(machineProfile.of(used).profile).toEqual(profile);
     expect(machineProfile.of(machineProfile.remove().apply(used)).profile).toBeNull();
+  });
+
+  it('asks for a default that the machine profile has another value for, and not for the profile’s own', () => {
+    const takes = { ...all, inputs: [{ name: 'profile', label: 'Machine profile' }] };
+    const profile = { name: 'Mine', from: '', file: blob('e'), parameters: { vacuum_kpa: 71, slip: 2 } };
+    const ours = withProfile(takes, profile);
+    expect(inForce(ours, {}, 'vacuum_kpa')).toBe(71);
+    expect(inForce(ours, {}, 'size_mm')).toBe(100);
+    expect(Object.keys(ours.parameters.properties)).toEqual(Object.keys(all.parameters.properties));
+    const asked = (vacuum_kpa: number) =>
+      thermoform.of(thermoform.setParameters(ours, { vacuum_kpa }, 'Set').apply(opened())).parameters;
+    expect(asked(80)).toEqual({ vacuum_kpa: 80 });
+    expect(asked(71)).toEqual({});
+    expect(withProfile(all, profile)).toBe(all);
+    expect(withProfile(takes, null)).toBe(takes);
   });
 
   it('goes back to an earlier sheet and leaves the print as it is set', () => {

@@ -14,7 +14,7 @@ import { expectedTimes } from '../common/estimate';
 import { bytesOf } from '../common/import_model';
 import type { PreviewRequest, ShownWork } from '../common/previewing_session';
 import { PreviewingSession } from '../common/previewing_session';
-import { machineProfile, profileInputs } from '../common/machine_profile';
+import { machineProfile, profileInputs, withProfile } from '../common/machine_profile';
 import { productOf } from '../common/products';
 import { figure } from '../common/report';
 import type { Services } from '../common/services';
@@ -40,11 +40,12 @@ export class ThermoformSession extends PreviewingSession<ThermoformDocument, For
   readonly failedTitle = 'Could not form the sheet';
   protected readonly previewFailedTitle = 'Could not preview the forming';
   readonly document = computed(() => thermoform.of(this.services.projects.document.value));
+  readonly profile = computed(() => machineProfile.of(this.services.projects.document.value).profile);
   readonly operation = computed<Operation | null>(() => {
     const catalog = this.services.catalog.value;
-    return catalog && offered(catalog);
+    const operation = catalog && offered(catalog);
+    return operation && withProfile(operation, this.profile.value);
   });
-  readonly profile = computed(() => machineProfile.of(this.services.projects.document.value).profile);
   override readonly furtherInputs = computed(() => profileInputs(this.profile.value));
   readonly asked = computed(() => known(this.operationNamed(simulate), this.document.value.parameters));
   readonly result = computed(() => formedSheet(this.document.value, this.subject.value, this.asked.value));
@@ -80,7 +81,8 @@ export class ThermoformSession extends PreviewingSession<ThermoformDocument, For
 
   operationNamed(name: string): Operation | undefined {
     const catalog = this.services.catalog.value;
-    return catalog ? findOperation(catalog, name) : undefined;
+    const operation = catalog ? findOperation(catalog, name) : undefined;
+    return operation && withProfile(operation, this.profile.value);
   }
 
   /** Size and place belonged to the old model; sheet and machine are still the same. */

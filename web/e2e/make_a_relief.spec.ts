@@ -84,7 +84,7 @@ test('a viewpoint set from the view stays as far away', async ({ page }) => {
   await expect(angle).toHaveValue(/^20/);
   const set = page.getByRole('button', { name: 'Set from this view' });
   for (let turn = 0; turn < 3; ++turn) {
-    await page.locator('.viewport canvas').first().focus();
+    await page.getByLabel('Model and relief').focus();
     await page.keyboard.press('Shift+ArrowRight');
     await page.keyboard.press('+'); // coming nearer to look is not coming nearer with the eye
     await set.click();

@@ -310,7 +310,7 @@ Json GrblDriver::state(double now_s) const {
   const MachinePhase shown = stopping_ != Stopping::no                         ? MachinePhase::stopping
                              : pause_asked_ && phase_ == MachinePhase::running ? MachinePhase::pausing
                                                                                : phase_;
-  Json state = common_state("grbl", connection_, shown, position_known_, now_s);
+  Json state = common_state("grbl", connection_, shown, {position_known_, position_known_, position_known_}, now_s);
   state["firmware"] = firmware_;
   state["machine_mm"] = place(machine_mm_);
   state["work_mm"] = place(work_mm_);

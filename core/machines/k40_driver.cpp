@@ -343,7 +343,7 @@ void K40Driver::load(const std::string& name, ByteView job) {
 }
 
 Json K40Driver::state(double now_s) const {
-  Json state = common_state("k40", connection_, phase(), position_known_, now_s);
+  Json state = common_state("k40", connection_, phase(), {position_known_, position_known_, false}, now_s);
   if (position_known_)
     state["machine_mm"] = state["work_mm"] = {position_mm_[0], options_.bed_y_mm - position_mm_[1], 0};
   if (status_ == status_power)

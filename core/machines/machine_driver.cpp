@@ -63,12 +63,13 @@ bool MachineDriver::end_job(const char* how, double now_s) {
 }
 
 Json MachineDriver::common_state(const char* controller, MachineConnection connection, MachinePhase phase,
-                                 bool position_known, double now_s) const {
+                                 const std::array<bool, 3>& axes_known, double now_s) const {
   return {{"controller", controller},
           {"connection", to_string(connection)},
           {"firmware", ""},
           {"phase", to_string(phase)},
-          {"position_known", position_known},
+          {"position_known", axes_known[0] && axes_known[1]},
+          {"axes_known", {{"x", axes_known[0]}, {"y", axes_known[1]}, {"z", axes_known[2]}}},
           {"machine_mm", nullptr},
           {"work_mm", nullptr},
           {"speed_mm_per_s", 0},
@@ -76,7 +77,9 @@ Json MachineDriver::common_state(const char* controller, MachineConnection conne
           {"job", job_ ? machines_detail::job_json(*job_, now_s) : Json(nullptr)},
           {"alarm", nullptr},
           {"error", nullptr},
-          {"laser_on", nullptr}};
+          {"laser_on", nullptr},
+          {"warnings", Json::array()},
+          {"when_connection_ends", ""}};
 }
 
 std::unique_ptr<MachineDriver> make_machine_driver(const Json& options) {

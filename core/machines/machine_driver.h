@@ -81,9 +81,10 @@ class MachineDriver {
   bool job_active() const { return job_ && job_->ended.empty(); }
   /// False where no job was running.
   bool end_job(const char* how, double now_s);
-  /// What every controller tells, of an unknown place; drivers put their own into it.
-  Json common_state(const char* controller, MachineConnection connection, MachinePhase phase, bool position_known,
-                    double now_s) const;
+  /// The state that every controller has; drivers fill in their own. `axes_known`: of x, y and z, is the head's place
+  /// in work coordinates known? The whole position counts as known where x and y are.
+  Json common_state(const char* controller, MachineConnection connection, MachinePhase phase,
+                    const std::array<bool, 3>& axes_known, double now_s) const;
 
   std::optional<MachineJob> job_;
   void say(const char* event, std::string_view text, double now_s);

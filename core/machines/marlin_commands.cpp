@@ -180,7 +180,7 @@ void MarlinDriver::start(const Json& command, double now_s) {
 }
 
 Json MarlinDriver::state(double now_s) const {
-  Json state = common_state("marlin", connection_, phase(), position_known_, now_s);
+  Json state = common_state("marlin", connection_, phase(), {position_known_, position_known_, position_known_}, now_s);
   state["firmware"] = firmware_;
   if (position_mm_) state["machine_mm"] = state["work_mm"] = *position_mm_;
   state["laser_on"] = focus_until_s_.has_value();

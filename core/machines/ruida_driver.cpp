@@ -301,7 +301,7 @@ void RuidaDriver::load(const std::string& name, ByteView job) {
 }
 
 Json RuidaDriver::state(double now_s) const {
-  Json state = common_state("ruida", connection_, phase(), homed_, now_s);
+  Json state = common_state("ruida", connection_, phase(), {homed_, homed_, false}, now_s);
   if (position_mm_[0] && position_mm_[1])
     state["machine_mm"] = state["work_mm"] = {*position_mm_[0], *position_mm_[1], 0};
   state["can"] = possible_commands();

@@ -22,7 +22,7 @@ run: setup ## build, make an example, serve the app and print its address
 test: ## everything that a change must pass; ends with "N passed, N failed"
 	@setup/test.sh
 
-test-all: ## the same, and the crafts' own tests with sanitizers and in WebAssembly
+test-all: ## the same, the crafts' own tests with sanitizers and in WebAssembly, and reliability tests in their long forms
 	@setup/test.sh --all
 
 native asan wasm: ## one C++ build: build/, build-asan/ or build-wasm/

@@ -6,7 +6,8 @@ set -euo pipefail
 
 build_preset() {  # preset
   # Configuring again costs a second and notices a new toolchain. What the environment does not say the preset does.
-  cmake --preset "$1" ${FORMWRIGHT_CRAFT_TESTS:+-DFORMWRIGHT_CRAFT_TESTS="$FORMWRIGHT_CRAFT_TESTS"} >&2
+  cmake --preset "$1" ${FORMWRIGHT_CRAFT_TESTS:+-DFORMWRIGHT_CRAFT_TESTS="$FORMWRIGHT_CRAFT_TESTS"} \
+    ${FORMWRIGHT_LONG_TESTS:+-DFORMWRIGHT_LONG_TESTS="$FORMWRIGHT_LONG_TESTS"} >&2
   nice cmake --build --preset "$1" --parallel "${FORMWRIGHT_JOBS:-$(nproc)}" >&2
 }
 

@@ -3,13 +3,14 @@
 #
 # Sets up, builds and runs what a change must pass, stopping at the first stage that fails.
 # The last line is "N passed, N failed", summed over all runners.
-#   setup/test.sh [--all]   with --all the crafts' own tests run with sanitizers and in WebAssembly, too
+#   setup/test.sh [--all]   with --all the crafts' own tests run with sanitizers and in WebAssembly, too, and the reliability
+#                           tests in their long forms
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 cd "$FORMWRIGHT_ROOT"
 case "${1-}" in
   '') ;;
-  --all) export FORMWRIGHT_CRAFT_TESTS=ON ;;
+  --all) export FORMWRIGHT_CRAFT_TESTS=ON FORMWRIGHT_LONG_TESTS=ON ;;
   *) fail "test.sh does not know '$1'" "use --all or nothing" ;;
 esac
 

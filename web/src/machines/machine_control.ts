@@ -45,9 +45,10 @@ export class MachineControl {
     addEventListener('beforeunload', (event) => {
       if (this.isBusy) event.preventDefault();
     });
-    // The page goes: the machine must not go on without anyone.
+    // The page goes: the machine must not go on without anyone, nor its laser shine.
     addEventListener('pagehide', () => {
-      if (this.isBusy) void this.link.value?.command({ do: 'pause' }).catch(() => undefined);
+      const order = this.isBusy ? 'pause' : (['focus_off', 'jog_cancel'] as const).find((what) => this.can(what));
+      if (order) void this.link.value?.command({ do: order }).catch(() => undefined);
     });
   }
 

@@ -47,7 +47,15 @@ export function startReason(session: MachinesSession): string | undefined {
     return state.can.includes('home')
       ? 'Where the head stands is unknown: home it first'
       : 'Where the head stands is unknown: jog to the corner and set the origin';
+  if (session.isMill && !state.axes_known.z)
+    return 'Where the tool’s tip stands is unknown: lower it to the stock’s top and set z';
   return state.phase === 'idle' ? undefined : `The machine is ${state.phase}`;
+}
+
+/** What the driver warns of, and what happens when nobody talks to the machine any more. */
+function whenLeftAlone(session: MachinesSession): string[] {
+  const state = session.control.state.value;
+  return state === null ? [] : [...state.warnings, state.when_connection_ends].filter((sentence) => sentence !== '');
 }
 
 export function start(session: MachinesSession): void {
@@ -63,6 +71,7 @@ export function start(session: MachinesSession): void {
         ? `The head moves and the laser turns on, at up to ${withUnit(formatNumber(power, 2), '%')}, for about ${formatDuration(toolPath.seconds)}.`
         : `The machine moves and its spindle turns, for about ${formatDuration(toolPath.seconds)}. Z is 0 on the stock's top, the tool at its corner.`,
       isLaser(session) ? eyes : chips,
+      ...whenLeftAlone(session),
     ],
     action: isLaser(session) ? 'Start with the laser on' : 'Start with the spindle on',
     danger: true,
@@ -88,6 +97,7 @@ export function goOn(session: MachinesSession): void {
         : `The machine was homed again; it rises, goes to the line that begins at line ${line} of the job, starts its spindle and sinks at feed rate. What was cut last is cut once more.`,
       'This only fits where neither the material nor the origin has moved. ' +
         (isLaser(session) ? eyes : chips),
+      ...whenLeftAlone(session),
     ],
     action: isLaser(session) ? 'Go on with the laser on' : 'Go on with the spindle on',
     danger: true,

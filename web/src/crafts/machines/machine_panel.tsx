@@ -67,6 +67,7 @@ export function MachinePanel({ session }: { readonly session: MachinesSession })
         ) : (
           <>
             <Position state={state} withZ={session.isMill} />
+            <Beam state={state} isMill={session.isMill} />
             <div class="machine-buttons">
               <Button
                 icon="home"
@@ -156,10 +157,10 @@ export function MachinePanel({ session }: { readonly session: MachinesSession })
 }
 
 function Position({ state, withZ }: { readonly state: MachineState; readonly withZ: boolean }) {
-  const axis = (name: string, index: number) => (
+  const axis = (name: 'x' | 'y' | 'z', index: number) => (
     <div>
-      <span>{name}</span>
-      <b>{state.position_known && state.work_mm ? formatFixed(state.work_mm[index] ?? 0, 2) : 'unknown'}</b>
+      <span>{name.toUpperCase()}</span>
+      <b>{state.axes_known[name] && state.work_mm ? formatFixed(state.work_mm[index] ?? 0, 2) : 'unknown'}</b>
     </div>
   );
   return (
@@ -168,10 +169,28 @@ function Position({ state, withZ }: { readonly state: MachineState; readonly wit
       role="group"
       aria-label="Where the head stands, in millimetres"
     >
-      {axis('X', 0)}
-      {axis('Y', 1)}
-      {withZ ? axis('Z', 2) : null}
+      {axis('x', 0)}
+      {axis('y', 1)}
+      {withZ ? axis('z', 2) : null}
     </div>
+  );
+}
+
+/** Whether the machine says that its laser is on or its spindle turns, in whatever state it is; and what it warns of. */
+function Beam({ state, isMill }: { readonly state: MachineState; readonly isMill: boolean }) {
+  return (
+    <>
+      <p class={state.laser_on ? 'beam-state on' : 'beam-state'} role="status">
+        {state.laser_on ? (isMill ? 'The spindle turns' : 'The laser is on') : ''}
+      </p>
+      {state.warnings.length > 0 ? (
+        <ul class="machine-warnings" aria-label="Warnings about this machine">
+          {state.warnings.map((sentence) => (
+            <li key={sentence}>{sentence}</li>
+          ))}
+        </ul>
+      ) : null}
+    </>
   );
 }
 

@@ -13,6 +13,7 @@ import { Confirmation } from './confirm';
 import { Console } from './console';
 import { Inspector } from './inspector';
 import { JobBar, partWords, timeShown } from './job_bar';
+import './machine_state.css';
 import './machines.css';
 import type { MachinesSession } from './machines_session';
 import { PathView } from './path_view';

@@ -33,7 +33,9 @@ export interface MachineState {
   readonly connection: 'closed' | 'greeting' | 'ready' | 'silent';
   readonly firmware: string;
   readonly phase: Phase;
+  /** Of x and y; each axis of its own is in `axes_known`. */
   readonly position_known: boolean;
+  readonly axes_known: { readonly x: boolean; readonly y: boolean; readonly z: boolean };
   readonly machine_mm: readonly number[] | null;
   readonly work_mm: readonly number[] | null;
   readonly speed_mm_per_s: number;
@@ -46,7 +48,12 @@ export interface MachineState {
     readonly line: string;
     readonly line_number: number;
   } | null;
+  /** As the machine reports it; null where it does not tell. */
   readonly laser_on: boolean | null;
+  /** What a person should read before a start. */
+  readonly warnings: readonly string[];
+  /** What the machine does with the loaded job when this page, the cable or the computer dies; '' where there is nothing to say. */
+  readonly when_connection_ends: string;
   readonly can: readonly MachineCommand['do'][];
 }
 

@@ -47,7 +47,9 @@ export class MachineControl {
     });
     // The page goes: the machine must not go on without anyone, nor its laser shine.
     addEventListener('pagehide', () => {
-      const order = this.isBusy ? 'pause' : (['focus_off', 'jog_cancel'] as const).find((what) => this.can(what));
+      const order = this.isBusy
+        ? 'pause'
+        : (['focus_off', 'jog_cancel'] as const).find((what) => this.can(what));
       if (order) void this.link.value?.command({ do: order }).catch(() => undefined);
     });
   }

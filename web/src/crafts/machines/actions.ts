@@ -55,7 +55,9 @@ export function startReason(session: MachinesSession): string | undefined {
 /** What the driver warns of, and what happens when nobody talks to the machine any more. */
 function whenLeftAlone(session: MachinesSession): string[] {
   const state = session.control.state.value;
-  return state === null ? [] : [...state.warnings, state.when_connection_ends].filter((sentence) => sentence !== '');
+  return state === null
+    ? []
+    : [...state.warnings, state.when_connection_ends].filter((sentence) => sentence !== '');
 }
 
 export function start(session: MachinesSession): void {

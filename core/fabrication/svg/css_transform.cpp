@@ -37,15 +37,14 @@ std::optional<double> plain(std::string_view word) {
   return std::nullopt;
 }
 
-std::optional<double> radians(std::string_view word) {
-  constexpr double pi = std::numbers::pi;
+std::optional<double> degrees_of(std::string_view word) {
   const auto number = number_of(word);
   if (!number) return std::nullopt;
   const auto& [value, unit] = *number;
-  if (same_word(unit, "deg") || (unit.empty() && value == 0)) return value * pi / 180;
-  if (same_word(unit, "rad")) return value;
-  if (same_word(unit, "grad")) return value * pi / 200;
-  if (same_word(unit, "turn")) return value * 2 * pi;
+  if (same_word(unit, "deg") || (unit.empty() && value == 0)) return value;
+  if (same_word(unit, "rad")) return value * 180 / std::numbers::pi;
+  if (same_word(unit, "grad")) return value * 0.9;
+  if (same_word(unit, "turn")) return value * 360;
   return std::nullopt;
 }
 
@@ -53,19 +52,6 @@ std::optional<double> distance(std::string_view word, double whole, double font_
   const auto length = read_length(word);
   if (!length || (length->unitless && length->value != 0)) return std::nullopt;
   return LengthBase{whole, font_size}.of(*length);
-}
-
-/// Sines and cosines of quarter turns are exact, so that straight lines stay straight.
-Eigen::Matrix2d turned(double angle) {
-  const double quarter = 2 * angle / std::numbers::pi;
-  double c = std::cos(angle), s = std::sin(angle);
-  if (std::abs(quarter - std::round(quarter)) < 1e-12) {
-    c = std::round(c);
-    s = std::round(s);
-  }
-  Eigen::Matrix2d turn;
-  turn << c, -s, s, c;
-  return turn;
 }
 
 Eigen::Affine2d linear(double a, double b, double c, double d) {
@@ -112,16 +98,16 @@ std::optional<Eigen::Affine2d> function(std::string_view name, const Words& word
     if (name.size() == 5) return linear((*s)[0], 0, 0, s->back());
     return same_word(name, "scalex") ? linear((*s)[0], 0, 0, 1) : linear(1, 0, 0, (*s)[0]);
   }
-  const auto angles = all_of(words, 1, 2, radians);
+  const auto angles = all_of(words, 1, 2, degrees_of);
   if (!angles) return std::nullopt;
   const double first = angles->front();
-  if (same_word(name, "skew")) return linear(1, angles->size() > 1 ? std::tan(angles->back()) : 0, std::tan(first), 1);
+  if (same_word(name, "skew")) return linear(1, angles->size() > 1 ? slope_of(angles->back()) : 0, slope_of(first), 1);
   if (angles->size() > 1) return std::nullopt;
-  if (same_word(name, "skewx")) return linear(1, 0, std::tan(first), 1);
-  if (same_word(name, "skewy")) return linear(1, std::tan(first), 0, 1);
+  if (same_word(name, "skewx")) return linear(1, 0, slope_of(first), 1);
+  if (same_word(name, "skewy")) return linear(1, slope_of(first), 0, 1);
   if (!same_word(name, "rotate") && !same_word(name, "rotatez")) return std::nullopt;
   Eigen::Affine2d map = Eigen::Affine2d::Identity();
-  map.linear() = turned(first);
+  map.linear() = turn_by(first);
   return map;
 }
 

@@ -4,11 +4,11 @@
 #include <fast_float/fast_float.h>
 
 #include <svgpp/parser/path_data.hpp>
-#include <svgpp/parser/transform_list.hpp>
 #include <svgpp/policy/error.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 namespace formwright {
@@ -35,14 +35,6 @@ struct PathPolicy : svgpp::policy::path::minimal {
   static const bool arc_as_cubic_bezier = false;
 };
 
-struct TransformEvents {
-  Eigen::Affine2d map = Eigen::Affine2d::Identity();
-
-  void transform_matrix(const boost::array<double, 6>& m) {
-    map.matrix() << m[0], m[2], m[4], m[1], m[3], m[5], 0, 0, 1;
-  }
-};
-
 struct QuietErrors {
   template <class Context>
   struct Policy {
@@ -55,6 +47,44 @@ struct QuietErrors {
 };
 
 constexpr std::string_view blanks = " \t\r\n\f";
+
+/// At most six numbers, which need no blank between them where a sign or a point tells them apart.
+std::optional<std::vector<double>> packed_numbers(std::string_view text) {
+  std::vector<double> numbers;
+  while (!(text = without_blanks(text)).empty()) {
+    if (!numbers.empty() && text.front() == ',') text = without_blanks(text.substr(1));
+    if (text.starts_with('+')) text.remove_prefix(1);
+    double value = 0;
+    const auto [rest, error] = fast_float::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || !std::isfinite(value) || numbers.size() == 6) return std::nullopt;
+    numbers.push_back(value);
+    text.remove_prefix(static_cast<std::size_t>(rest - text.data()));
+  }
+  return numbers;
+}
+
+std::optional<Eigen::Affine2d> transform_function(std::string_view name, const std::vector<double>& n) {
+  const std::size_t count = n.size();
+  if (count == 0) return std::nullopt;
+  Eigen::Affine2d map = Eigen::Affine2d::Identity();
+  if (name == "matrix" && count == 6) {
+    map.matrix() << n[0], n[2], n[4], n[1], n[3], n[5], 0, 0, 1;
+  } else if (name == "translate" && count <= 2) {
+    map.translation() = Vec2(n[0], count > 1 ? n[1] : 0);
+  } else if (name == "scale" && count <= 2) {
+    map.linear() << n[0], 0, 0, n.back();
+  } else if (name == "rotate" && (count == 1 || count == 3)) {
+    map.linear() = turn_by(n[0]);
+    if (count == 3) map.translation() = Vec2(n[1], n[2]) - map.linear() * Vec2(n[1], n[2]);
+  } else if (name == "skewX" && count == 1) {
+    map.linear()(0, 1) = slope_of(n[0]);
+  } else if (name == "skewY" && count == 1) {
+    map.linear()(1, 0) = slope_of(n[0]);
+  } else {
+    return std::nullopt;
+  }
+  return map;
+}
 
 }  // namespace
 
@@ -69,15 +99,36 @@ bool draw_path_data(std::string_view data, CurveFlattener& flattener) {
 }
 
 std::optional<Eigen::Affine2d> read_transform(std::string_view text) {
+  Eigen::Affine2d map = Eigen::Affine2d::Identity();
   text = without_blanks(text);
-  if (text.empty() || text == "none") return Eigen::Affine2d::Identity();
-  TransformEvents events;
-  const bool read =
-      svgpp::value_parser<svgpp::tag::type::transform_list, svgpp::error_policy<QuietErrors::Policy<TransformEvents>>>::
-          parse(svgpp::tag::attribute::transform(), events, text, svgpp::tag::source::attribute());
-  if (!read || !events.map.matrix().allFinite()) return std::nullopt;
-  return events.map;
+  if (text == "none") return map;
+  while (!text.empty()) {
+    const std::size_t open = text.find('('), close = text.find(')');
+    if (open == std::string_view::npos || close == std::string_view::npos || close < open) return std::nullopt;
+    const auto numbers = packed_numbers(text.substr(open + 1, close - open - 1));
+    const auto one = numbers ? transform_function(without_blanks(text.substr(0, open)), *numbers) : std::nullopt;
+    if (!one) return std::nullopt;
+    map = map * *one;
+    text.remove_prefix(close + 1);
+    text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n\f,"), text.size()));
+  }
+  if (!map.matrix().allFinite()) return std::nullopt;
+  return map;
 }
+
+Eigen::Matrix2d turn_by(double degrees) {
+  const double angle = degrees * std::numbers::pi / 180;
+  double c = std::cos(angle), s = std::sin(angle);
+  if (std::fmod(degrees, 90) == 0) {
+    c = std::round(c);
+    s = std::round(s);
+  }
+  Eigen::Matrix2d turn;
+  turn << c, -s, s, c;
+  return turn;
+}
+
+double slope_of(double degrees) { return std::tan(degrees * std::numbers::pi / 180); }
 
 double LengthBase::of(const SvgLength& length) const {
   switch (length.unit) {

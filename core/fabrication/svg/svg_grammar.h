@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The grammars of SVG's path data, transforms and lengths (SVG 1.1, chapters 7 and 8); path data and transforms by way
-// of SVG++.
+// The grammars of SVG's path data, transforms and lengths (SVG 1.1, chapters 7 and 8); path data by way of SVG++.
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -16,6 +15,12 @@ bool draw_path_data(std::string_view data, CurveFlattener& flattener);
 
 /// "translate(1 2) rotate(30)" as one map; none when it is not well formed.
 std::optional<Eigen::Affine2d> read_transform(std::string_view text);
+
+/// Sines and cosines of quarter turns are exact: straight lines stay straight.
+Eigen::Matrix2d turn_by(double degrees);
+
+/// Of a skew by this angle.
+double slope_of(double degrees);
 
 inline constexpr double user_units_per_mm = 96 / 25.4;  // CSS: an inch is 96 px
 

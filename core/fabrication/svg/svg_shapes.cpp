@@ -92,7 +92,9 @@ bool draw_svg_shape(const pugi::xml_node& node, const SvgValues& values, const S
     const bool sound = end == points.size();
     points = without_blanks(points.substr(0, end));
     if (points.empty()) return sound;
-    return draw_path_data("M" + std::string(points) + (name == "polygon" ? "Z" : ""), to) && sound;
+    const bool drawn = draw_path_data("M" + std::string(points), to);
+    if (name == "polygon") to.close();
+    return drawn && sound;
   }
   if (name == "line") {
     to.move_to({lengths.x("x1"), lengths.y("y1")});

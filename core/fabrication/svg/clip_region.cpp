@@ -8,7 +8,7 @@
 namespace formwright {
 namespace {
 
-constexpr double touching_mm = 1e-4;      // as near to an edge as this is on it
+constexpr double touching_mm = 1e-4;  // as near to an edge as this is on it
 constexpr std::size_t max_buckets = 512;
 constexpr double clipper_units_per_mm = 1e5;
 
@@ -34,8 +34,7 @@ ClipperLib::PolyFillType clipper_rule(FillRule rule) {
 
 }  // namespace
 
-ClipRegion::ClipRegion(std::vector<Shape> shapes, DrawingLimits& limits)
-    : shapes_(std::move(shapes)), limits_(limits) {
+ClipRegion::ClipRegion(std::vector<Shape> shapes, DrawingLimits& limits) : shapes_(std::move(shapes)), limits_(limits) {
   double max_y = 0;
   for (std::size_t s = 0; s < shapes_.size(); ++s)
     for (const Polygon& ring : shapes_[s].rings)

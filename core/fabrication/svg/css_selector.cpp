@@ -272,7 +272,8 @@ bool read_css_selector(std::string_view text, CssSelector& selector) {
   if (selector.conditions.empty()) return false;
   // Read from the left, a join says how its condition stands to the one before; from the right, the one before to it.
   std::reverse(selector.conditions.begin(), selector.conditions.end());
-  for (std::size_t i = selector.conditions.size(); i-- > 1;) selector.conditions[i].join = selector.conditions[i - 1].join;
+  for (std::size_t i = selector.conditions.size(); i-- > 1;)
+    selector.conditions[i].join = selector.conditions[i - 1].join;
   selector.conditions.front().join = Join::same;
   return true;
 }

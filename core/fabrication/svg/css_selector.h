@@ -15,7 +15,17 @@ std::string_view svg_local_name(const pugi::xml_node& node);
 
 /// One condition on one element.
 struct CssCondition {
-  enum class Kind : std::uint8_t { element, id, of_class, attribute, root, nth_child, nth_last_child, only_child, never };
+  enum class Kind : std::uint8_t {
+    element,
+    id,
+    of_class,
+    attribute,
+    root,
+    nth_child,
+    nth_last_child,
+    only_child,
+    never
+  };
   enum class Compare : std::uint8_t { exists, equal, word, dash, begins, ends, contains };
   /// How the element of this condition stands to the one on its right; `same` joins conditions on one element.
   enum class Join : std::uint8_t { same, descendant, child, next_sibling, later_sibling };

@@ -152,7 +152,8 @@ std::optional<Vec2> read_transform_origin(std::string_view text, const Transform
   if (words.empty() || words.size() > 2) return std::nullopt;
   const auto is_upright = [](std::string_view word) { return same_word(word, "top") || same_word(word, "bottom"); };
   if (words.size() == 1) words.push_back("center");
-  if (is_upright(words[0]) || same_word(words[1], "left") || same_word(words[1], "right")) std::swap(words[0], words[1]);
+  if (is_upright(words[0]) || same_word(words[1], "left") || same_word(words[1], "right"))
+    std::swap(words[0], words[1]);
   const auto place = [&](std::string_view word, double from, double whole, std::string_view low,
                          std::string_view high) -> std::optional<double> {
     if (same_word(word, low)) return from;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// What one drawing may take of memory and time, counted where it is taken: a reader of strangers' files keeps within 200
-// times the file's size plus 64 MB, and its time grows with the file's size.
+// What one drawing may take of memory and time, counted where it is taken: a reader of strangers' files keeps within
+// 200 times the file's size plus 64 MB, and its time grows with the file's size.
 #include <cstddef>
 #include <string>
 

@@ -49,7 +49,8 @@ std::optional<std::vector<SvgLength>> read_lengths(std::string_view text);
 /// Without the blanks at its ends.
 std::string_view without_blanks(std::string_view text);
 
-/// The word that `text` begins with, ended by a blank, a comma or a slash, which are taken off with it; empty at the end.
+/// The word that `text` begins with, ended by a blank, a comma or a slash, which are taken off with it; empty at the
+/// end.
 std::string_view take_word(std::string_view& text);
 
 /// Is it the same but for the case of its letters?

@@ -34,8 +34,7 @@ void add_sentences(const SvgNotes& notes, std::vector<std::string>& sentences) {
        "strokes have no width and are not painted: give them a width, such as 0.1."},
       {notes.unstroked, "line has neither a stroke nor an area and is not painted: give it a stroke.",
        "lines have neither a stroke nor an area and are not painted: give them a stroke."},
-      {notes.unknown_colours,
-       "shape has a colour that is not understood and is taken as a note: write it as #rrggbb.",
+      {notes.unknown_colours, "shape has a colour that is not understood and is taken as a note: write it as #rrggbb.",
        "shapes have a colour that is not understood and are taken as notes: write it as #rrggbb."},
       {notes.paint_servers,
        "shape is painted with a gradient or pattern, which names no layer, and is taken as a note: give it one colour.",
@@ -49,7 +48,8 @@ void add_sentences(const SvgNotes& notes, std::vector<std::string>& sentences) {
        "animations were not followed: the drawing is as it is without them."},
       {notes.scripts, "script was not run: what it draws is not in the drawing.",
        "scripts were not run: what they draw is not in the drawing."},
-      {notes.entities, "attribute has an entity of XML (&name;), which was not replaced: save the drawing as plain SVG.",
+      {notes.entities,
+       "attribute has an entity of XML (&name;), which was not replaced: save the drawing as plain SVG.",
        "attributes have entities of XML (&name;), which were not replaced: save the drawing as plain SVG."},
       {notes.other_files, "reference to another file was not followed: copy what it shows into the drawing.",
        "references to other files were not followed: copy what they show into the drawing."},
@@ -58,7 +58,8 @@ void add_sentences(const SvgNotes& notes, std::vector<std::string>& sentences) {
       {notes.outside, "line reaches outside the drawing's page, where it is not seen: it is kept.",
        "lines reach outside the drawing's page, where they are not seen: they are kept."}};
   for (const Kind& kind : kinds)
-    if (kind.count > 0) sentences.push_back(std::to_string(kind.count) + " " + (kind.count == 1 ? kind.one : kind.many));
+    if (kind.count > 0)
+      sentences.push_back(std::to_string(kind.count) + " " + (kind.count == 1 ? kind.one : kind.many));
 }
 
 }  // namespace formwright

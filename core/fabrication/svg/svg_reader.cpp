@@ -19,9 +19,10 @@ pugi::xml_node root_of(pugi::xml_document& document, ByteView bytes) {
   const pugi::xml_node root = document.document_element();
   if (!parsed || !root)
     refuse_drawing("The drawing is not XML: " + std::string(parsed.description()) + " at byte " +
-           std::to_string(parsed.offset) + "; save it as plain SVG.");
+                   std::to_string(parsed.offset) + "; save it as plain SVG.");
   if (svg_local_name(root) != "svg")
-    refuse_drawing("The drawing is not an SVG: its first element is <" + std::string(svg_local_name(root).substr(0, 40)) + ">; save it as plain SVG.");
+    refuse_drawing("The drawing is not an SVG: its first element is <" +
+                   std::string(svg_local_name(root).substr(0, 40)) + ">; save it as plain SVG.");
   return root;
 }
 
@@ -45,8 +46,7 @@ SvgDrawing read_svg_drawing(ByteView bytes, const SvgReadOptions& options, const
     // What was left out says why there is nothing.
     std::vector<std::string> reasons;
     add_sentences(notes, reasons);
-    std::string sentence =
-        "Nothing is drawn in the file: it needs shapes or paths with a stroke or a fill.";
+    std::string sentence = "Nothing is drawn in the file: it needs shapes or paths with a stroke or a fill.";
     if (!reasons.empty()) sentence += " " + reasons.front();
     refuse_drawing(sentence);
   }

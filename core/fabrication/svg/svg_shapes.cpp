@@ -57,9 +57,9 @@ double SvgLengths::of(SvgProperty property, double whole, double absent) const {
     const bool dropped = !length || (length->unitless && length->value != 0);
     if (dropped && !same_word(value.text, "auto")) {
       constexpr std::pair<SvgProperty, const char*> names[] = {
-          {SvgProperty::x, "x"},   {SvgProperty::y, "y"},   {SvgProperty::width, "width"}, {SvgProperty::height, "height"},
-          {SvgProperty::cx, "cx"}, {SvgProperty::cy, "cy"}, {SvgProperty::r, "r"},         {SvgProperty::rx, "rx"},
-          {SvgProperty::ry, "ry"}};
+          {SvgProperty::x, "x"},           {SvgProperty::y, "y"},   {SvgProperty::width, "width"},
+          {SvgProperty::height, "height"}, {SvgProperty::cx, "cx"}, {SvgProperty::cy, "cy"},
+          {SvgProperty::r, "r"},           {SvgProperty::rx, "rx"}, {SvgProperty::ry, "ry"}};
       for (const auto& [known, name] : names)
         if (known == property) return read(node_.attribute(name).value(), whole, absent);
     }
@@ -75,8 +75,8 @@ double SvgLengths::read(std::string_view text, double whole, double absent) cons
   return absent;
 }
 
-bool draw_svg_shape(const pugi::xml_node& node, const SvgValues& values, const SvgLengths& lengths,
-                    CurveFlattener& to, DrawingLimits& limits) {
+bool draw_svg_shape(const pugi::xml_node& node, const SvgValues& values, const SvgLengths& lengths, CurveFlattener& to,
+                    DrawingLimits& limits) {
   using P = SvgProperty;
   const std::string_view name = svg_local_name(node);
   if (name == "path") {

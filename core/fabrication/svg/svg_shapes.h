@@ -38,7 +38,7 @@ class SvgLengths {
 };
 
 /// False when the shape has a fault: it is drawn as far as it goes.
-bool draw_svg_shape(const pugi::xml_node& node, const SvgValues& values, const SvgLengths& lengths,
-                    CurveFlattener& to, DrawingLimits& limits);
+bool draw_svg_shape(const pugi::xml_node& node, const SvgValues& values, const SvgLengths& lengths, CurveFlattener& to,
+                    DrawingLimits& limits);
 
 }  // namespace formwright

@@ -9,11 +9,45 @@
 namespace formwright {
 namespace {
 
-constexpr std::string_view property_names[svg_property_count] = {
-    "clip-path", "clip-rule", "color", "cx", "cy", "d", "display", "fill", "fill-opacity", "fill-rule", "filter",
-    "font-size", "height", "marker", "marker-end", "marker-mid", "marker-start", "mask", "opacity", "overflow", "r",
-    "rotate", "rx", "ry", "scale", "stroke", "stroke-dasharray", "stroke-dashoffset", "stroke-opacity", "stroke-width",
-    "transform", "transform-box", "transform-origin", "translate", "vector-effect", "visibility", "width", "x", "y"};
+constexpr std::string_view property_names[svg_property_count] = {"clip-path",
+                                                                 "clip-rule",
+                                                                 "color",
+                                                                 "cx",
+                                                                 "cy",
+                                                                 "d",
+                                                                 "display",
+                                                                 "fill",
+                                                                 "fill-opacity",
+                                                                 "fill-rule",
+                                                                 "filter",
+                                                                 "font-size",
+                                                                 "height",
+                                                                 "marker",
+                                                                 "marker-end",
+                                                                 "marker-mid",
+                                                                 "marker-start",
+                                                                 "mask",
+                                                                 "opacity",
+                                                                 "overflow",
+                                                                 "r",
+                                                                 "rotate",
+                                                                 "rx",
+                                                                 "ry",
+                                                                 "scale",
+                                                                 "stroke",
+                                                                 "stroke-dasharray",
+                                                                 "stroke-dashoffset",
+                                                                 "stroke-opacity",
+                                                                 "stroke-width",
+                                                                 "transform",
+                                                                 "transform-box",
+                                                                 "transform-origin",
+                                                                 "translate",
+                                                                 "vector-effect",
+                                                                 "visibility",
+                                                                 "width",
+                                                                 "x",
+                                                                 "y"};
 static_assert(std::is_sorted(std::begin(property_names), std::end(property_names)));
 
 /// `name` as an attribute is in the case that SVG has it in; in a sheet any case will do.
@@ -51,7 +85,8 @@ StyleSheet::StyleSheet(const pugi::xml_node& root, DrawingLimits& limits) : limi
     StyleSheet* sheet = nullptr;
     bool for_each(pugi::xml_node& node) override {
       if (node.type() != pugi::node_element) return true;
-      if (pugi::xml_attribute style = node.attribute("style"); std::string_view(style.value()).find("/*") != std::string_view::npos)
+      if (pugi::xml_attribute style = node.attribute("style");
+          std::string_view(style.value()).find("/*") != std::string_view::npos)
         style.set_value(without_css_comments(style.value()).c_str());
       const std::string_view type = node.attribute("type").value();
       if (svg_local_name(node) != "style" || (!type.empty() && !same_word(type, "text/css"))) return true;
@@ -104,11 +139,12 @@ void StyleSheet::read(const std::string& css) {
   read_css_sheet(sheets_.back(), events);
 }
 
-void StyleSheet::add_candidates(CssCondition::Kind kind, std::string_view name, std::vector<std::uint32_t>& candidates) {
+void StyleSheet::add_candidates(CssCondition::Kind kind, std::string_view name,
+                                std::vector<std::uint32_t>& candidates) {
   const Key wanted{kind, name, 0};
   for (auto at = std::lower_bound(keys_.begin(), keys_.end(), wanted);
        at != keys_.end() && at->kind == kind && at->name == name; ++at) {
-    limits_.add_steps(4);
+    limits_.add_steps(16);
     candidates.push_back(at->rule);
   }
 }

@@ -15,9 +15,45 @@ namespace formwright {
 
 /// The properties that change where lines are or which layer they belong to.
 enum class SvgProperty {
-  clip_path, clip_rule, color, cx, cy, d, display, fill, fill_opacity, fill_rule, filter, font_size, height, marker, marker_end,
-  marker_mid, marker_start, mask, opacity, overflow, r, rotate, rx, ry, scale, stroke, stroke_dasharray, stroke_dashoffset,
-  stroke_opacity, stroke_width, transform, transform_box, transform_origin, translate, vector_effect, visibility, width, x, y
+  clip_path,
+  clip_rule,
+  color,
+  cx,
+  cy,
+  d,
+  display,
+  fill,
+  fill_opacity,
+  fill_rule,
+  filter,
+  font_size,
+  height,
+  marker,
+  marker_end,
+  marker_mid,
+  marker_start,
+  mask,
+  opacity,
+  overflow,
+  r,
+  rotate,
+  rx,
+  ry,
+  scale,
+  stroke,
+  stroke_dasharray,
+  stroke_dashoffset,
+  stroke_opacity,
+  stroke_width,
+  transform,
+  transform_box,
+  transform_origin,
+  translate,
+  vector_effect,
+  visibility,
+  width,
+  x,
+  y
 };
 inline constexpr int svg_property_count = static_cast<int>(SvgProperty::y) + 1;
 

@@ -135,7 +135,8 @@ void SvgWalker::children(const pugi::xml_node& node, const SvgState& state) {
 SvgState SvgWalker::within(const pugi::xml_node& node, const SvgValues& values, const SvgState& outer) {
   SvgState inner = outer;
   if (++inner.depth > max_nested_elements)
-    refuse_drawing("The drawing is nested more than 256 levels deep: ungroup it, or look for a <use> that shows itself.");
+    refuse_drawing(
+        "The drawing is nested more than 256 levels deep: ungroup it, or look for a <use> that shows itself.");
   inner.inherit(values);
   inner.to_mm = outer.to_mm * transform_of(node, values, inner);
   enter_clip(node, values, inner);
@@ -169,8 +170,7 @@ void SvgWalker::element(const pugi::xml_node& node, const SvgState& outer) {
   else if (!other) shape(node, of, *state);
 }
 
-void SvgWalker::container(const pugi::xml_node& node, std::string_view name, const SvgValues& values,
-                          SvgState& state) {
+void SvgWalker::container(const pugi::xml_node& node, std::string_view name, const SvgValues& values, SvgState& state) {
   if (const auto layer = named_layer(node)) state.layer = layer;
   if (name == "svg") return viewport(node, values, nullptr, state);
   if (name != "switch") return children(node, state);

@@ -98,8 +98,8 @@ Eigen::Affine2d SvgWalker::transform_of(const pugi::xml_node& node, const SvgVal
 }
 
 void SvgWalker::clip_to(std::vector<ClipRegion::Shape> shapes, SvgState& state) {
-  state.clip = std::make_shared<SvgClip>(
-      SvgClip{std::make_shared<const ClipRegion>(std::move(shapes), limits_), state.clip});
+  state.clip =
+      std::make_shared<SvgClip>(SvgClip{std::make_shared<const ClipRegion>(std::move(shapes), limits_), state.clip});
 }
 
 void SvgWalker::clip_to_viewport(SvgState& state) {
@@ -157,7 +157,8 @@ void SvgWalker::enter_clip(const pugi::xml_node& node, const SvgValues& values, 
     return;
   }
   clip_to(clip_shapes(clip, user), state);
-  if (!of_box) clips_.insert_or_assign(clip.internal_object(), KeptClip{user.to_mm.matrix(), user.viewport, state.clip->region});
+  if (!of_box)
+    clips_.insert_or_assign(clip.internal_object(), KeptClip{user.to_mm.matrix(), user.viewport, state.clip->region});
 }
 
 }  // namespace formwright

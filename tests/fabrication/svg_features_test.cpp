@@ -236,6 +236,15 @@ TEST(SvgFeatures, HugeDrawingsAreRefusedWithTheFix) {
   EXPECT_NE(refusal(of("<path d='M0 0h1e400'/>")).find('.'), std::string::npos);
   EXPECT_NE(refusal(of("<path stroke-dasharray='1e-7' d='M0 0h90'/>")).find("make its dashes longer"),
             std::string::npos);
+  std::string open, close;
+  for (int i = 0; i < 250; ++i) {
+    open += "<g clip-path='url(#c)'>";
+    close += "</g>";
+  }
+  EXPECT_EQ(lines(read_body("<clipPath id='c'><rect width='5' height='5'/></clipPath>" + open + line + close)),
+            "0,1 5,1");
+  EXPECT_NE(refusal(of(open + "<g><g><g><g><g><g><g>" + line)).find("not XML"), std::string::npos);
+  EXPECT_NE(refusal(of(open + open + line + close + close)).find("256 levels"), std::string::npos);
   std::string copies = "<path id='a0' d='M0 0h1'/>";
   for (int i = 1; i < 30; ++i) {
     const std::string use = "<use href='#a" + std::to_string(i - 1) + "'/>";

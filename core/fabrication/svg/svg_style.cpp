@@ -149,9 +149,10 @@ void StyleSheet::add_candidates(CssCondition::Kind kind, std::string_view name,
   }
 }
 
-SvgValues StyleSheet::values_of(const pugi::xml_node& element) {
+std::unique_ptr<const SvgValues> StyleSheet::values_of(const pugi::xml_node& element) {
   using Kind = CssCondition::Kind;
-  SvgValues values;
+  auto result = std::make_unique<SvgValues>();
+  SvgValues& values = *result;
   std::string_view style, classes;
   for (const pugi::xml_attribute& attribute : element.attributes()) {
     const std::string_view name = attribute.name(), value = attribute.value();
@@ -203,7 +204,7 @@ SvgValues StyleSheet::values_of(const pugi::xml_node& element) {
   if (!style.empty()) apply_style(false);
   apply_rules(true);
   if (style.find('!') != std::string_view::npos) apply_style(true);
-  return values;
+  return result;
 }
 
 }  // namespace formwright

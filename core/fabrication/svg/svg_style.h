@@ -3,6 +3,7 @@
 // What an SVG element says of each property: attributes, <style> sheets, style="...", in the order of CSS Cascade 4.
 #include <array>
 #include <deque>
+#include <memory>
 #include <pugixml.hpp>
 #include <string>
 #include <string_view>
@@ -74,7 +75,8 @@ class StyleSheet {
   /// Comments in style attributes are taken out of the document.
   StyleSheet(const pugi::xml_node& root, DrawingLimits& limits);
 
-  SvgValues values_of(const pugi::xml_node& element);
+  /// On the heap: in the page's WebAssembly the stack is small, and elements nest.
+  std::unique_ptr<const SvgValues> values_of(const pugi::xml_node& element);
 
   std::size_t not_followed() const { return not_followed_; }  // selectors and rules
 

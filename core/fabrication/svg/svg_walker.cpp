@@ -59,7 +59,8 @@ void SvgWalker::index() {
 }
 
 void SvgWalker::walk(const PageFrame& page) {
-  const SvgValues values = style_.values_of(root_);
+  const auto root_values = style_.values_of(root_);
+  const SvgValues& values = *root_values;
   if (same_word(values[SvgProperty::display].text, "none") || read_opacity(values[SvgProperty::opacity].text) == 0)
     return;
   SvgState state;
@@ -132,15 +133,17 @@ void SvgWalker::children(const pugi::xml_node& node, const SvgState& state) {
     if (child.type() == pugi::node_element) element(child, state);
 }
 
-SvgState SvgWalker::within(const pugi::xml_node& node, const SvgValues& values, const SvgState& outer) {
-  SvgState inner = outer;
+std::unique_ptr<SvgState> SvgWalker::within(const pugi::xml_node& node, const SvgValues& values,
+                                            const SvgState& outer) {
+  auto result = std::make_unique<SvgState>(outer);
+  SvgState& inner = *result;
   if (++inner.depth > max_nested_elements)
     refuse_drawing(
         "The drawing is nested more than 256 levels deep: ungroup it, or look for a <use> that shows itself.");
   inner.inherit(values);
   inner.to_mm = outer.to_mm * transform_of(node, values, inner);
   enter_clip(node, values, inner);
-  return inner;
+  return result;
 }
 
 void SvgWalker::element(const pugi::xml_node& node, const SvgState& outer) {
@@ -151,13 +154,12 @@ void SvgWalker::element(const pugi::xml_node& node, const SvgState& outer) {
   if (!is_container(name) && !is_svg_shape(name) && name != "use" && !other) return;
   // A clip is made of shapes and of <use> that shows shapes.
   if (clip_shapes_ != nullptr && !is_svg_shape(name) && name != "use") return;
-  // On the heap: in the page's WebAssembly the stack is small.
-  const auto values = std::make_unique<const SvgValues>(style_.values_of(node));
+  const auto values = style_.values_of(node);
   const SvgValues& of = *values;
   if (same_word(of[SvgProperty::display].text, "none")) return;
   const bool drawing = measured_ == nullptr && clip_shapes_ == nullptr;
   if (drawing && read_opacity(of[SvgProperty::opacity].text) == 0) return;
-  const auto state = std::make_unique<SvgState>(within(node, of, outer));
+  const auto state = within(node, of, outer);
   if (drawing && state->visible) {
     if (is_set(of[SvgProperty::mask].text)) ++notes.masks;
     if (is_set(of[SvgProperty::filter].text)) ++notes.filters;
@@ -193,10 +195,10 @@ void SvgWalker::use(const pugi::xml_node& node, const SvgValues& values, SvgStat
   const SvgLengths lengths(node, values, state.viewport, state.font_size, notes.malformed);
   state.to_mm.translate(Vec2(lengths.x(SvgProperty::x), lengths.y(SvgProperty::y)));
   if (name != "symbol" && name != "svg") return element(target, state);
-  const auto own = std::make_unique<const SvgValues>(style_.values_of(target));
+  const auto own = style_.values_of(target);
   if (name == "svg" && same_word((*own)[SvgProperty::display].text, "none")) return;
   if (read_opacity((*own)[SvgProperty::opacity].text) == 0) return;
-  const auto inner = std::make_unique<SvgState>(within(target, *own, state));
+  const auto inner = within(target, *own, state);
   if (const auto layer = named_layer(target)) inner->layer = layer;
   viewport(target, *own, &values, *inner);
 }

@@ -40,7 +40,7 @@ class SvgWalker {
   void keep(std::vector<Subpath> subpaths, CutLayer layer, const std::string& id);
 
   /// What the element itself sets: inherited properties, transform, clip.
-  SvgState within(const pugi::xml_node& node, const SvgValues& values, const SvgState& outer);
+  std::unique_ptr<SvgState> within(const pugi::xml_node& node, const SvgValues& values, const SvgState& outer);
   Eigen::Affine2d transform_of(const pugi::xml_node& node, const SvgValues& values, const SvgState& state);
   void enter_clip(const pugi::xml_node& node, const SvgValues& values, SvgState& state);
   std::vector<ClipRegion::Shape> clip_shapes(const pugi::xml_node& clip, const SvgState& user);

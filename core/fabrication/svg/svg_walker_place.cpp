@@ -117,12 +117,12 @@ void SvgWalker::clip_to_viewport(SvgState& state) {
 std::vector<ClipRegion::Shape> SvgWalker::clip_shapes(const pugi::xml_node& clip, const SvgState& user) {
   std::vector<ClipRegion::Shape> shapes;
   // What a clip is made of inherits from around the clip, not from who uses it.
-  SvgState state;
-  state.to_mm = user.to_mm;
-  state.viewport = user.viewport;
-  state.font_size = user.font_size;
-  state.depth = user.depth;
-  const auto inner = std::make_unique<SvgState>(within(clip, style_.values_of(clip), state));
+  const auto state = std::make_unique<SvgState>();
+  state->to_mm = user.to_mm;
+  state->viewport = user.viewport;
+  state->font_size = user.font_size;
+  state->depth = user.depth;
+  const auto inner = within(clip, *style_.values_of(clip), *state);
   const Meanwhile gathering(clip_shapes_, &shapes);
   children(clip, *inner);
   return shapes;
@@ -143,22 +143,22 @@ void SvgWalker::enter_clip(const pugi::xml_node& node, const SvgValues& values, 
       ++notes.clips;
       return;
     }
-  SvgState user = state;
+  const auto user = std::make_unique<SvgState>(state);
   const bool of_box = std::string_view(clip.attribute("clipPathUnits").value()) == "objectBoundingBox";
   if (of_box) {
     const Eigen::AlignedBox2d box = box_of(node, values, state);
     if (box.isEmpty()) return;
-    user.to_mm = user.to_mm * Eigen::Translation2d(box.min()) * Eigen::Scaling(Vec2(box.sizes()));
+    user->to_mm = user->to_mm * Eigen::Translation2d(box.min()) * Eigen::Scaling(Vec2(box.sizes()));
   }
   const auto kept = clips_.find(clip.internal_object());
-  if (!of_box && kept != clips_.end() && kept->second.to_mm == user.to_mm.matrix() &&
-      kept->second.viewport.width == user.viewport.width && kept->second.viewport.height == user.viewport.height) {
+  if (!of_box && kept != clips_.end() && kept->second.to_mm == user->to_mm.matrix() &&
+      kept->second.viewport.width == user->viewport.width && kept->second.viewport.height == user->viewport.height) {
     state.clip = std::make_shared<SvgClip>(SvgClip{kept->second.region, state.clip});
     return;
   }
-  clip_to(clip_shapes(clip, user), state);
+  clip_to(clip_shapes(clip, *user), state);
   if (!of_box)
-    clips_.insert_or_assign(clip.internal_object(), KeptClip{user.to_mm.matrix(), user.viewport, state.clip->region});
+    clips_.insert_or_assign(clip.internal_object(), KeptClip{user->to_mm.matrix(), user->viewport, state.clip->region});
 }
 
 }  // namespace formwright

@@ -2,7 +2,7 @@
 #pragma once
 // How a laser runs a drawing.
 #include "fabrication/machine_options.h"
-#include "fabrication/svg_reader.h"
+#include "fabrication/svg/svg_reader.h"
 
 namespace formwright {
 

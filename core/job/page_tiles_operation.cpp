@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fabrication/page_tiles.h"
-#include "fabrication/svg_reader.h"
+#include "fabrication/svg/svg_reader.h"
 #include "geometry/io/png16.h"
 #include "imaging/picture_reader.h"
 #include "job/fabrication_operations.h"

@@ -11,7 +11,7 @@
 #include "base/random.h"
 #include "fabrication/contours.h"
 #include "fabrication/gcode_writer.h"
-#include "fabrication/svg_reader.h"
+#include "fabrication/svg/svg_reader.h"
 
 namespace formwright {
 namespace {

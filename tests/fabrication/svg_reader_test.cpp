@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fabrication/svg_reader.h"
+#include "fabrication/svg/svg_reader.h"
 
 #include <gtest/gtest.h>
 

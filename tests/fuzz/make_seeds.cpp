@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "fuzz/svg_seeds.h"
 #include "geometry/io/glb_builder.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/model_samples.h"
@@ -180,4 +181,5 @@ int main(int argc, char** argv) {
       std::string("\x02\x00\x00", 3) +
           R"({"result":{"klippy_state":"ready","moonraker_version":"v0.9","status":{"print_stats":{"state":"paused"}}}})");
   save("upload_answer", "refused", std::string("\x00\x05\x00", 3) + R"({"error":{"message":"\u00e4\u0000 busy"}})");
+  for (const auto& [name, text] : fuzz::svg_seeds()) save("svg", name, text);
 }

@@ -31,12 +31,12 @@ struct SvgDrawing {
   std::vector<std::string> notes;  // what was left out or guessed, in sentences
 };
 
-/// Shapes, paths, groups, nested drawings and <use> with their transforms; shapes that are not painted are left out, as
-/// are pictures and words. A path's layer: the innermost group around it whose label or id names one (layer_by_name),
-/// else the colour of its stroke, of its fill without a stroke (layer_by_colour), else note. The kerf of our own files
-/// (kerf_attribute) is known again, also after another program has saved them. Throws
-/// Error{invalid_input, "drawing"}: not an SVG, no physical size ("user_unit" mends it), nothing drawn, words only,
-/// over 2 million points, over 20 m; cancelled.
+/// Lines as a browser draws them: what is painted, dashed and clipped as it says; what is left out is in the notes. A
+/// path's layer: the innermost group around it whose label or id names one (layer_by_name), else the colour of its
+/// stroke, of its fill without a stroke (layer_by_colour), else note. The kerf of our own files (kerf_attribute) is
+/// known again, also after another program has saved them. Takes at most 200 times the file's size and 64 MB. Throws
+/// Error{invalid_input, "drawing"}: not an SVG, no physical size ("user_unit" says it), nothing drawn, words only, over
+/// 4 million points, over 20 m, too much to read (DrawingLimits); cancelled.
 SvgDrawing read_svg_drawing(ByteView bytes, const SvgReadOptions& options, const Context& context);
 
 }  // namespace formwright

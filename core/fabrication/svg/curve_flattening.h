@@ -4,18 +4,21 @@
 #include <Eigen/Geometry>
 #include <vector>
 
+#include "fabrication/svg/drawing_limits.h"
 #include "geometry/triangle_mesh.h"
 
 namespace formwright {
 
-/// One subpath after the other, through `to_mm`, as polylines in mm; the tolerance holds after the map.
+/// One subpath after the other, through `to_mm`, as polylines in mm; the tolerance holds after the map. Throws
+/// Error{invalid_input, "drawing"}: farther than max_coordinate_mm, too many points.
 class CurveFlattener {
  public:
   struct Subpath {
     std::vector<Vec2> points_mm;
     bool closed = false;
   };
-  CurveFlattener(const Eigen::Affine2d& to_mm, double tolerance_mm) : to_mm_(to_mm), tolerance_mm_(tolerance_mm) {}
+  CurveFlattener(const Eigen::Affine2d& to_mm, double tolerance_mm, DrawingLimits& limits)
+      : to_mm_(to_mm), tolerance_mm_(tolerance_mm), limits_(limits) {}
 
   void move_to(const Vec2& p);
   void line_to(const Vec2& p);
@@ -33,10 +36,12 @@ class CurveFlattener {
  private:
   void add(const Vec2& p);
   void begin_if_closed();
+  Vec2 in_reach(const Vec2& p) const;  // in mm
   int arc_steps(double largest_radius, double angle) const;
 
   Eigen::Affine2d to_mm_;
   double tolerance_mm_;
+  DrawingLimits& limits_;
   std::vector<Subpath> subpaths_;
   Vec2 start_{0, 0}, current_{0, 0};
   bool open_ = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fabrication/drawing_layers.h"
+#include "fabrication/svg/drawing_layers.h"
 
 #include <algorithm>
 #include <cctype>

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fabrication/svg_viewport.h"
+#include "fabrication/svg/svg_viewport.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "base/number_list.h"
-#include "fabrication/svg_grammar.h"
+#include "fabrication/svg/drawing_limits.h"
+#include "fabrication/svg/svg_grammar.h"
 
 namespace formwright {
 namespace {
@@ -15,11 +16,16 @@ struct ViewBox {
   double x, y, width, height;
 };
 
-std::optional<ViewBox> view_box_of(const pugi::xml_node& node) {
+std::optional<std::vector<double>> view_box_numbers(const pugi::xml_node& node) {
   std::string text = node.attribute("viewBox").value();
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c == '\n' || c == '\t' || c == '\r'; }, ' ');
-  const auto numbers = read_number_list(text);
+  constexpr std::size_t max_bytes = 1000;
+  return text.size() > max_bytes ? std::nullopt : read_number_list(text);
+}
+
+std::optional<ViewBox> view_box_of(const pugi::xml_node& node) {
+  const auto numbers = view_box_numbers(node);
   if (!numbers || numbers->size() != 4 || (*numbers)[2] <= 0 || (*numbers)[3] <= 0) return std::nullopt;
   return ViewBox{(*numbers)[0], (*numbers)[1], (*numbers)[2], (*numbers)[3]};
 }
@@ -41,20 +47,19 @@ Eigen::Affine2d fit(const ViewBox& box, double width, double height, std::string
          Eigen::Translation2d(-box.x, -box.y);
 }
 
-}  // namespace
-
-std::string svg_local_name(const pugi::xml_node& node) {
-  const std::string name = node.name();
-  const std::size_t colon = name.find(':');
-  return colon == std::string::npos ? name : name.substr(colon + 1);
+void check_size(const PageFrame& page) {
+  if (!(page.width_mm <= max_reach_mm && page.height_mm <= max_reach_mm))
+    refuse_drawing("The drawing is larger than 20 m: check its units.");
 }
+
+}  // namespace
 
 PageFrame read_page_frame(const pugi::xml_node& root, UserUnit unit, std::vector<std::string>& notes) {
   const auto box = view_box_of(root);
   const auto width = read_length(root.attribute("width").value()),
              height = read_length(root.attribute("height").value());
   const auto size_of = [](const std::optional<SvgLength>& length) {
-    return length && !length->percent && length->value > 0 ? length->value : 0;
+    return length && !length->percent() && length->value > 0 ? LengthBase().of(*length) : 0;
   };
   double width_px = size_of(width), height_px = size_of(height);
   PageFrame page;
@@ -66,6 +71,7 @@ PageFrame read_page_frame(const pugi::xml_node& root, UserUnit unit, std::vector
     page.viewport = {whole.width, whole.height};
     page.width_mm = mm * whole.width;
     page.height_mm = mm * whole.height;
+    check_size(page);
     return page;
   }
   const auto says_px = [&](const char* name) {
@@ -73,10 +79,16 @@ PageFrame read_page_frame(const pugi::xml_node& root, UserUnit unit, std::vector
   };
   const bool pixels = says_px("width") || says_px("height");
   const bool absolute = (width && width->absolute) || (height && height->absolute);
-  if (!absolute && !pixels)
-    throw Error(
-        ErrorCode::invalid_input, "drawing",
-        "The drawing does not tell its size in millimetres: save it with a width and height such as 200mm, or set user_unit.");
+  if (!absolute && !pixels) {
+    const bool bare = (width && width->unitless) || (height && height->unitless);
+    const bool share = (width && width->percent()) || (height && height->percent());
+    const std::string what = bare    ? "The drawing's width and height have no unit"
+                             : share ? "The drawing's width and height are shares of a window"
+                                     : "The drawing does not tell its size in millimetres";
+    refuse_drawing(
+        what +
+        ": save it with a width and height such as 200mm, or set user_unit (px: 96 an inch, as browsers and Inkscape have it; pt: 72 an inch, as Illustrator has it; or mm).");
+  }
   // One of the two follows from the other and the viewBox.
   if (box && height_px <= 0) height_px = width_px * box->height / box->width;
   if (box && width_px <= 0) width_px = height_px * box->width / box->height;
@@ -86,8 +98,7 @@ PageFrame read_page_frame(const pugi::xml_node& root, UserUnit unit, std::vector
   const auto in_mm = [](double px) { return std::round(1e9 * px / user_units_per_mm) / 1e9; };
   page.width_mm = in_mm(width_px);
   page.height_mm = in_mm(height_px);
-  if (page.width_mm > 20'000 || page.height_mm > 20'000)
-    throw Error(ErrorCode::invalid_input, "drawing", "The drawing is larger than 20 m: check its units.");
+  check_size(page);
   page.viewport = {width_px, height_px};
   page.to_mm = Eigen::Affine2d::Identity();
   if (box) {
@@ -100,21 +111,15 @@ PageFrame read_page_frame(const pugi::xml_node& root, UserUnit unit, std::vector
   return page;
 }
 
-void apply_view_box(const pugi::xml_node& node, Eigen::Affine2d& to_mm, ViewportSize& viewport) {
+bool apply_view_box(const pugi::xml_node& node, Eigen::Affine2d& to_mm, ViewportSize& viewport) {
+  if (viewport.width <= 0 || viewport.height <= 0) return false;
+  const auto numbers = view_box_numbers(node);
+  if (numbers && numbers->size() == 4 && ((*numbers)[2] == 0 || (*numbers)[3] == 0)) return false;
   const auto box = view_box_of(node);
-  if (!box) return;
+  if (!box) return true;
   to_mm = to_mm * fit(*box, viewport.width, viewport.height, node.attribute("preserveAspectRatio").value());
   viewport = {box->width, box->height};
-}
-
-void enter_viewport(const pugi::xml_node& node, Eigen::Affine2d& to_mm, ViewportSize& viewport) {
-  const auto length = [&](const char* name, double whole, double absent) {
-    const auto value = read_length(node.attribute(name).value());
-    return !value ? absent : value->percent ? value->value / 100 * whole : value->value;
-  };
-  to_mm.translate(Vec2(length("x", viewport.width, 0), length("y", viewport.height, 0)));
-  viewport = {length("width", viewport.width, viewport.width), length("height", viewport.height, viewport.height)};
-  apply_view_box(node, to_mm, viewport);
+  return true;
 }
 
 }  // namespace formwright

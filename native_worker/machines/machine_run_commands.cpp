@@ -149,6 +149,10 @@ int machine_origin(const std::vector<std::string>& words, const std::atomic<bool
                 "The bed's corner is a place in x and y: leave --axes out, and set z by --axes z when the tip touches "
                 "the stock.");
   terminal.connect();
+  if (at == "corner" && terminal.state()["position_known"] != true && !terminal.can("home"))
+    throw Error(ErrorCode::invalid_input, "--at",
+                "Where the bed's corner is only a machine with switches knows: jog to the material's corner and use "
+                "--at head.");
   if (at == "corner") terminal.know_position();
   if (terminal.state()["phase"] == "alarm")
     throw Error(ErrorCode::could_not_solve, "machine",

@@ -87,12 +87,14 @@ void Terminal::confirm(const std::string& question) {
   if (ask(question + " Type yes:") != "yes") throw Error(ErrorCode::cancelled, "", "Not confirmed: nothing was moved.");
 }
 
+bool Terminal::can(const char* what) const {
+  const Json possible = state()["can"];
+  return std::find(possible.begin(), possible.end(), what) != possible.end();
+}
+
 void Terminal::know_position() {
   const Json now = state();
   if (now["position_known"] == true) return;
-  const auto can = [&](const char* what) {
-    return std::find(now["can"].begin(), now["can"].end(), what) != now["can"].end();
-  };
   if (can("home")) {
     confirm("Where the head stands is unknown. It moves to its switches now.");
     session_->command({{"do", "home"}, {"confirmed", true}});

@@ -47,6 +47,8 @@ class Terminal {
   /// The line that is typed. The port is served meanwhile. Throws Error{cancelled} where the terminal closes.
   std::string ask(const std::string& question);
   static bool can_ask();
+  /// Is this command possible now?
+  bool can(const char* what) const;
   /// Where the head stands must be known before a job starts.
   void know_position();
   /// The head's place becomes 0 on these axes ("xy"), or the bed's corner does.

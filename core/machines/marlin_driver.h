@@ -17,7 +17,7 @@
 #include <deque>
 #include <optional>
 
-#include "machines/gcode_program.h"
+#include "machines/gcode_rules.h"
 #include "machines/machine_driver.h"
 
 namespace formwright {

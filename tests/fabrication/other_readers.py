@@ -33,7 +33,7 @@ def run(folder, drawing, *flags, outputs="job.gcode,toolpath.json,job.egv,job.rd
     done = subprocess.run([PROGRAM, "laser-job", "--drawing", str(folder / "drawing.svg"), "--out", str(folder), "--outputs", outputs, *flags],
                           capture_output=True, timeout=120, text=True)
     assert (done.returncode == 0) == ok, done.stderr
-    return json.loads((folder / "report.json").read_text())
+    return done.stderr if not ok else json.loads((folder / "report.json").read_text())
 
 
 def blob(rng, x, y, low, high):
@@ -85,7 +85,7 @@ def read_gcode(text):
         name, p = command.command, command.params
         power = p.get("S", power)
         if name not in (("G", 0), ("G", 1)):
-            assert name in {("G", 21), ("G", 90), ("G", 94), ("M", 3), ("M", 4), ("M", 5), ("M", 2), ("M", 8), ("M", 9)}, name
+            assert name in {("G", 21), ("G", 90), ("G", 17), ("G", 94), ("G", 54), ("M", 3), ("M", 4), ("M", 5), ("M", 2), ("M", 8), ("M", 9)}, name
             continue
         to = (p.get("X", at[0]), p.get("Y", at[1]))
         if name == ("G", 1) and power > 0:
@@ -270,12 +270,10 @@ class Jobs(unittest.TestCase):
         self.assertTrue(report["fits"])
 
     def test_nothing_is_written_for_a_machine_it_does_not_fit(self):
-        report = run(self.folder, RandomDrawing(1).svg, "--bed-x-mm", "150")
-        self.assertFalse(report["fits"])
-        self.assertIn("beyond the right edge", report["misfits"][0])
-        for name in ("job.gcode", "job.egv", "job.rd"):
+        self.assertTrue(run(self.folder, RandomDrawing(1).svg)["fits"])
+        self.assertIn("beyond the right edge", run(self.folder, RandomDrawing(1).svg, "--bed-x-mm", "150", ok=False))
+        for name in ("job.gcode", "job.egv", "job.rd", "toolpath.json", "report.json"):
             self.assertFalse((self.folder / name).exists(), name)
-        self.assertTrue((self.folder / "toolpath.json").exists())
 
 
 class Pages(unittest.TestCase):

@@ -15,7 +15,9 @@ const idle: Pick<MachineState, 'phase' | 'position_known' | 'axes_known' | 'can'
 const room = (tool: 'laser' | 'mill', state: object): MachinesSession =>
   ({
     control: { state: { value: state }, isBusy: false },
-    plan: { value: { misfits: [], job: new Uint8Array(1) } },
+    plan: { value: { misfits: [], jobs: [] } },
+    job: { value: { stage: '', bytes: new Uint8Array(1) } },
+    needsZ: false,
     planning: { value: false },
     isCurrent: { value: true },
     subject: { value: null },

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "base/json_text.h"
 #include "geometry/io/byte_order.h"
 #include "geometry/io/text_scan.h"
 
@@ -58,7 +59,7 @@ Eigen::Matrix4d node_transform(const GltfDocument& document, const GltfDocument:
 
 GltfDocument::GltfDocument(const MeshSource& source) : source_(source) {
   open_container();
-  json_ = Object::parse(json_text_, nullptr, false);
+  json_ = parse_json_text<Object>(json_text_);
   if (!json_.is_object()) source_.refuse("its JSON is damaged; export it or copy it again.");
   const auto asset = json_.find("asset");
   if (asset == json_.end() || !asset->is_object() || !text(*asset, "version").starts_with("2"))

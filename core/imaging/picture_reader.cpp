@@ -22,6 +22,8 @@ struct TooLarge {
   std::int64_t width, height;
 };
 
+constexpr int max_jpeg_scans = 100;
+
 void check_size(std::int64_t width, std::int64_t height) {
   if (width < 1 || height < 1) throw Damaged("it has no pixels");
   if (width > most_picture_side || height > most_picture_side || width * height > most_picture_pixels)
@@ -33,7 +35,6 @@ Image read_png(ByteView bytes) {
   const png_structp png = reader.png();
   const png_infop info = reader.info();
   png_set_user_limits(png, 0x7fffffff, 0x7fffffff);  // check_size says it in our words
-  png_set_chunk_malloc_max(png, 8'000'000);
   png_read_info(png, info);
   const std::int64_t width = png_get_image_width(png, info), height = png_get_image_height(png, info);
   check_size(width, height);
@@ -55,8 +56,27 @@ Image read_png(ByteView bytes) {
   return image;
 }
 
+/// Scans of a JPEG (ITU T.81 B.1.1): a progressive one has about ten. A scan of nothing but runs of empty blocks takes
+/// some hundred bytes and goes over the whole picture, so that thousands of them take minutes.
+int count_scans(ByteView bytes) {
+  const auto at = [&](std::size_t i) { return std::to_integer<unsigned>(bytes[i]); };
+  int scans = 0;
+  for (std::size_t i = 2; i + 3 < bytes.size();) {
+    const unsigned marker = at(i + 1);
+    if (at(i) != 0xff || marker == 0x00 || marker == 0xff || (marker >= 0xd0 && marker <= 0xd8)) {
+      ++i;  // within a scan: data, stuffed bytes and restarts
+      continue;
+    }
+    if (marker == 0xd9) break;
+    scans += marker == 0xda;
+    i += 2 + (at(i + 2) << 8 | at(i + 3));
+  }
+  return scans;
+}
+
 Image read_jpeg(ByteView bytes) {
   if (bytes.size() > 0x7fffffff) throw Damaged("it is larger than 2 GB");
+  if (count_scans(bytes) > max_jpeg_scans) throw Damaged("it is drawn in more than 100 passes");
   const auto* const data = reinterpret_cast<const stbi_uc*>(bytes.data());
   const int size = static_cast<int>(bytes.size());
   int width = 0, height = 0, channels = 0;

@@ -98,7 +98,7 @@ int main(int argc, char** argv) {
   for (const auto& [name, model] : {std::pair{"plain", &plain}, {"full", &full}, {"coloured", &coloured}}) {
     const Bytes bytes = write_model(*model, MeshFormat::three_mf, context);
     const MeshSource source(bytes, "seed", options, context);
-    const ZipArchive archive(source);
+    ZipArchive archive(source);
     save("three_mf_model", name, archive.read(*archive.find("3D/3dmodel.model"), 1 << 20));
   }
   const std::string mesh =

@@ -59,7 +59,6 @@ Grey16Image read_png16(ByteView bytes, std::string_view file_name, std::string_v
     const png_structp png = reader.png();
     const png_infop info = reader.info();
     png_set_user_limits(png, 65535, 65535);
-    png_set_chunk_malloc_max(png, 8'000'000);
     png_read_info(png, info);
     const std::size_t width = png_get_image_width(png, info), height = png_get_image_height(png, info);
     // Deflate packs at most 1032 to 1, so no small file can ask for a large picture.

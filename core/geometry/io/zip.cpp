@@ -41,7 +41,9 @@ bool read_zip64_extra(ByteView extra, ZipArchive::Entry& entry) {
   return true;
 }
 
-/// Raw inflation with a growing buffer; the sizes an archive declares are believed only as far as zlib can go.
+// Deflate packs a run of 258 bytes into 2 bits (RFC 1951 3.2.5): what declares more than that is damaged.
+constexpr std::uint64_t max_deflate_ratio = 1032;
+
 class Inflater {
  public:
   Inflater() {
@@ -127,33 +129,24 @@ Bytes ZipArchive::read(const Entry& entry, std::uint64_t max_bytes) {
   const ByteView packed = bytes.subspan(static_cast<std::size_t>(start), static_cast<std::size_t>(entry.packed_bytes));
   // Text of numbers packs 5 to 20 times; a bomb a thousand times.
   const std::uint64_t limit = std::min(max_bytes, budget_.left());
-  const auto too_much = [&](std::uint64_t size) {
-    if (size > limit)
-      source_.refuse(part + "unpacks to more than " + std::to_string(limit >> 20) +
-                     " MB; simplify the mesh or export it again.");
-  };
+  if (std::max<std::uint64_t>(entry.bytes, entry.method == 0 ? packed.size() : 0) > limit)
+    source_.refuse(part + "unpacks to more than " + std::to_string(limit >> 20) +
+                   " MB; simplify the mesh or export it again.");
 
   Bytes result;
   if (entry.method == 0) {
-    too_much(packed.size());
     result.assign(packed.begin(), packed.end());
   } else {
+    if (entry.bytes / max_deflate_ratio > packed.size()) damaged();
     Inflater inflater;
     z_stream& stream = inflater.stream();
-    constexpr std::size_t step = 64u << 20;  // zlib counts with 32 bits
-    const std::uint64_t expected = std::min<std::uint64_t>({entry.bytes, 1032 * entry.packed_bytes, step, limit});
-    result.resize(static_cast<std::size_t>(expected) + 1);
+    constexpr std::size_t step = 16u << 20;  // zlib counts with 32 bits; and how often it is asked to cancel
+    result.resize(static_cast<std::size_t>(entry.bytes) + 1);  // one more, to see that it ends
     std::size_t in = 0, out = 0;
     int status = Z_OK;
     while (status != Z_STREAM_END) {
       source_.context().check_cancelled();
-      if (out == result.size()) {
-        too_much(out);
-        // As declared, once twice as much does not suffice; at most one byte beyond the limit.
-        const std::uint64_t wanted = std::max<std::uint64_t>(std::min<std::uint64_t>(2 * out, entry.bytes + 1),
-                                                             out + (out >> 2) + 65536);
-        result.resize(static_cast<std::size_t>(std::min(wanted, limit + 1)));
-      }
+      if (out > entry.bytes) break;
       stream.next_in = zbytes(packed.data() + in);
       stream.avail_in = static_cast<uInt>(std::min(packed.size() - in, step));
       stream.next_out = zbytes(result.data() + out);
@@ -165,7 +158,8 @@ Bytes ZipArchive::read(const Entry& entry, std::uint64_t max_bytes) {
       if (in_before == stream.avail_in && out_before == stream.avail_out && status != Z_STREAM_END)
         damaged();  // no more to come
     }
-    too_much(out);
+    if (out > entry.bytes)
+      source_.refuse(part + "unpacks to more than its directory says; export it or copy it again.");
     result.resize(out);
   }
   budget_.take(result.size());

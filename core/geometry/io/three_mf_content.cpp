@@ -178,8 +178,7 @@ class PartReader {
       properties.index.fill(integer("p1"));
       if (xml_.has("p2")) properties.index[1] = integer("p2");
       if (xml_.has("p3")) properties.index[2] = integer("p3");
-      properties.per_corner =
-          properties.index[1] != properties.index[0] || properties.index[2] != properties.index[0];
+      properties.per_corner = properties.index[1] != properties.index[0] || properties.index[2] != properties.index[0];
     }
     content_.painted = content_.painted || xml_.has("paint_color") || xml_.has("mmu_segmentation");
     const std::size_t face = object_->F.size() / 3 - 1;

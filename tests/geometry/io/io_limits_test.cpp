@@ -37,8 +37,7 @@ Packed packed(const std::string& begin, char filling, std::size_t count, const s
       stream.next_out = reinterpret_cast<Bytef*>(out.data());
       stream.avail_out = static_cast<uInt>(out.size());
       deflate(&stream, flush);
-      result.bytes.insert(result.bytes.end(), out.begin(),
-                          out.end() - static_cast<std::ptrdiff_t>(stream.avail_out));
+      result.bytes.insert(result.bytes.end(), out.begin(), out.end() - static_cast<std::ptrdiff_t>(stream.avail_out));
     } while (stream.avail_out == 0);
   };
   feed(begin, Z_NO_FLUSH);
@@ -111,13 +110,13 @@ void expect_refused_within(ByteView bytes, const std::string& name, const std::s
 /// However it ends, in an answer or in a refusal.
 void expect_answered_within(ByteView bytes, const std::string& name, const ReadOptions& options = {}) {
   expect_within(bytes, peak_growth_mb([&] {
-    Context context;
-    try {
-      read_model_file(bytes, name, options, context);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::invalid_input) << error.what();
-    }
-  }));
+                  Context context;
+                  try {
+                    read_model_file(bytes, name, options, context);
+                  } catch (const Error& error) {
+                    EXPECT_EQ(error.code(), ErrorCode::invalid_input) << error.what();
+                  }
+                }));
 }
 
 const std::string model_begin = "<model><resources>";
@@ -188,9 +187,10 @@ TEST(Limits, WhatAPackedTextBecomesIsCountedToo) {
   for (const std::string_view element :
        {"<base/>", "<base name='abcdefghijklmnopq'/>", "<component objectid='1'/>", "<item objectid='1'/>"}) {
     const bool in_group = element.starts_with("<base"), in_object = element.starts_with("<component");
-    const std::string model = model_begin + (in_group    ? "<basematerials id='5'>"
-                                             : in_object ? "<object id='7'>"
-                                                         : "") +
+    const std::string model = model_begin +
+                              (in_group    ? "<basematerials id='5'>"
+                               : in_object ? "<object id='7'>"
+                                           : "") +
                               repeated(element, 40u << 20) +
                               (in_group    ? "</basematerials>"
                                : in_object ? "</object>"
@@ -211,9 +211,7 @@ TEST(Limits, XmlNestsSoDeepAndTagsHaveSoManyAttributes) {
 
 TEST(Limits, SizesThatTheDirectoryDeclaresAreChecked) {
   const std::string text = model_begin + triangle + build;
-  const auto declared = [&](std::size_t size) {
-    return archive({}, {"3D/3dmodel.model"}, packed(text, ' ', 0), size);
-  };
+  const auto declared = [&](std::size_t size) { return archive({}, {"3D/3dmodel.model"}, packed(text, ' ', 0), size); };
   EXPECT_EQ(read_bytes(declared(text.size()), "a.3mf").model.mesh.face_count(), 1);
   for (const std::size_t small : {std::size_t{0}, std::size_t{1}, text.size() - 1})
     expect_refused_within(declared(small), "small.3mf", "unpacks to more than its directory says");
@@ -282,11 +280,11 @@ TEST(Limits, OneLibraryAndOnePictureUnderManyNamesAreReadOnce) {
   ReadOptions options;
   options.companions = companions;
   expect_within(text, peak_growth_mb([&] {
-    const ModelFile file = read_bytes(text, "a.obj", options);
-    EXPECT_EQ(file.model.materials.size(), 20'000u);
-    EXPECT_EQ(file.model.textures.size(), 1u);
-    EXPECT_EQ(file.model.textures.at(0).bytes.size(), picture.size());
-  }));
+                  const ModelFile file = read_bytes(text, "a.obj", options);
+                  EXPECT_EQ(file.model.materials.size(), 20'000u);
+                  EXPECT_EQ(file.model.textures.size(), 1u);
+                  EXPECT_EQ(file.model.textures.at(0).bytes.size(), picture.size());
+                }));
 }
 
 TEST(Limits, PlyDeclaresSoManyElements) {

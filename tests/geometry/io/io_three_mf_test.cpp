@@ -154,8 +154,7 @@ TEST(ThreeMf, ColoursThatAreNotKeptAreNamed) {
   // Corners that agree where they meet: kept whole, as colours of vertices.
   const ModelFile agreeing = read(
       "<triangle v1=\"0\" v2=\"1\" v3=\"2\" pid=\"6\" p1=\"0\" p2=\"1\" p3=\"0\"/><triangle v1=\"2\" v2=\"1\" v3=\"3\" pid=\"6\" p1=\"0\" p2=\"1\" p3=\"1\"/>");
-  EXPECT_EQ(agreeing.model.vertex_colours,
-            (Positions(4, 3) << 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 0, 1).finished());
+  EXPECT_EQ(agreeing.model.vertex_colours, (Positions(4, 3) << 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 0, 1).finished());
   EXPECT_TRUE(agreeing.notes.empty());
   // Corners that do not: the first is kept, and a note says so.
   const ModelFile differing = read(
@@ -163,9 +162,8 @@ TEST(ThreeMf, ColoursThatAreNotKeptAreNamed) {
   EXPECT_EQ(differing.model.vertex_colours.row(2), Eigen::RowVector3d(0, 1, 0));
   ASSERT_EQ(differing.notes.size(), 1u);
   EXPECT_NE(differing.notes[0].find("At 2 vertices, faces of different colours meet"), std::string::npos);
-  const ModelFile mixed =
-      read("<triangle v1=\"0\" v2=\"1\" v3=\"2\" pid=\"9\" p1=\"0\"/>",
-           "<m:multiproperties id=\"9\" pids=\"6\"><m:multi pindices=\"0\"/></m:multiproperties>");
+  const ModelFile mixed = read("<triangle v1=\"0\" v2=\"1\" v3=\"2\" pid=\"9\" p1=\"0\"/>",
+                               "<m:multiproperties id=\"9\" pids=\"6\"><m:multi pindices=\"0\"/></m:multiproperties>");
   EXPECT_EQ(mixed.notes, (std::vector<std::string>{"Mixed materials and colours were left out."}));
   for (const char* const paint : {"paint_color=\"4\"", "slic3rpe:mmu_segmentation=\"8\""})
     EXPECT_EQ(read("<triangle v1=\"0\" v2=\"1\" v3=\"2\" " + std::string(paint) + "/>").notes,

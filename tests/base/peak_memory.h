@@ -5,13 +5,21 @@
 #include <cstring>
 #include <optional>
 
+#if defined(__SANITIZE_ADDRESS__)
+#define FORMWRIGHT_KEEPS_FREED_MEMORY
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define FORMWRIGHT_KEEPS_FREED_MEMORY
+#endif
+#endif
+
 namespace formwright::test {
 
 /// Megabytes that resident memory rises by while `act` runs. Nothing where the kernel does not tell, as in
 /// WebAssembly, or where a sanitizer keeps what was freed.
 template <class Act>
 std::optional<double> peak_growth_mb(const Act& act) {
-#if defined(__linux__) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__linux__) && !defined(FORMWRIGHT_KEEPS_FREED_MEMORY)
   const auto kilobytes = [](const char* key) -> long {
     long value = -1;
     if (std::FILE* const file = std::fopen("/proc/self/status", "r")) {

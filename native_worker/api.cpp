@@ -5,6 +5,7 @@
 
 #include <fstream>
 
+#include "base/json_text.h"
 #include "files.h"
 #include "host.h"
 #include "http_server.h"
@@ -159,7 +160,7 @@ Response HttpServer::answer_jobs(const Head& head, const std::string& path, cons
   if (path.empty()) {
     if (head.method() != http::verb::post)
       return error_response(head, http::status::method_not_allowed, "invalid_input", "", "Jobs are listed or posted.");
-    const Json message = Json::parse(body, nullptr, false);
+    const Json message = parse_json_text(body);
     if (message.is_discarded())
       return error_response(head, http::status::bad_request, "invalid_input", "", "The job is not JSON.");
     if (const auto error = check_job(message))

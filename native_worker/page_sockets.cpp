@@ -4,6 +4,7 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <iostream>
 
+#include "base/json_text.h"
 #include "http_server.h"
 
 namespace formwright {
@@ -57,7 +58,7 @@ void HttpServer::write_next(const std::shared_ptr<PageSocket>& page) {
 }
 
 void HttpServer::hear_page(const std::string& text) {
-  const Json message = Json::parse(text, nullptr, false);
+  const Json message = parse_json_text(text);
   if (!message.is_object() || message.value("type", Json()) != "cancel") return;
   const Json id = message.value("id", Json());
   if (id.is_string()) queue_.cancel(id.get<std::string>());

@@ -1,19 +1,45 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Builds the fuzz targets (tests/fuzz) with libFuzzer and runs each for FUZZ_SECONDS (60), at low priority.
-#   FUZZ_SECONDS=600 setup/fuzz.sh [obj stl ply glb three_mf three_mf_model mtl png16]
-# New inputs stay in the cache folder, where the next run begins. What it finds stays in build-fuzz/findings; each
-# target goes on after a finding until its time is up or it has found ten.
+# Builds the fuzz targets (tests/fuzz) with libFuzzer and runs each for FUZZ_SECONDS (60), at the lowest priority.
+#   FUZZ_SECONDS=600 setup/fuzz.sh [obj stl ply glb ...]   all targets, or these
+#   setup/fuzz.sh --table                                  what all runs so far came to, by target
+# New inputs stay in the cache folder, where the next run begins; so do the logs of which --table adds up the figures.
+# What it finds stays in build-fuzz/findings; each target goes on after a finding until its time is up or it has found ten.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 cd "$FORMWRIGHT_ROOT"
+corpus="$FORMWRIGHT_CACHE_DIR/fuzz" findings=build-fuzz/findings
+logs="$corpus/logs"
+
+# The values of lines "stat::NAME: value" in a log: their sum, or the largest.
+statistic() {  # log, name, sum or largest
+  awk -v name="stat::$2:" -v how="$3" '$1 == name { sum += $2; if ($2 > largest) largest = $2 } END { print (how == "sum" ? sum : largest) + 0 }' "$1"
+}
+
+table() {
+  local log name
+  printf '%s\n' '| target | runs | seconds | edges | largest memory, MB | slowest, s | found |' '|---|---:|---:|---:|---:|---:|---:|'
+  for log in "$logs"/*.log; do
+    [ -f "$log" ] || continue
+    name="$(basename "$log" .log)"
+    # shellcheck disable=SC2016  # the backquotes are Markdown
+    printf '| `%s` | %s | %s | %s | %s | %s | %s |\n' "$name" "$(statistic "$log" number_of_executed_units sum)" \
+      "$(statistic "$log" seconds sum)" "$(grep -oE ' cov: [0-9]+' "$log" | awk '$2 > n { n = $2 } END { print n + 0 }')" \
+      "$(statistic "$log" largest_mb largest)" "$(statistic "$log" slowest_s largest)" \
+      "$(grep -c 'Test unit written' "$log" || true)"
+  done
+}
+if [ "${1-}" = --table ]; then
+  table
+  exit
+fi
+
 setup/native.sh --test
 setup/wasm_toolchain.sh >/dev/null
 cmake --preset fuzz >&2
 nice cmake --build --preset fuzz --parallel "${FORMWRIGHT_JOBS:-$(nproc)}" >&2
 
-corpus="$FORMWRIGHT_CACHE_DIR/fuzz" findings=build-fuzz/findings logs=build-fuzz/logs
 mkdir -p "$corpus" "$findings" "$logs"
 build-fuzz/tests/fuzz/make_fuzz_seeds build-fuzz/seeds
 if [ $# -gt 0 ]; then
@@ -23,26 +49,26 @@ else
 fi
 [ ${#targets[@]} -gt 0 ] || fail "no fuzz target was built" "name its CMake target fuzz_<what>"
 
-# The value of a line "stat::NAME: value", summed over the runs in a log.
-statistic() { awk -v name="stat::$2:" '$1 == name { sum += $2 } END { print sum + 0 }' "$1"; }
-
 status=0
 for name in "${targets[@]}"; do
-  mkdir -p "$corpus/$name"
+  mkdir -p "$corpus/$name" "build-fuzz/seeds/$name"
   dictionary="tests/fuzz/dictionaries/$name.dict" log="$logs/$name.log" begin=$SECONDS found=0
   end=$((begin + ${FUZZ_SECONDS:-60}))
-  options=(-max_len=65536 -timeout=20 -rss_limit_mb=2048 -malloc_limit_mb=1024 -print_final_stats=1)
+  # The memory of one input is counted by the target itself (fuzz_entry.cpp); these limits end what runs away.
+  options=(-max_len=1048576 -timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=1024 -print_final_stats=1)
   [ ! -f "$dictionary" ] || options+=(-dict="$dictionary")
-  : >"$log"
+  folders=("$corpus/$name" "build-fuzz/seeds/$name")
+  [ ! -d "tests/fuzz/found/$name" ] || folders+=("tests/fuzz/found/$name")
   while [ $SECONDS -lt $end ] && [ $found -lt 10 ]; do
     if nice -n 19 "build-fuzz/tests/fuzz/fuzz_$name" "${options[@]}" -max_total_time=$((end - SECONDS)) \
-      -artifact_prefix="$findings/$name-" "$corpus/$name" "build-fuzz/seeds/$name" >>"$log" 2>&1; then
+      -artifact_prefix="$findings/$name-" "${folders[@]}" >>"$log" 2>&1; then
       break
     fi
     found=$((found + 1)) status=1
     grep -E '^SUMMARY|Test unit written' "$log" | tail -n 2 >&2
   done
-  printf '%s: %d s, %d executions, %d inputs kept, %d findings\n' "$name" $((SECONDS - begin)) \
-    "$(statistic "$log" number_of_executed_units)" "$(find "$corpus/$name" -type f | wc -l)" "$found"
+  echo "stat::seconds: $((SECONDS - begin))" >>"$log"
+  printf '%s: %d s, %d inputs kept, %d findings\n' "$name" $((SECONDS - begin)) "$(find "$corpus/$name" -type f | wc -l)" "$found"
 done
+table
 exit $status

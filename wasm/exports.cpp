@@ -7,6 +7,7 @@
 #include <map>
 #include <new>
 
+#include "base/json_text.h"
 #include "job/catalog.h"
 #include "job/run.h"
 
@@ -55,7 +56,7 @@ EMSCRIPTEN_KEEPALIVE const char* fw_run(const char* job) {
   const Host host{[](const Progress& p) { tell_progress(p.fraction, p.stage.c_str(), p.seconds_left.value_or(-1)); },
                   [] { return asked_to_cancel() != 0; },
                   [] { return static_cast<double>(emscripten_get_heap_size()) / 1e6; }};
-  const Json message = Json::parse(job, nullptr, false);
+  const Json message = parse_json_text(job);
   const auto find = [](const std::string& hash) -> std::shared_ptr<const Bytes> {
     const auto it = blobs.find(hash);
     return it == blobs.end() ? nullptr : it->second;

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "base/json_text.h"
 #include "machines/machine_driver.h"
 #include "machines/virtual_grbl.h"
 
@@ -55,7 +56,7 @@ EMSCRIPTEN_KEEPALIVE const char* fw_machine_options() {
 
 EMSCRIPTEN_KEEPALIVE const char* fw_machine_new(const char* options) {
   return guarded([&] {
-    talks[++last_handle].driver = make_machine_driver(Json::parse(options));
+    talks[++last_handle].driver = make_machine_driver(parse_json_text(options));
     return Json{{"handle", last_handle}};
   });
 }
@@ -67,7 +68,7 @@ EMSCRIPTEN_KEEPALIVE const char* fw_machine_call(int handle, const char* call, c
   return guarded([&] {
     Talk& talk = talks.at(handle);
     MachineDriver& driver = *talk.driver;
-    const Json message = Json::parse(call);
+    const Json message = parse_json_text(call);
     const std::string what = message.at("call");
     if (what == "opened") driver.opened(now_s);
     else if (what == "closed") driver.closed(now_s);

@@ -22,21 +22,22 @@ struct TooLarge {
   std::int64_t width, height;
 };
 
-void check_size(std::int64_t width, std::int64_t height) {
+constexpr int max_jpeg_scans = 100;
+
+void check_size(std::int64_t width, std::int64_t height, std::int64_t max_pixels) {
   if (width < 1 || height < 1) throw Damaged("it has no pixels");
-  if (width > most_picture_side || height > most_picture_side || width * height > most_picture_pixels)
+  if (width > most_picture_side || height > most_picture_side || width * height > max_pixels)
     throw TooLarge{width, height};
 }
 
-Image read_png(ByteView bytes) {
+Image read_png(ByteView bytes, std::int64_t max_pixels) {
   const PngReader reader(bytes);
   const png_structp png = reader.png();
   const png_infop info = reader.info();
   png_set_user_limits(png, 0x7fffffff, 0x7fffffff);  // check_size says it in our words
-  png_set_chunk_malloc_max(png, 8'000'000);
   png_read_info(png, info);
   const std::int64_t width = png_get_image_width(png, info), height = png_get_image_height(png, info);
-  check_size(width, height);
+  check_size(width, height, max_pixels);
   // Deflate packs at most 1032 to 1, so no small file can ask for a large picture.
   const std::int64_t bits = std::int64_t{png_get_channels(png, info)} * png_get_bit_depth(png, info);
   if (width * height / 8 * bits / 1032 > static_cast<std::int64_t>(bytes.size())) throw Damaged("it ends too early");
@@ -55,8 +56,27 @@ Image read_png(ByteView bytes) {
   return image;
 }
 
-Image read_jpeg(ByteView bytes) {
+/// Scans of a JPEG (ITU T.81 B.1.1): a progressive one has about ten. A scan of nothing but runs of empty blocks takes
+/// some hundred bytes and goes over the whole picture, so that thousands of them take minutes.
+int count_scans(ByteView bytes) {
+  const auto at = [&](std::size_t i) { return std::to_integer<unsigned>(bytes[i]); };
+  int scans = 0;
+  for (std::size_t i = 2; i + 3 < bytes.size();) {
+    const unsigned marker = at(i + 1);
+    if (at(i) != 0xff || marker == 0x00 || marker == 0xff || (marker >= 0xd0 && marker <= 0xd8)) {
+      ++i;  // within a scan: data, stuffed bytes and restarts
+      continue;
+    }
+    if (marker == 0xd9) break;
+    scans += marker == 0xda;
+    i += 2 + (at(i + 2) << 8 | at(i + 3));
+  }
+  return scans;
+}
+
+Image read_jpeg(ByteView bytes, std::int64_t max_pixels) {
   if (bytes.size() > 0x7fffffff) throw Damaged("it is larger than 2 GB");
+  if (count_scans(bytes) > max_jpeg_scans) throw Damaged("it is drawn in more than 100 passes");
   const auto* const data = reinterpret_cast<const stbi_uc*>(bytes.data());
   const int size = static_cast<int>(bytes.size());
   int width = 0, height = 0, channels = 0;
@@ -64,7 +84,7 @@ Image read_jpeg(ByteView bytes) {
     return std::string(stbi_failure_reason() != nullptr ? stbi_failure_reason() : "no reason given");
   };
   if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) throw Damaged(reason());
-  check_size(width, height);
+  check_size(width, height, max_pixels);
   // Even a picture of one colour takes 4 bits of each block of 8 x 8 points: a file that claims more ends too early.
   // stb itself fills what is missing with grey.
   if (std::int64_t{width} * height / 64 / 4 > std::int64_t{size}) throw Damaged("it ends too early");
@@ -81,7 +101,7 @@ Image read_jpeg(ByteView bytes) {
 
 }  // namespace
 
-Image read_picture(ByteView bytes, std::string_view file_name, std::string_view where) {
+Image read_picture(ByteView bytes, std::string_view file_name, std::string_view where, std::int64_t max_pixels) {
   const auto refuse = [&](const std::string& what) -> Error {
     return {ErrorCode::invalid_input, std::string(where),
             (file_name.empty() ? std::string("The picture") : clean_text(file_name)) + ": " + what};
@@ -90,10 +110,10 @@ Image read_picture(ByteView bytes, std::string_view file_name, std::string_view 
   if (kind != "image/png" && kind != "image/jpeg")
     throw refuse("this is neither a PNG nor a JPEG picture; save it as one of them.");
   try {
-    return kind == "image/png" ? read_png(bytes) : read_jpeg(bytes);
+    return kind == "image/png" ? read_png(bytes, max_pixels) : read_jpeg(bytes, max_pixels);
   } catch (const TooLarge& size) {
     throw refuse("the picture has " + std::to_string(size.width) + " x " + std::to_string(size.height) +
-                 " pixels, more than fit; scale it down to at most " + std::to_string(most_picture_pixels / 1'000'000) +
+                 " pixels, more than fit; scale it down to at most " + std::to_string(max_pixels / 1'000'000) +
                  " million.");
   } catch (const std::runtime_error& error) {
     throw refuse(std::string("the picture is damaged (") + clean_text(error.what()) + "); save or copy it again.");

@@ -16,6 +16,7 @@ inline constexpr std::int64_t most_picture_pixels =
 /// Any PNG or JPEG as 8-bit sRGB; the kind is found by content. Embedded colour profiles, gamma and orientation are
 /// not followed; 16 bits are rounded to 8. `file_name` may be empty; `where` names the input, for errors.
 /// Throws Error{invalid_input, where} with one sentence: neither PNG nor JPEG, damaged, too large.
-Image read_picture(ByteView bytes, std::string_view file_name, std::string_view where);
+Image read_picture(ByteView bytes, std::string_view file_name, std::string_view where,
+                   std::int64_t max_pixels = most_picture_pixels);
 
 }  // namespace formwright

@@ -9,7 +9,7 @@
 namespace formwright {
 namespace {
 
-constexpr std::uint64_t most_bytes = std::uint64_t{1} << 30;
+constexpr std::uint64_t max_unpacked_bytes = std::uint64_t{1} << 30;
 
 }  // namespace
 
@@ -24,14 +24,14 @@ std::map<std::string, Bytes> unpack_files(const InputBlob& input, const std::str
   ReadOptions options;
   options.where = where;
   const MeshSource source(*input.bytes, input.file_name, options, context);
-  const ZipArchive archive(source);
+  ZipArchive archive(source);
   std::map<std::string, Bytes> files;
   for (const ZipArchive::Entry& entry : archive.entries()) {
     const std::string name = entry.name.substr(entry.name.find_last_of('/') + 1);
     // Some archivers add notes of their own to every file.
     if (name.empty() || name.starts_with("._") || files.contains(name)) continue;
     if (std::find(needed.begin(), needed.end(), name) == needed.end()) continue;
-    files.emplace(name, archive.read(entry, most_bytes));
+    files.emplace(name, archive.read(entry, max_unpacked_bytes));
   }
   std::string list;
   for (const std::string& name : needed) list += (list.empty() ? "" : ", ") + name;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/json_text.h"
 #include "thermoform/thermoform_options.h"
 
 namespace formwright {
@@ -51,7 +52,7 @@ bool is_the_machines_own(const ParameterInfo& info) {
 }  // namespace
 
 MachineProfile read_machine_profile(ByteView bytes) {
-  const Json json = Json::parse(as_text(bytes), nullptr, false);
+  const Json json = parse_json_text(as_text(bytes));
   if (!json.is_object() || !json.contains("format") || json["format"] != format_name)
     refuse("this file is none: it must be a JSON object with \"format\": \"" + std::string(format_name) + "\".");
   if (!json.contains("version") || json["version"] != newest_version)

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "base/error.h"
+#include "base/json_text.h"
 #include "base/number_table.h"
 #include "thermoform/sheet_lookup.h"
 
@@ -31,7 +32,7 @@ double percentile(const std::vector<double>& sorted, double share) {
 }  // namespace
 
 ObjectSetup read_object_setup(ByteView bytes) {
-  const Json json = Json::parse(as_text(bytes), nullptr, false);
+  const Json json = parse_json_text(as_text(bytes));
   if (!json.is_object()) refuse_setup("this is not a JSON object; see docs/measured_data.md for one.");
   ObjectSetup setup;
   double start_z = 0, end_z = 0;

@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "base/error.h"
-#include "base/json.h"
+#include "base/json_text.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/text_out.h"
 
@@ -107,7 +107,7 @@ double micrometres(double mm) { return std::round(1000 * mm) / 1000; }
 }  // namespace
 
 ZippableParts read_segments(ByteView bytes) {
-  const Json json = Json::parse(as_text(bytes), nullptr, false);
+  const Json json = parse_json_text(as_text(bytes));
   if (!json.is_object()) refuse("segments.json is not a JSON object: it holds punctures, loops, lines, start and end.");
   ZippableParts parts;
   for (const auto& [name, value] : json.items()) {

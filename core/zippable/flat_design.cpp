@@ -7,7 +7,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "base/json.h"
+#include "base/json_text.h"
 #include "geometry/adjacency.h"
 #include "zippable/fabric_colours.h"
 
@@ -118,7 +118,7 @@ bool FlatDesign::zipper_edge(int v) const {
 }
 
 FlatDesign read_flat_design(ByteView bytes) {
-  const Json json = Json::parse(as_text(bytes), nullptr, false);
+  const Json json = parse_json_text(as_text(bytes));
   if (!json.is_object() || json.value("format", Json()) != "formwright zippable design" ||
       json.value("version", Json()) != 1)
     refuse("This is no zippable design");

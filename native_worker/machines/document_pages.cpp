@@ -4,15 +4,18 @@
 #include <cups/raster.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <qpdf/Buffer.hh>
+#include <qpdf/Pl_Flate.hh>
 #include <qpdf/QPDF.hh>
 #include <qpdf/QPDFPageDocumentHelper.hh>
 #include <qpdf/QPDFPageObjectHelper.hh>
 #include <qpdf/QPDFWriter.hh>
 
 #include "base/error.h"
+#include "base/read_budget.h"
 
 namespace formwright {
 namespace {
@@ -92,7 +95,72 @@ Box crop_box(QPDFPageObjectHelper& page) {
   return found;
 }
 
+/// Takes what is unpacked and keeps nothing of it.
+class CountingPipeline final : public Pipeline {
+ public:
+  explicit CountingPipeline(ReadBudget& budget) : Pipeline("count", nullptr), budget_(budget) {}
+  void write(const unsigned char*, std::size_t size) override {
+    if (!budget_.take(size)) refuse("The PDF unpacks to far more than a file of its size holds: make it anew.");
+  }
+  void finish() override {}
+
+ private:
+  ReadBudget& budget_;
+};
+
+/// A dictionary with its #41 written as A (ISO 32000-1, 7.3.5).
+std::string plain_names(std::string_view dictionary) {
+  std::string plain;
+  for (std::size_t i = 0; i < dictionary.size(); ++i) {
+    unsigned code = 0;
+    const char* const digits = dictionary.data() + i + 1;
+    if (dictionary[i] == '#' && i + 2 < dictionary.size() &&
+        std::from_chars(digits, digits + 2, code, 16).ptr == digits + 2) {
+      plain += static_cast<char>(code);
+      i += 2;
+    } else {
+      plain += dictionary[i];
+    }
+  }
+  return plain;
+}
+
+/// qpdf unpacks object streams and cross-reference streams (ISO 32000-1, 7.5.7 and 7.5.8) whole, without a limit; all
+/// other streams stay packed here. So what these unpack to is counted before. Streams of
+/// an encrypted PDF cannot be unpacked here and are not counted.
+void check_unpacked_size(ByteView document) {
+  const std::string_view text = as_text(document);
+  ReadBudget budget(document.size());
+  std::size_t dictionary_at = 0;
+  constexpr std::string_view keyword = "stream";
+  for (std::size_t at = text.find(keyword); at != std::string_view::npos; at = text.find(keyword, at)) {
+    const std::string_view before = text.substr(dictionary_at, at - dictionary_at);
+    dictionary_at = at += keyword.size();
+    if (before.ends_with("end")) continue;
+    const std::size_t object = before.rfind("obj");
+    const std::string dictionary = plain_names(before.substr(object == std::string_view::npos ? 0 : object));
+    const auto has = [&](std::string_view name) { return dictionary.find(name) != std::string::npos; };
+    if ((!has("/ObjStm") && !has("/XRef")) || !has("/Filter")) continue;
+    const std::size_t flate = dictionary.find("/Fl");
+    if (flate == std::string::npos || dictionary.find("/Fl", flate + 1) != std::string::npos || has("/LZW") ||
+        has("/RunLength"))
+      refuse("The PDF is packed in an unusual way: make it anew.");
+    if (text.substr(at).starts_with("\r\n")) at += 2;
+    else if (text.substr(at).starts_with('\n')) ++at;
+    CountingPipeline count(budget);
+    Pl_Flate inflate("inflate", &count, Pl_Flate::a_inflate);
+    try {
+      inflate.write(reinterpret_cast<const unsigned char*>(text.data()) + at, text.size() - at);
+    } catch (const Error&) {
+      throw;
+    } catch (const std::exception&) {
+      // Damaged from here on, as qpdf will find, or no stream at all.
+    }
+  }
+}
+
 void open_pdf(QPDF& pdf, ByteView document) {
+  check_unpacked_size(document);
   pdf.setSuppressWarnings(true);
   pdf.setAttemptRecovery(true);
   pdf.processMemoryFile("document", reinterpret_cast<const char*>(document.data()), document.size());
@@ -157,6 +225,8 @@ Bytes mirrored_pdf(ByteView document) {
     const auto buffer = writer.getBufferSharedPointer();
     const auto* begin = reinterpret_cast<const std::byte*>(buffer->getBuffer());
     return {begin, begin + buffer->getSize()};
+  } catch (const Error&) {
+    throw;
   } catch (const std::exception&) {
     throw Error(ErrorCode::invalid_input, "mirrored",
                 "The PDF cannot be read, so that it cannot be mirrored: make it anew.");

@@ -10,6 +10,7 @@
 #include <boost/asio/use_awaitable.hpp>
 
 #include "base/error.h"
+#include "base/json_text.h"
 #include "base/sha256.h"
 #include "files.h"
 #include "host.h"
@@ -191,7 +192,7 @@ boost::asio::awaitable<Response> MachineBridge::answer_machine(Head head, std::s
   }
   if (rest == "/jobs" || rest.starts_with("/jobs/")) co_return answer_tasks(head, m, rest.substr(5));
   if (!posts) co_return nothing_here(head);
-  const Json order = body.empty() ? Json::object() : Json::parse(body, nullptr, false);
+  const Json order = body.empty() ? Json::object() : parse_json_text(body);
   if (order.is_discarded())
     co_return error_response(head, http::status::bad_request, "invalid_input", "", "The order is not JSON.");
   if (rest == "/print" && m.kind == MachineKind::printer) co_return print(head, m, order);

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "base/json_text.h"
 #include "host.h"
 
 namespace formwright {
@@ -119,7 +120,7 @@ Json MachineLog::newest(std::size_t limit, bool lines) const {
                          files[i].filename().string().substr(0, 10) != files[i + 1].filename().string().substr(0, 10);
     if (new_day && entries.size() >= limit) break;
     for (const std::string& line : last_lines(files[i])) {
-      Json entry = Json::parse(line, nullptr, false);
+      Json entry = parse_json_text(line);
       if (!entry.is_object() || !entry.contains("unix_s") || !entry["unix_s"].is_number())
         continue;  // cut off by a power failure
       const Json event = entry.value("event", Json());

@@ -12,6 +12,7 @@
 #include <charconv>
 
 #include "base/error.h"
+#include "base/json_text.h"
 #include "base/sha256.h"
 #include "files.h"
 #include "host.h"
@@ -179,7 +180,7 @@ std::vector<Machine> MachineRegistry::read() const {
   std::error_code status;
   if (!std::filesystem::exists(path, status)) return {};
   const auto bytes = read_file(path, "--data", std::uintmax_t{4} << 20);
-  const Json list = Json::parse(as_text(*bytes), nullptr, false);
+  const Json list = parse_json_text(as_text(*bytes));
   if (!list.is_array())
     refuse("--data", path.string() + " is not a list of machines: mend it, or move it away and add them again.");
   return machines_from_json(list);

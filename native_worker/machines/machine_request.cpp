@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a page may say at a machine's socket. Apart from the socket, so that the fuzzer reaches it.
 #include "base/error.h"
+#include "base/json_text.h"
 #include "hex_name.h"
 #include "machines/machine_page.h"
 
@@ -12,7 +13,7 @@ namespace {
 }  // namespace
 
 MachineRequest read_machine_request(const std::string& text) {
-  const Json message = Json::parse(text, nullptr, false);
+  const Json message = parse_json_text(text);
   if (!message.is_object()) refuse("", "A request is a JSON object with open, command, load or close.");
   MachineRequest request;
   int count = 0;

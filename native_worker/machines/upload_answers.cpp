@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/json_text.h"
 
 namespace formwright {
 namespace {
@@ -53,7 +54,7 @@ UploadReply read_reply(const Machine& machine, long status, const std::string& a
   // OctoPrint takes a request with a key it does not know for one of a browser.
   if (status == 401 || status == 403 || (status == 400 && answer.find("CSRF") != std::string::npos))
     fail(machine.name + " does not know the key: register it anew with --api-key-file and a key from its settings.");
-  return {status, Json::parse(answer, nullptr, false)};
+  return {status, parse_json_text(answer)};
 }
 
 Json read_uploaded(const Machine& machine, bool print, const UploadReply& reply) {

@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       fuzz::check(request.sha256.size() == 64 && !request.name.empty() && request.name.size() <= 200);
     else fuzz::check(request.kind == MachineRequest::Kind::close || request.content.is_object());
   } catch (const Error& error) {
-    fuzz::check(error.code() == ErrorCode::invalid_input && std::string_view(error.what()).ends_with('.'));
+    fuzz::check_invalid_input(error);
   }
   return 0;
 }

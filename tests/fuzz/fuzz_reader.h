@@ -2,18 +2,12 @@
 #pragma once
 // What every target does: read, and if it was read, check it and write it in every format. An Error is an answer;
 // any other exception, a sanitizer's finding, too much memory or time is a finding.
-#include "base/error.h"
 #include "fuzz/fuzz_check.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/mesh_source.h"
 #include "geometry/io/model_file.h"
 
 namespace formwright::fuzz {
-
-inline void check_refusal(const Error& error) {
-  const std::string_view message = error.what();
-  check(error.code() == ErrorCode::invalid_input && message.starts_with("input") && message.ends_with('.'));
-}
 
 inline ReadOptions small_options() {
   ReadOptions options;

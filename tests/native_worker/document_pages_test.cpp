@@ -6,8 +6,11 @@
 #include <algorithm>
 
 #include <cstring>
+#include <qpdf/Pl_Buffer.hh>
+#include <qpdf/Pl_Flate.hh>
 
 #include "base/error.h"
+#include "base/peak_memory.h"
 #include "machines/print_media.h"
 
 namespace formwright {
@@ -44,6 +47,61 @@ TEST(document_pages, the_size_is_what_is_shown) {
   EXPECT_NEAR(size_of("/MediaBox[0 0 720 720]/CropBox[72 72 648 360]").height_mm, 101.6, 1e-9);
   EXPECT_NEAR(size_of("/MediaBox[720 360 0 0]").width_mm, 254, 1e-9);
   EXPECT_NEAR(size_of("/MediaBox[0 0 72 72]/UserUnit 10").width_mm, 254, 1e-9);
+}
+
+/// A PDF whose pages stand in an object stream (PDF 1.5) that is filled up with blanks. `type`: how its type is spelt.
+Bytes pdf_with_object_stream(std::size_t blanks, const std::string& type = "/ObjStm",
+                             const std::string& filter = "/FlateDecode") {
+  const auto packed = [](const std::string& content) {
+    Pl_Buffer collected("packed");
+    Pl_Flate deflate("deflate", &collected, Pl_Flate::a_deflate);
+    deflate.write(reinterpret_cast<const unsigned char*>(content.data()), content.size());
+    deflate.finish();
+    const auto buffer = collected.getBufferSharedPointer();
+    return std::string(reinterpret_cast<const char*>(buffer->getBuffer()), buffer->getSize());
+  };
+  const std::string catalog = "<</Type/Catalog/Pages 2 0 R>> ",
+                    pages = "<</Type/Pages/Kids[3 0 R]/Count 1/MediaBox[0 0 595 842]>> ",
+                    page = "<</Type/Page/Parent 2 0 R>> ";
+  const std::string numbers =
+      "1 0 2 " + std::to_string(catalog.size()) + " 3 " + std::to_string(catalog.size() + pages.size()) + " ";
+  const std::string objects = packed(numbers + catalog + pages + page + std::string(blanks, ' '));
+  std::string text = "%PDF-1.5\n";
+  const std::size_t stream_at = text.size();
+  text += "4 0 obj\n<</Type" + type + "/N 3/First " + std::to_string(numbers.size()) + "/Filter" + filter + "/Length " +
+          std::to_string(objects.size()) + ">>\nstream\n" + objects + "\nendstream\nendobj\n";
+  const std::size_t table_at = text.size();
+  std::string table;
+  const auto row = [&](int kind, std::size_t a, int b) {
+    table += static_cast<char>(kind);
+    for (const unsigned shift : {16u, 8u, 0u}) table += static_cast<char>(a >> shift & 0xff);
+    table += static_cast<char>(b);
+  };
+  row(0, 0, 0), row(2, 4, 0), row(2, 4, 1), row(2, 4, 2), row(1, stream_at, 0), row(1, table_at, 0);
+  text += "5 0 obj\n<</Type/XRef/Size 6/Root 1 0 R/W[1 3 1]/Length " + std::to_string(table.size()) + ">>\nstream\n" +
+          table + "\nendstream\nendobj\nstartxref\n" + std::to_string(table_at) + "\n%%EOF\n";
+  return to_bytes(text);
+}
+
+TEST(document_pages, what_a_pdf_unpacks_to_is_counted) {
+  EXPECT_NEAR(read_document_pages(pdf_with_object_stream(1000)).pages.at(0).width_mm, 595 * 25.4 / 72, 1e-9);
+  const auto refused = [](const Bytes& bytes) -> std::string {
+    try {
+      read_document_pages(bytes);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const Bytes bomb = pdf_with_object_stream(100u << 20);
+  EXPECT_LT(bomb.size(), 110'000u);
+  std::string sentence;
+  const auto grown = test::peak_growth_mb([&] { sentence = refused(bomb); });
+  EXPECT_NE(sentence.find("unpacks to far more"), std::string::npos) << sentence;
+  EXPECT_LT(grown.value_or(0), 64);
+  EXPECT_NE(refused(pdf_with_object_stream(100u << 20, "/Obj#53tm")).find("unpacks to far more"), std::string::npos);
+  EXPECT_NE(refused(pdf_with_object_stream(1000, "/ObjStm", "[/FlateDecode/FlateDecode]")).find("an unusual way"),
+            std::string::npos);
 }
 
 TEST(document_pages, what_cannot_be_printed_says_why) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/json_text.h"
 #include "base/parallel.h"
 
 namespace formwright {
@@ -146,7 +147,7 @@ Json calibration_pattern_json(const CalibrationPattern& pattern) {
 }
 
 CalibrationPattern read_calibration_pattern(ByteView bytes) {
-  const Json json = Json::parse(as_text(bytes), nullptr, false);
+  const Json json = parse_json_text(as_text(bytes));
   if (!json.is_object() || !json.contains("format"))
     refuse("pattern", "This is not a pattern.json: give the one that evidence-pattern wrote beside the print.");
   if (json["format"] != format_name)

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "base/json.h"
+#include "base/json_text.h"
 #include "base/number_table.h"
 #include "geometry/ray_caster.h"
 
@@ -294,7 +294,7 @@ ShadingSetup read_shading_setup(ByteView bytes) {
   const auto refuse = [](const std::string& sentence) {
     throw Error(ErrorCode::invalid_input, "object", "setup.json: " + sentence);
   };
-  const Json json = Json::parse(as_text(bytes), nullptr, false);
+  const Json json = parse_json_text(as_text(bytes));
   if (!json.is_object()) refuse("this is not a JSON object; see docs/evidence.md for one.");
   ShadingSetup setup;
   const auto length = [&](const char* key, double& value) {

@@ -86,18 +86,22 @@ void GltfAccessor::apply_sparse(const GltfDocument& document, const GltfDocument
   const std::byte* const news = fitting(value_view, document.integer(*values, "byteOffset", 0), changes, size, size);
   if (places == nullptr || news == nullptr) damaged();
 
-  own_.assign(static_cast<std::size_t>(count_) * size, std::byte{0});
-  if (data_ != nullptr)
-    for (std::int64_t i = 0; i < count_; ++i)
-      std::memcpy(own_.data() + static_cast<std::size_t>(i) * size, data_ + static_cast<std::size_t>(i) * stride_,
-                  size);
-  for (std::int64_t i = 0; i < changes; ++i) {
-    std::uint32_t element = 0;  // little endian: the low bytes come first
-    std::memcpy(&element, places + static_cast<std::size_t>(i) * component_size(type), component_size(type));
-    if (element >= count_) damaged();
-    std::memcpy(own_.data() + element * size, news + static_cast<std::size_t>(i) * size, size);
-  }
-  data_ = own_.data();
+  const Bytes& dense = document.dense(index, [&] {
+    document.take(static_cast<std::uint64_t>(count_) * size);
+    Bytes numbers(static_cast<std::size_t>(count_) * size);
+    if (data_ != nullptr)
+      for (std::int64_t i = 0; i < count_; ++i)
+        std::memcpy(numbers.data() + static_cast<std::size_t>(i) * size, data_ + static_cast<std::size_t>(i) * stride_,
+                    size);
+    for (std::int64_t i = 0; i < changes; ++i) {
+      std::uint32_t element = 0;  // little endian: the low bytes come first
+      std::memcpy(&element, places + static_cast<std::size_t>(i) * component_size(type), component_size(type));
+      if (element >= count_) damaged();
+      std::memcpy(numbers.data() + element * size, news + static_cast<std::size_t>(i) * size, size);
+    }
+    return numbers;
+  });
+  data_ = dense.data();
   stride_ = size;
 }
 

@@ -30,7 +30,6 @@ class GltfAccessor {
   bool normalised_ = false;
   const std::byte* data_ = nullptr;  // nullptr: all zero
   std::size_t stride_ = 0, component_bytes_ = 0;
-  Bytes own_;  // of a sparse accessor
 };
 
 }  // namespace formwright

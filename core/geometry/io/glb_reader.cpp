@@ -197,6 +197,8 @@ class GlbReader {
             const double c = colours ? colours->number(corner, k) : 1;
             colours_.push_back(c >= 0 ? std::min(c, 1.0) : 0);  // NaN becomes 0
           }
+        // Many attributes may show one accessor.
+        document_.take(3 * sizeof(double) * columns.size());
         for (std::size_t k = 0; k < columns.size(); ++k) column_values_[k].push_back(columns[k].number(corner, 0));
       }
       seen = {stamp_, index, static_cast<int>(UV_.size() / 2)};
@@ -276,6 +278,7 @@ class GlbReader {
     // Many images over one view would multiply a small file; pictures of real files do not overlap.
     picture_bytes += bytes.size();
     if (uri.empty() && picture_bytes > source_.bytes().size()) source_.refuse("its pictures overlap; export it again.");
+    document_.take(bytes.size());
     texture.bytes.assign(bytes.begin(), bytes.end());
     if (texture.name.empty())
       texture.name =

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "base/json_text.h"
 #include "geometry/io/byte_order.h"
 #include "geometry/io/text_scan.h"
 
@@ -54,11 +55,22 @@ Eigen::Matrix4d node_transform(const GltfDocument& document, const GltfDocument:
   return matrix;
 }
 
+std::uint64_t bytes_with_companions(const MeshSource& source) {
+  std::uint64_t bytes = source.bytes().size();
+  for (const Companion& companion : source.options().companions) bytes += companion.bytes.size();
+  return bytes;
+}
+
 }  // namespace
 
-GltfDocument::GltfDocument(const MeshSource& source) : source_(source) {
+void GltfDocument::take(std::uint64_t bytes) const {
+  if (!budget_.take(bytes))
+    source_.refuse("its parts are repeated so often that it takes far more than a file of its size; export it again.");
+}
+
+GltfDocument::GltfDocument(const MeshSource& source) : source_(source), budget_(bytes_with_companions(source)) {
   open_container();
-  json_ = Object::parse(json_text_, nullptr, false);
+  json_ = parse_json_text<Object>(json_text_);
   if (!json_.is_object()) source_.refuse("its JSON is damaged; export it or copy it again.");
   const auto asset = json_.find("asset");
   if (asset == json_.end() || !asset->is_object() || !text(*asset, "version").starts_with("2"))
@@ -181,6 +193,7 @@ ByteView GltfDocument::uri(const std::string& text) {
     const std::size_t comma = text.find(',');
     if (comma == std::string::npos || text.substr(0, comma).find(";base64") == std::string::npos)
       source_.refuse("embedded data in it is not in base64; export it as GLB.");
+    take(text.size());
     decoded_.push_back(std::make_unique<Bytes>(decode_base64(std::string_view(text).substr(comma + 1))));
     return *decoded_.back();
   }

@@ -3,9 +3,11 @@
 // The container, the JSON and the node tree of a glTF file, for its reader.
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
+#include <map>
 #include <memory>
 #include <vector>
 
+#include "base/read_budget.h"
 #include "geometry/io/mesh_source.h"
 
 namespace formwright {
@@ -34,6 +36,16 @@ class GltfDocument {
 
   /// Bytes of a buffer view.
   ByteView view(std::int64_t index) const;
+  /// For what is made of the document beside its own numbers. Throws Error{invalid_input} once the file, with its
+  /// companions, has taken more than it may.
+  void take(std::uint64_t bytes) const;
+  /// A sparse accessor's numbers, made by `make` when they are asked for first.
+  template <class Make>
+  const Bytes& dense(std::int64_t accessor, const Make& make) const {
+    const auto found = dense_.find(accessor);
+    return found != dense_.end() ? found->second : dense_.emplace(accessor, make()).first->second;
+  }
+
   /// Bytes behind a data: URI, or a companion of that name; empty if there are none.
   ByteView uri(const std::string& text);
 
@@ -46,6 +58,8 @@ class GltfDocument {
   ByteView binary_chunk_;
   bool has_binary_chunk_ = false;
   Object json_;
+  mutable ReadBudget budget_;
+  mutable std::map<std::int64_t, Bytes> dense_;
   std::vector<ByteView> buffers_;
   std::vector<std::unique_ptr<Bytes>> decoded_;  // what data: URIs held
 };

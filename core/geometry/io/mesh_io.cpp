@@ -2,6 +2,8 @@
 #include "geometry/io/mesh_io.h"
 
 #include <algorithm>
+#include <set>
+#include <unordered_map>
 
 #include "base/error.h"
 #include "geometry/io/glb.h"
@@ -62,8 +64,10 @@ void check_model(const Model& model, std::span<const VertexColumn> columns) {
 std::vector<MtlMaterial> load_libraries(ModelFile& file, std::span<const Companion> companions,
                                         const ReadOptions& options) {
   std::vector<MtlMaterial> materials;
+  std::set<const Companion*> loaded;
   Context silent;
   const auto load = [&](const Companion& companion) {
+    if (!loaded.insert(&companion).second) return;  // named before
     for (MtlMaterial& material : read_mtl(MeshSource(companion.bytes, companion.name, options, silent)))
       materials.push_back(std::move(material));
   };
@@ -111,15 +115,21 @@ void read_model_materials(ModelFile& file, std::span<const Companion> companions
   file.missing_companions.clear();
   Model& model = file.model;
   const std::vector<MtlMaterial> library = load_libraries(file, companions, options);
+  std::unordered_map<std::string_view, const MtlMaterial*> of_name;  // the first of each name
+  for (const MtlMaterial& material : library) of_name.try_emplace(material.material.name, &material);
+  // One texture for all names of one picture: companions are found by the bare name, and each is kept once.
+  std::unordered_map<std::string, int> texture_of;
+  for (std::size_t i = 0; i < model.textures.size(); ++i)
+    texture_of.try_emplace(bare_name(model.textures[i].name), static_cast<int>(i));
   for (Material& material : model.materials) {
-    const auto found = std::ranges::find(library, material.name,
-                                         [](const MtlMaterial& m) -> const std::string& { return m.material.name; });
-    if (found == library.end()) continue;
-    material = found->material;
-    if (found->texture.empty()) continue;
-    const auto texture = std::ranges::find(model.textures, found->texture, &Texture::name);
-    material.diffuse_texture = static_cast<int>(texture - model.textures.begin());
-    if (texture == model.textures.end()) model.textures.push_back({found->texture, "", {}});
+    const auto found = of_name.find(material.name);
+    if (found == of_name.end()) continue;
+    const auto& [described, picture] = *found->second;
+    material = described;
+    if (picture.empty()) continue;
+    const auto [place, fresh] = texture_of.try_emplace(bare_name(picture), static_cast<int>(model.textures.size()));
+    material.diffuse_texture = place->second;
+    if (fresh) model.textures.push_back({picture, "", {}});
   }
   for (Texture& texture : model.textures) {
     if (!texture.bytes.empty()) continue;

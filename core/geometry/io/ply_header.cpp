@@ -92,6 +92,8 @@ class HeaderReader {
       refuse("an element needs a name and a count; export it again.");
     if (header_.element(element.name) != nullptr)
       refuse("the element “" + clean_text(element.name, 40) + "” is declared twice; export it again.");
+    // Thousands of elements would make this search slow; nobody has them.
+    if (header_.elements.size() >= 1000) refuse("it declares more than 1000 elements; export it with fewer.");
     header_.elements.push_back(std::move(element));
   }
 

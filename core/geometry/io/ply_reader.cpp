@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "geometry/io/byte_order.h"
 #include "geometry/io/colour.h"
@@ -332,7 +333,9 @@ class PlyReader {
       file_.notes.push_back("The column “" + column.name + "” holds values that are not numbers and was left out.");
       return true;
     });
-    for (const std::string& name : header_.textures) model_.textures.push_back({name, "", {}});
+    std::set<std::string> pictures;  // by the bare name, as companions are found
+    for (const std::string& name : header_.textures)
+      if (pictures.insert(bare_name(name)).second) model_.textures.push_back({name, "", {}});
     if (!model_.textures.empty() && model_.UV.rows() > 0) {
       // Several textures are told apart by a face's texnumber, which hardly anything writes: the first serves all.
       model_.materials.push_back({"texture", Vec3::Ones(), 0});

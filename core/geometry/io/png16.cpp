@@ -46,7 +46,7 @@ Bytes write_png16(const Grey16Image& image, const Context& context) {
   return bytes;
 }
 
-Grey16Image read_png16(ByteView bytes, std::string_view file_name, std::string_view where) {
+Grey16Image read_png16(ByteView bytes, std::string_view file_name, std::string_view where, std::size_t max_pixels) {
   const auto refuse = [&](const std::string& what) -> Error {
     return {ErrorCode::invalid_input, std::string(where),
             clean_text(file_name.empty() ? "The file" : file_name) + ": " + what};
@@ -59,13 +59,13 @@ Grey16Image read_png16(ByteView bytes, std::string_view file_name, std::string_v
     const png_structp png = reader.png();
     const png_infop info = reader.info();
     png_set_user_limits(png, 65535, 65535);
-    png_set_chunk_malloc_max(png, 8'000'000);
     png_read_info(png, info);
     const std::size_t width = png_get_image_width(png, info), height = png_get_image_height(png, info);
     // Deflate packs at most 1032 to 1, so no small file can ask for a large picture.
     const std::size_t channels_bits =
         static_cast<std::size_t>(png_get_channels(png, info)) * png_get_bit_depth(png, info);
-    if (width * height > 256'000'000) throw std::runtime_error("it has more than 256 million pixels");
+    if (width * height > max_pixels)
+      throw std::runtime_error("it has more than " + std::to_string(max_pixels / 1'000'000) + " million pixels");
     if (width * height / 8 * channels_bits / 1032 > bytes.size()) throw std::runtime_error("it ends too early");
     png_set_expand(png);
     png_set_strip_alpha(png);

@@ -21,7 +21,8 @@ struct Grey16Image {
 Bytes write_png16(const Grey16Image& image, const Context& context = Context());
 
 /// Any PNG, turned to grey (ITU-R BT.709 weights) and 16 bits; transparency is dropped.
-/// Throws Error{invalid_input, where}: not a PNG, damaged, over 256 million pixels.
-Grey16Image read_png16(ByteView bytes, std::string_view file_name, std::string_view where = "image");
+/// Throws Error{invalid_input, where}: not a PNG, damaged, over `max_pixels`.
+Grey16Image read_png16(ByteView bytes, std::string_view file_name, std::string_view where = "image",
+                       std::size_t max_pixels = 256'000'000);
 
 }  // namespace formwright

@@ -48,6 +48,10 @@ class PngReader {
     if (png_ != nullptr) info_ = png_create_info_struct(png_);
     if (info_ == nullptr) throw std::bad_alloc();
     png_set_read_fn(png_, this, take_bytes);
+    // Chunks beside the pixels are not needed. A packed text of 8 kB unpacks to 8 MB, and libpng keeps up to 1000 of
+    // them; 1 means none.
+    png_set_chunk_cache_max(png_, 1);
+    png_set_chunk_malloc_max(png_, 8'000'000);
   }
   ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
   PngReader(const PngReader&) = delete;

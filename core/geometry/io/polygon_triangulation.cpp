@@ -30,7 +30,7 @@ std::span<const std::array<int, 3>> PolygonTriangulator::triangulate(std::span<c
   project(corners);
   classify();
   build_grid();
-  tests_left_ = 200'000'000;
+  tests_left_ = std::min(max_tests, std::max<std::int64_t>(tests_left_, 0) + tests_per_corner * n);
   heap_.clear();
   for (int i = 0; i < n; ++i) consider(i);
   while (alive_count_ > 3) {

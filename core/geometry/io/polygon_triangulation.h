@@ -44,7 +44,10 @@ class PolygonTriangulator {
   std::vector<char> alive_, reflex_;
   std::vector<Candidate> heap_;
   int alive_count_ = 0;
-  std::int64_t tests_left_ = 0;  // point-in-triangle tests before ears are taken unchecked
+  // Point-in-triangle tests before ears are taken unchecked: about a second of them for all polygons together, and as
+  // many again for each corner as real polygons need.
+  static constexpr std::int64_t max_tests = 200'000'000, tests_per_corner = 2000;
+  std::int64_t tests_left_ = max_tests;
 
   // Reflex corners, the only ones that can lie in an ear, by cell of a uniform grid.
   int grid_columns_ = 1, grid_rows_ = 1;

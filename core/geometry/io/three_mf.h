@@ -28,7 +28,7 @@ using ThreeMfId = std::pair<int, std::int64_t>;
 struct ThreeMfCorner {
   std::int64_t property = -1;           // id of a property group, -1 for none
   std::array<std::int64_t, 3> index{};  // one a corner
-  bool per_corner = false;              // told apart, rather than the first for all
+  bool per_corner = false;              // not the same for all three
 };
 
 struct ThreeMfComponent {
@@ -62,9 +62,12 @@ struct ThreeMfContent {
   std::vector<ThreeMfComponent> items;
   std::string unit;  // of the root part
   bool beams = false;
+  bool mixed_properties = false;  // multiproperties, compositematerials
+  bool painted = false;           // a slicer's own painting: PrusaSlicer's, Bambu Studio's
 };
 
-/// Reads the root model part and those it refers to. Nothing is resolved yet.
-ThreeMfContent read_three_mf_content(const MeshSource& source, const ZipArchive& archive);
+/// Reads the root model part and those it refers to. Nothing is resolved yet. What it makes counts against the
+/// archive's budget.
+ThreeMfContent read_three_mf_content(const MeshSource& source, ZipArchive& archive);
 
 }  // namespace formwright

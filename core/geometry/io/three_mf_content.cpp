@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <charconv>
+#include <unordered_map>
 
 #include "geometry/io/colour.h"
 #include "geometry/io/reader_limits.h"
@@ -18,6 +19,8 @@ struct UnitOfLength {
 constexpr std::array<UnitOfLength, 6> units{
     {{"micron", 0.001}, {"millimeter", 1}, {"centimeter", 10}, {"inch", 25.4}, {"foot", 304.8}, {"meter", 1000}}};
 
+constexpr std::size_t max_parts = 10'000;
+
 /// A path inside the archive, from a reference in `base` ("/3D/x.model" or "x.model" next to it).
 std::string resolved(std::string_view path, std::string_view base) {
   if (path.starts_with('/')) return std::string(path.substr(1));
@@ -25,10 +28,24 @@ std::string resolved(std::string_view path, std::string_view base) {
   return std::string(base.substr(0, slash == std::string_view::npos ? 0 : slash + 1)) + std::string(path);
 }
 
+// A growing vector holds its elements up to three times while it moves to a larger place.
+template <class Element>
+constexpr std::uint64_t bytes_in_vector = 3 * sizeof(Element);
+// A map's node beside its value, and a short name on the heap.
+constexpr std::uint64_t node_bytes = 128;
+
+/// What the parts have in common while they are read.
+struct Reading {
+  ZipArchive& archive;
+  ThreeMfContent content;
+  std::unordered_map<std::string, int> part_of_path;  // in lower case
+  std::int64_t triangles = 0;
+};
+
 class PartReader {
  public:
-  PartReader(const MeshSource& part, int number, ThreeMfContent& content, std::int64_t& triangles)
-      : part_(part), number_(number), content_(content), triangles_(triangles), xml_(part) {}
+  PartReader(const MeshSource& part, int number, Reading& reading)
+      : part_(part), number_(number), reading_(reading), content_(reading.content), xml_(part) {}
 
   void read() {
     if (!xml_.next() || xml_.name() != "model") xml_.refuse("it is not a 3MF model; export it again.");
@@ -56,9 +73,8 @@ class PartReader {
     else if (name == "basematerials") group(ThreeMfProperties::Kind::base_materials);
     else if (name == "colorgroup") group(ThreeMfProperties::Kind::colours);
     else if (name == "texture2dgroup") group(ThreeMfProperties::Kind::texture);
-    else if (name == "texture2d")
-      content_.texture_paths[{number_, integer("id")}] =
-          resolved(xml_.text_attribute("path"), content_.parts[static_cast<std::size_t>(number_)]);
+    else if (name == "texture2d") texture();
+    else if (name == "multiproperties" || name == "compositematerials") content_.mixed_properties = true;
     else if (name == "base" || name == "color" || name == "tex2coord") property(name);
     else if (name == "beamlattice") content_.beams = true;
   }
@@ -103,16 +119,24 @@ class PartReader {
   int part_of(const std::string& path) {
     if (path.empty()) return number_;
     const std::string name = resolved(path, "");
-    for (std::size_t i = 0; i < content_.parts.size(); ++i)
-      if (equal_ignoring_case(content_.parts[i], name)) return static_cast<int>(i);
-    if (content_.parts.size() >= 10'000) xml_.refuse("it refers to more than 10 000 parts; export it again.");
+    const auto [place, fresh] =
+        reading_.part_of_path.try_emplace(lower_case(name), static_cast<int>(content_.parts.size()));
+    if (!fresh) return place->second;
+    if (content_.parts.size() >= max_parts) xml_.refuse("it refers to more than 10 000 parts; export it again.");
     content_.parts.push_back(name);
-    return static_cast<int>(content_.parts.size()) - 1;
+    return place->second;
+  }
+
+  void texture() {
+    reading_.archive.take(node_bytes);
+    content_.texture_paths[{number_, integer("id")}] =
+        resolved(xml_.text_attribute("path"), content_.parts[static_cast<std::size_t>(number_)]);
   }
 
   void object() {
     const std::int64_t id = integer("id");
     if (object_ != nullptr) xml_.refuse("an object stands within another; export it again.");
+    reading_.archive.take(sizeof(ThreeMfObject) + node_bytes);
     const auto [place, fresh] = content_.objects.try_emplace({number_, id});
     if (!fresh) xml_.refuse("object " + std::to_string(id) + " is defined twice; export it again.");
     object_ = &place->second;
@@ -128,6 +152,7 @@ class PartReader {
   void vertex() {
     if (object_ == nullptr) xml_.refuse("a vertex stands outside of an object; export it again.");
     ++vertices_;
+    reading_.archive.take(3 * bytes_in_vector<double>);
     for (const char* axis : {"x", "y", "z"}) {
       const double value = number(axis) * unit_mm_;
       if (!is_sane_coordinate(value)) xml_.refuse(insane_coordinate("vertex", vertices_, value));
@@ -137,8 +162,9 @@ class PartReader {
 
   void triangle() {
     if (object_ == nullptr) xml_.refuse("a triangle stands outside of an object; export it again.");
-    part_.check_triangle_count(++triangles_);
-    if (triangles_ % 16384 == 0) part_.context().check_cancelled();
+    part_.check_triangle_count(++reading_.triangles);
+    if (reading_.triangles % 16384 == 0) part_.context().check_cancelled();
+    reading_.archive.take(3 * bytes_in_vector<int>);
     for (const char* corner : {"v1", "v2", "v3"}) {
       const std::int64_t vertex = integer(corner);
       if (vertex >= vertices_)
@@ -150,27 +176,32 @@ class PartReader {
     if (xml_.has("pid")) properties.property = integer("pid");
     if (xml_.has("p1")) {
       properties.index.fill(integer("p1"));
-      properties.per_corner = xml_.has("p2") || xml_.has("p3");
       if (xml_.has("p2")) properties.index[1] = integer("p2");
       if (xml_.has("p3")) properties.index[2] = integer("p3");
+      properties.per_corner = properties.index[1] != properties.index[0] || properties.index[2] != properties.index[0];
     }
+    content_.painted = content_.painted || xml_.has("paint_color") || xml_.has("mmu_segmentation");
     const std::size_t face = object_->F.size() / 3 - 1;
     if (properties.property < 0 && object_->corners.empty()) return;
+    reading_.archive.take((face - object_->corners.size() + 1) * bytes_in_vector<ThreeMfCorner>);
     object_->corners.resize(face);  // faces before the first with properties have none
     object_->corners.push_back(properties);
   }
 
   void component() {
     if (object_ == nullptr) xml_.refuse("a component stands outside of an object; export it again.");
+    reading_.archive.take(bytes_in_vector<ThreeMfComponent>);
     object_->components.push_back({{part_of(xml_.text_attribute("path")), integer("objectid")}, transform()});
   }
 
   void item() {
-    if (number_ == 0)
-      content_.items.push_back({{part_of(xml_.text_attribute("path")), integer("objectid")}, transform()});
+    if (number_ != 0) return;
+    reading_.archive.take(bytes_in_vector<ThreeMfComponent>);
+    content_.items.push_back({{part_of(xml_.text_attribute("path")), integer("objectid")}, transform()});
   }
 
   void group(ThreeMfProperties::Kind kind) {
+    reading_.archive.take(sizeof(ThreeMfProperties) + node_bytes);
     group_ = &content_.properties[{number_, integer("id")}];
     *group_ = {};
     group_->kind = kind;
@@ -192,6 +223,8 @@ class PartReader {
   void property(std::string_view name) {
     using Kind = ThreeMfProperties::Kind;
     if (group_ == nullptr) xml_.refuse("a property stands outside of a group; export it again.");
+    // A name of its own, a colour, and the material that the model makes of both.
+    reading_.archive.take(bytes_in_vector<std::string> + bytes_in_vector<Vec3> + bytes_in_vector<Material>);
     if (name == "base" && group_->kind == Kind::base_materials) {
       group_->names.push_back(clean_text(xml_.text_attribute("name")));
       group_->colours.push_back(xml_.has("displaycolor") ? colour("displaycolor") : Vec3(0.8, 0.8, 0.8));
@@ -206,8 +239,8 @@ class PartReader {
 
   const MeshSource& part_;
   int number_;
+  Reading& reading_;
   ThreeMfContent& content_;
-  std::int64_t& triangles_;
   XmlReader xml_;
   double unit_mm_ = 1;
   ThreeMfObject* object_ = nullptr;
@@ -217,12 +250,12 @@ class PartReader {
 };
 
 /// Bytes that a part may unpack to: 75 a triangle are usual, properties and digits may treble that.
-std::uint64_t most_part_bytes(const ReadOptions& options) {
+std::uint64_t max_part_bytes(const ReadOptions& options) {
   return (64u << 20) + 220 * static_cast<std::uint64_t>(options.max_triangles);
 }
 
 /// The root model part is the target of a relationship of the archive (OPC); it is "3D/3dmodel.model" nearly always.
-std::string root_part(const MeshSource& source, const ZipArchive& archive) {
+std::string root_part(const MeshSource& source, ZipArchive& archive) {
   if (const auto* const entry = archive.find("_rels/.rels")) {
     const Bytes bytes = archive.read(*entry, 1 << 20);
     const MeshSource part(bytes, source.name() + " (_rels/.rels)", source.options(), source.context());
@@ -238,19 +271,20 @@ std::string root_part(const MeshSource& source, const ZipArchive& archive) {
 
 }  // namespace
 
-ThreeMfContent read_three_mf_content(const MeshSource& source, const ZipArchive& archive) {
-  ThreeMfContent content;
+ThreeMfContent read_three_mf_content(const MeshSource& source, ZipArchive& archive) {
+  Reading reading{archive, {}, {}, 0};
+  ThreeMfContent& content = reading.content;
   content.parts.push_back(root_part(source, archive));
-  std::int64_t triangles = 0;
+  reading.part_of_path.emplace(lower_case(content.parts[0]), 0);
   for (std::size_t i = 0; i < content.parts.size(); ++i) {  // grows as parts refer to others
     const std::string path = content.parts[i];
     const auto* const entry = archive.find(path);
     if (entry == nullptr) source.refuse("the part “" + clean_text(path, 60) + "” is missing in it; export it again.");
-    const Bytes bytes = archive.read(*entry, most_part_bytes(source.options()));
+    const Bytes bytes = archive.read(*entry, max_part_bytes(source.options()));
     const MeshSource part(bytes, source.name() + " (" + path + ")", source.options(), source.context());
-    PartReader(part, static_cast<int>(i), content, triangles).read();
+    PartReader(part, static_cast<int>(i), reading).read();
   }
-  return content;
+  return std::move(reading.content);
 }
 
 }  // namespace formwright

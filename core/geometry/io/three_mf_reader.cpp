@@ -6,13 +6,15 @@
 #include "geometry/io/colour.h"
 #include "geometry/io/media_type.h"
 #include "geometry/io/reader_limits.h"
+#include "geometry/io/text_scan.h"
 #include "geometry/io/three_mf.h"
 
 namespace formwright {
 namespace {
 
-constexpr int deepest_nesting = 64;
-constexpr std::int64_t most_instances = 1'000'000;
+constexpr int max_nesting = 64;
+constexpr std::uint64_t max_picture_bytes = 256u << 20;  // of all together
+constexpr std::int64_t max_instances = 1'000'000;
 
 class ThreeMfReader {
  public:
@@ -34,7 +36,7 @@ class ThreeMfReader {
       source_.check_triangle_count(triangles);
       if (vertices > 3 * source_.options().max_triangles)
         source_.refuse("it holds far more vertices than triangles; export it again.");
-      if (instances > most_instances)
+      if (instances > max_instances)
         source_.refuse("its objects are repeated more than a million times; export it as one mesh.");
     }
     if (triangles == 0) source_.refuse_empty(content_.beams ? "beams" : "");
@@ -84,7 +86,7 @@ class ThreeMfReader {
       source_.refuse(
           "its objects contain one another in a circle, or are nested more than 64 deep; export it as one mesh.");
     };
-    if (depth > deepest_nesting) refuse_nesting();
+    if (depth > max_nesting) refuse_nesting();
     const ThreeMfObject& whole = object(id);
     Size size;
     if (whole.printed) {
@@ -98,7 +100,7 @@ class ThreeMfReader {
             add_up(size.instances, part.instances);
         size.height = std::max(size.height, part.height + 1);
       }
-      if (size.height > deepest_nesting) refuse_nesting();
+      if (size.height > max_nesting) refuse_nesting();
     }
     sizes_[id] = size;
     return size;
@@ -144,15 +146,15 @@ class ThreeMfReader {
   int texture(const ThreeMfId& id) {
     const auto path = content_.texture_paths.find(id);
     if (path == content_.texture_paths.end()) return -1;
-    const auto [place, fresh] = texture_numbers_.try_emplace(id, static_cast<int>(model_.textures.size()));
+    // By the entry's path: several texture2d may show one picture, which is unpacked once.
+    const auto [place, fresh] =
+        texture_numbers_.try_emplace(lower_case(path->second), static_cast<int>(model_.textures.size()));
     if (fresh) {
       Texture picture;
       picture.name = clean_text(path->second.substr(path->second.find_last_of('/') + 1));
       if (const auto* const entry = archive_.find(path->second)) {
-        texture_bytes_ += entry->bytes;
-        if (texture_bytes_ > (256u << 20))
-          source_.refuse("its pictures take more than 256 MB; export it with smaller ones.");
-        picture.bytes = archive_.read(*entry, 256u << 20);
+        picture.bytes = archive_.read(*entry, max_picture_bytes - picture_bytes_);
+        picture_bytes_ += picture.bytes.size();
       }
       picture.media_type = picture_media_type(picture.bytes);
       model_.textures.push_back(std::move(picture));
@@ -190,7 +192,7 @@ class ThreeMfReader {
       }
     }
     const bool mirrored = transform.topLeftCorner<3, 3>().determinant() < 0;
-    if (vertex_colours_) colours_.resize(V_.size(), 1.0);
+    if (vertex_colours_) colours_.resize(V_.size(), 1.0), colour_known_.resize(V_.size() / 3, ColourKnown::none);
     const std::size_t faces = whole.F.size() / 3;
     for (std::size_t f = 0; f < faces; ++f) {
       std::array<std::size_t, 3> order{0, 1, 2};
@@ -224,13 +226,24 @@ class ThreeMfReader {
           texture_vertices[k] = first_uv_.at(group_id) + static_cast<int>(corner.index[order[k]]);
       }
       if (group->kind == Kind::colours && vertex_colours_)
-        for (std::size_t k = 0; k < 3; ++k) {
-          const Vec3& c = group->colours[static_cast<std::size_t>(corner.index[order[k]])];
-          std::copy(c.begin(), c.end(), colours_.begin() + 3 * F_[F_.size() - 3 + k]);
-        }
+        for (std::size_t k = 0; k < 3; ++k)
+          set_colour(F_[F_.size() - 3 + k], group->colours[static_cast<std::size_t>(corner.index[order[k]])]);
     }
     if (!model_.materials.empty()) model_.face_material.push_back(material);
     if (with_texture_) FT_.insert(FT_.end(), texture_vertices.begin(), texture_vertices.end());
+  }
+
+  /// A vertex has one colour: the first that a face gives it.
+  void set_colour(int vertex, const Vec3& colour) {
+    ColourKnown& known = colour_known_[static_cast<std::size_t>(vertex)];
+    const auto place = colours_.begin() + 3 * vertex;
+    if (known == ColourKnown::none) {
+      known = ColourKnown::one;
+      std::copy(colour.begin(), colour.end(), place);
+    } else if (known == ColourKnown::one && !std::equal(colour.begin(), colour.end(), place)) {
+      known = ColourKnown::several;
+      ++several_colours_;
+    }
   }
 
   void finish() {
@@ -246,6 +259,11 @@ class ThreeMfReader {
     }
     if (model_.group_names.size() < 2) model_.group_names.clear(), model_.face_group.clear();
     if (supports_) file_.notes.push_back("Supports and other objects that are not printed were left out.");
+    if (several_colours_ > 0)
+      file_.notes.push_back("At " + counted(several_colours_, "vertex", "vertices") +
+                            ", faces of different colours meet; the first face's colour was kept there.");
+    if (content_.mixed_properties) file_.notes.push_back("Mixed materials and colours were left out.");
+    if (content_.painted) file_.notes.push_back("Colours painted in a slicer were left out.");
     if (content_.beams) file_.notes.push_back("Beams were left out.");
   }
 
@@ -255,10 +273,13 @@ class ThreeMfReader {
   ModelFile file_;
   Model& model_;
   std::map<ThreeMfId, Size> sizes_;
-  std::map<ThreeMfId, int> first_material_, first_uv_, texture_numbers_;
-  std::uint64_t texture_bytes_ = 0;
+  std::map<ThreeMfId, int> first_material_, first_uv_;
+  std::map<std::string, int> texture_numbers_;
+  std::uint64_t picture_bytes_ = 0;
   bool vertex_colours_ = false, with_texture_ = false, supports_ = false;
-  std::int64_t added_ = 0;
+  enum class ColourKnown : char { none, one, several };
+  std::vector<ColourKnown> colour_known_;  // of each vertex
+  std::int64_t added_ = 0, several_colours_ = 0;
   std::vector<double> V_, colours_, UV_;
   std::vector<int> F_, FT_;
 };

@@ -10,6 +10,9 @@
 namespace formwright {
 namespace {
 
+// 3MF nests six deep and gives a tag a dozen attributes.
+constexpr std::size_t max_depth = 256, max_attributes = 256;
+
 std::string_view local(std::string_view name) { return name.substr(name.find(':') + 1); }  // npos + 1 = 0
 
 void append_utf8(std::string& text, std::uint32_t code) {
@@ -109,9 +112,11 @@ void XmlReader::read_start_tag() {
       refuse("its XML is damaged; export it or copy it again.");
     const std::size_t from = at_ + 1, stop = text_.find(text_[at_], from);
     if (stop == std::string_view::npos) source_.refuse("its XML ends too early; export it or copy it again.");
+    if (attributes_.size() >= max_attributes) refuse("a tag has more than 256 attributes; export it again.");
     attributes_.push_back({local(attribute), text_.substr(from, stop - from)});
     at_ = stop + 1;
   }
+  if (open_.size() >= max_depth) refuse("its XML is nested more than 256 deep; export it again.");
   open_.push_back(name);
 }
 

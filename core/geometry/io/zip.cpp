@@ -41,7 +41,9 @@ bool read_zip64_extra(ByteView extra, ZipArchive::Entry& entry) {
   return true;
 }
 
-/// Raw inflation with a growing buffer; the sizes an archive declares are believed only as far as zlib can go.
+// Deflate packs a run of 258 bytes into 2 bits (RFC 1951 3.2.5): what declares more than that is damaged.
+constexpr std::uint64_t max_deflate_ratio = 1032;
+
 class Inflater {
  public:
   Inflater() {
@@ -57,7 +59,7 @@ class Inflater {
 
 }  // namespace
 
-ZipArchive::ZipArchive(const MeshSource& source) : source_(source) {
+ZipArchive::ZipArchive(const MeshSource& source) : source_(source), budget_(source.bytes().size()) {
   const ByteView bytes = source.bytes();
   const auto cut_short = [&] { source.refuse("its zip archive ends too early; export it or copy it again."); };
   const auto damaged = [&] {
@@ -79,6 +81,8 @@ ZipArchive::ZipArchive(const MeshSource& source) : source_(source) {
       damaged();
     count = u64(bytes.data() + end64 + 32), offset = u64(bytes.data() + end64 + 48);
   }
+  // Zip without its 64-bit extension cannot number more; models and measured objects have a few dozen.
+  if (count > 0xFFFF) source.refuse("its zip archive lists more than 65 535 files; pack it again with fewer.");
   for (std::uint64_t at = offset; count > 0; --count) {
     if (at > bytes.size() || bytes.size() - at < central_bytes || u32(bytes.data() + at) != central_signature)
       damaged();
@@ -92,6 +96,7 @@ ZipArchive::ZipArchive(const MeshSource& source) : source_(source) {
     entry.crc = u32(record + 16);
     entry.packed_bytes = u32(record + 20), entry.bytes = u32(record + 24), entry.offset = u32(record + 42);
     if (!read_zip64_extra(bytes.subspan(static_cast<std::size_t>(at + central_bytes + name), extra), entry)) damaged();
+    entry_of_name_.try_emplace(lower_case(entry.name), entries_.size());
     entries_.push_back(std::move(entry));
     at += central_bytes + name + extra + comment;
   }
@@ -99,12 +104,16 @@ ZipArchive::ZipArchive(const MeshSource& source) : source_(source) {
 
 const ZipArchive::Entry* ZipArchive::find(std::string_view name) const {
   while (name.starts_with('/')) name.remove_prefix(1);
-  for (const Entry& entry : entries_)
-    if (equal_ignoring_case(entry.name, name)) return &entry;
-  return nullptr;
+  const auto found = entry_of_name_.find(lower_case(name));
+  return found == entry_of_name_.end() ? nullptr : &entries_[found->second];
 }
 
-Bytes ZipArchive::read(const Entry& entry, std::uint64_t most_bytes) const {
+void ZipArchive::take(std::uint64_t bytes) {
+  if (!budget_.take(bytes))
+    source_.refuse("it unpacks to far more than a file of its size holds; simplify the mesh or export it again.");
+}
+
+Bytes ZipArchive::read(const Entry& entry, std::uint64_t max_bytes) {
   const ByteView bytes = source_.bytes();
   const std::string part = "the part “" + clean_text(entry.name, 60) + "” of its zip archive ";
   const auto damaged = [&] { source_.refuse(part + "is damaged; export it or copy it again."); };
@@ -118,33 +127,26 @@ Bytes ZipArchive::read(const Entry& entry, std::uint64_t most_bytes) const {
   const std::uint64_t start = entry.offset + local_bytes + u16(record + 26) + u16(record + 28);
   if (start > bytes.size() || entry.packed_bytes > bytes.size() - start) damaged();
   const ByteView packed = bytes.subspan(static_cast<std::size_t>(start), static_cast<std::size_t>(entry.packed_bytes));
-  const auto too_much = [&](std::uint64_t size) {
-    // Text of numbers packs 5 to 20 times; a bomb a thousand times.
-    if (size > most_bytes || (size > (256u << 20) && size / 200 > packed.size()))
-      source_.refuse(part + "unpacks to more than " + std::to_string(size >> 20) +
-                     " MB; simplify the mesh or export it again.");
-  };
+  // Text of numbers packs 5 to 20 times; a bomb a thousand times.
+  const std::uint64_t limit = std::min(max_bytes, budget_.left());
+  if (std::max<std::uint64_t>(entry.bytes, entry.method == 0 ? packed.size() : 0) > limit)
+    source_.refuse(part + "unpacks to more than " + std::to_string(limit >> 20) +
+                   " MB; simplify the mesh or export it again.");
 
   Bytes result;
   if (entry.method == 0) {
-    too_much(packed.size());
     result.assign(packed.begin(), packed.end());
   } else {
+    if (entry.bytes / max_deflate_ratio > packed.size()) damaged();
     Inflater inflater;
     z_stream& stream = inflater.stream();
-    constexpr std::size_t step = 64u << 20;  // zlib counts with 32 bits
-    result.resize(static_cast<std::size_t>(std::min<std::uint64_t>({entry.bytes, 1032 * entry.packed_bytes, step})) +
-                  1);
+    constexpr std::size_t step = 16u << 20;  // zlib counts with 32 bits; and how often it is asked to cancel
+    result.resize(static_cast<std::size_t>(entry.bytes) + 1);  // one more, to see that it ends
     std::size_t in = 0, out = 0;
     int status = Z_OK;
     while (status != Z_STREAM_END) {
       source_.context().check_cancelled();
-      if (out == result.size()) {
-        too_much(out);
-        result.resize(std::max<std::size_t>(
-            std::min(2 * out, static_cast<std::size_t>(std::min<std::uint64_t>(entry.bytes, most_bytes)) + 1),
-            out + (out >> 2) + 65536));
-      }
+      if (out > entry.bytes) break;
       stream.next_in = zbytes(packed.data() + in);
       stream.avail_in = static_cast<uInt>(std::min(packed.size() - in, step));
       stream.next_out = zbytes(result.data() + out);
@@ -156,9 +158,11 @@ Bytes ZipArchive::read(const Entry& entry, std::uint64_t most_bytes) const {
       if (in_before == stream.avail_in && out_before == stream.avail_out && status != Z_STREAM_END)
         damaged();  // no more to come
     }
-    too_much(out);
+    if (out > entry.bytes)
+      source_.refuse(part + "unpacks to more than its directory says; export it or copy it again.");
     result.resize(out);
   }
+  budget_.take(result.size());
   if (crc32_z(0, zbytes(result.data()), result.size()) != entry.crc) damaged();
   return result;
 }

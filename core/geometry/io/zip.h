@@ -6,9 +6,11 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "base/bytes.h"
+#include "base/read_budget.h"
 #include "geometry/io/mesh_source.h"
 
 namespace formwright {
@@ -24,19 +26,24 @@ class ZipArchive {
     bool encrypted = false;
   };
 
-  /// Reads the directory, Zip64 included. Throws Error{invalid_input} if there is none or it is damaged.
+  /// Reads the directory, Zip64 included. Throws Error{invalid_input} if there is none, it is damaged, or it lists more
+  /// than 65,535 entries.
   explicit ZipArchive(const MeshSource& source);
 
   const std::vector<Entry>& entries() const { return entries_; }
   /// By name without a leading slash, in any case (OPC 10.2.3); nullptr if there is none.
   const Entry* find(std::string_view name) const;
-  /// Unpacks; throws Error{invalid_input}: damaged, encrypted, packed by another method, over `most_bytes`, or
-  /// unpacking to so much that only a bomb does.
-  Bytes read(const Entry& entry, std::uint64_t most_bytes) const;
+  /// Unpacks; throws Error{invalid_input}: damaged, encrypted, packed by another method, over `max_bytes`, or more than
+  /// is left of the budget of the whole archive, against which every call counts, also of the same entry again.
+  Bytes read(const Entry& entry, std::uint64_t max_bytes);
+  /// For what is made of the entries. Throws Error{invalid_input} once the file has taken more than it may.
+  void take(std::uint64_t bytes);
 
  private:
   const MeshSource& source_;
   std::vector<Entry> entries_;
+  std::unordered_map<std::string, std::size_t> entry_of_name_;  // in lower case
+  ReadBudget budget_;
 };
 
 /// Writes entries one after the other. Dates are 1980-01-01, so the same content gives the same bytes.

@@ -92,7 +92,7 @@ TEST(Mutation, TheModelWithinA3mf) {
   const ReadOptions options;
   Context context;
   const MeshSource source(good, "good.3mf", options, context);
-  const ZipArchive archive(source);
+  ZipArchive archive(source);
   const Bytes text = archive.read(*archive.find("3D/3dmodel.model"), 1 << 24);
   for (unsigned seed = 0; seed < 1500; ++seed) {
     std::mt19937 random(seed);

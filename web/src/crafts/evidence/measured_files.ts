@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What was dropped or chosen, sorted: measured objects as three files, a folder or an archive of it; scans.
 import type { Zippable } from 'fflate';
-import { unzipSync, zipSync } from 'fflate';
+import { zipSync } from 'fflate';
+import { ZipReader } from '../../project/zip_reader';
 import type { ObjectFile } from './evidence_document';
 import { objectFiles } from './evidence_document';
 
@@ -43,13 +44,13 @@ export function roleOf(name: string): ObjectFile | null {
 /** Archives hold one object in each of their folders; notes that archivers add are passed over. */
 export function objectsInArchive(bytes: Bytes, fileName: string): Found[] {
   const wanted = new Set<string>(objectFiles);
-  const entries = unzipSync(bytes, { filter: ({ name }) => wanted.has(baseName(name).toLowerCase()) });
+  const archive = new ZipReader(bytes, fileName);
   const folders = new Map<string, Partial<Record<ObjectFile, Bytes>>>();
-  for (const [path, content] of Object.entries(entries)) {
+  for (const [path, entry] of archive.entries) {
     const folder = path.slice(0, path.lastIndexOf('/') + 1);
-    if (folder.startsWith('__MACOSX')) continue;
+    if (!wanted.has(baseName(path).toLowerCase()) || folder.startsWith('__MACOSX')) continue;
     const files = folders.get(folder) ?? {};
-    files[baseName(path).toLowerCase() as ObjectFile] = content as Bytes;
+    files[baseName(path).toLowerCase() as ObjectFile] = archive.readNow(entry);
     folders.set(folder, files);
   }
   const stem = fileName.replace(/\.zip$/i, '');

@@ -1,89 +1,81 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // G-code as a sender needs it: lines without comments, how far they reach, and the state that a line begins in.
-#include <array>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/bytes.h"
+#include "machines/gcode_motion.h"
 
 namespace formwright {
-
-/// Modal state (RS274/NGC) that lines leave behind. Lengths in mm, whatever the units of the line.
-struct GcodeState {
-  bool inches = false, relative = false;
-  int plane = 17, work_system = 54;
-  int motion = 0;   // G0, G1, G2, G3; 80: none
-  int spindle = 5;  // M3, M4, M5
-  std::array<double, 3> position_mm{0, 0, 0};
-  std::array<bool, 3> moved{};  // has the program said where this axis goes?
-  bool from_here = false;       // did it count x or y from where the head stood, before it had said where that is?
-  double feed_mm_per_min = 0;
-  double power = 0;  // S
-  bool mist = false, flood = false;
-};
-
-struct GcodeBounds {
-  std::array<double, 3> low_mm{0, 0, 0}, high_mm{0, 0, 0};
-  bool empty = true;
-  void add(const std::array<double, 3>& point_mm);
-};
 
 class GcodeProgram {
  public:
   GcodeProgram() = default;
   /// Reads a whole file. Comments in () and after ; go, as do blanks, empty lines, % and leading N numbers.
-  /// `longest_line`: most characters of a line as it is sent, its end not counted.
+  /// `longest_line`: most characters of a line as it is sent, its end not counted. `bare_letters`: Marlin's "G28 X".
   /// Throws Error invalid_input ("job") naming the line: too long, a character no G-code has, a $ command, a word
-  /// without a number.
-  static GcodeProgram read(ByteView file, std::size_t longest_line);
+  /// without a number. Needs memory for the text and a fifth of it.
+  static GcodeProgram read(ByteView file, std::size_t longest_line, bool bare_letters = false);
 
-  int line_count() const { return static_cast<int>(numbers_.size()); }
-  std::string_view line(int index) const;
+  int line_count() const { return line_count_; }
+  std::string_view line(int index) const { return find(index).text; }
   /// The line's number in the file, from 1.
-  int number(int index) const { return numbers_[static_cast<std::size_t>(index)]; }
+  int number(int index) const { return find(index).number; }
   /// Index of the first line whose number is `number` or more; line_count() past the end.
   int index_of(int number) const;
+  /// Index of the last line up to `index` that begins with G0, where a cut begins anew; 0 without one.
+  int rapid_before(int index) const;
 
-  /// Of all moves, arcs with their bulges, in work coordinates: of a program that counts `from_here`, as if it began at
-  /// the origin.
-  const GcodeBounds& bounds() const { return bounds_; }
+  /// Of all moves, arcs with their bulges, in work coordinates: of a program that counts `from_here` (or z from where
+  /// it stands), as if it began at the origin. Only whole where `unclear()` is empty.
+  const GcodeBounds& bounds() const { return reach_.bounds; }
   /// Does the way in x and y depend on where the head stands at the start (G91)?
   bool from_here() const { return from_here_; }
-  /// Number of the first line that says where the origin is (G92, G10 L2, G10 L20), 0 without one: behind it
-  /// `bounds()` means nothing to the machine.
-  int origin_line() const { return origin_line_; }
+  /// Why nobody can say where the job goes: a sentence that names the first such line and what to do; "" where it is
+  /// clear.
+  const std::string& unclear() const { return unclear_; }
   /// Is the laser or spindle ever turned on?
-  bool fires() const { return fires_; }
+  bool fires() const { return reach_.fires; }
   GcodeState state_before(int index) const;
+  bool bare_letters() const { return bare_letters_; }
+
+  /// Calls `visit(line, number)` for the lines from `first` to before `end`, in order.
+  template <class Visit>
+  void for_each_line(int first, int end, const Visit& visit) const {
+    if (first >= end) return;
+    Found at = find(first);
+    for (int i = first;; at = after(at)) {
+      visit(at.text, at.number);
+      if (++i >= end) return;
+    }
+  }
 
  private:
+  // Lines stand in text_ with their ends, empty ones as such, so that numbers need not be kept; one in 16 is indexed.
+  struct Block {
+    std::size_t start;
+    int number;
+    bool has_rapid;
+  };
+  struct Found {
+    std::string_view text;
+    int number;
+    std::size_t end;
+  };
+  Found line_from(std::size_t start, int number) const;
+  Found after(const Found& line) const { return line_from(line.end + 1, line.number + 1); }
+  Found find(int index) const;
+
   std::string text_;
-  std::vector<std::size_t> starts_;
-  std::vector<int> numbers_;
-  int origin_line_ = 0;
-  GcodeBounds bounds_;
-  bool fires_ = false, from_here_ = false;
+  std::vector<Block> blocks_;
+  std::vector<GcodeState> checkpoints_;  // before every 1,000th line
+  int line_count_ = 0;
+  GcodeReach reach_;
+  std::string unclear_;
+  bool from_here_ = false, bare_letters_ = false;
 };
-
-/// How far a program reaches that counts from where the head stands is known only when that is the origin. `index`: of
-/// the line it starts with; `head_mm`: in work coordinates. Throws Error invalid_input ("start").
-void require_head_at_origin(const GcodeProgram& program, int index,
-                            const std::optional<std::array<double, 3>>& head_mm);
-
-/// How far a program reaches is known only while its origin stays where it is. Throws Error invalid_input ("job").
-void require_fixed_origin(const GcodeProgram& program);
-
-/// Seconds that a G4 in this line waits, 0 without one.
-double dwell_s(std::string_view line);
-
-/// Does the line turn a laser or spindle on, or move something?
-struct LineEffect {
-  bool moves = false, fires = false;
-};
-LineEffect effect_of(std::string_view line);
 
 }  // namespace formwright

@@ -226,6 +226,7 @@ void GrblDriver::check_reach(const GcodeBounds& bounds) const {
   static constexpr char names[] = {'x', 'y'};
   const double bed[] = {setting(130, options_.bed_x_mm), setting(131, options_.bed_y_mm)};
   for (std::size_t axis = 0; axis < 2; ++axis) {
+    if (!bounds.named[axis]) continue;
     const std::string name(1, names[axis]);
     const double length = bounds.high_mm[axis] - bounds.low_mm[axis];
     if (length > bed[axis] + 1e-3)
@@ -245,9 +246,7 @@ int GrblDriver::careful_line() const {
   if (!job_) return 1;
   // All before the planner's blocks is done; from there back to where a travel begins, so that a cut starts anew and
   // not in its middle.
-  int index = std::max(job_->acknowledged - planner_blocks, 0);
-  while (index > 0 && !program_.line(index).starts_with("G0")) --index;
-  return program_.number(std::min(index, program_.line_count() - 1));
+  return program_.number(program_.rapid_before(std::max(job_->acknowledged - planner_blocks, 0)));
 }
 
 std::vector<std::string> GrblDriver::way_back_to(int index) const {
@@ -289,6 +288,10 @@ void GrblDriver::start(const Json& command, double now_s) {
                             " lines: go on from one of them.");
   require_head_at_origin(program_, index, work_mm_);
   check_reach(program_.bounds());
+  const bool z_known = homes() && position_known_ && offset_mm_;
+  if (const double travel_mm = setting(132, 0); travel_mm > 0)
+    require_z_reach(program_.bounds(), travel_mm,
+                    z_known ? std::optional(reach_low(2) - (*offset_mm_)[2]) : std::nullopt);
   if (focus_until_s_) focus_off();  // before the job, whose own first move may come late
   refused_.reset();
   pause_asked_ = false;

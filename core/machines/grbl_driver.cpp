@@ -294,7 +294,8 @@ void GrblDriver::tick(double now_s) {
 void GrblDriver::load(const std::string& name, ByteView job) {
   if (job_active()) machines_detail::refuse("job", "A job is running: stop it before another is loaded.");
   GcodeProgram program = GcodeProgram::read(job, longest_line);
-  require_fixed_origin(program);
+  const bool mist = option_letters_.empty() || option_letters_.find('M') != std::string::npos;
+  require_runnable(program, {GcodeDialect::grbl, mist});
   program_ = std::move(program);
   program_name_ = name;
   job_.reset();

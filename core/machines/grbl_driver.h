@@ -10,7 +10,7 @@
 #include <map>
 #include <optional>
 
-#include "machines/gcode_program.h"
+#include "machines/gcode_rules.h"
 #include "machines/grbl_report.h"
 #include "machines/grbl_stream.h"
 #include "machines/machine_driver.h"

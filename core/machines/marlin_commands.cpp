@@ -156,7 +156,7 @@ void MarlinDriver::set_origin(const Json& command) {
 void MarlinDriver::check_reach(const GcodeBounds& bounds) const {
   const double bed[] = {options_.bed_x_mm, options_.bed_y_mm};
   for (std::size_t axis = 0; axis < 2; ++axis)
-    if (bounds.high_mm[axis] - bounds.low_mm[axis] > bed[axis] + 1e-3)
+    if (bounds.named[axis] && bounds.high_mm[axis] - bounds.low_mm[axis] > bed[axis] + 1e-3)
       refuse("job", std::string("The job is ") + decimal(bounds.high_mm[axis] - bounds.low_mm[axis]) + " mm long in " +
                         "xy"[axis] + ", the machine reaches " + decimal(bed[axis]) +
                         " mm: make it smaller or turn it.");

@@ -325,8 +325,9 @@ void MarlinDriver::watch_over_stop(double now_s) {
 
 void MarlinDriver::load(const std::string& name, ByteView job) {
   if (job_active()) machines_detail::refuse("job", "A job is running: stop it before another is loaded.");
-  GcodeProgram program = GcodeProgram::read(job, longest_line);
-  if (options_.tool != MachineTool::printer) require_fixed_origin(program);  // a printer's jobs home it themselves
+  GcodeProgram program = GcodeProgram::read(job, longest_line, true);
+  const bool printer = options_.tool == MachineTool::printer;
+  require_runnable(program, {printer ? GcodeDialect::marlin_printer : GcodeDialect::marlin});
   program_ = std::move(program);
   program_name_ = name;
   job_.reset();

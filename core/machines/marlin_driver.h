@@ -21,7 +21,7 @@
 #include <deque>
 #include <optional>
 
-#include "machines/gcode_program.h"
+#include "machines/gcode_rules.h"
 #include "machines/machine_driver.h"
 #include "machines/marlin_laser.h"
 #include "machines/marlin_place.h"

@@ -12,7 +12,7 @@
 
 #include "base/error.h"
 #include "files.h"
-#include "machines/gcode_program.h"
+#include "machines/gcode_rules.h"
 #include "machines/machine_commands.h"
 #include "machines/machine_session.h"
 #include "machines/ruida_bounds.h"
@@ -252,7 +252,7 @@ int machine_frame(const std::vector<std::string>& words, const std::atomic<bool>
   const Machine machine = driven_machine(registry, flags);
   const auto gcode_bounds = [&] {
     const GcodeProgram program = GcodeProgram::read(*job, 256);
-    require_fixed_origin(program);
+    require_clear_way(program);
     return program.bounds();
   };
   const GcodeBounds bounds = machine.kind == MachineKind::ruida ? ruida_bounds(*job) : gcode_bounds();

@@ -60,6 +60,7 @@ class MarlinDriver final : public MachineDriver {
   void hear_ok(const std::string& line, double now_s);
   void hear_resend(int number, double now_s);
   void hear_error(std::string_view text, double now_s);
+  void hear_unknown(const std::string& text);
   void hear_report(const std::string& line, double now_s);
   void hear_idle(double now_s);
   void settled(double now_s);
@@ -69,8 +70,7 @@ class MarlinDriver final : public MachineDriver {
   void send(const HandLine& line, int job_line, double now_s);
   void send_again(double now_s);
   void send_focus_pulse(double now_s);
-  /// What follows for the head and the beam from a line that is about to leave.
-  void note_sending(const std::string& text);
+  void keep(SentLine line);
   void greet(double now_s);
   void start_numbering(double now_s);
   void queue(const std::string& line, Settles settles = Settles::nothing) { by_hand_.push_back({line, settles}); }
@@ -97,6 +97,7 @@ class MarlinDriver final : public MachineDriver {
   void set_origin(const Json& command);
   void start(const Json& command, double now_s);
   void resume();
+  Json laser_on() const;
   void check_reach(const GcodeBounds& bounds) const;
 
   DriverOptions options_;
@@ -121,6 +122,7 @@ class MarlinDriver final : public MachineDriver {
   bool prepared_ = false;  // the last lines queued by hand are prepare_moves() and jogs
   bool no_m5_ = false;     // the firmware does not know it
   MarlinPlace place_;
+  std::optional<MarlinPlace::Limits> limits_;  // M211
   std::string halt_text_;
   Json temperatures_ = Json::object();
   std::optional<std::string> refused_;

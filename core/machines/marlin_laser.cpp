@@ -32,20 +32,20 @@ MarlinPower marlin_power_after(std::string_view line, MarlinPower before) {
 
 MarlinPower marlin_power_before(const GcodeProgram& program, int index) {
   MarlinPower power = MarlinPower::off;
-  for (int i = 0; i < index; ++i) power = marlin_power_after(program.line(i), power);
+  program.for_each_line(0, index, [&](std::string_view line, int) { power = marlin_power_after(line, power); });
   return power;
 }
 
 MarlinLaserUse marlin_laser_use(const GcodeProgram& program) {
   MarlinLaserUse use;
   MarlinPower power = MarlinPower::off;
-  for (int i = 0; i < program.line_count(); ++i) {
-    power = marlin_power_after(program.line(i), power);
+  program.for_each_line(0, program.line_count(), [&](std::string_view line, int) {
+    power = marlin_power_after(line, power);
     use.standard = use.standard || power == MarlinPower::standard;
     use.continuous = use.continuous || power == MarlinPower::continuous;
     use.dynamic = use.dynamic || power == MarlinPower::dynamic;
-    use.fan = use.fan || is_command(program.line(i), "M106");
-  }
+    use.fan = use.fan || is_command(line, "M106");
+  });
   return use;
 }
 

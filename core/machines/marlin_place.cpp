@@ -45,7 +45,7 @@ void MarlinPlace::sending(std::string_view line) {
 void MarlinPlace::set_place(std::string_view line) {
   origin_expected_ = false;
   const std::string text(line.substr(3));
-  bool named = false, other = false;
+  bool named = false;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::size_t at = text.find(letters[axis]);
     if (at == std::string::npos) continue;
@@ -58,8 +58,7 @@ void MarlinPlace::set_place(std::string_view line) {
     if (position_mm_) (*position_mm_)[axis] = value;
     known_[axis] = true;
   }
-  other = text.starts_with(".") || (!named && text.find('E') == std::string::npos);
-  if (other) origin_mm_ = {}, fresh_ = false;
+  if (text.starts_with(".") || (!named && text.find('E') == std::string::npos)) origin_mm_ = {}, fresh_ = false;
 }
 
 void MarlinPlace::homed() {
@@ -86,18 +85,22 @@ void MarlinPlace::expect_origin(std::string_view axes) {
 std::optional<MarlinPlace::Limits> MarlinPlace::limits_in(const std::string& line) {
   const std::size_t low = line.find("Min:"), high = line.find("Max:");
   if (low == std::string::npos || high == std::string::npos || high < low) return std::nullopt;
+  const auto number = [&](std::size_t axis, std::size_t from, std::size_t to) -> std::optional<double> {
+    const std::size_t at = line.find(letters[axis], from);
+    if (at >= to) return std::nullopt;
+    const char* start = line.c_str() + at + 1;
+    if (*start == ':') ++start;
+    char* end = nullptr;
+    const double value = std::strtod(start, &end);
+    return end != start && std::isfinite(value) ? std::optional(value) : std::nullopt;
+  };
   Limits limits;
-  for (std::size_t axis = 0; axis < 2; ++axis)
-    for (const auto& [from, to, value] : {std::tuple{low + 4, high, &limits.low_mm[axis]},
-                                          std::tuple{high + 4, line.size(), &limits.high_mm[axis]}}) {
-      const std::size_t at = line.find(letters[axis], from);
-      if (at >= to) return std::nullopt;
-      const char* start = line.c_str() + at + 1;
-      if (*start == ':') ++start;
-      char* end = nullptr;
-      *value = std::strtod(start, &end);
-      if (end == start || !std::isfinite(*value)) return std::nullopt;
-    }
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const auto lowest = number(axis, low + 4, high), highest = number(axis, high + 4, line.size());
+    if (!lowest || !highest) return std::nullopt;
+    limits.low_mm[axis] = *lowest;
+    limits.high_mm[axis] = *highest;
+  }
   if (limits.high_mm[0] <= limits.low_mm[0] || limits.high_mm[1] <= limits.low_mm[1]) return std::nullopt;
   return limits;
 }

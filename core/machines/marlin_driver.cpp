@@ -56,6 +56,8 @@ void MarlinDriver::opened(double now_s) {
   *this = MarlinDriver(options_);
   connection_ = MachineConnection::greeting;
   opened_s_ = heard_s_ = asked_s_ = now_s;
+  // A board that does not restart may shine since somebody else went, perhaps in the middle of a line.
+  if (options_.tool == MachineTool::laser) write("\nM5\n");
 }
 
 void MarlinDriver::closed(double now_s) {
@@ -105,7 +107,6 @@ void MarlinDriver::greet(double now_s) {
   jogging_until_s_.reset();
   no_m5_ = dark_ = false;
   start_numbering(now_s);
-  // Who sat here before may have left it on.
   if (options_.tool == MachineTool::laser) queue_dark();
   for (const char* line : {"M115", "M211", "M105", "M114"}) queue(line);
 }
@@ -204,7 +205,7 @@ void MarlinDriver::hear_ok(const std::string& line, double now_s) {
 }
 
 void MarlinDriver::hear_resend(int number, double now_s) {
-  if (halted_) return;
+  if (halted_ || !greeted_) return;
   if (++resends_ > most_resends) {
     // Lines with numbers do not get through.
     end("failed", now_s);

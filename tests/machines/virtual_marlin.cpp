@@ -37,7 +37,7 @@ void VirtualMarlin::restart() {
   at_mm_ = planned_mm_ = offset_mm_ = {};
   rx_.clear(), line_.clear(), output_text_.clear();
   ring_.clear(), blocks_.clear(), block_.reset();
-  last_number_ = 0;
+  last_number_ = homed_times = 0;
   relative_ = halted_ = booted_ = inline_enabled_ = powered_ = false;
   mode_ = Mode::standard;
   output_ = inline_power_ = 0;

@@ -122,6 +122,7 @@ void MarlinDriver::command(const Json& command, double now_s) {
     if (effect.moves || effect.fires)
       require_confirmation(command, "The line \"" + text + "\" may move the machine, heat it or turn its laser on");
     if (focus_until_s_) focus_off(now_s);
+    if (effect.fires) queue("M400");  // a stop drops the moves that it would wait for, and it would shine where they end
     queue(text);
     ask_soon();  // it may move the head
     if (text.starts_with("G28")) settle(Settles::homing);
@@ -207,7 +208,7 @@ void MarlinDriver::start(const Json& command, double now_s) {
     queue("G90");
   }
   refused_.reset();
-  paused_ = false;
+  paused_ = rests_ = false;
   job_ = MachineJob{program_name_, program_.line_count(), 0, 0, 0, now_s, 0, ""};
   next_line_ = 0;
 }

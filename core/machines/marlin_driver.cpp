@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 namespace formwright {
 namespace {
@@ -299,8 +300,16 @@ void MarlinDriver::pump(double now_s) {
   }
   if (focus_until_s_) return send_focus_pulse(now_s);
   if (!job_active() || paused_ || next_line_ >= program_.line_count()) return;
-  const std::string_view line = program_.line(next_line_);
-  send({options_.tool == MachineTool::laser ? marlin_line_as_sent(line) : std::string(line)}, next_line_, now_s);
+  const std::string line(program_.line(next_line_));
+  if (options_.tool != MachineTool::laser) return send_job_line(line, now_s);
+  // Such a line waits in the machine for the moves before it: a stop drops those, and it would shine where they end.
+  if (marlin_power_after(line, MarlinPower::off) == MarlinPower::standard && !std::exchange(rests_, !rests_))
+    return send({"M400"}, -1, now_s);
+  send_job_line(marlin_line_as_sent(line), now_s);
+}
+
+void MarlinDriver::send_job_line(const std::string& line, double now_s) {
+  send({line}, next_line_, now_s);
   job_->sent = ++next_line_;
 }
 

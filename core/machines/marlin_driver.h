@@ -70,6 +70,7 @@ class MarlinDriver final : public MachineDriver {
   void send(const HandLine& line, int job_line, double now_s);
   void send_again(double now_s);
   void send_focus_pulse(double now_s);
+  void send_job_line(const std::string& line, double now_s);
   void keep(SentLine line);
   void greet(double now_s);
   void start_numbering(double now_s);
@@ -120,6 +121,7 @@ class MarlinDriver final : public MachineDriver {
   bool paused_ = false, halted_ = false, greeted_ = false;
   bool dark_ = false;      // an M5 was answered, and nothing that may light anything was sent since
   bool prepared_ = false;  // the last lines queued by hand are prepare_moves() and jogs
+  bool rests_ = false;     // an M400 was sent ahead of the job's next line
   bool no_m5_ = false;     // the firmware does not know it
   MarlinPlace place_;
   std::optional<MarlinPlace::Limits> limits_;  // M211

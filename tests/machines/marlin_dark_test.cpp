@@ -233,8 +233,8 @@ TEST(MarlinDark, NothingShinesBesideCutsAndSpotsInRandomSequences) {
       sums.max_dynamic_rest_s, sums.max_rest_s);
   EXPECT_EQ(sums.outside_s, 0);
   EXPECT_EQ(sums.killed_dynamic_s, 0);
-  EXPECT_GT(sums.done, count / 4);
-  EXPECT_GT(sums.lit_s, count);
+  EXPECT_GT(sums.done, count / 8);
+  EXPECT_GT(sums.lit_s, count / 4.0);
 }
 
 }  // namespace

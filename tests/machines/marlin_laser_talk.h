@@ -85,7 +85,6 @@ struct MarlinLaserTalk {
     killed_s = -1;
     at_focus = by_hand = false;
     homed_before = machine.homed_times;
-    job = {};
     left_on = machine.shines();
   }
   Json state() const { return driver.state(machine.now_s()); }
@@ -99,9 +98,9 @@ struct MarlinLaserTalk {
       if (phase() == wanted) return true;
     return false;
   }
-  /// The person lets it shine where it stands: until the next order.
+  /// The person lets it shine at rest: where it does so first, there it may, until it does so elsewhere by an order.
   void expect_spot(bool focus) {
-    spot_mm = machine.head_mm();
+    spot_is_open = true;
     at_focus = focus, by_hand = !focus;
   }
 
@@ -114,7 +113,7 @@ struct MarlinLaserTalk {
   bool left_on = false;  // by the host before
   LaserJob job;
   std::array<double, 3> spot_mm{};
-  bool at_focus = false, by_hand = false;
+  bool at_focus = false, by_hand = false, spot_is_open = false;
 
   // What was seen, in seconds.
   double outside_s = 0;           // beside every cut and spot: 0 is promised
@@ -141,6 +140,7 @@ struct MarlinLaserTalk {
     }
     lit_s += step_s;
     const auto zero = machine.work_zero_mm();
+    if (spot_is_open && !machine.moves() && (at_focus || by_hand)) spot_mm = head, spot_is_open = false;
     const bool at_spot = std::hypot(head[0] - spot_mm[0], head[1] - spot_mm[1]) < 0.02 && (at_focus || by_hand);
     if (at_spot && !machine.moves()) {
       spot_s += step_s;

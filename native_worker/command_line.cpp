@@ -219,7 +219,8 @@ std::string overview_text() {
   for (const Operation& operation : operations())
     text += entry("formwright " + operation.name, width, operation.summary);
   text += "\n" + entry("formwright serve", width, "The page and the native worker, on this machine only.");
-  text += entry("formwright machine", width, "Printers and machines: list, add, remove, print, send, frame, stop.");
+  text +=
+      entry("formwright machine", width, "Printers and machines: list, add, remove, print, send, origin, frame, stop.");
   text += entry("formwright list", width, "The operations, one a line.");
   text += entry("formwright describe OP", width, "One operation as JSON: inputs, parameters, outputs, report.");
   text += entry("formwright --version", width, "The version.");

@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -15,6 +16,7 @@
 #include "job/catalog.h"
 #include "job/run.h"
 #include "machines/machine_commands.h"
+#include "output_folder.h"
 #include "serve.h"
 
 namespace formwright {
@@ -60,12 +62,23 @@ class ProgressLine {
   std::string stage_;
 };
 
-int run_operation(const Operation& operation, const std::vector<std::string>& words) {
-  ParsedCommand command = parse_command(operation, words);
-  if (command.help) {
-    std::cout << operation_help(operation);
-    return 0;
-  }
+/// Commands that write jobs for machines: after a run of theirs that failed no earlier job may be left to be sent.
+bool makes_jobs(const Operation& operation) {
+  return std::any_of(operation.outputs.begin(), operation.outputs.end(),
+                     [](const OutputInfo& output) { return output.media_type == "text/x-gcode"; });
+}
+
+/// A job that does not fit is not written: that is an error, or whoever sends what stands in the folder next would
+/// send something else.
+void require_fit(const Operation& operation, const Json& report) {
+  if (report.value("fits", true)) return;
+  const Json& misfits = report["misfits"];
+  std::string sentences;
+  for (const Json& misfit : misfits) sentences += (sentences.empty() ? "" : " ") + misfit.get<std::string>();
+  throw Error(ErrorCode::invalid_input, operation.inputs.empty() ? "" : operation.inputs.front().name, sentences);
+}
+
+JobResult run_to_result(const Operation& operation, ParsedCommand& command, const OutputFolder& out) {
   std::map<std::string, std::shared_ptr<const Bytes>> blobs;
   for (const auto& [name, path] : command.files) {
     const auto folder = command.folders.find(name);
@@ -76,12 +89,7 @@ int run_operation(const Operation& operation, const std::vector<std::string>& wo
     blobs[hash] = std::move(bytes);
   }
   if (const auto error = check_job(command.message)) throw Error(error->code, error->where, error->message);
-  std::error_code status;
-  std::filesystem::create_directories(command.out, status);
-  if (!std::filesystem::is_directory(command.out))
-    throw Error(ErrorCode::invalid_input, "--out",
-                "The folder " + command.out.string() + " cannot be made (" + status.message() + "): choose another.");
-
+  out.make();
   ProgressLine line(command.quiet);
   Session session;
   Host host{[&](const Progress& progress) { line.show(progress); }, [] { return interrupted.load(); }, peak_memory_mb};
@@ -91,14 +99,36 @@ int run_operation(const Operation& operation, const std::vector<std::string>& wo
       command.message, [&](const std::string& hash) { return blobs[hash]; }, session, host);
   line.clear();
   if (result.error) throw Error(result.error->code, result.error->where, result.error->message);
-  const auto put = [&](const std::string& name, ByteView bytes) {
-    const std::filesystem::path path = command.out / name;
-    write_file(path, bytes);
-    std::printf("%s  %.2f MB\n", path.string().c_str(), static_cast<double>(bytes.size()) * 1e-6);
-  };
-  for (const OutputBlob& output : result.outputs) put(output.name, *output.bytes);
-  // The report comes last: where it stands, everything else does.
-  put("report.json", as_bytes(json_text(result.report, 2) + "\n"));
+  require_fit(operation, result.report);
+  return result;
+}
+
+int run_operation(const Operation& operation, const std::vector<std::string>& words) {
+  ParsedCommand command = parse_command(operation, words);
+  if (command.help) {
+    std::cout << operation_help(operation);
+    return 0;
+  }
+  std::vector<std::string> names;
+  for (const OutputInfo& output : operation.outputs) names.push_back(output.name);
+  names.emplace_back("report.json");
+  OutputFolder out(command.out, operation.name, names);
+  try {
+    const JobResult result = run_to_result(operation, command, out);
+    std::vector<std::pair<std::string, std::size_t>> written;
+    const auto put = [&](const std::string& name, ByteView bytes) {
+      out.put(name, bytes);
+      written.emplace_back(name, bytes.size());
+    };
+    for (const OutputBlob& output : result.outputs) put(output.name, *output.bytes);
+    put("report.json", as_bytes(json_text(result.report, 2) + "\n"));
+    out.replace();
+    for (const auto& [name, bytes] : written)
+      std::printf("%s  %.2f MB\n", (command.out / name).string().c_str(), static_cast<double>(bytes) * 1e-6);
+  } catch (const std::exception&) {
+    if (makes_jobs(operation)) out.clear();
+    throw;
+  }
   return 0;
 }
 

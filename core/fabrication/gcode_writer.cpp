@@ -53,24 +53,56 @@ void coordinates(GcodeText& text, const Vec3& from, const Vec3& to, const Machin
   if (from.z() != to.z()) text.word('Z', to.z());
 }
 
+/// Units, distances and plane as they are meant, and nothing on: whatever ran before.
+void begin(GcodeText& text, bool marlin) {
+  text.line("G21");
+  text.line("G90");
+  if (!marlin)
+    for (const char* word : {"G17", "G94", "G54"}) text.line(word);
+  text.line("M5");
+}
+
+/// The tool comes on once the first rapid has named x and y, before anything works or sinks.
+class FirstMove {
+ public:
+  template <class TurnOn>
+  void before(GcodeText& text, const Vec3& from, const Vec3& to, bool works, const MachineOptions& machine,
+              const TurnOn& turn_on) {
+    const bool begins = !on_ && (works || to.z() < from.z());
+    if (begins && !placed_) {
+      const Vec2 p = to_controller(from.head<2>(), machine);
+      text.command("G0").word('X', p.x()).word('Y', p.y());
+      text.end_row();
+    }
+    placed_ = placed_ || begins || from.head<2>() != to.head<2>();
+    if (begins) turn_on();
+    on_ = on_ || begins;
+  }
+
+ private:
+  bool placed_ = false, on_ = false;
+};
+
 }  // namespace
 
 Bytes write_laser_gcode(Toolpath& path, const LaserMachineOptions& machine) {
   const bool marlin = machine.controller == Controller::marlin;
   GcodeText text;
   text.line("; laser job in mm by Formwright");
-  text.line("G21");
-  text.line("G90");
-  if (!marlin) text.line("G94");
-  if (marlin) text.line(machine.dynamic_power ? "M4 I" : "M3 I");
-  else text.line(machine.dynamic_power ? "M4 S0" : "M3 S0");
-  if (machine.air_assist) text.line("M8");
+  begin(text, marlin);
+  const auto turn_on = [&] {
+    if (marlin) text.line(machine.dynamic_power ? "M4 I" : "M3 I");
+    else text.line(machine.dynamic_power ? "M4 S0" : "M3 S0");
+    if (machine.air_assist) text.line("M8");
+  };
   const auto travel_words = [&](double speed) {
     if (marlin) text.word('F', 60 * speed);
     else text.word('S', 0);
   };
+  FirstMove first;
   std::string last_heading;
   for (ToolMove& move : path.moves) {
+    first.before(text, move.points_mm[0], move.points_mm[1], move.work, machine, turn_on);
     if (move.work && heading(move) != last_heading) text.line(last_heading = heading(move));
     move.lines.assign(1, text.lines());
     for (std::size_t i = 1; i < move.points_mm.size(); ++i) {
@@ -91,38 +123,31 @@ Bytes write_laser_gcode(Toolpath& path, const LaserMachineOptions& machine) {
   return text.bytes();
 }
 
-Bytes write_mill_gcode(Toolpath& path, const MachineOptions& machine, double spindle_rpm, std::size_t tool_change) {
+Bytes write_mill_gcode(Toolpath& path, const MachineOptions& machine, double spindle_rpm, std::size_t stage) {
   const bool marlin = machine.controller == Controller::marlin;
   GcodeText text;
   text.line("; mill job in mm by Formwright");
-  text.line("G21");
-  text.line("G90");
-  if (!marlin) text.line("G94");
-  const auto spindle_on = [&] {
+  begin(text, marlin);
+  const auto turn_on = [&] {
     text.command("M3").word('S', std::round(spindle_rpm));
     text.end_row();
   };
-  spindle_on();
+  const std::size_t begin_move = path.stages.empty() ? 0 : path.stages[stage].first_move,
+                    end_move = stage + 1 < path.stages.size() ? path.stages[stage + 1].first_move : path.moves.size();
+  FirstMove first;
   std::string last_heading;
   double feed = -1;
-  for (std::size_t m = 0; m < path.moves.size(); ++m) {
+  for (std::size_t m = begin_move; m < end_move; ++m) {
     ToolMove& move = path.moves[m];
-    bool change = tool_change > 0 && m == tool_change;
     if (move.work && heading(move) != last_heading) text.line(last_heading = heading(move));
     move.lines.assign(1, text.lines());
     for (std::size_t i = 1; i < move.points_mm.size(); ++i) {
+      first.before(text, move.points_mm[i - 1], move.points_mm[i], move.work, machine, turn_on);
       text.command(move.work ? "G1" : "G0");
       coordinates(text, move.points_mm[i - 1], move.points_mm[i], machine);
       if ((move.work || marlin) && move.speed_mm_per_s != feed) text.word('F', 60 * (feed = move.speed_mm_per_s));
       text.end_row();
       move.lines.push_back(text.lines());
-      if (change && move.points_mm[i].z() >= 0) {
-        change = false;
-        text.line("M5");
-        text.line("; change to the tool that finishes, set z to 0 on the stock, resume");
-        text.line("M0");
-        spindle_on();
-      }
     }
   }
   text.line("M5");

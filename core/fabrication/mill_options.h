@@ -79,7 +79,8 @@ struct MillOptions : MachineOptions {
               .group("Carving")
               .slider(0.002, 0.05)
               .advanced(),
-          parameter("stages", &MillOptions::stages, "Stages", "With a tool for each, the job pauses between (M0).")
+          parameter("stages", &MillOptions::stages, "Stages",
+                    "With a tool for each there are two jobs, and z is set to 0 with each tool.")
               .group("Carving"),
           parameter("tool", &MillOptions::tool, "Tool", "That finishes the surface.").group("Finishing"),
           parameter("diameter_mm", &MillOptions::diameter_mm, "Diameter", unit::mm, 0.1, 100,

@@ -58,11 +58,13 @@ std::vector<int> raster_rows(int rows, int stepover) {
   return result;
 }
 
+constexpr const char *rough_job_name = "job_1_rough.gcode", *finish_job_name = "job_2_finish.gcode";
+
 class Planner {
  public:
   Planner(const HeightField& surface, const MillOptions& options, Context& context)
       : surface_(surface), o_(options), context_(context), builder_(start(), options.travel_speed_mm_per_s) {
-    builder_.travel_to({start().x(), start().y(), o_.safe_height_mm});
+    rise();
   }
 
   MillPlan plan() {
@@ -76,25 +78,26 @@ class Planner {
       rough_out(rough, carved);
     }
     const bool other_tool = o_.rough_tool != o_.tool || o_.rough_diameter_mm != o_.diameter_mm;
+    std::vector<std::pair<ToolpathStage, Toolpath>> stages;
+    if (o_.stages == MillStages::both && other_tool) {
+      Toolpath roughing = take_stage();
+      if (std::any_of(roughing.moves.begin(), roughing.moves.end(), [](const ToolMove& move) { return move.work; }))
+        stages.push_back({{"rough", rough_job_name}, std::move(roughing)});
+      else plan_.notes.push_back("Nothing is deep enough for roughing: mount the finishing tool from the start.");
+    }
     if (o_.stages != MillStages::rough) {
       const auto span = context_.span(0.4, 0.8, "Finishing");
       finish_off(finish, carved);
     }
-    const Vec2 origin = origin_on_bed(o_);
-    builder_.travel_to({origin.x(), origin.y(), o_.safe_height_mm});
-    plan_.path = builder_.take();
-    for (std::size_t i = 0; i < plan_.path.moves.size() && o_.stages == MillStages::both && other_tool; ++i)
-      if (plan_.path.moves[i].layer == "finish") {
-        plan_.tool_change = i > 0 && !plan_.path.moves[i - 1].work ? i - 1 : i;
-        break;
-      }
-    const auto is_rough = [](const ToolMove& move) { return move.work && move.layer == "rough"; };
-    if (o_.stages == MillStages::both && other_tool &&
-        std::none_of(plan_.path.moves.begin(), plan_.path.moves.end(), is_rough)) {
-      plan_.tool_change = 0;
-      plan_.notes.push_back("Nothing is deep enough for roughing: mount the finishing tool from the start.");
+    if (stages.empty()) {
+      plan_.path = take_stage();
+    } else {
+      stages.push_back({{"finish", finish_job_name}, take_stage()});
+      plan_.path = in_stages(std::move(stages));
+      plan_.notes.push_back(std::string("Two tools, two jobs: run ") + rough_job_name +
+                            ", mount the finishing tool, set z to 0 with it on the same place, then run " +
+                            finish_job_name + ".");
     }
-    time_moves(plan_.path, {o_.acceleration_mm_per_s2, o_.junction_deviation_mm, o_.planner_blocks});
     for (const ToolMove& move : plan_.path.moves)
       if (move.work)
         (move.layer == "rough" ? plan_.rough_seconds : plan_.finish_seconds) +=
@@ -113,6 +116,20 @@ class Planner {
   Vec3 start() const {
     const Vec2 origin = origin_on_bed(o_);
     return {origin.x(), origin.y(), 0};
+  }
+
+  void rise() { builder_.travel_to({builder_.at().x(), builder_.at().y(), o_.safe_height_mm}); }
+
+  /// What was run since the last one, back over the controller's origin; the next begins there, lowered by whoever has
+  /// changed the tool.
+  Toolpath take_stage() {
+    rise();
+    builder_.travel_to({start().x(), start().y(), o_.safe_height_mm});
+    Toolpath path = builder_.take();
+    time_moves(path, {o_.acceleration_mm_per_s2, o_.junction_deviation_mm, o_.planner_blocks});
+    builder_ = ToolpathBuilder(start(), o_.travel_speed_mm_per_s);
+    rise();
+    return path;
   }
 
   void check_size(const MillTool& tool, const char* where) const {

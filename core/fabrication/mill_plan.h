@@ -14,8 +14,7 @@ struct Deviation {
 };
 
 struct MillPlan {
-  Toolpath path;
-  std::size_t tool_change = 0;  // index of the move before which the tool is changed; 0: never
+  Toolpath path;  // in stages where there is a tool for roughing and another one for finishing
   HeightField carved;
   Deviation deviation;
   std::optional<Deviation>

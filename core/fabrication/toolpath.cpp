@@ -79,6 +79,21 @@ void ToolpathBuilder::work(ToolMove move) {
   path_.moves.push_back(std::move(move));
 }
 
+Toolpath in_stages(std::vector<std::pair<ToolpathStage, Toolpath>> parts) {
+  Toolpath whole;
+  for (auto& [stage, part] : parts) {
+    stage.first_move = whole.moves.size();
+    stage.start_s = whole.seconds;
+    for (ToolMove& move : part.moves) {
+      for (double& time : move.times_s) time += whole.seconds;
+      whole.moves.push_back(std::move(move));
+    }
+    whole.seconds += part.seconds;
+    whole.stages.push_back(std::move(stage));
+  }
+  return whole;
+}
+
 std::vector<std::string> find_misfits(const Toolpath& path, const MachineOptions& machine, double width_mm,
                                       double edge_width_mm) {
   const auto zones = read_no_go(machine.no_go);
@@ -139,7 +154,14 @@ Bytes write_toolpath_json(const Toolpath& path, const MachineOptions& machine) {
         << ',' << rounded(zone.y1_mm) << ']';
     first = false;
   }
-  out << "],\"seconds\":" << rounded(path.seconds) << ",\"paths\":[";
+  out << "],\"seconds\":" << rounded(path.seconds);
+  for (std::size_t s = 0; s < path.stages.size(); ++s) {
+    const ToolpathStage& stage = path.stages[s];
+    out << (s == 0 ? ",\"stages\":[" : ",") << "{\"name\":\"" << stage.name << "\",\"file\":\"" << stage.file
+        << "\",\"first_path\":" << static_cast<int>(stage.first_move) << ",\"start_s\":" << rounded(stage.start_s)
+        << '}' << (s + 1 == path.stages.size() ? "]" : "");
+  }
+  out << ",\"paths\":[";
   for (std::size_t m = 0; m < path.moves.size(); ++m) {
     const ToolMove& move = path.moves[m];
     out << (m == 0 ? "{" : ",{") << "\"kind\":\"" << (move.work ? "work" : "travel") << "\",\"layer\":\"" << move.layer

@@ -2,6 +2,7 @@
 #pragma once
 // What a machine does, move by move, and when: the same data for the preview, the estimate and every file format.
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/bytes.h"
@@ -23,9 +24,18 @@ struct ToolMove {
   std::vector<int> lines;       // per point, of the job's G-code, from 1 (write_gcode)
 };
 
+/// A part of the way that is a job of its own, because the tool is changed before it.
+struct ToolpathStage {
+  std::string name;            // "rough", "finish"
+  std::string file;            // name of its job
+  std::size_t first_move = 0;  // up to the next stage's
+  double start_s = 0;
+};
+
 struct Toolpath {
   std::vector<ToolMove> moves;
   double seconds = 0;
+  std::vector<ToolpathStage> stages;  // empty: all of it is one job
 
   double length_mm(bool work) const;
 };
@@ -59,6 +69,9 @@ struct MotionLimits {
   int planner_blocks =
       16;  // of the controller; moves beyond them are not seen, and it must be able to stop before them
 };
+
+/// One way after the other; times go on. Needs at least one part, none with stages.
+Toolpath in_stages(std::vector<std::pair<ToolpathStage, Toolpath>> parts);
 
 /// Fills times_s and seconds as GRBL's planner runs the moves: trapezoids of speed at constant acceleration; in a
 /// corner the speed whose centripetal acceleration on a circle that leaves the corner by the junction deviation is the

@@ -16,6 +16,7 @@ namespace formwright {
 namespace {
 
 constexpr double most_nodes = 16e6;
+constexpr const char* gcode_media_type = "text/x-gcode";
 
 std::vector<InputInfo> inputs() {
   InputInfo model = model_input_info();
@@ -26,7 +27,12 @@ std::vector<InputInfo> inputs() {
 }
 
 std::vector<OutputInfo> outputs() {
-  return {{"job.gcode", "text/x-gcode", "G-code", "For GRBL or Marlin; not written when the job does not fit.", true},
+  return {{"job.gcode", gcode_media_type, "G-code",
+           "For GRBL or Marlin, with one tool; not written when the job does not fit.", true},
+          {"job_1_rough.gcode", gcode_media_type, "G-code, roughing",
+           "With a tool for roughing and another one for finishing: the first of two jobs.", true},
+          {"job_2_finish.gcode", gcode_media_type, "G-code, finishing",
+           "The second one, to be run with z set to 0 once more.", true},
           {"toolpath.json", "application/json", "Tool path", "What moves where and when, for the preview.", true},
           {"carved.ply", "model/ply", "Carved", "The surface as the tool leaves it, as a solid.", true},
           {"preview.svg", "image/svg+xml", "Preview", "The bed with what is worked and the travel between.", false}};
@@ -111,13 +117,28 @@ OperationResult run(const OperationCall& call) {
   const double seconds_plan = watch.lap();
   context.progress(0.9, "Writing");
   OperationResult result;
-  const Bytes gcode = write_mill_gcode(plan.path, options, options.spindle_rpm, plan.tool_change);
+  std::vector<ToolpathStage> jobs = plan.path.stages;
+  if (jobs.empty()) jobs.push_back({"", "job.gcode"});
+  // Whoever asks for the job gets all of it, in whatever files it comes.
+  bool wants_job = false;
+  for (const OutputInfo& info : outputs())
+    wants_job = wants_job || (info.media_type == gcode_media_type && call.wants(info.name));
+  Json stages = Json::array();
+  int lines = 0;
+  for (std::size_t stage = 0; stage < jobs.size(); ++stage) {
+    const Bytes gcode = write_mill_gcode(plan.path, options, options.spindle_rpm, stage);
+    lines += line_count(gcode);
+    if (!plan.path.stages.empty())
+      stages.push_back({{"stage", jobs[stage].name}, {"file", jobs[stage].file}, {"lines", line_count(gcode)}});
+    if (!wants_job || !plan.misfits.empty()) continue;
+    for (const OutputInfo& info : outputs())
+      if (info.name == jobs[stage].file) result.outputs.push_back(make_output(info, gcode));
+  }
   const auto add = [&](const char* name, auto&& bytes) {
     if (!call.wants(name)) return;
     for (const OutputInfo& info : outputs())
       if (info.name == name) result.outputs.push_back(make_output(info, bytes()));
   };
-  if (plan.misfits.empty()) add("job.gcode", [&] { return gcode; });
   add("toolpath.json", [&] { return write_toolpath_json(plan.path, options); });
   add("preview.svg", [&] { return write_toolpath_svg(plan.path, options); });
   add("carved.ply", [&] {
@@ -129,7 +150,8 @@ OperationResult run(const OperationCall& call) {
     return write_model(model, MeshFormat::ply, context);
   });
   Json& report = result.report;
-  report_toolpath(report, plan.path, plan.misfits, line_count(gcode));
+  report_toolpath(report, plan.path, plan.misfits, lines);
+  report["stages"] = stages;
   report["seconds_rough"] = plan.rough_seconds;
   report["seconds_finish"] = plan.finish_seconds;
   report["size_mm"] = {map.width_mm(), map.depth_mm(), static_cast<double>(top - bottom)};
@@ -159,6 +181,7 @@ std::vector<ReportField> report_fields() {
   rename("bounds_mm", "Bounds", "of the tool's axis, on the bed: x0, y0, x1, y1");
   rename("layers", "Layers", "of roughing");
   const std::vector<ReportField> more = {
+      {"stages", "Jobs", "", "in the order in which they run, where the tool is changed between: stage, file, lines"},
       {"seconds_rough", "Roughing", "s", "of the machine, without travel"},
       {"seconds_finish", "Finishing", "s", "of the machine, without travel"},
       {"size_mm", "Size", "mm", "width, height and depth of the carving"},

@@ -42,7 +42,8 @@ const char* unclear_command(int tenths) {
     case 432: return "shifts z by a tool's length (G43): take it out and set z to 0 with the tool that is mounted.";
     case 500:
     case 510: return "scales what follows (G51): post it at its size.";
-    case 530: return "goes to a place in machine coordinates (G53): take it out and go there with G0 in work coordinates.";
+    case 530:
+      return "goes to a place in machine coordinates (G53): take it out and go there with G0 in work coordinates.";
     case 520:
     case 920:
     case 921:
@@ -57,7 +58,8 @@ const char* unclear_command(int tenths) {
     case 590:
     case 591:
     case 592:
-    case 593: return "changes to another work coordinate system (G55 to G59): post the job in G54 and set the origin there.";
+    case 593:
+      return "changes to another work coordinate system (G55 to G59): post the job in G54 and set the origin there.";
     case 680: return "turns what follows (G68): post it as it lies.";
     case 730:
     case 760:
@@ -190,8 +192,8 @@ std::string find_arc(const Line& line, const std::array<double, 3>& from_mm, con
 void add_bulges(const Arc& arc, const std::array<std::size_t, 3>& axes, bool clockwise, bool whole_turns,
                 GcodeBounds& bounds) {
   const double radius = std::hypot(arc.from[0], arc.from[1]), start = std::atan2(arc.from[1], arc.from[0]);
-  double sweep = std::atan2(arc.from[0] * arc.to[1] - arc.from[1] * arc.to[0],
-                            arc.from[0] * arc.to[0] + arc.from[1] * arc.to[1]);
+  double sweep =
+      std::atan2(arc.from[0] * arc.to[1] - arc.from[1] * arc.to[0], arc.from[0] * arc.to[0] + arc.from[1] * arc.to[1]);
   if (clockwise && sweep >= -full_turn_rad) sweep -= 2 * std::numbers::pi;
   if (!clockwise && sweep <= full_turn_rad) sweep += 2 * std::numbers::pi;
   if (whole_turns) sweep = 2 * std::numbers::pi;

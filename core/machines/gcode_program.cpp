@@ -91,8 +91,8 @@ GcodeProgram::Found GcodeProgram::find(int index) const {
 }
 
 int GcodeProgram::index_of(int number) const {
-  const auto block = std::partition_point(blocks_.begin(), blocks_.end(),
-                                          [&](const Block& one) { return one.number < number; });
+  const auto block =
+      std::partition_point(blocks_.begin(), blocks_.end(), [&](const Block& one) { return one.number < number; });
   int index = std::max(0, static_cast<int>(block - blocks_.begin()) - 1) * block_lines;
   while (index < line_count_ && this->number(index) < number) ++index;
   return index;
@@ -108,6 +108,10 @@ int GcodeProgram::rapid_before(int index) const {
     if (blocks_[static_cast<std::size_t>(block)].has_rapid)
       if (const int found = within(block, last); found >= 0) return found;
   return 0;
+}
+
+std::size_t GcodeProgram::memory_bytes() const {
+  return text_.capacity() + blocks_.capacity() * sizeof(Block) + checkpoints_.capacity() * sizeof(GcodeState);
 }
 
 GcodeState GcodeProgram::state_before(int index) const {

@@ -40,6 +40,8 @@ class GcodeProgram {
   /// Is the laser or spindle ever turned on?
   bool fires() const { return reach_.fires; }
   GcodeState state_before(int index) const;
+  /// Of the text and its index.
+  std::size_t memory_bytes() const;
   bool bare_letters() const { return bare_letters_; }
 
   /// Calls `visit(line, number)` for the lines from `first` to before `end`, in order.

@@ -12,7 +12,7 @@ namespace {
 using machines_detail::decimal;
 using machines_detail::refuse;
 
-constexpr double at_origin_mm = 0.1;  // machines stop at whole steps, of coarse ones 0.04 mm
+constexpr double at_origin_mm = 0.1;                            // machines stop at whole steps, of coarse ones 0.04 mm
 constexpr double max_tool = 255, max_line_number = 10'000'000;  // grbl, MAX_TOOL_NUMBER and MAX_LINE_NUMBER
 
 /// Modal groups of GRBL 1.1 (gcode.c, step 2); -1: it answers with error 20. Words that move the origin or go to a
@@ -77,7 +77,8 @@ std::string grbl_refuses_words(const std::vector<GcodeWord>& words, bool mist, L
       if (letter == 'M' && tenths == 70 && !mist)
         return "turns the mist on (M7), which this board does not have (error 20): use M8 or take it out.";
       if (line.has_group(group))
-        return "has two commands of one kind, the second " + word_text(word) + " (error 21): put it on a line of its own.";
+        return "has two commands of one kind, the second " + word_text(word) +
+               " (error 21): put it on a line of its own.";
       line.groups |= 1u << group;
       continue;
     }
@@ -129,10 +130,10 @@ std::string grbl_refuses(const std::vector<GcodeWord>& words, const GcodeState& 
 /// have no effect there (G17, G40, G49, G54, G64, G80, G94, M2, M30 without a file) may stay.
 bool marlin_knows(char letter, int tenths) {
   static constexpr std::array g{0, 10, 20, 30, 40, 170, 210, 400, 490, 540, 610, 640, 800, 900, 910, 911, 920, 940};
-  static constexpr std::array m{0,   1,   2,   3,   4,   5,   7,   8,   9,   10,  11,  17,  18,  30,  31,  42,
-                                73,  75,  76,  77,  78,  82,  83,  84,  85,  104, 105, 106, 107, 108, 109, 113,
-                                114, 115, 117, 118, 119, 140, 141, 155, 190, 191, 201, 203, 204, 205, 220, 221,
-                                226, 280, 300, 302, 400};
+  static constexpr std::array m{0,   1,   2,   3,   4,   5,   7,   8,   9,   10,  11,  17,  18,  30,
+                                31,  42,  73,  75,  76,  77,  78,  82,  83,  84,  85,  104, 105, 106,
+                                107, 108, 109, 113, 114, 115, 117, 118, 119, 140, 141, 155, 190, 191,
+                                201, 203, 204, 205, 220, 221, 226, 280, 300, 302, 400};
   if (letter == 'G') return std::find(g.begin(), g.end(), tenths) != g.end();
   return letter == 'M' && tenths % 10 == 0 && std::find(m.begin(), m.end(), tenths / 10) != m.end();
 }
@@ -142,7 +143,8 @@ std::string marlin_refuses(const std::vector<GcodeWord>& words) {
   if (first.letter == 'T')
     return first.value == 0 ? "" : "changes the tool (T): make a job for each tool and set z to 0 with each.";
   if (first.letter != 'G' && first.letter != 'M')
-    return "begins with " + word_text(first) + ", and Marlin leaves out lines that name no command: begin it with G0 or G1.";
+    return "begins with " + word_text(first) +
+           ", and Marlin leaves out lines that name no command: begin it with G0 or G1.";
   const int tenths = tenths_of(first.value);
   if (first.letter == 'G' && tenths == 200)
     return "is in inches (G20), which most Marlin boards do not know and take for mm: post the job in mm (G21).";
@@ -172,8 +174,8 @@ void require_runnable(const GcodeProgram& program, const GcodeRules& rules) {
   program.for_each_line(0, program.line_count(), [&](std::string_view line, int number) {
     read_gcode_words(line, program.bare_letters(), words);
     run_gcode_line(words, state, nullptr);
-    const std::string refused = rules.dialect == GcodeDialect::grbl ? grbl_refuses(words, state, rules.mist)
-                                                                    : marlin_refuses(words);
+    const std::string refused =
+        rules.dialect == GcodeDialect::grbl ? grbl_refuses(words, state, rules.mist) : marlin_refuses(words);
     if (!refused.empty()) refuse("job", "Line " + std::to_string(number) + " " + refused);
   });
 }
@@ -196,7 +198,8 @@ void require_z_reach(const GcodeBounds& bounds, double travel_mm, std::optional<
   if (lowest_mm && (low < *lowest_mm - 1e-3 || high > *lowest_mm + travel_mm + 1e-3))
     refuse("job", "The job would leave the machine's reach in z: from where z is 0 it may go from " +
                       decimal(*lowest_mm) + " to " + decimal(*lowest_mm + travel_mm) + " mm, and goes from " +
-                      decimal(low) + " to " + decimal(high) + " mm. Set z to 0 on the stock, or lower the safe height.");
+                      decimal(low) + " to " + decimal(high) +
+                      " mm. Set z to 0 on the stock, or lower the safe height.");
 }
 
 }  // namespace formwright

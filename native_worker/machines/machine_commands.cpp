@@ -13,6 +13,7 @@
 #include "host.h"
 #include "machines/machine_log.h"
 #include "machines/machine_registry.h"
+#include "machines/machine_terminal.h"
 #include "machines/printer.h"
 
 namespace formwright {
@@ -28,17 +29,15 @@ constexpr const char* help_text =
     "                           [--quality draft|normal|high]\n"
     "  formwright machine frame --machine M --job F [--yes]   once around the job, laser off\n"
     "  formwright machine send  --machine M --job F [--yes]   runs it; Ctrl-C stops the machine\n"
+    "                           [--z here|kept]  for mills: is z 0 where the tip is now, or as set before?\n"
+    "                           --job F --job G: one after the other; mills ask for z with each tool\n"
+    "  formwright machine origin --machine M [--axes xyz] [--at head|corner] [--yes]   where 0 is\n"
     "  formwright machine stop  --machine M                   also one that another program drives\n\n"
-    "frame and send ask before anything moves; --yes says that somebody stands at the machine. They take\n"
-    "--controller, --bed-x-mm and --bed-y-mm too.\n\n"
+    "frame, send and origin ask before anything moves or changes; --yes says that somebody stands at the machine.\n"
+    "They take --controller, --bed-x-mm and --bed-y-mm too.\n\n"
     "URL: ipp://HOST/ipp/print, http://HOST, ruida://HOST, tcp://HOST:PORT or serial:/dev/NAME.\n"
     "Serial ports, the system's printers and those on the network are found without being added.\n"
     "--data DIR names the folder in which they are kept, the same as for formwright serve.\n";
-
-MachineRegistry registry_of(const MachineFlags& flags) {
-  return MachineRegistry(flags.given("--data") ? std::filesystem::path(flags.values.at("--data"))
-                                               : default_data_folder());
-}
 
 int list(const std::vector<std::string>& words) {
   const MachineFlags flags = read_machine_flags(words, {"--data"}, {"--json"});
@@ -152,7 +151,7 @@ std::string MachineFlags::value_or(const std::string& flag, const std::string& o
 }
 
 MachineFlags read_machine_flags(const std::vector<std::string>& words, const std::vector<std::string>& flags,
-                                const std::vector<std::string>& switches) {
+                                const std::vector<std::string>& switches, const std::vector<std::string>& repeatable) {
   MachineFlags result;
   for (std::size_t i = 0; i < words.size(); ++i) {
     std::string flag = words[i], value;
@@ -165,13 +164,15 @@ MachineFlags read_machine_flags(const std::vector<std::string>& words, const std
     const auto among = [&](const std::vector<std::string>& list) {
       return std::find(list.begin(), list.end(), flag) != list.end();
     };
-    if (result.values.contains(flag)) throw Error(ErrorCode::invalid_input, flag, flag + " is given twice.");
+    if (result.values.contains(flag) && !among(repeatable))
+      throw Error(ErrorCode::invalid_input, flag, flag + " is given twice.");
     if (among(switches) && !joined) value = "on";
     else if (!among(flags))
       throw Error(ErrorCode::invalid_input, flag, "There is no flag " + flag + " here: see formwright machine --help.");
     else if (!joined && i + 1 >= words.size()) throw Error(ErrorCode::invalid_input, flag, flag + " needs a value.");
     else if (!joined) value = words[++i];
     result.values[flag] = value;
+    if (among(repeatable)) result.repeated[flag].push_back(value);
   }
   return result;
 }
@@ -189,6 +190,7 @@ int machine_command(const std::vector<std::string>& words, const std::atomic<boo
   if (words[0] == "add") return add(rest);
   if (words[0] == "remove") return remove(rest);
   if (words[0] == "send") return machine_send(rest, interrupted);
+  if (words[0] == "origin") return machine_origin(rest, interrupted);
   if (words[0] == "frame") return machine_frame(rest, interrupted);
   if (words[0] == "stop") return machine_stop(rest, interrupted);
   if (words[0] == "print") return print(rest, interrupted);

@@ -312,6 +312,31 @@ struct Machine {
   }
 };
 
+/// M5 before a first rapid that names x and y, and after the last stroke.
+void expect_dark_ends(std::string_view text) {
+  const std::size_t rapid = text.find("\nG0 "), stroke = text.find("\nG1 "), on = text.find("\nM4");
+  ASSERT_NE(rapid, std::string_view::npos);
+  EXPECT_LT(text.find("\nM5\n"), rapid);
+  EXPECT_LT(rapid, on);
+  EXPECT_LT(on, stroke);
+  const std::string_view line = text.substr(rapid + 1, text.find('\n', rapid + 1) - rapid - 1);
+  EXPECT_NE(line.find('X'), std::string_view::npos) << line;
+  EXPECT_NE(line.find('Y'), std::string_view::npos) << line;
+  EXPECT_GT(text.rfind("\nM5\n"), text.rfind("\nG1 "));
+}
+
+TEST(LaserPlan, AJobThatBeginsAtTheOriginGoesThereFirst) {
+  LaserOptions options;
+  for (const Controller controller : {Controller::grbl, Controller::marlin}) {
+    options.controller = controller;
+    LaserPlan plan = planned({{CutLayer::cut, {{0, 0}, {50, 0}, {50, 20}}, false, ""}}, options);
+    ASSERT_TRUE(plan.path.moves.front().work);
+    const Bytes gcode = write_laser_gcode(plan.path, options);
+    expect_dark_ends(as_text(gcode));
+    EXPECT_NE(as_text(gcode).find("\nG0 X0 Y0\nM4"), std::string_view::npos) << as_text(gcode);
+  }
+}
+
 TEST(LaserPlan, GcodeIsTheToolPathForEveryOrigin) {
   Random random(17);
   std::vector<CutPath> paths;
@@ -333,6 +358,7 @@ TEST(LaserPlan, GcodeIsTheToolPathForEveryOrigin) {
       options.bed_x_mm = 333.3;
       LaserPlan plan = planned(paths, options);
       const Bytes gcode = write_laser_gcode(plan.path, options);
+      expect_dark_ends(as_text(gcode));
       Machine machine;
       if (controller == Controller::grbl) {
         machine.run(as_text(gcode));

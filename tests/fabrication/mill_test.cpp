@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <functional>
 
 #include "base/random.h"
 #include "fabrication/gcode_writer.h"
@@ -164,6 +165,36 @@ TEST(Mill, RidgesOnASphereConvergeToTheFormulas) {
   }
 }
 
+/// Spindle off, up to the safe height, over to a place whose x and y are both named, and only then the spindle and
+/// down.
+void expect_safe_beginning(std::string_view text, double safe_height_mm) {
+  std::vector<std::string> lines;
+  for (std::string_view rest = text; !rest.empty(); rest.remove_prefix(rest.find('\n') + 1))
+    lines.emplace_back(rest.substr(0, rest.find('\n')));
+  const auto at = [&](const std::function<bool(const std::string&)>& is) {
+    return std::find_if(lines.begin(), lines.end(), is) - lines.begin();
+  };
+  const auto motion = at([](const std::string& line) { return line.starts_with("G0") || line.starts_with("G1 "); });
+  const auto place = at([](const std::string& line) {
+    return line.starts_with("G0") && line.find('X') != std::string::npos && line.find('Y') != std::string::npos;
+  });
+  const auto spindle = at([](const std::string& line) { return line.starts_with("M3"); });
+  const auto work = at([](const std::string& line) { return line.starts_with("G1 "); });
+  EXPECT_LT(at([](const std::string& line) { return line == "M5"; }), motion);
+  EXPECT_EQ(lines[static_cast<std::size_t>(motion)].substr(0, 4), "G0 Z");
+  EXPECT_DOUBLE_EQ(std::stod(lines[static_cast<std::size_t>(motion)].substr(4)), safe_height_mm);
+  EXPECT_LT(motion, place);
+  EXPECT_LT(place, spindle);
+  EXPECT_LT(spindle, work);
+  for (auto i = motion; i < place; ++i) EXPECT_EQ(lines[static_cast<std::size_t>(i)].find('X'), std::string::npos);
+  const auto last = std::find_if(lines.rbegin(), lines.rend(), [](const std::string& line) {
+    return line.starts_with("G1 ") || line.starts_with("M");
+  });
+  EXPECT_TRUE(*last == "M2" || *last == "M5") << *last;
+  EXPECT_NE(text.rfind("\nM5\n"), std::string_view::npos);
+  EXPECT_GT(text.rfind("\nM5\n"), text.rfind("\nG1 "));
+}
+
 TEST(Mill, EntriesAreRampsAndFastMovesStayOverTheMaterial) {
   const HeightField surface = field(101, 61, 0.2, [](double x, double y) {
     return -2 + 0.5 * std::sin(0.1 * x) - 1.5 * std::exp(-0.1 * ((x - 9) * (x - 9) + (y - 6) * (y - 6)));
@@ -174,7 +205,7 @@ TEST(Mill, EntriesAreRampsAndFastMovesStayOverTheMaterial) {
   Context context;
   MillPlan plan = plan_mill_job(surface, options, context);
   EXPECT_GE(plan.layers, 3);
-  EXPECT_GT(plan.tool_change, 0u);
+  ASSERT_EQ(plan.path.stages.size(), 2u);
   double reached = 0;
   int last_layer = 0;
   for (const ToolMove& move : plan.path.moves)
@@ -198,14 +229,30 @@ TEST(Mill, EntriesAreRampsAndFastMovesStayOverTheMaterial) {
       reached = std::min(reached, move.points_mm[i].z());
     }
   EXPECT_GE(reached, -4.001);
-  const Bytes gcode = write_mill_gcode(plan.path, options, 9000, plan.tool_change);
-  const std::string_view text = as_text(gcode);
-  const std::size_t pause = text.find("\nM0\n");
-  ASSERT_NE(pause, std::string_view::npos);
-  EXPECT_EQ(text.find("\nM0\n", pause + 1), std::string_view::npos);
-  EXPECT_LT(text.rfind("; layer rough"), pause);
-  EXPECT_GT(text.find("; layer finish"), pause);
-  EXPECT_NE(text.substr(0, pause).rfind("Z3\nM5"), std::string_view::npos);  // lifted before the spindle stops
+  const Bytes rough = write_mill_gcode(plan.path, options, 9000, 0),
+              finish = write_mill_gcode(plan.path, options, 9000, 1);
+  EXPECT_EQ(as_text(rough).find("; layer finish"), std::string_view::npos);
+  EXPECT_EQ(as_text(finish).find("; layer rough"), std::string_view::npos);
+  for (const Bytes& job : {rough, finish}) expect_safe_beginning(as_text(job), options.safe_height_mm);
+  // Each stage begins and ends over the origin; the second goes on where the first ends in time.
+  const ToolpathStage& second = plan.path.stages[1];
+  EXPECT_EQ(second.file, "job_2_finish.gcode");
+  EXPECT_DOUBLE_EQ(second.start_s, plan.path.moves[second.first_move - 1].times_s.back());
+  EXPECT_EQ(plan.path.moves[second.first_move - 1].points_mm.back(), Vec3(0, 0, options.safe_height_mm));
+  EXPECT_EQ(plan.path.moves[second.first_move].points_mm.front(), Vec3(0, 0, 0));
+  EXPECT_EQ(plan.path.moves[second.first_move].points_mm[1], Vec3(0, 0, options.safe_height_mm));
+}
+
+TEST(Mill, AJobThatBeginsAtTheOriginGoesThereFirst) {
+  const HeightField surface = field(41, 41, 0.2, [](double, double) { return -1.0; });
+  MillOptions options = small(ToolShape::flat, 1.6);
+  options.x_mm = options.y_mm = 0;
+  for (const Controller controller : {Controller::grbl_mill, Controller::marlin}) {
+    options.controller = controller;
+    Context context;
+    MillPlan plan = plan_mill_job(surface, options, context);
+    expect_safe_beginning(as_text(write_mill_gcode(plan.path, options, 9000)), options.safe_height_mm);
+  }
 }
 
 TEST(Mill, RoughingLeavesTheAllowanceAndFinishingTakesIt) {
@@ -235,7 +282,7 @@ TEST(Mill, WhatNeedsNoRoughingSaysWhichToolToMount) {
   Context context;
   const MillPlan plan = plan_mill_job(surface, options, context);
   EXPECT_EQ(plan.rough_seconds, 0);
-  EXPECT_EQ(plan.tool_change, 0u);
+  EXPECT_TRUE(plan.path.stages.empty());
   ASSERT_FALSE(plan.notes.empty());
   EXPECT_NE(plan.notes.back().find("mount the finishing tool"), std::string::npos);
 }

@@ -42,24 +42,6 @@ TEST(GcodeProgram, SaysWhatIsWrongAndWhere) {
   EXPECT_NE(sentence_of("G0 X1 (never closed\n").find("Line 1"), std::string::npos);
 }
 
-TEST(GcodeProgram, AnOriginThatMovesIsNamed) {
-  for (const char* text :
-       {"G0X1\nG92X0Y0\nG1X5F100", "G21\nG10L20P0X0Y0", "G21\nG10L2P1X5", "G21\nG92.1", "G21\nG92", "G21\nG92E0X5"}) {
-    const GcodeProgram p = program(text);
-    EXPECT_EQ(p.origin_line(), 2) << text;
-    try {
-      require_fixed_origin(p);
-      ADD_FAILURE() << text;
-    } catch (const Error& error) {
-      EXPECT_NE(std::string(error.what()).find("Line 2 moves the origin"), std::string::npos) << error.what();
-    }
-  }
-  for (const char* text : {"G92E0\nG1X5F100", "G10\nG11", "G0X92Y10"}) {
-    EXPECT_EQ(program(text).origin_line(), 0) << text;
-    EXPECT_NO_THROW(require_fixed_origin(program(text)));
-  }
-}
-
 TEST(GcodeProgram, BoundsHoldUnitsRelativeMovesAndArcs) {
   const GcodeProgram inches = program("G20\nG0X1Y2");
   EXPECT_NEAR(inches.bounds().high_mm[0], 25.4, 1e-12);
@@ -79,6 +61,62 @@ TEST(GcodeProgram, BoundsHoldUnitsRelativeMovesAndArcs) {
   EXPECT_NEAR(circle.bounds().high_mm[1], 10, 1e-9);
   // Machine coordinates say nothing about work coordinates.
   EXPECT_TRUE(program("G53G0X-5").bounds().empty);
+}
+
+TEST(GcodeProgram, BoundsAreOfTheAxesThatAreNamed) {
+  const GcodeBounds x = program("G0X5\nG1X9F100").bounds();
+  EXPECT_EQ(x.named, (std::array<bool, 3>{true, false, false}));
+  EXPECT_DOUBLE_EQ(x.low_mm[0], 5);
+  const GcodeBounds later = program("G0Z3\nG0X5Y7\nG1Z-2F100").bounds();
+  EXPECT_DOUBLE_EQ(later.low_mm[1], 7);
+  EXPECT_DOUBLE_EQ(later.low_mm[2], -2);
+  EXPECT_DOUBLE_EQ(later.high_mm[2], 3);
+  EXPECT_FALSE(program("M3S10\nM5").bounds().named[0]);
+}
+
+TEST(GcodeProgram, ArcsBulgeInEveryPlane) {
+  // Half circles of radius 10, clockwise seen from the end of the third axis.
+  const GcodeBounds zx = program("G18\nG0X0Y5Z0\nG2X20Z0I10K0F100").bounds();
+  EXPECT_NEAR(zx.low_mm[2], -10, 1e-9);
+  EXPECT_NEAR(zx.high_mm[2], 0, 1e-9);
+  EXPECT_DOUBLE_EQ(zx.high_mm[1], 5);
+  const GcodeBounds yz = program("G19\nG0X1Y0Z0\nG3X4Y20Z0J10K0F100").bounds();
+  EXPECT_NEAR(yz.low_mm[2], -10, 1e-9);
+  EXPECT_DOUBLE_EQ(yz.high_mm[0], 4);  // a helix
+  // The longer of two arcs for R < 0: three quarters of a circle about (10, 0).
+  const GcodeBounds longer = program("G0X0Y0\nG3X10Y10R-10F100").bounds();
+  EXPECT_NEAR(longer.high_mm[0], 20, 1e-9);
+  EXPECT_NEAR(longer.low_mm[1], -10, 1e-9);
+  EXPECT_NEAR(longer.high_mm[1], 10, 1e-9);
+  EXPECT_NEAR(longer.low_mm[0], 0, 1e-9);
+  const GcodeBounds shorter = program("G0X0Y0\nG3X10Y10R10F100").bounds();
+  EXPECT_NEAR(shorter.high_mm[0], 10, 1e-9);
+  EXPECT_NEAR(shorter.low_mm[1], 0, 1e-9);
+}
+
+TEST(GcodeProgram, KeepsItsLinesWhereverTheyLie) {
+  // Empty lines, comments, all three line ends and a byte order mark; more lines than one block and one checkpoint.
+  std::string text = "\xef\xbb\xbf";
+  for (int i = 1; i <= 2500; ++i)
+    text += (i % 7 == 0 ? "; a comment" : (i % 5 == 0 ? "G0X" : "G1F60X") + std::to_string(i)) +
+            std::string(i % 3 == 0   ? "\r\n"
+                        : i % 3 == 1 ? "\r"
+                                     : "\n");
+  const GcodeProgram p = program(text);
+  int index = 0;
+  for (int i = 1; i <= 2500; ++i) {
+    EXPECT_EQ(p.index_of(i), index);
+    if (i % 7 == 0) continue;
+    ASSERT_EQ(p.line(index), (i % 5 == 0 ? "G0X" : "G1F60X") + std::to_string(i));
+    EXPECT_EQ(p.number(index), i);
+    EXPECT_EQ(p.state_before(index).position_mm[0], i == 1 ? 0 : (i - 1) % 7 == 0 ? i - 2 : i - 1);
+    int rapid = index;
+    while (rapid > 0 && !p.line(rapid).starts_with("G0")) --rapid;
+    EXPECT_EQ(p.rapid_before(index), rapid);
+    ++index;
+  }
+  EXPECT_EQ(p.line_count(), index);
+  EXPECT_EQ(p.index_of(2501), index);
 }
 
 TEST(GcodeProgram, KnowsWhetherItCountsFromWhereTheHeadStands) {

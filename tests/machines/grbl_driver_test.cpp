@@ -167,7 +167,7 @@ TEST(GrblDriver, HoldsAndGoesOn) {
 TEST(GrblDriver, ARefusedLineEndsTheJob) {
   GrblTalk talk;
   talk.connect_and_home();
-  talk.load("G21G90\nM4S500\nG1X10F600\nG1Q5\nG1X200\nM5\n");
+  talk.load("G21G90\nM4S500\nG1X10F600\nM1\nG1X200\nM5\n");
   talk.tell(start);
   ASSERT_TRUE(talk.pass_until([&] { return !talk.ended().empty(); }, 60));
   EXPECT_EQ(talk.ended(), "failed");

@@ -38,6 +38,15 @@ def volume_and_edges(triangles):
     return volume, edges
 
 
+def written(folder: pathlib.Path):
+    """What a run has left, without the list of it."""
+    return sorted(p.name for p in folder.iterdir() if p.name != ".formwright.json")
+
+
+def square_svg(size_mm: float) -> str:
+    return f'<svg xmlns="http://www.w3.org/2000/svg" width="{size_mm}mm" height="{size_mm}mm" viewBox="0 0 {size_mm} {size_mm}"><rect x="1" y="1" width="{size_mm - 2}" height="{size_mm - 2}" fill="none" stroke="red"/></svg>'
+
+
 class CommandLine(unittest.TestCase):
     def setUp(self):
         self.temporary = tempfile.TemporaryDirectory()
@@ -67,7 +76,7 @@ class CommandLine(unittest.TestCase):
         whole = set(json.loads((out / "report.json").read_text()))
         run = self.run_program(*words)
         self.assertEqual(run.returncode, 0, run.stderr)
-        self.assertEqual(sorted(p.name for p in out.iterdir()), ["curve.obj", "design.json", "formed.ply", "parameterised.ply", "report.json", "ribbon.svg"])
+        self.assertEqual(written(out), ["curve.obj", "design.json", "formed.ply", "parameterised.ply", "report.json", "ribbon.svg"])
         report = json.loads((out / "report.json").read_text())
         described = json.loads(self.run_program("describe", "zippable-design").stdout)
         self.assertEqual(whole | {"hook_and_loop_mm_total"}, {f["name"] for f in described["report"]})  # the T has no handle
@@ -89,7 +98,7 @@ class CommandLine(unittest.TestCase):
         out = self.folder / "out"
         run = self.run_program("relief", "--sample", "bust", "--sample-vertices", 6000, "--thickness-mm", 4, "--width-mm", 80, "--out", out, "--quiet")
         self.assertEqual(run.returncode, 0, run.stderr)
-        self.assertEqual(sorted(p.name for p in out.iterdir()), ["heightmap.png", "relief.glb", "relief.ply", "relief.stl", "report.json"])
+        self.assertEqual(written(out), ["heightmap.png", "relief.glb", "relief.ply", "relief.stl", "report.json"])
         report = json.loads((out / "report.json").read_text())
         described = json.loads(self.run_program("describe", "relief").stdout)
         self.assertEqual(set(report) - {f["name"] for f in described["report"]}, set())
@@ -217,7 +226,7 @@ class CommandLine(unittest.TestCase):
         made = self.folder / "pattern"
         run = self.run_program("evidence-pattern", *self.PATTERN, "--seed", 5, "--dots-per-inch", 250, "--out", made, "--quiet")
         self.assertEqual(run.returncode, 0, run.stderr)
-        self.assertEqual(sorted(p.name for p in made.iterdir()), ["pattern.json", "pattern.pdf", "pattern.png", "report.json"])
+        self.assertEqual(written(made), ["pattern.json", "pattern.pdf", "pattern.png", "report.json"])
         width, height = struct.unpack(">II", (made / "pattern.png").read_bytes()[16:24])
         self.assertEqual([width, height], json.loads((made / "report.json").read_text())["picture_pixels"])
         self.assertAlmostEqual(width / 250 * 25.4, 90, delta=0.1)
@@ -227,7 +236,7 @@ class CommandLine(unittest.TestCase):
         run = self.run_program("evidence-register", "--scan", self.domed_scan(), "--pattern", made / "pattern.json", "--texture", made / "pattern.png",
                                "--scan-unit-mm", 1000, "--picture-px", 600, "--out", out, "--quiet")
         self.assertEqual(run.returncode, 0, run.stderr)
-        self.assertEqual(sorted(p.name for p in out.iterdir()), ["aligned.png", "flow.png", "measured.csv", "report.json"])
+        self.assertEqual(written(out), ["aligned.png", "flow.png", "measured.csv", "report.json"])
         report = json.loads((out / "report.json").read_text())
         described = json.loads(self.run_program("describe", "evidence-register").stdout)
         self.assertEqual(set(report) - {f["name"] for f in described["report"]}, set())
@@ -310,6 +319,78 @@ class CommandLine(unittest.TestCase):
         before = {p.name: p.read_bytes() for p in out.iterdir()}
         self.assertEqual(self.run_program("import", "--mesh", self.folder / "absent.obj", "--out", out).returncode, 2)
         self.assertEqual({p.name: p.read_bytes() for p in out.iterdir()}, before)
+
+    def test_a_job_that_does_not_fit_leaves_none_to_be_sent(self):
+        out, drawing = self.folder / "out", self.folder / "drawing.svg"
+        drawing.write_text(square_svg(50))
+        words = ("laser-job", "--drawing", drawing, "--bed-x-mm", 100, "--bed-y-mm", 100, "--out", out, "--quiet")
+        self.assertEqual(self.run_program(*words).returncode, 0)
+        self.assertEqual(written(out), ["job.gcode", "report.json", "toolpath.json"])
+        (out / "mine.gcode").write_text("G0 X1")
+        for wrong, sentence in ((square_svg(150), "beyond the right edge of the bed"), ("<svg", "drawing")):
+            self.assertEqual(self.run_program(*words, "--outputs", "job.gcode,job.rd").returncode, 0)
+            self.assertEqual(written(out), ["job.gcode", "job.rd", "mine.gcode", "report.json"])
+            drawing.write_text(wrong)
+            self.expect_refused(sentence, *words)
+            self.assertEqual(written(out), ["mine.gcode"])
+            drawing.write_text(square_svg(50))
+        # What the person made stays, also under a name of ours, until a run of ours writes it.
+        (out / "preview.svg").write_text("mine")
+        self.assertEqual(self.run_program(*words).returncode, 0)
+        self.assertEqual((out / "preview.svg").read_text(), "mine")
+        self.assertEqual(self.run_program(*words, "--outputs", "preview.svg").returncode, 0)
+        self.assertEqual(written(out), ["mine.gcode", "preview.svg", "report.json"])
+        # Another command's files stay, too.
+        self.assertEqual(self.run_program("import", "--sample", "pyramid", "--out", out, "--quiet").returncode, 0)
+        drawing.write_text(square_svg(150))
+        self.assertEqual(self.run_program(*words).returncode, 2)
+        self.assertEqual(written(out), ["mine.gcode", "model.ply", "report.json"])
+
+    def test_outputs_of_an_earlier_version_go_with_a_job_that_does_not_fit(self):
+        out, drawing = self.folder / "out", self.folder / "drawing.svg"
+        out.mkdir()
+        for name in ("report.json", "job.gcode", "notes.txt"):
+            (out / name).write_text("old")
+        drawing.write_text(square_svg(150))
+        self.expect_refused("edge", "laser-job", "--drawing", drawing, "--bed-x-mm", 100, "--out", out, "--quiet")
+        self.assertEqual(written(out), ["notes.txt"])
+
+    def test_a_killed_run_leaves_nothing_for_long(self):
+        out = self.folder / "out"
+        (out / ".formwright-part-999999999").mkdir(parents=True)
+        (out / ".formwright-part-999999999" / "job.gcode").write_text("G0")
+        self.assertEqual(self.run_program("import", "--sample", "pyramid", "--out", out, "--quiet").returncode, 0)
+        self.assertEqual(written(out), ["model.ply", "report.json"])
+
+    def test_two_tools_are_two_jobs(self):
+        out = self.folder / "out"
+        words = ("mill-job", "--sample", "pyramid", "--sample-vertices", 500, "--width-mm", 30, "--pixel-mm", 0.5, "--out", out, "--quiet")
+        self.assertEqual(self.run_program(*words, "--diameter-mm", 3, "--tool", "flat").returncode, 0)
+        self.assertEqual(written(out), ["carved.ply", "job.gcode", "report.json", "toolpath.json"])
+        self.assertEqual(json.loads((out / "report.json").read_text())["stages"], [])
+        run = self.run_program(*words, "--diameter-mm", 2, "--outputs", "job.gcode,toolpath.json")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual(written(out), ["job_1_rough.gcode", "job_2_finish.gcode", "report.json", "toolpath.json"])
+        report, path = (json.loads((out / name).read_text()) for name in ("report.json", "toolpath.json"))
+        self.assertEqual([stage["file"] for stage in report["stages"]], ["job_1_rough.gcode", "job_2_finish.gcode"])
+        self.assertEqual([stage["file"] for stage in path["stages"]], ["job_1_rough.gcode", "job_2_finish.gcode"])
+        self.assertEqual(report["line_count"], sum(stage["lines"] for stage in report["stages"]))
+        self.assertIn("set z to 0", " ".join(report["notes"]))
+        ends = [*(stage["first_path"] for stage in path["stages"][1:]), len(path["paths"])]
+        for stage, told, end in zip(path["stages"], report["stages"], ends):
+            lines = (out / stage["file"]).read_text().splitlines()
+            self.assertEqual(len(lines), told["lines"])
+            self.assertNotIn("M0", lines)
+            moves = [line for line in lines if line.startswith(("G0 ", "G1 "))]
+            self.assertTrue(moves[0].startswith("G0 Z"), moves[0])
+            self.assertLess(lines.index("M5"), lines.index(moves[0]))
+            self.assertEqual(lines[-3:], ["M5", "G0 X0 Y0", "M2"])
+            # Lines of the preview are those of the stage's own file.
+            for part in path["paths"][stage["first_path"]:end]:
+                for i, line in enumerate(part["lines"][1:], 1):
+                    self.assertTrue(lines[line - 1].startswith("G1" if part["kind"] == "work" else "G0"))
+                    if "X" in lines[line - 1]:
+                        self.assertAlmostEqual(float(lines[line - 1].split("X")[1].split()[0]), part["points_mm"][3 * i], places=3)
 
     def test_an_unwritable_folder_is_said(self):
         blocked = self.folder / "file"

@@ -473,5 +473,95 @@ class CommandLine(unittest.TestCase):
         self.assertIn("is no serial port", peers.formwright("stop", "--machine", "File", data=self.data).stderr)
 
 
+def pocket(depth_mm: float) -> bytes:
+    return "\n".join(["G21", "G90", "M5", "G0 Z5", "G0 X10 Y10", "M3 S1000", f"G1 Z-{depth_mm} F600", "G1 X15 Y10", "G0 Z5", "M5", "G0 X0 Y0", "M2"]).encode() + b"\n"
+
+
+class Mill(unittest.TestCase):
+    """A mill without switches: where z is 0 the person says, with every tool."""
+
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.folder = pathlib.Path(self.temporary.name)
+        self.data = self.folder / "data"
+        self.mill = peers.VirtualGrbl("no-homing", "mill")
+        peers.add_machine(self.data, "Mill", f"serial:{self.mill.port}", "--controller", "grbl_mill")
+        self.jobs = [self.folder / "job_1_rough.gcode", self.folder / "job_2_finish.gcode"]
+        for job, depth in zip(self.jobs, (1, 2)):
+            job.write_bytes(pocket(depth))
+
+    def tearDown(self):
+        self.mill.stop()
+        self.temporary.cleanup()
+
+    def machine(self, *words, **options):
+        return peers.formwright(*words, data=self.data, stdin=subprocess.DEVNULL, **options)
+
+    def test_z_is_said_or_nothing_runs(self):
+        send = ("send", "--machine", "Mill", "--yes", "--job", self.jobs[0])
+        run = self.machine(*send)
+        self.assertEqual(run.returncode, 2, run.stderr)
+        self.assertIn("--z here", run.stderr)
+        run = self.machine(*send, "--z", "somewhere")
+        self.assertEqual(run.returncode, 2, run.stderr)
+        run = self.machine(*send, "--z", "here", "--job", self.jobs[1])
+        self.assertEqual(run.returncode, 2, run.stderr)
+        self.assertIn("Between two jobs z is set", run.stderr)
+        self.assertEqual(self.mill.look()["burns"], 0)
+        run = self.machine(*send, "--z", "here")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertAlmostEqual(self.mill.look()["position_mm"][2], 5, places=2)
+
+    def test_the_origin_is_set_from_the_command_line(self):
+        run = self.machine("origin", "--machine", "Mill", "--yes")
+        self.assertEqual(run.returncode, 2, run.stderr)
+        self.assertIn("--axes xyz", run.stderr)
+        for wrong in (("--axes", "xa"), ("--at", "middle"), ("--at", "corner", "--axes", "xyz")):
+            self.assertEqual(self.machine("origin", "--machine", "Mill", "--yes", *wrong).returncode, 2)
+        run = self.machine("origin", "--machine", "Mill", "--axes", "xyz", "--yes")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("xyz is 0 at the head", run.stdout)
+        run = self.machine("origin", "--machine", "Mill", "--at", "corner", "--yes")  # it has no switches to know a corner by
+        self.assertEqual(run.returncode, 2, run.stderr)
+        self.assertIn("only a machine with switches", run.stderr)
+
+    def test_a_frame_moves_on_the_axes_that_the_job_names(self):
+        job = self.folder / "along_y.gcode"
+        job.write_text("G0 Y10\nG1 Y30 F600\n")
+        self.assertEqual(self.machine("frame", "--machine", "Mill", "--job", job, "--yes").returncode, 0)
+        job.write_text("G53 G0 Y10\n")
+        run = self.machine("frame", "--machine", "Mill", "--job", job, "--yes")
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("Line 1 goes to a place in machine coordinates", run.stderr)
+        job.write_text("G0 Z10\n")
+        self.assertIn("moves nowhere in x and y", self.machine("frame", "--machine", "Mill", "--job", job, "--yes").stderr)
+
+    def test_z_is_set_again_with_the_second_tool(self):
+        terminal, theirs = pty.openpty()
+        process = subprocess.Popen([peers.PROGRAM, "machine", "send", "--data", self.data, "--machine", "Mill", "--yes", "--z", "here",
+                                    "--job", self.jobs[0], "--job", self.jobs[1]], stdin=theirs, stdout=subprocess.PIPE, stderr=theirs, text=True)
+        os.close(theirs)
+        said = b""
+
+        def wait_for(sentence: bytes):
+            nonlocal said
+            end = time.monotonic() + 60
+            while sentence not in said:
+                self.assertLess(time.monotonic(), end, said)
+                if select.select([terminal], [], [], 0.2)[0]:
+                    said += os.read(terminal, 4096)
+            said = said[said.index(sentence) + len(sentence):]
+        wait_for(b"Change the tool for")
+        for answer in (b"nonsense\n", b"-3\n", b"zero\n"):
+            wait_for(b"or stop:")
+            os.write(terminal, answer)
+        out, _ = process.communicate(timeout=60)
+        os.close(terminal)
+        self.assertEqual(process.returncode, 0, said)
+        self.assertEqual(out.count("Done:"), 2)
+        # The first job ends 5 mm over its zero, the tool is lowered by 3 mm and set to 0 there: so is the second one's end 2 mm higher.
+        self.assertAlmostEqual(self.mill.look()["position_mm"][2], 7, places=2)
+
+
 if __name__ == "__main__":
     unittest.main(verbosity=2)

@@ -27,7 +27,10 @@ int main(int argc, char** argv) {
   ::tcsetattr(held, TCSANOW, &raw);
   std::cout << ::ptsname(port) << std::endl;
   VirtualGrblOptions options;
-  options.homes = argc < 2 || std::string(argv[1]) != "no-homing";
+  for (int i = 1; i < argc; ++i) {
+    if (std::string_view(argv[i]) == "no-homing") options.homes = false;
+    if (std::string_view(argv[i]) == "mill") options.laser_mode = false;
+  }
   options.homing_s = 0.5;
   VirtualGrbl machine(options);
   const auto start = std::chrono::steady_clock::now();

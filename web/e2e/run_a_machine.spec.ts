@@ -414,9 +414,21 @@ test('a relief goes to a mill: its job, its way in space, its first lines', asyn
   await page.locator('.machine-buttons').getByRole('button', { name: 'Home' }).click();
   await confirm(page, /^Home the machine/, 'Home', /moves to its switches/);
   await expect(chip(page)).toHaveText('Ready');
+  // The tool has no room above it at its switches: from there the job would leave the machine's reach.
+  await page.getByRole('button', { name: 'Move the tool down' }).focus();
+  await page.keyboard.press('Shift+PageDown');
+  await expect(chip(page)).toHaveText('Moving');
+  await expect(chip(page)).toHaveText('Ready');
+  await button(page, 'Set z here').click();
+  // Two tools are two jobs, with z set between them.
+  const jobs = page.getByRole('region', { name: 'Jobs, in order' });
+  await jobs.getByRole('button', { name: 'Run this next' }).click();
+  await expect(jobs).toContainText('next, once z is set');
+  await expect(startButton(page)).toHaveAttribute('aria-disabled', 'true');
+  await jobs.getByRole('button', { name: 'Run this next' }).click();
   await button(page, 'Set z here').click();
   await startButton(page).click();
-  await confirm(page, /^Start /, 'Start with the spindle on', /spindle turns/);
+  await confirm(page, /^Start .*, roughing/, 'Start with the spindle on', /spindle turns/);
   await expect(chip(page)).toHaveText('Working');
   await button(page, 'Stop').click();
   await expect(

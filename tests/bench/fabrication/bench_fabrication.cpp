@@ -89,13 +89,18 @@ Json mill(int nodes, ToolShape shape) {
   Stopwatch watch;
   MillPlan plan = plan_mill_job(surface, options, context);
   const double seconds_plan = watch.lap();
-  const Bytes gcode = write_mill_gcode(plan.path, options, 12'000, plan.tool_change);
+  std::vector<Bytes> jobs;
+  for (std::size_t stage = 0; stage < std::max<std::size_t>(plan.path.stages.size(), 1); ++stage)
+    jobs.push_back(write_mill_gcode(plan.path, options, 12'000, stage));
+  int lines = 0;
+  std::size_t gcode_bytes = 0;
+  for (const Bytes& job : jobs) lines += line_count(job), gcode_bytes += job.size();
   const double seconds_gcode = watch.lap();
   const Bytes json = write_toolpath_json(plan.path, options);
   return {{"nodes", nodes},
           {"tool", EnumNames<ToolShape>::names[static_cast<std::size_t>(shape)]},
           {"layers", plan.layers},
-          {"lines", line_count(gcode)},
+          {"lines", lines},
           {"job_seconds", plan.path.seconds},
           {"deviation_mean_mm", plan.deviation.mean_mm},
           {"deviation_p95_mm", plan.deviation.p95_mm},
@@ -105,7 +110,7 @@ Json mill(int nodes, ToolShape shape) {
           {"seconds_plan", seconds_plan},
           {"seconds_gcode", seconds_gcode},
           {"seconds_toolpath_json", watch.seconds()},
-          {"bytes", {gcode.size(), json.size()}}};
+          {"bytes", {gcode_bytes, json.size()}}};
 }
 
 }  // namespace

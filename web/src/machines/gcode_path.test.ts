@@ -24,6 +24,20 @@ describe('G-code as a path', () => {
     expect(half?.[3]).toBeCloseTo(10, 1);
     expect(half?.[1]).toBeCloseTo(0, 6);
   });
+  // The bounds that tests/machines/gcode_program_test.cpp has of the same programs.
+  it.each([
+    ['G18\nG0X0Y5Z0\nM3S1\nG2X20Z0I10K0F100', [0, 20, 5, 5, -10, 0]],
+    ['G19\nG0X1Y0Z0\nM3S1\nG3X4Y20Z0J10K0F100', [1, 4, 0, 20, -10, 0]],
+    ['G0X0Y0\nM3S1\nG3X10Y10R-10F100', [0, 20, -10, 10, 0, 0]],
+    ['G0X0Y0\rM3S1\rG3X10Y10R10F100', [0, 10, 0, 10, 0, 0]],
+  ])('reaches as far as the driver says: %s', (text, bounds) => {
+    const points = read(text).paths.flatMap(({ kind, points_mm }) =>
+      kind === 'work' ? [Array.from(points_mm)] : [],
+    );
+    const of = (axis: number) => points.flat().filter((_, index) => index % 3 === axis);
+    const found = [0, 1, 2].flatMap((axis) => [Math.min(...of(axis)), Math.max(...of(axis))]);
+    found.forEach((value, index) => expect(value).toBeCloseTo(bounds[index] ?? 0, 1));
+  });
   it('refuses a file without moves', () => {
     expect(() => read('hello\nM5')).toThrow(/no moves/);
   });

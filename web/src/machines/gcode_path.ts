@@ -26,7 +26,7 @@ export function readGcodePath(
   const paths: Open[] = [];
   let [x, y, z, time] = [0, 0, 0, 0];
   let [motion, spindle, power, feed] = [0, 5, 0, 1000];
-  let [unit, relative] = [1, false];
+  let [unit, relative, plane] = [1, false, 17];
   let number = 0;
   const moveTo = (to: readonly [number, number, number], line: number) => {
     const works = motion !== 0 && spindle !== 5 && power > 0;
@@ -59,14 +59,15 @@ export function readGcodePath(
     open.times_s.push(time);
     open.lines.push(line);
   };
-  for (const raw of text.split('\n')) {
+  for (const raw of text.split(/\r\n|\r|\n/)) {
     ++number;
     const words = raw
       .replace(/\([^)]*\)|;.*/g, '')
       .toUpperCase()
       .matchAll(/([A-Z])\s*([+-]?[\d.]+)/g);
     const target: (number | null)[] = [null, null, null];
-    const centre: (number | null)[] = [null, null];
+    const centre: (number | null)[] = [null, null, null];
+    let radius: number | null = null;
     for (const [, letter = '', digits = ''] of words) {
       const value = Number(digits);
       if (!Number.isFinite(value)) continue;
@@ -74,46 +75,69 @@ export function readGcodePath(
         if (value >= 0 && value <= 3) motion = value;
         else if (value === 20 || value === 21) unit = value === 20 ? 25.4 : 1;
         else if (value === 90 || value === 91) relative = value === 91;
+        else if (value >= 17 && value <= 19) plane = value;
       } else if (letter === 'M' && value >= 3 && value <= 5) spindle = value;
       else if (letter === 'S') power = value;
       else if (letter === 'F') feed = value * unit;
       else if ('XYZ'.includes(letter)) target['XYZ'.indexOf(letter)] = value * unit;
-      else if ('IJ'.includes(letter)) centre['IJ'.indexOf(letter)] = value * unit;
+      else if ('IJK'.includes(letter)) centre['IJK'.indexOf(letter)] = value * unit;
+      else if (letter === 'R') radius = value * unit;
     }
-    const arc = motion > 1 && (centre[0] !== null || centre[1] !== null);
+    const axes = axesOfPlane(plane);
+    const [i, j] = [centre[axes[0]] ?? null, centre[axes[1]] ?? null];
+    const arc = motion > 1 && (i !== null || j !== null || radius !== null);
     if (target.every((value) => value === null) && !arc) continue;
     const along = (value: number | null | undefined, from: number) =>
       value === null || value === undefined ? from : relative ? from + value : value;
     const to = [along(target[0], x), along(target[1], y), along(target[2], z)] as const;
-    if (arc)
-      for (const point of arcPoints([x, y, z], to, centre[0] ?? 0, centre[1] ?? 0, motion === 2))
-        moveTo(point, number);
-    else moveTo(to, number);
+    if (arc) {
+      const from = [x, y, z] as const;
+      const middle =
+        radius === null ? ([i ?? 0, j ?? 0] as const) : middleOf(from, to, axes, radius, motion === 2);
+      for (const point of arcPoints(from, to, axes, middle, motion === 2)) moveTo(point, number);
+    } else moveTo(to, number);
   }
   if (paths.length === 0) throw new Error('The file has no moves in it: choose a G-code file.');
   return { bed_mm, no_go_mm: [], seconds: time, paths: paths as readonly ToolPathPart[] };
 }
 
+type Point = readonly [number, number, number];
+type Axes = readonly [0 | 1 | 2, 0 | 1 | 2, 0 | 1 | 2];
+
+/** Arcs turn from the first axis towards the second; the third is the helix's (core/machines/gcode_motion.h). */
+const axesOfPlane = (plane: number): Axes =>
+  plane === 18 ? [2, 0, 1] : plane === 19 ? [1, 2, 0] : [0, 1, 2];
+
+/** From where the arc begins, of the radius form: the shorter arc for a radius over 0. */
+function middleOf(from: Point, to: Point, [a, b]: Axes, radius: number, clockwise: boolean) {
+  const [dx, dy] = [to[a] - from[a], to[b] - from[b]];
+  const chord = Math.hypot(dx, dy);
+  const reach = Math.sqrt(Math.max(0, 4 * radius * radius - chord * chord)) / (chord || 1);
+  const h = clockwise === radius > 0 ? -reach : reach;
+  return [(dx - dy * h) / 2, (dy + dx * h) / 2] as const;
+}
+
 function* arcPoints(
-  from: readonly [number, number, number],
-  to: readonly [number, number, number],
-  i: number,
-  j: number,
+  from: Point,
+  to: Point,
+  [a, b, c]: Axes,
+  [i, j]: readonly [number, number],
   clockwise: boolean,
-): Generator<readonly [number, number, number]> {
-  const [cx, cy, radius] = [from[0] + i, from[1] + j, Math.hypot(i, j)];
+): Generator<Point> {
+  const [ca, cb, radius] = [from[a] + i, from[b] + j, Math.hypot(i, j)];
   const start = Math.atan2(-j, -i);
-  let sweep = Math.atan2(to[1] - cy, to[0] - cx) - start;
-  if (clockwise && sweep >= -1e-9) sweep -= 2 * Math.PI;
-  if (!clockwise && sweep <= 1e-9) sweep += 2 * Math.PI;
+  let sweep = Math.atan2(to[b] - cb, to[a] - ca) - start;
+  while (clockwise && sweep >= -1e-6) sweep -= 2 * Math.PI;
+  while (!clockwise && sweep <= 1e-6) sweep += 2 * Math.PI;
+  while (Math.abs(sweep) > 2 * Math.PI + 1e-6) sweep -= Math.sign(sweep) * 2 * Math.PI;
   const count = Math.max(2, Math.ceil((Math.abs(sweep) * radius) / chord_mm));
   for (let k = 1; k < count; ++k) {
     const angle = start + (sweep * k) / count;
-    yield [
-      cx + radius * Math.cos(angle),
-      cy + radius * Math.sin(angle),
-      from[2] + ((to[2] - from[2]) * k) / count,
-    ];
+    const point: [number, number, number] = [0, 0, 0];
+    point[a] = ca + radius * Math.cos(angle);
+    point[b] = cb + radius * Math.sin(angle);
+    point[c] = from[c] + ((to[c] - from[c]) * k) / count;
+    yield point;
   }
   yield to;
 }

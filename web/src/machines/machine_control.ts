@@ -22,6 +22,8 @@ async function takeLock(): Promise<(() => void) | null> {
 
 export class MachineControl {
   readonly #log: JobLog;
+  /** How often z was set to 0 in this page. */
+  readonly zSets = signal(0);
   readonly link = signal<MachineLink | null>(null);
   readonly connecting = signal(false);
   /** What went wrong last, in a sentence. */
@@ -92,6 +94,7 @@ export class MachineControl {
     this.problem.value = null;
     try {
       await link.command(command);
+      if (command.do === 'set_origin' && command.axes?.includes('z')) ++this.zSets.value;
       return true;
     } catch (thrown) {
       this.problem.value = thrown instanceof Error ? thrown.message : String(thrown);

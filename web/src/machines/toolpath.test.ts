@@ -48,6 +48,17 @@ describe('a tool path', () => {
     expect(timeOfLine(toolPath, 5)).toBe(2);
     expect(timeOfLine(toolPath, 600)).toBe(4);
   });
+  it('counts the lines of every stage from its own beginning', () => {
+    const stages = [
+      { name: 'rough', file: 'job_1_rough.gcode', first_path: 0, start_s: 0 },
+      { name: 'finish', file: 'job_2_finish.gcode', first_path: 1, start_s: 1 },
+    ];
+    const staged = readToolPath(JSON.stringify({ ...path, stages }));
+    expect(timeOfLine(staged, 600)).toBe(1);
+    expect(timeOfLine(staged, 0, 1)).toBe(1);
+    expect(timeOfLine(staged, 4, 1)).toBe(2);
+    expect(timeOfLine(staged, 600, 1)).toBe(4);
+  });
   it('knows its bounds and layers, travel left out', () => {
     expect(workBounds(toolPath)).toEqual([10, 0, 20, 20]);
     expect(layersOf(toolPath)).toEqual([

@@ -17,6 +17,14 @@ export interface ToolPathPart {
   readonly lines: ArrayLike<number>;
 }
 
+/** A job of its own, because the tool is changed before it; lines are counted in its own file. */
+export interface ToolPathStage {
+  readonly name: string;
+  readonly file: string;
+  readonly first_path: number;
+  readonly start_s: number;
+}
+
 export type Rectangle = readonly [left: number, low: number, right: number, high: number];
 
 export interface ToolPath {
@@ -24,6 +32,8 @@ export interface ToolPath {
   readonly no_go_mm: readonly Rectangle[];
   readonly seconds: number;
   readonly paths: readonly ToolPathPart[];
+  /** In the order in which they run; absent where all of it is one job. */
+  readonly stages?: readonly ToolPathStage[];
   /** The same with fewer points, for pictures, the finest first; absent where there are few points. */
   readonly details?: readonly PathDetail[];
 }
@@ -37,6 +47,7 @@ export function readToolPath(text: string): ToolPath {
     no_go_mm: value.no_go_mm ?? [],
     seconds: value.seconds ?? 0,
     paths: value.paths,
+    ...(value.stages ? { stages: value.stages } : {}),
   };
 }
 
@@ -118,10 +129,12 @@ function startTimes(toolPath: ToolPath): number[] {
 export const partAt = (toolPath: ToolPath, time_s: number): ToolPathPart | undefined =>
   toolPath.paths[Math.max(0, lastAtMost(startTimes(toolPath), time_s))];
 
-/** When the machine has done this line of the job. */
-export function timeOfLine(toolPath: ToolPath, line: number): number {
-  let time = 0;
-  for (const { lines, times_s } of toolPath.paths) {
+/** When the machine has done this line of the job, of the stage's own where there are several. */
+export function timeOfLine(toolPath: ToolPath, line: number, stage = 0): number {
+  const { stages, paths } = toolPath;
+  let time = stages?.[stage]?.start_s ?? 0;
+  const own = stages ? paths.slice(stages[stage]?.first_path, stages[stage + 1]?.first_path) : paths;
+  for (const { lines, times_s } of own) {
     if ((lines[0] ?? 0) > line) break;
     time = times_s[Math.max(0, lastAtMost(lines, line))] ?? time;
   }

@@ -2,6 +2,7 @@
 // What a person can have the machine do, each asked about before it moves or fires.
 import type { MachineCommand } from '../../machines/links/machine_state';
 import { workBoundsOfBed } from '../../machines/places';
+import type { ToolPath } from '../../machines/toolpath';
 import { workBounds } from '../../machines/toolpath';
 import { formatDuration, formatNumber, withUnit } from '../../ui';
 import { ask } from './confirm';
@@ -24,6 +25,22 @@ function wrongMachine(session: MachinesSession): string | undefined {
   return undefined;
 }
 
+/** "finishing", of the job that Start starts; "" for the only one. */
+const toolWords = (session: MachinesSession): string =>
+  ({ rough: 'roughing', finish: 'finishing' })[session.job.value?.stage ?? ''] ?? '';
+
+/** "Lion, finishing". */
+const nameOf = (session: MachinesSession): string => {
+  const words = toolWords(session);
+  return words ? `${session.title}, ${words}` : session.title;
+};
+
+/** Of the job that Start starts. */
+function secondsOf(session: MachinesSession, { seconds, stages }: ToolPath): number {
+  const stage = session.stage.value;
+  return (stages?.[stage + 1]?.start_s ?? seconds) - (stages?.[stage]?.start_s ?? 0);
+}
+
 const millimetres = (mm: number) => withUnit(formatNumber(mm, 4), 'mm');
 
 /** Why the job cannot be started now; undefined where it can. */
@@ -36,7 +53,7 @@ export function startReason(session: MachinesSession): string | undefined {
   if (wrong) return wrong;
   if (plan === null) return session.subject.value ? 'Make the job first' : 'Open a drawing or a job first';
   if (session.planning.value) return 'Ready when the job is made';
-  if (plan.misfits.length > 0 || plan.job === null) return plan.misfits[0] ?? 'The job does not fit';
+  if (plan.misfits.length > 0 || session.job.value === null) return plan.misfits[0] ?? 'The job does not fit';
   if (!session.isCurrent.value)
     return session.subject.value
       ? 'What is shown is not what is set: make the job first'
@@ -47,39 +64,42 @@ export function startReason(session: MachinesSession): string | undefined {
     return state.can.includes('home')
       ? 'Where the head stands is unknown: home it first'
       : 'Where the head stands is unknown: jog to the corner and set the origin';
+  if (session.needsZ)
+    return `Mount the ${toolWords(session)} tool, lower its tip to the stock and set z here`;
   return state.phase === 'idle' ? undefined : `The machine is ${state.phase}`;
 }
 
 export function start(session: MachinesSession): void {
   const plan = session.plan.value;
-  if (startReason(session) !== undefined || !plan?.job) return;
-  const { job, key, toolPath } = plan;
+  const [job, key] = [session.job.value, session.jobKey.value];
+  if (startReason(session) !== undefined || !plan || !job || key === null) return;
+  const { toolPath } = plan;
+  const seconds = secondsOf(session, toolPath);
   const power = Math.max(0, ...toolPath.paths.map(({ power_percent }) => power_percent));
-  const name = session.title;
+  const name = nameOf(session);
   ask({
     title: `Start ${name} on ${session.control.machineName.value}?`,
     sentences: [
       isLaser(session)
-        ? `The head moves and the laser turns on, at up to ${withUnit(formatNumber(power, 2), '%')}, for about ${formatDuration(toolPath.seconds)}.`
-        : `The machine moves and its spindle turns, for about ${formatDuration(toolPath.seconds)}. Z is 0 on the stock's top, the tool at its corner.`,
+        ? `The head moves and the laser turns on, at up to ${withUnit(formatNumber(power, 2), '%')}, for about ${formatDuration(seconds)}.`
+        : `The machine moves and its spindle turns, for about ${formatDuration(seconds)}. Z is 0 on the stock's top, the tool at its corner.`,
       isLaser(session) ? eyes : chips,
     ],
     action: isLaser(session) ? 'Start with the laser on' : 'Start with the spindle on',
     danger: true,
     run: () => {
       session.playhead.value = null;
-      void session.control.start(name, key, job);
+      void session.control.start(name, key, job.bytes);
     },
   });
 }
 
 /** Goes on with a job that ended early, the careful way: from the beginning of a stroke before what may not have been done. */
 export function goOn(session: MachinesSession): void {
-  const plan = session.plan.value;
+  const [job, key] = [session.job.value, session.jobKey.value];
   const { state, cutOff } = session.control;
   const line = (state.value?.job ?? cutOff.value?.job)?.careful_line;
-  if (!plan?.job || line === undefined) return;
-  const { job, key } = plan;
+  if (!job || key === null || line === undefined) return;
   ask({
     title: 'Cut the rest?',
     sentences: [
@@ -91,7 +111,7 @@ export function goOn(session: MachinesSession): void {
     ],
     action: isLaser(session) ? 'Go on with the laser on' : 'Go on with the spindle on',
     danger: true,
-    run: () => void session.control.start(session.title, key, job, line),
+    run: () => void session.control.start(nameOf(session), key, job.bytes, line),
   });
 }
 

@@ -7,7 +7,7 @@ import { ParameterPanel } from '../common/parameter_panel';
 import { MachinePanel, StartAndStop } from './machine_panel';
 import type { MachinesSession } from './machines_session';
 import { MaterialSection } from './material_section';
-import { MakeMillJob, MillSection } from './mill_section';
+import { MakeMillJob, MillJobs, MillSection } from './mill_section';
 import { OtherMachines } from './other_machines';
 import { TestSection } from './test_section';
 
@@ -28,6 +28,7 @@ export function Inspector({ session }: { readonly session: MachinesSession }) {
       <div class="inspector-scroll" tabIndex={-1}>
         <MachinePanel session={session} />
         {kind === 'test' ? <TestSection session={session} /> : null}
+        {kind === 'model' ? <MillJobs session={session} /> : null}
         {kind === 'model' ? <MillSection session={session} /> : null}
         <Layers session={session} />
         {kind === 'drawing' || (kind === null && !session.isMill) ? (

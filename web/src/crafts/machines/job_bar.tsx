@@ -9,17 +9,22 @@ import type { MachinesSession } from './machines_session';
 /** The machine works on what is shown. */
 const isRunningThis = (session: MachinesSession): boolean =>
   session.control.loaded.value !== null &&
-  session.control.loaded.value === session.plan.value?.key &&
+  session.control.loaded.value === session.jobKey.value &&
   session.control.isBusy;
 
 /** Seconds into the job that the bed shows; null: the whole job. */
 export function timeShown(session: MachinesSession): number | null {
   const plan = session.plan.value;
   const job = session.control.state.value?.job;
-  if (plan && job && isRunningThis(session)) return timeOfLine(plan.toolPath, job.line_now);
+  if (plan && job && isRunningThis(session))
+    return timeOfLine(plan.toolPath, job.line_now, session.stage.value);
   const stopped =
-    job && job.ended !== null && job.ended !== 'done' && session.control.loaded.value === plan?.key;
-  if (plan && stopped && session.playhead.value === null) return timeOfLine(plan.toolPath, job.line_now);
+    job &&
+    job.ended !== null &&
+    job.ended !== 'done' &&
+    session.control.loaded.value === session.jobKey.value;
+  if (plan && stopped && session.playhead.value === null)
+    return timeOfLine(plan.toolPath, job.line_now, session.stage.value);
   return session.playhead.value;
 }
 

@@ -100,23 +100,25 @@ function Strip({ session, onChooseFile }: MachinesPageProps) {
   const plan = session.plan.value;
   const { cutOff } = control;
   const job = control.state.value?.job ?? cutOff.value?.job;
-  const ofThis = (control.state.value?.job ? control.loaded.value : cutOff.value?.key) === plan?.key;
-  const exportJob = plan?.job ? (
+  const ofThis =
+    (control.state.value?.job ? control.loaded.value : cutOff.value?.key) === session.jobKey.value;
+  const ending = session.jobFormat.split('.').at(-1) ?? 'gcode';
+  const exportJob = plan?.jobs.map(({ stage, bytes }, index) => (
     <Button
+      key={stage}
       size="small"
       icon="download"
       onClick={() =>
-        plan.job &&
         download(
-          plan.job,
-          `${session.title}.${session.jobFormat.split('.').at(-1) ?? 'gcode'}`,
+          bytes,
+          `${session.title}${stage ? `_${index + 1}_${stage}` : ''}.${ending}`,
           'application/octet-stream',
         )
       }
     >
-      Job file
+      {stage === '' ? 'Job file' : stage === 'rough' ? 'Roughing file' : 'Finishing file'}
     </Button>
-  ) : null;
+  ));
   const another = (
     <Button size="small" kind="quiet" icon="upload" onClick={onChooseFile}>
       {session.isMill ? 'Another model' : 'Another drawing'}

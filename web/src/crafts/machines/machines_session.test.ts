@@ -1,5 +1,6 @@
 // @vitest-environment happy-dom
 // SPDX-License-Identifier: GPL-3.0-or-later
+import { signal } from '@preact/signals';
 import { expect, it, vi } from 'vitest';
 import { solveInFull } from '../common/full_solve';
 import { resultOf, settled, testCatalog, testServices } from '../common/test_room';
@@ -59,4 +60,27 @@ it('what a relief was sent to the mill with does not scale the file that is open
   open('star.svg', 'drawing');
   open('cat.stl', 'model');
   expect(parameters()).toEqual({});
+});
+
+it('the second tool’s job comes after the first, and waits until z is set with it', async () => {
+  const session = new MachinesSession(testServices(testCatalog(laserJob, millJob)));
+  const jobs = ['rough', 'finish'].map((stage) => ({ stage, bytes: new Uint8Array(3) }));
+  const toolPath = { bed_mm: [300, 200], no_go_mm: [], seconds: 9, paths: [] } as const;
+  session.plan.value = { key: 'lion', report: {}, toolPath, jobs, misfits: [] };
+  const ended = (how: string | null) => ({ job: { ended: how, acknowledged: 1 }, can: [] });
+  const state = signal(ended(null));
+  session.control.link.value = { state, gone: signal(null), command: async () => {} } as never;
+  session.control.loaded.value = session.jobKey.value;
+  expect(session.needsZ).toBe(false);
+  state.value = ended('stopped');
+  expect(session.job.value?.stage).toBe('rough');
+  state.value = ended('done');
+  expect(session.job.value?.stage).toBe('finish');
+  expect(session.needsZ).toBe(true);
+  await session.control.command({ do: 'set_origin', axes: 'xy' });
+  expect(session.needsZ).toBe(true);
+  await session.control.command({ do: 'set_origin', axes: 'z' });
+  expect(session.needsZ).toBe(false);
+  // It is not that job which is done.
+  expect(session.control.loaded.value).not.toBe(session.jobKey.value);
 });

@@ -52,6 +52,13 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
     const request = this.#request();
     return request !== null && this.plan.value?.key === keyOf(request);
   });
+  /** The job that Start starts, of those that the plan has. */
+  readonly stage = signal(0);
+  readonly job = computed(() => this.plan.value?.jobs[this.stage.value] ?? null);
+  /** Names the plan and the job of it that the machine holds. */
+  readonly jobKey = computed(() => this.keyOfJob(this.stage.value));
+  /** How often z was set before the tool was changed: it must be set once more. */
+  #zSetsBefore = -1;
   /** Where the controller counts from. */
   readonly origin = computed(() => asOrigin(this.value('origin')));
   /** The file that the controller reads. */
@@ -74,7 +81,7 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
     const model = { sha256: work.file.blob, file_name: work.file_name };
     return { key: work.file.blob, inputs: { model } };
   });
-  readonly wantedOutputs = ['job.gcode', 'toolpath.json'];
+  readonly wantedOutputs = ['job.gcode', 'job_1_rough.gcode', 'job_2_finish.gcode', 'toolpath.json'];
   readonly asked = computed(() => this.document.value.parameters);
   readonly result = this.unlessLost(
     computed<CraftResult | null>(() => {
@@ -89,6 +96,36 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
     super(services, machines);
     listenForStop(this.control);
     effect(() => this.follow());
+    effect(() => this.#followStages());
+  }
+
+  keyOfJob(stage: number): string | null {
+    const plan = this.plan.value;
+    return plan && (plan.jobs.length > 1 ? `${plan.key} job ${stage + 1}` : plan.key);
+  }
+
+  /** The next job waits for its tool once the one before it is done. */
+  #followStages(): void {
+    const { control } = this;
+    const jobs = this.plan.value?.jobs.length ?? 0;
+    const loaded = control.loaded.value;
+    const done = control.state.value?.job?.ended === 'done';
+    untracked(() => {
+      if (this.stage.value >= jobs) this.chooseStage(0);
+      if (done && loaded !== null && loaded === this.jobKey.value && this.stage.value + 1 < jobs)
+        this.chooseStage(this.stage.value + 1);
+    });
+  }
+
+  chooseStage(stage: number): void {
+    if (stage === this.stage.value) return;
+    this.stage.value = stage;
+    this.#zSetsBefore = this.control.zSets.value;
+  }
+
+  /** A tool of another length stands where it is taken to stand only once z was set with it. */
+  get needsZ(): boolean {
+    return (this.plan.value?.jobs.length ?? 0) > 1 && this.control.zSets.value <= this.#zSetsBefore;
   }
 
   /** Nodes of the height field stand for the vertices of a mesh. */
@@ -151,6 +188,7 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
       const plan = await this.#planOf(request, abort);
       if (abort.aborted) return;
       this.plan.value = plan;
+      this.chooseStage(0);
       this.playhead.value = null;
       this.fieldErrors.value = {};
       this.problem.value = null;

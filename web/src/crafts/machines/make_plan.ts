@@ -11,13 +11,21 @@ import { sentences } from '../common/report';
 import type { FileWork, Work } from './machines_document';
 import { operationFor } from './machines_document';
 
+/** One file for the machine. */
+export interface PlannedJob {
+  /** "rough" or "finish" where each tool has a job of its own; "" for the only one. */
+  readonly stage: string;
+  readonly bytes: Uint8Array<ArrayBuffer>;
+}
+
 /** A job that is ready to be looked at, and to be sent unless it does not fit. */
 export interface Plan {
   /** Names the work and the parameters it was made with. */
   readonly key: string;
   readonly report: Report;
   readonly toolPath: ToolPath;
-  readonly job: Uint8Array<ArrayBuffer> | null;
+  /** In the order in which they run; none where it does not fit. */
+  readonly jobs: readonly PlannedJob[];
   readonly misfits: readonly string[];
 }
 
@@ -45,9 +53,9 @@ export async function planOfLaser(
     { signal },
   );
   const toolPath = await toolPathOf(await bytesOf(result, 'toolpath.json'));
-  const job = result.outputs.has(format) ? await bytesOf(result, format) : null;
+  const jobs = result.outputs.has(format) ? [{ stage: '', bytes: await bytesOf(result, format) }] : [];
   const misfits = sentences(result.report, 'misfits');
-  return { key: keyOf(request), report: result.report, toolPath, job, misfits };
+  return { key: keyOf(request), report: result.report, toolPath, jobs, misfits };
 }
 
 /** A file of G-code is sent as it is. */
@@ -57,9 +65,9 @@ export async function planOfJob(
   bed_mm: readonly [number, number],
   power_max_s: number,
 ): Promise<Plan> {
-  const job = await blobs.read(request.work.file.blob);
-  const toolPath = await toolPathOfGcode(job, bed_mm, power_max_s);
-  return { key: keyOf(request), report: {}, toolPath, job, misfits: [] };
+  const bytes = await blobs.read(request.work.file.blob);
+  const toolPath = await toolPathOfGcode(bytes, bed_mm, power_max_s);
+  return { key: keyOf(request), report: {}, toolPath, jobs: [{ stage: '', bytes }], misfits: [] };
 }
 
 /** What a `mill-job` has made. */
@@ -68,8 +76,13 @@ export async function planOfResult(
   request: PlanRequest,
   { outputs, report }: CraftResult,
 ): Promise<Plan> {
-  const [path, file] = [outputs['toolpath.json'], outputs['job.gcode']];
-  const toolPath = await toolPathOf(await blobs.read(path?.blob ?? ''));
-  const job = file ? await blobs.read(file.blob) : null;
-  return { key: keyOf(request), report, toolPath, job, misfits: sentences(report, 'misfits') };
+  const toolPath = await toolPathOf(await blobs.read(outputs['toolpath.json']?.blob ?? ''));
+  const files = toolPath.stages ?? [{ name: '', file: 'job.gcode' }];
+  const jobs = await Promise.all(
+    files.flatMap(({ name, file }) => {
+      const made = outputs[file];
+      return made ? [blobs.read(made.blob).then((bytes) => ({ stage: name, bytes }))] : [];
+    }),
+  );
+  return { key: keyOf(request), report, toolPath, jobs, misfits: sentences(report, 'misfits') };
 }

@@ -52,6 +52,38 @@ export function MillSection({ session }: { readonly session: MachinesSession }) 
   );
 }
 
+/** With a tool for each, roughing and finishing are two jobs; z is set with the tool between them. */
+export function MillJobs({ session }: { readonly session: MachinesSession }) {
+  const jobs = session.plan.value?.jobs ?? [];
+  if (jobs.length < 2) return null;
+  const next = session.stage.value;
+  return (
+    <section class="section" aria-label="Jobs, in order">
+      <h3>Jobs, in order</h3>
+      <ol class="mill-jobs">
+        {jobs.map(({ stage }, index) => (
+          <li key={stage} aria-current={index === next ? 'step' : undefined}>
+            {index > 0 ? <p class="hint">Change the tool, lower its tip to the stock, set z here.</p> : null}
+            <span>{stage === 'rough' ? 'Roughing' : 'Finishing'}</span>
+            {index === next ? (
+              <em>{index > 0 && session.needsZ ? 'next, once z is set' : 'next'}</em>
+            ) : (
+              <Button
+                size="small"
+                kind="quiet"
+                disabledReason={session.control.isBusy ? 'A job is running' : undefined}
+                onClick={() => session.chooseStage(index)}
+              >
+                Run this next
+              </Button>
+            )}
+          </li>
+        ))}
+      </ol>
+    </section>
+  );
+}
+
 /** A mill's job is made when it is asked for; then Start takes this place. */
 export function MakeMillJob({ session }: { readonly session: MachinesSession }) {
   const { kind } = session.activity.value;

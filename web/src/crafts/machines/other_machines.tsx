@@ -79,7 +79,7 @@ async function stop(session: MachinesSession, { id, name }: BridgeMachine): Prom
 function SendJob({ session, machine }: { session: MachinesSession; machine: BridgeMachine }) {
   const sending = useSignal(false);
   const { drawing } = session.document.value;
-  const job = session.plan.value?.job;
+  const job = session.plan.value?.jobs[0]?.bytes;
   const { worker } = session.services;
   if (drawing?.kind !== 'job' || !job || worker === null) return null;
   const send = async (start: boolean) => {

@@ -19,6 +19,7 @@ constexpr char ask_status = static_cast<char>(0xa0);
 constexpr int status_ok = 206, status_checksum = 207, status_finished = 236, status_busy = 238, status_power = 239;
 constexpr double asking_s = 0.3, asking_busy_s = 0.02, silence_s = 3, rest_s = 1.0, settled_s = 0.3, rejection_s = 0.5,
                  mm_per_mil = 0.0254, absent = std::numeric_limits<double>::quiet_NaN();
+constexpr double rounding_mm = 0.0128;  // jobs are written in whole steps of 1/1000 inch
 constexpr int most_repeats = 10;
 
 /// LHYMICRO-GL: z is 255; up to 51 one or two letters; three digits beyond.
@@ -158,7 +159,7 @@ void K40Driver::received(ByteView bytes, double now_s) {
   // A job tells its end; homing and moves are over when the board has rested for a while.
   // Right behind the last packet the board may still tell of the job before.
   if (job_active() && status_ == status_finished && now_s - sent_s_ > settled_s)
-    end_job("done", now_s), doing_ = Doing::nothing;
+    end_job("done", now_s), doing_ = Doing::nothing, position_mm_ = bounds_.end_mm;
   else if (!job_active() && doing_ != Doing::nothing && now_s - sent_s_ > rest_s) {
     if (doing_ == Doing::homing) position_known_ = true, position_mm_ = {0, 0};
     doing_ = Doing::nothing;
@@ -258,6 +259,24 @@ void K40Driver::move(double right_mm, double front_mm) {
   doing_ = Doing::moving;
 }
 
+void K40Driver::require_inside(double right_mm, double front_mm) const {
+  if (right_mm < -1e-6 || front_mm < -1e-6 || right_mm > options_.bed_x_mm + 1e-6 ||
+      front_mm > options_.bed_y_mm + 1e-6)
+    refuse("job", "This would leave the bed of " + machines_detail::decimal(options_.bed_x_mm) + " by " +
+                      machines_detail::decimal(options_.bed_y_mm) + " mm.");
+}
+
+void K40Driver::require_job_inside() const {
+  const GcodeBounds& reached = bounds_.reached;
+  const std::array<double, 2> bed{options_.bed_x_mm, options_.bed_y_mm};
+  for (std::size_t axis = 0; axis < 2; ++axis)
+    if (reached.low_mm[axis] < -rounding_mm || reached.high_mm[axis] > bed[axis] + rounding_mm)
+      refuse("job", std::string("The job would leave the bed ") + (axis == 0 ? "to the side" : "to the front") +
+                        ": from home it goes from " + machines_detail::decimal(reached.low_mm[axis]) + " to " +
+                        machines_detail::decimal(reached.high_mm[axis]) + " mm, and the bed is " +
+                        machines_detail::decimal(bed[axis]) + " mm long. Move the job or make it smaller.");
+}
+
 void K40Driver::stop(const char* how, double now_s) {
   end_job(how, now_s);
   queue_.clear();
@@ -284,11 +303,6 @@ void K40Driver::command(const Json& command, double now_s) {
     if (what == "start" && program_.empty()) refuse(what, "No job is loaded: choose one first.");
     machines_detail::refuse_in_phase(what, phase());
   }
-  const auto inside = [&](double right_mm, double front_mm) {
-    if (right_mm < -1e-6 || front_mm < -1e-6 || right_mm > options_.bed_x_mm || front_mm > options_.bed_y_mm)
-      refuse("job", "This would leave the bed of " + machines_detail::decimal(options_.bed_x_mm) + " by " +
-                        machines_detail::decimal(options_.bed_y_mm) + " mm.");
-  };
   if (what == "home") {
     require_confirmation(command, "The head moves to its corner");
     queue_.push_back("IPP");
@@ -301,23 +315,24 @@ void K40Driver::command(const Json& command, double now_s) {
   } else if (what == "jog") {
     // The bed's y goes up, the board's to the front.
     const double x = number_of(command, "x_mm", -2000, 2000, 0), y = number_of(command, "y_mm", -2000, 2000, 0);
-    if (position_known_) inside(position_mm_[0] + x, position_mm_[1] - y);
+    if (position_known_) require_inside(position_mm_[0] + x, position_mm_[1] - y);
     move(x, -y);
   } else if (what == "go_to") {
     const double x = number_of(command, "x_mm", 0, 2000, absent), y = number_of(command, "y_mm", 0, 2000, absent);
-    inside(x, options_.bed_y_mm - y);
+    require_inside(x, options_.bed_y_mm - y);
     move(x - position_mm_[0], options_.bed_y_mm - y - position_mm_[1]);
   } else if (what == "frame") {
     require_confirmation(command, "The head moves once around the job, laser off");
     const std::array<double, 4> b = machines_detail::bounds_of(command);
-    inside(b[0], options_.bed_y_mm - b[1]);
-    inside(b[2], options_.bed_y_mm - b[3]);
+    require_inside(b[0], options_.bed_y_mm - b[1]);
+    require_inside(b[2], options_.bed_y_mm - b[3]);
     for (const auto& [x, y] : machines_detail::way_around(b))
       move(x - position_mm_[0], options_.bed_y_mm - y - position_mm_[1]);
   } else if (what == "start") {
     require_confirmation(command, "The laser moves and its beam turns on");
     if (number_of(command, "from_line", 1, 1e9, 1) > 1)
       refuse("from_line", "A K40 cannot go on in the middle of a job: start it anew.");
+    require_job_inside();
     const int count = static_cast<int>(program_.size());
     move(-position_mm_[0], -position_mm_[1]);  // jobs begin at home
     const int moves = static_cast<int>(queue_.size());
@@ -337,7 +352,9 @@ void K40Driver::command(const Json& command, double now_s) {
 
 void K40Driver::load(const std::string& name, ByteView job) {
   if (job_active()) refuse("job", "A job is running: stop it before another is loaded.");
-  program_ = k40_packets(as_text(job));
+  std::vector<std::string> program = k40_packets(as_text(job));
+  bounds_ = egv_bounds(program);
+  program_ = std::move(program);
   program_name_ = name;
   job_.reset();
 }
@@ -346,6 +363,9 @@ Json K40Driver::state(double now_s) const {
   Json state = common_state("k40", connection_, phase(), {position_known_, position_known_, false}, now_s);
   if (position_known_)
     state["machine_mm"] = state["work_mm"] = {position_mm_[0], options_.bed_y_mm - position_mm_[1], 0};
+  state["when_connection_ends"] =
+      "The board burns what it has and stops in the middle; its beam may stay on there: open the lid or switch the "
+      "laser off.";
   if (status_ == status_power)
     state["alarm"] = {
         {"code", status_power}, {"text", "The laser's own supply is off."}, {"mend", "Switch it on and home it."}};

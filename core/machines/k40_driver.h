@@ -8,6 +8,7 @@
 #include <deque>
 #include <optional>
 
+#include "machines/egv_bounds.h"
 #include "machines/machine_driver.h"
 
 namespace formwright {
@@ -42,12 +43,16 @@ class K40Driver final : public MachineDriver {
   void send_switch(double now_s);
   void stop(const char* how, double now_s);
   void move(double right_mm, double front_mm);
+  /// Throws Error invalid_input ("job") where the head would leave the bed.
+  void require_inside(double right_mm, double front_mm) const;
+  void require_job_inside() const;
   std::vector<std::string> possible_commands() const;
   MachinePhase phase() const;
 
   DriverOptions options_;
   MachineConnection connection_ = MachineConnection::closed;
   std::vector<std::string> program_;
+  EgvBounds bounds_;  // of program_
   std::string program_name_;
   std::deque<std::string> queue_;
   std::optional<std::string> unconfirmed_;  // sent; the board has not said yet that it arrived whole

@@ -46,11 +46,11 @@ std::vector<std::string> MarlinDriver::possible_commands() const {
   if (now == MachinePhase::paused) add({"resume", "override"});
   if (!is_free()) return can;
   add({"home", "jog", "set_origin", "send", "override"});
-  if (position_known_) add({"go_to", "frame"});
+  if (place_.known()) add({"go_to", "frame"});
   if (options_.tool == MachineTool::laser) add({focus_until_s_ ? "focus_off" : "focus"});
   // A printer's own G-code homes it.
   if (now == MachinePhase::idle && program_.line_count() > 0 &&
-      (position_known_ || options_.tool == MachineTool::printer))
+      (place_.known() || options_.tool == MachineTool::printer))
     add({"start"});
   return can;
 }
@@ -67,14 +67,16 @@ void MarlinDriver::command(const Json& command, double now_s) {
   const std::vector<std::string> can = possible_commands();
   if (std::find(can.begin(), can.end(), what) == can.end()) {
     if (what == "unlock" || halted_) refuse(what, "The machine has halted: switch it off and on again.");
-    if ((what == "start" || what == "frame" || what == "go_to") && is_free() && !position_known_)
+    if ((what == "start" || what == "frame" || what == "go_to") && is_free() && !place_.known())
       refuse(what, "Where the head stands is unknown: home the machine first.");
     if (what == "start" && program_.line_count() == 0) refuse(what, "No job is loaded: choose one first.");
     machines_detail::refuse_in_phase(what, phase());
   }
+  if (what != "jog") prepared_ = false;
   const auto speed = [&](double fallback) { return number_of(command, "speed_mm_per_s", 0.01, 2000, fallback); };
   if (what == "home") {
     require_confirmation(command, "The head moves to its switches");
+    prepare_moves(now_s);
     queue("G28");
     settle(Settles::homing);
   } else if (what == "jog") jog(command, now_s);
@@ -84,6 +86,7 @@ void MarlinDriver::command(const Json& command, double now_s) {
     bounds.add({number_of(command, "x_mm", -farthest_mm, farthest_mm, absent),
                 number_of(command, "y_mm", -farthest_mm, farthest_mm, absent), 0});
     check_reach(bounds);
+    prepare_moves(now_s);
     move("G90", " X" + decimal(bounds.low_mm[0]) + " Y" + decimal(bounds.low_mm[1]), speed(50));
     settle(Settles::moving);
   } else if (what == "frame") {
@@ -93,14 +96,17 @@ void MarlinDriver::command(const Json& command, double now_s) {
     bounds.add({b[0], b[1], 0});
     bounds.add({b[2], b[3], 0});
     check_reach(bounds);
+    prepare_moves(now_s);
     for (const auto& [x, y] : machines_detail::way_around(b))
       move("G90", " X" + decimal(x) + " Y" + decimal(y), speed(50));
     settle(Settles::moving);
   } else if (what == "focus") {
     const double power = number_of(command, "power_percent", 0, options_.focus_power_percent, absent);
     require_confirmation(command, "The laser shines at " + decimal(power) + " % without moving: eyes protected");
-    queue("M3 S" + decimal(2.55 * power));
+    queue_dark();  // and out of an inline mode, in which M3 alone would light nothing until a move
+    focus_line_ = "M3 S" + decimal(2.55 * power);
     focus_until_s_ = now_s + options_.focus_seconds;
+    note("The laser shines in pulses of a quarter second, each of which ends by itself.", now_s);
   } else if (what == "focus_off") focus_off(now_s);
   else if (what == "start") start(command, now_s);
   else if (what == "pause") {
@@ -109,15 +115,14 @@ void MarlinDriver::command(const Json& command, double now_s) {
     if (options_.tool == MachineTool::laser) queue("M5");
   } else if (what == "resume") {
     require_confirmation(command, "The machine goes on, with its laser or heaters on");
-    paused_ = false;
-    const GcodeState s = program_.state_before(next_line_);
-    if (options_.tool == MachineTool::laser && s.spindle != 5)
-      queue("M" + std::to_string(s.spindle) + " S" + decimal(s.power));
+    resume();
   } else if (what == "send") {
     const std::string text = machines_detail::line_of(command, longest_by_hand);
     const LineEffect effect = effect_of(text);
     if (effect.moves || effect.fires)
       require_confirmation(command, "The line \"" + text + "\" may move the machine, heat it or turn its laser on");
+    if (focus_until_s_) focus_off(now_s);
+    if (effect.fires) queue("M400");  // a stop drops the moves that it would wait for, and it would shine where they end
     queue(text);
     ask_soon();  // it may move the head
     if (text.starts_with("G28")) settle(Settles::homing);
@@ -138,6 +143,9 @@ void MarlinDriver::jog(const Json& command, double now_s) {
   if (words.empty()) refuse("x_mm", "A jog needs x_mm, y_mm or z_mm.");
   const double speed_mm_per_s = number_of(command, "speed_mm_per_s", 0.01, 2000, absent);
   if (by_hand_.size() >= 12) return;  // a key held down repeats faster than the head moves
+  // One M5 for all that a held key brings: it waits for the move before, and the head would halt at every step.
+  if (!prepared_ || phase() != MachinePhase::jogging) prepare_moves(now_s);
+  prepared_ = true;
   move("G91", words, speed_mm_per_s);
   jogging_until_s_ =
       std::max(jogging_until_s_.value_or(0), now_s + jog_starts_s) + std::sqrt(squared_mm) / speed_mm_per_s;
@@ -145,21 +153,43 @@ void MarlinDriver::jog(const Json& command, double now_s) {
 
 void MarlinDriver::set_origin(const Json& command) {
   const std::string words = machines_detail::zero_words(command, " ");
+  queue("M114");  // where that is in the machine's own coordinates
   queue("G92" + words);
-  position_known_ = true;
-  // Known at once; the machine tells of it only when it is asked again.
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    if (position_mm_ && words.find("XYZ"[axis]) != std::string::npos) (*position_mm_)[axis] = 0;
+  place_.expect_origin(words);  // known at once; the machine tells of it only when it is asked again
   ask_soon();
 }
 
+void MarlinDriver::resume() {
+  paused_ = false;
+  if (options_.tool != MachineTool::laser) return;
+  const GcodeState s = program_.state_before(next_line_);
+  const MarlinPower power = marlin_power_before(program_, next_line_);
+  // In an inline mode only a cut that goes on needs its power: others bring their own.
+  const std::string s_word = " S" + (s.motion == 0 ? "0" : decimal(s.power));
+  if (power == MarlinPower::dynamic) queue("M4 I" + s_word);
+  else if (power == MarlinPower::continuous) queue("M3 I" + s_word);
+  else if (s.spindle != 5) queue("M" + std::to_string(s.spindle) + " S" + decimal(s.power));
+}
+
 void MarlinDriver::check_reach(const GcodeBounds& bounds) const {
-  const double bed[] = {options_.bed_x_mm, options_.bed_y_mm};
-  for (std::size_t axis = 0; axis < 2; ++axis)
-    if (bounds.named[axis] && bounds.high_mm[axis] - bounds.low_mm[axis] > bed[axis] + 1e-3)
-      refuse("job", std::string("The job is ") + decimal(bounds.high_mm[axis] - bounds.low_mm[axis]) + " mm long in " +
-                        "xy"[axis] + ", the machine reaches " + decimal(bed[axis]) +
-                        " mm: make it smaller or turn it.");
+  const double bed[] = {limits_ ? limits_->high_mm[0] - limits_->low_mm[0] : options_.bed_x_mm,
+                        limits_ ? limits_->high_mm[1] - limits_->low_mm[1] : options_.bed_y_mm};
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    if (!bounds.named[axis]) continue;
+    const std::string name(1, "xy"[axis]);
+    const double goes_low = bounds.low_mm[axis], goes_high = bounds.high_mm[axis];
+    if (goes_high - goes_low > bed[axis] + 1e-3)
+      refuse("job", "The job is " + decimal(goes_high - goes_low) + " mm long in " + name + ", the machine reaches " +
+                        decimal(bed[axis]) + " mm: make it smaller or turn it.");
+    const auto origin = place_.origin_mm(axis);
+    // A printer that tells no limits may count from its bed's middle.
+    if (!origin || (!limits_ && !has_cutter())) continue;
+    const double low = (limits_ ? limits_->low_mm[axis] : 0) - *origin, high = low + bed[axis];
+    if (goes_low < low - 1e-3 || goes_high > high + 1e-3)
+      refuse("job", "The job would leave the bed in " + name + ": from the origin it may go from " + decimal(low) +
+                        " to " + decimal(high) + " mm, and goes from " + decimal(goes_low) + " to " +
+                        decimal(goes_high) + " mm. Move the origin or the job.");
+  }
 }
 
 void MarlinDriver::start(const Json& command, double now_s) {
@@ -168,22 +198,36 @@ void MarlinDriver::start(const Json& command, double now_s) {
                                     : "The machine moves and its laser or spindle turns on");
   if (number_of(command, "from_line", 1, 1e9, 1) > 1)
     refuse("from_line", "Going on in the middle of a job is possible with GRBL machines only: start it anew.");
-  if (options_.tool != MachineTool::printer) {  // its jobs home it themselves
-    require_head_at_origin(program_, 0, position_mm_);
+  if (has_cutter()) {  // a printer's jobs home it themselves
+    require_head_at_origin(program_, 0, place_.position_mm());
     check_reach(program_.bounds());
+    if (program_.bounds().named[2] && !place_.axes_known()[2])
+      refuse("start", "The job moves z, and how high the tool stands is unknown: touch the stock with it and set the "
+                      "origin of z there.");
+    prepare_moves(now_s);
+    queue("G90");
   }
   refused_.reset();
-  if (focus_until_s_) focus_off(now_s);  // before the job, whose own first move may come late
-  paused_ = false;
+  paused_ = rests_ = false;
   job_ = MachineJob{program_name_, program_.line_count(), 0, 0, 0, now_s, 0, ""};
   next_line_ = 0;
 }
 
+Json MarlinDriver::laser_on() const {
+  if (options_.tool != MachineTool::laser) return false;
+  if (focus_until_s_) return true;
+  if (dark_ && !job_active()) return false;
+  return nullptr;  // Marlin does not tell
+}
+
 Json MarlinDriver::state(double now_s) const {
-  Json state = common_state("marlin", connection_, phase(), {position_known_, position_known_, position_known_}, now_s);
+  Json state = common_state("marlin", connection_, phase(), place_.axes_known(), now_s);
   state["firmware"] = firmware_;
-  if (position_mm_) state["machine_mm"] = state["work_mm"] = *position_mm_;
-  state["laser_on"] = focus_until_s_.has_value();
+  if (place_.position_mm()) state["machine_mm"] = state["work_mm"] = *place_.position_mm();
+  state["laser_on"] = laser_on();
+  if (options_.tool == MachineTool::laser) state["warnings"] = marlin_warnings(laser_use_, firmware_, no_m5_);
+  if (program_.line_count() > 0)
+    state["when_connection_ends"] = marlin_when_connection_ends(options_.tool, laser_use_, firmware_);
   state["temperatures"] = temperatures_;
   if (halted_)
     state["alarm"] = {{"code", 0},
@@ -194,7 +238,6 @@ Json MarlinDriver::state(double now_s) const {
                       {"text", "The machine does not know a command of the job."},
                       {"line", *refused_},
                       {"line_number", job_ ? job_->line_now : 0}};
-  if (job_active() && options_.tool == MachineTool::laser) state["laser_on"] = nullptr;  // Marlin does not tell
   state["can"] = possible_commands();
   return state;
 }

@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 namespace formwright {
 namespace {
 
 constexpr std::size_t longest_line = 80, kept_lines = 200;  // MAX_CMD_SIZE 96 has number and checksum in it
 constexpr double boot_s = 3, greeting_s = 15, silence_s = 25, silence_in_job_s = 120, silence_while_settling_s = 600;
-constexpr double asking_s = 2, escalation_s = 2, lost_answer_s = 10, idle_s = 1;
-constexpr double quiet_s = 1.5;  // an M410 may take a second to be answered
+constexpr double asking_s = 2, lost_answer_s = 10, idle_s = 1;
 constexpr int most_resends = 100, most_unanswered = 3;
 
 /// The number behind `name` ("X:", "T:"), if it is there.
@@ -57,6 +57,8 @@ void MarlinDriver::opened(double now_s) {
   *this = MarlinDriver(options_);
   connection_ = MachineConnection::greeting;
   opened_s_ = heard_s_ = asked_s_ = now_s;
+  // A board that does not restart may shine since somebody else went, perhaps in the middle of a line.
+  if (options_.tool == MachineTool::laser) write("\nM5\n");
 }
 
 void MarlinDriver::closed(double now_s) {
@@ -69,7 +71,8 @@ void MarlinDriver::closed(double now_s) {
   by_hand_.clear();
   sent_.clear();
   resend_at_ = 0;
-  waiting_ = paused_ = position_known_ = false;
+  waiting_ = 0;
+  paused_ = dark_ = false;
   settling_ = Settles::nothing;
   settling_number_.reset();
   forget_half_lines();
@@ -78,7 +81,7 @@ void MarlinDriver::closed(double now_s) {
   unnumbered_ = 0;
   stopped_s_ = -1;
   connection_ = MachineConnection::closed;
-  position_mm_.reset();
+  place_.forget();
 }
 
 void MarlinDriver::received(ByteView bytes, double now_s) {
@@ -101,8 +104,12 @@ void MarlinDriver::greet(double now_s) {
   stopped_s_ = -1;  // what has just begun has nothing on, and may be slow to answer: no emergency
   settling_ = Settles::nothing;
   settling_number_.reset();
+  focus_until_s_.reset();
+  jogging_until_s_.reset();
+  no_m5_ = dark_ = false;
   start_numbering(now_s);
-  for (const char* line : {"M115", "M105", "M114"}) queue(line);
+  if (options_.tool == MachineTool::laser) queue_dark();
+  for (const char* line : {"M115", "M211", "M105", "M114"}) queue(line);
 }
 
 void MarlinDriver::hear(const std::string& line, double now_s) {
@@ -119,7 +126,9 @@ void MarlinDriver::hear(const std::string& line, double now_s) {
       end("failed", now_s);
       note("The machine restarted by itself in the middle of the job: check its power supply and cable.", now_s);
     }
-    position_known_ = halted_ = false;
+    place_.lose();
+    halted_ = false;
+    focus_until_s_.reset();  // what goes on would light it again
     if (line == "start" || !greeted_) greet(now_s);
   } else if (line.starts_with("ok")) hear_ok(line, now_s);
   else if (line.starts_with("Resend:") || line.starts_with("rs "))
@@ -129,8 +138,9 @@ void MarlinDriver::hear(const std::string& line, double now_s) {
   else if (line.starts_with("!!")) hear_error(std::string_view(line).substr(2), now_s);
   else {
     if (const std::string name = firmware_name(line); !name.empty()) firmware_ = name;
-    if (has_any(line, {"unknown command"})) refused_ = line;
-    hear_report(line, now_s);
+    if (has_any(line, {"unknown command"})) hear_unknown(line);
+    else if (const auto limits = MarlinPlace::limits_in(line)) limits_ = limits;
+    else hear_report(line, now_s);
   }
 }
 
@@ -138,8 +148,16 @@ void MarlinDriver::hear_error(std::string_view text, double now_s) {
   const std::string what(text.substr(std::min(text.find_first_not_of(' '), text.size())));
   // What is wrong with a line's number or sum: a request follows, or nothing at all.
   if (has_any(what, {"checksum", "line number", "expected line"})) return;
-  if (has_any(what, {"unknown command"})) refused_ = what;
+  if (has_any(what, {"unknown command"})) hear_unknown(what);
   else halt(what, now_s);
+}
+
+void MarlinDriver::hear_unknown(const std::string& text) {
+  if (text.find("M211") != std::string::npos) return;  // a firmware without limits: the profile's bed counts
+  const std::size_t m5 = text.find("M5");
+  if (m5 != std::string::npos && (m5 + 2 == text.size() || text[m5 + 2] < '0' || text[m5 + 2] > '9'))
+    no_m5_ = true, dark_ = false;
+  else refused_ = text;
 }
 
 void MarlinDriver::hear_report(const std::string& line, double now_s) {
@@ -149,12 +167,12 @@ void MarlinDriver::hear_report(const std::string& line, double now_s) {
       if (const auto value = number_after(line, name)) temperatures_[key] = *value;
     return;
   }
-  position_mm_ = {*x, *y, *z};  // motors may be called A, B, C behind it
+  place_.reported({*x, *y, *z});  // motors may be called A, B, C behind it
   if (settling_number_) settled(now_s);
 }
 
 void MarlinDriver::settled(double now_s) {
-  if (settling_ == Settles::homing) position_known_ = true;
+  if (settling_ == Settles::homing) place_.homed();
   if (settling_ == Settles::job) end("done", now_s);
   settling_ = Settles::nothing;
   settling_number_.reset();
@@ -168,26 +186,27 @@ void MarlinDriver::hear_ok(const std::string& line, double now_s) {
     return;  // sending starts with this
   }
   if (unnumbered_ > 0) unnumbered_s_ = now_s;
-  if (!waiting_) {
+  if (waiting_ == 0) {
     unnumbered_ = std::max(unnumbered_ - 1, 0);
     return;
   }
-  waiting_ = false;
+  --waiting_;
   resends_ = 0;
   if (connection_ == MachineConnection::greeting && by_hand_.empty()) connection_ = MachineConnection::ready;
-  if (sent_.empty() || resend_at_ == 0) return;
-  const SentLine& answered = sent_[resend_at_ - 1];
+  if (resend_at_ <= static_cast<std::size_t>(waiting_)) return;
+  const SentLine& answered = sent_[resend_at_ - 1 - static_cast<std::size_t>(waiting_)];
+  if (answered.text == "M5 I") dark_ = !no_m5_ && !laser_use_.fan;
   // A machine that never tells its place has no other answer.
-  if (settling_number_ && answered.number >= *settling_number_ && !position_mm_) settled(now_s);
+  if (settling_number_ && answered.number >= *settling_number_ && !place_.position_mm()) settled(now_s);
   if (answered.job_line >= 0 && job_active()) {
-    if (answered.text.starts_with("G28")) position_known_ = true;
+    if (answered.text.starts_with("G28")) place_.homed();
     job_->acknowledged = std::max(job_->acknowledged, answered.job_line + 1);
     job_->line_now = program_.number(job_->acknowledged - 1);
   }
 }
 
 void MarlinDriver::hear_resend(int number, double now_s) {
-  if (halted_) return;
+  if (halted_ || !greeted_) return;
   if (++resends_ > most_resends) {
     // Lines with numbers do not get through.
     end("failed", now_s);
@@ -204,18 +223,18 @@ void MarlinDriver::hear_resend(int number, double now_s) {
     return;
   }
   resend_at_ = static_cast<std::size_t>(found - sent_.begin());
-  waiting_ = false;
+  waiting_ = 0;
   oks_to_swallow_ = 1;  // every request is followed by an ok of its own
 }
 
 void MarlinDriver::hear_idle(double now_s) {
   // Said by a machine that has nothing to do: what was sent a while ago never came, or its answer did not.
-  if ((waiting_ || oks_to_swallow_ > 0) && now_s - sent_s_ > idle_s) go_on_unanswered(now_s);
+  if ((waiting_ > 0 || oks_to_swallow_ > 0) && now_s - sent_s_ > idle_s) go_on_unanswered(now_s);
 }
 
 void MarlinDriver::go_on_unanswered(double now_s) {
   note("A line was not answered: going on, so that the machine asks for what it lacks.", now_s);
-  waiting_ = false;
+  waiting_ = 0;
   oks_to_swallow_ = 0;
   ++unanswered_in_a_row_;
   sent_s_ = now_s;
@@ -224,7 +243,9 @@ void MarlinDriver::go_on_unanswered(double now_s) {
 void MarlinDriver::halt(const std::string& text, double now_s) {
   if (!halted_) halt_text_ = text;  // the first sentence tells the cause
   halted_ = true;
-  position_known_ = false;
+  dark_ = false;
+  place_.lose();
+  focus_until_s_.reset();
   by_hand_.clear();
   settling_ = Settles::nothing;
   settling_number_.reset();
@@ -236,27 +257,39 @@ void MarlinDriver::send(const HandLine& line, int job_line, double now_s) {
   say("sent", line.text, now_s);
   const int number = next_number_++;
   write(numbered_line(number, line.text) + "\n");
-  sent_.push_back({number, job_line, line.text});
-  if (sent_.size() > kept_lines) sent_.pop_front();
-  resend_at_ = sent_.size();
-  waiting_ = true;
+  keep({number, job_line, line.text});
+  waiting_ = 1;
   sent_s_ = now_s;
   if (line.settles != Settles::nothing) settling_number_ = number;
-  if (line.text.starts_with("G28")) position_known_ = false;
+  place_.sending(line.text);
+  if (marlin_may_light(line.text)) dark_ = false;
+}
+
+void MarlinDriver::keep(SentLine line) {
+  sent_.push_back(std::move(line));
+  if (sent_.size() > kept_lines) sent_.pop_front();
+  resend_at_ = sent_.size();
+}
+
+void MarlinDriver::send_again(double now_s) {
+  std::string together;
+  bool with_next = true;
+  while (with_next && resend_at_ < sent_.size()) {
+    const SentLine& again = sent_[resend_at_++];
+    say("sent", again.text, now_s);
+    together += numbered_line(again.number, again.text) + "\n";
+    with_next = again.with_next;
+    ++waiting_;
+  }
+  write(together);
+  sent_s_ = now_s;
 }
 
 void MarlinDriver::pump(double now_s) {
-  if (connection_ == MachineConnection::closed || connection_ == MachineConnection::silent || waiting_ || halted_ ||
+  if (connection_ == MachineConnection::closed || connection_ == MachineConnection::silent || waiting_ > 0 || halted_ ||
       !greeted_ || oks_to_swallow_ > 0 || unnumbered_ > 0)
     return;
-  if (resend_at_ < sent_.size()) {
-    const SentLine& again = sent_[resend_at_++];
-    say("sent", again.text, now_s);
-    write(numbered_line(again.number, again.text) + "\n");
-    waiting_ = true;
-    sent_s_ = now_s;
-    return;
-  }
+  if (resend_at_ < sent_.size()) return send_again(now_s);
   if (by_hand_.empty() && job_active() && !paused_ && settling_ == Settles::nothing &&
       next_line_ >= program_.line_count())
     settle(Settles::job);
@@ -265,14 +298,25 @@ void MarlinDriver::pump(double now_s) {
     by_hand_.pop_front();
     return send(line, -1, now_s);
   }
+  if (focus_until_s_) return send_focus_pulse(now_s);
   if (!job_active() || paused_ || next_line_ >= program_.line_count()) return;
-  send({std::string(program_.line(next_line_))}, next_line_, now_s);
+  const std::string line(program_.line(next_line_));
+  if (options_.tool != MachineTool::laser) return send_job_line(line, now_s);
+  // Such a line waits in the machine for the moves before it: a stop drops those, and it would shine where they end.
+  if (marlin_power_after(line, MarlinPower::off) == MarlinPower::standard && !std::exchange(rests_, !rests_))
+    return send({"M400"}, -1, now_s);
+  send_job_line(marlin_line_as_sent(line), now_s);
+}
+
+void MarlinDriver::send_job_line(const std::string& line, double now_s) {
+  send({line}, next_line_, now_s);
   job_->sent = ++next_line_;
 }
 
 void MarlinDriver::settle(Settles what) {
   settling_ = what;
   settling_number_.reset();
+  if (what == Settles::job && has_cutter()) queue_dark();
   if (what != Settles::homing) queue("M400");  // answered when all moves are done
   queue("M114", what);
 }
@@ -291,7 +335,7 @@ void MarlinDriver::tick(double now_s) {
   }
   if (focus_until_s_ && now_s > *focus_until_s_) focus_off(now_s);
   watch_over_stop(now_s);
-  if ((waiting_ || oks_to_swallow_ > 0) && connection_ == MachineConnection::ready &&
+  if ((waiting_ > 0 || oks_to_swallow_ > 0) && connection_ == MachineConnection::ready &&
       unanswered_in_a_row_ < most_unanswered && now_s - std::max(heard_s_, sent_s_) > lost_answer_s)
     go_on_unanswered(now_s);
   const double patience = connection_ == MachineConnection::greeting ? greeting_s
@@ -300,7 +344,9 @@ void MarlinDriver::tick(double now_s) {
                                                                      : silence_s;
   if (connection_ != MachineConnection::silent && now_s - heard_s_ > patience) {
     connection_ = MachineConnection::silent;
-    waiting_ = false;
+    waiting_ = 0;
+    dark_ = false;
+    focus_until_s_.reset();
     note("Nothing answers: check that the machine is on, the controller chosen, and the line speed (115200 or 250000).",
          now_s);
     if (job_active()) stop("cut_off", now_s);
@@ -310,79 +356,19 @@ void MarlinDriver::tick(double now_s) {
   pump(now_s);
 }
 
-void MarlinDriver::watch_over_stop(double now_s) {
-  if (unnumbered_ > 0 && !waiting_ && now_s - unnumbered_s_ > quiet_s) unnumbered_ = 0;  // these were not answered
-  if (stopped_s_ < 0) return;
-  // Where nothing can be sent now, nothing is waited for.
-  const bool sends = greeted_ && !halted_ && connection_ != MachineConnection::silent;
-  if (!waiting_ && unnumbered_ == 0 && (by_hand_.empty() || !sends)) stopped_s_ = -1;
-  else if (waiting_ && now_s - std::max(stopped_s_, sent_s_) > escalation_s) {
-    // M410 was not heard: boards without an emergency parser take it in turn only. M112 ends everything.
-    write_urgently("M112\n");
-    halt("it did not stop when asked, so it was sent M112.", now_s);
-  }
-}
-
 void MarlinDriver::load(const std::string& name, ByteView job) {
   if (job_active()) machines_detail::refuse("job", "A job is running: stop it before another is loaded.");
   GcodeProgram program = GcodeProgram::read(job, longest_line, true);
   const bool printer = options_.tool == MachineTool::printer;
   require_runnable(program, {printer ? GcodeDialect::marlin_printer : GcodeDialect::marlin});
   program_ = std::move(program);
+  laser_use_ = marlin_laser_use(program_);
   program_name_ = name;
   job_.reset();
 }
 
 void MarlinDriver::end(const char* how, double now_s) {
   if (end_job(how, now_s)) paused_ = false;
-}
-
-std::vector<std::string> MarlinDriver::lines_that_turn_off() const {
-  std::vector<std::string> lines;
-  if (options_.tool != MachineTool::printer) lines.push_back("M5");
-  // Lasers and mills on a printer's board may have heaters, too.
-  if (options_.tool == MachineTool::printer || !temperatures_.empty())
-    lines.insert(lines.end(), {"M104 S0", "M140 S0", "M107"});
-  return lines;
-}
-
-void MarlinDriver::write_unnumbered(const std::string& line, double now_s) {
-  write_urgently(line + "\n");
-  ++unnumbered_;
-  unnumbered_s_ = now_s;
-}
-
-void MarlinDriver::turn_all_off_at_once(double now_s) {
-  // The first two need no turn where the firmware has an emergency parser.
-  for (const char* line : {"M108", "M410"}) write_unnumbered(line, now_s);
-  for (const std::string& line : lines_that_turn_off()) write_unnumbered(line, now_s);
-}
-
-void MarlinDriver::focus_off(double now_s) {
-  focus_until_s_.reset();
-  // A light that is not on yet never comes on.
-  std::erase_if(by_hand_, [](const HandLine& line) { return line.text.starts_with("M3 "); });
-  write_unnumbered("M5", now_s);
-  queue("M5");
-}
-
-void MarlinDriver::stop(const char* how, double now_s) {
-  end(how, now_s);
-  by_hand_.clear();
-  drop_output();
-  // A line that did not leave or did not arrive will be asked for by its number: it must not move anything then.
-  for (SentLine& line : sent_)
-    if (!line.text.starts_with("M110")) line = {line.number, -1, "M105"};
-  resend_at_ = sent_.size();
-  position_known_ = false;
-  settling_ = Settles::nothing;
-  settling_number_.reset();
-  focus_until_s_.reset();
-  jogging_until_s_.reset();
-  oks_to_swallow_ = 0;
-  turn_all_off_at_once(now_s);
-  for (const std::string& line : lines_that_turn_off()) queue(line);
-  stopped_s_ = now_s;
 }
 
 }  // namespace formwright

@@ -13,12 +13,18 @@
 // What turns something off leaves twice: at once and without a number, because the port may close before its turn, and
 // in its turn with one, because only those are asked for again. Lines without a number are answered, too: until these
 // answers are there no line is sent, so that none of them passes for its answer.
+//
+// The machine does numbered lines in their order or not at all, so an M5 ahead of a move is done before the move is
+// (M5 waits for all moves: gcode/control/M3-M5.cpp). A line that turns the focus light on leaves in one write with the
+// wait and the M5 that end it.
 #include <array>
 #include <deque>
 #include <optional>
 
 #include "machines/gcode_rules.h"
 #include "machines/machine_driver.h"
+#include "machines/marlin_laser.h"
+#include "machines/marlin_place.h"
 
 namespace formwright {
 
@@ -47,12 +53,14 @@ class MarlinDriver final : public MachineDriver {
   struct SentLine {
     int number, job_line;
     std::string text;
+    bool with_next = false;  // the next one leaves in the same write, now and whenever this one is asked for again
   };
 
   void hear(const std::string& line, double now_s);
   void hear_ok(const std::string& line, double now_s);
   void hear_resend(int number, double now_s);
   void hear_error(std::string_view text, double now_s);
+  void hear_unknown(const std::string& text);
   void hear_report(const std::string& line, double now_s);
   void hear_idle(double now_s);
   void settled(double now_s);
@@ -60,6 +68,10 @@ class MarlinDriver final : public MachineDriver {
   void pump(double now_s);
   void settle(Settles what);
   void send(const HandLine& line, int job_line, double now_s);
+  void send_again(double now_s);
+  void send_focus_pulse(double now_s);
+  void send_job_line(const std::string& line, double now_s);
+  void keep(SentLine line);
   void greet(double now_s);
   void start_numbering(double now_s);
   void queue(const std::string& line, Settles settles = Settles::nothing) { by_hand_.push_back({line, settles}); }
@@ -67,6 +79,11 @@ class MarlinDriver final : public MachineDriver {
   void write_unnumbered(const std::string& line, double now_s);
   void turn_all_off_at_once(double now_s);
   void focus_off(double now_s);
+  bool has_cutter() const { return options_.tool != MachineTool::printer; }
+  /// Queues what makes sure that the beam or spindle is off, whatever mode it was left in.
+  void queue_dark();
+  /// Before moves by hand: dark, and in mm.
+  void prepare_moves(double now_s);
   void watch_over_stop(double now_s);
   void ask_soon() { asked_s_ = -1e9; }  // where the head is, as soon as nothing else waits
   void move(const std::string& mode, const std::string& words, double speed_mm_per_s);
@@ -80,12 +97,15 @@ class MarlinDriver final : public MachineDriver {
   void jog(const Json& command, double now_s);
   void set_origin(const Json& command);
   void start(const Json& command, double now_s);
+  void resume();
+  Json laser_on() const;
   void check_reach(const GcodeBounds& bounds) const;
 
   DriverOptions options_;
   MachineConnection connection_ = MachineConnection::closed;
   std::string firmware_;
   GcodeProgram program_;
+  MarlinLaserUse laser_use_;  // of program_
   std::string program_name_;
   int next_line_ = 0;
 
@@ -97,13 +117,20 @@ class MarlinDriver final : public MachineDriver {
   double unnumbered_s_ = 0;              // when one was written or answered last
   Settles settling_ = Settles::nothing;  // what is under way
   std::optional<int> settling_number_;   // of the M114 behind it, once that was sent
-  bool waiting_ = false, paused_ = false, position_known_ = false, halted_ = false, greeted_ = false;
+  int waiting_ = 0;  // numbered lines that were written and not answered
+  bool paused_ = false, halted_ = false, greeted_ = false;
+  bool dark_ = false;      // an M5 was answered, and nothing that may light anything was sent since
+  bool prepared_ = false;  // the last lines queued by hand are prepare_moves() and jogs
+  bool rests_ = false;     // an M400 was sent ahead of the job's next line
+  bool no_m5_ = false;     // the firmware does not know it
+  MarlinPlace place_;
+  std::optional<MarlinPlace::Limits> limits_;  // M211
   std::string halt_text_;
-  std::optional<std::array<double, 3>> position_mm_;
   Json temperatures_ = Json::object();
   std::optional<std::string> refused_;
   double opened_s_ = 0, heard_s_ = 0, sent_s_ = 0, asked_s_ = 0, stopped_s_ = -1;
   std::optional<double> focus_until_s_;
+  std::string focus_line_;  // "M3 S2.55"
   std::optional<double> jogging_until_s_;  // by its length and speed: an M400 would halt a key held down at every step
 };
 

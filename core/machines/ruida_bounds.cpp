@@ -52,12 +52,12 @@ class Reader {
              "at the laser's panel.");
   }
 
-  GcodeBounds bounds() const {
+  RuidaBounds bounds() const {
     if (from_panel_ || !from_zero_)
       refuse("job",
              "The job starts from a place that is set at the laser's panel, so where it lies cannot be told from here: "
              "frame it there.");
-    if (bounds_.empty) refuse("job", "The job burns nothing: choose another.");
+    if (bounds_.worked.empty) refuse("job", "The job burns nothing: choose another.");
     return bounds_;
   }
 
@@ -71,22 +71,23 @@ class Reader {
       if (kind != 3) at_mm_[0] += 1e-3 * static_cast<double>(command.number(0, 2));
       if (kind != 2) at_mm_[1] += 1e-3 * static_cast<double>(command.number(kind == 1 ? 2 : 0, 2));
     }
-    if (burn && !placed_)
-      refuse("job", "The job burns before it has said where, so how far it reaches cannot be told: make it again.");
-    placed_ = placed_ || kind == 0;
+    if (!placed_ && (burn || kind != 0))
+      refuse("job", "The job moves before it has said where, so how far it reaches cannot be told: make it again.");
+    placed_ = true;
+    bounds_.reached.add(at_mm_);
     if (!burn) return;
-    bounds_.add(from);
-    bounds_.add(at_mm_);
+    bounds_.worked.add(from);
+    bounds_.worked.add(at_mm_);
   }
 
-  GcodeBounds bounds_;
+  RuidaBounds bounds_;
   std::array<double, 3> at_mm_{0, 0, 0};
   bool placed_ = false, from_zero_ = false, from_panel_ = false;
 };
 
 }  // namespace
 
-GcodeBounds ruida_bounds(ByteView rd_file) {
+RuidaBounds ruida_job_bounds(ByteView rd_file) {
   std::vector<unsigned char> plain;
   plain.reserve(rd_file.size());
   for (const std::byte byte : rd_file) plain.push_back(ruida_unswizzled(std::to_integer<unsigned char>(byte)));

@@ -278,6 +278,7 @@ void RuidaDriver::command(const Json& command, double now_s) {
     require_confirmation(command, "The laser moves and its beam turns on");
     if (number_of(command, "from_line", 1, 1e9, 1) > 1)
       refuse("from_line", "A Ruida laser goes on in the middle of a job at its own panel only: start it anew.");
+    require_job_inside();
     queue_.insert(queue_.end(), program_.begin(), program_.end());
     job_left_ = program_.size();
     const int count = static_cast<int>(program_.size());
@@ -293,9 +294,22 @@ void RuidaDriver::command(const Json& command, double now_s) {
   send_next(now_s);
 }
 
+void RuidaDriver::require_job_inside() const {
+  const GcodeBounds& reached = bounds_.reached;
+  const std::array<double, 2> bed{options_.bed_x_mm, options_.bed_y_mm};
+  for (std::size_t axis = 0; axis < 2; ++axis)
+    if (reached.low_mm[axis] < -1e-3 || reached.high_mm[axis] > bed[axis] + 1e-3)
+      refuse("job", std::string("The job would leave the bed in ") + "xy"[axis] + ": it goes from " +
+                        machines_detail::decimal(reached.low_mm[axis]) + " to " +
+                        machines_detail::decimal(reached.high_mm[axis]) + " mm, and the bed from 0 to " +
+                        machines_detail::decimal(bed[axis]) + " mm. Move the job or make it smaller.");
+}
+
 void RuidaDriver::load(const std::string& name, ByteView job) {
   if (job_active()) refuse("job", "A job is running: stop it before another is loaded.");
-  program_ = ruida_datagrams(job);
+  std::vector<Bytes> program = ruida_datagrams(job);
+  bounds_ = ruida_job_bounds(job);
+  program_ = std::move(program);
   program_name_ = name;
   job_.reset();
 }
@@ -304,6 +318,8 @@ Json RuidaDriver::state(double now_s) const {
   Json state = common_state("ruida", connection_, phase(), {homed_, homed_, false}, now_s);
   if (position_mm_[0] && position_mm_[1])
     state["machine_mm"] = state["work_mm"] = {*position_mm_[0], *position_mm_[1], 0};
+  state["when_connection_ends"] =
+      "The laser burns what it has got of the job without this computer: stop it at its panel.";
   state["can"] = possible_commands();
   return state;
 }

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "machines/machine_driver.h"
+#include "machines/ruida_bounds.h"
 
 namespace formwright {
 
@@ -42,10 +43,13 @@ class RuidaDriver final : public MachineDriver {
   void end(const char* how, double now_s);
   std::vector<std::string> possible_commands() const;
   MachinePhase phase() const;
+  /// Throws Error invalid_input ("job") where the job would leave the bed.
+  void require_job_inside() const;
 
   DriverOptions options_;
   MachineConnection connection_ = MachineConnection::closed;
   std::vector<Bytes> program_;
+  RuidaBounds bounds_;  // of program_
   std::string program_name_;
   std::deque<Bytes> queue_;
   std::optional<Bytes> unconfirmed_;

@@ -100,6 +100,13 @@ class VirtualBoard {
   int status_ = 206, busy_ = 0, finished_in_ = 0;
 };
 
+/// A packet's worth of letters that differ and move nothing: the laser on and off as the number's bits.
+std::string letters_of(int number) {
+  std::string letters;
+  for (int bit = 0; bit < 30; ++bit) letters += (number >> bit) & 1 ? 'D' : 'U';
+  return letters;
+}
+
 struct K40Talk {
   explicit K40Talk(std::uint64_t seed = 1, double spoil = 0)
       : board(seed, spoil), driver({.controller = DriverController::k40, .bed_x_mm = 300, .bed_y_mm = 200}) {
@@ -133,7 +140,7 @@ TEST(K40, JobsArriveWholeThroughSpoiledPackets) {
     talk.pass(1);
     EXPECT_EQ(talk.driver.state(talk.now_s)["phase"], "idle");
     std::string egv;
-    for (int i = 0; i < 40; ++i) egv += std::string(30, static_cast<char>('A' + i % 26)) + "\n";
+    for (int i = 0; i < 40; ++i) egv += letters_of(i) + "\n";
     egv += "FNSE-\n";
     talk.driver.load("job.egv", as_bytes(egv));
     EXPECT_THROW(talk.driver.command({{"do", "start"}, {"confirmed", true}}, talk.now_s), Error);  // not homed
@@ -146,7 +153,7 @@ TEST(K40, JobsArriveWholeThroughSpoiledPackets) {
     EXPECT_EQ(talk.driver.state(talk.now_s)["job"]["ended"], "done") << talk.driver.state(talk.now_s).dump();
     ASSERT_EQ(talk.board.heard.size() - before, 41u);
     for (std::size_t i = 0; i < 40; ++i)
-      EXPECT_EQ(talk.board.heard[before + i], std::string(30, static_cast<char>('A' + static_cast<int>(i) % 26)));
+      EXPECT_EQ(talk.board.heard[before + i], letters_of(static_cast<int>(i)));
   }
 }
 
@@ -156,11 +163,8 @@ TEST(K40, PausesArriveOnceThroughSpoiledPackets) {
     talk.pass(1);
     talk.driver.command({{"do", "home"}, {"confirmed", true}}, talk.now_s);
     talk.pass(3);
-    const auto letters = [](int i) {
-      return std::string(28, 'B') + static_cast<char>('A' + i / 26) + static_cast<char>('A' + i % 26);
-    };
     std::string egv;
-    for (int i = 0; i < 200; ++i) egv += letters(i) + "\n";
+    for (int i = 0; i < 200; ++i) egv += letters_of(i) + "\n";
     talk.driver.load("job.egv", as_bytes(egv + "FNSE-\n"));
     const std::size_t before = talk.board.heard.size();
     talk.driver.command({{"do", "start"}, {"confirmed", true}}, talk.now_s);
@@ -186,7 +190,7 @@ TEST(K40, PausesArriveOnceThroughSpoiledPackets) {
       if (talk.board.heard[i] != padded("PN")) job.push_back(talk.board.heard[i]);
     EXPECT_EQ(talk.board.heard.size() - before, job.size() + holds);
     ASSERT_EQ(job.size(), 201u);  // each once, in order
-    for (int i = 0; i < 200; ++i) EXPECT_EQ(job[static_cast<std::size_t>(i)], letters(i));
+    for (int i = 0; i < 200; ++i) EXPECT_EQ(job[static_cast<std::size_t>(i)], letters_of(i));
   }
 }
 
@@ -207,12 +211,12 @@ TEST(K40, APauseIsNotKeptWaitingByABusyBoard) {
   hear(206);
   driver.command({{"do", "home"}, {"confirmed", true}}, now);
   for (int i = 0; i < 60; ++i) hear(206, 0.05);
-  driver.load("job.egv", as_bytes(std::string("ABC\nDEF\n")));
+  driver.load("job.egv", as_bytes(std::string("BTB\nDUD\n")));
   driver.command({{"do", "start"}, {"confirmed", true}}, now);
   hear(206);
   driver.command({{"do", "pause"}}, now);
   hear(238);
-  EXPECT_EQ(sent("PN"), 0);  // "ABC" may still be rejected
+  EXPECT_EQ(sent("PN"), 0);  // "BTB" may still be rejected
   while (now < 6) {
     hear(238, 0.1);
     if (sent("PN") > 0) break;
@@ -220,11 +224,11 @@ TEST(K40, APauseIsNotKeptWaitingByABusyBoard) {
   ASSERT_LT(now, 6);  // half a second later it surely is in
   hear(207);
   const auto output = driver.take_output();
-  EXPECT_EQ(std::count(output.begin(), output.end(), k40_transfer("ABC")), 0);
+  EXPECT_EQ(std::count(output.begin(), output.end(), k40_transfer("BTB")), 0);
   EXPECT_EQ(std::count(output.begin(), output.end(), k40_transfer("PN")), 1);
 }
 
-/// A driver whose board's every answer is the test's, with a job of "ABC", "DEF" and "GHI" begun.
+/// A driver whose board's every answer is the test's, with a job of "BTB", "DUD" and "LRL" begun.
 struct K40Told {
   using Packets = std::vector<std::string>;
 
@@ -233,7 +237,7 @@ struct K40Told {
     hear(206);
     driver.command({{"do", "home"}, {"confirmed", true}}, now_s);
     for (int i = 0; i < 60; ++i) hear(206);
-    driver.load("job.egv", as_bytes(std::string("ABC\nDEF\nGHI\n")));
+    driver.load("job.egv", as_bytes(std::string("BTB\nDUD\nLRL\n")));
     driver.command({{"do", "start"}, {"confirmed", true}}, now_s);
   }
   /// The packets that went out since the last call.
@@ -259,10 +263,10 @@ struct K40Told {
 
 TEST(K40, APauseThatArrivesSpoiledIsSentAgainAndNotTheJob) {
   K40Told told;
-  EXPECT_EQ(told.hear(206), K40Told::Packets{padded("ABC")});
-  EXPECT_EQ(told.hear(206), K40Told::Packets{padded("DEF")});
+  EXPECT_EQ(told.hear(206), K40Told::Packets{padded("BTB")});
+  EXPECT_EQ(told.hear(206), K40Told::Packets{padded("DUD")});
   told.driver.command({{"do", "pause"}}, told.now_s);
-  EXPECT_EQ(told.hear(206), K40Told::Packets{padded("PN")});  // "DEF" is in
+  EXPECT_EQ(told.hear(206), K40Told::Packets{padded("PN")});  // "DUD" is in
   EXPECT_EQ(told.hear(207), K40Told::Packets{padded("PN")});
   EXPECT_EQ(told.hear(238), K40Told::Packets{});
   EXPECT_EQ(told.hear(207), K40Told::Packets{padded("PN")});
@@ -271,31 +275,31 @@ TEST(K40, APauseThatArrivesSpoiledIsSentAgainAndNotTheJob) {
   told.resume();
   EXPECT_EQ(told.sent(), K40Told::Packets{padded("PN")});
   EXPECT_EQ(told.hear(207), K40Told::Packets{padded("PN")});
-  EXPECT_EQ(told.hear(206), K40Told::Packets{padded("GHI")});
+  EXPECT_EQ(told.hear(206), K40Told::Packets{padded("LRL")});
   EXPECT_EQ(told.phase(), "running");
 }
 
 TEST(K40, APauseWaitsForAPacketOfTheJobThatIsSpoiled) {
   K40Told told;
-  EXPECT_EQ(told.hear(206), K40Told::Packets{padded("ABC")});
+  EXPECT_EQ(told.hear(206), K40Told::Packets{padded("BTB")});
   told.driver.command({{"do", "pause"}}, told.now_s);
   EXPECT_EQ(told.sent(), K40Told::Packets{});
-  EXPECT_EQ(told.hear(207), K40Told::Packets{padded("ABC")});
+  EXPECT_EQ(told.hear(207), K40Told::Packets{padded("BTB")});
   EXPECT_EQ(told.hear(238), K40Told::Packets{});
-  EXPECT_EQ(told.hear(207), K40Told::Packets{padded("ABC")});
+  EXPECT_EQ(told.hear(207), K40Told::Packets{padded("BTB")});
   EXPECT_EQ(told.hear(206), K40Told::Packets{padded("PN")});
   EXPECT_EQ(told.hear(206), K40Told::Packets{});
   EXPECT_EQ(told.phase(), "paused");
   told.resume();
   EXPECT_EQ(told.sent(), K40Told::Packets{padded("PN")});
-  EXPECT_EQ(told.hear(206), K40Told::Packets{padded("DEF")});
+  EXPECT_EQ(told.hear(206), K40Told::Packets{padded("DUD")});
 }
 
 TEST(K40, AStopDoesNotWaitForAPause) {
   for (const bool pause_is_out : {false, true}) {
     SCOPED_TRACE(pause_is_out);
     K40Told told;
-    EXPECT_EQ(told.hear(206), K40Told::Packets{padded("ABC")});
+    EXPECT_EQ(told.hear(206), K40Told::Packets{padded("BTB")});
     told.driver.command({{"do", "pause"}}, told.now_s);
     if (pause_is_out) {
       EXPECT_EQ(told.hear(206), K40Told::Packets{padded("PN")});
@@ -396,6 +400,34 @@ TEST(K40, KeepsInsideItsBed) {
   talk.driver.command({{"do", "go_to"}, {"x_mm", 25.4}, {"y_mm", 200 - 2.54}}, talk.now_s);
   talk.pass(0.3);
   EXPECT_EQ(talk.board.heard.back(), padded("IBzzz235R100S1P"));
+}
+
+TEST(K40, AJobThatLeavesTheBedIsRefusedAtItsStart) {
+  K40Talk talk;
+  talk.pass(1);
+  talk.driver.command({{"do", "home"}, {"confirmed", true}}, talk.now_s);
+  talk.pass(3);
+  const auto refusal = [&](const std::string& egv) -> std::string {
+    try {
+      talk.driver.load("job.egv", as_bytes(egv));
+      talk.driver.command({{"do", "start"}, {"confirmed", true}}, talk.now_s);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.where(), "job");
+      return error.what();
+    }
+    return "";
+  };
+  const auto right = [](int mil) { return "I" + k40_rapid_move(mil, 0).substr(1) + "\n"; };
+  EXPECT_NE(refusal(right(11900) + "ICV1752241000000003CBRNS1EDB100FNSE-\n").find("to the side"), std::string::npos);
+  EXPECT_NE(refusal("IRzzzS1P\nILzzzzS1P\n").find("to the front"), std::string::npos);
+  EXPECT_NE(refusal("ICV1752241000000003CBRNS1EDQaFNSE-\n").find("meaning is not known"), std::string::npos);
+  EXPECT_NE(refusal("ICV1752241000000003CBRNS1EDB1FNSE-\n").find("meaning is not known"), std::string::npos);
+  EXPECT_EQ(talk.driver.state(talk.now_s)["job"], nullptr);
+  EXPECT_EQ(refusal(right(11700) + "ICV1752241000000003CBRNS1EDB100FNSE-\n"), "");
+  talk.pass(3);
+  EXPECT_EQ(talk.driver.state(talk.now_s)["job"]["ended"], "done");
+  // It ended away from home, and the next move begins there.
+  EXPECT_NEAR(talk.driver.state(talk.now_s)["machine_mm"][0].get<double>(), 11800 * 0.0254, 1e-9);
 }
 
 TEST(Ruida, ScramblesAndSums) {
@@ -504,8 +536,12 @@ TEST(Ruida, JobsArriveInOrderOverALossyNetwork) {
   EXPECT_NEAR(talk.driver.state(talk.now_s)["machine_mm"][0].get<double>(), 123.456, 1e-9);
   Bytes file;
   std::string plain;
-  for (int i = 0; i < 3000; ++i)
-    plain += '\x88', plain += static_cast<char>(i & 0x7f), plain += static_cast<char>(i >> 7 & 0x7f);
+  plain += "\xd8\x10";
+  for (int i = 0; i < 900; ++i) {
+    plain += i % 2 ? '\xa8' : '\x88';
+    for (const int um : {100 * i, 50 * i})
+      for (int shift = 28; shift >= 0; shift -= 7) plain += static_cast<char>(um >> shift & 0x7f);
+  }
   for (const char c : plain) file.push_back(std::byte{ruida_swizzled(static_cast<unsigned char>(c))});
   talk.driver.load("job.rd", file);
   EXPECT_THROW(talk.driver.command({{"do", "start"}, {"confirmed", true}}, talk.now_s), Error);
@@ -517,6 +553,41 @@ TEST(Ruida, JobsArriveInOrderOverALossyNetwork) {
   talk.pass(40);
   EXPECT_EQ(talk.driver.state(talk.now_s)["job"]["ended"], "done") << talk.driver.state(talk.now_s).dump();
   EXPECT_EQ(talk.laser.heard, plain);
+}
+
+TEST(Ruida, AJobThatLeavesTheBedIsRefusedAtItsStart) {
+  RuidaTalk talk;
+  talk.pass(2);
+  talk.driver.command({{"do", "home"}, {"confirmed", true}}, talk.now_s);
+  talk.pass(15);
+  ASSERT_TRUE(talk.driver.state(talk.now_s)["position_known"]);
+  const auto refusal = [&](const char* head, std::vector<std::array<int, 3>> moves) -> std::string {
+    std::string plain = head;
+    for (const auto& [code, x_um, y_um] : moves) {
+      plain += static_cast<char>(code);
+      for (const int um : {x_um, y_um})
+        for (int shift = 28; shift >= 0; shift -= 7) plain += static_cast<char>(um >> shift & 0x7f);
+    }
+    Bytes file;
+    for (const char c : plain) file.push_back(std::byte{ruida_swizzled(static_cast<unsigned char>(c))});
+    try {
+      talk.driver.load("job.rd", file);
+      talk.driver.command({{"do", "start"}, {"confirmed", true}}, talk.now_s);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.where(), "job");
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(refusal("\xd8\x10", {{0x88, 0, 0}, {0xa8, 400100, 5000}}).find("leave the bed in x"), std::string::npos);
+  EXPECT_NE(refusal("\xd8\x10", {{0x88, 0, -200}, {0xa8, 5000, 5000}}).find("leave the bed in y"), std::string::npos);
+  // Travel counts, too.
+  EXPECT_NE(refusal("\xd8\x10", {{0x88, 0, 0}, {0xa8, 5000, 5000}, {0x88, 0, 410000}}).find("leave the bed in y"),
+            std::string::npos);
+  EXPECT_NE(refusal("\xd8\x12", {{0x88, 0, 0}, {0xa8, 5000, 5000}}).find("set at the laser's panel"),
+            std::string::npos);
+  EXPECT_EQ(talk.driver.state(talk.now_s)["job"], nullptr);
+  EXPECT_EQ(refusal("\xd8\x10", {{0x88, 0, 0}, {0xa8, 400000, 400000}}), "");
 }
 
 TEST(Ruida, AStopThatIsLostIsSentAgain) {

@@ -315,51 +315,6 @@ TEST(MarlinDriver, AStopThatIsNotHeardBecomesAnEmergency) {
   EXPECT_EQ(talk.phase(), "alarm");
 }
 
-TEST(MarlinDriver, TheFocusLightGoesOutThoughALineIsUnanswered) {
-  MarlinTalk talk(0, 1, MachineTool::laser, 5);
-  const Json focus = {{"do", "focus"}, {"power_percent", 1}, {"confirmed", true}};
-  talk.pass(3);
-  talk.tell(focus);
-  talk.pass(0.5);
-  ASSERT_EQ(talk.machine.done_times("M3 S2.55"), 1);
-  talk.tell({{"do", "focus_off"}});
-  talk.pass(0.5);
-  EXPECT_EQ(talk.machine.done_times("M5"), 2);
-  talk.tell(focus);
-  talk.machine.unanswered = "M105";  // asked for every two seconds
-  talk.pass(4.5);
-  EXPECT_EQ(talk.machine.done_times("M5"), 2);
-  talk.pass(0.7);  // it goes out by itself
-  EXPECT_EQ(talk.machine.done_times("M5"), 3);
-  // By hand, and the port is closed at once.
-  MarlinTalk other(0, 1, MachineTool::laser);
-  other.pass(3);
-  other.tell(focus);
-  other.machine.unanswered = "M105";
-  other.pass(2.5);
-  other.tell({{"do", "focus_off"}});
-  EXPECT_NE(other.leaves().find("\nM5\n"), std::string::npos);
-}
-
-TEST(MarlinDriver, TheFocusLightIsOutBeforeAJobBegins) {
-  MarlinTalk talk(0, 1, MachineTool::laser);
-  talk.pass(3);
-  talk.tell({{"do", "set_origin"}});
-  talk.tell({{"do", "focus"}, {"power_percent", 1}, {"confirmed", true}});
-  talk.pass(0.5);
-  ASSERT_EQ(talk.machine.done_times("M3 S2.55"), 1);
-  const long before = talk.machine.done_times("M5");
-  talk.driver.load("test", as_bytes("G21\nG90\nG1 X5 F3000\n"));
-  talk.tell({{"do", "start"}, {"confirmed", true}});
-  EXPECT_FALSE(talk.driver.state(talk.now_s)["laser_on"].is_boolean());  // a running job: Marlin does not tell
-  talk.pass(1);
-  EXPECT_GT(talk.machine.done_times("M5"), before);
-  const auto& done = talk.machine.done;
-  const auto light = std::find(done.begin(), done.end(), "M3 S2.55"), job = std::find(light, done.end(), "G21");
-  ASSERT_NE(job, done.end());
-  EXPECT_NE(std::find(light, job, "M5"), job);
-}
-
 TEST(MarlinDriver, AJobThatMovesTheOriginIsAPrintersOnly) {
   const std::string job = "G28\nG92 X0 Y0\nG1 X5 F3000\n";
   MarlinTalk laser(0, 1, MachineTool::laser), printer(0, 1, MachineTool::printer);

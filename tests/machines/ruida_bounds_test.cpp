@@ -65,6 +65,10 @@ TEST(RuidaBounds, AreThoseOfWhatIsBurned) {
                                               .file());
   EXPECT_EQ(bounds.low_mm, (std::array<double, 3>{10, 16.25, 0}));
   EXPECT_EQ(bounds.high_mm, (std::array<double, 3>{30, 20.5, 0}));
+  const GcodeBounds reached =
+      ruida_job_bounds(RuidaJob().begin().to(false, 900000, 900000).to(true, 30000, -500).file()).reached;
+  EXPECT_EQ(reached.low_mm, (std::array<double, 3>{30, -0.5, 0}));
+  EXPECT_EQ(reached.high_mm, (std::array<double, 3>{900, 900, 0}));
 }
 
 TEST(RuidaBounds, FollowAbsoluteAndRelativeMovesOfEveryKind) {
@@ -116,6 +120,8 @@ TEST(RuidaBounds, RefuseWhereTheyCannotBeTold) {
   EXPECT_NE(refusal(RuidaJob().begin().by(true, 100, 100)).find("before it has said where"), std::string::npos);
   EXPECT_NE(refusal(RuidaJob().begin().to(false, 1, 1)).find("burns nothing"), std::string::npos);
   EXPECT_NE(refusal(RuidaJob().begin().to(false, 1, 1).code({0xa8, 1, 2, 3})).find("cut off"), std::string::npos);
+  EXPECT_NE(refusal(RuidaJob().begin().by(false, 100, 100).to(true, 1, 1)).find("before it has said where"),
+            std::string::npos);
   EXPECT_NE(refusal(RuidaJob{"G1 X5"}).find("not a Ruida job"), std::string::npos);
   EXPECT_NE(refusal(RuidaJob{}).find("not a Ruida job"), std::string::npos);
 }

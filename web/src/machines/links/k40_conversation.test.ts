@@ -104,7 +104,7 @@ describe.skipIf(!existsSync(module))('a K40 over WebUSB', () => {
     await until(() => state()?.position_known === true);
     expect(board.packets).toEqual(['IPP'.padEnd(30, 'F')]);
 
-    const body = `ICV1752241000000003GAACBS1P${'DaRbUcLd'.repeat(20)}\nFNSE-\n`;
+    const body = `ICV1752241000000003CNBRS1E${'DaRbUcLd'.repeat(20)}\nFNSE-\n`;
     await ask({ type: 'load', name: 'job.egv', job: new TextEncoder().encode(body) });
     board.spoil = 3;
     await ask({ type: 'command', command: { do: 'start', confirmed: true } });
@@ -128,7 +128,7 @@ describe.skipIf(!existsSync(module))('a K40 over WebUSB', () => {
     await until(() => state()?.phase === 'idle');
     await ask({ type: 'command', command: { do: 'home', confirmed: true } });
     await until(() => state()?.position_known === true);
-    await ask({ type: 'load', name: 'long.egv', job: new TextEncoder().encode('DaRb'.repeat(20_000)) });
+    await ask({ type: 'load', name: 'long.egv', job: new TextEncoder().encode(`ICV1752241000000003CNBRS1E${'DBaUTa'.repeat(14_000)}`) });
     await ask({ type: 'command', command: { do: 'start', confirmed: true } });
     await until(() => board.packets.length > 5);
     await ask({ type: 'command', command: { do: 'stop' } });

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What a job asks of a laser's power, and how it is sent so that a machine left alone goes dark.
+//
+// With $32=1 and M4 a GRBL laser's power goes with the head's speed and is nothing at rest; with M3 it stays as it is
+// when the planner runs dry behind a cut (grbl/doc/markdown/laser_mode.md).
+#include <string>
+#include <string_view>
+
+#include "machines/gcode_program.h"
+
+namespace formwright {
+
+struct LaserPower {
+  double max_power = 0;    // S
+  int max_power_line = 0;  // of the file, the first that asks for it
+  bool constant = false;   // is M3 used?
+  int rest_line = 0;       // of the file, the first that burns at rest: G4 behind a cut with M3. 0: none
+};
+LaserPower laser_power_of(const GcodeProgram& program);
+
+/// The line with M4 where it says M3: as long, and the same on the way.
+std::string with_dynamic_power(std::string_view line);
+
+/// `word`(letter, value) for every word of a line without blanks and comments, as far as it is G-code.
+template <class Word>
+void for_each_gcode_word(std::string_view line, Word&& word) {
+  for (std::size_t at = 0; at < line.size();) {
+    const char letter = line[at++];
+    const std::size_t begin = at;
+    double value = 0, scale = 0;
+    for (; at < line.size() && !(line[at] >= 'A' && line[at] <= 'Z'); ++at) {
+      if (line[at] == '.') scale = 1;
+      if (line[at] < '0' || line[at] > '9') continue;
+      value = 10 * value + (line[at] - '0');
+      scale *= 10;
+    }
+    if (at > begin) word(letter, (line[begin] == '-' ? -1 : 1) * (scale > 1 ? value / scale : value));
+  }
+}
+
+}  // namespace formwright

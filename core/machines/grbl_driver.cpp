@@ -189,6 +189,7 @@ void GrblDriver::load(const std::string& name, ByteView job) {
   require_fixed_origin(program);
   program_ = std::move(program);
   power_wanted_ = laser_power_of(program_);
+  unplaced_ = unplaced_at_first_cut(program_);
   moves_axis_ = program_.state_before(program_.line_count()).moved;
   program_name_ = name;
   job_.reset();

@@ -77,6 +77,7 @@ class GrblDriver final : public MachineDriver {
   void start(const Json& command, double now_s);
   void check_settings() const;
   void check_reach(const GcodeBounds& bounds) const;
+  void require_first_cut_placed(int index) const;
   /// Where the head must be known for the job that is loaded, and is not: a sentence, or "".
   std::string unknown_place() const;
   std::vector<std::string> way_back_to(int index) const;
@@ -134,6 +135,7 @@ class GrblDriver final : public MachineDriver {
   std::string program_name_;
   LaserPower power_wanted_;
   std::array<bool, 3> moves_axis_{};  // of the job
+  std::array<bool, 2> unplaced_{};    // when its first cut begins
   int first_line_ = 0, next_line_ = 0;
   bool closing_sent_ = false;  // the M5 behind the job
 

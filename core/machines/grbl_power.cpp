@@ -23,6 +23,31 @@ LaserPower laser_power_of(const GcodeProgram& program) {
   return power;
 }
 
+std::array<bool, 2> unplaced_at_first_cut(const GcodeProgram& program) {
+  std::array<bool, 2> placed{};
+  int motion = 0;
+  for (int i = 0; i < program.line_count(); ++i) {
+    std::array<bool, 2> named{};
+    bool moves = false, elsewhere = false;
+    for_each_gcode_word(program.line(i), [&](char letter, double value) {
+      if (letter == 'G' && (value == 0 || value == 1 || value == 2 || value == 3)) motion = static_cast<int>(value);
+      elsewhere =
+          elsewhere || (letter == 'G' && (value == 4 || value == 10 || value == 91 || (value >= 28 && value < 31) ||
+                                          value == 53 || (value >= 92 && value < 93)));
+      if (letter == 'X') named[0] = true;
+      if (letter == 'Y') named[1] = true;
+      moves = moves || (letter >= 'X' && letter <= 'Z') || letter == 'I' || letter == 'J';
+    });
+    if (elsewhere) continue;
+    if (motion != 0 && moves) {
+      const std::array<bool, 3> ever = program.state_before(program.line_count()).moved;
+      return {ever[0] && !placed[0], ever[1] && !placed[1]};
+    }
+    for (std::size_t axis = 0; axis < 2; ++axis) placed[axis] = placed[axis] || named[axis];
+  }
+  return {};
+}
+
 std::string with_dynamic_power(std::string_view line) {
   std::string sent(line);
   for (std::size_t at = sent.find('M'); at != std::string::npos; at = sent.find('M', at + 1)) {

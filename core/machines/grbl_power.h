@@ -4,6 +4,7 @@
 //
 // With $32=1 and M4 a GRBL laser's power goes with the head's speed and is nothing at rest; with M3 it stays as it is
 // when the planner runs dry behind a cut (grbl/doc/markdown/laser_mode.md).
+#include <array>
 #include <string>
 #include <string_view>
 
@@ -18,6 +19,10 @@ struct LaserPower {
   int rest_line = 0;       // of the file, the first that burns at rest: G4 behind a cut with M3. 0: none
 };
 LaserPower laser_power_of(const GcodeProgram& program);
+
+/// Of x and y, those that the program moves and has not placed when its first cut begins: it would begin wherever the
+/// head stands. Programs that count from there (G91) are another matter: GcodeProgram::from_here.
+std::array<bool, 2> unplaced_at_first_cut(const GcodeProgram& program);
 
 /// The line with M4 where it says M3: as long, and the same on the way.
 std::string with_dynamic_power(std::string_view line);

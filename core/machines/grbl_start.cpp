@@ -107,6 +107,14 @@ void GrblDriver::check_settings() const {
   if (const std::string sentence = machine_.misplaces(); !sentence.empty()) refuse("start", sentence);
 }
 
+/// A job whose first cut begins at 0 without saying so would cut its way there from wherever the head stands.
+void GrblDriver::require_first_cut_placed(int index) const {
+  constexpr double at_origin_mm = 0.1;  // machines stop at whole steps
+  for (std::size_t axis = 0; index == 0 && axis < 2; ++axis)
+    if (unplaced_[axis] && (!work_mm_ || std::abs((*work_mm_)[axis]) > at_origin_mm))
+      refuse("start", "The job cuts before it says where that begins: move to x 0, y 0 first, or set the origin here.");
+}
+
 void GrblDriver::start(const Json& command, double now_s) {
   std::string happens = "The machine moves";
   if (program_.fires()) happens += " and its laser or spindle turns on";
@@ -121,6 +129,7 @@ void GrblDriver::start(const Json& command, double now_s) {
     refuse("from_line", "The job has " + std::to_string(program_.number(program_.line_count() - 1)) +
                             " lines: go on from one of them.");
   require_head_at_origin(program_, index, work_mm_);
+  require_first_cut_placed(index);
   select_job_system();
   check_reach(program_.bounds());
   focus_until_s_.reset();

@@ -53,6 +53,12 @@ VirtualGrbl::Point VirtualGrbl::position_mm() const {
   return {counted_mm_[0] + shift_mm_[0], counted_mm_[1] + shift_mm_[1], counted_mm_[2] + shift_mm_[2]};
 }
 
+VirtualGrbl::Point VirtualGrbl::origin_mm(int system) const {
+  Point place = systems_.at(system);
+  for (std::size_t k = 0; k < 3; ++k) place[k] += shift_mm_[k];
+  return place;
+}
+
 void VirtualGrbl::open(double now_s) {
   time_s_ = now_s;
   if (state_ == "Off" || options_.resets_on_open) boot(now_s);

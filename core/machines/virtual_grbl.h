@@ -61,6 +61,8 @@ class VirtualGrbl {
   int planner_ran_dry() const { return ran_dry_; }
   /// Where the head is. After a power failure the machine counts from elsewhere.
   Point position_mm() const;
+  /// Where the coordinates of a work system (54 to 59) are 0.
+  Point origin_mm(int system) const;
   const std::string& state() const { return state_; }
   bool beam() const { return beam_; }
   void trip_limit() { alarm(1); }

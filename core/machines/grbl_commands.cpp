@@ -35,7 +35,8 @@ std::vector<std::string> GrblDriver::possible_commands() const {
   if (phase_ == MachinePhase::paused || phase_ == MachinePhase::door) add({"resume", "override"});
   if (phase_ != MachinePhase::idle || busy) return can;
   if (homes()) add({"home"});
-  add({"jog", "jog_cancel", "set_origin", "send", "override"});
+  add({"jog", "jog_cancel", "set_origin", "send"});
+  if (!focus_until_s_ && !pulse_) add({"override"});
   if (place_known()) add({"go_to", "frame"});
   if (is_laser()) add({focus_until_s_ ? "focus_off" : "focus"});
   if (program_.line_count() > 0 && unknown_place().empty() && !waits("$J")) add({"start"});

@@ -20,7 +20,7 @@ using machines_detail::require_confirmation;
 constexpr double pulse_s = 1;
 constexpr double stray_s = 1.5;  // two reports at rest
 constexpr int max_dark_refused = 3;
-constexpr char jog_cancel_command = static_cast<char>(0x85);
+constexpr char jog_cancel_command = static_cast<char>(0x85), power_override_reset = static_cast<char>(0x99);
 
 }  // namespace
 
@@ -83,6 +83,7 @@ void GrblDriver::focus(const Json& command, double now_s) {
     refuse("focus", "Laser mode is off in the machine: send $32=1 first, so that the light goes out by itself.");
   const double s = 0.01 * power * setting(30, 1000);
   focus_power_ = s >= 1 ? decimal(std::floor(s)) : decimal(s);
+  send_now(power_override_reset);  // or it would multiply what is allowed
   pulses_ = 0;
   focus_until_s_ = now_s + options_.focus_seconds;
 }

@@ -15,7 +15,7 @@ namespace {
 
 using Point = VirtualGrbl::Point;
 
-constexpr double tolerance_mm = 0.01, alone_s = 60, focus_s_at_full_power = 20;
+constexpr double tolerance_mm = 0.01, alone_s = 60, focus_power = 20;
 
 std::uint64_t number_from(const char* name, std::uint64_t otherwise) {
   const char* given = std::getenv(name);
@@ -73,7 +73,7 @@ Job random_job(Random& random) {
     if (random.uniform() < 0.02) add("G64\n");  // GRBL refuses it
     add("G%dX%.3fY%.3f\n", random.uniform() < 0.7 ? 1 : 0, random.uniform(0, 60), random.uniform(0, 60));
     if (random.uniform() < 0.05) add("S%d\n", 100 + static_cast<int>(random.below(800)));
-    if (random.uniform() < 0.02) add("G4P0.2\n");
+    if (!constant && random.uniform() < 0.02) add("G4P0.2\n");  // with M3 it would burn at rest, which is confirmed
   }
   const double ending = random.uniform();
   if (ending < 0.4) add("M5\nG0X0Y0\nM2\n");
@@ -227,6 +227,7 @@ class Sequence {
     if (talk_.machine.state() != "Idle" || !tell({{"do", "focus"}, {"power_percent", 2}})) return;
     spots_.push_back(talk_.machine.position_mm());
     pass(between(0.1, 3));
+    if (random_.uniform() < 0.15) kill();
   }
 
   void job() {
@@ -257,11 +258,11 @@ class Sequence {
     while (talk_.ended().empty()) {
       pass(between(0, 3));
       const double what = random_.uniform();
-      if (what < 0.1) return;  // goes on while other orders come
-      if (what < 0.2) tell({{"do", "pause"}}), pass(between(0, 2));
+      if (what < 0.02) return;  // goes on while other orders come
+      if (what < 0.06) tell({{"do", "pause"}}), pass(between(0, 2));
       if (talk_.phase() == "paused") tell({{"do", "resume"}});
-      if (what > 0.9) tell({{"do", "stop"}}), pass(1);
-      if (what > 0.8) return spoil();
+      if (what > 0.985) tell({{"do", "stop"}}), pass(1);
+      if (what > 0.94) return spoil();
     }
     totals_.done += talk_.ended() == "done" ? 1 : 0;
   }
@@ -274,6 +275,7 @@ class Sequence {
     const bool job_runs = running();
     switch (random_.below(7)) {
       case 0:
+        if (job_runs && random_.uniform() < 0.5) return;
         talk_.faults().lose_to_host = 0.003;
         lose_to_machine_ = 0.003;
         return;
@@ -300,15 +302,18 @@ class Sequence {
     if (random_.uniform() < 0.8) make_ready();
   }
 
+  double light_s() const {
+    double sum = 0;
+    for (const VirtualGrbl::Burn& burn : talk_.machine.burns()) sum += burn.power <= focus_power ? burn.seconds : 0;
+    return sum;
+  }
+
   void kill() {
     ++totals_.kills;
-    const std::size_t burns = talk_.machine.burns().size();
+    const double before_s = light_s();
     talk_.kill_host(random_.uniform() < 0.7);
     leave_alone(alone_s);
-    double focus_s = 0;
-    for (std::size_t i = burns; i < talk_.machine.burns().size(); ++i)
-      if (talk_.machine.burns()[i].power <= focus_s_at_full_power) focus_s += talk_.machine.burns()[i].seconds;
-    totals_.longest_focus_after_kill_s = std::max(totals_.longest_focus_after_kill_s, focus_s);
+    totals_.longest_focus_after_kill_s = std::max(totals_.longest_focus_after_kill_s, light_s() - before_s);
     EXPECT_FALSE(talk_.machine.beam());
     talk_.plug_in();
   }
@@ -325,10 +330,10 @@ class Sequence {
       for (const Stroke& stroke : strokes_)
         far_mm = std::min(far_mm, std::max(distance_mm(burn.from_mm, stroke), distance_mm(burn.to_mm, stroke)));
       const bool rests = burn.from_mm == burn.to_mm;
-      const bool light = rests && burn.power <= focus_s_at_full_power &&
-                         std::any_of(spots_.begin(), spots_.end(), [&](const Point& spot) {
-                           return std::hypot(burn.to_mm[0] - spot[0], burn.to_mm[1] - spot[1]) < tolerance_mm;
-                         });
+      const bool light =
+          rests && burn.power <= focus_power && std::any_of(spots_.begin(), spots_.end(), [&](const Point& spot) {
+            return std::hypot(burn.to_mm[0] - spot[0], burn.to_mm[1] - spot[1]) < tolerance_mm;
+          });
       if (light) {
         totals_.focus_s += burn.seconds;
       } else if (far_mm <= tolerance_mm && !rests && !burn.jog) {

@@ -81,6 +81,9 @@ void GrblDriver::focus(const Json& command, double now_s) {
   require_confirmation(command, "The laser shines at " + decimal(power) + " % without moving: eyes protected");
   if (setting(32, 1) == 0)
     refuse("focus", "Laser mode is off in the machine: send $32=1 first, so that the light goes out by itself.");
+  // spindle_control.c spindle_compute_pwm_value: then every S, 0 too, is full power.
+  if (setting(31, 0) >= setting(30, 1000))
+    refuse("focus", "The machine's smallest power ($31) is not below its largest ($30): set them first.");
   const double s = 0.01 * power * setting(30, 1000);
   focus_power_ = s >= 1 ? decimal(std::floor(s)) : decimal(s);
   send_now(power_override_reset);  // or it would multiply what is allowed

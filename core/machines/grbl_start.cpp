@@ -96,7 +96,7 @@ void GrblDriver::check_settings() const {
            "Laser mode is off in the machine, so the beam would stay on at every corner and travel: send $32=1 first.");
   if (program_.fires() && !is_laser() && mode != 0)
     refuse("start", "Laser mode is on in the machine, so the spindle would stop at every travel: send $32=0 first.");
-  if (program_.fires() && low >= high)
+  if (program_.fires() && is_laser() && low >= high)
     refuse("start", "The machine's smallest power ($31=" + decimal(low) + ") is not below its largest ($30=" +
                         decimal(high) + "), so every power would be the largest: send $31=0 first.");
   if (program_.fires() && is_laser() && power_wanted_.max_power > high)

@@ -72,6 +72,8 @@ std::optional<GrblReport> read_grbl_report(std::string_view line) {
     } else if (name == "Ov") {
       const std::vector<double> n = numbers_between_commas(value);
       if (n.size() == 3) report.overrides = {static_cast<int>(n[0]), static_cast<int>(n[1]), static_cast<int>(n[2])};
+    } else if (name == "A") {
+      report.spindle_on = value.find_first_of("SC") != std::string_view::npos;
     } else if (name == "Bf") {
       const std::vector<double> n = numbers_between_commas(value);
       if (n.size() == 2) report.free_blocks = static_cast<int>(n[0]), report.free_bytes = static_cast<int>(n[1]);

@@ -17,6 +17,7 @@ class GrblStream {
     int job_line = -1;      // index in the job, or -1
     bool alone = false;     // writes to the EEPROM: nothing may arrive meanwhile
     double patience_s = 0;  // how much longer than others it may take
+    bool pulse = false;     // of the focus light
   };
 
   /// 127 of the 128 bytes of an Uno; some boards tell of more.

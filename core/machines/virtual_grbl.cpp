@@ -2,18 +2,11 @@
 #include "machines/virtual_grbl.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 
 namespace formwright {
 namespace {
 
-constexpr std::size_t rx_bytes = 128;
 constexpr double step_s = 1e-3;
-
-double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) {
-  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
-}
 
 }  // namespace
 
@@ -26,7 +19,7 @@ VirtualGrbl::VirtualGrbl(const VirtualGrblOptions& options) : options_(options) 
                {4, 0},
                {5, 0},
                {6, 0},
-               {10, 1},
+               {10, 3},
                {11, 0.01},
                {12, 0.002},
                {13, 0},
@@ -53,6 +46,17 @@ VirtualGrbl::VirtualGrbl(const VirtualGrblOptions& options) : options_(options) 
                {130, options.travel_x_mm},
                {131, options.travel_y_mm},
                {132, options.travel_z_mm}};
+  for (const int system : {28, 30, 54, 55, 56, 57, 58, 59}) systems_[system] = {0, 0, 0};
+}
+
+VirtualGrbl::Point VirtualGrbl::position_mm() const {
+  return {counted_mm_[0] + shift_mm_[0], counted_mm_[1] + shift_mm_[1], counted_mm_[2] + shift_mm_[2]};
+}
+
+VirtualGrbl::Point VirtualGrbl::origin_mm(int system) const {
+  Point place = systems_.at(system);
+  for (std::size_t k = 0; k < 3; ++k) place[k] += shift_mm_[k];
+  return place;
 }
 
 void VirtualGrbl::open(double now_s) {
@@ -65,26 +69,37 @@ void VirtualGrbl::boot(double now_s) {
   boots_at_s_ = now_s + options_.boot_s;
   rx_.clear();
   planner_.clear();
+  steps_.clear();
+  startup_left_.clear();
+  ++epoch_;
+  in_line_ = false;
   output_.clear();
-  beam_ = dead_ = holding_ = program_pause_ = false;
+  // Powered up, it counts from wherever it stands (main.c clears sys_position).
+  shift_mm_ = position_mm();
+  counted_mm_ = planned_mm_ = {0, 0, 0};
+  set_spindle(5, 0);
+  beam_ = dead_ = jog_cancelled_ = false;
   speed_mm_per_s_ = 0;
 }
 
 void VirtualGrbl::reset() {
-  const bool moving = state_ == "Run" || state_ == "Jog" || state_ == "Home" || (holding_ && speed_mm_per_s_ > 0);
-  const bool homing = state_ == "Home";
+  const bool moving =
+      state_ == "Run" || state_ == "Jog" || state_ == "Home" || (state_ == "Hold" && speed_mm_per_s_ > 0);
+  const bool homing = state_ == "Home", was_alarm = state_ == "Alarm";
   rx_.clear();
-  line_.clear();
   planner_.clear();
-  const std::array<double, 3> offset = modes_.offset_mm;
-  modes_ = {};
-  modes_.offset_mm = offset;
-  planned_mm_ = position_mm_;
-  beam_ = holding_ = dead_ = program_pause_ = jog_cancelled_ = false;
+  steps_.clear();
+  startup_left_.clear();
+  ++epoch_;
+  in_line_ = false;
+  modes_ = {};  // G92 and the tool's length with them (gcode.c gc_init)
+  planned_mm_ = parsed_mm_ = counted_mm_;
+  set_spindle(5, 0);
+  beam_ = dead_ = jog_cancelled_ = false;
   speed_mm_per_s_ = 0;
-  dwell_until_s_ = homes_at_s_ = -1;
+  dwell_left_s_ = homes_at_s_ = -1;
+  last_error_ = offset_reports_ = override_reports_ = 0;
   overrides_ = {100, 100, 100};
-  const bool was_alarm = state_ == "Alarm";
   if (moving) output_ += homing ? "ALARM:6\r\n" : "ALARM:3\r\n";
   output_ += "\r\nGrbl 1.1h ['$' for help]\r\n";
   if (moving || was_alarm || locked_) {
@@ -92,18 +107,25 @@ void VirtualGrbl::reset() {
     output_ += "[MSG:'$H'|'$X' to unlock]\r\n";
   } else {
     state_ = "Idle";
+    run_startup_lines();
   }
 }
 
 void VirtualGrbl::alarm(int code) {
   output_ += "ALARM:" + std::to_string(code) + "\r\n";
   state_ = "Alarm";
+  set_spindle(5, 0);
   beam_ = false;
   speed_mm_per_s_ = 0;
   planner_.clear();
+  steps_.clear();
+  startup_left_.clear();
+  ++epoch_;
+  in_line_ = false;
   locked_ = true;
+  dwell_left_s_ = -1;
   if (code == 1 || code == 2) {
-    dead_ = true;
+    dead_ = true;  // protocol.c protocol_exec_rt_system: nothing but a reset ends this
     output_ += "[MSG:Reset to continue]\r\n";
   }
 }
@@ -115,7 +137,7 @@ void VirtualGrbl::receive(std::string_view bytes, double now_s) {
     if (state_ == "Off" || state_ == "Boot") continue;  // the boot loader swallows it
     if (byte == '?' || byte == '!' || byte == '~' || byte == 0x18 || byte >= 0x80) real_time(byte);
     else if (now_s < deaf_until_s_) ++deaf_;
-    else if (rx_.size() >= rx_bytes) ++overrun_;
+    else if (rx_.size() >= static_cast<std::size_t>(options_.rx_bytes)) ++overrun_;
     else rx_ += c;
   }
 }
@@ -123,55 +145,39 @@ void VirtualGrbl::receive(std::string_view bytes, double now_s) {
 void VirtualGrbl::real_time(unsigned char c) {
   if (c == 0x18) return reset();
   if (dead_ || state_ == "Home") return;
-  const auto change = [&](int& percent, int by, int high) { percent = std::clamp(percent + by, 10, high); };
+  if (state_ == "Sleep" && c != '?') return;
+  const auto change = [&](int& percent, int to, int high) {
+    percent = std::clamp(to, 10, high);
+    override_reports_ = 0;
+    // protocol.c: at rest the spindle is set anew, whatever the motion mode.
+    if (&percent == &overrides_[2] && state_ == "Idle") set_spindle(modes_.spindle, modes_.power);
+  };
+  int &feed = overrides_[0], &power = overrides_[2];
   switch (c) {
     case '?': return report();
     case '!':
       if (state_ == "Jog") jog_cancelled_ = true;
-      else if (state_ == "Run") holding_ = true, state_ = "Hold";
+      else if (state_ == "Run") state_ = "Hold";
+      else if (state_ == "Idle") state_ = "Hold", hold_is_complete();
       return;
     case '~':
-      if (state_ == "Hold" && speed_mm_per_s_ == 0) {
-        holding_ = program_pause_ = false;
-        state_ = planner_.empty() ? "Idle" : "Run";
-      }
+      if (state_ == "Hold" && speed_mm_per_s_ == 0) state_ = planner_.empty() ? "Idle" : "Run";
       return;
     case 0x85:
       if (state_ == "Jog") jog_cancelled_ = true;
       return;
-    case 0x90: overrides_[0] = 100; return;
-    case 0x91: return change(overrides_[0], 10, 200);
-    case 0x92: return change(overrides_[0], -10, 200);
-    case 0x93: return change(overrides_[0], 1, 200);
-    case 0x94: return change(overrides_[0], -1, 200);
-    case 0x99: overrides_[2] = 100; return;
-    case 0x9a: return change(overrides_[2], 10, 200);
-    case 0x9b: return change(overrides_[2], -10, 200);
-    case 0x9c: return change(overrides_[2], 1, 200);
-    case 0x9d: return change(overrides_[2], -1, 200);
+    case 0x90: return change(feed, 100, 200);
+    case 0x91: return change(feed, feed + 10, 200);
+    case 0x92: return change(feed, feed - 10, 200);
+    case 0x93: return change(feed, feed + 1, 200);
+    case 0x94: return change(feed, feed - 1, 200);
+    case 0x99: return change(power, 100, 200);
+    case 0x9a: return change(power, power + 10, 200);
+    case 0x9b: return change(power, power - 10, 200);
+    case 0x9c: return change(power, power + 1, 200);
+    case 0x9d: return change(power, power - 1, 200);
     default: return;
   }
-}
-
-void VirtualGrbl::report() {
-  char text[200];
-  std::string state = state_;
-  if (state_ == "Hold") state += speed_mm_per_s_ > 0 ? ":1" : ":0";
-  std::snprintf(text, sizeof text, "<%s|MPos:%.3f,%.3f,%.3f|Bf:%d,%d|FS:%.0f,%.0f", state.c_str(), position_mm_[0],
-                position_mm_[1], position_mm_[2], static_cast<int>(15 - std::min<std::size_t>(planner_.size(), 15)),
-                static_cast<int>(rx_bytes - rx_.size()), 60 * speed_mm_per_s_,
-                beam_ ? planner_.empty() ? modes_.power : planner_.front().power : 0.0);
-  output_ += text;
-  if (reports_ % 10 == 0) {
-    std::snprintf(text, sizeof text, "|WCO:%.3f,%.3f,%.3f", modes_.offset_mm[0], modes_.offset_mm[1],
-                  modes_.offset_mm[2]);
-    output_ += text;
-  } else if (reports_ % 10 == 1) {
-    std::snprintf(text, sizeof text, "|Ov:%d,%d,%d", overrides_[0], overrides_[1], overrides_[2]);
-    output_ += text;
-  }
-  ++reports_;
-  output_ += ">\r\n";
 }
 
 void VirtualGrbl::advance(double now_s) {
@@ -182,7 +188,7 @@ void VirtualGrbl::advance(double now_s) {
 }
 
 void VirtualGrbl::step(double dt_s) {
-  if (state_ == "Off" || dead_) return;
+  if (state_ == "Off" || state_ == "Sleep" || dead_) return;
   if (state_ == "Boot") {
     if (time_s_ < boots_at_s_) return;
     state_ = "Idle";
@@ -192,92 +198,21 @@ void VirtualGrbl::step(double dt_s) {
   }
   if (state_ == "Home") {
     if (time_s_ < homes_at_s_) return;
-    position_mm_ = planned_mm_ = options_.origin_low
-                                     ? std::array<double, 3>{0, 0, 0}
-                                     : std::array<double, 3>{-settings_[27], -settings_[27], -settings_[27]};
+    const double off = settings_[27];
+    counted_mm_ = options_.origin_low ? Point{0, 0, 0} : Point{-off, -off, -off};
+    planned_mm_ = parsed_mm_ = counted_mm_;
+    shift_mm_ = {0, 0, 0};
     locked_ = false;
     state_ = "Idle";
-    answer(0);
-    return;
   }
   move(dt_s);
-  if (dwell_until_s_ >= 0 && planner_.empty() && state_ != "Hold") {
-    if (time_s_ < dwell_until_s_) return;
-    dwell_until_s_ = -1;
-    answer(0);
-  }
-  for (int lines = 0; lines < 4 && dwell_until_s_ < 0 && state_ != "Home" && !program_pause_ && !dead_; ++lines) {
-    if (planner_.size() >= 15 || rx_.find('\n') == std::string::npos) break;
+  if (dwell_left_s_ > 0 && state_ != "Hold") dwell_left_s_ -= dt_s;
+  run_steps();
+  // A hold keeps the main loop, so that no line is read (protocol.c protocol_exec_rt_suspend).
+  for (int lines = 0; lines < 4 && !in_line_ && startup_left_.empty() && !dead_; ++lines) {
+    if (state_ == "Hold" || state_ == "Home" || state_ == "Sleep" || rx_.find('\n') == std::string::npos) break;
     read_line();
-  }
-  if (program_pause_ && planner_.empty() && state_ == "Idle") state_ = "Hold";
-}
-
-double VirtualGrbl::stopping_distance_mm() const {
-  // To the end of what is planned, or to the first sharp corner.
-  double sum = distance(position_mm_, planner_.front().to_mm);
-  for (std::size_t i = 0; i + 1 < planner_.size(); ++i) {
-    const auto& a = i == 0 ? position_mm_ : planner_[i - 1].to_mm;
-    const auto &b = planner_[i].to_mm, &c = planner_[i + 1].to_mm;
-    const double ab = distance(a, b), bc = distance(b, c);
-    double dot = 0;
-    for (std::size_t k = 0; k < 3; ++k) dot += (b[k] - a[k]) * (c[k] - b[k]);
-    if (ab > 0 && bc > 0 && dot < 0.9 * ab * bc) break;
-    sum += bc;
-  }
-  return sum;
-}
-
-void VirtualGrbl::move(double dt_s) {
-  const double a = options_.acceleration_mm_per_s2;
-  const bool stops = holding_ || jog_cancelled_;
-  if (planner_.empty() || (state_ != "Run" && state_ != "Jog" && !(state_ == "Hold" && speed_mm_per_s_ > 0))) {
-    if (state_ == "Run" || state_ == "Jog") {
-      if (state_ == "Run" && rx_.empty()) ++ran_dry_;
-      state_ = "Idle";
-    }
-    speed_mm_per_s_ = 0;
-    jog_cancelled_ = false;
-    // In laser mode the beam is on at rest only with M3 and a cutting motion (G1 to G3).
-    beam_ = state_ == "Idle" && modes_.spindle == 3 && modes_.power > 0 && (settings_[32] == 0 || modes_.motion != 0);
-    return;
-  }
-  double left_s = dt_s;
-  while (left_s > 1e-12 && !planner_.empty()) {
-    const Block& block = planner_.front();
-    const double nominal = block.speed_mm_per_s * (block.burns || !block.jog ? overrides_[0] / 100.0 : 1);
-    const double limit = stops ? 0 : std::min(nominal, std::sqrt(2 * a * stopping_distance_mm()) + 0.5 * a * dt_s);
-    speed_mm_per_s_ = speed_mm_per_s_ < limit ? std::min(limit, speed_mm_per_s_ + a * left_s)
-                                              : std::max(limit, speed_mm_per_s_ - 2 * a * left_s);
-    if (stops && speed_mm_per_s_ <= 0) {
-      speed_mm_per_s_ = 0;
-      beam_ = false;
-      if (jog_cancelled_) {
-        planner_.clear();
-        planned_mm_ = position_mm_;
-        jog_cancelled_ = false;
-        state_ = "Idle";
-      }
-      return;
-    }
-    const double remaining = distance(position_mm_, block.to_mm), way = speed_mm_per_s_ * left_s;
-    beam_ = block.burns && block.power > 0;  // a hold turns it off once at rest
-    const std::array<double, 3> before = position_mm_;
-    if (way >= remaining) {
-      position_mm_ = block.to_mm;
-      left_s -= speed_mm_per_s_ > 0 ? remaining / speed_mm_per_s_ : left_s;
-    } else {
-      for (std::size_t k = 0; k < 3; ++k) position_mm_[k] += (block.to_mm[k] - position_mm_[k]) * way / remaining;
-      left_s = 0;
-    }
-    if (beam_ && distance(before, position_mm_) > 0) {
-      if (!burns_.empty() && burns_.back().to_mm == before && burns_.back().power == block.power &&
-          burn_from_mm_ == block.to_mm)
-        burns_.back().to_mm = position_mm_;
-      else burns_.push_back({before, position_mm_, block.power});
-      burn_from_mm_ = block.to_mm;
-    }
-    if (position_mm_ == block.to_mm) planner_.pop_front();
+    run_steps();
   }
 }
 

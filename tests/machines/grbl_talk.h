@@ -24,7 +24,8 @@ class GrblTalk {
   explicit GrblTalk(const VirtualGrblOptions& machine_options = {}, const LineFaults& faults = {},
                     std::uint64_t seed = 1)
       : machine(machine_options),
-        driver({.bed_x_mm = machine_options.travel_x_mm, .bed_y_mm = machine_options.travel_y_mm}),
+        driver_options_{.bed_x_mm = machine_options.travel_x_mm, .bed_y_mm = machine_options.travel_y_mm},
+        driver(driver_options_),
         faults_(faults),
         random_(seed) {
     driver.opened(now_s);
@@ -96,6 +97,25 @@ class GrblTalk {
     to_machine_.clear();
     to_host_.clear();
   }
+  /// The program that held the port is gone without a word. What the computer had taken in may still go out.
+  void kill_host(bool output_goes_on) {
+    driver.take_output();
+    driver = GrblDriver(driver_options_);
+    if (!output_goes_on) to_machine_.clear();
+    to_host_.clear();
+  }
+  /// The machine on its own.
+  void leave_alone(double seconds) {
+    for (const double end = now_s + seconds; now_s < end;) {
+      now_s += 1e-3;
+      const std::size_t count = std::min<std::size_t>(to_machine_.size(), 11);
+      machine.receive(to_machine_.substr(0, count), now_s);
+      to_machine_.erase(0, count);
+      machine.advance(now_s);
+      machine.take_output();
+    }
+  }
+  LineFaults& faults() { return faults_; }
   void plug_in() {
     machine.take_output();
     driver.opened(now_s);
@@ -121,6 +141,11 @@ class GrblTalk {
   }
 
   VirtualGrbl machine;
+
+ private:
+  DriverOptions driver_options_;
+
+ public:
   GrblDriver driver;
   double now_s = 0;
   std::vector<Json> events;

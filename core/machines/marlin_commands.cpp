@@ -161,14 +161,15 @@ void MarlinDriver::set_origin(const Json& command) {
 
 void MarlinDriver::resume() {
   paused_ = false;
-  if (options_.tool != MachineTool::laser) return;
+  if (options_.tool != MachineTool::laser || next_line_ >= program_.line_count()) return;
   const GcodeState s = program_.state_before(next_line_);
   const MarlinPower power = marlin_power_before(program_, next_line_);
-  // In an inline mode only a cut that goes on needs its power: others bring their own.
-  const std::string s_word = " S" + (s.motion == 0 ? "0" : decimal(s.power));
-  if (power == MarlinPower::dynamic) queue("M4 I" + s_word);
-  else if (power == MarlinPower::continuous) queue("M3 I" + s_word);
-  else if (s.spindle != 5) queue("M" + std::to_string(s.spindle) + " S" + decimal(s.power));
+  if (power == MarlinPower::dynamic || power == MarlinPower::continuous) {
+    queue(power == MarlinPower::dynamic ? "M4 I S0" : "M3 I S0");
+    // A cut that goes on needs its power, others bring their own. With G1, because M3 would shine at rest where the
+    // firmware knows no I.
+    if (s.motion != 0) queue("G1 S" + decimal(s.power));
+  } else if (s.spindle != 5) queue("M" + std::to_string(s.spindle) + " S" + decimal(s.power));
 }
 
 void MarlinDriver::check_reach(const GcodeBounds& bounds) const {

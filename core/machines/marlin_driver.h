@@ -121,6 +121,7 @@ class MarlinDriver final : public MachineDriver {
   bool paused_ = false, halted_ = false, greeted_ = false;
   bool dark_ = false;      // an M5 was answered, and nothing that may light anything was sent since
   bool prepared_ = false;  // the last lines queued by hand are prepare_moves() and jogs
+  bool darkened_ = false;  // the M5 ahead of the greeting was written
   bool rests_ = false;     // an M400 was sent ahead of the job's next line
   bool no_m5_ = false;     // the firmware does not know it
   MarlinPlace place_;

@@ -49,9 +49,8 @@ struct MarlinLaserTalk {
   }
   void step() {
     if (host_alive) {
-      for (const Bytes& packet : driver.take_output()) {
+      for (const Bytes& packet : driver.take_output())
         if (cable) machine.receive(as_text(packet));
-      }
     }
     machine.advance(step_s);
     const std::string said = machine.take_output();

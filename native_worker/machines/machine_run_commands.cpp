@@ -172,8 +172,9 @@ int machine_frame(const std::vector<std::string>& words, const std::atomic<bool>
   const auto job = read_file(flags.needed("--job", "--job job.gcode"), "--job", most_job_bytes);
   const Machine machine = driven_machine(registry, flags);
   const auto gcode_bounds = [&] {
-    const GcodeProgram program = GcodeProgram::read(*job, 256, machine.controller.starts_with("marlin"));
-    require_clear_way(program);
+    const Json options = driver_options(machine, options_of(flags));
+    const GcodeProgram program = GcodeProgram::read(*job, 256, options.value("controller", "") == "marlin");
+    if (options.value("tool", "") != "printer") require_clear_way(program);  // a printer's jobs home it themselves
     return program.bounds();
   };
   const GcodeBounds bounds = machine.kind == MachineKind::ruida ? ruida_bounds(*job) : gcode_bounds();

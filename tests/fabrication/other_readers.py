@@ -85,7 +85,7 @@ def read_gcode(text):
         name, p = command.command, command.params
         power = p.get("S", power)
         if name not in (("G", 0), ("G", 1)):
-            assert name in {("G", 21), ("G", 90), ("G", 94), ("M", 3), ("M", 4), ("M", 5), ("M", 2), ("M", 8), ("M", 9)}, name
+            assert name in {("G", 21), ("G", 90), ("G", 17), ("G", 94), ("G", 54), ("M", 3), ("M", 4), ("M", 5), ("M", 2), ("M", 8), ("M", 9)}, name
             continue
         to = (p.get("X", at[0]), p.get("Y", at[1]))
         if name == ("G", 1) and power > 0:

@@ -122,7 +122,8 @@ void MarlinDriver::command(const Json& command, double now_s) {
     if (effect.moves || effect.fires)
       require_confirmation(command, "The line \"" + text + "\" may move the machine, heat it or turn its laser on");
     if (focus_until_s_) focus_off(now_s);
-    if (effect.fires) queue("M400");  // a stop drops the moves that it would wait for, and it would shine where they end
+    if (effect.fires)
+      queue("M400");  // a stop drops the moves that it would wait for, and it would shine where they end
     queue(text);
     ask_soon();  // it may move the head
     if (text.starts_with("G28")) settle(Settles::homing);
@@ -203,8 +204,9 @@ void MarlinDriver::start(const Json& command, double now_s) {
     require_head_at_origin(program_, 0, place_.position_mm());
     check_reach(program_.bounds());
     if (program_.bounds().named[2] && !place_.axes_known()[2])
-      refuse("start", "The job moves z, and how high the tool stands is unknown: touch the stock with it and set the "
-                      "origin of z there.");
+      refuse("start",
+             "The job moves z, and how high the tool stands is unknown: touch the stock with it and set the "
+             "origin of z there.");
     prepare_moves(now_s);
     queue("G90");
   }

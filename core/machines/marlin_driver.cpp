@@ -10,7 +10,8 @@ namespace formwright {
 namespace {
 
 constexpr std::size_t longest_line = 80, kept_lines = 200;  // MAX_CMD_SIZE 96 has number and checksum in it
-constexpr double flush_s = 0.1, boot_s = 3, greeting_s = 15, silence_s = 25, silence_in_job_s = 120, silence_while_settling_s = 600;
+constexpr double flush_s = 0.1, boot_s = 3, greeting_s = 15, silence_s = 25, silence_in_job_s = 120,
+                 silence_while_settling_s = 600;
 constexpr double asking_s = 2, lost_answer_s = 10, idle_s = 1;
 constexpr int most_resends = 100, most_unanswered = 3;
 

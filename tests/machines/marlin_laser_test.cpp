@@ -248,7 +248,8 @@ TEST(MarlinPlace, JobsAreHeldAgainstTheBedFromWhereTheOriginLies) {
 }
 
 TEST(MarlinPlace, ReadsLimits) {
-  const auto limits = MarlinPlace::limits_in("Soft endstops: On  Min: X-5.00 Y0.00 Z0.00   Max:  X200.00 Y210.50 Z1.00");
+  const auto limits =
+      MarlinPlace::limits_in("Soft endstops: On  Min: X-5.00 Y0.00 Z0.00   Max:  X200.00 Y210.50 Z1.00");
   ASSERT_TRUE(limits);
   EXPECT_EQ(limits->low_mm, (std::array<double, 2>{-5, 0}));
   EXPECT_EQ(limits->high_mm, (std::array<double, 2>{200, 210.5}));

@@ -77,9 +77,7 @@ class Board {
       case 'M': on_ = {true, true}; return;
       case 'D': laser_ = true; return;
       case 'U': laser_ = false; return;
-      case 'V':
-        raster_step_ = 0;
-        return expect(Number::ignored);
+      case 'V': raster_step_ = 0; return expect(Number::ignored);
       case 'W': return expect(Number::ignored);
       case 'G': return expect(Number::raster_step);
       case 'C':

@@ -122,7 +122,8 @@ void MarlinDriver::command(const Json& command, double now_s) {
     if (effect.moves || effect.fires)
       require_confirmation(command, "The line \"" + text + "\" may move the machine, heat it or turn its laser on");
     if (focus_until_s_) focus_off(now_s);
-    if (effect.fires) queue("M400");  // a stop drops the moves that it would wait for, and it would shine where they end
+    if (effect.fires)
+      queue("M400");  // a stop drops the moves that it would wait for, and it would shine where they end
     queue(text);
     ask_soon();  // it may move the head
     if (text.starts_with("G28")) settle(Settles::homing);
@@ -161,14 +162,15 @@ void MarlinDriver::set_origin(const Json& command) {
 
 void MarlinDriver::resume() {
   paused_ = false;
-  if (options_.tool != MachineTool::laser) return;
+  if (options_.tool != MachineTool::laser || next_line_ >= program_.line_count()) return;
   const GcodeState s = program_.state_before(next_line_);
   const MarlinPower power = marlin_power_before(program_, next_line_);
-  // In an inline mode only a cut that goes on needs its power: others bring their own.
-  const std::string s_word = " S" + (s.motion == 0 ? "0" : decimal(s.power));
-  if (power == MarlinPower::dynamic) queue("M4 I" + s_word);
-  else if (power == MarlinPower::continuous) queue("M3 I" + s_word);
-  else if (s.spindle != 5) queue("M" + std::to_string(s.spindle) + " S" + decimal(s.power));
+  if (power == MarlinPower::dynamic || power == MarlinPower::continuous) {
+    queue(power == MarlinPower::dynamic ? "M4 I S0" : "M3 I S0");
+    // A cut that goes on needs its power, others bring their own. With G1, because M3 would shine at rest where the
+    // firmware knows no I.
+    if (s.motion != 0) queue("G1 S" + decimal(s.power));
+  } else if (s.spindle != 5) queue("M" + std::to_string(s.spindle) + " S" + decimal(s.power));
 }
 
 void MarlinDriver::check_reach(const GcodeBounds& bounds) const {
@@ -202,8 +204,9 @@ void MarlinDriver::start(const Json& command, double now_s) {
     require_head_at_origin(program_, 0, place_.position_mm());
     check_reach(program_.bounds());
     if (program_.bounds().named[2] && !place_.axes_known()[2])
-      refuse("start", "The job moves z, and how high the tool stands is unknown: touch the stock with it and set the "
-                      "origin of z there.");
+      refuse("start",
+             "The job moves z, and how high the tool stands is unknown: touch the stock with it and set the "
+             "origin of z there.");
     prepare_moves(now_s);
     queue("G90");
   }

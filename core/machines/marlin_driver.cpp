@@ -10,7 +10,8 @@ namespace formwright {
 namespace {
 
 constexpr std::size_t longest_line = 80, kept_lines = 200;  // MAX_CMD_SIZE 96 has number and checksum in it
-constexpr double boot_s = 3, greeting_s = 15, silence_s = 25, silence_in_job_s = 120, silence_while_settling_s = 600;
+constexpr double flush_s = 0.1, boot_s = 3, greeting_s = 15, silence_s = 25, silence_in_job_s = 120,
+                 silence_while_settling_s = 600;
 constexpr double asking_s = 2, lost_answer_s = 10, idle_s = 1;
 constexpr int most_resends = 100, most_unanswered = 3;
 
@@ -57,8 +58,9 @@ void MarlinDriver::opened(double now_s) {
   *this = MarlinDriver(options_);
   connection_ = MachineConnection::greeting;
   opened_s_ = heard_s_ = asked_s_ = now_s;
-  // A board that does not restart may shine since somebody else went, perhaps in the middle of a line.
-  if (options_.tool == MachineTool::laser) write("\nM5\n");
+  // A board that does not restart may shine since somebody else went, perhaps in the middle of a line: that one is
+  // ended first, because the machine throws away what lies behind a bad one (flush_and_request_resend()).
+  if (options_.tool == MachineTool::laser) write("\n");
 }
 
 void MarlinDriver::closed(double now_s) {
@@ -323,6 +325,10 @@ void MarlinDriver::settle(Settles what) {
 
 void MarlinDriver::tick(double now_s) {
   if (connection_ == MachineConnection::closed) return;
+  if (!greeted_ && now_s - opened_s_ > flush_s && options_.tool == MachineTool::laser && !darkened_) {
+    darkened_ = true;
+    write("M5\n");
+  }
   if (!greeted_ && now_s - opened_s_ > boot_s) greet(now_s);
   if (jogging_until_s_ && now_s > *jogging_until_s_) {
     jogging_until_s_.reset();

@@ -117,10 +117,11 @@ class MarlinDriver final : public MachineDriver {
   double unnumbered_s_ = 0;              // when one was written or answered last
   Settles settling_ = Settles::nothing;  // what is under way
   std::optional<int> settling_number_;   // of the M114 behind it, once that was sent
-  int waiting_ = 0;  // numbered lines that were written and not answered
+  int waiting_ = 0;                      // numbered lines that were written and not answered
   bool paused_ = false, halted_ = false, greeted_ = false;
   bool dark_ = false;      // an M5 was answered, and nothing that may light anything was sent since
   bool prepared_ = false;  // the last lines queued by hand are prepare_moves() and jogs
+  bool darkened_ = false;  // the M5 ahead of the greeting was written
   bool rests_ = false;     // an M400 was sent ahead of the job's next line
   bool no_m5_ = false;     // the firmware does not know it
   MarlinPlace place_;
@@ -130,7 +131,7 @@ class MarlinDriver final : public MachineDriver {
   std::optional<std::string> refused_;
   double opened_s_ = 0, heard_s_ = 0, sent_s_ = 0, asked_s_ = 0, stopped_s_ = -1;
   std::optional<double> focus_until_s_;
-  std::string focus_line_;  // "M3 S2.55"
+  std::string focus_line_;                 // "M3 S2.55"
   std::optional<double> jogging_until_s_;  // by its length and speed: an M400 would halt a key held down at every step
 };
 

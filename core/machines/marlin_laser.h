@@ -7,9 +7,9 @@
 //   continuous  M3 I: the power of every G1 travels with it, G0 is dark; at rest the last power stays on.
 //   dynamic     M4 I: the same, but dark whenever no move is under way.
 //
-// "M5" ends the standard mode and leaves an inline one with its last power, "M5 I" ends the inline ones. Versions before
-// 2.1 know no I (or, built with LASER_POWER_INLINE, another one): what they take "M4 I" for is "M4" at the power they
-// start with, unless the line says S0.
+// "M5" ends the standard mode and leaves an inline one with its last power, "M5 I" ends the inline ones. Versions
+// before 2.1 know no I (or, built with LASER_POWER_INLINE, another one): what they take "M4 I" for is "M4" at the power
+// they start with, unless the line says S0.
 #include <optional>
 #include <string>
 #include <string_view>

@@ -18,8 +18,8 @@ std::array<bool, 3> axes_of(std::string_view line) {
 }
 
 bool is_command(std::string_view line, std::string_view name) {
-  return line.starts_with(name) &&
-         (line.size() == name.size() || line[name.size()] == ' ' || (line[name.size()] >= 'A' && line[name.size()] <= 'Z'));
+  return line.starts_with(name) && (line.size() == name.size() || line[name.size()] == ' ' ||
+                                    (line[name.size()] >= 'A' && line[name.size()] <= 'Z'));
 }
 
 }  // namespace

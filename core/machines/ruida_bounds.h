@@ -13,8 +13,8 @@ struct RuidaBounds {
 };
 
 /// Throws Error invalid_input ("job") where the file is no Ruida job, is cut off, burns nothing, or does not say where:
-/// it starts from a place that is set at the laser's panel, repeats itself as an array, or moves by commands whose place
-/// is not in the file.
+/// it starts from a place that is set at the laser's panel, repeats itself as an array, or moves by commands whose
+/// place is not in the file.
 RuidaBounds ruida_job_bounds(ByteView rd_file);
 /// Of all that is burned.
 inline GcodeBounds ruida_bounds(ByteView rd_file) { return ruida_job_bounds(rd_file).worked; }

@@ -18,9 +18,7 @@ constexpr double mm_per_mil = 0.0254;
 
 /// Lines, zigzags and dots all over a bed, in layers of several speeds.
 Toolpath random_path(Random& random, const MachineOptions& machine) {
-  const auto place = [&] {
-    return Vec3(machine.bed_x_mm * random.uniform(), machine.bed_y_mm * random.uniform(), 0);
-  };
+  const auto place = [&] { return Vec3(machine.bed_x_mm * random.uniform(), machine.bed_y_mm * random.uniform(), 0); };
   ToolpathBuilder builder(Vec3(0, machine.bed_y_mm, 0), 100);
   const std::size_t strokes = 1 + random.below(25);
   for (std::size_t i = 0; i < strokes; ++i) {

@@ -152,8 +152,7 @@ TEST(K40, JobsArriveWholeThroughSpoiledPackets) {
     talk.pass(10);
     EXPECT_EQ(talk.driver.state(talk.now_s)["job"]["ended"], "done") << talk.driver.state(talk.now_s).dump();
     ASSERT_EQ(talk.board.heard.size() - before, 41u);
-    for (std::size_t i = 0; i < 40; ++i)
-      EXPECT_EQ(talk.board.heard[before + i], letters_of(static_cast<int>(i)));
+    for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(talk.board.heard[before + i], letters_of(static_cast<int>(i)));
   }
 }
 

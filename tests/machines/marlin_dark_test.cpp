@@ -21,8 +21,10 @@ LaserJob random_job(Random& random, LaserJob::Mode mode, bool cut_off) {
   job.mode = mode;
   const double width = 5 + 40 * random.uniform(), height = 5 + 40 * random.uniform();
   job.bounds_mm = {0, 0, width, height};
-  const auto place = [&] { return std::array{std::round(1e3 * width * random.uniform()) / 1e3,
-                                             std::round(1e3 * height * random.uniform()) / 1e3}; };
+  const auto place = [&] {
+    return std::array{std::round(1e3 * width * random.uniform()) / 1e3,
+                      std::round(1e3 * height * random.uniform()) / 1e3};
+  };
   const bool standard = mode == LaserJob::Mode::standard;
   std::string text = random.uniform() < 0.5 ? "G21\nG90\n" : "";
   bool on = false;
@@ -73,9 +75,8 @@ class Sequence {
     sums_.lit_s += talk_.lit_s;
     sums_.spot_s += talk_.spot_s;
     sums_.outside_bed_mm = std::max(sums_.outside_bed_mm, talk_.outside_bed_mm);
-    return talk_.outside_s > 0 || talk_.killed_dynamic_s > 0 || talk_.outside_bed_mm > 0.01
-               ? log_ + talk_.first_outside
-               : "";
+    return talk_.outside_s > 0 || talk_.killed_dynamic_s > 0 || talk_.outside_bed_mm > 0.01 ? log_ + talk_.first_outside
+                                                                                            : "";
   }
 
  private:
@@ -111,9 +112,15 @@ class Sequence {
     if (which == 0 || (which < 9 && !talk_.state()["position_known"].get<bool>() && talk_.can("home"))) home();
     else if (which == 1) tell({{"do", "jog"}, {"x_mm", 10 * random_.uniform()}, {"y_mm", 3}, {"speed_mm_per_s", 30}});
     else if (which == 2)
-      tell({{"do", "go_to"}, {"x_mm", 100 * random_.uniform()}, {"y_mm", 100 * random_.uniform()}, {"speed_mm_per_s", 80}});
+      tell({{"do", "go_to"},
+            {"x_mm", 100 * random_.uniform()},
+            {"y_mm", 100 * random_.uniform()},
+            {"speed_mm_per_s", 80}});
     else if (which == 3)
-      tell({{"do", "frame"}, {"bounds_mm", {0, 0, 30 * random_.uniform(), 30}}, {"speed_mm_per_s", 100}, {"confirmed", true}});
+      tell({{"do", "frame"},
+            {"bounds_mm", {0, 0, 30 * random_.uniform(), 30}},
+            {"speed_mm_per_s", 100},
+            {"confirmed", true}});
     else if (which == 4) focus();
     else if (which == 5) tell({{"do", "focus_off"}});
     else if (which == 6) by_hand();

@@ -49,9 +49,8 @@ struct MarlinLaserTalk {
   }
   void step() {
     if (host_alive) {
-      for (const Bytes& packet : driver.take_output()) {
+      for (const Bytes& packet : driver.take_output())
         if (cable) machine.receive(as_text(packet));
-      }
     }
     machine.advance(step_s);
     const std::string said = machine.take_output();
@@ -116,9 +115,9 @@ struct MarlinLaserTalk {
   bool at_focus = false, by_hand = false, spot_is_open = false;
 
   // What was seen, in seconds.
-  double outside_s = 0;           // beside every cut and spot: 0 is promised
-  double killed_rest_s = 0;       // at rest behind a dead host, by a job or a line that is not dynamic
-  double killed_dynamic_s = 0;    // the same by a dynamic one, or a focus light: 0 is promised
+  double outside_s = 0;               // beside every cut and spot: 0 is promised
+  double killed_rest_s = 0;           // at rest behind a dead host, by a job or a line that is not dynamic
+  double killed_dynamic_s = 0;        // the same by a dynamic one, or a focus light: 0 is promised
   double rest_s = 0, max_rest_s = 0;  // at rest on a cut while the host lives
   double lit_s = 0, spot_s = 0;
   double outside_bed_mm = 0;

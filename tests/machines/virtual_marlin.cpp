@@ -10,9 +10,10 @@
 namespace formwright {
 namespace {
 
-constexpr std::size_t ring_lines = 4, rx_bytes = 128, planner_blocks = 16;  // BUFSIZE, RX_BUFFER_SIZE, BLOCK_BUFFER_SIZE
-constexpr double startup_power = 204;                                       // SPEED_POWER_STARTUP, 80 %
-constexpr double discard_s = 1;                                             // cleaning_buffer_counter
+constexpr std::size_t ring_lines = 4, rx_bytes = 128,
+                      planner_blocks = 16;  // BUFSIZE, RX_BUFFER_SIZE, BLOCK_BUFFER_SIZE
+constexpr double startup_power = 204;       // SPEED_POWER_STARTUP, 80 %
+constexpr double discard_s = 1;             // cleaning_buffer_counter
 constexpr double home_mm_per_s = 50, busy_s = 2, boot_s = 0.5, safety_s = 1;
 constexpr std::string_view axes = "XYZ";
 
@@ -97,8 +98,7 @@ void VirtualMarlin::hear_line(std::string line) {
   if (line[0] == 'N') {
     number = std::strtol(line.c_str() + 1, nullptr, 10);
     const bool sets = line.find("M110") != std::string::npos;
-    if (*number != last_number_ + 1 && !sets)
-      return ask_again("Line Number is not Last Line Number+1");
+    if (*number != last_number_ + 1 && !sets) return ask_again("Line Number is not Last Line Number+1");
     unsigned sum = 0;
     for (std::size_t i = 0; i < std::min(star, line.size()); ++i) sum ^= static_cast<unsigned char>(line[i]);
     if (star == std::string::npos) return ask_again("No Checksum with line number");
@@ -114,8 +114,8 @@ void VirtualMarlin::hear_line(std::string line) {
 void VirtualMarlin::ask_again(const std::string& why) {
   rx_.clear();
   line_.clear();
-  output_text_ += "Error:" + why + ", Last Line: " + std::to_string(last_number_) + "\nResend: " +
-                  std::to_string(last_number_ + 1) + "\nok\n";
+  output_text_ += "Error:" + why + ", Last Line: " + std::to_string(last_number_) +
+                  "\nResend: " + std::to_string(last_number_ + 1) + "\nok\n";
 }
 
 void VirtualMarlin::at_once(std::string_view command) {
@@ -141,8 +141,8 @@ void VirtualMarlin::answer(const Command& command) {
   output_text_ += "ok";
   if (options_.advanced_ok) {
     if (command.number) output_text_ += " N" + std::to_string(*command.number);
-    output_text_ += " P" + std::to_string(planner_blocks - 1 - blocks_.size()) + " B" +
-                    std::to_string(ring_lines - ring_.size());
+    output_text_ +=
+        " P" + std::to_string(planner_blocks - 1 - blocks_.size()) + " B" + std::to_string(ring_lines - ring_.size());
   }
   output_text_ += "\n";
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // A Marlin laser that is not there, as its sources say (MarlinFirmware/Marlin, Marlin/src): lines read into a ring of
-// four (gcode/queue.cpp), commands done in their order, each answered when it returns (gcode/gcode.cpp), sixteen planned
-// blocks (module/planner.h), and the laser's modes (gcode/control/M3-M5.cpp, feature/spindle_laser.h,
+// four (gcode/queue.cpp), commands done in their order, each answered when it returns (gcode/gcode.cpp), sixteen
+// planned blocks (module/planner.h), and the laser's modes (gcode/control/M3-M5.cpp, feature/spindle_laser.h,
 // module/stepper.cpp). It works in steps of a clock that the test moves, and tells where it shines.
 #include <array>
 #include <deque>
@@ -16,10 +16,10 @@
 namespace formwright {
 
 struct VirtualMarlinOptions {
-  bool inline_modes = true;      // 2.1 with LASER_FEATURE; 1.1 and 2.0 take "M3 I" for "M3"
-  bool safety_timeout = false;   // LASER_SAFETY_TIMEOUT_MS 1000 (module/temperature.cpp)
-  bool emergency_parser = false; // M108, M112 and M410 act as they arrive, not in their turn
-  bool advanced_ok = false;      // "ok N12 P15 B3"
+  bool inline_modes = true;       // 2.1 with LASER_FEATURE; 1.1 and 2.0 take "M3 I" for "M3"
+  bool safety_timeout = false;    // LASER_SAFETY_TIMEOUT_MS 1000 (module/temperature.cpp)
+  bool emergency_parser = false;  // M108, M112 and M410 act as they arrive, not in their turn
+  bool advanced_ok = false;       // "ok N12 P15 B3"
   std::array<double, 3> bed_mm{300, 200, 50};
 };
 

@@ -167,5 +167,18 @@ TEST(PictureFiles, HugeClaimsAreRefusedBeforeTheyAreBelieved) {
   EXPECT_NE(refused(jpeg).find("scale it down"), std::string::npos);
 }
 
+TEST(PictureFiles, AJpegHasSoManyScans) {
+  const Bytes whole = of_hexadecimal(progressive_jpeg);
+  const std::size_t last = as_text(whole).rfind("\xff\xda");
+  const auto with_scans = [&](int more) {
+    Bytes bytes = whole;
+    for (int i = 0; i < more; ++i)
+      bytes.insert(bytes.end() - 2, whole.begin() + static_cast<std::ptrdiff_t>(last), whole.end() - 2);
+    return bytes;
+  };
+  EXPECT_NE(refused(with_scans(200)).find("more than 100 passes"), std::string::npos);
+  EXPECT_EQ(refused(with_scans(20)).find("passes"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace formwright

@@ -291,11 +291,15 @@ void GrblDriver::tick(double now_s) {
   pump(now_s);
 }
 
-void GrblDriver::load(const std::string& name, ByteView job) {
+std::unique_ptr<PreparedJob> GrblDriver::prepare(ByteView job) const {
+  return machines_detail::prepared(GcodeProgram::read(job, longest_line));
+}
+
+void GrblDriver::load_prepared(const std::string& name, PreparedJob& job) {
   if (job_active()) machines_detail::refuse("job", "A job is running: stop it before another is loaded.");
-  GcodeProgram program = GcodeProgram::read(job, longest_line);
+  GcodeProgram& program = machines_detail::program_in<GcodeProgram>(job);
   require_fixed_origin(program);
-  program_ = std::move(program);
+  std::swap(program_, program);
   program_name_ = name;
   job_.reset();
 }

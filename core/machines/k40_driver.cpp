@@ -335,9 +335,13 @@ void K40Driver::command(const Json& command, double now_s) {
   ask(now_s);
 }
 
-void K40Driver::load(const std::string& name, ByteView job) {
+std::unique_ptr<PreparedJob> K40Driver::prepare(ByteView job) const {
+  return machines_detail::prepared(k40_packets(as_text(job)));
+}
+
+void K40Driver::load_prepared(const std::string& name, PreparedJob& job) {
   if (job_active()) refuse("job", "A job is running: stop it before another is loaded.");
-  program_ = k40_packets(as_text(job));
+  std::swap(program_, machines_detail::program_in<std::vector<std::string>>(job));
   program_name_ = name;
   job_.reset();
 }

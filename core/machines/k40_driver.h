@@ -31,7 +31,8 @@ class K40Driver final : public MachineDriver {
   void received(ByteView bytes, double now_s) override;
   void tick(double now_s) override;
   void command(const Json& command, double now_s) override;
-  void load(const std::string& name, ByteView job) override;
+  std::unique_ptr<PreparedJob> prepare(ByteView job) const override;
+  void load_prepared(const std::string& name, PreparedJob& job) override;
   Json state(double now_s) const override;
 
  private:

@@ -323,11 +323,15 @@ void MarlinDriver::watch_over_stop(double now_s) {
   }
 }
 
-void MarlinDriver::load(const std::string& name, ByteView job) {
+std::unique_ptr<PreparedJob> MarlinDriver::prepare(ByteView job) const {
+  return machines_detail::prepared(GcodeProgram::read(job, longest_line));
+}
+
+void MarlinDriver::load_prepared(const std::string& name, PreparedJob& job) {
   if (job_active()) machines_detail::refuse("job", "A job is running: stop it before another is loaded.");
-  GcodeProgram program = GcodeProgram::read(job, longest_line);
+  GcodeProgram& program = machines_detail::program_in<GcodeProgram>(job);
   if (options_.tool != MachineTool::printer) require_fixed_origin(program);  // a printer's jobs home it themselves
-  program_ = std::move(program);
+  std::swap(program_, program);
   program_name_ = name;
   job_.reset();
 }

@@ -293,9 +293,13 @@ void RuidaDriver::command(const Json& command, double now_s) {
   send_next(now_s);
 }
 
-void RuidaDriver::load(const std::string& name, ByteView job) {
+std::unique_ptr<PreparedJob> RuidaDriver::prepare(ByteView job) const {
+  return machines_detail::prepared(ruida_datagrams(job));
+}
+
+void RuidaDriver::load_prepared(const std::string& name, PreparedJob& job) {
   if (job_active()) refuse("job", "A job is running: stop it before another is loaded.");
-  program_ = ruida_datagrams(job);
+  std::swap(program_, machines_detail::program_in<std::vector<Bytes>>(job));
   program_name_ = name;
   job_.reset();
 }

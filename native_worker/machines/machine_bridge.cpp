@@ -78,11 +78,12 @@ PrinterAddress address_of(const Machine& m) { return {m.name, m.url, m.destinati
 }  // namespace
 
 MachineBridge::MachineBridge(boost::asio::io_context& io, std::filesystem::path data, JobStore& store)
-    : io_(io), store_(store), registry_(data), log_(data), rooms_(io, acting_, data, store, log_) {}
+    : io_(io), store_(store), registry_(data), log_(data), rooms_(acting_, data, store, log_) {}
 
 void MachineBridge::stop() {
   rooms_.stop();  // first: they move
   tasks_.stop();
+  log_.flush();
 }
 
 boost::asio::awaitable<void> MachineBridge::serve_socket(beast::tcp_stream stream, Head head, std::string id) {
@@ -92,22 +93,11 @@ boost::asio::awaitable<void> MachineBridge::serve_socket(beast::tcp_stream strea
     found = co_await machine(id);
     if (found->kind != MachineKind::serial && found->kind != MachineKind::ruida)
       refuse("machine", found->name + " has no socket: it is a " + std::string(to_string(found->kind)) + ".");
-    if (rooms_.full(found->id))
-      refusal = error_response(head, http::status::too_many_requests, "invalid_input", "",
-                               "Too many pages are at this machine: close some.");
   } catch (const Error& error) {
     refusal = error_response(head, http::status::not_found, to_string(error.code()), error.where(), error.what());
   }
-  if (!refusal) {
-    co_await rooms_.serve(std::make_shared<MachinePage>(beast::websocket::stream<beast::tcp_stream>(std::move(stream))),
-                          head, *found);
-    co_return;
-  }
-  boost::system::error_code ignored;
-  refusal->keep_alive(false);
-  stream.expires_after(std::chrono::seconds(10));
-  co_await http::async_write(stream, *refusal, boost::asio::redirect_error(use_awaitable, ignored));
-  stream.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_both, ignored);
+  if (refusal) co_await refuse_page(std::move(stream), std::move(*refusal));
+  else co_await rooms_.serve(std::move(stream), std::move(head), std::move(*found));
 }
 
 template <class Result>

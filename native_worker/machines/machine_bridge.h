@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // Machines behind the worker's HTTP interface (docs/machine_bridge.md). Lives on the server's thread; what blocks runs
-// beside it.
+// beside it, and machines that are driven have a thread of their own.
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/thread_pool.hpp>
@@ -31,8 +31,6 @@ class MachineBridge {
   /// The WebSocket of one machine. Returns when the page is gone; answers with an HTTP error when there is no such
   /// machine.
   boost::asio::awaitable<void> serve_socket(beast::tcp_stream stream, Head head, std::string id);
-  /// Another process asked for a stop (SIGUSR1).
-  void look_for_stops() { rooms_.look_for_stops(); }
   /// Cancels prints and slicings, and stops every machine that runs.
   void stop();
 

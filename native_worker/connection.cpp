@@ -23,7 +23,7 @@ constexpr std::uint32_t header_limit = 16 * 1024;
 constexpr std::uint64_t max_job_bytes = 1 << 20, max_order_bytes = 64 * 1024, max_other_bytes = 4 * 1024;
 // A stranger says at once what it wants, and takes the answer: 30 s are enough for the page's largest file.
 constexpr auto stranger_patience = 5s, stranger_answer_patience = 30s;
-constexpr auto head_patience = 60s, body_patience = 15s, upload_patience = 10min, answer_patience = 10min;
+constexpr auto head_patience = 60s, body_patience = 15s, upload_patience = 600s, answer_patience = 600s;
 constexpr std::size_t max_page_sockets = 32;
 constexpr std::uint64_t most_drained_bytes = std::uint64_t{256} << 20;
 

@@ -41,6 +41,7 @@ HttpServer::HttpServer(boost::asio::io_context& io, const ServerOptions& options
 
 void HttpServer::start() {
   queue_.start();
+  bridge_.start();
   boost::asio::co_spawn(io_, accept_loop(), boost::asio::detached);
 }
 

@@ -78,7 +78,27 @@ PrinterAddress address_of(const Machine& m) { return {m.name, m.url, m.destinati
 }  // namespace
 
 MachineBridge::MachineBridge(boost::asio::io_context& io, std::filesystem::path data, JobStore& store)
-    : io_(io), store_(store), registry_(data), log_(data), rooms_(acting_, data, store, log_) {}
+    : io_(io), store_(store), registry_(data), log_(data), tasks_(log_, data), rooms_(acting_, data, store, log_) {}
+
+void MachineBridge::start() {
+  for (const auto& task : tasks_.restore()) follow_again(task);
+}
+
+void MachineBridge::follow_again(const std::shared_ptr<MachineTask>& task) {
+  tasks_.resume(task, [this](MachineTask& running) -> Json {
+    const Json there = running.handed_over();
+    const auto list = find_machines(registry_);
+    const auto found =
+        std::find_if(list.begin(), list.end(), [&](const Machine& m) { return m.id == running.machine.id; });
+    if (found == list.end())
+      throw Error(ErrorCode::could_not_solve, "machine",
+                  running.machine.name + " is no longer there: see whether its sheets came out before printing again.");
+    const int sheets =
+        follow_print(address_of(*found), there.at("job_id").get<int>(), running.cancelled,
+                     [&](const std::string& state, const std::string& sentence) { running.say(state, sentence); });
+    return {{"job_id", there["job_id"]}, {"sheets", sheets}, {"notes", there.value("notes", Json::array())}};
+  });
+}
 
 void MachineBridge::stop() {
   rooms_.stop();  // first: they move
@@ -226,7 +246,10 @@ Response MachineBridge::print(const Head& head, const Machine& m, const Json& or
     print.document = *document;
     const PrintResult result =
         print_document(address_of(m), print, running.cancelled,
-                       [&](const std::string& state, const std::string& sentence) { running.say(state, sentence); });
+                       [&](const std::string& state, const std::string& sentence) { running.say(state, sentence); },
+                       [&](const PrintResult& taken) {
+                         running.hand_over({{"job_id", taken.job_id}, {"notes", taken.notes}});
+                       });
     return {{"job_id", result.job_id}, {"sheets", result.sheets}, {"notes", result.notes}};
   });
   return task ? accepted(head, task->id) : too_many(head);

@@ -6,8 +6,8 @@
 namespace formwright {
 
 std::size_t Connections::count(bool known) const {
-  return static_cast<std::size_t>(std::count_if(
-      all_.begin(), all_.end(), [&](const auto& c) { return c->known == known && !c->closed; }));
+  return static_cast<std::size_t>(
+      std::count_if(all_.begin(), all_.end(), [&](const auto& c) { return c->known == known && !c->closed; }));
 }
 
 bool Connections::close_one(bool known, bool answering) {

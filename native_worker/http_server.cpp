@@ -24,7 +24,8 @@ HttpServer::HttpServer(boost::asio::io_context& io, const ServerOptions& options
       acceptor_(io),
       token_(random_hex(24)),
       store_(options.data),
-      queue_(io, store_, [this](const Json& m) { tell_pages(m); }, solver_words(options.solver)),
+      queue_(
+          io, store_, [this](const Json& m) { tell_pages(m); }, solver_words(options.solver)),
       bridge_(io, options.data, store_) {
   const boost::asio::ip::tcp::endpoint endpoint(boost::asio::ip::address_v4::loopback(), options.port);
   boost::system::error_code error;

@@ -17,8 +17,8 @@ namespace {
 constexpr mode_t others = S_IRWXG | S_IRWXO;
 
 /// What formwright puts into DATA.
-constexpr std::array ours{"blobs",          "jobs",       "uploads", "results",       "lock",
-                          "machines.json",  "machines.lock", "machine_log", "machine_sessions", "prints"};
+constexpr std::array ours{"blobs",         "jobs",          "uploads",     "results",          "lock",
+                          "machines.json", "machines.lock", "machine_log", "machine_sessions", "prints"};
 
 /// Takes the rights of others away, of the entry itself and of all in it. Links are left alone.
 void close_to_others(int folder, const char* name) {

@@ -52,11 +52,10 @@ ServerOptions read_options(const std::vector<std::string>& words) {
     else if (words[i] == "--upload-limit-mb")
       options.upload_limit_bytes = static_cast<std::uint64_t>(whole("--upload-limit-mb", 1, 65536)) << 20;
     else
-      throw Error(
-          ErrorCode::invalid_input, words[i],
-          "There is no flag " + words[i] +
-              ": serve has --port N, --web DIR, --data DIR, --upload-limit-mb N, --solver-memory-mb N, "
-              "--max-job-minutes N and --no-solver-sandbox.");
+      throw Error(ErrorCode::invalid_input, words[i],
+                  "There is no flag " + words[i] +
+                      ": serve has --port N, --web DIR, --data DIR, --upload-limit-mb N, --solver-memory-mb N, "
+                      "--max-job-minutes N and --no-solver-sandbox.");
   }
   options.solver.data = options.data;
   return options;
@@ -67,13 +66,14 @@ ServerOptions read_options(const std::vector<std::string>& words) {
 int serve(const std::vector<std::string>& words) {
   for (const std::string& word : words)
     if (word == "--help" || word == "-h") {
-      std::cout << "Serves the page and the native worker on this machine only.\n\n"
-                   "  formwright serve [--port 8731] [--web DIR] [--data DIR] [--upload-limit-mb 1024]\n"
-                   "                   [--solver-memory-mb N] [--max-job-minutes 1440] [--no-solver-sandbox]\n\n"
-                   "Prints the address to open. --port 0 takes any free port. Jobs and results are kept in --data.\n"
-                   "Jobs run in a process of their own, which may take three quarters of the computer's memory unless\n"
-                   "--solver-memory-mb says otherwise, 24 h a job, and which the kernel keeps (Landlock, seccomp) from\n"
-                   "other files, the network and other programs.\n";
+      std::cout
+          << "Serves the page and the native worker on this machine only.\n\n"
+             "  formwright serve [--port 8731] [--web DIR] [--data DIR] [--upload-limit-mb 1024]\n"
+             "                   [--solver-memory-mb N] [--max-job-minutes 1440] [--no-solver-sandbox]\n\n"
+             "Prints the address to open. --port 0 takes any free port. Jobs and results are kept in --data.\n"
+             "Jobs run in a process of their own, which may take three quarters of the computer's memory unless\n"
+             "--solver-memory-mb says otherwise, 24 h a job, and which the kernel keeps (Landlock, seccomp) from\n"
+             "other files, the network and other programs.\n";
       return 0;
     }
   std::signal(SIGPIPE, SIG_IGN);

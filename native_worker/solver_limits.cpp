@@ -82,8 +82,12 @@ bool read_solver_flag(const std::vector<std::string>& words, std::size_t& i, Sol
 std::vector<std::string> solver_words(const SolverOptions& options) {
   char minutes[32];
   std::snprintf(minutes, sizeof minutes, "%.17g", options.max_job_minutes);
-  std::vector<std::string> words{"run-jobs",          "--data",  options.data.string(),
-                                 "--max-job-minutes", minutes,   "--solver-memory-mb",
+  std::vector<std::string> words{"run-jobs",
+                                 "--data",
+                                 options.data.string(),
+                                 "--max-job-minutes",
+                                 minutes,
+                                 "--solver-memory-mb",
                                  std::to_string(solver_memory_mb(options))};
   if (!options.sandbox) words.push_back("--no-solver-sandbox");
   return words;
@@ -101,8 +105,7 @@ SolverOptions read_solver_words(const std::vector<std::string>& words) {
 }
 
 std::uint64_t solver_memory_mb(const SolverOptions& options) {
-  return options.memory_mb > 0 ? options.memory_mb
-                               : std::max(min_memory_mb, (memory_bytes() / 4 * 3) >> 20);
+  return options.memory_mb > 0 ? options.memory_mb : std::max(min_memory_mb, (memory_bytes() / 4 * 3) >> 20);
 }
 
 std::string describe_solver_limits(const SolverOptions& options) {

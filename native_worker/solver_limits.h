@@ -10,10 +10,10 @@
 namespace formwright {
 
 struct SolverOptions {
-  std::filesystem::path data;      // where blobs, jobs and results are kept; empty: files are not restricted
-  std::uint64_t memory_mb = 0;     // of address space; 0: three quarters of this computer's memory
+  std::filesystem::path data;   // where blobs, jobs and results are kept; empty: files are not restricted
+  std::uint64_t memory_mb = 0;  // of address space; 0: three quarters of this computer's memory
   double max_job_minutes = 24 * 60;
-  bool sandbox = true;             // Landlock and the filter of system calls
+  bool sandbox = true;  // Landlock and the filter of system calls
 };
 
 /// Takes words[i], and its value behind it, if it is a flag of solvers: --solver-memory-mb N, --max-job-minutes N or

@@ -190,16 +190,20 @@ bool restrict_files(const FileAccess& access) {
       reading | may_write_file | may_remove_folder | may_remove_file | may_make_folder | may_make_file | may_truncate;
   for (const auto& path : access.read) allow(ruleset, path, reading & handled.files);
   for (const auto& path : access.write) allow(ruleset, path, writing & handled.files);
-  const bool restricted =
-      ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 && ::syscall(restrict_self, ruleset, 0) == 0;
+  const bool restricted = ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 && ::syscall(restrict_self, ruleset, 0) == 0;
   ::close(ruleset);
   return restricted;
 }
 
 std::vector<std::filesystem::path> system_files() {
-  return {"/usr",       "/lib",          "/lib64",          "/etc/ld.so.cache",      "/etc/localtime",
-          "/proc/self", "/proc/cpuinfo", "/proc/meminfo",   "/proc/stat",            "/proc/sys/vm",
-          "/dev/null",  "/dev/zero",     "/dev/urandom",    "/sys/devices/system/cpu", "/sys/kernel/mm"};
+  return {"/usr",           "/lib",
+          "/lib64",         "/etc/ld.so.cache",
+          "/etc/localtime", "/proc/self",
+          "/proc/cpuinfo",  "/proc/meminfo",
+          "/proc/stat",     "/proc/sys/vm",
+          "/dev/null",      "/dev/zero",
+          "/dev/urandom",   "/sys/devices/system/cpu",
+          "/sys/kernel/mm"};
 }
 
 bool system_call_filter_available() {

@@ -244,12 +244,12 @@ Response MachineBridge::print(const Head& head, const Machine& m, const Json& or
   const auto document = blob(order);
   const auto task = tasks_.start(m, "print", [m, print, document](MachineTask& running) mutable -> Json {
     print.document = *document;
-    const PrintResult result =
-        print_document(address_of(m), print, running.cancelled,
-                       [&](const std::string& state, const std::string& sentence) { running.say(state, sentence); },
-                       [&](const PrintResult& taken) {
-                         running.hand_over({{"job_id", taken.job_id}, {"notes", taken.notes}});
-                       });
+    const PrintResult result = print_document(
+        address_of(m), print, running.cancelled,
+        [&](const std::string& state, const std::string& sentence) { running.say(state, sentence); },
+        [&](const PrintResult& taken) {
+          running.hand_over({{"job_id", taken.job_id}, {"notes", taken.notes}});
+        });
     return {{"job_id", result.job_id}, {"sheets", result.sheets}, {"notes", result.notes}};
   });
   return task ? accepted(head, task->id) : too_many(head);

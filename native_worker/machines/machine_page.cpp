@@ -44,8 +44,7 @@ boost::asio::awaitable<void> refuse_page(beast::tcp_stream stream, TextResponse 
   boost::system::error_code ignored;
   refusal.keep_alive(false);
   stream.expires_after(std::chrono::seconds(10));
-  co_await http::async_write(stream, refusal,
-                             boost::asio::redirect_error(boost::asio::use_awaitable, ignored));
+  co_await http::async_write(stream, refusal, boost::asio::redirect_error(boost::asio::use_awaitable, ignored));
   stream.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_both, ignored);
 }
 

@@ -41,6 +41,10 @@ class MachineRooms {
 
  private:
   using Page = std::shared_ptr<MachinePage>;
+  /// Thrown: another page, or another job, is at it.
+  struct Busy {
+    std::string sentence;
+  };
   struct Room {
     Machine machine;
     std::shared_ptr<MachineSession> session;

@@ -64,8 +64,8 @@ class MachineTasks {
                                      std::function<void()> ended = {});
   std::shared_ptr<MachineTask> find(const std::string& machine_id, const std::string& id) const;
   Json list(const std::string& machine_id) const;  // newest first
-  /// Cancels all but what the machines have already, and waits for the cancelled, but no longer than 3 s: a printer that
-  /// is being connected to may take more.
+  /// Cancels all but what the machines have already, and waits for the cancelled, but no longer than 3 s: a printer
+  /// that is being connected to may take more.
   void stop();
 
  private:

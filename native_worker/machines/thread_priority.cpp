@@ -12,9 +12,7 @@ constexpr int ahead = -10, behind = 10;
 
 // Niceness belongs to a thread on Linux, where POSIX has it for the process (setpriority(2), "C library/kernel
 // differences").
-void set_niceness(int niceness) {
-  ::setpriority(PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), niceness);
-}
+void set_niceness(int niceness) { ::setpriority(PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), niceness); }
 }  // namespace
 
 void run_this_thread_first() {

@@ -34,17 +34,12 @@ int main(int argc, char** argv) {
   const auto now_s = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   machine.open(0);
   std::string outgoing;
-  double hold_s = 0;  // when '!' came over the wire last, of the system's monotonic clock
   for (;;) {
     pollfd waits[2] = {{port, POLLIN, 0}, {STDIN_FILENO, POLLIN, 0}};
     ::poll(waits, 2, 2);
     char buffer[4096];
-    if (const ssize_t count = ::read(port, buffer, sizeof buffer); count > 0) {
-      const std::string_view heard(buffer, static_cast<std::size_t>(count));
-      if (heard.find('!') != std::string_view::npos)
-        hold_s = std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-      machine.receive(heard, now_s());
-    }
+    if (const ssize_t count = ::read(port, buffer, sizeof buffer); count > 0)
+      machine.receive({buffer, static_cast<std::size_t>(count)}, now_s());
     machine.advance(now_s());
     outgoing += machine.take_output();
     if (!outgoing.empty())
@@ -60,7 +55,6 @@ int main(int argc, char** argv) {
                         {"beam", machine.beam()},
                         {"burns", machine.burns().size()},
                         {"burnt_mm", burnt_mm},
-                        {"hold_s", hold_s},
                         {"bytes_lost", machine.bytes_lost()},
                         {"lines", machine.lines().size()},
                         {"position_mm", machine.position_mm()}}

@@ -8,11 +8,14 @@ import json
 import os
 import pathlib
 import random
+import select
+import socket
 import subprocess
 import sys
 import tempfile
 import threading
 import time
+import tty
 
 CLIENTS = 6
 LONG_JOB = {"operation": "relief", "parameters": {"thickness_mm": 1}, "inputs": {"mesh": {"sample": "bust", "vertices": 400000}}, "outputs": []}
@@ -32,13 +35,53 @@ def ask_for_pictures(port: int) -> None:
             line.close()
 
 
+def carry(terminal: str) -> None:
+    """A network line to the machine at this terminal. Prints its port, and for every line on standard input when a feed hold came over it last.
+    A pseudo terminal hands bytes on when a thread of the kernel has its turn, which is no wire's delay; the loopback does so at once."""
+    machine = os.open(terminal, os.O_RDWR | os.O_NOCTTY)
+    tty.setraw(machine)
+    listener = socket.create_server(("127.0.0.1", 0))
+    print(listener.getsockname()[1], flush=True)
+    line, hold_s = listener.accept()[0], 0.0
+    line.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    while True:
+        for ready in select.select([line, machine, sys.stdin], [], [])[0]:
+            if ready is line:
+                if b"!" in (said := line.recv(4096)):
+                    hold_s = time.monotonic()
+                os.write(machine, said)
+            elif ready == machine:
+                line.sendall(os.read(machine, 4096))
+            elif not sys.stdin.readline():
+                return
+            else:
+                print(hold_s, flush=True)
+
+
 if sys.argv[1] == "--ask-for-pictures":
     ask_for_pictures(int(sys.argv[2]))
+if sys.argv[1] == "--carry":
+    carry(sys.argv[2])
+    sys.exit(0)
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "native_worker"))
 import machine_peers as peers  # runs this program again in a network of its own
 from machine_driven_test import MachineSocket, squares
 from worker import Worker
+
+
+class Line:
+    def __init__(self, terminal: str):
+        self.process = subprocess.Popen([sys.executable, __file__, "--carry", terminal], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        self.port = int(self.process.stdout.readline())
+
+    def hold_s(self) -> float:
+        self.process.stdin.write("?\n")
+        self.process.stdin.flush()
+        return float(self.process.stdout.readline())
+
+    def stop(self) -> None:
+        peers.end(self.process)
 
 
 def measure_first(process: int) -> bool:
@@ -86,7 +129,7 @@ def written_s(data: pathlib.Path, machine: str) -> float:
     return json.loads(lines[-1])["unix_s"]
 
 
-def stop_once(page: MachineSocket, laser: peers.VirtualGrbl, chance: random.Random) -> tuple[float, float]:
+def stop_once(page: MachineSocket, line: Line, chance: random.Random) -> tuple[float, float]:
     """Seconds of the monotonic clock: asked, and heard at the other end of the line."""
     home(page)
     assert "done" in (answer := page.do("start", confirmed=True)), answer
@@ -97,7 +140,7 @@ def stop_once(page: MachineSocket, laser: peers.VirtualGrbl, chance: random.Rand
     asked = time.monotonic()
     assert "done" in (answer := page.do("stop")), answer
     page.wait(lambda s: s["job"] and s["job"]["ended"] == "stopped" and s["phase"] in ("idle", "alarm"), 60)
-    heard = laser.look()["hold_s"]
+    heard = line.hold_s()
     assert heard >= asked, "no feed hold came over the wire"
     return asked, heard
 
@@ -117,9 +160,10 @@ def main() -> int:
         (web / "index.html").write_text("<!doctype html>")
         (web / "picture.png").write_bytes(random.Random(1).randbytes(400_000))
         laser, other = peers.VirtualGrbl(), peers.VirtualGrbl()
-        measures_first = measure_first(0) and measure_first(laser.process.pid)
+        line = Line(laser.port)
+        measures_first = measure_first(0) and measure_first(line.process.pid)
         data = folder / "data"
-        machine = peers.add_machine(data, "Laser", f"serial:{laser.port}")
+        machine = peers.add_machine(data, "Laser", f"tcp://127.0.0.1:{line.port}")
         second = peers.add_machine(data, "Other", f"serial:{other.port}")
         worker = Worker(peers.PROGRAM, data, "--web", str(web))
         over, loads, askers = threading.Event(), [], []
@@ -140,7 +184,7 @@ def main() -> int:
             for _ in range(options.stops):
                 if worker.json("GET", f"/api/jobs/{job}")[1]["state"] in ("done", "failed"):
                     job = worker.post_job(**LONG_JOB)
-                asked, heard = stop_once(page, laser, chance)
+                asked, heard = stop_once(page, line, chance)
                 taken.append(1000 * (heard - asked))
                 inside.append(1000 * (written_s(data, machine) - clocks_s - asked))
         finally:
@@ -151,8 +195,8 @@ def main() -> int:
             worker.process.kill()
             worker.process.wait()
             worker.process.stdout.close()
-            laser.stop()
-            other.stop()
+            for one in (line, laser, other):
+                one.stop()
     print(f"seed {options.seed}, load average {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores, {len(loads)} jobs of {options.job_mb:g} MB loaded meanwhile, "
           f"measured {'ahead of' if measures_first else 'among'} other programs")
     for what, figures in (("from request to wire", taken), ("from request to the worker's write", inside)):

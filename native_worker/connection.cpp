@@ -18,8 +18,13 @@ namespace {
 using boost::asio::use_awaitable;
 using namespace std::chrono_literals;
 
-constexpr std::uint64_t most_json_bytes = 1 << 20;
 constexpr std::uint32_t header_limit = 16 * 1024;
+// Of bodies: what the longest that the page sends takes, and room.
+constexpr std::uint64_t max_job_bytes = 1 << 20, max_order_bytes = 64 * 1024, max_other_bytes = 4 * 1024;
+// A stranger says at once what it wants, and takes the answer: 30 s are enough for the page's largest file.
+constexpr auto stranger_patience = 5s, stranger_answer_patience = 30s;
+constexpr auto head_patience = 60s, body_patience = 15s, upload_patience = 600s, answer_patience = 600s;
+constexpr std::size_t max_page_sockets = 32;
 constexpr std::uint64_t most_drained_bytes = std::uint64_t{256} << 20;
 
 /// "/api/blobs/<hash>" -> the hash, or "" for anything else.
@@ -41,6 +46,17 @@ std::string machine_of_socket(const Head& head) {
   return is_hex_name(id, 16) ? id : "";
 }
 
+std::string path_of(const Head& head) {
+  const std::string target = text_of(head.target());
+  return target.substr(0, target.find('?'));
+}
+
+std::uint64_t max_body_bytes(const Head& head) {
+  const std::string path = path_of(head);
+  if (path == "/api/jobs" && head.method() == http::verb::post) return max_job_bytes;
+  return path.starts_with("/api/machines/") ? max_order_bytes : max_other_bytes;
+}
+
 bool is_upload(const Head& head) { return head.method() == http::verb::put && !blob_hash(head).empty(); }
 
 /// The answer after which the connection ends, because a body may stand unread in it.
@@ -54,29 +70,54 @@ TextResponse token_refusal(const Head& head) {
                         "The token is missing or wrong: open the page from the address that the worker printed.");
 }
 
+TextResponse too_large(const Head& head) {
+  return error_response(head, http::status::payload_too_large, "invalid_input", "",
+                        "The message is too large: send meshes as blobs.");
+}
+
+TextResponse busy_refusal(const Head& head) {
+  return error_response(head, http::status::service_unavailable, "invalid_input", "",
+                        "Too many pages are open: close some.");
+}
+
+/// Its stream is about to go, whatever the reason.
+struct StreamLent {
+  StreamLent(std::shared_ptr<Connection> c, beast::tcp_stream& stream) : connection(std::move(c)) {
+    connection->stream = &stream;
+  }
+  StreamLent(const StreamLent&) = delete;
+  StreamLent& operator=(const StreamLent&) = delete;
+  ~StreamLent() { connection->stream = nullptr; }
+  const std::shared_ptr<Connection> connection;
+};
+
 }  // namespace
 
-std::optional<TextResponse> HttpServer::refusal(const Head& head, std::optional<std::uint64_t> body_bytes) {
+std::optional<TextResponse> HttpServer::refusal(const Head& head, std::optional<std::uint64_t> body_bytes,
+                                                const std::shared_ptr<Connection>& connection) {
   if (!host_allowed(head))
     return error_response(head, http::status::misdirected_request, "invalid_input", "Host",
                           "This server answers to its own address only.");
   if (!origin_allowed(head))
     return error_response(head, http::status::forbidden, "invalid_input", "Origin",
                           "Another page may not use this worker.");
-  if (!within_rate())
+  const bool upgrade = beast::websocket::is_upgrade(head), page_file = !text_of(head.target()).starts_with("/api/");
+  if (upgrade) {
+    const bool page = text_of(head.target()) == "/api/socket" && token_in_subprotocol(head, "formwright.v1");
+    if (!page && (machine_of_socket(head).empty() || !token_in_subprotocol(head, "formwright.machine.v1")))
+      return token_refusal(head);
+    if (page && pages_.size() >= max_page_sockets) return busy_refusal(head);
+  } else if (!token_given(head)) {
+    if (!page_file) return token_refusal(head);
+    return body_bytes.value_or(0) > max_other_bytes ? std::optional(too_large(head)) : std::nullopt;
+  }
+  if (!connections_.recognise(connection)) return busy_refusal(head);
+  if (!requests_.take())
     return error_response(head, http::status::too_many_requests, "invalid_input", "",
                           "Too many requests: wait a second.");
-  if (beast::websocket::is_upgrade(head)) {
-    if (text_of(head.target()) == "/api/socket" && token_in_subprotocol(head, "formwright.v1")) return std::nullopt;
-    if (!machine_of_socket(head).empty() && token_in_subprotocol(head, "formwright.machine.v1")) return std::nullopt;
-    return token_refusal(head);
-  }
-  if (text_of(head.target()).starts_with("/api/") && !token_given(head)) return token_refusal(head);
   const std::uint64_t bytes = body_bytes.value_or(0);
   if (is_upload(head) && bytes > options_.upload_limit_bytes) return upload_too_large(head);
-  if (!is_upload(head) && bytes > most_json_bytes)
-    return error_response(head, http::status::payload_too_large, "invalid_input", "",
-                          "The message is too large: send meshes as blobs.");
+  if (!is_upload(head) && bytes > max_body_bytes(head)) return too_large(head);
   return std::nullopt;
 }
 
@@ -86,10 +127,18 @@ TextResponse HttpServer::upload_too_large(const Head& head) const {
       "The file is larger than " + std::to_string(options_.upload_limit_bytes >> 20) + " MB: simplify it first.");
 }
 
-boost::asio::awaitable<void> HttpServer::serve_connection(Socket socket) {
+boost::asio::awaitable<void> HttpServer::serve_connection(Socket socket, std::shared_ptr<Connection> connection) {
   beast::tcp_stream stream(std::move(socket));
+  const StreamLent lent(connection, stream);
   beast::flat_buffer buffer;
-  stream.expires_after(10s);  // a new connection says what it wants; one that is kept open may rest longer
+  const auto rests = [&] {
+    connection->answering = false;
+    connection->since = std::chrono::steady_clock::now();
+    // One limit for the whole head: a byte now and then does not lengthen it.
+    if (connection->known) stream.expires_after(head_patience);
+    else stream.expires_after(stranger_patience);
+  };
+  rests();
   for (;;) {
     http::request_parser<http::empty_body> head;
     head.header_limit(header_limit);
@@ -102,17 +151,27 @@ boost::asio::awaitable<void> HttpServer::serve_connection(Socket socket) {
     if (const auto length = head.content_length()) body_bytes = *length;
 
     Response response;
-    if (auto refused = refusal(request, body_bytes)) {
+    if (auto refused = refusal(request, body_bytes, connection)) {
       response = last_answer(std::move(*refused));
     } else if (const std::string machine = machine_of_socket(request);
                beast::websocket::is_upgrade(request) && !machine.empty()) {
+      connection->stream = nullptr;
       co_await bridge_.serve_socket(std::move(stream), request, machine);
       co_return;
     } else if (beast::websocket::is_upgrade(request)) {
+      connection->stream = nullptr;
       auto page = std::make_shared<PageSocket>(beast::websocket::stream<beast::tcp_stream>(std::move(stream)));
       co_await serve_page_socket(page, request);
       co_return;
     } else {
+      if (!connection->known && !connection->pages.take()) {
+        // Who asks faster than a page does is answered more slowly, not at the cost of others.
+        boost::asio::steady_timer pause(io_, connection->pages.wait());
+        co_await pause.async_wait(boost::asio::redirect_error(use_awaitable, error));
+        connection->pages.take();
+      }
+      connection->answering = true;
+      connection->since = std::chrono::steady_clock::now();
       try {
         response = co_await receive_and_answer(stream, buffer, head);
       } catch (const std::exception& mistake) {
@@ -121,7 +180,9 @@ boost::asio::awaitable<void> HttpServer::serve_connection(Socket socket) {
                                               "The worker made a mistake: its terminal says which."));
       }
     }
-    stream.expires_after(10min);
+    if (connection->closed) break;
+    if (connection->known) stream.expires_after(answer_patience);
+    else stream.expires_after(stranger_answer_patience);
     bool close = false;
     if (auto* text = std::get_if<TextResponse>(&response)) {
       close = text->need_eof();
@@ -132,11 +193,11 @@ boost::asio::awaitable<void> HttpServer::serve_connection(Socket socket) {
       co_await http::async_write(stream, file, boost::asio::redirect_error(use_awaitable, error));
     }
     if (error) break;
+    rests();
     if (close) {
       co_await finish_sending(stream);
       break;
     }
-    stream.expires_after(60s);
   }
   boost::system::error_code ignored;
   stream.socket().shutdown(Socket::shutdown_both, ignored);
@@ -168,17 +229,16 @@ boost::asio::awaitable<Response> HttpServer::receive_and_answer(beast::tcp_strea
     co_return answer;
   }
   http::request_parser<http::string_body> parser(std::move(head));
-  parser.body_limit(most_json_bytes);  // also of a body that does not say its length
-  stream.expires_after(30s);
+  parser.body_limit(max_body_bytes(request));  // also of a body that does not say its length
+  stream.expires_after(body_patience);
   co_await http::async_read(stream, buffer, parser, boost::asio::redirect_error(use_awaitable, error));
   if (error == http::error::body_limit || error == http::error::buffer_overflow)
-    co_return last_answer(error_response(request, http::status::payload_too_large, "invalid_input", "",
-                                         "The message is too large: send meshes as blobs."));
+    co_return last_answer(too_large(request));
   if (error)
     co_return last_answer(error_response(request, http::status::bad_request, "invalid_input", "",
                                          "The request was cut off or is not HTTP."));
   constexpr std::string_view machines = "/api/machines";
-  const std::string target = text_of(request.target()), path = target.substr(0, target.find('?'));
+  const std::string target = text_of(request.target()), path = path_of(request);
   if (path == machines || path.starts_with("/api/machines/")) {
     const std::string query = target.size() > path.size() ? target.substr(path.size() + 1) : "";
     Response told = co_await bridge_.answer(request, path.substr(machines.size()), query, parser.get().body());
@@ -196,7 +256,7 @@ boost::asio::awaitable<Response> HttpServer::receive_upload(beast::tcp_stream& s
   parser.body_limit(options_.upload_limit_bytes);
   parser.get().body().open(received.path.c_str(), beast::file_mode::write, error);
   buffer.reserve(64 * 1024);  // async_read fills what the buffer has room for, which after the head is a kilobyte
-  stream.expires_after(10min);
+  stream.expires_after(upload_patience);
   if (!error) co_await http::async_read(stream, buffer, parser, boost::asio::redirect_error(use_awaitable, error));
   parser.get().body().close();
   if (error == http::error::body_limit) co_return last_answer(upload_too_large(request));

@@ -16,9 +16,6 @@ namespace {
 using boost::asio::use_awaitable;
 using namespace std::chrono_literals;
 
-constexpr int most_connections = 64;
-constexpr double requests_per_second = 400, request_burst = 1200;
-
 }  // namespace
 
 HttpServer::HttpServer(boost::asio::io_context& io, const ServerOptions& options)
@@ -27,10 +24,9 @@ HttpServer::HttpServer(boost::asio::io_context& io, const ServerOptions& options
       acceptor_(io),
       token_(random_hex(24)),
       store_(options.data),
-      queue_(io, store_, [this](const Json& m) { tell_pages(m); }),
-      bridge_(io, options.data, store_),
-      rate_budget_(request_burst),
-      rate_time_(std::chrono::steady_clock::now()) {
+      queue_(
+          io, store_, [this](const Json& m) { tell_pages(m); }, solver_words(options.solver)),
+      bridge_(io, options.data, store_) {
   const boost::asio::ip::tcp::endpoint endpoint(boost::asio::ip::address_v4::loopback(), options.port);
   boost::system::error_code error;
   acceptor_.open(endpoint.protocol(), error);
@@ -46,6 +42,7 @@ HttpServer::HttpServer(boost::asio::io_context& io, const ServerOptions& options
 
 void HttpServer::start() {
   queue_.start();
+  bridge_.start();
   boost::asio::co_spawn(io_, accept_loop(), boost::asio::detached);
 }
 
@@ -64,9 +61,9 @@ boost::asio::awaitable<void> HttpServer::accept_loop() {
       co_await pause.async_wait(use_awaitable);
       continue;
     }
-    if (connections_ >= most_connections) continue;  // closes it
-    ++connections_;
-    boost::asio::co_spawn(io_, serve_connection(std::move(socket)), [this](std::exception_ptr) { --connections_; });
+    const auto connection = connections_.admit();
+    boost::asio::co_spawn(io_, serve_connection(std::move(socket), connection),
+                          [this, connection](std::exception_ptr) { connections_.leave(connection); });
   }
 }
 
@@ -77,6 +74,10 @@ bool HttpServer::host_allowed(const Head& head) const {
 }
 
 bool HttpServer::origin_allowed(const Head& head) const {
+  // What the browser itself says of who asks (Fetch Metadata, sec. 2.3): pages of other sites cannot change it, and
+  // most of their requests have no Origin. "none": typed into the address bar. Other programs send no such header.
+  if (const auto site = head.find("Sec-Fetch-Site"); site != head.end())
+    if (const std::string said = text_of(site->value()); said != "same-origin" && said != "none") return false;
   if (head.count(http::field::origin) == 0) return true;
   const std::string origin = text_of(head[http::field::origin]), port = ":" + std::to_string(port_);
   return origin == "http://127.0.0.1" + port || origin == "http://localhost" + port;
@@ -100,16 +101,6 @@ bool HttpServer::token_in_subprotocol(const Head& head, std::string_view wanted)
     start = comma + 1;
   }
   return version && token;
-}
-
-bool HttpServer::within_rate() {
-  const auto now = std::chrono::steady_clock::now();
-  rate_budget_ = std::min(request_burst,
-                          rate_budget_ + requests_per_second * std::chrono::duration<double>(now - rate_time_).count());
-  rate_time_ = now;
-  if (rate_budget_ < 1) return false;
-  rate_budget_ -= 1;
-  return true;
 }
 
 }  // namespace formwright

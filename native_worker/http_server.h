@@ -16,10 +16,13 @@
 #include <string>
 #include <variant>
 
+#include "connections.h"
 #include "http_types.h"
 #include "job_queue.h"
 #include "job_store.h"
 #include "machines/machine_bridge.h"
+#include "rate_budget.h"
+#include "solver_limits.h"
 
 namespace formwright {
 
@@ -28,6 +31,7 @@ struct ServerOptions {
   std::filesystem::path web;   // folder of the built page
   std::filesystem::path data;
   std::uint64_t upload_limit_bytes = std::uint64_t{1} << 30;
+  SolverOptions solver;
 };
 
 /// A page that listens. Messages queue up while one is being written; a page that does not read is dropped.
@@ -47,13 +51,11 @@ class HttpServer {
   void start();
   /// Ends the child process and puts its job back in the queue, for the next start.
   void stop();
-  /// Another process asks that a machine be stopped.
-  void look_for_stops() { bridge_.look_for_stops(); }
 
  private:
   using Socket = boost::asio::ip::tcp::socket;
   boost::asio::awaitable<void> accept_loop();
-  boost::asio::awaitable<void> serve_connection(Socket socket);
+  boost::asio::awaitable<void> serve_connection(Socket socket, std::shared_ptr<Connection> connection);
   boost::asio::awaitable<void> serve_page_socket(std::shared_ptr<PageSocket> page, Head head);
   boost::asio::awaitable<Response> receive_and_answer(beast::tcp_stream& stream, beast::flat_buffer& buffer,
                                                       http::request_parser<http::empty_body>& head);
@@ -62,13 +64,13 @@ class HttpServer {
   boost::asio::awaitable<void> finish_sending(beast::tcp_stream& stream);
 
   // Who may speak. What is refused is refused before its body is read.
-  std::optional<TextResponse> refusal(const Head& head, std::optional<std::uint64_t> body_bytes);
+  std::optional<TextResponse> refusal(const Head& head, std::optional<std::uint64_t> body_bytes,
+                                      const std::shared_ptr<Connection>& connection);
   TextResponse upload_too_large(const Head& head) const;
   bool host_allowed(const Head& head) const;
   bool origin_allowed(const Head& head) const;
   bool token_given(const Head& head) const;
   bool token_in_subprotocol(const Head& head, std::string_view version) const;
-  bool within_rate();
 
   // api.cpp
   Response answer(const Head& head, const std::string& body);
@@ -91,9 +93,8 @@ class HttpServer {
   JobStore store_;
   JobQueue queue_;
   MachineBridge bridge_;
-  int connections_ = 0;
-  double rate_budget_ = 0;
-  std::chrono::steady_clock::time_point rate_time_;
+  Connections connections_;
+  RateBudget requests_{400, 1200};  // of all pages that have the token
 };
 
 }  // namespace formwright

@@ -26,8 +26,9 @@ Json error_message(const char* code, const std::string& sentence) {
 
 }  // namespace
 
-JobQueue::JobQueue(boost::asio::io_context& io, JobStore& store, std::function<void(const Json&)> tell)
-    : io_(io), store_(store), tell_(std::move(tell)), patience_(io) {}
+JobQueue::JobQueue(boost::asio::io_context& io, JobStore& store, std::function<void(const Json&)> tell,
+                   std::vector<std::string> solver)
+    : io_(io), store_(store), tell_(std::move(tell)), solver_(std::move(solver)), patience_(io) {}
 
 void JobQueue::start() {
   for (const std::string& id : store_.unfinished_oldest_first()) waiting_.push_back(id);
@@ -84,6 +85,12 @@ void JobQueue::start_process() {
     ::close(to_child[1]);
     throw Error(ErrorCode::internal, "", "No pipe to the solver process could be made.");
   }
+  // Before the fork: between fork and exec, only what async-signal-safe functions do is safe (fork(2)).
+  std::string program = "formwright";
+  std::vector<std::string> words = solver_;
+  std::vector<char*> arguments{program.data()};
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
   process_ = ::fork();
   if (process_ < 0) {
     for (const int descriptor : {to_child[0], to_child[1], from_child[0], from_child[1]}) ::close(descriptor);
@@ -95,7 +102,7 @@ void JobQueue::start_process() {
     ::dup2(from_child[1], STDOUT_FILENO);
     // Sockets of pages are not its: one that it kept open would never end for the browser, however often we close it.
     ::close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
-    ::execl("/proc/self/exe", "formwright", "run-jobs", static_cast<char*>(nullptr));
+    ::execv("/proc/self/exe", arguments.data());
     ::_exit(127);
   }
   ::close(to_child[0]);
@@ -178,6 +185,10 @@ void JobQueue::handle(const Json& message) {
     cancelling_.clear();
     patience_.cancel();
     if (job) finish(*job, message["result"]);
+    if (message.contains("stuck")) {  // it takes no further job
+      ::kill(process_, SIGKILL);
+      return process_ended();
+    }
     start_next();
   }
 }

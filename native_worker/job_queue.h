@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "job_store.h"
 
@@ -18,7 +19,9 @@ namespace formwright {
 class JobQueue {
  public:
   /// `tell` receives the messages for the pages (docs/job_contract.md, socket).
-  JobQueue(boost::asio::io_context& io, JobStore& store, std::function<void(const Json&)> tell);
+  /// `solver`: the command line of the solver process, behind the program's name.
+  JobQueue(boost::asio::io_context& io, JobStore& store, std::function<void(const Json&)> tell,
+           std::vector<std::string> solver);
   ~JobQueue() { stop(); }
 
   /// Takes up what an earlier worker left. Not before the port is ours: a start that fails runs nothing.
@@ -44,6 +47,7 @@ class JobQueue {
   boost::asio::io_context& io_;
   JobStore& store_;
   std::function<void(const Json&)> tell_;
+  const std::vector<std::string> solver_;
   std::deque<std::string> waiting_;
   std::string running_;
   pid_t process_ = -1;

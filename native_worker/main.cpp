@@ -17,6 +17,7 @@
 #include "job/run.h"
 #include "machines/machine_commands.h"
 #include "output_folder.h"
+#include "private_data.h"
 #include "serve.h"
 
 namespace formwright {
@@ -158,9 +159,11 @@ int run(const std::vector<std::string>& words) {
                 "There is no operation called " + words[1] + ": see formwright list.");
   }
   const std::vector<std::string> rest(words.begin() + 1, words.end());
+  // What these write goes to DATA; outputs of operations are the person's own, with the rights that they chose.
+  if (words[0] == "serve" || words[0] == "machine" || words[0] == "run-jobs") make_new_files_private();
   if (words[0] == "serve") return serve(rest);
   if (words[0] == "machine") return machine_command(rest, interrupted);
-  if (words[0] == "run-jobs") return run_jobs_for_server();
+  if (words[0] == "run-jobs") return run_jobs_for_server(rest);
   if (const Operation* operation = find_operation(words[0])) return run_operation(*operation, rest);
   throw Error(ErrorCode::invalid_input, words[0], "There is no command " + words[0] + ": see formwright --help.");
 }

@@ -10,6 +10,7 @@ namespace formwright {
 int serve(const std::vector<std::string>& words);
 
 /// `formwright run-jobs`: the child process in which jobs run; speaks to its server over standard input and output.
-int run_jobs_for_server();
+/// `words`: of solver_words() (solver_limits.h), behind the first.
+int run_jobs_for_server(const std::vector<std::string>& words);
 
 }  // namespace formwright

@@ -183,15 +183,28 @@ void GrblDriver::watch_silence(double now_s) {
   connection_ = MachineConnection::ready;
 }
 
-void GrblDriver::load(const std::string& name, ByteView job) {
+std::unique_ptr<PreparedJob> GrblDriver::prepare(ByteView job) const {
+  GrblJob read;
+  read.program = GcodeProgram::read(job, longest_line);
+  require_runnable(read.program, {GcodeDialect::grbl});
+  read.power = laser_power_of(read.program);
+  read.unplaced = unplaced_at_first_cut(read.program);
+  read.moves_axis = read.program.state_before(read.program.line_count()).moved;
+  read.mist_line = first_mist_line(read.program);
+  return machines_detail::prepared(std::move(read));
+}
+
+void GrblDriver::load_prepared(const std::string& name, PreparedJob& job) {
   if (job_active()) machines_detail::refuse("job", "A job is running: stop it before another is loaded.");
-  GcodeProgram program = GcodeProgram::read(job, longest_line);
-  const bool mist = !machine_.tells_options() || machine_.has_option('M');
-  require_runnable(program, {GcodeDialect::grbl, mist});
-  program_ = std::move(program);
-  power_wanted_ = laser_power_of(program_);
-  unplaced_ = unplaced_at_first_cut(program_);
-  moves_axis_ = program_.state_before(program_.line_count()).moved;
+  GrblJob& taken = machines_detail::program_in<GrblJob>(job);
+  // Which letters the board has only the machine tells, and it may not have done so while the job was read.
+  if (taken.mist_line > 0 && machine_.tells_options() && !machine_.has_option('M'))
+    machines_detail::refuse("job", "Line " + std::to_string(taken.mist_line) +
+                                       " turns on mist (M7), which this board has no output for: take that word out.");
+  std::swap(program_, taken.program);
+  power_wanted_ = taken.power;
+  unplaced_ = taken.unplaced;
+  moves_axis_ = taken.moves_axis;
   program_name_ = name;
   job_.reset();
 }

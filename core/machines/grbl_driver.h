@@ -24,6 +24,15 @@
 
 namespace formwright {
 
+/// A job with what is asked of it at every start.
+struct GrblJob {
+  GcodeProgram program;
+  LaserPower power;
+  std::array<bool, 2> unplaced{};
+  std::array<bool, 3> moves_axis{};
+  int mist_line = 0;
+};
+
 class GrblDriver final : public MachineDriver {
  public:
   explicit GrblDriver(const DriverOptions& options) : options_(options) {}
@@ -33,7 +42,8 @@ class GrblDriver final : public MachineDriver {
   void received(ByteView bytes, double now_s) override;
   void tick(double now_s) override;
   void command(const Json& command, double now_s) override;
-  void load(const std::string& name, ByteView job) override;
+  std::unique_ptr<PreparedJob> prepare(ByteView job) const override;
+  void load_prepared(const std::string& name, PreparedJob& job) override;
   Json state(double now_s) const override;
 
  private:

@@ -54,6 +54,18 @@ std::array<bool, 2> unplaced_at_first_cut(const GcodeProgram& program) {
   return {};
 }
 
+int first_mist_line(const GcodeProgram& program) {
+  int found = 0;
+  std::vector<GcodeWord> words;
+  program.for_each_line(0, program.line_count(), [&](std::string_view line, int number) {
+    if (found > 0 || line.find("M7") == std::string_view::npos) return;
+    read_gcode_words(line, true, words);
+    for (const auto& [letter, value, has_number] : words)
+      if (letter == 'M' && value == 7) found = number;
+  });
+  return found;
+}
+
 std::string with_dynamic_power(std::string_view line) {
   std::string sent(line);
   for (std::size_t at = sent.find('M'); at != std::string::npos; at = sent.find('M', at + 1)) {

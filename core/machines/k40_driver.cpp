@@ -350,11 +350,18 @@ void K40Driver::command(const Json& command, double now_s) {
   ask(now_s);
 }
 
-void K40Driver::load(const std::string& name, ByteView job) {
+std::unique_ptr<PreparedJob> K40Driver::prepare(ByteView job) const {
+  K40Job read;
+  read.packets = k40_packets(as_text(job));
+  read.bounds = egv_bounds(read.packets);
+  return machines_detail::prepared(std::move(read));
+}
+
+void K40Driver::load_prepared(const std::string& name, PreparedJob& job) {
   if (job_active()) refuse("job", "A job is running: stop it before another is loaded.");
-  std::vector<std::string> program = k40_packets(as_text(job));
-  bounds_ = egv_bounds(program);
-  program_ = std::move(program);
+  K40Job& taken = machines_detail::program_in<K40Job>(job);
+  std::swap(program_, taken.packets);
+  bounds_ = taken.bounds;
   program_name_ = name;
   job_.reset();
 }

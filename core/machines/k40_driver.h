@@ -23,6 +23,12 @@ std::string k40_rapid_move(int right_mil, int front_mil);
 /// The packets of an EGV file, its header left out. Throws Error invalid_input ("job").
 std::vector<std::string> k40_packets(std::string_view egv);
 
+/// A job as it is sent, and how far it reaches.
+struct K40Job {
+  std::vector<std::string> packets;
+  EgvBounds bounds;
+};
+
 class K40Driver final : public MachineDriver {
  public:
   explicit K40Driver(const DriverOptions& options) : options_(options) {}
@@ -32,7 +38,8 @@ class K40Driver final : public MachineDriver {
   void received(ByteView bytes, double now_s) override;
   void tick(double now_s) override;
   void command(const Json& command, double now_s) override;
-  void load(const std::string& name, ByteView job) override;
+  std::unique_ptr<PreparedJob> prepare(ByteView job) const override;
+  void load_prepared(const std::string& name, PreparedJob& job) override;
   Json state(double now_s) const override;
 
  private:

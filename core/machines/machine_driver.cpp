@@ -93,6 +93,10 @@ std::unique_ptr<MachineDriver> make_machine_driver(const Json& options) {
   machines_detail::refuse("controller", "There is no driver for this controller: choose another.");
 }
 
+std::unique_ptr<PreparedJob> prepare_job(const Json& options, ByteView job) {
+  return make_machine_driver(options)->prepare(job);
+}
+
 namespace machines_detail {
 
 void refuse(const std::string& where, const std::string& sentence) {

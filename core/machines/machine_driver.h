@@ -43,6 +43,12 @@ struct MachineJob {
   std::string ended;  // "", "done", "stopped", "failed" or "cut_off"
 };
 
+/// A job as a driver reads it: reading a large one takes seconds, and needs nothing but the machine's options.
+class PreparedJob {
+ public:
+  virtual ~PreparedJob() = default;
+};
+
 class MachineDriver {
  public:
   virtual ~MachineDriver() = default;
@@ -60,7 +66,11 @@ class MachineDriver {
   /// it cannot be done now, or moves the machine or turns its laser on without "confirmed": true.
   virtual void command(const Json& command, double now_s) = 0;
   /// Takes a job without starting it. Throws Error invalid_input ("job": with the line).
-  virtual void load(const std::string& name, ByteView job) = 0;
+  void load(const std::string& name, ByteView job) { load_prepared(name, *prepare(job)); }
+  /// The first half of `load`, which leaves the driver as it is.
+  virtual std::unique_ptr<PreparedJob> prepare(ByteView job) const = 0;
+  /// The second half, in no time. `job` then holds what was loaded before, to be freed where that delays nobody.
+  virtual void load_prepared(const std::string& name, PreparedJob& job) = 0;
   /// docs/machines.md, "State".
   virtual Json state(double now_s) const = 0;
 
@@ -100,8 +110,26 @@ class MachineDriver {
 /// `options` as DriverOptions. Throws Error invalid_input.
 std::unique_ptr<MachineDriver> make_machine_driver(const Json& options);
 
+/// A job for `load_prepared` of a driver with these options: on any thread, while that driver is at work.
+std::unique_ptr<PreparedJob> prepare_job(const Json& options, ByteView job);
+
 // ---- what drivers share ----
 namespace machines_detail {
+
+/// What a driver makes of a job's file.
+template <class Program>
+struct PreparedProgram final : PreparedJob {
+  explicit PreparedProgram(Program p) : program(std::move(p)) {}
+  Program program;
+};
+template <class Program>
+std::unique_ptr<PreparedJob> prepared(Program program) {
+  return std::make_unique<PreparedProgram<Program>>(std::move(program));
+}
+template <class Program>
+Program& program_in(PreparedJob& job) {
+  return dynamic_cast<PreparedProgram<Program>&>(job).program;
+}
 
 [[noreturn]] void refuse(const std::string& where, const std::string& sentence);
 /// Throws unless command["confirmed"] is true.

@@ -362,13 +362,20 @@ void MarlinDriver::tick(double now_s) {
   pump(now_s);
 }
 
-void MarlinDriver::load(const std::string& name, ByteView job) {
-  if (job_active()) machines_detail::refuse("job", "A job is running: stop it before another is loaded.");
-  GcodeProgram program = GcodeProgram::read(job, longest_line, true);
+std::unique_ptr<PreparedJob> MarlinDriver::prepare(ByteView job) const {
+  MarlinJob read;
+  read.program = GcodeProgram::read(job, longest_line, true);
   const bool printer = options_.tool == MachineTool::printer;
-  require_runnable(program, {printer ? GcodeDialect::marlin_printer : GcodeDialect::marlin});
-  program_ = std::move(program);
-  laser_use_ = marlin_laser_use(program_);
+  require_runnable(read.program, {printer ? GcodeDialect::marlin_printer : GcodeDialect::marlin});
+  read.laser_use = marlin_laser_use(read.program);
+  return machines_detail::prepared(std::move(read));
+}
+
+void MarlinDriver::load_prepared(const std::string& name, PreparedJob& job) {
+  if (job_active()) machines_detail::refuse("job", "A job is running: stop it before another is loaded.");
+  MarlinJob& taken = machines_detail::program_in<MarlinJob>(job);
+  std::swap(program_, taken.program);
+  laser_use_ = taken.laser_use;
   program_name_ = name;
   job_.reset();
 }

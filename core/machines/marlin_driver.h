@@ -31,6 +31,12 @@ namespace formwright {
 /// "N3 G1 X5*29": the XOR of all characters before the star.
 std::string numbered_line(int number, std::string_view line);
 
+/// A job, and how it uses a laser.
+struct MarlinJob {
+  GcodeProgram program;
+  MarlinLaserUse laser_use;
+};
+
 class MarlinDriver final : public MachineDriver {
  public:
   explicit MarlinDriver(const DriverOptions& options) : options_(options) {}
@@ -40,7 +46,8 @@ class MarlinDriver final : public MachineDriver {
   void received(ByteView bytes, double now_s) override;
   void tick(double now_s) override;
   void command(const Json& command, double now_s) override;
-  void load(const std::string& name, ByteView job) override;
+  std::unique_ptr<PreparedJob> prepare(ByteView job) const override;
+  void load_prepared(const std::string& name, PreparedJob& job) override;
   Json state(double now_s) const override;
 
  private:

@@ -305,11 +305,18 @@ void RuidaDriver::require_job_inside() const {
                         machines_detail::decimal(bed[axis]) + " mm. Move the job or make it smaller.");
 }
 
-void RuidaDriver::load(const std::string& name, ByteView job) {
+std::unique_ptr<PreparedJob> RuidaDriver::prepare(ByteView job) const {
+  RuidaJob read;
+  read.datagrams = ruida_datagrams(job);
+  read.bounds = ruida_job_bounds(job);
+  return machines_detail::prepared(std::move(read));
+}
+
+void RuidaDriver::load_prepared(const std::string& name, PreparedJob& job) {
   if (job_active()) refuse("job", "A job is running: stop it before another is loaded.");
-  std::vector<Bytes> program = ruida_datagrams(job);
-  bounds_ = ruida_job_bounds(job);
-  program_ = std::move(program);
+  RuidaJob& taken = machines_detail::program_in<RuidaJob>(job);
+  std::swap(program_, taken.datagrams);
+  bounds_ = taken.bounds;
   program_name_ = name;
   job_.reset();
 }

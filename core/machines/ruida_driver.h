@@ -20,6 +20,12 @@ Bytes ruida_datagram(std::string_view plain);
 /// An .rd file cut into datagrams between its commands. Throws Error invalid_input ("job").
 std::vector<Bytes> ruida_datagrams(ByteView rd_file);
 
+/// A job as it is sent, and how far it reaches.
+struct RuidaJob {
+  std::vector<Bytes> datagrams;
+  RuidaBounds bounds;
+};
+
 class RuidaDriver final : public MachineDriver {
  public:
   explicit RuidaDriver(const DriverOptions& options) : options_(options) {}
@@ -29,7 +35,8 @@ class RuidaDriver final : public MachineDriver {
   void received(ByteView datagram, double now_s) override;
   void tick(double now_s) override;
   void command(const Json& command, double now_s) override;
-  void load(const std::string& name, ByteView job) override;
+  std::unique_ptr<PreparedJob> prepare(ByteView job) const override;
+  void load_prepared(const std::string& name, PreparedJob& job) override;
   Json state(double now_s) const override;
 
  private:

@@ -79,11 +79,32 @@ PrinterAddress address_of(const Machine& m) { return {m.name, m.url, m.destinati
 }  // namespace
 
 MachineBridge::MachineBridge(boost::asio::io_context& io, std::filesystem::path data, JobStore& store)
-    : io_(io), store_(store), registry_(data), log_(data), rooms_(io, acting_, data, store, log_) {}
+    : io_(io), store_(store), registry_(data), log_(data), tasks_(log_, data), rooms_(acting_, data, store, log_) {}
+
+void MachineBridge::start() {
+  for (const auto& task : tasks_.restore()) follow_again(task);
+}
+
+void MachineBridge::follow_again(const std::shared_ptr<MachineTask>& task) {
+  tasks_.resume(task, [this](MachineTask& running) -> Json {
+    const Json there = running.handed_over();
+    const auto list = find_machines(registry_);
+    const auto found =
+        std::find_if(list.begin(), list.end(), [&](const Machine& m) { return m.id == running.machine.id; });
+    if (found == list.end())
+      throw Error(ErrorCode::could_not_solve, "machine",
+                  running.machine.name + " is no longer there: see whether its sheets came out before printing again.");
+    const int sheets =
+        follow_print(address_of(*found), there.at("job_id").get<int>(), running.cancelled,
+                     [&](const std::string& state, const std::string& sentence) { running.say(state, sentence); });
+    return {{"job_id", there["job_id"]}, {"sheets", sheets}, {"notes", there.value("notes", Json::array())}};
+  });
+}
 
 void MachineBridge::stop() {
   rooms_.stop();  // first: they move
   tasks_.stop();
+  log_.flush();
 }
 
 boost::asio::awaitable<void> MachineBridge::serve_socket(beast::tcp_stream stream, Head head, std::string id) {
@@ -93,22 +114,11 @@ boost::asio::awaitable<void> MachineBridge::serve_socket(beast::tcp_stream strea
     found = co_await machine(id);
     if (found->kind != MachineKind::serial && found->kind != MachineKind::ruida)
       refuse("machine", found->name + " has no socket: it is a " + std::string(to_string(found->kind)) + ".");
-    if (rooms_.full(found->id))
-      refusal = error_response(head, http::status::too_many_requests, "invalid_input", "",
-                               "Too many pages are at this machine: close some.");
   } catch (const Error& error) {
     refusal = error_response(head, http::status::not_found, to_string(error.code()), error.where(), error.what());
   }
-  if (!refusal) {
-    co_await rooms_.serve(std::make_shared<MachinePage>(beast::websocket::stream<beast::tcp_stream>(std::move(stream))),
-                          head, *found);
-    co_return;
-  }
-  boost::system::error_code ignored;
-  refusal->keep_alive(false);
-  stream.expires_after(std::chrono::seconds(10));
-  co_await http::async_write(stream, *refusal, boost::asio::redirect_error(use_awaitable, ignored));
-  stream.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_both, ignored);
+  if (refusal) co_await refuse_page(std::move(stream), std::move(*refusal));
+  else co_await rooms_.serve(std::move(stream), std::move(head), std::move(*found));
 }
 
 template <class Result>
@@ -235,9 +245,12 @@ Response MachineBridge::print(const Head& head, const Machine& m, const Json& or
   const auto document = blob(order);
   const auto task = tasks_.start(m, "print", [m, print, document](MachineTask& running) mutable -> Json {
     print.document = *document;
-    const PrintResult result =
-        print_document(address_of(m), print, running.cancelled,
-                       [&](const std::string& state, const std::string& sentence) { running.say(state, sentence); });
+    const PrintResult result = print_document(
+        address_of(m), print, running.cancelled,
+        [&](const std::string& state, const std::string& sentence) { running.say(state, sentence); },
+        [&](const PrintResult& taken) {
+          running.hand_over({{"job_id", taken.job_id}, {"notes", taken.notes}});
+        });
     return {{"job_id", result.job_id}, {"sheets", result.sheets}, {"notes", result.notes}};
   });
   return task ? accepted(head, task->id) : too_many(head);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // Machines behind the worker's HTTP interface (docs/machine_bridge.md). Lives on the server's thread; what blocks runs
-// beside it.
+// beside it, and machines that are driven have a thread of their own.
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/thread_pool.hpp>
@@ -31,9 +31,9 @@ class MachineBridge {
   /// The WebSocket of one machine. Returns when the page is gone; answers with an HTTP error when there is no such
   /// machine.
   boost::asio::awaitable<void> serve_socket(beast::tcp_stream stream, Head head, std::string id);
-  /// Another process asked for a stop (SIGUSR1).
-  void look_for_stops() { rooms_.look_for_stops(); }
-  /// Cancels prints and slicings, and stops every machine that runs.
+  /// Takes up the prints that an earlier worker left with printers.
+  void start();
+  /// Cancels what no machine has yet, and stops every machine that is driven from here.
   void stop();
 
  private:
@@ -43,6 +43,7 @@ class MachineBridge {
   boost::asio::awaitable<Machine> machine(std::string id);
   boost::asio::awaitable<Response> answer_machine(Head head, std::string id, std::string rest, std::string body);
   boost::asio::awaitable<Response> slice(Head head, Machine machine, Json order);
+  void follow_again(const std::shared_ptr<MachineTask>& task);
   Response print(const Head& head, const Machine& machine, const Json& order);
   Response upload(const Head& head, const Machine& machine, const Json& order);
   Response answer_tasks(const Head& head, const Machine& machine, const std::string& rest);
@@ -52,7 +53,7 @@ class MachineBridge {
   JobStore& store_;
   MachineRegistry registry_;
   MachineLog log_;
-  MachineTasks tasks_{log_};
+  MachineTasks tasks_;
   // Threads apart: a machine that is switched off keeps the one that asks it for half a minute, and neither a stop nor
   // a port that is to be opened may wait behind that; nor the search, which finds the port.
   boost::asio::thread_pool asking_{4};   // machines elsewhere: what they are and do

@@ -9,6 +9,8 @@
 #include <ctime>
 #include <fstream>
 #include <iostream>
+#include <utility>
+#include <vector>
 
 #include "base/json_text.h"
 #include "host.h"
@@ -19,6 +21,7 @@ namespace {
 constexpr std::uintmax_t most_bytes = std::uintmax_t{512} << 20;  // of all logs together; the oldest go
 constexpr std::streamoff tail_bytes = 4 << 20;                    // of a file, when the newest are asked for
 constexpr std::size_t most_open = 32;                             // machines at once
+constexpr std::size_t max_waiting_bytes = std::size_t{64} << 20;  // a disk that hangs must not fill the memory
 
 double unix_seconds() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -57,9 +60,24 @@ std::string MachineLog::utc_day() {
   return text;
 }
 
-MachineLog::~MachineLog() { close_all(); }
+MachineLog::~MachineLog() {
+  {
+    const std::scoped_lock lock(mutex_);
+    ending_ = true;
+  }
+  arrived_.notify_one();
+  if (writer_.joinable()) writer_.join();
+  close_all();
+}
+
+void MachineLog::sync() {
+  for (const int descriptor : unsynced_)
+    if (::fdatasync(descriptor) != 0) complain();
+  unsynced_.clear();
+}
 
 void MachineLog::close_all() {
+  sync();
   for (const auto& [machine, descriptor] : open_) ::close(descriptor);
   open_.clear();
 }
@@ -78,40 +96,76 @@ void MachineLog::tidy() const {
   }
 }
 
-int MachineLog::descriptor_for(const Machine& machine) {
+int MachineLog::descriptor_for(const std::string& machine_id) {
   const std::string day = day_();
   if (day != open_day_) close_all();
   open_day_ = day;
-  if (const auto known = open_.find(machine.id); known != open_.end()) return known->second;
+  if (const auto known = open_.find(machine_id); known != open_.end()) return known->second;
   if (open_.size() >= most_open) close_all();
   std::error_code status;
   std::filesystem::create_directories(folder_, status);
   tidy();
-  const auto path = folder_ / (day + "-" + machine.id + ".jsonl");
+  const auto path = folder_ / (day + "-" + machine_id + ".jsonl");
   const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
-  if (descriptor >= 0) open_[machine.id] = descriptor;
+  if (descriptor >= 0) open_[machine_id] = descriptor;
   return descriptor;
+}
+
+void MachineLog::complain() {
+  if (complained_) return;
+  complained_ = true;
+  std::cerr << "formwright: the machine log in " << folder_.string()
+            << " cannot be written: make room, or correct its permissions." << std::endl;
+}
+
+void MachineLog::write(const Entry& entry) {
+  const int descriptor = descriptor_for(entry.machine_id);
+  // One write a line: whatever happens to this program, a line is there whole or not at all.
+  if (descriptor < 0 ||
+      ::write(descriptor, entry.line.data(), entry.line.size()) != static_cast<ssize_t>(entry.line.size()))
+    return complain();
+  if (entry.lasting) unsynced_.insert(descriptor);
+}
+
+void MachineLog::write_all() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    arrived_.wait(lock, [&] { return ending_ || !waiting_.empty(); });
+    if (waiting_.empty()) return;
+    const std::deque<Entry> entries = std::exchange(waiting_, {});
+    waiting_bytes_ = 0;
+    writing_ = true;
+    lock.unlock();
+    for (const Entry& entry : entries) write(entry);
+    sync();
+    lock.lock();
+    writing_ = false;
+    written_.notify_all();
+  }
 }
 
 void MachineLog::append(const Machine& machine, Json entry, bool lasting) {
   entry["unix_s"] = unix_seconds();
   entry["machine"] = machine.id;
   entry["name"] = machine.name;
-  const std::string line = json_text(entry) + "\n";
-  const std::scoped_lock lock(mutex_);
-  const int descriptor = descriptor_for(machine);
-  // One write a line: whatever happens to this program, a line is there whole or not at all.
-  const bool written = descriptor >= 0 &&
-                       ::write(descriptor, line.data(), line.size()) == static_cast<ssize_t>(line.size()) &&
-                       (!lasting || ::fdatasync(descriptor) == 0);
-  if (!written && !complained_) {
-    complained_ = true;
-    std::cerr << "formwright: the machine log in " << folder_.string()
-              << " cannot be written: make room, or mend its permissions." << std::endl;
+  std::string line = json_text(entry) + "\n";
+  {
+    const std::scoped_lock lock(mutex_);
+    if (waiting_bytes_ + line.size() > max_waiting_bytes) return;  // the writer complains when the disk fails
+    waiting_bytes_ += line.size();
+    waiting_.push_back({machine.id, std::move(line), lasting});
+    if (!writer_.joinable()) writer_ = std::thread([this] { write_all(); });
   }
+  arrived_.notify_one();
+}
+
+void MachineLog::flush() const {
+  std::unique_lock lock(mutex_);
+  written_.wait(lock, [&] { return waiting_.empty() && !writing_; });
 }
 
 Json MachineLog::newest(std::size_t limit, bool lines) const {
+  flush();
   std::vector<Json> entries;
   auto files = files_oldest_first(folder_);
   // Several machines may have a file for the same day, whose entries interleave: whole days are read.

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "machines/machine_page.h"
 
-#include <algorithm>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <chrono>
 
 #include "host.h"
 
 namespace formwright {
 namespace {
 constexpr std::size_t most_waiting = 400;
-constexpr double requests_per_second = 100, request_burst = 200;
 }  // namespace
 
 void MachinePage::send(const Json& message) { push(std::make_shared<const std::string>(json_text(message))); }
@@ -37,16 +38,14 @@ void MachinePage::write_next() {
                       });
 }
 
-bool MachinePage::within_rate() {
-  const auto now = std::chrono::steady_clock::now();
-  rate_budget_ = std::min(request_burst,
-                          rate_budget_ + requests_per_second * std::chrono::duration<double>(now - rate_time_).count());
-  rate_time_ = now;
-  if (rate_budget_ < 1) return false;
-  rate_budget_ -= 1;
-  return true;
-}
-
 void MachinePage::hang_up() { beast::get_lowest_layer(stream_).close(); }
+
+boost::asio::awaitable<void> refuse_page(beast::tcp_stream stream, TextResponse refusal) {
+  boost::system::error_code ignored;
+  refusal.keep_alive(false);
+  stream.expires_after(std::chrono::seconds(10));
+  co_await http::async_write(stream, refusal, boost::asio::redirect_error(boost::asio::use_awaitable, ignored));
+  stream.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_both, ignored);
+}
 
 }  // namespace formwright

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // A page at a machine's socket: what it says, bounded, and what it is told, never more than it reads.
+#include <boost/asio/awaitable.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
-#include <chrono>
 #include <deque>
 #include <memory>
 #include <optional>
@@ -11,6 +11,7 @@
 
 #include "base/json.h"
 #include "http_types.h"
+#include "rate_budget.h"
 
 namespace formwright {
 
@@ -39,7 +40,7 @@ class MachinePage : public std::enable_shared_from_this<MachinePage> {
   /// A page that reads slowly gets the latest state, not each.
   void send_state(std::shared_ptr<const std::string> text);
   /// At most 100 requests a second, 200 at once.
-  bool within_rate();
+  bool within_rate() { return rate_.take(); }
   int next_number() { return ++requests_; }
   /// True while it may go on after one more message that was no request.
   bool bears_malformed() { return ++malformed_ < most_malformed; }
@@ -55,8 +56,10 @@ class MachinePage : public std::enable_shared_from_this<MachinePage> {
   std::shared_ptr<const std::string> latest_state_;  // waits until the rest is written
   bool accepted_ = false;
   int requests_ = 0, malformed_ = 0;
-  double rate_budget_ = 200;
-  std::chrono::steady_clock::time_point rate_time_ = std::chrono::steady_clock::now();
+  RateBudget rate_{100, 200};
 };
+
+/// Answers a request for a socket with an error of HTTP, and hangs up.
+boost::asio::awaitable<void> refuse_page(beast::tcp_stream stream, TextResponse refusal);
 
 }  // namespace formwright

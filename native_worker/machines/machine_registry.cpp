@@ -15,6 +15,7 @@
 #include "base/json_text.h"
 #include "base/sha256.h"
 #include "files.h"
+#include "private_data.h"
 #include "host.h"
 
 namespace formwright {
@@ -174,6 +175,8 @@ Machine machine_from_words(const MachineWords& words) {
   machine.id = id_of(machine.kind, machine.url);
   return machine;
 }
+
+MachineRegistry::MachineRegistry(std::filesystem::path data) : data_(std::move(data)) { make_private(data_); }
 
 std::vector<Machine> MachineRegistry::read() const {
   const auto path = data_ / "machines.json";

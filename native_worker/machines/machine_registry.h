@@ -58,7 +58,8 @@ Machine machine_from_words(const MachineWords& words);
 /// processes may use it.
 class MachineRegistry {
  public:
-  explicit MachineRegistry(std::filesystem::path data) : data_(std::move(data)) {}
+  /// Closes a DATA folder that is there to others (private_data.h).
+  explicit MachineRegistry(std::filesystem::path data);
   /// Entries that cannot be understood are left out. Throws Error{invalid_input, "--data"} when the file cannot be read
   /// or is not JSON.
   std::vector<Machine> read() const;

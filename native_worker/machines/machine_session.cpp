@@ -10,7 +10,7 @@ namespace {
 
 constexpr double state_period_s = 0.1;
 
-/// Commands after which something may move or shine: on the disk before the machine hears of them.
+/// Commands after which something may move or shine: written through to the disk.
 bool is_lasting(const std::string& what) { return what != "jog" && what != "jog_cancel" && what != "override"; }
 
 }  // namespace
@@ -43,6 +43,7 @@ MachineSession::MachineSession(boost::asio::io_context& io, const Machine& machi
                                std::shared_ptr<MachinePort> port, std::unique_ptr<MachineLock> lock, MachineLog& log)
     : timer_(io),
       machine_(machine),
+      options_(options),
       driver_(make_machine_driver(options)),
       port_(std::move(port)),
       lock_(std::move(lock)),
@@ -120,7 +121,7 @@ void MachineSession::command(const Json& command) {
                                ? command["do"].get<std::string>()
                                : "";
   if (what == "stop") {
-    driver_->command(command, now_s());  // before anything else, the disk included
+    driver_->command(command, now_s());  // before anything else
     pump(true);
     log_.append(machine_, {{"event", "command"}, {"command", command}}, true);
     return;
@@ -135,10 +136,10 @@ void MachineSession::command(const Json& command) {
   pump();
 }
 
-void MachineSession::load(const std::string& name, ByteView job) {
+void MachineSession::load_prepared(const std::string& name, PreparedJob& job, std::size_t bytes) {
   if (over_) throw Error(ErrorCode::invalid_input, "load", "The machine is not connected: connect it first.");
-  driver_->load(name, job);
-  log_.append(machine_, {{"event", "load"}, {"job", name}, {"bytes", job.size()}}, true);
+  driver_->load_prepared(name, job);
+  log_.append(machine_, {{"event", "load"}, {"job", name}, {"bytes", bytes}}, true);
   pump();
 }
 

@@ -54,13 +54,19 @@ class MachineSession : public std::enable_shared_from_this<MachineSession> {
   void begin(Listener listener);
   /// Throws Error invalid_input: what cannot be done now, or was not confirmed.
   void command(const Json& command);
-  void load(const std::string& name, ByteView job);
+  void load(const std::string& name, ByteView job) { load_prepared(name, *prepare_job(options_, job), job.size()); }
+  /// `job`: of prepare_job() with `options()`, on any thread. It then holds what was loaded before.
+  void load_prepared(const std::string& name, PreparedJob& job, std::size_t bytes);
+  const Json& options() const { return options_; }
   /// The one who steered is gone: laser off and feed hold, in whatever is going on; homing is stopped.
   void hold(const std::string& why);
   /// Stops what runs and closes the port.
   void end(const std::string& why);
   /// Looks whether another process asks for a stop.
   void look_for_stop();
+
+  /// The driver of a session that is over, for one who has time to free its job.
+  std::unique_ptr<MachineDriver> take_driver() { return over_ ? std::move(driver_) : nullptr; }
 
   Json state() const;
   bool job_active() const;  // started and not ended, also while it is held
@@ -76,6 +82,7 @@ class MachineSession : public std::enable_shared_from_this<MachineSession> {
 
   boost::asio::steady_timer timer_;
   const Machine machine_;
+  const Json options_;
   std::unique_ptr<MachineDriver> driver_;
   std::shared_ptr<MachinePort> port_;
   std::unique_ptr<MachineLock> lock_;

@@ -264,8 +264,18 @@ int follow(const PrinterAddress& address, int job_id, const std::atomic<bool>& c
 
 }  // namespace
 
+int follow_print(const PrinterAddress& address, int job_id, const std::atomic<bool>& cancelled,
+                 const PrintProgress& progress) {
+  try {
+    return follow(address, job_id, cancelled, progress);
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::cancelled) take_back(address, job_id);
+    throw;
+  }
+}
+
 PrintResult print_document(const PrinterAddress& address, const PrintOrder& order, const std::atomic<bool>& cancelled,
-                           const PrintProgress& progress) {
+                           const PrintProgress& progress, const std::function<void(const PrintResult&)>& taken) {
   progress("waiting", "Asking " + address.name + " what it takes.");
   const PrinterDescription printer = describe_printer(address, cancelled);
   const CheckedOrder checked = check_order(printer, order, address.name);
@@ -290,12 +300,8 @@ PrintResult print_document(const PrinterAddress& address, const PrintOrder& orde
   if (!id) fail(address.name + " took the document and gave no number for it: see whether it prints.");
   PrintResult result{ippGetInteger(id, 0), 0, checked.notes};
   progress("printing", checked.notes.empty() ? "Printing." : checked.notes.front());
-  try {
-    result.sheets = follow(address, result.job_id, cancelled, progress);
-  } catch (const Error& error) {
-    if (error.code() == ErrorCode::cancelled) take_back(address, result.job_id);
-    throw;
-  }
+  if (taken) taken(result);
+  result.sheets = follow_print(address, result.job_id, cancelled, progress);
   return result;
 }
 

@@ -52,9 +52,14 @@ struct PrintResult {
 /// Returns when the printer says it is done. Refuses before anything is sent: Error{invalid_input} with where media,
 /// copies, quality, mirrored or sha256. Error{could_not_solve, "machine"}: the printer refused, stopped or vanished.
 /// Error{cancelled}: the job was taken back at the printer as well. Once the document is out, that needs the printer's
-/// answer, for which a cancel waits up to 30 s; where none comes, the sentence says that sheets may come out.
+/// answer, for which a cancel waits up to 30 s; where none comes, the sentence says that sheets may come out. `taken`:
+/// the printer has the document, and what number it gave it.
 PrintResult print_document(const PrinterAddress& address, const PrintOrder& order, const std::atomic<bool>& cancelled,
-                           const PrintProgress& progress);
+                           const PrintProgress& progress, const std::function<void(const PrintResult&)>& taken = {});
+
+/// The rest of it, of a job that a printer has: the sheets that came out. Throws alike.
+int follow_print(const PrinterAddress& address, int job_id, const std::atomic<bool>& cancelled,
+                 const PrintProgress& progress);
 
 /// The sentence of one printer-state-reason or job-state-reason (RFC 8011, 5.4.12; PWG 5100.9): "media-empty" -> "it is
 /// out of paper".

@@ -194,6 +194,21 @@ class Driven(unittest.TestCase):
             return self.laser.look()["position_mm"] == place
         peers.wait_until(stands, 3, "the end of the jogging")  # the whole way takes 7.5 s
 
+    def test_a_stop_does_not_wait_for_a_job_that_is_being_read(self):
+        page = self.steering()
+        large = self.worker.put_blob(b"G21\nG90\n" + b"G1 X10.5 Y20.25 S300 F3000\nG1 X11.5 Y21.25 S310\n" * 400_000)
+        page.send({"load": {"name": "large.gcode", "sha256": large}, "n": 1001})
+        page.send({"command": {"do": "start", "confirmed": True}, "n": 1002})
+        page.send({"command": {"do": "stop"}, "n": 1003})
+        answers = []
+        while len(answers) < 3:
+            message = page.take()
+            if "done" in message or "n" in message:
+                answers.append(message)
+        self.assertEqual([answer.get("done", answer.get("n")) for answer in answers], [1002, 1003, 1001])
+        self.assertEqual(answers[0]["error"]["code"], "busy", answers[0])  # never the job that was loaded before
+        self.assertIn("done", answers[2])
+
     def test_a_pulled_cable_is_said(self):
         page = self.ready(squares(40))
         self.laser.stop()

@@ -187,6 +187,46 @@ class Printing(unittest.TestCase):
         told = peers.wait_until(lambda: re.search(r"Cancel-Job", (self.printer.folder / "printer.log").read_text()), 10, "the printer's cancel")
         self.assertTrue(told)
 
+    def restart_worker(self, kill: bool) -> None:
+        if kill:
+            self.worker.process.kill()
+            self.worker.process.wait()
+            self.worker.process.stdout.close()
+        else:
+            self.worker.stop()
+        type(self).worker = Worker(peers.PROGRAM, self.data)
+
+    def test_a_print_goes_on_without_the_worker_and_is_shown_by_the_next(self):
+        for kill in (True, False):
+            slow = self.printer.spool / "slow"
+            slow.touch()
+            self.addCleanup(slow.unlink, missing_ok=True)
+            before = len(self.printer.jobs())
+            job = self.order(page(215.9, 279.4), media="Letter", title="Kept")
+            peers.wait_until(lambda: self.worker.json("GET", f"/api/machines/{self.id}/jobs/{job}")[1]["state"] == "printing", 40, "printing")
+            peers.wait_until(lambda: json.loads((self.data / "prints" / f"{job}.json").read_text())["there"], 10, "its number")
+            self.restart_worker(kill)
+            status, shown = self.worker.json("GET", f"/api/machines/{self.id}/jobs/{job}")
+            self.assertEqual((status, shown["kind"]), (200, "print"))
+            self.assertNotIn(shown["state"], ("done", "failed", "cancelled"), shown)
+            slow.unlink()
+            ended = self.wait(job)
+            self.assertEqual(ended["state"], "done", ended)
+            self.assertEqual(len(self.printer.jobs()), before + 1)
+            self.restart_worker(kill)
+            self.assertEqual(self.worker.json("GET", f"/api/machines/{self.id}/jobs/{job}")[1]["result"], ended["result"])
+        # One that the printer never had is not claimed to print.
+        kept = json.loads((self.data / "prints" / f"{job}.json").read_text())
+        lost = {**kept, "id": "a" * 32, "state": "sending", "there": None}
+        lost.pop("result")
+        (self.data / "prints" / f"{'a' * 32}.json").write_text(json.dumps(lost))
+        (self.data / "prints" / f"{'b' * 32}.json").write_text('{"id": "b')
+        self.restart_worker(True)
+        ended = self.worker.json("GET", f"/api/machines/{self.id}/jobs/{'a' * 32}")[1]
+        self.assertEqual(ended["state"], "failed", ended)
+        self.assertIn("see whether it came through before sending it again", ended["error"]["message"])
+        self.assertEqual(self.worker.json("GET", f"/api/machines/{self.id}/jobs/{'b' * 32}")[0], 404)
+
     def cancelled_while_taken_in(self, name: str):
         """The line, the machine at its end and the job: sent whole, not answered, cancelled."""
         line = peers.LateLine(8631, b"%%EOF")

@@ -99,6 +99,7 @@ TEST(machine_log, lines_are_whole_newest_first_and_half_ones_are_left_out) {
   MachineLog log(folder.path);
   for (int i = 0; i < 10; ++i)
     log.append(machine, {{"event", i % 2 ? "sent" : "note"}, {"text", "line " + std::to_string(i) + "\xff"}}, i == 9);
+  log.flush();
   for (const auto& file : std::filesystem::directory_iterator(folder.path / "machine_log"))
     std::ofstream(file.path(), std::ios::app) << "{\"event\": \"no";
   const Json all = log.newest(4, true), notes = log.newest(100, false);
@@ -144,12 +145,14 @@ TEST(machine_log, two_machines_at_once_have_their_files_open_until_the_day_is_ov
     said.push_back("line " + std::to_string(i));
     log.append(first, {{"event", "sent"}, {"text", said.back()}});
     log.append(second, {{"event", "received"}, {"text", said.back()}});
+    log.flush();
     // Neither is closed for the other: opening lists the folder, and a machine that is fed waits for that.
     const std::set<std::string> both{day + "-" + first.id + ".jsonl", day + "-" + second.id + ".jsonl"};
     ASSERT_EQ(held_open(logs), both) << i;
   }
   day = "2026-11-24";
   log.append(second, {{"event", "note"}, {"text", "next day"}});
+  log.flush();
   EXPECT_EQ(held_open(logs), std::set<std::string>{day + "-" + second.id + ".jsonl"});
   EXPECT_EQ(texts_in(logs / ("2026-11-23-" + first.id + ".jsonl")), said);
   EXPECT_EQ(texts_in(logs / ("2026-11-23-" + second.id + ".jsonl")), said);
@@ -163,6 +166,7 @@ TEST(machine_log, many_machines_do_not_use_up_the_descriptors) {
   for (int turn = 0; turn < 2; ++turn)
     for (int i = 0; i < 100; ++i)
       log.append(machine_called(std::to_string(1000 + i)), {{"event", "note"}, {"text", "x"}});
+  log.flush();
   EXPECT_LE(held_open(folder.path / "machine_log").size(), 32u);
   EXPECT_EQ(log.newest(500, false).size(), 200u);
 }
@@ -179,12 +183,14 @@ TEST(machine_log, the_oldest_days_go_and_never_what_is_being_written) {
   std::filesystem::create_directories(logs / "2026-11-21-folder.jsonl");  // weighs nothing
   MachineLog log(folder.path, [] { return std::string("2026-11-23"); });
   log.append(machine_called("b"), {{"event", "note"}, {"text", "x"}});
+  log.flush();
   EXPECT_FALSE(std::filesystem::exists(logs / "2026-11-20-a.jsonl"));
   EXPECT_FALSE(std::filesystem::exists(logs / "2026-11-22-a.jsonl"));
   EXPECT_TRUE(std::filesystem::exists(logs / "2026-11-21-folder.jsonl"));
   EXPECT_TRUE(std::filesystem::exists(logs / "2026-11-23-a.jsonl"));
   std::filesystem::resize_file(logs / "2026-11-23-a.jsonl", std::uintmax_t{600} << 20);
   log.append(machine_called("c"), {{"event", "note"}, {"text", "x"}});
+  log.flush();
   EXPECT_TRUE(std::filesystem::exists(logs / "2026-11-23-a.jsonl"));  // another program may be at it
   EXPECT_TRUE(std::filesystem::exists(logs / "2026-11-23-b.jsonl"));
 }

@@ -130,7 +130,7 @@ boost::asio::awaitable<void> MachineRooms::handle(std::shared_ptr<Room> room, st
       const auto path = store_.blob_path(request.sha256);
       if (!std::filesystem::exists(path, status))
         throw Error(ErrorCode::invalid_input, "sha256", "The job has not arrived: send it again.");
-      const auto job = read_file(path, "sha256", most_job_bytes);
+      const auto job = read_checked_file(path, request.sha256, "sha256", most_job_bytes);
       room->session->load(request.name, *job);
       break;
     }

@@ -59,7 +59,8 @@ boost::asio::awaitable<std::optional<TextResponse>> HttpServer::refuse_altered(c
     co_return error_response(
         head, http::status::gone, "internal", "",
         "The result " + file->path.filename().string() + " was altered on the disk: run the job again.");
-  store_.remove_blob(file->sha256);  // so that it is sent again
+  // So that it is sent again; unless it was meanwhile.
+  if (stamp_of(file->path) == stamp) store_.remove_blob(file->sha256);
   co_return error_response(head, http::status::not_found, "invalid_input", "",
                            "The file was altered on the disk: send it again.");
 }

@@ -153,6 +153,7 @@ std::optional<Bytes> checked_content(ByteView file) {
   constexpr std::size_t digits = 64, head = checksum_mark.size() + digits + 1;
   if (file.size() < head || !as_text(file).starts_with(checksum_mark)) return std::nullopt;
   const ByteView content = file.subspan(head);
+  if (as_text(file)[head - 1] != '\n') return std::nullopt;
   if (as_text(file).substr(checksum_mark.size(), digits) != sha256_hex(content)) return std::nullopt;
   return Bytes(content.begin(), content.end());
 }

@@ -113,7 +113,7 @@ TEST_F(JobStoreFolder, a_start_removes_what_ended_processes_left_half_done) {
   fs::create_directories(path / "jobs" / id / "outputs");
   fs::create_directories(path / "slicing-0123456789abcdef/home");
   for (const char* folder : {"blobs", "uploads"}) fs::create_directories(path / folder);
-  for (const std::string file : {"blobs/b" + ended, "results/r" + ended, "machines.json" + ended,
+  for (const std::string& file : {"blobs/b" + ended, "results/r" + ended, "machines.json" + ended,
                                  "jobs/" + id + "/outputs/x", std::string("uploads/u")})
     write(file, "half");
   char machine[256] = "";
@@ -122,7 +122,7 @@ TEST_F(JobStoreFolder, a_start_removes_what_ended_processes_left_half_done) {
   write("results/other.claim", "elsewhere 99999999");
   JobStore store(path);
   EXPECT_EQ(store.find(id), nullptr);  // no job.json: it was never accepted
-  for (const std::string gone :
+  for (const std::string& gone :
        {"blobs/b" + ended, "results/r" + ended, "machines.json" + ended, "jobs/" + id, std::string("uploads/u"),
         std::string("slicing-0123456789abcdef"), std::string("results/key.claim")})
     EXPECT_FALSE(there(gone)) << gone;

@@ -6,7 +6,7 @@ Usage: disk_fault_test.py PROGRAM LIBRARY [--from 1] [--to 500] [--step 1] [--se
 The error is ENOSPC or EIO, drawn; every fourth disk stays full until the restart."""
 import argparse
 import errno
-import os
+import itertools
 import pathlib
 import random
 import shutil
@@ -19,15 +19,25 @@ from kept_jobs import DONE, NO_ANSWER, TETRAHEDRON, Figures, job_number, left_ov
 from worker import HEARS_HANGUPS, Worker
 
 CHANGES_OF_A_JOB = 20  # of the disk, at least
-SECONDS_FOR_FAULTY_RUN = 4
+SECONDS_AFTER_FAULT = 1.5  # then the restart comes
 
 
-def run_with_fault(worker: Worker, jobs: int, counter: pathlib.Path, number: int) -> tuple[dict[str, int], int]:
+def jobs_for(number: int) -> list[int]:
+    """Enough of the quick ones for the n-th change of the disk to be among theirs."""
+    quick = (job for job in itertools.count() if job % 6 in (0, 1, 3))
+    return list(itertools.islice(quick, 3 + number // CHANGES_OF_A_JOB))
+
+
+def changes(counter: pathlib.Path) -> int:
+    return struct.unpack("q", counter.read_bytes())[0]
+
+
+def run_with_fault(worker: Worker, jobs: list[int], counter: pathlib.Path, number: int) -> tuple[dict[str, int], int]:
     """The jobs that were accepted, and how many answers were 507."""
     accepted: dict[str, int] = {}
     refused = 0
     blob = None
-    for job in range(jobs):
+    for job in jobs:
         try:
             if job % 6 == 0 and blob is None:  # a refused upload is sent again, as a page does
                 for _ in range(2):
@@ -48,10 +58,10 @@ def run_with_fault(worker: Worker, jobs: int, counter: pathlib.Path, number: int
             refused += 1
         else:
             raise AssertionError((status, answer))
-    end = time.monotonic() + SECONDS_FOR_FAULTY_RUN
-    while time.monotonic() < end and not all(state in DONE for state in states(worker, accepted).values()):
-        if struct.unpack("q", counter.read_bytes())[0] >= number and time.monotonic() > end - SECONDS_FOR_FAULTY_RUN + 1.5:
-            break  # the rest is for the restart
+    restart = None
+    while not all(state in DONE for state in states(worker, accepted).values()) and (not restart or time.monotonic() < restart):
+        if not restart and changes(counter) >= number:
+            restart = time.monotonic() + SECONDS_AFTER_FAULT
         time.sleep(0.02)
     return accepted, refused
 
@@ -73,7 +83,7 @@ def main() -> int:
     began = time.monotonic()
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name).resolve()
-        expected = undisturbed(options.program, folder / "undisturbed")
+        expected = undisturbed(options.program, folder / "undisturbed", jobs_for(options.to))
         for number in range(options.first, options.to + 1, options.step):
             data, counter = folder / "data", folder / "counter"
             counter.write_bytes(bytes(8))
@@ -85,12 +95,12 @@ def main() -> int:
             runs += 1
             try:
                 worker = Worker(options.program, data, before=(*HEARS_HANGUPS, *(f"{key}={value}" for key, value in faults.items())))
-                accepted, answers = run_with_fault(worker, 3 + number // CHANGES_OF_A_JOB, counter, number)
+                accepted, answers = run_with_fault(worker, jobs_for(number), counter, number)
                 refused += answers
                 worker.stop()
             except RuntimeError:
                 not_started += 1
-            met += struct.unpack("q", counter.read_bytes())[0] >= number
+            met += changes(counter) >= number
             worker = Worker(options.program, data)
             if not wait_for_all(worker, accepted, 60):
                 figures.failures.append(f"{where}: not all jobs have finished")

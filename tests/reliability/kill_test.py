@@ -60,7 +60,7 @@ def main() -> int:
     print(f"seed {options.seed}")
     killed = {"worker": 0, "solver": 0, "both": 0}
     with tempfile.TemporaryDirectory() as name:
-        expected = undisturbed(options.program, pathlib.Path(name) / "undisturbed")
+        expected = undisturbed(options.program, pathlib.Path(name) / "undisturbed", list(range(options.jobs)))
         data = pathlib.Path(name) / "data"
         worker = start(options.program, data, draw)
         accepted: dict[str, int] = {}

@@ -106,10 +106,11 @@ bool ResultFolder::claim(const std::string& key) const {
   const std::filesystem::path path = folder_ / (key + ".claim");
   // Linked when it is whole: a process that ends before then leaves no claim without an owner.
   const UploadFile own(temporary_name(path));
-  std::ofstream(own.path) << this_machine() << " " << ::getpid() << std::flush;
+  std::ofstream text(own.path);
+  if (!(text << this_machine() << " " << ::getpid() << std::flush)) return true;  // nothing is shared on a full disk
   for (int attempt = 0; attempt < 2; ++attempt) {
     if (::link(own.path.c_str(), path.c_str()) == 0) return true;
-    if (errno != EEXIST) return true;  // a folder that cannot be written shares nothing
+    if (errno != EEXIST) return true;  // nor where there are no hard links
     const auto owner = owner_of(path);
     const auto written = std::filesystem::last_write_time(path, status);
     const bool old = !status && std::filesystem::file_time_type::clock::now() - written > std::chrono::minutes(10);

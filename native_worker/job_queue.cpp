@@ -235,11 +235,13 @@ void JobQueue::process_ended() {
   if (job && asked) {
     finish(*job, error_message("cancelled", "Cancelled; the solver process had to be stopped."));
   } else if (job) {
-    job->deaths.count(death_of(status, oom_kills() > oom_kills_before_));
+    const SolverDeath death = death_of(status, oom_kills() > oom_kills_before_);
+    job->deaths.count(death);
     if (auto verdict = job->deaths.verdict()) {
       finish(*job, std::move(*verdict));
     } else {
       put_back(*job, "The solver process was ended. The job starts again.", Clock::now() + job->deaths.pause());
+      if (death == SolverDeath::killed || death == SolverDeath::ended) return start_next();
       try {
         store_.save(*job);
       } catch (const StorageError&) {

@@ -72,10 +72,10 @@ std::chrono::milliseconds SolverDeaths::pause() const {
   return std::min(first_pause * (1 << (deaths - 1)), max_pause);
 }
 
-Json SolverDeaths::json() const { return {{"crashed", crashed}, {"out_of_memory", out_of_memory}, {"killed", killed}}; }
+Json SolverDeaths::json() const { return {{"crashed", crashed}, {"out_of_memory", out_of_memory}}; }
 
 SolverDeaths SolverDeaths::from_json(const Json& deaths) {
-  return {deaths.at("crashed").get<int>(), deaths.at("out_of_memory").get<int>(), deaths.at("killed").get<int>()};
+  return {deaths.at("crashed").get<int>(), deaths.at("out_of_memory").get<int>()};
 }
 
 }  // namespace formwright

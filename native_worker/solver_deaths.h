@@ -25,7 +25,8 @@ std::uint64_t oom_kills();
 
 /// Of one job.
 struct SolverDeaths {
-  int crashed = 0, out_of_memory = 0, killed = 0;
+  int crashed = 0, out_of_memory = 0;
+  int killed = 0;  // since the worker started: whoever kills that, too, says nothing of the job
 
   void count(SolverDeath death);
   /// {"error"} with which the job fails for good, or nothing: it starts again.
@@ -34,7 +35,7 @@ struct SolverDeaths {
   /// others.
   std::chrono::milliseconds pause() const;
 
-  Json json() const;
+  Json json() const;  // what the next worker is to know
   static SolverDeaths from_json(const Json& deaths);
 };
 

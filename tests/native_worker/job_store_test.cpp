@@ -114,7 +114,7 @@ TEST_F(JobStoreFolder, a_start_removes_what_ended_processes_left_half_done) {
   fs::create_directories(path / "slicing-0123456789abcdef/home");
   for (const char* folder : {"blobs", "uploads"}) fs::create_directories(path / folder);
   for (const std::string& file : {"blobs/b" + ended, "results/r" + ended, "machines.json" + ended,
-                                 "jobs/" + id + "/outputs/x", std::string("uploads/u")})
+                                  "jobs/" + id + "/outputs/x", std::string("uploads/u")})
     write(file, "half");
   char machine[256] = "";
   ::gethostname(machine, sizeof machine - 1);
@@ -134,7 +134,7 @@ TEST_F(JobStoreFolder, jobs_come_back_as_they_were) {
   {
     JobStore store(path);
     StoredJob& first = store.add({{"operation", "import"}});
-    first.deaths.killed = 3;
+    first.deaths.crashed = 1;
     store.save(first);
     queued = first.id;
     done = finished_job(store);
@@ -142,7 +142,7 @@ TEST_F(JobStoreFolder, jobs_come_back_as_they_were) {
   JobStore store(path);
   ASSERT_NE(store.find(queued), nullptr);
   EXPECT_EQ(store.find(queued)->state, JobState::queued);
-  EXPECT_EQ(store.find(queued)->deaths.killed, 3);
+  EXPECT_EQ(store.find(queued)->deaths.crashed, 1);
   ASSERT_NE(store.find(done), nullptr);
   EXPECT_EQ(store.find(done)->state, JobState::done);
   EXPECT_EQ(store.find(done)->result, result);
@@ -258,21 +258,23 @@ TEST(SolverDeaths, kills_are_forgiven_and_crashes_are_not) {
   EXPECT_EQ(death_of(SIGTERM, false), SolverDeath::ended);
   EXPECT_EQ(death_of(SIGSEGV, true), SolverDeath::crashed);
   EXPECT_EQ(death_of(1 << 8, false), SolverDeath::crashed);  // exit(1)
-  const auto deaths_until_verdict = [](SolverDeath death) {
+  const auto deaths_until_verdict = [](SolverDeath death, bool restarts) {
     SolverDeaths deaths;
     int count = 0;
     while (!deaths.verdict() && count < 1000) {
       deaths.count(death);
       EXPECT_LE(deaths.pause(), 10s);
-      deaths = SolverDeaths::from_json(deaths.json());
+      if (restarts) deaths = SolverDeaths::from_json(deaths.json());
       ++count;
     }
     return count;
   };
-  EXPECT_EQ(deaths_until_verdict(SolverDeath::crashed), 2);
-  EXPECT_EQ(deaths_until_verdict(SolverDeath::out_of_memory), 2);
-  EXPECT_EQ(deaths_until_verdict(SolverDeath::killed), 20);
-  EXPECT_EQ(deaths_until_verdict(SolverDeath::ended), 1000);
+  for (const bool restarts : {false, true}) {  // of the worker between two deaths
+    EXPECT_EQ(deaths_until_verdict(SolverDeath::crashed, restarts), 2);
+    EXPECT_EQ(deaths_until_verdict(SolverDeath::out_of_memory, restarts), 2);
+    EXPECT_EQ(deaths_until_verdict(SolverDeath::killed, restarts), restarts ? 1000 : 20);
+    EXPECT_EQ(deaths_until_verdict(SolverDeath::ended, restarts), 1000);
+  }
 }
 
 }  // namespace

@@ -168,17 +168,21 @@ Response HttpServer::answer_jobs(const Head& head, const std::string& path, cons
     const Json inputs = message.value("inputs", Json::object());
     for (const auto& [name, input] : inputs.items()) {
       if (!input.contains("sha256")) continue;
-      std::error_code missing;  // a model that is worked on is never the one that was unused longest
-      std::filesystem::last_write_time(store_.blob_path(input["sha256"].get<std::string>()),
-                                       std::filesystem::file_time_type::clock::now(), missing);
-      if (missing)
+      // A model that is worked on is never the one that was unused longest.
+      if (!store_.touch_blob(input["sha256"].get<std::string>()))
         return error_response(head, http::status::unprocessable_entity, "invalid_input", name,
                               "The file for the input " + name + " has not arrived: send it again.");
     }
     if (queue_.waiting() >= most_queued)
       return error_response(head, http::status::too_many_requests, "invalid_input", "",
                             "Too many jobs are waiting: let some finish.");
-    const std::string id = store_.add(message).id;
+    std::string id;
+    try {
+      id = store_.add(message).id;
+    } catch (const StorageError& error) {
+      return error_response(head, http::status::insufficient_storage, "internal", "",
+                            std::string("The job was not accepted: ") + error.what());
+    }
     store_.tidy(most_kept_jobs, most_blob_mb);  // now that the new job's blobs count as needed
     queue_.enqueue(id);
     return text_response(head, http::status::accepted, Json{{"id", id}}.dump());
@@ -192,7 +196,9 @@ Response HttpServer::answer_jobs(const Head& head, const std::string& path, cons
     if (!job->finished())
       return error_response(head, http::status::conflict, "invalid_input", "",
                             "The job is not finished: cancel it first.");
-    store_.remove(id);
+    if (!store_.remove(id))
+      return error_response(head, http::status::insufficient_storage, "internal", "",
+                            "The job could not be removed from the disk: try again.");
     return text_response(head, http::status::no_content, "");
   }
   if (rest == "/cancel" && head.method() == http::verb::post) {
@@ -213,23 +219,21 @@ Response HttpServer::answer_jobs(const Head& head, const std::string& path, cons
 Response HttpServer::answer_blob(const Head& head, const std::string& sha256) {
   if (!is_hex_name(sha256, 64))
     return error_response(head, http::status::not_found, "invalid_input", "", "A blob's name is its SHA-256.");
-  std::error_code status;
-  std::filesystem::last_write_time(store_.blob_path(sha256), std::filesystem::file_time_type::clock::now(),
-                                   status);  // used just now
+  store_.touch_blob(sha256);
   return file_response(head, store_.blob_path(sha256), "application/octet-stream");
 }
 
 Response HttpServer::accept_upload(const Head& head, const std::string& sha256, const std::filesystem::path& received,
                                    const std::string& found_hash) {
-  std::error_code status;
   if (found_hash != sha256)
     return error_response(head, http::status::unprocessable_entity, "invalid_input", "sha256",
                           "The bytes do not have the SHA-256 they were sent under: send them again.");
   const bool known = std::filesystem::exists(store_.blob_path(sha256));
-  std::filesystem::rename(received, store_.blob_path(sha256), status);
-  if (status)
-    return error_response(head, http::status::insufficient_storage, "internal", "",
-                          "The file cannot be kept (" + status.message() + ").");
+  try {
+    store_.keep_blob(received, sha256);
+  } catch (const StorageError& error) {
+    return error_response(head, http::status::insufficient_storage, "internal", "", error.what());
+  }
   return text_response(head, known ? http::status::ok : http::status::created, Json{{"sha256", sha256}}.dump());
 }
 

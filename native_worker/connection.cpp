@@ -244,6 +244,7 @@ boost::asio::awaitable<Response> HttpServer::receive_and_answer(beast::tcp_strea
     Response told = co_await bridge_.answer(request, path.substr(machines.size()), query, parser.get().body());
     co_return told;
   }
+  if (auto refused = co_await refuse_altered(request)) co_return std::move(*refused);
   co_return answer(request, parser.get().body());
 }
 
@@ -252,27 +253,38 @@ boost::asio::awaitable<Response> HttpServer::receive_upload(beast::tcp_stream& s
   const Head request = head.get();
   const UploadFile received(store_.temporary_path());
   boost::system::error_code error;
+  const auto no_room = [&] {
+    return last_answer(error_response(request, http::status::insufficient_storage, "internal", "",
+                                      "The disk cannot keep the file: make room and try again."));
+  };
   http::request_parser<http::file_body> parser(std::move(head));
   parser.body_limit(options_.upload_limit_bytes);
   parser.get().body().open(received.path.c_str(), beast::file_mode::write, error);
+  if (error) co_return no_room();
   buffer.reserve(64 * 1024);  // async_read fills what the buffer has room for, which after the head is a kilobyte
   stream.expires_after(upload_patience);
-  if (!error) co_await http::async_read(stream, buffer, parser, boost::asio::redirect_error(use_awaitable, error));
+  co_await http::async_read(stream, buffer, parser, boost::asio::redirect_error(use_awaitable, error));
   parser.get().body().close();
   if (error == http::error::body_limit) co_return last_answer(upload_too_large(request));
-  if (error == boost::system::errc::no_space_on_device)
-    co_return last_answer(error_response(request, http::status::insufficient_storage, "internal", "",
-                                         "The disk is full: make room and try again."));
+  if (error == boost::system::errc::no_space_on_device || error == boost::system::errc::io_error ||
+      error == boost::system::errc::file_too_large || error.value() == EDQUOT)
+    co_return no_room();
   if (error)
     co_return last_answer(error_response(request, http::status::bad_request, "invalid_input", "mesh",
                                          "The upload was cut off: try again."));
   // Hashing a large file takes a moment, and others are waiting: not on this thread.
-  const std::string found = co_await boost::asio::co_spawn(
-      hashing_,
-      [](std::filesystem::path path) -> boost::asio::awaitable<std::string> {
-        co_return sha256_of_file(path);
-      }(received.path),
-      use_awaitable);
+  std::string found;
+  try {
+    found = co_await boost::asio::co_spawn(
+        hashing_,
+        [](std::filesystem::path path) -> boost::asio::awaitable<std::string> {
+          sync_file(path);
+          co_return sha256_of_file(path);
+        }(received.path),
+        use_awaitable);
+  } catch (const Error&) {
+    co_return no_room();
+  }
   co_return accept_upload(request, blob_hash(request), received.path, found);
 }
 

@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "files.h"
 
-#include <fcntl.h>
-#include <sys/mman.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <csignal>
-#include <cstdlib>
 #include <chrono>
-#include <cstring>
+#include <cstdlib>
 #include <fstream>
 #include <map>
-#include <thread>
+#include <vector>
 
 #include "base/context.h"
 #include "base/error.h"
@@ -39,33 +35,12 @@ std::shared_ptr<const Bytes> read_file(const std::filesystem::path& path, const 
   return bytes;
 }
 
-void write_file(const std::filesystem::path& path, ByteView bytes) {
-  const std::filesystem::path temporary = path.string() + ".part-" + std::to_string(::getpid());
-  const auto fail = [&](const std::string& what) {
-    const std::string reason = std::strerror(errno);
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    throw Error(ErrorCode::invalid_input, "out",
-                path.string() + " cannot be " + what + " (" + reason + "): choose another folder or make room.");
-  };
-  const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (descriptor < 0) fail("written");
-  std::size_t done = 0;
-  while (done < bytes.size()) {
-    const ssize_t count = ::write(descriptor, bytes.data() + done, bytes.size() - done);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) {
-      ::close(descriptor);
-      fail("written");
-    }
-    done += static_cast<std::size_t>(count);
-  }
-  if (::fsync(descriptor) != 0 && errno != EINVAL) {
-    ::close(descriptor);
-    fail("written");
-  }
-  ::close(descriptor);
-  if (std::rename(temporary.c_str(), path.c_str()) != 0) fail("put in its place");
+std::shared_ptr<const Bytes> read_checked_file(const std::filesystem::path& path, const std::string& sha256,
+                                               const std::string& where, std::uintmax_t limit_bytes) {
+  auto bytes = read_file(path, where, limit_bytes);
+  if (sha256_hex(*bytes) != sha256)
+    throw Error(ErrorCode::invalid_input, where, path.string() + " was altered on the disk: send the file again.");
+  return bytes;
 }
 
 std::shared_ptr<const Bytes> pack_folder(const std::filesystem::path& folder, const std::vector<std::string>& names,
@@ -84,21 +59,16 @@ std::optional<Bytes> ResultFolder::find(const std::string& key) const {
   std::error_code status;
   if (!std::filesystem::is_regular_file(path, status)) return std::nullopt;
   try {
-    return *read_file(path, "");
+    return checked_content(*read_file(path, ""));
   } catch (const Error&) {
     return std::nullopt;
   }
 }
 
 void ResultFolder::keep(const std::string& key, const Bytes& result) const {
-  std::error_code status;
-  std::filesystem::create_directories(folder_, status);
   try {
-    // Threads of one process may keep the same key at once: each writes to a name of its own.
-    const std::filesystem::path own =
-        folder_ / (key + "-" + std::to_string(std::hash<std::thread::id>{}(std::this_thread::get_id())));
-    write_file(own, result);
-    std::filesystem::rename(own, folder_ / key, status);
+    make_folder(folder_);
+    write_file(folder_ / key, with_checksum(result));
   } catch (const Error&) {
     // What cannot be kept is computed again.
   }
@@ -107,16 +77,26 @@ void ResultFolder::keep(const std::string& key, const Bytes& result) const {
 
 namespace {
 
-/// Ended processes whose parent has not asked for them yet still have their number: they do not run.
-bool runs(long process) {
-  if (::kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH) return false;
-  std::ifstream file("/proc/" + std::to_string(process) + "/stat");
-  std::string text;
-  if (!std::getline(file, text)) return true;  // no /proc here, or not ours to read
-  const std::size_t name_end = text.rfind(')');
-  return name_end == std::string::npos || name_end + 2 >= text.size() ||
-         (text[name_end + 2] != 'Z' && text[name_end + 2] != 'X');
+struct ClaimOwner {
+  std::string machine;
+  long process = 0;
+};
+
+/// Nothing where the claim is just gone.
+std::optional<ClaimOwner> owner_of(const std::filesystem::path& claim) {
+  std::ifstream file(claim);
+  ClaimOwner owner;
+  if (!(file >> owner.machine >> owner.process)) return std::nullopt;
+  return owner;
 }
+
+std::string this_machine() {
+  char name[256] = "";
+  ::gethostname(name, sizeof name - 1);
+  return name;
+}
+
+bool has_ended(const ClaimOwner& owner) { return owner.machine == this_machine() && !process_runs(owner.process); }
 
 }  // namespace
 
@@ -124,26 +104,17 @@ bool ResultFolder::claim(const std::string& key) const {
   std::error_code status;
   std::filesystem::create_directories(folder_, status);
   const std::filesystem::path path = folder_ / (key + ".claim");
-  char machine[256] = "";
-  ::gethostname(machine, sizeof machine - 1);
+  // Linked when it is whole: a process that ends before then leaves no claim without an owner.
+  const UploadFile own(temporary_name(path));
+  std::ofstream text(own.path);
+  if (!(text << this_machine() << " " << ::getpid() << std::flush)) return true;  // nothing is shared on a full disk
   for (int attempt = 0; attempt < 2; ++attempt) {
-    const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
-    if (descriptor >= 0) {
-      const std::string owner = std::string(machine) + " " + std::to_string(::getpid());
-      const bool written = ::write(descriptor, owner.data(), owner.size()) == static_cast<ssize_t>(owner.size());
-      ::close(descriptor);
-      if (!written) release(key);
-      return true;
-    }
-    if (errno != EEXIST) return true;  // a folder that cannot be written shares nothing
-    std::ifstream claim(path);
-    std::string owner_machine;
-    long owner = 0;
-    if (!(claim >> owner_machine >> owner)) return false;  // just being written, or just gone: ask again later
-    const bool gone = owner_machine == machine && owner != ::getpid() && !runs(owner);
+    if (::link(own.path.c_str(), path.c_str()) == 0) return true;
+    if (errno != EEXIST) return true;  // nor where there are no hard links
+    const auto owner = owner_of(path);
     const auto written = std::filesystem::last_write_time(path, status);
     const bool old = !status && std::filesystem::file_time_type::clock::now() - written > std::chrono::minutes(10);
-    if (!gone && !old) return false;
+    if (!(owner && has_ended(*owner)) && !old) return false;
     std::filesystem::remove(path, status);
   }
   return false;
@@ -154,6 +125,17 @@ void ResultFolder::release(const std::string& key) const {
   std::filesystem::remove(folder_ / (key + ".claim"), status);
 }
 
+void ResultFolder::remove_abandoned() const {
+  remove_abandoned_files(folder_);
+  std::error_code status;
+  std::vector<std::filesystem::path> claims;
+  for (std::filesystem::directory_iterator it(folder_, status), end; !status && it != end; it.increment(status))
+    if (it->path().extension() == ".claim") claims.push_back(it->path());
+  for (const auto& claim : claims)
+    if (const auto owner = owner_of(claim); owner && (owner->process == ::getpid() || has_ended(*owner)))
+      std::filesystem::remove(claim, status);
+}
+
 void share_results(const ResultFolder& folder, Host& host) {
   host.find_result = [folder](const std::string& key) { return folder.find(key); };
   host.keep_result = [folder](const std::string& key, const Bytes& bytes) { folder.keep(key, bytes); };
@@ -162,23 +144,16 @@ void share_results(const ResultFolder& folder, Host& host) {
 }
 
 std::string sha256_of_file(const std::filesystem::path& path) {
-  const auto fail = [&] {
-    return Error(ErrorCode::internal, "", path.string() + " cannot be read (" + std::strerror(errno) + ").");
-  };
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) throw fail();
-  const std::size_t size = std::filesystem::file_size(path);
-  if (size == 0) {  // cannot be mapped
-    ::close(descriptor);
-    return sha256_hex({});
+  // Read, not mapped: an error of the disk in a mapping ends the process (SIGBUS).
+  std::ifstream stream(path, std::ios::binary);
+  Sha256 sum;
+  std::vector<char> piece(1 << 20);
+  while (stream) {
+    stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    sum.add(as_bytes({piece.data(), static_cast<std::size_t>(stream.gcount())}));
   }
-  void* data = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
-  ::close(descriptor);
-  if (data == MAP_FAILED) throw fail();
-  ::madvise(data, size, MADV_SEQUENTIAL);
-  const std::string hash = sha256_hex({static_cast<const std::byte*>(data), size});
-  ::munmap(data, size);
-  return hash;
+  if (!stream.eof()) throw Error(ErrorCode::internal, "", path.string() + " cannot be read: check the disk.");
+  return sum.hex();
 }
 
 std::filesystem::path default_data_folder() {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Disks belong to the host. Writes go to a temporary name and are renamed, so that a full disk or a crash
-// never leaves half a file under a good name.
+// Disks belong to the host.
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "base/bytes.h"
+#include "durable_files.h"
 
 namespace formwright {
 
@@ -16,9 +16,11 @@ namespace formwright {
 std::shared_ptr<const Bytes> read_file(const std::filesystem::path& path, const std::string& where,
                                        std::uintmax_t limit_bytes = std::uintmax_t{4} << 30);
 
-/// Throws Error{invalid_input, "out"} when the file cannot be written (no space, no permission); nothing is left
-/// behind.
-void write_file(const std::filesystem::path& path, ByteView bytes);
+/// A file that is known by its SHA-256. Throws as read_file() does, and Error{invalid_input, where} when the bytes have
+/// another one: the file was altered.
+std::shared_ptr<const Bytes> read_checked_file(const std::filesystem::path& path, const std::string& sha256,
+                                               const std::string& where,
+                                               std::uintmax_t limit_bytes = std::uintmax_t{4} << 30);
 
 /// A zip of these files of a folder (job/file_pack.h). Throws Error{invalid_input, where} naming the file that is
 /// missing.
@@ -26,8 +28,8 @@ std::shared_ptr<const Bytes> pack_folder(const std::filesystem::path& folder, co
                                          const std::string& where);
 
 /// Intermediate results as files in a folder, which is made when it is needed. Safe for several processes at once:
-/// results are put in their place whole, and the same key always means the same bytes. A folder that cannot be written
-/// keeps nothing.
+/// results are put in their place whole and with their checksum, and the same key always means the same bytes. One that
+/// was altered is not there. A folder that cannot be written keeps nothing.
 class ResultFolder {
  public:
   explicit ResultFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
@@ -37,6 +39,9 @@ class ResultFolder {
   /// or that is older than ten minutes, counts no more.
   bool claim(const std::string& key) const;
   void release(const std::string& key) const;
+  /// Removes what processes of this machine that have ended left half done. This process must not use the folder: what
+  /// has its number is of an earlier one.
+  void remove_abandoned() const;
 
  private:
   std::filesystem::path folder_;

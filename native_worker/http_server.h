@@ -61,6 +61,8 @@ class HttpServer {
                                                       http::request_parser<http::empty_body>& head);
   boost::asio::awaitable<Response> receive_upload(beast::tcp_stream& stream, beast::flat_buffer& buffer,
                                                   http::request_parser<http::empty_body>& head);
+  /// What is read must be what was kept: the answer when a blob or an output was altered on the disk, or nothing.
+  boost::asio::awaitable<std::optional<TextResponse>> refuse_altered(const Head& head);
   boost::asio::awaitable<void> finish_sending(beast::tcp_stream& stream);
 
   // Who may speak. What is refused is refused before its body is read.

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <linux/close_range.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -10,15 +11,18 @@
 #include <boost/asio/read_until.hpp>
 #include <boost/asio/write.hpp>
 #include <csignal>
+#include <iostream>
+#include <utility>
 
 #include "base/error.h"
+#include "files.h"
 
 namespace formwright {
 namespace {
 
 // A solver answers a cancel within a second; one that does not is stuck and goes with its process.
 constexpr auto cancel_patience = std::chrono::milliseconds(1500);
-constexpr int most_attempts = 2;
+constexpr std::chrono::milliseconds first_rest{1000}, max_rest{20000};
 
 Json error_message(const char* code, const std::string& sentence) {
   return {{"error", {{"code", code}, {"where", ""}, {"message", sentence}}}};
@@ -28,40 +32,43 @@ Json error_message(const char* code, const std::string& sentence) {
 
 JobQueue::JobQueue(boost::asio::io_context& io, JobStore& store, std::function<void(const Json&)> tell,
                    std::vector<std::string> solver)
-    : io_(io), store_(store), tell_(std::move(tell)), solver_(std::move(solver)), patience_(io) {}
+    : io_(io),
+      store_(store),
+      tell_(std::move(tell)),
+      solver_(std::move(solver)),
+      patience_(io),
+      next_rest_(first_rest),
+      alarm_(io) {}
 
 void JobQueue::start() {
-  for (const std::string& id : store_.unfinished_oldest_first()) waiting_.push_back(id);
+  for (const std::string& id : store_.unfinished_oldest_first()) waiting_.push_back({id});
   start_next();
 }
 
 void JobQueue::stop() {
   ++generation_;
   patience_.cancel();
+  alarm_.cancel();
   waiting_.clear();
   if (process_ > 0) {
     ::kill(process_, SIGKILL);
     ::waitpid(process_, nullptr, 0);
     process_ = -1;
   }
-  if (StoredJob* job = running_.empty() ? nullptr : store_.find(running_)) {
-    job->state = JobState::queued;
-    --job->attempts;  // it did not end the process; we did
-    store_.save(*job);
-  }
+  save_finished();
   running_.clear();
 }
 
 void JobQueue::enqueue(const std::string& id) {
-  waiting_.push_back(id);
+  waiting_.push_back({id});
   start_next();
 }
 
 void JobQueue::cancel(const std::string& id) {
   StoredJob* job = store_.find(id);
-  if (!job || job->finished()) return;
+  if (!job || job->finished() || unsaved_.contains(id)) return;
   if (id != running_) {
-    std::erase(waiting_, id);
+    std::erase_if(waiting_, [&](const Waiting& waiting) { return waiting.id == id; });
     finish(*job, error_message("cancelled", "Cancelled."));
     return;
   }
@@ -91,6 +98,7 @@ void JobQueue::start_process() {
   std::vector<char*> arguments{program.data()};
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
+  const pid_t worker = ::getpid();
   process_ = ::fork();
   if (process_ < 0) {
     for (const int descriptor : {to_child[0], to_child[1], from_child[0], from_child[1]}) ::close(descriptor);
@@ -98,10 +106,15 @@ void JobQueue::start_process() {
                 "The solver process could not be started: the system has no room for another.");
   }
   if (process_ == 0) {
+    // A solver without its worker would write where the next worker lets the job run again. It ends with the thread
+    // that forked it (prctl(2)), which is the server's.
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (::getppid() != worker) ::_exit(0);
     ::dup2(to_child[0], STDIN_FILENO);
     ::dup2(from_child[1], STDOUT_FILENO);
     // Sockets of pages are not its: one that it kept open would never end for the browser, however often we close it.
     ::close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
+    ::fcntl(store_.solver_lock(), F_SETFD, 0);  // the next worker waits for it
     ::execv("/proc/self/exe", arguments.data());
     ::_exit(127);
   }
@@ -116,42 +129,65 @@ void JobQueue::start_process() {
 }
 
 void JobQueue::start_next() {
+  if (Clock::now() < resting_until_) return wake_at(resting_until_);
+  if (!save_finished()) return;
   while (running_.empty() && !waiting_.empty()) {
-    const std::string id = waiting_.front();
-    waiting_.pop_front();
-    StoredJob* job = store_.find(id);
+    const auto now = Clock::now();
+    const auto due = std::find_if(waiting_.begin(), waiting_.end(), [&](const Waiting& w) { return w.from <= now; });
+    if (due == waiting_.end())
+      return wake_at(std::min_element(waiting_.begin(), waiting_.end(), [](const Waiting& a, const Waiting& b) {
+                       return a.from < b.from;
+                     })->from);
+    StoredJob* job = store_.find(due->id);
+    waiting_.erase(due);
     if (!job || job->finished()) continue;
-    if (job->attempts >= most_attempts) {
-      finish(*job, error_message(
-                       "internal",
-                       "This job stopped the solver twice and is not tried again: simplify the model, and report it."));
-      continue;
-    }
     try {
-      if (process_ <= 0) start_process();
+      run(*job);
     } catch (const std::exception& error) {
-      finish(*job, error_message("internal", error.what()));
-      continue;
+      put_back(*job, error.what());
+      return rest(error.what());
     }
-    ++job->attempts;
-    job->state = JobState::running;
-    store_.save(*job);
-    if (job->finished()) {  // the disk is full: said in the job already
-      tell_({{"type", "finished"}, {"id", id}, {"state", to_string(job->state)}, {"error", job->result["error"]}});
-      continue;
-    }
-    running_ = id;
-    Json blobs = Json::object();
-    const Json inputs = job->job.value("inputs", Json::object());
-    for (const auto& [name, input] : inputs.items())
-      if (input.contains("sha256") && std::filesystem::exists(store_.blob_path(input["sha256"].get<std::string>())))
-        blobs[input["sha256"].get<std::string>()] = store_.blob_path(input["sha256"].get<std::string>()).string();
-    send({{"run", id},
-          {"job", job->job},
-          {"blobs", blobs},
-          {"outputs", store_.outputs_folder(id).string()},
-          {"results", store_.results_folder().string()}});
   }
+}
+
+void JobQueue::run(StoredJob& job) {
+  store_.clear_outputs(job.id);
+  if (process_ <= 0) start_process();
+  oom_kills_before_ = oom_kills();
+  job.state = JobState::running;
+  job.progress = nullptr;
+  running_ = job.id;
+  Json blobs = Json::object();
+  const Json inputs = job.job.value("inputs", Json::object());
+  for (const auto& [name, input] : inputs.items())
+    if (input.contains("sha256") && std::filesystem::exists(store_.blob_path(input["sha256"].get<std::string>())))
+      blobs[input["sha256"].get<std::string>()] = store_.blob_path(input["sha256"].get<std::string>()).string();
+  send({{"run", job.id},
+        {"job", job.job},
+        {"blobs", blobs},
+        {"outputs", store_.outputs_folder(job.id).string()},
+        {"results", store_.results_folder().string()}});
+}
+
+void JobQueue::put_back(StoredJob& job, const std::string& sentence, Clock::time_point from) {
+  job.state = JobState::queued;
+  job.progress = {{"fraction", 0}, {"stage", sentence}, {"seconds_left", nullptr}};
+  waiting_.push_back({job.id, from});
+  tell_({{"type", "progress"}, {"id", job.id}, {"fraction", 0}, {"stage", sentence}, {"seconds_left", nullptr}});
+}
+
+void JobQueue::rest(const std::string& sentence) {
+  std::cerr << "formwright: " << sentence << " Trying again in " << next_rest_.count() / 1000 << " s." << std::endl;
+  resting_until_ = Clock::now() + next_rest_;
+  next_rest_ = std::min(2 * next_rest_, max_rest);
+  wake_at(resting_until_);
+}
+
+void JobQueue::wake_at(Clock::time_point time) {
+  alarm_.expires_at(time);
+  alarm_.async_wait([this](const boost::system::error_code& error) {
+    if (!error) start_next();
+  });
 }
 
 void JobQueue::read_line() {
@@ -184,6 +220,12 @@ void JobQueue::handle(const Json& message) {
     running_.clear();
     cancelling_.clear();
     patience_.cancel();
+    for (const Json& altered : message.value("altered_blobs", Json::array()))
+      store_.remove_blob(altered.get<std::string>());
+    if (job && message.contains("not_kept")) {
+      put_back(*job, message["not_kept"].get<std::string>());
+      return rest(message["not_kept"].get<std::string>());
+    }
     if (job) finish(*job, message["result"]);
     if (message.contains("stuck")) {  // it takes no further job
       ::kill(process_, SIGKILL);
@@ -200,42 +242,72 @@ void JobQueue::process_ended() {
   ++generation_;
   input_.reset();
   output_.reset();
-  const bool stopped_by_us = stopping_;
-  const bool killed = WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
+  const bool asked = stopping_ || (!running_.empty() && cancelling_ == running_);
   stopping_ = false;
   cancelling_.clear();
   patience_.cancel();
+  ResultFolder(store_.results_folder()).remove_abandoned();
   StoredJob* job = running_.empty() ? nullptr : store_.find(running_);
   running_.clear();
-  if (job && stopped_by_us)
+  if (job && asked) {
     finish(*job, error_message("cancelled", "Cancelled; the solver process had to be stopped."));
-  else if (job && killed)
-    finish(
-        *job,
-        error_message(
-            "out_of_memory",
-            "The system stopped the solver process, most likely for lack of memory: use a smaller model. Nothing else is lost."));
-  else if (job)
-    finish(
-        *job,
-        error_message(
-            "internal",
-            "The solver process stopped unexpectedly. Nothing else is lost; try a smaller model, and report this one."));
+  } else if (job) {
+    const SolverDeath death = death_of(status, oom_kills() > oom_kills_before_);
+    job->deaths.count(death);
+    if (auto verdict = job->deaths.verdict()) {
+      finish(*job, std::move(*verdict));
+    } else {
+      put_back(*job, "The solver process was ended. The job starts again.", Clock::now() + job->deaths.pause());
+      if (death == SolverDeath::killed || death == SolverDeath::ended) return start_next();
+      try {
+        store_.save(*job);
+      } catch (const StorageError&) {
+        // A worker that starts counts one death less.
+      }
+    }
+  }
   start_next();
 }
 
 void JobQueue::finish(StoredJob& job, Json result) {
   const Json error = result.value("error", Json());
-  job.state = !error.is_object()                       ? JobState::done
-              : error.value("code", "") == "cancelled" ? JobState::cancelled
-                                                       : JobState::failed;
+  const JobState state = !error.is_object()                       ? JobState::done
+                         : error.value("code", "") == "cancelled" ? JobState::cancelled
+                                                                  : JobState::failed;
   job.result = std::move(result);
   job.progress = nullptr;
-  store_.save(job);
-  Json message = {{"type", "finished"}, {"id", job.id}, {"state", to_string(job.state)}};
-  if (job.result.contains("error")) message["error"] = job.result["error"];
-  else message["result"] = job.result;
-  tell_(message);
+  unsaved_[job.id] = state;
+  if (state != JobState::done) store_.discard_outputs(job.id);
+  if (state != JobState::done) {  // true whether or not the disk takes it; without that the job runs again some day
+    job.state = state;
+    tell_({{"type", "finished"}, {"id", job.id}, {"state", to_string(state)}, {"error", error}});
+  }
+  save_finished();
+}
+
+bool JobQueue::save_finished() {
+  while (!unsaved_.empty()) {
+    const auto [id, state] = *unsaved_.begin();
+    StoredJob* job = store_.find(id);
+    if (job) {
+      const JobState before = std::exchange(job->state, state);
+      try {
+        store_.save(*job);
+      } catch (const StorageError& error) {
+        job->state = before;
+        if (state == JobState::done)
+          job->progress = {{"fraction", 1}, {"stage", error.what()}, {"seconds_left", nullptr}};
+        rest(error.what());
+        return false;
+      }
+      job->progress = nullptr;
+      if (state == JobState::done)
+        tell_({{"type", "finished"}, {"id", id}, {"state", to_string(state)}, {"result", job->result}});
+    }
+    unsaved_.erase(id);
+    next_rest_ = first_rest;
+  }
+  return true;
 }
 
 void JobQueue::send(const Json& message) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The child process of the worker: one JSON message a line in, one a line out.
 //   in:  {"run": id, "job": message, "blobs": {sha256: path}, "outputs": folder, "results": folder} | {"cancel": id}
-//   out: {"progress": id, ...} | {"finished": id, "result": message, "stuck"?: true}
+//   out: {"progress": id, ...}
+//        | {"finished": id, "result": message, "altered_blobs": [sha256, ...], "stuck"?: true}
+//        | {"finished": id, "not_kept": sentence}: the disk did not take the outputs, the job is to run again
 // `stuck`: the solver did not hear that its time was up, and this process takes no further job.
 // Paths come from the server, which makes them from hashes and identifiers only.
 #include <sys/prctl.h>
@@ -113,10 +115,26 @@ class TimeLimit {
   std::thread watch_;
 };
 
+std::string input_of(const Json& job, const std::string& sha256) {
+  for (const auto& [name, input] : job["inputs"].items())
+    if (input.value("sha256", "") == sha256) return name;
+  return "";
+}
+
 Json run_one(const Json& request, Session& session, const Host& host, const SolverOptions& options) {
   const Json& blobs = request["blobs"];
+  Json altered = Json::array();
   const auto find = [&](const std::string& hash) -> std::shared_ptr<const Bytes> {
-    return blobs.contains(hash) ? read_file(blobs[hash].get<std::string>(), hash) : nullptr;
+    if (!blobs.contains(hash)) return nullptr;
+    const std::string name = input_of(request["job"], hash);
+    auto bytes = read_file(blobs[hash].get<std::string>(), name);
+    if (sha256_hex(*bytes) == hash) return bytes;
+    altered.push_back(hash);
+    throw Error(ErrorCode::invalid_input, name,
+                "The file for the input " + name + " was altered on the disk: send it again.");
+  };
+  const auto finished = [&](Json result) {
+    return Json{{"finished", request["run"]}, {"result", std::move(result)}, {"altered_blobs", altered}};
   };
   try {
     JobResult result = run_job(request["job"], find, session, host);
@@ -130,11 +148,14 @@ Json run_one(const Json& request, Session& session, const Host& host, const Solv
       write_file(folder / output.name, *output.bytes);
       answer["outputs"][output.name]["sha256"] = sha256_hex(*output.bytes);
     }
-    return answer;
+    return finished(std::move(answer));
+  } catch (const StorageError& error) {
+    return {{"finished", request["run"]}, {"not_kept", error.what()}};
   } catch (const Error& error) {
-    return error_json({error.code(), error.where(), error.what()});
+    return finished(error_json({error.code(), error.where(), error.what()}));
   } catch (const std::exception& error) {
-    return error_message(ErrorCode::internal, std::string("The results could not be kept: ") + error.what());
+    return finished(
+        error_json({ErrorCode::internal, "", std::string("The results could not be kept: ") + error.what()}));
   }
 }
 
@@ -171,9 +192,12 @@ int run_jobs_for_server(const std::vector<std::string>& words) {
         answer = run_one(request, session, host, options);
       }).join();
     }
-    const bool cancelled = answer.contains("error") && answer["error"]["code"] == to_string(ErrorCode::cancelled);
-    if (cancelled && !inbox.cancelled()) answer = time_is_up(options);
-    send({{"finished", id}, {"result", std::move(answer)}});
+    if (answer.contains("result")) {
+      Json& result = answer["result"];
+      const bool cancelled = result.contains("error") && result["error"]["code"] == to_string(ErrorCode::cancelled);
+      if (cancelled && !inbox.cancelled()) result = time_is_up(options);
+    }
+    send(answer);
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/sha256.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -43,24 +44,41 @@ void compress(std::array<std::uint32_t, 8>& state, const unsigned char* block) {
 
 }  // namespace
 
-std::string sha256_hex(ByteView bytes) {
-  std::array<std::uint32_t, 8> state = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
-                                        0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
+void Sha256::add(ByteView bytes) {
+  if (bytes.empty()) return;
   const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
-  std::size_t done = 0;
-  for (; done + 64 <= bytes.size(); done += 64) compress(state, data + done);
+  std::size_t size = bytes.size(), waiting = bytes_ % block_.size();
+  bytes_ += size;
+  if (waiting > 0) {
+    const std::size_t taken = std::min(size, block_.size() - waiting);
+    std::memcpy(block_.data() + waiting, data, taken);
+    waiting += taken, data += taken, size -= taken;
+    if (waiting < block_.size()) return;
+    compress(state_, block_.data());
+  }
+  for (; size >= block_.size(); data += block_.size(), size -= block_.size()) compress(state_, data);
+  if (size > 0) std::memcpy(block_.data(), data, size);
+}
+
+std::string Sha256::hex() {
   std::array<unsigned char, 128> tail{};
-  const std::size_t rest = bytes.size() - done;
-  if (rest > 0) std::memcpy(tail.data(), data + done, rest);
+  const std::size_t rest = bytes_ % block_.size();
+  std::memcpy(tail.data(), block_.data(), rest);
   tail[rest] = 0x80;
   const std::size_t tail_size = rest < 56 ? 64 : 128;
-  const std::uint64_t bits = static_cast<std::uint64_t>(bytes.size()) * 8;
+  const std::uint64_t bits = bytes_ * 8;
   for (std::size_t i = 0; i < 8; ++i) tail[tail_size - 1 - i] = static_cast<unsigned char>(bits >> (8 * i));
-  for (std::size_t i = 0; i < tail_size; i += 64) compress(state, tail.data() + i);
+  for (std::size_t i = 0; i < tail_size; i += 64) compress(state_, tail.data() + i);
   std::string hex;
-  for (const std::uint32_t word : state)
+  for (const std::uint32_t word : state_)
     for (int shift = 28; shift >= 0; shift -= 4) hex += "0123456789abcdef"[(word >> shift) & 15u];
   return hex;
+}
+
+std::string sha256_hex(ByteView bytes) {
+  Sha256 sum;
+  sum.add(bytes);
+  return sum.hex();
 }
 
 }  // namespace formwright

@@ -227,7 +227,7 @@ std::shared_ptr<const Bytes> MachineBridge::blob(const Json& order) const {
   std::error_code status;
   if (!std::filesystem::exists(store_.blob_path(hash), status))
     refuse("sha256", "The file has not arrived: send it again.");
-  return read_file(store_.blob_path(hash), "sha256", most_document_bytes);
+  return read_checked_file(store_.blob_path(hash), hash, "sha256", most_document_bytes);
 }
 
 Response MachineBridge::print(const Head& head, const Machine& m, const Json& order) {

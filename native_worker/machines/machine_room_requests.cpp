@@ -15,7 +15,7 @@ namespace {
 
 using boost::asio::use_awaitable;
 
-constexpr std::uintmax_t most_job_bytes = std::uintmax_t{128} << 20;
+constexpr std::uintmax_t max_job_bytes = std::uintmax_t{128} << 20;
 
 Json error_of(const std::string& code, const std::string& where, const std::string& message, int number) {
   return {{"error", {{"code", code}, {"where", where}, {"message", message}}}, {"n", number}};
@@ -109,13 +109,13 @@ boost::asio::awaitable<void> MachineRooms::handle(RoomHere room, Page page, Mach
 boost::asio::awaitable<void> MachineRooms::load(RoomHere room, MachineRequest request) {
   const auto session = room->session;
   std::size_t bytes = 0;
-  const auto read = [&bytes, path = store_.blob_path(request.sha256),
+  const auto read = [&bytes, path = store_.blob_path(request.sha256), sha256 = request.sha256,
                      options = session->options()]() -> boost::asio::awaitable<std::unique_ptr<PreparedJob>> {
     run_this_thread_last();
     std::error_code status;
     if (!std::filesystem::exists(path, status))
       throw Error(ErrorCode::invalid_input, "sha256", "The job has not arrived: send it again.");
-    const auto job = read_file(path, "sha256", most_job_bytes);
+    const auto job = read_checked_file(path, sha256, "sha256", max_job_bytes);
     bytes = job->size();
     co_return prepare_job(options, *job);
   };

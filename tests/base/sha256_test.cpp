@@ -27,5 +27,16 @@ TEST(Sha256, PadsEveryLengthAroundABlock) {
   }
 }
 
+TEST(Sha256, PiecesGiveWhatTheWholeGives) {
+  const std::string text(300, 'p');
+  const std::string whole = sha256_hex(as_bytes(text));
+  for (const std::size_t piece : {1u, 7u, 63u, 64u, 65u, 128u, 299u, 300u}) {
+    Sha256 sum;
+    for (std::size_t at = 0; at < text.size(); at += piece) sum.add(as_bytes(text.substr(at, piece)));
+    sum.add({});
+    EXPECT_EQ(sum.hex(), whole) << piece;
+  }
+}
+
 }  // namespace
 }  // namespace formwright

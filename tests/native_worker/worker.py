@@ -54,13 +54,18 @@ HEARS_HANGUPS = ("env", "--default-signal=HUP")
 
 class Worker:
     def __init__(self, program: str, data: pathlib.Path, *flags: str, before: tuple[str, ...] = HEARS_HANGUPS, **options):
-        self.process = subprocess.Popen([*before, program, "serve", "--port", "0", "--data", str(data), *flags],
-                                        stdout=subprocess.PIPE, text=True, **options)
+        self.begin(program, data, *flags, before=before, **options)
         for line in self.process.stdout:
             if match := re.match(r"http://127\.0\.0\.1:(\d+)/#token=([0-9a-f]+)$", line.strip()):
                 self.port, self.token = int(match.group(1)), match.group(2)
                 return
         raise RuntimeError("the worker did not start")
+
+    def begin(self, program: str, data: pathlib.Path, *flags: str, before: tuple[str, ...] = HEARS_HANGUPS,
+              **options) -> None:
+        """Starts the program without waiting until it listens."""
+        self.process = subprocess.Popen([*before, program, "serve", "--port", "0", "--data", str(data), *flags],
+                                        stdout=subprocess.PIPE, text=True, **options)
 
     def stop(self) -> None:
         self.process.terminate()

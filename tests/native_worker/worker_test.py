@@ -229,16 +229,18 @@ class Page(unittest.TestCase):
 
 
 class Survival(WorkerCase):
-    def test_a_killed_job_process_costs_that_job_only(self):
+    def test_a_killed_job_process_costs_no_job(self):
         victim = self.worker.post_job(**LONG)
-        self.worker.wait_running(victim)
+        for _ in range(3):
+            self.worker.wait_running(victim)
+            os.kill(self.worker.job_process(), signal.SIGKILL)
+            self.assertTrue(eventually(lambda: self.worker.json("GET", f"/api/jobs/{victim}")[1]["state"] == "queued"))
         waiting = self.worker.post_job(operation="import", inputs=PYRAMID)
-        time.sleep(0.2)
-        os.kill(self.worker.job_process(), signal.SIGKILL)
-        detail = self.worker.wait(victim)
-        self.assertEqual(detail["state"], "failed")
-        self.assertEqual(detail["error"]["code"], "out_of_memory")
+        self.worker.wait_running(victim)
+        self.worker.request("POST", f"/api/jobs/{victim}/cancel")
+        self.assertEqual(self.worker.wait(victim)["state"], "cancelled")
         self.assertEqual(self.worker.wait(waiting)["state"], "done")
+        self.assertFalse((self.data / "jobs" / victim / "outputs").exists())
 
     def test_the_job_process_holds_no_socket_of_a_page(self):
         # It would keep the line open after the worker has closed it, and the browser would wait on it for ever.
@@ -248,8 +250,8 @@ class Survival(WorkerCase):
         victim = self.worker.post_job(**LONG)
         self.worker.wait_running(victim)
         os.kill(self.worker.job_process(), signal.SIGKILL)  # the next one is born while the line is open
-        self.worker.wait(victim)
-        self.worker.wait_running(self.worker.post_job(**LONG))
+        self.assertTrue(eventually(lambda: self.worker.json("GET", f"/api/jobs/{victim}")[1]["state"] == "queued"))
+        self.worker.wait_running(victim)
         child = self.worker.job_process()
         # What is to be closed on exec goes a moment after the program has its new name.
         self.assertTrue(eventually(lambda: not sockets_of(child)))
@@ -257,12 +259,19 @@ class Survival(WorkerCase):
         self.assertGreaterEqual(len(sockets_of(self.worker.process.pid)), 2)  # it listens, and holds the line: they would have been seen
         line.close()
 
-    def test_a_crash_in_a_job_is_said(self):
+    def test_a_job_that_crashes_twice_fails_and_costs_no_other(self):
         victim = self.worker.post_job(**LONG)
-        self.worker.wait_running(victim)
-        time.sleep(0.2)
-        os.kill(self.worker.job_process(), signal.SIGSEGV)
-        self.assertEqual(self.worker.wait(victim)["error"]["code"], "internal")
+        waiting = self.worker.post_job(operation="import", inputs=PYRAMID)
+        for _ in range(2):
+            self.worker.wait_running(victim)
+            child = self.worker.job_process()
+            self.assertTrue(eventually(lambda: ignores(child, signal.SIGINT)))  # it is set up
+            os.kill(child, signal.SIGSEGV)
+            self.assertTrue(eventually(lambda: not runs_jobs(child)))
+        detail = self.worker.wait(victim)
+        self.assertEqual(detail["state"], "failed")
+        self.assertEqual(detail["error"]["code"], "internal")
+        self.assertEqual(self.worker.wait(waiting)["state"], "done")
 
     def test_queue_and_results_survive_a_restart(self):
         done = self.worker.post_job(operation="import", inputs=PYRAMID)
@@ -288,14 +297,17 @@ class Survival(WorkerCase):
             self.worker = Worker(PROGRAM, self.data)
         self.worker.wait_running(running)
 
-    def test_a_job_that_takes_the_worker_down_twice_is_not_tried_again(self):
+    def test_a_killed_worker_does_not_wear_a_job_out_and_takes_its_solver_with_it(self):
         running = self.worker.post_job(**LONG)
-        for _ in range(2):
+        for _ in range(4):
             self.worker.wait_running(running)
+            child = self.worker.job_process()
             self.worker.process.kill()
             self.worker.process.wait()
+            self.worker.process.stdout.close()
             self.worker = Worker(PROGRAM, self.data)
-        self.assertEqual(self.worker.wait(running)["error"]["code"], "internal")
+            self.assertFalse(runs_jobs(child))  # the new worker has waited for its end
+        self.worker.wait_running(running)
 
     def test_a_closed_terminal_costs_no_job(self):
         job = self.worker.post_job(**LONG)
@@ -344,13 +356,53 @@ class Survival(WorkerCase):
             self.worker.request("POST", f"/api/jobs/{job}/cancel")
             self.assertTrue(eventually(lambda: not runs_jobs(child)))
 
-    def test_half_a_folder_from_a_crash_is_not_a_job(self):
+    def test_a_job_that_was_never_accepted_is_swept_and_an_altered_one_is_said(self):
         self.worker.stop()
-        broken = self.data / "jobs" / ("a" * 32)
-        broken.mkdir(parents=True)
-        (broken / "job.json").write_text('{"state": "queu')
+        jobs = self.data / "jobs"
+        (jobs / ("a" * 32) / "outputs").mkdir(parents=True)
+        (jobs / ("a" * 32) / "job.json.part-1-1").write_text('{"state": "queu')
+        (jobs / ("b" * 32)).mkdir()
+        (jobs / ("b" * 32) / "job.json").write_text('{"state": "queu')
         self.worker = Worker(PROGRAM, self.data)
-        self.assertEqual(self.worker.json("GET", "/api/jobs")[1], [])
+        listed = self.worker.json("GET", "/api/jobs")[1]
+        self.assertEqual([(job["id"], job["state"]) for job in listed], [("b" * 32, "failed")])
+        self.assertIn("altered", self.worker.json("GET", "/api/jobs/" + "b" * 32)[1]["error"]["message"])
+        self.assertFalse((jobs / ("a" * 32)).exists())
+
+    def test_what_was_altered_on_the_disk_is_never_served(self):
+        def alter(path: pathlib.Path) -> None:
+            content = bytearray(path.read_bytes())
+            content[len(content) // 2] ^= 1
+            path.write_bytes(content)
+
+        obj = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+        blob = self.worker.put_blob(obj)
+        message = {"operation": "import", "inputs": {"mesh": {"sha256": blob, "file_name": "tetra.obj"}}}
+        job = self.worker.post_job(**message)
+        name = next(iter(self.worker.wait(job)["result"]["outputs"]))
+        output = f"/api/jobs/{job}/outputs/{name}"
+        self.assertEqual(self.worker.request("GET", output)[0], 200)
+        alter(self.data / "jobs" / job / "outputs" / name)
+        status, body, _ = self.worker.request("GET", output)
+        self.assertEqual(status, 410)
+        self.assertIn(name, json.loads(body)["error"]["message"])
+        # A job does not take the altered bytes, and the page is asked for them again.
+        alter(self.data / "blobs" / blob)
+        detail = self.worker.wait(self.worker.post_job(**message))
+        self.assertEqual((detail["state"], detail["error"]["where"]), ("failed", "mesh"))
+        self.assertIn("altered", detail["error"]["message"])
+        self.assertEqual(self.worker.request("HEAD", f"/api/blobs/{blob}")[0], 404)
+        self.worker.put_blob(obj)
+        alter(self.data / "blobs" / blob)
+        self.assertEqual(self.worker.request("GET", f"/api/blobs/{blob}")[0], 404)
+        self.worker.put_blob(obj)
+        self.assertEqual(self.worker.wait(self.worker.post_job(**message))["state"], "done")
+        # An altered result is none: the job runs again.
+        self.worker.stop()
+        alter(self.data / "jobs" / job / "result.json")
+        self.worker = Worker(PROGRAM, self.data)
+        self.assertEqual(self.worker.wait(job)["state"], "done")
+        self.assertEqual(self.worker.request("GET", output)[0], 200)
 
     def test_a_finished_job_can_be_forgotten(self):
         job = self.worker.post_job(operation="import", inputs=PYRAMID)

@@ -2,6 +2,7 @@
 #include "machines/grbl_machine.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 #include "machines/gcode_words.h"
@@ -13,9 +14,11 @@ void GrblMachine::hear(const std::string& line) {
   if (line.starts_with("$N0=") || line.starts_with("$N1=")) {
     startup_[static_cast<std::size_t>(line[2] - '0')] = line.substr(4);
   } else if (line.starts_with("$")) {
+    constexpr std::size_t max_digits = 4;  // what noise sends must not fill the memory
     const std::size_t equals = line.find('=');
-    if (equals != std::string::npos && equals > 1 && line[1] >= '0' && line[1] <= '9')
-      settings_[std::atoi(line.c_str() + 1)] = std::strtod(line.c_str() + equals + 1, nullptr);
+    if (equals == std::string::npos || equals < 2 || equals > 1 + max_digits || line[1] < '0' || line[1] > '9') return;
+    if (const double value = std::strtod(line.c_str() + equals + 1, nullptr); std::isfinite(value))
+      settings_[std::atoi(line.c_str() + 1)] = value;
   }
   if (!line.starts_with("[") || line.size() < 6) return;
   const std::size_t colon = line.find(':');

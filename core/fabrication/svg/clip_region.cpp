@@ -65,7 +65,7 @@ std::size_t ClipRegion::bucket_of(double y) const {
 
 bool ClipRegion::holds(const Vec2& p) const {
   const auto& bucket = buckets_[bucket_of(p.y())];
-  limits_.add_steps(bucket.size());
+  limits_.add_steps(2 * bucket.size());
   for (const std::uint32_t e : bucket)
     if (distance_to(p, edges_[e].a, edges_[e].b) < touching_mm) return true;
   // Turns around the point, from the edges that a ray to the right crosses; edges of one shape stand together.
@@ -92,7 +92,7 @@ void ClipRegion::meetings(const Vec2& a, const Vec2& b, std::vector<double>& at)
   const auto [low, high] = std::minmax(a.y(), b.y());
   const std::size_t last = bucket_of(high);
   for (std::size_t i = bucket_of(low); i <= last; ++i) {
-    limits_.add_steps(buckets_[i].size());
+    limits_.add_steps(3 * buckets_[i].size());
     for (const std::uint32_t e : buckets_[i]) {
       const Vec2 f = edges_[e].b - edges_[e].a, g = edges_[e].a - a;
       const double across = cross(d, f);

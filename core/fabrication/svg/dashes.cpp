@@ -46,7 +46,7 @@ std::vector<CurveFlattener::Subpath> break_into_dashes(const CurveFlattener::Sub
         add(p);
         end_piece();
       }
-      limits.add_steps(16);
+      limits.add_steps(64);
       phase = (phase + 1) % lengths.size();
       left = lengths[phase];
       if (phase % 2 == 0) add(p);

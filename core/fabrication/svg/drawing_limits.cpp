@@ -6,8 +6,8 @@
 namespace formwright {
 namespace {
 
-constexpr std::size_t base_room = 1'400'000, room_per_byte = 8;  // in points of 16 bytes
-constexpr std::size_t base_steps = 50'000'000, steps_per_byte = 100, steps_between_looks = 1'000'000;
+constexpr std::uint64_t base_room = 1'400'000, room_per_byte = 8;  // in points of 16 bytes
+constexpr std::uint64_t base_steps = 50'000'000, steps_per_byte = 100, steps_between_looks = 1'000'000;
 
 }  // namespace
 

@@ -3,6 +3,7 @@
 // What one drawing may take of memory and time, counted where it is taken: a reader of strangers' files keeps within
 // 200 times the file's size plus 64 MB, and its time grows with the file's size.
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 #include "base/context.h"
@@ -37,14 +38,14 @@ class DrawingLimits {
 
  private:
   // A point has 16 bytes. A path's own entry, its place on the heap and the room its list grows by take as much as 18.
-  static constexpr std::size_t max_points = 4'000'000, path_points = 18;
+  static constexpr std::uint64_t max_points = 4'000'000, path_points = 18;
 
   [[noreturn]] void refuse_points() const;
   void look();
 
   const Context& context_;
-  std::size_t max_room_, max_steps_;  // room in points
-  std::size_t points_ = 0, paths_ = 0, steps_ = 0, next_look_ = 0;
+  std::uint64_t max_room_, max_steps_;  // room in points
+  std::uint64_t points_ = 0, paths_ = 0, steps_ = 0, next_look_ = 0;
 };
 
 }  // namespace formwright

@@ -7,6 +7,7 @@
 #include <pugixml.hpp>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "fabrication/svg/css_selector.h"
@@ -94,7 +95,9 @@ class StyleSheet {
     CssCondition::Kind kind;
     std::string_view name;
     std::uint32_t rule;
-    auto operator<=>(const Key&) const = default;
+    bool operator<(const Key& other) const {
+      return std::tie(kind, name, rule) < std::tie(other.kind, other.name, other.rule);
+    }
   };
   void read(const std::string& css);
   void add_candidates(CssCondition::Kind kind, std::string_view name, std::vector<std::uint32_t>& candidates);

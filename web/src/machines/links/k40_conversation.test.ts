@@ -128,7 +128,8 @@ describe.skipIf(!existsSync(module))('a K40 over WebUSB', () => {
     await until(() => state()?.phase === 'idle');
     await ask({ type: 'command', command: { do: 'home', confirmed: true } });
     await until(() => state()?.position_known === true);
-    await ask({ type: 'load', name: 'long.egv', job: new TextEncoder().encode(`ICV1752241000000003CNBRS1E${'DBaUTa'.repeat(14_000)}`) });
+    const body = `ICV1752241000000003CNBRS1E${'DBaUTa'.repeat(14_000)}`;
+    await ask({ type: 'load', name: 'long.egv', job: new TextEncoder().encode(body) });
     await ask({ type: 'command', command: { do: 'start', confirmed: true } });
     await until(() => board.packets.length > 5);
     await ask({ type: 'command', command: { do: 'stop' } });

@@ -10,7 +10,10 @@ class ReadBudget {
  public:
   static constexpr std::uint64_t base_bytes = 64u << 20, per_input_byte = 200;
 
-  explicit ReadBudget(std::uint64_t input_bytes) : left_(base_bytes + per_input_byte * input_bytes) {}
+  /// Of this the readers' small parts and the allocator's rounding take what no reader counts.
+  static constexpr std::uint64_t uncounted_bytes = 4u << 20;
+
+  explicit ReadBudget(std::uint64_t input_bytes) : left_(base_bytes - uncounted_bytes + per_input_byte * input_bytes) {}
 
   std::uint64_t left() const { return left_; }
   /// False where `bytes` are more than is left, which is then nothing.

@@ -69,6 +69,8 @@ class VirtualGrbl {
   void brown_out(double now_s) { boot(now_s); }
   /// The next line is answered by this error.
   void refuse_next(int code) { refuse_next_ = code; }
+  /// So is every line that says this.
+  void refuse_line(std::string line, int code) { refused_line_ = {std::move(line), code}; }
   void set_startup_line(int number, const std::string& line) { startup_.at(static_cast<std::size_t>(number)) = line; }
   void set_setting(int number, double value) { settings_[number] = value; }
 
@@ -167,6 +169,7 @@ class VirtualGrbl {
   int output_spindle_ = 5;
   bool beam_ = false, locked_ = false, dead_ = false, jog_cancelled_ = false, follows_speed_ = false;
   std::array<int, 3> overrides_{100, 100, 100};
+  std::pair<std::string, int> refused_line_{"", 0};
   int overrun_ = 0, deaf_ = 0, ran_dry_ = 0, refuse_next_ = 0, last_error_ = 0, offset_reports_ = 0,
       override_reports_ = 0;
 };

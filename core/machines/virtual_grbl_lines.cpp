@@ -17,6 +17,7 @@ void VirtualGrbl::read_line() {
   in_line_ = true;
   if (line.size() > 79) return finish_line(11);
   if (refuse_next_ != 0 && !line.empty()) return finish_line(std::exchange(refuse_next_, 0));
+  if (refused_line_.second != 0 && line == refused_line_.first) return finish_line(refused_line_.second);
   const long epoch = epoch_;
   const int error = line.empty() ? 0 : act(line);
   if (epoch != epoch_) return;  // an alarm or a reset: nobody waits for the answer

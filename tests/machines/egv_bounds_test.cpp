@@ -44,7 +44,8 @@ Toolpath random_path(Random& random, const MachineOptions& machine) {
 }
 
 struct Steps {
-  std::array<long, 2> low{1L << 40, 1L << 40}, high{-(1L << 40), -(1L << 40)}, at{0, 0};
+  static constexpr std::int64_t far_steps = std::int64_t{1} << 40;
+  std::array<std::int64_t, 2> low{far_steps, far_steps}, high{-far_steps, -far_steps}, at{0, 0};
   void see() {
     for (std::size_t axis = 0; axis < 2; ++axis)
       low[axis] = std::min(low[axis], at[axis]), high[axis] = std::max(high[axis], at[axis]);
@@ -148,7 +149,7 @@ TEST(EgvBounds, AreThoseOfThePlanAndOfTheMotors) {
     expect_same(bounds.reached, motors.all, what + ", all steps");
     for (std::size_t axis = 0; axis < 2; ++axis)
       EXPECT_NEAR(bounds.end_mm[axis], mm_per_mil * static_cast<double>(motors.all.at[axis]), 1e-9) << what;
-    EXPECT_EQ(motors.all.at, (std::array<long, 2>{0, 0})) << what;
+    EXPECT_EQ(motors.all.at, (std::array<std::int64_t, 2>{0, 0})) << what;
     if (HasFailure()) break;
   }
 }

@@ -167,6 +167,7 @@ TEST(GrblDriver, HoldsAndGoesOn) {
 TEST(GrblDriver, ARefusedLineEndsTheJob) {
   GrblTalk talk;
   talk.connect_and_home();
+  talk.machine.refuse_line("M1", 20);
   talk.load("G21G90\nM4S500\nG1X10F600\nM1\nG1X200\nM5\n");
   talk.tell(start);
   ASSERT_TRUE(talk.pass_until([&] { return !talk.ended().empty(); }, 60));

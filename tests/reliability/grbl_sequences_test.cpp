@@ -62,9 +62,13 @@ void trace(Job& job) {
 Job random_job(Random& random) {
   Job job;
   const auto add = [&](const char* format, auto... values) {
-    char line[80];
-    std::snprintf(line, sizeof line, format, values...);
-    job.text += line;
+    if constexpr (sizeof...(values) == 0) {
+      job.text += format;
+    } else {
+      char line[80];
+      std::snprintf(line, sizeof line, format, values...);
+      job.text += line;
+    }
   };
   const bool constant = random.uniform() < 0.3, starts_at_zero = random.uniform() < 0.2;
   add("G21\nG90\nM%dS%d\n", constant ? 3 : 4, 200 + static_cast<int>(random.below(600)));

@@ -17,7 +17,7 @@ NO_ANSWER = (ConnectionError, http.client.HTTPException, TimeoutError, OSError)
 
 def job_number(number: int, blob: str) -> dict:
     """Each another, from a few milliseconds to a few tenths of a second. A relief whose model and viewpoint an earlier job in the same solver process had
-    starts from that job's solution and ends a rounding error beside the one of a fresh process; so no two reliefs have the same model."""
+    starts from that job's solution and ends a rounding error beside the one of a fresh process; so no two reliefs have the same viewpoint."""
     kind = number % 6
     if kind == 0:
         return {"operation": "import", "inputs": {"mesh": {"sha256": blob, "file_name": "tetrahedron.obj"}}}
@@ -25,7 +25,8 @@ def job_number(number: int, blob: str) -> dict:
         return {"operation": "import", "inputs": {"mesh": {"sample": "pyramid", "vertices": 500}}}
     if kind == 2:
         return {"operation": "import", "inputs": {"mesh": {"sample": "bust", "vertices": 12000}}}
-    return {"operation": "relief", "parameters": {"thickness_mm": kind}, "inputs": {"mesh": {"sample": "pyramid", "vertices": (600, 1500, 4000)[kind - 3] + number}}}
+    return {"operation": "relief", "parameters": {"thickness_mm": kind, "distance_mm": 300 + number},
+            "inputs": {"mesh": {"sample": "pyramid", "vertices": (600, 1500, 4000)[kind - 3]}}}
 
 
 def outputs_of(worker: Worker, job: str, detail: dict) -> dict[str, bytes]:

@@ -50,7 +50,7 @@ describe.skipIf(!existsSync(module))('a machine in its worker', () => {
     expect(await page.command({ do: 'start', confirmed: true })).toMatch(/No job/);
     expect(await page.command({ do: 'home', confirmed: true })).toBeNull();
     await page.until(() => page.state.position_known && page.state.phase === 'idle');
-    const job = new TextEncoder().encode('G21G90\nM4S300\nG1X20Y20F6000\nG1X40\nM5\n');
+    const job = new TextEncoder().encode('G21G90\nM4S300\nG0X20Y20\nG1X30F6000\nG1X40\nM5\n');
     expect(await page.ask({ type: 'load', name: 'line.gcode', job })).toBeNull();
     expect(await page.command({ do: 'start', confirmed: false })).toMatch(/confirmed/);
     expect(await page.command({ do: 'start', confirmed: true })).toBeNull();

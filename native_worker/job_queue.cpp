@@ -50,13 +50,19 @@ void JobQueue::stop() {
   patience_.cancel();
   alarm_.cancel();
   waiting_.clear();
-  if (process_ > 0) {
-    ::kill(process_, SIGKILL);
-    ::waitpid(process_, nullptr, 0);
-    process_ = -1;
-  }
+  end_process();
   save_finished();
   running_.clear();
+}
+
+void JobQueue::end_process() {
+  if (process_ <= 0) return;
+  ::kill(process_, SIGKILL);
+  ::waitpid(process_, nullptr, 0);
+  process_ = -1;
+  ++generation_;
+  input_.reset();
+  output_.reset();
 }
 
 void JobQueue::enqueue(const std::string& id) {
@@ -223,6 +229,7 @@ void JobQueue::handle(const Json& message) {
     for (const Json& altered : message.value("altered_blobs", Json::array()))
       store_.remove_blob(altered.get<std::string>());
     if (job && message.contains("not_kept")) {
+      end_process();  // a fresh one gives the outputs that an undisturbed run gives, to the last digit
       put_back(*job, message["not_kept"].get<std::string>());
       return rest(message["not_kept"].get<std::string>());
     }

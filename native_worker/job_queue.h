@@ -45,6 +45,7 @@ class JobQueue {
     Clock::time_point from = {};  // not before
   };
   void start_process();
+  void end_process();
   void start_next();
   void run(StoredJob& job);
   void read_line();

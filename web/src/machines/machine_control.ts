@@ -105,17 +105,25 @@ export class MachineControl {
     }
   }
 
-  /** Loads the job unless the machine has it already, and starts it. */
-  async start(name: string, key: string, job: Uint8Array, from_line?: number): Promise<boolean> {
+  /** Gives the job to the machine unless it has it already. True where it was taken. */
+  async load(name: string, key: string, job: Uint8Array): Promise<boolean> {
     const link = this.link.value;
     if (link === null) return false;
+    if (this.loaded.value === key) return true;
+    this.problem.value = null;
     try {
-      if (this.loaded.value !== key || from_line === undefined) await link.load(name, job);
+      await link.load(name, job);
       this.loaded.value = key;
+      return true;
     } catch (thrown) {
       this.problem.value = thrown instanceof Error ? thrown.message : String(thrown);
       return false;
     }
+  }
+
+  /** Loads the job unless the machine has it already, and starts it. */
+  async start(name: string, key: string, job: Uint8Array, from_line?: number): Promise<boolean> {
+    if (!(await this.load(name, key, job))) return false;
     this.#jobId = crypto.randomUUID();
     const started = await this.command({
       do: 'start',

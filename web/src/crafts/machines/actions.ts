@@ -79,7 +79,8 @@ function whenLeftAlone(session: MachinesSession): string[] {
     : [...state.warnings, state.when_connection_ends].filter((sentence) => sentence !== '');
 }
 
-export function start(session: MachinesSession): void {
+/** The machine has the job before the question: only then it can say what it does with it. */
+export async function start(session: MachinesSession): Promise<void> {
   const plan = session.plan.value;
   const [job, key] = [session.job.value, session.jobKey.value];
   if (startReason(session) !== undefined || !plan || !job || key === null) return;
@@ -87,9 +88,10 @@ export function start(session: MachinesSession): void {
   const seconds = secondsOf(session, toolPath);
   const power = Math.max(0, ...toolPath.paths.map(({ power_percent }) => power_percent));
   const name = nameOf(session);
+  if (!(await session.control.load(name, key, job.bytes))) return;
   ask({
     title: `Start ${name} on ${session.control.machineName.value}?`,
-    sentences: [
+    sentences: () => [
       isLaser(session)
         ? `The head moves and the laser turns on, at up to ${withUnit(formatNumber(power, 2), '%')}, for about ${formatDuration(seconds)}.`
         : `The machine moves and its spindle turns, for about ${formatDuration(seconds)}. Z is 0 on the stock's top, the tool at its corner.`,

@@ -6,8 +6,8 @@ import { Button, Dialog } from '../../ui';
 
 export interface Question {
   readonly title: string;
-  /** What will move, and whether the laser will be on. */
-  readonly sentences: readonly string[];
+  /** What will move, and whether the laser will be on. Asked anew whenever what they read changes. */
+  readonly sentences: readonly string[] | (() => readonly string[]);
   readonly action: string;
   readonly danger?: boolean;
   readonly run: () => void;
@@ -19,6 +19,18 @@ export const ask = (question: Question): void => {
   asked.value = question;
 };
 
+/** Apart from the dialog, which takes the focus anew whenever it is drawn. */
+function Sentences({ of }: { readonly of: Question['sentences'] }) {
+  const sentences = typeof of === 'function' ? of() : of;
+  return (
+    <>
+      {sentences.map((sentence) => (
+        <p key={sentence}>{sentence}</p>
+      ))}
+    </>
+  );
+}
+
 /** The focus stands on Cancel: Enter pressed by habit starts nothing. */
 export function Confirmation() {
   const question = asked.value;
@@ -28,9 +40,7 @@ export function Confirmation() {
   const close = () => (asked.value = null);
   return (
     <Dialog title={question.title} onClose={close}>
-      {question.sentences.map((sentence) => (
-        <p key={sentence}>{sentence}</p>
-      ))}
+      <Sentences of={question.sentences} />
       <div class="dialog-actions">
         <Button buttonRef={cancel} onClick={close}>
           Cancel

@@ -307,7 +307,7 @@ export function StartAndStop({ session }: { readonly session: MachinesSession })
         size="big"
         icon="play"
         disabledReason={startReason(session)}
-        onClick={() => start(session)}
+        onClick={() => void start(session)}
       >
         {connected ? 'Start' : 'Start the job'}
       </Button>

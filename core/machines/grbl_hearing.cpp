@@ -137,10 +137,9 @@ void GrblDriver::hear_places(const GrblReport& report) {
     return place;
   };
   if (report.offset_mm && !origin_moves()) offset_mm_ = in_mm(*report.offset_mm);
-  // grblHAL can be told to leave it out of its reports (settings.h status_report_t: $10 has more than GRBL's two bits).
-  const int mask = static_cast<int>(setting(10, 1));
-  if (mask > 3 && !(mask & 32) && !offset_mm_ && !origin_moves())
-    offset_mm_ = machine_.offset_mm(machine_.work_system());
+  // Only some reports say it: in GRBL every tenth of a machine at rest (config.h REPORT_WCO_REFRESH_IDLE_COUNT), in grblHAL
+  // none if $10 says so. The answer to $# says it as well.
+  if (!offset_mm_ && !origin_moves()) offset_mm_ = machine_.offset_mm(machine_.work_system());
   if (report.machine_mm) machine_mm_ = in_mm(*report.machine_mm);
   if (report.work_mm) work_mm_ = in_mm(*report.work_mm);
   if (offset_mm_) {

@@ -36,6 +36,21 @@ TEST(GrblDriver, ConnectsToABoardThatDoesNotReset) {
   EXPECT_EQ(talk.phase(), "idle");
 }
 
+TEST(GrblDriver, KnowsTheOriginBeforeAReportSaysIt) {
+  VirtualGrblOptions options;
+  options.resets_on_open = false;
+  GrblTalk talk(options);
+  talk.connect_and_home();
+  talk.pass(0.3);  // the next report that says the origin comes in about two seconds
+  talk.driver.closed(talk.now_s);
+  talk.driver.opened(talk.now_s);
+  ASSERT_TRUE(talk.pass_until([&] { return !talk.state()["machine_mm"].is_null(); }, 5)) << talk.state().dump();
+  talk.pass(0.3);  // one report more
+  ASSERT_FALSE(talk.state()["work_mm"].is_null()) << talk.state().dump();
+  EXPECT_NEAR(talk.state()["work_mm"][0].get<double>(), 0, 1e-9);
+  EXPECT_NEAR(talk.state()["machine_mm"][0].get<double>(), talk.machine.position_mm()[0], 1e-3);
+}
+
 TEST(GrblDriver, ConnectsToAMachineThatIsHeld) {
   VirtualGrblOptions options;
   options.resets_on_open = false;

@@ -38,6 +38,11 @@ describe('G-code as a path', () => {
     const found = [0, 1, 2].flatMap((axis) => [Math.min(...of(axis)), Math.max(...of(axis))]);
     found.forEach((value, index) => expect(value).toBeCloseTo(bounds[index] ?? 0, 1));
   });
+  it('draws arcs in few points, however large they are said to be', () => {
+    const path = read('G0X0Y0\nM3S1\nG2X1Y1I1000000000J0F100');
+    const points = path.paths.reduce((sum, { points_mm }) => sum + points_mm.length / 3, 0);
+    expect(points).toBeLessThan(1000);
+  });
   it('refuses a file without moves', () => {
     expect(() => read('hello\nM5')).toThrow(/no moves/);
   });

@@ -4,6 +4,11 @@ import type { ToolPath, ToolPathPart } from './toolpath';
 
 const rapid_mm_per_s = 100; // what G0 is shown with; machines tell their own speed in no file
 const chord_mm = 0.5;
+/** Chords of a whole turn: at a radius of 1 m they are within 0.01 mm of the circle. */
+const max_chords_of_turn = 720;
+/** Points of all arcs of a file together; behind them arcs are drawn with the fewest chords. */
+const max_arc_points = 4_000_000;
+const min_chords = 2;
 
 interface Open {
   kind: 'travel' | 'work';
@@ -28,6 +33,7 @@ export function readGcodePath(
   let [motion, spindle, power, feed] = [0, 5, 0, 1000];
   let [unit, relative, plane] = [1, false, 17];
   let number = 0;
+  let arcPointsLeft = max_arc_points;
   const moveTo = (to: readonly [number, number, number], line: number) => {
     const works = motion !== 0 && spindle !== 5 && power > 0;
     const kind = works ? 'work' : 'travel';
@@ -94,7 +100,11 @@ export function readGcodePath(
       const from = [x, y, z] as const;
       const middle =
         radius === null ? ([i ?? 0, j ?? 0] as const) : middleOf(from, to, axes, radius, motion === 2);
-      for (const point of arcPoints(from, to, axes, middle, motion === 2)) moveTo(point, number);
+      const points = arcPoints(from, to, axes, middle, motion === 2, arcPointsLeft);
+      for (const point of points) {
+        moveTo(point, number);
+        --arcPointsLeft;
+      }
     } else moveTo(to, number);
   }
   if (paths.length === 0) throw new Error('The file has no moves in it: choose a G-code file.');
@@ -123,6 +133,7 @@ function* arcPoints(
   [a, b, c]: Axes,
   [i, j]: readonly [number, number],
   clockwise: boolean,
+  max_chords: number,
 ): Generator<Point> {
   const [ca, cb, radius] = [from[a] + i, from[b] + j, Math.hypot(i, j)];
   const start = Math.atan2(-j, -i);
@@ -130,7 +141,9 @@ function* arcPoints(
   while (clockwise && sweep >= -1e-6) sweep -= 2 * Math.PI;
   while (!clockwise && sweep <= 1e-6) sweep += 2 * Math.PI;
   while (Math.abs(sweep) > 2 * Math.PI + 1e-6) sweep -= Math.sign(sweep) * 2 * Math.PI;
-  const count = Math.max(2, Math.ceil((Math.abs(sweep) * radius) / chord_mm));
+  const turns = Math.abs(sweep) / (2 * Math.PI);
+  const chords = Math.min((turns * 2 * Math.PI * radius) / chord_mm, turns * max_chords_of_turn, max_chords);
+  const count = Math.max(min_chords, Math.ceil(chords));
   for (let k = 1; k < count; ++k) {
     const angle = start + (sweep * k) / count;
     const point: [number, number, number] = [0, 0, 0];

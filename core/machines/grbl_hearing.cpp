@@ -137,8 +137,8 @@ void GrblDriver::hear_places(const GrblReport& report) {
     return place;
   };
   if (report.offset_mm && !origin_moves()) offset_mm_ = in_mm(*report.offset_mm);
-  // Only some reports say it: in GRBL every tenth of a machine at rest (config.h REPORT_WCO_REFRESH_IDLE_COUNT), in grblHAL
-  // none if $10 says so. The answer to $# says it as well.
+  // Only some reports say it: in GRBL every tenth of a machine at rest (config.h REPORT_WCO_REFRESH_IDLE_COUNT), in
+  // grblHAL none if $10 says so. The answer to $# says it as well.
   if (!offset_mm_ && !origin_moves()) offset_mm_ = machine_.offset_mm(machine_.work_system());
   if (report.machine_mm) machine_mm_ = in_mm(*report.machine_mm);
   if (report.work_mm) work_mm_ = in_mm(*report.work_mm);

@@ -90,8 +90,12 @@ if(NOT EMSCRIPTEN)
   formwright_dependency(qpdf qpdf/QPDF.hh qpdf)
   target_compile_definitions(fw::qpdf INTERFACE POINTERHOLDER_TRANSITION=4)
 
+  # Rays. TBB, which Embree builds its tree with, gets as many threads as the job may use.
+  option(FORMWRIGHT_EMBREE "Cast rays by Embree" ON)
   find_package(embree 3 REQUIRED CONFIG)
-  add_library(fw::embree ALIAS embree)
+  find_package(TBB REQUIRED CONFIG)
+  add_library(fw::embree INTERFACE IMPORTED GLOBAL)
+  target_link_libraries(fw::embree INTERFACE embree TBB::tbb)
 
   # The pthread flavour of OpenBLAS by its full path, not whatever the
   # alternatives system makes of libblas.so.

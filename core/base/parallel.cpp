@@ -34,6 +34,7 @@ ThreadLimit::~ThreadLimit() { thread_limit = before_; }
 #ifdef FORMWRIGHT_ONE_THREAD
 
 int thread_count() { return 1; }
+int allowed_threads() { return 1; }
 
 void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
   run_alone(count, std::max<std::size_t>(grain, 1), body);
@@ -169,12 +170,14 @@ int thread_count() {
   return count;
 }
 
+int allowed_threads() { return inside_loop ? 1 : std::min(thread_count(), thread_limit); }
+
 void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
   if (count == 0) return;
   grain = std::max<std::size_t>(grain, 1);
   const std::size_t threads =
-      std::min<std::size_t>(static_cast<std::size_t>(std::min(thread_count(), thread_limit)), (count - 1) / grain + 1);
-  if (threads <= 1 || inside_loop) return run_alone(count, grain, body);
+      std::min<std::size_t>(static_cast<std::size_t>(allowed_threads()), (count - 1) / grain + 1);
+  if (threads <= 1) return run_alone(count, grain, body);
   Loop loop(count, grain, body);
   Pool::instance().run(loop, static_cast<int>(threads) - 1);
   if (loop.failure()) std::rethrow_exception(loop.failure());

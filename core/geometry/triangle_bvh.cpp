@@ -5,9 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/error.h"
 #include "base/parallel.h"
-#include "geometry/measures.h"
 
 namespace formwright {
 namespace {
@@ -203,31 +201,13 @@ struct TriangleBvh::Builder {
   }
 };
 
-TriangleBvh::TriangleBvh(const TriangleMesh& mesh) {
+TriangleBvh::TriangleBvh(const TriangleMesh& mesh) : sphere_(search_sphere(mesh)) {
   const int count = mesh.face_count();
-  if (count >= (1 << 28))
-    throw Error(ErrorCode::invalid_input, "mesh",
-                "The mesh has more triangles than can be searched; simplify it first.");
-  BoundingBox bounds;
-  for (int f = 0; f < count; ++f)
-    for (int k = 0; k < 3; ++k) {
-      const int v = mesh.F(f, k);
-      if (v < 0 || v >= mesh.vertex_count())
-        throw Error(ErrorCode::invalid_input, "mesh",
-                    "A triangle names a vertex that does not exist; export the mesh again.");
-      if (!mesh.V.row(v).allFinite())
-        throw Error(ErrorCode::invalid_input, "mesh", "A corner of a triangle is not a number; export the mesh again.");
-      bounds.add(mesh.V.row(v));
-    }
   if (count == 0) return;
-  centre_ = bounds.centre();
-  radius_ = 0.5 * bounds.diagonal();
-  if (!(radius_ < 1e30))
-    throw Error(ErrorCode::invalid_input, "mesh", "The mesh is too large for single precision; check its unit.");
 
   Builder builder;
   builder.references.resize(static_cast<std::size_t>(count));
-  const double widening = 1e-6 * radius_ + std::numeric_limits<float>::min();
+  const double widening = 1e-6 * sphere_.radius + std::numeric_limits<float>::min();
   for (int f = 0; f < count; ++f) {
     Box& box = builder.references[static_cast<std::size_t>(f)].box;
     builder.references[static_cast<std::size_t>(f)].face = f;
@@ -235,8 +215,8 @@ TriangleBvh::TriangleBvh(const TriangleMesh& mesh) {
       const auto axis = static_cast<std::size_t>(k);
       const double a = mesh.V(mesh.F(f, 0), k), b = mesh.V(mesh.F(f, 1), k), c = mesh.V(mesh.F(f, 2), k);
       // Rounding to the nearest float errs by 6e-8 of the radius, far less than the widening.
-      box.lower[axis] = static_cast<float>(std::min({a, b, c}) - centre_[k] - widening);
-      box.upper[axis] = static_cast<float>(std::max({a, b, c}) - centre_[k] + widening);
+      box.lower[axis] = static_cast<float>(std::min({a, b, c}) - sphere_.centre[k] - widening);
+      box.upper[axis] = static_cast<float>(std::max({a, b, c}) - sphere_.centre[k] + widening);
     }
   }
 

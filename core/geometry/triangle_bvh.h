@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "geometry/lanes.h"
+#include "geometry/ray_triangle.h"
+#include "geometry/search_sphere.h"
 #include "geometry/triangle_mesh.h"
 
 namespace formwright {
@@ -19,30 +21,28 @@ class TriangleBvh {
  public:
   static constexpr int width = 4;
   struct alignas(16) Node {
-    std::array<Float4, 3> lower, upper;     // per axis, a lane per child, relative to centre()
+    std::array<Float4, 3> lower, upper;     // per axis, a lane per child, relative to the sphere's centre
     std::array<std::int32_t, width> child;  // a node, or ~block for a leaf
   };
   /// The triangles of one leaf, lane by lane, so that one instruction serves several of them.
   struct alignas(32) Block {
-    std::array<std::array<Double4, 3>, 3> corner;  // [corner][axis]
-    std::array<std::int32_t, width> face;          // in the mesh; -1 in an empty lane, whose corners are 0
+    TriangleCorners<Double4> corner;
+    std::array<std::int32_t, width> face;  // in the mesh; -1 in an empty lane, whose corners are 0
 
     Vec3 position(std::size_t k, std::size_t lane) const {
       return {corner[k][0][lane], corner[k][1][lane], corner[k][2][lane]};
     }
   };
 
-  /// Copies the triangles. Throws Error{invalid_input, "mesh"} on indices out of range and on positions
-  /// that are not finite.
+  /// Copies the triangles. Throws as search_sphere does.
   explicit TriangleBvh(const TriangleMesh& mesh);
 
-  const Vec3& centre() const { return centre_; }  // of the bounding box
-  double radius() const { return radius_; }       // half its diagonal
+  const SearchSphere& sphere() const { return sphere_; }
 
   /// Calls visit(block) for every leaf that the ray may touch within [near, far]; `far` may be lowered
-  /// meanwhile. Nearer boxes come first. `direction` is unit length.
+  /// meanwhile. Nearer boxes come first. `ray` is centred in sphere().
   template <class Visit>
-  void along_ray(const Vec3& origin, const Vec3& direction, double near, const double& far, Visit&& visit) const;
+  void along_ray(const CentredRay& ray, double near, const double& far, Visit&& visit) const;
 
   /// Calls visit(block) for every leaf that may lie within sqrt(limit_squared) of `point`; the limit may
   /// be lowered meanwhile. Nearer boxes come first.
@@ -59,8 +59,7 @@ class TriangleBvh {
 
   std::vector<Node> nodes_;
   std::vector<Block> blocks_;
-  Vec3 centre_ = Vec3::Zero();
-  double radius_ = 0;
+  SearchSphere sphere_;
 };
 
 namespace bvh_detail {
@@ -85,35 +84,33 @@ inline void push_sorted(Entry* stack, int& top, const std::array<std::int32_t, 4
 }  // namespace bvh_detail
 
 template <class Visit>
-void TriangleBvh::along_ray(const Vec3& origin, const Vec3& direction, double near, const double& far,
-                            Visit&& visit) const {
-  if (nodes_.empty()) return;
-  // Distances count from where the ray passes closest to the centre: then |t| <= 2 radii however far the
-  // eye is, three roundings move a slab by at most 3 * 2^-24 * 2 radii and that of the foot by 2^-24
-  // radii, which is less than the 1e-6 radii by which the builder has widened every box.
-  const Vec3 to_centre = centre_ - origin;
-  const double start = to_centre.dot(direction);
-  const Vec3 middle = direction * start - to_centre;  // foot of the perpendicular, relative to the centre
+void TriangleBvh::along_ray(const CentredRay& ray, double near, const double& far, Visit&& visit) const {
+  if (ray.is_too_far) {
+    for (const Block& block : blocks_) visit(block);
+    return;
+  }
+  if (nodes_.empty() || ray.misses) return;
+  // Counted from the foot, |t| <= 2 radii: three roundings move a slab by at most 3 * 2^-24 * 2 radii, those of the
+  // foot and of the box by 2^-24 radii each, and the test lets hits lie 2e-7 radii outside. Together that is less
+  // than the 1e-6 radii by which the builder has widened every box.
   std::array<float, 3> o{}, inverse{};
   std::array<std::array<Float4, 3> Node::*, 3> low{}, high{};  // the side that the ray enters and leaves by
   for (std::size_t k = 0; k < 3; ++k) {
-    const double d = direction[static_cast<int>(k)];
-    o[k] = static_cast<float>(middle[static_cast<int>(k)]);
+    const double d = ray.direction[static_cast<int>(k)];
+    o[k] = static_cast<float>(ray.foot[static_cast<int>(k)]);
     inverse[k] = static_cast<float>(std::abs(d) < 1e-18 ? (std::signbit(d) ? -1e18 : 1e18) : 1 / d);
     low[k] = inverse[k] < 0 ? &Node::upper : &Node::lower;
     high[k] = inverse[k] < 0 ? &Node::lower : &Node::upper;
   }
-  const double reach = 1.001 * radius_ + std::numeric_limits<double>::min();
-  if (middle.squaredNorm() > reach * reach * 1.01) return;
-  const double slack = 1e-6 * radius_;
-  const float from = static_cast<float>(std::max(near - start, -4 * reach) - slack);
+  const double reach = 4 * sphere_.radius, slack = 1e-6 * sphere_.radius;
+  const float from = static_cast<float>(std::max(near - ray.start, -reach) - slack);
 
   std::array<bvh_detail::Entry, stack_size> stack;
   int top = 0;
   stack[top++] = {0, -std::numeric_limits<float>::infinity()};
   while (top > 0) {
     const bvh_detail::Entry entry = stack[--top];
-    const double far_here = std::min(far - start, 4 * reach) + slack;
+    const double far_here = std::min(far - ray.start, reach) + slack;
     if (static_cast<double>(entry.key) > far_here) continue;
     if (is_leaf(entry.child)) {
       visit(leaf(entry.child));
@@ -133,7 +130,7 @@ void TriangleBvh::along_ray(const Vec3& origin, const Vec3& direction, double ne
 template <class Visit>
 void TriangleBvh::near_point(const Vec3& point, const double& limit_squared, Visit&& visit) const {
   if (nodes_.empty()) return;
-  const Vec3 p = point - centre_;
+  const Vec3 p = point - sphere_.centre;
   std::array<bvh_detail::Entry, stack_size> stack;
   int top = 0;
   stack[top++] = {0, 0};

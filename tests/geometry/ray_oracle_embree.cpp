@@ -7,7 +7,7 @@
 
 namespace formwright::test {
 
-struct EmbreeRays::Implementation {
+struct EmbreeTriangles::Implementation {
   RTCDevice device = rtcNewDevice(nullptr);
   RTCScene scene = rtcNewScene(device);
   ~Implementation() {
@@ -16,7 +16,7 @@ struct EmbreeRays::Implementation {
   }
 };
 
-EmbreeRays::EmbreeRays(const TriangleMesh& mesh) : implementation_(std::make_unique<Implementation>()) {
+EmbreeTriangles::EmbreeTriangles(const TriangleMesh& mesh) : implementation_(std::make_unique<Implementation>()) {
   const RTCScene scene = implementation_->scene;
   rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
   const RTCGeometry geometry = rtcNewGeometry(implementation_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -32,9 +32,9 @@ EmbreeRays::EmbreeRays(const TriangleMesh& mesh) : implementation_(std::make_uni
   rtcReleaseGeometry(geometry);
   rtcCommitScene(scene);
 }
-EmbreeRays::~EmbreeRays() = default;
+EmbreeTriangles::~EmbreeTriangles() = default;
 
-std::optional<EmbreeRays::Hit> EmbreeRays::first_hit(const Vec3& origin, const Vec3& direction) const {
+std::optional<EmbreeTriangles::Hit> EmbreeTriangles::first_hit(const Vec3& origin, const Vec3& direction) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRayHit query{};

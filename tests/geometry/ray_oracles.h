@@ -25,10 +25,10 @@ class CgalRays {
 };
 
 #ifndef __EMSCRIPTEN__
-class EmbreeRays {
+class EmbreeTriangles {
  public:
-  explicit EmbreeRays(const TriangleMesh& mesh);
-  ~EmbreeRays();
+  explicit EmbreeTriangles(const TriangleMesh& mesh);
+  ~EmbreeTriangles();
   struct Hit {
     int face;
     double distance;  // single precision

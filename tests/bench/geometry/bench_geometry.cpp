@@ -149,7 +149,7 @@ int main(int argc, char** argv) {
     for (int v = 0; v < cgal_rays; ++v) cgal_hits += cgal->first_distance(eye, to_vertex(v)) ? 1 : 0;
   });
 #ifndef __EMSCRIPTEN__
-  std::optional<test::EmbreeRays> embree;
+  std::optional<test::EmbreeTriangles> embree;
   bench("embree_build", [&] { embree.emplace(mesh); });
   bench("embree_first_hit_every_vertex", [&] {
     for (int v = 0; v < n; ++v) embree->first_hit(eye, to_vertex(v));

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <fstream>
 #include <functional>
 #include <iostream>
@@ -18,6 +17,7 @@
 
 #include "base/json.h"
 #include "base/parallel.h"
+#include "bench/geometry/bench_tools.h"
 #include "geometry/adjacency.h"
 #include "geometry/laplacian.h"
 #include "geometry/measures.h"
@@ -33,16 +33,6 @@ namespace {
 using namespace formwright;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-double cpu_seconds() {
-  timespec now{};
-#ifdef __EMSCRIPTEN__
-  clock_gettime(CLOCK_MONOTONIC, &now);
-#else
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-#endif
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 struct Bench {
   int rounds;
   Json seconds = Json::object();
@@ -50,28 +40,13 @@ struct Bench {
     double wall = infinity, cpu = infinity;
     for (int i = 0; i < rounds; ++i) {
       const Stopwatch watch;
-      const double before = cpu_seconds();
+      const double before = bench::cpu_seconds();
       work();
-      wall = std::min(wall, watch.seconds()), cpu = std::min(cpu, cpu_seconds() - before);
+      wall = std::min(wall, watch.seconds()), cpu = std::min(cpu, bench::cpu_seconds() - before);
     }
     seconds[name] = {{"wall", wall}, {"cpu", cpu}};
   }
 };
-
-/// Waves of several lengths on a torus, the finest about ten edges long: curvature everywhere, as in scans.
-TriangleMesh generated(int vertices) {
-  const int across = std::max(3, static_cast<int>(std::sqrt(vertices / 2.5))), around = std::max(3, vertices / across);
-  TriangleMesh mesh = test::torus(around, across);
-  const Positions normals = vertex_normals(mesh);
-  for (int v = 0; v < mesh.vertex_count(); ++v) {
-    const double u = 2 * std::numbers::pi * (v / across) / around, w = 2 * std::numbers::pi * (v % across) / across;
-    const double height = 0.05 * std::sin(7 * u + 3 * w) + 0.01 * std::sin(41 * u) * std::sin(17 * w) +
-                          1.0 / around * std::sin(0.1 * around * u) * std::sin(0.1 * across * w);
-    mesh.V.row(v) += height * normals.row(v);
-  }
-  mesh.V *= 100;
-  return mesh;
-}
 
 TriangleMesh read_obj(const std::string& path) {
   std::ifstream file(path);
@@ -109,7 +84,7 @@ int main(int argc, char** argv) {
   const std::string what = argc > 1 ? argv[1] : "35000";
   const int rounds = argc > 2 ? std::atoi(argv[2]) : 3, target = argc > 3 ? std::atoi(argv[3]) : 10000;
   const bool from_file = what.ends_with(".obj");
-  const TriangleMesh mesh = from_file ? read_obj(what) : generated(std::atoi(what.c_str()));
+  const TriangleMesh mesh = from_file ? read_obj(what) : bench::generated(std::atoi(what.c_str()));
   const TriangleMesh soup = test::unwelded(mesh);
   const int n = mesh.vertex_count();
   Context context;

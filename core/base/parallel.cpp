@@ -11,6 +11,8 @@
 #include <system_error>
 #include <thread>
 
+#include "base/library_threads.h"
+
 namespace formwright {
 
 #if defined(__wasm__) && !defined(__wasm_atomics__)

@@ -17,9 +17,6 @@ int thread_count();
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 
-/// Number of threads that a parallel_for begun here would use at most: 1 inside a chunk, fewer under a ThreadLimit.
-int allowed_threads();
-
 /// While it lives, loops begun by the thread that made it use at most `threads` threads.
 class ThreadLimit {
  public:

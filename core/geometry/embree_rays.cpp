@@ -10,7 +10,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "base/parallel.h"
+#include "base/library_threads.h"
 #include "geometry/ray_triangle.h"
 #include "geometry/search_sphere.h"
 

@@ -101,8 +101,7 @@ struct Query {
   bool met(const Triangle& triangle, unsigned face, RayHit& hit) const {
     TriangleHits<double> hits;
     if (meet(ray, triangle, near, limit, hits) == 0) return false;
-    hit = {static_cast<int>(face), hits.distance,
-           Vec3(hits.barycentric[0], hits.barycentric[1], hits.barycentric[2])};
+    hit = {static_cast<int>(face), hits.distance, Vec3(hits.barycentric[0], hits.barycentric[1], hits.barycentric[2])};
     return true;
   }
 };
@@ -168,8 +167,13 @@ void EmbreeRays::Scene::build() {
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene, geometry);
   rtcReleaseGeometry(geometry);  // the scene holds it
-  tbb::task_arena(allowed_threads()).execute([&] { rtcCommitScene(scene); });
-  if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE) fail(error);
+  const auto commit = [&](int threads) {
+    tbb::task_arena(threads).execute([&] { rtcCommitScene(scene); });
+    return rtcGetDeviceError(device);
+  };
+  RTCError error = commit(allowed_threads());
+  if (error == RTC_ERROR_UNKNOWN) error = commit(1);  // what it says where no thread is to be had
+  if (error != RTC_ERROR_NONE) fail(error);
 }
 
 EmbreeRays::EmbreeRays(const TriangleMesh& mesh) : scene_(std::make_unique<Scene>()) {

@@ -19,9 +19,7 @@ namespace formwright {
 /// it the z axis. `tolerance`: see CentredRay.
 struct ShearedRay {
   ShearedRay(const Vec3& from, const Vec3& towards, double box_tolerance)
-      : origin{from[0], from[1], from[2]},
-        direction{towards[0], towards[1], towards[2]},
-        tolerance(box_tolerance) {
+      : origin{from[0], from[1], from[2]}, direction{towards[0], towards[1], towards[2]}, tolerance(box_tolerance) {
     int axis = 0;
     towards.cwiseAbs().maxCoeff(&axis);
     int x_axis = (axis + 1) % 3, y_axis = (axis + 2) % 3;

@@ -27,7 +27,8 @@ std::vector<Shape> degenerate_shapes() {
   }
   TriangleMesh needles = torus(40, 24);
   for (int f = 0; f < needles.face_count(); f += 2)
-    needles.V.row(needles.F(f, 2)) = (1 - 1e-12) * needles.V.row(needles.F(f, 1)) + 1e-12 * needles.V.row(needles.F(f, 0));
+    needles.V.row(needles.F(f, 2)) =
+        (1 - 1e-12) * needles.V.row(needles.F(f, 1)) + 1e-12 * needles.V.row(needles.F(f, 0));
   TriangleMesh pile = tetrahedron();
   pile.F = tetrahedron().F.replicate(50, 1);
   TriangleMesh point = tetrahedron();
@@ -121,13 +122,13 @@ bool same_bits(const std::optional<RayHit>& a, const std::optional<RayHit>& b) {
 }
 
 std::vector<RayHit> hits_without_tree(const TriangleMesh& mesh, const SearchSphere& sphere, const Question& q) {
-  const ShearedRay ray(q.ray.origin, q.ray.direction,
-                       CentredRay(sphere, q.ray.origin, q.ray.direction).tolerance);
+  const ShearedRay ray(q.ray.origin, q.ray.direction, CentredRay(sphere, q.ray.origin, q.ray.direction).tolerance);
   std::vector<RayHit> found;
   for (int f = 0; f < mesh.face_count(); ++f) {
     TriangleCorners<double> corner;
     for (int c = 0; c < 3; ++c)
-      for (int k = 0; k < 3; ++k) corner[static_cast<std::size_t>(c)][static_cast<std::size_t>(k)] = mesh.V(mesh.F(f, c), k);
+      for (int k = 0; k < 3; ++k)
+        corner[static_cast<std::size_t>(c)][static_cast<std::size_t>(k)] = mesh.V(mesh.F(f, c), k);
     TriangleHits<double> hits;
     if (meet(ray, corner, q.near, q.far, hits) != 0)
       found.push_back({f, hits.distance, Vec3(hits.barycentric[0], hits.barycentric[1], hits.barycentric[2])});

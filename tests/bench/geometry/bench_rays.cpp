@@ -94,7 +94,9 @@ Json measured(const TriangleMesh& mesh, const std::vector<RaySet>& sets, int rou
     report["build_one_thread_seconds"] = least(rounds, [&] { rays.emplace(mesh); }).cpu;
   }
   for (const RaySet& set : sets) {
-    const auto microseconds = [&](const Times& times) { return 1e6 * times.cpu / static_cast<double>(set.rays.size()); };
+    const auto microseconds = [&](const Times& times) {
+      return 1e6 * times.cpu / static_cast<double>(set.rays.size());
+    };
     std::size_t first = 0, all = 0;
     report["first_hit_microseconds"][set.name] = microseconds(least(rounds, [&] {
       first = 0;

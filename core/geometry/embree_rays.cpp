@@ -42,9 +42,8 @@ RTCDevice embree_device() {
   return device;
 }
 
-/// One ray, and what it has met so far.
-struct Query {
-  RTCIntersectContext context;  // first: Embree hands its address to meet_first and meet_all
+/// One ray, and what it has met so far. Embree hands its address on to Scene::meet_first and Scene::meet_all.
+struct Query : RTCIntersectContext {
   ShearedRay ray;
   double near, limit;   // the limit is `far`, or the distance of the best hit
   double foot, radius;  // of the ray: CentredRay::start; of the sphere
@@ -58,7 +57,7 @@ struct Query {
         limit(far),
         foot(centred.start),
         radius(std::max(sphere.radius, std::numeric_limits<double>::min())) {
-    rtcInitIntersectContext(&context);
+    rtcInitIntersectContext(this);
   }
   float embree_distance(double distance, double slack) const {
     return static_cast<float>(std::clamp((distance - foot) / radius + foot_distance + slack, 0.0, max_distance));
@@ -123,7 +122,7 @@ struct EmbreeRays::Scene {
   static void find_box(const RTCBoundsFunctionArguments* arguments);
   static void meet_first(const RTCIntersectFunctionNArguments* arguments) {
     if (arguments->valid[0] == 0) return;
-    Query& query = *reinterpret_cast<Query*>(arguments->context);
+    Query& query = *static_cast<Query*>(arguments->context);
     const Scene& scene = of(arguments->geometryUserPtr);
     if (query.meet_first(scene.triangles[arguments->primID], arguments->primID))
       reinterpret_cast<RTCRayHit*>(arguments->rayhit)->ray.tfar = query.embree_distance(query.limit, distance_slack);
@@ -131,7 +130,7 @@ struct EmbreeRays::Scene {
   static void meet_all(const RTCOccludedFunctionNArguments* arguments) {
     if (arguments->valid[0] == 0) return;
     // The ray is left as it is: nothing occludes it, and Embree goes on through all boxes.
-    reinterpret_cast<Query*>(arguments->context)
+    static_cast<Query*>(arguments->context)
         ->meet_all(of(arguments->geometryUserPtr).triangles[arguments->primID], arguments->primID);
   }
 };
@@ -198,7 +197,7 @@ std::optional<RayHit> EmbreeRays::first_hit(const Vec3& origin, const Vec3& dire
     for (unsigned f = 0; f < scene_->triangles.size(); ++f) query.meet_first(scene_->triangles[f], f);
   } else if (!centred.misses && scene_->scene != nullptr) {
     RTCRayHit ray{query.embree_ray(centred), {}};
-    rtcIntersect1(scene_->scene, &query.context, &ray);
+    rtcIntersect1(scene_->scene, &query, &ray);
   }
   return query.best.face >= 0 ? std::optional(query.best) : std::nullopt;
 }
@@ -210,7 +209,7 @@ std::vector<RayHit> EmbreeRays::all_hits(const Vec3& origin, const Vec3& directi
     for (unsigned f = 0; f < scene_->triangles.size(); ++f) query.meet_all(scene_->triangles[f], f);
   } else if (!centred.misses && scene_->scene != nullptr) {
     RTCRay ray = query.embree_ray(centred);
-    rtcOccluded1(scene_->scene, &query.context, &ray);
+    rtcOccluded1(scene_->scene, &query, &ray);
   }
   if (query.out_of_memory) throw std::bad_alloc();
   std::sort(query.all.begin(), query.all.end(), comes_before);

@@ -5,7 +5,7 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .NOTPARALLEL:
 .ONESHELL:
-.PHONY: help setup setup-test run test test-all test-fast native asan wasm web package bench fuzz lint format clean
+.PHONY: help setup setup-test run test test-all test-fast native asan wasm web package test-package bench fuzz lint format clean
 
 help: ## what can be made
 	@awk -F ':.*## ' '/^[a-z -]+:.*## / { printf "  make %-16s %s\n", $$1, $$2 }' Makefile
@@ -18,6 +18,9 @@ setup-test: ## the same, with what only tests need
 
 run: setup ## build, make an example, serve the app and print its address
 	@setup/run.sh
+
+test-fast: ## what is quick of it, for every edit
+	@setup/test_fast.sh
 
 test: ## everything that a change must pass; ends with "N passed, N failed"
 	@setup/test.sh
@@ -33,6 +36,9 @@ web: ## the page, into web/dist/
 
 package: setup ## a Debian package for any x86-64 processor, in build-package/
 	@setup/package.sh
+
+test-package: package ## install the package in a bare Debian system and run it there (needs root)
+	@setup/test_package.sh
 
 bench: ## build natively and run the benchmarks
 	@setup/bench.sh

@@ -67,8 +67,8 @@ show_failed() {  # folder of a build
        { lines[count++] = $0 }
        /^Test (Failed|timeout)/ { print "--- " name; for (i = count > 30 ? count - 30 : 0; i < count; ++i) print lines[i] }' "$1/Testing/Temporary/LastTest.log"
 }
-# Tests run side by side, and some drive real programs that have limits of time of their own. What fails is shown and asked once more, alone: on a
-# machine that somebody else uses, too, only what is wrong stays failed.
+# Tests run side by side, and some drive real programs that have limits of time of their own. What fails is shown and asked once more, alone; what
+# passes then is named at the end.
 run_ctest() {  # preset, folder of its build
   ctest --preset "$1" --parallel "${FORMWRIGHT_JOBS:-$(nproc)}" && return
   show_failed "$2"

@@ -39,7 +39,8 @@ std::string flag_entries(const std::vector<FlagInfo>& flags) {
 }  // namespace
 
 std::string manual_page() {
-  std::string text = ".\\\" Made by `formwright manual`.\n.TH FORMWRIGHT 1 \"\" \"formwright " + std::string(version()) +
+  std::string text = ".\\\" Made by `formwright manual`.\n.TH FORMWRIGHT 1 \"\" \"formwright " +
+                     std::string(version()) +
                      "\" \"User Commands\"\n"
                      ".SH NAME\nformwright \\- from a 3D model to something that can be made\n"
                      ".SH SYNOPSIS\n"
@@ -55,14 +56,14 @@ std::string manual_page() {
   }
   text += ".SH OPERATIONS\n";
   for (const Operation& operation : operations()) {
-    text += ".SS " + operation.name + "\n" + roff(operation.summary) + "\n.PP\n" + roff(operation_usage(operation)) + "\n";
+    text +=
+        ".SS " + operation.name + "\n" + roff(operation.summary) + "\n.PP\n" + roff(operation_usage(operation)) + "\n";
     text += flag_entries(operation_flags(operation));
   }
-  text +=
-      ".SH EXIT STATUS\n" + tagged("0", "", "Done.") +
-      tagged("2", "", "Bad input, or a job that does not fit the machine.") + tagged("3", "", "It could not be solved.") +
-      tagged("130", "", "Cancelled.") + ".SH FILES\n" +
-      tagged("$XDG_DATA_HOME/formwright", "", "Jobs and results of the worker and the added machines (--data).");
+  text += ".SH EXIT STATUS\n" + tagged("0", "", "Done.") +
+          tagged("2", "", "Bad input, or a job that does not fit the machine.") +
+          tagged("3", "", "It could not be solved.") + tagged("130", "", "Cancelled.") + ".SH FILES\n" +
+          tagged("$XDG_DATA_HOME/formwright", "", "Jobs and results of the worker and the added machines (--data).");
   return text;
 }
 

@@ -5,7 +5,7 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .NOTPARALLEL:
 .ONESHELL:
-.PHONY: help setup setup-test run test test-all native asan wasm web bench fuzz lint format clean
+.PHONY: help setup setup-test run test test-all test-fast native asan wasm web package test-package bench fuzz lint format clean
 
 help: ## what can be made
 	@awk -F ':.*## ' '/^[a-z -]+:.*## / { printf "  make %-16s %s\n", $$1, $$2 }' Makefile
@@ -19,6 +19,9 @@ setup-test: ## the same, with what only tests need
 run: setup ## build, make an example, serve the app and print its address
 	@setup/run.sh
 
+test-fast: ## what is quick of it, for every edit
+	@setup/test_fast.sh
+
 test: ## everything that a change must pass; ends with "N passed, N failed"
 	@setup/test.sh
 
@@ -30,6 +33,12 @@ native asan wasm: ## one C++ build: build/, build-asan/ or build-wasm/
 
 web: ## the page, into web/dist/
 	@setup/build.sh web
+
+package: setup ## a Debian package for any x86-64 processor, in build-package/
+	@setup/package.sh
+
+test-package: package ## install the package in a bare Debian system and run it there (needs root)
+	@setup/test_package.sh
 
 bench: ## build natively and run the benchmarks
 	@setup/bench.sh
@@ -44,4 +53,4 @@ format: ## format the C++ sources in place
 	@setup/format.sh
 
 clean: ## remove what was built here; the cache folder stays (docs/toolchain.md)
-	rm -rf build build-asan build-wasm build-fuzz web/dist web/public/wasm
+	rm -rf build build-asan build-wasm build-fuzz build-package web/dist web/public/wasm

@@ -81,7 +81,9 @@ else()
   target_compile_options(fw::cgal INTERFACE -frounding-math)
 endif()
 
-find_package(GTest REQUIRED CONFIG)
+if(FORMWRIGHT_TESTS)
+  find_package(GTest REQUIRED CONFIG)
+endif()
 
 if(NOT EMSCRIPTEN)
   # What the worker speaks to printers and machines with: IPP, HTTP, and the pages of a PDF.
@@ -102,6 +104,8 @@ if(NOT EMSCRIPTEN)
   formwright_dependency(blas cblas.h openblas SUBDIR openblas-pthread x86_64-linux-gnu/openblas-pthread)
 
   # Tests and benchmarks compare our own sparse factorisation with it.
-  formwright_dependency(cholmod cholmod.h cholmod SUBDIR suitesparse)
-  target_link_libraries(fw::cholmod INTERFACE fw::blas)
+  if(FORMWRIGHT_TESTS)
+    formwright_dependency(cholmod cholmod.h cholmod SUBDIR suitesparse)
+    target_link_libraries(fw::cholmod INTERFACE fw::blas)
+  endif()
 endif()

@@ -14,5 +14,7 @@ target_compile_options(fw_warnings INTERFACE
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(fw_warnings INTERFACE
     # False alarms of g++ 12 inside inlined Eigen and std::string code.
-    -Wno-maybe-uninitialized -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread -Wno-restrict)
+    -Wno-maybe-uninitialized -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread -Wno-restrict
+    # Without AVX 32-byte vectors are passed otherwise: only our own functions pass them to each other.
+    $<$<NOT:$<BOOL:${FORMWRIGHT_X86_64_V3}>>:-Wno-psabi>)
 endif()

@@ -2,17 +2,12 @@
 #include "command_line.h"
 
 #include <algorithm>
-#include <cstdio>
 
+#include "command_flags.h"
 #include "job/catalog.h"
 
 namespace formwright {
 namespace {
-
-std::string dashed(std::string name) {
-  std::replace(name.begin(), name.end(), '_', '-');
-  return "--" + name;
-}
 
 std::vector<std::string> split(const std::string& text) {
   std::vector<std::string> parts;
@@ -67,38 +62,6 @@ std::string paragraph(const std::string& text) {
   for (std::size_t at = plain.find("\n  "); at != std::string::npos; at = plain.find("\n  ", at + 1))
     plain.erase(at + 1, 2);
   return plain;
-}
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
-std::string value_text(const ParameterInfo& info) {
-  if (info.kind == ParameterKind::choice) {
-    std::string list;
-    for (const auto& choice : info.choices) list += (list.empty() ? "" : "|") + choice;
-    return list;
-  }
-  if (info.kind == ParameterKind::boolean) return "on|off";
-  if (info.kind == ParameterKind::vector3) return "X,Y,Z";
-  return info.kind == ParameterKind::text ? "TEXT" : "N";
-}
-
-std::string default_text(const ParameterInfo& info) {
-  if (info.default_value.is_null()) return "auto";
-  if (info.default_value.is_boolean()) return info.default_value.get<bool>() ? "on" : "off";
-  if (info.default_value.is_string()) return info.default_value.get<std::string>();
-  if (info.default_value.is_number()) return number(info.default_value.get<double>());
-  std::string list;
-  for (const Json& item : info.default_value) list += (list.empty() ? "" : ",") + number(item.get<double>());
-  return list;
-}
-
-bool takes_object(const Operation& operation) {
-  return std::any_of(operation.inputs.begin(), operation.inputs.end(),
-                     [](const InputInfo& input) { return input.name == "setup"; });
 }
 
 /// A file, or one more of the same; folders are for inputs that are packed from one.
@@ -218,66 +181,28 @@ std::string overview_text() {
   std::string text = std::string("formwright ") + version() + ": from a 3D model to something that can be made\n\n";
   for (const Operation& operation : operations())
     text += entry("formwright " + operation.name, width, operation.summary);
-  text += "\n" + entry("formwright serve", width, "The page and the native worker, on this machine only.");
-  text +=
-      entry("formwright machine", width, "Printers and machines: list, add, remove, print, send, origin, frame, stop.");
-  text += entry("formwright list", width, "The operations, one a line.");
-  text += entry("formwright describe OP", width, "One operation as JSON: inputs, parameters, outputs, report.");
+  text += "\n";
+  for (const CommandInfo& command : other_commands())
+    text += entry("formwright " + command.name, width, command.summary);
   text += entry("formwright --version", width, "The version.");
   text += "\nformwright OP --help shows the flags of an operation.\n";
   return text;
 }
 
-std::string operation_help(const Operation& operation) {
-  constexpr std::size_t width = 30;
-  std::string text = paragraph(operation.summary) + "\n  formwright " + operation.name;
+std::string operation_usage(const Operation& operation) {
+  std::string text = "formwright " + operation.name;
   for (const InputInfo& input : operation.inputs)
     if (input.required) text += " " + dashed(input.name) + (input.folder_files.empty() ? " FILE" : " DIR");
-  text += " --out DIR [flags]\n\nInput\n";
-  for (const InputInfo& input : operation.inputs) {
-    std::string list;
-    for (const auto& extension : input.extensions) list += (list.empty() ? "" : ", ") + extension;
-    const std::string what = input.folder_files.empty() ? " FILE" : " DIR";
-    text += entry(dashed(input.name) + what, width,
-                  input.help + (list.empty() ? "" : " (" + list + ")") +
-                      (input.repeatable ? " May be given several times." : ""));
-    if (input.accepts_sample) {
-      std::string names;
-      const Json catalog = catalog_json();
-      for (const Json& sample : catalog["samples"])
-        names += (names.empty() ? "" : ", ") + sample["name"].get<std::string>();
-      text += entry("--sample NAME", width, "A built-in shape instead of a file: " + names + ".");
-      text += entry("--sample-vertices N", width, "Its resolution.");
-    }
-  }
-  if (takes_object(operation)) {
-    std::string names;
-    for (const InputInfo& input : operation.inputs)
-      if (!input.object_file.empty()) names += (names.empty() ? "" : ", ") + input.object_file;
-    text += entry("--object DIR", width, "The folder of a measured object instead of single files: " + names + ".");
-  }
-  std::string list;
-  for (const OutputInfo& output : operation.outputs)
-    list += (list.empty() ? "" : ", ") + output.name + (output.made_by_default ? "*" : "");
-  text += "\nFiles\n" + entry("--out DIR", width, "Folder for the outputs and report.json.");
-  text += entry("--outputs A,B", width, "Which to make: " + list + " (* without being asked).");
-  if (operation.keeps_results)
-    text += entry(
-        "--results DIR", width,
-        "Where simulations are kept and found again; OUT/simulations unless told. Several runs and machines may share it.");
-  text += entry("--quiet", width, "No progress.");
-  std::string group;
-  for (const ParameterInfo& info : operation.parameters) {
-    if (info.group != group || &info == operation.parameters.data()) {
-      group = info.group;
-      text += "\n" + (group.empty() ? std::string("Parameters") : group) + "\n";
-    }
-    std::string range;
-    if (info.kind == ParameterKind::number || info.kind == ParameterKind::integer ||
-        info.kind == ParameterKind::optional_number)
-      range = number(info.minimum) + " to " + number(info.maximum) + (info.unit.empty() ? "" : " " + info.unit) + ", ";
-    text += entry(flag_name(info) + " " + value_text(info), width,
-                  info.help + " [" + range + "default " + default_text(info) + "]");
+  return text + " --out DIR [flags]";
+}
+
+std::string operation_help(const Operation& operation) {
+  constexpr std::size_t width = 30;
+  std::string text = paragraph(operation.summary) + "\n  " + operation_usage(operation) + "\n", group;
+  for (const FlagInfo& flag : operation_flags(operation)) {
+    if (flag.group != group) text += "\n" + flag.group + "\n";
+    group = flag.group;
+    text += entry(flag.name + (flag.placeholder.empty() ? "" : " " + flag.placeholder), width, flag.help);
   }
   return text;
 }

@@ -23,5 +23,6 @@ ParsedCommand parse_command(const Operation& operation, const std::vector<std::s
 
 std::string overview_text();  // formwright, formwright --help
 std::string operation_help(const Operation& operation);
+std::string operation_usage(const Operation& operation);  // "formwright relief --mesh FILE --out DIR [flags]"
 
 }  // namespace formwright

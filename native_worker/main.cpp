@@ -16,9 +16,11 @@
 #include "job/catalog.h"
 #include "job/run.h"
 #include "machines/machine_commands.h"
+#include "manual_page.h"
 #include "output_folder.h"
 #include "private_data.h"
 #include "serve.h"
+#include "shell_completions.h"
 
 namespace formwright {
 namespace {
@@ -133,6 +135,14 @@ int run_operation(const Operation& operation, const std::vector<std::string>& wo
   return 0;
 }
 
+/// What `formwright list` prints, for programs: the order is the catalog's.
+Json operation_list() {
+  Json list = Json::array();
+  for (const Operation& operation : operations())
+    list.push_back({{"name", operation.name}, {"title", operation.title}, {"summary", operation.summary}});
+  return list;
+}
+
 int run(const std::vector<std::string>& words) {
   if (words.empty() || words[0] == "--help" || words[0] == "-h" || words[0] == "help") {
     std::cout << overview_text();
@@ -143,6 +153,12 @@ int run(const std::vector<std::string>& words) {
     return 0;
   }
   if (words[0] == "list") {
+    if (words.size() > 1 && words[1] != "--json")
+      throw Error(ErrorCode::invalid_input, words[1], "There is no flag " + words[1] + " of list: it has --json.");
+    if (words.size() > 1) {
+      std::cout << operation_list().dump(2) << "\n";
+      return 0;
+    }
     for (const Operation& operation : operations()) std::cout << operation.name << "\t" << operation.summary << "\n";
     return 0;
   }
@@ -157,6 +173,14 @@ int run(const std::vector<std::string>& words) {
     }
     throw Error(ErrorCode::invalid_input, words[1],
                 "There is no operation called " + words[1] + ": see formwright list.");
+  }
+  if (words[0] == "completions") {
+    std::cout << shell_completions(words.size() > 1 ? words[1] : "");
+    return 0;
+  }
+  if (words[0] == "manual") {
+    std::cout << manual_page();
+    return 0;
   }
   const std::vector<std::string> rest(words.begin() + 1, words.end());
   // What these write goes to DATA; outputs of operations are the person's own, with the rights that they chose.

@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Builds what is named: native, asan, wasm (CMake presets), web (the page).
+# Builds what is named: native, asan, wasm (CMake presets), native-app, wasm-app (the same without their tests),
+# package (the program for any x86-64 processor), web (the page).
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-build_preset() {  # preset
+build_preset() {  # preset of the configuration, preset of the build
   # Configuring again costs a second and notices a new toolchain. What the environment does not say the preset does.
   cmake --preset "$1" ${FORMWRIGHT_CRAFT_TESTS:+-DFORMWRIGHT_CRAFT_TESTS="$FORMWRIGHT_CRAFT_TESTS"} \
     ${FORMWRIGHT_LONG_TESTS:+-DFORMWRIGHT_LONG_TESTS="$FORMWRIGHT_LONG_TESTS"} >&2
-  nice cmake --build --preset "$1" --parallel "${FORMWRIGHT_JOBS:-$(nproc)}" >&2
+  nice cmake --build --preset "$2" --parallel "${FORMWRIGHT_JOBS:-$(nproc)}" >&2
 }
 
 # `npm ci` deletes node_modules: do it only when the lock file has changed.
@@ -23,12 +24,13 @@ install_web() {
 cd "$FORMWRIGHT_ROOT"
 for part in "$@"; do
   case "$part" in
-    native | asan | wasm) build_preset "$part" ;;
+    native | asan | wasm | package) build_preset "$part" "$part" ;;
+    native-app | wasm-app) build_preset "${part%-app}" "$part" ;;
     web-packages) install_web ;;
     web)
       install_web
       npm --prefix web run build >&2
       ;;
-    *) fail "there is nothing to build called '$part'" "choose from native, asan, wasm, web" ;;
+    *) fail "there is nothing to build called '$part'" "choose from native, asan, wasm, native-app, wasm-app, package, web" ;;
   esac
 done

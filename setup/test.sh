@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
-# Sets up, builds and runs what a change must pass, stopping at the first stage that fails.
-# The last line is "N passed, N failed", summed over all runners.
+# Sets up, builds and runs what a change must pass, stopping at the first stage that fails. Tests that failed and passed
+# when asked again are named at the end: each is a defect. The last line is "N passed, N failed", summed over all runners.
 #   setup/test.sh [--all]   with --all the crafts' own tests run with sanitizers and in WebAssembly, too, and the reliability
 #                           tests in their long forms
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+. "$(dirname "${BASH_SOURCE[0]}")/test_counts.sh"
 cd "$FORMWRIGHT_ROOT"
 case "${1-}" in
   '') ;;
@@ -17,49 +18,35 @@ esac
 PASSED=0
 FAILED=0
 COMPLETE=no  # until the last stage has passed; an interruption is a failure
+FLAKY=()
 LOG="$(mktemp)"
 
 finish() {
   rm -f "$LOG"
   if [ "$COMPLETE" = no ] && [ "$FAILED" -eq 0 ]; then FAILED=1; fi
   if [ "$PASSED" -eq 0 ] && [ "$FAILED" -eq 0 ]; then FAILED=1; fi
+  if [ ${#FLAKY[@]} -gt 0 ]; then
+    printf '%d passed only when asked again (each is a defect to fix):\n' "${#FLAKY[@]}"
+    printf '  %s\n' "${FLAKY[@]}"
+  fi
   printf '%d passed, %d failed\n' "$PASSED" "$FAILED"
   [ "$FAILED" -eq 0 ] || exit 1
 }
 trap finish EXIT
-
-sum() { awk '{ total += $1 } END { print total + 0 }'; }
-
-# Counts in a log, "passed failed". Skipped tests are neither. How many there are the first run says, what has failed the last one.
-count_ctest() {
-  local all failed skipped
-  read -r _ all < <(sed -nE 's/^[0-9]+% tests passed, ([0-9]+) tests? failed out of ([0-9]+)$/\1 \2/p' "$1" | head -n 1) || true
-  read -r failed _ < <(sed -nE 's/^[0-9]+% tests passed, ([0-9]+) tests? failed out of ([0-9]+)$/\1 \2/p' "$1" | tail -n 1) || true
-  skipped="$(grep -cE '^ *[0-9]+/[0-9]+ Test .*\*\*\*(Skipped|Not Run)' "$1" || true)"
-  echo "$((${all:-0} - ${failed:-0} - skipped)) ${failed:-0}"
-}
-count_vitest() {
-  local line
-  line="$(grep -E '^ +Tests +' "$1" | tail -n 1 || true)"
-  echo "$(grep -oE '[0-9]+ passed' <<<"$line" | sum) $(grep -oE '[0-9]+ failed' <<<"$line" | sum)"
-}
-count_playwright() {
-  # A flaky one failed and then passed on its own (playwright.config.ts asks twice): its report stays in the log.
-  echo "$(grep -oE '^ +[0-9]+ (passed|flaky)' "$1" | sum) $(grep -oE '^ +[0-9]+ failed' "$1" | sum)"
-}
 
 # Runs a command and shows it; `runner` tells how to count its tests.
 stage() {  # name, runner or -, command...
   local name="$1" runner="$2" start=$SECONDS status=0 passed=0 failed=0 counts=''
   shift 2
   printf '\n=== %s\n' "$name"
-  # Colour codes would hide the numbers.
-  NO_COLOR=1 "$@" 2>&1 | tee "$LOG" || status=$?
+  # Colour codes would hide the numbers. CI: vitest and playwright ask once more for what has failed.
+  NO_COLOR=1 CI=1 "$@" 2>&1 | tee "$LOG" || status=$?
   if [ "$runner" != - ]; then
     read -r passed failed < <("count_$runner" "$LOG")
     PASSED=$((PASSED + passed))
     FAILED=$((FAILED + failed))
     counts=": $passed passed, $failed failed"
+    mapfile -t -O "${#FLAKY[@]}" FLAKY < <("flaky_$runner" "$LOG" | sed "s/^/$name: /")
     if [ "$passed" -eq 0 ] && [ "$status" -eq 0 ]; then
       status=1
       counts=": no test ran"
@@ -80,8 +67,8 @@ show_failed() {  # folder of a build
        { lines[count++] = $0 }
        /^Test (Failed|timeout)/ { print "--- " name; for (i = count > 30 ? count - 30 : 0; i < count; ++i) print lines[i] }' "$1/Testing/Temporary/LastTest.log"
 }
-# Tests run side by side, and some drive real programs that have limits of time of their own. What fails is shown and asked once more, alone: on a
-# machine that somebody else uses, too, only what is wrong stays failed.
+# Tests run side by side, and some drive real programs that have limits of time of their own. What fails is shown and asked once more, alone; what
+# passes then is named at the end.
 run_ctest() {  # preset, folder of its build
   ctest --preset "$1" --parallel "${FORMWRIGHT_JOBS:-$(nproc)}" && return
   show_failed "$2"

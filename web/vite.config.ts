@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { defineConfig } from 'vitest/config';
+import { FlakyReporter } from './scripts/flaky_reporter.ts';
 import { licences } from './scripts/licences.ts';
 import { serviceWorker } from './scripts/service_worker_plugin.ts';
 
@@ -21,5 +22,6 @@ export default defineConfig({
     include: ['src/**/*.test.ts', 'src/**/*.test.tsx', 'scripts/**/*.test.ts'],
     environment: 'node',
     retry: process.env['CI'] ? 1 : 0, // what fails is asked once more (setup/test.sh)
+    reporters: ['default', new FlakyReporter()],
   },
 });

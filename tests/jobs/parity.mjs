@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs the recorded jobs of this folder natively and in WASM and compares both with each other and with what was
 // recorded.
-//   node parity.mjs NATIVE_PROGRAM FORMWRIGHT_MJS [--record]
+//   node parity.mjs NATIVE_PROGRAM FORMWRIGHT_MJS [NAME] [--record]   all jobs, or NAME.json
 // A recorded job is {"job", "given", "tolerance", "recorded"}: `given` names inputs that are outputs of other jobs ({"job", "given", "output"}, made
 // natively), `tolerance` relative, per figure of the report ("*" for the
 // rest; figures that measure time or memory are left out), `recorded` what the report said when it was recorded.
@@ -14,7 +14,8 @@ import { createInterface } from 'node:readline';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { constants, inflateSync } from 'node:zlib';
 
-const [native, module, flag] = process.argv.slice(2);
+const records = process.argv.includes('--record');
+const [native, module, only] = process.argv.slice(2).filter((word) => word !== '--record');
 const folder = path.dirname(fileURLToPath(import.meta.url));
 const timed = (name) => name.startsWith('seconds_') || name === 'peak_memory_mb';
 
@@ -168,12 +169,14 @@ async function withGiven({ job, given = {} }) {
 const runInWasm = await wasmRunner();
 let passed = 0;
 let failed = 0;
-for (const file of readdirSync(folder).filter((name) => name.endsWith('.json')).sort()) {
+const chosen = readdirSync(folder).filter((name) => (only ? name === `${only}.json` : name.endsWith('.json')));
+if (chosen.length === 0) throw new Error(`There is no recorded job ${only}: name a file of ${folder} without .json.`);
+for (const file of chosen.sort()) {
   const recorded = JSON.parse(readFileSync(path.join(folder, file), 'utf8'));
   const { job, files } = await withGiven(recorded);
   const a = await runNatively(job, files);
   const b = runInWasm(job, files);
-  if (flag === '--record') {
+  if (records) {
     const keep = Object.fromEntries(Object.entries(a.report ?? {}).filter(([name]) => !timed(name)));
     recorded.recorded = a.error ? { error: a.error } : { report: keep };
     writeFileSync(path.join(folder, file), JSON.stringify(recorded, null, 2) + '\n');

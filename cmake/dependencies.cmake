@@ -81,8 +81,6 @@ else()
   target_compile_options(fw::cgal INTERFACE -frounding-math)
 endif()
 
-find_package(GTest REQUIRED CONFIG)
-
 if(NOT EMSCRIPTEN)
   # What the worker speaks to printers and machines with: IPP, HTTP, and the pages of a PDF.
   formwright_dependency(cups cups/cups.h cups)

@@ -2,10 +2,10 @@
 // Random programs over all that a dialect has: each is refused with a sentence that names a line, or every place that
 // an interpreter of its own goes to lies within the bounds that were announced, and reaches them.
 // FORMWRIGHT_SEED and FORMWRIGHT_PROGRAMS choose other and more of them.
+#include <catch2/benchmark/catch_benchmark.hpp>
 #include <catch2/catch_test_macros.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -84,8 +84,8 @@ TEST_CASE("RandomPrograms.StayWithinTheirBoundsOrAreRefused") {
   CHECK(refused > count / 6);
 }
 
-/// FORMWRIGHT_JOB_MB=114 for the largest that a sender takes.
-TEST_CASE("RandomPrograms.LargeJobsAreReadInOnePassAndLookedUpAtOnce") {
+/// FORMWRIGHT_JOB_MB (4) megabytes of strokes; a sender takes 114 at most.
+std::string large_job() {
   const auto bytes = static_cast<std::size_t>(number_from_environment("FORMWRIGHT_JOB_MB", 4)) * 1'000'000;
   Random random(3);
   std::string text = "G21\nG90\nG0X0Y0\nM4S0\n";
@@ -96,26 +96,32 @@ TEST_CASE("RandomPrograms.LargeJobsAreReadInOnePassAndLookedUpAtOnce") {
                   static_cast<int>(random.below(1000)));
     text += line;
   }
-  using Clock = std::chrono::steady_clock;
-  const auto seconds_since = [](Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-  };
-  auto start = Clock::now();
+  return text;
+}
+
+double power_before_a_random_line(const GcodeProgram& program, Random& random) {
+  return program.state_before(static_cast<int>(random.below(static_cast<std::size_t>(program.line_count())))).power;
+}
+
+TEST_CASE("RandomPrograms.LargeJobsAreReadInOnePassAndLookedUpAtOnce") {
+  const std::string text = large_job();
   const GcodeProgram program = GcodeProgram::read(as_bytes(text), 78);
-  const double read_s = seconds_since(start);
-  start = Clock::now();
   require_runnable(program, {});
-  const double rules_s = seconds_since(start);
-  start = Clock::now();
+  Random random(4);
   double sum = 0;
-  for (int i = 0; i < 1000; ++i)
-    sum += program.state_before(static_cast<int>(random.below(static_cast<std::size_t>(program.line_count())))).power;
+  for (int i = 0; i < 1000; ++i) sum += power_before_a_random_line(program, random);
   CHECK(sum > 0);
-  std::printf(
-      "%.0f MB, %d lines: read in %.2f s, rules in %.2f s, state before a line in %.3f ms; index %.2f bytes a line\n",
-      1e-6 * static_cast<double>(text.size()), program.line_count(), read_s, rules_s, seconds_since(start),
-      static_cast<double>(program.memory_bytes() - text.size()) / program.line_count());
   CHECK(program.memory_bytes() < text.size() * 3 / 2);
+}
+
+/// Hidden, for it has nothing to fail by: test_random_programs '[!benchmark]' --benchmark-samples 5
+TEST_CASE("RandomPrograms.SecondsOfLargeJobs", "[!benchmark]") {
+  const std::string text = large_job();
+  const GcodeProgram program = GcodeProgram::read(as_bytes(text), 78);
+  Random random(4);
+  BENCHMARK("read") { return GcodeProgram::read(as_bytes(text), 78).line_count(); };
+  BENCHMARK("rules") { return require_runnable(program, {}); };
+  BENCHMARK("state before a line") { return power_before_a_random_line(program, random); };
 }
 
 }  // namespace

@@ -81,10 +81,6 @@ else()
   target_compile_options(fw::cgal INTERFACE -frounding-math)
 endif()
 
-if(FORMWRIGHT_TESTS)
-  find_package(GTest REQUIRED CONFIG)
-endif()
-
 if(NOT EMSCRIPTEN)
   # What the worker speaks to printers and machines with: IPP, HTTP, and the pages of a PDF.
   formwright_dependency(cups cups/cups.h cups)

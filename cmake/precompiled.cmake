@@ -8,6 +8,7 @@
 # (-mno-fma, -frounding-math) says so by FORMWRIGHT_OWN_CODE_FLAGS.
 include_guard(GLOBAL)
 include(${CMAKE_CURRENT_LIST_DIR}/compiler.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/catch2.cmake)
 
 option(FORMWRIGHT_PRECOMPILE "Precompile the headers that nearly every file reads" OFF)
 if(NOT FORMWRIGHT_PRECOMPILE)
@@ -56,13 +57,7 @@ endfunction()
 
 formwright_precompile(core_header core.h)
 if(FORMWRIGHT_TESTS)
-  # As GTest's own target says.
-  if(EMSCRIPTEN)
-    set(gtest_flag -DGTEST_HAS_PTHREAD=0)
-  else()
-    set(gtest_flag -DGTEST_HAS_PTHREAD=1)
-  endif()
-  formwright_precompile(FORMWRIGHT_TEST_HEADER test.h ${gtest_flag})
+  formwright_precompile(FORMWRIGHT_TEST_HEADER test.h -isystem${FORMWRIGHT_CATCH2})
 endif()
 set(own_flags $<BOOL:$<TARGET_PROPERTY:FORMWRIGHT_OWN_CODE_FLAGS>>)
 set(other_header $<BOOL:$<TARGET_PROPERTY:FORMWRIGHT_PRECOMPILED>>)

@@ -8,6 +8,7 @@ cd "$FORMWRIGHT_ROOT"
 setup/native.sh "$@"
 setup/wasm_toolchain.sh >/dev/null
 setup/wasm_libraries.sh >/dev/null
+setup/catch2.sh >/dev/null
 if [ "${1-}" = --test ]; then
   setup/python_packages.sh >/dev/null
   setup/test_peers.sh >/dev/null

@@ -37,6 +37,7 @@ fi
 
 setup/native.sh --test
 setup/wasm_toolchain.sh >/dev/null
+setup/catch2.sh >/dev/null
 cmake --preset fuzz >&2
 nice cmake --build --preset fuzz --parallel "${FORMWRIGHT_JOBS:-$(nproc)}" >&2
 

@@ -12,7 +12,7 @@
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-LIBRARIES=(headers zlib libpng libharu pugixml polyclipping minizip stb tinyobjloader tinygltf googletest)
+LIBRARIES=(headers zlib libpng libharu pugixml polyclipping minizip stb tinyobjloader tinygltf)
 JOBS="${FORMWRIGHT_JOBS:-$(nproc)}"
 
 mapfile -t WASM_FLAGS <"$FORMWRIGHT_ROOT/cmake/wasm_flags.txt"
@@ -166,11 +166,6 @@ build_tinygltf() {
   mkdir -p "$SOURCES/tinygltf"
   printf '#define TINYGLTF_IMPLEMENTATION\n#include <tiny_gltf.h>\n' >"$SOURCES/tinygltf/tiny_gltf.cc"
   static_library tinygltf -I"$PREFIX/include" -I"$PREFIX/include/stb" "$SOURCES/tinygltf/tiny_gltf.cc"
-}
-
-build_googletest() {
-  [ -d /usr/src/googletest ] || fail "/usr/src/googletest is missing" "run setup/native.sh first"
-  cmake_install /usr/src/googletest -DBUILD_GMOCK=OFF -Dgtest_disable_pthreads=ON
 }
 
 # OpenCV belongs here: add `opencv` to LIBRARIES and a build_opencv() that does

@@ -2,6 +2,7 @@
 // Read before every test: cmake/precompiled.cmake.
 #include "core.h"
 
-#include <gtest/gtest.h>
-
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/generators/catch_generators_range.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 #include <random>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/context.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <vector>
 
@@ -9,8 +10,9 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinULP;
 
-TEST(Context, NestedSpansMapToTheWholeAndNeverFall) {
+TEST_CASE("Context.NestedSpansMapToTheWholeAndNeverFall") {
   std::vector<Progress> messages;
   Context context(Host{[&](const Progress& p) { messages.push_back(p); }, {}, {}});
   context.progress(0, "A");
@@ -23,35 +25,35 @@ TEST(Context, NestedSpansMapToTheWholeAndNeverFall) {
     context.progress(0.1, "E");  // 0.55, but 0.75 was said already
   }
   context.progress(1.0, "F");
-  ASSERT_GE(messages.size(), 5u);
+  REQUIRE(messages.size() >= 5u);
   double last = 0;
   for (const Progress& message : messages) {
-    EXPECT_GE(message.fraction, last);
+    CHECK(message.fraction >= last);
     last = message.fraction;
     if (message.stage == "D" || message.stage == "E") {
-      EXPECT_DOUBLE_EQ(message.fraction, 0.75);
+      CHECK_THAT(message.fraction, WithinULP(0.75, 4));
     }
   }
-  EXPECT_DOUBLE_EQ(last, 1.0);
+  CHECK_THAT(last, WithinULP(1.0, 4));
 }
 
-TEST(Context, ThrottlesWithinAStage) {
+TEST_CASE("Context.ThrottlesWithinAStage") {
   int messages = 0;
   Context context(Host{[&](const Progress&) { ++messages; }, {}, {}});
   for (int i = 0; i <= 10000; ++i) context.progress(i / 10000.0, "Counting");
-  EXPECT_LT(messages, 100);
+  CHECK(messages < 100);
 }
 
-TEST(Context, CancelThrowsFromProgressAndCheck) {
+TEST_CASE("Context.CancelThrowsFromProgressAndCheck") {
   bool cancel = false;
   Context context(Host{{}, [&] { return cancel; }, {}});
-  EXPECT_NO_THROW(context.check_cancelled());
+  CHECK_NOTHROW(context.check_cancelled());
   cancel = true;
   try {
     context.progress(0.5, "Late");
-    FAIL() << "cancel went unnoticed";
+    FAIL("cancel went unnoticed");
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::cancelled);
+    CHECK(error.code() == ErrorCode::cancelled);
   }
 }
 

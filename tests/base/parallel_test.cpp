@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/parallel.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
 
 #include <atomic>
 #include <chrono>
@@ -15,53 +15,55 @@
 namespace formwright {
 namespace {
 
-TEST(ParallelFor, VisitsEveryIndexOnce) {
+TEST_CASE("ParallelFor.VisitsEveryIndexOnce") {
   for (const std::size_t count : {0u, 1u, 7u, 1000u, 4097u})
     for (const std::size_t grain : {0u, 1u, 64u, 5000u}) {
       std::vector<std::atomic<int>> visits(count);
       parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) ++visits[i];
       });
-      for (const auto& visit : visits) EXPECT_EQ(visit.load(), 1);
+      for (const auto& visit : visits) CHECK(visit.load() == 1);
     }
 }
 
-TEST(ParallelFor, ChunksDependOnCountAndGrainOnly) {
+TEST_CASE("ParallelFor.ChunksDependOnCountAndGrainOnly") {
   std::vector<std::atomic<std::size_t>> ends(1000);
   parallel_for(1000, 300, [&](std::size_t begin, std::size_t end) { ends[begin] = end; });
-  EXPECT_EQ(ends[0].load(), 300u);
-  EXPECT_EQ(ends[300].load(), 600u);
-  EXPECT_EQ(ends[600].load(), 900u);
-  EXPECT_EQ(ends[900].load(), 1000u);
+  CHECK(ends[0].load() == 300u);
+  CHECK(ends[300].load() == 600u);
+  CHECK(ends[600].load() == 900u);
+  CHECK(ends[900].load() == 1000u);
 }
 
-TEST(ParallelFor, RethrowsAndStops) {
+TEST_CASE("ParallelFor.RethrowsAndStops") {
   std::atomic<int> chunks{0};
-  EXPECT_THROW(parallel_for(100000, 1,
-                            [&](std::size_t begin, std::size_t) {
-                              ++chunks;
-                              if (begin == 10) throw std::runtime_error("here");
-                              // The others leave it the time to be noticed, should its thread be put aside just now.
-                              if (begin > 10) std::this_thread::sleep_for(std::chrono::microseconds(50));
-                            }),
-               std::runtime_error);
-  EXPECT_LT(chunks.load(), 100000);
+  CHECK_THROWS_AS(parallel_for(100000, 1,
+                               [&](std::size_t begin, std::size_t) {
+                                 ++chunks;
+                                 if (begin == 10) throw std::runtime_error("here");
+                                 // The others leave it the time to be noticed, should its thread be put aside just now.
+                                 if (begin > 10) std::this_thread::sleep_for(std::chrono::microseconds(50));
+                               }),
+                  std::runtime_error);
+  CHECK(chunks.load() < 100000);
 }
 
-TEST(ParallelFor, LoopsWithinLoopsVisitEveryIndexOnce) {
+TEST_CASE("ParallelFor.LoopsWithinLoopsVisitEveryIndexOnce") {
   std::vector<std::atomic<int>> visits(64 * 64);
+  std::atomic<int> on_other_threads{0};  // assertions belong to one thread
   parallel_for(64, 1, [&](std::size_t begin, std::size_t) {
     const std::thread::id here = std::this_thread::get_id();
     parallel_for(64, 1, [&](std::size_t inner, std::size_t) {
-      EXPECT_EQ(std::this_thread::get_id(), here);  // the threads there are have enough to do
+      if (std::this_thread::get_id() != here) ++on_other_threads;
       ++visits[64 * begin + inner];
     });
   });
-  for (const auto& visit : visits) EXPECT_EQ(visit.load(), 1);
+  CHECK(on_other_threads.load() == 0);  // the threads there are have enough to do
+  for (const auto& visit : visits) CHECK(visit.load() == 1);
 }
 
 #ifndef __wasm__
-TEST(ParallelFor, SeveralThreadsLoopAtOnce) {
+TEST_CASE("ParallelFor.SeveralThreadsLoopAtOnce") {
   constexpr int callers = 6, loops = 400;
   std::vector<long> sums(callers);
   std::vector<std::thread> threads;
@@ -78,12 +80,11 @@ TEST(ParallelFor, SeveralThreadsLoopAtOnce) {
   for (std::thread& thread : threads) thread.join();
   long each = 0;
   for (int loop = 0; loop < loops; ++loop) each += 200 + loop % 7;
-  for (int caller = 0; caller < callers; ++caller)
-    EXPECT_EQ(sums[static_cast<std::size_t>(caller)], (caller + 1) * each);
+  for (int caller = 0; caller < callers; ++caller) CHECK(sums[static_cast<std::size_t>(caller)] == (caller + 1) * each);
 }
 #endif
 
-TEST(ParallelFor, GoesOnAfterPausesAndFailures) {
+TEST_CASE("ParallelFor.GoesOnAfterPausesAndFailures") {
   // Helpers fall asleep in the pause and wake again; a failure leaves nothing behind.
   for (int round = 0; round < 20; ++round) {
     if (round % 5 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(2));
@@ -91,13 +92,13 @@ TEST(ParallelFor, GoesOnAfterPausesAndFailures) {
     const auto fail = [](std::size_t begin, std::size_t) {
       if (begin == 3) throw std::runtime_error("here");
     };
-    EXPECT_THROW(parallel_for(50, 1, fail), std::runtime_error);
+    CHECK_THROWS_AS(parallel_for(50, 1, fail), std::runtime_error);
     parallel_for(50, 1, [&](std::size_t, std::size_t) { ++done; });
-    EXPECT_EQ(done.load(), 50);
+    CHECK(done.load() == 50);
   }
 }
 
-TEST(ParallelFor, TheLimitHolds) {
+TEST_CASE("ParallelFor.TheLimitHolds") {
   std::mutex mutex;
   std::set<std::thread::id> seen;
   const auto look = [&](std::size_t, std::size_t) {
@@ -108,9 +109,9 @@ TEST(ParallelFor, TheLimitHolds) {
     const ThreadLimit one(1);
     parallel_for(1000, 1, look);
   }
-  EXPECT_EQ(seen, std::set{std::this_thread::get_id()});
+  CHECK(seen == std::set{std::this_thread::get_id()});
   parallel_for(1000, 1, look);
-  EXPECT_LE(seen.size(), static_cast<std::size_t>(thread_count()));
+  CHECK(seen.size() <= static_cast<std::size_t>(thread_count()));
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/parameters.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
 
 namespace formwright {
 
@@ -33,23 +33,24 @@ struct PaintOptions {
 void expect_rejected(const Json& object, const std::string& where, const std::string& part) {
   try {
     read_parameters<PaintOptions>(object);
-    FAIL() << object << " was accepted";
+    FAIL(object << " was accepted");
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::invalid_input);
-    EXPECT_EQ(error.where(), where);
-    EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    CHECK(error.code() == ErrorCode::invalid_input);
+    CHECK(error.where() == where);
+    INFO(error.what());
+    CHECK(std::string(error.what()).find(part) != std::string::npos);
   }
 }
 
-TEST(Parameters, AbsentNamesKeepTheMemberInitialisers) {
+TEST_CASE("Parameters.AbsentNamesKeepTheMemberInitialisers") {
   const auto options = read_parameters<PaintOptions>(Json::object());
-  EXPECT_EQ(options.layer_mm, 0.5);
-  EXPECT_EQ(options.coats, 2);
-  EXPECT_FALSE(options.drying_s);
-  EXPECT_EQ(options.colour, Colour::deep_blue);
+  CHECK(options.layer_mm == 0.5);
+  CHECK(options.coats == 2);
+  CHECK_FALSE(options.drying_s);
+  CHECK(options.colour == Colour::deep_blue);
 }
 
-TEST(Parameters, ReadsWhatItWrites) {
+TEST_CASE("Parameters.ReadsWhatItWrites") {
   PaintOptions options;
   options.layer_mm = 1.25;
   options.coats = 7;
@@ -58,10 +59,10 @@ TEST(Parameters, ReadsWhatItWrites) {
   options.colour = Colour::red;
   options.from = {1, 2, 3};
   const Json written = write_parameters(options);
-  EXPECT_EQ(write_parameters(read_parameters<PaintOptions>(Json::parse(written.dump()))), written);
+  CHECK(write_parameters(read_parameters<PaintOptions>(Json::parse(written.dump()))) == written);
 }
 
-TEST(Parameters, RejectsWithNameRangeAndMend) {
+TEST_CASE("Parameters.RejectsWithNameRangeAndMend") {
   expect_rejected({{"layer_mm", 5}}, "layer_mm", "from 0.1 to 3 mm");
   expect_rejected({{"layer_mm", "thick"}}, "layer_mm", "must be a number");
   expect_rejected({{"coats", 2.5}}, "coats", "whole number");
@@ -73,31 +74,31 @@ TEST(Parameters, RejectsWithNameRangeAndMend) {
   expect_rejected(Json::array(), "parameters", "JSON object");
 }
 
-TEST(Parameters, SchemaCarriesUnitRangeDefaultAndHelp) {
+TEST_CASE("Parameters.SchemaCarriesUnitRangeDefaultAndHelp") {
   const auto infos = describe_parameters<PaintOptions>();
   const Json layer = parameter_schema(infos[0]);
-  EXPECT_EQ(layer["type"], "number");
-  EXPECT_EQ(layer["minimum"], 0.1);
-  EXPECT_EQ(layer["maximum"], 3.0);
-  EXPECT_EQ(layer["default"], 0.5);
-  EXPECT_EQ(layer["x-unit"], "mm");
-  EXPECT_EQ(layer["x-slider"], (Json{0.2, 1.0}));
-  EXPECT_TRUE(parameter_schema(infos[3])["x-advanced"]);
-  EXPECT_EQ(parameter_schema(infos[3])["default"], nullptr);
-  EXPECT_EQ(parameter_schema(infos[4])["enum"], (Json{"red", "deep_blue"}));
-  EXPECT_EQ(parameter_schema(infos[5])["x-group"], "Brush");
+  CHECK(layer["type"] == "number");
+  CHECK(layer["minimum"] == 0.1);
+  CHECK(layer["maximum"] == 3.0);
+  CHECK(layer["default"] == 0.5);
+  CHECK(layer["x-unit"] == "mm");
+  CHECK(layer["x-slider"] == Json{0.2, 1.0});
+  CHECK(parameter_schema(infos[3])["x-advanced"]);
+  CHECK(parameter_schema(infos[3])["default"] == nullptr);
+  CHECK(parameter_schema(infos[4])["enum"] == Json{"red", "deep_blue"});
+  CHECK(parameter_schema(infos[5])["x-group"] == "Brush");
 }
 
-TEST(Parameters, FlagsParseToTheSameValues) {
+TEST_CASE("Parameters.FlagsParseToTheSameValues") {
   const auto infos = describe_parameters<PaintOptions>();
-  EXPECT_EQ(flag_name(infos[0]), "--layer-mm");
-  EXPECT_EQ(parse_flag(infos[0], "0.75"), 0.75);
-  EXPECT_EQ(parse_flag(infos[2], "on"), true);
-  EXPECT_EQ(parse_flag(infos[3], "auto"), nullptr);
-  EXPECT_EQ(parse_flag(infos[5], "0,-1,0.5"), (Json{0.0, -1.0, 0.5}));
-  EXPECT_THROW(parse_flag(infos[0], "5mm"), Error);
-  EXPECT_THROW(parse_flag(infos[5], "1,,2"), Error);
-  EXPECT_THROW(parse_flag(infos[2], "maybe"), Error);
+  CHECK(flag_name(infos[0]) == "--layer-mm");
+  CHECK(parse_flag(infos[0], "0.75") == 0.75);
+  CHECK(parse_flag(infos[2], "on") == true);
+  CHECK(parse_flag(infos[3], "auto") == nullptr);
+  CHECK(parse_flag(infos[5], "0,-1,0.5") == Json{0.0, -1.0, 0.5});
+  CHECK_THROWS_AS(parse_flag(infos[0], "5mm"), Error);
+  CHECK_THROWS_AS(parse_flag(infos[5], "1,,2"), Error);
+  CHECK_THROWS_AS(parse_flag(infos[2], "maybe"), Error);
 }
 
 }  // namespace

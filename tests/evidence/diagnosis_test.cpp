@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "evidence/diagnosis.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <Eigen/Dense>
 #include <atomic>
@@ -14,6 +15,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 using evidence_test::ToyModel;
 
@@ -23,23 +25,23 @@ Diagnosis diagnosed(const ToyModel& model) {
   return diagnose(bag, {}, context);
 }
 
-TEST(BoundedStep, IsThatOfTheLinearSystemInsideAndClampsOutside) {
+TEST_CASE("BoundedStep.IsThatOfTheLinearSystemInsideAndClampsOutside") {
   Eigen::Matrix3d H;
   H << 4, 1, 0.5, 1, 3, 0.2, 0.5, 0.2, 2;
   const Eigen::Vector3d g(1, -2, 0.5), wide = Eigen::Vector3d::Constant(10);
-  EXPECT_LT((bounded_step(H, g, -wide, wide) + H.ldlt().solve(g)).norm(), 1e-8);
+  CHECK((bounded_step(H, g, -wide, wide) + H.ldlt().solve(g)).norm() < 1e-8);
   const Eigen::Vector3d low(-0.1, -0.1, -0.1), high(0.1, 0.1, 0.1);
   const Eigen::Vector3d s = bounded_step(H, g, low, high);
   // Karush, Kuhn and Tucker: the gradient points out of the box where the step is at its side.
   const Eigen::Vector3d gradient = H * s + g;
   for (int i = 0; i < 3; ++i) {
-    EXPECT_LE(std::abs(s[i]), 0.1 + 1e-12);
+    CHECK(std::abs(s[i]) <= 0.1 + 1e-12);
     const bool inside = s[i] > -0.1 + 1e-9 && s[i] < 0.1 - 1e-9;
-    EXPECT_LE(inside ? std::abs(gradient[i]) : gradient[i] * s[i], 1e-6);
+    CHECK((inside ? std::abs(gradient[i]) : gradient[i] * s[i]) <= 1e-6);
   }
 }
 
-TEST(ParameterFit, RecoversBaseParametersDespiteOutliers) {
+TEST_CASE("ParameterFit.RecoversBaseParametersDespiteOutliers") {
   ToyModel model(600);
   Eigen::VectorXd truth = model.nominal();
   truth[0] = 0.4;
@@ -49,12 +51,12 @@ TEST(ParameterFit, RecoversBaseParametersDespiteOutliers) {
   Context context;
   const ParameterFit fit = fit_parameters(bag, *mean_distance_objective(model, 0.02), model.base_parameters(),
                                           model.nominal(), {}, {}, context, "");
-  EXPECT_NEAR(fit.u[0], 0.4, 0.01);
-  EXPECT_NEAR(fit.u[1], -0.7, 0.01);
-  EXPECT_LT(bag.simulations(), 40);
+  CHECK_THAT(fit.u[0], WithinAbs(0.4, 0.01));
+  CHECK_THAT(fit.u[1], WithinAbs(-0.7, 0.01));
+  CHECK(bag.simulations() < 40);
 }
 
-TEST(ParameterFit, StaysWithinRanges) {
+TEST_CASE("ParameterFit.StaysWithinRanges") {
   ToyModel model(200);
   Eigen::VectorXd truth = model.nominal();
   truth[1] = 5;
@@ -66,45 +68,46 @@ TEST(ParameterFit, StaysWithinRanges) {
   options.most_iterations = 60;
   const ParameterFit fit = fit_parameters(bag, *mean_distance_objective(model, 0.01), model.base_parameters(),
                                           model.nominal(), {}, options, context, "");
-  EXPECT_NEAR(fit.u[1], 5, 1e-6);
+  CHECK_THAT(fit.u[1], WithinAbs(5, 1e-6));
 }
 
-TEST(ParameterFit, ProbingSaysHowFarSecantsMiss) {
+TEST_CASE("ParameterFit.ProbingSaysHowFarSecantsMiss") {
   ToyModel model(50);
   SimulationBag bag(model);
   Context context;
   const std::vector<int> columns{0, 1, 3};
   const Probing probing =
       probe_around(bag, model.nominal(), *bag.run(model.nominal(), context, ""), columns, context, "");
-  ASSERT_EQ(probing.bends.front().size(), 2u);  // the ripple goes one way only
+  REQUIRE(probing.bends.front().size() == 2u);  // the ripple goes one way only
   for (Eigen::Index i = 0; i < 50; ++i) {
     const auto place = model.measurements().front().place.row(i);
     // Height is e^u: half of e^h + e^-h - 2.
-    EXPECT_NEAR(probing.bends.front()[0](i, 0), (std::cosh(0.1) - 1) * std::sin(std::numbers::pi * place[0]), 1e-12);
-    EXPECT_NEAR(probing.bends.front()[0](i, 1), (std::cosh(0.1) - 1) * place[0] * place[1] / 2, 1e-12);
-    EXPECT_NEAR(probing.sensitivities.front()[0](i, 0), std::sinh(0.1) / 0.1 * std::sin(std::numbers::pi * place[0]),
-                1e-12);
+    CHECK_THAT(probing.bends.front()[0](i, 0),
+               WithinAbs((std::cosh(0.1) - 1) * std::sin(std::numbers::pi * place[0]), 1e-12));
+    CHECK_THAT(probing.bends.front()[0](i, 1), WithinAbs((std::cosh(0.1) - 1) * place[0] * place[1] / 2, 1e-12));
+    CHECK_THAT(probing.sensitivities.front()[0](i, 0),
+               WithinAbs(std::sinh(0.1) / 0.1 * std::sin(std::numbers::pi * place[0]), 1e-12));
   }
-  EXPECT_LT(probing.bends.front()[1].cwiseAbs().maxCoeff(), 1e-12);  // the tilt is straight
+  CHECK(probing.bends.front()[1].cwiseAbs().maxCoeff() < 1e-12);  // the tilt is straight
 }
 
-TEST(SimulationBag, AsksForNothingTwiceAndStopsAtOnce) {
+TEST_CASE("SimulationBag.AsksForNothingTwiceAndStopsAtOnce") {
   ToyModel model(50);
   SimulationBag bag(model);
   Context context;
   const Eigen::VectorXd u = model.nominal();
   bag.run({u, u, u}, context, "");
-  EXPECT_EQ(bag.simulations(), 1);
+  CHECK(bag.simulations() == 1);
   bag.run(u, context, "");
-  EXPECT_EQ(bag.simulations(), 1);
+  CHECK(bag.simulations() == 1);
   Context cancelled(Host{{}, [] { return true; }});
   Eigen::VectorXd other = u;
   other[0] = 0.1;
-  EXPECT_THROW(bag.run(other, cancelled, ""), Error);
-  EXPECT_TRUE(bag.run(other, context, "").has_value());
+  CHECK_THROWS_AS(bag.run(other, cancelled, ""), Error);
+  CHECK(bag.run(other, context, "").has_value());
 }
 
-TEST(Calibration, IntervalsHoldTheTruthAndSayWhatIsNotTold) {
+TEST_CASE("Calibration.IntervalsHoldTheTruthAndSayWhatIsNotTold") {
   int inside = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {
     ToyModel model(300, seed);
@@ -115,12 +118,12 @@ TEST(Calibration, IntervalsHoldTheTruthAndSayWhatIsNotTold) {
     SimulationBag bag(model);
     Context context;
     const Calibration c = calibrate(bag, context);
-    ASSERT_EQ(c.profiles.size(), 2u);
-    EXPECT_LT(c.error, c.error_nominal);
-    EXPECT_TRUE(c.profiles[1].identified);
+    REQUIRE(c.profiles.size() == 2u);
+    CHECK(c.error < c.error_nominal);
+    CHECK(c.profiles[1].identified);
     inside += c.profiles[1].low <= 0.5 && 0.5 <= c.profiles[1].high;
   }
-  EXPECT_GE(inside, 16);  // of 20 at 95 %; the structure term only widens
+  CHECK(inside >= 16);  // of 20 at 95 %; the structure term only widens
   // All points at z = 0: nothing is known of the tilt.
   ToyModel blind(300);
   blind.measurement().place.col(1).setZero();
@@ -128,10 +131,10 @@ TEST(Calibration, IntervalsHoldTheTruthAndSayWhatIsNotTold) {
   SimulationBag bag(blind);
   Context context;
   const Calibration c = calibrate(bag, context);
-  EXPECT_FALSE(c.profiles[1].identified);
+  CHECK_FALSE(c.profiles[1].identified);
 }
 
-TEST(Calibration, FitIsNoWorseThanTheGrid) {
+TEST_CASE("Calibration.FitIsNoWorseThanTheGrid") {
   ToyModel model(300);
   Eigen::VectorXd truth = model.nominal();
   truth[0] = 0.33;
@@ -141,11 +144,11 @@ TEST(Calibration, FitIsNoWorseThanTheGrid) {
   Context context;
   const Calibration fit = calibrate(bag, context);
   const Calibration grid = grid_search(grid_bag, {{0, 5, 20}, {1, -2, 2}}, 5, {}, 0, context);
-  EXPECT_EQ(grid.simulations, 26);  // 25 of the grid and the nominal one, which is none of them
-  EXPECT_LE(fit.error, grid.error + 1e-9);
+  CHECK(grid.simulations == 26);  // 25 of the grid and the nominal one, which is none of them
+  CHECK(fit.error <= grid.error + 1e-9);
 }
 
-TEST(Diagnosis, CleanDataAreCalledClean) {
+TEST_CASE("Diagnosis.CleanDataAreCalledClean") {
   int alarms = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {
     ToyModel model(400, seed);
@@ -154,10 +157,10 @@ TEST(Diagnosis, CleanDataAreCalledClean) {
     model.measure(truth, 0.08, seed, 0.02);
     alarms += diagnosed(model).reading != Reading::none;
   }
-  EXPECT_LE(alarms, 1);
+  CHECK(alarms <= 1);
 }
 
-TEST(Diagnosis, NamesEachCauseItsStrengthAndTheGain) {
+TEST_CASE("Diagnosis.NamesEachCauseItsStrengthAndTheGain") {
   struct Case {
     int parameter;
     double value;
@@ -171,19 +174,22 @@ TEST(Diagnosis, NamesEachCauseItsStrengthAndTheGain) {
       truth[c.parameter] = c.value;
       model.measure(truth, 0.05, 30 + seed, 0.02);
       const Diagnosis d = diagnosed(model);
-      ASSERT_EQ(d.reading, Reading::cause) << c.cause << " seed " << seed;
-      EXPECT_EQ(d.verdict, std::vector<int>{c.cause});
-      EXPECT_EQ(d.causes.front().cause, c.cause);
-      EXPECT_NEAR(std::abs(d.causes.front().strength), std::abs(c.value), 0.08);
-      EXPECT_LT(d.causes.front().low, d.causes.front().high);
-      EXPECT_LT(d.held_out.after.mean, 0.8 * d.held_out.before.mean);
-      EXPECT_GT(d.held_out.after.mean, 0.8 * d.noise_floor);
+      {
+        INFO(c.cause << " seed " << seed);
+        REQUIRE(d.reading == Reading::cause);
+      }
+      CHECK(d.verdict == std::vector<int>{c.cause});
+      CHECK(d.causes.front().cause == c.cause);
+      CHECK_THAT(std::abs(d.causes.front().strength), WithinAbs(std::abs(c.value), 0.08));
+      CHECK(d.causes.front().low < d.causes.front().high);
+      CHECK(d.held_out.after.mean < 0.8 * d.held_out.before.mean);
+      CHECK(d.held_out.after.mean > 0.8 * d.noise_floor);
     }
 }
 
 /// The machine turns a cause into other movements than the model does, and has a misfit of the size that the model is
 /// known for.
-TEST(Diagnosis, IntervalsHoldTheStrengthThoughTheModelIsAnother) {
+TEST_CASE("Diagnosis.IntervalsHoldTheStrengthThoughTheModelIsAnother") {
   std::mt19937 random(5);
   std::normal_distribution<double> gain(1, 0.05);
   std::uniform_real_distribution<double> turn(0, 2 * std::numbers::pi);
@@ -205,15 +211,18 @@ TEST(Diagnosis, IntervalsHoldTheStrengthThoughTheModelIsAnother) {
           std::sqrt(2.0 / 3) * model.known_misfit() * (2 * std::numbers::pi * cycles * along + phase).sin();
     }
     const Diagnosis d = diagnosed(model);
-    ASSERT_FALSE(d.verdict.empty()) << "seed " << seed;
-    ASSERT_EQ(d.verdict.front(), 0) << "seed " << seed;
+    {
+      INFO("seed " << seed);
+      REQUIRE_FALSE(d.verdict.empty());
+      REQUIRE(d.verdict.front() == 0);
+    }
     const CauseFinding& bump =
         *std::find_if(d.causes.begin(), d.causes.end(), [](const CauseFinding& f) { return f.cause == 0; });
-    EXPECT_GE(0.5 * (bump.high - bump.low), std::hypot(0.5 * bump.least_visible, 1.96 * 0.05 * bump.strength));
-    EXPECT_LT(bump.high - bump.low, 0.5);
+    CHECK(0.5 * (bump.high - bump.low) >= std::hypot(0.5 * bump.least_visible, 1.96 * 0.05 * bump.strength));
+    CHECK(bump.high - bump.low < 0.5);
     inside += bump.low <= 0.7 && 0.7 <= bump.high;
   }
-  EXPECT_GE(inside, cases - 2);  // 95 %, less two standard deviations of the count
+  CHECK(inside >= cases - 2);  // 95 %, less two standard deviations of the count
 }
 
 /// Hides a bump of 0.6 and a ripple of 0.4, which are to be named, and returns what is said.
@@ -225,7 +234,7 @@ Diagnosis diagnosed_pair(ToyModel& model) {
   Diagnosis d = diagnosed(model);
   std::vector<int> verdict = d.verdict;
   std::sort(verdict.begin(), verdict.end());
-  EXPECT_EQ(verdict, (std::vector<int>{0, 1}));
+  CHECK(verdict == std::vector<int>{0, 1});
   return d;
 }
 
@@ -244,16 +253,16 @@ class SwallowingModel : public ToyModel {
   }
 };
 
-TEST(Diagnosis, NamesWhatTheCalibrationHasSwallowed) {
+TEST_CASE("Diagnosis.NamesWhatTheCalibrationHasSwallowed") {
   SwallowingModel model(500);
   Eigen::VectorXd truth = model.nominal();
   truth[4] = 1.2;
   model.measure(truth, 0.05, 3);
   const Diagnosis d = diagnosed(model);
-  ASSERT_GT(d.base.u[1], 1.5);  // else the model does not do what it is for
-  ASSERT_EQ(d.verdict, std::vector<int>{2});
-  EXPECT_NEAR(d.extended.u[4], 1.2, 0.05);
-  EXPECT_NEAR(d.extended.u[1], 0, 0.05);
+  REQUIRE(d.base.u[1] > 1.5);  // else the model does not do what it is for
+  REQUIRE(d.verdict == std::vector<int>{2});
+  CHECK_THAT(d.extended.u[4], WithinAbs(1.2, 0.05));
+  CHECK_THAT(d.extended.u[1], WithinAbs(0, 0.05));
 }
 
 /// In one corner it does now this, now that, at the least change of any parameter: a sheet that snaps into a corner of
@@ -272,7 +281,7 @@ class LeapingModel : public ToyModel {
   }
 };
 
-TEST(Diagnosis, DoesNotRelyOnWhatTheModelDoesByLeaps) {
+TEST_CASE("Diagnosis.DoesNotRelyOnWhatTheModelDoesByLeaps") {
   for (const unsigned seed : {3u, 4u, 5u}) {
     LeapingModel model(500);
     Eigen::VectorXd truth = model.nominal();
@@ -280,10 +289,14 @@ TEST(Diagnosis, DoesNotRelyOnWhatTheModelDoesByLeaps) {
     truth[2] = -0.25;
     model.measure(truth, 0.05, seed);
     const Diagnosis d = diagnosed(model);
-    ASSERT_EQ(d.verdict, std::vector<int>{0}) << seed;
-    EXPECT_NEAR(d.extended.u[2], -0.25, 0.05) << seed;
+    {
+      INFO(seed);
+      REQUIRE(d.verdict == std::vector<int>{0});
+      CHECK_THAT(d.extended.u[2], WithinAbs(-0.25, 0.05));
+    }
     model.measure(model.nominal(), 0.05, seed);
-    EXPECT_EQ(diagnosed(model).reading, Reading::none) << seed;
+    INFO(seed);
+    CHECK(diagnosed(model).reading == Reading::none);
   }
 }
 
@@ -305,20 +318,20 @@ class WalledModel : public ToyModel {
   }
 };
 
-TEST(Diagnosis, TakesWhatACauseExplainsForNoOutliers) {
+TEST_CASE("Diagnosis.TakesWhatACauseExplainsForNoOutliers") {
   WalledModel model;
   Eigen::VectorXd truth = model.nominal();
   truth[0] = 0.15;
   truth[6] = -0.5;
   model.measure(truth, 0.05, 6, 0.02);
   const Diagnosis d = diagnosed(model);
-  ASSERT_EQ(d.verdict, std::vector<int>{3});
-  EXPECT_NEAR(d.extended.u[6], -0.5, 0.03);
-  EXPECT_NEAR(d.noise.front().outliers, 16, 8);  // of 800; of the ring's points there are 35
-  EXPECT_NEAR(d.noise.front().sigma, 0.05, 0.005);
+  REQUIRE(d.verdict == std::vector<int>{3});
+  CHECK_THAT(d.extended.u[6], WithinAbs(-0.5, 0.03));
+  CHECK_THAT(d.noise.front().outliers, WithinAbs(16, 8));  // of 800; of the ring's points there are 35
+  CHECK_THAT(d.noise.front().sigma, WithinAbs(0.05, 0.005));
 }
 
-TEST(Diagnosis, FindsPairs) {
+TEST_CASE("Diagnosis.FindsPairs") {
   ToyModel model(500);
   diagnosed_pair(model);
 }
@@ -343,31 +356,30 @@ class ToyWithCoarseSelf : public ToyModel {
   CoarseToy coarse;
 };
 
-TEST(PairSearch, ACheaperModelAgreesWhereItIsAnchored) {
+TEST_CASE("PairSearch.ACheaperModelAgreesWhereItIsAnchored") {
   const ToyModel full(200);
   const CoarseToy coarse(200);
   const Context context;
   Eigen::VectorXd at = full.nominal();
   at[2] = 0.5;
   const AnchoredModel anchored(coarse, {full.predict(0, at, context) - coarse.predict(0, at, context)});
-  EXPECT_LT((anchored.predict(0, at, context) - full.predict(0, at, context)).cwiseAbs().maxCoeff(), 1e-12);
+  CHECK((anchored.predict(0, at, context) - full.predict(0, at, context)).cwiseAbs().maxCoeff() < 1e-12);
   // Away from there only the effect's strength differs, by its tenth.
   Eigen::VectorXd beyond = at;
   beyond[2] += 0.2;
   const Eigen::MatrixXd step = full.predict(0, beyond, context) - full.predict(0, at, context);
-  EXPECT_LT(
-      (anchored.predict(0, beyond, context) - anchored.predict(0, at, context) - 1.1 * step).cwiseAbs().maxCoeff(),
-      1e-12);
+  CHECK((anchored.predict(0, beyond, context) - anchored.predict(0, at, context) - 1.1 * step).cwiseAbs().maxCoeff() <
+        1e-12);
 }
 
-TEST(PairSearch, FindsBothCausesThroughACoarserModel) {
+TEST_CASE("PairSearch.FindsBothCausesThroughACoarserModel") {
   ToyWithCoarseSelf model(500);
   const Diagnosis d = diagnosed_pair(model);
-  EXPECT_GT(model.coarse.asked, 20);
-  EXPECT_GE(d.simulations, model.coarse.asked);
+  CHECK(model.coarse.asked > 20);
+  CHECK(d.simulations >= model.coarse.asked);
   // What is decided is decided on the model itself: strengths are not a tenth off.
-  EXPECT_NEAR(std::abs(d.extended.u[2]), 0.6, 0.04);
-  EXPECT_NEAR(std::abs(d.extended.u[3]), 0.4, 0.03);
+  CHECK_THAT(std::abs(d.extended.u[2]), WithinAbs(0.6, 0.04));
+  CHECK_THAT(std::abs(d.extended.u[3]), WithinAbs(0.4, 0.03));
 }
 
 /// What a coarse mesh does to what slides: it slides elsewhere. Its finer self is right, or has no answer at all.
@@ -404,71 +416,71 @@ class SlidingToy : public ToyModel {
   Fine fine;
 };
 
-TEST(Diagnosis, LooksAgainMoreFinelyAtWhatItCannotDecide) {
+TEST_CASE("Diagnosis.LooksAgainMoreFinelyAtWhatItCannotDecide") {
   SlidingToy model;
   Eigen::VectorXd truth = model.nominal();
   truth[3] = 0.4;
   model.measure(truth);
   const Diagnosis d = diagnosed(model);
-  EXPECT_TRUE(d.looked_again);
-  ASSERT_EQ(d.verdict, std::vector<int>{1});
-  EXPECT_NEAR(d.extended.u[3], 0.4, 0.02);
-  EXPECT_EQ(d.reading, Reading::cause);
-  EXPECT_EQ(d.doubts, std::vector<std::string>{});
-  EXPECT_LT((residuals(model, d.extended.predictions).front()).cwiseAbs().mean(), 0.06);
+  CHECK(d.looked_again);
+  REQUIRE(d.verdict == std::vector<int>{1});
+  CHECK_THAT(d.extended.u[3], WithinAbs(0.4, 0.02));
+  CHECK(d.reading == Reading::cause);
+  CHECK(d.doubts == std::vector<std::string>{});
+  CHECK((residuals(model, d.extended.predictions).front()).cwiseAbs().mean() < 0.06);
   // As fine are the predictions of what was not seen: coarsely they would be off by the ripple.
   SlidingToy other;
   other.measure(truth);
   Context context;
-  EXPECT_LT(gain_on_unseen(other, model, d, context).after.mean, 0.08);
+  CHECK(gain_on_unseen(other, model, d, context).after.mean < 0.08);
 }
 
-TEST(Diagnosis, WhatIsDecidedIsNotLookedAtAgain) {
+TEST_CASE("Diagnosis.WhatIsDecidedIsNotLookedAtAgain") {
   SlidingToy model;
   Eigen::VectorXd truth = model.nominal();
   truth[2] = 0.5;
   model.measure(truth);
   model.fine.asked = 0;
   const Diagnosis d = diagnosed(model);
-  EXPECT_FALSE(d.looked_again);
-  EXPECT_EQ(model.fine.asked, 0);
-  EXPECT_EQ(d.verdict, std::vector<int>{0});
+  CHECK_FALSE(d.looked_again);
+  CHECK(model.fine.asked == 0);
+  CHECK(d.verdict == std::vector<int>{0});
 }
 
-TEST(Diagnosis, DoesWithoutAFinerSimulationThatHasNoAnswer) {
+TEST_CASE("Diagnosis.DoesWithoutAFinerSimulationThatHasNoAnswer") {
   SlidingToy model(true);
   Eigen::VectorXd truth = model.nominal();
   truth[3] = 0.4;
   model.measure(truth);
   const Diagnosis d = diagnosed(model);
-  EXPECT_FALSE(d.looked_again);
-  EXPECT_TRUE(d.reading == Reading::unknown || d.doubtful());
+  CHECK_FALSE(d.looked_again);
+  CHECK((d.reading == Reading::unknown || d.doubtful()));
 }
 
-TEST(Diagnosis, SaysUnknownToWhatIsNotInTheList) {
+TEST_CASE("Diagnosis.SaysUnknownToWhatIsNotInTheList") {
   ToyModel model(500);
   model.measure(model.nominal(), 0.04, 3);
   Measurement& m = model.measurement();
   for (Eigen::Index i = 0; i < m.measured.rows(); ++i)
     m.measured(i, 1) += 0.4 * std::sin(5 * m.place(i, 0)) * std::cos(4 * m.place(i, 1) + 1);
   const Diagnosis d = diagnosed(model);
-  EXPECT_TRUE(d.reading == Reading::unknown || d.doubtful());
+  CHECK((d.reading == Reading::unknown || d.doubtful()));
 }
 
-TEST(Diagnosis, OwnsUpToTwins) {
+TEST_CASE("Diagnosis.OwnsUpToTwins") {
   ToyModel model(400, 1, true);
   Eigen::VectorXd truth = model.nominal();
   truth[2] = 0.5;
   model.measure(truth, 0.08, 5);
   const Diagnosis d = diagnosed(model);
-  ASSERT_FALSE(d.not_separable.empty());
+  REQUIRE_FALSE(d.not_separable.empty());
   const NotSeparable& pair = d.not_separable.front();
-  EXPECT_EQ(std::min(pair.cause_a, pair.cause_b), 0);
-  EXPECT_EQ(std::max(pair.cause_a, pair.cause_b), 3);
-  EXPECT_GT(pair.likeness, 0.95);
+  CHECK(std::min(pair.cause_a, pair.cause_b) == 0);
+  CHECK(std::max(pair.cause_a, pair.cause_b) == 3);
+  CHECK(pair.likeness > 0.95);
 }
 
-TEST(Diagnosis, ReportsAreWholeAndHoldNoStrangeNumbers) {
+TEST_CASE("Diagnosis.ReportsAreWholeAndHoldNoStrangeNumbers") {
   ToyModel model(300);
   Eigen::VectorXd truth = model.nominal();
   truth[2] = 0.5;
@@ -476,15 +488,15 @@ TEST(Diagnosis, ReportsAreWholeAndHoldNoStrangeNumbers) {
   const Diagnosis d = diagnosed(model);
   const DiagnosisReport report{model, d, {}, std::nullopt, {}, {"A note with <angle> brackets"}};
   const Json json = diagnosis_json(report);
-  EXPECT_EQ(json["verdict"][0], "bump");
+  CHECK(json["verdict"][0] == "bump");
   double sum = 0;
   for (const Json& h : json["hypotheses"]) sum += h["probability"].get<double>();
-  EXPECT_LE(sum, 1 + 1e-9);
-  EXPECT_EQ(json.dump().find("null"), std::string::npos);
+  CHECK(sum <= 1 + 1e-9);
+  CHECK(json.dump().find("null") == std::string::npos);
   const std::string page = diagnosis_page(report);
-  EXPECT_NE(page.find("A note with &lt;angle&gt; brackets"), std::string::npos);
-  EXPECT_EQ(page.find("nan"), std::string::npos);
-  EXPECT_EQ(page.find("http"), std::string::npos);
+  CHECK(page.find("A note with &lt;angle&gt; brackets") != std::string::npos);
+  CHECK(page.find("nan") == std::string::npos);
+  CHECK(page.find("http") == std::string::npos);
 }
 
 }  // namespace

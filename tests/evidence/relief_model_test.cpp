@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "evidence/relief/relief_model.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -12,6 +13,8 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinULP;
 
 /// Hills, a step and fine grooves, 100 mm wide and 8 mm deep.
 double landscape(double x, double y) {
@@ -53,7 +56,7 @@ int index_of(const ForwardModel& model, const std::string& name) {
   return -1;
 }
 
-TEST(ReliefModel, APlaneHasTheBrightnessOfLambertsLaw) {
+TEST_CASE("ReliefModel.APlaneHasTheBrightnessOfLambertsLaw") {
   PhotographedRelief r = relief(1, 50, 1);
   for (Eigen::Index row = 0; row < r.surface.height_mm.rows(); ++row)
     for (Eigen::Index c = 0; c < r.surface.height_mm.cols(); ++c)
@@ -62,10 +65,10 @@ TEST(ReliefModel, APlaneHasTheBrightnessOfLambertsLaw) {
   const Vec3 normal = Vec3(-0.3, 0, 1).normalized();
   const double expected = 0.1 + 0.9 * normal.dot(r.setup.light_direction.normalized());
   const Eigen::MatrixXd shaded = model.predict(0, model.nominal(), Context());
-  for (Eigen::Index i = 0; i < shaded.rows(); ++i) EXPECT_NEAR(shaded(i, 0), expected, 1e-9);
+  for (Eigen::Index i = 0; i < shaded.rows(); ++i) CHECK_THAT(shaded(i, 0), WithinAbs(expected, 1e-9));
 }
 
-TEST(ReliefModel, AWallThrowsAShadowAsLongAsTheSunIsLow) {
+TEST_CASE("ReliefModel.AWallThrowsAShadowAsLongAsTheSunIsLow") {
   ReliefSurface s;
   s.pixel_mm = 0.25;
   s.height_mm = Eigen::MatrixXd::Zero(40, 400);
@@ -74,22 +77,22 @@ TEST(ReliefModel, AWallThrowsAShadowAsLongAsTheSunIsLow) {
   const Eigen::MatrixXd light = lit(s, Vec3(1, 0, slope).normalized());
   int dark = 0;
   for (Eigen::Index c = 0; c < 200; ++c) dark += light(20, c) < 0.5;
-  EXPECT_NEAR(dark * s.pixel_mm, 10, 0.5);
-  EXPECT_DOUBLE_EQ(light(20, 300), 1);
+  CHECK_THAT(dark * s.pixel_mm, WithinAbs(10, 0.5));
+  CHECK_THAT(light(20, 300), WithinULP(1.0, 4));
 }
 
-TEST(ReliefModel, BlurKeepsTheMeanOfAWaveAndDampsItAsAGaussianDoes) {
+TEST_CASE("ReliefModel.BlurKeepsTheMeanOfAWaveAndDampsItAsAGaussianDoes") {
   Eigen::MatrixXd wave(256, 256);
   for (Eigen::Index r = 0; r < 256; ++r)
     for (Eigen::Index c = 0; c < 256; ++c)
       wave(r, c) = 1 + std::sin(2 * std::numbers::pi * static_cast<double>(c) / 32);
   const Eigen::MatrixXd soft = blurred(wave, 4);
-  EXPECT_NEAR(soft.middleRows(64, 128).middleCols(64, 128).mean(), 1, 1e-6);
+  CHECK_THAT(soft.middleRows(64, 128).middleCols(64, 128).mean(), WithinAbs(1, 1e-6));
   const double damped = (soft.row(128).segment(64, 128).maxCoeff() - soft.row(128).segment(64, 128).minCoeff()) / 2;
-  EXPECT_NEAR(damped, std::exp(-0.5 * std::pow(4 * 2 * std::numbers::pi / 32, 2)), 2e-3);
+  CHECK_THAT(damped, WithinAbs(std::exp(-0.5 * std::pow(4 * 2 * std::numbers::pi / 32, 2)), 2e-3));
 }
 
-TEST(ReliefModel, NamesWhatWasDoneToIt) {
+TEST_CASE("ReliefModel.NamesWhatWasDoneToIt") {
   struct Case {
     const char *cause, *parameter;
     double value;
@@ -137,24 +140,27 @@ TEST(ReliefModel, NamesWhatWasDoneToIt) {
       told += "; tried " + model.causes()[static_cast<std::size_t>(t.causes.front())].name +
               (t.significant ? " gain " : " not significant ") + std::to_string(t.gain.gain_share) + " sure " +
               std::to_string(t.gain.gain_probability);
-    SCOPED_TRACE(told);
+    CAPTURE(told);
     if (!named) std::printf("not named: %s\n", told.c_str());
-    EXPECT_TRUE(named || d.doubtful() || d.reading == Reading::cannot_separate || d.reading == Reading::unknown)
-        << c.cause;
+    {
+      INFO(c.cause);
+      CHECK((named || d.doubtful() || d.reading == Reading::cannot_separate || d.reading == Reading::unknown));
+    }
     if (named) {
-      EXPECT_LT(d.held_out.after.mean, d.held_out.before.mean);
+      CHECK(d.held_out.after.mean < d.held_out.before.mean);
     }
   }
-  EXPECT_GE(right, 6);
+  CHECK(right >= 6);
 }
 
-TEST(ReliefModel, WrongFilesGetAClearSentence) {
+TEST_CASE("ReliefModel.WrongFilesGetAClearSentence") {
   const auto refused = [](const char* json, const char* words) {
     try {
       read_shading_setup(as_bytes(std::string_view(json)));
-      ADD_FAILURE() << json;
+      FAIL_CHECK(json);
     } catch (const Error& error) {
-      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+      INFO(error.what());
+      CHECK(std::string(error.what()).find(words) != std::string::npos);
     }
   };
   refused("[1]", "JSON object");
@@ -162,8 +168,8 @@ TEST(ReliefModel, WrongFilesGetAClearSentence) {
   refused(R"({"light_direction": [1, 2]})", "three numbers");
   refused(R"({"light_direction": [1, 0, -1]})", "viewer");
   refused(R"({"light_direction": [1, 0, 1], "camera_height_mm": -3})", "camera_height_mm");
-  EXPECT_THROW(read_shaded_points(as_bytes(std::string_view("x_mm,y_mm\n1,2\n"))), Error);
-  EXPECT_THROW(ReliefModel({relief(1, 5, 1)}), Error);
+  CHECK_THROWS_AS(read_shaded_points(as_bytes(std::string_view("x_mm,y_mm\n1,2\n"))), Error);
+  CHECK_THROWS_AS(ReliefModel({relief(1, 5, 1)}), Error);
 }
 
 }  // namespace

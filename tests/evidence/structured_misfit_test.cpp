@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "evidence/structured_misfit.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <Eigen/Dense>
 
@@ -12,6 +13,8 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinULP;
 
 using evidence_test::ToyModel;
 
@@ -23,7 +26,7 @@ Eigen::MatrixXd inverse_covariance(const StructuredMisfit& misfit, Eigen::Index 
   return misfit.gram_at(Eigen::MatrixXd::Zero(n, 1), units, index).bottomRightCorner(n, n);
 }
 
-TEST(StructuredMisfit, GramMatrixIsThatOfADenseCovariance) {
+TEST_CASE("StructuredMisfit.GramMatrixIsThatOfADenseCovariance") {
   ToyModel model(40);
   const Eigen::VectorXd weights = Eigen::VectorXd::LinSpaced(40, 50, 400);
   const std::vector<double> sizes{0, 0.1, 1};
@@ -36,16 +39,18 @@ TEST(StructuredMisfit, GramMatrixIsThatOfADenseCovariance) {
     const Eigen::MatrixXd inverse = inverse_covariance(one, 40, t);
     // The structure has the size it is said to have: the mean of C's diagonal is noise and tau^2.
     const Eigen::MatrixXd C = inverse.inverse();
-    EXPECT_NEAR(C.diagonal().mean(), weights.cwiseInverse().mean() + sizes[t] * sizes[t],
-                0.35 * sizes[t] * sizes[t] + 1e-12);
-    EXPECT_NEAR(gram.gram[t](0, 0), (residual.transpose() * inverse * residual).trace(), 1e-6 * gram.gram[t](0, 0));
-    EXPECT_NEAR(gram.gram[t](1, 2), (columns[0].transpose() * inverse * columns[1]).trace(), 1e-6 * gram.gram[t](1, 1));
-    EXPECT_NEAR(gram.log_determinant[t], -2 * std::log(inverse.determinant()),
-                1e-6 * std::abs(gram.log_determinant[t]) + 1e-6);
+    CHECK_THAT(C.diagonal().mean(),
+               WithinAbs(weights.cwiseInverse().mean() + sizes[t] * sizes[t], 0.35 * sizes[t] * sizes[t] + 1e-12));
+    CHECK_THAT(gram.gram[t](0, 0),
+               WithinAbs((residual.transpose() * inverse * residual).trace(), 1e-6 * gram.gram[t](0, 0)));
+    CHECK_THAT(gram.gram[t](1, 2),
+               WithinAbs((columns[0].transpose() * inverse * columns[1]).trace(), 1e-6 * gram.gram[t](1, 1)));
+    CHECK_THAT(gram.log_determinant[t],
+               WithinAbs(-2 * std::log(inverse.determinant()), 1e-6 * std::abs(gram.log_determinant[t]) + 1e-6));
   }
 }
 
-TEST(StructuredMisfit, DirectionsOfAPointMayBeKnownDifferently) {
+TEST_CASE("StructuredMisfit.DirectionsOfAPointMayBeKnownDifferently") {
   // Against a dense covariance of all numbers: W^-1 and tau^2 times the same structure for either direction.
   constexpr Eigen::Index n = 30;
   ToyModel model(n);
@@ -68,20 +73,21 @@ TEST(StructuredMisfit, DirectionsOfAPointMayBeKnownDifferently) {
   const auto stacked = [](const Eigen::MatrixXd& a) { return Eigen::VectorXd(a.reshaped()); };
   const Eigen::VectorXd solved = C.ldlt().solve(stacked(residual));
   const GramByStructure gram = misfit.gram(residual, std::vector<Eigen::MatrixXd>{column});
-  EXPECT_NEAR(gram.gram[1](0, 0), stacked(residual).dot(solved), 1e-8 * gram.gram[1](0, 0));
-  EXPECT_NEAR(gram.gram[1](1, 0), stacked(column).dot(solved), 1e-8 * gram.gram[1](0, 0));
-  EXPECT_NEAR(gram.log_determinant[1], std::log(C.determinant()), 1e-6 * std::abs(gram.log_determinant[1]) + 1e-6);
+  CHECK_THAT(gram.gram[1](0, 0), WithinAbs(stacked(residual).dot(solved), 1e-8 * gram.gram[1](0, 0)));
+  CHECK_THAT(gram.gram[1](1, 0), WithinAbs(stacked(column).dot(solved), 1e-8 * gram.gram[1](0, 0)));
+  CHECK_THAT(gram.log_determinant[1],
+             WithinAbs(std::log(C.determinant()), 1e-6 * std::abs(gram.log_determinant[1]) + 1e-6));
   // The smooth part is what structure would be expected to be, and the leverage how a point's own number moves it.
   const Eigen::MatrixXd smooth = misfit.smooth(residual, 1);
   Eigen::MatrixXd both = Eigen::MatrixXd::Zero(2 * n, 2 * n);
   both.topLeftCorner(n, n) = both.bottomRightCorner(n, n) = structure;
-  EXPECT_LT((stacked(smooth) - both * solved).cwiseAbs().maxCoeff(), 1e-8);
+  CHECK((stacked(smooth) - both * solved).cwiseAbs().maxCoeff() < 1e-8);
   const Eigen::MatrixXd hat = both * C.inverse();
   const Eigen::VectorXd leverage = misfit.leverage(1);
-  for (Eigen::Index i = 0; i < n; ++i) EXPECT_NEAR(leverage[i], 0.5 * (hat(i, i) + hat(n + i, n + i)), 1e-8);
+  for (Eigen::Index i = 0; i < n; ++i) CHECK_THAT(leverage[i], WithinAbs(0.5 * (hat(i, i) + hat(n + i, n + i)), 1e-8));
 }
 
-TEST(StructuredMisfit, PointsOfWeightZeroDoNotCount) {
+TEST_CASE("StructuredMisfit.PointsOfWeightZeroDoNotCount") {
   ToyModel model(60);
   Eigen::VectorXd weights = Eigen::VectorXd::Constant(60, 100);
   weights.tail(20).setZero();
@@ -89,10 +95,10 @@ TEST(StructuredMisfit, PointsOfWeightZeroDoNotCount) {
   const StructuredMisfit misfit(model.measurements().front(), isotropic(weights, 2), {0.2});
   const double before = misfit.gram_at(residual, {}, 0)(0, 0);
   residual.bottomRows(20).setConstant(1e6);
-  EXPECT_DOUBLE_EQ(misfit.gram_at(residual, {}, 0)(0, 0), before);
+  CHECK_THAT(misfit.gram_at(residual, {}, 0)(0, 0), WithinULP(before, 4));
 }
 
-TEST(NoiseModel, FindsNoiseUnderAFieldAndOutliers) {
+TEST_CASE("NoiseModel.FindsNoiseUnderAFieldAndOutliers") {
   ToyModel model(1500);
   Eigen::VectorXd u = model.nominal();
   u[2] = 0.8;
@@ -100,28 +106,28 @@ TEST(NoiseModel, FindsNoiseUnderAFieldAndOutliers) {
   model.measurement().sigma.setConstant(0.035);  // said to be twice as good as they are
   const Eigen::MatrixXd residual = model.measurements().front().measured - model.predict(0, model.nominal(), Context());
   const NoiseEstimate noise = estimate_noise(model.measurements().front(), residual);
-  EXPECT_NEAR(noise.sigma, 0.07, 0.006);
-  EXPECT_NEAR(noise.scale, 2, 0.2);
-  EXPECT_NEAR(noise.outliers, 45, 15);
+  CHECK_THAT(noise.sigma, WithinAbs(0.07, 0.006));
+  CHECK_THAT(noise.scale, WithinAbs(2, 0.2));
+  CHECK_THAT(noise.outliers, WithinAbs(45, 15));
 }
 
-TEST(NoiseModel, StructureIsToldFromNoise) {
+TEST_CASE("NoiseModel.StructureIsToldFromNoise") {
   ToyModel model(800);
   model.measure(model.nominal(), 0.05, 3);
   const Eigen::MatrixXd noise = model.measurements().front().measured - model.predict(0, model.nominal(), Context());
   const Eigen::VectorXd weights = Eigen::VectorXd::Constant(800, 400);
-  EXPECT_GT(test_structure(model.measurements().front(), noise, weights).p_value, 0.02);
+  CHECK(test_structure(model.measurements().front(), noise, weights).p_value > 0.02);
   Eigen::VectorXd u = model.nominal();
   u[2] = 0.3;
   const Eigen::MatrixXd field = model.measurements().front().measured - model.predict(0, u, Context());
   const StructureTest found = test_structure(model.measurements().front(), field, weights);
-  EXPECT_LT(found.p_value, 0.01);
-  EXPECT_GT(found.neighbour_correlation, 0.3);
-  EXPECT_GT(found.correlation_length_mm, 5);
-  EXPECT_LT(found.correlation_length_mm, 40);
+  CHECK(found.p_value < 0.01);
+  CHECK(found.neighbour_correlation > 0.3);
+  CHECK(found.correlation_length_mm > 5);
+  CHECK(found.correlation_length_mm < 40);
 }
 
-TEST(Hypotheses, EvidenceIsThatOfTheMarginalGaussian) {
+TEST_CASE("Hypotheses.EvidenceIsThatOfTheMarginalGaussian") {
   // One base parameter and one effect in a linear model: log p(y) = log N(y; 0, C + J S J^T), up to what the data alone
   // decide.
   ToyModel model(30);
@@ -165,10 +171,10 @@ TEST(Hypotheses, EvidenceIsThatOfTheMarginalGaussian) {
     }
     return log_sum - prior_sum;
   };
-  EXPECT_NEAR(none.log_evidence, dense(false), 1e-4 * std::abs(dense(false)));
-  EXPECT_NEAR(bump.log_evidence, dense(true), 1e-4 * std::abs(dense(true)));
-  EXPECT_GT(bump.log_evidence, none.log_evidence + 10);
-  EXPECT_NEAR(bump.u[2], 0.5, 0.1);
+  CHECK_THAT(none.log_evidence, WithinAbs(dense(false), 1e-4 * std::abs(dense(false))));
+  CHECK_THAT(bump.log_evidence, WithinAbs(dense(true), 1e-4 * std::abs(dense(true))));
+  CHECK(bump.log_evidence > none.log_evidence + 10);
+  CHECK_THAT(bump.u[2], WithinAbs(0.5, 0.1));
 }
 
 }  // namespace

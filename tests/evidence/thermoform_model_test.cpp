@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "evidence/thermoform/thermoform_model.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <cmath>
 #include <cstdio>
@@ -18,6 +19,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 using namespace virtual_lab;
 
@@ -42,16 +44,17 @@ ThermoformModelOptions coarse(int triangles = 1200) {
 void expect_refused(const FormedObject& object, const std::string& words) {
   try {
     check_measured_object(object);
-    ADD_FAILURE() << "not refused; expected: " << words;
+    FAIL_CHECK("not refused; expected: " << words);
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::invalid_input);
-    EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    CHECK(error.code() == ErrorCode::invalid_input);
+    INFO(error.what());
+    CHECK(std::string(error.what()).find(words) != std::string::npos);
   }
 }
 
-TEST(ThermoformModel, WrongDataGetAClearSentence) {
+TEST_CASE("ThermoformModel.WrongDataGetAClearSentence") {
   const FormedObject good = small_object(1, {});
-  EXPECT_NO_THROW(check_measured_object(good));
+  CHECK_NOTHROW(check_measured_object(good));
   const auto changed = [&](auto&& change) {
     FormedObject object = good;
     for (MeasuredPoint& p : object.points) change(p);
@@ -67,24 +70,24 @@ TEST(ThermoformModel, WrongDataGetAClearSentence) {
   expect_refused(tiny, "at least 30");
 }
 
-TEST(ThermoformModel, ATurnedSheetIsReadAsItLay) {
+TEST_CASE("ThermoformModel.ATurnedSheetIsReadAsItLay") {
   const FormedObject straight = small_object(1, {});
   FormedObject turned = straight;
   for (MeasuredPoint& p : turned.points) p.sheet_mm = -p.sheet_mm;
   expect_refused(turned, "\"sheet_turned\": true");
   turned.setup.sheet_turned = true;
-  EXPECT_NO_THROW(check_measured_object(turned));
+  CHECK_NOTHROW(check_measured_object(turned));
   Context context;
   const ThermoformModel one({straight}, coarse()), other({turned}, coarse());
-  EXPECT_LT((one.predict(0, one.nominal(), context) - other.predict(0, other.nominal(), context)).norm(), 1e-9);
+  CHECK((one.predict(0, one.nominal(), context) - other.predict(0, other.nominal(), context)).norm() < 1e-9);
   FormedObject said_so = straight;
   said_so.setup.sheet_turned = true;
   expect_refused(said_so, "not turned");
 }
 
-TEST(ThermoformModel, AMouldInAnotherUnitIsRefused) {
+TEST_CASE("ThermoformModel.AMouldInAnotherUnitIsRefused") {
   FormedObject object = small_object(1, {});
-  EXPECT_NO_THROW(check_mould_of(object));
+  CHECK_NOTHROW(check_mould_of(object));
   const TriangleMesh mould = object.mould->mesh;
   for (const auto& [factor, unit] : {std::pair{1e-3, "metres"}, std::pair{1 / 25.4, "inches"}}) {
     TriangleMesh scaled = mould;
@@ -92,14 +95,15 @@ TEST(ThermoformModel, AMouldInAnotherUnitIsRefused) {
     object.mould = std::make_shared<const MouldShape>(scaled);
     try {
       check_mould_of(object);
-      ADD_FAILURE() << unit;
+      FAIL_CHECK(unit);
     } catch (const Error& error) {
-      EXPECT_NE(std::string(error.what()).find(unit), std::string::npos) << error.what();
+      INFO(error.what());
+      CHECK(std::string(error.what()).find(unit) != std::string::npos);
     }
   }
 }
 
-TEST(ThermoformModel, ARimThatIsNotWhereTheSetUpHasItIsNoted) {
+TEST_CASE("ThermoformModel.ARimThatIsNotWhereTheSetUpHasItIsNoted") {
   FormedObject object = small_object(1, {});
   const auto o = read_parameters<ThermoformOptions>(object.setup.parameters);
   const double z =
@@ -109,39 +113,40 @@ TEST(ThermoformModel, ARimThatIsNotWhereTheSetUpHasItIsNoted) {
     const Vec2 place(0.5 * o.clamp_opening_x_mm + 2, 3.0 * i - 30);
     object.points.push_back({place, Vec3(place.x(), place.y(), z), 0.05});
   }
-  EXPECT_EQ(rim_note(object), "");
+  CHECK(rim_note(object) == "");
   for (MeasuredPoint& p : object.points) p.place_mm.z() -= 1.75;
-  EXPECT_NE(rim_note(object).find("1.75 mm below"), std::string::npos) << rim_note(object);
+  INFO(rim_note(object));
+  CHECK(rim_note(object).find("1.75 mm below") != std::string::npos);
 }
 
-TEST(ThermoformModel, WhatASetUpSaysOfItsOwnObjectStays) {
+TEST_CASE("ThermoformModel.WhatASetUpSaysOfItsOwnObjectStays") {
   const FormedObject first = small_object(1, {});
   FormedObject second = first;
   second.setup.parameters["mould_shift_x_mm"] = 2.0;
   const ThermoformModel both({first, second}, coarse()), alone({second}, coarse());
   Context context;
   const Eigen::MatrixXd expected = alone.predict(0, alone.nominal(), context);
-  EXPECT_LT((both.predict(1, both.nominal(), context) - expected).norm(), 1e-9);
-  EXPECT_GT((both.predict(0, both.nominal(), context) - expected).norm(), 1);
+  CHECK((both.predict(1, both.nominal(), context) - expected).norm() < 1e-9);
+  CHECK((both.predict(0, both.nominal(), context) - expected).norm() > 1);
 }
 
-TEST(ThermoformModel, AProfileSaysWithWhichLawItWasFitted) {
+TEST_CASE("ThermoformModel.AProfileSaysWithWhichLawItWasFitted") {
   FormedObject object = small_object(5, {});
   object.setup.parameters["elastic_law"] = "stable_neo_hookean";
   object.setup.parameters["vacuum_ramp_s"] = 0.6;
   const ThermoformModel model({object}, coarse());
   const MachineProfile profile = model.profile_at(model.nominal());
-  EXPECT_EQ(profile.parameters["elastic_law"], "stable_neo_hookean");
-  EXPECT_EQ(profile.parameters["vacuum_ramp_s"], 0.6);
-  EXPECT_TRUE(profile.notes.empty());
+  CHECK(profile.parameters["elastic_law"] == "stable_neo_hookean");
+  CHECK(profile.parameters["vacuum_ramp_s"] == 0.6);
+  CHECK(profile.notes.empty());
   FormedObject other = object;
   other.setup.parameters["vacuum_ramp_s"] = 0.2;
   const ThermoformModel two({object, other}, coarse());
-  ASSERT_EQ(two.profile_at(two.nominal()).notes.size(), 1u);
-  EXPECT_NE(two.profile_at(two.nominal()).notes[0].find("vacuum_ramp_s"), std::string::npos);
+  REQUIRE(two.profile_at(two.nominal()).notes.size() == 1u);
+  CHECK(two.profile_at(two.nominal()).notes[0].find("vacuum_ramp_s") != std::string::npos);
 }
 
-TEST(ThermoformModel, PredictsWhatTheComparisonDoes) {
+TEST_CASE("ThermoformModel.PredictsWhatTheComparisonDoes") {
   const FormedObject object = small_object(2, {});
   const ThermoformModel model({object}, coarse());
   Context context;
@@ -151,10 +156,10 @@ TEST(ThermoformModel, PredictsWhatTheComparisonDoes) {
   const Comparison compared = compare(formed.sheet, object.points, object.setup.measured_surface, o.clamp_height_mm,
                                       o.sheet_thickness_mm, MeasurementEffects{}, 0, context);
   for (std::size_t i = 0; i < object.points.size(); ++i)
-    EXPECT_LT((predicted.row(static_cast<Eigen::Index>(i)).transpose() - compared.points[i].simulated_mm).norm(), 1e-4);
+    CHECK((predicted.row(static_cast<Eigen::Index>(i)).transpose() - compared.points[i].simulated_mm).norm() < 1e-4);
 }
 
-TEST(ThermoformModel, MeasurementEffectsNeedNoSimulationOfTheirOwn) {
+TEST_CASE("ThermoformModel.MeasurementEffectsNeedNoSimulationOfTheirOwn") {
   const FormedObject object = small_object(3, {});
   const ThermoformModel model({object}, coarse());
   int kept = 0;
@@ -164,12 +169,12 @@ TEST(ThermoformModel, MeasurementEffectsNeedNoSimulationOfTheirOwn) {
   for (std::size_t p = 0; p < model.parameters().size(); ++p)
     if (model.parameters()[p].name == "scan_shift_x_mm") u[static_cast<Eigen::Index>(p)] = 0.5;
   const Eigen::MatrixXd after = model.predict(0, u, context);
-  EXPECT_EQ(kept, 1);
-  EXPECT_NEAR((after - before).col(0).mean(), 0.5, 1e-9);
-  EXPECT_LT((after - before).rightCols(2).cwiseAbs().maxCoeff(), 1e-9);
+  CHECK(kept == 1);
+  CHECK_THAT((after - before).col(0).mean(), WithinAbs(0.5, 1e-9));
+  CHECK((after - before).rightCols(2).cwiseAbs().maxCoeff() < 1e-9);
 }
 
-TEST(ThermoformModel, AnInterruptedRunGoesOnFromWhatIsKept) {
+TEST_CASE("ThermoformModel.AnInterruptedRunGoesOnFromWhatIsKept") {
   const FormedObject object = small_object(4, {});
   std::map<std::string, Bytes> store;
   std::mutex mutex;
@@ -199,9 +204,9 @@ TEST(ThermoformModel, AnInterruptedRunGoesOnFromWhatIsKept) {
   {
     SimulationBag bag(model);
     Context context(host());
-    EXPECT_THROW(bag.run(points, context, ""), Error);
+    CHECK_THROWS_AS(bag.run(points, context, ""), Error);
   }
-  EXPECT_GE(kept, 6);
+  CHECK(kept >= 6);
   const int before = kept;
   stop = false;
   // A new process: nothing but the store is left.
@@ -209,15 +214,15 @@ TEST(ThermoformModel, AnInterruptedRunGoesOnFromWhatIsKept) {
   SimulationBag bag(again);
   Context context(host());
   const auto resumed = bag.run(points, context, "");
-  EXPECT_EQ(kept, 10);
-  EXPECT_LT(before, 10);
+  CHECK(kept == 10);
+  CHECK(before < 10);
   // What was kept is, to the bit, what a run of its own gives.
   const ThermoformModel alone({object}, coarse(800));
   Context quiet;
-  EXPECT_EQ((*resumed[0])[0], alone.predict(0, points[0], quiet));
+  CHECK((*resumed[0])[0] == alone.predict(0, points[0], quiet));
 }
 
-TEST(ThermoformModel, ProfileHoldsWhatWasFittedAndStartsTheNextRun) {
+TEST_CASE("ThermoformModel.ProfileHoldsWhatWasFittedAndStartsTheNextRun") {
   const FormedObject object = small_object(5, {});
   const ThermoformModel model({object}, coarse());
   Eigen::VectorXd u = model.nominal();
@@ -231,10 +236,10 @@ TEST(ThermoformModel, ProfileHoldsWhatWasFittedAndStartsTheNextRun) {
   options.profile = profile;
   const ThermoformModel next({object}, options);
   Context context;
-  EXPECT_LT((next.predict(0, next.nominal(), context) - model.predict(0, u, context)).cwiseAbs().maxCoeff(), 1e-4);
+  CHECK((next.predict(0, next.nominal(), context) - model.predict(0, u, context)).cwiseAbs().maxCoeff() < 1e-4);
 }
 
-TEST(ThermoformModel, CalibrationRecoversTheMaterialOrSaysItCannot) {
+TEST_CASE("ThermoformModel.CalibrationRecoversTheMaterialOrSaysItCannot") {
   // Made by the model itself on the same mesh: what is off afterwards is the fit's own.
   FormedObject object = small_object(6, {});
   ThermoformModelOptions options = coarse();
@@ -254,22 +259,24 @@ TEST(ThermoformModel, CalibrationRecoversTheMaterialOrSaysItCannot) {
   const ThermoformModel model({object}, options);
   SimulationBag bag(model);
   const Calibration c = calibrate(bag, context);
-  EXPECT_LT(c.error, 1.15 * 0.03 * 1.596);  // the mean length of the noise
+  CHECK(c.error < 1.15 * 0.03 * 1.596);  // the mean length of the noise
   for (const ParameterProfile& profile : c.profiles) {
     const ModelParameter& p = model.parameters()[static_cast<std::size_t>(profile.parameter)];
     const double right = p.value(u[profile.parameter]);
-    EXPECT_TRUE(!profile.identified || (right >= profile.low - 0.1 * std::abs(right) - 1e-12 &&
-                                        right <= profile.high + 0.1 * std::abs(right) + 1e-12))
-        << p.name << " " << right << " not in " << profile.low << " to " << profile.high;
+    {
+      INFO(p.name << " " << right << " not in " << profile.low << " to " << profile.high);
+      CHECK((!profile.identified || (right >= profile.low - 0.1 * std::abs(right) - 1e-12 &&
+                                     right <= profile.high + 0.1 * std::abs(right) + 1e-12)));
+    }
     if (p.name == "yield_strain") {
-      EXPECT_TRUE(profile.identified);
+      CHECK(profile.identified);
     }
   }
 }
 
 /// One cause drawn afresh at every run, twice as large as what the table calls strong; the whole table is
 /// tests/bench/evidence/confusion_table.
-TEST(ThermoformModel, ADrawnCauseIsNamedOrDoubted) {
+TEST_CASE("ThermoformModel.ADrawnCauseIsNamedOrDoubted") {
   const char* again = std::getenv("FORMWRIGHT_SEED");
   const unsigned seed = again != nullptr ? static_cast<unsigned>(std::stoul(again)) : std::random_device{}();
   std::printf("seed %u (FORMWRIGHT_SEED draws it again)\n", seed);
@@ -284,7 +291,7 @@ TEST(ThermoformModel, ADrawnCauseIsNamedOrDoubted) {
   DiagnosisOptions options;
   options.pairs = false;
   const Diagnosis d = diagnose(bag, options, context);
-  SCOPED_TRACE(cause + " " + hidden.values.dump() + " seed " + std::to_string(seed));
+  INFO(cause + " " + hidden.values.dump() + " seed " + std::to_string(seed));
   for (const CauseFinding& finding : d.causes) {
     if (model.causes()[static_cast<std::size_t>(finding.cause)].name != cause) continue;
     double size_squared = 0;
@@ -292,15 +299,16 @@ TEST(ThermoformModel, ADrawnCauseIsNamedOrDoubted) {
     // Nothing may be found where the diagnosis itself says that it could not see as much; a margin, since it knows that
     // only linearly.
     if (std::sqrt(size_squared) > 1.25 * finding.least_visible) {
-      EXPECT_NE(d.reading, Reading::none) << "visible from " << finding.least_visible;
+      INFO("visible from " << finding.least_visible);
+      CHECK(d.reading != Reading::none);
     }
   }
   if (d.reading != Reading::none && d.reading != Reading::unknown && !d.doubtful() &&
       d.reading != Reading::cannot_separate) {
-    EXPECT_EQ(model.causes()[static_cast<std::size_t>(d.verdict.front())].name, cause);
+    CHECK(model.causes()[static_cast<std::size_t>(d.verdict.front())].name == cause);
   }
   if (!d.verdict.empty()) {
-    EXPECT_LT(d.held_out.after.mean, d.held_out.before.mean);
+    CHECK(d.held_out.after.mean < d.held_out.before.mean);
   }
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fabrication/contours.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -11,10 +12,11 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 const Polygon square{{0, 0}, {10, 0}, {10, 10}, {0, 10}};
 
-TEST(Contours, LinesThatMeetAreOneOutline) {
+TEST_CASE("Contours.LinesThatMeetAreOneOutline") {
   std::vector<CutPath> paths;
   for (std::size_t i = 0; i < 4; ++i) {
     CutPath side{CutLayer::cut, {square[i], square[(i + 1) % 4]}, false, ""};
@@ -25,15 +27,15 @@ TEST(Contours, LinesThatMeetAreOneOutline) {
   paths.push_back({CutLayer::cut, {{10.5, 10}, {20, 10}}, false, ""});             // too far
   paths.push_back({CutLayer::cut, {{20, 10.03}, {30, 10}, {30, 20}}, false, ""});  // near enough
   const TidiedPaths tidied = tidy_paths(paths, 0.05, Context());
-  ASSERT_EQ(tidied.paths.size(), 3u);
-  EXPECT_TRUE(tidied.paths[0].closed);
-  EXPECT_NEAR(std::abs(signed_area_mm2(tidied.paths[0].points_mm)), 100, 1e-12);
-  EXPECT_EQ(tidied.paths[1].layer, CutLayer::mark);
-  EXPECT_EQ(tidied.paths[2].points_mm.size(), 4u);
-  EXPECT_EQ(tidied.ends_joined, 5);
+  REQUIRE(tidied.paths.size() == 3u);
+  CHECK(tidied.paths[0].closed);
+  CHECK_THAT(std::abs(signed_area_mm2(tidied.paths[0].points_mm)), WithinAbs(100, 1e-12));
+  CHECK(tidied.paths[1].layer == CutLayer::mark);
+  CHECK(tidied.paths[2].points_mm.size() == 4u);
+  CHECK(tidied.ends_joined == 5);
 }
 
-TEST(Contours, DoublesAreDroppedWhicheverWayRound) {
+TEST_CASE("Contours.DoublesAreDroppedWhicheverWayRound") {
   Polygon turned = square;
   std::rotate(turned.begin(), turned.begin() + 2, turned.end());
   std::reverse(turned.begin(), turned.end());
@@ -43,11 +45,11 @@ TEST(Contours, DoublesAreDroppedWhicheverWayRound) {
                                    {CutLayer::cut, {{1, 1}, {5, 5}}, false, ""},
                                    {CutLayer::cut, {{5, 5}, {1, 1}}, false, ""}};
   const TidiedPaths tidied = tidy_paths(paths, 0, Context());
-  EXPECT_EQ(tidied.paths.size(), 3u);
-  EXPECT_EQ(tidied.doubles_dropped, 2);
+  CHECK(tidied.paths.size() == 3u);
+  CHECK(tidied.doubles_dropped == 2);
 }
 
-TEST(Contours, TheSmallestContourAroundIsFound) {
+TEST_CASE("Contours.TheSmallestContourAroundIsFound") {
   const auto ring = [](double x, double y, double half) {
     return CutPath{CutLayer::cut,
                    {{x - half, y - half}, {x + half, y - half}, {x + half, y + half}, {x - half, y + half}},
@@ -56,45 +58,45 @@ TEST(Contours, TheSmallestContourAroundIsFound) {
   };
   const std::vector<CutPath> paths{ring(0, 0, 1),  ring(0, 0, 50),  ring(0, 0, 10),
                                    ring(30, 0, 5), ring(100, 0, 5), {CutLayer::mark, {{29, 0}, {31, 0}}, false, ""}};
-  EXPECT_EQ(containing_contours(paths, {0, 1, 2, 3, 4}, Context()), (std::vector<int>{2, -1, 1, 1, -1, 3}));
+  CHECK(containing_contours(paths, {0, 1, 2, 3, 4}, Context()) == std::vector<int>{2, -1, 1, 1, -1, 3});
 }
 
-TEST(Contours, OffsetsAreExactAndConverge) {
+TEST_CASE("Contours.OffsetsAreExactAndConverge") {
   const double pi = std::numbers::pi;
   for (const double out : {0.05, 0.5, 2.0}) {
     double before = 0;
     for (const double tolerance : {0.04, 0.01, 0.0025}) {
       const auto grown = offset_polygon(square, out, tolerance);
-      ASSERT_EQ(grown.size(), 1u);
+      REQUIRE(grown.size() == 1u);
       const double exact = 100 + 40 * out + pi * out * out, error = exact - signed_area_mm2(grown[0]);
-      EXPECT_GT(error, -1e-3);
-      EXPECT_LE(error, 2 * pi * out * tolerance + 1e-3);
+      CHECK(error > -1e-3);
+      CHECK(error <= 2 * pi * out * tolerance + 1e-3);
       if (before > 0.01) {
-        EXPECT_LT(error, before / 2);
+        CHECK(error < before / 2);
       }
       before = error;
     }
     const auto shrunk = offset_polygon(square, -out);
-    ASSERT_EQ(shrunk.size(), 1u);
-    EXPECT_NEAR(signed_area_mm2(shrunk[0]), (10 - 2 * out) * (10 - 2 * out), 1e-3);
-    EXPECT_NEAR((shrunk[0][0] - Vec2(out, out)).norm(), 0, 1e-4);  // the start stays
+    REQUIRE(shrunk.size() == 1u);
+    CHECK_THAT(signed_area_mm2(shrunk[0]), WithinAbs((10 - 2 * out) * (10 - 2 * out), 1e-3));
+    CHECK_THAT((shrunk[0][0] - Vec2(out, out)).norm(), WithinAbs(0, 1e-4));  // the start stays
   }
-  EXPECT_TRUE(offset_polygon(square, -5.01).empty());
+  CHECK(offset_polygon(square, -5.01).empty());
   // A dumb-bell falls apart at its bar.
   const Polygon bell{{0, 0},   {10, 0},  {10, 4.9}, {20, 4.9}, {20, 0},  {30, 0},
                      {30, 10}, {20, 10}, {20, 5.1}, {10, 5.1}, {10, 10}, {0, 10}};
-  EXPECT_EQ(offset_polygon(bell, -0.2).size(), 2u);
+  CHECK(offset_polygon(bell, -0.2).size() == 2u);
   // A bay whose mouth closes stays open inside, the other way round.
   const Polygon bay{{0, 0}, {10, 0}, {10, 4.95}, {8, 4.95},  {8, 3},   {4, 3},
                     {4, 7}, {8, 7},  {8, 5.05},  {10, 5.05}, {10, 10}, {0, 10}};
   const auto closed = offset_polygon(bay, 0.1);
-  ASSERT_EQ(closed.size(), 2u);
+  REQUIRE(closed.size() == 2u);
   const auto [inner, outer] = std::minmax({signed_area_mm2(closed[0]), signed_area_mm2(closed[1])});
-  EXPECT_NEAR(inner, -3.8 * 3.8, 0.01);
-  EXPECT_GT(outer, 100);
+  CHECK_THAT(inner, WithinAbs(-3.8 * 3.8, 0.01));
+  CHECK(outer > 100);
 }
 
-TEST(Contours, OffsetStaysTheDistanceAway) {
+TEST_CASE("Contours.OffsetStaysTheDistanceAway") {
   Random random(11);
   for (int round = 0; round < 20; ++round) {
     Polygon star;
@@ -115,29 +117,29 @@ TEST(Contours, OffsetStaysTheDistanceAway) {
     for (const double distance : {out, -out})
       for (const Polygon& moved : offset_polygon(star, distance))
         for (const Vec2& p : moved) {
-          EXPECT_NEAR(to_edges(p), out, 0.003);
-          EXPECT_EQ(contains(star, p), distance < 0);
+          CHECK_THAT(to_edges(p), WithinAbs(out, 0.003));
+          CHECK(contains(star, p) == (distance < 0));
         }
   }
 }
 
-TEST(Hatching, CoversTheAreaAndLeavesHolesOut) {
+TEST_CASE("Hatching.CoversTheAreaAndLeavesHolesOut") {
   const Polygon hole{{2, 2}, {8, 2}, {8, 8}, {2, 8}};
   for (const double spacing : {0.5, 0.1}) {
     const auto lines = hatch({square, hole}, spacing, Context());
     double covered = 0;
     for (const auto& line : lines) {
       covered += spacing * (line[1] - line[0]).norm();
-      EXPECT_FALSE(contains(hole, (line[0] + line[1]) / 2));
+      CHECK_FALSE(contains(hole, (line[0] + line[1]) / 2));
     }
-    EXPECT_NEAR(covered, 64, 1e-9);
+    CHECK_THAT(covered, WithinAbs(64, 1e-9));
   }
   Polygon circle;
   for (int i = 0; i < 720; ++i)
     circle.emplace_back(10 * std::cos(i * std::numbers::pi / 360), 10 * std::sin(i * std::numbers::pi / 360));
   double covered = 0;
   for (const auto& line : hatch({circle}, 0.05, Context())) covered += 0.05 * (line[1] - line[0]).norm();
-  EXPECT_NEAR(covered, 100 * std::numbers::pi, 0.1);
+  CHECK_THAT(covered, WithinAbs(100 * std::numbers::pi, 0.1));
 }
 
 }  // namespace

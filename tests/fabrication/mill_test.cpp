@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +14,8 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinULP;
 
 HeightField field(int columns, int rows, double pitch_mm, const std::function<double(double, double)>& z) {
   HeightField result{columns, rows, pitch_mm, pitch_mm, {}};
@@ -43,16 +46,16 @@ MillOptions small(ToolShape shape, double diameter) {
   return options;
 }
 
-TEST(Mill, ToolsHaveTheirProfiles) {
-  EXPECT_NEAR((MillTool{ToolShape::ball, 6, 0, 0}).profile_mm(3), 3, 1e-12);
-  EXPECT_NEAR((MillTool{ToolShape::ball, 10, 0, 0}).profile_mm(3), 1, 1e-12);
-  EXPECT_EQ((MillTool{ToolShape::flat, 6, 0, 0}).profile_mm(2.9), 0);
-  EXPECT_NEAR((MillTool{ToolShape::v, 6, 90, 0.4}).profile_mm(2.2), 2, 1e-12);
-  EXPECT_EQ((MillTool{ToolShape::v, 6, 90, 0.4}).profile_mm(0.1), 0);
-  EXPECT_TRUE(std::isinf((MillTool{ToolShape::flat, 6, 0, 0}).profile_mm(3.1)));
+TEST_CASE("Mill.ToolsHaveTheirProfiles") {
+  CHECK_THAT((MillTool{ToolShape::ball, 6, 0, 0}).profile_mm(3), WithinAbs(3, 1e-12));
+  CHECK_THAT((MillTool{ToolShape::ball, 10, 0, 0}).profile_mm(3), WithinAbs(1, 1e-12));
+  CHECK((MillTool{ToolShape::flat, 6, 0, 0}).profile_mm(2.9) == 0);
+  CHECK_THAT((MillTool{ToolShape::v, 6, 90, 0.4}).profile_mm(2.2), WithinAbs(2, 1e-12));
+  CHECK((MillTool{ToolShape::v, 6, 90, 0.4}).profile_mm(0.1) == 0);
+  CHECK(std::isinf((MillTool{ToolShape::flat, 6, 0, 0}).profile_mm(3.1)));
 }
 
-TEST(Mill, LowestTipsAreWhatTryingAllNodesGives) {
+TEST_CASE("Mill.LowestTipsAreWhatTryingAllNodesGives") {
   const HeightField surface = rugged(1);
   for (const ToolShape shape : {ToolShape::ball, ToolShape::v, ToolShape::flat}) {
     const MillTool tool{shape, 1.9, 50, 0.1};
@@ -65,12 +68,12 @@ TEST(Mill, LowestTipsAreWhatTryingAllNodesGives) {
         for (int x = 0; x < 80; ++x)
           if (const double d = 0.2 * std::sqrt((x - c) * (x - c) + (y - r) * (y - r)); d <= 0.95 * (1 + 1e-12))
             lowest = std::max(lowest, surface.at(y, x) - tool.profile_mm(std::min(d, 0.95)));
-      EXPECT_NEAR(tips.at(r, c), lowest, 1e-5);
+      CHECK_THAT(tips.at(r, c), WithinAbs(lowest, 1e-5));
     }
   }
 }
 
-TEST(Mill, NothingIsCutIntoAnywhereAlongThePath) {
+TEST_CASE("Mill.NothingIsCutIntoAnywhereAlongThePath") {
   for (const ToolShape shape : {ToolShape::ball, ToolShape::v, ToolShape::flat})
     for (const RasterAlong along : {RasterAlong::x, RasterAlong::y}) {
       const HeightField surface = rugged(static_cast<std::uint64_t>(shape) + 3);
@@ -104,32 +107,35 @@ TEST(Mill, NothingIsCutIntoAnywhereAlongThePath) {
       const double bound = shape == ToolShape::ball ? 0.00125 / (0.8 * 0.364)
                            : shape == ToolShape::v  ? 0.0125 / 0.577
                                                     : 0;
-      EXPECT_LT(deepest_cut, bound + 0.002) << static_cast<int>(shape);
-      for (std::size_t i = 0; i < surface.z_mm.size(); ++i) EXPECT_GE(plan.carved.z_mm[i], surface.z_mm[i] - 1e-5f);
-      EXPECT_GE(plan.deviation.mean_mm, 0);
-      ASSERT_TRUE(plan.of_tool);
-      EXPECT_LE(plan.of_tool->mean_mm, plan.deviation.mean_mm + 1e-6);
+      {
+        INFO(static_cast<int>(shape));
+        CHECK(deepest_cut < bound + 0.002);
+      }
+      for (std::size_t i = 0; i < surface.z_mm.size(); ++i) CHECK(plan.carved.z_mm[i] >= surface.z_mm[i] - 1e-5f);
+      CHECK(plan.deviation.mean_mm >= 0);
+      REQUIRE(plan.of_tool);
+      CHECK(plan.of_tool->mean_mm <= plan.deviation.mean_mm + 1e-6);
     }
 }
 
-TEST(Mill, RidgesOnAPlaneAreTheFormulas) {
+TEST_CASE("Mill.RidgesOnAPlaneAreTheFormulas") {
   for (const double diameter : {2.0, 3.0, 6.0}) {
     MillOptions options = small(ToolShape::ball, diameter);
     options.stages = MillStages::finish;
     options.finish_stepover_percent = 100 * 0.8 / diameter;
     Context context;
     const MillPlan plan = plan_mill_job(field(61, 61, 0.1, [](double, double) { return -1; }), options, context);
-    EXPECT_NEAR(plan.finish_stepover_mm, 0.8, 1e-9);
+    CHECK_THAT(plan.finish_stepover_mm, WithinAbs(0.8, 1e-9));
     double ridge = 0;
     for (int r = 8; r <= 52; ++r) ridge = std::max<double>(ridge, plan.carved.at(r, 30) + 1);
-    EXPECT_NEAR(ridge, scallop_mm(diameter, 0.8), 1e-5);
-    EXPECT_NEAR(ridge, 0.8 * 0.8 / 4 / diameter, 0.05 * ridge);  // s^2 / 8 R
-    EXPECT_NEAR(plan.carved.at(8, 30), -1, 1e-5);
-    EXPECT_NEAR(plan.of_tool->max_mm, 0, 1e-5);
+    CHECK_THAT(ridge, WithinAbs(scallop_mm(diameter, 0.8), 1e-5));
+    CHECK_THAT(ridge, WithinAbs(0.8 * 0.8 / 4 / diameter, 0.05 * ridge));  // s^2 / 8 R
+    CHECK_THAT(plan.carved.at(8, 30), WithinAbs(-1, 1e-5));
+    CHECK_THAT(plan.of_tool->max_mm, WithinAbs(0, 1e-5));
   }
 }
 
-TEST(Mill, RidgesOnASphereConvergeToTheFormulas) {
+TEST_CASE("Mill.RidgesOnASphereConvergeToTheFormulas") {
   // Two balls of radius R beside the top of a dome of radius A, their middles on A + R; and in a bowl, on A - R.
   // A hundred times larger than what is carved, so that the whole micrometres of the path do not count.
   const double ball = 150, sphere = 2000, stepover = 80;
@@ -154,11 +160,14 @@ TEST(Mill, RidgesOnASphereConvergeToTheFormulas) {
       Context context;
       const MillPlan plan = plan_mill_job(surface, options, context);
       const int at = static_cast<int>(std::lround(centre / pitch));
-      EXPECT_EQ(at % static_cast<int>(std::lround(stepover / pitch)), static_cast<int>(std::lround(40 / pitch)));
+      CHECK(at % static_cast<int>(std::lround(stepover / pitch)) == static_cast<int>(std::lround(40 / pitch)));
       const double error = std::abs(plan.carved.at(at, at) - surface.at(at, at) - ridge);
-      EXPECT_LT(error, 0.15 * ridge / fineness) << dome << fineness;
+      {
+        INFO(dome << fineness);
+        CHECK(error < 0.15 * ridge / fineness);
+      }
       if (fineness > 1) {
-        EXPECT_LT(error, 0.7 * before + 1e-3);
+        CHECK(error < 0.7 * before + 1e-3);
       }
       before = error;
     }
@@ -180,22 +189,25 @@ void expect_safe_beginning(std::string_view text, double safe_height_mm) {
   });
   const auto spindle = at([](const std::string& line) { return line.starts_with("M3"); });
   const auto work = at([](const std::string& line) { return line.starts_with("G1 "); });
-  EXPECT_LT(at([](const std::string& line) { return line == "M5"; }), motion);
-  EXPECT_EQ(lines[static_cast<std::size_t>(motion)].substr(0, 4), "G0 Z");
-  EXPECT_DOUBLE_EQ(std::stod(lines[static_cast<std::size_t>(motion)].substr(4)), safe_height_mm);
-  EXPECT_LT(motion, place);
-  EXPECT_LT(place, spindle);
-  EXPECT_LT(spindle, work);
-  for (auto i = motion; i < place; ++i) EXPECT_EQ(lines[static_cast<std::size_t>(i)].find('X'), std::string::npos);
+  CHECK(at([](const std::string& line) { return line == "M5"; }) < motion);
+  CHECK(lines[static_cast<std::size_t>(motion)].substr(0, 4) == "G0 Z");
+  CHECK_THAT(std::stod(lines[static_cast<std::size_t>(motion)].substr(4)), WithinULP(safe_height_mm, 4));
+  CHECK(motion < place);
+  CHECK(place < spindle);
+  CHECK(spindle < work);
+  for (auto i = motion; i < place; ++i) CHECK(lines[static_cast<std::size_t>(i)].find('X') == std::string::npos);
   const auto last = std::find_if(lines.rbegin(), lines.rend(), [](const std::string& line) {
     return line.starts_with("G1 ") || line.starts_with("M");
   });
-  EXPECT_TRUE(*last == "M2" || *last == "M5") << *last;
-  EXPECT_NE(text.rfind("\nM5\n"), std::string_view::npos);
-  EXPECT_GT(text.rfind("\nM5\n"), text.rfind("\nG1 "));
+  {
+    INFO(*last);
+    CHECK((*last == "M2" || *last == "M5"));
+  }
+  CHECK(text.rfind("\nM5\n") != std::string_view::npos);
+  CHECK(text.rfind("\nM5\n") > text.rfind("\nG1 "));
 }
 
-TEST(Mill, EntriesAreRampsAndFastMovesStayOverTheMaterial) {
+TEST_CASE("Mill.EntriesAreRampsAndFastMovesStayOverTheMaterial") {
   const HeightField surface = field(101, 61, 0.2, [](double x, double y) {
     return -2 + 0.5 * std::sin(0.1 * x) - 1.5 * std::exp(-0.1 * ((x - 9) * (x - 9) + (y - 6) * (y - 6)));
   });
@@ -204,8 +216,8 @@ TEST(Mill, EntriesAreRampsAndFastMovesStayOverTheMaterial) {
   options.tool = ToolShape::ball;
   Context context;
   MillPlan plan = plan_mill_job(surface, options, context);
-  EXPECT_GE(plan.layers, 3);
-  ASSERT_EQ(plan.path.stages.size(), 2u);
+  CHECK(plan.layers >= 3);
+  REQUIRE(plan.path.stages.size() == 2u);
   double reached = 0;
   int last_layer = 0;
   for (const ToolMove& move : plan.path.moves)
@@ -213,37 +225,37 @@ TEST(Mill, EntriesAreRampsAndFastMovesStayOverTheMaterial) {
       const Vec3 run = move.points_mm[i] - move.points_mm[i - 1];
       if (!move.work) {
         if (run.head<2>().norm() > 0) {
-          EXPECT_GE(std::min(move.points_mm[i].z(), move.points_mm[i - 1].z()), options.safe_height_mm);
+          CHECK(std::min(move.points_mm[i].z(), move.points_mm[i - 1].z()) >= options.safe_height_mm);
         }
       } else if (move.speed_mm_per_s == options.plunge_speed_mm_per_s) {
         const double steepest = std::tan(4.01 * 3.14159265 / 180);
         if (run.z() < -0.02) {
-          EXPECT_LE(-run.z(), steepest * std::max(run.head<2>().norm(), 0.2) + 0.002);
+          CHECK(-run.z() <= steepest * std::max(run.head<2>().norm(), 0.2) + 0.002);
         }
       }
       if (move.layer == "rough") {
-        EXPECT_GE(move.points_mm[i].z(), -options.step_down_mm * move.pass - 1e-9);
-        EXPECT_GE(move.pass, last_layer);
+        CHECK(move.points_mm[i].z() >= -options.step_down_mm * move.pass - 1e-9);
+        CHECK(move.pass >= last_layer);
         last_layer = move.pass;
       }
       reached = std::min(reached, move.points_mm[i].z());
     }
-  EXPECT_GE(reached, -4.001);
+  CHECK(reached >= -4.001);
   const Bytes rough = write_mill_gcode(plan.path, options, 9000, 0),
               finish = write_mill_gcode(plan.path, options, 9000, 1);
-  EXPECT_EQ(as_text(rough).find("; layer finish"), std::string_view::npos);
-  EXPECT_EQ(as_text(finish).find("; layer rough"), std::string_view::npos);
+  CHECK(as_text(rough).find("; layer finish") == std::string_view::npos);
+  CHECK(as_text(finish).find("; layer rough") == std::string_view::npos);
   for (const Bytes& job : {rough, finish}) expect_safe_beginning(as_text(job), options.safe_height_mm);
   // Each stage begins and ends over the origin; the second goes on where the first ends in time.
   const ToolpathStage& second = plan.path.stages[1];
-  EXPECT_EQ(second.file, "job_2_finish.gcode");
-  EXPECT_DOUBLE_EQ(second.start_s, plan.path.moves[second.first_move - 1].times_s.back());
-  EXPECT_EQ(plan.path.moves[second.first_move - 1].points_mm.back(), Vec3(0, 0, options.safe_height_mm));
-  EXPECT_EQ(plan.path.moves[second.first_move].points_mm.front(), Vec3(0, 0, 0));
-  EXPECT_EQ(plan.path.moves[second.first_move].points_mm[1], Vec3(0, 0, options.safe_height_mm));
+  CHECK(second.file == "job_2_finish.gcode");
+  CHECK_THAT(second.start_s, WithinULP(plan.path.moves[second.first_move - 1].times_s.back(), 4));
+  CHECK(plan.path.moves[second.first_move - 1].points_mm.back() == Vec3(0, 0, options.safe_height_mm));
+  CHECK(plan.path.moves[second.first_move].points_mm.front() == Vec3(0, 0, 0));
+  CHECK(plan.path.moves[second.first_move].points_mm[1] == Vec3(0, 0, options.safe_height_mm));
 }
 
-TEST(Mill, AJobThatBeginsAtTheOriginGoesThereFirst) {
+TEST_CASE("Mill.AJobThatBeginsAtTheOriginGoesThereFirst") {
   const HeightField surface = field(41, 41, 0.2, [](double, double) { return -1.0; });
   MillOptions options = small(ToolShape::flat, 1.6);
   options.x_mm = options.y_mm = 0;
@@ -255,7 +267,7 @@ TEST(Mill, AJobThatBeginsAtTheOriginGoesThereFirst) {
   }
 }
 
-TEST(Mill, RoughingLeavesTheAllowanceAndFinishingTakesIt) {
+TEST_CASE("Mill.RoughingLeavesTheAllowanceAndFinishingTakesIt") {
   const HeightField surface =
       field(101, 81, 0.2, [](double x, double y) { return -2 + std::sin(0.3 * x) * std::sin(0.3 * y); });
   MillOptions options = small(ToolShape::ball, 2);
@@ -264,30 +276,30 @@ TEST(Mill, RoughingLeavesTheAllowanceAndFinishingTakesIt) {
   options.stages = MillStages::rough;
   Context context;
   const MillPlan rough = plan_mill_job(surface, options, context);
-  EXPECT_NEAR(rough.deviation.mean_mm, 0.41, 0.04);
-  EXPECT_GE(*std::min_element(rough.carved.z_mm.begin(), rough.carved.z_mm.end()), -3 + 0.4 - 1e-3);
+  CHECK_THAT(rough.deviation.mean_mm, WithinAbs(0.41, 0.04));
+  CHECK(*std::min_element(rough.carved.z_mm.begin(), rough.carved.z_mm.end()) >= -3 + 0.4 - 1e-3);
   options.stages = MillStages::both;
   options.finish_stepover_percent = 10;
   const MillPlan both = plan_mill_job(surface, options, context);
-  EXPECT_LT(both.deviation.p95_mm, 0.015);
+  CHECK(both.deviation.p95_mm < 0.015);
   for (int r = 5; r < 76; ++r)  // a border of the tool's radius is reached from one side only
-    for (int c = 5; c < 96; ++c) EXPECT_LT(both.carved.at(r, c) - surface.at(r, c), 0.03);
+    for (int c = 5; c < 96; ++c) CHECK(both.carved.at(r, c) - surface.at(r, c) < 0.03);
 }
 
-TEST(Mill, WhatNeedsNoRoughingSaysWhichToolToMount) {
+TEST_CASE("Mill.WhatNeedsNoRoughingSaysWhichToolToMount") {
   const HeightField surface = field(61, 41, 0.2, [](double x, double) { return -0.1 + 0.1 * std::sin(0.3 * x); });
   MillOptions options = small(ToolShape::ball, 2);
   options.rough_diameter_mm = 4;
   options.allowance_mm = 0.3;
   Context context;
   const MillPlan plan = plan_mill_job(surface, options, context);
-  EXPECT_EQ(plan.rough_seconds, 0);
-  EXPECT_TRUE(plan.path.stages.empty());
-  ASSERT_FALSE(plan.notes.empty());
-  EXPECT_NE(plan.notes.back().find("mount the finishing tool"), std::string::npos);
+  CHECK(plan.rough_seconds == 0);
+  CHECK(plan.path.stages.empty());
+  REQUIRE_FALSE(plan.notes.empty());
+  CHECK(plan.notes.back().find("mount the finishing tool") != std::string::npos);
 }
 
-TEST(Mill, RampsComeToAnEndOnEverySlope) {
+TEST_CASE("Mill.RampsComeToAnEndOnEverySlope") {
   for (const double slope : {0.0, 0.05, 0.0874, 0.1, 1.0, 20.0})
     for (const double degrees : {1.0, 5.0, 45.0, 90.0}) {
       const HeightField surface =
@@ -297,8 +309,8 @@ TEST(Mill, RampsComeToAnEndOnEverySlope) {
       options.step_down_mm = 3;
       Context context;
       const MillPlan plan = plan_mill_job(surface, options, context);
-      EXPECT_GT(plan.path.length_mm(true), 30);
-      EXPECT_LT(plan.path.length_mm(true), 30'000);
+      CHECK(plan.path.length_mm(true) > 30);
+      CHECK(plan.path.length_mm(true) < 30'000);
     }
 }
 
@@ -310,25 +322,25 @@ double passes_over(const std::vector<Vec3>& kept, const std::vector<Vec3>& point
     while (kept[segment].x() < p.x()) ++segment;
     const Vec3 &a = kept[segment - 1], &b = kept[segment];
     const double z = a.z() + (b.z() - a.z()) * (p.x() - a.x()) / (b.x() - a.x());
-    EXPECT_GE(z, p.z() - 1e-9);
+    CHECK(z >= p.z() - 1e-9);
     over = std::max(over, z - p.z());
   }
   return over;
 }
 
-TEST(Mill, ThinningNeverGoesBelow) {
+TEST_CASE("Mill.ThinningNeverGoesBelow") {
   Random random(4);
   std::vector<Vec3> points;
   for (int i = 0; i < 500; ++i)
     points.emplace_back(0.1 * i, 2, i < 200 ? -0.01 * i : std::sin(0.05 * i) + random.uniform(0, 0.002));
   const auto kept = thinned(points, 0.01);
-  EXPECT_LT(kept.size(), 250u);
-  EXPECT_NEAR((kept.front() - points.front()).norm(), 0, 1e-3);
-  EXPECT_NEAR((kept.back() - points.back()).norm(), 0, 1e-3);
-  EXPECT_LE(passes_over(kept, points), 0.01 + 1e-9);
+  CHECK(kept.size() < 250u);
+  CHECK_THAT((kept.front() - points.front()).norm(), WithinAbs(0, 1e-3));
+  CHECK_THAT((kept.back() - points.back()).norm(), WithinAbs(0, 1e-3));
+  CHECK(passes_over(kept, points) <= 0.01 + 1e-9);
 }
 
-TEST(Mill, HillsAndHollowsAreThinnedToTheFormula) {
+TEST_CASE("Mill.HillsAndHollowsAreThinnedToTheFormula") {
   // Over a hill tangents, in a hollow chords: both as long as sqrt(8 R t), so that a quarter of the tolerance takes
   // twice the points.
   const double radius = 20;
@@ -343,16 +355,19 @@ TEST(Mill, HillsAndHollowsAreThinnedToTheFormula) {
       const double across =
           2 * radius * std::asin(10 / radius);  // along the arc, whose pieces are as long as the formula says
       const double pieces = across / std::sqrt(8 * radius * tolerance);
-      EXPECT_LE(passes_over(kept, points), tolerance + 1e-9);
-      EXPECT_GT(static_cast<double>(kept.size()), pieces) << side << tolerance;
-      EXPECT_LT(static_cast<double>(kept.size()), 1.25 * pieces + 3) << side << tolerance;
-      EXPECT_NEAR(kept.front().z(), points.front().z(), 1e-3);
-      EXPECT_NEAR(kept.back().z(), points.back().z(), 1e-3);
+      CHECK(passes_over(kept, points) <= tolerance + 1e-9);
+      {
+        INFO(side << tolerance);
+        CHECK(static_cast<double>(kept.size()) > pieces);
+        CHECK(static_cast<double>(kept.size()) < 1.25 * pieces + 3);
+      }
+      CHECK_THAT(kept.front().z(), WithinAbs(points.front().z(), 1e-3));
+      CHECK_THAT(kept.back().z(), WithinAbs(points.back().z(), 1e-3));
     }
   }
 }
 
-TEST(Mill, ThePathToleranceIsAllThatFewerLinesLeave) {
+TEST_CASE("Mill.ThePathToleranceIsAllThatFewerLinesLeave") {
   const HeightField surface =
       field(201, 121, 0.1, [](double x, double y) { return -2.5 + 1.5 * std::sin(0.3 * x) * std::cos(0.4 * y); });
   MillOptions options = small(ToolShape::ball, 1.6);
@@ -368,14 +383,14 @@ TEST(Mill, ThePathToleranceIsAllThatFewerLinesLeave) {
   const MillPlan exact = plan_mill_job(surface, options, context);
   options.path_tolerance_mm = 0.02;
   const MillPlan coarse = plan_mill_job(surface, options, context);
-  EXPECT_LT(5 * lines(coarse), lines(exact));
+  CHECK(5 * lines(coarse) < lines(exact));
   double most = 0;
   for (std::size_t i = 0; i < surface.z_mm.size(); ++i) {
-    EXPECT_GE(coarse.carved.z_mm[i], exact.carved.z_mm[i] - 1.01e-3f);
+    CHECK(coarse.carved.z_mm[i] >= exact.carved.z_mm[i] - 1.01e-3f);
     most = std::max<double>(most, coarse.carved.z_mm[i] - exact.carved.z_mm[i]);
   }
-  EXPECT_LE(most, 0.02 + 1e-5);
-  EXPECT_GT(most, 0.005);  // the simulation sees it
+  CHECK(most <= 0.02 + 1e-5);
+  CHECK(most > 0.005);  // the simulation sees it
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fabrication/nesting.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +13,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 double distance_mm(const Vec2& p, const Vec2& a, const Vec2& b) {
   const Vec2 along = b - a;
@@ -47,15 +49,16 @@ void expect_valid(const std::vector<Polygon>& shapes, const Nesting& nesting, co
     for (const Vec2& p : shapes[i]) {
       placed.back().push_back(nesting.places[i](p));
       const Vec2& q = placed.back().back();
-      EXPECT_GE(q.minCoeff(), options.margin_mm - 1e-9);
-      EXPECT_LE(q.x(), options.bed_x_mm - options.margin_mm + 1e-9);
-      EXPECT_LE(q.y(), options.bed_y_mm - options.margin_mm + 1e-9);
+      CHECK(q.minCoeff() >= options.margin_mm - 1e-9);
+      CHECK(q.x() <= options.bed_x_mm - options.margin_mm + 1e-9);
+      CHECK(q.y() <= options.bed_y_mm - options.margin_mm + 1e-9);
     }
-    EXPECT_NEAR(signed_area_mm2(placed.back()), signed_area_mm2(shapes[i]),
-                1e-9 * std::abs(signed_area_mm2(shapes[i])));  // not mirrored
+    CHECK_THAT(signed_area_mm2(placed.back()),
+               WithinAbs(signed_area_mm2(shapes[i]), 1e-9 * std::abs(signed_area_mm2(shapes[i]))));  // not mirrored
     for (std::size_t j = 0; j < i; ++j)
       if (nesting.places[i].sheet == nesting.places[j].sheet) {
-        EXPECT_GE(gap_mm(placed[i], placed[j]), options.spacing_mm - 1e-9) << i << ' ' << j;
+        INFO(i << ' ' << j);
+        CHECK(gap_mm(placed[i], placed[j]) >= options.spacing_mm - 1e-9);
       }
   }
 }
@@ -71,7 +74,7 @@ Polygon arc(double radius_mm, double width_mm, double turn) {
   return polygon;
 }
 
-TEST(Nesting, KeepsSpacingMarginAndSize) {
+TEST_CASE("Nesting.KeepsSpacingMarginAndSize") {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> radius(15, 60), turn(0.5, 5.5);
   std::vector<Polygon> shapes;
@@ -81,41 +84,41 @@ TEST(Nesting, KeepsSpacingMarginAndSize) {
     const NestingOptions options{300, 200, 5, 3, keep_direction};
     const Nesting nesting = nest(shapes, options, context);
     expect_valid(shapes, nesting, options);
-    EXPECT_GT(nesting.sheet_count, 1);
-    EXPECT_LT(nesting.sheet_count, 6);
+    CHECK(nesting.sheet_count > 1);
+    CHECK(nesting.sheet_count < 6);
   }
 }
 
-TEST(Nesting, HollowsAreUsed) {
+TEST_CASE("Nesting.HollowsAreUsed") {
   // A ring of 100 mm with a smaller one and a square inside: boxes would not share the sheet.
   const std::vector<Polygon> shapes{arc(50, 8, 5.8), arc(35, 8, 5.8), {{0, 0}, {25, 0}, {25, 25}, {0, 25}}};
   Context context;
   const NestingOptions options{118, 112, 2, 2, false};
   const Nesting nesting = nest(shapes, options, context);
-  EXPECT_EQ(nesting.sheet_count, 1);
+  CHECK(nesting.sheet_count == 1);
   expect_valid(shapes, nesting, options);
 }
 
-TEST(Nesting, GrainLiesAlongX) {
+TEST_CASE("Nesting.GrainLiesAlongX") {
   Polygon strip{{0, 0}, {60, 80}, {52, 86}, {-8, 6}};  // 100 by 10 mm
   Context context;
   const Nesting nesting = nest({strip}, {200, 200, 5, 2, true}, context);
   const Vec2 along = nesting.places[0](strip[1]) - nesting.places[0](strip[0]);
-  EXPECT_NEAR(std::abs(along.x()), 100, 1e-9);
-  EXPECT_NEAR(along.y(), 0, 1e-9);
+  CHECK_THAT(std::abs(along.x()), WithinAbs(100, 1e-9));
+  CHECK_THAT(along.y(), WithinAbs(0, 1e-9));
   // Upright it would fit, but not along the grain.
-  EXPECT_THROW(nest({strip}, {80, 200, 5, 2, true}, context), Error);
-  EXPECT_NO_THROW(nest({strip}, {80, 200, 5, 2, false}, context));
+  CHECK_THROWS_AS(nest({strip}, {80, 200, 5, 2, true}, context), Error);
+  CHECK_NOTHROW(nest({strip}, {80, 200, 5, 2, false}, context));
 }
 
-TEST(Nesting, WhatDoesNotFitIsRefused) {
+TEST_CASE("Nesting.WhatDoesNotFitIsRefused") {
   Context context;
   try {
     nest({{{0, 0}, {100, 0}, {100, 100}, {0, 100}}}, {100, 100, 5, 2, false}, context);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::invalid_input);
-    EXPECT_EQ(error.where(), "bed_x_mm");
+    CHECK(error.code() == ErrorCode::invalid_input);
+    CHECK(error.where() == "bed_x_mm");
   }
 }
 

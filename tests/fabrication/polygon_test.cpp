@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fabrication/polygon.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -9,6 +10,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 Polygon regular(int sides, double radius_mm) {
   Polygon polygon;
@@ -26,30 +28,33 @@ Polygon moved(const Polygon& polygon, const std::vector<double>& left_mm) {
   return result;
 }
 
-TEST(Polygon, ARectangleGrowsByEachEdgesOwnDistance) {
+TEST_CASE("Polygon.ARectangleGrowsByEachEdgesOwnDistance") {
   const Polygon square{{0, 0}, {10, 0}, {10, 5}, {0, 5}};
   const Polygon result = moved(square, {1, 2, 0, -3});  // inwards below and right, not above, outwards on the left
   const Polygon expected{{-3, 1}, {8, 1}, {8, 5}, {-3, 5}};
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_LT((result[i] - expected[i]).norm(), 1e-14) << i;
+  for (std::size_t i = 0; i < 4; ++i) {
+    INFO(i);
+    CHECK((result[i] - expected[i]).norm() < 1e-14);
+  }
 }
 
-TEST(Polygon, ARegularPolygonKeepsItsShapeAndTheCornerLimitHolds) {
+TEST_CASE("Polygon.ARegularPolygonKeepsItsShapeAndTheCornerLimitHolds") {
   for (const int sides : {5, 12, 1000}) {
     const double apothem = 20 * std::cos(std::numbers::pi / sides);
     const Polygon result = moved(regular(sides, 20), std::vector<double>(std::size_t(sides), -0.1));
-    for (const Vec2& p : result) EXPECT_NEAR(p.norm(), 20 * (apothem + 0.1) / apothem, 1e-10);
+    for (const Vec2& p : result) CHECK_THAT(p.norm(), WithinAbs(20 * (apothem + 0.1) / apothem, 1e-10));
   }
   const Polygon needle{{0, 0}, {100, 0}, {0, 1}};
-  for (const Vec2& step : offset_steps(needle, {-1, -1, -1})) EXPECT_LE(step.norm(), 2 + 1e-12);
+  for (const Vec2& step : offset_steps(needle, {-1, -1, -1})) CHECK(step.norm() <= 2 + 1e-12);
 }
 
-TEST(Polygon, AStraightStretchAndAnEdgeWithoutLengthMoveLikeTheirNeighbours) {
+TEST_CASE("Polygon.AStraightStretchAndAnEdgeWithoutLengthMoveLikeTheirNeighbours") {
   const Polygon polygon{{0, 0}, {5, 0}, {5, 0}, {10, 0}, {10, 5}, {0, 5}};
   const std::vector<Vec2> steps = offset_steps(polygon, std::vector<double>(6, 1.0));
-  for (const std::size_t i : {1, 2}) EXPECT_LT((steps[i] - Vec2(0, 1)).norm(), 1e-14);
+  for (const std::size_t i : {1, 2}) CHECK((steps[i] - Vec2(0, 1)).norm() < 1e-14);
 }
 
-TEST(Polygon, OffsetLengthConvergesToThatOfTheParallelCurve) {
+TEST_CASE("Polygon.OffsetLengthConvergesToThatOfTheParallelCurve") {
   // An ellipse: a closed curve moved inwards by d loses 2 pi d of its length, whatever its shape.
   const auto error = [](int sides) {
     Polygon ellipse;
@@ -66,32 +71,32 @@ TEST(Polygon, OffsetLengthConvergesToThatOfTheParallelCurve) {
                     4 * std::numbers::pi);
   };
   const double coarse = error(100), fine = error(200);
-  EXPECT_LT(fine, 0.01);
-  EXPECT_NEAR(std::log2(coarse / fine), 2, 0.1);
+  CHECK(fine < 0.01);
+  CHECK_THAT(std::log2(coarse / fine), WithinAbs(2, 0.1));
 }
 
-TEST(Polygon, TheHullHoldsEveryPointAndTurnsLeft) {
+TEST_CASE("Polygon.TheHullHoldsEveryPointAndTurnsLeft") {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> place(-10, 10);
   std::vector<Vec2> points;
   for (int i = 0; i < 200; ++i) points.emplace_back(place(random), place(random));
   const Polygon hull = convex_hull(points);
-  EXPECT_GT(signed_area_mm2(hull), 300);
+  CHECK(signed_area_mm2(hull) > 300);
   for (std::size_t i = 0; i < hull.size(); ++i) {
     const Vec2 along = hull[(i + 1) % hull.size()] - hull[i];
-    for (const Vec2& p : points) EXPECT_GE(along.x() * (p - hull[i]).y() - along.y() * (p - hull[i]).x(), -1e-9);
+    for (const Vec2& p : points) CHECK(along.x() * (p - hull[i]).y() - along.y() * (p - hull[i]).x() >= -1e-9);
   }
-  EXPECT_EQ(convex_hull({{0, 0}, {1, 1}, {2, 2}, {3, 3}}).size(), 2u);
+  CHECK(convex_hull({{0, 0}, {1, 1}, {2, 2}, {3, 3}}).size() == 2u);
 }
 
-TEST(Polygon, TrianglesTouchOrOverlap) {
+TEST_CASE("Polygon.TrianglesTouchOrOverlap") {
   const std::array<Vec2, 3> a{Vec2(0, 0), Vec2(4, 0), Vec2(0, 4)}, beside{Vec2(4, 0), Vec2(4, 4), Vec2(0, 4)};
-  EXPECT_FALSE(triangles_overlap(a, beside, 1e-9));
-  EXPECT_TRUE(triangles_overlap(a, beside, -0.1));
+  CHECK_FALSE(triangles_overlap(a, beside, 1e-9));
+  CHECK(triangles_overlap(a, beside, -0.1));
   const std::array<Vec2, 3> inside{Vec2(1, 1), Vec2(1.5, 1), Vec2(1, 1.5)};
-  EXPECT_TRUE(triangles_overlap(a, inside, 1e-9));
+  CHECK(triangles_overlap(a, inside, 1e-9));
   const std::array<Vec2, 3> away{Vec2(2.1, 2.1), Vec2(5, 2.1), Vec2(2.1, 5)};  // boxes meet, triangles do not
-  EXPECT_FALSE(triangles_overlap(a, away, 1e-9));
+  CHECK_FALSE(triangles_overlap(a, away, 1e-9));
 }
 
 }  // namespace

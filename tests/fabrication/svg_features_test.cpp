@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What of SVG is followed, and what is said of the rest. Where lines lie is tested against browsers, too
 // (tests/reliability/drawing_raster_test.py).
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <cmath>
 #include <string>
@@ -13,6 +14,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 SvgDrawing read_body(const std::string& body, const std::string& look = "fill='none' stroke='red'") {
   return read_svg_drawing(
@@ -25,10 +27,10 @@ std::string refusal(const std::string& svg) {
   try {
     read_svg_drawing(as_bytes(svg), {}, Context());
   } catch (const Error& error) {
-    EXPECT_EQ(error.where(), "drawing");
+    CHECK(error.where() == "drawing");
     return error.what();
   }
-  ADD_FAILURE() << "was not refused: " << svg.substr(0, 200);
+  FAIL_CHECK("was not refused: " << svg.substr(0, 200));
   return "";
 }
 
@@ -61,78 +63,79 @@ std::string notes(const std::string& body) {
 
 const std::string line = "<path d='M0 1h9'/>";
 
-TEST(SvgFeatures, TransformsOfCssAreThoseOfBrowsers) {
-  EXPECT_EQ(lines(read_body("<path style='transform:translate(10px,5px)' d='M0 0h1'/>")), "10,5 11,5");
-  EXPECT_EQ(lines(read_body("<path style='transform:rotate(90deg);transform-origin:10px 10px' d='M10 0h5'/>")),
-            "20,10 20,15");
-  EXPECT_EQ(lines(read_body(
-                "<path style='transform:scale(2);transform-box:fill-box;transform-origin:center' d='M10 10h4v2'/>")),
-            "8,9 16,9 16,13");
-  EXPECT_EQ(lines(read_body("<path style='rotate:0.25turn;translate:5px' d='M0 0h5'/>")), "5,0 5,5");
-  EXPECT_EQ(
-      lines(read_body("<style>path{transform:translate(50%,50%)}</style><path transform='scale(9)' d='M0 0h1'/>")),
-      "50,30 51,30");
-  EXPECT_EQ(lines(read_body("<path transform='translate(5-1)scale(2-1)' d='M0 0h1'/>")), "5,-1 7,-1");
-  EXPECT_EQ(lines(read_body("<path style='transform:rotate(30)' transform='translate(1)' d='M0 0h1'/>")), "1,0 2,0");
-  EXPECT_NE(notes("<path style='transform:rotateX(30deg)' d='M0 0h1'/>").find("fault"), std::string::npos);
+TEST_CASE("SvgFeatures.TransformsOfCssAreThoseOfBrowsers") {
+  CHECK(lines(read_body("<path style='transform:translate(10px,5px)' d='M0 0h1'/>")) == "10,5 11,5");
+  CHECK(lines(read_body("<path style='transform:rotate(90deg);transform-origin:10px 10px' d='M10 0h5'/>")) ==
+        "20,10 20,15");
+  CHECK(lines(read_body(
+            "<path style='transform:scale(2);transform-box:fill-box;transform-origin:center' d='M10 10h4v2'/>")) ==
+        "8,9 16,9 16,13");
+  CHECK(lines(read_body("<path style='rotate:0.25turn;translate:5px' d='M0 0h5'/>")) == "5,0 5,5");
+  CHECK(lines(read_body("<style>path{transform:translate(50%,50%)}</style><path transform='scale(9)' d='M0 0h1'/>")) ==
+        "50,30 51,30");
+  CHECK(lines(read_body("<path transform='translate(5-1)scale(2-1)' d='M0 0h1'/>")) == "5,-1 7,-1");
+  CHECK(lines(read_body("<path style='transform:rotate(30)' transform='translate(1)' d='M0 0h1'/>")) == "1,0 2,0");
+  CHECK(notes("<path style='transform:rotateX(30deg)' d='M0 0h1'/>").find("fault") != std::string::npos);
 }
 
-TEST(SvgFeatures, DashesAreCut) {
-  EXPECT_EQ(lines(read_body("<path stroke-dasharray='3 2' d='M0 0h10v1'/>")), "0,0 3,0; 5,0 8,0; 10,0 10,1");
-  EXPECT_EQ(lines(read_body("<path stroke-dasharray='4' stroke-dashoffset='5' d='M0 0h10'/>")), "3,0 7,0");
-  EXPECT_EQ(lines(read_body("<path stroke-dasharray='2 1 1' d='M0 0h10'/>")), "0,0 2,0; 3,0 4,0; 6,0 7,0; 8,0 10,0");
-  EXPECT_EQ(lines(read_body("<g transform='scale(2)' stroke-dasharray='1'><path d='M0 0h4'/></g>")),
-            "0,0 2,0; 4,0 6,0");
-  EXPECT_EQ(lines(read_body("<path pathLength='4' stroke-dasharray='1' d='M0 0h40'/>")), "0,0 10,0; 20,0 30,0");
-  EXPECT_EQ(lines(read_body("<rect stroke-dasharray='5 3' width='6' height='2'/>")), "0,0 5,0; 6,2 1,2");
-  EXPECT_EQ(lines(read_body("<path stroke-dasharray='3 -1' d='M0 0h10'/><path stroke-dasharray='0' d='M0 1h10'/>")),
-            "0,0 10,0; 0,1 10,1");
-  EXPECT_NE(notes(line + "<path stroke-dasharray='0 2' d='M0 0h10'/>").find("dashes of length zero"),
-            std::string::npos);
+TEST_CASE("SvgFeatures.DashesAreCut") {
+  CHECK(lines(read_body("<path stroke-dasharray='3 2' d='M0 0h10v1'/>")) == "0,0 3,0; 5,0 8,0; 10,0 10,1");
+  CHECK(lines(read_body("<path stroke-dasharray='4' stroke-dashoffset='5' d='M0 0h10'/>")) == "3,0 7,0");
+  CHECK(lines(read_body("<path stroke-dasharray='2 1 1' d='M0 0h10'/>")) == "0,0 2,0; 3,0 4,0; 6,0 7,0; 8,0 10,0");
+  CHECK(lines(read_body("<g transform='scale(2)' stroke-dasharray='1'><path d='M0 0h4'/></g>")) == "0,0 2,0; 4,0 6,0");
+  CHECK(lines(read_body("<path pathLength='4' stroke-dasharray='1' d='M0 0h40'/>")) == "0,0 10,0; 20,0 30,0");
+  CHECK(lines(read_body("<rect stroke-dasharray='5 3' width='6' height='2'/>")) == "0,0 5,0; 6,2 1,2");
+  CHECK(lines(read_body("<path stroke-dasharray='3 -1' d='M0 0h10'/><path stroke-dasharray='0' d='M0 1h10'/>")) ==
+        "0,0 10,0; 0,1 10,1");
+  CHECK(notes(line + "<path stroke-dasharray='0 2' d='M0 0h10'/>").find("dashes of length zero") != std::string::npos);
 }
 
-TEST(SvgFeatures, ClipsCutLinesWhereTheyEnd) {
-  EXPECT_EQ(lines(read_body("<svg x='10' y='10' width='20' height='10'><path d='M-5 5h50'/></svg>")), "10,15 30,15");
-  EXPECT_EQ(lines(read_body("<svg x='10' y='10' width='20' height='10' overflow='visible'><path d='M-5 5h50'/></svg>")),
-            "5,15 55,15");
+TEST_CASE("SvgFeatures.ClipsCutLinesWhereTheyEnd") {
+  CHECK(lines(read_body("<svg x='10' y='10' width='20' height='10'><path d='M-5 5h50'/></svg>")) == "10,15 30,15");
+  CHECK(lines(read_body("<svg x='10' y='10' width='20' height='10' overflow='visible'><path d='M-5 5h50'/></svg>")) ==
+        "5,15 55,15");
   const std::string clip = "<clipPath id='c'><rect x='5' y='5' width='10' height='10'/></clipPath>";
-  EXPECT_EQ(lines(read_body(clip + "<path clip-path='url(#c)' d='M0 10h40'/>")), "5,10 15,10");
+  CHECK(lines(read_body(clip + "<path clip-path='url(#c)' d='M0 10h40'/>")) == "5,10 15,10");
   // A line that runs in and out keeps its order; a closed one is not broken where it begins.
-  EXPECT_EQ(lines(read_body(clip + "<path clip-path='url(#c)' d='M0 6h20v2h-20z'/>")), "5,6 15,6; 15,8 5,8");
-  EXPECT_EQ(lines(read_body(clip + "<path clip-path='url(#c)' d='M10 6h20v2h-20z'/>")), "15,8 10,8 10,6 15,6");
-  EXPECT_EQ(lines(read_body(clip + "<path clip-path='url(#c)' d='M6 6h2v2z'/>")), "6,6 8,6 8,8 z");
+  CHECK(lines(read_body(clip + "<path clip-path='url(#c)' d='M0 6h20v2h-20z'/>")) == "5,6 15,6; 15,8 5,8");
+  CHECK(lines(read_body(clip + "<path clip-path='url(#c)' d='M10 6h20v2h-20z'/>")) == "15,8 10,8 10,6 15,6");
+  CHECK(lines(read_body(clip + "<path clip-path='url(#c)' d='M6 6h2v2z'/>")) == "6,6 8,6 8,8 z");
   // On the edge is inside.
-  EXPECT_EQ(lines(read_body(clip + "<path clip-path='url(#c)' d='M0 5h40'/>")), "5,5 15,5");
+  CHECK(lines(read_body(clip + "<path clip-path='url(#c)' d='M0 5h40'/>")) == "5,5 15,5");
   const std::string filled =
       lines(read_body(clip + "<rect clip-path='url(#c)' width='10' height='10' fill='red' stroke='none'/>"));
-  for (const char* corner : {"5,5", "10,5", "10,10", "5,10"})
-    EXPECT_NE(filled.find(corner), std::string::npos) << filled;
-  EXPECT_EQ(lines(read_body(line + "<clipPath id='e'/><path clip-path='url(#e)' d='M0 10h40'/>")), "0,1 9,1");
-  EXPECT_NE(notes(line + "<path clip-path='circle(3px)' d='M0 10h40'/>").find("clip was not applied"),
-            std::string::npos);
+  for (const char* corner : {"5,5", "10,5", "10,10", "5,10"}) {
+    INFO(filled);
+    CHECK(filled.find(corner) != std::string::npos);
+  }
+  CHECK(lines(read_body(line + "<clipPath id='e'/><path clip-path='url(#e)' d='M0 10h40'/>")) == "0,1 9,1");
+  CHECK(notes(line + "<path clip-path='circle(3px)' d='M0 10h40'/>").find("clip was not applied") != std::string::npos);
 }
 
-TEST(SvgFeatures, StylesCascade) {
+TEST_CASE("SvgFeatures.StylesCascade") {
   const auto layer = [](const std::string& style, const std::string& element) {
     return read_body("<style>" + style + "</style>" + element).sheet.paths.at(0).layer;
   };
   const std::string path = "<g class='k'><path class='a b' id='i' data-n='12' d='M0 0h1'/></g>";
   for (const char* selector : {"path", ".a", "#i", "path.a.b", "g path", "g > path", ".k .b", "[data-n]",
-                               "[data-n='12']", "[data-n^='1']", "path:first-child", ":not(.z)", "svg *", "x, path"})
-    EXPECT_EQ(layer(std::string(selector) + "{stroke:blue}", path), CutLayer::mark) << selector;
+                               "[data-n='12']", "[data-n^='1']", "path:first-child", ":not(.z)", "svg *", "x, path"}) {
+    INFO(selector);
+    CHECK(layer(std::string(selector) + "{stroke:blue}", path) == CutLayer::mark);
+  }
   for (const char* selector : {"rect", ".c", "#a", "path.z", "path > g", "[data-n='1']", "path:nth-child(2)",
-                               "path:not(.a)", "g + path", "path:hover"})
-    EXPECT_EQ(layer(std::string(selector) + "{stroke:blue}", path), CutLayer::cut) << selector;
-  EXPECT_EQ(layer("#i{stroke:blue} .a.b{stroke:black}", path), CutLayer::mark);
-  EXPECT_EQ(layer(".a{stroke:blue!important} #i{stroke:black}", path), CutLayer::mark);
-  EXPECT_EQ(layer("@media print{path{stroke:black}} @media screen{path{stroke:blue}}", path), CutLayer::mark);
-  EXPECT_EQ(layer("/* path{stroke:black} */ path{/**/stroke:blue}", path), CutLayer::mark);
-  EXPECT_NE(
-      notes("<style>path::before{stroke:blue} @import 'x.css';</style>" + line).find("2 style rules were not followed"),
-      std::string::npos);
+                               "path:not(.a)", "g + path", "path:hover"}) {
+    INFO(selector);
+    CHECK(layer(std::string(selector) + "{stroke:blue}", path) == CutLayer::cut);
+  }
+  CHECK(layer("#i{stroke:blue} .a.b{stroke:black}", path) == CutLayer::mark);
+  CHECK(layer(".a{stroke:blue!important} #i{stroke:black}", path) == CutLayer::mark);
+  CHECK(layer("@media print{path{stroke:black}} @media screen{path{stroke:blue}}", path) == CutLayer::mark);
+  CHECK(layer("/* path{stroke:black} */ path{/**/stroke:blue}", path) == CutLayer::mark);
+  CHECK(notes("<style>path::before{stroke:blue} @import 'x.css';</style>" + line)
+            .find("2 style rules were not followed") != std::string::npos);
 }
 
-TEST(SvgFeatures, ColoursOfEveryForm) {
+TEST_CASE("SvgFeatures.ColoursOfEveryForm") {
   struct Case {
     const char* text;
     std::array<int, 3> rgb;
@@ -144,32 +147,36 @@ TEST(SvgFeatures, ColoursOfEveryForm) {
                         Case{"HSL(-120deg 100% 50%)", {0, 0, 255}, 1}, Case{"hwb(0 0% 0%)", {255, 0, 0}, 1},
                         Case{"RebeccaPurple", {102, 51, 153}, 1}, Case{"transparent", {0, 0, 0}, 0}}) {
     const auto colour = read_colour(c.text);
-    ASSERT_TRUE(colour) << c.text;
-    EXPECT_EQ(colour->rgb, c.rgb) << c.text;
-    EXPECT_NEAR(colour->alpha, c.alpha, 1e-9) << c.text;
+    INFO(c.text);
+    REQUIRE(colour);
+    CHECK(colour->rgb == c.rgb);
+    CHECK_THAT(colour->alpha, WithinAbs(c.alpha, 1e-9));
   }
-  for (const char* text : {"", "none", "#12", "#ggg", "rgb(1,2)", "rgb(1,2,3", "hsl(a,b,c)", "url(#a)", "lab(1 2 3)"})
-    EXPECT_FALSE(read_colour(text)) << text;
-  EXPECT_EQ(read_body("<path stroke='hsl(240,100%,50%)' d='M0 0h1'/>").sheet.paths.at(0).layer, CutLayer::mark);
-  EXPECT_EQ(read_body("<g color='blue'><path stroke='currentColor' d='M0 0h1'/></g>").sheet.paths.at(0).layer,
-            CutLayer::mark);
+  for (const char* text : {"", "none", "#12", "#ggg", "rgb(1,2)", "rgb(1,2,3", "hsl(a,b,c)", "url(#a)", "lab(1 2 3)"}) {
+    INFO(text);
+    CHECK_FALSE(read_colour(text));
+  }
+  CHECK(read_body("<path stroke='hsl(240,100%,50%)' d='M0 0h1'/>").sheet.paths.at(0).layer == CutLayer::mark);
+  CHECK(read_body("<g color='blue'><path stroke='currentColor' d='M0 0h1'/></g>").sheet.paths.at(0).layer ==
+        CutLayer::mark);
 }
 
-TEST(SvgFeatures, WhatIsNotPaintedIsNotCut) {
+TEST_CASE("SvgFeatures.WhatIsNotPaintedIsNotCut") {
   for (const char* hidden :
        {"opacity='0'", "style='opacity:0'", "stroke-opacity='0'", "stroke='rgba(255,0,0,0)'", "visibility='hidden'",
-        "display='none'", "stroke='none'", "stroke='url(#gone)'", "systemLanguage='de'", "requiredExtensions='x'"})
-    EXPECT_EQ(lines(read_body(line + "<path d='M0 5h9' " + hidden + "/>")), "0,1 9,1") << hidden;
-  EXPECT_EQ(
-      lines(read_body("<switch><path systemLanguage='fr' d='M0 5h9'/><path d='M0 1h9'/><path d='M0 2h9'/></switch>")),
+        "display='none'", "stroke='none'", "stroke='url(#gone)'", "systemLanguage='de'", "requiredExtensions='x'"}) {
+    INFO(hidden);
+    CHECK(lines(read_body(line + "<path d='M0 5h9' " + hidden + "/>")) == "0,1 9,1");
+  }
+  CHECK(
+      lines(read_body("<switch><path systemLanguage='fr' d='M0 5h9'/><path d='M0 1h9'/><path d='M0 2h9'/></switch>")) ==
       "0,1 9,1");
   // What is filled is closed; a line that is filled is nothing.
-  EXPECT_EQ(
-      lines(read_body("<path fill='red' stroke='none' d='M0 0h9v9'/><path fill='red' stroke='none' d='M0 0h9'/>")),
-      "0,0 9,0 9,9 z");
+  CHECK(lines(read_body("<path fill='red' stroke='none' d='M0 0h9v9'/><path fill='red' stroke='none' d='M0 0h9'/>")) ==
+        "0,0 9,0 9,9 z");
 }
 
-TEST(SvgFeatures, WhatIsLeftOutIsSaid) {
+TEST_CASE("SvgFeatures.WhatIsLeftOutIsSaid") {
   struct Case {
     const char *body, *sentence;
   };
@@ -191,20 +198,23 @@ TEST(SvgFeatures, WhatIsLeftOutIsSaid) {
        Case{"<path d='M-5 0h1'/>", "outside the drawing's page"},
        Case{"<path stroke='#f0f' d='M0 0h1'/>", "names no layer"}}) {
     const std::string all = notes(line + c.body);
-    EXPECT_NE(all.find(c.sentence), std::string::npos) << c.body << ": " << all;
-    EXPECT_EQ(all.find('\n'), all.size() - 1) << "one note only: " << all;
+    {
+      INFO(c.body << ": " << all);
+      CHECK(all.find(c.sentence) != std::string::npos);
+    }
+    INFO("one note only: " << all);
+    CHECK(all.find('\n') == all.size() - 1);
   }
-  EXPECT_EQ(notes(line), "");
+  CHECK(notes(line) == "");
   // A swatch of Inkscape: a gradient of one colour.
-  EXPECT_EQ(
+  CHECK(
       read_body(
           "<linearGradient id='g'><stop style='stop-color:#00f'/></linearGradient><path stroke='url(#g)' d='M0 0h1'/>")
           .sheet.paths.at(0)
-          .layer,
-      CutLayer::mark);
+          .layer == CutLayer::mark);
 }
 
-TEST(SvgFeatures, TextOfEveryKind) {
+TEST_CASE("SvgFeatures.TextOfEveryKind") {
   const std::string plain =
       "<svg width='100mm' height='60mm' viewBox='0 0 100 60'>\n<path\nstroke='red'\nd='M0 1\nh9'/></svg>";
   std::string returns = plain;
@@ -214,49 +224,46 @@ TEST(SvgFeatures, TextOfEveryKind) {
   for (const char c : plain) wide += {c, '\0'};
   for (const std::string& file :
        {plain, returns, "\xef\xbb\xbf" + plain, "\xef\xbb\xbf<?xml version='1.0' encoding='UTF-8'?>" + plain, wide})
-    EXPECT_EQ(lines(read_svg_drawing(as_bytes(file), {}, Context())), "0,1 9,1");
-  EXPECT_NE(refusal("<svg width='100' height='60'>" + line + "</svg>").find("no unit"), std::string::npos);
-  EXPECT_NE(refusal("<svg width='100%' height='100%'>" + line + "</svg>").find("shares of a window"),
-            std::string::npos);
-  EXPECT_NE(refusal("<svg width='9mm' height='9mm'><use href='a.svg#b'/></svg>").find("another file"),
-            std::string::npos);
+    CHECK(lines(read_svg_drawing(as_bytes(file), {}, Context())) == "0,1 9,1");
+  CHECK(refusal("<svg width='100' height='60'>" + line + "</svg>").find("no unit") != std::string::npos);
+  CHECK(refusal("<svg width='100%' height='100%'>" + line + "</svg>").find("shares of a window") != std::string::npos);
+  CHECK(refusal("<svg width='9mm' height='9mm'><use href='a.svg#b'/></svg>").find("another file") != std::string::npos);
   SvgReadOptions pixels;
   pixels.user_unit = UserUnit::px;
-  EXPECT_NEAR(
+  CHECK_THAT(
       read_svg_drawing(as_bytes("<svg width='96' height='96'><path stroke='red' d='M0 0h1'/></svg>"), pixels, Context())
           .sheet.width_mm,
-      25.4, 1e-9);
+      WithinAbs(25.4, 1e-9));
 }
 
-TEST(SvgFeatures, HugeDrawingsAreRefusedWithTheFix) {
+TEST_CASE("SvgFeatures.HugeDrawingsAreRefusedWithTheFix") {
   const auto of = [](const std::string& body) {
     return "<svg width='100mm' height='60mm' viewBox='0 0 100 60' stroke='red' fill='none'>" + body + "</svg>";
   };
-  EXPECT_NE(refusal(of("<path d='M0 0C1e9 1e9 -1e9 1e9 1 1'/>")).find("check its units"), std::string::npos);
-  EXPECT_NE(refusal(of("<path d='M0 0h1e400'/>")).find('.'), std::string::npos);
-  EXPECT_NE(refusal(of("<path stroke-dasharray='1e-7' d='M0 0h90'/>")).find("make its dashes longer"),
-            std::string::npos);
+  CHECK(refusal(of("<path d='M0 0C1e9 1e9 -1e9 1e9 1 1'/>")).find("check its units") != std::string::npos);
+  CHECK(refusal(of("<path d='M0 0h1e400'/>")).find('.') != std::string::npos);
+  CHECK(refusal(of("<path stroke-dasharray='1e-7' d='M0 0h90'/>")).find("make its dashes longer") != std::string::npos);
   std::string open, close;
   for (int i = 0; i < 250; ++i) {
     open += "<g clip-path='url(#c)'>";
     close += "</g>";
   }
-  EXPECT_EQ(lines(read_body("<clipPath id='c'><rect width='5' height='5'/></clipPath>" + open + line + close)),
-            "0,1 5,1");
-  EXPECT_NE(refusal(of(open + "<g><g><g><g><g><g><g>" + line)).find("not XML"), std::string::npos);
-  EXPECT_NE(refusal(of(open + open + line + close + close)).find("256 levels"), std::string::npos);
+  CHECK(lines(read_body("<clipPath id='c'><rect width='5' height='5'/></clipPath>" + open + line + close)) ==
+        "0,1 5,1");
+  CHECK(refusal(of(open + "<g><g><g><g><g><g><g>" + line)).find("not XML") != std::string::npos);
+  CHECK(refusal(of(open + open + line + close + close)).find("256 levels") != std::string::npos);
   std::string copies = "<path id='a0' d='M0 0h1'/>";
   for (int i = 1; i < 30; ++i) {
     const std::string use = "<use href='#a" + std::to_string(i - 1) + "'/>";
     copies += "<g id='a" + std::to_string(i) + "'>" + use + use + use + "</g>";
   }
-  EXPECT_NE(refusal(of(copies)).find("<use>"), std::string::npos);
+  CHECK(refusal(of(copies)).find("<use>") != std::string::npos);
   std::string rules, groups;
   for (int i = 0; i < 6'000; ++i) {
     rules += "g{r:1}";
     groups += "<g/>";
   }
-  EXPECT_NE(refusal(of("<style>" + rules + "</style>" + groups + line)).find("style rules"), std::string::npos);
+  CHECK(refusal(of("<style>" + rules + "</style>" + groups + line)).find("style rules") != std::string::npos);
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fabrication/svg/svg_reader.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -13,6 +14,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 SvgDrawing read(const std::string& svg, const SvgReadOptions& options = {}) {
   return read_svg_drawing(as_bytes(svg), options, Context());
@@ -30,26 +32,27 @@ std::string refusal(const std::string& svg) {
   try {
     read(svg);
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::invalid_input);
-    EXPECT_EQ(error.where(), "drawing");
+    CHECK(error.code() == ErrorCode::invalid_input);
+    CHECK(error.where() == "drawing");
     return error.what();
   }
-  ADD_FAILURE() << "was not refused: " << svg;
+  FAIL_CHECK("was not refused: " << svg);
   return "";
 }
 
 /// Of both coordinates, y from the top.
 void expect_points(const SvgDrawing& drawing, const std::vector<Vec2>& expected, double tolerance = 1e-6) {
-  ASSERT_EQ(drawing.sheet.paths.size(), 1u);
+  REQUIRE(drawing.sheet.paths.size() == 1u);
   const auto& points = drawing.sheet.paths[0].points_mm;
-  ASSERT_EQ(points.size(), expected.size());
+  REQUIRE(points.size() == expected.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    EXPECT_NEAR(points[i].x(), expected[i].x(), tolerance) << i;
-    EXPECT_NEAR(drawing.sheet.height_mm - points[i].y(), expected[i].y(), tolerance) << i;
+    INFO(i);
+    CHECK_THAT(points[i].x(), WithinAbs(expected[i].x(), tolerance));
+    CHECK_THAT(drawing.sheet.height_mm - points[i].y(), WithinAbs(expected[i].y(), tolerance));
   }
 }
 
-TEST(SvgReader, EveryUnitIsItsMillimetres) {
+TEST_CASE("SvgReader.EveryUnitIsItsMillimetres") {
   struct Case {
     std::string size;
     double mm;
@@ -59,34 +62,43 @@ TEST(SvgReader, EveryUnitIsItsMillimetres) {
     // With a viewBox the whole of it is that size, without one a unit is a px.
     const SvgDrawing boxed = read("<svg width='" + c.size + "' height='" + c.size +
                                   "' viewBox='0 0 2 2'><path stroke='red' d='M0 0L1 2'/></svg>");
-    EXPECT_NEAR(boxed.sheet.width_mm, c.mm, 1e-9) << c.size;
-    EXPECT_NEAR(boxed.sheet.paths.at(0).points_mm[1].x(), c.mm / 2, 1e-6) << c.size;
-    EXPECT_NEAR(boxed.sheet.paths.at(0).points_mm[1].y(), 0, 1e-6) << c.size;
+    {
+      INFO(c.size);
+      CHECK_THAT(boxed.sheet.width_mm, WithinAbs(c.mm, 1e-9));
+      CHECK_THAT(boxed.sheet.paths.at(0).points_mm[1].x(), WithinAbs(c.mm / 2, 1e-6));
+      CHECK_THAT(boxed.sheet.paths.at(0).points_mm[1].y(), WithinAbs(0, 1e-6));
+    }
     const SvgDrawing plain =
         read("<svg width='" + c.size + "' height='" + c.size + "'><path stroke='red' d='M0 0L96 0'/></svg>");
-    EXPECT_NEAR(plain.sheet.paths.at(0).points_mm[1].x(), 25.4, 1e-6) << c.size;
+    {
+      INFO(c.size);
+      CHECK_THAT(plain.sheet.paths.at(0).points_mm[1].x(), WithinAbs(25.4, 1e-6));
+    }
     // Lengths of shapes have units of their own.
     const SvgDrawing shape = read("<svg width='10mm' height='10mm'><line stroke='red' x2='" + c.size + "'/></svg>");
-    EXPECT_NEAR(shape.sheet.paths.at(0).points_mm[1].x(), c.mm, 1e-6) << c.size;
+    INFO(c.size);
+    CHECK_THAT(shape.sheet.paths.at(0).points_mm[1].x(), WithinAbs(c.mm, 1e-6));
   }
 }
 
-TEST(SvgReader, ViewBoxesKeepTheirAspectAsTheySay) {
+TEST_CASE("SvgReader.ViewBoxesKeepTheirAspectAsTheySay") {
   const std::string body = "<path stroke='red' d='M0 0L10 10'/></svg>";
   const auto first = [](const SvgDrawing& d) {
     return Vec2(d.sheet.paths.at(0).points_mm[0].x(), d.sheet.height_mm - d.sheet.paths.at(0).points_mm[0].y());
   };
   const std::string head = "<svg width='200mm' height='100mm' viewBox='0 0 10 10' ";
-  EXPECT_NEAR((first(read(head + ">" + body)) - Vec2(50, 0)).norm(), 0, 1e-6);
-  EXPECT_NEAR((first(read(head + "preserveAspectRatio='xMinYMin meet'>" + body)) - Vec2(0, 0)).norm(), 0, 1e-6);
-  EXPECT_NEAR((first(read(head + "preserveAspectRatio='xMaxYMid'>" + body)) - Vec2(100, 0)).norm(), 0, 1e-6);
-  EXPECT_NEAR((first(read(head + "preserveAspectRatio='xMidYMid slice'>" + body)) - Vec2(0, -50)).norm(), 0, 1e-6);
+  CHECK_THAT((first(read(head + ">" + body)) - Vec2(50, 0)).norm(), WithinAbs(0, 1e-6));
+  CHECK_THAT((first(read(head + "preserveAspectRatio='xMinYMin meet'>" + body)) - Vec2(0, 0)).norm(),
+             WithinAbs(0, 1e-6));
+  CHECK_THAT((first(read(head + "preserveAspectRatio='xMaxYMid'>" + body)) - Vec2(100, 0)).norm(), WithinAbs(0, 1e-6));
+  CHECK_THAT((first(read(head + "preserveAspectRatio='xMidYMid slice'>" + body)) - Vec2(0, -50)).norm(),
+             WithinAbs(0, 1e-6));
   const SvgDrawing stretched = read(head + "preserveAspectRatio='none'>" + body);
-  EXPECT_NEAR(stretched.sheet.paths.at(0).points_mm[1].x(), 200, 1e-6);
-  EXPECT_NEAR(stretched.sheet.paths.at(0).points_mm[1].y(), 0, 1e-6);
+  CHECK_THAT(stretched.sheet.paths.at(0).points_mm[1].x(), WithinAbs(200, 1e-6));
+  CHECK_THAT(stretched.sheet.paths.at(0).points_mm[1].y(), WithinAbs(0, 1e-6));
 }
 
-TEST(SvgReader, TransformsNest) {
+TEST_CASE("SvgReader.TransformsNest") {
   const SvgDrawing drawing =
       read_body("<g transform='translate(10,5) scale(2)'><g transform='rotate(90 1 1)'><path d='M1 1h3'/></g></g>");
   expect_points(drawing, {{12, 7}, {12, 13}});
@@ -101,17 +113,20 @@ TEST(SvgReader, TransformsNest) {
       {{1, 0}, {31, 0}});
 }
 
-TEST(SvgReader, ShapesHaveTheirExactAreas) {
+TEST_CASE("SvgReader.ShapesHaveTheirExactAreas") {
   const auto area = [](const std::string& body, double tolerance_mm) {
     SvgReadOptions options;
     options.flatness_mm = tolerance_mm;
     const SvgDrawing drawing = read_body(body, options);
-    EXPECT_EQ(drawing.sheet.paths.size(), 1u);
-    EXPECT_TRUE(drawing.sheet.paths.at(0).closed) << body;
+    CHECK(drawing.sheet.paths.size() == 1u);
+    {
+      INFO(body);
+      CHECK(drawing.sheet.paths.at(0).closed);
+    }
     return std::abs(signed_area_mm2(drawing.sheet.paths.at(0).points_mm));
   };
-  EXPECT_NEAR(area("<rect x='1' y='2' width='30' height='20'/>", 0.01), 600, 1e-6);
-  EXPECT_NEAR(area("<polygon points='0,0 10,0-5,20'/>", 0.01), 100, 1e-6);
+  CHECK_THAT(area("<rect x='1' y='2' width='30' height='20'/>", 0.01), WithinAbs(600, 1e-6));
+  CHECK_THAT(area("<polygon points='0,0 10,0-5,20'/>", 0.01), WithinAbs(100, 1e-6));
   const double pi = std::numbers::pi;
   struct Curved {
     std::string body;
@@ -127,14 +142,15 @@ TEST(SvgReader, ShapesHaveTheirExactAreas) {
     // Chords of a convex curve lose area in proportion to the tolerance.
     const double coarse = c.area - area(c.body, 0.04), fine = c.area - area(c.body, 0.01),
                  finest = c.area - area(c.body, 0.0025);
-    EXPECT_GT(fine, 0) << c.body;
-    EXPECT_LT(fine, 0.01 * 130) << c.body;  // two thirds of tolerance times length, at most
-    EXPECT_NEAR(coarse / fine, 4, 1.3) << c.body;
-    EXPECT_NEAR(fine / finest, 4, 1.3) << c.body;
+    INFO(c.body);
+    CHECK(fine > 0);
+    CHECK(fine < 0.01 * 130);  // two thirds of tolerance times length, at most
+    CHECK_THAT(coarse / fine, WithinAbs(4, 1.3));
+    CHECK_THAT(fine / finest, WithinAbs(4, 1.3));
   }
 }
 
-TEST(SvgReader, CurvesAreWithinTheTolerance) {
+TEST_CASE("SvgReader.CurvesAreWithinTheTolerance") {
   const SvgDrawing drawing = read_body("<g transform='scale(1 0.5) rotate(30)'><circle r='30'/></g>");
   // Back through the map, the middle of every chord is on the circle within the tolerance, 0.01 mm, seen at most 2
   // times as large.
@@ -144,14 +160,14 @@ TEST(SvgReader, CurvesAreWithinTheTolerance) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec2 a(points[i].x(), 60 - points[i].y()),
         b(points[(i + 1) % points.size()].x(), 60 - points[(i + 1) % points.size()].y());
-    EXPECT_NEAR((map.inverse() * a).norm(), 30, 1e-5);
+    CHECK_THAT((map.inverse() * a).norm(), WithinAbs(30, 1e-5));
     worst = std::max(worst, 30 - (map.inverse() * Vec2((a + b) / 2)).norm());
   }
-  EXPECT_LT(worst, 0.01);
-  EXPECT_GT(worst, 0.002);  // not wasteful
+  CHECK(worst < 0.01);
+  CHECK(worst > 0.002);  // not wasteful
 }
 
-TEST(SvgReader, LayersAreNamedOrColoured) {
+TEST_CASE("SvgReader.LayersAreNamedOrColoured") {
   const SvgDrawing drawing = read(
       "<svg width='100mm' height='60mm' viewBox='0 0 100 60' xmlns:inkscape='i'><style>.a, .b {stroke:#0000FF;fill:none} line{stroke:rgb(0,0,0)}</style>"
       "<g inkscape:label='Cut 2'><path stroke='blue' d='M0 0h1'/></g><g id='score_lines'><g><path stroke='red' d='M0 1h1'/></g></g>"
@@ -160,13 +176,13 @@ TEST(SvgReader, LayersAreNamedOrColoured) {
       "<g display='none'><path stroke='red' d='M0 8h1'/></g><path fill='#111' d='M0 9h1v1z'/></svg>");
   std::vector<CutLayer> layers;
   for (const CutPath& path : drawing.sheet.paths) layers.push_back(path.layer);
-  EXPECT_EQ(layers, (std::vector<CutLayer>{CutLayer::cut, CutLayer::mark, CutLayer::mark, CutLayer::engrave,
-                                           CutLayer::cut, CutLayer::note, CutLayer::note, CutLayer::engrave}));
-  ASSERT_EQ(drawing.notes.size(), 1u);
-  EXPECT_NE(drawing.notes[0].find("names no layer"), std::string::npos);
+  CHECK(layers == std::vector<CutLayer>{CutLayer::cut, CutLayer::mark, CutLayer::mark, CutLayer::engrave, CutLayer::cut,
+                                        CutLayer::note, CutLayer::note, CutLayer::engrave});
+  REQUIRE(drawing.notes.size() == 1u);
+  CHECK(drawing.notes[0].find("names no layer") != std::string::npos);
 }
 
-TEST(SvgReader, ReadsWhatWeWrite) {
+TEST_CASE("SvgReader.ReadsWhatWeWrite") {
   const CutSheet sheet{"t",
                        120,
                        80,
@@ -174,49 +190,47 @@ TEST(SvgReader, ReadsWhatWeWrite) {
                         {CutLayer::note, {{20, 15}, {20, 17.5}}, false, ""}}};
   const Bytes bytes = write_svg(sheet);
   const SvgDrawing drawing = read_svg_drawing(bytes, {}, Context());
-  EXPECT_EQ(drawing.sheet.width_mm, 120);
-  EXPECT_EQ(drawing.sheet.height_mm, 80);
-  ASSERT_EQ(drawing.sheet.paths.size(), 2u);
+  CHECK(drawing.sheet.width_mm == 120);
+  CHECK(drawing.sheet.height_mm == 80);
+  REQUIRE(drawing.sheet.paths.size() == 2u);
   for (std::size_t i = 0; i < 2; ++i) {
-    EXPECT_EQ(drawing.sheet.paths[i].layer, sheet.paths[i].layer);
-    EXPECT_EQ(drawing.sheet.paths[i].closed, sheet.paths[i].closed);
-    EXPECT_EQ(drawing.sheet.paths[i].name, sheet.paths[i].name);
-    ASSERT_EQ(drawing.sheet.paths[i].points_mm.size(), sheet.paths[i].points_mm.size());
+    CHECK(drawing.sheet.paths[i].layer == sheet.paths[i].layer);
+    CHECK(drawing.sheet.paths[i].closed == sheet.paths[i].closed);
+    CHECK(drawing.sheet.paths[i].name == sheet.paths[i].name);
+    REQUIRE(drawing.sheet.paths[i].points_mm.size() == sheet.paths[i].points_mm.size());
     for (std::size_t k = 0; k < sheet.paths[i].points_mm.size(); ++k)
-      EXPECT_EQ(drawing.sheet.paths[i].points_mm[k], sheet.paths[i].points_mm[k]);
+      CHECK(drawing.sheet.paths[i].points_mm[k] == sheet.paths[i].points_mm[k]);
   }
 }
 
-TEST(SvgReader, RefusesWithTheMend) {
-  EXPECT_NE(refusal("").find("empty"), std::string::npos);
-  EXPECT_NE(refusal("hello").find("not XML"), std::string::npos);
-  EXPECT_NE(refusal("<html/>").find("<html>"), std::string::npos);
-  EXPECT_NE(refusal("\x1f\x8b rest").find("SVGZ"), std::string::npos);
-  EXPECT_NE(refusal("<svg width='10mm' height='10mm'/>").find("Nothing is drawn"), std::string::npos);
-  EXPECT_NE(refusal("<svg width='10mm' height='10mm'><text>a</text></svg>").find("convert text to paths"),
-            std::string::npos);
-  EXPECT_NE(refusal("<svg width='10mm' height='10mm'><image/></svg>").find("pictures"), std::string::npos);
+TEST_CASE("SvgReader.RefusesWithTheMend") {
+  CHECK(refusal("").find("empty") != std::string::npos);
+  CHECK(refusal("hello").find("not XML") != std::string::npos);
+  CHECK(refusal("<html/>").find("<html>") != std::string::npos);
+  CHECK(refusal("\x1f\x8b rest").find("SVGZ") != std::string::npos);
+  CHECK(refusal("<svg width='10mm' height='10mm'/>").find("Nothing is drawn") != std::string::npos);
+  CHECK(refusal("<svg width='10mm' height='10mm'><text>a</text></svg>").find("convert text to paths") !=
+        std::string::npos);
+  CHECK(refusal("<svg width='10mm' height='10mm'><image/></svg>").find("pictures") != std::string::npos);
   const std::string line = "<path stroke='red' d='M0 0h10'/></svg>";
-  EXPECT_NE(refusal("<svg viewBox='0 0 10 10'>" + line).find("user_unit"), std::string::npos);
-  EXPECT_NE(refusal("<svg width='100%' height='100%' viewBox='0 0 10 10'>" + line).find("user_unit"),
-            std::string::npos);
-  EXPECT_NE(refusal("<svg width='30000mm' height='10mm'>" + line).find("larger than 20 m"), std::string::npos);
-  EXPECT_NE(refusal("<svg width='10mm' height='10mm'><g transform='scale(1e9)'>" + line.substr(0, line.size() - 6) +
-                    "</g></svg>")
-                .find("farther than 20 m"),
-            std::string::npos);
-  EXPECT_NE(refusal("<svg width='10mm' height='10mm'><g id='a'><use href='#a'/></g></svg>").find("nested"),
-            std::string::npos);
+  CHECK(refusal("<svg viewBox='0 0 10 10'>" + line).find("user_unit") != std::string::npos);
+  CHECK(refusal("<svg width='100%' height='100%' viewBox='0 0 10 10'>" + line).find("user_unit") != std::string::npos);
+  CHECK(refusal("<svg width='30000mm' height='10mm'>" + line).find("larger than 20 m") != std::string::npos);
+  CHECK(refusal("<svg width='10mm' height='10mm'><g transform='scale(1e9)'>" + line.substr(0, line.size() - 6) +
+                "</g></svg>")
+            .find("farther than 20 m") != std::string::npos);
+  CHECK(refusal("<svg width='10mm' height='10mm'><g id='a'><use href='#a'/></g></svg>").find("nested") !=
+        std::string::npos);
   SvgReadOptions inches;
   inches.user_unit = UserUnit::inch;
-  EXPECT_NEAR(read("<svg viewBox='0 0 10 10'>" + line, inches).sheet.width_mm, 254, 1e-9);
+  CHECK_THAT(read("<svg viewBox='0 0 10 10'>" + line, inches).sheet.width_mm, WithinAbs(254, 1e-9));
 }
 
-TEST(SvgReader, DamagedPartsAreReadAsFarAsTheyGo) {
+TEST_CASE("SvgReader.DamagedPartsAreReadAsFarAsTheyGo") {
   const SvgDrawing drawing = read_body("<path d='M0 0h10 L oops'/><path d='M0 1h10'/>");
-  EXPECT_EQ(drawing.sheet.paths.size(), 2u);
-  ASSERT_EQ(drawing.notes.size(), 1u);
-  EXPECT_NE(drawing.notes[0].find("fault"), std::string::npos);
+  CHECK(drawing.sheet.paths.size() == 2u);
+  REQUIRE(drawing.notes.size() == 1u);
+  CHECK(drawing.notes[0].find("fault") != std::string::npos);
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fabrication/test_grid.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <algorithm>
 #include <map>
@@ -12,13 +13,14 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 LaserPlan run(const TestGrid& grid, const TestGridOptions& options) {
   Context context;
   return run_strokes({grid.labels, grid.strokes}, options, 0, true, context);
 }
 
-TEST(TestGrid, EverySquareHasItsOwnPowerAndSpeed) {
+TEST_CASE("TestGrid.EverySquareHasItsOwnPowerAndSpeed") {
   for (const GridWork work : {GridWork::cut, GridWork::engrave}) {
     TestGridOptions options;
     options.work = work;
@@ -26,34 +28,36 @@ TEST(TestGrid, EverySquareHasItsOwnPowerAndSpeed) {
     options.rows = 3;
     options.passes = 2;
     const TestGrid grid = make_test_grid(options, Context());
-    ASSERT_EQ(grid.cells.size(), 12u);
+    REQUIRE(grid.cells.size() == 12u);
     const LaserPlan plan = run(grid, options);
-    EXPECT_TRUE(plan.misfits.empty());
+    CHECK(plan.misfits.empty());
     std::map<std::string, double> length;
     for (const ToolMove& move : plan.path.moves) {
       if (!move.work || move.part == "numbers") continue;
       const auto cell =
           std::find_if(grid.cells.begin(), grid.cells.end(), [&](const TestCell& c) { return c.name == move.part; });
-      ASSERT_NE(cell, grid.cells.end());
-      EXPECT_EQ(move.power_percent, cell->power_percent);
-      EXPECT_EQ(move.speed_mm_per_s, cell->speed_mm_per_s);
+      REQUIRE(cell != grid.cells.end());
+      CHECK(move.power_percent == cell->power_percent);
+      CHECK(move.speed_mm_per_s == cell->speed_mm_per_s);
       for (std::size_t i = 0; i < move.points_mm.size(); ++i) {
-        EXPECT_GE(move.points_mm[i].x(), cell->x_mm - 1e-9);
-        EXPECT_LE(move.points_mm[i].y(), cell->y_mm + options.cell_mm + 1e-9);
+        CHECK(move.points_mm[i].x() >= cell->x_mm - 1e-9);
+        CHECK(move.points_mm[i].y() <= cell->y_mm + options.cell_mm + 1e-9);
         if (i > 0) length[move.part] += (move.points_mm[i] - move.points_mm[i - 1]).norm();
       }
     }
-    EXPECT_EQ(length.size(), 12u);
-    for (const auto& [name, mm] : length)
-      EXPECT_NEAR(mm, 2 * (work == GridWork::cut ? 32 : 8 * 53), 1e-6) << name;  // 8 mm of lines 0.15 mm apart
-    EXPECT_EQ(grid.cells.front().power_percent, 20);
-    EXPECT_EQ(grid.cells.back().power_percent, 100);
-    EXPECT_EQ(grid.cells.front().speed_mm_per_s, 5);
-    EXPECT_EQ(grid.cells.back().speed_mm_per_s, 25);
+    CHECK(length.size() == 12u);
+    for (const auto& [name, mm] : length) {
+      INFO(name);
+      CHECK_THAT(mm, WithinAbs(2 * (work == GridWork::cut ? 32 : 8 * 53), 1e-6));
+    }  // 8 mm of lines 0.15 mm apart
+    CHECK(grid.cells.front().power_percent == 20);
+    CHECK(grid.cells.back().power_percent == 100);
+    CHECK(grid.cells.front().speed_mm_per_s == 5);
+    CHECK(grid.cells.back().speed_mm_per_s == 25);
   }
 }
 
-TEST(TestGrid, NumbersKeepOutOfEachOtherAndOfTheSquares) {
+TEST_CASE("TestGrid.NumbersKeepOutOfEachOtherAndOfTheSquares") {
   Random random(7);
   for (int round = 0; round < 30; ++round) {
     TestGridOptions options;
@@ -69,18 +73,18 @@ TEST(TestGrid, NumbersKeepOutOfEachOtherAndOfTheSquares) {
       for (const Vec2& p : label.points_mm) {
         left = std::min(left, p.x());
         for (const TestCell& cell : grid.cells)
-          EXPECT_FALSE(p.x() > cell.x_mm && p.x() < cell.x_mm + options.cell_mm && p.y() > cell.y_mm &&
-                       p.y() < cell.y_mm + options.cell_mm);
+          CHECK_FALSE((p.x() > cell.x_mm && p.x() < cell.x_mm + options.cell_mm && p.y() > cell.y_mm &&
+                       p.y() < cell.y_mm + options.cell_mm));
       }
-    EXPECT_GE(left, options.x_mm - 1e-9);
+    CHECK(left >= options.x_mm - 1e-9);
   }
 }
 
-TEST(TestGrid, TheKerfTestShowsTheKerf) {
+TEST_CASE("TestGrid.TheKerfTestShowsTheKerf") {
   TestGridOptions options;
   options.kind = GridKind::kerf;
   const TestGrid grid = make_test_grid(options, Context());
-  ASSERT_EQ(grid.strokes.size(), 10u);
+  REQUIRE(grid.strokes.size() == 10u);
   // Burn away a kerf on every line, push the pieces to the left: the last edge stands at the kerf's tick.
   const double kerf = 0.2;
   const auto& slot = grid.strokes.back().points_mm;
@@ -97,16 +101,16 @@ TEST(TestGrid, TheKerfTestShowsTheKerf) {
     if (label.points_mm.size() == 2 && label.points_mm[0].x() == label.points_mm[1].x() &&
         label.points_mm[0].y() == options.y_mm + 2 * options.cell_mm + 1)
       ticks.push_back(label.points_mm[0].x());
-  ASSERT_EQ(ticks.size(), 11u);
-  EXPECT_NEAR(ticks[4], edge, 1e-9);  // 0.05 mm a tick
+  REQUIRE(ticks.size() == 11u);
+  CHECK_THAT(ticks[4], WithinAbs(edge, 1e-9));  // 0.05 mm a tick
   // The slot comes last.
   const LaserPlan plan = run(grid, options);
-  EXPECT_EQ(
-      std::find_if(plan.path.moves.rbegin(), plan.path.moves.rend(), [](const ToolMove& m) { return m.work; })->part,
-      "slot");
+  CHECK(std::find_if(plan.path.moves.rbegin(), plan.path.moves.rend(), [](const ToolMove& m) {
+          return m.work;
+        })->part == "slot");
 }
 
-TEST(TestGrid, FocusLinesAreAtTheirHeights) {
+TEST_CASE("TestGrid.FocusLinesAreAtTheirHeights") {
   TestGridOptions options;
   options.kind = GridKind::focus;
   options.focus_range_mm = 2;
@@ -115,22 +119,25 @@ TEST(TestGrid, FocusLinesAreAtTheirHeights) {
   for (const ToolMove& move : run(grid, options).path.moves) {
     if (move.work && move.part != "numbers") heights.insert(move.points_mm[0].z());
     if (move.part == "numbers") {
-      EXPECT_EQ(move.points_mm[0].z(), 0);
+      CHECK(move.points_mm[0].z() == 0);
     }
   }
-  EXPECT_EQ(heights, (std::set<double>{-2, -1, 0, 1, 2}));
+  CHECK(heights == std::set<double>{-2, -1, 0, 1, 2});
 }
 
-TEST(LaserMaterials, AreParametersOfTheJob) {
+TEST_CASE("LaserMaterials.AreParametersOfTheJob") {
   std::set<std::string> names;
   for (const LaserMaterial& material : laser_materials()) {
-    EXPECT_TRUE(names.insert(material.name).second) << material.name;
+    {
+      INFO(material.name);
+      CHECK(names.insert(material.name).second);
+    }
     const auto options =
         read_parameters<LaserOptions>(material.parameters);  // throws for a name or a value that is none
-    EXPECT_EQ(options.cut_enabled, material.thickness_mm > 0);
-    EXPECT_LE(options.mark_power_percent / options.mark_speed_mm_per_s, 1);
+    CHECK(options.cut_enabled == (material.thickness_mm > 0));
+    CHECK(options.mark_power_percent / options.mark_speed_mm_per_s <= 1);
   }
-  EXPECT_GE(names.size(), 12u);
+  CHECK(names.size() >= 12u);
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fabrication/travel_route.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <algorithm>
 #include <numeric>
@@ -11,6 +12,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 using Kind = RouteStop::Kind;
 
@@ -55,14 +57,14 @@ void expect_each_once(const std::vector<RouteStop>& stops, const std::vector<Rou
   for (const RouteStep& step : route) {
     seen.insert(step.stop);
     const RouteStop& stop = stops[static_cast<std::size_t>(step.stop)];
-    EXPECT_GE(step.door, 0);
-    EXPECT_LT(step.door, static_cast<int>(stop.kind == Kind::one_way ? 1 : stop.doors_mm.size()));
+    CHECK(step.door >= 0);
+    CHECK(step.door < static_cast<int>(stop.kind == Kind::one_way ? 1 : stop.doors_mm.size()));
   }
-  EXPECT_EQ(seen.size(), stops.size());
-  EXPECT_EQ(route.size(), stops.size());
+  CHECK(seen.size() == stops.size());
+  CHECK(route.size() == stops.size());
 }
 
-TEST(TravelRoute, IsCloseToTheBestOfAllOrders) {
+TEST_CASE("TravelRoute.IsCloseToTheBestOfAllOrders") {
   double sum = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Random random(seed);
@@ -70,40 +72,43 @@ TEST(TravelRoute, IsCloseToTheBestOfAllOrders) {
     const auto route = short_route(stops, {0, 0}, Context());
     expect_each_once(stops, route);
     const double ratio = route_length_mm(stops, route, {0, 0}) / best_of_all(stops);
-    EXPECT_GE(ratio, 1 - 1e-9) << seed;
-    EXPECT_LE(ratio, 1.3) << seed;
+    {
+      INFO(seed);
+      CHECK(ratio >= 1 - 1e-9);
+      CHECK(ratio <= 1.3);
+    }
     sum += ratio;
   }
-  EXPECT_LT(sum / 20, 1.05);
+  CHECK(sum / 20 < 1.05);
 }
 
-TEST(TravelRoute, AGridIsWalkedToAndFro) {
+TEST_CASE("TravelRoute.AGridIsWalkedToAndFro") {
   std::vector<RouteStop> stops;
   for (int y = 0; y < 20; ++y)
     for (int x = 0; x < 20; ++x) stops.push_back({Kind::loop, {Vec2(10 * ((x * 7) % 20), 10 * ((y * 11) % 20))}});
   const auto route = short_route(stops, {0, 0}, Context());
   expect_each_once(stops, route);
-  EXPECT_LT(route_length_mm(stops, route, {0, 0}), 3990 * 1.06);
+  CHECK(route_length_mm(stops, route, {0, 0}) < 3990 * 1.06);
 }
 
-TEST(TravelRoute, MoreRoundsAreNeverLonger) {
+TEST_CASE("TravelRoute.MoreRoundsAreNeverLonger") {
   Random random(5);
   const auto stops = random_stops(300, random);
   double before = 1e300, nearest = 0;
   for (const int rounds : {0, 1, 2, 5, 20}) {
     const double length = route_length_mm(stops, short_route(stops, {0, 0}, Context(), rounds), {0, 0});
-    EXPECT_LE(length, before + 1e-9);
+    CHECK(length <= before + 1e-9);
     if (rounds == 0) nearest = length;
     before = length;
   }
-  EXPECT_LT(before, 0.92 * nearest);
+  CHECK(before < 0.92 * nearest);
 }
 
-TEST(TravelRoute, ThousandsOfStopsInOnePlaceOrOnALine) {
+TEST_CASE("TravelRoute.ThousandsOfStopsInOnePlaceOrOnALine") {
   std::vector<RouteStop> same(3000, {Kind::loop, {Vec2(5, 5)}}), row;
-  EXPECT_NEAR(route_length_mm(same, short_route(same, {0, 5}, Context()), {0, 5}), 5, 1e-9);
+  CHECK_THAT(route_length_mm(same, short_route(same, {0, 5}, Context()), {0, 5}), WithinAbs(5, 1e-9));
   for (int i = 0; i < 3000; ++i) row.push_back({Kind::loop, {Vec2((i * 1009) % 3000, 0)}});
-  EXPECT_NEAR(route_length_mm(row, short_route(row, {0, 0}, Context()), {0, 0}), 2999, 1e-6);
+  CHECK_THAT(route_length_mm(row, short_route(row, {0, 0}, Context()), {0, 0}), WithinAbs(2999, 1e-6));
 }
 
 }  // namespace

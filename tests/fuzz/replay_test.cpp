@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every fuzz target over its seeds, over what was found (tests/fuzz/found) and over some hundred alterations of both,
 // in the builds that every change goes through. FORMWRIGHT_REPLAY_ALTERATIONS: how many of each input.
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
 #include <unistd.h>
 
 #include <csignal>
@@ -27,11 +27,6 @@ struct Target {
   const char* name;
   int (*run)(const std::uint8_t*, std::size_t);
 };
-#define FUZZ_TARGET(name) {#name, fuzz_##name},
-constexpr Target targets[] = {
-#include "fuzz_targets.inc"
-};
-#undef FUZZ_TARGET
 
 char input_now[300];
 
@@ -48,8 +43,8 @@ void run(const Target& target, const Bytes& bytes, const std::string& name) {
   const auto grown =
       test::peak_growth_mb([&] { target.run(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()); });
   if (!grown) return;
-  EXPECT_LE(*grown, static_cast<double>(ReadBudget(bytes.size()).left() + ReadBudget::uncounted_bytes) / (1 << 20))
-      << name;
+  INFO(name);
+  CHECK(*grown <= static_cast<double>(ReadBudget(bytes.size()).left() + ReadBudget::uncounted_bytes) / (1 << 20));
 }
 
 Bytes altered(Bytes bytes, unsigned seed) {
@@ -73,11 +68,8 @@ Bytes altered(Bytes bytes, unsigned seed) {
   return bytes;
 }
 
-class Replay : public testing::TestWithParam<Target> {};
-
-TEST_P(Replay, AnswersOrRefuses) {
+void replay(const Target& target) {
   for (const int signal : {SIGABRT, SIGSEGV, SIGFPE}) std::signal(signal, name_input);
-  const Target& target = GetParam();
   const char* const setting = std::getenv("FORMWRIGHT_REPLAY_ALTERATIONS");
   const unsigned alterations = setting != nullptr ? static_cast<unsigned>(std::atoi(setting)) : 40;
   std::map<std::string, Bytes> inputs = fuzz_seeds()[target.name];
@@ -89,7 +81,10 @@ TEST_P(Replay, AnswersOrRefuses) {
       inputs["found/" + file.path().filename().string()] = to_bytes(text);
     }
   }
-  ASSERT_FALSE(inputs.empty()) << "the target has no seeds (tests/fuzz/seeds.cpp)";
+  {
+    INFO("the target has no seeds (tests/fuzz/seeds.cpp)");
+    REQUIRE_FALSE(inputs.empty());
+  }
   run(target, {}, "nothing");
   for (const auto& [name, bytes] : inputs) {
     run(target, bytes, name);
@@ -98,8 +93,11 @@ TEST_P(Replay, AnswersOrRefuses) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Targets, Replay, testing::ValuesIn(targets),
-                         [](const auto& instance) { return std::string(instance.param.name); });
+// A test each, for the memory that one target took and gave back would hide what the next one takes.
+#define FUZZ_TARGET(name) \
+  TEST_CASE("Replay." #name) { replay({#name, fuzz_##name}); }
+#include "fuzz_targets.inc"
+#undef FUZZ_TARGET
 
 }  // namespace
 }  // namespace formwright::fuzz

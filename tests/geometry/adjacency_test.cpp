@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/adjacency.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
 
 #include <algorithm>
 
@@ -12,7 +12,7 @@ namespace formwright {
 namespace {
 using namespace test;
 
-TEST(Adjacency, CountsOfKnownSurfaces) {
+TEST_CASE("Adjacency.CountsOfKnownSurfaces") {
   struct Case {
     const char* name;
     TriangleMesh mesh;
@@ -29,85 +29,85 @@ TEST(Adjacency, CountsOfKnownSurfaces) {
       {"annulus", tube(7, 3), 70, 0, 2, 0, 1, true, false},
   };
   for (const Case& c : cases) {
-    SCOPED_TRACE(c.name);
+    INFO(c.name);
     const Adjacency adjacency(c.mesh);
-    EXPECT_EQ(adjacency.edge_count(), c.edges);
-    EXPECT_EQ(euler_characteristic(adjacency), c.chi);
-    EXPECT_EQ(boundary_loops(adjacency).size(), static_cast<std::size_t>(c.loops));
-    EXPECT_EQ(genus(adjacency), c.genus);
-    EXPECT_EQ(vertex_components(adjacency).count, c.parts);
-    EXPECT_EQ(face_components(adjacency).count, c.parts);
-    EXPECT_EQ(adjacency.is_manifold(), c.manifold);
-    EXPECT_EQ(adjacency.is_closed(), c.closed);
+    CHECK(adjacency.edge_count() == c.edges);
+    CHECK(euler_characteristic(adjacency) == c.chi);
+    CHECK(boundary_loops(adjacency).size() == static_cast<std::size_t>(c.loops));
+    CHECK(genus(adjacency) == c.genus);
+    CHECK(vertex_components(adjacency).count == c.parts);
+    CHECK(face_components(adjacency).count == c.parts);
+    CHECK(adjacency.is_manifold() == c.manifold);
+    CHECK(adjacency.is_closed() == c.closed);
   }
 }
 
-TEST(Adjacency, TablesAgreeWithTheFaces) {
+TEST_CASE("Adjacency.TablesAgreeWithTheFaces") {
   const TriangleMesh mesh = joined(torus(9, 7), grid(4, 5));
   const Adjacency adjacency(mesh);
   for (int h = 0; h < 3 * mesh.face_count(); ++h) {
     const int a = mesh.F(h / 3, h % 3), b = mesh.F(h / 3, (h + 1) % 3);
-    EXPECT_EQ(adjacency.from(h), a);
-    EXPECT_EQ(adjacency.to(h), b);
+    CHECK(adjacency.from(h) == a);
+    CHECK(adjacency.to(h) == b);
     const Edge edge = adjacency.edges()[static_cast<std::size_t>(adjacency.edge_of(h))];
-    EXPECT_EQ(std::minmax(a, b), std::minmax(edge.lower, edge.higher));
-    EXPECT_EQ(adjacency.find_edge(b, a), adjacency.edge_of(h));
+    CHECK(std::minmax(a, b) == std::minmax(edge.lower, edge.higher));
+    CHECK(adjacency.find_edge(b, a) == adjacency.edge_of(h));
     if (const int g = adjacency.opposite(h); g >= 0) {
-      EXPECT_EQ(adjacency.opposite(g), h);
-      EXPECT_EQ(adjacency.from(g), b);
-      EXPECT_EQ(adjacency.to(g), a);
+      CHECK(adjacency.opposite(g) == h);
+      CHECK(adjacency.from(g) == b);
+      CHECK(adjacency.to(g) == a);
     } else {
-      EXPECT_TRUE(adjacency.is_boundary_edge(adjacency.edge_of(h)));
+      CHECK(adjacency.is_boundary_edge(adjacency.edge_of(h)));
     }
   }
   std::size_t ends = 0;
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     const auto ring = adjacency.neighbours(v);
-    EXPECT_TRUE(std::is_sorted(ring.begin(), ring.end()));
-    for (const int u : ring) EXPECT_GE(adjacency.find_edge(u, v), 0);
-    for (const int h : adjacency.outgoing(v)) EXPECT_EQ(adjacency.from(h), v);
+    CHECK(std::is_sorted(ring.begin(), ring.end()));
+    for (const int u : ring) CHECK(adjacency.find_edge(u, v) >= 0);
+    for (const int h : adjacency.outgoing(v)) CHECK(adjacency.from(h) == v);
     ends += ring.size();
   }
-  EXPECT_EQ(ends, 2 * adjacency.edges().size());
-  EXPECT_EQ(adjacency.find_edge(0, mesh.vertex_count() - 1), -1);
+  CHECK(ends == 2 * adjacency.edges().size());
+  CHECK(adjacency.find_edge(0, mesh.vertex_count() - 1) == -1);
 }
 
-TEST(Adjacency, BoundaryRunsWithTheFaces) {
+TEST_CASE("Adjacency.BoundaryRunsWithTheFaces") {
   const auto loops = boundary_loops(Adjacency(grid(2, 1)));
-  ASSERT_EQ(loops.size(), 1u);
-  EXPECT_EQ(loops[0], (std::vector<int>{0, 1, 2, 5, 4, 3}));
+  REQUIRE(loops.size() == 1u);
+  CHECK(loops[0] == std::vector<int>{0, 1, 2, 5, 4, 3});
 }
 
-TEST(Adjacency, BoundaryStaysInOneFanAtATouchingVertex) {
+TEST_CASE("Adjacency.BoundaryStaysInOneFanAtATouchingVertex") {
   // Two triangles that share vertex 0 only: two loops of three, not one of six.
   const TriangleMesh bow =
       make_mesh({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}}, {{{0, 1, 2}}, {{0, 3, 4}}});
   const Adjacency adjacency(bow);
-  EXPECT_EQ(adjacency.nonmanifold_vertices(), std::vector<int>{0});
-  EXPECT_FALSE(adjacency.is_manifold());
-  EXPECT_EQ(boundary_loops(adjacency), (std::vector<std::vector<int>>{{0, 1, 2}, {0, 3, 4}}));
-  EXPECT_EQ(vertex_components(adjacency).count, 1);
-  EXPECT_EQ(face_components(adjacency).count, 2);
+  CHECK(adjacency.nonmanifold_vertices() == std::vector<int>{0});
+  CHECK_FALSE(adjacency.is_manifold());
+  CHECK(boundary_loops(adjacency) == std::vector<std::vector<int>>{{0, 1, 2}, {0, 3, 4}});
+  CHECK(vertex_components(adjacency).count == 1);
+  CHECK(face_components(adjacency).count == 2);
 }
 
-TEST(Adjacency, CountsWhatIsNotManifold) {
+TEST_CASE("Adjacency.CountsWhatIsNotManifold") {
   // Three pages of a book.
   const TriangleMesh book =
       make_mesh({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}}, {{{0, 1, 2}}, {{0, 1, 3}}, {{0, 1, 4}}});
   const Adjacency pages(book);
-  EXPECT_EQ(pages.nonmanifold_edge_count(), 1);
-  EXPECT_EQ(pages.boundary_edge_count(), 6);
-  EXPECT_EQ(pages.opposite(0), -1);
-  EXPECT_THROW(boundary_loops(pages), Error);
+  CHECK(pages.nonmanifold_edge_count() == 1);
+  CHECK(pages.boundary_edge_count() == 6);
+  CHECK(pages.opposite(0) == -1);
+  CHECK_THROWS_AS(boundary_loops(pages), Error);
 
   const Adjacency clash(make_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}}, {{{0, 1, 2}}, {{0, 1, 3}}}));
-  EXPECT_EQ(clash.inconsistent_edge_count(), 1);
-  EXPECT_FALSE(clash.is_manifold());
+  CHECK(clash.inconsistent_edge_count() == 1);
+  CHECK_FALSE(clash.is_manifold());
 
-  EXPECT_EQ(Adjacency(moebius_band(9)).inconsistent_edge_count(), 1);
+  CHECK(Adjacency(moebius_band(9)).inconsistent_edge_count() == 1);
 }
 
-TEST(Adjacency, HubOfALargeFan) {
+TEST_CASE("Adjacency.HubOfALargeFan") {
   // Enough faces at one vertex that its bucket is sorted by the general method.
   const int spokes = 1000;
   std::vector<Vec3> points{{0, 0, 0}};
@@ -118,29 +118,29 @@ TEST(Adjacency, HubOfALargeFan) {
     faces.push_back({0, 1 + i, 1 + (i + 1) % spokes});
   }
   const Adjacency adjacency(make_mesh(points, faces));
-  EXPECT_TRUE(adjacency.is_manifold());
-  EXPECT_EQ(adjacency.neighbours(0).size(), static_cast<std::size_t>(spokes));
-  EXPECT_EQ(boundary_loops(adjacency).front().size(), static_cast<std::size_t>(spokes));
+  CHECK(adjacency.is_manifold());
+  CHECK(adjacency.neighbours(0).size() == static_cast<std::size_t>(spokes));
+  CHECK(boundary_loops(adjacency).front().size() == static_cast<std::size_t>(spokes));
 }
 
-TEST(Adjacency, UnusedVerticesAreParts) {
+TEST_CASE("Adjacency.UnusedVerticesAreParts") {
   TriangleMesh mesh = joined(tetrahedron(), tetrahedron());
   mesh.V.conservativeResize(9, 3);
   mesh.V.row(8).setZero();
   const Adjacency adjacency(mesh);
-  EXPECT_EQ(vertex_components(adjacency).of, (std::vector<int>{0, 0, 0, 0, 1, 1, 1, 1, 2}));
-  EXPECT_EQ(euler_characteristic(adjacency), 4);
+  CHECK(vertex_components(adjacency).of == std::vector<int>{0, 0, 0, 0, 1, 1, 1, 1, 2});
+  CHECK(euler_characteristic(adjacency) == 4);
 }
 
-TEST(Adjacency, EmptyAndBadInput) {
+TEST_CASE("Adjacency.EmptyAndBadInput") {
   const Adjacency nothing{TriangleMesh{}};
-  EXPECT_EQ(nothing.edge_count(), 0);
-  EXPECT_TRUE(boundary_loops(nothing).empty());
+  CHECK(nothing.edge_count() == 0);
+  CHECK(boundary_loops(nothing).empty());
   TriangleMesh bad = tetrahedron();
   bad.F(2, 1) = 4;
-  EXPECT_THROW(Adjacency{bad}, Error);
+  CHECK_THROWS_AS(Adjacency{bad}, Error);
   bad.F(2, 1) = -1;
-  EXPECT_THROW(Adjacency{bad}, Error);
+  CHECK_THROWS_AS(Adjacency{bad}, Error);
 }
 
 }  // namespace

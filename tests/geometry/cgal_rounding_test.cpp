@@ -3,7 +3,7 @@
 // has none: built without CGAL_ALWAYS_ROUND_TO_NEAREST the predicates are silently wrong there. fw::cgal
 // sets what is needed; here every sign is compared with one computed in integers.
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
 
 #include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
@@ -30,7 +30,7 @@ Integer scaled(double x) {
 int sign(const Integer& x) { return x.sign(); }
 int sign(CGAL::Sign s) { return static_cast<int>(s); }
 
-TEST(CgalRounding, NearlyCollinearPoints) {
+TEST_CASE("CgalRounding.NearlyCollinearPoints") {
   // The classroom example of Kettner, Mehlhorn, Pion, Schirra, Yap 2008: a grid of one ulp around (1/2, 1/2).
   int wrong = 0, zero = 0;
   const double ulp = std::ldexp(1.0, -53);
@@ -46,11 +46,11 @@ TEST(CgalRounding, NearlyCollinearPoints) {
         wrong += found != expected ? 1 : 0;
         zero += expected == 0 ? 1 : 0;
       }
-  EXPECT_EQ(wrong, 0);
-  EXPECT_GT(zero, 64);  // the hard cases are there
+  CHECK(wrong == 0);
+  CHECK(zero > 64);  // the hard cases are there
 }
 
-TEST(CgalRounding, NearlyCocircularPoints) {
+TEST_CASE("CgalRounding.NearlyCocircularPoints") {
   Random random(101);
   int wrong = 0, zero = 0;
   for (int trial = 0; trial < 4000; ++trial) {
@@ -78,11 +78,11 @@ TEST(CgalRounding, NearlyCocircularPoints) {
     wrong += found != expected ? 1 : 0;
     zero += expected == 0 ? 1 : 0;
   }
-  EXPECT_EQ(wrong, 0);
-  EXPECT_GT(zero, 20);
+  CHECK(wrong == 0);
+  CHECK(zero > 20);
 }
 
-TEST(CgalRounding, NearlyCoplanarPoints) {
+TEST_CASE("CgalRounding.NearlyCoplanarPoints") {
   Random random(202);
   int wrong = 0, zero = 0;
   for (int trial = 0; trial < 4000; ++trial) {
@@ -107,8 +107,8 @@ TEST(CgalRounding, NearlyCoplanarPoints) {
     wrong += found != expected ? 1 : 0;
     zero += expected == 0 ? 1 : 0;
   }
-  EXPECT_EQ(wrong, 0);
-  EXPECT_GT(zero, 500);
+  CHECK(wrong == 0);
+  CHECK(zero > 500);
 }
 
 }  // namespace

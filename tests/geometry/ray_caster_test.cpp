@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/ray_caster.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -15,52 +16,53 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 using namespace test;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-TEST(RayCaster, ExactOnTheCube) {
+TEST_CASE("RayCaster.ExactOnTheCube") {
   const RayCaster caster(cube());
   const auto hit = caster.first_hit(Vec3(0.25, 0.5, 5), Vec3(0, 0, -1), 0, infinity);
-  ASSERT_TRUE(hit);
-  EXPECT_EQ(hit->distance, 4);
-  EXPECT_NEAR(hit->barycentric.sum(), 1, 1e-15);
+  REQUIRE(hit);
+  CHECK(hit->distance == 4);
+  CHECK_THAT(hit->barycentric.sum(), WithinAbs(1, 1e-15));
   const auto all = caster.all_hits(Vec3(0.25, 0.5, 5), Vec3(0, 0, -1), 0, infinity);
-  ASSERT_EQ(all.size(), 2u);
-  EXPECT_EQ(all[1].distance, 5);
-  EXPECT_FALSE(caster.first_hit(Vec3(0.25, 0.5, 5), Vec3(0, 0, 1), 0, infinity));
-  EXPECT_FALSE(caster.first_hit(Vec3(1.5, 0.5, 5), Vec3(0, 0, -1), 0, infinity));
+  REQUIRE(all.size() == 2u);
+  CHECK(all[1].distance == 5);
+  CHECK_FALSE(caster.first_hit(Vec3(0.25, 0.5, 5), Vec3(0, 0, 1), 0, infinity));
+  CHECK_FALSE(caster.first_hit(Vec3(1.5, 0.5, 5), Vec3(0, 0, -1), 0, infinity));
 }
 
-TEST(RayCaster, NearIsOpenAndFarIsClosed) {
+TEST_CASE("RayCaster.NearIsOpenAndFarIsClosed") {
   const RayCaster caster(cube());
   const Vec3 origin(0.25, 0.5, 5), down(0, 0, -1);
-  EXPECT_EQ(caster.first_hit(origin, down, 4, infinity)->distance, 5);
-  EXPECT_EQ(caster.first_hit(origin, down, 0, 4)->distance, 4);
-  EXPECT_FALSE(caster.first_hit(origin, down, 0, std::nextafter(4, 0)));
-  EXPECT_EQ(caster.first_hit(origin, down, std::nextafter(4, 0), infinity)->distance, 4);
-  EXPECT_FALSE(caster.first_hit(origin, down, 5, infinity));
-  EXPECT_EQ(caster.all_hits(origin, down, 4, 5).size(), 1u);
-  EXPECT_EQ(caster.first_hit(Vec3(0.25, 0.5, -5), down, -7, 0)->distance, -6);  // backwards, when asked for
+  CHECK(caster.first_hit(origin, down, 4, infinity)->distance == 5);
+  CHECK(caster.first_hit(origin, down, 0, 4)->distance == 4);
+  CHECK_FALSE(caster.first_hit(origin, down, 0, std::nextafter(4, 0)));
+  CHECK(caster.first_hit(origin, down, std::nextafter(4, 0), infinity)->distance == 4);
+  CHECK_FALSE(caster.first_hit(origin, down, 5, infinity));
+  CHECK(caster.all_hits(origin, down, 4, 5).size() == 1u);
+  CHECK(caster.first_hit(Vec3(0.25, 0.5, -5), down, -7, 0)->distance == -6);  // backwards, when asked for
 }
 
-TEST(RayCaster, SharedEdgesAndCornersReportEveryFace) {
+TEST_CASE("RayCaster.SharedEdgesAndCornersReportEveryFace") {
   const RayCaster caster(cube());
   // The diagonal of the top face, and a corner of the cube along the diagonal of space.
-  EXPECT_EQ(caster.all_hits(Vec3(0.5, 0.5, 3), Vec3(0, 0, -1), 0, 2.5).size(), 2u);
+  CHECK(caster.all_hits(Vec3(0.5, 0.5, 3), Vec3(0, 0, -1), 0, 2.5).size() == 2u);
   const Vec3 corner_direction = Vec3(-1, -1, -1).normalized();
   const auto hits = caster.all_hits(Vec3(2, 2, 2), corner_direction, 0, 2);
-  EXPECT_GE(hits.size(), 5u);  // five or six faces meet there, by the diagonals of the sides
-  for (const RayHit& hit : hits) EXPECT_NEAR(hit.distance, std::sqrt(3.0), 1e-15);
-  EXPECT_EQ(caster.first_hit(Vec3(0.5, 0.5, 3), Vec3(0, 0, -1), 0, infinity)->face, 2);  // the lower of faces 2 and 3
+  CHECK(hits.size() >= 5u);  // five or six faces meet there, by the diagonals of the sides
+  for (const RayHit& hit : hits) CHECK_THAT(hit.distance, WithinAbs(std::sqrt(3.0), 1e-15));
+  CHECK(caster.first_hit(Vec3(0.5, 0.5, 3), Vec3(0, 0, -1), 0, infinity)->face == 2);  // the lower of faces 2 and 3
 }
 
-TEST(RayCaster, NothingSlipsThroughAClosedSurface) {
+TEST_CASE("RayCaster.NothingSlipsThroughAClosedSurface") {
   // From inside, through every vertex, every edge and every face.
   for (const auto& [name, mesh] : shapes()) {
     if (surface_area(mesh) > 0 && !Adjacency(mesh).is_closed()) continue;
     if (std::string(name).starts_with("torus") || std::string(name) == "far away" || std::string(name) == "slivers")
       continue;
-    SCOPED_TRACE(name);
+    INFO(name);
     const RayCaster caster(mesh);
     const BoundingBox box = bounding_box(mesh);
     Random random(17);
@@ -77,7 +79,7 @@ TEST(RayCaster, NothingSlipsThroughAClosedSurface) {
         for (int i = 0; i < 5; ++i) escaped += escapes(a + random.uniform() * (b - a)) ? 1 : 0;
       }
     for (int i = 0; i < 2000; ++i) escaped += escapes(inside + random.direction()) ? 1 : 0;
-    EXPECT_EQ(escaped, 0);
+    CHECK(escaped == 0);
   }
 }
 
@@ -105,9 +107,9 @@ Crossing crossing(const TriangleMesh& mesh, int face, const Ray& ray) {
           static_cast<double>(error), static_cast<double>(error * longest / normal.norm())};
 }
 
-TEST(RayCaster, SameHitsAsExactPredicates) {
+TEST_CASE("RayCaster.SameHitsAsExactPredicates") {
   for (const auto& [name, mesh] : shapes()) {
-    SCOPED_TRACE(name);
+    INFO(name);
     const RayCaster ours(mesh);
     const CgalRays exact(mesh);
     for (const bool awkward : {false, true}) {
@@ -116,7 +118,7 @@ TEST(RayCaster, SameHitsAsExactPredicates) {
         std::vector<int> found;
         for (const RayHit& hit : ours.all_hits(ray.origin, ray.direction, -0.0, infinity)) found.push_back(hit.face);
         std::sort(found.begin(), found.end());
-        EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end());
+        CHECK(std::adjacent_find(found.begin(), found.end()) == found.end());
         std::vector<int> difference;
         const std::vector<int> expected = exact.all_faces(ray.origin, ray.direction);
         std::set_symmetric_difference(found.begin(), found.end(), expected.begin(), expected.end(),
@@ -125,7 +127,8 @@ TEST(RayCaster, SameHitsAsExactPredicates) {
           // Only where round-off decides: the ray passes an edge, or begins on the face.
           const Crossing c = crossing(mesh, face, ray);
           const bool doubtful = !(std::abs(c.margin) > c.margin_error && std::abs(c.distance) > c.position_error);
-          EXPECT_TRUE(awkward && doubtful) << "face " << face << ", margin " << c.margin << " +- " << c.margin_error;
+          INFO("face " << face << ", margin " << c.margin << " +- " << c.margin_error);
+          CHECK((awkward && doubtful));
         }
         ++compared;
         hits += found.empty() ? 0 : 1;
@@ -133,51 +136,51 @@ TEST(RayCaster, SameHitsAsExactPredicates) {
         if (awkward) continue;  // CGAL constructs its points in double precision: no oracle for those
         const auto first = ours.first_hit(ray.origin, ray.direction, -0.0, infinity);
         const auto distance = exact.first_distance(ray.origin, ray.direction);
-        ASSERT_EQ(first.has_value(), distance.has_value());
+        REQUIRE(first.has_value() == distance.has_value());
         if (first) {
-          EXPECT_NEAR(first->distance, *distance, 10 * crossing(mesh, first->face, ray).position_error);
+          CHECK_THAT(first->distance, WithinAbs(*distance, 10 * crossing(mesh, first->face, ray).position_error));
         }
       }
-      EXPECT_GT(hits, compared / 4);
+      CHECK(hits > compared / 4);
       if (!awkward) {
-        EXPECT_EQ(different, 0);
+        CHECK(different == 0);
       }
     }
   }
 }
 
-TEST(RayCaster, HitsLieOnTheirTriangles) {
+TEST_CASE("RayCaster.HitsLieOnTheirTriangles") {
   for (const auto& [name, mesh] : shapes()) {
-    SCOPED_TRACE(name);
+    INFO(name);
     const RayCaster caster(mesh);
     const double size = bounding_box(mesh).diagonal() + mesh.V.cwiseAbs().maxCoeff();
     for (const Ray& ray : awkward_rays(mesh, 1000, 31)) {
       const auto hits = caster.all_hits(ray.origin, ray.direction, 0, infinity);
       const auto first = caster.first_hit(ray.origin, ray.direction, 0, infinity);
-      ASSERT_EQ(first.has_value(), !hits.empty());
+      REQUIRE(first.has_value() == !hits.empty());
       if (!first) continue;
-      EXPECT_EQ(first->face, hits[0].face);
-      EXPECT_EQ(first->distance, hits[0].distance);
+      CHECK(first->face == hits[0].face);
+      CHECK(first->distance == hits[0].distance);
       for (std::size_t i = 0; i < hits.size(); ++i) {
         const RayHit& hit = hits[i];
         if (i > 0) {
-          EXPECT_GE(hit.distance, hits[i - 1].distance);
+          CHECK(hit.distance >= hits[i - 1].distance);
         }
-        EXPECT_GE(hit.barycentric.minCoeff(), 0);
-        EXPECT_NEAR(hit.barycentric.sum(), 1, 1e-14);
+        CHECK(hit.barycentric.minCoeff() >= 0);
+        CHECK_THAT(hit.barycentric.sum(), WithinAbs(1, 1e-14));
         const Vec3 on_triangle = mesh.V(mesh.F.row(hit.face), Eigen::all).transpose() * hit.barycentric;
-        EXPECT_LT((ray.origin + hit.distance * ray.direction - on_triangle).norm(),
-                  1e-12 * size + crossing(mesh, hit.face, ray).position_error);
+        CHECK((ray.origin + hit.distance * ray.direction - on_triangle).norm() <
+              1e-12 * size + crossing(mesh, hit.face, ray).position_error);
       }
     }
   }
 }
 
 #ifndef __EMSCRIPTEN__
-TEST(RayCaster, SameHitsAsEmbree) {
+TEST_CASE("RayCaster.SameHitsAsEmbree") {
   for (const auto& [name, mesh] : shapes()) {
     if (std::string(name) == "far away" || std::string(name) == "tiny") continue;  // beyond single precision
-    SCOPED_TRACE(name);
+    INFO(name);
     const RayCaster ours(mesh);
     const EmbreeTriangles embree(mesh);
     const double size = bounding_box(mesh).diagonal();
@@ -191,12 +194,12 @@ TEST(RayCaster, SameHitsAsEmbree) {
       different += same ? 0 : 1;
     }
     // Single precision differs at silhouettes: for one ray in a thousand at most.
-    EXPECT_LE(different, compared / 1000);
+    CHECK(different <= compared / 1000);
   }
 }
 #endif
 
-TEST(RayCaster, DistanceKeepsItsDigitsFarAway) {
+TEST_CASE("RayCaster.DistanceKeepsItsDigitsFarAway") {
   // The eye a million radii away: the distance has an error of round-off of the distance itself only.
   const RayCaster caster(icosphere(4));
   const Vec3 eye(0, 0, 1e6);
@@ -206,13 +209,13 @@ TEST(RayCaster, DistanceKeepsItsDigitsFarAway) {
     const Vec3 sideways(random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6), 0);
     const auto near_hit = caster.first_hit(sideways + Vec3(0, 0, 2), Vec3(0, 0, -1), 0, infinity);
     const auto far_hit = caster.first_hit(sideways + eye, Vec3(0, 0, -1), 0, infinity);
-    ASSERT_TRUE(near_hit && far_hit);
-    EXPECT_EQ(near_hit->face, far_hit->face);
-    EXPECT_NEAR(far_hit->distance - near_hit->distance, 1e6 - 2, 1e-9);
+    REQUIRE((near_hit && far_hit));
+    CHECK(near_hit->face == far_hit->face);
+    CHECK_THAT(far_hit->distance - near_hit->distance, WithinAbs(1e6 - 2, 1e-9));
   }
 }
 
-TEST(RayCaster, RigidMotion) {
+TEST_CASE("RayCaster.RigidMotion") {
   const TriangleMesh mesh = torus(30, 20);
   const Eigen::Matrix3d rotation = Eigen::AngleAxisd(0.9, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   const Vec3 shift(4, 5, 6);
@@ -220,16 +223,16 @@ TEST(RayCaster, RigidMotion) {
   for (const Ray& ray : random_rays(mesh, 3000, 57)) {
     const auto hits = here.all_hits(ray.origin, ray.direction, 0, infinity);
     const auto others = there.all_hits(rotation * ray.origin + shift, rotation * ray.direction, 0, infinity);
-    ASSERT_EQ(hits.size(), others.size());
+    REQUIRE(hits.size() == others.size());
     for (std::size_t i = 0; i < hits.size(); ++i) {
-      EXPECT_EQ(hits[i].face, others[i].face);
-      EXPECT_NEAR(hits[i].distance, others[i].distance, 1e-9);
-      EXPECT_LT((hits[i].barycentric - others[i].barycentric).norm(), 1e-9);
+      CHECK(hits[i].face == others[i].face);
+      CHECK_THAT(hits[i].distance, WithinAbs(others[i].distance, 1e-9));
+      CHECK((hits[i].barycentric - others[i].barycentric).norm() < 1e-9);
     }
   }
 }
 
-TEST(RayCaster, SeveralThreadsAtOnce) {
+TEST_CASE("RayCaster.SeveralThreadsAtOnce") {
   const TriangleMesh mesh = torus(60, 40);
   const RayCaster caster(mesh);
   const std::vector<Ray> rays = random_rays(mesh, 3000, 71);
@@ -245,32 +248,32 @@ TEST(RayCaster, SeveralThreadsAtOnce) {
   std::vector<std::thread> threads;
   for (double& sum : sums) threads.emplace_back([&] { sum = cast(); });
   for (std::thread& thread : threads) thread.join();
-  for (const double sum : sums) EXPECT_EQ(sum, expected);
+  for (const double sum : sums) CHECK(sum == expected);
 #endif
-  EXPECT_GT(expected, 0);
+  CHECK(expected > 0);
 }
 
-TEST(RayCaster, DegenerateInput) {
-  EXPECT_FALSE(RayCaster(TriangleMesh{}).first_hit(Vec3(0, 0, 0), Vec3(0, 0, 1), 0, infinity));
+TEST_CASE("RayCaster.DegenerateInput") {
+  CHECK_FALSE(RayCaster(TriangleMesh{}).first_hit(Vec3(0, 0, 0), Vec3(0, 0, 1), 0, infinity));
   // All triangles alike, a thousand times over: the tree cannot separate them.
   TriangleMesh pile = tetrahedron();
   pile.F = tetrahedron().F.row(3).replicate(1000, 1);
   const RayCaster caster(pile);
   const auto hits = caster.all_hits(Vec3(0.2, 0.2, -1), Vec3(0, 0, 1), 0, infinity);
-  EXPECT_EQ(hits.size(), 1000u);
-  EXPECT_EQ(caster.first_hit(Vec3(0.2, 0.2, -1), Vec3(0, 0, 1), 0, infinity)->face, 0);
+  CHECK(hits.size() == 1000u);
+  CHECK(caster.first_hit(Vec3(0.2, 0.2, -1), Vec3(0, 0, 1), 0, infinity)->face == 0);
   // Triangles without area are never met.
   const TriangleMesh flat = make_mesh({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{{0, 1, 2}}, {{0, 0, 0}}});
-  EXPECT_TRUE(RayCaster(flat).all_hits(Vec3(0.5, 0, 1), Vec3(0, 0, -1), 0, infinity).empty());
+  CHECK(RayCaster(flat).all_hits(Vec3(0.5, 0, 1), Vec3(0, 0, -1), 0, infinity).empty());
 
   TriangleMesh bad = tetrahedron();
   bad.V(1, 1) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(RayCaster{bad}, Error);
+  CHECK_THROWS_AS(RayCaster{bad}, Error);
   bad = tetrahedron();
   bad.F(0, 0) = 9;
-  EXPECT_THROW(RayCaster{bad}, Error);
+  CHECK_THROWS_AS(RayCaster{bad}, Error);
   bad = moved(tetrahedron(), Vec3(0, 0, 0), 1e200);
-  EXPECT_THROW(RayCaster{bad}, Error);
+  CHECK_THROWS_AS(RayCaster{bad}, Error);
 }
 
 }  // namespace

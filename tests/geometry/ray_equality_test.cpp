@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Embree's tree and our own must give the same hits to the last bit: on a million rays, most of them awkward.
 // A third answer, for some of the rays, tests every triangle without any tree.
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
 
 #include <bit>
 #include <limits>
@@ -151,7 +151,7 @@ std::string text_of(const Question& q, const std::vector<RayHit>& hits) {
   return text;
 }
 
-TEST(RayEquality, EmbreesTreeAndOursGiveTheSameBits) {
+TEST_CASE("RayEquality.EmbreesTreeAndOursGiveTheSameBits") {
   constexpr int kinds = 12;
 #if defined(__SANITIZE_ADDRESS__)
   constexpr int rays_per_kind = 400;
@@ -160,14 +160,14 @@ TEST(RayEquality, EmbreesTreeAndOursGiveTheSameBits) {
 #endif
   int rays = 0, hit = 0, hits_in_all = 0;
   for (const auto& [name, mesh] : all_shapes()) {
-    SCOPED_TRACE(name);
+    INFO(name);
     const BvhRays ours(mesh);
     const EmbreeRays embree(mesh);
     const SearchSphere sphere = search_sphere(mesh);
     const BoundingBox box = bounding_box(mesh);
     Random random(101);
     for (int kind = 0; kind < kinds; ++kind) {
-      SCOPED_TRACE("kind " + std::to_string(kind));
+      INFO("kind " + std::to_string(kind));
       int different = 0, hits_of_kind = 0;
       for (int i = 0; i < rays_per_kind; ++i, ++rays) {
         const Question q = awkward_question(mesh, box, kind, random);
@@ -179,18 +179,18 @@ TEST(RayEquality, EmbreesTreeAndOursGiveTheSameBits) {
                     (!first || same_bits(*first, all[0]));
         if (i % 16 == 0) same = same && same_bits(all, hits_without_tree(mesh, sphere, q));
         if (!same && ++different <= 3)
-          ADD_FAILURE() << text_of(q, all) << "\nEmbree: " << text_of(q, embree_all)
-                        << "\nwithout a tree: " << text_of(q, hits_without_tree(mesh, sphere, q));
+          FAIL_CHECK(text_of(q, all) << "\nEmbree: " << text_of(q, embree_all)
+                                     << "\nwithout a tree: " << text_of(q, hits_without_tree(mesh, sphere, q)));
         hit += first ? 1 : 0;
         hits_of_kind += static_cast<int>(all.size());
       }
-      EXPECT_EQ(different, 0);
+      CHECK(different == 0);
       hits_in_all += hits_of_kind;
     }
   }
-  EXPECT_GT(hit, rays / 3);
-  RecordProperty("rays", rays);
-  RecordProperty("hits", hits_in_all);
+  CHECK(hit > rays / 3);
+  SUCCEED("rays " << rays);
+  SUCCEED("hits " << hits_in_all);
   std::printf("%d rays, %d of them hit, %d hits\n", rays, hit, hits_in_all);
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/simplify.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <algorithm>
 #include <numbers>
@@ -14,6 +15,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 using namespace test;
 
 TriangleMesh simplified(const TriangleMesh& mesh, int target, bool drop = false) {
@@ -32,7 +34,7 @@ TriangleMesh bumpy_torus(int around, int across) {
   return mesh;
 }
 
-TEST(Simplify, KeepsTheTopology) {
+TEST_CASE("Simplify.KeepsTheTopology") {
   struct Case {
     const char* name;
     TriangleMesh mesh;
@@ -46,39 +48,39 @@ TEST(Simplify, KeepsTheTopology) {
                                          {"to the limit", torus(30, 20), 4},
                                          {"sphere to the limit", icosphere(3), 4},
                                          {"tube to the limit", tube(20, 10), 4}}) {
-    SCOPED_TRACE(c.name);
+    INFO(c.name);
     const TriangleMesh result = simplified(c.mesh, c.target);
     const Adjacency before(c.mesh), after(result);
-    EXPECT_TRUE(after.is_manifold());
-    EXPECT_TRUE(result.V.allFinite());
-    EXPECT_EQ(euler_characteristic(after), euler_characteristic(before));
-    EXPECT_EQ(boundary_loops(after).size(), boundary_loops(before).size());
-    EXPECT_EQ(face_components(after).count, face_components(before).count);
+    CHECK(after.is_manifold());
+    CHECK(result.V.allFinite());
+    CHECK(euler_characteristic(after) == euler_characteristic(before));
+    CHECK(boundary_loops(after).size() == boundary_loops(before).size());
+    CHECK(face_components(after).count == face_components(before).count);
     if (c.target > 4) {
-      EXPECT_EQ(result.vertex_count(), c.target);
+      CHECK(result.vertex_count() == c.target);
     }
-    EXPECT_EQ(vertex_components(after).count, face_components(after).count);  // no unused vertices
+    CHECK(vertex_components(after).count == face_components(after).count);  // no unused vertices
   }
-  EXPECT_EQ(simplified(icosphere(3), 4).vertex_count(), 4);
+  CHECK(simplified(icosphere(3), 4).vertex_count() == 4);
 }
 
-TEST(Simplify, SmallEnoughIsLeftAlone) {
+TEST_CASE("Simplify.SmallEnoughIsLeftAlone") {
   const TriangleMesh mesh = torus(10, 8);
-  EXPECT_EQ(simplified(mesh, 80).V, mesh.V);
-  EXPECT_EQ(simplified(mesh, 80).F, mesh.F);
+  CHECK(simplified(mesh, 80).V == mesh.V);
+  CHECK(simplified(mesh, 80).F == mesh.F);
 }
 
-TEST(Simplify, PlanesStayExact) {
+TEST_CASE("Simplify.PlanesStayExact") {
   // Everything stays in the plane, the square keeps its corners and its area.
   const TriangleMesh result = simplified(grid(30, 30, 0.3), 60);
-  EXPECT_LT(result.V.col(2).cwiseAbs().maxCoeff(), 1e-12);
-  EXPECT_NEAR(surface_area(result), 1, 2e-3);
+  CHECK(result.V.col(2).cwiseAbs().maxCoeff() < 1e-12);
+  CHECK_THAT(surface_area(result), WithinAbs(1, 2e-3));
   const BoundingBox box = bounding_box(result);
-  EXPECT_NEAR(box.size().x(), 1, 1e-3);
-  EXPECT_NEAR(box.size().y(), 1, 1e-3);
+  CHECK_THAT(box.size().x(), WithinAbs(1, 1e-3));
+  CHECK_THAT(box.size().y(), WithinAbs(1, 1e-3));
 }
 
-TEST(Simplify, SharpEdgesStay) {
+TEST_CASE("Simplify.SharpEdgesStay") {
   // A finely split cube: the Hausdorff distance stays far below the edge length of the result.
   Context context;
   TriangleMesh fine = cube();
@@ -104,11 +106,11 @@ TEST(Simplify, SharpEdgesStay) {
     fine = finer;
   }
   const TriangleMesh result = simplified(fine, 200);
-  EXPECT_LT(hausdorff_distance(fine, result, 0.02, context), 0.02);
-  EXPECT_NEAR(signed_volume(result), 1, 0.01);
+  CHECK(hausdorff_distance(fine, result, 0.02, context) < 0.02);
+  CHECK_THAT(signed_volume(result), WithinAbs(1, 0.01));
 }
 
-TEST(Simplify, DistanceFallsQuadratically) {
+TEST_CASE("Simplify.DistanceFallsQuadratically") {
   // A smooth surface with n vertices can be met to within O(1 / n); four times the vertices, a quarter of
   // the mean distance.
   Context context;
@@ -118,16 +120,18 @@ TEST(Simplify, DistanceFallsQuadratically) {
     const TriangleMesh result = simplified(mesh, target);
     const SurfaceDistance distance = surface_distance(mesh, PointDistance(result), 0.05, context);
     if (previous > 0) {
-      EXPECT_NEAR(std::log2(previous / distance.mean), 2, 0.35) << target;
+      INFO(target);
+      CHECK_THAT(std::log2(previous / distance.mean), WithinAbs(2, 0.35));
     }
     previous = distance.mean;
     // An inscribed or best-fitting polyhedron with equilateral triangles of edge h errs by h^2 / 6 at worst.
     const double edge_squared = 4 / std::sqrt(3.0) * 4 * std::numbers::pi / (2.0 * target);
-    EXPECT_LT(distance.maximum, edge_squared / 2) << target;
+    INFO(target);
+    CHECK(distance.maximum < edge_squared / 2);
   }
 }
 
-TEST(Simplify, TrianglesAreWellShaped) {
+TEST_CASE("Simplify.TrianglesAreWellShaped") {
   struct Case {
     const char* name;
     TriangleMesh mesh;
@@ -138,70 +142,70 @@ TEST(Simplify, TrianglesAreWellShaped) {
   for (const Case& c : std::vector<Case>{{"sphere", icosphere(5), 30, 33, 48},
                                          {"torus", bumpy_torus(120, 60), 10, 14, 35.5},
                                          {"grid", grid(80, 80, 0.3), 15, 19.5, 45}}) {
-    SCOPED_TRACE(c.name);
+    INFO(c.name);
     const TriangleMesh result = simplified(c.mesh, c.mesh.vertex_count() / 10);
     const Eigen::VectorXd least = corner_angles(result).rowwise().minCoeff() * (180 / std::numbers::pi);
     std::vector<double> sorted(least.begin(), least.end());
     std::sort(sorted.begin(), sorted.end());
-    EXPECT_GT(sorted[0], c.least);
-    EXPECT_GT(sorted[sorted.size() / 100], c.hundredth);
-    EXPECT_GT(sorted[sorted.size() / 2], c.median);
+    CHECK(sorted[0] > c.least);
+    CHECK(sorted[sorted.size() / 100] > c.hundredth);
+    CHECK(sorted[sorted.size() / 2] > c.median);
   }
 }
 
-TEST(Simplify, NoFaceTurnsOver) {
+TEST_CASE("Simplify.NoFaceTurnsOver") {
   const TriangleMesh mesh = icosphere(5), result = simplified(mesh, 150);
   const Positions normals = face_normals(result);
   for (int f = 0; f < result.face_count(); ++f) {
     const Vec3 centre =
         (result.V.row(result.F(f, 0)) + result.V.row(result.F(f, 1)) + result.V.row(result.F(f, 2))) / 3;
-    EXPECT_GT(centre.normalized().dot(Vec3(normals.row(f))), 0.8);
+    CHECK(centre.normalized().dot(Vec3(normals.row(f))) > 0.8);
   }
 }
 
-TEST(Simplify, WhereVerticesWent) {
+TEST_CASE("Simplify.WhereVerticesWent") {
   Context context;
   const TriangleMesh mesh = bumpy_torus(60, 30);
   std::vector<int> new_vertex_of;
   const TriangleMesh result = simplify(mesh, {400, false}, context, &new_vertex_of);
-  ASSERT_EQ(new_vertex_of.size(), static_cast<std::size_t>(mesh.vertex_count()));
+  REQUIRE(new_vertex_of.size() == static_cast<std::size_t>(mesh.vertex_count()));
   std::vector<int> received(400, 0);
   const double edge = mean_edge_length(result);
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     const int w = new_vertex_of[static_cast<std::size_t>(v)];
-    ASSERT_GE(w, 0);
+    REQUIRE(w >= 0);
     ++received[static_cast<std::size_t>(w)];
-    EXPECT_LT((mesh.V.row(v) - result.V.row(w)).norm(), 3 * edge);
+    CHECK((mesh.V.row(v) - result.V.row(w)).norm() < 3 * edge);
   }
-  EXPECT_GT(*std::min_element(received.begin(), received.end()), 0);
+  CHECK(*std::min_element(received.begin(), received.end()) > 0);
 }
 
-TEST(Simplify, SmallPartsVanishOnlyWhenAsked) {
+TEST_CASE("Simplify.SmallPartsVanishOnlyWhenAsked") {
   const TriangleMesh mesh = joined(icosphere(4), moved(icosphere(1), Vec3(2, 0, 0), 0.01));
-  EXPECT_EQ(face_components(Adjacency(simplified(mesh, 200))).count, 2);
-  EXPECT_EQ(face_components(Adjacency(simplified(mesh, 200, true))).count, 1);
+  CHECK(face_components(Adjacency(simplified(mesh, 200))).count == 2);
+  CHECK(face_components(Adjacency(simplified(mesh, 200, true))).count == 1);
 }
 
-TEST(Simplify, DeterministicAndIndependentOfPlaceAndScale) {
+TEST_CASE("Simplify.DeterministicAndIndependentOfPlaceAndScale") {
   const TriangleMesh mesh = bumpy_torus(50, 30), result = simplified(mesh, 300);
-  EXPECT_EQ(simplified(mesh, 300).V, result.V);
-  EXPECT_EQ(simplified(mesh, 300).F, result.F);
+  CHECK(simplified(mesh, 300).V == result.V);
+  CHECK(simplified(mesh, 300).F == result.F);
   // Powers of two round nothing.
   const TriangleMesh scaled = simplified(moved(mesh, Vec3(0, 0, 0), 1024), 300);
-  EXPECT_EQ(scaled.F, result.F);
-  EXPECT_EQ(scaled.V, 1024 * result.V);
+  CHECK(scaled.F == result.F);
+  CHECK(scaled.V == 1024 * result.V);
   Context context;
   const TriangleMesh far = simplified(moved(mesh, Vec3(1e6, -1e6, 1e6)), 300);
-  EXPECT_LT(hausdorff_distance(far, moved(result, Vec3(1e6, -1e6, 1e6)), 0.05, context), 0.05);
+  CHECK(hausdorff_distance(far, moved(result, Vec3(1e6, -1e6, 1e6)), 0.05, context) < 0.05);
 }
 
-TEST(Simplify, BadInputAndCancel) {
-  EXPECT_THROW(simplified(moebius_band(30), 10), Error);
-  EXPECT_THROW(simplified(cube(), 3), Error);
+TEST_CASE("Simplify.BadInputAndCancel") {
+  CHECK_THROWS_AS(simplified(moebius_band(30), 10), Error);
+  CHECK_THROWS_AS(simplified(cube(), 3), Error);
   Host host;
   host.cancel_requested = [] { return true; };
   Context cancelled(host);
-  EXPECT_THROW(simplify(icosphere(3), {50, false}, cancelled), Error);
+  CHECK_THROWS_AS(simplify(icosphere(3), {50, false}, cancelled), Error);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <cmath>
 
@@ -10,6 +11,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 /// Black in square mm, in light: a half covered pixel counts half.
 double ink_mm2(const Image& image, double pixel_mm) {
@@ -18,59 +20,66 @@ double ink_mm2(const Image& image, double pixel_mm) {
   return sum * pixel_mm * pixel_mm;
 }
 
-TEST(Drawing, LinesHaveTheirLengthWidthAndPlace) {
+TEST_CASE("Drawing.LinesHaveTheirLengthWidthAndPlace") {
   Image image(400, 300, {255, 255, 255, 255});
   const double pixel_mm = 0.1;
   Drawing drawing;
   drawing.line(Vec2(-10, 5), Vec2(10, 5), 1);
   draw(image, drawing, pixel_mm);
-  EXPECT_NEAR(ink_mm2(image, pixel_mm), 20 + 0.25 * std::acos(-1.0), 0.3);  // round ends
+  CHECK_THAT(ink_mm2(image, pixel_mm), WithinAbs(20 + 0.25 * std::acos(-1.0), 0.3));  // round ends
   // y points up: 5 mm above the middle is row 150 - 50.
-  EXPECT_EQ(image.at(200, 100)[0], 0);
-  EXPECT_EQ(image.at(200, 200)[0], 255);
+  CHECK(image.at(200, 100)[0] == 0);
+  CHECK(image.at(200, 200)[0] == 255);
 }
 
-TEST(Drawing, DashesLeaveGaps) {
+TEST_CASE("Drawing.DashesLeaveGaps") {
   Image whole(600, 100, {255, 255, 255, 255}), dashed = whole;
   Drawing a, b;
   a.line(Vec2(-20, 0), Vec2(20, 0), 0.5);
   b.line(Vec2(-20, 0), Vec2(20, 0), 0.5, true);
   draw(whole, a, 0.1);
   draw(dashed, b, 0.1);
-  EXPECT_NEAR(ink_mm2(dashed, 0.1) / ink_mm2(whole, 0.1), (2 * 0.5 + 0.25 * std::acos(-1.0) * 0.25) / (4 * 0.5),
-              0.01);  // with their round ends
+  CHECK_THAT(ink_mm2(dashed, 0.1) / ink_mm2(whole, 0.1),
+             WithinAbs((2 * 0.5 + 0.25 * std::acos(-1.0) * 0.25) / (4 * 0.5), 0.01));  // with their round ends
 }
 
-TEST(Drawing, EveryLetterIsDifferentAndWithinItsHeight) {
+TEST_CASE("Drawing.EveryLetterIsDifferentAndWithinItsHeight") {
   const std::string letters = "ABCDEFGHIJKLMNPQRSTUVWXYZ0123456789-./+";  // O is 0
   std::vector<std::vector<Rgba>> seen;
   for (const char letter : letters) {
     const Label label{Vec2(0, 0), 4, std::string(1, letter)};
     Image image(60, 60, {255, 255, 255, 255});
     draw(image, {{}, {label}}, 0.1);
-    EXPECT_GT(ink_mm2(image, 0.1), 0.1) << letter;
-    for (const auto& other : seen) EXPECT_NE(image.pixels, other) << letter;
+    {
+      INFO(letter);
+      CHECK(ink_mm2(image, 0.1) > 0.1);
+    }
+    for (const auto& other : seen) {
+      INFO(letter);
+      CHECK(image.pixels != other);
+    }
     seen.push_back(image.pixels);
     for (const Stroke& s : outlined(label).strokes)
       for (const Vec2& p : {s.from, s.to}) {
-        EXPECT_LE(std::abs(p.y()), 2.0001) << letter;
-        EXPECT_LE(std::abs(p.x()), 1.34) << letter;
+        INFO(letter);
+        CHECK(std::abs(p.y()) <= 2.0001);
+        CHECK(std::abs(p.x()) <= 1.34);
       }
   }
 }
 
-TEST(Image, MirroredTwiceIsItself) {
+TEST_CASE("Image.MirroredTwiceIsItself") {
   Image image(5, 3, {1, 2, 3, 255});
   image.at(0, 1) = {9, 9, 9, 255};
   Image twice = image;
   mirror_left_right(twice);
-  EXPECT_EQ(twice.at(4, 1), image.at(0, 1));
-  EXPECT_NE(twice.pixels, image.pixels);
+  CHECK(twice.at(4, 1) == image.at(0, 1));
+  CHECK(twice.pixels != image.pixels);
   mirror_left_right(twice);
-  EXPECT_EQ(twice.pixels, image.pixels);
+  CHECK(twice.pixels == image.pixels);
 }
 
-TEST(Pdf, WritesPagesAndSaysWhenItCannot) {
+TEST_CASE("Pdf.WritesPagesAndSaysWhenItCannot") {
   PdfDocument pdf("A test");
   const int picture = pdf.add_picture(Image(3, 2, {10, 20, 30, 255}));
   for (int i = 0; i < 3; ++i) {
@@ -78,17 +87,17 @@ TEST(Pdf, WritesPagesAndSaysWhenItCannot) {
     pdf.show_picture(picture, 1, {Vec2(50, 25), i == 1}, Vec2(0, 0), Vec2(100, 50));
   }
   const Bytes bytes = pdf.finish();
-  EXPECT_TRUE(as_text(bytes).starts_with("%PDF-"));
-  EXPECT_NE(as_text(bytes).find("/Count 3"), std::string_view::npos);
-  EXPECT_NE(as_text(bytes).find("/PrintScaling /None"), std::string_view::npos);
+  CHECK(as_text(bytes).starts_with("%PDF-"));
+  CHECK(as_text(bytes).find("/Count 3") != std::string_view::npos);
+  CHECK(as_text(bytes).find("/PrintScaling /None") != std::string_view::npos);
   PdfDocument huge("Too large");
   huge.add_page(6000, 50);
   try {
     huge.finish();
-    FAIL() << "6 m are more than a page can be";
+    FAIL("6 m are more than a page can be");
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::could_not_solve);
-    EXPECT_EQ(error.where(), "print.pdf");
+    CHECK(error.code() == ErrorCode::could_not_solve);
+    CHECK(error.where() == "print.pdf");
   }
 }
 

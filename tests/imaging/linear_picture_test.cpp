@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <cmath>
 #include <random>
@@ -9,6 +10,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 Image noise(int width, int height) {
   Image image(width, height, {0, 0, 0, 255});
@@ -24,7 +26,7 @@ double mean_light(const Image& image, std::size_t channel) {
   return sum / static_cast<double>(image.pixels.size());
 }
 
-TEST(LinearPicture, TexelsAreExactWhereNothingIsFiltered) {
+TEST_CASE("LinearPicture.TexelsAreExactWhereNothingIsFiltered") {
   const Image image = noise(13, 7);
   const LinearPicture picture(image, false, Context());
   for (int y = 0; y < image.height; ++y)
@@ -32,32 +34,32 @@ TEST(LinearPicture, TexelsAreExactWhereNothingIsFiltered) {
       const Light light = picture.sample(Vec2((x + 0.5) / image.width, (y + 0.5) / image.height),
                                          picture.footprint(Eigen::Matrix2d::Identity() * 0.5));
       for (std::size_t k = 0; k < 3; ++k)
-        EXPECT_NEAR(static_cast<double>(light[k]), light_of_byte()[image.at(x, y)[k]], 0.1);
+        CHECK_THAT(static_cast<double>(light[k]), WithinAbs(light_of_byte()[image.at(x, y)[k]], 0.1));
     }
 }
 
-TEST(LinearPicture, AFootprintOverAllOfItGivesItsMeanLight) {
+TEST_CASE("LinearPicture.AFootprintOverAllOfItGivesItsMeanLight") {
   for (const auto& [width, height] : {std::pair{64, 64}, {100, 37}, {1, 9}}) {
     const Image image = noise(width, height);
     const LinearPicture picture(image, true, Context());
     const double size = 4.0 * std::max(width, height);
     const Light light = picture.sample(Vec2(0.4, 0.6), picture.footprint(Eigen::Matrix2d::Identity() * size));
     for (std::size_t k = 0; k < 3; ++k)
-      EXPECT_NEAR(static_cast<double>(light[k]), mean_light(image, k), 12);  // rounding of some levels
+      CHECK_THAT(static_cast<double>(light[k]), WithinAbs(mean_light(image, k), 12));  // rounding of some levels
   }
 }
 
-TEST(LinearPicture, BlackAndWhiteAverageInLight) {
+TEST_CASE("LinearPicture.BlackAndWhiteAverageInLight") {
   Image image(64, 64, {255, 255, 255, 255});
   for (int y = 0; y < 64; ++y)
     for (int x = y % 2; x < 64; x += 2) image.at(x, y) = {0, 0, 0, 255};
   const LinearPicture picture(image, true, Context());
   const Light light = picture.sample(Vec2(0.5, 0.5), picture.footprint(Eigen::Matrix2d::Identity() * 8));
-  EXPECT_EQ(byte_of_light()[static_cast<std::size_t>(light[0])], 188);  // not 128
-  EXPECT_EQ(shrunk(image, 8, Context()).at(3, 3), (Rgba{188, 188, 188, 255}));
+  CHECK(byte_of_light()[static_cast<std::size_t>(light[0])] == 188);  // not 128
+  CHECK(shrunk(image, 8, Context()).at(3, 3) == Rgba{188, 188, 188, 255});
 }
 
-TEST(LinearPicture, LongFootprintsBlurAlongOneDirectionOnly) {
+TEST_CASE("LinearPicture.LongFootprintsBlurAlongOneDirectionOnly") {
   // Stripes that change along v stay sharp under a footprint that is long along u, and vanish under one along v.
   Image image(128, 128, {255, 255, 255, 255});
   for (int y = 0; y < 128; ++y)
@@ -70,33 +72,33 @@ TEST(LinearPicture, LongFootprintsBlurAlongOneDirectionOnly) {
                 bright = picture.sample(Vec2(0.5, 60.0 / 128), footprint)[0];
     return std::abs(bright - dark) / 65535;
   };
-  EXPECT_GT(contrast(12, 1), 0.99f);
-  EXPECT_LT(contrast(1, 16), 0.1f);
+  CHECK(contrast(12, 1) > 0.99f);
+  CHECK(contrast(1, 16) < 0.1f);
 }
 
-TEST(LinearPicture, BordersGoOnOrRepeat) {
+TEST_CASE("LinearPicture.BordersGoOnOrRepeat") {
   Image image(2, 1, {255, 0, 0, 255});
   image.at(1, 0) = {0, 0, 255, 255};
   const LinearPicture clamped(image, false, Context()), tiled(image, true, Context());
   const auto red = [](const LinearPicture& p, double u) {
     return p.sample(Vec2(u, 0.5), p.footprint(Eigen::Matrix2d::Identity()))[0];
   };
-  EXPECT_EQ(red(clamped, 1.25), 0);
-  EXPECT_EQ(red(tiled, 1.25), 65535);
-  EXPECT_EQ(red(clamped, 0.01), 65535);
-  EXPECT_NEAR(red(tiled, 0.0), 65535 / 2.0, 1);
-  EXPECT_EQ(red(tiled, -3.75), 65535);
+  CHECK(red(clamped, 1.25) == 0);
+  CHECK(red(tiled, 1.25) == 65535);
+  CHECK(red(clamped, 0.01) == 65535);
+  CHECK_THAT(red(tiled, 0.0), WithinAbs(65535 / 2.0, 1));
+  CHECK(red(tiled, -3.75) == 65535);
 }
 
-TEST(LinearPicture, TransparentPartsAreWhitePaper) {
+TEST_CASE("LinearPicture.TransparentPartsAreWhitePaper") {
   Image image(1, 1, {0, 0, 0, 0});
-  EXPECT_EQ(LinearPicture(image, true, Context()).sample(Vec2(0, 0), {})[1], 65535);
+  CHECK(LinearPicture(image, true, Context()).sample(Vec2(0, 0), {})[1] == 65535);
   image.at(0, 0)[3] = 51;  // a fifth of black
-  EXPECT_NEAR(LinearPicture(image, true, Context()).sample(Vec2(0, 0), {})[1], 0.8 * 65535, 1);
+  CHECK_THAT(LinearPicture(image, true, Context()).sample(Vec2(0, 0), {})[1], WithinAbs(0.8 * 65535, 1));
 }
 
-TEST(Light, BytesComeBack) {
-  for (std::size_t i = 0; i < 256; ++i) EXPECT_EQ(byte_of_light()[light_of_byte()[i]], i);
+TEST_CASE("Light.BytesComeBack") {
+  for (std::size_t i = 0; i < 256; ++i) CHECK(byte_of_light()[light_of_byte()[i]] == i);
 }
 
 }  // namespace

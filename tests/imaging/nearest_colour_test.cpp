@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
 
 #include <random>
 
@@ -20,7 +20,7 @@ Image scattered(int width, int height, int painted, unsigned seed) {
   return image;
 }
 
-TEST(NearestColour, AgreesWithTryingAllPixels) {
+TEST_CASE("NearestColour.AgreesWithTryingAllPixels") {
   for (const auto& [painted, radius] : {std::pair{5, 100.0}, {40, 9.0}, {40, 3.5}, {400, 1.0}, {3, 1.5}, {0, 5.0}}) {
     const Image before = scattered(97, 61, painted, static_cast<unsigned>(painted));
     Image after = before;
@@ -33,22 +33,24 @@ TEST(NearestColour, AgreesWithTryingAllPixels) {
             if (before.at(u, v)[3] != 0) least = std::min(least, (u - x) * (u - x) + (v - y) * (v - y));
         const Rgba& p = after.at(x, y);
         if (least > radius * radius) {
-          ASSERT_EQ(p, before.at(x, y)) << x << " " << y << " radius " << radius;
+          INFO(x << " " << y << " radius " << radius);
+          REQUIRE(p == before.at(x, y));
         } else {
-          ASSERT_EQ(p[3], 255);
-          ASSERT_EQ((p[0] - x) * (p[0] - x) + (p[1] - y) * (p[1] - y), least) << x << " " << y << " radius " << radius;
+          REQUIRE(p[3] == 255);
+          INFO(x << " " << y << " radius " << radius);
+          REQUIRE((p[0] - x) * (p[0] - x) + (p[1] - y) * (p[1] - y) == least);
         }
       }
   }
 }
 
-TEST(NearestColour, PaintedPixelsStay) {
+TEST_CASE("NearestColour.PaintedPixelsStay") {
   const Image before = scattered(200, 100, 300, 1);
   Image after = before;
   spread_colours(after, 20, Context());
   for (std::size_t i = 0; i < before.pixels.size(); ++i)
     if (before.pixels[i][3] != 0) {
-      EXPECT_EQ(after.pixels[i], before.pixels[i]);
+      CHECK(after.pixels[i] == before.pixels[i]);
     }
 }
 

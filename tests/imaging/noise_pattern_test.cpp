@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "imaging/noise_pattern.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <Eigen/LU>
 #include <cmath>
@@ -12,15 +13,16 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 NoisePattern pattern(std::uint32_t seed = 7) { return {seed, 0.25, octaves_mm(1, 16), 0.2}; }
 
-TEST(NoisePattern, ScalesDoubleUpToTheCoarsest) {
-  EXPECT_EQ(octaves_mm(1, 16), (std::vector<double>{1, 2, 4, 8, 16}));
-  EXPECT_EQ(octaves_mm(1.5, 5), (std::vector<double>{1.5, 3}));
+TEST_CASE("NoisePattern.ScalesDoubleUpToTheCoarsest") {
+  CHECK(octaves_mm(1, 16) == std::vector<double>{1, 2, 4, 8, 16});
+  CHECK(octaves_mm(1.5, 5) == std::vector<double>{1.5, 3});
 }
 
-TEST(NoisePattern, HasTheDeviationAskedForAndChannelsOfTheirOwn) {
+TEST_CASE("NoisePattern.HasTheDeviationAskedForAndChannelsOfTheirOwn") {
   const Image image = noise_picture(pattern(), 1200, 1000, Context());
   double mean[3] = {}, squared[3] = {}, cross[3] = {};
   const double n = static_cast<double>(image.pixels.size());
@@ -32,22 +34,22 @@ TEST(NoisePattern, HasTheDeviationAskedForAndChannelsOfTheirOwn) {
       cross[c] += a * b / n;
     }
   for (int c = 0; c < 3; ++c) {
-    EXPECT_NEAR(mean[c], 0, 8);
-    EXPECT_NEAR(std::sqrt(squared[c]), 0.2 * 255, 6);
-    EXPECT_NEAR(cross[c] / squared[c], 0, 0.2);  // few cells of the coarsest scale
+    CHECK_THAT(mean[c], WithinAbs(0, 8));
+    CHECK_THAT(std::sqrt(squared[c]), WithinAbs(0.2 * 255, 6));
+    CHECK_THAT(cross[c] / squared[c], WithinAbs(0, 0.2));  // few cells of the coarsest scale
   }
 }
 
-TEST(NoisePattern, IsTheSameOnEveryMachineAndUnlikeForOtherSeeds) {
+TEST_CASE("NoisePattern.IsTheSameOnEveryMachineAndUnlikeForOtherSeeds") {
   const auto hash = [](const Image& image) {
     return sha256_hex(ByteView(reinterpret_cast<const std::byte*>(image.pixels.data()), 4 * image.pixels.size()));
   };
   const std::string first = hash(noise_picture(pattern(), 200, 150, Context()));
-  EXPECT_EQ(first, "002253a80c67b7798b6760dc4799bf6e58e6f21123bb20ec0ff4ea7b3c5c2b68");
-  EXPECT_NE(first, hash(noise_picture(pattern(8), 200, 150, Context())));
+  CHECK(first == "002253a80c67b7798b6760dc4799bf6e58e6f21123bb20ec0ff4ea7b3c5c2b68");
+  CHECK(first != hash(noise_picture(pattern(8), 200, 150, Context())));
 }
 
-TEST(NoisePattern, IsTheSameNoiseAtAnyResolutionAndSize) {
+TEST_CASE("NoisePattern.IsTheSameNoiseAtAnyResolutionAndSize") {
   NoisePattern fine = pattern();
   fine.pixel_mm /= 2;
   const WeightedPicture coarse = weighted_picture(noise_picture(pattern(), 200, 160, Context()));
@@ -59,9 +61,9 @@ TEST(NoisePattern, IsTheSameNoiseAtAnyResolutionAndSize) {
     for (int x = 0; x < 200; ++x) {
       const Float4 d = coarse.at(x, y) - reduced_fine.at(x, y);
       squared += static_cast<double>(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) / 3 / (200 * 160);
-      EXPECT_EQ(static_cast<float>(larger.at(x + 20, y + 10)[0]), coarse.at(x, y)[0]);
+      CHECK(static_cast<float>(larger.at(x + 20, y + 10)[0]) == coarse.at(x, y)[0]);
     }
-  EXPECT_LT(std::sqrt(squared), 1.5);
+  CHECK(std::sqrt(squared) < 1.5);
 }
 
 std::vector<ColourSample> seen_colours(const ColourCorrection& camera_inverse, int outliers) {
@@ -77,7 +79,7 @@ std::vector<ColourSample> seen_colours(const ColourCorrection& camera_inverse, i
   return samples;
 }
 
-TEST(ColourCorrection, CastAndLightAreFoundExactlyDespiteForeignPatches) {
+TEST_CASE("ColourCorrection.CastAndLightAreFoundExactlyDespiteForeignPatches") {
   ColourCorrection truth;
   truth.matrix << 1.3, -0.1, 0.02, -0.05, 1.1, -0.08, 0.0, -0.2, 1.6;
   truth.offset = {-0.01, -0.02, 0.01};
@@ -88,8 +90,11 @@ TEST(ColourCorrection, CastAndLightAreFoundExactlyDespiteForeignPatches) {
     double worst = 0;
     for (std::size_t i = static_cast<std::size_t>(outliers); i < samples.size(); ++i)
       worst = std::max(worst, (found(samples[i].seen, samples[i].place) - samples[i].expected).cwiseAbs().maxCoeff());
-    EXPECT_LT(worst, 1e-4) << outliers;
-    EXPECT_GE(found.rejected, outliers * 9 / 10);
+    {
+      INFO(outliers);
+      CHECK(worst < 1e-4);
+    }
+    CHECK(found.rejected >= outliers * 9 / 10);
   }
 }
 

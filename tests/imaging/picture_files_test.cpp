@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pictures in and out, and files that are none: each gives one sentence.
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 #include <png.h>
 #include <stb_image_write.h>
 #include <zlib.h>
@@ -13,6 +14,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 /// 24 x 16 pixels, left two thirds (200, 60, 30), the rest (20, 90, 220): progressive JPEG, quality 95, written by
 /// Pillow.
@@ -67,68 +69,71 @@ std::string refused(ByteView bytes) {
   try {
     read_picture(bytes, "a.png", "texture");
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::invalid_input);
-    EXPECT_EQ(error.where(), "texture");
+    CHECK(error.code() == ErrorCode::invalid_input);
+    CHECK(error.where() == "texture");
     const std::string sentence = error.what();
-    EXPECT_TRUE(sentence.starts_with("a.png: ") && sentence.ends_with(".")) << sentence;
+    {
+      INFO(sentence);
+      CHECK((sentence.starts_with("a.png: ") && sentence.ends_with(".")));
+    }
     return sentence;
   }
   return "not refused";
 }
 
-TEST(PictureFiles, PngComesBackBitForBit) {
+TEST_CASE("PictureFiles.PngComesBackBitForBit") {
   for (const bool with_alpha : {false, true}) {
     const Image image = noise(37, 21, with_alpha);
     const Image again = read_picture(write_png(image, 11811, Context()), "", "texture");
-    EXPECT_EQ(again.width, 37);
-    EXPECT_EQ(again.pixels, image.pixels);
+    CHECK(again.width == 37);
+    CHECK(again.pixels == image.pixels);
   }
 }
 
-TEST(PictureFiles, PngSaysItsSizeAndSpace) {
-  EXPECT_EQ(pixels_per_metre(300), 11811);
+TEST_CASE("PictureFiles.PngSaysItsSizeAndSpace") {
+  CHECK(pixels_per_metre(300) == 11811);
   const Bytes png = write_png(noise(2, 2, false), 11811, Context());
   const std::string_view text = as_text(png);
   const std::size_t at = text.find("pHYs");
-  ASSERT_NE(at, std::string_view::npos);
-  EXPECT_EQ(text.substr(at + 4, 9), (std::string_view{"\x00\x00\x2e\x23\x00\x00\x2e\x23\x01", 9}));  // 11811, per metre
-  EXPECT_NE(text.find("sRGB"), std::string_view::npos);
-  EXPECT_EQ(as_text(write_png(noise(2, 2, false), 0, Context())).find("pHYs"), std::string_view::npos);
+  REQUIRE(at != std::string_view::npos);
+  CHECK(text.substr(at + 4, 9) == std::string_view{"\x00\x00\x2e\x23\x00\x00\x2e\x23\x01", 9});  // 11811, per metre
+  CHECK(text.find("sRGB") != std::string_view::npos);
+  CHECK(as_text(write_png(noise(2, 2, false), 0, Context())).find("pHYs") == std::string_view::npos);
 }
 
-TEST(PictureFiles, BaselineJpegIsClose) {
+TEST_CASE("PictureFiles.BaselineJpegIsClose") {
   const Image image = ramp(80, 50);
   const Image again = read_picture(baseline_jpeg(image), "", "texture");
-  ASSERT_EQ(again.pixels.size(), image.pixels.size());
+  REQUIRE(again.pixels.size() == image.pixels.size());
   double sum = 0;
   for (std::size_t i = 0; i < image.pixels.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k) sum += std::abs(image.pixels[i][k] - again.pixels[i][k]);
-  EXPECT_LT(sum / static_cast<double>(3 * image.pixels.size()), 3);
+  CHECK(sum / static_cast<double>(3 * image.pixels.size()) < 3);
 }
 
-TEST(PictureFiles, ProgressiveJpegIsRead) {
+TEST_CASE("PictureFiles.ProgressiveJpegIsRead") {
   const Image image = read_picture(of_hexadecimal(progressive_jpeg), "", "texture");
-  ASSERT_EQ(image.width, 24);
-  ASSERT_EQ(image.height, 16);
+  REQUIRE(image.width == 24);
+  REQUIRE(image.height == 16);
   const int left[] = {200, 60, 30}, right[] = {20, 90, 220};
   for (std::size_t k = 0; k < 3; ++k) {
-    EXPECT_NEAR(image.at(4, 8)[k], left[k], 3);
-    EXPECT_NEAR(image.at(20, 8)[k], right[k], 3);
+    CHECK_THAT(image.at(4, 8)[k], WithinAbs(left[k], 3));
+    CHECK_THAT(image.at(20, 8)[k], WithinAbs(right[k], 3));
   }
 }
 
-TEST(PictureFiles, TruncatedFilesAreRefused) {
+TEST_CASE("PictureFiles.TruncatedFilesAreRefused") {
   const Bytes png = write_png(noise(60, 40, false), 0, Context()), jpeg = baseline_jpeg(ramp(60, 40)),
               progressive = of_hexadecimal(progressive_jpeg);
   for (const Bytes* whole : {&png, &jpeg, &progressive})
     for (const double share : {0.1, 0.3, 0.6, 0.9, 0.999}) {
       const auto size = static_cast<std::size_t>(share * static_cast<double>(whole->size()));
-      EXPECT_NE(refused(ByteView(whole->data(), size)).find("save"), std::string::npos)
-          << size << " of " << whole->size();
+      INFO(size << " of " << whole->size());
+      CHECK(refused(ByteView(whole->data(), size)).find("save") != std::string::npos);
     }
 }
 
-TEST(PictureFiles, DamagedFilesAreRefusedOrReadNeverWorse) {
+TEST_CASE("PictureFiles.DamagedFilesAreRefusedOrReadNeverWorse") {
   std::mt19937 random(11);
   int refusals = 0;
   for (const Bytes& whole :
@@ -138,15 +143,17 @@ TEST(PictureFiles, DamagedFilesAreRefusedOrReadNeverWorse) {
       for (int k = 0; k < 3; ++k) damaged[8 + random() % (damaged.size() - 8)] = static_cast<std::byte>(random());
       refusals += refused(damaged) != "not refused";
     }
-  EXPECT_GT(refusals, 200);  // every PNG, by its checksums
+  CHECK(refusals > 200);  // every PNG, by its checksums
 }
 
-TEST(PictureFiles, OtherKindsAndEmptyFilesAreRefused) {
-  for (const std::string_view text : {"", "GIF89a......", "BM....", "<svg/>", "\x89PNG", "%PDF-1.4"})
-    EXPECT_NE(refused(as_bytes(text)).find("neither a PNG nor a JPEG"), std::string::npos) << text;
+TEST_CASE("PictureFiles.OtherKindsAndEmptyFilesAreRefused") {
+  for (const std::string_view text : {"", "GIF89a......", "BM....", "<svg/>", "\x89PNG", "%PDF-1.4"}) {
+    INFO(text);
+    CHECK(refused(as_bytes(text)).find("neither a PNG nor a JPEG") != std::string::npos);
+  }
 }
 
-TEST(PictureFiles, HugeClaimsAreRefusedBeforeTheyAreBelieved) {
+TEST_CASE("PictureFiles.HugeClaimsAreRefusedBeforeTheyAreBelieved") {
   Bytes png = write_png(noise(4, 4, false), 0, Context());
   const auto claim = [&](std::uint32_t width, std::uint32_t height) {
     for (int k = 0; k < 4; ++k) {
@@ -157,17 +164,17 @@ TEST(PictureFiles, HugeClaimsAreRefusedBeforeTheyAreBelieved) {
     for (int k = 0; k < 4; ++k) png[static_cast<std::size_t>(29 + k)] = static_cast<std::byte>(crc >> (24 - 8 * k));
   };
   claim(40000, 40000);
-  EXPECT_NE(refused(png).find("40000 x 40000 pixels"), std::string::npos);
+  CHECK(refused(png).find("40000 x 40000 pixels") != std::string::npos);
   claim(5000, 5000);  // allowed, but not in so few bytes
-  EXPECT_NE(refused(png).find("ends too early"), std::string::npos);
+  CHECK(refused(png).find("ends too early") != std::string::npos);
   Bytes jpeg = baseline_jpeg(ramp(16, 16));
   const std::size_t frame = as_text(jpeg).find("\xff\xc0");
-  ASSERT_NE(frame, std::string_view::npos);
+  REQUIRE(frame != std::string_view::npos);
   for (const std::size_t k : {5u, 7u}) jpeg[frame + k] = std::byte{0x75};  // 30000 x 30000
-  EXPECT_NE(refused(jpeg).find("scale it down"), std::string::npos);
+  CHECK(refused(jpeg).find("scale it down") != std::string::npos);
 }
 
-TEST(PictureFiles, AJpegHasSoManyScans) {
+TEST_CASE("PictureFiles.AJpegHasSoManyScans") {
   const Bytes whole = of_hexadecimal(progressive_jpeg);
   const std::size_t last = as_text(whole).rfind("\xff\xda");
   const auto with_scans = [&](int more) {
@@ -176,8 +183,8 @@ TEST(PictureFiles, AJpegHasSoManyScans) {
       bytes.insert(bytes.end() - 2, whole.begin() + static_cast<std::ptrdiff_t>(last), whole.end() - 2);
     return bytes;
   };
-  EXPECT_NE(refused(with_scans(200)).find("more than 100 passes"), std::string::npos);
-  EXPECT_EQ(refused(with_scans(20)).find("passes"), std::string::npos);
+  CHECK(refused(with_scans(200)).find("more than 100 passes") != std::string::npos);
+  CHECK(refused(with_scans(20)).find("passes") == std::string::npos);
 }
 
 }  // namespace

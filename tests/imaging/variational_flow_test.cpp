@@ -2,7 +2,8 @@
 // Flow on pairs with known displacement: exact cases, what must not change it, and how its error falls.
 #include "imaging/variational_flow.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include "base/error.h"
 #include "base/sha256.h"
@@ -10,6 +11,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 using test::end_point_error;
 using test::warped_pair;
@@ -30,36 +32,40 @@ const auto affine = [](const Vec2& p) {
   return Vec2(0.03 * p.x() + 0.02 * p.y() + 1.7, -0.02 * p.x() - 0.02 * p.y() - 2.4);
 };
 
-TEST(VariationalFlow, EqualPicturesDoNotMove) {
+TEST_CASE("VariationalFlow.EqualPicturesDoNotMove") {
   const test::WarpedPair pair = warped_pair(120, 90, [](const Vec2&) { return Vec2(0, 0); }, {});
   Context context;
   const Flow flow = variational_flow(pair.first, pair.first, {}, context);
   for (std::size_t i = 0; i < flow.u.size(); ++i) {
-    ASSERT_LT(std::abs(flow.u[i]), 1e-6f);
-    ASSERT_LT(std::abs(flow.v[i]), 1e-6f);
+    REQUIRE(std::abs(flow.u[i]) < 1e-6f);
+    REQUIRE(std::abs(flow.v[i]) < 1e-6f);
   }
 }
 
-TEST(VariationalFlow, TranslationIsFoundToTwoHundredths) {
+TEST_CASE("VariationalFlow.TranslationIsFoundToTwoHundredths") {
   for (const Vec2& shift : {Vec2(3, -2), Vec2(-7.3, 4.6)}) {
     const test::WarpedPair pair = warped_pair(200, 160, [&](const Vec2&) { return shift; }, {});
-    EXPECT_LT(end_point_error(flow_of(pair), pair.truth, 14).mean, 0.02) << shift.transpose();
+    INFO(shift.transpose());
+    CHECK(end_point_error(flow_of(pair), pair.truth, 14).mean < 0.02);
   }
 }
 
-TEST(VariationalFlow, AffineWarpsAreFoundToATenth) {
+TEST_CASE("VariationalFlow.AffineWarpsAreFoundToATenth") {
   const test::WarpedPair pair = warped_pair(256, 240, affine, {});
   const test::EndPointError e = end_point_error(flow_of(pair), pair.truth, 16);
-  EXPECT_LT(e.mean, 0.1);
-  EXPECT_LT(e.percentile_95, 0.25);
+  CHECK(e.mean < 0.1);
+  CHECK(e.percentile_95 < 0.25);
 }
 
-TEST(VariationalFlow, ErrorFallsWithNoiseAndWithPixels) {
+TEST_CASE("VariationalFlow.ErrorFallsWithNoiseAndWithPixels") {
   double before = 1e9;
   for (const double noise : {24.0, 12.0, 6.0}) {
     const test::WarpedPair pair = warped_pair(200, 200, affine, {.noise = noise});
     const double error = end_point_error(flow_of(pair), pair.truth, 16).mean;
-    EXPECT_LT(error, 0.9 * before) << noise;
+    {
+      INFO(noise);
+      CHECK(error < 0.9 * before);
+    }
     before = error;
   }
   // The same warp and pattern, seen with more pixels: the error as a share of the picture falls at least as fast as
@@ -68,12 +74,15 @@ TEST(VariationalFlow, ErrorFallsWithNoiseAndWithPixels) {
   for (const int side : {96, 192, 384}) {
     const test::WarpedPair pair = warped_pair(side, side, test::waves(0.012 * side, 0.6 * side), {.noise = 2});
     const double share = end_point_error(flow_of(pair), pair.truth, side / 12).mean / side;
-    EXPECT_LT(share, 0.6 * share_before) << side;
+    {
+      INFO(side);
+      CHECK(share < 0.6 * share_before);
+    }
     share_before = share;
   }
 }
 
-TEST(VariationalFlow, AxesMayBeExchanged) {
+TEST_CASE("VariationalFlow.AxesMayBeExchanged") {
   const test::WarpedPair pair = warped_pair(150, 110, test::waves(3, 90), {.noise = 4});
   Context context;
   const Flow flow = flow_of(pair),
@@ -84,10 +93,10 @@ TEST(VariationalFlow, AxesMayBeExchanged) {
       worst = std::max(worst, static_cast<double>(std::abs(flow.u[flow.index(x, y)] - other.v[other.index(y, x)])));
       worst = std::max(worst, static_cast<double>(std::abs(flow.v[flow.index(x, y)] - other.u[other.index(y, x)])));
     }
-  EXPECT_LT(worst, 0.01);
+  CHECK(worst < 0.01);
 }
 
-TEST(VariationalFlow, WhatIsMissingIsBridged) {
+TEST_CASE("VariationalFlow.WhatIsMissingIsBridged") {
   test::WarpedPair pair = warped_pair(220, 220, affine, {.noise = 2});
   const double before = end_point_error(flow_of(pair), pair.truth, 16).mean;
   // Garbage of weight 0 in the second picture.
@@ -95,29 +104,29 @@ TEST(VariationalFlow, WhatIsMissingIsBridged) {
     for (int x = 0; x < 220; ++x)
       if (std::hypot(x - 90, y - 120) < 14) pair.second.at(x, y) = Float4{255, 0, 255, 0};
   const Flow flow = flow_of(pair);
-  EXPECT_LT(end_point_error(flow, pair.truth, 16).mean, 1.3 * before + 0.02);
+  CHECK(end_point_error(flow, pair.truth, 16).mean < 1.3 * before + 0.02);
   const std::size_t middle = flow.index(90, 120);
-  EXPECT_NEAR(flow.u[middle], pair.truth.u[middle], 0.5);
-  EXPECT_NEAR(flow.v[middle], pair.truth.v[middle], 0.5);
+  CHECK_THAT(flow.u[middle], WithinAbs(pair.truth.u[middle], 0.5));
+  CHECK_THAT(flow.v[middle], WithinAbs(pair.truth.v[middle], 0.5));
 }
 
-TEST(VariationalFlow, NothingKnownGivesNoFlow) {
+TEST_CASE("VariationalFlow.NothingKnownGivesNoFlow") {
   const WeightedPicture empty(40, 40);
   Context context;
   const Flow flow = variational_flow(empty, empty, {}, context);
-  for (const float u : flow.u) EXPECT_EQ(u, 0.0f);
+  for (const float u : flow.u) CHECK(u == 0.0f);
 }
 
-TEST(VariationalFlow, AFirstGuessIsCorrected) {
+TEST_CASE("VariationalFlow.AFirstGuessIsCorrected") {
   const test::WarpedPair pair = warped_pair(240, 240, test::bulge(20, 70), {.noise = 2});
   Context context;
   Flow guess = pair.truth;
   for (float& u : guess.u) u += 2.5f;
   const Flow flow = refined_flow(pair.first, pair.second, guess, 6, {}, context);
-  EXPECT_LT(end_point_error(flow, pair.truth, 16).mean, 0.25);
+  CHECK(end_point_error(flow, pair.truth, 16).mean < 0.25);
 }
 
-TEST(VariationalFlow, EvidenceFollowsTheNoise) {
+TEST_CASE("VariationalFlow.EvidenceFollowsTheNoise") {
   for (const double noise : {3.0, 9.0}) {
     const test::WarpedPair pair = warped_pair(160, 160, [](const Vec2&) { return Vec2(2, 1); }, {.noise = noise});
     const FlowEvidence e = flow_evidence(pair.first, pair.second, pair.truth, Context());
@@ -128,24 +137,24 @@ TEST(VariationalFlow, EvidenceFollowsTheNoise) {
         ++count;
       }
     // At whole pixels the cubic leaves noise as it is: three channels of noise^2 each.
-    EXPECT_NEAR(std::sqrt(squared / count / 3), noise, 0.08 * noise + 0.3);
+    CHECK_THAT(std::sqrt(squared / count / 3), WithinAbs(noise, 0.08 * noise + 0.3));
   }
 }
 
-TEST(VariationalFlow, GivesTheSameBitsOnEveryMachine) {
+TEST_CASE("VariationalFlow.GivesTheSameBitsOnEveryMachine") {
   // Recorded natively on two threads; WebAssembly runs the same test on one.
   const test::WarpedPair pair = warped_pair(480, 450, affine, {});
   const Flow flow = flow_of(pair);
   std::vector<float> both = flow.u;
   both.insert(both.end(), flow.v.begin(), flow.v.end());
-  EXPECT_EQ(sha256_hex(ByteView(reinterpret_cast<const std::byte*>(both.data()), sizeof(float) * both.size())),
-            "6d0d9b9dffe2b5366cc89f1ea88900f143aed99bfe0f6a73cb58e1c00693f048");
+  CHECK(sha256_hex(ByteView(reinterpret_cast<const std::byte*>(both.data()), sizeof(float) * both.size())) ==
+        "6d0d9b9dffe2b5366cc89f1ea88900f143aed99bfe0f6a73cb58e1c00693f048");
 }
 
-TEST(VariationalFlow, RefusesPicturesThatDoNotBelongTogether) {
+TEST_CASE("VariationalFlow.RefusesPicturesThatDoNotBelongTogether") {
   Context context;
-  EXPECT_THROW(variational_flow(WeightedPicture(40, 40), WeightedPicture(40, 41), {}, context), Error);
-  EXPECT_THROW(variational_flow(WeightedPicture(15, 40), WeightedPicture(15, 40), {}, context), Error);
+  CHECK_THROWS_AS(variational_flow(WeightedPicture(40, 40), WeightedPicture(40, 41), {}, context), Error);
+  CHECK_THROWS_AS(variational_flow(WeightedPicture(15, 40), WeightedPicture(15, 40), {}, context), Error);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "job/catalog.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
 
 #include <set>
 #include <sstream>
@@ -16,41 +16,60 @@
 namespace formwright {
 namespace {
 
-TEST(Catalog, EveryNameStandsOnceAndEverythingIsSaid) {
+std::string message_of(const JobResult& result) { return result.error ? result.error->message : ""; }
+
+TEST_CASE("Catalog.EveryNameStandsOnceAndEverythingIsSaid") {
   std::set<std::string> names;
   for (const Operation& operation : operations()) {
-    EXPECT_TRUE(names.insert(operation.name).second) << operation.name;
-    EXPECT_FALSE(operation.summary.empty());
+    {
+      INFO(operation.name);
+      CHECK(names.insert(operation.name).second);
+    }
+    CHECK_FALSE(operation.summary.empty());
     std::set<std::string> own;
     for (const ParameterInfo& info : operation.parameters) {
-      EXPECT_TRUE(own.insert(info.name).second) << info.name;
-      EXPECT_FALSE(info.label.empty()) << info.name;
-      EXPECT_TRUE(info.help.ends_with(".")) << operation.name << " " << info.name;
-      EXPECT_LE(info.minimum, info.slider_minimum) << info.name;
-      EXPECT_GE(info.maximum, info.slider_maximum) << info.name;
+      {
+        INFO(info.name);
+        CHECK(own.insert(info.name).second);
+        CHECK_FALSE(info.label.empty());
+      }
+      {
+        INFO(operation.name << " " << info.name);
+        CHECK(info.help.ends_with("."));
+      }
+      {
+        INFO(info.name);
+        CHECK(info.minimum <= info.slider_minimum);
+        CHECK(info.maximum >= info.slider_maximum);
+      }
       if (info.default_value.is_number()) {
-        EXPECT_GE(info.default_value.get<double>(), info.minimum) << info.name;
-        EXPECT_LE(info.default_value.get<double>(), info.maximum) << info.name;
+        INFO(info.name);
+        CHECK(info.default_value.get<double>() >= info.minimum);
+        CHECK(info.default_value.get<double>() <= info.maximum);
       }
       // A length, angle or time carries its unit in its name.
       const std::vector<std::pair<std::string, std::string>> suffixes = {{"mm", "_mm"}, {"°", "_deg"}, {"s", "_s"}};
       for (const auto& [unit, suffix] : suffixes)
         if (info.unit == unit) {
-          EXPECT_TRUE(info.name.ends_with(suffix) || (unit == "°" && info.name.ends_with("_degrees"))) << info.name;
+          INFO(info.name);
+          CHECK((info.name.ends_with(suffix) || (unit == "°" && info.name.ends_with("_degrees"))));
         }
     }
     std::set<std::string> fields;
-    for (const ReportField& field : operation.report) EXPECT_TRUE(fields.insert(field.name).second) << field.name;
+    for (const ReportField& field : operation.report) {
+      INFO(field.name);
+      CHECK(fields.insert(field.name).second);
+    }
   }
 }
 
 #ifndef __EMSCRIPTEN__
-TEST(Catalog, IsTheSnapshot) {
+TEST_CASE("Catalog.IsTheSnapshot") {
   // A change of the public declaration shows up in review: `build/formwright describe > tests/job/catalog.json`.
   std::ifstream stream(FORMWRIGHT_CATALOG_SNAPSHOT);
   std::stringstream text;
   text << stream.rdbuf();
-  EXPECT_EQ(catalog_json().dump(2) + "\n", text.str());
+  CHECK(catalog_json().dump(2) + "\n" == text.str());
 }
 #endif
 
@@ -60,37 +79,38 @@ Json error_of(const Json& message) {
   return result.error ? error_json(*result.error)["error"] : Json("no error");
 }
 
-TEST(RunJob, AnswersEveryWrongMessageWithTheFieldConcerned) {
+TEST_CASE("RunJob.AnswersEveryWrongMessageWithTheFieldConcerned") {
   const Json mesh = {{"mesh", {{"sample", "star"}}}};
-  EXPECT_EQ(error_of(Json::array())["code"], "invalid_input");
-  EXPECT_EQ(error_of(Json(Json::value_t::discarded))["code"], "invalid_input");
-  EXPECT_EQ(error_of({{"operation", 5}})["where"], "operation");
-  EXPECT_EQ(error_of({{"operation", "carve"}})["where"], "operation");
-  EXPECT_EQ(error_of({{"operation", "relief"}, {"extra", 1}})["where"], "extra");
-  EXPECT_EQ(error_of({{"operation", "relief"}})["where"], "mesh");
-  EXPECT_EQ(error_of({{"operation", "relief"}, {"inputs", {{"mesh", {{"sample", "nobody"}}}}}})["code"],
-            "invalid_input");
-  EXPECT_EQ(error_of({{"operation", "relief"},
-                      {"inputs", {{"mesh", {{"sample", "bust"}, {"sha256", std::string(64, 'a')}}}}}})["where"],
-            "mesh");
-  EXPECT_EQ(error_of({{"operation", "relief"}, {"inputs", {{"mesh", {{"sha256", std::string(64, 'a')}}}}}})["where"],
-            "mesh");
-  EXPECT_EQ(error_of({{"operation", "relief"}, {"inputs", mesh}, {"parameters", {{"thickness_mm", 0}}}})["where"],
-            "thickness_mm");
-  EXPECT_EQ(error_of({{"operation", "relief"}, {"inputs", mesh}, {"parameters", {{"thicknes_mm", 1}}}})["where"],
-            "thicknes_mm");
-  EXPECT_EQ(error_of({{"operation", "relief"}, {"inputs", mesh}, {"outputs", {"relief.xyz"}}})["where"], "outputs");
+  CHECK(error_of(Json::array())["code"] == "invalid_input");
+  CHECK(error_of(Json(Json::value_t::discarded))["code"] == "invalid_input");
+  CHECK(error_of({{"operation", 5}})["where"] == "operation");
+  CHECK(error_of({{"operation", "carve"}})["where"] == "operation");
+  CHECK(error_of({{"operation", "relief"}, {"extra", 1}})["where"] == "extra");
+  CHECK(error_of({{"operation", "relief"}})["where"] == "mesh");
+  CHECK(error_of({{"operation", "relief"}, {"inputs", {{"mesh", {{"sample", "nobody"}}}}}})["code"] == "invalid_input");
+  CHECK(error_of({{"operation", "relief"},
+                  {"inputs", {{"mesh", {{"sample", "bust"}, {"sha256", std::string(64, 'a')}}}}}})["where"] == "mesh");
+  CHECK(error_of({{"operation", "relief"}, {"inputs", {{"mesh", {{"sha256", std::string(64, 'a')}}}}}})["where"] ==
+        "mesh");
+  CHECK(error_of({{"operation", "relief"}, {"inputs", mesh}, {"parameters", {{"thickness_mm", 0}}}})["where"] ==
+        "thickness_mm");
+  CHECK(error_of({{"operation", "relief"}, {"inputs", mesh}, {"parameters", {{"thicknes_mm", 1}}}})["where"] ==
+        "thicknes_mm");
+  CHECK(error_of({{"operation", "relief"}, {"inputs", mesh}, {"outputs", {"relief.xyz"}}})["where"] == "outputs");
 }
 
-TEST(RunJob, MakesOnlyWhatIsAskedFor) {
+TEST_CASE("RunJob.MakesOnlyWhatIsAskedFor") {
   Session session;
   const Json message = {{"operation", "import"},
                         {"inputs", {{"mesh", {{"sample", "star"}, {"vertices", 600}}}}},
                         {"outputs", {"model.stl"}}};
   const JobResult result = run_job(message, [](const std::string&) { return nullptr; }, session, {});
-  ASSERT_FALSE(result.error) << result.error->message;
-  ASSERT_EQ(result.outputs.size(), 1u);
-  EXPECT_EQ(result.outputs[0].name, "model.stl");
+  {
+    INFO(message_of(result));
+    REQUIRE_FALSE(result.error);
+  }
+  REQUIRE(result.outputs.size() == 1u);
+  CHECK(result.outputs[0].name == "model.stl");
 }
 
 /// A flat sheet with a pattern as its picture, as a scan: the smallest that can be measured.
@@ -170,7 +190,7 @@ Bytes zippable_design(Session& session) {
   return *run_job(message, [](const std::string&) { return nullptr; }, session, {}).outputs.at(0).bytes;
 }
 
-TEST(RunJob, ReportsOnlyDeclaredFigures) {
+TEST_CASE("RunJob.ReportsOnlyDeclaredFigures") {
   Session session;
   const PrintedSheet printed(session);
   const MeasuredObjects measured(session);
@@ -226,47 +246,52 @@ TEST(RunJob, ReportsOnlyDeclaredFigures) {
       message["inputs"][input.name] = {{"sha256", hash}, {"file_name", input.object_file}};
     }
     const JobResult result = run_job(message, [&](const std::string& hash) { return files[hash]; }, session, {});
-    ASSERT_FALSE(result.error) << operation.name << ": " << result.error->message;
+    {
+      INFO(operation.name << ": " << message_of(result));
+      REQUIRE_FALSE(result.error);
+    }
     std::set<std::string> declared;
     for (const ReportField& field : operation.report) declared.insert(field.name);
-    for (const auto& [name, value] : result.report.items())
-      EXPECT_TRUE(declared.contains(name)) << operation.name << " " << name;
-    for (const OutputBlob& output : result.outputs) EXPECT_NE(operation.output(output.name), nullptr);
+    for (const auto& [name, value] : result.report.items()) {
+      INFO(operation.name << " " << name);
+      CHECK(declared.contains(name));
+    }
+    for (const OutputBlob& output : result.outputs) CHECK(operation.output(output.name) != nullptr);
   }
 }
 
-TEST(Session, KeepsTheNewestWithinItsCapacity) {
+TEST_CASE("Session.KeepsTheNewestWithinItsCapacity") {
   Session session(100);
   session.keep("a", std::make_shared<int>(1), 60);
   session.keep("b", std::make_shared<int>(2), 30);
-  EXPECT_EQ(*session.find<int>("a"), 1);  // used: now the newest
+  CHECK(*session.find<int>("a") == 1);  // used: now the newest
   session.keep("c", std::make_shared<int>(3), 30);
-  EXPECT_EQ(session.find<int>("b"), nullptr);
-  EXPECT_NE(session.find<int>("a"), nullptr);
-  EXPECT_EQ(session.find<double>("a"), nullptr);  // another type is not what was asked for
+  CHECK(session.find<int>("b") == nullptr);
+  CHECK(session.find<int>("a") != nullptr);
+  CHECK(session.find<double>("a") == nullptr);  // another type is not what was asked for
   session.keep("huge", std::make_shared<int>(4), 1e6);
-  EXPECT_EQ(*session.find<int>("huge"), 4);
-  EXPECT_EQ(session.find<int>("c"), nullptr);
+  CHECK(*session.find<int>("huge") == 4);
+  CHECK(session.find<int>("c") == nullptr);
   session.drop("hu");
-  EXPECT_EQ(session.used_mb(), 0);
+  CHECK(session.used_mb() == 0);
 }
 
-TEST(Relief, ASecondThicknessReusesTheFactorisation) {
+TEST_CASE("Relief.ASecondThicknessReusesTheFactorisation") {
   Session session;
   Json message = {{"operation", "relief"},
                   {"inputs", {{"mesh", {{"sample", "star"}, {"vertices", 1500}}}}},
                   {"outputs", Json::array()}};
   const auto run = [&] { return run_job(message, [](const std::string&) { return nullptr; }, session, {}); };
-  EXPECT_FALSE(run().report["factor_reused"]);
+  CHECK_FALSE(run().report["factor_reused"]);
   message["parameters"] = {{"thickness_mm", 2}};
-  EXPECT_TRUE(run().report["factor_reused"]);
+  CHECK(run().report["factor_reused"]);
   message["parameters"] = {{"thickness_mm", 2}, {"width_mm", 50}};
-  EXPECT_TRUE(run().report["factor_reused"]);
+  CHECK(run().report["factor_reused"]);
   message["parameters"] = {{"projection", "orthographic"}};
-  EXPECT_FALSE(run().report["factor_reused"]);
+  CHECK_FALSE(run().report["factor_reused"]);
 }
 
-TEST(Thermoform, AnotherPlateHeightIsFormedAnew) {
+TEST_CASE("Thermoform.AnotherPlateHeightIsFormedAnew") {
   // The mould stands in machine coordinates: the same travel from another height is another forming.
   Session session;
   const auto run = [&](double plate_mm) {
@@ -287,12 +312,15 @@ TEST(Thermoform, AnotherPlateHeightIsFormedAnew) {
                             {"measured", {{"sha256", std::string(64, 'b')}, {"file_name", "measured.csv"}}}}},
                           {"outputs", Json::array()}};
     const JobResult result = run_job(message, [&](const std::string& hash) { return files.at(hash); }, session, {});
-    EXPECT_FALSE(result.error) << result.error->message;
+    {
+      INFO(message_of(result));
+      CHECK_FALSE(result.error);
+    }
     return result.report.value("seconds_simulation", -1.0);
   };
-  EXPECT_GT(run(0), 0);
-  EXPECT_EQ(run(0), 0);
-  EXPECT_GT(run(2), 0);
+  CHECK(run(0) > 0);
+  CHECK(run(0) == 0);
+  CHECK(run(2) > 0);
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "machines/egv_bounds.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +14,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 constexpr double mm_per_mil = 0.0254;
 
@@ -103,7 +105,7 @@ struct Motors {
     else if (body[i] == 'z') count = 255, ++i;
     else if (body[i] >= 'a' && body[i] < 'z') count = body[i] - 'a' + 1, ++i;
     else {
-      ADD_FAILURE() << "the letter " << body[i];
+      FAIL_CHECK("the letter " << body[i]);
       return body.size();
     }
     for (; count > 0; --count) {
@@ -123,14 +125,18 @@ struct Motors {
 };
 
 void expect_same(const GcodeBounds& bounds, const Steps& steps, const std::string& what) {
-  ASSERT_FALSE(bounds.empty) << what;
+  {
+    INFO(what);
+    REQUIRE_FALSE(bounds.empty);
+  }
   for (std::size_t axis = 0; axis < 2; ++axis) {
-    EXPECT_NEAR(bounds.low_mm[axis], mm_per_mil * static_cast<double>(steps.low[axis]), 1e-9) << what;
-    EXPECT_NEAR(bounds.high_mm[axis], mm_per_mil * static_cast<double>(steps.high[axis]), 1e-9) << what;
+    INFO(what);
+    REQUIRE_THAT(bounds.low_mm[axis], WithinAbs(mm_per_mil * static_cast<double>(steps.low[axis]), 1e-9));
+    REQUIRE_THAT(bounds.high_mm[axis], WithinAbs(mm_per_mil * static_cast<double>(steps.high[axis]), 1e-9));
   }
 }
 
-TEST(EgvBounds, AreThoseOfThePlanAndOfTheMotors) {
+TEST_CASE("EgvBounds.AreThoseOfThePlanAndOfTheMotors") {
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     Random random(seed);
     MachineOptions machine;
@@ -147,26 +153,32 @@ TEST(EgvBounds, AreThoseOfThePlanAndOfTheMotors) {
       expect_same(bounds.worked, worked_of(path, machine), what + ", the plan");
     }
     expect_same(bounds.reached, motors.all, what + ", all steps");
-    for (std::size_t axis = 0; axis < 2; ++axis)
-      EXPECT_NEAR(bounds.end_mm[axis], mm_per_mil * static_cast<double>(motors.all.at[axis]), 1e-9) << what;
-    EXPECT_EQ(motors.all.at, (std::array<std::int64_t, 2>{0, 0})) << what;
-    if (HasFailure()) break;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      INFO(what);
+      REQUIRE_THAT(bounds.end_mm[axis], WithinAbs(mm_per_mil * static_cast<double>(motors.all.at[axis]), 1e-9));
+    }
+    {
+      INFO(what);
+      REQUIRE(motors.all.at == std::array<std::int64_t, 2>{0, 0});
+    }
   }
 }
 
-TEST(EgvBounds, FollowTheLettersOfOtherPrograms) {
+TEST_CASE("EgvBounds.FollowTheLettersOfOtherPrograms") {
   const auto of = [](const std::string& egv) { return egv_bounds(k40_packets(egv)); };
   // Two rapid moves and their way back home.
   const EgvBounds moved = of("IB100R|aS1P\nIBaS1P\nIPP\n");
-  EXPECT_TRUE(moved.worked.empty);
-  EXPECT_NEAR(moved.reached.high_mm[0], 101 * mm_per_mil, 1e-12);
-  EXPECT_NEAR(moved.reached.high_mm[1], 26 * mm_per_mil, 1e-12);
-  EXPECT_EQ(moved.end_mm, (std::array<double, 2>{0, 0}));
+  CHECK(moved.worked.empty);
+  CHECK_THAT(moved.reached.high_mm[0], WithinAbs(101 * mm_per_mil, 1e-12));
+  CHECK_THAT(moved.reached.high_mm[1], WithinAbs(26 * mm_per_mil, 1e-12));
+  CHECK(moved.end_mm == std::array<double, 2>{0, 0});
   // A raster: its rows are three steps apart, by themselves.
   const EgvBounds raster = of("ICV1752241000000003G003NBRNBzRzBS1EDBdTdBdTdFNSE-\n");
-  EXPECT_NEAR(raster.worked.high_mm[1] - raster.worked.low_mm[1], 3 * 3 * mm_per_mil, 1e-12);
-  for (const char* unknown : {"IAaS1P\n", "IB1S1P\n", "IaS1P\n", "IB1234S1P\n", "IBaS1234P\n", "I$\n"})
-    EXPECT_THROW(of(unknown), Error) << unknown;
+  CHECK_THAT(raster.worked.high_mm[1] - raster.worked.low_mm[1], WithinAbs(3 * 3 * mm_per_mil, 1e-12));
+  for (const char* unknown : {"IAaS1P\n", "IB1S1P\n", "IaS1P\n", "IB1234S1P\n", "IBaS1234P\n", "I$\n"}) {
+    INFO(unknown);
+    CHECK_THROWS_AS(of(unknown), Error);
+  }
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "machines/gcode_rules.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
 
 #include "base/error.h"
 
@@ -14,15 +14,18 @@ std::string refused(const std::string& text, GcodeDialect dialect = GcodeDialect
   try {
     require_runnable(GcodeProgram::read(as_bytes(text), 96, marlin), {dialect, mist});
   } catch (const Error& error) {
-    EXPECT_EQ(error.where(), "job");
+    CHECK(error.where() == "job");
     const std::string sentence = error.what();
-    EXPECT_TRUE(sentence.starts_with("Line ") && sentence.ends_with('.')) << sentence;
+    {
+      INFO(sentence);
+      CHECK((sentence.starts_with("Line ") && sentence.ends_with('.')));
+    }
     return sentence;
   }
   return "";
 }
 
-TEST(GcodeRules, WaysThatNobodyCanTellAreRefused) {
+TEST_CASE("GcodeRules.WaysThatNobodyCanTellAreRefused") {
   for (const auto& [line, fix] : {std::pair{"G53G0X-5", "machine coordinates"},
                                   {"G28", "a place that the machine keeps"},
                                   {"G30X5", "a place that the machine keeps"},
@@ -55,12 +58,13 @@ TEST(GcodeRules, WaysThatNobodyCanTellAreRefused) {
                                   {"G2X10Y0F100", "without a centre"},
                                   {"G2X10Y0I1F100", "differ by"}}) {
     const std::string sentence = refused(std::string("G21G90\nG0X5Y5\n") + line);
-    EXPECT_TRUE(sentence.starts_with("Line 3 ")) << line << ": " << sentence;
-    EXPECT_NE(sentence.find(fix), std::string::npos) << line << ": " << sentence;
+    INFO(line << ": " << sentence);
+    CHECK(sentence.starts_with("Line 3 "));
+    CHECK(sentence.find(fix) != std::string::npos);
   }
 }
 
-TEST(GcodeRules, WordsThatGrblAnswersWithAnErrorAreRefused) {
+TEST_CASE("GcodeRules.WordsThatGrblAnswersWithAnErrorAreRefused") {
   for (const auto& [line, error] :
        {std::pair{"G64", "error 20"}, {"T1M6", "M6, error 20"}, {"M61Q2", "error 20"},
         {"G61.1", "error 20"},        {"G1.5X1", "error 20"},   {"G0X1E5", "error 20"},
@@ -71,22 +75,25 @@ TEST(GcodeRules, WordsThatGrblAnswersWithAnErrorAreRefused) {
         {"G0X1I5", "error 36"},       {"G0X1P2", "error 36"},   {"G2X10Y5R5I1F100", "error 36"},
         {"G1X1F-5", "error 4"},       {"T256", "error 38"},     {"G0X1N20000000", "error 27"}}) {
     const std::string sentence = refused(std::string("G21G90\nG0X5Y5\n") + line);
-    EXPECT_TRUE(sentence.starts_with("Line 3 ")) << line << ": " << sentence;
-    EXPECT_NE(sentence.find(error), std::string::npos) << line << ": " << sentence;
+    INFO(line << ": " << sentence);
+    CHECK(sentence.starts_with("Line 3 "));
+    CHECK(sentence.find(error) != std::string::npos);
   }
-  EXPECT_EQ(refused("M7\nM9"), "");
-  EXPECT_NE(refused("M7\nM9", GcodeDialect::grbl, false).find("mist"), std::string::npos);
+  CHECK(refused("M7\nM9") == "");
+  CHECK(refused("M7\nM9", GcodeDialect::grbl, false).find("mist") != std::string::npos);
 }
 
-TEST(GcodeRules, WhatGrblTakesPasses) {
+TEST_CASE("GcodeRules.WhatGrblTakesPasses") {
   for (const char* text :
        {"G21G90G17G94G54G40G49G80\nG61\nM5\nG0X1Y2\nM4S0\nM8\nG1X3S500F1000\nX4\nG2X10Y2I3J0\nM5M9\nG0X0Y0\nM2",
         "G91\nG0Z5\nG90\nG0X1Y2", "G1F100\nX5", "G4P0.5X3", "G20\nG91.1\nG0X1Y1\nG3X2Y1R0.5F10", "T1\nM3S1\nM30",
-        "G18\nG0X0Z0\nG3X10Z0R5Y4F100", "G80\nG0X5", "N5G0X1\nG0X2N10"})
-    EXPECT_EQ(refused(text), "") << text;
+        "G18\nG0X0Z0\nG3X10Z0R5Y4F100", "G80\nG0X5", "N5G0X1\nG0X2N10"}) {
+    INFO(text);
+    CHECK(refused(text) == "");
+  }
 }
 
-TEST(GcodeRules, MarlinLeavesOutWhatItDoesNotKnow) {
+TEST_CASE("GcodeRules.MarlinLeavesOutWhatItDoesNotKnow") {
   for (const auto& [line, fix] : {std::pair{"G20", "in inches"},
                                   {"X5", "begin it with G0 or G1"},
                                   {"G90G0X5", "line of its own"},
@@ -98,27 +105,30 @@ TEST(GcodeRules, MarlinLeavesOutWhatItDoesNotKnow) {
                                   {"T1", "changes the tool"},
                                   {"G92X0", "moves the origin"}}) {
     const std::string sentence = refused(std::string("G21\nG90\n") + line, GcodeDialect::marlin);
-    EXPECT_TRUE(sentence.starts_with("Line 3 ")) << line << ": " << sentence;
-    EXPECT_NE(sentence.find(fix), std::string::npos) << line << ": " << sentence;
-    EXPECT_EQ(refused(std::string("G21\nG90\n") + line, GcodeDialect::marlin_printer), "");
+    {
+      INFO(line << ": " << sentence);
+      CHECK(sentence.starts_with("Line 3 "));
+      CHECK(sentence.find(fix) != std::string::npos);
+    }
+    CHECK(refused(std::string("G21\nG90\n") + line, GcodeDialect::marlin_printer) == "");
   }
-  EXPECT_EQ(refused("G21\nG90\nM5\nG0 X1 Y2 F6000\nM4 I\nG1 X5 Y2 S100 F600\nG3 I5\nM5 I\nM5\nG0 X0 Y0\nG92 E0",
-                    GcodeDialect::marlin),
-            "");
+  CHECK(refused("G21\nG90\nM5\nG0 X1 Y2 F6000\nM4 I\nG1 X5 Y2 S100 F600\nG3 I5\nM5 I\nM5\nG0 X0 Y0\nG92 E0",
+                GcodeDialect::marlin) == "");
 }
 
-TEST(GcodeRules, ParametersAndSkippedLinesAreNamedAsSuch) {
+TEST_CASE("GcodeRules.ParametersAndSkippedLinesAreNamedAsSuch") {
   for (const auto& [line, what] : {std::pair{"G1X#5", "parameters"},
                                    {"G1X[1+2]", "parameters"},
                                    {"#1=5", "parameters"},
                                    {"/G1X5", "leave out"},
                                    {"G1X5*71", "checksum"}}) {
     const std::string sentence = refused(std::string("G21\n") + line);
-    EXPECT_NE(sentence.find(what), std::string::npos) << sentence;
+    INFO(sentence);
+    CHECK(sentence.find(what) != std::string::npos);
   }
 }
 
-TEST(GcodeRules, ZIsHeldAgainstItsTravel) {
+TEST_CASE("GcodeRules.ZIsHeldAgainstItsTravel") {
   const auto z_refused = [](const std::string& text, double travel, std::optional<double> lowest) -> std::string {
     try {
       require_z_reach(GcodeProgram::read(as_bytes(text), 78).bounds(), travel, lowest);
@@ -128,18 +138,18 @@ TEST(GcodeRules, ZIsHeldAgainstItsTravel) {
     return "";
   };
   const std::string job = "G0Z5\nG0X0Y0\nG1Z-60F100";
-  EXPECT_EQ(z_refused(job, 80, std::nullopt), "");
-  EXPECT_NE(z_refused(job, 60, std::nullopt).find("shallower"), std::string::npos);
-  EXPECT_EQ(z_refused(job, 80, -70), "");
-  EXPECT_NE(z_refused(job, 80, -50).find("Set z to 0"), std::string::npos);
-  EXPECT_EQ(z_refused("G0X5Y5", 1, -50), "");
+  CHECK(z_refused(job, 80, std::nullopt) == "");
+  CHECK(z_refused(job, 60, std::nullopt).find("shallower") != std::string::npos);
+  CHECK(z_refused(job, 80, -70) == "");
+  CHECK(z_refused(job, 80, -50).find("Set z to 0") != std::string::npos);
+  CHECK(z_refused("G0X5Y5", 1, -50) == "");
 }
 
-TEST(GcodeRules, CountingFromWhereTheHeadStandsNeedsTheOrigin) {
+TEST_CASE("GcodeRules.CountingFromWhereTheHeadStandsNeedsTheOrigin") {
   const GcodeProgram relative = GcodeProgram::read(as_bytes(std::string("G91\nG1X10F100")), 78);
-  EXPECT_THROW(require_head_at_origin(relative, 0, std::nullopt), Error);
-  EXPECT_THROW(require_head_at_origin(relative, 0, std::array<double, 3>{5, 0, 0}), Error);
-  EXPECT_NO_THROW(require_head_at_origin(relative, 0, std::array<double, 3>{0.05, 0, 7}));
+  CHECK_THROWS_AS(require_head_at_origin(relative, 0, std::nullopt), Error);
+  CHECK_THROWS_AS(require_head_at_origin(relative, 0, std::array<double, 3>{5, 0, 0}), Error);
+  CHECK_NOTHROW(require_head_at_origin(relative, 0, std::array<double, 3>{0.05, 0, 7}));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "machines/grbl_driver.h"
 
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 #include <cmath>
 #include <set>
 
@@ -8,35 +9,37 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinULP;
 
 const std::string square = "G21G90\nM4S500\nG0X10Y10\nG1X30F1200\nY30\nX10\nY10\nM5\nG0X0Y0\nM2\n";
 const Json start = {{"do", "start"}, {"confirmed", true}}, stop = {{"do", "stop"}};
 
-TEST(GrblDriver, GreetsAndLearnsWhatTheMachineIs) {
+TEST_CASE("GrblDriver.GreetsAndLearnsWhatTheMachineIs") {
   GrblTalk talk;
-  EXPECT_EQ(talk.state()["connection"], "greeting");
+  CHECK(talk.state()["connection"] == "greeting");
   talk.connect();
-  EXPECT_EQ(talk.state()["firmware"], "1.1h.20190825");
-  EXPECT_EQ(talk.phase(), "alarm");  // homing is on: locked until then
-  EXPECT_FALSE(talk.state()["position_known"]);
-  EXPECT_TRUE(talk.can("home"));
-  EXPECT_TRUE(talk.can("stop"));
-  EXPECT_FALSE(talk.can("start"));
+  CHECK(talk.state()["firmware"] == "1.1h.20190825");
+  CHECK(talk.phase() == "alarm");  // homing is on: locked until then
+  CHECK_FALSE(talk.state()["position_known"]);
+  CHECK(talk.can("home"));
+  CHECK(talk.can("stop"));
+  CHECK_FALSE(talk.can("start"));
 }
 
-TEST(GrblDriver, ConnectsToABoardThatDoesNotReset) {
+TEST_CASE("GrblDriver.ConnectsToABoardThatDoesNotReset") {
   VirtualGrblOptions options;
   options.homes = false;
   GrblTalk talk(options);
   talk.connect();
   talk.driver.closed(talk.now_s);
-  EXPECT_EQ(talk.state()["connection"], "closed");
+  CHECK(talk.state()["connection"] == "closed");
   talk.driver.opened(talk.now_s);  // the machine is not told: no banner comes
   talk.connect();
-  EXPECT_EQ(talk.phase(), "idle");
+  CHECK(talk.phase() == "idle");
 }
 
-TEST(GrblDriver, KnowsTheOriginBeforeAReportSaysIt) {
+TEST_CASE("GrblDriver.KnowsTheOriginBeforeAReportSaysIt") {
   VirtualGrblOptions options;
   options.resets_on_open = false;
   GrblTalk talk(options);
@@ -44,100 +47,116 @@ TEST(GrblDriver, KnowsTheOriginBeforeAReportSaysIt) {
   talk.pass(0.3);  // the next report that says the origin comes in about two seconds
   talk.driver.closed(talk.now_s);
   talk.driver.opened(talk.now_s);
-  ASSERT_TRUE(talk.pass_until([&] { return !talk.state()["machine_mm"].is_null(); }, 5)) << talk.state().dump();
+  {
+    const bool reached = talk.pass_until([&] { return !talk.state()["machine_mm"].is_null(); }, 5);
+    INFO(talk.state().dump());
+    REQUIRE(reached);
+  }
   talk.pass(0.3);  // one report more
-  ASSERT_FALSE(talk.state()["work_mm"].is_null()) << talk.state().dump();
-  EXPECT_NEAR(talk.state()["work_mm"][0].get<double>(), 0, 1e-9);
-  EXPECT_NEAR(talk.state()["machine_mm"][0].get<double>(), talk.machine.position_mm()[0], 1e-3);
+  {
+    INFO(talk.state().dump());
+    REQUIRE_FALSE(talk.state()["work_mm"].is_null());
+  }
+  CHECK_THAT(talk.state()["work_mm"][0].get<double>(), WithinAbs(0, 1e-9));
+  CHECK_THAT(talk.state()["machine_mm"][0].get<double>(), WithinAbs(talk.machine.position_mm()[0], 1e-3));
 }
 
-TEST(GrblDriver, ConnectsToAMachineThatIsHeld) {
+TEST_CASE("GrblDriver.ConnectsToAMachineThatIsHeld") {
   VirtualGrblOptions options;
   options.resets_on_open = false;
   GrblTalk talk(options);
   talk.connect_and_home();
   talk.load(square);
   talk.tell(start);
-  ASSERT_TRUE(talk.pass_until([&] { return talk.machine.beam(); }, 10));
+  REQUIRE(talk.pass_until([&] { return talk.machine.beam(); }, 10));
   talk.tell({{"do", "pause"}});
-  ASSERT_TRUE(talk.pass_until([&] { return talk.phase() == "paused"; }, 2));
+  REQUIRE(talk.pass_until([&] { return talk.phase() == "paused"; }, 2));
   talk.driver.closed(talk.now_s);
   talk.driver.opened(talk.now_s);
   talk.connect();
-  EXPECT_EQ(talk.phase(), "paused");
-  EXPECT_TRUE(talk.can("resume"));
+  CHECK(talk.phase() == "paused");
+  CHECK(talk.can("resume"));
   talk.tell(stop);
   talk.pass(3);
-  EXPECT_EQ(talk.phase(), "idle");
-  EXPECT_EQ(talk.state()["firmware"], "1.1h.20190825");  // asked for once it rests
+  CHECK(talk.phase() == "idle");
+  CHECK(talk.state()["firmware"] == "1.1h.20190825");  // asked for once it rests
 }
 
-TEST(GrblDriver, NothingMovesOrFiresWithoutConfirmation) {
+TEST_CASE("GrblDriver.NothingMovesOrFiresWithoutConfirmation") {
   GrblTalk talk;
   talk.connect();
-  EXPECT_NE(talk.refusal({{"do", "home"}}), "");
+  CHECK(talk.refusal({{"do", "home"}}) != "");
   talk.connect_and_home();
   talk.load(square);
   for (const char* what : {"start", "frame", "focus"}) {
     Json command = {{"do", what}, {"bounds_mm", {0, 0, 10, 10}}, {"power_percent", 1}};
-    EXPECT_NE(talk.refusal(command).find("confirmed"), std::string::npos) << what;
+    {
+      INFO(what);
+      CHECK(talk.refusal(command).find("confirmed") != std::string::npos);
+    }
     command["confirmed"] = "yes";
-    EXPECT_NE(talk.refusal(command).find("confirmed"), std::string::npos) << what;
+    INFO(what);
+    CHECK(talk.refusal(command).find("confirmed") != std::string::npos);
   }
-  EXPECT_NE(talk.refusal({{"do", "send"}, {"line", "G0 X5"}}).find("confirmed"), std::string::npos);
-  EXPECT_NE(talk.refusal({{"do", "send"}, {"line", "m3 s5"}}).find("confirmed"), std::string::npos);
-  EXPECT_EQ(talk.refusal({{"do", "send"}, {"line", "$G"}}), "");
+  CHECK(talk.refusal({{"do", "send"}, {"line", "G0 X5"}}).find("confirmed") != std::string::npos);
+  CHECK(talk.refusal({{"do", "send"}, {"line", "m3 s5"}}).find("confirmed") != std::string::npos);
+  CHECK(talk.refusal({{"do", "send"}, {"line", "$G"}}) == "");
   const auto before = talk.machine.position_mm();
   talk.pass(1);
-  EXPECT_EQ(talk.machine.position_mm(), before);
-  EXPECT_TRUE(talk.machine.burns().empty());
+  CHECK(talk.machine.position_mm() == before);
+  CHECK(talk.machine.burns().empty());
 }
 
-TEST(GrblDriver, CutsWhatTheJobSays) {
+TEST_CASE("GrblDriver.CutsWhatTheJobSays") {
   GrblTalk talk;
   talk.connect_and_home();
   const auto origin = talk.machine.position_mm();
   talk.load(square);
   talk.tell(start);
-  ASSERT_TRUE(talk.pass_until([&] { return !talk.ended().empty(); }, 60)) << talk.state().dump();
-  EXPECT_EQ(talk.ended(), "done");
-  EXPECT_EQ(talk.machine.bytes_lost(), 0);
+  {
+    const bool reached = talk.pass_until([&] { return !talk.ended().empty(); }, 60);
+    INFO(talk.state().dump());
+    REQUIRE(reached);
+  }
+  CHECK(talk.ended() == "done");
+  CHECK(talk.machine.bytes_lost() == 0);
   double length = 0;
   for (const auto& burn : talk.machine.burns()) {
     length += std::hypot(burn.to_mm[0] - burn.from_mm[0], burn.to_mm[1] - burn.from_mm[1]);
     for (const auto& p : {burn.from_mm, burn.to_mm}) {
       const double x = p[0] - origin[0], y = p[1] - origin[1];
-      EXPECT_NEAR(std::min({std::abs(x - 10), std::abs(x - 30), std::abs(y - 10), std::abs(y - 30)}), 0, 1e-9);
+      CHECK_THAT(std::min({std::abs(x - 10), std::abs(x - 30), std::abs(y - 10), std::abs(y - 30)}),
+                 WithinAbs(0, 1e-9));
     }
   }
-  EXPECT_NEAR(length, 80, 1e-6);
-  EXPECT_EQ(talk.machine.position_mm(), origin);  // done means done, not only taken in
-  EXPECT_EQ(talk.state()["job"]["acknowledged"], 10);
+  CHECK_THAT(length, WithinAbs(80, 1e-6));
+  CHECK(talk.machine.position_mm() == origin);  // done means done, not only taken in
+  CHECK(talk.state()["job"]["acknowledged"] == 10);
 }
 
-TEST(GrblDriver, StopEndsEverythingAndForgetsThePosition) {
+TEST_CASE("GrblDriver.StopEndsEverythingAndForgetsThePosition") {
   GrblTalk talk;
   talk.connect_and_home();
   talk.load("G21G90M4S500\nG1X250F600\nX0\nX250\n");
   talk.tell(start);
   talk.pass(2);
-  ASSERT_TRUE(talk.machine.beam());
+  REQUIRE(talk.machine.beam());
   talk.tell(stop);
   talk.pass(0.1);
-  EXPECT_FALSE(talk.machine.beam());
+  CHECK_FALSE(talk.machine.beam());
   talk.pass(1.5);
-  EXPECT_EQ(talk.ended(), "stopped");
-  EXPECT_FALSE(talk.state()["position_known"]);
+  CHECK(talk.ended() == "stopped");
+  CHECK_FALSE(talk.state()["position_known"]);
   const auto there = talk.machine.position_mm();
   talk.pass(5);
-  EXPECT_EQ(talk.machine.position_mm(), there);  // the queue does not go on by itself
-  EXPECT_NE(talk.refusal(start), "");
+  CHECK(talk.machine.position_mm() == there);  // the queue does not go on by itself
+  CHECK(talk.refusal(start) != "");
   // It came to rest before the reset: no alarm, but homing is asked for all the same.
-  EXPECT_EQ(talk.phase(), "idle");
-  EXPECT_TRUE(talk.can("home"));
+  CHECK(talk.phase() == "idle");
+  CHECK(talk.can("home"));
 }
 
-TEST(GrblDriver, StopWithoutLaserModeResetsAtOnce) {
+TEST_CASE("GrblDriver.StopWithoutLaserModeResetsAtOnce") {
   VirtualGrblOptions options;
   options.laser_mode = false;
   GrblTalk talk(options);
@@ -147,54 +166,58 @@ TEST(GrblDriver, StopWithoutLaserModeResetsAtOnce) {
   talk.pass(2);
   talk.tell(stop);
   talk.pass(0.05);
-  EXPECT_EQ(talk.machine.state(), "Alarm");
+  CHECK(talk.machine.state() == "Alarm");
   talk.pass(1);
-  EXPECT_EQ(talk.state()["alarm"]["code"], 3);
+  CHECK(talk.state()["alarm"]["code"] == 3);
 }
 
-TEST(GrblDriver, RefusesLaserJobsWithoutLaserMode) {
+TEST_CASE("GrblDriver.RefusesLaserJobsWithoutLaserMode") {
   VirtualGrblOptions options;
   options.laser_mode = false;
   GrblTalk talk(options);
   talk.connect_and_home();
   talk.load(square);
-  EXPECT_NE(talk.refusal(start).find("$32=1"), std::string::npos);
+  CHECK(talk.refusal(start).find("$32=1") != std::string::npos);
 }
 
-TEST(GrblDriver, HoldsAndGoesOn) {
+TEST_CASE("GrblDriver.HoldsAndGoesOn") {
   GrblTalk talk;
   talk.connect_and_home();
   talk.load(square);
   talk.tell(start);
-  ASSERT_TRUE(talk.pass_until([&] { return talk.machine.beam(); }, 10));
+  REQUIRE(talk.pass_until([&] { return talk.machine.beam(); }, 10));
   talk.tell({{"do", "pause"}});
-  ASSERT_TRUE(talk.pass_until([&] { return talk.phase() == "paused"; }, 2)) << talk.state().dump();
-  EXPECT_FALSE(talk.machine.beam());
+  {
+    const bool reached = talk.pass_until([&] { return talk.phase() == "paused"; }, 2);
+    INFO(talk.state().dump());
+    REQUIRE(reached);
+  }
+  CHECK_FALSE(talk.machine.beam());
   const auto there = talk.machine.position_mm();
   talk.pass(3);
-  EXPECT_EQ(talk.machine.position_mm(), there);
-  EXPECT_NE(talk.refusal({{"do", "resume"}}).find("confirmed"), std::string::npos);
+  CHECK(talk.machine.position_mm() == there);
+  CHECK(talk.refusal({{"do", "resume"}}).find("confirmed") != std::string::npos);
   talk.tell({{"do", "resume"}, {"confirmed", true}});
-  ASSERT_TRUE(talk.pass_until([&] { return !talk.ended().empty(); }, 60));
-  EXPECT_EQ(talk.ended(), "done");
+  REQUIRE(talk.pass_until([&] { return !talk.ended().empty(); }, 60));
+  CHECK(talk.ended() == "done");
 }
 
-TEST(GrblDriver, ARefusedLineEndsTheJob) {
+TEST_CASE("GrblDriver.ARefusedLineEndsTheJob") {
   GrblTalk talk;
   talk.connect_and_home();
   talk.machine.refuse_line("M1", 20);
   talk.load("G21G90\nM4S500\nG1X10F600\nM1\nG1X200\nM5\n");
   talk.tell(start);
-  ASSERT_TRUE(talk.pass_until([&] { return !talk.ended().empty(); }, 60));
-  EXPECT_EQ(talk.ended(), "failed");
-  EXPECT_EQ(talk.state()["error"]["line_number"], 4);
-  EXPECT_EQ(talk.state()["error"]["code"], 20);
+  REQUIRE(talk.pass_until([&] { return !talk.ended().empty(); }, 60));
+  CHECK(talk.ended() == "failed");
+  CHECK(talk.state()["error"]["line_number"] == 4);
+  CHECK(talk.state()["error"]["code"] == 20);
   talk.pass(2);
-  EXPECT_FALSE(talk.machine.beam());
-  EXPECT_LT(talk.machine.position_mm()[0], -301 + 60);
+  CHECK_FALSE(talk.machine.beam());
+  CHECK(talk.machine.position_mm()[0] < -301 + 60);
 }
 
-TEST(GrblDriver, AlarmsAreSaidInWords) {
+TEST_CASE("GrblDriver.AlarmsAreSaidInWords") {
   GrblTalk talk;
   talk.connect_and_home();
   talk.load(square);
@@ -202,18 +225,22 @@ TEST(GrblDriver, AlarmsAreSaidInWords) {
   talk.pass(1);
   talk.machine.trip_limit();
   talk.pass(0.5);
-  EXPECT_EQ(talk.ended(), "failed");
-  EXPECT_EQ(talk.phase(), "alarm");
-  EXPECT_NE(talk.state()["alarm"]["text"].get<std::string>().find("limit switch"), std::string::npos);
-  EXPECT_FALSE(talk.state()["position_known"]);
+  CHECK(talk.ended() == "failed");
+  CHECK(talk.phase() == "alarm");
+  CHECK(talk.state()["alarm"]["text"].get<std::string>().find("limit switch") != std::string::npos);
+  CHECK_FALSE(talk.state()["position_known"]);
   // The machine hears nothing but a reset now; homing sends it by itself.
   talk.tell({{"do", "home"}, {"confirmed", true}});
-  ASSERT_TRUE(talk.pass_until([&] { return talk.phase() == "idle" && talk.state()["position_known"] == true; }, 20))
-      << talk.state().dump();
-  EXPECT_TRUE(talk.state()["alarm"].is_null());
+  {
+    const bool reached =
+        talk.pass_until([&] { return talk.phase() == "idle" && talk.state()["position_known"] == true; }, 20);
+    INFO(talk.state().dump());
+    REQUIRE(reached);
+  }
+  CHECK(talk.state()["alarm"].is_null());
 }
 
-TEST(GrblDriver, ARestartInTheJobIsNoticed) {
+TEST_CASE("GrblDriver.ARestartInTheJobIsNoticed") {
   GrblTalk talk;
   talk.connect_and_home();
   talk.load(square);
@@ -222,78 +249,78 @@ TEST(GrblDriver, ARestartInTheJobIsNoticed) {
   const std::size_t lines = talk.machine.lines().size();
   talk.machine.brown_out(talk.now_s);
   talk.pass(2);
-  EXPECT_EQ(talk.ended(), "failed");
-  EXPECT_FALSE(talk.state()["position_known"]);
+  CHECK(talk.ended() == "failed");
+  CHECK_FALSE(talk.state()["position_known"]);
   talk.pass(5);
   for (std::size_t i = lines; i < talk.machine.lines().size(); ++i)
-    EXPECT_EQ(talk.machine.lines()[i].substr(0, 1), "$");  // nothing of the job follows
+    CHECK(talk.machine.lines()[i].substr(0, 1) == "$");  // nothing of the job follows
 }
 
-TEST(GrblDriver, AnUnpluggedCableClearsTheQueue) {
+TEST_CASE("GrblDriver.AnUnpluggedCableClearsTheQueue") {
   GrblTalk talk;
   talk.connect_and_home();
   talk.load(square);
   talk.tell(start);
   talk.pass(1);
   talk.driver.closed(talk.now_s);
-  EXPECT_EQ(talk.ended(), "cut_off");
-  EXPECT_FALSE(talk.state()["position_known"]);
-  EXPECT_TRUE(talk.driver.take_output().empty());
-  EXPECT_NE(talk.refusal(start).find("not connected"), std::string::npos);
+  CHECK(talk.ended() == "cut_off");
+  CHECK_FALSE(talk.state()["position_known"]);
+  CHECK(talk.driver.take_output().empty());
+  CHECK(talk.refusal(start).find("not connected") != std::string::npos);
 }
 
-TEST(GrblDriver, FramesWithoutLightAndJogsUntilLetGo) {
+TEST_CASE("GrblDriver.FramesWithoutLightAndJogsUntilLetGo") {
   GrblTalk talk;
   talk.connect_and_home();
   talk.tell({{"do", "frame"}, {"bounds_mm", {5, 5, 60, 40}}, {"speed_mm_per_s", 100}, {"confirmed", true}});
   talk.pass(0.3);
   double far = -1e9;
-  ASSERT_TRUE(talk.pass_until(
+  REQUIRE(talk.pass_until(
       [&] {
         far = std::max(far, talk.machine.position_mm()[0]);
         return talk.phase() == "idle";
       },
       20));
-  EXPECT_NEAR(far, -301 + 60, 1);
-  EXPECT_NEAR(talk.machine.position_mm()[0], -301 + 5, 1e-6);
-  EXPECT_TRUE(talk.machine.burns().empty());
+  CHECK_THAT(far, WithinAbs(-301 + 60, 1));
+  CHECK_THAT(talk.machine.position_mm()[0], WithinAbs(-301 + 5, 1e-6));
+  CHECK(talk.machine.burns().empty());
   talk.tell({{"do", "jog"}, {"x_mm", 200}, {"speed_mm_per_s", 50}});
   talk.pass(1);
   talk.tell({{"do", "jog_cancel"}});
   talk.pass(0.5);
-  EXPECT_LT(talk.machine.position_mm()[0], -301 + 70);
-  EXPECT_EQ(talk.phase(), "idle");
-  EXPECT_TRUE(talk.state()["position_known"]);
+  CHECK(talk.machine.position_mm()[0] < -301 + 70);
+  CHECK(talk.phase() == "idle");
+  CHECK(talk.state()["position_known"]);
 }
 
-TEST(GrblDriver, FocusIsWeakAndGoesOutByItself) {
+TEST_CASE("GrblDriver.FocusIsWeakAndGoesOutByItself") {
   GrblTalk talk;
   talk.connect_and_home();
-  EXPECT_NE(talk.refusal({{"do", "focus"}, {"power_percent", 50}, {"confirmed", true}}), "");
+  CHECK(talk.refusal({{"do", "focus"}, {"power_percent", 50}, {"confirmed", true}}) != "");
   talk.tell({{"do", "focus"}, {"power_percent", 1}, {"confirmed", true}});
   talk.pass(0.5);
-  EXPECT_TRUE(talk.machine.beam());
-  EXPECT_TRUE(talk.state()["laser_on"]);
+  CHECK(talk.machine.beam());
+  CHECK(talk.state()["laser_on"]);
   talk.pass(61);
-  EXPECT_FALSE(talk.machine.beam());
-  EXPECT_FALSE(talk.state()["laser_on"]);
+  CHECK_FALSE(talk.machine.beam());
+  CHECK_FALSE(talk.state()["laser_on"]);
 }
 
-TEST(GrblDriver, TheFocusLightIsOutBeforeAJobBegins) {
+TEST_CASE("GrblDriver.TheFocusLightIsOutBeforeAJobBegins") {
   GrblTalk talk;
   talk.connect_and_home();
   talk.tell({{"do", "focus"}, {"power_percent", 1}, {"confirmed", true}});
   talk.pass(0.5);
-  ASSERT_TRUE(talk.machine.beam());
+  REQUIRE(talk.machine.beam());
   talk.load("G21G90\nG4P5\nG0X5Y5\n");  // says nothing of the beam, and waits
   talk.tell(start);
   talk.pass(1);
-  EXPECT_FALSE(talk.machine.beam());
-  EXPECT_TRUE(talk.pass_until([&] { return talk.ended() == "done"; }, 20));
-  for (const auto& burn : talk.machine.burns()) EXPECT_EQ(burn.from_mm, burn.to_mm);  // the spot, and nothing else
+  CHECK_FALSE(talk.machine.beam());
+  CHECK(talk.pass_until([&] { return talk.ended() == "done"; }, 20));
+  for (const auto& burn : talk.machine.burns()) CHECK(burn.from_mm == burn.to_mm);  // the spot, and nothing else
 }
 
-TEST(GrblDriver, GoingOnLeavesAnUnnamedAxisWhereItIs) {
+TEST_CASE("GrblDriver.GoingOnLeavesAnUnnamedAxisWhereItIs") {
   GrblTalk talk;
   talk.connect_and_home();
   talk.tell({{"do", "go_to"}, {"x_mm", 10}, {"y_mm", 20}, {"speed_mm_per_s", 50}});
@@ -303,59 +330,57 @@ TEST(GrblDriver, GoingOnLeavesAnUnnamedAxisWhereItIs) {
   Json from = start;
   from["from_line"] = 3;
   talk.tell(from);
-  EXPECT_TRUE(talk.pass_until([&] { return talk.ended() == "done"; }, 20));
-  EXPECT_NEAR(talk.machine.position_mm()[0], x + 40, 1e-6);
-  EXPECT_NEAR(talk.machine.position_mm()[1], y, 1e-6);
+  CHECK(talk.pass_until([&] { return talk.ended() == "done"; }, 20));
+  CHECK_THAT(talk.machine.position_mm()[0], WithinAbs(x + 40, 1e-6));
+  CHECK_THAT(talk.machine.position_mm()[1], WithinAbs(y, 1e-6));
 }
 
-TEST(GrblDriver, JobsThatDoNotFitAreRefusedBeforeAnythingMoves) {
+TEST_CASE("GrblDriver.JobsThatDoNotFitAreRefusedBeforeAnythingMoves") {
   GrblTalk talk;
   talk.connect_and_home();
   const auto there = talk.machine.position_mm();
   talk.load("G21G90\nG0X0\nG0X500\n");
-  EXPECT_NE(talk.refusal(start).find("500 mm long"), std::string::npos);
+  CHECK(talk.refusal(start).find("500 mm long") != std::string::npos);
   talk.load("G21G90\nG0X310Y0\nG0X0\n");  // 310 mm from an origin 301 mm from the end
-  EXPECT_NE(talk.refusal(start).find("leave the bed in x"), std::string::npos);
-  EXPECT_NE(
-      talk.refusal({{"do", "frame"}, {"bounds_mm", {-150, 0, 20, 20}}, {"speed_mm_per_s", 50}, {"confirmed", true}})
-          .find("bed"),
-      std::string::npos);
+  CHECK(talk.refusal(start).find("leave the bed in x") != std::string::npos);
+  CHECK(talk.refusal({{"do", "frame"}, {"bounds_mm", {-150, 0, 20, 20}}, {"speed_mm_per_s", 50}, {"confirmed", true}})
+            .find("bed") != std::string::npos);
   talk.pass(1);
-  EXPECT_EQ(talk.machine.position_mm(), there);
+  CHECK(talk.machine.position_mm() == there);
 }
 
-TEST(GrblDriver, AJobThatCountsFromTheHeadStartsAtTheOriginOnly) {
+TEST_CASE("GrblDriver.AJobThatCountsFromTheHeadStartsAtTheOriginOnly") {
   GrblTalk talk;
   talk.connect_and_home();
   const double origin_mm = talk.machine.position_mm()[0];
   const auto rest = [&] {
     talk.pass(0.5);
-    ASSERT_TRUE(talk.pass_until([&] { return talk.phase() == "idle" && talk.can("start"); }, 20));
+    REQUIRE(talk.pass_until([&] { return talk.phase() == "idle" && talk.can("start"); }, 20));
   };
   talk.load("G21G91M4S300\nG1X100F6000\nM5\n");
   talk.tell({{"do", "jog"}, {"x_mm", 250}, {"y_mm", 250}, {"speed_mm_per_s", 150}});
   rest();
   // From here it would go to x 350, and the bed ends at 301.
-  EXPECT_NE(talk.refusal(start).find("G91"), std::string::npos);
+  CHECK(talk.refusal(start).find("G91") != std::string::npos);
   talk.tell({{"do", "go_to"}, {"x_mm", 0}, {"y_mm", 0}, {"speed_mm_per_s", 150}});
   rest();
-  EXPECT_EQ(talk.refusal(start), "");
-  ASSERT_TRUE(talk.pass_until([&] { return !talk.ended().empty(); }, 30));
-  EXPECT_EQ(talk.ended(), "done");
-  EXPECT_NEAR(talk.machine.position_mm()[0], origin_mm + 100, 1e-9);
+  CHECK(talk.refusal(start) == "");
+  REQUIRE(talk.pass_until([&] { return !talk.ended().empty(); }, 30));
+  CHECK(talk.ended() == "done");
+  CHECK_THAT(talk.machine.position_mm()[0], WithinAbs(origin_mm + 100, 1e-9));
   rest();
-  EXPECT_NE(talk.refusal(start), "");
+  CHECK(talk.refusal(start) != "");
   talk.tell({{"do", "set_origin"}, {"axes", "xy"}});
-  EXPECT_EQ(talk.refusal(start), "");
-  ASSERT_TRUE(talk.pass_until([&] { return talk.ended() == "done"; }, 30));
-  EXPECT_NEAR(talk.machine.position_mm()[0], origin_mm + 200, 1e-9);
+  CHECK(talk.refusal(start) == "");
+  REQUIRE(talk.pass_until([&] { return talk.ended() == "done"; }, 30));
+  CHECK_THAT(talk.machine.position_mm()[0], WithinAbs(origin_mm + 200, 1e-9));
   // A tool that is lifted first does not make such a job.
   talk.load("G21G91\nG0Z-5\nG90\nG0X10Y10\nG0X0Y0\n");
   rest();
-  EXPECT_EQ(talk.refusal(start), "");
+  CHECK(talk.refusal(start) == "");
 }
 
-TEST(GrblDriver, AJobThatCountsFromTheHeadGoesOnFromAnywhere) {
+TEST_CASE("GrblDriver.AJobThatCountsFromTheHeadGoesOnFromAnywhere") {
   GrblTalk talk;
   talk.connect_and_home();
   const auto origin = talk.machine.position_mm();
@@ -363,53 +388,53 @@ TEST(GrblDriver, AJobThatCountsFromTheHeadGoesOnFromAnywhere) {
   for (int i = 0; i < 20; ++i) job += "G0Y2\nG1X20F3000\nG0Y2\nG1X-20\n";
   talk.load(job + "M5\n");
   talk.tell(start);
-  ASSERT_TRUE(talk.pass_until([&] { return talk.state()["job"]["acknowledged"] > 40; }, 60));
+  REQUIRE(talk.pass_until([&] { return talk.state()["job"]["acknowledged"] > 40; }, 60));
   talk.tell(stop);
   talk.pass(2);
   const int from = talk.state()["job"]["careful_line"];
-  ASSERT_GT(from, 10);
+  REQUIRE(from > 10);
   talk.tell({{"do", "home"}, {"confirmed", true}});
-  ASSERT_TRUE(talk.pass_until([&] { return talk.phase() == "idle" && talk.state()["position_known"] == true; }, 20));
+  REQUIRE(talk.pass_until([&] { return talk.phase() == "idle" && talk.state()["position_known"] == true; }, 20));
   talk.pass(1);
-  EXPECT_NE(talk.refusal(start), "");
-  EXPECT_EQ(talk.refusal({{"do", "start"}, {"confirmed", true}, {"from_line", from}}), "");
-  ASSERT_TRUE(talk.pass_until([&] { return !talk.ended().empty(); }, 120));
-  EXPECT_EQ(talk.ended(), "done");
-  EXPECT_NEAR(talk.machine.position_mm()[0], origin[0], 1e-6);
-  EXPECT_NEAR(talk.machine.position_mm()[1], origin[1] + 80, 1e-6);
+  CHECK(talk.refusal(start) != "");
+  CHECK(talk.refusal({{"do", "start"}, {"confirmed", true}, {"from_line", from}}) == "");
+  REQUIRE(talk.pass_until([&] { return !talk.ended().empty(); }, 120));
+  CHECK(talk.ended() == "done");
+  CHECK_THAT(talk.machine.position_mm()[0], WithinAbs(origin[0], 1e-6));
+  CHECK_THAT(talk.machine.position_mm()[1], WithinAbs(origin[1] + 80, 1e-6));
 }
 
-TEST(GrblDriver, AJobMayStartAtOnceFromAnOriginJustSet) {
+TEST_CASE("GrblDriver.AJobMayStartAtOnceFromAnOriginJustSet") {
   GrblTalk talk;
   talk.connect_and_home();
   talk.load("G21G90\nG0X310Y0\nG0X0\n");  // does not fit from where the origin is: 301 mm from the end
-  EXPECT_NE(talk.refusal(start).find("leave the bed in x"), std::string::npos);
+  CHECK(talk.refusal(start).find("leave the bed in x") != std::string::npos);
   const double head_mm = talk.state()["machine_mm"][0];
   // However long ago the last report was, which told of another origin.
   for (int i = 0; i < 8; ++i) {
     talk.tell({{"do", "set_origin"}, {"at", "corner"}});
-    EXPECT_DOUBLE_EQ(talk.state()["work_mm"][0], head_mm + 400);
+    CHECK_THAT(talk.state()["work_mm"][0], WithinULP(head_mm + 400, 4));
     for (int k = 0; k < 4; ++k) {
       talk.pass(0.02);
-      EXPECT_DOUBLE_EQ(talk.state()["work_mm"][0], head_mm + 400);
+      CHECK_THAT(talk.state()["work_mm"][0], WithinULP(head_mm + 400, 4));
     }
     talk.tell({{"do", "set_origin"}, {"axes", "xy"}});
-    EXPECT_DOUBLE_EQ(talk.state()["work_mm"][0], 0);
-    EXPECT_NE(talk.refusal(start), "");
+    CHECK_THAT(talk.state()["work_mm"][0], WithinULP(0.0, 4));
+    CHECK(talk.refusal(start) != "");
     talk.pass(0.137);
   }
   talk.tell({{"do", "set_origin"}, {"at", "corner"}});
-  EXPECT_EQ(talk.refusal(start), "");
-  ASSERT_TRUE(talk.pass_until([&] { return talk.ended() == "done"; }, 30));
+  CHECK(talk.refusal(start) == "");
+  REQUIRE(talk.pass_until([&] { return talk.ended() == "done"; }, 30));
 }
 
-TEST(GrblDriver, AJobNeverStartsIntoAFrameThatIsNotDone) {
+TEST_CASE("GrblDriver.AJobNeverStartsIntoAFrameThatIsNotDone") {
   GrblTalk talk({}, {.burst_s = 0.05});
   talk.connect_and_home();
   talk.load("G21G90\nG0X5Y5\nG0X0Y0\n");
   int started = 0, refused = 0;
   for (int i = 0; i < 60; ++i) {
-    ASSERT_TRUE(talk.pass_until([&] { return talk.can("frame"); }, 5));
+    REQUIRE(talk.pass_until([&] { return talk.can("frame"); }, 5));
     talk.tell({{"do", "frame"}, {"bounds_mm", {0, 0, 10, 10}}, {"speed_mm_per_s", 50}, {"confirmed", true}});
     talk.pass(0.04 * i);
     if (talk.refusal(start) != "") {
@@ -418,14 +443,15 @@ TEST(GrblDriver, AJobNeverStartsIntoAFrameThatIsNotDone) {
       continue;
     }
     ++started;
-    ASSERT_TRUE(talk.pass_until([&] { return talk.ended() != ""; }, 10));
-    EXPECT_EQ(talk.ended(), "done") << "after " << 0.04 * i << " s: " << talk.state().dump();
+    REQUIRE(talk.pass_until([&] { return talk.ended() != ""; }, 10));
+    INFO("after " << 0.04 * i << " s: " << talk.state().dump());
+    CHECK(talk.ended() == "done");
   }
-  EXPECT_GT(started, 5);
-  EXPECT_GT(refused, 5);
+  CHECK(started > 5);
+  CHECK(refused > 5);
 }
 
-TEST(GrblDriver, GoesOnTheCarefulWay) {
+TEST_CASE("GrblDriver.GoesOnTheCarefulWay") {
   GrblTalk talk;
   talk.connect_and_home();
   std::string job = "G21G90\nM4S400\n";
@@ -436,40 +462,40 @@ TEST(GrblDriver, GoesOnTheCarefulWay) {
   job += "M5\n";
   talk.load(job);
   talk.tell(start);
-  ASSERT_TRUE(talk.pass_until([&] { return talk.state()["job"]["acknowledged"] > 40; }, 60));
+  REQUIRE(talk.pass_until([&] { return talk.state()["job"]["acknowledged"] > 40; }, 60));
   talk.tell(stop);
   talk.pass(2);
   const int from = talk.state()["job"]["careful_line"];
-  EXPECT_GT(from, 10);
-  EXPECT_LE(from, 40 - 16 + 2);
-  EXPECT_NE(talk.refusal({{"do", "start"}, {"confirmed", true}, {"from_line", from}}),
-            "");  // where the head stands is unknown
+  CHECK(from > 10);
+  CHECK(from <= 40 - 16 + 2);
+  CHECK(talk.refusal({{"do", "start"}, {"confirmed", true}, {"from_line", from}}) !=
+        "");  // where the head stands is unknown
   talk.tell({{"do", "home"}, {"confirmed", true}});
-  ASSERT_TRUE(talk.pass_until([&] { return talk.phase() == "idle" && talk.state()["position_known"] == true; }, 20));
+  REQUIRE(talk.pass_until([&] { return talk.phase() == "idle" && talk.state()["position_known"] == true; }, 20));
   const std::size_t burns_before = talk.machine.burns().size();
   talk.tell({{"do", "start"}, {"confirmed", true}, {"from_line", from}});
-  ASSERT_TRUE(talk.pass_until([&] { return !talk.ended().empty(); }, 120));
-  EXPECT_EQ(talk.ended(), "done");
+  REQUIRE(talk.pass_until([&] { return !talk.ended().empty(); }, 120));
+  CHECK(talk.ended() == "done");
   // Every row is whole: each y has a stroke of 20 mm in one of the two runs.
   std::map<long, double> rows;
   for (const auto& burn : talk.machine.burns()) {
-    EXPECT_DOUBLE_EQ(burn.power, 400);
-    EXPECT_NEAR(burn.from_mm[1], burn.to_mm[1], 1e-9);
+    CHECK_THAT(burn.power, WithinULP(400.0, 4));
+    CHECK_THAT(burn.from_mm[1], WithinAbs(burn.to_mm[1], 1e-9));
     rows[std::lround(burn.from_mm[1] * 10)] += std::abs(burn.to_mm[0] - burn.from_mm[0]);
   }
-  EXPECT_EQ(rows.size(), 30u);
-  for (const auto& [y, length] : rows) EXPECT_GE(length, 20 - 1e-6);
-  EXPECT_GT(talk.machine.burns().size(), burns_before);
+  CHECK(rows.size() == 30u);
+  for (const auto& [y, length] : rows) CHECK(length >= 20 - 1e-6);
+  CHECK(talk.machine.burns().size() > burns_before);
 }
 
-TEST(GrblDriver, SaysSoWhenNothingAnswers) {
+TEST_CASE("GrblDriver.SaysSoWhenNothingAnswers") {
   GrblDriver driver({});
   driver.opened(0);
   for (double t = 0; t < 15; t += 0.05) driver.tick(t), driver.take_output();
-  EXPECT_EQ(driver.state(15)["connection"], "silent");
+  CHECK(driver.state(15)["connection"] == "silent");
 }
 
-TEST(GrblDriver, NoiseIsNoReasonToFall) {
+TEST_CASE("GrblDriver.NoiseIsNoReasonToFall") {
   Random random(7);
   GrblDriver driver({});
   driver.opened(0);
@@ -482,8 +508,8 @@ TEST(GrblDriver, NoiseIsNoReasonToFall) {
     driver.received(as_bytes(noise), now += 0.01);
     driver.tick(now);
     driver.take_output();
-    EXPECT_NO_THROW(driver.take_events().dump());
-    EXPECT_NO_THROW(driver.state(now).dump());
+    CHECK_NOTHROW(driver.take_events().dump());
+    CHECK_NOTHROW(driver.state(now).dump());
   }
 }
 

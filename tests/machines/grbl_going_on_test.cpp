@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A cable is pulled in the middle of a job: connecting again, homing and going on from the careful line burns all that
 // was not burned.
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -9,6 +10,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 using Point = std::array<double, 2>;
 
@@ -88,11 +90,11 @@ double length_of(const std::vector<VirtualGrbl::Burn>& burns, std::size_t from) 
   return sum;
 }
 
-TEST(GrblGoingOn, AfterPulledCablesEverythingIsBurned) {
+TEST_CASE("GrblGoingOn.AfterPulledCablesEverythingIsBurned") {
   Random random(seed() + 7);
   int pulled = 0, in_two_runs = 0;
   for (int round = 0; round < 40; ++round) {
-    SCOPED_TRACE("seed " + std::to_string(seed()) + ", round " + std::to_string(round));
+    INFO("seed " + std::to_string(seed()) + ", round " + std::to_string(round));
     const Job job = random_job(random);
     GrblTalk talk({}, {.burst_s = random.uniform() < 0.3 ? 0.1 : 0.0}, random.next());
     talk.connect_and_home();
@@ -105,45 +107,56 @@ TEST(GrblGoingOn, AfterPulledCablesEverythingIsBurned) {
       const bool pull = runs <= 3;
       const double patience_s = pull ? random.uniform(0.1, 6) : 400;
       if (talk.pass_until([&] { return !talk.ended().empty(); }, patience_s)) break;
-      ASSERT_TRUE(pull) << talk.state().dump();
+      {
+        INFO(talk.state().dump());
+        REQUIRE(pull);
+      }
       ++pulled;
       talk.pull_cable();
       const Json job_state = talk.state()["job"];
-      ASSERT_EQ(job_state["ended"], "cut_off");
+      REQUIRE(job_state["ended"] == "cut_off");
       const int careful = job_state["careful_line"];
       // It begins a stroke, or the job, and lies before all that may not be done.
-      EXPECT_TRUE(careful == 1 || std::count(job.travels.begin(), job.travels.end(), careful) == 1) << careful;
-      EXPECT_LE(careful, std::max(1, job_state["line_now"].get<int>()));
+      {
+        INFO(careful);
+        CHECK((careful == 1 || std::count(job.travels.begin(), job.travels.end(), careful) == 1));
+      }
+      CHECK(careful <= std::max(1, job_state["line_now"].get<int>()));
       // The machine goes on with what it has, hears no more, and is reset when its port is opened again.
       for (const double end = talk.now_s + random.uniform(0, 2); talk.now_s < end;)
         talk.machine.advance(talk.now_s += 1e-3);
       const double burned_by_then = length_of(talk.machine.burns(), burns_before);
       talk.plug_in();
       talk.connect();
-      EXPECT_FALSE(talk.state()["position_known"]);
-      EXPECT_FALSE(talk.can("start"));
+      CHECK_FALSE(talk.state()["position_known"]);
+      CHECK_FALSE(talk.can("start"));
       talk.connect_and_home();
-      ASSERT_NEAR(talk.machine.position_mm()[0], origin[0], 1e-9);
-      ASSERT_NEAR(talk.machine.position_mm()[1], origin[1], 1e-9);
+      REQUIRE_THAT(talk.machine.position_mm()[0], WithinAbs(origin[0], 1e-9));
+      REQUIRE_THAT(talk.machine.position_mm()[1], WithinAbs(origin[1], 1e-9));
       talk.load(job.text);
       in_two_runs += burned_by_then > 0 && careful > from_line;
       burns_before = talk.machine.burns().size();
       from_line = careful;
       talk.tell({{"do", "start"}, {"confirmed", true}, {"from_line", from_line}});
     }
-    ASSERT_EQ(talk.ended(), "done") << talk.state().dump();
-    EXPECT_EQ(talk.machine.bytes_lost(), 0);
+    {
+      INFO(talk.state().dump());
+      REQUIRE(talk.ended() == "done");
+    }
+    CHECK(talk.machine.bytes_lost() == 0);
     double again_mm = 0;
     for (const Stroke& stroke : job.strokes) {
-      EXPECT_LT(left_mm(stroke, talk.machine.burns(), origin), 1e-5)
-          << "line " << stroke.line << ", gone on from " << from_line;
+      {
+        INFO("line " << stroke.line << ", gone on from " << from_line);
+        CHECK(left_mm(stroke, talk.machine.burns(), origin) < 1e-5);
+      }
       if (stroke.line >= from_line) again_mm += stroke.length_mm();
     }
     // The last run burned what lies behind its careful line, and nothing else.
-    EXPECT_NEAR(length_of(talk.machine.burns(), burns_before), again_mm, 1e-5);
+    CHECK_THAT(length_of(talk.machine.burns(), burns_before), WithinAbs(again_mm, 1e-5));
   }
-  EXPECT_GT(pulled, 40);
-  EXPECT_GT(in_two_runs, 20);
+  CHECK(pulled > 40);
+  CHECK(in_two_runs > 20);
 }
 
 }  // namespace

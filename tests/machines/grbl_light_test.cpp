@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The beam is dark whenever no stroke is burnt, whoever forgot to turn it off and whoever is gone.
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 #include <cmath>
 
 #include "grbl_talk.h"
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 const Json start = {{"do", "start"}, {"confirmed", true}};
 const Json focus = {{"do", "focus"}, {"power_percent", 1}, {"confirmed", true}};
@@ -22,8 +24,9 @@ double lit_s(const GrblTalk& talk) {
 
 void expect_strokes_only(const GrblTalk& talk) {
   for (const auto& burn : talk.machine.burns()) {
-    EXPECT_FALSE(burn.jog);
-    EXPECT_NE(burn.from_mm, burn.to_mm) << burn.seconds << " s at rest";
+    CHECK_FALSE(burn.jog);
+    INFO(burn.seconds << " s at rest");
+    CHECK(burn.from_mm != burn.to_mm);
   }
 }
 
@@ -33,25 +36,28 @@ bool heard(const GrblTalk& talk, const std::string& words) {
   });
 }
 
-TEST(GrblLight, AJobThatEndsWithoutM5LeavesNothingOn) {
+TEST_CASE("GrblLight.AJobThatEndsWithoutM5LeavesNothingOn") {
   for (const char* on : {"M3", "M4"})
     for (const Json& next : {frame, jog, go_to, home}) {
       GrblTalk talk;
       talk.connect_and_home();
       talk.load(std::string("G21\nG90\n") + on + " S800\nG1 X50 F3000\nG1 Y50\n");
       talk.tell(start);
-      ASSERT_TRUE(talk.pass_until([&] { return talk.ended() == "done"; }, 30));
-      EXPECT_EQ(talk.machine.lines().back(), "M5");
+      REQUIRE(talk.pass_until([&] { return talk.ended() == "done"; }, 30));
+      CHECK(talk.machine.lines().back() == "M5");
       const double before = lit_s(talk);
       talk.tell(next);
       talk.pass(5);
-      EXPECT_EQ(lit_s(talk), before) << on << next;
-      EXPECT_EQ(talk.state()["laser_on"], false);
+      {
+        INFO(on << next);
+        CHECK(lit_s(talk) == before);
+      }
+      CHECK(talk.state()["laser_on"] == false);
       expect_strokes_only(talk);
     }
 }
 
-TEST(GrblLight, M5IsAnsweredBeforeTheHeadMoves) {
+TEST_CASE("GrblLight.M5IsAnsweredBeforeTheHeadMoves") {
   GrblTalk talk;
   talk.connect_and_home();
   talk.tell({{"do", "send"}, {"line", "M4S500"}, {"confirmed", true}});
@@ -59,7 +65,7 @@ TEST(GrblLight, M5IsAnsweredBeforeTheHeadMoves) {
   talk.tell(jog);
   talk.pass(1);
   expect_strokes_only(talk);
-  EXPECT_TRUE(talk.machine.burns().empty());
+  CHECK(talk.machine.burns().empty());
   // Refused, it keeps the head where it is.
   talk.tell({{"do", "send"}, {"line", "M4S500"}, {"confirmed", true}});
   talk.pass(0.2);
@@ -67,102 +73,110 @@ TEST(GrblLight, M5IsAnsweredBeforeTheHeadMoves) {
   talk.machine.refuse_next(3);
   talk.tell(frame);
   talk.pass(0.5);
-  EXPECT_EQ(talk.machine.position_mm(), there);
-  EXPECT_TRUE(heard(talk, "refused to turn its laser"));
+  CHECK(talk.machine.position_mm() == there);
+  CHECK(heard(talk, "refused to turn its laser"));
 }
 
-TEST(GrblLight, AJobThatBeginsAtTheOriginIsNotBegunElsewhere) {
+TEST_CASE("GrblLight.AJobThatBeginsAtTheOriginIsNotBegunElsewhere") {
   VirtualGrblOptions options;
   options.origin_low = true;
   GrblTalk talk(options);
   talk.connect();
-  ASSERT_TRUE(talk.pass_until([&] { return talk.can("home"); }, 5));
+  REQUIRE(talk.pass_until([&] { return talk.can("home"); }, 5));
   talk.tell(home);
-  ASSERT_TRUE(talk.pass_until([&] { return talk.state()["position_known"] == true && talk.phase() == "idle"; }, 9));
+  REQUIRE(talk.pass_until([&] { return talk.state()["position_known"] == true && talk.phase() == "idle"; }, 9));
   talk.tell({{"do", "send"}, {"line", "G10L2P1X100Y100"}, {"confirmed", true}});
   talk.pass(1);
   talk.load("G21\nG90\nM4 S800\nG1 X50 F3000\nG1 Y50\nM5\n");  // its writer thought that it stands at 0, 0
-  EXPECT_NE(talk.refusal(start).find("x 0, y 0"), std::string::npos);
+  CHECK(talk.refusal(start).find("x 0, y 0") != std::string::npos);
   talk.tell({{"do", "go_to"}, {"x_mm", 0}, {"y_mm", 0}, {"speed_mm_per_s", 150}});
   talk.pass(0.5);
-  ASSERT_TRUE(talk.pass_until([&] { return talk.phase() == "idle" && talk.can("start"); }, 9));
+  REQUIRE(talk.pass_until([&] { return talk.phase() == "idle" && talk.can("start"); }, 9));
   talk.pass(1);
   talk.tell(start);
-  ASSERT_TRUE(talk.pass_until([&] { return talk.ended() == "done"; }, 30));
-  for (const auto& burn : talk.machine.burns())
-    EXPECT_TRUE(burn.from_mm[1] == 100 || burn.from_mm[0] == 150) << burn.from_mm[0] << " " << burn.from_mm[1];
+  REQUIRE(talk.pass_until([&] { return talk.ended() == "done"; }, 30));
+  for (const auto& burn : talk.machine.burns()) {
+    INFO(burn.from_mm[0] << " " << burn.from_mm[1]);
+    CHECK((burn.from_mm[1] == 100 || burn.from_mm[0] == 150));
+  }
   // One that says where it begins goes there in the dark.
   talk.load("G21\nG90\nG0X0Y0\nM4 S800\nG1 X50 F3000\nM5\n");
-  EXPECT_EQ(talk.refusal(start), "");
+  CHECK(talk.refusal(start) == "");
 }
 
-TEST(GrblLight, AKilledProgramLeavesItDarkInTheMiddleOfAnM3Job) {
+TEST_CASE("GrblLight.AKilledProgramLeavesItDarkInTheMiddleOfAnM3Job") {
   GrblTalk talk({.resets_on_open = false});
   talk.connect_and_home();
   talk.load("G21G90\nM3S500\nG1F3000\nX50\nY50\nX0\nY0\nX50\nY50\nX0\nY0\n");
-  EXPECT_NE(talk.state()["warnings"].dump().find("M4"), std::string::npos);
-  EXPECT_NE(talk.state()["when_connection_ends"].get<std::string>().find("laser off"), std::string::npos);
+  CHECK(talk.state()["warnings"].dump().find("M4") != std::string::npos);
+  CHECK(talk.state()["when_connection_ends"].get<std::string>().find("laser off") != std::string::npos);
   talk.tell(start);
-  ASSERT_TRUE(talk.pass_until([&] { return talk.machine.beam(); }, 5));
+  REQUIRE(talk.pass_until([&] { return talk.machine.beam(); }, 5));
   talk.kill_host(true);
   talk.leave_alone(60);
-  EXPECT_EQ(talk.machine.state(), "Idle");
-  EXPECT_FALSE(talk.machine.beam());
+  CHECK(talk.machine.state() == "Idle");
+  CHECK_FALSE(talk.machine.beam());
   expect_strokes_only(talk);
   // Whoever comes next turns it off before anything moves.
   talk.plug_in();
   talk.connect();
   talk.pass(1);
-  EXPECT_EQ(talk.machine.lines().back(), "M5");
+  CHECK(talk.machine.lines().back() == "M5");
 }
 
-TEST(GrblLight, AJobThatBurnsAtRestIsConfirmedInWords) {
+TEST_CASE("GrblLight.AJobThatBurnsAtRestIsConfirmedInWords") {
   GrblTalk talk;
   talk.connect_and_home();
   talk.load("G21G90\nM3S500\nG1X5F3000\nG4P0.2\nG1X9\nM5\n");
-  EXPECT_NE(talk.refusal({{"do", "start"}}).find("line 4 burns at rest"), std::string::npos);
-  EXPECT_NE(talk.state()["when_connection_ends"].get<std::string>().find("laser ON"), std::string::npos);
+  CHECK(talk.refusal({{"do", "start"}}).find("line 4 burns at rest") != std::string::npos);
+  CHECK(talk.state()["when_connection_ends"].get<std::string>().find("laser ON") != std::string::npos);
   talk.tell(start);
-  ASSERT_TRUE(talk.pass_until([&] { return talk.ended() == "done"; }, 30));
-  EXPECT_NEAR(lit_s(talk), 0.2, 0.4);
-  EXPECT_FALSE(talk.machine.beam());
+  REQUIRE(talk.pass_until([&] { return talk.ended() == "done"; }, 30));
+  CHECK_THAT(lit_s(talk), WithinAbs(0.2, 0.4));
+  CHECK_FALSE(talk.machine.beam());
 }
 
-TEST(GrblLight, FocusIsARowOfPulsesThatEndByThemselves) {
+TEST_CASE("GrblLight.FocusIsARowOfPulsesThatEndByThemselves") {
   GrblTalk talk;
   talk.connect_and_home();
   talk.tell({{"do", "override"}, {"power_percent", 200}});
   talk.pass(0.3);
   talk.tell(focus);
-  EXPECT_FALSE(talk.can("override"));
+  CHECK_FALSE(talk.can("override"));
   talk.pass(5);
-  EXPECT_EQ(talk.state()["laser_on"], true);
-  EXPECT_GT(lit_s(talk), 4.5);  // hardly a gap
-  for (const auto& burn : talk.machine.burns()) EXPECT_EQ(burn.power, 10);
+  CHECK(talk.state()["laser_on"] == true);
+  CHECK(lit_s(talk) > 4.5);  // hardly a gap
+  for (const auto& burn : talk.machine.burns()) CHECK(burn.power == 10);
   const double before = lit_s(talk);
   talk.kill_host(true);
   talk.leave_alone(60);
-  EXPECT_LE(lit_s(talk) - before, 1.1);
+  CHECK(lit_s(talk) - before <= 1.1);
 }
 
-TEST(GrblLight, NothingCarriesTheFocusLightAlong) {
+TEST_CASE("GrblLight.NothingCarriesTheFocusLightAlong") {
   for (const Json& next : {frame, jog, go_to, home, Json{{"do", "focus_off"}}, Json{{"do", "stop"}}}) {
     GrblTalk talk;
     talk.connect_and_home();
     talk.tell(focus);
     talk.pass(0.5);
-    ASSERT_TRUE(talk.machine.beam());
+    REQUIRE(talk.machine.beam());
     const auto spot = talk.machine.position_mm();
     talk.tell(next);
     talk.pass(next["do"] == "stop" ? 0.05 : 1.2);
-    EXPECT_FALSE(talk.machine.beam()) << next;
+    {
+      INFO(next);
+      CHECK_FALSE(talk.machine.beam());
+    }
     talk.pass(4);
-    for (const auto& burn : talk.machine.burns()) EXPECT_TRUE(burn.from_mm == spot && burn.to_mm == spot) << next;
-    EXPECT_FALSE(talk.can("focus_off"));
+    for (const auto& burn : talk.machine.burns()) {
+      INFO(next);
+      CHECK((burn.from_mm == spot && burn.to_mm == spot));
+    }
+    CHECK_FALSE(talk.can("focus_off"));
   }
 }
 
-TEST(GrblLight, ALostByteKeepsNoPulseOn) {
+TEST_CASE("GrblLight.ALostByteKeepsNoPulseOn") {
   Random random(5);
   for (int round = 0; round < 40; ++round) {
     GrblTalk talk({.error_latch = round % 2 == 1}, {}, random.next());
@@ -175,54 +189,55 @@ TEST(GrblLight, ALostByteKeepsNoPulseOn) {
     talk.leave_alone(20);
     // An error that the dead program cannot hear, on a board that does nothing more: the only one that may stay on.
     if (round % 2 == 0) {
-      EXPECT_LE(lit_s(talk) - before, 1.1) << round;
+      INFO(round);
+      CHECK(lit_s(talk) - before <= 1.1);
     }
-    for (const auto& burn : talk.machine.burns()) EXPECT_LE(burn.power, 10);
+    for (const auto& burn : talk.machine.burns()) CHECK(burn.power <= 10);
   }
 }
 
-TEST(GrblLight, LightThatNobodyAskedForIsTurnedOff) {
+TEST_CASE("GrblLight.LightThatNobodyAskedForIsTurnedOff") {
   GrblTalk talk;
   talk.connect_and_home();
   // From the board's own panel, say.
   talk.machine.receive("M3S300G1F100\n", talk.now_s);
   talk.pass(1.5);
-  EXPECT_FALSE(talk.machine.beam());
-  EXPECT_TRUE(heard(talk, "reports its laser on"));
-  EXPECT_TRUE(talk.state()["position_known"]);
+  CHECK_FALSE(talk.machine.beam());
+  CHECK(heard(talk, "reports its laser on"));
+  CHECK(talk.state()["position_known"]);
 }
 
-TEST(GrblLight, LinesByHandAreDarkAtRest) {
+TEST_CASE("GrblLight.LinesByHandAreDarkAtRest") {
   GrblTalk talk;
   talk.connect_and_home();
   talk.tell({{"do", "send"}, {"line", "G1F900"}, {"confirmed", true}});
   talk.tell({{"do", "send"}, {"line", "m3 s500"}, {"confirmed", true}});
   talk.pass(2);
-  EXPECT_EQ(lit_s(talk), 0);
+  CHECK(lit_s(talk) == 0);
 }
 
-TEST(GrblLight, ALimitSwitchIsResetAtOnceAndStaysAnAlarm) {
+TEST_CASE("GrblLight.ALimitSwitchIsResetAtOnceAndStaysAnAlarm") {
   GrblTalk talk;
   talk.connect_and_home();
   talk.machine.trip_limit();
   talk.pass(1);
-  EXPECT_EQ(talk.phase(), "alarm");
-  EXPECT_EQ(talk.state()["alarm"]["code"], 1);
-  EXPECT_EQ(talk.state()["connection"], "ready");
+  CHECK(talk.phase() == "alarm");
+  CHECK(talk.state()["alarm"]["code"] == 1);
+  CHECK(talk.state()["connection"] == "ready");
   talk.pass(5);
-  EXPECT_EQ(talk.state()["connection"], "ready");  // it reports again
-  EXPECT_FALSE(talk.state()["position_known"]);
+  CHECK(talk.state()["connection"] == "ready");  // it reports again
+  CHECK_FALSE(talk.state()["position_known"]);
 }
 
-TEST(GrblLight, AStopWakesABoardThatSleepsOrIsSilent) {
+TEST_CASE("GrblLight.AStopWakesABoardThatSleepsOrIsSilent") {
   GrblTalk talk;
   talk.connect_and_home();
   talk.machine.receive("$SLP\n", talk.now_s);
   talk.pass(1);
-  EXPECT_EQ(talk.phase(), "sleep");
+  CHECK(talk.phase() == "sleep");
   talk.tell({{"do", "stop"}});
   talk.pass(2);
-  EXPECT_EQ(talk.phase(), "idle");
+  CHECK(talk.phase() == "idle");
 }
 
 }  // namespace

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a machine's settings and state would make of a job is known before it begins.
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
+
 #include "grbl_talk.h"
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 const Json start = {{"do", "start"}, {"confirmed", true}};
 const std::string square = "G21G90\nM4S500\nG0X10Y10\nG1X30F1200\nY30\nX10\nY10\nM5\n";
@@ -13,81 +16,84 @@ void by_hand(GrblTalk& talk, const std::string& line) {
   talk.pass(1);
 }
 
-TEST(GrblMachine, ReportsInInchesAreMillimetresHere) {
+TEST_CASE("GrblMachine.ReportsInInchesAreMillimetresHere") {
   GrblTalk talk;
   talk.machine.set_setting(13, 1);
   talk.machine.set_setting(10, 0);
   talk.connect_and_home();
   for (std::size_t axis = 0; axis < 2; ++axis)
-    EXPECT_NEAR(talk.state()["machine_mm"][axis].get<double>(), talk.machine.position_mm()[axis], 3e-3);
+    CHECK_THAT(talk.state()["machine_mm"][axis].get<double>(), WithinAbs(talk.machine.position_mm()[axis], 3e-3));
   talk.load(square);
   talk.tell(start);
-  ASSERT_TRUE(talk.pass_until([&] { return talk.ended() == "done"; }, 60));
-  EXPECT_NEAR(talk.state()["work_mm"][0].get<double>(), 10, 3e-3);
+  REQUIRE(talk.pass_until([&] { return talk.ended() == "done"; }, 60));
+  CHECK_THAT(talk.state()["work_mm"][0].get<double>(), WithinAbs(10, 3e-3));
   by_hand(talk, "$13=0");
-  EXPECT_NEAR(talk.state()["work_mm"][0].get<double>(), 10, 3e-3);
+  CHECK_THAT(talk.state()["work_mm"][0].get<double>(), WithinAbs(10, 3e-3));
 }
 
-TEST(GrblMachine, PowersBeyondTheMachinesAreRefused) {
+TEST_CASE("GrblMachine.PowersBeyondTheMachinesAreRefused") {
   GrblTalk talk;
   talk.machine.set_setting(30, 255);
   talk.connect_and_home();
   talk.load(square);
   const std::string refusal = talk.refusal(start);
-  EXPECT_NE(refusal.find("Line 2 asks for S500"), std::string::npos) << refusal;
-  EXPECT_NE(refusal.find("255"), std::string::npos);
+  {
+    INFO(refusal);
+    CHECK(refusal.find("Line 2 asks for S500") != std::string::npos);
+  }
+  CHECK(refusal.find("255") != std::string::npos);
   by_hand(talk, "$30=1000");
   by_hand(talk, "$31=1000");
-  EXPECT_NE(talk.refusal(start).find("$31=0"), std::string::npos);
+  CHECK(talk.refusal(start).find("$31=0") != std::string::npos);
   by_hand(talk, "$31=0");
-  EXPECT_EQ(talk.refusal(start), "");
+  CHECK(talk.refusal(start) == "");
 }
 
-TEST(GrblMachine, StartupLinesThatFireOrMoveAreRefused) {
+TEST_CASE("GrblMachine.StartupLinesThatFireOrMoveAreRefused") {
   for (const char* line : {"M3S200", "G0X5"}) {
     GrblTalk talk;
     talk.machine.set_startup_line(1, line);
     talk.connect();
-    ASSERT_TRUE(talk.pass_until([&] { return talk.can("home"); }, 5));
-    EXPECT_NE(talk.refusal({{"do", "home"}, {"confirmed", true}}).find("$N1="), std::string::npos);
+    REQUIRE(talk.pass_until([&] { return talk.can("home"); }, 5));
+    CHECK(talk.refusal({{"do", "home"}, {"confirmed", true}}).find("$N1=") != std::string::npos);
     talk.tell({{"do", "unlock"}});
     talk.pass(0.5);
     by_hand(talk, "$N1=");
-    EXPECT_EQ(talk.refusal({{"do", "home"}, {"confirmed", true}}), "");
+    CHECK(talk.refusal({{"do", "home"}, {"confirmed", true}}) == "");
   }
   GrblTalk talk;
   talk.machine.set_startup_line(0, "G21G90");
   talk.connect_and_home();
 }
 
-TEST(GrblMachine, AJobBeginsInAKnownState) {
+TEST_CASE("GrblMachine.AJobBeginsInAKnownState") {
   GrblTalk talk;
   talk.connect_and_home();
   const auto origin = talk.machine.position_mm();
   for (const char* line : {"G20", "G91", "G18", "G10L2P2X-9Y-9", "G55", "S900", "G1F100"}) by_hand(talk, line);
   talk.load("M4S500\nG0X10Y10\nG1X30F1200\nM5\n");
   talk.tell(start);
-  ASSERT_TRUE(talk.pass_until([&] { return !talk.ended().empty(); }, 60));
-  EXPECT_EQ(talk.ended(), "done");
-  EXPECT_NEAR(talk.machine.position_mm()[0], origin[0] + 30, 1e-9);
-  EXPECT_NEAR(talk.machine.position_mm()[1], origin[1] + 10, 1e-9);
-  for (const auto& burn : talk.machine.burns()) EXPECT_EQ(burn.power, 500);
+  REQUIRE(talk.pass_until([&] { return !talk.ended().empty(); }, 60));
+  CHECK(talk.ended() == "done");
+  CHECK_THAT(talk.machine.position_mm()[0], WithinAbs(origin[0] + 30, 1e-9));
+  CHECK_THAT(talk.machine.position_mm()[1], WithinAbs(origin[1] + 10, 1e-9));
+  for (const auto& burn : talk.machine.burns()) CHECK(burn.power == 500);
 }
 
-TEST(GrblMachine, OffsetsInForceAreRefused) {
+TEST_CASE("GrblMachine.OffsetsInForceAreRefused") {
   GrblTalk talk;
   talk.connect_and_home();
   talk.load(square);
   by_hand(talk, "G92X5");
-  EXPECT_NE(talk.refusal(start).find("G92.1"), std::string::npos);
+  CHECK(talk.refusal(start).find("G92.1") != std::string::npos);
   by_hand(talk, "G92.1");
   by_hand(talk, "G43.1Z2");
-  EXPECT_NE(talk.refusal(start).find("G49"), std::string::npos);
+  CHECK(talk.refusal(start).find("G49") != std::string::npos);
   by_hand(talk, "G49");
-  EXPECT_EQ(talk.refusal(start), "");
+  CHECK(talk.refusal(start) == "");
 }
 
-TEST(GrblMachine, OffsetsOfAMachineThatDidNotResetAreAskedFor) {
+TEST_CASE("GrblMachine.OffsetsOfAMachineThatDidNotResetAreAskedFor") {
   GrblTalk talk({.resets_on_open = false});
   talk.connect_and_home();
   by_hand(talk, "G92X5");
@@ -95,10 +101,10 @@ TEST(GrblMachine, OffsetsOfAMachineThatDidNotResetAreAskedFor) {
   talk.leave_alone(1);
   talk.plug_in();
   talk.connect();
-  EXPECT_NE(talk.state()["warnings"].dump().find("G92.1"), std::string::npos);
+  CHECK(talk.state()["warnings"].dump().find("G92.1") != std::string::npos);
 }
 
-TEST(GrblMachine, PlacesAreKnownPerAxis) {
+TEST_CASE("GrblMachine.PlacesAreKnownPerAxis") {
   GrblTalk talk({.homes = false, .laser_mode = false});
   talk.connect();
   talk.driver = GrblDriver({.tool = MachineTool::mill});
@@ -109,24 +115,24 @@ TEST(GrblMachine, PlacesAreKnownPerAxis) {
     talk.pass(0.5);
   };
   talk.load("G21G90\nM3S1000\nG0Z5\nG0X10Y10\nG1Z-1F100\nG1X20\nG0Z5\nM5\n");
-  EXPECT_NE(talk.refusal(start).find("set the origin"), std::string::npos);
+  CHECK(talk.refusal(start).find("set the origin") != std::string::npos);
   set("z");
-  EXPECT_EQ(talk.state()["axes_known"], (Json{{"x", false}, {"y", false}, {"z", true}}));
-  EXPECT_FALSE(talk.state()["position_known"]);
-  EXPECT_FALSE(talk.can("frame"));
-  EXPECT_NE(talk.refusal(start), "");
+  CHECK(talk.state()["axes_known"] == Json{{"x", false}, {"y", false}, {"z", true}});
+  CHECK_FALSE(talk.state()["position_known"]);
+  CHECK_FALSE(talk.can("frame"));
+  CHECK(talk.refusal(start) != "");
   talk.tell({{"do", "stop"}});  // nothing is known any more
   talk.pass(2);
   set("xy");
-  EXPECT_TRUE(talk.can("frame"));
-  EXPECT_NE(talk.refusal(start).find("Set z"), std::string::npos);
+  CHECK(talk.can("frame"));
+  CHECK(talk.refusal(start).find("Set z") != std::string::npos);
   set("z");
-  EXPECT_EQ(talk.refusal(start), "");
-  ASSERT_TRUE(talk.pass_until([&] { return talk.ended() == "done"; }, 60));
-  EXPECT_NE(talk.state()["when_connection_ends"].get<std::string>().find("spindle running"), std::string::npos);
+  CHECK(talk.refusal(start) == "");
+  REQUIRE(talk.pass_until([&] { return talk.ended() == "done"; }, 60));
+  CHECK(talk.state()["when_connection_ends"].get<std::string>().find("spindle running") != std::string::npos);
 }
 
-TEST(GrblMachine, GoingOnHeedsThePlannersSize) {
+TEST_CASE("GrblMachine.GoingOnHeedsThePlannersSize") {
   GrblTalk talk({.planner_blocks = 100, .rx_bytes = 1024});
   talk.connect_and_home();
   std::string job = "G21G90\nM4S500\nG0X0Y0\nF600\n";
@@ -134,15 +140,15 @@ TEST(GrblMachine, GoingOnHeedsThePlannersSize) {
     job += "G1X" + std::to_string(i % 2) + "Y" + std::to_string(i / 8) + "\nS" + std::to_string(300 + i) + "\nG0X5\n";
   talk.load(job);
   talk.tell(start);
-  ASSERT_TRUE(talk.pass_until([&] { return talk.state()["job"]["acknowledged"] > 600; }, 200));
+  REQUIRE(talk.pass_until([&] { return talk.state()["job"]["acknowledged"] > 600; }, 200));
   const double y_mm = talk.machine.position_mm()[1] - talk.machine.origin_mm(54)[1];
   const Json state = talk.state()["job"];
   // The careful line lies before where the head is: 101 moves, each third line none, back from what is answered.
-  EXPECT_LE(state["careful_line"].get<int>(), state["acknowledged"].get<int>() - 150);
-  EXPECT_LE((state["careful_line"].get<int>() - 5) / 3 / 8, y_mm + 1);
+  CHECK(state["careful_line"].get<int>() <= state["acknowledged"].get<int>() - 150);
+  CHECK((state["careful_line"].get<int>() - 5) / 3 / 8 <= y_mm + 1);
 }
 
-TEST(GrblMachine, AForgottenPieceOfALineSpoilsNoGreeting) {
+TEST_CASE("GrblMachine.AForgottenPieceOfALineSpoilsNoGreeting") {
   GrblTalk talk({.resets_on_open = false});
   talk.connect_and_home();
   talk.kill_host(false);
@@ -152,8 +158,8 @@ TEST(GrblMachine, AForgottenPieceOfALineSpoilsNoGreeting) {
   talk.plug_in();
   talk.connect();
   talk.pass(1);
-  EXPECT_EQ(talk.state()["firmware"], "1.1h.20190825");
-  EXPECT_EQ(talk.machine.position_mm(), there);
+  CHECK(talk.state()["firmware"] == "1.1h.20190825");
+  CHECK(talk.machine.position_mm() == there);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Whatever the line does: the machine's buffer is never overrun, every byte is accounted for, a job is either done
 // whole or said not to be.
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 #include <cmath>
 #include <cstdlib>
 
@@ -8,6 +9,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 std::uint64_t seed() {
   const char* given = std::getenv("FORMWRIGHT_SEED");
@@ -41,37 +43,40 @@ double burned(const VirtualGrbl& machine) {
   return sum;
 }
 
-TEST(GrblProperty, JobsArriveWholeOverSlowAndBurstyLines) {
+TEST_CASE("GrblProperty.JobsArriveWholeOverSlowAndBurstyLines") {
   Random random(seed());
   for (int round = 0; round < 12; ++round) {
-    SCOPED_TRACE("seed " + std::to_string(seed()) + ", round " + std::to_string(round));
+    INFO("seed " + std::to_string(seed()) + ", round " + std::to_string(round));
     double length = 0;
     const std::string job = random_job(random, 40 + static_cast<int>(random.below(80)), length);
     GrblTalk talk({}, {.burst_s = random.uniform() < 0.5 ? 0.0 : random.uniform(0, 0.2)}, random.next());
     talk.connect_and_home();
     talk.load(job);
     talk.tell({{"do", "start"}, {"confirmed", true}});
-    ASSERT_TRUE(talk.pass_until(
-        [&] {
-          EXPECT_EQ(talk.machine.bytes_lost(), 0);
-          if (random.uniform() < 0.001)
-            talk.refusal({{"do", "override"}, {"feed_percent", 80 + static_cast<double>(random.below(60))}});
-          if (talk.phase() == "paused") talk.tell({{"do", "resume"}, {"confirmed", true}});
-          else if (random.uniform() < 0.002) talk.refusal({{"do", "pause"}});
-          return !talk.ended().empty();
-        },
-        400))
-        << talk.state().dump();
-    EXPECT_EQ(talk.ended(), "done") << talk.state().dump();
-    EXPECT_NEAR(burned(talk.machine), length, 1e-6 * length);
+    {
+      const bool reached = talk.pass_until(
+          [&] {
+            CHECK(talk.machine.bytes_lost() == 0);
+            if (random.uniform() < 0.001)
+              talk.refusal({{"do", "override"}, {"feed_percent", 80 + static_cast<double>(random.below(60))}});
+            if (talk.phase() == "paused") talk.tell({{"do", "resume"}, {"confirmed", true}});
+            else if (random.uniform() < 0.002) talk.refusal({{"do", "pause"}});
+            return !talk.ended().empty();
+          },
+          400);
+      INFO(talk.state().dump());
+      REQUIRE(reached);
+      CHECK(talk.ended() == "done");
+    }
+    CHECK_THAT(burned(talk.machine), WithinAbs(length, 1e-6 * length));
   }
 }
 
-TEST(GrblProperty, WhateverHappensTheQueueEndsAndTheBeamGoesOut) {
+TEST_CASE("GrblProperty.WhateverHappensTheQueueEndsAndTheBeamGoesOut") {
   Random random(seed() + 1);
   int done = 0, not_done = 0;
   for (int round = 0; round < 40; ++round) {
-    SCOPED_TRACE("seed " + std::to_string(seed()) + ", round " + std::to_string(round));
+    INFO("seed " + std::to_string(seed()) + ", round " + std::to_string(round));
     double length = 0;
     const std::string job = random_job(random, 60, length);
     VirtualGrblOptions options;
@@ -91,34 +96,37 @@ TEST(GrblProperty, WhateverHappensTheQueueEndsAndTheBeamGoesOut) {
         break;
       default: break;
     }
-    ASSERT_TRUE(talk.pass_until([&] { return !talk.ended().empty() || talk.state()["job"].is_null(); }, 100))
-        << talk.state().dump();
-    EXPECT_EQ(talk.machine.bytes_lost(), 0);
+    {
+      const bool reached = talk.pass_until([&] { return !talk.ended().empty() || talk.state()["job"].is_null(); }, 100);
+      INFO(talk.state().dump());
+      REQUIRE(reached);
+    }
+    CHECK(talk.machine.bytes_lost() == 0);
     talk.pass(3);
-    EXPECT_FALSE(talk.machine.beam());
+    CHECK_FALSE(talk.machine.beam());
     const auto there = talk.machine.position_mm();
     const std::size_t lines = talk.machine.lines().size();
     talk.pass(3);
-    EXPECT_EQ(talk.machine.position_mm(), there);
+    CHECK(talk.machine.position_mm() == there);
     for (std::size_t i = lines; i < talk.machine.lines().size(); ++i)
-      EXPECT_EQ(talk.machine.lines()[i].substr(0, 1), "$");
+      CHECK(talk.machine.lines()[i].substr(0, 1) == "$");
     if (talk.ended() == "done") {
       ++done;
-      EXPECT_NEAR(burned(talk.machine), length, 1e-6 * length);
+      CHECK_THAT(burned(talk.machine), WithinAbs(length, 1e-6 * length));
     } else {
       ++not_done;
-      EXPECT_FALSE(talk.state()["position_known"]);
+      CHECK_FALSE(talk.state()["position_known"]);
     }
   }
-  EXPECT_GT(done, 0);
-  EXPECT_GT(not_done, 10);
+  CHECK(done > 0);
+  CHECK(not_done > 10);
 }
 
-TEST(GrblProperty, LostBytesNeverPassForADoneJob) {
+TEST_CASE("GrblProperty.LostBytesNeverPassForADoneJob") {
   Random random(seed() + 2);
   int caught = 0;
   for (int round = 0; round < 30; ++round) {
-    SCOPED_TRACE("seed " + std::to_string(seed()) + ", round " + std::to_string(round));
+    INFO("seed " + std::to_string(seed()) + ", round " + std::to_string(round));
     double length = 0;
     const std::string job = random_job(random, 60, length);
     // Bytes lost on the way back: answers are missing, and the driver must not wait for ever nor take the job for done.
@@ -133,18 +141,22 @@ TEST(GrblProperty, LostBytesNeverPassForADoneJob) {
     talk.pass(1);
     talk.load(job);
     if (!talk.refusal({{"do", "start"}, {"confirmed", true}}).empty()) continue;
-    ASSERT_TRUE(talk.pass_until([&] { return !talk.ended().empty(); }, 400)) << talk.state().dump();
-    EXPECT_EQ(talk.machine.bytes_lost(), 0);
+    {
+      const bool reached = talk.pass_until([&] { return !talk.ended().empty(); }, 400);
+      INFO(talk.state().dump());
+      REQUIRE(reached);
+    }
+    CHECK(talk.machine.bytes_lost() == 0);
     if (talk.ended() != "done") {
       ++caught;
       continue;
     }
-    EXPECT_NEAR(burned(talk.machine), length, 1e-6 * length);
+    CHECK_THAT(burned(talk.machine), WithinAbs(length, 1e-6 * length));
   }
-  EXPECT_GT(caught, 0);
+  CHECK(caught > 0);
 }
 
-TEST(GrblProperty, TenThousandShortSegmentsDoNotStarve) {
+TEST_CASE("GrblProperty.TenThousandShortSegmentsDoNotStarve") {
   VirtualGrblOptions options;
   options.acceleration_mm_per_s2 = 5000;
   GrblTalk talk(options);
@@ -163,12 +175,12 @@ TEST(GrblProperty, TenThousandShortSegmentsDoNotStarve) {
   const int dry_at_start = talk.machine.planner_ran_dry();
   const double began = talk.now_s;
   const long bytes_before = talk.bytes_sent;
-  ASSERT_TRUE(talk.pass_until([&] { return talk.state()["job"]["acknowledged"] > 9900; }, 200));
-  EXPECT_EQ(talk.machine.planner_ran_dry(), dry_at_start);
-  EXPECT_EQ(talk.machine.bytes_lost(), 0);
-  EXPECT_LT(talk.now_s - began, 52);
-  EXPECT_GT(talk.bytes_sent - bytes_before, 100000);
-  RecordProperty("seconds", static_cast<int>(talk.now_s - began));
+  REQUIRE(talk.pass_until([&] { return talk.state()["job"]["acknowledged"] > 9900; }, 200));
+  CHECK(talk.machine.planner_ran_dry() == dry_at_start);
+  CHECK(talk.machine.bytes_lost() == 0);
+  CHECK(talk.now_s - began < 52);
+  CHECK(talk.bytes_sent - bytes_before > 100000);
+  SUCCEED("seconds " << static_cast<int>(talk.now_s - began));
 }
 
 }  // namespace

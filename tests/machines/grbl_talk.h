@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // A driver and the virtual machine on a serial line that takes its time and may spoil what passes.
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
 
 #include <deque>
 #include <functional>
@@ -122,22 +122,36 @@ class GrblTalk {
     machine.open(now_s);
   }
   void connect() {
-    ASSERT_TRUE(pass_until([&] { return state()["connection"] == "ready"; }, 10)) << state().dump();
+    {
+      const bool reached = pass_until([&] { return state()["connection"] == "ready"; }, 10);
+      INFO(state().dump());
+      REQUIRE(reached);
+    }
   }
   void connect_and_home() {
     connect();
-    ASSERT_TRUE(pass_until([&] { return can("home"); }, 5)) << state().dump();
+    {
+      const bool reached = pass_until([&] { return can("home"); }, 5);
+      INFO(state().dump());
+      REQUIRE(reached);
+    }
     tell({{"do", "home"}, {"confirmed", true}});
-    ASSERT_TRUE(pass_until([&] { return state()["position_known"] == true && phase() == "idle"; }, 20))
-        << state().dump();
+    {
+      const bool reached = pass_until([&] { return state()["position_known"] == true && phase() == "idle"; }, 20);
+      INFO(state().dump());
+      REQUIRE(reached);
+    }
     tell({{"do", "jog"}, {"x_mm", -300}, {"y_mm", -300}, {"speed_mm_per_s", 150}});
     pass(0.5);
-    ASSERT_TRUE(pass_until([&] { return phase() == "idle"; }, 20));
+    REQUIRE(pass_until([&] { return phase() == "idle"; }, 20));
     tell({{"do", "set_origin"}, {"axes", "xy"}});
     pass(0.5);
-    ASSERT_TRUE(
-        pass_until([&] { return phase() == "idle" && std::abs(state()["work_mm"][0].get<double>()) < 1e-9; }, 5))
-        << state().dump();
+    {
+      const bool reached =
+          pass_until([&] { return phase() == "idle" && std::abs(state()["work_mm"][0].get<double>()) < 1e-9; }, 5);
+      INFO(state().dump());
+      REQUIRE(reached);
+    }
   }
 
   VirtualGrbl machine;

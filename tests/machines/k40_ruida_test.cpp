@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Vectors were made with MeerK40t 0.9.9 (its checksum, distances and scrambling), which shares no code with ours.
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <algorithm>
 #include <deque>
@@ -12,47 +13,48 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 std::string padded(std::string letters) {
   letters.resize(30, 'F');
   return letters;
 }
 
-TEST(K40, ChecksumsAreOneWire) {
-  EXPECT_EQ(one_wire_crc(padded("IPP")), 228);
-  EXPECT_EQ(one_wire_crc(padded("IS2P")), 15);
-  EXPECT_EQ(one_wire_crc(padded("I")), 130);
-  EXPECT_EQ(one_wire_crc(padded("PN")), 243);
-  EXPECT_EQ(one_wire_crc(padded("IBzzaRl052S1P")), 250);
+TEST_CASE("K40.ChecksumsAreOneWire") {
+  CHECK(one_wire_crc(padded("IPP")) == 228);
+  CHECK(one_wire_crc(padded("IS2P")) == 15);
+  CHECK(one_wire_crc(padded("I")) == 130);
+  CHECK(one_wire_crc(padded("PN")) == 243);
+  CHECK(one_wire_crc(padded("IBzzaRl052S1P")) == 250);
 }
 
-TEST(K40, TransfersAreExact) {
+TEST_CASE("K40.TransfersAreExact") {
   const Bytes transfer = k40_transfer("IPP");
-  ASSERT_EQ(transfer.size(), 34u);
-  EXPECT_EQ(transfer[0], std::byte{0xa6});
-  EXPECT_EQ(transfer[1], std::byte{0});
-  EXPECT_EQ(as_text(transfer).substr(2, 30), padded("IPP"));
-  EXPECT_EQ(transfer[32], std::byte{0xa6});
-  EXPECT_EQ(transfer[33], std::byte{228});
+  REQUIRE(transfer.size() == 34u);
+  CHECK(transfer[0] == std::byte{0xa6});
+  CHECK(transfer[1] == std::byte{0});
+  CHECK(as_text(transfer).substr(2, 30) == padded("IPP"));
+  CHECK(transfer[32] == std::byte{0xa6});
+  CHECK(transfer[33] == std::byte{228});
 }
 
-TEST(K40, MovesAreWrittenInItsLetters) {
-  EXPECT_EQ(k40_rapid_move(1, 0), "IBaS1P");
-  EXPECT_EQ(k40_rapid_move(25, -26), "IByL|aS1P");
-  EXPECT_EQ(k40_rapid_move(-51, 52), "IT|zR052S1P");
-  EXPECT_EQ(k40_rapid_move(1000, 300), "IBzzz235Rz|tS1P");
-  EXPECT_EQ(k40_rapid_move(-254, 255), "IT254RzS1P");
+TEST_CASE("K40.MovesAreWrittenInItsLetters") {
+  CHECK(k40_rapid_move(1, 0) == "IBaS1P");
+  CHECK(k40_rapid_move(25, -26) == "IByL|aS1P");
+  CHECK(k40_rapid_move(-51, 52) == "IT|zR052S1P");
+  CHECK(k40_rapid_move(1000, 300) == "IBzzz235Rz|tS1P");
+  CHECK(k40_rapid_move(-254, 255) == "IT254RzS1P");
 }
 
-TEST(K40, ReadsEgvFiles) {
+TEST_CASE("K40.ReadsEgvFiles") {
   const auto packets = k40_packets(
       "Document type : LHYMICRO-GL file\nFile version: 1.0.01\nCreator-Software: X\n\n%0%0%0%0%IBzzzS1P\nICV1752241000000003GAACBaRaFNSE-\n");
-  ASSERT_EQ(packets.size(), 3u);
-  EXPECT_EQ(packets[0], "IBzzzS1P");
-  EXPECT_EQ(packets[1], "ICV1752241000000003GAACBaRaFNS");
-  EXPECT_EQ(packets[2], "E");
-  EXPECT_THROW(k40_packets("G1 X5\n"), Error);
-  EXPECT_THROW(k40_packets(""), Error);
+  REQUIRE(packets.size() == 3u);
+  CHECK(packets[0] == "IBzzzS1P");
+  CHECK(packets[1] == "ICV1752241000000003GAACBaRaFNS");
+  CHECK(packets[2] == "E");
+  CHECK_THROWS_AS(k40_packets("G1 X5\n"), Error);
+  CHECK_THROWS_AS(k40_packets(""), Error);
 }
 
 std::string notes_of(MachineDriver& driver) {
@@ -75,9 +77,9 @@ class VirtualBoard {
       else if (finished_in_ > 0 && --finished_in_ == 0) status = status_ = 236;
       return {std::byte{255}, static_cast<std::byte>(status), std::byte{0}, std::byte{0}, std::byte{0}, std::byte{1}};
     }
-    EXPECT_EQ(bytes.size(), 34u);
-    EXPECT_EQ(bytes[0], std::byte{0xa6});
-    EXPECT_EQ(bytes[32], std::byte{0xa6});
+    CHECK(bytes.size() == 34u);
+    CHECK(bytes[0] == std::byte{0xa6});
+    CHECK(bytes[32] == std::byte{0xa6});
     std::string letters(as_text(bytes).substr(2, 30));
     if (random_.uniform() < spoil_ || spoil_next > 0) letters[random_.below(30)] ^= 1, ++spoiled;
     if (spoil_next > 0) --spoil_next;
@@ -134,29 +136,32 @@ struct K40Talk {
   double now_s = 0;
 };
 
-TEST(K40, JobsArriveWholeThroughSpoiledPackets) {
+TEST_CASE("K40.JobsArriveWholeThroughSpoiledPackets") {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     K40Talk talk(seed, 0.2);
     talk.pass(1);
-    EXPECT_EQ(talk.driver.state(talk.now_s)["phase"], "idle");
+    CHECK(talk.driver.state(talk.now_s)["phase"] == "idle");
     std::string egv;
     for (int i = 0; i < 40; ++i) egv += letters_of(i) + "\n";
     egv += "FNSE-\n";
     talk.driver.load("job.egv", as_bytes(egv));
-    EXPECT_THROW(talk.driver.command({{"do", "start"}, {"confirmed", true}}, talk.now_s), Error);  // not homed
+    CHECK_THROWS_AS(talk.driver.command({{"do", "start"}, {"confirmed", true}}, talk.now_s), Error);  // not homed
     talk.driver.command({{"do", "home"}, {"confirmed", true}}, talk.now_s);
     talk.pass(3);
-    ASSERT_TRUE(talk.driver.state(talk.now_s)["position_known"]);
+    REQUIRE(talk.driver.state(talk.now_s)["position_known"]);
     const std::size_t before = talk.board.heard.size();
     talk.driver.command({{"do", "start"}, {"confirmed", true}}, talk.now_s);
     talk.pass(10);
-    EXPECT_EQ(talk.driver.state(talk.now_s)["job"]["ended"], "done") << talk.driver.state(talk.now_s).dump();
-    ASSERT_EQ(talk.board.heard.size() - before, 41u);
-    for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(talk.board.heard[before + i], letters_of(static_cast<int>(i)));
+    {
+      INFO(talk.driver.state(talk.now_s).dump());
+      CHECK(talk.driver.state(talk.now_s)["job"]["ended"] == "done");
+    }
+    REQUIRE(talk.board.heard.size() - before == 41u);
+    for (std::size_t i = 0; i < 40; ++i) CHECK(talk.board.heard[before + i] == letters_of(static_cast<int>(i)));
   }
 }
 
-TEST(K40, PausesArriveOnceThroughSpoiledPackets) {
+TEST_CASE("K40.PausesArriveOnceThroughSpoiledPackets") {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     K40Talk talk(seed, 0.2);
     talk.pass(1);
@@ -173,27 +178,30 @@ TEST(K40, PausesArriveOnceThroughSpoiledPackets) {
       talk.driver.command({{"do", "pause"}}, talk.now_s);
       talk.board.spoil_next = pause;  // what goes out next, be it the job's or the one that holds
       talk.pass(1);
-      EXPECT_EQ(talk.phase(), "paused");
+      CHECK(talk.phase() == "paused");
       ++holds;
-      EXPECT_EQ(std::count(talk.board.heard.begin(), talk.board.heard.end(), padded("PN")), static_cast<int>(holds));
+      CHECK(std::count(talk.board.heard.begin(), talk.board.heard.end(), padded("PN")) == static_cast<int>(holds));
       const std::size_t held = talk.board.heard.size();
       talk.pass(1);
-      EXPECT_EQ(talk.board.heard.size(), held);  // nothing follows while it is held
+      CHECK(talk.board.heard.size() == held);  // nothing follows while it is held
       talk.driver.command({{"do", "resume"}, {"confirmed", true}}, talk.now_s);
       ++holds;
     }
     talk.pass(40);
-    EXPECT_EQ(talk.driver.state(talk.now_s)["job"]["ended"], "done") << talk.driver.state(talk.now_s).dump();
+    {
+      INFO(talk.driver.state(talk.now_s).dump());
+      CHECK(talk.driver.state(talk.now_s)["job"]["ended"] == "done");
+    }
     std::vector<std::string> job;
     for (std::size_t i = before; i < talk.board.heard.size(); ++i)
       if (talk.board.heard[i] != padded("PN")) job.push_back(talk.board.heard[i]);
-    EXPECT_EQ(talk.board.heard.size() - before, job.size() + holds);
-    ASSERT_EQ(job.size(), 201u);  // each once, in order
-    for (int i = 0; i < 200; ++i) EXPECT_EQ(job[static_cast<std::size_t>(i)], letters_of(i));
+    CHECK(talk.board.heard.size() - before == job.size() + holds);
+    REQUIRE(job.size() == 201u);  // each once, in order
+    for (int i = 0; i < 200; ++i) CHECK(job[static_cast<std::size_t>(i)] == letters_of(i));
   }
 }
 
-TEST(K40, APauseIsNotKeptWaitingByABusyBoard) {
+TEST_CASE("K40.APauseIsNotKeptWaitingByABusyBoard") {
   K40Driver driver({.controller = DriverController::k40});
   const auto answer = [](int status) { return Bytes{std::byte{255}, static_cast<std::byte>(status)}; };
   double now = 0;
@@ -215,16 +223,16 @@ TEST(K40, APauseIsNotKeptWaitingByABusyBoard) {
   hear(206);
   driver.command({{"do", "pause"}}, now);
   hear(238);
-  EXPECT_EQ(sent("PN"), 0);  // "BTB" may still be rejected
+  CHECK(sent("PN") == 0);  // "BTB" may still be rejected
   while (now < 6) {
     hear(238, 0.1);
     if (sent("PN") > 0) break;
   }
-  ASSERT_LT(now, 6);  // half a second later it surely is in
+  REQUIRE(now < 6);  // half a second later it surely is in
   hear(207);
   const auto output = driver.take_output();
-  EXPECT_EQ(std::count(output.begin(), output.end(), k40_transfer("BTB")), 0);
-  EXPECT_EQ(std::count(output.begin(), output.end(), k40_transfer("PN")), 1);
+  CHECK(std::count(output.begin(), output.end(), k40_transfer("BTB")) == 0);
+  CHECK(std::count(output.begin(), output.end(), k40_transfer("PN")) == 1);
 }
 
 /// A driver whose board's every answer is the test's, with a job of "BTB", "DUD" and "LRL" begun.
@@ -260,60 +268,60 @@ struct K40Told {
   double now_s = 0;
 };
 
-TEST(K40, APauseThatArrivesSpoiledIsSentAgainAndNotTheJob) {
+TEST_CASE("K40.APauseThatArrivesSpoiledIsSentAgainAndNotTheJob") {
   K40Told told;
-  EXPECT_EQ(told.hear(206), K40Told::Packets{padded("BTB")});
-  EXPECT_EQ(told.hear(206), K40Told::Packets{padded("DUD")});
+  CHECK(told.hear(206) == K40Told::Packets{padded("BTB")});
+  CHECK(told.hear(206) == K40Told::Packets{padded("DUD")});
   told.driver.command({{"do", "pause"}}, told.now_s);
-  EXPECT_EQ(told.hear(206), K40Told::Packets{padded("PN")});  // "DUD" is in
-  EXPECT_EQ(told.hear(207), K40Told::Packets{padded("PN")});
-  EXPECT_EQ(told.hear(238), K40Told::Packets{});
-  EXPECT_EQ(told.hear(207), K40Told::Packets{padded("PN")});
-  EXPECT_EQ(told.hear(206), K40Told::Packets{});
-  EXPECT_EQ(told.phase(), "paused");
+  CHECK(told.hear(206) == K40Told::Packets{padded("PN")});  // "DUD" is in
+  CHECK(told.hear(207) == K40Told::Packets{padded("PN")});
+  CHECK(told.hear(238) == K40Told::Packets{});
+  CHECK(told.hear(207) == K40Told::Packets{padded("PN")});
+  CHECK(told.hear(206) == K40Told::Packets{});
+  CHECK(told.phase() == "paused");
   told.resume();
-  EXPECT_EQ(told.sent(), K40Told::Packets{padded("PN")});
-  EXPECT_EQ(told.hear(207), K40Told::Packets{padded("PN")});
-  EXPECT_EQ(told.hear(206), K40Told::Packets{padded("LRL")});
-  EXPECT_EQ(told.phase(), "running");
+  CHECK(told.sent() == K40Told::Packets{padded("PN")});
+  CHECK(told.hear(207) == K40Told::Packets{padded("PN")});
+  CHECK(told.hear(206) == K40Told::Packets{padded("LRL")});
+  CHECK(told.phase() == "running");
 }
 
-TEST(K40, APauseWaitsForAPacketOfTheJobThatIsSpoiled) {
+TEST_CASE("K40.APauseWaitsForAPacketOfTheJobThatIsSpoiled") {
   K40Told told;
-  EXPECT_EQ(told.hear(206), K40Told::Packets{padded("BTB")});
+  CHECK(told.hear(206) == K40Told::Packets{padded("BTB")});
   told.driver.command({{"do", "pause"}}, told.now_s);
-  EXPECT_EQ(told.sent(), K40Told::Packets{});
-  EXPECT_EQ(told.hear(207), K40Told::Packets{padded("BTB")});
-  EXPECT_EQ(told.hear(238), K40Told::Packets{});
-  EXPECT_EQ(told.hear(207), K40Told::Packets{padded("BTB")});
-  EXPECT_EQ(told.hear(206), K40Told::Packets{padded("PN")});
-  EXPECT_EQ(told.hear(206), K40Told::Packets{});
-  EXPECT_EQ(told.phase(), "paused");
+  CHECK(told.sent() == K40Told::Packets{});
+  CHECK(told.hear(207) == K40Told::Packets{padded("BTB")});
+  CHECK(told.hear(238) == K40Told::Packets{});
+  CHECK(told.hear(207) == K40Told::Packets{padded("BTB")});
+  CHECK(told.hear(206) == K40Told::Packets{padded("PN")});
+  CHECK(told.hear(206) == K40Told::Packets{});
+  CHECK(told.phase() == "paused");
   told.resume();
-  EXPECT_EQ(told.sent(), K40Told::Packets{padded("PN")});
-  EXPECT_EQ(told.hear(206), K40Told::Packets{padded("DUD")});
+  CHECK(told.sent() == K40Told::Packets{padded("PN")});
+  CHECK(told.hear(206) == K40Told::Packets{padded("DUD")});
 }
 
-TEST(K40, AStopDoesNotWaitForAPause) {
+TEST_CASE("K40.AStopDoesNotWaitForAPause") {
   for (const bool pause_is_out : {false, true}) {
-    SCOPED_TRACE(pause_is_out);
+    CAPTURE(pause_is_out);
     K40Told told;
-    EXPECT_EQ(told.hear(206), K40Told::Packets{padded("BTB")});
+    CHECK(told.hear(206) == K40Told::Packets{padded("BTB")});
     told.driver.command({{"do", "pause"}}, told.now_s);
     if (pause_is_out) {
-      EXPECT_EQ(told.hear(206), K40Told::Packets{padded("PN")});
+      CHECK(told.hear(206) == K40Told::Packets{padded("PN")});
     }
     told.driver.command({{"do", "stop"}}, told.now_s);
-    EXPECT_EQ(told.sent(), K40Told::Packets{padded("I")});
+    CHECK(told.sent() == K40Told::Packets{padded("I")});
     told.hear(206);  // to what was asked before
-    EXPECT_EQ(told.phase(), "stopping");
-    EXPECT_EQ(told.hear(207), K40Told::Packets{padded("I")});
-    EXPECT_EQ(told.hear(206), K40Told::Packets{});
-    EXPECT_EQ(told.phase(), "idle");
+    CHECK(told.phase() == "stopping");
+    CHECK(told.hear(207) == K40Told::Packets{padded("I")});
+    CHECK(told.hear(206) == K40Told::Packets{});
+    CHECK(told.phase() == "idle");
   }
 }
 
-TEST(K40, StopOvertakesAndNothingFollows) {
+TEST_CASE("K40.StopOvertakesAndNothingFollows") {
   K40Talk talk;
   talk.pass(1);
   talk.driver.command({{"do", "home"}, {"confirmed", true}}, talk.now_s);
@@ -323,85 +331,85 @@ TEST(K40, StopOvertakesAndNothingFollows) {
   talk.pass(0.3);
   talk.driver.command({{"do", "stop"}}, talk.now_s);
   talk.pass(1);
-  EXPECT_EQ(talk.board.heard.back(), padded("I"));
-  EXPECT_LT(talk.board.heard.size(), 100u);
-  EXPECT_FALSE(talk.driver.state(talk.now_s)["position_known"]);
-  EXPECT_EQ(talk.driver.state(talk.now_s)["job"]["ended"], "stopped");
+  CHECK(talk.board.heard.back() == padded("I"));
+  CHECK(talk.board.heard.size() < 100u);
+  CHECK_FALSE(talk.driver.state(talk.now_s)["position_known"]);
+  CHECK(talk.driver.state(talk.now_s)["job"]["ended"] == "stopped");
 }
 
-TEST(K40, AStopThatArrivesSpoiledIsSentAgain) {
+TEST_CASE("K40.AStopThatArrivesSpoiledIsSentAgain") {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     K40Talk talk(seed);
     talk.start_job();
     talk.board.spoil_next = 2;
     talk.driver.command({{"do", "stop"}}, talk.now_s);
-    EXPECT_EQ(talk.phase(), "stopping");
+    CHECK(talk.phase() == "stopping");
     talk.pass(1);
-    EXPECT_EQ(talk.board.spoiled, 2);
-    EXPECT_EQ(talk.board.heard.back(), padded("I"));
-    EXPECT_EQ(talk.phase(), "idle");
+    CHECK(talk.board.spoiled == 2);
+    CHECK(talk.board.heard.back() == padded("I"));
+    CHECK(talk.phase() == "idle");
   }
 }
 
-TEST(K40, AnAnswerFromBeforeTheStopDoesNotConfirmIt) {
+TEST_CASE("K40.AnAnswerFromBeforeTheStopDoesNotConfirmIt") {
   K40Driver driver({.controller = DriverController::k40});
   const auto answer = [](int status) { return Bytes{std::byte{255}, static_cast<std::byte>(status)}; };
   driver.opened(0);
   driver.take_output();  // the board is asked
   driver.command({{"do", "stop"}}, 0.01);
   driver.received(answer(206), 0.02);
-  EXPECT_EQ(driver.state(0.02)["phase"], "stopping");
+  CHECK(driver.state(0.02)["phase"] == "stopping");
   driver.tick(0.1);
   driver.take_output();
   driver.received(answer(207), 0.11);
-  EXPECT_EQ(driver.state(0.11)["phase"], "stopping");
-  EXPECT_EQ(driver.take_output().at(0), k40_transfer("I"));
+  CHECK(driver.state(0.11)["phase"] == "stopping");
+  CHECK(driver.take_output().at(0) == k40_transfer("I"));
   driver.received(answer(206), 0.12);
-  EXPECT_EQ(driver.state(0.12)["phase"], "idle");
+  CHECK(driver.state(0.12)["phase"] == "idle");
 }
 
-TEST(K40, AStopThatNeverArrivesIsSaid) {
+TEST_CASE("K40.AStopThatNeverArrivesIsSaid") {
   K40Talk talk;
   talk.start_job();
   talk.board.spoil_next = 1000;
   talk.driver.command({{"do", "stop"}}, talk.now_s);
   talk.pass(3);
-  EXPECT_EQ(talk.board.spoiled, 11);  // and not for ever
-  EXPECT_NE(notes_of(talk.driver).find("switch it off"), std::string::npos);
-  EXPECT_EQ(talk.driver.state(talk.now_s)["job"]["ended"], "stopped");
-  EXPECT_EQ(talk.phase(), "idle");
+  CHECK(talk.board.spoiled == 11);  // and not for ever
+  CHECK(notes_of(talk.driver).find("switch it off") != std::string::npos);
+  CHECK(talk.driver.state(talk.now_s)["job"]["ended"] == "stopped");
+  CHECK(talk.phase() == "idle");
   // It can be used again when its cable is better.
   talk.board.spoil_next = 0;
   talk.driver.command({{"do", "home"}, {"confirmed", true}}, talk.now_s);
   talk.pass(3);
-  EXPECT_TRUE(talk.driver.state(talk.now_s)["position_known"]);
+  CHECK(talk.driver.state(talk.now_s)["position_known"]);
 }
 
-TEST(K40, AJobThatNeverArrivesIsStopped) {
+TEST_CASE("K40.AJobThatNeverArrivesIsStopped") {
   K40Talk talk;
   talk.start_job();
   talk.board.spoil_next = 1000;
   talk.pass(5);
-  EXPECT_EQ(talk.driver.state(talk.now_s)["job"]["ended"], "failed");
-  EXPECT_EQ(talk.board.spoiled, 22);  // a packet of the job, then the stop
+  CHECK(talk.driver.state(talk.now_s)["job"]["ended"] == "failed");
+  CHECK(talk.board.spoiled == 22);  // a packet of the job, then the stop
   const std::string notes = notes_of(talk.driver);
-  EXPECT_NE(notes.find("shorter cable"), std::string::npos);
-  EXPECT_NE(notes.find("switch it off"), std::string::npos);
+  CHECK(notes.find("shorter cable") != std::string::npos);
+  CHECK(notes.find("switch it off") != std::string::npos);
 }
 
-TEST(K40, KeepsInsideItsBed) {
+TEST_CASE("K40.KeepsInsideItsBed") {
   K40Talk talk;
   talk.pass(1);
   talk.driver.command({{"do", "home"}, {"confirmed", true}}, talk.now_s);
   talk.pass(3);
-  EXPECT_THROW(talk.driver.command({{"do", "go_to"}, {"x_mm", 301}, {"y_mm", 10}}, talk.now_s), Error);
-  EXPECT_THROW(talk.driver.command({{"do", "jog"}, {"y_mm", 5}}, talk.now_s), Error);  // home is at the back
+  CHECK_THROWS_AS(talk.driver.command({{"do", "go_to"}, {"x_mm", 301}, {"y_mm", 10}}, talk.now_s), Error);
+  CHECK_THROWS_AS(talk.driver.command({{"do", "jog"}, {"y_mm", 5}}, talk.now_s), Error);  // home is at the back
   talk.driver.command({{"do", "go_to"}, {"x_mm", 25.4}, {"y_mm", 200 - 2.54}}, talk.now_s);
   talk.pass(0.3);
-  EXPECT_EQ(talk.board.heard.back(), padded("IBzzz235R100S1P"));
+  CHECK(talk.board.heard.back() == padded("IBzzz235R100S1P"));
 }
 
-TEST(K40, AJobThatLeavesTheBedIsRefusedAtItsStart) {
+TEST_CASE("K40.AJobThatLeavesTheBedIsRefusedAtItsStart") {
   K40Talk talk;
   talk.pass(1);
   talk.driver.command({{"do", "home"}, {"confirmed", true}}, talk.now_s);
@@ -411,37 +419,37 @@ TEST(K40, AJobThatLeavesTheBedIsRefusedAtItsStart) {
       talk.driver.load("job.egv", as_bytes(egv));
       talk.driver.command({{"do", "start"}, {"confirmed", true}}, talk.now_s);
     } catch (const Error& error) {
-      EXPECT_EQ(error.where(), "job");
+      CHECK(error.where() == "job");
       return error.what();
     }
     return "";
   };
   const auto right = [](int mil) { return "I" + k40_rapid_move(mil, 0).substr(1) + "\n"; };
-  EXPECT_NE(refusal(right(11900) + "ICV1752241000000003CBRNS1EDB100FNSE-\n").find("to the side"), std::string::npos);
-  EXPECT_NE(refusal("IRzzzS1P\nILzzzzS1P\n").find("to the front"), std::string::npos);
-  EXPECT_NE(refusal("ICV1752241000000003CBRNS1EDQaFNSE-\n").find("meaning is not known"), std::string::npos);
-  EXPECT_NE(refusal("ICV1752241000000003CBRNS1EDB1FNSE-\n").find("meaning is not known"), std::string::npos);
-  EXPECT_EQ(talk.driver.state(talk.now_s)["job"], nullptr);
-  EXPECT_EQ(refusal(right(11700) + "ICV1752241000000003CBRNS1EDB100FNSE-\n"), "");
+  CHECK(refusal(right(11900) + "ICV1752241000000003CBRNS1EDB100FNSE-\n").find("to the side") != std::string::npos);
+  CHECK(refusal("IRzzzS1P\nILzzzzS1P\n").find("to the front") != std::string::npos);
+  CHECK(refusal("ICV1752241000000003CBRNS1EDQaFNSE-\n").find("meaning is not known") != std::string::npos);
+  CHECK(refusal("ICV1752241000000003CBRNS1EDB1FNSE-\n").find("meaning is not known") != std::string::npos);
+  CHECK(talk.driver.state(talk.now_s)["job"] == nullptr);
+  CHECK(refusal(right(11700) + "ICV1752241000000003CBRNS1EDB100FNSE-\n") == "");
   talk.pass(3);
-  EXPECT_EQ(talk.driver.state(talk.now_s)["job"]["ended"], "done");
+  CHECK(talk.driver.state(talk.now_s)["job"]["ended"] == "done");
   // It ended away from home, and the next move begins there.
-  EXPECT_NEAR(talk.driver.state(talk.now_s)["machine_mm"][0].get<double>(), 11800 * 0.0254, 1e-9);
+  CHECK_THAT(talk.driver.state(talk.now_s)["machine_mm"][0].get<double>(), WithinAbs(11800 * 0.0254, 1e-9));
 }
 
-TEST(Ruida, ScramblesAndSums) {
+TEST_CASE("Ruida.ScramblesAndSums") {
   const unsigned char plain[] = {0xda, 0, 5, 0x7e, 0xcc, 0xd8, 1, 0x2a},
                       swizzled[] = {0xd4, 0x89, 0x0d, 0xf7, 0xc6, 0xd2, 0x09, 0xa3};
   for (std::size_t i = 0; i < 8; ++i) {
-    EXPECT_EQ(ruida_swizzled(plain[i]), swizzled[i]);
-    EXPECT_EQ(ruida_unswizzled(swizzled[i]), plain[i]);
+    CHECK(ruida_swizzled(plain[i]) == swizzled[i]);
+    CHECK(ruida_unswizzled(swizzled[i]) == plain[i]);
   }
-  for (int b = 0; b < 256; ++b) EXPECT_EQ(ruida_unswizzled(ruida_swizzled(static_cast<unsigned char>(b))), b);
+  for (int b = 0; b < 256; ++b) CHECK(ruida_unswizzled(ruida_swizzled(static_cast<unsigned char>(b))) == b);
   const Bytes datagram = ruida_datagram("\xd8\x01");
-  EXPECT_EQ(datagram, (Bytes{std::byte{0}, std::byte{0xdb}, std::byte{0xd2}, std::byte{0x09}}));
+  CHECK(datagram == Bytes{std::byte{0}, std::byte{0xdb}, std::byte{0xd2}, std::byte{0x09}});
 }
 
-TEST(Ruida, CutsFilesBetweenCommands) {
+TEST_CASE("Ruida.CutsFilesBetweenCommands") {
   Random random(3);
   Bytes file;
   std::string plain;
@@ -452,16 +460,16 @@ TEST(Ruida, CutsFilesBetweenCommands) {
   for (const char c : plain) file.push_back(std::byte{ruida_swizzled(static_cast<unsigned char>(c))});
   std::string back;
   for (const Bytes& datagram : ruida_datagrams(file)) {
-    EXPECT_LE(datagram.size(), 1470u);
+    CHECK(datagram.size() <= 1470u);
     unsigned sum = 0;
     for (std::size_t i = 2; i < datagram.size(); ++i) sum += std::to_integer<unsigned>(datagram[i]);
-    EXPECT_EQ(sum & 0xffff, std::to_integer<unsigned>(datagram[0]) << 8 | std::to_integer<unsigned>(datagram[1]));
-    EXPECT_GE(ruida_unswizzled(std::to_integer<unsigned char>(datagram[2])), 0x80);
+    CHECK((sum & 0xffff) == (std::to_integer<unsigned>(datagram[0]) << 8 | std::to_integer<unsigned>(datagram[1])));
+    CHECK(ruida_unswizzled(std::to_integer<unsigned char>(datagram[2])) >= 0x80);
     for (std::size_t i = 2; i < datagram.size(); ++i)
       back += static_cast<char>(ruida_unswizzled(std::to_integer<unsigned char>(datagram[i])));
   }
-  EXPECT_EQ(back, plain);
-  EXPECT_THROW(ruida_datagrams(as_bytes("G1 X5\n")), Error);
+  CHECK(back == plain);
+  CHECK_THROWS_AS(ruida_datagrams(as_bytes("G1 X5\n")), Error);
 }
 
 /// The controller's side, which loses datagrams.
@@ -528,11 +536,11 @@ struct RuidaTalk {
   double now_s = 0;
 };
 
-TEST(Ruida, JobsArriveInOrderOverALossyNetwork) {
+TEST_CASE("Ruida.JobsArriveInOrderOverALossyNetwork") {
   RuidaTalk talk(0.1);
   talk.pass(5);
-  EXPECT_EQ(talk.driver.state(talk.now_s)["connection"], "ready");
-  EXPECT_NEAR(talk.driver.state(talk.now_s)["machine_mm"][0].get<double>(), 123.456, 1e-9);
+  CHECK(talk.driver.state(talk.now_s)["connection"] == "ready");
+  CHECK_THAT(talk.driver.state(talk.now_s)["machine_mm"][0].get<double>(), WithinAbs(123.456, 1e-9));
   Bytes file;
   std::string plain;
   plain += "\xd8\x10";
@@ -543,23 +551,29 @@ TEST(Ruida, JobsArriveInOrderOverALossyNetwork) {
   }
   for (const char c : plain) file.push_back(std::byte{ruida_swizzled(static_cast<unsigned char>(c))});
   talk.driver.load("job.rd", file);
-  EXPECT_THROW(talk.driver.command({{"do", "start"}, {"confirmed", true}}, talk.now_s), Error);
+  CHECK_THROWS_AS(talk.driver.command({{"do", "start"}, {"confirmed", true}}, talk.now_s), Error);
   talk.driver.command({{"do", "home"}, {"confirmed", true}}, talk.now_s);
   talk.pass(15);
-  ASSERT_TRUE(talk.driver.state(talk.now_s)["position_known"]) << talk.driver.state(talk.now_s).dump();
+  {
+    INFO(talk.driver.state(talk.now_s).dump());
+    REQUIRE(talk.driver.state(talk.now_s)["position_known"]);
+  }
   talk.laser.heard.clear();
   talk.driver.command({{"do", "start"}, {"confirmed", true}}, talk.now_s);
   talk.pass(40);
-  EXPECT_EQ(talk.driver.state(talk.now_s)["job"]["ended"], "done") << talk.driver.state(talk.now_s).dump();
-  EXPECT_EQ(talk.laser.heard, plain);
+  {
+    INFO(talk.driver.state(talk.now_s).dump());
+    CHECK(talk.driver.state(talk.now_s)["job"]["ended"] == "done");
+  }
+  CHECK(talk.laser.heard == plain);
 }
 
-TEST(Ruida, AJobThatLeavesTheBedIsRefusedAtItsStart) {
+TEST_CASE("Ruida.AJobThatLeavesTheBedIsRefusedAtItsStart") {
   RuidaTalk talk;
   talk.pass(2);
   talk.driver.command({{"do", "home"}, {"confirmed", true}}, talk.now_s);
   talk.pass(15);
-  ASSERT_TRUE(talk.driver.state(talk.now_s)["position_known"]);
+  REQUIRE(talk.driver.state(talk.now_s)["position_known"]);
   const auto refusal = [&](const char* head, std::vector<std::array<int, 3>> moves) -> std::string {
     std::string plain = head;
     for (const auto& [code, x_um, y_um] : moves) {
@@ -573,80 +587,79 @@ TEST(Ruida, AJobThatLeavesTheBedIsRefusedAtItsStart) {
       talk.driver.load("job.rd", file);
       talk.driver.command({{"do", "start"}, {"confirmed", true}}, talk.now_s);
     } catch (const Error& error) {
-      EXPECT_EQ(error.where(), "job");
+      CHECK(error.where() == "job");
       return error.what();
     }
     return "";
   };
-  EXPECT_NE(refusal("\xd8\x10", {{0x88, 0, 0}, {0xa8, 400100, 5000}}).find("leave the bed in x"), std::string::npos);
-  EXPECT_NE(refusal("\xd8\x10", {{0x88, 0, -200}, {0xa8, 5000, 5000}}).find("leave the bed in y"), std::string::npos);
+  CHECK(refusal("\xd8\x10", {{0x88, 0, 0}, {0xa8, 400100, 5000}}).find("leave the bed in x") != std::string::npos);
+  CHECK(refusal("\xd8\x10", {{0x88, 0, -200}, {0xa8, 5000, 5000}}).find("leave the bed in y") != std::string::npos);
   // Travel counts, too.
-  EXPECT_NE(refusal("\xd8\x10", {{0x88, 0, 0}, {0xa8, 5000, 5000}, {0x88, 0, 410000}}).find("leave the bed in y"),
-            std::string::npos);
-  EXPECT_NE(refusal("\xd8\x12", {{0x88, 0, 0}, {0xa8, 5000, 5000}}).find("set at the laser's panel"),
-            std::string::npos);
-  EXPECT_EQ(talk.driver.state(talk.now_s)["job"], nullptr);
-  EXPECT_EQ(refusal("\xd8\x10", {{0x88, 0, 0}, {0xa8, 400000, 400000}}), "");
+  CHECK(refusal("\xd8\x10", {{0x88, 0, 0}, {0xa8, 5000, 5000}, {0x88, 0, 410000}}).find("leave the bed in y") !=
+        std::string::npos);
+  CHECK(refusal("\xd8\x12", {{0x88, 0, 0}, {0xa8, 5000, 5000}}).find("set at the laser's panel") != std::string::npos);
+  CHECK(talk.driver.state(talk.now_s)["job"] == nullptr);
+  CHECK(refusal("\xd8\x10", {{0x88, 0, 0}, {0xa8, 400000, 400000}}) == "");
 }
 
-TEST(Ruida, AStopThatIsLostIsSentAgain) {
+TEST_CASE("Ruida.AStopThatIsLostIsSentAgain") {
   RuidaTalk talk;
   talk.pass(2);
   talk.laser.lose_next = 2;
   talk.driver.command({{"do", "stop"}}, talk.now_s);
   talk.pass(0.5);
-  EXPECT_EQ(talk.laser.heard, "");
-  EXPECT_EQ(talk.phase(), "stopping");
+  CHECK(talk.laser.heard == "");
+  CHECK(talk.phase() == "stopping");
   talk.pass(4);
-  EXPECT_EQ(talk.laser.heard, "\xd8\x01");
-  EXPECT_EQ(talk.phase(), "idle");
+  CHECK(talk.laser.heard == "\xd8\x01");
+  CHECK(talk.phase() == "idle");
 }
 
-TEST(Ruida, TheAnswerToWhatWasUnderWayDoesNotConfirmAStop) {
+TEST_CASE("Ruida.TheAnswerToWhatWasUnderWayDoesNotConfirmAStop") {
   RuidaDriver driver({.controller = DriverController::ruida});
   const Bytes taken{std::byte{ruida_swizzled(0xcc)}}, stop = ruida_datagram("\xd8\x01");
   driver.opened(0);
   driver.take_output();  // a question is under way
   driver.command({{"do", "stop"}}, 0.1);
-  EXPECT_EQ(driver.take_output(), std::vector<Bytes>{stop});
+  CHECK(driver.take_output() == std::vector<Bytes>{stop});
   driver.received(taken, 0.2);
-  EXPECT_EQ(driver.state(0.2)["phase"], "stopping");
+  CHECK(driver.state(0.2)["phase"] == "stopping");
   driver.tick(1.3);
-  EXPECT_EQ(driver.take_output(), std::vector<Bytes>{stop});
+  CHECK(driver.take_output() == std::vector<Bytes>{stop});
   driver.received(taken, 1.4);
-  EXPECT_EQ(driver.state(1.4)["phase"], "idle");
+  CHECK(driver.state(1.4)["phase"] == "idle");
 }
 
-TEST(Ruida, AStopThatIsRefusedIsSaid) {
+TEST_CASE("Ruida.AStopThatIsRefusedIsSaid") {
   RuidaTalk talk;
   talk.pass(2);
   talk.laser.refuses = true;
   talk.driver.command({{"do", "stop"}}, talk.now_s);
   talk.pass(3);
-  EXPECT_NE(notes_of(talk.driver).find("refuses to stop"), std::string::npos);
-  EXPECT_NE(talk.phase(), "stopping");
+  CHECK(notes_of(talk.driver).find("refuses to stop") != std::string::npos);
+  CHECK(talk.phase() != "stopping");
   const int stops = talk.laser.stops;
-  EXPECT_GE(stops, 5);
-  EXPECT_LE(stops, 6);  // the first answer may have been to a question
+  CHECK(stops >= 5);
+  CHECK(stops <= 6);  // the first answer may have been to a question
   talk.pass(3);
-  EXPECT_EQ(talk.laser.stops, stops);
+  CHECK(talk.laser.stops == stops);
 }
 
-TEST(Ruida, AStopThatIsNotAnsweredIsSaid) {
+TEST_CASE("Ruida.AStopThatIsNotAnsweredIsSaid") {
   RuidaTalk talk;
   talk.pass(2);
   talk.laser.lose_next = 1000;
   talk.driver.command({{"do", "stop"}}, talk.now_s);
   talk.pass(8);
-  EXPECT_EQ(talk.laser.stops, 5);
-  EXPECT_NE(notes_of(talk.driver).find("does not answer the stop"), std::string::npos);
-  EXPECT_EQ(talk.driver.state(talk.now_s)["connection"], "silent");
+  CHECK(talk.laser.stops == 5);
+  CHECK(notes_of(talk.driver).find("does not answer the stop") != std::string::npos);
+  CHECK(talk.driver.state(talk.now_s)["connection"] == "silent");
 }
 
-TEST(Ruida, SaysSoWhenNothingAnswers) {
+TEST_CASE("Ruida.SaysSoWhenNothingAnswers") {
   RuidaTalk talk(1);
   talk.pass(10);
-  EXPECT_EQ(talk.driver.state(talk.now_s)["connection"], "silent");
+  CHECK(talk.driver.state(talk.now_s)["connection"] == "silent");
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A Marlin laser shines on its job's cuts and on the focus spot, and nowhere else: FORMWRIGHT_SEQUENCES (40) random
 // sequences of orders, faults and dead hosts; FORMWRIGHT_SEED draws others.
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
 
 #include <cstdio>
 #include <cstdlib>
@@ -218,7 +218,7 @@ class Sequence {
   std::string log_;
 };
 
-TEST(MarlinDark, NothingShinesBesideCutsAndSpotsInRandomSequences) {
+TEST_CASE("MarlinDark.NothingShinesBesideCutsAndSpotsInRandomSequences") {
   const char* count_text = std::getenv("FORMWRIGHT_SEQUENCES");
   const char* seed_text = std::getenv("FORMWRIGHT_SEED");
   const int count = count_text ? std::atoi(count_text) : 40;
@@ -227,8 +227,11 @@ TEST(MarlinDark, NothingShinesBesideCutsAndSpotsInRandomSequences) {
   for (int i = 0; i < count; ++i) {
     const std::uint64_t seed = first + static_cast<std::uint64_t>(i);
     const std::string wrong = Sequence(seed, sums).run();
-    EXPECT_EQ(wrong, "") << "seed " << seed;
-    if (HasFailure()) break;
+    {
+      INFO("seed " << seed);
+      CHECK(wrong == "");
+    }
+    if (!wrong.empty()) break;
   }
   std::printf(
       "Marlin, %d sequences from seed %llu: %d orders taken, %d refused, %d faults, %d dead hosts, %d jobs begun, %d "
@@ -238,10 +241,10 @@ TEST(MarlinDark, NothingShinesBesideCutsAndSpotsInRandomSequences) {
       count, static_cast<unsigned long long>(first), sums.orders, sums.refused, sums.faults, sums.kills, sums.jobs,
       sums.done, sums.lit_s, sums.spot_s, sums.outside_s, sums.killed_dynamic_s, sums.killed_rest_s,
       sums.max_dynamic_rest_s, sums.max_rest_s);
-  EXPECT_EQ(sums.outside_s, 0);
-  EXPECT_EQ(sums.killed_dynamic_s, 0);
-  EXPECT_GT(sums.done, count / 8);
-  EXPECT_GT(sums.lit_s, count / 4.0);
+  CHECK(sums.outside_s == 0);
+  CHECK(sums.killed_dynamic_s == 0);
+  CHECK(sums.done > count / 8);
+  CHECK(sums.lit_s > count / 4.0);
 }
 
 }  // namespace

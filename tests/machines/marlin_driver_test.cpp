@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "machines/marlin_driver.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <deque>
 
@@ -10,6 +11,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinULP;
 
 /// Marlin's side of the line protocol, from its documentation: numbers, checksums, requests, the extra ok.
 class VirtualMarlin {
@@ -137,24 +139,24 @@ struct MarlinTalk {
   double now_s = 0;
 };
 
-TEST(MarlinDriver, NumbersLinesWithTheirChecksum) {
+TEST_CASE("MarlinDriver.NumbersLinesWithTheirChecksum") {
   // The example of the RepRap wiki, "Checking".
-  EXPECT_EQ(numbered_line(3, "T0"), "N3 T0*57");
-  EXPECT_EQ(numbered_line(4, "G92 E0"), "N4 G92 E0*67");
+  CHECK(numbered_line(3, "T0") == "N3 T0*57");
+  CHECK(numbered_line(4, "G92 E0") == "N4 G92 E0*67");
 }
 
-TEST(MarlinDriver, GreetsAndReadsTemperatures) {
+TEST_CASE("MarlinDriver.GreetsAndReadsTemperatures") {
   MarlinTalk talk;
   talk.pass(3);
   const Json state = talk.driver.state(talk.now_s);
-  EXPECT_EQ(state["connection"], "ready");
-  EXPECT_EQ(state["phase"], "idle");
-  EXPECT_EQ(state["firmware"], "Marlin 2.1.2");
-  EXPECT_DOUBLE_EQ(state["temperatures"]["hotend_c"], 201.5);
-  EXPECT_DOUBLE_EQ(state["machine_mm"][2], 3);
+  CHECK(state["connection"] == "ready");
+  CHECK(state["phase"] == "idle");
+  CHECK(state["firmware"] == "Marlin 2.1.2");
+  CHECK_THAT(state["temperatures"]["hotend_c"], WithinULP(201.5, 4));
+  CHECK_THAT(state["machine_mm"][2], WithinULP(3.0, 4));
 }
 
-TEST(MarlinDriver, SpoiledLinesAreSentAgainUntilAllIsThereInOrder) {
+TEST_CASE("MarlinDriver.SpoiledLinesAreSentAgainUntilAllIsThereInOrder") {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     MarlinTalk talk(0.15, seed);
     talk.pass(3);
@@ -163,68 +165,72 @@ TEST(MarlinDriver, SpoiledLinesAreSentAgainUntilAllIsThereInOrder) {
     talk.driver.load("test", as_bytes(job));
     talk.driver.command({{"do", "start"}, {"confirmed", true}}, talk.now_s);
     talk.pass(60);
-    EXPECT_EQ(talk.driver.state(talk.now_s)["job"]["ended"], "done") << "seed " << seed;
+    {
+      INFO("seed " << seed);
+      CHECK(talk.driver.state(talk.now_s)["job"]["ended"] == "done");
+    }
     int next = 0;
     for (const std::string& line : talk.machine.done) {
       if (!line.starts_with("G1X")) continue;
-      EXPECT_EQ(line, "G1X" + std::to_string(next++) + "F3000");
+      CHECK(line == "G1X" + std::to_string(next++) + "F3000");
     }
-    EXPECT_EQ(next, 200);
+    CHECK(next == 200);
   }
 }
 
-TEST(MarlinDriver, StopClearsTheQueueAndTurnsTheHeatersOff) {
+TEST_CASE("MarlinDriver.StopClearsTheQueueAndTurnsTheHeatersOff") {
   MarlinTalk talk;
   talk.pass(3);
   std::string job;
   for (int i = 0; i < 5000; ++i) job += "G1 X" + std::to_string(i) + " F3000\n";
   talk.driver.load("test", as_bytes(job));
-  EXPECT_THROW(talk.driver.command({{"do", "start"}}, talk.now_s), Error);
+  CHECK_THROWS_AS(talk.driver.command({{"do", "start"}}, talk.now_s), Error);
   talk.driver.command({{"do", "start"}, {"confirmed", true}}, talk.now_s);
   talk.pass(1);
   talk.driver.command({{"do", "stop"}}, talk.now_s);
   talk.pass(3);
-  EXPECT_EQ(talk.driver.state(talk.now_s)["job"]["ended"], "stopped");
+  CHECK(talk.driver.state(talk.now_s)["job"]["ended"] == "stopped");
   const auto& done = talk.machine.done;
   const auto stopped = std::find(done.begin(), done.end(), "M410");
-  ASSERT_NE(stopped, done.end());
-  EXPECT_NE(std::find(stopped, done.end(), "M104 S0"), done.end());
-  EXPECT_NE(std::find(stopped, done.end(), "M140 S0"), done.end());
-  EXPECT_EQ(std::count_if(stopped, done.end(), [](const std::string& line) { return line.starts_with("G1"); }), 0);
+  REQUIRE(stopped != done.end());
+  CHECK(std::find(stopped, done.end(), "M104 S0") != done.end());
+  CHECK(std::find(stopped, done.end(), "M140 S0") != done.end());
+  CHECK(std::count_if(stopped, done.end(), [](const std::string& line) { return line.starts_with("G1"); }) == 0);
 }
 
-TEST(MarlinDriver, AHaltIsSaid) {
+TEST_CASE("MarlinDriver.AHaltIsSaid") {
   MarlinTalk talk;
   talk.pass(3);
   talk.machine.output += "Error:Thermal Runaway, system stopped! Heater_ID: 0\n";
   talk.pass(0.2);
   const Json state = talk.driver.state(talk.now_s);
-  EXPECT_EQ(state["phase"], "alarm");
-  EXPECT_NE(state["alarm"]["text"].get<std::string>().find("Thermal Runaway"), std::string::npos);
+  CHECK(state["phase"] == "alarm");
+  CHECK(state["alarm"]["text"].get<std::string>().find("Thermal Runaway") != std::string::npos);
 }
 
-TEST(MarlinDriver, AMotorCalledBIsNoBed) {
+TEST_CASE("MarlinDriver.AMotorCalledBIsNoBed") {
   MarlinTalk talk;
   talk.pass(3);
   talk.machine.output += "ok X:39.0 Y:3.0 Z:0 E:79.5 Count: A:3900 B:300 C:0\n";
   talk.pass(0.05);
   const Json state = talk.driver.state(talk.now_s);
-  EXPECT_DOUBLE_EQ(state["temperatures"]["bed_c"], 60.1);
-  EXPECT_DOUBLE_EQ(state["machine_mm"][0], 39);
+  CHECK_THAT(state["temperatures"]["bed_c"], WithinULP(60.1, 4));
+  CHECK_THAT(state["machine_mm"][0], WithinULP(39.0, 4));
 }
 
-TEST(MarlinDriver, MistakesInOtherWordsAreNoHalt) {
+TEST_CASE("MarlinDriver.MistakesInOtherWordsAreNoHalt") {
   for (const char* words : {"Error: Checksum mismatch", "Error: expected line 7 got 8",
                             "Error:No Line Number with checksum, Last Line: 4", "Error: Unknown command M5"}) {
     MarlinTalk talk;
     talk.pass(3);
     talk.machine.output += std::string(words) + "\n";
     talk.pass(0.1);
-    EXPECT_EQ(talk.driver.state(talk.now_s)["phase"], "idle") << words;
+    INFO(words);
+    CHECK(talk.driver.state(talk.now_s)["phase"] == "idle");
   }
 }
 
-TEST(MarlinDriver, SilenceEndsAJobAndIsNotTalkedInto) {
+TEST_CASE("MarlinDriver.SilenceEndsAJobAndIsNotTalkedInto") {
   MarlinTalk talk;
   talk.pass(3);
   std::string job;
@@ -235,45 +241,50 @@ TEST(MarlinDriver, SilenceEndsAJobAndIsNotTalkedInto) {
   talk.machine.dumb = true;
   const std::size_t heard = talk.machine.heard.size();
   talk.pass(110);
-  EXPECT_TRUE(talk.driver.state(talk.now_s)["job"]["ended"].is_null());
-  EXPECT_LE(talk.machine.heard.size() - heard, 5u);
+  CHECK(talk.driver.state(talk.now_s)["job"]["ended"].is_null());
+  CHECK(talk.machine.heard.size() - heard <= 5u);
   talk.pass(20);
   const Json state = talk.driver.state(talk.now_s);
-  EXPECT_EQ(state["job"]["ended"], "cut_off");
-  EXPECT_EQ(state["connection"], "silent");
-  EXPECT_FALSE(state["position_known"]);
-  EXPECT_EQ(talk.machine.heard_times("M104 S0"), 1);
-  EXPECT_EQ(talk.machine.heard_times("M112"), 0);  // it may have been the cable
+  CHECK(state["job"]["ended"] == "cut_off");
+  CHECK(state["connection"] == "silent");
+  CHECK_FALSE(state["position_known"]);
+  CHECK(talk.machine.heard_times("M104 S0") == 1);
+  CHECK(talk.machine.heard_times("M112") == 0);  // it may have been the cable
 }
 
-TEST(MarlinDriver, WhatTurnsOffLeavesBeforeThePortCloses) {
+TEST_CASE("MarlinDriver.WhatTurnsOffLeavesBeforeThePortCloses") {
   MarlinTalk talk;
   talk.pass(3);
   talk.start_moves();
   talk.tell({{"do", "pause"}});
   talk.pass(0.5);
-  ASSERT_EQ(talk.phase(), "paused");
+  REQUIRE(talk.phase() == "paused");
   talk.tell({{"do", "stop"}});
   const std::string text = talk.leaves();
-  for (const char* line : {"\nM108\n", "\nM410\n", "\nM104 S0\n", "\nM140 S0\n", "\nM107\n"})
-    EXPECT_NE(text.find(line), std::string::npos) << line << " is not in " << text;
+  for (const char* line : {"\nM108\n", "\nM410\n", "\nM104 S0\n", "\nM140 S0\n", "\nM107\n"}) {
+    INFO(line << " is not in " << text);
+    CHECK(text.find(line) != std::string::npos);
+  }
 }
 
-TEST(MarlinDriver, AStopIsOverWhenAllIsTurnedOff) {
+TEST_CASE("MarlinDriver.AStopIsOverWhenAllIsTurnedOff") {
   MarlinTalk talk;
   talk.pass(3);
   talk.tell({{"do", "stop"}});
-  EXPECT_EQ(talk.phase(), "stopping");
+  CHECK(talk.phase() == "stopping");
   for (int i = 0; i < 400 && talk.phase() == "stopping"; ++i) talk.pass(0.01);
-  EXPECT_EQ(talk.phase(), "idle");
+  CHECK(talk.phase() == "idle");
   // Once at once, and once with a number, which it asks for until it is there.
-  for (const char* line : {"M104 S0", "M140 S0", "M107"}) EXPECT_EQ(talk.machine.done_times(line), 2) << line;
-  EXPECT_EQ(talk.machine.heard_times("M112"), 0);
+  for (const char* line : {"M104 S0", "M140 S0", "M107"}) {
+    INFO(line);
+    CHECK(talk.machine.done_times(line) == 2);
+  }
+  CHECK(talk.machine.heard_times("M112") == 0);
 }
 
-TEST(MarlinDriver, AnswersToLinesWithoutANumberPassForNoOthers) {
+TEST_CASE("MarlinDriver.AnswersToLinesWithoutANumberPassForNoOthers") {
   for (const bool emergency_parser : {false, true}) {
-    SCOPED_TRACE(emergency_parser);
+    CAPTURE(emergency_parser);
     MarlinTalk talk;
     talk.pass(3);
     talk.machine.slow = true;
@@ -283,25 +294,25 @@ TEST(MarlinDriver, AnswersToLinesWithoutANumberPassForNoOthers) {
     talk.machine.most_numbered = 0;
     talk.tell({{"do", "stop"}});
     talk.pass(4);
-    EXPECT_EQ(talk.phase(), "idle");
-    EXPECT_EQ(talk.machine.most_numbered, 1);
-    EXPECT_EQ(talk.machine.done_times("M104 S0"), 2);
-    EXPECT_EQ(talk.machine.heard_times("M112"), 0);
+    CHECK(talk.phase() == "idle");
+    CHECK(talk.machine.most_numbered == 1);
+    CHECK(talk.machine.done_times("M104 S0") == 2);
+    CHECK(talk.machine.heard_times("M112") == 0);
   }
 }
 
-TEST(MarlinDriver, AStopBeforeTheGreetingIsNoEmergency) {
+TEST_CASE("MarlinDriver.AStopBeforeTheGreetingIsNoEmergency") {
   MarlinTalk talk;
   talk.machine.output.clear();  // a board that does not restart when its port is opened
   talk.tell({{"do", "stop"}});
-  EXPECT_EQ(talk.phase(), "stopping");
-  EXPECT_NE(talk.leaves().find("\nM140 S0\n"), std::string::npos);
+  CHECK(talk.phase() == "stopping");
+  CHECK(talk.leaves().find("\nM140 S0\n") != std::string::npos);
   talk.pass(6);
-  EXPECT_EQ(talk.machine.heard_times("M112"), 0);
-  EXPECT_EQ(talk.phase(), "idle");
+  CHECK(talk.machine.heard_times("M112") == 0);
+  CHECK(talk.phase() == "idle");
 }
 
-TEST(MarlinDriver, AStopThatIsNotHeardBecomesAnEmergency) {
+TEST_CASE("MarlinDriver.AStopThatIsNotHeardBecomesAnEmergency") {
   MarlinTalk talk;
   talk.pass(3);
   talk.start_moves();
@@ -309,56 +320,56 @@ TEST(MarlinDriver, AStopThatIsNotHeardBecomesAnEmergency) {
   talk.hand_over();
   talk.tell({{"do", "stop"}});
   talk.pass(1.9);
-  EXPECT_EQ(talk.machine.heard_times("M112"), 0);
+  CHECK(talk.machine.heard_times("M112") == 0);
   talk.pass(0.3);
-  EXPECT_EQ(talk.machine.heard_times("M112"), 1);
-  EXPECT_EQ(talk.phase(), "alarm");
+  CHECK(talk.machine.heard_times("M112") == 1);
+  CHECK(talk.phase() == "alarm");
 }
 
-TEST(MarlinDriver, AJobThatMovesTheOriginIsAPrintersOnly) {
+TEST_CASE("MarlinDriver.AJobThatMovesTheOriginIsAPrintersOnly") {
   const std::string job = "G28\nG92 X0 Y0\nG1 X5 F3000\n";
   MarlinTalk laser(0, 1, MachineTool::laser), printer(0, 1, MachineTool::printer);
-  EXPECT_THROW(laser.driver.load("test", as_bytes(job)), Error);
-  EXPECT_NO_THROW(printer.driver.load("test", as_bytes(job)));
+  CHECK_THROWS_AS(laser.driver.load("test", as_bytes(job)), Error);
+  CHECK_NOTHROW(printer.driver.load("test", as_bytes(job)));
 }
 
-TEST(MarlinDriver, AJogIsAMoveUntilItIsDone) {
+TEST_CASE("MarlinDriver.AJogIsAMoveUntilItIsDone") {
   MarlinTalk talk(0, 1, MachineTool::laser);
   talk.pass(3);
   talk.tell({{"do", "set_origin"}});
   talk.driver.load("test", as_bytes("G21\nG90\nG1 X5 F3000\n"));
-  EXPECT_TRUE(talk.can("start"));
+  CHECK(talk.can("start"));
   talk.tell({{"do", "jog"}, {"x_mm", 30}, {"speed_mm_per_s", 20}});
-  EXPECT_EQ(talk.phase(), "jogging");  // who ends the session stops the machine first
-  EXPECT_TRUE(talk.can("jog"));
-  EXPECT_FALSE(talk.can("start"));
+  CHECK(talk.phase() == "jogging");  // who ends the session stops the machine first
+  CHECK(talk.can("jog"));
+  CHECK_FALSE(talk.can("start"));
   talk.pass(1.5);
-  EXPECT_EQ(talk.phase(), "jogging");
+  CHECK(talk.phase() == "jogging");
   talk.pass(0.5);
-  EXPECT_EQ(talk.phase(), "idle");
-  EXPECT_TRUE(talk.can("start"));
+  CHECK(talk.phase() == "idle");
+  CHECK(talk.can("start"));
 }
 
-TEST(MarlinDriver, AJobThatCountsFromTheHeadStartsAtTheOriginOnly) {
+TEST_CASE("MarlinDriver.AJobThatCountsFromTheHeadStartsAtTheOriginOnly") {
   const std::string job = "G21\nG91\nM4 S100\nG1 X100 F1000\n";
   const Json start = {{"do", "start"}, {"confirmed", true}};
   MarlinTalk talk(0, 1, MachineTool::laser);
   talk.pass(3);
   talk.tell({{"do", "home"}, {"confirmed", true}});
   talk.pass(1);
-  ASSERT_TRUE(talk.driver.state(talk.now_s)["position_known"]);
+  REQUIRE(talk.driver.state(talk.now_s)["position_known"]);
   talk.driver.load("test", as_bytes(job));
-  EXPECT_NE(talk.refusal(start).find("G91"), std::string::npos);  // it says x 1, y 2
+  CHECK(talk.refusal(start).find("G91") != std::string::npos);  // it says x 1, y 2
   talk.tell({{"do", "set_origin"}});
-  EXPECT_EQ(talk.refusal(start), "");
+  CHECK(talk.refusal(start) == "");
   // A printer's job homes it by itself.
   MarlinTalk printer;
   printer.pass(3);
   printer.driver.load("test", as_bytes(job));
-  EXPECT_EQ(printer.refusal(start), "");
+  CHECK(printer.refusal(start) == "");
 }
 
-TEST(MarlinDriver, ALostAnswerDoesNotMakeAJobDone) {
+TEST_CASE("MarlinDriver.ALostAnswerDoesNotMakeAJobDone") {
   // The answer to M400 never comes: the job is done when the machine tells its place behind it, and not before.
   MarlinTalk talk;
   talk.pass(3);
@@ -366,10 +377,10 @@ TEST(MarlinDriver, ALostAnswerDoesNotMakeAJobDone) {
   talk.driver.command({{"do", "start"}, {"confirmed", true}}, talk.now_s);
   talk.machine.unanswered = "M400";
   talk.pass(9);
-  ASSERT_EQ(talk.machine.done.back(), "M400");
-  EXPECT_TRUE(talk.driver.state(talk.now_s)["job"]["ended"].is_null());
+  REQUIRE(talk.machine.done.back() == "M400");
+  CHECK(talk.driver.state(talk.now_s)["job"]["ended"].is_null());
   talk.pass(4);
-  EXPECT_EQ(talk.driver.state(talk.now_s)["job"]["ended"], "done");
+  CHECK(talk.driver.state(talk.now_s)["job"]["ended"] == "done");
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "machines/ruida_bounds.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <algorithm>
 
@@ -11,6 +12,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 /// A job as its bytes are before they are scrambled.
 struct RuidaJob {
@@ -45,15 +47,18 @@ std::string refusal(const RuidaJob& job) {
   try {
     ruida_bounds(job.file());
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::invalid_input);
-    EXPECT_EQ(error.where(), "job");
-    EXPECT_TRUE(std::string(error.what()).ends_with('.')) << error.what();
+    CHECK(error.code() == ErrorCode::invalid_input);
+    CHECK(error.where() == "job");
+    {
+      INFO(error.what());
+      CHECK(std::string(error.what()).ends_with('.'));
+    }
     return error.what();
   }
   return "";
 }
 
-TEST(RuidaBounds, AreThoseOfWhatIsBurned) {
+TEST_CASE("RuidaBounds.AreThoseOfWhatIsBurned") {
   // Far travel is not burned; a cut begins where the head stands.
   const GcodeBounds bounds = ruida_bounds(RuidaJob()
                                               .begin()
@@ -63,15 +68,15 @@ TEST(RuidaBounds, AreThoseOfWhatIsBurned) {
                                               .by(true, 0, -4250)
                                               .to(false, 0, 0)
                                               .file());
-  EXPECT_EQ(bounds.low_mm, (std::array<double, 3>{10, 16.25, 0}));
-  EXPECT_EQ(bounds.high_mm, (std::array<double, 3>{30, 20.5, 0}));
+  CHECK(bounds.low_mm == std::array<double, 3>{10, 16.25, 0});
+  CHECK(bounds.high_mm == std::array<double, 3>{30, 20.5, 0});
   const GcodeBounds reached =
       ruida_job_bounds(RuidaJob().begin().to(false, 900000, 900000).to(true, 30000, -500).file()).reached;
-  EXPECT_EQ(reached.low_mm, (std::array<double, 3>{30, -0.5, 0}));
-  EXPECT_EQ(reached.high_mm, (std::array<double, 3>{900, 900, 0}));
+  CHECK(reached.low_mm == std::array<double, 3>{30, -0.5, 0});
+  CHECK(reached.high_mm == std::array<double, 3>{900, 900, 0});
 }
 
-TEST(RuidaBounds, FollowAbsoluteAndRelativeMovesOfEveryKind) {
+TEST_CASE("RuidaBounds.FollowAbsoluteAndRelativeMovesOfEveryKind") {
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     Random random(seed);
     RuidaJob job;
@@ -97,33 +102,33 @@ TEST(RuidaBounds, FollowAbsoluteAndRelativeMovesOfEveryKind) {
     }
     const GcodeBounds bounds = ruida_bounds(job.file());
     for (std::size_t i = 0; i < 2; ++i) {
-      EXPECT_NEAR(bounds.low_mm[i], 1e-3 * low[i], 1e-9) << "seed " << seed;
-      EXPECT_NEAR(bounds.high_mm[i], 1e-3 * high[i], 1e-9) << "seed " << seed;
+      INFO("seed " << seed);
+      CHECK_THAT(bounds.low_mm[i], WithinAbs(1e-3 * low[i], 1e-9));
+      CHECK_THAT(bounds.high_mm[i], WithinAbs(1e-3 * high[i], 1e-9));
     }
   }
 }
 
-TEST(RuidaBounds, RefuseWhereTheyCannotBeTold) {
+TEST_CASE("RuidaBounds.RefuseWhereTheyCannotBeTold") {
   const auto burning = [](RuidaJob job) { return job.to(false, 0, 0).to(true, 5000, 5000); };
-  EXPECT_EQ(refusal(burning(RuidaJob().begin())), "");
-  EXPECT_NE(refusal(burning(RuidaJob().code({0xd8, 0x12}))).find("set at the laser's panel"), std::string::npos);
-  EXPECT_NE(refusal(burning(RuidaJob().begin().code({0xd8, 0x11}))).find("set at the laser's panel"),
-            std::string::npos);
-  EXPECT_NE(refusal(burning(RuidaJob().code({0xf0}))).find("set at the laser's panel"), std::string::npos);
-  EXPECT_NE(refusal(burning(RuidaJob().begin().code({0xe7, 0x08}).number(3, 2).number(1, 2))).find("array"),
-            std::string::npos);
-  EXPECT_NE(refusal(burning(RuidaJob().begin().code({0xd9, 0x10, 0}).number(0, 5).number(0, 5))).find("cannot be told"),
-            std::string::npos);
-  EXPECT_NE(refusal(burning(RuidaJob().begin().code({0x80, 0x00}).number(0, 5))).find("cannot be told"),
-            std::string::npos);
-  EXPECT_EQ(refusal(burning(RuidaJob().begin().code({0x80, 0x08}).number(0, 5))), "");  // the table
-  EXPECT_NE(refusal(RuidaJob().begin().by(true, 100, 100)).find("before it has said where"), std::string::npos);
-  EXPECT_NE(refusal(RuidaJob().begin().to(false, 1, 1)).find("burns nothing"), std::string::npos);
-  EXPECT_NE(refusal(RuidaJob().begin().to(false, 1, 1).code({0xa8, 1, 2, 3})).find("cut off"), std::string::npos);
-  EXPECT_NE(refusal(RuidaJob().begin().by(false, 100, 100).to(true, 1, 1)).find("before it has said where"),
-            std::string::npos);
-  EXPECT_NE(refusal(RuidaJob{"G1 X5"}).find("not a Ruida job"), std::string::npos);
-  EXPECT_NE(refusal(RuidaJob{}).find("not a Ruida job"), std::string::npos);
+  CHECK(refusal(burning(RuidaJob().begin())) == "");
+  CHECK(refusal(burning(RuidaJob().code({0xd8, 0x12}))).find("set at the laser's panel") != std::string::npos);
+  CHECK(refusal(burning(RuidaJob().begin().code({0xd8, 0x11}))).find("set at the laser's panel") != std::string::npos);
+  CHECK(refusal(burning(RuidaJob().code({0xf0}))).find("set at the laser's panel") != std::string::npos);
+  CHECK(refusal(burning(RuidaJob().begin().code({0xe7, 0x08}).number(3, 2).number(1, 2))).find("array") !=
+        std::string::npos);
+  CHECK(refusal(burning(RuidaJob().begin().code({0xd9, 0x10, 0}).number(0, 5).number(0, 5))).find("cannot be told") !=
+        std::string::npos);
+  CHECK(refusal(burning(RuidaJob().begin().code({0x80, 0x00}).number(0, 5))).find("cannot be told") !=
+        std::string::npos);
+  CHECK(refusal(burning(RuidaJob().begin().code({0x80, 0x08}).number(0, 5))) == "");  // the table
+  CHECK(refusal(RuidaJob().begin().by(true, 100, 100)).find("before it has said where") != std::string::npos);
+  CHECK(refusal(RuidaJob().begin().to(false, 1, 1)).find("burns nothing") != std::string::npos);
+  CHECK(refusal(RuidaJob().begin().to(false, 1, 1).code({0xa8, 1, 2, 3})).find("cut off") != std::string::npos);
+  CHECK(refusal(RuidaJob().begin().by(false, 100, 100).to(true, 1, 1)).find("before it has said where") !=
+        std::string::npos);
+  CHECK(refusal(RuidaJob{"G1 X5"}).find("not a Ruida job") != std::string::npos);
+  CHECK(refusal(RuidaJob{}).find("not a Ruida job") != std::string::npos);
 }
 
 }  // namespace

@@ -2,10 +2,12 @@
 // The virtual GRBL does with its beam, its coordinates and its reports what grbl 1.1h does.
 #include "machines/virtual_grbl.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 /// A machine without switches, booted.
 struct Machine {
@@ -29,133 +31,136 @@ struct Machine {
   double now_s = 0;
 };
 
-TEST(VirtualGrbl, ConstantPowerShinesAtRestBehindACutOnly) {
+TEST_CASE("VirtualGrbl.ConstantPowerShinesAtRestBehindACutOnly") {
   Machine machine;
   machine.tell("M3S500");
-  EXPECT_FALSE(machine.grbl.beam());  // G0
+  CHECK_FALSE(machine.grbl.beam());  // G0
   machine.tell("G1F1000");
-  EXPECT_TRUE(machine.grbl.beam());
+  CHECK(machine.grbl.beam());
   machine.tell("G0");
-  EXPECT_FALSE(machine.grbl.beam());
+  CHECK_FALSE(machine.grbl.beam());
   machine.tell("G1X5", 2);
-  EXPECT_EQ(machine.grbl.state(), "Idle");
-  EXPECT_TRUE(machine.grbl.beam());
-  EXPECT_NE(machine.ask().find("FS:0,500"), std::string::npos);
+  CHECK(machine.grbl.state() == "Idle");
+  CHECK(machine.grbl.beam());
+  CHECK(machine.ask().find("FS:0,500") != std::string::npos);
   machine.tell("G0X0", 2);
-  EXPECT_FALSE(machine.grbl.beam());
+  CHECK_FALSE(machine.grbl.beam());
   machine.tell("G1X5", 2);
   machine.tell("M5");
-  EXPECT_FALSE(machine.grbl.beam());
+  CHECK_FALSE(machine.grbl.beam());
 }
 
-TEST(VirtualGrbl, DynamicPowerIsDarkAtRestInLaserModeOnly) {
+TEST_CASE("VirtualGrbl.DynamicPowerIsDarkAtRestInLaserModeOnly") {
   for (const bool laser : {true, false}) {
     Machine machine({.homes = false, .laser_mode = laser});
     machine.tell("M4S500");
     machine.tell("G1X5F1000", 2);
-    EXPECT_EQ(machine.grbl.beam(), !laser);
-    EXPECT_FALSE(machine.grbl.burns().empty());
+    CHECK(machine.grbl.beam() == !laser);
+    CHECK_FALSE(machine.grbl.burns().empty());
   }
 }
 
-TEST(VirtualGrbl, JogsKeepTheSpindlesState) {
+TEST_CASE("VirtualGrbl.JogsKeepTheSpindlesState") {
   for (const char* on : {"M3S500", "M4S500"}) {
     Machine machine;
     machine.tell(on);
-    EXPECT_TRUE(machine.grbl.burns().empty());
+    CHECK(machine.grbl.burns().empty());
     machine.tell("$J=G91G21X10F1000", 2);
-    ASSERT_FALSE(machine.grbl.burns().empty());
-    EXPECT_TRUE(machine.grbl.burns().front().jog);
-    EXPECT_EQ(machine.grbl.beam(), on[1] == '3');  // and what does not go with the speed stays
+    REQUIRE_FALSE(machine.grbl.burns().empty());
+    CHECK(machine.grbl.burns().front().jog);
+    CHECK(machine.grbl.beam() == (on[1] == '3'));  // and what does not go with the speed stays
   }
 }
 
-TEST(VirtualGrbl, HoldsTurnALaserOffAndASpindleNot) {
+TEST_CASE("VirtualGrbl.HoldsTurnALaserOffAndASpindleNot") {
   for (const bool laser : {true, false}) {
     Machine machine({.homes = false, .laser_mode = laser});
     machine.tell("M3S500");
     machine.tell("G1X100F1000", 1);
     machine.grbl.receive("!", machine.now_s);
     machine.pass(1);
-    EXPECT_EQ(machine.grbl.state(), "Hold");
-    EXPECT_EQ(machine.grbl.beam(), !laser);
+    CHECK(machine.grbl.state() == "Hold");
+    CHECK(machine.grbl.beam() == !laser);
     machine.tell("M5");
-    EXPECT_EQ(machine.grbl.beam(), !laser);  // no line is read in a hold
+    CHECK(machine.grbl.beam() == !laser);  // no line is read in a hold
     machine.grbl.receive("\x18", machine.now_s);
-    EXPECT_FALSE(machine.grbl.beam());
+    CHECK_FALSE(machine.grbl.beam());
   }
 }
 
-TEST(VirtualGrbl, TheSpindleWaitsForThePlanner) {
+TEST_CASE("VirtualGrbl.TheSpindleWaitsForThePlanner") {
   Machine machine;
   machine.tell("M4S500");
   machine.tell("G1X10F600");
-  EXPECT_EQ(machine.tell("M5", 0.3), "");
+  CHECK(machine.tell("M5", 0.3) == "");
   machine.pass(2);
-  EXPECT_EQ(machine.grbl.take_output(), "ok\r\n");
+  CHECK(machine.grbl.take_output() == "ok\r\n");
 }
 
-TEST(VirtualGrbl, ALaserAtRestIsLitByAnOverrideWithConstantPower) {
+TEST_CASE("VirtualGrbl.ALaserAtRestIsLitByAnOverrideWithConstantPower") {
   Machine machine;
   machine.tell("M3S500");
-  EXPECT_FALSE(machine.grbl.beam());
+  CHECK_FALSE(machine.grbl.beam());
   machine.grbl.receive("\x9a", machine.now_s);
   machine.pass(0.01);
-  EXPECT_TRUE(machine.grbl.beam());  // protocol.c sets the spindle anew whatever the motion mode
+  CHECK(machine.grbl.beam());  // protocol.c sets the spindle anew whatever the motion mode
 }
 
-TEST(VirtualGrbl, ReportsInInchesAndInWorkCoordinates) {
+TEST_CASE("VirtualGrbl.ReportsInInchesAndInWorkCoordinates") {
   Machine machine;
   machine.tell("G10L2P1X10");
   machine.tell("G0X25.4", 2);
   machine.tell("$13=1");
   machine.tell("$10=0");
   const std::string report = machine.ask();
-  EXPECT_NE(report.find("WPos:1.0000,"), std::string::npos) << report;
-  EXPECT_NE(report.find("WCO:0.3937,"), std::string::npos) << report;
-  EXPECT_NE(machine.tell("$#").find("[G54:0.3937,"), std::string::npos);
+  {
+    INFO(report);
+    CHECK(report.find("WPos:1.0000,") != std::string::npos);
+    CHECK(report.find("WCO:0.3937,") != std::string::npos);
+  }
+  CHECK(machine.tell("$#").find("[G54:0.3937,") != std::string::npos);
 }
 
-TEST(VirtualGrbl, WorkSystemsOffsetsAndPredefinedPlaces) {
+TEST_CASE("VirtualGrbl.WorkSystemsOffsetsAndPredefinedPlaces") {
   Machine machine;
   machine.tell("G10L2P2X10Y5");
   machine.tell("G55");
   machine.tell("G0X1Y1", 2);
-  EXPECT_NEAR(machine.grbl.position_mm()[0], 11, 1e-9);
+  CHECK_THAT(machine.grbl.position_mm()[0], WithinAbs(11, 1e-9));
   machine.tell("G92X0");
   machine.tell("G0X2", 2);
-  EXPECT_NEAR(machine.grbl.position_mm()[0], 13, 1e-9);
+  CHECK_THAT(machine.grbl.position_mm()[0], WithinAbs(13, 1e-9));
   machine.tell("G53G0X3", 2);
-  EXPECT_NEAR(machine.grbl.position_mm()[0], 3, 1e-9);
+  CHECK_THAT(machine.grbl.position_mm()[0], WithinAbs(3, 1e-9));
   machine.tell("G92.1");
   machine.tell("G28.1");
   machine.tell("G0X30Y30", 2);
   machine.tell("G28", 2);
-  EXPECT_NEAR(machine.grbl.position_mm()[0], 3, 1e-9);
+  CHECK_THAT(machine.grbl.position_mm()[0], WithinAbs(3, 1e-9));
   machine.tell("G20G0X1", 2);
-  EXPECT_NEAR(machine.grbl.position_mm()[0], 35.4, 1e-9);
-  EXPECT_NE(machine.tell("$G").find("G55 G17 G20"), std::string::npos);
+  CHECK_THAT(machine.grbl.position_mm()[0], WithinAbs(35.4, 1e-9));
+  CHECK(machine.tell("$G").find("G55 G17 G20") != std::string::npos);
   machine.tell("M2", 0.2);
-  EXPECT_NE(machine.tell("$G").find("G1 G54"), std::string::npos);
+  CHECK(machine.tell("$G").find("G1 G54") != std::string::npos);
 }
 
-TEST(VirtualGrbl, ArcsByRadiusAndByCentreEndWhereTheyShould) {
+TEST_CASE("VirtualGrbl.ArcsByRadiusAndByCentreEndWhereTheyShould") {
   Machine machine;
   machine.tell("M4S500");
-  EXPECT_EQ(machine.tell("G2X20Y0R10F6000", 4).substr(0, 2), "ok");
+  CHECK(machine.tell("G2X20Y0R10F6000", 4).substr(0, 2) == "ok");
   double high = 0, low = 0;
   for (const auto& burn : machine.grbl.burns())
     high = std::max(high, burn.to_mm[1]), low = std::min(low, burn.to_mm[1]);
-  EXPECT_NEAR(high, 10, 0.01);
-  EXPECT_NEAR(low, 0, 1e-9);
-  EXPECT_NEAR(machine.grbl.position_mm()[0], 20, 1e-9);
+  CHECK_THAT(high, WithinAbs(10, 0.01));
+  CHECK_THAT(low, WithinAbs(0, 1e-9));
+  CHECK_THAT(machine.grbl.position_mm()[0], WithinAbs(20, 1e-9));
   machine.tell("G18G3X0Z0I-10K0", 4);
-  EXPECT_NEAR(machine.grbl.position_mm()[0], 0, 1e-9);
-  EXPECT_EQ(machine.tell("G17G2X50R10"), "error:34\r\n");
-  EXPECT_EQ(machine.tell("G2X50"), "error:35\r\n");
+  CHECK_THAT(machine.grbl.position_mm()[0], WithinAbs(0, 1e-9));
+  CHECK(machine.tell("G17G2X50R10") == "error:34\r\n");
+  CHECK(machine.tell("G2X50") == "error:35\r\n");
 }
 
-TEST(VirtualGrbl, RefusesAsTheFirmwareDoes) {
+TEST_CASE("VirtualGrbl.RefusesAsTheFirmwareDoes") {
   Machine machine;
   for (const auto& [line, error] : std::vector<std::pair<const char*, int>>{{"G64", 20},
                                                                             {"T1M6", 20},
@@ -174,56 +179,58 @@ TEST(VirtualGrbl, RefusesAsTheFirmwareDoes) {
                                                                             {"$999=1", 3},
                                                                             {"$H", 5},
                                                                             {"M3.5", 23},
-                                                                            {"G10L2P9X1", 29}})
-    EXPECT_EQ(machine.tell(line), "error:" + std::to_string(error) + "\r\n") << line;
+                                                                            {"G10L2P9X1", 29}}) {
+    INFO(line);
+    CHECK(machine.tell(line) == "error:" + std::to_string(error) + "\r\n");
+  }
 }
 
-TEST(VirtualGrbl, StartupLinesRunAtABootAndBehindHomingNotBehindUnlocking) {
+TEST_CASE("VirtualGrbl.StartupLinesRunAtABootAndBehindHomingNotBehindUnlocking") {
   Machine machine(VirtualGrblOptions{});
-  EXPECT_EQ(machine.grbl.state(), "Alarm");
+  CHECK(machine.grbl.state() == "Alarm");
   machine.tell("$X");
-  EXPECT_EQ(machine.tell("$N0=M3S200G1F100"), "ok\r\n");
+  CHECK(machine.tell("$N0=M3S200G1F100") == "ok\r\n");
   machine.tell("M5");
-  EXPECT_NE(machine.tell("$N").find("$N0=M3S200G1F100\r\n$N1=\r\n"), std::string::npos);
+  CHECK(machine.tell("$N").find("$N0=M3S200G1F100\r\n$N1=\r\n") != std::string::npos);
   machine.tell("$H", 3);
-  EXPECT_TRUE(machine.grbl.beam());
+  CHECK(machine.grbl.beam());
   machine.tell("M5");
   machine.grbl.brown_out(machine.now_s);
   machine.pass(1);
-  EXPECT_FALSE(machine.grbl.beam());  // locked
+  CHECK_FALSE(machine.grbl.beam());  // locked
   machine.tell("$X");
-  EXPECT_FALSE(machine.grbl.beam());
+  CHECK_FALSE(machine.grbl.beam());
 }
 
-TEST(VirtualGrbl, ChecksWithoutMoving) {
+TEST_CASE("VirtualGrbl.ChecksWithoutMoving") {
   Machine machine;
-  EXPECT_NE(machine.tell("$C").find("Enabled"), std::string::npos);
-  EXPECT_EQ(machine.tell("G1X50F100M3S100"), "ok\r\n");
-  EXPECT_EQ(machine.tell("G64"), "error:20\r\n");
-  EXPECT_EQ(machine.grbl.position_mm()[0], 0);
-  EXPECT_FALSE(machine.grbl.beam());
-  EXPECT_NE(machine.tell("$C").find("Grbl 1.1h"), std::string::npos);
+  CHECK(machine.tell("$C").find("Enabled") != std::string::npos);
+  CHECK(machine.tell("G1X50F100M3S100") == "ok\r\n");
+  CHECK(machine.tell("G64") == "error:20\r\n");
+  CHECK(machine.grbl.position_mm()[0] == 0);
+  CHECK_FALSE(machine.grbl.beam());
+  CHECK(machine.tell("$C").find("Grbl 1.1h") != std::string::npos);
 }
 
-TEST(VirtualGrbl, TheErrorLatchKeepsEvenM5FromActing) {
+TEST_CASE("VirtualGrbl.TheErrorLatchKeepsEvenM5FromActing") {
   Machine machine({.homes = false, .error_latch = true});
   machine.tell("G1F1000");
   machine.tell("M3S500");
-  EXPECT_EQ(machine.tell("G64"), "error:20\r\n");
-  EXPECT_EQ(machine.tell("M5"), "error:20\r\n");
-  EXPECT_TRUE(machine.grbl.beam());
+  CHECK(machine.tell("G64") == "error:20\r\n");
+  CHECK(machine.tell("M5") == "error:20\r\n");
+  CHECK(machine.grbl.beam());
   machine.tell("");
-  EXPECT_EQ(machine.tell("M5"), "ok\r\n");
-  EXPECT_FALSE(machine.grbl.beam());
+  CHECK(machine.tell("M5") == "ok\r\n");
+  CHECK_FALSE(machine.grbl.beam());
 }
 
-TEST(VirtualGrbl, APowerFailureLosesTheCount) {
+TEST_CASE("VirtualGrbl.APowerFailureLosesTheCount") {
   Machine machine;
   machine.tell("G0X50", 2);
   machine.grbl.brown_out(machine.now_s);
   machine.pass(1);
-  EXPECT_NE(machine.ask().find("MPos:0.000"), std::string::npos);
-  EXPECT_NEAR(machine.grbl.position_mm()[0], 50, 1e-9);
+  CHECK(machine.ask().find("MPos:0.000") != std::string::npos);
+  CHECK_THAT(machine.grbl.position_mm()[0], WithinAbs(50, 1e-9));
 }
 
 }  // namespace

@@ -2,7 +2,8 @@
 #include "machines/document_pages.h"
 
 #include <cups/raster.h>
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 #include <algorithm>
 
 #include <cstring>
@@ -15,6 +16,8 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinULP;
 
 Bytes pdf(const std::string& page_words) {
   std::string text = "%PDF-1.7\n";
@@ -38,15 +41,15 @@ Bytes pdf(const std::string& page_words) {
 
 PageSize size_of(const std::string& page_words) { return read_document_pages(pdf(page_words)).pages.at(0); }
 
-TEST(document_pages, the_size_is_what_is_shown) {
-  EXPECT_NEAR(size_of("").width_mm, 595 * 25.4 / 72, 1e-9);  // inherited
-  EXPECT_NEAR(size_of("/MediaBox[0 0 720 360]").width_mm, 254, 1e-9);
-  EXPECT_NEAR(size_of("/MediaBox[0 0 720 360]/Rotate 90").height_mm, 254, 1e-9);
-  EXPECT_NEAR(size_of("/MediaBox[0 0 720 360]/Rotate -270").height_mm, 254, 1e-9);
-  EXPECT_NEAR(size_of("/MediaBox[0 0 720 360]/Rotate 180").width_mm, 254, 1e-9);
-  EXPECT_NEAR(size_of("/MediaBox[0 0 720 720]/CropBox[72 72 648 360]").height_mm, 101.6, 1e-9);
-  EXPECT_NEAR(size_of("/MediaBox[720 360 0 0]").width_mm, 254, 1e-9);
-  EXPECT_NEAR(size_of("/MediaBox[0 0 72 72]/UserUnit 10").width_mm, 254, 1e-9);
+TEST_CASE("document_pages.the_size_is_what_is_shown") {
+  CHECK_THAT(size_of("").width_mm, WithinAbs(595 * 25.4 / 72, 1e-9));  // inherited
+  CHECK_THAT(size_of("/MediaBox[0 0 720 360]").width_mm, WithinAbs(254, 1e-9));
+  CHECK_THAT(size_of("/MediaBox[0 0 720 360]/Rotate 90").height_mm, WithinAbs(254, 1e-9));
+  CHECK_THAT(size_of("/MediaBox[0 0 720 360]/Rotate -270").height_mm, WithinAbs(254, 1e-9));
+  CHECK_THAT(size_of("/MediaBox[0 0 720 360]/Rotate 180").width_mm, WithinAbs(254, 1e-9));
+  CHECK_THAT(size_of("/MediaBox[0 0 720 720]/CropBox[72 72 648 360]").height_mm, WithinAbs(101.6, 1e-9));
+  CHECK_THAT(size_of("/MediaBox[720 360 0 0]").width_mm, WithinAbs(254, 1e-9));
+  CHECK_THAT(size_of("/MediaBox[0 0 72 72]/UserUnit 10").width_mm, WithinAbs(254, 1e-9));
 }
 
 /// A PDF whose pages stand in an object stream (PDF 1.5) that is filled up with blanks. `type`: how its type is spelt.
@@ -83,8 +86,8 @@ Bytes pdf_with_object_stream(std::size_t blanks, const std::string& type = "/Obj
   return to_bytes(text);
 }
 
-TEST(document_pages, what_a_pdf_unpacks_to_is_counted) {
-  EXPECT_NEAR(read_document_pages(pdf_with_object_stream(1000)).pages.at(0).width_mm, 595 * 25.4 / 72, 1e-9);
+TEST_CASE("document_pages.what_a_pdf_unpacks_to_is_counted") {
+  CHECK_THAT(read_document_pages(pdf_with_object_stream(1000)).pages.at(0).width_mm, WithinAbs(595 * 25.4 / 72, 1e-9));
   const auto refused = [](const Bytes& bytes) -> std::string {
     try {
       read_document_pages(bytes);
@@ -94,32 +97,35 @@ TEST(document_pages, what_a_pdf_unpacks_to_is_counted) {
     return "";
   };
   const Bytes bomb = pdf_with_object_stream(100u << 20);
-  EXPECT_LT(bomb.size(), 110'000u);
+  CHECK(bomb.size() < 110'000u);
   std::string sentence;
   const auto grown = test::peak_growth_mb([&] { sentence = refused(bomb); });
-  EXPECT_NE(sentence.find("unpacks to far more"), std::string::npos) << sentence;
-  EXPECT_LT(grown.value_or(0), 64);
-  EXPECT_NE(refused(pdf_with_object_stream(100u << 20, "/Obj#53tm")).find("unpacks to far more"), std::string::npos);
-  EXPECT_NE(refused(pdf_with_object_stream(1000, "/ObjStm", "[/FlateDecode/FlateDecode]")).find("an unusual way"),
-            std::string::npos);
+  {
+    INFO(sentence);
+    CHECK(sentence.find("unpacks to far more") != std::string::npos);
+  }
+  CHECK(grown.value_or(0) < 64);
+  CHECK(refused(pdf_with_object_stream(100u << 20, "/Obj#53tm")).find("unpacks to far more") != std::string::npos);
+  CHECK(refused(pdf_with_object_stream(1000, "/ObjStm", "[/FlateDecode/FlateDecode]")).find("an unusual way") !=
+        std::string::npos);
 }
 
-TEST(document_pages, what_cannot_be_printed_says_why) {
+TEST_CASE("document_pages.what_cannot_be_printed_says_why") {
   const auto sentence = [](ByteView bytes) -> std::string {
     try {
       read_document_pages(bytes);
     } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::invalid_input);
-      EXPECT_EQ(error.where(), "sha256");
+      CHECK(error.code() == ErrorCode::invalid_input);
+      CHECK(error.where() == "sha256");
       return error.what();
     }
     return "";
   };
-  EXPECT_NE(sentence(pdf("/MediaBox[0 0 0 0]")).find("smaller than 1 mm"), std::string::npos);
-  EXPECT_NE(sentence(pdf("/MediaBox[0 0 99999999 100]")).find("smaller than 1 mm"), std::string::npos);
-  EXPECT_NE(sentence(to_bytes("%PDF-1.7\n")).find("cannot be read"), std::string::npos);
-  EXPECT_NE(sentence({}).find("Only PDF"), std::string::npos);
-  EXPECT_NE(sentence(to_bytes("RaS2 and nothing")).find("PWG raster"), std::string::npos);
+  CHECK(sentence(pdf("/MediaBox[0 0 0 0]")).find("smaller than 1 mm") != std::string::npos);
+  CHECK(sentence(pdf("/MediaBox[0 0 99999999 100]")).find("smaller than 1 mm") != std::string::npos);
+  CHECK(sentence(to_bytes("%PDF-1.7\n")).find("cannot be read") != std::string::npos);
+  CHECK(sentence({}).find("Only PDF") != std::string::npos);
+  CHECK(sentence(to_bytes("RaS2 and nothing")).find("PWG raster") != std::string::npos);
 }
 
 std::string chunk(const std::string& name, const std::string& content) {
@@ -134,21 +140,21 @@ std::string number(std::uint32_t value) {
   return text;
 }
 
-TEST(document_pages, a_png_is_as_large_as_its_density_says) {
+TEST_CASE("document_pages.a_png_is_as_large_as_its_density_says") {
   const std::string head = std::string("\x89PNG\r\n\x1a\n", 8) +
                            chunk("IHDR", number(2000) + number(1000) + "\x08\x02" + std::string(3, '\0'));
   const auto pages = read_document_pages(to_bytes(head + chunk("pHYs", number(10000) + number(5000) + "\x01")));
-  EXPECT_EQ(pages.media_type, "image/png");
-  EXPECT_DOUBLE_EQ(pages.pages.at(0).width_mm, 200);
-  EXPECT_DOUBLE_EQ(pages.pages.at(0).height_mm, 200);
+  CHECK(pages.media_type == "image/png");
+  CHECK_THAT(pages.pages.at(0).width_mm, WithinULP(200.0, 4));
+  CHECK_THAT(pages.pages.at(0).height_mm, WithinULP(200.0, 4));
   // A ratio only, after the pixels, or nothing: no size.
   for (const std::string& tail : {chunk("pHYs", number(1) + number(1) + std::string(1, '\0')),
                                   chunk("IDAT", "x") + chunk("pHYs", number(10000) + number(5000) + "\x01"),
                                   std::string(), number(0xffffffff) + "pHYs"})
-    EXPECT_THROW(read_document_pages(to_bytes(head + tail)), Error);
+    CHECK_THROWS_AS(read_document_pages(to_bytes(head + tail)), Error);
 }
 
-TEST(document_pages, a_pwg_raster_says_its_pixels_and_density) {
+TEST_CASE("document_pages.a_pwg_raster_says_its_pixels_and_density") {
   Bytes written;
   const cups_raster_iocb_t take = [](void* context, unsigned char* data, std::size_t count) {
     auto& to = *static_cast<Bytes*>(context);
@@ -163,22 +169,22 @@ TEST(document_pages, a_pwg_raster_says_its_pixels_and_density) {
   header.cupsBytesPerLine = 600;
   header.cupsNumColors = 1;
   header.cupsColorSpace = CUPS_CSPACE_SW;
-  ASSERT_EQ(cupsRasterWriteHeader2(raster, &header), 1u);
+  REQUIRE(cupsRasterWriteHeader2(raster, &header) == 1u);
   cupsRasterClose(raster);
   const auto pages = read_document_pages(written);
-  EXPECT_EQ(pages.media_type, "image/pwg-raster");
-  EXPECT_NEAR(pages.pages.at(0).width_mm, 50.8, 1e-6);
-  EXPECT_NEAR(pages.pages.at(0).height_mm, 76.2, 1e-6);
+  CHECK(pages.media_type == "image/pwg-raster");
+  CHECK_THAT(pages.pages.at(0).width_mm, WithinAbs(50.8, 1e-6));
+  CHECK_THAT(pages.pages.at(0).height_mm, WithinAbs(76.2, 1e-6));
 }
 
-TEST(document_pages, mirroring_twice_keeps_the_page) {
+TEST_CASE("document_pages.mirroring_twice_keeps_the_page") {
   const Bytes once = mirrored_pdf(pdf("/MediaBox[0 0 720 360]/Rotate 90")), twice = mirrored_pdf(once);
-  EXPECT_NEAR(read_document_pages(twice).pages.at(0).height_mm, 254, 1e-9);
-  EXPECT_EQ(once, mirrored_pdf(pdf("/MediaBox[0 0 720 360]/Rotate 90")));  // deterministic
-  EXPECT_THROW(mirrored_pdf(to_bytes("%PDF-1.7 nothing")), Error);
+  CHECK_THAT(read_document_pages(twice).pages.at(0).height_mm, WithinAbs(254, 1e-9));
+  CHECK(once == mirrored_pdf(pdf("/MediaBox[0 0 720 360]/Rotate 90")));  // deterministic
+  CHECK_THROWS_AS(mirrored_pdf(to_bytes("%PDF-1.7 nothing")), Error);
 }
 
-TEST(print_media, database_ready_margins_and_names) {
+TEST_CASE("print_media.database_ready_margins_and_names") {
   ipp_t* answer = ippNew();
   const auto add = [&](const char* name, std::initializer_list<std::array<int, 4>> sizes) {
     std::vector<ipp_t*> all;
@@ -203,22 +209,22 @@ TEST(print_media, database_ready_margins_and_names) {
   add("media-col-ready", {{21000, 29700, 300, 400}});
   const auto media = read_print_media(answer);
   ippDelete(answer);
-  ASSERT_EQ(media.size(), 4u);
+  REQUIRE(media.size() == 4u);
   const PrintMedia* a4 = find_print_media(media, "a4");
-  ASSERT_TRUE(a4);
-  EXPECT_EQ(a4->name, "iso_a4_210x297mm");
-  EXPECT_EQ(a4->left_hmm, 300);  // the wider margins, which every tray keeps
-  EXPECT_TRUE(a4->loaded);
-  EXPECT_FALSE(find_print_media(media, "iso_a3_297x420mm")->loaded);
-  EXPECT_FALSE(find_print_media(media, "A3")->by_hand);
-  EXPECT_EQ(find_print_media(media, "Legal"), nullptr);
-  EXPECT_EQ(media.back().width_mm(), 123.45);
-  EXPECT_TRUE(page_matches(*a4, {209.9, 297.04}));
-  EXPECT_TRUE(page_matches(*a4, {297, 210}));
-  EXPECT_FALSE(page_matches(*a4, {215.9, 279.4}));
+  REQUIRE(a4);
+  CHECK(a4->name == "iso_a4_210x297mm");
+  CHECK(a4->left_hmm == 300);  // the wider margins, which every tray keeps
+  CHECK(a4->loaded);
+  CHECK_FALSE(find_print_media(media, "iso_a3_297x420mm")->loaded);
+  CHECK_FALSE(find_print_media(media, "A3")->by_hand);
+  CHECK(find_print_media(media, "Legal") == nullptr);
+  CHECK(media.back().width_mm() == 123.45);
+  CHECK(page_matches(*a4, {209.9, 297.04}));
+  CHECK(page_matches(*a4, {297, 210}));
+  CHECK_FALSE(page_matches(*a4, {215.9, 279.4}));
 }
 
-TEST(document_pages, a_pwg_raster_in_either_order_of_bytes_whatever_it_claims_of_its_lines) {
+TEST_CASE("document_pages.a_pwg_raster_in_either_order_of_bytes_whatever_it_claims_of_its_lines") {
   // Found by fuzzing: libcups set aside what the header said of a line, here 1.3 GB, for a file of 21 kB.
   cups_page_header2_t header{};
   header.HWResolution[0] = header.HWResolution[1] = 300;
@@ -234,11 +240,11 @@ TEST(document_pages, a_pwg_raster_in_either_order_of_bytes_whatever_it_claims_of
                  high_end_first.begin() + static_cast<std::ptrdiff_t>(at + 4));
   for (const Bytes& raster : {low_end_first, high_end_first}) {
     const DocumentPages pages = read_document_pages(raster);
-    ASSERT_EQ(pages.pages.size(), 1u);
-    EXPECT_NEAR(pages.pages[0].width_mm, 25.4 * 2480 / 300, 1e-9);
-    EXPECT_NEAR(pages.pages[0].height_mm, 25.4 * 3508 / 300, 1e-9);
+    REQUIRE(pages.pages.size() == 1u);
+    CHECK_THAT(pages.pages[0].width_mm, WithinAbs(25.4 * 2480 / 300, 1e-9));
+    CHECK_THAT(pages.pages[0].height_mm, WithinAbs(25.4 * 3508 / 300, 1e-9));
   }
-  EXPECT_THROW(read_document_pages(ByteView(low_end_first).first(1000)), Error);
+  CHECK_THROWS_AS(read_document_pages(ByteView(low_end_first).first(1000)), Error);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "job_store.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
 #include <stdlib.h>
 
 #include <unistd.h>
@@ -20,14 +20,14 @@ namespace {
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 
-class JobStoreFolder : public testing::Test {
+class JobStoreFolder {
  protected:
   JobStoreFolder() {
     char name[] = "/tmp/formwright-test-XXXXXX";
     path = ::mkdtemp(name);
     fs::create_directories(path / "results");
   }
-  ~JobStoreFolder() override { fs::remove_all(path); }
+  ~JobStoreFolder() { fs::remove_all(path); }
 
   /// Its blocks are never written: a file of a gigabyte costs nothing here.
   void put(const fs::path& file, double mb, std::chrono::minutes unused) const {
@@ -61,7 +61,7 @@ class JobStoreFolder : public testing::Test {
   const Json result = {{"report", {{"faces", 4}}}, {"outputs", Json::object()}};
 };
 
-TEST_F(JobStoreFolder, the_longest_unused_goes_until_the_rest_fits) {
+TEST_CASE_METHOD(JobStoreFolder, "JobStoreFolder.the_longest_unused_goes_until_the_rest_fits") {
   fs::create_directories(path / "blobs");
   put("blobs/new", 4, 1min);
   put("blobs/oldest", 4, 60min);
@@ -70,14 +70,17 @@ TEST_F(JobStoreFolder, the_longest_unused_goes_until_the_rest_fits) {
   put("results/oldest", 400, 60min);
   put("results/old", 400, 30min);
   tidy(13);
-  EXPECT_TRUE(there("blobs/oldest"));
-  EXPECT_FALSE(there("results/oldest"));  // 1000 MB of these are kept
+  CHECK(there("blobs/oldest"));
+  CHECK_FALSE(there("results/oldest"));  // 1000 MB of these are kept
   tidy(9);
-  EXPECT_FALSE(there("blobs/oldest"));
-  for (const char* kept : {"blobs/old", "blobs/new", "results/old", "results/new"}) EXPECT_TRUE(there(kept)) << kept;
+  CHECK_FALSE(there("blobs/oldest"));
+  for (const char* kept : {"blobs/old", "blobs/new", "results/old", "results/new"}) {
+    INFO(kept);
+    CHECK(there(kept));
+  }
 }
 
-TEST_F(JobStoreFolder, a_folder_among_the_files_costs_none_of_them) {
+TEST_CASE_METHOD(JobStoreFolder, "JobStoreFolder.a_folder_among_the_files_costs_none_of_them") {
   fs::create_directories(path / "blobs");
   put("blobs/one", 4, 60min);
   put("results/one", 4, 60min);
@@ -86,11 +89,13 @@ TEST_F(JobStoreFolder, a_folder_among_the_files_costs_none_of_them) {
   fs::create_directories(path / "results/lost+found");
   fs::create_symlink("nowhere", path / "results/link");  // whose file is gone
   tidy(12);
-  for (const char* kept : {"blobs/one", "results/one", "blobs/lost+found", "results/lost+found"})
-    EXPECT_TRUE(there(kept)) << kept;
+  for (const char* kept : {"blobs/one", "results/one", "blobs/lost+found", "results/lost+found"}) {
+    INFO(kept);
+    CHECK(there(kept));
+  }
 }
 
-TEST_F(JobStoreFolder, what_is_being_made_stays_and_what_was_left_over_goes) {
+TEST_CASE_METHOD(JobStoreFolder, "JobStoreFolder.what_is_being_made_stays_and_what_was_left_over_goes") {
   JobStore store(path);
   put("blobs/sliced.part-7", 4, 1min);
   put("blobs/crashed.part-8", 4, 60min);
@@ -98,17 +103,17 @@ TEST_F(JobStoreFolder, what_is_being_made_stays_and_what_was_left_over_goes) {
   put("results/key.claim", 2000, 1min);  // no claim weighs that much; here it must not
   put("results/other.claim", 2000, 60min);
   store.tidy(10, 1);
-  EXPECT_TRUE(there("blobs/sliced.part-7"));
-  EXPECT_FALSE(there("blobs/crashed.part-8"));
-  EXPECT_FALSE(there("blobs/other"));
-  EXPECT_TRUE(there("results/key.claim"));
-  EXPECT_FALSE(there("results/other.claim"));
+  CHECK(there("blobs/sliced.part-7"));
+  CHECK_FALSE(there("blobs/crashed.part-8"));
+  CHECK_FALSE(there("blobs/other"));
+  CHECK(there("results/key.claim"));
+  CHECK_FALSE(there("results/other.claim"));
 }
 
 // Above every number that Linux gives (pid_max is at most 2^22).
 const std::string ended = ".part-99999999-1";
 
-TEST_F(JobStoreFolder, a_start_removes_what_ended_processes_left_half_done) {
+TEST_CASE_METHOD(JobStoreFolder, "JobStoreFolder.a_start_removes_what_ended_processes_left_half_done") {
   const std::string id(32, 'c');
   fs::create_directories(path / "jobs" / id / "outputs");
   fs::create_directories(path / "slicing-0123456789abcdef/home");
@@ -121,15 +126,17 @@ TEST_F(JobStoreFolder, a_start_removes_what_ended_processes_left_half_done) {
   write("results/key.claim", std::string(machine) + " 99999999");
   write("results/other.claim", "elsewhere 99999999");
   JobStore store(path);
-  EXPECT_EQ(store.find(id), nullptr);  // no job.json: it was never accepted
+  CHECK(store.find(id) == nullptr);  // no job.json: it was never accepted
   for (const std::string& gone :
        {"blobs/b" + ended, "results/r" + ended, "machines.json" + ended, "jobs/" + id, std::string("uploads/u"),
-        std::string("slicing-0123456789abcdef"), std::string("results/key.claim")})
-    EXPECT_FALSE(there(gone)) << gone;
-  EXPECT_TRUE(there("results/other.claim"));  // whether its owner runs only that machine knows
+        std::string("slicing-0123456789abcdef"), std::string("results/key.claim")}) {
+    INFO(gone);
+    CHECK_FALSE(there(gone));
+  }
+  CHECK(there("results/other.claim"));  // whether its owner runs only that machine knows
 }
 
-TEST_F(JobStoreFolder, jobs_come_back_as_they_were) {
+TEST_CASE_METHOD(JobStoreFolder, "JobStoreFolder.jobs_come_back_as_they_were") {
   std::string queued, done;
   {
     JobStore store(path);
@@ -140,18 +147,18 @@ TEST_F(JobStoreFolder, jobs_come_back_as_they_were) {
     done = finished_job(store);
   }
   JobStore store(path);
-  ASSERT_NE(store.find(queued), nullptr);
-  EXPECT_EQ(store.find(queued)->state, JobState::queued);
-  EXPECT_EQ(store.find(queued)->deaths.crashed, 1);
-  ASSERT_NE(store.find(done), nullptr);
-  EXPECT_EQ(store.find(done)->state, JobState::done);
-  EXPECT_EQ(store.find(done)->result, result);
-  EXPECT_TRUE(store.remove(done));
-  EXPECT_FALSE(there("jobs/" + done));
-  EXPECT_EQ(store.unfinished_oldest_first(), std::vector<std::string>{queued});
+  REQUIRE(store.find(queued) != nullptr);
+  CHECK(store.find(queued)->state == JobState::queued);
+  CHECK(store.find(queued)->deaths.crashed == 1);
+  REQUIRE(store.find(done) != nullptr);
+  CHECK(store.find(done)->state == JobState::done);
+  CHECK(store.find(done)->result == result);
+  CHECK(store.remove(done));
+  CHECK_FALSE(there("jobs/" + done));
+  CHECK(store.unfinished_oldest_first() == std::vector<std::string>{queued});
 }
 
-TEST_F(JobStoreFolder, an_altered_result_makes_the_job_run_again) {
+TEST_CASE_METHOD(JobStoreFolder, "JobStoreFolder.an_altered_result_makes_the_job_run_again") {
   std::string altered, gone;
   {
     JobStore store(path);
@@ -161,13 +168,13 @@ TEST_F(JobStoreFolder, an_altered_result_makes_the_job_run_again) {
   fs::remove(path / "jobs" / gone / "result.json");
   JobStore store(path);
   for (const std::string& id : {altered, gone}) {
-    ASSERT_NE(store.find(id), nullptr);
-    EXPECT_EQ(store.find(id)->state, JobState::queued);
-    EXPECT_FALSE(there("jobs/" + id + "/result.json"));
+    REQUIRE(store.find(id) != nullptr);
+    CHECK(store.find(id)->state == JobState::queued);
+    CHECK_FALSE(there("jobs/" + id + "/result.json"));
   }
 }
 
-TEST_F(JobStoreFolder, every_altered_byte_of_a_job_is_noticed) {
+TEST_CASE_METHOD(JobStoreFolder, "JobStoreFolder.every_altered_byte_of_a_job_is_noticed") {
   std::string id;
   {
     JobStore store(path);
@@ -180,13 +187,16 @@ TEST_F(JobStoreFolder, every_altered_byte_of_a_job_is_noticed) {
     altered[at] = static_cast<char>(altered[at] ^ 4);
     write(file, altered);
     JobStore store(path);
-    ASSERT_NE(store.find(id), nullptr);
-    EXPECT_EQ(store.find(id)->state, JobState::failed) << altered;
-    EXPECT_TRUE(store.find(id)->result.contains("error"));
+    REQUIRE(store.find(id) != nullptr);
+    {
+      INFO(altered);
+      CHECK(store.find(id)->state == JobState::failed);
+    }
+    CHECK(store.find(id)->result.contains("error"));
   }
 }
 
-TEST_F(JobStoreFolder, jobs_of_releases_without_checksums_are_read) {
+TEST_CASE_METHOD(JobStoreFolder, "JobStoreFolder.jobs_of_releases_without_checksums_are_read") {
   const std::string done(32, 'd'), running(32, 'e');
   const Json head = {
       {"submitted_unix_s", 5.5}, {"finished_unix_s", 6.5}, {"attempts", 2}, {"job", {{"operation", "import"}}}};
@@ -198,82 +208,83 @@ TEST_F(JobStoreFolder, jobs_of_releases_without_checksums_are_read) {
   }
   write(fs::path("jobs") / done / "result.json", result.dump());
   JobStore store(path);
-  ASSERT_NE(store.find(done), nullptr);
-  EXPECT_EQ(store.find(done)->state, JobState::done);
-  EXPECT_EQ(store.find(done)->result, result);
-  ASSERT_NE(store.find(running), nullptr);
-  EXPECT_EQ(store.find(running)->state, JobState::queued);
-  EXPECT_FALSE(store.find(running)->deaths.verdict());  // deaths of the worker were counted as attempts
+  REQUIRE(store.find(done) != nullptr);
+  CHECK(store.find(done)->state == JobState::done);
+  CHECK(store.find(done)->result == result);
+  REQUIRE(store.find(running) != nullptr);
+  CHECK(store.find(running)->state == JobState::queued);
+  CHECK_FALSE(store.find(running)->deaths.verdict());  // deaths of the worker were counted as attempts
 }
 
-TEST_F(JobStoreFolder, a_job_that_finds_no_place_leaves_nothing) {
+TEST_CASE_METHOD(JobStoreFolder, "JobStoreFolder.a_job_that_finds_no_place_leaves_nothing") {
   JobStore store(path);
   fs::remove_all(path / "jobs");
   write("jobs", "a file where the folder was");
-  EXPECT_THROW(store.add({{"operation", "import"}}), StorageError);
-  EXPECT_TRUE(store.newest_first().empty());
+  CHECK_THROWS_AS(store.add({{"operation", "import"}}), StorageError);
+  CHECK(store.newest_first().empty());
 }
 
-TEST_F(JobStoreFolder, a_blob_that_is_touched_stays_known_and_one_that_is_altered_does_not) {
+TEST_CASE_METHOD(JobStoreFolder, "JobStoreFolder.a_blob_that_is_touched_stays_known_and_one_that_is_altered_does_not") {
   JobStore store(path);
   const std::string content = "mesh", hash = sha256_hex(as_bytes(content));
   write("uploads/received", content);
   store.keep_blob(path / "uploads/received", hash);
-  EXPECT_TRUE(store.checked().known(store.blob_path(hash), hash));
-  EXPECT_TRUE(store.touch_blob(hash));
-  EXPECT_TRUE(store.checked().known(store.blob_path(hash), hash));
-  EXPECT_TRUE(has_sha256(store.blob_path(hash), hash));
+  CHECK(store.checked().known(store.blob_path(hash), hash));
+  CHECK(store.touch_blob(hash));
+  CHECK(store.checked().known(store.blob_path(hash), hash));
+  CHECK(has_sha256(store.blob_path(hash), hash));
   alter("blobs/" + hash);
-  EXPECT_FALSE(store.checked().known(store.blob_path(hash), hash));
-  EXPECT_FALSE(has_sha256(store.blob_path(hash), hash));
-  EXPECT_THROW(read_checked_file(store.blob_path(hash), hash, "mesh"), Error);
+  CHECK_FALSE(store.checked().known(store.blob_path(hash), hash));
+  CHECK_FALSE(has_sha256(store.blob_path(hash), hash));
+  CHECK_THROWS_AS(read_checked_file(store.blob_path(hash), hash, "mesh"), Error);
   store.remove_blob(hash);
-  EXPECT_FALSE(store.touch_blob(hash));
+  CHECK_FALSE(store.touch_blob(hash));
 }
 
-TEST_F(JobStoreFolder, a_kept_simulation_that_was_altered_is_none) {
+TEST_CASE_METHOD(JobStoreFolder, "JobStoreFolder.a_kept_simulation_that_was_altered_is_none") {
   const ResultFolder results(path / "results");
   const Bytes bytes = to_bytes("a formed sheet");
-  ASSERT_TRUE(results.claim("key"));
-  EXPECT_FALSE(ResultFolder(path / "results").claim("key"));
+  REQUIRE(results.claim("key"));
+  CHECK_FALSE(ResultFolder(path / "results").claim("key"));
   results.keep("key", bytes);
-  EXPECT_EQ(results.find("key"), bytes);
-  EXPECT_TRUE(results.claim("key"));
+  CHECK(results.find("key") == bytes);
+  CHECK(results.claim("key"));
   results.release("key");
   const std::string whole = read("results/key");
   for (std::size_t at = 0; at < whole.size(); ++at) {
     std::string altered = whole;
     altered[at] = static_cast<char>(altered[at] ^ 1);
     write("results/key", altered);
-    EXPECT_EQ(results.find("key"), std::nullopt) << at;
+    INFO(at);
+    CHECK(results.find("key") == std::nullopt);
   }
   results.keep("key", bytes);
-  EXPECT_EQ(results.find("key"), bytes);
-  EXPECT_EQ(std::distance(fs::directory_iterator(path / "results"), fs::directory_iterator()), 1);
+  CHECK(results.find("key") == bytes);
+  CHECK(std::distance(fs::directory_iterator(path / "results"), fs::directory_iterator()) == 1);
 }
 
-TEST(SolverDeaths, kills_are_forgiven_and_crashes_are_not) {
-  EXPECT_EQ(death_of(SIGKILL, false), SolverDeath::killed);
-  EXPECT_EQ(death_of(SIGKILL, true), SolverDeath::out_of_memory);
-  EXPECT_EQ(death_of(SIGTERM, false), SolverDeath::ended);
-  EXPECT_EQ(death_of(SIGSEGV, true), SolverDeath::crashed);
-  EXPECT_EQ(death_of(1 << 8, false), SolverDeath::crashed);  // exit(1)
+TEST_CASE("SolverDeaths.kills_are_forgiven_and_crashes_are_not") {
+  CHECK(death_of(SIGKILL, false) == SolverDeath::killed);
+  CHECK(death_of(SIGKILL, true) == SolverDeath::out_of_memory);
+  CHECK(death_of(SIGTERM, false) == SolverDeath::ended);
+  CHECK(death_of(SIGSEGV, true) == SolverDeath::crashed);
+  CHECK(death_of(1 << 8, false) == SolverDeath::crashed);  // exit(1)
   const auto deaths_until_verdict = [](SolverDeath death, bool restarts) {
     SolverDeaths deaths;
     int count = 0;
     while (!deaths.verdict() && count < 1000) {
       deaths.count(death);
-      EXPECT_LE(deaths.pause(), 10s);
+      CHECK(deaths.pause() <= 10s);
       if (restarts) deaths = SolverDeaths::from_json(deaths.json());
       ++count;
     }
     return count;
   };
   for (const bool restarts : {false, true}) {  // of the worker between two deaths
-    EXPECT_EQ(deaths_until_verdict(SolverDeath::crashed, restarts), 2);
-    EXPECT_EQ(deaths_until_verdict(SolverDeath::out_of_memory, restarts), 2);
-    EXPECT_EQ(deaths_until_verdict(SolverDeath::killed, restarts), restarts ? 1000 : 20);
-    EXPECT_EQ(deaths_until_verdict(SolverDeath::ended, restarts), 1000);
+    CHECK(deaths_until_verdict(SolverDeath::crashed, restarts) == 2);
+    CHECK(deaths_until_verdict(SolverDeath::out_of_memory, restarts) == 2);
+    CHECK(deaths_until_verdict(SolverDeath::killed, restarts) == (restarts ? 1000 : 20));
+    CHECK(deaths_until_verdict(SolverDeath::ended, restarts) == 1000);
   }
 }
 

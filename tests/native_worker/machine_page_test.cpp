@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "machines/machine_page.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/use_awaitable.hpp>
@@ -14,7 +14,7 @@ using boost::asio::use_awaitable;
 using boost::asio::ip::tcp;
 
 // A machine's state is told ten times a second, also while a page is still shaking hands.
-TEST(machine_page, hears_nothing_before_the_handshake_is_done) {
+TEST_CASE("machine_page.hears_nothing_before_the_handshake_is_done") {
   boost::asio::io_context io;
   tcp::acceptor acceptor(io, {boost::asio::ip::address_v4::loopback(), 0});
   tcp::socket asking(io);
@@ -29,7 +29,7 @@ TEST(machine_page, hears_nothing_before_the_handshake_is_done) {
         page->accepted();
         page->send({{"told", "in time"}});
       },
-      [](const std::exception_ptr& mistake) { EXPECT_FALSE(mistake); });
+      [](const std::exception_ptr& mistake) { CHECK_FALSE(mistake); });
   io.poll();  // it waits for the request now
   page->send({{"told", "too early"}});
   page->send_state(std::make_shared<const std::string>("too early"));
@@ -43,9 +43,9 @@ TEST(machine_page, hears_nothing_before_the_handshake_is_done) {
         heard = beast::buffers_to_string(buffer.data());
         page->hang_up();
       },
-      [](const std::exception_ptr& mistake) { EXPECT_FALSE(mistake); });
+      [](const std::exception_ptr& mistake) { CHECK_FALSE(mistake); });
   io.run_for(std::chrono::seconds(20));
-  EXPECT_EQ(heard, R"({"told":"in time"})");
+  CHECK(heard == R"({"told":"in time"})");
 }
 
 }  // namespace

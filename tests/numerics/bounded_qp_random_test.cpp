@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Random problems against an independent dense solver.
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include "base/error.h"
 #include "numerics/bounded_qp.h"
@@ -8,6 +9,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 using test::infinity;
 using test::RandomProblem;
@@ -56,28 +58,31 @@ std::vector<Case> cases() {
   return all;
 }
 
-TEST(BoundedQpRandom, EqualsDenseReference) {
+TEST_CASE("BoundedQpRandom.EqualsDenseReference") {
   for (const Case& example : cases()) {
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
-      SCOPED_TRACE(std::string(example.name) + ", seed " + std::to_string(seed));
+      INFO(std::string(example.name) + ", seed " + std::to_string(seed));
       const RandomProblem p = test::random_problem(seed, example.settings);
       const test::DenseProblem dense = test::dense_problem(p.Q, p.constraints);
       const test::DenseSolution reference = test::solve_dense(dense);
-      ASSERT_LT(reference.gap, 1e-6 * (1 + reference.objective)) << "the reference itself";
-      ASSERT_LT(reference.violation, 1e-7) << "the reference itself";
+      {
+        INFO("the reference itself");
+        REQUIRE(reference.gap < 1e-6 * (1 + reference.objective));
+        REQUIRE(reference.violation < 1e-7);
+      }
       const BoundedQpSolution s = solve(p);
-      EXPECT_LE(violation(p.constraints, s), 1e-9);
-      EXPECT_NEAR(p.constraints.gauge.dot(s.u), 0, 1e-9);
-      EXPECT_NEAR(0.5 * s.u.dot(p.Q * s.u), reference.objective, 2e-6 * (1 + reference.objective));
+      CHECK(violation(p.constraints, s) <= 1e-9);
+      CHECK_THAT(p.constraints.gauge.dot(s.u), WithinAbs(0, 1e-9));
+      CHECK_THAT(0.5 * s.u.dot(p.Q * s.u), WithinAbs(reference.objective, 2e-6 * (1 + reference.objective)));
       // Summed here without care for cancellation.
-      EXPECT_NEAR(s.objective, 0.5 * s.u.dot(p.Q * s.u),
-                  1e-12 + 1e-14 * s.u.cwiseAbs().dot(p.Q.cwiseAbs() * s.u.cwiseAbs()));
+      CHECK_THAT(s.objective, WithinAbs(0.5 * s.u.dot(p.Q * s.u),
+                                        1e-12 + 1e-14 * s.u.cwiseAbs().dot(p.Q.cwiseAbs() * s.u.cwiseAbs())));
       Eigen::VectorXd x(s.u.size() + s.m.size());
       x << s.u, s.m;
       if (s.objective > 1e-12) {
-        EXPECT_LT(test::stationarity_gap(dense, x, 1e-8), 1e-8);
+        CHECK(test::stationarity_gap(dense, x, 1e-8) < 1e-8);
       }
-      EXPECT_LT(s.kkt_residual, 1e-9);
+      CHECK(s.kkt_residual < 1e-9);
     }
   }
 }

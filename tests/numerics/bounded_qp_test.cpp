@@ -2,7 +2,8 @@
 // Exact answers, invariants and bad input.
 #include "numerics/bounded_qp.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <chrono>
 
@@ -11,6 +12,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 using test::infinity;
 using test::Random;
@@ -106,21 +108,21 @@ Problem relief(int width, int height, double thickness, std::uint64_t seed = 1) 
           slab(bumps(width, height, seed, 10), thickness)};
 }
 
-TEST(BoundedQp, SpringFillsTheSlab) {
+TEST_CASE("BoundedQp.SpringFillsTheSlab") {
   Problem p{lower_of(graph_laplacian(2, path(2))), {0, 0}, slab(Eigen::Vector2d(0, 10), 2)};
   const auto s = solve(p);
-  EXPECT_NEAR(s.u[0], 4, 1e-13);
-  EXPECT_NEAR(s.u[1], -4, 1e-13);
-  EXPECT_NEAR(s.m[0], 6, 1e-13);
-  EXPECT_NEAR(s.objective, 32, 1e-12);
-  EXPECT_EQ(s.active_constraints, 2);
+  CHECK_THAT(s.u[0], WithinAbs(4, 1e-13));
+  CHECK_THAT(s.u[1], WithinAbs(-4, 1e-13));
+  CHECK_THAT(s.m[0], WithinAbs(6, 1e-13));
+  CHECK_THAT(s.objective, WithinAbs(32, 1e-12));
+  CHECK(s.active_constraints == 2);
 }
 
-TEST(BoundedQp, StringOverObstaclesIsTheirConcaveHull) {
+TEST_CASE("BoundedQp.StringOverObstaclesIsTheirConcaveHull") {
   // A string held at 0 at both ends above obstacles: its least energy is the upper hull of ends and obstacles.
   for (const QpMethod method : {QpMethod::exchange, QpMethod::interior_point}) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
-      SCOPED_TRACE(seed);
+      CAPTURE(seed);
       Random random(seed);
       const int n = 60;
       Problem p{lower_of(graph_laplacian(n, path(n))), std::vector<int>(n, 0), unbounded(n)};
@@ -143,13 +145,13 @@ TEST(BoundedQp, StringOverObstaclesIsTheirConcaveHull) {
       for (std::size_t k = 1; k < hull.size(); ++k) {
         const int a = hull[k - 1], b = hull[k];
         for (int i = a; i <= b; ++i)
-          EXPECT_NEAR(s.u[i], obstacle[a] + (obstacle[b] - obstacle[a]) * (i - a) / (b - a), 1e-11);
+          CHECK_THAT(s.u[i], WithinAbs(obstacle[a] + (obstacle[b] - obstacle[a]) * (i - a) / (b - a), 1e-11));
       }
     }
   }
 }
 
-TEST(BoundedQp, ClampedBeamOnAPointSupportIsCubic) {
+TEST_CASE("BoundedQp.ClampedBeamOnAPointSupportIsCubic") {
   // Fourth differences vanish off the support at k: u_i = i (i - 1) (a + b i) up to it, symmetric; the two cubics may
   // differ by a multiple of x (x^2 - 1), x = i - k, which leaves all but one fourth difference at zero.
   const int k = 12, n = 2 * k + 1;
@@ -161,51 +163,51 @@ TEST(BoundedQp, ClampedBeamOnAPointSupportIsCubic) {
   const auto s = solve(p);
   for (int i = 0; i <= k; ++i) {
     const double u = i * (i - 1.0) * b * (ratio + i);
-    EXPECT_NEAR(s.u[i], u, 1e-11);
-    EXPECT_NEAR(s.u[n - 1 - i], u, 1e-11);
+    CHECK_THAT(s.u[i], WithinAbs(u, 1e-11));
+    CHECK_THAT(s.u[n - 1 - i], WithinAbs(u, 1e-11));
   }
 }
 
-TEST(BoundedQp, InactiveBoundsLeaveEverythingAtRest) {
+TEST_CASE("BoundedQp.InactiveBoundsLeaveEverythingAtRest") {
   Problem p = relief(20, 15, 1);
   const double depth = -p.constraints.upper.minCoeff() + p.constraints.upper.maxCoeff();
   p = relief(20, 15, 1.01 * depth);
   for (const QpMethod method : {QpMethod::exchange, QpMethod::interior_point}) {
     const auto s = solve(p, method);
-    EXPECT_LT(s.u.cwiseAbs().maxCoeff(), 1e-10);
-    EXPECT_LT(s.objective, 1e-18);
-    EXPECT_LE(s.violation_max, 1e-9);
+    CHECK(s.u.cwiseAbs().maxCoeff() < 1e-10);
+    CHECK(s.objective < 1e-18);
+    CHECK(s.violation_max <= 1e-9);
   }
 }
 
-TEST(BoundedQp, EveryBoundHoldsExactly) {
+TEST_CASE("BoundedQp.EveryBoundHoldsExactly") {
   for (const double thickness : {3.0, 0.3, 0.03}) {
     const Problem p = relief(30, 20, thickness);
     const auto s = solve(p);
     const auto& c = p.constraints;
     for (int i = 0; i < s.u.size(); ++i) {
-      EXPECT_LE(c.lower[i] + s.m[0], s.u[i]);
-      EXPECT_LE(s.u[i], c.upper[i] + s.m[0]);
+      CHECK(c.lower[i] + s.m[0] <= s.u[i]);
+      CHECK(s.u[i] <= c.upper[i] + s.m[0]);
     }
-    EXPECT_EQ(s.violation_max, 0);
-    EXPECT_LT(s.kkt_residual, 1e-8);
+    CHECK(s.violation_max == 0);
+    CHECK(s.kkt_residual < 1e-8);
   }
 }
 
-TEST(BoundedQp, InteriorPointEqualsExchange) {
+TEST_CASE("BoundedQp.InteriorPointEqualsExchange") {
   for (const double thickness : {2.0, 0.2, 0.02}) {
     const Problem p = relief(40, 30, thickness, 7);
     const auto a = solve(p, QpMethod::exchange), b = solve(p, QpMethod::interior_point);
-    EXPECT_EQ(a.method_used, QpMethod::exchange);
-    EXPECT_EQ(b.method_used, QpMethod::interior_point);
-    EXPECT_GT(b.interior_point_iterations, 3);
-    EXPECT_NEAR(a.objective, b.objective, 1e-10 * a.objective);
-    EXPECT_LT((a.u - b.u).cwiseAbs().maxCoeff(), 1e-8);
-    EXPECT_EQ(a.active_constraints, b.active_constraints);
+    CHECK(a.method_used == QpMethod::exchange);
+    CHECK(b.method_used == QpMethod::interior_point);
+    CHECK(b.interior_point_iterations > 3);
+    CHECK_THAT(a.objective, WithinAbs(b.objective, 1e-10 * a.objective));
+    CHECK((a.u - b.u).cwiseAbs().maxCoeff() < 1e-8);
+    CHECK(a.active_constraints == b.active_constraints);
   }
 }
 
-TEST(BoundedQp, TakingBoundsOutOfTheFactorisationChangesNothing) {
+TEST_CASE("BoundedQp.TakingBoundsOutOfTheFactorisationChangesNothing") {
   Problem p = relief(25, 20, 0.2);
   for (const bool with_order_rows : {false, true}) {
     if (with_order_rows) {  // neighbours held half-way to where the middle of the slab, which is feasible, has them
@@ -214,7 +216,7 @@ TEST(BoundedQp, TakingBoundsOutOfTheFactorisationChangesNothing) {
         const double now = flat.u[i] - flat.u[i + 1], middle = p.constraints.upper[i] - p.constraints.upper[i + 1];
         if (now < middle) p.constraints.rows.push_back({{i, i + 1}, {1.0, -1.0}, 0, 0, 0.5 * (now + middle)});
       }
-      ASSERT_GT(p.constraints.rows.size(), 10u);
+      REQUIRE(p.constraints.rows.size() > 10u);
     }
     const auto pool = solve(p, QpMethod::exchange);
     Context context;
@@ -222,37 +224,37 @@ TEST(BoundedQp, TakingBoundsOutOfTheFactorisationChangesNothing) {
     qp.set_energy(p.lower_Q, p.component, {}, context);
     BoundedQpOptions options;
     options.most_active_in_pool = pool.active_constraints / 4;
-    ASSERT_GT(options.most_active_in_pool, 5);
+    REQUIRE(options.most_active_in_pool > 5);
     const auto base = qp.solve(p.constraints, options, context);
-    EXPECT_LT((base.u - pool.u).cwiseAbs().maxCoeff(), 1e-8);
-    EXPECT_NEAR(base.objective, pool.objective, 1e-10 * pool.objective);
-    EXPECT_LT(base.kkt_residual, 1e-9);
-    EXPECT_EQ(base.method_used, QpMethod::exchange);
+    CHECK((base.u - pool.u).cwiseAbs().maxCoeff() < 1e-8);
+    CHECK_THAT(base.objective, WithinAbs(pool.objective, 1e-10 * pool.objective));
+    CHECK(base.kkt_residual < 1e-9);
+    CHECK(base.method_used == QpMethod::exchange);
   }
 }
 
-TEST(BoundedQp, ScalingTheEnergyChangesNothing) {
+TEST_CASE("BoundedQp.ScalingTheEnergyChangesNothing") {
   Problem p = relief(25, 20, 0.5);
   const auto a = solve(p);
   p.lower_Q *= 1e6;
   const auto b = solve(p);
   p.lower_Q *= 1e-14;
   const auto c = solve(p);
-  EXPECT_LT((a.u - b.u).cwiseAbs().maxCoeff(), 1e-9);
-  EXPECT_LT((a.u - c.u).cwiseAbs().maxCoeff(), 1e-9);
-  EXPECT_NEAR(b.objective, 1e6 * a.objective, 1e-3 * a.objective);
+  CHECK((a.u - b.u).cwiseAbs().maxCoeff() < 1e-9);
+  CHECK((a.u - c.u).cwiseAbs().maxCoeff() < 1e-9);
+  CHECK_THAT(b.objective, WithinAbs(1e6 * a.objective, 1e-3 * a.objective));
 }
 
-TEST(BoundedQp, ScalingTheLengthsScalesTheResult) {
+TEST_CASE("BoundedQp.ScalingTheLengthsScalesTheResult") {
   Problem p = relief(25, 20, 0.5);
   const auto a = solve(p);
   p.constraints.lower *= 1000;
   p.constraints.upper *= 1000;
   const auto b = solve(p);
-  EXPECT_LT((1000 * a.u - b.u).cwiseAbs().maxCoeff(), 1e-6);
+  CHECK((1000 * a.u - b.u).cwiseAbs().maxCoeff() < 1e-6);
 }
 
-TEST(BoundedQp, NumberingDoesNotMatter) {
+TEST_CASE("BoundedQp.NumberingDoesNotMatter") {
   const int width = 22, height = 17, n = width * height;
   const Problem p = relief(width, height, 0.4);
   const auto a = solve(p);
@@ -273,30 +275,30 @@ TEST(BoundedQp, NumberingDoesNotMatter) {
     q.constraints.upper[to[static_cast<std::size_t>(i)]] = p.constraints.upper[i];
   }
   const auto b = solve(q);
-  for (int i = 0; i < n; ++i) EXPECT_NEAR(a.u[i], b.u[to[static_cast<std::size_t>(i)]], 1e-9);
+  for (int i = 0; i < n; ++i) CHECK_THAT(a.u[i], WithinAbs(b.u[to[static_cast<std::size_t>(i)]], 1e-9));
 }
 
-TEST(BoundedQp, TranslationOfTheSlabMovesOnlyM) {
+TEST_CASE("BoundedQp.TranslationOfTheSlabMovesOnlyM") {
   Problem p = relief(20, 20, 0.5);
   const auto a = solve(p);
   p.constraints.lower.array() += 7;
   p.constraints.upper.array() += 7;
   const auto b = solve(p);
-  EXPECT_LT((a.u - b.u).cwiseAbs().maxCoeff(), 1e-9);
-  EXPECT_NEAR(b.m[0], a.m[0] - 7, 1e-9);
+  CHECK((a.u - b.u).cwiseAbs().maxCoeff() < 1e-9);
+  CHECK_THAT(b.m[0], WithinAbs(a.m[0] - 7, 1e-9));
 }
 
-TEST(BoundedQp, MirroredBoundsGiveTheMirroredResult) {
+TEST_CASE("BoundedQp.MirroredBoundsGiveTheMirroredResult") {
   Problem p = relief(20, 20, 0.5);
   const auto a = solve(p);
   std::swap(p.constraints.lower, p.constraints.upper);
   p.constraints.lower *= -1;
   p.constraints.upper *= -1;
   const auto b = solve(p);
-  EXPECT_LT((a.u + b.u).cwiseAbs().maxCoeff(), 1e-9);
+  CHECK((a.u + b.u).cwiseAbs().maxCoeff() < 1e-9);
 }
 
-TEST(BoundedQp, WarmStartEqualsColdStart) {
+TEST_CASE("BoundedQp.WarmStartEqualsColdStart") {
   const Problem p = relief(40, 30, 1);
   Context context;
   BoundedQp warm;
@@ -304,15 +306,16 @@ TEST(BoundedQp, WarmStartEqualsColdStart) {
   for (const double thickness : {1.0, 0.9, 0.5, 0.1, 0.11, 3.0, 1.0}) {
     const Problem now = relief(40, 30, thickness);
     const auto a = warm.solve(now.constraints, {}, context), b = solve(now);
-    EXPECT_LT((a.u - b.u).cwiseAbs().maxCoeff(), 1e-9) << thickness;
-    EXPECT_NEAR(a.m[0], b.m[0], 1e-9) << thickness;
+    INFO(thickness);
+    CHECK((a.u - b.u).cwiseAbs().maxCoeff() < 1e-9);
+    CHECK_THAT(a.m[0], WithinAbs(b.m[0], 1e-9));
   }
   // The same again costs no round.
   const auto again = warm.solve(relief(40, 30, 1.0).constraints, {}, context);
-  EXPECT_EQ(again.rounds, 0);
+  CHECK(again.rounds == 0);
 }
 
-TEST(BoundedQp, ExchangeAfterInteriorPointFindsItsFactorAgain) {
+TEST_CASE("BoundedQp.ExchangeAfterInteriorPointFindsItsFactorAgain") {
   const Problem p = relief(25, 20, 0.2);
   Context context;
   BoundedQp qp;
@@ -323,11 +326,11 @@ TEST(BoundedQp, ExchangeAfterInteriorPointFindsItsFactorAgain) {
   const auto b = qp.solve(p.constraints, options, context);
   options.method = QpMethod::exchange;
   const auto c = qp.solve(p.constraints, options, context);
-  EXPECT_LT((a.u - b.u).cwiseAbs().maxCoeff(), 1e-8);
-  EXPECT_LT((a.u - c.u).cwiseAbs().maxCoeff(), 1e-9);
+  CHECK((a.u - b.u).cwiseAbs().maxCoeff() < 1e-8);
+  CHECK((a.u - c.u).cwiseAbs().maxCoeff() < 1e-9);
 }
 
-TEST(BoundedQp, GroupsOfSeparatePartsDoNotMix) {
+TEST_CASE("BoundedQp.GroupsOfSeparatePartsDoNotMix") {
   const Problem p = relief(15, 12, 0.5, 1), q = relief(12, 12, 0.3, 2);
   const int n = 180, k = 144;
   std::vector<std::pair<int, int>> edges = grid(15, 12);
@@ -346,51 +349,51 @@ TEST(BoundedQp, GroupsOfSeparatePartsDoNotMix) {
   const auto a = solve(p), b = solve(q), s = solve(both);
   // One gauge for both leaves one move free: both parts against each other, each with its own m.
   const double shift_a = (s.u.head(n) - a.u).mean(), shift_b = (s.u.tail(k) - b.u).mean();
-  EXPECT_LT(((s.u.head(n) - a.u).array() - shift_a).abs().maxCoeff(), 1e-8);
-  EXPECT_LT(((s.u.tail(k) - b.u).array() - shift_b).abs().maxCoeff(), 1e-8);
-  EXPECT_NEAR(s.m[0] - a.m[0], shift_a, 1e-8);
-  EXPECT_NEAR(s.m[1] - b.m[0], shift_b, 1e-8);
-  EXPECT_NEAR(n * shift_a + k * shift_b, 0, 1e-8);
+  CHECK(((s.u.head(n) - a.u).array() - shift_a).abs().maxCoeff() < 1e-8);
+  CHECK(((s.u.tail(k) - b.u).array() - shift_b).abs().maxCoeff() < 1e-8);
+  CHECK_THAT(s.m[0] - a.m[0], WithinAbs(shift_a, 1e-8));
+  CHECK_THAT(s.m[1] - b.m[0], WithinAbs(shift_b, 1e-8));
+  CHECK_THAT(n * shift_a + k * shift_b, WithinAbs(0, 1e-8));
   // Of those it is the smallest: |u|^2 + |m|^2 does not change along the move (k, -n).
-  EXPECT_NEAR(k * (s.u.head(n).sum() + s.m[0]) - n * (s.u.tail(k).sum() + s.m[1]), 0, 1e-6);
-  EXPECT_NEAR(s.objective, a.objective + b.objective, 1e-9 * s.objective);
+  CHECK_THAT(k * (s.u.head(n).sum() + s.m[0]) - n * (s.u.tail(k).sum() + s.m[1]), WithinAbs(0, 1e-6));
+  CHECK_THAT(s.objective, WithinAbs(a.objective + b.objective, 1e-9 * s.objective));
 }
 
-TEST(BoundedQp, PartsSharingASlabFitTogether) {
+TEST_CASE("BoundedQp.PartsSharingASlabFitTogether") {
   // Two springs far apart in depth, one slab: each is squashed to fit, neither twists the other.
   const SparseMatrix Q = graph_laplacian(4, {{0, 1}, {2, 3}});
   Problem p{lower_of(Q), {0, 0, 1, 1}, slab(Eigen::Vector4d(0, 3, -100, -99), 2)};
   const auto s = solve(p);
   const Eigen::Vector4d z(0, 3, -100, -99), moved = z + s.u;
-  EXPECT_NEAR(moved[1] - moved[0], 2, 1e-12);  // squashed from 3 to 2
-  EXPECT_NEAR(moved[3] - moved[2], 1, 1e-12);  // fits
-  EXPECT_NEAR(s.u[2] - s.u[3], 0, 1e-12);
-  EXPECT_LE(moved.maxCoeff() - moved.minCoeff(), 2 + 1e-12);
-  EXPECT_NEAR(s.objective, 0.5, 1e-12);
+  CHECK_THAT(moved[1] - moved[0], WithinAbs(2, 1e-12));  // squashed from 3 to 2
+  CHECK_THAT(moved[3] - moved[2], WithinAbs(1, 1e-12));  // fits
+  CHECK_THAT(s.u[2] - s.u[3], WithinAbs(0, 1e-12));
+  CHECK(moved.maxCoeff() - moved.minCoeff() <= 2 + 1e-12);
+  CHECK_THAT(s.objective, WithinAbs(0.5, 1e-12));
   // The second moves no further than it must: up until its far end enters the slab.
-  EXPECT_NEAR(moved[2], moved[0], 1e-9);
+  CHECK_THAT(moved[2], WithinAbs(moved[0], 1e-9));
 }
 
-TEST(BoundedQp, FreePartsStayWhereTheyAreOrAsNearAsTheyMay) {
+TEST_CASE("BoundedQp.FreePartsStayWhereTheyAreOrAsNearAsTheyMay") {
   const SparseMatrix Q = graph_laplacian(6, {{0, 1}, {2, 3}, {4, 5}});
   Problem p{lower_of(Q), {0, 0, 1, 1, 2, 2}, unbounded(6)};
   p.constraints.lower[2] = 3;  // part 1 must rise to 3, and does so without a change of shape
   p.constraints.upper[4] = 5;  // part 2 need not move
   const auto s = solve(p);
   const Eigen::VectorXd expected = (Eigen::VectorXd(6) << 0, 0, 3, 3, 0, 0).finished();
-  EXPECT_LT((s.u - expected).cwiseAbs().maxCoeff(), 1e-9);
-  EXPECT_NEAR(s.m[0], 0, 1e-12);
+  CHECK((s.u - expected).cwiseAbs().maxCoeff() < 1e-9);
+  CHECK_THAT(s.m[0], WithinAbs(0, 1e-12));
 }
 
-TEST(BoundedQp, UndeterminedOffsetIsTheSmallest) {
+TEST_CASE("BoundedQp.UndeterminedOffsetIsTheSmallest") {
   Problem p{lower_of(graph_laplacian(2, path(2))), {0, 0}, slab(Eigen::Vector2d(5, 6), 10)};
   // z in [5, 6] in a slab [m - 10, m]: any m in [6, 15] will do.
   const auto s = solve(p);
-  EXPECT_NEAR(s.m[0], 6, 1e-10);
-  EXPECT_LT(s.u.cwiseAbs().maxCoeff(), 1e-12);
+  CHECK_THAT(s.m[0], WithinAbs(6, 1e-10));
+  CHECK(s.u.cwiseAbs().maxCoeff() < 1e-12);
 }
 
-TEST(BoundedQp, OrderRowsPush) {
+TEST_CASE("BoundedQp.OrderRowsPush") {
   // Two strings, one above the other, fixed at their ends at 0 and 1; the lower one is lifted to 3 in its middle.
   const int n = 11;
   std::vector<std::pair<int, int>> edges = path(n);
@@ -406,13 +409,13 @@ TEST(BoundedQp, OrderRowsPush) {
     const auto s = solve(p, method);
     for (int i = 0; i < n; ++i) {
       const double part = 1 - std::abs(i - 5) / 5.0;
-      EXPECT_NEAR(s.u[i], 3 * part, 1e-11);
-      EXPECT_NEAR(s.u[i + n], 1 + 2.5 * part, 1e-11);
+      CHECK_THAT(s.u[i], WithinAbs(3 * part, 1e-11));
+      CHECK_THAT(s.u[i + n], WithinAbs(1 + 2.5 * part, 1e-11));
     }
   }
 }
 
-TEST(BoundedQp, RepeatedAndRedundantRowsDoNoHarm) {
+TEST_CASE("BoundedQp.RepeatedAndRedundantRowsDoNoHarm") {
   Problem p = relief(15, 12, 0.5);
   const auto a = solve(p);
   for (int copy = 0; copy < 3; ++copy) {
@@ -420,7 +423,7 @@ TEST(BoundedQp, RepeatedAndRedundantRowsDoNoHarm) {
       p.constraints.rows.push_back({{i}, {1.0}, -1.0, 0, p.constraints.lower[i]});  // the lower bounds again
   }
   const auto b = solve(p);
-  EXPECT_LT((a.u - b.u).cwiseAbs().maxCoeff(), 1e-8);
+  CHECK((a.u - b.u).cwiseAbs().maxCoeff() < 1e-8);
 }
 
 template <class Action>
@@ -431,46 +434,46 @@ ErrorCode code_of(Action action, std::string* message = nullptr) {
     if (message) *message = error.what();
     return error.code();
   }
-  ADD_FAILURE() << "no error";
+  FAIL_CHECK("no error");
   return ErrorCode::internal;
 }
 
-TEST(BoundedQp, CrossedBoundsAreCounted) {
+TEST_CASE("BoundedQp.CrossedBoundsAreCounted") {
   Problem p = relief(10, 10, 0.5);
   for (const int i : {3, 4, 77}) p.constraints.lower[i] = p.constraints.upper[i] + 0.1;
   std::string message;
-  EXPECT_EQ(code_of([&] { solve(p); }, &message), ErrorCode::invalid_input);
-  EXPECT_NE(message.find("lower bound is above the upper bound for 3 unknowns"), std::string::npos) << message;
+  CHECK(code_of([&] { solve(p); }, &message) == ErrorCode::invalid_input);
+  INFO(message);
+  CHECK(message.find("lower bound is above the upper bound for 3 unknowns") != std::string::npos);
 }
 
-TEST(BoundedQp, ContradictionsAreFound) {
+TEST_CASE("BoundedQp.ContradictionsAreFound") {
   for (const QpMethod method : {QpMethod::exchange, QpMethod::automatic, QpMethod::interior_point}) {
     {
       Problem p = relief(10, 10, 0.5);  // u_0 - u_1 >= 50 does not fit into the slab
       p.constraints.rows.push_back({{0, 1}, {1.0, -1.0}, 0, 0, 50});
-      EXPECT_EQ(code_of([&] { solve(p, method); }), ErrorCode::could_not_solve);
+      CHECK(code_of([&] { solve(p, method); }) == ErrorCode::could_not_solve);
     }
     {
       Problem p = relief(10, 10, 0.5);  // two rows against each other, though bounds allow either
       p.constraints.rows.push_back({{0, 1}, {1.0, -1.0}, 0, 0, 0.1});
       p.constraints.rows.push_back({{1, 0}, {1.0, -1.0}, 0, 0, 0.1});
-      EXPECT_EQ(code_of([&] { solve(p, method); }), ErrorCode::could_not_solve);
+      CHECK(code_of([&] { solve(p, method); }) == ErrorCode::could_not_solve);
     }
   }
 }
 
-TEST(BoundedQp, BadInputNamesItsPlace) {
+TEST_CASE("BoundedQp.BadInputNamesItsPlace") {
   Context context;
   const Problem good = relief(6, 5, 0.5);
   BoundedQp qp;
-  EXPECT_EQ(code_of([&] { qp.set_energy(good.lower_Q, std::vector<int>(7, 0), {}, context); }),
-            ErrorCode::invalid_input);
+  CHECK(code_of([&] { qp.set_energy(good.lower_Q, std::vector<int>(7, 0), {}, context); }) == ErrorCode::invalid_input);
   SparseMatrix shifted = good.lower_Q;
   for (int i = 0; i < 30; ++i) shifted.coeffRef(i, i) += 1;  // constants no longer free
-  EXPECT_EQ(code_of([&] { qp.set_energy(shifted, good.component, {}, context); }), ErrorCode::invalid_input);
+  CHECK(code_of([&] { qp.set_energy(shifted, good.component, {}, context); }) == ErrorCode::invalid_input);
   std::vector<int> torn = good.component;
   torn[3] = 1;
-  EXPECT_EQ(code_of([&] { qp.set_energy(good.lower_Q, torn, {}, context); }), ErrorCode::invalid_input);
+  CHECK(code_of([&] { qp.set_energy(good.lower_Q, torn, {}, context); }) == ErrorCode::invalid_input);
 
   const auto rejected = [&](auto change) {
     Problem p = good;
@@ -478,18 +481,18 @@ TEST(BoundedQp, BadInputNamesItsPlace) {
     return code_of([&] { solve(p); }) == ErrorCode::invalid_input;
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(rejected([&](auto& c) { c.lower[2] = nan; }));
-  EXPECT_TRUE(rejected([&](auto& c) { c.upper[2] = -infinity; }));
-  EXPECT_TRUE(rejected([&](auto& c) { c.lower_slope[2] = infinity; }));
-  EXPECT_TRUE(rejected([&](auto& c) { c.gauge[0] = nan; }));
-  EXPECT_TRUE(rejected([&](auto& c) { c.group[1] = 1; }));
-  EXPECT_TRUE(rejected([&](auto& c) { c.upper.conservativeResize(5); }));
-  EXPECT_TRUE(rejected([&](auto& c) { c.rows.push_back({{30}, {1.0}, 0, 0, 0}); }));
-  EXPECT_TRUE(rejected([&](auto& c) { c.rows.push_back({{3, 4}, {1.0}, 0, 0, 0}); }));
-  EXPECT_TRUE(rejected([&](auto& c) { c.rows.push_back({{3}, {nan}, 0, 0, 0}); }));
+  CHECK(rejected([&](auto& c) { c.lower[2] = nan; }));
+  CHECK(rejected([&](auto& c) { c.upper[2] = -infinity; }));
+  CHECK(rejected([&](auto& c) { c.lower_slope[2] = infinity; }));
+  CHECK(rejected([&](auto& c) { c.gauge[0] = nan; }));
+  CHECK(rejected([&](auto& c) { c.group[1] = 1; }));
+  CHECK(rejected([&](auto& c) { c.upper.conservativeResize(5); }));
+  CHECK(rejected([&](auto& c) { c.rows.push_back({{30}, {1.0}, 0, 0, 0}); }));
+  CHECK(rejected([&](auto& c) { c.rows.push_back({{3, 4}, {1.0}, 0, 0, 0}); }));
+  CHECK(rejected([&](auto& c) { c.rows.push_back({{3}, {nan}, 0, 0, 0}); }));
 }
 
-TEST(BoundedQp, CancelStopsBothMethods) {
+TEST_CASE("BoundedQp.CancelStopsBothMethods") {
   // By the clock, because single-threaded WASM has no second thread.
   using Clock = std::chrono::steady_clock;
   const Problem p = relief(60, 50, 0.05);
@@ -504,14 +507,13 @@ TEST(BoundedQp, CancelStopsBothMethods) {
       Host host;
       host.cancel_requested = [&] { return Clock::now() >= due; };
       Context context(host);
-      EXPECT_EQ(code_of([&] {
-                  for (;;) qp.solve(p.constraints, options, context);
-                }),
-                ErrorCode::cancelled);
+      CHECK(code_of([&] {
+              for (;;) qp.solve(p.constraints, options, context);
+            }) == ErrorCode::cancelled);
     }
     // Still usable.
     const auto s = qp.solve(p.constraints, {}, quiet);
-    EXPECT_EQ(s.violation_max, 0);
+    CHECK(s.violation_max == 0);
   }
 }
 

@@ -2,7 +2,8 @@
 // The numbers: dense kernels against Eigen, the factor against its definition.
 #include "numerics/multifrontal.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -15,13 +16,14 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 Eigen::MatrixXd random_matrix(int rows, int columns, std::uint64_t seed) {
   test::Random random(seed);
   return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return random.uniform(); });
 }
 
-TEST(DenseKernels, UpdateSubtractsTheProductOnTheLowerTriangle) {
+TEST_CASE("DenseKernels.UpdateSubtractsTheProductOnTheLowerTriangle") {
   for (const int size : {4, 8, 12, 16, 20, 48, 100, 260, 400}) {
     for (const int depth : {1, 3, 4, 17, 128}) {
       const Eigen::MatrixXd A = random_matrix(size, depth, 1), start = random_matrix(size, size, 2);
@@ -42,19 +44,19 @@ TEST(DenseKernels, UpdateSubtractsTheProductOnTheLowerTriangle) {
       }
       for (int j = 0; j < size; ++j) {
         for (int i = j; i < size; ++i) {
-          EXPECT_NEAR(plain(i, j), expected(i, j), 1e-14 * (depth + 1));
-          EXPECT_NEAR(overwritten(i, j), expected(i, j) - start(i, j), 1e-14 * (depth + 1));
+          CHECK_THAT(plain(i, j), WithinAbs(expected(i, j), 1e-14 * (depth + 1)));
+          CHECK_THAT(overwritten(i, j), WithinAbs(expected(i, j) - start(i, j), 1e-14 * (depth + 1)));
           // However it is cut up, the same bits.
-          EXPECT_EQ(from_packed(i, j), plain(i, j));
-          EXPECT_EQ(in_pieces(i, j), plain(i, j));
+          CHECK(from_packed(i, j) == plain(i, j));
+          CHECK(in_pieces(i, j) == plain(i, j));
         }
-        for (int i = 0; i < (j & ~3); ++i) EXPECT_EQ(plain(i, j), start(i, j));  // nothing else is touched
+        for (int i = 0; i < (j & ~3); ++i) CHECK(plain(i, j) == start(i, j));  // nothing else is touched
       }
     }
   }
 }
 
-TEST(DenseKernels, FactorsAndSolvesAPanel) {
+TEST_CASE("DenseKernels.FactorsAndSolvesAPanel") {
   for (const int width : {1, 2, 3, 4, 5, 7, 8, 30, 64, 127, 128}) {
     const int below = 40, top = padded(width), height = top + below;
     Eigen::MatrixXd half = random_matrix(width, width, 3);
@@ -65,12 +67,15 @@ TEST(DenseKernels, FactorsAndSolvesAPanel) {
     panel.bottomRows(below) = B;
     const std::vector<double> least(static_cast<std::size_t>(width), 0.0);
     const auto stride = static_cast<std::size_t>(height);
-    ASSERT_EQ(dense::factor_diagonal(panel.data(), stride, width, least.data()), -1);
+    REQUIRE(dense::factor_diagonal(panel.data(), stride, width, least.data()) == -1);
     dense::solve_rows(panel.data(), stride, width, panel.data() + top, stride, below);
     const Eigen::MatrixXd L = panel.topRows(width).triangularView<Eigen::Lower>();
-    EXPECT_LE((L * L.transpose() - A).norm(), 1e-14 * A.norm()) << width;
-    EXPECT_LE((panel.bottomRows(below) * L.transpose() - B).norm(), 1e-14 * B.norm() * width);
-    EXPECT_EQ(panel.block(width, 0, top - width, width).norm(), 0);  // padding stays zero
+    {
+      INFO(width);
+      CHECK((L * L.transpose() - A).norm() <= 1e-14 * A.norm());
+    }
+    CHECK((panel.bottomRows(below) * L.transpose() - B).norm() <= 1e-14 * B.norm() * width);
+    CHECK(panel.block(width, 0, top - width, width).norm() == 0);  // padding stays zero
     // And the triangular solves with this panel.
     for (const int sides : {1, dense::many_sides}) {
       Eigen::MatrixXd z = random_matrix(sides, height, 5), forward = z, backward = z;
@@ -87,19 +92,19 @@ TEST(DenseKernels, FactorsAndSolvesAPanel) {
                             L2 = panel.bottomRows(below);
       const Eigen::MatrixXd y1 = L.triangularView<Eigen::Lower>().solve(z1);
       const Eigen::MatrixXd x1 = L.transpose().triangularView<Eigen::Upper>().solve(z1 - L2.transpose() * z2);
-      EXPECT_LE((forward.leftCols(width).transpose() - y1).norm(), 1e-13 * z1.norm());
-      EXPECT_LE((forward.rightCols(below).transpose() - (z2 - L2 * y1)).norm(), 1e-13 * z2.norm());
-      EXPECT_LE((backward.leftCols(width).transpose() - x1).norm(), 1e-13 * z1.norm());
+      CHECK((forward.leftCols(width).transpose() - y1).norm() <= 1e-13 * z1.norm());
+      CHECK((forward.rightCols(below).transpose() - (z2 - L2 * y1)).norm() <= 1e-13 * z2.norm());
+      CHECK((backward.leftCols(width).transpose() - x1).norm() <= 1e-13 * z1.norm());
     }
   }
 }
 
-TEST(DenseKernels, TellsTheColumnThatIsNotPositive) {
+TEST_CASE("DenseKernels.TellsTheColumnThatIsNotPositive") {
   for (const int bad : {0, 3, 4, 50, 127}) {
     Eigen::MatrixXd A = Eigen::MatrixXd::Identity(128, 128);
     A(bad, bad) = 1e-20;
     const std::vector<double> least(128, 1e-15);
-    EXPECT_EQ(dense::factor_diagonal(A.data(), 128, 128, least.data()), bad);
+    CHECK(dense::factor_diagonal(A.data(), 128, 128, least.data()) == bad);
   }
 }
 
@@ -138,7 +143,7 @@ Eigen::MatrixXd dense_factor(const Factorization& f) {
   return L;
 }
 
-TEST(Multifrontal, TheFactorReproducesTheMatrix) {
+TEST_CASE("Multifrontal.TheFactorReproducesTheMatrix") {
   std::uint64_t seed = 20;
   std::vector<SparseMatrix> matrices{test::torus_bilaplacian(40, 25, 0.5), test::grid_laplacian(30, 33, 0.1)};
   for (const double per_row : {1.0, 4.0, 15.0, 400.0}) matrices.push_back(test::random_spd(500, per_row, ++seed));
@@ -150,14 +155,14 @@ TEST(Multifrontal, TheFactorReproducesTheMatrix) {
       for (int j = 0; j < f.form.n; ++j)
         permuted(i, j) = dense(f.form.permutation.order[i], f.form.permutation.order[j]);
     }
-    EXPECT_LE((L * L.transpose() - permuted).norm(), 1e-14 * permuted.norm());
+    CHECK((L * L.transpose() - permuted).norm() <= 1e-14 * permuted.norm());
   }
 }
 
-TEST(Multifrontal, ThreadsDoNotChangeABit) {
+TEST_CASE("Multifrontal.ThreadsDoNotChangeABit") {
   const SparseMatrix A = test::torus_bilaplacian(160, 130, 0.1);  // large enough for parallel fronts at the top
   const Factorization one = factored(A, false, 300), all = factored(A, true, 300);
-  ASSERT_EQ(one.form.first_value.back(), all.form.first_value.back());
+  REQUIRE(one.form.first_value.back() == all.form.first_value.back());
   // Compare what L is made of: entries above the diagonal inside blocks are scratch.
   double differences = 0;
   for (int s = 0; s < one.form.count(); ++s) {
@@ -171,7 +176,7 @@ TEST(Multifrontal, ThreadsDoNotChangeABit) {
                                  static_cast<std::size_t>(height - j) * sizeof(double)) != 0;
     }
   }
-  EXPECT_EQ(differences, 0);
+  CHECK(differences == 0);
 }
 
 }  // namespace

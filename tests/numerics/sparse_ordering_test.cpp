@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The steps before the numbers: orders, separators, elimination trees, supernodes.
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +18,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 bool is_permutation_of(const std::vector<int>& order, int n) {
   std::vector<int> sorted = order;
@@ -84,7 +86,7 @@ std::vector<Graph> zoo() {
   return graphs;
 }
 
-TEST(Graph, HoldsBothDirectionsInOrder) {
+TEST_CASE("Graph.HoldsBothDirectionsInOrder") {
   const SparseMatrix A = test::random_spd(200, 9.0, 5);
   const Graph graph = graph_of(A);
   const Eigen::MatrixXd dense = test::dense_of(A);
@@ -94,60 +96,61 @@ TEST(Graph, HoldsBothDirectionsInOrder) {
       if (u != v && dense(u, v) != 0) expected.push_back(u);
     }
     const auto found = graph.neighbours(v);
-    EXPECT_EQ(std::vector<int>(found.begin(), found.end()), expected);
+    CHECK(std::vector<int>(found.begin(), found.end()) == expected);
   }
 }
 
-TEST(MinimumDegree, OrdersEveryGraph) {
-  for (const Graph& graph : zoo()) EXPECT_TRUE(is_permutation_of(minimum_degree(graph, graph.size()), graph.size()));
+TEST_CASE("MinimumDegree.OrdersEveryGraph") {
+  for (const Graph& graph : zoo()) CHECK(is_permutation_of(minimum_degree(graph, graph.size()), graph.size()));
 }
 
-TEST(MinimumDegree, FillsNothingInATree) {
+TEST_CASE("MinimumDegree.FillsNothingInATree") {
   for (const int n : {1, 2, 10, 333, 2000}) {
     const Graph graph = random_tree(n, 6);
-    EXPECT_EQ(fill_of(graph, minimum_degree(graph, n)), 2 * n - 1);
+    CHECK(fill_of(graph, minimum_degree(graph, n)) == 2 * n - 1);
   }
 }
 
-TEST(MinimumDegree, CountsTheHalo) {
+TEST_CASE("MinimumDegree.CountsTheHalo") {
   // 0 - 1, and 0 also touches a halo of five: alone they tie, with the halo 1 goes first.
   Graph graph;
   graph.neighbour = {1, 2, 3, 4, 5, 6, 0, 0, 0, 0, 0, 0};
   graph.start = {0, 6, 7, 8, 9, 10, 11, 12};
-  EXPECT_EQ(minimum_degree(graph, 2), (std::vector<int>{1, 0}));
+  CHECK(minimum_degree(graph, 2) == std::vector<int>{1, 0});
 }
 
-TEST(MinimumDegree, OrdersOnlyTheInside) {
+TEST_CASE("MinimumDegree.OrdersOnlyTheInside") {
   const Graph graph = graph_of(test::torus_bilaplacian(20, 20, 1.0));
-  EXPECT_TRUE(is_permutation_of(minimum_degree(graph, 250), 250));
-  EXPECT_TRUE(minimum_degree(graph, 0).empty());
+  CHECK(is_permutation_of(minimum_degree(graph, 250), 250));
+  CHECK(minimum_degree(graph, 0).empty());
 }
 
 void expect_separated(const Graph& graph, const std::vector<Side>& side) {
   for (int v = 0; v < graph.size(); ++v) {
     for (const int u : graph.neighbours(v)) {
-      EXPECT_FALSE(side[v] == Side::left && side[u] == Side::right) << v << " touches " << u;
+      INFO(v << " touches " << u);
+      CHECK_FALSE((side[v] == Side::left && side[u] == Side::right));
     }
   }
 }
 
-TEST(VertexSeparator, Separates) {
+TEST_CASE("VertexSeparator.Separates") {
   for (const Graph& graph : zoo()) {
     if (graph.size() < 2) continue;
     for (const unsigned seed : {1u, 2u, 3u}) expect_separated(graph, bisect(graph, {}, seed));
   }
 }
 
-TEST(VertexSeparator, IsNearlyTheShortestOnATorus) {
+TEST_CASE("VertexSeparator.IsNearlyTheShortestOnATorus") {
   // The matrix couples vertices two edges apart, so a cut needs rings two vertices thick, and a torus two cuts.
   const Graph graph = graph_of(test::torus_bilaplacian(120, 24, 1.0));
   const auto weight = separation_weights(graph, bisect(graph, {}, 1));
-  EXPECT_GE(weight[2], 4 * 24);
-  EXPECT_LE(static_cast<double>(weight[2]), 1.2 * 4 * 24);
-  EXPECT_GT(std::min(weight[0], weight[1]), 120 * 24 / 5);
+  CHECK(weight[2] >= 4 * 24);
+  CHECK(static_cast<double>(weight[2]) <= 1.2 * 4 * 24);
+  CHECK(std::min(weight[0], weight[1]) > 120 * 24 / 5);
 }
 
-TEST(SeparatorFlow, FindsTheLeastCutOfTheBand) {
+TEST_CASE("SeparatorFlow.FindsTheLeastCutOfTheBand") {
   // A 31 x 9 grid of weight 1 with a waist: in column 12 all but the middle vertex are gone.
   const int width = 31, height = 9;
   std::vector<int> id(width * height, -1);
@@ -171,114 +174,114 @@ TEST(SeparatorFlow, FindsTheLeastCutOfTheBand) {
     }
   }
   const Graph graph = graph_of(test::lower_of(n, entries));
-  EXPECT_TRUE(improve_by_flow(graph, side, {.layers = 8, .side_max = 0.8}));
+  CHECK(improve_by_flow(graph, side, {.layers = 8, .side_max = 0.8}));
   expect_separated(graph, side);
-  EXPECT_EQ(separation_weights(graph, side)[2], 1);
-  EXPECT_TRUE(side[id[4 * width + 11]] == Side::separator || side[id[4 * width + 12]] == Side::separator ||
-              side[id[4 * width + 13]] == Side::separator);
-  EXPECT_FALSE(improve_by_flow(graph, side, {.layers = 8, .side_max = 0.8}));  // nothing left to gain
+  CHECK(separation_weights(graph, side)[2] == 1);
+  CHECK((side[id[4 * width + 11]] == Side::separator || side[id[4 * width + 12]] == Side::separator ||
+         side[id[4 * width + 13]] == Side::separator));
+  CHECK_FALSE(improve_by_flow(graph, side, {.layers = 8, .side_max = 0.8}));  // nothing left to gain
 }
 
-TEST(NestedDissection, OrdersEveryGraphAlways) {
+TEST_CASE("NestedDissection.OrdersEveryGraphAlways") {
   Context context;
   for (const Graph& graph : zoo()) {
     for (const int leaf : {1, 20, 300}) {
       const std::vector<int> order = nested_dissection(graph, {.leaf_size = leaf}, context);
-      EXPECT_TRUE(is_permutation_of(order, graph.size()));
-      EXPECT_EQ(order, nested_dissection(graph, {.leaf_size = leaf}, context));
+      CHECK(is_permutation_of(order, graph.size()));
+      CHECK(order == nested_dissection(graph, {.leaf_size = leaf}, context));
     }
   }
 }
 
-TEST(NestedDissection, DoesNotDependOnTheThreads) {
+TEST_CASE("NestedDissection.DoesNotDependOnTheThreads") {
   Context context;
   const Graph graph = graph_of(test::torus_bilaplacian(150, 100, 1.0));
-  EXPECT_EQ(nested_dissection(graph, {.parallel = true}, context),
-            nested_dissection(graph, {.parallel = false}, context));
+  CHECK(nested_dissection(graph, {.parallel = true}, context) ==
+        nested_dissection(graph, {.parallel = false}, context));
 }
 
-TEST(NestedDissection, StaysWithinGeorgesBoundOnGrids) {
+TEST_CASE("NestedDissection.StaysWithinGeorgesBoundOnGrids") {
   // George 1973: at most 31/4 n log2 n entries on an n-vertex square grid, whatever the leaves.
   Context context;
   for (const int side : {16, 32, 64, 128}) {
     const Graph graph = graph_of(test::grid_laplacian(side, side, 1.0));
     const double n = side * side;
     const double entries = fill_of(graph, nested_dissection(graph, {.leaf_size = 30}, context));
-    EXPECT_LE(entries, 7.75 * n * std::log2(n));
-    EXPECT_LE(entries, n * side);  // the banded order's fill, roughly
+    CHECK(entries <= 7.75 * n * std::log2(n));
+    CHECK(entries <= n * side);  // the banded order's fill, roughly
   }
 }
 
-TEST(NestedDissection, FillsLessThanMinimumDegreeOnLargeSurfaces) {
+TEST_CASE("NestedDissection.FillsLessThanMinimumDegreeOnLargeSurfaces") {
   Context context;
   const Graph graph = graph_of(test::torus_bilaplacian(200, 200, 1.0));
-  EXPECT_LT(fill_of(graph, nested_dissection(graph, {}, context)), fill_of(graph, minimum_degree(graph, graph.size())));
+  CHECK(fill_of(graph, nested_dissection(graph, {}, context)) < fill_of(graph, minimum_degree(graph, graph.size())));
 }
 
-TEST(EliminationTree, AgreesWithElimination) {
+TEST_CASE("EliminationTree.AgreesWithElimination") {
   for (const double per_row : {0.5, 2.0, 5.0, 20.0}) {
     const Graph graph = graph_of(test::random_spd(150, per_row, 7));
     Permutation permutation = Permutation::from_order(minimum_degree(graph, graph.size()));
     std::vector<int> parent = elimination_tree(graph, permutation);
     const std::vector<int> post = postorder(parent);
-    ASSERT_TRUE(is_permutation_of(post, graph.size()));
+    REQUIRE(is_permutation_of(post, graph.size()));
     reorder(post, permutation, parent);
     const std::vector<int> counts = column_counts(graph, permutation, parent);
     const auto below = eliminate(graph, permutation);
     for (int k = 0; k < graph.size(); ++k) {
-      EXPECT_EQ(counts[k], static_cast<int>(below[k].size()) + 1);
-      EXPECT_EQ(parent[k], below[k].empty() ? -1 : *below[k].begin());
-      EXPECT_EQ(permutation.position[permutation.order[k]], k);
+      CHECK(counts[k] == static_cast<int>(below[k].size()) + 1);
+      CHECK(parent[k] == (below[k].empty() ? -1 : *below[k].begin()));
+      CHECK(permutation.position[permutation.order[k]] == k);
     }
   }
 }
 
-TEST(Supernodes, HoldEveryEntryOfL) {
+TEST_CASE("Supernodes.HoldEveryEntryOfL") {
   Context context;
   for (const Graph& graph : zoo()) {
     if (graph.size() > 3600) continue;
     const SupernodalForm form = find_supernodes(graph, nested_dissection(graph, {.leaf_size = 60}, context), context);
-    ASSERT_TRUE(is_permutation_of(form.permutation.order, graph.size()));
+    REQUIRE(is_permutation_of(form.permutation.order, graph.size()));
     const auto below = eliminate(graph, form.permutation);
     double entries = 0, stored = 0;
     for (int s = 0; s < form.count(); ++s) {
       const auto rows = form.rows_below(s);
-      EXPECT_TRUE(std::is_sorted(rows.begin(), rows.end()));
-      EXPECT_EQ(form.parent[s], rows.empty() ? -1 : form.supernode_of[rows[0]]);
-      EXPECT_GT(form.parent[s] == -1 ? form.count() : form.parent[s], s);
+      CHECK(std::is_sorted(rows.begin(), rows.end()));
+      CHECK(form.parent[s] == (rows.empty() ? -1 : form.supernode_of[rows[0]]));
+      CHECK((form.parent[s] == -1 ? form.count() : form.parent[s]) > s);
       std::set<int> all(rows.begin(), rows.end());
       for (int k = form.first_column[s + 1] - 1; k >= form.first_column[s]; --k) {
-        EXPECT_EQ(form.supernode_of[k], s);
-        EXPECT_TRUE(std::includes(all.begin(), all.end(), below[k].begin(), below[k].end()));
+        CHECK(form.supernode_of[k] == s);
+        CHECK(std::includes(all.begin(), all.end(), below[k].begin(), below[k].end()));
         all.insert(k);
         entries += static_cast<double>(below[k].size()) + 1;
         stored += static_cast<double>(all.size());
       }
     }
-    EXPECT_EQ(stored, form.entries);
+    CHECK(stored == form.entries);
     // Merging must not store too many zeros; on surfaces far fewer than on paths and trees, whose L has almost nothing.
-    EXPECT_LE(stored, (graph.size() == 3600 ? 1.25 : 3.0) * entries);
+    CHECK(stored <= (graph.size() == 3600 ? 1.25 : 3.0) * entries);
   }
 }
 
-TEST(Supernodes, SubtreesAreClosed) {
+TEST_CASE("Supernodes.SubtreesAreClosed") {
   Context context;
   const Graph graph = graph_of(test::torus_bilaplacian(100, 100, 1.0));
   const SupernodalForm form = find_supernodes(graph, nested_dissection(graph, {}, context), context);
-  ASSERT_GT(form.subtrees.size(), 4u);
+  REQUIRE(form.subtrees.size() > 4u);
   int next = 0;
   double flops = 0;
   for (const auto& subtree : form.subtrees) {
-    EXPECT_EQ(subtree.begin, next);
+    CHECK(subtree.begin == next);
     next = subtree.end;
     for (int s = subtree.begin; s < subtree.end; ++s) {
       flops += form.flops_of(s);
-      EXPECT_TRUE(form.parent[s] < subtree.end || form.parent[s] >= form.first_top);
+      CHECK((form.parent[s] < subtree.end || form.parent[s] >= form.first_top));
     }
   }
-  EXPECT_EQ(next, form.first_top);
+  CHECK(next == form.first_top);
   for (int s = form.first_top; s < form.count(); ++s) flops += form.flops_of(s);
-  EXPECT_NEAR(flops, form.flops, 1e-9 * flops);
+  CHECK_THAT(flops, WithinAbs(form.flops, 1e-9 * flops));
 }
 
 }  // namespace

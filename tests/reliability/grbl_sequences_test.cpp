@@ -320,7 +320,7 @@ class Sequence {
     talk_.kill_host(random_.uniform() < 0.7);
     leave_alone(alone_s);
     totals_.longest_focus_after_kill_s = std::max(totals_.longest_focus_after_kill_s, light_s() - before_s);
-    EXPECT_FALSE(talk_.machine.beam());
+    CHECK_FALSE(talk_.machine.beam());
     talk_.plug_in();
   }
 
@@ -347,10 +347,10 @@ class Sequence {
         totals_.farthest_mm = std::max(totals_.farthest_mm, far_mm);
       } else {
         totals_.elsewhere_s += burn.seconds;
-        ADD_FAILURE() << "The beam was on for " << burn.seconds << " s with S" << burn.power
-                      << (rests ? " at rest" : "") << (burn.jog ? " in a jog" : "") << " at (" << burn.from_mm[0]
-                      << ", " << burn.from_mm[1] << ") to (" << burn.to_mm[0] << ", " << burn.to_mm[1] << "), "
-                      << far_mm << " mm from a stroke";
+        FAIL_CHECK("The beam was on for " << burn.seconds << " s with S" << burn.power << (rests ? " at rest" : "")
+                                          << (burn.jog ? " in a jog" : "") << " at (" << burn.from_mm[0] << ", "
+                                          << burn.from_mm[1] << ") to (" << burn.to_mm[0] << ", " << burn.to_mm[1]
+                                          << "), " << far_mm << " mm from a stroke");
       }
     }
   }
@@ -365,13 +365,12 @@ class Sequence {
   bool alone_ = false;
 };
 
-TEST(GrblSequences, TheBeamIsOnNowhereButInStrokes) {
+TEST_CASE("GrblSequences.TheBeamIsOnNowhereButInStrokes") {
   const std::uint64_t seed = number_from("FORMWRIGHT_SEED", 20261125), count = number_from("FORMWRIGHT_SEQUENCES", 60);
   Totals totals;
   for (std::uint64_t i = 0; i < count; ++i) {
-    SCOPED_TRACE("FORMWRIGHT_SEED=" + std::to_string(seed + i) + " FORMWRIGHT_SEQUENCES=1");
+    INFO("FORMWRIGHT_SEED=" + std::to_string(seed + i) + " FORMWRIGHT_SEQUENCES=1");
     Sequence(seed + i, totals).run();
-    if (testing::Test::HasFatalFailure()) return;
   }
   std::printf(
       "%llu sequences from seed %llu: %d orders (%d refused), %d faults, %d kills; %d jobs begun, %d done\n"
@@ -380,14 +379,14 @@ TEST(GrblSequences, TheBeamIsOnNowhereButInStrokes) {
       static_cast<unsigned long long>(count), static_cast<unsigned long long>(seed), totals.orders, totals.refused,
       totals.faults, totals.kills, totals.jobs, totals.done, totals.strokes_s, totals.focus_s, totals.elsewhere_s,
       totals.farthest_mm, totals.longest_focus_after_kill_s, totals.left_bounds);
-  EXPECT_EQ(totals.elsewhere_s, 0);
-  EXPECT_EQ(totals.left_bounds, 0);
-  EXPECT_LE(totals.longest_focus_after_kill_s, 1.2);
+  CHECK(totals.elsewhere_s == 0);
+  CHECK(totals.left_bounds == 0);
+  CHECK(totals.longest_focus_after_kill_s <= 1.2);
   if (count >= 60) {
-    EXPECT_GT(totals.jobs, static_cast<int>(count) / 2);
-    EXPECT_GT(totals.kills, static_cast<int>(count) / 10);
-    EXPECT_GT(totals.strokes_s, static_cast<double>(count));
-    EXPECT_GT(totals.focus_s, 1);
+    CHECK(totals.jobs > static_cast<int>(count) / 2);
+    CHECK(totals.kills > static_cast<int>(count) / 10);
+    CHECK(totals.strokes_s > static_cast<double>(count));
+    CHECK(totals.focus_s > 1);
   }
 }
 

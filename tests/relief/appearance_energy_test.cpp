@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "relief/appearance_energy.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -12,6 +13,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 ViewFrame frame_of(const TriangleMesh& mesh, Projection projection, double field_of_view_deg = 35) {
   ReliefOptions options;
@@ -52,37 +54,38 @@ Eigen::VectorXd lambda_of(const ViewFrame& frame, const Eigen::VectorXd& u) {
   return V.rowwise().norm().array() * (1 + frame.kappa * u.array());
 }
 
-TEST(AppearanceEnergy, IsEquation313) {
+TEST_CASE("AppearanceEnergy.IsEquation313") {
   const TriangleMesh mesh = test::icosphere(2);
   const ViewFrame frame = frame_of(mesh, Projection::perspective);
   const Eigen::VectorXd w = random_vector(frame.P.rows(), 3, 0.4).array() + 0.6;
   const AppearanceEnergy energy(frame, mesh.F, w);
   const Eigen::VectorXd u = random_vector(frame.P.rows(), 5, 0.1);
   const double expected = thesis_energy(frame, mesh.F, w, lambda_of(frame, u));
-  EXPECT_NEAR(energy(u), expected, 1e-9 * expected);
+  CHECK_THAT(energy(u), WithinAbs(expected, 1e-9 * expected));
 }
 
-TEST(AppearanceEnergy, IsZeroForTheModelAndEveryUniformScaling) {
+TEST_CASE("AppearanceEnergy.IsZeroForTheModelAndEveryUniformScaling") {
   const TriangleMesh mesh = test::icosphere(3);
   for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
     const ViewFrame frame = frame_of(mesh, projection);
     const AppearanceEnergy energy(frame, mesh.F, Eigen::VectorXd::Ones(frame.P.rows()));
     const double reference = energy(random_vector(frame.P.rows(), 1, 0.1));
-    EXPECT_EQ(energy(Eigen::VectorXd::Zero(frame.P.rows())), 0);
-    EXPECT_LE(energy(Eigen::VectorXd::Constant(frame.P.rows(), 0.37)), 1e-20 * reference);
+    CHECK(energy(Eigen::VectorXd::Zero(frame.P.rows())) == 0);
+    CHECK(energy(Eigen::VectorXd::Constant(frame.P.rows(), 0.37)) <= 1e-20 * reference);
   }
 }
 
-TEST(AppearanceEnergy, GrowsWithTheSquareOfTheScale) {
+TEST_CASE("AppearanceEnergy.GrowsWithTheSquareOfTheScale") {
   // E(2 s) = 4 E(s): s = 1 + kappa u, so 2 s belongs to 2 u + 1 / kappa.
   const TriangleMesh mesh = test::icosphere(2);
   const ViewFrame frame = frame_of(mesh, Projection::perspective);
   const AppearanceEnergy energy(frame, mesh.F, Eigen::VectorXd::Ones(frame.P.rows()));
   const Eigen::VectorXd u = random_vector(frame.P.rows(), 9, 0.1);
-  EXPECT_NEAR(energy(2 * u + Eigen::VectorXd::Constant(u.size(), 1 / frame.kappa)), 4 * energy(u), 1e-10 * energy(u));
+  CHECK_THAT(energy(2 * u + Eigen::VectorXd::Constant(u.size(), 1 / frame.kappa)),
+             WithinAbs(4 * energy(u), 1e-10 * energy(u)));
 }
 
-TEST(AppearanceEnergy, TheHessianIsTheEnergysSecondDifference) {
+TEST_CASE("AppearanceEnergy.TheHessianIsTheEnergysSecondDifference") {
   for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
     const TriangleMesh mesh = test::icosphere(2);
     const ViewFrame frame = frame_of(mesh, projection);
@@ -92,22 +95,23 @@ TEST(AppearanceEnergy, TheHessianIsTheEnergysSecondDifference) {
     const SparseMatrix lower = energy.lower_hessian(context);
     const Eigen::MatrixXd Q = Eigen::MatrixXd(lower).selfadjointView<Eigen::Lower>();
     const Eigen::VectorXd u = random_vector(frame.P.rows(), 8, 0.1);
-    EXPECT_NEAR(u.dot(Q * u), energy(u), 1e-11 * energy(u));
+    CHECK_THAT(u.dot(Q * u), WithinAbs(energy(u), 1e-11 * energy(u)));
     // The gradient 2 Q u against central differences.
     const Eigen::VectorXd gradient = 2 * Q * u;
     for (int i = 0; i < 20; ++i) {
       Eigen::VectorXd step = Eigen::VectorXd::Zero(u.size());
       step[i] = 1e-5;
-      EXPECT_NEAR((energy(u + step) - energy(u - step)) / 2e-5, gradient[i], 1e-6 * gradient.cwiseAbs().maxCoeff());
+      CHECK_THAT((energy(u + step) - energy(u - step)) / 2e-5,
+                 WithinAbs(gradient[i], 1e-6 * gradient.cwiseAbs().maxCoeff()));
     }
     // Null space: the constants and nothing else.
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Q);
-    EXPECT_LT(std::abs(eigen.eigenvalues()[0]), 1e-11 * eigen.eigenvalues().maxCoeff());
-    EXPECT_GT(eigen.eigenvalues()[1], 1e-9 * eigen.eigenvalues().maxCoeff());
+    CHECK(std::abs(eigen.eigenvalues()[0]) < 1e-11 * eigen.eigenvalues().maxCoeff());
+    CHECK(eigen.eigenvalues()[1] > 1e-9 * eigen.eigenvalues().maxCoeff());
   }
 }
 
-TEST(AppearanceEnergy, DoesNotDependOnScaleOrPlace) {
+TEST_CASE("AppearanceEnergy.DoesNotDependOnScaleOrPlace") {
   TriangleMesh mesh = test::icosphere(2);
   const auto value = [](const TriangleMesh& m, const std::array<double, 3>& direction,
                         const std::array<double, 3>& up) {
@@ -121,10 +125,10 @@ TEST(AppearanceEnergy, DoesNotDependOnScaleOrPlace) {
   const Eigen::Matrix3d R = Eigen::AngleAxisd(1.1, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   TriangleMesh moved{(mesh.V * R.transpose() * 37.0).rowwise() + Eigen::RowVector3d(5, -90, 12), mesh.F};
   const Vec3 d = R * Vec3(0.2, 0.1, -1), up = R * Vec3(0, 1, 0);
-  EXPECT_NEAR(value(moved, {d.x(), d.y(), d.z()}, {up.x(), up.y(), up.z()}), reference, 1e-9 * reference);
+  CHECK_THAT(value(moved, {d.x(), d.y(), d.z()}, {up.x(), up.y(), up.z()}), WithinAbs(reference, 1e-9 * reference));
 }
 
-TEST(AppearanceEnergy, ConvergesToTheOrthographicEnergy) {
+TEST_CASE("AppearanceEnergy.ConvergesToTheOrthographicEnergy") {
   const TriangleMesh mesh = test::icosphere(2);
   const Eigen::VectorXd u = random_vector(mesh.V.rows(), 6, 0.1), ones = Eigen::VectorXd::Ones(mesh.V.rows());
   const double limit = AppearanceEnergy(frame_of(mesh, Projection::orthographic), mesh.F, ones)(u);
@@ -135,10 +139,10 @@ TEST(AppearanceEnergy, ConvergesToTheOrthographicEnergy) {
     order = std::log2(previous / difference);
     previous = difference;
   }
-  EXPECT_NEAR(order, 1, 0.05);  // first order in kappa
+  CHECK_THAT(order, WithinAbs(1, 0.05));  // first order in kappa
   // No digits are lost at a viewpoint 600 widths away.
   const double far = AppearanceEnergy(frame_of(mesh, Projection::perspective, 0.1), mesh.F, ones)(u);
-  EXPECT_NEAR(far, limit, 1e-2 * limit);
+  CHECK_THAT(far, WithinAbs(limit, 1e-2 * limit));
 }
 
 }  // namespace

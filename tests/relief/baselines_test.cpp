@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "relief/baselines.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include "geometry/test_meshes.h"
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 struct Scene {
   TriangleMesh mesh;
@@ -23,24 +25,24 @@ Scene scene(const TriangleMesh& mesh, Projection projection) {
   return s;
 }
 
-TEST(LinearCompression, FillsTheSlabAndKeepsTheOrder) {
+TEST_CASE("LinearCompression.FillsTheSlabAndKeepsTheOrder") {
   for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
     const Scene s = scene(test::icosphere(3), projection);
     const std::vector<char> all(static_cast<std::size_t>(s.mesh.V.rows()), 1);
     const Eigen::VectorXd z = s.frame.depth(linear_compression(s.frame, 0.05, all));
-    EXPECT_NEAR(z.minCoeff(), -0.05, 1e-14);
-    EXPECT_NEAR(z.maxCoeff(), 0, 1e-14);
-    for (Eigen::Index i = 1; i < z.size(); ++i) EXPECT_EQ(z[i] > z[i - 1], s.frame.P(i, 2) > s.frame.P(i - 1, 2));
+    CHECK_THAT(z.minCoeff(), WithinAbs(-0.05, 1e-14));
+    CHECK_THAT(z.maxCoeff(), WithinAbs(0, 1e-14));
+    for (Eigen::Index i = 1; i < z.size(); ++i) CHECK((z[i] > z[i - 1]) == (s.frame.P(i, 2) > s.frame.P(i - 1, 2)));
   }
 }
 
-TEST(LinearCompression, OfAFlatModelIsFlat) {
+TEST_CASE("LinearCompression.OfAFlatModelIsFlat") {
   const Scene s = scene(test::grid(4, 4), Projection::orthographic);
   const std::vector<char> all(static_cast<std::size_t>(s.mesh.V.rows()), 1);
-  EXPECT_EQ(s.frame.depth(linear_compression(s.frame, 0.05, all)).cwiseAbs().maxCoeff(), 0);
+  CHECK(s.frame.depth(linear_compression(s.frame, 0.05, all)).cwiseAbs().maxCoeff() == 0);
 }
 
-TEST(GradientDomain, FillsTheSlabOverTheVisiblePart) {
+TEST_CASE("GradientDomain.FillsTheSlabOverTheVisiblePart") {
   const Scene s = scene(test::icosphere(4), Projection::perspective);
   Context context;
   const Eigen::VectorXd z =
@@ -48,11 +50,11 @@ TEST(GradientDomain, FillsTheSlabOverTheVisiblePart) {
   double low = 1, high = -1;
   for (Eigen::Index i = 0; i < z.size(); ++i)
     if (s.visibility.vertex[static_cast<std::size_t>(i)]) low = std::min(low, z[i]), high = std::max(high, z[i]);
-  EXPECT_NEAR(low, -0.04, 1e-12);
-  EXPECT_NEAR(high, 0, 1e-12);
+  CHECK_THAT(low, WithinAbs(-0.04, 1e-12));
+  CHECK_THAT(high, WithinAbs(0, 1e-12));
 }
 
-TEST(GradientDomain, OfGentleSlopesIsLinear) {
+TEST_CASE("GradientDomain.OfGentleSlopesIsLinear") {
   // C(g) ~ g for small gradients: a gently tilted, wavy sheet is only scaled.
   TriangleMesh mesh = test::grid(20, 20);
   for (Eigen::Index i = 0; i < mesh.V.rows(); ++i)
@@ -62,7 +64,7 @@ TEST(GradientDomain, OfGentleSlopesIsLinear) {
   const Eigen::VectorXd gradient =
       s.frame.depth(gradient_domain_compression(s.frame, mesh.F, s.visibility, 0.05, {}, context));
   const Eigen::VectorXd linear = s.frame.depth(linear_compression(s.frame, 0.05, s.visibility.vertex));
-  EXPECT_LT((gradient - linear).cwiseAbs().maxCoeff(), 2e-4 * 0.05);
+  CHECK((gradient - linear).cwiseAbs().maxCoeff() < 2e-4 * 0.05);
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "relief/height_map.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <cmath>
 
@@ -11,6 +12,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 HeightMap bumps(int columns, int rows, double pitch) {
   HeightMap map;
@@ -37,7 +39,10 @@ class TopSurface {
       const double ax = T(0, 0) / map.pitch_x_mm, ay = T(0, 1) / map.pitch_y_mm, bx = T(1, 0) / map.pitch_x_mm,
                    by = T(1, 1) / map.pitch_y_mm, cx = T(2, 0) / map.pitch_x_mm, cy = T(2, 1) / map.pitch_y_mm;
       const double doubled = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
-      EXPECT_GT(doubled, 0) << "a top triangle is turned over";
+      {
+        INFO("a top triangle is turned over");
+        CHECK(doubled > 0);
+      }
       for (int y = static_cast<int>(std::floor(std::min({ay, by, cy}))); y <= std::ceil(std::max({ay, by, cy})); ++y)
         for (int x = static_cast<int>(std::floor(std::min({ax, bx, cx}))); x <= std::ceil(std::max({ax, bx, cx}));
              ++x) {
@@ -55,46 +60,51 @@ class TopSurface {
   std::vector<double> height_;
 };
 
-TEST(Solid, IsClosedAndWithinToleranceForEverySize) {
+TEST_CASE("Solid.IsClosedAndWithinToleranceForEverySize") {
   Context context;
   for (const auto& [columns, rows] : {std::pair{2, 2}, {3, 2}, {2, 5}, {17, 9}, {64, 65}, {100, 37}})
     for (const double tolerance : {0.0, 0.02, 0.5}) {
       const HeightMap map = bumps(columns, rows, 0.25);
       const TriangleMesh solid = make_solid(map, 3, tolerance, context);
-      EXPECT_TRUE(Adjacency(solid).is_closed()) << columns << "x" << rows;
-      EXPECT_EQ(euler_characteristic(Adjacency(solid)), 2);
+      {
+        INFO(columns << "x" << rows);
+        CHECK(Adjacency(solid).is_closed());
+      }
+      CHECK(euler_characteristic(Adjacency(solid)) == 2);
       const TopSurface top(solid, map, 3);
-      for (std::size_t node = 0; node < map.height_mm.size(); ++node)
-        EXPECT_NEAR(top.at(node), map.height_mm[node], tolerance + 1e-5) << node;
-      EXPECT_NEAR(solid.V.col(0).maxCoeff(), map.width_mm(), 1e-12);
-      EXPECT_NEAR(solid.V.col(1).maxCoeff(), map.depth_mm(), 1e-12);
-      EXPECT_EQ(solid.V.minCoeff(), 0);
+      for (std::size_t node = 0; node < map.height_mm.size(); ++node) {
+        INFO(node);
+        CHECK_THAT(top.at(node), WithinAbs(map.height_mm[node], tolerance + 1e-5));
+      }
+      CHECK_THAT(solid.V.col(0).maxCoeff(), WithinAbs(map.width_mm(), 1e-12));
+      CHECK_THAT(solid.V.col(1).maxCoeff(), WithinAbs(map.depth_mm(), 1e-12));
+      CHECK(solid.V.minCoeff() == 0);
     }
 }
 
-TEST(Solid, OfALongFriezeTakesNoMoreThanItsOwnNodes) {
+TEST_CASE("Solid.OfALongFriezeTakesNoMoreThanItsOwnNodes") {
   // The square around it would have four thousand million.
   Context context;
   const HeightMap map = bumps(60'001, 5, 0.25);
   const TriangleMesh solid = make_solid(map, 3, 0.02, context);
-  EXPECT_TRUE(Adjacency(solid).is_closed());
+  CHECK(Adjacency(solid).is_closed());
   const TopSurface top(solid, map, 3);
   double worst = 0;
   for (std::size_t node = 0; node < map.height_mm.size(); ++node)
     worst = std::max(worst, std::abs(top.at(node) - static_cast<double>(map.height_mm[node])));
-  EXPECT_LT(worst, 0.02 + 1e-5);
+  CHECK(worst < 0.02 + 1e-5);
 }
 
-TEST(Solid, OfABarePlateIsABoxOfFewTriangles) {
+TEST_CASE("Solid.OfABarePlateIsABoxOfFewTriangles") {
   Context context;
   HeightMap map = bumps(129, 65, 0.5);
   std::fill(map.height_mm.begin(), map.height_mm.end(), 0.0f);
   const TriangleMesh solid = make_solid(map, 2, 0.001, context);
-  EXPECT_NEAR(signed_volume(solid), 64 * 32 * 2, 1e-9);
-  EXPECT_LT(solid.face_count(), 600);  // against 16384 for the full grid
+  CHECK_THAT(signed_volume(solid), WithinAbs(64 * 32 * 2, 1e-9));
+  CHECK(solid.face_count() < 600);  // against 16384 for the full grid
 }
 
-TEST(HeightMap, IsTheUpperEnvelopeOverThePlate) {
+TEST_CASE("HeightMap.IsTheUpperEnvelopeOverThePlate") {
   // Two squares over the plate at different heights, and one behind it.
   Positions P(12, 3);
   Triangles F(6, 3);
@@ -109,29 +119,29 @@ TEST(HeightMap, IsTheUpperEnvelopeOverThePlate) {
   }
   Context context;
   const HeightMap map = make_height_map(P, F, 100, {100, 40}, 0.5, 6, context);
-  EXPECT_EQ(map.columns, 201);
-  EXPECT_EQ(map.rows, 81);
-  EXPECT_NEAR(map.width_mm(), 100, 1e-12);
-  EXPECT_NEAR(map.at(40, 40), 2, 1e-6);   // x = -30 mm: the lower square
-  EXPECT_NEAR(map.at(40, 100), 5, 1e-6);  // x = 0: the higher one covers it
-  EXPECT_NEAR(map.at(40, 150), 5, 1e-6);
-  EXPECT_EQ(map.at(40, 190), 0);  // bare plate; what is behind it does not show
+  CHECK(map.columns == 201);
+  CHECK(map.rows == 81);
+  CHECK_THAT(map.width_mm(), WithinAbs(100, 1e-12));
+  CHECK_THAT(map.at(40, 40), WithinAbs(2, 1e-6));   // x = -30 mm: the lower square
+  CHECK_THAT(map.at(40, 100), WithinAbs(5, 1e-6));  // x = 0: the higher one covers it
+  CHECK_THAT(map.at(40, 150), WithinAbs(5, 1e-6));
+  CHECK(map.at(40, 190) == 0);  // bare plate; what is behind it does not show
 }
 
-TEST(HeightMap, ReachesTheAskedThicknessBetweenNodes) {
+TEST_CASE("HeightMap.ReachesTheAskedThicknessBetweenNodes") {
   Positions P(3, 3);
   P << -0.5, -0.1, 0, 0.5, -0.1, 0, 0.0123, 0.077, -0.05;  // the top lies between nodes
   Triangles F(1, 3);
   F << 0, 1, 2;
   Context context;
   const HeightMap map = make_height_map(P, F, 100, {100, 20}, 1.0, 5, context);
-  EXPECT_EQ(*std::max_element(map.height_mm.begin(), map.height_mm.end()), 5.0f);
+  CHECK(*std::max_element(map.height_mm.begin(), map.height_mm.end()) == 5.0f);
 }
 
-TEST(HeightMap, RefusesAGridThatWouldNotFit) {
+TEST_CASE("HeightMap.RefusesAGridThatWouldNotFit") {
   Context context;
-  EXPECT_THROW(make_height_map(Positions::Zero(3, 3), Triangles::Zero(0, 3), 100, {10000, 10000}, 0.01, 5, context),
-               Error);
+  CHECK_THROWS_AS(make_height_map(Positions::Zero(3, 3), Triangles::Zero(0, 3), 100, {10000, 10000}, 0.01, 5, context),
+                  Error);
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "relief/relief.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <Eigen/Geometry>
 #include <atomic>
@@ -13,6 +14,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 /// A ball with waves on it: curved everywhere, with a silhouette and a hidden side.
 TriangleMesh wavy_ball(int levels) {
@@ -37,22 +39,23 @@ Relief solve(const TriangleMesh& mesh, const ReliefOptions& options) {
   return ReliefSolver(mesh, options, context).solve(options, context);
 }
 
-TEST(Relief, WithoutAnActiveBoundIsTheModel) {
+TEST_CASE("Relief.WithoutAnActiveBoundIsTheModel") {
   const TriangleMesh mesh = wavy_ball(3);
   for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
     const ReliefOptions options = slab(130, projection);  // the ball is about 100 mm deep
     const Relief relief = solve(mesh, options);
     // One common scale: s = lambda / lambda0 is constant (perspective), the depth shift is (straight on).
     const double spread = relief.u.maxCoeff() - relief.u.minCoeff();
-    EXPECT_LE(spread, 1e-10);
-    EXPECT_LE(relief.energy, 1e-18);
-    EXPECT_LE(relief.normal_error.mean_deg, 1e-6);
-    EXPECT_EQ(relief.qp.active_constraints, 0);
-    EXPECT_NEAR(relief.moved.col(2).maxCoeff(), 0, 1e-9) << "it should rest on its plate";
+    CHECK(spread <= 1e-10);
+    CHECK(relief.energy <= 1e-18);
+    CHECK(relief.normal_error.mean_deg <= 1e-6);
+    CHECK(relief.qp.active_constraints == 0);
+    INFO("it should rest on its plate");
+    CHECK_THAT(relief.moved.col(2).maxCoeff(), WithinAbs(0, 1e-9));
   }
 }
 
-TEST(Relief, KeepsEveryBoundAndTheOrder) {
+TEST_CASE("Relief.KeepsEveryBoundAndTheOrder") {
   const TriangleMesh mesh = wavy_ball(4);
   for (const Projection projection : {Projection::perspective, Projection::orthographic})
     for (const double thickness : {10.0, 2.0, 0.5})
@@ -60,21 +63,21 @@ TEST(Relief, KeepsEveryBoundAndTheOrder) {
         ReliefOptions options = slab(thickness, projection);
         options.bounded_vertices = bounded;
         const Relief relief = solve(mesh, options);
-        EXPECT_LE(relief.bound_violation_max_mm, 1e-9 * thickness);
-        EXPECT_LE(relief.order_violation_max_mm, 1e-6 * thickness);
-        EXPECT_LE(relief.qp.kkt_residual, 1e-6);
-        EXPECT_LT(relief.energy, relief.energy_linear);
-        EXPECT_GT(relief.qp.active_constraints, 2);
-        EXPECT_GT(relief.order_rows, 100);
+        CHECK(relief.bound_violation_max_mm <= 1e-9 * thickness);
+        CHECK(relief.order_violation_max_mm <= 1e-6 * thickness);
+        CHECK(relief.qp.kkt_residual <= 1e-6);
+        CHECK(relief.energy < relief.energy_linear);
+        CHECK(relief.qp.active_constraints > 2);
+        CHECK(relief.order_rows > 100);
         // The whole slab is used.
         if (bounded == BoundedVertices::all) {
-          EXPECT_NEAR(relief.moved.col(2).minCoeff() * 100, -thickness, 1e-9 * thickness);
-          EXPECT_NEAR(relief.moved.col(2).maxCoeff() * 100, 0, 1e-9 * thickness);
+          CHECK_THAT(relief.moved.col(2).minCoeff() * 100, WithinAbs(-thickness, 1e-9 * thickness));
+          CHECK_THAT(relief.moved.col(2).maxCoeff() * 100, WithinAbs(0, 1e-9 * thickness));
         }
       }
 }
 
-TEST(Relief, ThinnerIsNeverBetter) {
+TEST_CASE("Relief.ThinnerIsNeverBetter") {
   const TriangleMesh mesh = wavy_ball(3);
   ReliefOptions options = slab(20, Projection::orthographic);
   Context context;
@@ -83,40 +86,40 @@ TEST(Relief, ThinnerIsNeverBetter) {
   for (const double thickness : {40.0, 20.0, 10.0, 5.0, 2.5, 1.0}) {
     options.thickness_mm = thickness;
     const double energy = solver.solve(options, context).energy;
-    EXPECT_GE(energy, previous);
+    CHECK(energy >= previous);
     previous = energy;
   }
 }
 
-TEST(Relief, ReusedFactorisationGivesTheSameAnswer) {
+TEST_CASE("Relief.ReusedFactorisationGivesTheSameAnswer") {
   const TriangleMesh mesh = wavy_ball(3);
   ReliefOptions first = slab(8), second = slab(3);
   Context context;
   ReliefSolver solver(mesh, first, context);
   solver.solve(first, context);
   const Relief warm = solver.solve(second, context), cold = solve(mesh, second);
-  EXPECT_LE((warm.u - cold.u).cwiseAbs().maxCoeff(), 1e-8 * 0.03);
-  EXPECT_EQ(ReliefSolver::key(first), ReliefSolver::key(second));
+  CHECK((warm.u - cold.u).cwiseAbs().maxCoeff() <= 1e-8 * 0.03);
+  CHECK(ReliefSolver::key(first) == ReliefSolver::key(second));
 }
 
-TEST(Relief, SizeAndPlaceOfTheModelDoNotMatter) {
+TEST_CASE("Relief.SizeAndPlaceOfTheModelDoNotMatter") {
   const TriangleMesh mesh = wavy_ball(3);
   const ReliefOptions options = slab(4);
   const Relief reference = solve(mesh, options);
   TriangleMesh large{(mesh.V * 1000).rowwise() + Eigen::RowVector3d(3e3, -2e3, 1e4), mesh.F};
   const Relief other = solve(large, options);
-  EXPECT_LE((reference.u - other.u).cwiseAbs().maxCoeff(), 1e-6 * 0.04);
-  EXPECT_NEAR(other.energy, reference.energy, 1e-6 * reference.energy);
+  CHECK((reference.u - other.u).cwiseAbs().maxCoeff() <= 1e-6 * 0.04);
+  CHECK_THAT(other.energy, WithinAbs(reference.energy, 1e-6 * reference.energy));
   // Width and thickness together only scale.
   ReliefOptions twice = options;
   twice.width_mm *= 2;
   twice.thickness_mm *= 2;
   const Relief scaled = solve(mesh, twice);
-  EXPECT_LE((scaled.u - reference.u).cwiseAbs().maxCoeff(), 1e-12);
-  EXPECT_LE((scaled.lambda_mm - 2 * reference.lambda_mm).cwiseAbs().maxCoeff(), 1e-9);
+  CHECK((scaled.u - reference.u).cwiseAbs().maxCoeff() <= 1e-12);
+  CHECK((scaled.lambda_mm - 2 * reference.lambda_mm).cwiseAbs().maxCoeff() <= 1e-9);
 }
 
-TEST(Relief, TurningTheModelAndTheViewTogetherChangesNothing) {
+TEST_CASE("Relief.TurningTheModelAndTheViewTogetherChangesNothing") {
   const TriangleMesh mesh = wavy_ball(3);
   const ReliefOptions options = slab(4);
   const Relief reference = solve(mesh, options);
@@ -127,10 +130,10 @@ TEST(Relief, TurningTheModelAndTheViewTogetherChangesNothing) {
   turned_options.direction = {d.x(), d.y(), d.z()};
   turned_options.up = {up.x(), up.y(), up.z()};
   const Relief other = solve(turned, turned_options);
-  EXPECT_LE((reference.u - other.u).cwiseAbs().maxCoeff(), 1e-6 * 0.04);
+  CHECK((reference.u - other.u).cwiseAbs().maxCoeff() <= 1e-6 * 0.04);
 }
 
-TEST(Relief, BothSolversAgree) {
+TEST_CASE("Relief.BothSolversAgree") {
   const TriangleMesh mesh = wavy_ball(3);
   for (const Projection projection : {Projection::perspective, Projection::orthographic})
     for (const double thickness : {5.0, 2.0}) {
@@ -139,24 +142,24 @@ TEST(Relief, BothSolversAgree) {
       const Relief exchange = solve(mesh, options);
       options.method = QpMethod::interior_point;
       const Relief interior = solve(mesh, options);
-      EXPECT_NEAR(exchange.energy, interior.energy, 1e-6 * exchange.energy);
-      EXPECT_LE((exchange.u - interior.u).cwiseAbs().maxCoeff(), 1e-4 * thickness / 100);
+      CHECK_THAT(exchange.energy, WithinAbs(interior.energy, 1e-6 * exchange.energy));
+      CHECK((exchange.u - interior.u).cwiseAbs().maxCoeff() <= 1e-4 * thickness / 100);
     }
 }
 
-TEST(Relief, EveryPartRestsOnItsOwn) {
+TEST_CASE("Relief.EveryPartRestsOnItsOwn") {
   // Two balls side by side and one behind: three components with free constants.
   const TriangleMesh ball = wavy_ball(3);
   const TriangleMesh mesh =
       test::joined(test::joined(ball, test::moved(ball, Vec3(2.6, 0, 0))), test::moved(ball, Vec3(1.3, 1, -3)));
   const ReliefOptions options = slab(5);
   const Relief relief = solve(mesh, options);
-  EXPECT_LE(relief.bound_violation_max_mm, 5e-9);
-  EXPECT_LE(relief.order_violation_max_mm, 1e-5);
-  EXPECT_LT(relief.energy, relief.energy_linear);
+  CHECK(relief.bound_violation_max_mm <= 5e-9);
+  CHECK(relief.order_violation_max_mm <= 1e-5);
+  CHECK(relief.energy < relief.energy_linear);
 }
 
-TEST(Relief, ConvergesWithSecondOrderUnderRefinement) {
+TEST_CASE("Relief.ConvergesWithSecondOrderUnderRefinement") {
   // The energy is fourth order and the contact a free boundary; on a ball, whose mesh converges with second order,
   // so does the energy at the solution.
   for (const double thickness : {10.0, 40.0}) {
@@ -168,38 +171,40 @@ TEST(Relief, ConvergesWithSecondOrderUnderRefinement) {
       energy.push_back(solve(test::icosphere(levels), options).energy);
     }
     const double order = std::log2((energy[2] - energy[1]) / (energy[3] - energy[2]));
-    EXPECT_GT(order, 1.5) << "thickness " << thickness;
-    EXPECT_LT(order, 3.0) << "thickness " << thickness;
+    INFO("thickness " << thickness);
+    CHECK(order > 1.5);
+    CHECK(order < 3.0);
   }
 }
 
-TEST(Relief, RefusesWhatCannotBe) {
+TEST_CASE("Relief.RefusesWhatCannotBe") {
   const TriangleMesh mesh = wavy_ball(2);
   ReliefOptions options = slab(90);
   options.field_of_view_deg = 90;
   options.thickness_mm = 60;  // the viewpoint is 50 mm away
   try {
     solve(mesh, options);
-    FAIL() << "accepted";
+    FAIL("accepted");
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::invalid_input);
+    CHECK(error.code() == ErrorCode::invalid_input);
   }
 }
 
-TEST(Relief, RefusesMoreVerticesThanFitBeforeAnyWork) {
+TEST_CASE("Relief.RefusesMoreVerticesThanFitBeforeAnyWork") {
   TriangleMesh mesh = wavy_ball(1);
   mesh.V.conservativeResize(1'600'000, 3);
   Context context;
   try {
     ReliefSolver(mesh, slab(5), context);
-    FAIL() << "accepted";
+    FAIL("accepted");
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::invalid_input);
-    EXPECT_NE(std::string(error.what()).find("simplify it first"), std::string::npos) << error.what();
+    CHECK(error.code() == ErrorCode::invalid_input);
+    INFO(error.what());
+    CHECK(std::string(error.what()).find("simplify it first") != std::string::npos);
   }
 }
 
-TEST(Relief, AsksForCancelAllAlong) {
+TEST_CASE("Relief.AsksForCancelAllAlong") {
   // The longest stretch between two questions in processor time and as a share of the run, so that neither a busy
   // machine nor sanitizers make it fail. Natively 0.10 s, 3 % of the run.
   const TriangleMesh mesh = wavy_ball(6);
@@ -215,10 +220,10 @@ TEST(Relief, AsksForCancelAllAlong) {
   ReliefSolver(mesh, options, context).solve(options, context);
   ask();
   const double share = double(longest) / double(std::clock() - start);
-  EXPECT_LT(share, 0.25);
+  CHECK(share < 0.25);
 }
 
-TEST(Relief, StopsWhereverItIsCancelled) {
+TEST_CASE("Relief.StopsWhereverItIsCancelled") {
   const TriangleMesh mesh = wavy_ball(4);
   const ReliefOptions options = slab(1);
   const auto questions_until =
@@ -228,18 +233,21 @@ TEST(Relief, StopsWhereverItIsCancelled) {
         try {
           ReliefSolver(mesh, options, context).solve(options, context);
         } catch (const Error& error) {
-          EXPECT_EQ(error.code(), ErrorCode::cancelled);
+          CHECK(error.code() == ErrorCode::cancelled);
           return asked.load();
         }
         return -asked.load();
       };
   const long all = -questions_until(std::numeric_limits<long>::max());
-  ASSERT_GT(all, 20);
+  REQUIRE(all > 20);
   for (const double share : {0.0, 0.2, 0.5, 0.8, 0.95}) {
     const long stop_at = 1 + long(share * double(all));
     const long asked = questions_until(stop_at);
-    EXPECT_GE(asked, stop_at) << "not cancelled";
-    EXPECT_LE(asked, stop_at + 64);
+    {
+      INFO("not cancelled");
+      CHECK(asked >= stop_at);
+    }
+    CHECK(asked <= stop_at + 64);
   }
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "relief/view_frame.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -11,6 +12,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 ReliefOptions view(Projection projection, double field_of_view_deg = 30) {
   ReliefOptions options;
@@ -23,7 +25,7 @@ ReliefOptions view(Projection projection, double field_of_view_deg = 30) {
 /// Where the viewer sees a point on the plate, in normalised lengths.
 Vec2 seen(const ViewFrame& frame, const Vec3& p) { return p.head<2>() / (1 + frame.kappa * p.z()); }
 
-TEST(ViewFrame, TheModelSeenOnThePlateIsOneWideAndCentred) {
+TEST_CASE("ViewFrame.TheModelSeenOnThePlateIsOneWideAndCentred") {
   for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
     const ViewFrame frame = make_view_frame(test::icosphere(3), view(projection));
     double x0 = 1e9, x1 = -1e9, y0 = 1e9, y1 = -1e9;
@@ -31,25 +33,25 @@ TEST(ViewFrame, TheModelSeenOnThePlateIsOneWideAndCentred) {
       const Vec2 q = seen(frame, frame.P.row(i).transpose());
       x0 = std::min(x0, q.x()), x1 = std::max(x1, q.x()), y0 = std::min(y0, q.y()), y1 = std::max(y1, q.y());
     }
-    EXPECT_NEAR(x0, -0.5, 1e-12);
-    EXPECT_NEAR(x1, 0.5, 1e-12);
-    EXPECT_NEAR(y0 + y1, 0, 1e-12);
-    EXPECT_NEAR(y1 - y0, frame.image_height, 1e-12);
+    CHECK_THAT(x0, WithinAbs(-0.5, 1e-12));
+    CHECK_THAT(x1, WithinAbs(0.5, 1e-12));
+    CHECK_THAT(y0 + y1, WithinAbs(0, 1e-12));
+    CHECK_THAT(y1 - y0, WithinAbs(frame.image_height, 1e-12));
   }
 }
 
-TEST(ViewFrame, TheFieldOfViewAndTheDistanceSayTheSame) {
+TEST_CASE("ViewFrame.TheFieldOfViewAndTheDistanceSayTheSame") {
   const TriangleMesh mesh = test::icosphere(2);
   ReliefOptions by_angle = view(Projection::perspective, 40), by_distance = by_angle;
   by_distance.width_mm = 80;
   by_distance.distance_mm = 80 * 0.5 / std::tan(20 * std::numbers::pi / 180);
   const ViewFrame a = make_view_frame(mesh, by_angle), b = make_view_frame(mesh, by_distance);
-  EXPECT_NEAR(a.kappa, 2 * std::tan(20 * std::numbers::pi / 180), 1e-12);
-  EXPECT_NEAR(a.kappa, b.kappa, 1e-12);
-  EXPECT_NEAR(a.scale, b.scale, 1e-12);
+  CHECK_THAT(a.kappa, WithinAbs(2 * std::tan(20 * std::numbers::pi / 180), 1e-12));
+  CHECK_THAT(a.kappa, WithinAbs(b.kappa, 1e-12));
+  CHECK_THAT(a.scale, WithinAbs(b.scale, 1e-12));
 }
 
-TEST(ViewFrame, MovingAlongTheRayKeepsThePicture) {
+TEST_CASE("ViewFrame.MovingAlongTheRayKeepsThePicture") {
   for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
     const ViewFrame frame = make_view_frame(test::icosphere(3), view(projection));
     test::Random random(7);
@@ -58,14 +60,14 @@ TEST(ViewFrame, MovingAlongTheRayKeepsThePicture) {
     const Positions moved = frame.moved(u);
     const Eigen::VectorXd z = frame.depth(u);
     for (int i = 0; i < u.size(); ++i) {
-      EXPECT_LT((seen(frame, frame.P.row(i).transpose()) - seen(frame, moved.row(i).transpose())).norm(), 1e-14);
-      EXPECT_NEAR(moved(i, 2), z[i], 1e-15);
-      EXPECT_NEAR(frame.u_for_depth(i, z[i]), u[i], 1e-14);
+      CHECK((seen(frame, frame.P.row(i).transpose()) - seen(frame, moved.row(i).transpose())).norm() < 1e-14);
+      CHECK_THAT(moved(i, 2), WithinAbs(z[i], 1e-15));
+      CHECK_THAT(frame.u_for_depth(i, z[i]), WithinAbs(u[i], 1e-14));
     }
   }
 }
 
-TEST(ViewFrame, LambdaIsTheThesisLambda) {
+TEST_CASE("ViewFrame.LambdaIsTheThesisLambda") {
   // lambda / lambda0 = 1 + kappa u, with lambda the distance from the viewpoint (eq. 3.3).
   const ViewFrame frame = make_view_frame(test::icosphere(2), view(Projection::perspective));
   const Eigen::VectorXd u = Eigen::VectorXd::LinSpaced(frame.P.rows(), -0.2, 0.2);
@@ -73,19 +75,19 @@ TEST(ViewFrame, LambdaIsTheThesisLambda) {
   const Vec3 o(0, 0, -1 / frame.kappa);
   for (Eigen::Index i = 0; i < u.size(); ++i) {
     const Vec3 before = frame.P.row(i).transpose() - o, after = moved.row(i).transpose() - o;
-    EXPECT_NEAR(after.norm() / before.norm(), 1 + frame.kappa * u[i], 1e-14);
-    EXPECT_LT(after.cross(before).norm(), 1e-13);
+    CHECK_THAT(after.norm() / before.norm(), WithinAbs(1 + frame.kappa * u[i], 1e-14));
+    CHECK(after.cross(before).norm() < 1e-13);
   }
 }
 
-TEST(ViewFrame, BackInTheModelsAxesNothingHasMoved) {
+TEST_CASE("ViewFrame.BackInTheModelsAxesNothingHasMoved") {
   const TriangleMesh mesh = test::icosphere(2);
   const ViewFrame frame = make_view_frame(mesh, view(Projection::perspective));
   const Positions back = frame.to_model(frame.P, 120);
-  EXPECT_LT((back - mesh.V * (frame.scale * 120)).cwiseAbs().maxCoeff(), 1e-11);
+  CHECK((back - mesh.V * (frame.scale * 120)).cwiseAbs().maxCoeff() < 1e-11);
 }
 
-TEST(ViewFrame, OrthographicIsTheLimitOfFar) {
+TEST_CASE("ViewFrame.OrthographicIsTheLimitOfFar") {
   // The picture converges like kappa, i.e. like the angle.
   const TriangleMesh mesh = test::icosphere(3);
   const ViewFrame straight = make_view_frame(mesh, view(Projection::orthographic));
@@ -94,7 +96,8 @@ TEST(ViewFrame, OrthographicIsTheLimitOfFar) {
     const ViewFrame near = make_view_frame(mesh, view(Projection::perspective, angle));
     const double difference = (near.P - straight.P).cwiseAbs().maxCoeff();
     if (previous > 0) {
-      EXPECT_NEAR(std::log2(previous / difference), 1, 0.05);  // the centring of the picture is first order in kappa
+      CHECK_THAT(std::log2(previous / difference),
+                 WithinAbs(1, 0.05));  // the centring of the picture is first order in kappa
     }
     previous = difference;
   }
@@ -103,14 +106,15 @@ TEST(ViewFrame, OrthographicIsTheLimitOfFar) {
 void expect_refused(const TriangleMesh& mesh, const ReliefOptions& options, const std::string& where) {
   try {
     make_view_frame(mesh, options);
-    FAIL() << "accepted";
+    FAIL("accepted");
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::invalid_input);
-    EXPECT_EQ(error.where(), where) << error.what();
+    CHECK(error.code() == ErrorCode::invalid_input);
+    INFO(error.what());
+    CHECK(error.where() == where);
   }
 }
 
-TEST(ViewFrame, RefusesImpossibleViewpointsInWords) {
+TEST_CASE("ViewFrame.RefusesImpossibleViewpointsInWords") {
   const TriangleMesh mesh = test::icosphere(2);
   ReliefOptions options = view(Projection::perspective);
   options.direction = {0, 0, 0};
@@ -128,19 +132,22 @@ TEST(ViewFrame, RefusesImpossibleViewpointsInWords) {
   expect_refused(needle, options, "direction");
 }
 
-TEST(ViewFrame, TheMendInTheMessageWorks) {
+TEST_CASE("ViewFrame.TheMendInTheMessageWorks") {
   const TriangleMesh mesh = test::icosphere(2);
   ReliefOptions options = view(Projection::perspective);
   options.distance_mm = 1;
   try {
     make_view_frame(mesh, options);
-    FAIL() << "accepted";
+    FAIL("accepted");
   } catch (const Error& error) {
     const std::string text = error.what();
     const auto at = text.find("at least ");
-    ASSERT_NE(at, std::string::npos) << text;
+    {
+      INFO(text);
+      REQUIRE(at != std::string::npos);
+    }
     options.distance_mm = std::strtod(text.c_str() + at + 9, nullptr);
-    EXPECT_NO_THROW(make_view_frame(mesh, options));
+    CHECK_NOTHROW(make_view_frame(mesh, options));
   }
 }
 

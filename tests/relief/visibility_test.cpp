@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "relief/visibility.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <cmath>
 
@@ -9,6 +10,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 ViewFrame frame_of(const TriangleMesh& mesh, Projection projection) {
   ReliefOptions options;
@@ -17,7 +19,7 @@ ViewFrame frame_of(const TriangleMesh& mesh, Projection projection) {
   return make_view_frame(mesh, options);
 }
 
-TEST(Visibility, OfASphereIsTheCapTheViewerSees) {
+TEST_CASE("Visibility.OfASphereIsTheCapTheViewerSees") {
   const TriangleMesh mesh = test::icosphere(4);
   for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
     const ViewFrame frame = frame_of(mesh, projection);
@@ -31,12 +33,12 @@ TEST(Visibility, OfASphereIsTheCapTheViewerSees) {
       const Vec3 p = frame.P.row(i).transpose();
       const double turned = -(p - centre).normalized().dot(frame.ray_direction(p));
       if (std::abs(turned) < 0.1) continue;
-      EXPECT_EQ(visibility.vertex[static_cast<std::size_t>(i)] != 0, turned > 0)
-          << "vertex " << i << ", radius " << radius;
+      INFO("vertex " << i << ", radius " << radius);
+      CHECK((visibility.vertex[static_cast<std::size_t>(i)] != 0) == (turned > 0));
     }
     for (Eigen::Index f = 0; f < mesh.F.rows(); ++f)
       if (visibility.face[static_cast<std::size_t>(f)]) {
-        EXPECT_TRUE(faces_viewer(frame, frame.P, mesh.F, f));
+        CHECK(faces_viewer(frame, frame.P, mesh.F, f));
       }
   }
 }
@@ -47,29 +49,30 @@ TriangleMesh two_sheets() {
   return test::joined(front, back);
 }
 
-TEST(Visibility, WhatIsBehindIsHidden) {
+TEST_CASE("Visibility.WhatIsBehindIsHidden") {
   const TriangleMesh mesh = two_sheets();
   const ViewFrame frame = frame_of(mesh, Projection::orthographic);
   Context context;
   const RayCaster caster(TriangleMesh{frame.P, mesh.F});
   const Visibility visibility = find_visibility(frame, mesh.F, caster, context);
   const Eigen::Index half = mesh.V.rows() / 2;
-  for (Eigen::Index i = 0; i < half; ++i) EXPECT_TRUE(visibility.vertex[static_cast<std::size_t>(i)]);
+  for (Eigen::Index i = 0; i < half; ++i) CHECK(visibility.vertex[static_cast<std::size_t>(i)]);
   for (Eigen::Index i = half; i < mesh.V.rows(); ++i) {
     const bool covered =
         mesh.V(i, 0) < mesh.V.col(0).head(half).maxCoeff() && mesh.V(i, 1) < mesh.V.col(1).head(half).maxCoeff();
-    EXPECT_EQ(visibility.vertex[static_cast<std::size_t>(i)] != 0, !covered) << i;
+    INFO(i);
+    CHECK((visibility.vertex[static_cast<std::size_t>(i)] != 0) == !covered);
   }
 }
 
-TEST(DepthOrder, RowsHoldForTheModelAndBreakWhenSheetsPass) {
+TEST_CASE("DepthOrder.RowsHoldForTheModelAndBreakWhenSheetsPass") {
   const TriangleMesh mesh = two_sheets();
   for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
     const ViewFrame frame = frame_of(mesh, projection);
     Context context;
     const RayCaster caster(TriangleMesh{frame.P, mesh.F});
     const auto rows = depth_order_rows(frame, mesh.F, caster, context);
-    ASSERT_GT(rows.size(), 40u);
+    REQUIRE(rows.size() > 40u);
     const Eigen::Index half = mesh.V.rows() / 2;
     const auto slack = [&](const Eigen::VectorXd& u) {
       double least = 1e9;
@@ -82,13 +85,13 @@ TEST(DepthOrder, RowsHoldForTheModelAndBreakWhenSheetsPass) {
     };
     Eigen::VectorXd u = Eigen::VectorXd::Zero(mesh.V.rows());
     const double gap = frame.P(half, 2) - frame.P(0, 2);
-    EXPECT_NEAR(slack(u), gap, 1e-6);  // every row measures the distance along the ray's depth
+    CHECK_THAT(slack(u), WithinAbs(gap, 1e-6));  // every row measures the distance along the ray's depth
     // Both sheets to one depth: all rows just hold.
     for (int i = 0; i < mesh.V.rows(); ++i) u[i] = frame.u_for_depth(i, 0.0);
-    EXPECT_NEAR(slack(u), 0, 1e-12);
+    CHECK_THAT(slack(u), WithinAbs(0, 1e-12));
     // The back one in front: broken.
     for (int i = static_cast<int>(half); i < mesh.V.rows(); ++i) u[i] = frame.u_for_depth(i, -0.1);
-    EXPECT_NEAR(slack(u), -0.1, 1e-6);
+    CHECK_THAT(slack(u), WithinAbs(-0.1, 1e-6));
   }
 }
 

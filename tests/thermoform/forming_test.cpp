@@ -2,7 +2,8 @@
 // Whole formings: closed forms, symmetry, invariants, orders of convergence, and what is refused.
 #include "thermoform/forming.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -14,6 +15,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 using namespace thermoform_test;
 
@@ -54,7 +56,7 @@ ThermoformOptions blow_down(int triangles, double height) {
   return o;
 }
 
-TEST(Forming, dome_has_half_the_mean_thickness) {
+TEST_CASE("Forming.dome_has_half_the_mean_thickness") {
   std::vector<std::pair<double, double>> bowl;
   const double R = 40;
   for (int i = 0; i <= 60; ++i) {
@@ -76,11 +78,11 @@ TEST(Forming, dome_has_half_the_mean_thickness) {
                e2 = (sheet.sheet_mm.row(sheet.mesh.F(f, 2)) - sheet.sheet_mm.row(sheet.mesh.F(f, 0))).transpose();
     flat += 0.5 * (e1.x() * e2.y() - e1.y() * e2.x());
   }
-  EXPECT_NEAR(flat / area, 0.5, 0.02);
-  EXPECT_LT(sheet.mesh.V.col(2).minCoeff(), 45 - R + 1);  // the bottom was reached
+  CHECK_THAT(flat / area, WithinAbs(0.5, 0.02));
+  CHECK(sheet.mesh.V.col(2).minCoeff() < 45 - R + 1);  // the bottom was reached
 }
 
-TEST(Forming, cone_wall_thins_as_a_sticking_cap_does) {
+TEST_CASE("Forming.cone_wall_thins_as_a_sticking_cap_does") {
   // h/h0 = (1 + cos alpha)/2 (1 - S sin(alpha)/H)^(sec(alpha) - 1) at slant S, for a free cap of even thickness.
   const double alpha = std::numbers::pi / 3, R = 40, H = R * std::tan(alpha);
   const FormedResult result =
@@ -103,22 +105,23 @@ TEST(Forming, cone_wall_thins_as_a_sticking_cap_does) {
     worst = std::max(worst, std::abs(off));
     ++count;
   }
-  ASSERT_GT(count, 200);
-  RecordProperty("mean_error_mm", std::to_string(error / count));
+  REQUIRE(count > 200);
+  SUCCEED("mean_error_mm " << error / count);
   // The closed form's cap is of even thickness; the simulated one is thinner in its middle.
-  EXPECT_LT(error / count, 0.08) << "worst " << worst;
+  INFO("worst " << worst);
+  CHECK(error / count < 0.08);
 }
 
-TEST(Forming, plastic_is_neither_made_nor_lost) {
+TEST_CASE("Forming.plastic_is_neither_made_nor_lost") {
   const FormedResult result = form(pyramid(60, 40), small_machine(2500));
-  EXPECT_LT(result.volume_drift, 1e-12);
+  CHECK(result.volume_drift < 1e-12);
   const double volume = (result.sheet.thickness_mm.array() > 0).all()
                             ? result.mean_thickness_mm * (result.formed_area_mm2 + result.unformed_area_mm2)
                             : 0;
-  EXPECT_NEAR(volume, 120 * 120 * 1.0, 1e-9 * 14400);
+  CHECK_THAT(volume, WithinAbs(120 * 120 * 1.0, 1e-9 * 14400));
 }
 
-TEST(Forming, square_pyramid_on_a_square_sheet_keeps_its_four_fold_symmetry) {
+TEST_CASE("Forming.square_pyramid_on_a_square_sheet_keeps_its_four_fold_symmetry") {
   const FormedResult result = form(pyramid(60, 40), small_machine(2500));
   const FormedSheet& sheet = result.sheet;
   const SheetLookup lookup(sheet);
@@ -126,21 +129,21 @@ TEST(Forming, square_pyramid_on_a_square_sheet_keeps_its_four_fold_symmetry) {
   for (Eigen::Index i = 0; i < sheet.mesh.V.rows(); ++i) {
     const Vec2 turned(-sheet.sheet_mm(i, 1), sheet.sheet_mm(i, 0));
     const auto at = lookup.find(turned);
-    ASSERT_TRUE(at);
+    REQUIRE(at);
     const Vec3 expected(-sheet.mesh.V(i, 1), sheet.mesh.V(i, 0), sheet.mesh.V(i, 2));
     worst = std::max(worst, (lookup.middle(*at) - expected).norm());
   }
   // Rounding is not symmetric, and sticking makes decisions: small, not zero.
-  EXPECT_LT(worst, 0.5);
-  RecordProperty("worst_mm", std::to_string(worst));
+  CHECK(worst < 0.5);
+  SUCCEED("worst_mm " << worst);
 }
 
-TEST(Forming, the_same_job_gives_the_same_bits) {
+TEST_CASE("Forming.the_same_job_gives_the_same_bits") {
   const FormedResult a = form(pyramid(60, 40), small_machine(1000)), b = form(pyramid(60, 40), small_machine(1000));
-  EXPECT_EQ(a.sheet.mesh.V, b.sheet.mesh.V);
+  CHECK(a.sheet.mesh.V == b.sheet.mesh.V);
 }
 
-TEST(Forming, no_vertex_is_inside_the_mould_and_every_held_one_touches) {
+TEST_CASE("Forming.no_vertex_is_inside_the_mould_and_every_held_one_touches") {
   Context context;
   for (const char* name : {"mountain", "bust", "coin"}) {
     const Model model = make_sample(name, 4000, context);
@@ -155,7 +158,10 @@ TEST(Forming, no_vertex_is_inside_the_mould_and_every_held_one_touches) {
     int inside = 0;
     for (Eigen::Index i = 0; i < result.sheet.mesh.V.rows(); ++i) {
       const Vec3 p = result.sheet.mesh.V.row(i);
-      ASSERT_TRUE(p.allFinite()) << name;
+      {
+        INFO(name);
+        REQUIRE(p.allFinite());
+      }
       if (p.z() <= 0) continue;
       std::vector<double> crossings;
       for (const RayHit& hit : rays.all_hits(p, Vec3(0.6, 0.64, 0.48), 0, 1e5))
@@ -163,17 +169,19 @@ TEST(Forming, no_vertex_is_inside_the_mould_and_every_held_one_touches) {
       if (crossings.size() % 2 == 1 && distance.nearest(p)->distance > 1e-6) ++inside;
       if (result.sheet.contact_s[i] > 0) {
         // Half the thickness at the moment of contact; squeezed parts are thicker than the flat sheet.
-        EXPECT_LT(std::min(p.z(), distance.nearest(p)->distance), 0.75 * o.sheet_thickness_mm) << name;
+        INFO(name);
+        CHECK(std::min(p.z(), distance.nearest(p)->distance) < 0.75 * o.sheet_thickness_mm);
       }
     }
-    EXPECT_EQ(inside, 0) << name;
-    EXPECT_GT(result.vertex_distance_min_mm, 0) << name;
-    EXPECT_LT(result.volume_drift, 1e-12) << name;
-    EXPECT_GE(result.frames.size(), 5u) << name;
+    INFO(name);
+    CHECK(inside == 0);
+    CHECK(result.vertex_distance_min_mm > 0);
+    CHECK(result.volume_drift < 1e-12);
+    CHECK(result.frames.size() >= 5u);
   }
 }
 
-TEST(Forming, finer_sheets_and_shorter_steps_converge) {
+TEST_CASE("Forming.finer_sheets_and_shorter_steps_converge") {
   Context context;
   const TriangleMesh dome = make_sample("hemisphere", 6000, context).mesh;
   const auto run = [&](int triangles, double step) {
@@ -185,26 +193,33 @@ TEST(Forming, finer_sheets_and_shorter_steps_converge) {
   const FormedResult finest = run(16000, 1);
   const double coarse = mean_distance(run(1000, 1).sheet, finest.sheet),
                middle = mean_distance(run(4000, 1).sheet, finest.sheet);
-  EXPECT_LT(middle, 0.15);
-  EXPECT_GT(std::log2(coarse / middle), 0.8) << coarse << " " << middle;  // per halving of the edges
-  RecordProperty("order_h", std::to_string(std::log2(coarse / middle)));
+  CHECK(middle < 0.15);
+  {
+    INFO(coarse << " " << middle);
+    CHECK(std::log2(coarse / middle) > 0.8);
+  }  // per halving of the edges
+  SUCCEED("order_h " << std::log2(coarse / middle));
   const FormedResult patient = run(4000, 0.1);
   const double long_steps = mean_distance(run(4000, 1.6).sheet, patient.sheet),
                short_steps = mean_distance(run(4000, 0.4).sheet, patient.sheet);
-  EXPECT_GT(std::log2(long_steps / short_steps) / 2, 0.5) << long_steps << " " << short_steps;
-  RecordProperty("order_dt", std::to_string(std::log2(long_steps / short_steps) / 2));
+  {
+    INFO(long_steps << " " << short_steps);
+    CHECK(std::log2(long_steps / short_steps) / 2 > 0.5);
+  }
+  SUCCEED("order_dt " << std::log2(long_steps / short_steps) / 2);
 }
 
-TEST(Forming, models_that_do_not_fit_are_refused_with_the_reason) {
+TEST_CASE("Forming.models_that_do_not_fit_are_refused_with_the_reason") {
   const auto refused = [](const TriangleMesh& mesh, const ThermoformOptions& o, const std::string& where,
                           const std::string& words) {
     try {
       form(mesh, o);
-      FAIL() << "not refused: " << words;
+      FAIL("not refused: " << words);
     } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::invalid_input);
-      EXPECT_EQ(error.where(), where);
-      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+      CHECK(error.code() == ErrorCode::invalid_input);
+      CHECK(error.where() == where);
+      INFO(error.what());
+      CHECK(std::string(error.what()).find(words) != std::string::npos);
     }
   };
   refused(pyramid(130, 40), small_machine(500), "size_mm", "beyond the clamp opening");
@@ -214,7 +229,7 @@ TEST(Forming, models_that_do_not_fit_are_refused_with_the_reason) {
   refused(pyramid(60, 40), wide, "clamp_opening_x_mm", "wider than the sheet");
 }
 
-TEST(Forming, cancels_within_a_step) {
+TEST_CASE("Forming.cancels_within_a_step") {
   int calls = 0;
   Host host;
   host.cancel_requested = [&] { return ++calls > 40; };
@@ -223,12 +238,12 @@ TEST(Forming, cancels_within_a_step) {
     form_sheet(std::make_shared<const MouldShape>(pyramid(60, 40)), Placement{}, small_machine(2500), context);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::cancelled);
+    CHECK(error.code() == ErrorCode::cancelled);
   }
 }
 
 /// Every corner of the thesis's ranges of the four calibrated parameters, both laws and both yield rules.
-TEST(Forming, corners_of_the_parameters_ranges_all_finish) {
+TEST_CASE("Forming.corners_of_the_parameters_ranges_all_finish") {
   const TriangleMesh shape = pyramid(60, 40);
   for (int corner = 0; corner < 64; ++corner) {
     ThermoformOptions o = small_machine(600);
@@ -239,17 +254,18 @@ TEST(Forming, corners_of_the_parameters_ranges_all_finish) {
     o.elastic_law = corner & 16 ? ElasticLaw::stable_neo_hookean : ElasticLaw::st_venant_kirchhoff;
     o.yield_rule = corner & 32 ? YieldRule::total_strain : YieldRule::elastic_excess;
     FormedResult result;
-    ASSERT_NO_THROW(result = form(shape, o)) << "corner " << corner;
-    EXPECT_TRUE(result.sheet.mesh.V.allFinite()) << "corner " << corner;
-    EXPECT_GT(result.vertex_distance_min_mm, 0) << "corner " << corner;
+    INFO("corner " << corner);
+    REQUIRE_NOTHROW(result = form(shape, o));
+    CHECK(result.sheet.mesh.V.allFinite());
+    CHECK(result.vertex_distance_min_mm > 0);
     // Nothing lifts the sheet off the model.
-    EXPECT_LT(result.sheet.mesh.V.col(2).maxCoeff(), 40 + 1.5 * o.sheet_thickness_mm) << "corner " << corner;
+    CHECK(result.sheet.mesh.V.col(2).maxCoeff() < 40 + 1.5 * o.sheet_thickness_mm);
   }
 }
 
 /// Long steps of a stiff sheet that flows at once: Newton's overshoot once met the wall of the box a metre above the
 /// sheet and stuck there.
-TEST(Forming, a_stiff_sheet_that_flows_stays_in_its_box) {
+TEST_CASE("Forming.a_stiff_sheet_that_flows_stays_in_its_box") {
   for (const double stiffness : {1e7, 9.9e6, 8e6}) {
     ThermoformOptions o;
     o.triangles = 1200;
@@ -260,8 +276,9 @@ TEST(Forming, a_stiff_sheet_that_flows_stays_in_its_box) {
     o.viscosity_s = 2.3534740696809343e-05;
     o.cooling = 0.9277748782264198;
     const FormedResult result = form(pyramid(100, 60), o);
-    EXPECT_LT(result.sheet.mesh.V.col(2).maxCoeff(), 62) << stiffness;
-    EXPECT_LT(result.sag_mm, 20) << stiffness;
+    INFO(stiffness);
+    CHECK(result.sheet.mesh.V.col(2).maxCoeff() < 62);
+    CHECK(result.sag_mm < 20);
   }
 }
 

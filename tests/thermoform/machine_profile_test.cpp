@@ -2,7 +2,8 @@
 // What a scan would show, and what a machine profile keeps.
 #include "thermoform/machine_profile.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include "base/error.h"
 #include "thermoform/measured_object.h"
@@ -11,6 +12,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 /// A sheet raised to z = 0.1 x + 20, as a plane that any interpolation has exactly.
 FormedSheet slope() {
@@ -24,7 +26,7 @@ FormedSheet slope() {
   return sheet;
 }
 
-TEST(PredictMeasured, scales_and_shifts_are_those_of_their_declaration) {
+TEST_CASE("PredictMeasured.scales_and_shifts_are_those_of_their_declaration") {
   TextureCoordinates places(3, 2);
   places << 10, -20, 0, 0, 60, 0;  // the last one lies in the clamp
   MeasurementEffects effects;
@@ -36,16 +38,16 @@ TEST(PredictMeasured, scales_and_shifts_are_those_of_their_declaration) {
   const auto scanned = [](double x, double y, double z) {
     return Vec3(0.99 * x + 1, 0.99 * y, 3 + 0.99 * (z - 3) - 2);
   };
-  EXPECT_LT((predicted.row(0).transpose() - scanned(10.2, -20.4, 21.02)).norm(), 1e-9);
-  EXPECT_LT((predicted.row(1).transpose() - scanned(0, 0, 20)).norm(), 1e-9);
-  EXPECT_LT((predicted.row(2).transpose() - scanned(61.2, 0, 5)).norm(), 1e-9);
+  CHECK((predicted.row(0).transpose() - scanned(10.2, -20.4, 21.02)).norm() < 1e-9);
+  CHECK((predicted.row(1).transpose() - scanned(0, 0, 20)).norm() < 1e-9);
+  CHECK((predicted.row(2).transpose() - scanned(61.2, 0, 5)).norm() < 1e-9);
   // Half a thickness outwards, of a sheet in the clamp straight up.
   const Positions outer = predict_measured(slope(), places, MeasuredSurface::outer, 5, 1, {}, 3);
-  EXPECT_NEAR((outer.row(1).transpose() - Vec3(0, 0, 20)).norm(), 0.5, 1e-9);
-  EXPECT_LT((outer.row(2).transpose() - Vec3(60, 0, 5.5)).norm(), 1e-12);
+  CHECK_THAT((outer.row(1).transpose() - Vec3(0, 0, 20)).norm(), WithinAbs(0.5, 1e-9));
+  CHECK((outer.row(2).transpose() - Vec3(60, 0, 5.5)).norm() < 1e-12);
 }
 
-TEST(PredictMeasured, comparison_with_its_own_prediction_finds_no_error) {
+TEST_CASE("PredictMeasured.comparison_with_its_own_prediction_finds_no_error") {
   TextureCoordinates places(4, 2);
   places << 10, -20, 0, 0, 60, 0, -31, 17;
   MeasurementEffects effects;
@@ -56,8 +58,8 @@ TEST(PredictMeasured, comparison_with_its_own_prediction_finds_no_error) {
   std::vector<MeasuredPoint> points;
   for (Eigen::Index i = 0; i < 4; ++i) points.push_back({places.row(i).transpose(), predicted.row(i).transpose(), 0});
   Context context;
-  EXPECT_LT(compare(slope(), points, MeasuredSurface::outer, 5, 1, effects, 3, context).maximum_mm, 1e-12);
-  EXPECT_GT(compare(slope(), points, MeasuredSurface::outer, 5, 1, {}, 3, context).mean_mm, 1);
+  CHECK(compare(slope(), points, MeasuredSurface::outer, 5, 1, effects, 3, context).maximum_mm < 1e-12);
+  CHECK(compare(slope(), points, MeasuredSurface::outer, 5, 1, {}, 3, context).mean_mm > 1);
 }
 
 MachineProfile some_profile() {
@@ -71,36 +73,37 @@ MachineProfile some_profile() {
   return profile;
 }
 
-TEST(MachineProfile, is_read_as_it_was_written) {
+TEST_CASE("MachineProfile.is_read_as_it_was_written") {
   const MachineProfile written = some_profile(), read = read_machine_profile(as_bytes(write_machine_profile(written)));
-  EXPECT_EQ(read.name, written.name);
-  EXPECT_EQ(read.parameters, written.parameters);
-  EXPECT_EQ(write_parameters(read.measurement), write_parameters(written.measurement));
-  EXPECT_EQ(read.from, written.from);
-  EXPECT_EQ(read.notes, written.notes);
+  CHECK(read.name == written.name);
+  CHECK(read.parameters == written.parameters);
+  CHECK(write_parameters(read.measurement) == write_parameters(written.measurement));
+  CHECK(read.from == written.from);
+  CHECK(read.notes == written.notes);
 }
 
-TEST(MachineProfile, wins_over_the_set_up_where_it_knows_better) {
+TEST_CASE("MachineProfile.wins_over_the_set_up_where_it_knows_better") {
   const Json setup = {{"yield_strain", 0.1}, {"vacuum_kpa", 80}, {"vacuum_ramp_s", 0.2}, {"sheet_thickness_mm", 2}};
   const Json merged = with_profile(setup, some_profile());
-  EXPECT_EQ(merged["yield_strain"], 0.07);
-  EXPECT_EQ(merged["heating_gradient_x"], 0.25);
-  EXPECT_EQ(merged["vacuum_ramp_s"], 0.4);
-  EXPECT_EQ(merged["vacuum_kpa"], 80);  // what the machine was told
-  EXPECT_EQ(merged["sheet_thickness_mm"], 2);
-  EXPECT_EQ(with_profile(Json::object(), some_profile())["vacuum_kpa"], 70);
+  CHECK(merged["yield_strain"] == 0.07);
+  CHECK(merged["heating_gradient_x"] == 0.25);
+  CHECK(merged["vacuum_ramp_s"] == 0.4);
+  CHECK(merged["vacuum_kpa"] == 80);  // what the machine was told
+  CHECK(merged["sheet_thickness_mm"] == 2);
+  CHECK(with_profile(Json::object(), some_profile())["vacuum_kpa"] == 70);
 }
 
-TEST(MachineProfile, refuses_what_it_cannot_use_in_words) {
+TEST_CASE("MachineProfile.refuses_what_it_cannot_use_in_words") {
   const auto refused = [](const Json& json, const std::string& words) {
     const std::string text = json.dump();
     try {
       read_machine_profile(as_bytes(text));
-      FAIL() << "not refused: " << words;
+      FAIL("not refused: " << words);
     } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::invalid_input);
-      EXPECT_EQ(error.where(), "profile");
-      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+      CHECK(error.code() == ErrorCode::invalid_input);
+      CHECK(error.where() == "profile");
+      INFO(error.what());
+      CHECK(std::string(error.what()).find(words) != std::string::npos);
     }
   };
   Json profile = Json::parse(write_machine_profile(some_profile()));
@@ -120,7 +123,7 @@ TEST(MachineProfile, refuses_what_it_cannot_use_in_words) {
   refused(with("surprise", 3), "surprise");
   MachineProfile placed = some_profile();
   placed.parameters["turn_deg"] = 3;
-  EXPECT_THROW(write_machine_profile(placed), Error);
+  CHECK_THROWS_AS(write_machine_profile(placed), Error);
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thermoform/membrane.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/generators/catch_generators.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <Eigen/Dense>
 #include <limits>
@@ -11,15 +13,13 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 using thermoform_test::shaken;
 constexpr double for_ever = std::numeric_limits<double>::infinity();
 
 SheetMesh small_sheet() { return make_sheet_mesh(Vec2(12, 10), 48); }
 HeldVertices none_held(const SheetMesh& sheet) { return HeldVertices(sheet.clamped.size(), 0); }
-
-class EveryLaw : public testing::TestWithParam<ElasticLaw> {};
-INSTANTIATE_TEST_SUITE_P(, EveryLaw, testing::Values(ElasticLaw::st_venant_kirchhoff, ElasticLaw::stable_neo_hookean));
 
 MembraneMaterial material(ElasticLaw law) {
   MembraneMaterial m;
@@ -29,9 +29,10 @@ MembraneMaterial material(ElasticLaw law) {
   return m;
 }
 
-TEST_P(EveryLaw, forces_are_the_negative_gradient_of_the_energy) {
+TEST_CASE("EveryLaw.forces_are_the_negative_gradient_of_the_energy") {
+  const ElasticLaw law = GENERATE(ElasticLaw::st_venant_kirchhoff, ElasticLaw::stable_neo_hookean);
   const SheetMesh sheet = small_sheet();
-  Membrane membrane(sheet.flat_mm, sheet.F, 0.8, material(GetParam()));
+  Membrane membrane(sheet.flat_mm, sheet.F, 0.8, material(law));
   membrane.begin_step(shaken(sheet, 0.1, 1), none_held(sheet));
   for (const double dt : {for_ever, 2e-3}) {
     Positions x = shaken(sheet, 0.3, 2), force = Positions::Zero(x.rows(), 3);
@@ -44,14 +45,16 @@ TEST_P(EveryLaw, forces_are_the_negative_gradient_of_the_energy) {
       x.data()[i] = at - step;
       const double below = membrane.energy(x, dt);
       x.data()[i] = at;
-      EXPECT_NEAR(force.data()[i], -(above - below) / (2 * step), 1e-7 * scale) << "entry " << i;
+      INFO("entry " << i);
+      CHECK_THAT(force.data()[i], WithinAbs(-(above - below) / (2 * step), 1e-7 * scale));
     }
   }
 }
 
-TEST_P(EveryLaw, stiffness_in_tension_is_the_derivative_of_the_forces) {
+TEST_CASE("EveryLaw.stiffness_in_tension_is_the_derivative_of_the_forces") {
+  const ElasticLaw law = GENERATE(ElasticLaw::st_venant_kirchhoff, ElasticLaw::stable_neo_hookean);
   const SheetMesh sheet = small_sheet();
-  Membrane membrane(sheet.flat_mm, sheet.F, 0.8, material(GetParam()));
+  Membrane membrane(sheet.flat_mm, sheet.F, 0.8, material(law));
   BlockMatrix matrix(static_cast<int>(sheet.flat_mm.rows()),
                      std::span(sheet.F.data(), static_cast<std::size_t>(sheet.F.size())), 3);
   membrane.use_matrix(matrix);
@@ -75,15 +78,16 @@ TEST_P(EveryLaw, stiffness_in_tension_is_the_derivative_of_the_forces) {
         const int slot = matrix.slot(i, j);
         for (int k = 0; k < 3; ++k) {
           const double kept = slot < 0 ? 0 : static_cast<double>(matrix.block(slot)[static_cast<std::size_t>(l)][k]);
-          EXPECT_NEAR(kept, -(above(i, k) - below(i, k)) / (2 * step), 2e-5 * largest);
+          CHECK_THAT(kept, WithinAbs(-(above(i, k) - below(i, k)) / (2 * step), 2e-5 * largest));
         }
       }
     }
 }
 
-TEST_P(EveryLaw, stiffness_is_symmetric_and_has_no_negative_curvature) {
+TEST_CASE("EveryLaw.stiffness_is_symmetric_and_has_no_negative_curvature") {
+  const ElasticLaw law = GENERATE(ElasticLaw::st_venant_kirchhoff, ElasticLaw::stable_neo_hookean);
   const SheetMesh sheet = small_sheet();
-  MembraneMaterial flowing = material(GetParam());
+  MembraneMaterial flowing = material(law);
   flowing.creep_per_s = 500;
   flowing.yield_strain = 0.05;
   Membrane membrane(sheet.flat_mm, sheet.F, 0.8, flowing);
@@ -101,13 +105,14 @@ TEST_P(EveryLaw, stiffness_is_symmetric_and_has_no_negative_curvature) {
           dense(3 * i + k, 3 * j + l) =
               static_cast<double>(matrix.block(matrix.slot(i, j))[static_cast<std::size_t>(l)][k]);
   const double size = dense.cwiseAbs().maxCoeff();
-  EXPECT_LT((dense - dense.transpose()).cwiseAbs().maxCoeff(), 1e-5 * size);
-  EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense).eigenvalues().minCoeff(), -1e-5 * size);
+  CHECK((dense - dense.transpose()).cwiseAbs().maxCoeff() < 1e-5 * size);
+  CHECK(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense).eigenvalues().minCoeff() > -1e-5 * size);
 }
 
-TEST_P(EveryLaw, turning_and_shifting_the_sheet_turns_its_forces) {
+TEST_CASE("EveryLaw.turning_and_shifting_the_sheet_turns_its_forces") {
+  const ElasticLaw law = GENERATE(ElasticLaw::st_venant_kirchhoff, ElasticLaw::stable_neo_hookean);
   const SheetMesh sheet = small_sheet();
-  Membrane membrane(sheet.flat_mm, sheet.F, 1, material(GetParam()));
+  Membrane membrane(sheet.flat_mm, sheet.F, 1, material(law));
   const Positions x = shaken(sheet, 0.3, 6);
   membrane.begin_step(x, none_held(sheet));
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(1.1, Vec3(1, 2, -0.5).normalized()).toRotationMatrix();
@@ -116,14 +121,15 @@ TEST_P(EveryLaw, turning_and_shifting_the_sheet_turns_its_forces) {
   Positions force = Positions::Zero(n, 3), force_turned = force;
   membrane.add_forces(x, for_ever, 0, n, force, nullptr);
   membrane.add_forces(turned, for_ever, 0, n, force_turned, nullptr);
-  EXPECT_LT((force * turn.transpose() - force_turned).cwiseAbs().maxCoeff(), 1e-11);
-  EXPECT_LT(force.colwise().sum().cwiseAbs().maxCoeff(), 1e-12);  // nothing pushes itself away
+  CHECK((force * turn.transpose() - force_turned).cwiseAbs().maxCoeff() < 1e-11);
+  CHECK(force.colwise().sum().cwiseAbs().maxCoeff() < 1e-12);  // nothing pushes itself away
 }
 
 /// Equal stretch in both directions: sigma h = Y h / (1 - nu) eps for both laws as eps goes to 0.
-TEST_P(EveryLaw, small_stretch_has_plane_stress_stiffness) {
+TEST_CASE("EveryLaw.small_stretch_has_plane_stress_stiffness") {
+  const ElasticLaw law = GENERATE(ElasticLaw::st_venant_kirchhoff, ElasticLaw::stable_neo_hookean);
   const SheetMesh sheet = make_sheet_mesh(Vec2(20, 20), 8);
-  const MembraneMaterial m = material(GetParam());
+  const MembraneMaterial m = material(law);
   Membrane membrane(sheet.flat_mm, sheet.F, 1, m);
   double last = 0;
   for (const double strain : {1e-3, 1e-4}) {
@@ -133,15 +139,15 @@ TEST_P(EveryLaw, small_stretch_has_plane_stress_stiffness) {
     const double energy = membrane.energy(x, for_ever),
                  expected = 400 * m.young_mpa / (1 - m.poisson_ratio) * strain * strain;
     const double error = std::abs(energy / expected - 1);
-    EXPECT_LT(error, 3 * strain);
+    CHECK(error < 3 * strain);
     if (last > 0) {
-      EXPECT_NEAR(last / error, 10, 1);  // first order in the strain
+      CHECK_THAT(last / error, WithinAbs(10, 1));  // first order in the strain
     }
     last = error;
   }
 }
 
-TEST(Membrane, sheet_over_four_triangles_and_over_many_has_the_same_energy) {
+TEST_CASE("Membrane.sheet_over_four_triangles_and_over_many_has_the_same_energy") {
   // The strain is linear in space for an affine map: any triangulation gives the exact energy.
   const Eigen::Matrix2d A = (Eigen::Matrix2d() << 1.2, 0.1, -0.05, 0.9).finished();
   double first = 0;
@@ -154,19 +160,19 @@ TEST(Membrane, sheet_over_four_triangles_and_over_many_has_the_same_energy) {
     x.leftCols(2) = sheet.flat_mm * A.transpose();
     const double energy = membrane.energy(x, for_ever);
     if (first == 0) first = energy;
-    EXPECT_NEAR(energy, first, 1e-12 * first);
+    CHECK_THAT(energy, WithinAbs(first, 1e-12 * first));
   }
   const Eigen::Matrix2d strain = 0.5 * (A.transpose() * A - Eigen::Matrix2d::Identity());
   const MembraneMaterial m;
   const double nu = m.poisson_ratio;
   const double exact = 0.5 * 120 * m.young_mpa / (1 - nu * nu) *
                        ((1 - nu) * (strain * strain).trace() + nu * strain.trace() * strain.trace());
-  EXPECT_NEAR(first, exact, 1e-12 * exact);
+  CHECK_THAT(first, WithinAbs(exact, 1e-12 * exact));
 }
 
 /// One triangle held at a constant stretch: the elastic strain decays to the yield strain (elastic excess) or to 0
 /// (total strain) like exp(-c t); implicit steps do so with first order in dt.
-TEST(Membrane, creep_at_constant_stretch_follows_its_law_with_first_order) {
+TEST_CASE("Membrane.creep_at_constant_stretch_follows_its_law_with_first_order") {
   for (const YieldRule rule : {YieldRule::elastic_excess, YieldRule::total_strain}) {
     const SheetMesh sheet = make_sheet_mesh(Vec2(10, 10), 8);
     MembraneMaterial m;
@@ -196,13 +202,13 @@ TEST(Membrane, creep_at_constant_stretch_follows_its_law_with_first_order) {
       const double expected = std::sqrt(2.0) * 0.5 * (1.06 * 1.06 / (rest * rest) - 1);
       errors[level++] = std::abs(membrane.elastic_strain(x, 3) - expected);
     }
-    EXPECT_NEAR(std::log2(errors[0] / errors[1]), 1, 0.1);
-    EXPECT_NEAR(std::log2(errors[1] / errors[2]), 1, 0.1);
-    EXPECT_LT(errors[2], 2e-4);
+    CHECK_THAT(std::log2(errors[0] / errors[1]), WithinAbs(1, 0.1));
+    CHECK_THAT(std::log2(errors[1] / errors[2]), WithinAbs(1, 0.1));
+    CHECK(errors[2] < 2e-4);
   }
 }
 
-TEST(Membrane, rest_lengths_of_the_flow_agree_with_the_thesis) {
+TEST_CASE("Membrane.rest_lengths_of_the_flow_agree_with_the_thesis") {
   // T s = e (thesis 4.2.2): the plastic strain, written with eq. (4.1) as a combination of differences of squared edge
   // lengths, gives the new rest lengths; the same as the rest metric kept here.
   const SheetMesh sheet = small_sheet();
@@ -228,12 +234,12 @@ TEST(Membrane, rest_lengths_of_the_flow_agree_with_the_thesis) {
     after.begin_step(x, none_held(sheet));
     after.end_step(x, dt);
     // Strain is linear in the squared lengths, so its plastic part moves them by the same share.
-    EXPECT_LT((after.rest_squared_lengths(f) - (flat + (1 - kept) * (now - flat))).cwiseAbs().maxCoeff(), 1e-11);
+    CHECK((after.rest_squared_lengths(f) - (flat + (1 - kept) * (now - flat))).cwiseAbs().maxCoeff() < 1e-11);
   }
-  EXPECT_GT(flowing, 3);
+  CHECK(flowing > 3);
 }
 
-TEST(Membrane, flow_ends_where_the_sheet_is_thin) {
+TEST_CASE("Membrane.flow_ends_where_the_sheet_is_thin") {
   const SheetMesh sheet = make_sheet_mesh(Vec2(10, 10), 8);
   MembraneMaterial m;
   m.flow_stop_mm = 0.5;
@@ -242,15 +248,15 @@ TEST(Membrane, flow_ends_where_the_sheet_is_thin) {
   x.leftCols(2) = 1.5 * sheet.flat_mm;  // 0.444 mm thick
   membrane.begin_step(x, none_held(sheet));
   membrane.end_step(x, 1e-2);
-  EXPECT_NEAR(membrane.elastic_strain(x, 0), std::sqrt(2.0) * 0.5 * (2.25 - 1), 1e-12);
-  EXPECT_NEAR(membrane.thickness_mm()[0], 1 / 2.25, 1e-12);
+  CHECK_THAT(membrane.elastic_strain(x, 0), WithinAbs(std::sqrt(2.0) * 0.5 * (2.25 - 1), 1e-12));
+  CHECK_THAT(membrane.thickness_mm()[0], WithinAbs(1 / 2.25, 1e-12));
 }
 
-TEST(HingeBending, angle_and_gradient) {
+TEST_CASE("HingeBending.angle_and_gradient") {
   const Vec3 a(0, 0, 0), b(2, 0.3, 0.1), c(0.7, 1.5, -0.4), d(1.1, -1.2, -0.6);
   std::array<Vec3, 4> gradient;
   const double angle = hinge_angle(a, b, c, d, &gradient);
-  EXPECT_GT(angle, 0);  // the edge stands out
+  CHECK(angle > 0);  // the edge stands out
   std::array<Vec3, 4> place{a, b, c, d};
   for (std::size_t v = 0; v < 4; ++v)
     for (int k = 0; k < 3; ++k) {
@@ -259,14 +265,14 @@ TEST(HingeBending, angle_and_gradient) {
       const double above = hinge_angle(moved[0], moved[1], moved[2], moved[3], nullptr);
       moved[v][k] -= 2e-6;
       const double below = hinge_angle(moved[0], moved[1], moved[2], moved[3], nullptr);
-      EXPECT_NEAR(gradient[v][k], (above - below) / 2e-6, 1e-8);
+      CHECK_THAT(gradient[v][k], WithinAbs((above - below) / 2e-6, 1e-8));
     }
   // A right angle, exactly.
-  EXPECT_NEAR(hinge_angle(Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, -1), nullptr), std::numbers::pi / 2,
-              1e-15);
+  CHECK_THAT(hinge_angle(Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, -1), nullptr),
+             WithinAbs(std::numbers::pi / 2, 1e-15));
 }
 
-TEST(HingeBending, forces_are_the_negative_gradient_of_the_energy) {
+TEST_CASE("HingeBending.forces_are_the_negative_gradient_of_the_energy") {
   const SheetMesh sheet = small_sheet();
   HingeBending bending(sheet.F, static_cast<int>(sheet.flat_mm.rows()), 2.75, 0.35, 1e-3);
   const std::vector<double> thickness(static_cast<std::size_t>(sheet.F.rows()), 0.7);
@@ -281,7 +287,7 @@ TEST(HingeBending, forces_are_the_negative_gradient_of_the_energy) {
     x.data()[i] = at - step;
     const double below = bending.energy(x, 2e-3);
     x.data()[i] = at;
-    EXPECT_NEAR(force.data()[i], -(above - below) / (2 * step), 1e-6 * scale);
+    CHECK_THAT(force.data()[i], WithinAbs(-(above - below) / (2 * step), 1e-6 * scale));
   }
 }
 

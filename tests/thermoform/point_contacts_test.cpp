@@ -2,7 +2,7 @@
 // Sharp points against moving triangles: what is remembered from step to step must not let any through.
 #include "thermoform/point_contacts.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
 
 #include <algorithm>
 #include <random>
@@ -64,25 +64,28 @@ void expect_every_point_met(unsigned seed, bool bounds_known) {
     contacts.find(sheet.F, from, to, thickness, held, tolerance_mm, clear);
     for (std::size_t c = before; c < contacts.contacts().size(); ++c) {
       const PointContact& contact = contacts.contacts()[c];
-      EXPECT_TRUE(met.insert(contact.point).second) << "a point met twice";
-      EXPECT_LT(
-          distance(sheet.F, contact.face, from, to, contact.fraction, points[static_cast<std::size_t>(contact.point)]),
-          0.5 * thickness_mm + tolerance_mm + 1e-9);
+      {
+        INFO("a point met twice");
+        CHECK(met.insert(contact.point).second);
+      }
+      CHECK(distance(sheet.F, contact.face, from, to, contact.fraction,
+                     points[static_cast<std::size_t>(contact.point)]) < 0.5 * thickness_mm + tolerance_mm + 1e-9);
     }
     for (int p = 0; p < static_cast<int>(points.size()); ++p) {
       if (met.count(p)) continue;
       for (int f = 0; f < static_cast<int>(faces); ++f)
-        for (int k = 0; k <= 20; ++k)
-          ASSERT_GE(distance(sheet.F, f, from, to, 0.05 * k, points[static_cast<std::size_t>(p)]), 0.5 * thickness_mm)
-              << "step " << step << ", point " << p << ", face " << f;
+        for (int k = 0; k <= 20; ++k) {
+          INFO("step " << step << ", point " << p << ", face " << f);
+          REQUIRE(distance(sheet.F, f, from, to, 0.05 * k, points[static_cast<std::size_t>(p)]) >= 0.5 * thickness_mm);
+        }
     }
     from = to;
   }
-  EXPECT_GT(met.size(), 40u);
-  EXPECT_LT(from.col(2).maxCoeff(), 0);  // all the way through
+  CHECK(met.size() > 40u);
+  CHECK(from.col(2).maxCoeff() < 0);  // all the way through
 }
 
-TEST(PointContacts, none_slips_through_whatever_the_steps) {
+TEST_CASE("PointContacts.none_slips_through_whatever_the_steps") {
   for (unsigned seed = 1; seed <= 3; ++seed)
     for (const bool bounds_known : {false, true}) expect_every_point_met(seed, bounds_known);
 }

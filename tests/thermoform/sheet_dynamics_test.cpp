@@ -2,7 +2,8 @@
 // The sheet against closed forms: Hencky's membrane, the clamped plate, a Newtonian sheet under its weight.
 #include "thermoform/sheet_dynamics.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <Eigen/Sparse>
 #include <Eigen/SparseCholesky>
@@ -11,6 +12,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 /// A disc of concentric rings of triangles, clamped at its edge.
 SheetMesh disc(double radius_mm, int rings) {
@@ -62,7 +64,7 @@ ThermoformOptions elastic() {
   return o;
 }
 
-TEST(SheetDynamics, circular_membrane_sags_as_hencky_says_and_converges) {
+TEST_CASE("SheetDynamics.circular_membrane_sags_as_hencky_says_and_converges") {
   const double a = 100;
   ThermoformOptions o = elastic();
   o.step_mm = 1e-5;  // Newton goes on until increments are 2e-7 mm
@@ -74,7 +76,7 @@ TEST(SheetDynamics, circular_membrane_sags_as_hencky_says_and_converges) {
   const double q = o.density_kg_per_m3 * 1e-12 * load.gravity_mm_per_s2 * o.sheet_thickness_mm;
   const double expected =
       hencky(o.poisson_ratio) * a * std::cbrt(q * a / (o.young_modulus_pa * 1e-6 * o.sheet_thickness_mm));
-  EXPECT_NEAR(hencky(0.3), 0.653, 0.001);
+  CHECK_THAT(hencky(0.3), WithinAbs(0.653, 0.001));
   std::vector<double> errors;
   for (const int rings : {6, 12, 24}) {
     SheetDynamics dynamics(disc(a, rings), o, 0, nullptr);
@@ -87,16 +89,17 @@ TEST(SheetDynamics, circular_membrane_sags_as_hencky_says_and_converges) {
       outcome = dynamics.step(1, load, 1e9, context);
       if (outcome != SheetDynamics::Outcome::done) guess = dynamics.last_iterate();
     }
-    ASSERT_EQ(outcome, SheetDynamics::Outcome::done);
+    REQUIRE(outcome == SheetDynamics::Outcome::done);
     errors.push_back(-dynamics.x()(0, 2) / expected - 1);
   }
-  EXPECT_LT(std::abs(errors[2]), 2e-3);
+  CHECK(std::abs(errors[2]) < 2e-3);
   const double order = std::log2(std::abs(errors[0] - errors[1]) / std::abs(errors[1] - errors[2]));
-  RecordProperty("order", std::to_string(order));
-  EXPECT_GT(order, 1.6) << errors[0] << " " << errors[1] << " " << errors[2];
+  SUCCEED("order " << order);
+  INFO(errors[0] << " " << errors[1] << " " << errors[2]);
+  CHECK(order > 1.6);
 }
 
-TEST(SheetDynamics, newtonian_sheet_sags_with_the_cube_root_of_time) {
+TEST_CASE("SheetDynamics.newtonian_sheet_sags_with_the_cube_root_of_time") {
   // No yield strain: everything flows, and the elastic part is that of a Maxwell fluid, long relaxed.
   ThermoformOptions o;
   o.creep_per_s = 2e4;
@@ -123,13 +126,15 @@ TEST(SheetDynamics, newtonian_sheet_sags_with_the_cube_root_of_time) {
         outcome = dynamics.step(dt, load, 1e9, context);
         if (outcome != SheetDynamics::Outcome::done) guess = dynamics.last_iterate();
       }
-      ASSERT_EQ(outcome, SheetDynamics::Outcome::done);
+      REQUIRE(outcome == SheetDynamics::Outcome::done);
       guess.resize(0, 3);
     }
     sag.push_back(-dynamics.x().col(2).minCoeff());
   }
-  for (std::size_t i = 0; i + 1 < sag.size(); ++i)
-    EXPECT_NEAR(std::log2(sag[i + 1] / sag[i]), 1.0 / 3, 0.02) << "at doubling " << i;
+  for (std::size_t i = 0; i + 1 < sag.size(); ++i) {
+    INFO("at doubling " << i);
+    CHECK_THAT(std::log2(sag[i + 1] / sag[i]), WithinAbs(1.0 / 3, 0.02));
+  }
 }
 
 /// The hinges' stiffness at rest, for movements across the sheet.
@@ -172,16 +177,20 @@ double plate_deflection(int triangles, double a, double young_mpa, double nu, do
   return solver.solve(load).maxCoeff();
 }
 
-TEST(SheetDynamics, hinges_bend_like_a_clamped_circular_plate) {
+TEST_CASE("SheetDynamics.hinges_bend_like_a_clamped_circular_plate") {
   const double a = 50, young = 2.75, nu = 0.35, h = 1, q = 1e-6;
   const double D = young * h * h * h / (12 * (1 - nu * nu)), expected = q * std::pow(a, 4) / (64 * D);
   std::vector<double> ratio;
   for (const int triangles : {2500, 10000, 40000})
     ratio.push_back(plate_deflection(triangles, a, young, nu, h, q) / expected);
-  RecordProperty("ratios", std::to_string(ratio[0]) + " " + std::to_string(ratio[1]) + " " + std::to_string(ratio[2]));
+  SUCCEED("ratios " << std::to_string(ratio[0]) + " " + std::to_string(ratio[1]) + " " + std::to_string(ratio[2]));
   // The rim is a staircase, and hinges on this mesh of alternating diagonals tend to a plate some 4 % too stiff.
-  EXPECT_NEAR(ratio[1], 1, 0.05) << ratio[0];
-  EXPECT_NEAR(ratio[2], 1, 0.05) << ratio[0] << " " << ratio[1];
+  {
+    INFO(ratio[0]);
+    CHECK_THAT(ratio[1], WithinAbs(1, 0.05));
+  }
+  INFO(ratio[0] << " " << ratio[1]);
+  CHECK_THAT(ratio[2], WithinAbs(1, 0.05));
 }
 
 }  // namespace

@@ -2,7 +2,8 @@
 // Effects: nothing at strength 0, the right way at others, and forces that stay gradients.
 #include "thermoform/sheet_effects.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <Eigen/Dense>
 #include <functional>
@@ -15,6 +16,8 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinULP;
 
 using namespace thermoform_test;
 
@@ -32,7 +35,7 @@ double mean_movement(const FormedResult& a, const FormedResult& b) {
   return (a.sheet.mesh.V - b.sheet.mesh.V).rowwise().norm().mean();
 }
 
-TEST(SheetEffects, next_to_nothing_of_any_effect_gives_the_same_bits_as_none) {
+TEST_CASE("SheetEffects.next_to_nothing_of_any_effect_gives_the_same_bits_as_none") {
   const TriangleMesh shape = pyramid(60, 40);
   const FormedResult none = form(shape, small_machine(800));
   constexpr double next_to_nothing = 1e-300;  // runs each effect's code, and rounds to nothing
@@ -43,9 +46,9 @@ TEST(SheetEffects, next_to_nothing_of_any_effect_gives_the_same_bits_as_none) {
         &SheetEffects::mould_shift_x_mm, &SheetEffects::mould_rotation_deg, &SheetEffects::mould_scale}) {
     ThermoformOptions o = small_machine(800);
     static_cast<SheetEffects&>(o).*effect = next_to_nothing;
-    EXPECT_EQ(form(shape, o).sheet.mesh.V, none.sheet.mesh.V);
+    CHECK(form(shape, o).sheet.mesh.V == none.sheet.mesh.V);
     static_cast<SheetEffects&>(o).*effect = 0.5;
-    EXPECT_GT(mean_movement(form(shape, o), none), 0.01);
+    CHECK(mean_movement(form(shape, o), none) > 0.01);
   }
 }
 
@@ -61,18 +64,18 @@ Vec2 lopsidedness(const FormedResult& result, const SheetMesh& mesh) {
   return sum / static_cast<double>(mesh.rows * mesh.columns);
 }
 
-TEST(SheetEffects, a_gradient_along_x_leaves_the_sheet_symmetric_in_y) {
+TEST_CASE("SheetEffects.a_gradient_along_x_leaves_the_sheet_symmetric_in_y") {
   const SheetMesh mesh = make_sheet_mesh(Vec2(120, 120), 1500);
   for (double SheetEffects::*effect : {&SheetEffects::heating_gradient_x, &SheetEffects::thickness_wedge_x}) {
     ThermoformOptions o = small_machine(1500);
     static_cast<SheetEffects&>(o).*effect = 0.4;
     const Vec2 lopsided = lopsidedness(form(pyramid(60, 40), o), mesh);
-    EXPECT_GT(lopsided.x(), 0.1);
-    EXPECT_LT(lopsided.y(), 0.1 * lopsided.x());
+    CHECK(lopsided.x() > 0.1);
+    CHECK(lopsided.y() < 0.1 * lopsided.x());
   }
 }
 
-TEST(SheetEffects, turning_the_machine_turns_the_result) {
+TEST_CASE("SheetEffects.turning_the_machine_turns_the_result") {
   // What is along x here is along y there; a square sheet's mesh maps onto itself.
   const TriangleMesh shape = pyramid(60, 40);
   const SheetMesh mesh = make_sheet_mesh(Vec2(120, 120), 1500);
@@ -92,17 +95,15 @@ TEST(SheetEffects, turning_the_machine_turns_the_result) {
       }
     return sum / static_cast<double>(mesh.rows * mesh.columns) / moved;
   };
-  EXPECT_LT(turned([](ThermoformOptions& o) { o.heating_gradient_x = 0.4; },
-                   [](ThermoformOptions& o) { o.heating_gradient_y = 0.4; }),
-            0.1);
-  EXPECT_LT(turned([](ThermoformOptions& o) { o.thickness_wedge_x = 0.4; },
-                   [](ThermoformOptions& o) { o.thickness_wedge_y = 0.4; }),
-            0.1);
-  EXPECT_LT(turned([](ThermoformOptions& o) { o.anisotropy = 0.4; }, [](ThermoformOptions& o) { o.anisotropy = -0.4; }),
-            0.15);
+  CHECK(turned([](ThermoformOptions& o) { o.heating_gradient_x = 0.4; },
+               [](ThermoformOptions& o) { o.heating_gradient_y = 0.4; }) < 0.1);
+  CHECK(turned([](ThermoformOptions& o) { o.thickness_wedge_x = 0.4; },
+               [](ThermoformOptions& o) { o.thickness_wedge_y = 0.4; }) < 0.1);
+  CHECK(turned([](ThermoformOptions& o) { o.anisotropy = 0.4; }, [](ThermoformOptions& o) { o.anisotropy = -0.4; }) <
+        0.15);
 }
 
-TEST(SheetEffects, effects_move_points_the_way_they_should) {
+TEST_CASE("SheetEffects.effects_move_points_the_way_they_should") {
   const TriangleMesh shape = pyramid(60, 40);
   const FormedResult none = form(shape, small_machine(1500));
   const auto with = [&](const std::function<void(ThermoformOptions&)>& set) {
@@ -115,27 +116,27 @@ TEST(SheetEffects, effects_move_points_the_way_they_should) {
   double right = 0, left = 0;
   for (Eigen::Index i = 0; i < heated.sheet.mesh.V.rows(); ++i)
     (heated.sheet.sheet_mm(i, 0) > 0 ? right : left) += heated.sheet.thickness_mm[i] - none.sheet.thickness_mm[i];
-  EXPECT_GT(right, left);
-  EXPECT_GT((heated.sheet.mesh.V - none.sheet.mesh.V).col(0).mean(), 0.02);
+  CHECK(right > left);
+  CHECK((heated.sheet.mesh.V - none.sheet.mesh.V).col(0).mean() > 0.02);
   // A clamp that gives way leaves the sheet thicker in the mean; the rim has come in by as much.
   const FormedResult slipped = with([](ThermoformOptions& o) { o.clamp_slip_mm = 3; });
-  EXPECT_NEAR(slipped.sheet.mesh.V.col(0).maxCoeff(), 57, 1e-9);
-  EXPECT_NEAR(slipped.sheet.mesh.V.col(1).minCoeff(), -57, 1e-9);
-  EXPECT_GT(slipped.mean_thickness_mm, none.mean_thickness_mm);
+  CHECK_THAT(slipped.sheet.mesh.V.col(0).maxCoeff(), WithinAbs(57, 1e-9));
+  CHECK_THAT(slipped.sheet.mesh.V.col(1).minCoeff(), WithinAbs(-57, 1e-9));
+  CHECK(slipped.mean_thickness_mm > none.mean_thickness_mm);
   // Without a vacuum the sheet hangs over the model; with half of it, it touches less than with all.
   const FormedResult weak = with([](ThermoformOptions& o) { o.weak_vacuum = 0.95; });
-  EXPECT_LT(weak.formed_area_mm2, none.formed_area_mm2);
-  EXPECT_NEAR(weak.pressure_end_kpa, 4, 1e-9);
+  CHECK(weak.formed_area_mm2 < none.formed_area_mm2);
+  CHECK_THAT(weak.pressure_end_kpa, WithinAbs(4, 1e-9));
   // A sheet that slides comes down the walls.
   const FormedResult sliding = with([](ThermoformOptions& o) { o.slip = 5; });
   double fallen = 0, counted = 0;
   for (Eigen::Index i = 0; i < none.sheet.mesh.V.rows(); ++i)
     if (none.sheet.mesh.V(i, 2) > 5 && none.sheet.contact_s[i] > 0)
       fallen += none.sheet.mesh.V(i, 2) - sliding.sheet.mesh.V(i, 2), ++counted;
-  EXPECT_GT(fallen / counted, 0.2);
+  CHECK(fallen / counted > 0.2);
 }
 
-TEST(SheetEffects, more_slip_and_more_cooling_move_more) {
+TEST_CASE("SheetEffects.more_slip_and_more_cooling_move_more") {
   const TriangleMesh shape = pyramid(60, 40);
   const FormedResult none = form(shape, small_machine(1500));
   for (double SheetEffects::*effect : {&SheetEffects::slip, &SheetEffects::cooling}) {
@@ -144,7 +145,10 @@ TEST(SheetEffects, more_slip_and_more_cooling_move_more) {
       ThermoformOptions o = small_machine(1500);
       static_cast<SheetEffects&>(o).*effect = strength;
       const double moved = mean_movement(form(shape, o), none);
-      EXPECT_GT(moved, before) << strength;
+      {
+        INFO(strength);
+        CHECK(moved > before);
+      }
       before = moved;
     }
   }
@@ -157,7 +161,7 @@ std::string info(double SheetEffects::*effect) {
   return name;
 }
 
-TEST(SheetEffects, half_an_effect_moves_points_half_as_far_the_same_way) {
+TEST_CASE("SheetEffects.half_an_effect_moves_points_half_as_far_the_same_way") {
   // What a diagnosis relies on, which takes secants for derivatives.
   Context context;
   const TriangleMesh sample = make_sample("pyramid", 2000, context).mesh;
@@ -177,14 +181,14 @@ TEST(SheetEffects, half_an_effect_moves_points_half_as_far_the_same_way) {
     static_cast<SheetEffects&>(with).*effect = 0.5;
     const Positions full = form_sheet(shape, placement, with, context).sheet.mesh.V - reference;
     // Anisotropy pulls vertices across the pyramid's edges, where sticking decides for one side or the other.
-    EXPECT_GT(half.cwiseProduct(full).sum() / (half.norm() * full.norm()),
-              effect == &SheetEffects::anisotropy ? 0.85 : 0.95)
-        << info(effect);
-    EXPECT_NEAR(half.norm() / full.norm(), 0.5, 0.15) << info(effect);
+    INFO(info(effect));
+    CHECK(half.cwiseProduct(full).sum() / (half.norm() * full.norm()) >
+          (effect == &SheetEffects::anisotropy ? 0.85 : 0.95));
+    CHECK_THAT(half.norm() / full.norm(), WithinAbs(0.5, 0.15));
   }
 }
 
-TEST(SheetEffects, a_shifted_mould_on_a_huge_sheet_shifts_the_result) {
+TEST_CASE("SheetEffects.a_shifted_mould_on_a_huge_sheet_shifts_the_result") {
   const TriangleMesh shape = pyramid(20, 12);
   ThermoformOptions o = small_machine(5000);
   o.platform_travel_mm = 40;
@@ -194,7 +198,7 @@ TEST(SheetEffects, a_shifted_mould_on_a_huge_sheet_shifts_the_result) {
   const FormedResult straight = form(shape, o);
   o.mould_shift_x_mm = 2 * cell;
   const FormedResult shifted = form(shape, o);
-  EXPECT_NEAR(shifted.placement.translation.x(), 2 * cell, 1e-12);
+  CHECK_THAT(shifted.placement.translation.x(), WithinAbs(2 * cell, 1e-12));
   double worst = 0;
   for (int row = 0; row < mesh.rows; ++row)
     for (int column = 0; column + 2 < mesh.columns; ++column) {
@@ -204,10 +208,10 @@ TEST(SheetEffects, a_shifted_mould_on_a_huge_sheet_shifts_the_result) {
           worst,
           (shifted.sheet.mesh.V.row(i + 2) - straight.sheet.mesh.V.row(i) - Eigen::RowVector3d(2 * cell, 0, 0)).norm());
     }
-  EXPECT_LT(worst, 0.25 * 2 * cell);
+  CHECK(worst < 0.25 * 2 * cell);
 }
 
-TEST(SheetEffects, the_mould_turns_and_grows_about_the_middle_of_the_plate) {
+TEST_CASE("SheetEffects.the_mould_turns_and_grows_about_the_middle_of_the_plate") {
   SheetEffects effects;
   effects.mould_rotation_deg = 90;
   effects.mould_scale = 0.1;
@@ -215,24 +219,24 @@ TEST(SheetEffects, the_mould_turns_and_grows_about_the_middle_of_the_plate) {
   Placement nominal;
   nominal.translation = Vec3(10, 0, -5);
   const Placement real = displaced(nominal, effects);
-  EXPECT_LT((real(Vec3(1, 2, 3)) - Vec3(-2.2, 12.1 + 2, -2.2)).norm(), 1e-12);
-  EXPECT_DOUBLE_EQ(real.scale, 1.1);
+  CHECK((real(Vec3(1, 2, 3)) - Vec3(-2.2, 12.1 + 2, -2.2)).norm() < 1e-12);
+  CHECK_THAT(real.scale, WithinULP(1.1, 4));
 }
 
-TEST(SheetEffects, a_wedge_keeps_its_volume) {
+TEST_CASE("SheetEffects.a_wedge_keeps_its_volume") {
   ThermoformOptions o = small_machine(1000);
   o.thickness_wedge_x = 0.5;
   o.thickness_wedge_y = -0.3;
   const FormedResult result = form(pyramid(60, 40), o);
-  EXPECT_LT(result.volume_drift, 1e-12);
-  EXPECT_NEAR(result.mean_thickness_mm * (result.formed_area_mm2 + result.unformed_area_mm2), 120 * 120 * 1.0,
-              1e-9 * 14400);
+  CHECK(result.volume_drift < 1e-12);
+  CHECK_THAT(result.mean_thickness_mm * (result.formed_area_mm2 + result.unformed_area_mm2),
+             WithinAbs(120 * 120 * 1.0, 1e-9 * 14400));
   // The flat sheet's corners in the clamp keep what they had.
-  EXPECT_GT(result.sheet.thickness_mm.maxCoeff(), 1.4);
-  EXPECT_NEAR(result.sheet.stretch.minCoeff(), 1, 0.35);
+  CHECK(result.sheet.thickness_mm.maxCoeff() > 1.4);
+  CHECK_THAT(result.sheet.stretch.minCoeff(), WithinAbs(1, 0.35));
 }
 
-TEST(SheetEffects, forces_are_gradients_with_heat_wedge_anisotropy_and_chill) {
+TEST_CASE("SheetEffects.forces_are_gradients_with_heat_wedge_anisotropy_and_chill") {
   const SheetMesh sheet = make_sheet_mesh(Vec2(40, 40), 50);
   const auto faces = static_cast<std::size_t>(sheet.F.rows());
   SheetVariation variation;
@@ -272,7 +276,7 @@ TEST(SheetEffects, forces_are_gradients_with_heat_wedge_anisotropy_and_chill) {
         x(i, k) = at;
         worst = std::max(worst, std::abs(force(i, k) + (more - less) / (2 * h)));
       }
-    EXPECT_LT(worst / force.cwiseAbs().maxCoeff(), 1e-6);
+    CHECK(worst / force.cwiseAbs().maxCoeff() < 1e-6);
     // Positive semi-definite, to single precision.
     const Eigen::Index n = 3 * x.rows();
     Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(n, n);
@@ -283,11 +287,11 @@ TEST(SheetEffects, forces_are_gradients_with_heat_wedge_anisotropy_and_chill) {
             dense(3 * row + i, 3 * matrix.columns(row)[c] + j) = static_cast<double>(
                 matrix.block(matrix.first_slot(row) + static_cast<int>(c))[static_cast<std::size_t>(j)][i]);
     const Eigen::VectorXd eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense).eigenvalues();
-    EXPECT_GT(eigenvalues.minCoeff(), -1e-5 * eigenvalues.maxCoeff());
+    CHECK(eigenvalues.minCoeff() > -1e-5 * eigenvalues.maxCoeff());
   }
 }
 
-TEST(SheetEffects, what_grows_stiff_goes_on_pulling_as_hard) {
+TEST_CASE("SheetEffects.what_grows_stiff_goes_on_pulling_as_hard") {
   const SheetMesh sheet = make_sheet_mesh(Vec2(40, 40), 50);
   const HeldVertices free(sheet.clamped.size(), 0);
   MembraneMaterial material;
@@ -304,11 +308,11 @@ TEST(SheetEffects, what_grows_stiff_goes_on_pulling_as_hard) {
   const Positions hot = pull(x), hot_farther = pull(1.01 * x) - hot;
   membrane.end_step(x, 1e-3, std::vector<double>(static_cast<std::size_t>(sheet.F.rows()), 3));
   const Positions cold = pull(x), cold_farther = pull(1.01 * x) - cold;
-  EXPECT_LT((cold - hot).norm(), 0.05 * hot.norm());
-  EXPECT_NEAR(cold_farther.norm() / hot_farther.norm(), 3, 0.2);
+  CHECK((cold - hot).norm() < 0.05 * hot.norm());
+  CHECK_THAT(cold_farther.norm() / hot_farther.norm(), WithinAbs(3, 0.2));
 }
 
-TEST(SheetEffects, chill_comes_as_the_exponential_and_spreads_the_same_on_finer_sheets) {
+TEST_CASE("SheetEffects.chill_comes_as_the_exponential_and_spreads_the_same_on_finer_sheets") {
   std::vector<double> beside;
   for (const int triangles : {3200, 12800}) {
     const SheetMesh sheet = make_sheet_mesh(Vec2(120, 120), triangles);
@@ -323,20 +327,20 @@ TEST(SheetEffects, chill_comes_as_the_exponential_and_spreads_the_same_on_finer_
     for (std::size_t i = 0; i < right.size(); ++i) {
       if (sheet.clamped[i]) continue;
       if (sheet.flat_mm.row(static_cast<Eigen::Index>(i)).norm() < 40) least = std::min(least, everywhere.chill()[i]);
-      EXPECT_GE(half.chill()[i], 0);
-      EXPECT_LE(half.chill()[i], 1);
+      CHECK(half.chill()[i] >= 0);
+      CHECK(half.chill()[i] <= 1);
       if (const double away = (sheet.flat_mm.row(static_cast<Eigen::Index>(i)) - Eigen::RowVector2d(-6, 0)).norm();
           away < nearest)
         nearest = away, at = half.chill()[i];
     }
-    EXPECT_NEAR(least, 1 - std::exp(-2.0), 0.01);
+    CHECK_THAT(least, WithinAbs(1 - std::exp(-2.0), 0.01));
     beside.push_back(at);
   }
-  EXPECT_NEAR(beside[0], beside[1], 0.05);
-  EXPECT_GT(beside[1], 0.1);
+  CHECK_THAT(beside[0], WithinAbs(beside[1], 0.05));
+  CHECK(beside[1] > 0.1);
 }
 
-TEST(SheetEffects, sliding_sheets_stay_outside_of_the_model) {
+TEST_CASE("SheetEffects.sliding_sheets_stay_outside_of_the_model") {
   Context context;
   for (const char* name : {"bust", "mountain"}) {
     const TriangleMesh mesh = make_sample(name, 4000, context).mesh;
@@ -346,8 +350,11 @@ TEST(SheetEffects, sliding_sheets_stay_outside_of_the_model) {
     o.slip = 10;
     const Placement placement = place(mesh, o, clamp_opening_mm(o));
     const FormedResult result = form_sheet(std::make_shared<const MouldShape>(mesh), placement, o, context);
-    EXPECT_TRUE(result.sheet.mesh.V.allFinite()) << name;
-    EXPECT_GT(result.vertex_distance_min_mm, 0) << name;
+    {
+      INFO(name);
+      CHECK(result.sheet.mesh.V.allFinite());
+      CHECK(result.vertex_distance_min_mm > 0);
+    }
     const TriangleMesh placed = placement(mesh);
     const RayCaster rays(placed);
     int inside = 0;
@@ -359,20 +366,21 @@ TEST(SheetEffects, sliding_sheets_stay_outside_of_the_model) {
         if (crossings.empty() || hit.distance > crossings.back() + 1e-9) crossings.push_back(hit.distance);
       if (crossings.size() % 2 == 1) ++inside;
     }
-    EXPECT_EQ(inside, 0) << name;
+    INFO(name);
+    CHECK(inside == 0);
   }
 }
 
-TEST(SheetEffects, what_leaves_nothing_of_the_sheet_is_refused) {
+TEST_CASE("SheetEffects.what_leaves_nothing_of_the_sheet_is_refused") {
   const auto refused = [](const std::function<void(ThermoformOptions&)>& set, const std::string& where) {
     ThermoformOptions o = small_machine(500);
     set(o);
     try {
       form(pyramid(60, 40), o);
-      FAIL() << where;
+      FAIL(where);
     } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::invalid_input);
-      EXPECT_EQ(error.where(), where);
+      CHECK(error.code() == ErrorCode::invalid_input);
+      CHECK(error.where() == where);
     }
   };
   refused([](ThermoformOptions& o) { o.heating_gradient_x = 0.6, o.heating_gradient_y = -0.4; }, "heating_gradient_x");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The simulation on several threads: nobody writes where another does, and their number changes nothing.
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <algorithm>
 #include <set>
@@ -12,6 +13,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 using namespace thermoform_test;
 
@@ -25,45 +27,47 @@ std::vector<std::pair<int, int>> strips_in_order(const FaceStrips& strips) {
 
 void expect_apart(const FaceStrips& strips, const Triangles& F) {
   const auto ranges = strips_in_order(strips);
-  ASSERT_EQ(static_cast<int>(ranges.size()), strips.count());
+  REQUIRE(static_cast<int>(ranges.size()) == strips.count());
   std::vector<int> visits(static_cast<std::size_t>(F.rows()));
   const std::size_t even = (ranges.size() + 1) / 2;
   for (std::size_t part = 0; part < 2; ++part) {
     std::set<int> taken;
     for (std::size_t s = part == 0 ? 0 : even; s < (part == 0 ? even : ranges.size()); ++s) {
-      EXPECT_EQ(ranges[s].first % 4, 0);
+      CHECK(ranges[s].first % 4 == 0);
       std::set<int> own;
       for (int f = ranges[s].first; f < ranges[s].second; ++f) {
         ++visits[static_cast<std::size_t>(f)];
         for (int k = 0; k < 3; ++k) own.insert(F(f, k));
       }
-      for (const int v : own)
-        EXPECT_TRUE(taken.insert(v).second) << "strips " << s << " and another share vertex " << v;
+      for (const int v : own) {
+        INFO("strips " << s << " and another share vertex " << v);
+        CHECK(taken.insert(v).second);
+      }
     }
   }
-  EXPECT_EQ(std::count(visits.begin(), visits.end(), 1), F.rows());
+  CHECK(std::count(visits.begin(), visits.end(), 1) == F.rows());
 }
 
-TEST(FaceStrips, those_worked_on_at_a_time_share_no_vertex) {
+TEST_CASE("FaceStrips.those_worked_on_at_a_time_share_no_vertex") {
   for (const int triangles : {8, 50, 700, 2500, 10000})
     for (const int least : {4, 64, 512}) {
       const SheetMesh sheet = make_sheet_mesh(Vec2(220, 240), triangles);
       expect_apart(FaceStrips(sheet.F, least), sheet.F);
     }
   const SheetMesh sheet = make_sheet_mesh(Vec2(220, 240), 10000);
-  EXPECT_GT(FaceStrips(sheet.F, 512).count(), 12);
+  CHECK(FaceStrips(sheet.F, 512).count() > 12);
 }
 
-TEST(FaceStrips, faces_in_no_order_stay_all_but_together) {
+TEST_CASE("FaceStrips.faces_in_no_order_stay_all_but_together") {
   SheetMesh sheet = make_sheet_mesh(Vec2(100, 100), 2000);
   const Triangles ordered = sheet.F;
   for (Eigen::Index f = 0; f < ordered.rows(); ++f) sheet.F.row(f) = ordered.row((f * 977) % ordered.rows());
   const FaceStrips strips(sheet.F, 64);
   expect_apart(strips, sheet.F);
-  EXPECT_LE(strips.count(), 2);
+  CHECK(strips.count() <= 2);
 }
 
-TEST(Membrane, strips_add_up_to_the_whole) {
+TEST_CASE("Membrane.strips_add_up_to_the_whole") {
   const SheetMesh sheet = make_sheet_mesh(Vec2(100, 120), 1500);
   const int n = static_cast<int>(sheet.flat_mm.rows());
   Membrane membrane(sheet.flat_mm, sheet.F, 1, {});
@@ -77,15 +81,16 @@ TEST(Membrane, strips_add_up_to_the_whole) {
   FaceStrips(sheet.F, 64).for_each([&](int first, int end) {
     membrane.add_forces_of(first, end, x, 1e-3, force, &matrix);
   });
-  EXPECT_LT((force - whole).cwiseAbs().maxCoeff(), 1e-13 * whole.cwiseAbs().maxCoeff());
+  CHECK((force - whole).cwiseAbs().maxCoeff() < 1e-13 * whole.cwiseAbs().maxCoeff());
   for (int i = 0; i < n; ++i)
     for (int k = 0; k < 3; ++k) {
       const float expected = whole_matrix.block(whole_matrix.diagonal_slot(i))[static_cast<std::size_t>(k)][k];
-      EXPECT_NEAR(matrix.block(matrix.diagonal_slot(i))[static_cast<std::size_t>(k)][k], expected, 1e-5f * expected);
+      CHECK_THAT(matrix.block(matrix.diagonal_slot(i))[static_cast<std::size_t>(k)][k],
+                 WithinAbs(expected, 1e-5f * expected));
     }
 }
 
-TEST(Forming, any_number_of_threads_gives_the_same_bits) {
+TEST_CASE("Forming.any_number_of_threads_gives_the_same_bits") {
   ThermoformOptions o;
   o.sheet_x_mm = o.sheet_y_mm = 140;
   o.clamp_opening_x_mm = o.clamp_opening_y_mm = 120;
@@ -96,10 +101,11 @@ TEST(Forming, any_number_of_threads_gives_the_same_bits) {
   for (const int threads : {1, 2}) {
     const ThreadLimit limit(threads);
     const FormedResult few = form(mould, o);
-    EXPECT_EQ(few.statistics.newton_iterations, all.statistics.newton_iterations);
-    EXPECT_EQ(few.statistics.cg_iterations, all.statistics.cg_iterations);
-    EXPECT_TRUE(few.sheet.mesh.V == all.sheet.mesh.V) << threads << " threads";
-    EXPECT_TRUE(few.sheet.contact_s == all.sheet.contact_s) << threads << " threads";
+    CHECK(few.statistics.newton_iterations == all.statistics.newton_iterations);
+    CHECK(few.statistics.cg_iterations == all.statistics.cg_iterations);
+    INFO(threads << " threads");
+    CHECK(few.sheet.mesh.V == all.sheet.mesh.V);
+    CHECK(few.sheet.contact_s == all.sheet.contact_s);
   }
 }
 

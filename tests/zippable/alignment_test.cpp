@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "zippable/crease_alignment.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <cmath>
 
@@ -11,6 +12,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 using std::numbers::pi;
 
@@ -43,7 +45,7 @@ Aligned align(const TriangleMesh& mesh, const CurveOptions& curve, const CreaseA
   // Other windings on the same model: what is kept between them leaves no trace.
   const CreaseAlignment again =
       align_to_creases(a.segmentation, a.parameterisation, system, features, a.lines, options, context);
-  EXPECT_EQ(again.parameterisation.corners_mm, a.alignment.parameterisation.corners_mm);
+  CHECK(again.parameterisation.corners_mm == a.alignment.parameterisation.corners_mm);
   const LineTracer before(a.segmentation, a.parameterisation), after(a.segmentation, a.alignment.parameterisation);
   a.even =
       draw_zipper_curve(a.segmentation, a.parameterisation, before, order.traversal, order.crossings, curve, context);
@@ -66,32 +68,32 @@ double ring_covered(const ZipperCurve& curve, double z, double near_mm) {
   return static_cast<double>(std::count(covered.begin(), covered.end(), 1)) / places;
 }
 
-TEST(CreaseAlignment, NothingMovesWhereThereIsNoCrease) {
+TEST_CASE("CreaseAlignment.NothingMovesWhereThereIsNoCrease") {
   const Aligned a = align(test::cylinder_side(30, 60, 72, 24), {12, {}, {}, 3});
-  EXPECT_EQ(a.alignment.crease_mm, 0);
-  EXPECT_EQ(a.alignment.parameterisation.corners_mm, a.parameterisation.corners_mm);
+  CHECK(a.alignment.crease_mm == 0);
+  CHECK(a.alignment.parameterisation.corners_mm == a.parameterisation.corners_mm);
 }
 
-TEST(CreaseAlignment, AWindingLiesOnARingButForTheChangeOver) {
+TEST_CASE("CreaseAlignment.AWindingLiesOnARingButForTheChangeOver") {
   for (const double ring : {24.0, 30.0, 34.0}) {
     const Aligned a = align(two_cones(0.8, ring), {12, {}, {}, 3});
-    EXPECT_NEAR(a.alignment.crease_mm, 2 * pi * 30, 0.2 * 2 * pi * 30);
+    CHECK_THAT(a.alignment.crease_mm, WithinAbs(2 * pi * 30, 0.2 * 2 * pi * 30));
     // A helix is within a millimetre of a ring for a sixth of a turn; a spiral cannot be all around.
     const double before = ring_covered(a.even, ring, 1), after = ring_covered(a.along, ring, 1);
-    EXPECT_LT(before, 0.3);
-    EXPECT_GT(after, 0.55);
-    EXPECT_LT(a.alignment.off_after_mm, 0.5 * a.alignment.off_before_mm);
-    EXPECT_GE(a.alignment.spacing_least, 0.6 - 1e-9);
-    EXPECT_LE(a.alignment.spacing_most, 1 / 0.6 + 1e-9);
-    EXPECT_LT(a.ribbon.isometry_error, 1e-9);
-    EXPECT_EQ(a.ribbon.opening_arcs, 2);
+    CHECK(before < 0.3);
+    CHECK(after > 0.55);
+    CHECK(a.alignment.off_after_mm < 0.5 * a.alignment.off_before_mm);
+    CHECK(a.alignment.spacing_least >= 0.6 - 1e-9);
+    CHECK(a.alignment.spacing_most <= 1 / 0.6 + 1e-9);
+    CHECK(a.ribbon.isometry_error < 1e-9);
+    CHECK(a.ribbon.opening_arcs == 2);
   }
 }
 
-TEST(CreaseAlignment, KeepsBordersAndTurnsNothingOver) {
+TEST_CASE("CreaseAlignment.KeepsBordersAndTurnsNothingOver") {
   const Aligned a = align(two_cones(-0.8, 27), {12, {}, {}, 3});
   const Parameterisation &p = a.parameterisation, &q = a.alignment.parameterisation;
-  EXPECT_EQ(p.corners_mm.col(0), q.corners_mm.col(0));
+  CHECK(p.corners_mm.col(0) == q.corners_mm.col(0));
   const Segmentation& s = a.segmentation;
   const Adjacency adjacency(s.mesh);
   for (int f = 0; f < s.mesh.face_count(); ++f) {
@@ -99,16 +101,16 @@ TEST(CreaseAlignment, KeepsBordersAndTurnsNothingOver) {
       const int i = 3 * f;
       return (c(i + 1, 0) - c(i, 0)) * (c(i + 2, 1) - c(i, 1)) - (c(i + 2, 0) - c(i, 0)) * (c(i + 1, 1) - c(i, 1));
     };
-    EXPECT_GT(area(q.corners_mm), 0.55 * area(p.corners_mm));
+    CHECK(area(q.corners_mm) > 0.55 * area(p.corners_mm));
     for (int k = 0; k < 3; ++k)
       if (adjacency.is_boundary_vertex(s.mesh.F(f, k))) {
-        EXPECT_EQ(p.corners_mm(3 * f + k, 1), q.corners_mm(3 * f + k, 1));
+        CHECK(p.corners_mm(3 * f + k, 1) == q.corners_mm(3 * f + k, 1));
       }
   }
-  EXPECT_LT(constraint_residual_mm(s, q), 1e-10);
+  CHECK(constraint_residual_mm(s, q) < 1e-10);
 }
 
-TEST(CreaseAlignment, CreasesAcrossTheWindingsAreLeftAlone) {
+TEST_CASE("CreaseAlignment.CreasesAcrossTheWindingsAreLeftAlone") {
   // A prism's edges run from opening to opening.
   TriangleMesh prism = test::cylinder_side(30, 60, 72, 24);
   for (int v = 0; v < prism.vertex_count(); ++v) {
@@ -117,23 +119,23 @@ TEST(CreaseAlignment, CreasesAcrossTheWindingsAreLeftAlone) {
     prism.V.row(v).head(2) *= std::cos(0.5 * side) / std::cos(within);
   }
   const Aligned a = align(prism, {12, {}, {}, 3});
-  EXPECT_EQ(a.alignment.crease_mm, 0);
+  CHECK(a.alignment.crease_mm == 0);
 }
 
-TEST(CreaseAlignment, IsPartOfADesignOnRequest) {
+TEST_CASE("CreaseAlignment.IsPartOfADesignOnRequest") {
   Context context;
   ZippableOptions options;
   options.width_mm = 15;
   const TriangleMesh mesh = make_sample("heart", 2500, context).mesh;
   const ZippableDesign even = design_zippable(parameterise_model(mesh, {}, options, context), options, context);
-  EXPECT_FALSE(even.alignment);
+  CHECK_FALSE(even.alignment);
   options.winding_course = WindingCourse::creases;
   options.crease_degrees = 15;
-  EXPECT_NE(parameterisation_key(options), parameterisation_key({}));
+  CHECK(parameterisation_key(options) != parameterisation_key({}));
   const ZippableDesign along = design_zippable(parameterise_model(mesh, {}, options, context), options, context);
-  ASSERT_TRUE(along.alignment);
-  EXPECT_LE(along.alignment->off_after_mm, along.alignment->off_before_mm);
-  EXPECT_LT(along.ribbon.isometry_error, 1e-9);
+  REQUIRE(along.alignment);
+  CHECK(along.alignment->off_after_mm <= along.alignment->off_before_mm);
+  CHECK(along.ribbon.isometry_error < 1e-9);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -14,6 +15,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 struct Designed {
   ParameterisedModel model;
@@ -46,21 +48,21 @@ double expect_sides_meet(const Ribbon& ribbon, const HandleClosure& closure) {
       for (int k = 0; k < run.edge_count(); ++k) {
         const int v = (run.first_vertex + k) % count, w = (v + 1) % count;
         const double from = run.along_mm[k], to = run.along_mm[k + 1];
-        EXPECT_TRUE(side == 0 ? to > from : to < from);
+        CHECK((side == 0 ? to > from : to < from));
         // An edge of an opening, no longer than the cut between its ends.
         const RibbonVertex &a = ribbon.boundary[v], &b = ribbon.boundary[w];
-        EXPECT_TRUE(a.piece < 0 || b.piece < 0 || a.left != b.left || a.piece != b.piece);
-        EXPECT_LE((a.position_mm - b.position_mm).norm(), std::abs(to - from) * (1 + 1e-9));
+        CHECK((a.piece < 0 || b.piece < 0 || a.left != b.left || a.piece != b.piece));
+        CHECK((a.position_mm - b.position_mm).norm() <= std::abs(to - from) * (1 + 1e-9));
         covered += std::abs(to - from);
         edges[side][std::min(from, to)] = side == 0 ? std::array{v, w} : std::array{w, v};
       }
-    EXPECT_NEAR(covered, closure.length_mm, 1e-6 * closure.length_mm);
+    CHECK_THAT(covered, WithinAbs(closure.length_mm, 1e-6 * closure.length_mm));
   }
-  EXPECT_EQ(edges[0].size(), edges[1].size());
+  CHECK(edges[0].size() == edges[1].size());
   for (const auto& [from, left] : edges[0]) {
     const auto right = edges[1].find(from);
     if (right == edges[1].end()) {
-      ADD_FAILURE() << "nothing meets what begins at " << from;
+      FAIL_CHECK("nothing meets what begins at " << from);
       continue;
     }
     for (std::size_t end = 0; end < 2; ++end)
@@ -69,76 +71,77 @@ double expect_sides_meet(const Ribbon& ribbon, const HandleClosure& closure) {
     const auto flat = [&](const std::array<int, 2>& edge) {
       return (ribbon.flat_mm[edge[0]] - ribbon.flat_mm[edge[1]]).norm();
     };
-    EXPECT_NEAR(flat(left), flat(right->second), 1e-9 * closure.length_mm);
+    CHECK_THAT(flat(left), WithinAbs(flat(right->second), 1e-9 * closure.length_mm));
   }
   return apart / closure.length_mm;
 }
 
-TEST(HandleClosure, BothSidesOfATorusMeetPlaceByPlace) {
+TEST_CASE("HandleClosure.BothSidesOfATorusMeetPlaceByPlace") {
   for (const double width : {8.0, 15.0, 30.0}) {
     const Designed d = designed(sample("torus"), width);
     const auto& closures = d.design.ribbon.closures;
-    ASSERT_EQ(closures.size(), 1u);
-    EXPECT_TRUE(closures[0].closed);
-    EXPECT_NEAR(closures[0].length_mm, walk_length_mm(d.model.mesh, d.model.proposal.handle_cuts.at(0), true), 1e-9);
-    EXPECT_LT(expect_sides_meet(d.design.ribbon, closures[0]), 1e-9);
+    REQUIRE(closures.size() == 1u);
+    CHECK(closures[0].closed);
+    CHECK_THAT(closures[0].length_mm,
+               WithinAbs(walk_length_mm(d.model.mesh, d.model.proposal.handle_cuts.at(0), true), 1e-9));
+    CHECK(expect_sides_meet(d.design.ribbon, closures[0]) < 1e-9);
     // It begins where the zipper ends on the left side, which is one run.
-    EXPECT_EQ(closures[0].sides[0].size(), 1u);
-    EXPECT_EQ(closures[0].sides[0][0].along_mm.front(), 0);
-    EXPECT_EQ(closures[0].sides[0][0].along_mm.back(), closures[0].length_mm);
+    CHECK(closures[0].sides[0].size() == 1u);
+    CHECK(closures[0].sides[0][0].along_mm.front() == 0);
+    CHECK(closures[0].sides[0][0].along_mm.back() == closures[0].length_mm);
   }
 }
 
-TEST(HandleClosure, OfLimbsAndAHandle) {
+TEST_CASE("HandleClosure.OfLimbsAndAHandle") {
   // The cat's tail touches its body: two of several openings, with Fermat spirals between.
   const Designed d = designed(sample("cat"), 12);
-  ASSERT_EQ(d.design.ribbon.closures.size(), 1u);
-  EXPECT_LT(expect_sides_meet(d.design.ribbon, d.design.ribbon.closures[0]), 1e-9);
+  REQUIRE(d.design.ribbon.closures.size() == 1u);
+  CHECK(expect_sides_meet(d.design.ribbon, d.design.ribbon.closures[0]) < 1e-9);
 }
 
-TEST(HandleClosure, IsNotThereWithoutAHandle) {
+TEST_CASE("HandleClosure.IsNotThereWithoutAHandle") {
   const Designed d = designed(sample("star"), 15);
-  EXPECT_TRUE(d.design.ribbon.closures.empty());
-  EXPECT_EQ(std::string(as_text(write_design_json(d.model, d.design))).find("handle_cuts"), std::string::npos);
+  CHECK(d.design.ribbon.closures.empty());
+  CHECK(std::string(as_text(write_design_json(d.model, d.design))).find("handle_cuts") == std::string::npos);
 }
 
-TEST(HandleClosure, MovesAndGrowsWithTheModel) {
+TEST_CASE("HandleClosure.MovesAndGrowsWithTheModel") {
   const TriangleMesh torus = sample("torus");
   TriangleMesh other = torus;
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   other.V = (2 * torus.V * turn.transpose()).rowwise() + Eigen::RowVector3d(5, -3, 11);
   const HandleClosure a = designed(torus, 15).design.ribbon.closures.at(0),
                       b = designed(other, 30).design.ribbon.closures.at(0);
-  EXPECT_NEAR(b.length_mm, 2 * a.length_mm, 1e-8 * a.length_mm);
+  CHECK_THAT(b.length_mm, WithinAbs(2 * a.length_mm, 1e-8 * a.length_mm));
   for (std::size_t side = 0; side < 2; ++side) {
-    ASSERT_EQ(a.sides[side].size(), b.sides[side].size());
+    REQUIRE(a.sides[side].size() == b.sides[side].size());
     for (std::size_t r = 0; r < a.sides[side].size(); ++r) {
-      ASSERT_EQ(a.sides[side][r].along_mm.size(), b.sides[side][r].along_mm.size());
-      EXPECT_EQ(a.sides[side][r].first_vertex, b.sides[side][r].first_vertex);
+      REQUIRE(a.sides[side][r].along_mm.size() == b.sides[side][r].along_mm.size());
+      CHECK(a.sides[side][r].first_vertex == b.sides[side][r].first_vertex);
       // As far as the parameterisation is the same, which stops at a millionth of the energy.
       for (std::size_t k = 0; k < a.sides[side][r].along_mm.size(); ++k)
-        EXPECT_NEAR(b.sides[side][r].along_mm[k], 2 * a.sides[side][r].along_mm[k], 1e-4 * a.length_mm);
+        CHECK_THAT(b.sides[side][r].along_mm[k], WithinAbs(2 * a.sides[side][r].along_mm[k], 1e-4 * a.length_mm));
     }
   }
 }
 
-TEST(HandleClosure, IsReadAgainOrRefused) {
+TEST_CASE("HandleClosure.IsReadAgainOrRefused") {
   const Designed d = designed(sample("torus"), 15);
   const Bytes written = write_design_json(d.model, d.design);
   const HandleClosure& made = d.design.ribbon.closures.at(0);
   const FlatDesign flat = read_flat_design(written);
-  ASSERT_EQ(flat.closures.size(), 1u);
-  EXPECT_EQ(flat.closures[0].length_mm, made.length_mm);
+  REQUIRE(flat.closures.size() == 1u);
+  CHECK(flat.closures[0].length_mm == made.length_mm);
   for (std::size_t side = 0; side < 2; ++side) {
-    ASSERT_EQ(flat.closures[0].sides[side].size(), made.sides[side].size());
+    REQUIRE(flat.closures[0].sides[side].size() == made.sides[side].size());
     for (std::size_t r = 0; r < made.sides[side].size(); ++r)
-      EXPECT_EQ(flat.closures[0].sides[side][r].along_mm, made.sides[side][r].along_mm);
+      CHECK(flat.closures[0].sides[side][r].along_mm == made.sides[side][r].along_mm);
   }
   // Files from before there were any.
   Json json = Json::parse(as_text(written));
   Json old = json;
   old.erase("handle_cuts");
-  EXPECT_TRUE(read_flat_design(to_bytes(old.dump())).closures.empty());
+  CHECK(read_flat_design(to_bytes(old.dump())).closures.empty());
   const auto refused = [&](const auto& change) {
     Json wrong = json;
     change(wrong["handle_cuts"][0]);
@@ -149,13 +152,12 @@ TEST(HandleClosure, IsReadAgainOrRefused) {
       return error.where() == "design";
     }
   };
-  EXPECT_TRUE(refused([](Json& cut) { cut.erase("sides"); }));
-  EXPECT_TRUE(refused([](Json& cut) { cut["length_mm"] = -1; }));
-  EXPECT_TRUE(refused([](Json& cut) { cut["sides"][1] = Json::array(); }));
-  EXPECT_TRUE(refused([](Json& cut) { cut["sides"][0][0]["first_vertex"] = 1 << 20; }));
-  EXPECT_TRUE(refused([](Json& cut) { cut["sides"][0][0]["first_vertex"] = 0; }));  // along the zipper
-  EXPECT_TRUE(
-      refused([](Json& cut) { std::swap(cut["sides"][0][0]["along_mm"][1], cut["sides"][0][0]["along_mm"][2]); }));
+  CHECK(refused([](Json& cut) { cut.erase("sides"); }));
+  CHECK(refused([](Json& cut) { cut["length_mm"] = -1; }));
+  CHECK(refused([](Json& cut) { cut["sides"][1] = Json::array(); }));
+  CHECK(refused([](Json& cut) { cut["sides"][0][0]["first_vertex"] = 1 << 20; }));
+  CHECK(refused([](Json& cut) { cut["sides"][0][0]["first_vertex"] = 0; }));  // along the zipper
+  CHECK(refused([](Json& cut) { std::swap(cut["sides"][0][0]["along_mm"][1], cut["sides"][0][0]["along_mm"][2]); }));
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "zippable/zipper_curve.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +13,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 using std::numbers::pi;
 
@@ -43,29 +45,29 @@ Vec3 lifted(const Segmentation& s, const Parameterisation& p, int part, double x
   return result;
 }
 
-TEST(LineTrace, OnACylinderIsTheHelix) {
+TEST_CASE("LineTrace.OnACylinderIsTheHelix") {
   const int around = 48;
   const Segmentation s = test::alone(test::tube(around, 24));  // radius 1, height 1
   const Parameterisation p = solve(s);
   const LineTracer tracer(s, p);
   const double period = p.period_mm[0];
   const TracedLine line = tracer.trace(0, 0, 7.3 * period);
-  EXPECT_GT(line.x_mm.size(), 7u * around);
+  CHECK(line.x_mm.size() > 7u * around);
   const double start = std::atan2(line.position_mm[0].y(), line.position_mm[0].x());
   for (std::size_t i = 0; i < line.x_mm.size(); ++i) {
     const double turns = line.x_mm[i] / period;
-    EXPECT_NEAR(line.position_mm[i].z(), turns / 7.3, 1e-9);
+    CHECK_THAT(line.position_mm[i].z(), WithinAbs(turns / 7.3, 1e-9));
     // On the prism a share of a side is a share of its chord.
     const double sides = turns * around, whole = std::floor(sides + 1e-9), share = sides - whole;
     const auto corner = [&](double k) {
       return Vec2(std::cos(start + 2 * pi * k / around), std::sin(start + 2 * pi * k / around));
     };
     const Vec2 expected = (1 - share) * corner(whole) + share * corner(whole + 1);
-    EXPECT_LE((line.position_mm[i].head<2>() - expected).norm(), 1e-8);
+    CHECK((line.position_mm[i].head<2>() - expected).norm() <= 1e-8);
   }
 }
 
-TEST(LineTrace, LiesOverTheStraightLineOnEveryPart) {
+TEST_CASE("LineTrace.LiesOverTheStraightLineOnEveryPart") {
   for (const char* sample : {"t_shape", "cat", "bust"}) {
     const Segmentation s = test::proposed(sample, 1500).segmentation;
     const Parameterisation p = solve(s);
@@ -76,35 +78,35 @@ TEST(LineTrace, LiesOverTheStraightLineOnEveryPart) {
       const double low = random.uniform(-2, 3) * p.period_mm[part],
                    high = low + random.uniform(0.01, 6) * p.period_mm[part];
       const TracedLine line = tracer.trace(part, low, high);
-      EXPECT_TRUE(std::is_sorted(line.x_mm.begin(), line.x_mm.end()));
+      CHECK(std::is_sorted(line.x_mm.begin(), line.x_mm.end()));
       for (int k = 0; k <= 8; ++k) {
         const double x = low + (high - low) * k / 8;
-        EXPECT_LE((line.at(x) - lifted(s, p, part, x, p.height_mm[part] * k / 8)).norm(), 1e-6)
-            << sample << " part " << part << " at " << k;
+        INFO(sample << " part " << part << " at " << k);
+        CHECK((line.at(x) - lifted(s, p, part, x, p.height_mm[part] * k / 8)).norm() <= 1e-6);
       }
     }
   }
 }
 
-TEST(Traversals, AreTheHamiltonianPaths) {
+TEST_CASE("Traversals.AreTheHamiltonianPaths") {
   const Segmentation t = test::proposed("t_shape", 1500).segmentation;
-  EXPECT_EQ(traversals(t, Context()).size(), 6u);  // three parts, each beside both others
+  CHECK(traversals(t, Context()).size() == 6u);  // three parts, each beside both others
   const Segmentation s = test::proposed("octopus", 6000).segmentation;
   const auto all = traversals(s, Context(), 100000);
-  EXPECT_GT(all.size(), 100u);
+  CHECK(all.size() > 100u);
   for (const Traversal& traversal : all) {
-    ASSERT_EQ(traversal.parts.size(), static_cast<std::size_t>(s.part_count()));
+    REQUIRE(traversal.parts.size() == static_cast<std::size_t>(s.part_count()));
     std::vector<int> sorted = traversal.parts;
     std::sort(sorted.begin(), sorted.end());
-    for (int i = 0; i < s.part_count(); ++i) EXPECT_EQ(sorted[i], i);
+    for (int i = 0; i < s.part_count(); ++i) CHECK(sorted[i] == i);
     for (std::size_t i = 0; i < traversal.interfaces.size(); ++i) {
       const Interface& interface = s.interfaces[traversal.interfaces[i]];
       const std::pair sides = std::minmax(interface.left, interface.right),
                       parts = std::minmax(traversal.parts[i], traversal.parts[i + 1]);
-      EXPECT_EQ(sides, parts);
+      CHECK(sides == parts);
     }
   }
-  EXPECT_EQ(traversals(test::alone(test::tube(12, 4)), Context()).size(), 1u);
+  CHECK(traversals(test::alone(test::tube(12, 4)), Context()).size() == 1u);
 }
 
 /// Parts that only share what the list of pairs says.
@@ -119,7 +121,7 @@ Segmentation parts_sharing(int parts, const std::vector<std::pair<int, int>>& bo
   return s;
 }
 
-TEST(Traversals, AreAllOfSmallGraphs) {
+TEST_CASE("Traversals.AreAllOfSmallGraphs") {
   // Against every order of the parts, for random graphs.
   Random random(7);
   for (int round = 0; round < 200; ++round) {
@@ -140,18 +142,19 @@ TEST(Traversals, AreAllOfSmallGraphs) {
     } while (std::next_permutation(order.begin(), order.end()));
     for (const Traversal& traversal : traversals(parts_sharing(parts, borders), Context()))
       found.push_back(traversal.parts);
-    EXPECT_EQ(found, expected) << round;
+    INFO(round);
+    CHECK(found == expected);
   }
 }
 
-TEST(Traversals, WithoutAnOrderAreGivenUpSoon) {
+TEST_CASE("Traversals.WithoutAnOrderAreGivenUpSoon") {
   // A rich graph of forty parts with three tips: no order has more than two ends, which plain search never finds out.
   std::vector<std::pair<int, int>> borders;
   for (int a = 0; a < 37; ++a)
     for (int b = a + 1; b < 37; ++b)
       if (b - a < 6) borders.emplace_back(a, b);
   for (int tip = 37; tip < 40; ++tip) borders.emplace_back(tip - 20, tip);
-  EXPECT_TRUE(traversals(parts_sharing(40, borders), Context(), 1).empty());
+  CHECK(traversals(parts_sharing(40, borders), Context(), 1).empty());
   // 14 parts against 17 have none either, since a path would have to alternate; that does not show soon, so it can be
   // cancelled.
   Host host;
@@ -159,10 +162,10 @@ TEST(Traversals, WithoutAnOrderAreGivenUpSoon) {
   std::vector<std::pair<int, int>> two_sided;
   for (int a = 0; a < 14; ++a)
     for (int b = 14; b < 31; ++b) two_sided.emplace_back(a, b);
-  EXPECT_THROW(traversals(parts_sharing(31, two_sided), Context(host), 1), Error);
+  CHECK_THROWS_AS(traversals(parts_sharing(31, two_sided), Context(host), 1), Error);
 }
 
-TEST(Crossings, AreTheSamePointOnBothSides) {
+TEST_CASE("Crossings.AreTheSamePointOnBothSides") {
   const Segmentation s = test::proposed("star", 3000).segmentation;
   const Parameterisation p = solve(s);
   const LineTracer tracer(s, p);
@@ -171,15 +174,15 @@ TEST(Crossings, AreTheSamePointOnBothSides) {
     for (std::size_t i = 0; i + 1 < traversal.parts.size(); ++i) {
       const Vec3 out = tracer.on_line(traversal.parts[i], false, crossings.exit_mm[i]),
                  in = tracer.on_line(traversal.parts[i + 1], false, crossings.entry_mm[i + 1]);
-      EXPECT_LE((out - in).norm(), 1e-9);
+      CHECK((out - in).norm() <= 1e-9);
       const LinePoint there = across_interface(s, p, {traversal.parts[i], crossings.exit_mm[i]});
-      EXPECT_EQ(there.part, traversal.parts[i + 1]);
-      EXPECT_NEAR(there.x_mm, crossings.entry_mm[i + 1], 1e-9);
+      CHECK(there.part == traversal.parts[i + 1]);
+      CHECK_THAT(there.x_mm, WithinAbs(crossings.entry_mm[i + 1], 1e-9));
     }
   }
 }
 
-TEST(Crossings, NoOtherPlacesAreMoreEven) {
+TEST_CASE("Crossings.NoOtherPlacesAreMoreEven") {
   const Segmentation s = test::proposed("octopus", 4000).segmentation;
   const Parameterisation p = solve(s);
   test::Random random(9);
@@ -204,40 +207,40 @@ TEST(Crossings, NoOtherPlacesAreMoreEven) {
   const auto all = traversals(s, Context(), 30);
   for (const Traversal& traversal : all) {
     const Crossings best = best_crossings(s, p, traversal);
-    EXPECT_NEAR(best.unevenness, unevenness(traversal, best.along_mm), 1e-12);
+    CHECK_THAT(best.unevenness, WithinAbs(unevenness(traversal, best.along_mm), 1e-12));
     for (int trial = 0; trial < 60; ++trial) {
       std::vector<double> other = best.along_mm;
       for (std::size_t i = 0; i < other.size(); ++i) {
         const double length = p.interface_length_mm[traversal.interfaces[i]], reach = trial % 2 == 0 ? 0.02 : 1;
         other[i] = std::clamp(other[i] + reach * random.uniform(-1, 1) * length, 0.1 * length, 0.9 * length);
       }
-      EXPECT_GE(unevenness(traversal, other), best.unevenness - 2e-4);  // the pull to the middles may cost so much
+      CHECK(unevenness(traversal, other) >= best.unevenness - 2e-4);  // the pull to the middles may cost so much
     }
   }
 }
 
-TEST(ZipperCurve, IsOneCurveFromOpeningToOpening) {
+TEST_CASE("ZipperCurve.IsOneCurveFromOpeningToOpening") {
   for (const char* sample : {"sphere", "t_shape", "star", "octopus"}) {
-    SCOPED_TRACE(sample);
+    CAPTURE(sample);
     CurveOptions options;
     options.width_mm = 8, options.sample_mm = 2;
     const test::Zipped z = std::string_view(sample) == "sphere"
                                ? test::zip(test::alone(test::cylinder_side(30, 80, 40, 30)), options)
                                : test::zip(test::proposed(sample, 4000, 3).segmentation, options);
     const int parts = z.segmentation.part_count();
-    EXPECT_EQ(z.curve.lines.size(), parts == 1 ? 1u : static_cast<std::size_t>(2 * parts - 2));
-    EXPECT_EQ(z.curve.pieces.size(), parts == 1 ? 1u : static_cast<std::size_t>(parts - 1));
-    EXPECT_EQ(z.curve.fermat_spirals, std::max(0, parts - 2));
+    CHECK(z.curve.lines.size() == (parts == 1 ? 1u : static_cast<std::size_t>(2 * parts - 2)));
+    CHECK(z.curve.pieces.size() == (parts == 1 ? 1u : static_cast<std::size_t>(parts - 1)));
+    CHECK(z.curve.fermat_spirals == std::max(0, parts - 2));
     // Along a piece no step is longer than a few samples: crossings join.
     for (const auto& piece : z.curve.pieces)
       for (std::size_t i = 0; i + 1 < piece.size(); ++i)
-        EXPECT_LE((z.curve.samples[piece[i]].position_mm - z.curve.samples[piece[i + 1]].position_mm).norm(),
-                  5 * options.sample_mm);
+        CHECK((z.curve.samples[piece[i]].position_mm - z.curve.samples[piece[i + 1]].position_mm).norm() <=
+              5 * options.sample_mm);
     // Both lines of a Fermat spiral reach the opening half a period apart.
     for (std::size_t l = 0; l + 1 < z.curve.lines.size(); ++l) {
       const SpiralLine &in = z.curve.lines[l], &out = z.curve.lines[l + 1];
       if (in.part == out.part) {
-        EXPECT_NEAR(out.x_high_mm - in.x_high_mm, 0.5 * z.parameterisation.period_mm[in.part], 1e-9);
+        CHECK_THAT(out.x_high_mm - in.x_high_mm, WithinAbs(0.5 * z.parameterisation.period_mm[in.part], 1e-9));
       }
     }
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <algorithm>
 
@@ -12,6 +13,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 ZippableDesign designed(const char* sample, ZippableOptions options) {
   Context context;
@@ -43,14 +45,17 @@ double cost_of(const Ribbon& ribbon, const std::vector<int>& colour, double widt
   return cost;
 }
 
-TEST(Fabrics, BandsOfFermatSpiralsDiffer) {
+TEST_CASE("Fabrics.BandsOfFermatSpiralsDiffer") {
   for (const char* sample : {"star", "octopus", "t_shape"}) {
     ZippableOptions options;
     options.width_mm = 10;
     options.fabrics = RibbonFabrics::two;
     const ZippableDesign design = designed(sample, options);
-    ASSERT_TRUE(design.fabrics.has_value());
-    EXPECT_TRUE(design.fabrics->has_bands) << sample;
+    REQUIRE(design.fabrics.has_value());
+    {
+      INFO(sample);
+      CHECK(design.fabrics->has_bands);
+    }
     double band[2]{}, own[2]{}, all = 0;
     for (int f = 0; f < design.ribbon.F.rows(); ++f) {
       int left = 0, right = 0;
@@ -64,14 +69,20 @@ TEST(Fabrics, BandsOfFermatSpiralsDiffer) {
       band[side] += area;
       if (design.fabrics->of_face[f] == side) own[side] += area;
     }
-    for (int side = 0; side < 2; ++side) EXPECT_GT(own[side], 0.98 * band[side]) << sample;
-    EXPECT_NEAR(design.fabrics->area_mm2[0] + design.fabrics->area_mm2[1], all, 1e-9 * all);
-    EXPECT_GT(design.fabrics->interleaved_share, 0.2) << sample;
-    EXPECT_GE(design.fabrics->seams, 1);
+    for (int side = 0; side < 2; ++side) {
+      INFO(sample);
+      CHECK(own[side] > 0.98 * band[side]);
+    }
+    CHECK_THAT(design.fabrics->area_mm2[0] + design.fabrics->area_mm2[1], WithinAbs(all, 1e-9 * all));
+    {
+      INFO(sample);
+      CHECK(design.fabrics->interleaved_share > 0.2);
+    }
+    CHECK(design.fabrics->seams >= 1);
   }
 }
 
-TEST(Fabrics, NothingIsCheaper) {
+TEST_CASE("Fabrics.NothingIsCheaper") {
   ZippableOptions options;
   options.width_mm = 15;
   options.fabrics = RibbonFabrics::two;
@@ -94,21 +105,21 @@ TEST(Fabrics, NothingIsCheaper) {
       for (int g = 3 * f; g < 3 * f + 3; ++g)
         if (const int o = adjacency.opposite(g); o >= 0 && !seen[o / 3]) open.push_back(o / 3);
     }
-    EXPECT_GE(cost_of(design.ribbon, other, options.width_mm), least * (1 - 1e-12));
+    CHECK(cost_of(design.ribbon, other, options.width_mm) >= least * (1 - 1e-12));
   }
 }
 
-TEST(Fabrics, OneCylinderChangesOnceHalfWay) {
+TEST_CASE("Fabrics.OneCylinderChangesOnceHalfWay") {
   CurveOptions curve;
   curve.width_mm = 10, curve.sample_mm = 2;
   const test::Zipped zipped = test::zip(test::alone(test::cylinder_side(20, 80, 40, 40)), curve);
   const FabricColours colours = two_fabrics(zipped.ribbon, curve.width_mm);
-  EXPECT_FALSE(colours.has_bands);
-  EXPECT_EQ(colours.seams, 1);
-  EXPECT_NEAR(colours.area_mm2[0] / colours.area_mm2[1], 1, 0.02);
+  CHECK_FALSE(colours.has_bands);
+  CHECK(colours.seams == 1);
+  CHECK_THAT(colours.area_mm2[0] / colours.area_mm2[1], WithinAbs(1, 0.02));
 }
 
-TEST(RibbonBend, OfAConeIsItsDistanceFromTheTip) {
+TEST_CASE("RibbonBend.OfAConeIsItsDistanceFromTheTip") {
   // Unrolled, a cone's spiral turns about the tip: its centre line is nearest to it at the upper opening.
   const double radius = 60, top = 24, height = 80, slant = std::hypot(radius, height);
   CurveOptions curve;
@@ -119,23 +130,23 @@ TEST(RibbonBend, OfAConeIsItsDistanceFromTheTip) {
           96, 60, [&](double t) { return Vec2(radius + t * (top - radius), t * height * (1 - top / radius)); })),
       curve);
   const auto bend = tightest_bend(zipped.ribbon, curve.width_mm);
-  ASSERT_TRUE(bend.has_value());
+  REQUIRE(bend.has_value());
   const double nearest = slant - along;
-  EXPECT_GT(bend->radius_mm, 0.8 * nearest);
-  EXPECT_LT(bend->radius_mm, nearest + 2 * curve.width_mm);
+  CHECK(bend->radius_mm > 0.8 * nearest);
+  CHECK(bend->radius_mm < nearest + 2 * curve.width_mm);
 }
 
-TEST(RibbonBend, OfACylinderIsLittle) {
+TEST_CASE("RibbonBend.OfACylinderIsLittle") {
   CurveOptions curve;
   curve.width_mm = 10, curve.sample_mm = 2;
   const test::Zipped zipped = test::zip(test::alone(test::cylinder_side(20, 80, 40, 40)), curve);
   const auto bend = tightest_bend(zipped.ribbon, curve.width_mm);
-  ASSERT_TRUE(bend.has_value());
+  REQUIRE(bend.has_value());
   // Its ribbon is straight; beside the openings, which cut it off aslant, the middles step aside a little.
-  EXPECT_GT(bend->radius_mm, 20 * curve.width_mm);
+  CHECK(bend->radius_mm > 20 * curve.width_mm);
 }
 
-TEST(Curve, BeginsAndEndsWhereItShould) {
+TEST_CASE("Curve.BeginsAndEndsWhereItShould") {
   ZippableOptions options;
   options.width_mm = 15;
   for (const auto& [start, end] : {std::pair{2, 4}, std::pair{4, 2}, std::pair{0, 5}}) {
@@ -143,33 +154,33 @@ TEST(Curve, BeginsAndEndsWhereItShould) {
     const ZippableDesign design = designed("star", options);
     const std::vector<int>& parts = design.traversal.traversal.parts;
     if (start > 0) {
-      EXPECT_EQ(parts.front(), start - 1);
+      CHECK(parts.front() == start - 1);
     }
-    EXPECT_EQ(parts.back(), end - 1);
+    CHECK(parts.back() == end - 1);
   }
   options.start_part = options.end_part = 1;
-  EXPECT_THROW(designed("star", options), Error);
+  CHECK_THROWS_AS(designed("star", options), Error);
   options.start_part = 9;
-  EXPECT_THROW(designed("star", options), Error);
+  CHECK_THROWS_AS(designed("star", options), Error);
 }
 
-TEST(Curve, KeepsALeastRadiusOrSaysSo) {
+TEST_CASE("Curve.KeepsALeastRadiusOrSaysSo") {
   ZippableOptions options;
   options.width_mm = 15;
   const ZippableDesign free = designed("star", options);
-  ASSERT_TRUE(free.bend.has_value());
+  REQUIRE(free.bend.has_value());
   options.radius_least_mm = 1.02 * free.bend->radius_mm;
   const ZippableDesign bound = designed("star", options);
   const auto says = [](const ZippableDesign& design) {
     return std::any_of(design.notes.begin(), design.notes.end(),
                        [](const std::string& note) { return note.find("bends to a radius") != std::string::npos; });
   };
-  EXPECT_NE(bound.bend->radius_mm >= *options.radius_least_mm, says(bound));
+  CHECK((bound.bend->radius_mm >= *options.radius_least_mm) != says(bound));
   options.radius_least_mm = 2000;
   options.puncture_mm = 7;
-  EXPECT_TRUE(says(designed("star", options)));
+  CHECK(says(designed("star", options)));
   options.radius_least_mm = 0.5;
-  EXPECT_FALSE(says(designed("star", options)));
+  CHECK_FALSE(says(designed("star", options)));
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "zippable/feature_lines.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -13,6 +14,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 using std::numbers::pi;
 
@@ -31,45 +33,52 @@ TriangleMesh waist(double bend_rad, int around = 96, int rows = 40) {
   });
 }
 
-TEST(Features, ThereAreNoneOnSpheresAndCylinders) {
+TEST_CASE("Features.ThereAreNoneOnSpheresAndCylinders") {
   TriangleMesh ball = test::icosphere(4);
   ball.V *= 20;
-  EXPECT_TRUE(features(ball, 3).points.empty());
-  EXPECT_LT(features(ball, 3).bend_rad.cwiseAbs().maxCoeff(), 0.1);
+  CHECK(features(ball, 3).points.empty());
+  CHECK(features(ball, 3).bend_rad.cwiseAbs().maxCoeff() < 0.1);
   for (const double radius : {5.0, 20.0}) {
     const TriangleMesh tube = test::cylinder_side(radius, 100, 60, 60);
     const FeatureLines lines = features(tube, 3);
-    EXPECT_TRUE(lines.points.empty()) << radius;
+    INFO(radius);
+    CHECK(lines.points.empty());
   }
 }
 
-TEST(Features, ARingIsFoundWhereItIs) {
+TEST_CASE("Features.ARingIsFoundWhereItIs") {
   for (const double bend : {0.6, 1.0, -0.6, -1.0}) {
     const TriangleMesh mesh = waist(bend);
     const FeatureLines lines = features(mesh, 3);
     std::set<int> ring;
     for (int v = 0; v < mesh.vertex_count(); ++v)
       if (std::abs(mesh.V(v, 2)) < 1e-9) ring.insert(v);
-    ASSERT_EQ(ring.size(), 96u);
-    ASSERT_EQ(lines.points.size(), ring.size()) << bend;
+    REQUIRE(ring.size() == 96u);
+    {
+      INFO(bend);
+      REQUIRE(lines.points.size() == ring.size());
+    }
     for (const FeaturePoint& point : lines.points) {
-      EXPECT_TRUE(ring.contains(point.vertex));
-      EXPECT_NEAR(std::abs(point.along.z()), 0, 1e-3);
+      CHECK(ring.contains(point.vertex));
+      CHECK_THAT(std::abs(point.along.z()), WithinAbs(0, 1e-3));
       // What is around takes a quarter of it, the ring's own curvature and the mesh a little more.
-      EXPECT_NEAR(point.bend_rad, 0.75 * bend, 0.15 * std::abs(bend));
+      CHECK_THAT(point.bend_rad, WithinAbs(0.75 * bend, 0.15 * std::abs(bend)));
     }
     const Adjacency adjacency(mesh);
     for (int e = 0; e < adjacency.edge_count(); ++e) {
       const auto [a, b] = adjacency.edges()[e];
-      EXPECT_EQ(lines.sharp[e] != 0, ring.contains(a) && ring.contains(b)) << e;
-      EXPECT_TRUE(!lines.sharp[e] || lines.bend_rad[e] * bend > 0);
+      {
+        INFO(e);
+        CHECK((lines.sharp[e] != 0) == (ring.contains(a) && ring.contains(b)));
+      }
+      CHECK((!lines.sharp[e] || lines.bend_rad[e] * bend > 0));
     }
     for (int v = 0; v < mesh.vertex_count(); ++v)
-      EXPECT_TRUE(!ring.contains(v) || (lines.valley_rad[v] > 0.3) == (bend < 0));
+      CHECK((!ring.contains(v) || (lines.valley_rad[v] > 0.3) == (bend < 0)));
   }
 }
 
-TEST(Features, ARoundedSeamIsFoundToo) {
+TEST_CASE("Features.ARoundedSeamIsFoundToo") {
   // A valley of 80 degrees in a tube, rounded over 4 mm: nothing is sharp in it.
   const auto profile = [](double t) {
     const double z = 60 * t - 30;
@@ -78,26 +87,26 @@ TEST(Features, ARoundedSeamIsFoundToo) {
   for (const int rows : {60, 120}) {
     const TriangleMesh mesh = test::turned(2 * rows, rows, profile);
     const FeatureLines lines = features(mesh, 3);
-    ASSERT_GE(lines.points.size(), static_cast<std::size_t>(2 * rows));
-    EXPECT_EQ(std::count(lines.sharp.begin(), lines.sharp.end(), 1), 0);
+    REQUIRE(lines.points.size() >= static_cast<std::size_t>(2 * rows));
+    CHECK(std::count(lines.sharp.begin(), lines.sharp.end(), 1) == 0);
     for (const FeaturePoint& point : lines.points) {
-      EXPECT_LT(std::abs(mesh.V(point.vertex, 2)), 1.1 * mean_edge_length(mesh));
-      EXPECT_LT(point.bend_rad, -0.35);
-      EXPECT_LT(std::abs(point.along.z()), 0.05);
+      CHECK(std::abs(mesh.V(point.vertex, 2)) < 1.1 * mean_edge_length(mesh));
+      CHECK(point.bend_rad < -0.35);
+      CHECK(std::abs(point.along.z()) < 0.05);
     }
   }
 }
 
-TEST(Features, DoNotDependOnSizeOrPlace) {
+TEST_CASE("Features.DoNotDependOnSizeOrPlace") {
   const TriangleMesh mesh = waist(0.8);
   TriangleMesh other = mesh;
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   other.V = 3 * mesh.V * turn.transpose();
   other.V.rowwise() += Eigen::RowVector3d(100, -50, 7);
   const FeatureLines a = features(mesh, 3), b = features(other, 9);
-  EXPECT_LT((a.bend_rad - b.bend_rad).cwiseAbs().maxCoeff(), 1e-6);
-  ASSERT_EQ(a.points.size(), b.points.size());
-  for (std::size_t i = 0; i < a.points.size(); ++i) EXPECT_EQ(a.points[i].vertex, b.points[i].vertex);
+  CHECK((a.bend_rad - b.bend_rad).cwiseAbs().maxCoeff() < 1e-6);
+  REQUIRE(a.points.size() == b.points.size());
+  for (std::size_t i = 0; i < a.points.size(); ++i) CHECK(a.points[i].vertex == b.points[i].vertex);
 }
 
 // ---- borders -------------------------------------------------------------------------------------------------------
@@ -148,15 +157,15 @@ Proposal drawn(const TriangleMesh& mesh, const DrawnCurve& curve, bool follow) {
   return propose_segmentation(mesh, options, context);
 }
 
-TEST(Snapping, ALoopDrawnBesideASharpRingComesOutOnItExactly) {
+TEST_CASE("Snapping.ALoopDrawnBesideASharpRingComesOutOnItExactly") {
   for (const double bend : {0.7, -0.7}) {
     const TriangleMesh mesh = waist(bend);
     const DrawnCurve roughly{ring_at(2.5, 30, 7, 2), true, {}};
     const Segmentation snapped = drawn(mesh, roughly, true).segmentation;
-    ASSERT_EQ(snapped.part_count(), 2);
-    ASSERT_EQ(snapped.interfaces.size(), 1u);
-    ASSERT_EQ(snapped.interfaces[0].vertices.size(), 97u);  // the ring's own, and the first again
-    for (const int v : snapped.interfaces[0].vertices) EXPECT_NEAR(snapped.mesh.V(v, 2), 0, 1e-12);
+    REQUIRE(snapped.part_count() == 2);
+    REQUIRE(snapped.interfaces.size() == 1u);
+    REQUIRE(snapped.interfaces[0].vertices.size() == 97u);  // the ring's own, and the first again
+    for (const int v : snapped.interfaces[0].vertices) CHECK_THAT(snapped.mesh.V(v, 2), WithinAbs(0, 1e-12));
     // Without, or where the loop itself says no, it stays where it was drawn.
     DrawnCurve unsnapped = roughly;
     unsnapped.snap = false;
@@ -165,35 +174,35 @@ TEST(Snapping, ALoopDrawnBesideASharpRingComesOutOnItExactly) {
       double mean = 0;
       for (const int v : s.interfaces[0].vertices)
         mean += s.mesh.V(v, 2) / static_cast<double>(s.interfaces[0].vertices.size());
-      EXPECT_GT(mean, 1);
+      CHECK(mean > 1);
     }
     unsnapped.snap = true;  // and this one alone
     const Segmentation alone = drawn(mesh, unsnapped, false).segmentation;
-    for (const int v : alone.interfaces[0].vertices) EXPECT_NEAR(alone.mesh.V(v, 2), 0, 1e-12);
+    for (const int v : alone.interfaces[0].vertices) CHECK_THAT(alone.mesh.V(v, 2), WithinAbs(0, 1e-12));
   }
 }
 
-TEST(Snapping, ALoopFollowsTheSeamOfTwoBalls) {
+TEST_CASE("Snapping.ALoopFollowsTheSeamOfTwoBalls") {
   // An organic crease: no edge of the mesh lies along it.
   const std::vector<Ball> balls{{{0, 0, -14}, 20}, {{3, 0, 13}, 18}};
   double before = 1e9;
   for (const int levels : {4, 5}) {
     const TriangleMesh mesh = united(balls, levels);
     const Segmentation s = drawn(mesh, {ring_at(1, 14, 6, 1.5), true, {}}, true).segmentation;
-    ASSERT_EQ(s.part_count(), 2);
+    REQUIRE(s.part_count() == 2);
     double mean = 0, worst = 0;
     for (const int v : s.interfaces[0].vertices) {
       const double off = off_plane(balls[0], balls[1], s.mesh.V.row(v).transpose());
       mean += off / static_cast<double>(s.interfaces[0].vertices.size());
       worst = std::max(worst, off);
     }
-    EXPECT_LT(worst, 1.5 * mean_edge_length(mesh));
-    EXPECT_LT(mean, 0.8 * before);
+    CHECK(worst < 1.5 * mean_edge_length(mesh));
+    CHECK(mean < 0.8 * before);
     before = mean;
   }
 }
 
-TEST(Snapping, FoundBordersMoveIntoValleys) {
+TEST_CASE("Snapping.FoundBordersMoveIntoValleys") {
   // Three balls of different sizes: half-way between their tips is not where they meet.
   const std::vector<Ball> balls{{{0, 22, 0}, 27}, {{-16, -9, 0}, 20}, {{15, -9, 0}, 18}};
   const TriangleMesh mesh = united(balls, 5);
@@ -205,7 +214,7 @@ TEST(Snapping, FoundBordersMoveIntoValleys) {
     options.follow_creases = follow;
     options.features = {3, 0.35};
     const Segmentation s = propose_segmentation(mesh, options, context).segmentation;
-    EXPECT_EQ(s.part_count(), 3);
+    CHECK(s.part_count() == 3);
     double sum = 0, count = 0;
     for (const Interface& interface : s.interfaces)
       for (const int v : interface.vertices) {
@@ -218,8 +227,8 @@ TEST(Snapping, FoundBordersMoveIntoValleys) {
     return sum / count;
   };
   const double straight = off_valleys(false), along = off_valleys(true);
-  EXPECT_LT(along, 0.6 * straight);
-  EXPECT_LT(along, 2 * mean_edge_length(mesh));
+  CHECK(along < 0.6 * straight);
+  CHECK(along < 2 * mean_edge_length(mesh));
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a maker's own division may say: punctures that are cuts, where the zipper begins and ends, parts that are only
 // checked.
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <cmath>
 
@@ -14,6 +15,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 using std::numbers::pi;
 
@@ -45,28 +47,28 @@ std::vector<Vec3> meridian(double from_rad, double to_rad, int count) {
   return points;
 }
 
-TEST(Slit, IsOneOpeningAlongItsPath) {
+TEST_CASE("Slit.IsOneOpeningAlongItsPath") {
   Context context;
   for (const int levels : {3, 4, 5}) {
     OpenedSurface surface = whole(ball(levels));
     const double area = surface_area(surface.mesh), edge = mean_edge_length(surface.mesh);
     const auto cuts = cut_slits(surface, {meridian(-0.6, 0.6, 2)}, context);
-    ASSERT_EQ(cuts.size(), 1u);
+    REQUIRE(cuts.size() == 1u);
     const Adjacency adjacency(surface.mesh);
-    EXPECT_TRUE(adjacency.is_manifold());
-    EXPECT_EQ(euler_characteristic(adjacency), 1);
+    CHECK(adjacency.is_manifold());
+    CHECK(euler_characteristic(adjacency) == 1);
     const auto loops = boundary_loops(adjacency);
-    ASSERT_EQ(loops.size(), 1u);
-    EXPECT_EQ(loops[0].size(), 2 * (cuts[0].size() - 1));
-    EXPECT_NEAR(surface_area(surface.mesh), area, 1e-9 * area);
-    EXPECT_EQ(surface.source_of.size(), static_cast<std::size_t>(surface.mesh.vertex_count()));
+    REQUIRE(loops.size() == 1u);
+    CHECK(loops[0].size() == 2 * (cuts[0].size() - 1));
+    CHECK_THAT(surface_area(surface.mesh), WithinAbs(area, 1e-9 * area));
+    CHECK(surface.source_of.size() == static_cast<std::size_t>(surface.mesh.vertex_count()));
     // A great circle's arc of 1.2 rad, up to an edge at either end.
-    for (const Vec3& point : cuts[0]) EXPECT_LT(std::abs(point.y()), 0.2 * edge);
-    EXPECT_NEAR(length_mm(cuts[0]), 60, 2.2 * edge);
+    for (const Vec3& point : cuts[0]) CHECK(std::abs(point.y()) < 0.2 * edge);
+    CHECK_THAT(length_mm(cuts[0]), WithinAbs(60, 2.2 * edge));
   }
 }
 
-TEST(Slit, MayBeCurved) {
+TEST_CASE("Slit.MayBeCurved") {
   // Around three quarters of a circle of latitude.
   Context context;
   std::vector<Vec3> points;
@@ -76,31 +78,31 @@ TEST(Slit, MayBeCurved) {
   OpenedSurface surface = whole(ball(5));
   const auto cuts = cut_slits(surface, {points}, context);
   const double edge = mean_edge_length(surface.mesh);
-  for (const Vec3& point : cuts[0]) EXPECT_NEAR(std::acos(point.z() / point.norm()), 0.5, 0.4 * edge / 50);
-  EXPECT_NEAR(length_mm(cuts[0]), 1.5 * pi * 50 * std::sin(0.5), 0.05 * 1.5 * pi * 50 * std::sin(0.5) + edge);
-  EXPECT_EQ(boundary_loops(Adjacency(surface.mesh)).size(), 1u);
+  for (const Vec3& point : cuts[0]) CHECK_THAT(std::acos(point.z() / point.norm()), WithinAbs(0.5, 0.4 * edge / 50));
+  CHECK_THAT(length_mm(cuts[0]), WithinAbs(1.5 * pi * 50 * std::sin(0.5), 0.05 * 1.5 * pi * 50 * std::sin(0.5) + edge));
+  CHECK(boundary_loops(Adjacency(surface.mesh)).size() == 1u);
 }
 
-TEST(Slit, SaysWhatIsWrongWithAPath) {
+TEST_CASE("Slit.SaysWhatIsWrongWithAPath") {
   Context context;
   const auto refused = [&](const std::vector<std::vector<Vec3>>& paths) {
     OpenedSurface surface = whole(ball());
     try {
       cut_slits(surface, paths, context);
     } catch (const Error& error) {
-      EXPECT_EQ(error.where(), "segments");
+      CHECK(error.where() == "segments");
       return std::string(error.what());
     }
     return std::string();
   };
-  EXPECT_NE(refused({{{0, 0, 50}, {0, 0, 50}}}).find("Cut 1 of the punctures has its points in one place"),
-            std::string::npos);
-  EXPECT_NE(refused({{{0, 0, 50}, {0.5, 0, 50}}}).find("too short"), std::string::npos);
+  CHECK(refused({{{0, 0, 50}, {0, 0, 50}}}).find("Cut 1 of the punctures has its points in one place") !=
+        std::string::npos);
+  CHECK(refused({{{0, 0, 50}, {0.5, 0, 50}}}).find("too short") != std::string::npos);
   // One across the other.
-  EXPECT_NE(refused({meridian(-0.6, 0.6, 2), {{0, -20, 46}, {0, 20, 46}}}).find("Cut 2"), std::string::npos);
+  CHECK(refused({meridian(-0.6, 0.6, 2), {{0, -20, 46}, {0, 20, 46}}}).find("Cut 2") != std::string::npos);
 }
 
-TEST(MakerChoices, ACutIsAnOpeningLikeAHole) {
+TEST_CASE("MakerChoices.ACutIsAnOpeningLikeAHole") {
   // A ball with a hole below and a cut above: one cylinder whose upper line is the cut, and a ribbon that unfolds.
   Context context;
   ZippableOptions options;
@@ -109,27 +111,27 @@ TEST(MakerChoices, ACutIsAnOpeningLikeAHole) {
   parts.punctures = {{0, 0, -50}};
   parts.cuts = {meridian(-0.5, 0.5, 3)};
   const ParameterisedModel model = parameterise_model(ball(), parts, options, context);
-  EXPECT_EQ(model.proposal.segmentation.part_count(), 1);
-  ASSERT_EQ(model.proposal.slits.size(), 1u);
-  EXPECT_LT(constraint_residual_mm(model.proposal.segmentation, model.parameterisation), 1e-10);
+  CHECK(model.proposal.segmentation.part_count() == 1);
+  REQUIRE(model.proposal.slits.size() == 1u);
+  CHECK(constraint_residual_mm(model.proposal.segmentation, model.parameterisation) < 1e-10);
   const ZippableDesign design = design_zippable(model, options, context);
-  EXPECT_LT(design.ribbon.isometry_error, 1e-9);
-  EXPECT_EQ(design.ribbon.opening_arcs, 2);
+  CHECK(design.ribbon.isometry_error < 1e-9);
+  CHECK(design.ribbon.opening_arcs == 2);
   const Json json = Json::parse(as_text(write_design_json(model, design)));
-  ASSERT_EQ(json["punctures"].size(), 2u);
-  EXPECT_EQ(json["punctures"][1]["path_mm"].size(), model.proposal.slits[0].size());
+  REQUIRE(json["punctures"].size() == 2u);
+  CHECK(json["punctures"][1]["path_mm"].size() == model.proposal.slits[0].size());
   // With a border drawn around, it opens the part that it lies in.
   DrawnCurve equator{{}, true, {}};
   for (int k = 0; k < 8; ++k) equator.points.emplace_back(50 * std::cos(k * pi / 4), 50 * std::sin(k * pi / 4), 0);
   parts.curves = {equator};
   const ParameterisedModel halves = parameterise_model(ball(), parts, options, context);
-  EXPECT_EQ(halves.proposal.segmentation.part_count(), 2);
-  EXPECT_EQ(halves.proposal.punctures.size(), 1u);
-  EXPECT_LT(design_zippable(halves, options, context).ribbon.isometry_error, 1e-9);
+  CHECK(halves.proposal.segmentation.part_count() == 2);
+  CHECK(halves.proposal.punctures.size() == 1u);
+  CHECK(design_zippable(halves, options, context).ribbon.isometry_error < 1e-9);
   // A single one makes no cylinder.
   ZippableParts single;
   single.cuts = parts.cuts;
-  EXPECT_THROW(parameterise_model(ball(), single, options, context), Error);
+  CHECK_THROWS_AS(parameterise_model(ball(), single, options, context), Error);
 }
 
 /// A ball's northern half, and its southern half in two.
@@ -142,7 +144,7 @@ ZippableParts three_parts() {
   return parts;
 }
 
-TEST(MakerChoices, TheZipperBeginsAndEndsInThePartsOfGivenPoints) {
+TEST_CASE("MakerChoices.TheZipperBeginsAndEndsInThePartsOfGivenPoints") {
   Context context;
   ZippableOptions options;
   options.width_mm = 12;
@@ -155,13 +157,13 @@ TEST(MakerChoices, TheZipperBeginsAndEndsInThePartsOfGivenPoints) {
     const ParameterisedModel model = parameterise_model(ball(), parts, options, context);
     const ZippableDesign design = design_zippable(model, options, context);
     const std::vector<int>& order = design.traversal.traversal.parts;
-    EXPECT_EQ(order.front() + 1, model.start_part);
-    EXPECT_EQ(order.back() + 1, model.end_part);
-    EXPECT_NE(model.start_part, model.end_part);
+    CHECK(order.front() + 1 == model.start_part);
+    CHECK(order.back() + 1 == model.end_part);
+    CHECK(model.start_part != model.end_part);
     // A number given on top goes before the point.
     ZippableOptions other = options;
     other.start_part = model.end_part, other.end_part = model.start_part;
-    EXPECT_EQ(design_zippable(model, other, context).traversal.traversal.parts.front() + 1, model.end_part);
+    CHECK(design_zippable(model, other, context).traversal.traversal.parts.front() + 1 == model.end_part);
   }
   ZippableParts same = three_parts();
   same.start = same.end = places[0];
@@ -169,22 +171,22 @@ TEST(MakerChoices, TheZipperBeginsAndEndsInThePartsOfGivenPoints) {
     design_zippable(parameterise_model(ball(), same, options, context), options, context);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_EQ(error.where(), "segments");
+    CHECK(error.where() == "segments");
   }
 }
 
-TEST(MakerChoices, PartsAreCheckedWithoutMakingAnythingOfThem) {
+TEST_CASE("MakerChoices.PartsAreCheckedWithoutMakingAnythingOfThem") {
   Context context;
   ZippableOptions options;
   options.width_mm = 12;
   options.check_parts = true;
   const ParameterisedModel good = divide_model(ball(), three_parts(), options, context);
-  EXPECT_TRUE(good.proposal.segmentation.valid());
+  CHECK(good.proposal.segmentation.valid());
   const Json parts = Json::parse(as_text(write_parts_json(good)))["parts"];
-  ASSERT_EQ(parts.size(), 3u);
+  REQUIRE(parts.size() == 3u);
   for (const Json& part : parts) {
-    EXPECT_TRUE(part["cylinder"]);
-    EXPECT_TRUE(part["why_not"].is_null());
+    CHECK(part["cylinder"]);
+    CHECK(part["why_not"].is_null());
   }
   // A band between two circles has two borders and no opening: it is said, not refused, unless it is to become a
   // ribbon.
@@ -196,29 +198,29 @@ TEST(MakerChoices, PartsAreCheckedWithoutMakingAnythingOfThem) {
     band.curves.push_back(circle);
   }
   const ParameterisedModel checked = divide_model(ball(), band, options, context);
-  ASSERT_EQ(checked.proposal.segmentation.part_count(), 3);
+  REQUIRE(checked.proposal.segmentation.part_count() == 3);
   int cylinders = 0;
   const Json told = Json::parse(as_text(write_parts_json(checked)))["parts"];
   for (const Json& part : told) {
     cylinders += part["cylinder"].get<bool>();
-    EXPECT_EQ(part["why_not"].is_null(), part["cylinder"].get<bool>());
+    CHECK(part["why_not"].is_null() == part["cylinder"].get<bool>());
   }
-  EXPECT_EQ(cylinders, 2);
+  CHECK(cylinders == 2);
   options.check_parts = false;
-  EXPECT_THROW(divide_model(ball(), band, options, context), Error);
+  CHECK_THROWS_AS(divide_model(ball(), band, options, context), Error);
 }
 
-TEST(MakerChoices, AreReadFromSegments) {
+TEST_CASE("MakerChoices.AreReadFromSegments") {
   const ZippableParts parts = read_segments(to_bytes(
       R"({"punctures": [[1, 2, 3], [[0, 0, 1], [0, 1, 1], [1, 1, 1]]], "loops": [{"points": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "snap": true}],
           "lines": [[[0, 0, 1], [0, 0, 2]]], "start": [0, 0, 9], "end": [0, 0, -9]})"));
-  EXPECT_EQ(parts.punctures.size(), 1u);
-  ASSERT_EQ(parts.cuts.size(), 1u);
-  EXPECT_EQ(parts.cuts[0][2], Vec3(1, 1, 1));
-  EXPECT_EQ(parts.curves[0].snap, true);
-  EXPECT_FALSE(parts.curves[1].snap.has_value());
-  EXPECT_EQ(*parts.start, Vec3(0, 0, 9));
-  EXPECT_EQ(*parts.end, Vec3(0, 0, -9));
+  CHECK(parts.punctures.size() == 1u);
+  REQUIRE(parts.cuts.size() == 1u);
+  CHECK(parts.cuts[0][2] == Vec3(1, 1, 1));
+  CHECK(parts.curves[0].snap == true);
+  CHECK_FALSE(parts.curves[1].snap.has_value());
+  CHECK(*parts.start == Vec3(0, 0, 9));
+  CHECK(*parts.end == Vec3(0, 0, -9));
   for (const char* wrong :
        {R"({"punctures": [[[0, 0, 1]]]})", R"({"punctures": [[[0, 0, 1], [1, 2]]]})", R"({"start": 1})",
         R"({"end": [1, 2]})", R"({"loops": [{"snap": true}]})", R"({"loops": [{"points": [[0, 0, 1]], "snap": 1}]})",

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "zippable/parameterisation.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <cmath>
 
@@ -12,6 +13,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 using std::numbers::pi;
 
@@ -30,7 +32,7 @@ double least_determinant(const Segmentation& s, const Parameterisation& p) {
   return least;
 }
 
-TEST(Parameterisation, OfACylinderIsItsUnrolling) {
+TEST_CASE("Parameterisation.OfACylinderIsItsUnrolling") {
   // The side of a prism is developable: no distortion at all, whatever the triangles.
   const int around = 40;
   const double radius = 20, height = 70;
@@ -39,19 +41,19 @@ TEST(Parameterisation, OfACylinderIsItsUnrolling) {
   const double perimeter = around * 2 * radius * std::sin(pi / around);
   // Rows turned against each other are antiprisms, which are a little longer than upright: compare with a fine mesh
   // instead.
-  EXPECT_NEAR(p.period_mm[0], perimeter, 2e-3 * perimeter);
-  EXPECT_NEAR(p.height_mm[0], height, 2e-3 * height);
-  EXPECT_LT(p.distortion_max, 1 + 2e-4);
-  EXPECT_LE(constraint_residual_mm(s, p), 1e-10);
+  CHECK_THAT(p.period_mm[0], WithinAbs(perimeter, 2e-3 * perimeter));
+  CHECK_THAT(p.height_mm[0], WithinAbs(height, 2e-3 * height));
+  CHECK(p.distortion_max < 1 + 2e-4);
+  CHECK(constraint_residual_mm(s, p) <= 1e-10);
   // An upright prism: exact.
   TriangleMesh tube = test::tube(48, 24);
   const Parameterisation exact = solve(test::alone(tube));
-  EXPECT_NEAR(exact.period_mm[0], 48 * 2 * std::sin(pi / 48), 1e-10);
-  EXPECT_NEAR(exact.height_mm[0], 1, 1e-10);
-  EXPECT_NEAR(exact.distortion_max, 1, 1e-10);
+  CHECK_THAT(exact.period_mm[0], WithinAbs(48 * 2 * std::sin(pi / 48), 1e-10));
+  CHECK_THAT(exact.height_mm[0], WithinAbs(1, 1e-10));
+  CHECK_THAT(exact.distortion_max, WithinAbs(1, 1e-10));
 }
 
-TEST(Parameterisation, OfAConeIsTheBestRotationallySymmetricMap) {
+TEST_CASE("Parameterisation.OfAConeIsTheBestRotationallySymmetricMap") {
   // A frustum of radii r1 > r2 and slant L: by symmetry x = p t, y = y(s). With c(s) = p / (2 pi r(s)) and a = y'(s)
   // the energy is the integral of r (c^2 + 1/c^2 + a^2 + 1/a^2): a = 1, and p^4 = (2 pi)^4 (integral of r^3) /
   // (integral of 1/r).
@@ -65,14 +67,17 @@ TEST(Parameterisation, OfAConeIsTheBestRotationallySymmetricMap) {
         test::alone(test::turned(around, around / 2, [&](double t) { return Vec2(r1 + t * (r2 - r1), t * rise); }));
     const Parameterisation p = solve(s);
     const double now = std::abs(p.period_mm[0] / period - 1) + std::abs(p.height_mm[0] / slant - 1);
-    EXPECT_LT(now, 0.4 * error) << around;  // second order
+    {
+      INFO(around);
+      CHECK(now < 0.4 * error);
+    }  // second order
     error = now;
-    EXPECT_LE(constraint_residual_mm(s, p), 1e-10);
+    CHECK(constraint_residual_mm(s, p) <= 1e-10);
   }
-  EXPECT_LT(error, 1e-3);
+  CHECK(error < 1e-3);
 }
 
-TEST(Parameterisation, OfASphereIsTheBestRotationallySymmetricMap) {
+TEST_CASE("Parameterisation.OfASphereIsTheBestRotationallySymmetricMap") {
   // The band between colatitudes e and pi - e of a unit sphere: r = sin(s).
   const double e = 0.2;
   double radius3 = 0, inverse = 0;
@@ -90,31 +95,34 @@ TEST(Parameterisation, OfASphereIsTheBestRotationallySymmetricMap) {
     }));
     const Parameterisation p = solve(s);
     const double now = std::abs(p.period_mm[0] / period - 1) + std::abs(p.height_mm[0] / (pi - 2 * e) - 1);
-    EXPECT_LT(now, 0.4 * error) << around;
+    {
+      INFO(around);
+      CHECK(now < 0.4 * error);
+    }
     error = now;
   }
-  EXPECT_LT(error, 2e-3);
+  CHECK(error < 2e-3);
 }
 
-TEST(Parameterisation, ConvergesOnEverySampleWithoutFlips) {
+TEST_CASE("Parameterisation.ConvergesOnEverySampleWithoutFlips") {
   for (const SampleInfo& sample : sample_catalog()) {
-    SCOPED_TRACE(sample.name);
+    INFO(sample.name);
     const Proposal proposal = test::proposed(sample.name, 3000);
     const Segmentation& s = proposal.segmentation;
     const Parameterisation p = solve(s, 1e-9);
-    EXPECT_LE(constraint_residual_mm(s, p), 1e-10);
-    EXPECT_GT(least_determinant(s, p), 0);
-    EXPECT_LE(p.iterations, 40);
-    EXPECT_GE(p.distortion_mean, 1);
-    EXPECT_LT(p.distortion_mean, 0.9 * p.energy_start + 0.2);
-    RecordProperty(sample.name + "_iterations", p.iterations);
+    CHECK(constraint_residual_mm(s, p) <= 1e-10);
+    CHECK(least_determinant(s, p) > 0);
+    CHECK(p.iterations <= 40);
+    CHECK(p.distortion_mean >= 1);
+    CHECK(p.distortion_mean < 0.9 * p.energy_start + 0.2);
+    SUCCEED(sample.name + "_iterations " << p.iterations);
   }
 }
 
-TEST(Parameterisation, GradientAndHessianInTheVariablesAreThoseOfFiniteDifferences) {
+TEST_CASE("Parameterisation.GradientAndHessianInTheVariablesAreThoseOfFiniteDifferences") {
   const Proposal proposal = test::proposed("t_shape", 500);
   const Segmentation& s = proposal.segmentation;
-  ASSERT_GE(s.part_count(), 3);
+  REQUIRE(s.part_count() >= 3);
   Context context;
   const SeamlessChart chart(s);
   NewtonSystem system(chart, context);
@@ -149,56 +157,57 @@ TEST(Parameterisation, GradientAndHessianInTheVariablesAreThoseOfFiniteDifferenc
   const Eigen::VectorXd minus = system.gradient_local(), minus_shared = system.gradient_shared();
   assemble(0);
   const double slope = system.gradient_local().dot(along) + system.gradient_shared().dot(along_shared);
-  EXPECT_NEAR(slope, (energy_plus - energy_minus) / (2 * step), 1e-5 * std::abs(slope));
+  CHECK_THAT(slope, WithinAbs((energy_plus - energy_minus) / (2 * step), 1e-5 * std::abs(slope)));
   Eigen::VectorXd product, product_shared;
   system.apply(along, along_shared, product, product_shared);
-  EXPECT_LE((product - (plus - minus) / (2 * step)).norm(), 1e-6 * product.norm());
-  EXPECT_LE((product_shared - (plus_shared - minus_shared) / (2 * step)).norm(), 1e-6 * product_shared.norm());
+  CHECK((product - (plus - minus) / (2 * step)).norm() <= 1e-6 * product.norm());
+  CHECK((product_shared - (plus_shared - minus_shared) / (2 * step)).norm() <= 1e-6 * product_shared.norm());
 }
 
-TEST(Parameterisation, MovesAndGrowsWithTheModel) {
+TEST_CASE("Parameterisation.MovesAndGrowsWithTheModel") {
   Context context;
   const TriangleMesh mesh = test::proposed("heart", 1500).segmentation.mesh;
   const std::vector<int> parts = test::proposed("heart", 1500).segmentation.face_segment;
   const Parameterisation p = solve(make_segmentation(mesh, parts));
   const TriangleMesh other = test::moved(test::rotated(mesh, Vec3(1, 2, 3), 0.9), Vec3(40, -20, 7), 3);
   const Parameterisation q = solve(make_segmentation(other, parts));
-  ASSERT_EQ(p.corners_mm.rows(), q.corners_mm.rows());
-  EXPECT_LE((3 * p.corners_mm - q.corners_mm).cwiseAbs().maxCoeff(), 1e-4);
-  EXPECT_NEAR(p.distortion_mean, q.distortion_mean, 1e-10);
+  REQUIRE(p.corners_mm.rows() == q.corners_mm.rows());
+  CHECK((3 * p.corners_mm - q.corners_mm).cwiseAbs().maxCoeff() <= 1e-4);
+  CHECK_THAT(p.distortion_mean, WithinAbs(q.distortion_mean, 1e-10));
 }
 
-TEST(Parameterisation, IsTheSameForAnyNumberOfThreads) {
+TEST_CASE("Parameterisation.IsTheSameForAnyNumberOfThreads") {
   const Segmentation s = test::proposed("star", 2000).segmentation;
   const Parameterisation many = solve(s, 1e-9);
   const ThreadLimit one(1);
   const Parameterisation single = solve(s, 1e-9);
-  EXPECT_EQ((many.corners_mm - single.corners_mm).cwiseAbs().maxCoeff(), 0);
+  CHECK((many.corners_mm - single.corners_mm).cwiseAbs().maxCoeff() == 0);
 }
 
-TEST(Parameterisation, StopsWhenAskedTo) {
+TEST_CASE("Parameterisation.StopsWhenAskedTo") {
   const Segmentation s = test::proposed("heart", 4000).segmentation;
   for (const int after : {0, 3, 10, 20}) {
     int asked = 0;
     Context context(Host{{}, [&] { return asked++ >= after; }, {}});
     try {
       parameterise(s, {}, context);
-      FAIL() << "went on";
+      FAIL("went on");
     } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::cancelled);
+      CHECK(error.code() == ErrorCode::cancelled);
     }
   }
 }
 
-TEST(Parameterisation, RefusesWhatIsNoCylinder) {
+TEST_CASE("Parameterisation.RefusesWhatIsNoCylinder") {
   Context context;
   TriangleMesh disc = test::grid(6, 6, 0.1);
   try {
     parameterise(test::alone(disc), {}, context);
-    FAIL() << "accepted";
+    FAIL("accepted");
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::invalid_input);
-    EXPECT_NE(std::string(error.what()).find("puncture it"), std::string::npos) << error.what();
+    CHECK(error.code() == ErrorCode::invalid_input);
+    INFO(error.what());
+    CHECK(std::string(error.what()).find("puncture it") != std::string::npos);
   }
 }
 

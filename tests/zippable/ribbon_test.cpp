@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "zippable/ribbon.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -13,6 +14,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 using std::numbers::pi;
 
@@ -22,16 +24,16 @@ void expect_sound(const test::Zipped& z) {
   const TriangleMesh formed = ribbon.formed();
   const Adjacency adjacency(formed);
   const int count = formed.vertex_count();
-  EXPECT_TRUE(adjacency.is_manifold());
-  EXPECT_EQ(euler_characteristic(adjacency), 1);
-  EXPECT_EQ(face_components(adjacency).count, 1);
+  CHECK(adjacency.is_manifold());
+  CHECK(euler_characteristic(adjacency) == 1);
+  CHECK(face_components(adjacency).count == 1);
   const auto loops = boundary_loops(adjacency);
-  ASSERT_EQ(loops.size(), 1u);
-  ASSERT_EQ(static_cast<int>(loops[0].size()), count);        // no inner vertices
-  for (int i = 0; i < count; ++i) EXPECT_EQ(loops[0][i], i);  // the boundary is the walk itself
-  EXPECT_EQ(formed.face_count(), count - 2);
-  EXPECT_EQ(ribbon.opening_arcs, 2 + 2 * z.curve.fermat_spirals);
-  EXPECT_LE(ribbon.isometry_error, 1e-9);
+  REQUIRE(loops.size() == 1u);
+  REQUIRE(static_cast<int>(loops[0].size()) == count);      // no inner vertices
+  for (int i = 0; i < count; ++i) CHECK(loops[0][i] == i);  // the boundary is the walk itself
+  CHECK(formed.face_count() == count - 2);
+  CHECK(ribbon.opening_arcs == 2 + 2 * z.curve.fermat_spirals);
+  CHECK(ribbon.isometry_error <= 1e-9);
   // Every place on the zipper stands once on either side, in opposite orders, and the sides are equally long.
   double left = 0, right = 0;
   std::vector<int> seen_left(z.curve.samples.size(), 0), seen_right(z.curve.samples.size(), 0);
@@ -39,21 +41,21 @@ void expect_sound(const test::Zipped& z) {
     const RibbonVertex &a = ribbon.boundary[i], &b = ribbon.boundary[(i + 1) % count];
     if (a.sample >= 0) ++(a.left ? seen_left : seen_right)[a.sample];
     if (a.piece < 0 || a.piece != b.piece || a.left != b.left) continue;
-    EXPECT_EQ(b.sample - a.sample, a.left ? 1 : -1);
+    CHECK(b.sample - a.sample == (a.left ? 1 : -1));
     (a.left ? left : right) += (ribbon.flat_mm[i] - ribbon.flat_mm[(i + 1) % count]).norm();
   }
-  for (std::size_t k = 0; k < seen_left.size(); ++k) EXPECT_TRUE(seen_left[k] == 1 && seen_right[k] == 1);
-  EXPECT_NEAR(left, right, 1e-9 * left);
-  EXPECT_NEAR(left, ribbon.zipper_mm, 1e-9 * left);
+  for (std::size_t k = 0; k < seen_left.size(); ++k) CHECK((seen_left[k] == 1 && seen_right[k] == 1));
+  CHECK_THAT(left, WithinAbs(right, 1e-9 * left));
+  CHECK_THAT(left, WithinAbs(ribbon.zipper_mm, 1e-9 * left));
   // Flat triangles face the way of those in space: none is turned over or without area.
   for (int f = 0; f < formed.face_count(); ++f) {
     const Vec2 a = ribbon.flat_mm[formed.F(f, 0)], e1 = ribbon.flat_mm[formed.F(f, 1)] - a,
                e2 = ribbon.flat_mm[formed.F(f, 2)] - a;
-    EXPECT_GT(e1.x() * e2.y() - e1.y() * e2.x(), 0);
+    CHECK(e1.x() * e2.y() - e1.y() * e2.x() > 0);
   }
 }
 
-TEST(PolygonDissection, FillsAPolygonWithTheShortestDiagonals) {
+TEST_CASE("PolygonDissection.FillsAPolygonWithTheShortestDiagonals") {
   // Against all triangulations of random polygons, by recursion.
   test::Random random(4);
   for (int trial = 0; trial < 40; ++trial) {
@@ -72,27 +74,27 @@ TEST(PolygonDissection, FillsAPolygonWithTheShortestDiagonals) {
     };
     double total = 0;
     const auto triangles = cheapest_triangulation(polygon, cost, [](int, int, int) { return 0.0; });
-    EXPECT_EQ(static_cast<int>(triangles.size()), n - 2);
+    CHECK(static_cast<int>(triangles.size()) == n - 2);
     for (const auto& t : triangles) {
-      EXPECT_TRUE(t[0] < t[1] && t[1] < t[2]);
+      CHECK((t[0] < t[1] && t[1] < t[2]));
       total += sides(t[0], t[1]) + sides(t[1], t[2]) + sides(t[0], t[2]);
     }
-    EXPECT_NEAR(total, 2 * least(0, n - 1), 1e-9);  // every diagonal belongs to two triangles
+    CHECK_THAT(total, WithinAbs(2 * least(0, n - 1), 1e-9));  // every diagonal belongs to two triangles
   }
 }
 
-TEST(PolygonDissection, DropsWhatCrosses) {
+TEST_CASE("PolygonDissection.DropsWhatCrosses") {
   const std::vector<Chord> kept =
       without_crossings({{0, 5}, {2, 7}, {0, 5}, {1, 2}, {5, 9}, {6, 9}, {0, 9}, {1, 4}, {0, 8}}, 10);
   const auto pieces = dissect(10, kept);
-  ASSERT_EQ(kept.size(), 4u);  // 0-5, 5-9, 6-9, 1-4; 0-8 crosses 5-9
-  EXPECT_EQ(pieces.size(), 5u);
+  REQUIRE(kept.size() == 4u);  // 0-5, 5-9, 6-9, 1-4; 0-8 crosses 5-9
+  CHECK(pieces.size() == 5u);
   std::size_t corners = 0;
   for (const auto& piece : pieces) corners += piece.size();
-  EXPECT_EQ(corners, 10u + 2 * kept.size());
+  CHECK(corners == 10u + 2 * kept.size());
 }
 
-TEST(Unfold, KeepsEveryEdge) {
+TEST_CASE("Unfold.KeepsEveryEdge") {
   // A fan with random bends.
   test::Random random(8);
   std::vector<Vec3> points{Vec3::Zero()};
@@ -103,11 +105,11 @@ TEST(Unfold, KeepsEveryEdge) {
   for (int i = 0; i < 30; ++i)
     for (int k = 0; k < 3; ++k) {
       const int a = F(i, k), b = F(i, (k + 1) % 3);
-      EXPECT_NEAR((flat[a] - flat[b]).norm(), (points[a] - points[b]).norm(), 1e-12);
+      CHECK_THAT((flat[a] - flat[b]).norm(), WithinAbs((points[a] - points[b]).norm(), 1e-12));
     }
 }
 
-TEST(Ribbon, OfACylinderIsAStraightStrip) {
+TEST_CASE("Ribbon.OfACylinderIsAStraightStrip") {
   const int around = 48;
   const Segmentation s = test::alone(test::tube(around, 24));
   const double period = around * 2 * std::sin(pi / around), windings = 5;
@@ -119,7 +121,7 @@ TEST(Ribbon, OfACylinderIsAStraightStrip) {
   // Sides of the prism are bent along its upright edges only, which are rulings: the strip is the parallelogram of the
   // parameter domain. Its zipper sides are straight and as far apart as the slope says.
   const double length = std::hypot(windings * period, 1.0), width = period / length;  // area period * 1 over length
-  EXPECT_NEAR(z.ribbon.zipper_mm, length, 1e-9);
+  CHECK_THAT(z.ribbon.zipper_mm, WithinAbs(length, 1e-9));
   const auto& flat = z.ribbon.flat_mm;
   int first = -1, last = -1;
   for (int i = 0; i < static_cast<int>(flat.size()); ++i)
@@ -128,17 +130,17 @@ TEST(Ribbon, OfACylinderIsAStraightStrip) {
       last = i;
     }
   const Vec2 along = (flat[last] - flat[first]).normalized(), across(-along.y(), along.x());
-  EXPECT_NEAR((flat[last] - flat[first]).norm(), length, 1e-9);
+  CHECK_THAT((flat[last] - flat[first]).norm(), WithinAbs(length, 1e-9));
   for (std::size_t i = 0; i < flat.size(); ++i) {
     const RibbonVertex& v = z.ribbon.boundary[i];
     if (v.sample < 0) continue;
-    EXPECT_NEAR(across.dot(flat[i] - flat[first]), v.left ? 0 : width, 1e-8);
+    CHECK_THAT(across.dot(flat[i] - flat[first]), WithinAbs(v.left ? 0 : width, 1e-8));
   }
-  EXPECT_NEAR(z.ribbon.width_mean_mm, 1 / windings, 1e-9);  // rulings are upright
-  EXPECT_NEAR(z.ribbon.width_min_mm, 1 / windings, 1e-9);
+  CHECK_THAT(z.ribbon.width_mean_mm, WithinAbs(1 / windings, 1e-9));  // rulings are upright
+  CHECK_THAT(z.ribbon.width_min_mm, WithinAbs(1 / windings, 1e-9));
 }
 
-TEST(Ribbon, OnAConeAndASphereHasTheKnownSpacing) {
+TEST_CASE("Ribbon.OnAConeAndASphereHasTheKnownSpacing") {
   const double windings = 9;
   CurveOptions options;
   options.windings = windings, options.sample_mm = 0.05;
@@ -147,8 +149,8 @@ TEST(Ribbon, OnAConeAndASphereHasTheKnownSpacing) {
   const test::Zipped cone =
       test::zip(test::alone(test::turned(64, 40, [](double t) { return Vec2(2 - t, 2 * t); })), options);
   expect_sound(cone);
-  EXPECT_NEAR(cone.ribbon.width_mean_mm, slant / windings, 0.01 * slant / windings);
-  EXPECT_GT(cone.ribbon.width_min_mm, 0.97 * slant / windings);
+  CHECK_THAT(cone.ribbon.width_mean_mm, WithinAbs(slant / windings, 0.01 * slant / windings));
+  CHECK(cone.ribbon.width_min_mm > 0.97 * slant / windings);
   const double arc = (pi - 0.4) / windings;
   options.width_mm = arc;
   const test::Zipped sphere =
@@ -159,10 +161,10 @@ TEST(Ribbon, OnAConeAndASphereHasTheKnownSpacing) {
                                          })),
                 options);
   expect_sound(sphere);
-  EXPECT_NEAR(sphere.ribbon.width_mean_mm, 2 * std::sin(arc / 2), 0.02 * arc);
+  CHECK_THAT(sphere.ribbon.width_mean_mm, WithinAbs(2 * std::sin(arc / 2), 0.02 * arc));
 }
 
-TEST(Ribbon, ApproachesTheSurfaceWithTheSquareOfItsWidth) {
+TEST_CASE("Ribbon.ApproachesTheSurfaceWithTheSquareOfItsWidth") {
   const Segmentation s = test::alone(test::turned(128, 96, [](double t) {
     const double colatitude = pi - 0.2 - t * (pi - 0.4);
     return Vec2(std::sin(colatitude), std::cos(colatitude));
@@ -175,27 +177,27 @@ TEST(Ribbon, ApproachesTheSurfaceWithTheSquareOfItsWidth) {
     Context context;
     mean.push_back(surface_distance(z.ribbon.formed(), PointDistance(s.mesh), 0.02, context).mean);
   }
-  EXPECT_GT(std::log2(mean[0] / mean[1]), 1.6);
-  EXPECT_GT(std::log2(mean[1] / mean[2]), 1.4);  // the mesh's own error shows
+  CHECK(std::log2(mean[0] / mean[1]) > 1.6);
+  CHECK(std::log2(mean[1] / mean[2]) > 1.4);  // the mesh's own error shows
 }
 
-TEST(Ribbon, IsSoundOnEverySampleAtManyWidths) {
+TEST_CASE("Ribbon.IsSoundOnEverySampleAtManyWidths") {
   for (const SampleInfo& sample : sample_catalog()) {
     const Proposal proposal = test::proposed(sample.name, 2500, 4);
     for (const double width : {30.0, 14.0, 5.0}) {
-      SCOPED_TRACE(sample.name + " " + std::to_string(width));
+      INFO(sample.name + " " + std::to_string(width));
       CurveOptions options;
       options.width_mm = width, options.sample_mm = 0.25 * width;
       const test::Zipped z = test::zip(proposal.segmentation, options);
       expect_sound(z);
       if (width < 10) {
-        EXPECT_NEAR(z.ribbon.width_mean_mm, width, 0.25 * width);
+        CHECK_THAT(z.ribbon.width_mean_mm, WithinAbs(width, 0.25 * width));
       }
     }
   }
 }
 
-TEST(Ribbon, MovesAndGrowsWithTheModel) {
+TEST_CASE("Ribbon.MovesAndGrowsWithTheModel") {
   // Nothing symmetric, where two diagonals would be equally long but for rounding.
   const Segmentation s = test::proposed("cat", 3000).segmentation;
   CurveOptions options;
@@ -204,10 +206,10 @@ TEST(Ribbon, MovesAndGrowsWithTheModel) {
   const TriangleMesh other = test::moved(test::rotated(s.mesh, Vec3(1, -1, 2), 1.1), Vec3(5, 60, -9), 2.5);
   options.width_mm *= 2.5, options.sample_mm *= 2.5;
   const test::Zipped y = test::zip(make_segmentation(other, s.face_segment), options);
-  ASSERT_EQ(z.ribbon.flat_mm.size(), y.ribbon.flat_mm.size());
-  EXPECT_EQ(z.ribbon.F, y.ribbon.F);
+  REQUIRE(z.ribbon.flat_mm.size() == y.ribbon.flat_mm.size());
+  CHECK(z.ribbon.F == y.ribbon.F);
   for (std::size_t i = 0; i < z.ribbon.flat_mm.size(); ++i)
-    EXPECT_LE((2.5 * z.ribbon.flat_mm[i] - y.ribbon.flat_mm[i]).norm(), 1e-2);
+    CHECK((2.5 * z.ribbon.flat_mm[i] - y.ribbon.flat_mm[i]).norm() <= 1e-2);
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "zippable/segmentation.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <cmath>
 #include <set>
@@ -14,10 +15,11 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 using std::numbers::pi;
 
-TEST(GeodesicDistance, IsThatOfTheSphereToFirstOrder) {
+TEST_CASE("GeodesicDistance.IsThatOfTheSphereToFirstOrder") {
   double error = 1;
   for (const int levels : {3, 4, 5}) {
     const TriangleMesh mesh = test::icosphere(levels);
@@ -25,13 +27,16 @@ TEST(GeodesicDistance, IsThatOfTheSphereToFirstOrder) {
     double worst = 0;
     for (int v = 0; v < mesh.vertex_count(); ++v)
       worst = std::max(worst, std::abs(d[v] - std::acos(std::clamp(mesh.V.row(v).dot(mesh.V.row(0)), -1.0, 1.0))));
-    EXPECT_LT(worst, 0.75 * error) << levels;
+    {
+      INFO(levels);
+      CHECK(worst < 0.75 * error);
+    }
     error = worst;
   }
-  EXPECT_LT(error, 0.05);
+  CHECK(error < 0.05);
 }
 
-TEST(SurfaceSplit, CutsWhereTheFieldsAreEqual) {
+TEST_CASE("SurfaceSplit.CutsWhereTheFieldsAreEqual") {
   // Three linear fields over a square: borders are straight lines and meet in one point.
   const TriangleMesh mesh = test::grid(20, 20, 0.2);
   Eigen::MatrixXd field(mesh.vertex_count(), 3);
@@ -45,60 +50,60 @@ TEST(SurfaceSplit, CutsWhereTheFieldsAreEqual) {
     label[v] = static_cast<int>(least);
   }
   const LabelledSurface split = split_by_least_field(mesh, label, field);
-  EXPECT_TRUE(Adjacency(split.mesh).is_manifold());
+  CHECK(Adjacency(split.mesh).is_manifold());
   double area = 0, wrong = 0;
   for (int f = 0; f < split.mesh.face_count(); ++f) {
     const Vec3 a = split.mesh.V.row(split.mesh.F(f, 0)).transpose(),
                b = split.mesh.V.row(split.mesh.F(f, 1)).transpose(),
                c = split.mesh.V.row(split.mesh.F(f, 2)).transpose();
     const double size = 0.5 * (b - a).cross(c - a).z();
-    EXPECT_GT(size, 0);
+    CHECK(size > 0);
     area += size;
     const Vec3 m = (a + b + c) / 3;
     const double fields[3] = {m.x(), m.y() + 0.1, 0.9 - m.x()};
     if (fields[split.face_label[f]] > std::min({fields[0], fields[1], fields[2]}) + 0.01) wrong += size;
   }
-  EXPECT_NEAR(area, 1, 1e-12);
-  EXPECT_LT(wrong, 1e-3);  // only by the distance that new vertices keep from old ones
+  CHECK_THAT(area, WithinAbs(1, 1e-12));
+  CHECK(wrong < 1e-3);  // only by the distance that new vertices keep from old ones
 }
 
-TEST(Puncture, IsARoundHoleOfItsRadius) {
+TEST_CASE("Puncture.IsARoundHoleOfItsRadius") {
   LabelledSurface surface{test::icosphere(5), {}};
   surface.face_label.assign(surface.mesh.face_count(), 0);
   const Vec3 centre = surface.mesh.V.row(7).transpose();
-  EXPECT_EQ(puncture(surface, {7}, 0.3), std::vector<double>{0.3});
+  CHECK(puncture(surface, {7}, 0.3) == std::vector<double>{0.3});
   const auto loops = boundary_loops(Adjacency(surface.mesh));
-  ASSERT_EQ(loops.size(), 1u);
-  for (const int v : loops[0]) EXPECT_NEAR((surface.mesh.V.row(v).transpose() - centre).norm(), 0.3, 0.01);
+  REQUIRE(loops.size() == 1u);
+  for (const int v : loops[0]) CHECK_THAT((surface.mesh.V.row(v).transpose() - centre).norm(), WithinAbs(0.3, 0.01));
 }
 
-TEST(Puncture, ShrinksUntilItFits) {
+TEST_CASE("Puncture.ShrinksUntilItFits") {
   LabelledSurface surface{test::icosphere(4), {}};
   surface.face_label.assign(surface.mesh.face_count(), 0);
   const std::vector<double> radii =
       puncture(surface, {3, 0}, 5);  // larger than the whole sphere; the second must keep off the first
-  EXPECT_LT(radii[0], 2);
-  EXPECT_LT(radii[1], 2);
+  CHECK(radii[0] < 2);
+  CHECK(radii[1] < 2);
   const Adjacency adjacency(surface.mesh);
-  EXPECT_TRUE(adjacency.is_manifold());
-  EXPECT_EQ(boundary_loops(adjacency).size(), 2u);
-  EXPECT_EQ(euler_characteristic(adjacency), 0);
+  CHECK(adjacency.is_manifold());
+  CHECK(boundary_loops(adjacency).size() == 2u);
+  CHECK(euler_characteristic(adjacency) == 0);
 }
 
-TEST(Handles, AreCutAlongTheShortWay) {
+TEST_CASE("Handles.AreCutAlongTheShortWay") {
   Context context;
   const TriangleMesh mesh = test::torus(60, 24);
   const OpenedSurface opened = cut_handles(mesh, context);
-  ASSERT_EQ(opened.cuts.size(), 1u);
-  EXPECT_NEAR(walk_length_mm(mesh, opened.cuts[0], true), 2 * pi * 0.4, 0.05);
+  REQUIRE(opened.cuts.size() == 1u);
+  CHECK_THAT(walk_length_mm(mesh, opened.cuts[0], true), WithinAbs(2 * pi * 0.4, 0.05));
   const Adjacency adjacency(opened.mesh);
-  EXPECT_EQ(genus(adjacency), 0);
-  EXPECT_EQ(boundary_loops(adjacency).size(), 2u);
-  EXPECT_EQ(opened.mesh.face_count(), mesh.face_count());
-  for (int v = 0; v < opened.mesh.vertex_count(); ++v) EXPECT_EQ(opened.mesh.V.row(v), mesh.V.row(opened.source_of[v]));
+  CHECK(genus(adjacency) == 0);
+  CHECK(boundary_loops(adjacency).size() == 2u);
+  CHECK(opened.mesh.face_count() == mesh.face_count());
+  for (int v = 0; v < opened.mesh.vertex_count(); ++v) CHECK(opened.mesh.V.row(v) == mesh.V.row(opened.source_of[v]));
 }
 
-TEST(Openings, AreJoinedBySlits) {
+TEST_CASE("Openings.AreJoinedBySlits") {
   Context context;
   LabelledSurface surface{test::icosphere(4), {}};
   surface.face_label.assign(surface.mesh.face_count(), 0);
@@ -108,18 +113,18 @@ TEST(Openings, AreJoinedBySlits) {
   for (int v = 0; v < surface.mesh.vertex_count(); ++v) opened.source_of.push_back(v);
   for (std::size_t openings = 5; openings > 1; --openings) {
     const Adjacency before(opened.mesh);
-    ASSERT_EQ(boundary_loops(before).size(), openings);
-    EXPECT_EQ(euler_characteristic(before), 2 - static_cast<int>(openings));
-    ASSERT_TRUE(join_nearest_openings(opened, context));
+    REQUIRE(boundary_loops(before).size() == openings);
+    CHECK(euler_characteristic(before) == 2 - static_cast<int>(openings));
+    REQUIRE(join_nearest_openings(opened, context));
   }
-  EXPECT_FALSE(join_nearest_openings(opened, context));
-  EXPECT_EQ(opened.slits.size(), 4u);
-  EXPECT_EQ(opened.mesh.face_count(), surface.mesh.face_count());
+  CHECK_FALSE(join_nearest_openings(opened, context));
+  CHECK(opened.slits.size() == 4u);
+  CHECK(opened.mesh.face_count() == surface.mesh.face_count());
   for (int v = 0; v < opened.mesh.vertex_count(); ++v)
-    EXPECT_EQ(opened.mesh.V.row(v), surface.mesh.V.row(opened.source_of[v]));
+    CHECK(opened.mesh.V.row(v) == surface.mesh.V.row(opened.source_of[v]));
 }
 
-TEST(Proposal, JoinsOpeningsThatAreTooMany) {
+TEST_CASE("Proposal.JoinsOpeningsThatAreTooMany") {
   // Four openings, and the model is to be one cylinder.
   Context context;
   ProposalOptions options;
@@ -128,21 +133,21 @@ TEST(Proposal, JoinsOpeningsThatAreTooMany) {
   surface.face_label.assign(surface.mesh.face_count(), 0);
   puncture(surface, {0, 7, 90, 200}, 0.1);
   const Proposal proposal = propose_segmentation(surface.mesh, options, context);
-  EXPECT_EQ(proposal.segmentation.part_count(), 1);
-  ASSERT_EQ(proposal.notes.size(), 1u);
-  EXPECT_NE(proposal.notes[0].find("2 slits were cut"), std::string::npos);
-  EXPECT_GT(parameterise(proposal.segmentation, {}, context).distortion_mean, 1);
+  CHECK(proposal.segmentation.part_count() == 1);
+  REQUIRE(proposal.notes.size() == 1u);
+  CHECK(proposal.notes[0].find("2 slits were cut") != std::string::npos);
+  CHECK(parameterise(proposal.segmentation, {}, context).distortion_mean > 1);
 }
 
-TEST(Segmentation, FindsTheLinesOfACylinder) {
+TEST_CASE("Segmentation.FindsTheLinesOfACylinder") {
   const Segmentation s = test::alone(test::cylinder_side(10, 30, 24, 12));
-  ASSERT_TRUE(s.valid());
-  EXPECT_EQ(s.segments[0].bottom.vertices.size(), 24u);
-  EXPECT_EQ(s.segments[0].top.vertices.size(), 24u);
-  EXPECT_TRUE(s.segments[0].bottom.is_open());
+  REQUIRE(s.valid());
+  CHECK(s.segments[0].bottom.vertices.size() == 24u);
+  CHECK(s.segments[0].top.vertices.size() == 24u);
+  CHECK(s.segments[0].bottom.is_open());
 }
 
-TEST(Segmentation, SaysWhyAPartIsNoCylinder) {
+TEST_CASE("Segmentation.SaysWhyAPartIsNoCylinder") {
   const auto problem = [](const TriangleMesh& mesh, std::vector<int> parts, int part) {
     return make_segmentation(mesh, parts).problems[part];
   };
@@ -154,37 +159,37 @@ TEST(Segmentation, SaysWhyAPartIsNoCylinder) {
     halves[f] = z > 14 ? 1 : 0;
     pieces[f] = z > 14 && z < 19 ? 1 : 0;
   }
-  EXPECT_TRUE(make_segmentation(tube, halves).valid());
-  EXPECT_NE(problem(tube, pieces, 0).find("in 2 pieces"), std::string::npos);
-  EXPECT_NE(problem(tube, pieces, 1).find("It has no opening"), std::string::npos);
-  EXPECT_NE(problem(test::grid(4, 4), std::vector<int>(32, 0), 0).find("1 boundary loops instead of two: puncture it"),
-            std::string::npos);
+  CHECK(make_segmentation(tube, halves).valid());
+  CHECK(problem(tube, pieces, 0).find("in 2 pieces") != std::string::npos);
+  CHECK(problem(tube, pieces, 1).find("It has no opening") != std::string::npos);
+  CHECK(problem(test::grid(4, 4), std::vector<int>(32, 0), 0).find("1 boundary loops instead of two: puncture it") !=
+        std::string::npos);
 }
 
-TEST(Segmentation, BothSidesOfAnInterfaceAgree) {
+TEST_CASE("Segmentation.BothSidesOfAnInterfaceAgree") {
   for (const char* sample : {"t_shape", "star", "octopus"}) {
     const Segmentation s = test::proposed(sample, 3000).segmentation;
-    ASSERT_TRUE(s.valid());
-    ASSERT_GE(s.part_count(), 3);
+    REQUIRE(s.valid());
+    REQUIRE(s.part_count() >= 3);
     std::vector<int> used(s.interfaces.size(), 0);
     for (int part = 0; part < s.part_count(); ++part) {
       const BoundaryLine& line = s.segments[part].bottom;
       std::size_t place = 0;
       for (const InterfaceUse& use : line.uses) {
         const Interface& interface = s.interfaces[use.interface];
-        EXPECT_EQ(use.forward ? interface.left : interface.right, part);
+        CHECK((use.forward ? interface.left : interface.right) == part);
         ++used[use.interface];
         const std::size_t count = interface.vertices.size();
         for (std::size_t k = 0; k + 1 < count; ++k)
-          EXPECT_EQ(line.vertices[place++], interface.vertices[use.forward ? k : count - 1 - k]);
+          CHECK(line.vertices[place++] == interface.vertices[use.forward ? k : count - 1 - k]);
       }
-      EXPECT_EQ(place, line.vertices.size());
+      CHECK(place == line.vertices.size());
     }
-    for (const int count : used) EXPECT_EQ(count, 2);
+    for (const int count : used) CHECK(count == 2);
   }
 }
 
-TEST(Segmentation, NoTriangleCanBeCrushedOntoALine) {
+TEST_CASE("Segmentation.NoTriangleCanBeCrushedOntoALine") {
   // Two rows of triangles between the lines, then chords: a fan that leans on the lower line.
   const Segmentation s = test::proposed("t_shape", 500).segmentation;
   const Adjacency adjacency(s.mesh);
@@ -194,32 +199,32 @@ TEST(Segmentation, NoTriangleCanBeCrushedOntoALine) {
       for (int h = 0; h < 3 * s.mesh.face_count(); ++h) {
         const int o = adjacency.opposite(h);
         if (s.face_segment[h / 3] != part || o < 0 || s.face_segment[o / 3] != part) continue;
-        EXPECT_FALSE(on.contains(adjacency.from(h)) && on.contains(adjacency.to(h)));
+        CHECK_FALSE((on.contains(adjacency.from(h)) && on.contains(adjacency.to(h))));
       }
     }
 }
 
-TEST(Proposal, FindsTheLimbs) {
-  EXPECT_EQ(test::proposed("t_shape", 3000).segmentation.part_count(), 3);
-  EXPECT_EQ(test::proposed("star", 3000).segmentation.part_count(), 5);
-  EXPECT_EQ(test::proposed("octopus", 6000).segmentation.part_count(), 9);
-  EXPECT_EQ(test::proposed("octopus", 3000, 5, 1).segmentation.part_count(), 1);
+TEST_CASE("Proposal.FindsTheLimbs") {
+  CHECK(test::proposed("t_shape", 3000).segmentation.part_count() == 3);
+  CHECK(test::proposed("star", 3000).segmentation.part_count() == 5);
+  CHECK(test::proposed("octopus", 6000).segmentation.part_count() == 9);
+  CHECK(test::proposed("octopus", 3000, 5, 1).segmentation.part_count() == 1);
   const Proposal torus = test::proposed("torus", 3000);
-  EXPECT_EQ(torus.segmentation.part_count(), 1);
-  EXPECT_EQ(torus.handles_cut, 1);
-  EXPECT_TRUE(torus.punctures.empty());
+  CHECK(torus.segmentation.part_count() == 1);
+  CHECK(torus.handles_cut == 1);
+  CHECK(torus.punctures.empty());
 }
 
-TEST(Proposal, TakesGivenPunctures) {
+TEST_CASE("Proposal.TakesGivenPunctures") {
   Context context;
   ProposalOptions options;
   options.puncture_radius_mm = 0.2;
   options.tips_mm = {{0, 0, 1}, {1, 0, 0}, {-0.5, 0.8, -0.2}};
   const Proposal proposal = propose_segmentation(test::icosphere(4), options, context);
-  EXPECT_EQ(proposal.segmentation.part_count(), 3);
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_LT((proposal.punctures[i] - options.tips_mm[i].normalized()).norm(), 0.1);
+  CHECK(proposal.segmentation.part_count() == 3);
+  for (std::size_t i = 0; i < 3; ++i) CHECK((proposal.punctures[i] - options.tips_mm[i].normalized()).norm() < 0.1);
   options.tips_mm.resize(1);
-  EXPECT_THROW(propose_segmentation(test::icosphere(3), options, context), Error);
+  CHECK_THROWS_AS(propose_segmentation(test::icosphere(3), options, context), Error);
 }
 
 }  // namespace

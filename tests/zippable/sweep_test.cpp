@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Hundreds of designs by chance: whatever the punctures, the order, the width and the number of windings, the ribbon is
 // one disc that unfolds without distortion, or the refusal is one sentence with its mend.
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
 
 #include <cmath>
 
@@ -18,7 +18,7 @@ constexpr int trials = 40;  // a trial takes ten times as long
 constexpr int trials = 200;
 #endif
 
-TEST(ZippableSweep, Seed20261122GivesOnlyValidDesigns) {
+TEST_CASE("ZippableSweep.Seed20261122GivesOnlyValidDesigns") {
   test::Random random(20261122);
   const std::vector<std::string> names{"star", "heart", "t_shape", "torus", "cat", "bust", "fish", "hemisphere"};
   std::vector<TriangleMesh> meshes;
@@ -40,33 +40,33 @@ TEST(ZippableSweep, Seed20261122GivesOnlyValidDesigns) {
     if (random.below(2) == 0)
       for (int k = 2 + random.below(5); k > 0; --k)
         tips.push_back(mesh.V.row(random.below(mesh.vertex_count())).transpose());
-    SCOPED_TRACE(names[which] + ", trial " + std::to_string(trial) + ", width " + std::to_string(options.width_mm));
+    INFO(names[which] + ", trial " + std::to_string(trial) + ", width " + std::to_string(options.width_mm));
     try {
       const ParameterisedModel model = parameterise_model(mesh, {tips, {}}, options, context);
       const ZippableDesign design = design_zippable(model, options, context);
       ++made;
       const TriangleMesh formed = design.ribbon.formed();
       const Adjacency adjacency(formed);
-      EXPECT_TRUE(adjacency.is_manifold());
-      EXPECT_EQ(euler_characteristic(adjacency), 1);
-      EXPECT_EQ(boundary_loops(adjacency).size(), 1u);
-      EXPECT_EQ(adjacency.boundary_edge_count(), formed.vertex_count());
-      EXPECT_EQ(formed.face_count(), formed.vertex_count() - 2);
-      EXPECT_EQ(design.ribbon.opening_arcs, 2 + 2 * design.curve.fermat_spirals);
-      EXPECT_LE(design.ribbon.isometry_error, 1e-9);
-      EXPECT_LE(constraint_residual_mm(model.proposal.segmentation, model.parameterisation), 1e-10);
-      EXPECT_TRUE(std::isfinite(design.ribbon.zipper_mm) && design.ribbon.zipper_mm > 0);
+      CHECK(adjacency.is_manifold());
+      CHECK(euler_characteristic(adjacency) == 1);
+      CHECK(boundary_loops(adjacency).size() == 1u);
+      CHECK(adjacency.boundary_edge_count() == formed.vertex_count());
+      CHECK(formed.face_count() == formed.vertex_count() - 2);
+      CHECK(design.ribbon.opening_arcs == 2 + 2 * design.curve.fermat_spirals);
+      CHECK(design.ribbon.isometry_error <= 1e-9);
+      CHECK(constraint_residual_mm(model.proposal.segmentation, model.parameterisation) <= 1e-10);
+      CHECK((std::isfinite(design.ribbon.zipper_mm) && design.ribbon.zipper_mm > 0));
     } catch (const Error& error) {
       ++refused;
-      EXPECT_TRUE(error.code() == ErrorCode::invalid_input || error.code() == ErrorCode::could_not_solve)
-          << error.what();
-      EXPECT_NE(std::string(error.what()).find(':'), std::string::npos) << error.what();  // what is wrong: what helps
-      EXPECT_EQ(std::string(error.what()).back(), '.') << error.what();
+      INFO(error.what());
+      CHECK((error.code() == ErrorCode::invalid_input || error.code() == ErrorCode::could_not_solve));
+      CHECK(std::string(error.what()).find(':') != std::string::npos);  // what is wrong: what helps
+      CHECK(std::string(error.what()).back() == '.');
     }
   }
-  EXPECT_GT(made, trials / 2);
-  RecordProperty("made", made);
-  RecordProperty("refused", refused);
+  CHECK(made > trials / 2);
+  SUCCEED("made " << made);
+  SUCCEED("refused " << refused);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // Shapes whose parameterisation, curve and ribbon are known, and designs made of them.
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
 
 #include <string_view>
 
@@ -18,10 +18,10 @@ namespace formwright::test {
 inline void expect_segments_refused(const char* text) {
   try {
     read_segments(to_bytes(text));
-    ADD_FAILURE() << "accepted " << text;
+    FAIL_CHECK("accepted " << text);
   } catch (const Error& error) {
-    EXPECT_EQ(error.where(), "segments");
-    EXPECT_EQ(std::string(error.what()).back(), '.');
+    CHECK(error.where() == "segments");
+    CHECK(std::string(error.what()).back() == '.');
   }
 }
 

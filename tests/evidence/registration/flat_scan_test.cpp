@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "evidence/registration/flat_scan.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <cmath>
 #include <functional>
@@ -11,6 +12,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 /// A grid over [-w, w] x [-h, h], each point where `place` puts it; cells that `skip` names are left out.
 TriangleMesh grid(double w, double h, int n, const std::function<Vec3(double, double)>& place,
@@ -34,42 +36,45 @@ TriangleMesh grid(double w, double h, int n, const std::function<Vec3(double, do
 
 Vec3 cylinder(double x, double y) { return {30 * std::sin(x / 30), y, 30 * std::cos(x / 30)}; }
 
-TEST(FlatScan, WhatCanBeUnrolledIsUnrolled) {
+TEST_CASE("FlatScan.WhatCanBeUnrolledIsUnrolled") {
   Context context;
   const TriangleMesh mesh = grid(40, 25, 40, cylinder);
   const FlatScan flat = flatten(mesh, 200, context);
-  EXPECT_EQ(flat.flipped, 0);
-  EXPECT_LT(flat.stretch_rms, 1e-3);
+  CHECK(flat.flipped == 0);
+  CHECK(flat.stretch_rms < 1e-3);
   // Distances across are those of the chords: n = 40 chords of 2 mm arcs on a radius of 30.
   const double across = (flat.place_mm.row(40) - flat.place_mm.row(0)).norm();
-  EXPECT_NEAR(across, 40 * 60 * std::sin(1.0 / 30), 0.1);
+  CHECK_THAT(across, WithinAbs(40 * 60 * std::sin(1.0 / 30), 0.1));
 }
 
-TEST(FlatScan, HolesStayHoles) {
+TEST_CASE("FlatScan.HolesStayHoles") {
   Context context;
   Model model;
   model.mesh = grid(40, 40, 32, cylinder, [](double x, double y) { return std::hypot(x - 8, y + 5) < 9; });
   const ScanPart part = sheet_part(model);
-  EXPECT_EQ(part.holes, 1);
-  EXPECT_EQ(part.other_parts, 0);
+  CHECK(part.holes == 1);
+  CHECK(part.other_parts == 0);
   const FlatScan flat = flatten(part.model.mesh, 200, context);
-  EXPECT_EQ(flat.flipped, 0);
-  EXPECT_LT(flat.stretch_rms, 2e-3);
+  CHECK(flat.flipped == 0);
+  CHECK(flat.stretch_rms < 2e-3);
 }
 
-TEST(FlatScan, MoreStepsComeNearerToRigid) {
+TEST_CASE("FlatScan.MoreStepsComeNearerToRigid") {
   Context context;
   const TriangleMesh mesh =
       grid(50, 50, 40, [](double x, double y) { return Vec3(x, y, 25 * std::exp(-(x * x + y * y) / 500)); });
   double before = 1e9;
   for (const int steps : {0, 1, 3, 30}) {
     const FlatScan flat = flatten(mesh, steps, context);
-    EXPECT_LT(flat.stretch_rms, before) << steps;
+    {
+      INFO(steps);
+      CHECK(flat.stretch_rms < before);
+    }
     before = flat.stretch_rms;
   }
 }
 
-TEST(FlatScan, TheLargestSheetIsTakenAndSolidsAreRefused) {
+TEST_CASE("FlatScan.TheLargestSheetIsTakenAndSolidsAreRefused") {
   Context context;
   Model model;
   model.mesh = grid(20, 20, 4, cylinder);
@@ -80,14 +85,14 @@ TEST(FlatScan, TheLargestSheetIsTakenAndSolidsAreRefused) {
   model.mesh.F.conservativeResize(m + more.F.rows(), 3);
   model.mesh.F.bottomRows(more.F.rows()) = more.F.array() + n;
   const ScanPart part = sheet_part(model);
-  EXPECT_EQ(part.model.mesh.face_count(), m);
-  EXPECT_EQ(part.other_parts, 1);
-  ASSERT_EQ(part.notes.size(), 1u);
+  CHECK(part.model.mesh.face_count() == m);
+  CHECK(part.other_parts == 1);
+  REQUIRE(part.notes.size() == 1u);
   try {
     sheet_part(make_sample("bust", 2000, context));
     FAIL();
   } catch (const Error& e) {
-    EXPECT_EQ(e.where(), "scan");
+    CHECK(e.where() == "scan");
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
 
 #include <Eigen/Geometry>
 #include <random>
@@ -21,49 +21,51 @@ CalibrationPattern small_pattern() {
   return make_calibration_pattern(options);
 }
 
-TEST(CalibrationPattern, ItsDescriptionDrawsItAgain) {
+TEST_CASE("CalibrationPattern.ItsDescriptionDrawsItAgain") {
   const CalibrationPattern pattern = small_pattern();
   const std::string text = calibration_pattern_json(pattern).dump();
   const CalibrationPattern again = read_calibration_pattern(as_bytes(text));
-  EXPECT_EQ(draw_calibration_pattern(pattern, 300, 325, 0.4, Context()).pixels,
-            draw_calibration_pattern(again, 300, 325, 0.4, Context()).pixels);
-  EXPECT_EQ(calibration_pattern_json(again), calibration_pattern_json(pattern));
+  CHECK(draw_calibration_pattern(pattern, 300, 325, 0.4, Context()).pixels ==
+        draw_calibration_pattern(again, 300, 325, 0.4, Context()).pixels);
+  CHECK(calibration_pattern_json(again) == calibration_pattern_json(pattern));
 }
 
-TEST(CalibrationPattern, EverythingLiesWithinTheOpeningAndApart) {
+TEST_CASE("CalibrationPattern.EverythingLiesWithinTheOpeningAndApart") {
   const CalibrationPattern pattern = small_pattern();
-  for (const CornerMark& m : pattern.marks)
-    EXPECT_LE((m.centre_mm.cwiseAbs() + Vec2::Constant(m.radius_mm) - pattern.opening_mm / 2).maxCoeff(), 1e-9)
-        << m.name;
+  for (const CornerMark& m : pattern.marks) {
+    INFO(m.name);
+    CHECK((m.centre_mm.cwiseAbs() + Vec2::Constant(m.radius_mm) - pattern.opening_mm / 2).maxCoeff() <= 1e-9);
+  }
   for (std::size_t i = 0; i < pattern.patches.size(); ++i) {
     const ColourPatch& p = pattern.patches[i];
-    EXPECT_LE((p.centre_mm.cwiseAbs() + Vec2::Constant(p.side_mm / 2) - pattern.opening_mm / 2).maxCoeff(), 1e-9);
+    CHECK((p.centre_mm.cwiseAbs() + Vec2::Constant(p.side_mm / 2) - pattern.opening_mm / 2).maxCoeff() <= 1e-9);
     for (std::size_t j = 0; j < i; ++j)
-      EXPECT_GE((p.centre_mm - pattern.patches[j].centre_mm).cwiseAbs().maxCoeff(), p.side_mm - 1e-9);
+      CHECK((p.centre_mm - pattern.patches[j].centre_mm).cwiseAbs().maxCoeff() >= p.side_mm - 1e-9);
     for (const CornerMark& m : pattern.marks)
-      EXPECT_GE((p.centre_mm - m.centre_mm).cwiseAbs().maxCoeff(), p.side_mm / 2 + m.radius_mm - 1e-9);
+      CHECK((p.centre_mm - m.centre_mm).cwiseAbs().maxCoeff() >= p.side_mm / 2 + m.radius_mm - 1e-9);
   }
 }
 
-TEST(CalibrationPattern, RefusesWhatDoesNotFitWithTheNameOfTheKey) {
+TEST_CASE("CalibrationPattern.RefusesWhatDoesNotFitWithTheNameOfTheKey") {
   CalibrationPatternOptions options;
   options.clamp_opening_x_mm = 250;
-  EXPECT_THROW(make_calibration_pattern(options), Error);
+  CHECK_THROWS_AS(make_calibration_pattern(options), Error);
   options = {};
   options.margin_mm = 90;
-  EXPECT_THROW(make_calibration_pattern(options), Error);
+  CHECK_THROWS_AS(make_calibration_pattern(options), Error);
   for (const char* key : {"seed", "marks", "noise_scales_mm", "sheet_mm", "patches"}) {
     Json json = calibration_pattern_json(small_pattern());
     json.erase(key);
     try {
       read_calibration_pattern(as_bytes(json.dump()));
-      ADD_FAILURE() << key;
+      FAIL_CHECK(key);
     } catch (const Error& e) {
-      EXPECT_EQ(e.where(), "pattern");
-      EXPECT_NE(std::string(e.what()).find(key), std::string::npos) << e.what();
+      CHECK(e.where() == "pattern");
+      INFO(e.what());
+      CHECK(std::string(e.what()).find(key) != std::string::npos);
     }
   }
-  EXPECT_THROW(read_calibration_pattern(as_bytes("not json")), Error);
+  CHECK_THROWS_AS(read_calibration_pattern(as_bytes("not json")), Error);
 }
 
 /// The pattern as linear light, turned by `angle` about its middle and stretched; mirrored where asked for.
@@ -90,7 +92,7 @@ WeightedPicture turned(const CalibrationPattern& pattern, const PlaneFrame& fram
   return picture;
 }
 
-TEST(CornerMarks, AreFoundHoweverTheScanLies) {
+TEST_CASE("CornerMarks.AreFoundHoweverTheScanLies") {
   const CalibrationPattern pattern = small_pattern();
   PlaneFrame frame{300, 300, pattern.marks[0].radius_mm / 12, {0, 0}};
   Context context;
@@ -100,16 +102,18 @@ TEST(CornerMarks, AreFoundHoweverTheScanLies) {
           Eigen::Rotation2Dd(angle).toRotationMatrix() * Eigen::Vector2d(mirror ? -1.04 : 1.04, 0.96).asDiagonal();
       const Vec2 shift(4, -7);
       const FoundMarks found = find_marks(pattern, turned(pattern, frame, linear, shift, 0.02), frame, context);
-      EXPECT_EQ(found.mirrored, mirror);
+      CHECK(found.mirrored == mirror);
       for (std::size_t k = 0; k < 4; ++k) {
-        EXPECT_LT((found.place_mm[k] - (linear * pattern.marks[k].centre_mm + shift)).norm(), 0.3)
-            << angle << " " << mirror << " " << k;
-        EXPECT_GT(found.likeness[k], 0.6);
+        {
+          INFO(angle << " " << mirror << " " << k);
+          CHECK((found.place_mm[k] - (linear * pattern.marks[k].centre_mm + shift)).norm() < 0.3);
+        }
+        CHECK(found.likeness[k] > 0.6);
       }
     }
 }
 
-TEST(CornerMarks, OneMayBeHiddenButNotTwo) {
+TEST_CASE("CornerMarks.OneMayBeHiddenButNotTwo") {
   const CalibrationPattern pattern = small_pattern();
   PlaneFrame frame{240, 260, pattern.marks[0].radius_mm / 12, {0, 0}};
   Context context;
@@ -122,27 +126,27 @@ TEST(CornerMarks, OneMayBeHiddenButNotTwo) {
   };
   hide(2);
   const FoundMarks found = find_marks(pattern, picture, frame, context);
-  EXPECT_EQ(found.likeness[2], 0);
-  EXPECT_LT((found.place_mm[2] - pattern.marks[2].centre_mm).norm(), 0.6);
+  CHECK(found.likeness[2] == 0);
+  CHECK((found.place_mm[2] - pattern.marks[2].centre_mm).norm() < 0.6);
   hide(0);
   try {
     find_marks(pattern, picture, frame, context);
     FAIL();
   } catch (const Error& e) {
-    EXPECT_EQ(e.where(), "corners");
+    CHECK(e.where() == "corners");
   }
 }
 
-TEST(CornerMarks, HomographiesAreExact) {
+TEST_CASE("CornerMarks.HomographiesAreExact") {
   const std::array<Vec2, 4> from{Vec2(-50, -60), Vec2(55, -58), Vec2(48, 66), Vec2(-52, 61)},
       to{Vec2(-40, -50), Vec2(40, -50), Vec2(40, 50), Vec2(-40, 50)};
   const Eigen::Matrix3d h = homography(from, to);
-  for (std::size_t k = 0; k < 4; ++k) EXPECT_LT((mapped(h, from[k]) - to[k]).norm(), 1e-10);
+  for (std::size_t k = 0; k < 4; ++k) CHECK((mapped(h, from[k]) - to[k]).norm() < 1e-10);
   // Lines stay lines: the diagonals' crossing goes to the middle.
   const Vec2 d1 = from[2] - from[0], d2 = from[3] - from[1], gap = from[1] - from[0];
   const double t = (gap.x() * d2.y() - gap.y() * d2.x()) / (d1.x() * d2.y() - d1.y() * d2.x());
-  EXPECT_LT(mapped(h, from[0] + t * d1).norm(), 1e-10);
-  EXPECT_THROW(homography({Vec2(0, 0), Vec2(1, 0), Vec2(2, 0), Vec2(0, 1)}, to), Error);
+  CHECK(mapped(h, from[0] + t * d1).norm() < 1e-10);
+  CHECK_THROWS_AS(homography({Vec2(0, 0), Vec2(1, 0), Vec2(2, 0), Vec2(0, 1)}, to), Error);
 }
 
 }  // namespace

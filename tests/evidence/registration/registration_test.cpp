@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Virtual scans with known truth, from a painted sheet back to where its points went.
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include "base/error.h"
 #include "evidence/registration/virtual_scan.h"
@@ -10,6 +11,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 using test::recovered_error;
 using test::RecoveredError;
@@ -47,39 +49,42 @@ ScanRegistration registered(const test::FormedSurface& surface, const test::Scan
   return register_scan(virtual_scan(surface, pattern, camera), pattern, options, context);
 }
 
-TEST(Registration, AFlatSheetIsFoundWhereItLiesAndKnowsHowSureItIs) {
+TEST_CASE("Registration.AFlatSheetIsFoundWhereItLiesAndKnowsHowSureItIs") {
   const test::FormedSurface flat = test::dome(40, 0, 0);
   for (const double noise : {3.0, 9.0}) {
     test::ScanCamera camera = small_camera();
     camera.noise_levels = noise;
     const ScanRegistration r = registered(flat, camera);
     const RecoveredError e = recovered_error(r, flat);
-    EXPECT_GT(e.points, 1400u);
-    EXPECT_LT(e.median_mm, 0.03) << noise;
-    EXPECT_LT(e.percentile_95_mm, 0.08) << noise;
-    // Two directions of error, each of one sigma.
-    EXPECT_GT(e.spread_median, 0.5) << noise;
-    EXPECT_LT(e.spread_median, 1.3) << noise;
-    EXPECT_LT(e.spread, 1.3) << noise;
-    EXPECT_TRUE(r.in_machine_coordinates);
-    EXPECT_NEAR(*r.rim_scale, 1, 1e-3);
+    CHECK(e.points > 1400u);
+    {
+      INFO(noise);
+      CHECK(e.median_mm < 0.03);
+      CHECK(e.percentile_95_mm < 0.08);
+      // Two directions of error, each of one sigma.
+      CHECK(e.spread_median > 0.5);
+      CHECK(e.spread_median < 1.3);
+      CHECK(e.spread < 1.3);
+    }
+    CHECK(r.in_machine_coordinates);
+    CHECK_THAT(*r.rim_scale, WithinAbs(1, 1e-3));
   }
 }
 
-TEST(Registration, ADomeThatSlidIsRecoveredAcrossTheSurface) {
+TEST_CASE("Registration.ADomeThatSlidIsRecoveredAcrossTheSurface") {
   const test::FormedSurface surface = test::dome(42, 22, 3);
   const ScanRegistration r = registered(surface, small_camera());
-  EXPECT_GT(r.first_displacement_rms_mm, 1);  // the corners alone are far off
+  CHECK(r.first_displacement_rms_mm > 1);  // the corners alone are far off
   const RecoveredError e = recovered_error(r, surface);
-  EXPECT_GT(e.points, 1400u);
-  EXPECT_LT(e.median_mm, 0.05);
-  EXPECT_LT(e.percentile_95_mm, 0.12);
-  EXPECT_GT(e.spread_median, 0.5);
-  EXPECT_LT(e.spread, 1.5);
-  EXPECT_LT(*std::max_element(r.corner_residual_mm.begin(), r.corner_residual_mm.end()), 0.4);
+  CHECK(e.points > 1400u);
+  CHECK(e.median_mm < 0.05);
+  CHECK(e.percentile_95_mm < 0.12);
+  CHECK(e.spread_median > 0.5);
+  CHECK(e.spread < 1.5);
+  CHECK(*std::max_element(r.corner_residual_mm.begin(), r.corner_residual_mm.end()) < 0.4);
 }
 
-TEST(Registration, AThermoformedSheetIsRecovered) {
+TEST_CASE("Registration.AThermoformedSheetIsRecovered") {
   Context context;
   const CalibrationPattern pattern = small_pattern();
   ThermoformOptions options;
@@ -100,13 +105,13 @@ TEST(Registration, AThermoformedSheetIsRecovered) {
   };
   const ScanRegistration r = registered(surface, small_camera());
   const RecoveredError e = recovered_error(r, surface);
-  EXPECT_GT(e.points, 1200u);
-  EXPECT_LT(e.median_mm, 0.12);
-  EXPECT_LT(e.percentile_95_mm, 0.6);  // the scan's triangles cut the simulation's creases
-  EXPECT_LT(e.spread, 1.6);            // and sigma says so
+  CHECK(e.points > 1200u);
+  CHECK(e.median_mm < 0.12);
+  CHECK(e.percentile_95_mm < 0.6);  // the scan's triangles cut the simulation's creases
+  CHECK(e.spread < 1.6);            // and sigma says so
 }
 
-TEST(Registration, HolesWrongPatchesBlurAndNoiseCostPointsRatherThanTruth) {
+TEST_CASE("Registration.HolesWrongPatchesBlurAndNoiseCostPointsRatherThanTruth") {
   const test::FormedSurface surface = test::dome(42, 22, 3);
   test::ScanCamera camera = small_camera();
   camera.noise_levels = 8;
@@ -115,22 +120,22 @@ TEST(Registration, HolesWrongPatchesBlurAndNoiseCostPointsRatherThanTruth) {
   camera.wrong_patches = 3;
   camera.patch_mm = 5;
   const ScanRegistration r = registered(surface, camera), clean = registered(surface, small_camera());
-  EXPECT_LT(r.points.size() + 40, clean.points.size());
+  CHECK(r.points.size() + 40 < clean.points.size());
   const RecoveredError e = recovered_error(r, surface);
-  EXPECT_LT(e.median_mm, 0.07);
-  EXPECT_LT(e.percentile_95_mm, 0.2);
+  CHECK(e.median_mm < 0.07);
+  CHECK(e.percentile_95_mm < 0.2);
 }
 
-TEST(Registration, AScanThatLooksInwardsIsTurned) {
+TEST_CASE("Registration.AScanThatLooksInwardsIsTurned") {
   const test::FormedSurface surface = test::dome(42, 15, 2);
   test::ScanCamera camera = small_camera();
   camera.inwards = true;
   const ScanRegistration r = registered(surface, camera);
-  EXPECT_TRUE(r.marks.mirrored);
-  EXPECT_LT(recovered_error(r, surface).percentile_95_mm, 0.12);
+  CHECK(r.marks.mirrored);
+  CHECK(recovered_error(r, surface).percentile_95_mm < 0.12);
 }
 
-TEST(Registration, CornersByHandDoAsWell) {
+TEST_CASE("Registration.CornersByHandDoAsWell") {
   // Without charts turned about, the sheet's quarter (0, 0) is chart (0, 0): u = (0.5 + (x + sheet / 4) / chart) / 2.
   const CalibrationPattern pattern = small_pattern();
   const test::FormedSurface surface = test::dome(42, 15, 2);
@@ -157,41 +162,44 @@ TEST(Registration, CornersByHandDoAsWell) {
     const Vec2 px(uv.x() * camera.texture_px, (1 - uv.y()) * camera.texture_px);
     corners += std::to_string(px.x()) + "," + std::to_string(px.y()) + " ";
     // What was found without help is where the mark is to be seen; a vertex may be half an edge away from it.
-    ASSERT_TRUE(by_itself.corner_px[m]);
-    EXPECT_LT((*by_itself.corner_px[m] - px).norm(), 0.03 * camera.texture_px);
+    REQUIRE(by_itself.corner_px[m]);
+    CHECK((*by_itself.corner_px[m] - px).norm() < 0.03 * camera.texture_px);
     found += std::to_string(by_itself.corner_px[m]->x()) + "," + std::to_string(by_itself.corner_px[m]->y()) + " ";
   }
   ScanRegistrationOptions options = small_options();
   // Pixels found go back to where they came from.
   options.corners = found;
   const ScanRegistration again = register_scan(scan, pattern, options, context);
-  for (std::size_t m = 0; m < 4; ++m) EXPECT_LT((again.marks.place_mm[m] - by_itself.marks.place_mm[m]).norm(), 1e-3);
+  for (std::size_t m = 0; m < 4; ++m) CHECK((again.marks.place_mm[m] - by_itself.marks.place_mm[m]).norm() < 1e-3);
   options.corners = corners;
-  EXPECT_LT(recovered_error(register_scan(scan, pattern, options, context), surface).percentile_95_mm, 0.12);
+  CHECK(recovered_error(register_scan(scan, pattern, options, context), surface).percentile_95_mm < 0.12);
   for (const char* wrong : {"1,2 3,4", "a,b", "1,1 2,2 3,3 99999,4"}) {
     options.corners = wrong;
     try {
       register_scan(scan, pattern, options, context);
-      ADD_FAILURE() << wrong;
+      FAIL_CHECK(wrong);
     } catch (const Error& e) {
-      EXPECT_EQ(e.where(), "corners");
+      CHECK(e.where() == "corners");
     }
   }
 }
 
-TEST(Registration, FinerPicturesComeNearer) {
+TEST_CASE("Registration.FinerPicturesComeNearer") {
   const test::FormedSurface surface = test::dome(42, 0, 0);
   double before = 1e9;
   for (const int side : {100, 200, 400}) {
     ScanRegistrationOptions options = small_options();
     options.picture_px = side;
     const double median = recovered_error(registered(surface, small_camera(), options), surface).median_mm;
-    EXPECT_LT(median, 0.8 * before) << side;
+    {
+      INFO(side);
+      CHECK(median < 0.8 * before);
+    }
     before = median;
   }
 }
 
-TEST(Registration, AnotherPatternIsRefused) {
+TEST_CASE("Registration.AnotherPatternIsRefused") {
   const CalibrationPattern pattern = small_pattern();
   Context context;
   Model scan = virtual_scan(test::dome(40, 10, 0), pattern, small_camera());
@@ -199,12 +207,12 @@ TEST(Registration, AnotherPatternIsRefused) {
   other.seed = 99;
   try {
     const ScanRegistration r = register_scan(scan, other, small_options(), context);
-    ADD_FAILURE() << r.likeness;
+    FAIL_CHECK(r.likeness);
   } catch (const Error& e) {
-    EXPECT_EQ(e.where(), "pattern");
+    CHECK(e.where() == "pattern");
   }
   scan.textures[0].bytes.clear();
-  EXPECT_THROW(register_scan(scan, pattern, small_options(), context), Error);
+  CHECK_THROWS_AS(register_scan(scan, pattern, small_options(), context), Error);
 }
 
 }  // namespace

@@ -10,37 +10,40 @@ namespace formwright {
 namespace {
 using namespace test;
 
-TEST(MeshFormat, TableIsInOrder) {
+TEST_CASE("MeshFormat.TableIsInOrder") {
   for (std::size_t i = 0; i < mesh_formats.size(); ++i) {
-    EXPECT_EQ(static_cast<std::size_t>(mesh_formats[i].format), i);
-    EXPECT_EQ(mesh_format_of_extension("model." + std::string(mesh_formats[i].extension)), mesh_formats[i].format);
+    CHECK(static_cast<std::size_t>(mesh_formats[i].format) == i);
+    CHECK(mesh_format_of_extension("model." + std::string(mesh_formats[i].extension)) == mesh_formats[i].format);
   }
-  EXPECT_EQ(mesh_format_of_extension(".OBJ"), MeshFormat::obj);
-  EXPECT_EQ(mesh_format_of_extension("3mf"), MeshFormat::three_mf);
-  EXPECT_EQ(mesh_format_of_extension("x.gltf"), MeshFormat::glb);
-  EXPECT_EQ(mesh_format_of_extension("x.txt"), std::nullopt);
-  EXPECT_EQ(mesh_format_of_extension(""), std::nullopt);
+  CHECK(mesh_format_of_extension(".OBJ") == MeshFormat::obj);
+  CHECK(mesh_format_of_extension("3mf") == MeshFormat::three_mf);
+  CHECK(mesh_format_of_extension("x.gltf") == MeshFormat::glb);
+  CHECK(mesh_format_of_extension("x.txt") == std::nullopt);
+  CHECK(mesh_format_of_extension("") == std::nullopt);
 }
 
-TEST(MeshFormat, ContentGoesBeforeTheName) {
+TEST_CASE("MeshFormat.ContentGoesBeforeTheName") {
   const Model model = wavy_torus(5, 4);
   for (const auto& info : mesh_formats) {
     for (const auto& wrong : mesh_formats) {
       const ModelFile file = read_bytes(write(model, info.format), "mislabelled." + std::string(wrong.extension));
-      EXPECT_EQ(file.format, info.format) << "named " << wrong.extension;
-      EXPECT_EQ(file.model.mesh.face_count(), model.mesh.face_count());
+      {
+        INFO("named " << wrong.extension);
+        CHECK(file.format == info.format);
+      }
+      CHECK(file.model.mesh.face_count() == model.mesh.face_count());
     }
-    EXPECT_EQ(read_bytes(write(model, info.format), "").format, info.format);
+    CHECK(read_bytes(write(model, info.format), "").format == info.format);
   }
 }
 
-TEST(MeshFormat, TheNameDecidesWhereTheContentDoesNot) {
+TEST_CASE("MeshFormat.TheNameDecidesWhereTheContentDoesNot") {
   // An unknown first keyword and a binary STL of the wrong size.
-  EXPECT_EQ(read_text("mg 1\nbevel off\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a.obj").format, MeshFormat::obj);
+  CHECK(read_text("mg 1\nbevel off\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a.obj").format == MeshFormat::obj);
   expect_refused(as_bytes("mg 1\nbevel off\n"), "a.txt", "this is not a mesh that can be read here");
 }
 
-TEST(MeshFormat, ForeignFilesAreNamed) {
+TEST_CASE("MeshFormat.ForeignFilesAreNamed") {
   const std::pair<std::string_view, const char*> files[] = {{"Kaydara FBX Binary  ", "an FBX file"},
                                                             {"ISO-10303-21;\nHEADER;", "a STEP file"},
                                                             {"OFF\n3 1 0\n", "an OFF file"},
@@ -50,18 +53,18 @@ TEST(MeshFormat, ForeignFilesAreNamed) {
   expect_refused({}, "nothing.stl", "it is empty");
 }
 
-TEST(MeshFormat, NamesInErrorsAreClean) {
+TEST_CASE("MeshFormat.NamesInErrorsAreClean") {
   try {
     read_text("", std::string("bad\nname\xFF") + std::string(1000, 'x'));
     FAIL();
   } catch (const Error& error) {
     const std::string message = error.what();
-    EXPECT_TRUE(message.starts_with("bad nameÿxxx"));
-    EXPECT_LT(message.size(), 300u);
+    CHECK(message.starts_with("bad nameÿxxx"));
+    CHECK(message.size() < 300u);
   }
 }
 
-TEST(MeshFormat, WritingAnUnsoundModelIsOurMistake) {
+TEST_CASE("MeshFormat.WritingAnUnsoundModelIsOurMistake") {
   const Model good = wavy_torus(5, 4);
   const auto refused = [&](const std::function<void(Model&)>& spoil) {
     Model model = good;
@@ -71,7 +74,7 @@ TEST(MeshFormat, WritingAnUnsoundModelIsOurMistake) {
         write(model, info.format);
         FAIL();
       } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ErrorCode::internal);
+        CHECK(error.code() == ErrorCode::internal);
       }
     }
   };
@@ -85,11 +88,11 @@ TEST(MeshFormat, WritingAnUnsoundModelIsOurMistake) {
   refused([](Model& m) { m.face_material.assign(40, 0); });
 }
 
-TEST(MeshFormat, CountsReadWell) {
-  EXPECT_EQ(counted(1, "face", "faces"), "1 face");
-  EXPECT_EQ(counted(0, "face", "faces"), "0 faces");
-  EXPECT_EQ(counted(999, "face", "faces"), "999 faces");
-  EXPECT_EQ(counted(20'000'000, "face", "faces"), "20 000 000 faces");
+TEST_CASE("MeshFormat.CountsReadWell") {
+  CHECK(counted(1, "face", "faces") == "1 face");
+  CHECK(counted(0, "face", "faces") == "0 faces");
+  CHECK(counted(999, "face", "faces") == "999 faces");
+  CHECK(counted(20'000'000, "face", "faces") == "20 000 000 faces");
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 #include <functional>
 
 #include "base/json.h"
@@ -8,6 +9,8 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinULP;
 using namespace test;
 
 /// One triangle in metres: positions (36 bytes), then indices of the given type.
@@ -31,36 +34,36 @@ struct Triangle {
   ModelFile read() const { return read_bytes(bytes(), "a.glb"); }
 };
 
-TEST(Glb, EveryTypeOfIndexAndNone) {
+TEST_CASE("Glb.EveryTypeOfIndexAndNone") {
   for (const int type : {5121, 5123, 5125, 0}) {
     Triangle triangle(type);
     if (type == 0) triangle.json["meshes"][0]["primitives"][0].erase("indices");
     const ModelFile file = triangle.read();
-    EXPECT_EQ(file.unit, "m");
-    EXPECT_EQ(file.model.mesh.V, (Positions(3, 3) << 0, 0, 0, 1000, 0, 0, 0, 2000, 0).finished());
-    EXPECT_EQ(file.model.mesh.F, (Triangles(1, 3) << 0, 1, 2).finished());
+    CHECK(file.unit == "m");
+    CHECK(file.model.mesh.V == (Positions(3, 3) << 0, 0, 0, 1000, 0, 0, 0, 2000, 0).finished());
+    CHECK(file.model.mesh.F == (Triangles(1, 3) << 0, 1, 2).finished());
   }
 }
 
-TEST(Glb, NodeTransformsAreMultiplied) {
+TEST_CASE("Glb.NodeTransformsAreMultiplied") {
   Triangle triangle;
   triangle.json["nodes"] = Json::parse(
       R"([{"children":[1,2],"translation":[1,2,3]},{"mesh":0,"name":"turned","rotation":[0,0,0.7071067811865476,0.7071067811865476],"scale":[2,1,1]},
                                           {"mesh":0,"matrix":[-1,0,0,0, 0,1,0,0, 0,0,1,0, 5,0,0,1]}])");
   const Model model = triangle.read().model;
-  ASSERT_EQ(model.mesh.face_count(), 2);
+  REQUIRE(model.mesh.face_count() == 2);
   // Scaled by 2 along x, turned by 90° about z, moved.
-  EXPECT_TRUE(model.mesh.V.topRows(3).isApprox(
+  CHECK(model.mesh.V.topRows(3).isApprox(
       (Positions(3, 3) << 1000, 2000, 3000, 1000, 4000, 3000, -1000, 2000, 3000).finished(), 1e-12));
   // Mirrored, so the corners are turned to keep the front in front.
   const Vec3 a = model.mesh.V.row(model.mesh.F(1, 0)), b = model.mesh.V.row(model.mesh.F(1, 1)),
              c = model.mesh.V.row(model.mesh.F(1, 2));
-  EXPECT_GT((b - a).cross(c - a).z(), 0);
-  EXPECT_EQ(model.group_names, (std::vector<std::string>{"turned", "mesh 0"}));
-  EXPECT_EQ(model.face_group, (std::vector<int>{0, 1}));
+  CHECK((b - a).cross(c - a).z() > 0);
+  CHECK(model.group_names == std::vector<std::string>{"turned", "mesh 0"});
+  CHECK(model.face_group == std::vector<int>{0, 1});
 }
 
-TEST(Glb, StripsAndFans) {
+TEST_CASE("Glb.StripsAndFans") {
   Triangle triangle(5125);
   Bytes& binary = triangle.binary;
   binary.resize(36);
@@ -70,12 +73,12 @@ TEST(Glb, StripsAndFans) {
   triangle.json["accessors"][0]["count"] = 5;
   triangle.json["meshes"][0]["primitives"][0].erase("indices");
   triangle.json["meshes"][0]["primitives"][0]["mode"] = 5;
-  EXPECT_EQ(triangle.read().model.mesh.F, (Triangles(3, 3) << 0, 1, 2, 1, 3, 2, 2, 3, 4).finished());
+  CHECK(triangle.read().model.mesh.F == (Triangles(3, 3) << 0, 1, 2, 1, 3, 2, 2, 3, 4).finished());
   triangle.json["meshes"][0]["primitives"][0]["mode"] = 6;
-  EXPECT_EQ(triangle.read().model.mesh.F, (Triangles(3, 3) << 0, 1, 2, 0, 2, 3, 0, 3, 4).finished());
+  CHECK(triangle.read().model.mesh.F == (Triangles(3, 3) << 0, 1, 2, 0, 2, 3, 0, 3, 4).finished());
 }
 
-TEST(Glb, StridedSparseAndNormalisedAccessors) {
+TEST_CASE("Glb.StridedSparseAndNormalisedAccessors") {
   Triangle triangle(5121);
   Bytes& binary = triangle.binary;
   binary.resize(36);
@@ -103,39 +106,39 @@ TEST(Glb, StridedSparseAndNormalisedAccessors) {
                                {"type", "VEC3"}});
   json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = 2;
   const Model model = triangle.read().model;
-  EXPECT_EQ(model.mesh.V, (Positions(3, 3) << 0, 0, 0, 1000, 0, 0, 7000, 8000, 9000).finished());
-  EXPECT_TRUE(model.vertex_colours.row(2).isApprox(Eigen::RowVector3d(1, 0.2, 2 / 255.0)));
+  CHECK(model.mesh.V == (Positions(3, 3) << 0, 0, 0, 1000, 0, 0, 7000, 8000, 9000).finished());
+  CHECK(model.vertex_colours.row(2).isApprox(Eigen::RowVector3d(1, 0.2, 2 / 255.0)));
 }
 
-TEST(Glb, SeveralPrimitivesMeetAgainAtTheirBorder) {
+TEST_CASE("Glb.SeveralPrimitivesMeetAgainAtTheirBorder") {
   Model model = wavy_torus(16, 12);
   add_materials_and_groups(model);  // two materials, so two primitives; texture seams, so split vertices
   const Bytes bytes = write(model, MeshFormat::glb);
   const Model again = read_bytes(bytes, "torus.glb").model;
-  EXPECT_EQ(again.mesh.vertex_count(), model.mesh.vertex_count());
-  EXPECT_EQ(unmatched_edges(again.mesh), 0);
-  EXPECT_TRUE(faces_by_place(again.mesh) == faces_by_place(as_float(model.mesh)));
-  EXPECT_EQ(again.face_material, model.face_material);  // faces were in the order of their materials
-  ASSERT_EQ(again.textures.size(), 1u);
-  EXPECT_EQ(again.textures[0].bytes, model.textures[0].bytes);
-  EXPECT_EQ(again.textures[0].name, "red.png");
-  EXPECT_EQ(again.materials[1].diffuse_texture, 0);
-  EXPECT_TRUE(again.materials[0].diffuse.isApprox(model.materials[0].diffuse));
+  CHECK(again.mesh.vertex_count() == model.mesh.vertex_count());
+  CHECK(unmatched_edges(again.mesh) == 0);
+  CHECK(faces_by_place(again.mesh) == faces_by_place(as_float(model.mesh)));
+  CHECK(again.face_material == model.face_material);  // faces were in the order of their materials
+  REQUIRE(again.textures.size() == 1u);
+  CHECK(again.textures[0].bytes == model.textures[0].bytes);
+  CHECK(again.textures[0].name == "red.png");
+  CHECK(again.materials[1].diffuse_texture == 0);
+  CHECK(again.materials[0].diffuse.isApprox(model.materials[0].diffuse));
   for (int f = 0; f < model.mesh.face_count(); ++f)
-    for (int k = 0; k < 3; ++k) EXPECT_LT((again.UV.row(again.FT(f, k)) - model.UV.row(model.FT(f, k))).norm(), 2e-7);
+    for (int k = 0; k < 3; ++k) CHECK((again.UV.row(again.FT(f, k)) - model.UV.row(model.FT(f, k))).norm() < 2e-7);
   ReadOptions split;
   split.merge_duplicates = false;
-  EXPECT_GT(read_bytes(bytes, "torus.glb", split).model.mesh.vertex_count(), model.mesh.vertex_count());
+  CHECK(read_bytes(bytes, "torus.glb", split).model.mesh.vertex_count() > model.mesh.vertex_count());
 }
 
-TEST(Glb, MillimetresSurviveExactly) {
+TEST_CASE("Glb.MillimetresSurviveExactly") {
   // mm under a scale of 0.001, read as metres times 1000: the same floats.
   const Model model = wavy_torus(9, 7);
   const Model again = read_bytes(write(model, MeshFormat::glb), "a.glb").model;
-  EXPECT_TRUE(faces_by_place(again.mesh) == faces_by_place(as_float(model.mesh)));
+  CHECK(faces_by_place(again.mesh) == faces_by_place(as_float(model.mesh)));
 }
 
-TEST(Glb, ColumnsAndColours) {
+TEST_CASE("Glb.ColumnsAndColours") {
   Model model = wavy_torus(9, 7);
   model.UV.resize(0, 2), model.FT.resize(0, 3);
   add_colours(model);
@@ -144,47 +147,48 @@ TEST(Glb, ColumnsAndColours) {
   WriteOptions options;
   options.columns = columns;
   const Bytes bytes = write(model, MeshFormat::glb, options);
-  EXPECT_NE(as_text(bytes).find("\"_NORMAL_ERROR_DEG\""), std::string_view::npos);
+  CHECK(as_text(bytes).find("\"_NORMAL_ERROR_DEG\"") != std::string_view::npos);
   const ModelFile file = read_bytes(bytes, "a.glb");
-  ASSERT_EQ(file.columns.size(), 1u);
-  EXPECT_EQ(file.columns[0].name, "normal_error_deg");
+  REQUIRE(file.columns.size() == 1u);
+  CHECK(file.columns[0].name == "normal_error_deg");
   // Vertices come in the order in which faces use them.
   for (int f = 0; f < model.mesh.face_count(); ++f)
     for (int k = 0; k < 3; ++k) {
       const int now = file.model.mesh.F(f, k), was = model.mesh.F(f, k);
-      EXPECT_FLOAT_EQ(static_cast<float>(file.columns[0].values[now]), static_cast<float>(columns[0].values[was]));
-      EXPECT_LT((file.model.vertex_colours.row(now) - model.vertex_colours.row(was)).norm(), 1e-6);
+      CHECK_THAT(static_cast<float>(file.columns[0].values[now]),
+                 WithinULP(static_cast<float>(columns[0].values[was]), 4));
+      CHECK((file.model.vertex_colours.row(now) - model.vertex_colours.row(was)).norm() < 1e-6);
     }
 }
 
-TEST(Glb, WrittenFilesKeepTheRules) {
+TEST_CASE("Glb.WrittenFilesKeepTheRules") {
   // The specification's demands on alignment, targets, bounds and unit normals, checked on the bytes.
   Model model = wavy_torus(301, 301);  // more vertices than 16 bits count
   add_materials_and_groups(model);
   for (const bool large : {false, true}) {
     Model sample = large ? model : wavy_torus(7, 5);
     const Bytes bytes = write(sample, MeshFormat::glb);
-    ASSERT_EQ(bytes.size() % 4, 0u);
-    EXPECT_EQ(load<std::uint32_t>(bytes.data() + 8), bytes.size());
+    REQUIRE(bytes.size() % 4 == 0u);
+    CHECK(load<std::uint32_t>(bytes.data() + 8) == bytes.size());
     const std::size_t json_bytes = load<std::uint32_t>(bytes.data() + 12), binary = 28 + json_bytes;
-    ASSERT_EQ(json_bytes % 4, 0u);
+    REQUIRE(json_bytes % 4 == 0u);
     const Json json = Json::parse(as_text(ByteView(bytes).subspan(20, json_bytes)));
-    EXPECT_EQ(json["buffers"][0]["byteLength"], bytes.size() - binary);
+    CHECK(json["buffers"][0]["byteLength"] == bytes.size() - binary);
     for (const Json& accessor : json["accessors"]) {
       const Json& view = json["bufferViews"][accessor["bufferView"].get<std::size_t>()];
-      EXPECT_EQ(view["byteOffset"].get<std::size_t>() % 4, 0u);
+      CHECK(view["byteOffset"].get<std::size_t>() % 4 == 0u);
       const bool indices = accessor["type"] == "SCALAR";
-      EXPECT_EQ(view["target"], indices ? 34963 : 34962);
+      CHECK(view["target"] == (indices ? 34963 : 34962));
       if (indices) {
-        EXPECT_EQ(accessor["componentType"], large ? 5125 : 5123);
+        CHECK(accessor["componentType"] == (large ? 5125 : 5123));
       }
     }
     const Json& attributes = json["meshes"][0]["primitives"][0]["attributes"];
     const Json& position = json["accessors"][attributes["POSITION"].get<std::size_t>()];
     for (int k = 0; k < 3; ++k) {
       const auto column = sample.mesh.V.col(k).cast<float>();
-      EXPECT_EQ(position["min"][static_cast<std::size_t>(k)].get<float>(), column.minCoeff());
-      EXPECT_EQ(position["max"][static_cast<std::size_t>(k)].get<float>(), column.maxCoeff());
+      CHECK(position["min"][static_cast<std::size_t>(k)].get<float>() == column.minCoeff());
+      CHECK(position["max"][static_cast<std::size_t>(k)].get<float>() == column.maxCoeff());
     }
     const Json& normal = json["accessors"][attributes["NORMAL"].get<std::size_t>()];
     const std::size_t offset =
@@ -192,27 +196,27 @@ TEST(Glb, WrittenFilesKeepTheRules) {
     for (std::size_t i = 0; i < normal["count"].get<std::size_t>(); ++i) {
       double square = 0;
       for (std::size_t k = 0; k < 3; ++k) square += std::pow(load<float>(bytes.data() + offset + 12 * i + 4 * k), 2);
-      ASSERT_NEAR(square, 1, 1e-5);
+      REQUIRE_THAT(square, WithinAbs(1, 1e-5));
     }
     for (const Json& primitive : json["meshes"][0]["primitives"])
-      EXPECT_LT(primitive["material"].get<std::size_t>(), json["materials"].size());
+      CHECK(primitive["material"].get<std::size_t>() < json["materials"].size());
   }
 }
 
-TEST(Glb, TextFormWithEmbeddedDataAndCompanions) {
+TEST_CASE("Glb.TextFormWithEmbeddedDataAndCompanions") {
   Triangle triangle;
   triangle.json["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64(triangle.binary);
-  EXPECT_EQ(read_text(triangle.json.dump(), "a.gltf").model.mesh.face_count(), 1);
+  CHECK(read_text(triangle.json.dump(), "a.gltf").model.mesh.face_count() == 1);
   triangle.json["buffers"][0]["uri"] = "scene%20data.bin";
   expect_refused(as_bytes(triangle.json.dump()), "a.gltf",
                  "its geometry is in another file, “scene%20data.bin”; export it as one GLB file");
   const std::vector<Companion> companions{{"scene%20data.bin", triangle.binary}};
   ReadOptions options;
   options.companions = companions;
-  EXPECT_EQ(read_text(triangle.json.dump(), "a.gltf", options).model.mesh.face_count(), 1);
+  CHECK(read_text(triangle.json.dump(), "a.gltf", options).model.mesh.face_count() == 1);
 }
 
-TEST(Glb, PicturesLieWhereTheirTransformPutsThem) {
+TEST_CASE("Glb.PicturesLieWhereTheirTransformPutsThem") {
   Triangle triangle;
   Bytes& binary = triangle.binary;
   const std::size_t at = binary.size();
@@ -237,15 +241,17 @@ TEST(Glb, PicturesLieWhereTheirTransformPutsThem) {
   json["materials"] = Json::parse(R"([{"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"texCoord":1,"extensions":
     {"KHR_texture_transform":{"offset":[0.5,0.25],"rotation":1.5707963267948966,"scale":[2,3],"texCoord":0}}}}}])");
   const Model model = triangle.read().model;
-  ASSERT_EQ(model.UV.rows(), 3);
+  REQUIRE(model.UV.rows() == 3);
   const TextureCoordinates expected = (TextureCoordinates(3, 2) << 0.5, 0.75, 0.5, 2.75, 3.5, 0.75).finished();
-  for (int k = 0; k < 3; ++k)
-    EXPECT_LT((model.UV.row(model.FT(0, k)) - expected.row(model.mesh.F(0, k))).norm(), 1e-6) << k;
+  for (int k = 0; k < 3; ++k) {
+    INFO(k);
+    CHECK((model.UV.row(model.FT(0, k)) - expected.row(model.mesh.F(0, k))).norm() < 1e-6);
+  }
   json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"]["scale"] = 2;
-  EXPECT_THROW(triangle.read(), Error);
+  CHECK_THROWS_AS(triangle.read(), Error);
 }
 
-TEST(Glb, ExternalPicturesAreReportedNotFatal) {
+TEST_CASE("Glb.ExternalPicturesAreReportedNotFatal") {
   Triangle triangle;
   triangle.json["materials"] =
       Json::parse(R"([{"pbrMetallicRoughness":{"baseColorFactor":[0.5,0.25,1,1],"baseColorTexture":{"index":0}}}])");
@@ -253,15 +259,15 @@ TEST(Glb, ExternalPicturesAreReportedNotFatal) {
   triangle.json["images"] = Json::parse(R"([{"uri":"textures/skin.png"}])");
   triangle.json["meshes"][0]["primitives"][0]["material"] = 0;
   const ModelFile file = triangle.read();
-  EXPECT_EQ(file.missing_companions, std::vector<std::string>{"textures/skin.png"});
-  EXPECT_EQ(file.model.materials.at(0).diffuse, Vec3(0.5, 0.25, 1));
+  CHECK(file.missing_companions == std::vector<std::string>{"textures/skin.png"});
+  CHECK(file.model.materials.at(0).diffuse == Vec3(0.5, 0.25, 1));
   triangle.json["images"][0]["uri"] = "data:image/png;base64," + base64(red_pixel_png());
   const ModelFile embedded = triangle.read();
-  EXPECT_TRUE(embedded.missing_companions.empty());
-  EXPECT_EQ(embedded.model.textures.at(0).bytes, red_pixel_png());
+  CHECK(embedded.missing_companions.empty());
+  CHECK(embedded.model.textures.at(0).bytes == red_pixel_png());
 }
 
-TEST(Glb, BadFilesAreRefused) {
+TEST_CASE("Glb.BadFilesAreRefused") {
   const auto refused = [](const std::function<void(Triangle&)>& spoil, const std::string& part) {
     Triangle triangle;
     spoil(triangle);

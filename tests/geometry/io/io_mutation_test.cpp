@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A few thousand damaged files: each is read as some sound mesh or refused in words; nothing else may happen. The
 // fuzzers in tests/fuzz search deeper; this runs with every test.
+#include <catch2/generators/catch_generators.hpp>
+#include <catch2/generators/catch_generators_range.hpp>
 #include <random>
 
 #include "geometry/io/io_test_tools.h"
@@ -19,10 +21,14 @@ void expect_sound_or_refused(ByteView bytes, const std::string& what) {
     const Model model = read_model_file(bytes, "damaged.bin", options, context).model;
     write(model, MeshFormat::ply);  // checks every index and number on the way
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::invalid_input) << what << ": " << error.what();
-    EXPECT_NE(std::string(error.what()).find("damaged.bin"), std::string::npos) << error.what();
+    {
+      INFO(what << ": " << error.what());
+      CHECK(error.code() == ErrorCode::invalid_input);
+    }
+    INFO(error.what());
+    CHECK(std::string(error.what()).find("damaged.bin") != std::string::npos);
   } catch (const std::exception& error) {
-    ADD_FAILURE() << what << ": " << error.what();
+    FAIL_CHECK(what << ": " << error.what());
   }
 }
 
@@ -48,10 +54,8 @@ std::vector<Sample> samples() {
   return result;
 }
 
-class Mutation : public testing::TestWithParam<Sample> {};
-
-TEST_P(Mutation, NeverDoesAnythingElse) {
-  const Bytes& good = GetParam().bytes;
+TEST_CASE("Mutation.NeverDoesAnythingElse") {
+  const auto& [name, good] = GENERATE(from_range(samples()));
   for (unsigned seed = 0; seed < 600; ++seed) {
     std::mt19937 random(seed);
     const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
@@ -74,17 +78,11 @@ TEST_P(Mutation, NeverDoesAnythingElse) {
         bytes.erase(bytes.begin() + static_cast<std::ptrdiff_t>(from),
                     bytes.begin() + static_cast<std::ptrdiff_t>(from + size));
     }
-    expect_sound_or_refused(bytes, GetParam().name + ", seed " + std::to_string(seed));
+    expect_sound_or_refused(bytes, name + ", seed " + std::to_string(seed));
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Formats, Mutation, testing::ValuesIn(samples()), [](const auto& instance) {
-  std::string name = instance.param.name;
-  std::ranges::replace(name, ' ', '_');
-  return name;
-});
-
-TEST(Mutation, TheModelWithinA3mf) {
+TEST_CASE("Mutation.TheModelWithinA3mf") {
   // Changes to the archive are nearly always caught by its checksum: change the text and pack it rightly.
   Model model = wavy_torus(5, 4);
   add_materials_and_groups(model);
@@ -109,7 +107,7 @@ TEST(Mutation, TheModelWithinA3mf) {
   }
 }
 
-TEST(Mutation, Noise) {
+TEST_CASE("Mutation.Noise") {
   for (unsigned seed = 0; seed < 2000; ++seed) {
     std::mt19937 random(seed);
     Bytes bytes(random() % 400);

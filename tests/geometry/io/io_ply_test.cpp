@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
+
 #include "geometry/io/ply.h"
 #include "geometry/io/byte_order.h"
 #include "geometry/io/colour.h"
@@ -7,22 +9,23 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinULP;
 using namespace test;
 
-TEST(Ply, AsciiWithPropertiesInAnyOrder) {
+TEST_CASE("Ply.AsciiWithPropertiesInAnyOrder") {
   const ModelFile file = read_text(
       "ply\nformat ascii 1.0\ncomment by hand\nobj_info anything\nelement vertex 4\nproperty uchar blue\nproperty float z\nproperty uchar red\nproperty float quality\nproperty double x\n"
       "property uchar green\nproperty int8 y\nelement face 2\nproperty uchar flags\nproperty list uchar uint vertex_index\nend_header\n"
       "0 0 255 0.5 0 51 0\n0 0 0 1.5 1 0 0\n0 0 0 2.5 1 0 1\n0 0 0 3.5 0 0 1\n7 3 0 1 2\n7 3 0\n2 3\n",
       "a.ply");
   const Model& model = file.model;
-  EXPECT_EQ(model.mesh.V, (Positions(4, 3) << 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0).finished());
-  EXPECT_EQ(model.mesh.F, (Triangles(2, 3) << 0, 1, 2, 0, 2, 3).finished());
-  EXPECT_TRUE(model.vertex_colours.row(0).isApprox(Eigen::RowVector3d(1, linear_of_srgb(0.2), 0)));
-  ASSERT_EQ(file.columns.size(), 1u);
-  EXPECT_EQ(file.columns[0].name, "quality");
-  EXPECT_EQ(file.columns[0].kind, ColumnKind::float32);
-  EXPECT_EQ(file.columns[0].values, Eigen::Vector4d(0.5, 1.5, 2.5, 3.5));
+  CHECK(model.mesh.V == (Positions(4, 3) << 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0).finished());
+  CHECK(model.mesh.F == (Triangles(2, 3) << 0, 1, 2, 0, 2, 3).finished());
+  CHECK(model.vertex_colours.row(0).isApprox(Eigen::RowVector3d(1, linear_of_srgb(0.2), 0)));
+  REQUIRE(file.columns.size() == 1u);
+  CHECK(file.columns[0].name == "quality");
+  CHECK(file.columns[0].kind == ColumnKind::float32);
+  CHECK(file.columns[0].values == Eigen::Vector4d(0.5, 1.5, 2.5, 3.5));
 }
 
 /// One file of every type of number, in one byte order.
@@ -47,25 +50,25 @@ Bytes every_type() {
   return bytes;
 }
 
-TEST(Ply, EveryTypeInBothByteOrders) {
+TEST_CASE("Ply.EveryTypeInBothByteOrders") {
   for (const Bytes& bytes : {every_type<false>(), every_type<true>()}) {
     const ModelFile file = read_bytes(bytes, "a.ply");
-    EXPECT_EQ(file.model.mesh.V, (Positions(3, 3) << 0, 60000, 0, -1, 60001, 0.1, -2, 60002, 0.1 * 4).finished());
-    EXPECT_EQ(file.model.mesh.F.row(0), Eigen::RowVector3i(2, 0, 1));
-    ASSERT_EQ(file.columns.size(), 5u);
+    CHECK(file.model.mesh.V == (Positions(3, 3) << 0, 60000, 0, -1, 60001, 0.1, -2, 60002, 0.1 * 4).finished());
+    CHECK(file.model.mesh.F.row(0) == Eigen::RowVector3i(2, 0, 1));
+    REQUIRE(file.columns.size() == 5u);
     const double expected[] = {-300, 4e9, -2e9, 200, 0.25};
     const ColumnKind kinds[] = {ColumnKind::int32, ColumnKind::float64, ColumnKind::int32, ColumnKind::uint8,
                                 ColumnKind::float32};
     for (std::size_t k = 0; k < 5; ++k) {
-      EXPECT_EQ(file.columns[k].values, Eigen::VectorXd::Constant(3, expected[k]));
-      EXPECT_EQ(file.columns[k].kind, kinds[k]);
+      CHECK(file.columns[k].values == Eigen::VectorXd::Constant(3, expected[k]));
+      CHECK(file.columns[k].kind == kinds[k]);
     }
   }
 }
 
 constexpr std::string_view quad_header = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
 
-TEST(Ply, PolygonsAndTextureOfCorners) {
+TEST_CASE("Ply.PolygonsAndTextureOfCorners") {
   // A concave quadrangle, with MeshLab's texture coordinates per corner, and a triangle without any.
   const ModelFile file = read_text(
       "ply\nformat ascii 1.0\ncomment TextureFile my picture.png\n" + std::string(quad_header) +
@@ -73,17 +76,18 @@ TEST(Ply, PolygonsAndTextureOfCorners) {
           "0 0 0\n4 0 0\n1 1 0\n0 4 0\n4 1 2 3 0 8 0.1 0.9 0.2 0.8 0.3 0.7 0 1\n3 0 1 2 0\n",
       "a.ply");
   const Model& model = file.model;
-  ASSERT_EQ(model.mesh.face_count(), 3);
+  REQUIRE(model.mesh.face_count() == 3);
   for (int f = 0; f < 2; ++f)
     for (int k = 0; k < 3; ++k)
-      EXPECT_FLOAT_EQ(static_cast<float>(model.UV(model.FT(f, k), 0)), 0.1f * static_cast<float>(model.mesh.F(f, k)));
-  EXPECT_GT(signed_volume({model.mesh.V.rowwise() + Eigen::RowVector3d(0, 0, 1), model.mesh.F.topRows(2)}), 0);
-  EXPECT_EQ(model.textures.at(0).name, "my picture.png");
-  EXPECT_EQ(file.missing_companions, std::vector<std::string>{"my picture.png"});
-  EXPECT_EQ(file.notes.size(), 1u);
+      CHECK_THAT(static_cast<float>(model.UV(model.FT(f, k), 0)),
+                 WithinULP(0.1f * static_cast<float>(model.mesh.F(f, k)), 4));
+  CHECK(signed_volume({model.mesh.V.rowwise() + Eigen::RowVector3d(0, 0, 1), model.mesh.F.topRows(2)}) > 0);
+  CHECK(model.textures.at(0).name == "my picture.png");
+  CHECK(file.missing_companions == std::vector<std::string>{"my picture.png"});
+  CHECK(file.notes.size() == 1u);
 }
 
-TEST(Ply, TextureOfVertices) {
+TEST_CASE("Ply.TextureOfVertices") {
   for (const char* names : {"s t", "u v", "texture_u texture_v"}) {
     std::string text =
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float " +
@@ -91,41 +95,44 @@ TEST(Ply, TextureOfVertices) {
         "\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 0.25 0.5\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n";
     text.replace(text.find(std::string(names)) + std::string(names).find(' '), 1, "\nproperty float ");
     const Model model = read_text(text, "a.ply").model;
-    EXPECT_EQ(model.UV.row(0), Eigen::RowVector2d(0.25, 0.5)) << names;
-    EXPECT_TRUE(model.FT == model.mesh.F);
+    {
+      INFO(names);
+      CHECK(model.UV.row(0) == Eigen::RowVector2d(0.25, 0.5));
+    }
+    CHECK(model.FT == model.mesh.F);
   }
 }
 
-TEST(Ply, TriangleStrips) {
+TEST_CASE("Ply.TriangleStrips") {
   const Model model =
       read_text(
           "ply\nformat ascii 1.0\n" + std::string(quad_header) +
               "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n8 0 1 2 3 -1 2 1 3\n",
           "a.ply")
           .model;
-  EXPECT_EQ(model.mesh.F, (Triangles(3, 3) << 0, 1, 2, 2, 1, 3, 2, 1, 3).finished());
+  CHECK(model.mesh.F == (Triangles(3, 3) << 0, 1, 2, 2, 1, 3, 2, 1, 3).finished());
 }
 
-TEST(Ply, FacesBeforeVertices) {
+TEST_CASE("Ply.FacesBeforeVertices") {
   const Model model = read_text("ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\n" +
                                     std::string(quad_header) + "end_header\n4 0 1 2 3\n0 0 0\n4 0 0\n1 1 0\n0 4 0\n",
                                 "a.ply")
                           .model;
-  EXPECT_EQ(model.mesh.face_count(), 2);
-  EXPECT_TRUE(model.mesh.F(0, 0) == 2 || model.mesh.F(0, 1) == 2 || model.mesh.F(0, 2) == 2);
+  CHECK(model.mesh.face_count() == 2);
+  CHECK((model.mesh.F(0, 0) == 2 || model.mesh.F(0, 1) == 2 || model.mesh.F(0, 2) == 2));
 }
 
-TEST(Ply, ColumnsThatAreNotNumbersAreLeftOut) {
+TEST_CASE("Ply.ColumnsThatAreNotNumbersAreLeftOut") {
   const ModelFile file = read_text(
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float q\nproperty float r\nelement face 1\n"
       "property list uchar int vertex_indices\nend_header\n0 0 0 nan 1\n1 0 0 0 2\n0 1 0 0 3\n3 0 1 2\n",
       "a.ply");
-  ASSERT_EQ(file.columns.size(), 1u);
-  EXPECT_EQ(file.columns[0].name, "r");
-  EXPECT_EQ(file.notes.size(), 1u);
+  REQUIRE(file.columns.size() == 1u);
+  CHECK(file.columns[0].name == "r");
+  CHECK(file.notes.size() == 1u);
 }
 
-TEST(Ply, WritesWhatItReads) {
+TEST_CASE("Ply.WritesWhatItReads") {
   Model model = wavy_torus(13, 11);
   add_colours(model);
   const auto columns = sample_columns(model);
@@ -134,43 +141,43 @@ TEST(Ply, WritesWhatItReads) {
   for (const bool ascii : {false, true}) {
     options.ascii = ascii;
     const ModelFile file = read_bytes(write(model, MeshFormat::ply, options), "torus.ply");
-    EXPECT_TRUE(file.model.mesh.V == model.mesh.V);  // every bit of a double
-    EXPECT_TRUE(file.model.mesh.F == model.mesh.F);
-    EXPECT_LT((file.model.vertex_colours - model.vertex_colours).cwiseAbs().maxCoeff(),
-              0.5 / 255 * 2.4);  // half a step times the curve's slope
-    ASSERT_EQ(file.columns.size(), columns.size());
+    CHECK(file.model.mesh.V == model.mesh.V);  // every bit of a double
+    CHECK(file.model.mesh.F == model.mesh.F);
+    CHECK((file.model.vertex_colours - model.vertex_colours).cwiseAbs().maxCoeff() <
+          0.5 / 255 * 2.4);  // half a step times the curve's slope
+    REQUIRE(file.columns.size() == columns.size());
     for (std::size_t k = 0; k < columns.size(); ++k) {
-      EXPECT_EQ(file.columns[k].name, columns[k].name);
-      EXPECT_EQ(file.columns[k].kind, columns[k].kind);
+      CHECK(file.columns[k].name == columns[k].name);
+      CHECK(file.columns[k].kind == columns[k].kind);
       const double error = (file.columns[k].values - columns[k].values).cwiseAbs().maxCoeff();
-      EXPECT_LE(error, columns[k].kind == ColumnKind::float32 ? 1e-7 : 0);
+      CHECK(error <= (columns[k].kind == ColumnKind::float32 ? 1e-7 : 0));
     }
     for (int f = 0; f < model.mesh.face_count(); ++f)
       for (int k = 0; k < 3; ++k)
-        EXPECT_LT((file.model.UV.row(file.model.FT(f, k)) - model.UV.row(model.FT(f, k))).norm(), 1e-7);
+        CHECK((file.model.UV.row(file.model.FT(f, k)) - model.UV.row(model.FT(f, k))).norm() < 1e-7);
   }
 }
 
-TEST(Ply, TextureWithoutSeamsIsPerVertex) {
+TEST_CASE("Ply.TextureWithoutSeamsIsPerVertex") {
   Model model = wavy_torus(6, 5);
   model.UV = model.mesh.V.leftCols<2>() / 100;
   model.FT = model.mesh.F;
   const Bytes bytes = write(model, MeshFormat::ply);
-  EXPECT_NE(as_text(bytes).find("property double s"), std::string_view::npos);
+  CHECK(as_text(bytes).find("property double s") != std::string_view::npos);
   const Model again = read_bytes(bytes, "a.ply").model;
-  EXPECT_TRUE(again.UV == model.UV);
-  EXPECT_TRUE(again.FT == model.FT);
+  CHECK(again.UV == model.UV);
+  CHECK(again.FT == model.FT);
 }
 
-TEST(Ply, ColumnNamesThatAreTakenAreRefused) {
+TEST_CASE("Ply.ColumnNamesThatAreTakenAreRefused") {
   const Model model = wavy_torus(4, 4);
   const std::vector<VertexColumn> columns{{"x", Eigen::VectorXd::Zero(16), ColumnKind::float64}};
   WriteOptions options;
   options.columns = columns;
-  EXPECT_THROW(write(model, MeshFormat::ply, options), Error);
+  CHECK_THROWS_AS(write(model, MeshFormat::ply, options), Error);
 }
 
-TEST(Ply, BadFilesAreRefused) {
+TEST_CASE("Ply.BadFilesAreRefused") {
   const auto refused = [](const std::string& text, const std::string& part) {
     expect_refused(as_bytes(text), "bad.ply", part);
   };

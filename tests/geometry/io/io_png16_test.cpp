@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
+
 #include "geometry/io/png16.h"
 #include "geometry/io/io_test_tools.h"
 #include "geometry/io/model_samples.h"
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinULP;
 using namespace test;
 
 Grey16Image sample(int width, int height) {
@@ -15,45 +19,45 @@ Grey16Image sample(int width, int height) {
   return image;
 }
 
-TEST(Png16, RoundTrip) {
+TEST_CASE("Png16.RoundTrip") {
   for (const auto& [width, height] : {std::pair{1, 1}, {3, 5}, {257, 130}}) {
     const Grey16Image image = sample(width, height);
     const Grey16Image again = read_png16(write_png16(image), "a.png");
-    EXPECT_EQ(again.width, width);
-    EXPECT_EQ(again.height, height);
-    EXPECT_EQ(again.levels, image.levels);
-    EXPECT_DOUBLE_EQ(again.pixel_width_mm, 0.1);
-    EXPECT_DOUBLE_EQ(again.pixel_height_mm, 0.25);
+    CHECK(again.width == width);
+    CHECK(again.height == height);
+    CHECK(again.levels == image.levels);
+    CHECK_THAT(again.pixel_width_mm, WithinULP(0.1, 4));
+    CHECK_THAT(again.pixel_height_mm, WithinULP(0.25, 4));
   }
 }
 
-TEST(Png16, IsBigEndianGreyWithSize) {
+TEST_CASE("Png16.IsBigEndianGreyWithSize") {
   Grey16Image image = sample(1, 1);
   const std::string text(as_text(write_png16(image)));
-  EXPECT_EQ(text.substr(24, 2), (std::string{16, 0}));  // depth, grey
+  CHECK(text.substr(24, 2) == std::string{16, 0});  // depth, grey
   const std::size_t size = text.find("pHYs");
-  ASSERT_NE(size, std::string::npos);
-  EXPECT_EQ(text.substr(size + 4, 9),
-            (std::string{0, 0, 0x27, 0x10, 0, 0, 0x0f, '\xa0', 1}));  // 10000 and 4000 a metre
+  REQUIRE(size != std::string::npos);
+  CHECK(text.substr(size + 4, 9) == std::string{0, 0, 0x27, 0x10, 0, 0, 0x0f, '\xa0', 1});  // 10000 and 4000 a metre
   image.pixel_width_mm = 0;
-  EXPECT_EQ(as_text(write_png16(image)).find("pHYs"), std::string_view::npos);
+  CHECK(as_text(write_png16(image)).find("pHYs") == std::string_view::npos);
 }
 
-TEST(Png16, ColoursBecomeGrey) {
+TEST_CASE("Png16.ColoursBecomeGrey") {
   const Grey16Image red = read_png16(red_pixel_png(), "red.png");
-  ASSERT_EQ(red.levels.size(), 1u);
-  EXPECT_NEAR(red.levels[0], 0.2126 * 65535, 257);  // a step of the picture's eight bits
+  REQUIRE(red.levels.size() == 1u);
+  CHECK_THAT(red.levels[0], WithinAbs(0.2126 * 65535, 257));  // a step of the picture's eight bits
 }
 
-TEST(Png16, BadPicturesAreRefused) {
+TEST_CASE("Png16.BadPicturesAreRefused") {
   const auto refused = [](ByteView bytes) {
     try {
       read_png16(bytes, "bad.png");
       FAIL();
     } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::invalid_input);
-      EXPECT_EQ(error.where(), "image");
-      EXPECT_TRUE(std::string(error.what()).starts_with("bad.png: ")) << error.what();
+      CHECK(error.code() == ErrorCode::invalid_input);
+      CHECK(error.where() == "image");
+      INFO(error.what());
+      CHECK(std::string(error.what()).starts_with("bad.png: "));
     }
   };
   const Bytes good = write_png16(sample(40, 40));
@@ -69,7 +73,7 @@ TEST(Png16, BadPicturesAreRefused) {
   refused(huge);
   Grey16Image wrong = sample(3, 3);
   wrong.levels.pop_back();
-  EXPECT_THROW(write_png16(wrong), Error);
+  CHECK_THROWS_AS(write_png16(wrong), Error);
 }
 
 }  // namespace

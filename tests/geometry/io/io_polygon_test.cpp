@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -11,6 +12,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 Vec3 area_vector(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a) / 2; }
 
@@ -24,7 +26,10 @@ Vec3 polygon_area_vector(const std::vector<Vec3>& p) {
 void expect_triangulates(const std::vector<Vec3>& corners, const std::string& what) {
   PolygonTriangulator triangulator;
   const auto triangles = triangulator.triangulate(corners);
-  ASSERT_EQ(triangles.size(), corners.size() - 2) << what;
+  {
+    INFO(what);
+    REQUIRE(triangles.size() == corners.size() - 2);
+  }
   const Vec3 whole = polygon_area_vector(corners), normal = whole.normalized();
   double sum = 0;
   std::set<int> used;
@@ -32,12 +37,16 @@ void expect_triangulates(const std::vector<Vec3>& corners, const std::string& wh
     const double area = area_vector(corners[static_cast<std::size_t>(t[0])], corners[static_cast<std::size_t>(t[1])],
                                     corners[static_cast<std::size_t>(t[2])])
                             .dot(normal);
-    EXPECT_GE(area, -1e-12 * whole.norm()) << what;
+    {
+      INFO(what);
+      CHECK(area >= -1e-12 * whole.norm());
+    }
     sum += std::abs(area);
     used.insert(t.begin(), t.end());
   }
-  EXPECT_NEAR(sum, whole.norm(), 1e-9 * whole.norm()) << what;
-  EXPECT_EQ(used.size(), corners.size()) << what;
+  INFO(what);
+  CHECK_THAT(sum, WithinAbs(whole.norm(), 1e-9 * whole.norm()));
+  CHECK(used.size() == corners.size());
 }
 
 std::vector<Vec3> on_plane(const std::vector<Vec2>& flat, int seed) {
@@ -50,7 +59,7 @@ std::vector<Vec3> on_plane(const std::vector<Vec2>& flat, int seed) {
   return points;
 }
 
-TEST(PolygonTriangulation, ArrowheadWhoseFanWouldTurnOver) {
+TEST_CASE("PolygonTriangulation.ArrowheadWhoseFanWouldTurnOver") {
   // Concave at corner 2 (or, started elsewhere, at any other): a fan from corner 0 overlaps itself for two of four
   // starts.
   const std::vector<Vec2> arrow{{0, 0}, {4, -3}, {1, 0}, {4, 3}};
@@ -61,14 +70,14 @@ TEST(PolygonTriangulation, ArrowheadWhoseFanWouldTurnOver) {
   }
 }
 
-TEST(PolygonTriangulation, QuadrangleTakesTheShorterDiagonal) {
+TEST_CASE("PolygonTriangulation.QuadrangleTakesTheShorterDiagonal") {
   PolygonTriangulator triangulator;
   const std::vector<Vec3> kite{{0, 0, 0}, {5, -1, 0}, {10, 0, 0}, {5, 1, 0}};
   const auto triangles = triangulator.triangulate(kite);
-  for (const auto& t : triangles) EXPECT_TRUE(std::ranges::count(t, 1) == 1 && std::ranges::count(t, 3) == 1);
+  for (const auto& t : triangles) CHECK((std::ranges::count(t, 1) == 1 && std::ranges::count(t, 3) == 1));
 }
 
-TEST(PolygonTriangulation, StarsCombsAndSpirals) {
+TEST_CASE("PolygonTriangulation.StarsCombsAndSpirals") {
   for (const int spikes : {5, 17, 400}) {
     std::vector<Vec2> star;
     for (int i = 0; i < 2 * spikes; ++i) {
@@ -89,25 +98,24 @@ TEST(PolygonTriangulation, StarsCombsAndSpirals) {
   expect_triangulates(on_plane(spiral, 4), "spiral");
 }
 
-TEST(PolygonTriangulation, CornersOnStraightEdgesGiveNoDegenerateTriangles) {
+TEST_CASE("PolygonTriangulation.CornersOnStraightEdgesGiveNoDegenerateTriangles") {
   const std::vector<Vec3> square{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0},
                                  {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}};
   PolygonTriangulator triangulator;
   for (const auto& t : triangulator.triangulate(square))
-    EXPECT_GT(area_vector(square[static_cast<std::size_t>(t[0])], square[static_cast<std::size_t>(t[1])],
-                          square[static_cast<std::size_t>(t[2])])
-                  .z(),
-              0.1);
+    CHECK(area_vector(square[static_cast<std::size_t>(t[0])], square[static_cast<std::size_t>(t[1])],
+                      square[static_cast<std::size_t>(t[2])])
+              .z() > 0.1);
   expect_triangulates(square, "square with midpoints");
 }
 
-TEST(PolygonTriangulation, KeyholeAroundAHole) {
+TEST_CASE("PolygonTriangulation.KeyholeAroundAHole") {
   // A square with a square hole, joined by two coincident edges, as CAD programs write it.
   const std::vector<Vec2> keyhole{{0, 0}, {9, 0}, {9, 9}, {0, 9}, {0, 0}, {3, 3}, {3, 6}, {6, 6}, {6, 3}, {3, 3}};
   expect_triangulates(on_plane(keyhole, 5), "keyhole");
 }
 
-TEST(PolygonTriangulation, RandomSimplePolygons) {
+TEST_CASE("PolygonTriangulation.RandomSimplePolygons") {
   // Radii at increasing angles make a star-shaped, hence simple, polygon with many reflex corners.
   for (int seed = 0; seed < 300; ++seed) {
     std::mt19937 random(static_cast<unsigned>(seed));
@@ -122,7 +130,7 @@ TEST(PolygonTriangulation, RandomSimplePolygons) {
   }
 }
 
-TEST(PolygonTriangulation, SlightlyBentPolygonsKeepTheirSide) {
+TEST_CASE("PolygonTriangulation.SlightlyBentPolygonsKeepTheirSide") {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> off(-0.02, 0.02);
   std::vector<Vec3> bent;
@@ -130,13 +138,12 @@ TEST(PolygonTriangulation, SlightlyBentPolygonsKeepTheirSide) {
     bent.emplace_back(std::cos(i * std::numbers::pi / 6), std::sin(i * std::numbers::pi / 6), off(random));
   PolygonTriangulator triangulator;
   for (const auto& t : triangulator.triangulate(bent))
-    EXPECT_GT(area_vector(bent[static_cast<std::size_t>(t[0])], bent[static_cast<std::size_t>(t[1])],
-                          bent[static_cast<std::size_t>(t[2])])
-                  .z(),
-              0);
+    CHECK(area_vector(bent[static_cast<std::size_t>(t[0])], bent[static_cast<std::size_t>(t[1])],
+                      bent[static_cast<std::size_t>(t[2])])
+              .z() > 0);
 }
 
-TEST(PolygonTriangulation, HopelessPolygonsStillEnd) {
+TEST_CASE("PolygonTriangulation.HopelessPolygonsStillEnd") {
   PolygonTriangulator triangulator;
   std::mt19937 random(11);
   std::uniform_real_distribution<double> any(-1, 1);
@@ -145,9 +152,9 @@ TEST(PolygonTriangulation, HopelessPolygonsStillEnd) {
   for (std::size_t i = 0; i < line.size(); ++i) line[i] = Vec3(static_cast<double>(i % 37), 0, 0);
   for (const auto& corners : {crossing, line, point}) {
     const auto triangles = triangulator.triangulate(corners);
-    EXPECT_EQ(triangles.size(), corners.size() - 2);
+    CHECK(triangles.size() == corners.size() - 2);
     for (const auto& t : triangles)
-      for (const int corner : t) EXPECT_TRUE(corner >= 0 && corner < static_cast<int>(corners.size()));
+      for (const int corner : t) CHECK((corner >= 0 && corner < static_cast<int>(corners.size())));
   }
 }
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every format to every other, and what each step may lose.
+#include <catch2/generators/catch_generators.hpp>
+#include <catch2/generators/catch_generators_range.hpp>
 #include <map>
 
 #include "geometry/io/io_test_tools.h"
@@ -13,8 +15,6 @@ using namespace test;
 struct Route {
   MeshFormat first, second;
 };
-
-class RoundTrip : public testing::TestWithParam<Route> {};
 
 bool has_double_positions(MeshFormat format) { return format == MeshFormat::obj || format == MeshFormat::ply; }
 bool has_texture(MeshFormat format) { return format != MeshFormat::stl; }
@@ -57,8 +57,16 @@ std::map<std::array<float, 9>, Eigen::Matrix<double, 3, 2>> texture_by_place(con
   return result;
 }
 
-TEST_P(RoundTrip, ShapeTextureAndColours) {
-  const auto [first, second] = GetParam();
+std::vector<Route> all_routes() {
+  std::vector<Route> routes;
+  for (const auto& first : mesh_formats)
+    for (const auto& second : mesh_formats) routes.push_back({first.format, second.format});
+  return routes;
+}
+
+TEST_CASE("RoundTrip.ShapeTextureAndColours") {
+  const auto [first, second] = GENERATE(from_range(all_routes()));
+  INFO(mesh_format_info(first).extension << " to " << mesh_format_info(second).extension);
   Model model = wavy_torus(14, 11);
   model.textures.push_back({"red.png", "image/png", red_pixel_png()});
   model.materials.push_back({"picture", Vec3(1, 1, 1), 0});
@@ -67,18 +75,18 @@ TEST_P(RoundTrip, ShapeTextureAndColours) {
 
   const bool exact = has_double_positions(first) && has_double_positions(second);
   if (exact) {
-    EXPECT_TRUE(again.mesh.V == model.mesh.V);
+    CHECK(again.mesh.V == model.mesh.V);
   }
-  EXPECT_TRUE(faces_by_place(as_float(again.mesh)) == faces_by_place(as_float(model.mesh)));
-  EXPECT_EQ(unmatched_edges(again.mesh), 0);
-  EXPECT_EQ(again.mesh.vertex_count(), model.mesh.vertex_count());
+  CHECK(faces_by_place(as_float(again.mesh)) == faces_by_place(as_float(model.mesh)));
+  CHECK(unmatched_edges(again.mesh) == 0);
+  CHECK(again.mesh.vertex_count() == model.mesh.vertex_count());
 
   if (has_texture(first) && has_texture(second)) {
     const auto expected = texture_by_place(model), found = texture_by_place(again);
-    ASSERT_EQ(found.size(), expected.size());
-    for (const auto& [place, texture] : expected) EXPECT_LT((found.at(place) - texture).cwiseAbs().maxCoeff(), 3e-7);
+    REQUIRE(found.size() == expected.size());
+    for (const auto& [place, texture] : expected) CHECK((found.at(place) - texture).cwiseAbs().maxCoeff() < 3e-7);
   } else {
-    EXPECT_EQ(again.FT.rows(), 0);
+    CHECK(again.FT.rows() == 0);
   }
 
   // Colours by themselves: in 3MF a face has either a picture or its corners' colours.
@@ -88,16 +96,17 @@ TEST_P(RoundTrip, ShapeTextureAndColours) {
   const Model back = through(through(coloured, first), second);
   if (has_colours(first) && has_colours(second)) {
     const auto expected = colours_by_place(coloured), found = colours_by_place(back);
-    ASSERT_EQ(found.size(), expected.size());
+    REQUIRE(found.size() == expected.size());
     for (const auto& [place, colour] : expected)
-      EXPECT_LT((found.at(place) - colour).cwiseAbs().maxCoeff(), 0.5 / 255 * 2.4 + 1e-6);
+      CHECK((found.at(place) - colour).cwiseAbs().maxCoeff() < 0.5 / 255 * 2.4 + 1e-6);
   } else {
-    EXPECT_EQ(back.vertex_colours.rows(), 0);
+    CHECK(back.vertex_colours.rows() == 0);
   }
 }
 
-TEST_P(RoundTrip, Columns) {
-  const auto [first, second] = GetParam();
+TEST_CASE("RoundTrip.Columns") {
+  const auto [first, second] = GENERATE(from_range(all_routes()));
+  INFO(mesh_format_info(first).extension << " to " << mesh_format_info(second).extension);
   const auto holds = [](MeshFormat format) { return format == MeshFormat::ply || format == MeshFormat::glb; };
   if (!holds(first) || !holds(second)) return;
   Model model = wavy_torus(6, 5);
@@ -108,22 +117,10 @@ TEST_P(RoundTrip, Columns) {
   const ModelFile once = read_bytes(write(model, first, options), "a");
   options.columns = once.columns;
   const ModelFile twice = read_bytes(write(once.model, second, options), "b");
-  ASSERT_EQ(twice.columns.size(), 1u);
-  EXPECT_EQ(twice.columns[0].name, "from_place");
-  EXPECT_LT((twice.columns[0].values - twice.model.mesh.V.col(0) / 7).cwiseAbs().maxCoeff(), 1e-6);
+  REQUIRE(twice.columns.size() == 1u);
+  CHECK(twice.columns[0].name == "from_place");
+  CHECK((twice.columns[0].values - twice.model.mesh.V.col(0) / 7).cwiseAbs().maxCoeff() < 1e-6);
 }
-
-std::vector<Route> all_routes() {
-  std::vector<Route> routes;
-  for (const auto& first : mesh_formats)
-    for (const auto& second : mesh_formats) routes.push_back({first.format, second.format});
-  return routes;
-}
-
-INSTANTIATE_TEST_SUITE_P(Formats, RoundTrip, testing::ValuesIn(all_routes()), [](const auto& instance) {
-  return std::string(mesh_format_info(instance.param.first).extension) + "_to_" +
-         std::string(mesh_format_info(instance.param.second).extension);
-});
 
 }  // namespace
 }  // namespace formwright

@@ -23,81 +23,82 @@ Bytes binary_stl(const std::string& header, std::uint32_t declared, int triangle
   return bytes;
 }
 
-TEST(Stl, BinaryAndAsciiGiveTheSameClosedMesh) {
+TEST_CASE("Stl.BinaryAndAsciiGiveTheSameClosedMesh") {
   Model model = wavy_torus(20, 16);
   const TriangleMesh expected = as_float(model.mesh);
   for (const bool ascii : {false, true}) {
     WriteOptions options;
     options.ascii = ascii;
     const ModelFile file = read_bytes(write(model, MeshFormat::stl, options), "torus.stl");
-    EXPECT_EQ(file.format, MeshFormat::stl);
-    EXPECT_EQ(file.model.mesh.vertex_count(), 20 * 16);
-    EXPECT_EQ(unmatched_edges(file.model.mesh), 0);
-    EXPECT_TRUE(faces_by_place(as_float(file.model.mesh)) == faces_by_place(expected));
-    EXPECT_GT(signed_volume(file.model.mesh), 0);
+    CHECK(file.format == MeshFormat::stl);
+    CHECK(file.model.mesh.vertex_count() == 20 * 16);
+    CHECK(unmatched_edges(file.model.mesh) == 0);
+    CHECK(faces_by_place(as_float(file.model.mesh)) == faces_by_place(expected));
+    CHECK(signed_volume(file.model.mesh) > 0);
   }
 }
 
-TEST(Stl, WithoutMergingItIsASoup) {
+TEST_CASE("Stl.WithoutMergingItIsASoup") {
   ReadOptions options;
   options.merge_duplicates = false;
   const Model model = wavy_torus(5, 4);
   const Model soup = read_bytes(write(model, MeshFormat::stl), "torus.stl", options).model;
-  EXPECT_EQ(soup.mesh.vertex_count(), 3 * model.mesh.face_count());
-  EXPECT_TRUE(faces_by_place(soup.mesh) == faces_by_place(as_float(model.mesh)));
+  CHECK(soup.mesh.vertex_count() == 3 * model.mesh.face_count());
+  CHECK(faces_by_place(soup.mesh) == faces_by_place(as_float(model.mesh)));
 }
 
-TEST(Stl, BothZerosAreOnePlace) {
+TEST_CASE("Stl.BothZerosAreOnePlace") {
   const Model model =
       read_text(
           "solid\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
           "facet normal 0 0 0\nouter loop\nvertex -0 -0.0 0\nvertex 0 1 -0\nvertex -1 0 0\nendloop\nendfacet\nendsolid\n",
           "a.stl")
           .model;
-  EXPECT_EQ(model.mesh.vertex_count(), 4);
+  CHECK(model.mesh.vertex_count() == 4);
 }
 
-TEST(Stl, BinaryThatBeginsWithSolid) {
-  EXPECT_EQ(read_bytes(binary_stl("solid made by a careless program", 3, 3), "a.stl").model.mesh.face_count(), 3);
+TEST_CASE("Stl.BinaryThatBeginsWithSolid") {
+  CHECK(read_bytes(binary_stl("solid made by a careless program", 3, 3), "a.stl").model.mesh.face_count() == 3);
   // Even when its size is wrong as well.
-  EXPECT_EQ(read_bytes(binary_stl("solid made by a careless program", 0, 3), "a.stl").model.mesh.face_count(), 3);
+  CHECK(read_bytes(binary_stl("solid made by a careless program", 0, 3), "a.stl").model.mesh.face_count() == 3);
 }
 
-TEST(Stl, WrongCountsAreReadByTheSize) {
+TEST_CASE("Stl.WrongCountsAreReadByTheSize") {
   for (const std::uint32_t declared : {0u, 2u, 9u, 4'000'000'000u}) {
     const ModelFile file = read_bytes(binary_stl("x", declared, 3), "a.stl");
-    EXPECT_EQ(file.model.mesh.face_count(), 3);
-    ASSERT_EQ(file.notes.size(), 1u);
-    EXPECT_NE(file.notes[0].find("the file holds 3"), std::string::npos);
+    CHECK(file.model.mesh.face_count() == 3);
+    REQUIRE(file.notes.size() == 1u);
+    CHECK(file.notes[0].find("the file holds 3") != std::string::npos);
   }
   Bytes annex = binary_stl("x", 3, 3);
   annex.resize(annex.size() + 17);
   const ModelFile file = read_bytes(annex, "a.stl");
-  EXPECT_EQ(file.model.mesh.face_count(), 3);
-  EXPECT_EQ(file.notes.size(), 1u);
+  CHECK(file.model.mesh.face_count() == 3);
+  CHECK(file.notes.size() == 1u);
 }
 
-TEST(Stl, AsciiDialects) {
+TEST_CASE("Stl.AsciiDialects") {
   for (
       const char* text :
       {"SOLID A\nFACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 0 0 0\nVERTEX 1 0 0\nVERTEX 0 1 0\nENDLOOP\nENDFACET\nENDSOLID A\n",
        "\n  solid\r\n facet normal nan nan nan\r\n outer loop\r\n vertex 0.0e+00 0 0\r\n vertex +1 0 0\r\n vertex 0 1. 0\r\n endloop\r\n endfacet\r\n endsolid",
        "solid facet normal vertex endsolid\nfacet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet\nendsolid facet vertex\n"}) {
     const Model model = read_text(text, "a.stl").model;
-    EXPECT_EQ(model.mesh.face_count(), 1) << text;
-    EXPECT_EQ(model.mesh.V, (Positions(3, 3) << 0, 0, 0, 1, 0, 0, 0, 1, 0).finished()) << text;
+    INFO(text);
+    CHECK(model.mesh.face_count() == 1);
+    CHECK(model.mesh.V == (Positions(3, 3) << 0, 0, 0, 1, 0, 0, 0, 1, 0).finished());
   }
 }
 
-TEST(Stl, SeveralSolidsAreGroups) {
+TEST_CASE("Stl.SeveralSolidsAreGroups") {
   const std::string text = "solid a\n" + std::string(facet) + "endsolid a\nsolid b c\n" + std::string(facet) +
                            std::string(facet) + "endsolid\n";
   const Model model = read_text(text, "a.stl").model;
-  EXPECT_EQ(model.group_names, (std::vector<std::string>{"a", "b c"}));
-  EXPECT_EQ(model.face_group, (std::vector<int>{0, 1, 1}));
+  CHECK(model.group_names == std::vector<std::string>{"a", "b c"});
+  CHECK(model.face_group == std::vector<int>{0, 1, 1});
 }
 
-TEST(Stl, BadFilesAreRefused) {
+TEST_CASE("Stl.BadFilesAreRefused") {
   const auto refused = [](const Bytes& bytes, const std::string& part) { expect_refused(bytes, "bad.stl", part); };
   const auto refused_text = [](const std::string& text, const std::string& part) {
     expect_refused(as_bytes(text), "bad.stl", part);
@@ -131,15 +132,15 @@ TEST(Stl, BadFilesAreRefused) {
   expect_refused(as_bytes("solid x\n" + f + f + f + f + f + "endsolid\n"), "large.stl", "at most 4 are read", options);
 }
 
-TEST(Stl, WrittenNormalsAreUnitOrZero) {
+TEST_CASE("Stl.WrittenNormalsAreUnitOrZero") {
   Model model;
   model.mesh.V = (Positions(4, 3) << 0, 0, 0, 2, 0, 0, 0, 2, 0, 1, 0, 0).finished();
   model.mesh.F = (Triangles(2, 3) << 0, 1, 2, 0, 1, 3).finished();  // the second has no area
   const Bytes bytes = write(model, MeshFormat::stl);
-  ASSERT_EQ(bytes.size(), 84u + 100u);
-  EXPECT_FALSE(as_text(bytes).starts_with("solid"));
-  EXPECT_EQ(load<float>(bytes.data() + 84 + 8), 1);
-  EXPECT_EQ(load<float>(bytes.data() + 134 + 8), 0);
+  REQUIRE(bytes.size() == 84u + 100u);
+  CHECK_FALSE(as_text(bytes).starts_with("solid"));
+  CHECK(load<float>(bytes.data() + 84 + 8) == 1);
+  CHECK(load<float>(bytes.data() + 134 + 8) == 0);
 }
 
 }  // namespace

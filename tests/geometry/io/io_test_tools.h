@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // What the tests of the readers have in common.
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
 
 #include <algorithm>
 #include <array>
@@ -34,15 +34,25 @@ inline void expect_refused(ByteView bytes, const std::string& name, const std::s
   Context context;
   try {
     const ModelFile file = read_model_file(bytes, name, options, context);
-    FAIL() << name << " was read: " << file.model.mesh.face_count() << " faces, but should be refused for: " << part;
+    FAIL(name << " was read: " << file.model.mesh.face_count() << " faces, but should be refused for: " << part);
   } catch (const Error& error) {
     const std::string message = error.what();
-    EXPECT_EQ(error.code(), ErrorCode::invalid_input) << message;
-    EXPECT_EQ(error.where(), options.where);
-    EXPECT_NE(message.find(name), std::string::npos) << message;
-    EXPECT_NE(message.find(part), std::string::npos) << message << "\nshould say: " << part;
-    EXPECT_TRUE(message.ends_with('.')) << message;
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    {
+      INFO(message);
+      CHECK(error.code() == ErrorCode::invalid_input);
+    }
+    CHECK(error.where() == options.where);
+    {
+      INFO(message);
+      CHECK(message.find(name) != std::string::npos);
+    }
+    {
+      INFO(message << "\nshould say: " << part);
+      CHECK(message.find(part) != std::string::npos);
+    }
+    INFO(message);
+    CHECK(message.ends_with('.'));
+    CHECK(message.find('\n') == std::string::npos);
   }
 }
 

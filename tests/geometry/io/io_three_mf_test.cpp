@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
+
 #include "geometry/io/three_mf.h"
 #include "geometry/io/byte_order.h"
 #include "geometry/io/colour.h"
@@ -8,6 +10,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinULP;
 using namespace test;
 
 constexpr std::string_view relationships =
@@ -38,7 +41,7 @@ std::string object(int id, const std::string& inside, const std::string& attribu
   return "<object id=\"" + std::to_string(id) + "\" " + attributes + ">" + inside + "</object>";
 }
 
-TEST(ThreeMf, GroupsAsObjectsOfTheirOwn) {
+TEST_CASE("ThreeMf.GroupsAsObjectsOfTheirOwn") {
   Model model;
   model.mesh.V = (Positions(6, 3) << 0, 0, 0, 1, 0, 0, 0, 2, 0, 5, 0, 0, 6, 0, 0, 5, 2, 0).finished();
   model.mesh.F = (Triangles(2, 3) << 3, 4, 5, 0, 1, 2).finished();
@@ -47,18 +50,18 @@ TEST(ThreeMf, GroupsAsObjectsOfTheirOwn) {
   WriteOptions options;
   options.object_per_group = true;
   const Model again = read_bytes(write(model, MeshFormat::three_mf, options), "a.3mf").model;
-  EXPECT_EQ(again.group_names, model.group_names);
-  EXPECT_EQ(again.face_group, model.face_group);
+  CHECK(again.group_names == model.group_names);
+  CHECK(again.face_group == model.face_group);
   for (int f = 0; f < 2; ++f)
-    for (int k = 0; k < 3; ++k) EXPECT_EQ(again.mesh.V.row(again.mesh.F(f, k)), model.mesh.V.row(model.mesh.F(f, k)));
-  EXPECT_EQ(read_bytes(write(model, MeshFormat::three_mf, {}), "a.3mf").model.group_names.size(),
-            0u);           // unless asked for, one object
+    for (int k = 0; k < 3; ++k) CHECK(again.mesh.V.row(again.mesh.F(f, k)) == model.mesh.V.row(model.mesh.F(f, k)));
+  CHECK(read_bytes(write(model, MeshFormat::three_mf, {}), "a.3mf").model.group_names.size() ==
+        0u);               // unless asked for, one object
   model.mesh.F(1, 0) = 3;  // groups of one surface stay together
-  EXPECT_EQ(read_bytes(write(model, MeshFormat::three_mf, options), "a.3mf").model.mesh.vertex_count(), 6);
-  EXPECT_EQ(read_bytes(write(model, MeshFormat::three_mf, options), "a.3mf").model.group_names.size(), 0u);
+  CHECK(read_bytes(write(model, MeshFormat::three_mf, options), "a.3mf").model.mesh.vertex_count() == 6);
+  CHECK(read_bytes(write(model, MeshFormat::three_mf, options), "a.3mf").model.group_names.size() == 0u);
 }
 
-TEST(ThreeMf, UnitsBecomeMillimetres) {
+TEST_CASE("ThreeMf.UnitsBecomeMillimetres") {
   const std::pair<const char*, double> units[] = {{"micron", 0.001}, {"millimeter", 1}, {"centimeter", 10},
                                                   {"inch", 25.4},    {"foot", 304.8},   {"meter", 1000}};
   for (const auto& [name, mm] : units) {
@@ -66,13 +69,13 @@ TEST(ThreeMf, UnitsBecomeMillimetres) {
                                                        "<item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 10 0 0\"/>",
                                                        std::string("unit=\"") + name + "\"")),
                                       "a.3mf");
-    EXPECT_EQ(file.unit, name);
-    EXPECT_TRUE(file.model.mesh.V.isApprox((Positions(3, 3) << 10, 0, 0, 11, 0, 0, 10, 2, 0).finished() * mm, 1e-14));
+    CHECK(file.unit == name);
+    CHECK(file.model.mesh.V.isApprox((Positions(3, 3) << 10, 0, 0, 11, 0, 0, 10, 2, 0).finished() * mm, 1e-14));
   }
-  EXPECT_EQ(read_parts(object(1, std::string(triangle_mesh)), "<item objectid=\"1\"/>").mesh.V(1, 0), 1);
+  CHECK(read_parts(object(1, std::string(triangle_mesh)), "<item objectid=\"1\"/>").mesh.V(1, 0) == 1);
 }
 
-TEST(ThreeMf, ComponentsAndTransforms) {
+TEST_CASE("ThreeMf.ComponentsAndTransforms") {
   // Row vectors: the item's matrix acts after the component's.
   const Model model = read_parts(
       object(1, std::string(triangle_mesh), "name=\"part &amp; piece\"") +
@@ -80,32 +83,31 @@ TEST(ThreeMf, ComponentsAndTransforms) {
               2,
               "<components><component objectid=\"1\" transform=\"0 1 0 -1 0 0 0 0 1 5 0 0\"/><component objectid=\"1\" transform=\"-1 0 0 0 1 0 0 0 1 0 0 0\"/></components>"),
       "<item objectid=\"2\" transform=\"2 0 0 0 2 0 0 0 2 0 0 100\"/><item objectid=\"1\"/>");
-  ASSERT_EQ(model.mesh.face_count(), 3);
-  EXPECT_TRUE(
-      model.mesh.V.topRows(3).isApprox((Positions(3, 3) << 10, 0, 100, 10, 2, 100, 6, 0, 100).finished(), 1e-14));
+  REQUIRE(model.mesh.face_count() == 3);
+  CHECK(model.mesh.V.topRows(3).isApprox((Positions(3, 3) << 10, 0, 100, 10, 2, 100, 6, 0, 100).finished(), 1e-14));
   for (int f = 0; f < 3; ++f) {  // the mirrored one too
     const Vec3 a = model.mesh.V.row(model.mesh.F(f, 0)), b = model.mesh.V.row(model.mesh.F(f, 1)),
                c = model.mesh.V.row(model.mesh.F(f, 2));
-    EXPECT_GT((b - a).cross(c - a).z(), 0);
+    CHECK((b - a).cross(c - a).z() > 0);
   }
-  EXPECT_EQ(model.group_names, (std::vector<std::string>{"object 2", "part & piece"}));
-  EXPECT_EQ(model.face_group, (std::vector<int>{0, 0, 1}));
+  CHECK(model.group_names == std::vector<std::string>{"object 2", "part & piece"});
+  CHECK(model.face_group == std::vector<int>{0, 0, 1});
 }
 
-TEST(ThreeMf, ObjectsInOtherParts) {
+TEST_CASE("ThreeMf.ObjectsInOtherParts") {
   // The production extension, as Bambu Studio and newer PrusaSlicers write it; here the other part is in inches.
   const Bytes bytes =
       package(model_of(object(7, "<components><component objectid=\"1\" p:path=\"/3D/Objects/a.model\"/></components>"),
                        "<item objectid=\"7\"/>"),
               {{"3D/Objects/a.model", model_of(object(1, std::string(triangle_mesh)), "", "unit=\"inch\"")}});
-  EXPECT_DOUBLE_EQ(read_bytes(bytes, "a.3mf").model.mesh.V(1, 0), 25.4);
+  CHECK_THAT(read_bytes(bytes, "a.3mf").model.mesh.V(1, 0), WithinULP(25.4, 4));
   expect_refused(
       package(model_of(object(7, "<components><component objectid=\"1\" p:path=\"/3D/gone.model\"/></components>"),
                        "<item objectid=\"7\"/>")),
       "bad.3mf", "the part “3D/gone.model” is missing");
 }
 
-TEST(ThreeMf, BaseMaterialsAndColours) {
+TEST_CASE("ThreeMf.BaseMaterialsAndColours") {
   const std::string vertices =
       "<mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/><vertex x=\"0\" y=\"2\" z=\"0\"/></vertices><triangles>";
   const std::string groups =
@@ -119,24 +121,24 @@ TEST(ThreeMf, BaseMaterialsAndColours) {
                   "<triangle v1=\"0\" v2=\"1\" v3=\"2\"/><triangle v1=\"0\" v2=\"1\" v3=\"2\" p1=\"0\"/><triangle v1=\"0\" v2=\"1\" v3=\"2\" pid=\"6\" p1=\"1\"/></triangles></mesh>",
               "pid=\"5\" pindex=\"1\""),
       "<item objectid=\"1\"/>");
-  ASSERT_EQ(materials.face_material.size(), 3u);
-  EXPECT_EQ(materials.materials[static_cast<std::size_t>(materials.face_material[0])].name, "blue");
-  EXPECT_EQ(materials.materials[static_cast<std::size_t>(materials.face_material[1])].name, "red");
-  EXPECT_EQ(materials.materials[static_cast<std::size_t>(materials.face_material[2])].name, "#336699");
-  EXPECT_EQ(materials.vertex_colours.rows(), 0);
+  REQUIRE(materials.face_material.size() == 3u);
+  CHECK(materials.materials[static_cast<std::size_t>(materials.face_material[0])].name == "blue");
+  CHECK(materials.materials[static_cast<std::size_t>(materials.face_material[1])].name == "red");
+  CHECK(materials.materials[static_cast<std::size_t>(materials.face_material[2])].name == "#336699");
+  CHECK(materials.vertex_colours.rows() == 0);
   const Model corners = read_parts(
       groups +
           object(1,
                  vertices +
                      "<triangle v1=\"0\" v2=\"1\" v3=\"2\" pid=\"6\" p1=\"1\" p2=\"0\" p3=\"1\"/></triangles></mesh>"),
       "<item objectid=\"1\"/>");
-  ASSERT_EQ(corners.vertex_colours.rows(), 3);
-  EXPECT_EQ(corners.vertex_colours.row(1), Eigen::RowVector3d(0, 1, 0));
-  EXPECT_TRUE(corners.vertex_colours.row(2).isApprox(
+  REQUIRE(corners.vertex_colours.rows() == 3);
+  CHECK(corners.vertex_colours.row(1) == Eigen::RowVector3d(0, 1, 0));
+  CHECK(corners.vertex_colours.row(2).isApprox(
       Eigen::RowVector3d(linear_of_srgb(0.2), linear_of_srgb(0.4), linear_of_srgb(0.6))));
 }
 
-TEST(ThreeMf, ColoursThatAreNotKeptAreNamed) {
+TEST_CASE("ThreeMf.ColoursThatAreNotKeptAreNamed") {
   const std::string begin =
       "<m:colorgroup id=\"6\"><m:color color=\"#00FF00\"/><m:color color=\"#0000FF\"/></m:colorgroup><object id=\"1\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/><vertex x=\"0\" y=\"2\" z=\"0\"/><vertex x=\"1\" y=\"2\" z=\"0\"/></vertices><triangles>";
   const std::string end = "</triangles></mesh></object>", item = "<item objectid=\"1\"/>";
@@ -146,73 +148,73 @@ TEST(ThreeMf, ColoursThatAreNotKeptAreNamed) {
   // One colour a face, said once or three times: kept whole, as materials.
   const ModelFile faces = read(
       "<triangle v1=\"0\" v2=\"1\" v3=\"2\" pid=\"6\" p1=\"0\"/><triangle v1=\"2\" v2=\"1\" v3=\"3\" pid=\"6\" p1=\"1\" p2=\"1\" p3=\"1\"/>");
-  EXPECT_EQ(faces.model.vertex_colours.rows(), 0);
-  ASSERT_EQ(faces.model.face_material.size(), 2u);
-  EXPECT_EQ(faces.model.materials[static_cast<std::size_t>(faces.model.face_material[0])].name, "#00FF00");
-  EXPECT_EQ(faces.model.materials[static_cast<std::size_t>(faces.model.face_material[1])].name, "#0000FF");
-  EXPECT_TRUE(faces.notes.empty());
+  CHECK(faces.model.vertex_colours.rows() == 0);
+  REQUIRE(faces.model.face_material.size() == 2u);
+  CHECK(faces.model.materials[static_cast<std::size_t>(faces.model.face_material[0])].name == "#00FF00");
+  CHECK(faces.model.materials[static_cast<std::size_t>(faces.model.face_material[1])].name == "#0000FF");
+  CHECK(faces.notes.empty());
   // Corners that agree where they meet: kept whole, as colours of vertices.
   const ModelFile agreeing = read(
       "<triangle v1=\"0\" v2=\"1\" v3=\"2\" pid=\"6\" p1=\"0\" p2=\"1\" p3=\"0\"/><triangle v1=\"2\" v2=\"1\" v3=\"3\" pid=\"6\" p1=\"0\" p2=\"1\" p3=\"1\"/>");
-  EXPECT_EQ(agreeing.model.vertex_colours, (Positions(4, 3) << 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 0, 1).finished());
-  EXPECT_TRUE(agreeing.notes.empty());
+  CHECK(agreeing.model.vertex_colours == (Positions(4, 3) << 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 0, 1).finished());
+  CHECK(agreeing.notes.empty());
   // Corners that do not: the first is kept, and a note says so.
   const ModelFile differing = read(
       "<triangle v1=\"0\" v2=\"1\" v3=\"2\" pid=\"6\" p1=\"0\" p2=\"1\" p3=\"0\"/><triangle v1=\"2\" v2=\"1\" v3=\"3\" pid=\"6\" p1=\"1\" p2=\"0\" p3=\"0\"/>");
-  EXPECT_EQ(differing.model.vertex_colours.row(2), Eigen::RowVector3d(0, 1, 0));
-  ASSERT_EQ(differing.notes.size(), 1u);
-  EXPECT_NE(differing.notes[0].find("At 2 vertices, faces of different colours meet"), std::string::npos);
+  CHECK(differing.model.vertex_colours.row(2) == Eigen::RowVector3d(0, 1, 0));
+  REQUIRE(differing.notes.size() == 1u);
+  CHECK(differing.notes[0].find("At 2 vertices, faces of different colours meet") != std::string::npos);
   const ModelFile mixed = read("<triangle v1=\"0\" v2=\"1\" v3=\"2\" pid=\"9\" p1=\"0\"/>",
                                "<m:multiproperties id=\"9\" pids=\"6\"><m:multi pindices=\"0\"/></m:multiproperties>");
-  EXPECT_EQ(mixed.notes, (std::vector<std::string>{"Mixed materials and colours were left out."}));
+  CHECK(mixed.notes == std::vector<std::string>{"Mixed materials and colours were left out."});
   for (const char* const paint : {"paint_color=\"4\"", "slic3rpe:mmu_segmentation=\"8\""})
-    EXPECT_EQ(read("<triangle v1=\"0\" v2=\"1\" v3=\"2\" " + std::string(paint) + "/>").notes,
-              (std::vector<std::string>{"Colours painted in a slicer were left out."}));
+    CHECK(read("<triangle v1=\"0\" v2=\"1\" v3=\"2\" " + std::string(paint) + "/>").notes ==
+          std::vector<std::string>{"Colours painted in a slicer were left out."});
 }
 
-TEST(ThreeMf, SupportsAreLeftOutAndAnEmptyPlateIsAll) {
+TEST_CASE("ThreeMf.SupportsAreLeftOutAndAnEmptyPlateIsAll") {
   const std::string two =
       object(1, std::string(triangle_mesh)) + object(2, std::string(triangle_mesh), "type=\"support\"");
-  EXPECT_EQ(read_parts(two, "<item objectid=\"1\"/><item objectid=\"2\"/>").mesh.face_count(), 1);
-  EXPECT_EQ(read_parts(two, "").mesh.face_count(), 1);
+  CHECK(read_parts(two, "<item objectid=\"1\"/><item objectid=\"2\"/>").mesh.face_count() == 1);
+  CHECK(read_parts(two, "").mesh.face_count() == 1);
 }
 
-TEST(ThreeMf, WritesWhatItReads) {
+TEST_CASE("ThreeMf.WritesWhatItReads") {
   Model model = wavy_torus(15, 12);
   const Model plain = read_bytes(write(model, MeshFormat::three_mf), "a.3mf").model;
-  EXPECT_TRUE(as_float(plain.mesh).V == as_float(model.mesh).V);
-  EXPECT_TRUE(plain.mesh.F == model.mesh.F);
+  CHECK(as_float(plain.mesh).V == as_float(model.mesh).V);
+  CHECK(plain.mesh.F == model.mesh.F);
   Model coloured = model;
   add_colours(coloured);
   const Model colours = read_bytes(write(coloured, MeshFormat::three_mf), "a.3mf").model;
-  EXPECT_LT((colours.vertex_colours - coloured.vertex_colours).cwiseAbs().maxCoeff(), 0.5 / 255 * 2.4);
+  CHECK((colours.vertex_colours - coloured.vertex_colours).cwiseAbs().maxCoeff() < 0.5 / 255 * 2.4);
   add_materials_and_groups(model);
   const Model textured = read_bytes(write(model, MeshFormat::three_mf), "a.3mf").model;
-  ASSERT_EQ(textured.textures.size(), 1u);
-  EXPECT_EQ(textured.textures[0].bytes, model.textures[0].bytes);
+  REQUIRE(textured.textures.size() == 1u);
+  CHECK(textured.textures[0].bytes == model.textures[0].bytes);
   for (int f = 0; f < model.mesh.face_count(); ++f) {
     const Material& material =
         textured.materials[static_cast<std::size_t>(textured.face_material[static_cast<std::size_t>(f)])];
-    EXPECT_EQ(material.diffuse_texture, model.face_material[static_cast<std::size_t>(f)] == 1 ? 0 : -1);
+    CHECK(material.diffuse_texture == (model.face_material[static_cast<std::size_t>(f)] == 1 ? 0 : -1));
     if (material.diffuse_texture < 0) {
-      EXPECT_EQ(material.name, "grey");
+      CHECK(material.name == "grey");
     } else {
       for (int k = 0; k < 3; ++k)
-        EXPECT_LT((textured.UV.row(textured.FT(f, k)) - model.UV.row(model.FT(f, k))).norm(), 1e-6);
+        CHECK((textured.UV.row(textured.FT(f, k)) - model.UV.row(model.FT(f, k))).norm() < 1e-6);
     }
   }
 }
 
-TEST(ThreeMf, LargePartsArePackedInPieces) {
+TEST_CASE("ThreeMf.LargePartsArePackedInPieces") {
   // More rows than one piece of 16384 holds: joined, they are one deflate stream.
   const Model model = wavy_torus(200, 150);
   const Bytes bytes = write(model, MeshFormat::three_mf);
   const Model again = read_bytes(bytes, "a.3mf").model;
-  EXPECT_TRUE(again.mesh.F == model.mesh.F);
-  EXPECT_EQ(write(model, MeshFormat::three_mf), bytes);  // and always the same bytes
+  CHECK(again.mesh.F == model.mesh.F);
+  CHECK(write(model, MeshFormat::three_mf) == bytes);  // and always the same bytes
 }
 
-TEST(ThreeMf, BadFilesAreRefused) {
+TEST_CASE("ThreeMf.BadFilesAreRefused") {
   const auto refused = [](const std::string& resources, const std::string& build, const std::string& part,
                           const std::string& attributes = "") {
     expect_refused(package(model_of(resources, build, attributes)), "bad.3mf", part);
@@ -245,7 +247,7 @@ TEST(ThreeMf, BadFilesAreRefused) {
   expect_refused(package("no XML at all"), "bad.3mf", "its XML ends too early");
 }
 
-TEST(ThreeMf, CirclesAndDoublingAreRefusedAtOnce) {
+TEST_CASE("ThreeMf.CirclesAndDoublingAreRefusedAtOnce") {
   const std::string mesh(triangle_mesh);
   const auto component = [](int id) { return "<component objectid=\"" + std::to_string(id) + "\"/>"; };
   expect_refused(package(model_of(object(1, "<components>" + component(2) + "</components>") +
@@ -272,16 +274,16 @@ TEST(ThreeMf, CirclesAndDoublingAreRefusedAtOnce) {
   expect_refused(package(model_of(chain, items)), "bad.3mf", "nested more than 64 deep");
 }
 
-TEST(ThreeMf, LimitsHold) {
+TEST_CASE("ThreeMf.LimitsHold") {
   ReadOptions options;
   options.max_triangles = 1;
   const std::string two = object(1, std::string(triangle_mesh)), twice = "<item objectid=\"1\"/><item objectid=\"1\"/>";
   expect_refused(package(model_of(two, twice)), "large.3mf", "it holds 2 triangles, and at most 1 is read", options);
 }
 
-TEST(Zip, DamagedArchivesAreRefused) {
+TEST_CASE("Zip.DamagedArchivesAreRefused") {
   const Bytes good = package(model_of(object(1, std::string(triangle_mesh)), "<item objectid=\"1\"/>"));
-  EXPECT_EQ(read_bytes(good, "a.3mf").model.mesh.face_count(), 1);
+  CHECK(read_bytes(good, "a.3mf").model.mesh.face_count() == 1);
   for (const std::size_t size : {30u, 200u})
     expect_refused(ByteView(good).first(size), "cut.3mf", "zip archive ends too early");
   expect_refused(to_bytes("PK\x03\x04"), "cut.3mf", "ends too early");
@@ -302,7 +304,7 @@ TEST(Zip, DamagedArchivesAreRefused) {
   }
 }
 
-TEST(Zip, CommentsAndZip64AreRead) {
+TEST_CASE("Zip.CommentsAndZip64AreRead") {
   Bytes bytes = package(model_of(object(1, std::string(triangle_mesh)), "<item objectid=\"1\"/>"));
   const std::size_t end = bytes.size() - 22;
   // Move directory offset and entry count into a Zip64 end record, as some writers do for any size.
@@ -318,27 +320,27 @@ TEST(Zip, CommentsAndZip64AreRead) {
       append(bytes, std::uint16_t{0xFFFF}), append(bytes, static_cast<std::uint32_t>(size)), append(bytes, 0xFFFFFFFFu);
   append(bytes, std::uint16_t{7});
   for (const char c : std::string_view("comment")) bytes.push_back(static_cast<std::byte>(c));
-  EXPECT_EQ(read_bytes(bytes, "a.3mf").model.mesh.face_count(), 1);
+  CHECK(read_bytes(bytes, "a.3mf").model.mesh.face_count() == 1);
 }
 
-TEST(Xml, EntitiesCommentsAndCdata) {
+TEST_CASE("Xml.EntitiesCommentsAndCdata") {
   const ReadOptions options;
   Context context;
   const std::string_view text =
       "<?xml version='1.0'?><!-- <x> --><a:root one='1 &lt;&#x41;&#66;&amp;amp;' b:two = \"'\"><![CDATA[</root>]]><leaf/></a:root> junk";
   const MeshSource source(as_bytes(text), "x.xml", options, context);
   XmlReader xml(source);
-  ASSERT_TRUE(xml.next());
-  EXPECT_EQ(xml.name(), "root");
-  EXPECT_EQ(xml.text_attribute("one"), "1 <AB&amp;");
-  EXPECT_EQ(xml.attribute("two"), "'");
-  ASSERT_TRUE(xml.next());
-  EXPECT_EQ(xml.name(), "leaf");
-  ASSERT_TRUE(xml.next());
-  EXPECT_EQ(xml.tag(), XmlReader::Tag::end);
-  ASSERT_TRUE(xml.next());
-  EXPECT_EQ(xml.name(), "root");
-  EXPECT_FALSE(xml.next());
+  REQUIRE(xml.next());
+  CHECK(xml.name() == "root");
+  CHECK(xml.text_attribute("one") == "1 <AB&amp;");
+  CHECK(xml.attribute("two") == "'");
+  REQUIRE(xml.next());
+  CHECK(xml.name() == "leaf");
+  REQUIRE(xml.next());
+  CHECK(xml.tag() == XmlReader::Tag::end);
+  REQUIRE(xml.next());
+  CHECK(xml.name() == "root");
+  CHECK_FALSE(xml.next());
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thermoform/mould/draft_map.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,8 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinULP;
 
 constexpr int cells = 256;
 
@@ -39,83 +42,83 @@ double floor_area(const DraftMap& map) {
   return area;
 }
 
-TEST(DraftMap, ConesOfKnownAngle) {
+TEST_CASE("DraftMap.ConesOfKnownAngle") {
   Context context;
   for (const double draft : {45.0, 10.0, 3.5, 2.0, 0.0, -5.0, -20.0}) {
-    SCOPED_TRACE(draft);
+    CAPTURE(draft);
     const DraftMap map = draft_map(frustum(draft, 30, 20), 1, cells, context);
-    EXPECT_NEAR(map.draft_min_deg, draft, 1e-10);
+    CHECK_THAT(map.draft_min_deg, WithinAbs(draft, 1e-10));
     const double wall = map.area_mm2 - floor_area(map);
-    EXPECT_NEAR(map.below_3_deg_area_mm2, draft < 3 ? wall : 0, 1e-9 * wall);
-    EXPECT_NEAR(map.undercut_area_mm2, draft < 0 ? wall : 0, 1e-9 * wall);
-    EXPECT_EQ(says(map, "The right side leans in by " + std::to_string(static_cast<int>(-draft)) + " degrees"),
-              draft < 0);
-    EXPECT_EQ(says(map, "will come off."), draft > 3);
-    EXPECT_EQ(says(map, "come off hard"), draft >= 0 && draft < 3);
-    EXPECT_EQ(map.depth_to_width_max, 0);
+    CHECK_THAT(map.below_3_deg_area_mm2, WithinAbs(draft < 3 ? wall : 0, 1e-9 * wall));
+    CHECK_THAT(map.undercut_area_mm2, WithinAbs(draft < 0 ? wall : 0, 1e-9 * wall));
+    CHECK(says(map, "The right side leans in by " + std::to_string(static_cast<int>(-draft)) + " degrees") ==
+          (draft < 0));
+    CHECK(says(map, "will come off.") == (draft > 3));
+    CHECK(says(map, "come off hard") == (draft >= 0 && draft < 3));
+    CHECK(map.depth_to_width_max == 0);
   }
 }
 
 // The lower half of a sphere hangs over. Faces count as a whole, so the error of the area falls with the edge length.
-TEST(DraftMap, UndercutOfASphereConverges) {
+TEST_CASE("DraftMap.UndercutOfASphereConverges") {
   Context context;
   double last = 0;
   for (const int level : {2, 3, 4, 5}) {
     const DraftMap map = draft_map(test::moved(test::icosphere(level), {0, 0, 11}, 10), 1, 64, context);
     const double exact = 2 * std::numbers::pi * 100, error = std::abs(map.undercut_area_mm2 - exact);
-    EXPECT_NEAR(map.area_mm2, 2 * exact, std::pow(0.25, level) * exact);
+    CHECK_THAT(map.area_mm2, WithinAbs(2 * exact, std::pow(0.25, level) * exact));
     if (last > 0) {
-      EXPECT_LT(error, last / 1.8);
+      CHECK(error < last / 1.8);
     }
     last = error;
   }
-  EXPECT_LT(last, 0.01 * 2 * std::numbers::pi * 100);
+  CHECK(last < 0.01 * 2 * std::numbers::pi * 100);
 }
 
-TEST(DraftMap, AFloorUnderABridgeIsHidden) {
+TEST_CASE("DraftMap.AFloorUnderABridgeIsHidden") {
   Context context;
   // A table: top 40 x 20 x 2 on two walls, over a floor that is part of the model.
   ExactSolid table = ExactSolid::from_mesh(box_mesh({-20, -10, 0}, {20, 10, 20}), "mesh", context);
   table = subtract(table, ExactSolid::from_mesh(box_mesh({-15, -11, 5}, {15, 11, 18}), "mesh", context), context);
   const DraftMap map = draft_map(table.mesh(), 1, cells, context);
   // The floor, the ceiling, and the inner walls below it.
-  EXPECT_NEAR(map.undercut_area_mm2, 2 * 30 * 20 + 2 * 13 * 20, 1e-9);
-  EXPECT_DOUBLE_EQ(map.draft_min_deg, -90);
-  EXPECT_TRUE(says(map, "6.0 cm² face down"));
+  CHECK_THAT(map.undercut_area_mm2, WithinAbs(2 * 30 * 20 + 2 * 13 * 20, 1e-9));
+  CHECK_THAT(map.draft_min_deg, WithinULP(-90.0, 4));
+  CHECK(says(map, "6.0 cm² face down"));
 }
 
-TEST(DraftMap, DepthToWidthOfSlotsAndWells) {
+TEST_CASE("DraftMap.DepthToWidthOfSlotsAndWells") {
   Context context;
   const ExactSolid block = ExactSolid::from_mesh(box_mesh({-30, -30, 0}, {30, 30, 30}), "mesh", context);
   for (const auto& [width, depth] : {std::pair{10.0, 5.0}, std::pair{10.0, 20.0}, std::pair{5.0, 20.0}}) {
-    SCOPED_TRACE(width);
+    CAPTURE(width);
     const ExactSolid slot =
         ExactSolid::from_mesh(box_mesh({-width / 2, -31, 30 - depth}, {width / 2, 31, 31}), "mesh", context);
     const double pitch = 60.0 / cells;
     const double found = draft_map(subtract(block, slot, context).mesh(), 1, cells, context).depth_to_width_max;
-    EXPECT_NEAR(found, depth / width, depth / width * 1.5 * pitch / width);
+    CHECK_THAT(found, WithinAbs(depth / width, depth / width * 1.5 * pitch / width));
   }
   // Narrower than the sheet is thick: nothing goes in.
   const ExactSolid slit = ExactSolid::from_mesh(box_mesh({-0.5, -31, 10}, {0.5, 31, 31}), "mesh", context);
-  EXPECT_GT(draft_map(subtract(block, slit, context).mesh(), 0.1, cells, context).depth_to_width_max, 10);
-  EXPECT_EQ(draft_map(subtract(block, slit, context).mesh(), 3, cells, context).depth_to_width_max, 0);
+  CHECK(draft_map(subtract(block, slit, context).mesh(), 0.1, cells, context).depth_to_width_max > 10);
+  CHECK(draft_map(subtract(block, slit, context).mesh(), 3, cells, context).depth_to_width_max == 0);
 }
 
-TEST(DraftMap, HeightsByRays) {
+TEST_CASE("DraftMap.HeightsByRays") {
   Context context;
   const HeightGrid grid = height_grid(box_mesh({-10, -5, 0}, {10, 5, 7}), 40, context);
-  EXPECT_EQ(grid.columns, 40);
-  EXPECT_EQ(grid.rows, 20);
-  for (const double height : grid.height_mm) EXPECT_NEAR(height, 7, 1e-12);
-  EXPECT_NEAR(grid.least_around(0, 0), 7, 1e-12);
-  EXPECT_EQ(grid.least_around(11, 0), 0);
+  CHECK(grid.columns == 40);
+  CHECK(grid.rows == 20);
+  for (const double height : grid.height_mm) CHECK_THAT(height, WithinAbs(7, 1e-12));
+  CHECK_THAT(grid.least_around(0, 0), WithinAbs(7, 1e-12));
+  CHECK(grid.least_around(11, 0) == 0);
 }
 
-TEST(DraftMap, Cancels) {
+TEST_CASE("DraftMap.Cancels") {
   Host host;
   host.cancel_requested = [] { return true; };
   Context context(host);
-  EXPECT_THROW(draft_map(frustum(5, 30, 20), 1, cells, context), Error);
+  CHECK_THROWS_AS(draft_map(frustum(5, 30, 20), 1, cells, context), Error);
 }
 
 }  // namespace

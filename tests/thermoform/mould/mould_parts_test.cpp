@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thermoform/mould/mould_parts.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -16,6 +17,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 ExactSolid negative_of(const char* name, int vertices) {
   Context context;
@@ -33,12 +35,12 @@ double total_volume(const MouldParts& parts) {
 void expect_printable(const MouldParts& parts, const Vec3& printer) {
   BoundingBox all;
   for (const MouldPart& part : parts.parts) {
-    EXPECT_TRUE(Adjacency(part.mesh).is_closed());
+    CHECK(Adjacency(part.mesh).is_closed());
     const BoundingBox box = bounding_box(part.mesh);
-    EXPECT_NEAR(box.lower.z(), 0, 1e-12);
+    CHECK_THAT(box.lower.z(), WithinAbs(0, 1e-12));
     for (int k = 0; k < 3; ++k) {
       if (printer[k] > 0) {
-        EXPECT_LE(box.size()[k], printer[k] * (1 + 1e-12));
+        CHECK(box.size()[k] <= printer[k] * (1 + 1e-12));
       }
     }
     for (const MouldPart& other : parts.parts) {
@@ -46,21 +48,21 @@ void expect_printable(const MouldParts& parts, const Vec3& printer) {
       const BoundingBox b = bounding_box(other.mesh);
       const double apart = std::max(std::max(b.lower.x() - box.upper.x(), box.lower.x() - b.upper.x()),
                                     std::max(b.lower.y() - box.upper.y(), box.lower.y() - b.upper.y()));
-      EXPECT_GE(apart, 5 - 1e-9);
+      CHECK(apart >= 5 - 1e-9);
     }
     all.add(box.lower), all.add(box.upper);
   }
-  EXPECT_NEAR(all.centre().head<2>().norm(), 0, 1e-9);
+  CHECK_THAT(all.centre().head<2>().norm(), WithinAbs(0, 1e-9));
 }
 
-TEST(MouldParts, WholeIfThereIsRoom) {
+TEST_CASE("MouldParts.WholeIfThereIsRoom") {
   Context context;
   const ExactSolid solid = negative_of("pyramid", 1000);
   const MouldParts parts = split_mould(solid, {}, context);
-  ASSERT_EQ(parts.parts.size(), 1u);
-  EXPECT_NEAR(parts.parts[0].volume_mm3, solid.volume_mm3(), 1e-9 * solid.volume_mm3());
+  REQUIRE(parts.parts.size() == 1u);
+  CHECK_THAT(parts.parts[0].volume_mm3, WithinAbs(solid.volume_mm3(), 1e-9 * solid.volume_mm3()));
   expect_printable(parts, Vec3::Zero());
-  EXPECT_TRUE(parts.sentences.empty());
+  CHECK(parts.sentences.empty());
   // The opening is up: the pyramid's base of 100 x 100 mm is open at the top, z = 63.
   const TriangleMesh& mesh = parts.parts[0].mesh;
   double rim = 0;
@@ -68,39 +70,39 @@ TEST(MouldParts, WholeIfThereIsRoom) {
     const Vec3 a = mesh.V.row(mesh.F(f, 0)), b = mesh.V.row(mesh.F(f, 1)), c = mesh.V.row(mesh.F(f, 2));
     if (std::min({a.z(), b.z(), c.z()}) > 63 - 1e-9) rim += 0.5 * (b - a).cross(c - a).z();
   }
-  EXPECT_NEAR(rim, 106.0 * 106 - 1e4, 1e-7);
+  CHECK_THAT(rim, WithinAbs(106.0 * 106 - 1e4, 1e-7));
 }
 
-TEST(MouldParts, AddUpAndFit) {
+TEST_CASE("MouldParts.AddUpAndFit") {
   Context context;
   for (const char* name : {"pyramid", "cat"}) {
-    SCOPED_TRACE(name);
+    INFO(name);
     const ExactSolid solid = negative_of(name, 2000);
     ThermoformMouldOptions options;
     options.key_diameter_mm = 0;
     options.printer_x_mm = 60, options.printer_y_mm = 80, options.printer_z_mm = 45;
     const MouldParts parts = split_mould(solid, options, context);
-    EXPECT_NEAR(total_volume(parts), solid.volume_mm3(), 1e-9 * solid.volume_mm3());
+    CHECK_THAT(total_volume(parts), WithinAbs(solid.volume_mm3(), 1e-9 * solid.volume_mm3()));
     expect_printable(parts, {60, 80, 45});
     const Vec3 size = bounding_box(solid.mesh()).size();
     const auto count = [&](double px, double py) {
       return static_cast<int>(std::ceil(size.x() / px) * std::ceil(size.y() / py) * std::ceil(size.z() / 45));
     };
-    EXPECT_EQ(static_cast<int>(parts.parts.size()), std::min(count(60, 80), count(80, 60)));
-    EXPECT_EQ(parts.keys, 0);
+    CHECK(static_cast<int>(parts.parts.size()) == std::min(count(60, 80), count(80, 60)));
+    CHECK(parts.keys == 0);
   }
 }
 
-TEST(MouldParts, KeysFitIntoTheirSockets) {
+TEST_CASE("MouldParts.KeysFitIntoTheirSockets") {
   Context context;
   const ExactSolid solid = negative_of("pyramid", 1000);
   ThermoformMouldOptions options;
   options.printer_x_mm = 70;
   const MouldParts parts = split_mould(solid, options, context);
-  ASSERT_EQ(parts.parts.size(), 2u);
-  ASSERT_EQ(parts.keys, 2);
-  EXPECT_EQ(parts.parts[0].pins, 2);
-  EXPECT_EQ(parts.parts[1].sockets, 2);
+  REQUIRE(parts.parts.size() == 2u);
+  REQUIRE(parts.keys == 2);
+  CHECK(parts.parts[0].pins == 2);
+  CHECK(parts.parts[1].sockets == 2);
   expect_printable(parts, {70, 0, 0});
   // A pin: a prism of 16 sides for a quarter of its length, then a frustum to 0.7 of the radius.
   const double unit = 8 * std::sin(2 * std::numbers::pi / 16);
@@ -108,21 +110,22 @@ TEST(MouldParts, KeysFitIntoTheirSockets) {
     return unit * (r * r * straight + slant * (r * r + r * q + q * q) / 3);
   };
   const double pin = cone(2, 1.4, 1, 3), socket = cone(2.2, 1.6, 1, 3.2);
-  EXPECT_NEAR(parts.parts[0].volume_mm3 + parts.parts[1].volume_mm3 - solid.volume_mm3(), 2 * (pin - socket), 1e-6);
-  EXPECT_NEAR(parts.parts[0].size_mm.x(), 53 + 4, 1e-9);  // the pin stands out
+  CHECK_THAT(parts.parts[0].volume_mm3 + parts.parts[1].volume_mm3 - solid.volume_mm3(),
+             WithinAbs(2 * (pin - socket), 1e-6));
+  CHECK_THAT(parts.parts[0].size_mm.x(), WithinAbs(53 + 4, 1e-9));  // the pin stands out
   // Put together, nothing overlaps.
   const BoundingBox box = bounding_box(solid.mesh());
   const auto keys = find_keys(solid.mesh(), box, {2, 1, 1}, 4, 0.2, false, context);
-  ASSERT_EQ(keys.size(), 2u);
+  REQUIRE(keys.size() == 2u);
   int pins = 0, sockets = 0;
   const ExactSolid left = with_keys(solid.half(0, 0, false, context), {0, 0, 0}, keys, 0.2, pins, sockets, context);
   const ExactSolid right = with_keys(solid.half(0, 0, true, context), {1, 0, 0}, keys, 0.2, pins, sockets, context);
-  EXPECT_TRUE(intersect(left, right, context).empty());
-  EXPECT_GT((keys[0].centre_mm - keys[1].centre_mm).norm(), 40);
+  CHECK(intersect(left, right, context).empty());
+  CHECK((keys[0].centre_mm - keys[1].centre_mm).norm() > 40);
 }
 
 // Every part stands on a whole side, not on its pins, whichever way up it is printed.
-TEST(MouldParts, PinsPointUpOnTheBed) {
+TEST_CASE("MouldParts.PinsPointUpOnTheBed") {
   Context context;
   ThermoformMouldOptions options;
   options.printer_z_mm = 40;
@@ -130,15 +133,15 @@ TEST(MouldParts, PinsPointUpOnTheBed) {
   for (const MouldKind kind : {MouldKind::negative, MouldKind::positive}) {
     options.kind = kind;
     const MouldParts parts = split_mould(solid, options, context);
-    ASSERT_EQ(parts.parts.size(), 2u);
-    EXPECT_EQ(parts.keys, 2);
-    EXPECT_EQ(parts.parts[kind == MouldKind::negative ? 1 : 0].pins, 2);
-    for (const MouldPart& part : parts.parts) EXPECT_GT(base_area_mm2(part.mesh, 0), 106 * 106 - 1e4 - 1);
-    EXPECT_NEAR(total_volume(parts), solid.volume_mm3(), 1e-3 * solid.volume_mm3());
+    REQUIRE(parts.parts.size() == 2u);
+    CHECK(parts.keys == 2);
+    CHECK(parts.parts[kind == MouldKind::negative ? 1 : 0].pins == 2);
+    for (const MouldPart& part : parts.parts) CHECK(base_area_mm2(part.mesh, 0) > 106 * 106 - 1e4 - 1);
+    CHECK_THAT(total_volume(parts), WithinAbs(solid.volume_mm3(), 1e-3 * solid.volume_mm3()));
   }
 }
 
-TEST(MouldParts, SmallerKeysInThinnerWalls) {
+TEST_CASE("MouldParts.SmallerKeysInThinnerWalls") {
   Context context;
   // A square tube with walls of 8 mm.
   const ExactSolid tube =
@@ -146,24 +149,24 @@ TEST(MouldParts, SmallerKeysInThinnerWalls) {
                ExactSolid::from_mesh(box_mesh({-41, -12, 8}, {41, 12, 22}), "mesh", context), context);
   const BoundingBox box = bounding_box(tube.mesh());
   const auto keys = find_keys(tube.mesh(), box, {2, 1, 1}, 4, 0.2, false, context);
-  ASSERT_FALSE(keys.empty());
-  EXPECT_LT(keys[0].diameter_mm, 4);
-  EXPECT_TRUE(find_keys(tube.mesh(), box, {2, 1, 1}, 40, 0.2, false, context).empty());
+  REQUIRE_FALSE(keys.empty());
+  CHECK(keys[0].diameter_mm < 4);
+  CHECK(find_keys(tube.mesh(), box, {2, 1, 1}, 40, 0.2, false, context).empty());
 }
 
-TEST(MouldParts, TurnsOnTheBedToSaveParts) {
+TEST_CASE("MouldParts.TurnsOnTheBedToSaveParts") {
   Context context;
   const ExactSolid bar = ExactSolid::from_mesh(box_mesh({-50, -10, 0}, {50, 10, 10}), "mesh", context);
   ThermoformMouldOptions options;
   options.kind = MouldKind::positive;
   options.printer_x_mm = 25, options.printer_y_mm = 105;
   const MouldParts parts = split_mould(bar, options, context);
-  ASSERT_EQ(parts.parts.size(), 1u);
-  EXPECT_NEAR(parts.parts[0].size_mm.y(), 100, 1e-12);
+  REQUIRE(parts.parts.size() == 1u);
+  CHECK_THAT(parts.parts[0].size_mm.y(), WithinAbs(100, 1e-12));
   expect_printable(parts, {25, 105, 0});
 }
 
-TEST(MouldParts, RefusesToyPrinters) {
+TEST_CASE("MouldParts.RefusesToyPrinters") {
   Context context;
   const ExactSolid bar = ExactSolid::from_mesh(box_mesh({-50, -10, 0}, {50, 10, 10}), "mesh", context);
   for (const double printer : {1.0, 4.5}) {
@@ -173,8 +176,8 @@ TEST(MouldParts, RefusesToyPrinters) {
       split_mould(bar, options, context);
       FAIL();
     } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::invalid_input);
-      EXPECT_EQ(error.where().substr(0, 8), "printer_");
+      CHECK(error.code() == ErrorCode::invalid_input);
+      CHECK(error.where().substr(0, 8) == "printer_");
     }
   }
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thermoform/mould/vents.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <cmath>
 
@@ -12,6 +13,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 const TriangleMesh block = box_mesh({-30, -30, 0}, {30, 30, 10});
 
@@ -37,45 +39,45 @@ double hill(double x, double y, double cx, double cy) {
   return std::exp(-(std::pow(x - cx, 2) + std::pow(y - cy, 2)) / 50);
 }
 
-TEST(Vents, LieAtTheLastPlacesToForm) {
+TEST_CASE("Vents.LieAtTheLastPlacesToForm") {
   Context context;
   const FormedSheet sheet = flat_sheet(
       [](double x, double y) { return 1 + 2 * hill(x, y, 10, 5) + hill(x, y, -12, -7) + 3 * hill(x, y, 38, 0); });
   const auto vents = find_vents(block, sheet, 10, 1, 5, context);
-  ASSERT_EQ(vents.size(), 2u);  // the third and latest hill lies beside the model, where the plate sucks
-  EXPECT_NEAR((vents[0].position_mm - Vec3(10, 5, 10)).norm(), 0, 1e-9);
-  EXPECT_NEAR((vents[1].position_mm - Vec3(-12, -7, 10)).norm(), 0, 1e-9);
-  EXPECT_NEAR(vents[0].contact_s, 3, 1e-3);
-  EXPECT_NEAR(vents[0].gap_mm, 0, 1e-9);
-  EXPECT_EQ(find_vents(block, sheet, 1, 1, 5, context).size(), 1u);
-  EXPECT_EQ(find_vents(block, sheet, 10, 1, 30, context).size(), 1u);  // 25 mm apart
-  EXPECT_EQ(find_vents(block, sheet, 10, 13, 5, context).size(), 1u);  // wide ones keep twice their diameter
-  EXPECT_TRUE(find_vents(block, sheet, 0, 1, 5, context).empty());
+  REQUIRE(vents.size() == 2u);  // the third and latest hill lies beside the model, where the plate sucks
+  CHECK_THAT((vents[0].position_mm - Vec3(10, 5, 10)).norm(), WithinAbs(0, 1e-9));
+  CHECK_THAT((vents[1].position_mm - Vec3(-12, -7, 10)).norm(), WithinAbs(0, 1e-9));
+  CHECK_THAT(vents[0].contact_s, WithinAbs(3, 1e-3));
+  CHECK_THAT(vents[0].gap_mm, WithinAbs(0, 1e-9));
+  CHECK(find_vents(block, sheet, 1, 1, 5, context).size() == 1u);
+  CHECK(find_vents(block, sheet, 10, 1, 30, context).size() == 1u);  // 25 mm apart
+  CHECK(find_vents(block, sheet, 10, 13, 5, context).size() == 1u);  // wide ones keep twice their diameter
+  CHECK(find_vents(block, sheet, 0, 1, 5, context).empty());
 }
 
-TEST(Vents, WhereItNeverArrivesComesFirst) {
+TEST_CASE("Vents.WhereItNeverArrivesComesFirst") {
   Context context;
   const FormedSheet sheet = flat_sheet(
       [](double x, double y) { return std::hypot(x + 12, y + 7) < 3.5 ? -1.0 : 1 + 2 * hill(x, y, 10, 5); }, 4);
   const auto vents = find_vents(block, sheet, 10, 1, 10, context);
-  ASSERT_EQ(vents.size(), 2u);
-  EXPECT_LT((vents[0].position_mm - Vec3(-12, -7, 10)).norm(), 3.6);
-  EXPECT_EQ(vents[0].contact_s, -1);
-  EXPECT_NEAR(vents[0].gap_mm, 4, 1e-9);
-  EXPECT_NEAR((vents[1].position_mm - Vec3(10, 5, 10)).norm(), 0, 1e-9);
+  REQUIRE(vents.size() == 2u);
+  CHECK((vents[0].position_mm - Vec3(-12, -7, 10)).norm() < 3.6);
+  CHECK(vents[0].contact_s == -1);
+  CHECK_THAT(vents[0].gap_mm, WithinAbs(4, 1e-9));
+  CHECK_THAT((vents[1].position_mm - Vec3(10, 5, 10)).norm(), WithinAbs(0, 1e-9));
 }
 
-TEST(Vents, HollowsBeforePlains) {
+TEST_CASE("Vents.HollowsBeforePlains") {
   Context context;
   FormedSheet sheet = flat_sheet([](double, double) { return 1.0; });  // everything at once
   for (Eigen::Index i = 0; i < sheet.mesh.V.rows(); ++i)
     sheet.mesh.V(i, 2) += 1 - hill(sheet.mesh.V(i, 0), sheet.mesh.V(i, 1), 6, -4);
   const auto vents = find_vents(block, sheet, 1, 1, 5, context);
-  ASSERT_EQ(vents.size(), 1u);
-  EXPECT_NEAR((vents[0].position_mm - Vec3(6, -4, 10)).norm(), 0, 1e-9);
+  REQUIRE(vents.size() == 1u);
+  CHECK_THAT((vents[0].position_mm - Vec3(6, -4, 10)).norm(), WithinAbs(0, 1e-9));
 }
 
-TEST(Vents, OfAMouldThatTheMachineDisplacesLieInTheMouldItself) {
+TEST_CASE("Vents.OfAMouldThatTheMachineDisplacesLieInTheMouldItself") {
   Context context;
   const FormedSheet sheet =
       flat_sheet([](double x, double y) { return 1 + 2 * hill(x, y, 10, 5) + hill(x, y, -12, -7); });
@@ -94,20 +96,20 @@ TEST(Vents, OfAMouldThatTheMachineDisplacesLieInTheMouldItself) {
     formed.mesh.V.row(i) = real(in_file);
   }
   const auto vents = find_vents(block, about_the_model(formed, nominal, real), 10, 1, 5, context);
-  ASSERT_EQ(vents.size(), 2u);
-  EXPECT_NEAR((vents[0].position_mm - Vec3(10, 5, 10)).norm(), 0, 1e-9);
-  EXPECT_NEAR((vents[1].position_mm - Vec3(-12, -7, 10)).norm(), 0, 1e-9);
+  REQUIRE(vents.size() == 2u);
+  CHECK_THAT((vents[0].position_mm - Vec3(10, 5, 10)).norm(), WithinAbs(0, 1e-9));
+  CHECK_THAT((vents[1].position_mm - Vec3(-12, -7, 10)).norm(), WithinAbs(0, 1e-9));
   // The places on the plate itself are others.
   const auto beside = find_vents(block, formed, 10, 1, 5, context);
-  ASSERT_FALSE(beside.empty());
-  EXPECT_GT((beside[0].position_mm - vents[0].position_mm).head<2>().norm(), 4);
+  REQUIRE_FALSE(beside.empty());
+  CHECK((beside[0].position_mm - vents[0].position_mm).head<2>().norm() > 4);
 }
 
-TEST(Vents, NotThroughASide) {
+TEST_CASE("Vents.NotThroughASide") {
   Context context;
   const FormedSheet sheet = flat_sheet([](double x, double y) { return 1 + hill(x, y, 29, 0); });
-  EXPECT_TRUE(find_vents(block, sheet, 10, 2, 5, context).empty());
-  EXPECT_EQ(find_vents(block, sheet, 10, 0.5, 5, context).size(), 1u);
+  CHECK(find_vents(block, sheet, 10, 2, 5, context).empty());
+  CHECK(find_vents(block, sheet, 10, 0.5, 5, context).size() == 1u);
 }
 
 }  // namespace

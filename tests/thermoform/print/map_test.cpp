@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where points of the model land: closed forms, convergence, corners, undercuts, folds.
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include "base/error.h"
 #include "geometry/adjacency.h"
@@ -9,6 +10,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 using test::Cone;
 
@@ -39,7 +41,7 @@ MapError cone_error(const Cone& cone, double edge_mm, int sheet_rings, SheetProj
     }
     const double u = middle.head<2>().norm() / cone.radius_mm;
     if (u < 0.15 || u > 0.9) continue;
-    EXPECT_EQ(projected.face[static_cast<std::size_t>(f)], Coverage::coloured);
+    CHECK(projected.face[static_cast<std::size_t>(f)] == Coverage::coloured);
     const double distance = (landed - cone.flat(middle)).norm();
     error.mean += distance;
     error.maximum = std::max(error.maximum, distance);
@@ -49,25 +51,29 @@ MapError cone_error(const Cone& cone, double edge_mm, int sheet_rings, SheetProj
   return error;
 }
 
-TEST(PrintMap, LandsOnTheConesClosedForm) {
+TEST_CASE("PrintMap.LandsOnTheConesClosedForm") {
   const MapError error = cone_error(Cone{}, 1, 120, SheetProjectionMethod::nearest);
-  RecordProperty("mean_um", static_cast<int>(1000 * error.mean));
-  RecordProperty("max_um", static_cast<int>(1000 * error.maximum));
-  EXPECT_LT(error.maximum, 0.05);
-  EXPECT_LT(error.mean, 0.01);
+  SUCCEED("mean_um " << static_cast<int>(1000 * error.mean));
+  SUCCEED("max_um " << static_cast<int>(1000 * error.maximum));
+  CHECK(error.maximum < 0.05);
+  CHECK(error.mean < 0.01);
   const MapError rays = cone_error(Cone{}, 1, 120, SheetProjectionMethod::along_normal);
-  EXPECT_LT(rays.maximum, 0.05);
+  CHECK(rays.maximum < 0.05);
 }
 
-TEST(PrintMap, ErrsWithTheSquareOfTheMapsTriangles) {
+TEST_CASE("PrintMap.ErrsWithTheSquareOfTheMapsTriangles") {
   // The radius goes with u^1.5, whose second derivative bounds what a linear piece misses.
   const double coarse = cone_error(Cone{}, 16, 200, SheetProjectionMethod::nearest).mean;
   const double middle = cone_error(Cone{}, 8, 200, SheetProjectionMethod::nearest).mean;
   const double fine = cone_error(Cone{}, 4, 200, SheetProjectionMethod::nearest).mean;
   for (const auto& [name, error] : {std::pair{"mean_um_16", coarse}, {"mean_um_8", middle}, {"mean_um_4", fine}})
-    RecordProperty(name, static_cast<int>(1000 * error));
-  EXPECT_GT(std::log2(coarse / middle), 1.5) << coarse << " " << middle;
-  EXPECT_GT(std::log2(middle / fine), 1.5) << middle << " " << fine;
+    SUCCEED(name << " " << static_cast<int>(1000 * error));
+  {
+    INFO(coarse << " " << middle);
+    CHECK(std::log2(coarse / middle) > 1.5);
+  }
+  INFO(middle << " " << fine);
+  CHECK(std::log2(middle / fine) > 1.5);
 }
 
 /// Two walls of 20 mm that meet at a right angle along y, and a sheet that spans the corner with a gap of `gap` on
@@ -119,16 +125,16 @@ double claimed_twice(SheetProjectionMethod method, double gap) {
   return std::max(0.0, highest_of_wall - lowest_of_floor) / (2 * gap);
 }
 
-TEST(PrintMap, NearestPointsShareASpannedCornerWhereRaysClaimItTwice) {
+TEST_CASE("PrintMap.NearestPointsShareASpannedCornerWhereRaysClaimItTwice") {
   const double nearest = claimed_twice(SheetProjectionMethod::nearest, 1),
                rays = claimed_twice(SheetProjectionMethod::along_normal, 1);
-  RecordProperty("twice_nearest_percent", static_cast<int>(100 * nearest));
-  RecordProperty("twice_rays_percent", static_cast<int>(100 * rays));
-  EXPECT_LT(nearest, 0.01);
-  EXPECT_GT(rays, 0.7);  // all of it but the last row of vertices
+  SUCCEED("twice_nearest_percent " << static_cast<int>(100 * nearest));
+  SUCCEED("twice_rays_percent " << static_cast<int>(100 * rays));
+  CHECK(nearest < 0.01);
+  CHECK(rays > 0.7);  // all of it but the last row of vertices
 }
 
-TEST(PrintMap, SaysWhyAPointHasNoPlace) {
+TEST_CASE("PrintMap.SaysWhyAPointHasNoPlace") {
   // A table of 40 x 40 at height 20 on a leg: the sheet lies on the table only. Beside it a plate beyond the opening.
   TriangleMesh table = test::grid_mesh(20, 20, 20, 20), under = table, step = test::grid_mesh(5, 5, 4, 4),
                beyond = step;
@@ -172,17 +178,17 @@ TEST(PrintMap, SaysWhyAPointHasNoPlace) {
     ++expected[static_cast<std::size_t>(should)];
     agreed[static_cast<std::size_t>(should)] += projected.face[static_cast<std::size_t>(f)] == should;
   }
-  for (const int count : expected) EXPECT_GT(count, 0);
-  EXPECT_EQ(agreed, expected);
+  for (const int count : expected) CHECK(count > 0);
+  CHECK(agreed == expected);
   // What lies flat on the sheet's inner side keeps its place.
   for (Eigen::Index i = 0; i < surface.mesh.V.rows(); ++i)
     if (projected.vertex[static_cast<std::size_t>(i)] == Coverage::coloured) {
-      EXPECT_NEAR((projected.sheet_mm.row(i) - surface.mesh.V.row(i).head<2>()).norm(), 0, 1e-9);
-      EXPECT_NEAR(projected.gap_mm[i], 0, 1e-9);
+      CHECK_THAT((projected.sheet_mm.row(i) - surface.mesh.V.row(i).head<2>()).norm(), WithinAbs(0, 1e-9));
+      CHECK_THAT(projected.gap_mm[i], WithinAbs(0, 1e-9));
     }
 }
 
-TEST(PrintMap, TheUndersideHasNoSayAlongTheFoot) {
+TEST_CASE("PrintMap.TheUndersideHasNoSayAlongTheFoot") {
   // A closed cone on the plate: its foot's normals are the wall's.
   const Cone cone;
   TriangleMesh model = cone.mesh(1, 64);
@@ -194,10 +200,10 @@ TEST(PrintMap, TheUndersideHasNoSayAlongTheFoot) {
   const RefinedSurface surface = refine_above_plate(model, 3, 1'000'000, context);
   const ProjectedSurface projected = project_onto_sheet(surface, cone.sheet(60, 64), {}, context);
   for (std::size_t f = 0; f < projected.face.size(); ++f)
-    EXPECT_EQ(projected.face[f], surface.below_plate[f] ? Coverage::below_plate : Coverage::coloured);
+    CHECK(projected.face[f] == (surface.below_plate[f] ? Coverage::below_plate : Coverage::coloured));
 }
 
-TEST(PrintMap, DoesNotPaintAcrossAFold) {
+TEST_CASE("PrintMap.DoesNotPaintAcrossAFold") {
   // Two halves of the sheet side by side over one plate, whose material was 40 mm apart.
   TriangleMesh model = test::grid_mesh(20, 20, 4, 4);
   model.V.col(2).array() = 5;
@@ -229,42 +235,45 @@ TEST(PrintMap, DoesNotPaintAcrossAFold) {
       middle += surface.mesh.V(surface.mesh.F(f, k), 0) / 3;
     }
     const bool coloured = projected.face[static_cast<std::size_t>(f)] == Coverage::coloured;
-    EXPECT_EQ(coloured, longest < 10) << middle;
+    {
+      INFO(middle);
+      CHECK(coloured == (longest < 10));
+    }
     torn += !coloured;
   }
-  EXPECT_GT(torn, 50);
-  EXPECT_LT(torn, surface.mesh.F.rows() / 10);
+  CHECK(torn > 50);
+  CHECK(torn < surface.mesh.F.rows() / 10);
 }
 
-TEST(PrintMap, DividesWithoutCracksAndKeepsArea) {
+TEST_CASE("PrintMap.DividesWithoutCracksAndKeepsArea") {
   const Cone cone;
   TriangleMesh mesh = cone.mesh(3, 7);
   mesh.V.col(2).array() -= 20;
   Context context;
   const RefinedSurface surface = refine_above_plate(mesh, 3, 1'000'000, context);
   const Adjacency before(mesh), after(surface.mesh);
-  EXPECT_EQ(before.boundary_edge_count() > 0, after.boundary_edge_count() > 0);
-  EXPECT_EQ(euler_characteristic(after), euler_characteristic(before));
-  EXPECT_NEAR(surface_area(surface.mesh), surface_area(mesh), 1e-9 * surface_area(mesh));
-  EXPECT_LE(surface.edge_mm, 3);
+  CHECK((before.boundary_edge_count() > 0) == (after.boundary_edge_count() > 0));
+  CHECK(euler_characteristic(after) == euler_characteristic(before));
+  CHECK_THAT(surface_area(surface.mesh), WithinAbs(surface_area(mesh), 1e-9 * surface_area(mesh)));
+  CHECK(surface.edge_mm <= 3);
   for (Eigen::Index f = 0; f < surface.mesh.F.rows(); ++f)
     for (int k = 0; k < 3; ++k) {
       const Vec3 p = surface.mesh.V.row(surface.mesh.F(f, k));
-      if (surface.below_plate[static_cast<std::size_t>(f)]) EXPECT_LE(p.z(), 0);
-      else EXPECT_GE(p.z(), 0);
+      if (surface.below_plate[static_cast<std::size_t>(f)]) CHECK(p.z() <= 0);
+      else CHECK(p.z() >= 0);
       const Eigen::Vector2d w = surface.place[static_cast<std::size_t>(f)][static_cast<std::size_t>(k)].cast<double>();
       const int old = surface.face_of[static_cast<std::size_t>(f)];
       const Vec3 again = (1 - w.sum()) * mesh.V.row(mesh.F(old, 0)) + w.x() * mesh.V.row(mesh.F(old, 1)) +
                          w.y() * mesh.V.row(mesh.F(old, 2));
-      EXPECT_NEAR((again - p).norm(), 0, 1e-4);
+      CHECK_THAT((again - p).norm(), WithinAbs(0, 1e-4));
     }
   // No room: it stays coarse, and says how coarse.
   const RefinedSurface coarse = refine_above_plate(mesh, 0.5, 500, context);
-  EXPECT_LE(coarse.mesh.face_count(), 500);
-  EXPECT_GT(coarse.edge_mm, 0.5);
+  CHECK(coarse.mesh.face_count() <= 500);
+  CHECK(coarse.edge_mm > 0.5);
 }
 
-TEST(PrintMap, RefusesSheetsThatAreNone) {
+TEST_CASE("PrintMap.RefusesSheetsThatAreNone") {
   const Cone cone;
   Context context;
   const RefinedSurface surface = refine_above_plate(cone.mesh(1, 16), 5, 100'000, context);
@@ -274,7 +283,7 @@ TEST(PrintMap, RefusesSheetsThatAreNone) {
     project_onto_sheet(surface, sheet, {}, context);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_EQ(error.where(), "sheet");
+    CHECK(error.where() == "sheet");
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "zippable/plan/closure_marks.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
 
 #include <cmath>
 #include <map>
@@ -27,22 +27,22 @@ ZippablePlan planned(const FlatDesign& design, const PlanOptions& options) {
   return plan_zippable(design, options, context);
 }
 
-TEST(ClosureMarks, NumbersPairUpAtTheSamePlacesOfTheCut) {
+TEST_CASE("ClosureMarks.NumbersPairUpAtTheSamePlacesOfTheCut") {
   const FlatDesign design = test::designed("torus", 60, 400);
-  ASSERT_EQ(design.closures.size(), 1u);
+  REQUIRE(design.closures.size() == 1u);
   PlanOptions options;
   options.bed_x_mm = options.bed_y_mm = 800;
   for (const ZipperCoil coil : {ZipperCoil::none, ZipperCoil::coil_3}) {
     options.coil = coil;
     const ZippablePlan plan = planned(design, options);
     const HandleClosure& closure = design.closures[0];
-    EXPECT_EQ(plan.closures.total_mm(), closure.length_mm);
+    CHECK(plan.closures.total_mm() == closure.length_mm);
     const auto expected = static_cast<std::size_t>(std::ceil(closure.length_mm / plan.marker_spacing_mm));
     // Where room was made for the zipper a number at either end of either side may be gone, on both sides.
     if (coil == ZipperCoil::none) {
-      EXPECT_EQ(plan.closures.markers.size(), expected);
+      CHECK(plan.closures.markers.size() == expected);
     }
-    EXPECT_GE(plan.closures.markers.size() + 2, expected);
+    CHECK(plan.closures.markers.size() + 2 >= expected);
     // Places between numbers are equally far apart on both sides, where edges were not moved.
     if (coil == ZipperCoil::none)
       for (std::size_t side = 0; side < 2; ++side)
@@ -55,7 +55,7 @@ TEST(ClosureMarks, NumbersPairUpAtTheSamePlacesOfTheCut) {
           const int w = same.sides[1 - side].edge;
           const FlatVertex &c = design.boundary[w], &d = design.boundary[design.next(w)];
           const double other_share = (same.sides[1 - side].flat_mm - c.flat_mm).norm() / (d.flat_mm - c.flat_mm).norm();
-          EXPECT_LT((here - (c.position_mm + other_share * (d.position_mm - c.position_mm))).norm(), 1e-6);
+          CHECK((here - (c.position_mm + other_share * (d.position_mm - c.position_mm))).norm() < 1e-6);
         }
     // On the sheets every number stands once a side, and all marks lie in their piece.
     std::map<std::string, int> names;
@@ -63,24 +63,25 @@ TEST(ClosureMarks, NumbersPairUpAtTheSamePlacesOfTheCut) {
       for (const CutPath& path : piece.marks) {
         if (!path.name.starts_with("closure-") && !path.name.starts_with("hook-")) continue;
         ++names[path.name];
-        EXPECT_EQ(path.layer, CutLayer::mark);
+        CHECK(path.layer == CutLayer::mark);
         for (std::size_t k = 1; k < path.points_mm.size(); ++k) {
-          EXPECT_TRUE(within(piece.cut_mm, 0.5 * (path.points_mm[k - 1] + path.points_mm[k]))) << path.name;
+          INFO(path.name);
+          CHECK(within(piece.cut_mm, 0.5 * (path.points_mm[k - 1] + path.points_mm[k])));
         }
       }
     for (const ClosureMarker& marker : plan.closures.markers)
       for (const char* side : {"-hook", "-loop"})
-        EXPECT_EQ(names["closure-1-" + std::to_string(marker.number) + side], 1);
+        CHECK(names["closure-1-" + std::to_string(marker.number) + side] == 1);
   }
 }
 
-TEST(ClosureMarks, TheLowerSideIsDeeperByTheTape) {
+TEST_CASE("ClosureMarks.TheLowerSideIsDeeperByTheTape") {
   const FlatDesign design = test::designed("torus", 60, 400);
   PlanOptions options;
   options.bed_x_mm = options.bed_y_mm = 800;
   options.hook_and_loop_mm = 16;
   const ZippablePlan plan = planned(design, options);
-  ASSERT_FALSE(plan.closures.flaps.empty());
+  REQUIRE_FALSE(plan.closures.flaps.empty());
   for (const EdgeFlap& flap : plan.closures.flaps)
     for (const Vec2& corner : flap.outer_mm) {
       double nearest = 1e300;
@@ -89,10 +90,10 @@ TEST(ClosureMarks, TheLowerSideIsDeeperByTheTape) {
         nearest = std::min(nearest,
                            (corner - a - std::clamp((corner - a).dot(way) / way.squaredNorm(), 0.0, 1.0) * way).norm());
       }
-      EXPECT_LE(nearest, 2 * 16 + 1e-9);  // at a bend, where the moved edges meet
+      CHECK(nearest <= 2 * 16 + 1e-9);  // at a bend, where the moved edges meet
     }
   // Lines of the tape run its width inside the other side.
-  ASSERT_FALSE(plan.closures.tape_edges.empty());
+  REQUIRE_FALSE(plan.closures.tape_edges.empty());
   for (const TapeEdge& edge : plan.closures.tape_edges)
     for (const Vec2& p : edge.points_mm) {
       double nearest = 1e300;
@@ -104,8 +105,8 @@ TEST(ClosureMarks, TheLowerSideIsDeeperByTheTape) {
             nearest =
                 std::min(nearest, (p - a - std::clamp((p - a).dot(way) / way.squaredNorm(), 0.0, 1.0) * way).norm());
           }
-      EXPECT_GE(nearest, 0.98 * 16);
-      EXPECT_LE(nearest, 1.25 * 16);  // at a bend, where the moved edges meet
+      CHECK(nearest >= 0.98 * 16);
+      CHECK(nearest <= 1.25 * 16);  // at a bend, where the moved edges meet
     }
   // Pieces grow by their allowances, and stay simple enough to be cut: area of outline and of what it is made of agree.
   double outlines = 0, flaps = 0;
@@ -117,27 +118,27 @@ TEST(ClosureMarks, TheLowerSideIsDeeperByTheTape) {
   for (const RibbonSplit& split : plan.splitting.splits)
     allowances +=
         2 * options.seam_allowance_mm * (plan.ribbon.flat_mm[split.from] - plan.ribbon.flat_mm[split.to]).norm();
-  EXPECT_GT(flaps, 0.5 * 16 * design.closures[0].length_mm);
-  EXPECT_GE(outlines, flaps - 1e-6);
-  EXPECT_LE(outlines, flaps + allowances);
+  CHECK(flaps > 0.5 * 16 * design.closures[0].length_mm);
+  CHECK(outlines >= flaps - 1e-6);
+  CHECK(outlines <= flaps + allowances);
 }
 
-TEST(ClosureMarks, PaperIsGluedAndModelsWithoutHandlesHaveNone) {
+TEST_CASE("ClosureMarks.PaperIsGluedAndModelsWithoutHandlesHaveNone") {
   const FlatDesign torus = test::designed("torus", 60, 400);
   PlanOptions options;
   options.bed_x_mm = options.bed_y_mm = 800;
   options.coil = ZipperCoil::none;
   const ZippablePlan plain = planned(torus, options);
-  EXPECT_TRUE(plain.closures.flaps.empty() && plain.closures.tape_edges.empty());
+  CHECK((plain.closures.flaps.empty() && plain.closures.tape_edges.empty()));
   options.edges = PaperEdges::tabs;
   const ZippablePlan tabs = planned(torus, options);
-  EXPECT_GT(tabs.closures.flaps.size(), 10u);
-  EXPECT_TRUE(tabs.closures.tape_edges.empty());
+  CHECK(tabs.closures.flaps.size() > 10u);
+  CHECK(tabs.closures.tape_edges.empty());
   const ZippablePlan star = planned(test::designed("star", 20), {});
-  EXPECT_TRUE(star.closures.markers.empty() && star.closures.flaps.empty() && star.closures.length_mm.empty());
+  CHECK((star.closures.markers.empty() && star.closures.flaps.empty() && star.closures.length_mm.empty()));
 }
 
-TEST(ClosureMarks, TheAssemblySheetSaysIt) {
+TEST_CASE("ClosureMarks.TheAssemblySheetSaysIt") {
   Context context;
   const FlatDesign torus = test::designed("torus", 60, 400);
   const auto pages = [&](const FlatDesign& design) {
@@ -147,7 +148,7 @@ TEST(ClosureMarks, TheAssemblySheetSaysIt) {
   };
   FlatDesign without = torus;
   without.closures.clear();
-  EXPECT_GT(pages(torus).size(), pages(without).size());
+  CHECK(pages(torus).size() > pages(without).size());
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "zippable/plan/glue_tabs.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -11,6 +12,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 PlanOptions paper() {
   PlanOptions options;
@@ -20,51 +22,58 @@ PlanOptions paper() {
   return options;
 }
 
-TEST(GlueTabs, OfAStripAreTrapezesOnItsLeftEdge) {
+TEST_CASE("GlueTabs.OfAStripAreTrapezesOnItsLeftEdge") {
   Context context;
   const ZippablePlan plan = plan_zippable(test::strip(200, 20, 41), paper(), context);
-  ASSERT_TRUE(plan.tabs);
-  ASSERT_EQ(plan.tabs->tabs.size(), 14u);  // 200 / 15, rounded up
+  REQUIRE(plan.tabs);
+  REQUIRE(plan.tabs->tabs.size() == 14u);  // 200 / 15, rounded up
   const double length = 200.0 / 14;
   for (int i = 0; i < 14; ++i) {
     const GlueTab& tab = plan.tabs->tabs[std::size_t(i)];
-    EXPECT_TRUE(tab.left);
-    EXPECT_LT((tab.foot_from - Vec2(i * length, 0)).norm(), 1e-6);
-    EXPECT_LT((tab.corner_from - Vec2(i * length + length / 4, -5)).norm(), 1e-6);
-    EXPECT_LT((tab.corner_to - Vec2((i + 1) * length - length / 4, -5)).norm(), 1e-6);
+    CHECK(tab.left);
+    CHECK((tab.foot_from - Vec2(i * length, 0)).norm() < 1e-6);
+    CHECK((tab.corner_from - Vec2(i * length + length / 4, -5)).norm() < 1e-6);
+    CHECK((tab.corner_to - Vec2((i + 1) * length - length / 4, -5)).norm() < 1e-6);
   }
-  EXPECT_EQ(plan.tabs->shortened + plan.tabs->left_out, 0);
-  EXPECT_NEAR(signed_area_mm2(plan.pieces.pieces[0].outline_mm), 200 * 20 + 14 * 5 * (length - length / 4), 1e-4);
+  CHECK(plan.tabs->shortened + plan.tabs->left_out == 0);
+  CHECK_THAT(signed_area_mm2(plan.pieces.pieces[0].outline_mm),
+             WithinAbs(200 * 20 + 14 * 5 * (length - length / 4), 1e-4));
 }
 
-TEST(GlueTabs, EveryStretchOfTheZipperHasOneTabAtMost) {
+TEST_CASE("GlueTabs.EveryStretchOfTheZipperHasOneTabAtMost") {
   Context context;
   for (const char* sample : {"star", "t_shape", "octopus"}) {
     const FlatDesign design = test::designed(sample, 20);
     const ZippablePlan plan = plan_zippable(design, paper(), context);
     double last = 0, covered = 0;
     for (const GlueTab& tab : plan.tabs->tabs) {
-      EXPECT_GE(tab.from_mm, last - 1e-9) << sample;
-      EXPECT_LE(tab.to_mm - tab.from_mm, 15 + 1e-9);
+      {
+        INFO(sample);
+        CHECK(tab.from_mm >= last - 1e-9);
+      }
+      CHECK(tab.to_mm - tab.from_mm <= 15 + 1e-9);
       // On one piece on its own side, and against one piece on the other.
       for (const TapeRun& run : plan.runs)
-        EXPECT_TRUE(run.to_mm <= tab.from_mm + 1e-6 || run.from_mm >= tab.to_mm - 1e-6 ||
-                    (run.from_mm <= tab.from_mm + 1e-6 && run.to_mm >= tab.to_mm - 1e-6 &&
-                     (run.left != tab.left || run.piece == tab.piece)));
+        CHECK((run.to_mm <= tab.from_mm + 1e-6 || run.from_mm >= tab.to_mm - 1e-6 ||
+               (run.from_mm <= tab.from_mm + 1e-6 && run.to_mm >= tab.to_mm - 1e-6 &&
+                (run.left != tab.left || run.piece == tab.piece))));
       last = tab.to_mm, covered += tab.to_mm - tab.from_mm;
     }
-    EXPECT_LE(last, design.zipper_mm + 1e-9);
-    EXPECT_GT(covered, 0.8 * design.zipper_mm) << sample;
+    CHECK(last <= design.zipper_mm + 1e-9);
+    {
+      INFO(sample);
+      CHECK(covered > 0.8 * design.zipper_mm);
+    }
     // What the tabs add to the outlines, beside what allowances add, is their own area.
     double outlines = 0, tabs = 0;
     for (const PlanPiece& piece : plan.pieces.pieces) outlines += signed_area_mm2(piece.outline_mm);
     for (const GlueTab& tab : plan.tabs->tabs)
       for (const auto& t : triangles_of(tab)) tabs += std::abs(signed_area_mm2({t[0], t[1], t[2]}));
-    EXPECT_GT(outlines, plan.area_before_mm2 + 0.9 * tabs);
+    CHECK(outlines > plan.area_before_mm2 + 0.9 * tabs);
   }
 }
 
-TEST(GlueTabs, GiveWayToTheNextWinding) {
+TEST_CASE("GlueTabs.GiveWayToTheNextWinding") {
   // A spiral strip of 12 mm whose windings are 4 mm apart: no tab of 5 mm has room between them.
   const double pitch = 16, width = 12;
   FlatDesign design = test::strip(1600, width, 533);
@@ -81,7 +90,7 @@ TEST(GlueTabs, GiveWayToTheNextWinding) {
   seam.to_mm = design.zipper_mm;
   const GlueTabOptions options;
   const GlueTabs made = make_glue_tabs(design, flat, splitting, {seam}, options, Context());
-  EXPECT_GT(made.shortened, 0);
+  CHECK(made.shortened > 0);
   int full = 0;
   for (const GlueTab& tab : made.tabs) {
     const Vec2 way = (tab.foot_to - tab.foot_from).normalized(), out(way.y(), -way.x());
@@ -91,22 +100,22 @@ TEST(GlueTabs, GiveWayToTheNextWinding) {
       for (int k = 0; k < 3; ++k) nearest = std::min(nearest, std::abs(design.F(f, k) - tab.from_edge));
       if (nearest < 20) continue;
       for (const auto& t : triangles_of(tab))
-        EXPECT_FALSE(triangles_overlap(t, {flat[design.F(f, 0)], flat[design.F(f, 1)], flat[design.F(f, 2)]},
-                                       -0.9 * options.clearance_mm));
+        CHECK_FALSE(triangles_overlap(t, {flat[design.F(f, 0)], flat[design.F(f, 1)], flat[design.F(f, 2)]},
+                                      -0.9 * options.clearance_mm));
     }
   }
-  EXPECT_GT(full, 0);  // on the first and the last winding, which have one side free
+  CHECK(full > 0);  // on the first and the last winding, which have one side free
 }
 
-TEST(GlueTabs, AZipperHasNone) {
+TEST_CASE("GlueTabs.AZipperHasNone") {
   Context context;
   PlanOptions options = paper();
   options.coil = ZipperCoil::coil_3;
   try {
     plan_zippable(test::strip(200, 30, 21), options, context);
-    FAIL() << "accepted";
+    FAIL("accepted");
   } catch (const Error& error) {
-    EXPECT_EQ(error.where(), "edges");
+    CHECK(error.where() == "edges");
   }
 }
 

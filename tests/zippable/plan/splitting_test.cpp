@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "zippable/plan/splitting.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -36,42 +36,43 @@ std::vector<Vec2> bent(const FlatDesign& strip, double radius, double width, dou
   return flat;
 }
 
-TEST(Splitting, AStripIsCutAsOftenAsItsLengthSays) {
+TEST_CASE("Splitting.AStripIsCutAsOftenAsItsLengthSays") {
   const FlatDesign strip = test::strip(1000, 20, 201);
   Context context;
   const auto fits = [](const Polygon& hull) { return !fitting_turns(hull, 300, 100, false).empty(); };
   const Splitting splitting = split_ribbon(strip.F, flat_of(strip), fits, 0.5, 0, context);
-  EXPECT_EQ(splitting.piece_count, 4);  // 1000 / 300, rounded up
-  EXPECT_EQ(splitting.splits.size(), 3u);
-  EXPECT_EQ(split_ribbon(strip.F, flat_of(strip), any_size, 0.5, 0, context).piece_count, 1);
+  CHECK(splitting.piece_count == 4);  // 1000 / 300, rounded up
+  CHECK(splitting.splits.size() == 3u);
+  CHECK(split_ribbon(strip.F, flat_of(strip), any_size, 0.5, 0, context).piece_count == 1);
 }
 
-TEST(Splitting, ARingOverItselfIsCutOnceATurn) {
+TEST_CASE("Splitting.ARingOverItselfIsCutOnceATurn") {
   Context context;
   for (const double turns : {0.9, 1.5, 2.5, 3.5}) {
     const FlatDesign strip = test::strip(400 * turns, 12, static_cast<int>(100 * turns) + 1);
     const Splitting splitting = split_ribbon(strip.F, bent(strip, 70, 12, turns), any_size, 0.5, 0, context);
-    EXPECT_EQ(splitting.piece_count, static_cast<int>(std::ceil(turns))) << turns;
+    INFO(turns);
+    CHECK(splitting.piece_count == static_cast<int>(std::ceil(turns)));
   }
 }
 
-TEST(Splitting, NarrowerThanASingleTriangleIsRefused) {
+TEST_CASE("Splitting.NarrowerThanASingleTriangleIsRefused") {
   const FlatDesign strip = test::strip(100, 20, 21);
   Context context;
-  EXPECT_THROW(split_ribbon(
-                   strip.F, flat_of(strip), [](const Polygon&) { return false; }, 0.5, 0, context),
-               Error);
+  CHECK_THROWS_AS(split_ribbon(
+                      strip.F, flat_of(strip), [](const Polygon&) { return false; }, 0.5, 0, context),
+                  Error);
 }
 
-TEST(Splitting, PiecesOfSamplesNeitherOverlapNorLoseTriangles) {
+TEST_CASE("Splitting.PiecesOfSamplesNeitherOverlapNorLoseTriangles") {
   Context context;
   for (const char* sample : {"star", "octopus"}) {
     const FlatDesign design = test::designed(sample, 20);
     const std::vector<Vec2> flat = flat_of(design);
     const Splitting splitting = split_ribbon(design.F, flat, any_size, 0.5, 0, context);
-    EXPECT_EQ(static_cast<int>(splitting.splits.size()), splitting.piece_count - 1);
-    EXPECT_EQ(std::set<int>(splitting.piece_of_face.begin(), splitting.piece_of_face.end()).size(),
-              std::size_t(splitting.piece_count));
+    CHECK(static_cast<int>(splitting.splits.size()) == splitting.piece_count - 1);
+    CHECK(std::set<int>(splitting.piece_of_face.begin(), splitting.piece_of_face.end()).size() ==
+          std::size_t(splitting.piece_count));
     const auto corners = [&](Eigen::Index f) {
       return std::array<Vec2, 3>{flat[design.F(f, 0)], flat[design.F(f, 1)], flat[design.F(f, 2)]};
     };
@@ -80,11 +81,12 @@ TEST(Splitting, PiecesOfSamplesNeitherOverlapNorLoseTriangles) {
       for (Eigen::Index g = 0; g < f; ++g)
         if (splitting.piece_of_face[f] == splitting.piece_of_face[g])
           overlaps += triangles_overlap(corners(f), corners(g), 1e-6);
-    EXPECT_EQ(overlaps, 0) << sample;
+    INFO(sample);
+    CHECK(overlaps == 0);
   }
 }
 
-TEST(Splitting, CrumbsGrowAtTheirNeighboursCost) {
+TEST_CASE("Splitting.CrumbsGrowAtTheirNeighboursCost") {
   // A little more than two turns: two whole rings, and what would be a scrap.
   Context context;
   const double least_mm2 = 300;
@@ -99,25 +101,25 @@ TEST(Splitting, CrumbsGrowAtTheirNeighboursCost) {
   };
   const Splitting with_crumb = split_ribbon(strip.F, flat, any_size, 0.5, 0, context),
                   swept = split_ribbon(strip.F, flat, any_size, 0.5, least_mm2, context);
-  EXPECT_LT(smallest(with_crumb), least_mm2);
-  EXPECT_GE(smallest(swept), least_mm2);
-  EXPECT_EQ(swept.piece_count, with_crumb.piece_count);
-  EXPECT_EQ(swept.moved_splits, 1);
-  ASSERT_EQ(swept.splits.size(), 2u);
-  for (const RibbonSplit& split : swept.splits) EXPECT_NE(split.left, split.right);
+  CHECK(smallest(with_crumb) < least_mm2);
+  CHECK(smallest(swept) >= least_mm2);
+  CHECK(swept.piece_count == with_crumb.piece_count);
+  CHECK(swept.moved_splits == 1);
+  REQUIRE(swept.splits.size() == 2u);
+  for (const RibbonSplit& split : swept.splits) CHECK(split.left != split.right);
 }
 
-TEST(Splitting, ARestOfAStripGrowsToo) {
+TEST_CASE("Splitting.ARestOfAStripGrowsToo") {
   // Three pieces of up to 300 mm and a rest of 40 mm, 800 square mm.
   Context context;
   const FlatDesign strip = test::strip(940, 20, 189);
   const auto fits = [](const Polygon& hull) { return !fitting_turns(hull, 300, 100, false).empty(); };
   const Splitting splitting = split_ribbon(strip.F, flat_of(strip), fits, 0.5, 2000, context);
-  EXPECT_EQ(splitting.piece_count, 4);
-  EXPECT_EQ(splitting.moved_splits + splitting.merged_crumbs, 1);
+  CHECK(splitting.piece_count == 4);
+  CHECK(splitting.moved_splits + splitting.merged_crumbs == 1);
   std::vector<double> area(4, 0.0);
   for (int f = 0; f < strip.F.rows(); ++f) area[splitting.piece_of_face[f]] += 20 * 5 / 2.0;
-  EXPECT_GE(*std::min_element(area.begin(), area.end()), 2000);
+  CHECK(*std::min_element(area.begin(), area.end()) >= 2000);
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "zippable/zipping/cloth_energy.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
@@ -11,6 +12,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 /// A patch of equilateral triangles with sides `edge_mm`.
 TriangleMesh equilateral_patch(int columns, int rows, double edge_mm) {
@@ -35,7 +37,7 @@ Positions jostled(const Positions& x, double by, std::uint64_t seed) {
   return result;
 }
 
-TEST(ClothEnergy, OfAUniformStretchIsTheStrips) {
+TEST_CASE("ClothEnergy.OfAUniformStretchIsTheStrips") {
   // Plane stress with the strip free to narrow: K e^2 / 2 an area in the Green strain e, to second order.
   const TriangleMesh flat = equilateral_patch(6, 4, 2);
   const ClothMaterial material;
@@ -45,12 +47,12 @@ TEST(ClothEnergy, OfAUniformStretchIsTheStrips) {
   double energy = 0, area = 0;
   for (const ClothTriangle& t : cloth_triangles(flat)) {
     energy += stretch_energy_mj(t, material, x), area += t.area_mm2;
-    EXPECT_NEAR(largest_strain(t, x), std::sqrt(1 + 2 * e) - 1, 1e-12);
+    CHECK_THAT(largest_strain(t, x), WithinAbs(std::sqrt(1 + 2 * e) - 1, 1e-12));
   }
-  EXPECT_NEAR(energy, 0.5 * material.stretch_n_per_mm * e * e * area, 1e-9 * energy);
+  CHECK_THAT(energy, WithinAbs(0.5 * material.stretch_n_per_mm * e * e * area, 1e-9 * energy));
 }
 
-TEST(ClothEnergy, OfBendingTendsToThePlatesOnACylinder) {
+TEST_CASE("ClothEnergy.OfBendingTendsToThePlatesOnACylinder") {
   const double radius = 10, bending = 0.3;
   std::vector<double> error;
   for (const int n : {16, 32, 64}) {
@@ -64,13 +66,13 @@ TEST(ClothEnergy, OfBendingTendsToThePlatesOnACylinder) {
     double area = 0;
     for (const ClothHinge& hinge : hinges) area += bending / hinge.stiffness_n_per_mm / 3;  // a third of both triangles
     error.push_back(std::abs(bending_energy_mj(hinges, x) / (0.5 * bending / (radius * radius) * area) - 1));
-    EXPECT_NEAR(bending_energy_mj(hinges, flat.V), 0, 1e-20);
+    CHECK_THAT(bending_energy_mj(hinges, flat.V), WithinAbs(0, 1e-20));
   }
-  EXPECT_LT(error.back(), 0.03);
-  EXPECT_LT(error[2], 0.6 * error[0]);
+  CHECK(error.back() < 0.03);
+  CHECK(error[2] < 0.6 * error[0]);
 }
 
-TEST(ClothEnergy, StretchGradientAgreesWithDifferencesAndItsMatrixIsSemidefinite) {
+TEST_CASE("ClothEnergy.StretchGradientAgreesWithDifferencesAndItsMatrixIsSemidefinite") {
   const TriangleMesh flat = equilateral_patch(1, 1, 2);
   const ClothTriangle t = cloth_triangles(flat)[0];
   const ClothMaterial material;
@@ -78,7 +80,7 @@ TEST(ClothEnergy, StretchGradientAgreesWithDifferencesAndItsMatrixIsSemidefinite
     Positions x = jostled(flat.V, 0.4, seed);
     StretchTerms terms;
     stretch_terms(t, material, x, terms);
-    EXPECT_NEAR(terms.energy_mj, stretch_energy_mj(t, material, x), 1e-12 * terms.energy_mj);
+    CHECK_THAT(terms.energy_mj, WithinAbs(stretch_energy_mj(t, material, x), 1e-12 * terms.energy_mj));
     Eigen::Matrix<double, 9, 9> matrix;
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j <= i; ++j) {
@@ -86,7 +88,7 @@ TEST(ClothEnergy, StretchGradientAgreesWithDifferencesAndItsMatrixIsSemidefinite
         matrix.block<3, 3>(3 * j, 3 * i) = terms.block[i][j].transpose();
       }
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver(matrix);
-    EXPECT_GT(solver.eigenvalues()[0], -1e-9 * solver.eigenvalues()[8]);
+    CHECK(solver.eigenvalues()[0] > -1e-9 * solver.eigenvalues()[8]);
     for (std::size_t k = 0; k < 3; ++k)
       for (int d = 0; d < 3; ++d) {
         const double h = 1e-5, here = x(t.vertex[k], d);
@@ -95,36 +97,36 @@ TEST(ClothEnergy, StretchGradientAgreesWithDifferencesAndItsMatrixIsSemidefinite
         x(t.vertex[k], d) = here - h;
         const double down = stretch_energy_mj(t, material, x);
         x(t.vertex[k], d) = here;
-        EXPECT_NEAR(terms.gradient[k][d], (up - down) / (2 * h), 1e-7 * material.stretch_n_per_mm);
+        CHECK_THAT(terms.gradient[k][d], WithinAbs((up - down) / (2 * h), 1e-7 * material.stretch_n_per_mm));
       }
   }
 }
 
-TEST(SeamThread, PullsOnlyWhereItIsTight) {
+TEST_CASE("SeamThread.PullsOnlyWhereItIsTight") {
   const SeamThread thread{3, 2};
-  EXPECT_EQ(thread_energy_mj(thread, Vec3(1, 1, 1)), 0);
-  EXPECT_EQ(thread_energy_mj({3, -1}, Vec3(9, 9, 9)), 0);
+  CHECK(thread_energy_mj(thread, Vec3(1, 1, 1)) == 0);
+  CHECK(thread_energy_mj({3, -1}, Vec3(9, 9, 9)) == 0);
   for (const double length : {0.0, 2.0}) {
     const Vec3 d(2, -1, 1.5);
     Eigen::Matrix3d hessian;
     const Vec3 gradient = thread_gradient_n({3, length}, d, &hessian);
     for (int k = 0; k < 3; ++k) {
       const Vec3 h = 1e-5 * Vec3::Unit(k);
-      EXPECT_NEAR(gradient[k], (thread_energy_mj({3, length}, d + h) - thread_energy_mj({3, length}, d - h)) / 2e-5,
-                  1e-8);
+      CHECK_THAT(gradient[k],
+                 WithinAbs((thread_energy_mj({3, length}, d + h) - thread_energy_mj({3, length}, d - h)) / 2e-5, 1e-8));
       const Vec3 change =
           (thread_gradient_n({3, length}, d + h, nullptr) - thread_gradient_n({3, length}, d - h, nullptr)) / 2e-5;
-      EXPECT_LT((hessian.col(k) - change).norm(), 1e-8);
+      CHECK((hessian.col(k) - change).norm() < 1e-8);
     }
   }
 }
 
-TEST(Pressure, DoesTheWorkOfTheVolume) {
+TEST_CASE("Pressure.DoesTheWorkOfTheVolume") {
   const TriangleMesh ball = test::tetrahedron();
   const double pressure = 0.7;
   const Positions force =
       pressure_force_n(ball.F, ball.V, std::vector<char>(static_cast<std::size_t>(ball.face_count()), 1), pressure);
-  EXPECT_LT(force.colwise().sum().norm(), 1e-12);
+  CHECK(force.colwise().sum().norm() < 1e-12);
   const auto volume = [&](const Positions& x) {
     double six = 0;
     for (int f = 0; f < ball.face_count(); ++f) {
@@ -134,11 +136,11 @@ TEST(Pressure, DoesTheWorkOfTheVolume) {
     return six / 6;
   };
   const Positions move = jostled(Positions::Zero(ball.V.rows(), 3), 1, 5);
-  EXPECT_NEAR(force.cwiseProduct(move).sum(),
-              pressure * (volume(ball.V + 1e-5 * move) - volume(ball.V - 1e-5 * move)) / 2e-5, 1e-8);
+  CHECK_THAT(force.cwiseProduct(move).sum(),
+             WithinAbs(pressure * (volume(ball.V + 1e-5 * move) - volume(ball.V - 1e-5 * move)) / 2e-5, 1e-8));
 }
 
-TEST(ZippingSystem, GradientOfAllAgreesWithDifferences) {
+TEST_CASE("ZippingSystem.GradientOfAllAgreesWithDifferences") {
   Context context;
   const RibbonDesign design = test::cylinder_ribbon({100, 60, 1, 6, 0});
   const RibbonPattern pattern = make_ribbon_pattern(design.places, design.triangles, 0, context);
@@ -156,13 +158,13 @@ TEST(ZippingSystem, GradientOfAllAgreesWithDifferences) {
       x(i, k) = here - h;
       const double down = system.objective_mj(x);
       x(i, k) = here;
-      EXPECT_NEAR(gradient(i, k), (up - down) / (2 * h), 1e-5 * (1 + std::abs(gradient(i, k))));
+      CHECK_THAT(gradient(i, k), WithinAbs((up - down) / (2 * h), 1e-5 * (1 + std::abs(gradient(i, k)))));
     }
   const double before = system.objective_mj(x);
   const auto progress = system.minimise(x, 500, 1e-10, context);
-  EXPECT_TRUE(progress.settled);
-  EXPECT_LT(system.objective_mj(x), before);
-  EXPECT_LT(system.gradient_n(x).norm(), 1e-3 * gradient.norm());
+  CHECK(progress.settled);
+  CHECK(system.objective_mj(x) < before);
+  CHECK(system.gradient_n(x).norm() < 1e-3 * gradient.norm());
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "zippable/zipping/ribbon_pattern.h"
 
-#include <gtest/gtest.h>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <cmath>
 #include <map>
@@ -11,6 +12,7 @@
 
 namespace formwright {
 namespace {
+using Catch::Matchers::WithinAbs;
 
 RibbonDesign torus() {
   Context context;
@@ -28,32 +30,32 @@ double largest_gap(const RibbonPattern& pattern, double length_mm) {
     gap = std::max(gap, (pattern.predicted_mm.row(pair.left) - pattern.predicted_mm.row(pair.right)).norm());
     sum += pair.length_mm;
   }
-  EXPECT_NEAR(sum, length_mm, 1e-9 * length_mm);
+  CHECK_THAT(sum, WithinAbs(length_mm, 1e-9 * length_mm));
   return gap / pattern.size_mm;
 }
 
-TEST(RibbonPattern, PairsOfACutHandleMeetWhereTheyAreDesigned) {
+TEST_CASE("RibbonPattern.PairsOfACutHandleMeetWhereTheyAreDesigned") {
   Context context;
   const RibbonDesign design = torus();
-  ASSERT_EQ(design.closures.size(), 1u);
+  REQUIRE(design.closures.size() == 1u);
   std::size_t count = 0;
   for (const double edge_mm : {0.0, 2.5, 1.2}) {
     const RibbonPattern pattern =
         make_ribbon_pattern(design.places, design.triangles, edge_mm, context, design.closures);
-    EXPECT_GT(pattern.closures.size(), count);
+    CHECK(pattern.closures.size() > count);
     count = pattern.closures.size();
-    EXPECT_LT(largest_gap(pattern, design.closures[0].length_mm), 1e-6);
+    CHECK(largest_gap(pattern, design.closures[0].length_mm) < 1e-6);
     for (Eigen::Index f = 0; f < pattern.flat.F.rows(); ++f) {
       const auto p = [&](int k) -> Vec2 { return pattern.flat.V.row(pattern.flat.F(f, k)).head<2>(); };
-      EXPECT_GT((p(1) - p(0)).x() * (p(2) - p(0)).y() - (p(1) - p(0)).y() * (p(2) - p(0)).x(), 0);
-      for (int k = 0; k < 3 && edge_mm > 0; ++k) EXPECT_LE((p(k) - p((k + 1) % 3)).norm(), edge_mm * (1 + 1e-9));
+      CHECK((p(1) - p(0)).x() * (p(2) - p(0)).y() - (p(1) - p(0)).y() * (p(2) - p(0)).x() > 0);
+      for (int k = 0; k < 3 && edge_mm > 0; ++k) CHECK((p(k) - p((k + 1) % 3)).norm() <= edge_mm * (1 + 1e-9));
     }
   }
   // Without them the pattern is as it was.
-  EXPECT_TRUE(make_ribbon_pattern(design.places, design.triangles, 0, context).closures.empty());
+  CHECK(make_ribbon_pattern(design.places, design.triangles, 0, context).closures.empty());
 }
 
-TEST(RibbonPattern, ASideIsDividedWhereTheOtherHasAVertex) {
+TEST_CASE("RibbonPattern.ASideIsDividedWhereTheOtherHasAVertex") {
   // Two triangles whose outer edges meet, one of which names a place in its middle.
   RibbonDesign design;
   const auto add = [&](double x, double y) {
@@ -70,17 +72,17 @@ TEST(RibbonPattern, ASideIsDividedWhereTheOtherHasAVertex) {
   closure.sides[1].push_back({3, {6, 0}});
   Context context;
   const RibbonPattern pattern = make_ribbon_pattern(design.places, design.triangles, 0, context, {closure});
-  ASSERT_EQ(pattern.closures.size(), 3u);
+  REQUIRE(pattern.closures.size() == 3u);
   const std::array along{0.0, 2.0, 6.0}, length{1.0, 3.0, 2.0};
   for (std::size_t i = 0; i < 3; ++i) {
     const ClosurePair& pair = pattern.closures[i];
-    EXPECT_EQ(pair.along_mm, along[i]);
-    EXPECT_NEAR(pair.length_mm, length[i], 1e-12);
-    EXPECT_NEAR(pattern.flat.V(pair.left, 0), along[i], 1e-12);
-    EXPECT_NEAR(pattern.flat.V(pair.right, 0), along[i], 1e-12);
-    EXPECT_NEAR(pattern.flat.V(pair.right, 1), 5, 1e-12);
+    CHECK(pair.along_mm == along[i]);
+    CHECK_THAT(pair.length_mm, WithinAbs(length[i], 1e-12));
+    CHECK_THAT(pattern.flat.V(pair.left, 0), WithinAbs(along[i], 1e-12));
+    CHECK_THAT(pattern.flat.V(pair.right, 0), WithinAbs(along[i], 1e-12));
+    CHECK_THAT(pattern.flat.V(pair.right, 1), WithinAbs(5, 1e-12));
   }
-  EXPECT_EQ(pattern.flat.F.rows(), 4);
+  CHECK(pattern.flat.F.rows() == 4);
 }
 
 }  // namespace

@@ -216,10 +216,10 @@ test('a virtual object with a fault of one’s choice', async ({ page }) => {
   await openRoom(page);
   await page.getByRole('button', { name: 'Try a virtual object' }).click();
   const dialog = page.getByRole('dialog', { name: 'Make a virtual object' });
-  await expect(dialog.getByRole('textbox', { name: 'Heat falls off in x' })).toHaveValue('0.30');
+  await expect(dialog.getByRole('textbox', { name: 'Colder towards the right' })).toHaveValue('0.30');
   await dialog.getByRole('combobox', { name: 'Mould' }).selectOption('Pyramid');
   // Help lies over the dialog: in the browser's top layer, like the dialog itself.
-  await dialog.getByText('Heat falls off in x').hover();
+  await dialog.getByText('Colder towards the right').hover();
   await expect(page.locator('.tip:popover-open')).toBeVisible();
   await dialog.getByRole('textbox', { name: 'Points', exact: true }).fill('300');
   await dialog.getByRole('textbox', { name: 'Points', exact: true }).press('Tab');

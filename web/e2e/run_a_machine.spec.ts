@@ -119,8 +119,8 @@ test('from the sample star to a finished laser job', async ({ page }) => {
   await page.getByRole('button', { name: 'Make the ribbon', exact: true }).click();
   await expect(strip(page, 'Ribbon unfolded')).toBeVisible({ timeout: 150_000 });
   await page.getByRole('radio', { name: 'Sheets to cut' }).click();
-  await page.getByRole('textbox', { name: 'Bed, x' }).fill('300');
-  await page.getByRole('textbox', { name: 'Bed, x' }).press('Enter');
+  await page.getByRole('textbox', { name: 'Bed width' }).fill('300');
+  await page.getByRole('textbox', { name: 'Bed width' }).press('Enter');
   await expect(page.getByRole('img', { name: / of 300 × 300\smm; / })).toBeVisible();
   const send = page.getByRole('button', { name: /Send to a machine/ });
   await send.click();
@@ -276,8 +276,8 @@ test('wrong files are said in words and the work stays', async ({ page }) => {
 
 test('a job that does not fit is said before anything moves', async ({ page }) => {
   await openDrawing(page);
-  await page.getByRole('textbox', { name: 'Place, x' }).fill('390');
-  await page.getByRole('textbox', { name: 'Place, x' }).press('Enter');
+  await page.getByRole('textbox', { name: 'Position in x' }).fill('390');
+  await page.getByRole('textbox', { name: 'Position in x' }).press('Enter');
   await expect(strip(page, 'The job does not fit')).toBeVisible();
   await practise(page);
   await homeIt(page);
@@ -329,10 +329,10 @@ test('material is tested, and what the tests show is set and kept', async ({ pag
   await button(page, 'Test material').click();
   await expect(page.getByRole('combobox', { name: 'Best square' }).locator('option')).toHaveCount(26);
   for (const [name, value] of [
-    ['Powers', '2'],
-    ['Speeds', '2'],
-    ['Speed from', '50'],
-    ['Speed to', '100'],
+    ['Number of powers', '2'],
+    ['Number of speeds', '2'],
+    ['Lowest speed', '50'],
+    ['Highest speed', '100'],
   ] as const) {
     await page.getByRole('textbox', { name, exact: true }).fill(value);
     await page.getByRole('textbox', { name, exact: true }).press('Enter');

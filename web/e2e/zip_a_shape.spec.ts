@@ -64,8 +64,8 @@ test('a star by mouse: windings, the same place on both sides, SVG, reload', asy
   await page.getByRole('radio', { name: 'Sheets to cut' }).click();
   const words = /^\d pieces on \d sheets? of 600 × 300\smm; zipper to cut: \d\.\d\d\sm$/;
   await expect(page.getByRole('img', { name: words })).toBeVisible();
-  await page.getByRole('textbox', { name: 'Bed, x' }).fill('200');
-  await page.getByRole('textbox', { name: 'Bed, x' }).press('Enter');
+  await page.getByRole('textbox', { name: 'Sheet width' }).fill('200');
+  await page.getByRole('textbox', { name: 'Sheet width' }).press('Enter');
   await expect(page.getByRole('img', { name: / of 200 × 300\smm; / })).toBeVisible();
   await expect(strip(page, 'Ribbon unfolded')).toBeVisible(); // which does not depend on the bed
   const planned = page.waitForEvent('download');

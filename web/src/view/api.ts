@@ -119,7 +119,7 @@ export interface ColourMapping {
   maximum: number;
   /** "°", "mm"; written in the legend and the read-out. */
   unit: string;
-  /** "Normal error". */
+  /** "Shading difference". */
   label: string;
 }
 

@@ -32,7 +32,7 @@ const modes: readonly { value: ViewMode; label: string }[] = [
   { value: 'swipe', label: 'Swipe' },
   { value: 'relief', label: 'Relief' },
   { value: 'original', label: 'Original' },
-  { value: 'error', label: 'Normal error' },
+  { value: 'error', label: 'Shading difference' },
 ];
 
 export interface ViewportPanelProps {

@@ -203,10 +203,11 @@ ParsedCommand parse_command(const Operation& operation, const std::vector<std::s
   for (const InputInfo& input : operation.inputs)
     if (input.required && !inputs.contains(input.name) && !command.files.contains(input.name))
       throw Error(ErrorCode::invalid_input, dashed(input.name),
-                  "Say which file: " + dashed(input.name) + " FILE" +
+                  "No input file was given: use " + dashed(input.name) + " FILE" +
                       (input.accepts_sample ? ", or --sample NAME" : "") +
                       (input.object_file.empty() ? "." : ", or --object DIR."));
-  if (command.out.empty()) throw Error(ErrorCode::invalid_input, "--out", "Say where the results go: --out DIR.");
+  if (command.out.empty())
+    throw Error(ErrorCode::invalid_input, "--out", "No folder for the results was given: use --out DIR.");
   command.message["operation"] = operation.name;
   command.message["parameters"] = parameters;
   command.message["inputs"] = inputs;
@@ -218,11 +219,12 @@ std::string overview_text() {
   std::string text = std::string("formwright ") + version() + ": from a 3D model to something that can be made\n\n";
   for (const Operation& operation : operations())
     text += entry("formwright " + operation.name, width, operation.summary);
-  text += "\n" + entry("formwright serve", width, "The page and the native worker, on this machine only.");
+  text += "\n" + entry("formwright serve", width, "Serves the page and the native worker on this machine only.");
   text +=
       entry("formwright machine", width, "Printers and machines: list, add, remove, print, send, origin, frame, stop.");
-  text += entry("formwright list", width, "The operations, one a line.");
-  text += entry("formwright describe OP", width, "One operation as JSON: inputs, parameters, outputs, report.");
+  text += entry("formwright list", width, "List of all operations, one per line.");
+  text += entry("formwright describe OP", width,
+                "Describes one operation as JSON: inputs, parameters, outputs and report.");
   text += entry("formwright --version", width, "The version.");
   text += "\nformwright OP --help shows the flags of an operation.\n";
   return text;
@@ -246,7 +248,7 @@ std::string operation_help(const Operation& operation) {
       const Json catalog = catalog_json();
       for (const Json& sample : catalog["samples"])
         names += (names.empty() ? "" : ", ") + sample["name"].get<std::string>();
-      text += entry("--sample NAME", width, "A built-in shape instead of a file: " + names + ".");
+      text += entry("--sample NAME", width, "Uses a built-in sample instead of a file: " + names + ".");
       text += entry("--sample-vertices N", width, "Its resolution.");
     }
   }
@@ -260,11 +262,11 @@ std::string operation_help(const Operation& operation) {
   for (const OutputInfo& output : operation.outputs)
     list += (list.empty() ? "" : ", ") + output.name + (output.made_by_default ? "*" : "");
   text += "\nFiles\n" + entry("--out DIR", width, "Folder for the outputs and report.json.");
-  text += entry("--outputs A,B", width, "Which to make: " + list + " (* without being asked).");
+  text += entry("--outputs A,B", width, "Outputs to make: " + list + " (* without being asked).");
   if (operation.keeps_results)
     text += entry(
         "--results DIR", width,
-        "Where simulations are kept and found again; OUT/simulations unless told. Several runs and machines may share it.");
+        "Folder in which simulations are kept and found again. Default: OUT/simulations. Several runs and computers may share it.");
   text += entry("--quiet", width, "No progress.");
   std::string group;
   for (const ParameterInfo& info : operation.parameters) {

@@ -75,7 +75,7 @@ OperationResult run(const OperationCall& call) {
   // An object that cannot be formed at all is told before the minutes, not after.
   std::unique_ptr<const ThermoformModel> other;
   if (!unseen.empty()) {
-    const auto span = call.context.span(0, 0.02, "Looking at the unseen object");
+    const auto span = call.context.span(0, 0.02, "Simulating the validation object");
     other = std::make_unique<const ThermoformModel>(std::move(unseen), options);
     for (std::size_t i = 0; i < other->objects().size(); ++i)
       other->predict(static_cast<int>(i), other->nominal(), call.context);
@@ -95,7 +95,7 @@ OperationResult run(const OperationCall& call) {
     std::stable_sort(pairs.begin(), pairs.end(),
                      [](const NotSeparable& a, const NotSeparable& b) { return a.likeness > b.likeness; });
     if (pairs.size() > 2) pairs.resize(2);
-    const auto span = call.context.span(0.85, 0.95, "Looking for a measurement that tells");
+    const auto span = call.context.span(0.85, 0.95, "Looking for a measurement that distinguishes them");
     std::vector<ProposedMeasurement> proposals;
     if (o.separate) proposals = proposed_measurements(model, options);
     for (const NotSeparable& pair : pairs) {
@@ -109,7 +109,7 @@ OperationResult run(const OperationCall& call) {
     }
   }
   if (other) {
-    const auto span = call.context.span(0.95, 0.99, "Predicting the unseen object");
+    const auto span = call.context.span(0.95, 0.99, "Predicting the validation object");
     for (const FormedObject& object : other->objects()) report.unseen_names.push_back(object.name);
     try {
       report.unseen = gain_on_unseen(*other, model, diagnosis, call.context);

@@ -68,7 +68,7 @@ OperationResult run(const OperationCall& call) {
     const ReliefModel other(std::move(unseen));
     report.unseen = gain_on_unseen(other, model, diagnosis, call.context);
   }
-  report.notes.emplace_back("Brightness is counted in shares of the brightest point.");
+  report.notes.emplace_back("Brightness is measured as a fraction of the brightest point.");
   return diagnosis_result(call, report);
 }
 

@@ -69,8 +69,7 @@ void write_laser_result(OperationResult& result, const OperationCall& call, cons
         {{"layer", layer.layer}, {"paths", layer.paths}, {"length_mm", layer.length_mm}, {"seconds", layer.seconds}});
   result.report["layers"] = layers;
   if (machine.controller == Controller::k40)
-    plan.notes.push_back(
-        "The board takes its power from the dial on the machine: the layers' powers are not in job.egv.");
+    plan.notes.push_back("Set the power on the dial of the machine: job.egv cannot hold the power of each layer.");
   result.report["notes"] = plan.notes;
 }
 

@@ -53,9 +53,10 @@ HeightMap height_map_of(const OperationCall& call, const MillOptions& options) {
     const Grey16Image image = read_png16(*input.bytes, input.file_name, "model");
     const double width = options.width_mm ? *options.width_mm : image.pixel_width_mm * (image.width - 1);
     if (width <= 0)
-      throw Error(ErrorCode::invalid_input, "width_mm", "The height map does not tell its size: give its width.");
+      throw Error(ErrorCode::invalid_input, "width_mm", "The height map does not contain its size: give its width.");
     if (image.width < 2 || image.height < 2)
-      throw Error(ErrorCode::invalid_input, "model", "The height map is a single row of pixels: give a picture.");
+      throw Error(ErrorCode::invalid_input, "model",
+                  "The height map is a single row of pixels: choose another picture.");
     map.columns = image.width;
     map.rows = image.height;
     map.pitch_x_mm = width / (image.width - 1);
@@ -86,7 +87,7 @@ HeightMap height_map_of(const OperationCall& call, const MillOptions& options) {
     moved.col(2) = low.z() - mesh.V.col(2).array();
     if (scale * scale * size.x() * size.y() > most_nodes * options.pixel_mm * options.pixel_mm)
       throw Error(ErrorCode::invalid_input, "pixel_mm",
-                  "The grid would have over 16 million nodes: choose a coarser one or a smaller width.");
+                  "The grid would have over 16 million points: raise the grid spacing or lower the width.");
     map = make_height_map(moved, mesh.F, scale, {scale * size.x(), scale * size.y()}, options.pixel_mm,
                           scale * size.z(), call.context);
   }

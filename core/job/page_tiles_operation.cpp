@@ -30,7 +30,7 @@ OperationResult run(const OperationCall& call) {
     double width = options.width_mm.value_or(0);
     if (width <= 0 && png) width = read_png16(*input.bytes, input.file_name, "drawing").pixel_width_mm * picture.width;
     if (width <= 0)
-      throw Error(ErrorCode::invalid_input, "width_mm", "The picture does not tell its size: give its width.");
+      throw Error(ErrorCode::invalid_input, "width_mm", "The picture does not contain its size: give its width.");
     content = {&picture, nullptr, width, width * picture.height / picture.width};
   } else {
     drawing = read_svg_drawing(*input.bytes, {}, context);

@@ -169,14 +169,14 @@ OperationResult run_relief(const OperationCall& call) {
   if (!solver) {
     // The old factorisation goes first: two at once would not fit where one does.
     call.session.drop("relief:" + loaded->key + ":");
-    const auto span = context.span(0.1, 0.55, "Looking from the viewpoint");
+    const auto span = context.span(0.1, 0.55, "Finding the visible surface");
     solver = std::make_shared<ReliefSolver>(loaded->model.mesh, options, context);
     call.session.keep(key, solver, solver->memory_mb());
   }
   Stopwatch watch;
   Relief relief;
   {
-    const auto span = context.span(0.55, 0.9, "Fitting into the slab");
+    const auto span = context.span(0.55, 0.9, "Fitting into the thickness");
     relief = solver->solve(options, context);
   }
   const double seconds_solve = watch.lap();

@@ -226,7 +226,7 @@ OperationResult run_mould(const OperationCall& call) {
   advice.insert(advice.end(), parts.sentences.begin(), parts.sentences.end());
   if (static_cast<int>(vents.size()) < options.vents)
     advice.push_back("Air gathers at " + std::to_string(vents.size()) + (vents.size() == 1 ? " place" : " places") +
-                     " of the model only: more vents would do nothing.");
+                     " of the model only: more vent holes would not help.");
   report["advice"] = advice;
   std::vector<std::string> notes = formed.placement.notes;
   notes.insert(notes.end(), placed->notes.begin(), placed->notes.end());

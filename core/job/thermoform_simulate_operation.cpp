@@ -96,9 +96,11 @@ Json warnings(const FormedResult& result, const ThermoformOptions& o, bool water
                    " cm²): it may fold into webs there. More distance between tall parts, or from the clamp, helps.");
   if (result.unformed_area_mm2 > 0.02 * (result.formed_area_mm2 + result.unformed_area_mm2))
     list.push_back(figure(result.unformed_area_mm2 / 100) +
-                   " cm² of the sheet do not reach the model or the plate: corners and gaps stay rounded there.");
-  if (result.reached_time_limit) list.push_back("The sheet was still moving when the time limit ended.");
-  if (!watertight) list.push_back("The model has holes: it can be formed over, but a mould needs it closed.");
+                   " cm² of the sheet hang free, so corners there come out rounded.");
+  if (result.reached_time_limit) list.push_back("The sheet was still moving at the time limit: raise the time limit.");
+  if (!watertight)
+    list.push_back(
+        "The model has holes. Forming works, but a mould needs a closed model: fill the holes before making one.");
   return list;
 }
 

@@ -30,8 +30,10 @@ struct DriverOptions {
   double focus_seconds = 60;
 
   static constexpr auto parameters = std::tuple{
-      parameter("controller", &DriverOptions::controller, "Controller", "Type of the machine's control board, which decides the commands it understands."),
-      parameter("tool", &DriverOptions::tool, "Tool", "What the machine works with: a laser beam, a milling cutter or a printing nozzle."),
+      parameter("controller", &DriverOptions::controller, "Controller",
+                "Type of the machine's control board, which decides the commands it understands."),
+      parameter("tool", &DriverOptions::tool, "Tool",
+                "What the machine works with: a laser beam, a milling cutter or a printing nozzle."),
       parameter("baud", &DriverOptions::baud, "Line speed", unit::none, 1200, 2000000,
                 "Speed of the serial connection in bits per second. 115200 for nearly all machines.")
           .advanced(),

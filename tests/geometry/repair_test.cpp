@@ -72,8 +72,10 @@ TEST(Repair, SoundMeshesComeBackUnchanged) {
 }
 
 TEST(Repair, OpenSurfacesAreReported) {
-  EXPECT_EQ(said(repaired(tube(9, 3))), "The surface has 2 holes; it is not closed.\n");
-  EXPECT_EQ(said(repaired(grid(3, 3))), "The surface has 1 hole; it is not closed.\n");
+  EXPECT_EQ(said(repaired(tube(9, 3))),
+            "The surface has 2 holes. Fine for reliefs; a zippable or a mould needs a closed surface.\n");
+  EXPECT_EQ(said(repaired(grid(3, 3))),
+            "The surface has 1 hole. Fine for reliefs; a zippable or a mould needs a closed surface.\n");
 }
 
 TEST(Repair, WeldsATriangleSoup) {
@@ -128,8 +130,9 @@ TEST(Repair, TurnsAnEdgeInsteadOfOpeningACrack) {
   ASSERT_TRUE(Adjacency(mesh).is_manifold());
   const RepairedMesh result = repaired(mesh);
   expect_sound(mesh, result);
-  EXPECT_EQ(said(result),
-            "Mended 1 triangle without area by turning an edge.\nThe surface has 1 hole; it is not closed.\n");
+  EXPECT_EQ(
+      said(result),
+      "Repaired 1 triangle without area by flipping an edge.\nThe surface has 1 hole. Fine for reliefs; a zippable or a mould needs a closed surface.\n");
   EXPECT_EQ(result.mesh.face_count(), 4);
   EXPECT_GT(face_areas(result.mesh).minCoeff(), 0.4);
   EXPECT_NEAR(surface_area(result.mesh), 4, 1e-15);
@@ -180,7 +183,8 @@ TEST(Repair, OneSheetOfADoubleSidedSurface) {
   expect_sound(mesh, result);
   EXPECT_EQ(result.mesh.face_count(), 18);
   EXPECT_EQ(result.mesh.F, grid(3, 3).F);
-  EXPECT_NE(said(result).find("Removed 18 triangles that repeated the surface for its other side."), std::string::npos);
+  EXPECT_NE(said(result).find("Removed 18 triangles that duplicated the surface facing the other way."),
+            std::string::npos);
 }
 
 TEST(Repair, TouchingSolidsComeApartClosed) {

@@ -133,7 +133,7 @@ function Bench({ session }: { session: EvidenceSession }) {
           {diagnosis ? (
             <Gains diagnosis={diagnosis} />
           ) : (
-            <Pane title="Error on data not shown" detail="">
+            <Pane title="Error on held-out data" detail="">
               <p class="later">
                 {session.mode.value === 'diagnose'
                   ? 'Parts of the sheet are left out of the fit and then predicted. It comes with the diagnosis.'

@@ -79,7 +79,12 @@ std::vector<ReportField> report_fields() {
 
 std::string figure(double value, int digits = 2) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  if (value >= 100) {  // "%g" would write 290 as 2.9e+02
+    const double step = std::pow(10, std::floor(std::log10(value)) + 1 - digits);
+    std::snprintf(text, sizeof text, "%.0f", std::round(value / step) * step);
+  } else {
+    std::snprintf(text, sizeof text, "%.*g", digits, value);
+  }
   return text;
 }
 

@@ -220,7 +220,7 @@ test('stopped in the middle: the position is unknown, and the rest is cut after 
   await expect(startButton(page)).toHaveAttribute('aria-disabled', 'true');
   await homeIt(page);
   await page.getByRole('button', { name: /^Cut the rest/ }).click();
-  await confirm(page, /^Cut the rest/, 'Go on with the laser on', /begins at line \d+/);
+  await confirm(page, /^Cut the rest/, 'Continue with the laser on', /begins at line \d+/);
   await expect(chip(page)).toHaveText('Working');
   await expect(strip(page, 'square is done')).toBeVisible({ timeout: 120_000 });
 });
@@ -293,7 +293,7 @@ test('a profile goes out as a file and comes back', async ({ page }) => {
   await menu.click();
   await page.getByRole('menuitem', { name: 'Add a machine' }).click();
   await dialog(page).getByLabel('Name').fill('Workshop laser');
-  await dialog(page).getByLabel('Bed, side to side, mm').fill('600');
+  await dialog(page).getByLabel('Bed width, mm').fill('600');
   await dialog(page).getByRole('button', { name: 'Add', exact: true }).click();
   await expect(menu).toHaveText('Workshop laser');
   await menu.click();
@@ -320,7 +320,7 @@ const showsTest = (page: Page) => page.getByRole('region', { name: 'What the tes
 test('material is tested, and what the tests show is set and kept', async ({ page }) => {
   test.setTimeout(420_000); // a small test is run to its end
   await openDrawing(page);
-  await button(page, 'Keep as a material').click();
+  await button(page, 'Save as a material').click();
   await dialog(page).getByLabel('Name').fill('Felt');
   await dialog(page).getByRole('button', { name: 'Keep', exact: true }).click();
   await expect(page.getByLabel('Preset').locator('option:checked')).toHaveText('Felt');

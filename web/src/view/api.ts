@@ -294,7 +294,7 @@ export interface ViewportApi {
    *  onViewpointChange; ask `atViewpoint`. */
   setViewpoint(viewpoint: Viewpoint): void;
   getViewpoint(): Viewpoint;
-  /** The current camera as a viewpoint, for "Set from this view". */
+  /** The current camera as a viewpoint, for "Use this view". */
   getCameraAsViewpoint(): Viewpoint;
   readonly atViewpoint: boolean;
   lookFromViewpoint(animated?: boolean): void;

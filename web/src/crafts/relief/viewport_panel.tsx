@@ -98,7 +98,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
   const options = modes.map((option) => ({
     ...option,
     disabledReason:
-      shown === null && option.value !== 'original' ? 'Shown when the first preview is ready' : undefined,
+      shown === null && option.value !== 'original' ? 'Available when the first preview is ready' : undefined,
   }));
   return (
     <div class="viewport-panel">

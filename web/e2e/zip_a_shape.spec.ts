@@ -47,7 +47,9 @@ test('a star by mouse: windings, the same place on both sides, SVG, reload', asy
   await page.getByRole('radio', { name: 'Distortion' }).click();
   await expect(page.getByRole('img', { name: /^Distortion: colours from 1/ })).toBeVisible();
   await page.getByRole('radio', { name: 'Zipped' }).click();
-  await expect(page.getByText('Animation only: lengths are kept, but forces are not simulated.')).toBeVisible();
+  await expect(
+    page.getByText('Animation only: lengths are kept, but forces are not simulated.'),
+  ).toBeVisible();
 
   await page.getByRole('button', { name: 'Make the ribbon', exact: true }).click();
   await expect(strip(page, 'Ribbon unfolded')).toBeVisible({ timeout: 150_000 });
@@ -92,7 +94,9 @@ test('cloth zipped up, frame by frame, and what became of it', async ({ page }) 
   await expect(page.getByRole('radio', { name: 'As cloth' })).toBeChecked();
   await page.getByRole('slider', { name: 'How far it is bent' }).fill('0.5');
   await page.getByRole('radio', { name: 'As drawn' }).click();
-  await expect(page.getByText('Animation only: lengths are kept, but forces are not simulated.')).toBeVisible();
+  await expect(
+    page.getByText('Animation only: lengths are kept, but forces are not simulated.'),
+  ).toBeVisible();
 });
 
 test('a star by keyboard alone', async ({ page }) => {

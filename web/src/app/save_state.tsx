@@ -48,7 +48,8 @@ function NotKept({ projects }: { projects: ProjectStore }) {
       {shown ? (
         <Dialog title="This project is kept only until the tab is closed" onClose={() => setShown(false)}>
           <p>
-            This browser does not let the page keep files, as in a private window. Save the project as a file, and open that file later to continue.
+            This browser does not let the page keep files, as in a private window. Save the project as a file,
+            and open that file later to continue.
           </p>
           {problem === null ? null : <p role="alert">{problem}</p>}
           <div class="row end">

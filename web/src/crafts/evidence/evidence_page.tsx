@@ -84,7 +84,9 @@ function Empty({ session, onChooseFile }: EvidencePageProps) {
   return (
     <div class="empty-view evidence-empty">
       <p>
-        Find out why a formed part came out wrong. You need the mould (mould.obj), your machine’s settings (setup.json) and the measured points (measured.csv): drop the three files, their folder, or a zip of it.
+        Find out why a formed part came out wrong. You need the mould (mould.obj), your machine’s settings
+        (setup.json) and the measured points (measured.csv): drop the three files, their folder, or a zip of
+        it.
       </p>
       <div class="row">
         <Button kind="filled" icon="upload" onClick={onChooseFile}>

@@ -92,7 +92,8 @@ function Corners({ session, scan }: { session: EvidenceSession; scan: Scan }) {
   if (url === null)
     return (
       <p class="later">
-        The scan has no picture that can be shown here. The corner marks are searched for when the scan is measured.
+        The scan has no picture that can be shown here. The corner marks are searched for when the scan is
+        measured.
       </p>
     );
   return (

@@ -43,7 +43,11 @@ export function MachinesPage({ session, onChooseFile }: MachinesPageProps) {
             onChange={(value) => (shown.value = value)}
             options={[
               { value: 'bed', label: 'Bed' },
-              { value: 'path', label: '3D', disabledReason: plan ? undefined : 'Available when there is a job' },
+              {
+                value: 'path',
+                label: '3D',
+                disabledReason: plan ? undefined : 'Available when there is a job',
+              },
               { value: 'console', label: 'Console' },
             ]}
           />

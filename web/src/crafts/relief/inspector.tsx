@@ -71,7 +71,9 @@ function ViewpointTools({ session, viewport }: { session: ReliefSession; viewpor
         <Button
           class="grow"
           icon="lock"
-          disabledReason={at ? 'This view is the viewpoint already. Turn the model to choose another one.' : undefined}
+          disabledReason={
+            at ? 'This view is the viewpoint already. Turn the model to choose another one.' : undefined
+          }
           title="Makes the relief for the view you see now"
           onClick={() => {
             if (viewport === null) return;

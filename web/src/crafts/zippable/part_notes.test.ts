@@ -3,7 +3,8 @@ import { expect, it } from 'vitest';
 import { partWarning } from './part_notes';
 
 const fine = { area_mm2: 1, mean: 1.2, most: 9 };
-const note = 'Part 1 got 0.75 windings instead of 0.65, the smallest number that makes a ribbon; it is narrower there.';
+const note =
+  'Part 1 got 0.75 windings instead of 0.65, the smallest number that makes a ribbon; it is narrower there.';
 
 it('repeats what the core says of the part, not of another whose number begins alike', () => {
   expect(partWarning(0, [note], fine)).toBe(

@@ -39,7 +39,9 @@ export function Sheets({ session, drawing, onSendToMachine }: SheetsProps) {
         <p>The plan needs the ribbon of the whole model.</p>
         <Button
           icon="scissors"
-          disabledReason={session.shown.value === null || !idle ? 'Available when the preview is ready' : undefined}
+          disabledReason={
+            session.shown.value === null || !idle ? 'Available when the preview is ready' : undefined
+          }
           onClick={() => void solveInFull(session)}
         >
           Make the ribbon

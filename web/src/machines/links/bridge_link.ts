@@ -105,7 +105,8 @@ export async function openBridge(
   const socket = worker.socket(`machines/${encodeURIComponent(machineId)}/socket`, 'formwright.machine.v1');
   await new Promise<void>((resolve, reject) => {
     socket.onopen = () => resolve();
-    socket.onclose = () => reject(new Error('The worker could not open the machine: check that it is plugged in.'));
+    socket.onclose = () =>
+      reject(new Error('The worker could not open the machine: check that it is plugged in.'));
   });
   const link = new BridgeLink(worker, socket);
   try {

@@ -155,9 +155,17 @@ export async function openUsbEnd(usb: UsbLike, index: number, listener: EndListe
       // Once it is gone nothing is asked any more; a stop that waited behind a question still leaves.
       if (!open && packet[0] === askStatus) return;
       try {
-        await within(5000, device.transferOut(ch341.write, packet), 'The laser does not accept data any more: switch it off and on.');
+        await within(
+          5000,
+          device.transferOut(ch341.write, packet),
+          'The laser does not accept data any more: switch it off and on.',
+        );
         if (packet[0] !== askStatus) return;
-        const answer = await within(5000, device.transferIn(ch341.read, 32), 'The laser does not answer: check that it is on and its cable plugged in.');
+        const answer = await within(
+          5000,
+          device.transferIn(ch341.read, 32),
+          'The laser does not answer: check that it is on and its cable plugged in.',
+        );
         if (answer.data)
           listener.received(
             new Uint8Array(answer.data.buffer, answer.data.byteOffset, answer.data.byteLength),

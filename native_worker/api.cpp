@@ -60,7 +60,8 @@ Response file_response(const Head& head, const std::filesystem::path& path, cons
   FileResponse response;
   boost::system::error_code error;
   response.body().open(path.c_str(), beast::file_mode::scan, error);
-  if (error) return error_response(head, http::status::not_found, "invalid_input", "", "There is nothing here.");
+  if (error)
+    return error_response(head, http::status::not_found, "invalid_input", "", "There is nothing at this address.");
   set_common_headers(response, head);
   response.set(http::field::content_type, type);
   response.set(http::field::cache_control, "no-store");
@@ -127,7 +128,7 @@ Response HttpServer::answer(const Head& head, const std::string& body) {
   if (!path.starts_with("/api/"))
     return reads ? page_file(head, path)
                  : error_response(head, http::status::method_not_allowed, "invalid_input", "",
-                                  "Only reading is possible here.");
+                                  "This address can only be read.");
   if (path == "/api/status" && reads)
     return text_response(head, http::status::ok,
                          Json{{"version", version()},
@@ -142,7 +143,7 @@ Response HttpServer::answer(const Head& head, const std::string& body) {
   if (path.starts_with("/api/blobs/"))
     return reads ? answer_blob(head, path.substr(11))
                  : error_response(head, http::status::method_not_allowed, "invalid_input", "",
-                                  "A blob is read, or put under its SHA-256.");
+                                  "A file is read, or sent under its SHA-256.");
   if (path == "/api/jobs" && reads) {
     std::size_t limit = 50;
     if (query.starts_with("limit=")) limit = static_cast<std::size_t>(std::clamp(std::atoi(query.c_str() + 6), 1, 500));
@@ -152,14 +153,15 @@ Response HttpServer::answer(const Head& head, const std::string& body) {
     return text_response(head, http::status::ok, list.dump());
   }
   if (path == "/api/jobs" || path.starts_with("/api/jobs/")) return answer_jobs(head, path.substr(9), body);
-  return error_response(head, http::status::not_found, "invalid_input", "", "There is nothing here.");
+  return error_response(head, http::status::not_found, "invalid_input", "", "There is nothing at this address.");
 }
 
 Response HttpServer::answer_jobs(const Head& head, const std::string& path, const std::string& body) {
   const bool reads = head.method() == http::verb::get || head.method() == http::verb::head;
   if (path.empty()) {
     if (head.method() != http::verb::post)
-      return error_response(head, http::status::method_not_allowed, "invalid_input", "", "Jobs are listed or posted.");
+      return error_response(head, http::status::method_not_allowed, "invalid_input", "",
+                            "Use GET to list jobs and POST to send one.");
     const Json message = parse_json_text(body);
     if (message.is_discarded())
       return error_response(head, http::status::bad_request, "invalid_input", "", "The job is not JSON.");
@@ -213,12 +215,13 @@ Response HttpServer::answer_jobs(const Head& head, const std::string& path, cons
       return file_response(head, store_.outputs_folder(id) / name,
                            job->result["outputs"][name]["media_type"].get<std::string>());
   }
-  return error_response(head, http::status::not_found, "invalid_input", "", "There is nothing here.");
+  return error_response(head, http::status::not_found, "invalid_input", "", "There is nothing at this address.");
 }
 
 Response HttpServer::answer_blob(const Head& head, const std::string& sha256) {
   if (!is_hex_name(sha256, 64))
-    return error_response(head, http::status::not_found, "invalid_input", "", "A blob's name is its SHA-256.");
+    return error_response(head, http::status::not_found, "invalid_input", "",
+                          "The name of a file here is its SHA-256.");
   store_.touch_blob(sha256);
   return file_response(head, store_.blob_path(sha256), "application/octet-stream");
 }
@@ -246,13 +249,14 @@ Response HttpServer::page_file(const Head& head, const std::string& path) {
                      path.find("//") == std::string::npos &&
                      path.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-/@") ==
                          std::string::npos;
-  if (!plain) return error_response(head, http::status::not_found, "invalid_input", "", "There is nothing here.");
+  if (!plain)
+    return error_response(head, http::status::not_found, "invalid_input", "", "There is nothing at this address.");
   std::filesystem::path file = options_.web / path.substr(1);
   if (path == "/" || std::filesystem::is_directory(file)) file /= "index.html";
   std::error_code status;
   const auto real = std::filesystem::canonical(file, status);
   if (status || !real.string().starts_with((std::filesystem::canonical(options_.web, status) / "").string()))
-    return error_response(head, http::status::not_found, "invalid_input", "", "There is nothing here.");
+    return error_response(head, http::status::not_found, "invalid_input", "", "There is nothing at this address.");
   Response response = file_response(head, real, media_type_of(real));
   // Names with a hash in them never change; the rest is asked for again.
   const std::string cache = path.starts_with("/assets/") ? "public, max-age=31536000, immutable" : "no-cache";

@@ -74,7 +74,7 @@ std::vector<CommandInfo> make_other_commands() {
   const FlagInfo json{"--json", "", "As JSON.", "", FlagValue::no_value};
   return {
       {"serve",
-       "The page and the native worker, on this machine only.",
+       "Serves the page and the native worker on this computer only.",
        {},
        {{"--port", "N", "Port of 127.0.0.1; 0 takes any free one. [0 to 65535, default 8731]", ""},
         {"--web", "DIR", "The built page, if it is not beside the program.", "", FlagValue::folder},
@@ -127,8 +127,9 @@ std::vector<CommandInfo> make_other_commands() {
         {"--bed-y-mm", "N", "Depth of the bed in mm.", ""},
         data,
         json}},
-      {"list", "The operations, one a line.", {}, {json}},
-      {"describe", "One operation as JSON: inputs, parameters, outputs, report. All without OP.", operation_names()},
+      {"list", "Lists all operations, one per line.", {}, {json}},
+      {"describe", "Describes one operation as JSON: inputs, parameters, outputs and report. All without OP.",
+       operation_names()},
       {"completions", "Completions for a shell.", {"bash", "zsh", "fish"}},
       {"manual", "The manual page, for man.", {}},
   };
@@ -154,9 +155,9 @@ std::vector<FlagInfo> operation_flags(const Operation& operation) {
     if (!input.object_file.empty()) object_files.push_back(input.object_file);
     if (!input.accepts_sample) continue;
     const std::vector<std::string> names = sample_names();
-    flags.push_back({"--sample", "NAME", "A built-in shape instead of a file: " + joined(names, ", ") + ".", "Input",
-                     FlagValue::choice, names});
-    flags.push_back({"--sample-vertices", "N", "Its resolution.", "Input"});
+    flags.push_back({"--sample", "NAME", "Uses a built-in sample instead of a file: " + joined(names, ", ") + ".",
+                     "Input", FlagValue::choice, names});
+    flags.push_back({"--sample-vertices", "N", "Number of vertices of the sample.", "Input"});
   }
   if (takes_object(operation))
     flags.push_back({"--object", "DIR",
@@ -166,13 +167,13 @@ std::vector<FlagInfo> operation_flags(const Operation& operation) {
   for (const OutputInfo& output : operation.outputs)
     outputs += (outputs.empty() ? "" : ", ") + output.name + (output.made_by_default ? "*" : "");
   flags.push_back({"--out", "DIR", "Folder for the outputs and report.json.", "Files", FlagValue::folder});
-  flags.push_back({"--outputs", "A,B", "Which to make: " + outputs + " (* without being asked).", "Files"});
+  flags.push_back({"--outputs", "A,B", "Outputs to make: " + outputs + " (* without being asked).", "Files"});
   if (operation.keeps_results)
     flags.push_back(
         {"--results", "DIR",
-         "Where simulations are kept and found again; OUT/simulations unless told. Several runs and machines may share it.",
+         "Folder in which simulations are kept and found again. Default: OUT/simulations. Several runs and computers may share it.",
          "Files", FlagValue::folder});
-  flags.push_back({"--quiet", "", "No progress.", "Files", FlagValue::no_value});
+  flags.push_back({"--quiet", "", "Prints no progress.", "Files", FlagValue::no_value});
   for (const ParameterInfo& info : operation.parameters) flags.push_back(parameter_flag(info));
   return flags;
 }

@@ -166,10 +166,11 @@ ParsedCommand parse_command(const Operation& operation, const std::vector<std::s
   for (const InputInfo& input : operation.inputs)
     if (input.required && !inputs.contains(input.name) && !command.files.contains(input.name))
       throw Error(ErrorCode::invalid_input, dashed(input.name),
-                  "Say which file: " + dashed(input.name) + " FILE" +
+                  "No input file was given: use " + dashed(input.name) + " FILE" +
                       (input.accepts_sample ? ", or --sample NAME" : "") +
                       (input.object_file.empty() ? "." : ", or --object DIR."));
-  if (command.out.empty()) throw Error(ErrorCode::invalid_input, "--out", "Say where the results go: --out DIR.");
+  if (command.out.empty())
+    throw Error(ErrorCode::invalid_input, "--out", "No folder for the results was given: use --out DIR.");
   command.message["operation"] = operation.name;
   command.message["parameters"] = parameters;
   command.message["inputs"] = inputs;

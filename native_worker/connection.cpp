@@ -72,7 +72,7 @@ TextResponse token_refusal(const Head& head) {
 
 TextResponse too_large(const Head& head) {
   return error_response(head, http::status::payload_too_large, "invalid_input", "",
-                        "The message is too large: send meshes as blobs.");
+                        "The message is too large: send models as files first.");
 }
 
 TextResponse busy_refusal(const Head& head) {
@@ -177,7 +177,7 @@ boost::asio::awaitable<void> HttpServer::serve_connection(Socket socket, std::sh
       } catch (const std::exception& mistake) {
         std::cerr << "formwright: " << text_of(request.target()) << ": " << mistake.what() << std::endl;
         response = last_answer(error_response(request, http::status::internal_server_error, "internal", "",
-                                              "The worker made a mistake: its terminal says which."));
+                                              "The worker failed; its terminal shows the reason. Try again."));
       }
     }
     if (connection->closed) break;
@@ -255,7 +255,7 @@ boost::asio::awaitable<Response> HttpServer::receive_upload(beast::tcp_stream& s
   boost::system::error_code error;
   const auto no_room = [&] {
     return last_answer(error_response(request, http::status::insufficient_storage, "internal", "",
-                                      "The disk cannot keep the file: make room and try again."));
+                                      "The file could not be written to the disk: free some space and try again."));
   };
   http::request_parser<http::file_body> parser(std::move(head));
   parser.body_limit(options_.upload_limit_bytes);

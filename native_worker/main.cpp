@@ -206,7 +206,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "formwright: %s\n", error.what());
     return formwright::exit_code(error.code());
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "formwright: something went wrong that should not have: %s\n", error.what());
+    std::fprintf(stderr, "formwright: internal error: %s\n", error.what());
     return 3;
   }
 }

@@ -16,10 +16,10 @@ if [ -x "$PRIVATE_NODE/bin/node" ]; then PATH="$PRIVATE_NODE/bin:$PATH"; fi
 # some scripts answer on stdout.
 say() { printf '[%4d s] %s\n' "$SECONDS" "$*" >&2; }
 
-# One sentence on what is wrong, one on how to mend it.
+# One sentence on what is wrong, one on how to fix it.
 fail() {
   printf 'setup: %s\n' "$1" >&2
-  [ $# -lt 2 ] || printf 'setup: mend: %s\n' "$2" >&2
+  [ $# -lt 2 ] || printf 'setup: fix: %s\n' "$2" >&2
   exit 1
 }
 

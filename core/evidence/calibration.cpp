@@ -85,7 +85,7 @@ std::vector<ParameterProfile> profile(SimulationBag& bag, const ParameterFit& fi
       points.push_back(within_ranges(model, u));
       owner.push_back(a);
     }
-  const auto predictions = bag.run(points, context, "Finding what the data tell");
+  const auto predictions = bag.run(points, context, "Finding how certain each parameter is");
   std::vector<ParameterProfile> profiles;
   for (Eigen::Index a = 0; a < k; ++a) {
     const Eigen::Index p = fit.free[static_cast<std::size_t>(a)];
@@ -160,11 +160,11 @@ Calibration calibrate(SimulationBag& bag, Context& context) {
   result.objective = fit.value;
   result.error = mean_distance(residuals(model, fit.predictions));
   {
-    const auto span = context.span(0.6, 1, "Finding what the data tell");
+    const auto span = context.span(0.6, 1, "Finding how certain each parameter is");
     // What another, equally good simulation would do differently is not known any better than that.
     const std::vector<int> liberties = model.parameters_with(ParameterRole::discrepancy);
     const std::vector<Sensitivities> freedom =
-        sensitivities_at(bag, fit.u, fit.predictions, liberties, context, "Finding what the data tell");
+        sensitivities_at(bag, fit.u, fit.predictions, liberties, context, "Finding how certain each parameter is");
     const std::vector<Eigen::VectorXd> weights = take_noise(model, residuals(model, fit.predictions), result.noise);
     // Directions alike: what little the simulation errs across walls, the material would be made to answer for.
     std::vector<Precisions> precisions = precisions_of(model, weights, movements_of(model, liberties, freedom));

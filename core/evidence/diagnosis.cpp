@@ -60,7 +60,7 @@ class Diagnostician {
 
   /// The most probable explanation whose causes predict held-out data better than their absence does, all fitted alike.
   void judge() {
-    const auto span = context_.span(0.85, 1, "Predicting what was held out");
+    const auto span = context_.span(0.85, 1, "Predicting the held-out data");
     find_causes();
     result_.unexplained_before = tried_.structure_left({});
     result_.extended = result_.base;
@@ -148,12 +148,12 @@ class Diagnostician {
   void find_doubts() {
     if (result_.unexplained_after > most_structure * model_.known_misfit()) doubt(stays_unexplained);
     if (result_.held_out.after.mean > most_left * result_.noise_floor)
-      doubt("On data that were held out more than twice the noise is left.");
+      doubt("On held-out data, the error is still more than twice the noise.");
     for (const int cause : result_.verdict) {
       const CauseFinding& finding = finding_of(cause);
       if (finding.probability < likely) doubt(nearly_as_likely);
       if (std::abs(finding.strength) < plain_strength * 0.5 * (finding.high - finding.low))
-        doubt("Its strength is hardly told from zero.");
+        doubt("Its strength is hardly distinguishable from zero.");
     }
   }
 
@@ -411,10 +411,10 @@ HeldOutGain gain_on_unseen(const ForwardModel& unseen, const ForwardModel& from,
   };
   SimulationBag bag(model);
   const auto predictions = bag.run(std::vector<Eigen::VectorXd>{translated(found.base.u), translated(found.extended.u)},
-                                   context, "Predicting the unseen object");
+                                   context, "Predicting the validation object");
   if (!predictions[0] || !predictions[1])
     throw Error(ErrorCode::could_not_solve, "unseen",
-                "The unseen object cannot be simulated with the fitted parameters: check its mould and set-up.");
+                "The validation object cannot be simulated with the fitted parameters: check its mould and set-up.");
   std::vector<Eigen::VectorXd> weights;
   const Predictions after = residuals(model, *predictions[1]);
   for (std::size_t object = 0; object < after.size(); ++object)

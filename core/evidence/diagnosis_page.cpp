@@ -174,7 +174,7 @@ std::string diagnosis_page(const DiagnosisReport& report) {
             "</span></div>";
   };
   const HeldOutGain& gain = d.held_out;
-  big("Error, held-out data, calibrated", with_unit(gain.before.mean),
+  big("Error on held-out data, calibrated", with_unit(gain.before.mean),
       figure(gain.before.low) + " to " + figure(gain.before.high));
   big("with the extended model", with_unit(gain.after.mean), figure(gain.after.low) + " to " + figure(gain.after.high));
   if (report.unseen) {
@@ -197,7 +197,7 @@ std::string diagnosis_page(const DiagnosisReport& report) {
   }
   for (const SeparatedPair& s : report.separations) {
     const auto label = [&](int cause) { return escaped(model.causes()[static_cast<std::size_t>(cause)].label); };
-    html += "<div class=\"panel\"><b>Not told apart by these data: " + label(s.pair.cause_a) + " and " +
+    html += "<div class=\"panel\"><b>Not distinguishable by these data: " + label(s.pair.cause_a) + " and " +
             label(s.pair.cause_b) + "</b><p>" +
             (s.what.empty() ? "None of the usual further measurements would tell them apart." : escaped(s.what)) +
             "</p></div>";

@@ -44,17 +44,16 @@ std::string verdict_sentence(const DiagnosisReport& report) {
     return std::find_if(d.causes.begin(), d.causes.end(), [&](const CauseFinding& f) { return f.cause == cause; })
         ->probability;
   };
-  if (d.reading == Reading::none)
-    return "Nothing is wrong that these data could show: the calibrated simulation explains them.";
+  if (d.reading == Reading::none) return "The calibrated simulation explains these data; they show no fault.";
   if (d.reading == Reading::unknown) {
-    std::string text = "Something is wrong that none of the known causes explains.";
+    std::string text = "The object differs from the simulation, and none of the known causes explains it.";
     if (!d.verdict.empty()) text += " Nearest to it: " + label(d.verdict.front()) + ".";
     return text;
   }
   std::string text = label(d.verdict.front()) + ", " + percent(probability(d.verdict.front()));
   if (d.verdict.size() > 1) text += ", and " + label(d.verdict[1]) + ", " + percent(probability(d.verdict[1]));
   text += ".";
-  if (d.reading == Reading::cannot_separate) text += " These data cannot tell it from another cause.";
+  if (d.reading == Reading::cannot_separate) text += " These data cannot distinguish it from another cause.";
   for (const std::string& doubt : d.doubts) text += " " + doubt;
   return text;
 }

@@ -86,7 +86,7 @@ std::vector<Sensitivities> Explanations::usual_sensitivities() {
     points.back()[static_cast<Eigen::Index>(p)] = parameter.prior_sd;
     points.back() = within_ranges(model_, points.back());
   }
-  const auto predictions = bag_.run(points, context_, "Predicting what was held out");
+  const auto predictions = bag_.run(points, context_, "Predicting the held-out data");
   for (std::size_t i = 0; i < one_sided.size(); ++i) {
     if (!predictions[i]) continue;  // what a little of it does stands for it
     const auto p = static_cast<Eigen::Index>(one_sided[i]);

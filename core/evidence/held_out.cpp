@@ -208,7 +208,7 @@ HeldOut hold_out(SimulationBag& bag, const ParameterFit& fit, const std::vector<
         points.back()[fit.free[static_cast<std::size_t>(a)]] += folds[static_cast<std::size_t>(f)].step[a];
       points.back() = within_ranges(model, points.back());
     }
-    const auto predictions = bag.run(points, context, "Predicting what was held out");
+    const auto predictions = bag.run(points, context, "Predicting the held-out data");
     std::vector<int> still_open;
     for (std::size_t i = 0; i < open.size(); ++i) {
       const int f = open[i];

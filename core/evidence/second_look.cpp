@@ -55,7 +55,7 @@ void Explanations::refit_as(const Refit& coarse) {
 }
 
 void Explanations::look_again(const Explanations& coarse) {
-  const char* const looking = "Looking again, more finely";
+  const char* const looking = "Repeating on a finer sheet";
   const auto span = context_.span(0.7, 0.85, looking);
   auto at_nominal = bag_.run(model_.nominal(), context_, looking);
   if (!at_nominal)

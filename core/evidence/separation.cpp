@@ -20,11 +20,11 @@ Separation best_separation(SimulationBag& bag, const Diagnosis& diagnosis, const
     for (const int p : model.causes()[static_cast<std::size_t>(cause)].parameters) columns.push_back(p);
   const auto gram_of = [&](SimulationBag& own,
                            const std::vector<Precisions>& precisions) -> std::optional<GramByStructure> {
-    const auto at = own.run(diagnosis.base.u, context, "Looking for a measurement that tells");
+    const auto at = own.run(diagnosis.base.u, context, "Looking for a measurement that distinguishes them");
     if (!at) return std::nullopt;
     try {
-      const std::vector<Sensitivities> s =
-          sensitivities_at(own, diagnosis.base.u, *at, columns, context, "Looking for a measurement that tells");
+      const std::vector<Sensitivities> s = sensitivities_at(own, diagnosis.base.u, *at, columns, context,
+                                                            "Looking for a measurement that distinguishes them");
       Predictions zero = *at;
       for (Eigen::MatrixXd& object : zero) object.setZero();
       return MisfitOfAll(own.model(), precisions).gram(zero, s);
@@ -43,7 +43,7 @@ Separation best_separation(SimulationBag& bag, const Diagnosis& diagnosis, const
   for (std::size_t i = 0; i < proposals.size(); ++i) {
     const auto span = context.span(static_cast<double>(i) / static_cast<double>(proposals.size()),
                                    (static_cast<double>(i) + 1) / static_cast<double>(proposals.size()),
-                                   "Looking for a measurement that tells");
+                                   "Looking for a measurement that distinguishes them");
     SimulationBag own(*proposals[i].model);
     std::vector<Precisions> expected;
     for (const Measurement& m : proposals[i].model->measurements())

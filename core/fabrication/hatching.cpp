@@ -20,7 +20,7 @@ std::vector<std::vector<Vec2>> hatch(const std::vector<Polygon>& shapes, double 
   const double count = std::floor((high - low) / spacing_mm + 0.5);
   if (count > 200'000)
     throw Error(ErrorCode::invalid_input, "engrave_line_mm",
-                "Filling takes over 200,000 lines: set them farther apart.");
+                "Filling the shapes takes over 200,000 lines: raise the line spacing.");
   // An edge crosses the lines from its lower end, included, to its upper one, not included.
   std::vector<std::vector<double>> crossings(static_cast<std::size_t>(count));
   for (const Polygon& shape : shapes) {

@@ -29,19 +29,22 @@ struct LaserMachineOptions : MachineOptions {
   bool dynamic_power = true;
   bool air_assist = false;
 
-  static constexpr auto parameters =
-      std::tuple_cat(inherit_parameters<LaserMachineOptions>(MachineOptions::parameters),
-                     std::tuple{parameter("power_max_s", &LaserMachineOptions::power_max_s, "S of full power",
-                                          unit::none, 1, 100'000, "GRBL's $30; 255 on Marlin.")
-                                    .group("Machine")
-                                    .slider(255, 1000)
-                                    .advanced(),
-                                parameter("dynamic_power", &LaserMachineOptions::dynamic_power, "Dynamic power",
-                                          "M4: less power while the head is slower, as in corners. Off: M3, constant.")
-                                    .group("Machine"),
-                                parameter("air_assist", &LaserMachineOptions::air_assist, "Air assist",
-                                          "M8 before the first path, M9 after the last one.")
-                                    .group("Machine")});
+  static constexpr auto parameters = std::tuple_cat(
+      inherit_parameters<LaserMachineOptions>(MachineOptions::parameters),
+      std::tuple{
+          parameter("power_max_s", &LaserMachineOptions::power_max_s, "S value of full power", unit::none, 1, 100'000,
+                    "The S value that means 100 % power: $30 on GRBL, usually 1000; 255 on Marlin.")
+              .group("Machine")
+              .slider(255, 1000)
+              .advanced(),
+          parameter(
+              "dynamic_power", &LaserMachineOptions::dynamic_power, "Dynamic power",
+              "Reduces the power when the head slows down, as in corners (M4). Off keeps the power constant (M3), which burns corners more.")
+              .group("Machine"),
+          parameter(
+              "air_assist", &LaserMachineOptions::air_assist, "Air assist",
+              "Turns on the air pump before the first path (M8) and off after the last one (M9). The air clears smoke and flames from the cut.")
+              .group("Machine")});
 };
 
 struct LaserOptions : LaserMachineOptions {
@@ -70,107 +73,127 @@ struct LaserOptions : LaserMachineOptions {
   static constexpr auto parameters = std::tuple_cat(
       inherit_parameters<LaserOptions>(LaserMachineOptions::parameters),
       std::tuple{
-          parameter("x_mm", &LaserOptions::x_mm, "Place, x", unit::mm, -20'000, 20'000,
-                    "Of the drawing's lower left corner on the bed.")
+          parameter("x_mm", &LaserOptions::x_mm, "Position in x", unit::mm, -20'000, 20'000,
+                    "Distance of the drawing's left edge from the left side of the bed.")
               .group("Placement")
               .slider(0, 1000),
-          parameter("y_mm", &LaserOptions::y_mm, "Place, y", unit::mm, -20'000, 20'000,
-                    "Of the drawing's lower left corner on the bed.")
+          parameter("y_mm", &LaserOptions::y_mm, "Position in y", unit::mm, -20'000, 20'000,
+                    "Distance of the drawing's front edge from the front of the bed.")
               .group("Placement")
               .slider(0, 1000),
           parameter("turn_degrees", &LaserOptions::turn_degrees, "Turn", unit::degrees, -360, 360,
-                    "Counter-clockwise, after mirroring.")
+                    "Rotates the drawing counter-clockwise, after any mirroring.")
               .group("Placement")
               .slider(-180, 180),
-          parameter("mirrored", &LaserOptions::mirrored, "Mirrored",
-                    "Left and right exchanged: for a material that is cut from its back.")
+          parameter("mirrored", &LaserOptions::mirrored, "Mirror horizontally",
+                    "Swaps left and right in the drawing, for material that is cut from its back.")
               .group("Placement"),
-          parameter("user_unit", &LaserOptions::user_unit, "Unit",
-                    "What the drawing's numbers mean, when it does not tell its size.")
+          parameter(
+              "user_unit", &LaserOptions::user_unit, "Drawing unit",
+              "The unit of the drawing's numbers, if the file does not state its size. Pixels are 96 per inch (Inkscape, browsers), points 72 per inch (Illustrator).")
               .group("Placement")
               .advanced(),
           parameter(
-              "take_as", &LaserOptions::take_as, "Layers",
-              "As drawn: by the names of groups, then by colour: red is cut, blue is mark, black is engrave. Notes never reach the machine.")
+              "take_as", &LaserOptions::take_as, "Assign layers",
+              "As drawn decides by the names of groups, then by colour: red is cut, blue is marked, black is engraved. Notes are never sent to the machine. The other choices treat all lines alike.")
               .group("Placement"),
-          parameter("cut_enabled", &LaserOptions::cut_enabled, "Cut", "Runs the layer.").group("Cut"),
-          parameter("cut_power_percent", &LaserOptions::cut_power_percent, "Power", unit::percent, 0, 100,
-                    "For cutting through.")
+          parameter("cut_enabled", &LaserOptions::cut_enabled, "Cut",
+                    "Includes the lines that are cut through in the job.")
               .group("Cut"),
-          parameter("cut_speed_mm_per_s", &LaserOptions::cut_speed_mm_per_s, "Speed", unit::mm_per_s, 0.1, 2000,
-                    "For cutting through.")
+          parameter(
+              "cut_power_percent", &LaserOptions::cut_power_percent, "Cutting power", unit::percent, 0, 100,
+              "Laser power for cutting through. More cuts thicker material and burns a wider, darker edge; find it with the laser test.")
+              .group("Cut"),
+          parameter(
+              "cut_speed_mm_per_s", &LaserOptions::cut_speed_mm_per_s, "Cutting speed", unit::mm_per_s, 0.1, 2000,
+              "Speed of the head for cutting through. Slower cuts thicker material and chars more; find it with the laser test.")
               .group("Cut")
               .slider(1, 100),
-          parameter("cut_passes", &LaserOptions::cut_passes, "Passes", unit::none, 1, 100,
-                    "How often every cut is run.")
+          parameter("cut_passes", &LaserOptions::cut_passes, "Cutting passes", unit::none, 1, 100,
+                    "How many times every cut is repeated. More passes cut thicker material; 1 is usual.")
               .group("Cut")
               .slider(1, 10),
-          parameter("cut_step_down_mm", &LaserOptions::cut_step_down_mm, "Lower by", unit::mm, 0, 20,
-                    "The head with every further pass; 0 without a z axis.")
+          parameter(
+              "cut_step_down_mm", &LaserOptions::cut_step_down_mm, "Z step per pass", unit::mm, 0, 20,
+              "Lowers the head by this much before each further pass, to keep thick material in focus. 0 for machines without a Z axis.")
               .group("Cut")
               .slider(0, 3)
               .advanced(),
-          parameter("mark_enabled", &LaserOptions::mark_enabled, "Mark", "Runs the layer.").group("Mark"),
-          parameter("mark_power_percent", &LaserOptions::mark_power_percent, "Power", unit::percent, 0, 100,
-                    "For marking the surface.")
+          parameter("mark_enabled", &LaserOptions::mark_enabled, "Mark",
+                    "Includes the lines that are marked on the surface in the job.")
               .group("Mark"),
-          parameter("mark_speed_mm_per_s", &LaserOptions::mark_speed_mm_per_s, "Speed", unit::mm_per_s, 0.1, 2000,
-                    "For marking the surface.")
+          parameter(
+              "mark_power_percent", &LaserOptions::mark_power_percent, "Marking power", unit::percent, 0, 100,
+              "Laser power for marking lines on the surface. More makes darker, deeper lines; begin with 20 % and find it with the laser test.")
+              .group("Mark"),
+          parameter("mark_speed_mm_per_s", &LaserOptions::mark_speed_mm_per_s, "Marking speed", unit::mm_per_s, 0.1,
+                    2000, "Speed of the head for marking lines on the surface. Slower makes darker, deeper lines.")
               .group("Mark")
               .slider(1, 300),
-          parameter("mark_passes", &LaserOptions::mark_passes, "Passes", unit::none, 1, 100,
-                    "How often every mark is run.")
+          parameter("mark_passes", &LaserOptions::mark_passes, "Marking passes", unit::none, 1, 100,
+                    "How many times every marked line is repeated. 1 is usual.")
               .group("Mark")
               .slider(1, 10)
               .advanced(),
-          parameter("engrave_enabled", &LaserOptions::engrave_enabled, "Engrave", "Runs the layer.").group("Engrave"),
-          parameter("engrave_power_percent", &LaserOptions::engrave_power_percent, "Power", unit::percent, 0, 100,
-                    "For engraving.")
+          parameter("engrave_enabled", &LaserOptions::engrave_enabled, "Engrave",
+                    "Includes the areas that are engraved in the job.")
               .group("Engrave"),
-          parameter("engrave_speed_mm_per_s", &LaserOptions::engrave_speed_mm_per_s, "Speed", unit::mm_per_s, 0.1, 2000,
-                    "For engraving.")
+          parameter(
+              "engrave_power_percent", &LaserOptions::engrave_power_percent, "Engraving power", unit::percent, 0, 100,
+              "Laser power for engraving. More makes darker, deeper areas; begin with 25 % and find it with the laser test.")
+              .group("Engrave"),
+          parameter("engrave_speed_mm_per_s", &LaserOptions::engrave_speed_mm_per_s, "Engraving speed", unit::mm_per_s,
+                    0.1, 2000, "Speed of the head for engraving. Slower makes darker, deeper areas.")
               .group("Engrave")
               .slider(1, 500),
-          parameter("engrave_passes", &LaserOptions::engrave_passes, "Passes", unit::none, 1, 100,
-                    "How often every line is run.")
+          parameter("engrave_passes", &LaserOptions::engrave_passes, "Engraving passes", unit::none, 1, 100,
+                    "How many times every engraved line is repeated. More engrave deeper; 1 is usual.")
               .group("Engrave")
               .slider(1, 10)
               .advanced(),
-          parameter("engrave_fill", &LaserOptions::engrave_fill, "Fill",
-                    "Closed shapes are filled with lines; otherwise their outlines are followed.")
+          parameter("engrave_fill", &LaserOptions::engrave_fill, "Fill shapes",
+                    "On: closed shapes are filled with parallel lines. Off: only their outlines are engraved.")
               .group("Engrave"),
-          parameter("engrave_line_mm", &LaserOptions::engrave_line_mm, "Line distance", unit::mm, 0.01, 10,
-                    "Between the lines of a filling.")
+          parameter(
+              "engrave_line_mm", &LaserOptions::engrave_line_mm, "Line spacing", unit::mm, 0.01, 10,
+              "Distance between the parallel lines that fill a shape. Closer is darker and takes longer; 0.1 mm is about the width of a laser beam.")
               .group("Engrave")
               .slider(0.05, 1),
-          parameter("kerf_mm", &LaserOptions::kerf_mm, "Kerf", unit::mm, 0, 5,
-                    "How wide the beam burns; measure it with the kerf test. 0 follows the lines as drawn.")
+          parameter(
+              "kerf_mm", &LaserOptions::kerf_mm, "Kerf", unit::mm, 0, 5,
+              "Width of material that the beam burns away, about 0.1 mm; measure it with the kerf test. Closed cuts are moved by half of it. 0 follows the lines as drawn.")
               .group("Cutting")
               .slider(0, 0.5),
-          parameter("kerf_side", &LaserOptions::kerf_side, "Sizes",
-                    "Closed cuts are moved by half the kerf, so that these keep their size.")
+          parameter(
+              "kerf_side", &LaserOptions::kerf_side, "Keep the size of",
+              "Which side of each closed cut keeps its drawn size: the part that falls out, the opening that remains, or neither (the beam follows the line).")
               .group("Cutting"),
-          parameter("tabs_count", &LaserOptions::tabs_count, "Tabs", unit::none, 0, 100,
-                    "Bridges left in every part's outline, so that it does not drop or tilt.")
+          parameter(
+              "tabs_count", &LaserOptions::tabs_count, "Tabs per part", unit::none, 0, 100,
+              "Number of short bridges left uncut in the outline of every part, so that it does not drop or tilt. 0: none.")
               .group("Cutting")
               .slider(0, 12),
-          parameter("tab_width_mm", &LaserOptions::tab_width_mm, "Tab width", unit::mm, 0.05, 50,
-                    "What stands of each, the kerf taken off.")
+          parameter(
+              "tab_width_mm", &LaserOptions::tab_width_mm, "Tab width", unit::mm, 0.05, 50,
+              "Width of each bridge that remains after cutting. Wider holds better and is harder to break; 0.5 mm is usual.")
               .group("Cutting")
               .slider(0.2, 5),
-          parameter("overcut_mm", &LaserOptions::overcut_mm, "Overcut", unit::mm, 0, 20,
-                    "How far a closed cut runs on past its start.")
+          parameter(
+              "overcut_mm", &LaserOptions::overcut_mm, "Overcut", unit::mm, 0, 20,
+              "How far a closed cut continues beyond its starting point, so that the part comes free. 0: stops at the start.")
               .group("Cutting")
               .slider(0, 3),
-          parameter("inner_first", &LaserOptions::inner_first, "Inner cuts first",
-                    "Openings and what lies in them before what contains them, one part after the other.")
+          parameter(
+              "inner_first", &LaserOptions::inner_first, "Inner cuts first",
+              "Cuts openings, and everything inside them, before the outline around them, so that no part moves before it is finished.")
               .group("Cutting"),
-          parameter("free_start", &LaserOptions::free_start, "Start anywhere",
-                    "Closed paths start where it saves travel; off: at their first point.")
+          parameter("free_start", &LaserOptions::free_start, "Choose starting points",
+                    "On: every closed path starts where that shortens travel. Off: it starts at the first point drawn.")
               .group("Cutting")
               .advanced(),
-          parameter("join_mm", &LaserOptions::join_mm, "Join ends", unit::mm, 0, 5,
-                    "Lines whose ends are this close are one path.")
+          parameter(
+              "join_mm", &LaserOptions::join_mm, "Join ends within", unit::mm, 0, 5,
+              "Largest gap between the ends of two lines that are joined to one path. Larger closes sloppy drawings, but may join lines that should stay apart.")
               .group("Cutting")
               .slider(0, 0.5)
               .advanced()});

@@ -222,7 +222,7 @@ LaserPlan plan_laser_job(const CutSheet& sheet, const LaserOptions& options, Con
     for (CutPath& path : drawn.paths) path.layer = static_cast<CutLayer>(static_cast<int>(options.take_as) - 1);
   TidiedPaths tidied = tidy_paths(drawn.paths, options.join_mm, context);
   place(tidied.paths, sheet, options);
-  context.progress(0.1, "Moving by the kerf");
+  context.progress(0.1, "Moving the cuts for the kerf");
   Planner planner(std::move(tidied.paths), sheet.kerf_mm, options, context);
   std::vector<std::vector<LaserStroke>> layers;
   bool any = false;
@@ -254,8 +254,8 @@ LaserPlan plan_laser_job(const CutSheet& sheet, const LaserOptions& options, Con
   if (sheet.kerf_mm > 0 && options.kerf_mm > 0 && options.kerf_side != KerfSide::centre) {
     char kerf[32];
     std::snprintf(kerf, sizeof kerf, "%.3g", sheet.kerf_mm);
-    plan.notes.push_back(std::string("The drawing's cuts make room for a kerf of ") + kerf +
-                         " mm already: they are moved by what this kerf differs.");
+    plan.notes.push_back(std::string("The drawing's cuts are already moved for a kerf of ") + kerf +
+                         " mm; they are moved by the difference only.");
   }
   return plan;
 }

@@ -36,41 +36,45 @@ struct MachineOptions {
   std::string no_go = "";
 
   static constexpr auto parameters = std::tuple{
-      parameter("bed_x_mm", &MachineOptions::bed_x_mm, "Bed, x", unit::mm, 10, 20'000,
-                "How far the machine reaches in x.")
+      parameter("bed_x_mm", &MachineOptions::bed_x_mm, "Bed width", unit::mm, 10, 20'000,
+                "How far the machine's head can move from left to right.")
           .group("Machine")
           .slider(100, 1500),
-      parameter("bed_y_mm", &MachineOptions::bed_y_mm, "Bed, y", unit::mm, 10, 20'000,
-                "How far the machine reaches in y.")
+      parameter("bed_y_mm", &MachineOptions::bed_y_mm, "Bed depth", unit::mm, 10, 20'000,
+                "How far the machine's head can move from front to back.")
           .group("Machine")
           .slider(100, 1500),
-      parameter("origin", &MachineOptions::origin, "Origin",
-                "Where the controller counts from; upper left counts y downwards.")
+      parameter(
+          "origin", &MachineOptions::origin, "Origin",
+          "Corner of the bed, or its centre, where the controller's coordinates are zero. With upper left, y counts towards the front.")
           .group("Machine"),
-      parameter("controller", &MachineOptions::controller, "Controller", "Whose dialect the job is written in.")
+      parameter("controller", &MachineOptions::controller, "Controller",
+                "Type of the machine's control board, which decides the file format and commands of the job.")
           .group("Machine"),
       parameter("travel_speed_mm_per_s", &MachineOptions::travel_speed_mm_per_s, "Travel speed", unit::mm_per_s, 0.1,
-                5000, "Between one path and the next.")
+                5000, "Speed of moves between two paths, with the beam or tool off the material.")
           .group("Machine")
           .slider(10, 500),
       parameter("acceleration_mm_per_s2", &MachineOptions::acceleration_mm_per_s2, "Acceleration", Unit{"mm/s²"}, 1,
-                100'000, "Of the head; GRBL's $120 and $121. For the time it takes.")
+                100'000, "Acceleration of the head ($120 and $121 on GRBL). Used to estimate the time of the job only.")
           .group("Machine")
           .slider(50, 5000)
           .advanced(),
-      parameter("junction_deviation_mm", &MachineOptions::junction_deviation_mm, "Junction deviation", unit::mm, 0.001,
-                2, "GRBL's $11: how briskly corners are taken. For the time it takes.")
+      parameter(
+          "junction_deviation_mm", &MachineOptions::junction_deviation_mm, "Junction deviation", unit::mm, 0.001, 2,
+          "How fast the controller takes corners: larger values slow down less ($11 on GRBL). Used to estimate the time of the job only.")
           .group("Machine")
           .slider(0.001, 0.1)
           .advanced(),
-      parameter("planner_blocks", &MachineOptions::planner_blocks, "Planner's blocks", unit::none, 2, 1024,
-                "How many moves the controller looks ahead: GRBL on an Arduino 16. For the time it takes.")
+      parameter(
+          "planner_blocks", &MachineOptions::planner_blocks, "Look-ahead moves", unit::none, 2, 1024,
+          "How many moves ahead the controller plans its speed: 16 for GRBL on an Arduino. Used to estimate the time of the job only.")
           .group("Machine")
           .slider(8, 64)
           .advanced(),
       parameter(
           "no_go", &MachineOptions::no_go, "No-go zones",
-          "Rectangles of the bed, in mm from its lower left, that nothing moves through: x0,y0,x1,y1; x0,y0,x1,y1 ...")
+          "Rectangles of the bed that the head must not enter, such as clamps: x0,y0,x1,y1 in mm from the lower left corner, separated by semicolons. Example: 0,0,40,25; 360,0,400,25.")
           .group("Machine")
           .advanced()};
 };

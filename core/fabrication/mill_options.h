@@ -48,98 +48,116 @@ struct MillOptions : MachineOptions {
   static constexpr auto parameters = std::tuple_cat(
       inherit_parameters<MillOptions>(MachineOptions::parameters),
       std::tuple{
-          parameter("x_mm", &MillOptions::x_mm, "Place, x", unit::mm, -20'000, 20'000,
-                    "Of the carving's lower left corner on the bed.")
+          parameter("x_mm", &MillOptions::x_mm, "Position in x", unit::mm, -20'000, 20'000,
+                    "Distance of the carving's left edge from the left side of the bed.")
               .group("Placement")
               .slider(0, 1000),
-          parameter("y_mm", &MillOptions::y_mm, "Place, y", unit::mm, -20'000, 20'000,
-                    "Of the carving's lower left corner on the bed.")
+          parameter("y_mm", &MillOptions::y_mm, "Position in y", unit::mm, -20'000, 20'000,
+                    "Distance of the carving's front edge from the front of the bed.")
               .group("Placement")
               .slider(0, 1000),
           parameter("width_mm", &MillOptions::width_mm, "Width", unit::mm, 1, 5000,
-                    "Of the carving; auto: as the file says.")
+                    "Width of the carving. Automatic: the width in the file.")
               .group("Carving")
               .slider(20, 400),
           parameter("thickness_mm", &MillOptions::thickness_mm, "Depth", unit::mm, 0.01, 500,
-                    "Height of white over black, for a height map; models carry their own.")
+                    "Height between black and white of a height map. Not used for models, which have their own height.")
               .group("Carving")
               .slider(0.5, 20),
-          parameter("pixel_mm", &MillOptions::pixel_mm, "Grid", unit::mm, 0.01, 10,
-                    "Of the height field a model is turned into; height maps carry their own.")
+          parameter(
+              "pixel_mm", &MillOptions::pixel_mm, "Grid spacing", unit::mm, 0.01, 10,
+              "Spacing of the heights computed from a model. Smaller shows finer detail and takes longer. Not used for height maps, which have their own pixels.")
               .group("Carving")
               .slider(0.05, 1)
               .advanced(),
-          parameter("stock_over_mm", &MillOptions::stock_over_mm, "Stock over the top", unit::mm, 0, 500,
-                    "How far the stock stands over the carving's highest point; z is 0 on the stock.")
+          parameter("stock_over_mm", &MillOptions::stock_over_mm, "Stock above the carving", unit::mm, 0, 500,
+                    "Height of the uncut stock above the highest point of the carving. z is 0 on top of the stock.")
               .group("Carving")
               .slider(0, 5),
-          parameter("path_tolerance_mm", &MillOptions::path_tolerance_mm, "Path tolerance", unit::mm, 0.001, 1,
-                    "How far a line may pass over the lowest places of the tool, never below them: more of it makes "
-                    "fewer, longer lines.")
+          parameter(
+              "path_tolerance_mm", &MillOptions::path_tolerance_mm, "Path tolerance", unit::mm, 0.001, 1,
+              "How far the tool may pass above its ideal path, never below. Larger makes fewer and longer moves and a smaller file; 0.01 mm is usual.")
               .group("Carving")
               .slider(0.002, 0.05)
               .advanced(),
-          parameter("stages", &MillOptions::stages, "Stages",
-                    "With a tool for each there are two jobs, and z is set to 0 with each tool.")
+          parameter(
+              "stages", &MillOptions::stages, "Stages",
+              "Whether the job roughs out, finishes, or does both. If the two tools differ, two jobs are written; set z to 0 again after changing the tool.")
               .group("Carving"),
-          parameter("tool", &MillOptions::tool, "Tool", "That finishes the surface.").group("Finishing"),
-          parameter("diameter_mm", &MillOptions::diameter_mm, "Diameter", unit::mm, 0.1, 100,
-                    "Of the tool that finishes; of a V at its widest.")
+          parameter(
+              "tool", &MillOptions::tool, "Finishing tool",
+              "Shape of the tool that finishes the surface. Ball is usual for reliefs; a V-bit reaches into narrow grooves.")
+              .group("Finishing"),
+          parameter(
+              "diameter_mm", &MillOptions::diameter_mm, "Finishing diameter", unit::mm, 0.1, 100,
+              "Diameter of the finishing tool. For a V-bit, the widest diameter. Smaller reaches finer detail and takes longer; 3 mm is usual.")
               .group("Finishing")
               .slider(0.5, 12),
-          parameter("v_angle_degrees", &MillOptions::v_angle_degrees, "V angle", unit::degrees, 10, 170,
-                    "Of a V tool, from side to side.")
+          parameter("v_angle_degrees", &MillOptions::v_angle_degrees, "V-bit angle", unit::degrees, 10, 170,
+                    "Full angle of a V-bit at its tip, from side to side. Common bits: 30°, 60° and 90°.")
               .group("Finishing")
               .slider(15, 120),
-          parameter("v_tip_mm", &MillOptions::v_tip_mm, "V tip", unit::mm, 0, 10, "Diameter of a V tool's flat tip.")
+          parameter("v_tip_mm", &MillOptions::v_tip_mm, "V-bit tip", unit::mm, 0, 10,
+                    "Diameter of the flat at the tip of a V-bit. 0: perfectly sharp; 0.1 mm is usual.")
               .group("Finishing")
               .slider(0, 1)
               .advanced(),
-          parameter("finish_stepover_percent", &MillOptions::finish_stepover_percent, "Stepover", unit::percent, 1, 100,
-                    "Between lines, of the diameter; whole steps of the grid are taken.")
+          parameter(
+              "finish_stepover_percent", &MillOptions::finish_stepover_percent, "Finishing stepover", unit::percent, 1,
+              100,
+              "Distance between finishing lines, in percent of the tool's diameter, rounded to the grid. Less leaves smaller ridges and takes longer; 12 % is usual.")
               .group("Finishing")
               .slider(5, 50),
-          parameter("finish_speed_mm_per_s", &MillOptions::finish_speed_mm_per_s, "Feed", unit::mm_per_s, 0.1, 1000,
-                    "Along the surface.")
+          parameter("finish_speed_mm_per_s", &MillOptions::finish_speed_mm_per_s, "Finishing feed", unit::mm_per_s, 0.1,
+                    1000,
+                    "Speed of the tool along the surface while finishing. Slower is smoother and safer for thin tools.")
               .group("Finishing")
               .slider(1, 100),
           parameter("finish_along", &MillOptions::finish_along, "Lines along",
-                    "The direction of the lines that finish.")
+                    "Axis along which the finishing lines run.")
               .group("Finishing"),
-          parameter("rough_tool", &MillOptions::rough_tool, "Tool", "That roughs out.").group("Roughing"),
-          parameter("rough_diameter_mm", &MillOptions::rough_diameter_mm, "Diameter", unit::mm, 0.1, 100,
-                    "Of the tool that roughs out.")
+          parameter("rough_tool", &MillOptions::rough_tool, "Roughing tool",
+                    "Shape of the roughing tool. Flat removes material fastest.")
+              .group("Roughing"),
+          parameter("rough_diameter_mm", &MillOptions::rough_diameter_mm, "Roughing diameter", unit::mm, 0.1, 100,
+                    "Diameter of the roughing tool. For a V-bit, the widest diameter. Typical: 3 to 6 mm.")
               .group("Roughing")
               .slider(0.5, 12),
-          parameter("rough_stepover_percent", &MillOptions::rough_stepover_percent, "Stepover", unit::percent, 1, 100,
-                    "Between lines, of the diameter; whole steps of the grid are taken.")
+          parameter(
+              "rough_stepover_percent", &MillOptions::rough_stepover_percent, "Roughing stepover", unit::percent, 1,
+              100,
+              "Distance between roughing lines, in percent of the tool's diameter, rounded to the grid. More is faster and loads the tool more; 45 % is usual.")
               .group("Roughing")
               .slider(20, 80),
-          parameter("rough_speed_mm_per_s", &MillOptions::rough_speed_mm_per_s, "Feed", unit::mm_per_s, 0.1, 1000,
-                    "Along a layer.")
+          parameter("rough_speed_mm_per_s", &MillOptions::rough_speed_mm_per_s, "Roughing feed", unit::mm_per_s, 0.1,
+                    1000, "Speed of the tool while roughing out a layer. Slower loads the tool less.")
               .group("Roughing")
               .slider(1, 100),
-          parameter("step_down_mm", &MillOptions::step_down_mm, "Step down", unit::mm, 0.01, 100, "Depth of a layer.")
+          parameter(
+              "step_down_mm", &MillOptions::step_down_mm, "Depth per layer", unit::mm, 0.01, 100,
+              "Depth that each roughing layer removes. Deeper is faster and loads the tool more; half the tool's diameter is usual.")
               .group("Roughing")
               .slider(0.2, 5),
-          parameter("allowance_mm", &MillOptions::allowance_mm, "Allowance", unit::mm, 0, 20, "Left for finishing.")
+          parameter("allowance_mm", &MillOptions::allowance_mm, "Finishing allowance", unit::mm, 0, 20,
+                    "Thickness of material that roughing leaves for the finishing tool to remove. 0.3 mm is usual.")
               .group("Roughing")
               .slider(0, 1),
-          parameter("plunge_speed_mm_per_s", &MillOptions::plunge_speed_mm_per_s, "Plunge", unit::mm_per_s, 0.1, 500,
-                    "While going down into the material.")
+          parameter("plunge_speed_mm_per_s", &MillOptions::plunge_speed_mm_per_s, "Plunge feed", unit::mm_per_s, 0.1,
+                    500, "Speed of the tool while it moves down into the material. Slower protects the tip.")
               .group("Feeds")
               .slider(1, 50),
-          parameter("ramp_degrees", &MillOptions::ramp_degrees, "Ramp", unit::degrees, 1, 90,
-                    "How steeply the tool goes down into the material.")
+          parameter(
+              "ramp_degrees", &MillOptions::ramp_degrees, "Ramp angle", unit::degrees, 1, 90,
+              "How steeply the tool enters the material. Smaller is gentler and takes longer; 5° is usual, 90° goes straight down.")
               .group("Feeds")
               .slider(1, 30)
               .advanced(),
           parameter("safe_height_mm", &MillOptions::safe_height_mm, "Safe height", unit::mm, 0.5, 500,
-                    "Of travel over the stock.")
+                    "Height of rapid moves above the stock. High enough to clear clamps: 5 to 10 mm.")
               .group("Feeds")
               .slider(1, 30),
-          parameter("spindle_rpm", &MillOptions::spindle_rpm, "Spindle", Unit{"1/min"}, 0, 100'000,
-                    "Turns a minute (S).")
+          parameter("spindle_rpm", &MillOptions::spindle_rpm, "Spindle speed", Unit{"1/min"}, 0, 100'000,
+                    "Rotation speed of the spindle, in turns per minute. 12,000 is usual for small cutters in wood.")
               .group("Feeds")
               .slider(1000, 30'000)});
 };

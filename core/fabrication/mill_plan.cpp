@@ -136,7 +136,7 @@ class Planner {
     const double nodes = tool.diameter_mm * tool.diameter_mm / (surface_.pitch_x_mm * surface_.pitch_y_mm);
     if (nodes > 250'000)
       throw Error(ErrorCode::invalid_input, where,
-                  "The tool is over 500 nodes of the grid wide: choose a coarser grid or a smaller tool.");
+                  "The tool is over 500 grid points wide: raise the grid spacing or choose a smaller tool.");
   }
 
   void rough_out(const MillTool& tool, HeightField& carved) {
@@ -184,7 +184,8 @@ class Planner {
     const int stepover = stepover_nodes(o_.diameter_mm, o_.finish_stepover_percent, turned.pitch_y_mm);
     plan_.finish_stepover_mm = stepover * turned.pitch_y_mm;
     if (o_.diameter_mm * o_.finish_stepover_percent / 100 < 0.999 * turned.pitch_y_mm)
-      plan_.notes.push_back("Lines are as far apart as the height field's nodes: a finer grid brings them nearer.");
+      plan_.notes.push_back(
+          "The lines are as far apart as the grid points: lower the grid spacing to bring them closer.");
     std::vector<MillRun> runs;
     HeightField been = bare(turned, no_tip);
     for (const int r : raster_rows(turned.rows, stepover)) runs.push_back({r, 0, turned.columns - 1});
@@ -204,7 +205,7 @@ class Planner {
     const ToolFootprint foot = footprint(tool, surface_);
     if (static_cast<double>(foot.nodes.size()) * static_cast<double>(surface_.z_mm.size()) > 3e10) {
       plan_.notes.push_back(
-          "What the tool's shape alone leaves was not worked out: the grid is too fine for so large a tool.");
+          "The height lost to the tool's shape was not computed: the grid is too fine for so large a tool.");
       return;
     }
     context_.progress(0.85, "Comparing");

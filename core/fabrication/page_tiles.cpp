@@ -38,7 +38,7 @@ Layout layout_of(const PageContent& content, const PageTilesOptions& o, bool sid
   layout.step_x_mm = layout.room_x_mm - o.overlap_mm;
   layout.step_y_mm = layout.room_y_mm - o.overlap_mm;
   if (std::min(layout.step_x_mm, layout.step_y_mm) < 5)
-    throw Error(ErrorCode::invalid_input, "overlap_mm", "The overlap takes up the page: make it smaller.");
+    throw Error(ErrorCode::invalid_input, "overlap_mm", "The overlap leaves no room on the page: make it smaller.");
   layout.columns = pages_along(content.width_mm, layout.room_x_mm, layout.step_x_mm);
   layout.rows = pages_along(content.height_mm, layout.room_y_mm, layout.step_y_mm);
   return layout;
@@ -93,7 +93,7 @@ PageTiles make_page_tiles(const PageContent& content, const PageTilesOptions& op
   const Layout layout = best_layout(content, options);
   if (layout.columns * layout.rows > 400)
     throw Error(ErrorCode::invalid_input, "width_mm",
-                "It would take over 400 pages: make it smaller or take larger paper.");
+                "The print would need more than 400 pages: make it smaller or choose larger paper.");
   PageTiles tiles;
   tiles.columns = layout.columns;
   tiles.rows = layout.rows;

@@ -15,7 +15,7 @@ enum class PageMedia { a4, a3, a2, letter, tabloid, custom };
 template <>
 struct EnumNames<PageMedia> {
   static constexpr std::array<std::string_view, 6> names{"a4", "a3", "a2", "letter", "tabloid", "custom"};
-  static constexpr std::array<std::string_view, 6> labels{"A4", "A3", "A2", "Letter", "Tabloid", "Own size"};
+  static constexpr std::array<std::string_view, 6> labels{"A4", "A3", "A2", "Letter", "Tabloid", "Custom size"};
 };
 
 enum class PageTurn { automatic, upright, sideways };
@@ -35,47 +35,50 @@ struct PageTilesOptions {
   bool mirrored = false, marks = true, ruler = true;
 
   static constexpr auto parameters = std::tuple{
-      parameter("media", &PageTilesOptions::media, "Paper", "What the printer is loaded with.").group("Pages"),
+      parameter("media", &PageTilesOptions::media, "Paper", "Size of the paper in the printer.").group("Pages"),
       parameter("media_width_mm", &PageTilesOptions::media_width_mm, "Paper width", unit::mm, 30, 5000,
-                "Of an own size.")
+                "Width of the paper if its size is set to Custom size.")
           .group("Pages")
           .slider(50, 1000),
       parameter("media_height_mm", &PageTilesOptions::media_height_mm, "Paper height", unit::mm, 30, 5000,
-                "Of an own size.")
+                "Height of the paper if its size is set to Custom size.")
           .group("Pages")
           .slider(50, 1500),
-      parameter("turn", &PageTilesOptions::turn, "Turn", "Which way the pages lie.").group("Pages"),
+      parameter("turn", &PageTilesOptions::turn, "Orientation",
+                "How the paper lies: upright, sideways, or whichever needs fewer pages.")
+          .group("Pages"),
       parameter("margin_left_mm", &PageTilesOptions::margin_left_mm, "Left margin", unit::mm, 0, 200,
-                "That the printer leaves white, with the paper upright.")
+                "White border at the left that the printer cannot print on, with the paper upright.")
           .group("Pages")
           .slider(0, 25),
       parameter("margin_right_mm", &PageTilesOptions::margin_right_mm, "Right margin", unit::mm, 0, 200,
-                "That the printer leaves white, with the paper upright.")
+                "White border at the right that the printer cannot print on, with the paper upright.")
           .group("Pages")
           .slider(0, 25),
       parameter("margin_top_mm", &PageTilesOptions::margin_top_mm, "Top margin", unit::mm, 0, 200,
-                "That the printer leaves white, with the paper upright.")
+                "White border at the top that the printer cannot print on, with the paper upright.")
           .group("Pages")
           .slider(0, 25),
       parameter("margin_bottom_mm", &PageTilesOptions::margin_bottom_mm, "Bottom margin", unit::mm, 0, 200,
-                "That the printer leaves white, with the paper upright.")
+                "White border at the bottom that the printer cannot print on, with the paper upright.")
           .group("Pages")
           .slider(0, 25),
       parameter("overlap_mm", &PageTilesOptions::overlap_mm, "Overlap", unit::mm, 0, 100,
-                "Of neighbouring pages, to glue them.")
+                "Width of the strip that neighbouring pages share, so that they can be glued together. 10 mm is usual.")
           .group("Pages")
           .slider(0, 30),
       parameter("width_mm", &PageTilesOptions::width_mm, "Width", unit::mm, 1, 20'000,
-                "Of the whole; auto: as the file says.")
+                "Printed width of the whole picture or drawing. Automatic: the width in the file.")
           .group("Size")
           .slider(20, 1000),
-      parameter("mirrored", &PageTilesOptions::mirrored, "Mirrored",
-                "Left and right exchanged in the document: for transfer and for printing on the back.")
+      parameter("mirrored", &PageTilesOptions::mirrored, "Mirror horizontally",
+                "Swaps left and right, for transfer paper and for printing on the back of clear material.")
           .group("Size"),
-      parameter("marks", &PageTilesOptions::marks, "Marks", "Crosses in the overlaps, a frame and the page's place.")
+      parameter("marks", &PageTilesOptions::marks, "Alignment marks",
+                "Prints crosses in the overlaps, a frame, and the row and column of each page, to join the pages.")
           .group("Marks"),
       parameter("ruler", &PageTilesOptions::ruler, "Ruler",
-                "100 mm on the first page, to check that nothing has scaled it.")
+                "Prints a ruler of 100 mm on the first page, to check that the printer did not change the scale.")
           .group("Marks")};
 };
 

@@ -40,8 +40,7 @@ void sort_bucket(Candidate* begin, Candidate* end) {
 
 Adjacency::Adjacency(const TriangleMesh& mesh) : vertex_count_(mesh.vertex_count()) {
   if (mesh.face_count() > std::numeric_limits<int>::max() / 6)
-    throw Error(ErrorCode::invalid_input, "mesh",
-                "The mesh has more triangles than can be counted; simplify it first.");
+    throw Error(ErrorCode::invalid_input, "mesh", "The mesh has too many triangles; simplify it first.");
   from_.assign(mesh.F.data(), mesh.F.data() + mesh.F.size());
   for (const int v : from_)
     if (v < 0 || v >= vertex_count_)

@@ -58,7 +58,8 @@ ExactMesh to_cgal(const ExactSurface& surface) {
                                         [&](std::size_t f) { return surface.faces[f]; }, surface.points.size(),
                                         surface.faces.size());
   if (mesh.number_of_faces() != surface.faces.size())
-    throw Error(ErrorCode::internal, "", "A solid lost its closedness between two operations.");
+    throw Error(ErrorCode::internal, "",
+                "A solid was no longer closed between two operations: this is a bug in Formwright.");
   return mesh;
 }
 

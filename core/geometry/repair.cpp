@@ -76,7 +76,7 @@ RepairedMesh repair(const TriangleMesh& mesh, const RepairOptions& options, Cont
   const DegenerateCount degenerate = mend_degenerate_faces(draft, context);
   if (degenerate.removed > 0) say.push_back("Removed " + triangles(degenerate.removed) + " without area.");
   if (degenerate.mended > 0)
-    say.push_back("Mended " + triangles(degenerate.mended) + " without area by turning an edge.");
+    say.push_back("Repaired " + triangles(degenerate.mended) + " without area by flipping an edge.");
   if (draft.mesh.face_count() == 0)
     throw Error(ErrorCode::invalid_input, "mesh",
                 "No triangle of the mesh has an area; check that it is not flattened to a line or a point.");
@@ -85,15 +85,18 @@ RepairedMesh repair(const TriangleMesh& mesh, const RepairOptions& options, Cont
   if (duplicate.removed > 0)
     say.push_back("Removed " + counted(duplicate.removed, "duplicate triangle", "duplicate triangles") + ".");
   if (duplicate.second_sides > 0)
-    say.push_back("Removed " + triangles(duplicate.second_sides) + " that repeated the surface for its other side.");
+    say.push_back("Removed " + triangles(duplicate.second_sides) +
+                  " that duplicated the surface facing the other way.");
   context.progress(0.4);
   GluingCount gluing = make_manifold(draft, context);
   if (gluing.edges_cut > 0)
     say.push_back("Separated the surface along " + counted(gluing.edges_cut, "edge", "edges") +
                   " where more than two triangles met.");
   if (gluing.vertices_split > 0)
-    say.push_back("Separated the surface at " +
-                  counted(gluing.vertices_split, "vertex where sheets", "vertices where sheets") + " only touched.");
+    say.push_back(
+        "Separated the surface at " +
+        counted(gluing.vertices_split, "vertex where parts of the surface", "vertices where parts of the surface") +
+        " only touched.");
   if (gluing.one_sided_edges > 0)
     say.push_back("The surface has only one side, like a Möbius band; it was cut along " +
                   counted(gluing.one_sided_edges, "edge", "edges") + ".");
@@ -123,7 +126,8 @@ RepairedMesh repair(const TriangleMesh& mesh, const RepairOptions& options, Cont
     say.push_back("Turned " + counted(turned, "closed part", "closed parts") + " to face outwards.");
   draft.drop_unused_vertices();
   if (result.hole_count > 0)
-    say.push_back("The surface has " + counted(result.hole_count, "hole", "holes") + "; it is not closed.");
+    say.push_back("The surface has " + counted(result.hole_count, "hole", "holes") +
+                  ". Fine for reliefs; a zippable or a mould needs a closed surface.");
   result.mesh = std::move(draft.mesh);
   result.vertex_of = std::move(draft.vertex_of);
   result.face_of = std::move(draft.face_of);

@@ -293,7 +293,8 @@ class Simplifier {
 TriangleMesh simplify(const TriangleMesh& mesh, const SimplifyOptions& options, Context& context,
                       std::vector<int>* new_vertex_of) {
   if (options.target_vertices < 4)
-    throw Error(ErrorCode::invalid_input, "target_vertices", "At least 4 vertices are needed for a surface.");
+    throw Error(ErrorCode::invalid_input, "target_vertices",
+                "A surface needs at least 4 vertices: raise the number of vertices.");
   context.progress(0, "Simplifying");
   if (mesh.vertex_count() <= options.target_vertices) {
     if (new_vertex_of != nullptr) {

@@ -18,10 +18,10 @@ struct SimplifyOptions {
 
   static constexpr auto parameters =
       std::tuple{parameter("target_vertices", &SimplifyOptions::target_vertices, "Vertices", unit::none, 4, 10000000,
-                           "How many vertices to keep, about.")
+                           "Approximate number of vertices to keep. Fewer load and solve faster and lose fine detail.")
                      .slider(1000, 100000),
                  parameter("drop_small_parts", &SimplifyOptions::drop_small_parts, "Drop small parts",
-                           "Leave out separate parts smaller than a triangle of the result.")
+                           "Leaves out separate parts that are smaller than one triangle of the result.")
                      .advanced()};
 };
 

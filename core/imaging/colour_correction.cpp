@@ -31,7 +31,7 @@ double ColourCorrection::light(const Vec2& place) const {
 ColourCorrection fit_colour_correction(std::span<const ColourSample> samples) {
   if (samples.size() < 8)
     throw Error(ErrorCode::could_not_solve, "",
-                "Too few colour patches are in sight to correct the colours: photograph the whole sheet.");
+                "Too few colour patches are visible to correct the colours: scan the whole sheet.");
   const bool full = samples.size() >= 12, lit = samples.size() >= 30;
   ColourCorrection fit;
   // Unknowns: rows of the matrix, offset, logarithm of the light. Gauss-Newton from the means; weights from the
@@ -43,7 +43,7 @@ ColourCorrection fit_colour_correction(std::span<const ColourSample> samples) {
   }
   if (!(seen.minCoeff() > 1e-9))
     throw Error(ErrorCode::could_not_solve, "",
-                "The scan's texture is black where the colour patches should be: check the corners.");
+                "The scan's picture is black where the colour patches should be: check the positions of the corners.");
   fit.matrix = expected.cwiseQuotient(seen).asDiagonal();
   std::vector<double> weights(samples.size(), 1);
   constexpr int unknowns = 17;

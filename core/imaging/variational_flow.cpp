@@ -91,9 +91,11 @@ Plane resampled(const Plane& from, const Size& size, bool horizontal) {
 
 void check(const WeightedPicture& first, const WeightedPicture& second) {
   if (first.width != second.width || first.height != second.height)
-    throw Error(ErrorCode::invalid_input, "", "Flow needs two pictures of the same size: reduce the larger one.");
+    throw Error(ErrorCode::invalid_input, "",
+                "The optical flow needs two pictures of the same size: reduce the larger one.");
   if (std::min(first.width, first.height) < coarsest_side_px)
-    throw Error(ErrorCode::invalid_input, "", "Flow needs pictures of at least 16 pixels either way.");
+    throw Error(ErrorCode::invalid_input, "",
+                "The optical flow needs pictures of at least 16 x 16 pixels: choose a larger picture size.");
 }
 
 Flow run(const WeightedPicture& first, const WeightedPicture& second, Plane u, Plane v, int coarsest_px,
@@ -143,7 +145,7 @@ Flow refined_flow(const WeightedPicture& first, const WeightedPicture& second, c
                   const VariationalFlowOptions& options, Context& context) {
   check(first, second);
   if (guess.width != first.width || guess.height != first.height)
-    throw Error(ErrorCode::invalid_input, "", "The first guess of a flow needs the size of the pictures.");
+    throw Error(ErrorCode::invalid_input, "", "The initial displacement must have the size of the pictures.");
   const int side = std::min(first.width, first.height);
   const int coarsest_px = std::clamp(static_cast<int>(side / std::max(1.0, reach_px)), coarsest_side_px, side);
   return run(first, second, plane(guess.u, guess.width, guess.height), plane(guess.v, guess.width, guess.height),

@@ -26,47 +26,56 @@ struct VariationalFlowOptions {
   double data_epsilon = 2;
   double smoothness_epsilon = 0.03;
 
-  static constexpr auto parameters =
-      std::tuple{parameter("smoothness", &VariationalFlowOptions::smoothness, "Smoothness", unit::none, 0.01, 10000,
-                           "Weight of a smooth displacement against equal colours (alpha).")
-                     .group("Flow")
-                     .slider(5, 100),
-                 parameter("gradient_weight", &VariationalFlowOptions::gradient_weight, "Gradient weight", unit::none,
-                           0, 1000, "Weight of equal edges against equal colours (gamma).")
-                     .group("Flow")
-                     .slider(0, 50),
-                 parameter("pyramid_factor", &VariationalFlowOptions::pyramid_factor, "Pyramid factor", unit::none, 0.5,
-                           0.98, "Size of each coarser picture against the finer one.")
-                     .group("Flow")
-                     .advanced(),
-                 parameter("fine_pyramid_factor", &VariationalFlowOptions::fine_pyramid_factor, "Pyramid factor, fine",
-                           unit::none, 0.5, 0.98, "The same among large pictures, where little is left to find.")
-                     .group("Flow")
-                     .advanced(),
-                 parameter("fine_above_px", &VariationalFlowOptions::fine_above_px, "Fine above", unit::none, 16,
-                           100000, "Longer side from which a picture counts as large, in pixels.")
-                     .group("Flow")
-                     .advanced(),
-                 parameter("fine_warps", &VariationalFlowOptions::fine_warps, "Fine warps", unit::none, 1, 20,
-                           "How often a large picture is warped anew; small ones are warped once each.")
-                     .group("Flow")
-                     .advanced(),
-                 parameter("inner_iterations", &VariationalFlowOptions::inner_iterations, "Inner iterations",
-                           unit::none, 1, 50, "Updates of the robust weights for each warp.")
-                     .group("Flow")
-                     .advanced(),
-                 parameter("sweeps", &VariationalFlowOptions::sweeps, "Sweeps", unit::none, 1, 200,
-                           "Over-relaxation sweeps for each of them.")
-                     .group("Flow")
-                     .advanced(),
-                 parameter("data_epsilon", &VariationalFlowOptions::data_epsilon, "Noise", unit::none, 0.001, 100,
-                           "Grey levels below which differences are squared rather than taken as they are.")
-                     .group("Flow")
-                     .advanced(),
-                 parameter("smoothness_epsilon", &VariationalFlowOptions::smoothness_epsilon, "Bend", unit::none, 0.001,
-                           10, "Changes of displacement per pixel below which they are squared.")
-                     .group("Flow")
-                     .advanced()};
+  static constexpr auto parameters = std::tuple{
+      parameter(
+          "smoothness", &VariationalFlowOptions::smoothness, "Smoothness", unit::none, 0.01, 10000,
+          "How much a smooth displacement counts against matching colours (alpha in the optical flow). Larger values smooth more.")
+          .group("Flow")
+          .slider(5, 100),
+      parameter(
+          "gradient_weight", &VariationalFlowOptions::gradient_weight, "Gradient weight", unit::none, 0, 1000,
+          "How much matching edges count against matching colours (gamma in the optical flow). Larger values tolerate uneven light better.")
+          .group("Flow")
+          .slider(0, 50),
+      parameter(
+          "pyramid_factor", &VariationalFlowOptions::pyramid_factor, "Pyramid factor", unit::none, 0.5, 0.98,
+          "Size of each coarser picture relative to the next finer one, for small pictures. Closer to 1 follows large movements better and takes longer.")
+          .group("Flow")
+          .advanced(),
+      parameter(
+          "fine_pyramid_factor", &VariationalFlowOptions::fine_pyramid_factor, "Pyramid factor, large pictures",
+          unit::none, 0.5, 0.98,
+          "Size of each coarser picture relative to the next finer one, for pictures above the limit “Large from”. 0.5 is enough because little movement is left to find there.")
+          .group("Flow")
+          .advanced(),
+      parameter("fine_above_px", &VariationalFlowOptions::fine_above_px, "Large from", unit::none, 16, 100000,
+                "Longer side, in pixels, from which a picture counts as large and the second pyramid factor is used.")
+          .group("Flow")
+          .advanced(),
+      parameter(
+          "fine_warps", &VariationalFlowOptions::fine_warps, "Warps, large pictures", unit::none, 1, 20,
+          "How often each large picture is warped again by the displacement found so far. More is more exact and slower; small pictures are warped once.")
+          .group("Flow")
+          .advanced(),
+      parameter("inner_iterations", &VariationalFlowOptions::inner_iterations, "Inner iterations", unit::none, 1, 50,
+                "How often the robust weights are updated after each warp. More is more exact and slower; 2 is usual.")
+          .group("Flow")
+          .advanced(),
+      parameter(
+          "sweeps", &VariationalFlowOptions::sweeps, "Solver sweeps", unit::none, 1, 200,
+          "Sweeps of successive over-relaxation for each update of the weights. More is more exact and slower; 5 is usual.")
+          .group("Flow")
+          .advanced(),
+      parameter(
+          "data_epsilon", &VariationalFlowOptions::data_epsilon, "Colour noise", unit::none, 0.001, 100,
+          "Colour difference, in grey levels, below which differences count as noise and are penalised quadratically; larger ones are penalised linearly, which tolerates outliers.")
+          .group("Flow")
+          .advanced(),
+      parameter(
+          "smoothness_epsilon", &VariationalFlowOptions::smoothness_epsilon, "Smooth change", unit::none, 0.001, 10,
+          "Change of displacement per pixel below which it is penalised quadratically; larger ones are penalised linearly, which allows sharp changes.")
+          .group("Flow")
+          .advanced()};
 };
 
 /// Displacements in pixels: the pixel (x, y) of the first picture is seen at (x + u, y + v) of the second.

@@ -26,37 +26,44 @@ struct CalibrateOptions {
   static constexpr auto parameters = std::tuple{
       parameter(
           "method", &CalibrateOptions::method, "Method",
-          "Fit: least distances by steps, with what the data can and cannot tell. Grid search: the thesis's way, every combination tried.")
+          "Fit: improves the parameters step by step and reports how certain each one is. Grid search: tries every combination of a few values for each parameter; slower.")
           .group("Calibration"),
-      parameter("triangles", &CalibrateOptions::triangles, "Triangles", unit::none, 500, 40000,
-                "Of the simulated sheet.")
+      parameter(
+          "triangles", &CalibrateOptions::triangles, "Triangles", unit::none, 500, 40000,
+          "Number of triangles in the simulated sheet. More are more accurate and take longer; 2,500 is usual here.")
           .group("Calibration")
           .slider(1000, 10000),
-      parameter("grid_values", &CalibrateOptions::grid_values, "Grid values", unit::none, 2, 9,
-                "Values of each parameter in a grid search; 5 make 625 simulations.")
+      parameter(
+          "grid_values", &CalibrateOptions::grid_values, "Grid values", unit::none, 2, 9,
+          "Number of values tried for each of the four parameters in a grid search: 5 need 625 simulations, 3 need 81.")
           .group("Calibration")
           .advanced()};
 };
 
 std::vector<OutputInfo> outputs() {
   return {{"profile.json", "application/json", "Machine profile",
-           "The fitted material, for every later simulation (--profile).", true},
-          {"calibration.json", "application/json", "Calibration", "Values, intervals, profile likelihoods.", true}};
+           "The fitted material, to be used in later simulations (--profile).", true},
+          {"calibration.json", "application/json", "Calibration",
+           "Fitted values, 95 % intervals and profile likelihoods.", true}};
 }
 
 std::vector<ReportField> report_fields() {
-  return {{"objects", "Objects", "", "that were fitted"},
-          {"points", "Measured points", "", "of all objects"},
-          {"error_nominal_mm", "Error before", "mm", "mean distance with the set-up's own parameters"},
-          {"error_mean_mm", "Error after", "mm", "mean distance with the fitted ones, all points"},
-          {"noise_mm", "Noise", "mm", "standard deviation of one coordinate, as found in the data"},
-          {"outliers", "Outliers", "", "points far from their neighbours"},
-          {"parameters", "Parameters", "", "name, value, unit, interval (95 %), identified"},
-          {"not_identified", "Not identified", "", "parameters that these data cannot tell"},
-          {"simulations", "Simulations", "", "of the sheet"},
-          {"seconds_calibration", "Calibration", "s", "all of it"},
-          {"peak_memory_mb", "Peak memory", "MB", "of the process"},
-          {"notes", "Notes", "", "in words"}};
+  return {
+      {"objects", "Objects", "", "Number of measured objects that were fitted."},
+      {"points", "Measured points", "", "Number of measured points of all objects together."},
+      {"error_nominal_mm", "Error before", "mm",
+       "Mean distance between measurement and simulation with the parameters of the set-up."},
+      {"error_mean_mm", "Error after", "mm",
+       "Mean distance between measurement and simulation with the fitted parameters, over all points."},
+      {"noise_mm", "Measuring noise", "mm", "Standard deviation of one measured coordinate, estimated from the data."},
+      {"outliers", "Outliers", "", "Number of points that differ strongly from their neighbours."},
+      {"parameters", "Fitted parameters", "",
+       "Every fitted parameter with its value, unit, 95 % interval, and whether the data determine it."},
+      {"not_identified", "Not determined", "", "Parameters that these data do not determine."},
+      {"simulations", "Simulations", "", "Number of simulations that were run."},
+      {"seconds_calibration", "Calibration", "s", "Time for the whole calibration."},
+      {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."},
+      {"notes", "Notes", "", "What to know about the result, as sentences."}};
 }
 
 Json profile_json(const ForwardModel& model, const ParameterProfile& profile) {
@@ -163,10 +170,11 @@ Operation evidence_calibrate_operation() {
   Operation operation;
   operation.name = "evidence-calibrate";
   operation.title = "Calibrate";
-  operation.summary = "Fits the hot sheet's material to measured objects and says what they cannot tell.";
-  operation.inputs = {
-      object_input_info("object", "Measured object", "Folder of mould.obj, setup.json and measured.csv.", true, true),
-      profile_input_info()};
+  operation.summary =
+      "Fits the material parameters of the hot sheet to measured objects and reports how certain each one is.";
+  operation.inputs = {object_input_info("object", "Measured object",
+                                        "A folder with mould.obj, setup.json and measured.csv.", true, true),
+                      profile_input_info()};
   operation.parameters = describe_parameters<CalibrateOptions>();
   operation.outputs = outputs();
   operation.report = report_fields();

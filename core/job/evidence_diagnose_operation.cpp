@@ -16,25 +16,29 @@ struct DiagnoseOptions {
   bool separate = true;
   int triangles = 5000;
 
-  static constexpr auto parameters =
-      std::tuple{parameter("pairs", &DiagnoseOptions::pairs, "Two causes at once",
-                           "Looks for two causes at work together as well.")
-                     .group("Diagnosis"),
-                 parameter("separate", &DiagnoseOptions::separate, "Propose a measurement",
-                           "Where two causes look alike, looks for the measurement that would tell them apart.")
-                     .group("Diagnosis"),
-                 parameter("triangles", &DiagnoseOptions::triangles, "Triangles", unit::none, 500, 40000,
-                           "Of the simulated sheet; twice as many where up to 5,000 do not decide.")
-                     .group("Diagnosis")
-                     .slider(1000, 10000)};
+  static constexpr auto parameters = std::tuple{
+      parameter("pairs", &DiagnoseOptions::pairs, "Two causes at once",
+                "Also looks for two causes acting together. Takes longer; switch it off for a quick look.")
+          .group("Diagnosis"),
+      parameter(
+          "separate", &DiagnoseOptions::separate, "Propose a measurement",
+          "If two causes explain the data equally well, looks for a further measurement that would distinguish them.")
+          .group("Diagnosis"),
+      parameter(
+          "triangles", &DiagnoseOptions::triangles, "Triangles", unit::none, 500, 40000,
+          "Number of triangles in the simulated sheet. More are more accurate and take longer. If up to 5,000 give no clear answer, the diagnosis is repeated with twice as many.")
+          .group("Diagnosis")
+          .slider(1000, 10000)};
 };
 
 std::vector<OutputInfo> outputs() {
   std::vector<OutputInfo> list = diagnosis_outputs();
   list.push_back({"profile.json", "application/json", "Machine profile",
-                  "Material and causes as found, for every later simulation (--profile).", true});
-  list.push_back({"residuals.csv", "text/csv", "Residuals",
-                  "Each measured point, and where the calibrated and the extended simulation have it.", true});
+                  "The material and causes found, to be used in later simulations (--profile).", true});
+  list.push_back(
+      {"residuals.csv", "text/csv", "Residuals",
+       "Every measured point with its position in the calibrated simulation and in the one that includes the causes.",
+       true});
   return list;
 }
 
@@ -71,7 +75,7 @@ OperationResult run(const OperationCall& call) {
   // An object that cannot be formed at all is told before the minutes, not after.
   std::unique_ptr<const ThermoformModel> other;
   if (!unseen.empty()) {
-    const auto span = call.context.span(0, 0.02, "Looking at the unseen object");
+    const auto span = call.context.span(0, 0.02, "Simulating the validation object");
     other = std::make_unique<const ThermoformModel>(std::move(unseen), options);
     for (std::size_t i = 0; i < other->objects().size(); ++i)
       other->predict(static_cast<int>(i), other->nominal(), call.context);
@@ -91,7 +95,7 @@ OperationResult run(const OperationCall& call) {
     std::stable_sort(pairs.begin(), pairs.end(),
                      [](const NotSeparable& a, const NotSeparable& b) { return a.likeness > b.likeness; });
     if (pairs.size() > 2) pairs.resize(2);
-    const auto span = call.context.span(0.85, 0.95, "Looking for a measurement that tells");
+    const auto span = call.context.span(0.85, 0.95, "Looking for a measurement that distinguishes them");
     std::vector<ProposedMeasurement> proposals;
     if (o.separate) proposals = proposed_measurements(model, options);
     for (const NotSeparable& pair : pairs) {
@@ -105,7 +109,7 @@ OperationResult run(const OperationCall& call) {
     }
   }
   if (other) {
-    const auto span = call.context.span(0.95, 0.99, "Predicting the unseen object");
+    const auto span = call.context.span(0.95, 0.99, "Predicting the validation object");
     for (const FormedObject& object : other->objects()) report.unseen_names.push_back(object.name);
     try {
       report.unseen = gain_on_unseen(*other, model, diagnosis, call.context);
@@ -143,10 +147,15 @@ Operation evidence_diagnose_operation() {
   Operation operation;
   operation.name = "evidence-diagnose";
   operation.title = "Diagnose";
-  operation.summary = "Names what the simulation of measured objects gets wrong, and measures what naming it gains.";
+  operation.summary =
+      "Finds what causes measured objects to differ from the simulation, and measures how much the error shrinks once that is included.";
   operation.inputs = {
-      object_input_info("object", "Measured object", "Folder of mould.obj, setup.json and measured.csv.", true, true),
-      object_input_info("unseen", "Object not used", "Another folder, only to measure the gain on.", false, true),
+      object_input_info("object", "Measured object", "A folder with mould.obj, setup.json and measured.csv.", true,
+                        true),
+      object_input_info(
+          "unseen", "Validation object",
+          "Another folder of the same kind for validation: it is not used for fitting, only to measure the gain.",
+          false, true),
       profile_input_info()};
   operation.parameters = describe_parameters<DiagnoseOptions>();
   operation.outputs = outputs();

@@ -13,14 +13,15 @@ struct DiagnoseReliefOptions {
   bool pairs = true;
   int pixels = 240;
 
-  static constexpr auto parameters =
-      std::tuple{parameter("pairs", &DiagnoseReliefOptions::pairs, "Two causes at once",
-                           "Looks for two causes at work together as well.")
-                     .group("Diagnosis"),
-                 parameter("pixels", &DiagnoseReliefOptions::pixels, "Pixels", unit::none, 50, 1000,
-                           "Along the relief's longer side: how finely its heights are taken.")
-                     .group("Diagnosis")
-                     .advanced()};
+  static constexpr auto parameters = std::tuple{
+      parameter("pairs", &DiagnoseReliefOptions::pairs, "Two causes at once",
+                "Also looks for two causes acting together. Takes longer; switch it off for a quick look.")
+          .group("Diagnosis"),
+      parameter(
+          "pixels", &DiagnoseReliefOptions::pixels, "Pixels", unit::none, 50, 1000,
+          "Number of height samples along the longer side of the relief. More resolve finer detail and take longer.")
+          .group("Diagnosis")
+          .advanced()};
 };
 
 const std::vector<std::string> files_of_relief{"relief.obj", "setup.json", "shading.csv"};
@@ -67,7 +68,7 @@ OperationResult run(const OperationCall& call) {
     const ReliefModel other(std::move(unseen));
     report.unseen = gain_on_unseen(other, model, diagnosis, call.context);
   }
-  report.notes.emplace_back("Brightness is counted in shares of the brightest point.");
+  report.notes.emplace_back("Brightness is measured as a fraction of the brightest point.");
   return diagnosis_result(call, report);
 }
 
@@ -83,10 +84,13 @@ Operation evidence_diagnose_relief_operation() {
   Operation operation;
   operation.name = "evidence-diagnose-relief";
   operation.title = "Diagnose a relief";
-  operation.summary = "Names why a made relief, lit and photographed, does not look as it should.";
+  operation.summary = "Finds why a finished relief does not look as it should, from a photograph of it in known light.";
   operation.inputs = {
-      relief_input_info("object", "Photographed relief", "Folder of relief.obj, setup.json and shading.csv.", true),
-      relief_input_info("unseen", "Relief not used", "Another folder, only to measure the gain on.", false)};
+      relief_input_info("object", "Photographed relief", "A folder with relief.obj, setup.json and shading.csv.", true),
+      relief_input_info(
+          "unseen", "Validation relief",
+          "Another folder of the same kind for validation: it is not used for fitting, only to measure the gain.",
+          false)};
   operation.parameters = describe_parameters<DiagnoseReliefOptions>();
   operation.outputs = diagnosis_outputs();
   operation.report = diagnosis_report_fields();

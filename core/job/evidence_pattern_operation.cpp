@@ -19,46 +19,55 @@ struct EvidencePatternOptions : CalibrationPatternOptions {
   static constexpr auto parameters = std::tuple_cat(
       inherit_parameters<EvidencePatternOptions>(CalibrationPatternOptions::parameters),
       std::tuple{
-          parameter("dots_per_inch", &EvidencePatternOptions::dots_per_inch, "Resolution", unit::dots_per_inch, 36,
-                    1200, "Dots per inch of the print.")
+          parameter(
+              "dots_per_inch", &EvidencePatternOptions::dots_per_inch, "Resolution", unit::dots_per_inch, 36, 1200,
+              "Dots per inch of the printed pattern. 300 is as fine as transfer paper can hold; more makes larger files.")
               .group("Print")
               .slider(100, 600),
-          parameter("mirror", &EvidencePatternOptions::mirror, "Mirror",
-                    "For transfer paper: the printed files left to right. pattern.json stays as seen on the sheet.")
+          parameter(
+              "mirror", &EvidencePatternOptions::mirror, "Mirror horizontally",
+              "Swaps left and right in the printed files, as transfer paper needs. The description in pattern.json stays as seen on the sheet.")
               .group("Print"),
           parameter(
               "paper", &EvidencePatternOptions::paper, "Paper",
-              "Of the PDF. On paper that is smaller than the sheet the pattern goes over several pages, to be joined.")
+              "Paper size of the PDF. If the paper is smaller than the sheet, the pattern is split over several pages to be joined.")
               .group("Paper"),
-          parameter("paper_margin_mm", &EvidencePatternOptions::paper_margin_mm, "Margin of the paper", unit::mm, 0, 50,
-                    "White rim that the printer cannot print on. Not used when the paper is as the sheet.")
+          parameter("paper_margin_mm", &EvidencePatternOptions::paper_margin_mm, "Paper margin", unit::mm, 0, 50,
+                    "White rim that the printer cannot print on. Not used if the paper is the size of the sheet.")
               .group("Paper")
               .slider(0, 15),
-          parameter("overlap_mm", &EvidencePatternOptions::overlap_mm, "Overlap", unit::mm, 0, 50,
-                    "How much neighbouring pages have in common, to be joined by.")
+          parameter(
+              "overlap_mm", &EvidencePatternOptions::overlap_mm, "Overlap", unit::mm, 0, 50,
+              "Width of the strip that neighbouring pages share, so that they can be glued together. 10 mm is usual.")
               .group("Paper")
               .slider(0, 30)});
 };
 
 std::vector<OutputInfo> outputs() {
-  return {{"pattern.png", "image/png", "Pattern", "The whole sheet; the file says its size.", true},
-          {"pattern.pdf", "application/pdf", "Pages", "At true size on the paper chosen. Print at 100 %.", true},
+  return {{"pattern.png", "image/png", "Pattern", "The pattern for the whole sheet. The file contains its true size.",
+           true},
+          {"pattern.pdf", "application/pdf", "Pages", "The pattern at true size on the chosen paper. Print at 100 %.",
+           true},
           {"pattern.json", "application/json", "Description",
-           "All that evidence-register needs to know the pattern again. Keep it.", true}};
+           "The description of the pattern that evidence-register needs later. Keep it.", true}};
 }
 
 std::vector<ReportField> report_fields() {
-  return {{"sheet_mm", "Sheet", "mm", "width and length"},
-          {"picture_pixels", "Pixels", "", "width and height"},
-          {"dots_per_inch", "Resolution", "dpi", "as the picture has it: whole pixels per metre"},
-          {"noise_scales_mm", "Noise", "mm", "spacings"},
-          {"patches", "Colour patches", "", "inside the clamp opening"},
-          {"marks_mm", "Corner marks", "mm", "middles on the sheet: front left, front right, back right, back left"},
-          {"pixels_sha256", "Fingerprint", "", "of the pixels before mirroring: equal prints have equal ones"},
-          {"pages", "Pages", "", "of the PDF"},
-          {"seconds_draw", "Drawing", "s", ""},
-          {"seconds_write", "Writing", "s", "outputs into their formats"},
-          {"peak_memory_mb", "Peak memory", "MB", "of the process"}};
+  return {
+      {"sheet_mm", "Sheet", "mm", "Width and length of the flat sheet."},
+      {"picture_pixels", "Pixels", "", "Width and height of the picture in pixels."},
+      {"dots_per_inch", "Resolution", "dpi",
+       "Resolution as stored in the picture file, which holds whole pixels per metre."},
+      {"noise_scales_mm", "Noise levels", "mm", "Spacings of the noise levels in the pattern, from fine to coarse."},
+      {"patches", "Colour patches", "", "Number of colour patches inside the clamp opening."},
+      {"marks_mm", "Corner marks", "mm",
+       "Centres of the corner marks on the sheet, in the order front left, front right, back right, back left."},
+      {"pixels_sha256", "Fingerprint", "",
+       "Checksum (SHA-256) of the pixels before mirroring. Equal patterns have equal checksums."},
+      {"pages", "Pages", "", "Number of pages in the PDF."},
+      {"seconds_draw", "Drawing", "s", "Time for drawing the pattern."},
+      {"seconds_write", "Writing", "s", "Time for writing the output files."},
+      {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."}};
 }
 
 /// The print's own options: no marks and lines, which would lie on the noise.
@@ -122,7 +131,7 @@ Operation evidence_pattern_operation() {
   operation.name = "evidence-pattern";
   operation.title = "Calibration pattern";
   operation.summary =
-      "Makes the pattern to print on a sheet, so that a scan of it, formed, shows where every point went.";
+      "Makes a pattern to print on a sheet. A scan of the formed sheet then shows where every point of the sheet moved.";
   operation.parameters = describe_parameters<EvidencePatternOptions>();
   operation.outputs = outputs();
   operation.report = report_fields();

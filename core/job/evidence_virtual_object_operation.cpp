@@ -9,21 +9,22 @@ namespace formwright {
 namespace {
 
 std::vector<OutputInfo> outputs() {
-  return {{"mould.obj", "model/obj", "Mould", "As it should stand in the machine.", true},
-          {"setup.json", "application/json", "Set-up", "What the machine was told to do; not its faults.", true},
-          {"measured.csv", "text/csv", "Measured points", "What the virtual scan has: docs/measured_data.md.", true},
+  return {{"mould.obj", "model/obj", "Mould", "The mould as it should stand in the machine.", true},
+          {"setup.json", "application/json", "Set-up", "The settings of the machine, without its faults.", true},
+          {"measured.csv", "text/csv", "Measured points",
+           "The points measured by the virtual scan (format: docs/measured_data.md).", true},
           {"truth.json", "application/json", "Truth",
-           "Every parameter the virtual machine was run with, to be opened after the diagnosis.", true},
+           "Every parameter of the virtual machine, including its faults. Open it after the diagnosis.", true},
           {"object.zip", "application/zip", "Measured object", "mould.obj, setup.json and measured.csv in one file.",
            false}};
 }
 
 std::vector<ReportField> report_fields() {
-  return {{"points", "Measured points", "", "rows of measured.csv"},
-          {"triangles", "Triangles", "", "of the simulated sheet"},
-          {"seconds_simulation", "Simulation", "s", "0 when reused"},
-          {"peak_memory_mb", "Peak memory", "MB", "of the process"},
-          {"notes", "Notes", "", "in words"}};
+  return {{"points", "Measured points", "", "Number of measured points: rows of measured.csv."},
+          {"triangles", "Triangles", "", "Number of triangles in the simulated sheet."},
+          {"seconds_simulation", "Simulation", "s", "Time for the simulation; 0 if an earlier one was used again."},
+          {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."},
+          {"notes", "Notes", "", "What to know about the result, as sentences."}};
 }
 
 struct GivenParameters {
@@ -84,7 +85,7 @@ Operation evidence_virtual_object_operation() {
   operation.name = "evidence-virtual-object";
   operation.title = "Make a virtual object";
   operation.summary =
-      "Forms and measures an object on a virtual machine whose faults you choose, to rehearse a diagnosis.";
+      "Forms and measures an object on a simulated machine with faults that you choose, to practise a diagnosis.";
   operation.inputs = {mould_input_info()};
   operation.parameters = describe_parameters<ThermoformOptions>();
   for (ParameterInfo& info : describe_parameters<MeasurementEffects>()) operation.parameters.push_back(std::move(info));

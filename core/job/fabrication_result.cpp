@@ -12,25 +12,29 @@
 namespace formwright {
 
 std::vector<OutputInfo> laser_job_outputs() {
-  return {{"job.gcode", "text/x-gcode", "G-code",
-           "For GRBL or Marlin, as the controller says; not written when the job does not fit.", true},
-          {"toolpath.json", "application/json", "Tool path", "What moves where and when, for the preview.", true},
-          {"job.egv", "application/x-egv", "EGV",
-           "For K40 lasers with an M2 Nano board, which take their power from the dial.", false},
-          {"job.rd", "application/octet-stream", "RD", "For Ruida controllers.", false},
-          {"preview.svg", "image/svg+xml", "Preview", "The bed with what is worked and the travel between.", false}};
+  return {
+      {"job.gcode", "text/x-gcode", "G-code",
+       "The job as G-code for a GRBL or Marlin controller. Not written if the job does not fit the bed.", true},
+      {"toolpath.json", "application/json", "Tool path", "All moves with their times, for the preview.", true},
+      {"job.egv", "application/x-egv", "EGV",
+       "The job for K40 lasers with an M2 Nano board. The power is set on the dial of the machine.", false},
+      {"job.rd", "application/octet-stream", "RD", "The job for Ruida controllers.", false},
+      {"preview.svg", "image/svg+xml", "Preview", "A drawing of the bed with all working and travel moves.", false}};
 }
 
 std::vector<ReportField> laser_report_fields() {
-  return {{"seconds_estimated", "Time", "s", "of the whole job, as the controller's planner runs it"},
-          {"cut_mm", "Worked", "mm", "with the beam on, all passes"},
-          {"travel_mm", "Travel", "mm", "with the beam off"},
-          {"bounds_mm", "Bounds", "mm", "of what is worked, on the bed: x0, y0, x1, y1; the beam's middle"},
-          {"fits", "Fits", "", "the bed, and keeps out of the no-go zones"},
-          {"misfits", "Misfits", "", "why it does not, in words"},
-          {"layers", "Layers", "", "in the order in which they run: paths, length, seconds of work"},
-          {"line_count", "Lines", "", "of the G-code"},
-          {"notes", "Notes", "", "what to know, in words"}};
+  return {{"seconds_estimated", "Time", "s",
+           "Time that the machine needs for the whole job, computed as its controller plans it."},
+          {"cut_mm", "Beam on", "mm", "Length of all moves with the beam on, over all passes."},
+          {"travel_mm", "Travel", "mm", "Length of all moves with the beam off."},
+          {"bounds_mm", "Bounds", "mm",
+           "Rectangle on the bed that the centre of the beam works in: left, front, right, back."},
+          {"fits", "Fits", "", "Whether the job fits the bed and keeps out of the no-go zones."},
+          {"misfits", "Why it does not fit", "", "Why the job does not fit the bed or the no-go zones, as sentences."},
+          {"layers", "Layers", "",
+           "Every layer in the order in which it runs: number of paths, length, and seconds of work."},
+          {"line_count", "Lines", "", "Number of lines of G-code."},
+          {"notes", "Notes", "", "What to know about the result, as sentences."}};
 }
 
 void report_toolpath(Json& report, const Toolpath& path, const std::vector<std::string>& misfits, int lines) {
@@ -65,8 +69,7 @@ void write_laser_result(OperationResult& result, const OperationCall& call, cons
         {{"layer", layer.layer}, {"paths", layer.paths}, {"length_mm", layer.length_mm}, {"seconds", layer.seconds}});
   result.report["layers"] = layers;
   if (machine.controller == Controller::k40)
-    plan.notes.push_back(
-        "The board takes its power from the dial on the machine: the layers' powers are not in job.egv.");
+    plan.notes.push_back("Set the power on the dial of the machine: job.egv cannot hold the power of each layer.");
   result.report["notes"] = plan.notes;
 }
 

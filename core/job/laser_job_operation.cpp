@@ -16,7 +16,7 @@ std::vector<InputInfo> inputs() {
   drawing.name = "drawing";
   drawing.label = "Drawing";
   drawing.help =
-      "An SVG with its size in mm. Layers by the names of groups (cut, mark, engrave, note) or by colour (red, blue, black, green).";
+      "An SVG drawing with its size in mm. Layers are recognised by the names of groups (cut, mark, engrave, note) or by colour (red, blue, black, green).";
   drawing.extensions = {"svg"};
   return {drawing};
 }
@@ -55,17 +55,20 @@ Operation laser_job_operation() {
   Operation operation;
   operation.name = "laser-job";
   operation.title = "Laser job";
-  operation.summary = "Turns a drawing into a laser cutter's job: kerf, order, tabs, power, speed and time.";
+  operation.summary =
+      "Turns a drawing into a job for a laser cutter, with kerf, cutting order, tabs, power, speed and an estimate of the time.";
   operation.inputs = inputs();
   operation.parameters = describe_parameters<LaserOptions>();
   operation.outputs = laser_job_outputs();
   operation.report = laser_report_fields();
-  operation.report.push_back({"drawing_mm", "Drawing", "mm", "width and height as read"});
-  operation.report.push_back({"kerf_mm", "Kerf", "mm", "of which half is added to parts"});
-  operation.report.push_back({"seconds_read", "Reading", "s", "the drawing"});
-  operation.report.push_back({"seconds_plan", "Planning", "s", "kerf, order and times"});
-  operation.report.push_back({"seconds_write", "Writing", "s", "outputs into their formats"});
-  operation.report.push_back({"peak_memory_mb", "Peak memory", "MB", "of the process"});
+  operation.report.push_back({"drawing_mm", "Drawing", "mm", "Width and height of the drawing as read."});
+  operation.report.push_back(
+      {"kerf_mm", "Kerf", "mm", "Width that the beam removes; parts were enlarged by half of it."});
+  operation.report.push_back({"seconds_read", "Reading", "s", "Time for reading the drawing."});
+  operation.report.push_back({"seconds_plan", "Planning", "s", "Time for kerf, order and time of the paths."});
+  operation.report.push_back({"seconds_write", "Writing", "s", "Time for writing the output files."});
+  operation.report.push_back(
+      {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."});
   operation.check = [](const Json& parameters) { read_no_go(read_parameters<LaserOptions>(parameters).no_go); };
   operation.run = run;
   return operation;

@@ -20,8 +20,8 @@ struct SubdivideJobOptions {
   SubdivisionScheme scheme = SubdivisionScheme::loop;
   static constexpr auto parameters = std::tuple{
       parameter("levels", &SubdivideJobOptions::levels, "Levels", unit::none, 1, 6,
-                "Each level makes four triangles of one."),
-      parameter("scheme", &SubdivideJobOptions::scheme, "Scheme", "Midpoint keeps the shape, Loop rounds it.")};
+                "How many times every triangle is split into four. Each level makes four times as many triangles."),
+      parameter("scheme", &SubdivideJobOptions::scheme, "Scheme", "Midpoint keeps the shape exactly; Loop rounds it.")};
 };
 
 /// An operation on the model input whose body fills report and outputs.
@@ -62,10 +62,10 @@ Json size_json(const TriangleMesh& mesh) {
 }
 
 std::vector<ReportField> with_counts(std::vector<ReportField> fields) {
-  fields.insert(fields.begin(),
-                {{"vertices", "Vertices", "", "of the result"}, {"faces", "Triangles", "", "of the result"}});
-  fields.push_back({"seconds_work", "Working", "s", ""});
-  fields.push_back({"seconds_write", "Writing", "s", ""});
+  fields.insert(fields.begin(), {{"vertices", "Vertices", "", "Number of vertices of the result."},
+                                 {"faces", "Triangles", "", "Number of triangles of the result."}});
+  fields.push_back({"seconds_work", "Working", "s", "Time for the operation itself."});
+  fields.push_back({"seconds_write", "Writing", "s", "Time for writing the output files."});
   return fields;
 }
 
@@ -87,21 +87,22 @@ Model describe_import(const LoadedModel& loaded, const NoOptions&, Json& report,
 }  // namespace
 
 Operation import_operation() {
-  return mesh_operation<NoOptions>("import", "Import", "Reads a model, repairs it and says what was found.",
-                                   mesh_outputs("model", MeshFormat::ply),
-                                   with_counts({{"components", "Parts", "", "connected pieces"},
-                                                {"closed", "Closed", "", "no holes"},
-                                                {"repairs", "Repairs", "", "in words"},
-                                                {"size_mm", "Size", "mm", "along x, y, z"},
-                                                {"file_format", "Format", "", "as found by content"},
-                                                {"seconds_read", "Reading", "s", "0 when known from before"},
-                                                {"seconds_repair", "Repairing", "s", "0 when known from before"}}),
-                                   describe_import);
+  return mesh_operation<NoOptions>(
+      "import", "Import", "Reads a model, repairs it and reports what was found.",
+      mesh_outputs("model", MeshFormat::ply),
+      with_counts({{"components", "Parts", "", "Number of separate parts of the model."},
+                   {"closed", "Closed", "", "Whether the model has no holes."},
+                   {"repairs", "Repairs", "", "What was repaired, as sentences."},
+                   {"size_mm", "Size", "mm", "Size of the model along x, y and z."},
+                   {"file_format", "Format", "", "File format as recognised from the content."},
+                   {"seconds_read", "Reading", "s", "Time for reading the file; 0 if it was read before."},
+                   {"seconds_repair", "Repairing", "s", "Time for repairing the model; 0 if it was repaired before."}}),
+      describe_import);
 }
 
 Operation simplify_operation() {
   return mesh_operation<SimplifyOptions>(
-      "simplify", "Simplify", "Keeps the shape with fewer vertices, for a preview.",
+      "simplify", "Simplify", "Reduces the number of vertices while keeping the shape, for a preview.",
       mesh_outputs("simplified", MeshFormat::ply), with_counts({}),
       [](const LoadedModel& loaded, const SimplifyOptions& options, Json& report, Context& context) {
         Model result;
@@ -115,7 +116,7 @@ Operation simplify_operation() {
 
 Operation subdivide_operation() {
   return mesh_operation<SubdivideJobOptions>(
-      "subdivide", "Subdivide", "Makes four triangles of every one.", mesh_outputs("subdivided", MeshFormat::ply),
+      "subdivide", "Subdivide", "Splits every triangle into four.", mesh_outputs("subdivided", MeshFormat::ply),
       with_counts({}),
       [](const LoadedModel& loaded, const SubdivideJobOptions& options, Json& report, Context& context) {
         if (static_cast<double>(loaded.model.mesh.face_count()) * std::pow(4.0, options.levels) > 20e6)
@@ -129,7 +130,7 @@ Operation subdivide_operation() {
 }
 
 Operation convert_operation() {
-  return mesh_operation<NoOptions>("convert", "Convert", "Writes a model in another format, repaired.",
+  return mesh_operation<NoOptions>("convert", "Convert", "Repairs a model and writes it in another format.",
                                    mesh_outputs("model", MeshFormat::obj), with_counts({}),
                                    [](const LoadedModel& loaded, const NoOptions&, Json& report, Context&) {
                                      report["vertices"] = loaded.model.mesh.vertex_count();

@@ -21,21 +21,24 @@ constexpr const char* gcode_media_type = "text/x-gcode";
 std::vector<InputInfo> inputs() {
   InputInfo model = model_input_info();
   model.name = "model";
-  model.help = "A model, carved as seen from above (z up), or a height map as PNG: white is high.";
+  model.help = "A model, carved as seen from above (z up), or a height map as PNG, in which white is high.";
   model.extensions.emplace_back("png");
   return {model};
 }
 
 std::vector<OutputInfo> outputs() {
-  return {{"job.gcode", gcode_media_type, "G-code",
-           "For GRBL or Marlin, with one tool; not written when the job does not fit.", true},
-          {"job_1_rough.gcode", gcode_media_type, "G-code, roughing",
-           "With a tool for roughing and another one for finishing: the first of two jobs.", true},
-          {"job_2_finish.gcode", gcode_media_type, "G-code, finishing",
-           "The second one, to be run with z set to 0 once more.", true},
-          {"toolpath.json", "application/json", "Tool path", "What moves where and when, for the preview.", true},
-          {"carved.ply", "model/ply", "Carved", "The surface as the tool leaves it, as a solid.", true},
-          {"preview.svg", "image/svg+xml", "Preview", "The bed with what is worked and the travel between.", false}};
+  return {
+      {"job.gcode", gcode_media_type, "G-code",
+       "The job as G-code for GRBL or Marlin, if one tool does everything. Not written if the job does not fit the bed.",
+       true},
+      {"job_1_rough.gcode", gcode_media_type, "G-code, roughing",
+       "The first of two jobs if the roughing and finishing tools differ: roughing.", true},
+      {"job_2_finish.gcode", gcode_media_type, "G-code, finishing",
+       "The second of two jobs if the roughing and finishing tools differ: finishing. Set z to 0 again with the new tool before it.",
+       true},
+      {"toolpath.json", "application/json", "Tool path", "All moves with their times, for the preview.", true},
+      {"carved.ply", "model/ply", "Carved surface", "The carving as the tool leaves it, as a solid.", true},
+      {"preview.svg", "image/svg+xml", "Preview", "A drawing of the bed with all working and travel moves.", false}};
 }
 
 bool is_png(const InputBlob& input) {
@@ -50,9 +53,10 @@ HeightMap height_map_of(const OperationCall& call, const MillOptions& options) {
     const Grey16Image image = read_png16(*input.bytes, input.file_name, "model");
     const double width = options.width_mm ? *options.width_mm : image.pixel_width_mm * (image.width - 1);
     if (width <= 0)
-      throw Error(ErrorCode::invalid_input, "width_mm", "The height map does not tell its size: give its width.");
+      throw Error(ErrorCode::invalid_input, "width_mm", "The height map does not contain its size: give its width.");
     if (image.width < 2 || image.height < 2)
-      throw Error(ErrorCode::invalid_input, "model", "The height map is a single row of pixels: give a picture.");
+      throw Error(ErrorCode::invalid_input, "model",
+                  "The height map is a single row of pixels: choose another picture.");
     map.columns = image.width;
     map.rows = image.height;
     map.pitch_x_mm = width / (image.width - 1);
@@ -83,7 +87,7 @@ HeightMap height_map_of(const OperationCall& call, const MillOptions& options) {
     moved.col(2) = low.z() - mesh.V.col(2).array();
     if (scale * scale * size.x() * size.y() > most_nodes * options.pixel_mm * options.pixel_mm)
       throw Error(ErrorCode::invalid_input, "pixel_mm",
-                  "The grid would have over 16 million nodes: choose a coarser one or a smaller width.");
+                  "The grid would have over 16 million points: raise the grid spacing or lower the width.");
     map = make_height_map(moved, mesh.F, scale, {scale * size.x(), scale * size.y()}, options.pixel_mm,
                           scale * size.z(), call.context);
   }
@@ -176,30 +180,35 @@ std::vector<ReportField> report_fields() {
     for (ReportField& field : fields)
       if (field.name == name) field = {name, label, field.unit, help};
   };
-  rename("cut_mm", "Worked", "with the tool in the material or on its surface");
-  rename("travel_mm", "Travel", "fast moves over the stock");
-  rename("bounds_mm", "Bounds", "of the tool's axis, on the bed: x0, y0, x1, y1");
-  rename("layers", "Layers", "of roughing");
+  rename("cut_mm", "Tool engaged", "Length of all moves with the tool in the material or on its surface.");
+  rename("travel_mm", "Travel", "Length of all rapid moves above the stock.");
+  rename("bounds_mm", "Bounds", "Rectangle on the bed that the tool's axis moves in: left, front, right, back.");
+  rename("layers", "Layers", "Number of roughing layers.");
   const std::vector<ReportField> more = {
-      {"stages", "Jobs", "", "in the order in which they run, where the tool is changed between: stage, file, lines"},
-      {"seconds_rough", "Roughing", "s", "of the machine, without travel"},
-      {"seconds_finish", "Finishing", "s", "of the machine, without travel"},
-      {"size_mm", "Size", "mm", "width, height and depth of the carving"},
-      {"grid_mm", "Grid", "mm", "between nodes of the height field, in x and y"},
-      {"finish_stepover_mm", "Stepover", "mm", "between lines that finish, as carried out"},
-      {"scallop_mm", "Scallop", "mm", "height of the ridges a ball leaves on a plane"},
-      {"deviation_mean_mm", "Mean deviation", "mm",
-       "of the simulated surface over the one wanted, at the grid's nodes"},
-      {"deviation_p95_mm", "95 % deviation", "mm", "the same, of all but the worst twentieth"},
-      {"deviation_max_mm", "Largest deviation", "mm", "the same"},
-      {"tool_deviation_mean_mm", "Mean due to the tool", "mm",
-       "what its radius leaves in hollows, with lines at every node"},
-      {"tool_deviation_p95_mm", "95 % due to the tool", "mm", "the same, of all but the worst twentieth"},
-      {"tool_deviation_max_mm", "Largest due to the tool", "mm", "the same"},
-      {"seconds_read", "Reading", "s", "the model, and its heights"},
-      {"seconds_plan", "Planning", "s", "lines, times and simulation"},
-      {"seconds_write", "Writing", "s", "outputs into their formats"},
-      {"peak_memory_mb", "Peak memory", "MB", "of the process"}};
+      {"stages", "Jobs", "",
+       "The jobs in the order in which they run, with a tool change between them: stage, file and lines."},
+      {"seconds_rough", "Roughing", "s", "Time that the machine needs for roughing, without travel."},
+      {"seconds_finish", "Finishing", "s", "Time that the machine needs for finishing, without travel."},
+      {"size_mm", "Size", "mm", "Width, height and depth of the carving."},
+      {"grid_mm", "Grid spacing", "mm", "Distance between the heights that the carving is computed from, in x and y."},
+      {"finish_stepover_mm", "Stepover", "mm", "Distance between finishing lines after rounding to the grid."},
+      {"scallop_mm", "Ridge height", "mm",
+       "Height of the ridges that a ball tool leaves between two lines on a flat surface."},
+      {"deviation_mean_mm", "Mean deviation", "mm", "Mean height of the simulated carving above the wanted surface."},
+      {"deviation_p95_mm", "95 % deviation", "mm",
+       "95 % of the simulated carving lie closer than this to the wanted surface."},
+      {"deviation_max_mm", "Largest deviation", "mm",
+       "Largest height of the simulated carving above the wanted surface: the deepest place that the tool cannot reach."},
+      {"tool_deviation_mean_mm", "Mean lost to the round tool", "mm",
+       "Mean height that the tool's shape alone leaves in hollows, even with the closest lines."},
+      {"tool_deviation_p95_mm", "95 % lost to the round tool", "mm",
+       "Height that the tool's shape alone leaves in hollows; 95 % of the surface has less."},
+      {"tool_deviation_max_mm", "Largest lost to the round tool", "mm",
+       "Largest height that the tool's shape alone leaves in a hollow."},
+      {"seconds_read", "Reading", "s", "Time for reading the model and computing its heights."},
+      {"seconds_plan", "Planning", "s", "Time for planning the lines and simulating the carving."},
+      {"seconds_write", "Writing", "s", "Time for writing the output files."},
+      {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."}};
   fields.insert(fields.end(), more.begin(), more.end());
   return fields;
 }
@@ -210,7 +219,7 @@ Operation mill_job_operation() {
   Operation operation;
   operation.name = "mill-job";
   operation.title = "Mill job";
-  operation.summary = "Carves a relief or a height map in layers and lines, and says how far the tool falls short.";
+  operation.summary = "Makes the job that mills a relief or a height map, and reports where the tool cannot reach.";
   operation.inputs = inputs();
   operation.parameters = describe_parameters<MillOptions>();
   operation.outputs = outputs();

@@ -10,8 +10,8 @@ namespace formwright {
 namespace {
 
 std::vector<OutputInfo> outputs() {
-  return {
-      {"pages.pdf", "application/pdf", "Pages", "At exact size: print at 100 %, without fitting to the page.", true}};
+  return {{"pages.pdf", "application/pdf", "Pages", "The pages at exact size. Print at 100 %, not fitted to the page.",
+           true}};
 }
 
 OperationResult run(const OperationCall& call) {
@@ -30,7 +30,7 @@ OperationResult run(const OperationCall& call) {
     double width = options.width_mm.value_or(0);
     if (width <= 0 && png) width = read_png16(*input.bytes, input.file_name, "drawing").pixel_width_mm * picture.width;
     if (width <= 0)
-      throw Error(ErrorCode::invalid_input, "width_mm", "The picture does not tell its size: give its width.");
+      throw Error(ErrorCode::invalid_input, "width_mm", "The picture does not contain its size: give its width.");
     content = {&picture, nullptr, width, width * picture.height / picture.width};
   } else {
     drawing = read_svg_drawing(*input.bytes, {}, context);
@@ -59,24 +59,26 @@ Operation page_tiles_operation() {
   Operation operation;
   operation.name = "page-tiles";
   operation.title = "Pages";
-  operation.summary = "Lays a picture or a drawing at exact size onto a printer's pages, with marks to join them.";
+  operation.summary =
+      "Splits a picture or a drawing at exact size over the pages of a printer, with marks to join them.";
   InputInfo content;
   content.name = "drawing";
   content.label = "Picture or drawing";
-  content.help = "PNG or JPEG, or an SVG, whose lines are drawn in black.";
+  content.help = "A PNG or JPEG picture, or an SVG drawing, whose lines are printed in black.";
   content.extensions = {"svg", "png", "jpg", "jpeg"};
   operation.inputs = {content};
   operation.parameters = describe_parameters<PageTilesOptions>();
   operation.outputs = outputs();
-  operation.report = {{"pages", "Pages", "", "in all"},
-                      {"columns", "Columns", "", "of pages"},
-                      {"rows", "Rows", "", "of pages"},
-                      {"page_mm", "Page", "mm", "width and height as it lies"},
-                      {"room_mm", "Room", "mm", "on a page, within its margins"},
-                      {"size_mm", "Size", "mm", "of the whole"},
-                      {"seconds_total", "Time", "s", "for all"},
-                      {"peak_memory_mb", "Peak memory", "MB", "of the process"},
-                      {"notes", "Notes", "", "what to know, in words"}};
+  operation.report = {
+      {"pages", "Pages", "", "Number of pages in all."},
+      {"columns", "Columns", "", "Number of columns of pages."},
+      {"rows", "Rows", "", "Number of rows of pages."},
+      {"page_mm", "Page", "mm", "Width and height of a page as it lies."},
+      {"room_mm", "Printable area", "mm", "Width and height that can be printed on a page, within its margins."},
+      {"size_mm", "Size", "mm", "Printed width and height of the whole picture or drawing."},
+      {"seconds_total", "Time", "s", "Time for the whole job."},
+      {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."},
+      {"notes", "Notes", "", "What to know about the result, as sentences."}};
   operation.check = [](const Json& parameters) { read_parameters<PageTilesOptions>(parameters); };
   operation.run = run;
   return operation;

@@ -19,54 +19,69 @@ constexpr double unbounded_mm = 1e30;  // stands for "no bound" in relief.ply, w
 
 std::vector<OutputInfo> outputs() {
   return {{"relief.ply", "application/x-ply", "PLY",
-           "The deformed model with lambda, its bounds, visibility and normal error of every vertex.", true},
-          {"relief.stl", "model/stl", "STL", "Watertight solid with its plate, lying on its back.", true},
-          {"relief.glb", "model/gltf-binary", "GLB", "The deformed model on its plate, to look at.", true},
+           "The relief as a mesh, with depth, depth limits, visibility and shading difference at every vertex.", true},
+          {"relief.stl", "model/stl", "STL",
+           "The relief with its plate as a watertight solid, lying on its back, for 3D printing.", true},
+          {"relief.glb", "model/gltf-binary", "GLB", "The relief on its plate, for viewing.", true},
           {"heightmap.png", "image/png", "Height map",
-           "16-bit grey, white is the full thickness; its scale is in the report.", true},
-          {"relief.3mf", "model/3mf", "3MF", "The same solid for a slicer.", false},
-          {"relief.obj", "model/obj", "OBJ", "The same solid for a modeller.", false}};
+           "Height map with 16-bit grey levels; white is the full thickness. Its scale is in the report.", true},
+          {"relief.3mf", "model/3mf", "3MF", "The solid for a slicer.", false},
+          {"relief.obj", "model/obj", "OBJ", "The solid for a 3D modelling program.", false}};
 }
 
 std::vector<ReportField> report_fields() {
-  return {{"vertices", "Vertices", "", "of the repaired model"},
-          {"faces", "Triangles", "", "of the repaired model"},
-          {"visible_vertices", "Visible vertices", "", "that nothing hides from the viewpoint"},
-          {"energy", "Energy", "", "eq. (3.13) at the solution"},
-          {"energy_linear", "Energy of linear compression", "", "eq. (3.13) for depths scaled into the same slab"},
-          {"normal_error_mean_deg", "Normal error", "°", "mean over visible faces, weighted by area"},
-          {"normal_error_linear_mean_deg", "Normal error of linear compression", "°", "the same"},
-          {"normal_error_mean_deg_image", "Normal error in the picture", "°",
-           "mean over visible faces, weighted by projected area"},
-          {"normal_error_linear_mean_deg_image", "Normal error of linear compression in the picture", "°", "the same"},
-          {"bound_violation_max_mm", "Largest bound violation", "mm", "over all bounded vertices"},
-          {"order_violation_max_mm", "Largest depth-order violation", "mm", "over all rows of eq. (3.12)"},
-          {"order_rows", "Depth-order rows", "", "inequalities of eq. (3.12)"},
-          {"kkt_residual", "KKT residual", "", "relative, at the solution"},
-          {"rounds", "Rounds", "", "of the exchange, or iterations of the interior point"},
-          {"active_constraints", "Active constraints", "", "with a positive multiplier"},
-          {"method_used", "Solver used", "", "exchange or interior_point"},
-          {"factor_reused", "Factorisation reused", "", "from an earlier job on the same model and viewpoint"},
-          {"scale_mm_per_unit", "Scale", "mm", "of the scaled model per unit of the file"},
-          {"viewpoint_mm", "Viewpoint", "mm",
-           "in the scaled model's axes; straight on: a point of the plane from which lambda counts"},
-          {"direction", "Looking direction", "", "unit vector in the model's axes"},
-          {"right", "Right", "", "unit vector in the model's axes"},
-          {"up", "Up", "", "unit vector in the model's axes"},
-          {"plate_centre_mm", "Centre of the plate's front", "mm", "in the scaled model's axes"},
-          {"distance_mm", "Viewing distance", "mm", "from the viewpoint to the plate; null straight on"},
-          {"size_mm", "Size of the solid", "mm", "width, height, depth with the plate"},
-          {"watertight", "Watertight", "", "of the solid, checked"},
-          {"heightmap_pixel_mm", "Height map pixel", "mm", "width and height of a pixel"},
-          {"heightmap_mm_per_level", "Height map level", "mm",
-           "height of one of 65535 levels; level 0 is the plate's front"},
-          {"seconds_read", "Reading", "s", "file to repaired model; 0 when known from before"},
-          {"seconds_setup", "Set-up", "s", "viewpoint, rays and energy; 0 when known from before"},
-          {"seconds_solve", "Solving", "s", "factorisation included"},
-          {"seconds_factorise", "Factorising", "s", "the part of it that another thickness saves"},
-          {"seconds_write", "Writing", "s", "outputs into their formats"},
-          {"peak_memory_mb", "Peak memory", "MB", "of the process"},
-          {"repairs", "Repairs", "", "what was found in the model and mended, in words"}};
+  return {
+      {"vertices", "Vertices", "", "Number of vertices of the repaired model."},
+      {"faces", "Triangles", "", "Number of triangles of the repaired model."},
+      {"visible_vertices", "Visible vertices", "", "Number of vertices that nothing hides from the viewpoint."},
+      {"energy", "Shape error", "",
+       "How much the curvature of the relief differs from that of the model, on the scale that the solver minimises; 0 is no difference."},
+      {"energy_linear", "Shape error of plain scaling", "",
+       "The same shape error if all depths are simply scaled to the thickness."},
+      {"normal_error_mean_deg", "Shading difference", "°",
+       "Mean angle between the surface normals of relief and model over the visible surface. Smaller looks more like the model."},
+      {"normal_error_linear_mean_deg", "Shading difference of plain scaling", "°",
+       "Mean angle between the surface normals over the visible surface if all depths are simply scaled to the thickness."},
+      {"normal_error_mean_deg_image", "Shading difference in the picture", "°",
+       "Mean angle between the surface normals of relief and model over the picture seen from the viewpoint."},
+      {"normal_error_linear_mean_deg_image", "Shading difference in the picture of plain scaling", "°",
+       "Mean angle between the surface normals over the picture if all depths are simply scaled to the thickness."},
+      {"bound_violation_max_mm", "Largest excess over the thickness", "mm",
+       "Largest distance by which a vertex leaves the allowed thickness; practically 0."},
+      {"order_violation_max_mm", "Largest depth order violation", "mm",
+       "Largest distance by which a hidden point comes in front of what hides it; practically 0."},
+      {"order_rows", "Depth order conditions", "", "Number of conditions that keep what is in front in front."},
+      {"kkt_residual", "KKT residual", "",
+       "Relative error of the optimality conditions (Karush-Kuhn-Tucker) at the solution; practically 0."},
+      {"rounds", "Iterations", "", "Number of iterations of the numerical method."},
+      {"active_constraints", "Active limits", "", "Number of points where the relief touches a limit on its depth."},
+      {"method_used", "Solver used", "", "The numerical method that was used: exchange or interior_point."},
+      {"factor_reused", "Factorisation reused", "",
+       "Whether the matrix factorisation of an earlier job on the same model and viewpoint was used again."},
+      {"scale_mm_per_unit", "Scale", "mm", "Length in millimetres of one unit of the model file after scaling."},
+      {"viewpoint_mm", "Viewpoint", "mm",
+       "Position of the viewer in the axes of the scaled model. For far views, a point on the plane from which depths are measured."},
+      {"direction", "Looking direction", "",
+       "Direction in which the viewer looks, as a unit vector in the model's axes."},
+      {"right", "Right", "", "Direction to the right in the picture, as a unit vector in the model's axes."},
+      {"up", "Up", "", "Direction upwards in the picture, as a unit vector in the model's axes."},
+      {"plate_centre_mm", "Centre of the plate's front", "mm",
+       "Centre of the plate's front face, in the axes of the scaled model."},
+      {"distance_mm", "Viewing distance", "mm", "Distance from the viewpoint to the plate; null for far views."},
+      {"size_mm", "Size of the solid", "mm", "Width, height and depth of the solid, including its plate."},
+      {"watertight", "Watertight", "", "Whether the solid has no holes, as slicers need; checked on the result."},
+      {"heightmap_pixel_mm", "Height map pixel", "mm", "Width and height of one pixel of the height map."},
+      {"heightmap_mm_per_level", "Height map level", "mm",
+       "Height of one of the 65,535 grey levels of the height map; level 0 is the front of the plate."},
+      {"seconds_read", "Reading", "s", "Time for reading and repairing the file; 0 if it was read before."},
+      {"seconds_setup", "Set-up", "s",
+       "Time for placing the viewpoint and setting up the equations; 0 if done before."},
+      {"seconds_solve", "Solving", "s", "Time for solving, including the factorisation."},
+      {"seconds_factorise", "Factorising", "s",
+       "Time for the matrix factorisation, which a change of thickness does not need again."},
+      {"seconds_write", "Writing", "s", "Time for writing the output files."},
+      {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."},
+      {"repairs", "Repairs", "", "What was found wrong in the model and repaired, as sentences."}};
 }
 
 Json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
@@ -154,14 +169,14 @@ OperationResult run_relief(const OperationCall& call) {
   if (!solver) {
     // The old factorisation goes first: two at once would not fit where one does.
     call.session.drop("relief:" + loaded->key + ":");
-    const auto span = context.span(0.1, 0.55, "Looking from the viewpoint");
+    const auto span = context.span(0.1, 0.55, "Finding the visible surface");
     solver = std::make_shared<ReliefSolver>(loaded->model.mesh, options, context);
     call.session.keep(key, solver, solver->memory_mb());
   }
   Stopwatch watch;
   Relief relief;
   {
-    const auto span = context.span(0.55, 0.9, "Fitting into the slab");
+    const auto span = context.span(0.55, 0.9, "Fitting into the thickness");
     relief = solver->solve(options, context);
   }
   const double seconds_solve = watch.lap();
@@ -233,7 +248,7 @@ Operation relief_operation() {
   Operation operation;
   operation.name = "relief";
   operation.title = "Relief";
-  operation.summary = "Deforms a model into a thin relief that looks like it from a viewpoint (thesis chapter 3).";
+  operation.summary = "Turns a model into a thin relief that still looks deep from the viewpoint you choose.";
   operation.inputs = {model_input_info()};
   operation.parameters = describe_parameters<ReliefOptions>();
   operation.outputs = outputs();

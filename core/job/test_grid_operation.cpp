@@ -9,7 +9,7 @@ namespace {
 
 std::vector<OutputInfo> outputs() {
   std::vector<OutputInfo> all = laser_job_outputs();
-  all.push_back({"grid.svg", "image/svg+xml", "Drawing", "The test as a drawing.", false});
+  all.push_back({"grid.svg", "image/svg+xml", "Drawing", "A drawing of the test.", false});
   return all;
 }
 
@@ -41,13 +41,16 @@ Operation test_grid_operation() {
   Operation operation;
   operation.name = "test-grid";
   operation.title = "Laser test";
-  operation.summary = "Shows which power and speed a material needs, how wide the beam burns or where its focus is.";
+  operation.summary =
+      "Makes a test piece that shows which power and speed a material needs, how wide the beam burns, or where its focus is.";
   operation.parameters = describe_parameters<TestGridOptions>();
   operation.outputs = outputs();
   operation.report = laser_report_fields();
-  operation.report.push_back({"cells", "Cells", "", "power, speed, height and place of every square or line"});
-  operation.report.push_back({"seconds_plan", "Planning", "s", "and writing"});
-  operation.report.push_back({"peak_memory_mb", "Peak memory", "MB", "of the process"});
+  operation.report.push_back(
+      {"cells", "Cells", "", "Every square or line of the test with its power, speed, height and position."});
+  operation.report.push_back({"seconds_plan", "Planning", "s", "Time for planning and writing the test."});
+  operation.report.push_back(
+      {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."});
   operation.check = [](const Json& parameters) { read_no_go(read_parameters<TestGridOptions>(parameters).no_go); };
   operation.run = run;
   return operation;

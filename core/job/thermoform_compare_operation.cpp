@@ -10,40 +10,48 @@ namespace formwright {
 namespace {
 
 std::vector<OutputInfo> outputs() {
-  return {{"errors.ply", "application/x-ply", "Error map",
-           "The simulated sheet with the error around every vertex (−1 where nothing was measured).", true},
-          {"residuals.csv", "text/csv", "Residuals",
-           "One line for each measured point: where the simulation has it and how far off.", true},
-          {"sheet.ply", "application/x-ply", "Formed sheet", "As thermoform-simulate writes it.", false}};
+  return {
+      {"errors.ply", "application/x-ply", "Error map",
+       "The simulated sheet with the error near every vertex; −1 where nothing was measured.", true},
+      {"residuals.csv", "text/csv", "Residuals",
+       "One line for each measured point: its simulated position and the distance to it.", true},
+      {"sheet.ply", "application/x-ply", "Formed sheet", "The formed sheet as thermoform-simulate writes it.", false}};
 }
 
 std::vector<ReportField> report_fields() {
-  return {{"points", "Measured points", "", "rows of measured.csv"},
-          {"error_mean_mm", "Mean error", "mm", "Euclidean distance from measured to simulated, all points"},
-          {"error_rms_mm", "RMS error", "mm", "root mean square of the same"},
-          {"error_median_mm", "Median error", "mm", "half of the points are closer"},
-          {"error_90_mm", "90 % of errors below", "mm", "percentile"},
-          {"error_95_mm", "95 % of errors below", "mm", "percentile"},
-          {"error_max_mm", "Largest error", "mm", "over all points"},
-          {"error_mean_without_outliers_mm", "Mean error without outliers", "mm",
-           "without points more than 5 robust standard deviations above the median"},
-          {"outliers", "Outliers", "", "number of those points"},
-          {"error_along_normal_mean_mm", "Mean error along the normal", "mm",
-           "signed: positive where the measured sheet lies outside of the simulated one"},
-          {"sigma_mean_mm", "Mean measuring error", "mm", "mean of sigma_mm as measured"},
-          {"measured_surface", "Measured surface", "", "mid or outer"},
-          {"triangles", "Triangles", "", "of the sheet"},
-          {"seconds_simulation", "Simulation", "s", "0 when reused"},
-          {"seconds_compare", "Comparison", "s", "of all points"},
-          {"peak_memory_mb", "Peak memory", "MB", "of the process"},
-          {"notes", "Notes", "", "in words"}};
+  return {
+      {"points", "Measured points", "", "Number of measured points: rows of measured.csv."},
+      {"error_mean_mm", "Mean error", "mm", "Mean distance between measured and simulated position over all points."},
+      {"error_rms_mm", "RMS error", "mm", "Root mean square of the distances between measured and simulated position."},
+      {"error_median_mm", "Median error", "mm",
+       "Half of the measured points lie closer than this to their simulated position."},
+      {"error_90_mm", "90 % of errors below", "mm",
+       "90 % of the measured points lie closer than this to their simulated position."},
+      {"error_95_mm", "95 % of errors below", "mm",
+       "95 % of the measured points lie closer than this to their simulated position."},
+      {"error_max_mm", "Largest error", "mm", "Largest distance between measured and simulated position of any point."},
+      {"error_mean_without_outliers_mm", "Mean error without outliers", "mm",
+       "Mean distance without points that lie more than 5 robust standard deviations above the median."},
+      {"outliers", "Outliers", "",
+       "Number of points that lie more than 5 robust standard deviations above the median distance."},
+      {"error_along_normal_mean_mm", "Mean error along the normal", "mm",
+       "Mean distance at right angles to the sheet; positive if the measured sheet lies outside the simulated one."},
+      {"sigma_mean_mm", "Mean measuring uncertainty", "mm",
+       "Mean standard deviation of the measured points, from the column sigma_mm of measured.csv."},
+      {"measured_surface", "Measured surface", "",
+       "Which surface of the sheet the points lie on: mid (middle) or outer."},
+      {"triangles", "Triangles", "", "Number of triangles in the simulated sheet."},
+      {"seconds_simulation", "Simulation", "s", "Time for the simulation; 0 if an earlier one was used again."},
+      {"seconds_compare", "Comparison", "s", "Time for comparing all points."},
+      {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."},
+      {"notes", "Notes", "", "What to know about the result, as sentences."}};
 }
 
 InputInfo measured_input_info() {
   InputInfo info;
   info.name = "measured";
   info.label = "Measured points";
-  info.help = "measured.csv: sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm,sigma_mm.";
+  info.help = "The measured.csv of an object, with the columns sheet_x_mm, sheet_y_mm, x_mm, y_mm, z_mm and sigma_mm.";
   info.extensions = {"csv"};
   info.object_file = "measured.csv";
   return info;
@@ -152,7 +160,8 @@ Operation thermoform_compare_operation() {
   Operation operation;
   operation.name = "thermoform-compare";
   operation.title = "Compare with a measured object";
-  operation.summary = "Simulates a measured object's set-up and says how far the simulation is off.";
+  operation.summary =
+      "Simulates the set-up of a measured object and reports how far simulation and measurement differ.";
   InputInfo setup = setup_input_info();
   setup.required = true;
   operation.inputs = {mould_input_info(), setup, measured_input_info(), profile_input_info()};

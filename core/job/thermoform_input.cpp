@@ -34,7 +34,7 @@ PlacedMould placed(const OperationCall& call, const SimulationCall& simulation) 
 InputInfo mould_input_info() {
   InputInfo info = model_input_info();
   info.name = "mould";
-  info.help = "The model that the sheet is formed over. Need not be watertight.";
+  info.help = "The model that the sheet is formed over. It need not be watertight.";
   info.object_file = "mould.obj";
   return info;
 }
@@ -43,7 +43,7 @@ InputInfo sheet_input_info() {
   InputInfo info;
   info.name = "sheet";
   info.label = "Formed sheet";
-  info.help = "sheet.ply of thermoform-simulate. Without it the forming is simulated first.";
+  info.help = "The sheet.ply that thermoform-simulate wrote. Without it, the forming is simulated first.";
   info.extensions = {"ply"};
   info.required = false;
   return info;
@@ -53,7 +53,8 @@ InputInfo setup_input_info() {
   InputInfo info;
   info.name = "setup";
   info.label = "Machine set-up";
-  info.help = "setup.json of a measured object: the mould is then in machine coordinates already.";
+  info.help =
+      "The setup.json of a measured object: its machine settings. The mould is then expected in machine coordinates.";
   info.extensions = {"json"};
   info.required = false;
   info.object_file = "setup.json";
@@ -64,7 +65,7 @@ InputInfo profile_input_info() {
   InputInfo info;
   info.name = "profile";
   info.label = "Machine profile";
-  info.help = "What is known of the machine: material and effects fitted to objects it made.";
+  info.help = "The profile.json of a machine: material and faults fitted to objects that it made.";
   info.extensions = {"json"};
   info.required = false;
   return info;

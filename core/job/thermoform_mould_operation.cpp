@@ -17,47 +17,56 @@ constexpr int draft_cells = 256;  // across the model's longer side: 0.4 mm of 1
 
 std::vector<OutputInfo> outputs() {
   return {
-      {"mould.stl", "model/stl", "STL", "All parts of the mould side by side on the printer's bed, watertight.", true},
-      {"mould.3mf", "model/3mf", "3MF", "The same, each part an object of its own.", true},
-      {"draft.ply", "application/x-ply", "Draft map",
-       "The model above the plate with draft, undercut and depth to width of every vertex, in the machine's "
-       "coordinates.",
+      {"mould.stl", "model/stl", "STL", "All parts of the mould side by side on the bed of the 3D printer, watertight.",
        true},
-      {"mould.glb", "model/gltf-binary", "GLB", "The parts as printed, to look at.", true}};
+      {"mould.3mf", "model/3mf", "3MF", "The mould for a slicer, every part as a separate object.", true},
+      {"draft.ply", "application/x-ply", "Draft map",
+       "The model above the plate in machine coordinates, with draft angle, undercut and ratio of depth to width at every vertex.",
+       true},
+      {"mould.glb", "model/gltf-binary", "GLB", "The parts of the mould as printed, for viewing.", true}};
 }
 
 std::vector<ReportField> report_fields() {
   return {
-      {"vertices", "Vertices", "", "of the repaired model"},
-      {"faces", "Triangles", "", "of the repaired model"},
-      {"mould_faces", "Triangles of the mould", "", "of all its parts"},
-      {"watertight", "Watertight", "", "of every part, checked"},
+      {"vertices", "Vertices", "", "Number of vertices of the repaired model."},
+      {"faces", "Triangles", "", "Number of triangles of the repaired model."},
+      {"mould_faces", "Triangles of the mould", "", "Number of triangles of all parts of the mould together."},
+      {"watertight", "Watertight", "", "Whether no part of the mould has holes; checked on the result."},
       {"parts", "Parts", "",
-       "each with its place (cell, counted along the machine's x, y, z), size_mm, volume_ml, pins and sockets"},
-      {"part_count", "Number of parts", "", "that the printer makes"},
-      {"size_mm", "Size of the mould", "mm", "all parts together, as it is used"},
-      {"model_size_mm", "Size of the model", "mm", "what stands above the plate"},
-      {"plastic_volume_ml", "Print volume", "ml", "of all parts, solid; a slicer's infill takes less"},
-      {"cast_volume_ml", "Volume of the cast", "ml", "or of the positive, base plate included"},
-      {"gypsum_g", "Gypsum powder", "g", "for the cast; nothing for a positive. Mix a tenth more."},
-      {"water_g", "Water", "g", "for the cast; nothing for a positive"},
-      {"pour_opening_mm2", "Pour opening", "mm²", "area of the cast's underside"},
-      {"vents", "Vents", "", "x_mm, y_mm, z_mm on the machine, contact_s (when the sheet arrives; -1: never), gap_mm"},
-      {"undercut_area_mm2", "Undercut", "mm²", "of the model's surface that something lies above"},
-      {"draft_min_deg", "Least draft", "°", "over all faces; negative leans in"},
-      {"below_3_deg_area_mm2", "Steep walls", "mm²", "with less than 3 degrees of draft, undercuts included"},
-      {"depth_to_width_max", "Deepest cavity", "", "depth over width"},
-      {"advice", "Advice", "", "in words"},
-      {"notes", "Placement", "", "what was decided, in words"},
-      {"repairs", "Repairs", "", "what was found in the model and mended, in words"},
-      {"seconds_read", "Reading", "s", "file to repaired model; 0 when known from before"},
-      {"seconds_form", "Forming", "s", "the simulation that the vents need"},
-      {"seconds_cut", "Cutting at the plate", "s", "checks included; 0 when known from before"},
-      {"seconds_draft", "Draft map", "s", "0 when known from before"},
-      {"seconds_mould", "Mould", "s", "booleans"},
-      {"seconds_split", "Parts", "s", "cuts and keys"},
-      {"seconds_write", "Writing", "s", "outputs into their formats"},
-      {"peak_memory_mb", "Peak memory", "MB", "of the process"}};
+       "Every part with its place in the mould (counted along the machine's x, y and z), size in mm, volume in ml, and numbers of pins and sockets."},
+      {"part_count", "Number of parts", "", "Number of parts to print."},
+      {"size_mm", "Size of the mould", "mm", "Size of the assembled mould, all parts together."},
+      {"model_size_mm", "Size of the model", "mm", "Size of the model above the base plate."},
+      {"plastic_volume_ml", "Plastic volume", "ml",
+       "Volume of all printed parts if solid. The infill set in the slicer needs less."},
+      {"cast_volume_ml", "Volume of the cast", "ml",
+       "Volume of the gypsum cast, or of the positive, including the base plate."},
+      {"gypsum_g", "Gypsum powder", "g", "Weight of gypsum powder for the cast; 0 for a positive. Mix a tenth more."},
+      {"water_g", "Water", "g", "Weight of water for the cast; 0 for a positive."},
+      {"pour_opening_mm2", "Pour opening", "mm²",
+       "Area of the opening through which gypsum is poured: the underside of the cast."},
+      {"vents", "Vent holes", "",
+       "Every vent hole with its position on the machine in mm, the time at which the sheet arrives there in s (-1: never), and the remaining gap in mm."},
+      {"undercut_area_mm2", "Undercut area", "mm²",
+       "Area of the model that lies under another part of it, so that the sheet cannot be lifted off."},
+      {"draft_min_deg", "Smallest draft angle", "°",
+       "Smallest angle between a wall and the vertical. Negative walls lean inwards and hold the sheet."},
+      {"below_3_deg_area_mm2", "Area of steep walls", "mm²",
+       "Area of walls with a draft angle below 3°, including undercuts. The sheet is hard to lift off there."},
+      {"depth_to_width_max", "Deepest cavity", "",
+       "Largest ratio of depth to width of a cavity. The sheet thins in deep, narrow cavities."},
+      {"advice", "Advice", "", "What to change so that the mould works, as sentences."},
+      {"notes", "Placement", "", "Decisions that were made automatically about the placement, as sentences."},
+      {"repairs", "Repairs", "", "What was found wrong in the model and repaired, as sentences."},
+      {"seconds_read", "Reading", "s", "Time for reading and repairing the file; 0 if it was read before."},
+      {"seconds_form", "Forming", "s", "Time for the simulation that finds the places of the vent holes."},
+      {"seconds_cut", "Cutting at the plate", "s",
+       "Time for checking the model and cutting it at the plate; 0 if done before."},
+      {"seconds_draft", "Draft map", "s", "Time for computing the draft map; 0 if done before."},
+      {"seconds_mould", "Mould", "s", "Time for making the solid mould."},
+      {"seconds_split", "Splitting", "s", "Time for cutting the mould into parts with pins and sockets."},
+      {"seconds_write", "Writing", "s", "Time for writing the output files."},
+      {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."}};
 }
 
 /// The model as it stands on the plate, and what can be said about it before a mould is made.
@@ -217,7 +226,7 @@ OperationResult run_mould(const OperationCall& call) {
   advice.insert(advice.end(), parts.sentences.begin(), parts.sentences.end());
   if (static_cast<int>(vents.size()) < options.vents)
     advice.push_back("Air gathers at " + std::to_string(vents.size()) + (vents.size() == 1 ? " place" : " places") +
-                     " of the model only: more vents would do nothing.");
+                     " of the model only: more vent holes would not help.");
   report["advice"] = advice;
   std::vector<std::string> notes = formed.placement.notes;
   notes.insert(notes.end(), placed->notes.begin(), placed->notes.end());
@@ -256,7 +265,7 @@ Operation thermoform_mould_operation() {
   Operation operation;
   operation.name = "thermoform-mould";
   operation.title = "Mould";
-  operation.summary = "Makes the mould that a sheet is formed over: a negative to cast gypsum in, or a positive.";
+  operation.summary = "Makes the mould that the sheet is formed over: a negative to cast gypsum in, or a positive.";
   operation.inputs = {mould_input_info(), sheet_input_info(), profile_input_info()};
   operation.parameters = describe_parameters<ThermoformMouldOptions>();
   operation.outputs = outputs();

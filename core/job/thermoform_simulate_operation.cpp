@@ -12,60 +12,79 @@ namespace {
 std::vector<OutputInfo> outputs() {
   return {
       {"sheet.ply", "application/x-ply", "Formed sheet",
-       "Middle surface with the sheet's coordinates, thickness, stretch and time of contact of every vertex.", true},
-      {"forming.glb", "model/gltf-binary", "Animation", "The three phases as morph targets, coloured by thickness.",
+       "The middle surface of the formed sheet, with flat position, thickness, stretch and time of contact at every vertex.",
        true},
-      {"mould.obj", "model/obj", "Placed model", "The model in machine coordinates.", false}};
+      {"forming.glb", "model/gltf-binary", "Animation",
+       "Animation of sagging, raising and vacuum, coloured by thickness.", true},
+      {"mould.obj", "model/obj", "Placed model", "The model in the machine's coordinates, as placed on the platform.",
+       false}};
 }
 
 std::vector<ReportField> report_fields() {
-  return {{"triangles", "Triangles", "", "of the sheet"},
-          {"vertices", "Vertices", "", "of the sheet"},
-          {"placement", "Placement", "mm", "4 x 4, row by row: from the file's coordinates to the machine's"},
-          {"model_size_mm", "Model size", "mm", "as it stands in the machine, above and below the plate"},
-          {"model_height_mm", "Model height", "mm", "above the base plate"},
-          {"model_watertight", "Model watertight", "", "needed for the mould, not for forming"},
-          {"sag_mm", "Sag", "mm", "of the hot sheet before the platform moves"},
-          {"relaxation_end_s", "End of relaxation", "s", "from the start"},
-          {"raise_end_s", "End of raising", "s", "from the start"},
-          {"forming_end_s", "End of forming", "s", "from the start"},
-          {"pressure_end_kpa", "Vacuum at the end", "kPa", "full unless everything touched before"},
-          {"stopped_by", "Stopped by", "", "all_touching, at_rest or time_limit"},
-          {"thickness_min_mm", "Thinnest place", "mm", "over the sheet's triangles"},
-          {"thickness_mean_mm", "Mean thickness", "mm", "over the formed area"},
-          {"stretch_max", "Largest stretch", "", "area now over area then"},
-          {"formed_area_mm2", "Formed area", "mm²", "of triangles that touch with every corner"},
-          {"unformed_area_mm2", "Unformed area", "mm²", "of the others: bridges, fillets in corners"},
-          {"touching_share", "In contact", "", "share of the free vertices that touch"},
-          {"webbing_area_mm2", "Squeezed area", "mm²",
-           "compressed by more than a tenth in some direction: folds and webs start here"},
-          {"mould_edge_penetration_mm", "Edge penetration", "mm",
-           "deepest sharp point of the model beyond the sheet's inner face"},
-          {"vertex_distance_min_mm", "Smallest distance", "mm",
-           "of the sheet's middle surface vertices from model and plate; half the thickness where it touches"},
-          {"volume_drift", "Volume drift", "", "relative change of the plastic's volume"},
-          {"elastic_energy_mj", "Elastic energy", "mJ", "stored in the sheet at the end"},
-          {"steps", "Time steps", "", "accepted"},
-          {"steps_rejected", "Rejected steps", "", "tried again with a shorter one"},
-          {"newton_iterations", "Newton iterations", "", "all steps"},
-          {"cg_iterations", "Linear iterations", "", "conjugate gradients, all steps"},
-          {"point_contacts", "Edge contacts", "", "sharp points of the model caught inside a triangle"},
-          {"reused", "Reused", "", "from an earlier job on the same model and parameters"},
-          {"seconds_read", "Reading", "s", "file to repaired model; 0 when known from before"},
-          {"seconds_simulation", "Simulation", "s", "all three phases; 0 when reused"},
-          {"seconds_assembly", "Assembly", "s", "forces and stiffness"},
-          {"seconds_linear", "Linear solves", "s", "conjugate gradients"},
-          {"seconds_contact", "Contact", "s", "search for contacts"},
-          {"seconds_write", "Writing", "s", "outputs into their formats"},
-          {"peak_memory_mb", "Peak memory", "MB", "of the process"},
-          {"repairs", "Repairs", "", "what was found in the model and mended, in words"},
-          {"notes", "Notes", "", "what was decided for you, in words"},
-          {"warnings", "Warnings", "", "what may go wrong in the machine, in words"}};
+  return {
+      {"triangles", "Triangles", "", "Number of triangles in the simulated sheet."},
+      {"vertices", "Vertices", "", "Number of vertices in the simulated sheet."},
+      {"placement", "Placement", "mm",
+       "Matrix of 4 x 4 numbers, row by row, that takes the file's coordinates to the machine's."},
+      {"model_size_mm", "Model size", "mm",
+       "Size of the model as it stands in the machine, including what lies below the plate."},
+      {"model_height_mm", "Model height", "mm", "Height of the model above the base plate."},
+      {"model_watertight", "Model watertight", "",
+       "Whether the model has no holes. A mould needs that; forming does not."},
+      {"sag_mm", "Sag", "mm", "How far the hot sheet sags before the platform moves."},
+      {"relaxation_end_s", "End of sagging", "s", "Time from the start until the platform begins to move."},
+      {"raise_end_s", "End of raising", "s", "Time from the start until the platform has arrived."},
+      {"forming_end_s", "End of forming", "s", "Time from the start until forming ends."},
+      {"pressure_end_kpa", "Vacuum at the end", "kPa",
+       "Vacuum when forming ended. Less than the full vacuum if the whole sheet touched before."},
+      {"stopped_by", "Stopped by", "",
+       "Why forming ended: all_touching (the whole sheet touches), at_rest (nothing moves) or time_limit."},
+      {"thickness_min_mm", "Thinnest place", "mm",
+       "Thickness of the sheet at its thinnest triangle. Below a third of the flat sheet it may tear."},
+      {"thickness_mean_mm", "Mean thickness", "mm", "Mean thickness of the sheet over the formed area."},
+      {"stretch_max", "Largest stretch", "", "Largest ratio of a triangle's formed area to its flat area."},
+      {"formed_area_mm2", "Formed area", "mm²", "Area of the sheet that lies on the model or the plate."},
+      {"unformed_area_mm2", "Unformed area", "mm²", "Area of the sheet that hangs free, as in corners and gaps."},
+      {"touching_share", "In contact", "",
+       "Fraction of the sheet's movable vertices that touch the model or the plate."},
+      {"webbing_area_mm2", "Squeezed area", "mm²",
+       "Area that is compressed by more than a tenth in some direction. Folds and webs begin there."},
+      {"mould_edge_penetration_mm", "Edge penetration", "mm",
+       "Greatest depth to which a sharp point of the model pierces the inner face of the sheet; an error of the simulation."},
+      {"vertex_distance_min_mm", "Smallest distance", "mm",
+       "Smallest distance from the sheet's middle surface to model or plate; half the thickness where it touches."},
+      {"volume_drift", "Volume change", "",
+       "Relative change of the plastic's volume during the simulation; an error of the simulation, practically 0."},
+      {"elastic_energy_mj", "Elastic energy", "mJ", "Elastic energy stored in the sheet at the end."},
+      {"steps", "Time steps", "", "Number of time steps of the simulation."},
+      {"steps_rejected", "Rejected steps", "", "Number of time steps that were repeated with a shorter step."},
+      {"newton_iterations", "Newton iterations", "", "Number of Newton iterations in all steps together."},
+      {"cg_iterations", "Linear iterations", "", "Number of conjugate gradient iterations in all steps together."},
+      {"point_contacts", "Edge contacts", "",
+       "Number of sharp points of the model that touch the sheet inside a triangle."},
+      {"reused", "Reused", "",
+       "Whether the simulation of an earlier job with the same model and parameters was used again."},
+      {"seconds_read", "Reading", "s", "Time for reading and repairing the file; 0 if it was read before."},
+      {"seconds_simulation", "Simulation", "s",
+       "Time for simulating sagging, raising and vacuum; 0 if an earlier simulation was used again."},
+      {"seconds_assembly", "Assembly", "s", "Time for computing forces and stiffness."},
+      {"seconds_linear", "Linear solves", "s", "Time for solving linear equations by conjugate gradients."},
+      {"seconds_contact", "Contact", "s", "Time for finding where the sheet touches."},
+      {"seconds_write", "Writing", "s", "Time for writing the output files."},
+      {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."},
+      {"repairs", "Repairs", "", "What was found wrong in the model and repaired, as sentences."},
+      {"notes", "Notes", "", "Decisions that were made automatically, as sentences."},
+      {"warnings", "Warnings", "", "What may go wrong in the machine, as sentences."}};
 }
 
 std::string figure(double value, int digits = 2) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  if (value >= 100) {  // "%g" would write 290 as 2.9e+02
+    const double step = std::pow(10, std::floor(std::log10(value)) + 1 - digits);
+    std::snprintf(text, sizeof text, "%.0f", std::round(value / step) * step);
+  } else {
+    std::snprintf(text, sizeof text, "%.*g", digits, value);
+  }
   return text;
 }
 
@@ -82,9 +101,11 @@ Json warnings(const FormedResult& result, const ThermoformOptions& o, bool water
                    " cm²): it may fold into webs there. More distance between tall parts, or from the clamp, helps.");
   if (result.unformed_area_mm2 > 0.02 * (result.formed_area_mm2 + result.unformed_area_mm2))
     list.push_back(figure(result.unformed_area_mm2 / 100) +
-                   " cm² of the sheet do not reach the model or the plate: corners and gaps stay rounded there.");
-  if (result.reached_time_limit) list.push_back("The sheet was still moving when the time limit ended.");
-  if (!watertight) list.push_back("The model has holes: it can be formed over, but a mould needs it closed.");
+                   " cm² of the sheet hang free, so corners there come out rounded.");
+  if (result.reached_time_limit) list.push_back("The sheet was still moving at the time limit: raise the time limit.");
+  if (!watertight)
+    list.push_back(
+        "The model has holes. Forming works, but a mould needs a closed model: fill the holes before making one.");
   return list;
 }
 
@@ -181,7 +202,7 @@ Operation thermoform_simulate_operation() {
   Operation operation;
   operation.name = "thermoform-simulate";
   operation.title = "Thermoform";
-  operation.summary = "Simulates a heated plastic sheet being drawn over a model (thesis chapter 4).";
+  operation.summary = "Simulates how a heated plastic sheet is formed over a model by vacuum.";
   operation.inputs = {mould_input_info(), setup_input_info(), profile_input_info()};
   operation.parameters = describe_parameters<ThermoformOptions>();
   operation.outputs = outputs();

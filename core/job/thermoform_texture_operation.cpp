@@ -14,61 +14,77 @@ namespace {
 constexpr int formed_texture_px = 2048;
 
 std::vector<InputInfo> inputs() {
-  return {mould_input_info(),
-          sheet_input_info(),
-          {"material", "Material file", "The MTL file of an OBJ.", {"mtl"}, false, false, ""},
-          {"texture",
-           "Picture",
-           "A PNG or JPEG, laid by the model's texture coordinates in place of its own.",
-           {"png", "jpg", "jpeg"},
-           false,
-           false,
-           ""},
-          profile_input_info()};
+  return {
+      mould_input_info(),
+      sheet_input_info(),
+      {"material", "Material file", "The material file (MTL) that belongs to an OBJ model.", {"mtl"}, false, false, ""},
+      {"texture",
+       "Picture",
+       "A PNG or JPEG picture that replaces the model's own, placed by the model's texture coordinates.",
+       {"png", "jpg", "jpeg"},
+       false,
+       false,
+       ""},
+      profile_input_info()};
 }
 
 std::vector<OutputInfo> outputs() {
   return {
-      {"print.png", "image/png", "Picture", "The whole sheet with its marks; the file says its size.", true},
+      {"print.png", "image/png", "Picture",
+       "The print for the whole sheet with its marks. The file contains its true size.", true},
       {"print.pdf", "application/pdf", "Pages",
-       "At true size on the paper chosen, then where the marks are on the frame. Print at 100 %.", true},
+       "The print at true size on the chosen paper, then a template of the marks on the frame. Print at 100 %.", true},
       {"formed.glb", "model/gltf-binary", "Formed sheet",
-       "The formed sheet with the print on it, to look at; upright, y up.", true},
+       "The formed sheet with the print on it, for viewing; y points up.", true},
       {"coverage.ply", "application/x-ply", "Coverage",
-       "The model in machine coordinates: per vertex the reason (0 coloured, 1 hidden, 2 not touched, 3 below the plate, 4 outside), its place on the sheet and the gap to it.",
+       "The model in machine coordinates. Every vertex has a code (0 coloured, 1 hidden, 2 not touched, 3 below the plate, 4 outside), its place on the sheet and the gap to it.",
        false}};
 }
 
 std::vector<ReportField> report_fields() {
-  return {{"sheet_mm", "Sheet", "mm", "width and length"},
-          {"picture_mm", "Picture", "mm", "width and height of the whole pixels nearest to the sheet's size"},
-          {"picture_pixels", "Pixels", "", "width and height"},
-          {"dots_per_inch", "Resolution", "dpi", "as the picture has it: whole pixels per metre"},
-          {"colours_used", "Colours", "", "where they came from"},
-          {"pages", "Pages", "", "of the PDF, the frame's template included"},
-          {"page_mm", "Page", "mm", "width and height"},
-          {"tiles", "Tiles", "", "columns and rows of pages that make up the sheet"},
-          {"area_coloured_mm2", "Coloured", "mm²", "of the model's surface above the plate"},
-          {"area_uncoloured_mm2", "Without colour", "mm²", "of the model's surface above the plate"},
-          {"uncoloured_percent", "Without colour", "%", "of the model's surface above the plate"},
-          {"area_hidden_mm2", "Hidden", "mm²", "undercut, or under another part of the model"},
-          {"area_not_touched_mm2", "Not touched", "mm²", "spanned by the sheet"},
-          {"area_outside_mm2", "Outside", "mm²", "beyond the clamp's opening"},
-          {"area_below_plate_mm2", "Below the plate", "mm²", "in or under it; not counted above"},
-          {"gap_mean_mm", "Gap", "mm", "mean from coloured points to the sheet's inner side"},
-          {"gap_max_mm", "Largest gap", "mm", "the same"},
-          {"stretch_mean", "Stretch of the print", "", "mean, area formed over area printed"},
-          {"stretch_max", "Largest stretch of the print", "", "the same"},
-          {"triangles", "Triangles of the map", "", "that the model was divided into"},
-          {"seconds_read", "Reading", "s", "model and sheet; simulating where no sheet was given"},
-          {"seconds_refine", "Dividing", "s", ""},
-          {"seconds_project", "Projecting", "s", ""},
-          {"seconds_colours", "Reading colours", "s", ""},
-          {"seconds_render", "Drawing", "s", ""},
-          {"seconds_bleed", "Bleed", "s", ""},
-          {"seconds_write", "Writing", "s", "outputs into their formats"},
-          {"peak_memory_mb", "Peak memory", "MB", "of the process"},
-          {"sentences", "Notes", "", "in words"}};
+  return {
+      {"sheet_mm", "Sheet", "mm", "Width and length of the flat sheet."},
+      {"picture_mm", "Picture", "mm",
+       "Width and height of the picture: the whole number of pixels nearest to the size of the sheet."},
+      {"picture_pixels", "Pixels", "", "Width and height of the picture in pixels."},
+      {"dots_per_inch", "Resolution", "dpi",
+       "Resolution as stored in the picture file, which holds whole pixels per metre."},
+      {"colours_used", "Colours", "", "Where the colours of the print came from."},
+      {"pages", "Pages", "", "Number of pages in the PDF, including the template for the frame."},
+      {"page_mm", "Page", "mm", "Width and height of a page."},
+      {"tiles", "Tiles", "", "Number of columns and rows of pages that together make the sheet."},
+      {"area_coloured_mm2", "Coloured", "mm²",
+       "Area of the model above the plate that receives colour from the print."},
+      {"area_uncoloured_mm2", "Without colour", "mm²",
+       "Area of the model above the plate that receives no colour from the print."},
+      {"uncoloured_percent", "Without colour", "%",
+       "Share of the model's surface above the plate that receives no colour from the print."},
+      {"area_hidden_mm2", "Hidden", "mm²",
+       "Area without colour because it is undercut or lies under another part of the model."},
+      {"area_not_touched_mm2", "Not touched", "mm²",
+       "Area without colour because the sheet spans it without touching."},
+      {"area_outside_mm2", "Outside", "mm²", "Area without colour because it lies beyond the clamp's opening."},
+      {"area_below_plate_mm2", "Below the plate", "mm²",
+       "Area of the model in or below the base plate; not part of the other areas."},
+      {"gap_mean_mm", "Mean gap", "mm",
+       "Mean distance from coloured points of the model to the inner face of the sheet."},
+      {"gap_max_mm", "Largest gap", "mm",
+       "Largest distance from a coloured point of the model to the inner face of the sheet."},
+      {"stretch_mean", "Mean stretch of the print", "",
+       "Mean ratio of formed area to printed area. At 2 the colours spread over twice the area."},
+      {"stretch_max", "Largest stretch of the print", "", "Largest ratio of formed area to printed area."},
+      {"triangles", "Triangles of the map", "",
+       "Number of triangles into which the model was subdivided to carry its colours to the sheet."},
+      {"seconds_read", "Reading", "s",
+       "Time for reading model and sheet, and for simulating if no formed sheet was given."},
+      {"seconds_refine", "Subdividing", "s", "Time for subdividing the model."},
+      {"seconds_project", "Projecting", "s", "Time for finding the place of every point of the model on the sheet."},
+      {"seconds_colours", "Reading colours", "s", "Time for reading the colours of the model."},
+      {"seconds_render", "Drawing", "s", "Time for drawing the print."},
+      {"seconds_bleed", "Bleed", "s", "Time for continuing the colours beyond the model's edge."},
+      {"seconds_write", "Writing", "s", "Time for writing the output files."},
+      {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."},
+      {"sentences", "Notes", "", "What to know about the print, as sentences."}};
 }
 
 /// The model with its material file read. A reader keeps no trace of the library's name, so that any file will do.
@@ -186,7 +202,8 @@ Operation thermoform_texture_operation() {
   Operation operation;
   operation.name = "thermoform-texture";
   operation.title = "Print for thermoforming";
-  operation.summary = "Makes the picture to print on the flat sheet, so that its colours land where they belong.";
+  operation.summary =
+      "Makes the picture to print on the flat sheet so that, after forming, every colour lands where it belongs.";
   operation.inputs = inputs();
   operation.parameters = describe_parameters<ThermoformPrintOptions>();
   operation.outputs = outputs();

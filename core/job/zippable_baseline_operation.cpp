@@ -14,35 +14,45 @@ namespace formwright {
 namespace {
 
 std::vector<OutputInfo> outputs() {
-  return {{"strips.svg", "image/svg+xml", "Strips, SVG", "All sheets side by side at true size; layers cut, engrave.",
-           true},
-          {"strips.ply", "application/x-ply", "Strips in space", "The model as the strips make it.", true}};
+  return {{"strips.svg", "image/svg+xml", "Strips, SVG",
+           "All sheets side by side at true size, with the layers cut and engrave.", true},
+          {"strips.ply", "application/x-ply", "Strips in space", "The shape that the strips make.", true}};
 }
 
 std::vector<ReportField> report_fields() {
-  return {{"parts", "Parts", "", "between feature lines and limbs"},
-          {"bands", "Bands", "", "by distance from the parts' borders"},
-          {"pieces", "Pieces", "", "to cut, none over itself"},
-          {"sheets", "Sheets", "", "of the bed's size"},
-          {"cut_length_mm", "Cut length", "mm", "of all outlines"},
-          {"narrowest_mm", "Narrowest piece", "mm", "twice its area over its outline"},
-          {"hausdorff_mm", "Hausdorff distance", "mm", "between strips and model"},
-          {"strips_to_model_mean_mm", "Mean distance to the model", "mm", "from the strips"},
-          {"model_to_strips_mean_mm", "Mean distance to the strips", "mm", "from the model"},
-          {"isometry_error", "Unfolding error", "", "largest relative change of an edge"},
-          {"zippable_pieces", "Pieces of the zippable", "", "as a paper model with the same width and bed"},
-          {"zippable_cut_length_mm", "Cut length of the zippable", "mm", "the same"},
-          {"zippable_narrowest_mm", "Narrowest piece of the zippable", "mm", "the same"},
-          {"zippable_hausdorff_mm", "Hausdorff distance of the zippable", "mm",
-           "its openings, which strips do not have, included"},
-          {"zippable_to_model_mean_mm", "Mean distance of the zippable", "mm", "from it to the model"},
-          {"model_to_zippable_mean_mm", "Mean distance to the zippable", "mm", "from the model"},
-          {"zippable_ribbon_width_min_mm", "Least ruling of the zippable", "mm", "between windings"},
-          {"seconds_strips", "Strips", "s", "parts, bands and unfolding"},
-          {"seconds_zippable", "Zippable", "s", "design and plan"},
-          {"peak_memory_mb", "Peak memory", "MB", "of the process"},
-          {"repairs", "Repairs", "", "what was found in the model and mended, in words"},
-          {"notes", "Notes", "", "what to know, in words"}};
+  return {
+      {"parts", "Parts", "", "Number of parts between feature lines and limbs."},
+      {"bands", "Bands", "", "Number of bands that follow the borders of the parts."},
+      {"pieces", "Pieces", "", "Number of pieces to cut; none overlaps itself."},
+      {"sheets", "Sheets", "", "Number of sheets needed."},
+      {"cut_length_mm", "Cut length", "mm", "Total length of all outlines to cut."},
+      {"narrowest_mm", "Narrowest piece", "mm",
+       "Width of the narrowest piece: twice its area divided by the length of its outline."},
+      {"hausdorff_mm", "Hausdorff distance", "mm",
+       "Largest distance between strips and model, measured in both directions (Hausdorff distance)."},
+      {"strips_to_model_mean_mm", "Mean distance to the model", "mm", "Mean distance from the strips to the model."},
+      {"model_to_strips_mean_mm", "Mean distance to the strips", "mm", "Mean distance from the model to the strips."},
+      {"isometry_error", "Unfolding error", "",
+       "Largest relative change of an edge's length when laid flat; practically 0."},
+      {"zippable_pieces", "Pieces of the zippable", "",
+       "Number of pieces of the zippable as a paper model with the same width and sheet size."},
+      {"zippable_cut_length_mm", "Cut length of the zippable", "mm",
+       "Total length of all outlines to cut for the zippable as a paper model."},
+      {"zippable_narrowest_mm", "Narrowest piece of the zippable", "mm",
+       "Width of the narrowest piece of the zippable: twice its area divided by the length of its outline."},
+      {"zippable_hausdorff_mm", "Hausdorff distance of the zippable", "mm",
+       "Largest distance between zippable and model in both directions, including the holes at its tips, which strips do not have."},
+      {"zippable_to_model_mean_mm", "Mean distance of the zippable", "mm",
+       "Mean distance from the zippable to the model."},
+      {"model_to_zippable_mean_mm", "Mean distance to the zippable", "mm",
+       "Mean distance from the model to the zippable."},
+      {"zippable_ribbon_width_min_mm", "Smallest width of the zippable", "mm",
+       "Smallest width of the zippable's ribbon between windings."},
+      {"seconds_strips", "Strips", "s", "Time for making the strips and laying them flat."},
+      {"seconds_zippable", "Zippable", "s", "Time for designing and planning the zippable."},
+      {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."},
+      {"repairs", "Repairs", "", "What was found wrong in the model and repaired, as sentences."},
+      {"notes", "Notes", "", "What to know about the result, as sentences."}};
 }
 
 /// The limbs that a zippable is divided into, on the faces of the whole model.
@@ -149,8 +159,7 @@ Operation zippable_baseline_operation() {
   Operation operation;
   operation.name = "zippable-baseline";
   operation.title = "Strips to compare with";
-  operation.summary =
-      "The model as paper strips in the manner of Mitani & Suzuki 2004, with figures beside the zippable's.";
+  operation.summary = "Makes the model from paper strips (Mitani and Suzuki 2004), to compare with the zippable.";
   operation.inputs = {model_input_info()};
   operation.parameters = describe_parameters<StripOptions>();
   operation.outputs = outputs();

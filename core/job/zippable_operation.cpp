@@ -16,76 +16,93 @@ std::vector<InputInfo> inputs() {
   segments.name = "segments";
   segments.label = "Parts";
   segments.help =
-      "segments.json: punctures, loops and lines that bound the parts, where the zipper begins and ends (docs/zippable.md). Without it limbs are found.";
+      "A segments.json with the holes, loops and lines that bound the parts, and where the zipper starts and ends. Without it, limbs are found automatically.";
   segments.extensions = {"json"};
   segments.required = false;
   return {model_input_info(), segments};
 }
 
 std::vector<OutputInfo> outputs() {
-  return {{"design.json", "application/json", "Design",
-           "Parts, zipper and ribbon in space and in the plane, for the next steps.", true},
-          {"parameterised.ply", "application/x-ply", "Parameterised model",
-           "The parts with u, v in mm, part number and distortion.", true},
-          {"curve.obj", "model/obj", "Zipper's course", "Polylines on the model.", true},
-          {"formed.ply", "application/x-ply", "Zipped ribbon", "The ribbon as it lies in space.", true},
-          {"ribbon.svg", "image/svg+xml", "Flat ribbon", "Unfolded at true size; parts of it may overlap.", true}};
+  return {
+      {"design.json", "application/json", "Design",
+       "The design: parts, zipper and ribbon, zipped and flat. Needed by the plan and the simulation.", true},
+      {"parameterised.ply", "application/x-ply", "Parts laid flat",
+       "The parts of the model laid flat: u and v in mm, part number and distortion at every vertex.", true},
+      {"curve.obj", "model/obj", "Line of the zipper", "The line of the zipper on the model.", true},
+      {"formed.ply", "application/x-ply", "Zipped ribbon", "The ribbon in its zipped shape.", true},
+      {"ribbon.svg", "image/svg+xml", "Flat ribbon", "The flat ribbon at true size; parts of it may overlap.", true}};
 }
 
 std::vector<ReportField> report_fields() {
   return {
-      {"vertices", "Vertices", "", "of the divided model"},
-      {"faces", "Triangles", "", "of the divided model"},
-      {"parts", "Parts", "", "of the model"},
-      {"cylinders", "Cylinders", "", "how many of the parts are, which all must be"},
-      {"interfaces", "Interfaces", "", "arcs that two parts share"},
-      {"handles_cut", "Cut handles", "", "loops opened, which need another closure than the zipper"},
-      {"hook_and_loop_mm_total", "Cuts to close by tape", "mm",
-       "of cut handles and slits, along all of them; tape needed for each side"},
-      {"distortion_mean", "Mean distortion", "", "symmetric Dirichlet energy over 4, weighted by area; 1 is none"},
-      {"distortion_max", "Largest distortion", "", "of any triangle"},
-      {"iterations", "Iterations", "", "Newton steps of the parameterisation"},
+      {"vertices", "Vertices", "", "Number of vertices of the model after it was divided into parts."},
+      {"faces", "Triangles", "", "Number of triangles of the model after it was divided into parts."},
+      {"parts", "Parts", "", "Number of parts into which the model was divided."},
+      {"cylinders", "Cylinders", "", "Number of parts that are cylinders, as all must be."},
+      {"interfaces", "Interfaces", "", "Number of lines along which two parts meet."},
+      {"handles_cut", "Cut handles", "",
+       "Number of handles that were cut open; these cuts are closed with tape instead of the zipper."},
+      {"hook_and_loop_mm_total", "Cuts to close with tape", "mm",
+       "Total length of cut handles and slits; that much tape is needed for each side."},
+      {"distortion_mean", "Mean distortion", "",
+       "Mean distortion when the parts are laid flat (symmetric Dirichlet energy divided by 4); 1 is none."},
+      {"distortion_max", "Largest distortion", "", "Largest distortion of any triangle when laid flat; 1 is none."},
+      {"iterations", "Iterations", "", "Number of Newton steps for laying the parts flat."},
       {"constraint_residual_mm", "Constraint residual", "mm",
-       "largest violation of seams, straight lines and interfaces"},
-      {"order", "Order of parts", "", "as the zipper visits them, numbered from 0"},
-      {"orders", "Possible orders", "", "to choose from with traversal"},
-      {"order_taken", "Order taken", "", "which of them, from 1"},
+       "Largest mismatch along seams, straight lines and borders of parts; practically 0."},
+      {"order", "Order of parts", "", "Parts in the order in which the zipper visits them, numbered from 0."},
+      {"orders", "Possible orders", "", "Number of possible orders; the parameter traversal chooses one."},
+      {"order_taken", "Chosen order", "", "Number of the chosen order, from 1."},
       {"centre_radius_min_mm", "Tightest bend", "mm",
-       "least radius of the flat ribbon's middle, over half its width to either side"},
-      {"centre_radius_min_part", "Part of the tightest bend", "", "counted from 1"},
-      {"unevenness", "Unevenness of crossings", "", "eq. (5.7) over the parts between; 0 is even"},
-      {"windings", "Windings", "", "of every part"},
-      {"crease_mm", "Creases along windings", "mm", "how much of them runs nearly like the windings"},
-      {"crease_off_even_mm", "From even windings", "mm", "mean distance of these creases to the nearest even winding"},
-      {"crease_off_mm", "From windings", "mm", "the same, of windings as drawn"},
-      {"winding_spacing_least", "Least spacing", "", "of windings moved onto creases, of the even spacing"},
-      {"fermat_spirals", "Fermat spirals", "", "parts that the zipper enters and leaves"},
-      {"zipper_length_mm", "Zipper length", "mm", "one side of the ribbon, along its corners"},
-      {"curve_length_mm", "Curve length", "mm", "on the model itself"},
-      {"ribbon_width_mean_mm", "Mean width", "mm", "over the rulings between windings"},
-      {"ribbon_width_min_mm", "Least width", "mm", "the same"},
-      {"ribbon_triangles", "Ribbon triangles", "", "none has a corner off the boundary"},
-      {"ribbon_size_mm", "Flat size", "mm", "width and height of the unfolded ribbon"},
-      {"isometry_error", "Unfolding error", "", "largest relative change of an edge"},
-      {"ribbon_to_model_mean_mm", "Mean distance to the model", "mm", "from the zipped ribbon"},
-      {"ribbon_to_model_max_mm", "Largest distance to the model", "mm", "from the zipped ribbon"},
-      {"model_to_ribbon_mean_mm", "Mean distance to the ribbon", "mm", "from the model"},
-      {"model_to_ribbon_max_mm", "Largest distance to the ribbon", "mm", "from the model"},
-      {"fabric_area_mm2", "Area of each fabric", "mm²", "of two colours, before room is made for the zipper"},
-      {"fabric_seams", "Seams between fabrics", "", "rulings where one colour is joined to the other"},
-      {"interleaved_share", "Zipper between two colours", "", "share of its length with another colour on either side"},
-      {"size_mm", "Size", "mm", "of the zipped ribbon"},
-      {"reused", "Parameterisation reused", "", "from an earlier job on the same model, parts and punctures"},
-      {"seconds_read", "Reading", "s", "file to repaired model; 0 when known from before"},
-      {"seconds_parts", "Parts", "s", "handles, limbs, division, punctures"},
-      {"seconds_parameterisation", "Parameterisation", "s", "set-up, start and Newton steps"},
-      {"seconds_curve", "Curve", "s", "orders, crossings, tracing"},
-      {"seconds_ribbon", "Ribbon", "s", "rulings, triangles, unfolding"},
-      {"seconds_distance", "Distances", "s", "between ribbon and model"},
-      {"seconds_write", "Writing", "s", "outputs into their formats"},
-      {"peak_memory_mb", "Peak memory", "MB", "of the process"},
-      {"repairs", "Repairs", "", "what was found in the model and mended, in words"},
-      {"notes", "Notes", "", "what was decided for you, in words"}};
+       "Smallest radius of the flat ribbon's centre line, measured over half its width to either side."},
+      {"centre_radius_min_part", "Part of the tightest bend", "", "Number of the part with the tightest bend, from 1."},
+      {"unevenness", "Unevenness of crossings", "", "How unevenly the zipper crosses from part to part; 0 is even."},
+      {"windings", "Windings", "", "Number of turns of the zipper around every part."},
+      {"crease_mm", "Creases along windings", "mm",
+       "Length of creases that run in nearly the same direction as the windings."},
+      {"crease_off_even_mm", "Distance to even windings", "mm",
+       "Mean distance from these creases to the nearest winding if windings are equally spaced."},
+      {"crease_off_mm", "Distance to windings", "mm",
+       "Mean distance from these creases to the nearest winding as drawn."},
+      {"winding_spacing_least", "Smallest spacing", "",
+       "Smallest spacing of windings that were moved onto creases, as a fraction of the even spacing."},
+      {"fermat_spirals", "Fermat spirals", "",
+       "Number of parts that the zipper enters and leaves, winding in and out as a double spiral."},
+      {"zipper_length_mm", "Zipper length", "mm", "Length of the zipper: one side of the ribbon."},
+      {"curve_length_mm", "Curve length", "mm", "Length of the zipper's line measured on the model."},
+      {"ribbon_width_mean_mm", "Mean width", "mm", "Mean width of the ribbon between windings."},
+      {"ribbon_width_min_mm", "Smallest width", "mm", "Smallest width of the ribbon between windings."},
+      {"ribbon_triangles", "Ribbon triangles", "", "Number of triangles of the ribbon; all corners lie on its edge."},
+      {"ribbon_size_mm", "Flat size", "mm", "Width and height of the flat ribbon."},
+      {"isometry_error", "Unfolding error", "",
+       "Largest relative change of an edge's length when laid flat; practically 0."},
+      {"ribbon_to_model_mean_mm", "Mean distance to the model", "mm",
+       "Mean distance from the zipped ribbon to the model."},
+      {"ribbon_to_model_max_mm", "Largest distance to the model", "mm",
+       "Largest distance from the zipped ribbon to the model."},
+      {"model_to_ribbon_mean_mm", "Mean distance to the ribbon", "mm",
+       "Mean distance from the model to the zipped ribbon."},
+      {"model_to_ribbon_max_mm", "Largest distance to the ribbon", "mm",
+       "Largest distance from the model to the zipped ribbon."},
+      {"fabric_area_mm2", "Area of each fabric", "mm²",
+       "Area of each of the two fabrics, before room is made for the zipper."},
+      {"fabric_seams", "Seams between fabrics", "",
+       "Number of seams across the ribbon where one fabric is joined to the other."},
+      {"interleaved_share", "Zipper between two colours", "",
+       "Fraction of the zipper's length with different fabrics on its two sides."},
+      {"size_mm", "Size", "mm", "Size of the zipped ribbon."},
+      {"reused", "Parameterisation reused", "",
+       "Whether the parameterisation of an earlier job with the same model, parts and holes was used again."},
+      {"seconds_read", "Reading", "s", "Time for reading and repairing the file; 0 if it was read before."},
+      {"seconds_parts", "Parts", "s", "Time for dividing the model into parts."},
+      {"seconds_parameterisation", "Parameterisation", "s", "Time for laying the parts flat."},
+      {"seconds_curve", "Curve", "s", "Time for ordering the parts and drawing the zipper's line."},
+      {"seconds_ribbon", "Ribbon", "s", "Time for making the ribbon and laying it flat."},
+      {"seconds_distance", "Distances", "s", "Time for measuring distances between ribbon and model."},
+      {"seconds_write", "Writing", "s", "Time for writing the output files."},
+      {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."},
+      {"repairs", "Repairs", "", "What was found wrong in the model and repaired, as sentences."},
+      {"notes", "Notes", "", "Decisions that were made automatically, as sentences."}};
 }
 
 /// Of the part on whose lines the triangle has a corner, or the first one.
@@ -238,7 +255,7 @@ Operation zippable_design_operation() {
   Operation operation;
   operation.name = "zippable-design";
   operation.title = "Zippable";
-  operation.summary = "Turns a model into one flat ribbon that zips up into it (thesis chapter 5).";
+  operation.summary = "Turns a model into one flat ribbon that zips up into the model's shape.";
   operation.inputs = inputs();
   operation.parameters = describe_parameters<ZippableOptions>();
   operation.outputs = outputs();

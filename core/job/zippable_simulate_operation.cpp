@@ -12,55 +12,67 @@ InputInfo design_input() {
   InputInfo info;
   info.name = "design";
   info.label = "Design";
-  info.help = "design.json of zippable-design: the flat ribbon, its zipper and the shape it is meant to take.";
+  info.help = "The design.json that zippable-design wrote: the flat ribbon, its zipper and the intended shape.";
   info.extensions = {"json"};
   return info;
 }
 
 std::vector<OutputInfo> outputs() {
   return {{"zipped.ply", "application/x-ply", "Zipped cloth",
-           "The simulated shape with its distance to the prediction and its strain at every vertex.", true},
+           "The simulated shape, with distance from the design and strain at every vertex.", true},
           {"zipping.glb", "model/gltf-binary", "Animation",
-           "From flat to zipped as morph targets, coloured by the distance at the end.", true}};
+           "Animation from flat to zipped, coloured by the distance from the design at the end.", true}};
 }
 
 std::vector<ReportField> report_fields() {
   return {
-      {"outcome", "Outcome", "", "takes_shape, as_the_cloth_does, another_shape, open_seams or not_settled"},
-      {"verdict", "Will it zip?", "", "the outcome in words"},
-      {"mirrored", "Inside out", "", "the mirror image, which flat cloth takes just as well, was nearer"},
+      {"outcome", "Outcome", "",
+       "takes_shape (as designed), as_the_cloth_does (sags as the cloth would anyway), another_shape, open_seams or not_settled (still moving)."},
+      {"verdict", "Will it zip?", "", "The outcome of the simulation as a sentence."},
+      {"mirrored", "Inside out", "",
+       "Whether the cloth took the mirrored shape, inside out, which fits flat cloth equally well."},
       {"distance_mean_mm", "Mean distance", "mm",
-       "of places from where the design has them, after turning it there; by area"},
-      {"distance_95_mm", "Distance of 95 %", "mm", "no more than 5 % of the cloth is farther off"},
-      {"distance_max_mm", "Largest distance", "mm", "of any vertex"},
-      {"distance_mean_percent", "Mean distance", "%", "of the shape's size"},
-      {"distance_95_percent", "Distance of 95 %", "%", "of the shape's size"},
-      {"distance_max_percent", "Largest distance", "%", "of the shape's size"},
+       "Mean distance of the cloth from its designed place, weighted by area, after the best rotation and shift."},
+      {"distance_95_mm", "Distance of 95 %", "mm", "95 % of the cloth lie closer than this to their designed place."},
+      {"distance_max_mm", "Largest distance", "mm",
+       "Largest distance of any point of the cloth from its designed place."},
+      {"distance_mean_percent", "Mean distance", "%",
+       "Mean distance of the cloth from its designed place, in percent of the object's size."},
+      {"distance_95_percent", "Distance of 95 %", "%",
+       "95 % of the cloth lie closer than this to their designed place, in percent of the object's size."},
+      {"distance_max_percent", "Largest distance", "%",
+       "Largest distance of the cloth from its designed place, in percent of the object's size."},
       {"rest_distance_mean_mm", "Mean distance at rest", "mm",
-       "when it starts zipped in the designed shape: its own sagging"},
-      {"rest_distance_95_mm", "Distance of 95 % at rest", "mm", "the same"},
-      {"rest_energy_mj", "Energy at rest", "mJ", "the same: less than energy_mj where zipping ends in a worse shape"},
-      {"gap_max_mm", "Largest gap", "mm", "between two places that should meet"},
-      {"open_pairs", "Open pairs", "", "with a gap of over a hundredth of the ribbon's width"},
-      {"seams_closed", "All seams closed", "", "no pair is open"},
-      {"strain_mean", "Mean strain", "", "of lengths, by area: 0.01 is a hundredth longer or shorter"},
-      {"strain_max", "Largest strain", "", "of any triangle"},
-      {"energy_mj", "Energy", "mJ", "of stretching, bending and seams at the end"},
-      {"bending_energy_mj", "Bending energy", "mJ", "part of it"},
+       "Mean distance from the design if the cloth starts already zipped in the designed shape: its own sagging."},
+      {"rest_distance_95_mm", "Distance of 95 % at rest", "mm",
+       "95 % of the cloth lie closer than this to the design if it starts already zipped in the designed shape."},
+      {"rest_energy_mj", "Energy at rest", "mJ",
+       "Energy of the cloth if it starts already zipped in the designed shape. Less than the energy after zipping if zipping ends in a worse shape."},
+      {"gap_max_mm", "Largest gap", "mm", "Largest gap between two points that the zipper should bring together."},
+      {"open_pairs", "Open pairs", "",
+       "Number of pairs of points with a gap of more than a hundredth of the ribbon width."},
+      {"seams_closed", "All seams closed", "", "Whether all seams closed: no pair of points stays open."},
+      {"strain_mean", "Mean strain", "",
+       "Mean relative change of length of the cloth, weighted by area: 0.01 is 1 % longer or shorter."},
+      {"strain_max", "Largest strain", "", "Largest relative change of length of any triangle of the cloth."},
+      {"energy_mj", "Energy", "mJ", "Energy of stretching, bending and seams at the end."},
+      {"bending_energy_mj", "Bending energy", "mJ", "The part of the energy that comes from bending."},
       {"crossings", "Crossings", "",
-       "edges that pierce triangles at the end: cloth cannot, this one is not kept from it"},
-      {"attempts", "Courses tried", "", "with other pressures from inside; the figures are the best one's"},
+       "Number of edges that pass through a triangle at the end. Real cloth cannot do this; the simulation does not prevent it."},
+      {"attempts", "Courses tried", "",
+       "Number of simulations with different pressures from inside; the figures are those of the best."},
       {"pressed_out", "Pressed out", "",
-       "whether it was, from inside, before it came to rest; as a maker does with tucked-in corners"},
-      {"held_open_percent", "Held open", "%", "in this course"},
-      {"settled", "At rest", "", "the simulation ended because nothing moved"},
-      {"triangles", "Triangles", "", "of the cloth"},
-      {"seam_pairs", "Pairs", "", "of places that the zipper brings together"},
-      {"size_mm", "Size", "mm", "largest dimension of the designed shape"},
-      {"newton_iterations", "Newton iterations", "", "all steps"},
-      {"seconds_simulation", "Simulation", "s", "all but reading and writing"},
-      {"seconds_write", "Writing", "s", "outputs into their formats"},
-      {"peak_memory_mb", "Peak memory", "MB", "of the process"}};
+       "Whether the cloth was pressed out from inside once after zipping, as hands do with tucked-in corners."},
+      {"held_open_percent", "Held open", "%",
+       "Pressure that held the closed part open in the best simulation, in percent of stretch stiffness divided by size."},
+      {"settled", "At rest", "", "Whether the simulation ended because nothing moved any more."},
+      {"triangles", "Triangles", "", "Number of triangles of the cloth."},
+      {"seam_pairs", "Pairs", "", "Number of pairs of points that the zipper brings together."},
+      {"size_mm", "Size", "mm", "Largest dimension of the designed shape."},
+      {"newton_iterations", "Newton iterations", "", "Number of Newton iterations in all steps together."},
+      {"seconds_simulation", "Simulation", "s", "Time for everything except reading and writing."},
+      {"seconds_write", "Writing", "s", "Time for writing the output files."},
+      {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."}};
 }
 
 const char* outcome_name(ZippingOutcome outcome) {
@@ -132,7 +144,7 @@ Operation zippable_simulate_operation() {
   Operation operation;
   operation.name = "zippable-simulate";
   operation.title = "Will it zip?";
-  operation.summary = "Zips the flat ribbon up as cloth and compares it with the design.";
+  operation.summary = "Simulates the ribbon as cloth while it is zipped up, and compares the result with the design.";
   operation.inputs = {design_input()};
   operation.parameters = describe_parameters<ZippingOptions>();
   operation.outputs = outputs();

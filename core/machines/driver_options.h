@@ -30,20 +30,22 @@ struct DriverOptions {
   double focus_seconds = 60;
 
   static constexpr auto parameters = std::tuple{
-      parameter("controller", &DriverOptions::controller, "Controller", "What the machine's board understands."),
-      parameter("tool", &DriverOptions::tool, "Tool", "What the machine does with its material."),
+      parameter("controller", &DriverOptions::controller, "Controller",
+                "Type of the machine's control board, which decides the commands it understands."),
+      parameter("tool", &DriverOptions::tool, "Tool",
+                "What the machine works with: a laser beam, a milling cutter or a printing nozzle."),
       parameter("baud", &DriverOptions::baud, "Line speed", unit::none, 1200, 2000000,
-                "Bits a second on the serial line; 115200 for nearly all.")
+                "Speed of the serial connection in bits per second. 115200 for nearly all machines.")
           .advanced(),
-      parameter("bed_x_mm", &DriverOptions::bed_x_mm, "Bed, x", unit::mm, 10, 10000,
-                "How far the head reaches to the side."),
-      parameter("bed_y_mm", &DriverOptions::bed_y_mm, "Bed, y", unit::mm, 10, 10000,
-                "How far the head reaches to the back."),
-      parameter("focus_power_percent", &DriverOptions::focus_power_percent, "Focus power, at most", unit::percent, 0.1,
-                20, "The laser shines with no more than this while its spot is looked at.")
+      parameter("bed_x_mm", &DriverOptions::bed_x_mm, "Bed width", unit::mm, 10, 10000,
+                "How far the machine's head can move from left to right."),
+      parameter("bed_y_mm", &DriverOptions::bed_y_mm, "Bed depth", unit::mm, 10, 10000,
+                "How far the machine's head can move from front to back."),
+      parameter("focus_power_percent", &DriverOptions::focus_power_percent, "Maximum focus power", unit::percent, 0.1,
+                20, "Highest laser power while the spot is shown for focusing. Low enough not to burn; 2 % is usual.")
           .advanced(),
-      parameter("focus_seconds", &DriverOptions::focus_seconds, "Focus, at most", unit::seconds, 5, 600,
-                "The laser goes out by itself after so long.")
+      parameter("focus_seconds", &DriverOptions::focus_seconds, "Longest focus time", unit::seconds, 5, 600,
+                "The laser turns off by itself after this time.")
           .advanced()};
 };
 

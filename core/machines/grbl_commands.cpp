@@ -67,7 +67,7 @@ void GrblDriver::refuse_now(const std::string& what) const {
                        : "Where the head stands is unknown: jog to the material's corner and set the origin first.");
     if (what == "start" && !unknown_place().empty()) refuse(what, unknown_place());
   }
-  if (what == "start" && waits("$J")) refuse(what, "The head still moves: wait until it rests.");
+  if (what == "start" && waits("$J")) refuse(what, "The head is still moving: wait until it stops.");
   machines_detail::refuse_in_phase(what, phase_);
 }
 
@@ -92,7 +92,7 @@ void GrblDriver::act_on(const std::string& what, const Json& command, double now
     pause_asked_ = true;
     send_now('!');
   } else if (what == "resume") {
-    require_confirmation(command, "The machine goes on, with its laser or spindle on");
+    require_confirmation(command, "The machine continues with its laser or spindle on");
     pause_asked_ = false;
     send_now('~');
     phase_ = MachinePhase::running;  // until the next report: lines may follow at once
@@ -160,7 +160,7 @@ void GrblDriver::set_origin(const Json& command) {
   select_job_system();
   if (command.value("at", Json("head")) == "corner") {
     if (!homes() || !place_known())
-      refuse("at", "Where the bed's corner is only a homed machine knows: home it first.");
+      refuse("at", "The machine does not know where the bed's corner is until it is homed: home it first.");
     queue("G10L2P0X" + decimal(reach_low(0)) + "Y" + decimal(reach_low(1)));
     return expect_origin({reach_low(0), reach_low(1), std::nullopt});
   }
@@ -194,7 +194,7 @@ void GrblDriver::send_by_hand(const Json& command) {
                  [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
   if (line == "?") return send_now('?');
   if (line.find_first_of("!~?") != std::string::npos)
-    refuse("line", "Use the buttons to hold and to go on: they are watched over.");
+    refuse("line", "Use the buttons to pause and to continue, because the program checks that the machine obeys them.");
   const LineEffect effect = effect_of(line);
   if (effect.moves || effect.fires)
     require_confirmation(command, effect.fires ? "The line \"" + line + "\" may turn the laser or spindle on"

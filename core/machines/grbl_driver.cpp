@@ -28,7 +28,7 @@ void GrblDriver::closed(double now_s) {
   if (connection_ == MachineConnection::closed) return;
   if (job_active()) {
     end_job("cut_off", now_s);
-    note("The machine is gone in the middle of the job. Make sure that the laser is off.", now_s);
+    note("The connection to the machine was lost during the job. Make sure that the laser is off.", now_s);
   }
   drop_output();
   stream_.clear();
@@ -171,7 +171,7 @@ void GrblDriver::watch_silence(double now_s) {
   if (stream_.empty() || phase_ != MachinePhase::idle || idle_since_s_ < 0 || homing_ ||
       now_s - since <= lost_answer_s + stream_.patience_s())
     return;
-  note("The machine rests, but did not answer what was sent: something was lost on the line. Check the cable.", now_s);
+  note("The machine stands still, but did not answer every line: data were lost on the way. Check the cable.", now_s);
   if (job_active()) return stop("failed", now_s);
   // What is in its buffer may lack its end, and would spoil, or be spoilt by, what follows.
   if (pulse_) return reset(now_s);

@@ -39,8 +39,7 @@ void GrblDriver::hear_banner(const std::string& line, double now_s) {
   const bool asked_for = stopping_ == Stopping::resetting || !after_banner_.empty() || limits_hit_;
   if (!asked_for && job_active()) {
     end_job("failed", now_s);
-    note("The machine restarted by itself in the middle of the job: check its power supply and cable, then home it.",
-         now_s);
+    note("The machine restarted by itself during the job: check its power supply and cable, then home it.", now_s);
   }
   if (!asked_for) lose_position();
   stream_.clear();

@@ -68,7 +68,7 @@ void GrblDriver::watch_light(double now_s) {
     if (jogs) send_now(jog_cancel_command);
   } else if (now_s - stray_since_s_ > stray_s) {
     stray_since_s_ = -1;
-    note("The laser did not go out: the machine is reset. If it still shines, switch it off.", now_s);
+    note("The laser did not turn off: the machine is reset. If the beam is still on, switch the machine off.", now_s);
     return reset(now_s);
   }
   if (watched && rests && !dark_ && !darkening_ && (is_laser() || ended_badly_) && dark_refused_ < max_dark_refused &&

@@ -160,7 +160,7 @@ Json GrblDriver::warnings() const {
     sentences.push_back("Laser mode is off in the machine: send $32=1 before a job.");
   if (program_.line_count() == 0 || !program_.fires()) return sentences;
   if (is_laser() && power_wanted_.constant && dynamic_power())
-    sentences.push_back("The job's M3 is sent as M4, so that the laser is dark whenever the head rests.");
+    sentences.push_back("The job's M3 is sent as M4, so that the laser is off whenever the head stands still.");
   if (is_laser() && !dynamic_power())
     sentences.push_back("Line " + std::to_string(power_wanted_.rest_line) +
                         " burns while the head rests (M3 with G4), so the job is sent with M3: the laser stays on if "
@@ -175,11 +175,11 @@ Json GrblDriver::warnings() const {
 std::string GrblDriver::when_connection_ends() const {
   if (program_.line_count() == 0) return "";
   const std::string begins =
-      "If the computer, the cable or this program fails, the machine does what it already has, at most some seconds";
+      "If the computer, the cable or this program fails, the machine finishes the moves it has received, a few seconds at most";
   if (!program_.fires()) return begins + ", and stops.";
-  if (!is_laser()) return begins + ", and stands with its spindle running until somebody switches it off.";
-  return dynamic_power() ? begins + ", and stands with its laser off (M4 in laser mode)."
-                         : begins + ", and may stand with its laser ON (M3): stay beside it.";
+  if (!is_laser()) return begins + ", and then stops with its spindle running until somebody switches it off.";
+  return dynamic_power() ? begins + ", and then stops with its laser off (M4 in laser mode)."
+                         : begins + ", and may then stop with its laser ON (M3): stay beside it.";
 }
 
 }  // namespace formwright

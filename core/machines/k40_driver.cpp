@@ -107,8 +107,9 @@ void K40Driver::closed(double now_s) {
   if (connection_ == MachineConnection::closed) return;
   if (job_active()) {
     end_job("cut_off", now_s);
-    note("The laser is gone in the middle of the job. It goes on with what it has: open its lid or switch it off.",
-         now_s);
+    note(
+        "The connection to the laser was lost during the job. It continues with what it has received: open its lid or switch it off.",
+        now_s);
   }
   drop_output();
   queue_.clear();
@@ -142,7 +143,8 @@ void K40Driver::received(ByteView bytes, double now_s) {
     switch_unconfirmed_ = false;
     repeats_ = 0;
   }
-  if (status_ == status_power) note("The laser's own supply is off: the board lives on USB only.", now_s);
+  if (status_ == status_power)
+    note("The laser's own power supply is off; its board gets power from USB only. Switch the laser on.", now_s);
   // "Busy" comes before a rejection, too: only after a while is the packet before surely in.
   const bool certain = (!unconfirmed_ && !switch_unconfirmed_) || status_ != status_busy;
   if (switch_due_ && (certain || now_s - sent_s_ > rejection_s)) send_switch(now_s);
@@ -173,9 +175,8 @@ void K40Driver::repeat(double now_s) {
     return ask(now_s);
   }
   if (doing_ != Doing::stopping) {
-    note(
-        "The laser says again and again that packets arrive spoiled: use a shorter cable, away from the laser's supply.",
-        now_s);
+    note("The laser reports damaged data again and again: use a shorter cable, away from the laser's power supply.",
+         now_s);
     return stop("failed", now_s);
   }
   note("The laser does not take the stop: switch it off.", now_s);
@@ -262,7 +263,7 @@ void K40Driver::move(double right_mm, double front_mm) {
 void K40Driver::require_inside(double right_mm, double front_mm) const {
   if (right_mm < -1e-6 || front_mm < -1e-6 || right_mm > options_.bed_x_mm + 1e-6 ||
       front_mm > options_.bed_y_mm + 1e-6)
-    refuse("job", "This would leave the bed of " + machines_detail::decimal(options_.bed_x_mm) + " by " +
+    refuse("job", "This move would leave the bed of " + machines_detail::decimal(options_.bed_x_mm) + " by " +
                       machines_detail::decimal(options_.bed_y_mm) + " mm.");
 }
 
@@ -331,7 +332,7 @@ void K40Driver::command(const Json& command, double now_s) {
   } else if (what == "start") {
     require_confirmation(command, "The laser moves and its beam turns on");
     if (number_of(command, "from_line", 1, 1e9, 1) > 1)
-      refuse("from_line", "A K40 cannot go on in the middle of a job: start it anew.");
+      refuse("from_line", "A K40 laser cannot continue a stopped job: start it again.");
     require_job_inside();
     const int count = static_cast<int>(program_.size());
     move(-position_mm_[0], -position_mm_[1]);  // jobs begin at home
@@ -340,7 +341,7 @@ void K40Driver::command(const Json& command, double now_s) {
     job_ = MachineJob{program_name_, count + moves, 0, 0, 0, now_s, 0, ""};
     doing_ = Doing::working;
   } else if (what == "pause" || what == "resume") {
-    if (what == "resume") require_confirmation(command, "The laser goes on, with its beam on");
+    if (what == "resume") require_confirmation(command, "The laser continues with its beam on");
     paused_ = what == "pause";
     // The same packet holds and lets go: two that have not gone out cancel each other. It waits for what is known of
     // the packet before, some milliseconds, so that a rejection is never taken for the wrong one's.
@@ -371,8 +372,7 @@ Json K40Driver::state(double now_s) const {
   if (position_known_)
     state["machine_mm"] = state["work_mm"] = {position_mm_[0], options_.bed_y_mm - position_mm_[1], 0};
   state["when_connection_ends"] =
-      "The board burns what it has and stops in the middle; its beam may stay on there: open the lid or switch the "
-      "laser off.";
+      "The board burns what it has received and then stops; its beam may stay on there. Open the lid or switch the laser off.";
   if (status_ == status_power)
     state["alarm"] = {
         {"code", status_power}, {"text", "The laser's own supply is off."}, {"mend", "Switch it on and home it."}};

@@ -114,7 +114,7 @@ void MarlinDriver::command(const Json& command, double now_s) {
     // What is planned is still done; a laser must not stay on where that ends.
     if (options_.tool == MachineTool::laser) queue("M5");
   } else if (what == "resume") {
-    require_confirmation(command, "The machine goes on, with its laser or heaters on");
+    require_confirmation(command, "The machine continues with its laser or heaters on");
     resume();
   } else if (what == "send") {
     const std::string text = machines_detail::line_of(command, longest_by_hand);
@@ -199,7 +199,7 @@ void MarlinDriver::start(const Json& command, double now_s) {
                                     ? "The printer heats up and moves"
                                     : "The machine moves and its laser or spindle turns on");
   if (number_of(command, "from_line", 1, 1e9, 1) > 1)
-    refuse("from_line", "Going on in the middle of a job is possible with GRBL machines only: start it anew.");
+    refuse("from_line", "Only GRBL machines can continue a stopped job: start it again.");
   if (has_cutter()) {  // a printer's jobs home it themselves
     require_head_at_origin(program_, 0, place_.position_mm());
     check_reach(program_.bounds());

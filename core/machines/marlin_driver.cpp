@@ -67,7 +67,9 @@ void MarlinDriver::closed(double now_s) {
   if (connection_ == MachineConnection::closed) return;
   if (job_active()) {
     end("cut_off", now_s);
-    note("The machine is gone in the middle of the job. Its heaters or laser may still be on: look after it.", now_s);
+    note(
+        "The connection to the machine was lost during the job. Its heaters or laser may still be on: go to the machine.",
+        now_s);
   }
   drop_output();
   by_hand_.clear();
@@ -126,7 +128,7 @@ void MarlinDriver::hear(const std::string& line, double now_s) {
   if (line == "start" || line.starts_with("Marlin ")) {
     if (job_active()) {
       end("failed", now_s);
-      note("The machine restarted by itself in the middle of the job: check its power supply and cable.", now_s);
+      note("The machine restarted by itself during the job: check its power supply and cable.", now_s);
     }
     place_.lose();
     halted_ = false;
@@ -218,7 +220,7 @@ void MarlinDriver::hear_resend(int number, double now_s) {
   const auto found =
       std::find_if(sent_.begin(), sent_.end(), [&](const SentLine& line) { return line.number == number; });
   if (found == sent_.end() && number != next_number_) {
-    note("The machine asks for a line that it has had long ago: it may have restarted.", now_s);
+    note("The machine asks for a line that it received long ago: it may have restarted.", now_s);
     stop("failed", now_s);
     start_numbering(now_s);
     oks_to_swallow_ = 1;
@@ -235,7 +237,7 @@ void MarlinDriver::hear_idle(double now_s) {
 }
 
 void MarlinDriver::go_on_unanswered(double now_s) {
-  note("A line was not answered: going on, so that the machine asks for what it lacks.", now_s);
+  note("One line was not answered. Sending continues, so that the machine asks for missing lines.", now_s);
   waiting_ = 0;
   oks_to_swallow_ = 0;
   ++unanswered_in_a_row_;

@@ -82,11 +82,10 @@ std::string marlin_when_connection_ends(MachineTool tool, const MarlinLaserUse& 
     return finishes +
            "The laser then stays on where the head stands, until somebody switches it off. Marlin 2.1 turns it off after "
            "a second if it was built with LASER_SAFETY_TIMEOUT_MS, which cannot be seen from here.";
-  if (use.dynamic && is_new(firmware)) return finishes + "The laser is then dark (M4 I).";
+  if (use.dynamic && is_new(firmware)) return finishes + "The laser is then off (M4 I).";
   if (use.dynamic)
     return finishes +
-           "From Marlin 2.1 on the laser is then dark (M4 I); this firmware does not say that it is one, so "
-           "stay beside it.";
+           "From Marlin 2.1 on, the laser is then off (M4 I). This firmware does not report its version, so stay beside the machine.";
   return finishes + "The job turns nothing on.";
 }
 
@@ -106,11 +105,11 @@ Json marlin_warnings(const MarlinLaserUse& use, const std::string& firmware, boo
         "job with dynamic power (M4 I).");
   if (use.fan)
     warnings.push_back(
-        "The job switches a laser on the fan's output (M106), which shines at rest, too, and whose state is not told.");
+        "The job switches a laser on the fan output (M106). It stays on while the head stands still, and the machine does not report its state: stay beside it.");
   if ((use.continuous || use.dynamic) && !is_new(firmware))
     warnings.push_back(
         "The job switches the laser with its moves (M3 I or M4 I), which Marlin does from version 2.1 on; " +
-        (firmware.empty() ? std::string("this firmware does not tell its version")
+        (firmware.empty() ? std::string("this firmware does not report its version")
                           : "this firmware calls itself " + firmware) +
         ": others may burn nothing.");
   return warnings;

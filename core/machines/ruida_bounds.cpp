@@ -23,7 +23,7 @@ struct Command {
   }
   /// A signed number of `bytes` seven-bit bytes, the highest first.
   std::int64_t number(std::size_t from, std::size_t bytes) const {
-    if (from + bytes > parameters.size()) refuse("job", "The Ruida job is cut off or spoiled: make it again.");
+    if (from + bytes > parameters.size()) refuse("job", "The Ruida job is incomplete or damaged: make it again.");
     std::int64_t value = 0;
     for (std::size_t i = from; i < from + bytes; ++i) value = value << 7 | parameters[i];
     const std::int64_t sign = std::int64_t{1} << (7 * bytes - 1);
@@ -41,22 +41,22 @@ class Reader {
     // Copies across and along; files of one copy say 0 or 1.
     else if ((command.is(0xe7, 0x04) || command.is(0xe7, 0x08) || command.is(0xf2, 0x05)) &&
              (command.number(1, 2) > 1 || command.number(3, 2) > 1))
-      refuse("job",
-             "The job repeats itself as an array, so how far it reaches cannot be told from here: frame it at the "
-             "laser's panel.");
+      refuse(
+          "job",
+          "The job repeats itself as an array, so its size is not known here: use the frame button at the laser's panel.");
     // One axis by itself, and jumps: of z and u they do not matter.
     else if (command.is(0x80, 0x00) || command.is(0xa0, 0x00) ||
              (what == 0xd9 && !command.is(0xd9, 0x02) && !command.is(0xd9, 0x03)))
-      refuse("job",
-             "The job moves by commands whose place is not in the file, so how far it reaches cannot be told: frame it "
-             "at the laser's panel.");
+      refuse(
+          "job",
+          "The job moves to positions that are not in the file, so its size is not known here: use the frame button at the laser's panel.");
   }
 
   RuidaBounds bounds() const {
     if (from_panel_ || !from_zero_)
-      refuse("job",
-             "The job starts from a place that is set at the laser's panel, so where it lies cannot be told from here: "
-             "frame it there.");
+      refuse(
+          "job",
+          "The job starts from a position that is set at the laser's panel, so its place is not known here: use the frame button at the panel.");
     if (bounds_.worked.empty) refuse("job", "The job burns nothing: choose another.");
     return bounds_;
   }
@@ -72,7 +72,7 @@ class Reader {
       if (kind != 2) at_mm_[1] += 1e-3 * static_cast<double>(command.number(kind == 1 ? 2 : 0, 2));
     }
     if (!placed_ && (burn || kind != 0))
-      refuse("job", "The job moves before it has said where, so how far it reaches cannot be told: make it again.");
+      refuse("job", "The job moves before it gives a position, so its size is not known: make it again.");
     placed_ = true;
     bounds_.reached.add(at_mm_);
     if (!burn) return;

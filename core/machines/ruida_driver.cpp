@@ -93,7 +93,9 @@ void RuidaDriver::closed(double now_s) {
   if (connection_ == MachineConnection::closed) return;
   if (job_active()) {
     end("cut_off", now_s);
-    note("The laser is gone. If the job had arrived whole it goes on by itself: stop it at its panel.", now_s);
+    note(
+        "The connection to the laser was lost. If it had received the whole job, it continues by itself: stop it at its panel.",
+        now_s);
   }
   drop_output();
   queue_.clear();
@@ -139,8 +141,9 @@ void RuidaDriver::hear_answer(bool taken, double now_s) {
   if (!taken) {
     if (++repeats_ <= most_repeats) return repeat(now_s);
     return give_up("failed",
-                   stopping_ ? "The laser refuses to stop: stop it at its own panel or switch it off."
-                             : "The laser refuses what is sent: is it another model of controller?",
+                   stopping_
+                       ? "The laser refuses to stop: stop it at its own panel or switch it off."
+                       : "The laser rejects the commands: check that its controller is a Ruida of a supported model.",
                    now_s);
   }
   unconfirmed_.reset();
@@ -249,12 +252,12 @@ void RuidaDriver::command(const Json& command, double now_s) {
       refuse(what, "Where the head stands is unknown: home the laser first.");
     if (what == "start" && program_.empty()) refuse(what, "No job is loaded: choose one first.");
     if (what == "focus" || what == "set_origin" || what == "override")
-      refuse(what, "This is done at the laser's own panel.");
+      refuse(what, "This is only possible at the laser's own panel.");
     machines_detail::refuse_in_phase(what, phase());
   }
   const auto go = [&](double x_mm, double y_mm) {
     if (x_mm < -1e-6 || y_mm < -1e-6 || x_mm > options_.bed_x_mm || y_mm > options_.bed_y_mm)
-      refuse("job", "This would leave the bed of " + machines_detail::decimal(options_.bed_x_mm) + " by " +
+      refuse("job", "This move would leave the bed of " + machines_detail::decimal(options_.bed_x_mm) + " by " +
                         machines_detail::decimal(options_.bed_y_mm) + " mm.");
     queue(std::string("\xd9\x10\x00", 3) + coordinate(x_mm) + coordinate(y_mm));
   };
@@ -265,7 +268,8 @@ void RuidaDriver::command(const Json& command, double now_s) {
     homed_ = false;
     homing_s_ = now_s;
   } else if (what == "jog") {
-    if (!position_mm_[0] || !position_mm_[1]) refuse("jog", "The laser has not said where it is yet: wait a moment.");
+    if (!position_mm_[0] || !position_mm_[1])
+      refuse("jog", "The laser has not reported its position yet: wait a moment.");
     go(*position_mm_[0] + number_of(command, "x_mm", -2000, 2000, 0),
        *position_mm_[1] + number_of(command, "y_mm", -2000, 2000, 0));
   } else if (what == "go_to")
@@ -277,7 +281,7 @@ void RuidaDriver::command(const Json& command, double now_s) {
   } else if (what == "start") {
     require_confirmation(command, "The laser moves and its beam turns on");
     if (number_of(command, "from_line", 1, 1e9, 1) > 1)
-      refuse("from_line", "A Ruida laser goes on in the middle of a job at its own panel only: start it anew.");
+      refuse("from_line", "A Ruida laser can continue a stopped job only at its own panel: start the job again.");
     require_job_inside();
     queue_.insert(queue_.end(), program_.begin(), program_.end());
     job_left_ = program_.size();
@@ -286,7 +290,7 @@ void RuidaDriver::command(const Json& command, double now_s) {
     seen_running_ = false;
     uploaded_s_ = -1;
   } else if (what == "pause" || what == "resume") {
-    if (what == "resume") require_confirmation(command, "The laser goes on, with its beam on");
+    if (what == "resume") require_confirmation(command, "The laser continues with its beam on");
     paused_ = what == "pause";
     queue_.push_front(ruida_datagram(paused_ ? "\xd8\x02" : "\xd8\x03"));
     if (job_left_ > 0) ++job_left_;
@@ -325,8 +329,7 @@ Json RuidaDriver::state(double now_s) const {
   Json state = common_state("ruida", connection_, phase(), {homed_, homed_, false}, now_s);
   if (position_mm_[0] && position_mm_[1])
     state["machine_mm"] = state["work_mm"] = {*position_mm_[0], *position_mm_[1], 0};
-  state["when_connection_ends"] =
-      "The laser burns what it has got of the job without this computer: stop it at its panel.";
+  state["when_connection_ends"] = "The laser continues with what it has received of the job: stop it at its panel.";
   state["can"] = possible_commands();
   return state;
 }

@@ -113,9 +113,9 @@ BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve(const Rows& 
   if (!dense && options.method == QpMethod::automatic)
     return solve_densely(rows, std::move(outcome.result), options, context);
   if (!dense) {
-    throw Error(
-        ErrorCode::could_not_solve, "max_rounds",
-        "The contacts did not settle in " + std::to_string(stages) + " stages: allow more rounds or widen the bounds.");
+    throw Error(ErrorCode::could_not_solve, "max_rounds",
+                "The relief did not converge in " + std::to_string(stages) +
+                    " stages: raise the thickness, or repair the model.");
   }
   add_up(outcome.result, *dense);
   outcome.result = std::move(*dense);
@@ -172,7 +172,7 @@ BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve_densely(cons
   if (!crossed) {
     throw Error(
         ErrorCode::could_not_solve, "constraints",
-        "Too many constraints are neither clearly in contact nor clearly free: widen the bounds or use a coarser mesh.");
+        "Too many points of the relief are close to its limits to be solved: raise the thickness or simplify the model.");
   }
   add_up(so_far, *crossed);
   outcome.result = std::move(*crossed);
@@ -199,7 +199,7 @@ BoundedQpSolution BoundedQp::solve(const BoundedQpConstraints& constraints, cons
   // Bounds hold exactly after clipping; order rows on a badly conditioned energy only to round-off, which is reported.
   if (!(violations.max <= round_off_room * options.violation_tolerance)) {
     throw Error(ErrorCode::could_not_solve, "violation_tolerance",
-                "Round-off leaves order rows violated by " +
+                "Rounding errors leave depth order conditions violated by " +
                     std::to_string(violations.max / options.violation_tolerance) + " times the tolerance: allow more.");
   }
   solution.objective = I.energy.energy(solution.u);

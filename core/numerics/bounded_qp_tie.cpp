@@ -131,8 +131,9 @@ int break_ties(const Energy& energy, const Rows& rows, std::span<const RowKey> p
     qp.set_problem(gram, problem, false);
     const PoolSolution solution = qp.solve(active, Eigen::VectorXd(), 0.1 * tolerance, context);
     if (solution.contradictory) {
-      throw Error(ErrorCode::could_not_solve, "constraints",
-                  "The constraints contradict each other: no offset of the parts satisfies them all.");
+      throw Error(
+          ErrorCode::could_not_solve, "constraints",
+          "The depth limits contradict each other: no position of the parts satisfies them all. Raise the thickness or switch off the depth order.");
     }
     active = solution.active;
     t = t_free + factor.matrixL().transpose().solve(Y * solution.y);

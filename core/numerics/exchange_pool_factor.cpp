@@ -67,7 +67,7 @@ void PoolFactor::compact(const std::vector<char>& active, int valid) {
   while (!grow(from)) {
     if (proximal_ >= proximal_most) {
       throw Error(ErrorCode::could_not_solve, "constraints",
-                  "The constraints in contact cannot be told apart numerically: remove duplicates.");
+                  "Two depth limits are numerically the same: remove duplicate vertices from the model.");
     }
     proximal_ *= 100;
     from = 0;

@@ -340,8 +340,9 @@ ExchangeResult ExchangeSolver::run(const Rows& rows, const std::vector<RowKey>& 
       grown = true;
       pool = qp.solve(start_active, drivers_, target, context);
       if (pool.contradictory) {
-        throw Error(ErrorCode::could_not_solve, "constraints",
-                    "The constraints contradict each other: no displacement satisfies them all.");
+        throw Error(
+            ErrorCode::could_not_solve, "constraints",
+            "The depth limits contradict each other, so there is no such relief: raise the thickness or switch off the depth order.");
       }
       active_.assign(pool.active.begin() + gauge_rows(), pool.active.end());
       drivers_ = pool.w;
@@ -395,8 +396,8 @@ ExchangeResult ExchangeSolver::run(const Rows& rows, const std::vector<RowKey>& 
   }
   if (result.stopped && !settings.may_stop && violations.max > settings.violation_tolerance) {
     throw Error(ErrorCode::could_not_solve, "max_rounds",
-                "The contacts did not settle in " + std::to_string(settings.max_rounds) +
-                    " rounds: allow more rounds or widen the bounds.");
+                "The relief did not converge in " + std::to_string(settings.max_rounds) +
+                    " iterations: raise the thickness, or repair the model.");
   }
   result.violation_max = violations.max;
   result.columns = columns_.count();

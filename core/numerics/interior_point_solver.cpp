@@ -288,7 +288,7 @@ InteriorPointResult InteriorPoint::run(const InteriorPointSettings& settings, Co
     result.relative_gap = gap / std::max(energy, std::numeric_limits<double>::min());
     result.converged = result.relative_gap <= settings.relative_gap && open <= balance_tolerance * rows_.scale() &&
                        unbalanced <= balance_tolerance * force;
-    context.progress(result.iterations / (result.iterations + 10.0), "Pressing into the bounds");
+    context.progress(result.iterations / (result.iterations + 10.0), "Fitting into the thickness");
     if (result.converged || result.iterations >= settings.max_iterations || count() == 0) break;
     try {
       assemble(context);

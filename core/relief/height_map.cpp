@@ -14,7 +14,7 @@ HeightMap make_height_map(const Positions& moved, const Triangles& F, double siz
   if (nodes_x * nodes_y > 64e6)
     throw Error(
         ErrorCode::invalid_input, "pixel_mm",
-        "The grid of the solid would have more than 64 million nodes: choose a coarser grid or a smaller width.");
+        "The solid would have more than 64 million points: raise the detail spacing (pixel_mm) or lower the width.");
   map.columns = std::max(2, static_cast<int>(nodes_x));
   map.rows = std::max(2, static_cast<int>(nodes_y));
   map.pitch_x_mm = plate.width_mm / (map.columns - 1);

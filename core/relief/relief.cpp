@@ -102,7 +102,7 @@ ReliefSolver::ReliefSolver(const TriangleMesh& mesh, const ReliefOptions& option
                     " here: simplify it first; 300000 show all that can be printed.");
   }
   Stopwatch watch;
-  context.progress(0, "Looking from the viewpoint");
+  context.progress(0, "Finding the visible surface");
   frame_ = make_view_frame(mesh, options);
   {
     const RayCaster caster(TriangleMesh{frame_.P, F_});
@@ -132,7 +132,7 @@ Relief ReliefSolver::solve(const ReliefOptions& options, Context& context) {
   if (frame_.kappa * thickness >= 0.5)
     throw Error(
         ErrorCode::invalid_input, "thickness_mm",
-        "The relief would reach more than half-way to the viewpoint: choose a smaller thickness or look from further away.");
+        "The relief would extend more than half-way to the viewpoint: choose a smaller thickness or a larger viewing distance.");
   SlabBounds slab = slab_bounds(frame_, visibility_, options.bounded_vertices, thickness);
   // Lent, not copied: at 300k vertices the rows are tens of megabytes.
   slab.constraints.rows.swap(order_rows_);
@@ -146,7 +146,7 @@ Relief ReliefSolver::solve(const ReliefOptions& options, Context& context) {
   qp_options.method = options.method;
   qp_options.violation_tolerance = 1e-9 * thickness;
   {
-    const auto span = context.span(0, 0.9, "Fitting into the slab");
+    const auto span = context.span(0, 0.9, "Fitting into the thickness");
     relief.qp = qp_.solve(slab.constraints, qp_options, context);
   }
   context.progress(0.9, "Comparing normals");
@@ -176,7 +176,7 @@ Relief ReliefSolver::solve(const ReliefOptions& options, Context& context) {
   relief.order_violation_max_mm = size * order_violation(slab.constraints.rows, relief.u);
   if (!relief.u.allFinite())
     throw Error(ErrorCode::could_not_solve, "",
-                "The solver lost its footing on this model: simplify or repair it and try again.");
+                "The relief did not converge on this model: simplify or repair the model and try again.");
   return relief;
 }
 

@@ -41,8 +41,9 @@ struct ReliefOptions {
   QpMethod method = QpMethod::automatic;
 
   static constexpr auto parameters = std::tuple{
-      parameter("thickness_mm", &ReliefOptions::thickness_mm, "Thickness", unit::mm, 0.01, 1000,
-                "How far the relief stands out from its plate. Kept exactly.")
+      parameter(
+          "thickness_mm", &ReliefOptions::thickness_mm, "Thickness", unit::mm, 0.01, 1000,
+          "How far the relief stands out from its plate; the result keeps exactly to it. More looks deeper from the side; 5 mm is usual for a width of 120 mm.")
           .group("Relief")
           .slider(0.5, 20),
       parameter("width_mm", &ReliefOptions::width_mm, "Width", unit::mm, 1, 10000,
@@ -50,52 +51,59 @@ struct ReliefOptions {
           .group("Relief")
           .slider(20, 400),
       parameter("plate_mm", &ReliefOptions::plate_mm, "Plate", unit::mm, 0.01, 1000,
-                "Thickness of the flat plate behind the relief.")
+                "Thickness of the flat plate behind the relief. Thicker is stiffer and takes more material.")
           .group("Base")
           .slider(0.5, 20),
       parameter("margin_mm", &ReliefOptions::margin_mm, "Margin", unit::mm, 0, 1000,
-                "How far the plate reaches beyond the model on every side.")
+                "How far the plate extends beyond the model on every side. 0 ends the plate at the model's edge.")
           .group("Base")
           .slider(0, 40),
-      parameter("projection", &ReliefOptions::projection, "Distance",
-                "Near: seen in perspective from the distance of the view. Far: seen straight on, without perspective.")
+      parameter(
+          "projection", &ReliefOptions::projection, "Distance",
+          "Near shows the model in perspective from the viewing distance, as a camera would. Far shows it without perspective, as from very far away.")
           .group("Viewpoint"),
       parameter("direction", &ReliefOptions::direction, "Looking direction",
-                "The direction in which the viewer looks, in the model's axes.")
+                "The direction in which the viewer looks, as x, y, z in the model's axes.")
           .group("Viewpoint")
           .advanced(),
-      parameter("up", &ReliefOptions::up, "Up", "The direction that is up in the picture, in the model's axes.")
+      parameter("up", &ReliefOptions::up, "Up",
+                "The direction that points up in the picture, as x, y, z in the model's axes.")
           .group("Viewpoint")
           .advanced(),
-      parameter("field_of_view_deg", &ReliefOptions::field_of_view_deg, "Field of view", unit::degrees, 0.1, 120,
-                "Angle under which the width of the model is seen (near views only). Smaller is further away.")
+      parameter(
+          "field_of_view_deg", &ReliefOptions::field_of_view_deg, "Field of view", unit::degrees, 0.1, 120,
+          "Angle that the width of the model fills in the viewer's eye, for near views only. A smaller angle looks from farther away; 20° is usual.")
           .group("Viewpoint")
           .slider(2, 60)
           .advanced(),
-      parameter("distance_mm", &ReliefOptions::distance_mm, "Viewing distance", unit::mm, 0.1, 1e7,
-                "Distance of the viewpoint from the plate (near views only). Automatic: from the field of view.")
+      parameter(
+          "distance_mm", &ReliefOptions::distance_mm, "Viewing distance", unit::mm, 0.1, 1e7,
+          "Distance from the viewpoint to the plate, for near views only. Automatic: computed from the field of view.")
           .group("Viewpoint")
           .slider(50, 2000)
           .advanced(),
       parameter(
           "bounded_vertices", &ReliefOptions::bounded_vertices, "Keep within the thickness",
-          "Visible only leaves the hidden side free to sink behind the plate, which is gentler on the visible side.")
+          "All keeps the whole model within the thickness, so that its back is flat. Visible only lets the hidden back sink behind the plate, which distorts the visible side less.")
           .group("Shape"),
-      parameter("hidden_weight", &ReliefOptions::hidden_weight, "Weight of the hidden side", unit::none, 0.001, 1,
-                "How much the shape of hidden parts counts (w in eq. 3.13).")
+      parameter(
+          "hidden_weight", &ReliefOptions::hidden_weight, "Weight of the hidden side", unit::none, 0.001, 1,
+          "How much the shape of parts hidden from the viewer matters. 1: as much as the visible parts; smaller values let hidden parts distort more so that visible ones distort less.")
           .group("Shape")
           .slider(0.01, 1)
           .advanced(),
-      parameter("depth_order", &ReliefOptions::depth_order, "Keep the order in depth",
-                "What is in front stays in front (eq. 3.12), so that parts do not pass through each other.")
+      parameter("depth_order", &ReliefOptions::depth_order, "Keep the depth order",
+                "Keeps what is in front in front, so that parts do not pass through each other. Off: parts may cross.")
           .group("Shape"),
-      parameter("pixel_mm", &ReliefOptions::pixel_mm, "Grid of the solid", unit::mm, 0.01, 10,
-                "Spacing of the height map and of the solid made from it. Half a nozzle or tool width is fine enough.")
+      parameter(
+          "pixel_mm", &ReliefOptions::pixel_mm, "Detail of the solid", unit::mm, 0.01, 10,
+          "Spacing of the points in the height map and in the exported solid. Smaller shows finer detail and makes larger files; half the width of the nozzle or tool is fine enough.")
           .group("Output")
           .slider(0.05, 1)
           .advanced(),
-      parameter("method", &ReliefOptions::method, "Solver",
-                "Exchange is fastest where the relief touches its bounds at few points, interior point where at many.")
+      parameter(
+          "method", &ReliefOptions::method, "Solver",
+          "Numerical method; all give the same relief. Exchange is faster when the relief touches its limits at few points, interior point when at many; automatic chooses.")
           .group("Output")
           .advanced()};
 };

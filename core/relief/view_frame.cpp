@@ -118,7 +118,7 @@ ViewFrame make_view_frame(const TriangleMesh& mesh, const ReliefOptions& options
   const Extent e = seen_extent(P, distance);
   if (!(e.width() > 1e-9 * diagonal) || !(e.height() > 1e-9 * diagonal))
     throw Error(ErrorCode::invalid_input, "direction",
-                "Seen from this direction the model is only a line: choose another looking direction.");
+                "The model is only a line when seen from this direction: choose another looking direction.");
   frame.scale = 1 / e.width();
   frame.P = P * frame.scale;
   frame.kappa = std::isinf(distance) ? 0.0 : 1 / (distance * frame.scale);

@@ -35,9 +35,9 @@ void check_options(const ThermoformOptions& o) {
                 "The clamp opening is longer than the sheet: make it at most " + millimetres(o.sheet_y_mm) + ".");
   const double most_slip_mm = 0.15 * std::min(o.clamp_opening_x_mm, o.clamp_opening_y_mm);
   if (o.clamp_slip_mm > most_slip_mm)
-    throw Error(
-        ErrorCode::invalid_input, "clamp_slip_mm",
-        "The clamp gives way too far for so small an opening: make it at most " + millimetres(most_slip_mm) + ".");
+    throw Error(ErrorCode::invalid_input, "clamp_slip_mm",
+                "The sheet slips too far for this clamp opening: set clamp_slip_mm to at most " +
+                    millimetres(most_slip_mm) + ".");
   check_effects(o);
 }
 
@@ -49,7 +49,8 @@ void check_placement(const MouldShape& shape, const Placement& placement, const 
     if (p.z() >= 0) box.add(p);
   }
   if (box.empty())
-    throw Error(ErrorCode::invalid_input, "sink_mm", "Nothing of the model stands above the base plate: sink it less.");
+    throw Error(ErrorCode::invalid_input, "sink_mm",
+                "Nothing of the model stands above the base plate: lower it less into the plate (sink_mm).");
   const double x = std::max(-box.lower.x(), box.upper.x()), y = std::max(-box.lower.y(), box.upper.y());
   // The rim that slips out of the clamp must not meet the model either.
   const double room_x = 0.5 * o.clamp_opening_x_mm - o.clamp_slip_mm,
@@ -63,8 +64,8 @@ void check_placement(const MouldShape& shape, const Placement& placement, const 
   const double room = o.platform_travel_mm + o.clamp_height_mm;
   if (box.upper.z() > room - o.sheet_thickness_mm)
     throw Error(ErrorCode::invalid_input, "size_mm",
-                "The model is " + millimetres(box.upper.z()) + " high, but the box is only " + millimetres(room) +
-                    " deep: make it smaller, sink it, or use a deeper box.");
+                "The model is " + millimetres(box.upper.z()) + " high, but the box below the sheet is only " +
+                    millimetres(room) + " deep: make it smaller, sink it, or use a deeper box.");
 }
 
 /// Drives SheetDynamics with steps as long as the sheet's movement allows.
@@ -88,7 +89,7 @@ class Driver {
         if (dt < shortest_step_s)
           throw Error(
               ErrorCode::could_not_solve, "triangles",
-              "The sheet tears itself apart in the simulation: use a larger yield strain or creep, a lower vacuum, or other numbers of triangles.");
+              "The simulated sheet tears apart: raise the yield strain or the creep rate, lower the vacuum, or change the number of triangles.");
         continue;
       }
       if (dynamics_.statistics().steps > most_steps)

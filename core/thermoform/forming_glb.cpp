@@ -42,7 +42,8 @@ Bytes write_forming_glb(const FormedResult& result, const TriangleMesh& mould, d
   const std::vector<FormingFrame>& frames = result.frames;
   const auto n = static_cast<std::size_t>(result.sheet.mesh.V.rows());
   const std::size_t targets = frames.size() - 1;
-  GlbAssembly glb("frames", "The animation would exceed the 4 GB of a GLB: ask for fewer frames or triangles.");
+  GlbAssembly glb("frames",
+                  "The animation would be larger than 4 GB, the limit of GLB files: use fewer frames or triangles.");
   // From the clamp, as one watches the machine: what the platform sees shifted by where it stands.
   const auto place = [&](const FormingFrame& frame, Eigen::Index i, int k) {
     return frame.V(i, k) + (k == 2 ? frame.platform_z_mm : 0);

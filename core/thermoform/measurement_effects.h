@@ -8,7 +8,7 @@
 namespace formwright {
 
 struct MeasurementEffects {
-  static constexpr std::string_view group_title = "Measurement's own ways";
+  static constexpr std::string_view group_title = "Measurement faults";
 
   double print_scale = 0;  // the sheet's true coordinates are (1 + print_scale) times those in measured.csv
   double scan_scale = 0;   // measured = (1 + scan_scale) true + shift, about the origin on the raised base plate
@@ -17,28 +17,30 @@ struct MeasurementEffects {
   double scan_shift_z_mm = 0;
 
   static constexpr auto parameters = std::tuple{
-      parameter("print_scale", &MeasurementEffects::print_scale, "Print too large by", unit::none, -0.2, 0.2,
-                "Share by which the pattern on the sheet was printed too large.")
+      parameter(
+          "print_scale", &MeasurementEffects::print_scale, "Print too large by", unit::none, -0.2, 0.2,
+          "How much larger than intended the pattern on the sheet was printed, as a fraction: 0.01 is 1 %, negative is too small.")
           .group(group_title)
           .slider(-0.05, 0.05)
           .advanced(),
-      parameter("scan_scale", &MeasurementEffects::scan_scale, "Scan too large by", unit::none, -0.2, 0.2,
-                "Share by which measured places are farther than they are from the centre of the opening on the plate.")
+      parameter(
+          "scan_scale", &MeasurementEffects::scan_scale, "Scan too large by", unit::none, -0.2, 0.2,
+          "How much larger than the object the scan is, as a fraction: 0.01 is 1 %, negative is too small. It grows from the centre of the opening on the plate.")
           .group(group_title)
           .slider(-0.05, 0.05)
           .advanced(),
-      parameter("scan_shift_x_mm", &MeasurementEffects::scan_shift_x_mm, "Scan off in x", unit::mm, -100, 100,
-                "Measured less true.")
+      parameter("scan_shift_x_mm", &MeasurementEffects::scan_shift_x_mm, "Scan misplaced in x", unit::mm, -100, 100,
+                "How far the scan lies to the right of the true position; negative is to the left.")
           .group(group_title)
           .slider(-5, 5)
           .advanced(),
-      parameter("scan_shift_y_mm", &MeasurementEffects::scan_shift_y_mm, "Scan off in y", unit::mm, -100, 100,
-                "Measured less true.")
+      parameter("scan_shift_y_mm", &MeasurementEffects::scan_shift_y_mm, "Scan misplaced in y", unit::mm, -100, 100,
+                "How far the scan lies behind the true position; negative is in front of it.")
           .group(group_title)
           .slider(-5, 5)
           .advanced(),
-      parameter("scan_shift_z_mm", &MeasurementEffects::scan_shift_z_mm, "Scan off in z", unit::mm, -100, 100,
-                "Measured less true.")
+      parameter("scan_shift_z_mm", &MeasurementEffects::scan_shift_z_mm, "Scan misplaced in z", unit::mm, -100, 100,
+                "How far the scan lies above the true position; negative is below it.")
           .group(group_title)
           .slider(-5, 5)
           .advanced()};

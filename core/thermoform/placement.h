@@ -26,28 +26,32 @@ struct PlacementOptions {
   static constexpr auto parameters = std::tuple{
       parameter(
           "size_mm", &PlacementOptions::size_mm, "Size", unit::mm, 1, 2000,
-          "Longest side of the model as it stands, sunk part included. Automatic: as in the file where that is between 10 mm and the clamp opening, else 100 mm.")
+          "Longest side of the model as it stands on the plate, including any part lowered into the plate. Automatic: the size in the file if that is between 10 mm and the clamp opening, otherwise 100 mm.")
           .group("Placement")
           .slider(20, 220),
-      parameter("sink_mm", &PlacementOptions::sink_mm, "Sink", unit::mm, 0, 1000,
-                "How much of the model's underside disappears below the base plate.")
+      parameter(
+          "sink_mm", &PlacementOptions::sink_mm, "Lower into the plate", unit::mm, 0, 1000,
+          "How deep the model is lowered into the base plate. What lies below the plate is not formed; use it to hide undercuts at the foot.")
           .group("Placement")
           .slider(0, 60),
       parameter("turn_deg", &PlacementOptions::turn_deg, "Turn", unit::degrees, -360, 360,
-                "Turns the model about the vertical axis, counter-clockwise seen from above.")
+                "Rotates the model about the vertical axis, counter-clockwise seen from above.")
           .group("Placement")
           .slider(-180, 180),
-      parameter("x_mm", &PlacementOptions::x_mm, "Shift in x", unit::mm, -1000, 1000,
-                "Moves the centre of the model's outline away from the centre of the clamp.")
+      parameter(
+          "x_mm", &PlacementOptions::x_mm, "Shift in x", unit::mm, -1000, 1000,
+          "Moves the centre of the model's outline to the right of the clamp's centre; negative moves it to the left.")
           .group("Placement")
           .slider(-80, 80)
           .advanced(),
-      parameter("y_mm", &PlacementOptions::y_mm, "Shift in y", unit::mm, -1000, 1000,
-                "Moves the centre of the model's outline away from the centre of the clamp.")
+      parameter(
+          "y_mm", &PlacementOptions::y_mm, "Shift in y", unit::mm, -1000, 1000,
+          "Moves the centre of the model's outline to the back of the clamp's centre; negative moves it to the front.")
           .group("Placement")
           .slider(-80, 80)
           .advanced(),
-      parameter("up", &PlacementOptions::up, "Up", "The direction of the model's axes that points up on the machine.")
+      parameter("up", &PlacementOptions::up, "Up",
+                "The direction that points up on the machine, as x, y, z in the model's axes.")
           .group("Placement")
           .advanced()};
 };

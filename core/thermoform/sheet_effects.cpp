@@ -18,10 +18,11 @@ void check_effects(const SheetEffects& effects) {
   if (!(least_over_corners(effects.heating_gradient_x, effects.heating_gradient_y) > least_factor))
     throw Error(
         ErrorCode::invalid_input, "heating_gradient_x",
-        "The heating gradients leave a corner of the sheet without stiffness: their sizes must add up to less than 0.95.");
+        "The heating differences leave a corner of the sheet without stiffness: together they must be less than 0.95.");
   if (!(least_over_corners(effects.thickness_wedge_x, effects.thickness_wedge_y) > least_factor))
-    throw Error(ErrorCode::invalid_input, "thickness_wedge_x",
-                "The wedges leave a corner of the sheet without thickness: their sizes must add up to less than 0.95.");
+    throw Error(
+        ErrorCode::invalid_input, "thickness_wedge_x",
+        "The thickness differences leave a corner of the sheet without thickness: together they must be less than 0.95.");
 }
 
 Placement displaced(const Placement& nominal, const SheetEffects& effects) {

@@ -17,7 +17,7 @@ namespace formwright {
 /// Derived from PlacementOptions only because options that are inherited must form one chain (base/parameters.h);
 /// `parameters` are the effects alone.
 struct SheetEffects : PlacementOptions {
-  static constexpr std::string_view group_title = "Machine's own ways";
+  static constexpr std::string_view group_title = "Machine faults";
 
   double heating_gradient_x = 0;
   double heating_gradient_y = 0;
@@ -36,71 +36,75 @@ struct SheetEffects : PlacementOptions {
 
   static constexpr auto parameters = std::tuple{
       parameter(
-          "heating_gradient_x", &SheetEffects::heating_gradient_x, "Heat falls off in x", unit::none, -0.9, 0.9,
-          "Share by which the sheet is stiffer (colder) at the opening's right side than in its middle, and softer at the left.")
+          "heating_gradient_x", &SheetEffects::heating_gradient_x, "Colder towards the right", unit::none, -0.9, 0.9,
+          "How much stiffer (colder) the sheet is at the right side of the opening than in its middle, as a fraction; it is as much softer at the left. 0.2 means 20 %; 0 is even heating.")
           .group(group_title)
           .advanced(),
       parameter(
-          "heating_gradient_y", &SheetEffects::heating_gradient_y, "Heat falls off in y", unit::none, -0.9, 0.9,
-          "Share by which the sheet is stiffer (colder) at the opening's back than in its middle, and softer at the front.")
+          "heating_gradient_y", &SheetEffects::heating_gradient_y, "Colder towards the back", unit::none, -0.9, 0.9,
+          "How much stiffer (colder) the sheet is at the back of the opening than in its middle, as a fraction; it is as much softer at the front. 0.2 means 20 %; 0 is even heating.")
           .group(group_title)
           .advanced(),
       parameter(
-          "heating_centre", &SheetEffects::heating_centre, "Heat falls off outwards", unit::none, -0.9, 0.9,
-          "Share by which the sheet is stiffer in the opening's corners, and softer in its middle, than on average.")
-          .group(group_title)
-          .advanced(),
-      parameter("thickness_wedge_x", &SheetEffects::thickness_wedge_x, "Thickness grows in x", unit::none, -0.9, 0.9,
-                "Share by which the flat sheet is thicker at the opening's right side than in its middle.")
-          .group(group_title)
-          .advanced(),
-      parameter("thickness_wedge_y", &SheetEffects::thickness_wedge_y, "Thickness grows in y", unit::none, -0.9, 0.9,
-                "Share by which the flat sheet is thicker at the opening's back than in its middle.")
-          .group(group_title)
-          .advanced(),
-      parameter("anisotropy", &SheetEffects::anisotropy, "Stiffer along x", unit::none, -0.9, 0.9,
-                "Share by which the sheet is stiffer along x, and softer along y: extruded sheet knows its direction.")
+          "heating_centre", &SheetEffects::heating_centre, "Colder towards the corners", unit::none, -0.9, 0.9,
+          "How much stiffer (colder) the sheet is in the corners of the opening than on average, as a fraction; its middle is softer. 0 is even heating.")
           .group(group_title)
           .advanced(),
       parameter(
-          "slip", &SheetEffects::slip, "Slip", unit::none, 0, 20,
-          "One over the coefficient of friction between sheet and mould. 0: what touches sticks for ever, as in the thesis.")
+          "thickness_wedge_x", &SheetEffects::thickness_wedge_x, "Thicker towards the right", unit::none, -0.9, 0.9,
+          "How much thicker the flat sheet is at the right side of the opening than in its middle, as a fraction. 0.05 means 5 %; 0 is an even sheet.")
+          .group(group_title)
+          .advanced(),
+      parameter(
+          "thickness_wedge_y", &SheetEffects::thickness_wedge_y, "Thicker towards the back", unit::none, -0.9, 0.9,
+          "How much thicker the flat sheet is at the back of the opening than in its middle, as a fraction. 0.05 means 5 %; 0 is an even sheet.")
+          .group(group_title)
+          .advanced(),
+      parameter(
+          "anisotropy", &SheetEffects::anisotropy, "Stiffer along x", unit::none, -0.9, 0.9,
+          "How much stiffer the sheet is along x, and softer along y, as a fraction. Extruded sheets often differ between the two directions; 0 is equal.")
+          .group(group_title)
+          .advanced(),
+      parameter(
+          "slip", &SheetEffects::slip, "Sheet slides on the mould", unit::none, 0, 20,
+          "How easily the sheet slides over the mould: 1 divided by the coefficient of friction. 0: it sticks wherever it touches; larger values slide more.")
           .group(group_title)
           .slider(0, 5)
           .advanced(),
       parameter(
-          "cooling", &SheetEffects::cooling, "Chill on contact", unit::none, 0, 10,
-          "How much the cold mould stiffens what it touches, and what is close by. 1: six times, within a tenth of a second.")
+          "cooling", &SheetEffects::cooling, "Sheet cools on touching", unit::none, 0, 10,
+          "How much the cold mould stiffens the sheet where it touches, and within about 10 mm. 0: not at all; 1: six times as stiff within 0.1 s.")
           .group(group_title)
           .slider(0, 3)
           .advanced(),
-      parameter("weak_vacuum", &SheetEffects::weak_vacuum, "Vacuum missing", unit::none, 0, 0.95,
-                "Share of the vacuum that leaks away.")
+      parameter("weak_vacuum", &SheetEffects::weak_vacuum, "Vacuum lost", unit::none, 0, 0.95,
+                "Fraction of the vacuum that leaks away. 0: no leak; 0.3 leaves 70 %.")
           .group(group_title)
           .advanced(),
-      parameter("clamp_slip_mm", &SheetEffects::clamp_slip_mm, "Clamp gives way by", unit::mm, 0, 20,
-                "How far the sheet's rim is drawn in from the clamp while the model comes up.")
+      parameter("clamp_slip_mm", &SheetEffects::clamp_slip_mm, "Sheet slips in the clamp", unit::mm, 0, 20,
+                "How far the sheet's rim is pulled in from under the clamp while the model rises. 0: the clamp holds.")
           .group(group_title)
           .slider(0, 5)
           .advanced(),
-      parameter("mould_shift_x_mm", &SheetEffects::mould_shift_x_mm, "Mould off in x", unit::mm, -50, 50,
-                "How far the mould stands to the right of where it should.")
+      parameter("mould_shift_x_mm", &SheetEffects::mould_shift_x_mm, "Mould misplaced in x", unit::mm, -50, 50,
+                "How far the mould stands to the right of its intended place; negative is to the left.")
           .group(group_title)
           .slider(-5, 5)
           .advanced(),
-      parameter("mould_shift_y_mm", &SheetEffects::mould_shift_y_mm, "Mould off in y", unit::mm, -50, 50,
-                "How far the mould stands behind where it should.")
+      parameter("mould_shift_y_mm", &SheetEffects::mould_shift_y_mm, "Mould misplaced in y", unit::mm, -50, 50,
+                "How far the mould stands behind its intended place; negative is in front of it.")
           .group(group_title)
           .slider(-5, 5)
           .advanced(),
       parameter(
-          "mould_rotation_deg", &SheetEffects::mould_rotation_deg, "Mould turned by", unit::degrees, -180, 180,
-          "How far the mould is turned about the vertical through the opening's centre, counter-clockwise seen from above.")
+          "mould_rotation_deg", &SheetEffects::mould_rotation_deg, "Mould rotated", unit::degrees, -180, 180,
+          "Angle by which the mould is rotated from its intended position about the vertical axis through the centre of the opening, counter-clockwise seen from above.")
           .group(group_title)
           .slider(-10, 10)
           .advanced(),
-      parameter("mould_scale", &SheetEffects::mould_scale, "Mould too large by", unit::none, -0.5, 0.5,
-                "Share by which the mould is larger than it should be, about the centre of the opening on the plate.")
+      parameter(
+          "mould_scale", &SheetEffects::mould_scale, "Mould too large by", unit::none, -0.5, 0.5,
+          "How much larger the mould is than it should be, as a fraction: 0.01 is 1 %, negative is too small. It grows from the centre of the opening on the plate.")
           .group(group_title)
           .slider(-0.1, 0.1)
           .advanced()};

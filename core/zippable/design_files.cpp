@@ -127,7 +127,7 @@ ZippableParts read_segments(ByteView bytes) {
     for (const Json& item : value) parts.curves.push_back(read_curve(item, name));
   }
   if (parts.punctures.empty() && parts.cuts.empty() && parts.curves.empty() && !parts.start && !parts.end)
-    refuse("segments.json says nothing: give punctures, loops or lines, or leave it out.");
+    refuse("segments.json is empty: give punctures, loops or lines, or leave the file out.");
   return parts;
 }
 

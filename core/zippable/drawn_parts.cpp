@@ -183,7 +183,7 @@ LabelledSurface divide_along_curves(const TriangleMesh& mesh, const std::vector<
   const std::vector<int> part = parts_between(adjacency, wall, count);
   if (count < 2)
     throw Error(ErrorCode::invalid_input, "segments",
-                "The curves of segments.json divide nothing: close them, or let each end on another.");
+                "The curves in segments.json do not divide the model: close them, or let each end on another one.");
   const std::vector<char> keep = on_sharp_border(adjacency, part, wall, sharp_wall);
   const Eigen::MatrixXd field = -smooth_indicators(mesh, adjacency, part, count, keep, context);
   std::vector<int> label(mesh.vertex_count());

@@ -21,17 +21,17 @@ namespace {
 template <int dimensions>
 Eigen::Matrix<double, dimensions, 1> read_point(const Json& json) {
   Eigen::Matrix<double, dimensions, 1> point;
-  if (!json.is_array() || json.size() != dimensions) refuse("A vertex of the ribbon is no point");
+  if (!json.is_array() || json.size() != dimensions) refuse("A vertex of the ribbon is not a point");
   for (int k = 0; k < dimensions; ++k) {
-    if (!json[std::size_t(k)].is_number()) refuse("A vertex of the ribbon is no point");
+    if (!json[std::size_t(k)].is_number()) refuse("A vertex of the ribbon is not a point");
     point[k] = json[std::size_t(k)].get<double>();
-    if (!(std::abs(point[k]) < 1e7)) refuse("A vertex of the ribbon lies nowhere");
+    if (!(std::abs(point[k]) < 1e7)) refuse("A vertex of the ribbon has no position");
   }
   return point;
 }
 
 int read_index(const Json& json, int least, int end) {
-  if (!json.is_number_integer()) refuse("A vertex number in the design is no whole number");
+  if (!json.is_number_integer()) refuse("A vertex number in the design is not a whole number");
   const auto value = json.get<std::int64_t>();
   if (value < least || value >= end) refuse("The design names a vertex that does not exist");
   return static_cast<int>(value);
@@ -71,18 +71,18 @@ void find_sides(FlatDesign& design, int samples) {
 
 ClosureRun read_run(const Json& json, const FlatDesign& design, double length_mm, bool rising) {
   if (!json.is_object() || !json.contains("first_vertex") || !json.contains("along_mm"))
-    refuse("A side of a cut says too little");
+    refuse("A side of a cut is incomplete");
   ClosureRun run;
   run.first_vertex = read_index(json["first_vertex"], 0, design.vertex_count());
   const Json& along = json["along_mm"];
   if (!along.is_array() || along.size() < 2 || static_cast<int>(along.size()) > design.vertex_count())
     refuse("A side of a cut has no edge or too many");
   for (const Json& item : along) {
-    if (!item.is_number()) refuse("A place along a cut is no number");
+    if (!item.is_number()) refuse("A position along a cut is not a number");
     const double mm = item.get<double>();
     if (!(mm >= 0 && mm <= length_mm) ||
         (!run.along_mm.empty() && !(rising ? mm > run.along_mm.back() : mm < run.along_mm.back())))
-      refuse("Places along a cut do not follow each other");
+      refuse("Positions along a cut are not in order");
     run.along_mm.push_back(mm);
   }
   for (int k = 0; k < run.edge_count(); ++k)
@@ -91,13 +91,13 @@ ClosureRun read_run(const Json& json, const FlatDesign& design, double length_mm
 }
 
 void read_closures(const Json& list, FlatDesign& design) {
-  if (!list.is_array()) refuse("The design's cuts are no list");
+  if (!list.is_array()) refuse("The design's cuts are not a list");
   for (const Json& item : list) {
     const Json sides = item.is_object() ? item.value("sides", Json()) : Json(),
                length = item.is_object() ? item.value("length_mm", Json()) : Json();
     if (!sides.is_array() || sides.size() != 2 || !length.is_number() ||
         !(length.get<double>() > 0 && length.get<double>() < 1e9))
-      refuse("A cut of the design has not two sides and a length");
+      refuse("A cut of the design lacks two sides or a length");
     HandleClosure closure;
     closure.length_mm = length.get<double>();
     closure.closed = item.value("closed", Json(true)) != false;
@@ -121,7 +121,7 @@ FlatDesign read_flat_design(ByteView bytes) {
   const Json json = parse_json_text(as_text(bytes));
   if (!json.is_object() || json.value("format", Json()) != "formwright zippable design" ||
       json.value("version", Json()) != 1)
-    refuse("This is no zippable design");
+    refuse("This is not a zippable design");
   const Json ribbon = json.value("ribbon", Json()), pieces = json.value("pieces", Json());
   if (!ribbon.is_object() || !ribbon.contains("boundary") || !ribbon.contains("triangles") || !pieces.is_array())
     refuse("The design has no ribbon");
@@ -134,7 +134,7 @@ FlatDesign read_flat_design(ByteView bytes) {
   for (const Json& item : boundary) {
     if (!item.is_object() || !item.contains("position_mm") || !item.contains("flat_mm") ||
         !item.contains("zipper_sample"))
-      refuse("A vertex of the ribbon says too little");
+      refuse("A vertex of the ribbon is incomplete");
     FlatVertex vertex;
     vertex.position_mm = read_point<3>(item["position_mm"]);
     vertex.flat_mm = read_point<2>(item["flat_mm"]);
@@ -145,7 +145,8 @@ FlatDesign read_flat_design(ByteView bytes) {
   }
   design.F.resize(static_cast<Eigen::Index>(triangles.size()), 3);
   for (std::size_t f = 0; f < triangles.size(); ++f) {
-    if (!triangles[f].is_array() || triangles[f].size() != 3) refuse("A triangle of the ribbon has not three corners");
+    if (!triangles[f].is_array() || triangles[f].size() != 3)
+      refuse("A triangle of the ribbon does not have three corners");
     for (std::size_t k = 0; k < 3; ++k)
       design.F(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k)) = read_index(triangles[f][k], 0, count);
   }
@@ -155,7 +156,7 @@ FlatDesign read_flat_design(ByteView bytes) {
     if (!fabric.is_array() || fabric.size() != triangles.size())
       refuse("The design's fabrics are not those of its triangles");
     for (std::size_t f = 0; f < fabric.size(); ++f) {
-      if (fabric[f] != 0 && fabric[f] != 1) refuse("A triangle of the design is of no fabric");
+      if (fabric[f] != 0 && fabric[f] != 1) refuse("A triangle of the design has no fabric");
       design.fabric_of_face[f] = fabric[f].get<int>();
     }
     design.fabrics = fabric_count;

@@ -172,7 +172,7 @@ OpenedSurface cut_handles(const TriangleMesh& mesh, Context& context) {
     }
     if (!opened)
       throw Error(ErrorCode::invalid_input, "mesh",
-                  "A handle of the model is too coarse to be cut open: subdivide the model first.");
+                  "A handle of the model has too few triangles to be cut open: subdivide the model first.");
     std::vector<int> given;
     for (const int v : best.vertices) given.push_back(result.source_of[v]);
     result.cuts.push_back(std::move(given));

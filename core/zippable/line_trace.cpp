@@ -111,7 +111,9 @@ TracedLine LineTracer::trace(int part, double x_low, double x_high) const {
     shift += p_.corners_mm(out, 0) - p_.corners_mm(next_halfedge(o), 0);
     h = o;
   }
-  throw Error(ErrorCode::internal, "mesh", "A line of the curve did not reach the other end of its part.");
+  throw Error(
+      ErrorCode::internal, "mesh",
+      "The zipper's line could not be drawn across one part: subdivide the model, or divide it into other parts.");
 }
 
 }  // namespace formwright

@@ -98,14 +98,14 @@ class Solver {
     NewtonStep step;
     if (!system_.solve(step, 0, context_))
       throw Error(ErrorCode::could_not_solve, "mesh",
-                  "The start of the parameterisation could not be computed: repair or subdivide the model.");
+                  "The parts could not be laid flat: repair or subdivide the model.");
     local_ += step.local;
     const CornerCoordinates embedded = chart_.corners(local_, shared_);
     for (std::size_t f = 0; f < reference_.size(); ++f)
       if (!(jacobian(reference_[f], corners_of(embedded, f)).determinant() > 0))
         throw Error(
             ErrorCode::could_not_solve, "mesh",
-            "The start of the parameterisation folds over: larger punctures or another division into parts help.");
+            "A part folds over itself when laid flat: make the holes at the tips larger, or divide the model into other parts.");
     rescale(embedded);
     result_.energy_start = energy(chart_.corners(local_, shared_)) / 4;
   }
@@ -238,7 +238,7 @@ void Solver::iterate() {
       assemble(uv, true);
       if (!solve_damped(step))
         throw Error(ErrorCode::could_not_solve, "mesh",
-                    "The parameterisation lost its footing: larger punctures or another division into parts help.");
+                    "The parameterisation did not converge. Try larger openings or fewer, shorter parts.");
     }
     ++result_.iterations;
     result_.decrement = -step.slope;
@@ -251,8 +251,8 @@ void Solver::iterate() {
     try_true = before - value < 0.01 * before;
   }
   throw Error(ErrorCode::could_not_solve, "mesh",
-              "The parameterisation did not settle in " + std::to_string(options_.iterations_max) +
-                  " iterations: larger punctures or another division into parts help.");
+              "The parameterisation did not converge in " + std::to_string(options_.iterations_max) +
+                  " iterations. Try larger openings or fewer, shorter parts.");
 }
 
 void Solver::finish() {

@@ -112,11 +112,11 @@ std::vector<Seed> find_seeds(const TriangleMesh& mesh, const Adjacency& adjacenc
       });
       if (taken)
         throw Error(ErrorCode::invalid_input, "segments",
-                    "Two punctures lie on the same vertex or opening: move one, or subdivide the model.");
+                    "Two holes lie on the same vertex or opening: move one, or subdivide the model.");
       seeds.push_back({{static_cast<int>(nearest)}, false, 0, 0});
     }
     if (seeds.size() < 2)
-      throw Error(ErrorCode::invalid_input, "segments", "A single puncture makes no cylinder: give two at least.");
+      throw Error(ErrorCode::invalid_input, "segments", "One hole does not make a cylinder: give at least two.");
     return seeds;
   }
   const Eigen::VectorXd mean = mean_distance(mesh, adjacency, context);
@@ -267,7 +267,7 @@ std::optional<Proposal> automatic(const OpenedSurface& opened, const ProposalOpt
         if (seeds.size() < found)
           proposal.notes.push_back("Of " + std::to_string(found) + " tips and openings " +
                                    std::to_string(seeds.size()) +
-                                   " became parts; the rest would not have made cylinders.");
+                                   " became parts; the others could not be made into cylinders.");
         return proposal;
       }
       for (const std::string& p : proposal.segmentation.problems)
@@ -278,9 +278,8 @@ std::optional<Proposal> automatic(const OpenedSurface& opened, const ProposalOpt
     }
     if (attempt % reach_shares.size() + 1 < reach_shares.size() && seeds.size() > 2) continue;
     if (!options.tips_mm.empty() || !options.cuts_mm.empty())
-      throw Error(
-          ErrorCode::invalid_input, "segments",
-          "The given punctures do not divide the model into cylinders (" + problem + "): move, add or drop some.");
+      throw Error(ErrorCode::invalid_input, "segments",
+                  "The given holes do not divide the model into cylinders (" + problem + "): move, add or drop some.");
     if (seeds.size() <= 2 || seeds.back().opening) return std::nullopt;
     seeds.pop_back();
   }

@@ -92,8 +92,9 @@ class Builder {
       const int handles = (2 - topology.euler - static_cast<int>(found.loops.size())) / 2;
       if (handles > 0) return "It has a handle: cut the handle open first.";
       return found.loops.size() < 2
-                 ? "It has " + std::to_string(found.loops.size()) + " boundary loops instead of two: puncture it."
-                 : "It has " + std::to_string(found.loops.size()) + " boundary loops instead of two: divide it.";
+                 ? "It has " + std::to_string(found.loops.size()) +
+                       " openings instead of two: put another hole into it."
+                 : "It has " + std::to_string(found.loops.size()) + " openings instead of two: divide it.";
     }
     int open_loops = 0;
     for (const auto& loop : found.loops) {
@@ -104,7 +105,8 @@ class Builder {
     }
     const bool alone = result_.part_count() == 1;
     if (!alone && open_loops != 1)
-      return open_loops == 0 ? "It has no opening: puncture it." : "It has no neighbour: the surface is not connected.";
+      return open_loops == 0 ? "It has no opening: put a hole into it."
+                             : "It has no neighbouring part: the surface is not connected.";
     Segment& segment = result_.segments[part];
     segment.face_count = static_cast<int>(std::count(result_.face_segment.begin(), result_.face_segment.end(), part));
     const bool first_is_top = !alone && adjacency_.opposite(found.loops[0].front()) < 0;
@@ -250,7 +252,7 @@ Segmentation make_segmentation(const TriangleMesh& mesh, const std::vector<int>&
     throw Error(ErrorCode::invalid_input, "mesh",
                 "The model is in several separate pieces: make each a zippable of its own.");
   if (adjacency.boundary_edge_count() == 0)
-    throw Error(ErrorCode::invalid_input, "mesh", "The surface has no opening: puncture it.");
+    throw Error(ErrorCode::invalid_input, "mesh", "The surface has no opening: put a hole into it.");
   if (*std::min_element(face_segment.begin(), face_segment.end()) < 0)
     throw Error(ErrorCode::invalid_input, "mesh", "Parts are numbered from 0.");
   Segmentation result = derive(mesh, face_segment, adjacency);

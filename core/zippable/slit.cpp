@@ -90,7 +90,7 @@ std::vector<Vec3> cut_slit(OpenedSurface& surface, const std::vector<Vec3>& poin
   const Adjacency adjacency(mesh);
   const double edge_mm = mean_edge_length(mesh);
   const std::vector<Vec3> way = way_through(mesh, adjacency, PointDistance(mesh), points, 0.5 * edge_mm);
-  if (way.size() < 2) refuse(number, "has its points in one place: draw it longer.");
+  if (way.size() < 2) refuse(number, "has all its points in one place: draw it longer.");
   const Positions normals = vertex_normals(mesh);
   const int n = mesh.vertex_count();
   std::vector<double> side(n, 0);
@@ -117,7 +117,7 @@ std::vector<Vec3> cut_slit(OpenedSurface& surface, const std::vector<Vec3>& poin
     refuse(number, "is too short for this mesh: draw it longer, or subdivide the model.");
   if (walk.empty()) refuse(number, "meets itself, or an edge that is too sharp: draw it simpler.");
   for (const int v : walk)
-    if (after.is_boundary_vertex(v)) refuse(number, "touches an opening or another cut: keep it off.");
+    if (after.is_boundary_vertex(v)) refuse(number, "touches an opening or another cut: move it away.");
   OpenedSurface result = surface;
   result.mesh = cut.mesh;
   result.source_of.resize(cut.mesh.vertex_count(), -1);

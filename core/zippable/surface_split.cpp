@@ -150,7 +150,7 @@ std::vector<double> puncture(LabelledSurface& surface, const std::vector<int>& v
     const int centre = vertices[i], own = static_cast<int>(i) + 1;
     if (!usable[centre])
       throw Error(ErrorCode::invalid_input, "mesh",
-                  "A puncture lies on the border of its part or beside another: move it inside.");
+                  "A hole lies on the border of its part or beside another hole: move it inside the part.");
     const auto distance = [&](int v) { return (mesh.V.row(v) - mesh.V.row(centre)).norm(); };
     double least_ring = 1e300;
     for (const int w : adjacency.neighbours(centre)) least_ring = std::min(least_ring, distance(w));

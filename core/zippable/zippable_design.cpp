@@ -14,11 +14,13 @@ namespace {
 
 void check_width(double size_mm, const ZippableOptions& options) {
   if (options.width_mm > 0.5 * size_mm)
-    throw Error(ErrorCode::invalid_input, "width_mm",
-                "The ribbon is wider than half the model's size: choose a smaller width or a larger size_mm.");
+    throw Error(
+        ErrorCode::invalid_input, "width_mm",
+        "The model is too small for this ribbon, which is wider than half of it: choose a narrower ribbon or a larger size_mm.");
   if (options.width_mm < 1e-3 * size_mm)
-    throw Error(ErrorCode::invalid_input, "width_mm",
-                "The ribbon is narrower than a thousandth of the model: choose a larger width or a smaller size_mm.");
+    throw Error(
+        ErrorCode::invalid_input, "width_mm",
+        "The ribbon is narrower than a thousandth of the model's size: choose a wider ribbon or a smaller size_mm.");
 }
 
 /// Per part, 0 where nothing was said.
@@ -28,7 +30,7 @@ std::vector<double> part_windings(const std::string& text, int part_count) {
   if (!given ||
       std::any_of(given->begin(), given->end(), [](double windings) { return windings < 0 || windings > 1000; }))
     throw Error(ErrorCode::invalid_input, "part_windings",
-                "Windings by part must be numbers from 0 to 1000, such as “3 0 2.5”.");
+                "Windings per part must be numbers from 0 to 1000, separated by spaces, such as “3 0 2.5”.");
   if (given->size() > count)
     throw Error(ErrorCode::invalid_input, "part_windings",
                 "There are only " + std::to_string(part_count) + " parts: give windings for these.");
@@ -80,12 +82,12 @@ void say_how_it_bends(ZippableDesign& design, const ZippableOptions& options) {
   if (!design.bend) return;
   if (design.bend->radius_mm < *options.radius_least_mm)
     design.notes.push_back(
-        "The ribbon's middle bends to a radius of " + figure(design.bend->radius_mm) + " mm, less than " +
+        "The ribbon's centre line bends to a radius of " + figure(design.bend->radius_mm) + " mm, less than " +
         figure(*options.radius_least_mm) +
-        " mm, whatever the order: a narrower ribbon, larger punctures or other borders of the parts mend it.");
+        " mm, in every order of the parts. Use a narrower ribbon, larger holes at the tips or other borders of the parts.");
   else if (design.traversal_number != options.traversal)
     design.notes.push_back("Order " + std::to_string(design.traversal_number) +
-                           " was taken, the first that keeps the least radius.");
+                           " was chosen, the first one that keeps the smallest radius.");
 }
 
 }  // namespace
@@ -94,7 +96,7 @@ ParameterisedModel divide_model(const TriangleMesh& given, const ZippableParts& 
                                 Context& context) {
   ParameterisedModel model;
   const double size = bounding_box(given).size().maxCoeff();
-  if (!(size > 0)) throw Error(ErrorCode::invalid_input, "mesh", "The model has no size: give one with some extent.");
+  if (!(size > 0)) throw Error(ErrorCode::invalid_input, "mesh", "The model has no extent: choose another file.");
   if (options.size_mm) model.scale = *options.size_mm / size;
   model.mesh = {given.V * model.scale, given.F};
   check_width(size * model.scale, options);
@@ -217,7 +219,7 @@ ZippableDesign design_zippable(const ParameterisedModel& model, const ZippableOp
   design.notes.insert(design.notes.end(), design.curve.notes.begin(), design.curve.notes.end());
   if (design.alignment && design.alignment->crease_mm == 0)
     design.notes.push_back(
-        "No crease runs nearly like the windings: they are even. A smaller least crease, or other parts, may mend it.");
+        "No crease runs in nearly the same direction as the windings, so they stay even. Lower the smallest crease angle, or divide the model into other parts.");
   if (options.radius_least_mm) say_how_it_bends(design, options);
   if (options.fabrics == RibbonFabrics::two) {
     design.fabrics = two_fabrics(design.ribbon, options.width_mm);

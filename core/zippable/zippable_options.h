@@ -62,86 +62,94 @@ struct ZippableOptions {
   static constexpr auto parameters = std::tuple{
       parameter(
           "width_mm", &ZippableOptions::width_mm, "Ribbon width", unit::mm, 0.1, 10000,
-          "Between one winding of the zipper and the next, about: narrower follows the model better and takes more zipper.")
+          "Approximate distance between one winding of the zipper and the next. Narrower follows the model better and needs a longer zipper; 15 to 20 mm is usual.")
           .slider(5, 100)
           .group("Ribbon"),
-      parameter("windings", &ZippableOptions::windings, "Windings", unit::none, 0.1, 1000,
-                "Turns of the zipper around every part, instead of as many as the width gives.")
+      parameter(
+          "windings", &ZippableOptions::windings, "Windings", unit::none, 0.1, 1000,
+          "Number of turns that the zipper makes around every part. Automatic: as many as the ribbon width gives.")
           .slider(1, 20)
           .group("Ribbon"),
-      parameter("part_windings", &ZippableOptions::part_windings, "Windings by part",
-                "Turns around each part on its own, in the order of the parts, such as 3 0 2.5; 0 or none: as for all.")
+      parameter(
+          "part_windings", &ZippableOptions::part_windings, "Windings per part",
+          "Number of turns for each part, separated by spaces, in the order of the parts, such as 3 0 2.5. 0 or a missing number: the same as for all parts.")
           .group("Ribbon")
           .advanced(),
       parameter("size_mm", &ZippableOptions::size_mm, "Size", unit::mm, 1, 100000,
-                "Largest dimension of the finished object; automatic: as in the file.")
+                "Largest dimension of the finished object. Automatic: the size in the file.")
           .slider(50, 1000)
           .group("Ribbon"),
-      parameter("fabrics", &ZippableOptions::fabrics, "Fabrics",
-                "Two colours: both bands of every Fermat spiral differ, and interleave when it is zipped up.")
+      parameter(
+          "fabrics", &ZippableOptions::fabrics, "Fabrics",
+          "One: the whole ribbon is cut from one fabric. Two colours: neighbouring bands alternate between two fabrics.")
           .group("Ribbon"),
-      parameter("parts_max", &ZippableOptions::parts_max, "Most parts", unit::none, 1, 40,
-                "Into how many cylinders the model is divided at most; 1 or 2: one spiral over everything.")
+      parameter(
+          "parts_max", &ZippableOptions::parts_max, "Maximum number of parts", unit::none, 1, 40,
+          "Largest number of cylinders that the model may be divided into. More follow limbs better and give more seams. 1 or 2: a single spiral over the whole model.")
           .slider(1, 12)
           .group("Parts"),
-      parameter("prominence_percent", &ZippableOptions::prominence_percent, "Least limb", unit::percent, 0.1, 100,
-                "How far a limb must stand out to become a part, of the farthest tip's mean distance to everywhere.")
+      parameter(
+          "prominence_percent", &ZippableOptions::prominence_percent, "Smallest limb", unit::percent, 0.1, 100,
+          "How far a limb must stand out to become a part of its own, in percent of the largest mean distance between one point of the surface and all others. Smaller finds shorter limbs; 8 % is usual.")
           .slider(2, 30)
           .group("Parts")
           .advanced(),
       parameter(
-          "puncture_mm", &ZippableOptions::puncture_mm, "Puncture", unit::mm, 0.01, 10000,
-          "Diameter of the hole at the tip of each part, at most; automatic: half the ribbon's width, more for a least radius.")
+          "puncture_mm", &ZippableOptions::puncture_mm, "Hole at the tip", unit::mm, 0.01, 10000,
+          "Largest diameter of the hole left open at the tip of each part. Automatic: half the ribbon width, or more if a smallest radius is set.")
           .slider(1, 50)
           .group("Parts"),
       parameter(
-          "borders", &ZippableOptions::borders, "Borders",
-          "Along creases: drawn borders snap to edges, ridges and valleys near them; those that are found move into valleys.")
+          "borders", &ZippableOptions::borders, "Borders of parts",
+          "Straight: borders take the shortest way over the surface. Along creases: drawn borders snap to nearby edges, ridges and valleys, and automatic borders move into valleys.")
           .group("Parts"),
-      parameter("crease_degrees", &ZippableOptions::crease_degrees, "Least crease", unit::degrees, 1, 120,
-                "How much the surface bends across a crease, at least, for anything to follow it.")
+      parameter(
+          "crease_degrees", &ZippableOptions::crease_degrees, "Smallest crease angle", unit::degrees, 1, 120,
+          "How sharply the surface must bend at a line for it to count as a crease. Smaller finds weaker creases; 20° is usual.")
           .slider(5, 60)
           .group("Parts")
           .advanced(),
       parameter(
-          "crease_mm", &ZippableOptions::crease_mm, "Roundness of creases", unit::mm, 0.001, 1000,
-          "Over what width a crease may be rounded off; automatic: two edges' length, or a tenth of the ribbon's width.")
+          "crease_mm", &ZippableOptions::crease_mm, "Width of creases", unit::mm, 0.001, 1000,
+          "Width over which a crease may be rounded and still count. Automatic: twice the mean edge length, or a tenth of the ribbon width if that is more.")
           .slider(0.5, 20)
           .group("Parts")
           .advanced(),
-      parameter("traversal", &ZippableOptions::traversal, "Order of parts", unit::none, 1, 100000,
-                "Which of the possible orders the zipper takes through the parts; 1 is the most even one.")
+      parameter(
+          "traversal", &ZippableOptions::traversal, "Order of parts", unit::none, 1, 100000,
+          "Which of the possible orders the zipper follows through the parts. 1 is the most even one; higher numbers are less even.")
           .slider(1, 50)
           .group("Curve"),
-      parameter("start_part", &ZippableOptions::start_part, "Begins in part", unit::none, 0, 40,
-                "Where the zipper begins: only orders that do are counted; 0: anywhere.")
+      parameter("start_part", &ZippableOptions::start_part, "Start in part", unit::none, 0, 40,
+                "Number of the part where the zipper must start. 0: any part.")
           .slider(0, 12)
           .group("Curve"),
-      parameter("end_part", &ZippableOptions::end_part, "Ends in part", unit::none, 0, 40,
-                "Where the zipper ends: only orders that do are counted; 0: anywhere.")
+      parameter("end_part", &ZippableOptions::end_part, "End in part", unit::none, 0, 40,
+                "Number of the part where the zipper must end. 0: any part.")
           .slider(0, 12)
           .group("Curve"),
       parameter(
-          "radius_least_mm", &ZippableOptions::radius_least_mm, "Least radius", unit::mm, 0.1, 10000,
-          "How tightly the middle of the flat ribbon may bend; holes at the tips grow, and the first order that keeps it is taken.")
+          "radius_least_mm", &ZippableOptions::radius_least_mm, "Smallest radius", unit::mm, 0.1, 10000,
+          "Smallest radius to which the centre line of the flat ribbon may bend; a stiff zipper needs more. Larger values enlarge the holes at the tips and may change the order of parts. Automatic: no limit.")
           .slider(5, 100)
           .group("Curve"),
       parameter(
-          "winding_course", &ZippableOptions::winding_course, "Course of windings",
-          "Along creases: windings move, by less than half their spacing, onto creases that run nearly as they do.")
+          "winding_course", &ZippableOptions::winding_course, "Windings follow",
+          "Even: windings are equally spaced. Along creases: windings move, by less than half their spacing, onto creases that run in nearly the same direction.")
           .group("Curve"),
-      parameter("sample_mm", &ZippableOptions::sample_mm, "Sampling", unit::mm, 0.01, 1000,
-                "Between corners of the ribbon along the zipper, about; automatic: a fifth of its width.")
+      parameter(
+          "sample_mm", &ZippableOptions::sample_mm, "Sampling", unit::mm, 0.01, 1000,
+          "Approximate distance between neighbouring corner points of the ribbon's edge. Smaller follows the model better and makes larger files. Automatic: a fifth of the ribbon width.")
           .slider(1, 20)
           .group("Curve")
           .advanced(),
       parameter("measure_distances", &ZippableOptions::measure_distances, "Measure distances",
-                "Between the zipped ribbon and the model; takes longer than another number of windings does.")
+                "Measures how far the zipped ribbon lies from the model. Switch it off to change windings faster.")
           .group("Curve")
           .advanced(),
       parameter(
           "check_parts", &ZippableOptions::check_parts, "Check parts only",
-          "Stops after the division; design.json then says of every part whether it is a cylinder, and if not, why.")
+          "Stops after the model is divided and reports for every part whether a ribbon can cover it, and if not, why.")
           .group("Parts")
           .advanced()};
 };

@@ -43,7 +43,7 @@ std::vector<SpiralLine> place_lines(const Segmentation& s, const Parameterisatio
                                          : p.height_mm[part] / (fermat ? 2 * options.width_mm : options.width_mm);
     if (windings < least) {
       curve.notes.push_back("Part " + std::to_string(part + 1) + " got " + figure(least) + " windings instead of " +
-                            figure(windings) + ", the fewest that make a ribbon: it is narrower there.");
+                            figure(windings) + ", the smallest number that makes a ribbon; it is narrower there.");
       windings = least;
     }
     curve.windings[part] = windings;

@@ -29,7 +29,7 @@ constexpr double most_mm = 20'000;
 PageSize checked(PageSize size) {
   if (!(size.width_mm >= 1 && size.width_mm <= most_mm && size.height_mm >= 1 && size.height_mm <= most_mm))
     refuse(
-        "A page of the document is smaller than 1 mm or larger than 20 m: make it anew with its size in millimetres.");
+        "A page of the document is smaller than 1 mm or larger than 20 m: export it again with its size in millimetres.");
   return size;
 }
 
@@ -67,7 +67,7 @@ DocumentPages read_png(ByteView png) {
 /// printers take one size per job. Not by libcups, which first sets aside as many bytes as the header claims a line to
 /// have, up to 4 GB.
 DocumentPages read_pwg_raster(ByteView raster) {
-  if (raster.size() < 4 + sizeof(cups_page_header2_t)) refuse("The PWG raster cannot be read: make it anew.");
+  if (raster.size() < 4 + sizeof(cups_page_header2_t)) refuse("The PWG raster cannot be read: export it again.");
   const bool low_end_first = as_text(raster).starts_with("2SaR");
   const auto number = [&](std::size_t offset) {
     const std::uint32_t value = big_endian(raster, 4 + offset);
@@ -75,7 +75,7 @@ DocumentPages read_pwg_raster(ByteView raster) {
   };
   const std::size_t resolution = offsetof(cups_page_header2_t, HWResolution);
   const double across = number(resolution), down = number(resolution + 4);
-  if (across == 0 || down == 0) refuse("The PWG raster cannot be read: make it anew.");
+  if (across == 0 || down == 0) refuse("The PWG raster cannot be read: export it again.");
   return {"image/pwg-raster",
           {checked({25.4 * number(offsetof(cups_page_header2_t, cupsWidth)) / across,
                     25.4 * number(offsetof(cups_page_header2_t, cupsHeight)) / down})}};
@@ -87,11 +87,11 @@ struct Box {
 
 Box crop_box(QPDFPageObjectHelper& page) {
   QPDFObjectHandle box = page.getCropBox();
-  if (!box.isRectangle()) refuse("A page of the PDF does not say how large it is: make it anew.");
+  if (!box.isRectangle()) refuse("A page of the PDF does not state its size: export the PDF again.");
   const auto r = box.getArrayAsRectangle();
   const Box found{std::min(r.llx, r.urx), std::min(r.lly, r.ury), std::max(r.llx, r.urx), std::max(r.lly, r.ury)};
   if (!std::isfinite(found.x0 + found.y0 + found.x1 + found.y1))
-    refuse("A page of the PDF does not say how large it is: make it anew.");
+    refuse("A page of the PDF does not state its size: export the PDF again.");
   return found;
 }
 
@@ -100,7 +100,8 @@ class CountingPipeline final : public Pipeline {
  public:
   explicit CountingPipeline(ReadBudget& budget) : Pipeline("count", nullptr), budget_(budget) {}
   void write(const unsigned char*, std::size_t size) override {
-    if (!budget_.take(size)) refuse("The PDF unpacks to far more than a file of its size holds: make it anew.");
+    if (!budget_.take(size))
+      refuse("The PDF is far larger when unpacked than a file of its size should be: export it again.");
   }
   void finish() override {}
 
@@ -144,7 +145,7 @@ void check_unpacked_size(ByteView document) {
     const std::size_t flate = dictionary.find("/Fl");
     if (flate == std::string::npos || dictionary.find("/Fl", flate + 1) != std::string::npos || has("/LZW") ||
         has("/RunLength"))
-      refuse("The PDF is packed in an unusual way: make it anew.");
+      refuse("The PDF is compressed in an unusual way: export it again.");
     if (text.substr(at).starts_with("\r\n")) at += 2;
     else if (text.substr(at).starts_with('\n')) ++at;
     CountingPipeline count(budget);
@@ -187,9 +188,9 @@ DocumentPages read_pdf(ByteView document) {
   } catch (const Error&) {
     throw;
   } catch (const std::exception&) {
-    refuse("The PDF cannot be read, or is locked by a password: make it anew.");
+    refuse("The PDF cannot be read, or is locked by a password: export it again without one.");
   }
-  if (result.pages.empty()) refuse("The PDF has no pages: make it anew.");
+  if (result.pages.empty()) refuse("The PDF has no pages: export it again.");
   return result;
 }
 
@@ -229,7 +230,7 @@ Bytes mirrored_pdf(ByteView document) {
     throw;
   } catch (const std::exception&) {
     throw Error(ErrorCode::invalid_input, "mirrored",
-                "The PDF cannot be read, so that it cannot be mirrored: make it anew.");
+                "The PDF cannot be read, so it cannot be mirrored: export it again.");
   }
 }
 

@@ -62,7 +62,7 @@ void IppConnection::connect_to_destination(const cups_dest_t& destination) {
   // A copy: connecting writes into it, and others may be connecting as well.
   cups_dest_t* copy = nullptr;
   if (cupsCopyDest(const_cast<cups_dest_t*>(&destination), 0, &copy) != 1)
-    fail("There is not enough memory to reach " + name_ + ": close something.");
+    fail("There is not enough memory to connect to " + name_ + ": close another program.");
   const std::unique_ptr<cups_dest_t, void (*)(cups_dest_t*)> owned(copy, [](cups_dest_t* d) { cupsFreeDests(1, d); });
   const auto option = [&](const char* name) {
     const char* value = cupsGetOption(name, copy->num_options, copy->options);
@@ -80,7 +80,7 @@ void IppConnection::connect_to_destination(const cups_dest_t& destination) {
   // Connecting has found out its address, which is then as good as a registered one.
   uri_ = option("device-uri");
   if (!uri_.starts_with("ipp"))
-    fail(name_ + " does not speak IPP, by what the network says of it: add it to the system's printers.");
+    fail(name_ + " does not support IPP, as its network entry says: add it to the system's printers.");
   httpClose(std::exchange(http_, nullptr));
 }
 
@@ -130,17 +130,16 @@ http_status_t IppConnection::send(ipp_t* message, ByteView document) {
 
 void IppConnection::fail_unanswered(http_status_t sent, http_status_t status) const {
   if (cancelled_ && may_have_job_ && status < HTTP_STATUS_BAD_REQUEST)
-    throw Error(
-        ErrorCode::cancelled, "",
-        "Cancelled, but " + name_ + " has the whole document and says nothing: see whether its sheets come out.");
+    throw Error(ErrorCode::cancelled, "",
+                "Cancelled, but " + name_ +
+                    " has received the whole document and does not confirm: check whether its sheets come out.");
   if (status == HTTP_STATUS_UNAUTHORIZED || sent == HTTP_STATUS_UNAUTHORIZED ||
       status == HTTP_STATUS_CUPS_AUTHORIZATION_CANCELED || status == HTTP_STATUS_FORBIDDEN)
     fail(name_ +
          " asks for a password: let it print without one, or add it to the system's printers and choose it there.");
   if (status == HTTP_STATUS_NOT_FOUND)
     fail("There is no printer at " + uri_ + ": most have theirs at /ipp/print; register it anew.");
-  if (silent_s_ >= answer_patience_s)
-    fail(name_ + " was asked and stayed silent for 30 s: switch it off and on, and try again.");
+  if (silent_s_ >= answer_patience_s) fail(name_ + " did not answer for 30 s: switch it off and on, and try again.");
   fail("The connection to " + name_ + " broke off (" + last_words() + "): try again.");
 }
 
@@ -167,7 +166,7 @@ IppConnection::Answer IppConnection::ask(IppMessage message, ByteView document) 
     if (const char* words = ippGetString(text, 0, nullptr)) answer.text = words;
   if (answer.status == IPP_STATUS_ERROR_NOT_AUTHENTICATED || answer.status == IPP_STATUS_ERROR_NOT_AUTHORIZED ||
       answer.status == IPP_STATUS_ERROR_FORBIDDEN)
-    fail(name_ + " does not let us print" + (answer.text.empty() ? "" : " (\"" + answer.text + "\")") +
+    fail(name_ + " does not allow printing" + (answer.text.empty() ? "" : " (\"" + answer.text + "\")") +
          ": allow it at the printer, or add it to the system's printers.");
   return answer;
 }

@@ -47,7 +47,7 @@ Response too_many(const Head& head) {
                         "Too many prints and uploads are under way: let some finish.");
 }
 Response nothing_here(const Head& head) {
-  return error_response(head, http::status::not_found, "invalid_input", "", "There is nothing here.");
+  return error_response(head, http::status::not_found, "invalid_input", "", "There is nothing at this address.");
 }
 
 [[noreturn]] void refuse(const std::string& where, const std::string& sentence) {
@@ -68,10 +68,10 @@ bool flag_in(const Json& order, const char* name) {
 }
 
 void check_names(const Json& order, std::initializer_list<const char*> known) {
-  if (!order.is_object()) refuse("", "The order must be a JSON object.");
+  if (!order.is_object()) refuse("", "The request must be a JSON object.");
   for (const auto& [name, value] : order.items())
     if (std::none_of(known.begin(), known.end(), [&](const char* k) { return name == k; }))
-      refuse(name.substr(0, 80), "There is nothing called " + name.substr(0, 80) + " in this order: leave it out.");
+      refuse(name.substr(0, 80), "There is no field called " + name.substr(0, 80) + " in this request: leave it out.");
 }
 
 PrinterAddress address_of(const Machine& m) { return {m.name, m.url, m.destination}; }
@@ -92,8 +92,9 @@ void MachineBridge::follow_again(const std::shared_ptr<MachineTask>& task) {
     const auto found =
         std::find_if(list.begin(), list.end(), [&](const Machine& m) { return m.id == running.machine.id; });
     if (found == list.end())
-      throw Error(ErrorCode::could_not_solve, "machine",
-                  running.machine.name + " is no longer there: see whether its sheets came out before printing again.");
+      throw Error(
+          ErrorCode::could_not_solve, "machine",
+          running.machine.name + " is no longer connected: check whether its sheets came out before you print again.");
     const int sheets =
         follow_print(address_of(*found), there.at("job_id").get<int>(), running.cancelled,
                      [&](const std::string& state, const std::string& sentence) { running.say(state, sentence); });
@@ -113,7 +114,8 @@ boost::asio::awaitable<void> MachineBridge::serve_socket(beast::tcp_stream strea
   try {
     found = co_await machine(id);
     if (found->kind != MachineKind::serial && found->kind != MachineKind::ruida)
-      refuse("machine", found->name + " has no socket: it is a " + std::string(to_string(found->kind)) + ".");
+      refuse("machine",
+             found->name + " cannot be controlled line by line: it is a " + std::string(to_string(found->kind)) + ".");
   } catch (const Error& error) {
     refusal = error_response(head, http::status::not_found, to_string(error.code()), error.where(), error.what());
   }
@@ -138,14 +140,14 @@ boost::asio::awaitable<std::vector<Machine>> MachineBridge::machines(bool search
 }
 
 boost::asio::awaitable<Machine> MachineBridge::machine(std::string id) {
-  if (!is_hex_name(id, 16)) refuse("machine", "There is no such machine: the list of machines has their ids.");
+  if (!is_hex_name(id, 16)) refuse("machine", "There is no machine with this id: see the list of machines.");
   for (const Machine& m : registry_.read())
     if (m.id == id) co_return m;
   for (const bool again : {false, true})
     for (const Machine& m : co_await machines(again))
       if (m.id == id && !m.registered) co_return m;
   refuse("machine",
-         "That machine is no longer there: see whether it is plugged in or registered, and look at the list again.");
+         "That machine is no longer connected: check that it is plugged in or registered, and look at the list again.");
 }
 
 boost::asio::awaitable<Response> MachineBridge::answer(Head head, std::string path, std::string query,
@@ -204,7 +206,7 @@ boost::asio::awaitable<Response> MachineBridge::answer_machine(Head head, std::s
   if (!posts) co_return nothing_here(head);
   const Json order = body.empty() ? Json::object() : parse_json_text(body);
   if (order.is_discarded())
-    co_return error_response(head, http::status::bad_request, "invalid_input", "", "The order is not JSON.");
+    co_return error_response(head, http::status::bad_request, "invalid_input", "", "The request is not JSON.");
   if (rest == "/print" && m.kind == MachineKind::printer) co_return print(head, m, order);
   if (rest == "/upload" && uploads) co_return upload(head, m, order);
   if (rest == "/stop" && uploads) {
@@ -223,7 +225,7 @@ boost::asio::awaitable<Response> MachineBridge::answer_machine(Head head, std::s
 
 std::shared_ptr<const Bytes> MachineBridge::blob(const Json& order) const {
   const std::string hash = text_in(order, "sha256", "");
-  if (!is_hex_name(hash, 64)) refuse("sha256", "Name the file by its SHA-256, and send it as a blob before.");
+  if (!is_hex_name(hash, 64)) refuse("sha256", "Give the file's SHA-256, and send the file first.");
   std::error_code status;
   if (!std::filesystem::exists(store_.blob_path(hash), status))
     refuse("sha256", "The file has not arrived: send it again.");
@@ -262,7 +264,7 @@ Response MachineBridge::upload(const Head& head, const Machine& m, const Json& o
   upload.file_name = upload_file_name(text_in(order, "file_name", "job.gcode"));
   upload.print = flag_in(order, "print");
   if (upload.print && !flag_in(order, "confirmed"))
-    refuse("confirmed", "The machine would start: a person must have confirmed that in front of it.");
+    refuse("confirmed", "The machine would start: somebody standing in front of it must confirm this first.");
   const auto gcode = blob(order);
   const auto task = tasks_.start(m, "upload", [m, upload, gcode](MachineTask& running) mutable -> Json {
     upload.gcode = *gcode;

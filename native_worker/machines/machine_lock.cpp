@@ -84,7 +84,7 @@ int MachineLock::ask_to_stop(const std::filesystem::path& data, const Machine& m
   }
   throw Error(ErrorCode::could_not_solve, "machine",
               "The program that drives " + machine.name + " (process " + std::to_string(holder) +
-                  ") does not hear: switch the machine off.");
+                  ") does not respond: switch the machine off.");
 }
 
 }  // namespace formwright

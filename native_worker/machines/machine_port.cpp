@@ -96,7 +96,7 @@ class StreamPort final : public MachinePort, public std::enable_shared_from_this
   void end() {
     const auto closed = closed_;
     close();
-    if (closed) closed(name_ + " is gone: see whether its cable is plugged in and it is switched on.");
+    if (closed) closed(name_ + " is no longer connected: check that its cable is plugged in and it is switched on.");
   }
 
   boost::asio::posix::stream_descriptor stream_;

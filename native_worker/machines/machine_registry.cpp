@@ -152,8 +152,8 @@ Machine machine_from_words(const MachineWords& words) {
       refuse("--url", "Name the port too: tcp://" + address.host + ":23.");
   }
   if (!words.kind.empty() && words.kind != to_string(machine.kind))
-    refuse("--kind",
-           "The address is that of a " + std::string(to_string(machine.kind)) + ": leave --kind out, or mend --url.");
+    refuse("--kind", "The address is that of a " + std::string(to_string(machine.kind)) +
+                         ": leave --kind out, or correct --url.");
   if (machine.kind == MachineKind::serial) {
     machine.controller = words.controller.empty() ? "grbl" : words.controller;
     if (!find_serial_controller(machine.controller))
@@ -185,7 +185,8 @@ std::vector<Machine> MachineRegistry::read() const {
   const auto bytes = read_file(path, "--data", std::uintmax_t{4} << 20);
   const Json list = parse_json_text(as_text(*bytes));
   if (!list.is_array())
-    refuse("--data", path.string() + " is not a list of machines: mend it, or move it away and add them again.");
+    refuse("--data",
+           path.string() + " is not a list of machines: correct it, or move it away and add the machines again.");
   return machines_from_json(list);
 }
 

@@ -45,8 +45,7 @@ MachineRequest read_machine_request(const std::string& text) {
       (field == "name" ? request.name : request.sha256) = content.get<std::string>();
     }
     if (request.name.empty() || request.name.size() > 200) refuse("name", "The job needs a name of up to 200 letters.");
-    if (!is_hex_name(request.sha256, 64))
-      refuse("sha256", "Name the job by its SHA-256, and send it as a blob before.");
+    if (!is_hex_name(request.sha256, 64)) refuse("sha256", "Give the job's SHA-256, and send its file first.");
   }
   if (count != 1) refuse("", "A request is exactly one of open, command, load and close.");
   return request;

@@ -81,14 +81,14 @@ boost::asio::awaitable<void> MachineRooms::handle(RoomHere room, Page page, Mach
   const bool steers = room->steering == page;
   if (request.kind == MachineRequest::Kind::open) {
     if (room->steering && !steers)
-      throw Busy{"Another page steers " + room->machine.name +
-                 ": you see what it does. Close that page to steer here."};
+      throw Busy{"Another page controls " + room->machine.name +
+                 ". You can watch it; close that page to control the machine here."};
     co_await open(room, page, std::move(request.content));
     co_return;
   }
   if (!room->session) throw Error(ErrorCode::invalid_input, "do", "The machine is not connected: connect it first.");
   if (!steers && !anyone_may(request))
-    throw Busy{room->steering ? "Another page steers " + room->machine.name + ": only pause and stop work here."
+    throw Busy{room->steering ? "Another page controls " + room->machine.name + ". Only pause and stop work here."
                               : "Take the machine over first: connect it here."};
   switch (request.kind) {
     case MachineRequest::Kind::command:
@@ -182,7 +182,7 @@ boost::asio::awaitable<void> MachineRooms::open(RoomHere room, Page page, Json o
     std::rethrow_exception(failed);
   }
   if (room->steering != page) {  // it went away meanwhile: nothing was sent yet
-    session->end("The page went away.");
+    session->end("The page was closed.");
     co_return;
   }
   begin(room, session);

@@ -79,7 +79,7 @@ boost::asio::awaitable<void> MachineRooms::serve_here(int descriptor, Head head,
   beast::tcp_stream tcp(boost::asio::ip::tcp::socket(io_, boost::asio::ip::tcp::v4(), descriptor));
   if (full(machine.id)) {
     co_await refuse_page(std::move(tcp), error_response(head, http::status::too_many_requests, "invalid_input", "",
-                                                        "Too many pages are at this machine: close some."));
+                                                        "Too many pages show this machine: close some."));
     co_return;
   }
   const auto page = std::make_shared<MachinePage>(beast::websocket::stream<beast::tcp_stream>(std::move(tcp)));
@@ -166,15 +166,15 @@ void MachineRooms::leave(const RoomHere& room, const Page& page) {
       const Json before = room->session->state();
       const bool job = room->session->job_active();
       const bool moved = before["phase"] != "idle" && before["phase"] != "alarm" && before["phase"] != "paused";
-      room->session->hold("The page that steered the machine is gone.");
+      room->session->hold("The page that controlled the machine was closed.");
       if (job) {
         // The port stays open: closing it may reset the board, and with it what the held job needs to go on.
-        room->held_because = "The page that steered " + room->machine.name + " vanished in the middle of the job " +
-                             before["job"]["name"].get<std::string>() + ": the machine was held, laser off.";
+        room->held_because = "The page that controlled " + room->machine.name + " was closed during the job " +
+                             before["job"]["name"].get<std::string>() + ": the machine was paused with its laser off.";
         tell_events(*room, Json::array({{{"event", "note"}, {"text", room->held_because}, {"now_s", 0}}}));
       } else {
-        room->session->end(moved ? "The page that steered is gone; what moved was stopped."
-                                 : "The page that steered is gone.");
+        room->session->end(moved ? "The page that controlled the machine was closed, so the movement was stopped."
+                                 : "The page that controlled the machine was closed.");
         close(*room);
       }
     }

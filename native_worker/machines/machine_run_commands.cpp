@@ -105,13 +105,13 @@ int machine_send(const std::vector<std::string>& words, const std::atomic<bool>&
   const Machine machine = driven_machine(registry, flags);
   Terminal terminal(registry, machine, options_of(flags), interrupted, flags.given("--yes"));
   if (terminal.is_mill() && z.empty() && !Terminal::can_ask())
-    throw Error(ErrorCode::invalid_input, "--z",
-                "Where z is 0 only you can say: add --z here when the tool's tip touches the stock, or --z kept when z "
-                "was set before with this tool.");
+    throw Error(
+        ErrorCode::invalid_input, "--z",
+        "State where z is 0: add --z here if the tool's tip touches the stock now, or --z kept if z was set before with this tool.");
   if (terminal.is_mill() && files.size() > 1 && !Terminal::can_ask())
-    throw Error(ErrorCode::invalid_input, "--job",
-                "Between two jobs z is set with the next tool, and nobody can be asked here: run it in a terminal, or "
-                "send the jobs one by one.");
+    throw Error(
+        ErrorCode::invalid_input, "--job",
+        "Between two jobs, z must be set with the next tool, and this is not a terminal that can ask: run the command in a terminal, or send the jobs one by one.");
   terminal.connect();
   // All of them first: a second job that cannot run is known before the first has cut anything.
   for (std::size_t i = files.size(); i-- > 0;)
@@ -150,9 +150,9 @@ int machine_origin(const std::vector<std::string>& words, const std::atomic<bool
                 "the stock.");
   terminal.connect();
   if (at == "corner" && terminal.state()["position_known"] != true && !terminal.can("home"))
-    throw Error(ErrorCode::invalid_input, "--at",
-                "Where the bed's corner is only a machine with switches knows: jog to the material's corner and use "
-                "--at head.");
+    throw Error(
+        ErrorCode::invalid_input, "--at",
+        "A machine without limit switches does not know where the bed's corner is: jog to the material's corner and use --at head.");
   if (at == "corner") terminal.know_position();
   if (terminal.state()["phase"] == "alarm")
     throw Error(ErrorCode::could_not_solve, "machine",
@@ -179,7 +179,7 @@ int machine_frame(const std::vector<std::string>& words, const std::atomic<bool>
   };
   const GcodeBounds bounds = machine.kind == MachineKind::ruida ? ruida_bounds(*job) : gcode_bounds();
   if (!bounds.named[0] && !bounds.named[1])
-    throw Error(ErrorCode::invalid_input, "--job", "The job moves nowhere in x and y: choose another.");
+    throw Error(ErrorCode::invalid_input, "--job", "The job does not move in x and y: choose another.");
   Terminal terminal(registry, machine, options_of(flags), interrupted, flags.given("--yes"));
   terminal.connect();
   terminal.know_position();
@@ -188,7 +188,7 @@ int machine_frame(const std::vector<std::string>& words, const std::atomic<bool>
   for (std::size_t axis = 0; axis < 2; ++axis) {
     if (bounds.named[axis]) continue;
     terminal.run_until([](const Json& s) { return s["work_mm"].is_array(); }, 5,
-                       "The machine does not tell where its head stands: home it first.");
+                       "The machine does not report where its head is: home it first.");
     frame[axis] = frame[axis + 2] = terminal.state()["work_mm"][axis].get<double>();
   }
   char place[128];
@@ -212,7 +212,7 @@ int machine_stop(const std::vector<std::string>& words, const std::atomic<bool>&
   terminal.session().command({{"do", "stop"}});
   terminal.run_until([](const Json& s) { return s["phase"] != "stopping"; }, 5,
                      machine.name + " does not answer: if it moves, switch it off.");
-  std::printf("%s was told to stop.\n", machine.name.c_str());
+  std::printf("The stop command was sent to %s.\n", machine.name.c_str());
   return 0;
 }
 

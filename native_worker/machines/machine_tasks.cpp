@@ -181,7 +181,7 @@ void MachineTasks::run(const Task& task, Work work, std::function<void()> ended)
     } catch (const std::bad_alloc&) {
       fail(ErrorCode::out_of_memory, "sha256", "There is not enough memory for this file: make it smaller.");
     } catch (const std::exception& error) {
-      fail(ErrorCode::internal, "", std::string("Something went wrong that should not have: ") + error.what());
+      fail(ErrorCode::internal, "", std::string("Internal error: ") + error.what());
     }
     if (task->keep_) task->keep_();
     const Json now = task->json();

@@ -60,7 +60,7 @@ void Terminal::serve() {
 void Terminal::connect() {
   run_until([](const Json& s) { return s["connection"] == "ready" && s["phase"] != "unknown"; }, 15,
             "Nothing answers at " + machine_.name +
-                ": see whether it is on, and whether controller and baud rate are right.");
+                ": check that the machine is on, and that controller and baud rate are right.");
 }
 
 bool Terminal::can_ask() { return ::isatty(STDIN_FILENO) == 1; }
@@ -82,8 +82,9 @@ std::string Terminal::ask(const std::string& question) {
 void Terminal::confirm(const std::string& question) {
   if (yes_) return;
   if (!can_ask())
-    throw Error(ErrorCode::invalid_input, "--yes",
-                "Nobody can be asked here: run it in a terminal, or add --yes when somebody stands at the machine.");
+    throw Error(
+        ErrorCode::invalid_input, "--yes",
+        "This is not a terminal that can ask for confirmation: run the command in a terminal, or add --yes if somebody stands at the machine.");
   if (ask(question + " Type yes:") != "yes") throw Error(ErrorCode::cancelled, "", "Not confirmed: nothing was moved.");
 }
 
@@ -100,7 +101,7 @@ void Terminal::know_position() {
     session_->command({{"do", "home"}, {"confirmed", true}});
     run_until(
         [](const Json& s) { return (s["phase"] == "idle" && s["position_known"] == true) || s["phase"] == "alarm"; },
-        240, "Homing does not end: switch the machine off and see what blocks it.");
+        240, "Homing did not end: switch the machine off and check what blocks it.");
     if (const Json s = state(); s["phase"] == "alarm")
       throw Error(ErrorCode::could_not_solve, "machine", sentence_of(s["alarm"], "Homing failed."));
   } else if (can("set_origin")) {
@@ -108,11 +109,11 @@ void Terminal::know_position() {
     set_origin("xy");
     std::fprintf(stderr, "The machine has no switches: x and y are 0 where the head stands.\n");
     run_until([](const Json& s) { return s["position_known"] == true; }, 5,
-              "The machine does not take the origin: see its console.");
+              "The machine did not accept the origin: check its console.");
   } else {
     throw Error(ErrorCode::could_not_solve, "machine",
                 machine_.name + " is not ready (" + now["phase"].get<std::string>() +
-                    "): " + sentence_of(now["alarm"], "see what it shows."));
+                    "): " + sentence_of(now["alarm"], "look at its display."));
   }
 }
 
@@ -121,10 +122,10 @@ void Terminal::set_origin(const std::string& axes, const std::string& at) {
   // It is written to the board's memory, and some boards hear nothing while they write.
   const auto written = std::chrono::steady_clock::now() + 150ms;
   run_until([&](const Json&) { return all_answered() && std::chrono::steady_clock::now() > written; }, 5,
-            "The machine does not take the origin: see its console.");
+            "The machine did not accept the origin: check its console.");
   if (const Json s = state(); s["error"].is_object())
     throw Error(ErrorCode::could_not_solve, "machine",
-                "The machine refused the origin: " + sentence_of(s["error"], "see what it shows."));
+                "The machine refused the origin: " + sentence_of(s["error"], "look at its display."));
 }
 
 void Terminal::run_until_rest(const std::string& what) {
@@ -133,14 +134,14 @@ void Terminal::run_until_rest(const std::string& what) {
       [&](const Json& s) {
         if (s["phase"] == "alarm")
           throw Error(ErrorCode::could_not_solve, "machine",
-                      sentence_of(s["alarm"], "The machine is in alarm: see what it shows."));
+                      sentence_of(s["alarm"], "The machine is in alarm: look at its display."));
         if (s["error"].is_object())
           throw Error(ErrorCode::could_not_solve, "machine",
-                      "The machine refused to " + what + ": " + sentence_of(s["error"], "see what it shows."));
+                      "The machine refused to " + what + ": " + sentence_of(s["error"], "look at its display."));
         if (s["phase"] != "idle" || !all_answered()) rests_since = std::chrono::steady_clock::now();
         return std::chrono::steady_clock::now() - rests_since > 1500ms;  // reports come every half second
       },
-      600, "The move does not end, or a line of it was lost: see what the machine does, and try again.");
+      600, "The move did not end, or a line was lost: check what the machine is doing, and try again.");
 }
 
 std::string Terminal::sentence_of(const Json& message, const std::string& otherwise) {

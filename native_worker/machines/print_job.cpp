@@ -109,11 +109,13 @@ CheckedOrder check_order(const PrinterDescription& printer, const PrintOrder& or
   }
   if (order.mirrored) {
     if (document.media_type != "application/pdf")
-      refuse("mirrored", "Only a PDF is mirrored here: export the picture as PDF, or mirrored.");
+      refuse(
+          "mirrored",
+          "Only PDF files can be mirrored while printing: export the picture as PDF, or export it already mirrored.");
     checked.mirrored = mirrored_pdf(order.document);
   }
   if (!printer.scaling_can_be_off)
-    checked.notes.push_back(name + " does not promise to leave the size alone: measure the first page.");
+    checked.notes.push_back(name + " does not guarantee to print at true size: measure the first page.");
   return checked;
 }
 
@@ -236,7 +238,8 @@ int follow(const PrinterAddress& address, int job_id, const std::atomic<bool>& c
       fail(address.name + " no longer knows the job: see whether its sheets came out before printing again.");
     ipp_attribute_t* state = answer.ok() ? ippFindAttribute(answer.message.get(), "job-state", IPP_TAG_ENUM) : nullptr;
     if (!state) {
-      if (++failures >= most_failures) fail(address.name + " does not say how the job goes: see whether it prints.");
+      if (++failures >= most_failures)
+        fail(address.name + " does not report the progress of the job: check whether it prints.");
       continue;
     }
     failures = 0;
@@ -248,12 +251,12 @@ int follow(const PrinterAddress& address, int job_id, const std::atomic<bool>& c
         fail("The job was cancelled at " + address.name + (reasons.empty() ? "" : ": " + reasons) +
              ". Print again when it is ready.");
       case IPP_JSTATE_ABORTED:
-        fail(address.name + " gave the job up" + (reasons.empty() ? "" : ": " + reasons) +
-             ". Mend that at the printer, and print again.");
+        fail(address.name + " cancelled the job" + (reasons.empty() ? "" : ": " + reasons) +
+             ". Fix this at the printer, and print again.");
       case IPP_JSTATE_STOPPED:
       case IPP_JSTATE_HELD:
         progress("waiting", address.name + " stopped" + (reasons.empty() ? "" : ": " + reasons) +
-                                ". It goes on when that is mended.");
+                                ". It continues when that is fixed.");
         break;
       default:
         progress("printing", "Printing" + (sheets > 0 ? ", sheet " + std::to_string(sheets) : "") +
@@ -276,7 +279,7 @@ int follow_print(const PrinterAddress& address, int job_id, const std::atomic<bo
 
 PrintResult print_document(const PrinterAddress& address, const PrintOrder& order, const std::atomic<bool>& cancelled,
                            const PrintProgress& progress, const std::function<void(const PrintResult&)>& taken) {
-  progress("waiting", "Asking " + address.name + " what it takes.");
+  progress("waiting", "Asking " + address.name + " what it can print.");
   const PrinterDescription printer = describe_printer(address, cancelled);
   const CheckedOrder checked = check_order(printer, order, address.name);
   if (!printer.accepting)
@@ -297,7 +300,7 @@ PrintResult print_document(const PrinterAddress& address, const PrintOrder& orde
   answer = ask_patiently(address, make(IPP_OP_PRINT_JOB), document, cancelled, progress);
   if (!answer.ok()) fail_refused(answer, address.name, checked.media);
   ipp_attribute_t* id = ippFindAttribute(answer.message.get(), "job-id", IPP_TAG_INTEGER);
-  if (!id) fail(address.name + " took the document and gave no number for it: see whether it prints.");
+  if (!id) fail(address.name + " received the document but did not confirm it: check whether it prints.");
   PrintResult result{ippGetInteger(id, 0), 0, checked.notes};
   progress("printing", checked.notes.empty() ? "Printing." : checked.notes.front());
   if (taken) taken(result);

@@ -131,7 +131,7 @@ Bytes slice_model(ByteView model, const std::string& profile, const std::filesys
     profile_file = data / "slicer_profiles" / (profile + ".ini");
   }
   if (model.size() < 84)
-    throw Error(ErrorCode::invalid_input, "sha256", "That is no model: give an STL or a 3MF file.");
+    throw Error(ErrorCode::invalid_input, "sha256", "The file is not a model: choose an STL or a 3MF file.");
   const WorkFolder folder(std::filesystem::absolute(data));
   const auto input = folder.path / (as_text(model).starts_with("PK") ? "model.3mf" : "model.stl"),
              output = folder.path / "sliced.gcode";

@@ -113,13 +113,13 @@ class Request {
     const CURLcode code = curl_easy_perform(curl_.get());
     if (*conversation_.cancelled) throw Error(ErrorCode::cancelled, "", "Cancelled.");
     if (code == CURLE_OPERATION_TIMEDOUT)
-      fail(machine_.name + " stayed silent at " + machine_.url +
+      fail(machine_.name + " did not answer at " + machine_.url +
            ": see whether it is switched on and reachable, and try again.");
     if (code == CURLE_PEER_FAILED_VERIFICATION)
       fail("The certificate of " + machine_.name +
            " is not one this computer trusts: install it, or register the machine with http.");
     if (code == CURLE_WRITE_ERROR)
-      fail(machine_.name + " answered with more than 1 MB, which is no answer: see whether its address is right.");
+      fail(machine_.name + " sent an answer of more than 1 MB, so it is probably another program: check its address.");
     if (code != CURLE_OK)
       fail(machine_.name + " cannot be reached at " + machine_.url + " (" + std::string(curl_easy_strerror(code)) +
            "): see whether it is switched on and its address is right.");

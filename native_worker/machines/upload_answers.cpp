@@ -50,10 +50,11 @@ bool flag_at(const Json& json, std::initializer_list<const char*> path) {
 
 UploadReply read_reply(const Machine& machine, long status, const std::string& answer) {
   if (status >= 300 && status < 400)
-    fail(machine.name + " says its address is another one: register it with that address.");
+    fail(machine.name + " redirects to another address: register it with that address.");
   // OctoPrint takes a request with a key it does not know for one of a browser.
   if (status == 401 || status == 403 || (status == 400 && answer.find("CSRF") != std::string::npos))
-    fail(machine.name + " does not know the key: register it anew with --api-key-file and a key from its settings.");
+    fail(machine.name +
+         " does not accept the key: remove it and add it again with --api-key-file and a key from its settings.");
   return {status, parse_json_text(answer)};
 }
 

@@ -74,8 +74,10 @@ TEST_CASE("Repair.SoundMeshesComeBackUnchanged") {
 }
 
 TEST_CASE("Repair.OpenSurfacesAreReported") {
-  CHECK(said(repaired(tube(9, 3))) == "The surface has 2 holes; it is not closed.\n");
-  CHECK(said(repaired(grid(3, 3))) == "The surface has 1 hole; it is not closed.\n");
+  CHECK(said(repaired(tube(9, 3))) ==
+        "The surface has 2 holes. Fine for reliefs; a zippable or a mould needs a closed surface.\n");
+  CHECK(said(repaired(grid(3, 3))) ==
+        "The surface has 1 hole. Fine for reliefs; a zippable or a mould needs a closed surface.\n");
 }
 
 TEST_CASE("Repair.WeldsATriangleSoup") {
@@ -130,8 +132,9 @@ TEST_CASE("Repair.TurnsAnEdgeInsteadOfOpeningACrack") {
   REQUIRE(Adjacency(mesh).is_manifold());
   const RepairedMesh result = repaired(mesh);
   expect_sound(mesh, result);
-  CHECK(said(result) ==
-        "Mended 1 triangle without area by turning an edge.\nThe surface has 1 hole; it is not closed.\n");
+  CHECK(
+      said(result) ==
+      "Repaired 1 triangle without area by flipping an edge.\nThe surface has 1 hole. Fine for reliefs; a zippable or a mould needs a closed surface.\n");
   CHECK(result.mesh.face_count() == 4);
   CHECK(face_areas(result.mesh).minCoeff() > 0.4);
   CHECK_THAT(surface_area(result.mesh), WithinAbs(4, 1e-15));
@@ -182,7 +185,8 @@ TEST_CASE("Repair.OneSheetOfADoubleSidedSurface") {
   expect_sound(mesh, result);
   CHECK(result.mesh.face_count() == 18);
   CHECK(result.mesh.F == grid(3, 3).F);
-  CHECK(said(result).find("Removed 18 triangles that repeated the surface for its other side.") != std::string::npos);
+  CHECK(said(result).find("Removed 18 triangles that duplicated the surface facing the other way.") !=
+        std::string::npos);
 }
 
 TEST_CASE("Repair.TouchingSolidsComeApartClosed") {

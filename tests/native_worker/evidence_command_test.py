@@ -129,7 +129,7 @@ class Evidence(unittest.TestCase):
         self.assertLess(diagnosis["unseen"]["error_after_mm"], 0.5 * diagnosis["unseen"]["error_before_mm"])
         self.assertAlmostEqual(sum(c["probability"] for c in diagnosis["hypotheses"]), 1, delta=0.05)
         page = (out / "diagnosis.html").read_text()
-        self.assertIn("Scan off its place", page)
+        self.assertIn("Scan in the wrong place", page)
         self.assertNotIn("<script", page)
         self.assertEqual(len((out / "residuals.csv").read_text().splitlines()), len(PLACES) + 1)
         self.assertFalse(any(math.isnan(v) for v in diagnosis["error_before_interval_mm"]))

@@ -165,7 +165,7 @@ class Driven(unittest.TestCase):
         # The next one to steer is told, and may go on.
         following = MachineSocket(self.worker, self.id)
         self.assertIn("done", following.ask(open={"controller": "grbl"}))
-        self.assertTrue(any("vanished in the middle of the job" in e.get("text", "") for e in following.events), following.events)
+        self.assertTrue(any("was closed during the job" in e.get("text", "") for e in following.events), following.events)
         self.assertIn("done", following.do("resume", confirmed=True))
         following.wait(lambda s: s["phase"] == "running")
         self.assertIn("done", following.do("stop"))

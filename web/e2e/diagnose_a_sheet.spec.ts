@@ -21,7 +21,7 @@ const give = (page: Page, files: readonly ReturnType<typeof fileOf>[]) =>
 async function openObject(page: Page): Promise<void> {
   await openRoom(page);
   await give(page, measuredObject());
-  await expect(strip(page, 'Set-up compared as it stands')).toBeVisible();
+  await expect(strip(page, 'Compared with the settings as they are')).toBeVisible();
 }
 
 /** As little as still names the cause. */
@@ -69,7 +69,7 @@ test('three files, a named cause, the extended model, the report, the next print
   const meanOf = async () =>
     Number(/mean ([\d.]+)/.exec((await distances.getAttribute('aria-label')) ?? '')?.[1]);
   const calibrated = await meanOf();
-  await page.getByRole('switch', { name: 'With the extended model' }).click();
+  await page.getByRole('switch', { name: 'Show the simulation with this cause included' }).click();
   await expect(distances).toHaveAttribute('aria-label', /simulated, extended/);
   expect(await meanOf()).toBeLessThan(calibrated);
   await expectAccessibleEverywhere(page, 'diagnosed');
@@ -103,7 +103,7 @@ test('three files, a named cause, the extended model, the report, the next print
   await page.getByRole('link', { name: 'Evidence', exact: true }).click();
   await expect(strip(page, 'Diagnosis ready')).toBeVisible();
   await expect(cause).toBeVisible();
-  await expect(page.getByRole('img', { name: /^Height, simulated less measured/ })).toBeVisible();
+  await expect(page.getByRole('img', { name: /^Height, simulated minus measured/ })).toBeVisible();
 });
 
 test('a calibration says what the data do not tell, and takes what it fitted along', async ({ page }) => {
@@ -134,7 +134,7 @@ test('a run stops at once, and what was there stays', async ({ page }) => {
   await expect(page.getByText('Saved', { exact: true })).toBeVisible();
   await page.reload();
   await expect(page.getByRole('button', { name: /^Object 1 196 points/ })).toBeVisible();
-  await expect(strip(page, 'Set-up compared as it stands')).toBeVisible();
+  await expect(strip(page, 'Compared with the settings as they are')).toBeVisible();
 });
 
 test('files that lack a third, are strange or in metres are said in words', async ({ page }) => {
@@ -145,7 +145,7 @@ test('files that lack a third, are strange or in metres are said in words', asyn
   await expect(page.getByText('Still missing: measured.csv')).toBeVisible();
   await give(page, [measured]);
   await expect(page.getByText('Still missing')).toBeHidden();
-  await expect(strip(page, 'Set-up compared as it stands')).toBeVisible();
+  await expect(strip(page, 'Compared with the settings as they are')).toBeVisible();
   await give(page, [fileOf('picture.tiff', 'x')]);
   await expect(page.getByRole('alert').getByText('Could not open picture.tiff')).toBeVisible();
   await expect(page.getByText('mould.obj, setup.json, measured.csv')).toBeVisible();
@@ -216,15 +216,15 @@ test('a virtual object with a fault of one’s choice', async ({ page }) => {
   await openRoom(page);
   await page.getByRole('button', { name: 'Try a virtual object' }).click();
   const dialog = page.getByRole('dialog', { name: 'Make a virtual object' });
-  await expect(dialog.getByRole('textbox', { name: 'Heat falls off in x' })).toHaveValue('0.30');
+  await expect(dialog.getByRole('textbox', { name: 'Colder towards the right' })).toHaveValue('0.30');
   await dialog.getByRole('combobox', { name: 'Mould' }).selectOption('Pyramid');
   // Help lies over the dialog: in the browser's top layer, like the dialog itself.
-  await dialog.getByText('Heat falls off in x').hover();
+  await dialog.getByText('Colder towards the right').hover();
   await expect(page.locator('.tip:popover-open')).toBeVisible();
   await dialog.getByRole('textbox', { name: 'Points', exact: true }).fill('300');
   await dialog.getByRole('textbox', { name: 'Points', exact: true }).press('Tab');
   await expectAccessibleEverywhere(page, 'virtual object');
   await dialog.getByRole('button', { name: 'Make it' }).click();
   await expect(page.getByRole('button', { name: /^virtual pyramid 3\d\d points/ })).toBeVisible(seen);
-  await expect(strip(page, 'Set-up compared as it stands')).toBeVisible(seen);
+  await expect(strip(page, 'Compared with the settings as they are')).toBeVisible(seen);
 });

@@ -83,8 +83,8 @@ test('a K40 on USB: connect, home, cut through spoiled packets, and the cable pu
     const dialog = page.getByRole('dialog');
     await dialog.getByLabel('Name').fill('K40');
     await dialog.getByLabel('Kind').selectOption({ label: 'K40 laser (M2Nano)' });
-    await dialog.getByLabel('Bed, side to side, mm').fill('300');
-    await dialog.getByLabel('Bed, front to back, mm').fill('200');
+    await dialog.getByLabel('Bed width, mm').fill('300');
+    await dialog.getByLabel('Bed depth, mm').fill('200');
     await dialog.getByRole('button', { name: 'Add', exact: true }).click();
     await page.getByLabel('Model or project file').setInputFiles(fileOf('plate.svg', plate));
     await expect(page.getByRole('contentinfo').getByText('Job ready').first()).toBeVisible();

@@ -137,7 +137,7 @@ test('a laser on a cable: connect, home, cut, hold, go on, and the cable pulled'
     await expect(chip(page, 'Ready')).toBeVisible({ timeout: 20_000 });
     await page.getByRole('button', { name: 'Origin at the bed’s corner' }).click();
     await footer.getByRole('button', { name: 'Cut the rest' }).click();
-    await confirm(page, 'Go on with the laser on');
+    await confirm(page, 'Continue with the laser on');
     await expect(footer.locator('strong').getByText('plate is done')).toBeVisible({ timeout: 90_000 });
   } finally {
     await bench.end();

@@ -9,7 +9,7 @@ test('from a sample to a solid of the asked thickness', async ({ page }) => {
   await thickness.press('Enter');
   await solve(page);
   await expect(page.getByRole('contentinfo').locator('.job-text')).toContainText(
-    /Solved in .* than plain scaling/,
+    /Solved in .* than with plain scaling/,
   );
   const waiting = page.waitForEvent('download');
   await page.getByRole('button', { name: 'Export STL' }).click();
@@ -82,7 +82,7 @@ test('a viewpoint set from the view stays as far away', async ({ page }) => {
   await page.getByRole('button', { name: /^Advanced/ }).click();
   const angle = page.getByRole('textbox', { name: 'Field of view' });
   await expect(angle).toHaveValue(/^20/);
-  const set = page.getByRole('button', { name: 'Set from this view' });
+  const set = page.getByRole('button', { name: 'Use this view' });
   for (let turn = 0; turn < 3; ++turn) {
     await page.getByLabel('Model and relief').focus();
     await page.keyboard.press('Shift+ArrowRight');

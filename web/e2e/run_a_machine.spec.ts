@@ -119,8 +119,8 @@ test('from the sample star to a finished laser job', async ({ page }) => {
   await page.getByRole('button', { name: 'Make the ribbon', exact: true }).click();
   await expect(strip(page, 'Ribbon unfolded')).toBeVisible({ timeout: 150_000 });
   await page.getByRole('radio', { name: 'Sheets to cut' }).click();
-  await page.getByRole('textbox', { name: 'Bed, x' }).fill('300');
-  await page.getByRole('textbox', { name: 'Bed, x' }).press('Enter');
+  await page.getByRole('textbox', { name: 'Bed width' }).fill('300');
+  await page.getByRole('textbox', { name: 'Bed width' }).press('Enter');
   await expect(page.getByRole('img', { name: / of 300 × 300\smm; / })).toBeVisible();
   const send = page.getByRole('button', { name: /Send to a machine/ });
   await send.click();
@@ -220,7 +220,7 @@ test('stopped in the middle: the position is unknown, and the rest is cut after 
   await expect(startButton(page)).toHaveAttribute('aria-disabled', 'true');
   await homeIt(page);
   await page.getByRole('button', { name: /^Cut the rest/ }).click();
-  await confirm(page, /^Cut the rest/, 'Go on with the laser on', /begins at line \d+/);
+  await confirm(page, /^Cut the rest/, 'Continue with the laser on', /begins at line \d+/);
   await expect(chip(page)).toHaveText('Working');
   await expect(strip(page, 'square is done')).toBeVisible({ timeout: 120_000 });
 });
@@ -276,8 +276,8 @@ test('wrong files are said in words and the work stays', async ({ page }) => {
 
 test('a job that does not fit is said before anything moves', async ({ page }) => {
   await openDrawing(page);
-  await page.getByRole('textbox', { name: 'Place, x' }).fill('390');
-  await page.getByRole('textbox', { name: 'Place, x' }).press('Enter');
+  await page.getByRole('textbox', { name: 'Position in x' }).fill('390');
+  await page.getByRole('textbox', { name: 'Position in x' }).press('Enter');
   await expect(strip(page, 'The job does not fit')).toBeVisible();
   await practise(page);
   await homeIt(page);
@@ -293,7 +293,7 @@ test('a profile goes out as a file and comes back', async ({ page }) => {
   await menu.click();
   await page.getByRole('menuitem', { name: 'Add a machine' }).click();
   await dialog(page).getByLabel('Name').fill('Workshop laser');
-  await dialog(page).getByLabel('Bed, side to side, mm').fill('600');
+  await dialog(page).getByLabel('Bed width, mm').fill('600');
   await dialog(page).getByRole('button', { name: 'Add', exact: true }).click();
   await expect(menu).toHaveText('Workshop laser');
   await menu.click();
@@ -320,7 +320,7 @@ const showsTest = (page: Page) => page.getByRole('region', { name: 'What the tes
 test('material is tested, and what the tests show is set and kept', async ({ page }) => {
   test.setTimeout(420_000); // a small test is run to its end
   await openDrawing(page);
-  await button(page, 'Keep as a material').click();
+  await button(page, 'Save as a material').click();
   await dialog(page).getByLabel('Name').fill('Felt');
   await dialog(page).getByRole('button', { name: 'Keep', exact: true }).click();
   await expect(page.getByLabel('Preset').locator('option:checked')).toHaveText('Felt');
@@ -329,10 +329,10 @@ test('material is tested, and what the tests show is set and kept', async ({ pag
   await button(page, 'Test material').click();
   await expect(page.getByRole('combobox', { name: 'Best square' }).locator('option')).toHaveCount(26);
   for (const [name, value] of [
-    ['Powers', '2'],
-    ['Speeds', '2'],
-    ['Speed from', '50'],
-    ['Speed to', '100'],
+    ['Number of powers', '2'],
+    ['Number of speeds', '2'],
+    ['Lowest speed', '50'],
+    ['Highest speed', '100'],
   ] as const) {
     await page.getByRole('textbox', { name, exact: true }).fill(value);
     await page.getByRole('textbox', { name, exact: true }).press('Enter');

@@ -47,7 +47,9 @@ test('a star by mouse: windings, the same place on both sides, SVG, reload', asy
   await page.getByRole('radio', { name: 'Distortion' }).click();
   await expect(page.getByRole('img', { name: /^Distortion: colours from 1/ })).toBeVisible();
   await page.getByRole('radio', { name: 'Zipped' }).click();
-  await expect(page.getByText('Animation: edges keep their lengths. Not a simulation.')).toBeVisible();
+  await expect(
+    page.getByText('Animation only: lengths are kept, but forces are not simulated.'),
+  ).toBeVisible();
 
   await page.getByRole('button', { name: 'Make the ribbon', exact: true }).click();
   await expect(strip(page, 'Ribbon unfolded')).toBeVisible({ timeout: 150_000 });
@@ -64,8 +66,8 @@ test('a star by mouse: windings, the same place on both sides, SVG, reload', asy
   await page.getByRole('radio', { name: 'Sheets to cut' }).click();
   const words = /^\d pieces on \d sheets? of 600 × 300\smm; zipper to cut: \d\.\d\d\sm$/;
   await expect(page.getByRole('img', { name: words })).toBeVisible();
-  await page.getByRole('textbox', { name: 'Bed, x' }).fill('200');
-  await page.getByRole('textbox', { name: 'Bed, x' }).press('Enter');
+  await page.getByRole('textbox', { name: 'Sheet width' }).fill('200');
+  await page.getByRole('textbox', { name: 'Sheet width' }).press('Enter');
   await expect(page.getByRole('img', { name: / of 200 × 300\smm; / })).toBeVisible();
   await expect(strip(page, 'Ribbon unfolded')).toBeVisible(); // which does not depend on the bed
   const planned = page.waitForEvent('download');
@@ -92,7 +94,9 @@ test('cloth zipped up, frame by frame, and what became of it', async ({ page }) 
   await expect(page.getByRole('radio', { name: 'As cloth' })).toBeChecked();
   await page.getByRole('slider', { name: 'How far it is bent' }).fill('0.5');
   await page.getByRole('radio', { name: 'As drawn' }).click();
-  await expect(page.getByText('Animation: edges keep their lengths. Not a simulation.')).toBeVisible();
+  await expect(
+    page.getByText('Animation only: lengths are kept, but forces are not simulated.'),
+  ).toBeVisible();
 });
 
 test('a star by keyboard alone', async ({ page }) => {
@@ -167,7 +171,7 @@ test('parts drawn by hand: a border and a cut with the mouse, an opening moved w
   await click(0.4, 0.7, 1);
   await click(0.53, 0.7, 2);
   await expect(page.getByRole('button', { name: 'Close it' })).toHaveAttribute('aria-disabled', 'true');
-  await pane.getByLabel('Model with the zipper’s course').focus();
+  await pane.getByLabel('Model with the line of the zipper').focus();
   for (let i = 0; i < 12; ++i) await page.keyboard.press('Shift+ArrowLeft');
   await click(0.47, 0.7, 3);
   await click(0.6, 0.7, 4);
@@ -178,7 +182,7 @@ test('parts drawn by hand: a border and a cut with the mouse, an opening moved w
 
   // The openings that were found are taken over; one is moved by arrow keys, which is one step to undo.
   await page.getByRole('radio', { name: 'Opening' }).click();
-  await page.getByRole('button', { name: 'Move those found' }).click();
+  await page.getByRole('button', { name: 'Move the points found' }).click();
   await expect(page.getByText('Drawn by hand: 1 border, 2 openings')).toBeVisible();
   await expect(strip(page, 'Preview up to date')).toBeVisible();
   const opening = page.getByRole('button', { name: /^Opening [12]$/ }).first();

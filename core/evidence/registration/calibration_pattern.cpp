@@ -77,7 +77,9 @@ CalibrationPattern make_calibration_pattern(const CalibrationPatternOptions& opt
   if (pattern.opening_mm.y() > pattern.sheet_mm.y())
     refuse("clamp_opening_y_mm", "The clamp opening is longer than the sheet: give the sheet's size with its rim.");
   if (options.coarsest_mm < options.finest_mm)
-    refuse("coarsest_mm", "The coarsest noise must not be finer than the finest.");
+    refuse(
+        "coarsest_mm",
+        "The spacing of the coarsest noise must not be smaller than that of the finest: raise coarsest_mm or lower finest_mm.");
   pattern.seed = static_cast<std::uint32_t>(options.seed);
   pattern.scales_mm = octaves_mm(options.finest_mm, options.coarsest_mm);
   const double radius = std::min(8.0, pattern.opening_mm.minCoeff() / 14), side = radius;

@@ -21,39 +21,41 @@ struct CalibrationPatternOptions {
   double finest_mm = 1.2, coarsest_mm = 40;
   double margin_mm = 3;
 
-  static constexpr auto parameters =
-      std::tuple{parameter("seed", &CalibrationPatternOptions::seed, "Seed", unit::none, 0, 2147483647,
-                           "Equal seeds give equal noise.")
-                     .group("Pattern")
-                     .slider(1, 100),
-                 parameter("finest_mm", &CalibrationPatternOptions::finest_mm, "Finest noise", unit::mm, 0.2, 20,
-                           "Spacing of the finest noise; it has to survive printing, heat and camera.")
-                     .group("Pattern")
-                     .slider(0.5, 4),
-                 parameter("coarsest_mm", &CalibrationPatternOptions::coarsest_mm, "Coarsest noise", unit::mm, 1, 500,
-                           "Largest spacing; each scale is twice the one before.")
-                     .group("Pattern")
-                     .slider(10, 80),
-                 parameter("margin_mm", &CalibrationPatternOptions::margin_mm, "Margin", unit::mm, 0, 100,
-                           "From the clamp opening's edge inwards to marks and colour patches.")
-                     .group("Pattern")
-                     .slider(0, 15),
-                 parameter("sheet_x_mm", &CalibrationPatternOptions::sheet_x_mm, "Sheet width", unit::mm, 60, 3000,
-                           "Width of the flat sheet, clamped rim included.")
-                     .group("Sheet")
-                     .slider(100, 600),
-                 parameter("sheet_y_mm", &CalibrationPatternOptions::sheet_y_mm, "Sheet length", unit::mm, 60, 3000,
-                           "Length of the flat sheet, front to back.")
-                     .group("Sheet")
-                     .slider(100, 600),
-                 parameter("clamp_opening_x_mm", &CalibrationPatternOptions::clamp_opening_x_mm, "Opening width",
-                           unit::mm, 50, 3000, "Width of the clamp's opening.")
-                     .group("Sheet")
-                     .slider(100, 600),
-                 parameter("clamp_opening_y_mm", &CalibrationPatternOptions::clamp_opening_y_mm, "Opening length",
-                           unit::mm, 50, 3000, "Length of the clamp's opening.")
-                     .group("Sheet")
-                     .slider(100, 600)};
+  static constexpr auto parameters = std::tuple{
+      parameter("seed", &CalibrationPatternOptions::seed, "Seed", unit::none, 0, 2147483647,
+                "Number that selects the random noise of the pattern. The same number gives the same pattern again.")
+          .group("Pattern")
+          .slider(1, 100),
+      parameter(
+          "finest_mm", &CalibrationPatternOptions::finest_mm, "Finest noise", unit::mm, 0.2, 20,
+          "Spacing of the finest noise in the pattern. It must survive printing, heat and the camera: 1.2 mm is usual.")
+          .group("Pattern")
+          .slider(0.5, 4),
+      parameter(
+          "coarsest_mm", &CalibrationPatternOptions::coarsest_mm, "Coarsest noise", unit::mm, 1, 500,
+          "Spacing of the coarsest noise in the pattern. Each level between it and the finest is twice as coarse as the one before.")
+          .group("Pattern")
+          .slider(10, 80),
+      parameter("margin_mm", &CalibrationPatternOptions::margin_mm, "Margin", unit::mm, 0, 100,
+                "Distance from the edge of the clamp opening inwards to the corner marks and colour patches.")
+          .group("Pattern")
+          .slider(0, 15),
+      parameter("sheet_x_mm", &CalibrationPatternOptions::sheet_x_mm, "Sheet width", unit::mm, 60, 3000,
+                "Width of the flat sheet, including the rim held by the clamp.")
+          .group("Sheet")
+          .slider(100, 600),
+      parameter("sheet_y_mm", &CalibrationPatternOptions::sheet_y_mm, "Sheet length", unit::mm, 60, 3000,
+                "Length of the flat sheet, front to back, including the rim held by the clamp.")
+          .group("Sheet")
+          .slider(100, 600),
+      parameter("clamp_opening_x_mm", &CalibrationPatternOptions::clamp_opening_x_mm, "Opening width", unit::mm, 50,
+                3000, "Width of the clamp's opening: the part of the sheet that is formed.")
+          .group("Sheet")
+          .slider(100, 600),
+      parameter("clamp_opening_y_mm", &CalibrationPatternOptions::clamp_opening_y_mm, "Opening length", unit::mm, 50,
+                3000, "Length of the clamp's opening, front to back: the part of the sheet that is formed.")
+          .group("Sheet")
+          .slider(100, 600)};
 };
 
 /// A disc of concentric rings, black and white: the same from all sides, unlike the other three.

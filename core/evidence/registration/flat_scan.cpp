@@ -209,7 +209,7 @@ ScanPart sheet_part(const Model& model) {
   }
   throw Error(
       ErrorCode::invalid_input, "scan",
-      "The scan is closed or has handles, so it cannot be laid flat: cut it to the outer face of the sheet, with one border.");
+      "The scan is closed or has handles, so it cannot be laid flat: trim it to the outer face of the sheet, with one border.");
 }
 
 FlatScan flatten(const TriangleMesh& mesh, int iterations, Context& context) {
@@ -217,7 +217,7 @@ FlatScan flatten(const TriangleMesh& mesh, int iterations, Context& context) {
   const std::vector<int> border = longest_border(mesh, adjacency);
   if (border.size() < 3)
     throw Error(ErrorCode::invalid_input, "scan",
-                "The scan has no border to lay it flat by: cut it to the outer face of the sheet.");
+                "The scan has no border, so it cannot be laid flat: trim it to the outer face of the sheet.");
   context.progress(0, "Laying the scan flat");
   Eigen::MatrixXd place = harmonic(mesh, adjacency, border, border_places(mesh, border), context);
   context.progress(0.3);

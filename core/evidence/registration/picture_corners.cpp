@@ -15,7 +15,7 @@ std::array<Vec2, 4> plane_corners(const std::string& text, const Model& scan, co
   if (!numbers || numbers->size() != 8)
     refuse("The corners must be four pairs of numbers, such as “120,80 1900,95 1880,2010 110,1990”.");
   if (scan.FT.rows() != scan.mesh.F.rows())
-    refuse("The scan has no picture that corners could be pixels of: leave them out.");
+    refuse("The scan has no picture, so corners in pixels cannot be used: leave them out.");
   std::array<Vec2, 4> places;
   for (std::size_t k = 0; k < 4; ++k) {
     bool found = false;

@@ -246,7 +246,7 @@ void align_by_rim(ScanRegistration& result, const CalibrationPattern& pattern, c
   const int seen_sides = (sides & 1) + (sides >> 1 & 1) + (sides >> 2 & 1) + (sides >> 3 & 1);
   if (rim.size() < 12 || seen_sides < 3) {
     result.notes.push_back(
-        "The clamped rim was not scanned on three sides at least, so the points keep the scan's coordinates: align them with the machine's before comparing.");
+        "The scan does not show the clamped rim on at least three sides, so the points keep the scan's coordinates: align them with the machine's before comparing.");
     return;
   }
   Eigen::Matrix4d move = Eigen::Matrix4d::Identity(), scaled = move;
@@ -280,9 +280,10 @@ void align_by_rim(ScanRegistration& result, const CalibrationPattern& pattern, c
   for (RegisteredPoint& p : result.points) p.place_mm = at(p.place_mm);
   result.in_machine_coordinates = true;
   if (std::abs(*result.rim_scale - 1) > 0.01)
-    result.notes.push_back(
-        "The rim is " + std::to_string(static_cast<int>(std::lround(100 * std::abs(1 - 1 / *result.rim_scale)))) +
-        " % too " + (*result.rim_scale > 1 ? "small" : "large") + " in the scan: mend its scale, or scan_unit_mm.");
+    result.notes.push_back("The scanned rim is " +
+                           std::to_string(static_cast<int>(std::lround(100 * std::abs(1 - 1 / *result.rim_scale)))) +
+                           " % too " + (*result.rim_scale > 1 ? "small" : "large") +
+                           " in the scan: correct the scale of the scan, or scan_unit_mm.");
 }
 
 }  // namespace formwright

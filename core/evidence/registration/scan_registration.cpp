@@ -260,7 +260,7 @@ ScanRegistration register_scan(const Model& scan, const CalibrationPattern& patt
     for (Vec2& p : result.marks.place_mm) p.x() *= -1;
     model.mesh.F.col(1).swap(model.mesh.F.col(2));
     if (model.FT.rows() > 0) model.FT.col(1).swap(model.FT.col(2));
-    result.notes.push_back("The scan's faces look away from the print and were turned.");
+    result.notes.push_back("The scan's faces pointed away from the print and were flipped.");
   }
   result.corner_px = picture_corners(result.marks.place_mm, model, colours, flat);
   std::array<Vec2, 4> targets;
@@ -336,7 +336,7 @@ ScanRegistration register_scan(const Model& scan, const CalibrationPattern& patt
   }
   if (weight < 0.05 * static_cast<double>(evidence.weight.size()))
     throw Error(ErrorCode::could_not_solve, "scan",
-                "Almost nothing of the scan lies where the pattern should be: check the corners and the pattern.");
+                "The scan hardly covers the place of the pattern: check the corners and the pattern.");
   result.colour_error_levels = std::sqrt(squared / (3 * weight));
   const MatchStatistics match = match_statistics(reference, seen, flow);
   result.likeness = match.likeness;
@@ -361,7 +361,7 @@ ScanRegistration register_scan(const Model& scan, const CalibrationPattern& patt
     for (int i = 0; i < 3; ++i) there += found.barycentric[i] * flat.row(model.mesh.F(found.face, i)).transpose();
     result.corner_residual_mm[k] = (there - result.marks.place_mm[k]).norm();
   }
-  context.progress(0.96, "Drawing what was found");
+  context.progress(0.96, "Drawing the result");
   draw_displacement(result, model.mesh.F, carried(places, flow, frame), after_corners, pattern);
   result.aligned = bytes_of(seen);
   align_by_rim(result, pattern, options);

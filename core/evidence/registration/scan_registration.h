@@ -36,46 +36,53 @@ struct ScanRegistrationOptions : VariationalFlowOptions {
   static constexpr auto parameters = std::tuple_cat(
       std::tuple{
           parameter("grid_mm", &ScanRegistrationOptions::grid_mm, "Point spacing", unit::mm, 0.2, 100,
-                    "Distance between measured points on the flat sheet.")
+                    "Distance between measured points on the flat sheet. Smaller gives more points and takes longer.")
               .group("Points")
               .slider(1, 10),
           parameter(
               "coordinates", &ScanRegistrationOptions::coordinates, "Coordinates",
-              "Of the points. By the rim: turned and moved so that the clamped rim lies where the machine holds it; as scanned where no rim was scanned.")
+              "Coordinate system of the measured points. Machine, by the rim: the scan is moved so that its clamped rim lies where the machine holds it. As scanned: the scanner's own coordinates; also used if the scan shows no rim.")
               .group("Points"),
-          parameter("sheet_turned", &ScanRegistrationOptions::sheet_turned, "Sheet was turned",
-                    "The sheet lay in the clamp turned by half a turn; its set-up says the same.")
+          parameter(
+              "sheet_turned", &ScanRegistrationOptions::sheet_turned, "Sheet was turned",
+              "Switch on if the sheet lay in the clamp rotated by half a turn (180°); the setup.json of the object must say the same.")
               .group("Points"),
           parameter("clamp_height_mm", &ScanRegistrationOptions::clamp_height_mm, "Clamp height", unit::mm, -500, 500,
-                    "Middle of the clamped sheet above the raised plate.")
+                    "Height of the middle of the clamped sheet above the raised base plate.")
               .group("Points")
               .slider(0, 10),
-          parameter("sheet_thickness_mm", &ScanRegistrationOptions::sheet_thickness_mm, "Thickness", unit::mm, 0, 20,
-                    "Of the rim; the scan shows its upper face.")
+          parameter(
+              "sheet_thickness_mm", &ScanRegistrationOptions::sheet_thickness_mm, "Rim thickness", unit::mm, 0, 20,
+              "Thickness of the sheet at the clamped rim. The scan shows the upper face, and this gives its distance from the middle of the sheet.")
               .group("Points")
               .slider(0.2, 3),
-          parameter("most_sigma_mm", &ScanRegistrationOptions::most_sigma_mm, "Largest uncertainty", unit::mm, 0.01,
-                    100, "Points less certain than this are left out.")
+          parameter(
+              "most_sigma_mm", &ScanRegistrationOptions::most_sigma_mm, "Largest uncertainty", unit::mm, 0.01, 100,
+              "Points with a larger standard deviation than this are left out. Smaller keeps fewer, more reliable points.")
               .group("Points")
               .slider(0.2, 3),
           parameter("scan_sigma_mm", &ScanRegistrationOptions::scan_sigma_mm, "Scan noise", unit::mm, 0, 10,
-                    "Standard deviation of the scan's own shape, added to every point's.")
+                    "Standard deviation of the scanner's own error, added to that of every point. 0.05 mm is usual.")
               .group("Points")
               .slider(0, 0.5),
-          parameter("scan_unit_mm", &ScanRegistrationOptions::scan_unit_mm, "Unit of the scan", unit::mm, 0.0001, 10000,
-                    "How long 1 of the scan's file is; 1000 for metres.")
+          parameter(
+              "scan_unit_mm", &ScanRegistrationOptions::scan_unit_mm, "Unit of the scan", unit::mm, 0.0001, 10000,
+              "Length in millimetres of one unit in the scan's file: 1 for millimetres, 1000 for metres, 25.4 for inches.")
               .group("Scan")
               .slider(0.1, 1000),
           parameter(
               "corners", &ScanRegistrationOptions::corners, "Corners",
-              "Where the four corner marks are if they are not found: pixels of the scan's picture from its top left, as x,y x,y x,y x,y: front left, front right, back right, back left.")
+              "Where the four corner marks lie in the scan's picture, if they are not found: x,y in pixels from the top left, in the order front left, front right, back right, back left. Example: 120,80 1900,95 1880,2010 110,1990.")
               .group("Scan"),
-          parameter("flatten_iterations", &ScanRegistrationOptions::flatten_iterations, "Flattening steps", unit::none,
-                    0, 1000, "Of the as-rigid-as-possible map; 0 leaves the harmonic one.")
+          parameter(
+              "flatten_iterations", &ScanRegistrationOptions::flatten_iterations, "Flattening steps", unit::none, 0,
+              1000,
+              "Iterations of the as-rigid-as-possible method that lays the scan flat. More distort it less; 0 keeps the first, harmonic map.")
               .group("Scan")
               .advanced(),
-          parameter("picture_px", &ScanRegistrationOptions::picture_px, "Picture size", unit::none, 64, 8192,
-                    "Longer side of the pictures that are compared, in pixels.")
+          parameter(
+              "picture_px", &ScanRegistrationOptions::picture_px, "Picture size", unit::none, 64, 8192,
+              "Longer side, in pixels, of the two pictures that are compared. More finds smaller movements and takes longer.")
               .group("Flow")
               .slider(512, 4096)},
       inherit_parameters<ScanRegistrationOptions>(VariationalFlowOptions::parameters));

@@ -13,22 +13,23 @@ struct VirtualScan {
   int seed = 1;
 
   static constexpr std::string_view group_title = "Virtual scan";
-  static constexpr auto parameters =
-      std::tuple{parameter("points", &VirtualScan::points, "Points", unit::none, 30, 100000,
-                           "Measured points, all over the sheet.")
-                     .group(group_title)
-                     .slider(200, 5000),
-                 parameter("noise_mm", &VirtualScan::noise_mm, "Noise", unit::mm, 0, 5,
-                           "Standard deviation of each coordinate of a measured point.")
-                     .group(group_title)
-                     .slider(0, 0.3),
-                 parameter("outlier_percent", &VirtualScan::outlier_percent, "Outliers", unit::percent, 0, 30,
-                           "Points that are far off, as badly matched ones are.")
-                     .group(group_title)
-                     .slider(0, 10),
-                 parameter("seed", &VirtualScan::seed, "Seed", unit::none, 0, 1000000,
-                           "Another seed draws other points and other noise.")
-                     .group(group_title)};
+  static constexpr auto parameters = std::tuple{
+      parameter("points", &VirtualScan::points, "Points", unit::none, 30, 100000,
+                "Number of points that the virtual scan measures, spread over the whole sheet.")
+          .group(group_title)
+          .slider(200, 5000),
+      parameter(
+          "noise_mm", &VirtualScan::noise_mm, "Noise", unit::mm, 0, 5,
+          "Standard deviation of the random error added to each coordinate of a measured point. 0.05 mm is usual.")
+          .group(group_title)
+          .slider(0, 0.3),
+      parameter("outlier_percent", &VirtualScan::outlier_percent, "Outliers", unit::percent, 0, 30,
+                "Share of points that are measured far off, as wrongly matched points are.")
+          .group(group_title)
+          .slider(0, 10),
+      parameter("seed", &VirtualScan::seed, "Seed", unit::none, 0, 1000000,
+                "Number that selects the random points and errors. The same number gives the same measurement again.")
+          .group(group_title)};
 };
 
 /// Points of `sheet` (raised base plate at z = 0) as a scan has them, `o` being what it was formed with. The same seed

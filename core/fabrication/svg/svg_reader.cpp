@@ -39,14 +39,14 @@ SvgDrawing read_svg_drawing(ByteView bytes, const SvgReadOptions& options, const
   const SvgNotes& notes = walker.notes;
   if (walker.paths.empty() && notes.words > 0)
     refuse_drawing(
-        "The drawing has words only, which have no outline to follow: convert text to paths and save it again.");
+        "The drawing contains only text, which has no outlines to follow: convert the text to paths and save it again.");
   if (walker.paths.empty() && notes.pictures > 0)
-    refuse_drawing("The drawing has pictures only: trace them into paths first.");
+    refuse_drawing("The drawing contains only pictures: trace them into paths first.");
   if (walker.paths.empty()) {
     // What was left out says why there is nothing.
     std::vector<std::string> reasons;
     add_sentences(notes, reasons);
-    std::string sentence = "Nothing is drawn in the file: it needs shapes or paths with a stroke or a fill.";
+    std::string sentence = "The drawing is empty: it needs shapes or paths with a stroke or a fill.";
     if (!reasons.empty()) sentence += " " + reasons.front();
     refuse_drawing(sentence);
   }

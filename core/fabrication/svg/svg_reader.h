@@ -16,7 +16,7 @@ enum class UserUnit { as_told, px, mm, pt, inch };
 template <>
 struct EnumNames<UserUnit> {
   static constexpr std::array<std::string_view, 5> names{"as_told", "px", "mm", "pt", "inch"};
-  static constexpr std::array<std::string_view, 5> labels{"As it says", "Pixels, 96 an inch", "Millimetres",
+  static constexpr std::array<std::string_view, 5> labels{"As in the file", "Pixels, 96 an inch", "Millimetres",
                                                           "Points, 72 an inch", "Inches"};
 };
 

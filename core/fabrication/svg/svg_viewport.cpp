@@ -83,8 +83,8 @@ PageFrame read_page_frame(const pugi::xml_node& root, UserUnit unit, std::vector
     const bool bare = (width && width->unitless) || (height && height->unitless);
     const bool share = (width && width->percent()) || (height && height->percent());
     const std::string what = bare    ? "The drawing's width and height have no unit"
-                             : share ? "The drawing's width and height are shares of a window"
-                                     : "The drawing does not tell its size in millimetres";
+                             : share ? "The drawing's width and height are percentages"
+                                     : "The drawing does not state its size in millimetres";
     refuse_drawing(
         what +
         ": save it with a width and height such as 200mm, or set user_unit (px: 96 an inch, as browsers and Inkscape have it; pt: 72 an inch, as Illustrator has it; or mm).");

@@ -61,12 +61,13 @@ std::vector<MtlMaterial> read_mtl(const MeshSource& source) {
       for (; count < 3; ++count) {
         scan.skip_blanks();
         if (scan.done() || !scan.number(colour[count])) break;
-        if (!std::isfinite(colour[count])) source.refuse_line(start, "a colour is not a finite number; mend the line.");
+        if (!std::isfinite(colour[count]))
+          source.refuse_line(start, "a colour is not a finite number; correct the line.");
       }
       if (count == 0) {
         const std::string_view kind = scan.word();
         if (kind == "spectral" || kind == "xyz") continue;  // not colours one could show without a light's spectrum
-        source.refuse_line(start, "Kd needs three numbers, red, green and blue; mend the line.");
+        source.refuse_line(start, "Kd needs three numbers: red, green and blue; correct the line.");
       }
       for (; count < 3; ++count) colour[count] = colour[count - 1];  // "Kd 0.5" is grey
       materials.back().material.diffuse = colour.unaryExpr(&linear_of_srgb);

@@ -328,7 +328,8 @@ Surface marching_cubes(const ImplicitShape& shape, double cell_mm, Context& cont
       }
     done = count;
     if (blocks.size() > 6 * patches.size() + 4096)
-      throw Error(ErrorCode::internal, "sample", "The sample's surface leaves its bounds.");
+      throw Error(ErrorCode::internal, "sample",
+                  "The sample's surface leaves its bounds: this is a bug in Formwright.");
   }
   context.check_cancelled();
   Surface surface = joined(patches);

@@ -114,7 +114,7 @@ void describe(DraftMap& map, const Positions& normals, const Eigen::VectorXd& ar
     if (map.face_draft_deg[f] < overhang_deg) hanging += areas[f];
   if (hanging > 0.005 * map.area_mm2)
     map.sentences.push_back(rounded_text(hanging / 100, "%.1f") +
-                            " cm² face down over an empty space: the sheet cannot get there.");
+                            " cm² face down over an empty space: the sheet cannot reach them.");
   for (const Side& side : sides) {
     double area = 0, lean = 0;
     for (Eigen::Index f = 0; f < areas.size(); ++f) {
@@ -128,18 +128,21 @@ void describe(DraftMap& map, const Positions& normals, const Eigen::VectorXd& ar
     locked += area;
     map.sentences.push_back(std::string("The ") + side.name + " side leans in by " + rounded_text(lean / area) +
                             " degrees over " + rounded_text(area / 100, "%.1f") +
-                            " cm²: the shell will lock onto a rigid mould there.");
+                            " cm²: the formed shell cannot be lifted off a rigid mould there.");
   }
   if (locked + hanging == 0 && map.undercut_area_mm2 > 0.005 * map.area_mm2)
     map.sentences.push_back(rounded_text(map.undercut_area_mm2 / 100, "%.1f") +
-                            " cm² of the model lie below something else: the sheet cannot get there.");
+                            " cm² of the model lie below another part of it: the sheet cannot reach them.");
   if (map.undercut_area_mm2 <= 0.005 * map.area_mm2) {
     if (map.below_3_deg_area_mm2 > 0.005 * map.area_mm2)
-      map.sentences.push_back(rounded_text(map.below_3_deg_area_mm2 / 100, "%.1f") +
-                              " cm² of wall have less than 3 degrees of draft: the shell will come off hard.");
-    else map.sentences.emplace_back("The walls lean outwards by 3 degrees or more: the shell will come off.");
+      map.sentences.push_back(
+          rounded_text(map.below_3_deg_area_mm2 / 100, "%.1f") +
+          " cm² of wall have less than 3 degrees of draft: the formed shell will be hard to lift off.");
+    else
+      map.sentences.emplace_back("All walls have a draft of 3 degrees or more: the formed shell will lift off easily.");
   } else {
-    map.sentences.emplace_back("Sink the model to its widest place, turn it, or plan to break the mould out.");
+    map.sentences.emplace_back(
+        "Lower the model into the plate to its widest place, turn it, or plan to break the mould to get it out.");
   }
   if (map.depth_to_width_max > 1)
     map.sentences.push_back("The deepest cavity, at x " + rounded_text(map.deepest_mm.x()) + ", y " +

@@ -107,12 +107,13 @@ ExactSolid model_on_plate(const TriangleMesh& placed, const ThermoformMouldOptio
     model = ExactSolid::above(ready_for_plate(placed, notes), 0, "mould", context);
   }
   if (model.empty())
-    throw Error(ErrorCode::invalid_input, "sink_mm", "Nothing of the model stands above the plate: sink it less.");
+    throw Error(ErrorCode::invalid_input, "sink_mm",
+                "Nothing of the model stands above the plate: lower it less into the plate (sink_mm).");
   double foot_mm = options.foot_mm.value_or(0);
   double area = base_area_mm2(model.mesh(), 0);
   if (!options.foot_mm && area < least_opening_mm2) foot_mm = automatic_foot_mm;
   if (foot_mm > 0) {
-    const auto span = context.span(0.7, 1, "Drawing the foot down");
+    const auto span = context.span(0.7, 1, "Straightening the foot");
     const double height = bounding_box(model.mesh()).size().z();
     ExactSolid footed;
     double widened = 0;
@@ -165,7 +166,7 @@ Mould make_mould(const ExactSolid& model, const std::vector<Vent>& vents, const 
   }
   mould.solid = mould.body;
   if (options.kind == MouldKind::negative) {
-    const auto span = context.span(0.6, 1, "Taking the model out of the block");
+    const auto span = context.span(0.6, 1, "Cutting the model out of the block");
     const TriangleMesh body = mould.body.mesh();
     const BoundingBox around = bounding_box(body);
     const double top = around.upper.z() + options.wall_mm;

@@ -43,72 +43,74 @@ struct ThermoformMouldOptions : ThermoformOptions {
   static constexpr auto parameters = std::tuple_cat(
       inherit_parameters<ThermoformMouldOptions>(ThermoformOptions::parameters),
       std::tuple{
-          parameter("kind", &ThermoformMouldOptions::kind, "Mould",
-                    "Negative: print a hollow block in PLA, pour gypsum, melt the PLA off; the cast stands the heat of "
-                    "forming. Positive: print the shape itself in a heat-proof material.")
+          parameter(
+              "kind", &ThermoformMouldOptions::kind, "Kind of mould",
+              "Negative: 3D print a hollow block in PLA, pour gypsum into it and melt the PLA off; the gypsum cast stands the heat of forming. Positive: 3D print the shape itself in a heat-proof material.")
               .group("Mould"),
-          parameter("wall_mm", &ThermoformMouldOptions::wall_mm, "Wall", unit::mm, 0.4, 50,
-                    "Least thickness of the negative around the model. Thin walls melt off sooner.")
+          parameter(
+              "wall_mm", &ThermoformMouldOptions::wall_mm, "Wall", unit::mm, 0.4, 50,
+              "Smallest wall thickness of the negative around the model. Thin walls melt off sooner; 3 mm is usual.")
               .group("Mould")
               .slider(1, 10),
-          parameter("outline", &ThermoformMouldOptions::outline, "Outside",
-                    "The negative's outside: a rectangular block, or walls that follow the model's outline seen from "
-                    "above, with less plastic to melt.")
+          parameter(
+              "outline", &ThermoformMouldOptions::outline, "Outside",
+              "Outer shape of the negative: a rectangular box, or walls that follow the model's outline seen from above, which needs less plastic.")
               .group("Mould"),
-          parameter("base_mm", &ThermoformMouldOptions::base_mm, "Base plate", unit::mm, 0, 100,
-                    "Thickness of a plate under the cast or the positive. It gives the negative a wide pour opening, "
-                    "and lifts the model by as much in the machine.")
+          parameter(
+              "base_mm", &ThermoformMouldOptions::base_mm, "Base plate", unit::mm, 0, 100,
+              "Thickness of a plate under the cast or the positive. It gives the negative a wide opening to pour into, and raises the model by the same height in the machine. 0: no plate.")
               .group("Mould")
               .slider(0, 20),
           parameter("base_rim_mm", &ThermoformMouldOptions::base_rim_mm, "Base rim", unit::mm, 0, 100,
-                    "How far the base plate stands out beyond the model on each side.")
+                    "How far the base plate extends beyond the model on each side.")
               .group("Mould")
               .slider(0, 20),
-          parameter("foot_mm", &ThermoformMouldOptions::foot_mm, "Foot", unit::mm, 0, 100,
-                    "Below this height the walls run straight down to the plate, so that round undersides get a flat "
-                    "foot. Automatic: 1 mm or little more where the model would touch the plate in hardly more than a "
-                    "point, else none.")
+          parameter(
+              "foot_mm", &ThermoformMouldOptions::foot_mm, "Straight foot", unit::mm, 0, 100,
+              "Height below which the walls go straight down to the plate, which gives round undersides a flat foot. Automatic: about 1 mm if the model would otherwise touch the plate in little more than a point, else none.")
               .group("Mould")
               .slider(0, 10),
-          parameter("vents", &ThermoformMouldOptions::vents, "Vents", unit::none, 0, 100,
-                    "Air holes through the mould where the sheet arrives last, found by simulation. 0 makes the mould "
-                    "without simulating.")
+          parameter(
+              "vents", &ThermoformMouldOptions::vents, "Vent holes", unit::none, 0, 100,
+              "Number of air holes through the mould, placed by simulation where the sheet arrives last. 0: none, and no simulation is needed.")
               .group("Mould")
               .slider(0, 24),
-          parameter("vent_diameter_mm", &ThermoformMouldOptions::vent_diameter_mm, "Vent diameter", unit::mm, 0.2, 10,
-                    "Of the air holes; in a negative they are pins that leave holes in the cast. Wider than the sheet "
-                    "is thick, they show.")
+          parameter(
+              "vent_diameter_mm", &ThermoformMouldOptions::vent_diameter_mm, "Vent diameter", unit::mm, 0.2, 10,
+              "Diameter of the air holes. Holes wider than the sheet is thick leave visible marks; 1 mm is usual. In a negative they are pins that leave holes in the cast.")
               .group("Mould")
               .slider(0.5, 3),
           parameter("vent_spacing_mm", &ThermoformMouldOptions::vent_spacing_mm, "Vent spacing", unit::mm, 1, 500,
-                    "Least distance between air holes, centre to centre; at least twice their diameter is kept.")
+                    "Smallest distance between the centres of two air holes; never less than twice their diameter.")
               .group("Mould")
               .slider(5, 50),
-          parameter("water_to_plaster_ratio", &ThermoformMouldOptions::water_to_plaster_ratio, "Water to plaster",
-                    unit::none, 0.2, 2,
-                    "By weight, as on the bag: 0.6 is 60 g of water for 100 g of powder. Less water casts harder and "
-                    "vents worse.")
+          parameter(
+              "water_to_plaster_ratio", &ThermoformMouldOptions::water_to_plaster_ratio, "Water to plaster", unit::none,
+              0.2, 2,
+              "Water divided by gypsum powder, by weight: 0.6 is 60 g of water for 100 g of powder. The bag of gypsum states it. Less water makes a harder cast that lets less air through.")
               .group("Mould")
               .slider(0.3, 1),
           parameter("printer_x_mm", &ThermoformMouldOptions::printer_x_mm, "Printer width", unit::mm, 0, 5000,
-                    "Larger moulds are cut into parts that fit. 0: no limit.")
+                    "Width that the 3D printer can print. Larger moulds are cut into parts that fit. 0: no limit.")
               .group("Mould")
               .slider(0, 500),
-          parameter("printer_y_mm", &ThermoformMouldOptions::printer_y_mm, "Printer depth", unit::mm, 0, 5000,
-                    "Larger moulds are cut into parts that fit. 0: no limit.")
+          parameter(
+              "printer_y_mm", &ThermoformMouldOptions::printer_y_mm, "Printer depth", unit::mm, 0, 5000,
+              "Depth, front to back, that the 3D printer can print. Larger moulds are cut into parts that fit. 0: no limit.")
               .group("Mould")
               .slider(0, 500),
           parameter("printer_z_mm", &ThermoformMouldOptions::printer_z_mm, "Printer height", unit::mm, 0, 5000,
-                    "Larger moulds are cut into parts that fit. 0: no limit.")
+                    "Height that the 3D printer can print. Larger moulds are cut into parts that fit. 0: no limit.")
               .group("Mould")
               .slider(0, 500),
-          parameter("key_diameter_mm", &ThermoformMouldOptions::key_diameter_mm, "Key diameter", unit::mm, 0, 50,
-                    "Of the pins and sockets that line parts up; smaller ones where the walls are thin. 0: none.")
+          parameter(
+              "key_diameter_mm", &ThermoformMouldOptions::key_diameter_mm, "Key diameter", unit::mm, 0, 50,
+              "Diameter of the pins and sockets that align the parts of a mould; smaller ones are made where walls are thin. 4 mm is usual; 0: none.")
               .group("Mould")
               .slider(0, 10)
               .advanced(),
           parameter("key_clearance_mm", &ThermoformMouldOptions::key_clearance_mm, "Key clearance", unit::mm, 0, 2,
-                    "Gap between pin and socket.")
+                    "Gap between each pin and its socket. More is looser; 0.2 mm is usual.")
               .group("Mould")
               .slider(0, 0.6)
               .advanced()});

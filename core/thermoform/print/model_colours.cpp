@@ -40,7 +40,7 @@ ModelColours::ModelColours(const Model& model, const TriangleMesh& placed, const
   if (own_picture && model.FT.rows() == 0)
     throw Error(
         ErrorCode::invalid_input, "texture",
-        "The model says nowhere how a picture lies on it: give one with texture coordinates (OBJ, GLB or PLY), or no picture.");
+        "The model has no texture coordinates, which place a picture on it: use a model with them (OBJ, GLB or PLY), or no picture.");
   if (kind_ == PrintColours::automatic || kind_ == PrintColours::picture) load_pictures(own_picture, context);
   const bool painted =
       std::ranges::any_of(model.materials, [](const Material& m) { return !m.diffuse.isApprox(Material().diffuse); });

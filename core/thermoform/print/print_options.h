@@ -18,7 +18,7 @@ enum class Paper { sheet, a4, a3, a2, letter, tabloid };
 template <>
 struct EnumNames<Paper> {
   static constexpr std::array<std::string_view, 6> names{"sheet", "a4", "a3", "a2", "letter", "tabloid"};
-  static constexpr std::array<std::string_view, 6> labels{"As the sheet", "A4", "A3", "A2", "Letter", "Tabloid"};
+  static constexpr std::array<std::string_view, 6> labels{"Size of the sheet", "A4", "A3", "A2", "Letter", "Tabloid"};
 };
 
 enum class SheetProjectionMethod { nearest, along_normal };
@@ -48,56 +48,59 @@ struct ThermoformPrintOptions : ThermoformOptions {
       std::tuple{
           parameter(
               "colours", &ThermoformPrintOptions::colours, "Colours",
-              "Where the colours come from. Automatic: the model's picture, else the colours of its vertices, else of its materials, else a checker.")
+              "Where the colours of the print come from. Automatic takes the first that the model has: its picture, the colours of its vertices, the colours of its materials; otherwise a checker.")
               .group("Print"),
           parameter("pattern_mm", &ThermoformPrintOptions::pattern_mm, "Pattern size", unit::mm, 0.5, 500,
-                    "Side of the checker's cubes, or height between two lines.")
+                    "Edge length of the checker's cubes, or height between two of the height lines.")
               .group("Print")
               .slider(2, 40),
           parameter("dots_per_inch", &ThermoformPrintOptions::dots_per_inch, "Resolution", unit::dots_per_inch, 36,
-                    1200, "Dots per inch of the print. 300 is as fine as transfer paper holds.")
+                    1200,
+                    "Dots per inch of the print. 300 is as fine as transfer paper can hold; more makes larger files.")
               .group("Print")
               .slider(100, 600),
-          parameter("mirror", &ThermoformPrintOptions::mirror, "Mirror",
-                    "For transfer paper, and for printing on the back of a clear sheet: everything left to right.")
+          parameter(
+              "mirror", &ThermoformPrintOptions::mirror, "Mirror horizontally",
+              "Swaps left and right in the print. Needed for transfer paper and for printing on the back of a clear sheet.")
               .group("Print"),
           parameter(
               "bleed_mm", &ThermoformPrintOptions::bleed_mm, "Bleed", unit::mm, 0, 50,
-              "How far the colours go on beyond the model's edge, so that a print that lands a little off shows no white.")
+              "How far the colours continue beyond the model's edge, so that no white shows if the print is slightly misplaced. 3 mm is usual.")
               .group("Print")
               .slider(0, 10),
           parameter(
               "marks", &ThermoformPrintOptions::marks, "Registration marks",
-              "Numbered crosses on the clamped rim, to lay the sheet into the frame by; page 2 shows where they are on the frame.")
+              "Prints numbered crosses on the clamped rim to align the sheet in the frame; the page after the print shows where they belong on the frame.")
               .group("Print"),
           parameter("outlines", &ThermoformPrintOptions::outlines, "Outlines",
-                    "Thin lines along the sheet's edge and the clamp's opening.")
+                    "Prints thin lines along the edge of the sheet and the clamp's opening.")
               .group("Print"),
           parameter(
               "paper", &ThermoformPrintOptions::paper, "Paper",
-              "Of the PDF. On paper that is smaller than the sheet the print goes over several pages, to be joined.")
+              "Paper size of the PDF. If the paper is smaller than the sheet, the print is split over several pages to be joined.")
               .group("Paper"),
-          parameter("paper_margin_mm", &ThermoformPrintOptions::paper_margin_mm, "Margin", unit::mm, 0, 50,
-                    "White rim that the printer cannot print on. Not used when the paper is as the sheet.")
+          parameter("paper_margin_mm", &ThermoformPrintOptions::paper_margin_mm, "Paper margin", unit::mm, 0, 50,
+                    "White rim that the printer cannot print on. Not used if the paper is the size of the sheet.")
               .group("Paper")
               .slider(0, 15),
-          parameter("overlap_mm", &ThermoformPrintOptions::overlap_mm, "Overlap", unit::mm, 0, 50,
-                    "How much neighbouring pages have in common, to be joined by.")
+          parameter(
+              "overlap_mm", &ThermoformPrintOptions::overlap_mm, "Overlap", unit::mm, 0, 50,
+              "Width of the strip that neighbouring pages share, so that they can be glued together. 10 mm is usual.")
               .group("Paper")
               .slider(0, 30),
           parameter(
-              "gap_mm", &ThermoformPrintOptions::gap_mm, "Gap allowed", unit::mm, 0, 20,
-              "Where the formed sheet spans a corner, the model's colours still go onto it across a gap up to this wide.")
+              "gap_mm", &ThermoformPrintOptions::gap_mm, "Largest gap to colour", unit::mm, 0, 20,
+              "Widest gap between model and formed sheet across which colours are still transferred, as in corners that the sheet spans. Larger leaves fewer white places and is less exact.")
               .group("Print accuracy")
               .slider(0, 5),
           parameter(
               "projection", &ThermoformPrintOptions::projection, "Projection",
-              "How a point of the model finds its point of the sheet: the nearest one, or the one along the model's normal, as rays would (thesis 4.2.4).")
+              "How each point of the model finds its place on the formed sheet: the nearest point, or the one straight out along the model's surface normal.")
               .group("Print accuracy")
               .advanced(),
           parameter(
-              "map_edge_mm", &ThermoformPrintOptions::map_edge_mm, "Map triangles", unit::mm, 0.1, 20,
-              "The model is divided until its edges are at most this long; each corner is carried to the sheet on its own.")
+              "map_edge_mm", &ThermoformPrintOptions::map_edge_mm, "Longest map edge", unit::mm, 0.1, 20,
+              "The model is subdivided until no edge is longer than this, so that its colours follow the sheet closely. Smaller is more exact and slower.")
               .group("Print accuracy")
               .slider(0.3, 3)
               .advanced()});

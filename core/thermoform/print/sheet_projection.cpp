@@ -30,7 +30,7 @@ TriangleMesh inner_surface(const FormedSheet& sheet, double& thickest_mm) {
   if (!sheet.sheet_mm.allFinite() || !sheet.thickness_mm.allFinite() || !sheet.stretch.allFinite() ||
       sheet.thickness_mm.minCoeff() < 0)
     throw Error(ErrorCode::invalid_input, "sheet",
-                "The formed sheet holds numbers that cannot be: use the sheet.ply that the simulation wrote.");
+                "The formed sheet contains impossible numbers: use the sheet.ply that the simulation wrote.");
   TriangleMesh inner = sheet.mesh;
   inner.V -= (sheet.thickness_mm / 2).asDiagonal() * vertex_normals(sheet.mesh);
   thickest_mm = sheet.thickness_mm.maxCoeff();
@@ -135,7 +135,7 @@ Coverage worst(Coverage a, Coverage b) { return a == Coverage::coloured ? b : a;
 
 ProjectedSurface project_onto_sheet(const RefinedSurface& surface, const FormedSheet& sheet,
                                     const ThermoformPrintOptions& options, Context& context) {
-  context.progress(0, "Carrying the surface to the sheet");
+  context.progress(0, "Projecting the surface onto the sheet");
   const Projector projector(sheet, options);
   const std::vector<double> shrunk_by = shrinkage(sheet);
   const RayCaster model(surface.undivided);

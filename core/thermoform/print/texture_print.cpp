@@ -59,14 +59,16 @@ void measure(TexturePrint& print) {
 void say(TexturePrint& print, const ThermoformPrintOptions& options) {
   const auto area = [&](Coverage c) { return print.area_mm2[static_cast<std::size_t>(c)]; };
   const auto add = [&](const std::string& sentence) { print.sentences.push_back(sentence); };
-  if (area(Coverage::coloured) <= 0) add("Nothing of the model meets the sheet: the print is white.");
+  if (area(Coverage::coloured) <= 0)
+    add("No part of the model touches the sheet, so the print is white: check size and position of the model.");
   const double total = area(Coverage::coloured) + print.uncoloured_mm2();
   const auto share = [&](Coverage c, const char* what) {
     if (area(c) > 1e-3 * total) add(number("%.1f %% of the surface above the plate ", 100 * area(c) / total) + what);
   };
   share(Coverage::hidden, "is hidden from the sheet (undercuts) and stays without colour.");
-  share(Coverage::not_touched,
-        "lies where the sheet spans a corner and stays without colour: allow a wider gap, or model it less deep.");
+  share(
+      Coverage::not_touched,
+      "lies where the sheet spans a corner and stays without colour: allow a wider gap, or make the corner less deep.");
   share(Coverage::outside, "lies outside of the clamp's opening: make the model smaller.");
   if (print.surface.edge_mm > 1.001 * options.map_edge_mm)
     add("The model was divided to edges of " + number("%.2f", print.surface.edge_mm) +
@@ -103,7 +105,7 @@ TexturePrint make_texture_print(const Model& model, const TriangleMesh& placed, 
   print.surface = refine_above_plate(placed, options.map_edge_mm, most_triangles, context);
   print.seconds_refine = watch.lap();
   {
-    const auto span = context.span(0.1, 0.5, "Carrying the surface to the sheet");
+    const auto span = context.span(0.1, 0.5, "Projecting the surface onto the sheet");
     print.projected = project_onto_sheet(print.surface, sheet, options, context);
   }
   print.seconds_project = watch.lap();

@@ -28,7 +28,7 @@ enum class GrainDirection { free, along_pieces };
 template <>
 struct EnumNames<GrainDirection> {
   static constexpr std::array<std::string_view, 2> names{"free", "along_pieces"};
-  static constexpr std::array<std::string_view, 2> labels{"No matter", "Along the pieces"};
+  static constexpr std::array<std::string_view, 2> labels{"Any direction", "Along the pieces"};
 };
 
 enum class InstructionPaper { a4, letter };
@@ -63,103 +63,114 @@ struct PlanOptions {
   InstructionPaper paper = InstructionPaper::a4;
 
   static constexpr auto parameters = std::tuple{
-      parameter("coil", &PlanOptions::coil, "Zipper",
-                "Size of the coil zipper, which sets tape, teeth and gap; none for paper.")
+      parameter(
+          "coil", &PlanOptions::coil, "Zipper",
+          "Size of the coil zipper, which sets the widths of tape, teeth and gap. None: a paper model without a zipper.")
           .group("Zipper"),
-      parameter("tape_width_mm", &PlanOptions::tape_width_mm, "Tape", unit::mm, 0, 1000,
-                "Width of the fabric tape of one side, without teeth; automatic: of the coil's size.")
+      parameter(
+          "tape_width_mm", &PlanOptions::tape_width_mm, "Tape width", unit::mm, 0, 1000,
+          "Width of the fabric tape on one side of the zipper, without its teeth. Automatic: the usual width for the zipper size.")
           .slider(5, 30)
           .group("Zipper")
           .advanced(),
-      parameter("teeth_width_mm", &PlanOptions::teeth_width_mm, "Teeth", unit::mm, 0, 1000,
-                "Width of the closed row of teeth; automatic: of the coil's size.")
+      parameter("teeth_width_mm", &PlanOptions::teeth_width_mm, "Teeth width", unit::mm, 0, 1000,
+                "Width of the closed row of teeth. Automatic: the usual width for the zipper size.")
           .slider(2, 12)
           .group("Zipper")
           .advanced(),
-      parameter("gap_mm", &PlanOptions::gap_mm, "Gap", unit::mm, 0, 1000,
-                "Between teeth and fabric, on each side, for the slider to pass; automatic: of the coil's size.")
+      parameter(
+          "gap_mm", &PlanOptions::gap_mm, "Gap", unit::mm, 0, 1000,
+          "Distance between the teeth and the fabric on each side, so that the slider can pass. Automatic: the usual distance for the zipper size.")
           .slider(0, 5)
           .group("Zipper")
           .advanced(),
       parameter(
           "method", &PlanOptions::method, "Zipper attached by",
-          "Sewing moves the edges in the plane; gluing along the curve's binormal, which keeps both sides as long as each other.")
+          "Sewing moves the cut edges within the flat pattern. Gluing moves the zipper's curve sideways in space (along its binormal), which keeps both sides equally long.")
           .group("Zipper"),
-      parameter("marker_spacing_mm", &PlanOptions::marker_spacing_mm, "Markers every", unit::mm, 1, 10000,
-                "Along the zipper; automatic: 30 mm for sewing, 50 mm for gluing and on the rig.")
+      parameter(
+          "marker_spacing_mm", &PlanOptions::marker_spacing_mm, "Marker spacing", unit::mm, 1, 10000,
+          "Distance between numbered markers along the zipper. Automatic: 30 mm for sewing, 50 mm for gluing and on the rig.")
           .slider(10, 100)
           .group("Zipper"),
-      parameter("text_height_mm", &PlanOptions::text_height_mm, "Text", unit::mm, 0.5, 100,
-                "Height of numbers and letters; smaller where the ribbon is narrow.")
+      parameter("text_height_mm", &PlanOptions::text_height_mm, "Text height", unit::mm, 0.5, 100,
+                "Height of the printed numbers and letters; smaller where the ribbon is narrow.")
           .slider(1, 10)
           .group("Sheets")
           .advanced(),
-      parameter("bed_x_mm", &PlanOptions::bed_x_mm, "Bed, x", unit::mm, 20, 10000, "Width of one sheet of material.")
+      parameter("bed_x_mm", &PlanOptions::bed_x_mm, "Sheet width", unit::mm, 20, 10000,
+                "Width of one sheet of material, or of the laser's bed if that is smaller.")
           .slider(100, 1500)
           .group("Sheets"),
-      parameter("bed_y_mm", &PlanOptions::bed_y_mm, "Bed, y", unit::mm, 20, 10000, "Depth of one sheet of material.")
+      parameter("bed_y_mm", &PlanOptions::bed_y_mm, "Sheet depth", unit::mm, 20, 10000,
+                "Depth of one sheet of material, or of the laser's bed if that is smaller.")
           .slider(100, 1500)
           .group("Sheets"),
       parameter("margin_mm", &PlanOptions::margin_mm, "Margin", unit::mm, 0, 1000,
-                "Kept free along the edges of a sheet.")
+                "Width kept free along the edges of every sheet.")
           .slider(0, 30)
           .group("Sheets"),
       parameter("spacing_mm", &PlanOptions::spacing_mm, "Spacing", unit::mm, 0.5, 1000,
-                "Between pieces on a sheet, at least.")
+                "Smallest distance between two pieces on a sheet. More is easier to cut; less saves material.")
           .slider(0.5, 20)
           .group("Sheets"),
-      parameter("grain", &PlanOptions::grain, "Grain",
-                "Whether pieces lie with their long side along the material's grain, which runs along x.")
+      parameter(
+          "grain", &PlanOptions::grain, "Grain",
+          "Whether the long side of each piece must lie along the grain of the material, which runs along x. Use it for cloth that stretches more in one direction.")
           .group("Sheets"),
-      parameter("seam_allowance_mm", &PlanOptions::seam_allowance_mm, "Seam allowance", unit::mm, 0, 1000,
-                "Added beyond both edges where the ribbon is split, to join them again.")
+      parameter(
+          "seam_allowance_mm", &PlanOptions::seam_allowance_mm, "Seam allowance", unit::mm, 0, 1000,
+          "Width added beyond both edges where the ribbon is split, so that the pieces can be joined again. 8 mm is usual for sewing.")
           .slider(0, 20)
           .group("Sheets"),
-      parameter("hook_and_loop_mm", &PlanOptions::hook_and_loop_mm, "Hook-and-loop tape", unit::mm, 5, 200,
-                "Width of the tape that closes cut handles; one of their sides gets an allowance as wide.")
+      parameter(
+          "hook_and_loop_mm", &PlanOptions::hook_and_loop_mm, "Hook-and-loop tape", unit::mm, 5, 200,
+          "Width of the hook-and-loop tape that closes cuts at handles. One side of each cut gets an allowance of this width.")
           .slider(10, 50)
           .group("Sheets"),
-      parameter("kerf_mm", &PlanOptions::kerf_mm, "Kerf", unit::mm, 0, 10,
-                "Width of what the cut takes away: outlines grow by half. Laser jobs do not add it again.")
+      parameter(
+          "kerf_mm", &PlanOptions::kerf_mm, "Kerf", unit::mm, 0, 10,
+          "Width of material that the cut removes; outlines grow by half of it so that pieces keep their size. 0.15 mm is usual for a laser. The laser job does not add it again.")
           .slider(0, 1)
           .group("Sheets"),
       parameter(
           "edges", &PlanOptions::edges, "Edges",
-          "Of paper, without a zipper: plain, to be joined edge to edge, or with tabs along one edge of every seam.")
+          "For paper models without a zipper. Plain: edges are joined edge to edge with tape. Tabs: glue tabs along one edge of every seam.")
           .group("Paper model"),
-      parameter("tab_depth_mm", &PlanOptions::tab_depth_mm, "Depth of tabs", unit::mm, 1, 100,
-                "From fold to outer edge; less where there is no room.")
+      parameter("tab_depth_mm", &PlanOptions::tab_depth_mm, "Tab depth", unit::mm, 1, 100,
+                "Distance from the fold of a glue tab to its outer edge; less where there is no room.")
           .slider(3, 15)
           .group("Paper model"),
-      parameter("tab_length_mm", &PlanOptions::tab_length_mm, "Length of tabs", unit::mm, 4, 1000,
-                "Along the fold; less where the edge is curved.")
+      parameter("tab_length_mm", &PlanOptions::tab_length_mm, "Tab length", unit::mm, 4, 1000,
+                "Length of a glue tab along its fold; less where the edge is curved.")
           .slider(5, 40)
           .group("Paper model"),
       parameter(
           "rig", &PlanOptions::rig, "Fastening rig",
-          "Also three layers of board for every piece, which hold zipper and cloth in place while they are joined.")
+          "Also cuts three layers of board for every piece, which hold zipper and cloth in place while they are joined.")
           .group("Rig"),
-      parameter("track_width_mm", &PlanOptions::track_width_mm, "Track", unit::mm, 1, 20,
-                "Width of the tracks in the middle layer, which take the teeth of one tape.")
+      parameter("track_width_mm", &PlanOptions::track_width_mm, "Track width", unit::mm, 1, 20,
+                "Width of the tracks in the rig's middle layer, which take the teeth of one zipper tape.")
           .slider(2, 8)
           .group("Rig"),
-      parameter("slot_width_mm", &PlanOptions::slot_width_mm, "Slot", unit::mm, 0.2, 20,
-                "Width of the slots in the cover, through which the tape comes up; narrower than the track.")
+      parameter(
+          "slot_width_mm", &PlanOptions::slot_width_mm, "Slot width", unit::mm, 0.2, 20,
+          "Width of the slots in the rig's cover through which the zipper tape comes up. Must be narrower than the track.")
           .slider(0.5, 4)
           .group("Rig")
           .advanced(),
-      parameter("rig_opening_mm", &PlanOptions::rig_opening_mm, "Openings", unit::mm, 2, 60,
-                "Diameter of the holes where a tape is slid in.")
+      parameter("rig_opening_mm", &PlanOptions::rig_opening_mm, "Opening diameter", unit::mm, 2, 60,
+                "Diameter of the holes in the rig where a zipper tape is slid into its track.")
           .slider(6, 20)
           .group("Rig")
           .advanced(),
-      parameter("screw_mm", &PlanOptions::screw_mm, "Screw holes", unit::mm, 0.5, 20,
-                "Diameter; the rig is screwed together along its rim.")
+      parameter(
+          "screw_mm", &PlanOptions::screw_mm, "Screw hole diameter", unit::mm, 0.5, 20,
+          "Diameter of the holes along the rim of the rig for the screws that hold its layers together. 3.2 mm fits M3 screws.")
           .slider(2, 6)
           .group("Rig")
           .advanced(),
-      parameter("paper", &PlanOptions::paper, "Paper",
-                "On which the tape's template and the assembly sheet are printed.")
+      parameter("paper", &PlanOptions::paper, "Paper", "Paper size of the printed tape template and assembly sheet.")
           .group("Sheets")};
 };
 

@@ -259,7 +259,7 @@ void lay_on_sheets(Rig& rig, const PlanOptions& options, Context& context) {
 RigSizes rig_sizes(const PlanOptions& options, const ZipperModel& zipper) {
   if (!(zipper.tape_width_mm > 0))
     throw Error(ErrorCode::invalid_input, "rig",
-                "The rig holds a zipper: choose a coil or a tape width, or leave the rig out.");
+                "The fastening rig needs a zipper: choose a zipper size or a tape width, or switch the rig off.");
   RigSizes sizes;
   sizes.track_mm = options.track_width_mm, sizes.slot_mm = options.slot_width_mm;
   sizes.opening_mm = options.rig_opening_mm, sizes.offset_mm = zipper.offset_mm();

@@ -107,7 +107,7 @@ TapeTemplate make_tape_template(const FlatDesign& design, const ZipperModel& zip
   const int rows_a_sheet = static_cast<int>(std::floor((free_y + between_rows_mm) / step));
   if (rows_a_sheet < 1)
     throw Error(ErrorCode::invalid_input, "tape_width_mm",
-                "The tapes are wider than the paper of their template: give the width of a real tape.");
+                "The tapes are wider than the paper of their template: correct the tape width.");
   const int sheets = (result.rows + rows_a_sheet - 1) / rows_a_sheet;
   for (int i = 0; i < sheets; ++i) {
     CutSheet sheet{"Zipper tape", paper_x_mm, paper_y_mm, {}};

@@ -95,7 +95,7 @@ void say_what_to_know(const PlanOptions& options, ZippablePlan& plan) {
   if (plan.ribbon.narrow_samples > 0)
     plan.notes.push_back(
         "The ribbon is too narrow for the zipper at " + plural(plan.ribbon.narrow_samples, "place", "places") +
-        "; there the edge is moved by less, and the zipper sits closer: a smaller coil or a wider ribbon mends it.");
+        "; the edge is moved by less there and the zipper sits closer. Use a smaller zipper or a wider ribbon.");
   if (2 * plan.zipper.tape_width_mm > plan.width_mean_mm)
     plan.notes.push_back(
         "The two tapes are wider than the ribbon and overlap behind it: trim them or use a wider ribbon.");
@@ -110,12 +110,12 @@ void say_what_to_know(const PlanOptions& options, ZippablePlan& plan) {
                          " would have met their own piece and are shorter or left out.");
   if (plan.pieces.left_out_texts > 0)
     plan.notes.push_back(plural(plan.pieces.left_out_texts, "number or letter", "numbers and letters") +
-                         " found no room: choose a smaller text.");
+                         " found no room: lower the text height.");
   if (plan.tabs && plan.tabs->shortened + plan.tabs->left_out > 0)
     plan.notes.push_back(
         plural(plan.tabs->shortened, "tab is", "tabs are") + " shorter and " +
         plural(plan.tabs->left_out, "is", "are") +
-        " left out where the paper lies too close beside: wider spacing between windings or a smaller tab depth mends it.");
+        " left out where paper lies too close beside them. Use a wider ribbon or a smaller tab depth.");
   const auto whole_mm = [](double mm) { return std::to_string(static_cast<int>(std::lround(mm))) + " mm"; };
   if (plan.closures.narrow_mm > 1)
     plan.notes.push_back(
@@ -154,7 +154,7 @@ ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& options,
   const bool tabs = options.edges == PaperEdges::tabs;
   if (tabs && (plan.has_tape() || plan.zipper.offset_mm() > 0))
     throw Error(ErrorCode::invalid_input, "edges",
-                "Tabs are for paper that is glued without a zipper: choose no coil with them, or plain edges.");
+                "Tabs are for paper models without a zipper: set the zipper to none, or the edges to plain.");
   std::optional<RigSizes> rig;
   if (options.rig) rig = rig_sizes(options, plan.zipper);
   plan.ribbon = offset_ribbon(design, options.method, plan.zipper.offset_mm());

@@ -258,10 +258,11 @@ StripModel make_strips(const TriangleMesh& mesh, const std::vector<int>& limb, c
     add_pieces(strip, options, model, context);
   }
   if (degenerate > 0)
-    model.notes.push_back(std::to_string(degenerate) + " bands have no border to unfold them by and were left out.");
+    model.notes.push_back(std::to_string(degenerate) +
+                          " bands have no border along which to lay them flat and were left out.");
   if (const int handles = bands_with_handles(bands, network); handles > 0)
     model.notes.push_back(std::to_string(handles) +
-                          " bands run around a handle and were filled without it: narrower strips mend it.");
+                          " bands run around a handle and were filled without it. Use narrower strips.");
   int vertices = 0, faces = 0;
   for (const StripPiece& piece : model.pieces)
     vertices += static_cast<int>(piece.positions_mm.size()), faces += static_cast<int>(piece.F.rows());

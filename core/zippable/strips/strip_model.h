@@ -27,28 +27,29 @@ struct StripOptions {
   double bed_x_mm = 600, bed_y_mm = 300;
   bool compare = true;
 
-  static constexpr auto parameters =
-      std::tuple{parameter("width_mm", &StripOptions::width_mm, "Strip width", unit::mm, 0.1, 10000,
-                           "Between the borders of a band, about.")
-                     .slider(5, 100)
-                     .group("Strips"),
-                 parameter("size_mm", &StripOptions::size_mm, "Size", unit::mm, 1, 100000,
-                           "Largest dimension of the finished object; automatic: as in the file.")
-                     .slider(50, 1000)
-                     .group("Strips"),
-                 parameter("feature_degrees", &StripOptions::feature_degrees, "Feature lines", unit::degrees, 5, 180,
-                           "Edges that bend by more than this bound the parts.")
-                     .slider(20, 90)
-                     .group("Strips"),
-                 parameter("bed_x_mm", &StripOptions::bed_x_mm, "Bed, x", unit::mm, 20, 10000, "Width of one sheet.")
-                     .slider(100, 1500)
-                     .group("Sheets"),
-                 parameter("bed_y_mm", &StripOptions::bed_y_mm, "Bed, y", unit::mm, 20, 10000, "Depth of one sheet.")
-                     .slider(100, 1500)
-                     .group("Sheets"),
-                 parameter("compare", &StripOptions::compare, "Compare",
-                           "Also designs a zippable of the same width and puts its figures beside.")
-                     .group("Strips")};
+  static constexpr auto parameters = std::tuple{
+      parameter(
+          "width_mm", &StripOptions::width_mm, "Strip width", unit::mm, 0.1, 10000,
+          "Approximate distance between the two edges of a strip. Narrower strips follow the model better and make more pieces.")
+          .slider(5, 100)
+          .group("Strips"),
+      parameter("size_mm", &StripOptions::size_mm, "Size", unit::mm, 1, 100000,
+                "Largest dimension of the finished object. Automatic: the size in the file.")
+          .slider(50, 1000)
+          .group("Strips"),
+      parameter("feature_degrees", &StripOptions::feature_degrees, "Feature lines", unit::degrees, 5, 180,
+                "Edges that bend by more than this angle become borders between parts. Smaller gives more parts.")
+          .slider(20, 90)
+          .group("Strips"),
+      parameter("bed_x_mm", &StripOptions::bed_x_mm, "Sheet width", unit::mm, 20, 10000, "Width of one sheet of paper.")
+          .slider(100, 1500)
+          .group("Sheets"),
+      parameter("bed_y_mm", &StripOptions::bed_y_mm, "Sheet depth", unit::mm, 20, 10000, "Depth of one sheet of paper.")
+          .slider(100, 1500)
+          .group("Sheets"),
+      parameter("compare", &StripOptions::compare, "Compare",
+                "Also designs a zippable of the same width and reports its figures beside those of the strips.")
+          .group("Strips")};
 };
 
 /// One flat piece.

@@ -43,7 +43,7 @@ class Refinement {
             int a = (run.first_vertex + k) % boundary_count, b = (run.first_vertex + k + 1) % boundary_count;
             double from = run.along_mm[k], to = run.along_mm[k + 1];
             if (!faces_of_.contains(ends(a, b)))
-              refuse("design.json: a cut runs along an edge that is not there: make the design again.");
+              refuse("design.json: a cut runs along an edge that does not exist: make the design again.");
             if (from > to) std::swap(a, b), std::swap(from, to);
             edges[side][from] = {a, b}, end_of[side][from] = to;
             places.insert(from), places.insert(to);
@@ -190,13 +190,13 @@ class Refinement {
     for (int v = 0; v < static_cast<int>(count); ++v)
       if (places_[v].sample >= 0 && !place_of.try_emplace({places_[v].sample, places_[v].left}, v).second)
         refuse("design.json: sample " + std::to_string(places_[v].sample) +
-               " of the zipper stands twice on one side: make the design again.");
+               " of the zipper occurs twice on one side: make the design again.");
     int before = -1;
     for (const auto& [key, v] : place_of) {  // ascending samples
       const auto other = place_of.find({key.first, !key.second});
       if (other == place_of.end())
         refuse("design.json: sample " + std::to_string(key.first) +
-               " of the zipper has no place opposite: make the design again.");
+               " of the zipper has no counterpart on the other side: make the design again.");
       mate_[v] = other->second;
       if (!places_[v].left) continue;
       if (before >= 0 && places_[before].piece == places_[v].piece)
@@ -269,7 +269,7 @@ RibbonPattern make_ribbon_pattern(const std::vector<RibbonEdgePlace>& places, co
     for (int k = 0; k < 3; ++k)
       if (triangles(f, k) < 0 || triangles(f, k) >= count)
         refuse("design.json: triangle " + std::to_string(f) +
-               " names a place that is not there: make the design again.");
+               " refers to a point that does not exist: make the design again.");
     if (!(twice_area(places[triangles(f, 0)].flat_mm, places[triangles(f, 1)].flat_mm,
                      places[triangles(f, 2)].flat_mm) > 0))
       refuse("design.json: triangle " + std::to_string(f) + " has no area or is turned over: make the design again.");

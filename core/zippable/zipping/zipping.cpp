@@ -313,7 +313,7 @@ ZippingResult simulate_zipping(const RibbonDesign& design, const ZippingOptions&
       make_ribbon_pattern(design.places, design.triangles, options.edge_mm, context, design.closures);
   Zipping at_rest(pattern, options, 0, context);
   {
-    const auto span = context.span(0, 0.1, "Resting in the intended shape");
+    const auto span = context.span(0, 0.1, "Simulating the zipped shape at rest");
     at_rest.rest_from(pattern.predicted_mm);
   }
   const ShapeComparison rest = compare_shapes(at_rest.x(), pattern.predicted_mm, at_rest.system().vertex_area_mm2());
@@ -331,7 +331,7 @@ ZippingResult simulate_zipping(const RibbonDesign& design, const ZippingOptions&
   };
   for (std::size_t k = 0; k < holds.size(); ++k) {
     const double part = 0.9 / static_cast<double>(holds.size()), before = 0.1 + part * static_cast<double>(k);
-    const auto span = context.span(before, before + part, k == 0 ? "Zipping" : "Zipping, held otherwise");
+    const auto span = context.span(before, before + part, k == 0 ? "Zipping" : "Zipping with another pressure");
     Zipping zipping(pattern, options, holds[k], context);
     zipping.run();
     ++attempts;

@@ -32,50 +32,55 @@ struct ZippingOptions {
 
   static constexpr auto parameters = std::tuple{
       parameter("thickness_mm", &ZippingOptions::thickness_mm, "Cloth thickness", unit::mm, 0.01, 20,
-                "Gives the bending stiffness where that is not given itself.")
+                "Thickness of the cloth. It sets the bending stiffness unless that is given; thicker cloth bends less.")
           .slider(0.1, 3)
           .group("Cloth"),
       parameter("stretch_n_per_mm", &ZippingOptions::stretch_n_per_mm, "Stretch stiffness", unit::newton_per_mm, 0.01,
-                1e5, "Force to stretch a strip 1 mm wide to twice its length; cotton about 10, felt 1.")
+                1e5, "Force that would stretch a strip 1 mm wide to twice its length. Cotton about 10, felt about 1.")
           .slider(0.5, 100)
           .group("Cloth"),
-      parameter("bending_n_mm", &ZippingOptions::bending_n_mm, "Bending stiffness", unit::newton_mm, 1e-6, 1e6,
-                "Moment to bend a strip 1 mm wide to a radius of 1 mm; automatic: as if solid. Cotton about 0.01.")
+      parameter(
+          "bending_n_mm", &ZippingOptions::bending_n_mm, "Bending stiffness", unit::newton_mm, 1e-6, 1e6,
+          "Moment that bends a strip 1 mm wide to a radius of 1 mm. Cotton about 0.01. Automatic: computed from thickness and stretch stiffness as if the cloth were solid.")
           .slider(0.001, 10)
           .group("Cloth"),
-      parameter("stuffing_pressure_pa", &ZippingOptions::stuffing_pressure_pa, "Stuffing", unit::pascal, 0, 1e6,
-                "Pressure from inside on what is closed already.")
+      parameter("stuffing_pressure_pa", &ZippingOptions::stuffing_pressure_pa, "Stuffing pressure", unit::pascal, 0,
+                1e6, "Pressure of the stuffing on the inside of the parts that are already closed. 0: not stuffed.")
           .slider(0, 1000)
           .group("Cloth"),
       parameter(
           "hold_open_percent", &ZippingOptions::hold_open_percent, "Held open", unit::percent, 0, 500,
-          "Zipping, what is closed is held open from inside, by a pressure of this share of stretch stiffness over size; not at the end. Automatic: 40, 0, 15, until it fits.")
+          "Pressure that holds the closed part open from inside while it is zipped, in percent of stretch stiffness divided by size; it is released at the end. Automatic: tries 40, 0 and 15 until the shape is reached.")
           .slider(0, 100)
           .group("Simulation"),
       parameter(
           "press_out_percent", &ZippingOptions::press_out_percent, "Pressed out", unit::percent, 0, 5000,
-          "Where it has not taken its shape it is pressed out from inside once, as hands do with tucked-in corners, and let go; measured as Held open. 0: never.")
+          "Pressure that pushes tucked-in corners out from inside once after zipping, as hands do, in the same unit as Held open. 0: never.")
           .slider(0, 1000)
           .group("Simulation"),
-      parameter("edge_mm", &ZippingOptions::edge_mm, "Longest edge", unit::mm, 0, 1000,
-                "Triangles with longer edges are halved, all seams alike; 0: as designed.")
+      parameter(
+          "edge_mm", &ZippingOptions::edge_mm, "Longest edge", unit::mm, 0, 1000,
+          "Triangles with longer edges than this are split in half, for a more accurate simulation that takes longer. 0: keeps the triangles of the design.")
           .slider(1, 20)
           .group("Simulation"),
-      parameter("steps", &ZippingOptions::steps, "Steps", unit::none, 20, 20000,
-                "In which the slider goes from one end to the other.")
+      parameter(
+          "steps", &ZippingOptions::steps, "Steps", unit::none, 20, 20000,
+          "Number of steps in which the slider moves from one end of the zipper to the other. More are more exact and take longer.")
           .slider(100, 1000)
           .group("Simulation"),
-      parameter("seed", &ZippingOptions::seed, "Disturbance", unit::none, 0, 1e9,
-                "Which chance disturbance of a thousandth of the width sends the flat cloth out of its plane.")
+      parameter(
+          "seed", &ZippingOptions::seed, "Random seed", unit::none, 0, 1e9,
+          "Number that selects the small random bumps, a thousandth of the ribbon width high, that let the flat cloth buckle. Another number tries another course of zipping.")
           .slider(0, 20)
           .group("Simulation")
           .advanced(),
-      parameter("frames", &ZippingOptions::frames, "Frames", unit::none, 2, 500, "Of the animation.")
+      parameter("frames", &ZippingOptions::frames, "Frames", unit::none, 2, 500, "Number of pictures in the animation.")
           .slider(10, 100)
           .group("Simulation")
           .advanced(),
-      parameter("tolerance_percent", &ZippingOptions::tolerance_percent, "Tolerance", unit::percent, 0.01, 50,
-                "It takes the intended shape when 95 % of it are no farther off, in percent of its size.")
+      parameter(
+          "tolerance_percent", &ZippingOptions::tolerance_percent, "Tolerance", unit::percent, 0.01, 50,
+          "Largest distance from the design, in percent of the object's size, within which 95 % of the cloth must lie to count as the intended shape.")
           .slider(0.5, 10)
           .group("Simulation")};
 };

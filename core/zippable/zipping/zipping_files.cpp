@@ -46,7 +46,8 @@ Bytes write_zipping_glb(const ZippingResult& result, Context& context) {
   const std::size_t targets = frames.size() - 1;
   constexpr double frames_per_second = 8;
   const double colour_span = std::max(0.05 * result.pattern.size_mm, 1e-9);
-  GlbAssembly glb("frames", "The animation would exceed the 4 GB of a GLB: ask for fewer frames or triangles.");
+  GlbAssembly glb("frames",
+                  "The animation would be larger than 4 GB, the limit of GLB files: use fewer frames or triangles.");
   Json attributes = Json::object(), morphs = Json::array(), shares = Json::array(), frame_times = Json::array(),
        weights = Json::array();
   attributes["POSITION"] = glb.add_floats(
@@ -102,27 +103,27 @@ std::string zipping_verdict(const ZippingResult& result, double tolerance_percen
   const ShapeComparison& c = result.comparison;
   const std::string figures = "95 % of it lie within " + rounded(c.percentile_95_mm) + " mm (" +
                               rounded(100 * c.percentile_95_mm / std::max(result.pattern.size_mm, 1e-9)) +
-                              " % of its size) of the prediction";
+                              " % of its size) of the design";
   const std::string how = std::string(c.mirrored ? ", inside out" : "") +
                           (result.pressed_out ? ", once it is pressed out from inside" : "");
   switch (zipping_outcome(result, tolerance_percent)) {
     case ZippingOutcome::open_seams:
       return "It does not zip up: " + std::to_string(result.open_seams) +
-             " pairs of places that should meet stay up to " + rounded(result.gap_max_mm) + " mm apart; " + figures +
+             " pairs of points that should meet stay up to " + rounded(result.gap_max_mm) + " mm apart; " + figures +
              ".";
     case ZippingOutcome::not_settled:
-      return "It had not come to rest when the simulation ended, so nothing is certain; " + figures + ".";
+      return "The cloth was still moving when the simulation ended, so the result is uncertain; " + figures + ".";
     case ZippingOutcome::takes_shape: return "It zips into the intended shape" + how + ": " + figures + ".";
     case ZippingOutcome::as_the_cloth_does:
-      return "It zips into the intended shape" + how + ", as nearly as this cloth keeps it: " + figures +
+      return "It zips into the intended shape" + how + ", as closely as this cloth can hold it: " + figures +
              ", and put there it would rest " + rounded(result.rest.percentile_95_mm) +
-             " mm off; stiffer cloth or stuffing comes nearer.";
+             " mm away. Stiffer cloth or stuffing comes closer.";
     case ZippingOutcome::another_shape: break;
   }
   const bool would_stay = result.rest.percentile_95_mm <= 0.01 * tolerance_percent * result.pattern.size_mm;
   return "It zips up, but not into the intended shape: " + figures +
-         (would_stay ? "; put into the intended shape it would stay there."
-                     : "; put into the intended shape it would leave it.");
+         (would_stay ? "; placed in the intended shape, it would stay there."
+                     : "; placed in the intended shape, it would not stay there.");
 }
 
 }  // namespace formwright

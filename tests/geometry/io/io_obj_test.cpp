@@ -254,7 +254,7 @@ TEST_CASE("Mtl.BadColoursAreRefused") {
     read_text("mtllib m.mtl\n" + std::string(square) + "usemtl red\nf 1 2 3\n", "a.obj", options);
     FAIL();
   } catch (const Error& error) {
-    CHECK(std::string(error.what()) == "m.mtl, line 2: Kd needs three numbers, red, green and blue; mend the line.");
+    CHECK(std::string(error.what()) == "m.mtl, line 2: Kd needs three numbers: red, green and blue; correct the line.");
   }
 }
 

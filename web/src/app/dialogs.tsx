@@ -13,9 +13,9 @@ const keys: readonly (readonly [keys: readonly string[], meaning: string])[] = [
   [['Ctrl', 'O'], 'Open a file'],
   [['Ctrl', 'Z'], 'Undo'],
   [['Ctrl', 'Shift', 'Z'], 'Redo'],
-  [['Esc'], 'Cancel, or hold the machine'],
+  [['Esc'], 'Cancel, or pause the machine'],
   [['Ctrl', '.'], 'Stop the machine'],
-  [['Esc', 'Esc'], 'Stop the machine, too'],
+  [['Esc', 'Esc'], 'Stop the machine (second key)'],
   [['?'], 'All keys'],
 ];
 const viewKeys: typeof keys = [
@@ -25,7 +25,7 @@ const viewKeys: typeof keys = [
 const fieldKeys: typeof keys = [
   [['↑', '↓'], 'Step by 1 % of the range'],
   [['Shift', '↑'], 'Step by 10 %'],
-  [['Enter'], 'Take the number'],
+  [['Enter'], 'Accept the number'],
 ];
 
 function KeyList({ list }: { list: typeof keys }) {
@@ -90,7 +90,7 @@ export function WorkerDialog({ services, onClose }: { services: Services; onClos
             Everything runs in this page. A native worker on your own machine solves large models several
             times faster.
           </p>
-          <p>In a copy of Formwright’s source, run</p>
+          <p>To start it, run this in a copy of Formwright’s source:</p>
           <pre class="command">make run</pre>
           <p>and open the address it prints. The worker listens to this machine only.</p>
         </>

@@ -13,7 +13,7 @@ export function ProjectMenu({ services, onOpenFile }: { services: Services; onOp
   const { projects } = services;
   const { id, name } = projects.document.value;
   const [dialog, setDialog] = useState<'rename' | 'delete' | null>(null);
-  const blank = projects.isBlank.value ? 'Nothing in it yet' : undefined;
+  const blank = projects.isBlank.value ? 'Empty project' : undefined;
   const open = async (other: string) => {
     await projects.open(other);
     go(placeOfWork(projects.document.value) ?? 'relief');

@@ -46,10 +46,10 @@ function NotKept({ projects }: { projects: ProjectStore }) {
         </button>
       </span>
       {shown ? (
-        <Dialog title="This project lasts until the tab is closed" onClose={() => setShown(false)}>
+        <Dialog title="This project is kept only until the tab is closed" onClose={() => setShown(false)}>
           <p>
             This browser does not let the page keep files, as in a private window. Save the project as a file,
-            and open that file later to go on.
+            and open that file later to continue.
           </p>
           {problem === null ? null : <p role="alert">{problem}</p>}
           <div class="row end">

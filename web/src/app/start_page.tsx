@@ -45,7 +45,7 @@ export function StartPage({ services, session, onChooseFile }: StartPageProps) {
     <main class="view start" aria-label="Start">
       <div class="start-inner">
         <h1>What will you make?</h1>
-        <p class="lead">Turn a 3D model into something made by hand-sized machines.</p>
+        <p class="lead">Turn a 3D model into a relief, a coloured plastic shell or a zip-up soft toy.</p>
         <ul class="craft-cards">
           {crafts.slice(0, 4).map((craft) => (
             <li key={craft.place}>

@@ -98,7 +98,11 @@ function WorkerChip({
   } else if (connection?.state === 'connecting')
     [dot, words, short] = ['off', 'Connecting to the worker', 'Connecting'];
   else if (connection?.state === 'lost')
-    [dot, words, short] = ['attention', 'Worker lost · in the browser', 'Worker lost'];
+    [dot, words, short] = [
+      'attention',
+      'Connection to the worker lost · solving in the browser',
+      'Worker lost',
+    ];
   else if (connection?.state === 'refused')
     [dot, words, short] = ['bad', 'Worker refused this page', 'Refused'];
   else if (solving) [dot, words, short] = ['live', 'In the browser · solving', 'Solving'];

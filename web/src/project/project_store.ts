@@ -205,7 +205,7 @@ export class ProjectStore {
     if (await this.#locks.take(id)) return;
     const name = this.#stored.get(id)?.document.name ?? 'This project';
     throw new Error(
-      `“${name}” is open in another tab. Go on there, or open another project in that tab first.`,
+      `“${name}” is open in another tab. Continue there, or open another project in that tab first.`,
     );
   }
   async #turnTo(id: string, next: () => ProjectDocument | Promise<ProjectDocument>): Promise<void> {

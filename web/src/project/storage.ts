@@ -21,7 +21,7 @@ export function storageSentence(thrown: unknown): string {
   if (name === 'QuotaExceededError')
     return 'The browser has no room left for this project. Delete projects you no longer need, or save this one as a file.';
   if (name === 'SecurityError' || name === 'InvalidStateError')
-    return 'This browser does not let the page keep files, as in a private window. Save the project as a file before closing.';
+    return 'This browser does not let the page keep files, as in a private window. Save the project as a file before you close the tab.';
   return 'The project could not be saved in the browser. Save it as a file before closing.';
 }
 

@@ -119,7 +119,7 @@ export interface ColourMapping {
   maximum: number;
   /** "°", "mm"; written in the legend and the read-out. */
   unit: string;
-  /** "Normal error". */
+  /** "Shading difference". */
   label: string;
 }
 
@@ -294,7 +294,7 @@ export interface ViewportApi {
    *  onViewpointChange; ask `atViewpoint`. */
   setViewpoint(viewpoint: Viewpoint): void;
   getViewpoint(): Viewpoint;
-  /** The current camera as a viewpoint, for "Set from this view". */
+  /** The current camera as a viewpoint, for "Use this view". */
   getCameraAsViewpoint(): Viewpoint;
   readonly atViewpoint: boolean;
   lookFromViewpoint(animated?: boolean): void;

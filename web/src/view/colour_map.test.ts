@@ -79,7 +79,7 @@ describe('legends', () => {
     minimum: 0,
     maximum: 75,
     unit: '°',
-    label: 'Normal error',
+    label: 'Shading difference',
   } as const;
 
   it('name unit, extremes and the mean', () => {
@@ -88,7 +88,7 @@ describe('legends', () => {
     expect(legend.mark?.text).toBe('mean 30.0°');
     expect(legend.mark?.fraction).toBeCloseTo(0.4, 12);
     expect(legend.summary).toBe(
-      'Normal error: colours from 0° to 75.0°, values from 10.0° to 60.0°, mean 30.0°.',
+      'Shading difference: colours from 0° to 75.0°, values from 10.0° to 60.0°, mean 30.0°.',
     );
   });
 

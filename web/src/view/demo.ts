@@ -174,7 +174,7 @@ const mapping = {
   minimum: 0,
   maximum: 75,
   unit: '°',
-  label: 'Normal error',
+  label: 'Shading difference',
 } as const;
 viewport.setColourMapping(mapping);
 viewport.lookFromViewpoint(false);

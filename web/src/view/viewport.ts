@@ -50,7 +50,7 @@ import { length, scale, subtract, viewerAxes } from './vector';
 const UNSUPPORTED =
   'This browser cannot draw in 3D: it offers no WebGL 2. Update the browser, or allow hardware acceleration in its settings.';
 const LOST =
-  'The graphics card let go of the picture. It comes back by itself; if it does not, reload the page.';
+  'The graphics context was lost. The view will be restored in a moment; if it is not, reload the page.';
 
 /** Room for dimension lines below and to the right, px; narrower viewports go without. */
 const DIMENSION_PX = 30;
@@ -498,7 +498,7 @@ export class Viewport implements ViewportApi {
   async snapshot(widthPx: number, heightPx: number, options: { transparent?: boolean } = {}): Promise<Blob> {
     const { stage } = this;
     if (!stage || this.statusNow.state !== 'ready') {
-      throw new Error('There is no picture to keep: the 3D view is not running.');
+      throw new Error('The picture cannot be saved because the 3D view is not running: reload the page.');
     }
     const picture = { ...this.picture(this.pictureParts()), backdrop: !options.transparent };
     const pixels = await readView(stage, picture, widthPx, heightPx);

@@ -119,7 +119,7 @@ export abstract class CraftSession<D extends CraftDocument = CraftDocument> exte
       throw new JobError({
         code: 'internal',
         where: '',
-        message: `This build has no operation ${this.operationName}.`,
+        message: `This build does not have the operation ${this.operationName}.`,
       });
     return operation;
   }

@@ -43,7 +43,11 @@ export async function importModel(
 export async function bytesOf(result: Result, name: string): Promise<Uint8Array<ArrayBuffer>> {
   const output = result.outputs.get(name);
   if (output === undefined)
-    throw new JobError({ code: 'internal', where: name, message: `The solver made no ${name}.` });
+    throw new JobError({
+      code: 'internal',
+      where: name,
+      message: `The solver did not make the file ${name}.`,
+    });
   return await output.read();
 }
 

@@ -74,8 +74,8 @@ function PrinterChoice({ session }: { readonly session: PrintSession }) {
           {session.looking.value
             ? 'Looking for printers'
             : worker
-              ? 'No printer was found. Those of this computer and of the network appear by themselves.'
-              : 'Printers need the native worker: run “make run” and open the address it prints. Print the PDF at 100 %, without fitting it to the page.'}
+              ? 'No printer was found. Printers of this computer and of the network appear here by themselves.'
+              : 'Printing from here needs the native worker: run “make run” and open the address it prints. Or save the PDF and print it at 100 %, not fitted to the page.'}
         </p>
       ) : null}
       {reasons.length > 0 ? (
@@ -143,7 +143,7 @@ function PrinterWishes({ session }: { readonly session: PrintSession }) {
       />
       {printer.scaling_can_be_off ? null : (
         <p class="hint">
-          This printer does not promise to leave the size alone: measure the ruler on the first page.
+          This printer does not guarantee to print at true size: measure the ruler on the first page.
         </p>
       )}
     </section>
@@ -212,7 +212,7 @@ function pagesLine(session: PrintSession): string {
   const laid = session.laid.value;
   if (laid === null) return 'Laying out the pages';
   const { layout } = laid;
-  if (layout === null) return 'Pages as they were made, at true size';
+  if (layout === null) return 'Pages at true size, unchanged';
   const [width, height] = layout.size_mm;
   return [
     layout.pages === 1 ? '1 page' : `${layout.pages} pages, ${layout.columns} × ${layout.rows}`,

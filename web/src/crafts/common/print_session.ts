@@ -113,7 +113,7 @@ export class PrintSession {
       if (!printer.qualities.includes(this.quality.value))
         this.quality.value = printer.qualities[0] ?? 'normal';
       if (this.papers.value.length === 0)
-        this.problem.value = `${printer.name} does not say which paper is loaded: see to its trays.`;
+        this.problem.value = `${printer.name} does not report which paper is loaded: check its trays.`;
     } catch (thrown) {
       if (this.chosen.value === id) this.problem.value = asJobError(thrown).message;
     }
@@ -148,7 +148,7 @@ export class PrintSession {
       if (error.code !== 'cancelled') {
         this.problem.value = error.message;
         if (!this.#open) toast(`${this.printable.title} was not printed: ${error.message}`, true);
-      } else this.done.value = 'Cancelled: the printer was told.';
+      } else this.done.value = 'Cancelled: the printer received the cancel command.';
     } finally {
       this.task.value = null;
     }

@@ -97,7 +97,11 @@ export async function productBytes<D extends RoomWithProducts>(
       }
       const own = made[output];
       if (own === undefined)
-        throw new JobError({ code: 'internal', where: output, message: `The solver made no ${output}.` });
+        throw new JobError({
+          code: 'internal',
+          where: output,
+          message: `The solver did not make the file ${output}.`,
+        });
       options.do(
         addProduct(session.commands, {
           id: crypto.randomUUID(),

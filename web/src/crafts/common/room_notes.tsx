@@ -44,7 +44,7 @@ export function repairsNote(session: CraftSession) {
       <Note
         kind="plain"
         icon="check"
-        title="Mended while opening"
+        title="Repaired on import"
         onDismiss={() => (session.repairsOpen.value = false)}
       >
         {sentences(model.report, 'repairs').join(' ')}

@@ -175,7 +175,7 @@ function Sending({ session }: { readonly session: SliceSession }) {
       {confirming.value ? (
         <>
           <p>
-            {name} heats up and moves as soon as it has the file. Is its bed clear, and is somebody there?
+            {name} heats up and moves as soon as it has the file. Is its bed clear, and is somebody beside it?
           </p>
           <div class="dialog-actions">
             <Button onClick={() => (confirming.value = false)}>Not yet</Button>

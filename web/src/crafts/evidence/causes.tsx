@@ -17,8 +17,8 @@ export function Causes({ session, diagnosis }: { session: EvidenceSession; diagn
   const listed = all.value ? causes : causes.slice(0, shownCauses);
   const rest = causes.length - listed.length;
   return (
-    <section class="section causes" aria-label="What explains the difference">
-      <h3>What explains the difference</h3>
+    <section class="section causes" aria-label="Causes of the difference">
+      <h3>Causes of the difference</h3>
       {reading === 'none' || reading === 'unknown' ? <p class="reading">{diagnosis.sentence}</p> : null}
       {words ? <p>{words}</p> : null}
       <ol>
@@ -28,7 +28,7 @@ export function Causes({ session, diagnosis }: { session: EvidenceSession; diagn
         {diagnosis.unlisted >= 0.005 ? (
           <li class="cause unlisted">
             <span class="cause-line">
-              Something not in the list <b>{percent(diagnosis.unlisted)}</b>
+              A cause that is not in the list <b>{percent(diagnosis.unlisted)}</b>
             </span>
           </li>
         ) : null}

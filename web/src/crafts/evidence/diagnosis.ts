@@ -130,14 +130,14 @@ export function readDiagnosis(report: Report): Diagnosis {
 export function readingWords({ reading, alike }: Pick<Diagnosis, 'reading' | 'alike'>): string {
   switch (reading) {
     case 'none':
-      return 'Nothing to mend: what is left is as small as the measuring noise. The calibrated simulation may be used as it is.';
+      return 'Nothing to fix: the remaining error is as small as the measuring noise. The calibrated simulation can be used as it is.';
     case 'unknown':
-      return 'The measured sheet differs in a way that repeats, but no cause of the list makes it. The nearest one is listed first; look for what the list does not know.';
+      return 'The measured sheet differs in a systematic way that none of the known causes explains. The most similar cause is listed first; look for other causes.';
     case 'cannot_separate': {
       const labels = alike[0]?.labels ?? [];
       return labels.length === 2
-        ? `These data look the same for “${labels[0]}” and “${labels[1]}”.`
-        : 'These data look the same for more than one cause.';
+        ? `These data fit equally well with “${labels[0]}” and “${labels[1]}”.`
+        : 'These data fit equally well with more than one cause.';
     }
     case 'cause':
       return '';

@@ -56,7 +56,7 @@ export interface MeasuredScan {
   readonly of: Json;
   readonly report: Report;
   readonly points: BlobReference;
-  /** The scan carried back to the flat sheet: it should look like the pattern. */
+  /** The scan mapped back to the flat sheet: it should look like the pattern. */
   readonly aligned: BlobReference;
 }
 

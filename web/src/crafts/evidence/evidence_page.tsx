@@ -84,8 +84,9 @@ function Empty({ session, onChooseFile }: EvidencePageProps) {
   return (
     <div class="empty-view evidence-empty">
       <p>
-        Evidence starts from a formed object that was measured: mould.obj, setup.json and measured.csv
-        together, their folder, or a zip of it.
+        Find out why a formed part came out wrong. You need the mould (mould.obj), your machine’s settings
+        (setup.json) and the measured points (measured.csv): drop the three files, their folder, or a zip of
+        it.
       </p>
       <div class="row">
         <Button kind="filled" icon="upload" onClick={onChooseFile}>
@@ -118,7 +119,7 @@ function Bench({ session }: { session: EvidenceSession }) {
       </div>
       {look === null ? (
         <p class="waiting" role="status">
-          {waiting ? 'Simulating the set-up as it stands…' : ''}
+          {waiting ? 'Simulating with the settings as they are…' : ''}
         </p>
       ) : view.value === 'plane' ? (
         <Maps session={session} look={look} />
@@ -133,11 +134,11 @@ function Bench({ session }: { session: EvidenceSession }) {
           {diagnosis ? (
             <Gains diagnosis={diagnosis} />
           ) : (
-            <Pane title="Error on data not shown" detail="">
+            <Pane title="Error on held-out data" detail="">
               <p class="later">
                 {session.mode.value === 'diagnose'
-                  ? 'Parts of the sheet are left out of the fit and then predicted. It comes with the diagnosis.'
-                  : 'It comes with a diagnosis. A calibration fits the sheet’s material and says what the data do not tell.'}
+                  ? 'Parts of the sheet are left out of the fit and then predicted. This chart is shown after a diagnosis.'
+                  : 'This chart is shown after a diagnosis. A calibration only fits the sheet’s material and reports how certain each parameter is.'}
               </p>
             </Pane>
           )}

@@ -23,13 +23,13 @@ const modes = [
 
 const useNames: Readonly<Record<Use, string>> = {
   fit: 'Used',
-  unseen: 'Not used, only to measure the gain on',
+  unseen: 'Validation object: not used for fitting',
   off: 'Left out',
 };
 
 const useWords: Readonly<Record<Use, string>> = {
   fit: '',
-  unseen: ', to measure the gain on',
+  unseen: ', for validation only',
   off: ', left out',
 };
 
@@ -48,7 +48,7 @@ export function Inspector({ session, onChooseFile }: InspectorProps) {
               ...mode,
               disabledReason:
                 solving && mode.value !== session.mode.value
-                  ? 'A run is under way; Esc cancels it'
+                  ? 'A run is in progress; Esc cancels it'
                   : undefined,
             }))}
             value={session.mode.value}
@@ -71,14 +71,14 @@ export function Inspector({ session, onChooseFile }: InspectorProps) {
           <>
             <div class="section">
               <Switch
-                label="With the extended model"
-                help="What was found is put into the simulation; off: the calibrated material alone."
+                label="Show the simulation with this cause included"
+                help="On: the simulation includes the causes found. Off: it uses the calibrated material alone."
                 value={session.extended.value}
                 onChange={(on) => (session.extended.value = on)}
               />
             </div>
             <Causes session={session} diagnosis={diagnosis} />
-            <Fold title="Parameters refitted with it" count={diagnosis.parameters.length}>
+            <Fold title="Parameters fitted together with it" count={diagnosis.parameters.length}>
               <table class="refitted">
                 <thead>
                   <tr>

@@ -23,12 +23,12 @@ export function MainButton({ session }: { session: EvidenceSession }) {
   if (activity.kind === 'solving')
     return (
       <>
-        <Button kind="filled" size="big" disabledReason="Under way; Esc cancels">
+        <Button kind="filled" size="big" disabledReason="In progress; Esc cancels">
           {mode === 'diagnose' ? 'Diagnosing' : 'Calibrating'}
         </Button>
         <p>
           {activity.name === 'native'
-            ? 'What is simulated is kept: a run that was stopped goes on from there'
+            ? 'Finished simulations are kept: a stopped run continues from there'
             : 'Change anything to start again'}
         </p>
       </>

@@ -88,7 +88,7 @@ export function Maps({ session, look }: { session: EvidenceSession; look: Look }
     minimum: -scales.most,
     maximum: scales.most,
     unit: 'mm',
-    label: 'Height, simulated less measured',
+    label: 'Height, simulated minus measured',
   };
   const shared = { session, residuals, frame, triangles, opening_mm: look.opening_mm };
   const which = modelWords(look, model);

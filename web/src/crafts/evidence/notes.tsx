@@ -39,11 +39,13 @@ export function Notes({ session, onChooseFile }: NotesProps) {
           kind="attention"
           icon="file"
           title={`Still missing: ${missingFrom(draft.files)}`}
-          onDismiss={() => session.services.projects.do(evidence.setDraft(null, 'Forget incomplete files'))}
+          onDismiss={() =>
+            session.services.projects.do(evidence.setDraft(null, 'Remove the incomplete files'))
+          }
           actions={choose}
         >
-          A measured object is mould.obj, setup.json and measured.csv. What came is kept until the rest is
-          there.
+          A measured object consists of mould.obj, setup.json and measured.csv. These files are kept until the
+          missing ones are added.
         </Note>
       </div>
     );

@@ -78,8 +78,8 @@ function PatternDialog({ session, operation, onClose }: PatternDialogProps) {
   return (
     <Dialog title="Print a pattern" onClose={onClose}>
       <p>
-        A sheet printed with it, formed and scanned, tells where every point went. Keep pattern.json, which is
-        saved with it: the scan is read by it.
+        Print this pattern on a sheet, form it and scan it: the scan then shows where every point of the sheet
+        moved. Keep pattern.json, which is saved with it and is needed to read the scan.
       </p>
       <div class="virtual-parameters">
         <ParameterPanel

@@ -26,7 +26,7 @@ export function readResiduals(csv: string): Map<string, Residuals> {
   const base = columns(names.includes('calibrated_x_mm') ? 'calibrated_' : 'simulated_');
   const extended = names.includes('extended_x_mm') ? columns('extended_') : null;
   if ([...sheet, ...measured, ...base, ...(extended ?? [])].some((column) => column < 0))
-    throw new Error('The table of residuals lacks columns.');
+    throw new Error('The file residuals.csv lacks columns: run the diagnosis again.');
   const object = names.indexOf('object');
   const rows = new Map<string, string[][]>();
   for (const line of lines) {

@@ -85,20 +85,20 @@ function stateOf(session: EvidenceSession) {
       title: 'Stopped',
       detail:
         session.services.native === null
-          ? 'A run in the browser starts anew'
-          : 'What was simulated is kept; it goes on from there',
+          ? 'A run in the browser starts again from the beginning'
+          : 'Finished simulations are kept; the run continues from there',
     };
   const look = session.look.value;
   if (look === null)
     return {
       state: 'idle' as const,
       title: session.looking.value ? 'Simulating the set-up' : 'Nothing compared yet',
-      detail: 'Measured beside simulated comes first',
+      detail: 'The comparison of measurement and simulation comes first',
     };
   const mean = meanOf(distancesOf(look.residuals, 'base'));
   return {
     state: 'idle' as const,
-    title: 'Set-up compared as it stands',
+    title: 'Compared with the settings as they are',
     detail: `${withUnit(formatNumber(mean, 2), 'mm')} apart on average; not calibrated yet`,
   };
 }

@@ -18,7 +18,7 @@ export function ScanInspector({ session, scan }: { session: EvidenceSession; sca
   const missing = lacking(session, scan);
   const busy = session.activity.value.kind !== 'idle';
   const reason = busy
-    ? 'Under way; Esc cancels'
+    ? 'In progress; Esc cancels'
     : missing.length > 0
       ? `Still missing: ${missing.join(' and ')}`
       : undefined;
@@ -41,8 +41,8 @@ export function ScanInspector({ session, scan }: { session: EvidenceSession; sca
               </li>
             ))}
           </ul>
-          <Button size="small" onClick={() => projects.do(evidence.setScan(null, 'Put the scan away'))}>
-            Put it away
+          <Button size="small" onClick={() => projects.do(evidence.setScan(null, 'Remove the scan'))}>
+            Remove it
           </Button>
         </section>
         {operation ? (

@@ -46,7 +46,7 @@ export function ScanPanel({ session, scan, onChooseFile }: ScanPanelProps) {
             <Aligned session={session} measured={measured} />
           ) : (
             <p class="later">
-              The scan carried back to the flat sheet: it should look like the printed pattern.
+              The scan mapped back to the flat sheet: it should look like the printed pattern.
             </p>
           )}
         </Pane>
@@ -92,7 +92,7 @@ function Corners({ session, scan }: { session: EvidenceSession; scan: Scan }) {
   if (url === null)
     return (
       <p class="later">
-        The scan brings no picture that can be shown here. The corner marks are looked for when it is
+        The scan has no picture that can be shown here. The corner marks are searched for when the scan is
         measured.
       </p>
     );
@@ -137,17 +137,17 @@ function Corners({ session, scan }: { session: EvidenceSession; scan: Scan }) {
       <div class="row scan-tools">
         {scan.corners ? (
           <>
-            <p class="grow">Put each on its mark of rings: drag, or arrow keys.</p>
+            <p class="grow">Move each one onto its ring mark: drag it, or use the arrow keys.</p>
             <Button size="small" onClick={() => set(null, 'Find the corners')}>
-              Find them instead
+              Search for them instead
             </Button>
           </>
         ) : (
           <>
             <p class="grow">
               {measured
-                ? `${found_count} of 4 corner marks shown where they were found. Is one beside its rings? Move it.`
-                : 'The four corner marks are looked for when the scan is measured.'}
+                ? `${found_count} of 4 corner marks found. If one is not on its ring mark, move it.`
+                : 'The four corner marks are searched for when the scan is measured.'}
             </p>
             <Button
               size="small"
@@ -241,7 +241,7 @@ function Aligned({ session, measured }: { session: EvidenceSession; measured: Me
   return (
     <>
       <div class="scan-picture">
-        {url ? <img src={url} alt="The scan carried back to the flat sheet" /> : null}
+        {url ? <img src={url} alt="The scan mapped back to the flat sheet" /> : null}
       </div>
       <p class="scan-figures">
         {formatCount(figure(report, 'points') ?? 0)} points

@@ -24,7 +24,7 @@ export function VirtualObject({ session, operation }: { session: EvidenceSession
 }
 
 /** The faults are what this is about: elsewhere they are advanced, here they come first. */
-const faultGroups = ["Machine's own ways", "Measurement's own ways"];
+const faultGroups = ['Machine faults', 'Measurement faults'];
 const openGroups = [...faultGroups, 'Virtual scan'];
 /** Something to find for who sets nothing. */
 const usualFault: JsonObject = { heating_gradient_x: 0.3 };

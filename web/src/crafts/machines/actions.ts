@@ -52,12 +52,12 @@ export function startReason(session: MachinesSession): string | undefined {
   const wrong = wrongMachine(session);
   if (wrong) return wrong;
   if (plan === null) return session.subject.value ? 'Make the job first' : 'Open a drawing or a job first';
-  if (session.planning.value) return 'Ready when the job is made';
+  if (session.planning.value) return 'Available when the job is made';
   if (plan.misfits.length > 0 || session.job.value === null) return plan.misfits[0] ?? 'The job does not fit';
   if (!session.isCurrent.value)
     return session.subject.value
-      ? 'What is shown is not what is set: make the job first'
-      : 'What is shown is not what is set: mend what is marked first';
+      ? 'The job shown is out of date because settings changed: make the job again'
+      : 'The preview is out of date because some values are invalid. Correct the highlighted fields.';
   if (control.isBusy) return 'A job is running';
   if (state.phase === 'alarm') return 'The machine is in alarm: home it first';
   if (!state.position_known)
@@ -67,7 +67,7 @@ export function startReason(session: MachinesSession): string | undefined {
   if (session.needsZ)
     return `Mount the ${toolWords(session)} tool, lower its tip to the stock and set z here`;
   if (session.isMill && !state.axes_known.z)
-    return 'Where the tool’s tip stands is unknown: lower it to the stock’s top and set z';
+    return 'The height of the tool’s tip is unknown: lower it to the top of the stock and set z';
   return state.phase === 'idle' ? undefined : `The machine is ${state.phase}`;
 }
 
@@ -94,7 +94,7 @@ export async function start(session: MachinesSession): Promise<void> {
     sentences: () => [
       isLaser(session)
         ? `The head moves and the laser turns on, at up to ${withUnit(formatNumber(power, 2), '%')}, for about ${formatDuration(seconds)}.`
-        : `The machine moves and its spindle turns, for about ${formatDuration(seconds)}. Z is 0 on the stock's top, the tool at its corner.`,
+        : `The machine moves and its spindle turns, for about ${formatDuration(seconds)}. Z is 0 on top of the stock, and the tool is at its corner.`,
       isLaser(session) ? eyes : chips,
       ...whenLeftAlone(session),
     ],
@@ -117,13 +117,13 @@ export function goOn(session: MachinesSession): void {
     title: 'Cut the rest?',
     sentences: [
       isLaser(session)
-        ? `The machine was homed again; it goes to the stroke that begins at line ${line}, turns the laser on and cuts from there. What was cut last is cut once more.`
-        : `The machine was homed again; it rises, goes to the line that begins at line ${line} of the job, starts its spindle and sinks at feed rate. What was cut last is cut once more.`,
-      'This only fits where neither the material nor the origin has moved. ' +
+        ? `The machine was homed again; it moves to the path that begins at line ${line}, turns the laser on and continues cutting there. The last cut is repeated.`
+        : `The machine was homed again; it rises, moves to the path that begins at line ${line} of the job, starts its spindle and lowers the tool at feed rate. The last cut is repeated.`,
+      'This works only if neither the material nor the origin has moved. ' +
         (isLaser(session) ? eyes : chips),
       ...whenLeftAlone(session),
     ],
-    action: isLaser(session) ? 'Go on with the laser on' : 'Go on with the spindle on',
+    action: isLaser(session) ? 'Continue with the laser on' : 'Continue with the spindle on',
     danger: true,
     run: () => void session.control.start(nameOf(session), key, job.bytes, line),
   });
@@ -161,11 +161,11 @@ export function home(session: MachinesSession): void {
 export function focus(session: MachinesSession): void {
   const power_percent = 1;
   ask({
-    title: 'Shine the laser to focus it?',
+    title: 'Turn on the laser at low power to focus it?',
     sentences: [
-      `The laser shines at ${withUnit(String(power_percent), '%')} without moving, and goes out by itself after a minute. Eyes protected.`,
+      `The laser is on at ${withUnit(String(power_percent), '%')} without moving, and turns off by itself after a minute. Protect your eyes.`,
     ],
-    action: 'Shine the laser',
+    action: 'Turn on the focus beam',
     danger: true,
     run: () => void session.control.command({ do: 'focus', power_percent, confirmed: true }),
   });
@@ -176,8 +176,8 @@ export function resume(session: MachinesSession): void {
     title: 'Go on?',
     sentences: [
       isLaser(session)
-        ? 'The machine goes on where it was held, with the laser on.'
-        : 'The machine goes on where it was held, with the spindle on.',
+        ? 'The machine continues where it was paused, with the laser on.'
+        : 'The machine continues where it was paused, with the spindle on.',
       isLaser(session) ? eyes : chips,
     ],
     action: 'Go on',
@@ -203,7 +203,7 @@ export function sendLine(session: MachinesSession, line: string): void {
       else
         ask({
           title: `Send ${line}?`,
-          sentences: [message.replace(/: this must be confirmed.*/, '.')],
+          sentences: [message.replace(/: the person in front of the machine must confirm.*/, '.')],
           action: 'Send',
           danger: true,
           run: () => void send(true),

@@ -42,9 +42,9 @@ export function Console({ session }: { readonly session: MachinesSession }) {
   };
   return (
     <div class="console">
-      <ol ref={list} class="console-lines" tabIndex={0} aria-label="What the machine said">
+      <ol ref={list} class="console-lines" tabIndex={0} aria-label="Messages from the machine">
         {events.length === 0 ? (
-          <li class="note-line">{link ? 'Nothing was said yet.' : 'Connect a machine to talk to it.'}</li>
+          <li class="note-line">{link ? 'No messages yet.' : 'Connect a machine to send commands to it.'}</li>
         ) : null}
         {events.map((event, index) => (
           <li key={`${event.now_s} ${index}`} class={event.event}>
@@ -79,7 +79,7 @@ export function Console({ session }: { readonly session: MachinesSession }) {
         <Button
           type="submit"
           size="small"
-          disabledReason={control.can('send') ? undefined : 'Only while the machine rests'}
+          disabledReason={control.can('send') ? undefined : 'Only while the machine is idle'}
         >
           Send
         </Button>

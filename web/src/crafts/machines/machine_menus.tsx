@@ -32,7 +32,7 @@ export function ProfileMenu({ session }: { readonly session: MachinesSession }) 
     } catch (thrown) {
       const sentence =
         thrown instanceof SyntaxError
-          ? 'The file is no JSON: choose a profile that was exported here.'
+          ? 'The file is not JSON: choose a profile that was exported here.'
           : (thrown as Error).message;
       session.problem.value = { kind: 'file', title: `Could not read ${chosen.name}`, message: sentence };
     }
@@ -57,12 +57,12 @@ export function ProfileMenu({ session }: { readonly session: MachinesSession }) 
             onSelect: () => (adding.value = true),
           },
           {
-            label: 'Keep these settings with it',
+            label: 'Save these settings with the machine',
             icon: 'check' as const,
             disabledReason: session.profileChanged ? undefined : 'Nothing has changed',
             onSelect: () => {
               profiles.put({ ...current, parameters: session.machineParameters() });
-              toast(`Kept with ${current.name}.`);
+              toast(`Saved with ${current.name}.`);
             },
           },
           {
@@ -126,7 +126,7 @@ function AddMachine({
     const [controller, tool] = controllers[kind.value] ?? controllers[0];
     if (name.value.trim() === '') problem.value = 'Give the machine a name.';
     else if (!(x !== undefined && y !== undefined && x >= 10 && y >= 10 && x <= 10000 && y <= 10000))
-      problem.value = 'The bed is 10 to 10000 mm wide and deep.';
+      problem.value = 'The bed must be 10 to 10000 mm wide and deep.';
     else {
       const profile: MachineProfile = {
         id: crypto.randomUUID(),
@@ -176,7 +176,7 @@ function AddMachine({
           </select>
         </label>
         <label>
-          Bed, side to side, mm
+          Bed width, mm
           <input
             type="text"
             inputMode="decimal"
@@ -185,7 +185,7 @@ function AddMachine({
           />
         </label>
         <label>
-          Bed, front to back, mm
+          Bed depth, mm
           <input
             type="text"
             inputMode="decimal"

@@ -106,15 +106,15 @@ export function MachinePanel({ session }: { readonly session: MachinesSession })
                 </Button>
               ) : session.isMill ? (
                 <Button
-                  disabledReason={cannot('set_origin', 'Only while the machine rests')}
-                  title="Where the tool’s tip stands now is the stock’s top"
+                  disabledReason={cannot('set_origin', 'Only while the machine is idle')}
+                  title="Sets z to 0 at the tool’s tip, which must touch the top of the stock"
                   onClick={() => void control.command({ do: 'set_origin', axes: 'z' })}
                 >
                   Set z here
                 </Button>
               ) : (
                 <Button
-                  disabledReason={cannot('focus', 'Only while the laser rests')}
+                  disabledReason={cannot('focus', 'Only while the laser is idle')}
                   onClick={() => focus(session)}
                 >
                   Focus
@@ -129,7 +129,7 @@ export function MachinePanel({ session }: { readonly session: MachinesSession })
               ) : null}
               <Button
                 size="small"
-                disabledReason={cannot('set_origin', 'Only while the machine rests')}
+                disabledReason={cannot('set_origin', 'Only while the machine is idle')}
                 onClick={() => void control.command({ do: 'set_origin', axes: 'xy' })}
               >
                 Set origin here
@@ -167,7 +167,7 @@ function Position({ state, withZ }: { readonly state: MachineState; readonly wit
     <div
       class={withZ ? 'machine-position three' : 'machine-position'}
       role="group"
-      aria-label="Where the head stands, in millimetres"
+      aria-label="Position of the head, in millimetres"
     >
       {axis('x', 0)}
       {axis('y', 1)}
@@ -244,7 +244,7 @@ function Jog({ session }: { readonly session: MachinesSession }) {
       leave();
     };
   }, []);
-  const reason = control.can('jog') ? undefined : 'Only while the machine rests';
+  const reason = control.can('jog') ? undefined : 'Only while the machine is idle';
   const arrows: Record<string, Way> = {
     ArrowLeft: [-1, 0, 0],
     ArrowRight: [1, 0, 0],
@@ -292,7 +292,7 @@ function Jog({ session }: { readonly session: MachinesSession }) {
       {key('forward', [0, -1, 0], 'down')}
       {session.isMill ? key('the tool up', [0, 0, 1], 'raise') : null}
       {session.isMill ? key('the tool down', [0, 0, -1], 'lower') : null}
-      <p class="jog-hint">Press: 1 mm. Hold: until let go.</p>
+      <p class="jog-hint">Press: 1 mm. Hold: moves until you let go.</p>
     </div>
   );
 }

@@ -43,7 +43,11 @@ export function MachinesPage({ session, onChooseFile }: MachinesPageProps) {
             onChange={(value) => (shown.value = value)}
             options={[
               { value: 'bed', label: 'Bed' },
-              { value: 'path', label: '3D', disabledReason: plan ? undefined : 'Shown when there is a job' },
+              {
+                value: 'path',
+                label: '3D',
+                disabledReason: plan ? undefined : 'Available when there is a job',
+              },
               { value: 'console', label: 'Console' },
             ]}
           />
@@ -153,12 +157,12 @@ function Strip({ session, onChooseFile }: MachinesPageProps) {
   }
   if (job && job.ended !== null && job.ended !== 'done') {
     const percent = Math.round((100 * job.acknowledged) / Math.max(1, job.line_count));
-    const reason = ofThis ? startReason(session) : 'The job was changed meanwhile';
+    const reason = ofThis ? startReason(session) : 'The job was changed in the meantime';
     return (
       <JobStrip
         state="attention"
         title={`Job ${job.ended === 'cut_off' ? 'cut off' : job.ended} at ${percent} %`}
-        detail={`After ${formatDuration(job.seconds)}. ${job.careful_line === undefined ? 'It can be started anew' : 'After homing, the rest can be cut'}`}
+        detail={`After ${formatDuration(job.seconds)}. ${job.careful_line === undefined ? 'It can be started again' : 'After homing, the rest can be cut'}`}
       >
         {job.careful_line === undefined ? null : (
           <Button size="small" disabledReason={reason} onClick={() => goOn(session)}>
@@ -189,7 +193,7 @@ function Strip({ session, onChooseFile }: MachinesPageProps) {
           session.planning.value
             ? 'One moment'
             : session.subject.value
-              ? 'Make it to see the way of the tool'
+              ? 'Press Make the job to see the tool path'
               : session.isMill
                 ? 'Open a model or a job'
                 : 'Open a drawing or a job'

@@ -41,7 +41,7 @@ export function MaterialSection({ session }: { readonly session: MachinesSession
         >
           <option value="-1">As set below</option>
           {materials.length > 0 ? (
-            <optgroup label={`Kept with ${profiles.current.name}`}>
+            <optgroup label={`Saved with ${profiles.current.name}`}>
               {materials.map(({ name }, index) => (
                 <option key={name} value={String(index)}>
                   {name}
@@ -50,7 +50,7 @@ export function MaterialSection({ session }: { readonly session: MachinesSession
             </optgroup>
           ) : null}
           {start?.lasers.map((laser) => (
-            <optgroup key={laser.name} label={`To begin with: ${laser.title}`}>
+            <optgroup key={laser.name} label={`Starting values: ${laser.title}`}>
               {start.materials
                 .filter((material) => material.laser === laser.name)
                 .map(({ name, title }) => (
@@ -72,7 +72,7 @@ export function MaterialSection({ session }: { readonly session: MachinesSession
           Test material
         </Button>
         <Button size="small" kind="quiet" onClick={() => (naming.value = materials[chosen]?.name ?? '')}>
-          Keep as a material
+          Save as a material
         </Button>
         {chosen >= 0 ? (
           <Button
@@ -90,7 +90,7 @@ export function MaterialSection({ session }: { readonly session: MachinesSession
         ) : null}
       </div>
       {naming.value !== null ? (
-        <Dialog title="Keep as a material" onClose={() => (naming.value = null)}>
+        <Dialog title="Save as a material" onClose={() => (naming.value = null)}>
           <form
             class="add-machine"
             onSubmit={(event) => {
@@ -110,7 +110,7 @@ export function MaterialSection({ session }: { readonly session: MachinesSession
                 onInput={(event) => (naming.value = event.currentTarget.value)}
               />
             </label>
-            <p class="hint">Powers, speeds, passes and kerf are kept with {profiles.current.name}.</p>
+            <p class="hint">Powers, speeds, passes and kerf are saved with {profiles.current.name}.</p>
             <div class="dialog-actions">
               <Button onClick={() => (naming.value = null)}>Cancel</Button>
               <Button kind="filled" type="submit">

@@ -63,7 +63,9 @@ export function MillJobs({ session }: { readonly session: MachinesSession }) {
       <ol class="mill-jobs">
         {jobs.map(({ stage }, index) => (
           <li key={stage} aria-current={index === next ? 'step' : undefined}>
-            {index > 0 ? <p class="hint">Change the tool, lower its tip to the stock, set z here.</p> : null}
+            {index > 0 ? (
+              <p class="hint">Change the tool, lower its tip onto the stock, then set z here.</p>
+            ) : null}
             <span>{stage === 'rough' ? 'Roughing' : 'Finishing'}</span>
             {index === next ? (
               <em>{index > 0 && session.needsZ ? 'next, once z is set' : 'next'}</em>
@@ -96,7 +98,7 @@ export function MakeMillJob({ session }: { readonly session: MachinesSession }) 
         kind="filled"
         size="big"
         disabledReason={
-          kind === 'solving' ? 'Being made; Esc cancels' : kind === 'idle' ? undefined : 'Busy with a file'
+          kind === 'solving' ? 'In progress; Esc cancels' : kind === 'idle' ? undefined : 'Busy with a file'
         }
         onClick={() => void solveInFull(session)}
       >

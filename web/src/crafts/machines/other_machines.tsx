@@ -69,7 +69,7 @@ async function stop(session: MachinesSession, { id, name }: BridgeMachine): Prom
   if (worker === null) return;
   try {
     await stopPrintServer(worker, id);
-    toast(`${name} ends its print.`);
+    toast(`${name} stops its print.`);
   } catch (thrown) {
     toast(asJobError(thrown).message, true);
   }
@@ -99,7 +99,7 @@ function SendJob({ session, machine }: { session: MachinesSession; machine: Brid
     ask({
       title: `Start ${session.title} on ${machine.name}`,
       sentences: [
-        'It heats up and moves as soon as it has the file. Is its bed clear, and is somebody there?',
+        'It heats up and moves as soon as it has the file. Is its bed clear, and is somebody beside it?',
       ],
       action: 'Send and start',
       danger: true,

@@ -71,8 +71,10 @@ function ViewpointTools({ session, viewport }: { session: ReliefSession; viewpor
         <Button
           class="grow"
           icon="lock"
-          disabledReason={at ? 'This is the viewpoint. Turn the model to choose another one.' : undefined}
-          title="Make the relief for the picture you see now"
+          disabledReason={
+            at ? 'This view is the viewpoint already. Turn the model to choose another one.' : undefined
+          }
+          title="Makes the relief for the view you see now"
           onClick={() => {
             if (viewport === null) return;
             session.setViewpoint(viewport.getCameraAsViewpoint());
@@ -80,7 +82,7 @@ function ViewpointTools({ session, viewport }: { session: ReliefSession; viewpor
             atViewpoint.value = true;
           }}
         >
-          Set from this view
+          Use this view
         </Button>
         <IconButton
           icon="eye"
@@ -112,7 +114,7 @@ function MainButton({ session, onSolve, onSendToMill }: InspectorProps) {
   if (activity.kind === 'solving')
     return (
       <>
-        <Button kind="filled" size="big" disabledReason="Being solved; Esc cancels">
+        <Button kind="filled" size="big" disabledReason="Solving; Esc cancels">
           Solving at full detail
         </Button>
         <p>Change anything to start again</p>
@@ -130,7 +132,7 @@ function MainButton({ session, onSolve, onSendToMill }: InspectorProps) {
         size="big"
         disabledReason={
           session.shown.value === null
-            ? 'Ready when the preview is'
+            ? 'Available when the preview is ready'
             : activity.kind === 'idle'
               ? undefined
               : 'Busy with a file'

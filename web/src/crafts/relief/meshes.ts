@@ -14,7 +14,7 @@ export const errorMapping: ColourMapping = {
   minimum: 0,
   maximum: 75,
   unit: '°',
-  label: 'Normal error',
+  label: 'Shading difference',
 };
 
 /** The error is known where the viewer sees the surface. */

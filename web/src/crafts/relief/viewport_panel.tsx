@@ -32,7 +32,7 @@ const modes: readonly { value: ViewMode; label: string }[] = [
   { value: 'swipe', label: 'Swipe' },
   { value: 'relief', label: 'Relief' },
   { value: 'original', label: 'Original' },
-  { value: 'error', label: 'Normal error' },
+  { value: 'error', label: 'Shading difference' },
 ];
 
 export interface ViewportPanelProps {
@@ -98,7 +98,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
   const options = modes.map((option) => ({
     ...option,
     disabledReason:
-      shown === null && option.value !== 'original' ? 'Shown when the first preview is ready' : undefined,
+      shown === null && option.value !== 'original' ? 'Available when the first preview is ready' : undefined,
   }));
   return (
     <div class="viewport-panel">

@@ -78,7 +78,7 @@ export function MainButton({ session, onForm }: { session: ThermoformSession; on
   if (activity.kind === 'solving')
     return (
       <>
-        <Button kind="filled" size="big" disabledReason="Being formed; Esc cancels">
+        <Button kind="filled" size="big" disabledReason="Forming; Esc cancels">
           Forming at full detail
         </Button>
         <p>Change anything to start again</p>
@@ -91,7 +91,7 @@ export function MainButton({ session, onForm }: { session: ThermoformSession; on
         <Button
           kind="filled"
           size="big"
-          disabledReason={session.shown.value === null ? 'Ready when the preview is' : busy}
+          disabledReason={session.shown.value === null ? 'Available when the preview is ready' : busy}
           onClick={onForm}
         >
           Form at full detail

@@ -78,7 +78,10 @@ function Empty({ session, onChooseFile }: ThermoformPageProps) {
   const samples = session.services.catalog.value?.samples ?? [];
   return (
     <div class="thermoform-empty">
-      <p>A shell starts from a model. Drop one with its materials and pictures, or take a sample.</p>
+      <p>
+        A shell starts from a model. Drop one together with its material and picture files, or choose a
+        sample.
+      </p>
       <Button kind="filled" icon="upload" onClick={onChooseFile}>
         Open a model
       </Button>

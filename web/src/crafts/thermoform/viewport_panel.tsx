@@ -154,8 +154,8 @@ function SidePanel({ session, url }: { session: ThermoformSession; url: string |
   if (view.value === 'texture' && url)
     return (
       <figure class="float top-right panel print-panel">
-        <img src={url} alt="The print, distorted so that it lands right" />
-        <figcaption>Print, pre-distorted</figcaption>
+        <img src={url} alt="The print, distorted so that it fits after forming" />
+        <figcaption>Print, before forming</figcaption>
       </figure>
     );
   const values = mapping && shown.sheet.attributes[mapping.attribute];

@@ -52,14 +52,14 @@ export function DrawTool({ session, viewport }: ToolProps) {
 
 function wordsFor(what: Tool, { begun, begunCut }: Drawn): string {
   if (what === 'opening')
-    return 'Click where a part is to be open. Every part needs one opening or gets one.';
+    return 'Click where a part should have an opening. A part without one gets one automatically.';
   if (what === 'cut')
     return begunCut.length === 0
-      ? 'Click points along a cut that opens a part, instead of a hole: two for a straight one.'
-      : 'Go on along the cut. It ends on its last point.';
+      ? 'Click the points of a cut that opens a part instead of a hole; two points make a straight cut.'
+      : 'Continue along the cut. Click its last point again to end it.';
   return begun.length === 0
     ? 'Click points around a limb, on the model. Drag beside it to turn it.'
-    : 'Go all around. It closes on its first point.';
+    : 'Continue all around. Click the first point again to close it.';
 }
 
 function Toolbar({ session, viewport }: { session: ZippableSession; viewport: Viewport }) {
@@ -120,7 +120,7 @@ function Toolbar({ session, viewport }: { session: ZippableSession; viewport: Vi
           ) : null}
           {tool.value === 'opening' && drawn.openings.length === 0 && found > 0 ? (
             <Button size="small" icon="move" onClick={() => void takeFound(session)}>
-              Move those found
+              Move the points found
             </Button>
           ) : null}
           <Button size="small" icon="plus" onClick={addInTheMiddle}>

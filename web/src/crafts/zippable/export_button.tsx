@@ -92,7 +92,7 @@ export function MainButton({ session, onSolve, onSendToMachine }: MainButtonProp
   if (activity.kind === 'solving')
     return (
       <>
-        <Button kind="filled" size="big" disabledReason="Being made; Esc cancels">
+        <Button kind="filled" size="big" disabledReason="In progress; Esc cancels">
           Making the ribbon
         </Button>
         <p>Change anything to start again</p>
@@ -106,7 +106,7 @@ export function MainButton({ session, onSolve, onSendToMachine }: MainButtonProp
         <Button
           kind="filled"
           size="big"
-          disabledReason={session.shown.value === null ? 'Ready when the preview is' : busy}
+          disabledReason={session.shown.value === null ? 'Available when the preview is ready' : busy}
           onClick={onSolve}
         >
           Make the ribbon
@@ -121,7 +121,7 @@ export function MainButton({ session, onSolve, onSendToMachine }: MainButtonProp
   const sends = Array.from({ length: count }, (_, sheet) => ({
     label: count === 1 ? 'Send to a machine' : `Send ${sheetName(session, sheet).toLowerCase()} to a machine`,
     icon: 'machines' as const,
-    disabledReason: busy ?? (session.operationNamed(planning) ? undefined : 'No plans in this build'),
+    disabledReason: busy ?? (session.operationNamed(planning) ? undefined : 'This build cannot make plans'),
     onSelect: () => void sendSheet(session, sheet, onSendToMachine),
   }));
   const prints = session.operationNamed(planning)

@@ -43,7 +43,7 @@ export function Notes({ session, onChooseFile }: NotesProps) {
       <Note
         kind="plain"
         icon="warn"
-        title="Decided for you"
+        title="Decided automatically"
         onDismiss={() => {
           open.value = false;
           dismissed.value = words;

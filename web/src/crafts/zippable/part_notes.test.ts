@@ -3,11 +3,12 @@ import { expect, it } from 'vitest';
 import { partWarning } from './part_notes';
 
 const fine = { area_mm2: 1, mean: 1.2, most: 9 };
-const note = 'Part 1 got 0.75 windings instead of 0.65, the fewest that make a ribbon: it is narrower there.';
+const note =
+  'Part 1 got 0.75 windings instead of 0.65, the smallest number that makes a ribbon; it is narrower there.';
 
 it('repeats what the core says of the part, not of another whose number begins alike', () => {
   expect(partWarning(0, [note], fine)).toBe(
-    'Got 0.75 windings instead of 0.65, the fewest that make a ribbon: it is narrower there.',
+    'Got 0.75 windings instead of 0.65, the smallest number that makes a ribbon; it is narrower there.',
   );
   expect(partWarning(9, [note], fine)).toBeNull();
   expect(partWarning(0, [note.replace('Part 1', 'Part 10')], fine)).toBeNull();

@@ -71,7 +71,7 @@ export function Play({ session, onFit }: PlayProps) {
         {simulated && course.value === 'simulated' ? (
           <p>{String(simulated.report['verdict'] ?? '')}</p>
         ) : (
-          <p>Animation: edges keep their lengths. Not a simulation.</p>
+          <p>Animation only: lengths are kept, but forces are not simulated.</p>
         )}
         <Choice session={session} />
       </div>

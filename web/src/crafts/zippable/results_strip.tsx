@@ -43,9 +43,9 @@ const zipperOf = ({ report }: CraftResult): string => {
   return length_mm === null ? '' : metres(length_mm);
 };
 
-/** "Every length kept. 1.3 s on the worker". */
+/** "All lengths are kept. 1.3 s on the worker". */
 function madeLine({ report, seconds, backend }: CraftResult): string {
   const error = figure(report, 'isometry_error');
-  const kept = error !== null && error < lengthKept ? 'Every length kept. ' : '';
+  const kept = error !== null && error < lengthKept ? 'All lengths are kept. ' : '';
   return `${kept}${formatDuration(seconds)} ${backend === 'native' ? 'on the worker' : 'in the browser'}`;
 }

@@ -36,10 +36,12 @@ export function Sheets({ session, drawing, onSendToMachine }: SheetsProps) {
   if (design === null)
     return (
       <div class="sheets-empty">
-        <p>Plans are made of the whole model’s ribbon.</p>
+        <p>The plan needs the ribbon of the whole model.</p>
         <Button
           icon="scissors"
-          disabledReason={session.shown.value === null || !idle ? 'Ready when the preview is' : undefined}
+          disabledReason={
+            session.shown.value === null || !idle ? 'Available when the preview is ready' : undefined
+          }
           onClick={() => void solveInFull(session)}
         >
           Make the ribbon
@@ -53,7 +55,7 @@ export function Sheets({ session, drawing, onSendToMachine }: SheetsProps) {
         {plan && url ? <img src={url} alt={words} /> : null}
         {plan === null && idle ? (
           <div class="sheets-empty">
-            <p>No plan was made. Where a note says why, change that first.</p>
+            <p>No plan was made. If a note says why, change that first.</p>
             <Button icon="scissors" onClick={() => void planBytes(session, 'plan.svg', 'plan')}>
               Make the plan
             </Button>

@@ -56,7 +56,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
     const made = new Viewport(container.current, {
       mode: 'original',
       freeRectangle: freeRectangle(null),
-      label: 'Model with the zipper’s course',
+      label: 'Model with the line of the zipper',
       partNames: ['Model', 'Ribbon'],
       uprightTurn: true,
       dimensions: false,

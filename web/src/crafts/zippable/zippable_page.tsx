@@ -83,7 +83,7 @@ function Empty({ session, onChooseFile }: Omit<ZippablePageProps, 'onSendToMachi
   const samples = samplesFirst.flatMap((name) => all.find((sample) => sample.name === name) ?? []);
   return (
     <div class="zippable-empty">
-      <p>A zippable starts from a closed model. Drop one, or take a sample.</p>
+      <p>A zippable starts from a closed model. Drop one, or choose a sample.</p>
       <Button kind="filled" icon="upload" onClick={onChooseFile}>
         Open a model
       </Button>

@@ -71,7 +71,7 @@ export class MockBackend implements Backend {
 }
 
 async function pretendToSolve({ signal, onProgress }: RunOptions): Promise<void> {
-  const stages = ['Looking from the viewpoint', 'Factorising', 'Fitting into the slab', 'Writing'];
+  const stages = ['Finding the visible surface', 'Factorising', 'Fitting into the thickness', 'Writing'];
   for (let i = 0; i < 40; ++i) {
     if (signal?.aborted) throw cancelled();
     onProgress?.({

@@ -45,7 +45,7 @@ class BridgeLink implements MachineLink {
     this.#socket = socket;
     socket.onmessage = (event: MessageEvent<string>) => this.#hear(JSON.parse(event.data) as FromBridge);
     socket.onclose = () =>
-      this.#end(this.#lastError || 'The line to the worker broke: it holds the machine.');
+      this.#end(this.#lastError || 'The connection to the worker was lost. The worker pauses the machine.');
   }
 
   command = (command: MachineCommand): Promise<void> => this.#ask({ command });
@@ -105,7 +105,8 @@ export async function openBridge(
   const socket = worker.socket(`machines/${encodeURIComponent(machineId)}/socket`, 'formwright.machine.v1');
   await new Promise<void>((resolve, reject) => {
     socket.onopen = () => resolve();
-    socket.onclose = () => reject(new Error('The worker did not open the machine: is it still plugged in?'));
+    socket.onclose = () =>
+      reject(new Error('The worker could not open the machine: check that it is plugged in.'));
   });
   const link = new BridgeLink(worker, socket);
   try {

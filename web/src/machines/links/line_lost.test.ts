@@ -71,7 +71,10 @@ test('a laser that does not answer still gets the stop, then the device is given
   await vi.advanceTimersByTimeAsync(4900);
   expect(gone()).toBeUndefined();
   await vi.advanceTimersByTimeAsync(200);
-  expect(gone()).toEqual({ type: 'gone', why: 'The laser does not answer.' });
+  expect(gone()).toEqual({
+    type: 'gone',
+    why: 'The laser does not answer: check that it is on and its cable plugged in.',
+  });
   // How the job ended is told before.
   const told = said.findIndex(
     (one) => one.type === 'state' && one.events.some(({ how }) => how === 'cut_off'),
@@ -95,7 +98,10 @@ test('a serial port that cannot be written to is closed', async () => {
   const { tell, gone } = running({ serial: { getPorts: () => Promise.resolve([port]) } });
   await tell({ ...openLaser, end: { kind: 'serial', index: 0, baud: 115200 } });
   await vi.advanceTimersByTimeAsync(100);
-  expect(gone()).toEqual({ type: 'gone', why: 'The line broke while it was written to.' });
+  expect(gone()).toEqual({
+    type: 'gone',
+    why: 'The connection was lost while sending: check the cable and connect again.',
+  });
   await tell({ type: 'close' });
   expect(closed).toBe(true);
 });

@@ -65,7 +65,7 @@ export async function openSerialEnd(
 ): Promise<MachineEnd> {
   const port = (await serial.getPorts())[index];
   if (port === undefined)
-    throw new Error('The serial port is not there any more: plug the machine in and choose it again.');
+    throw new Error('The serial port is no longer connected: plug the machine in and choose it again.');
   try {
     await port.open({ baudRate: baud, bufferSize: 4096 });
   } catch (thrown) {
@@ -128,7 +128,7 @@ const ch341 = {
 export async function openUsbEnd(usb: UsbLike, index: number, listener: EndListener): Promise<MachineEnd> {
   const device = (await usb.getDevices())[index];
   if (device === undefined)
-    throw new Error('The laser is not there any more: plug it in and choose it again.');
+    throw new Error('The laser is no longer connected: plug it in and choose it again.');
   try {
     await device.open();
     await device.selectConfiguration(1);
@@ -136,7 +136,7 @@ export async function openUsbEnd(usb: UsbLike, index: number, listener: EndListe
     await within(
       3000,
       device.claimInterface(0),
-      'The laser is held by another program or driver: close it, or use Zadig on Windows.',
+      'The laser is used by another program or driver: close that program, or install the WinUSB driver with Zadig on Windows.',
     );
     await device.controlTransferOut(ch341.initialise);
   } catch (thrown) {
@@ -155,9 +155,17 @@ export async function openUsbEnd(usb: UsbLike, index: number, listener: EndListe
       // Once it is gone nothing is asked any more; a stop that waited behind a question still leaves.
       if (!open && packet[0] === askStatus) return;
       try {
-        await within(5000, device.transferOut(ch341.write, packet), 'The laser takes nothing any more.');
+        await within(
+          5000,
+          device.transferOut(ch341.write, packet),
+          'The laser does not accept data any more: switch it off and on.',
+        );
         if (packet[0] !== askStatus) return;
-        const answer = await within(5000, device.transferIn(ch341.read, 32), 'The laser does not answer.');
+        const answer = await within(
+          5000,
+          device.transferIn(ch341.read, 32),
+          'The laser does not answer: check that it is on and its cable plugged in.',
+        );
         if (answer.data)
           listener.received(
             new Uint8Array(answer.data.buffer, answer.data.byteOffset, answer.data.byteLength),

@@ -52,8 +52,11 @@ afterEach(async () => {
 test('a worker whose line is gone closes it and ends; only then the next one opens the device', async () => {
   const { link, worker } = await connect();
   const stopping = link.command({ do: 'stop' });
-  worker.say({ type: 'gone', why: 'The laser does not answer.' });
-  expect(link.gone.value).toBe('The laser does not answer.');
+  worker.say({
+    type: 'gone',
+    why: 'The laser does not answer: check that it is on and its cable plugged in.',
+  });
+  expect(link.gone.value).toBe('The laser does not answer: check that it is on and its cable plugged in.');
   await expect(stopping).rejects.toThrow('does not answer');
   expect(worker).toMatchObject({ askedLast: 'close', alive: true }); // the stop may still be on its way
 
@@ -67,7 +70,10 @@ test('a worker whose line is gone closes it and ends; only then the next one ope
 
 test('a worker that does not get its line closed is ended', async () => {
   const { worker } = await connect();
-  worker.say({ type: 'gone', why: 'The line broke while it was written to.' });
+  worker.say({
+    type: 'gone',
+    why: 'The connection was lost while sending: check the cable and connect again.',
+  });
   await vi.advanceTimersByTimeAsync(5500);
   expect(worker.alive).toBe(true); // a transfer may take five seconds, and a stop wait behind it
   await vi.advanceTimersByTimeAsync(1000);
@@ -95,7 +101,10 @@ test('closed from here nothing is said to be wrong, and a line that breaks meanw
 
   const other = await connect();
   closed = other.link.close();
-  other.worker.say({ type: 'gone', why: 'The laser does not answer.' });
+  other.worker.say({
+    type: 'gone',
+    why: 'The laser does not answer: check that it is on and its cable plugged in.',
+  });
   await settle();
   expect(other.worker.alive).toBe(true);
   other.worker.answer();

@@ -96,7 +96,7 @@ export class MachineRunner {
     for (const packet of packets)
       this.#writing = this.#writing
         .then(() => end?.write(packet))
-        .catch(() => this.#gone('The line broke while it was written to.'));
+        .catch(() => this.#gone('The connection was lost while sending: check the cable and connect again.'));
     this.#state = state;
     this.#events.push(...events);
     if (state.phase !== this.#toldPhase || performance.now() - this.#told_ms >= telling_ms) this.#tell();

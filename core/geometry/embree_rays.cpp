@@ -29,6 +29,9 @@ constexpr double box_widening = 2e-6;
 // Distances are rounded by 2^-23, and that of a hit may lie outside the part of the ray in the box as above.
 constexpr double distance_slack = 4e-6;
 
+// Below this the tree is built by the calling thread: it takes 50 ms, and other threads take memory of their own.
+constexpr std::size_t min_parallel_triangles = 100'000;
+
 [[noreturn]] void fail(RTCError error) {
   if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   throw Error(ErrorCode::internal, "mesh", "Embree failed with error " + std::to_string(error) + ".");
@@ -170,8 +173,9 @@ void EmbreeRays::Scene::build() {
     tbb::task_arena(threads).execute([&] { rtcCommitScene(scene); });
     return rtcGetDeviceError(device);
   };
-  RTCError error = commit(allowed_threads());
-  if (error == RTC_ERROR_UNKNOWN) error = commit(1);  // what it says where no thread is to be had
+  const int threads = triangles.size() < min_parallel_triangles ? 1 : allowed_threads();
+  RTCError error = commit(threads);
+  if (error != RTC_ERROR_NONE && threads > 1) error = commit(1);  // other threads need memory, or were not to be had
   if (error != RTC_ERROR_NONE) fail(error);
 }
 

@@ -13,7 +13,7 @@ namespace formwright {
 
 class EmbreeRays {
  public:
-  /// Builds with as many threads as a parallel_for begun here would use.
+  /// Builds the tree of a large mesh with as many threads as a parallel_for begun here would use.
   explicit EmbreeRays(const TriangleMesh& mesh);
   ~EmbreeRays();
   EmbreeRays(EmbreeRays&&) noexcept;

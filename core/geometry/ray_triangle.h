@@ -79,11 +79,14 @@ unsigned keep_in_boxes(const ShearedRay& ray, const TriangleCorners<Lane>& corne
   auto inside = distance == distance;
   for (std::size_t k = 0; k < 3; ++k) {
     const Lane a = corner[0][k] - ray.origin[k], b = corner[1][k] - ray.origin[k], c = corner[2][k] - ray.origin[k];
-    const Lane low = a < b ? a : b, high = a < b ? b : a;
-    lower[k] = (low < c ? low : c) - ray.tolerance;
-    upper[k] = (high < c ? c : high) + ray.tolerance;
+    const Lane lesser_of_two = a < b ? a : b, greater_of_two = a < b ? b : a;
+    const Lane low = (lesser_of_two < c ? lesser_of_two : c) - ray.tolerance;
+    const Lane high = (greater_of_two < c ? c : greater_of_two) + ray.tolerance;
     const Lane point = distance * ray.direction[k];
-    inside = inside & (point >= lower[k]) & (point <= upper[k]);
+    const auto within = (point >= low) & (point <= high);
+    inside = inside & within;
+    lower[k] = low;
+    upper[k] = high;
   }
   for (unsigned outside = candidates & ~lanes_set(inside); outside != 0; outside &= outside - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(outside));

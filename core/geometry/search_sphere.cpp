@@ -22,7 +22,7 @@ SearchSphere search_sphere(const TriangleMesh& mesh) {
       bounds.add(mesh.V.row(v));
     }
   if (mesh.face_count() == 0) return {};
-  const SearchSphere sphere{bounds.centre(), 0.5 * bounds.diagonal()};
+  SearchSphere sphere{bounds.centre(), 0.5 * bounds.diagonal()};
   if (!(sphere.radius < 1e30))
     throw Error(ErrorCode::invalid_input, "mesh", "The mesh is too large for single precision; check its unit.");
   return sphere;

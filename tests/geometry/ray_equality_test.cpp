@@ -5,8 +5,10 @@
 
 #include <bit>
 #include <limits>
+#include <optional>
 #include <string>
 
+#include "base/parallel.h"
 #include "geometry/bvh_rays.h"
 #include "geometry/embree_rays.h"
 #include "geometry/ray_sets.h"
@@ -192,6 +194,30 @@ TEST_CASE("RayEquality.EmbreesTreeAndOursGiveTheSameBits") {
   SUCCEED("rays " << rays);
   SUCCEED("hits " << hits_in_all);
   std::printf("%d rays, %d of them hit, %d hits\n", rays, hit, hits_in_all);
+}
+
+TEST(RayEquality, HoweverManyThreadsBuildTheTree) {
+  const TriangleMesh mesh = torus(300, 200);  // large enough for several threads
+  const BoundingBox box = bounding_box(mesh);
+  std::optional<EmbreeRays> several(mesh), one, inside_loop;
+  {
+    const ThreadLimit limit(1);
+    one.emplace(mesh);
+  }
+  parallel_for(2, 1, [&](std::size_t begin, std::size_t) {
+    if (begin == 0) inside_loop.emplace(mesh);
+  });
+  const BvhRays ours(mesh);
+  Random random(3);
+  int hits = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Question q = awkward_question(mesh, box, i % 12 == 7 ? 0 : i % 12, random);  // not from far away: too slow
+    const auto expected = ours.all_hits(q.ray.origin, q.ray.direction, q.near, q.far);
+    for (const auto* rays : {&several, &one, &inside_loop})
+      EXPECT_TRUE(same_bits((*rays)->all_hits(q.ray.origin, q.ray.direction, q.near, q.far), expected));
+    hits += static_cast<int>(expected.size());
+  }
+  EXPECT_GT(hits, 1000);
 }
 
 }  // namespace

@@ -80,7 +80,8 @@ for file in usr/share/man/man1/formwright.1 usr/share/bash-completion/completion
   usr/share/fish/vendor_completions.d/formwright.fish usr/lib/systemd/user/formwright.service usr/share/doc/formwright/copyright; do
   [ -s "$work/files/$file" ] || [ -s "$work/files/$file.gz" ] || fail "$file is not in the package" "see cmake/install.cmake"
 done
-grep -q "^ExecStart=/usr/bin/formwright serve" "$work/files/usr/lib/systemd/user/formwright.service"
+grep -q '^ExecStart=/usr/bin/formwright serve' "$work/files/usr/lib/systemd/user/formwright.service" ||
+  fail "the service starts another program than the package's" "see cmake/install.cmake"
 inside apt-get -qq -y remove formwright >/dev/null 2>&1
 [ ! -e "$work/root/usr/bin/formwright" ] || fail "the package leaves its program behind when it is removed" "see cmake/install.cmake"
 say "the package installs, runs and leaves: $package ($(stat -c %s "$package") bytes)"

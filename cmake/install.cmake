@@ -15,7 +15,6 @@ formwright_writes(formwright.fish completions fish)
 formwright_writes(formwright.1 manual)
 add_custom_target(shell_files ALL DEPENDS ${made})
 add_dependencies(app shell_files)
-configure_file(${CMAKE_CURRENT_LIST_DIR}/formwright.service ${shell_files}/formwright.service @ONLY)
 
 # Folders below the prefix; a person's own prefix has the same ones.
 install(TARGETS formwright RUNTIME)
@@ -23,7 +22,11 @@ install(FILES ${shell_files}/formwright.bash DESTINATION ${CMAKE_INSTALL_DATADIR
 install(FILES ${shell_files}/_formwright DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
 install(FILES ${shell_files}/formwright.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 install(FILES ${shell_files}/formwright.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
-install(FILES ${shell_files}/formwright.service DESTINATION lib/systemd/user)
+# The service names the program by its full path, which only the installation knows.
+install(CODE "
+  set(program \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}/formwright\")
+  configure_file(\"${CMAKE_CURRENT_LIST_DIR}/formwright.service\"
+    \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/lib/systemd/user/formwright.service\" @ONLY)")
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
 set(page ${PROJECT_SOURCE_DIR}/web/dist)
 install(CODE "

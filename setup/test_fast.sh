@@ -40,9 +40,15 @@ check_core() {
 
 check_page() {
   setup/build.sh web-packages
-  npm --prefix web run -s types
-  npm --prefix web run -s lint
-  npm --prefix web run -s test
+  cd web
+  # As `npm run types` and `npm run lint`, but looking only at what has changed: 3 instead of 40 s of processor time.
+  local kept=node_modules/.cache/formwright
+  mkdir -p "$kept"
+  npx tsc --noEmit -p tsconfig.json --incremental --tsBuildInfoFile "$kept/page.tsbuildinfo"
+  npx tsc --noEmit -p tsconfig.node.json --incremental --tsBuildInfoFile "$kept/node.tsbuildinfo"
+  npx eslint --cache --cache-strategy content --cache-location "$kept/eslint" .
+  npx prettier --log-level warn --check --cache --cache-location "$kept/prettier" .
+  npm run -s test
 }
 
 setup/native.sh --test

@@ -32,11 +32,16 @@ apt-config dump | grep -E '^Acquire::(http|https|Retries|ForceIPv|Check)' >"$wor
 
 # The processor's own instructions must not be needed: nothing of AVX may stand in the program.
 dpkg-deb -x "$package" "$work/files"
-if objdump -d --no-show-raw-insn "$work/files/usr/bin/formwright" | grep -m 1 -E '%[yz]mm[0-9]'; then
-  fail "the package's program uses AVX, which not every x86-64 processor has" "build it with setup/build.sh package"
-fi
+avx="$(objdump -d --no-show-raw-insn "$work/files/usr/bin/formwright" | grep -cE '%[yz]mm[0-9]' || true)"
+[ "$avx" -eq 0 ] ||
+  fail "the package's program has $avx AVX instructions, which not every x86-64 processor knows" "build it with setup/build.sh package"
 
-inside() { chroot "$work/root" /usr/bin/env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 "$@"; }
+# The program finds its page by /proc.
+inside() {
+  # shellcheck disable=SC2016  # for the inner shell
+  unshare --mount --propagation private bash -c 'mount -t proc proc "$1/proc" && exec chroot "$@"' bash "$work/root" \
+    /usr/bin/env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 "$@"
+}
 say "installing"
 inside apt-get -qq update
 inside apt-get -qq -y install --no-install-recommends /tmp/formwright.deb >"$work/install.log" 2>&1 || {
@@ -75,7 +80,8 @@ for file in usr/share/man/man1/formwright.1 usr/share/bash-completion/completion
   usr/share/fish/vendor_completions.d/formwright.fish usr/lib/systemd/user/formwright.service usr/share/doc/formwright/copyright; do
   [ -s "$work/files/$file" ] || [ -s "$work/files/$file.gz" ] || fail "$file is not in the package" "see cmake/install.cmake"
 done
-grep -q "^ExecStart=/usr/bin/formwright serve" "$work/files/usr/lib/systemd/user/formwright.service"
+grep -q '^ExecStart=/usr/bin/formwright serve' "$work/files/usr/lib/systemd/user/formwright.service" ||
+  fail "the service starts another program than the package's" "see cmake/install.cmake"
 inside apt-get -qq -y remove formwright >/dev/null 2>&1
 [ ! -e "$work/root/usr/bin/formwright" ] || fail "the package leaves its program behind when it is removed" "see cmake/install.cmake"
 say "the package installs, runs and leaves: $package ($(stat -c %s "$package") bytes)"

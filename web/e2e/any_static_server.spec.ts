@@ -39,6 +39,7 @@ test.afterAll(() => {
 
 test('the page works below any path of a plain file server, also without it', async ({ page, context }) => {
   const address = `${origin}/tools/3d/form/`;
+  test.setTimeout(600_000); // three visits
   const strangers: string[] = [];
   page.on('request', (request) => {
     if (/^https?:/.test(request.url()) && !request.url().startsWith(address)) strangers.push(request.url());
@@ -47,7 +48,7 @@ test('the page works below any path of a plain file server, also without it', as
   // On the first visit nothing isolates the page: a stop ends the solver's thread.
   expect(await page.evaluate(() => crossOriginIsolated)).toBe(false);
   await page.locator('.gallery button', { hasText: 'Torus' }).click();
-  await expect(strip(page, 'Preview up to date')).toBeVisible();
+  await expect(strip(page, 'Preview up to date')).toBeVisible({ timeout: 150_000 });
   await solve(page);
   // The service worker, once installed, answers with the headers.
   await page.evaluate(() => navigator.serviceWorker.ready.then(() => undefined));

@@ -69,7 +69,7 @@ TEST(MarlinLaser, SaysWhatHappensWhenTheConnectionEnds) {
     talk.driver.load("job", as_bytes(std::string(job)));
     return talk.state()["when_connection_ends"].get<std::string>();
   };
-  EXPECT_NE(said("M4 I\nG1 X5 S100 F600\n").find("then dark"), std::string::npos);
+  EXPECT_NE(said("M4 I\nG1 X5 S100 F600\n").find("then off (M4 I)"), std::string::npos);
   EXPECT_EQ(talk.state()["warnings"], Json::array());
   EXPECT_NE(said("M3 I\nG1 X5 S100 F600\n").find("stays on where the head stands"), std::string::npos);
   EXPECT_NE(talk.state()["warnings"].dump().find("constant power"), std::string::npos);
@@ -79,7 +79,7 @@ TEST(MarlinLaser, SaysWhatHappensWhenTheConnectionEnds) {
   ReadyTalk old({.inline_modes = false});
   old.driver.load("job", as_bytes(std::string("M4 I\nG1 X5 S100 F600\n")));
   EXPECT_NE(old.state()["warnings"].dump().find("Marlin 1.1.9"), std::string::npos);
-  EXPECT_EQ(old.state()["when_connection_ends"].get<std::string>().find("The laser is then dark"), std::string::npos);
+  EXPECT_EQ(old.state()["when_connection_ends"].get<std::string>().find("The laser is then off"), std::string::npos);
 }
 
 TEST(MarlinLaser, FirmwareWithoutInlineModesKeepsSuchJobsDark) {

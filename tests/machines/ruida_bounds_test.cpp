@@ -112,15 +112,16 @@ TEST(RuidaBounds, RefuseWhereTheyCannotBeTold) {
   EXPECT_NE(refusal(burning(RuidaJob().code({0xf0}))).find("set at the laser's panel"), std::string::npos);
   EXPECT_NE(refusal(burning(RuidaJob().begin().code({0xe7, 0x08}).number(3, 2).number(1, 2))).find("array"),
             std::string::npos);
-  EXPECT_NE(refusal(burning(RuidaJob().begin().code({0xd9, 0x10, 0}).number(0, 5).number(0, 5))).find("cannot be told"),
-            std::string::npos);
-  EXPECT_NE(refusal(burning(RuidaJob().begin().code({0x80, 0x00}).number(0, 5))).find("cannot be told"),
+  EXPECT_NE(
+      refusal(burning(RuidaJob().begin().code({0xd9, 0x10, 0}).number(0, 5).number(0, 5))).find("is not known here"),
+      std::string::npos);
+  EXPECT_NE(refusal(burning(RuidaJob().begin().code({0x80, 0x00}).number(0, 5))).find("is not known here"),
             std::string::npos);
   EXPECT_EQ(refusal(burning(RuidaJob().begin().code({0x80, 0x08}).number(0, 5))), "");  // the table
-  EXPECT_NE(refusal(RuidaJob().begin().by(true, 100, 100)).find("before it has said where"), std::string::npos);
+  EXPECT_NE(refusal(RuidaJob().begin().by(true, 100, 100)).find("before it gives a position"), std::string::npos);
   EXPECT_NE(refusal(RuidaJob().begin().to(false, 1, 1)).find("burns nothing"), std::string::npos);
   EXPECT_NE(refusal(RuidaJob().begin().to(false, 1, 1).code({0xa8, 1, 2, 3})).find("cut off"), std::string::npos);
-  EXPECT_NE(refusal(RuidaJob().begin().by(false, 100, 100).to(true, 1, 1)).find("before it has said where"),
+  EXPECT_NE(refusal(RuidaJob().begin().by(false, 100, 100).to(true, 1, 1)).find("before it gives a position"),
             std::string::npos);
   EXPECT_NE(refusal(RuidaJob{"G1 X5"}).find("not a Ruida job"), std::string::npos);
   EXPECT_NE(refusal(RuidaJob{}).find("not a Ruida job"), std::string::npos);

@@ -198,7 +198,7 @@ TEST(Parameterisation, RefusesWhatIsNoCylinder) {
     FAIL() << "accepted";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::invalid_input);
-    EXPECT_NE(std::string(error.what()).find("puncture it"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("hole into it"), std::string::npos) << error.what();
   }
 }
 

@@ -50,8 +50,8 @@ TEST(DraftMap, ConesOfKnownAngle) {
     EXPECT_NEAR(map.undercut_area_mm2, draft < 0 ? wall : 0, 1e-9 * wall);
     EXPECT_EQ(says(map, "The right side leans in by " + std::to_string(static_cast<int>(-draft)) + " degrees"),
               draft < 0);
-    EXPECT_EQ(says(map, "will come off."), draft > 3);
-    EXPECT_EQ(says(map, "come off hard"), draft >= 0 && draft < 3);
+    EXPECT_EQ(says(map, "will lift off easily."), draft > 3);
+    EXPECT_EQ(says(map, "hard to lift off"), draft >= 0 && draft < 3);
     EXPECT_EQ(map.depth_to_width_max, 0);
   }
 }

@@ -15,7 +15,7 @@ int pixels_per_metre(double dots_per_inch) { return static_cast<int>(std::lround
 Bytes write_png(const Image& image, int per_metre, const Context& context) {
   if (image.width < 1 || image.height < 1 ||
       image.pixels.size() != static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height))
-    throw Error(ErrorCode::internal, "", "A picture to write does not have width times height pixels.");
+    throw Error(ErrorCode::internal, "", "The number of pixels of a picture must be its width times its height.");
   const bool opaque = std::all_of(image.pixels.begin(), image.pixels.end(), [](const Rgba& p) { return p[3] == 255; });
   Bytes bytes;
   try {

@@ -37,7 +37,7 @@ std::vector<ReportField> report_fields() {
       {"energy", "Shape error", "",
        "How much the curvature of the relief differs from that of the model, on the scale that the solver minimises; 0 is no difference."},
       {"energy_linear", "Shape error of plain scaling", "",
-       "The same shape error if all depths are simply scaled to the thickness."},
+       "Shape error if all depths are simply scaled to the thickness."},
       {"normal_error_mean_deg", "Shading difference", "°",
        "Mean angle between the surface normals of relief and model over the visible surface. Smaller looks more like the model."},
       {"normal_error_linear_mean_deg", "Shading difference of plain scaling", "°",

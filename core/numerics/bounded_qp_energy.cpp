@@ -42,7 +42,7 @@ void Energy::set(const SparseMatrix& lower_Q, std::vector<int> component, const 
       if (i < j)
         throw Error(ErrorCode::invalid_input, "lower_Q", "Only the lower triangle of the energy may be stored.");
       if (!std::isfinite(it.value()))
-        throw Error(ErrorCode::invalid_input, "lower_Q", "The energy holds a value that is not finite.");
+        throw Error(ErrorCode::invalid_input, "lower_Q", "The matrix of the energy holds a value that is not finite.");
       if (i == j) {
         has_diagonal = true;
         stored_diagonal[i] = it.value();
@@ -102,13 +102,17 @@ void Energy::set(const SparseMatrix& lower_Q, std::vector<int> component, const 
 void Energy::choose_pins(std::span<const int> pins) {
   int count = 0;
   for (const int k : component_) {
-    if (k < 0 || k >= n_) throw Error(ErrorCode::invalid_input, "component", "Components are numbered from 0.");
+    if (k < 0 || k >= n_)
+      throw Error(ErrorCode::invalid_input, "component",
+                  "The components of a quadratic program must be numbered from 0.");
     count = std::max(count, k + 1);
   }
   component_size_.assign(at(count), 0);
   for (const int k : component_) ++component_size_[at(k)];
   for (const int size : component_size_) {
-    if (size == 0) throw Error(ErrorCode::invalid_input, "component", "Number the components without gaps.");
+    if (size == 0)
+      throw Error(ErrorCode::invalid_input, "component",
+                  "The components of a quadratic program must be numbered without gaps.");
   }
   pin_.assign(at(count), -1);
   if (!pins.empty()) {

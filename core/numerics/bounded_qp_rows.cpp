@@ -49,10 +49,10 @@ void Rows::check() const {
   if (c_.upper_slope.size() != n) reject("upper_slope", want);
   if (c_.gauge.size() != n) reject("gauge", want);
   if (c_.group.size() != static_cast<std::size_t>(n)) reject("group", want);
-  if (c_.group_count < 1) reject("group_count", "There must be at least one group.");
-  if (!c_.gauge.allFinite()) reject("gauge", "The gauge must be finite.");
-  if (!c_.lower_slope.allFinite()) reject("lower_slope", "The slopes must be finite.");
-  if (!c_.upper_slope.allFinite()) reject("upper_slope", "The slopes must be finite.");
+  if (c_.group_count < 1) reject("group_count", "A quadratic program needs at least one group of unknowns.");
+  if (!c_.gauge.allFinite()) reject("gauge", "The gauge of a quadratic program must be finite.");
+  if (!c_.lower_slope.allFinite()) reject("lower_slope", "The slopes of a quadratic program must be finite.");
+  if (!c_.upper_slope.allFinite()) reject("upper_slope", "The slopes of a quadratic program must be finite.");
   // Each pair of bounds asks (upper_slope - lower_slope) m >= lower - upper: a half line of m, or nothing.
   std::vector<double> least(at(c_.group_count), -infinity), most(at(c_.group_count), infinity);
   int crossed = 0;
@@ -61,7 +61,8 @@ void Rows::check() const {
     if (std::isnan(lower) || lower == infinity) reject("lower", "A lower bound must be a number or minus infinity.");
     if (std::isnan(upper) || upper == -infinity) reject("upper", "An upper bound must be a number or plus infinity.");
     const int g = c_.group[at(i)];
-    if (g < 0 || g >= c_.group_count) reject("group", "Groups are numbered from 0 to group_count - 1.");
+    if (g < 0 || g >= c_.group_count)
+      reject("group", "The groups of a quadratic program must be numbered from 0 to group_count - 1.");
     if (lower == -infinity || upper == infinity) continue;
     const double gap = lower - upper, slope = c_.upper_slope[i] - c_.lower_slope[i];
     if (slope > 0) least[at(g)] = std::max(least[at(g)], gap / slope);
@@ -80,15 +81,17 @@ void Rows::check() const {
     }
   }
   for (const InequalityRow& row : c_.rows) {
-    if (row.index.size() != row.coefficient.size()) reject("rows", "A row needs one coefficient for each index.");
-    if (row.group < 0 || row.group >= c_.group_count) reject("rows", "A row names a group that does not exist.");
+    if (row.index.size() != row.coefficient.size())
+      reject("rows", "A constraint needs one coefficient for each index.");
+    if (row.group < 0 || row.group >= c_.group_count)
+      reject("rows", "A constraint refers to a group that does not exist.");
     if (!std::isfinite(row.slope) || std::isnan(row.bound) || row.bound == infinity)
-      reject("rows", "A row holds a value that is not finite.");
+      reject("rows", "A constraint holds a value that is not finite.");
     for (const int i : row.index) {
-      if (i < 0 || i >= size()) reject("rows", "A row names an unknown that does not exist.");
+      if (i < 0 || i >= size()) reject("rows", "A constraint refers to an unknown that does not exist.");
     }
     for (const double a : row.coefficient) {
-      if (!std::isfinite(a)) reject("rows", "A row holds a value that is not finite.");
+      if (!std::isfinite(a)) reject("rows", "A constraint holds a value that is not finite.");
     }
   }
 }

@@ -23,7 +23,7 @@ struct SparseCholesky::Implementation {
   bool factored = false;
 
   const double* values() const {
-    if (!factored) throw Error(ErrorCode::internal, "matrix", "A solve needs a factorisation first.");
+    if (!factored) throw Error(ErrorCode::internal, "matrix", "The matrix must be factorised before solving.");
     return factor.value.get();
   }
 };

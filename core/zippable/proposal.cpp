@@ -219,7 +219,7 @@ Proposal drawn(const TriangleMesh& mesh, const ProposalOptions& options, Context
   if (!problems.empty()) throw Error(ErrorCode::invalid_input, "segments", problems);
   if (traversals(proposal.segmentation, context, 1).empty())
     throw Error(ErrorCode::invalid_input, "segments",
-                "No order visits every part of the curves once: let more of them share a border.");
+                "The zipper cannot visit every drawn part once: let more of the parts share a border.");
   return proposal;
 }
 

@@ -245,7 +245,7 @@ bool Segmentation::valid() const {
 Segmentation make_segmentation(const TriangleMesh& mesh, const std::vector<int>& face_segment) {
   const Adjacency adjacency(mesh);
   if (mesh.face_count() == 0 || static_cast<int>(face_segment.size()) != mesh.face_count())
-    throw Error(ErrorCode::invalid_input, "mesh", "Every triangle needs the number of its part.");
+    throw Error(ErrorCode::invalid_input, "mesh", "Every triangle of a segmentation needs the number of its part.");
   if (!adjacency.is_manifold())
     throw Error(ErrorCode::invalid_input, "mesh", "The mesh is not a manifold: repair it first.");
   if (face_components(adjacency).count != 1)
@@ -254,7 +254,7 @@ Segmentation make_segmentation(const TriangleMesh& mesh, const std::vector<int>&
   if (adjacency.boundary_edge_count() == 0)
     throw Error(ErrorCode::invalid_input, "mesh", "The surface has no opening: put a hole into it.");
   if (*std::min_element(face_segment.begin(), face_segment.end()) < 0)
-    throw Error(ErrorCode::invalid_input, "mesh", "Parts are numbered from 0.");
+    throw Error(ErrorCode::invalid_input, "mesh", "The parts of a segmentation must be numbered from 0.");
   Segmentation result = derive(mesh, face_segment, adjacency);
   if (!result.valid()) return result;
   TriangleMesh split = result.mesh;

@@ -151,7 +151,7 @@ void add_job_attributes(ipp_t* request, const CheckedOrder& checked, const Print
   if (answer.status == IPP_STATUS_ERROR_ATTRIBUTES_OR_VALUES)
     fail(name + " refuses " + media.label + " or one of the other settings (\"" + words +
          "\"): choose another sheet, quality or number of copies.");
-  fail(name + " refused the job: \"" + words + "\". Mend that at the printer, and print again.");
+  fail(name + " refused the job: \"" + words + "\". Fix this at the printer, and print again.");
 }
 
 /// A printer that would take another sheet instead says so in the group of unsupported attributes.

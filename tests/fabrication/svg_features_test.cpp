@@ -226,7 +226,7 @@ TEST_CASE("SvgFeatures.TextOfEveryKind") {
        {plain, returns, "\xef\xbb\xbf" + plain, "\xef\xbb\xbf<?xml version='1.0' encoding='UTF-8'?>" + plain, wide})
     CHECK(lines(read_svg_drawing(as_bytes(file), {}, Context())) == "0,1 9,1");
   CHECK(refusal("<svg width='100' height='60'>" + line + "</svg>").find("no unit") != std::string::npos);
-  CHECK(refusal("<svg width='100%' height='100%'>" + line + "</svg>").find("shares of a window") != std::string::npos);
+  CHECK(refusal("<svg width='100%' height='100%'>" + line + "</svg>").find("are percentages") != std::string::npos);
   CHECK(refusal("<svg width='9mm' height='9mm'><use href='a.svg#b'/></svg>").find("another file") != std::string::npos);
   SvgReadOptions pixels;
   pixels.user_unit = UserUnit::px;

@@ -71,7 +71,7 @@ TEST_CASE("MarlinLaser.SaysWhatHappensWhenTheConnectionEnds") {
     talk.driver.load("job", as_bytes(std::string(job)));
     return talk.state()["when_connection_ends"].get<std::string>();
   };
-  CHECK(said("M4 I\nG1 X5 S100 F600\n").find("then dark") != std::string::npos);
+  CHECK(said("M4 I\nG1 X5 S100 F600\n").find("then off (M4 I)") != std::string::npos);
   CHECK(talk.state()["warnings"] == Json::array());
   CHECK(said("M3 I\nG1 X5 S100 F600\n").find("stays on where the head stands") != std::string::npos);
   CHECK(talk.state()["warnings"].dump().find("constant power") != std::string::npos);
@@ -81,7 +81,7 @@ TEST_CASE("MarlinLaser.SaysWhatHappensWhenTheConnectionEnds") {
   ReadyTalk old({.inline_modes = false});
   old.driver.load("job", as_bytes(std::string("M4 I\nG1 X5 S100 F600\n")));
   CHECK(old.state()["warnings"].dump().find("Marlin 1.1.9") != std::string::npos);
-  CHECK(old.state()["when_connection_ends"].get<std::string>().find("The laser is then dark") == std::string::npos);
+  CHECK(old.state()["when_connection_ends"].get<std::string>().find("The laser is then off") == std::string::npos);
 }
 
 TEST_CASE("MarlinLaser.FirmwareWithoutInlineModesKeepsSuchJobsDark") {

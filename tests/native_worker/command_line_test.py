@@ -92,7 +92,7 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(json.loads((torus / "report.json").read_text())["hook_and_loop_mm_total"], sum(cut["length_mm"] for cut in cuts))
         segments.write_text("{}")
         shutil.rmtree(out)
-        self.expect_refused("segments.json says nothing", "zippable-design", "--sample", "t_shape", "--segments", segments, "--out", out)
+        self.expect_refused("segments.json is empty", "zippable-design", "--sample", "t_shape", "--segments", segments, "--out", out)
 
     def test_a_relief_is_written_whole(self):
         out = self.folder / "out"

@@ -521,7 +521,7 @@ class Mill(unittest.TestCase):
         self.assertEqual(run.returncode, 2, run.stderr)
         run = self.machine(*send, "--z", "here", "--job", self.jobs[1])
         self.assertEqual(run.returncode, 2, run.stderr)
-        self.assertIn("Between two jobs z is set", run.stderr)
+        self.assertIn("Between two jobs, z must be set", run.stderr)
         self.assertEqual(self.mill.look()["burns"], 0)
         run = self.machine(*send, "--z", "here")
         self.assertEqual(run.returncode, 0, run.stderr)
@@ -538,7 +538,7 @@ class Mill(unittest.TestCase):
         self.assertIn("xyz is 0 at the head", run.stdout)
         run = self.machine("origin", "--machine", "Mill", "--at", "corner", "--yes")  # it has no switches to know a corner by
         self.assertEqual(run.returncode, 2, run.stderr)
-        self.assertIn("only a machine with switches", run.stderr)
+        self.assertIn("machine without limit switches", run.stderr)
 
     def test_a_frame_moves_on_the_axes_that_the_job_names(self):
         job = self.folder / "along_y.gcode"
@@ -549,7 +549,7 @@ class Mill(unittest.TestCase):
         self.assertEqual(run.returncode, 2)
         self.assertIn("Line 1 goes to a place in machine coordinates", run.stderr)
         job.write_text("G0 Z10\n")
-        self.assertIn("moves nowhere in x and y", self.machine("frame", "--machine", "Mill", "--job", job, "--yes").stderr)
+        self.assertIn("does not move in x and y", self.machine("frame", "--machine", "Mill", "--job", job, "--yes").stderr)
 
     def test_z_is_set_again_with_the_second_tool(self):
         terminal, theirs = pty.openpty()

@@ -260,7 +260,7 @@ class Printing(unittest.TestCase):
         ended = self.wait(lost, silent)
         self.assertLess(time.monotonic() - start, 100)  # 30 s of silence; the rest is a busy machine's
         self.assertEqual(ended["state"], "cancelled")
-        self.assertIn("see whether its sheets come out", ended["error"]["message"])
+        self.assertIn("check whether its sheets come out", ended["error"]["message"])
 
     def test_one_that_is_not_there_is_said(self):
         off = peers.add_machine(self.data, "Off", "ipp://localhost:8999/ipp/print")

@@ -97,12 +97,12 @@ class OctoPrint(WorkerCase):
         wrong = peers.add_machine(self.data, "Wrong", self.octoprint.url.replace("127.0.0.1", "localhost"), "--kind", "octoprint", "--api-key-file", str(self.folder / "wrong"))
         status, ended = self.upload(wrong, b"G28\n", file_name="a.gcode")
         self.assertEqual(ended["state"], "failed", ended)
-        self.assertIn("does not know the key", ended["error"]["message"])
+        self.assertIn("does not accept the key", ended["error"]["message"])
         peers.formwright("remove", "Wrong", data=self.data)
         other = peers.add_machine(self.data, "Other", self.octoprint.url, "--kind", "moonraker")
         status, ended = self.upload(other, b"G28\n", file_name="a.gcode")
         self.assertEqual(ended["state"], "failed", ended)
-        self.assertRegex(ended["error"]["message"], r"is no Moonraker|refused the file|does not know the key")
+        self.assertRegex(ended["error"]["message"], r"is no Moonraker|refused the file|does not accept the key")
         peers.formwright("remove", "Other", data=self.data)
 
 

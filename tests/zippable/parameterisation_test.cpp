@@ -207,7 +207,7 @@ TEST_CASE("Parameterisation.RefusesWhatIsNoCylinder") {
   } catch (const Error& error) {
     CHECK(error.code() == ErrorCode::invalid_input);
     INFO(error.what());
-    CHECK(std::string(error.what()).find("puncture it") != std::string::npos);
+    CHECK(std::string(error.what()).find("hole into it") != std::string::npos);
   }
 }
 

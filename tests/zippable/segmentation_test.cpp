@@ -162,8 +162,8 @@ TEST_CASE("Segmentation.SaysWhyAPartIsNoCylinder") {
   CHECK(make_segmentation(tube, halves).valid());
   CHECK(problem(tube, pieces, 0).find("in 2 pieces") != std::string::npos);
   CHECK(problem(tube, pieces, 1).find("It has no opening") != std::string::npos);
-  CHECK(problem(test::grid(4, 4), std::vector<int>(32, 0), 0).find("1 boundary loops instead of two: puncture it") !=
-        std::string::npos);
+  CHECK(problem(test::grid(4, 4), std::vector<int>(32, 0), 0)
+            .find("1 openings instead of two: put another hole into it") != std::string::npos);
 }
 
 TEST_CASE("Segmentation.BothSidesOfAnInterfaceAgree") {

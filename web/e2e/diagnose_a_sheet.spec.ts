@@ -12,7 +12,7 @@ const seen = { timeout: 300_000 };
 async function openRoom(page: Page): Promise<void> {
   await openPage(page);
   await page.getByRole('link', { name: 'Evidence', exact: true }).click();
-  await expect(page.getByText('Evidence starts from a formed object that was measured')).toBeVisible();
+  await expect(page.getByText('Find out why a formed part came out wrong. You need')).toBeVisible();
 }
 
 const give = (page: Page, files: readonly ReturnType<typeof fileOf>[]) =>

@@ -18,7 +18,7 @@ std::uint32_t per_metre(double pixel_mm) { return static_cast<std::uint32_t>(std
 Bytes write_png16(const Grey16Image& image, const Context& context) {
   const auto width = static_cast<std::size_t>(image.width), height = static_cast<std::size_t>(image.height);
   if (image.width < 1 || image.height < 1 || image.levels.size() != width * height)
-    throw Error(ErrorCode::internal, "", "A picture to write does not have width times height levels.");
+    throw Error(ErrorCode::internal, "", "The number of grey levels of a picture must be its width times its height.");
   Bytes bytes;
   try {
     const PngWriter writer(bytes);

@@ -53,8 +53,8 @@ TEST_CASE("DraftMap.ConesOfKnownAngle") {
     CHECK_THAT(map.undercut_area_mm2, WithinAbs(draft < 0 ? wall : 0, 1e-9 * wall));
     CHECK(says(map, "The right side leans in by " + std::to_string(static_cast<int>(-draft)) + " degrees") ==
           (draft < 0));
-    CHECK(says(map, "will come off.") == (draft > 3));
-    CHECK(says(map, "come off hard") == (draft >= 0 && draft < 3));
+    CHECK(says(map, "will lift off easily.") == (draft > 3));
+    CHECK(says(map, "hard to lift off") == (draft >= 0 && draft < 3));
     CHECK(map.depth_to_width_max == 0);
   }
 }

@@ -13,14 +13,14 @@ export function solidLine(report: Report): string {
   return [closed, dimensions].filter(Boolean).join(', ');
 }
 
-/** "Normals 11.1° closer than with plain scaling". */
+/** "Shading 11.1° closer than with plain scaling". */
 export function gainLine(report: Report): string | null {
   const own = figure(report, 'normal_error_mean_deg');
   const plain = figure(report, 'normal_error_linear_mean_deg');
   if (own === null || plain === null) return null;
   const gain = plain - own;
   if (Math.abs(gain) < 0.05) return 'Shading as close as with plain scaling';
-  return `Normals ${formatFixed(Math.abs(gain), 1)}° ${gain > 0 ? 'closer' : 'further off'} than with plain scaling`;
+  return `Shading ${formatFixed(Math.abs(gain), 1)}° ${gain > 0 ? 'closer' : 'further off'} than with plain scaling`;
 }
 
 export function solvedLine(seconds: number, report: Report): string {

@@ -84,6 +84,7 @@ void MarlinDriver::closed(double now_s) {
   stopped_s_ = -1;
   connection_ = MachineConnection::closed;
   place_.forget();
+  z_set_s_.reset();
 }
 
 void MarlinDriver::received(ByteView bytes, double now_s) {
@@ -264,6 +265,7 @@ void MarlinDriver::send(const HandLine& line, int job_line, double now_s) {
   sent_s_ = now_s;
   if (line.settles != Settles::nothing) settling_number_ = number;
   place_.sending(line.text);
+  if (line.text.starts_with("G28")) z_set_s_.reset();
   if (marlin_may_light(line.text)) dark_ = false;
 }
 

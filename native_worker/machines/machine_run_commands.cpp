@@ -66,7 +66,9 @@ void know_z(Terminal& terminal, const std::string& job, const std::string& z) {
 void run_job(Terminal& terminal, const std::string& file, const std::string& machine) {
   terminal.confirm("The job " + file + " starts on " + machine +
                    ": the machine moves and its laser or spindle turns on. Is somebody beside it, eyes protected?");
-  terminal.session().command({{"do", "start"}, {"confirmed", true}});
+  Json start{{"do", "start"}, {"confirmed", true}};
+  if (terminal.is_mill()) start["z"] = "kept";  // know_z or ask_for_z has set or confirmed it
+  terminal.session().command(start);
   std::fprintf(stderr, "Running. Ctrl-C stops the machine.\n");
   terminal.run_until(
       [](const Json& s) {

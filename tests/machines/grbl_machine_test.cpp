@@ -121,7 +121,7 @@ TEST(GrblMachine, PlacesAreKnownPerAxis) {
   EXPECT_TRUE(talk.can("frame"));
   EXPECT_NE(talk.refusal(start).find("Set z"), std::string::npos);
   set("z");
-  EXPECT_EQ(talk.refusal(start), "");
+  EXPECT_EQ(talk.refusal({{"do", "start"}, {"confirmed", true}, {"z", "kept"}}), "");
   ASSERT_TRUE(talk.pass_until([&] { return talk.ended() == "done"; }, 60));
   EXPECT_NE(talk.state()["when_connection_ends"].get<std::string>().find("spindle running"), std::string::npos);
 }

@@ -264,7 +264,7 @@ std::string operation_help(const Operation& operation) {
   if (operation.keeps_results)
     text += entry(
         "--results DIR", width,
-        "Where simulations are kept and found again; OUT/simulations unless told. Several runs and machines may share it.");
+        "Where simulations are kept and found again; OUT/simulations unless given. Several runs and machines may share it.");
   text += entry("--quiet", width, "No progress.");
   std::string group;
   for (const ParameterInfo& info : operation.parameters) {

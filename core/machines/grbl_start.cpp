@@ -133,7 +133,7 @@ void GrblDriver::start(const Json& command, double now_s) {
   require_first_cut_placed(index);
   select_job_system();
   check_reach(program_.bounds());
-  if (z_here && !machine_mm_) refuse("z", "The machine has not told where its tool stands: try again in a second.");
+  if (z_here && !machine_mm_) refuse("z", "The machine has not reported where its tool stands: try again in a second.");
   const bool z_known = homes() && axes_known_[2] && (z_here || offset_mm_);
   if (const double travel_mm = setting(132, 0); travel_mm > 0)
     require_z_reach(

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// What all machines have in common for those who hold the port: a driver is told what arrived and what the person
+// What all machines have in common for those who hold the port: a driver gets what arrived and what the person
 // wants, and says what to write. It has no clock and no port of its own, so the same one runs in the page, in the
 // worker, on the command line and in tests.
 #include <array>

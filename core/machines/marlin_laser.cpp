@@ -106,7 +106,7 @@ Json marlin_warnings(const MarlinLaserUse& use, const std::string& firmware, boo
         "job with dynamic power (M4 I).");
   if (use.fan)
     warnings.push_back(
-        "The job switches a laser on the fan's output (M106), which shines at rest, too, and whose state is not told.");
+        "The job switches a laser on the fan's output (M106), which shines at rest, too, and whose state the machine does not report.");
   if ((use.continuous || use.dynamic) && !is_new(firmware))
     warnings.push_back(
         "The job switches the laser with its moves (M3 I or M4 I), which Marlin does from version 2.1 on; " +

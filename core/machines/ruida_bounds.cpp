@@ -42,20 +42,20 @@ class Reader {
     else if ((command.is(0xe7, 0x04) || command.is(0xe7, 0x08) || command.is(0xf2, 0x05)) &&
              (command.number(1, 2) > 1 || command.number(3, 2) > 1))
       refuse("job",
-             "The job repeats itself as an array, so how far it reaches cannot be told from here: frame it at the "
+             "The job repeats itself as an array, so how far it reaches cannot be computed here: frame it at the "
              "laser's panel.");
     // One axis by itself, and jumps: of z and u they do not matter.
     else if (command.is(0x80, 0x00) || command.is(0xa0, 0x00) ||
              (what == 0xd9 && !command.is(0xd9, 0x02) && !command.is(0xd9, 0x03)))
       refuse("job",
-             "The job moves by commands whose place is not in the file, so how far it reaches cannot be told: frame it "
+             "The job moves by commands whose place is not in the file, so how far it reaches cannot be computed: frame it "
              "at the laser's panel.");
   }
 
   RuidaBounds bounds() const {
     if (from_panel_ || !from_zero_)
       refuse("job",
-             "The job starts from a place that is set at the laser's panel, so where it lies cannot be told from here: "
+             "The job starts from a place that is set at the laser's panel, so where it lies is unknown here: "
              "frame it there.");
     if (bounds_.worked.empty) refuse("job", "The job burns nothing: choose another.");
     return bounds_;
@@ -72,7 +72,7 @@ class Reader {
       if (kind != 2) at_mm_[1] += 1e-3 * static_cast<double>(command.number(kind == 1 ? 2 : 0, 2));
     }
     if (!placed_ && (burn || kind != 0))
-      refuse("job", "The job moves before it has said where, so how far it reaches cannot be told: make it again.");
+      refuse("job", "The job moves before it has said where, so how far it reaches is unknown: make it again.");
     placed_ = true;
     bounds_.reached.add(at_mm_);
     if (!burn) return;

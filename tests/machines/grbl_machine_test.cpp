@@ -98,6 +98,14 @@ TEST(GrblMachine, OffsetsOfAMachineThatDidNotResetAreAskedFor) {
   EXPECT_NE(talk.state()["warnings"].dump().find("G92.1"), std::string::npos);
 }
 
+TEST(GrblMachine, HomingBySingleAxesIsRefusedWhereTheBuildHasNone) {
+  // GRBL 1.1h stays in the state "Home" for ever behind "$HX" and "$H=1".
+  GrblTalk talk;
+  talk.connect();
+  for (const char* line : {"$HX", "$H=1"})
+    EXPECT_NE(talk.refusal({{"do", "send"}, {"line", line}, {"confirmed", true}}).find("send $H"), std::string::npos);
+}
+
 TEST(GrblMachine, PlacesAreKnownPerAxis) {
   GrblTalk talk({.homes = false, .laser_mode = false});
   talk.connect();

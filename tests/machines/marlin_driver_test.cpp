@@ -35,7 +35,7 @@ class VirtualMarlin {
     if (inbox_.empty()) return;
     const auto numbered =
         std::count_if(inbox_.begin(), inbox_.end(), [](const std::string& line) { return line.starts_with('N'); });
-    most_numbered = std::max(most_numbered, numbered);
+    max_numbered = std::max(max_numbered, numbered);
     const std::string line = inbox_.front();
     inbox_.pop_front();
     take(line);
@@ -45,7 +45,7 @@ class VirtualMarlin {
 
   std::string output;
   std::vector<std::string> done, heard;
-  std::ptrdiff_t most_numbered = 0;  // lines with a number that waited at a time
+  std::ptrdiff_t max_numbered = 0;  // lines with a number that waited at a time
   std::string unanswered;            // what is done without a word
   bool dumb = false;                 // hears, does nothing, says nothing
   bool slow = false;                 // does a line when it is told to work()
@@ -280,11 +280,11 @@ TEST(MarlinDriver, AnswersToLinesWithoutANumberPassForNoOthers) {
     talk.machine.emergency_parser = emergency_parser;
     talk.start_moves();
     talk.hand_over();  // a line is under way
-    talk.machine.most_numbered = 0;
+    talk.machine.max_numbered = 0;
     talk.tell({{"do", "stop"}});
     talk.pass(4);
     EXPECT_EQ(talk.phase(), "idle");
-    EXPECT_EQ(talk.machine.most_numbered, 1);
+    EXPECT_EQ(talk.machine.max_numbered, 1);
     EXPECT_EQ(talk.machine.done_times("M104 S0"), 2);
     EXPECT_EQ(talk.machine.heard_times("M112"), 0);
   }

@@ -10,8 +10,7 @@ namespace formwright {
 
 /// The longest side and the number of pixels that a picture may have.
 inline constexpr int max_picture_side = 32768;
-inline constexpr std::int64_t max_picture_pixels =
-    sizeof(void*) == 4 ? 34'000'000 : 134'300'000;  // a square of 11,585
+inline constexpr std::int64_t max_picture_pixels = sizeof(void*) == 4 ? 34'000'000 : 134'300'000;  // a square of 11,585
 
 /// Any PNG or JPEG as 8-bit sRGB; the kind is found by content. Embedded colour profiles, gamma and orientation are
 /// not followed; 16 bits are rounded to 8. `file_name` may be empty; `where` names the input, for errors.

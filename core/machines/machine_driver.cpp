@@ -114,9 +114,10 @@ ZChoice z_choice_of(const Json& command) {
   const auto found = command.find("z");
   if (found != command.end() && *found == "here") return ZChoice::here;
   if (found != command.end() && *found == "kept") return ZChoice::kept;
-  refuse("z",
-         "Where is z 0 for this job? Say \"here\" when the tip of the tool touches the stock's top now, or \"kept\" when "
-         "z was set with this tool before.");
+  refuse(
+      "z",
+      "Where is z 0 for this job? Say \"here\" when the tip of the tool touches the stock's top now, or \"kept\" when "
+      "z was set with this tool before.");
 }
 
 Json z_choice_json(std::optional<double> origin_machine_mm, std::optional<double> set_s, double now_s) {

@@ -138,7 +138,8 @@ void require_confirmation(const Json& command, const std::string& what_happens);
 /// Throws Error invalid_input where the command has no such "z".
 enum class ZChoice { here, kept };
 ZChoice z_choice_of(const Json& command);
-/// For the state, "z_choice": where z is 0 in machine coordinates, and how long ago it was set here; null where unknown.
+/// For the state, "z_choice": where z is 0 in machine coordinates, and how long ago it was set here; null where
+/// unknown.
 Json z_choice_json(std::optional<double> origin_machine_mm, std::optional<double> set_s, double now_s);
 /// A number of the command in its range; `fallback` where it is absent, an error where that is NaN.
 double number_of(const Json& command, const char* name, double minimum, double maximum, double fallback);

@@ -136,7 +136,7 @@ class MarlinDriver final : public MachineDriver {
   bool rests_ = false;     // an M400 was sent ahead of the job's next line
   bool no_m5_ = false;     // the firmware does not know it
   MarlinPlace place_;
-  std::optional<double> z_set_s_;  // when z was last set to 0 at the head; none after homing
+  std::optional<double> z_set_s_;              // when z was last set to 0 at the head; none after homing
   std::optional<MarlinPlace::Limits> limits_;  // M211
   std::string halt_text_;
   Json temperatures_ = Json::object();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Where the head of a Marlin machine is known to be, axis by axis: from the lines it was sent and the places it reported.
+// Where the head of a Marlin machine is known to be, axis by axis: from the lines it was sent and the places it
+// reported.
 #include <array>
 #include <optional>
 #include <string>

@@ -47,9 +47,10 @@ class Reader {
     // One axis by itself, and jumps: of z and u they do not matter.
     else if (command.is(0x80, 0x00) || command.is(0xa0, 0x00) ||
              (what == 0xd9 && !command.is(0xd9, 0x02) && !command.is(0xd9, 0x03)))
-      refuse("job",
-             "The job moves by commands whose place is not in the file, so how far it reaches cannot be computed: frame it "
-             "at the laser's panel.");
+      refuse(
+          "job",
+          "The job moves by commands whose place is not in the file, so how far it reaches cannot be computed: frame it "
+          "at the laser's panel.");
   }
 
   RuidaBounds bounds() const {

@@ -18,9 +18,9 @@
 namespace formwright {
 namespace {
 
-constexpr std::uintmax_t max_bytes = std::uintmax_t{512} << 20;  // of all logs together; the oldest go
+constexpr std::uintmax_t max_bytes = std::uintmax_t{512} << 20;   // of all logs together; the oldest go
 constexpr std::streamoff tail_bytes = 4 << 20;                    // of a file, when the newest are asked for
-constexpr std::size_t max_open = 32;                             // machines at once
+constexpr std::size_t max_open = 32;                              // machines at once
 constexpr std::size_t max_waiting_bytes = std::size_t{64} << 20;  // a disk that hangs must not fill the memory
 
 double unix_seconds() {

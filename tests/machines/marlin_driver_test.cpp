@@ -46,10 +46,10 @@ class VirtualMarlin {
   std::string output;
   std::vector<std::string> done, heard;
   std::ptrdiff_t max_numbered = 0;  // lines with a number that waited at a time
-  std::string unanswered;            // what is done without a word
-  bool dumb = false;                 // hears, does nothing, says nothing
-  bool slow = false;                 // does a line when it is told to work()
-  bool emergency_parser = false;     // takes M108 and M410 out of the line without an answer
+  std::string unanswered;           // what is done without a word
+  bool dumb = false;                // hears, does nothing, says nothing
+  bool slow = false;                // does a line when it is told to work()
+  bool emergency_parser = false;    // takes M108 and M410 out of the line without an answer
 
  private:
   void take(const std::string& line) {

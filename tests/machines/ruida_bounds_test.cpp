@@ -112,8 +112,9 @@ TEST(RuidaBounds, RefuseWhereTheyCannotBeTold) {
   EXPECT_NE(refusal(burning(RuidaJob().code({0xf0}))).find("set at the laser's panel"), std::string::npos);
   EXPECT_NE(refusal(burning(RuidaJob().begin().code({0xe7, 0x08}).number(3, 2).number(1, 2))).find("array"),
             std::string::npos);
-  EXPECT_NE(refusal(burning(RuidaJob().begin().code({0xd9, 0x10, 0}).number(0, 5).number(0, 5))).find("cannot be computed"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal(burning(RuidaJob().begin().code({0xd9, 0x10, 0}).number(0, 5).number(0, 5))).find("cannot be computed"),
+      std::string::npos);
   EXPECT_NE(refusal(burning(RuidaJob().begin().code({0x80, 0x00}).number(0, 5))).find("cannot be computed"),
             std::string::npos);
   EXPECT_EQ(refusal(burning(RuidaJob().begin().code({0x80, 0x08}).number(0, 5))), "");  // the table

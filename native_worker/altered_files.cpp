@@ -40,27 +40,32 @@ std::optional<KeptFile> file_of(const Head& head, JobStore& store) {
 }  // namespace
 
 boost::asio::awaitable<std::optional<TextResponse>> HttpServer::refuse_altered(const Head& head) {
-  const auto file = file_of(head, store_);
-  if (!file || store_.checked().known(file->path, file->sha256)) co_return std::nullopt;
+  const std::function<std::optional<KeptFile>()> find = [this, &head]() -> std::optional<KeptFile> {
+    auto found = file_of(head, store_);
+    return found && !store_.checked().known(found->path, found->sha256) ? found : std::nullopt;
+  };
+  const std::optional<KeptFile> file = co_await on_jobs_thread(find);
+  if (!file) co_return std::nullopt;
   const auto stamp = stamp_of(file->path);
   if (!stamp) co_return std::nullopt;  // there is no such file, which others say
-  // On another thread: a large file takes seconds, and machines are to be stopped meanwhile.
+  // On a third thread: a large file takes seconds, and jobs end meanwhile.
   const bool intact = co_await boost::asio::co_spawn(
       hashing_,
       [](std::filesystem::path path, std::string sha256) -> boost::asio::awaitable<bool> {
         co_return has_sha256(path, sha256);
       }(file->path, file->sha256),
       boost::asio::use_awaitable);
-  if (intact) {
-    store_.checked().note(file->path, file->sha256, *stamp);
-    co_return std::nullopt;
-  }
+  const std::function<bool()> note = [this, &file, &stamp, intact] {
+    if (intact) store_.checked().note(file->path, file->sha256, *stamp);
+    // So that it is sent again; unless it was meanwhile.
+    else if (!file->is_output && stamp_of(file->path) == stamp) store_.remove_blob(file->sha256);
+    return intact;
+  };
+  if (co_await on_jobs_thread(note)) co_return std::nullopt;
   if (file->is_output)
     co_return error_response(
         head, http::status::gone, "internal", "",
         "The result " + file->path.filename().string() + " was altered on the disk: run the job again.");
-  // So that it is sent again; unless it was meanwhile.
-  if (stamp_of(file->path) == stamp) store_.remove_blob(file->sha256);
   co_return error_response(head, http::status::not_found, "invalid_input", "",
                            "The file was altered on the disk: send it again.");
 }

@@ -15,8 +15,8 @@
 namespace formwright {
 namespace {
 
-constexpr std::size_t most_queued = 32, most_kept_jobs = 200;
-constexpr double most_blob_mb = 8192;
+constexpr std::size_t max_queued = 32, max_kept_jobs = 200;
+constexpr double max_blob_mb = 8192;
 constexpr std::int64_t triangle_limit = 20'000'000;
 
 void set_common_headers(auto& response, const Head& head) {
@@ -175,7 +175,7 @@ Response HttpServer::answer_jobs(const Head& head, const std::string& path, cons
         return error_response(head, http::status::unprocessable_entity, "invalid_input", name,
                               "The file for the input " + name + " has not arrived: send it again.");
     }
-    if (queue_.waiting() >= most_queued)
+    if (queue_.waiting() >= max_queued)
       return error_response(head, http::status::too_many_requests, "invalid_input", "",
                             "Too many jobs are waiting: let some finish.");
     std::string id;
@@ -185,7 +185,7 @@ Response HttpServer::answer_jobs(const Head& head, const std::string& path, cons
       return error_response(head, http::status::insufficient_storage, "internal", "",
                             std::string("The job was not accepted: ") + error.what());
     }
-    store_.tidy(most_kept_jobs, most_blob_mb);  // now that the new job's blobs count as needed
+    store_.tidy(max_kept_jobs, max_blob_mb);  // now that the new job's blobs count as needed
     queue_.enqueue(id);
     return text_response(head, http::status::accepted, Json{{"id", id}}.dump());
   }

@@ -25,7 +25,7 @@ constexpr std::uint64_t max_job_bytes = 1 << 20, max_order_bytes = 64 * 1024, ma
 constexpr auto stranger_patience = 5s, stranger_answer_patience = 30s;
 constexpr auto head_patience = 60s, body_patience = 15s, upload_patience = 600s, answer_patience = 600s;
 constexpr std::size_t max_page_sockets = 32;
-constexpr std::uint64_t most_drained_bytes = std::uint64_t{256} << 20;
+constexpr std::uint64_t max_drained_bytes = std::uint64_t{256} << 20;
 
 /// "/api/blobs/<hash>" -> the hash, or "" for anything else.
 std::string blob_hash(const Head& head) {
@@ -210,7 +210,7 @@ boost::asio::awaitable<void> HttpServer::finish_sending(beast::tcp_stream& strea
   std::vector<char> unread(64 * 1024);
   std::uint64_t drained = 0;
   stream.expires_after(5s);
-  while (!error && drained < most_drained_bytes)
+  while (!error && drained < max_drained_bytes)
     drained +=
         co_await stream.async_read_some(boost::asio::buffer(unread), boost::asio::redirect_error(use_awaitable, error));
 }
@@ -241,11 +241,14 @@ boost::asio::awaitable<Response> HttpServer::receive_and_answer(beast::tcp_strea
   const std::string target = text_of(request.target()), path = path_of(request);
   if (path == machines || path.starts_with("/api/machines/")) {
     const std::string query = target.size() > path.size() ? target.substr(path.size() + 1) : "";
-    Response told = co_await bridge_.answer(request, path.substr(machines.size()), query, parser.get().body());
-    co_return told;
+    Response answer = co_await bridge_.answer(request, path.substr(machines.size()), query, parser.get().body());
+    co_return answer;
   }
+  if (!path.starts_with("/api/")) co_return answer(request, parser.get().body());
   if (auto refused = co_await refuse_altered(request)) co_return std::move(*refused);
-  co_return answer(request, parser.get().body());
+  const std::function<Response()> work = [this, request, body = parser.get().body()] { return answer(request, body); };
+  Response answered = co_await on_jobs_thread(work);
+  co_return answered;
 }
 
 boost::asio::awaitable<Response> HttpServer::receive_upload(beast::tcp_stream& stream, beast::flat_buffer& buffer,
@@ -285,7 +288,11 @@ boost::asio::awaitable<Response> HttpServer::receive_upload(beast::tcp_stream& s
   } catch (const Error&) {
     co_return no_room();
   }
-  co_return accept_upload(request, blob_hash(request), received.path, found);
+  const std::function<Response()> keep = [this, request, path = received.path, found] {
+    return accept_upload(request, blob_hash(request), path, found);
+  };
+  Response answered = co_await on_jobs_thread(keep);
+  co_return answered;
 }
 
 }  // namespace formwright

@@ -2,10 +2,10 @@
 #include "http_server.h"
 
 #include <algorithm>
-#include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/redirect_error.hpp>
-#include <boost/asio/use_awaitable.hpp>
+#include <iostream>
 
 #include "base/error.h"
 #include "secret.h"
@@ -25,7 +25,9 @@ HttpServer::HttpServer(boost::asio::io_context& io, const ServerOptions& options
       token_(random_hex(24)),
       store_(options.data),
       queue_(
-          io, store_, [this](const Json& m) { tell_pages(m); }, solver_words(options.solver)),
+          jobs_io_, store_,
+          [this](const Json& message) { boost::asio::post(io_, [this, message] { tell_pages(message); }); },
+          solver_words(options.solver)),
       bridge_(io, options.data, store_) {
   const boost::asio::ip::tcp::endpoint endpoint(boost::asio::ip::address_v4::loopback(), options.port);
   boost::system::error_code error;
@@ -41,14 +43,32 @@ HttpServer::HttpServer(boost::asio::io_context& io, const ServerOptions& options
 }
 
 void HttpServer::start() {
-  queue_.start();
+  jobs_thread_ = std::thread([this] { run_handlers(jobs_io_); });
+  boost::asio::post(jobs_io_, [this] { queue_.start(); });
   bridge_.start();
   boost::asio::co_spawn(io_, accept_loop(), boost::asio::detached);
 }
 
 void HttpServer::stop() {
   bridge_.stop();  // first: machines run
+  end_jobs_thread();
   queue_.stop();
+}
+
+void HttpServer::end_jobs_thread() {
+  jobs_io_.stop();
+  if (jobs_thread_.joinable()) jobs_thread_.join();
+}
+
+void run_handlers(boost::asio::io_context& io) {
+  for (;;) {
+    try {
+      io.run();
+      return;
+    } catch (const std::exception& mistake) {
+      std::cerr << "formwright: " << mistake.what() << std::endl;
+    }
+  }
 }
 
 boost::asio::awaitable<void> HttpServer::accept_loop() {

@@ -2,18 +2,23 @@
 #pragma once
 // Loopback HTTP and WebSocket: who may speak, and what the answers look like. Routes are in api.cpp.
 #include <boost/asio/awaitable.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/thread_pool.hpp>
+#include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
+#include <thread>
 #include <variant>
 
 #include "connections.h"
@@ -41,10 +46,18 @@ struct PageSocket {
   std::deque<std::shared_ptr<const std::string>> outgoing;
 };
 
+/// Until it is stopped. What a handler throws is printed, and the others go on.
+void run_handlers(boost::asio::io_context& io);
+
+/// Connections are served on the thread of `io`, which never waits for a disk: a page that connects to stop a machine
+/// is heard at once. Jobs, and the files that are kept for them, have a thread of their own.
 class HttpServer {
  public:
   /// Binds 127.0.0.1. Throws Error{invalid_input, "--port"} when the port is taken.
   HttpServer(boost::asio::io_context& io, const ServerOptions& options);
+  HttpServer(const HttpServer&) = delete;
+  HttpServer& operator=(const HttpServer&) = delete;
+  ~HttpServer() { end_jobs_thread(); }
 
   unsigned short port() const { return port_; }
   const std::string& token() const { return token_; }
@@ -64,6 +77,14 @@ class HttpServer {
   /// What is read must be what was kept: the answer when a blob or an output was altered on the disk, or nothing.
   boost::asio::awaitable<std::optional<TextResponse>> refuse_altered(const Head& head);
   boost::asio::awaitable<void> finish_sending(beast::tcp_stream& stream);
+  /// `work` done on the jobs' thread. All that touches store_ or queue_ runs there.
+  template <class Result>
+  boost::asio::awaitable<Result> on_jobs_thread(std::function<Result()> work) {
+    co_return co_await boost::asio::co_spawn(
+        jobs_io_, [](std::function<Result()> w) -> boost::asio::awaitable<Result> { co_return w(); }(std::move(work)),
+        boost::asio::use_awaitable);
+  }
+  void end_jobs_thread();
 
   // Who may speak. What is refused is refused before its body is read.
   std::optional<TextResponse> refusal(const Head& head, std::optional<std::uint64_t> body_bytes,
@@ -74,7 +95,7 @@ class HttpServer {
   bool token_given(const Head& head) const;
   bool token_in_subprotocol(const Head& head, std::string_view version) const;
 
-  // api.cpp
+  // api.cpp, all but page_file on the jobs' thread
   Response answer(const Head& head, const std::string& body);
   Response answer_jobs(const Head& head, const std::string& path, const std::string& body);
   Response answer_blob(const Head& head, const std::string& sha256);
@@ -91,7 +112,10 @@ class HttpServer {
   boost::asio::thread_pool hashing_{1};
   unsigned short port_ = 0;
   std::string token_;
-  std::set<std::shared_ptr<PageSocket>> pages_;  // before the queue, which may speak while it is made
+  std::set<std::shared_ptr<PageSocket>> pages_;
+  boost::asio::io_context jobs_io_{1};
+  boost::asio::executor_work_guard<boost::asio::io_context::executor_type> jobs_wait_{jobs_io_.get_executor()};
+  std::thread jobs_thread_;
   JobStore store_;
   JobQueue queue_;
   MachineBridge bridge_;

@@ -113,7 +113,7 @@ void JobQueue::start_process() {
   }
   if (process_ == 0) {
     // A solver without its worker would write where the next worker lets the job run again. It ends with the thread
-    // that forked it (prctl(2)), which is the server's.
+    // that forked it (prctl(2)), which is the jobs'.
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() != worker) ::_exit(0);
     ::dup2(to_child[0], STDIN_FILENO);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// One job after the other in a child process. All calls from the server's thread.
+// One job after the other in a child process. All calls from the thread that runs `io`.
 // A job is done when its result is on the disk. Until then the disk has it as queued, and a worker that starts takes it
 // up again, however the earlier one ended.
 #include <sys/types.h>

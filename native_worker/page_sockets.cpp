@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pages that listen for progress and ends.
+#include <boost/asio/post.hpp>
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <iostream>
@@ -61,7 +62,7 @@ void HttpServer::hear_page(const std::string& text) {
   const Json message = parse_json_text(text);
   if (!message.is_object() || message.value("type", Json()) != "cancel") return;
   const Json id = message.value("id", Json());
-  if (id.is_string()) queue_.cancel(id.get<std::string>());
+  if (id.is_string()) boost::asio::post(jobs_io_, [this, job = id.get<std::string>()] { queue_.cancel(job); });
 }
 
 }  // namespace formwright

@@ -90,14 +90,7 @@ int serve(const std::vector<std::string>& words) {
   std::cerr << describe_solver_limits(options.solver) << std::endl;
   if (options.web.empty()) std::cout << "The page is not built (make web); the worker answers all the same.\n";
   std::cout << "http://127.0.0.1:" << server.port() << "/#token=" << server.token() << std::endl;
-  for (;;) {
-    try {
-      io.run();
-      break;
-    } catch (const std::exception& mistake) {  // of one handler; the others go on
-      std::cerr << "formwright: " << mistake.what() << std::endl;
-    }
-  }
+  run_handlers(io);
   server.stop();
   // Uploads that are being hashed and pages that listen are not waited for; left-overs go at the next start.
   std::_Exit(0);

@@ -6,7 +6,7 @@
 
 namespace formwright {
 
-/// `formwright serve [--port N] [--web DIR] [--data DIR]`. Returns the exit code once told to stop.
+/// `formwright serve [--port N] [--web DIR] [--data DIR]`. Returns the exit code once it is asked to stop.
 int serve(const std::vector<std::string>& words);
 
 /// `formwright run-jobs`: the child process in which jobs run; speaks to its server over standard input and output.

@@ -26,7 +26,7 @@ constexpr int max_jpeg_scans = 100;
 
 void check_size(std::int64_t width, std::int64_t height, std::int64_t max_pixels) {
   if (width < 1 || height < 1) throw Damaged("it has no pixels");
-  if (width > most_picture_side || height > most_picture_side || width * height > max_pixels)
+  if (width > max_picture_side || height > max_picture_side || width * height > max_pixels)
     throw TooLarge{width, height};
 }
 

@@ -203,6 +203,9 @@ void GrblDriver::send_by_hand(const Json& command) {
     if (setting(32, 1) == 0) refuse("line", "Laser mode is off in the machine: send $32=1 first.");
     line = with_dynamic_power(line);  // dark at rest; Focus has a light of its own
   }
+  // GRBL takes "$H" with anything behind it for homing that never ends (system.c), but in builds that home single axes.
+  if (line.starts_with("$H") && line != "$H" && !machine_.has_option('H'))
+    refuse("line", "This machine homes all its axes at once: send $H.");
   if (line.starts_with("$H") && !homes()) refuse("line", "Homing is not switched on in this machine ($22).");
   if (const std::string sentence = machine_.runs_by_itself(); line.starts_with("$H") && !sentence.empty())
     refuse("line", sentence);

@@ -233,6 +233,9 @@ Json GrblDriver::state(double now_s) const {
   state["laser_on"] = laser_on();
   state["warnings"] = warnings();
   state["when_connection_ends"] = when_connection_ends();
+  if (asks_z() && connection_ == MachineConnection::ready)
+    state["z_choice"] = machines_detail::z_choice_json(
+        homes() && axes_known_[2] && offset_mm_ ? std::optional((*offset_mm_)[2]) : std::nullopt, z_set_s_, now_s);
   state["can"] = possible_commands();
   return state;
 }

@@ -90,6 +90,8 @@ class GrblDriver final : public MachineDriver {
   void require_first_cut_placed(int index) const;
   /// Where the head must be known for the job that is loaded, and is not: a sentence, or "".
   std::string unknown_place() const;
+  /// Does the loaded job move the z of a mill? Its start then says where z is 0.
+  bool asks_z() const { return options_.tool == MachineTool::mill && moves_axis_[2]; }
   std::vector<std::string> way_back_to(int index) const;
   int careful_line() const;
   std::string as_sent(std::string_view line) const {
@@ -134,6 +136,7 @@ class GrblDriver final : public MachineDriver {
   std::array<int, 3> overrides_{100, 100, 100};
   double feed_mm_per_min_ = 0;
   std::array<bool, 3> axes_known_{};
+  std::optional<double> z_set_s_;  // when z was last set to 0 at the head, in this connection
 
   GrblStream stream_;
   std::deque<std::string> by_hand_, after_banner_;

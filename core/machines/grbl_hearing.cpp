@@ -110,6 +110,8 @@ void GrblDriver::hear_answer(std::optional<int> error, double now_s) {
   if (line->text.starts_with("G10L20") && !error && !homes())
     for (std::size_t axis = 0; axis < 3; ++axis)
       axes_known_[axis] = axes_known_[axis] || line->text.find("XYZ"[axis]) != std::string::npos;
+  const bool sets_job_origin = line->text.starts_with("G10L20P0") || line->text.starts_with("G10L20P1");
+  if (sets_job_origin && !error && line->text.find('Z') != std::string::npos) z_set_s_ = now_s;
   if (line->text.starts_with("G10") && error) offset_mm_.reset();
   if (line->job_line < 0 && !error) machine_.follow(line->text);
   if (line->text == "M5" && line->job_line < 0) hear_dark(error, now_s);

@@ -73,7 +73,7 @@ void GrblMachine::follow(const std::string& line) {
     if (letter == 'M' && value >= 3 && value <= 5) spindle_ = static_cast<int>(value);
     if (letter != 'G') continue;
     if (value >= 54 && value < 60) work_system_ = static_cast<int>(value);
-    if (value == 10) offsets_mm_.clear();  // told again by the next report
+    if (value == 10) offsets_mm_.clear();  // the next report says them again
     if (value == 92) offset = true;
     if (value > 92 && value < 92.3) g92_mm_ = {0, 0, 0};
     if (value >= 43 && value < 44) tool = true;

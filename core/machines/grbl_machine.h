@@ -39,7 +39,7 @@ class GrblMachine {
 
   int work_system() const { return work_system_; }
   bool spindle_on() const { return spindle_ != 5; }
-  /// Machine minus work coordinates in a work system, as far as $# told.
+  /// Machine minus work coordinates in a work system, as far as $# reported it.
   std::optional<Point> offset_mm(int system) const;
   /// What of the parser's state would carry a job elsewhere than it says, as a sentence; "" for nothing.
   std::string misplaces() const;

@@ -16,7 +16,7 @@ struct GrblReport {
   std::optional<double> feed_mm_per_min, power;
   std::optional<std::array<int, 3>> overrides;  // feed, rapid, power in percent
   std::optional<int> free_blocks, free_bytes;
-  bool spindle_on = false;  // A:S or A:C; told with the overrides only
+  bool spindle_on = false;  // A:S or A:C; reported with the overrides only
 };
 
 /// None for anything that is not a whole report.

@@ -122,6 +122,7 @@ void GrblDriver::start(const Json& command, double now_s) {
     happens += ", line " + std::to_string(power_wanted_.rest_line) +
                " burns at rest (M3 with G4), and the laser stays on there if the connection ends";
   require_confirmation(command, happens);
+  const bool z_here = asks_z() && machines_detail::z_choice_of(command) == machines_detail::ZChoice::here;
   check_settings();
   const int from_line = static_cast<int>(number_of(command, "from_line", 1, 1e9, 1));
   const int index = program_.index_of(from_line);
@@ -132,10 +133,12 @@ void GrblDriver::start(const Json& command, double now_s) {
   require_first_cut_placed(index);
   select_job_system();
   check_reach(program_.bounds());
-  const bool z_known = homes() && axes_known_[2] && offset_mm_;
+  if (z_here && !machine_mm_) refuse("z", "The machine has not reported where its tool stands: try again in a second.");
+  const bool z_known = homes() && axes_known_[2] && (z_here || offset_mm_);
   if (const double travel_mm = setting(132, 0); travel_mm > 0)
-    require_z_reach(program_.bounds(), travel_mm,
-                    z_known ? std::optional(reach_low(2) - (*offset_mm_)[2]) : std::nullopt);
+    require_z_reach(
+        program_.bounds(), travel_mm,
+        z_known ? std::optional(reach_low(2) - (z_here ? (*machine_mm_)[2] : (*offset_mm_)[2])) : std::nullopt);
   focus_until_s_.reset();
   refused_.reset();
   pause_asked_ = closing_sent_ = light_by_hand_ = false;
@@ -145,6 +148,10 @@ void GrblDriver::start(const Json& command, double now_s) {
   progress_s_ = answered_s_ = now_s;
   idle_since_s_ = -1;
   queue("M5");
+  if (z_here) {
+    queue("G10L20P1Z0");
+    expect_origin({std::nullopt, std::nullopt, (*machine_mm_)[2]});
+  }
   queue("G21G90G94G17G54");
   queue("G0S0");
   if (index > 0)

@@ -20,7 +20,7 @@ constexpr int status_ok = 206, status_checksum = 207, status_finished = 236, sta
 constexpr double asking_s = 0.3, asking_busy_s = 0.02, silence_s = 3, rest_s = 1.0, settled_s = 0.3, rejection_s = 0.5,
                  mm_per_mil = 0.0254, absent = std::numeric_limits<double>::quiet_NaN();
 constexpr double rounding_mm = 0.0128;  // jobs are written in whole steps of 1/1000 inch
-constexpr int most_repeats = 10;
+constexpr int max_repeats = 10;
 
 /// LHYMICRO-GL: z is 255; up to 51 one or two letters; three digits beyond.
 std::string distance_letters(int mil) {
@@ -169,7 +169,7 @@ void K40Driver::received(ByteView bytes, double now_s) {
 }
 
 void K40Driver::repeat(double now_s) {
-  if (++repeats_ <= most_repeats) {
+  if (++repeats_ <= max_repeats) {
     write(as_text(k40_transfer(switch_unconfirmed_ ? "PN" : *unconfirmed_)));
     sent_s_ = now_s;
     return ask(now_s);

@@ -79,7 +79,8 @@ Json MachineDriver::common_state(const char* controller, MachineConnection conne
           {"error", nullptr},
           {"laser_on", nullptr},
           {"warnings", Json::array()},
-          {"when_connection_ends", ""}};
+          {"when_connection_ends", ""},
+          {"z_choice", nullptr}};
 }
 
 std::unique_ptr<MachineDriver> make_machine_driver(const Json& options) {
@@ -107,6 +108,21 @@ void require_confirmation(const Json& command, const std::string& what_happens) 
   const auto confirmed = command.find("confirmed");
   if (confirmed == command.end() || *confirmed != true)
     refuse("confirmed", what_happens + ": the person in front of the machine must confirm this first.");
+}
+
+ZChoice z_choice_of(const Json& command) {
+  const auto found = command.find("z");
+  if (found != command.end() && *found == "here") return ZChoice::here;
+  if (found != command.end() && *found == "kept") return ZChoice::kept;
+  refuse(
+      "z",
+      "Where is z 0 for this job? Say \"here\" when the tip of the tool touches the stock's top now, or \"kept\" when "
+      "z was set with this tool before.");
+}
+
+Json z_choice_json(std::optional<double> origin_machine_mm, std::optional<double> set_s, double now_s) {
+  return {{"origin_machine_mm", origin_machine_mm ? Json(*origin_machine_mm) : Json(nullptr)},
+          {"set_seconds_ago", set_s ? Json(now_s - *set_s) : Json(nullptr)}};
 }
 
 double number_of(const Json& command, const char* name, double minimum, double maximum, double fallback) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// What all machines have in common for those who hold the port: a driver is told what arrived and what the person
+// What all machines have in common for those who hold the port: a driver gets what arrived and what the person
 // wants, and says what to write. It has no clock and no port of its own, so the same one runs in the page, in the
 // worker, on the command line and in tests.
 #include <array>
@@ -134,6 +134,13 @@ Program& program_in(PreparedJob& job) {
 [[noreturn]] void refuse(const std::string& where, const std::string& sentence);
 /// Throws unless command["confirmed"] is true.
 void require_confirmation(const Json& command, const std::string& what_happens);
+/// Where the person says that z is 0 for a mill's job: at the tip now ("here"), or where it was set before ("kept").
+/// Throws Error invalid_input where the command has no such "z".
+enum class ZChoice { here, kept };
+ZChoice z_choice_of(const Json& command);
+/// For the state, "z_choice": where z is 0 in machine coordinates, and how long ago it was set here; null where
+/// unknown.
+Json z_choice_json(std::optional<double> origin_machine_mm, std::optional<double> set_s, double now_s);
 /// A number of the command in its range; `fallback` where it is absent, an error where that is NaN.
 double number_of(const Json& command, const char* name, double minimum, double maximum, double fallback);
 /// What to "do". Throws where it is no command, is not known to any machine, or the machine is not connected.

@@ -80,7 +80,7 @@ void MarlinDriver::command(const Json& command, double now_s) {
     queue("G28");
     settle(Settles::homing);
   } else if (what == "jog") jog(command, now_s);
-  else if (what == "set_origin") set_origin(command);
+  else if (what == "set_origin") set_origin(command, now_s);
   else if (what == "go_to") {
     GcodeBounds bounds;
     bounds.add({number_of(command, "x_mm", -farthest_mm, farthest_mm, absent),
@@ -152,11 +152,15 @@ void MarlinDriver::jog(const Json& command, double now_s) {
       std::max(jogging_until_s_.value_or(0), now_s + jog_starts_s) + std::sqrt(squared_mm) / speed_mm_per_s;
 }
 
-void MarlinDriver::set_origin(const Json& command) {
-  const std::string words = machines_detail::zero_words(command, " ");
+void MarlinDriver::set_origin(const Json& command, double now_s) {
+  zero_at_head(machines_detail::zero_words(command, " "), now_s);
+}
+
+void MarlinDriver::zero_at_head(const std::string& words, double now_s) {
   queue("M114");  // where that is in the machine's own coordinates
   queue("G92" + words);
-  place_.expect_origin(words);  // known at once; the machine tells of it only when it is asked again
+  place_.expect_origin(words);  // known at once; the machine reports it only when it is asked again
+  if (words.find('Z') != std::string::npos) z_set_s_ = now_s;
   ask_soon();
 }
 
@@ -203,12 +207,14 @@ void MarlinDriver::start(const Json& command, double now_s) {
   if (has_cutter()) {  // a printer's jobs home it themselves
     require_head_at_origin(program_, 0, place_.position_mm());
     check_reach(program_.bounds());
-    if (program_.bounds().named[2] && !place_.axes_known()[2])
+    const bool z_here = asks_z() && machines_detail::z_choice_of(command) == machines_detail::ZChoice::here;
+    if (program_.bounds().named[2] && !place_.axes_known()[2] && !z_here)
       refuse("start",
              "The job moves z, and how high the tool stands is unknown: touch the stock with it and set the "
              "origin of z there.");
     prepare_moves(now_s);
     queue("G90");
+    if (z_here) zero_at_head(" Z0", now_s);
   }
   refused_.reset();
   paused_ = rests_ = false;
@@ -231,6 +237,7 @@ Json MarlinDriver::state(double now_s) const {
   if (options_.tool == MachineTool::laser) state["warnings"] = marlin_warnings(laser_use_, firmware_, no_m5_);
   if (program_.line_count() > 0)
     state["when_connection_ends"] = marlin_when_connection_ends(options_.tool, laser_use_, firmware_);
+  if (asks_z()) state["z_choice"] = machines_detail::z_choice_json(place_.origin_mm(2), z_set_s_, now_s);
   state["temperatures"] = temperatures_;
   if (halted_)
     state["alarm"] = {{"code", 0},

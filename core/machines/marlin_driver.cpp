@@ -13,7 +13,7 @@ constexpr std::size_t longest_line = 80, kept_lines = 200;  // MAX_CMD_SIZE 96 h
 constexpr double flush_s = 0.1, boot_s = 3, greeting_s = 15, silence_s = 25, silence_in_job_s = 120,
                  silence_while_settling_s = 600;
 constexpr double asking_s = 2, lost_answer_s = 10, idle_s = 1;
-constexpr int most_resends = 100, most_unanswered = 3;
+constexpr int max_resends = 100, max_unanswered = 3;
 
 /// The number behind `name` ("X:", "T:"), if it is there.
 std::optional<double> number_after(const std::string& line, const std::string& name) {
@@ -86,6 +86,7 @@ void MarlinDriver::closed(double now_s) {
   stopped_s_ = -1;
   connection_ = MachineConnection::closed;
   place_.forget();
+  z_set_s_.reset();
 }
 
 void MarlinDriver::received(ByteView bytes, double now_s) {
@@ -211,7 +212,7 @@ void MarlinDriver::hear_ok(const std::string& line, double now_s) {
 
 void MarlinDriver::hear_resend(int number, double now_s) {
   if (halted_ || !greeted_) return;
-  if (++resends_ > most_resends) {
+  if (++resends_ > max_resends) {
     // Lines with numbers do not get through.
     end("failed", now_s);
     turn_all_off_at_once(now_s);
@@ -266,6 +267,7 @@ void MarlinDriver::send(const HandLine& line, int job_line, double now_s) {
   sent_s_ = now_s;
   if (line.settles != Settles::nothing) settling_number_ = number;
   place_.sending(line.text);
+  if (line.text.starts_with("G28")) z_set_s_.reset();
   if (marlin_may_light(line.text)) dark_ = false;
 }
 
@@ -344,7 +346,7 @@ void MarlinDriver::tick(double now_s) {
   if (focus_until_s_ && now_s > *focus_until_s_) focus_off(now_s);
   watch_over_stop(now_s);
   if ((waiting_ > 0 || oks_to_swallow_ > 0) && connection_ == MachineConnection::ready &&
-      unanswered_in_a_row_ < most_unanswered && now_s - std::max(heard_s_, sent_s_) > lost_answer_s)
+      unanswered_in_a_row_ < max_unanswered && now_s - std::max(heard_s_, sent_s_) > lost_answer_s)
     go_on_unanswered(now_s);
   const double patience = connection_ == MachineConnection::greeting ? greeting_s
                           : settling_ != Settles::nothing            ? silence_while_settling_s

@@ -87,6 +87,8 @@ class MarlinDriver final : public MachineDriver {
   void turn_all_off_at_once(double now_s);
   void focus_off(double now_s);
   bool has_cutter() const { return options_.tool != MachineTool::printer; }
+  /// Does the loaded job move the z of a mill? Its start then says where z is 0.
+  bool asks_z() const { return options_.tool == MachineTool::mill && program_.bounds().named[2]; }
   /// Queues what makes sure that the beam or spindle is off, whatever mode it was left in.
   void queue_dark();
   /// Before moves by hand: dark, and in mm.
@@ -102,7 +104,9 @@ class MarlinDriver final : public MachineDriver {
   bool is_free() const;
   std::vector<std::string> possible_commands() const;
   void jog(const Json& command, double now_s);
-  void set_origin(const Json& command);
+  void set_origin(const Json& command, double now_s);
+  /// The head's place becomes 0 on these axes (" X0 Y0").
+  void zero_at_head(const std::string& words, double now_s);
   void start(const Json& command, double now_s);
   void resume();
   Json laser_on() const;
@@ -132,6 +136,7 @@ class MarlinDriver final : public MachineDriver {
   bool rests_ = false;     // an M400 was sent ahead of the job's next line
   bool no_m5_ = false;     // the firmware does not know it
   MarlinPlace place_;
+  std::optional<double> z_set_s_;              // when z was last set to 0 at the head; none after homing
   std::optional<MarlinPlace::Limits> limits_;  // M211
   std::string halt_text_;
   Json temperatures_ = Json::object();

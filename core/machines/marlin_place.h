@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Where the head of a Marlin machine is known to be, axis by axis: from the lines it was sent and the places it told.
+// Where the head of a Marlin machine is known to be, axis by axis: from the lines it was sent and the places it
+// reported.
 #include <array>
 #include <optional>
 #include <string>
@@ -14,7 +15,7 @@ class MarlinPlace {
   void sending(std::string_view line);
   /// The G28 that was sent last has ended.
   void homed();
-  /// The machine told its place, in work coordinates.
+  /// The machine reported its place, in work coordinates.
   void reported(const std::array<double, 3>& mm);
   /// The head's place is to become 0 on these axes ("XY"): a line that says so follows.
   void expect_origin(std::string_view axes);
@@ -25,7 +26,7 @@ class MarlinPlace {
   bool known() const { return known_[0] && known_[1]; }
   const std::optional<std::array<double, 3>>& position_mm() const { return position_mm_; }
   /// Where work's zero lies in the coordinates of the homed machine; none where it was not homed, or the origin was set
-  /// at a place that it had not told.
+  /// at a place that it had not reported.
   std::optional<double> origin_mm(std::size_t axis) const { return origin_mm_[axis]; }
 
   /// "Soft endstops: On  Min: X0.00 Y0.00 Z0.00  Max: X200.00 Y200.00 Z200.00" (M211), or none.

@@ -17,7 +17,7 @@ constexpr unsigned magic = 0x88;  // RDC644x; other models differ
 constexpr std::size_t datagram_bytes = 1470;
 constexpr unsigned char acknowledged = 0xcc, refused = 0xcf;
 constexpr double resend_s = 1, asking_s = 0.3, rest_s = 1.5, absent = std::numeric_limits<double>::quiet_NaN();
-constexpr int most_repeats = 4, card_id = 0x057e, machine_status = 0x0400, x_position = 0x0421, y_position = 0x0431;
+constexpr int max_repeats = 4, card_id = 0x057e, machine_status = 0x0400, x_position = 0x0421, y_position = 0x0431;
 constexpr std::int64_t status_moving = 0x01000000, status_running = 1;
 
 /// A signed number in seven bits a byte, the highest first.
@@ -139,7 +139,7 @@ void RuidaDriver::received(ByteView datagram, double now_s) {
 void RuidaDriver::hear_answer(bool taken, double now_s) {
   if (!unconfirmed_ || std::exchange(stale_answer_, false)) return;
   if (!taken) {
-    if (++repeats_ <= most_repeats) return repeat(now_s);
+    if (++repeats_ <= max_repeats) return repeat(now_s);
     return give_up("failed",
                    stopping_
                        ? "The laser refuses to stop: stop it at its own panel or switch it off."
@@ -182,7 +182,7 @@ void RuidaDriver::tick(double now_s) {
   if (connection_ == MachineConnection::closed) return;
   if (unconfirmed_ && now_s - sent_s_ > resend_s) {
     // A datagram or its answer was lost.
-    if (++repeats_ > most_repeats) {
+    if (++repeats_ > max_repeats) {
       connection_ = MachineConnection::silent;
       homed_ = false;
       return give_up("cut_off",

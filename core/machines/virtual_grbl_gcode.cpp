@@ -18,7 +18,8 @@ bool VirtualGrbl::leaves_travel(const Point& to_mm) const {
 
 /// jog.c: whatever the spindle does goes on, whatever the motion mode is.
 int VirtualGrbl::jog(const Words& words) {
-  if (!words.moves()) return 26;
+  if (!words.moves()) return 0;
+  if (words.power_word) return 36;
   if (!words.feed || *words.feed <= 0) return 22;
   if (leaves_travel(words.target_mm)) return 15;
   Block block{words.target_mm, std::min(*words.feed, settings_[110]) / 60, modes_.power, modes_.spindle, true};
@@ -92,7 +93,7 @@ void VirtualGrbl::then_non_modal(const Words& words, const Block& block) {
   offset_reports_ = changes_offset || words.tool_word ? 0 : offset_reports_;
   switch (words.non_modal) {
     case 100: {
-      const int number = static_cast<int>(*words.system), system = number == 0 ? modes_.system : 53 + number;
+      const int number = static_cast<int>(words.system.value_or(0)), system = number == 0 ? modes_.system : 53 + number;
       Point& kept = systems_[system];
       for (std::size_t k = 0; k < 3; ++k) {
         if (!words.axes[k]) continue;

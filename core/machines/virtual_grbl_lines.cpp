@@ -10,8 +10,11 @@ void VirtualGrbl::answer(int error) { output_ += error == 0 ? "ok\r\n" : "error:
 void VirtualGrbl::read_line() {
   const std::size_t end = rx_.find('\n');
   std::string line;
+  char comment = '\0';  // what it began with: '(' ends with ')', ';' with the line (protocol.c)
   for (const char c : rx_.substr(0, end))
-    if (c > ' ') line += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    if (comment != '\0') comment = comment == '(' && c == ')' ? '\0' : comment;
+    else if (c == '(' || c == ';') comment = c;
+    else if (c > ' ' && c != '/') line += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
   rx_.erase(0, end + 1);
   lines_.push_back(line);
   in_line_ = true;

@@ -50,6 +50,24 @@ constexpr int group_of_g(int tenths) {
   }
 }
 
+/// Does the command use the axis words of its line? Two that do exclude each other before their groups are looked at.
+constexpr bool claims_axes(int tenths) {
+  switch (tenths) {
+    case 0:
+    case 10:
+    case 20:
+    case 30:
+    case 100:
+    case 280:
+    case 300:
+    case 431:
+    case 490:
+    case 920: return true;
+    default: return false;
+  }
+}
+
+// M7 needs a build with ENABLE_M7 ("M" in [OPT:...]), which this one is not.
 constexpr int group_of_m(int number) {
   switch (number) {
     case 0:
@@ -59,17 +77,28 @@ constexpr int group_of_m(int number) {
     case 3:
     case 4:
     case 5: return 11;
-    case 7:
     case 8:
     case 9: return 12;
     default: return -1;
   }
 }
 
+/// What a command that the firmware does not know is refused with: 23 where a known number has decimals, or where the
+/// number overflows the byte that it is kept in.
+constexpr int unknown_command(char letter, int tenths) {
+  if (tenths > 2559 || tenths < 0) return 23;
+  const int whole = tenths / 10 * 10;
+  const bool decimals = tenths != whole && whole != 430 && whole != 900 && whole != 910;
+  return decimals && letter == 'G' && group_of_g(whole) >= 0 ? 23 : 20;
+}
+
+constexpr double max_line_number = 10'000'000, max_tool_number = 255;  // config.h, gcode.h
+
 }  // namespace
 
 int VirtualGrbl::read_words(const std::string& line, bool jog, Words& words) const {
   unsigned groups = 0, letters = 0;
+  bool axes_claimed = false;
   struct Length {
     char letter;
     double value;
@@ -82,14 +111,18 @@ int VirtualGrbl::read_words(const std::string& line, bool jog, Words& words) con
     const std::string digits(at, std::strspn(at, "+-.0123456789"));
     char* rest = nullptr;
     const double value = std::strtod(digits.c_str(), &rest);
-    if (digits.empty() || *rest != '\0' || !std::isfinite(value)) return 2;
-    at += digits.size();
+    if (rest == digits.c_str() || !std::isfinite(value)) return 2;
+    at += rest - digits.c_str();  // a second point or sign is where a letter was expected
     Modes& m = words.modes;
     if (letter == 'G' || letter == 'M') {
       const int tenths = static_cast<int>(std::lround(value * 10)), number = tenths / 10;
       if (letter == 'M' && tenths % 10 != 0) return 23;
       const int group = letter == 'G' ? group_of_g(tenths) : group_of_m(number);
-      if (group < 0) return 20;
+      if (group < 0) return unknown_command(letter, tenths);
+      if (letter == 'G' && claims_axes(tenths)) {
+        if (axes_claimed) return 24;
+        axes_claimed = true;
+      }
       if (groups & (1u << group)) return 21;
       groups |= 1u << group;
       // jog.c: units and distance only.
@@ -100,7 +133,7 @@ int VirtualGrbl::read_words(const std::string& line, bool jog, Words& words) con
       else if (group == 3) m.relative = number == 91;
       else if (group == 4) m.inverse_time = number == 93;
       else if (group == 5) m.inches = number == 20;
-      else if (group == 7) words.tool_word = true, m.tool_mm = 0;
+      else if (group == 7) words.tool_word = true, words.sets_tool = tenths == 431, m.tool_mm = 0;
       else if (group == 8) m.system = number;
       else if (group == 10) m.flow = number == 1 ? 0 : number == 0 ? 1 : number;
       else if (group == 11) m.spindle = number;
@@ -123,7 +156,11 @@ int VirtualGrbl::read_words(const std::string& line, bool jog, Words& words) con
       case 'P': words.seconds = words.system = value; break;
       case 'L': words.mode_of_system = value; break;
       case 'N':
-      case 'T': break;
+        if (value > max_line_number) return 27;
+        break;
+      case 'T':
+        if (value > max_tool_number) return 38;
+        break;
       default: return 20;
     }
   }
@@ -134,6 +171,7 @@ int VirtualGrbl::read_words(const std::string& line, bool jog, Words& words) con
     else if (letter >= 'X') words.axes[static_cast<std::size_t>(letter - 'X')] = mm;
     else words.centre[static_cast<std::size_t>(letter - 'I')] = mm;
   }
+  words.power_word = (letters & (1u << ('S' - 'A'))) != 0;
   if (words.feed && !jog) words.modes.feed_mm_per_min = *words.feed;
   return 0;
 }
@@ -150,9 +188,11 @@ int VirtualGrbl::find_target(Words& words) const {
   const bool uses_axes = special == 100 || special == 280 || special == 300 || special == 920;
   if (words.motion_word && (uses_axes || words.tool_word)) return 24;
   if (special == 40 && !words.seconds) return 28;
-  if (special == 100 && (!words.moves() || !words.system || !words.mode_of_system)) return words.moves() ? 28 : 26;
-  if (special == 100 && (*words.system > 6 || (*words.mode_of_system != 2 && *words.mode_of_system != 20)))
-    return *words.system > 6 ? 29 : 20;
+  if (special == 100 && !words.moves()) return 26;
+  if (special == 100 && !words.system && !words.mode_of_system) return 28;
+  if (special == 100 && words.system.value_or(0) > 6) return 29;
+  if (special == 100 && words.mode_of_system != 2.0 && words.mode_of_system != 20.0) return 20;
+  if (words.sets_tool && (!words.axes[2] || words.axes[0] || words.axes[1])) return 37;
   if (special == 920 && !words.moves()) return 26;
   const Point offset = offset_mm(words.modes);
   words.target_mm = parsed_mm_;
@@ -162,11 +202,18 @@ int VirtualGrbl::find_target(Words& words) const {
     if (special == 530) words.target_mm[k] = *words.axes[k];
     else words.target_mm[k] = *words.axes[k] + (words.modes.relative ? parsed_mm_[k] : offset[k]);
   }
-  if (uses_axes || words.tool_word || !words.moves()) return 0;
   const int motion = words.modes.motion;
+  const bool turns = motion == 2 || motion == 3;
+  const bool centred = words.centre[0] || words.centre[1] || words.centre[2];
+  if (uses_axes || words.tool_word || !words.moves()) {
+    if (words.motion_word && turns && !words.moves()) return 26;
+    return centred || words.radius_mm ? 36 : 0;
+  }
   if (motion == 80) return 31;
   if (special == 530 && motion > 1) return 30;
   if (motion > 0 && words.modes.feed_mm_per_min <= 0) return 22;
+  if (motion > 0 && words.modes.inverse_time && !words.feed) return 22;
+  if (turns ? words.radius_mm && centred : centred || words.radius_mm) return 36;
   return 0;
 }
 

@@ -21,13 +21,13 @@ namespace formwright {
 namespace {
 
 constexpr double mm_per_point = 25.4 / 72;
-constexpr std::size_t most_pages = 500;
-constexpr double most_mm = 20'000;
+constexpr std::size_t max_pages = 500;
+constexpr double max_mm = 20'000;
 
 [[noreturn]] void refuse(const std::string& sentence) { throw Error(ErrorCode::invalid_input, "sha256", sentence); }
 
 PageSize checked(PageSize size) {
-  if (!(size.width_mm >= 1 && size.width_mm <= most_mm && size.height_mm >= 1 && size.height_mm <= most_mm))
+  if (!(size.width_mm >= 1 && size.width_mm <= max_mm && size.height_mm >= 1 && size.height_mm <= max_mm))
     refuse(
         "A page of the document is smaller than 1 mm or larger than 20 m: export it again with its size in millimetres.");
   return size;
@@ -177,7 +177,7 @@ DocumentPages read_pdf(ByteView document) {
     QPDF pdf;
     open_pdf(pdf, document);
     for (QPDFPageObjectHelper page : QPDFPageDocumentHelper(pdf).getAllPages()) {
-      if (result.pages.size() >= most_pages) refuse("The PDF has more than 500 pages: print it in parts.");
+      if (result.pages.size() >= max_pages) refuse("The PDF has more than 500 pages: print it in parts.");
       const Box box = crop_box(page);
       const double unit = number_or(page.getAttribute("/UserUnit", false), 1);
       PageSize size{(box.x1 - box.x0) * unit * mm_per_point, (box.y1 - box.y0) * unit * mm_per_point};

@@ -13,7 +13,7 @@ struct PageSize {
 };
 
 struct DocumentPages {
-  std::string media_type;       // application/pdf, image/png or image/pwg-raster, told by the bytes
+  std::string media_type;       // application/pdf, image/png or image/pwg-raster, as the first bytes say
   std::vector<PageSize> pages;  // at least one; a PNG is one page as large as its pixel density says
 };
 

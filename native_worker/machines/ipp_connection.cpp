@@ -13,7 +13,7 @@ constexpr int connect_patience_ms = 10'000;
 constexpr double answer_patience_s = 30,
                  look_up_s = 0.5;  // how long it may be silent; how often a cancel is looked for
 
-/// libcups asks on the terminal unless told not to: a worker has nobody to ask.
+/// libcups asks on the terminal unless this forbids it: a worker has nobody to ask.
 const char* no_password(const char*, http_t*, const char*, const char*, void*) { return nullptr; }
 
 /// libcups has no words for some mishaps, and says so with a null.

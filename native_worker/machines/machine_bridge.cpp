@@ -23,7 +23,7 @@ namespace {
 
 using boost::asio::use_awaitable;
 constexpr auto search_lasts = std::chrono::seconds(5);
-constexpr std::uintmax_t most_document_bytes = std::uintmax_t{512} << 20;
+constexpr std::uintmax_t max_document_bytes = std::uintmax_t{512} << 20;
 constexpr double slice_limit_s = 900;
 
 http::status status_of(const Error& error) {
@@ -207,8 +207,8 @@ boost::asio::awaitable<Response> MachineBridge::answer_machine(Head head, std::s
   const Json order = body.empty() ? Json::object() : parse_json_text(body);
   if (order.is_discarded())
     co_return error_response(head, http::status::bad_request, "invalid_input", "", "The request is not JSON.");
-  if (rest == "/print" && m.kind == MachineKind::printer) co_return print(head, m, order);
-  if (rest == "/upload" && uploads) co_return upload(head, m, order);
+  if (rest == "/print" && m.kind == MachineKind::printer) co_return co_await print(head, m, order);
+  if (rest == "/upload" && uploads) co_return co_await upload(head, m, order);
   if (rest == "/stop" && uploads) {
     log_.append(m, {{"event", "command"}, {"command", {{"do", "stop"}}}}, true);
     const std::function<bool()> end = [m] {
@@ -223,16 +223,19 @@ boost::asio::awaitable<Response> MachineBridge::answer_machine(Head head, std::s
   refuse("", m.name + " cannot do that: it is a " + std::string(to_string(m.kind)) + ".");
 }
 
-std::shared_ptr<const Bytes> MachineBridge::blob(const Json& order) const {
+boost::asio::awaitable<std::shared_ptr<const Bytes>> MachineBridge::blob(Json order) {
   const std::string hash = text_in(order, "sha256", "");
   if (!is_hex_name(hash, 64)) refuse("sha256", "Give the file's SHA-256, and send the file first.");
   std::error_code status;
   if (!std::filesystem::exists(store_.blob_path(hash), status))
     refuse("sha256", "The file has not arrived: send it again.");
-  return read_checked_file(store_.blob_path(hash), hash, "sha256", most_document_bytes);
+  const std::function<std::shared_ptr<const Bytes>()> read = [hash, path = store_.blob_path(hash)] {
+    return read_checked_file(path, hash, "sha256", max_document_bytes);
+  };
+  co_return co_await aside(looking_, read);
 }
 
-Response MachineBridge::print(const Head& head, const Machine& m, const Json& order) {
+boost::asio::awaitable<Response> MachineBridge::print(Head head, Machine m, Json order) {
   check_names(order, {"sha256", "media", "copies", "quality", "mirrored", "title"});
   PrintOrder print;
   print.media = text_in(order, "media", "");
@@ -244,7 +247,7 @@ Response MachineBridge::print(const Head& head, const Machine& m, const Json& or
       refuse("copies", "copies must be a whole number from 1.");
     print.copies = order["copies"].get<int>();
   }
-  const auto document = blob(order);
+  const auto document = co_await blob(order);
   const auto task = tasks_.start(m, "print", [m, print, document](MachineTask& running) mutable -> Json {
     print.document = *document;
     const PrintResult result = print_document(
@@ -255,31 +258,31 @@ Response MachineBridge::print(const Head& head, const Machine& m, const Json& or
         });
     return {{"job_id", result.job_id}, {"sheets", result.sheets}, {"notes", result.notes}};
   });
-  return task ? accepted(head, task->id) : too_many(head);
+  co_return task ? accepted(head, task->id) : too_many(head);
 }
 
-Response MachineBridge::upload(const Head& head, const Machine& m, const Json& order) {
+boost::asio::awaitable<Response> MachineBridge::upload(Head head, Machine m, Json order) {
   check_names(order, {"sha256", "file_name", "print", "confirmed"});
   UploadOrder upload;
   upload.file_name = upload_file_name(text_in(order, "file_name", "job.gcode"));
   upload.print = flag_in(order, "print");
   if (upload.print && !flag_in(order, "confirmed"))
     refuse("confirmed", "The machine would start: somebody standing in front of it must confirm this first.");
-  const auto gcode = blob(order);
+  const auto gcode = co_await blob(order);
   const auto task = tasks_.start(m, "upload", [m, upload, gcode](MachineTask& running) mutable -> Json {
     upload.gcode = *gcode;
     running.say("sending", "Sending the file to " + m.name + ".");
     return upload_gcode(m, upload, running.cancelled,
                         [&](double share) { running.say("sending", "Sending the file to " + m.name + ".", share); });
   });
-  return task ? accepted(head, task->id) : too_many(head);
+  co_return task ? accepted(head, task->id) : too_many(head);
 }
 
 boost::asio::awaitable<Response> MachineBridge::slice(Head head, Machine m, Json order) {
   check_names(order, {"sha256", "profile", "wait"});
   const std::string profile = text_in(order, "profile", "");
   const bool waits = !order.contains("wait") || flag_in(order, "wait");
-  const auto model = blob(order);
+  const auto model = co_await blob(order);
   auto over = std::make_shared<boost::asio::steady_timer>(io_, std::chrono::steady_clock::time_point::max());
   const auto task = tasks_.start(
       m, "slice",

@@ -44,10 +44,10 @@ class MachineBridge {
   boost::asio::awaitable<Response> answer_machine(Head head, std::string id, std::string rest, std::string body);
   boost::asio::awaitable<Response> slice(Head head, Machine machine, Json order);
   void follow_again(const std::shared_ptr<MachineTask>& task);
-  Response print(const Head& head, const Machine& machine, const Json& order);
-  Response upload(const Head& head, const Machine& machine, const Json& order);
+  boost::asio::awaitable<Response> print(Head head, Machine machine, Json order);
+  boost::asio::awaitable<Response> upload(Head head, Machine machine, Json order);
   Response answer_tasks(const Head& head, const Machine& machine, const std::string& rest);
-  std::shared_ptr<const Bytes> blob(const Json& order) const;
+  boost::asio::awaitable<std::shared_ptr<const Bytes>> blob(Json order);
 
   boost::asio::io_context& io_;
   JobStore& store_;

@@ -18,9 +18,9 @@
 namespace formwright {
 namespace {
 
-constexpr std::uintmax_t most_bytes = std::uintmax_t{512} << 20;  // of all logs together; the oldest go
+constexpr std::uintmax_t max_bytes = std::uintmax_t{512} << 20;   // of all logs together; the oldest go
 constexpr std::streamoff tail_bytes = 4 << 20;                    // of a file, when the newest are asked for
-constexpr std::size_t most_open = 32;                             // machines at once
+constexpr std::size_t max_open = 32;                              // machines at once
 constexpr std::size_t max_waiting_bytes = std::size_t{64} << 20;  // a disk that hangs must not fill the memory
 
 double unix_seconds() {
@@ -92,7 +92,7 @@ void MachineLog::tidy() const {
     total += bytes;
     // Today's are written, by this program or another: what is put into a removed file is lost.
     const bool kept = i + 1 == files.size() || files[i].filename().string().starts_with(open_day_);
-    if (total > most_bytes && !kept) std::filesystem::remove(files[i], status);
+    if (total > max_bytes && !kept) std::filesystem::remove(files[i], status);
   }
 }
 
@@ -101,7 +101,7 @@ int MachineLog::descriptor_for(const std::string& machine_id) {
   if (day != open_day_) close_all();
   open_day_ = day;
   if (const auto known = open_.find(machine_id); known != open_.end()) return known->second;
-  if (open_.size() >= most_open) close_all();
+  if (open_.size() >= max_open) close_all();
   std::error_code status;
   std::filesystem::create_directories(folder_, status);
   tidy();

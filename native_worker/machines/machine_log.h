@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// What every machine was told and did, in DATA/machine_log/DAY-ID.jsonl: one JSON object a line. A thread of the log
-// hands them to the system line by line, at once and in order, and sees to it that the disk has those that say what
-// began or ended: a full or slow disk never keeps the thread that stops machines waiting.
+// What was sent to every machine and what it did, in DATA/machine_log/DAY-ID.jsonl: one JSON object a line. A thread of
+// the log hands them to the system line by line, at once and in order, and sees to it that the disk has those that say
+// what began or ended: a full or slow disk never keeps the thread that stops machines waiting.
 #include <condition_variable>
 #include <deque>
 #include <filesystem>

@@ -9,7 +9,7 @@
 
 namespace formwright {
 namespace {
-constexpr std::size_t most_waiting = 400;
+constexpr std::size_t max_waiting = 400;
 }  // namespace
 
 void MachinePage::send(const Json& message) { push(std::make_shared<const std::string>(json_text(message))); }
@@ -21,7 +21,7 @@ void MachinePage::send_state(std::shared_ptr<const std::string> text) {
 
 void MachinePage::push(std::shared_ptr<const std::string> text) {
   if (!accepted_) return;
-  if (outgoing_.size() > most_waiting) return hang_up();  // it does not read
+  if (outgoing_.size() > max_waiting) return hang_up();  // it does not read
   outgoing_.push_back(std::move(text));
   if (outgoing_.size() == 1) write_next();
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A page at a machine's socket: what it says, bounded, and what it is told, never more than it reads.
+// A page at a machine's socket: what it says, bounded, and what is sent to it, never more than it reads.
 #include <boost/asio/awaitable.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
@@ -28,8 +28,8 @@ MachineRequest read_machine_request(const std::string& text);
 
 class MachinePage : public std::enable_shared_from_this<MachinePage> {
  public:
-  static constexpr std::size_t most_message_bytes = 64 * 1024;
-  static constexpr int most_malformed = 20;
+  static constexpr std::size_t max_message_bytes = 64 * 1024;
+  static constexpr int max_malformed = 20;
 
   explicit MachinePage(beast::websocket::stream<beast::tcp_stream>&& stream) : stream_(std::move(stream)) {}
   beast::websocket::stream<beast::tcp_stream>& stream() { return stream_; }
@@ -43,7 +43,7 @@ class MachinePage : public std::enable_shared_from_this<MachinePage> {
   bool within_rate() { return rate_.take(); }
   int next_number() { return ++requests_; }
   /// True while it may go on after one more message that was no request.
-  bool bears_malformed() { return ++malformed_ < most_malformed; }
+  bool bears_malformed() { return ++malformed_ < max_malformed; }
   int malformed() const { return malformed_; }
   void hang_up();
 

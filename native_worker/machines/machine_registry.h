@@ -17,7 +17,7 @@ namespace formwright {
 enum class MachineKind { serial, ruida, printer, octoprint, moonraker, slicer };
 const char* to_string(MachineKind kind);
 
-/// What a serial machine may be registered as, and what its driver is told then.
+/// What a serial machine may be registered as, and the options that its driver gets then.
 struct SerialController {
   const char *name, *controller, *tool;
 };

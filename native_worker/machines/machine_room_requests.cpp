@@ -57,8 +57,8 @@ boost::asio::awaitable<void> MachineRooms::read_requests(RoomHere room, Page pag
     }
     // A large job takes seconds to read: a stop that follows must not wait behind it.
     boost::asio::co_spawn(io_, answer(room, page, std::move(*request), number),
-                          [page](const std::exception_ptr& failed, const Json& told) {
-                            if (!failed) page->send(told);
+                          [page](const std::exception_ptr& failed, const Json& answer) {
+                            if (!failed) page->send(answer);
                           });
   }
 }

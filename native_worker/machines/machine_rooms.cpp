@@ -21,7 +21,7 @@ namespace {
 using boost::asio::use_awaitable;
 using namespace std::chrono_literals;
 
-constexpr std::size_t most_pages = 16, most_pages_a_machine = 4, most_recent = 200;
+constexpr std::size_t max_pages = 16, max_pages_per_machine = 4, max_recent = 200;
 }  // namespace
 
 MachineRooms::MachineRooms(boost::asio::thread_pool& opening, std::filesystem::path data, const JobStore& store,
@@ -53,7 +53,7 @@ bool MachineRooms::full(const std::string& machine_id) const {
   std::size_t total = 0;
   for (const auto& [id, room] : rooms_) total += room->pages.size();
   const auto found = rooms_.find(machine_id);
-  return total >= most_pages || (found != rooms_.end() && found->second->pages.size() >= most_pages_a_machine);
+  return total >= max_pages || (found != rooms_.end() && found->second->pages.size() >= max_pages_per_machine);
 }
 
 std::string MachineRooms::state_of(const std::string& machine_id) const {
@@ -96,7 +96,7 @@ boost::asio::awaitable<void> MachineRooms::serve_here(int descriptor, Head head,
   stream.set_option(beast::websocket::stream_base::timeout{10s, 20s, true});
   stream.set_option(beast::websocket::stream_base::decorator(
       [](beast::websocket::response_type& r) { r.set(http::field::sec_websocket_protocol, "formwright.machine.v1"); }));
-  stream.read_message_max(MachinePage::most_message_bytes);
+  stream.read_message_max(MachinePage::max_message_bytes);
   boost::system::error_code error;
   co_await stream.async_accept(head, boost::asio::redirect_error(use_awaitable, error));
   if (!error) {
@@ -108,7 +108,7 @@ boost::asio::awaitable<void> MachineRooms::serve_here(int descriptor, Head head,
     }
   }
   leave(room, page);
-  // Said before the line goes dead, so that what it was told last still arrives.
+  // Said before the line goes dead, so that the last message still arrives.
   if (!error && stream.is_open())
     co_await stream.async_close(beast::websocket::close_code::policy_error,
                                 boost::asio::redirect_error(use_awaitable, error));
@@ -145,7 +145,7 @@ void MachineRooms::begin(const RoomHere& room, std::shared_ptr<MachineSession> s
 void MachineRooms::tell_events(Room& room, const Json& events) {
   for (const Json& event : events) {
     room.recent.push_back(event);
-    if (room.recent.size() > most_recent) room.recent.pop_front();
+    if (room.recent.size() > max_recent) room.recent.pop_front();
   }
   const auto pages = room.pages;
   for (const auto& page : pages) page->send({{"events", events}});

@@ -35,7 +35,7 @@ class MachineLock {
   int descriptor_ = -1;
 };
 
-/// What the driver is told of this machine: `options` of the caller, with controller and speed as registered where they
+/// The driver options of this machine: `options` of the caller, with controller and speed as registered where they
 /// are absent. Throws Error{invalid_input, "controller"} for one that does not speak over such a port.
 Json driver_options(const Machine& machine, Json options);
 

@@ -15,7 +15,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::minutes busy_patience{5}, print_patience{120};
 constexpr std::chrono::milliseconds retry_pause{1500}, look_pause{700};
-constexpr int most_failures = 8;
+constexpr int max_failures = 8;
 
 [[noreturn]] void refuse(const std::string& where, const std::string& sentence) {
   throw Error(ErrorCode::invalid_input, where, sentence);
@@ -63,9 +63,9 @@ const PrintMedia& media_for(const PrinterDescription& printer, const PageSize& p
 /// What can be known before anything is sent.
 CheckedOrder check_order(const PrinterDescription& printer, const PrintOrder& order, const std::string& name) {
   CheckedOrder checked;
-  if (order.copies < 1 || order.copies > printer.most_copies)
+  if (order.copies < 1 || order.copies > printer.max_copies)
     refuse("copies",
-           name + " prints 1 to " + std::to_string(printer.most_copies) + " copies: choose a number of these.");
+           name + " prints 1 to " + std::to_string(printer.max_copies) + " copies: choose a number of these.");
   if (order.quality == "draft") checked.quality = IPP_QUALITY_DRAFT;
   else if (order.quality == "high") checked.quality = IPP_QUALITY_HIGH;
   else if (order.quality != "normal") refuse("quality", "The quality must be draft, normal or high.");
@@ -229,8 +229,8 @@ int follow(const PrinterAddress& address, int job_id, const std::atomic<bool>& c
       ippAddInteger(request.get(), IPP_TAG_OPERATION, IPP_TAG_INTEGER, "job-id", job_id);
       answer = connection.ask(std::move(request));
     } catch (const Error& error) {
-      // Small printers drop a question now and then: only a silence that lasts is told.
-      if (error.code() == ErrorCode::cancelled || ++failures >= most_failures) throw;
+      // Small printers drop a question now and then: only a silence that lasts is an error.
+      if (error.code() == ErrorCode::cancelled || ++failures >= max_failures) throw;
       continue;
     }
     if (answer.busy()) continue;
@@ -238,7 +238,7 @@ int follow(const PrinterAddress& address, int job_id, const std::atomic<bool>& c
       fail(address.name + " no longer knows the job: see whether its sheets came out before printing again.");
     ipp_attribute_t* state = answer.ok() ? ippFindAttribute(answer.message.get(), "job-state", IPP_TAG_ENUM) : nullptr;
     if (!state) {
-      if (++failures >= most_failures)
+      if (++failures >= max_failures)
         fail(address.name + " does not report the progress of the job: check whether it prints.");
       continue;
     }

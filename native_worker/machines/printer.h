@@ -20,7 +20,7 @@ struct PrinterDescription {
   bool accepting = true;
   std::vector<PrintMedia> media;
   std::vector<std::string> formats, qualities;  // media types; of draft, normal, high
-  int most_copies = 1;
+  int max_copies = 1;
   bool colour = false, scaling_can_be_off = false;
 };
 

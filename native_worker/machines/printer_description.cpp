@@ -76,7 +76,7 @@ PrinterDescription read_printer_description(ipp_t* message) {
   int upper = 1;
   if (ipp_attribute_t* copies = ippFindAttribute(message, "copies-supported", IPP_TAG_RANGE))
     ippGetRange(copies, 0, &upper);
-  result.most_copies = std::clamp(upper, 1, 9999);
+  result.max_copies = std::clamp(upper, 1, 9999);
   if (ipp_attribute_t* colour = ippFindAttribute(message, "color-supported", IPP_TAG_BOOLEAN))
     result.colour = ippGetBoolean(colour, 0) != 0;
   const auto scaling = strings_of(message, "print-scaling-supported");
@@ -95,7 +95,7 @@ Json printer_json(const PrinterDescription& d) {
           {"accepting", d.accepting},
           {"formats", d.formats},
           {"qualities", d.qualities},
-          {"most_copies", d.most_copies},
+          {"max_copies", d.max_copies},
           {"colour", d.colour},
           {"scaling_can_be_off", d.scaling_can_be_off},
           {"media", media}};

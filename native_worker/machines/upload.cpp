@@ -15,8 +15,8 @@
 namespace formwright {
 namespace {
 
-constexpr std::size_t most_answer_bytes = 1 << 20;
-constexpr std::size_t most_gcode_bytes = std::size_t{1} << 30;
+constexpr std::size_t max_answer_bytes = 1 << 20;
+constexpr std::size_t max_gcode_bytes = std::size_t{1} << 30;
 constexpr long connect_patience_s = 10, silence_patience_s = 30, ask_patience_s = 20, upload_patience_s = 3600;
 
 [[noreturn]] void fail(const std::string& sentence) { throw Error(ErrorCode::could_not_solve, "machine", sentence); }
@@ -31,7 +31,7 @@ struct Conversation {
 
 std::size_t take_answer(char* data, std::size_t size, std::size_t count, void* conversation) {
   auto& c = *static_cast<Conversation*>(conversation);
-  if (c.answer.size() + size * count > most_answer_bytes) return 0;
+  if (c.answer.size() + size * count > max_answer_bytes) return 0;
   c.answer.append(data, size * count);
   return size * count;
 }
@@ -163,7 +163,7 @@ std::string upload_file_name(const std::string& file_name) {
 Json upload_gcode(const Machine& machine, const UploadOrder& order, const std::atomic<bool>& cancelled,
                   const std::function<void(double)>& progress) {
   if (order.gcode.empty()) throw Error(ErrorCode::invalid_input, "sha256", "The file is empty: slice the model first.");
-  if (order.gcode.size() > most_gcode_bytes)
+  if (order.gcode.size() > max_gcode_bytes)
     throw Error(ErrorCode::invalid_input, "sha256", "The file is larger than 1 GB: slice it coarser.");
   const std::string name = upload_file_name(order.file_name);
   const bool octoprint = machine.kind == MachineKind::octoprint;

@@ -28,7 +28,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   // What was read before a mistake is kept by libcups, so it is looked at as well.
   ippReadIO(&bytes, take, 1, nullptr, message.get());
   const PrinterDescription printer = read_printer_description(message.get());
-  fuzz::check(printer.most_copies >= 1 && printer.most_copies <= 9999);
+  fuzz::check(printer.max_copies >= 1 && printer.max_copies <= 9999);
   for (const PrintMedia& media : printer.media) {
     fuzz::check(media.width_hmm > 0 && media.height_hmm > 0);
     fuzz::check(media.left_hmm >= 0 && media.right_hmm >= 0 && media.top_hmm >= 0 && media.bottom_hmm >= 0);

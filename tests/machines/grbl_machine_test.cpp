@@ -104,6 +104,14 @@ TEST_CASE("GrblMachine.OffsetsOfAMachineThatDidNotResetAreAskedFor") {
   CHECK(talk.state()["warnings"].dump().find("G92.1") != std::string::npos);
 }
 
+TEST_CASE("GrblMachine.HomingBySingleAxesIsRefusedWhereTheBuildHasNone") {
+  // GRBL 1.1h stays in the state "Home" for ever behind "$HX" and "$H=1".
+  GrblTalk talk;
+  talk.connect();
+  for (const char* line : {"$HX", "$H=1"})
+    CHECK(talk.refusal({{"do", "send"}, {"line", line}, {"confirmed", true}}).find("send $H") != std::string::npos);
+}
+
 TEST_CASE("GrblMachine.PlacesAreKnownPerAxis") {
   GrblTalk talk({.homes = false, .laser_mode = false});
   talk.connect();
@@ -127,7 +135,7 @@ TEST_CASE("GrblMachine.PlacesAreKnownPerAxis") {
   CHECK(talk.can("frame"));
   CHECK(talk.refusal(start).find("Set z") != std::string::npos);
   set("z");
-  CHECK(talk.refusal(start) == "");
+  CHECK(talk.refusal({{"do", "start"}, {"confirmed", true}, {"z", "kept"}}) == "");
   REQUIRE(talk.pass_until([&] { return talk.ended() == "done"; }, 60));
   CHECK(talk.state()["when_connection_ends"].get<std::string>().find("spindle running") != std::string::npos);
 }

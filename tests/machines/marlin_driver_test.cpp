@@ -37,7 +37,7 @@ class VirtualMarlin {
     if (inbox_.empty()) return;
     const auto numbered =
         std::count_if(inbox_.begin(), inbox_.end(), [](const std::string& line) { return line.starts_with('N'); });
-    most_numbered = std::max(most_numbered, numbered);
+    max_numbered = std::max(max_numbered, numbered);
     const std::string line = inbox_.front();
     inbox_.pop_front();
     take(line);
@@ -47,11 +47,11 @@ class VirtualMarlin {
 
   std::string output;
   std::vector<std::string> done, heard;
-  std::ptrdiff_t most_numbered = 0;  // lines with a number that waited at a time
-  std::string unanswered;            // what is done without a word
-  bool dumb = false;                 // hears, does nothing, says nothing
-  bool slow = false;                 // does a line when it is told to work()
-  bool emergency_parser = false;     // takes M108 and M410 out of the line without an answer
+  std::ptrdiff_t max_numbered = 0;  // lines with a number that waited at a time
+  std::string unanswered;           // what is done without a word
+  bool dumb = false;                // hears, does nothing, says nothing
+  bool slow = false;                // does a line when it is told to work()
+  bool emergency_parser = false;    // takes M108 and M410 out of the line without an answer
 
  private:
   void take(const std::string& line) {
@@ -291,11 +291,11 @@ TEST_CASE("MarlinDriver.AnswersToLinesWithoutANumberPassForNoOthers") {
     talk.machine.emergency_parser = emergency_parser;
     talk.start_moves();
     talk.hand_over();  // a line is under way
-    talk.machine.most_numbered = 0;
+    talk.machine.max_numbered = 0;
     talk.tell({{"do", "stop"}});
     talk.pass(4);
     CHECK(talk.phase() == "idle");
-    CHECK(talk.machine.most_numbered == 1);
+    CHECK(talk.machine.max_numbered == 1);
     CHECK(talk.machine.done_times("M104 S0") == 2);
     CHECK(talk.machine.heard_times("M112") == 0);
   }

@@ -162,26 +162,28 @@ TEST_CASE("VirtualGrbl.ArcsByRadiusAndByCentreEndWhereTheyShould") {
 
 TEST_CASE("VirtualGrbl.RefusesAsTheFirmwareDoes") {
   Machine machine;
-  for (const auto& [line, error] : std::vector<std::pair<const char*, int>>{{"G64", 20},
-                                                                            {"T1M6", 20},
-                                                                            {"G0G1X1", 21},
-                                                                            {"X1X2", 25},
-                                                                            {"G1X1", 22},
-                                                                            {"G", 2},
-                                                                            {"1", 1},
-                                                                            {"G4", 28},
-                                                                            {"G10X1", 28},
-                                                                            {"G92", 26},
-                                                                            {"$J=X1", 22},
-                                                                            {"$J=F100", 26},
-                                                                            {"$J=G2X1F1", 16},
-                                                                            {"G28G1X1F1", 24},
-                                                                            {"$999=1", 3},
-                                                                            {"$H", 5},
-                                                                            {"M3.5", 23},
-                                                                            {"G10L2P9X1", 29}}) {
+  for (const auto& [line, error] :
+       std::vector<std::pair<const char*, int>>{{"G64", 20},       {"T1M6", 20},        {"G0G1X1", 24},
+                                                {"X1X2", 25},      {"G1X1", 22},        {"G", 2},
+                                                {"1", 1},          {"G4", 28},          {"G10X1", 28},
+                                                {"G92", 26},       {"$J=X1", 22},       {"$J=G2X1F1", 16},
+                                                {"G28G1X1F1", 24}, {"$999=1", 3},       {"$H", 5},
+                                                {"M3.5", 23},      {"G10L2P9X1", 29},   {"G2I-1", 26},
+                                                {"M7", 20},        {"N10000001X1", 27}, {"T300", 38},
+                                                {"G43.1X1", 37},   {"G0I1", 36},        {"G1.5X1", 23},
+                                                {"G59.1", 23},     {"M400", 23},        {"$J=X-1F100S5", 36},
+                                                {"G0X1.2.3", 1}}) {
     INFO(line);
     CHECK(machine.tell(line) == "error:" + std::to_string(error) + "\r\n");
+  }
+}
+
+TEST_CASE("VirtualGrbl.TakesWhatTheFirmwareTakes") {
+  Machine machine;
+  for (const char* line :
+       {"(comment)", ";comment", "/G0X0", "G0X0(a)Y0", "G0X0;x", "G10L2X0", "$J=F100", "N10000000T255"}) {
+    INFO(line);
+    CHECK(machine.tell(line) == "ok\r\n");
   }
 }
 

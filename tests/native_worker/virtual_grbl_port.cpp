@@ -37,12 +37,17 @@ int main(int argc, char** argv) {
   const auto now_s = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   machine.open(0);
   std::string outgoing;
+  double hold_monotonic_s = 0;  // when a feed hold came last, of the computer's monotonic clock
   for (;;) {
     pollfd waits[2] = {{port, POLLIN, 0}, {STDIN_FILENO, POLLIN, 0}};
     ::poll(waits, 2, 2);
     char buffer[4096];
-    if (const ssize_t count = ::read(port, buffer, sizeof buffer); count > 0)
-      machine.receive({buffer, static_cast<std::size_t>(count)}, now_s());
+    if (const ssize_t count = ::read(port, buffer, sizeof buffer); count > 0) {
+      const std::string_view said(buffer, static_cast<std::size_t>(count));
+      if (said.find('!') != std::string_view::npos)
+        hold_monotonic_s = std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+      machine.receive(said, now_s());
+    }
     machine.advance(now_s());
     outgoing += machine.take_output();
     if (!outgoing.empty())
@@ -60,6 +65,7 @@ int main(int argc, char** argv) {
                         {"burnt_mm", burnt_mm},
                         {"bytes_lost", machine.bytes_lost()},
                         {"lines", machine.lines().size()},
+                        {"hold_monotonic_s", hold_monotonic_s},
                         {"position_mm", machine.position_mm()}}
                        .dump()
                 << std::endl;

@@ -21,6 +21,17 @@ def runs_jobs(process: int) -> bool:
         return False
 
 
+def children_of(process: int) -> list[int]:
+    """Of all its threads."""
+    found = []
+    for task in pathlib.Path(f"/proc/{process}/task").iterdir():
+        try:
+            found += [int(number) for number in (task / "children").read_text().split()]
+        except (FileNotFoundError, ProcessLookupError):  # a thread that ended meanwhile
+            pass
+    return found
+
+
 def ignores(process: int, number: int) -> bool:
     """Whether it has said that this signal is nothing to it."""
     mask = re.search(r"SigIgn:\s*(\w+)", pathlib.Path(f"/proc/{process}/status").read_text()).group(1)
@@ -115,7 +126,7 @@ class Worker:
     def job_process(self) -> int:
         """The child in which jobs run, once it has become that program: between fork and exec it still is the worker, with all that it holds open."""
         def found():
-            return [int(number) for number in pathlib.Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children").read_text().split()]
+            return children_of(self.process.pid)
         assert eventually(lambda: len(found()) == 1 and runs_jobs(found()[0])), found()
         return found()[0]
 

@@ -12,7 +12,7 @@ import tempfile
 import time
 
 from kept_jobs import NO_ANSWER, TETRAHEDRON, Figures, job_number, left_over, undisturbed, wait_for_all
-from worker import Worker, runs_jobs
+from worker import Worker, children_of, runs_jobs
 
 # A kill that comes before the worker listens says nothing of jobs, yet of the folder: some do.
 EARLY_SHARE = 0.1
@@ -20,10 +20,10 @@ EARLY_SHARE = 0.1
 
 def solver_of(worker: Worker) -> int | None:
     try:
-        children = pathlib.Path(f"/proc/{worker.process.pid}/task/{worker.process.pid}/children").read_text().split()
+        children = children_of(worker.process.pid)
     except OSError:
         return None
-    return next((int(child) for child in children if runs_jobs(int(child))), None)
+    return next((child for child in children if runs_jobs(child)), None)
 
 
 def kill(process: int | None) -> bool:

@@ -427,8 +427,23 @@ test('a relief goes to a mill: its job, its way in space, its first lines', asyn
   await expect(startButton(page)).toHaveAttribute('aria-disabled', 'true');
   await jobs.getByRole('button', { name: 'Run this next' }).click();
   await button(page, 'Set z here').click();
+  // Nothing is chosen in advance, and nothing starts before somebody has said where z is 0.
   await startButton(page).click();
-  await confirm(page, /^Start .*, roughing/, 'Start with the spindle on', /spindle turns/);
+  const withSpindle = dialog(page).getByRole('button', { name: /^Start with the spindle on/ });
+  await expect(dialog(page).getByText(/spindle turns/)).toBeVisible();
+  await expect(dialog(page).getByRole('button', { name: 'Cancel' })).toBeFocused();
+  await expect(withSpindle).toHaveAttribute('aria-disabled', 'true');
+  await expect(dialog(page).getByRole('radio', { checked: true })).toHaveCount(0);
+  await withSpindle.click({ force: true });
+  await expect(chip(page)).toHaveText('Ready');
+  await dialog(page)
+    .getByRole('radio', { name: /^Keep z 0 at −1\d\.\d\d\smm in machine coordinates \(set at / })
+    .check();
+  await dialog(page)
+    .getByRole('radio', { name: /^Set z to the stock’s top here/ })
+    .check();
+  await expect(dialog(page).getByRole('heading', { name: /^Start .*, roughing/ })).toBeVisible();
+  await withSpindle.click();
   await expect(chip(page)).toHaveText('Working');
   await button(page, 'Stop').click();
   await expect(

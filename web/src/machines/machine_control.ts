@@ -4,7 +4,7 @@ import type { ReadonlySignal } from '@preact/signals';
 import { computed, effect, signal } from '@preact/signals';
 import type { JobLog } from './job_log';
 import type { MachineLink } from './links/machine_link';
-import type { MachineCommand, MachineJob, MachineState } from './links/machine_state';
+import type { MachineCommand, MachineJob, MachineState, ZChoice } from './links/machine_state';
 import type { MachineProfile } from './profiles';
 
 const lockName = 'formwright.machine';
@@ -122,14 +122,21 @@ export class MachineControl {
   }
 
   /** Loads the job unless the machine has it already, and starts it. */
-  async start(name: string, key: string, job: Uint8Array, from_line?: number): Promise<boolean> {
+  async start(
+    name: string,
+    key: string,
+    job: Uint8Array,
+    { from_line, z }: { readonly from_line?: number; readonly z?: ZChoice } = {},
+  ): Promise<boolean> {
     if (!(await this.load(name, key, job))) return false;
     this.#jobId = crypto.randomUUID();
     const started = await this.command({
       do: 'start',
       confirmed: true,
       ...(from_line === undefined ? {} : { from_line }),
+      ...(z === undefined ? {} : { z }),
     });
+    if (started && z === 'here') ++this.zSets.value;
     // Refused, the rest of the job before can still be cut.
     if (started) this.cutOff.value = null;
     return started;

@@ -134,7 +134,7 @@ function PrinterWishes({ session }: { readonly session: PrintSession }) {
         unit=""
         integer
         minimum={1}
-        maximum={printer.most_copies}
+        maximum={printer.max_copies}
         slider={null}
         defaultValue={1}
         value={session.copies.value}

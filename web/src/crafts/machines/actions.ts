@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a person can have the machine do, each asked about before it moves or fires.
-import type { MachineCommand } from '../../machines/links/machine_state';
+import type { MachineCommand, MachineState, ZChoice } from '../../machines/links/machine_state';
 import { workBoundsOfBed } from '../../machines/places';
 import type { ToolPath } from '../../machines/toolpath';
 import { workBounds } from '../../machines/toolpath';
-import { formatDuration, formatNumber, withUnit } from '../../ui';
+import { formatDuration, formatFixed, formatNumber, withUnit } from '../../ui';
+import type { Choice, Option } from './confirm';
 import { ask } from './confirm';
 import type { MachinesSession } from './machines_session';
 
@@ -79,6 +80,29 @@ function whenLeftAlone(session: MachinesSession): string[] {
     : [...state.warnings, state.when_connection_ends].filter((sentence) => sentence !== '');
 }
 
+/** What a mill's start asks; null where nothing is to be chosen. */
+export function zOptions(state: MachineState | null, now: Date): readonly Option<ZChoice>[] | null {
+  if (!state?.z_choice) return null;
+  const { origin_machine_mm: origin, set_seconds_ago: ago } = state.z_choice;
+  const place =
+    origin === null
+      ? 'where it was set'
+      : `at ${withUnit(formatFixed(origin, 2), 'mm')} in machine coordinates`;
+  const set =
+    ago === null
+      ? 'set before the machine was connected'
+      : `set at ${new Date(now.getTime() - 1000 * ago).toLocaleTimeString([], { hour: '2-digit', minute: '2-digit' })}`;
+  return [
+    { value: 'here', label: 'Set z to the stock’s top here: the tip of the tool touches it now' },
+    { value: 'kept', label: `Keep z 0 ${place} (${set})` },
+  ];
+}
+
+const zQuestion = (session: MachinesSession): Choice<ZChoice> => ({
+  legend: 'Where is z 0?',
+  options: () => zOptions(session.control.state.value, new Date()),
+});
+
 /** The machine has the job before the question: only then it can say what it does with it. */
 export async function start(session: MachinesSession): Promise<void> {
   const plan = session.plan.value;
@@ -94,25 +118,28 @@ export async function start(session: MachinesSession): Promise<void> {
     sentences: () => [
       isLaser(session)
         ? `The head moves and the laser turns on, at up to ${withUnit(formatNumber(power, 2), '%')}, for about ${formatDuration(seconds)}.`
-        : `The machine moves and its spindle turns, for about ${formatDuration(seconds)}. Z is 0 on top of the stock, and the tool is at its corner.`,
+        : `The machine moves and its spindle turns, for about ${formatDuration(seconds)}. X and y are 0 at the stock's corner, z on its top.`,
       isLaser(session) ? eyes : chips,
       ...whenLeftAlone(session),
     ],
+    choice: zQuestion(session),
     action: isLaser(session) ? 'Start with the laser on' : 'Start with the spindle on',
     danger: true,
-    run: () => {
+    run: (z) => {
       session.playhead.value = null;
-      void session.control.start(name, key, job.bytes);
+      void session.control.start(name, key, job.bytes, z === null ? {} : { z });
     },
   });
 }
 
 /** Goes on with a job that ended early, the careful way: from the beginning of a stroke before what may not have been done. */
-export function goOn(session: MachinesSession): void {
+export async function goOn(session: MachinesSession): Promise<void> {
   const [job, key] = [session.job.value, session.jobKey.value];
   const { state, cutOff } = session.control;
   const line = (state.value?.job ?? cutOff.value?.job)?.careful_line;
   if (!job || key === null || line === undefined) return;
+  // The driver asks about z of the job that it has; after a lost connection it has none. Loading ends what it knew of the last one.
+  if (!(await session.control.load(nameOf(session), key, job.bytes))) return;
   ask({
     title: 'Cut the rest?',
     sentences: [
@@ -123,9 +150,14 @@ export function goOn(session: MachinesSession): void {
         (isLaser(session) ? eyes : chips),
       ...whenLeftAlone(session),
     ],
+    choice: zQuestion(session),
     action: isLaser(session) ? 'Continue with the laser on' : 'Continue with the spindle on',
     danger: true,
-    run: () => void session.control.start(nameOf(session), key, job.bytes, line),
+    run: (z) =>
+      void session.control.start(nameOf(session), key, job.bytes, {
+        from_line: line,
+        ...(z === null ? {} : { z }),
+      }),
   });
 }
 

@@ -165,7 +165,7 @@ function Strip({ session, onChooseFile }: MachinesPageProps) {
         detail={`After ${formatDuration(job.seconds)}. ${job.careful_line === undefined ? 'It can be started again' : 'After homing, the rest can be cut'}`}
       >
         {job.careful_line === undefined ? null : (
-          <Button size="small" disabledReason={reason} onClick={() => goOn(session)}>
+          <Button size="small" disabledReason={reason} onClick={() => void goOn(session)}>
             Cut the rest
           </Button>
         )}

@@ -54,8 +54,16 @@ export interface MachineState {
   readonly warnings: readonly string[];
   /** What the machine does with the loaded job when this page, the cable or the computer dies; '' where there is nothing to say. */
   readonly when_connection_ends: string;
+  /** Of a mill whose loaded job moves z: where z is 0 in machine coordinates, and how long ago it was set in this connection. */
+  readonly z_choice: {
+    readonly origin_machine_mm: number | null;
+    readonly set_seconds_ago: number | null;
+  } | null;
   readonly can: readonly MachineCommand['do'][];
 }
+
+/** Z is 0 at the tip of the tool now, or where it was set before. */
+export type ZChoice = 'here' | 'kept';
 
 export type MachineCommand =
   | { readonly do: 'unlock' | 'jog_cancel' | 'focus_off' | 'pause' | 'stop' }
@@ -76,7 +84,12 @@ export type MachineCommand =
       readonly confirmed: boolean;
     }
   | { readonly do: 'focus'; readonly power_percent: number; readonly confirmed: boolean }
-  | { readonly do: 'start'; readonly confirmed: boolean; readonly from_line?: number }
+  | {
+      readonly do: 'start';
+      readonly confirmed: boolean;
+      readonly from_line?: number;
+      readonly z?: ZChoice;
+    }
   | { readonly do: 'resume'; readonly confirmed: boolean }
   | { readonly do: 'send'; readonly line: string; readonly confirmed?: boolean }
   | { readonly do: 'override'; readonly feed_percent?: number; readonly power_percent?: number };

@@ -26,7 +26,7 @@ export interface PaperPrinter {
   readonly accepting?: boolean;
   readonly formats: readonly string[];
   readonly qualities: readonly string[];
-  readonly most_copies: number;
+  readonly max_copies: number;
   readonly scaling_can_be_off: boolean;
   readonly media: readonly Paper[];
 }

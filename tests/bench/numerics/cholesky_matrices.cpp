@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// cholesky_matrices FOLDER UNKNOWNS...: writes what the crafts factor, at about those sizes, as FOLDER/NAME_UNKNOWNS.matrix.
-//   relief            the energy of eq. (3.13) of the bust, one vertex pinned, as the bounded quadratic program factors it
-//   parameterisation  the Hessian of the octopus's symmetric Dirichlet energy where Newton's iteration ends
-//   cloth             the Hessian of the octopus's ribbon as cloth, put into the octopus's shape with every seam closed
+// cholesky_matrices FOLDER UNKNOWNS...: writes what the crafts factor, at about those sizes, as
+// FOLDER/NAME_UNKNOWNS.matrix.
+//   relief            the energy of eq. (3.13) of the bust, one vertex pinned, as the bounded quadratic program factors
+//   it parameterisation  the Hessian of the octopus's symmetric Dirichlet energy where Newton's iteration ends cloth
+//   the Hessian of the octopus's ribbon as cloth, put into the octopus's shape with every seam closed
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
+#include <stdexcept>
 #include <string>
 
 #include "geometry/intrinsic_delaunay.h"
@@ -81,23 +81,23 @@ SparseMatrix cloth_matrix(int unknowns, Context& context) {
 
 int main(int argc, char** argv) {
   if (argc < 3) {
-    std::fprintf(stderr, "cholesky_matrices FOLDER UNKNOWNS...\n");
+    std::fprintf(stderr, "cholesky_matrices FOLDER NAME_UNKNOWNS..., such as relief_50000\n");
     return 2;
   }
   try {
     Context context;
     for (int k = 2; k < argc; ++k) {
-      const int unknowns = std::max(3000, std::atoi(argv[k]));
-      const auto write = [&](const char* name, const SparseMatrix& lower) {
-        const std::string path = std::string(argv[1]) + "/" + name + "_" + std::to_string(unknowns) + ".matrix";
-        bench::write_matrix(path, lower);
-        std::printf("%s  %d unknowns, %.1f entries a row\n", path.c_str(), static_cast<int>(lower.rows()),
-                    2.0 * static_cast<double>(lower.nonZeros()) / static_cast<double>(lower.rows()) - 1);
-        std::fflush(stdout);
-      };
-      write("relief", relief_matrix(unknowns, context));
-      write("parameterisation", parameterisation_matrix(unknowns, context));
-      write("cloth", cloth_matrix(unknowns, context));
+      const std::string wanted = argv[k], name = wanted.substr(0, wanted.find('_'));
+      const int unknowns = std::stoi(wanted.substr(std::min(wanted.size(), name.size() + 1)));
+      SparseMatrix lower;
+      if (name == "relief") lower = relief_matrix(unknowns, context);
+      else if (name == "parameterisation") lower = parameterisation_matrix(unknowns, context);
+      else if (name == "cloth") lower = cloth_matrix(unknowns, context);
+      else throw std::invalid_argument("There is no matrix called " + name + ".");
+      const std::string path = std::string(argv[1]) + "/" + wanted + ".matrix";
+      bench::write_matrix(path, lower);
+      std::printf("%s  %d unknowns, %.1f entries a row\n", path.c_str(), static_cast<int>(lower.rows()),
+                  2.0 * static_cast<double>(lower.nonZeros()) / static_cast<double>(lower.rows()) - 1);
     }
   } catch (const std::exception& error) {
     std::fprintf(stderr, "cholesky_matrices: %s\n", error.what());

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// compare_cholesky MATRIX METHOD [rounds]: one factorisation of one matrix (cholesky_methods.h) on one thread, as a line
-// of JSON. One run a method, so that the peak of the memory is that method's own.
+// compare_cholesky MATRIX METHOD [rounds]: one factorisation of one matrix (cholesky_methods.h) on one thread, as a
+// line of JSON. One run a method, so that the peak of the memory is that method's own.
+#include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <ctime>
 #include <exception>

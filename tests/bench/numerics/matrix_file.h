@@ -15,7 +15,8 @@ inline void write_matrix(const std::string& path, const SparseMatrix& lower) {
   std::ofstream file(path, std::ios::binary);
   const std::int64_t size[2] = {lower.rows(), lower.nonZeros()};
   const auto put = [&](const auto* data, std::int64_t count) {
-    file.write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(sizeof *data) * count);
+    file.write(reinterpret_cast<const char*>(data),
+               static_cast<std::streamsize>(static_cast<std::int64_t>(sizeof *data) * count));
   };
   put(size, 2), put(lower.outerIndexPtr(), size[0] + 1), put(lower.innerIndexPtr(), size[1]);
   put(lower.valuePtr(), size[1]);
@@ -26,11 +27,12 @@ inline SparseMatrix read_matrix(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::int64_t size[2] = {0, 0};
   const auto get = [&](auto* data, std::int64_t count) {
-    file.read(reinterpret_cast<char*>(data), static_cast<std::streamsize>(sizeof *data) * count);
+    file.read(reinterpret_cast<char*>(data),
+              static_cast<std::streamsize>(static_cast<std::int64_t>(sizeof *data) * count));
   };
   get(size, 2);
-  SparseMatrix lower(size[0], size[0]);
-  lower.resizeNonZeros(size[1]);
+  SparseMatrix lower(static_cast<Eigen::Index>(size[0]), static_cast<Eigen::Index>(size[0]));
+  lower.resizeNonZeros(static_cast<Eigen::Index>(size[1]));
   get(lower.outerIndexPtr(), size[0] + 1), get(lower.innerIndexPtr(), size[1]), get(lower.valuePtr(), size[1]);
   if (!file) throw std::runtime_error(path + " could not be read.");
   return lower;

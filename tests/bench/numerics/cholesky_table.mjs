@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// node cholesky_table.mjs NATIVE_BUILD WASM_BUILD|- [NAME_UNKNOWNS...]: writes the crafts' matrices into NATIVE_BUILD/cholesky where
+// node cholesky_table.mjs NATIVE_BUILD WASM_BUILD|- [--wasm-only] [NAME_UNKNOWNS...]: writes the crafts' matrices into NATIVE_BUILD/cholesky where
 // they are missing, factors each by every method on one thread, natively and under node, and prints the tables of docs/numerics.md.
 import { execFileSync, spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync } from 'node:fs';
 
-const [native, wasm, ...chosen] = process.argv.slice(2);
+const [native, wasm, ...chosen] = process.argv.slice(2).filter((word) => word !== '--wasm-only');
 if (!wasm) {
-  console.error('node cholesky_table.mjs NATIVE_BUILD WASM_BUILD|- [NAME_UNKNOWNS...]');
+  console.error('node cholesky_table.mjs NATIVE_BUILD WASM_BUILD|- [--wasm-only] [NAME_UNKNOWNS...]');
   process.exit(2);
 }
 const usual = [['relief', [10, 50, 200, 500]], ['parameterisation', [10, 50, 200]], ['cloth', [10, 50, 200]]];
@@ -44,8 +44,10 @@ function table(methods, inWasm) {
 
 const missing = matrices.filter((matrix) => !existsSync(`${folder}/${matrix}.matrix`));
 if (missing.length) execFileSync(`${programs}/cholesky_matrices`, [folder, ...missing], { stdio: ['ignore', 2, 2] });
-console.log('Natively:\n');
-table(['ours', 'cholmod-amd', 'cholmod-metis', 'cholmod-ours', 'eigen-amd'], false);
+if (!process.argv.includes('--wasm-only')) {
+  console.log('Natively:\n');
+  table(['ours', 'cholmod-amd', 'cholmod-metis', 'cholmod-ours', 'eigen-amd'], false);
+}
 if (wasm !== '-') {
   console.log('\nWebAssembly, under node:\n');
   table(['ours', 'eigen-amd', 'eigen-ours'], true);

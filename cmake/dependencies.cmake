@@ -40,23 +40,16 @@ find_package(Eigen3 3.4 REQUIRED CONFIG)
 find_package(nlohmann_json 3.11 REQUIRED CONFIG)
 formwright_dependency(fast_float fast_float/fast_float.h)
 
-# zlib, PNG, PDF, zip (3MF), XML (3MF, SVG)
+# zlib, PNG, PDF, XML (3MF, SVG)
 formwright_dependency(zlib zlib.h z)
 formwright_dependency(png png.h png)
 target_link_libraries(fw::png INTERFACE fw::zlib)
 formwright_dependency(hpdf hpdf.h hpdf)
 target_link_libraries(fw::hpdf INTERFACE fw::png fw::zlib)
-formwright_dependency(minizip minizip/unzip.h minizip)
-target_link_libraries(fw::minizip INTERFACE fw::zlib)
 formwright_dependency(pugixml pugixml.hpp pugixml)
 
-# Compiled libraries, so nobody defines an *_IMPLEMENTATION macro. OBJ in
-# doubles. The glTF loader decodes its images through the stb library.
+# JPEG and other pictures. A compiled library, so nobody defines an *_IMPLEMENTATION macro.
 formwright_dependency(stb stb_image.h stb SUBDIR stb)
-formwright_dependency(tinyobjloader tiny_obj_loader.h tinyobjloader_double)
-target_compile_definitions(fw::tinyobjloader INTERFACE TINYOBJLOADER_USE_DOUBLE)
-formwright_dependency(tinygltf tiny_gltf.h tinygltf)
-target_link_libraries(fw::tinygltf INTERFACE fw::stb)
 
 # Boost 1.83 headers (Beast and Asio in the native worker, CGAL's own needs).
 add_library(fw::boost INTERFACE IMPORTED GLOBAL)
@@ -94,14 +87,4 @@ if(NOT EMSCRIPTEN)
   find_package(TBB REQUIRED CONFIG)
   add_library(fw::embree INTERFACE IMPORTED GLOBAL)
   target_link_libraries(fw::embree INTERFACE embree TBB::tbb)
-
-  # The pthread flavour of OpenBLAS by its full path, not whatever the
-  # alternatives system makes of libblas.so.
-  formwright_dependency(blas cblas.h openblas SUBDIR openblas-pthread x86_64-linux-gnu/openblas-pthread)
-
-  # Tests and benchmarks compare our own sparse factorisation with it.
-  if(FORMWRIGHT_TESTS)
-    formwright_dependency(cholmod cholmod.h cholmod SUBDIR suitesparse)
-    target_link_libraries(fw::cholmod INTERFACE fw::blas)
-  endif()
 endif()

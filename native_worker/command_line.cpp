@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "command_flags.h"
+#include "flags.h"
 #include "job/catalog.h"
 
 namespace formwright {
@@ -76,75 +77,65 @@ void add_file(const InputInfo& input, const std::string& value, ParsedCommand& c
   command.files[name] = value;
 }
 
+constexpr const char* help_flag = "-h,--help";  // as CLI11 names two spellings of one flag
+
+std::vector<FlagRule> rules_of(const Operation& operation) {
+  using Value = FlagRule::Value;
+  std::vector<FlagRule> rules{
+      {help_flag, Value::none}, {"--quiet", Value::none}, {"--out"}, {"--outputs"}, {"--sample"},
+      {"--sample-vertices"}};
+  for (const ParameterInfo& info : operation.parameters)  // a boolean may stand alone: --depth-order means on
+    rules.push_back({flag_name(info), info.kind == ParameterKind::boolean ? Value::optional : Value::one});
+  for (const InputInfo& input : operation.inputs) rules.push_back({dashed(input.name)});
+  if (operation.keeps_results) rules.push_back({"--results"});
+  if (takes_object(operation)) rules.push_back({"--object"});
+  return rules;
+}
+
+/// The sentence for a word that is no flag of the operation.
+std::string unknown_word(const std::string& word, const Operation& operation) {
+  if (!word.starts_with("--")) return "\"" + word + "\" is not a flag: every value needs one, such as --mesh FILE.";
+  std::string name = word.substr(2);
+  std::replace(name.begin(), name.end(), '-', '_');
+  std::string hint;
+  try {
+    parameters_detail::reject_unknown(name, operation.parameters);
+  } catch (const Error& error) {
+    const std::string text = error.what();
+    if (const auto at = text.find("did you mean "); at != std::string::npos) {
+      hint = dashed(text.substr(at + 13));
+      hint = "; did you mean " + hint.substr(0, hint.size() - 1) + "?";
+    }
+  }
+  return "There is no flag " + word + (hint.empty() ? ": see formwright " + operation.name + " --help." : hint);
+}
+
 }  // namespace
 
 ParsedCommand parse_command(const Operation& operation, const std::vector<std::string>& words) {
   ParsedCommand command;
+  const FlagValues flags =
+      read_flags(words, rules_of(operation), [&](const std::string& word) { return unknown_word(word, operation); });
+  const auto last_of = [&](const std::string& flag) {
+    const auto found = flags.find(flag);
+    return found == flags.end() ? std::string() : found->second.back();
+  };
+  command.help = flags.contains(help_flag);
+  if (command.help) return command;
+  command.quiet = flags.contains("--quiet");
+  command.out = last_of("--out");
+  command.results = last_of("--results");
+  if (flags.contains("--outputs")) command.message["outputs"] = split(last_of("--outputs"));
   Json parameters = Json::object(), inputs = Json::object();
-  int vertices = 0;
-  std::string sample, object;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    std::string flag = words[i], value;
-    if (flag == "--help" || flag == "-h") {
-      command.help = true;
-      return command;
-    }
-    if (!flag.starts_with("--"))
-      throw Error(ErrorCode::invalid_input, flag,
-                  "\"" + flag + "\" is not a flag: every value needs one, such as --mesh FILE.");
-    const std::size_t equals = flag.find('=');
-    const bool joined = equals != std::string::npos;
-    if (joined) {
-      value = flag.substr(equals + 1);
-      flag.resize(equals);
-    }
-    if (flag == "--quiet") {
-      command.quiet = true;
-      continue;
-    }
-    const auto info = std::find_if(operation.parameters.begin(), operation.parameters.end(),
-                                   [&](const ParameterInfo& p) { return flag_name(p) == flag; });
-    const auto input = std::find_if(operation.inputs.begin(), operation.inputs.end(),
-                                    [&](const InputInfo& in) { return dashed(in.name) == flag; });
-    const bool known = info != operation.parameters.end() || input != operation.inputs.end() || flag == "--out" ||
-                       flag == "--sample" || flag == "--sample-vertices" || flag == "--outputs" ||
-                       (flag == "--results" && operation.keeps_results) ||
-                       (flag == "--object" && takes_object(operation));
-    if (!known) {
-      std::string name = flag.substr(2);
-      std::replace(name.begin(), name.end(), '-', '_');
-      std::string hint;
-      try {
-        parameters_detail::reject_unknown(name, operation.parameters);
-      } catch (const Error& error) {
-        const std::string text = error.what();
-        if (const auto at = text.find("did you mean "); at != std::string::npos) {
-          hint = dashed(text.substr(at + 13));
-          hint = "; did you mean " + hint.substr(0, hint.size() - 1) + "?";
-        }
-      }
-      throw Error(
-          ErrorCode::invalid_input, flag,
-          "There is no flag " + flag + (hint.empty() ? ": see formwright " + operation.name + " --help." : hint));
-    }
-    if (!joined) {
-      // A boolean may stand alone: --depth-order means on.
-      const bool last = i + 1 >= words.size();
-      if (info != operation.parameters.end() && info->kind == ParameterKind::boolean &&
-          (last || words[i + 1].starts_with("--")))
-        value = "on";
-      else if (last) throw Error(ErrorCode::invalid_input, flag, flag + " needs a value.");
-      else value = words[++i];
-    }
-    if (info != operation.parameters.end()) parameters[info->name] = parse_flag(*info, value);
-    else if (input != operation.inputs.end()) add_file(*input, value, command);
-    else if (flag == "--out") command.out = value;
-    else if (flag == "--results") command.results = value;
-    else if (flag == "--object") object = value;
-    else if (flag == "--sample") sample = value;
-    else if (flag == "--sample-vertices") vertices = sample_vertices(value);
-    else command.message["outputs"] = split(value);
-  }
+  for (const ParameterInfo& info : operation.parameters)
+    if (const std::string flag = flag_name(info); flags.contains(flag))
+      parameters[info.name] = parse_flag(info, last_of(flag));
+  for (const InputInfo& input : operation.inputs)
+    if (const auto given = flags.find(dashed(input.name)); given != flags.end())
+      for (const std::string& value : given->second) add_file(input, value, command);
+  const std::string sample = last_of("--sample");
+  const std::string object = takes_object(operation) ? last_of("--object") : "";  // else an input of that name
+  const int vertices = flags.contains("--sample-vertices") ? sample_vertices(last_of("--sample-vertices")) : 0;
   if (!object.empty()) {
     if (!std::filesystem::is_directory(object))
       throw Error(ErrorCode::invalid_input, "--object",

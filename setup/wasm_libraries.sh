@@ -12,7 +12,7 @@
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-LIBRARIES=(headers zlib libpng libharu pugixml polyclipping minizip stb tinyobjloader tinygltf)
+LIBRARIES=(headers zlib libpng libharu pugixml polyclipping stb)
 JOBS="${FORMWRIGHT_JOBS:-$(nproc)}"
 
 mapfile -t WASM_FLAGS <"$FORMWRIGHT_ROOT/cmake/wasm_flags.txt"
@@ -133,14 +133,6 @@ build_polyclipping() {
   static_library polyclipping -I"$PREFIX/include/polyclipping" "$SOURCE"/cpp/clipper.cpp
 }
 
-build_minizip() {
-  fetch_source minizip
-  # NOCRYPT and no mztools: 3MF needs neither. 32-bit WebAssembly has 64-bit offsets.
-  static_library minizip -I"$SOURCE" -I"$PREFIX/include" -DNOCRYPT -DUSE_FILE32API -include unistd.h \
-    "$SOURCE/ioapi.c" "$SOURCE/unzip.c" "$SOURCE/zip.c"
-  install -D -m 644 -t "$PREFIX/include/minizip" "$SOURCE"/{ioapi,unzip,zip}.h
-}
-
 build_stb() {
   # Debian's library, reduced to what is linked: images.
   install -D -m 644 -t "$PREFIX/include/stb" /usr/include/stb/stb_image.h /usr/include/stb/stb_image_write.h
@@ -152,20 +144,6 @@ build_stb() {
 #include <stb_image_write.h>
 C
   static_library stb -I"$PREFIX/include/stb" "$SOURCES/stb/stb.c"
-}
-
-build_tinyobjloader() {
-  fetch_source tinyobjloader
-  install -D -m 644 -t "$PREFIX/include" "$SOURCE/tiny_obj_loader.h"
-  static_library tinyobjloader_double -I"$SOURCE" -DTINYOBJLOADER_USE_DOUBLE "$SOURCE/tiny_obj_loader.cc"
-}
-
-build_tinygltf() {
-  install -D -m 644 -t "$PREFIX/include" /usr/include/tiny_gltf.h
-  # Its own source file would bring stb a second time.
-  mkdir -p "$SOURCES/tinygltf"
-  printf '#define TINYGLTF_IMPLEMENTATION\n#include <tiny_gltf.h>\n' >"$SOURCES/tinygltf/tiny_gltf.cc"
-  static_library tinygltf -I"$PREFIX/include" -I"$PREFIX/include/stb" "$SOURCES/tinygltf/tiny_gltf.cc"
 }
 
 # OpenCV belongs here: add `opencv` to LIBRARIES and a build_opencv() that does

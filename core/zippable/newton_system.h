@@ -42,6 +42,8 @@ class NewtonSystem {
   /// False when the matrix is not positive definite. Diagonal entries of local variables count 1 + `damping` times.
   bool solve(NewtonStep& step, double damping, Context& context);
   double factor_entries() const { return cholesky_.factor_entries(); }
+  /// Lower triangle over the local variables as last assembled, for benchmarks.
+  const SparseMatrix& lower_hessian() const { return lower_; }
 
  private:
   const SeamlessChart& chart_;

@@ -69,6 +69,8 @@ class ZippingSystem {
   const std::vector<ClothHinge>& hinges() const { return hinges_; }
   const Eigen::VectorXd& vertex_area_mm2() const { return area_; }
   int iterations() const { return iterations_; }
+  /// Lower triangle as last assembled, for benchmarks.
+  const SparseMatrix& lower_hessian() const { return lower_; }
 
  private:
   struct Slot {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // bench_geometry_io [vertices] [rounds]: best of some rounds, on a generated closed mesh, each format written and read;
-// OBJ also through tinyobjloader, for comparison.
+// OBJ also through tinyobjloader where it is installed, for comparison.
 #include <sys/resource.h>
+#ifdef FORMWRIGHT_WITH_TINYOBJLOADER
 #include <tiny_obj_loader.h>
+#endif
 
 #include <algorithm>
 #include <cstdlib>
@@ -81,6 +83,7 @@ int main(int argc, char** argv) {
                 {"megabytes", static_cast<double>(bytes.size()) / 1e6},
                 {"seconds_write", write},
                 {"seconds_read", read}};
+#ifdef FORMWRIGHT_WITH_TINYOBJLOADER
     if (c.format == MeshFormat::obj) {
       row["seconds_read_tinyobjloader"] = best_seconds(std::min(rounds, 2), [&] {
         std::istringstream stream{std::string(as_text(bytes))};
@@ -91,6 +94,7 @@ int main(int argc, char** argv) {
         tinyobj::LoadObj(&attributes, &shapes, &materials, &warnings, &errors, &stream, nullptr, true);
       });
     }
+#endif
     result["formats"].push_back(row);
   }
   Grey16Image image;

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// compare_cholesky MATRIX METHOD [rounds]: one factorisation of one matrix (cholesky_methods.h) on one thread, as a
+// line of JSON. One run a method, so that the peak of the memory is that method's own.
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <ctime>
+#include <exception>
+#include <iostream>
+#include <limits>
+#include <random>
+#include <string>
+#ifdef __EMSCRIPTEN__
+#include <unistd.h>
+#else
+#include <sys/resource.h>
+#endif
+
+#include "base/json.h"
+#include "base/parallel.h"
+#include "cholesky_methods.h"
+#include "matrix_file.h"
+
+namespace {
+using namespace formwright;
+
+/// Processor time, which other programs do not lengthen; in WebAssembly there is wall-clock time only.
+double seconds_now() {
+  timespec now{};
+#ifdef __EMSCRIPTEN__
+  clock_gettime(CLOCK_MONOTONIC, &now);
+#else
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+#endif
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// Of the process: natively the peak of resident memory, in WebAssembly how far the heap has grown.
+double peak_memory_mb() {
+#ifdef __EMSCRIPTEN__
+  return 1e-6 * static_cast<double>(reinterpret_cast<std::uintptr_t>(sbrk(0)));
+#else
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return 1.024e-3 * static_cast<double>(usage.ru_maxrss);
+#endif
+}
+
+template <class Work>
+double least_seconds(int rounds, const Work& work) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < rounds; ++k) {
+    const double before = seconds_now();
+    work();
+    least = std::min(least, seconds_now() - before);
+  }
+  return least;
+}
+
+/// |b - A x| / (|A| |x| + |b|), all in the norm of the largest entry (the normwise backward error: Rigal, Gaches 1967).
+double backward_error(const SparseMatrix& lower, const Eigen::VectorXd& x, const Eigen::VectorXd& b) {
+  const Eigen::VectorXd residual = b - lower.selfadjointView<Eigen::Lower>() * x;
+  const Eigen::VectorXd rows =
+      lower.cwiseAbs().selfadjointView<Eigen::Lower>() * Eigen::VectorXd::Ones(lower.rows()).eval();
+  return residual.lpNorm<Eigen::Infinity>() /
+         (rows.maxCoeff() * x.lpNorm<Eigen::Infinity>() + b.lpNorm<Eigen::Infinity>());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const auto method = argc > 2 ? bench::cholesky_method(argv[2]) : nullptr;
+  if (!method) {
+    std::fprintf(stderr,
+                 "compare_cholesky MATRIX ours|eigen-amd|eigen-ours|cholmod-amd|cholmod-metis|cholmod-ours [rounds]\n");
+    return 2;
+  }
+  try {
+    const int rounds = argc > 3 ? std::stoi(argv[3]) : 3;
+    const ThreadLimit one(1);
+    const SparseMatrix lower = bench::read_matrix(argv[1]);
+    std::mt19937 random(1);
+    Eigen::VectorXd b(lower.rows());
+    for (double& value : b) value = static_cast<double>(random()) / 4294967296.0 - 0.5;
+    const double memory_before = peak_memory_mb();
+    Json report{{"method", argv[2]}, {"unknowns", lower.rows()}, {"entries", lower.nonZeros()}};
+    Eigen::VectorXd x;
+    report["seconds_analyze"] = least_seconds(1, [&] { method->analyze(lower); });
+    report["seconds_factorize"] = least_seconds(rounds, [&] { method->factorize(lower); });
+    report["seconds_solve"] = least_seconds(rounds, [&] { x = method->solve(b); });
+    report["peak_memory_mb"] = peak_memory_mb() - memory_before;
+    report["factor_entries"] = method->stored_entries();
+    report["backward_error"] = backward_error(lower, x, b);
+    std::cout << report.dump() << "\n";
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "compare_cholesky: %s\n", error.what());
+    return 3;
+  }
+}

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Builds what is named: native, asan, wasm (CMake presets), web (the page).
+# Builds what is named: native, asan, wasm (CMake presets), web (the page). `npm-packages` installs what the page and the stories need.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
@@ -12,11 +12,11 @@ build_preset() {  # preset
 }
 
 # `npm ci` deletes node_modules: do it only when the lock file has changed.
-install_web() {
-  local stamp=web/node_modules/.formwright-lock
-  if ! cmp -s web/package-lock.json "$stamp"; then
-    PLAYWRIGHT_SKIP_BROWSER_DOWNLOAD=1 npm --prefix web ci --no-audit --no-fund >&2
-    cp web/package-lock.json "$stamp"
+install_packages() {
+  local stamp=node_modules/.formwright-lock
+  if ! cmp -s package-lock.json "$stamp"; then
+    PLAYWRIGHT_SKIP_BROWSER_DOWNLOAD=1 npm ci --no-audit --no-fund >&2
+    cp package-lock.json "$stamp"
   fi
 }
 
@@ -24,10 +24,10 @@ cd "$FORMWRIGHT_ROOT"
 for part in "$@"; do
   case "$part" in
     native | asan | wasm) build_preset "$part" ;;
-    web-packages) install_web ;;
+    npm-packages) install_packages ;;
     web)
-      install_web
-      npm --prefix web run build >&2
+      install_packages
+      npm run build >&2
       ;;
     *) fail "there is nothing to build called '$part'" "choose from native, asan, wasm, web" ;;
   esac

@@ -6,7 +6,7 @@ import { execSync } from 'node:child_process';
 import { existsSync } from 'node:fs';
 import { resolve } from 'node:path';
 
-const web = resolve(import.meta.dirname, '..');
+const web = resolve(import.meta.dirname, '../web');
 const built = existsSync(resolve(web, 'public/wasm/formwright.mjs'));
 export const backend = process.env['FORMWRIGHT_BACKEND'] ?? (built ? 'wasm' : 'mock');
 process.env['FORMWRIGHT_BACKEND'] = backend; // the tests read it too
@@ -14,7 +14,7 @@ process.env['FORMWRIGHT_BACKEND'] = backend; // the tests read it too
 const port = { mock: 5631, wasm: 5632, native: 5633 }[backend] ?? 5631;
 const servers: Record<string, { command: string; url: string }> = {
   mock: {
-    command: `npx vite build --mode mock --outDir test-results/mock --emptyOutDir && npx vite preview --outDir test-results/mock --port ${port} --strictPort`,
+    command: `npx vite build --mode mock --outDir ../e2e/test-results/mock --emptyOutDir && npx vite preview --outDir ../e2e/test-results/mock --port ${port} --strictPort`,
     url: `http://127.0.0.1:${port}`,
   },
   wasm: {
@@ -22,14 +22,14 @@ const servers: Record<string, { command: string; url: string }> = {
     url: `http://127.0.0.1:${port}`,
   },
   // Starts the worker with a fresh folder and writes down the address it prints, token and all.
-  native: { command: `node e2e/start_worker.mjs ${port}`, url: `http://127.0.0.1:${port}` },
+  native: { command: `node ../e2e/start_worker.mjs ${port}`, url: `http://127.0.0.1:${port}` },
 };
 const server = servers[backend];
 if (server === undefined) throw new Error(`FORMWRIGHT_BACKEND is mock, wasm or native, not ${backend}.`);
 
 export default defineConfig({
   testDir: '.',
-  outputDir: '../test-results/e2e',
+  outputDir: 'test-results/stories',
   timeout: 180_000,
   expect: { timeout: 60_000 },
   workers: 1, // each page draws with a software WebGL and solves: one after the other

@@ -12,7 +12,7 @@ import { address, backend, expect, fileOf, test } from './page';
 
 test.skip(backend !== 'wasm', 'the cable is the page’s own: solving does not come into it');
 
-const laser = resolve(import.meta.dirname, '../../build/tests/machines/virtual_grbl_stdio');
+const laser = resolve(import.meta.dirname, '../build/tests/machines/virtual_grbl_stdio');
 
 const device = (port: string) => `P: /devices/pci0000:00/0000:00:14.0/usb1/1-2
 E: DEVTYPE=usb_device

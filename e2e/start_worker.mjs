@@ -6,12 +6,13 @@ import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 
-const web = resolve(import.meta.dirname, '..');
-const program = process.env.FORMWRIGHT ?? resolve(web, '../build/formwright');
+const root = resolve(import.meta.dirname, '..');
+const program = process.env.FORMWRIGHT ?? join(root, 'build/formwright');
+const notes = join(import.meta.dirname, 'test-results');
 const data = mkdtempSync(join(tmpdir(), 'formwright-e2e-'));
 const worker = spawn(
   program,
-  ['serve', '--port', process.argv[2], '--data', data, '--web', join(web, 'dist')],
+  ['serve', '--port', process.argv[2], '--data', data, '--web', join(root, 'web/dist')],
   {
     stdio: ['ignore', 'pipe', 'inherit'],
   },
@@ -19,9 +20,9 @@ const worker = spawn(
 worker.stdout.on('data', (text) => {
   const address = /http:\S+/.exec(String(text))?.[0];
   if (!address) return;
-  mkdirSync(join(web, 'test-results'), { recursive: true });
-  writeFileSync(join(web, 'test-results/worker_data'), data);
-  writeFileSync(join(web, 'test-results/worker_address'), address);
+  mkdirSync(notes, { recursive: true });
+  writeFileSync(join(notes, 'worker_data'), data);
+  writeFileSync(join(notes, 'worker_address'), address);
 });
 const stop = () => worker.kill('SIGTERM');
 process.on('SIGTERM', stop);

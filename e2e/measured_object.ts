@@ -6,7 +6,7 @@ import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { fileOf } from './page';
 
-const program = process.env['FORMWRIGHT'] ?? resolve(import.meta.dirname, '../../build/formwright');
+const program = process.env['FORMWRIGHT'] ?? resolve(import.meta.dirname, '../build/formwright');
 
 const mould = `v -25 -25 0\nv 25 -25 0\nv 25 25 0\nv -25 25 0\nv -8 -8 25\nv 8 -8 25\nv 8 8 25\nv -8 8 25
 f 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\nf 5 6 7 8\n`;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One rule set, and the directions in which imports may point:
+// One rule set for the page and its stories, and the directions in which the page's imports may point:
 //   ui, jobs, view <- project <- crafts/<name>, machines <- app.
 import js from '@eslint/js';
 import ts from 'typescript-eslint';
 
-/** Forbids imports into the named folders of src/. */
+/** Forbids imports into the named folders of web/src/. */
 const closed = (files, folders, message) => ({
   files,
   rules: {
@@ -16,7 +16,7 @@ const closed = (files, folders, message) => ({
 });
 
 export default ts.config(
-  { ignores: ['dist', 'public', 'node_modules', 'test-results', 'playwright-report'] },
+  { ignores: ['build*', 'tests', '**/dist', 'web/public', '**/test-results', '**/playwright-report'] },
   js.configs.recommended,
   ...ts.configs.strict,
   {
@@ -29,42 +29,43 @@ export default ts.config(
     },
   },
   {
-    files: ['scripts/**', 'e2e/**', '*.ts'],
+    files: ['web/scripts/**', 'web/*.ts', 'e2e/**'],
     languageOptions: { globals: { process: 'readonly' } },
     rules: { 'no-console': 'off' },
   },
+  closed(['e2e/**'], ['web'], 'Stories see the page as a person does; they know none of its code.'),
   closed(
-    ['src/ui/**'],
+    ['web/src/ui/**'],
     ['jobs', 'project', 'view', 'crafts', 'machines', 'app'],
     'ui/ knows no other folder.',
   ),
   closed(
-    ['src/jobs/**'],
+    ['web/src/jobs/**'],
     ['ui', 'project', 'view', 'crafts', 'machines', 'app'],
     'jobs/ is the contract and its backends; it knows no other folder.',
   ),
   closed(
-    ['src/view/**'],
+    ['web/src/view/**'],
     ['ui', 'jobs', 'project', 'crafts', 'machines', 'app'],
     'view/ knows meshes, not jobs or documents.',
   ),
   closed(
-    ['src/project/**'],
+    ['web/src/project/**'],
     ['ui', 'view', 'crafts', 'machines', 'app'],
     'project/ may use jobs/contract and nothing else.',
   ),
   closed(
-    ['src/crafts/relief/**'],
+    ['web/src/crafts/relief/**'],
     ['app', 'machines', 'crafts', 'thermoform', 'zippable', 'evidence'],
     'A craft uses ui, jobs, project and view; crafts do not know each other or the app.',
   ),
   closed(
-    ['src/crafts/thermoform/**'],
+    ['web/src/crafts/thermoform/**'],
     ['app', 'machines', 'crafts', 'relief', 'zippable', 'evidence'],
     'A craft uses ui, jobs, project and view; crafts do not know each other or the app.',
   ),
   closed(
-    ['src/crafts/evidence/**'],
+    ['web/src/crafts/evidence/**'],
     ['app', 'machines', 'crafts', 'relief', 'thermoform', 'zippable'],
     'A craft uses ui, jobs, project and view; crafts do not know each other or the app.',
   ),

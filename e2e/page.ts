@@ -11,7 +11,7 @@ export const backend = process.env['FORMWRIGHT_BACKEND'] ?? 'mock';
 /** The address to open: the worker's own, with its token, for the native backend. */
 export function address(): string {
   if (backend !== 'native') return '/';
-  return readFileSync(resolve(import.meta.dirname, '../test-results/worker_address'), 'utf8');
+  return readFileSync(resolve(import.meta.dirname, 'test-results/worker_address'), 'utf8');
 }
 
 /** Every story fails on an uncaught error or an error in the console. */

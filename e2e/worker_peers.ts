@@ -7,13 +7,13 @@ import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { address } from './page';
 
-const root = resolve(import.meta.dirname, '../..');
+const root = resolve(import.meta.dirname, '..');
 const program = process.env['FORMWRIGHT'] ?? join(root, 'build/formwright');
 
 export const isInstalled = (name: string): boolean =>
   spawnSync('sh', ['-c', `command -v ${name}`]).status === 0;
 
-const workerData = (): string => readFileSync(join(root, 'web/test-results/worker_data'), 'utf8');
+const workerData = (): string => readFileSync(join(root, 'e2e/test-results/worker_data'), 'utf8');
 const machine = (...words: string[]): string =>
   execFileSync(program, ['machine', words[0] ?? '', '--data', workerData(), ...words.slice(1)], {
     encoding: 'utf8',

@@ -1,20 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How measured objects and scans come into the project.
-import type { JsonObject } from '../../jobs/contract';
+import type { ReadonlySignal, Signal } from '@preact/signals';
+import type { Operation } from '../../jobs/contract';
+import type { BlobReference } from '../../project/document';
 import { toast } from '../../ui';
 import { nameProject } from '../common/craft_document';
-import { bytesOf } from '../common/import_model';
 import type { Change } from '../common/room_session';
-import type { MeasuredObject, ObjectFile, Scan } from './evidence_document';
-import { evidence, freeName, inventing, objectFiles, registering } from './evidence_document';
-import type { EvidenceSession } from './evidence_session';
+import type { Services } from '../common/services';
+import type { EvidenceDocument, MeasuredObject, ObjectFile, Scan } from './evidence_document';
+import { evidence, freeName, objectFiles, registering } from './evidence_document';
 import type { Bytes, Found } from './measured_files';
-import { countPoints, missingFrom, objectsInArchive, packObject, plainName } from './measured_files';
+import { countPoints, missingFrom, packObject, plainName } from './measured_files';
 import { scanInputs } from './scan_files';
+
+/** The part of the room that files are taken into. */
+interface ObjectShelf {
+  readonly services: Services;
+  readonly document: ReadonlySignal<EvidenceDocument>;
+  readonly chosenId: Signal<string | null>;
+  keep(bytes: Bytes, media_type: string): Promise<BlobReference>;
+  operationNamed(name: string): Operation | undefined;
+}
 
 /** Together with files that came before, where it is not complete. */
 export async function takeObject(
-  session: EvidenceSession,
+  session: ObjectShelf,
   { name: own, files }: Found,
   change: Change,
 ): Promise<void> {
@@ -65,7 +75,7 @@ export async function takeObject(
 }
 
 export async function takeScan(
-  session: EvidenceSession,
+  session: ObjectShelf,
   dropped: readonly File[],
   change: Change,
 ): Promise<void> {
@@ -86,27 +96,4 @@ export async function takeScan(
   const parameters = session.document.value.scan?.parameters ?? {};
   const scan: Scan = { files, corners: null, parameters, measured: null };
   change(evidence.setScan(scan, 'Open a scan'));
-}
-
-/** An object that nobody made, with faults that are known. */
-export async function inventObject(
-  session: EvidenceSession,
-  sample: string,
-  parameters: JsonObject,
-): Promise<boolean> {
-  const made = await session.busy(
-    'opening',
-    'a virtual object',
-    async (options) => {
-      const done = await session.services.browser.run(
-        { operation: inventing, parameters, inputs: { mould: { sample } }, outputs: ['object.zip'] },
-        options,
-      );
-      for (const found of objectsInArchive(await bytesOf(done, 'object.zip'), `virtual ${sample}.zip`))
-        await takeObject(session, found, options.do);
-      return true;
-    },
-    (error) => session.report(error, 'Could not make a virtual object'),
-  );
-  return made ?? false;
 }

@@ -7,7 +7,7 @@ import { Button, Dialog } from '../../ui';
 import { known, withoutDefaults } from '../common/craft_document';
 import { ParameterPanel } from '../common/parameter_panel';
 import type { EvidenceSession } from './evidence_session';
-import { inventObject } from './take_files';
+import { inventObject } from './invent_object';
 
 export function VirtualObject({ session, operation }: { session: EvidenceSession; operation: Operation }) {
   const open = useSignal(false);

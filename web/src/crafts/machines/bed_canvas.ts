@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Draws the bed with the job on it. A canvas: jobs have a hundred thousand strokes, and the playhead moves through them.
-import type { PathDetail } from '../../machines/path_detail';
 import { detailFor } from '../../machines/path_detail';
-import type { PathPlace, Rectangle, ToolPath } from '../../machines/toolpath';
+import type { PathDetail, PathPlace, Rectangle, ToolPath } from '../../machines/toolpath';
 import { lastAtMost, placeAt } from '../../machines/toolpath';
 
 export interface BedPicture {

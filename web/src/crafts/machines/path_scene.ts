@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A tool path as things to be drawn in space: lines by layer with their times, the block that is carved, the tool.
-import type { PathDetail } from '../../machines/path_detail';
-import type { ToolPath } from '../../machines/toolpath';
+import type { PathDetail, ToolPath } from '../../machines/toolpath';
 import { workBounds, workHeights } from '../../machines/toolpath';
 import type { Curve, MeshData, Vec3 } from '../../view';
 import { layerColours } from './bed_canvas';

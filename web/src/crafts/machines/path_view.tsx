@@ -2,9 +2,8 @@
 // The tool path in space, moved through by the same timeline as the bed.
 import { effect } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
-import type { PathDetail } from '../../machines/path_detail';
 import { detailFor } from '../../machines/path_detail';
-import type { ToolPath } from '../../machines/toolpath';
+import type { PathDetail, ToolPath } from '../../machines/toolpath';
 import { partAt, placeAt } from '../../machines/toolpath';
 import type { Insets, MeshData, Vec3, Viewpoint } from '../../view';
 import { Viewport } from '../../view';

@@ -2,7 +2,7 @@
 // The ribbon in the plane, in true proportions: parts in their colours, zipper sides, openings, the place pointed at.
 import { useSignal } from '@preact/signals';
 import { useEffect, useMemo, useRef } from 'preact/hooks';
-import { formatFixed, Segmented, withUnit } from '../../ui';
+import { formatMetres, Segmented } from '../../ui';
 import { figure } from '../common/report';
 import { boundaryEdges, partName } from './design';
 import type { FlatFit } from './flat_outline';
@@ -14,9 +14,6 @@ import { Sheets } from './sheets';
 import { chosenPart, flatView, partToken, playing, pointed } from './views';
 import { planning } from './zippable_document';
 import type { Zippable, ZippableSession } from './zippable_session';
-
-/** "0.84 m", as tape is bought. */
-export const metres = (mm: number): string => withUnit(formatFixed(mm / 1000, 2), 'm');
 
 const flatNames = [
   { value: 'ribbon', label: 'Ribbon' },
@@ -111,7 +108,7 @@ function Drawing({ shown, fit, width, height }: DrawingProps) {
     const along_mm = Math.min(design.zipper_mm, Math.max(0, to));
     pointed.value = { places: seamAt(design, along_mm), along_mm };
   };
-  const said = along === null ? null : `${metres(along)} from the start`;
+  const said = along === null ? null : `${formatMetres(along)} from the start`;
   return (
     <>
       <div
@@ -153,7 +150,7 @@ function Drawing({ shown, fit, width, height }: DrawingProps) {
           {bar.text}
         </span>
         {design.fabric ? <FabricKey /> : null}
-        <span>Seam: {metres(design.zipper_mm)} on each side</span>
+        <span>Seam: {formatMetres(design.zipper_mm)} on each side</span>
         <span>{said ?? ''}</span>
       </div>
     </>

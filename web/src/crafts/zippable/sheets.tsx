@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The sheets that the ribbon is cut from, as the plan's own drawing has them.
 import { useEffect, useState } from 'preact/hooks';
-import { Button, formatCount, formatNumber, Icon, Menu, withUnit } from '../../ui';
+import { Button, formatCount, formatMetres, formatNumber, Icon, Menu, withUnit } from '../../ui';
 import { solveInFull } from '../common/full_solve';
 import { figure, sentences } from '../common/report';
-import { metres } from './flat_ribbon';
 import { planBytes } from './make_product';
 import type { SendToMachine } from './send_sheet';
 import { sendSheet, sheetCount, sheetName } from './send_sheet';
@@ -137,7 +136,7 @@ export function planWords(session: ZippableSession): string {
     bed.length === 2 ? ` of ${withUnit(bed.map((mm) => formatNumber(mm, 3)).join(' × '), 'mm')}` : '';
   return [
     pieces !== null && sheets !== null ? `${many(pieces, 'piece')} on ${many(sheets, 'sheet')}${size}` : null,
-    zipper === null ? null : `zipper to cut: ${metres(zipper)}`,
+    zipper === null ? null : `zipper to cut: ${formatMetres(zipper)}`,
   ]
     .filter(Boolean)
     .join('; ');

@@ -30,7 +30,7 @@ test('a file, several thicknesses, and back to an earlier result', async ({ page
   await openPage(page);
   await page.locator('input[type=file]').setInputFiles(fileOf('ball.obj', ballObj()));
   await expect(strip(page, 'Preview up to date')).toBeVisible();
-  await expect(page.getByText('ball.obj')).toBeVisible();
+  await expect(page.getByText('ball.obj', { exact: true })).toBeVisible();
   await expect(page.locator('.model-picture')).toHaveAttribute('style', /blob:/);
   await solve(page);
   const thickness = page.getByRole('textbox', { name: 'Thickness' });
@@ -100,6 +100,6 @@ test('following the view ends with the model it was followed for', async ({ page
   await page.getByText('Follow the view', { exact: true }).click();
   await expect(page.getByRole('switch', { name: 'Follow the view' })).toBeChecked();
   await page.locator('input[type=file]').setInputFiles(fileOf('ball.obj', ballObj()));
-  await expect(page.getByText('ball.obj')).toBeVisible();
+  await expect(page.getByText('ball.obj', { exact: true })).toBeVisible();
   await expect(page.getByRole('switch', { name: 'Follow the view' })).not.toBeChecked();
 });

@@ -16,7 +16,6 @@ import { Icon, TipLayer, toast, ToastLayer } from '../ui';
 import { AboutPage } from './about_page';
 import { crafts } from './crafts';
 import { KeysDialog, WorkerDialog } from './dialogs';
-import { LaterPage } from './later_page';
 import { droppedFiles } from './dropped_files';
 import { Rail } from './rail';
 import { go, place } from './route';
@@ -129,7 +128,6 @@ export function App({ services, sessions }: AppProps) {
     if (dialogWanted) void loadPrintDialogs();
   }, [dialogWanted]);
   const Dialogs = printDialogs.value;
-  const later = crafts.find((craft) => craft.place === where && !craft.available);
   const session = isRoom(where) ? sessions[where] : null;
   const hasInspector = session !== null && session.hasWork.value;
   const hasStrip = hasInspector || session?.activity.value.kind === 'opening';
@@ -178,8 +176,6 @@ export function App({ services, sessions }: AppProps) {
         />
       ) : where === 'about' ? (
         <AboutPage services={services} />
-      ) : later ? (
-        <LaterPage craft={later} />
       ) : (
         <StartPage services={services} session={sessions.relief} onChooseFile={chooseFile} />
       )}

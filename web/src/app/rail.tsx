@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-import { Icon, tipHandlers } from '../ui';
-import { crafts, notYet } from './crafts';
+import { Icon } from '../ui';
+import { crafts } from './crafts';
 import { place } from './route';
 
 export function Rail() {
@@ -12,10 +12,7 @@ export function Rail() {
           <a
             key={craft.place}
             href={`#/${craft.place}`}
-            class={craft.available ? '' : 'later'}
             aria-current={place.value === craft.place ? 'page' : undefined}
-            aria-label={craft.available ? craft.title : `${craft.title}, not in this version yet`}
-            {...tipHandlers(craft.available ? undefined : notYet)}
           >
             <Icon name={craft.icon} />
             {craft.title}

@@ -5,7 +5,7 @@ import type { Services } from '../crafts/common/services';
 import type { ReliefSession } from '../crafts/relief/relief_session';
 import { warmUp } from '../crafts/relief/warm_up';
 import { Button, Icon } from '../ui';
-import { crafts, notYet } from './crafts';
+import { crafts } from './crafts';
 import { go } from './route';
 import { told } from './told';
 
@@ -49,18 +49,14 @@ export function StartPage({ services, session, onChooseFile }: StartPageProps) {
         <ul class="craft-cards">
           {crafts.slice(0, 4).map((craft) => (
             <li key={craft.place}>
-              <a class={craft.available ? 'craft-card' : 'craft-card later'} href={`#/${craft.place}`}>
+              <a class="craft-card" href={`#/${craft.place}`}>
                 <span class="craft-picture">
-                  {craft.available ? (
-                    <KeptPicture name={`craft_${craft.place}`} />
-                  ) : (
-                    <Icon name={craft.icon} />
-                  )}
+                  <KeptPicture name={`craft_${craft.place}`} />
                 </span>
                 <span class="craft-text">
                   <strong>{craft.title}</strong>
                   <span>{craft.pitch}</span>
-                  <small>{craft.available ? craft.makes : notYet}</small>
+                  <small>{craft.makes}</small>
                 </span>
               </a>
             </li>

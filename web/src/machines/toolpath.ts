@@ -17,7 +17,7 @@ export interface ToolPathPart {
 }
 
 /** A job of its own, because the tool is changed before it; lines are counted in its own file. */
-export interface ToolPathStage {
+interface ToolPathStage {
   readonly name: string;
   readonly file: string;
   readonly first_path: number;

@@ -21,7 +21,7 @@ const AWAY_BESIDE = 20;
 const LEAST = 64;
 
 /** A line parallel to the edge a-b, on the side away from `centre`; null where the edge is too short. */
-export function dimensionLine(a: Point, b: Point, centre: Point, away: number): DimensionLine | null {
+function dimensionLine(a: Point, b: Point, centre: Point, away: number): DimensionLine | null {
   let [p, q] = [a, b];
   if (q.xPx < p.xPx - 1e-6 || (Math.abs(q.xPx - p.xPx) <= 1e-6 && q.yPx < p.yPx)) [p, q] = [q, p];
   const dx = q.xPx - p.xPx;
@@ -107,7 +107,7 @@ export class Dimensions {
 }
 
 /** Whole millimetres as "120 mm", others with one digit: "85.5 mm"; small ones with two. */
-export function formatLength(mm: number): string {
+function formatLength(mm: number): string {
   if (mm < 10) return formatValue(Math.round(mm * 100) / 100, 'mm', 0.01).replace(/\.?0+(?=\u2009)/, '');
   return formatValue(mm, 'mm', Math.abs(mm - Math.round(mm)) < 0.05 ? 1 : 0.1);
 }

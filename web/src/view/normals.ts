@@ -19,7 +19,7 @@ export interface Shading {
 }
 
 /** Cross products of the triangles' edges: twice the area long, outward. */
-export function faceNormals(positions: ArrayLike<number>, indices: Uint32Array, out: Float32Array): void {
+function faceNormals(positions: ArrayLike<number>, indices: Uint32Array, out: Float32Array): void {
   for (let t = 0; t < indices.length; t += 3) {
     const a = 3 * indices[t]!;
     const b = 3 * indices[t + 1]!;

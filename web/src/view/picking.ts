@@ -47,7 +47,7 @@ export function pickAt(
 }
 
 /** Value within a triangle; null without values, or where a corner has none. */
-export function valueAt(
+function valueAt(
   values: ArrayLike<number> | null,
   indices: Uint32Array,
   triangle: number,

@@ -52,7 +52,7 @@ export const FULL: Quality = {
   restMs: 110,
 };
 
-export const SPARING: Quality = {
+const SPARING: Quality = {
   antialias: false,
   pixelRatio: 1,
   shadowSize: 1024,

@@ -49,20 +49,3 @@ export function cutOutline(
   }
   return Float32Array.from(out);
 }
-
-/** Length of an outline and, for closed ones, the area it encloses in the plane (holes taken off). */
-export function outlineMeasures(
-  pieces: ArrayLike<number>,
-  normal: readonly [number, number, number],
-): { length: number; area: number } {
-  let length = 0;
-  let twice = 0;
-  for (let i = 0; i + 5 < pieces.length; i += 6) {
-    const [ax, ay, az] = [pieces[i]!, pieces[i + 1]!, pieces[i + 2]!];
-    const [bx, by, bz] = [pieces[i + 3]!, pieces[i + 4]!, pieces[i + 5]!];
-    length += Math.hypot(bx - ax, by - ay, bz - az);
-    twice +=
-      normal[0] * (ay * bz - az * by) + normal[1] * (az * bx - ax * bz) + normal[2] * (ax * by - ay * bx);
-  }
-  return { length, area: Math.abs(twice) / 2 };
-}

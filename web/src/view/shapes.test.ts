@@ -5,10 +5,27 @@ import { plateDimensions } from './dimensions';
 import { dotOf, lightAt, spokenLight, towardsLight } from './light';
 import { isClosed, shadingFor, smoothNormals, updateNormals } from './normals';
 import { plateBody, plateCorners, plateFrame, plateFront } from './plate';
-import { cutOutline, outlineMeasures } from './section';
+import { cutOutline } from './section';
 import { supportOf } from './support';
 import { swipeWay } from './swipe_divider';
 import { dot, viewerAxes } from './vector';
+
+/** Length of an outline and, for closed ones, the area it encloses in the plane (holes taken off). */
+function outlineMeasures(
+  pieces: ArrayLike<number>,
+  normal: readonly [number, number, number],
+): { length: number; area: number } {
+  let length = 0;
+  let twice = 0;
+  for (let i = 0; i + 5 < pieces.length; i += 6) {
+    const [ax, ay, az] = [pieces[i]!, pieces[i + 1]!, pieces[i + 2]!];
+    const [bx, by, bz] = [pieces[i + 3]!, pieces[i + 4]!, pieces[i + 5]!];
+    length += Math.hypot(bx - ax, by - ay, bz - az);
+    twice +=
+      normal[0] * (ay * bz - az * by) + normal[1] * (az * bx - ax * bz) + normal[2] * (ax * by - ay * bx);
+  }
+  return { length, area: Math.abs(twice) / 2 };
+}
 
 /** A sphere of latitude and longitude, poles shared. */
 function sphere(n: number, m: number, radius = 1): { positions: Float64Array; indices: Uint32Array } {

@@ -101,7 +101,6 @@ export class Stage {
   private palette: Palette | null = null;
   private sectionKey = '';
   private pixelRatio = 1;
-  private occlusionStrength = OCCLUSION;
 
   constructor(
     canvas: HTMLCanvasElement | OffscreenCanvas,
@@ -298,10 +297,6 @@ export class Stage {
     }));
   }
 
-  setOcclusion(strength: number): void {
-    this.occlusionStrength = strength * OCCLUSION;
-  }
-
   get bakePending(): boolean {
     return this.parts.original.subject.bakePending || this.parts.relief.subject.bakePending;
   }
@@ -349,7 +344,7 @@ export class Stage {
       // A still picture samples the light itself; a moving one blurs the shadow's edge instead.
       const softness = (still ? 0.0015 : 0.011) * (mesh ? subject.support.radius : 1);
       subject.prepareShadow(renderer, this.depthView, towards, softness, this.sectionKey);
-      subject.setOcclusionStrength(this.occlusionStrength);
+      subject.setOcclusionStrength(OCCLUSION);
     }
     this.setPictureUniforms(picture, towards, width, height, sample);
     renderer.setRenderTarget(target);

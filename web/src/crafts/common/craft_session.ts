@@ -20,7 +20,7 @@ export interface ChosenFiles {
 }
 
 /** Which of several files dropped together is the model; the others are its materials and pictures. */
-export function chooseModel(files: readonly File[], catalog: Catalog | null): ChosenFiles | null {
+function chooseModel(files: readonly File[], catalog: Catalog | null): ChosenFiles | null {
   const extensions = (catalog?.mesh_formats ?? []).map(({ extension }) => `.${extension}`);
   const isModel = ({ name }: File) => extensions.some((ending) => name.toLowerCase().endsWith(ending));
   const model = files.find(isModel) ?? files[0];

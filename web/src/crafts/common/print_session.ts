@@ -25,7 +25,7 @@ interface Laid {
   readonly key: string;
 }
 
-export const pagesOperation = 'page-tiles';
+const pagesOperation = 'page-tiles';
 /** Without a printer the pages become a file. */
 export const asFile = '';
 

@@ -26,7 +26,7 @@ const number = (value: unknown): number =>
   typeof value === 'number' && Number.isFinite(value) ? value : NaN;
 
 /** Of calibration.json; a grid search has values without intervals. */
-export function readProfiles(calibration: JsonObject): Profile[] {
+function readProfiles(calibration: JsonObject): Profile[] {
   const profiles = Array.isArray(calibration['profiles']) ? calibration['profiles'].filter(isObject) : [];
   const plain = Array.isArray(calibration['parameters']) ? calibration['parameters'].filter(isObject) : [];
   return (profiles.length > 0 ? profiles : plain).map((one) => ({

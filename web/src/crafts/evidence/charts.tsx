@@ -89,7 +89,7 @@ function KeyLine({ at, kind, text }: { at: number; kind: string; text: string })
 }
 
 /** "−70 % (−76 to −62)": of the error. */
-export function gainWords({ share: { value, low, high } }: Gain): string {
+function gainWords({ share: { value, low, high } }: Gain): string {
   const change = (share: number) => {
     const rounded = Math.round(-100 * share);
     return rounded > 0 ? `+${rounded}` : formatFixed(rounded, 0);

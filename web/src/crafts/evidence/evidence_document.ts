@@ -6,7 +6,7 @@ import type { CraftResult, RoomDocument, Subject } from '../common/craft_documen
 import { emptyRoom, RoomCommands } from '../common/craft_document';
 
 export const diagnosing = 'evidence-diagnose';
-export const calibrating = 'evidence-calibrate';
+const calibrating = 'evidence-calibrate';
 export const comparing = 'thermoform-compare';
 export const inventing = 'evidence-virtual-object';
 export const registering = 'evidence-register';
@@ -29,7 +29,7 @@ export interface MeasuredObject {
 }
 
 /** Files of an object that is not complete yet. */
-export interface Draft {
+interface Draft {
   readonly name: string;
   readonly files: Readonly<Partial<Record<ObjectFile, BlobReference>>>;
 }

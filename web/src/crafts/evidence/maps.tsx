@@ -238,7 +238,7 @@ function Opening({ frame, size_mm: [x, y] }: { frame: Frame; size_mm: readonly [
 }
 
 /** Shafts with heads; what is too short for a head is a dot. */
-export function arrowPath(arrows: readonly Arrow[], frame: Frame, scale: number): string {
+function arrowPath(arrows: readonly Arrow[], frame: Frame, scale: number): string {
   return arrows
     .map(({ x, y, dx, dy }) => {
       const [px, py] = placeOn(frame, x, y);

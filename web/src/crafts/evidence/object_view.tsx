@@ -21,7 +21,7 @@ const viewpoint: Viewpoint = {
 const mostArrows = 240;
 
 /** Of every so many points; `scale` makes the longest usual ones a tenth of the sheet. */
-export function spaceArrows(residuals: Residuals, model: Model, scale: number): Float32Array {
+function spaceArrows(residuals: Residuals, model: Model, scale: number): Float32Array {
   const stride = Math.max(1, Math.ceil(residuals.count / mostArrows));
   const simulated = simulatedIn(residuals, model);
   const ends: number[] = [];

@@ -13,7 +13,7 @@ import { printOnPaper } from '../common/print_request';
 import { readyWorker } from '../common/services';
 import type { EvidenceSession } from './evidence_session';
 
-export const patterning = 'evidence-pattern';
+const patterning = 'evidence-pattern';
 /** The pages are laid out for the printer's own paper when it is printed. */
 const laterGroup = 'Paper';
 

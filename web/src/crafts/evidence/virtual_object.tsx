@@ -29,7 +29,7 @@ const openGroups = [...faultGroups, 'Virtual scan'];
 /** Something to find for who sets nothing. */
 const usualFault: JsonObject = { heating_gradient_x: 0.3 };
 
-export function faultsFirst(operation: Operation): Operation {
+function faultsFirst(operation: Operation): Operation {
   const entries = Object.entries(operation.parameters.properties);
   const isFault = ([, schema]: (typeof entries)[number]) => faultGroups.includes(schema['x-group'] ?? '');
   const plain = entries

@@ -22,7 +22,7 @@ const phaseWords: Record<MachineState['phase'], string> = {
   sleep: 'Asleep',
 };
 
-export function stateWords(state: MachineState | null): string {
+function stateWords(state: MachineState | null): string {
   if (state === null) return 'Offline';
   if (state.connection === 'greeting') return 'Connecting';
   if (state.connection === 'silent') return 'No answer';

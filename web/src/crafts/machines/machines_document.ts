@@ -8,7 +8,7 @@ import type { RoomDocument } from '../common/craft_document';
 import { emptyRoom, RoomCommands, withoutDefaults } from '../common/craft_document';
 
 export const laserJob = 'laser-job';
-export const testGrid = 'test-grid';
+const testGrid = 'test-grid';
 export const millJob = 'mill-job';
 
 /** A job is sent as it is; of a drawing, or of a model or height map, a job is made. */
@@ -20,7 +20,7 @@ export interface FileWork {
   readonly nodes?: number;
 }
 /** A test of the material, made of parameters alone. */
-export interface TestWork {
+interface TestWork {
   readonly file_name: string;
   readonly kind: 'test';
   /** What was there before, to go back to. */

@@ -12,7 +12,7 @@ import type { FileWork, Work } from './machines_document';
 import { operationFor } from './machines_document';
 
 /** One file for the machine. */
-export interface PlannedJob {
+interface PlannedJob {
   /** "rough" or "finish" where each tool has a job of its own; "" for the only one. */
   readonly stage: string;
   readonly bytes: Uint8Array<ArrayBuffer>;

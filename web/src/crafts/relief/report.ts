@@ -14,7 +14,7 @@ export function solidLine(report: Report): string {
 }
 
 /** "Normals 11.1° closer than plain scaling". */
-export function gainLine(report: Report): string | null {
+function gainLine(report: Report): string | null {
   const own = figure(report, 'normal_error_mean_deg');
   const plain = figure(report, 'normal_error_linear_mean_deg');
   if (own === null || plain === null) return null;

@@ -15,7 +15,7 @@ import type { ReliefSession, Shown } from './relief_session';
 
 /** The viewport's own state outlives a visit to another page. */
 export const mode = signal<ViewMode>('swipe');
-export const light = signal<LightDirection>({ azimuthDeg: 135, elevationDeg: 35, follows: 'object' });
+const light = signal<LightDirection>({ azimuthDeg: 135, elevationDeg: 35, follows: 'object' });
 export const atViewpoint = signal(true);
 export const followCamera = signal(false);
 let followed = '';

@@ -14,7 +14,7 @@ import { view } from './views';
 const dismissed = signal('');
 
 /** How far the model reaches beyond the clamp, mm; 0 inside. */
-export function overhang_mm(session: ThermoformSession): number {
+function overhang_mm(session: ThermoformSession): number {
   const original = session.original.value;
   const shown = session.shown.value;
   const placement = placementNow(session);

@@ -12,7 +12,7 @@ import { playing } from './views';
 const titles: Readonly<Record<string, string>> = { relax: 'Relax', raise: 'Raise', vacuum: 'Vacuum' };
 
 /** What happens in a phase, in a few words. */
-export function phaseDetail(name: string, { report }: Formed, all: Readonly<Record<string, Json>>): string {
+function phaseDetail(name: string, { report }: Formed, all: Readonly<Record<string, Json>>): string {
   if (name === 'relax') {
     const sag = figure(report, 'sag_mm');
     return sag === null ? '' : `sags ${withUnit(formatNumber(sag, 2), 'mm')}`;

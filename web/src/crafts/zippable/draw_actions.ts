@@ -27,7 +27,7 @@ export const tool = signal<Tool | null>(null);
 export const held = signal<{ readonly handle: Handle; readonly at: Place3 } | null>(null);
 
 /** Millimetres as shown, a unit of the model's file. */
-export function shownScale(session: ZippableSession): number {
+function shownScale(session: ZippableSession): number {
   const original = session.original.value;
   const size_mm = session.value('size_mm');
   if (original === null || typeof size_mm !== 'number') return 1;

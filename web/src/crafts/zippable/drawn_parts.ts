@@ -3,7 +3,7 @@
 
 export type Place3 = readonly [x: number, y: number, z: number];
 
-export interface Border {
+interface Border {
   readonly points: readonly Place3[];
   /** Else it goes from one border to another. */
   readonly closed: boolean;

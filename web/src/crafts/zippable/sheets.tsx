@@ -114,7 +114,7 @@ function SendButton({ session, onSendToMachine }: Omit<SheetsProps, 'drawing'>) 
 const many = (count: number, one: string) => `${formatCount(count)} ${one}${count === 1 ? '' : 's'}`;
 
 /** "15 plates on 4 boards; 36 screws". */
-export function rigWords(session: ZippableSession): string {
+function rigWords(session: ZippableSession): string {
   const report = session.plan.value?.report ?? {};
   const [plates, boards, screws] = ['rig_plates', 'rig_sheets', 'rig_screws'].map((name) =>
     figure(report, name),
@@ -125,7 +125,7 @@ export function rigWords(session: ZippableSession): string {
 }
 
 /** "7 pieces on 2 sheets of 600 × 300 mm; zipper to cut: 2.57 m". */
-export function planWords(session: ZippableSession): string {
+function planWords(session: ZippableSession): string {
   const report = session.plan.value?.report ?? {};
   const pieces = Array.isArray(report['pieces']) ? report['pieces'].length : null;
   const [sheets, zipper] = [figure(report, 'sheets'), figure(report, 'zipper_to_cut_mm')];

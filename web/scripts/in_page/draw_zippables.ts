@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Draws a row of docs/zippable_gallery.md, in a browser, for scripts/draw_zippables.js: model, course, ribbon, plan, zipped cloth.
 // Not part of the page.
-import { partToken } from '../crafts/zippable/views';
-import '../crafts/zippable/zippable.css';
-import { originalData } from '../crafts/common/shaded_mesh';
-import { readPly } from '../jobs/mesh_reader';
-import type { MeshData, ThumbnailOptions, Vec3 } from '../view';
-import { renderThumbnail } from '../view';
-import { cross, normalise, perpendicular, subtract } from '../view/vector';
+import { partToken } from '../../src/crafts/zippable/views';
+import '../../src/crafts/zippable/zippable.css';
+import { originalData } from '../../src/crafts/common/shaded_mesh';
+import { readPly } from '../../src/jobs/mesh_reader';
+import type { MeshData, ThumbnailOptions, Vec3 } from '../../src/view';
+import { renderThumbnail } from '../../src/view';
+import { cross, normalise, perpendicular, subtract } from '../../src/view/vector';
 
 /** Files of zippable-design, zippable-plan and zippable-simulate; what is bytes comes as base64. */
 export interface RowFiles {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Draws the pictures of the start screen, in a browser, for scripts/draw_pictures.js to keep in public/.
 // Not part of the page: drawing a gallery at each first visit would take the solver's time.
-import { originalData } from '../crafts/common/shaded_mesh';
-import { plateOf, reliefData } from '../crafts/relief/meshes';
-import { clampFrame, frameShadow } from '../crafts/thermoform/clamp_frame';
-import type { Job, JsonObject, Report, Sample } from '../jobs/contract';
-import { findOperation } from '../jobs/contract';
-import { readPly } from '../jobs/mesh_reader';
-import { WasmBackend } from '../jobs/wasm_backend';
-import type { ColourMapping } from '../view';
-import { renderThumbnail } from '../view';
+import { originalData } from '../../src/crafts/common/shaded_mesh';
+import { plateOf, reliefData } from '../../src/crafts/relief/meshes';
+import { clampFrame, frameShadow } from '../../src/crafts/thermoform/clamp_frame';
+import type { Job, JsonObject, Report, Sample } from '../../src/jobs/contract';
+import { findOperation } from '../../src/jobs/contract';
+import { readPly } from '../../src/jobs/mesh_reader';
+import { WasmBackend } from '../../src/jobs/wasm_backend';
+import type { ColourMapping } from '../../src/view';
+import { renderThumbnail } from '../../src/view';
 
 const pictureVertices = 30_000;
 const none = { read: () => Promise.reject(new Error('No inputs.')) };

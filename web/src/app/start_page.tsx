@@ -37,7 +37,7 @@ export function StartPage({ services, session, onChooseFile }: StartPageProps) {
     const begin = async () => {
       await services.projects.create();
       go('relief');
-      await session.openSample(sample, title);
+      await session.model.openSample(sample, title);
     };
     told(begin());
   };

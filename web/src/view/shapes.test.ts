@@ -10,16 +10,12 @@ import { supportOf } from './support';
 import { swipeWay } from './swipe_divider';
 import { dot, viewerAxes } from './vector';
 
-/** Length of an outline and, for closed ones, the area it encloses in the plane (holes taken off). */
-function outlineMeasures(
-  pieces: ArrayLike<number>,
-  normal: readonly [number, number, number],
-): { length: number; area: number } {
+/** Length of an outline of pieces, two points each, and the area that it encloses in the plane (holes taken off). */
+function outlineMeasures(pieces: Float32Array, normal: Vec3): { length: number; area: number } {
   let length = 0;
   let twice = 0;
   for (let i = 0; i + 5 < pieces.length; i += 6) {
-    const [ax, ay, az] = [pieces[i]!, pieces[i + 1]!, pieces[i + 2]!];
-    const [bx, by, bz] = [pieces[i + 3]!, pieces[i + 4]!, pieces[i + 5]!];
+    const [ax, ay, az, bx, by, bz] = pieces.subarray(i, i + 6) as unknown as [...Vec3, ...Vec3];
     length += Math.hypot(bx - ax, by - ay, bz - az);
     twice +=
       normal[0] * (ay * bz - az * by) + normal[1] * (az * bx - ax * bz) + normal[2] * (ax * by - ay * bx);

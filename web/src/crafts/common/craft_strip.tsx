@@ -2,13 +2,13 @@
 // The job strip of a room that previews as one goes and solves in full when asked.
 import { JobStrip, useLasting } from '../../ui';
 import type { CraftDocument, CraftResult } from './craft_document';
-import type { PreviewingSession, ShownWork } from './previewing_session';
+import type { PreviewingRoom, ShownWork } from './previews';
 import { Results } from './results';
 import type { RunningActivity } from './room_strip';
 import { previewLine, RunningStrip } from './room_strip';
 
 export interface CraftStripProps<D extends CraftDocument, S extends ShownWork> {
-  readonly session: PreviewingSession<D, S>;
+  readonly session: PreviewingRoom<D, S>;
   /** Titles of what runs; then of a full result, of nothing made yet, and of what could not be made. */
   readonly titles: Readonly<Record<RunningActivity['kind'] | 'done' | 'empty' | 'failed', string>>;
   readonly detailOf: (result: CraftResult) => string;
@@ -28,7 +28,7 @@ export function CraftStrip<D extends CraftDocument, S extends ShownWork>(props: 
   const activity = session.activity.value;
   const lasting = useLasting(activity.kind !== 'idle');
   const result = session.result.value;
-  const shown = session.shown.value;
+  const shown = session.previews.shown.value;
   if (lasting && activity.kind !== 'idle')
     return <RunningStrip activity={activity} titles={titles} onCancel={() => session.cancel()} />;
   const state = result
@@ -38,8 +38,8 @@ export function CraftStrip<D extends CraftDocument, S extends ShownWork>(props: 
         failed: titles.failed,
         empty: titles.empty,
         corners: shown && props.cornersOf(shown),
-        seconds: session.previewSeconds.value,
-        previewing: session.previewing.value,
+        seconds: session.previews.seconds.value,
+        previewing: session.previews.running.value,
       });
   return (
     <JobStrip {...state}>

@@ -68,7 +68,7 @@ describe('a solve in the browser', () => {
   });
 
   it('is not kept from running by a preview', async () => {
-    room.previewing.value = true;
+    room.previews.running.value = true;
     void solveInFull(room);
     expect(room.browser.runs).toHaveLength(1);
   });

@@ -2,11 +2,11 @@
 import { Button } from '../../ui';
 import type { CraftDocument } from './craft_document';
 import { titleOf } from './craft_document';
-import type { CraftSession } from './craft_session';
+import type { ModelRoom } from './opened_model';
 import { modelLine, sentences } from './report';
 
 export interface ModelRowProps<D extends CraftDocument> {
-  readonly session: CraftSession<D>;
+  readonly session: ModelRoom<D>;
   readonly picture: string | null;
   readonly onReplace: () => void;
 }
@@ -27,7 +27,7 @@ export function ModelRow<D extends CraftDocument>({ session, picture, onReplace 
         <strong class="clip">{titleOf(model.source)}</strong>
         <span class="model-line">{modelLine(model.report)}</span>
         {repairs > 0 ? (
-          <button type="button" class="text-button" onClick={() => (session.repairsOpen.value = true)}>
+          <button type="button" class="text-button" onClick={() => (session.model.repairsOpen.value = true)}>
             {repairs === 1 ? '1 repair' : `${repairs} repairs`}
           </button>
         ) : null}

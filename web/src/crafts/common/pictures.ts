@@ -7,7 +7,7 @@ import { useEffect } from 'preact/hooks';
 import type { Report } from '../../jobs/contract';
 import type { Viewpoint, Viewport } from '../../view';
 import type { CraftDocument, CraftResult } from './craft_document';
-import type { CraftSession } from './craft_session';
+import type { ModelRoom } from './opened_model';
 
 export type Look = Pick<Viewpoint, 'direction' | 'up'>;
 const pictureSize = { width: 144, height: 112 };
@@ -20,7 +20,7 @@ async function pictureOf(view: Viewport, part: 'original' | 'relief', look: Look
 
 /** The model's picture as an address: the gallery's for a sample. */
 export function useModelPicture<D extends CraftDocument>(
-  session: CraftSession<D>,
+  session: ModelRoom<D>,
   viewport: Signal<Viewport | null>,
   look: Look,
 ) {
@@ -32,7 +32,7 @@ export function useModelPicture<D extends CraftDocument>(
       url.value = next;
     };
     return effect(() => {
-      const from = session.original.value?.from;
+      const from = session.model.original.value?.from;
       const source = session.document.value.model?.source;
       const view = viewport.value;
       if (from === undefined || source === undefined || view === null || drawn === from) return;
@@ -55,7 +55,7 @@ interface Shown {
 
 /** A new result gets its picture as soon as it is shown. */
 export function useResultPictures<D extends CraftDocument>(
-  session: CraftSession<D>,
+  session: ModelRoom<D>,
   viewport: Signal<Viewport | null>,
   shown: ReadonlySignal<Shown | null>,
   look: (result: CraftResult, view: Viewport) => Look,

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Notes that every craft's page has at the foot of its viewport.
 import { Button, Note } from '../../ui';
-import type { CraftSession } from './craft_session';
 import { solveInFull } from './full_solve';
+import type { ModelRoom } from './opened_model';
 import { sentences } from './report';
 
 /** What went wrong, with the mend as a button; null where nothing did. */
-export function problemNote(session: CraftSession, onChooseFile: () => void) {
+export function problemNote(session: ModelRoom, onChooseFile: () => void) {
   const problem = session.problem.value;
   if (problem === null) return null;
   const ofFile = problem.kind === 'file';
@@ -36,16 +36,16 @@ export function problemNote(session: CraftSession, onChooseFile: () => void) {
 }
 
 /** What was mended in the model just opened; null once dismissed. */
-export function repairsNote(session: CraftSession) {
+export function repairsNote(session: ModelRoom) {
   const { model } = session.document.value;
-  if (!session.repairsOpen.value || model === null) return null;
+  if (!session.model.repairsOpen.value || model === null) return null;
   return (
     <div class="note-place">
       <Note
         kind="plain"
         icon="check"
         title="Mended while opening"
-        onDismiss={() => (session.repairsOpen.value = false)}
+        onDismiss={() => (session.model.repairsOpen.value = false)}
       >
         {sentences(model.report, 'repairs').join(' ')}
       </Note>

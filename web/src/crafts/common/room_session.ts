@@ -79,7 +79,7 @@ export abstract class RoomSession<D extends RoomDocument = RoomDocument> {
   abstract readonly wantedOutputs: readonly string[];
   /** The parameters that the solve depends on, and the result made with them and the subject in force: null where its bytes are lost. */
   abstract readonly asked: ReadonlySignal<JsonObject>;
-  abstract result: ReadonlySignal<CraftResult | null>;
+  abstract readonly result: ReadonlySignal<CraftResult | null>;
   abstract readonly failedTitle: string;
   /** The request being solved in full; any change to it ends the solve. */
   solvingFor: Json = null;
@@ -156,7 +156,7 @@ export abstract class RoomSession<D extends RoomDocument = RoomDocument> {
   }
 
   /** Ends a full solve of what is no longer asked for. */
-  protected cancelOutdatedSolve(): void {
+  cancelOutdatedSolve(): void {
     const subject = this.subject.value;
     const solving = untracked(() => this.activity.value.kind === 'solving');
     if (subject === null || !solving || this.result.value !== null || this.solvingFor === null) return;
@@ -200,12 +200,12 @@ export abstract class RoomSession<D extends RoomDocument = RoomDocument> {
   // ---- what is kept ----
 
   /** A result whose bytes cannot be read stays in the document, but counts as not made: it can only be made again. */
-  protected lose({ id }: CraftResult): void {
+  lose({ id }: CraftResult): void {
     this.#lost.value = new Set([...this.#lost.peek(), id]);
   }
 
   /** Of a result that the document lists, what `result` is. */
-  protected unlessLost(listed: ReadonlySignal<CraftResult | null>): ReadonlySignal<CraftResult | null> {
+  unlessLost(listed: ReadonlySignal<CraftResult | null>): ReadonlySignal<CraftResult | null> {
     return computed(() => {
       const found = listed.value;
       return found !== null && this.#lost.value.has(found.id) ? null : found;

@@ -11,9 +11,11 @@ import { ProjectStore } from '../../project/project_store';
 import { MemoryStorage } from '../../project/storage';
 import type { CraftDocument, CraftModel, CraftResult } from './craft_document';
 import { CraftCommands, emptyCraft, sameRequest } from './craft_document';
-import type { PreviewRequest, ShownWork } from './previewing_session';
-import { PreviewingSession } from './previewing_session';
+import type { PreviewRequest, ShownWork } from './previews';
+import { OpenedModel } from './opened_model';
+import { Previews } from './previews';
 import type { RoomWithProducts } from './products';
+import { RoomSession } from './room_session';
 
 export const testCatalog = (...names: readonly string[]): Catalog => ({
   version: '1',
@@ -74,20 +76,33 @@ export class HeldBackend implements Backend {
 type TestDocument = CraftDocument & RoomWithProducts;
 export const testCraft = new CraftCommands<TestDocument>('test', { ...emptyCraft, products: [] });
 
-export class TestRoom extends PreviewingSession<TestDocument, ShownWork> {
+export class TestRoom extends RoomSession<TestDocument> {
   readonly operationName = 'test';
-  readonly meshInputName = 'mesh';
   readonly wantedOutputs = ['made.ply'];
-  protected readonly shownOutputs = this.wantedOutputs;
   readonly failedTitle = 'Could not make it';
-  protected readonly previewFailedTitle = 'Could not preview it';
   readonly document = computed(() => testCraft.of(this.services.projects.document.value));
   readonly operation = computed(() => findOperation(testCatalog('test'), 'test') ?? null);
   readonly asked = computed(() => this.document.value.parameters);
-  readonly result = computed(() => {
-    const request = { mesh: this.subject.value?.key ?? '', parameters: this.asked.value };
-    return this.document.value.results.find((made) => sameRequest(made, request)) ?? null;
+  readonly model: OpenedModel<TestDocument> = new OpenedModel(this, {
+    commands: testCraft,
+    inputName: 'mesh',
+    forgets: () => false,
   });
+  readonly hasWork = this.model.isThere;
+  readonly subject = this.model.subject;
+  readonly result = this.unlessLost(
+    computed(() => {
+      const request = { mesh: this.subject.value?.key ?? '', parameters: this.asked.value };
+      return this.document.value.results.find((made) => sameRequest(made, request)) ?? null;
+    }),
+  );
+  readonly previews = new Previews<TestDocument, ShownWork>(this, {
+    shownOutputs: this.wantedOutputs,
+    failedTitle: 'Could not preview it',
+    make: (request) => this.#makePreview(request),
+    read: (result) => this.#readResult(result),
+  });
+  readonly shown = this.previews.shown;
   /** Why no preview is made, where none is. */
   refuses: JobError | null = null;
   readonly projects: ProjectStore;
@@ -102,20 +117,34 @@ export class TestRoom extends PreviewingSession<TestDocument, ShownWork> {
     this.browser = parts.browser;
     this.native = parts.native;
     this.connection = parts.connection;
-    this.startFollowing();
+    this.model.load = () => Promise.resolve(); // its models have no bytes
+    this.previews.startFollowing();
   }
 
-  protected forgets = () => false;
-  protected ownParameters = () => ({});
   measured = () => null;
-  protected override loadOriginal = () => Promise.resolve();
 
-  protected async makePreview({ subject, parameters }: PreviewRequest): Promise<ShownWork> {
+  openFiles(files: readonly File[]): Promise<boolean> {
+    return this.model.openFiles(files);
+  }
+
+  get title(): string {
+    return this.model.title;
+  }
+
+  cancelPreview(): void {
+    this.previews.cancel();
+  }
+
+  protected follow(): void {
+    this.previews.follow();
+  }
+
+  async #makePreview({ subject, parameters }: PreviewRequest): Promise<ShownWork> {
     if (this.refuses) throw this.refuses;
     return { kind: 'preview', report: {}, parameters, from: subject.key };
   }
 
-  protected async readResult({ outputs, report, parameters, mesh }: CraftResult): Promise<ShownWork> {
+  async #readResult({ outputs, report, parameters, mesh }: CraftResult): Promise<ShownWork> {
     await this.projects.blobs.read(outputs['made.ply']?.blob ?? '');
     return { kind: 'full', report, parameters, from: mesh };
   }

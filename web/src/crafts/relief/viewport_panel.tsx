@@ -78,7 +78,9 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
       effect(() => followOnly(session)),
       effect(() => viewport.setMode(mode.value)),
       keepDrawn(viewport, session, (thickness) => inset.update(thickness)),
-      effect(() => viewport.setResting(session.previewing.value || session.activity.value.kind !== 'idle')),
+      effect(() =>
+        viewport.setResting(session.previews.running.value || session.activity.value.kind !== 'idle'),
+      ),
     ];
     const resize = new ResizeObserver(() => viewport.setFreeRectangle(freeRectangle(foot.current)));
     resize.observe(container.current);
@@ -103,7 +105,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
   return (
     <div class="viewport-panel">
       <div ref={container} class="viewport" />
-      {session.original.value && drawing.value ? (
+      {session.model.original.value && drawing.value ? (
         <div class="float top-left">
           <Segmented
             floating
@@ -122,7 +124,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
             mean={figure(shown.report, 'normal_error_mean_deg') ?? undefined}
           />
         ) : null}
-        {session.previewing.value && session.original.value && shown === null ? (
+        {session.previews.running.value && session.model.original.value && shown === null ? (
           <p class="label-chip">
             <Icon name="clock" small /> Making the first preview
           </p>
@@ -132,7 +134,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
       <div
         ref={ball}
         class="float top-right panel light-panel"
-        hidden={session.original.value === null || !drawing.value}
+        hidden={session.model.original.value === null || !drawing.value}
       />
       <div ref={side} class="float bottom-right panel side-inset" hidden={shown === null || !drawing.value} />
       {children}
@@ -159,7 +161,7 @@ function keepDrawn(
   let drawnRelief: Shown | null = null;
   let drawnModel: string | null = null;
   const draw = () => {
-    const original = session.original.value;
+    const original = session.model.original.value;
     const shown = session.shown.value;
     if (original === null) {
       viewport.setOriginal(null);

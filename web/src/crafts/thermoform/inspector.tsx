@@ -21,7 +21,7 @@ const openGroups = ['Placement', 'Sheet', 'Machine'];
 
 /** The size that the core chose: of the model before it is turned. */
 function automaticValues(session: ThermoformSession): Record<string, number> {
-  const original = session.original.value;
+  const original = session.model.original.value;
   const placement = placementNow(session);
   if (original === null || placement === null) return {};
   const scale = Math.hypot(...[0, 1, 2].map((at) => placement[at] ?? 0));

@@ -15,7 +15,7 @@ const dismissed = signal('');
 
 /** How far the model reaches beyond the clamp, mm; 0 inside. */
 function overhang_mm(session: ThermoformSession): number {
-  const original = session.original.value;
+  const original = session.model.original.value;
   const shown = session.shown.value;
   const placement = placementNow(session);
   if (original === null || shown === null || placement === null) return 0;

@@ -82,7 +82,7 @@ function Empty({ session, onChooseFile }: ThermoformPageProps) {
       <Button kind="filled" icon="upload" onClick={onChooseFile}>
         Open a model
       </Button>
-      <Gallery samples={samples} onOpen={(sample, title) => void session.openSample(sample, title)} />
+      <Gallery samples={samples} onOpen={(sample, title) => void session.model.openSample(sample, title)} />
     </div>
   );
 }

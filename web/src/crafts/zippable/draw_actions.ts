@@ -28,7 +28,7 @@ export const held = signal<{ readonly handle: Handle; readonly at: Place3 } | nu
 
 /** Millimetres as shown, a unit of the model's file. */
 function shownScale(session: ZippableSession): number {
-  const original = session.original.value;
+  const original = session.model.original.value;
   const size_mm = session.value('size_mm');
   if (original === null || typeof size_mm !== 'number') return 1;
   return size_mm / longestSide(original.mesh);
@@ -137,7 +137,7 @@ let graph: { readonly of: ShadedMesh; readonly graph: SurfaceGraph } | null = nu
 
 /** Borders and cuts as they will run, mm as shown; the last is the one that is not whole. */
 export function drawnLines(session: ZippableSession): Float32Array[] {
-  const original = session.original.value;
+  const original = session.model.original.value;
   if (original === null) return [];
   const { borders, cuts, begun, begunCut } = drawnNow(session);
   if (borders.length + cuts.length + begun.length + begunCut.length === 0) return [];

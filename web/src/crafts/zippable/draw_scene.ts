@@ -117,7 +117,7 @@ export function keepDrawn(viewport: Viewport, session: ZippableSession): () => v
   let drawnModel: { of: unknown; style: string } | null = null;
 
   const drawModel = (): void => {
-    const original = session.original.value;
+    const original = session.model.original.value;
     const shown = session.shown.value;
     const style = styleNow();
     const of = shown?.model ?? original;

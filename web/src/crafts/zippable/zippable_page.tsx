@@ -87,7 +87,7 @@ function Empty({ session, onChooseFile }: Omit<ZippablePageProps, 'onSendToMachi
       <Button kind="filled" icon="upload" onClick={onChooseFile}>
         Open a model
       </Button>
-      <Gallery samples={samples} onOpen={(sample, title) => void session.openSample(sample, title)} />
+      <Gallery samples={samples} onOpen={(sample, title) => void session.model.openSample(sample, title)} />
     </div>
   );
 }

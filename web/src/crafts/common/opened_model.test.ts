@@ -9,7 +9,7 @@ it('a file that was still opening is not opened in the project that is open by t
     room.take('mesh of the other');
     const other = room.projects.document.value;
     await room.projects.create();
-    const opening = room.openSample('lion', 'Lion');
+    const opening = room.model.openSample('lion', 'Lion');
     await settled();
     await room.projects.open(other.id);
     room.browser.runs[0]?.finish('model.ply');
@@ -22,7 +22,7 @@ it('a file that was still opening is not opened in the project that is open by t
 
 it('the same without a change of projects opens and names', async () => {
   const room = new TestRoom();
-  const opening = room.openSample('lion', 'Lion');
+  const opening = room.model.openSample('lion', 'Lion');
   await settled();
   room.browser.runs[0]?.finish('model.ply');
   expect(await opening).toBe(true);

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What every craft's page does with its model: opens it, reads it for the view.
+// The model of a craft's room: opened from files or the gallery, read for the view.
 import type { ReadonlySignal } from '@preact/signals';
 import { computed, signal, untracked } from '@preact/signals';
 import type { Catalog, JobInput, JsonObject, Operation } from '../../jobs/contract';
 import { asJobError, findOperation, JobError } from '../../jobs/contract';
 import type { BlobReference } from '../../project/document';
-import type { Companion, CraftCommands, CraftDocument, CraftModel, Source } from './craft_document';
+import type { Companion, CraftCommands, CraftDocument, CraftModel, Source, Subject } from './craft_document';
 import { nameProject, subjectOf, titleOf } from './craft_document';
 import { importModel } from './import_model';
 import { readMesh } from './read_mesh';
 import { sentences } from './report';
-import { RoomSession } from './room_session';
+import type { RoomSession } from './room_session';
 import type { ShadedMesh } from './shaded_mesh';
 
 /** The file's bytes, and of those that came with it. */
@@ -27,34 +27,56 @@ function chooseModel(files: readonly File[], catalog: Catalog | null): ChosenFil
   return model ? { model, companions: files.filter((file) => file !== model) } : null;
 }
 
-export abstract class CraftSession<D extends CraftDocument = CraftDocument> extends RoomSession<D> {
-  declare readonly commands: CraftCommands<D>;
+export interface OpeningRules<D extends CraftDocument> {
+  readonly commands: CraftCommands<D>;
+  /** The operation's input for the model. */
+  readonly inputName: string;
+  /** Inputs beside the model; none without it. */
+  readonly furtherInputs?: ReadonlySignal<Readonly<Record<string, JobInput>>>;
+  /** What a new model says of itself; nothing without it. */
+  readonly ownParameters?: (source: Source) => JsonObject;
+  /** Which parameters belonged to the old model. */
+  readonly forgets: (name: string) => boolean;
+}
+
+export class OpenedModel<D extends CraftDocument = CraftDocument> {
   readonly original = signal<{ readonly mesh: ShadedMesh; readonly from: string } | null>(null);
   /** Repairs of the model just opened, until dismissed. */
   readonly repairsOpen = signal(false);
-  readonly hasWork = computed(() => this.document.value.model !== null);
-  /** The operation's input for the model. */
-  abstract readonly meshInputName: string;
-  /** Inputs beside the model. */
-  readonly furtherInputs: ReadonlySignal<Readonly<Record<string, JobInput>>> = signal({});
+  readonly isThere = computed(() => this.#room.document.value.model !== null);
+  /** What a full solve is about. */
   readonly subject = computed(() => {
-    const { model } = this.document.value;
-    return model && subjectOf(model.mesh, this.meshInputName, this.furtherInputs.value);
+    const { model } = this.#room.document.value;
+    return model && this.#subjectOf(model.mesh);
   });
+  /** What previews are made of. */
+  readonly previewSubject = computed(() => {
+    const { model } = this.#room.document.value;
+    return model && this.#subjectOf(model.preview);
+  });
+  readonly #room: RoomSession<D>;
+  readonly #rules: OpeningRules<D>;
 
-  /** What a new model says of itself, and which parameters belonged to the old one. */
-  protected abstract ownParameters(source: Source): JsonObject;
-  protected abstract forgets(name: string): boolean;
-  // ---- models ----
+  constructor(room: RoomSession<D>, rules: OpeningRules<D>) {
+    this.#room = room;
+    this.#rules = rules;
+  }
+
+  #subjectOf(mesh: BlobReference): Subject {
+    return subjectOf(mesh, this.#rules.inputName, this.#rules.furtherInputs?.value ?? {});
+  }
 
   async openFiles(files: readonly File[]): Promise<boolean> {
-    const chosen = chooseModel(files, this.services.catalog.value);
+    const chosen = chooseModel(files, this.#room.services.catalog.value);
     return chosen !== null && (await this.openFile(chosen));
   }
 
   async openFile({ model, companions = [] }: ChosenFiles): Promise<boolean> {
     const reference = async (file: File): Promise<BlobReference> =>
-      await this.keep(new Uint8Array(await file.arrayBuffer()), file.type || 'application/octet-stream');
+      await this.#room.keep(
+        new Uint8Array(await file.arrayBuffer()),
+        file.type || 'application/octet-stream',
+      );
     return await this.#open(model.name, async () => {
       const file = await reference(model);
       const kept: Companion[] = [];
@@ -68,43 +90,45 @@ export abstract class CraftSession<D extends CraftDocument = CraftDocument> exte
   }
 
   async #open(name: string, getSource: () => Promise<Source>): Promise<boolean> {
-    const opened = await this.busy(
+    const opened = await this.#room.busy(
       'opening',
       name,
       async (options) => {
-        const { browser, projects } = this.services;
+        const { browser, projects } = this.#room.services;
         const operation = await this.#needOperation();
         const model: CraftModel = await importModel(browser, projects.blobs, await getSource(), options);
         const first = projects.isBlank.value && projects.document.value.name === 'New project';
         options.do(
-          this.commands.openModel(
-            this.operation.value ?? operation,
+          this.#rules.commands.openModel(
+            this.#room.operation.value ?? operation,
             model,
             `Open ${name}`,
-            this.ownParameters(model.source),
-            (parameter) => this.forgets(parameter),
+            this.#rules.ownParameters?.(model.source) ?? {},
+            this.#rules.forgets,
           ),
         );
         if (first) options.do(nameProject(name.replace(/\.[^.]+$/, '')));
         this.repairsOpen.value = sentences(model.report, 'repairs').length > 0;
         return true;
       },
-      ({ message }) => (this.problem.value = { kind: 'file', title: `Could not open ${name}`, message }),
+      ({ message }) =>
+        (this.#room.problem.value = { kind: 'file', title: `Could not open ${name}`, message }),
     );
     return opened ?? false;
   }
 
-  protected async loadOriginal(from: string | null): Promise<void> {
+  /** Reads the model's mesh, named by its hash, for the view. */
+  async load(from: string | null): Promise<void> {
     if (from === null) {
       this.original.value = null;
       return;
     }
     if (untracked(() => this.original.value?.from) === from) return;
     try {
-      const mesh = await readMesh(await this.services.projects.blobs.read(from));
-      if (this.document.value.model?.mesh.blob === from) this.original.value = { mesh, from };
+      const mesh = await readMesh(await this.#room.services.projects.blobs.read(from));
+      if (this.#room.document.value.model?.mesh.blob === from) this.original.value = { mesh, from };
     } catch (thrown) {
-      this.problem.value = {
+      this.#room.problem.value = {
         kind: 'file',
         title: 'The model is missing',
         message: asJobError(thrown).message,
@@ -113,19 +137,24 @@ export abstract class CraftSession<D extends CraftDocument = CraftDocument> exte
   }
 
   async #needOperation(): Promise<Operation> {
-    const catalog = this.services.catalog.value ?? (await this.services.browser.catalog());
-    const operation = findOperation(catalog, this.operationName);
+    const catalog = this.#room.services.catalog.value ?? (await this.#room.services.browser.catalog());
+    const operation = findOperation(catalog, this.#room.operationName);
     if (operation === undefined)
       throw new JobError({
         code: 'internal',
         where: '',
-        message: `This build has no operation ${this.operationName}.`,
+        message: `This build has no operation ${this.#room.operationName}.`,
       });
     return operation;
   }
 
   get title(): string {
-    const model = this.document.value.model;
-    return model === null ? this.commands.craft : titleOf(model.source).replace(/\.[^.]+$/, '');
+    const model = this.#room.document.value.model;
+    return model === null ? this.#rules.commands.craft : titleOf(model.source).replace(/\.[^.]+$/, '');
   }
 }
+
+/** A room with a model. */
+export type ModelRoom<D extends CraftDocument = CraftDocument> = RoomSession<D> & {
+  readonly model: OpenedModel<D>;
+};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One rule set for the page and its stories, and the directions in which the page's imports may point:
-//   ui, jobs, view <- project <- crafts/<name>, machines <- app.
+//   ui, jobs, view <- project <- machines <- shared <- crafts/<name> <- app.
 import js from '@eslint/js';
 import ts from 'typescript-eslint';
 
@@ -55,18 +55,23 @@ export default ts.config(
     'project/ may use jobs/contract and nothing else.',
   ),
   closed(
+    ['web/src/shared/**'],
+    ['crafts', 'app'],
+    'shared/ is what crafts have in common; it knows none of them.',
+  ),
+  closed(
     ['web/src/crafts/relief/**'],
     ['app', 'machines', 'crafts', 'thermoform', 'zippable', 'evidence'],
-    'A craft uses ui, jobs, project and view; crafts do not know each other or the app.',
+    'A craft uses ui, jobs, project, view and shared; crafts do not know each other or the app.',
   ),
   closed(
     ['web/src/crafts/thermoform/**'],
     ['app', 'machines', 'crafts', 'relief', 'zippable', 'evidence'],
-    'A craft uses ui, jobs, project and view; crafts do not know each other or the app.',
+    'A craft uses ui, jobs, project, view and shared; crafts do not know each other or the app.',
   ),
   closed(
     ['web/src/crafts/evidence/**'],
     ['app', 'machines', 'crafts', 'relief', 'thermoform', 'zippable'],
-    'A craft uses ui, jobs, project and view; crafts do not know each other or the app.',
+    'A craft uses ui, jobs, project, view and shared; crafts do not know each other or the app.',
   ),
 );

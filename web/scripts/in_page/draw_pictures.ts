@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Draws the pictures of the start screen, in a browser, for scripts/draw_pictures.js to keep in public/.
 // Not part of the page: drawing a gallery at each first visit would take the solver's time.
-import { originalData } from '../../src/crafts/common/shaded_mesh';
+import { originalData } from '../../src/shared/panels/shaded_mesh';
 import { plateOf, reliefData } from '../../src/crafts/relief/meshes';
 import { clampFrame, frameShadow } from '../../src/crafts/thermoform/clamp_frame';
 import type { Job, JsonObject, Report, Sample } from '../../src/jobs/contract';

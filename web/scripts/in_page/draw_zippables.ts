@@ -3,7 +3,7 @@
 // Not part of the page.
 import { partToken } from '../../src/crafts/zippable/views';
 import '../../src/crafts/zippable/zippable.css';
-import { originalData } from '../../src/crafts/common/shaded_mesh';
+import { originalData } from '../../src/shared/panels/shaded_mesh';
 import { readPly } from '../../src/jobs/mesh_reader';
 import type { MeshData, ThumbnailOptions, Vec3 } from '../../src/view';
 import { renderThumbnail } from '../../src/view';

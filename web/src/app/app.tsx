@@ -2,10 +2,10 @@
 // The shell: top bar, rail, the page of the current place, and what belongs to all of them.
 import { signal, useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
-import type { PrintDialog as PrintDialogComponent } from '../crafts/common/print_dialog';
-import { toPrint, toSlice } from '../crafts/common/print_request';
-import type { Services } from '../crafts/common/services';
-import type { SliceDialog as SliceDialogComponent } from '../crafts/common/slice_dialog';
+import type { PrintDialog as PrintDialogComponent } from '../shared/print/print_dialog';
+import { toPrint, toSlice } from '../shared/print/print_request';
+import type { Services } from '../shared/session/services';
+import type { SliceDialog as SliceDialogComponent } from '../shared/print/slice_dialog';
 import type { EvidencePage as EvidencePageComponent } from '../crafts/evidence/evidence_page';
 import type { MachinesPage as MachinesPageComponent } from '../crafts/machines/machines_page';
 import type { ReliefPage as ReliefPageComponent } from '../crafts/relief/relief_page';
@@ -64,7 +64,7 @@ const printDialogs = signal<{
   readonly Slice: typeof SliceDialogComponent;
 } | null>(null);
 const loadPrintDialogs = () =>
-  Promise.all([import('../crafts/common/print_dialog'), import('../crafts/common/slice_dialog')]).then(
+  Promise.all([import('../shared/print/print_dialog'), import('../shared/print/slice_dialog')]).then(
     ([{ PrintDialog }, { SliceDialog }]) => (printDialogs.value = { Print: PrintDialog, Slice: SliceDialog }),
   );
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-import type { Services } from '../crafts/common/services';
+import type { Services } from '../shared/session/services';
 import { Dialog, formatBytes, formatCount } from '../ui';
 
 const keys: readonly (readonly [keys: readonly string[], meaning: string])[] = [

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { useState } from 'preact/hooks';
-import type { Services } from '../crafts/common/services';
+import type { Services } from '../shared/session/services';
 import { Button, Dialog, Icon, Menu } from '../ui';
 import { saveAsFile } from './project_file';
 import { placeOfWork } from './rooms';

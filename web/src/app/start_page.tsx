@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { useEffect } from 'preact/hooks';
-import { Gallery, KeptPicture } from '../crafts/common/gallery';
-import type { Services } from '../crafts/common/services';
+import { Gallery, KeptPicture } from '../shared/panels/gallery';
+import type { Services } from '../shared/session/services';
 import type { ReliefSession } from '../crafts/relief/relief_session';
 import { warmUp } from '../crafts/relief/warm_up';
 import { Button, Icon } from '../ui';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-import type { Services } from '../crafts/common/services';
+import type { Services } from '../shared/session/services';
 import { IconButton, Menu, Icon, tipHandlers } from '../ui';
 import { ProjectMenu } from './project_menu';
 import { go } from './route';

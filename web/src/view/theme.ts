@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the picture takes from the style sheet's tokens, with the tokens' own values where there are none.
 import type { ColourMapName, Theme, Vec3 } from './api';
-import { parseColour } from './colour_map';
+import { parseColour } from './mesh/colour_map';
 
 export interface Palette {
   dark: boolean;

@@ -3,8 +3,8 @@
 import type { JsonObject } from '../../jobs/contract';
 import { isObject } from '../../project/document';
 import { formatNumber, withUnit } from '../../ui';
-import type { CraftResult } from '../common/craft_document';
-import { figure, sentences } from '../common/report';
+import type { CraftResult } from '../../shared/session/craft_document';
+import { figure, sentences } from '../../shared/session/report';
 import { useEffect, useState } from 'preact/hooks';
 import type { EvidenceSession } from './evidence_session';
 import { shortNumber } from './inspector';

@@ -2,8 +2,8 @@
 // Evidence's part of a project: measured objects, what each is used for, and what was found with them.
 import type { JobInput, Json, JsonObject, Report } from '../../jobs/contract';
 import type { BlobReference } from '../../project/document';
-import type { CraftResult, RoomDocument, Subject } from '../common/craft_document';
-import { emptyRoom, RoomCommands } from '../common/craft_document';
+import type { CraftResult, RoomDocument, Subject } from '../../shared/session/craft_document';
+import { emptyRoom, RoomCommands } from '../../shared/session/craft_document';
 
 export const diagnosing = 'evidence-diagnose';
 const calibrating = 'evidence-calibrate';

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { signal } from '@preact/signals';
 import { Button, formatCount, formatNumber, Segmented, Sheet, useLasting, withUnit } from '../../ui';
-import { outputOf } from '../common/full_solve';
-import { useRoomKeys } from '../common/room_keys';
-import { download, safeFileName } from '../common/download';
-import '../common/room.css';
+import { outputOf } from '../../shared/session/full_solve';
+import { useRoomKeys } from '../../shared/session/room_keys';
+import { download, safeFileName } from '../../shared/session/download';
+import '../../shared/panels/room.css';
 import { CalibrationPanel } from './calibration_panel';
 import { Distances, Gains } from './charts';
 import './evidence.css';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import type { JsonObject } from '../../jobs/contract';
-import { bytesOf } from '../common/import_model';
+import { bytesOf } from '../../shared/session/import_model';
 import { inventing } from './evidence_document';
 import type { EvidenceSession } from './evidence_session';
 import { objectsInArchive } from './measured_files';

@@ -3,8 +3,8 @@
 import type { Json, JsonObject } from '../../jobs/contract';
 import { readPrinted } from '../../jobs/mesh_reader';
 import { jsonEqual } from '../../project/document';
-import { bytesOf } from '../common/import_model';
-import { readyWorker } from '../common/services';
+import { bytesOf } from '../../shared/session/import_model';
+import { readyWorker } from '../../shared/session/services';
 import type { MeasuredScan, Place, Scan } from './evidence_document';
 import { evidence, registering } from './evidence_document';
 import type { EvidenceSession } from './evidence_session';

@@ -4,7 +4,7 @@ import { effect } from '@preact/signals';
 import { useEffect, useMemo, useRef } from 'preact/hooks';
 import type { ColourMapping, Curve, Viewpoint } from '../../view';
 import { Viewport } from '../../view';
-import { Legend } from '../common/legend';
+import { Legend } from '../../shared/panels/legend';
 import type { EvidenceSession, Look } from './evidence_session';
 import type { Model, Residuals } from './residuals';
 import { distancesOf, niceUp, percentile, scaleFor, simulatedIn } from './residuals';

@@ -2,8 +2,8 @@
 // A scan's files, how it is measured, and where its points go.
 import type { Json } from '../../jobs/contract';
 import { Button, formatBytes } from '../../ui';
-import { withoutDefaults } from '../common/craft_document';
-import { ParameterPanel } from '../common/parameter_panel';
+import { withoutDefaults } from '../../shared/session/craft_document';
+import { ParameterPanel } from '../../shared/panels/parameter_panel';
 import type { Scan } from './evidence_document';
 import { evidence, registering } from './evidence_document';
 import type { EvidenceSession } from './evidence_session';

@@ -2,7 +2,7 @@
 // A scan on its way to measured points: its picture with the four corner marks, and how it looks on the flat sheet.
 import { useEffect, useState } from 'preact/hooks';
 import { Button, formatCount, formatNumber, withUnit } from '../../ui';
-import { figure, sentences } from '../common/report';
+import { figure, sentences } from '../../shared/session/report';
 import type { MeasuredScan, Place, Scan } from './evidence_document';
 import { evidence } from './evidence_document';
 import type { EvidenceSession } from './evidence_session';

@@ -7,7 +7,7 @@ import type { MachineLink } from '../../machines/links/machine_link';
 import type { MachineProfile } from '../../machines/profiles';
 import { asProfile, profileExtension, profileFile } from '../../machines/profiles';
 import { Button, Dialog, Icon, Menu, toast } from '../../ui';
-import { download, safeFileName } from '../common/download';
+import { download, safeFileName } from '../../shared/session/download';
 import { bridgeMachines } from './bridge_machines';
 import type { MachinesSession } from './machines_session';
 

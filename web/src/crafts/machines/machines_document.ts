@@ -4,8 +4,8 @@ import type { Catalog, JsonObject, Operation } from '../../jobs/contract';
 import { findOperation } from '../../jobs/contract';
 import type { BlobReference } from '../../project/document';
 import { jsonEqual } from '../../project/document';
-import type { RoomDocument } from '../common/craft_document';
-import { emptyRoom, RoomCommands, withoutDefaults } from '../common/craft_document';
+import type { RoomDocument } from '../../shared/session/craft_document';
+import { emptyRoom, RoomCommands, withoutDefaults } from '../../shared/session/craft_document';
 
 export const laserJob = 'laser-job';
 const testGrid = 'test-grid';

@@ -2,9 +2,9 @@
 import { useSignal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
 import { Button, formatCount, formatDuration, JobStrip, Segmented, Sheet, Switch } from '../../ui';
-import { download } from '../common/download';
-import '../common/room.css';
-import { RunningStrip } from '../common/room_strip';
+import { download } from '../../shared/session/download';
+import '../../shared/panels/room.css';
+import { RunningStrip } from '../../shared/panels/room_strip';
 import { goOn, start, startReason } from './actions';
 import { AlarmBar, MachineNotes } from './alarm_bar';
 import { BedView } from './bed_view';

@@ -5,9 +5,9 @@ import type { JsonObject, Report } from '../../jobs/contract';
 import type { ToolPath } from '../../machines/toolpath';
 import { toolPathOf, toolPathOfGcode } from '../../machines/toolpath_reader';
 import type { BlobStore } from '../../project/blob_store';
-import type { CraftResult } from '../common/craft_document';
-import { bytesOf } from '../common/import_model';
-import { sentences } from '../common/report';
+import type { CraftResult } from '../../shared/session/craft_document';
+import { bytesOf } from '../../shared/session/import_model';
+import { sentences } from '../../shared/session/report';
 import type { FileWork, Work } from './machines_document';
 import { operationFor } from './machines_document';
 

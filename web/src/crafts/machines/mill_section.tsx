@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How far a mill's job falls short of what was wanted, and the button that makes it.
 import { Button, formatDuration, formatNumber, withUnit } from '../../ui';
-import { solveInFull } from '../common/full_solve';
-import { figure } from '../common/report';
-import { readyWorker } from '../common/services';
+import { solveInFull } from '../../shared/session/full_solve';
+import { figure } from '../../shared/session/report';
+import { readyWorker } from '../../shared/session/services';
 import type { MachinesSession } from './machines_session';
 
 /** Of the report, in this order; labels and units are the operation's. */

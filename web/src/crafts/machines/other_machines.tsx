@@ -5,7 +5,7 @@ import { asJobError } from '../../jobs/contract';
 import type { BridgeMachine } from '../../machines/links/bridge_link';
 import { stopPrintServer, uploadGcode } from '../../machines/printing/worker_tasks';
 import { Button, toast } from '../../ui';
-import { safeFileName } from '../common/download';
+import { safeFileName } from '../../shared/session/download';
 import { found } from './bridge_machines';
 import { ask } from './confirm';
 import type { MachinesSession } from './machines_session';

@@ -7,7 +7,7 @@ import type { PathDetail, ToolPath } from '../../machines/toolpath';
 import { partAt, placeAt } from '../../machines/toolpath';
 import type { Insets, MeshData, Vec3, Viewpoint } from '../../view';
 import { Viewport } from '../../view';
-import { narrow } from '../common/narrow';
+import { narrow } from '../../shared/panels/narrow';
 import { timeShown } from './job_bar';
 import type { MachinesSession } from './machines_session';
 import { blockEdges, blockOf, boardUnder, movedTo, pathCurves, toolMesh } from './path_scene';

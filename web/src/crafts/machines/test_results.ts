@@ -2,7 +2,7 @@
 // What a test on material tells the jobs to come.
 import type { JsonObject, Operation, Report } from '../../jobs/contract';
 import type { MachineProfile } from '../../machines/profiles';
-import { inForce } from '../common/craft_document';
+import { inForce } from '../../shared/session/craft_document';
 
 /** A square or line of a test, as the report tells it: its lower left corner on the bed. */
 export interface TestCell {

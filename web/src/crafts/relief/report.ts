@@ -2,7 +2,7 @@
 // What a relief's report says, in lines.
 import type { Report } from '../../jobs/contract';
 import { formatDuration, formatFixed, withUnit } from '../../ui';
-import { figure, vectorOf } from '../common/report';
+import { figure, vectorOf } from '../../shared/session/report';
 
 /** "Watertight, 120.0 × 85.5 × 8.0 mm". */
 export function solidLine(report: Report): string {

@@ -6,10 +6,10 @@ import { useEffect, useRef } from 'preact/hooks';
 import { Icon, Segmented } from '../../ui';
 import type { Insets, LightDirection, Plate, ViewMode } from '../../view';
 import { LightBall, SideInset, Viewport } from '../../view';
-import { Legend } from '../common/legend';
-import { narrow } from '../common/narrow';
-import { figure } from '../common/report';
-import { originalData, scaled } from '../common/shaded_mesh';
+import { Legend } from '../../shared/panels/legend';
+import { narrow } from '../../shared/panels/narrow';
+import { figure } from '../../shared/session/report';
+import { originalData, scaled } from '../../shared/panels/shaded_mesh';
 import { errorMapping, errorOf, plateOf, reliefData, viewpointOf } from './meshes';
 import type { ReliefSession, Shown } from './relief_session';
 

@@ -4,7 +4,7 @@
 import { effect } from '@preact/signals';
 import type { MeshData, Viewport } from '../../view';
 import { turnedShading } from '../../view';
-import type { ShadedMesh } from '../common/shaded_mesh';
+import type { ShadedMesh } from '../../shared/panels/shaded_mesh';
 import type { Clamp } from './clamp_frame';
 import { clampFrame, frameShadow, platform } from './clamp_frame';
 import { endOf, sheetAt, Stretching } from './film';

@@ -2,9 +2,9 @@
 // Notes at the foot of the viewport: one at a time, the most urgent first.
 import { signal, useSignal } from '@preact/signals';
 import { formatNumber, Icon, IconButton, Note, useLasting, withUnit } from '../../ui';
-import { narrow } from '../common/narrow';
-import { sentences } from '../common/report';
-import { problemNote, repairsNote } from '../common/room_notes';
+import { narrow } from '../../shared/panels/narrow';
+import { sentences } from '../../shared/session/report';
+import { problemNote, repairsNote } from '../../shared/panels/room_notes';
 import { clampOf, placementNow } from './draw_scene';
 import { beyondOpening, boxOf, placed } from './placement';
 import type { ThermoformSession } from './thermoform_session';

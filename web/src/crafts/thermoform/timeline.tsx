@@ -3,7 +3,7 @@
 import { useEffect, useRef } from 'preact/hooks';
 import type { Json } from '../../jobs/contract';
 import { formatFixed, formatNumber, IconButton, withUnit } from '../../ui';
-import { figure } from '../common/report';
+import { figure } from '../../shared/session/report';
 import type { Phase } from './film';
 import { endOf, fractionAt, timeAt } from './film';
 import type { Formed, ThermoformSession } from './thermoform_session';

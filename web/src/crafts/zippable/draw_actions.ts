@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a maker's hand does while parts are drawn. Every point is a step to undo.
 import { signal } from '@preact/signals';
-import type { ShadedMesh } from '../common/shaded_mesh';
+import type { ShadedMesh } from '../../shared/panels/shaded_mesh';
 import type { Drawn, Handle, Place3 } from './drawn_parts';
 import {
   closedNow,

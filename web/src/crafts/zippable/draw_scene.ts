@@ -3,8 +3,8 @@
 import { effect } from '@preact/signals';
 import type { Film } from '../../jobs/glb';
 import type { Curve, MeshData, Vec3, Viewport } from '../../view';
-import { originalData, shadingOf } from '../common/shaded_mesh';
-import { figure, vectorOf } from '../common/report';
+import { originalData, shadingOf } from '../../shared/panels/shaded_mesh';
+import { figure, vectorOf } from '../../shared/session/report';
 import { boundaryEdges } from './design';
 import { drawnLines, tool } from './draw_actions';
 import { positionOf } from './ribbon_places';

@@ -3,7 +3,7 @@
 import { useSignal } from '@preact/signals';
 import { useEffect, useMemo, useRef } from 'preact/hooks';
 import { formatMetres, Segmented } from '../../ui';
-import { figure } from '../common/report';
+import { figure } from '../../shared/session/report';
 import { boundaryEdges, partName } from './design';
 import type { FlatFit } from './flat_outline';
 import { edgePath, fitFlat, partLabels, partPaths, scaleBar } from './flat_outline';

@@ -2,7 +2,7 @@
 // The parts by number: how many windings each got, how distorted it is, and what speaks against it.
 import { Fragment } from 'preact';
 import { Button, formatFixed, formatNumber, Icon, Parameter, withUnit } from '../../ui';
-import { sentences } from '../common/report';
+import { sentences } from '../../shared/session/report';
 import { partName } from './design';
 import { ownWindings, withOwnWindings } from './own_windings';
 import { partWarning } from './part_notes';

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sheets of the plan on their way to a machine, one at a time: a bed takes no more.
 import { unzipSync } from 'fflate';
-import { figure } from '../common/report';
-import { safeFileName } from '../common/download';
+import { figure } from '../../shared/session/report';
+import { safeFileName } from '../../shared/session/download';
 import { planBytes } from './make_product';
 import type { ZippableSession } from './zippable_session';
 

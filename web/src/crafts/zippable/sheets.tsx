@@ -2,8 +2,8 @@
 // The sheets that the ribbon is cut from, as the plan's own drawing has them.
 import { useEffect, useState } from 'preact/hooks';
 import { Button, formatCount, formatMetres, formatNumber, Icon, Menu, withUnit } from '../../ui';
-import { solveInFull } from '../common/full_solve';
-import { figure, sentences } from '../common/report';
+import { solveInFull } from '../../shared/session/full_solve';
+import { figure, sentences } from '../../shared/session/report';
 import { planBytes } from './make_product';
 import type { SendToMachine } from './send_sheet';
 import { sendSheet, sheetCount, sheetName } from './send_sheet';

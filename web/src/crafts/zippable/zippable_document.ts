@@ -2,10 +2,10 @@
 // The zippable's part of a project.
 import type { Catalog, JsonObject, Operation } from '../../jobs/contract';
 import type { BlobReference } from '../../project/document';
-import type { CraftDocument, CraftResult, Subject } from '../common/craft_document';
-import { CraftCommands, emptyCraft, sameRequest } from '../common/craft_document';
-import type { RoomWithProducts } from '../common/products';
-import { offeredTogether } from '../common/products';
+import type { CraftDocument, CraftResult, Subject } from '../../shared/session/craft_document';
+import { CraftCommands, emptyCraft, sameRequest } from '../../shared/session/craft_document';
+import type { RoomWithProducts } from '../../shared/session/products';
+import { offeredTogether } from '../../shared/session/products';
 import type { Drawn } from './drawn_parts';
 import { nothingDrawn } from './drawn_parts';
 

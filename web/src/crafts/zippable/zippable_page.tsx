@@ -2,11 +2,11 @@
 import { useSignal } from '@preact/signals';
 import { Button, Sheet } from '../../ui';
 import type { Viewport } from '../../view';
-import { solveInFull } from '../common/full_solve';
-import { useRoomKeys } from '../common/room_keys';
-import { Gallery } from '../common/gallery';
-import { useModelPicture, useResultPictures } from '../common/pictures';
-import '../common/room.css';
+import { solveInFull } from '../../shared/session/full_solve';
+import { useRoomKeys } from '../../shared/session/room_keys';
+import { Gallery } from '../../shared/panels/gallery';
+import { useModelPicture, useResultPictures } from '../../shared/panels/pictures';
+import '../../shared/panels/room.css';
 import { tool } from './draw_actions';
 import { exportMain } from './export_button';
 import { FlatRibbon } from './flat_ribbon';

@@ -15,17 +15,17 @@ import { projectExtension } from '../project/archive';
 import { Icon, TipLayer, toast, ToastLayer } from '../ui';
 import { AboutPage } from './about_page';
 import { crafts } from './crafts';
-import { KeysDialog, WorkerDialog } from './dialogs';
+import { KeysDialog, WorkerDialog } from './shell/dialogs';
 import { droppedFiles } from './dropped_files';
-import { Rail } from './rail';
+import { Rail } from './shell/rail';
 import { go, place } from './route';
 import { formatNames, StartPage } from './start_page';
 import type { Sessions } from './rooms';
-import { MachineBar } from '../crafts/machines/machine_bar';
+import { MachineBar } from '../crafts/machines/panel/machine_bar';
 import { drawingEndings, heightMapEnding, jobEndings } from '../crafts/machines/machines_document';
 import { isRoom, placeOfWork, roomOf } from './rooms';
 import { sentenceOf } from './told';
-import { TopBar } from './top_bar';
+import { TopBar } from './shell/top_bar';
 
 /** Materials and pictures that may come with a model. */
 const companionEndings = ['.mtl', '.png', '.jpg', '.jpeg'];

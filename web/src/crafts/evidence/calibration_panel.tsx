@@ -8,7 +8,7 @@ import { figure, sentences } from '../../shared/session/report';
 import { useEffect, useState } from 'preact/hooks';
 import type { EvidenceSession } from './evidence_session';
 import { shortNumber } from './inspector';
-import { Pane } from './maps';
+import { Pane } from './pictures/maps';
 
 interface Profile {
   readonly name: string;

@@ -19,10 +19,10 @@ import type { Services } from '../../shared/session/services';
 import { readDiagnosis } from './diagnosis';
 import type { EvidenceDocument, MeasuredObject, ObjectFile } from './evidence_document';
 import { comparing, evidence, objectFiles, operationOf, subjectOf } from './evidence_document';
-import { sortFiles } from './measured_files';
-import type { Model, Residuals } from './residuals';
-import { readResiduals } from './residuals';
-import { takeObject, takeScan } from './take_files';
+import { sortFiles } from './objects/measured_files';
+import type { Model, Residuals } from './pictures/residuals';
+import { readResiduals } from './pictures/residuals';
+import { takeObject, takeScan } from './objects/take_files';
 
 /** A measured object beside its simulation. */
 export interface Look {

@@ -7,8 +7,8 @@ import { RunningStrip } from '../../shared/panels/room_strip';
 import { percent, readDiagnosis } from './diagnosis';
 import { diagnosing, evidence, usesIn } from './evidence_document';
 import type { EvidenceSession } from './evidence_session';
-import { measuredNow } from './measure_scan';
-import { distancesOf, meanOf } from './residuals';
+import { measuredNow } from './scan/measure_scan';
+import { distancesOf, meanOf } from './pictures/residuals';
 
 export function ResultsStrip({ session }: { session: EvidenceSession }) {
   const activity = session.activity.value;

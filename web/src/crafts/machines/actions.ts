@@ -5,7 +5,7 @@ import { workBoundsOfBed } from '../../machines/places';
 import type { ToolPath } from '../../machines/toolpath';
 import { workBounds } from '../../machines/toolpath';
 import { formatDuration, formatNumber, withUnit } from '../../ui';
-import { ask } from './confirm';
+import { ask } from './panel/confirm';
 import type { MachinesSession } from './machines_session';
 
 const eyes =

@@ -9,11 +9,11 @@ import { Viewport } from '../../view';
 import { Legend } from '../../shared/panels/legend';
 import { narrow } from '../../shared/panels/narrow';
 import { figure } from '../../shared/session/report';
-import { fromShown, place as drawAt, tool } from './draw_actions';
-import { bentPositions, keepDrawn } from './draw_scene';
-import { DrawTool } from './draw_tool';
-import { Play } from './play';
-import { alongAt, placeInSpace } from './ribbon_places';
+import { fromShown, place as drawAt, tool } from './drawing/draw_actions';
+import { bentPositions, keepDrawn } from './drawing/draw_scene';
+import { DrawTool } from './drawing/draw_tool';
+import { Play } from './ribbon/play';
+import { alongAt, placeInSpace } from './ribbon/ribbon_places';
 import {
   bend,
   cameraMoves,

@@ -6,8 +6,8 @@ import type { CraftDocument, CraftResult, Subject } from '../../shared/session/c
 import { CraftCommands, emptyCraft, sameRequest } from '../../shared/session/craft_document';
 import type { RoomWithProducts } from '../../shared/session/products';
 import { offeredTogether } from '../../shared/session/products';
-import type { Drawn } from './drawn_parts';
-import { nothingDrawn } from './drawn_parts';
+import type { Drawn } from './drawing/drawn_parts';
+import { nothingDrawn } from './drawing/drawn_parts';
 
 export const design = 'zippable-design';
 /** What is made of a design; a build offers it where its catalog names it. */

@@ -22,11 +22,11 @@ import { figure } from '../../shared/session/report';
 import { RoomSession } from '../../shared/session/room_session';
 import type { Services } from '../../shared/session/services';
 import type { ShadedMesh } from '../../shared/panels/shaded_mesh';
-import { Bending } from './bending';
+import { Bending } from './ribbon/bending';
 import type { Design } from './design';
 import { readDesign } from './design';
-import type { PartDistortion } from './part_map';
-import { distortionOfParts, partsOfTriangles, VertexGrid } from './part_map';
+import type { PartDistortion } from './ribbon/part_map';
+import { distortionOfParts, partsOfTriangles, VertexGrid } from './ribbon/part_map';
 import type { ZippableDocument } from './zippable_document';
 import { currentResult, design, drawnOn, offered, planning, simulating, zippable } from './zippable_document';
 

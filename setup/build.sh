@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Builds what is named: native, asan, wasm (CMake presets), native-app, wasm-app (the same without their tests),
-# package (the program for any x86-64 processor), web (the page).
+# package (the program for any x86-64 processor), web (the page). `npm-packages` installs what the page and the stories need.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
@@ -13,11 +13,11 @@ build_preset() {  # preset of the configuration, preset of the build
 }
 
 # `npm ci` deletes node_modules: do it only when the lock file has changed.
-install_web() {
-  local stamp=web/node_modules/.formwright-lock
-  if ! cmp -s web/package-lock.json "$stamp"; then
-    PLAYWRIGHT_SKIP_BROWSER_DOWNLOAD=1 npm --prefix web ci --no-audit --no-fund >&2
-    cp web/package-lock.json "$stamp"
+install_packages() {
+  local stamp=node_modules/.formwright-lock
+  if ! cmp -s package-lock.json "$stamp"; then
+    PLAYWRIGHT_SKIP_BROWSER_DOWNLOAD=1 npm ci --no-audit --no-fund >&2
+    cp package-lock.json "$stamp"
   fi
 }
 
@@ -26,10 +26,10 @@ for part in "$@"; do
   case "$part" in
     native | asan | wasm | package) build_preset "$part" "$part" ;;
     native-app | wasm-app) build_preset "${part%-app}" "$part" ;;
-    web-packages) install_web ;;
+    npm-packages) install_packages ;;
     web)
-      install_web
-      npm --prefix web run build >&2
+      install_packages
+      npm run build >&2
       ;;
     *) fail "there is nothing to build called '$part'" "choose from native, asan, wasm, native-app, wasm-app, package, web" ;;
   esac

@@ -14,7 +14,7 @@ say "clang-tidy"
 [ -e build/compile_commands.json ] || setup/build.sh native
 git ls-files -z 'core/**.cpp' 'native_worker/**.cpp' |
   xargs -0 -n 4 -P "${FORMWRIGHT_JOBS:-$(nproc)}" nice clang-tidy-16 --quiet -p build --extra-arg=-Wno-unknown-warning-option --warnings-as-errors='*'
-say "the page"
-setup/build.sh web-packages
-npm --prefix web run types
-npm --prefix web run lint
+say "the page and its stories"
+setup/build.sh npm-packages
+npm run types
+npm run lint

@@ -59,7 +59,7 @@ stage() {  # name, runner or -, command...
   fi
 }
 
-run_stories() { FORMWRIGHT_BACKEND="$1" npm --prefix web run e2e; }
+run_stories() { FORMWRIGHT_BACKEND="$1" npm run e2e; }
 
 # What failed, again and last: where only the end of a log is seen, it is what is needed.
 show_failed() {  # folder of a build
@@ -87,10 +87,10 @@ main() {
   stage 'sanitizer tests' ctest run_ctest asan build-asan
   stage 'WebAssembly build' - setup/build.sh wasm
   stage 'WebAssembly tests' ctest run_ctest wasm build-wasm
-  stage 'page: packages' - setup/build.sh web-packages
-  stage 'page: types' - npm --prefix web run types
-  stage 'page: lint' - npm --prefix web run lint
-  stage 'page: unit tests' vitest npm --prefix web test
+  stage 'page: packages' - setup/build.sh npm-packages
+  stage 'page: types' - npm run types
+  stage 'page: lint' - npm run lint
+  stage 'page: unit tests' vitest npm test
   stage 'page: build' - setup/build.sh web
   stage 'browser tests, solving in the page' playwright run_stories wasm
   stage 'browser tests, with the native worker' playwright run_stories native

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Walks the includes of core/ and the imports of web/src and fails on an arrow that points the wrong way."""
+"""Walks the includes of core/ and the imports of web/src and fails on an arrow that points the wrong way or in a circle."""
 import pathlib
 import re
 import sys
@@ -35,8 +35,9 @@ WEB = {
     "project": {"jobs"},
     "ui": set(),
     "machines": {"jobs", "project", "ui"},
-    "crafts": {"jobs", "project", "view", "ui", "machines"},
-    "app": {"jobs", "project", "view", "ui", "machines", "crafts"},
+    "shared": {"jobs", "project", "view", "ui", "machines"},
+    "crafts": {"jobs", "project", "view", "ui", "machines", "shared"},
+    "app": {"jobs", "project", "view", "ui", "machines", "shared", "crafts"},
 }
 
 
@@ -64,6 +65,34 @@ def check_sources(folder: pathlib.Path, module: str, allowed: set[str], is_core:
     return problems
 
 
+IMPORT = re.compile(r"""(?:from|import)\s*\(?\s*['"](\.[^'"]+)['"]""")
+
+
+def imports_of_web(src: pathlib.Path) -> dict[pathlib.Path, list[pathlib.Path]]:
+    """By file of the page: the files it imports, types included."""
+    files = {path.resolve() for path in src.rglob("*.ts*")}
+    found = {}
+    for path in sorted(files):
+        targets = [path.parent / target for target in IMPORT.findall(path.read_text())]
+        endings = ("", ".ts", ".tsx", "/index.ts")
+        resolved = [pathlib.Path(f"{target}{ending}").resolve() for target in targets for ending in endings]
+        found[path] = [target for target in resolved if target in files]
+    return found
+
+
+def check_circles(src: pathlib.Path) -> list[str]:
+    """Files of the page that reach themselves by their imports. Files that import no file in question are taken away until none is left:
+    what remains are the circles and what leads into them."""
+    imports = {path: set(targets) for path, targets in imports_of_web(src).items()}
+    while ends := {path for path, targets in imports.items() if not targets}:
+        imports = {path: targets - ends for path, targets in imports.items() if path not in ends}
+    while starts := set(imports) - set().union(*imports.values()):
+        imports = {path: targets for path, targets in imports.items() if path not in starts}
+    base = src.resolve()
+    return [f"web/src: import circle: {path.relative_to(base)} imports {', '.join(str(t.relative_to(base)) for t in sorted(targets))}"
+            for path, targets in imports.items()]
+
+
 def check_web(src: pathlib.Path) -> list[str]:
     problems = []
     for path in sorted(src.rglob("*.ts*")):
@@ -71,9 +100,7 @@ def check_web(src: pathlib.Path) -> list[str]:
         if len(parts) < 2 or parts[0] not in WEB:
             continue
         own = parts[0]
-        for target in re.findall(r"""(?:from|import)\s*\(?\s*['"]([^'"]+)['"]""", path.read_text()):
-            if not target.startswith("."):
-                continue
+        for target in IMPORT.findall(path.read_text()):
             resolved = (path.parent / target).resolve()
             try:
                 to = resolved.relative_to(src.resolve()).parts
@@ -85,7 +112,7 @@ def check_web(src: pathlib.Path) -> list[str]:
             if to[0] != own and to[0] not in WEB[own]:
                 problems.append(f"{where}: {own} must not import {to[0]} ({target})")
             between_crafts = own == "crafts" and to[0] == "crafts" and len(parts) > 2 and len(to) > 2 and parts[1] != to[1]
-            if between_crafts and to[1] != "common":  # common/ is what they share
+            if between_crafts:  # shared/ is what they have in common
                 problems.append(f"{where}: crafts do not know each other ({target})")
     return problems
 
@@ -101,9 +128,10 @@ def main() -> int:
     for host, allowed in HOSTS.items():
         problems += check_sources(ROOT / host, host, allowed, is_core=False)
     problems += check_web(ROOT / "web" / "src")
+    problems += check_circles(ROOT / "web" / "src")
     for problem in problems:
         print(problem)
-    print(f"{len(modules)} core modules checked, {len(problems)} wrong arrows")
+    print(f"{len(modules)} core modules checked, {len(problems)} wrong arrows and circles")
     return 1 if problems else 0
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The checker itself must be able to fail: wrong arrows planted in a copy are found."""
+"""The checker itself must be able to fail: wrong arrows and a circle planted in a copy are found."""
 import importlib.util
 import pathlib
 import tempfile
@@ -17,7 +17,12 @@ with tempfile.TemporaryDirectory() as folder:
         "core/relief/b.cpp": '#include "thermoform/x.h"\n#include <fstream>\nvoid f() { std::printf("x"); }\n',
         "core/job/c.cpp": '#include "relief/relief.h"\n',
         "web/src/view/d.ts": "import { x } from '../jobs/y';\n",
+        "web/src/shared/session/g.ts": "import { x } from '../../crafts/relief/e';\n",
         "web/src/crafts/relief/e.ts": "import { x } from '../zippable/y';\n",
+        "web/src/ui/round.ts": "import type { Corner } from './corner';\n",
+        "web/src/ui/corner.tsx": "import { round } from './round';\nimport { leaf } from './leaf';\n",
+        "web/src/ui/leaf.ts": "",
+        "web/src/ui/user.ts": "import './corner';\n",
         "web/src/app/f.ts": "import { x } from '../crafts/relief/e';\n",
     }
     for name, text in planted.items():
@@ -28,8 +33,10 @@ with tempfile.TemporaryDirectory() as folder:
     for module in ("base", "relief", "job"):
         found += check.check_sources(root / "core" / module, module, check.CORE[module], is_core=True)
     found += check.check_web(root / "web/src")
+    found += check.check_circles(root / "web/src")
     expected = ["base must not include geometry", "relief must not include thermoform", "<fstream>", "must not print",
-                "view must not import jobs", "crafts do not know each other"]
+                "view must not import jobs", "shared must not import crafts", "crafts do not know each other",
+                "circle: ui/round.ts imports ui/corner.tsx", "circle: ui/corner.tsx imports ui/round.ts"]
     assert len(found) == len(expected), found
     for part in expected:
         assert any(part in problem for problem in found), (part, found)

@@ -19,7 +19,7 @@ try {
   const page = await browser.newPage();
   await page.goto('http://127.0.0.1:5650/#/about');
   const pictures = await page.evaluate(
-    async (only) => (await import('/src/app/draw_pictures.ts')).drawPictures(only),
+    async (only) => (await import('/scripts/in_page/draw_pictures.ts')).drawPictures(only),
     process.argv[2],
   );
   const folder = resolve(web, 'public/pictures');

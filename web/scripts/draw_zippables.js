@@ -113,7 +113,7 @@ try {
     made.push(make(row));
     const picture = readFileSync(resolve(web, `public/pictures/${row.sample}.webp`)).toString('base64');
     const url = await view.evaluate(
-      async (files) => (await import('/src/app/draw_zippables.ts')).drawRow(files),
+      async (files) => (await import('/scripts/in_page/draw_zippables.ts')).drawRow(files),
       {
         model: `data:image/webp;base64,${picture}`,
         parameterised_ply: base64('design/parameterised.ply'),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { useEffect, useState } from 'preact/hooks';
-import type { Services } from '../crafts/common/services';
+import type { Services } from '../shared/session/services';
 import type { Licence } from '../../scripts/licences';
 import { solverParts } from './solver_parts';
 

@@ -2,10 +2,10 @@
 // The shell: top bar, rail, the page of the current place, and what belongs to all of them.
 import { signal, useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
-import type { PrintDialog as PrintDialogComponent } from '../crafts/common/print_dialog';
-import { toPrint, toSlice } from '../crafts/common/print_request';
-import type { Services } from '../crafts/common/services';
-import type { SliceDialog as SliceDialogComponent } from '../crafts/common/slice_dialog';
+import type { PrintDialog as PrintDialogComponent } from '../shared/print/print_dialog';
+import { toPrint, toSlice } from '../shared/print/print_request';
+import type { Services } from '../shared/session/services';
+import type { SliceDialog as SliceDialogComponent } from '../shared/print/slice_dialog';
 import type { EvidencePage as EvidencePageComponent } from '../crafts/evidence/evidence_page';
 import type { MachinesPage as MachinesPageComponent } from '../crafts/machines/machines_page';
 import type { ReliefPage as ReliefPageComponent } from '../crafts/relief/relief_page';
@@ -15,18 +15,17 @@ import { projectExtension } from '../project/archive';
 import { Icon, TipLayer, toast, ToastLayer } from '../ui';
 import { AboutPage } from './about_page';
 import { crafts } from './crafts';
-import { KeysDialog, WorkerDialog } from './dialogs';
-import { LaterPage } from './later_page';
+import { KeysDialog, WorkerDialog } from './shell/dialogs';
 import { droppedFiles } from './dropped_files';
-import { Rail } from './rail';
+import { Rail } from './shell/rail';
 import { go, place } from './route';
 import { formatNames, StartPage } from './start_page';
 import type { Sessions } from './rooms';
-import { MachineBar } from '../crafts/machines/machine_bar';
+import { MachineBar } from '../crafts/machines/panel/machine_bar';
 import { drawingEndings, heightMapEnding, jobEndings } from '../crafts/machines/machines_document';
 import { isRoom, placeOfWork, roomOf } from './rooms';
 import { sentenceOf } from './told';
-import { TopBar } from './top_bar';
+import { TopBar } from './shell/top_bar';
 
 /** Materials and pictures that may come with a model. */
 const companionEndings = ['.mtl', '.png', '.jpg', '.jpeg'];
@@ -65,7 +64,7 @@ const printDialogs = signal<{
   readonly Slice: typeof SliceDialogComponent;
 } | null>(null);
 const loadPrintDialogs = () =>
-  Promise.all([import('../crafts/common/print_dialog'), import('../crafts/common/slice_dialog')]).then(
+  Promise.all([import('../shared/print/print_dialog'), import('../shared/print/slice_dialog')]).then(
     ([{ PrintDialog }, { SliceDialog }]) => (printDialogs.value = { Print: PrintDialog, Slice: SliceDialog }),
   );
 
@@ -129,7 +128,6 @@ export function App({ services, sessions }: AppProps) {
     if (dialogWanted) void loadPrintDialogs();
   }, [dialogWanted]);
   const Dialogs = printDialogs.value;
-  const later = crafts.find((craft) => craft.place === where && !craft.available);
   const session = isRoom(where) ? sessions[where] : null;
   const hasInspector = session !== null && session.hasWork.value;
   const hasStrip = hasInspector || session?.activity.value.kind === 'opening';
@@ -178,8 +176,6 @@ export function App({ services, sessions }: AppProps) {
         />
       ) : where === 'about' ? (
         <AboutPage services={services} />
-      ) : later ? (
-        <LaterPage craft={later} />
       ) : (
         <StartPage services={services} session={sessions.relief} onChooseFile={chooseFile} />
       )}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The places of the rail, in order, and what is said about those that are still to come.
+// The places of the rail, in order, and what is said about them.
 import type { IconName } from '../ui';
 import type { Place } from './route';
 
@@ -9,7 +9,6 @@ export interface Craft {
   readonly icon: IconName;
   readonly pitch: string;
   readonly makes: string;
-  readonly available: boolean;
   /** Stands apart in the rail. */
   readonly apart?: boolean;
 }
@@ -21,7 +20,6 @@ export const crafts: readonly Craft[] = [
     icon: 'relief',
     pitch: 'A model pressed into a few millimetres that still looks deep.',
     makes: 'Carve, print, cast',
-    available: true,
   },
   {
     place: 'thermoform',
@@ -29,7 +27,6 @@ export const crafts: readonly Craft[] = [
     icon: 'thermoform',
     pitch: 'A plastic shell, formed over the model, with a print that fits it.',
     makes: 'Vacuum former, printer',
-    available: true,
   },
   {
     place: 'zippable',
@@ -37,7 +34,6 @@ export const crafts: readonly Craft[] = [
     icon: 'zippable',
     pitch: 'A flat ribbon that zips up into the shape.',
     makes: 'Laser cutter, sewing',
-    available: true,
   },
   {
     place: 'evidence',
@@ -45,7 +41,6 @@ export const crafts: readonly Craft[] = [
     icon: 'evidence',
     pitch: 'Find out why a formed part came out wrong.',
     makes: 'Scan, photo, calliper',
-    available: true,
     apart: true,
   },
   {
@@ -54,8 +49,5 @@ export const crafts: readonly Craft[] = [
     icon: 'machines',
     pitch: 'Send a job to the cutter, printer or mill, and stop it at once.',
     makes: 'Laser, printer, mill',
-    available: true,
   },
 ];
-
-export const notYet = 'Not in this version yet';

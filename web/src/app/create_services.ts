@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Wires backends, storage and catalog together, once, at the start.
 import { signal } from '@preact/signals';
-import type { Services } from '../crafts/common/services';
+import type { Services } from '../shared/session/services';
 import type { Backend, BlobSource } from '../jobs/backend';
 import type { Catalog } from '../jobs/contract';
 import { asJobError } from '../jobs/contract';

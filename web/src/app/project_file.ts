@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-import { download, safeFileName } from '../crafts/common/download';
+import { download, safeFileName } from '../shared/session/download';
 import { projectExtension } from '../project/archive';
 import type { ProjectStore } from '../project/project_store';
 import { toast } from '../ui';

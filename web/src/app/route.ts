@@ -2,10 +2,10 @@
 import { signal } from '@preact/signals';
 import { tokenIn } from '../jobs/native_connection';
 
-export const places = ['start', 'relief', 'thermoform', 'zippable', 'evidence', 'machines', 'about'] as const;
+const places = ['start', 'relief', 'thermoform', 'zippable', 'evidence', 'machines', 'about'] as const;
 export type Place = (typeof places)[number];
 
-export function placeOf(hash: string): Place | null {
+function placeOf(hash: string): Place | null {
   const name = /^#\/([a-z]+)/.exec(hash)?.[1];
   return places.find((place) => place === name) ?? null;
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { useEffect } from 'preact/hooks';
-import { Gallery, KeptPicture } from '../crafts/common/gallery';
-import type { Services } from '../crafts/common/services';
+import { Gallery, KeptPicture } from '../shared/panels/gallery';
+import type { Services } from '../shared/session/services';
 import type { ReliefSession } from '../crafts/relief/relief_session';
 import { warmUp } from '../crafts/relief/warm_up';
 import { Button, Icon } from '../ui';
-import { crafts, notYet } from './crafts';
+import { crafts } from './crafts';
 import { go } from './route';
 import { told } from './told';
 
@@ -37,7 +37,7 @@ export function StartPage({ services, session, onChooseFile }: StartPageProps) {
     const begin = async () => {
       await services.projects.create();
       go('relief');
-      await session.openSample(sample, title);
+      await session.model.openSample(sample, title);
     };
     told(begin());
   };
@@ -49,18 +49,14 @@ export function StartPage({ services, session, onChooseFile }: StartPageProps) {
         <ul class="craft-cards">
           {crafts.slice(0, 4).map((craft) => (
             <li key={craft.place}>
-              <a class={craft.available ? 'craft-card' : 'craft-card later'} href={`#/${craft.place}`}>
+              <a class="craft-card" href={`#/${craft.place}`}>
                 <span class="craft-picture">
-                  {craft.available ? (
-                    <KeptPicture name={`craft_${craft.place}`} />
-                  ) : (
-                    <Icon name={craft.icon} />
-                  )}
+                  <KeptPicture name={`craft_${craft.place}`} />
                 </span>
                 <span class="craft-text">
                   <strong>{craft.title}</strong>
                   <span>{craft.pitch}</span>
-                  <small>{craft.available ? craft.makes : notYet}</small>
+                  <small>{craft.makes}</small>
                 </span>
               </a>
             </li>

@@ -135,14 +135,14 @@ export interface Sample {
   readonly view_up?: readonly number[];
 }
 
-export interface MeshFormat {
+interface MeshFormat {
   readonly extension: string;
   readonly media_type: string;
   readonly title: string;
 }
 
 /** Values to begin with, by the names of the laser job's parameters. */
-export interface LaserMaterial {
+interface LaserMaterial {
   readonly name: string;
   readonly title: string;
   readonly laser: string;
@@ -150,7 +150,7 @@ export interface LaserMaterial {
   readonly parameters: JsonObject;
   readonly hint: string;
 }
-export interface LaserMaterials {
+interface LaserMaterials {
   readonly note: string;
   readonly lasers: readonly { readonly name: string; readonly title: string }[];
   readonly materials: readonly LaserMaterial[];

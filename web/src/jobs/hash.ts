@@ -5,6 +5,3 @@ export async function sha256Hex(bytes: Uint8Array<ArrayBuffer>): Promise<string>
   const digest = new Uint8Array(await crypto.subtle.digest('SHA-256', bytes));
   return Array.from(digest, (byte) => byte.toString(16).padStart(2, '0')).join('');
 }
-
-export const isSha256 = (text: unknown): text is string =>
-  typeof text === 'string' && /^[0-9a-f]{64}$/.test(text);

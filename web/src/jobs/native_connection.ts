@@ -44,10 +44,6 @@ export function takeToken(
   return storage.getItem(tokenKey);
 }
 
-export function forgetToken(storage: Pick<Storage, 'removeItem'>): void {
-  storage.removeItem(tokenKey);
-}
-
 const shortestRetry_s = 0.5;
 const longestRetry_s = 15;
 

@@ -1,14 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A tool path with fewer points, for pictures only: what is left out lies within a tolerance of the line that is drawn instead
 // (Douglas and Peucker 1973, in pieces of a bounded number of points). What is sent, timed and said is always the path itself.
-import type { ToolPath } from './toolpath';
-
-export interface PathDetail {
-  readonly tolerance_mm: number;
-  /** By path: the numbers of the points that are kept, the first and last among them; null: all. */
-  readonly kept: readonly (Uint32Array<ArrayBuffer> | null)[];
-  readonly points: number;
-}
+import type { PathDetail, ToolPath } from './toolpath';
 
 /** Below this many points everything is drawn as it is. */
 const fewPoints = 20_000;

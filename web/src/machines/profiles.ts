@@ -6,7 +6,7 @@ import { jsonEqual } from '../project/document';
 
 export const profileExtension = 'formwright-machine.json';
 
-export interface Material {
+interface Material {
   readonly name: string;
   /** Values of the job's parameters: power, speed, passes, kerf. */
   readonly parameters: JsonObject;

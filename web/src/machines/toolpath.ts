@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The way a machine's head will go, as `toolpath.json` tells it: where it is at a time, and when it does a line.
-import type { PathDetail } from './path_detail';
 
 export interface ToolPathPart {
   readonly kind: 'travel' | 'work';
@@ -18,7 +17,7 @@ export interface ToolPathPart {
 }
 
 /** A job of its own, because the tool is changed before it; lines are counted in its own file. */
-export interface ToolPathStage {
+interface ToolPathStage {
   readonly name: string;
   readonly file: string;
   readonly first_path: number;
@@ -26,6 +25,14 @@ export interface ToolPathStage {
 }
 
 export type Rectangle = readonly [left: number, low: number, right: number, high: number];
+
+/** A tool path with fewer points (path_detail.ts). */
+export interface PathDetail {
+  readonly tolerance_mm: number;
+  /** By path: the numbers of the points that are kept, the first and last among them; null: all. */
+  readonly kept: readonly (Uint32Array<ArrayBuffer> | null)[];
+  readonly points: number;
+}
 
 export interface ToolPath {
   readonly bed_mm: readonly [number, number];

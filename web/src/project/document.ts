@@ -3,8 +3,8 @@
 // business; here it is JSON.
 import type { Json, JsonObject } from '../jobs/contract';
 
-export const documentFormat = 'formwright-project';
-export const documentVersion = 1;
+const documentFormat = 'formwright-project';
+const documentVersion = 1;
 
 export interface ProjectDocument {
   readonly format: typeof documentFormat;

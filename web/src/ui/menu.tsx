@@ -5,7 +5,7 @@ import type { IconName } from './icon';
 import { Icon } from './icon';
 import { hideTip, tipHandlers } from './tip';
 
-export interface MenuItem {
+interface MenuItem {
   readonly label: string;
   readonly hint?: string | undefined;
   readonly icon?: IconName;

@@ -22,6 +22,9 @@ export function withUnit(number: string, unit: string): string {
   return unit === '°' ? number + unit : `${number}${thinSpace}${unit}`;
 }
 
+/** "0.84 m", as tape is bought. */
+export const formatMetres = (mm: number): string => withUnit(formatFixed(mm / 1000, 2), 'm');
+
 /** Null for what is no number. */
 export function parseNumber(text: string): number | null {
   const plain = text

@@ -3,7 +3,7 @@ import type { IconName } from './icon';
 import { Icon } from './icon';
 import { tipHandlers } from './tip';
 
-export interface SegmentedOption<T extends string> {
+interface SegmentedOption<T extends string> {
   readonly value: T;
   readonly label: string;
   readonly icon?: IconName;

@@ -14,7 +14,7 @@ const shown = signal<Tip | null>(null);
 let timer: ReturnType<typeof setTimeout> | undefined;
 const hoverDelay_ms = 350;
 
-export function showTip(element: Element, text: string, side: Tip['side'], delay_ms = 0): void {
+function showTip(element: Element, text: string, side: Tip['side'], delay_ms = 0): void {
   clearTimeout(timer);
   const show = () => {
     if (element.isConnected) shown.value = { text, anchor: element.getBoundingClientRect(), side };

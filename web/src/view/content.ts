@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a viewport shows: meshes, plate, mode, colours, section, curves; kept here and put on the stage.
 import type { ColourMapping, Curve, Fixture, MeshData, Plate, Section, Vec3, ViewMode } from './api';
-import { type Bounds2, type CameraState, projectedBounds, uniteBounds } from './camera';
-import type { CameraRig } from './camera_rig';
-import type { Picker } from './picker';
+import { type Bounds2, type CameraState, projectedBounds, uniteBounds } from './camera/camera';
+import type { CameraRig } from './camera/camera_rig';
+import type { Picker } from './pick/picker';
 import { boxOf, sameIndices, samePlate } from './same';
-import { linesOf, sectionPlane } from './section_lines';
-import type { PartName, Stage } from './stage';
+import { linesOf, sectionPlane } from './overlay/section_lines';
+import type { PartName, Stage } from './render/stage';
 import { add, length, normalise, scale, subtract } from './vector';
 
 export class Content {

@@ -4,7 +4,7 @@
 import { LightBall, SideInset, Viewport, legendFor, renderThumbnail } from './index';
 import type { MeshData, Plate, Vec3, Viewpoint, ViewMode } from './api';
 import { add, along, dot, scale, subtract, viewerAxes } from './vector';
-import { smoothNormals } from './normals';
+import { smoothNormals } from './mesh/normals';
 
 const query = new URLSearchParams(location.search);
 if (query.get('theme')) document.documentElement.dataset['theme'] = query.get('theme')!;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the picture takes from the style sheet's tokens, with the tokens' own values where there are none.
 import type { ColourMapName, Theme, Vec3 } from './api';
-import { parseColour } from './colour_map';
+import { parseColour } from './mesh/colour_map';
 
 export interface Palette {
   dark: boolean;
@@ -18,7 +18,7 @@ const FALLBACK = {
   dark: { '--view-a': '#35322e', '--view-b': '#1d1b19', '--accent': '#8fb3ff', '--live': '#f2ae4b' },
 } as const;
 
-export function isDark(theme: Theme, element: Element | null): boolean {
+function isDark(theme: Theme, element: Element | null): boolean {
   if (theme !== 'auto') return theme === 'dark';
   const chosen = element?.closest('[data-theme]')?.getAttribute('data-theme');
   if (chosen === 'dark' || chosen === 'light') return chosen === 'dark';

@@ -28,22 +28,22 @@ import {
   makeScreen,
   projectToPixels,
   rayThroughPixel,
-} from './camera';
-import { CameraRig } from './camera_rig';
+} from './camera/camera';
+import { CameraRig } from './camera/camera_rig';
 import { Content } from './content';
-import { Controls } from './controls';
-import { FrameLoop } from './frame_loop';
-import { Furniture } from './furniture';
-import { DEFAULT_LIGHT, towardsLight } from './light';
-import { Painter } from './painter';
-import { Picker } from './picker';
-import { pickAt } from './picking';
-import { plateCorners, plateFrame } from './plate';
-import { encodePng } from './png';
-import { PointerReports } from './pointer';
-import { readPart, readView } from './snapshot';
-import { type PartName, type Picture, type PicturePart, Stage } from './stage';
-import { qualityHere } from './quality';
+import { Controls } from './camera/controls';
+import { FrameLoop } from './render/frame_loop';
+import { Furniture } from './overlay/furniture';
+import { DEFAULT_LIGHT, towardsLight } from './render/light';
+import { Painter } from './render/painter';
+import { Picker } from './pick/picker';
+import { pickAt } from './pick/picking';
+import { plateCorners, plateFrame } from './overlay/plate';
+import { encodePng } from './render/png';
+import { PointerReports } from './camera/pointer';
+import { readPart, readView } from './render/snapshot';
+import { type PartName, type Picture, type PicturePart, Stage } from './render/stage';
+import { qualityHere } from './render/quality';
 import { readPalette } from './theme';
 import { length, scale, subtract, viewerAxes } from './vector';
 

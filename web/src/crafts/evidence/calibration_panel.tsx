@@ -3,12 +3,12 @@
 import type { JsonObject } from '../../jobs/contract';
 import { isObject } from '../../project/document';
 import { formatNumber, withUnit } from '../../ui';
-import type { CraftResult } from '../common/craft_document';
-import { figure, sentences } from '../common/report';
+import type { CraftResult } from '../../shared/session/craft_document';
+import { figure, sentences } from '../../shared/session/report';
 import { useEffect, useState } from 'preact/hooks';
 import type { EvidenceSession } from './evidence_session';
 import { shortNumber } from './inspector';
-import { Pane } from './maps';
+import { Pane } from './pictures/maps';
 
 interface Profile {
   readonly name: string;
@@ -26,7 +26,7 @@ const number = (value: unknown): number =>
   typeof value === 'number' && Number.isFinite(value) ? value : NaN;
 
 /** Of calibration.json; a grid search has values without intervals. */
-export function readProfiles(calibration: JsonObject): Profile[] {
+function readProfiles(calibration: JsonObject): Profile[] {
   const profiles = Array.isArray(calibration['profiles']) ? calibration['profiles'].filter(isObject) : [];
   const plain = Array.isArray(calibration['parameters']) ? calibration['parameters'].filter(isObject) : [];
   return (profiles.length > 0 ? profiles : plain).map((one) => ({

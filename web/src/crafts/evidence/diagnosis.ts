@@ -3,7 +3,7 @@
 import type { Json, JsonObject, Report } from '../../jobs/contract';
 import { isObject } from '../../project/document';
 import { formatNumber, withUnit } from '../../ui';
-import { figure, sentences } from '../common/report';
+import { figure, sentences } from '../../shared/session/report';
 
 export interface Estimate {
   readonly value: number;
@@ -29,7 +29,7 @@ export interface Gain {
   readonly share: Estimate;
 }
 
-export type Reading = 'none' | 'cause' | 'cannot_separate' | 'unknown';
+type Reading = 'none' | 'cause' | 'cannot_separate' | 'unknown';
 
 export interface Diagnosis {
   readonly reading: Reading;
@@ -60,7 +60,7 @@ const text = (value: Json | undefined): string => (typeof value === 'string' ? v
 const number = (value: Json | undefined): number =>
   typeof value === 'number' && Number.isFinite(value) ? value : 0;
 
-export function estimateOf(value: Json | undefined, interval: Json | undefined): Estimate {
+function estimateOf(value: Json | undefined, interval: Json | undefined): Estimate {
   const middle = number(value);
   const [low, high] = Array.isArray(interval) ? (interval as readonly Json[]) : [];
   return { value: middle, low: number(low ?? middle), high: number(high ?? middle) };

@@ -2,11 +2,11 @@
 // Evidence's part of a project: measured objects, what each is used for, and what was found with them.
 import type { JobInput, Json, JsonObject, Report } from '../../jobs/contract';
 import type { BlobReference } from '../../project/document';
-import type { CraftResult, RoomDocument, Subject } from '../common/craft_document';
-import { emptyRoom, RoomCommands } from '../common/craft_document';
+import type { CraftResult, RoomDocument, Subject } from '../../shared/session/craft_document';
+import { emptyRoom, RoomCommands } from '../../shared/session/craft_document';
 
 export const diagnosing = 'evidence-diagnose';
-export const calibrating = 'evidence-calibrate';
+const calibrating = 'evidence-calibrate';
 export const comparing = 'thermoform-compare';
 export const inventing = 'evidence-virtual-object';
 export const registering = 'evidence-register';
@@ -29,7 +29,7 @@ export interface MeasuredObject {
 }
 
 /** Files of an object that is not complete yet. */
-export interface Draft {
+interface Draft {
   readonly name: string;
   readonly files: Readonly<Partial<Record<ObjectFile, BlobReference>>>;
 }

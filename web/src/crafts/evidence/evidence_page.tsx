@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { signal } from '@preact/signals';
 import { Button, formatCount, formatNumber, Segmented, Sheet, useLasting, withUnit } from '../../ui';
-import { outputOf } from '../common/full_solve';
-import { useRoomKeys } from '../common/room_keys';
-import { download, safeFileName } from '../common/download';
-import '../common/room.css';
+import { outputOf } from '../../shared/session/full_solve';
+import { useRoomKeys } from '../../shared/session/room_keys';
+import { download, safeFileName } from '../../shared/session/download';
+import '../../shared/panels/room.css';
 import { CalibrationPanel } from './calibration_panel';
-import { Distances, Gains } from './charts';
+import { Distances, Gains } from './pictures/charts';
 import './evidence.css';
 import { inventing } from './evidence_document';
 import type { EvidenceSession, Look } from './evidence_session';
 import { Inspector } from './inspector';
-import { Maps, modelWords, Pane } from './maps';
+import { Maps, modelWords, Pane } from './pictures/maps';
 import { Notes } from './notes';
-import { ObjectView } from './object_view';
-import { simulatedIn } from './residuals';
+import { ObjectView } from './pictures/object_view';
+import { simulatedIn } from './pictures/residuals';
 import { ResultsStrip } from './results_strip';
-import { ScanInspector } from './scan_inspector';
-import { ScanPanel } from './scan_panel';
+import { ScanInspector } from './scan/scan_inspector';
+import { ScanPanel } from './scan/scan_panel';
 import { PatternButton } from './pattern_dialog';
-import { VirtualObject } from './virtual_object';
+import { VirtualObject } from './objects/virtual_object';
 
 export interface EvidencePageProps {
   readonly session: EvidenceSession;

@@ -1,7 +1,7 @@
 // @vitest-environment happy-dom
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { expect, it, vi } from 'vitest';
-import { testCatalog, testServices } from '../common/test_room';
+import { testCatalog, testServices } from '../../shared/session/test_room';
 import type { MeasuredObject } from './evidence_document';
 import { diagnosing, evidence } from './evidence_document';
 import { EvidenceSession } from './evidence_session';

@@ -6,23 +6,23 @@ import type { JsonObject, Operation, Report } from '../../jobs/contract';
 import { asJobError, findOperation, JobError } from '../../jobs/contract';
 import { LatestOnly } from '../../jobs/latest_only';
 import { isObject } from '../../project/document';
-import type { CraftResult } from '../common/craft_document';
-import { inForce, known, sameRequest, withoutDefaults } from '../common/craft_document';
-import type { Measured } from '../common/estimate';
-import { estimateSeconds, recall } from '../common/estimate';
-import { solveInFull } from '../common/full_solve';
-import { bytesOf } from '../common/import_model';
-import { machineProfile } from '../common/machine_profile';
-import { figure } from '../common/report';
-import { RoomSession } from '../common/room_session';
-import type { Services } from '../common/services';
+import type { CraftResult } from '../../shared/session/craft_document';
+import { inForce, known, sameRequest, withoutDefaults } from '../../shared/session/craft_document';
+import type { Measured } from '../../shared/session/estimate';
+import { estimateSeconds, recall } from '../../shared/session/estimate';
+import { solveInFull } from '../../shared/session/full_solve';
+import { bytesOf } from '../../shared/session/import_model';
+import { machineProfile } from '../../shared/session/machine_profile';
+import { figure } from '../../shared/session/report';
+import { RoomSession } from '../../shared/session/room_session';
+import type { Services } from '../../shared/session/services';
 import { readDiagnosis } from './diagnosis';
 import type { EvidenceDocument, MeasuredObject, ObjectFile } from './evidence_document';
 import { comparing, evidence, objectFiles, operationOf, subjectOf } from './evidence_document';
-import { sortFiles } from './measured_files';
-import type { Model, Residuals } from './residuals';
-import { readResiduals } from './residuals';
-import { takeObject, takeScan } from './take_files';
+import { sortFiles } from './objects/measured_files';
+import type { Model, Residuals } from './pictures/residuals';
+import { readResiduals } from './pictures/residuals';
+import { takeObject, takeScan } from './objects/take_files';
 
 /** A measured object beside its simulation. */
 export interface Look {

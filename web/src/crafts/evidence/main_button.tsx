@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The one filled button: runs what is chosen, then hands its profile to the next print.
 import { Button, formatBytes, formatDuration, Icon, Menu } from '../../ui';
-import { download, safeFileName } from '../common/download';
-import { outputOf } from '../common/full_solve';
-import { machineProfile } from '../common/machine_profile';
-import { readyWorker } from '../common/services';
+import { download, safeFileName } from '../../shared/session/download';
+import { outputOf } from '../../shared/session/full_solve';
+import { machineProfile } from '../../shared/session/machine_profile';
+import { readyWorker } from '../../shared/session/services';
 import type { EvidenceSession } from './evidence_session';
 
 const verbs = { diagnose: 'Diagnose', calibrate: 'Calibrate' } as const;

@@ -3,7 +3,7 @@
 import { Button, Note } from '../../ui';
 import { evidence } from './evidence_document';
 import type { EvidenceSession } from './evidence_session';
-import { missingFrom } from './measured_files';
+import { missingFrom } from './objects/measured_files';
 
 export interface NotesProps {
   readonly session: EvidenceSession;

@@ -5,15 +5,15 @@ import { useEffect, useMemo } from 'preact/hooks';
 import type { Json, JsonObject, Operation } from '../../jobs/contract';
 import { asJobError } from '../../jobs/contract';
 import { Button, Dialog } from '../../ui';
-import { withoutDefaults } from '../common/craft_document';
-import { download } from '../common/download';
-import { bytesOf } from '../common/import_model';
-import { ParameterPanel } from '../common/parameter_panel';
-import { printOnPaper } from '../common/print_request';
-import { readyWorker } from '../common/services';
+import { withoutDefaults } from '../../shared/session/craft_document';
+import { download } from '../../shared/session/download';
+import { bytesOf } from '../../shared/session/import_model';
+import { ParameterPanel } from '../../shared/panels/parameter_panel';
+import { printOnPaper } from '../../shared/print/print_request';
+import { readyWorker } from '../../shared/session/services';
 import type { EvidenceSession } from './evidence_session';
 
-export const patterning = 'evidence-pattern';
+const patterning = 'evidence-pattern';
 /** The pages are laid out for the printer's own paper when it is printed. */
 const laterGroup = 'Paper';
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { formatCount, formatDuration, formatNumber, JobStrip, useLasting, withUnit } from '../../ui';
-import type { CraftResult } from '../common/craft_document';
-import { figure } from '../common/report';
-import { Results } from '../common/results';
-import { RunningStrip } from '../common/room_strip';
+import type { CraftResult } from '../../shared/session/craft_document';
+import { figure } from '../../shared/session/report';
+import { Results } from '../../shared/panels/results';
+import { RunningStrip } from '../../shared/panels/room_strip';
 import { percent, readDiagnosis } from './diagnosis';
 import { diagnosing, evidence, usesIn } from './evidence_document';
 import type { EvidenceSession } from './evidence_session';
-import { measuredNow } from './measure_scan';
-import { distancesOf, meanOf } from './residuals';
+import { measuredNow } from './scan/measure_scan';
+import { distancesOf, meanOf } from './pictures/residuals';
 
 export function ResultsStrip({ session }: { session: EvidenceSession }) {
   const activity = session.activity.value;

@@ -5,8 +5,8 @@ import { workBoundsOfBed } from '../../machines/places';
 import type { ToolPath } from '../../machines/toolpath';
 import { workBounds } from '../../machines/toolpath';
 import { formatDuration, formatFixed, formatNumber, withUnit } from '../../ui';
-import type { Choice, Option } from './confirm';
-import { ask } from './confirm';
+import type { Choice, Option } from './panel/confirm';
+import { ask } from './panel/confirm';
 import type { MachinesSession } from './machines_session';
 
 const eyes =

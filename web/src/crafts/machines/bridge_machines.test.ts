@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { signal } from '@preact/signals';
 import { expect, it } from 'vitest';
-import { settled } from '../common/test_room';
+import { settled } from '../../shared/session/test_room';
 import { followBridge, found } from './bridge_machines';
 import type { MachinesSession } from './machines_session';
 

@@ -3,13 +3,13 @@
 import type { Operation } from '../../jobs/contract';
 import { layersOf } from '../../machines/toolpath';
 import { formatNumber, withUnit } from '../../ui';
-import { ParameterPanel } from '../common/parameter_panel';
-import { MachinePanel, StartAndStop } from './machine_panel';
+import { ParameterPanel } from '../../shared/panels/parameter_panel';
+import { MachinePanel, StartAndStop } from './panel/machine_panel';
 import type { MachinesSession } from './machines_session';
-import { MaterialSection } from './material_section';
-import { MakeMillJob, MillJobs, MillSection } from './mill_section';
-import { OtherMachines } from './other_machines';
-import { TestSection } from './test_section';
+import { MaterialSection } from './sections/material_section';
+import { MakeMillJob, MillJobs, MillSection } from './sections/mill_section';
+import { OtherMachines } from './panel/other_machines';
+import { TestSection } from './sections/test_section';
 
 const layerTitles: Record<string, string> = {
   cut: 'Cut',

@@ -4,11 +4,11 @@ import type { Catalog, JsonObject, Operation } from '../../jobs/contract';
 import { findOperation } from '../../jobs/contract';
 import type { BlobReference } from '../../project/document';
 import { jsonEqual } from '../../project/document';
-import type { RoomDocument } from '../common/craft_document';
-import { emptyRoom, RoomCommands, withoutDefaults } from '../common/craft_document';
+import type { RoomDocument } from '../../shared/session/craft_document';
+import { emptyRoom, RoomCommands, withoutDefaults } from '../../shared/session/craft_document';
 
 export const laserJob = 'laser-job';
-export const testGrid = 'test-grid';
+const testGrid = 'test-grid';
 export const millJob = 'mill-job';
 
 /** A job is sent as it is; of a drawing, or of a model or height map, a job is made. */
@@ -20,7 +20,7 @@ export interface FileWork {
   readonly nodes?: number;
 }
 /** A test of the material, made of parameters alone. */
-export interface TestWork {
+interface TestWork {
   readonly file_name: string;
   readonly kind: 'test';
   /** What was there before, to go back to. */

@@ -2,21 +2,21 @@
 import { useSignal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
 import { Button, formatCount, formatDuration, JobStrip, Segmented, Sheet, Switch } from '../../ui';
-import { download } from '../common/download';
-import '../common/room.css';
-import { RunningStrip } from '../common/room_strip';
+import { download } from '../../shared/session/download';
+import '../../shared/panels/room.css';
+import { RunningStrip } from '../../shared/panels/room_strip';
 import { goOn, start, startReason } from './actions';
-import { AlarmBar, MachineNotes } from './alarm_bar';
-import { BedView } from './bed_view';
+import { AlarmBar, MachineNotes } from './panel/alarm_bar';
+import { BedView } from './bed/bed_view';
 import { followBridge } from './bridge_machines';
-import { Confirmation } from './confirm';
-import { Console } from './console';
+import { Confirmation } from './panel/confirm';
+import { Console } from './panel/console';
 import { Inspector } from './inspector';
-import { JobBar, partWords, timeShown } from './job_bar';
-import './machine_state.css';
+import { JobBar, partWords, timeShown } from './panel/job_bar';
+import './panel/machine_state.css';
 import './machines.css';
 import type { MachinesSession } from './machines_session';
-import { PathView } from './path_view';
+import { PathView } from './bed/path_view';
 
 export interface MachinesPageProps {
   readonly session: MachinesSession;

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { signal } from '@preact/signals';
 import { expect, it, vi } from 'vitest';
-import { solveInFull } from '../common/full_solve';
-import { resultOf, settled, testCatalog, testServices } from '../common/test_room';
+import { solveInFull } from '../../shared/session/full_solve';
+import { resultOf, settled, testCatalog, testServices } from '../../shared/session/test_room';
 import { laserJob, machines, millJob } from './machines_document';
 import { MachinesSession } from './machines_session';
 

@@ -11,13 +11,13 @@ import type { MachineProfile } from '../../machines/profiles';
 import { isMill, ProfileStore } from '../../machines/profiles';
 import { listenForStop } from '../../machines/stop_keys';
 import { jsonEqual } from '../../project/document';
-import type { CraftResult, SolveRequest, Subject } from '../common/craft_document';
-import { nameProject, sameRequest } from '../common/craft_document';
-import type { Measured } from '../common/estimate';
-import { estimateSeconds, recall } from '../common/estimate';
-import { figure } from '../common/report';
-import { RoomSession } from '../common/room_session';
-import { readyWorker, type Services } from '../common/services';
+import type { CraftResult, SolveRequest, Subject } from '../../shared/session/craft_document';
+import { nameProject, sameRequest } from '../../shared/session/craft_document';
+import type { Measured } from '../../shared/session/estimate';
+import { estimateSeconds, recall } from '../../shared/session/estimate';
+import { figure } from '../../shared/session/report';
+import { RoomSession } from '../../shared/session/room_session';
+import { readyWorker, type Services } from '../../shared/session/services';
 import type { FileWork, MachinesDocument } from './machines_document';
 import {
   drawingEndings,

@@ -5,14 +5,14 @@ import type { JsonObject, Report } from '../../jobs/contract';
 import type { ToolPath } from '../../machines/toolpath';
 import { toolPathOf, toolPathOfGcode } from '../../machines/toolpath_reader';
 import type { BlobStore } from '../../project/blob_store';
-import type { CraftResult } from '../common/craft_document';
-import { bytesOf } from '../common/import_model';
-import { sentences } from '../common/report';
+import type { CraftResult } from '../../shared/session/craft_document';
+import { bytesOf } from '../../shared/session/import_model';
+import { sentences } from '../../shared/session/report';
 import type { FileWork, Work } from './machines_document';
 import { operationFor } from './machines_document';
 
 /** One file for the machine. */
-export interface PlannedJob {
+interface PlannedJob {
   /** "rough" or "finish" where each tool has a job of its own; "" for the only one. */
   readonly stage: string;
   readonly bytes: Uint8Array<ArrayBuffer>;

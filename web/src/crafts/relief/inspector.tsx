@@ -14,14 +14,14 @@ import {
   withUnit,
 } from '../../ui';
 import type { Viewport } from '../../view';
-import { ParameterPanel } from '../common/parameter_panel';
-import { readyWorker } from '../common/services';
-import type { CraftResult } from '../common/craft_document';
-import { download, safeFileName } from '../common/download';
-import { browserMemory_mb, timeLine } from '../common/estimate';
-import { ModelRow } from '../common/model_row';
-import { printInPlastic } from '../common/print_request';
-import { outputOf } from '../common/full_solve';
+import { ParameterPanel } from '../../shared/panels/parameter_panel';
+import { readyWorker } from '../../shared/session/services';
+import type { CraftResult } from '../../shared/session/craft_document';
+import { download, safeFileName } from '../../shared/session/download';
+import { browserMemory_mb, timeLine } from '../../shared/session/estimate';
+import { ModelRow } from '../../shared/panels/model_row';
+import { printInPlastic } from '../../shared/print/print_request';
+import { outputOf } from '../../shared/session/full_solve';
 import type { ReliefSession } from './relief_session';
 import type { SendToMill } from './send_relief';
 import { sendRelief } from './send_relief';

@@ -4,9 +4,9 @@ import type { PlyMesh } from '../../jobs/ply';
 import type { Report } from '../../jobs/contract';
 import type { ColourMapping, MeshData, Plate, Vec3, Viewpoint } from '../../view';
 import { along, viewerAxes } from '../../view/vector';
-import { figure, vectorOf } from '../common/report';
-import type { ShadedMesh } from '../common/shaded_mesh';
-import { shadingOf } from '../common/shaded_mesh';
+import { figure, vectorOf } from '../../shared/session/report';
+import type { ShadedMesh } from '../../shared/panels/shaded_mesh';
+import { shadingOf } from '../../shared/panels/shaded_mesh';
 
 export const errorMapping: ColourMapping = {
   attribute: 'normal_error_deg',

@@ -2,9 +2,9 @@
 // Notes at the foot of the viewport: one at a time, the most urgent first.
 import { useSignal } from '@preact/signals';
 import { Button, formatDuration, Icon, Note, useLasting } from '../../ui';
-import { narrow } from '../common/narrow';
-import { readyWorker } from '../common/services';
-import { problemNote, repairsNote } from '../common/room_notes';
+import { narrow } from '../../shared/panels/narrow';
+import { readyWorker } from '../../shared/session/services';
+import { problemNote, repairsNote } from '../../shared/panels/room_notes';
 import type { ReliefSession } from './relief_session';
 
 const dismissedKey = 'formwright.relief.no-worker-note';

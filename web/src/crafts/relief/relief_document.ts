@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The relief's part of a project.
-import type { CraftDocument, CraftResult } from '../common/craft_document';
-import { CraftCommands, emptyCraft, sameRequest } from '../common/craft_document';
+import type { CraftDocument, CraftResult } from '../../shared/session/craft_document';
+import { CraftCommands, emptyCraft, sameRequest } from '../../shared/session/craft_document';
 
 export const relief = new CraftCommands<CraftDocument>('relief', emptyCraft);
 

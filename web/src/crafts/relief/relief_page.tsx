@@ -5,13 +5,13 @@ import type { Viewport } from '../../view';
 import { exportMain, Inspector } from './inspector';
 import { viewpointOf } from './meshes';
 import { Notes } from './notes';
-import { solveInFull } from '../common/full_solve';
-import { useRoomKeys } from '../common/room_keys';
-import '../common/room.css';
+import { solveInFull } from '../../shared/session/full_solve';
+import { useRoomKeys } from '../../shared/session/room_keys';
+import '../../shared/panels/room.css';
 import type { ReliefSession } from './relief_session';
 import type { SendToMill } from './send_relief';
-import type { Look } from '../common/pictures';
-import { useModelPicture, useResultPictures } from '../common/pictures';
+import type { Look } from '../../shared/panels/pictures';
+import { useModelPicture, useResultPictures } from '../../shared/panels/pictures';
 import { ResultsStrip } from './results_strip';
 import { mode, ViewportPanel } from './viewport_panel';
 

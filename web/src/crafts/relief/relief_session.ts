@@ -4,16 +4,18 @@ import { computed, signal } from '@preact/signals';
 import type { JsonObject, Operation, Report } from '../../jobs/contract';
 import { findOperation } from '../../jobs/contract';
 import { readPly } from '../../jobs/mesh_reader';
-import type { CraftDocument, CraftResult, Source } from '../common/craft_document';
-import type { Measured } from '../common/estimate';
-import { estimateMemory_mb, expectedTimes } from '../common/estimate';
-import { bytesOf } from '../common/import_model';
-import type { PreviewRequest, ShownWork } from '../common/previewing_session';
-import { PreviewingSession } from '../common/previewing_session';
-import { readMesh } from '../common/read_mesh';
-import { figure } from '../common/report';
-import type { Services } from '../common/services';
-import type { ShadedMesh } from '../common/shaded_mesh';
+import type { CraftDocument, CraftResult, Source } from '../../shared/session/craft_document';
+import type { Measured } from '../../shared/session/estimate';
+import { estimateMemory_mb, expectedTimes } from '../../shared/session/estimate';
+import { bytesOf } from '../../shared/session/import_model';
+import { OpenedModel } from '../../shared/session/opened_model';
+import type { PreviewRequest, ShownWork } from '../../shared/session/previews';
+import { Previews } from '../../shared/session/previews';
+import { readMesh } from '../../shared/session/read_mesh';
+import { figure } from '../../shared/session/report';
+import { RoomSession } from '../../shared/session/room_session';
+import type { Services } from '../../shared/session/services';
+import type { ShadedMesh } from '../../shared/panels/shaded_mesh';
 import type { Viewpoint } from '../../view';
 import { parametersOf } from './meshes';
 import { currentResult, relief } from './relief_document';
@@ -23,36 +25,62 @@ export interface Shown extends ShownWork {
   readonly mesh: ShadedMesh;
 }
 
-export class ReliefSession extends PreviewingSession<CraftDocument, Shown> {
+const shownOutputs = ['relief.ply'];
+
+export class ReliefSession extends RoomSession<CraftDocument> {
   readonly operationName = 'relief';
-  readonly meshInputName = 'mesh';
   /** The worker keeps the others until they are asked for. */
   readonly wantedOutputs = ['relief.ply', 'relief.stl'];
-  protected readonly shownOutputs = ['relief.ply'];
   readonly failedTitle = 'Could not solve the relief';
-  protected readonly previewFailedTitle = 'Could not preview the relief';
   readonly document = computed(() => relief.of(this.services.projects.document.value));
   readonly operation = computed<Operation | null>(() => {
     const catalog = this.services.catalog.value;
     return catalog === null ? null : (findOperation(catalog, this.operationName) ?? null);
   });
   readonly asked = computed(() => this.document.value.parameters);
-  readonly result = computed(() => currentResult(this.document.value));
+  readonly model: OpenedModel<CraftDocument> = new OpenedModel(this, {
+    commands: relief,
+    inputName: 'mesh',
+    ownParameters: (source) => this.#viewpointOf(source),
+    // A new model starts with its own viewpoint; sizes stay as the maker set them.
+    forgets: (name) => this.operation.value?.parameters.properties[name]?.['x-group'] === 'Viewpoint',
+  });
+  readonly hasWork = this.model.isThere;
+  readonly subject = this.model.subject;
+  readonly result = this.unlessLost(computed(() => currentResult(this.document.value)));
+  readonly previews = new Previews<CraftDocument, Shown>(this, {
+    shownOutputs,
+    failedTitle: 'Could not preview the relief',
+    make: (request, signal) => this.#makePreview(request, signal),
+    read: (result) => this.#readResult(result),
+  });
+  readonly shown = this.previews.shown;
   readonly #previewed = signal<Measured | null>(null);
   readonly #previewMemory_mb = signal(0);
 
   constructor(services: Services) {
     super(services, relief);
-    this.startFollowing();
+    this.previews.startFollowing();
   }
 
-  /** A new model starts with its own viewpoint; sizes stay as the maker set them. */
-  protected forgets(name: string): boolean {
-    return this.operation.value?.parameters.properties[name]?.['x-group'] === 'Viewpoint';
+  openFiles(files: readonly File[]): Promise<boolean> {
+    return this.model.openFiles(files);
+  }
+
+  get title(): string {
+    return this.model.title;
+  }
+
+  cancelPreview(): void {
+    this.previews.cancel();
+  }
+
+  protected follow(): void {
+    this.previews.follow();
   }
 
   /** Our own samples say from where they are best seen. */
-  protected ownParameters(source: Source): JsonObject {
+  #viewpointOf(source: Source): JsonObject {
     const samples = this.services.catalog.value?.samples ?? [];
     const sample = source.kind === 'sample' ? samples.find(({ name }) => name === source.sample) : undefined;
     return {
@@ -70,27 +98,27 @@ export class ReliefSession extends PreviewingSession<CraftDocument, Shown> {
 
   /** Millimetres a unit of the model, as it is drawn beside its relief. */
   readonly drawnScale = computed(() => {
-    const positions = this.original.value?.mesh.positions;
+    const positions = this.model.original.value?.mesh.positions;
     const told = this.fits.value ? figure(this.shown.value?.report ?? {}, 'scale_mm_per_unit') : null;
     return told ?? (positions ? provisionalScale(positions, Number(this.value('width_mm') ?? 100)) : 1);
   });
 
   /** The relief is to be made for what this camera sees; `coalesce` while it moves. */
   setViewpoint(camera: Viewpoint, coalesce?: string): void {
-    const positions = this.original.peek()?.mesh.positions;
+    const positions = this.model.original.peek()?.mesh.positions;
     if (positions === undefined) return;
     const values = parametersOf(camera, positions, this.drawnScale.peek());
     this.setParameters(values, 'Set the viewpoint', coalesce);
   }
 
-  protected async readResult({ outputs, report, parameters, mesh }: CraftResult): Promise<Shown> {
+  async #readResult({ outputs, report, parameters, mesh }: CraftResult): Promise<Shown> {
     const bytes = await this.services.projects.blobs.read(outputs['relief.ply']?.blob ?? '');
     return { kind: 'full', mesh: await readMesh(bytes), report, parameters, from: mesh };
   }
 
-  protected async makePreview({ subject, parameters }: PreviewRequest, signal: AbortSignal): Promise<Shown> {
+  async #makePreview({ subject, parameters }: PreviewRequest, signal: AbortSignal): Promise<Shown> {
     const { inputs } = subject;
-    const job = { operation: this.operationName, parameters, inputs, outputs: this.shownOutputs };
+    const job = { operation: this.operationName, parameters, inputs, outputs: shownOutputs };
     const { report, outputs } = await this.services.browser.run(job, { signal });
     const relief = await readPly(await bytesOf({ report, outputs }, 'relief.ply'));
     this.#measurePreview(report);

@@ -2,7 +2,7 @@
 // What a relief's report says, in lines.
 import type { Report } from '../../jobs/contract';
 import { formatDuration, formatFixed, withUnit } from '../../ui';
-import { figure, vectorOf } from '../common/report';
+import { figure, vectorOf } from '../../shared/session/report';
 
 /** "Watertight, 120.0 × 85.5 × 8.0 mm". */
 export function solidLine(report: Report): string {
@@ -14,7 +14,7 @@ export function solidLine(report: Report): string {
 }
 
 /** "Shading 11.1° closer than with plain scaling". */
-export function gainLine(report: Report): string | null {
+function gainLine(report: Report): string | null {
   const own = figure(report, 'normal_error_mean_deg');
   const plain = figure(report, 'normal_error_linear_mean_deg');
   if (own === null || plain === null) return null;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { formatFixed } from '../../ui';
-import type { CraftResult } from '../common/craft_document';
-import { CraftStrip } from '../common/craft_strip';
-import { figure } from '../common/report';
+import type { CraftResult } from '../../shared/session/craft_document';
+import { CraftStrip } from '../../shared/panels/craft_strip';
+import { figure } from '../../shared/session/report';
 import { relief } from './relief_document';
 import type { ReliefSession } from './relief_session';
 import { solvedLine } from './report';

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The relief's heights on their way to a mill, with their size in millimetres.
 import type { JsonObject } from '../../jobs/contract';
-import { safeFileName } from '../common/download';
-import { outputOf } from '../common/full_solve';
+import { safeFileName } from '../../shared/session/download';
+import { outputOf } from '../../shared/session/full_solve';
 import type { ReliefSession } from './relief_session';
 
 /** Hands a height map to whoever runs mills, which crafts do not know; `size` in the words of mill jobs. */

@@ -6,16 +6,16 @@ import { useEffect, useRef } from 'preact/hooks';
 import { Icon, Segmented } from '../../ui';
 import type { Insets, LightDirection, Plate, ViewMode } from '../../view';
 import { LightBall, SideInset, Viewport } from '../../view';
-import { Legend } from '../common/legend';
-import { narrow } from '../common/narrow';
-import { figure } from '../common/report';
-import { originalData, scaled } from '../common/shaded_mesh';
+import { Legend } from '../../shared/panels/legend';
+import { narrow } from '../../shared/panels/narrow';
+import { figure } from '../../shared/session/report';
+import { originalData, scaled } from '../../shared/panels/shaded_mesh';
 import { errorMapping, errorOf, plateOf, reliefData, viewpointOf } from './meshes';
 import type { ReliefSession, Shown } from './relief_session';
 
 /** The viewport's own state outlives a visit to another page. */
 export const mode = signal<ViewMode>('swipe');
-export const light = signal<LightDirection>({ azimuthDeg: 135, elevationDeg: 35, follows: 'object' });
+const light = signal<LightDirection>({ azimuthDeg: 135, elevationDeg: 35, follows: 'object' });
 export const atViewpoint = signal(true);
 export const followCamera = signal(false);
 let followed = '';
@@ -78,7 +78,9 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
       effect(() => followOnly(session)),
       effect(() => viewport.setMode(mode.value)),
       keepDrawn(viewport, session, (thickness) => inset.update(thickness)),
-      effect(() => viewport.setResting(session.previewing.value || session.activity.value.kind !== 'idle')),
+      effect(() =>
+        viewport.setResting(session.previews.running.value || session.activity.value.kind !== 'idle'),
+      ),
     ];
     const resize = new ResizeObserver(() => viewport.setFreeRectangle(freeRectangle(foot.current)));
     resize.observe(container.current);
@@ -103,7 +105,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
   return (
     <div class="viewport-panel">
       <div ref={container} class="viewport" />
-      {session.original.value && drawing.value ? (
+      {session.model.original.value && drawing.value ? (
         <div class="float top-left">
           <Segmented
             floating
@@ -122,7 +124,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
             mean={figure(shown.report, 'normal_error_mean_deg') ?? undefined}
           />
         ) : null}
-        {session.previewing.value && session.original.value && shown === null ? (
+        {session.previews.running.value && session.model.original.value && shown === null ? (
           <p class="label-chip">
             <Icon name="clock" small /> Making the first preview
           </p>
@@ -132,7 +134,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
       <div
         ref={ball}
         class="float top-right panel light-panel"
-        hidden={session.original.value === null || !drawing.value}
+        hidden={session.model.original.value === null || !drawing.value}
       />
       <div ref={side} class="float bottom-right panel side-inset" hidden={shown === null || !drawing.value} />
       {children}
@@ -159,7 +161,7 @@ function keepDrawn(
   let drawnRelief: Shown | null = null;
   let drawnModel: string | null = null;
   const draw = () => {
-    const original = session.original.value;
+    const original = session.model.original.value;
     const shown = session.shown.value;
     if (original === null) {
       viewport.setOriginal(null);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-import type { Services } from '../common/services';
+import type { Services } from '../../shared/session/services';
 
 /** Browsers compile WASM quickly first and well only after it has run: a small relief made while the start
  *  screen is read takes half a second off the first preview. Abort it when the solver is wanted. */

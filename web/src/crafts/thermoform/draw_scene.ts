@@ -4,7 +4,7 @@
 import { effect } from '@preact/signals';
 import type { MeshData, Viewport } from '../../view';
 import { turnedShading } from '../../view';
-import type { ShadedMesh } from '../common/shaded_mesh';
+import type { ShadedMesh } from '../../shared/panels/shaded_mesh';
 import type { Clamp } from './clamp_frame';
 import { clampFrame, frameShadow, platform } from './clamp_frame';
 import { endOf, sheetAt, Stretching } from './film';
@@ -44,7 +44,7 @@ export function clampOf(session: ThermoformSession, formed: Formed): Clamp {
 /** Where the model stands with the parameters in force. */
 export function placementNow(session: ThermoformSession): Placement | null {
   const shown = session.shown.value;
-  const original = session.original.value;
+  const original = session.model.original.value;
   if (shown === null || original === null) return null;
   const told = placementOf(shown.report);
   if (told === null) return null;
@@ -73,7 +73,7 @@ export function keepDrawn(viewport: Viewport, session: ThermoformSession, extras
   let lift = 0;
 
   const drawModel = (): void => {
-    const original = session.original.value;
+    const original = session.model.original.value;
     const shown = session.shown.value;
     const placement = placementNow(session);
     const draft = view.value === 'undercut' ? (extras().draft?.mesh ?? null) : null;
@@ -150,7 +150,7 @@ export function keepDrawn(viewport: Viewport, session: ThermoformSession, extras
     viewport.setOpacity('relief', settled ? 1 : dragging.value ? translucent : translucent + 0.35 * covered);
     if (moment.platform_z_mm !== lift) {
       const placement = placementNow(session);
-      const original = session.original.peek();
+      const original = session.model.original.peek();
       if (placement && original) moveModel(placed(original.mesh.positions, placement));
     }
   };

@@ -2,11 +2,11 @@
 // The one filled button: forms the sheet at full detail, then hands out what is made of it.
 import type { OutputDeclaration } from '../../jobs/contract';
 import { Button, formatBytes, Icon, Menu } from '../../ui';
-import { download, safeFileName } from '../common/download';
-import { printInPlastic, printOnPaper } from '../common/print_request';
-import { timeLine } from '../common/estimate';
-import { figure } from '../common/report';
-import { readyWorker } from '../common/services';
+import { download, safeFileName } from '../../shared/session/download';
+import { printInPlastic, printOnPaper } from '../../shared/print/print_request';
+import { timeLine } from '../../shared/session/estimate';
+import { figure } from '../../shared/session/report';
+import { readyWorker } from '../../shared/session/services';
 import { bytesToSave } from './make_product';
 import { moulding, printing, simulate } from './thermoform_document';
 import type { ThermoformSession } from './thermoform_session';

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { batch, signal } from '@preact/signals';
 import { afterEach, beforeEach, expect, test, vi } from 'vitest';
-import type { CraftResult } from '../common/craft_document';
-import type { Product } from '../common/products';
+import type { CraftResult } from '../../shared/session/craft_document';
+import type { Product } from '../../shared/session/products';
 import { watchExtras } from './extras';
 import { bytesToSave } from './make_product';
 import { moulding, printing } from './thermoform_document';

@@ -4,9 +4,9 @@
 import { effect, signal } from '@preact/signals';
 import { readPly, readPrinted } from '../../jobs/mesh_reader';
 import type { MeshData } from '../../view';
-import { sameRequest } from '../common/craft_document';
+import { sameRequest } from '../../shared/session/craft_document';
 import { bytesToSave } from './make_product';
-import type { Product } from '../common/products';
+import type { Product } from '../../shared/session/products';
 import { moulding, printing } from './thermoform_document';
 import type { Formed, ThermoformSession } from './thermoform_session';
 import type { View } from './views';

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The parameters of forming and of what is made of the formed sheet, and the one filled button.
 import { IconButton } from '../../ui';
-import { machineProfile } from '../common/machine_profile';
-import { ModelRow } from '../common/model_row';
-import { ParameterPanel } from '../common/parameter_panel';
+import { machineProfile } from '../../shared/session/machine_profile';
+import { ModelRow } from '../../shared/panels/model_row';
+import { ParameterPanel } from '../../shared/panels/parameter_panel';
 import { placementNow } from './draw_scene';
 import { MainButton } from './export_button';
 import { boxOf } from './placement';
@@ -21,7 +21,7 @@ const openGroups = ['Placement', 'Sheet', 'Machine'];
 
 /** The size that the core chose: of the model before it is turned. */
 function automaticValues(session: ThermoformSession): Record<string, number> {
-  const original = session.original.value;
+  const original = session.model.original.value;
   const placement = placementNow(session);
   if (original === null || placement === null) return {};
   const scale = Math.hypot(...[0, 1, 2].map((at) => placement[at] ?? 0));

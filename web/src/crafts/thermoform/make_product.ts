@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Prints and moulds of a formed sheet: what is not made yet is made, the sheet first where that is missing.
 import type { JobInput, Operation } from '../../jobs/contract';
-import type { Source } from '../common/craft_document';
-import { meshInput } from '../common/craft_document';
-import { outputOf, solveInFull } from '../common/full_solve';
-import { productBytes } from '../common/products';
+import type { Source } from '../../shared/session/craft_document';
+import { meshInput } from '../../shared/session/craft_document';
+import { outputOf, solveInFull } from '../../shared/session/full_solve';
+import { profileInputs } from '../../shared/session/machine_profile';
+import { productBytes } from '../../shared/session/products';
 import { printing, simulate } from './thermoform_document';
 import type { ThermoformSession } from './thermoform_session';
 
@@ -49,7 +50,7 @@ export async function bytesToSave(
     mould: operationName === printing ? sourceInput(model.source) : meshInput(model.mesh, 'model.ply'),
     ...(sheet && takesSheet ? { sheet: meshInput(sheet, 'sheet.ply') } : {}),
     ...companionInputs(operation, model.source),
-    ...session.furtherInputs.value,
+    ...profileInputs(session.profile.value),
   };
   const beside = operationName === printing ? ['formed.glb', 'print.pdf'] : ['draft.ply'];
   return await productBytes(session, { operation, from, inputs, output, beside, label });

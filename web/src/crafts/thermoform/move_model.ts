@@ -25,7 +25,7 @@ export class ModelMover {
 
   /** Whether a press at this point of the scene takes hold of the model. */
   holds(z_mm: number): boolean {
-    const { original } = this.#session;
+    const { original } = this.#session.model;
     const placement = placementNow(this.#session);
     if (original.value === null || placement === null) return false;
     const { high } = boxOf(placed(original.value.mesh.positions, placement));

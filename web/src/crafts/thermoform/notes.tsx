@@ -2,9 +2,9 @@
 // Notes at the foot of the viewport: one at a time, the most urgent first.
 import { signal, useSignal } from '@preact/signals';
 import { formatNumber, Icon, IconButton, Note, useLasting, withUnit } from '../../ui';
-import { narrow } from '../common/narrow';
-import { sentences } from '../common/report';
-import { problemNote, repairsNote } from '../common/room_notes';
+import { narrow } from '../../shared/panels/narrow';
+import { sentences } from '../../shared/session/report';
+import { problemNote, repairsNote } from '../../shared/panels/room_notes';
 import { clampOf, placementNow } from './draw_scene';
 import { beyondOpening, boxOf, placed } from './placement';
 import type { ThermoformSession } from './thermoform_session';
@@ -14,8 +14,8 @@ import { view } from './views';
 const dismissed = signal('');
 
 /** How far the model reaches beyond the clamp, mm; 0 inside. */
-export function overhang_mm(session: ThermoformSession): number {
-  const original = session.original.value;
+function overhang_mm(session: ThermoformSession): number {
+  const original = session.model.original.value;
   const shown = session.shown.value;
   const placement = placementNow(session);
   if (original === null || shown === null || placement === null) return 0;

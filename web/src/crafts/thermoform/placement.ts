@@ -5,7 +5,7 @@ import type { JsonObject, Report } from '../../jobs/contract';
 
 /** 4 x 4, row by row: from the model's coordinates to the machine's. */
 export type Placement = readonly number[];
-export type Corner = readonly [number, number, number];
+type Corner = readonly [number, number, number];
 
 export interface Box {
   readonly low: Corner;

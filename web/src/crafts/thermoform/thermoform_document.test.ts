@@ -3,11 +3,11 @@ import { describe, expect, it } from 'vitest';
 import type { Catalog, Operation, ParameterSchema } from '../../jobs/contract';
 import type { ProjectDocument } from '../../project/document';
 import { newDocument } from '../../project/document';
-import type { CraftModel, CraftResult } from '../common/craft_document';
-import { CraftCommands, emptyCraft, inForce, known, subjectOf } from '../common/craft_document';
-import { machineProfile, profileInputs, withProfile } from '../common/machine_profile';
-import type { Product } from '../common/products';
-import { addProduct, productOf } from '../common/products';
+import type { CraftModel, CraftResult } from '../../shared/session/craft_document';
+import { CraftCommands, emptyCraft, inForce, known, subjectOf } from '../../shared/session/craft_document';
+import { machineProfile, profileInputs, withProfile } from '../../shared/session/machine_profile';
+import type { Product } from '../../shared/session/products';
+import { addProduct, productOf } from '../../shared/session/products';
 import { formedSheet, offered, printing, simulate, thermoform } from './thermoform_document';
 
 const number = (value: number): ParameterSchema => ({ type: 'number', default: value });

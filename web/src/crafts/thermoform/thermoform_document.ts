@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Thermoforming's part of a project: formed sheets as results, and what was made of them: prints, moulds.
 import type { Catalog, JsonObject, Operation } from '../../jobs/contract';
-import type { CraftDocument, CraftResult, Subject } from '../common/craft_document';
-import { CraftCommands, emptyCraft, sameRequest } from '../common/craft_document';
-import type { RoomWithProducts } from '../common/products';
-import { offeredTogether } from '../common/products';
+import type { CraftDocument, CraftResult, Subject } from '../../shared/session/craft_document';
+import { CraftCommands, emptyCraft, sameRequest } from '../../shared/session/craft_document';
+import type { RoomWithProducts } from '../../shared/session/products';
+import { offeredTogether } from '../../shared/session/products';
 
 export type ThermoformDocument = CraftDocument & RoomWithProducts;
 

@@ -3,12 +3,12 @@ import { useSignal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
 import { Button, Sheet } from '../../ui';
 import type { Viewport } from '../../view';
-import { solveInFull } from '../common/full_solve';
-import { useRoomKeys } from '../common/room_keys';
-import { Gallery } from '../common/gallery';
-import type { Look } from '../common/pictures';
-import { useModelPicture, useResultPictures } from '../common/pictures';
-import '../common/room.css';
+import { solveInFull } from '../../shared/session/full_solve';
+import { useRoomKeys } from '../../shared/session/room_keys';
+import { Gallery } from '../../shared/panels/gallery';
+import type { Look } from '../../shared/panels/pictures';
+import { useModelPicture, useResultPictures } from '../../shared/panels/pictures';
+import '../../shared/panels/room.css';
 import { exportMain } from './export_button';
 import { Inspector } from './inspector';
 import { Notes } from './notes';
@@ -85,7 +85,7 @@ function Empty({ session, onChooseFile }: ThermoformPageProps) {
       <Button kind="filled" icon="upload" onClick={onChooseFile}>
         Open a model
       </Button>
-      <Gallery samples={samples} onOpen={(sample, title) => void session.openSample(sample, title)} />
+      <Gallery samples={samples} onOpen={(sample, title) => void session.model.openSample(sample, title)} />
     </div>
   );
 }

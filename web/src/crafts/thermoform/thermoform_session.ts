@@ -7,17 +7,19 @@ import { findOperation } from '../../jobs/contract';
 import type { Film } from '../../jobs/glb';
 import { readFilm, readPly } from '../../jobs/mesh_reader';
 import type { PlyMesh } from '../../jobs/ply';
-import type { CraftResult } from '../common/craft_document';
-import { inForce, known } from '../common/craft_document';
-import type { Measured } from '../common/estimate';
-import { expectedTimes } from '../common/estimate';
-import { bytesOf } from '../common/import_model';
-import type { PreviewRequest, ShownWork } from '../common/previewing_session';
-import { PreviewingSession } from '../common/previewing_session';
-import { machineProfile, profileInputs, withProfile } from '../common/machine_profile';
-import { productOf } from '../common/products';
-import { figure } from '../common/report';
-import type { Services } from '../common/services';
+import type { CraftResult } from '../../shared/session/craft_document';
+import { inForce, known } from '../../shared/session/craft_document';
+import type { Measured } from '../../shared/session/estimate';
+import { expectedTimes } from '../../shared/session/estimate';
+import { bytesOf } from '../../shared/session/import_model';
+import { machineProfile, profileInputs, withProfile } from '../../shared/session/machine_profile';
+import { OpenedModel } from '../../shared/session/opened_model';
+import type { PreviewRequest, ShownWork } from '../../shared/session/previews';
+import { Previews } from '../../shared/session/previews';
+import { productOf } from '../../shared/session/products';
+import { figure } from '../../shared/session/report';
+import { RoomSession } from '../../shared/session/room_session';
+import type { Services } from '../../shared/session/services';
 import { endOf, momentAt, phaseAt, phasesOf } from './film';
 import { formedSheet, moulding, offered, printing, simulate, thermoform } from './thermoform_document';
 import type { ThermoformDocument } from './thermoform_document';
@@ -32,13 +34,10 @@ const previewTriangles = 2500;
 /** A preview that has run longer than this is given up for a newer one. */
 const patience_ms = 1500;
 
-export class ThermoformSession extends PreviewingSession<ThermoformDocument, Formed> {
+export class ThermoformSession extends RoomSession<ThermoformDocument> {
   readonly operationName = simulate;
-  readonly meshInputName = 'mould';
   readonly wantedOutputs = ['sheet.ply', 'forming.glb'];
-  protected readonly shownOutputs = this.wantedOutputs;
   readonly failedTitle = 'Could not form the sheet';
-  protected readonly previewFailedTitle = 'Could not preview the forming';
   readonly document = computed(() => thermoform.of(this.services.projects.document.value));
   readonly profile = computed(() => machineProfile.of(this.services.projects.document.value).profile);
   readonly operation = computed<Operation | null>(() => {
@@ -46,9 +45,28 @@ export class ThermoformSession extends PreviewingSession<ThermoformDocument, For
     const operation = catalog && offered(catalog);
     return operation && withProfile(operation, this.profile.value);
   });
-  override readonly furtherInputs = computed(() => profileInputs(this.profile.value));
+  readonly model: OpenedModel<ThermoformDocument> = new OpenedModel(this, {
+    commands: thermoform,
+    inputName: 'mould',
+    furtherInputs: computed(() => profileInputs(this.profile.value)),
+    // Size and place belonged to the old model; sheet and machine are still the same.
+    forgets: (name) => this.operation.value?.parameters.properties[name]?.['x-group'] === 'Placement',
+  });
+  readonly hasWork = this.model.isThere;
+  readonly subject = this.model.subject;
   readonly asked = computed(() => known(this.operationNamed(simulate), this.document.value.parameters));
-  readonly result = computed(() => formedSheet(this.document.value, this.subject.value, this.asked.value));
+  readonly result = this.unlessLost(
+    computed(() => formedSheet(this.document.value, this.subject.value, this.asked.value)),
+  );
+  readonly previews = new Previews<ThermoformDocument, Formed>(this, {
+    shownOutputs: this.wantedOutputs,
+    failedTitle: 'Could not preview the forming',
+    make: (request, signal) => this.#makePreview(request, signal),
+    read: (result) => this.#readResult(result),
+    patience_ms, // a coarse sheet takes so little that only a long wait is worth giving up
+    present: (formed, show) => this.#present(formed, show),
+  });
+  readonly shown = this.previews.shown;
   readonly print = computed(() =>
     productOf(this.document.value, this.subject.value?.key ?? null, this.operationNamed(printing)),
   );
@@ -72,26 +90,32 @@ export class ThermoformSession extends PreviewingSession<ThermoformDocument, For
     });
   });
   readonly #previewed = signal<Measured | null>(null);
-  #previewStart = 0;
 
   constructor(services: Services) {
     super(services, thermoform);
-    this.startFollowing();
+    this.previews.startFollowing();
+  }
+
+  openFiles(files: readonly File[]): Promise<boolean> {
+    return this.model.openFiles(files);
+  }
+
+  get title(): string {
+    return this.model.title;
+  }
+
+  cancelPreview(): void {
+    this.previews.cancel();
+  }
+
+  protected follow(): void {
+    this.previews.follow();
   }
 
   operationNamed(name: string): Operation | undefined {
     const catalog = this.services.catalog.value;
     const operation = catalog ? findOperation(catalog, name) : undefined;
     return operation && withProfile(operation, this.profile.value);
-  }
-
-  /** Size and place belonged to the old model; sheet and machine are still the same. */
-  protected forgets(name: string): boolean {
-    return this.operation.value?.parameters.properties[name]?.['x-group'] === 'Placement';
-  }
-
-  protected ownParameters(): JsonObject {
-    return {};
   }
 
   /** With defaults filled in. */
@@ -102,26 +126,20 @@ export class ThermoformSession extends PreviewingSession<ThermoformDocument, For
     return Object.fromEntries(names.map((name) => [name, inForce(operation, parameters, name)]));
   }
 
-  /** A coarse sheet takes so little that only a long wait is worth giving up. */
-  protected override isObsolete(running: PreviewRequest, next: PreviewRequest): boolean {
-    return super.isObsolete(running, next) || performance.now() - this.#previewStart > patience_ms;
-  }
-
-  protected async readResult({ outputs, report, parameters, mesh }: CraftResult): Promise<Formed> {
+  async #readResult({ outputs, report, parameters, mesh }: CraftResult): Promise<Formed> {
     const { blobs } = this.services.projects;
     const sheet = await readPly(await blobs.read(outputs['sheet.ply']?.blob ?? ''));
     const film = await readFilm(await blobs.read(outputs['forming.glb']?.blob ?? ''));
     return { kind: 'full', sheet, film, report, parameters, from: mesh };
   }
 
-  protected async makePreview({ subject, parameters }: PreviewRequest, signal: AbortSignal): Promise<Formed> {
-    this.#previewStart = performance.now();
+  async #makePreview({ subject, parameters }: PreviewRequest, signal: AbortSignal): Promise<Formed> {
     const triangles = Math.min(previewTriangles, Number(this.filled(parameters)['triangles'] ?? Infinity));
     const job = {
       operation: simulate,
       parameters: { ...parameters, triangles },
       inputs: subject.inputs,
-      outputs: this.shownOutputs,
+      outputs: this.wantedOutputs,
     };
     const done = await this.services.browser.run(job, { signal });
     const sheet = await readPly(await bytesOf(done, 'sheet.ply'));
@@ -131,10 +149,10 @@ export class ThermoformSession extends PreviewingSession<ThermoformDocument, For
   }
 
   /** Keeps the moment looked at; who looked at the end goes on doing so. */
-  protected override show(formed: Formed): void {
+  #present(formed: Formed, show: () => void): void {
     const before = this.shown.value?.film;
     const atEnd = before === undefined || this.time_s.value >= endOf(before) - 1e-6;
-    super.show(formed);
+    show();
     const end = endOf(formed.film);
     this.time_s.value = atEnd ? end : Math.min(this.time_s.value, end);
   }

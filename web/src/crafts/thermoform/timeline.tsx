@@ -3,7 +3,7 @@
 import { useEffect, useRef } from 'preact/hooks';
 import type { Json } from '../../jobs/contract';
 import { formatFixed, formatNumber, IconButton, withUnit } from '../../ui';
-import { figure } from '../common/report';
+import { figure } from '../../shared/session/report';
 import type { Phase } from './film';
 import { endOf, fractionAt, timeAt } from './film';
 import type { Formed, ThermoformSession } from './thermoform_session';
@@ -12,7 +12,7 @@ import { playing } from './views';
 const titles: Readonly<Record<string, string>> = { relax: 'Relax', raise: 'Raise', vacuum: 'Vacuum' };
 
 /** What happens in a phase, in a few words. */
-export function phaseDetail(name: string, { report }: Formed, all: Readonly<Record<string, Json>>): string {
+function phaseDetail(name: string, { report }: Formed, all: Readonly<Record<string, Json>>): string {
   if (name === 'relax') {
     const sag = figure(report, 'sag_mm');
     return sag === null ? '' : `sags ${withUnit(formatNumber(sag, 2), 'mm')}`;

@@ -6,9 +6,9 @@ import { useEffect, useMemo, useRef } from 'preact/hooks';
 import { Icon, IconButton, Segmented } from '../../ui';
 import type { Insets, Viewpoint } from '../../view';
 import { Viewport } from '../../view';
-import { Legend } from '../common/legend';
-import { narrow } from '../common/narrow';
-import { figure } from '../common/report';
+import { Legend } from '../../shared/panels/legend';
+import { narrow } from '../../shared/panels/narrow';
+import { figure } from '../../shared/session/report';
 import { keepDrawn, placementNow, thicknessOf } from './draw_scene';
 import { watchExtras } from './extras';
 import { MoveHandle } from './move_handle';
@@ -88,7 +88,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
       effect(() => {
         if (!dragging.value) makeRoom();
       }),
-      effect(() => made.setResting(session.previewing.value || session.activity.value.kind !== 'idle')),
+      effect(() => made.setResting(session.previews.running.value || session.activity.value.kind !== 'idle')),
     ];
     const resize = new ResizeObserver(makeRoom);
     resize.observe(container.current);
@@ -106,7 +106,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
   useEffect(() => () => watched.dispose(), [watched]);
 
   const shown = session.shown.value;
-  const visible = drawing.value && session.original.value !== null;
+  const visible = drawing.value && session.model.original.value !== null;
   return (
     <div class="viewport-panel">
       <div ref={container} class="viewport" />
@@ -132,7 +132,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
       ) : null}
       {visible ? <SidePanel session={session} url={watched.extras.value.printed?.url ?? null} /> : null}
       <div ref={foot} class="float bottom-left foot wide">
-        {session.previewing.value && session.original.value && shown === null ? (
+        {session.previews.running.value && session.model.original.value && shown === null ? (
           <p class="label-chip">
             <Icon name="clock" small /> Making the first preview
           </p>
@@ -173,7 +173,7 @@ function SidePanel({ session, url }: { session: ThermoformSession; url: string |
 /** In front of the model's foot, where there is one to move. */
 function placeHandle(viewport: Viewport, session: ThermoformSession, element: HTMLElement | null): void {
   if (element === null) return;
-  const original = session.original.peek();
+  const original = session.model.original.peek();
   const placement = original && placementNow(session);
   const moment = session.moment.peek();
   if (!original || !placement || moment === null || moment.platform_z_mm !== 0) {

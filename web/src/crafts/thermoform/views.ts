@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the viewport shows, and in which colours. It outlives a visit to another page.
-import { computed, signal } from '@preact/signals';
+import { signal } from '@preact/signals';
 import type { ColourMapping } from '../../view';
 import { printing } from './thermoform_document';
 import type { Formed, ThermoformSession } from './thermoform_session';
@@ -15,7 +15,7 @@ export const swiping = signal(false);
 export const dragging = signal(false);
 export const playing = signal(false);
 
-export const viewNames: readonly { readonly value: View; readonly label: string }[] = [
+const viewNames: readonly { readonly value: View; readonly label: string }[] = [
   { value: 'texture', label: 'Texture' },
   { value: 'thickness', label: 'Thickness' },
   { value: 'stretch', label: 'Stretch' },
@@ -82,10 +82,3 @@ function leastOf(values: Float32Array | undefined): number | null {
   for (const value of values ?? []) if (value < least) least = value;
   return Number.isFinite(least) ? least : null;
 }
-
-/** Of the sheet as set, not as formed. */
-export const sheetThickness = (session: ThermoformSession) =>
-  computed(() => {
-    const shown = session.shown.value;
-    return Number(session.filled(shown?.parameters ?? {})['sheet_thickness_mm'] ?? 1);
-  });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { expect, it } from 'vitest';
 import { boundaryEdges, partName, readDesign } from './design';
-import { woundDesign } from './test_ribbon';
+import { woundDesign } from './ribbon/test_ribbon';
 
 it('reads ribbon, sides and lengths', () => {
   const design = woundDesign(12);

@@ -15,7 +15,7 @@ export interface Ribbon {
   readonly side: Int8Array;
 }
 
-export interface PartPlan {
+interface PartPlan {
   readonly period_mm: number;
   readonly height_mm: number;
   readonly windings: number;
@@ -112,7 +112,7 @@ function distanceBetween(positions: Float32Array, a: number, b: number): number 
 }
 
 /** Whether the boundary runs along the zipper from one vertex to the next, or along an opening. */
-export function isZipperEdge({ ribbon, pieceOf }: Design, a: number, b: number): boolean {
+function isZipperEdge({ ribbon, pieceOf }: Design, a: number, b: number): boolean {
   const [from, to] = [ribbon.sample[a] ?? -1, ribbon.sample[b] ?? -1];
   return from >= 0 && to >= 0 && ribbon.side[a] === ribbon.side[b] && pieceOf[from] === pieceOf[to];
 }

@@ -2,14 +2,14 @@
 // The one filled button: makes the ribbon of the whole model, then hands out its files.
 import type { OutputDeclaration } from '../../jobs/contract';
 import { Button, formatBytes, Icon, Menu } from '../../ui';
-import { download, safeFileName } from '../common/download';
-import { timeLine } from '../common/estimate';
-import { outputOf, solveInFull } from '../common/full_solve';
-import { printOnPaper } from '../common/print_request';
-import { readyWorker } from '../common/services';
+import { download, safeFileName } from '../../shared/session/download';
+import { timeLine } from '../../shared/session/estimate';
+import { outputOf, solveInFull } from '../../shared/session/full_solve';
+import { printOnPaper } from '../../shared/print/print_request';
+import { readyWorker } from '../../shared/session/services';
 import { planBytes, simulationBytes } from './make_product';
-import type { SendToMachine } from './send_sheet';
-import { sendSheet, sheetCount, sheetName } from './send_sheet';
+import type { SendToMachine } from './ribbon/send_sheet';
+import { sendSheet, sheetCount, sheetName } from './ribbon/send_sheet';
 import { flatView } from './views';
 import { design, planning, simulating } from './zippable_document';
 import type { ZippableSession } from './zippable_session';

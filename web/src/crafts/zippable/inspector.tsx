@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Model, parts, parameters, lengths and errors, and the one filled button.
-import { ModelRow } from '../common/model_row';
-import { ParameterPanel } from '../common/parameter_panel';
-import { figure, vectorOf } from '../common/report';
+import { ModelRow } from '../../shared/panels/model_row';
+import { ParameterPanel } from '../../shared/panels/parameter_panel';
+import { figure, vectorOf } from '../../shared/session/report';
 import { MainButton } from './export_button';
 import { Figures } from './figures';
-import { PartList } from './part_list';
-import type { SendToMachine } from './send_sheet';
+import { PartList } from './drawing/part_list';
+import type { SendToMachine } from './ribbon/send_sheet';
 import { flatView } from './views';
 import { design, planning } from './zippable_document';
 import type { ZippableSession } from './zippable_session';

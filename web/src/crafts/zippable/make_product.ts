@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is made of the design in force, when it is looked at or saved: plans to cut, a simulated zipping. The design in full first.
-import { solveInFull } from '../common/full_solve';
-import { productBytes } from '../common/products';
+import { solveInFull } from '../../shared/session/full_solve';
+import { productBytes } from '../../shared/session/products';
 import { planning, simulating } from './zippable_document';
 import type { ZippableSession } from './zippable_session';
 

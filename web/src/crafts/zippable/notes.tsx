@@ -2,8 +2,8 @@
 // Notes at the foot of the viewport: one at a time, the most urgent first.
 import { signal } from '@preact/signals';
 import { Icon, Note, useLasting } from '../../ui';
-import { sentences } from '../common/report';
-import { problemNote, repairsNote } from '../common/room_notes';
+import { sentences } from '../../shared/session/report';
+import { problemNote, repairsNote } from '../../shared/panels/room_notes';
 import type { ZippableSession } from './zippable_session';
 
 /** Words that were read, until others come. */

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-import { formatDuration } from '../../ui';
-import type { CraftResult } from '../common/craft_document';
-import { CraftStrip } from '../common/craft_strip';
-import { figure } from '../common/report';
-import { metres } from './flat_ribbon';
+import { formatDuration, formatMetres } from '../../ui';
+import type { CraftResult } from '../../shared/session/craft_document';
+import { CraftStrip } from '../../shared/panels/craft_strip';
+import { figure } from '../../shared/session/report';
 import { design, zippable } from './zippable_document';
 import type { ZippableSession } from './zippable_session';
 
@@ -40,7 +39,7 @@ export function ResultsStrip({ session }: { session: ZippableSession }) {
 
 const zipperOf = ({ report }: CraftResult): string => {
   const length_mm = figure(report, 'zipper_length_mm');
-  return length_mm === null ? '' : metres(length_mm);
+  return length_mm === null ? '' : formatMetres(length_mm);
 };
 
 /** "All lengths are kept. 1.3 s on the worker". */

@@ -6,14 +6,14 @@ import { useEffect, useMemo, useRef } from 'preact/hooks';
 import { Icon, Segmented } from '../../ui';
 import type { Insets, Viewpoint } from '../../view';
 import { Viewport } from '../../view';
-import { Legend } from '../common/legend';
-import { narrow } from '../common/narrow';
-import { figure } from '../common/report';
-import { fromShown, place as drawAt, tool } from './draw_actions';
-import { bentPositions, keepDrawn } from './draw_scene';
-import { DrawTool } from './draw_tool';
-import { Play } from './play';
-import { alongAt, placeInSpace } from './ribbon_places';
+import { Legend } from '../../shared/panels/legend';
+import { narrow } from '../../shared/panels/narrow';
+import { figure } from '../../shared/session/report';
+import { fromShown, place as drawAt, tool } from './drawing/draw_actions';
+import { bentPositions, keepDrawn } from './drawing/draw_scene';
+import { DrawTool } from './drawing/draw_tool';
+import { Play } from './ribbon/play';
+import { alongAt, placeInSpace } from './ribbon/ribbon_places';
 import {
   bend,
   cameraMoves,
@@ -89,7 +89,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
         void tool.value;
         untracked(makeRoom);
       }),
-      effect(() => made.setResting(session.previewing.value || session.activity.value.kind !== 'idle')),
+      effect(() => made.setResting(session.previews.running.value || session.activity.value.kind !== 'idle')),
     ];
     const resize = new ResizeObserver(makeRoom);
     resize.observe(container.current);
@@ -109,7 +109,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
   }, [session]);
 
   const shown = session.shown.value;
-  const visible = drawing.value && session.original.value !== null;
+  const visible = drawing.value && session.model.original.value !== null;
   return (
     <div class="viewport-panel">
       <div ref={container} class="viewport" />
@@ -126,7 +126,7 @@ export function ViewportPanel({ session, onViewport, notes, children }: Viewport
         </div>
       ) : null}
       <div ref={foot} class="float bottom-left foot wide">
-        {session.previewing.value && session.original.value && shown === null ? (
+        {session.previews.running.value && session.model.original.value && shown === null ? (
           <p class="label-chip">
             <Icon name="clock" small /> Making the first ribbon
           </p>

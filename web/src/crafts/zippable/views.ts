@@ -2,7 +2,7 @@
 // What the panes show and point at. Outlives a visit to another page.
 import { signal } from '@preact/signals';
 import type { ColourMapping } from '../../view';
-import type { Place } from './ribbon_places';
+import type { Place } from './ribbon/ribbon_places';
 import type { Zippable } from './zippable_session';
 
 export type View = 'parts' | 'distortion' | 'ribbon';

@@ -2,12 +2,12 @@
 // The zippable's part of a project.
 import type { Catalog, JsonObject, Operation } from '../../jobs/contract';
 import type { BlobReference } from '../../project/document';
-import type { CraftDocument, CraftResult, Subject } from '../common/craft_document';
-import { CraftCommands, emptyCraft, sameRequest } from '../common/craft_document';
-import type { RoomWithProducts } from '../common/products';
-import { offeredTogether } from '../common/products';
-import type { Drawn } from './drawn_parts';
-import { nothingDrawn } from './drawn_parts';
+import type { CraftDocument, CraftResult, Subject } from '../../shared/session/craft_document';
+import { CraftCommands, emptyCraft, sameRequest } from '../../shared/session/craft_document';
+import type { RoomWithProducts } from '../../shared/session/products';
+import { offeredTogether } from '../../shared/session/products';
+import type { Drawn } from './drawing/drawn_parts';
+import { nothingDrawn } from './drawing/drawn_parts';
 
 export const design = 'zippable-design';
 /** What is made of a design; a build offers it where its catalog names it. */

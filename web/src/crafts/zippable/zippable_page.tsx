@@ -2,19 +2,19 @@
 import { useSignal } from '@preact/signals';
 import { Button, Sheet } from '../../ui';
 import type { Viewport } from '../../view';
-import { solveInFull } from '../common/full_solve';
-import { useRoomKeys } from '../common/room_keys';
-import { Gallery } from '../common/gallery';
-import { useModelPicture, useResultPictures } from '../common/pictures';
-import '../common/room.css';
-import { tool } from './draw_actions';
+import { solveInFull } from '../../shared/session/full_solve';
+import { useRoomKeys } from '../../shared/session/room_keys';
+import { Gallery } from '../../shared/panels/gallery';
+import { useModelPicture, useResultPictures } from '../../shared/panels/pictures';
+import '../../shared/panels/room.css';
+import { tool } from './drawing/draw_actions';
 import { exportMain } from './export_button';
-import { FlatRibbon } from './flat_ribbon';
+import { FlatRibbon } from './ribbon/flat_ribbon';
 import { Inspector } from './inspector';
 import { Notes } from './notes';
-import { togglePlay } from './play';
+import { togglePlay } from './ribbon/play';
 import { ResultsStrip } from './results_strip';
-import type { SendToMachine } from './send_sheet';
+import type { SendToMachine } from './ribbon/send_sheet';
 import { view } from './views';
 import { viewpoint, ViewportPanel } from './viewport_panel';
 import './zippable.css';
@@ -87,7 +87,7 @@ function Empty({ session, onChooseFile }: Omit<ZippablePageProps, 'onSendToMachi
       <Button kind="filled" icon="upload" onClick={onChooseFile}>
         Open a model
       </Button>
-      <Gallery samples={samples} onOpen={(sample, title) => void session.openSample(sample, title)} />
+      <Gallery samples={samples} onOpen={(sample, title) => void session.model.openSample(sample, title)} />
     </div>
   );
 }

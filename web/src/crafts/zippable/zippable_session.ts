@@ -3,28 +3,30 @@
 // designed for the whole model.
 import { computed, effect, signal, untracked } from '@preact/signals';
 import type { Result } from '../../jobs/backend';
-import type { JobInput, JsonObject, Operation, Report } from '../../jobs/contract';
+import type { JobInput, Operation, Report } from '../../jobs/contract';
 import { findOperation } from '../../jobs/contract';
 import type { Film } from '../../jobs/glb';
 import { readFilm, readPolylines } from '../../jobs/mesh_reader';
-import type { CraftResult } from '../common/craft_document';
-import { known } from '../common/craft_document';
-import type { Measured } from '../common/estimate';
-import { expectedTimes } from '../common/estimate';
-import { bytesOf } from '../common/import_model';
-import type { PreviewRequest, ShownWork } from '../common/previewing_session';
-import { PreviewingSession } from '../common/previewing_session';
-import type { Product } from '../common/products';
-import { productOf } from '../common/products';
-import { readMesh } from '../common/read_mesh';
-import { figure } from '../common/report';
-import type { Services } from '../common/services';
-import type { ShadedMesh } from '../common/shaded_mesh';
-import { Bending } from './bending';
+import type { CraftResult } from '../../shared/session/craft_document';
+import { known } from '../../shared/session/craft_document';
+import type { Measured } from '../../shared/session/estimate';
+import { expectedTimes } from '../../shared/session/estimate';
+import { bytesOf } from '../../shared/session/import_model';
+import { OpenedModel } from '../../shared/session/opened_model';
+import type { PreviewRequest, ShownWork } from '../../shared/session/previews';
+import { Previews } from '../../shared/session/previews';
+import type { Product } from '../../shared/session/products';
+import { productOf } from '../../shared/session/products';
+import { readMesh } from '../../shared/session/read_mesh';
+import { figure } from '../../shared/session/report';
+import { RoomSession } from '../../shared/session/room_session';
+import type { Services } from '../../shared/session/services';
+import type { ShadedMesh } from '../../shared/panels/shaded_mesh';
+import { Bending } from './ribbon/bending';
 import type { Design } from './design';
 import { readDesign } from './design';
-import type { PartDistortion } from './part_map';
-import { distortionOfParts, partsOfTriangles, VertexGrid } from './part_map';
+import type { PartDistortion } from './ribbon/part_map';
+import { distortionOfParts, partsOfTriangles, VertexGrid } from './ribbon/part_map';
 import type { ZippableDocument } from './zippable_document';
 import { currentResult, design, drawnOn, offered, planning, simulating, zippable } from './zippable_document';
 
@@ -53,24 +55,42 @@ const restMs = 400;
 
 type Outputs = Pick<Result, 'outputs' | 'report'>;
 
-export class ZippableSession extends PreviewingSession<ZippableDocument, Zippable> {
+/** Whole and previewed designs are shown by these. */
+const shownOutputs = ['design.json', 'parameterised.ply', 'curve.obj'];
+
+export class ZippableSession extends RoomSession<ZippableDocument> {
   readonly operationName = design;
-  readonly meshInputName = 'mesh';
   readonly wantedOutputs = ['design.json', 'parameterised.ply', 'curve.obj', 'ribbon.svg'];
-  protected readonly shownOutputs = ['design.json', 'parameterised.ply', 'curve.obj'];
   readonly failedTitle = 'Could not make the ribbon';
-  protected readonly previewFailedTitle = this.failedTitle;
   readonly document = computed(() => zippable.of(this.services.projects.document.value));
   readonly operation = computed<Operation | null>(() => {
     const catalog = this.services.catalog.value;
     return catalog && offered(catalog);
   });
   readonly asked = computed(() => known(this.operationNamed(design), this.document.value.parameters));
-  override readonly furtherInputs = computed((): Readonly<Record<string, JobInput>> => {
+  readonly #furtherInputs = computed((): Readonly<Record<string, JobInput>> => {
     const { segments } = drawnOn(this.document.value);
     return segments ? { segments: { sha256: segments.blob, file_name: 'segments.json' } } : {};
   });
-  readonly result = computed(() => currentResult(this.document.value, this.subject.value, this.asked.value));
+  readonly model: OpenedModel<ZippableDocument> = new OpenedModel(this, {
+    commands: zippable,
+    inputName: 'mesh',
+    furtherInputs: this.#furtherInputs,
+    // The order was one of the old model's; widths and sizes stay as the maker set them.
+    forgets: (name) => this.operation.value?.parameters.properties[name]?.['x-group'] === 'Curve',
+  });
+  readonly hasWork = this.model.isThere;
+  readonly subject = this.model.subject;
+  readonly result = this.unlessLost(
+    computed(() => currentResult(this.document.value, this.subject.value, this.asked.value)),
+  );
+  readonly previews = new Previews<ZippableDocument, Zippable>(this, {
+    shownOutputs,
+    failedTitle: this.failedTitle,
+    make: (request, signal) => this.#makePreview(request, signal),
+    read: (result) => this.#readResult(result),
+  });
+  readonly shown = this.previews.shown;
   /** What plans are made of; null while the design is a preview. */
   readonly designFile = computed(() => this.result.value?.outputs['design.json'] ?? null);
   readonly plan = computed(() => this.#madeOfDesign(planning));
@@ -84,13 +104,13 @@ export class ZippableSession extends PreviewingSession<ZippableDocument, Zippabl
 
   constructor(services: Services) {
     super(services, zippable);
-    this.startFollowing();
+    this.previews.startFollowing();
     this.#measureLater();
     this.#followSimulation();
     effect(() => {
       // What could not be made with other parameters or parts no longer matters.
       void this.asked.value;
-      void this.furtherInputs.value;
+      void this.#furtherInputs.value;
       untracked(() => {
         if (this.problem.value?.kind === 'solve') this.problem.value = null;
       });
@@ -120,32 +140,36 @@ export class ZippableSession extends PreviewingSession<ZippableDocument, Zippabl
     return catalog ? findOperation(catalog, name) : undefined;
   }
 
-  /** The order was one of the old model's; widths and sizes stay as the maker set them. */
-  protected forgets(name: string): boolean {
-    return this.operation.value?.parameters.properties[name]?.['x-group'] === 'Curve';
+  openFiles(files: readonly File[]): Promise<boolean> {
+    return this.model.openFiles(files);
   }
 
-  protected ownParameters(): JsonObject {
-    return {};
+  get title(): string {
+    return this.model.title;
   }
 
-  protected async readResult({ outputs, report, parameters, mesh }: CraftResult): Promise<Zippable> {
+  cancelPreview(): void {
+    this.previews.cancel();
+  }
+
+  protected follow(): void {
+    this.previews.follow();
+  }
+
+  async #readResult({ outputs, report, parameters, mesh }: CraftResult): Promise<Zippable> {
     const { blobs } = this.services.projects;
     const read = (name: string) => blobs.read(outputs[name]?.blob ?? '');
     const shown = await this.#read(read, report);
     return { ...shown, kind: 'full', parameters, from: mesh };
   }
 
-  protected async makePreview(
-    { subject, parameters }: PreviewRequest,
-    signal: AbortSignal,
-  ): Promise<Zippable> {
+  async #makePreview({ subject, parameters }: PreviewRequest, signal: AbortSignal): Promise<Zippable> {
     const { inputs } = subject;
     const job = {
       operation: this.operationName,
       parameters: { ...parameters, measure_distances: false },
       inputs,
-      outputs: this.shownOutputs,
+      outputs: shownOutputs,
     };
     const done: Outputs = await this.services.browser.run(job, { signal });
     this.#previewed.value = this.measured(done.report) ?? this.#previewed.value;
@@ -157,7 +181,7 @@ export class ZippableSession extends PreviewingSession<ZippableDocument, Zippabl
     bytes: (name: string) => Promise<Uint8Array<ArrayBuffer>>,
     report: Report,
   ): Promise<Omit<Zippable, 'kind' | 'parameters' | 'from'>> {
-    const [json, ply, obj] = await Promise.all(this.shownOutputs.map(bytes));
+    const [json, ply, obj] = await Promise.all(shownOutputs.map(bytes));
     if (json === undefined || ply === undefined || obj === undefined)
       throw new Error('The design is incomplete.');
     const [model, course] = await Promise.all([this.#readModel(ply), readPolylines(obj)]);
@@ -175,10 +199,10 @@ export class ZippableSession extends PreviewingSession<ZippableDocument, Zippabl
     let stop: AbortController | null = null;
     effect(() => {
       const shown = this.shown.value;
-      const subject = this.previewSubject.value;
+      const subject = this.model.previewSubject.value;
       stop?.abort();
       this.distances.value = null;
-      if (shown?.kind !== 'preview' || this.previewing.value || subject?.key !== shown.from) return;
+      if (shown?.kind !== 'preview' || this.previews.running.value || subject?.key !== shown.from) return;
       const { signal } = (stop = new AbortController());
       const job = {
         operation: this.operationName,

@@ -11,7 +11,6 @@ interface Emscripten {
   _free(pointer: number): void;
   _fw_machine_options(): number;
   _fw_machine_new(options: number): number;
-  _fw_machine_drop(handle: number): void;
   _fw_machine_call(handle: number, call: number, data: number, size: number, now_s: number): number;
   _fw_machine_next_packet(handle: number): number;
   _fw_machine_packet(): number;
@@ -21,7 +20,7 @@ interface Emscripten {
   _fw_virtual_advance(handle: number, now_s: number): number;
   _fw_virtual_trip_limit(handle: number): void;
 }
-export type MachineModuleFactory = (options?: object) => Promise<Emscripten>;
+type MachineModuleFactory = (options?: object) => Promise<Emscripten>;
 
 /** What the driver would not do, with the sentence for a person. */
 export class MachineRefusal extends Error {
@@ -71,9 +70,6 @@ export class MachineModule {
       handle: number;
     };
     return handle;
-  }
-  dropDriver(handle: number): void {
-    this.#module._fw_machine_drop(handle);
   }
 
   call(handle: number, call: MachineCall, now_s: number, data: Uint8Array = nothing): MachineAnswer {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a machine's driver says of itself and may be told: docs/machines.md.
 
-export type Phase =
+type Phase =
   | 'unknown'
   | 'idle'
   | 'homing'

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+import type { Services } from '../../shared/session/services';
+import { Dialog, formatBytes, formatCount } from '../../ui';
+
+const keys: readonly (readonly [keys: readonly string[], meaning: string])[] = [
+  [['1', '–', '5'], 'Places'],
+  [['0'], 'Look from the viewpoint'],
+  [['F'], 'Fit'],
+  [['S'], 'Swipe'],
+  [['Space'], 'Play the forming'],
+  [['Ctrl', 'Enter'], 'Solve at full detail'],
+  [['Ctrl', 'E'], 'Export'],
+  [['Ctrl', 'O'], 'Open a file'],
+  [['Ctrl', 'Z'], 'Undo'],
+  [['Ctrl', 'Shift', 'Z'], 'Redo'],
+  [['Esc'], 'Cancel, or pause the machine'],
+  [['Ctrl', '.'], 'Stop the machine'],
+  [['Esc', 'Esc'], 'Stop the machine (second key)'],
+  [['?'], 'All keys'],
+];
+const viewKeys: typeof keys = [
+  [['←', '→', '↑', '↓'], 'Turn the model'],
+  [['+', '−'], 'Zoom'],
+];
+const fieldKeys: typeof keys = [
+  [['↑', '↓'], 'Step by 1 % of the range'],
+  [['Shift', '↑'], 'Step by 10 %'],
+  [['Enter'], 'Accept the number'],
+];
+
+function KeyList({ list }: { list: typeof keys }) {
+  return (
+    <dl class="key-list">
+      {list.map(([combination, meaning]) => (
+        <div key={meaning}>
+          <dt>{combination.map((key) => (key === '–' ? ' – ' : <kbd key={key}>{key}</kbd>))}</dt>
+          <dd>{meaning}</dd>
+        </div>
+      ))}
+    </dl>
+  );
+}
+
+export function KeysDialog({ onClose }: { onClose: () => void }) {
+  return (
+    <Dialog title="All keys" onClose={onClose} wide>
+      <div class="key-columns">
+        <div>
+          <KeyList list={keys} />
+        </div>
+        <div>
+          <h3>In the viewport</h3>
+          <KeyList list={viewKeys} />
+          <h3>In a parameter</h3>
+          <KeyList list={fieldKeys} />
+        </div>
+      </div>
+    </Dialog>
+  );
+}
+
+export function WorkerDialog({ services, onClose }: { services: Services; onClose: () => void }) {
+  const connection = services.connection.value;
+  return (
+    <Dialog title="Where models are solved" onClose={onClose}>
+      {connection?.state === 'ready' ? (
+        <>
+          <p>Previews run in this page, full solves in the native worker on this machine.</p>
+          <dl class="figures">
+            <dt>Version</dt>
+            <dd>{connection.status.version}</dd>
+            <dt>Cores</dt>
+            <dd>{connection.status.cores}</dd>
+            <dt>Memory</dt>
+            <dd>{formatBytes(connection.status.memory_mb * 1e6)}</dd>
+            <dt>Largest model</dt>
+            <dd>{formatCount(connection.status.triangle_limit)} triangles</dd>
+          </dl>
+        </>
+      ) : connection?.state === 'refused' ? (
+        <p>{connection.message}</p>
+      ) : connection ? (
+        <p>
+          The line to the worker broke; this page keeps trying. A job it was given goes on there and is found
+          again. Until then everything runs in this page.
+        </p>
+      ) : (
+        <>
+          <p>
+            Everything runs in this page. A native worker on your own machine solves large models several
+            times faster.
+          </p>
+          <p>To start it, run this in a copy of Formwright’s source:</p>
+          <pre class="command">make run</pre>
+          <p>and open the address it prints. The worker listens to this machine only.</p>
+        </>
+      )}
+    </Dialog>
+  );
+}

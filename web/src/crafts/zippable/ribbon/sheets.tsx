@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The sheets that the ribbon is cut from, as the plan's own drawing has them.
+import { useEffect, useState } from 'preact/hooks';
+import { Button, formatCount, formatMetres, formatNumber, Icon, Menu, withUnit } from '../../../ui';
+import { solveInFull } from '../../../shared/session/full_solve';
+import { figure, sentences } from '../../../shared/session/report';
+import { planBytes } from '../make_product';
+import type { SendToMachine } from './send_sheet';
+import { sendSheet, sheetCount, sheetName } from './send_sheet';
+import type { ZippableSession } from '../zippable_session';
+
+/** Plans asked for already: what failed is not tried again before something changes. */
+const tried = new Set<string>();
+
+export interface SheetsProps {
+  readonly session: ZippableSession;
+  readonly drawing: 'plan.svg' | 'rig.svg';
+  readonly onSendToMachine: SendToMachine;
+}
+
+export function Sheets({ session, drawing, onSendToMachine }: SheetsProps) {
+  const design = session.designFile.value;
+  const plan = session.plan.value;
+  const { parameters } = session.document.value;
+  const idle = session.activity.value.kind === 'idle';
+  useEffect(() => {
+    const key = JSON.stringify([design?.blob, parameters]);
+    if (design === null || plan !== null || !idle || tried.has(key)) return;
+    tried.add(key);
+    void planBytes(session, 'plan.svg', 'plan');
+  }, [design, plan, parameters, idle]);
+  const rig = drawing === 'rig.svg';
+  const words = rig ? rigWords(session) : planWords(session);
+  const url = useDrawing(session, drawing);
+  if (design === null)
+    return (
+      <div class="sheets-empty">
+        <p>The plan needs the ribbon of the whole model.</p>
+        <Button
+          icon="scissors"
+          disabledReason={
+            session.shown.value === null || !idle ? 'Available when the preview is ready' : undefined
+          }
+          onClick={() => void solveInFull(session)}
+        >
+          Make the ribbon
+        </Button>
+      </div>
+    );
+  const notes = sentences(plan?.report ?? {}, 'notes');
+  return (
+    <>
+      <div class="sheets" tabIndex={0} role="group" aria-label={rig ? 'Rig' : 'Sheets'}>
+        {plan && url ? <img src={url} alt={words} /> : null}
+        {plan === null && idle ? (
+          <div class="sheets-empty">
+            <p>No plan was made. If a note says why, change that first.</p>
+            <Button icon="scissors" onClick={() => void planBytes(session, 'plan.svg', 'plan')}>
+              Make the plan
+            </Button>
+          </div>
+        ) : null}
+      </div>
+      {plan ? (
+        <div class="sheets-foot">
+          <p>{words}</p>
+          {rig ? null : <SendButton session={session} onSendToMachine={onSendToMachine} />}
+          {notes.length > 0 ? (
+            <details>
+              <summary>
+                <Icon name="warn" small /> {notes.length === 1 ? '1 note' : `${notes.length} notes`}
+              </summary>
+              <ul>
+                {notes.map((note) => (
+                  <li key={note}>{note}</li>
+                ))}
+              </ul>
+            </details>
+          ) : null}
+        </div>
+      ) : null}
+    </>
+  );
+}
+
+/** One sheet at once, of several the one that is chosen. */
+function SendButton({ session, onSendToMachine }: Omit<SheetsProps, 'drawing'>) {
+  const idle = session.activity.value.kind === 'idle';
+  const count = sheetCount(session);
+  const send = (sheet: number) => void sendSheet(session, sheet, onSendToMachine);
+  if (count === 1)
+    return (
+      <Button
+        size="small"
+        icon="machines"
+        disabledReason={idle ? undefined : 'Busy with a file'}
+        onClick={() => send(0)}
+      >
+        Send to a machine
+      </Button>
+    );
+  return (
+    <Menu
+      buttonClass="button small"
+      items={Array.from({ length: count }, (_, sheet) => ({
+        label: sheetName(session, sheet),
+        disabledReason: idle ? undefined : 'Busy with a file',
+        onSelect: () => send(sheet),
+      }))}
+    >
+      <Icon name="machines" /> Send to a machine <Icon name="chevronDown" small />
+    </Menu>
+  );
+}
+
+const many = (count: number, one: string) => `${formatCount(count)} ${one}${count === 1 ? '' : 's'}`;
+
+/** "15 plates on 4 boards; 36 screws". */
+function rigWords(session: ZippableSession): string {
+  const report = session.plan.value?.report ?? {};
+  const [plates, boards, screws] = ['rig_plates', 'rig_sheets', 'rig_screws'].map((name) =>
+    figure(report, name),
+  );
+  return plates && boards && screws
+    ? `${many(plates, 'plate')} on ${many(boards, 'board')}; ${many(screws, 'screw')}`
+    : '';
+}
+
+/** "7 pieces on 2 sheets of 600 × 300 mm; zipper to cut: 2.57 m". */
+function planWords(session: ZippableSession): string {
+  const report = session.plan.value?.report ?? {};
+  const pieces = Array.isArray(report['pieces']) ? report['pieces'].length : null;
+  const [sheets, zipper] = [figure(report, 'sheets'), figure(report, 'zipper_to_cut_mm')];
+  const bed = ['bed_x_mm', 'bed_y_mm']
+    .map((name) => session.value(name))
+    .filter((mm) => typeof mm === 'number');
+  const size =
+    bed.length === 2 ? ` of ${withUnit(bed.map((mm) => formatNumber(mm, 3)).join(' × '), 'mm')}` : '';
+  return [
+    pieces !== null && sheets !== null ? `${many(pieces, 'piece')} on ${many(sheets, 'sheet')}${size}` : null,
+    zipper === null ? null : `zipper to cut: ${formatMetres(zipper)}`,
+  ]
+    .filter(Boolean)
+    .join('; ');
+}
+
+/** A laser's hairlines are not to be seen at a fifth of their size: on the screen all lines are as wide. */
+const forTheEye = (svg: string): string =>
+  svg.replace(
+    /<svg[^>]*>/,
+    '$&<style>path,line,polyline,polygon,circle,rect{vector-effect:non-scaling-stroke;stroke-width:1px!important}</style>',
+  );
+
+/** The address of the plan's drawing while it is shown. */
+function useDrawing(session: ZippableSession, name: string): string | null {
+  const [url, setUrl] = useState<string | null>(null);
+  const drawing = session.plan.value?.outputs[name];
+  useEffect(() => {
+    let made: string | null = null;
+    let gone = false;
+    const read = async () => {
+      if (drawing === undefined) return;
+      const bytes = await session.services.projects.blobs.read(drawing.blob);
+      if (gone) return;
+      const drawn = forTheEye(new TextDecoder().decode(bytes));
+      made = URL.createObjectURL(new Blob([drawn], { type: 'image/svg+xml' }));
+      setUrl(made);
+    };
+    void read().catch(() => undefined);
+    return () => {
+      gone = true;
+      setUrl(null);
+      if (made) URL.revokeObjectURL(made);
+    };
+  }, [drawing?.blob]);
+  return url;
+}

@@ -192,7 +192,7 @@ TEST(SvgReader, RefusesWithTheMend) {
   EXPECT_NE(refusal("hello").find("not XML"), std::string::npos);
   EXPECT_NE(refusal("<html/>").find("<html>"), std::string::npos);
   EXPECT_NE(refusal("\x1f\x8b rest").find("SVGZ"), std::string::npos);
-  EXPECT_NE(refusal("<svg width='10mm' height='10mm'/>").find("Nothing is drawn"), std::string::npos);
+  EXPECT_NE(refusal("<svg width='10mm' height='10mm'/>").find("The drawing is empty: it needs shapes"), std::string::npos);
   EXPECT_NE(refusal("<svg width='10mm' height='10mm'><text>a</text></svg>").find("convert text to paths"),
             std::string::npos);
   EXPECT_NE(refusal("<svg width='10mm' height='10mm'><image/></svg>").find("pictures"), std::string::npos);

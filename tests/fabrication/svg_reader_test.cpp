@@ -208,7 +208,8 @@ TEST_CASE("SvgReader.RefusesWithTheMend") {
   CHECK(refusal("hello").find("not XML") != std::string::npos);
   CHECK(refusal("<html/>").find("<html>") != std::string::npos);
   CHECK(refusal("\x1f\x8b rest").find("SVGZ") != std::string::npos);
-  CHECK(refusal("<svg width='10mm' height='10mm'/>").find("Nothing is drawn") != std::string::npos);
+  CHECK(refusal("<svg width='10mm' height='10mm'/>").find("The drawing is empty: it needs shapes") !=
+        std::string::npos);
   CHECK(refusal("<svg width='10mm' height='10mm'><text>a</text></svg>").find("convert text to paths") !=
         std::string::npos);
   CHECK(refusal("<svg width='10mm' height='10mm'><image/></svg>").find("pictures") != std::string::npos);

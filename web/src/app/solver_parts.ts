@@ -25,5 +25,8 @@ export const solverParts: readonly SolverPart[] = [
   { name: 'CUPS', licence: 'Apache-2.0', use: 'printers, in the native worker', include: 'cups' },
   { name: 'QPDF', licence: 'Apache-2.0', use: 'pages to print, in the native worker', include: 'qpdf' },
   { name: 'curl', licence: 'curl', use: 'uploads, in the native worker', include: 'curl' },
+  { name: 'CLI11', licence: 'BSD-3-Clause', use: 'the command line', include: 'CLI' },
+  { name: 'Embree', licence: 'Apache-2.0', use: 'rays, in the native worker', include: 'embree3' },
+  { name: 'oneTBB', licence: 'Apache-2.0', use: 'threads of Embree, in the native worker', include: 'tbb' },
   { name: 'zlib', licence: 'Zlib', use: 'compressed files', include: 'zlib' },
 ];

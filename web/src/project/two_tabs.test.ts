@@ -157,7 +157,7 @@ describe('one project and two tabs', () => {
     const { store: b } = await browser.tab();
     await use(b, 'of b');
     const [ofA, ofB] = [idOf(a), idOf(b)];
-    await expect(b.open(ofA)).rejects.toThrow(/“Lion” is open in another tab\. Go on there/);
+    await expect(b.open(ofA)).rejects.toThrow(/“Lion” is open in another tab\. Continue there/);
     expect(idOf(b)).toBe(ofB);
     a.rename('Lioness');
     await a.create();

@@ -75,7 +75,7 @@ describe.skipIf(!existsSync(module))('a machine in its worker', () => {
     page = new Page({ serial: { getPorts: () => Promise.resolve([port]) } });
     expect(
       await page.ask({ type: 'open', module, options: {}, end: { kind: 'serial', index: 1, baud: 115200 } }),
-    ).toMatch(/not there/);
+    ).toMatch(/no longer connected/);
     expect(
       await page.ask({ type: 'open', module, options: {}, end: { kind: 'serial', index: 0, baud: 115200 } }),
     ).toBeNull();

@@ -107,7 +107,7 @@ void refuse(const std::string& where, const std::string& sentence) {
 void require_confirmation(const Json& command, const std::string& what_happens) {
   const auto confirmed = command.find("confirmed");
   if (confirmed == command.end() || *confirmed != true)
-    refuse("confirmed", what_happens + ": the person in front of the machine must confirm this first.");
+    refuse("confirmed", what_happens + ": this must first be confirmed by the person in front of the machine.");
 }
 
 ZChoice z_choice_of(const Json& command) {

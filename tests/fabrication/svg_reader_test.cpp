@@ -210,7 +210,7 @@ TEST_CASE("SvgReader.RefusesWithTheMend") {
   CHECK(refusal("\x1f\x8b rest").find("SVGZ") != std::string::npos);
   CHECK(refusal("<svg width='10mm' height='10mm'/>").find("The drawing is empty: it needs shapes") !=
         std::string::npos);
-  CHECK(refusal("<svg width='10mm' height='10mm'><text>a</text></svg>").find("convert text to paths") !=
+  CHECK(refusal("<svg width='10mm' height='10mm'><text>a</text></svg>").find("convert the text to paths") !=
         std::string::npos);
   CHECK(refusal("<svg width='10mm' height='10mm'><image/></svg>").find("pictures") != std::string::npos);
   const std::string line = "<path stroke='red' d='M0 0h10'/></svg>";

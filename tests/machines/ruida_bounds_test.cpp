@@ -125,7 +125,7 @@ TEST_CASE("RuidaBounds.RefuseWhereTheyCannotBeTold") {
   CHECK(refusal(burning(RuidaJob().begin().code({0x80, 0x08}).number(0, 5))) == "");  // the table
   CHECK(refusal(RuidaJob().begin().by(true, 100, 100)).find("before it gives a position") != std::string::npos);
   CHECK(refusal(RuidaJob().begin().to(false, 1, 1)).find("burns nothing") != std::string::npos);
-  CHECK(refusal(RuidaJob().begin().to(false, 1, 1).code({0xa8, 1, 2, 3})).find("cut off") != std::string::npos);
+  CHECK(refusal(RuidaJob().begin().to(false, 1, 1).code({0xa8, 1, 2, 3})).find("incomplete") != std::string::npos);
   CHECK(refusal(RuidaJob().begin().by(false, 100, 100).to(true, 1, 1)).find("before it gives a position") !=
         std::string::npos);
   CHECK(refusal(RuidaJob{"G1 X5"}).find("not a Ruida job") != std::string::npos);

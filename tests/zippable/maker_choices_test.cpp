@@ -95,7 +95,7 @@ TEST_CASE("Slit.SaysWhatIsWrongWithAPath") {
     }
     return std::string();
   };
-  CHECK(refused({{{0, 0, 50}, {0, 0, 50}}}).find("Cut 1 of the punctures has its points in one place") !=
+  CHECK(refused({{{0, 0, 50}, {0, 0, 50}}}).find("Cut 1 of the punctures has all its points in one place") !=
         std::string::npos);
   CHECK(refused({{{0, 0, 50}, {0.5, 0, 50}}}).find("too short") != std::string::npos);
   // One across the other.

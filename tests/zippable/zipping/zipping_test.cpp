@@ -123,7 +123,7 @@ TEST_CASE("Zipping.IsJudgedByTheToleranceAndByWhatTheClothDoesByItself") {
   CHECK(zipping_outcome(result, 2) == ZippingOutcome::as_the_cloth_does);
   {
     INFO(zipping_verdict(result, 2));
-    CHECK(zipping_verdict(result, 2).find("would rest 2.4 mm off") != std::string::npos);
+    CHECK(zipping_verdict(result, 2).find("would rest 2.4 mm away") != std::string::npos);
   }
   result.comparison.percentile_95_mm = 3.1;
   CHECK(zipping_outcome(result, 2) == ZippingOutcome::another_shape);

@@ -210,7 +210,7 @@ class Driven(unittest.TestCase):
         self.laser.stop()
         while "closed" not in (message := page.take()):
             pass
-        self.assertIn("is gone", message["error"]["message"])
+        self.assertIn("no longer connected", message["error"]["message"])
         self.assertEqual(page.state["job"]["ended"], "cut_off")
         self.assertIn("error", page.do("pause"))
         self.assertIn("error", page.ask(open={"controller": "grbl"}))

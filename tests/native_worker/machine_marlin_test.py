@@ -279,7 +279,7 @@ class Marlin(unittest.TestCase):
         printer.stop()
         while "closed" not in (message := page.take()):
             pass
-        self.assertIn("is gone", message["error"]["message"])
+        self.assertIn("no longer connected", message["error"]["message"])
         self.assertEqual(page.state["job"]["ended"], "cut_off")
         self.assertFalse(page.state["position_known"])
 

@@ -43,6 +43,8 @@ class Listeners(unittest.TestCase):
         page.wait(lambda s: s["connection"] == "ready" and s["phase"] in ("idle", "alarm"), 30)
         self.assertIn("done", page.do("home", confirmed=True))
         page.wait(lambda s: s["phase"] == "idle" and s["position_known"], 30)
+        # Homed at its switches it counts from 0 downwards, and the job upwards.
+        self.assertIn("done", page.do("set_origin", at="corner"))
         self.assertIn("done", page.ask(load={"name": "job", "sha256": worker.put_blob(JOB)}))
         started = page.do("start", confirmed=True)
         self.assertIn("done", started)
@@ -66,7 +68,7 @@ class Listeners(unittest.TestCase):
         cable.kill()
         while "closed" not in (message := page.take()):
             pass
-        self.assertIn("Serial is gone", message["error"]["message"])
+        self.assertIn("Serial is no longer connected", message["error"]["message"])
 
     def test_ruida_over_udp(self):
         meerk40t = self.started(peers.MeerK40t(self.folder / "meerk40t", "ruidacontrol"))

@@ -28,7 +28,7 @@ const square = fileOf(
 );
 
 const chip = (page: Page) => page.locator('.state-chip');
-const position = (page: Page) => page.getByRole('group', { name: /^Where the head stands/ });
+const position = (page: Page) => page.getByRole('group', { name: /^Position of the head/ });
 const button = (page: Page, name: string) => page.getByRole('button', { name, exact: true });
 /** Disabled buttons say why in their name. */
 const startButton = (page: Page) => page.locator('.inspector-foot').getByRole('button', { name: /^Start/ });

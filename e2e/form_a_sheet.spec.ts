@@ -125,8 +125,19 @@ test('the film plays with Space and stops at its end', async ({ page }) => {
 test('a model dragged beyond the clamp is said, and form it stops at once', async ({ page }) => {
   await openSample(page, 'Pyramid');
   const handle = page.getByRole('button', { name: /^Move the model/ });
-  await handle.hover(); // waits until notes and camera have come to rest and the handle stands still
-  const box = await handle.boundingBox();
+  await handle.hover();
+  // Notes that come and a camera that turns move the handle: it is taken where it has stood still.
+  let box = await handle.boundingBox();
+  await expect
+    .poll(
+      async () => {
+        const before = box;
+        box = await handle.boundingBox();
+        return before?.x === box?.x && before?.y === box?.y;
+      },
+      { intervals: [500] },
+    )
+    .toBe(true);
   if (box === null) throw new Error('The handle is not to be seen.');
   await page.mouse.move(box.x + 14, box.y + 14);
   await page.mouse.down();

@@ -39,15 +39,16 @@ check_core() {
 }
 
 check_page() {
-  setup/build.sh web-packages
-  cd web
+  setup/build.sh npm-packages
   # As `npm run types` and `npm run lint`, but looking only at what has changed: 3 instead of 40 s of processor time.
-  local kept=node_modules/.cache/formwright
+  local kept=node_modules/.cache/formwright project
   mkdir -p "$kept"
-  npx tsc --noEmit -p tsconfig.json --incremental --tsBuildInfoFile "$kept/page.tsbuildinfo"
-  npx tsc --noEmit -p tsconfig.node.json --incremental --tsBuildInfoFile "$kept/node.tsbuildinfo"
+  for project in web/tsconfig.json web/tsconfig.node.json e2e/tsconfig.json; do
+    npx tsc --noEmit -p "$project" --incremental --tsBuildInfoFile "$FORMWRIGHT_ROOT/$kept/${project//\//_}.tsbuildinfo"
+  done
   npx eslint --cache --cache-strategy content --cache-location "$kept/eslint" .
   npx prettier --log-level warn --check --cache --cache-location "$kept/prettier" .
+  npx knip
   npm run -s test
 }
 

@@ -15,7 +15,7 @@
 namespace formwright {
 namespace {
 
-constexpr std::size_t max_under_way = 16, max_kept = 100;
+constexpr std::size_t max_unfinished = 16, max_kept = 100;
 constexpr std::uintmax_t max_kept_bytes = 64 * 1024;
 
 bool is_end(const std::string& state) { return state == "done" || state == "failed" || state == "cancelled"; }
@@ -155,7 +155,7 @@ std::shared_ptr<MachineTask> MachineTasks::start(const Machine& machine, const s
   {
     const std::scoped_lock lock(mutex_);
     if (std::count_if(tasks_.begin(), tasks_.end(), [](const auto& t) { return !t->finished(); }) >=
-        static_cast<std::ptrdiff_t>(max_under_way))
+        static_cast<std::ptrdiff_t>(max_unfinished))
       return nullptr;
     add(task);
   }

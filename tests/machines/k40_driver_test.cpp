@@ -268,55 +268,55 @@ struct K40Scripted {
 };
 
 TEST_CASE("K40.APauseThatArrivesSpoiledIsSentAgainAndNotTheJob") {
-  K40Scripted told;
-  CHECK(told.hear(206) == K40Scripted::Packets{padded("BTB")});
-  CHECK(told.hear(206) == K40Scripted::Packets{padded("DUD")});
-  told.driver.command({{"do", "pause"}}, told.now_s);
-  CHECK(told.hear(206) == K40Scripted::Packets{padded("PN")});  // "DUD" is in
-  CHECK(told.hear(207) == K40Scripted::Packets{padded("PN")});
-  CHECK(told.hear(238) == K40Scripted::Packets{});
-  CHECK(told.hear(207) == K40Scripted::Packets{padded("PN")});
-  CHECK(told.hear(206) == K40Scripted::Packets{});
-  CHECK(told.phase() == "paused");
-  told.resume();
-  CHECK(told.sent() == K40Scripted::Packets{padded("PN")});
-  CHECK(told.hear(207) == K40Scripted::Packets{padded("PN")});
-  CHECK(told.hear(206) == K40Scripted::Packets{padded("LRL")});
-  CHECK(told.phase() == "running");
+  K40Scripted laser;
+  CHECK(laser.hear(206) == K40Scripted::Packets{padded("BTB")});
+  CHECK(laser.hear(206) == K40Scripted::Packets{padded("DUD")});
+  laser.driver.command({{"do", "pause"}}, laser.now_s);
+  CHECK(laser.hear(206) == K40Scripted::Packets{padded("PN")});  // "DUD" is in
+  CHECK(laser.hear(207) == K40Scripted::Packets{padded("PN")});
+  CHECK(laser.hear(238) == K40Scripted::Packets{});
+  CHECK(laser.hear(207) == K40Scripted::Packets{padded("PN")});
+  CHECK(laser.hear(206) == K40Scripted::Packets{});
+  CHECK(laser.phase() == "paused");
+  laser.resume();
+  CHECK(laser.sent() == K40Scripted::Packets{padded("PN")});
+  CHECK(laser.hear(207) == K40Scripted::Packets{padded("PN")});
+  CHECK(laser.hear(206) == K40Scripted::Packets{padded("LRL")});
+  CHECK(laser.phase() == "running");
 }
 
 TEST_CASE("K40.APauseWaitsForAPacketOfTheJobThatIsSpoiled") {
-  K40Scripted told;
-  CHECK(told.hear(206) == K40Scripted::Packets{padded("BTB")});
-  told.driver.command({{"do", "pause"}}, told.now_s);
-  CHECK(told.sent() == K40Scripted::Packets{});
-  CHECK(told.hear(207) == K40Scripted::Packets{padded("BTB")});
-  CHECK(told.hear(238) == K40Scripted::Packets{});
-  CHECK(told.hear(207) == K40Scripted::Packets{padded("BTB")});
-  CHECK(told.hear(206) == K40Scripted::Packets{padded("PN")});
-  CHECK(told.hear(206) == K40Scripted::Packets{});
-  CHECK(told.phase() == "paused");
-  told.resume();
-  CHECK(told.sent() == K40Scripted::Packets{padded("PN")});
-  CHECK(told.hear(206) == K40Scripted::Packets{padded("DUD")});
+  K40Scripted laser;
+  CHECK(laser.hear(206) == K40Scripted::Packets{padded("BTB")});
+  laser.driver.command({{"do", "pause"}}, laser.now_s);
+  CHECK(laser.sent() == K40Scripted::Packets{});
+  CHECK(laser.hear(207) == K40Scripted::Packets{padded("BTB")});
+  CHECK(laser.hear(238) == K40Scripted::Packets{});
+  CHECK(laser.hear(207) == K40Scripted::Packets{padded("BTB")});
+  CHECK(laser.hear(206) == K40Scripted::Packets{padded("PN")});
+  CHECK(laser.hear(206) == K40Scripted::Packets{});
+  CHECK(laser.phase() == "paused");
+  laser.resume();
+  CHECK(laser.sent() == K40Scripted::Packets{padded("PN")});
+  CHECK(laser.hear(206) == K40Scripted::Packets{padded("DUD")});
 }
 
 TEST_CASE("K40.AStopDoesNotWaitForAPause") {
   for (const bool pause_is_out : {false, true}) {
     CAPTURE(pause_is_out);
-    K40Scripted told;
-    CHECK(told.hear(206) == K40Scripted::Packets{padded("BTB")});
-    told.driver.command({{"do", "pause"}}, told.now_s);
+    K40Scripted laser;
+    CHECK(laser.hear(206) == K40Scripted::Packets{padded("BTB")});
+    laser.driver.command({{"do", "pause"}}, laser.now_s);
     if (pause_is_out) {
-      CHECK(told.hear(206) == K40Scripted::Packets{padded("PN")});
+      CHECK(laser.hear(206) == K40Scripted::Packets{padded("PN")});
     }
-    told.driver.command({{"do", "stop"}}, told.now_s);
-    CHECK(told.sent() == K40Scripted::Packets{padded("I")});
-    told.hear(206);  // to what was asked before
-    CHECK(told.phase() == "stopping");
-    CHECK(told.hear(207) == K40Scripted::Packets{padded("I")});
-    CHECK(told.hear(206) == K40Scripted::Packets{});
-    CHECK(told.phase() == "idle");
+    laser.driver.command({{"do", "stop"}}, laser.now_s);
+    CHECK(laser.sent() == K40Scripted::Packets{padded("I")});
+    laser.hear(206);  // to what was asked before
+    CHECK(laser.phase() == "stopping");
+    CHECK(laser.hear(207) == K40Scripted::Packets{padded("I")});
+    CHECK(laser.hear(206) == K40Scripted::Packets{});
+    CHECK(laser.phase() == "idle");
   }
 }
 

@@ -47,7 +47,7 @@ double peak_memory_mb() {
 }
 
 template <class Work>
-double least_seconds(int rounds, const Work& work) {
+double shortest_run_seconds(int rounds, const Work& work) {
   double least = std::numeric_limits<double>::infinity();
   for (int k = 0; k < rounds; ++k) {
     const double before = seconds_now();
@@ -85,9 +85,9 @@ int main(int argc, char** argv) {
     const double memory_before = peak_memory_mb();
     Json report{{"method", argv[2]}, {"unknowns", lower.rows()}, {"entries", lower.nonZeros()}};
     Eigen::VectorXd x;
-    report["seconds_analyze"] = least_seconds(1, [&] { method->analyze(lower); });
-    report["seconds_factorize"] = least_seconds(rounds, [&] { method->factorize(lower); });
-    report["seconds_solve"] = least_seconds(rounds, [&] { x = method->solve(b); });
+    report["seconds_analyze"] = shortest_run_seconds(1, [&] { method->analyze(lower); });
+    report["seconds_factorize"] = shortest_run_seconds(rounds, [&] { method->factorize(lower); });
+    report["seconds_solve"] = shortest_run_seconds(rounds, [&] { x = method->solve(b); });
     report["peak_memory_mb"] = peak_memory_mb() - memory_before;
     report["factor_entries"] = method->stored_entries();
     report["backward_error"] = backward_error(lower, x, b);

@@ -24,7 +24,7 @@ import type { Sessions } from './rooms';
 import { MachineBar } from '../crafts/machines/panel/machine_bar';
 import { drawingEndings, heightMapEnding, jobEndings } from '../crafts/machines/machines_document';
 import { isRoom, placeOfWork, roomOf } from './rooms';
-import { sentenceOf } from './told';
+import { sentenceOf } from './failure_toast';
 import { TopBar } from './shell/top_bar';
 
 /** Materials and pictures that may come with a model. */

@@ -7,7 +7,7 @@ import { warmUp } from '../crafts/relief/warm_up';
 import { Button, Icon } from '../ui';
 import { crafts } from './crafts';
 import { go } from './route';
-import { told } from './told';
+import { toastFailure } from './failure_toast';
 
 export interface StartPageProps {
   readonly services: Services;
@@ -39,7 +39,7 @@ export function StartPage({ services, session, onChooseFile }: StartPageProps) {
       go('relief');
       await session.model.openSample(sample, title);
     };
-    told(begin());
+    toastFailure(begin());
   };
   return (
     <main class="view start" aria-label="Start">

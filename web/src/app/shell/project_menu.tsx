@@ -5,7 +5,7 @@ import { Button, Dialog, Icon, Menu } from '../../ui';
 import { saveAsFile } from '../project_file';
 import { placeOfWork } from '../rooms';
 import { go } from '../route';
-import { told } from '../told';
+import { toastFailure } from '../failure_toast';
 
 const listedProjects = 8;
 
@@ -28,14 +28,14 @@ export function ProjectMenu({ services, onOpenFile }: { services: Services; onOp
           {
             label: 'New project',
             icon: 'plus',
-            onSelect: () => told(projects.create().then(() => go('start'))),
+            onSelect: () => toastFailure(projects.create().then(() => go('start'))),
           },
           { label: 'Open a file', hint: 'Ctrl + O', icon: 'upload', onSelect: onOpenFile },
           {
             label: 'Save as a file',
             icon: 'download',
             disabledReason: blank,
-            onSelect: () => told(saveAsFile(projects)),
+            onSelect: () => toastFailure(saveAsFile(projects)),
           },
           null,
           { label: 'Rename', icon: 'pencil', disabledReason: blank, onSelect: () => setDialog('rename') },
@@ -43,7 +43,7 @@ export function ProjectMenu({ services, onOpenFile }: { services: Services; onOp
             label: 'Duplicate',
             icon: 'copy',
             disabledReason: blank,
-            onSelect: () => told(projects.duplicate()),
+            onSelect: () => toastFailure(projects.duplicate()),
           },
           {
             label: 'Delete',
@@ -57,7 +57,7 @@ export function ProjectMenu({ services, onOpenFile }: { services: Services; onOp
             label: other.name,
             hint: dateOf(other.modified_unix_s),
             checked: other.id === id,
-            onSelect: () => told(open(other.id)),
+            onSelect: () => toastFailure(open(other.id)),
           })),
         ]}
       >
@@ -93,7 +93,7 @@ export function ProjectMenu({ services, onOpenFile }: { services: Services; onOp
               kind="danger"
               onClick={() => {
                 setDialog(null);
-                told(projects.remove(id).then(() => go('start')));
+                toastFailure(projects.remove(id).then(() => go('start')));
               }}
             >
               Delete

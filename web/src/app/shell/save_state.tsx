@@ -4,7 +4,7 @@ import { useEffect, useState } from 'preact/hooks';
 import type { ProjectStore, ProjectSummary } from '../../project/project_store';
 import { Button, Dialog, toast } from '../../ui';
 import { saveAsFile } from '../project_file';
-import { sentenceOf } from '../told';
+import { sentenceOf } from '../failure_toast';
 
 const words = { saved: 'Saved', saving: 'Saving', unsaved: 'Saving', failed: 'Not saved' } as const;
 

@@ -10,17 +10,18 @@
 #include <iostream>
 
 #include "base/sha256.h"
-#include "command_line.h"
-#include "files.h"
-#include "host.h"
+#include "command_line/command_line.h"
+#include "system/files.h"
+#include "system/host.h"
 #include "job/catalog.h"
 #include "job/run.h"
 #include "machines/machine_commands.h"
-#include "manual_page.h"
-#include "output_folder.h"
-#include "private_data.h"
-#include "serve.h"
-#include "shell_completions.h"
+#include "command_line/manual_page.h"
+#include "command_line/output_folder.h"
+#include "system/private_data.h"
+#include "jobs/job_runner.h"
+#include "server/serve.h"
+#include "command_line/shell_completions.h"
 
 namespace formwright {
 namespace {

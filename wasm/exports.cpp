@@ -7,7 +7,7 @@
 #include <map>
 #include <new>
 
-#include "base/json_text.h"
+#include "base/data/json_text.h"
 #include "job/catalog.h"
 #include "job/run.h"
 

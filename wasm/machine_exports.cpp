@@ -6,9 +6,9 @@
 #include <map>
 
 #include "base/error.h"
-#include "base/json_text.h"
-#include "machines/machine_driver.h"
-#include "machines/virtual_grbl.h"
+#include "base/data/json_text.h"
+#include "machines/controllers.h"
+#include "machines/virtual_grbl/virtual_grbl.h"
 
 namespace {
 

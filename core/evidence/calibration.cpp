@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "base/error.h"
-#include "evidence/hypotheses.h"
+#include "evidence/fit/hypotheses.h"
 
 namespace formwright {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // Fits a model's base parameters to measured objects, and says which of them the data cannot tell. Thesis 4.2.3.
-#include "evidence/structured_objective.h"
+#include "evidence/fit/structured_objective.h"
 
 namespace formwright {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "imaging/pdf.h"
+#include "imaging/drawing/pdf.h"
 
 namespace formwright {
 namespace {

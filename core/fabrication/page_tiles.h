@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "base/context.h"
-#include "base/parameters.h"
-#include "fabrication/cut_sheet.h"
-#include "imaging/image.h"
+#include "base/data/parameters.h"
+#include "fabrication/sheet/cut_sheet.h"
+#include "imaging/picture/image.h"
 
 namespace formwright {
 

@@ -4,8 +4,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "fabrication/hatching.h"
-#include "fabrication/words.h"
+#include "fabrication/laser/hatching.h"
+#include "fabrication/sheet/word_paths.h"
 
 namespace formwright {
 namespace {

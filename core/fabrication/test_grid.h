@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // Tests to find out what a laser does to a material: power and speed, kerf, focus.
-#include "fabrication/laser_plan.h"
+#include "fabrication/laser/laser_plan.h"
 
 namespace formwright {
 

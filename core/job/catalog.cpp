@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "job/catalog.h"
 
-#include "fabrication/laser_materials.h"
-#include "geometry/io/mesh_io.h"
+#include "fabrication/laser/laser_materials.h"
+#include "formats/mesh_io.h"
 #include "geometry/samples/samples.h"
-#include "job/evidence_operations.h"
-#include "job/evidence_registration_operations.h"
-#include "job/fabrication_operations.h"
-#include "job/mesh_operations.h"
-#include "job/relief_operation.h"
-#include "job/thermoform_operations.h"
-#include "job/zippable_operation.h"
+#include "job/operations/evidence/evidence_operations.h"
+#include "job/operations/evidence/evidence_registration_operations.h"
+#include "job/operations/fabrication/fabrication_operations.h"
+#include "job/operations/mesh/mesh_operations.h"
+#include "job/operations/relief/relief_operation.h"
+#include "job/operations/thermoform/thermoform_operations.h"
+#include "job/operations/zippable/zippable_operation.h"
 
 namespace formwright {
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "job/operation.h"
+#include "job/contract/operation.h"
 
 namespace formwright {
 

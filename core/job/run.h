@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "job/operation.h"
+#include "job/contract/operation.h"
 
 namespace formwright {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "geometry/laplacian.h"
+#include "geometry/operators/laplacian.h"
 
 namespace formwright {
 

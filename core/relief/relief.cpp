@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/adjacency.h"
-#include "geometry/ray_caster.h"
+#include "geometry/mesh/adjacency.h"
+#include "geometry/queries/ray_caster.h"
 #include "relief/appearance_energy.h"
 #include "relief/baselines.h"
 

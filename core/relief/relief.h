@@ -6,8 +6,8 @@
 #include <string>
 
 #include "base/context.h"
-#include "geometry/triangle_mesh.h"
-#include "numerics/bounded_qp.h"
+#include "geometry/mesh/triangle_mesh.h"
+#include "numerics/qp/bounded_qp.h"
 #include "relief/normal_error.h"
 #include "relief/relief_options.h"
 #include "relief/view_frame.h"

@@ -5,8 +5,8 @@
 #include <optional>
 #include <tuple>
 
-#include "base/parameters.h"
-#include "numerics/bounded_qp.h"
+#include "base/data/parameters.h"
+#include "numerics/qp/bounded_qp.h"
 
 namespace formwright {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // The viewer's axes: where eqs. (3.3)-(3.4) put the viewpoint o, and the plate of the relief.
-#include "geometry/triangle_mesh.h"
+#include "geometry/mesh/triangle_mesh.h"
 #include "relief/relief_options.h"
 
 namespace formwright {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "base/context.h"
-#include "geometry/ray_caster.h"
-#include "numerics/bounded_qp.h"
+#include "geometry/queries/ray_caster.h"
+#include "numerics/qp/bounded_qp.h"
 #include "relief/view_frame.h"
 
 namespace formwright {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/measures.h"
-#include "geometry/ray_caster.h"
+#include "geometry/mesh/measures.h"
+#include "geometry/queries/ray_caster.h"
 #include "thermoform/frame_recorder.h"
 
 namespace formwright {

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "base/context.h"
-#include "thermoform/formed_sheet.h"
-#include "thermoform/mould_contact.h"
+#include "thermoform/sheet/formed_sheet.h"
+#include "thermoform/contact/mould_contact.h"
 #include "thermoform/sheet_dynamics.h"
-#include "thermoform/thermoform_options.h"
+#include "thermoform/sheet/thermoform_options.h"
 
 namespace formwright {
 

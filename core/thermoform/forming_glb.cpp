@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "geometry/io/glb_assembly.h"
-#include "geometry/measures.h"
+#include "formats/glb/glb_assembly.h"
+#include "geometry/mesh/measures.h"
 
 namespace formwright {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "base/json_text.h"
-#include "thermoform/thermoform_options.h"
+#include "base/data/json_text.h"
+#include "thermoform/sheet/thermoform_options.h"
 
 namespace formwright {
 namespace {

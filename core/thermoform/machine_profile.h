@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "base/bytes.h"
-#include "base/json.h"
-#include "thermoform/measurement_effects.h"
+#include "base/data/json.h"
+#include "thermoform/measured/measurement_effects.h"
 
 namespace formwright {
 

@@ -7,15 +7,15 @@
 #include <vector>
 
 #include "base/context.h"
-#include "thermoform/block_cg.h"
-#include "thermoform/contact_chill.h"
-#include "thermoform/face_strips.h"
-#include "thermoform/hinge_bending.h"
-#include "thermoform/membrane.h"
-#include "thermoform/mould_contact.h"
-#include "thermoform/point_contacts.h"
-#include "thermoform/sheet_friction.h"
-#include "thermoform/sheet_mesh.h"
+#include "thermoform/solver/block_cg.h"
+#include "thermoform/contact/contact_chill.h"
+#include "thermoform/solver/face_strips.h"
+#include "thermoform/sheet/hinge_bending.h"
+#include "thermoform/sheet/membrane.h"
+#include "thermoform/contact/mould_contact.h"
+#include "thermoform/contact/point_contacts.h"
+#include "thermoform/contact/sheet_friction.h"
+#include "thermoform/sheet/sheet_mesh.h"
 
 namespace formwright {
 

@@ -7,9 +7,9 @@
 #include <tuple>
 
 #include "base/error.h"
-#include "base/json_text.h"
-#include "geometry/io/mesh_io.h"
-#include "geometry/io/text_out.h"
+#include "base/data/json_text.h"
+#include "formats/mesh_io.h"
+#include "formats/shared/text_out.h"
 
 namespace formwright {
 namespace {

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "geometry/adjacency.h"
+#include "geometry/mesh/adjacency.h"
 
 namespace formwright {
 namespace {

@@ -7,7 +7,7 @@
 // on either side wherever such bands lie beside each other. Between them the ribbon changes its fabric at a ruling.
 #include <vector>
 
-#include "zippable/ribbon.h"
+#include "zippable/ribbon/ribbon.h"
 
 namespace formwright {
 

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "base/error.h"
-#include "base/json_text.h"
-#include "geometry/adjacency.h"
+#include "base/data/json_text.h"
+#include "geometry/mesh/adjacency.h"
 #include "zippable/fabric_colours.h"
 
 namespace formwright {

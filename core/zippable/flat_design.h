@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "base/bytes.h"
-#include "geometry/triangle_mesh.h"
-#include "zippable/handle_closure.h"
+#include "geometry/mesh/triangle_mesh.h"
+#include "zippable/curve/handle_closure.h"
 
 namespace formwright {
 

@@ -11,11 +11,11 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "zippable/geodesic_distance.h"
-#include "zippable/handles.h"
-#include "zippable/slit.h"
-#include "zippable/surface_split.h"
-#include "zippable/traversal.h"
+#include "geometry/paths/geodesic_distance.h"
+#include "zippable/parts/handles.h"
+#include "zippable/parts/slit.h"
+#include "zippable/parts/surface_split.h"
+#include "zippable/curve/traversal.h"
 
 namespace formwright {
 namespace {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "base/context.h"
-#include "zippable/drawn_parts.h"
-#include "zippable/handle_closure.h"
-#include "zippable/segmentation.h"
+#include "zippable/parts/drawn_parts.h"
+#include "zippable/curve/handle_closure.h"
+#include "zippable/parts/segmentation.h"
 
 namespace formwright {
 

@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "base/error.h"
-#include "base/number_list.h"
-#include "geometry/measures.h"
+#include "base/data/number_list.h"
+#include "geometry/mesh/measures.h"
 
 namespace formwright {
 namespace {

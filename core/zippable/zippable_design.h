@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "base/context.h"
-#include "geometry/point_distance.h"
-#include "zippable/crease_alignment.h"
+#include "geometry/queries/point_distance.h"
+#include "zippable/curve/crease_alignment.h"
 #include "zippable/fabric_colours.h"
 #include "zippable/proposal.h"
-#include "zippable/ribbon.h"
-#include "zippable/ribbon_bend.h"
+#include "zippable/ribbon/ribbon.h"
+#include "zippable/ribbon/ribbon_bend.h"
 #include "zippable/zippable_options.h"
 
 namespace formwright {

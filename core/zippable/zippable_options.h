@@ -7,7 +7,7 @@
 #include <string_view>
 #include <tuple>
 
-#include "base/parameters.h"
+#include "base/data/parameters.h"
 
 namespace formwright {
 

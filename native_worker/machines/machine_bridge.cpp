@@ -10,13 +10,13 @@
 #include <boost/asio/use_awaitable.hpp>
 
 #include "base/error.h"
-#include "base/json_text.h"
+#include "base/data/json_text.h"
 #include "base/sha256.h"
-#include "files.h"
-#include "host.h"
-#include "machines/printer.h"
-#include "machines/slicer.h"
-#include "machines/upload.h"
+#include "system/files.h"
+#include "system/host.h"
+#include "machines/print/printer.h"
+#include "machines/print/slicer.h"
+#include "machines/print/upload.h"
 
 namespace formwright {
 namespace {

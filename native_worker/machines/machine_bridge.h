@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "base/bytes.h"
-#include "http_types.h"
-#include "job_store.h"
-#include "machines/machine_log.h"
-#include "machines/machine_registry.h"
+#include "system/http_types.h"
+#include "jobs/job_store.h"
+#include "machines/port/machine_log.h"
+#include "machines/port/machine_registry.h"
 #include "machines/machine_rooms.h"
 #include "machines/machine_tasks.h"
 

@@ -9,12 +9,12 @@
 #include <iostream>
 
 #include "base/error.h"
-#include "files.h"
-#include "host.h"
-#include "machines/machine_log.h"
-#include "machines/machine_registry.h"
+#include "system/files.h"
+#include "system/host.h"
+#include "machines/port/machine_log.h"
+#include "machines/port/machine_registry.h"
 #include "machines/machine_terminal.h"
-#include "machines/printer.h"
+#include "machines/print/printer.h"
 
 namespace formwright {
 namespace {

@@ -5,7 +5,7 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <chrono>
 
-#include "host.h"
+#include "system/host.h"
 
 namespace formwright {
 namespace {

@@ -9,9 +9,9 @@
 #include <optional>
 #include <string>
 
-#include "base/json.h"
-#include "http_types.h"
-#include "rate_budget.h"
+#include "base/data/json.h"
+#include "system/http_types.h"
+#include "system/rate_budget.h"
 
 namespace formwright {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a page may say at a machine's socket. Apart from the socket, so that the fuzzer reaches it.
 #include "base/error.h"
-#include "base/json_text.h"
-#include "hex_name.h"
+#include "base/data/json_text.h"
+#include "system/hex_name.h"
 #include "machines/machine_page.h"
 
 namespace formwright {

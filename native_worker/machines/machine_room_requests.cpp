@@ -5,10 +5,11 @@
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/use_awaitable.hpp>
 
+#include "machines/controllers.h"
 #include "base/error.h"
-#include "files.h"
+#include "system/files.h"
 #include "machines/machine_rooms.h"
-#include "machines/thread_priority.h"
+#include "machines/port/thread_priority.h"
 
 namespace formwright {
 namespace {

@@ -12,8 +12,8 @@
 #include <iostream>
 
 #include "base/error.h"
-#include "host.h"
-#include "machines/thread_priority.h"
+#include "system/host.h"
+#include "machines/port/thread_priority.h"
 
 namespace formwright {
 namespace {

@@ -16,7 +16,7 @@
 #include <string>
 #include <thread>
 
-#include "job_store.h"
+#include "jobs/job_store.h"
 #include "machines/machine_page.h"
 #include "machines/machine_session.h"
 

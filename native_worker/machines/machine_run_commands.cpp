@@ -7,11 +7,11 @@
 #include <cmath>
 #include <cstdio>
 
-#include "files.h"
-#include "machines/gcode_rules.h"
+#include "system/files.h"
+#include "machines/gcode/gcode_rules.h"
 #include "machines/machine_commands.h"
 #include "machines/machine_terminal.h"
-#include "machines/ruida_bounds.h"
+#include "machines/ruida/ruida_bounds.h"
 
 namespace formwright {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "base/error.h"
 #include "base/sha256.h"
-#include "machines/machine_registry.h"
-#include "machines/slicer.h"
+#include "machines/port/machine_registry.h"
+#include "machines/print/slicer.h"
 
 namespace formwright {
 namespace {

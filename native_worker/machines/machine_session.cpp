@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "machines/controllers.h"
 #include "base/error.h"
 
 namespace formwright {

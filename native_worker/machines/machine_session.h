@@ -10,9 +10,9 @@
 #include <memory>
 #include <string>
 
-#include "machines/machine_driver.h"
-#include "machines/machine_log.h"
-#include "machines/machine_port.h"
+#include "machines/controllers.h"
+#include "machines/port/machine_log.h"
+#include "machines/port/machine_port.h"
 
 namespace formwright {
 

@@ -8,9 +8,9 @@
 #include <thread>
 
 #include "base/error.h"
-#include "files.h"
-#include "host.h"
-#include "secret.h"
+#include "system/files.h"
+#include "system/host.h"
+#include "system/secret.h"
 
 namespace formwright {
 namespace {

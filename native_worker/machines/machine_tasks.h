@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "base/json.h"
-#include "machines/machine_log.h"
-#include "machines/machine_registry.h"
+#include "base/data/json.h"
+#include "machines/port/machine_log.h"
+#include "machines/port/machine_registry.h"
 
 namespace formwright {
 

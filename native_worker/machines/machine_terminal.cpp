@@ -10,7 +10,7 @@
 #include <cstdio>
 #include <iostream>
 
-#include "files.h"
+#include "system/files.h"
 
 namespace formwright {
 namespace {

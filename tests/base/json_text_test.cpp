@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/json_text.h"
+#include "base/data/json_text.h"
 
 #include <catch2/catch_test_macros.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/number_list.h"
+#include "base/data/number_list.h"
 
 #include <catch2/catch_test_macros.hpp>
 

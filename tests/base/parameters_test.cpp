@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/parameters.h"
+#include "base/data/parameters.h"
 
 #include <catch2/catch_test_macros.hpp>
 

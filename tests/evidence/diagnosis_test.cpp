@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "evidence/diagnosis.h"
+#include "evidence/diagnosis/diagnosis.h"
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
@@ -9,8 +9,8 @@
 
 #include "base/error.h"
 #include "evidence/calibration.h"
-#include "evidence/diagnosis_report.h"
-#include "evidence/pair_search.h"
+#include "evidence/diagnosis/diagnosis_report.h"
+#include "evidence/diagnosis/pair_search.h"
 #include "evidence/toy_model.h"
 
 namespace formwright {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "evidence/relief/relief_model.h"
+#include "evidence/models/relief/relief_model.h"
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
@@ -9,7 +9,7 @@
 #include <random>
 
 #include "base/error.h"
-#include "evidence/diagnosis.h"
+#include "evidence/diagnosis/diagnosis.h"
 
 namespace formwright {
 namespace {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "evidence/structured_misfit.h"
+#include "evidence/fit/structured_misfit.h"
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <Eigen/Dense>
 
-#include "evidence/hypotheses.h"
-#include "evidence/noise_model.h"
-#include "evidence/structured_objective.h"
+#include "evidence/fit/hypotheses.h"
+#include "evidence/fit/noise_model.h"
+#include "evidence/fit/structured_objective.h"
 #include "evidence/toy_model.h"
 
 namespace formwright {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "evidence/thermoform/thermoform_model.h"
+#include "evidence/models/thermoform/thermoform_model.h"
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
@@ -14,7 +14,7 @@
 
 #include "base/error.h"
 #include "evidence/calibration.h"
-#include "evidence/diagnosis.h"
+#include "evidence/diagnosis/diagnosis.h"
 #include "evidence/virtual_lab.h"
 
 namespace formwright {

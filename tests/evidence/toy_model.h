@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "evidence/forward_model.h"
+#include "evidence/fit/forward_model.h"
 
 namespace formwright::evidence_test {
 

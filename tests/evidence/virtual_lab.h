@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "evidence/thermoform/thermoform_model.h"
+#include "evidence/models/thermoform/thermoform_model.h"
 
 namespace formwright::virtual_lab {
 

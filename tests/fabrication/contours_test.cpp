@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fabrication/contours.h"
+#include "fabrication/sheet/contours.h"
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "base/random.h"
-#include "fabrication/hatching.h"
+#include "fabrication/laser/hatching.h"
 
 namespace formwright {
 namespace {

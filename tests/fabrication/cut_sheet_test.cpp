@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fabrication/cut_sheet.h"
+#include "fabrication/sheet/cut_sheet.h"
 
 #include <catch2/catch_test_macros.hpp>
 

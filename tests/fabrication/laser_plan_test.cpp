@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fabrication/laser_plan.h"
+#include "fabrication/laser/laser_plan.h"
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
@@ -10,8 +10,8 @@
 #include <numbers>
 
 #include "base/random.h"
-#include "fabrication/contours.h"
-#include "fabrication/gcode_writer.h"
+#include "fabrication/sheet/contours.h"
+#include "fabrication/writers/gcode_writer.h"
 #include "fabrication/svg/svg_reader.h"
 
 namespace formwright {

@@ -8,9 +8,9 @@
 #include <functional>
 
 #include "base/random.h"
-#include "fabrication/gcode_writer.h"
-#include "fabrication/mill_lines.h"
-#include "fabrication/mill_plan.h"
+#include "fabrication/writers/gcode_writer.h"
+#include "fabrication/mill/mill_lines.h"
+#include "fabrication/mill/mill_plan.h"
 
 namespace formwright {
 namespace {

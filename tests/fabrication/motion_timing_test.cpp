@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "base/random.h"
-#include "fabrication/toolpath.h"
+#include "fabrication/toolpath/toolpath.h"
 
 namespace formwright {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "base/error.h"
-#include "fabrication/svg/svg_colour.h"
-#include "fabrication/svg/svg_grammar.h"
+#include "fabrication/svg/style/svg_colour.h"
+#include "fabrication/svg/grammar/svg_grammar.h"
 #include "fabrication/svg/svg_reader.h"
 
 namespace formwright {

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "fabrication/polygon.h"
+#include "fabrication/planar/polygon.h"
 
 namespace formwright {
 namespace {

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "base/random.h"
-#include "fabrication/laser_materials.h"
+#include "fabrication/laser/laser_materials.h"
 
 namespace formwright {
 namespace {

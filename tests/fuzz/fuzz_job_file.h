@@ -2,7 +2,7 @@
 #pragma once
 // A whole file as a machine's job: taken or refused, and what is known of it can be written.
 #include "fuzz/fuzz_check.h"
-#include "machines/machine_driver.h"
+#include "machines/controllers.h"
 
 namespace formwright::fuzz {
 

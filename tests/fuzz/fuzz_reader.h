@@ -3,9 +3,9 @@
 // What every target does: read, and if it was read, check it and write it in every format. An Error is an answer;
 // any other exception, a sanitizer's finding, too much memory or time is a finding.
 #include "fuzz/fuzz_check.h"
-#include "geometry/io/mesh_io.h"
-#include "geometry/io/mesh_source.h"
-#include "geometry/io/model_file.h"
+#include "formats/mesh_io.h"
+#include "formats/shared/mesh_source.h"
+#include "formats/shared/model_file.h"
 
 namespace formwright::fuzz {
 

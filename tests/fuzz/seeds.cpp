@@ -3,12 +3,12 @@
 #include "fuzz/seeds.h"
 
 #include "fuzz/svg_seeds.h"
-#include "geometry/io/glb_builder.h"
-#include "geometry/io/mesh_io.h"
-#include "geometry/io/model_samples.h"
-#include "geometry/io/obj.h"
-#include "geometry/io/png16.h"
-#include "geometry/io/zip.h"
+#include "formats/glb_builder.h"
+#include "formats/mesh_io.h"
+#include "formats/model_samples.h"
+#include "formats/obj/obj.h"
+#include "formats/png/png16.h"
+#include "formats/container/zip.h"
 
 namespace formwright::fuzz {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/adjacency.h"
+#include "geometry/mesh/adjacency.h"
 
 #include <catch2/catch_test_macros.hpp>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/booleans.h"
+#include "geometry/booleans/booleans.h"
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include "base/error.h"
-#include "geometry/adjacency.h"
-#include "geometry/measures.h"
+#include "geometry/mesh/adjacency.h"
+#include "geometry/mesh/measures.h"
 #include "geometry/samples/samples.h"
 #include "geometry/test_meshes.h"
 

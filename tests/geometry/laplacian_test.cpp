@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/laplacian.h"
+#include "geometry/operators/laplacian.h"
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "base/error.h"
-#include "geometry/measures.h"
+#include "geometry/mesh/measures.h"
 #include "geometry/test_meshes.h"
 
 namespace formwright {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/point_distance.h"
+#include "geometry/queries/point_distance.h"
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include "base/error.h"
-#include "geometry/measures.h"
+#include "geometry/mesh/measures.h"
 #include "geometry/test_meshes.h"
 
 namespace formwright {

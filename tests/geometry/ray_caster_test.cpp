@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/ray_caster.h"
+#include "geometry/queries/ray_caster.h"
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "base/error.h"
-#include "geometry/measures.h"
+#include "geometry/mesh/measures.h"
 #include "geometry/ray_oracles.h"
 #include "geometry/ray_sets.h"
 #include "geometry/test_meshes.h"

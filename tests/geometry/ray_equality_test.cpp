@@ -9,8 +9,8 @@
 #include <string>
 
 #include "base/parallel.h"
-#include "geometry/bvh_rays.h"
-#include "geometry/embree_rays.h"
+#include "geometry/queries/bvh_rays.h"
+#include "geometry/queries/embree_rays.h"
 #include "geometry/ray_sets.h"
 
 namespace formwright {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "geometry/triangle_mesh.h"
+#include "geometry/mesh/triangle_mesh.h"
 
 namespace formwright::test {
 

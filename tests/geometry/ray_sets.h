@@ -3,7 +3,7 @@
 // Meshes and rays that ray casters are compared on.
 #include <vector>
 
-#include "geometry/measures.h"
+#include "geometry/mesh/measures.h"
 #include "geometry/test_meshes.h"
 
 namespace formwright::test {

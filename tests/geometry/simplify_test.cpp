@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/simplify.h"
+#include "geometry/mesh/simplify.h"
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
@@ -8,9 +8,9 @@
 #include <numbers>
 
 #include "base/error.h"
-#include "geometry/adjacency.h"
-#include "geometry/measures.h"
-#include "geometry/point_distance.h"
+#include "geometry/mesh/adjacency.h"
+#include "geometry/mesh/measures.h"
+#include "geometry/queries/point_distance.h"
 #include "geometry/test_meshes.h"
 
 namespace formwright {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/triangle_mesh.h"
+#include "geometry/mesh/triangle_mesh.h"
 
 namespace formwright::test {
 

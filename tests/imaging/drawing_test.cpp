@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "imaging/drawing.h"
-#include "imaging/light.h"
-#include "imaging/pdf.h"
+#include "imaging/drawing/drawing.h"
+#include "imaging/picture/light.h"
+#include "imaging/drawing/pdf.h"
 
 namespace formwright {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <random>
 
-#include "imaging/light.h"
-#include "imaging/linear_picture.h"
+#include "imaging/picture/light.h"
+#include "imaging/picture/linear_picture.h"
 
 namespace formwright {
 namespace {

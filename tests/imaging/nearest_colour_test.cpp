@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "imaging/nearest_colour.h"
+#include "imaging/colour/nearest_colour.h"
 
 namespace formwright {
 namespace {

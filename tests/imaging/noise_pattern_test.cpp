@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "imaging/noise_pattern.h"
+#include "imaging/drawing/noise_pattern.h"
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "base/sha256.h"
-#include "imaging/colour_correction.h"
-#include "imaging/weighted_picture.h"
+#include "imaging/colour/colour_correction.h"
+#include "imaging/picture/weighted_picture.h"
 
 namespace formwright {
 namespace {

@@ -9,8 +9,8 @@
 #include <random>
 
 #include "base/error.h"
-#include "imaging/picture_reader.h"
-#include "imaging/png_writer.h"
+#include "imaging/picture/picture_reader.h"
+#include "imaging/picture/png_writer.h"
 
 namespace formwright {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Flow on pairs with known displacement: exact cases, what must not change it, and how its error falls.
-#include "imaging/variational_flow.h"
+#include "imaging/flow/variational_flow.h"
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>

@@ -6,9 +6,9 @@
 #include <functional>
 #include <random>
 
-#include "geometry/triangle_mesh.h"
-#include "imaging/noise_pattern.h"
-#include "imaging/variational_flow.h"
+#include "geometry/mesh/triangle_mesh.h"
+#include "imaging/drawing/noise_pattern.h"
+#include "imaging/flow/variational_flow.h"
 
 namespace formwright::test {
 

@@ -6,7 +6,7 @@
 #include <set>
 #include <sstream>
 
-#include "job/file_pack.h"
+#include "job/contract/file_pack.h"
 #include "job/run.h"
 
 #ifndef __EMSCRIPTEN__

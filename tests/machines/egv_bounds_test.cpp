@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "machines/egv_bounds.h"
+#include "machines/k40/egv_bounds.h"
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
@@ -9,8 +9,8 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "fabrication/egv_writer.h"
-#include "machines/k40_driver.h"
+#include "fabrication/writers/egv_writer.h"
+#include "machines/k40/k40_driver.h"
 
 namespace formwright {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "machines/gcode_rules.h"
+#include "machines/gcode/gcode_rules.h"
 
 #include <catch2/catch_test_macros.hpp>
 

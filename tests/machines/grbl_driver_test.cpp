@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "machines/grbl_driver.h"
+#include "machines/grbl/grbl_driver.h"
 
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
 #include <cmath>

@@ -9,8 +9,8 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "machines/grbl_driver.h"
-#include "machines/virtual_grbl.h"
+#include "machines/grbl/grbl_driver.h"
+#include "machines/virtual_grbl/virtual_grbl.h"
 
 namespace formwright {
 

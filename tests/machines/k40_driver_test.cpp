@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "machines/k40_driver.h"
+#include "machines/k40/k40_driver.h"
 
 namespace formwright {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "machines/marlin_driver.h"
+#include "machines/marlin/marlin_driver.h"
 #include "machines/virtual_marlin.h"
 
 namespace formwright {

@@ -3,7 +3,7 @@
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include "grbl_talk.h"
-#include "machines/marlin_driver.h"
+#include "machines/marlin/marlin_driver.h"
 
 namespace formwright {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "machines/ruida_bounds.h"
+#include "machines/ruida/ruida_bounds.h"
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "machines/ruida_driver.h"
+#include "machines/ruida/ruida_driver.h"
 
 namespace formwright {
 namespace {

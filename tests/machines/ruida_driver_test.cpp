@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "machines/ruida_driver.h"
+#include "machines/ruida/ruida_driver.h"
 
 namespace formwright {
 namespace {

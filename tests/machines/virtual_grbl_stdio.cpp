@@ -7,7 +7,7 @@
 #include <chrono>
 #include <string>
 
-#include "machines/virtual_grbl.h"
+#include "machines/virtual_grbl/virtual_grbl.h"
 
 int main() {
   using namespace formwright;

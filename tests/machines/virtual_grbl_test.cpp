@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The virtual GRBL does with its beam, its coordinates and its reports what grbl 1.1h does.
-#include "machines/virtual_grbl.h"
+#include "machines/virtual_grbl/virtual_grbl.h"
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "machines/document_pages.h"
+#include "machines/print/document_pages.h"
 
 #include <cups/raster.h>
 #include <catch2/catch_test_macros.hpp>
@@ -12,7 +12,7 @@
 
 #include "base/error.h"
 #include "base/peak_memory.h"
-#include "machines/print_media.h"
+#include "machines/print/print_media.h"
 
 namespace formwright {
 namespace {

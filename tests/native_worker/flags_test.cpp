@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "flags.h"
+#include "command_line/flags.h"
 
 #include <catch2/catch_test_macros.hpp>
 

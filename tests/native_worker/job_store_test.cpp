@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "job_store.h"
+#include "jobs/job_store.h"
 
 #include <catch2/catch_test_macros.hpp>
 #include <stdlib.h>
@@ -12,7 +12,7 @@
 #include <iterator>
 
 #include "base/sha256.h"
-#include "files.h"
+#include "system/files.h"
 
 namespace formwright {
 namespace {

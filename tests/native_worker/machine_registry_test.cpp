@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "machines/machine_registry.h"
+#include "machines/port/machine_registry.h"
 
 #include <catch2/catch_test_macros.hpp>
 #include <stdlib.h>
@@ -9,8 +9,8 @@
 #include <set>
 
 #include "base/error.h"
-#include "machines/machine_log.h"
-#include "machines/upload.h"
+#include "machines/port/machine_log.h"
+#include "machines/print/upload.h"
 
 namespace formwright {
 namespace {

@@ -12,8 +12,8 @@
 #include <cmath>
 #include <iostream>
 
-#include "base/json.h"
-#include "machines/virtual_grbl.h"
+#include "base/data/json.h"
+#include "machines/virtual_grbl/virtual_grbl.h"
 
 int main(int argc, char** argv) {
   using namespace formwright;

@@ -4,7 +4,7 @@
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include "base/error.h"
-#include "numerics/bounded_qp.h"
+#include "numerics/qp/bounded_qp.h"
 #include "numerics/bounded_qp_reference.h"
 
 namespace formwright {

@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "numerics/bounded_qp.h"
+#include "numerics/qp/bounded_qp.h"
 
 namespace formwright::test {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Exact answers, invariants and bad input.
-#include "numerics/bounded_qp.h"
+#include "numerics/qp/bounded_qp.h"
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The numbers: dense kernels against Eigen, the factor against its definition.
-#include "numerics/multifrontal.h"
+#include "numerics/sparse/multifrontal.h"
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
@@ -9,9 +9,9 @@
 #include <algorithm>
 #include <cstring>
 
-#include "numerics/dense_kernels.h"
-#include "numerics/dense_solves.h"
-#include "numerics/nested_dissection.h"
+#include "numerics/dense/dense_kernels.h"
+#include "numerics/dense/dense_solves.h"
+#include "numerics/ordering/nested_dissection.h"
 #include "numerics/sparse_matrices.h"
 
 namespace formwright {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "numerics/sparse_cholesky.h"
+#include "numerics/sparse/sparse_cholesky.h"
 
 namespace formwright::test {
 

@@ -7,14 +7,14 @@
 #include <cmath>
 #include <set>
 
-#include "numerics/elimination_tree.h"
-#include "numerics/graph_bisection.h"
-#include "numerics/minimum_degree.h"
-#include "numerics/nested_dissection.h"
-#include "numerics/separator_flow.h"
+#include "numerics/sparse/elimination_tree.h"
+#include "numerics/ordering/graph_bisection.h"
+#include "numerics/ordering/minimum_degree.h"
+#include "numerics/ordering/nested_dissection.h"
+#include "numerics/ordering/separator_flow.h"
 #include "numerics/sparse_matrices.h"
-#include "numerics/supernodes.h"
-#include "numerics/vertex_separator.h"
+#include "numerics/sparse/supernodes.h"
+#include "numerics/ordering/vertex_separator.h"
 
 namespace formwright {
 namespace {

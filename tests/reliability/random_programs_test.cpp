@@ -11,7 +11,7 @@
 #include <cstdlib>
 
 #include "base/error.h"
-#include "machines/gcode_rules.h"
+#include "machines/gcode/gcode_rules.h"
 #include "reliability/random_program.h"
 #include "reliability/rs274_interpreter.h"
 

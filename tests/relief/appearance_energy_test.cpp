@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "geometry/laplacian.h"
+#include "geometry/operators/laplacian.h"
 #include "geometry/test_meshes.h"
 
 namespace formwright {

@@ -6,8 +6,8 @@
 
 #include <cmath>
 
-#include "geometry/adjacency.h"
-#include "geometry/measures.h"
+#include "geometry/mesh/adjacency.h"
+#include "geometry/mesh/measures.h"
 #include "geometry/test_meshes.h"
 
 namespace formwright {

@@ -8,10 +8,10 @@
 #include <Eigen/Dense>
 #include <algorithm>
 
-#include "geometry/ray_caster.h"
+#include "geometry/queries/ray_caster.h"
 #include "geometry/samples/samples.h"
 #include "thermoform/sheet_fixture.h"
-#include "thermoform/sheet_lookup.h"
+#include "thermoform/sheet/sheet_lookup.h"
 
 namespace formwright {
 namespace {

@@ -6,9 +6,9 @@
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include "base/error.h"
-#include "thermoform/measured_object.h"
-#include "thermoform/sheet_mesh.h"
-#include "thermoform/thermoform_options.h"
+#include "thermoform/measured/measured_object.h"
+#include "thermoform/sheet/sheet_mesh.h"
+#include "thermoform/sheet/thermoform_options.h"
 
 namespace formwright {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "thermoform/membrane.h"
+#include "thermoform/sheet/membrane.h"
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
@@ -8,7 +8,7 @@
 #include <Eigen/Dense>
 #include <limits>
 
-#include "thermoform/hinge_bending.h"
+#include "thermoform/sheet/hinge_bending.h"
 #include "thermoform/sheet_fixture.h"
 
 namespace formwright {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sharp points against moving triangles: what is remembered from step to step must not let any through.
-#include "thermoform/point_contacts.h"
+#include "thermoform/contact/point_contacts.h"
 
 #include <catch2/catch_test_macros.hpp>
 
@@ -8,7 +8,7 @@
 #include <random>
 #include <set>
 
-#include "geometry/point_distance.h"
+#include "geometry/queries/point_distance.h"
 #include "thermoform/sheet_fixture.h"
 
 namespace formwright {

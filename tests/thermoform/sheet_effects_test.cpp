@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Effects: nothing at strength 0, the right way at others, and forces that stay gradients.
-#include "thermoform/sheet_effects.h"
+#include "thermoform/sheet/sheet_effects.h"
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
@@ -8,10 +8,10 @@
 #include <Eigen/Dense>
 #include <functional>
 
-#include "geometry/point_distance.h"
-#include "geometry/ray_caster.h"
+#include "geometry/queries/point_distance.h"
+#include "geometry/queries/ray_caster.h"
 #include "geometry/samples/samples.h"
-#include "thermoform/contact_chill.h"
+#include "thermoform/contact/contact_chill.h"
 #include "thermoform/sheet_fixture.h"
 
 namespace formwright {

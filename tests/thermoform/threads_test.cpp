@@ -7,7 +7,7 @@
 #include <set>
 
 #include "base/parallel.h"
-#include "thermoform/face_strips.h"
+#include "thermoform/solver/face_strips.h"
 #include "thermoform/forming.h"
 #include "thermoform/sheet_fixture.h"
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "zippable/crease_alignment.h"
+#include "zippable/curve/crease_alignment.h"
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include <cmath>
 
-#include "geometry/measures.h"
+#include "geometry/mesh/measures.h"
 #include "zippable/zippable_design.h"
 #include "zippable/zippable_shapes.h"
 

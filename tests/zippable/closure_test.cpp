@@ -7,8 +7,8 @@
 #include <map>
 
 #include "base/error.h"
-#include "base/json.h"
-#include "geometry/measures.h"
+#include "base/data/json.h"
+#include "geometry/mesh/measures.h"
 #include "zippable/design_files.h"
 #include "zippable/flat_design.h"
 #include "zippable/zippable_shapes.h"

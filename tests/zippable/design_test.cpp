@@ -8,8 +8,8 @@
 #include <string>
 
 #include "base/error.h"
-#include "base/json.h"
-#include "geometry/measures.h"
+#include "base/data/json.h"
+#include "geometry/mesh/measures.h"
 #include "zippable/design_files.h"
 #include "zippable/zippable_shapes.h"
 

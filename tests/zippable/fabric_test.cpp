@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "geometry/adjacency.h"
+#include "geometry/mesh/adjacency.h"
 #include "zippable/fabric_colours.h"
-#include "zippable/ribbon_bend.h"
+#include "zippable/ribbon/ribbon_bend.h"
 #include "zippable/zippable_design.h"
 #include "zippable/zippable_shapes.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "zippable/feature_lines.h"
+#include "zippable/parts/feature_lines.h"
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <set>
 
-#include "geometry/measures.h"
+#include "geometry/mesh/measures.h"
 #include "zippable/proposal.h"
 #include "zippable/zippable_shapes.h"
 

@@ -7,10 +7,10 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "base/json.h"
-#include "geometry/measures.h"
+#include "base/data/json.h"
+#include "geometry/mesh/measures.h"
 #include "zippable/design_files.h"
-#include "zippable/slit.h"
+#include "zippable/parts/slit.h"
 #include "zippable/zippable_shapes.h"
 
 namespace formwright {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "zippable/parameterisation.h"
+#include "zippable/chart/parameterisation.h"
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "zippable/newton_system.h"
+#include "zippable/chart/newton_system.h"
 #include "zippable/zippable_shapes.h"
 
 namespace formwright {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "zippable/ribbon.h"
+#include "zippable/ribbon/ribbon.h"
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
@@ -7,9 +7,9 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "geometry/adjacency.h"
-#include "geometry/point_distance.h"
-#include "zippable/polygon_dissection.h"
+#include "geometry/mesh/adjacency.h"
+#include "geometry/queries/point_distance.h"
+#include "zippable/parts/polygon_dissection.h"
 #include "zippable/zippable_shapes.h"
 
 namespace formwright {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "zippable/segmentation.h"
+#include "zippable/parts/segmentation.h"
 
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
@@ -8,9 +8,9 @@
 #include <set>
 
 #include "base/error.h"
-#include "zippable/geodesic_distance.h"
-#include "zippable/handles.h"
-#include "zippable/surface_split.h"
+#include "geometry/paths/geodesic_distance.h"
+#include "zippable/parts/handles.h"
+#include "zippable/parts/surface_split.h"
 #include "zippable/zippable_shapes.h"
 
 namespace formwright {

@@ -10,7 +10,7 @@
 #include "geometry/test_meshes.h"
 #include "zippable/design_files.h"
 #include "zippable/proposal.h"
-#include "zippable/ribbon.h"
+#include "zippable/ribbon/ribbon.h"
 
 namespace formwright::test {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "base/json_text.h"
+#include "base/data/json_text.h"
 #include "base/parallel.h"
 
 namespace formwright {

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "base/bytes.h"
-#include "base/json.h"
-#include "base/parameters.h"
-#include "imaging/noise_pattern.h"
-#include "geometry/triangle_mesh.h"
+#include "base/data/json.h"
+#include "base/data/parameters.h"
+#include "imaging/drawing/noise_pattern.h"
+#include "geometry/mesh/triangle_mesh.h"
 
 namespace formwright {
 

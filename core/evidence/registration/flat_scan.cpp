@@ -7,8 +7,8 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "geometry/adjacency.h"
-#include "numerics/sparse_cholesky.h"
+#include "geometry/mesh/adjacency.h"
+#include "numerics/sparse/sparse_cholesky.h"
 
 namespace formwright {
 namespace {

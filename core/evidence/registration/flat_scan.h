@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/context.h"
-#include "geometry/triangle_mesh.h"
+#include "geometry/mesh/triangle_mesh.h"
 
 namespace formwright {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "base/number_list.h"
+#include "base/data/number_list.h"
 
 namespace formwright {
 

@@ -7,8 +7,8 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "imaging/light.h"
-#include "imaging/picture_reader.h"
+#include "imaging/picture/light.h"
+#include "imaging/picture/picture_reader.h"
 
 namespace formwright {
 namespace {

@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "geometry/triangle_mesh.h"
-#include "imaging/linear_picture.h"
-#include "imaging/weighted_picture.h"
+#include "geometry/mesh/triangle_mesh.h"
+#include "imaging/picture/linear_picture.h"
+#include "imaging/picture/weighted_picture.h"
 
 namespace formwright {
 

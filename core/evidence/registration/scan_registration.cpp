@@ -9,8 +9,8 @@
 #include "evidence/registration/picture_corners.h"
 #include "evidence/registration/registered_points.h"
 #include "evidence/registration/scan_picture.h"
-#include "geometry/io/colour.h"
-#include "imaging/light.h"
+#include "formats/shared/colour.h"
+#include "imaging/picture/light.h"
 
 namespace formwright {
 namespace {

@@ -8,8 +8,8 @@
 #include "evidence/registration/calibration_pattern.h"
 #include "evidence/registration/corner_marks.h"
 #include "evidence/registration/flat_scan.h"
-#include "imaging/colour_correction.h"
-#include "imaging/variational_flow.h"
+#include "imaging/colour/colour_correction.h"
+#include "imaging/flow/variational_flow.h"
 
 namespace formwright {
 

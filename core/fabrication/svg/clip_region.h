@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "fabrication/polygon.h"
-#include "fabrication/svg/curve_flattening.h"
+#include "fabrication/planar/polygon.h"
+#include "fabrication/svg/grammar/curve_flattening.h"
 
 namespace formwright {
 

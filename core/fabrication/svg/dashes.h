@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "fabrication/svg/curve_flattening.h"
+#include "fabrication/svg/grammar/curve_flattening.h"
 
 namespace formwright {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string_view>
 
-#include "fabrication/cut_sheet.h"
+#include "fabrication/sheet/cut_sheet.h"
 
 namespace formwright {
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "fabrication/svg/drawing_limits.h"
+#include "fabrication/svg/grammar/drawing_limits.h"
 #include "fabrication/svg/svg_viewport.h"
 #include "fabrication/svg/svg_walker.h"
 

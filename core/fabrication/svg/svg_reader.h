@@ -6,8 +6,8 @@
 
 #include "base/bytes.h"
 #include "base/context.h"
-#include "base/parameters.h"
-#include "fabrication/cut_sheet.h"
+#include "base/data/parameters.h"
+#include "fabrication/sheet/cut_sheet.h"
 
 namespace formwright {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string>
 
-#include "fabrication/svg/svg_grammar.h"
+#include "fabrication/svg/grammar/svg_grammar.h"
 
 namespace formwright {
 namespace {

@@ -4,8 +4,8 @@
 #include <pugixml.hpp>
 #include <string_view>
 
-#include "fabrication/svg/curve_flattening.h"
-#include "fabrication/svg/svg_style.h"
+#include "fabrication/svg/grammar/curve_flattening.h"
+#include "fabrication/svg/style/svg_style.h"
 #include "fabrication/svg/svg_viewport.h"
 
 namespace formwright {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fabrication/svg/svg_state.h"
 
-#include "fabrication/svg/svg_grammar.h"
+#include "fabrication/svg/grammar/svg_grammar.h"
 
 namespace formwright {
 

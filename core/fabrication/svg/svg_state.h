@@ -6,9 +6,9 @@
 #include <optional>
 #include <string_view>
 
-#include "fabrication/cut_sheet.h"
+#include "fabrication/sheet/cut_sheet.h"
 #include "fabrication/svg/clip_region.h"
-#include "fabrication/svg/svg_style.h"
+#include "fabrication/svg/style/svg_style.h"
 #include "fabrication/svg/svg_viewport.h"
 
 namespace formwright {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <optional>
 
-#include "base/number_list.h"
-#include "fabrication/svg/drawing_limits.h"
-#include "fabrication/svg/svg_grammar.h"
+#include "base/data/number_list.h"
+#include "fabrication/svg/grammar/drawing_limits.h"
+#include "fabrication/svg/grammar/svg_grammar.h"
 
 namespace formwright {
 namespace {

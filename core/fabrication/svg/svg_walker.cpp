@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "fabrication/svg/css_transform.h"
+#include "fabrication/svg/style/css_transform.h"
 #include "fabrication/svg/drawing_layers.h"
-#include "fabrication/svg/svg_grammar.h"
+#include "fabrication/svg/grammar/svg_grammar.h"
 #include "fabrication/svg/svg_shapes.h"
 
 namespace formwright {

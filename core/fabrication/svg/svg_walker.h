@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "fabrication/svg/svg_notes.h"
-#include "fabrication/svg/svg_paint.h"
+#include "fabrication/svg/style/svg_paint.h"
 #include "fabrication/svg/svg_reader.h"
 #include "fabrication/svg/svg_state.h"
 

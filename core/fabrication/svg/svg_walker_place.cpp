@@ -2,8 +2,8 @@
 // Where an element is and what of it is seen: transforms, boxes and clips.
 #include <cmath>
 
-#include "fabrication/svg/css_transform.h"
-#include "fabrication/svg/svg_grammar.h"
+#include "fabrication/svg/style/css_transform.h"
+#include "fabrication/svg/grammar/svg_grammar.h"
 #include "fabrication/svg/svg_shapes.h"
 #include "fabrication/svg/svg_walker.h"
 

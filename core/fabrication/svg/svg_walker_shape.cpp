@@ -6,7 +6,7 @@
 
 #include "fabrication/svg/dashes.h"
 #include "fabrication/svg/drawing_layers.h"
-#include "fabrication/svg/svg_grammar.h"
+#include "fabrication/svg/grammar/svg_grammar.h"
 #include "fabrication/svg/svg_shapes.h"
 #include "fabrication/svg/svg_walker.h"
 

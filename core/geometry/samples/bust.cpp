@@ -3,8 +3,8 @@
 // y up from the chin, z forward from the ears; proportions after the usual anthropometric means.
 #include <algorithm>
 
-#include "geometry/samples/locks.h"
-#include "geometry/samples/noise.h"
+#include "geometry/samples/sculpting/locks.h"
+#include "geometry/samples/sculpting/noise.h"
 #include "geometry/samples/shapes.h"
 
 namespace formwright::samples {

@@ -2,8 +2,8 @@
 // A sitting tabby cat at life size in centimetres. Legs and tail lie close to the body: no holes.
 #include <algorithm>
 
-#include "geometry/samples/locks.h"
-#include "geometry/samples/noise.h"
+#include "geometry/samples/sculpting/locks.h"
+#include "geometry/samples/sculpting/noise.h"
 #include "geometry/samples/shapes.h"
 #include "geometry/samples/texture_atlas.h"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "geometry/samples/erosion.h"
-#include "geometry/samples/noise.h"
+#include "geometry/samples/sculpting/erosion.h"
+#include "geometry/samples/sculpting/noise.h"
 #include "geometry/samples/shapes.h"
 #include "geometry/samples/texture_atlas.h"
 

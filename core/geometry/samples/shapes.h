@@ -3,8 +3,8 @@
 // The makers behind make_sample, one per shape.
 #include <functional>
 
-#include "geometry/samples/remesh.h"
-#include "geometry/triangle_mesh.h"
+#include "geometry/samples/sculpting/remesh.h"
+#include "geometry/mesh/triangle_mesh.h"
 
 namespace formwright::samples {
 

@@ -9,8 +9,8 @@
 #include <numeric>
 
 #include "base/parallel.h"
-#include "geometry/measures.h"
-#include "geometry/ray_caster.h"
+#include "geometry/mesh/measures.h"
+#include "geometry/queries/ray_caster.h"
 
 namespace formwright {
 namespace {

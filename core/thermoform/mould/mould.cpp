@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "geometry/adjacency.h"
-#include "geometry/measures.h"
+#include "geometry/mesh/adjacency.h"
+#include "geometry/mesh/measures.h"
 #include "thermoform/mould/solid_shapes.h"
 
 namespace formwright {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/context.h"
-#include "geometry/booleans.h"
+#include "geometry/booleans/booleans.h"
 #include "thermoform/mould/mould_options.h"
 #include "thermoform/mould/vents.h"
 

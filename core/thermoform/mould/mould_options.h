@@ -5,7 +5,7 @@
 #include <optional>
 #include <tuple>
 
-#include "thermoform/thermoform_options.h"
+#include "thermoform/sheet/thermoform_options.h"
 
 namespace formwright {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "geometry/measures.h"
+#include "geometry/mesh/measures.h"
 #include "thermoform/mould/registration_keys.h"
 
 namespace formwright {

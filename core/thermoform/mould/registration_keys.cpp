@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/point_distance.h"
-#include "geometry/ray_caster.h"
+#include "geometry/queries/point_distance.h"
+#include "geometry/queries/ray_caster.h"
 #include "thermoform/mould/solid_shapes.h"
 
 namespace formwright {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "base/context.h"
-#include "geometry/booleans.h"
-#include "geometry/measures.h"
+#include "geometry/booleans/booleans.h"
+#include "geometry/mesh/measures.h"
 
 namespace formwright {
 

@@ -3,8 +3,8 @@
 // Simple closed meshes that moulds are put together from.
 #include <vector>
 
-#include "geometry/measures.h"
-#include "geometry/triangle_mesh.h"
+#include "geometry/mesh/measures.h"
+#include "geometry/mesh/triangle_mesh.h"
 
 namespace formwright {
 

@@ -6,9 +6,9 @@
 #include <numbers>
 #include <tuple>
 
-#include "geometry/adjacency.h"
-#include "geometry/measures.h"
-#include "geometry/ray_caster.h"
+#include "geometry/mesh/adjacency.h"
+#include "geometry/mesh/measures.h"
+#include "geometry/queries/ray_caster.h"
 
 namespace formwright {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "base/context.h"
-#include "thermoform/formed_sheet.h"
-#include "thermoform/placement.h"
+#include "thermoform/sheet/formed_sheet.h"
+#include "thermoform/sheet/placement.h"
 
 namespace formwright {
 

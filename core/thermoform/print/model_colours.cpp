@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "imaging/light.h"
-#include "imaging/picture_reader.h"
+#include "imaging/picture/light.h"
+#include "imaging/picture/picture_reader.h"
 
 namespace formwright {
 namespace {

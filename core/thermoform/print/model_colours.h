@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "imaging/linear_picture.h"
+#include "imaging/picture/linear_picture.h"
 #include "thermoform/print/print_options.h"
 #include "thermoform/print/surface_refinement.h"
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "imaging/drawing.h"
+#include "imaging/drawing/drawing.h"
 #include "thermoform/print/print_options.h"
 
 namespace formwright {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // What thermoform-texture takes beside the simulation's own parameters.
-#include "thermoform/thermoform_options.h"
+#include "thermoform/sheet/thermoform_options.h"
 
 namespace formwright {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "imaging/pdf.h"
+#include "imaging/drawing/pdf.h"
 
 namespace formwright {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "imaging/light.h"
-#include "imaging/png_writer.h"
+#include "imaging/picture/light.h"
+#include "imaging/picture/png_writer.h"
 
 namespace formwright {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // The flattened model as a picture of the whole sheet.
-#include "imaging/image.h"
+#include "imaging/picture/image.h"
 #include "thermoform/print/model_colours.h"
 #include "thermoform/print/sheet_projection.h"
 

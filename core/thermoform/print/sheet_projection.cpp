@@ -7,10 +7,10 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "geometry/measures.h"
-#include "geometry/point_distance.h"
-#include "geometry/ray_caster.h"
-#include "geometry/triangle_bvh.h"
+#include "geometry/mesh/measures.h"
+#include "geometry/queries/point_distance.h"
+#include "geometry/queries/ray_caster.h"
+#include "geometry/queries/triangle_bvh.h"
 
 namespace formwright {
 namespace {

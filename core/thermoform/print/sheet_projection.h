@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "base/context.h"
-#include "thermoform/formed_sheet.h"
+#include "thermoform/sheet/formed_sheet.h"
 #include "thermoform/print/print_options.h"
 #include "thermoform/print/surface_refinement.h"
 

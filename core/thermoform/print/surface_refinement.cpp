@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/adjacency.h"
+#include "geometry/mesh/adjacency.h"
 
 namespace formwright {
 namespace {

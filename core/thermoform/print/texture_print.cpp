@@ -6,10 +6,10 @@
 #include <cstdio>
 
 #include "base/parallel.h"
-#include "geometry/io/mesh_io.h"
-#include "geometry/measures.h"
-#include "imaging/nearest_colour.h"
-#include "imaging/png_writer.h"
+#include "formats/mesh_io.h"
+#include "geometry/mesh/measures.h"
+#include "imaging/colour/nearest_colour.h"
+#include "imaging/picture/png_writer.h"
 #include "thermoform/print/print_marks.h"
 
 namespace formwright {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "imaging/page_flow.h"
+#include "imaging/flow/page_flow.h"
 #include "zippable/plan/piece_picture.h"
 
 namespace formwright {

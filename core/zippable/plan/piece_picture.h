@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "imaging/drawing.h"
+#include "imaging/drawing/drawing.h"
 #include "zippable/plan/zippable_plan.h"
 
 namespace formwright {

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "base/error.h"
-#include "fabrication/contours.h"
-#include "fabrication/words.h"
+#include "fabrication/sheet/contours.h"
+#include "fabrication/sheet/word_paths.h"
 
 namespace formwright {
 namespace {

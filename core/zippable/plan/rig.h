@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "base/context.h"
-#include "fabrication/nesting.h"
-#include "zippable/plan/plan_options.h"
+#include "fabrication/sheet/nesting.h"
+#include "zippable/plan/pieces/plan_options.h"
 #include "zippable/plan/rig_tracks.h"
 
 namespace formwright {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "fabrication/contours.h"
+#include "fabrication/sheet/contours.h"
 
 namespace formwright {
 namespace {

@@ -7,9 +7,9 @@
 // down.
 #include <vector>
 
-#include "fabrication/thick_lines.h"
-#include "zippable/plan/plan_pieces.h"
-#include "zippable/plan/tape_runs.h"
+#include "fabrication/planar/thick_lines.h"
+#include "zippable/plan/pieces/plan_pieces.h"
+#include "zippable/plan/pieces/tape_runs.h"
 
 namespace formwright {
 

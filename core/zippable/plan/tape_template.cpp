@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "fabrication/words.h"
+#include "fabrication/sheet/word_paths.h"
 
 namespace formwright {
 namespace {

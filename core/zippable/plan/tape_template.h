@@ -4,8 +4,8 @@
 // the cloth.
 #include <vector>
 
-#include "fabrication/cut_sheet.h"
-#include "zippable/plan/tape_runs.h"
+#include "fabrication/sheet/cut_sheet.h"
+#include "zippable/plan/pieces/tape_runs.h"
 
 namespace formwright {
 

@@ -7,8 +7,8 @@
 #include <tuple>
 
 #include "base/error.h"
-#include "fabrication/words.h"
-#include "imaging/pdf.h"
+#include "fabrication/sheet/word_paths.h"
+#include "imaging/drawing/pdf.h"
 
 namespace formwright {
 namespace {

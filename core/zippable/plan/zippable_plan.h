@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "base/context.h"
-#include "fabrication/nesting.h"
-#include "zippable/plan/plan_pieces.h"
+#include "fabrication/sheet/nesting.h"
+#include "zippable/plan/pieces/plan_pieces.h"
 #include "zippable/plan/rig.h"
-#include "zippable/plan/seams.h"
+#include "zippable/plan/pieces/seams.h"
 #include "zippable/plan/tape_template.h"
 
 namespace formwright {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "geometry/adjacency.h"
+#include "geometry/mesh/adjacency.h"
 
 namespace formwright {
 namespace {

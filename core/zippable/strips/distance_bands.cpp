@@ -7,8 +7,8 @@
 #include <map>
 #include <numbers>
 
-#include "geometry/adjacency.h"
-#include "zippable/geodesic_distance.h"
+#include "geometry/mesh/adjacency.h"
+#include "geometry/paths/geodesic_distance.h"
 
 namespace formwright {
 namespace {

@@ -8,13 +8,13 @@
 #include <numeric>
 #include <set>
 
-#include "fabrication/nesting.h"
-#include "fabrication/words.h"
-#include "geometry/adjacency.h"
-#include "geometry/point_distance.h"
-#include "zippable/plan/splitting.h"
-#include "zippable/polygon_dissection.h"
-#include "zippable/ribbon.h"
+#include "fabrication/sheet/nesting.h"
+#include "fabrication/sheet/word_paths.h"
+#include "geometry/mesh/adjacency.h"
+#include "geometry/queries/point_distance.h"
+#include "zippable/plan/pieces/splitting.h"
+#include "zippable/parts/polygon_dissection.h"
+#include "zippable/ribbon/ribbon.h"
 #include "zippable/strips/band_network.h"
 
 namespace formwright {

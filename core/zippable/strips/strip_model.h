@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "base/context.h"
-#include "base/parameters.h"
-#include "fabrication/cut_sheet.h"
-#include "fabrication/polygon.h"
-#include "geometry/triangle_mesh.h"
+#include "base/data/parameters.h"
+#include "fabrication/sheet/cut_sheet.h"
+#include "fabrication/planar/polygon.h"
+#include "geometry/mesh/triangle_mesh.h"
 
 namespace formwright {
 

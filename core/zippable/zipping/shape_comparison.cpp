@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "geometry/adjacency.h"
-#include "geometry/ray_caster.h"
+#include "geometry/mesh/adjacency.h"
+#include "geometry/queries/ray_caster.h"
 
 namespace formwright {
 

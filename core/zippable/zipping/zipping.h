@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/context.h"
-#include "base/parameters.h"
+#include "base/data/parameters.h"
 #include "zippable/zipping/shape_comparison.h"
 #include "zippable/zipping/zipping_system.h"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "geometry/io/glb_assembly.h"
-#include "geometry/io/mesh_io.h"
+#include "formats/glb/glb_assembly.h"
+#include "formats/mesh_io.h"
 
 namespace formwright {
 namespace {

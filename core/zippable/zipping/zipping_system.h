@@ -4,7 +4,7 @@
 // Cholesky factor whose pattern is analysed once, with all seams that will ever close.
 #include <vector>
 
-#include "numerics/sparse_cholesky.h"
+#include "numerics/sparse/sparse_cholesky.h"
 #include "zippable/zipping/cloth_energy.h"
 #include "zippable/zipping/ribbon_pattern.h"
 

@@ -15,7 +15,7 @@
 #include <sstream>
 
 #include "evidence/calibration.h"
-#include "evidence/diagnosis.h"
+#include "evidence/diagnosis/diagnosis.h"
 #include "evidence/virtual_lab.h"
 
 namespace {

@@ -6,13 +6,13 @@
 #include <numbers>
 
 #include "base/context.h"
-#include "base/json.h"
+#include "base/data/json.h"
 #include "base/random.h"
-#include "fabrication/egv_writer.h"
-#include "fabrication/gcode_writer.h"
-#include "fabrication/laser_plan.h"
-#include "fabrication/mill_plan.h"
-#include "fabrication/ruida_writer.h"
+#include "fabrication/writers/egv_writer.h"
+#include "fabrication/writers/gcode_writer.h"
+#include "fabrication/laser/laser_plan.h"
+#include "fabrication/mill/mill_plan.h"
+#include "fabrication/writers/ruida_writer.h"
 
 namespace formwright {
 namespace {

@@ -15,18 +15,18 @@
 #include <sstream>
 #include <string>
 
-#include "base/json.h"
+#include "base/data/json.h"
 #include "base/parallel.h"
 #include "bench/geometry/bench_tools.h"
-#include "geometry/adjacency.h"
-#include "geometry/laplacian.h"
-#include "geometry/measures.h"
-#include "geometry/point_distance.h"
-#include "geometry/ray_caster.h"
+#include "geometry/mesh/adjacency.h"
+#include "geometry/operators/laplacian.h"
+#include "geometry/mesh/measures.h"
+#include "geometry/queries/point_distance.h"
+#include "geometry/queries/ray_caster.h"
 #include "geometry/ray_oracles.h"
-#include "geometry/repair.h"
-#include "geometry/simplify.h"
-#include "geometry/subdivide.h"
+#include "geometry/repair/repair.h"
+#include "geometry/mesh/simplify.h"
+#include "geometry/mesh/subdivide.h"
 #include "geometry/test_meshes.h"
 
 namespace {

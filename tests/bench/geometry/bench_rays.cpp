@@ -15,11 +15,11 @@
 #include <vector>
 
 #include "base/context.h"
-#include "base/json.h"
+#include "base/data/json.h"
 #include "base/parallel.h"
 #include "bench/geometry/bench_tools.h"
-#include "geometry/bvh_rays.h"
-#include "geometry/embree_rays.h"
+#include "geometry/queries/bvh_rays.h"
+#include "geometry/queries/embree_rays.h"
 
 namespace {
 using namespace formwright;

@@ -6,7 +6,7 @@
 #include <ctime>
 #include <numbers>
 
-#include "geometry/measures.h"
+#include "geometry/mesh/measures.h"
 #include "geometry/test_meshes.h"
 
 namespace formwright::bench {

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <string>
 
-#include "imaging/png_writer.h"
+#include "imaging/picture/png_writer.h"
 #include "imaging/warped_pictures.h"
 
 using namespace formwright;

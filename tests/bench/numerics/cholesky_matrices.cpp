@@ -10,12 +10,12 @@
 #include <stdexcept>
 #include <string>
 
-#include "geometry/intrinsic_delaunay.h"
+#include "geometry/operators/intrinsic_delaunay.h"
 #include "geometry/samples/samples.h"
 #include "matrix_file.h"
 #include "relief/appearance_energy.h"
 #include "zippable/design_files.h"
-#include "zippable/newton_system.h"
+#include "zippable/chart/newton_system.h"
 #include "zippable/zippable_design.h"
 #include "zippable/zipping/zipping_system.h"
 

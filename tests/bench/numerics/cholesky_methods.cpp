@@ -5,7 +5,7 @@
 #include <Eigen/SparseCholesky>
 #include <stdexcept>
 
-#include "numerics/nested_dissection.h"
+#include "numerics/ordering/nested_dissection.h"
 
 namespace formwright::bench {
 namespace {

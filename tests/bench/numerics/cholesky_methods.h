@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "numerics/sparse_cholesky.h"
+#include "numerics/sparse/sparse_cholesky.h"
 
 namespace formwright::bench {
 

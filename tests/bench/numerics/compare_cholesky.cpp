@@ -16,7 +16,7 @@
 #include <sys/resource.h>
 #endif
 
-#include "base/json.h"
+#include "base/data/json.h"
 #include "base/parallel.h"
 #include "cholesky_methods.h"
 #include "matrix_file.h"

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "numerics/sparse_cholesky.h"
+#include "numerics/sparse/sparse_cholesky.h"
 
 namespace formwright::bench {
 

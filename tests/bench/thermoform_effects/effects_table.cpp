@@ -9,7 +9,7 @@
 
 #include "geometry/samples/samples.h"
 #include "thermoform/forming.h"
-#include "thermoform/measured_object.h"
+#include "thermoform/measured/measured_object.h"
 
 namespace {
 

@@ -4,10 +4,10 @@
 #include <cstdlib>
 #include <iostream>
 
-#include "base/json.h"
+#include "base/data/json.h"
 #include "base/parallel.h"
 #include "geometry/samples/samples.h"
-#include "imaging/png_writer.h"
+#include "imaging/picture/png_writer.h"
 #include "thermoform/print/formed_sheets.h"
 #include "thermoform/print/print_pages.h"
 #include "thermoform/print/texture_print.h"

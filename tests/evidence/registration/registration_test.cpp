@@ -7,7 +7,7 @@
 #include "evidence/registration/virtual_scan.h"
 #include "geometry/samples/samples.h"
 #include "thermoform/forming.h"
-#include "thermoform/sheet_lookup.h"
+#include "thermoform/sheet/sheet_lookup.h"
 
 namespace formwright {
 namespace {

@@ -9,9 +9,9 @@
 #include <random>
 
 #include "evidence/registration/scan_registration.h"
-#include "geometry/io/colour.h"
-#include "imaging/png_writer.h"
-#include "imaging/weighted_picture.h"
+#include "formats/shared/colour.h"
+#include "imaging/picture/png_writer.h"
+#include "imaging/picture/weighted_picture.h"
 
 namespace formwright::test {
 

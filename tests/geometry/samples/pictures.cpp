@@ -14,8 +14,8 @@
 #include <numbers>
 
 #include "base/error.h"
-#include "geometry/io/mesh_io.h"
-#include "geometry/measures.h"
+#include "formats/mesh_io.h"
+#include "geometry/mesh/measures.h"
 #include "geometry/samples/render.h"
 #include "geometry/samples/samples.h"
 

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "base/parallel.h"
-#include "geometry/adjacency.h"
+#include "geometry/mesh/adjacency.h"
 
 namespace formwright::test {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 // Pictures of meshes for the documentation: a z-buffer, one lamp with a shadow, ambient occlusion. No window, no GPU.
 #include "geometry/samples/png_pixels.h"
-#include "geometry/triangle_mesh.h"
+#include "geometry/mesh/triangle_mesh.h"
 
 namespace formwright::test {
 

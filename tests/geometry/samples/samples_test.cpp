@@ -20,8 +20,8 @@
 
 #include "base/error.h"
 #include "base/sha256.h"
-#include "geometry/adjacency.h"
-#include "geometry/measures.h"
+#include "geometry/mesh/adjacency.h"
+#include "geometry/mesh/measures.h"
 #include "geometry/samples/png_pixels.h"
 
 namespace formwright {

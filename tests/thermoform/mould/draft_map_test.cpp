@@ -9,8 +9,8 @@
 #include <numbers>
 
 #include "base/error.h"
-#include "geometry/booleans.h"
-#include "geometry/measures.h"
+#include "geometry/booleans/booleans.h"
+#include "geometry/mesh/measures.h"
 #include "geometry/test_meshes.h"
 #include "thermoform/mould/solid_shapes.h"
 

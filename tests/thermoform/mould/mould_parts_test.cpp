@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "base/error.h"
-#include "geometry/adjacency.h"
-#include "geometry/measures.h"
+#include "geometry/mesh/adjacency.h"
+#include "geometry/mesh/measures.h"
 #include "geometry/samples/samples.h"
 #include "thermoform/mould/mould.h"
 #include "thermoform/mould/registration_keys.h"

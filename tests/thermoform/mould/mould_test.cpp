@@ -8,9 +8,9 @@
 #include <numbers>
 
 #include "base/error.h"
-#include "geometry/adjacency.h"
-#include "geometry/measures.h"
-#include "geometry/ray_caster.h"
+#include "geometry/mesh/adjacency.h"
+#include "geometry/mesh/measures.h"
+#include "geometry/queries/ray_caster.h"
 #include "geometry/samples/samples.h"
 #include "geometry/test_meshes.h"
 #include "thermoform/mould/solid_shapes.h"

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "geometry/test_meshes.h"
 #include "thermoform/mould/solid_shapes.h"
-#include "thermoform/sheet_effects.h"
+#include "thermoform/sheet/sheet_effects.h"
 
 namespace formwright {
 namespace {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/measures.h"
-#include "geometry/ray_caster.h"
-#include "thermoform/formed_sheet.h"
+#include "geometry/mesh/measures.h"
+#include "geometry/queries/ray_caster.h"
+#include "thermoform/sheet/formed_sheet.h"
 #include "thermoform/print/print_options.h"
 
 namespace formwright::test {

@@ -4,7 +4,7 @@
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include "base/error.h"
-#include "geometry/adjacency.h"
+#include "geometry/mesh/adjacency.h"
 #include "thermoform/print/formed_sheets.h"
 #include "thermoform/print/sheet_projection.h"
 

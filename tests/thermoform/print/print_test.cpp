@@ -5,10 +5,10 @@
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
 
 #include "base/error.h"
-#include "geometry/io/mesh_io.h"
+#include "formats/mesh_io.h"
 #include "geometry/samples/samples.h"
-#include "imaging/light.h"
-#include "imaging/picture_reader.h"
+#include "imaging/picture/light.h"
+#include "imaging/picture/picture_reader.h"
 #include "thermoform/print/formed_sheets.h"
 #include "thermoform/print/print_pages.h"
 #include "thermoform/print/texture_print.h"

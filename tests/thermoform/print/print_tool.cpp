@@ -5,8 +5,8 @@
 #include <fstream>
 #include <iostream>
 
-#include "base/json.h"
-#include "imaging/png_writer.h"
+#include "base/data/json.h"
+#include "imaging/picture/png_writer.h"
 #include "thermoform/print/formed_sheets.h"
 #include "thermoform/print/print_pages.h"
 #include "thermoform/print/texture_print.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "zippable/plan/closure_marks.h"
+#include "zippable/plan/pieces/closure_marks.h"
 
 #include <catch2/catch_test_macros.hpp>
 

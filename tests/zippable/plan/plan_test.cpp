@@ -6,7 +6,7 @@
 #include <set>
 
 #include "base/error.h"
-#include "base/json.h"
+#include "base/data/json.h"
 #include "zippable/plan/planned.h"
 
 namespace formwright {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "zippable/plan/splitting.h"
+#include "zippable/plan/pieces/splitting.h"
 
 #include <catch2/catch_test_macros.hpp>
 
@@ -9,7 +9,7 @@
 #include <set>
 
 #include "base/error.h"
-#include "fabrication/nesting.h"
+#include "fabrication/sheet/nesting.h"
 #include "zippable/plan/planned.h"
 
 namespace formwright {

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <string_view>
 
-#include "geometry/adjacency.h"
-#include "geometry/point_distance.h"
+#include "geometry/mesh/adjacency.h"
+#include "geometry/queries/point_distance.h"
 #include "geometry/samples/samples.h"
 #include "zippable/strips/band_network.h"
 #include "zippable/strips/strip_model.h"

@@ -8,10 +8,10 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "base/json.h"
+#include "base/data/json.h"
 #include "base/parallel.h"
 #include "base/random.h"
-#include "geometry/io/mesh_io.h"
+#include "formats/mesh_io.h"
 #include "zippable/plan/planned.h"
 #include "zippable/zipping/ribbons.h"
 #include "zippable/zipping/zipping_files.h"

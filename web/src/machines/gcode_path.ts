@@ -114,7 +114,7 @@ export function readGcodePath(
 type Point = readonly [number, number, number];
 type Axes = readonly [0 | 1 | 2, 0 | 1 | 2, 0 | 1 | 2];
 
-/** Arcs turn from the first axis towards the second; the third is the helix's (core/machines/gcode_motion.h). */
+/** Arcs turn from the first axis towards the second; the third is the helix's (core/machines/gcode/gcode_motion.h). */
 const axesOfPlane = (plane: number): Axes =>
   plane === 18 ? [2, 0, 1] : plane === 19 ? [1, 2, 0] : [0, 1, 2];
 

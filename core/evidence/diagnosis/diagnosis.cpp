@@ -1,0 +1,425 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "evidence/diagnosis/diagnosis.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "base/error.h"
+#include "evidence/diagnosis/explanations.h"
+
+namespace formwright {
+namespace {
+
+constexpr double explained_share =
+    0.6;  // of what the base model leaves unexplained (its variance) that a named cause must explain
+constexpr double likely = 0.5;
+constexpr double most_left =
+    2;  // of the noise: with more left on held-out blocks a named cause is not all of it, or a relative of what it is
+constexpr double plain_strength = 2.5;  // half widths of its interval
+constexpr double told_strength = 1.5;  // the same: with some fourteen causes tried, 5 % for all of them is 2.9 standard
+                                       // deviations of one, not 1.96
+constexpr double least_gain = 0.01;    // of the held-out error
+constexpr double sure_gain = 0.8;      // probability that there is one
+constexpr double inseparable_likeness = 0.9;
+constexpr const char* stays_unexplained = "Part of the misfit stays unexplained.";
+constexpr const char* nearly_as_likely = "Another explanation is nearly as likely.";
+
+class Diagnostician {
+ public:
+  /// `tried` was fitted with `bag`.
+  Diagnostician(SimulationBag& bag, Explanations& tried, Context& context)
+      : bag_(bag), model_(bag.model()), context_(context), tried_(tried) {}
+
+  Diagnosis run() {
+    result_.base = tried_.base();
+    result_.noise = tried_.noise();
+    result_.hypotheses = tried_.hypotheses();
+    judge();
+    return std::move(result_);
+  }
+
+ private:
+  HeldOut held_out(const ParameterFit& fit) {
+    return hold_out(bag_, fit, tried_.precisions(), tried_.nearest_size(model_.known_misfit()), tried_.liberties(),
+                    tried_.liberty_sensitivities(), context_);
+  }
+
+  std::vector<Eigen::VectorXd> weights() const {
+    std::vector<Eigen::VectorXd> list;
+    for (const Precisions& precisions : tried_.precisions()) list.push_back(mean_weights(precisions));
+    return list;
+  }
+
+  std::vector<Eigen::VectorXd> predicted(const ParameterFit& fit, const std::vector<int>& causes) const {
+    return predictive_errors(model_, fit, tried_.precisions(), tried_.nearest_size(tried_.structure_left(causes)),
+                             tried_.liberties(), tried_.liberty_sensitivities());
+  }
+
+  /// The most probable explanation whose causes predict held-out data better than their absence does, all fitted alike.
+  void judge() {
+    const auto span = context_.span(0.85, 1, "Predicting the held-out data");
+    find_causes();
+    result_.unexplained_before = tried_.structure_left({});
+    result_.extended = result_.base;
+    const std::vector<Eigen::VectorXd> without = predicted(tried_.refit_of({}).fit, {});
+    std::set<std::vector<int>> seen;
+    bool only_structure = false;
+    for (const Hypothesis& h : result_.hypotheses) {
+      if (h.causes.empty()) {
+        only_structure = h.unknown_structure;
+        break;
+      }
+      if (seen.size() >= 3 || h.probability < 1e-3) {
+        only_structure = unknown_over_none() > 0;
+        break;
+      }
+      if (!seen.insert(h.causes).second) continue;
+      result_.trials.push_back({h.causes, tried_.significant(h), {}});
+      if (!result_.trials.back().significant || !predicts_better(h.causes, without)) continue;
+      result_.verdict = h.causes;
+      widen_by_jackknife();
+      if (const std::vector<int> shown = told_from_zero(h.causes); shown.size() < h.causes.size()) {
+        result_.verdict = shown;
+        // Without the partner that may be nothing.
+        if (!shown.empty()) {
+          seen.insert(shown);
+          result_.trials.push_back({shown, true, {}});
+          if (!predicts_better(shown, without) || told_from_zero(shown).empty()) result_.verdict.clear();
+        }
+        if (result_.verdict.empty()) continue;
+        widen_by_jackknife();
+      }
+      if (h.unknown_structure) doubt(stays_unexplained);
+      result_.extended = recalibrated(tried_.refit_of(result_.verdict).fit);
+      break;
+    }
+    widen_by_model();
+    const auto before = held_out(result_.base).errors;
+    result_.held_out =
+        compare_errors(model_, before, result_.verdict.empty() ? before : held_out(result_.extended).errors);
+    result_.unexplained_after = tried_.structure_left(result_.verdict);
+    result_.structure = tried_.nearest_size(result_.unexplained_after);
+    measure_structure();
+    if (result_.verdict.empty()) {
+      result_.reading = only_structure ? Reading::unknown : Reading::none;
+      return;
+    }
+    std::stable_sort(result_.verdict.begin(), result_.verdict.end(), [&](int a, int b) {
+      return tried_.movement(a, result_.extended.u) > tried_.movement(b, result_.extended.u);
+    });
+    result_.reading = Reading::cause;
+    find_doubts();
+    if (result_.doubtful() && share_explained() < explained_share) result_.reading = Reading::unknown;
+    find_twins();
+  }
+
+  /// Held-out blocks, with these causes and `without` any; kept in the last trial.
+  bool predicts_better(const std::vector<int>& causes, const std::vector<Eigen::VectorXd>& without) {
+    if (!tried_.is_refitted(causes)) return false;
+    const ParameterFit& fit = tried_.refit_of(causes).fit;
+    const HeldOutGain gain = compare_errors(model_, without, predicted(fit, causes), weights());
+    result_.trials.back().gain = gain;
+    return gain.gain_probability >= sure_gain && gain.gain_share >= least_gain;
+  }
+
+  /// Those told from zero, and one that stands alone only if these data can show it at all: on data of
+  /// a machine without fault the others are named as well, a weak vacuum for a sheet that is a little stiffer than
+  /// thought. Beside another cause the pair has to explain what that one and the material do not.
+  std::vector<int> told_from_zero(const std::vector<int>& causes) const {
+    std::vector<int> shown;
+    for (const int cause : causes) {
+      const CauseFinding& finding = finding_of(cause);
+      const bool can_be_shown = causes.size() > 1 || std::isfinite(finding.least_visible);
+      if (can_be_shown && std::abs(finding.strength) > told_strength * half_width_with_model(finding))
+        shown.push_back(cause);
+    }
+    return shown;
+  }
+
+  void doubt(const char* why) {
+    if (std::find(result_.doubts.begin(), result_.doubts.end(), why) == result_.doubts.end())
+      result_.doubts.emplace_back(why);
+  }
+
+  /// Relatives of what is wrong leave something, or do so little that the fit's own error could be it.
+  void find_doubts() {
+    if (result_.unexplained_after > most_structure * model_.known_misfit()) doubt(stays_unexplained);
+    if (result_.held_out.after.mean > most_left * result_.noise_floor)
+      doubt("On held-out data, the error is still more than twice the noise.");
+    for (const int cause : result_.verdict) {
+      const CauseFinding& finding = finding_of(cause);
+      if (finding.probability < likely) doubt(nearly_as_likely);
+      if (std::abs(finding.strength) < plain_strength * 0.5 * (finding.high - finding.low))
+        doubt("Its strength is hardly distinguishable from zero.");
+    }
+  }
+
+  /// Of what was unexplained (its variance): by the structure that is left, or, where that is beyond what is
+  /// distinguished, by the error on held-out blocks above the noise.
+  double share_explained() const {
+    const double structure = result_.unexplained_after / std::max(result_.unexplained_before, 1e-12);
+    const double noise_squared = result_.noise_floor * result_.noise_floor;
+    const double before = std::pow(result_.held_out.before.mean, 2) - noise_squared,
+                 after = std::pow(result_.held_out.after.mean, 2) - noise_squared;
+    const double held_out = before > 0 ? 1 - std::max(0.0, after) / before : 0;
+    return std::max(1 - structure * structure, held_out);
+  }
+
+  /// What was named stays; the base parameters are calibrated about it as those of the base model were.
+  ParameterFit recalibrated(const ParameterFit& fit) {
+    ParameterFit result = fit_parameters(bag_, *mean_distance_objective(model_, tried_.softness()),
+                                         model_.base_parameters(), fit.u, {}, {}, context_, fitting_stage);
+    for (std::size_t a = result.free.size(); a < fit.free.size(); ++a) {
+      result.free.push_back(fit.free[a]);
+      for (std::size_t object = 0; object < result.sensitivities.size(); ++object)
+        result.sensitivities[object].push_back(fit.sensitivities[object][a]);
+    }
+    return result;
+  }
+
+  /// Intervals of the named causes, by what leaving out a quarter of the data changes: that knows of misfits that no
+  /// prior has.
+  void widen_by_jackknife() {
+    const ParameterFit& fit = tried_.refit_of(result_.verdict).fit;
+    const Eigen::MatrixXd steps = held_out(fit).steps;
+    for (const int cause : result_.verdict) {
+      CauseFinding& finding = *std::find_if(result_.causes.begin(), result_.causes.end(),
+                                            [&](const CauseFinding& f) { return f.cause == cause; });
+      const std::vector<int>& own = model_.causes()[static_cast<std::size_t>(cause)].parameters;
+      double variance = 0;
+      const double length =
+          Eigen::Map<const Eigen::VectorXd>(finding.values.data(), static_cast<Eigen::Index>(finding.values.size()))
+              .norm();
+      for (Eigen::Index f = 0; f < steps.cols(); ++f) {
+        double along = 0;
+        for (std::size_t i = 0; i < own.size(); ++i) {
+          const auto row = std::find(fit.free.begin(), fit.free.end(), own[i]) - fit.free.begin();
+          along += steps(row, f) * (own.size() == 1 ? 1 : finding.values[i] / std::max(length, 1e-12));
+        }
+        variance += along * along * (fold_count - 1.0) / fold_count;
+      }
+      const double half = 0.5 * (finding.high - finding.low);
+      const double wider = std::sqrt(half * half + 1.96 * 1.96 * variance);
+      finding.low = finding.strength - wider;
+      finding.high = finding.strength + wider;
+    }
+  }
+
+  /// Intervals, by what the model itself does not know: the misfit that it is known to have can pass for half of what
+  /// is just visible (two of its standard deviations), and another simulation makes other movements of the same cause.
+  void widen_by_model() {
+    for (CauseFinding& finding : result_.causes) {
+      if (finding.low == finding.high) continue;  // was not fitted
+      const double half = half_width_with_model(finding);
+      finding.low = finding.strength - half;
+      finding.high = finding.strength + half;
+    }
+  }
+  double half_width_with_model(const CauseFinding& finding) const {
+    const double misfit = std::isfinite(finding.least_visible) ? 0.5 * finding.least_visible : 0;
+    const double gain = 1.96 * model_.causes()[static_cast<std::size_t>(finding.cause)].gain_error * finding.strength;
+    return std::sqrt(std::pow(0.5 * (finding.high - finding.low), 2) + misfit * misfit + gain * gain);
+  }
+
+  double unknown_over_none() const {
+    double sum = 0;
+    for (const Hypothesis& h : result_.hypotheses)
+      if (h.causes.empty()) sum += (h.unknown_structure ? 1 : -1) * (h.log_prior + h.log_evidence);
+    return sum;
+  }
+
+  const CauseFinding& finding_of(int cause) const {
+    return *std::find_if(result_.causes.begin(), result_.causes.end(),
+                         [&](const CauseFinding& f) { return f.cause == cause; });
+  }
+
+  void find_causes() {
+    const GramByStructure gram =
+        tried_.misfit().gram(residuals(model_, result_.base.predictions),
+                             side_by_side(tried_.sensitivities(), tried_.usual_sensitivities()));
+    double none = -std::numeric_limits<double>::infinity();
+    for (const Hypothesis& h : result_.hypotheses)
+      if (h.causes.empty()) none = std::max(none, h.log_evidence);
+    for (int cause = 0; cause < static_cast<int>(model_.causes().size()); ++cause) {
+      CauseFinding finding;
+      finding.cause = cause;
+      finding.least_visible =
+          formwright::least_visible(model_, gram, tried_.nearest_size(model_.known_misfit()), tried_.columns(), cause);
+      const Hypothesis* at = nullptr;
+      for (const Hypothesis& h : result_.hypotheses) {
+        if (std::find(h.causes.begin(), h.causes.end(), cause) == h.causes.end()) continue;
+        finding.probability += h.probability;
+        if (at == nullptr) at = &h;
+      }
+      finding.log_evidence = at->log_evidence - none;
+      if (!tried_.is_refitted(at->causes)) {
+        // Far behind the others: where the linearised model has it.
+        for (const int p : model_.causes()[static_cast<std::size_t>(cause)].parameters)
+          finding.values.push_back(model_.parameters()[static_cast<std::size_t>(p)].value(at->u[p]));
+        finding.strength = finding.values.size() == 1
+                               ? finding.values[0]
+                               : Eigen::Map<const Eigen::VectorXd>(finding.values.data(),
+                                                                   static_cast<Eigen::Index>(finding.values.size()))
+                                     .norm();
+        finding.low = finding.high = finding.strength;
+        result_.causes.push_back(finding);
+        continue;
+      }
+      const Explanations::Refit& r = tried_.refit_of(at->causes);
+      const StructuredObjective objective(model_, tried_.misfit(), tried_.nearest_size(at->structure),
+                                          tried_.liberties(), tried_.liberty_sensitivities());
+      Eigen::VectorXd g;
+      Eigen::MatrixXd H;
+      objective.quadratic(residuals(model_, r.fit.predictions), r.fit.sensitivities, r.fit.free, r.fit.u, g, H);
+      const Eigen::MatrixXd covariance = H.llt().solve(Eigen::MatrixXd::Identity(H.rows(), H.cols()));
+      const std::vector<int>& own = model_.causes()[static_cast<std::size_t>(cause)].parameters;
+      Eigen::VectorXd value(static_cast<Eigen::Index>(own.size())), slope(value.size());
+      Eigen::MatrixXd spread(value.size(), value.size());
+      std::vector<Eigen::Index> at_index;
+      for (const int p : own)
+        at_index.push_back(std::find(r.fit.free.begin(), r.fit.free.end(), p) - r.fit.free.begin());
+      for (Eigen::Index i = 0; i < value.size(); ++i) {
+        const ModelParameter& parameter =
+            model_.parameters()[static_cast<std::size_t>(own[static_cast<std::size_t>(i)])];
+        value[i] = parameter.value(r.fit.u[own[static_cast<std::size_t>(i)]]);
+        finding.values.push_back(value[i]);
+        for (Eigen::Index j = 0; j < value.size(); ++j)
+          spread(i, j) = covariance(at_index[static_cast<std::size_t>(i)], at_index[static_cast<std::size_t>(j)]);
+      }
+      finding.strength = value.size() == 1 ? value[0] : value.norm();
+      slope = value.norm() > 0 ? Eigen::VectorXd(value / value.norm()) : Eigen::VectorXd::Unit(value.size(), 0);
+      const double half = 1.96 * std::sqrt(std::max(0.0, slope.dot(spread * slope)));
+      finding.low = finding.strength - half;
+      finding.high = finding.strength + half;
+      result_.causes.push_back(finding);
+    }
+    std::stable_sort(result_.causes.begin(), result_.causes.end(),
+                     [](const CauseFinding& a, const CauseFinding& b) { return a.probability > b.probability; });
+  }
+
+  /// Causes that do the same as a named one as far as these data go.
+  void find_twins() {
+    const GramByStructure gram =
+        tried_.misfit().gram(residuals(model_, result_.base.predictions), tried_.sensitivities());
+    for (const int named : result_.verdict)
+      for (int other = 0; other < static_cast<int>(model_.causes().size()); ++other) {
+        if (std::find(result_.verdict.begin(), result_.verdict.end(), other) != result_.verdict.end()) continue;
+        const double alike = likeness(model_, gram, result_.structure, tried_.columns(), named, other);
+        // Alike in every respect, or not told apart by these very data.
+        const bool undecided = finding_of(other).probability > 0.15 * finding_of(named).probability;
+        if (alike > inseparable_likeness || (undecided && alike > 0.5))
+          result_.not_separable.push_back({named, other, alike});
+        if (!undecided) continue;
+        if (alike > 0.5 && result_.reading == Reading::cause) result_.reading = Reading::cannot_separate;
+        else if (alike <= 0.5) doubt(nearly_as_likely);
+      }
+  }
+
+  void measure_structure() {
+    const Predictions left = residuals(model_, result_.base.predictions),
+                      left_after = residuals(model_, result_.extended.predictions);
+    double sum = 0, count = 0;
+    for (std::size_t object = 0; object < tried_.precisions().size(); ++object) {
+      const Eigen::VectorXd weights = mean_weights(tried_.precisions()[object]);
+      result_.structure_before.push_back(test_structure(model_.measurements()[object], left[object], weights));
+      result_.structure_after.push_back(test_structure(model_.measurements()[object], left_after[object], weights));
+      const double d = static_cast<double>(model_.measurements()[object].measured.cols());
+      // Mean length of a d-dimensional Gaussian.
+      const double per_sigma = std::sqrt(2.0) * std::exp(std::lgamma(0.5 * (d + 1)) - std::lgamma(0.5 * d));
+      for (const double w : weights)
+        if (w > 0) sum += per_sigma * result_.noise[object].sigma, count += 1;
+    }
+    result_.noise_floor = count > 0 ? sum / count : 0;
+  }
+
+  SimulationBag& bag_;
+  const ForwardModel& model_;
+  Context& context_;
+  Explanations& tried_;
+  Diagnosis result_;
+};
+
+}  // namespace
+
+namespace {
+
+/// The coordinate of `to` for a value of `from`: what an object's own set-up says of an effect stays, and what was
+/// found comes on top.
+double carried_over(const ModelParameter& to, const ModelParameter& from, double value) {
+  if (to.role == ParameterRole::effect && to.nominal != from.nominal)
+    value = std::clamp(to.nominal + value - from.nominal, to.low, to.high);
+  return to.coordinate(value);
+}
+
+}  // namespace
+
+const char* reading_name(Reading reading) {
+  switch (reading) {
+    case Reading::none: return "none";
+    case Reading::cause: return "cause";
+    case Reading::cannot_separate: return "cannot_separate";
+    case Reading::unknown: return "unknown";
+  }
+  return "";
+}
+
+Diagnosis diagnose(SimulationBag& bag, const DiagnosisOptions& options, Context& context) {
+  Stopwatch watch;
+  Explanations tried(bag, options.pairs, context);
+  tried.calibrate();
+  const double seconds_calibration = watch.seconds();
+  tried.screen();
+  tried.refit();
+  const ForwardModel* const finer = tried.decided() ? nullptr : bag.model().finer();
+  Diagnosis result;
+  int simulations = 0;
+  if (finer != nullptr) {
+    SimulationBag fine_bag(*finer);
+    Explanations again(fine_bag, options.pairs, context);
+    try {
+      again.look_again(tried);
+      result = Diagnostician(fine_bag, again, context).run();
+      result.looked_again = true;
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::could_not_solve) throw;
+      // Where it has no answer the coarser one's stands, with its doubts.
+    }
+    simulations = fine_bag.simulations();
+  }
+  if (!result.looked_again) result = Diagnostician(bag, tried, context).run();
+  result.simulations = simulations + bag.simulations() + tried.cheap_simulations();
+  result.seconds_calibration = seconds_calibration;
+  result.seconds = watch.seconds();
+  return result;
+}
+
+HeldOutGain gain_on_unseen(const ForwardModel& unseen, const ForwardModel& from, const Diagnosis& found,
+                           Context& context) {
+  const ForwardModel& model = found.looked_again && unseen.finer() != nullptr ? *unseen.finer() : unseen;
+  const auto translated = [&](const Eigen::VectorXd& u) {
+    Eigen::VectorXd own = model.nominal();
+    for (std::size_t p = 0; p < model.parameters().size(); ++p)
+      for (std::size_t q = 0; q < from.parameters().size(); ++q)
+        if (model.parameters()[p].name == from.parameters()[q].name &&
+            model.parameters()[p].role != ParameterRole::discrepancy)
+          own[static_cast<Eigen::Index>(p)] = carried_over(model.parameters()[p], from.parameters()[q],
+                                                           from.parameters()[q].value(u[static_cast<Eigen::Index>(q)]));
+    return own;
+  };
+  SimulationBag bag(model);
+  const auto predictions = bag.run(std::vector<Eigen::VectorXd>{translated(found.base.u), translated(found.extended.u)},
+                                   context, "Predicting the validation object");
+  if (!predictions[0] || !predictions[1])
+    throw Error(ErrorCode::could_not_solve, "unseen",
+                "The validation object cannot be simulated with the fitted parameters: check its mould and set-up.");
+  std::vector<Eigen::VectorXd> weights;
+  const Predictions after = residuals(model, *predictions[1]);
+  for (std::size_t object = 0; object < after.size(); ++object)
+    weights.push_back(estimate_noise(model.measurements()[object], after[object]).weights);
+  return compare_errors(model, point_errors(residuals(model, *predictions[0]), weights), point_errors(after, weights));
+}
+
+}  // namespace formwright

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "evidence/diagnosis/diagnosis_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace formwright {
+namespace {
+
+/// Probabilities that round to certainty are not told as such.
+std::string percent(double share) {
+  if (share > 0.99) return "over 99 %";
+  return std::to_string(static_cast<int>(std::lround(100 * share))) + " %";
+}
+
+Json interval(double low, double high) { return Json::array({low, high}); }
+
+Json noise_json(const ForwardModel& model, const Diagnosis& d) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < d.noise.size(); ++i)
+    list.push_back({{"object", model.measurements()[i].name},
+                    {"sigma_mm", d.noise[i].sigma},
+                    {"stated_sigma_mm", d.noise[i].stated_sigma},
+                    {"outliers", d.noise[i].outliers}});
+  return list;
+}
+
+Json structure_json(const ForwardModel& model, const std::vector<StructureTest>& tests) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < tests.size(); ++i)
+    list.push_back({{"object", model.measurements()[i].name},
+                    {"neighbour_correlation", tests[i].neighbour_correlation},
+                    {"p_value", tests[i].p_value},
+                    {"correlation_length_mm", tests[i].correlation_length_mm}});
+  return list;
+}
+
+}  // namespace
+
+std::string verdict_sentence(const DiagnosisReport& report) {
+  const Diagnosis& d = report.diagnosis;
+  const auto label = [&](int cause) { return report.model.causes()[static_cast<std::size_t>(cause)].label; };
+  const auto probability = [&](int cause) {
+    return std::find_if(d.causes.begin(), d.causes.end(), [&](const CauseFinding& f) { return f.cause == cause; })
+        ->probability;
+  };
+  if (d.reading == Reading::none) return "The calibrated simulation explains these data; they show no fault.";
+  if (d.reading == Reading::unknown) {
+    std::string text = "The object differs from the simulation, and none of the known causes explains it.";
+    if (!d.verdict.empty()) text += " Nearest to it: " + label(d.verdict.front()) + ".";
+    return text;
+  }
+  std::string text = label(d.verdict.front()) + ", " + percent(probability(d.verdict.front()));
+  if (d.verdict.size() > 1) text += ", and " + label(d.verdict[1]) + ", " + percent(probability(d.verdict[1]));
+  text += ".";
+  if (d.reading == Reading::cannot_separate) text += " These data cannot distinguish it from another cause.";
+  for (const std::string& doubt : d.doubts) text += " " + doubt;
+  return text;
+}
+
+Json diagnosis_json(const DiagnosisReport& report) {
+  const Diagnosis& d = report.diagnosis;
+  const ForwardModel& model = report.model;
+  const auto name = [&](int cause) { return model.causes()[static_cast<std::size_t>(cause)].name; };
+  Json json;
+  json["verdict"] = Json::array();
+  if (d.reading == Reading::none) json["verdict"].push_back("none");
+  else if (d.reading == Reading::unknown) json["verdict"].push_back("unknown");
+  else
+    for (const int cause : d.verdict) json["verdict"].push_back(name(cause));
+  json["reading"] = reading_name(d.reading);
+  json["doubtful"] = d.doubtful();
+  json["doubts"] = d.doubts;
+  json["sentence"] = verdict_sentence(report);
+  json["causes"] = Json::array();
+  for (const CauseFinding& f : d.causes) {
+    const Cause& cause = model.causes()[static_cast<std::size_t>(f.cause)];
+    Json values = Json::object();
+    for (std::size_t i = 0; i < cause.parameters.size(); ++i)
+      values[model.parameters()[static_cast<std::size_t>(cause.parameters[i])].name] = f.values[i];
+    json["causes"].push_back({{"name", cause.name},
+                              {"label", cause.label},
+                              {"probability", f.probability},
+                              {"strength", f.strength},
+                              {"unit", cause.unit},
+                              {"interval", interval(f.low, f.high)},
+                              {"values", values},
+                              {"log_evidence", f.log_evidence},
+                              {"least_visible", std::isfinite(f.least_visible) ? Json(f.least_visible) : Json()},
+                              {"explanation", cause.explanation},
+                              {"remedy", cause.remedy}});
+  }
+  json["trials"] = Json::array();
+  for (const HeldOutTrial& trial : d.trials) {
+    Json causes = Json::array();
+    for (const int cause : trial.causes) causes.push_back(name(cause));
+    json["trials"].push_back({{"causes", causes},
+                              {"significant", trial.significant},
+                              {"gain_share", trial.gain.gain_share},
+                              {"gain_interval", interval(trial.gain.gain_low, trial.gain.gain_high)}});
+  }
+  json["not_separable"] = Json::array();
+  for (const SeparatedPair& s : report.separations)
+    json["not_separable"].push_back({{"causes", {name(s.pair.cause_a), name(s.pair.cause_b)}},
+                                     {"likeness", s.pair.likeness},
+                                     {"measurement", s.what},
+                                     {"likeness_with_it", s.likeness}});
+  const HeldOutGain& gain = d.held_out;
+  json["error_before_mm"] = gain.before.mean;
+  json["error_before_interval_mm"] = interval(gain.before.low, gain.before.high);
+  json["error_after_mm"] = gain.after.mean;
+  json["error_after_interval_mm"] = interval(gain.after.low, gain.after.high);
+  json["gain_share"] = gain.gain_share;
+  json["gain_interval"] = interval(gain.gain_low, gain.gain_high);
+  json["held_out"] =
+      "Each object in 16 blocks; a quarter of them at a time left out of the fit and then predicted. Mean distance without outliers.";
+  if (report.unseen)
+    json["unseen"] = {{"objects", report.unseen_names},
+                      {"error_before_mm", report.unseen->before.mean},
+                      {"error_before_interval_mm", interval(report.unseen->before.low, report.unseen->before.high)},
+                      {"error_after_mm", report.unseen->after.mean},
+                      {"error_after_interval_mm", interval(report.unseen->after.low, report.unseen->after.high)},
+                      {"gain_share", report.unseen->gain_share},
+                      {"gain_interval", interval(report.unseen->gain_low, report.unseen->gain_high)}};
+  json["noise_floor_mm"] = d.noise_floor;
+  json["noise"] = noise_json(model, d);
+  json["unexplained_before_mm"] = d.unexplained_before;
+  json["unexplained_after_mm"] = d.unexplained_after;
+  json["structure_test"] = {{"before", structure_json(model, d.structure_before)},
+                            {"after", structure_json(model, d.structure_after)}};
+  json["hypotheses"] = Json::array();
+  for (const Hypothesis& h : d.hypotheses) {
+    if (json["hypotheses"].size() >= 12) break;
+    Json causes = Json::array();
+    for (const int cause : h.causes) causes.push_back(name(cause));
+    json["hypotheses"].push_back({{"causes", causes},
+                                  {"unknown_structure", h.unknown_structure},
+                                  {"probability", h.probability},
+                                  {"log_evidence", h.log_evidence}});
+  }
+  json["parameters"] = Json::array();
+  for (const int p : model.base_parameters()) {
+    const ModelParameter& parameter = model.parameters()[static_cast<std::size_t>(p)];
+    json["parameters"].push_back({{"name", parameter.name},
+                                  {"label", parameter.label},
+                                  {"unit", parameter.unit},
+                                  {"calibrated", parameter.value(d.base.u[p])},
+                                  {"extended", parameter.value(d.extended.u[p])}});
+  }
+  json["simulations"] = d.simulations;
+  json["seconds_calibration"] = d.seconds_calibration;
+  json["seconds_diagnosis"] = d.seconds;
+  json["notes"] = report.notes;
+  return json;
+}
+
+}  // namespace formwright

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// A diagnosis as JSON, and as a page that a maker can read.
+#include "base/data/json.h"
+#include "evidence/diagnosis/diagnosis.h"
+
+namespace formwright {
+
+struct SeparatedPair {
+  NotSeparable pair;
+  std::string what;     // the measurement that would tell; empty where none was found
+  double likeness = 1;  // with it
+};
+
+/// Everything that is told of a diagnosis.
+struct DiagnosisReport {
+  const ForwardModel& model;
+  const Diagnosis& diagnosis;
+  std::vector<SeparatedPair> separations;
+  std::optional<HeldOutGain> unseen;
+  std::vector<std::string> unseen_names, notes;
+  std::string unit = "mm";
+};
+
+/// One sentence: what was found.
+std::string verdict_sentence(const DiagnosisReport& report);
+/// "verdict", "reading", "causes", "error_before_mm", ...; docs/evidence.md lists them.
+Json diagnosis_json(const DiagnosisReport& report);
+/// Self-contained HTML: no scripts, no links to anything outside.
+std::string diagnosis_page(const DiagnosisReport& report);
+
+}  // namespace formwright

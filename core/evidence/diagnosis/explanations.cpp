@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "evidence/diagnosis/explanations.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "base/error.h"
+#include "evidence/fit/free_fit.h"
+
+namespace formwright {
+namespace {
+
+constexpr std::size_t refitted_singles = 8, refitted_pairs = 6, pair_anchors = 4, leader_count = 4;
+constexpr FitOptions polishing_fit{8, 0.01, true};
+
+}  // namespace
+
+bool Explanations::is_refitted(const std::vector<int>& causes) const {
+  return std::any_of(refits_.begin(), refits_.end(), [&](const Refit& r) { return r.causes == causes; });
+}
+
+void Explanations::estimate_noise_about(const Predictions& predictions) {
+  noise_.clear();
+  std::vector<Eigen::VectorXd> weights;
+  const Predictions left = residuals(model_, predictions);
+  for (std::size_t object = 0; object < left.size(); ++object) {
+    noise_.push_back(estimate_noise(model_.measurements()[object], left[object]));
+    weights.push_back(noise_.back().weights);
+  }
+  movements_.resize(left.size());
+  precisions_ = precisions_of(model_, weights, movements_);
+  misfit_.emplace(model_, precisions_);
+}
+
+void Explanations::calibrate() {
+  const auto span = context_.span(0, 0.2, "Calibrating");
+  auto at_nominal = bag_.run(model_.nominal(), context_, "Calibrating");
+  if (!at_nominal)
+    throw Error(ErrorCode::could_not_solve, "",
+                "The simulation fails with the set-up's own parameters: check mould and set-up.");
+  at_nominal_ = std::move(*at_nominal);
+  estimate_noise_about(at_nominal_);
+  base_ = fit_parameters(bag_, *mean_distance_objective(model_, softness()), model_.base_parameters(), model_.nominal(),
+                         {}, {}, context_, "Calibrating");
+  estimate_noise_about(base_.predictions);
+}
+
+void Explanations::screen() {
+  const auto span = context_.span(0.2, 0.4, "Trying each effect");
+  columns_.clear();
+  for (std::size_t p = 0; p < model_.parameters().size(); ++p) columns_.push_back(static_cast<int>(p));
+  Probing about_base, about_nominal;
+  {
+    const auto half = context_.span(0, 0.5, "Trying each effect");
+    about_base = probe_around(bag_, base_.u, base_.predictions, columns_, context_, "Trying each effect");
+    sensitivities_ = about_base.sensitivities;
+  }
+  {
+    const auto half = context_.span(0.5, 1, "Trying each effect");
+    about_nominal = probe_around(bag_, model_.nominal(), at_nominal_, columns_, context_, "Trying each effect");
+    nominal_sensitivities_ = about_nominal.sensitivities;
+  }
+  liberties_ = model_.parameters_with(ParameterRole::discrepancy);
+  liberty_sensitivities_ = sensitivities_of(liberties_, sensitivities_, columns_);
+  movements_ = movements_of(model_, liberties_, liberty_sensitivities_);
+  // A fit cannot settle what the simulation itself does by leaps: such places tell less.
+  for (std::size_t object = 0; object < movements_.size(); ++object)
+    for (const Probing* probing : {&about_base, &about_nominal})
+      for (const Eigen::MatrixXd& bend : probing->bends[object]) movements_[object].push_back(std::sqrt(0.5) * bend);
+  estimate_noise_about(freely_fitted(model_, base_.predictions, columns_, sensitivities_));
+  screened_ = all_hypotheses(model_, pairs_);
+  weigh_screened();
+}
+
+std::vector<Sensitivities> Explanations::usual_sensitivities() {
+  std::vector<Sensitivities> result = nominal_sensitivities_;
+  std::vector<std::size_t> one_sided;
+  std::vector<Eigen::VectorXd> points;
+  for (std::size_t p = 0; p < model_.parameters().size(); ++p) {
+    const ModelParameter& parameter = model_.parameters()[p];
+    if (parameter.role != ParameterRole::effect || !parameter.one_sided()) continue;
+    one_sided.push_back(p);
+    points.push_back(model_.nominal());
+    points.back()[static_cast<Eigen::Index>(p)] = parameter.prior_sd;
+    points.back() = within_ranges(model_, points.back());
+  }
+  const auto predictions = bag_.run(points, context_, "Predicting the held-out data");
+  for (std::size_t i = 0; i < one_sided.size(); ++i) {
+    if (!predictions[i]) continue;  // what a little of it does stands for it
+    const auto p = static_cast<Eigen::Index>(one_sided[i]);
+    for (std::size_t object = 0; object < result.size(); ++object)
+      result[object][one_sided[i]] =
+          ((*predictions[i])[object] - at_nominal_[object]) / (points[i][p] - model_.nominal()[p]);
+  }
+  return result;
+}
+
+void Explanations::weigh_screened() {
+  const GramByStructure about_base = misfit_->gram(residuals(model_, base_.predictions), sensitivities_);
+  about_nominal_ = misfit_->gram(residuals(model_, at_nominal_), nominal_sensitivities_);
+  for (Hypothesis& h : screened_) {
+    Hypothesis other = h;
+    weigh(model_, about_base, columns_, base_.u, h);
+    weigh(model_, about_nominal_, columns_, model_.nominal(), other);
+    if (other.log_evidence > h.log_evidence) h = std::move(other);
+  }
+  normalise(screened_);
+}
+
+const Hypothesis& Explanations::screened(const std::vector<int>& causes, bool unknown) const {
+  return *std::find_if(screened_.begin(), screened_.end(),
+                       [&](const Hypothesis& h) { return h.causes == causes && h.unknown_structure == unknown; });
+}
+
+std::size_t Explanations::nearest_size(double structure) const {
+  const std::vector<double>& sizes = misfit_->sizes();
+  std::size_t best = 1;
+  for (std::size_t t = 1; t < sizes.size(); ++t)
+    if (std::abs(sizes[t] - structure) < std::abs(sizes[best] - structure)) best = t;
+  return best;
+}
+
+ParameterFit Explanations::fit_from(const std::vector<int>& causes, const std::vector<Eigen::VectorXd>& starts,
+                                    std::vector<Sensitivities> known, const FitOptions& options) {
+  const std::vector<int> free = model_.base_and(causes);
+  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), liberties_,
+                                      liberty_sensitivities_);
+  return fit_from_best(bag_, objective, free, starts, std::move(known), options, context_, fitting_stage);
+}
+
+void Explanations::refit_with(const std::vector<int>& causes, const PairGuess* guess) {
+  const Hypothesis& plain = screened(causes, false);
+  const Hypothesis& rough = screened(causes, true);
+  const Hypothesis& start = plain.probability >= rough.probability ? plain : rough;
+  const std::vector<int> free = model_.base_and(causes);
+  std::vector<Eigen::VectorXd> starts{base_.u, towards(model_, free, base_.u, start.u)};
+  if (guess != nullptr) starts.push_back(guess->u);
+  for (const auto& r : refits_)  // a pair may start from what its parts are like alone
+    if (causes.size() == 2 && r.causes.size() == 1 && (r.causes[0] == causes[0] || r.causes[0] == causes[1]))
+      starts.push_back(r.fit.u);
+  refits_.push_back(
+      {fit_from(causes, starts,
+                guess != nullptr ? guess->sensitivities : sensitivities_of(free, sensitivities_, columns_), quick_fit),
+       causes,
+       {}});
+  if (auto other = fit_from_nominal(causes)) {
+    if (other->value < refits_.back().fit.value) std::swap(refits_.back().fit, *other);
+    refits_.back().other_way = std::move(other);
+  }
+  weigh_refit(refits_.back());
+}
+
+std::optional<ParameterFit> Explanations::fit_from_nominal(const std::vector<int>& causes) {
+  if (causes.size() > 1) return {};
+  bool one_sided = false;
+  Eigen::VectorXd usual = model_.nominal();
+  for (const int cause : causes)
+    for (const int p : model_.causes()[static_cast<std::size_t>(cause)].parameters) {
+      const ModelParameter& parameter = model_.parameters()[static_cast<std::size_t>(p)];
+      one_sided |= parameter.one_sided();
+      usual[p] = parameter.prior_sd;
+    }
+  if (one_sided) {
+    // At zero it has a derivative on one side only, and that says little: start at its usual strength.
+    const Eigen::VectorXd half_way = within_ranges(model_, usual + 0.5 * base_.u);
+    usual = within_ranges(model_, usual);
+    if (!bag_.run(usual, context_, fitting_stage) && !bag_.run(half_way, context_, fitting_stage)) return {};
+    return fit_from(causes, {usual, half_way}, {}, quick_fit);
+  }
+  Hypothesis h = screened(causes, false);
+  weigh(model_, about_nominal_, columns_, model_.nominal(), h);
+  const std::vector<int> free = model_.base_and(causes);
+  return fit_from(causes, {model_.nominal(), towards(model_, free, model_.nominal(), h.u)},
+                  sensitivities_of(free, nominal_sensitivities_, columns_), quick_fit);
+}
+
+void Explanations::polish(Refit& refit) {
+  std::vector<Eigen::VectorXd> starts{refit.fit.u};
+  for (const Refit& larger : refits_) {
+    if (larger.causes.size() <= refit.causes.size() ||
+        !std::includes(larger.causes.begin(), larger.causes.end(), refit.causes.begin(), refit.causes.end()))
+      continue;
+    Eigen::VectorXd u = larger.fit.u;
+    for (std::size_t p = 0; p < model_.parameters().size(); ++p)
+      if (std::find(refit.fit.free.begin(), refit.fit.free.end(), static_cast<int>(p)) == refit.fit.free.end())
+        u[static_cast<Eigen::Index>(p)] = 0;
+    starts.push_back(u);
+  }
+  refit.fit = fit_from(refit.causes, starts, {}, polishing_fit);
+  weigh_refit(refit);
+}
+
+void Explanations::weigh_refit(const Refit& refit) {
+  const std::vector<int> columns = joined(refit.fit.free, liberties_);
+  const GramByStructure gram = misfit_->gram(residuals(model_, refit.fit.predictions),
+                                             side_by_side(refit.fit.sensitivities, liberty_sensitivities_));
+  for (const bool unknown : {false, true}) {
+    auto at = std::find_if(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& h) {
+      return h.causes == refit.causes && h.unknown_structure == unknown;
+    });
+    if (at == hypotheses_.end()) at = hypotheses_.insert(at, screened(refit.causes, unknown));
+    weigh(model_, gram, columns, refit.fit.u, *at);
+    at->u = refit.fit.u;
+  }
+}
+
+void Explanations::renew_noise() {
+  estimate_noise_about(
+      freely_fitted(model_, refit_of(hypotheses_.front().causes).fit.predictions, columns_, sensitivities_));
+  weigh_screened();
+  for (const Refit& refit : refits_) weigh_refit(refit);
+  normalise(hypotheses_);
+}
+
+void Explanations::refit() {
+  const auto span = context_.span(0.4, 0.7, fitting_stage);
+  std::vector<std::vector<int>> singles{{}};
+  for (const Hypothesis& h : screened_)
+    if (h.causes.size() == 1 && std::find(singles.begin(), singles.end(), h.causes) == singles.end() &&
+        singles.size() <= refitted_singles)
+      singles.push_back(h.causes);
+  const auto parts = static_cast<double>(singles.size() + (pairs_ ? 1 + refitted_pairs : 0) + 2 * leader_count);
+  double part = 0;
+  const auto stage = [&](auto&& work) {
+    // More leaders may have to be polished than were counted on.
+    const auto step = context_.span(std::min(1.0, part / parts), std::min(1.0, (part + 1) / parts), fitting_stage);
+    work();
+    part += 1;
+  };
+  for (const auto& causes : singles) stage([&] { refit_with(causes); });
+  normalise(hypotheses_);
+  std::vector<PairGuess> pairs;
+  if (pairs_) stage([&] { pairs = promising_pairs(); });
+  for (const PairGuess& pair : pairs) stage([&] { refit_with(pair.causes, &pair); });
+  normalise(hypotheses_);
+  polish_leaders(leader_count, stage);
+  renew_noise();
+  // The others stay as the linearised model has them, but no better than the worst that was tried in earnest.
+  double worst = std::numeric_limits<double>::infinity();
+  for (const Hypothesis& h : hypotheses_)
+    if (h.causes.size() == 1) worst = std::min(worst, h.log_evidence);
+  for (Hypothesis h : screened_) {
+    if (h.causes.size() != 1 || is_refitted(h.causes)) continue;
+    h.log_evidence = std::min(h.log_evidence, worst);
+    hypotheses_.push_back(h);
+  }
+  // A pair of which one does nothing is the other alone, found on another way.
+  std::erase_if(hypotheses_, [&](const Hypothesis& h) { return h.causes.size() == 2 && !significant(h); });
+  normalise(hypotheses_);
+}
+
+void Explanations::polish_leaders(std::size_t count, const std::function<void(const std::function<void()>&)>& stage) {
+  std::set<std::vector<int>> leaders{{}};
+  const double highest = hypotheses_.front().log_evidence;
+  for (const Hypothesis& h : hypotheses_) {
+    if (leaders.size() > count || (leaders.size() > 2 && h.log_evidence < highest - out_of_reach)) break;
+    leaders.insert(h.causes);
+    if (h.causes.size() == 2)
+      for (const int cause : h.causes) leaders.insert({cause});
+  }
+  for (const std::size_t size : {2u, 1u, 0u})
+    for (Refit& r : refits_)
+      if (r.causes.size() == size && leaders.contains(r.causes)) stage([&] { polish(r); });
+  normalise(hypotheses_);
+}
+
+std::vector<PairGuess> Explanations::promising_pairs() {
+  std::vector<FittedSingle> singles;
+  for (const Hypothesis& h : hypotheses_) {
+    if (h.causes.size() != 1 ||
+        std::any_of(singles.begin(), singles.end(), [&](const FittedSingle& s) { return s.cause == h.causes[0]; }))
+      continue;
+    const ParameterFit& fit = refit_of(h.causes).fit;
+    singles.push_back({h.causes[0], fit.u, fit.predictions});
+  }
+  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), liberties_,
+                                      liberty_sensitivities_);
+  PairSearch search = search_pairs(model_, *misfit_, objective, liberties_, liberty_sensitivities_, singles,
+                                   pair_anchors, context_, "Searching for two causes");
+  cheap_simulations_ += search.simulations;
+  if (search.guesses.size() > refitted_pairs) search.guesses.resize(refitted_pairs);
+  return std::move(search.guesses);
+}
+
+const Explanations::Refit& Explanations::refit_of(const std::vector<int>& causes) const {
+  return *std::find_if(refits_.begin(), refits_.end(), [&](const Refit& r) { return r.causes == causes; });
+}
+
+double Explanations::structure_left(const std::vector<int>& causes) const {
+  double structure = 0, weight = 0;
+  for (const Hypothesis& h : hypotheses_)
+    if (h.causes == causes) structure += (h.probability + 1e-300) * h.structure, weight += h.probability + 1e-300;
+  return structure / weight;
+}
+
+double Explanations::softness() const {
+  double soft = 0;
+  for (const NoiseEstimate& noise : noise_) soft = std::max(soft, noise.sigma);
+  return soft;
+}
+
+double Explanations::movement(int cause, const Eigen::VectorXd& u) const {
+  double squares = 0, count = 0;
+  for (std::size_t object = 0; object < sensitivities_.size(); ++object) {
+    const Measurement& m = model_.measurements()[object];
+    Eigen::MatrixXd field = Eigen::MatrixXd::Zero(m.measured.rows(), m.measured.cols());
+    for (const int p : model_.causes()[static_cast<std::size_t>(cause)].parameters)
+      field += u[p] * sensitivities_[object][static_cast<std::size_t>(p)];
+    squares += field.squaredNorm();
+    count += static_cast<double>(m.measured.rows());
+  }
+  return std::sqrt(squares / std::max(count, 1.0));
+}
+
+bool Explanations::significant(const Hypothesis& h) const {
+  return std::all_of(h.causes.begin(), h.causes.end(),
+                     [&](int cause) { return movement(cause, h.u) > least_movement * model_.known_misfit(); });
+}
+
+}  // namespace formwright

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The explanations a diagnosis compares: each fitted together with the base parameters, each with its marginal
+// likelihood. For diagnosis.cpp.
+#include <functional>
+#include <optional>
+
+#include "evidence/fit/hypotheses.h"
+#include "evidence/diagnosis/pair_search.h"
+#include "evidence/fit/structured_objective.h"
+
+namespace formwright {
+
+inline constexpr const char* fitting_stage = "Fitting the causes";
+/// Of the known misfit: right causes leave none, or the next smaller size of those that are considered.
+inline constexpr double most_structure = 0.6;
+inline constexpr double least_movement = 0.5;  // of the known misfit, that a cause must make
+inline constexpr double out_of_reach = 60;  // log evidence that polishing, or a finer simulation, does not make up for
+
+class Explanations {
+ public:
+  struct Refit {
+    ParameterFit fit;
+    std::vector<int> causes;
+    std::optional<ParameterFit> other_way;  // where the fit from the other material ended, which is worse
+  };
+
+  Explanations(SimulationBag& bag, bool pairs, Context& context)
+      : bag_(bag), model_(bag.model()), pairs_(pairs), context_(context) {}
+
+  // In this order. Each throws Error{could_not_solve, cancelled}.
+  /// Fits the base parameters alone, and finds the noise.
+  void calibrate();
+  /// Sensitivities to everything about the calibrated model, and what they alone say.
+  void screen();
+  /// Fits the likeliest causes in earnest, then pairs, then the leaders once more; fills hypotheses().
+  void refit();
+
+  /// One explanation leads all others by far and leaves nothing.
+  bool decided() const;
+  /// Instead of the three: weighs what `coarse`, of a coarser simulation of the same data, has found likely or nearly
+  /// so, beginning from its fits. Fills everything. Throws Error{could_not_solve, cancelled}.
+  void look_again(const Explanations& coarse);
+
+  const ParameterFit& base() const { return base_; }
+  const std::vector<NoiseEstimate>& noise() const { return noise_; }
+  /// How well each point is known, the simulation's own unreliability counted in.
+  const std::vector<Precisions>& precisions() const { return precisions_; }
+  const MisfitOfAll& misfit() const { return *misfit_; }
+  /// All parameters, and what each does about the calibrated model.
+  const std::vector<int>& columns() const { return columns_; }
+  const std::vector<Sensitivities>& sensitivities() const { return sensitivities_; }
+  /// The same about the set-up's own material, where a cause that only goes one way is taken at its usual strength:
+  /// what it does from there on to zero. Simulates these. Throws Error{cancelled}.
+  std::vector<Sensitivities> usual_sensitivities();
+  const std::vector<int>& liberties() const { return liberties_; }
+  const std::vector<Sensitivities>& liberty_sensitivities() const { return liberty_sensitivities_; }
+  /// Most probable first.
+  const std::vector<Hypothesis>& hypotheses() const { return hypotheses_; }
+  bool is_refitted(const std::vector<int>& causes) const;
+  /// Of causes that were refitted.
+  const Refit& refit_of(const std::vector<int>& causes) const;
+  /// Index of the structure size next to `structure`, never that of none.
+  std::size_t nearest_size(double structure) const;
+  /// How much structure is left with these causes, counted alike whether unknown structure was allowed or not.
+  double structure_left(const std::vector<int>& causes) const;
+  /// Distance below which the mean distance is rounded off: the noise.
+  double softness() const;
+  /// Simulations of the cheaper model.
+  int cheap_simulations() const { return cheap_simulations_; }
+  /// RMS movement, in the measurement's unit, that a cause makes at u.
+  double movement(int cause, const Eigen::VectorXd& u) const;
+  /// Every cause of it does something: more than the model's own misfit could pass for.
+  bool significant(const Hypothesis& h) const;
+
+ private:
+  /// Fills noise_, precisions_ and misfit_.
+  void estimate_noise_about(const Predictions& predictions);
+  /// What the linearised model says of every explanation, about the calibrated or the set-up's own material, whichever
+  /// speaks better for it.
+  void weigh_screened();
+  const Hypothesis& screened(const std::vector<int>& causes, bool unknown) const;
+  /// Fits base parameters and those of `causes` together, from the best of `starts`. No more structure is allowed than
+  /// the right causes would leave: with as much as there is, what the causes should explain would cost nothing
+  /// unexplained.
+  ParameterFit fit_from(const std::vector<int>& causes, const std::vector<Eigen::VectorXd>& starts,
+                        std::vector<Sensitivities> known, const FitOptions& options);
+  /// From where the linearised model has them, with the sensitivities it was made of; or from `guess`.
+  void refit_with(const std::vector<int>& causes, const PairGuess* guess = nullptr);
+  /// Once more where a coarser simulation has it, unless it is out of reach or does nothing there.
+  void refit_as(const Refit& coarse);
+  /// Polishes the likeliest `count` explanations, what they are parts of and have as parts, larger ones first; `stage`
+  /// counts the steps.
+  void polish_leaders(std::size_t count, const std::function<void(const std::function<void()>&)>& stage);
+  /// The same from the set-up's own material, for at most one cause: a fault that is not among the base parameters
+  /// drags them far off, and nothing near there points back.
+  std::optional<ParameterFit> fit_from_nominal(const std::vector<int>& causes);
+  /// Once more, with sensitivities taken where the fit stands; what was learnt with more causes counts for fewer.
+  void polish(Refit& refit);
+  /// The marginal likelihood of an explanation where its fit has it.
+  void weigh_refit(const Refit& refit);
+  /// What passed for outliers about the calibrated model may have been misfit that an explanation accounts for: once
+  /// more about the best.
+  void renew_noise();
+  /// The likeliest pairs with the best single causes, found on the cheaper model.
+  std::vector<PairGuess> promising_pairs();
+
+  SimulationBag& bag_;
+  const ForwardModel& model_;
+  bool pairs_;
+  Context& context_;
+  ParameterFit base_;
+  std::vector<NoiseEstimate> noise_;
+  std::vector<Precisions> precisions_;
+  std::optional<MisfitOfAll> misfit_;
+  std::vector<int> columns_;
+  std::vector<Sensitivities> sensitivities_;
+  std::vector<int> liberties_;
+  std::vector<Sensitivities> liberty_sensitivities_;
+  std::vector<std::vector<Eigen::MatrixXd>>
+      movements_;  // what the simulation is not to be relied on by: model_covariance()
+  Predictions at_nominal_;
+  std::vector<Sensitivities> nominal_sensitivities_;
+  GramByStructure about_nominal_;
+  std::vector<Hypothesis> screened_, hypotheses_;
+  std::vector<Refit> refits_;
+  int cheap_simulations_ = 0;
+};
+
+}  // namespace formwright

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a coarse simulation does not decide: its likeliest explanations, fitted once more by a finer one.
+#include <algorithm>
+
+#include "base/error.h"
+#include "evidence/diagnosis/explanations.h"
+#include "evidence/fit/free_fit.h"
+
+namespace formwright {
+namespace {
+
+constexpr double decisive = 40;            // of log evidence: meshes move it by less
+constexpr std::size_t polished_again = 1;  // beside none
+
+const Hypothesis& plain_none(const std::vector<Hypothesis>& hypotheses) {
+  return *std::find_if(hypotheses.begin(), hypotheses.end(),
+                       [](const Hypothesis& h) { return h.causes.empty() && !h.unknown_structure; });
+}
+
+}  // namespace
+
+bool Explanations::decided() const {
+  const Hypothesis& best = hypotheses_.front();
+  if (best.causes.empty() || best.unknown_structure ||
+      structure_left(best.causes) > most_structure * model_.known_misfit())
+    return false;
+  return std::all_of(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& h) {
+    return h.causes == best.causes || h.log_evidence < best.log_evidence - decisive;
+  });
+}
+
+void Explanations::refit_as(const Refit& coarse) {
+  std::vector<const ParameterFit*> ways{&coarse.fit};
+  if (coarse.other_way) ways.push_back(&*coarse.other_way);
+  std::erase_if(ways, [&](const ParameterFit* way) {
+    return std::any_of(coarse.causes.begin(), coarse.causes.end(),
+                       [&](int cause) { return movement(cause, way->u) <= least_movement * model_.known_misfit(); });
+  });
+  std::vector<Eigen::VectorXd> starts;
+  for (const ParameterFit* way : ways) starts.push_back(way->u);
+  if (starts.empty()) return;
+  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), liberties_,
+                                      liberty_sensitivities_);
+  const auto predictions = bag_.run(starts, context_, fitting_stage);
+  double best_value = refit_of({}).fit.value + out_of_reach;
+  const ParameterFit* best = nullptr;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    if (!predictions[i]) continue;
+    const double value = objective.value(residuals(model_, *predictions[i]), starts[i]);
+    if (value < best_value) best_value = value, best = ways[i];
+  }
+  if (best == nullptr) return;
+  refits_.push_back({fit_from(coarse.causes, {best->u}, best->sensitivities, quick_fit), coarse.causes, {}});
+  weigh_refit(refits_.back());
+}
+
+void Explanations::look_again(const Explanations& coarse) {
+  const char* const looking = "Repeating on a finer sheet";
+  const auto span = context_.span(0.7, 0.85, looking);
+  auto at_nominal = bag_.run(model_.nominal(), context_, looking);
+  if (!at_nominal)
+    throw Error(ErrorCode::could_not_solve, "", "The finer simulation fails with the set-up's own parameters.");
+  at_nominal_ = std::move(*at_nominal);
+  columns_ = coarse.columns_;
+  sensitivities_ = coarse.sensitivities_;
+  nominal_sensitivities_ = coarse.nominal_sensitivities_;
+  liberties_ = coarse.liberties_;
+  noise_ = coarse.noise_;
+  base_ = fit_parameters(bag_, *mean_distance_objective(model_, softness()), model_.base_parameters(), coarse.base_.u,
+                         sensitivities_of(model_.base_parameters(), sensitivities_, columns_), {}, context_, looking);
+  // What equally good simulations would do is less on a finer sheet; where a coarse one leaps a fine one does, too.
+  liberty_sensitivities_ = sensitivities_at(bag_, base_.u, base_.predictions, liberties_, context_, looking);
+  movements_ = movements_of(model_, liberties_, liberty_sensitivities_);
+  for (std::size_t object = 0; object < movements_.size(); ++object) {
+    const std::vector<Eigen::MatrixXd>& all = coarse.movements_[object];
+    movements_[object].insert(movements_[object].end(),
+                              all.begin() + static_cast<std::ptrdiff_t>(coarse.liberties_.size()), all.end());
+    for (std::size_t k = 0; k < liberties_.size(); ++k) {
+      const auto column =
+          static_cast<std::size_t>(std::find(columns_.begin(), columns_.end(), liberties_[k]) - columns_.begin());
+      sensitivities_[object][column] = liberty_sensitivities_[object][k];
+    }
+  }
+  estimate_noise_about(freely_fitted(model_, base_.predictions, columns_, sensitivities_));
+  screened_ = all_hypotheses(model_, pairs_);
+  weigh_screened();
+
+  const Refit& plain = coarse.refit_of({});
+  refits_.push_back({fit_from({}, {base_.u, plain.fit.u}, plain.fit.sensitivities, quick_fit), {}, {}});
+  weigh_refit(refits_.back());
+  double best = plain_none(coarse.hypotheses_).log_evidence;
+  for (const Hypothesis& h : coarse.hypotheses_) best = std::max(best, h.log_evidence);
+  for (const Refit& r : coarse.refits_) {
+    if (r.causes.empty()) continue;
+    const bool near = std::any_of(coarse.hypotheses_.begin(), coarse.hypotheses_.end(), [&](const Hypothesis& h) {
+      return h.causes == r.causes && h.log_evidence > best - out_of_reach;
+    });
+    if (near) refit_as(r);
+  }
+  normalise(hypotheses_);
+  polish_leaders(polished_again, [](const std::function<void()>& work) { work(); });
+  renew_noise();
+  // The others stay as far from none as they were, and no better: they were out of reach, or did nothing.
+  const double none = plain_none(hypotheses_).log_evidence, coarse_none = plain_none(coarse.hypotheses_).log_evidence;
+  for (Hypothesis h : coarse.hypotheses_) {
+    if (h.causes.size() != 1 || is_refitted(h.causes)) continue;
+    h.log_evidence = none + std::min(0.0, h.log_evidence - coarse_none);
+    hypotheses_.push_back(h);
+  }
+  std::erase_if(hypotheses_, [&](const Hypothesis& h) { return h.causes.size() == 2 && !significant(h); });
+  normalise(hypotheses_);
+}
+
+}  // namespace formwright

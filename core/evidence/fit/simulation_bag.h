@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Independent predictions of a forward model, made on all cores, each kept as soon as it is there.
+#include <atomic>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+
+#include "evidence/fit/forward_model.h"
+
+namespace formwright {
+
+/// Predictions of every object of a model at one u.
+using Predictions = std::vector<Eigen::MatrixXd>;  // one n x d for each object
+
+class SimulationBag {
+ public:
+  explicit SimulationBag(const ForwardModel& model) : model_(model) {}
+
+  /// Predictions at each of `points`; those asked for before are not made again. `context` hears of progress from 0
+  /// to 1. Where the model has no answer the place is empty. Throws Error{cancelled}.
+  std::vector<std::optional<Predictions>> run(const std::vector<Eigen::VectorXd>& points, Context& context,
+                                              const std::string& stage);
+  std::optional<Predictions> run(const Eigen::VectorXd& point, Context& context, const std::string& stage);
+
+  /// Drops what is kept: a long search asks for nothing twice.
+  void forget() { known_.clear(); }
+
+  const ForwardModel& model() const { return model_; }
+  int simulations() const { return simulations_; }
+
+ private:
+  const ForwardModel& model_;
+  std::map<std::vector<double>, std::optional<Predictions>> known_;
+  std::atomic<int> simulations_{0};
+};
+
+}  // namespace formwright

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What a diagnosis makes small: misfit against noise and structure (structured_misfit.h), with the priors, and with the
+// simulation's known liberties integrated out.
+#include "evidence/fit/noise_model.h"
+#include "evidence/fit/parameter_fit.h"
+#include "evidence/fit/structured_misfit.h"
+
+namespace formwright {
+
+/// The misfits of all objects at one set of precisions.
+class MisfitOfAll {
+ public:
+  MisfitOfAll(const ForwardModel& model, const std::vector<Precisions>& precisions);
+  /// Sum over objects of the Gram matrices of residuals and sensitivities.
+  GramByStructure gram(const Predictions& residuals, const std::vector<Sensitivities>& sensitivities) const;
+  const std::vector<double>& sizes() const { return sizes_; }
+  const std::vector<StructuredMisfit>& objects() const { return objects_; }
+
+ private:
+  std::vector<double> sizes_;
+  std::vector<StructuredMisfit> objects_;
+};
+
+/// What equally good simulations would move, a standard deviation each, for every object. `liberties`: discrepancy
+/// parameters; their sensitivities, each object.
+std::vector<std::vector<Eigen::MatrixXd>> movements_of(const ForwardModel& model, const std::vector<int>& liberties,
+                                                       const std::vector<Sensitivities>& sensitivities);
+
+/// Where the simulation is not to be relied on, points weigh less (model_covariance). `weights`: inverse variances of
+/// the noise; `movements`: each object.
+std::vector<Precisions> precisions_of(const ForwardModel& model, const std::vector<Eigen::VectorXd>& weights,
+                                      const std::vector<std::vector<Eigen::MatrixXd>>& movements);
+
+/// `liberties`: sensitivities to the discrepancy parameters, `structure`: index into MisfitOfAll::sizes(). Everything
+/// must outlive it.
+class StructuredObjective : public FitObjective {
+ public:
+  StructuredObjective(const ForwardModel& model, const MisfitOfAll& misfit, std::size_t structure,
+                      std::vector<int> liberty_parameters, const std::vector<Sensitivities>& liberties)
+      : model_(model),
+        misfit_(misfit),
+        structure_(structure),
+        liberty_parameters_(std::move(liberty_parameters)),
+        liberties_(liberties) {}
+  double value(const Predictions& residuals, const Eigen::VectorXd& u) const override;
+  void quadratic(const Predictions& residuals, const std::vector<Sensitivities>& sensitivities,
+                 const std::vector<int>& free, const Eigen::VectorXd& u, Eigen::VectorXd& g,
+                 Eigen::MatrixXd& H) const override;
+
+ private:
+  /// The Gram matrix without what the liberties explain.
+  Eigen::MatrixXd reduced(const Predictions& residuals, const std::vector<Sensitivities>& sensitivities) const;
+
+  const ForwardModel& model_;
+  const MisfitOfAll& misfit_;
+  std::size_t structure_;
+  std::vector<int> liberty_parameters_;
+  const std::vector<Sensitivities>& liberties_;
+};
+
+}  // namespace formwright

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a diagnosis may turn in a thermoforming simulation. Names, labels, units and ranges are those of the
+// simulation's own parameters.
+#include <algorithm>
+
+#include "evidence/models/thermoform/thermoform_model.h"
+
+namespace formwright {
+namespace {
+
+struct Turned {
+  const char* name;
+  bool logarithmic;
+  double low, high;  // where narrower than the parameter's own range; low == high: its own
+  double prior_sd, probe;
+};
+
+/// Ranges about those of thesis 4.2.3, a little wider: an optimum at a bound says nothing about what lies beyond.
+constexpr Turned base_parameters[] = {{"young_modulus_pa", true, 2.5e5, 1e7, 0.6, 0.25},
+                                      {"creep_per_s", true, 5, 5000, 0.8, 0.4},
+                                      {"yield_strain", false, 0, 0.3, 0.05, 0.02},
+                                      {"viscosity_s", true, 1e-7, 1e-3, 1, 1}};
+
+constexpr Turned mould_place[] = {{"mould_shift_x_mm", false, -4, 4, 1, 0.5},
+                                  {"mould_shift_y_mm", false, -4, 4, 1, 0.5}};
+
+/// Of causes that act through the sheet, as virtual machines with another elastic law, mesh and vacuum have it
+/// (docs/evidence.md, the confusion table).
+constexpr double sheet_gain_error = 0.05;
+
+struct CauseTable {
+  const char *name, *label, *explanation, *remedy;
+  std::vector<Turned> parameters;
+};
+
+const std::vector<CauseTable>& cause_table() {
+  static const std::vector<CauseTable> table = {
+      {"heating_gradient",
+       "Uneven heating, side to side",
+       "One side of the sheet was colder, so stiffer, than the other.",
+       "Turn the heater, shield the hot side, or heat longer so that the sheet evens out; shut out draughts.",
+       {{"heating_gradient_x", false, -0.8, 0.8, 0.35, 0.2}, {"heating_gradient_y", false, -0.8, 0.8, 0.35, 0.2}}},
+      {"heating_centre",
+       "Uneven heating, centre to rim",
+       "The middle of the sheet and its rim were not equally hot.",
+       "Change the heater's distance, reflectors or zones; a longer soak evens out the middle and the rim.",
+       {{"heating_centre", false, -0.8, 0.8, 0.35, 0.2}}},
+      {"slip",
+       "Sheet slides on the mould",
+       "Where the sheet touched the mould it slid on instead of sticking.",
+       "Roughen or warm the mould, leave out release agent, or accept it: a print made with this profile accounts for it.",
+       {{"slip", false, 0, 10, 1.5, 0.7}}},
+      {"anisotropy",
+       "Sheet stiffer in one direction",
+       "The sheet stretches more easily along one direction, as extruded sheet does.",
+       "Always insert the sheets in the same direction, mark their extrusion direction, or use cast sheets.",
+       {{"anisotropy", false, -0.8, 0.8, 0.4, 0.2}}},
+      {"thickness_wedge",
+       "Sheet thicker on one side",
+       "The flat sheet was not equally thick.",
+       "Measure the sheets at four corners before use and put the thick side where it is least in the way.",
+       {{"thickness_wedge_x", false, -0.8, 0.8, 0.3, 0.15}, {"thickness_wedge_y", false, -0.8, 0.8, 0.3, 0.15}}},
+      {"cooling",
+       "Sheet chills on the mould",
+       "The mould was cold: what touched it stiffened and stopped flowing.",
+       "Warm the mould, or raise it faster and draw the vacuum sooner.",
+       {{"cooling", false, 0, 8, 1, 0.5}}},
+      {"weak_vacuum",
+       "Vacuum too weak",
+       "Less vacuum reached the sheet than the gauge says.",
+       "Look for leaks at the clamp and the platform's seal, add vent holes, check the pump.",
+       {{"weak_vacuum", false, 0, 0.9, 0.35, 0.2}}},
+      {"clamp_slip",
+       "Sheet slips in the clamp",
+       "The vacuum drew the sheet's rim in from under the clamp.",
+       "Tighten the clamp, renew its rubber, or use a larger sheet so that there is more to hold.",
+       {{"clamp_slip_mm", false, 0, 15, 2, 1}}},
+      {"mould_shift",
+       "Mould in the wrong place",
+       "The mould did not stand in its intended place.",
+       "Use stops or a drawn outline on the platform to place the mould.",
+       {{"mould_shift_x_mm", false, -15, 15, 1.5, 0.75}, {"mould_shift_y_mm", false, -15, 15, 1.5, 0.75}}},
+      {"mould_rotation",
+       "Mould turned",
+       "The mould was rotated about the vertical axis.",
+       "Use two stops on the platform, not one.",
+       {{"mould_rotation_deg", false, -30, 30, 4, 2}}},
+      {"mould_scale",
+       "Mould of the wrong size",
+       "The mould is larger or smaller than its model: printed parts and gypsum shrink or swell.",
+       "Measure the mould and correct the scale with which it is made.",
+       {{"mould_scale", false, -0.15, 0.15, 0.02, 0.012}}},
+      {"print_scale",
+       "Pattern printed at the wrong size",
+       "The printer, or the paper's transfer, scaled the picture.",
+       "Print at 100 % without fitting to the page, measure a printed ruler, and correct the printer's scale.",
+       {{"print_scale", false, -0.1, 0.1, 0.012, 0.008}}},
+      {"scan_scale",
+       "Scan of the wrong size",
+       "The 3D scan is larger or smaller than the object.",
+       "Put a known length into the scan and scale by it.",
+       {{"scan_scale", false, -0.1, 0.1, 0.01, 0.008}}},
+      {"scan_shift",
+       "Scan in the wrong place",
+       "The scan is not in the machine's coordinates, but shifted.",
+       "Align the scan by the clamp's rim or by marks on the platform.",
+       {{"scan_shift_x_mm", false, -10, 10, 1, 0.7},
+        {"scan_shift_y_mm", false, -10, 10, 1, 0.7},
+        {"scan_shift_z_mm", false, -10, 10, 1, 0.7}}}};
+  return table;
+}
+
+}  // namespace
+
+void declare_thermoform_parameters(const Json& nominal, bool fit_mould_place, const std::vector<std::string>& without,
+                                   std::vector<ModelParameter>& parameters, std::vector<Cause>& causes) {
+  std::vector<ParameterInfo> infos = describe_parameters<ThermoformOptions>();
+  const std::size_t of_the_sheet = infos.size();
+  for (ParameterInfo& info : describe_parameters<MeasurementEffects>()) infos.push_back(std::move(info));
+  const auto add = [&](const Turned& turned, ParameterRole role) {
+    const auto info =
+        std::find_if(infos.begin(), infos.end(), [&](const ParameterInfo& i) { return i.name == turned.name; });
+    ModelParameter p;
+    p.name = info->name;
+    p.label = info->label;
+    p.unit = info->unit;
+    p.role = role;
+    p.nominal = nominal.value(p.name, info->default_value.get<double>());
+    p.low = std::min(turned.low, p.nominal);
+    p.high = std::max(turned.high, p.nominal);
+    if (turned.logarithmic && !(p.nominal > 0)) p.nominal = info->default_value.get<double>();
+    p.logarithmic = turned.logarithmic;
+    p.prior_sd = turned.prior_sd;
+    p.probe = turned.probe;
+    parameters.push_back(p);
+    return static_cast<int>(parameters.size()) - 1;
+  };
+  for (const Turned& turned : base_parameters) add(turned, ParameterRole::base);
+  if (fit_mould_place)
+    for (const Turned& turned : mould_place) add(turned, ParameterRole::base);
+  for (const CauseTable& row : cause_table()) {
+    if (fit_mould_place && std::string_view(row.name) == "mould_shift") continue;
+    if (std::find(without.begin(), without.end(), row.name) != without.end()) continue;
+    Cause cause{row.name, row.label, row.explanation, row.remedy, {}, ""};
+    for (const Turned& turned : row.parameters) cause.parameters.push_back(add(turned, ParameterRole::effect));
+    cause.unit = parameters.back().unit;
+    if (std::any_of(infos.begin(), infos.begin() + static_cast<std::ptrdiff_t>(of_the_sheet),
+                    [&](const ParameterInfo& i) { return i.name == parameters.back().name; }))
+      cause.gain_error = sheet_gain_error;
+    causes.push_back(std::move(cause));
+  }
+  // Liberties of the simulation. Their sensitivities are what another equally good simulation would do.
+  const auto liberty = [&](const char* name, const char* label, double prior_sd) {
+    ModelParameter p;
+    p.name = name;
+    p.label = label;
+    p.role = ParameterRole::discrepancy;
+    p.high = 1;
+    p.prior_sd = prior_sd;
+    p.probe = 1;
+    parameters.push_back(p);
+  };
+  liberty("other_elastic_law", "Other elastic law", 1);
+  liberty("other_yield_rule", "Other yield rule", 0.3);
+  liberty("slower_vacuum", "Vacuum builds up twice as slowly", 1);
+  liberty("finer_sheet", "Twice as many triangles", 1.5);
+}
+
+}  // namespace formwright

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "job/operations/evidence/diagnosis_result.h"
+
+#include "job/contract/model_input.h"
+
+namespace formwright {
+
+std::vector<OutputInfo> diagnosis_outputs() {
+  return {{"diagnosis.json", "application/json", "Diagnosis",
+           "The verdict, the causes, the gains, and causes that cannot be distinguished.", true},
+          {"diagnosis.html", "text/html", "Report",
+           "The diagnosis as a page to read: maps, histograms, ranked causes and remedies.", true}};
+}
+
+std::vector<ReportField> diagnosis_report_fields() {
+  return {
+      {"verdict", "Verdict", "",
+       "The names of one or more causes, none (nothing is wrong) or unknown (none of the known causes)."},
+      {"reading", "Kind of verdict", "",
+       "none (nothing wrong), cause (causes named), cannot_separate (two causes equally likely) or unknown (no known cause explains it)."},
+      {"doubtful", "Doubtful", "", "Whether the named causes may be wrong or incomplete."},
+      {"doubts", "Doubts", "", "Why the verdict is doubtful, as sentences."},
+      {"sentence", "In words", "", "What was found, as a sentence."},
+      {"causes", "Causes", "",
+       "Every cause with its name, probability, strength, unit, 95 % interval, values and remedy; the most probable first."},
+      {"not_separable", "Not distinguishable", "",
+       "Pairs of causes with similar effects, how similar they are (0 to 1), and the measurement that would distinguish them."},
+      {"error_before_mm", "Error before", "mm",
+       "Mean distance between measurement and calibrated simulation on held-out data."},
+      {"error_before_interval_mm", "Interval of the error before", "mm",
+       "95 % interval of the mean error before causes are included."},
+      {"error_after_mm", "Error after", "mm",
+       "Mean distance between measurement and simulation on held-out data with the named causes included."},
+      {"error_after_interval_mm", "Interval of the error after", "mm",
+       "95 % interval of the mean error with the named causes included."},
+      {"gain_share", "Gain", "", "Fraction of the error that the named causes remove: 1 - error after / error before."},
+      {"gain_interval", "Interval of the gain", "", "95 % interval of the gain."},
+      {"held_out", "Held-out data", "", "Which data were held out to measure the errors, as a sentence."},
+      {"unseen", "Validation objects", "", "Errors before and after on objects that were not used for fitting."},
+      {"noise_floor_mm", "Noise floor", "mm", "Mean distance that measuring noise alone would give."},
+      {"noise", "Noise", "", "Noise of every object: as found, as stated in the data, and the number of outliers."},
+      {"unexplained_before_mm", "Pattern left before", "mm",
+       "Size of the smooth error that the calibrated simulation leaves unexplained."},
+      {"unexplained_after_mm", "Pattern left after", "mm",
+       "Size of the smooth error that remains with the named causes included."},
+      {"structure_test", "Test for a pattern", "",
+       "How much neighbouring errors agree, with p-value and correlation length, before and after the named causes are included."},
+      {"trials", "Trials", "", "Number of explanations that were tested on held-out data."},
+      {"hypotheses", "Explanations", "",
+       "The most probable explanations: their causes, whether an unknown pattern remains, probability and log evidence."},
+      {"parameters", "Material", "", "Material parameters, calibrated alone and with the named causes included."},
+      {"simulations", "Simulations", "", "Number of simulations that were run."},
+      {"seconds_calibration", "Calibration", "s", "Time for the calibration, part of the diagnosis."},
+      {"seconds_diagnosis", "Diagnosis", "s", "Time for the whole diagnosis, without the validation objects."},
+      {"notes", "Notes", "", "What to know about the result, as sentences."},
+      {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."}};
+}
+
+OperationResult diagnosis_result(const OperationCall& call, const DiagnosisReport& report) {
+  OperationResult result;
+  result.report = diagnosis_json(report);
+  for (const OutputInfo& info : diagnosis_outputs()) {
+    if (!call.wants(info.name)) continue;
+    result.outputs.push_back(make_output(
+        info, to_bytes(info.name == "diagnosis.json" ? result.report.dump(2) + "\n" : diagnosis_page(report))));
+  }
+  return result;
+}
+
+}  // namespace formwright

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
+#include "evidence/models/thermoform/proposals.h"
+#include "job/operations/evidence/diagnosis_result.h"
+#include "job/operations/evidence/evidence_input.h"
+#include "job/operations/evidence/evidence_operations.h"
+#include "job/contract/model_input.h"
+#include "job/operations/thermoform/thermoform_input.h"
+
+namespace formwright {
+namespace {
+
+struct DiagnoseOptions {
+  bool pairs = true;
+  bool separate = true;
+  int triangles = 5000;
+
+  static constexpr auto parameters = std::tuple{
+      parameter("pairs", &DiagnoseOptions::pairs, "Two causes at once",
+                "Also looks for two causes acting together. Takes longer; switch it off for a quick look.")
+          .group("Diagnosis"),
+      parameter(
+          "separate", &DiagnoseOptions::separate, "Propose a measurement",
+          "If two causes explain the data equally well, looks for a further measurement that would distinguish them.")
+          .group("Diagnosis"),
+      parameter(
+          "triangles", &DiagnoseOptions::triangles, "Triangles", unit::none, 500, 40000,
+          "Number of triangles in the simulated sheet. More are more accurate and take longer. If up to 5,000 give no clear answer, the diagnosis is repeated with twice as many.")
+          .group("Diagnosis")
+          .slider(1000, 10000)};
+};
+
+std::vector<OutputInfo> outputs() {
+  std::vector<OutputInfo> list = diagnosis_outputs();
+  list.push_back({"profile.json", "application/json", "Machine profile",
+                  "The material and causes found, to be used in later simulations (--profile).", true});
+  list.push_back(
+      {"residuals.csv", "text/csv", "Residuals",
+       "Every measured point with its position in the calibrated simulation and in the one that includes the causes.",
+       true});
+  return list;
+}
+
+std::string residuals_csv(const ThermoformModel& model, const Diagnosis& d) {
+  std::string text =
+      "object,sheet_x_mm,sheet_y_mm,x_mm,y_mm,z_mm,calibrated_x_mm,calibrated_y_mm,calibrated_z_mm,extended_x_mm,extended_y_mm,extended_z_mm,weight\n";
+  char line[320];
+  for (std::size_t object = 0; object < model.objects().size(); ++object) {
+    const FormedObject& own = model.objects()[object];
+    std::string name = own.name;
+    for (char& c : name)
+      if (c == ',' || c == '"' || c == '\n' || c == '\r') c = '_';
+    for (std::size_t i = 0; i < own.points.size(); ++i) {
+      const MeasuredPoint& p = own.points[i];
+      const auto row = static_cast<Eigen::Index>(i);
+      const auto before = d.base.predictions[object].row(row), after = d.extended.predictions[object].row(row);
+      std::snprintf(line, sizeof line, ",%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.4g\n", p.sheet_mm.x(),
+                    p.sheet_mm.y(), p.place_mm.x(), p.place_mm.y(), p.place_mm.z(), before[0], before[1], before[2],
+                    after[0], after[1], after[2], d.noise[object].weights[row]);
+      text += name + line;
+    }
+  }
+  return text;
+}
+
+OperationResult run(const OperationCall& call) {
+  const auto o = read_parameters<DiagnoseOptions>(call.parameters);
+  require_each_once(call, "measured.csv");
+  ThermoformModelOptions options;
+  options.triangles = o.triangles;
+  options.profile = read_profile_input(call);
+  std::vector<FormedObject> unseen = read_formed_objects(call, "unseen");
+  const ThermoformModel model(read_formed_objects(call, "object"), options);
+  // An object that cannot be formed at all is told before the minutes, not after.
+  std::unique_ptr<const ThermoformModel> other;
+  if (!unseen.empty()) {
+    const auto span = call.context.span(0, 0.02, "Simulating the validation object");
+    other = std::make_unique<const ThermoformModel>(std::move(unseen), options);
+    for (std::size_t i = 0; i < other->objects().size(); ++i)
+      other->predict(static_cast<int>(i), other->nominal(), call.context);
+  }
+  SimulationBag bag(model);
+  Diagnosis diagnosis;
+  {
+    const auto span = call.context.span(other ? 0.02 : 0, o.separate ? 0.85 : 0.95, "Diagnosing");
+    DiagnosisOptions own;
+    own.pairs = o.pairs;
+    diagnosis = diagnose(bag, own, call.context);
+  }
+  DiagnosisReport report{model, diagnosis, {}, std::nullopt, {}, {}};
+  if (!diagnosis.not_separable.empty()) {
+    // The most alike first; more than two would only confuse.
+    std::vector<NotSeparable> pairs = diagnosis.not_separable;
+    std::stable_sort(pairs.begin(), pairs.end(),
+                     [](const NotSeparable& a, const NotSeparable& b) { return a.likeness > b.likeness; });
+    if (pairs.size() > 2) pairs.resize(2);
+    const auto span = call.context.span(0.85, 0.95, "Looking for a measurement that distinguishes them");
+    std::vector<ProposedMeasurement> proposals;
+    if (o.separate) proposals = proposed_measurements(model, options);
+    for (const NotSeparable& pair : pairs) {
+      SeparatedPair separated{pair, "", pair.likeness};
+      const Separation found = o.separate ? best_separation(bag, diagnosis, pair, proposals,
+                                                            std::max(diagnosis.noise.front().sigma, 1e-3), call.context)
+                                          : Separation{};
+      if (found.proposal >= 0)
+        separated.what = proposals[static_cast<std::size_t>(found.proposal)].what, separated.likeness = found.likeness;
+      report.separations.push_back(std::move(separated));
+    }
+  }
+  if (other) {
+    const auto span = call.context.span(0.95, 0.99, "Predicting the validation object");
+    for (const FormedObject& object : other->objects()) report.unseen_names.push_back(object.name);
+    try {
+      report.unseen = gain_on_unseen(*other, model, diagnosis, call.context);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::could_not_solve) throw;
+      report.unseen_names.clear();
+      report.notes.emplace_back(error.what());
+    }
+  }
+  if (diagnosis.looked_again)
+    report.notes.push_back("A sheet of " + std::to_string(o.triangles) +
+                           " triangles did not decide it: looked at again on twice as many.");
+  for (const FormedObject& object : model.objects())
+    for (const std::string& note : object.setup.notes) report.notes.push_back(object.name + ": " + note);
+
+  // A cause that does not explain the data is not the machine's.
+  const bool known = diagnosis.reading != Reading::unknown;
+  MachineProfile profile = model.profile_at(known ? diagnosis.extended.u : diagnosis.base.u);
+  if (profile.name.empty()) profile.name = "Diagnosed machine";
+  profile.notes.push_back(verdict_sentence(report));
+
+  OperationResult result = diagnosis_result(call, report);
+  const auto add = [&](const char* name, const std::string& text) {
+    for (const OutputInfo& info : outputs())
+      if (info.name == name && call.wants(name)) result.outputs.push_back(make_output(info, to_bytes(text)));
+  };
+  add("profile.json", write_machine_profile(profile));
+  add("residuals.csv", residuals_csv(model, diagnosis));
+  return result;
+}
+
+}  // namespace
+
+Operation evidence_diagnose_operation() {
+  Operation operation;
+  operation.name = "evidence-diagnose";
+  operation.title = "Diagnose";
+  operation.summary =
+      "Finds what causes measured objects to differ from the simulation, and measures how much the error shrinks once that is included.";
+  operation.inputs = {
+      object_input_info("object", "Measured object", "A folder with mould.obj, setup.json and measured.csv.", true,
+                        true),
+      object_input_info(
+          "unseen", "Validation object",
+          "Another folder of the same kind for validation: it is not used for fitting, only to measure the gain.",
+          false, true),
+      profile_input_info()};
+  operation.parameters = describe_parameters<DiagnoseOptions>();
+  operation.outputs = outputs();
+  operation.report = diagnosis_report_fields();
+  operation.keeps_results = true;
+  operation.check = [](const Json& parameters) { read_parameters<DiagnoseOptions>(parameters); };
+  operation.run = run;
+  return operation;
+}
+
+}  // namespace formwright

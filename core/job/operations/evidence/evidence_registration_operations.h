@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// From a printed pattern and a scan to measured points, thesis 4.2.3.
+#include "job/contract/operation.h"
+
+namespace formwright {
+Operation evidence_pattern_operation();   // what is printed
+Operation evidence_register_operation();  // what the scan of it says
+}  // namespace formwright

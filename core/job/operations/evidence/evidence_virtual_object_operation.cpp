@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "evidence/models/thermoform/virtual_measurement.h"
+#include "job/operations/evidence/evidence_operations.h"
+#include "job/contract/file_pack.h"
+#include "job/contract/model_input.h"
+#include "job/operations/thermoform/thermoform_input.h"
+
+namespace formwright {
+namespace {
+
+std::vector<OutputInfo> outputs() {
+  return {{"mould.obj", "model/obj", "Mould", "The mould as it should stand in the machine.", true},
+          {"setup.json", "application/json", "Set-up", "The settings of the machine, without its faults.", true},
+          {"measured.csv", "text/csv", "Measured points",
+           "The points measured by the virtual scan (format: docs/measured_data.md).", true},
+          {"truth.json", "application/json", "Truth",
+           "Every parameter of the virtual machine, including its faults. Open it after the diagnosis.", true},
+          {"object.zip", "application/zip", "Measured object", "mould.obj, setup.json and measured.csv in one file.",
+           false}};
+}
+
+std::vector<ReportField> report_fields() {
+  return {{"points", "Measured points", "", "Number of measured points: rows of measured.csv."},
+          {"triangles", "Triangles", "", "Number of triangles in the simulated sheet."},
+          {"seconds_simulation", "Simulation", "s", "Time for the simulation; 0 if an earlier one was used again."},
+          {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."},
+          {"notes", "Notes", "", "What to know about the result, as sentences."}};
+}
+
+struct GivenParameters {
+  Json simulation, measurement, scan;
+  explicit GivenParameters(const Json& parameters) {
+    const std::vector<ParameterInfo> measuring = describe_parameters<MeasurementEffects>(),
+                                     scanning = describe_parameters<VirtualScan>();
+    measurement = parameters_among(parameters, measuring);
+    scan = parameters_among(parameters, scanning);
+    simulation = parameters_among(parameters_among(parameters, measuring, false), scanning, false);
+  }
+};
+
+OperationResult run(const OperationCall& call) {
+  const GivenParameters given(call.parameters);
+  const SimulationCall simulation = simulation_call(call, given.simulation);
+  const auto effects = read_parameters<MeasurementEffects>(given.measurement);
+  Simulated simulated;
+  {
+    const auto span = call.context.span(0, 0.95, "Forming the virtual sheet");
+    simulated = simulate(call, simulation);
+  }
+  const ThermoformOptions& o = simulation.options;
+  constexpr MeasuredSurface surface = MeasuredSurface::outer;  // what a scanner sees
+  const std::vector<MeasuredPoint> points =
+      scan_virtually(simulated.result->sheet, o, surface, effects, read_parameters<VirtualScan>(given.scan));
+  Model mould;
+  mould.mesh = simulated.mould.placement(simulated.mould.shape->mesh);
+  const Bytes obj = write_model(mould, MeshFormat::obj, call.context);
+  const Bytes setup = to_bytes(write_object_setup(o, surface).dump(1) + "\n"),
+              measured = to_bytes(write_measured_points(points));
+  Json truth = write_parameters(o);
+  truth.update(write_parameters(effects));
+
+  OperationResult result;
+  result.report["points"] = points.size();
+  result.report["triangles"] = simulated.result->sheet.mesh.face_count();
+  result.report["seconds_simulation"] = simulated.reused ? 0.0 : simulated.result->seconds;
+  result.report["notes"] = simulated.result->placement.notes;
+  const auto add = [&](const char* name, Bytes bytes) {
+    for (const OutputInfo& info : outputs())
+      if (info.name == name && call.wants(name)) result.outputs.push_back(make_output(info, std::move(bytes)));
+  };
+  add("mould.obj", obj);
+  add("setup.json", setup);
+  add("measured.csv", measured);
+  add("truth.json", to_bytes(truth.dump(1) + "\n"));
+  if (call.wants("object.zip"))
+    add("object.zip",
+        pack_files({{"mould.obj", obj}, {"setup.json", setup}, {"measured.csv", measured}}, call.context));
+  return result;
+}
+
+}  // namespace
+
+Operation evidence_virtual_object_operation() {
+  Operation operation;
+  operation.name = "evidence-virtual-object";
+  operation.title = "Make a virtual object";
+  operation.summary =
+      "Forms and measures an object on a simulated machine with faults that you choose, to practise a diagnosis.";
+  operation.inputs = {mould_input_info()};
+  operation.parameters = describe_parameters<ThermoformOptions>();
+  for (ParameterInfo& info : describe_parameters<MeasurementEffects>()) operation.parameters.push_back(std::move(info));
+  for (ParameterInfo& info : describe_parameters<VirtualScan>()) operation.parameters.push_back(std::move(info));
+  operation.outputs = outputs();
+  operation.report = report_fields();
+  operation.check = [](const Json& parameters) {
+    const GivenParameters given(parameters);
+    read_parameters<ThermoformOptions>(given.simulation);
+    read_parameters<MeasurementEffects>(given.measurement);
+    read_parameters<VirtualScan>(given.scan);
+  };
+  operation.run = run;
+  return operation;
+}
+
+}  // namespace formwright

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "job/operations/relief/relief_operation.h"
+
+#include <cmath>
+
+#include "geometry/mesh/adjacency.h"
+#include "formats/mesh_io.h"
+#include "formats/png/png16.h"
+#include "job/contract/model_input.h"
+#include "relief/height_map.h"
+#include "relief/relief.h"
+
+namespace formwright {
+namespace {
+
+// Of the relief's thickness: how far the solid's larger triangles may leave the height field.
+constexpr double solid_tolerance = 1e-3;
+constexpr double unbounded_mm = 1e30;  // stands for "no bound" in relief.ply, where infinity has no safe spelling
+
+std::vector<OutputInfo> outputs() {
+  return {{"relief.ply", "application/x-ply", "PLY",
+           "The relief as a mesh, with depth, depth limits, visibility and shading difference at every vertex.", true},
+          {"relief.stl", "model/stl", "STL",
+           "The relief with its plate as a watertight solid, lying on its back, for 3D printing.", true},
+          {"relief.glb", "model/gltf-binary", "GLB", "The relief on its plate, for viewing.", true},
+          {"heightmap.png", "image/png", "Height map",
+           "Height map with 16-bit grey levels; white is the full thickness. Its scale is in the report.", true},
+          {"relief.3mf", "model/3mf", "3MF", "The solid for a slicer.", false},
+          {"relief.obj", "model/obj", "OBJ", "The solid for a 3D modelling program.", false}};
+}
+
+std::vector<ReportField> report_fields() {
+  return {
+      {"vertices", "Vertices", "", "Number of vertices of the repaired model."},
+      {"faces", "Triangles", "", "Number of triangles of the repaired model."},
+      {"visible_vertices", "Visible vertices", "", "Number of vertices that nothing hides from the viewpoint."},
+      {"energy", "Shape error", "",
+       "How much the curvature of the relief differs from that of the model, on the scale that the solver minimises; 0 is no difference."},
+      {"energy_linear", "Shape error of plain scaling", "",
+       "Shape error if all depths are simply scaled to the thickness."},
+      {"normal_error_mean_deg", "Shading difference", "°",
+       "Mean angle between the surface normals of relief and model over the visible surface. Smaller looks more like the model."},
+      {"normal_error_linear_mean_deg", "Shading difference of plain scaling", "°",
+       "Mean angle between the surface normals over the visible surface if all depths are simply scaled to the thickness."},
+      {"normal_error_mean_deg_image", "Shading difference in the picture", "°",
+       "Mean angle between the surface normals of relief and model over the picture seen from the viewpoint."},
+      {"normal_error_linear_mean_deg_image", "Shading difference in the picture of plain scaling", "°",
+       "Mean angle between the surface normals over the picture if all depths are simply scaled to the thickness."},
+      {"bound_violation_max_mm", "Largest excess over the thickness", "mm",
+       "Largest distance by which a vertex leaves the allowed thickness; practically 0."},
+      {"order_violation_max_mm", "Largest depth order violation", "mm",
+       "Largest distance by which a hidden point comes in front of what hides it; practically 0."},
+      {"order_rows", "Depth order conditions", "", "Number of conditions that keep what is in front in front."},
+      {"kkt_residual", "KKT residual", "",
+       "Relative error of the optimality conditions (Karush-Kuhn-Tucker) at the solution; practically 0."},
+      {"rounds", "Iterations", "", "Number of iterations of the numerical method."},
+      {"active_constraints", "Active limits", "", "Number of points where the relief touches a limit on its depth."},
+      {"method_used", "Solver used", "", "The numerical method that was used: exchange or interior_point."},
+      {"factor_reused", "Factorisation reused", "",
+       "Whether the matrix factorisation of an earlier job on the same model and viewpoint was used again."},
+      {"scale_mm_per_unit", "Scale", "mm", "Length in millimetres of one unit of the model file after scaling."},
+      {"viewpoint_mm", "Viewpoint", "mm",
+       "Position of the viewer in the axes of the scaled model. For far views, a point on the plane from which depths are measured."},
+      {"direction", "Looking direction", "",
+       "Direction in which the viewer looks, as a unit vector in the model's axes."},
+      {"right", "Right", "", "Direction to the right in the picture, as a unit vector in the model's axes."},
+      {"up", "Up", "", "Direction upwards in the picture, as a unit vector in the model's axes."},
+      {"plate_centre_mm", "Centre of the plate's front", "mm",
+       "Centre of the plate's front face, in the axes of the scaled model."},
+      {"distance_mm", "Viewing distance", "mm", "Distance from the viewpoint to the plate; null for far views."},
+      {"size_mm", "Size of the solid", "mm", "Width, height and depth of the solid, including its plate."},
+      {"watertight", "Watertight", "", "Whether the solid has no holes, as slicers need; checked on the result."},
+      {"heightmap_pixel_mm", "Height map pixel", "mm", "Width and height of one pixel of the height map."},
+      {"heightmap_mm_per_level", "Height map level", "mm",
+       "Height of one of the 65,535 grey levels of the height map; level 0 is the front of the plate."},
+      {"seconds_read", "Reading", "s", "Time for reading and repairing the file; 0 if it was read before."},
+      {"seconds_setup", "Set-up", "s",
+       "Time for placing the viewpoint and setting up the equations; 0 if done before."},
+      {"seconds_solve", "Solving", "s", "Time for solving, including the factorisation."},
+      {"seconds_factorise", "Factorising", "s",
+       "Time for the matrix factorisation, which a change of thickness does not need again."},
+      {"seconds_write", "Writing", "s", "Time for writing the output files."},
+      {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."},
+      {"repairs", "Repairs", "", "What was found wrong in the model and repaired, as sentences."}};
+}
+
+Json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+/// A flat slab behind the relief, in view coordinates times size, as a mesh of its own.
+TriangleMesh plate_mesh(PlateSize plate, double plate_mm, double front_mm) {
+  TriangleMesh box;
+  const double x = plate.width_mm / 2, y = plate.height_mm / 2;
+  box.V.resize(8, 3);
+  for (int i = 0; i < 8; ++i) box.V.row(i) << (i & 1 ? x : -x), (i & 2 ? y : -y), front_mm + (i & 4 ? plate_mm : 0.0);
+  box.F.resize(12, 3);
+  // In left-handed view axes these turn clockwise seen from outside, and so counter-clockwise in the model's.
+  box.F << 0, 1, 2, 1, 3, 2, 4, 6, 5, 5, 6, 7, 0, 4, 1, 1, 4, 5, 2, 3, 6, 3, 7, 6, 0, 2, 4, 2, 6, 4, 1, 5, 3, 3, 5, 7;
+  return box;
+}
+
+/// The deformed model standing on its plate: x right, y up, z towards the viewer, as a maker would hold it.
+Model display_model(const ReliefSolver& solver, const Relief& relief, PlateSize plate, const ReliefOptions& options) {
+  const TriangleMesh slab = plate_mesh(plate, options.plate_mm, 0);
+  const Eigen::Index n = relief.moved.rows(), m = solver.F().rows();
+  Model model;
+  model.mesh.V.resize(n + 8, 3);
+  model.mesh.V.topRows(n) = relief.moved * options.width_mm;
+  model.mesh.V.bottomRows(8) = slab.V;
+  model.mesh.V.col(2) *= -1;
+  model.mesh.F.resize(m + 12, 3);
+  model.mesh.F.topRows(m) = solver.F();
+  model.mesh.F.bottomRows(12) = slab.F.array() + static_cast<int>(n);
+  return model;
+}
+
+std::vector<VertexColumn> ply_columns(const ReliefSolver& solver, const Relief& relief) {
+  const Eigen::Index n = relief.u.size();
+  Eigen::VectorXd visible(n);
+  for (Eigen::Index i = 0; i < n; ++i) visible[i] = solver.visibility().vertex[static_cast<std::size_t>(i)];
+  return {{"lambda", relief.lambda_mm, ColumnKind::float64},
+          {"lambda_min", relief.lambda_min_mm, ColumnKind::float64},
+          {"lambda_max", relief.lambda_max_mm.cwiseMin(unbounded_mm), ColumnKind::float64},
+          {"visible", visible, ColumnKind::uint8},
+          {"normal_error_deg", relief.normal_error.vertex_deg, ColumnKind::float64}};
+}
+
+void report_relief(Json& report, const LoadedModel& loaded, const ReliefSolver& solver, const Relief& relief,
+                   const ReliefOptions& options) {
+  const ViewFrame& frame = solver.frame();
+  report["vertices"] = loaded.model.mesh.vertex_count();
+  report["faces"] = loaded.model.mesh.face_count();
+  report["visible_vertices"] = solver.visibility().visible_vertices;
+  report["energy"] = relief.energy;
+  report["energy_linear"] = relief.energy_linear;
+  report["normal_error_mean_deg"] = relief.normal_error.mean_deg;
+  report["normal_error_linear_mean_deg"] = relief.normal_error_linear.mean_deg;
+  report["normal_error_mean_deg_image"] = relief.normal_error.mean_deg_image;
+  report["normal_error_linear_mean_deg_image"] = relief.normal_error_linear.mean_deg_image;
+  report["bound_violation_max_mm"] = relief.bound_violation_max_mm;
+  report["order_violation_max_mm"] = relief.order_violation_max_mm;
+  report["order_rows"] = relief.order_rows;
+  report["kkt_residual"] = relief.qp.kkt_residual;
+  report["rounds"] = relief.qp.rounds;
+  report["active_constraints"] = relief.qp.active_constraints;
+  report["method_used"] = EnumNames<QpMethod>::names.at(static_cast<std::size_t>(relief.qp.method_used));
+  const double size = options.width_mm;
+  report["scale_mm_per_unit"] = frame.scale * size;
+  const bool straight = frame.kappa == 0;
+  const Vec3 viewpoint(0, 0, straight ? frame.P.col(2).minCoeff() - 1 : -1 / frame.kappa);
+  report["viewpoint_mm"] = vector_json(frame.to_model(viewpoint, size));
+  report["direction"] = vector_json(frame.axes.row(2).transpose());
+  report["right"] = vector_json(frame.axes.row(0).transpose());
+  report["up"] = vector_json(frame.axes.row(1).transpose());
+  report["plate_centre_mm"] = vector_json(frame.to_model(Vec3(0, 0, 0), size));
+  report["distance_mm"] = straight ? Json(nullptr) : Json(size / frame.kappa);
+}
+
+OperationResult run_relief(const OperationCall& call) {
+  const auto options = read_parameters<ReliefOptions>(call.parameters);
+  Context& context = call.context;
+  std::shared_ptr<const LoadedModel> loaded;
+  {
+    const auto span = context.span(0, 0.1, "Reading the model");
+    loaded = load_model(call);
+  }
+  const std::string key = "relief:" + loaded->key + ":" + ReliefSolver::key(options);
+  auto solver = call.session.find<ReliefSolver>(key);
+  const bool reused = solver != nullptr;
+  if (!solver) {
+    // The old factorisation goes first: two at once would not fit where one does.
+    call.session.drop("relief:" + loaded->key + ":");
+    const auto span = context.span(0.1, 0.55, "Finding the visible surface");
+    solver = std::make_shared<ReliefSolver>(loaded->model.mesh, options, context);
+    call.session.keep(key, solver, solver->memory_mb());
+  }
+  Stopwatch watch;
+  Relief relief;
+  {
+    const auto span = context.span(0.55, 0.9, "Fitting into the thickness");
+    relief = solver->solve(options, context);
+  }
+  const double seconds_solve = watch.lap();
+
+  context.progress(0.9, "Writing");
+  OperationResult result;
+  Json& report = result.report;
+  report_relief(report, *loaded, *solver, relief, options);
+  report["factor_reused"] = reused;
+
+  const ViewFrame& frame = solver->frame();
+  const PlateSize plate{options.width_mm + 2 * options.margin_mm,
+                        frame.image_height * options.width_mm + 2 * options.margin_mm};
+  report["size_mm"] = {plate.width_mm, plate.height_mm, options.plate_mm + options.thickness_mm};
+  const auto add = [&](const char* name, Bytes bytes) {
+    for (const OutputInfo& info : outputs())
+      if (info.name == name) result.outputs.push_back(make_output(info, std::move(bytes)));
+    context.check_cancelled();
+  };
+  if (call.wants("relief.ply")) {
+    Model model;
+    model.mesh = {frame.to_model(relief.moved, options.width_mm), solver->F()};
+    const std::vector<VertexColumn> columns = ply_columns(*solver, relief);
+    WriteOptions write;
+    write.columns = columns;
+    add("relief.ply", write_model(model, MeshFormat::ply, write, context));
+  }
+  if (call.wants("relief.glb"))
+    add("relief.glb", write_model(display_model(*solver, relief, plate, options), MeshFormat::glb, context));
+  const bool wants_solid = call.wants("relief.stl") || call.wants("relief.3mf") || call.wants("relief.obj");
+  if (wants_solid || call.wants("heightmap.png")) {
+    const HeightMap map = make_height_map(relief.moved, solver->F(), options.width_mm, plate, options.pixel_mm,
+                                          options.thickness_mm, context);
+    if (call.wants("heightmap.png")) {
+      report["heightmap_pixel_mm"] = {map.pitch_x_mm, map.pitch_y_mm};
+      report["heightmap_mm_per_level"] = options.thickness_mm / 65535;
+      Grey16Image image;
+      image.width = map.columns;
+      image.height = map.rows;
+      image.pixel_width_mm = map.pitch_x_mm;
+      image.pixel_height_mm = map.pitch_y_mm;
+      image.levels.reserve(map.height_mm.size());
+      for (int row = map.rows - 1; row >= 0; --row)  // pictures start at the top
+        for (int column = 0; column < map.columns; ++column)
+          image.levels.push_back(static_cast<std::uint16_t>(
+              std::lround(std::min(1.0, static_cast<double>(map.at(row, column)) / options.thickness_mm) * 65535)));
+      add("heightmap.png", write_png16(image));
+    }
+    if (wants_solid) {
+      Model solid;
+      solid.mesh = make_solid(map, options.plate_mm, solid_tolerance * options.thickness_mm, context);
+      report["watertight"] = Adjacency(solid.mesh).is_closed();
+      for (const char* name : {"relief.stl", "relief.3mf", "relief.obj"})
+        if (call.wants(name)) add(name, write_model(solid, *mesh_format_of_extension(name), context));
+    }
+  }
+  report["seconds_read"] = loaded->seconds_read + loaded->seconds_repair;
+  report["seconds_setup"] = reused ? 0.0 : solver->seconds_setup();
+  report["seconds_solve"] = seconds_solve + (reused ? 0.0 : solver->seconds_factorise());
+  report["seconds_factorise"] = reused ? 0.0 : solver->seconds_factorise();
+  report["seconds_write"] = watch.seconds();
+  report["repairs"] = loaded->repairs;
+  return result;
+}
+
+}  // namespace
+
+Operation relief_operation() {
+  Operation operation;
+  operation.name = "relief";
+  operation.title = "Relief";
+  operation.summary = "Turns a model into a thin relief that still looks deep from the viewpoint you choose.";
+  operation.inputs = {model_input_info()};
+  operation.parameters = describe_parameters<ReliefOptions>();
+  operation.outputs = outputs();
+  operation.report = report_fields();
+  operation.check = [](const Json& parameters) { read_parameters<ReliefOptions>(parameters); };
+  operation.run = run_relief;
+  return operation;
+}
+
+}  // namespace formwright

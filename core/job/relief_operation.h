@@ -1,7 +1,0 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#pragma once
-#include "job/operation.h"
-
-namespace formwright {
-Operation relief_operation();
-}

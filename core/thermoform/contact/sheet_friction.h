@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Finite friction between sheet and mould. A vertex that touches sticks while what the sheet pulls along the surface is
+// at most mu times what presses across it; beyond, it slides: it moves along the surface only, against a drag of mu
+// times that force. Which vertices slide, and their drags, are decided at the end of every step, for the next one.
+//
+// A vertex that the sheet pulls off the surface still adheres, and is dragged as if pressed with the same force, so
+// that mu -> infinity is the infinite adhesion of thesis 4.2.2.
+#include <memory>
+#include <vector>
+
+#include "thermoform/solver/block_matrix.h"
+#include "thermoform/sheet/membrane.h"
+#include "thermoform/sheet/sheet_mesh.h"
+
+namespace formwright {
+
+/// What a vertex is doing: the values of HeldVertices.
+enum HeldState : char { moves_freely = 0, stuck = 1, stuck_in_this_step = 2, sliding = 3 };
+
+constexpr double slide_lag_s = 1e-3;
+
+class SheetFriction {
+ public:
+  /// `coefficient`: mu, above 0.
+  /// `stiffness`: of the sheet (N/mm), for the lag: what slides is also held back by stiffness times slide_lag_s times
+  /// its speed, so that short steps slide little and always end.
+  SheetFriction(const SheetMesh& sheet, double coefficient, double stiffness);
+
+  /// The surface's normal where a vertex touches; to be kept up to date.
+  Vec3& normal(int vertex) { return normal_[static_cast<std::size_t>(vertex)]; }
+
+  /// Makes Newton's equation of a sliding vertex, which went `way_mm` in this step of `dt_s` so far, one along the
+  /// surface: drag and lag into the force, nothing across, and a stiffness across that lets it go nowhere.
+  void constrain(int vertex, const Vec3& way_mm, double dt_s, Vec3& force, std::array<Float4, 3>& diagonal) const;
+
+  /// Who slides from now on, by the forces (n x 3, N) that act on the vertices besides those of the mould. While all is
+  /// `settling`, every time that a vertex starts to slide takes a larger force than the time before, as contacts that
+  /// rest grow firmer; without that a few in corners and webs would hop for ever.
+  void decide(const Positions& force, bool settling, HeldVertices& held);
+
+  double coefficient() const { return coefficient_; }
+  /// The triangles around each vertex.
+  const std::vector<std::vector<int>>& faces_of() const { return *faces_of_; }
+
+ private:
+  double coefficient_, stiffness_;
+  std::vector<char> clamped_;
+  std::vector<int> starts_;  // per vertex: how often it began to slide while all was settling
+  std::vector<Vec3> normal_, drag_;
+  std::shared_ptr<const std::vector<std::vector<int>>> faces_of_;  // shared: a step copies this object, to go back to
+};
+
+}  // namespace formwright

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What printing the pattern and scanning the object add to what the machine did. 0 where absent.
+#include <tuple>
+
+#include "base/data/parameters.h"
+
+namespace formwright {
+
+struct MeasurementEffects {
+  static constexpr std::string_view group_title = "Measurement faults";
+
+  double print_scale = 0;  // the sheet's true coordinates are (1 + print_scale) times those in measured.csv
+  double scan_scale = 0;   // measured = (1 + scan_scale) true + shift, about the origin on the raised base plate
+  double scan_shift_x_mm = 0;
+  double scan_shift_y_mm = 0;
+  double scan_shift_z_mm = 0;
+
+  static constexpr auto parameters = std::tuple{
+      parameter(
+          "print_scale", &MeasurementEffects::print_scale, "Print too large by", unit::none, -0.2, 0.2,
+          "How much larger than intended the pattern on the sheet was printed, as a fraction: 0.01 is 1 %, negative is too small.")
+          .group(group_title)
+          .slider(-0.05, 0.05)
+          .advanced(),
+      parameter(
+          "scan_scale", &MeasurementEffects::scan_scale, "Scan too large by", unit::none, -0.2, 0.2,
+          "How much larger than the object the scan is, as a fraction: 0.01 is 1 %, negative is too small. It grows from the centre of the opening on the plate.")
+          .group(group_title)
+          .slider(-0.05, 0.05)
+          .advanced(),
+      parameter("scan_shift_x_mm", &MeasurementEffects::scan_shift_x_mm, "Scan misplaced in x", unit::mm, -100, 100,
+                "How far the scan lies to the right of the true position; negative is to the left.")
+          .group(group_title)
+          .slider(-5, 5)
+          .advanced(),
+      parameter("scan_shift_y_mm", &MeasurementEffects::scan_shift_y_mm, "Scan misplaced in y", unit::mm, -100, 100,
+                "How far the scan lies behind the true position; negative is in front of it.")
+          .group(group_title)
+          .slider(-5, 5)
+          .advanced(),
+      parameter("scan_shift_z_mm", &MeasurementEffects::scan_shift_z_mm, "Scan misplaced in z", unit::mm, -100, 100,
+                "How far the scan lies above the true position; negative is below it.")
+          .group(group_title)
+          .slider(-5, 5)
+          .advanced()};
+};
+
+}  // namespace formwright

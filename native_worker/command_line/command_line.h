@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Words of a shell to job messages: flags derive from the catalog.
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "job/contract/operation.h"
+
+namespace formwright {
+
+struct ParsedCommand {
+  Json message;                                             // without hashes: the files are named below
+  std::map<std::string, std::filesystem::path> files;       // input name -> file
+  std::map<std::string, std::vector<std::string>> folders;  // of these, folders to pack, and which files of theirs
+  std::filesystem::path out, results;  // results: where intermediate results are kept; empty for out/simulations
+  bool quiet = false, help = false;
+};
+
+/// `words`: what follows the operation's name. Throws Error{invalid_input} naming the flag.
+ParsedCommand parse_command(const Operation& operation, const std::vector<std::string>& words);
+
+std::string overview_text();  // formwright, formwright --help
+std::string operation_help(const Operation& operation);
+std::string operation_usage(const Operation& operation);  // "formwright relief --mesh FILE --out DIR [flags]"
+
+}  // namespace formwright

@@ -1,9 +1,0 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/io/obj.h"
-
-#include "fuzz/fuzz_reader.h"
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  formwright::fuzz::read_and_write(data, size, formwright::read_obj);
-  return 0;
-}

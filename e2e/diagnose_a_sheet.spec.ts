@@ -175,7 +175,7 @@ test('a scan is measured, its corners set by hand, and becomes an object', async
     await expect(page.getByRole('button', { name: 'Use these points' })).toBeVisible(seen);
   };
   await measure();
-  await expect(page.getByText(/^likeness (0\.99|1\.0)/)).toBeVisible();
+  await expect(page.getByText(/^similarity (0\.99|1\.0)/)).toBeVisible();
 
   await expect(page.getByRole('img', { name: /^Corner .*, found at/ })).toHaveCount(4);
   await page.getByRole('button', { name: 'Set them by hand' }).click();
@@ -203,7 +203,7 @@ test('a scan is measured, its corners set by hand, and becomes an object', async
   await expect(corner('back left')).toHaveAttribute('aria-label', before ?? '');
   await expectAccessibleEverywhere(page, 'corners');
   await measure();
-  await expect(page.getByText(/^likeness (0\.99|1\.0)/)).toBeVisible();
+  await expect(page.getByText(/^similarity (0\.99|1\.0)/)).toBeVisible();
 
   await page.getByRole('button', { name: 'Use these points' }).click();
   await expect(page.getByText('Still missing: mould.obj and setup.json')).toBeVisible();

@@ -142,8 +142,8 @@ export function testEveryLook(name: string, story: (page: Page) => Promise<void>
 export async function expectAccessible(page: Page, what: string): Promise<void> {
   const { violations } = await new AxeBuilder({ page }).analyze();
   const serious = violations.filter(({ impact }) => impact === 'serious' || impact === 'critical');
-  const told = serious.map(
+  const listed = serious.map(
     ({ id, nodes }) => `${what}: ${id}: ${nodes.map(({ html }) => html.slice(0, 120)).join(' | ')}`,
   );
-  expect(told).toEqual([]);
+  expect(listed).toEqual([]);
 }

@@ -89,10 +89,10 @@ test('from the sample mountain to a printed picture', async ({ page }) => {
     const { media } = await askWorker<{ media: Media[] }>(`machines/${id}`);
     const a4 = media.find(({ name }) => name === 'iso_a4_210x297mm');
     const read = resolve(import.meta.dirname, 'printed_picture.py');
-    const told = execFileSync('/usr/bin/python3', [read, job, picture, JSON.stringify(a4?.margins_mm)], {
+    const output = execFileSync('/usr/bin/python3', [read, job, picture, JSON.stringify(a4?.margins_mm)], {
       encoding: 'utf8',
     });
-    const result = JSON.parse(told) as { sheet_mm: number[]; off_mean: number; shifted_mm: number };
+    const result = JSON.parse(output) as { sheet_mm: number[]; off_mean: number; shifted_mm: number };
     expect(Math.min(...result.sheet_mm)).toBeCloseTo(210, 0);
     expect(Math.max(...result.sheet_mm)).toBeCloseTo(297, 0);
     expect(result.off_mean).toBeLessThan(3); // of 255 grey levels

@@ -8,6 +8,8 @@ cd "$FORMWRIGHT_ROOT"
 setup/native.sh --test
 say "formatting"
 setup/format.sh --check
+say "names"
+python3 tests/architecture/check_words.py
 say "shell scripts"
 shellcheck -x --source-path=SCRIPTDIR setup/*.sh .ci/run
 say "clang-tidy"

@@ -124,12 +124,12 @@ class Pool {
       alone_until_ = done + waited + pause_;
       pause_ = std::min<Clock::duration>(2 * pause_, std::chrono::seconds(1));
     } else {
-      pause_ = std::max<Clock::duration>(pause_ - pause_ / 256, least_pause);
+      pause_ = std::max<Clock::duration>(pause_ - pause_ / 256, min_pause);
     }
   }
 
  private:
-  static constexpr std::chrono::milliseconds least_pause{5}, long_loop{5};
+  static constexpr std::chrono::milliseconds min_pause{5}, long_loop{5};
   // The gate: whether a loop is open, how many helpers are inside, and the loop's number.
   static constexpr std::uint32_t open = 1, one_helper = 2, one_loop = 256, low_bits = one_loop - 1;
 
@@ -159,7 +159,7 @@ class Pool {
 
   std::mutex in_use_;
   Clock::time_point alone_until_{};  // guarded by in_use_, as is the next
-  Clock::duration pause_ = least_pause;
+  Clock::duration pause_ = min_pause;
   Loop* loop_ = nullptr;  // written while no helper is inside
   std::atomic<int> seats_{0};
   std::atomic<std::uint32_t> gate_{0};

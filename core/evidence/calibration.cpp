@@ -28,7 +28,7 @@ std::vector<Eigen::VectorXd> take_noise(const ForwardModel& model, const Predict
 
 /// The size of structure under which what is left is most probable, but no less than the model's own: contact alone
 /// makes simulations chatter by more than the mean of many points could tell.
-std::size_t most_probable_structure(const ForwardModel& model, const MisfitOfAll& misfit, const Predictions& left) {
+std::size_t likeliest_structure(const ForwardModel& model, const MisfitOfAll& misfit, const Predictions& left) {
   const GramByStructure gram = misfit.gram(left, std::vector<Sensitivities>(left.size()));
   std::size_t best = 0;
   while (misfit.sizes()[best] < model.known_misfit()) ++best;
@@ -162,17 +162,17 @@ Calibration calibrate(SimulationBag& bag, Context& context) {
   {
     const auto span = context.span(0.6, 1, "Finding how certain each parameter is");
     // What another, equally good simulation would do differently is not known any better than that.
-    const std::vector<int> liberties = model.parameters_with(ParameterRole::discrepancy);
+    const std::vector<int> discrepancies = model.parameters_with(ParameterRole::discrepancy);
     const std::vector<Sensitivities> freedom =
-        sensitivities_at(bag, fit.u, fit.predictions, liberties, context, "Finding how certain each parameter is");
+        sensitivities_at(bag, fit.u, fit.predictions, discrepancies, context, "Finding how certain each parameter is");
     const std::vector<Eigen::VectorXd> weights = take_noise(model, residuals(model, fit.predictions), result.noise);
     // Directions alike: what little the simulation errs across walls, the material would be made to answer for.
-    std::vector<Precisions> precisions = precisions_of(model, weights, movements_of(model, liberties, freedom));
+    std::vector<Precisions> precisions = precisions_of(model, weights, movements_of(model, discrepancies, freedom));
     for (std::size_t object = 0; object < precisions.size(); ++object)
       precisions[object] = isotropic(mean_weights(precisions[object]), model.measurements()[object].measured.cols());
     const MisfitOfAll misfit(model, precisions);
     const StructuredObjective objective(
-        model, misfit, most_probable_structure(model, misfit, residuals(model, fit.predictions)), liberties, freedom);
+        model, misfit, likeliest_structure(model, misfit, residuals(model, fit.predictions)), discrepancies, freedom);
     result.profiles = profile(bag, fit, objective, context);
   }
   result.simulations = bag.simulations();

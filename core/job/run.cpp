@@ -68,9 +68,9 @@ void check_sample(const std::string& input_name, const InputBlob& input) {
   for (const SampleInfo& sample : sample_catalog()) {
     if (sample.name == input.sample) {
       if (input.sample_vertices != 0 &&
-          (input.sample_vertices < least_sample_vertices || input.sample_vertices > most_sample_vertices))
-        throw invalid(input_name, "A sample has from " + std::to_string(least_sample_vertices) + " to " +
-                                      std::to_string(most_sample_vertices) + " vertices.");
+          (input.sample_vertices < min_sample_vertices || input.sample_vertices > max_sample_vertices))
+        throw invalid(input_name, "A sample has from " + std::to_string(min_sample_vertices) + " to " +
+                                      std::to_string(max_sample_vertices) + " vertices.");
       return;
     }
     list += (list.empty() ? "" : ", ") + sample.name;

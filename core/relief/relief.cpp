@@ -15,7 +15,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 // About 3.9 kB a vertex: 6 GB natively, and what fits into the 4 GB that WASM can have.
-constexpr int most_vertices = sizeof(void*) > 4 ? 1'500'000 : 600'000;
+constexpr int max_vertices = sizeof(void*) > 4 ? 1'500'000 : 600'000;
 
 struct SlabBounds {
   BoundedQpConstraints constraints;  // without rows
@@ -48,13 +48,13 @@ SlabBounds slab_bounds(const ViewFrame& frame, const Visibility& visibility, Bou
 /// Divides the common scale out again, eq. (3.11) at mu = 1. Where the bounds leave it free, the relief is put
 /// back against its plate: the smallest m, as the term alpha |mu|^2 of eq. (3.14) would choose.
 Eigen::VectorXd settled(const ViewFrame& frame, const BoundedQpConstraints& c, const BoundedQpSolution& qp) {
-  double least = -infinity, most = infinity;
+  double minimum = -infinity, maximum = infinity;
   for (Eigen::Index i = 0; i < qp.u.size(); ++i) {
     if (std::isinf(c.upper[i])) continue;
-    least = std::max(least, (qp.u[i] - c.upper[i]) / c.upper_slope[i]);
-    most = std::min(most, (qp.u[i] - c.lower[i]) / c.lower_slope[i]);
+    minimum = std::max(minimum, (qp.u[i] - c.upper[i]) / c.upper_slope[i]);
+    maximum = std::min(maximum, (qp.u[i] - c.lower[i]) / c.lower_slope[i]);
   }
-  const double m = least < most ? least : 0.5 * (least + most);
+  const double m = minimum < maximum ? minimum : 0.5 * (minimum + maximum);
   Eigen::VectorXd u = (qp.u.array() - m) / (1 + frame.kappa * m);
   return u.cwiseMax(c.lower).cwiseMin(c.upper);
 }
@@ -95,10 +95,10 @@ std::string ReliefSolver::key(const ReliefOptions& options) {
 }
 
 ReliefSolver::ReliefSolver(const TriangleMesh& mesh, const ReliefOptions& options, Context& context) : F_(mesh.F) {
-  if (mesh.vertex_count() > most_vertices) {
+  if (mesh.vertex_count() > max_vertices) {
     throw Error(ErrorCode::invalid_input, "mesh",
                 "The model has " + std::to_string(mesh.vertex_count()) +
-                    " vertices, and a relief is solved for at most " + std::to_string(most_vertices) +
+                    " vertices, and a relief is solved for at most " + std::to_string(max_vertices) +
                     " here: simplify it first; 300000 show all that can be printed.");
   }
   Stopwatch watch;

@@ -63,16 +63,16 @@ double distance_for_ratio(const Positions& P, double ratio, const ReliefOptions&
   const auto ratio_at = [&](double distance) { return distance / seen_extent(P, distance).width(); };
   const double nearest = -front / (1 - nearest_front);
   if (front < 0 && ratio_at(nearest) > ratio) {
-    const double least = ratio_at(nearest);
+    const double minimum = ratio_at(nearest);
     const std::string where = options.distance_mm ? "distance_mm" : "field_of_view_deg";
-    const std::string mend =
+    const std::string fix =
         options.distance_mm
-            ? "give a distance of at least " + number(std::ceil(least * options.width_mm)) + " mm"
+            ? "give a distance of at least " + number(std::ceil(minimum * options.width_mm)) + " mm"
             : "give a field of view of at most " +
-                  number(std::floor(2 * std::atan(0.5 / least) * 180 / std::numbers::pi * 10) / 10) + "°";
+                  number(std::floor(2 * std::atan(0.5 / minimum) * 180 / std::numbers::pi * 10) / 10) + "°";
     throw Error(
         ErrorCode::invalid_input, where,
-        "The viewpoint lies inside the model or too close to it: " + mend + ", or look from far (orthographic).");
+        "The viewpoint lies inside the model or too close to it: " + fix + ", or look from far (orthographic).");
   }
   double low = std::max(nearest, 0.0), high = std::max(2 * low, seen_extent(P, INFINITY).width());
   while (ratio_at(high) < ratio) high *= 2;

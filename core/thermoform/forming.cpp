@@ -17,8 +17,8 @@ constexpr double longest_step_s = 0.02;  // creep is solved within a step: thick
 constexpr double shortest_step_s = 1e-8;
 constexpr double longest_free_step_s = 0.1;  // while the platform comes up and nothing touches
 constexpr double rest_speed_mm_per_s = 0.5;
-constexpr double least_drawing_s = 0.05;  // before what slides is brought to rest
-constexpr int most_steps = 20000;
+constexpr double min_drawing_s = 0.05;  // before what slides is brought to rest
+constexpr int max_steps = 20000;
 
 std::string millimetres(double value) {
   char text[32];
@@ -33,11 +33,11 @@ void check_options(const ThermoformOptions& o) {
   if (o.clamp_opening_y_mm > o.sheet_y_mm)
     throw Error(ErrorCode::invalid_input, "clamp_opening_y_mm",
                 "The clamp opening is longer than the sheet: make it at most " + millimetres(o.sheet_y_mm) + ".");
-  const double most_slip_mm = 0.15 * std::min(o.clamp_opening_x_mm, o.clamp_opening_y_mm);
-  if (o.clamp_slip_mm > most_slip_mm)
+  const double max_slip_mm = 0.15 * std::min(o.clamp_opening_x_mm, o.clamp_opening_y_mm);
+  if (o.clamp_slip_mm > max_slip_mm)
     throw Error(ErrorCode::invalid_input, "clamp_slip_mm",
                 "The sheet slips too far for this clamp opening: set clamp_slip_mm to at most " +
-                    millimetres(most_slip_mm) + ".");
+                    millimetres(max_slip_mm) + ".");
   check_effects(o);
 }
 
@@ -77,13 +77,13 @@ class Driver {
   /// Steps over `duration_s`, or until `stop` says so. `load(t, dt)` is what acts in the step that ends at t from the
   /// phase's start.
   template <class Load, class Stop>
-  void run(FormingPhase phase, double duration_s, double first_step_s, double longest_s, double most_move_mm,
+  void run(FormingPhase phase, double duration_s, double first_step_s, double longest_s, double max_move_mm,
            Load&& load, Stop&& stop, const char* stage) {
     double t = 0, dt = std::min(first_step_s, duration_s);
     while (t < duration_s * (1 - 1e-12)) {
       dt = std::min({dt, longest_s, duration_s - t});
       const bool last = t + dt >= duration_s * (1 - 1e-9);
-      const SheetDynamics::Outcome outcome = dynamics_.step(dt, load(t + dt, dt), most_move_mm, context_);
+      const SheetDynamics::Outcome outcome = dynamics_.step(dt, load(t + dt, dt), max_move_mm, context_);
       if (outcome != SheetDynamics::Outcome::done) {
         dt *= outcome == SheetDynamics::Outcome::moved_too_far ? 0.5 : 0.4;
         if (dt < shortest_step_s)
@@ -92,13 +92,13 @@ class Driver {
               "The simulated sheet tears apart: raise the yield strain or the creep rate, lower the vacuum, or change the number of triangles.");
         continue;
       }
-      if (dynamics_.statistics().steps > most_steps)
+      if (dynamics_.statistics().steps > max_steps)
         throw Error(ErrorCode::could_not_solve, "step_mm",
                     "The simulation took more than 20000 steps: use longer steps or a lower vacuum.");
       t = last ? duration_s : t + dt;
       recorder_.record(dynamics_, phase);
       context_.progress(t / duration_s, stage);
-      const double wanted = dynamics_.last_move_mm() > 0 ? 0.9 * most_move_mm / dynamics_.last_move_mm() : 2.0;
+      const double wanted = dynamics_.last_move_mm() > 0 ? 0.9 * max_move_mm / dynamics_.last_move_mm() : 2.0;
       dt *= std::clamp(wanted, 0.3, 2.0);
       if (stop(dt)) break;
     }
@@ -158,14 +158,14 @@ void measure(const SheetDynamics& dynamics, const MouldContact& contact, const T
   sheet.contact_s = Eigen::Map<const Eigen::VectorXd>(dynamics.contact_time_s().data(), n);
 
   double volume = 0, flat_volume = 0;
-  result.least_thickness_mm = o.sheet_thickness_mm;
+  result.min_thickness_mm = o.sheet_thickness_mm;
   for (int f = 0; f < F.rows(); ++f) {
     const Vec3 a = x.row(F(f, 0)), b = x.row(F(f, 1)), c = x.row(F(f, 2));
     const double area = 0.5 * (b - a).cross(c - a).norm(),
                  h = dynamics.membrane().volume_mm3()[static_cast<std::size_t>(f)] / std::max(area, 1e-12);
     volume += area * h;
     flat_volume += dynamics.membrane().volume_mm3()[static_cast<std::size_t>(f)];
-    result.least_thickness_mm = std::min(result.least_thickness_mm, h);
+    result.min_thickness_mm = std::min(result.min_thickness_mm, h);
     bool touches = true;
     for (int k = 0; k < 3; ++k) touches &= dynamics.held()[static_cast<std::size_t>(F(f, k))] != 0;
     (touches ? result.formed_area_mm2 : result.unformed_area_mm2) += area;
@@ -246,9 +246,9 @@ FormedResult form_sheet(std::shared_ptr<const MouldShape> shape, const Placement
     dynamics.guess(sagging_guess(dynamics, o));
     // Newton's iteration may overshoot on the way; beyond this it has lost its way, and what it meets there is not
     // there.
-    const double most_sag_mm = std::max(3 * elastic_sag_mm(o), 20.0);
+    const double max_sag_mm = std::max(3 * elastic_sag_mm(o), 20.0);
     driver.run(
-        FormingPhase::relax, o.relaxation_s, o.relaxation_s / 4, o.relaxation_s / 2, most_sag_mm,
+        FormingPhase::relax, o.relaxation_s, o.relaxation_s / 4, o.relaxation_s / 2, max_sag_mm,
         [](double, double) { return StepLoad{}; }, go_on, "Sagging under its weight");
     result.sag_mm = o.clamp_height_mm - start_z - dynamics.x().col(2).minCoeff();
     result.phase_end_s[0] = dynamics.time_s();
@@ -283,7 +283,7 @@ FormedResult form_sheet(std::shared_ptr<const MouldShape> shape, const Placement
           StepLoad load;
           t_end = t;
           load.pressure_mpa = pressure(t);
-          load.settling = t > std::max(o.vacuum_ramp_s, least_drawing_s);
+          load.settling = t > std::max(o.vacuum_ramp_s, min_drawing_s);
           return load;
         },
         [&](double) {

@@ -34,7 +34,7 @@ struct FormedResult {
   bool reached_time_limit = false;
   double pressure_end_kpa = 0;
   double volume_drift = 0;                            // relative, of sum A h
-  double least_thickness_mm = 0;                      // of the faces
+  double min_thickness_mm = 0;                        // of the faces
   double formed_area_mm2 = 0, unformed_area_mm2 = 0;  // of the final sheet: faces with a corner that never touched
   double mould_edge_penetration_mm = 0;               // deepest sharp point of the mould beyond the sheet's inner face
   double vertex_distance_min_mm = 0;  // smallest of the free and stuck vertices from mould and plate; above 0

@@ -48,13 +48,13 @@ Bytes write_forming_glb(const FormedResult& result, const TriangleMesh& mould, d
   const auto place = [&](const FormingFrame& frame, Eigen::Index i, int k) {
     return frame.V(i, k) + (k == 2 ? frame.platform_z_mm : 0);
   };
-  double least = sheet_thickness_mm, most = sheet_thickness_mm;
+  double minimum = sheet_thickness_mm, maximum = sheet_thickness_mm;
   for (const FormingFrame& frame : frames)
     for (const float h : frame.thickness_mm) {
-      least = std::min(least, static_cast<double>(h));
-      most = std::max(most, static_cast<double>(h));
+      minimum = std::min(minimum, static_cast<double>(h));
+      maximum = std::max(maximum, static_cast<double>(h));
     }
-  const double scale_from = 0.2 * std::floor(least / (0.2 * sheet_thickness_mm)) * sheet_thickness_mm,
+  const double scale_from = 0.2 * std::floor(minimum / (0.2 * sheet_thickness_mm)) * sheet_thickness_mm,
                span = std::max(sheet_thickness_mm - scale_from, 1e-9);
   const auto colours_of = [&](const FormingFrame& frame) {
     std::vector<Vec3> colours(n);

@@ -9,7 +9,7 @@ FrameRecorder::FrameRecorder(const ThermoformOptions& options, double start_z_mm
     : start_z_mm_(start_z_mm),
       speed_mm_per_s_(options.mould_speed_mm_per_s),
       raise_begins_s_(options.relaxation_s),
-      most_frames_(std::max(2, options.frames)) {}
+      max_frames_(std::max(2, options.frames)) {}
 
 FormingFrame FrameRecorder::frame(const SheetDynamics& dynamics, FormingPhase phase) const {
   FormingFrame result;
@@ -30,7 +30,7 @@ void FrameRecorder::record(const SheetDynamics& dynamics, FormingPhase phase) {
   last_phase_ = phase;
   PhaseFrames& kept = phases_[static_cast<int>(phase)];
   // A quarter of the frames for what hardly moves, the rest shared.
-  const int room = std::max(2, phase == FormingPhase::relax ? most_frames_ / 8 : most_frames_ / 2 - most_frames_ / 16);
+  const int room = std::max(2, phase == FormingPhase::relax ? max_frames_ / 8 : max_frames_ / 2 - max_frames_ / 16);
   if (kept.offered++ % kept.stride != 0) return;
   kept.frames.push_back(frame(dynamics, phase));
   if (static_cast<int>(kept.frames.size()) > 2 * room) {
@@ -48,7 +48,7 @@ std::vector<FormingFrame> FrameRecorder::finish(const SheetDynamics& dynamics) {
   FormingFrame last = frame(dynamics, last_phase_);
   if (!all.empty() && all.back().time_s >= last.time_s) all.pop_back();
   // Thin out evenly what is still too many; the first one stays.
-  const auto room = static_cast<std::size_t>(most_frames_ - 1);
+  const auto room = static_cast<std::size_t>(max_frames_ - 1);
   std::vector<FormingFrame> chosen;
   if (all.size() <= room) {
     chosen = std::move(all);

@@ -27,7 +27,7 @@ class FrameRecorder {
   };
   PhaseFrames phases_[3];
   double start_z_mm_, speed_mm_per_s_, raise_begins_s_;
-  int most_frames_;
+  int max_frames_;
   FormingPhase last_phase_ = FormingPhase::relax;
 };
 

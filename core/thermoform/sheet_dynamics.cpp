@@ -13,9 +13,9 @@ namespace formwright {
 namespace {
 
 constexpr double cg_tolerance = 0.1;  // of Newton's directions: the next iteration mends the rest
-constexpr int most_cg_iterations = 400;
-constexpr int most_newton_iterations = 12;
-constexpr int most_sliding_iterations = 5;
+constexpr int max_cg_iterations = 400;
+constexpr int max_newton_iterations = 12;
+constexpr int max_sliding_iterations = 5;
 constexpr double settled_share = 0.05;  // of the step's limit: an increment this small ends the iteration
 constexpr double wrinkle_share =
     0.2;  // so much a few vertices may go on moving: squeezed triangles buckle back and forth
@@ -46,7 +46,7 @@ SheetVariation variation_of(const SheetMesh& sheet, const ThermoformOptions& o) 
 
 /// Where the rim has gone, per mm by which the clamp gives way: inwards on every side, at the corners from both, and
 /// between so smoothly that no triangle at the rim is turned over.
-Vec2 way_in(const Vec2& flat_mm, const ThermoformOptions& o) {
+Vec2 inward(const Vec2& flat_mm, const ThermoformOptions& o) {
   const double xi = 2 * flat_mm.x() / o.clamp_opening_x_mm, eta = 2 * flat_mm.y() / o.clamp_opening_y_mm;
   return {-xi * xi * xi, -eta * eta * eta};
 }
@@ -222,15 +222,15 @@ int SheetDynamics::find_contacts(const Positions& from, Positions& to, const std
 
 Vec3 SheetDynamics::slide(int vertex, const Vec3& from, const Vec3& wanted, double radius_mm) {
   // No farther at once than the normal may be trusted.
-  const double most_mm = 0.25 * edge_mm_;
-  Vec3 to = from + (wanted.norm() > most_mm ? Vec3(most_mm / wanted.norm() * wanted) : wanted);
+  const double max_mm = 0.25 * edge_mm_;
+  Vec3 to = from + (wanted.norm() > max_mm ? Vec3(max_mm / wanted.norm() * wanted) : wanted);
   Vec3& normal = friction_->normal(vertex);
   if (contact_->slide(from, to, normal, radius_mm)) normal = contact_->normal(to, radius_mm);
   else held_[static_cast<std::size_t>(vertex)] = moves_freely;
   return to - from;
 }
 
-SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, double most_move_mm, Context& context) {
+SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, double max_move_mm, Context& context) {
   const std::size_t points_before = points_.contacts().size();
   Stopwatch watch;
   begin_membrane_step();
@@ -246,7 +246,7 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
     if (sheet_.clamped[static_cast<std::size_t>(i)]) {
       x.row(i) += load.clamp_shift.transpose();
       if (load.clamp_slip_mm != 0)
-        x.row(i).head<2>() += load.clamp_slip_mm * way_in(sheet_.flat_mm.row(i).transpose(), options_).transpose();
+        x.row(i).head<2>() += load.clamp_slip_mm * inward(sheet_.flat_mm.row(i).transpose(), options_).transpose();
     } else if (!held_[static_cast<std::size_t>(i)]) {
       if (has_guess) x.row(i) = guess_.row(i);
       else x.row(i) += dt_s * v_.row(i);
@@ -272,7 +272,7 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
   bool settled = free_.empty();
   for (int iteration = 0; !settled; ++iteration) {
     context.check_cancelled();
-    if (iteration == most_newton_iterations) {
+    if (iteration == max_newton_iterations) {
       last_iterate_ = std::move(x);
       return give_up(Outcome::not_converged);
     }
@@ -289,7 +289,7 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
                              static_cast<float>(residual.z()), 0};
     }
     statistics_.seconds_assembly += watch.lap();
-    statistics_.cg_iterations += cg_.solve(matrix_, right_side, free_, cg_tolerance, most_cg_iterations, direction);
+    statistics_.cg_iterations += cg_.solve(matrix_, right_side, free_, cg_tolerance, max_cg_iterations, direction);
     ++statistics_.newton_iterations;
     statistics_.seconds_linear += watch.lap();
 
@@ -301,7 +301,7 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
       if (held_[static_cast<std::size_t>(i)] == sliding) {
         delta = slide(i, x.row(i).transpose(), delta, radius[static_cast<std::size_t>(i)]);
         // One that still goes to and fro, as between the plate and the model, is done for this step.
-        if (iteration >= most_sliding_iterations && held_[static_cast<std::size_t>(i)] == sliding &&
+        if (iteration >= max_sliding_iterations && held_[static_cast<std::size_t>(i)] == sliding &&
             delta.norm() > settled_share * step_limit_mm_) {
           held_[static_cast<std::size_t>(i)] = stuck;
           ++cornered;
@@ -315,7 +315,7 @@ SheetDynamics::Outcome SheetDynamics::step(double dt_s, const StepLoad& load, do
     }
     moved = std::sqrt(moved_squared);
     if (!std::isfinite(increment_squared)) return give_up(Outcome::not_converged);
-    if (moved > 1.5 * most_move_mm) return give_up(Outcome::moved_too_far);
+    if (moved > 1.5 * max_move_mm) return give_up(Outcome::moved_too_far);
     const double mean_squared = sum_squared / std::max<double>(1, static_cast<double>(free_.size()));
     settled = std::sqrt(increment_squared) < settled_share * step_limit_mm_ ||
               (iteration >= 2 && std::sqrt(increment_squared) < wrinkle_share * step_limit_mm_ &&

@@ -41,9 +41,9 @@ class SheetDynamics {
                 std::shared_ptr<const MouldContact> contact);
 
   enum class Outcome { done, moved_too_far, not_converged };
-  /// Tries one step; unless done, nothing has changed. No free vertex may move farther than `most_move_mm` beside the
+  /// Tries one step; unless done, nothing has changed. No free vertex may move farther than `max_move_mm` beside the
   /// clamp's shift.
-  Outcome step(double dt_s, const StepLoad& load, double most_move_mm, Context& context);
+  Outcome step(double dt_s, const StepLoad& load, double max_move_mm, Context& context);
 
   /// Adds to the velocities of vertices that are not held: the platform's change of speed.
   void add_velocity(const Vec3& mm_per_s);

@@ -13,15 +13,15 @@ namespace {
 
 /// Triangles from the first one on, each before those beyond it, and the half-edge of each that leads back.
 struct FaceTree {
-  std::vector<int> order, way_back;
+  std::vector<int> order, edge_back;
 };
 
 FaceTree tree_of(const Adjacency& adjacency) {
   FaceTree tree{{0}, std::vector<int>(std::size_t(adjacency.face_count()), -1)};
   for (std::size_t i = 0; i < tree.order.size(); ++i)
     for (int h = 3 * tree.order[i]; h < 3 * tree.order[i] + 3; ++h)
-      if (const int o = adjacency.opposite(h); o >= 0 && h != tree.way_back[tree.order[i]]) {
-        tree.way_back[o / 3] = o;
+      if (const int o = adjacency.opposite(h); o >= 0 && h != tree.edge_back[tree.order[i]]) {
+        tree.edge_back[o / 3] = o;
         tree.order.push_back(o / 3);
       }
   return tree;
@@ -43,13 +43,13 @@ void colour_by_bands(const Adjacency& adjacency, const FaceTree& tree, const std
   for (std::size_t i = faces; i-- > 0;) {
     const int f = tree.order[i];
     if (band[f] >= 0) cost[f][1 - band[f]] += area[f];
-    const int h = tree.way_back[f];
+    const int h = tree.edge_back[f];
     if (h < 0) continue;
     auto& parent = cost[adjacency.opposite(h) / 3];
     for (int c = 0; c < fabric_count; ++c) parent[c] += std::min(cost[f][c], cost[f][1 - c] + seam_cost[h]);
   }
   for (const int f : tree.order) {
-    const int h = tree.way_back[f];
+    const int h = tree.edge_back[f];
     if (h < 0) {
       colours.of_face[f] = cost[f][1] < cost[f][0] ? 1 : 0;
       continue;
@@ -64,14 +64,14 @@ void colour_by_halves(const Adjacency& adjacency, const FaceTree& tree, const st
   const std::size_t faces = area.size();
   std::vector<double> beyond = area;
   for (std::size_t i = faces; i-- > 1;)
-    beyond[adjacency.opposite(tree.way_back[tree.order[i]]) / 3] += beyond[tree.order[i]];
+    beyond[adjacency.opposite(tree.edge_back[tree.order[i]]) / 3] += beyond[tree.order[i]];
   const double half = beyond[tree.order[0]] / 2;
   int top = tree.order[1];
   for (std::size_t i = 1; i < faces; ++i)
     if (std::abs(beyond[tree.order[i]] - half) < std::abs(beyond[top] - half)) top = tree.order[i];
   for (std::size_t i = 1; i < faces; ++i) {
     const int f = tree.order[i];
-    colours.of_face[f] = f == top ? 1 : colours.of_face[adjacency.opposite(tree.way_back[f]) / 3];
+    colours.of_face[f] = f == top ? 1 : colours.of_face[adjacency.opposite(tree.edge_back[f]) / 3];
   }
 }
 
@@ -117,8 +117,8 @@ FabricColours two_fabrics(const Ribbon& ribbon, double width_mm) {
   for (int h = 0; h < static_cast<int>(seam_cost.size()); ++h)
     seam_cost[h] = 2 * width_mm * (position(adjacency.from(h)) - position(adjacency.to(h))).norm();
   const FaceTree tree = tree_of(adjacency);
-  const double least_band_mm2 = 2 * width_mm * width_mm;
-  colours.has_bands = std::min(on_side[0], on_side[1]) > least_band_mm2;
+  const double min_band_mm2 = 2 * width_mm * width_mm;
+  colours.has_bands = std::min(on_side[0], on_side[1]) > min_band_mm2;
   if (colours.has_bands) colour_by_bands(adjacency, tree, band, area, seam_cost, colours);
   else colour_by_halves(adjacency, tree, area, colours);
   for (std::size_t f = 0; f < faces; ++f) colours.area_mm2[colours.of_face[f]] += area[f];

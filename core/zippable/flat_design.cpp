@@ -30,10 +30,10 @@ Eigen::Matrix<double, dimensions, 1> read_point(const Json& json) {
   return point;
 }
 
-int read_index(const Json& json, int least, int end) {
+int read_index(const Json& json, int minimum, int end) {
   if (!json.is_number_integer()) refuse("A vertex number in the design is not a whole number");
   const auto value = json.get<std::int64_t>();
-  if (value < least || value >= end) refuse("The design names a vertex that does not exist");
+  if (value < minimum || value >= end) refuse("The design names a vertex that does not exist");
   return static_cast<int>(value);
 }
 

@@ -31,7 +31,7 @@ struct Seed {
 Eigen::VectorXd valley_slowness(const TriangleMesh& mesh, const Adjacency& adjacency, const ProposalOptions& options,
                                 Context& context) {
   const FeatureLines lines = find_features(mesh, adjacency, options.features, context);
-  return 1 + 4 * (lines.valley_rad.array() / options.features.least_rad).min(4).square();
+  return 1 + 4 * (lines.valley_rad.array() / options.features.min_rad).min(4).square();
 }
 
 /// Mean distance to everywhere, from a few vertices spread over the surface, each standing for what is nearest to it.
@@ -69,7 +69,7 @@ struct Tip {
 };
 
 /// Maxima of f by persistence: components of {f >= t} as t falls; the lower of two that meet ends.
-std::vector<Tip> prominent_maxima(const Adjacency& adjacency, const Eigen::VectorXd& f, double least) {
+std::vector<Tip> prominent_maxima(const Adjacency& adjacency, const Eigen::VectorXd& f, double minimum) {
   const int n = adjacency.vertex_count();
   std::vector<int> order(n), parent(n, -1), top(n, -1);
   std::iota(order.begin(), order.end(), 0);
@@ -87,7 +87,7 @@ std::vector<Tip> prominent_maxima(const Adjacency& adjacency, const Eigen::Vecto
       int a = root(v), b = root(w);
       if (a == b) continue;
       if (f[top[a]] < f[top[b]]) std::swap(a, b);
-      if (const double prominence = f[top[b]] - f[v]; top[b] != v && prominence >= least)
+      if (const double prominence = f[top[b]] - f[v]; top[b] != v && prominence >= minimum)
         tips.push_back({top[b], v, prominence}), last_saddle = v;
       parent[b] = a;
     }
@@ -165,13 +165,13 @@ Proposal divide(const TriangleMesh& mesh, const std::vector<Seed>& seeds, const 
     for (int k = 0; k < parts; ++k) field.col(k).array() -= reach_share * seeds[k].reach_mm;
     std::vector<int> label(mesh.vertex_count());
     for (int v = 0; v < mesh.vertex_count(); ++v) {
-      Eigen::Index least = 0;
-      field.row(v).minCoeff(&least);
-      label[v] = static_cast<int>(least);
+      Eigen::Index minimum = 0;
+      field.row(v).minCoeff(&minimum);
+      label[v] = static_cast<int>(minimum);
     }
     for (std::size_t k = 0; k < seeds.size(); ++k)
       for (const int v : seeds[k].vertices) label[v] = static_cast<int>(k);
-    surface = split_by_least_field(mesh, label, field);
+    surface = split_by_smallest_field(mesh, label, field);
   }
   Proposal proposal;
   std::vector<int> places;
@@ -304,8 +304,8 @@ Proposal propose_segmentation(const TriangleMesh& mesh, const ProposalOptions& o
     return proposal;
   }
   // One cylinder has two openings at most; slits between openings make fewer of them.
-  const auto most = static_cast<std::size_t>(std::max(2, options.parts_max));
-  while (boundary_loops(Adjacency(opened.mesh)).size() > most && join_nearest_openings(opened, context)) {}
+  const auto maximum = static_cast<std::size_t>(std::max(2, options.parts_max));
+  while (boundary_loops(Adjacency(opened.mesh)).size() > maximum && join_nearest_openings(opened, context)) {}
   for (;;) {
     std::string problem;
     if (std::optional<Proposal> proposal = automatic(opened, options, context, problem)) {

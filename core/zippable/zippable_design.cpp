@@ -80,10 +80,10 @@ std::string figure(double mm) {
 
 void say_how_it_bends(ZippableDesign& design, const ZippableOptions& options) {
   if (!design.bend) return;
-  if (design.bend->radius_mm < *options.radius_least_mm)
+  if (design.bend->radius_mm < *options.min_radius_mm)
     design.notes.push_back(
         "The ribbon's centre line bends to a radius of " + figure(design.bend->radius_mm) + " mm, less than " +
-        figure(*options.radius_least_mm) +
+        figure(*options.min_radius_mm) +
         " mm, in every order of the parts. Use a narrower ribbon, larger holes at the tips or other borders of the parts.");
   else if (design.traversal_number != options.traversal)
     design.notes.push_back("Order " + std::to_string(design.traversal_number) +
@@ -182,9 +182,9 @@ ZippableDesign design_zippable(const ParameterisedModel& model, const ZippableOp
   curve.part_windings = part_windings(options.part_windings, s.part_count());
   curve.sample_mm = options.sample_mm.value_or(0.2 * options.width_mm);
   // The order that was chosen, and where it bends too tightly those after it.
-  constexpr std::size_t most_tries = 24;
+  constexpr std::size_t max_tries = 24;
   const std::size_t first = static_cast<std::size_t>(options.traversal - 1),
-                    end = options.radius_least_mm ? std::min(ranked.size(), first + most_tries) : first + 1;
+                    end = options.min_radius_mm ? std::min(ranked.size(), first + max_tries) : first + 1;
   std::optional<LineTracer> tracer;  // one for all orders where windings are even
   if (!model.features) tracer.emplace(s, model.parameterisation);
   for (std::size_t i = first; i < end; ++i) {
@@ -214,13 +214,13 @@ ZippableDesign design_zippable(const ParameterisedModel& model, const ZippableOp
       design.bend = candidate.bend;
       design.traversal_number = static_cast<int>(i) + 1;
     }
-    if (!design.bend || design.bend->radius_mm >= options.radius_least_mm.value_or(0)) break;
+    if (!design.bend || design.bend->radius_mm >= options.min_radius_mm.value_or(0)) break;
   }
   design.notes.insert(design.notes.end(), design.curve.notes.begin(), design.curve.notes.end());
   if (design.alignment && design.alignment->crease_mm == 0)
     design.notes.push_back(
         "No crease runs in nearly the same direction as the windings, so they stay even. Lower the smallest crease angle, or divide the model into other parts.");
-  if (options.radius_least_mm) say_how_it_bends(design, options);
+  if (options.min_radius_mm) say_how_it_bends(design, options);
   if (options.fabrics == RibbonFabrics::two) {
     design.fabrics = two_fabrics(design.ribbon, options.width_mm);
     if (!design.fabrics->has_bands)

@@ -46,7 +46,7 @@ struct ZippableOptions {
   std::optional<double> crease_mm;
   int traversal = 1;
   int start_part = 0, end_part = 0;
-  std::optional<double> radius_least_mm;
+  std::optional<double> min_radius_mm;
   WindingCourse winding_course = WindingCourse::even;
   std::optional<double> sample_mm;
   bool measure_distances = true;
@@ -55,7 +55,7 @@ struct ZippableOptions {
   /// Diameter of the holes at the tips: as given; else half the ribbon's width, or more where the ribbon's middle may
   /// not bend more tightly.
   double hole_mm() const {
-    const double inner = radius_least_mm ? 2 * *radius_least_mm - width_mm : 0;
+    const double inner = min_radius_mm ? 2 * *min_radius_mm - width_mm : 0;
     return puncture_mm.value_or(inner > 0.5 * width_mm ? inner : 0.5 * width_mm);
   }
 
@@ -129,10 +129,11 @@ struct ZippableOptions {
           .slider(0, 12)
           .group("Curve"),
       parameter(
-          "radius_least_mm", &ZippableOptions::radius_least_mm, "Smallest radius", unit::mm, 0.1, 10000,
+          "min_radius_mm", &ZippableOptions::min_radius_mm, "Smallest radius", unit::mm, 0.1, 10000,
           "Smallest radius to which the centre line of the flat ribbon may bend; a stiff zipper needs more. Larger values enlarge the holes at the tips and may change the order of parts. Automatic: no limit.")
           .slider(5, 100)
-          .group("Curve"),
+          .group("Curve")
+          .formerly("radius_least_mm"),
       parameter(
           "winding_course", &ZippableOptions::winding_course, "Windings follow",
           "Even: windings are equally spaced. Along creases: windings move, by less than half their spacing, onto creases that run in nearly the same direction.")

@@ -79,13 +79,21 @@ void add_file(const InputInfo& input, const std::string& value, ParsedCommand& c
 
 constexpr const char* help_flag = "-h,--help";  // as CLI11 names two spellings of one flag
 
+/// The flag of a parameter, and the one that it had in the release before this one.
+std::vector<std::string> names_of(const ParameterInfo& info) {
+  std::vector<std::string> flags{flag_name(info)};
+  if (!info.old_name.empty()) flags.push_back(dashed(info.old_name));
+  return flags;
+}
+
 std::vector<FlagRule> rules_of(const Operation& operation) {
   using Value = FlagRule::Value;
   std::vector<FlagRule> rules{
       {help_flag, Value::none}, {"--quiet", Value::none}, {"--out"}, {"--outputs"}, {"--sample"},
       {"--sample-vertices"}};
   for (const ParameterInfo& info : operation.parameters)  // a boolean may stand alone: --depth-order means on
-    rules.push_back({flag_name(info), info.kind == ParameterKind::boolean ? Value::optional : Value::one});
+    for (const std::string& flag : names_of(info))
+      rules.push_back({flag, info.kind == ParameterKind::boolean ? Value::optional : Value::one});
   for (const InputInfo& input : operation.inputs) rules.push_back({dashed(input.name)});
   if (operation.keeps_results) rules.push_back({"--results"});
   if (takes_object(operation)) rules.push_back({"--object"});
@@ -128,8 +136,8 @@ ParsedCommand parse_command(const Operation& operation, const std::vector<std::s
   if (flags.contains("--outputs")) command.message["outputs"] = split(last_of("--outputs"));
   Json parameters = Json::object(), inputs = Json::object();
   for (const ParameterInfo& info : operation.parameters)
-    if (const std::string flag = flag_name(info); flags.contains(flag))
-      parameters[info.name] = parse_flag(info, last_of(flag));
+    for (const std::string& flag : names_of(info))
+      if (flags.contains(flag)) parameters[info.name] = parse_flag(info, last_of(flag));
   for (const InputInfo& input : operation.inputs)
     if (const auto given = flags.find(dashed(input.name)); given != flags.end())
       for (const std::string& value : given->second) add_file(input, value, command);

@@ -176,7 +176,7 @@ int machine_frame(const std::vector<std::string>& words, const std::atomic<bool>
   const auto gcode_bounds = [&] {
     const Json options = driver_options(machine, options_of(flags));
     const GcodeProgram program = GcodeProgram::read(*job, 256, options.value("controller", "") == "marlin");
-    if (options.value("tool", "") != "printer") require_clear_way(program);  // a printer's jobs home it themselves
+    if (options.value("tool", "") != "printer") require_clear_path(program);  // a printer's jobs home it themselves
     return program.bounds();
   };
   const GcodeBounds bounds = machine.kind == MachineKind::ruida ? ruida_bounds(*job) : gcode_bounds();

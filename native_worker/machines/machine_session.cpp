@@ -110,9 +110,9 @@ void MachineSession::publish() {
   std::string phase = state["phase"].get<std::string>() + "/" + state["connection"].get<std::string>();
   if (state["job"].is_object() && state["job"]["ended"].is_string())
     phase += "/" + state["job"]["ended"].get<std::string>();
-  if (phase == told_phase_ && now - told_s_ < state_period_s) return;
-  told_phase_ = phase;
-  told_s_ = now;
+  if (phase == reported_phase_ && now - reported_s_ < state_period_s) return;
+  reported_phase_ = phase;
+  reported_s_ = now;
   if (listener_.state) listener_.state(state);
 }
 

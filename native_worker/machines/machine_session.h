@@ -89,8 +89,8 @@ class MachineSession : public std::enable_shared_from_this<MachineSession> {
   MachineLog& log_;
   Listener listener_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-  double told_s_ = -1;
-  std::string told_phase_;
+  double reported_s_ = -1;
+  std::string reported_phase_;
   bool over_ = false;
 };
 

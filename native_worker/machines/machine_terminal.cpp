@@ -147,7 +147,7 @@ void Terminal::run_until_rest(const std::string& what) {
 std::string Terminal::sentence_of(const Json& message, const std::string& otherwise) {
   if (!message.is_object()) return otherwise;
   std::string text = message.value("text", otherwise);
-  if (const std::string mend = message.value("mend", ""); !mend.empty()) text += " " + mend;
+  if (const std::string fix = message.value("fix", ""); !fix.empty()) text += " " + fix;
   return text;
 }
 

@@ -35,14 +35,14 @@ ServerOptions read_options(const std::vector<std::string>& words) {
       if (i + 1 >= words.size()) throw Error(ErrorCode::invalid_input, words[i], words[i] + " needs a value.");
       return words[++i];
     };
-    const auto whole = [&](const std::string& flag, long least, long most) {
+    const auto whole = [&](const std::string& flag, long minimum, long maximum) {
       const std::string text = value();
       char* end = nullptr;
       const long number = std::strtol(text.c_str(), &end, 10);
-      if (text.empty() || *end != '\0' || number < least || number > most)
+      if (text.empty() || *end != '\0' || number < minimum || number > maximum)
         throw Error(
             ErrorCode::invalid_input, flag,
-            flag + " must be a whole number from " + std::to_string(least) + " to " + std::to_string(most) + ".");
+            flag + " must be a whole number from " + std::to_string(minimum) + " to " + std::to_string(maximum) + ".");
       return number;
     };
     if (read_solver_flag(words, i, options.solver)) continue;

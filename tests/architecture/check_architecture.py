@@ -11,16 +11,24 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 CORE = {
     "base": set(),
     "geometry": {"base"},
+    "formats": {"base", "geometry"},
     "numerics": {"base", "geometry"},
-    "imaging": {"base", "geometry"},
-    "fabrication": {"base", "geometry", "imaging"},
+    "imaging": {"base", "geometry", "formats"},
+    "fabrication": {"base", "geometry", "formats", "imaging"},
     "machines": {"base"},
-    "relief": {"base", "geometry", "numerics", "imaging"},
-    "thermoform": {"base", "geometry", "numerics", "imaging"},
-    "zippable": {"base", "geometry", "numerics", "imaging", "fabrication"},
+    "relief": {"base", "geometry", "formats", "numerics", "imaging"},
+    "thermoform": {"base", "geometry", "formats", "numerics", "imaging"},
+    "zippable": {"base", "geometry", "formats", "numerics", "imaging", "fabrication"},
 }
 CORE["evidence"] = set(CORE)
 CORE["job"] = set(CORE)
+# Narrower than their module: the engine that explains measurements knows crafts only as forward models.
+FOLDERS = {
+    "evidence/fit": {"base", "numerics", "geometry"},
+    "evidence/diagnosis": {"base", "numerics", "geometry", "imaging"},
+}
+# A folder holds about 20 files, tests of files included.
+MAX_FILES = 24
 HOSTS = {"wasm": {"job", "base", "machines"}, "native_worker": {"job", "base", "machines"}}
 
 # What core never touches: sockets, files, standard output, Emscripten.
@@ -62,6 +70,42 @@ def check_sources(folder: pathlib.Path, module: str, allowed: set[str], is_core:
                     problems.append(f"{where}:{number}: core must not include <{match.group(1)}>")
             if is_core and FORBIDDEN_WORDS.search(line.split("//")[0]):
                 problems.append(f"{where}:{number}: core must not print or open files")
+    return problems
+
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.MULTILINE)
+
+
+def check_folders(tops: list[pathlib.Path]) -> list[str]:
+    """Folders that reach themselves by the includes of their files, that hold too many files, or that include what theirs may not."""
+    files = {path for top in tops for path in top.rglob("*") if path.suffix in {".h", ".cpp"}}
+    reached: dict[pathlib.Path, set[pathlib.Path]] = {path.parent: set() for path in files}
+    problems = []
+    for path in sorted(files):
+        for include in INCLUDE.findall(path.read_text()):
+            target = next((base / include for base in (path.parent, *tops) if base / include in files), None)
+            if target is None:
+                continue
+            if target.parent != path.parent:
+                reached[path.parent].add(target.parent)
+            for folder, allowed in FOLDERS.items():
+                inside = tops[0] / folder
+                module = module_of(target, tops[0]) if target.is_relative_to(tops[0]) else ""
+                if path.is_relative_to(inside) and module not in allowed | {folder.split("/")[0]}:
+                    problems.append(f"{path.relative_to(ROOT)}: {folder} must not include {module}")
+                elif path.is_relative_to(inside) and target.is_relative_to(tops[0] / "evidence" / "models"):
+                    problems.append(f"{path.relative_to(ROOT)}: {folder} must not include a craft's model")
+    # Folders that include none of those in question are taken away until none is left: what remains are the circles.
+    while ends := {folder for folder, targets in reached.items() if not targets}:
+        reached = {folder: targets - ends for folder, targets in reached.items() if folder not in ends}
+    while starts := set(reached) - set().union(*reached.values()):
+        reached = {folder: targets for folder, targets in reached.items() if folder not in starts}
+    problems += [f"{folder.relative_to(ROOT)}: circle of folders with {', '.join(sorted(str(t.relative_to(ROOT)) for t in targets))}"
+                 for folder, targets in sorted(reached.items())]
+    for folder in sorted({path.parent for path in files}):
+        count = sum(1 for path in folder.iterdir() if path.is_file())
+        if count > MAX_FILES:
+            problems.append(f"{folder.relative_to(ROOT)}: holds {count} files, and at most {MAX_FILES} are easy to survey")
     return problems
 
 
@@ -127,6 +171,7 @@ def main() -> int:
         problems += check_sources(ROOT / "core" / module, module, CORE[module], is_core=True)
     for host, allowed in HOSTS.items():
         problems += check_sources(ROOT / host, host, allowed, is_core=False)
+    problems += check_folders([ROOT / "core", ROOT / "native_worker"])
     problems += check_web(ROOT / "web" / "src")
     problems += check_circles(ROOT / "web" / "src")
     for problem in problems:

@@ -16,6 +16,13 @@ with tempfile.TemporaryDirectory() as folder:
         "core/base/a.h": '#include "geometry/triangle_mesh.h"\n',
         "core/relief/b.cpp": '#include "thermoform/x.h"\n#include <fstream>\nvoid f() { std::printf("x"); }\n',
         "core/job/c.cpp": '#include "relief/relief.h"\n',
+        "core/evidence/fit/h.cpp": '#include "thermoform/x.h"\n',
+        "core/evidence/diagnosis/h.cpp": '#include "evidence/models/relief/r.h"\n',
+        "core/evidence/models/relief/r.h": "",
+        "core/thermoform/x.h": "",
+        "core/numerics/sparse/s.h": '#include "numerics/ordering/o.h"\n',
+        "core/numerics/ordering/o.h": '#include "numerics/sparse/s.h"\n',
+        "native_worker/files/big.h": "",
         "web/src/view/d.ts": "import { x } from '../jobs/y';\n",
         "web/src/shared/session/g.ts": "import { x } from '../../crafts/relief/e';\n",
         "web/src/crafts/relief/e.ts": "import { x } from '../zippable/y';\n",
@@ -29,15 +36,27 @@ with tempfile.TemporaryDirectory() as folder:
         path = root / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
+    for i in range(check.MAX_FILES):
+        (root / f"native_worker/files/n{i}.h").write_text("")
     found = []
     for module in ("base", "relief", "job"):
         found += check.check_sources(root / "core" / module, module, check.CORE[module], is_core=True)
+    found += check.check_folders([root / "core", root / "native_worker"])
     found += check.check_web(root / "web/src")
     found += check.check_circles(root / "web/src")
     expected = ["base must not include geometry", "relief must not include thermoform", "<fstream>", "must not print",
+                "evidence/fit must not include thermoform", "must not include a craft's model",
+                "core/numerics/ordering: circle of folders with core/numerics/sparse",
+                "core/numerics/sparse: circle of folders with core/numerics/ordering", "holds 25 files",
                 "view must not import jobs", "shared must not import crafts", "crafts do not know each other",
                 "circle: ui/round.ts imports ui/corner.tsx", "circle: ui/corner.tsx imports ui/round.ts"]
     assert len(found) == len(expected), found
     for part in expected:
         assert any(part in problem for problem in found), (part, found)
+
+spec = importlib.util.spec_from_file_location("words", pathlib.Path(__file__).with_name("check_words.py"))
+words = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(words)
+assert set(words.avoided_names("int most_rows = least; // told_s\nauto told_s = \"mend_x\"; edge_way_(mend(f), leastwise(utmost, always));")) == {
+    "most_rows", "told_s", "edge_way_", "mend"}
 print("planted wrong arrows were all found")

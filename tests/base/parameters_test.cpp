@@ -62,7 +62,7 @@ TEST_CASE("Parameters.ReadsWhatItWrites") {
   CHECK(write_parameters(read_parameters<PaintOptions>(Json::parse(written.dump()))) == written);
 }
 
-TEST_CASE("Parameters.RejectsWithNameRangeAndMend") {
+TEST_CASE("Parameters.RejectsWithNameRangeAndFix") {
   expect_rejected({{"layer_mm", 5}}, "layer_mm", "from 0.1 to 3 mm");
   expect_rejected({{"layer_mm", "thick"}}, "layer_mm", "must be a number");
   expect_rejected({{"coats", 2.5}}, "coats", "whole number");

@@ -65,7 +65,7 @@ TEST_CASE("ParameterFit.StaysWithinRanges") {
   SimulationBag bag(model);
   Context context;
   FitOptions options;
-  options.most_iterations = 60;
+  options.max_iterations = 60;
   const ParameterFit fit = fit_parameters(bag, *mean_distance_objective(model, 0.01), model.base_parameters(),
                                           model.nominal(), {}, options, context, "");
   CHECK_THAT(fit.u[1], WithinAbs(5, 1e-6));
@@ -107,7 +107,7 @@ TEST_CASE("SimulationBag.AsksForNothingTwiceAndStopsAtOnce") {
   CHECK(bag.run(other, context, "").has_value());
 }
 
-TEST_CASE("Calibration.IntervalsHoldTheTruthAndSayWhatIsNotTold") {
+TEST_CASE("Calibration.IntervalsHoldTheTruthAndSayWhatIsNotDistinguishable") {
   int inside = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {
     ToyModel model(300, seed);
@@ -218,7 +218,7 @@ TEST_CASE("Diagnosis.IntervalsHoldTheStrengthThoughTheModelIsAnother") {
     }
     const CauseFinding& bump =
         *std::find_if(d.causes.begin(), d.causes.end(), [](const CauseFinding& f) { return f.cause == 0; });
-    CHECK(0.5 * (bump.high - bump.low) >= std::hypot(0.5 * bump.least_visible, 1.96 * 0.05 * bump.strength));
+    CHECK(0.5 * (bump.high - bump.low) >= std::hypot(0.5 * bump.min_visible_strength, 1.96 * 0.05 * bump.strength));
     CHECK(bump.high - bump.low < 0.5);
     inside += bump.low <= 0.7 && 0.7 <= bump.high;
   }
@@ -477,7 +477,7 @@ TEST_CASE("Diagnosis.OwnsUpToTwins") {
   const NotSeparable& pair = d.not_separable.front();
   CHECK(std::min(pair.cause_a, pair.cause_b) == 0);
   CHECK(std::max(pair.cause_a, pair.cause_b) == 3);
-  CHECK(pair.likeness > 0.95);
+  CHECK(pair.similarity > 0.95);
 }
 
 TEST_CASE("Diagnosis.ReportsAreWholeAndHoldNoStrangeNumbers") {

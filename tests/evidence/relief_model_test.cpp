@@ -131,17 +131,17 @@ TEST_CASE("ReliefModel.NamesWhatWasDoneToIt") {
     const bool named =
         !d.verdict.empty() && model.causes()[static_cast<std::size_t>(d.verdict.front())].name == c.cause;
     right += named;
-    std::string told = c.cause;
+    std::string answer = c.cause;
     for (const CauseFinding& f : d.causes)
-      told += "; " + model.causes()[static_cast<std::size_t>(f.cause)].name + " p " + std::to_string(f.probability) +
-              " strength " + std::to_string(f.strength) + " evidence " + std::to_string(f.log_evidence) +
-              " visible from " + std::to_string(f.least_visible);
+      answer += "; " + model.causes()[static_cast<std::size_t>(f.cause)].name + " p " + std::to_string(f.probability) +
+                " strength " + std::to_string(f.strength) + " evidence " + std::to_string(f.log_evidence) +
+                " visible from " + std::to_string(f.min_visible_strength);
     for (const HeldOutTrial& t : d.trials)
-      told += "; tried " + model.causes()[static_cast<std::size_t>(t.causes.front())].name +
-              (t.significant ? " gain " : " not significant ") + std::to_string(t.gain.gain_share) + " sure " +
-              std::to_string(t.gain.gain_probability);
-    CAPTURE(told);
-    if (!named) std::printf("not named: %s\n", told.c_str());
+      answer += "; tried " + model.causes()[static_cast<std::size_t>(t.causes.front())].name +
+                (t.significant ? " gain " : " not significant ") + std::to_string(t.gain.gain_share) + " sure " +
+                std::to_string(t.gain.gain_probability);
+    CAPTURE(answer);
+    if (!named) std::printf("not named: %s\n", answer.c_str());
     {
       INFO(c.cause);
       CHECK((named || d.doubtful() || d.reading == Reading::cannot_separate || d.reading == Reading::unknown));

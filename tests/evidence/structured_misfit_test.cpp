@@ -111,7 +111,7 @@ TEST_CASE("NoiseModel.FindsNoiseUnderAFieldAndOutliers") {
   CHECK_THAT(noise.outliers, WithinAbs(45, 15));
 }
 
-TEST_CASE("NoiseModel.StructureIsToldFromNoise") {
+TEST_CASE("NoiseModel.StructureIsDistinguishedFromNoise") {
   ToyModel model(800);
   model.measure(model.nominal(), 0.05, 3);
   const Eigen::MatrixXd noise = model.measurements().front().measured - model.predict(0, model.nominal(), Context());

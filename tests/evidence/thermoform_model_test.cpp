@@ -298,8 +298,8 @@ TEST_CASE("ThermoformModel.ADrawnCauseIsNamedOrDoubted") {
     for (const auto& [name, value] : hidden.values.items()) size_squared += std::pow(value.get<double>(), 2);
     // Nothing may be found where the diagnosis itself says that it could not see as much; a margin, since it knows that
     // only linearly.
-    if (std::sqrt(size_squared) > 1.25 * finding.least_visible) {
-      INFO("visible from " << finding.least_visible);
+    if (std::sqrt(size_squared) > 1.25 * finding.min_visible_strength) {
+      INFO("visible from " << finding.min_visible_strength);
       CHECK(d.reading != Reading::none);
     }
   }

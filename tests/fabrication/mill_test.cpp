@@ -384,13 +384,13 @@ TEST_CASE("Mill.ThePathToleranceIsAllThatFewerLinesLeave") {
   options.path_tolerance_mm = 0.02;
   const MillPlan coarse = plan_mill_job(surface, options, context);
   CHECK(5 * lines(coarse) < lines(exact));
-  double most = 0;
+  double maximum = 0;
   for (std::size_t i = 0; i < surface.z_mm.size(); ++i) {
     CHECK(coarse.carved.z_mm[i] >= exact.carved.z_mm[i] - 1.01e-3f);
-    most = std::max<double>(most, coarse.carved.z_mm[i] - exact.carved.z_mm[i]);
+    maximum = std::max<double>(maximum, coarse.carved.z_mm[i] - exact.carved.z_mm[i]);
   }
-  CHECK(most <= 0.02 + 1e-5);
-  CHECK(most > 0.005);  // the simulation sees it
+  CHECK(maximum <= 0.02 + 1e-5);
+  CHECK(maximum > 0.005);  // the simulation sees it
 }
 
 }  // namespace

@@ -32,14 +32,14 @@ bool contains(const Polygon& polygon, const Vec2& p) {
 
 /// Least distance between corners of one and edges of the other; 0 when a corner lies inside.
 double gap_mm(const Polygon& a, const Polygon& b) {
-  double least = 1e300;
+  double minimum = 1e300;
   for (const auto& [corners, edges] : {std::pair(&a, &b), std::pair(&b, &a)})
     for (const Vec2& p : *corners) {
       if (contains(*edges, p)) return 0;
       for (std::size_t i = 0; i < edges->size(); ++i)
-        least = std::min(least, distance_mm(p, (*edges)[i], (*edges)[(i + 1) % edges->size()]));
+        minimum = std::min(minimum, distance_mm(p, (*edges)[i], (*edges)[(i + 1) % edges->size()]));
     }
-  return least;
+  return minimum;
 }
 
 void expect_valid(const std::vector<Polygon>& shapes, const Nesting& nesting, const NestingOptions& options) {

@@ -203,7 +203,7 @@ TEST_CASE("SvgReader.ReadsWhatWeWrite") {
   }
 }
 
-TEST_CASE("SvgReader.RefusesWithTheMend") {
+TEST_CASE("SvgReader.RefusesWithTheFix") {
   CHECK(refusal("").find("empty") != std::string::npos);
   CHECK(refusal("hello").find("not XML") != std::string::npos);
   CHECK(refusal("<html/>").find("<html>") != std::string::npos);

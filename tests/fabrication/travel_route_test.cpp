@@ -24,7 +24,7 @@ std::vector<RouteStop> random_stops(std::size_t count, Random& random) {
     switch (random.below(3)) {
       case 0: stops.push_back({Kind::loop, {at, at + Vec2(5, 0), at + Vec2(0, 5)}}); break;
       case 1: stops.push_back({Kind::line, {at, point()}}); break;
-      default: stops.push_back({Kind::one_way, {at, point()}});
+      default: stops.push_back({Kind::one_direction, {at, point()}});
     }
   }
   return stops;
@@ -40,10 +40,10 @@ double best_of_all(const std::vector<RouteStop>& stops) {
     for (const int i : order) {
       const RouteStop& stop = stops[static_cast<std::size_t>(i)];
       std::vector<std::pair<Vec2, double>> next;
-      for (std::size_t d = 0; d < (stop.kind == Kind::one_way ? 1 : stop.doors_mm.size()); ++d) {
-        double least = 1e300;
-        for (const auto& [at, so_far] : states) least = std::min(least, so_far + (stop.doors_mm[d] - at).norm());
-        next.emplace_back(stop.kind == Kind::loop ? stop.doors_mm[d] : stop.doors_mm[1 - d], least);
+      for (std::size_t d = 0; d < (stop.kind == Kind::one_direction ? 1 : stop.doors_mm.size()); ++d) {
+        double minimum = 1e300;
+        for (const auto& [at, so_far] : states) minimum = std::min(minimum, so_far + (stop.doors_mm[d] - at).norm());
+        next.emplace_back(stop.kind == Kind::loop ? stop.doors_mm[d] : stop.doors_mm[1 - d], minimum);
       }
       states = next;
     }
@@ -58,7 +58,7 @@ void expect_each_once(const std::vector<RouteStop>& stops, const std::vector<Rou
     seen.insert(step.stop);
     const RouteStop& stop = stops[static_cast<std::size_t>(step.stop)];
     CHECK(step.door >= 0);
-    CHECK(step.door < static_cast<int>(stop.kind == Kind::one_way ? 1 : stop.doors_mm.size()));
+    CHECK(step.door < static_cast<int>(stop.kind == Kind::one_direction ? 1 : stop.doors_mm.size()));
   }
   CHECK(seen.size() == stops.size());
   CHECK(route.size() == stops.size());

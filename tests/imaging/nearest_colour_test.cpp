@@ -27,18 +27,18 @@ TEST_CASE("NearestColour.AgreesWithTryingAllPixels") {
     spread_colours(after, radius, Context());
     for (int y = 0; y < before.height; ++y)
       for (int x = 0; x < before.width; ++x) {
-        int least = 1 << 30;
+        int minimum = 1 << 30;
         for (int v = 0; v < before.height; ++v)
           for (int u = 0; u < before.width; ++u)
-            if (before.at(u, v)[3] != 0) least = std::min(least, (u - x) * (u - x) + (v - y) * (v - y));
+            if (before.at(u, v)[3] != 0) minimum = std::min(minimum, (u - x) * (u - x) + (v - y) * (v - y));
         const Rgba& p = after.at(x, y);
-        if (least > radius * radius) {
+        if (minimum > radius * radius) {
           INFO(x << " " << y << " radius " << radius);
           REQUIRE(p == before.at(x, y));
         } else {
           REQUIRE(p[3] == 255);
           INFO(x << " " << y << " radius " << radius);
-          REQUIRE((p[0] - x) * (p[0] - x) + (p[1] - y) * (p[1] - y) == least);
+          REQUIRE((p[0] - x) * (p[0] - x) + (p[1] - y) * (p[1] - y) == minimum);
         }
       }
   }

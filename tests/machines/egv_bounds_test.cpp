@@ -85,13 +85,13 @@ struct Motors {
         both = false;
         const std::size_t axis = c == 'B' || c == 'T' ? 0 : 1;
         on = axis;
-        way[axis] = c == 'T' || c == 'L' ? -1 : 1;
+        direction[axis] = c == 'T' || c == 'L' ? -1 : 1;
         ++i;
       } else if (c == 'D' || c == 'U') beam = c == 'D', ++i;
       else if (c == 'N' || c == 'F' || c == 'I' || c == 'P' || c == 'C') beam = false, ++i;
       else if (c == 'E') {
         // Out of "NSE" the board turns y round and steps along it.
-        if (body[i - 1] == 'S') way[1] = -way[1], on = 1, both = false;
+        if (body[i - 1] == 'S') direction[1] = -direction[1], on = 1, both = false;
         ++i;
       } else i = step(body, i);
     }
@@ -112,14 +112,14 @@ struct Motors {
       lit.at = all.at;
       if (beam) lit.see();
       for (const std::size_t axis : {0u, 1u})
-        if (both || on == axis) all.at[axis] += way[axis];
+        if (both || on == axis) all.at[axis] += direction[axis];
       all.see();
       lit.at = all.at;
       if (beam) lit.see();
     }
     return i;
   }
-  std::array<long, 2> way{1, 1};
+  std::array<long, 2> direction{1, 1};
   std::size_t on = 0;
   bool both = false, beam = false;
 };

@@ -240,5 +240,30 @@ TEST_CASE("GrblLight.AStopWakesABoardThatSleepsOrIsSilent") {
   CHECK(talk.phase() == "idle");
 }
 
+/// A machine with a long buffer goes on when its program is gone. Its dwell looks like rest to the next program, whose
+/// first questions are then answered by the job's lines.
+TEST_CASE("GrblLight.ARefusedLineOfAnEarlierProgramStopsTheMachine") {
+  GrblTalk talk({.resets_on_open = false, .planner_blocks = 35, .rx_bytes = 1024});
+  talk.connect_and_home();
+  talk.load("G21\nG90\nM4S500\nG0X0Y0\nG1F1200\nG1X40Y0\nG4P2\nG0X0Y30\nG1X40Y30\nG1X40Y60\nM5\n");
+  talk.machine.refuse_line("G0X0Y30", 20);
+  talk.tell(start);
+  REQUIRE(talk.pass_until([&] { return talk.machine.beam(); }, 20));
+  talk.pull_cable();
+  talk.leave_alone(2);
+  const auto origin = talk.machine.origin_mm(54);
+  REQUIRE(talk.pass_until([&] { return !talk.machine.beam(); }, 5));
+  talk.plug_in();
+  talk.pass(6);
+  CHECK(heard(talk, "refused a line that was sent before this connection"));
+  CHECK_FALSE(talk.machine.has_work());
+  for (const auto& burn : talk.machine.burns())
+    for (const auto& place : {burn.from_mm, burn.to_mm}) {
+      CHECK_THAT(place[1] - origin[1], WithinAbs(0, 0.02));
+      CHECK(place[0] - origin[0] <= 40.02);
+    }
+  CHECK(talk.state()["connection"] == "ready");
+}
+
 }  // namespace
 }  // namespace formwright

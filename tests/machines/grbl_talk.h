@@ -61,8 +61,8 @@ class GrblTalk {
       for (const Json& event : driver.take_events()) events.push_back(event);
     }
   }
-  bool pass_until(const std::function<bool()>& reached, double at_most_s) {
-    for (const double end = now_s + at_most_s; now_s < end && !reached();) pass(0.01);
+  bool pass_until(const std::function<bool()>& reached, double timeout_s) {
+    for (const double end = now_s + timeout_s; now_s < end && !reached();) pass(0.01);
     return reached();
   }
 

@@ -109,7 +109,7 @@ TEST_CASE("RuidaBounds.FollowAbsoluteAndRelativeMovesOfEveryKind") {
   }
 }
 
-TEST_CASE("RuidaBounds.RefuseWhereTheyCannotBeTold") {
+TEST_CASE("RuidaBounds.RefuseWhereTheyCannotBeReported") {
   const auto burning = [](RuidaJob job) { return job.to(false, 0, 0).to(true, 5000, 5000); };
   CHECK(refusal(burning(RuidaJob().begin())) == "");
   CHECK(refusal(burning(RuidaJob().code({0xd8, 0x12}))).find("set at the laser's panel") != std::string::npos);

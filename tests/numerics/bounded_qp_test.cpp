@@ -223,8 +223,8 @@ TEST_CASE("BoundedQp.TakingBoundsOutOfTheFactorisationChangesNothing") {
     BoundedQp qp;
     qp.set_energy(p.lower_Q, p.component, {}, context);
     BoundedQpOptions options;
-    options.most_active_in_pool = pool.active_constraints / 4;
-    REQUIRE(options.most_active_in_pool > 5);
+    options.max_active_in_pool = pool.active_constraints / 4;
+    REQUIRE(options.max_active_in_pool > 5);
     const auto base = qp.solve(p.constraints, options, context);
     CHECK((base.u - pool.u).cwiseAbs().maxCoeff() < 1e-8);
     CHECK_THAT(base.objective, WithinAbs(pool.objective, 1e-10 * pool.objective));

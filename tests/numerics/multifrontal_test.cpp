@@ -65,9 +65,9 @@ TEST_CASE("DenseKernels.FactorsAndSolvesAPanel") {
     Eigen::MatrixXd panel = Eigen::MatrixXd::Zero(height, width);
     panel.topRows(width) = A.triangularView<Eigen::Lower>();
     panel.bottomRows(below) = B;
-    const std::vector<double> least(static_cast<std::size_t>(width), 0.0);
+    const std::vector<double> minimum(static_cast<std::size_t>(width), 0.0);
     const auto stride = static_cast<std::size_t>(height);
-    REQUIRE(dense::factor_diagonal(panel.data(), stride, width, least.data()) == -1);
+    REQUIRE(dense::factor_diagonal(panel.data(), stride, width, minimum.data()) == -1);
     dense::solve_rows(panel.data(), stride, width, panel.data() + top, stride, below);
     const Eigen::MatrixXd L = panel.topRows(width).triangularView<Eigen::Lower>();
     {
@@ -103,8 +103,8 @@ TEST_CASE("DenseKernels.TellsTheColumnThatIsNotPositive") {
   for (const int bad : {0, 3, 4, 50, 127}) {
     Eigen::MatrixXd A = Eigen::MatrixXd::Identity(128, 128);
     A(bad, bad) = 1e-20;
-    const std::vector<double> least(128, 1e-15);
-    CHECK(dense::factor_diagonal(A.data(), 128, 128, least.data()) == bad);
+    const std::vector<double> minimum(128, 1e-15);
+    CHECK(dense::factor_diagonal(A.data(), 128, 128, minimum.data()) == bad);
   }
 }
 

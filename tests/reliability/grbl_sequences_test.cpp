@@ -147,8 +147,8 @@ class Sequence {
     }
   }
   template <class Reached>
-  bool pass_until(Reached&& reached, double at_most_s) {
-    for (const double end = talk_.now_s + at_most_s; talk_.now_s < end && !reached();) pass(0.05);
+  bool pass_until(Reached&& reached, double timeout_s) {
+    for (const double end = talk_.now_s + timeout_s; talk_.now_s < end && !reached();) pass(0.05);
     return reached();
   }
   bool running() const { return box_ && talk_.ended().empty(); }
@@ -286,7 +286,9 @@ class Sequence {
         lose_to_machine_ = 0.003;
         return;
       case 1:
-        if (!job_runs) talk_.machine.refuse_next(1 + static_cast<int>(random_.below(38)));
+        // Behind a refused line of a job GRBL acts on the next one until it is stopped (docs/reliability.md), also
+        // where the program that sent it is gone.
+        if (!job_runs && !talk_.machine.has_work()) talk_.machine.refuse_next(1 + static_cast<int>(random_.below(38)));
         return;
       case 2: talk_.machine.trip_limit(); break;
       case 3: talk_.machine.brown_out(talk_.now_s); break;

@@ -132,7 +132,7 @@ TEST_CASE("ViewFrame.RefusesImpossibleViewpointsInWords") {
   expect_refused(needle, options, "direction");
 }
 
-TEST_CASE("ViewFrame.TheMendInTheMessageWorks") {
+TEST_CASE("ViewFrame.TheFixInTheMessageWorks") {
   const TriangleMesh mesh = test::icosphere(2);
   ReliefOptions options = view(Projection::perspective);
   options.distance_mm = 1;

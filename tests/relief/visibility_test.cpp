@@ -75,13 +75,13 @@ TEST_CASE("DepthOrder.RowsHoldForTheModelAndBreakWhenSheetsPass") {
     REQUIRE(rows.size() > 40u);
     const Eigen::Index half = mesh.V.rows() / 2;
     const auto slack = [&](const Eigen::VectorXd& u) {
-      double least = 1e9;
+      double minimum = 1e9;
       for (const InequalityRow& row : rows) {
         double value = -row.bound;
         for (std::size_t k = 0; k < row.index.size(); ++k) value += row.coefficient[k] * u[row.index[k]];
-        least = std::min(least, value);
+        minimum = std::min(minimum, value);
       }
-      return least;
+      return minimum;
     };
     Eigen::VectorXd u = Eigen::VectorXd::Zero(mesh.V.rows());
     const double gap = frame.P(half, 2) - frame.P(0, 2);

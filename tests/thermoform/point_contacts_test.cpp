@@ -41,12 +41,12 @@ void expect_every_point_met(unsigned seed, bool bounds_known) {
   Positions from = shaken(sheet, 0.1, seed);
   from.col(2).array() += 27;
   const auto clear = [&](int v) {
-    double least = 0;
+    double minimum = 0;
     if (bounds_known) {
-      least = 1e300;
-      for (const Vec3& q : points) least = std::min(least, (q - from.row(v).transpose()).norm());
+      minimum = 1e300;
+      for (const Vec3& q : points) minimum = std::min(minimum, (q - from.row(v).transpose()).norm());
     }
-    return least;
+    return minimum;
   };
   const double sinks_mm[] = {0.02, 0.3, 1.0, 0.1, 7.0, 0.5};
   std::set<int> met;

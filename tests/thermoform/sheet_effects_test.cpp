@@ -323,17 +323,18 @@ TEST_CASE("SheetEffects.chill_comes_as_the_exponential_and_spreads_the_same_on_f
       everywhere.advance(0.001, all);
       half.advance(0.001, right);
     }
-    double least = 1, at = 0, nearest = 1e300;
+    double minimum = 1, at = 0, nearest = 1e300;
     for (std::size_t i = 0; i < right.size(); ++i) {
       if (sheet.clamped[i]) continue;
-      if (sheet.flat_mm.row(static_cast<Eigen::Index>(i)).norm() < 40) least = std::min(least, everywhere.chill()[i]);
+      if (sheet.flat_mm.row(static_cast<Eigen::Index>(i)).norm() < 40)
+        minimum = std::min(minimum, everywhere.chill()[i]);
       CHECK(half.chill()[i] >= 0);
       CHECK(half.chill()[i] <= 1);
       if (const double away = (sheet.flat_mm.row(static_cast<Eigen::Index>(i)) - Eigen::RowVector2d(-6, 0)).norm();
           away < nearest)
         nearest = away, at = half.chill()[i];
     }
-    CHECK_THAT(least, WithinAbs(1 - std::exp(-2.0), 0.01));
+    CHECK_THAT(minimum, WithinAbs(1 - std::exp(-2.0), 0.01));
     beside.push_back(at);
   }
   CHECK_THAT(beside[0], WithinAbs(beside[1], 0.05));

@@ -50,9 +50,9 @@ void expect_apart(const FaceStrips& strips, const Triangles& F) {
 
 TEST_CASE("FaceStrips.those_worked_on_at_a_time_share_no_vertex") {
   for (const int triangles : {8, 50, 700, 2500, 10000})
-    for (const int least : {4, 64, 512}) {
+    for (const int minimum : {4, 64, 512}) {
       const SheetMesh sheet = make_sheet_mesh(Vec2(220, 240), triangles);
-      expect_apart(FaceStrips(sheet.F, least), sheet.F);
+      expect_apart(FaceStrips(sheet.F, minimum), sheet.F);
     }
   const SheetMesh sheet = make_sheet_mesh(Vec2(220, 240), 10000);
   CHECK(FaceStrips(sheet.F, 512).count() > 12);

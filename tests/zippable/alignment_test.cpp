@@ -83,8 +83,8 @@ TEST_CASE("CreaseAlignment.AWindingLiesOnARingButForTheChangeOver") {
     CHECK(before < 0.3);
     CHECK(after > 0.55);
     CHECK(a.alignment.off_after_mm < 0.5 * a.alignment.off_before_mm);
-    CHECK(a.alignment.spacing_least >= 0.6 - 1e-9);
-    CHECK(a.alignment.spacing_most <= 1 / 0.6 + 1e-9);
+    CHECK(a.alignment.min_spacing >= 0.6 - 1e-9);
+    CHECK(a.alignment.max_spacing <= 1 / 0.6 + 1e-9);
     CHECK(a.ribbon.isometry_error < 1e-9);
     CHECK(a.ribbon.opening_arcs == 2);
   }

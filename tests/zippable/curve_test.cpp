@@ -34,9 +34,9 @@ Vec3 lifted(const Segmentation& s, const Parameterisation& p, int part, double x
       Eigen::Matrix2d m;
       m << b - a, c - a;
       const Vec2 w = m.inverse() * (q - a);
-      const double least = std::min({w.x(), w.y(), 1 - w.x() - w.y()});
-      if (least <= best) continue;
-      best = least;
+      const double minimum = std::min({w.x(), w.y(), 1 - w.x() - w.y()});
+      if (minimum <= best) continue;
+      best = minimum;
       result = (s.mesh.V.row(s.mesh.F(f, 0)) * (1 - w.x() - w.y()) + s.mesh.V.row(s.mesh.F(f, 1)) * w.x() +
                 s.mesh.V.row(s.mesh.F(f, 2)) * w.y())
                    .transpose();

@@ -88,7 +88,7 @@ TEST_CASE("Fabrics.NothingIsCheaper") {
   options.fabrics = RibbonFabrics::two;
   const ZippableDesign design = designed("star", options);
   const std::vector<int>& colour = design.fabrics->of_face;
-  const double least = cost_of(design.ribbon, colour, options.width_mm);
+  const double minimum = cost_of(design.ribbon, colour, options.width_mm);
   // Everything beyond any one ruling turned over: among all neighbouring colourings none may be better.
   const Adjacency adjacency(design.ribbon.formed());
   for (int h = 0; h < 3 * adjacency.face_count(); ++h) {
@@ -105,7 +105,7 @@ TEST_CASE("Fabrics.NothingIsCheaper") {
       for (int g = 3 * f; g < 3 * f + 3; ++g)
         if (const int o = adjacency.opposite(g); o >= 0 && !seen[o / 3]) open.push_back(o / 3);
     }
-    CHECK(cost_of(design.ribbon, other, options.width_mm) >= least * (1 - 1e-12));
+    CHECK(cost_of(design.ribbon, other, options.width_mm) >= minimum * (1 - 1e-12));
   }
 }
 
@@ -169,17 +169,17 @@ TEST_CASE("Curve.KeepsALeastRadiusOrSaysSo") {
   options.width_mm = 15;
   const ZippableDesign free = designed("star", options);
   REQUIRE(free.bend.has_value());
-  options.radius_least_mm = 1.02 * free.bend->radius_mm;
+  options.min_radius_mm = 1.02 * free.bend->radius_mm;
   const ZippableDesign bound = designed("star", options);
   const auto says = [](const ZippableDesign& design) {
     return std::any_of(design.notes.begin(), design.notes.end(),
                        [](const std::string& note) { return note.find("bends to a radius") != std::string::npos; });
   };
-  CHECK((bound.bend->radius_mm >= *options.radius_least_mm) != says(bound));
-  options.radius_least_mm = 2000;
+  CHECK((bound.bend->radius_mm >= *options.min_radius_mm) != says(bound));
+  options.min_radius_mm = 2000;
   options.puncture_mm = 7;
   CHECK(says(designed("star", options)));
-  options.radius_least_mm = 0.5;
+  options.min_radius_mm = 0.5;
   CHECK_FALSE(says(designed("star", options)));
 }
 

@@ -18,9 +18,9 @@ using Catch::Matchers::WithinAbs;
 
 using std::numbers::pi;
 
-FeatureLines features(const TriangleMesh& mesh, double scale_mm, double least_rad = 0.35) {
+FeatureLines features(const TriangleMesh& mesh, double scale_mm, double min_rad = 0.35) {
   Context context;
-  return find_features(mesh, Adjacency(mesh), {scale_mm, least_rad}, context);
+  return find_features(mesh, Adjacency(mesh), {scale_mm, min_rad}, context);
 }
 
 /// Two cones that meet in a ring of radius 30 at z = 0, bent by `bend_rad` there: a ridge, or a valley where that is

@@ -200,8 +200,8 @@ TEST_CASE("MakerChoices.PartsAreCheckedWithoutMakingAnythingOfThem") {
   const ParameterisedModel checked = divide_model(ball(), band, options, context);
   REQUIRE(checked.proposal.segmentation.part_count() == 3);
   int cylinders = 0;
-  const Json told = Json::parse(as_text(write_parts_json(checked)))["parts"];
-  for (const Json& part : told) {
+  const Json written = Json::parse(as_text(write_parts_json(checked)))["parts"];
+  for (const Json& part : written) {
     cylinders += part["cylinder"].get<bool>();
     CHECK(part["why_not"].is_null() == part["cylinder"].get<bool>());
   }

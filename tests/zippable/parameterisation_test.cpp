@@ -22,14 +22,14 @@ Parameterisation solve(const Segmentation& s, double tolerance = 1e-14) {
   return parameterise(s, {tolerance}, context);
 }
 
-double least_determinant(const Segmentation& s, const Parameterisation& p) {
-  double least = 1e300;
+double min_determinant(const Segmentation& s, const Parameterisation& p) {
+  double minimum = 1e300;
   for (int f = 0; f < s.mesh.face_count(); ++f) {
     const Vec2 e1 = p.corners_mm.row(3 * f + 1) - p.corners_mm.row(3 * f),
                e2 = p.corners_mm.row(3 * f + 2) - p.corners_mm.row(3 * f);
-    least = std::min(least, e1.x() * e2.y() - e1.y() * e2.x());
+    minimum = std::min(minimum, e1.x() * e2.y() - e1.y() * e2.x());
   }
-  return least;
+  return minimum;
 }
 
 TEST_CASE("Parameterisation.OfACylinderIsItsUnrolling") {
@@ -111,7 +111,7 @@ TEST_CASE("Parameterisation.ConvergesOnEverySampleWithoutFlips") {
     const Segmentation& s = proposal.segmentation;
     const Parameterisation p = solve(s, 1e-9);
     CHECK(constraint_residual_mm(s, p) <= 1e-10);
-    CHECK(least_determinant(s, p) > 0);
+    CHECK(min_determinant(s, p) > 0);
     CHECK(p.iterations <= 40);
     CHECK(p.distortion_mean >= 1);
     CHECK(p.distortion_mean < 0.9 * p.energy_start + 0.2);

@@ -66,10 +66,10 @@ TEST_CASE("PolygonDissection.FillsAPolygonWithTheShortestDiagonals") {
     for (int i = 0; i < n; ++i) polygon[i] = i;
     const auto cost = [&](int a, int b) { return (points[a] - points[b]).norm(); };
     const auto sides = [&](int a, int b) { return b - a == 1 || (a == 0 && b == n - 1) ? 0.0 : cost(a, b); };
-    const std::function<double(int, int)> least = [&](int i, int j) {
+    const std::function<double(int, int)> minimum = [&](int i, int j) {
       if (j - i < 2) return 0.0;
       double best = 1e300;
-      for (int k = i + 1; k < j; ++k) best = std::min(best, least(i, k) + least(k, j) + sides(i, k) + sides(k, j));
+      for (int k = i + 1; k < j; ++k) best = std::min(best, minimum(i, k) + minimum(k, j) + sides(i, k) + sides(k, j));
       return best;
     };
     double total = 0;
@@ -79,7 +79,7 @@ TEST_CASE("PolygonDissection.FillsAPolygonWithTheShortestDiagonals") {
       CHECK((t[0] < t[1] && t[1] < t[2]));
       total += sides(t[0], t[1]) + sides(t[1], t[2]) + sides(t[0], t[2]);
     }
-    CHECK_THAT(total, WithinAbs(2 * least(0, n - 1), 1e-9));  // every diagonal belongs to two triangles
+    CHECK_THAT(total, WithinAbs(2 * minimum(0, n - 1), 1e-9));  // every diagonal belongs to two triangles
   }
 }
 

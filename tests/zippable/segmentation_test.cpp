@@ -45,11 +45,11 @@ TEST_CASE("SurfaceSplit.CutsWhereTheFieldsAreEqual") {
   field.col(2) = 0.9 - mesh.V.col(0).array();
   std::vector<int> label(mesh.vertex_count());
   for (int v = 0; v < mesh.vertex_count(); ++v) {
-    Eigen::Index least = 0;
-    field.row(v).minCoeff(&least);
-    label[v] = static_cast<int>(least);
+    Eigen::Index minimum = 0;
+    field.row(v).minCoeff(&minimum);
+    label[v] = static_cast<int>(minimum);
   }
-  const LabelledSurface split = split_by_least_field(mesh, label, field);
+  const LabelledSurface split = split_by_smallest_field(mesh, label, field);
   CHECK(Adjacency(split.mesh).is_manifold());
   double area = 0, wrong = 0;
   for (int f = 0; f < split.mesh.face_count(); ++f) {

@@ -74,11 +74,11 @@ TEST_CASE("SymmetricDirichlet.OnlyTheTwistIsProjected") {
                          convex = symmetric_dirichlet_terms(reference, u, true);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> of_exact(exact.hessian), of_convex(convex.hessian);
     CHECK(of_convex.eigenvalues()[0] >= -1e-9 * of_convex.eigenvalues()[5]);
-    const double least = of_exact.eigenvalues()[0];
+    const double minimum = of_exact.eigenvalues()[0];
     CHECK((of_exact.eigenvalues().array() < -1e-9 * of_exact.eigenvalues()[5]).count() ==
-          (least < -1e-9 * of_exact.eigenvalues()[5] ? 1 : 0));
-    if (least < -1e-6) ++projected;
-    else if (least > -1e-12 * of_exact.eigenvalues()[5]) {
+          (minimum < -1e-9 * of_exact.eigenvalues()[5] ? 1 : 0));
+    if (minimum < -1e-6) ++projected;
+    else if (minimum > -1e-12 * of_exact.eigenvalues()[5]) {
       CHECK((exact.hessian - convex.hessian).norm() <= 1e-9 * exact.hessian.norm());
     }
   }

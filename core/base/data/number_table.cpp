@@ -30,7 +30,7 @@ std::vector<std::string_view> fields_of(std::string_view line) {
 }  // namespace
 
 std::vector<std::vector<double>> read_number_table(ByteView csv, const std::string& file_name, const std::string& where,
-                                                   const std::vector<ColumnRule>& columns, std::size_t most_rows) {
+                                                   const std::vector<ColumnRule>& columns, std::size_t max_rows) {
   std::string_view text = as_text(csv);
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   std::vector<int> place(columns.size(), -1);
@@ -69,7 +69,7 @@ std::vector<std::vector<double>> read_number_table(ByteView csv, const std::stri
         refuse("“" + columns[i].name + "” is not a number.");
     }
     rows.push_back(std::move(row));
-    if (rows.size() > most_rows) refuse("more than " + std::to_string(most_rows) + " rows: keep every tenth.");
+    if (rows.size() > max_rows) refuse("more than " + std::to_string(max_rows) + " rows: keep every tenth.");
   }
   if (rows.empty())
     throw Error(ErrorCode::invalid_input, where,

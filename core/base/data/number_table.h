@@ -15,9 +15,9 @@ struct ColumnRule {
 
 /// Rows of the named columns, in the order of `columns`; others are passed over. Commas, any line ends, blanks around
 /// fields, a byte order mark are fine. Throws Error{invalid_input, where}, naming `file_name` and the line: a missing
-/// column, something that is no finite number, no rows, more than `most_rows`.
+/// column, something that is no finite number, no rows, more than `max_rows`.
 std::vector<std::vector<double>> read_number_table(ByteView csv, const std::string& file_name, const std::string& where,
                                                    const std::vector<ColumnRule>& columns,
-                                                   std::size_t most_rows = 5'000'000);
+                                                   std::size_t max_rows = 5'000'000);
 
 }  // namespace formwright

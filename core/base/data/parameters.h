@@ -35,7 +35,8 @@ inline constexpr Unit none{""}, mm{"mm"}, degrees{"°"}, seconds{"s"}, percent{"
 }
 
 /// Specialise with `static constexpr std::array<std::string_view, N> names` (JSON and flag values, in
-/// the order of the enumerators, which count from 0) and `labels` (for a person).
+/// the order of the enumerators, which count from 0) and `labels` (for a person). `old_names`, pairs of a name of the
+/// release before this one and its enumerator, may be added: these are still understood.
 template <class E>
 struct EnumNames;
 
@@ -44,6 +45,7 @@ enum class ParameterKind { boolean, integer, number, optional_number, text, choi
 /// One parameter with its type erased: what schema, help and controls are made from.
 struct ParameterInfo {
   std::string name, label, unit, help, group;
+  std::string old_name;  // still understood, in JSON and as a flag; "" where there is none
   ParameterKind kind = ParameterKind::number;
   bool advanced = false;
   double minimum = 0, maximum = 0;                // number, optional_number, integer; inclusive
@@ -63,6 +65,7 @@ struct Parameter {
   std::string_view group_ = "";
   bool advanced_ = false;
   double slider_minimum = 0, slider_maximum = 0;
+  std::string_view old_name_ = "";
 
   constexpr Parameter advanced() const {
     Parameter copy = *this;
@@ -72,6 +75,12 @@ struct Parameter {
   constexpr Parameter group(std::string_view title) const {
     Parameter copy = *this;
     copy.group_ = title;
+    return copy;
+  }
+  /// The name in the release before this one, which is still understood.
+  constexpr Parameter formerly(std::string_view old_name) const {
+    Parameter copy = *this;
+    copy.old_name_ = old_name;
     return copy;
   }
   /// The part of the range a slider shows; the whole range stays valid when typed.
@@ -98,12 +107,12 @@ constexpr auto parameter(std::string_view name, T Options::*member, std::string_
 template <class Derived, class... Parameters>
 constexpr auto inherit_parameters(const std::tuple<Parameters...>& base) {
   const auto lift = []<class Base, class T>(const Parameter<Base, T>& p) {
-    return Parameter<Derived, T>{p.name,          static_cast<T Derived::*>(p.member),
-                                 p.label,         p.unit_,
-                                 p.minimum,       p.maximum,
-                                 p.help,          p.group_,
-                                 p.advanced_,     p.slider_minimum,
-                                 p.slider_maximum};
+    return Parameter<Derived, T>{p.name,           static_cast<T Derived::*>(p.member),
+                                 p.label,          p.unit_,
+                                 p.minimum,        p.maximum,
+                                 p.help,           p.group_,
+                                 p.advanced_,      p.slider_minimum,
+                                 p.slider_maximum, p.old_name_};
   };
   return std::apply([&](const auto&... p) { return std::tuple{lift(p)...}; }, base);
 }
@@ -167,6 +176,9 @@ T from_json_value(const ParameterInfo& info, const Json& value) {
       const auto text = value.template get<std::string>();
       for (std::size_t i = 0; i < EnumNames<T>::names.size(); ++i)
         if (EnumNames<T>::names[i] == text) return static_cast<T>(i);
+      if constexpr (requires { EnumNames<T>::old_names; })
+        for (const auto& [old_name, choice] : EnumNames<T>::old_names)
+          if (old_name == text) return choice;
     }
     std::string list;
     for (const auto& name : info.choices) list += (list.empty() ? "" : ", ") + name;
@@ -187,6 +199,7 @@ std::vector<ParameterInfo> describe_parameters() {
     info.unit = p.unit_.symbol;
     info.help = p.help;
     info.group = p.group_;
+    info.old_name = p.old_name_;
     info.kind = parameters_detail::kind_of<T>();
     info.advanced = p.advanced_;
     info.minimum = p.minimum;
@@ -216,7 +229,7 @@ Options read_parameters(const Json& object) {
     bool known = false;
     std::size_t index = 0;
     const auto set = [&]<class T>(const Parameter<Options, T>& p) {
-      if (p.name == name) {
+      if (p.name == name || (!p.old_name_.empty() && p.old_name_ == name)) {
         options.*p.member = parameters_detail::from_json_value<T>(infos[index], value);
         known = true;
       }

@@ -16,13 +16,13 @@ namespace {
 constexpr double explained_share =
     0.6;  // of what the base model leaves unexplained (its variance) that a named cause must explain
 constexpr double likely = 0.5;
-constexpr double most_left =
+constexpr double max_left =
     2;  // of the noise: with more left on held-out blocks a named cause is not all of it, or a relative of what it is
-constexpr double plain_strength = 2.5;  // half widths of its interval
-constexpr double told_strength = 1.5;  // the same: with some fourteen causes tried, 5 % for all of them is 2.9 standard
-                                       // deviations of one, not 1.96
-constexpr double least_gain = 0.01;    // of the held-out error
-constexpr double sure_gain = 0.8;      // probability that there is one
+constexpr double plain_strength = 2.5;            // half widths of its interval
+constexpr double distinguishable_strength = 1.5;  // the same: with some fourteen causes tried, 5 % for all of them
+                                                  // is 2.9 standard deviations of one, not 1.96
+constexpr double min_gain = 0.01;  // of the held-out error
+constexpr double sure_gain = 0.8;  // probability that there is one
 constexpr double inseparable_likeness = 0.9;
 constexpr const char* stays_unexplained = "Part of the misfit stays unexplained.";
 constexpr const char* nearly_as_likely = "Another explanation is nearly as likely.";
@@ -43,8 +43,8 @@ class Diagnostician {
 
  private:
   HeldOut held_out(const ParameterFit& fit) {
-    return hold_out(bag_, fit, tried_.precisions(), tried_.nearest_size(model_.known_misfit()), tried_.liberties(),
-                    tried_.liberty_sensitivities(), context_);
+    return hold_out(bag_, fit, tried_.precisions(), tried_.nearest_size(model_.known_misfit()), tried_.discrepancies(),
+                    tried_.discrepancy_sensitivities(), context_);
   }
 
   std::vector<Eigen::VectorXd> weights() const {
@@ -55,7 +55,7 @@ class Diagnostician {
 
   std::vector<Eigen::VectorXd> predicted(const ParameterFit& fit, const std::vector<int>& causes) const {
     return predictive_errors(model_, fit, tried_.precisions(), tried_.nearest_size(tried_.structure_left(causes)),
-                             tried_.liberties(), tried_.liberty_sensitivities());
+                             tried_.discrepancies(), tried_.discrepancy_sensitivities());
   }
 
   /// The most probable explanation whose causes predict held-out data better than their absence does, all fitted alike.
@@ -81,13 +81,13 @@ class Diagnostician {
       if (!result_.trials.back().significant || !predicts_better(h.causes, without)) continue;
       result_.verdict = h.causes;
       widen_by_jackknife();
-      if (const std::vector<int> shown = told_from_zero(h.causes); shown.size() < h.causes.size()) {
+      if (const std::vector<int> shown = distinguishable_from_zero(h.causes); shown.size() < h.causes.size()) {
         result_.verdict = shown;
         // Without the partner that may be nothing.
         if (!shown.empty()) {
           seen.insert(shown);
           result_.trials.push_back({shown, true, {}});
-          if (!predicts_better(shown, without) || told_from_zero(shown).empty()) result_.verdict.clear();
+          if (!predicts_better(shown, without) || distinguishable_from_zero(shown).empty()) result_.verdict.clear();
         }
         if (result_.verdict.empty()) continue;
         widen_by_jackknife();
@@ -122,18 +122,18 @@ class Diagnostician {
     const ParameterFit& fit = tried_.refit_of(causes).fit;
     const HeldOutGain gain = compare_errors(model_, without, predicted(fit, causes), weights());
     result_.trials.back().gain = gain;
-    return gain.gain_probability >= sure_gain && gain.gain_share >= least_gain;
+    return gain.gain_probability >= sure_gain && gain.gain_share >= min_gain;
   }
 
   /// Those told from zero, and one that stands alone only if these data can show it at all: on data of
   /// a machine without fault the others are named as well, a weak vacuum for a sheet that is a little stiffer than
   /// thought. Beside another cause the pair has to explain what that one and the material do not.
-  std::vector<int> told_from_zero(const std::vector<int>& causes) const {
+  std::vector<int> distinguishable_from_zero(const std::vector<int>& causes) const {
     std::vector<int> shown;
     for (const int cause : causes) {
       const CauseFinding& finding = finding_of(cause);
-      const bool can_be_shown = causes.size() > 1 || std::isfinite(finding.least_visible);
-      if (can_be_shown && std::abs(finding.strength) > told_strength * half_width_with_model(finding))
+      const bool can_be_shown = causes.size() > 1 || std::isfinite(finding.min_visible_strength);
+      if (can_be_shown && std::abs(finding.strength) > distinguishable_strength * half_width_with_model(finding))
         shown.push_back(cause);
     }
     return shown;
@@ -146,8 +146,8 @@ class Diagnostician {
 
   /// Relatives of what is wrong leave something, or do so little that the fit's own error could be it.
   void find_doubts() {
-    if (result_.unexplained_after > most_structure * model_.known_misfit()) doubt(stays_unexplained);
-    if (result_.held_out.after.mean > most_left * result_.noise_floor)
+    if (result_.unexplained_after > max_structure * model_.known_misfit()) doubt(stays_unexplained);
+    if (result_.held_out.after.mean > max_left * result_.noise_floor)
       doubt("On held-out data, the error is still more than twice the noise.");
     for (const int cause : result_.verdict) {
       const CauseFinding& finding = finding_of(cause);
@@ -219,7 +219,7 @@ class Diagnostician {
     }
   }
   double half_width_with_model(const CauseFinding& finding) const {
-    const double misfit = std::isfinite(finding.least_visible) ? 0.5 * finding.least_visible : 0;
+    const double misfit = std::isfinite(finding.min_visible_strength) ? 0.5 * finding.min_visible_strength : 0;
     const double gain = 1.96 * model_.causes()[static_cast<std::size_t>(finding.cause)].gain_error * finding.strength;
     return std::sqrt(std::pow(0.5 * (finding.high - finding.low), 2) + misfit * misfit + gain * gain);
   }
@@ -246,8 +246,8 @@ class Diagnostician {
     for (int cause = 0; cause < static_cast<int>(model_.causes().size()); ++cause) {
       CauseFinding finding;
       finding.cause = cause;
-      finding.least_visible =
-          formwright::least_visible(model_, gram, tried_.nearest_size(model_.known_misfit()), tried_.columns(), cause);
+      finding.min_visible_strength = formwright::min_visible_strength(
+          model_, gram, tried_.nearest_size(model_.known_misfit()), tried_.columns(), cause);
       const Hypothesis* at = nullptr;
       for (const Hypothesis& h : result_.hypotheses) {
         if (std::find(h.causes.begin(), h.causes.end(), cause) == h.causes.end()) continue;
@@ -270,7 +270,7 @@ class Diagnostician {
       }
       const Explanations::Refit& r = tried_.refit_of(at->causes);
       const StructuredObjective objective(model_, tried_.misfit(), tried_.nearest_size(at->structure),
-                                          tried_.liberties(), tried_.liberty_sensitivities());
+                                          tried_.discrepancies(), tried_.discrepancy_sensitivities());
       Eigen::VectorXd g;
       Eigen::MatrixXd H;
       objective.quadratic(residuals(model_, r.fit.predictions), r.fit.sensitivities, r.fit.free, r.fit.u, g, H);
@@ -307,7 +307,7 @@ class Diagnostician {
     for (const int named : result_.verdict)
       for (int other = 0; other < static_cast<int>(model_.causes().size()); ++other) {
         if (std::find(result_.verdict.begin(), result_.verdict.end(), other) != result_.verdict.end()) continue;
-        const double alike = likeness(model_, gram, result_.structure, tried_.columns(), named, other);
+        const double alike = similarity(model_, gram, result_.structure, tried_.columns(), named, other);
         // Alike in every respect, or not told apart by these very data.
         const bool undecided = finding_of(other).probability > 0.15 * finding_of(named).probability;
         if (alike > inseparable_likeness || (undecided && alike > 0.5))

@@ -25,13 +25,13 @@ struct CauseFinding {
   double probability = 0;                  // that it is at work, by itself or in a pair
   double strength = 0, low = 0, high = 0;  // Cause::unit; 95 % interval
   std::vector<double> values;              // of its parameters
-  double least_visible = 0;  // strength that these data would show; infinite where the calibration hides any
-  double log_evidence = 0;   // over that of no cause
+  double min_visible_strength = 0;  // strength that these data would show; infinite where the calibration hides any
+  double log_evidence = 0;          // over that of no cause
 };
 
 struct NotSeparable {
   int cause_a = 0, cause_b = 0;
-  double likeness = 0;  // 1: the same to these data
+  double similarity = 0;  // 1: the same to these data
 };
 
 /// An explanation that was asked to predict what was held out.

@@ -78,6 +78,7 @@ Json diagnosis_json(const DiagnosisReport& report) {
     Json values = Json::object();
     for (std::size_t i = 0; i < cause.parameters.size(); ++i)
       values[model.parameters()[static_cast<std::size_t>(cause.parameters[i])].name] = f.values[i];
+    const Json visible = std::isfinite(f.min_visible_strength) ? Json(f.min_visible_strength) : Json();
     json["causes"].push_back({{"name", cause.name},
                               {"label", cause.label},
                               {"probability", f.probability},
@@ -86,7 +87,8 @@ Json diagnosis_json(const DiagnosisReport& report) {
                               {"interval", interval(f.low, f.high)},
                               {"values", values},
                               {"log_evidence", f.log_evidence},
-                              {"least_visible", std::isfinite(f.least_visible) ? Json(f.least_visible) : Json()},
+                              {"min_visible_strength", visible},
+                              {"least_visible", visible},  // its name until version 0.1
                               {"explanation", cause.explanation},
                               {"remedy", cause.remedy}});
   }
@@ -102,9 +104,9 @@ Json diagnosis_json(const DiagnosisReport& report) {
   json["not_separable"] = Json::array();
   for (const SeparatedPair& s : report.separations)
     json["not_separable"].push_back({{"causes", {name(s.pair.cause_a), name(s.pair.cause_b)}},
-                                     {"likeness", s.pair.likeness},
+                                     {"likeness", s.pair.similarity},
                                      {"measurement", s.what},
-                                     {"likeness_with_it", s.likeness}});
+                                     {"likeness_with_it", s.similarity}});
   const HeldOutGain& gain = d.held_out;
   json["error_before_mm"] = gain.before.mean;
   json["error_before_interval_mm"] = interval(gain.before.low, gain.before.high);

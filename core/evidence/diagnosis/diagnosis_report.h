@@ -8,8 +8,8 @@ namespace formwright {
 
 struct SeparatedPair {
   NotSeparable pair;
-  std::string what;     // the measurement that would tell; empty where none was found
-  double likeness = 1;  // with it
+  std::string what;       // the measurement that would tell; empty where none was found
+  double similarity = 1;  // with it
 };
 
 /// Everything that is told of a diagnosis.

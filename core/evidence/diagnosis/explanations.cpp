@@ -62,9 +62,9 @@ void Explanations::screen() {
     about_nominal = probe_around(bag_, model_.nominal(), at_nominal_, columns_, context_, "Trying each effect");
     nominal_sensitivities_ = about_nominal.sensitivities;
   }
-  liberties_ = model_.parameters_with(ParameterRole::discrepancy);
-  liberty_sensitivities_ = sensitivities_of(liberties_, sensitivities_, columns_);
-  movements_ = movements_of(model_, liberties_, liberty_sensitivities_);
+  discrepancies_ = model_.parameters_with(ParameterRole::discrepancy);
+  discrepancy_sensitivities_ = sensitivities_of(discrepancies_, sensitivities_, columns_);
+  movements_ = movements_of(model_, discrepancies_, discrepancy_sensitivities_);
   // A fit cannot settle what the simulation itself does by leaps: such places tell less.
   for (std::size_t object = 0; object < movements_.size(); ++object)
     for (const Probing* probing : {&about_base, &about_nominal})
@@ -125,8 +125,8 @@ std::size_t Explanations::nearest_size(double structure) const {
 ParameterFit Explanations::fit_from(const std::vector<int>& causes, const std::vector<Eigen::VectorXd>& starts,
                                     std::vector<Sensitivities> known, const FitOptions& options) {
   const std::vector<int> free = model_.base_and(causes);
-  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), liberties_,
-                                      liberty_sensitivities_);
+  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), discrepancies_,
+                                      discrepancy_sensitivities_);
   return fit_from_best(bag_, objective, free, starts, std::move(known), options, context_, fitting_stage);
 }
 
@@ -147,7 +147,7 @@ void Explanations::refit_with(const std::vector<int>& causes, const PairGuess* g
        {}});
   if (auto other = fit_from_nominal(causes)) {
     if (other->value < refits_.back().fit.value) std::swap(refits_.back().fit, *other);
-    refits_.back().other_way = std::move(other);
+    refits_.back().alternative = std::move(other);
   }
   weigh_refit(refits_.back());
 }
@@ -164,10 +164,10 @@ std::optional<ParameterFit> Explanations::fit_from_nominal(const std::vector<int
     }
   if (one_sided) {
     // At zero it has a derivative on one side only, and that says little: start at its usual strength.
-    const Eigen::VectorXd half_way = within_ranges(model_, usual + 0.5 * base_.u);
+    const Eigen::VectorXd halfway = within_ranges(model_, usual + 0.5 * base_.u);
     usual = within_ranges(model_, usual);
-    if (!bag_.run(usual, context_, fitting_stage) && !bag_.run(half_way, context_, fitting_stage)) return {};
-    return fit_from(causes, {usual, half_way}, {}, quick_fit);
+    if (!bag_.run(usual, context_, fitting_stage) && !bag_.run(halfway, context_, fitting_stage)) return {};
+    return fit_from(causes, {usual, halfway}, {}, quick_fit);
   }
   Hypothesis h = screened(causes, false);
   weigh(model_, about_nominal_, columns_, model_.nominal(), h);
@@ -193,9 +193,9 @@ void Explanations::polish(Refit& refit) {
 }
 
 void Explanations::weigh_refit(const Refit& refit) {
-  const std::vector<int> columns = joined(refit.fit.free, liberties_);
+  const std::vector<int> columns = joined(refit.fit.free, discrepancies_);
   const GramByStructure gram = misfit_->gram(residuals(model_, refit.fit.predictions),
-                                             side_by_side(refit.fit.sensitivities, liberty_sensitivities_));
+                                             side_by_side(refit.fit.sensitivities, discrepancy_sensitivities_));
   for (const bool unknown : {false, true}) {
     auto at = std::find_if(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& h) {
       return h.causes == refit.causes && h.unknown_structure == unknown;
@@ -275,9 +275,9 @@ std::vector<PairGuess> Explanations::promising_pairs() {
     const ParameterFit& fit = refit_of(h.causes).fit;
     singles.push_back({h.causes[0], fit.u, fit.predictions});
   }
-  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), liberties_,
-                                      liberty_sensitivities_);
-  PairSearch search = search_pairs(model_, *misfit_, objective, liberties_, liberty_sensitivities_, singles,
+  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), discrepancies_,
+                                      discrepancy_sensitivities_);
+  PairSearch search = search_pairs(model_, *misfit_, objective, discrepancies_, discrepancy_sensitivities_, singles,
                                    pair_anchors, context_, "Searching for two causes");
   cheap_simulations_ += search.simulations;
   if (search.guesses.size() > refitted_pairs) search.guesses.resize(refitted_pairs);
@@ -316,7 +316,7 @@ double Explanations::movement(int cause, const Eigen::VectorXd& u) const {
 
 bool Explanations::significant(const Hypothesis& h) const {
   return std::all_of(h.causes.begin(), h.causes.end(),
-                     [&](int cause) { return movement(cause, h.u) > least_movement * model_.known_misfit(); });
+                     [&](int cause) { return movement(cause, h.u) > min_movement * model_.known_misfit(); });
 }
 
 }  // namespace formwright

@@ -13,16 +13,16 @@ namespace formwright {
 
 inline constexpr const char* fitting_stage = "Fitting the causes";
 /// Of the known misfit: right causes leave none, or the next smaller size of those that are considered.
-inline constexpr double most_structure = 0.6;
-inline constexpr double least_movement = 0.5;  // of the known misfit, that a cause must make
-inline constexpr double out_of_reach = 60;  // log evidence that polishing, or a finer simulation, does not make up for
+inline constexpr double max_structure = 0.6;
+inline constexpr double min_movement = 0.5;  // of the known misfit, that a cause must make
+inline constexpr double out_of_reach = 60;   // log evidence that polishing, or a finer simulation, does not make up for
 
 class Explanations {
  public:
   struct Refit {
     ParameterFit fit;
     std::vector<int> causes;
-    std::optional<ParameterFit> other_way;  // where the fit from the other material ended, which is worse
+    std::optional<ParameterFit> alternative;  // where the fit from the other material ended, which is worse
   };
 
   Explanations(SimulationBag& bag, bool pairs, Context& context)
@@ -53,8 +53,8 @@ class Explanations {
   /// The same about the set-up's own material, where a cause that only goes one way is taken at its usual strength:
   /// what it does from there on to zero. Simulates these. Throws Error{cancelled}.
   std::vector<Sensitivities> usual_sensitivities();
-  const std::vector<int>& liberties() const { return liberties_; }
-  const std::vector<Sensitivities>& liberty_sensitivities() const { return liberty_sensitivities_; }
+  const std::vector<int>& discrepancies() const { return discrepancies_; }
+  const std::vector<Sensitivities>& discrepancy_sensitivities() const { return discrepancy_sensitivities_; }
   /// Most probable first.
   const std::vector<Hypothesis>& hypotheses() const { return hypotheses_; }
   bool is_refitted(const std::vector<int>& causes) const;
@@ -115,8 +115,8 @@ class Explanations {
   std::optional<MisfitOfAll> misfit_;
   std::vector<int> columns_;
   std::vector<Sensitivities> sensitivities_;
-  std::vector<int> liberties_;
-  std::vector<Sensitivities> liberty_sensitivities_;
+  std::vector<int> discrepancies_;
+  std::vector<Sensitivities> discrepancy_sensitivities_;
   std::vector<std::vector<Eigen::MatrixXd>>
       movements_;  // what the simulation is not to be relied on by: model_covariance()
   Predictions at_nominal_;

@@ -22,7 +22,7 @@ const Hypothesis& plain_none(const std::vector<Hypothesis>& hypotheses) {
 bool Explanations::decided() const {
   const Hypothesis& best = hypotheses_.front();
   if (best.causes.empty() || best.unknown_structure ||
-      structure_left(best.causes) > most_structure * model_.known_misfit())
+      structure_left(best.causes) > max_structure * model_.known_misfit())
     return false;
   return std::all_of(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& h) {
     return h.causes == best.causes || h.log_evidence < best.log_evidence - decisive;
@@ -30,24 +30,25 @@ bool Explanations::decided() const {
 }
 
 void Explanations::refit_as(const Refit& coarse) {
-  std::vector<const ParameterFit*> ways{&coarse.fit};
-  if (coarse.other_way) ways.push_back(&*coarse.other_way);
-  std::erase_if(ways, [&](const ParameterFit* way) {
-    return std::any_of(coarse.causes.begin(), coarse.causes.end(),
-                       [&](int cause) { return movement(cause, way->u) <= least_movement * model_.known_misfit(); });
+  std::vector<const ParameterFit*> candidates{&coarse.fit};
+  if (coarse.alternative) candidates.push_back(&*coarse.alternative);
+  std::erase_if(candidates, [&](const ParameterFit* candidate) {
+    return std::any_of(coarse.causes.begin(), coarse.causes.end(), [&](int cause) {
+      return movement(cause, candidate->u) <= min_movement * model_.known_misfit();
+    });
   });
   std::vector<Eigen::VectorXd> starts;
-  for (const ParameterFit* way : ways) starts.push_back(way->u);
+  for (const ParameterFit* candidate : candidates) starts.push_back(candidate->u);
   if (starts.empty()) return;
-  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), liberties_,
-                                      liberty_sensitivities_);
+  const StructuredObjective objective(model_, *misfit_, nearest_size(model_.known_misfit()), discrepancies_,
+                                      discrepancy_sensitivities_);
   const auto predictions = bag_.run(starts, context_, fitting_stage);
   double best_value = refit_of({}).fit.value + out_of_reach;
   const ParameterFit* best = nullptr;
   for (std::size_t i = 0; i < starts.size(); ++i) {
     if (!predictions[i]) continue;
     const double value = objective.value(residuals(model_, *predictions[i]), starts[i]);
-    if (value < best_value) best_value = value, best = ways[i];
+    if (value < best_value) best_value = value, best = candidates[i];
   }
   if (best == nullptr) return;
   refits_.push_back({fit_from(coarse.causes, {best->u}, best->sensitivities, quick_fit), coarse.causes, {}});
@@ -64,21 +65,21 @@ void Explanations::look_again(const Explanations& coarse) {
   columns_ = coarse.columns_;
   sensitivities_ = coarse.sensitivities_;
   nominal_sensitivities_ = coarse.nominal_sensitivities_;
-  liberties_ = coarse.liberties_;
+  discrepancies_ = coarse.discrepancies_;
   noise_ = coarse.noise_;
   base_ = fit_parameters(bag_, *mean_distance_objective(model_, softness()), model_.base_parameters(), coarse.base_.u,
                          sensitivities_of(model_.base_parameters(), sensitivities_, columns_), {}, context_, looking);
   // What equally good simulations would do is less on a finer sheet; where a coarse one leaps a fine one does, too.
-  liberty_sensitivities_ = sensitivities_at(bag_, base_.u, base_.predictions, liberties_, context_, looking);
-  movements_ = movements_of(model_, liberties_, liberty_sensitivities_);
+  discrepancy_sensitivities_ = sensitivities_at(bag_, base_.u, base_.predictions, discrepancies_, context_, looking);
+  movements_ = movements_of(model_, discrepancies_, discrepancy_sensitivities_);
   for (std::size_t object = 0; object < movements_.size(); ++object) {
     const std::vector<Eigen::MatrixXd>& all = coarse.movements_[object];
     movements_[object].insert(movements_[object].end(),
-                              all.begin() + static_cast<std::ptrdiff_t>(coarse.liberties_.size()), all.end());
-    for (std::size_t k = 0; k < liberties_.size(); ++k) {
+                              all.begin() + static_cast<std::ptrdiff_t>(coarse.discrepancies_.size()), all.end());
+    for (std::size_t k = 0; k < discrepancies_.size(); ++k) {
       const auto column =
-          static_cast<std::size_t>(std::find(columns_.begin(), columns_.end(), liberties_[k]) - columns_.begin());
-      sensitivities_[object][column] = liberty_sensitivities_[object][k];
+          static_cast<std::size_t>(std::find(columns_.begin(), columns_.end(), discrepancies_[k]) - columns_.begin());
+      sensitivities_[object][column] = discrepancy_sensitivities_[object][k];
     }
   }
   estimate_noise_about(freely_fitted(model_, base_.predictions, columns_, sensitivities_));

@@ -56,7 +56,8 @@ struct PairSearch {
 /// it. `misfit` and `objective` are the diagnosis's own, `liberties` the discrepancy parameters with their
 /// sensitivities. Throws Error{cancelled}; where the model has no answer, pairs are left out.
 PairSearch search_pairs(const ForwardModel& model, const MisfitOfAll& misfit, const FitObjective& objective,
-                        const std::vector<int>& liberties, const std::vector<Sensitivities>& liberty_sensitivities,
+                        const std::vector<int>& discrepancies,
+                        const std::vector<Sensitivities>& discrepancy_sensitivities,
                         const std::vector<FittedSingle>& singles, std::size_t anchors, Context& context,
                         const std::string& stage);
 

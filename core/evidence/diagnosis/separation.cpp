@@ -39,7 +39,7 @@ Separation best_separation(SimulationBag& bag, const Diagnosis& diagnosis, const
   const auto present = gram_of(bag, precisions);
   Separation best;
   if (!present) return best;
-  best.likeness = likeness(model, *present, diagnosis.structure, columns, pair.cause_a, pair.cause_b) - worth_it;
+  best.similarity = similarity(model, *present, diagnosis.structure, columns, pair.cause_a, pair.cause_b) - worth_it;
   for (std::size_t i = 0; i < proposals.size(); ++i) {
     const auto span = context.span(static_cast<double>(i) / static_cast<double>(proposals.size()),
                                    (static_cast<double>(i) + 1) / static_cast<double>(proposals.size()),
@@ -52,8 +52,8 @@ Separation best_separation(SimulationBag& bag, const Diagnosis& diagnosis, const
     auto together = gram_of(own, expected);
     if (!together) continue;
     *together += *present;
-    const double alike = likeness(model, *together, diagnosis.structure, columns, pair.cause_a, pair.cause_b);
-    if (alike < best.likeness) best = {static_cast<int>(i), alike};
+    const double alike = similarity(model, *together, diagnosis.structure, columns, pair.cause_a, pair.cause_b);
+    if (alike < best.similarity) best = {static_cast<int>(i), alike};
   }
   return best;
 }

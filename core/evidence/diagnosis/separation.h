@@ -14,8 +14,8 @@ struct ProposedMeasurement {
 };
 
 struct Separation {
-  int proposal = -1;    // index; -1 where none helps
-  double likeness = 1;  // of the two causes in old and proposed data together
+  int proposal = -1;      // index; -1 where none helps
+  double similarity = 1;  // of the two causes in old and proposed data together
 };
 
 /// Tries the proposals; `sigma` is the noise one expects of them.

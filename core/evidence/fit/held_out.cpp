@@ -121,13 +121,14 @@ void take_fold(const ForwardModel& model, const std::vector<Eigen::VectorXd>& ow
 
 std::vector<Eigen::VectorXd> predictive_errors(const ForwardModel& model, const ParameterFit& fit,
                                                const std::vector<Precisions>& precisions, std::size_t structure,
-                                               const std::vector<int>& liberty_parameters,
-                                               const std::vector<Sensitivities>& liberties) {
+                                               const std::vector<int>& discrepancy_parameters,
+                                               const std::vector<Sensitivities>& discrepancies) {
   std::vector<int> columns = fit.free;
-  columns.insert(columns.end(), liberty_parameters.begin(), liberty_parameters.end());
+  columns.insert(columns.end(), discrepancy_parameters.begin(), discrepancy_parameters.end());
   std::vector<Sensitivities> sensitivities = fit.sensitivities;
   for (std::size_t object = 0; object < sensitivities.size(); ++object)
-    sensitivities[object].insert(sensitivities[object].end(), liberties[object].begin(), liberties[object].end());
+    sensitivities[object].insert(sensitivities[object].end(), discrepancies[object].begin(),
+                                 discrepancies[object].end());
   const Predictions left = residuals(model, fit.predictions);
   const auto k = static_cast<Eigen::Index>(columns.size());
   std::vector<Eigen::VectorXd> errors = weighed_errors(left, precisions);
@@ -156,8 +157,8 @@ std::vector<Eigen::VectorXd> predictive_errors(const ForwardModel& model, const 
 }
 
 HeldOut hold_out(SimulationBag& bag, const ParameterFit& fit, const std::vector<Precisions>& precisions,
-                 std::size_t structure, const std::vector<int>& liberty_parameters,
-                 const std::vector<Sensitivities>& liberties, Context& context) {
+                 std::size_t structure, const std::vector<int>& discrepancy_parameters,
+                 const std::vector<Sensitivities>& discrepancies, Context& context) {
   const ForwardModel& model = bag.model();
   const Predictions at_fit = residuals(model, fit.predictions);
   const auto k = static_cast<Eigen::Index>(fit.free.size());
@@ -172,7 +173,7 @@ HeldOut hold_out(SimulationBag& bag, const ParameterFit& fit, const std::vector<
     Fold fold;
     fold.misfit = std::make_unique<MisfitOfAll>(model, without_fold(model, precisions, left_out));
     fold.objective =
-        std::make_unique<StructuredObjective>(model, *fold.misfit, structure, liberty_parameters, liberties);
+        std::make_unique<StructuredObjective>(model, *fold.misfit, structure, discrepancy_parameters, discrepancies);
     fold.value = fold.objective->value(at_fit, fit.u);
     Eigen::VectorXd g, low(k), high(k);
     Eigen::MatrixXd H;

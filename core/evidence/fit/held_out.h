@@ -33,8 +33,8 @@ HeldOutGain compare_errors(const ForwardModel& model, const std::vector<Eigen::V
 /// which a direction counts by how well it is known; -1 for points that are left out. No simulations.
 std::vector<Eigen::VectorXd> predictive_errors(const ForwardModel& model, const ParameterFit& fit,
                                                const std::vector<Precisions>& precisions, std::size_t structure,
-                                               const std::vector<int>& liberty_parameters,
-                                               const std::vector<Sensitivities>& liberties);
+                                               const std::vector<int>& discrepancy_parameters,
+                                               const std::vector<Sensitivities>& discrepancies);
 
 struct HeldOut {
   std::vector<Eigen::VectorXd>
@@ -45,7 +45,7 @@ struct HeldOut {
 /// For each fold, fits `fit`'s free parameters to the other folds (linearised about the fit) and predicts the fold by a
 /// simulation of its own.
 HeldOut hold_out(SimulationBag& bag, const ParameterFit& fit, const std::vector<Precisions>& precisions,
-                 std::size_t structure, const std::vector<int>& liberty_parameters,
-                 const std::vector<Sensitivities>& liberties, Context& context);
+                 std::size_t structure, const std::vector<int>& discrepancy_parameters,
+                 const std::vector<Sensitivities>& discrepancies, Context& context);
 
 }  // namespace formwright

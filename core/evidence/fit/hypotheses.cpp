@@ -188,8 +188,8 @@ class Projection {
 
 }  // namespace
 
-double likeness(const ForwardModel& model, const GramByStructure& gram, std::size_t structure,
-                const std::vector<int>& columns, int cause_a, int cause_b) {
+double similarity(const ForwardModel& model, const GramByStructure& gram, std::size_t structure,
+                  const std::vector<int>& columns, int cause_a, int cause_b) {
   const Projection projected(model, gram.gram[structure], columns);
   // The largest canonical correlation of the two spans.
   const auto root_inverse = [](const Eigen::MatrixXd& M) -> Eigen::MatrixXd {
@@ -203,8 +203,8 @@ double likeness(const ForwardModel& model, const GramByStructure& gram, std::siz
   return std::min(1.0, Eigen::JacobiSVD<Eigen::MatrixXd>(correlation).singularValues().maxCoeff());
 }
 
-double least_visible(const ForwardModel& model, const GramByStructure& gram, std::size_t structure,
-                     const std::vector<int>& columns, int cause) {
+double min_visible_strength(const ForwardModel& model, const GramByStructure& gram, std::size_t structure,
+                            const std::vector<int>& columns, int cause) {
   constexpr double log_evidence = 8;  // half the square of the strength over its standard deviation: four of them
   const Eigen::MatrixXd& G = gram.gram[structure];
   const auto k = static_cast<Eigen::Index>(columns.size());

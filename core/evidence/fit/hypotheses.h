@@ -40,14 +40,14 @@ void normalise(std::vector<Hypothesis>& hypotheses);
 
 /// Cosine between what two causes do that nothing else can do, each at its most alike direction; 1 when the data cannot
 /// tell them apart.
-double likeness(const ForwardModel& model, const GramByStructure& gram, std::size_t structure,
-                const std::vector<int>& columns, int cause_a, int cause_b);
+double similarity(const ForwardModel& model, const GramByStructure& gram, std::size_t structure,
+                  const std::vector<int>& columns, int cause_a, int cause_b);
 
 /// How strong a cause must be, in its worst direction, for these data to show it beside all that base parameters and
 /// discrepancies can imitate; infinite where they imitate it wholly. In the cause's coordinates. `gram`: with the
 /// sensitivities to `columns` at two places, one set after the other. What contact and the mesh do to them is different
 /// at each: only what both have in common counts.
-double least_visible(const ForwardModel& model, const GramByStructure& gram, std::size_t structure,
-                     const std::vector<int>& columns, int cause);
+double min_visible_strength(const ForwardModel& model, const GramByStructure& gram, std::size_t structure,
+                            const std::vector<int>& columns, int cause);
 
 }  // namespace formwright

@@ -167,9 +167,9 @@ ParameterFit fit_parameters(SimulationBag& bag, const FitObjective& objective, c
     probe[a] = model.parameters()[static_cast<std::size_t>(free[static_cast<std::size_t>(a)])].probe;
   double damping = 0.03;
   int small_gains = 0;
-  for (int iteration = 0; iteration < options.most_iterations; ++iteration) {
-    const auto span = context.span(static_cast<double>(iteration) / options.most_iterations,
-                                   (iteration + 1.0) / options.most_iterations, stage);
+  for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
+    const auto span = context.span(static_cast<double>(iteration) / options.max_iterations,
+                                   (iteration + 1.0) / options.max_iterations, stage);
     Eigen::VectorXd g, low(k), high(k);
     Eigen::MatrixXd H;
     objective.quadratic(residuals(model, fit.predictions), fit.sensitivities, free, fit.u, g, H);

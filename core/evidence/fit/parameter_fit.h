@@ -35,7 +35,7 @@ Eigen::VectorXd bounded_step(const Eigen::MatrixXd& H, const Eigen::VectorXd& g,
                              const Eigen::VectorXd& high);
 
 struct FitOptions {
-  int most_iterations = 12;
+  int max_iterations = 12;
   double tolerance = 2e-3;          // relative gain below which the fit has converged
   bool renew_sensitivities = true;  // take them afresh where secants lead nowhere; otherwise stop there
 };

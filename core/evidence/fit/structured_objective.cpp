@@ -23,31 +23,30 @@ GramByStructure MisfitOfAll::gram(const Predictions& residuals, const std::vecto
 Eigen::MatrixXd StructuredObjective::reduced(const Predictions& residuals,
                                              const std::vector<Sensitivities>& sensitivities) const {
   const auto k = static_cast<Eigen::Index>(sensitivities.empty() ? 0 : sensitivities.front().size());
-  const auto d = static_cast<Eigen::Index>(liberty_parameters_.size());
+  const auto d = static_cast<Eigen::Index>(discrepancy_parameters_.size());
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(1 + k + d, 1 + k + d);
   for (std::size_t object = 0; object < residuals.size(); ++object) {
     Sensitivities columns = sensitivities[object];
-    columns.insert(columns.end(), liberties_[object].begin(), liberties_[object].end());
+    columns.insert(columns.end(), discrepancies_[object].begin(), discrepancies_[object].end());
     all += misfit_.objects()[object].gram_at(residuals[object], columns, structure_);
   }
   if (d == 0) return all;
   Eigen::MatrixXd own = all.bottomRightCorner(d, d);
   for (Eigen::Index i = 0; i < d; ++i)
     own(i, i) +=
-        1 /
-        std::pow(
-            model_.parameters()[static_cast<std::size_t>(liberty_parameters_[static_cast<std::size_t>(i)])].prior_sd,
-            2);
+        1 / std::pow(model_.parameters()[static_cast<std::size_t>(discrepancy_parameters_[static_cast<std::size_t>(i)])]
+                         .prior_sd,
+                     2);
   const Eigen::MatrixXd cross = all.bottomLeftCorner(d, 1 + k);
   return all.topLeftCorner(1 + k, 1 + k) - cross.transpose() * own.llt().solve(cross);
 }
 
-std::vector<std::vector<Eigen::MatrixXd>> movements_of(const ForwardModel& model, const std::vector<int>& liberties,
+std::vector<std::vector<Eigen::MatrixXd>> movements_of(const ForwardModel& model, const std::vector<int>& discrepancies,
                                                        const std::vector<Sensitivities>& sensitivities) {
   std::vector<std::vector<Eigen::MatrixXd>> movements(sensitivities.size());
   for (std::size_t object = 0; object < sensitivities.size(); ++object)
-    for (std::size_t l = 0; l < liberties.size(); ++l)
-      movements[object].push_back(model.parameters()[static_cast<std::size_t>(liberties[l])].prior_sd *
+    for (std::size_t l = 0; l < discrepancies.size(); ++l)
+      movements[object].push_back(model.parameters()[static_cast<std::size_t>(discrepancies[l])].prior_sd *
                                   sensitivities[object][l]);
   return movements;
 }

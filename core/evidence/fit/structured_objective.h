@@ -24,7 +24,7 @@ class MisfitOfAll {
 
 /// What equally good simulations would move, a standard deviation each, for every object. `liberties`: discrepancy
 /// parameters; their sensitivities, each object.
-std::vector<std::vector<Eigen::MatrixXd>> movements_of(const ForwardModel& model, const std::vector<int>& liberties,
+std::vector<std::vector<Eigen::MatrixXd>> movements_of(const ForwardModel& model, const std::vector<int>& discrepancies,
                                                        const std::vector<Sensitivities>& sensitivities);
 
 /// Where the simulation is not to be relied on, points weigh less (model_covariance). `weights`: inverse variances of
@@ -37,12 +37,12 @@ std::vector<Precisions> precisions_of(const ForwardModel& model, const std::vect
 class StructuredObjective : public FitObjective {
  public:
   StructuredObjective(const ForwardModel& model, const MisfitOfAll& misfit, std::size_t structure,
-                      std::vector<int> liberty_parameters, const std::vector<Sensitivities>& liberties)
+                      std::vector<int> discrepancy_parameters, const std::vector<Sensitivities>& discrepancies)
       : model_(model),
         misfit_(misfit),
         structure_(structure),
-        liberty_parameters_(std::move(liberty_parameters)),
-        liberties_(liberties) {}
+        discrepancy_parameters_(std::move(discrepancy_parameters)),
+        discrepancies_(discrepancies) {}
   double value(const Predictions& residuals, const Eigen::VectorXd& u) const override;
   void quadratic(const Predictions& residuals, const std::vector<Sensitivities>& sensitivities,
                  const std::vector<int>& free, const Eigen::VectorXd& u, Eigen::VectorXd& g,
@@ -55,8 +55,8 @@ class StructuredObjective : public FitObjective {
   const ForwardModel& model_;
   const MisfitOfAll& misfit_;
   std::size_t structure_;
-  std::vector<int> liberty_parameters_;
-  const std::vector<Sensitivities>& liberties_;
+  std::vector<int> discrepancy_parameters_;
+  const std::vector<Sensitivities>& discrepancies_;
 };
 
 }  // namespace formwright

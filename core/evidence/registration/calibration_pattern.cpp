@@ -172,9 +172,9 @@ CalibrationPattern read_calibration_pattern(ByteView bytes) {
              std::string("The pattern's “") + key + "” must be two numbers: give pattern.json as it was written.");
     return Vec2(number(value[0], key, from, to), number(value[1], key, from, to));
   };
-  const auto list = [&](const char* key, std::size_t least, std::size_t most) -> const Json& {
+  const auto list = [&](const char* key, std::size_t minimum, std::size_t maximum) -> const Json& {
     const Json& value = at(json, key);
-    if (!value.is_array() || value.size() < least || value.size() > most)
+    if (!value.is_array() || value.size() < minimum || value.size() > maximum)
       refuse("pattern",
              std::string("The pattern's “") + key + "” is not complete: give pattern.json as it was written.");
     return value;

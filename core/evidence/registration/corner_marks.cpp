@@ -11,13 +11,13 @@
 namespace formwright {
 namespace {
 
-constexpr double least_likeness = 0.45;   // noise alone reaches 0.3
-constexpr double most_distortion = 1.35;  // of distances between marks
+constexpr double min_similarity = 0.45;  // noise alone reaches 0.3
+constexpr double max_distortion = 1.35;  // of distances between marks
 constexpr std::size_t candidates_a_mark = 12;
 constexpr std::array<double, 5> sizes{0.88, 0.94, 1.0, 1.07, 1.15};
 
 struct Candidate {
-  double likeness;
+  double similarity;
   int x, y;
 };
 
@@ -54,7 +54,7 @@ Stencil stencil(const CornerMark& mark, double radius_px) {
 }
 
 /// Mean over the channels of the correlation; -1 where part of it is not seen.
-double likeness(const WeightedPicture& picture, const Stencil& s, int x, int y) {
+double similarity(const WeightedPicture& picture, const Stencil& s, int x, int y) {
   Float4 sum{}, sum_squared{}, product{};
   for (std::size_t i = 0; i < s.offset.size(); ++i) {
     const int px = x + s.offset[i].first, py = y + s.offset[i].second;
@@ -83,9 +83,9 @@ std::vector<Candidate> best_places(const CornerMark& mark, const WeightedPicture
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
       for (int x = 0; x < picture.width; ++x) {
         if (!(picture.at(x, y)[3] > 0)) continue;
-        double best = likeness(picture, stencils[sizes.size() / 2], x, y);
+        double best = similarity(picture, stencils[sizes.size() / 2], x, y);
         if (best > 0.25)  // other sizes only where the middle one is not hopeless
-          for (const Stencil& s : stencils) best = std::max(best, likeness(picture, s, x, y));
+          for (const Stencil& s : stencils) best = std::max(best, similarity(picture, s, x, y));
         map[picture.index(x, y)] = static_cast<float>(best);
       }
   });
@@ -95,7 +95,7 @@ std::vector<Candidate> best_places(const CornerMark& mark, const WeightedPicture
     for (int x = 0; x < picture.width; ++x)
       if (map[picture.index(x, y)] > 0.3f) peaks.push_back({map[picture.index(x, y)], x, y});
   std::stable_sort(peaks.begin(), peaks.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.likeness > b.likeness; });
+                   [](const Candidate& a, const Candidate& b) { return a.similarity > b.similarity; });
   std::vector<Candidate> kept;
   for (const Candidate& p : peaks) {
     const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const Candidate& k) {
@@ -112,18 +112,18 @@ Vec2 refined(const WeightedPicture& picture, const CornerMark& mark, const Candi
   const Stencil* best = nullptr;
   std::vector<Stencil> stencils;
   for (const double size : sizes) stencils.push_back(stencil(mark, size * mark.radius_mm / pixel_mm));
-  double most = -2;
+  double maximum = -2;
   for (const Stencil& s : stencils)
-    if (const double value = likeness(picture, s, at.x, at.y); value > most) {
-      most = value;
+    if (const double value = similarity(picture, s, at.x, at.y); value > maximum) {
+      maximum = value;
       best = &s;
     }
   const auto peak = [&](double before, double here, double after) {
     const double bend = before - 2 * here + after;
     return before > -1 && after > -1 && bend < -1e-9 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0.0;
   };
-  return {at.x + peak(likeness(picture, *best, at.x - 1, at.y), most, likeness(picture, *best, at.x + 1, at.y)),
-          at.y + peak(likeness(picture, *best, at.x, at.y - 1), most, likeness(picture, *best, at.x, at.y + 1))};
+  return {at.x + peak(similarity(picture, *best, at.x - 1, at.y), maximum, similarity(picture, *best, at.x + 1, at.y)),
+          at.y + peak(similarity(picture, *best, at.x, at.y - 1), maximum, similarity(picture, *best, at.x, at.y + 1))};
 }
 
 }  // namespace
@@ -133,7 +133,7 @@ FoundMarks find_marks(const CalibrationPattern& pattern, const WeightedPicture& 
   std::array<std::vector<Candidate>, 4> candidates;
   for (std::size_t k = 0; k < 4; ++k) {
     candidates[k] = best_places(pattern.marks[k], flat, frame.pixel_mm, context);
-    candidates[k].push_back({least_likeness - 0.25, -1, -1});  // out of sight
+    candidates[k].push_back({min_similarity - 0.25, -1, -1});  // out of sight
     context.progress(static_cast<double>(k + 1) / 4);
   }
   double best = -1;
@@ -149,7 +149,7 @@ FoundMarks find_marks(const CalibrationPattern& pattern, const WeightedPicture& 
       std::size_t count = 0;
       double sum = 0;
       for (std::size_t i = 0; i < 4; ++i) {
-        sum += candidates[i][pick[i]].likeness;
+        sum += candidates[i][pick[i]].similarity;
         if (!seen(i, pick[i])) continue;
         p[i] = place(i, pick[i]);
         if (count < 3) three[count++] = i;
@@ -169,13 +169,13 @@ FoundMarks find_marks(const CalibrationPattern& pattern, const WeightedPicture& 
         if (missing == 0) self(self, k + 1, 1);
         continue;
       }
-      if (candidates[k][i].likeness < least_likeness) continue;
+      if (candidates[k][i].similarity < min_similarity) continue;
       bool fits = true;
       for (std::size_t j = 0; j < k && fits; ++j) {
         if (!seen(j, pick[j])) continue;
         const double ratio =
             (place(k, i) - place(j, pick[j])).norm() / (pattern.marks[k].centre_mm - pattern.marks[j].centre_mm).norm();
-        fits = ratio > 1 / most_distortion && ratio < most_distortion;
+        fits = ratio > 1 / max_distortion && ratio < max_distortion;
       }
       if (fits) self(self, k + 1, missing);
     }
@@ -196,7 +196,7 @@ FoundMarks find_marks(const CalibrationPattern& pattern, const WeightedPicture& 
     const Candidate& c = candidates[k][chosen[k]];
     const Vec2 pixel = refined(flat, pattern.marks[k], c, frame.pixel_mm);
     found.place_mm[k] = frame.place(pixel.x(), pixel.y());
-    found.likeness[k] = c.likeness;
+    found.similarity[k] = c.similarity;
   }
   // The four are a rectangle on the sheet, so the fourth corner follows from the others.
   if (hidden < 4)

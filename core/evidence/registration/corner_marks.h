@@ -12,7 +12,7 @@ namespace formwright {
 struct FoundMarks {
   std::array<Vec2, 4> place_mm;  // in the plane of the flat scan
   std::array<double, 4>
-      likeness{};         // correlation with the mark, -1 to 1; 0 for one that was guessed from the other three
+      similarity{};       // correlation with the mark, -1 to 1; 0 for one that was guessed from the other three
   bool mirrored = false;  // the scan's faces look inwards: the plane was seen from below
 };
 

@@ -32,13 +32,13 @@ double face_area(const TriangleMesh& mesh, int f) {
 
 std::vector<int> longest_border(const TriangleMesh& mesh, const Adjacency& adjacency) {
   std::vector<int> longest;
-  double most = -1;
+  double maximum = -1;
   for (auto& loop : boundary_loops(adjacency)) {
     double length = 0;
     for (std::size_t i = 0; i < loop.size(); ++i)
       length += (mesh.V.row(loop[i]) - mesh.V.row(loop[(i + 1) % loop.size()])).norm();
-    if (length > most) {
-      most = length;
+    if (length > maximum) {
+      maximum = length;
       longest = std::move(loop);
     }
   }

@@ -11,11 +11,11 @@ namespace formwright {
 namespace {
 
 constexpr double pi = 3.14159265358979324;
-constexpr double least_sigma_px = 0.06;      // interpolation between pixels
-constexpr double most_residual_share = 0.5;  // of the pattern's variance; chance alone gives 2
-constexpr double least_known_share = 0.7;    // of the area that a point is judged by
-constexpr double most_foreign_share = 0.08;  // of a wider area that shows something else than the print
-constexpr double kernel_share = 0.25;        // half the second moment, 2 l^2, over the square of the step, 2 l
+constexpr double min_sigma_px = 0.06;       // interpolation between pixels
+constexpr double max_residual_share = 0.5;  // of the pattern's variance; chance alone gives 2
+constexpr double min_known_share = 0.7;     // of the area that a point is judged by
+constexpr double max_foreign_share = 0.08;  // of a wider area that shows something else than the print
+constexpr double kernel_share = 0.25;       // half the second moment, 2 l^2, over the square of the step, 2 l
 constexpr double plain_margin_mm = 1;
 constexpr double rim_inside_mm = 1;  // the sheet gives way a little at the clamp's edge
 
@@ -125,7 +125,7 @@ MatchStatistics match_statistics(const WeightedPicture& first, const WeightedPic
   for (int c = 0; c < 3 && seen > 0; ++c) {
     const double variance =
         (square_first[c] - sum_first[c] * sum_first[c] / seen) * (square[c] - sum[c] * sum[c] / seen);
-    if (variance > 0) result.likeness += (both[c] - sum_first[c] * sum[c] / seen) / std::sqrt(variance) / 3;
+    if (variance > 0) result.similarity += (both[c] - sum_first[c] * sum[c] / seen) / std::sqrt(variance) / 3;
   }
   double squared = 0, across = 0, down = 0, pairs_across = 0, pairs_down = 0, count = 0;
   const auto product = [](const Float4& a, const Float4& b) {
@@ -187,17 +187,17 @@ void add_points(ScanRegistration& result, const TriangleMesh& mesh, const Textur
       if (found.face < 0 || is_plain(pattern, sheet)) continue;
       const Window near = window_about(evidence, flow, pixel.x(), pixel.y(), reach_px, foreign_squared);
       const Window around = window_about(evidence, flow, pixel.x(), pixel.y(), 4 * reach_px, foreign_squared);
-      if (!(near.trusted > least_known_share * 2 * pi * reach_px * reach_px)) continue;
-      if (around.foreign > most_foreign_share * around.trusted) continue;
+      if (!(near.trusted > min_known_share * 2 * pi * reach_px * reach_px)) continue;
+      if (around.foreign > max_foreign_share * around.trusted) continue;
       const double variance = near.residual_squared / near.trusted / 3;
-      if (variance > most_residual_share * pattern_variance) continue;
+      if (variance > max_residual_share * pattern_variance) continue;
       Eigen::Matrix2d information;
       information << near.xx, near.xy, near.xy, near.yy;
       information *= 4 * pi * reach_px * reach_px / near.trusted;
       if (!(information.determinant() > 1e-9)) continue;
       const double alike = std::min(result.residual_correlation_px, 4 * pi * reach_px * reach_px);
       Eigen::Matrix2d covariance =
-          variance * alike * information.inverse() + least_sigma_px * least_sigma_px * Eigen::Matrix2d::Identity();
+          variance * alike * information.inverse() + min_sigma_px * min_sigma_px * Eigen::Matrix2d::Identity();
       covariance *= frame.pixel_mm * frame.pixel_mm;
       covariance(0, 1) = covariance(1, 0) = -covariance(0, 1);  // rows run down
       // From the plane to the surface.
@@ -222,7 +222,7 @@ void add_points(ScanRegistration& result, const TriangleMesh& mesh, const Textur
       }
       const double sigma = std::sqrt(0.5 * (slope * covariance * slope.transpose()).trace() + rounded_squared +
                                      options.scan_sigma_mm * options.scan_sigma_mm);
-      if (!(sigma <= options.most_sigma_mm)) continue;
+      if (!(sigma <= options.max_sigma_mm)) continue;
       Vec3 place = Vec3::Zero();
       for (int k = 0; k < 3; ++k) place += found.barycentric[k] * corner(k);
       result.points.push_back({sheet, place, sigma});

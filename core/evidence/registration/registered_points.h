@@ -9,7 +9,7 @@
 namespace formwright {
 
 struct MatchStatistics {
-  double likeness = 0;           // correlation of the pictures once matched, -1 to 1
+  double similarity = 0;         // correlation of the pictures once matched, -1 to 1
   double residual_alike_px = 1;  // pixels over which neighbouring residuals are alike, from the correlation of those
                                  // beside each other; at least 1
 };

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int first_side_px = 512, second_side_px = 1024;
 constexpr double second_reach_px = 32, last_reach_px = 16;
-constexpr double least_likeness = 0.7;  // of another pattern, however far bent: 0.5
+constexpr double min_similarity = 0.7;  // of another pattern, however far bent: 0.5
 constexpr int cells_across = 40;        // in which mean colours are compared once places are known
 
 using Places = TextureCoordinates;
@@ -154,13 +154,13 @@ double displacement_rms_mm(const Flow& flow, const WeightedPicture& seen, double
 /// Standard deviation of the blur, in pixels, after which the reference looks most like the scan.
 double best_blur_px(const WeightedPicture& reference, const WeightedPicture& scan, const Flow& flow,
                     const Context& context) {
-  double best = 0, least = 1e300;
+  double best = 0, minimum = 1e300;
   for (const double sigma : {0.0, 0.5, 0.8, 1.2, 1.7, 2.4, 3.4}) {
     const FlowEvidence e = flow_evidence(smoothed(reference, sigma, context), scan, flow, context);
     double sum = 0;
     for (const float r : e.residual_squared) sum += std::min(static_cast<double>(r), 10000.0);
-    if (sum >= least) break;
-    least = sum;
+    if (sum >= minimum) break;
+    minimum = sum;
     best = sigma;
   }
   return best;
@@ -247,7 +247,7 @@ ScanRegistration register_scan(const Model& scan, const CalibrationPattern& patt
     frame.width = static_cast<int>(std::ceil((high - low).x() / frame.pixel_mm)) + 2;
     frame.height = static_cast<int>(std::ceil((high - low).y() / frame.pixel_mm)) + 2;
     result.marks = find_marks(pattern, draw_scan(model, colours, flat, frame, context), frame, context);
-    if (*std::min_element(result.marks.likeness.begin(), result.marks.likeness.end()) == 0)
+    if (*std::min_element(result.marks.similarity.begin(), result.marks.similarity.end()) == 0)
       result.notes.push_back("One corner mark was not found; its place follows from the other three.");
   } else {
     result.marks.place_mm = plane_corners(options.corners, model, colours, flat);
@@ -339,9 +339,9 @@ ScanRegistration register_scan(const Model& scan, const CalibrationPattern& patt
                 "The scan hardly covers the place of the pattern: check the corners and the pattern.");
   result.colour_error_levels = std::sqrt(squared / (3 * weight));
   const MatchStatistics match = match_statistics(reference, seen, flow);
-  result.likeness = match.likeness;
+  result.similarity = match.similarity;
   result.residual_correlation_px = match.residual_alike_px;
-  if (match.likeness < least_likeness)
+  if (match.similarity < min_similarity)
     throw Error(
         ErrorCode::could_not_solve, "pattern",
         "The scan does not look like this pattern: give the pattern.json of the print that was formed, and check the corners.");

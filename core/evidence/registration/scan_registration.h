@@ -28,7 +28,7 @@ struct ScanRegistrationOptions : VariationalFlowOptions {
   double sheet_thickness_mm = 1;
   double scan_unit_mm = 1;
   double scan_sigma_mm = 0.05;
-  double most_sigma_mm = 1;
+  double max_sigma_mm = 1;
   std::string corners;
   int picture_px = 2048;
   int flatten_iterations = 60;
@@ -57,9 +57,10 @@ struct ScanRegistrationOptions : VariationalFlowOptions {
               .group("Points")
               .slider(0.2, 3),
           parameter(
-              "most_sigma_mm", &ScanRegistrationOptions::most_sigma_mm, "Largest uncertainty", unit::mm, 0.01, 100,
+              "max_sigma_mm", &ScanRegistrationOptions::max_sigma_mm, "Largest uncertainty", unit::mm, 0.01, 100,
               "Points with a larger standard deviation than this are left out. Smaller keeps fewer, more reliable points.")
               .group("Points")
+              .formerly("most_sigma_mm")
               .slider(0.2, 3),
           parameter("scan_sigma_mm", &ScanRegistrationOptions::scan_sigma_mm, "Scan noise", unit::mm, 0, 10,
                     "Standard deviation of the scanner's own error, added to that of every point. 0.05 mm is usual.")
@@ -106,7 +107,7 @@ struct ScanRegistration {
   ColourCorrection colours;
   int colour_samples = 0;
   double colour_error_levels = 0;      // root mean square over all compared pixels, all three channels
-  double likeness = 0;                 // correlation of scan and pattern once matched, at most 1
+  double similarity = 0;               // correlation of scan and pattern once matched, at most 1
   double residual_correlation_px = 1;  // pixels over which what is left is alike
   double blur_px = 0;                  // by which the scan is less sharp than the print
   FlatScan flat;

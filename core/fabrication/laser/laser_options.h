@@ -50,7 +50,7 @@ struct LaserMachineOptions : MachineOptions {
 struct LaserOptions : LaserMachineOptions {
   double x_mm = 0, y_mm = 0, turn_degrees = 0;
   bool mirrored = false;
-  UserUnit user_unit = UserUnit::as_told;
+  UserUnit user_unit = UserUnit::as_in_file;
   TakeAs take_as = TakeAs::as_drawn;
 
   bool cut_enabled = true, mark_enabled = true, engrave_enabled = true;

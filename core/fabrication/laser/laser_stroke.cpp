@@ -104,7 +104,7 @@ void run_stroke(ToolpathBuilder& builder, const LaserStroke& stroke, int first) 
   if (!stroke.closed) {
     for (int pass = 0; pass < stroke.passes; ++pass) {
       work(points, pass);
-      if (!stroke.fixed_way) std::reverse(points.begin(), points.end());
+      if (!stroke.fixed_direction) std::reverse(points.begin(), points.end());
     }
   } else {
     const Ring ring(points);

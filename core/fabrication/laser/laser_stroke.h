@@ -15,13 +15,13 @@ struct LaserStroke {
   bool closed = false;
   double power_percent = 0, speed_mm_per_s = 1;
   int passes = 1;
-  double z_mm = 0;          // of the first pass, over the material's surface
-  double step_down_mm = 0;  // lower with every further pass
-  int tabs = 0;             // gaps of a closed path's last pass
-  double tab_gap_mm = 0;    // of the beam's middle
-  double overcut_mm = 0;    // of a closed path's last pass, past its start, up to the first gap
-  int inside_of = -1;       // index of the stroke that must come after this one; -1: none
-  bool fixed_way = false;   // an open path that is run as given
+  double z_mm = 0;               // of the first pass, over the material's surface
+  double step_down_mm = 0;       // lower with every further pass
+  int tabs = 0;                  // gaps of a closed path's last pass
+  double tab_gap_mm = 0;         // of the beam's middle
+  double overcut_mm = 0;         // of a closed path's last pass, past its start, up to the first gap
+  int inside_of = -1;            // index of the stroke that must come after this one; -1: none
+  bool fixed_direction = false;  // an open path that is run as given
 };
 
 struct StrokeRun {

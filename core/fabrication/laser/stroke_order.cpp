@@ -8,7 +8,7 @@
 namespace formwright {
 namespace {
 
-constexpr int most_nested = 100;
+constexpr int max_nested = 100;
 
 class Order {
  public:
@@ -23,7 +23,7 @@ class Order {
       int parent = strokes[i].inside_of, depth = 0;
       std::vector<int> ancestors;
       for (int a = parent; a >= 0; a = strokes[static_cast<std::size_t>(a)].inside_of) ancestors.push_back(a), ++depth;
-      if (depth > most_nested) parent = ancestors[static_cast<std::size_t>(depth - most_nested)];
+      if (depth > max_nested) parent = ancestors[static_cast<std::size_t>(depth - max_nested)];
       (parent < 0 ? roots_ : insides_[static_cast<std::size_t>(parent)]).push_back(static_cast<int>(i));
     }
     for (const int root : roots_) estimate(root);
@@ -49,12 +49,12 @@ class Order {
   RouteStop stop_of(int i) const {
     const LaserStroke& stroke = strokes_[static_cast<std::size_t>(i)];
     if (!insides_[static_cast<std::size_t>(i)].empty())
-      return {RouteStop::Kind::one_way,
+      return {RouteStop::Kind::one_direction,
               {estimates_[static_cast<std::size_t>(i)].entry, estimates_[static_cast<std::size_t>(i)].exit}};
     // An even number of passes ends where it began.
-    const bool there_and_back = !stroke.closed && !stroke.fixed_way && stroke.passes % 2 == 0;
+    const bool there_and_back = !stroke.closed && !stroke.fixed_direction && stroke.passes % 2 == 0;
     return {stroke.closed || there_and_back ? RouteStop::Kind::loop
-            : stroke.fixed_way              ? RouteStop::Kind::one_way
+            : stroke.fixed_direction        ? RouteStop::Kind::one_direction
                                             : RouteStop::Kind::line,
             doors(stroke)};
   }
@@ -109,7 +109,7 @@ class Order {
       }
       const auto places = doors(stroke);
       const int last_point = static_cast<int>(stroke.points_mm.size()) - 1;
-      const bool back = !stroke.closed && stroke.passes % 2 == 0 && !stroke.fixed_way;
+      const bool back = !stroke.closed && stroke.passes % 2 == 0 && !stroke.fixed_direction;
       runs_.push_back({i, stroke.closed ? door : door == 0 ? 0 : last_point});
       at_ = stroke.closed || back ? places[static_cast<std::size_t>(door)] : places[static_cast<std::size_t>(1 - door)];
     }

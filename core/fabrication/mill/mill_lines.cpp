@@ -98,13 +98,14 @@ class Lines {
     builder_.travel_to({start.x(), start.y(), std::min(motion_.options.safe_height_mm, top + clearance_mm)});
     const double slope =
         motion_.options.ramp_degrees >= 90 ? 1e9 : std::tan(motion_.options.ramp_degrees * std::numbers::pi / 180);
-    const int way = first < last ? 1 : -1;
+    const int heading = first < last ? 1 : -1;
     const double step = slope * tips_.pitch_x_mm;
     // As far as the surface does not rise more steeply than the ramp.
-    const int most = std::min(std::abs(last - first),
-                              static_cast<int>(std::ceil(4 * motion_.options.diameter_mm / tips_.pitch_x_mm)));
+    const int maximum = std::min(std::abs(last - first),
+                                 static_cast<int>(std::ceil(4 * motion_.options.diameter_mm / tips_.pitch_x_mm)));
     int length = 0;
-    while (length < most && point(row, first + way * (length + 1)).z() <= start.z() + (length + 1) * step) ++length;
+    while (length < maximum && point(row, first + heading * (length + 1)).z() <= start.z() + (length + 1) * step)
+      ++length;
     std::vector<Vec3> ramp{builder_.at()};
     double z = builder_.at().z();
     if (length > 0 && slope < 1e8)
@@ -112,7 +113,7 @@ class Lines {
         if (at == length) direction = -1;
         if (at == 0) direction = 1;
         at += direction;
-        Vec3 p = point(row, first + way * at);
+        Vec3 p = point(row, first + heading * at);
         z = std::max(p.z(), z - step);
         p.z() = z;
         ramp.push_back(p);
@@ -173,21 +174,21 @@ std::vector<Vec3> thinned(const std::vector<Vec3>& points, double tolerance_mm) 
     Vec3 end = vertex(best);
     // The slopes over which the line may leave, so that it passes through the band over all points since: a swinging
     // door. Straight up or down there is none.
-    const Vec2 way = step.normalized();
-    double least = -1e300, most = 1e300, so_far = 0;
+    const Vec2 heading = step.normalized();
+    double minimum = -1e300, maximum = 1e300, so_far = 0;
     for (std::size_t to = from + 1; to < points.size() && step.norm() > 0; ++to) {
       const Vec2 run = points[to].head<2>() - points[from].head<2>();
-      const double along = run.dot(way);
-      if (along <= so_far || (run - along * way).norm() > 1e-6) break;  // a bend in the plane, or back
+      const double along = run.dot(heading);
+      if (along <= so_far || (run - along * heading).norm() > 1e-6) break;  // a bend in the plane, or back
       so_far = along;
       const bool last = to + 1 == points.size();
       const double low = (last ? vertex(to).z() : points[to].z()) - start.z();
-      least = std::max(least, low / along);
-      most = std::min(most, (last ? low : points[to].z() + tolerance_mm - start.z()) / along);
-      if (least > most) break;
+      minimum = std::max(minimum, low / along);
+      maximum = std::min(maximum, (last ? low : points[to].z() + tolerance_mm - start.z()) / along);
+      if (minimum > maximum) break;
       // As low as may be: on a hill the upper edge of the band when the door closes, on flats the lower one.
-      const double z = raised(start.z() + least * along);
-      if (z > start.z() + most * along + 1e-9) continue;  // no whole micrometre in the door
+      const double z = raised(start.z() + minimum * along);
+      if (z > start.z() + maximum * along + 1e-9) continue;  // no whole micrometre in the door
       best = to;
       end = {points[to].x(), points[to].y(), z};
     }

@@ -27,11 +27,11 @@ void carve_rows(HeightField& field, const HeightField& tips, const MillTool& too
 void raise_between(HeightField& tips, const HeightField& surface, const MillTool& tool, const Context& context) {
   for (const float share : {0.5f, 0.25f, 0.75f}) {
     if (share != 0.5f && tool.shape != ToolShape::v) continue;
-    const HeightField least = lowest_tips(surface, footprint(tool, surface, static_cast<double>(share)), context);
+    const HeightField minimum = lowest_tips(surface, footprint(tool, surface, static_cast<double>(share)), context);
     for (int r = 0; r < tips.rows; ++r)
       for (int c = 0; c + 1 < tips.columns; ++c) {
         float &left = tips.at(r, c), &right = tips.at(r, c + 1);
-        const float lack = least.at(r, c) - ((1 - share) * left + share * right);
+        const float lack = minimum.at(r, c) - ((1 - share) * left + share * right);
         if (lack <= 0) continue;
         // The lower one of the two bears it: it is the foot of a wall.
         if (left < right) left += lack / (1 - share);

@@ -26,8 +26,8 @@ Polygon convex_hull(std::vector<Vec2> points) {
   if (count < 3) return points;
   Polygon hull(2 * count);
   std::size_t k = 0;
-  const auto add = [&](const Vec2& p, std::size_t least) {
-    while (k >= least && cross(hull[k - 1] - hull[k - 2], p - hull[k - 2]) <= 0) --k;
+  const auto add = [&](const Vec2& p, std::size_t minimum) {
+    while (k >= minimum && cross(hull[k - 1] - hull[k - 2], p - hull[k - 2]) <= 0) --k;
     hull[k++] = p;
   };
   for (std::size_t i = 0; i < count; ++i) add(points[i], 2);

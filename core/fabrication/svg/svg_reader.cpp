@@ -57,7 +57,7 @@ SvgDrawing read_svg_drawing(ByteView bytes, const SvgReadOptions& options, const
   sheet.height_mm = page.height_mm;
   sheet.paths = std::move(walker.paths);
   // Told to be of another size, a drawing's kerf is not what its outlines were moved for.
-  if (options.user_unit == UserUnit::as_told || options.user_unit == UserUnit::mm)
+  if (options.user_unit == UserUnit::as_in_file || options.user_unit == UserUnit::mm)
     if (const double kerf_mm = root.attribute(kerf_attribute).as_double(); kerf_mm > 0 && kerf_mm <= 10)
       sheet.kerf_mm = kerf_mm;
   for (CutPath& path : sheet.paths)

@@ -12,18 +12,19 @@
 namespace formwright {
 
 /// What a drawing without physical size is measured in.
-enum class UserUnit { as_told, px, mm, pt, inch };
+enum class UserUnit { as_in_file, px, mm, pt, inch };
 template <>
 struct EnumNames<UserUnit> {
-  static constexpr std::array<std::string_view, 5> names{"as_told", "px", "mm", "pt", "inch"};
+  static constexpr std::array<std::string_view, 5> names{"as_in_file", "px", "mm", "pt", "inch"};
   static constexpr std::array<std::string_view, 5> labels{"As in the file", "Pixels, 96 an inch", "Millimetres",
                                                           "Points, 72 an inch", "Inches"};
+  static constexpr std::array<std::pair<std::string_view, UserUnit>, 1> old_names{{{"as_told", UserUnit::as_in_file}}};
 };
 
 struct SvgReadOptions {
   double flatness_mm = 0.01;  // polylines keep this close to their curves
   UserUnit user_unit =
-      UserUnit::as_told;  // anything else overrides width, height and viewBox: one user unit is one of these
+      UserUnit::as_in_file;  // anything else overrides width, height and viewBox: one user unit is one of these
 };
 
 struct SvgDrawing {

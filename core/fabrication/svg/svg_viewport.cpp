@@ -63,7 +63,7 @@ PageFrame read_page_frame(const pugi::xml_node& root, UserUnit unit, std::vector
   };
   double width_px = size_of(width), height_px = size_of(height);
   PageFrame page;
-  if (unit != UserUnit::as_told) {
+  if (unit != UserUnit::as_in_file) {
     constexpr double unit_mm[] = {0, 1 / user_units_per_mm, 1, 25.4 / 72, 25.4};
     const double mm = unit_mm[static_cast<int>(unit)];
     const ViewBox whole = box.value_or(ViewBox{0, 0, width_px > 0 ? width_px : 100, height_px > 0 ? height_px : 100});

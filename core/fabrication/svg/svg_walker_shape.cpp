@@ -61,15 +61,15 @@ std::vector<SvgWalker::Subpath> SvgWalker::dashed(const pugi::xml_node& node, co
   if (!same_word(values[SvgProperty::vector_effect].text, "non-scaling-stroke"))
     measure = state.to_mm.linear().inverse();
   if (!measure.allFinite()) return subpaths;
-  if (const auto told = read_length(node.attribute("pathLength").value()); told && told->value > 0) {
+  if (const auto declared = read_length(node.attribute("pathLength").value()); declared && declared->value > 0) {
     double whole = 0;
     for (const Subpath& subpath : subpaths)
       for (std::size_t i = subpath.closed ? 0 : 1; i < subpath.points_mm.size(); ++i) {
         const Vec2& before = i == 0 ? subpath.points_mm.back() : subpath.points_mm[i - 1];
         whole += (measure * (subpath.points_mm[i] - before)).norm();
       }
-    for (double& length : pattern.lengths) length *= whole / told->value;
-    pattern.offset *= whole / told->value;
+    for (double& length : pattern.lengths) length *= whole / declared->value;
+    pattern.offset *= whole / declared->value;
   }
   for (std::size_t i = 0; i < pattern.lengths.size(); i += 2)
     if (pattern.lengths[i] == 0) {

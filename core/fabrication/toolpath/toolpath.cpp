@@ -100,7 +100,7 @@ std::vector<std::string> find_misfits(const Toolpath& path, const MachineOptions
   double beyond[4] = {0, 0, 0, 0};
   constexpr const char* edges[4] = {"left", "right", "lower", "upper"};
   std::vector<std::string> misfits;
-  std::vector<bool> told(zones.size(), false);
+  std::vector<bool> noted(zones.size(), false);
   for (const ToolMove& move : path.moves) {
     const double half_mm = move.work ? width_mm / 2 : 0, edge_mm = move.work ? edge_width_mm / 2 : 0;
     for (std::size_t i = 0; i < move.points_mm.size(); ++i) {
@@ -112,8 +112,8 @@ std::vector<std::string> find_misfits(const Toolpath& path, const MachineOptions
       if (i == 0) continue;
       const Vec2 before = move.points_mm[i - 1].head<2>();
       for (std::size_t z = 0; z < zones.size(); ++z)
-        if (!told[z] && touches(before, p, zones[z], half_mm)) {
-          told[z] = true;
+        if (!noted[z] && touches(before, p, zones[z], half_mm)) {
+          noted[z] = true;
           const std::string who = !move.work          ? "A travel"
                                   : move.part.empty() ? "A path on layer " + move.layer
                                                       : "Part " + move.part;

@@ -35,7 +35,7 @@ class DoorGrid {
     rows_ = 1 + static_cast<int>(size.y() / cell_mm_);
     cells_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
     for (std::size_t s = 0; s < stops.size(); ++s) {
-      const int doors = stops[s].kind == Kind::one_way ? 1 : static_cast<int>(stops[s].doors_mm.size());
+      const int doors = stops[s].kind == Kind::one_direction ? 1 : static_cast<int>(stops[s].doors_mm.size());
       for (int d = 0; d < doors; ++d) {
         const Vec2& at = stops[s].doors_mm[static_cast<std::size_t>(d)];
         cells_[cell(column(at.x()), row(at.y()))].push_back({{static_cast<int>(s), d}, at});
@@ -49,8 +49,8 @@ class DoorGrid {
     double best_squared = std::numeric_limits<double>::max();
     for (int ring = 0; ring < columns_ + rows_; ++ring) {
       // Cells of this ring are at least ring - 1 cells away; a point beyond the grid counts from its edge.
-      const double least = std::max(0, ring - 1) * cell_mm_;
-      if (best.stop >= 0 && least * least > best_squared) break;
+      const double minimum = std::max(0, ring - 1) * cell_mm_;
+      if (best.stop >= 0 && minimum * minimum > best_squared) break;
       for (int r = std::max(0, y - ring); r <= std::min(rows_ - 1, y + ring); ++r) {
         const bool whole = r == y - ring || r == y + ring;
         for (int c = x - ring; c <= x + ring; c += whole || ring == 0 ? 1 : 2 * ring)
@@ -99,7 +99,7 @@ class Improver {
   void two_opt() {
     for (int i = 0; i < n_; ++i) {
       if (i % 64 == 0) context_.check_cancelled();
-      for (int j = i; j < std::min(n_, i + window_) && kind(j) != Kind::one_way; ++j) {
+      for (int j = i; j < std::min(n_, i + window_) && kind(j) != Kind::one_direction; ++j) {
         // A reversed row is entered where it was left.
         const double now = gap(before(i), entry(i)) + link(j), then = gap(before(i), exit(j)) + to_next(entry(i), j);
         if (then < now - 1e-9 && (i < j || kind(i) == Kind::line)) reverse(i, j);
@@ -113,7 +113,7 @@ class Improver {
       for (int length = 1; length <= 3 && i + length <= n_; ++length) {
         const int last = i + length - 1;
         bool turnable = true;
-        for (int k = i; k <= last; ++k) turnable = turnable && kind(k) != Kind::one_way;
+        for (int k = i; k <= last; ++k) turnable = turnable && kind(k) != Kind::one_direction;
         const double gain = gap(before(i), entry(i)) + link(last) - to_next(before(i), last);
         if (gain < 1e-9) continue;
         double best = 1e-9;
@@ -194,7 +194,7 @@ double route_length_mm(const std::vector<RouteStop>& stops, const std::vector<Ro
 }
 
 std::vector<RouteStep> short_route(const std::vector<RouteStop>& stops, const Vec2& start_mm, const Context& context,
-                                   int most_rounds) {
+                                   int max_rounds) {
   std::vector<RouteStep> route;
   if (stops.empty()) return route;
   DoorGrid grid(stops);
@@ -205,7 +205,7 @@ std::vector<RouteStep> short_route(const std::vector<RouteStop>& stops, const Ve
     at = exit_of(stops[static_cast<std::size_t>(route.back().stop)], route.back().door);
   }
   double length = route_length_mm(stops, route, start_mm);
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < max_rounds; ++round) {
     std::vector<RouteStep> better = route;
     Improver improver(stops, better, start_mm, context);
     improver.two_opt();

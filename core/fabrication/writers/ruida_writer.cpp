@@ -12,7 +12,7 @@ namespace formwright {
 namespace {
 
 constexpr unsigned key = 0x88;
-constexpr int most_relative_um = 8191;
+constexpr int max_relative_um = 8191;
 
 struct Micrometres {
   int x = 0, y = 0;
@@ -65,7 +65,7 @@ Micrometres micrometres(const Vec3& p, const MachineOptions& machine) {
 void move(Commands& out, const Micrometres& from, const Micrometres& to, bool burn, bool absolute) {
   const int dx = to.x - from.x, dy = to.y - from.y, base = burn ? 0xa8 : 0x88;
   if (dx == 0 && dy == 0 && !absolute) return;
-  if (absolute || std::abs(dx) > most_relative_um || std::abs(dy) > most_relative_um) out.code({base}).point(to);
+  if (absolute || std::abs(dx) > max_relative_um || std::abs(dy) > max_relative_um) out.code({base}).point(to);
   else if (dy == 0) out.code({base + 2}).small(dx);
   else if (dx == 0) out.code({base + 3}).small(dy);
   else out.code({base + 1}).small(dx).small(dy);

@@ -129,11 +129,11 @@ class GlbReader {
   }
 
   std::optional<GltfAccessor> attribute(const Primitive& primitive, const std::string& name, std::int64_t count,
-                                        int least, int most) const {
+                                        int minimum, int maximum) const {
     const std::int64_t index = document_.integer(*primitive.attributes, name.c_str(), -1);
     if (index < 0) return std::nullopt;
     GltfAccessor accessor(document_, index);
-    if (accessor.count() != count || accessor.components() < least || accessor.components() > most)
+    if (accessor.count() != count || accessor.components() < minimum || accessor.components() > maximum)
       source_.refuse("the attribute “" + clean_text(name, 40) + "” in it does not fit its mesh; export it again.");
     return accessor;
   }

@@ -106,9 +106,9 @@ class ChunkReader {
   }
 
   /// Up to `most` numbers of a line; fewer than `least`, or anything but numbers, is a failure.
-  int numbers(TextScan& rest, double* values, int least, int most, const char* what) {
+  int numbers(TextScan& rest, double* values, int minimum, int maximum, const char* what) {
     int count = 0;
-    for (; count < most; ++count) {
+    for (; count < maximum; ++count) {
       rest.skip_blanks();
       if (rest.done() || *rest.at == '#') break;
       const char* const from = rest.at;
@@ -118,8 +118,8 @@ class ChunkReader {
         return -1;
       }
     }
-    if (count >= least) return count;
-    fail(std::string(what) + " has " + counted(count, "number", "numbers") + " instead of " + std::to_string(least) +
+    if (count >= minimum) return count;
+    fail(std::string(what) + " has " + counted(count, "number", "numbers") + " instead of " + std::to_string(minimum) +
          "; export the model again.");
     return -1;
   }

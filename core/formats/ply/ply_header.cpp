@@ -127,13 +127,13 @@ class HeaderReader {
   void check_sizes() const {
     const bool ascii = header_.encoding == PlyHeader::Encoding::ascii;
     const auto left = static_cast<double>(text_.size() - header_.body);
-    double least = ascii ? -1 : 0;  // the last number of a text needs no blank after it
+    double minimum = ascii ? -1 : 0;  // the last number of a text needs no blank after it
     for (const PlyElement& element : header_.elements) {
       double row = 0;
       for (const PlyProperty& property : element.properties)
         row += ascii ? 2 : static_cast<double>(size_of(property.count_type.value_or(property.type)));
-      least += row * static_cast<double>(element.count);
-      if (least > left)
+      minimum += row * static_cast<double>(element.count);
+      if (minimum > left)
         source_.refuse("it declares " + counted(element.count, "row", "rows") + " of “" + clean_text(element.name, 40) +
                        "”, more than it holds; export it or copy it again.");
     }

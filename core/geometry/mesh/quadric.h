@@ -49,13 +49,13 @@ struct Quadric {
 
   /// Where q is least, by Cholesky; false when A is singular to round-off.
   bool minimiser(Vec3& p) const {
-    const double least = 1e-12 * (xx + yy + zz);
-    if (!(xx > least)) return false;
+    const double minimum = 1e-12 * (xx + yy + zz);
+    if (!(xx > minimum)) return false;
     const double l10 = xy / xx, l20 = xz / xx;
     const double d1 = yy - l10 * xy, e = yz - l10 * xz;
-    if (!(d1 > least)) return false;
+    if (!(d1 > minimum)) return false;
     const double l21 = e / d1, d2 = zz - l20 * xz - l21 * e;
-    if (!(d2 > least)) return false;
+    if (!(d2 > minimum)) return false;
     const double u = y - l10 * x, w = (z - l20 * x - l21 * u) / d2;
     const double v = u / d1 - l21 * w;
     p = Vec3((x - xy * v - xz * w) / xx, v, w);

@@ -25,9 +25,9 @@ constexpr double normal_variance = 1e-3;
 /// Of the plane that holds a boundary edge in place, against the face beside it.
 constexpr double boundary_weight = 20;
 /// A face may turn by at most acos of this in one collapse.
-constexpr double least_turn_cosine = 0.3;
+constexpr double min_turn_cosine = 0.3;
 /// Shape (1 for equilateral, 0 for flat) below which a collapse is put off, and below which it is refused.
-constexpr double fair_shape = 0.35, least_shape = 0.05;
+constexpr double fair_shape = 0.35, min_shape = 0.05;
 
 /// An edge waiting to be collapsed. Stale when `stamp` is no longer the sum of its ends' stamps.
 struct Candidate {
@@ -230,7 +230,7 @@ class Simplifier {
         before = std::min(before, triangle_shape(old, q, r, was));
         if (u == other || w == other) return;
         const Vec3 is = (q - p).cross(r - p);
-        if (!(was.dot(is) >= least_turn_cosine * std::sqrt(was.squaredNorm() * is.squaredNorm()))) turns = true;
+        if (!(was.dot(is) >= min_turn_cosine * std::sqrt(was.squaredNorm() * is.squaredNorm()))) turns = true;
         worst = std::min(worst, triangle_shape(p, q, r, is));
       });
     };
@@ -255,7 +255,7 @@ class Simplifier {
       }
     }
     // Refused edges come back by themselves when something next to them changes.
-    if (worst < 0 || (worst < least_shape && worst < before)) return;
+    if (worst < 0 || (worst < min_shape && worst < before)) return;
     if (worst < fair_shape && worst < before && (candidate.stamp & Candidate::weighed_bit) == 0) {
       const double factor = fair_shape / worst;
       Candidate weighed = candidate;

@@ -23,8 +23,8 @@ std::size_t index(int i) { return static_cast<std::size_t>(i); }
 class Improver {
  public:
   Improver(CollapsibleMesh& mesh, std::vector<Vec3>& position, const std::vector<Quadric>& quadric,
-           const std::vector<Freedom>& freedom, double most_error)
-      : mesh_(mesh), position_(position), quadric_(quadric), freedom_(freedom), most_error_(most_error) {
+           const std::vector<Freedom>& freedom, double max_error)
+      : mesh_(mesh), position_(position), quadric_(quadric), freedom_(freedom), max_error_(max_error) {
     for (int f = 0; f < mesh.face_count(); ++f)
       if (mesh.has_face(f)) faces_.push_back(f);
     for (int v = 0; v < mesh.vertex_count(); ++v)
@@ -124,7 +124,7 @@ class Improver {
     // Once more from there: what the planes resist fades with the square, what they leave free stays.
     q.x += weight * (p.x() - middle.x()), q.y += weight * (p.y() - middle.y()), q.z += weight * (p.z() - middle.z());
     q.minimiser(p);
-    const double before = worst_shape(v, at(v), false), allowed = std::max(most_error_, quadric_[index(v)](at(v)));
+    const double before = worst_shape(v, at(v), false), allowed = std::max(max_error_, quadric_[index(v)](at(v)));
     for (int attempt = 0; attempt < 3; ++attempt, p = 0.5 * (p + at(v))) {
       if (quadric_[index(v)](p) > allowed) continue;
       const double after = worst_shape(v, p, true);
@@ -139,7 +139,7 @@ class Improver {
   std::vector<Vec3>& position_;
   const std::vector<Quadric>& quadric_;
   const std::vector<Freedom>& freedom_;
-  double most_error_;
+  double max_error_;
   std::vector<int> faces_, movable_;
 };
 
@@ -151,8 +151,8 @@ double triangle_shape(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& c
 }
 
 void improve_triangles(CollapsibleMesh& mesh, std::vector<Vec3>& position, const std::vector<Quadric>& quadric,
-                       const std::vector<Freedom>& freedom, double most_error, const Context& context) {
-  Improver(mesh, position, quadric, freedom, share_of_error * most_error).run(context);
+                       const std::vector<Freedom>& freedom, double max_error, const Context& context) {
+  Improver(mesh, position, quadric, freedom, share_of_error * max_error).run(context);
 }
 
 }  // namespace formwright

@@ -19,9 +19,9 @@ double triangle_shape(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& c
 enum class Freedom : char { none, flip, move };
 
 /// Per vertex: its place, the planes of the faces that went into it, its freedom. An edge flips when all four vertices
-/// may; a vertex of the boundary never moves, and none to where its planes are further than `most_error` (in the
+/// may; a vertex of the boundary never moves, and none to where its planes are further than `max_error` (in the
 /// quadric's measure) unless they were before. Throws Error{cancelled}.
 void improve_triangles(CollapsibleMesh& mesh, std::vector<Vec3>& position, const std::vector<Quadric>& quadric,
-                       const std::vector<Freedom>& freedom, double most_error, const Context& context);
+                       const std::vector<Freedom>& freedom, double max_error, const Context& context);
 
 }  // namespace formwright

@@ -15,7 +15,7 @@ namespace {
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 /// Fraction of the mean edge length by which two sides of a triangle exceed the third, at least.
-constexpr double least_slack = 1e-8;
+constexpr double min_slack = 1e-8;
 /// An edge counts as Delaunay while cot a + cot b >= -tolerance: four points on one circle (every
 /// square of a grid) must not flip to and fro.
 constexpr double cotangent_tolerance = 1e-10;
@@ -23,7 +23,7 @@ constexpr double cotangent_tolerance = 1e-10;
 void mollify(IntrinsicTriangulation& t) {
   double sum = 0;
   for (const double l : t.length) sum += l;
-  const double slack = least_slack * sum / static_cast<double>(t.length.size());
+  const double slack = min_slack * sum / static_cast<double>(t.length.size());
   double missing = 0;
   for (int f = 0; f < t.face_count(); ++f) {
     const double a = t.length[index(3 * f)], b = t.length[index(3 * f + 1)], c = t.length[index(3 * f + 2)];

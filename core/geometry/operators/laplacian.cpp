@@ -63,8 +63,8 @@ std::array<double, 3> corner_shares(VertexArea kind, const std::array<double, 3>
 void apply_floor(Eigen::VectorXd& areas, const std::vector<char>& used, double floor) {
   const auto count = std::count(used.begin(), used.end(), 1);
   if (count == 0) return;
-  const double least = floor * areas.sum() / static_cast<double>(count);
-  areas = areas.cwiseMax(least);
+  const double minimum = floor * areas.sum() / static_cast<double>(count);
+  areas = areas.cwiseMax(minimum);
 }
 
 }  // namespace

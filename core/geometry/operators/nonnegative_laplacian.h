@@ -6,7 +6,7 @@
 namespace formwright {
 
 /// The cotangent Laplacian with negative weights, which obtuse and clamped cotangents leave, taken as 0. Rows sum to 0.
-inline SparseMatrix safe_laplacian(const TriangleMesh& mesh, const Adjacency& adjacency) {
+inline SparseMatrix nonnegative_laplacian(const TriangleMesh& mesh, const Adjacency& adjacency) {
   SparseMatrix laplacian = cotangent_laplacian(mesh, adjacency);
   for (int column = 0; column < laplacian.outerSize(); ++column) {
     double sum = 0, *diagonal = nullptr;

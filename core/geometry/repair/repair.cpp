@@ -73,10 +73,10 @@ RepairedMesh repair(const TriangleMesh& mesh, const RepairOptions& options, Cont
                     (options.merge_tolerance_mm > 0 ? " next to another." : " at the same place as another."));
   }
   context.progress(0.15);
-  const DegenerateCount degenerate = mend_degenerate_faces(draft, context);
+  const DegenerateCount degenerate = fix_degenerate_faces(draft, context);
   if (degenerate.removed > 0) say.push_back("Removed " + triangles(degenerate.removed) + " without area.");
-  if (degenerate.mended > 0)
-    say.push_back("Repaired " + triangles(degenerate.mended) + " without area by flipping an edge.");
+  if (degenerate.fixed > 0)
+    say.push_back("Repaired " + triangles(degenerate.fixed) + " without area by flipping an edge.");
   if (draft.mesh.face_count() == 0)
     throw Error(ErrorCode::invalid_input, "mesh",
                 "No triangle of the mesh has an area; check that it is not flattened to a line or a point.");

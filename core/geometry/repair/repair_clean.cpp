@@ -117,9 +117,8 @@ bool is_flat(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 /// What one round of mending does to a flat face: its two nearest corners become one when they almost
 /// coincide; else its long side is turned, with the face beyond it, to end at the corner in between.
-enum class Mending { none, merged, turned };
-Mending mend(Draft& draft, const Adjacency& adjacency, int f, std::vector<char>& touched,
-             std::vector<int>& merged_into) {
+enum class Fixing { none, merged, turned };
+Fixing fix(Draft& draft, const Adjacency& adjacency, int f, std::vector<char>& touched, std::vector<int>& merged_into) {
   Triangles& F = draft.mesh.F;
   int longest = 0, shortest = 0;
   std::array<double, 3> length{};
@@ -136,22 +135,22 @@ Mending mend(Draft& draft, const Adjacency& adjacency, int f, std::vector<char>&
   if (length[index(shortest)] <= 1e-6 * length[index(longest)]) {
     const int a = std::min(F(f, shortest), F(f, (shortest + 1) % 3)),
               b = std::max(F(f, shortest), F(f, (shortest + 1) % 3));
-    if (around(a) || around(b)) return Mending::none;
+    if (around(a) || around(b)) return Fixing::none;
     for (const int v : {a, b})
       for (const int h : adjacency.outgoing(v)) touched[index(h / 3)] = 1;
     merged_into[index(b)] = a;
-    return Mending::merged;
+    return Fixing::merged;
   }
   const int h = 3 * f + longest;
   const auto along = adjacency.halfedges_of_edge(adjacency.edge_of(h));
-  if (along.size() != 2) return Mending::none;
+  if (along.size() != 2) return Fixing::none;
   const int g = along[0] == h ? along[1] : along[0], beyond = g / 3;
   const int middle = F(f, (longest + 2) % 3), apex = adjacency.from(previous_halfedge(g));
-  if (touched[index(beyond)] || apex == middle || adjacency.find_edge(middle, apex) >= 0) return Mending::none;
+  if (touched[index(beyond)] || apex == middle || adjacency.find_edge(middle, apex) >= 0) return Fixing::none;
   const int p = adjacency.from(g), q = adjacency.to(g);
   if (is_flat(draft.position(p), draft.position(middle), draft.position(apex)) ||
       is_flat(draft.position(middle), draft.position(q), draft.position(apex)))
-    return Mending::none;
+    return Fixing::none;
   // Two faces (p, middle, apex) and (middle, q, apex), oriented as the face beyond was.
   const int old_apex = draft.corner_of[index(previous_halfedge(g))], old_p = draft.corner_of[index(g)],
             old_q = draft.corner_of[index(next_halfedge(g))],
@@ -167,7 +166,7 @@ Mending mend(Draft& draft, const Adjacency& adjacency, int f, std::vector<char>&
   draft.face_of[index(f)] = draft.face_of[index(beyond)];  // it lies on that face, not on the line it came from
   for (const int v : {p, q, middle, apex})
     for (const int out : adjacency.outgoing(v)) touched[index(out / 3)] = 1;
-  return Mending::turned;
+  return Fixing::turned;
 }
 
 }  // namespace
@@ -183,7 +182,7 @@ int merge_vertices(Draft& draft, double tolerance) {
   return merged;
 }
 
-DegenerateCount mend_degenerate_faces(Draft& draft, Context& context) {
+DegenerateCount fix_degenerate_faces(Draft& draft, Context& context) {
   const int before = draft.mesh.face_count();
   DegenerateCount count;
   const auto flat_faces = [&] {
@@ -207,9 +206,9 @@ DegenerateCount mend_degenerate_faces(Draft& draft, Context& context) {
     bool any = false;
     for (const int f : flat) {
       if (touched[index(f)]) continue;
-      const Mending mending = mend(draft, adjacency, f, touched, merged_into);
-      any = any || mending != Mending::none;
-      count.mended += mending == Mending::turned ? 1 : 0;
+      const Fixing fixing = fix(draft, adjacency, f, touched, merged_into);
+      any = any || fixing != Fixing::none;
+      count.fixed += fixing == Fixing::turned ? 1 : 0;
     }
     if (!any) break;
     for (Eigen::Index i = 0; i < draft.mesh.F.size(); ++i)

@@ -285,18 +285,18 @@ int turn_outwards(Draft& draft, const Adjacency& adjacency, const Components& pa
   return count;
 }
 
-DropCount drop_small_parts(Draft& draft, double least_share) {
+DropCount drop_small_parts(Draft& draft, double min_share) {
   const Components parts = face_components(Adjacency(draft.mesh));
   const Eigen::VectorXd areas = face_areas(draft.mesh);
   std::vector<double> area(index(parts.count), 0);
   for (int f = 0; f < draft.mesh.face_count(); ++f) area[index(parts.of[index(f)])] += areas[f];
-  const double least = least_share * areas.sum(), largest = *std::max_element(area.begin(), area.end());
+  const double minimum = min_share * areas.sum(), largest = *std::max_element(area.begin(), area.end());
   DropCount count;
-  for (const double a : area) count.parts += a < least && a < largest ? 1 : 0;
+  for (const double a : area) count.parts += a < minimum && a < largest ? 1 : 0;
   std::vector<char> keep(index(draft.mesh.face_count()), 1);
   for (int f = 0; f < draft.mesh.face_count(); ++f) {
     const double a = area[index(parts.of[index(f)])];
-    if (a < least && a < largest) {
+    if (a < minimum && a < largest) {
       keep[index(f)] = 0;
       ++count.faces;
     }

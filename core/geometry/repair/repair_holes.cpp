@@ -90,14 +90,14 @@ std::vector<int> triangulate(const Loop& loop, Context& context) {
 
 }  // namespace
 
-FillCount fill_holes(Draft& draft, int most_edges, Context& context) {
+FillCount fill_holes(Draft& draft, int max_edges, Context& context) {
   FillCount count;
   const Adjacency adjacency(draft.mesh);
   std::vector<int> corners, old_faces, old_corners;
   // Two holes that share vertices must not both be given the same new edge.
   std::vector<char> taken(index(draft.mesh.vertex_count()), 0);
   for (const std::vector<int>& boundary : boundary_loops(adjacency)) {
-    if (static_cast<int>(boundary.size()) > most_edges) continue;
+    if (static_cast<int>(boundary.size()) > max_edges) continue;
     if (std::any_of(boundary.begin(), boundary.end(), [&](int v) { return taken[index(v)] != 0; })) continue;
     Loop loop{draft, adjacency, {boundary.rbegin(), boundary.rend()}, {}};
     std::vector<int> beyond;  // a boundary half-edge, which starts at loop vertex i + 1, per side

@@ -30,9 +30,9 @@ int merge_vertices(Draft& draft, double tolerance);
 
 struct DegenerateCount {
   int removed = 0;  // triangles without area that went
-  int mended = 0;   // triangles without area that gained one when an edge was turned
+  int fixed = 0;    // triangles without area that gained one when an edge was turned
 };
-DegenerateCount mend_degenerate_faces(Draft& draft, Context& context);
+DegenerateCount fix_degenerate_faces(Draft& draft, Context& context);
 
 struct DuplicateCount {
   int removed = 0;       // copies
@@ -56,11 +56,11 @@ int turn_outwards(Draft& draft, const Adjacency& adjacency, const Components& pa
 struct DropCount {
   int parts = 0, faces = 0;
 };
-DropCount drop_small_parts(Draft& draft, double least_share);
+DropCount drop_small_parts(Draft& draft, double min_share);
 
 struct FillCount {
   int holes = 0, faces = 0;
 };
-FillCount fill_holes(Draft& draft, int most_edges, Context& context);
+FillCount fill_holes(Draft& draft, int max_edges, Context& context);
 
 }  // namespace formwright::repair_steps

@@ -111,11 +111,10 @@ Model make_sample(std::string_view name, int target_vertices, Context& context) 
     throw Error(ErrorCode::invalid_input, "sample",
                 "There is no sample called '" + std::string(name) + "'; choose one of " + names + ".");
   }
-  if (target_vertices < least_sample_vertices || target_vertices > most_sample_vertices)
+  if (target_vertices < min_sample_vertices || target_vertices > max_sample_vertices)
     throw Error(ErrorCode::invalid_input, "vertices",
-                "A sample has " + std::to_string(least_sample_vertices) + " to " +
-                    std::to_string(most_sample_vertices) + " vertices; " + std::to_string(target_vertices) +
-                    " is outside.");
+                "A sample has " + std::to_string(min_sample_vertices) + " to " + std::to_string(max_sample_vertices) +
+                    " vertices; " + std::to_string(target_vertices) + " is outside.");
   return found->make(target_vertices, context);
 }
 

@@ -24,8 +24,8 @@ struct SampleInfo {
   Vec3 view_up;
 };
 
-inline constexpr int least_sample_vertices = 500;
-inline constexpr int most_sample_vertices = 2'000'000;
+inline constexpr int min_sample_vertices = 500;
+inline constexpr int max_sample_vertices = 2'000'000;
 
 /// The shapes on offer, in the order in which to show them.
 const std::vector<SampleInfo>& sample_catalog();

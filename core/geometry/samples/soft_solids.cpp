@@ -13,13 +13,13 @@ namespace {
 // The sum is anchored at the least distance, so that nothing overflows.
 template <std::size_t n>
 double blended(const std::array<double, n>& d, double k) {
-  double least = d[0], sum = 0;
-  for (double x : d) least = x < least ? x : least;
-  for (double x : d) sum += exponential((least - x) / k);
+  double minimum = d[0], sum = 0;
+  for (double x : d) minimum = x < minimum ? x : minimum;
+  for (double x : d) sum += exponential((minimum - x) / k);
   // log by Newton on exp: sum lies between 1 and n.
   double log = sum - 1 < 1 ? sum - 1 : 1;
   for (int i = 0; i < 6; ++i) log -= 1 - sum * exponential(-log);
-  return least - k * log;
+  return minimum - k * log;
 }
 
 Model meshed(const Field& field, const Box& bounds, double area_mm2, int vertices, const Colouring& colouring,

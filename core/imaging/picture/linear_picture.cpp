@@ -12,7 +12,7 @@
 namespace formwright {
 namespace {
 
-constexpr int most_probes = 16;
+constexpr int max_probes = 16;
 
 }  // namespace
 
@@ -74,7 +74,7 @@ LinearPicture::Footprint LinearPicture::footprint(const Eigen::Matrix2d& texels_
   }
   if (longer <= 1) return result;  // enlarged: plain interpolation
   result.probes = static_cast<int>(
-      std::clamp(std::ceil(longer / std::max(shorter, 1.0) - 1e-9), 1.0, static_cast<double>(most_probes)));
+      std::clamp(std::ceil(longer / std::max(shorter, 1.0) - 1e-9), 1.0, static_cast<double>(max_probes)));
   const double diameter = std::max({longer / result.probes, shorter, 1.0});
   const double level = std::min(std::log2(diameter), static_cast<double>(levels_.size()) - 1);
   result.level = static_cast<int>(level);

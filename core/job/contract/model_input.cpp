@@ -20,7 +20,7 @@ int sample_vertices(const InputBlob& input) {
   if (input.sample_vertices != 0) return input.sample_vertices;
   for (const SampleInfo& sample : sample_catalog())
     if (sample.name == input.sample) return sample.default_vertices;
-  return least_sample_vertices;
+  return min_sample_vertices;
 }
 
 }  // namespace

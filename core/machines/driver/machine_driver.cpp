@@ -147,7 +147,7 @@ std::array<double, 4> bounds_of(const Json& command) {
   return bounds;
 }
 
-std::array<std::array<double, 2>, 5> way_around(const std::array<double, 4>& b) {
+std::array<std::array<double, 2>, 5> corners_around(const std::array<double, 4>& b) {
   return {{{b[0], b[1]}, {b[2], b[1]}, {b[2], b[3]}, {b[0], b[3]}, {b[0], b[1]}}};
 }
 
@@ -169,6 +169,10 @@ std::string zero_words(const Json& command, const char* space) {
       words += space + std::string(1, static_cast<char>(axis - 'a' + 'A')) + "0";
   if (words.empty()) refuse("axes", "axes must name x, y or z.");
   return words;
+}
+
+Json alarm_json(int code, const std::string& text, const std::string& fix) {
+  return {{"code", code}, {"text", text}, {"fix", fix}, {"mend", fix}};  // "mend": the name until version 0.1
 }
 
 Json job_json(const MachineJob& job, double now_s) {

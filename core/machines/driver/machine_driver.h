@@ -143,12 +143,14 @@ std::string command_name(const Json& command, MachineConnection connection);
 /// bounds_mm: left, low, right, high.
 std::array<double, 4> bounds_of(const Json& command);
 /// The corners of bounds_mm, once around and back.
-std::array<std::array<double, 2>, 5> way_around(const std::array<double, 4>& bounds_mm);
+std::array<std::array<double, 2>, 5> corners_around(const std::array<double, 4>& bounds_mm);
 /// "line": 1 to `longest` characters that can be printed.
 std::string line_of(const Json& command, std::size_t longest);
 /// "axes" as the words "X0Y0", "xy" where it is absent; `space` before each.
 std::string zero_words(const Json& command, const char* space);
 Json job_json(const MachineJob& job, double now_s);
+/// For the state, "alarm": what happened, and what to do.
+Json alarm_json(int code, const std::string& text, const std::string& fix);
 /// "12.5": at most three decimals, none that are zero.
 std::string decimal(double value);
 

@@ -162,13 +162,13 @@ std::string marlin_refuses(const std::vector<GcodeWord>& words) {
 
 }  // namespace
 
-void require_clear_way(const GcodeProgram& program) {
+void require_clear_path(const GcodeProgram& program) {
   if (!program.unclear().empty()) refuse("job", program.unclear());
 }
 
 void require_runnable(const GcodeProgram& program, const GcodeRules& rules) {
   if (rules.dialect == GcodeDialect::marlin_printer) return;
-  require_clear_way(program);
+  require_clear_path(program);
   GcodeState state;
   std::vector<GcodeWord> words;
   program.for_each_line(0, program.line_count(), [&](std::string_view line, int number) {

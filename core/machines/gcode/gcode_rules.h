@@ -24,7 +24,7 @@ struct GcodeRules {
 void require_runnable(const GcodeProgram& program, const GcodeRules& rules);
 
 /// Throws Error invalid_input ("job") naming the first line whose way nobody can tell.
-void require_clear_way(const GcodeProgram& program);
+void require_clear_path(const GcodeProgram& program);
 
 /// How far a program reaches that counts from where the head stands is known only when that is the origin. `index`: of
 /// the line it starts with; `head_mm`: in work coordinates. Throws Error invalid_input ("start").

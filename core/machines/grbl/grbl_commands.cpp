@@ -146,7 +146,8 @@ void GrblDriver::frame(const Json& command) {
   check_reach(bounds);
   focus_until_s_.reset();
   const std::string speed = "F" + decimal(speed_mm_per_min(command, 50));
-  for (const auto& [x, y] : machines_detail::way_around(b)) queue("$J=G90G21X" + decimal(x) + "Y" + decimal(y) + speed);
+  for (const auto& [x, y] : machines_detail::corners_around(b))
+    queue("$J=G90G21X" + decimal(x) + "Y" + decimal(y) + speed);
 }
 
 void GrblDriver::select_job_system() {

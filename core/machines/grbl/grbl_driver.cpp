@@ -223,7 +223,7 @@ Json GrblDriver::state(double now_s) const {
   if (job_) state["job"]["careful_line"] = careful_line();
   if (alarm_) {
     const GrblWords words = grbl_alarm(*alarm_);
-    state["alarm"] = {{"code", *alarm_}, {"text", words.text}, {"mend", words.mend}};
+    state["alarm"] = machines_detail::alarm_json(*alarm_, words.text, words.fix);
   }
   if (refused_)
     state["error"] = {{"code", refused_->code},

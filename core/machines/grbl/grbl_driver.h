@@ -51,6 +51,8 @@ class GrblDriver final : public MachineDriver {
   void hear(const std::string& line, double now_s);
   void hear_answer(std::optional<int> error, double now_s);
   void hear_job_answer(const GrblStream::Line& line, std::optional<int> error, double now_s);
+  bool refuses_foreign_line(const GrblStream::Line* line, int error) const;
+  void end_foreign_lines(double now_s);
   void hear_report(const GrblReport& report, double now_s);
   void hear_places(const GrblReport& report);
   void hear_banner(const std::string& line, double now_s);
@@ -92,7 +94,7 @@ class GrblDriver final : public MachineDriver {
   std::string unknown_place() const;
   /// Does the loaded job move the z of a mill? Its start then says where z is 0.
   bool asks_z() const { return options_.tool == MachineTool::mill && moves_axis_[2]; }
-  std::vector<std::string> way_back_to(int index) const;
+  std::vector<std::string> lines_back_to(int index) const;
   int careful_line() const;
   std::string as_sent(std::string_view line) const {
     return dynamic_power() ? with_dynamic_power(line) : std::string(line);
@@ -140,8 +142,10 @@ class GrblDriver final : public MachineDriver {
 
   GrblStream stream_;
   std::deque<std::string> by_hand_, after_banner_;
-  int identifying_ = 0;  // lines of the identification that are not answered yet
-  int identified_ = 0;   // how often it was asked for
+  int identifying_ = 0;         // lines of the identification that are not answered yet
+  int identified_ = 0;          // how often it was asked for
+  bool version_heard_ = false;  // since then: what is answered is what was asked
+  int foreign_resets_ = 0;
   bool refused_before_ = false;
 
   GcodeProgram program_;

@@ -28,6 +28,7 @@ void GrblDriver::hear(const std::string& line, double now_s) {
   else if (line.starts_with("ALARM:")) hear_alarm(std::atoi(line.c_str() + 6), now_s);
   else if (line.starts_with("Grbl ") || line.starts_with("GrblHAL ")) hear_banner(line, now_s);
   else machine_.hear(line);
+  version_heard_ = version_heard_ || line.starts_with("[VER:");
   if (line.starts_with("[MSG:")) note(line.substr(5, line.size() - 6), now_s);
   // One byte of the ring buffer tells full from empty.
   if (line.starts_with("[OPT:") && machine_.buffer_bytes()) stream_.set_buffer_bytes(*machine_.buffer_bytes() - 1);
@@ -63,6 +64,7 @@ void GrblDriver::identify() {
   connection_ = MachineConnection::greeting;
   by_hand_ = {"$I", "$$", "$N", "$G", "$#"};
   identifying_ = static_cast<int>(by_hand_.size());
+  version_heard_ = false;
   ++identified_;
 }
 
@@ -81,6 +83,7 @@ void GrblDriver::hear_alarm(int code, double now_s) {
 
 void GrblDriver::hear_answer(std::optional<int> error, double now_s) {
   const auto line = stream_.answered();
+  if (error && refuses_foreign_line(line ? &*line : nullptr, *error)) return end_foreign_lines(now_s);
   if (!line) return;  // a fresh EEPROM prints error:7 before the banner; after a reset old answers may still come
   progress_s_ = answered_s_ = now_s;
   refused_before_ = refused_before_ || error;
@@ -117,6 +120,26 @@ void GrblDriver::hear_answer(std::optional<int> error, double now_s) {
   if (line->text == "M5" && line->job_line < 0) hear_dark(error, now_s);
   if (error) refused_ = {*error, line->text, line->job_line < 0 ? 0 : program_.number(line->job_line)};
   hear_job_answer(*line, error, now_s);
+}
+
+/// Until the machine has said what it is, lines of a program that ended before may still be in its buffer, and be
+/// answered. GRBL counts a dwell as rest (motion_control.c, mc_dwell), so its reports do not show that.
+bool GrblDriver::refuses_foreign_line(const GrblStream::Line* line, int error) const {
+  constexpr int eeprom_failed = 7, max_resets = 3;
+  if (stopping_ != Stopping::no || job_active() || foreign_resets_ >= max_resets || error == eeprom_failed)
+    return false;
+  if (line) return identifying_ > 0 && (!version_heard_ || line->text == "$I" || line->text == "$$");
+  return phase_ != MachinePhase::idle && phase_ != MachinePhase::alarm;
+}
+
+/// GRBL would act on the next line, from wherever the refused one was to lead.
+void GrblDriver::end_foreign_lines(double now_s) {
+  ++foreign_resets_;
+  note("The machine refused a line that was sent before this connection, and was reset.", now_s);
+  by_hand_.clear();
+  identifying_ = 0;
+  lose_position();
+  reset(now_s);
 }
 
 void GrblDriver::hear_job_answer(const GrblStream::Line& line, std::optional<int> error, double now_s) {

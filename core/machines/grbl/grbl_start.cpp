@@ -51,7 +51,7 @@ int GrblDriver::careful_line() const {
   return program_.number(program_.rapid_before(index));
 }
 
-std::vector<std::string> GrblDriver::way_back_to(int index) const {
+std::vector<std::string> GrblDriver::lines_back_to(int index) const {
   const GcodeState s = program_.state_before(index);
   std::vector<std::string> lines;
   if (s.plane != 17 || s.work_system != 54)
@@ -59,11 +59,11 @@ std::vector<std::string> GrblDriver::way_back_to(int index) const {
   const bool mill = options_.tool == MachineTool::mill;
   if (mill && s.moved[2]) lines.push_back("G0Z" + decimal(program_.bounds().high_mm[2]));
   // On an axis that the job has not named yet the head stays where it is; jobs that count from here begin at 0.
-  std::string way;
+  std::string move;
   const bool any = s.moved[0] || s.moved[1], from_zero = any && program_.from_here();
-  if (s.moved[0] || from_zero) way += "X" + decimal(s.position_mm[0]);
-  if (s.moved[1] || from_zero) way += "Y" + decimal(s.position_mm[1]);
-  if (!way.empty()) lines.push_back("G0" + way);
+  if (s.moved[0] || from_zero) move += "X" + decimal(s.position_mm[0]);
+  if (s.moved[1] || from_zero) move += "Y" + decimal(s.position_mm[1]);
+  if (!move.empty()) lines.push_back("G0" + move);
   if (s.mist) lines.push_back("M7");
   if (s.flood) lines.push_back("M8");
   if (s.spindle != 5) lines.push_back(as_sent("M" + std::to_string(s.spindle)) + "S" + decimal(s.power));
@@ -155,7 +155,7 @@ void GrblDriver::start(const Json& command, double now_s) {
   queue("G21G90G94G17G54");
   queue("G0S0");
   if (index > 0)
-    for (const std::string& line : way_back_to(index)) queue(line);
+    for (const std::string& line : lines_back_to(index)) queue(line);
 }
 
 Json GrblDriver::warnings() const {

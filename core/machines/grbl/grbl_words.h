@@ -6,7 +6,7 @@
 namespace formwright {
 
 struct GrblWords {
-  std::string text, mend;
+  std::string text, fix;
 };
 
 GrblWords grbl_alarm(int code);

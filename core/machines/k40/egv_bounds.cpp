@@ -17,7 +17,7 @@ class Board {
   void take(char letter) {
     if (letter == 'I') {
       finished_ = compact_ = homes_next_ = false;
-      way_ = {};
+      steps_ = {};
     }
     if (finished_) return;  // until the next I
     if (letter >= '0' && letter <= '9') return digit(letter);
@@ -65,7 +65,7 @@ class Board {
   void add(std::int64_t steps) {
     if (!on_[0] && !on_[1]) lost();
     for (std::size_t axis = 0; axis < 2; ++axis)
-      if (on_[axis]) way_[axis] += steps;
+      if (on_[axis]) steps_[axis] += steps;
   }
 
   void command(char letter) {
@@ -102,7 +102,7 @@ class Board {
   /// Rows of a raster are a step apart: the board takes it by itself where the head turns round.
   void turn(std::size_t axis, bool back) {
     const bool rows = horizontal_ == (axis == 0);
-    if (back_[axis] != back && rows && compact_) way_[1 - axis] += raster_step_;
+    if (back_[axis] != back && rows && compact_) steps_[1 - axis] += raster_step_;
     back_[axis] = back;
     on_ = {axis == 0, axis == 1};
   }
@@ -126,7 +126,7 @@ class Board {
     laser_ = false;
     if (homes_next_) {
       at_ = {};
-      way_ = {};
+      steps_ = {};
       finished_ = true;
       see(bounds_.reached);
     } else go();
@@ -134,12 +134,12 @@ class Board {
   }
 
   void go() {
-    if (way_[0] == 0 && way_[1] == 0) return;
+    if (steps_[0] == 0 && steps_[1] == 0) return;
     const bool burns = compact_ && laser_;
     if (burns) see(bounds_.worked);
     see(bounds_.reached);
-    for (std::size_t axis = 0; axis < 2; ++axis) at_[axis] += back_[axis] ? -way_[axis] : way_[axis];
-    way_ = {};
+    for (std::size_t axis = 0; axis < 2; ++axis) at_[axis] += back_[axis] ? -steps_[axis] : steps_[axis];
+    steps_ = {};
     if (burns) see(bounds_.worked);
     see(bounds_.reached);
   }
@@ -153,7 +153,7 @@ class Board {
   }
 
   EgvBounds bounds_;
-  std::array<std::int64_t, 2> at_{}, way_{};  // steps: right, front
+  std::array<std::int64_t, 2> at_{}, steps_{};  // steps: right, front
   std::array<bool, 2> back_{}, on_{};
   bool laser_ = false, compact_ = false, finished_ = false, homes_next_ = false, after_bar_ = false;
   bool ends_ = false, enters_ = true;  // what the next E without a mode does

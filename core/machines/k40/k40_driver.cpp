@@ -327,7 +327,7 @@ void K40Driver::command(const Json& command, double now_s) {
     const std::array<double, 4> b = machines_detail::bounds_of(command);
     require_inside(b[0], options_.bed_y_mm - b[1]);
     require_inside(b[2], options_.bed_y_mm - b[3]);
-    for (const auto& [x, y] : machines_detail::way_around(b))
+    for (const auto& [x, y] : machines_detail::corners_around(b))
       move(x - position_mm_[0], options_.bed_y_mm - y - position_mm_[1]);
   } else if (what == "start") {
     require_confirmation(command, "The laser moves and its beam turns on");
@@ -374,8 +374,8 @@ Json K40Driver::state(double now_s) const {
   state["when_connection_ends"] =
       "The board burns what it has received and then stops; its beam may stay on there. Open the lid or switch the laser off.";
   if (status_ == status_power)
-    state["alarm"] = {
-        {"code", status_power}, {"text", "The laser's own supply is off."}, {"mend", "Switch it on and home it."}};
+    state["alarm"] =
+        machines_detail::alarm_json(status_power, "The laser's own supply is off.", "Switch it on and home it.");
   state["can"] = possible_commands();
   return state;
 }

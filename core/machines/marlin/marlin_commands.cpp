@@ -97,7 +97,7 @@ void MarlinDriver::command(const Json& command, double now_s) {
     bounds.add({b[2], b[3], 0});
     check_reach(bounds);
     prepare_moves(now_s);
-    for (const auto& [x, y] : machines_detail::way_around(b))
+    for (const auto& [x, y] : machines_detail::corners_around(b))
       move("G90", " X" + decimal(x) + " Y" + decimal(y), speed(50));
     settle(Settles::moving);
   } else if (what == "focus") {
@@ -240,9 +240,8 @@ Json MarlinDriver::state(double now_s) const {
   if (asks_z()) state["z_choice"] = machines_detail::z_choice_json(place_.origin_mm(2), z_set_s_, now_s);
   state["temperatures"] = temperatures_;
   if (halted_)
-    state["alarm"] = {{"code", 0},
-                      {"text", "The machine has halted: " + halt_text_},
-                      {"mend", "Find the cause, then switch it off and on again."}};
+    state["alarm"] = machines_detail::alarm_json(0, "The machine has halted: " + halt_text_,
+                                                 "Find the cause, then switch it off and on again.");
   if (refused_)
     state["error"] = {{"code", 0},
                       {"text", "The machine does not know a command of the job."},

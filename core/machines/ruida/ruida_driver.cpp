@@ -277,7 +277,7 @@ void RuidaDriver::command(const Json& command, double now_s) {
   else if (what == "frame") {
     require_confirmation(command, "The head moves once around the job, laser off");
     const std::array<double, 4> b = machines_detail::bounds_of(command);
-    for (const auto& [x, y] : machines_detail::way_around(b)) go(x, y);
+    for (const auto& [x, y] : machines_detail::corners_around(b)) go(x, y);
   } else if (what == "start") {
     require_confirmation(command, "The laser moves and its beam turns on");
     if (number_of(command, "from_line", 1, 1e9, 1) > 1)

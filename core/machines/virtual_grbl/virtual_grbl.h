@@ -65,6 +65,8 @@ class VirtualGrbl {
   Point origin_mm(int system) const;
   const std::string& state() const { return state_; }
   bool beam() const { return beam_; }
+  /// Has it lines or moves that are not done?
+  bool has_work() const { return !rx_.empty() || in_line_ || !planner_.empty(); }
   void trip_limit() { alarm(1); }
   void brown_out(double now_s) { boot(now_s); }
   /// The next line is answered by this error.

@@ -94,14 +94,14 @@ void VirtualGrbl::run(double dt_s) {
         follows_speed_ ? full * std::min(1.0, speed_mm_per_s_ / block.speed_mm_per_s) : full;
     if (block.spindle != 5) output_spindle_ = block.spindle;
     beam_ = output_power_ > 0;
-    const double remaining = distance(counted_mm_, block.to_mm), way = speed_mm_per_s_ * left_s;
+    const double remaining = distance(counted_mm_, block.to_mm), travel = speed_mm_per_s_ * left_s;
     const Point before = counted_mm_;
     double took_s = left_s;
-    if (way >= remaining) {
+    if (travel >= remaining) {
       counted_mm_ = block.to_mm;
       took_s = speed_mm_per_s_ > 0 ? std::min(left_s, remaining / speed_mm_per_s_) : left_s;
     } else {
-      for (std::size_t k = 0; k < 3; ++k) counted_mm_[k] += (block.to_mm[k] - counted_mm_[k]) * way / remaining;
+      for (std::size_t k = 0; k < 3; ++k) counted_mm_[k] += (block.to_mm[k] - counted_mm_[k]) * travel / remaining;
     }
     left_s -= took_s;
     if (beam_) record_beam(before, took_s, full, block.jog, block.serial);

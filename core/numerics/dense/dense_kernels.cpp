@@ -101,7 +101,7 @@ inline void solve_strip(const SmallTriangle& t, int columns, double* x, std::siz
 
 }  // namespace
 
-int factor_diagonal(double* a, std::size_t stride, int columns, const double* least) {
+int factor_diagonal(double* a, std::size_t stride, int columns, const double* minimum) {
   const int rows = (columns + 3) & ~3;
   for (int j = 0; j < columns; j += 4) {
     const int width = std::min(4, columns - j);
@@ -114,7 +114,7 @@ int factor_diagonal(double* a, std::size_t stride, int columns, const double* le
         for (int i = p; i < width; ++i) column[i] -= left[i] * left[p];
       }
       const double pivot = column[p];
-      if (!(pivot > least[j + p]) || !std::isfinite(pivot)) return j + p;
+      if (!(pivot > minimum[j + p]) || !std::isfinite(pivot)) return j + p;
       const double root = std::sqrt(pivot), inverse = 1 / root;
       column[p] = root;
       for (int i = p + 1; i < width; ++i) column[i] *= inverse;

@@ -10,7 +10,7 @@ namespace formwright::dense {
 /// Factors the `columns` x `columns` lower triangle at the top of `a` in place (Cholesky), down to row
 /// padded(columns). `least` holds for each column the smallest pivot that counts as positive.
 /// Returns the first column that is not positive definite, or -1. The strict upper triangle is overwritten.
-int factor_diagonal(double* a, std::size_t stride, int columns, const double* least);
+int factor_diagonal(double* a, std::size_t stride, int columns, const double* minimum);
 
 /// X <- X L^-T for `rows` rows of X (`columns` wide), L as factor_diagonal left it.
 void solve_rows(const double* l, std::size_t l_stride, int columns, double* x, std::size_t x_stride, int rows);

@@ -12,8 +12,8 @@
 namespace formwright {
 namespace {
 
-constexpr double least_shrinking = 0.92;  // merging ends when a level keeps more than this part of the vertices
-constexpr int flow_size_max = 20000;      // above, a maximum flow costs more than it saves
+constexpr double min_shrinking = 0.92;  // merging ends when a level keeps more than this part of the vertices
+constexpr int flow_size_max = 20000;    // above, a maximum flow costs more than it saves
 
 // Own generator: the standard's distributions differ between libraries, and orders must not.
 class Random {
@@ -108,7 +108,7 @@ std::vector<Level> coarsen(const Graph& graph, const BisectionOptions& options, 
   while (finest->size() > options.coarsest_size) {
     int count = 0;
     std::vector<int> image = match(*finest, weight_max, random, count);
-    if (count > least_shrinking * finest->size()) break;
+    if (count > min_shrinking * finest->size()) break;
     Graph coarse = merge(*finest, image, count);
     levels.push_back({std::move(coarse), std::move(image)});
     finest = &levels.back().graph;

@@ -57,10 +57,10 @@ BandFlow::BandFlow(const Graph& graph, const std::vector<Side>& side, const Sepa
   const std::size_t separators = band_.size();
   if (separators == 0) return;
   const double total = static_cast<double>(weight[0] + weight[1] + weight[2]);
-  const auto least = static_cast<std::int64_t>((1 - options.side_max) * total);
+  const auto minimum = static_cast<std::int64_t>((1 - options.side_max) * total);
   for (const Side which : {Side::left, Side::right}) {
     grow_band(side, which,
-              std::max<std::int64_t>(weight[static_cast<int>(which)] - least, weight[static_cast<int>(which)] / 4),
+              std::max<std::int64_t>(weight[static_cast<int>(which)] - minimum, weight[static_cast<int>(which)] / 4),
               options);
   }
   // Terminals: band vertices next to a vertex of their own side beyond the band.

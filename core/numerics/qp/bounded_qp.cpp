@@ -91,7 +91,7 @@ BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve(const Rows& 
   ExchangeSettings settings;
   settings.violation_tolerance = options.violation_tolerance;
   settings.max_rounds = options.max_rounds;
-  if (options.method != QpMethod::interior_point) settings.most_active = options.most_active_in_pool;
+  if (options.method != QpMethod::interior_point) settings.max_active = options.max_active_in_pool;
   if (options.method == QpMethod::interior_point)
     settings.max_rounds = std::min(options.max_rounds, rounds_before_interior_point);
   settings.may_stop = true;
@@ -166,7 +166,7 @@ BoundedQp::Implementation::Outcome BoundedQp::Implementation::solve_densely(cons
   ExchangeSettings exact;
   exact.violation_tolerance = options.violation_tolerance;
   exact.max_rounds = options.max_rounds;
-  exact.most_active = options.most_active_in_pool;
+  exact.max_active = options.max_active_in_pool;
   exact.may_stop = true;
   auto crossed = crossover(energy, rows, point, exact, context);
   if (!crossed) {

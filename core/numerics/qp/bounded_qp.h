@@ -46,7 +46,7 @@ struct BoundedQpOptions {
   double violation_tolerance =
       1e-9;  // in units of u, absolute: what rounds strive for; bounds hold exactly, see violation_max
   int max_rounds = 200;
-  int most_active_in_pool = 6000;  // more rows in contact: bounds that hold leave the factorisation (docs/numerics.md)
+  int max_active_in_pool = 6000;  // more rows in contact: bounds that hold leave the factorisation (docs/numerics.md)
 };
 
 struct BoundedQpRound {

@@ -36,9 +36,9 @@ std::vector<RowKey> add_base_reactions(const Energy& energy, const Rows& rows, s
 }
 
 std::optional<ExchangeResult> exchange_on_base(Energy& energy, const Rows& rows, std::vector<RowKey> base,
-                                               ExchangeSettings settings, int stages_most, Context& context) {
+                                               ExchangeSettings settings, int max_stages, Context& context) {
   settings.may_stop = true;
-  const int most_active = settings.most_active;
+  const int max_active = settings.max_active;
   std::vector<char> kept_out(static_cast<std::size_t>(energy.size()), 0);  // unknowns of order rows that matter
   int kept_out_count = 0;
   const auto keep_out = [&](RowKey order) {
@@ -55,7 +55,7 @@ std::optional<ExchangeResult> exchange_on_base(Energy& energy, const Rows& rows,
       settings.first.push_back(key);
       return true;
     });
-    settings.most_active = most_active + kept_out_count;
+    settings.max_active = max_active + kept_out_count;
   };
   for (const RowKey key : settings.first) {
     if (key.side == Side::order) keep_out(key);
@@ -64,7 +64,7 @@ std::optional<ExchangeResult> exchange_on_base(Energy& energy, const Rows& rows,
   BoundedQpSeconds seconds;
   std::vector<BoundedQpRound> history;
   int rounds = 0;
-  for (int stage = 0; stage < stages_most; ++stage) {
+  for (int stage = 0; stage < max_stages; ++stage) {
     ExchangeSolver exchange(energy);
     ExchangeResult result = exchange.solve(rows, base, settings, context);
     seconds.factorise += result.seconds.factorise;
@@ -87,7 +87,7 @@ std::optional<ExchangeResult> exchange_on_base(Energy& energy, const Rows& rows,
     std::erase_if(base, [&](RowKey key) { return std::binary_search(pulling.begin(), pulling.end(), key, by_index); });
     settings.first = result.blocked;
     for (const RowKey key : result.blocked) keep_out(key);
-    const bool full = static_cast<int>(held.size()) > settings.most_active;
+    const bool full = static_cast<int>(held.size()) > settings.max_active;
     for (const RowKey key : held) {
       if (full && (key.side == Side::lower || key.side == Side::upper)) base.push_back(key);
       else settings.first.push_back(key);

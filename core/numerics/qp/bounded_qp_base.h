@@ -14,11 +14,11 @@ std::vector<RowKey> add_base_reactions(const Energy& energy, const Rows& rows, s
                                        ExchangeResult& result);
 
 /// Starts from a guess: `base` (at most one bound for each unknown) and `settings.first`. Every stage factors with the
-/// base taken out and exchanges until nothing is violated or more than `settings.most_active` rows of the pool hold.
+/// base taken out and exchanges until nothing is violated or more than `settings.max_active` rows of the pool hold.
 /// Then bounds of the pool that hold join the base, and those of the base that pull leave it. Once exchanges run to
-/// their end the objective falls from stage to stage, so that no base comes back. Nothing if `stages_most` stages were
+/// their end the objective falls from stage to stage, so that no base comes back. Nothing if `max_stages` stages were
 /// not enough. Throws Error: could_not_solve, cancelled.
 std::optional<ExchangeResult> exchange_on_base(Energy& energy, const Rows& rows, std::vector<RowKey> base,
-                                               ExchangeSettings settings, int stages_most, Context& context);
+                                               ExchangeSettings settings, int max_stages, Context& context);
 
 }  // namespace formwright::bounded_qp_detail

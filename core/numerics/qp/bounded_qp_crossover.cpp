@@ -12,7 +12,7 @@ namespace formwright::bounded_qp_detail {
 namespace {
 constexpr double sure =
     1e4;  // (multiplier / typical multiplier) : (slack / typical slack) of a bound that surely holds
-constexpr int stages_most = 60;
+constexpr int max_stages = 60;
 }  // namespace
 
 std::optional<ExchangeResult> crossover(Energy& energy, const Rows& rows, const InteriorPointResult& point,
@@ -53,7 +53,7 @@ std::optional<ExchangeResult> crossover(Energy& energy, const Rows& rows, const 
     const auto r = static_cast<Eigen::Index>(k);
     place({Side::order, point.order[k]}, point.order_slack[r], point.order_force[r]);
   }
-  return exchange_on_base(energy, rows, std::move(base), std::move(own), stages_most, context);
+  return exchange_on_base(energy, rows, std::move(base), std::move(own), max_stages, context);
 }
 
 }  // namespace formwright::bounded_qp_detail

@@ -54,7 +54,7 @@ void Rows::check() const {
   if (!c_.lower_slope.allFinite()) reject("lower_slope", "The slopes of a quadratic program must be finite.");
   if (!c_.upper_slope.allFinite()) reject("upper_slope", "The slopes of a quadratic program must be finite.");
   // Each pair of bounds asks (upper_slope - lower_slope) m >= lower - upper: a half line of m, or nothing.
-  std::vector<double> least(at(c_.group_count), -infinity), most(at(c_.group_count), infinity);
+  std::vector<double> minimum(at(c_.group_count), -infinity), maximum(at(c_.group_count), infinity);
   int crossed = 0;
   for (int i = 0; i < size(); ++i) {
     const double lower = c_.lower[i], upper = c_.upper[i];
@@ -65,16 +65,16 @@ void Rows::check() const {
       reject("group", "The groups of a quadratic program must be numbered from 0 to group_count - 1.");
     if (lower == -infinity || upper == infinity) continue;
     const double gap = lower - upper, slope = c_.upper_slope[i] - c_.lower_slope[i];
-    if (slope > 0) least[at(g)] = std::max(least[at(g)], gap / slope);
-    else if (slope < 0) most[at(g)] = std::min(most[at(g)], gap / slope);
+    if (slope > 0) minimum[at(g)] = std::max(minimum[at(g)], gap / slope);
+    else if (slope < 0) maximum[at(g)] = std::min(maximum[at(g)], gap / slope);
     else if (gap > 0) ++crossed;
   }
   if (crossed > 0) {
     reject("lower", "The lower bound is above the upper bound for " + std::to_string(crossed) +
                         " unknowns: raise the upper or lower the lower bound.");
   }
-  for (std::size_t g = 0; g < least.size(); ++g) {
-    if (least[g] > most[g] + 1e-12 * (std::abs(least[g]) + std::abs(most[g]))) {
+  for (std::size_t g = 0; g < minimum.size(); ++g) {
+    if (minimum[g] > maximum[g] + 1e-12 * (std::abs(minimum[g]) + std::abs(maximum[g]))) {
       throw Error(
           ErrorCode::could_not_solve, "lower",
           "No offset lets the bounds of group " + std::to_string(g) + " open for all its unknowns: widen them.");
@@ -150,7 +150,7 @@ void Rows::evaluate(const Eigen::VectorXd& u, const Eigen::VectorXd& m, Violatio
   out.order.resize(c_.rows.size());
   std::vector<double> worst((n + unknowns_per_chunk - 1) / unknowns_per_chunk, 0.0);
   parallel_for(n, unknowns_per_chunk, [&](std::size_t begin, std::size_t end) {
-    double most = 0;
+    double maximum = 0;
     for (std::size_t k = begin; k < end; ++k) {
       const auto i = static_cast<Eigen::Index>(k);
       const double mg = m[c_.group[k]];
@@ -160,9 +160,9 @@ void Rows::evaluate(const Eigen::VectorXd& u, const Eigen::VectorXd& m, Violatio
       out.side[k] = below > above ? Side::lower : Side::upper;
       if (out.bound[k] > 0 && c_.lower[i] == c_.upper[i] && c_.lower_slope[i] == c_.upper_slope[i])
         out.side[k] = Side::both;
-      most = std::max(most, out.bound[k]);
+      maximum = std::max(maximum, out.bound[k]);
     }
-    worst[begin / unknowns_per_chunk] = most;
+    worst[begin / unknowns_per_chunk] = maximum;
   });
   out.max = worst.empty() ? 0 : *std::max_element(worst.begin(), worst.end());
   out.max_order = 0;
@@ -173,12 +173,12 @@ void Rows::evaluate(const Eigen::VectorXd& u, const Eigen::VectorXd& m, Violatio
   out.max = std::max(out.max, out.max_order);
 }
 
-std::vector<RowKey> Rows::worth_adding(const Violations& v, double least) const {
+std::vector<RowKey> Rows::worth_adding(const Violations& v, double minimum) const {
   std::vector<std::pair<double, RowKey>> found;
-  const bool all = std::count_if(v.bound.begin(), v.bound.end(), [&](double x) { return x > least; }) <= few;
+  const bool all = std::count_if(v.bound.begin(), v.bound.end(), [&](double x) { return x > minimum; }) <= few;
   for (int i = 0; i < size(); ++i) {
     const double here = v.bound[at(i)];
-    if (!(here > least)) continue;
+    if (!(here > minimum)) continue;
     const Side side = v.side[at(i)];
     bool highest = true;
     if (side != Side::both && !all) {
@@ -192,15 +192,15 @@ std::vector<RowKey> Rows::worth_adding(const Violations& v, double least) const 
     }
     if (highest) found.push_back({here, {side, i}});
   }
-  if (v.max_order > least) {
-    std::vector<double> most(at(size()), 0.0);
+  if (v.max_order > minimum) {
+    std::vector<double> maximum(at(size()), 0.0);
     for (std::size_t r = 0; r < c_.rows.size(); ++r) {
-      for (const int i : c_.rows[r].index) most[at(i)] = std::max(most[at(i)], v.order[r]);
+      for (const int i : c_.rows[r].index) maximum[at(i)] = std::max(maximum[at(i)], v.order[r]);
     }
     for (std::size_t r = 0; r < c_.rows.size(); ++r) {
-      if (!(v.order[r] > least)) continue;
+      if (!(v.order[r] > minimum)) continue;
       const auto& index = c_.rows[r].index;
-      if (std::all_of(index.begin(), index.end(), [&](int i) { return most[at(i)] <= v.order[r]; })) {
+      if (std::all_of(index.begin(), index.end(), [&](int i) { return maximum[at(i)] <= v.order[r]; })) {
         found.push_back({v.order[r], {Side::order, static_cast<int>(r)}});
       }
     }

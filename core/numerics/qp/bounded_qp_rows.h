@@ -52,7 +52,7 @@ class Rows {
 
   /// Rows to add: violated by more than `least` and more than any neighbour in the graph of Q (bounds), or than any
   /// other order row that shares an unknown; all bounds when they are few; the most violated first.
-  std::vector<RowKey> worth_adding(const Violations& v, double least) const;
+  std::vector<RowKey> worth_adding(const Violations& v, double minimum) const;
 
   /// Moves u into its bounds: every bound then holds exactly as computed.
   void clip(Eigen::VectorXd& u, const Eigen::VectorXd& m) const;

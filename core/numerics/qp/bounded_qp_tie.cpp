@@ -14,7 +14,7 @@ namespace formwright::bounded_qp_detail {
 
 namespace {
 constexpr double null_tolerance = 1e-10;  // of the largest pivot of K, which is quadratic in the rows
-constexpr int rounds_most = 100;
+constexpr int max_rounds = 100;
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // How a row reads the constants and m: one coefficient for each component, then one for each group.
@@ -110,7 +110,7 @@ int break_ties(const Energy& energy, const Rows& rows, std::span<const RowKey> p
       rows_t.push_back(factor.matrixL().solve(row));
       grown = true;
     }
-    if (!grown || round == rounds_most) return static_cast<int>(freedom);
+    if (!grown || round == max_rounds) return static_cast<int>(freedom);
     const auto k = static_cast<Eigen::Index>(pool.size());
     Eigen::MatrixXd Y(freedom, k);
     problem = {};

@@ -9,12 +9,12 @@
 namespace formwright::bounded_qp_detail {
 
 namespace {
-constexpr double proximal_most = 1e-5;
-constexpr int border_least = 16;  // dropped rows are kept in L up to this number,
-constexpr int border_part = 8;    // or up to this part of L
+constexpr double max_proximal = 1e-5;
+constexpr int min_border = 16;  // dropped rows are kept in L up to this number,
+constexpr int border_part = 8;  // or up to this part of L
 // Dropping a row that others nearly repeat through the border cancels digits that L without it keeps: round-off in y
 // grows by (S'^-1)_aa S'_aa. A step of refinement gives back about as many digits as are left.
-constexpr double cancellation_most = 1e10;
+constexpr double max_cancellation = 1e10;
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
@@ -33,7 +33,7 @@ void PoolFactor::set_active(const std::vector<char>& active) {
   int leaving = 0;
   for (const int a : order_) leaving += active[at(a)] ? 0 : 1;
   const int old_size = size();
-  if (leaving > std::max(border_least, size() / border_part)) {
+  if (leaving > std::max(min_border, size() / border_part)) {
     compact(active, old_size);
   } else {
     for (int a = 0; a < static_cast<int>(active.size()); ++a) {
@@ -65,7 +65,7 @@ void PoolFactor::compact(const std::vector<char>& active, int valid) {
   dropped_.clear();
   cancellation_ = 1;
   while (!grow(from)) {
-    if (proximal_ >= proximal_most) {
+    if (proximal_ >= max_proximal) {
       throw Error(ErrorCode::could_not_solve, "constraints",
                   "Two depth limits are numerically the same: remove duplicate vertices from the model.");
     }
@@ -144,7 +144,7 @@ bool PoolFactor::update_border(const std::vector<char>& active, int old_size) {
     cancellation_ = std::max(cancellation_, U_.col(c).head(k).squaredNorm() *
                                                 row_diagonal_[order_[at(dropped_[static_cast<std::size_t>(c)])]]);
   }
-  return cancellation_ <= cancellation_most;
+  return cancellation_ <= max_cancellation;
 }
 
 void PoolFactor::factor_border() {

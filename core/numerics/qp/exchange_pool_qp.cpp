@@ -101,15 +101,15 @@ std::pair<Eigen::VectorXd, Eigen::VectorXd> PoolQp::correct(const Eigen::VectorX
 
 // Round-off in slacks: at least that of adding S y, and what is left of the equations just solved.
 double PoolQp::noise(const Eigen::VectorXd& s) const {
-  double most = 0, sum = 0, left = 0;
+  double maximum = 0, sum = 0, left = 0;
   for (int a = 0; a < p_.rows(); ++a) {
     if (!active_[at(a)]) continue;
     const double root = std::sqrt(row_diagonal_[a]);
-    most = std::max(most, root);
+    maximum = std::max(maximum, root);
     sum += root * std::abs(y_[a]);
     left = std::max(left, std::abs(s[a] + factor_.proximal() * row_diagonal_[a] * (y_[a] - centre_y_[a])));
   }
-  return std::max(std::numeric_limits<double>::epsilon() * most * sum, 4 * left);
+  return std::max(std::numeric_limits<double>::epsilon() * maximum * sum, 4 * left);
 }
 
 Eigen::VectorXd PoolQp::slack() const {

@@ -14,7 +14,7 @@ namespace formwright::bounded_qp_detail {
 namespace {
 constexpr double target_violation = 1e-3;  // of the tolerance: what rounds strive for
 // Many rows that are new at once tell the pool's pivoting too little about which of them will hold.
-constexpr int least_batch = 300, batch_part = 4;
+constexpr int min_batch = 300, batch_part = 4;
 constexpr int refinements = 3;             // at most, per round
 constexpr double force_tolerance = 1e-10;  // on Q u - forces, relative: above it a refinement is tried
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -384,12 +384,12 @@ ExchangeResult ExchangeSolver::run(const Rows& rows, const std::vector<RowKey>& 
       result.stopped = !result.blocked.empty();
       break;
     }
-    if (result.rounds >= settings.max_rounds || result.history.back().active > settings.most_active) {
+    if (result.rounds >= settings.max_rounds || result.history.back().active > settings.max_active) {
       result.stopped = true;
       break;
     }
-    const int most_new = std::max(least_batch, result.history.back().active / batch_part);
-    if (static_cast<int>(keys.size()) > most_new) keys.resize(at(most_new));  // the worst first
+    const int max_new = std::max(min_batch, result.history.back().active / batch_part);
+    if (static_cast<int>(keys.size()) > max_new) keys.resize(at(max_new));  // the worst first
     add_to_pool(rows, keys, context);
     result.seconds.columns += watch.lap();
     context.progress(static_cast<double>(result.rounds) / (result.rounds + 5), "Finding contacts");

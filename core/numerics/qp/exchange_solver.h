@@ -18,7 +18,7 @@ namespace formwright::bounded_qp_detail {
 struct ExchangeSettings {
   double violation_tolerance = 0;  // to accept
   int max_rounds = 200;
-  int most_active = 1 << 30;  // more rows in contact at once: stop, with `stopped`
+  int max_active = 1 << 30;   // more rows in contact at once: stop, with `stopped`
   bool may_stop = false;      // after max_rounds: stop, with `stopped`, instead of an error
   std::vector<RowKey> first;  // rows to begin with, beside those of the call before
 };

@@ -195,7 +195,7 @@ int FrontFactorization::run(int s, const std::vector<Child>& children, const Upd
     const int first = block * block_width, width = std::min(block_width, columns - first);
     double* diagonal = factor_ + form_.first_value[s] + block_offset(block, height);
     const int failed = dense::factor_diagonal(diagonal, static_cast<std::size_t>(height - first), width,
-                                              least_pivot_.data() + first_column + first);
+                                              min_pivot_.data() + first_column + first);
     if (failed >= 0) return first_column + first + failed;
     eliminate_block(s, block, update, children.empty(), parallel, scratch);
   }

@@ -19,7 +19,7 @@ struct UpdateMatrix {
 struct FrontScratch {
   std::vector<int> target;  // row of L -> padded row of the current front
   std::vector<double> packed;
-  std::vector<double> least;
+  std::vector<double> minimum;
   struct Run {
     int from, to, length;
   };
@@ -29,8 +29,8 @@ struct FrontScratch {
 class FrontFactorization {
  public:
   FrontFactorization(const SupernodalForm& form, const AssemblyMap& map, const double* values,
-                     const std::vector<double>& least_pivot, double* factor, Context& context)
-      : form_(form), map_(map), values_(values), least_pivot_(least_pivot), factor_(factor), context_(context) {}
+                     const std::vector<double>& min_pivot, double* factor, Context& context)
+      : form_(form), map_(map), values_(values), min_pivot_(min_pivot), factor_(factor), context_(context) {}
 
   /// Factors supernode `s`. `children` are the update matrices of its children, in a fixed order, with their
   /// supernodes; `update` has room for this one's. With `parallel`, large steps use all threads.
@@ -52,7 +52,7 @@ class FrontFactorization {
   const SupernodalForm& form_;
   const AssemblyMap& map_;
   const double* values_;
-  const std::vector<double>& least_pivot_;
+  const std::vector<double>& min_pivot_;
   double* factor_;
   Context& context_;
 };

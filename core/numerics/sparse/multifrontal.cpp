@@ -38,8 +38,8 @@ struct UpdateStacks {
 class Multifrontal {
  public:
   Multifrontal(const SupernodalForm& form, const AssemblyMap& map, const double* values,
-               const std::vector<double>& least_pivot, double* factor, Context& context)
-      : form_(form), fronts_(form, map, values, least_pivot, factor, context), context_(context) {
+               const std::vector<double>& min_pivot, double* factor, Context& context)
+      : form_(form), fronts_(form, map, values, min_pivot, factor, context), context_(context) {
     const int count = form.count();
     first_child_.assign(count, -1);
     next_sibling_.assign(count, -1);
@@ -241,10 +241,10 @@ void factorize_multifrontal(const SupernodalForm& form, const AssemblyMap& map, 
                             const MultifrontalOptions& options, Context& context) {
   // A pivot that is round-off of the diagonal entry it came from is not positive.
   constexpr double roundoff = 1e-15;
-  std::vector<double> least(form.n);
-  for (int k = 0; k < form.n; ++k) least[k] = std::max(0.0, roundoff * diagonal[form.permutation.order[k]]);
+  std::vector<double> minimum(form.n);
+  for (int k = 0; k < form.n; ++k) minimum[k] = std::max(0.0, roundoff * diagonal[form.permutation.order[k]]);
   if (!factor.value) factor.value = allocate(form.first_value.back());
-  Multifrontal(form, map, values, least, factor.value.get(), context).run(options.parallel);
+  Multifrontal(form, map, values, minimum, factor.value.get(), context).run(options.parallel);
 }
 
 }  // namespace formwright

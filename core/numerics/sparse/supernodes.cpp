@@ -156,11 +156,11 @@ Numbering number(const Tree& tree) {
       }
     }
   };
-  const double most = total / subtrees_per_work;
+  const double maximum = total / subtrees_per_work;
   std::vector<int> roots;
   for (int s = 0; s < count; ++s) {
-    if (nodes[s].merged || work[s] > most) continue;
-    if (nodes[s].parent == -1 || work[nodes[s].parent] > most) roots.push_back(s);
+    if (nodes[s].merged || work[s] > maximum) continue;
+    if (nodes[s].parent == -1 || work[nodes[s].parent] > maximum) roots.push_back(s);
   }
   std::sort(roots.begin(), roots.end());
   for (const int root : roots) {
@@ -171,14 +171,14 @@ Numbering number(const Tree& tree) {
   }
   result.first_top = static_cast<int>(result.sequence.size());
   for (int s = 0; s < count; ++s) {
-    if (nodes[s].merged || nodes[s].parent != -1 || work[s] <= most) continue;
+    if (nodes[s].merged || nodes[s].parent != -1 || work[s] <= maximum) continue;
     walk(
-        s, [&](int c) { return work[c] > most; }, result.sequence);
+        s, [&](int c) { return work[c] > maximum; }, result.sequence);
   }
   // Many tiny subtrees (separate parts of a mesh, say) share one task.
   std::vector<SupernodalForm::Subtree> joined;
   for (const auto& subtree : result.subtrees) {
-    if (!joined.empty() && joined.back().flops + subtree.flops <= most) {
+    if (!joined.empty() && joined.back().flops + subtree.flops <= maximum) {
       joined.back().end = subtree.end;
       joined.back().flops += subtree.flops;
     } else {

@@ -7,7 +7,7 @@
 namespace formwright {
 namespace {
 
-constexpr int most_sweeps = 200;
+constexpr int max_sweeps = 200;
 constexpr double settled = 1e-5;  // of a sweep's largest change
 
 }  // namespace
@@ -48,7 +48,7 @@ void ContactChill::advance(double dt_s, const HeldVertices& held) {
       diagonal[static_cast<std::size_t>(v)] += spread * edge.weight / area_mm2_[static_cast<std::size_t>(v)];
   // Implicit Euler by Jacobi's sweeps, which treat mirrored vertices alike and keep chill between 0 and 1.
   std::vector<double> now = chill_, inflow(n);
-  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+  for (int sweep = 0; sweep < max_sweeps; ++sweep) {
     std::fill(inflow.begin(), inflow.end(), 0);
     for (const Edge& edge : edges_) {
       const auto a = static_cast<std::size_t>(edge.vertex[0]), b = static_cast<std::size_t>(edge.vertex[1]);

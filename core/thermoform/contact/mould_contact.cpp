@@ -119,8 +119,8 @@ Vec3 MouldContact::normal(const Vec3& p, double radius_mm) const {
 }
 
 std::optional<Vec3> MouldContact::slide(const Vec3& from, Vec3& to, const Vec3& normal, double radius_mm) const {
-  const Vec3 way = to - from - normal.dot(to - from) * normal;
-  const double length = way.norm();
+  const Vec3 shift = to - from - normal.dot(to - from) * normal;
+  const double length = shift.norm();
   to = from;
   if (length < 1e-9) return from;
   // A little off the surface, along it, and down again.
@@ -130,7 +130,7 @@ std::optional<Vec3> MouldContact::slide(const Vec3& from, Vec3& to, const Vec3& 
   Known known{above, distance_mm(above, farthest_mm).value_or(farthest_mm)};
   const double radius = std::min({radius_mm, known.distance_mm - 2 * tolerance_mm_, above.z() - 2 * tolerance_mm_});
   if (radius < 0.9 * radius_mm - 2 * tolerance_mm_) return from;
-  const Vec3 along = above + first_touch(above, above + way, radius, known).value_or(1.0) * way;
+  const Vec3 along = above + first_touch(above, above + shift, radius, known).value_or(1.0) * shift;
   const Vec3 down = -(lift + 0.5 * length + 2 * tolerance_mm_) * normal;
   const auto landing = first_touch(along, along + down, radius, known);
   if (!landing) {

@@ -127,13 +127,13 @@ void PointContacts::look(const Triangles& F, int face, const Positions& from, co
   for (int k = 0; k < 3; ++k) all_held &= held[static_cast<std::size_t>(F(face, k))] != 0;
   if (all_held) return;
   std::array<Vec3, 3> a, b;
-  double way = 0;
+  double motion_mm = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     a[k] = from.row(F(face, static_cast<int>(k)));
     b[k] = to.row(F(face, static_cast<int>(k)));
-    way = std::max(way, (b[k] - a[k]).squaredNorm());
+    motion_mm = std::max(motion_mm, (b[k] - a[k]).squaredNorm());
   }
-  way = std::sqrt(way);
+  motion_mm = std::sqrt(motion_mm);
   const double reach = radius_mm + tolerance_mm;
   Vec3 lower = a[0].cwiseMin(b[0]), upper = a[0].cwiseMax(b[0]);
   for (std::size_t k = 1; k < 3; ++k) {
@@ -149,7 +149,7 @@ void PointContacts::look(const Triangles& F, int face, const Positions& from, co
         (q.array() > upper.array()).any())
       return;
     if (!disc) disc.emplace(a);
-    if (disc->distance(q) > way + reach) return;
+    if (disc->distance(q) > motion_mm + reach) return;
     const auto touch = first_touch(q, a, b, radius_mm, tolerance_mm);
     if (!touch) return;
     Vec3 place = Vec3::Zero();
@@ -166,21 +166,21 @@ void PointContacts::look(const Triangles& F, int face, const Positions& from, co
   double moved = 0;
   for (std::size_t k = 0; k < 3; ++k) moved = std::max(moved, (a[k] - around.place[k]).squaredNorm());
   moved = std::sqrt(moved);
-  if (around.reach_mm < moved + way + reach) {
+  if (around.reach_mm < moved + motion_mm + reach) {
     // Nowhere is a triangle farther from its corners than its longest side over the root of three.
     const double side = std::max({(a[1] - a[0]).norm(), (a[2] - a[1]).norm(), (a[0] - a[2]).norm()});
     const double clear = std::min({clear_mm(F(face, 0)), clear_mm(F(face, 1)), clear_mm(F(face, 2))}) - 0.58 * side;
-    if (clear > way + reach) return due_at(clear);
-    if (way > cell_mm_) {  // too far for a list to be of use again
+    if (clear > motion_mm + reach) return due_at(clear);
+    if (motion_mm > cell_mm_) {  // too far for a list to be of use again
       due_at(0);
       return collect(lower, upper, try_point);
     }
-    survey(a, way + 2 * reach + cell_mm_, around);
+    survey(a, motion_mm + 2 * reach + cell_mm_, around);
     moved = 0;
   }
   due_at((around.points.empty() ? around.reach_mm : around.points.front().distance_mm) - moved);
   for (const Neighbourhood::Near& near : around.points) {
-    if (near.distance_mm > moved + way + reach) break;
+    if (near.distance_mm > moved + motion_mm + reach) break;
     try_point(near.point);
   }
 }
@@ -195,9 +195,9 @@ int PointContacts::find(const Triangles& F, const Positions& from, const Positio
     due_mm_.assign(faces, -std::numeric_limits<double>::infinity());
     last_from_ = from;
   }
-  if (const double way = std::sqrt((from - last_from_).rowwise().squaredNorm().maxCoeff()); way > 0) {
+  if (const double motion_mm = std::sqrt((from - last_from_).rowwise().squaredNorm().maxCoeff()); motion_mm > 0) {
     // A new step: what was found in the one before was accepted.
-    travelled_mm_ += way;
+    travelled_mm_ += motion_mm;
     last_from_ = from;
     for (const PointContact& contact : contacts_) used_[static_cast<std::size_t>(contact.point)] = settled;
   }
@@ -266,9 +266,9 @@ void PointContacts::slide(const Triangles& F, const Positions& x, double frictio
   for (PointContact& contact : contacts_) {
     const Vec3 here = on_face(contact, F, x), pull = pull_of(contact, F, x);
     const Vec3 normal = contact.slid ? contact.normal : face_normal(contact.face, F, x);
-    const double across = pull.dot(normal), most = friction * std::abs(across);
+    const double across = pull.dot(normal), maximum = friction * std::abs(across);
     const Vec3 along = pull - across * normal;
-    if (along.norm() <= most || along.norm() == 0) continue;
+    if (along.norm() <= maximum || along.norm() == 0) continue;
     // Which place of the sheet lies over the point now? It is held as far from the point as the old one was.
     const Vec3& point = points_[static_cast<std::size_t>(contact.point)];
     const double stretched_mm = std::clamp(across / stiffness_, -0.05 * cell_mm_, 0.05 * cell_mm_);
@@ -289,7 +289,7 @@ void PointContacts::slide(const Triangles& F, const Positions& x, double frictio
     const Vec3 now = on_face(contact, F, x), beside = along - along.dot(contact.normal) * contact.normal;
     contact.place = now + (reach_mm - (now - point).dot(contact.normal)) * contact.normal;
     if (beside.norm() > 0)
-      contact.place += std::min(most, along.norm()) / (share_beside * stiffness_ * beside.norm()) * beside;
+      contact.place += std::min(maximum, along.norm()) / (share_beside * stiffness_ * beside.norm()) * beside;
   }
 }
 

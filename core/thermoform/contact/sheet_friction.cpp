@@ -24,12 +24,12 @@ SheetFriction::SheetFriction(const SheetMesh& sheet, double coefficient, double 
   faces_of_ = std::move(faces_of);
 }
 
-void SheetFriction::constrain(int vertex, const Vec3& way_mm, double dt_s, Vec3& force,
+void SheetFriction::constrain(int vertex, const Vec3& slip_mm, double dt_s, Vec3& force,
                               std::array<Float4, 3>& diagonal) const {
   const auto v = static_cast<std::size_t>(vertex);
   const Vec3& n = normal_[v];
   const double lag = stiffness_ * slide_lag_s / dt_s;
-  force += drag_[v] - lag * way_mm;
+  force += drag_[v] - lag * slip_mm;
   force -= force.dot(n) * n;
   const float across = stiffness_across * (diagonal[0][0] + diagonal[1][1] + diagonal[2][2]);
   for (std::size_t i = 0; i < 3; ++i) diagonal[i][i] += static_cast<float>(lag);
@@ -44,12 +44,12 @@ void SheetFriction::decide(const Positions& force, bool settling, HeldVertices& 
     const Vec3 pull = force.row(static_cast<Eigen::Index>(v));
     const double across = pull.dot(normal_[v]);
     const Vec3 along = pull - across * normal_[v];
-    const double most = coefficient_ * std::abs(across), size = along.norm();
-    const bool slides = size > most * (held[v] == sliding ? 1 : 1 + firmer_each_time * starts_[v]);
+    const double maximum = coefficient_ * std::abs(across), size = along.norm();
+    const bool slides = size > maximum * (held[v] == sliding ? 1 : 1 + firmer_each_time * starts_[v]);
     if (slides && settling && held[v] == stuck) ++starts_[v];
     if (slides) {
       held[v] = sliding;
-      drag_[v] = -most / size * along;
+      drag_[v] = -maximum / size * along;
     } else {
       held[v] = stuck;
     }

@@ -30,9 +30,9 @@ class SheetFriction {
   /// The surface's normal where a vertex touches; to be kept up to date.
   Vec3& normal(int vertex) { return normal_[static_cast<std::size_t>(vertex)]; }
 
-  /// Makes Newton's equation of a sliding vertex, which went `way_mm` in this step of `dt_s` so far, one along the
+  /// Makes Newton's equation of a sliding vertex, which went `slip_mm` in this step of `dt_s` so far, one along the
   /// surface: drag and lag into the force, nothing across, and a stiffness across that lets it go nowhere.
-  void constrain(int vertex, const Vec3& way_mm, double dt_s, Vec3& force, std::array<Float4, 3>& diagonal) const;
+  void constrain(int vertex, const Vec3& slip_mm, double dt_s, Vec3& force, std::array<Float4, 3>& diagonal) const;
 
   /// Who slides from now on, by the forces (n x 3, N) that act on the vertices besides those of the mould. While all is
   /// `settling`, every time that a vertex starts to slide takes a larger force than the time before, as contacts that

@@ -16,10 +16,10 @@ namespace formwright {
 namespace {
 
 constexpr double to_degrees = 180 / std::numbers::pi;
-constexpr int direction_count = 6;   // pairs of opposite directions, 30 degrees apart
-constexpr double upright = 1e-9;     // of a unit normal: rounding tilts upright walls by less
-constexpr double least_ratio = 0.1;  // flatter hollows are none
-constexpr double floor_deg = 30;     // cavities are measured at their floors: upright creases have no width
+constexpr int direction_count = 6;  // pairs of opposite directions, 30 degrees apart
+constexpr double upright = 1e-9;    // of a unit normal: rounding tilts upright walls by less
+constexpr double min_ratio = 0.1;   // flatter hollows are none
+constexpr double floor_deg = 30;    // cavities are measured at their floors: upright creases have no width
 constexpr double cavity_area_mm2 = 10;
 constexpr double overhang_deg = -60;  // a wall that leans in further is a ceiling
 constexpr std::size_t grain = 1024;
@@ -64,7 +64,7 @@ void climb(const HeightGrid& grid, const Vec3& p, const Vec2& direction, double 
     const Vec2 q = p.head<2>() + t * direction;
     if (q.x() < grid.lower_mm.x() || q.y() < grid.lower_mm.y() || q.x() > end.x() || q.y() > end.y()) return;
     // The least height around comes half a cell late on average, the step another half.
-    if (const double height = grid.least_around(q.x(), q.y()); height > highest) {
+    if (const double height = grid.min_around(q.x(), q.y()); height > highest) {
       highest = height;
       walls.push_back({std::max(t - grid.pitch_mm, 0.5 * grid.pitch_mm), height});
     }
@@ -84,7 +84,7 @@ std::string rounded_text(double value, const char* format = "%.0f") {
 }
 
 /// The depth to width that `cavity_area_mm2` of the grid together reach: single nodes in creases do not count.
-void deepest_cavity(DraftMap& map, const HeightGrid& grid, double least_width_mm, Context& context) {
+void deepest_cavity(DraftMap& map, const HeightGrid& grid, double min_width_mm, Context& context) {
   const std::size_t count = grid.height_mm.size(), columns = static_cast<std::size_t>(grid.columns);
   const auto node = [&](std::size_t i) {
     return Vec3(grid.lower_mm.x() + grid.pitch_mm * static_cast<double>(i % columns),
@@ -94,7 +94,7 @@ void deepest_cavity(DraftMap& map, const HeightGrid& grid, double least_width_mm
   parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
     context.check_cancelled();
     for (std::size_t i = begin; i < end; ++i)
-      if (grid.height_mm[i] > 0) ratio[i] = depth_to_width_at(grid, node(i), least_width_mm);
+      if (grid.height_mm[i] > 0) ratio[i] = depth_to_width_at(grid, node(i), min_width_mm);
   });
   const auto rank = static_cast<std::size_t>(std::ceil(cavity_area_mm2 / (grid.pitch_mm * grid.pitch_mm)));
   if (rank >= count) return;
@@ -153,7 +153,7 @@ void describe(DraftMap& map, const Positions& normals, const Eigen::VectorXd& ar
 
 }  // namespace
 
-double HeightGrid::least_around(double x_mm, double y_mm) const {
+double HeightGrid::min_around(double x_mm, double y_mm) const {
   const auto column = static_cast<int>(std::floor((x_mm - lower_mm.x()) / pitch_mm)),
              row = static_cast<int>(std::floor((y_mm - lower_mm.y()) / pitch_mm));
   if (column < 0 || row < 0 || column + 1 >= columns || row + 1 >= rows) return 0;
@@ -210,9 +210,9 @@ HeightGrid closed_grid(const HeightGrid& grid, double width_mm) {
   return closed;
 }
 
-double depth_to_width_at(const HeightGrid& grid, const Vec3& point, double least_width_mm) {
-  const Vec3 p(point.x(), point.y(), std::max(point.z(), grid.least_around(point.x(), point.y())));
-  double best = least_ratio;
+double depth_to_width_at(const HeightGrid& grid, const Vec3& point, double min_width_mm) {
+  const Vec3 p(point.x(), point.y(), std::max(point.z(), grid.min_around(point.x(), point.y())));
+  double best = min_ratio;
   std::vector<Wall> left, right;
   for (int d = 0; d < direction_count; ++d) {
     const double angle = std::numbers::pi * d / direction_count;
@@ -224,12 +224,12 @@ double depth_to_width_at(const HeightGrid& grid, const Vec3& point, double least
     std::size_t i = 0, j = 0;
     while (i < left.size() && j < right.size()) {
       const double level = std::min(left[i].height_mm, right[j].height_mm);
-      best = std::max(best, (level - p.z()) / std::max(least_width_mm, left[i].distance_mm + right[j].distance_mm));
+      best = std::max(best, (level - p.z()) / std::max(min_width_mm, left[i].distance_mm + right[j].distance_mm));
       if (left[i].height_mm <= right[j].height_mm) ++i;
       else ++j;
     }
   }
-  return best > least_ratio ? best : 0;
+  return best > min_ratio ? best : 0;
 }
 
 DraftMap draft_map(const TriangleMesh& solid, double sheet_thickness_mm, int cells, Context& context) {

@@ -43,7 +43,7 @@ struct HeightGrid {
 
   /// The least of the four nodes around a place; 0 outside. Beside an upright wall this is the floor, so that a line
   /// along the wall does not take it for two walls.
-  double least_around(double x_mm, double y_mm) const;
+  double min_around(double x_mm, double y_mm) const;
 };
 HeightGrid height_grid(const TriangleMesh& solid, int cells, Context& context);
 
@@ -51,7 +51,7 @@ HeightGrid height_grid(const TriangleMesh& solid, int cells, Context& context);
 HeightGrid closed_grid(const HeightGrid& grid, double width_mm);
 
 /// The largest of (lower wall's height over `p`) / (distance between the walls) over six pairs of opposite directions;
-/// walls closer than `least_width_mm` count as that far apart. Below 0.1 it is 0.
-double depth_to_width_at(const HeightGrid& grid, const Vec3& p, double least_width_mm);
+/// walls closer than `min_width_mm` count as that far apart. Below 0.1 it is 0.
+double depth_to_width_at(const HeightGrid& grid, const Vec3& p, double min_width_mm);
 
 }  // namespace formwright

@@ -12,9 +12,9 @@
 namespace formwright {
 namespace {
 
-constexpr double snap_mm = 1e-6;          // placing rotates flat undersides by about 1e-14 mm
-constexpr double sink_step_mm = 1e-3;     // deeper, where the model touches the plate in points or lines
-constexpr double least_opening_mm2 = 20;  // a funnel of 5 mm
+constexpr double snap_mm = 1e-6;        // placing rotates flat undersides by about 1e-14 mm
+constexpr double sink_step_mm = 1e-3;   // deeper, where the model touches the plate in points or lines
+constexpr double min_opening_mm2 = 20;  // a funnel of 5 mm
 constexpr double automatic_foot_mm = 1;
 constexpr double plaster_density_g_per_ml = 2.63;  // calcium sulphate hemihydrate
 constexpr int vent_sides = 12, outline_sides = 24;
@@ -111,7 +111,7 @@ ExactSolid model_on_plate(const TriangleMesh& placed, const ThermoformMouldOptio
                 "Nothing of the model stands above the plate: lower it less into the plate (sink_mm).");
   double foot_mm = options.foot_mm.value_or(0);
   double area = base_area_mm2(model.mesh(), 0);
-  if (!options.foot_mm && area < least_opening_mm2) foot_mm = automatic_foot_mm;
+  if (!options.foot_mm && area < min_opening_mm2) foot_mm = automatic_foot_mm;
   if (foot_mm > 0) {
     const auto span = context.span(0.7, 1, "Straightening the foot");
     const double height = bounding_box(model.mesh()).size().z();
@@ -120,7 +120,7 @@ ExactSolid model_on_plate(const TriangleMesh& placed, const ThermoformMouldOptio
     for (;; foot_mm *= 1.5) {
       footed = unite(model, model.section_prism(foot_mm, 0, context), context);
       widened = base_area_mm2(footed.mesh(), 0);
-      if (options.foot_mm || widened >= 2 * least_opening_mm2 || foot_mm > height / 8) break;
+      if (options.foot_mm || widened >= 2 * min_opening_mm2 || foot_mm > height / 8) break;
     }
     model = footed;
     if (!options.foot_mm)
@@ -129,7 +129,7 @@ ExactSolid model_on_plate(const TriangleMesh& placed, const ThermoformMouldOptio
                       std::to_string(std::lround(widened)) + " mm2.");
     area = widened;
   }
-  if (area < least_opening_mm2)
+  if (area < min_opening_mm2)
     throw Error(
         ErrorCode::invalid_input, "sink_mm",
         "The model touches the plate with " + std::to_string(std::lround(area)) +
@@ -149,9 +149,9 @@ Mould make_mould(const ExactSolid& model, const std::vector<Vent>& vents, const 
     const Vec3 lower = box.lower - rim, upper = box.upper + rim;
     // A whole micrometre of rim at least: plates that end exactly below the model's widest edges would touch them in
     // lines.
-    const double least = 1e-3;
-    const TriangleMesh plate =
-        box_mesh({lower.x() - least, lower.y() - least, -options.base_mm}, {upper.x() + least, upper.y() + least, 0});
+    const double minimum = 1e-3;
+    const TriangleMesh plate = box_mesh({lower.x() - minimum, lower.y() - minimum, -options.base_mm},
+                                        {upper.x() + minimum, upper.y() + minimum, 0});
     mould.body = unite(mould.body, ExactSolid::from_mesh(plate, "base_mm", context), context);
   }
   if (!vents.empty()) {

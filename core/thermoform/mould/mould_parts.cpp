@@ -11,7 +11,7 @@
 namespace formwright {
 namespace {
 
-constexpr int most_parts = 64;
+constexpr int max_parts = 64;
 constexpr double gap_mm = 5;  // between parts on the bed
 
 using Counts = std::array<int, 3>;
@@ -24,7 +24,7 @@ Counts slab_counts(const Vec3& size, const Vec3& printer, double pin_mm) {
     if (printer[k] == 0 || size[k] <= printer[k]) continue;
     const double usable = printer[k] - pin_mm;
     const double count = usable > 0 ? std::ceil(size[k] / usable - 1e-9) : 1e9;
-    if (count > most_parts)
+    if (count > max_parts)
       throw Error(ErrorCode::invalid_input, printer_names.at(static_cast<std::size_t>(k)),
                   "The printer is far too small for this mould: it would take more than 64 parts; make the model "
                   "smaller (size_mm).");
@@ -81,7 +81,7 @@ MouldParts split_mould(const ExactSolid& solid, const ThermoformMouldOptions& op
   bool turned = false;
   if (const Counts other = slab_counts(size, across, pin_mm); product(other) < product(result.cells))
     result.cells = other, turned = true;
-  if (product(result.cells) > most_parts)
+  if (product(result.cells) > max_parts)
     throw Error(ErrorCode::invalid_input, "printer_x_mm",
                 "The printer is far too small for this mould: it would take more than 64 parts; make the model smaller "
                 "(size_mm).");

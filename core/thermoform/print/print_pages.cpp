@@ -10,7 +10,7 @@
 namespace formwright {
 namespace {
 
-constexpr int most_pages = 400;
+constexpr int max_pages = 400;
 constexpr double frame_mm = 5;   // around each tile, for its joining marks and its name
 constexpr double name_mm = 2.2;  // height of its letters
 constexpr double tick_from_mm = 0.7, tick_to_mm = 2.2, tick_line_mm = 0.15;
@@ -91,7 +91,7 @@ PageLayout page_layout(const ThermoformPrintOptions& options) {
     best.height_mm = sheet.y();
     best.landscape = sheet.x() > sheet.y();
   } else {
-    long long fewest = most_pages + 1;
+    long long fewest = max_pages + 1;
     for (const bool landscape : {false, true}) {
       const Vec2 turned = landscape ? Vec2(paper.y(), paper.x()) : paper;
       const Vec2 usable = turned.array() - 2 * (options.paper_margin_mm + frame_mm);
@@ -104,7 +104,7 @@ PageLayout page_layout(const ThermoformPrintOptions& options) {
       best = {turned.x(), turned.y(), landscape, x.count, y.count, {}};
       tile_size = {x.size_mm, y.size_mm};
     }
-    if (fewest > most_pages)
+    if (fewest > max_pages)
       throw Error(ErrorCode::invalid_input, "paper", "The sheet would need more than 400 pages: choose larger paper.");
   }
   for (int row = 0; row < best.rows; ++row)

@@ -15,7 +15,7 @@
 namespace formwright {
 namespace {
 
-constexpr double least_agreement = 0.1;  // cosine between the model's normal and the sheet's
+constexpr double min_agreement = 0.1;    // cosine between the model's normal and the sheet's
 constexpr double off_surface_mm = 1e-3;  // where rays that look for the model itself begin
 // Two corners of a triangle belong together when their places on the flat sheet are at most this many times as far
 // apart as the triangle is long (and the sheet thick), had it shrunk there as much as the sheet did anywhere near.
@@ -76,9 +76,7 @@ class Projector {
   }
 
  private:
-  bool agrees(int face, const Vec3& normal) const {
-    return normals_.row(face).dot(normal.transpose()) > least_agreement;
-  }
+  bool agrees(int face, const Vec3& normal) const { return normals_.row(face).dot(normal.transpose()) > min_agreement; }
 
   std::optional<NearestPoint> nearest(const Vec3& p, const Vec3& normal) const {
     NearestPoint best;

@@ -39,13 +39,13 @@ class Refiner {
   }
 
   /// One pass of bisection; false when there was nothing left to do, or no room for it.
-  bool bisect(double longest_mm, int most_triangles) {
+  bool bisect(double longest_mm, int max_triangles) {
     const double squared = longest_mm * longest_mm;
     std::size_t added = 0;
     for (const Face& face : faces_)
       for (std::size_t k = 0; k < 3 && !is_below(face); ++k)
         if ((at(face.v[k]) - at(face.v[(k + 1) % 3])).squaredNorm() > squared) ++added;
-    if (added == 0 || faces_.size() + added > static_cast<std::size_t>(most_triangles)) return false;
+    if (added == 0 || faces_.size() + added > static_cast<std::size_t>(max_triangles)) return false;
     split(
         [&](const Vec3& a, const Vec3& b, double& t) {
           t = 0.5;
@@ -180,11 +180,11 @@ class Refiner {
 
 }  // namespace
 
-RefinedSurface refine_above_plate(const TriangleMesh& mesh, double longest_edge_mm, int most_triangles,
+RefinedSurface refine_above_plate(const TriangleMesh& mesh, double longest_edge_mm, int max_triangles,
                                   Context& context) {
   Refiner refiner(mesh, context);
   refiner.cut_at_plate();
-  while (refiner.bisect(longest_edge_mm, most_triangles)) {}
+  while (refiner.bisect(longest_edge_mm, max_triangles)) {}
   RefinedSurface refined = refiner.result();
   refined.undivided = mesh;
   return refined;

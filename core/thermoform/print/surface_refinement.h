@@ -19,10 +19,10 @@ struct RefinedSurface {
 };
 
 /// Cuts every triangle at z = 0 (machine coordinates) and bisects the edges of what lies above until none is longer
-/// than `longest_edge_mm`, or until `most_triangles`, in a way that fits together across edges. What lies in or below
+/// than `longest_edge_mm`, or until `max_triangles`, in a way that fits together across edges. What lies in or below
 /// the plate stays as it is. The order of the result depends on the mesh alone. Throws Error{invalid_input, "mesh"}:
 /// indices out of range; Error{cancelled}.
-RefinedSurface refine_above_plate(const TriangleMesh& mesh, double longest_edge_mm, int most_triangles,
+RefinedSurface refine_above_plate(const TriangleMesh& mesh, double longest_edge_mm, int max_triangles,
                                   Context& context);
 
 /// Within this height (mm) of the base plate a face that looks down counts as standing on it.

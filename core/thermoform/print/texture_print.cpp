@@ -15,7 +15,7 @@
 namespace formwright {
 namespace {
 
-constexpr int most_triangles = 3'000'000;
+constexpr int max_triangles = 3'000'000;
 constexpr double pale_stretch = 4;  // ink this thin is visibly paler
 
 std::string number(const char* format, double value) {
@@ -102,7 +102,7 @@ TexturePrint make_texture_print(const Model& model, const TriangleMesh& placed, 
   print.grid = print_grid(options);
   Stopwatch watch;
   context.progress(0, "Dividing the model");
-  print.surface = refine_above_plate(placed, options.map_edge_mm, most_triangles, context);
+  print.surface = refine_above_plate(placed, options.map_edge_mm, max_triangles, context);
   print.seconds_refine = watch.lap();
   {
     const auto span = context.span(0.1, 0.5, "Projecting the surface onto the sheet");

@@ -29,8 +29,8 @@ Membrane::Membrane(const TextureCoordinates& flat_mm, const Triangles& F, double
     Group& group = groups_[static_cast<std::size_t>(g)];
     group.first_face = 4 * g;
     group.lanes = std::min(4, faces - 4 * g);
-    group.least_vertex = std::numeric_limits<int>::max();
-    group.most_vertex = 0;
+    group.min_vertex = std::numeric_limits<int>::max();
+    group.max_vertex = 0;
     group.past00 = group.past01 = group.past11 = Double4{};
     group.creep = group.weight = Double4{};
     for (int l = 0; l < 4; ++l) {
@@ -39,8 +39,8 @@ Membrane::Membrane(const TextureCoordinates& flat_mm, const Triangles& F, double
       for (int k = 0; k < 3; ++k) {
         const int v = F(face, k);
         group.vertex[static_cast<std::size_t>(k)][static_cast<std::size_t>(l)] = v;
-        group.least_vertex = std::min(group.least_vertex, v);
-        group.most_vertex = std::max(group.most_vertex, v);
+        group.min_vertex = std::min(group.min_vertex, v);
+        group.max_vertex = std::max(group.max_vertex, v);
         if (k > 0) edges.col(k - 1) = (flat_mm.row(v) - flat_mm.row(F(face, 0))).transpose();
       }
       const double doubled_area = edges.determinant();
@@ -73,11 +73,11 @@ void Membrane::begin_step(const Positions& x, const HeldVertices& held) {
     // Areas: the rest one is half of 1/det B, the present one that times sqrt(det C).
     const Double4 rest_area = 0.5 / (g.b00 * g.b11 - g.b01 * g.b10);
     const Double4 determinant = (2.0 * e.e00 + 1.0) * (2.0 * e.e11 + 1.0) - 4.0 * e.e01 * e.e01;
-    const Double4 area = rest_area * root(most(determinant, Double4{} + 1e-12));
+    const Double4 area = rest_area * root(maximum(determinant, Double4{} + 1e-12));
     const Double4 thickness = g.volume / area;
     // With h = V/A alone a bubble has a largest pressure, beyond which it would grow until it is nothing; plastic that
     // has been drawn out that far hardens. So the stiffness stays that of the thickness at which the flow stops.
-    g.weight = rest_area * most(thickness, Double4{} + material_.flow_stop_mm) * (g.stiffness * g.chill);
+    g.weight = rest_area * maximum(thickness, Double4{} + material_.flow_stop_mm) * (g.stiffness * g.chill);
     g.creep = material_.creep_per_s / g.chill;
     if (material_.yield_rule == YieldRule::total_strain) {
       deform(g, x, true, total);
@@ -114,7 +114,7 @@ void Membrane::end_step(const Positions& x, double dt_s, std::span<const double>
     const Double4 n00 = 1.0 + part * d.strain.e00, n01 = part * d.strain.e01, n11 = 1.0 + part * d.strain.e11;
     if (along_ != across_) {
       // Stiffer along x: the frame must not turn with the flow, so U is the symmetric root.
-      const Double4 size = root(most(n00 * n11 - n01 * n01, Double4{} + 1e-12)),
+      const Double4 size = root(maximum(n00 * n11 - n01 * n01, Double4{} + 1e-12)),
                     scale = 1.0 / root(n00 + n11 + 2.0 * size);
       const Double4 r00 = scale * (n00 + size), r01 = scale * n01, r11 = scale * (n11 + size),
                     determinant = r00 * r11 - r01 * r01;
@@ -125,7 +125,7 @@ void Membrane::end_step(const Positions& x, double dt_s, std::span<const double>
       g.b10 = c10;
       continue;
     }
-    const Double4 u00 = root(n00), u01 = n01 / u00, u11 = root(most(n11 - u01 * u01, Double4{} + 1e-12));
+    const Double4 u00 = root(n00), u01 = n01 / u00, u11 = root(maximum(n11 - u01 * u01, Double4{} + 1e-12));
     const Double4 c00 = g.b00 / u00, c10 = g.b10 / u00;
     g.b01 = (g.b01 - c00 * u01) / u11;
     g.b11 = (g.b11 - c10 * u01) / u11;
@@ -171,14 +171,14 @@ void Membrane::add_group(const Group& g, const Positions& x, double dt_s, int be
   } else {
     const Lame l = lame(material_);
     const Double4 c00 = 1.0 + 2.0 * f.kept * e.e00, c01 = 2.0 * f.kept * e.e01, c11 = 1.0 + 2.0 * f.kept * e.e11;
-    const Double4 determinant = most(c00 * c11 - c01 * c01, Double4{} + 1e-9);
+    const Double4 determinant = maximum(c00 * c11 - c01 * c01, Double4{} + 1e-9);
     const Double4 J = root(determinant), i00 = c11 / determinant, i01 = -c01 / determinant, i11 = c00 / determinant,
                   zero{};
     const Double4 p = (l.lambda * (J - 1.0) - l.mu) * J;
     s00 = l.mu + p * i00;
     s01 = p * i01;
     s11 = l.mu + p * i11;
-    const Double4 outer = most((l.lambda * (2.0 * J - 1.0) - l.mu) * J, zero), inner = most(-2.0 * p, zero);
+    const Double4 outer = maximum((l.lambda * (2.0 * J - 1.0) - l.mu) * J, zero), inner = maximum(-2.0 * p, zero);
     d00 = outer * i00 * i00 + inner * i00 * i00;
     d01 = outer * i00 * i11 + inner * i01 * i01;
     d02 = outer * i00 * i01 + inner * i00 * i01;
@@ -191,7 +191,7 @@ void Membrane::add_group(const Group& g, const Positions& x, double dt_s, int be
     const Double4 q0 = d00 * e.e00 + d01 * e.e11 + 2.0 * d02 * e.e01,
                   q1 = d01 * e.e00 + d11 * e.e11 + 2.0 * d12 * e.e01;
     const Double4 q2 = d02 * e.e00 + d12 * e.e11 + 2.0 * d22 * e.e01;
-    const Double4 lost = f.lost / most(q0 * e.e00 + q1 * e.e11 + 2.0 * q2 * e.e01, Double4{} + 1e-30);
+    const Double4 lost = f.lost / maximum(q0 * e.e00 + q1 * e.e11 + 2.0 * q2 * e.e01, Double4{} + 1e-30);
     d00 = f.kept * d00 - lost * q0 * q0 + viscous * plane;
     d01 = f.kept * d01 - lost * q0 * q1 + viscous * plane * nu;
     d02 = f.kept * d02 - lost * q0 * q2;
@@ -234,7 +234,8 @@ void Membrane::add_group(const Group& g, const Positions& x, double dt_s, int be
     // The geometric part needs a stress without compression to stay positive semi-definite.
     const Double4 zero{}, middle = 0.5 * (s00 + s11), half = 0.5 * (s00 - s11);
     const Double4 radius = root(half * half + s01 * s01);
-    const Double4 small = middle - radius, share = most(middle + radius, zero) / most(2.0 * radius, Double4{} + 1e-30);
+    const Double4 small = middle - radius,
+                  share = maximum(middle + radius, zero) / maximum(2.0 * radius, Double4{} + 1e-30);
     const auto pulled = small >= zero;
     const Double4 t00 = pulled ? s00 : share * (s00 - small), t01 = pulled ? s01 : share * s01,
                   t11 = pulled ? s11 : share * (s11 - small);
@@ -265,7 +266,7 @@ void Membrane::add_group(const Group& g, const Positions& x, double dt_s, int be
 void Membrane::add_any(std::size_t group, const Positions& x, double dt_s, int begin, int end, Positions& force,
                        BlockMatrix* matrix) const {
   const Group& g = groups_[group];
-  if (g.most_vertex < begin || g.least_vertex >= end) return;
+  if (g.max_vertex < begin || g.min_vertex >= end) return;
   if (material_.elastic_law == ElasticLaw::st_venant_kirchhoff) {
     if (matrix) add_group<ElasticLaw::st_venant_kirchhoff, true>(g, x, dt_s, begin, end, force, matrix);
     else add_group<ElasticLaw::st_venant_kirchhoff, false>(g, x, dt_s, begin, end, force, nullptr);
@@ -305,7 +306,7 @@ double Membrane::energy(const Positions& x, double dt_s) const {
     } else {
       const Lame l = lame(material_);
       const Double4 c00 = 1.0 + 2.0 * e.e00, c01 = 2.0 * e.e01, c11 = 1.0 + 2.0 * e.e11;
-      const Double4 J = root(most(c00 * c11 - c01 * c01, Double4{} + 1e-9));
+      const Double4 J = root(maximum(c00 * c11 - c01 * c01, Double4{} + 1e-9));
       density = 0.5 * l.mu * (c00 + c11 - 2.0) - l.mu * (J - 1.0) + 0.5 * l.lambda * (J - 1.0) * (J - 1.0);
     }
     density += material_.viscosity_s / dt_s * stretching(e.e00 - past.e00, e.e01 - past.e01, e.e11 - past.e11);

@@ -20,7 +20,7 @@ struct alignas(32) Membrane::Group {
   Double4 past00, past01, past11;  // strain at the start of the step
   std::array<std::array<int, 4>, 3> vertex;
   int first_face = 0, lanes = 4;
-  int least_vertex = 0, most_vertex = 0;
+  int min_vertex = 0, max_vertex = 0;
 };
 
 namespace membrane_detail {
@@ -44,7 +44,7 @@ inline void gather(const Positions& x, const std::array<int, 4>& vertex, Double4
 inline Double4 root(const Double4& a) {
   return Double4{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
 }
-inline Double4 most(const Double4& a, const Double4& b) { return a > b ? a : b; }
+inline Double4 maximum(const Double4& a, const Double4& b) { return a > b ? a : b; }
 
 /// Green strain, eq. (4.1), in an orthonormal frame of the rest triangle: (F^T F - 1)/2.
 template <class G>
@@ -88,7 +88,7 @@ inline void flow(const Strain& trial, const Double4& creep, double dt_s, YieldRu
     result = {one / (one + a), zero};
     return;
   }
-  const Double4 size = most(norm(trial), Double4{} + 1e-30);
+  const Double4 size = maximum(norm(trial), Double4{} + 1e-30);
   const Double4 threshold = a * yield_strain / ((one + a) * size);
   const auto yields = size > Double4{} + yield_strain;
   result.kept = yields ? one / (one + a) + threshold : one;

@@ -10,7 +10,7 @@
 namespace formwright {
 namespace {
 
-constexpr double least_size_mm = 10, usual_size_mm = 100;
+constexpr double min_size_mm = 10, usual_size_mm = 100;
 
 /// A rotation that takes the model's up to z, and, for the up of most files (y), the model's front (+z) to -y, towards
 /// whoever stands before the machine.
@@ -60,7 +60,7 @@ Placement place(const TriangleMesh& mesh, const PlacementOptions& options, const
     throw Error(ErrorCode::invalid_input, "mould", "The model has no extent: choose another file.");
   if (options.size_mm) {
     placement.scale = *options.size_mm / extent;
-  } else if (extent < least_size_mm || straight.size().x() > opening_mm.x() || straight.size().y() > opening_mm.y()) {
+  } else if (extent < min_size_mm || straight.size().x() > opening_mm.x() || straight.size().y() > opening_mm.y()) {
     placement.scale = usual_size_mm / extent;
     placement.notes.push_back("The file's own size, " + millimetres(extent) +
                               ", does not suit the machine: the longest side is now " + millimetres(usual_size_mm) +

@@ -9,17 +9,17 @@
 namespace formwright {
 namespace {
 
-constexpr double least_factor = 0.05;  // of stiffness or thickness anywhere on the sheet
+constexpr double min_factor = 0.05;  // of stiffness or thickness anywhere on the sheet
 
 }  // namespace
 
 void check_effects(const SheetEffects& effects) {
-  const auto least_over_corners = [](double x, double y) { return 1 - std::abs(x) - std::abs(y); };
-  if (!(least_over_corners(effects.heating_gradient_x, effects.heating_gradient_y) > least_factor))
+  const auto min_over_corners = [](double x, double y) { return 1 - std::abs(x) - std::abs(y); };
+  if (!(min_over_corners(effects.heating_gradient_x, effects.heating_gradient_y) > min_factor))
     throw Error(
         ErrorCode::invalid_input, "heating_gradient_x",
         "The heating differences leave a corner of the sheet without stiffness: together they must be less than 0.95.");
-  if (!(least_over_corners(effects.thickness_wedge_x, effects.thickness_wedge_y) > least_factor))
+  if (!(min_over_corners(effects.thickness_wedge_x, effects.thickness_wedge_y) > min_factor))
     throw Error(
         ErrorCode::invalid_input, "thickness_wedge_x",
         "The thickness differences leave a corner of the sheet without thickness: together they must be less than 0.95.");

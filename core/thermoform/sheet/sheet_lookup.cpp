@@ -42,7 +42,7 @@ std::optional<SheetPoint> SheetLookup::find(const Vec2& p) const {
   const int i = std::clamp(static_cast<int>(at.x()), 0, columns_ - 1),
             j = std::clamp(static_cast<int>(at.y()), 0, rows_ - 1);
   std::optional<SheetPoint> best;
-  double least = -1e-6;
+  double minimum = -1e-6;
   for (const int f : faces_[static_cast<std::size_t>(j * columns_ + i)]) {
     const Vec2 a = sheet_.sheet_mm.row(sheet_.mesh.F(f, 0)), b = sheet_.sheet_mm.row(sheet_.mesh.F(f, 1)),
                c = sheet_.sheet_mm.row(sheet_.mesh.F(f, 2));
@@ -51,8 +51,8 @@ std::optional<SheetPoint> SheetLookup::find(const Vec2& p) const {
     const double v = ((p - a).x() * (c - a).y() - (p - a).y() * (c - a).x()) / doubled,
                  w = ((b - a).x() * (p - a).y() - (b - a).y() * (p - a).x()) / doubled;
     const Vec3 barycentric(1 - v - w, v, w);
-    if (barycentric.minCoeff() > least) {
-      least = barycentric.minCoeff();
+    if (barycentric.minCoeff() > minimum) {
+      minimum = barycentric.minCoeff();
       const Vec3 inside = barycentric.cwiseMax(0.0);
       best = SheetPoint{f, inside / inside.sum()};
     }

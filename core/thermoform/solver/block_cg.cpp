@@ -48,7 +48,7 @@ BlockCg::BlockCg(int vertex_count) {
 }
 
 int BlockCg::solve(const BlockMatrix& A, const BlockVector& right_side, std::span<const int> rows, double tolerance,
-                   int most_iterations, BlockVector& x) {
+                   int max_iterations, BlockVector& x) {
   std::fill(x.begin(), x.end(), Float4{});
   std::fill(p_.begin(), p_.end(), Float4{});
   partial_.resize(rows.size() / row_grain + 1);
@@ -79,7 +79,7 @@ int BlockCg::solve(const BlockMatrix& A, const BlockVector& right_side, std::spa
   });
   const double enough = tolerance * tolerance * rz;
   int iteration = 0;
-  while (iteration < most_iterations && rz > enough && rz > 0) {
+  while (iteration < max_iterations && rz > enough && rz > 0) {
     ++iteration;
     const double pq = sum_over_rows([=](std::size_t i) {
       image[i] = matrix.times(i, direction);

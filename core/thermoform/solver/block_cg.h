@@ -13,11 +13,11 @@ class BlockCg {
   explicit BlockCg(int vertex_count);
 
   /// Solves A x = right_side over the vertices `rows` (ascending), all others being 0; stops at
-  /// |r| <= tolerance |right_side| in the preconditioner's norm or after `most_iterations`. Returns the iterations
+  /// |r| <= tolerance |right_side| in the preconditioner's norm or after `max_iterations`. Returns the iterations
   /// used. `A` is positive definite there; where rounding makes a direction's curvature negative, the last iterate is
   /// kept. The same bits for any number of threads.
   int solve(const BlockMatrix& A, const BlockVector& right_side, std::span<const int> rows, double tolerance,
-            int most_iterations, BlockVector& x);
+            int max_iterations, BlockVector& x);
 
  private:
   BlockVector r_, z_, p_, q_;

@@ -8,17 +8,17 @@
 
 namespace formwright {
 
-FaceStrips::FaceStrips(const Triangles& F, int faces_at_least) {
+FaceStrips::FaceStrips(const Triangles& F, int min_faces) {
   constexpr int group = 4;
   const int faces = static_cast<int>(F.rows());
   if (faces == 0) return;
   // Of the faces from a group on, the least vertex; of those before it, the highest.
   const auto groups = static_cast<std::size_t>((faces + group - 1) / group);
-  std::vector<int> least(groups + 1, std::numeric_limits<int>::max()), highest(groups + 1, -1);
+  std::vector<int> minimum(groups + 1, std::numeric_limits<int>::max()), highest(groups + 1, -1);
   for (std::size_t g = groups; g-- > 0;) {
     const Eigen::Index first = group * static_cast<Eigen::Index>(g),
                        count = std::min<Eigen::Index>(group, faces - first);
-    least[g] = std::min(least[g + 1], F.middleRows(first, count).minCoeff());
+    minimum[g] = std::min(minimum[g + 1], F.middleRows(first, count).minCoeff());
   }
   for (std::size_t g = 0; g < groups; ++g) {
     const Eigen::Index first = group * static_cast<Eigen::Index>(g),
@@ -28,7 +28,7 @@ FaceStrips::FaceStrips(const Triangles& F, int faces_at_least) {
   // A strip ends where the faces after it no longer reach those before it.
   std::size_t start = 0;
   for (std::size_t g = 1; g < groups; ++g) {
-    if (group * static_cast<int>(g - start) < faces_at_least || least[g] <= highest[start]) continue;
+    if (group * static_cast<int>(g - start) < min_faces || minimum[g] <= highest[start]) continue;
     start = g;
     first_.push_back(group * static_cast<int>(g));
   }

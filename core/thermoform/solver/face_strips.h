@@ -11,9 +11,9 @@ namespace formwright {
 
 class FaceStrips {
  public:
-  /// Strips begin at multiples of four faces and hold at least `faces_at_least`. A sheet whose faces are numbered row
+  /// Strips begin at multiples of four faces and hold at least `min_faces`. A sheet whose faces are numbered row
   /// by row falls into many; one without such an order in one or two.
-  FaceStrips(const Triangles& F, int faces_at_least);
+  FaceStrips(const Triangles& F, int min_faces);
   FaceStrips() = default;
 
   /// body(first_face, end_face) for every strip: first those of even number, then the others. No two that run at the

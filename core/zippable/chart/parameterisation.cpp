@@ -155,7 +155,7 @@ class Solver {
 
   /// The longest step before a triangle loses its area: the least positive root of a quadratic each.
   double longest_step(const CornerCoordinates& uv, const CornerCoordinates& along) const {
-    std::vector<double> least((reference_.size() + grain - 1) / grain, std::numeric_limits<double>::infinity());
+    std::vector<double> minimum((reference_.size() + grain - 1) / grain, std::numeric_limits<double>::infinity());
     parallel_for(reference_.size(), grain, [&](std::size_t begin, std::size_t end) {
       double shortest = std::numeric_limits<double>::infinity();
       for (std::size_t f = begin; f < end; ++f) {
@@ -169,9 +169,9 @@ class Solver {
         for (const double denominator : {-b + std::sqrt(root), -b - std::sqrt(root)})
           if (denominator > 0) shortest = std::min(shortest, 2 * c / denominator);
       }
-      least[begin / grain] = shortest;
+      minimum[begin / grain] = shortest;
     });
-    return *std::min_element(least.begin(), least.end());
+    return *std::min_element(minimum.begin(), minimum.end());
   }
 
   /// Moves along the step as far as pays, also beyond its length; false when nothing is gained.

@@ -64,7 +64,7 @@ class Aligner {
   }
 
   bool too_close(double closeness) const {
-    return !(closeness <= 1 / options_.least_spacing && closeness >= options_.least_spacing);
+    return !(closeness <= 1 / options_.min_spacing && closeness >= options_.min_spacing);
   }
 
  private:
@@ -125,7 +125,7 @@ class Aligner {
 
 CreaseSystem::CreaseSystem(const Segmentation& s, Context& context) : adjacency_(s.mesh) {
   const int n = s.mesh.vertex_count();
-  SparseMatrix system = safe_laplacian(s.mesh, adjacency_);
+  SparseMatrix system = nonnegative_laplacian(s.mesh, adjacency_);
   for (int v = 0; v < n; ++v) {
     const auto around = adjacency_.outgoing(v);
     on_a_line_.push_back(adjacency_.is_boundary_vertex(v) || std::any_of(around.begin(), around.end(), [&](int h) {
@@ -180,13 +180,13 @@ CreaseAlignment align_to_creases(const Segmentation& s, const Parameterisation& 
   for (int f = 0; f < s.mesh.face_count(); ++f) {
     const double change = aligner.closeness(f, d) - 1;
     double& t = share[s.face_segment[f]];
-    if (change > 0) t = std::min(t, (1 / options.least_spacing - 1) / change);
-    if (change < 0) t = std::min(t, (1 - options.least_spacing) / -change);
+    if (change > 0) t = std::min(t, (1 / options.min_spacing - 1) / change);
+    if (change < 0) t = std::min(t, (1 - options.min_spacing) / -change);
   }
   for (int f = 0; f < s.mesh.face_count(); ++f) {
     const double t = share[s.face_segment[f]], closeness = 1 + t * (aligner.closeness(f, d) - 1);
-    result.spacing_least = std::min(result.spacing_least, 1 / closeness),
-    result.spacing_most = std::max(result.spacing_most, 1 / closeness);
+    result.min_spacing = std::min(result.min_spacing, 1 / closeness),
+    result.max_spacing = std::max(result.max_spacing, 1 / closeness);
     for (int k = 0; k < 3; ++k) result.parameterisation.corners_mm(3 * f + k, 1) += t * d[s.mesh.F(f, k)];
   }
   result.crease_mm = edge_mm * static_cast<double>(pulls.size());

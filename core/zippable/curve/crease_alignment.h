@@ -19,7 +19,7 @@ namespace formwright {
 struct CreaseAlignmentOptions {
   double steepest_rad = 0.55;  // between a crease and the lines, for these to follow it
   double release = 0.4;        // of the spacing of lines; less where the change-over would be shorter than two spacings
-  double least_spacing = 0.6;  // of the even spacing; the most is its inverse
+  double min_spacing = 0.6;    // of the even spacing; the most is its inverse
 };
 
 /// What D's equations have in common however lines are placed: analysed once for a model, which is most of the work.
@@ -52,7 +52,7 @@ struct CreaseAlignment {
   Parameterisation parameterisation;           // with y + D for y
   double crease_mm = 0;                        // how much of the creases runs like the lines
   double off_before_mm = 0, off_after_mm = 0;  // mean distance in y from there to the nearest line
-  double spacing_least = 1, spacing_most = 1;  // of the even one, of any triangle
+  double min_spacing = 1, max_spacing = 1;     // of the even one, of any triangle
 };
 
 /// `system` and `features` of the segmentation's mesh, `lines` as they are placed. No triangle is turned over, borders

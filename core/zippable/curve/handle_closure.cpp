@@ -17,8 +17,8 @@ Key key_of(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 }  // namespace
 
 double TapedCuts::Cut::apart_mm(double a, double b) const {
-  const double way = std::abs(a - b);
-  return closed ? std::min(way, length_mm - way) : way;
+  const double gap = std::abs(a - b);
+  return closed ? std::min(gap, length_mm - gap) : gap;
 }
 
 TapedCuts::TapedCuts(const Segmentation& s, const Parameterisation& p, const std::vector<TapedCut>& cuts)

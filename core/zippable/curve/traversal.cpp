@@ -28,29 +28,32 @@ double wrapped(double x, double period) { return x - period * std::floor(x / per
 class TraversalSearch {
  public:
   TraversalSearch(const Segmentation& s, int limit, const Context& context)
-      : limit_(static_cast<std::size_t>(limit)), context_(context), ways_(s.part_count()), visited_(s.part_count(), 0) {
+      : limit_(static_cast<std::size_t>(limit)),
+        context_(context),
+        neighbours_(s.part_count()),
+        visited_(s.part_count(), 0) {
     for (int i = 0; i < static_cast<int>(s.interfaces.size()); ++i) {
-      ways_[s.interfaces[i].left].emplace_back(s.interfaces[i].right, i);
-      ways_[s.interfaces[i].right].emplace_back(s.interfaces[i].left, i);
+      neighbours_[s.interfaces[i].left].emplace_back(s.interfaces[i].right, i);
+      neighbours_[s.interfaces[i].right].emplace_back(s.interfaces[i].left, i);
     }
-    for (auto& list : ways_) std::sort(list.begin(), list.end());
+    for (auto& list : neighbours_) std::sort(list.begin(), list.end());
   }
 
   std::vector<Traversal> run() {
-    for (int part = 0; part < static_cast<int>(ways_.size()) && !done(); ++part) visit(part);
+    for (int part = 0; part < static_cast<int>(neighbours_.size()) && !done(); ++part) visit(part);
     return std::move(found_);
   }
 
  private:
-  bool done() const { return found_.size() >= limit_ || steps_ > most_steps; }
+  bool done() const { return found_.size() >= limit_ || steps_ > max_steps; }
 
   void visit(int part) {
     if (++steps_ % 1024 == 0) context_.check_cancelled();
     visited_[part] = 1;
     current_.parts.push_back(part);
-    if (current_.parts.size() == ways_.size()) found_.push_back(current_);
+    if (current_.parts.size() == neighbours_.size()) found_.push_back(current_);
     else if (can_be_finished(part))
-      for (const auto& [next, interface] : ways_[part]) {
+      for (const auto& [next, interface] : neighbours_[part]) {
         if (done()) break;
         if (visited_[next]) continue;
         current_.interfaces.push_back(interface);
@@ -70,23 +73,23 @@ class TraversalSearch {
     while (!open.empty()) {
       const int part = open.back();
       open.pop_back();
-      int ways_on = 0, last = -1;
-      for (const auto& [next, interface] : ways_[part]) {
-        if ((!visited_[next] || next == here) && next != last) ++ways_on, last = next;
+      int exits_on = 0, last = -1;
+      for (const auto& [next, interface] : neighbours_[part]) {
+        if ((!visited_[next] || next == here) && next != last) ++exits_on, last = next;
         if (seen[next]) continue;
         seen[next] = 1;
         ++reached;
         open.push_back(next);
       }
-      if (part != here && ways_on < 2 && ++dead_ends > 1) return false;
+      if (part != here && exits_on < 2 && ++dead_ends > 1) return false;
     }
-    return reached == ways_.size();
+    return reached == neighbours_.size();
   }
 
-  static constexpr std::size_t most_steps = 3'000'000;  // some seconds; only graphs that nobody draws take more
+  static constexpr std::size_t max_steps = 3'000'000;  // some seconds; only graphs that nobody draws take more
   std::size_t limit_, steps_ = 0;
   const Context& context_;
-  std::vector<std::vector<std::pair<int, int>>> ways_;  // neighbour, interface
+  std::vector<std::vector<std::pair<int, int>>> neighbours_;  // neighbour, interface
   std::vector<char> visited_;
   Traversal current_;
   std::vector<Traversal> found_;

@@ -10,7 +10,7 @@
 namespace formwright {
 namespace {
 
-constexpr double least_spiral_windings = 1.0, least_fermat_windings = 0.75;
+constexpr double min_spiral_windings = 1.0, min_fermat_windings = 0.75;
 
 std::string figure(double value) {
   char text[32];
@@ -34,17 +34,17 @@ std::vector<SpiralLine> place_lines(const Segmentation& s, const Parameterisatio
     const int part = traversal.parts[i];
     const double period = p.period_mm[part];
     const bool fermat = i > 0 && i + 1 < count;
-    const double least = fermat ? least_fermat_windings : least_spiral_windings;
+    const double minimum = fermat ? min_fermat_windings : min_spiral_windings;
     const double own = static_cast<std::size_t>(part) < options.part_windings.size()
                            ? options.part_windings[static_cast<std::size_t>(part)]
                            : 0;
     double windings = own > 0            ? own
                       : options.windings ? *options.windings
                                          : p.height_mm[part] / (fermat ? 2 * options.width_mm : options.width_mm);
-    if (windings < least) {
-      curve.notes.push_back("Part " + std::to_string(part + 1) + " got " + figure(least) + " windings instead of " +
+    if (windings < minimum) {
+      curve.notes.push_back("Part " + std::to_string(part + 1) + " got " + figure(minimum) + " windings instead of " +
                             figure(windings) + ", the smallest number that makes a ribbon; it is narrower there.");
-      windings = least;
+      windings = minimum;
     }
     curve.windings[part] = windings;
     if (count == 1) {
@@ -65,11 +65,11 @@ std::vector<SpiralLine> place_lines(const Segmentation& s, const Parameterisatio
   return lines;
 }
 
-std::vector<int> thinned_grid(int first, const std::vector<double>& local_mm, double sample_mm, int most) {
+std::vector<int> thinned_grid(int first, const std::vector<double>& local_mm, double sample_mm, int maximum) {
   std::vector<int> kept;
   for (std::size_t i = 0; i < local_mm.size(); ++i) {
     int step = 1;
-    while (2 * step <= most && 1.5 * step * local_mm[i] < sample_mm) step *= 2;
+    while (2 * step <= maximum && 1.5 * step * local_mm[i] < sample_mm) step *= 2;
     const int place = first + static_cast<int>(i);
     if (((place % step) + step) % step == 0) kept.push_back(place);
   }

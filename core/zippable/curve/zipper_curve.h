@@ -62,6 +62,6 @@ ZipperCurve draw_zipper_curve(const Segmentation& segmentation, const Parameteri
 /// Of grid places along something that is `local_mm[i]` long between i and i + 1 (the first is number `first`), those
 /// to use so that they are not much closer than `sample_mm`: all multiples of a power of two, the same wherever lengths
 /// are alike.
-std::vector<int> thinned_grid(int first, const std::vector<double>& local_mm, double sample_mm, int most);
+std::vector<int> thinned_grid(int first, const std::vector<double>& local_mm, double sample_mm, int maximum);
 
 }  // namespace formwright

@@ -21,10 +21,10 @@ namespace formwright {
 namespace {
 
 /// Marks the edges of a way between two vertices that is as straight as edges allow.
-void mark_way(const TriangleMesh& mesh, const Adjacency& adjacency, const PointDistance& surface, double step_mm,
-              int from, int to, std::vector<char>& wall) {
+void mark_path(const TriangleMesh& mesh, const Adjacency& adjacency, const PointDistance& surface, double step_mm,
+               int from, int to, std::vector<char>& wall) {
   std::vector<Vec3> line;
-  for (const int v : edge_way(mesh, adjacency, from, to)) line.push_back(mesh.V.row(v).transpose());
+  for (const int v : edge_path(mesh, adjacency, from, to)) line.push_back(mesh.V.row(v).transpose());
   if (line.size() < 2) return;
   std::vector<int> stops{from};
   if (line.size() > 2)
@@ -36,32 +36,33 @@ void mark_way(const TriangleMesh& mesh, const Adjacency& adjacency, const PointD
     }
   stops.push_back(to);
   for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
-    const std::vector<int> way = edge_way(mesh, adjacency, stops[i], stops[i + 1]);
-    for (std::size_t k = 0; k + 1 < way.size(); ++k) wall[adjacency.find_edge(way[k], way[k + 1])] = 1;
+    const std::vector<int> path = edge_path(mesh, adjacency, stops[i], stops[i + 1]);
+    for (std::size_t k = 0; k + 1 < path.size(); ++k) wall[adjacency.find_edge(path[k], path[k + 1])] = 1;
   }
 }
 
 /// Marks the edges of the cheapest way: as they are along features, as straight as edges allow in between.
-void mark_snapped_way(const TriangleMesh& mesh, const Adjacency& adjacency, const PointDistance& surface,
-                      double step_mm, int from, int to, const FeatureLines& features, std::vector<char>& wall) {
-  const std::vector<int> way = edge_way(mesh, adjacency, from, to, &features);
+void mark_snapped_path(const TriangleMesh& mesh, const Adjacency& adjacency, const PointDistance& surface,
+                       double step_mm, int from, int to, const FeatureLines& features, std::vector<char>& wall) {
+  const std::vector<int> path = edge_path(mesh, adjacency, from, to, &features);
   std::size_t left = 0;  // where the way left the features
-  for (std::size_t k = 0; k + 1 < way.size(); ++k) {
-    const int edge = adjacency.find_edge(way[k], way[k + 1]);
-    if (std::abs(features.bend_rad[edge]) < features.options.least_rad) continue;
-    if (left < k) mark_way(mesh, adjacency, surface, step_mm, way[left], way[k], wall);
+  for (std::size_t k = 0; k + 1 < path.size(); ++k) {
+    const int edge = adjacency.find_edge(path[k], path[k + 1]);
+    if (std::abs(features.bend_rad[edge]) < features.options.min_rad) continue;
+    if (left < k) mark_path(mesh, adjacency, surface, step_mm, path[left], path[k], wall);
     wall[edge] = 1;
     left = k + 1;
   }
-  if (left + 1 < way.size()) mark_way(mesh, adjacency, surface, step_mm, way[left], way.back(), wall);
+  if (left + 1 < path.size()) mark_path(mesh, adjacency, surface, step_mm, path[left], path.back(), wall);
 }
 
 /// The vertex that stands for a drawn point: on the nearest feature line in reach, or the nearest one.
 int snapped_vertex(const TriangleMesh& mesh, const SnapTargets& targets, const Vec3& point) {
   int nearest = -1;
-  double least = targets.reach_mm;
+  double minimum = targets.reach_mm;
   for (const FeaturePoint& f : targets.features.points)
-    if (const double d = (mesh.V.row(f.vertex).transpose() - point).norm(); d < least) least = d, nearest = f.vertex;
+    if (const double d = (mesh.V.row(f.vertex).transpose() - point).norm(); d < minimum)
+      minimum = d, nearest = f.vertex;
   return nearest >= 0 ? nearest : nearest_vertex(mesh, point);
 }
 
@@ -171,11 +172,11 @@ LabelledSurface divide_along_curves(const TriangleMesh& mesh, const std::vector<
     for (std::size_t k = 0; k + 1 < stops[i].size(); ++k) {
       context.check_cancelled();
       if (!snaps[i]) {
-        mark_way(mesh, adjacency, surface, step_mm, stops[i][k], stops[i][k + 1], wall);
+        mark_path(mesh, adjacency, surface, step_mm, stops[i][k], stops[i][k + 1], wall);
         continue;
       }
       std::vector<char> own(adjacency.edge_count(), 0);
-      mark_snapped_way(mesh, adjacency, surface, step_mm, stops[i][k], stops[i][k + 1], targets->features, own);
+      mark_snapped_path(mesh, adjacency, surface, step_mm, stops[i][k], stops[i][k + 1], targets->features, own);
       for (int e = 0; e < adjacency.edge_count(); ++e)
         if (own[e]) wall[e] = 1, sharp_wall[e] |= targets->features.sharp[e];
     }
@@ -188,11 +189,11 @@ LabelledSurface divide_along_curves(const TriangleMesh& mesh, const std::vector<
   const Eigen::MatrixXd field = -smooth_indicators(mesh, adjacency, part, count, keep, context);
   std::vector<int> label(mesh.vertex_count());
   for (int v = 0; v < mesh.vertex_count(); ++v) {
-    Eigen::Index least = 0;
-    field.row(v).minCoeff(&least);
-    label[v] = static_cast<int>(least);
+    Eigen::Index minimum = 0;
+    field.row(v).minCoeff(&minimum);
+    label[v] = static_cast<int>(minimum);
   }
-  LabelledSurface result = split_by_least_field(mesh, label, field, keep);
+  LabelledSurface result = split_by_smallest_field(mesh, label, field, keep);
   // Slivers between ways that cross each other vanish under the smoothing: what is left is numbered anew.
   std::vector<int> number(count, -1);
   int next = 0;

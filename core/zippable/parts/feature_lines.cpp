@@ -92,11 +92,11 @@ FeatureLines find_features(const TriangleMesh& mesh, const Adjacency& adjacency,
                         area = vertex_areas(mesh, VertexArea::barycentric, 1e-6);
   const Positions normals = vertex_normals(mesh);
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(n, 6);
-  const auto way = [&](int e) {
+  const auto along_edge = [&](int e) {
     return Vec3((mesh.V.row(adjacency.edges()[e].higher) - mesh.V.row(adjacency.edges()[e].lower)).transpose());
   };
   for (int e = 0; e < adjacency.edge_count(); ++e) {
-    const Vec3 d = way(e);
+    const Vec3 d = along_edge(e);
     const double length = d.norm();
     if (!(length > 0)) continue;
     const double share = 0.5 * dihedral[e] / length;
@@ -104,7 +104,7 @@ FeatureLines find_features(const TriangleMesh& mesh, const Adjacency& adjacency,
       sums.row(v) += share * Eigen::Matrix<double, 1, 6>(d.x() * d.x(), d.y() * d.y(), d.z() * d.z(), d.x() * d.y(),
                                                          d.x() * d.z(), d.y() * d.z());
   }
-  const SparseMatrix laplacian = safe_laplacian(mesh, adjacency);
+  const SparseMatrix laplacian = nonnegative_laplacian(mesh, adjacency);
   // A straight crease bent by an angle comes out as that angle over twice the scale.
   Averaging averaged(mesh.V, laplacian, area, context);
   const Eigen::MatrixXd bends =
@@ -120,20 +120,20 @@ FeatureLines find_features(const TriangleMesh& mesh, const Adjacency& adjacency,
   lines.bend_rad = Eigen::VectorXd::Zero(adjacency.edge_count());
   lines.sharp.assign(adjacency.edge_count(), 0);
   for (int e = 0; e < adjacency.edge_count(); ++e) {
-    const Vec3 d = way(e).normalized();
+    const Vec3 d = along_edge(e).normalized();
     if (!(d.squaredNorm() > 0.5)) continue;
     const auto [a, b] = adjacency.edges()[e];
     const auto at = [&](int v) { return bend_across(tensor(bends, v), d, normals.row(v).transpose()); };
     double bend = 0.5 * (at(a) + at(b));
     // The tips of thin limbs have edges as bent as that, but in all directions.
-    lines.sharp[e] = std::abs(dihedral[e]) >= options.least_rad && dihedral[e] * bend > 0 &&
-                     std::abs(bend) >= 0.5 * options.least_rad;
+    lines.sharp[e] =
+        std::abs(dihedral[e]) >= options.min_rad && dihedral[e] * bend > 0 && std::abs(bend) >= 0.5 * options.min_rad;
     if (lines.sharp[e] && std::abs(dihedral[e]) > std::abs(bend)) bend = dihedral[e];
     lines.bend_rad[e] = bend;
   }
   for (int v = 0; v < n; ++v) {
     const Bend& own = greatest[v];
-    if (std::abs(own.rad) < options.least_rad) continue;
+    if (std::abs(own.rad) < options.min_rad) continue;
     const Vec3 across = Vec3(normals.row(v).transpose()).cross(own.along);
     const auto outdone = [&](int w) {
       const Vec3 d = (mesh.V.row(w) - mesh.V.row(v)).transpose();

@@ -15,8 +15,8 @@
 namespace formwright {
 
 struct FeatureOptions {
-  double scale_mm = 2;      // how far a crease may be rounded off and still be one
-  double least_rad = 0.35;  // how much the surface bends across it at least, within about that scale
+  double scale_mm = 2;    // how far a crease may be rounded off and still be one
+  double min_rad = 0.35;  // how much the surface bends across it at least, within about that scale
 };
 
 /// A vertex on a feature line: the bend is largest there, across the line.

@@ -76,12 +76,12 @@ Loop shortest_loop(const TriangleMesh& mesh, const Adjacency& adjacency, int roo
     }
     if (!(length[e] < best.length)) continue;
     // The two ways to the root, without what they share.
-    const auto way = [&](int v) {
+    const auto path_up = [&](int v) {
       std::vector<int> path;
       for (; v >= 0; v = before[v]) path.push_back(v);
       return path;
     };
-    std::vector<int> one = way(adjacency.edges()[e].lower), other = way(adjacency.edges()[e].higher);
+    std::vector<int> one = path_up(adjacency.edges()[e].lower), other = path_up(adjacency.edges()[e].higher);
     while (one.size() > 1 && other.size() > 1 && one[one.size() - 2] == other[other.size() - 2])
       one.pop_back(), other.pop_back();
     best.vertices = one;

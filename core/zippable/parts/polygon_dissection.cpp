@@ -84,14 +84,14 @@ std::vector<std::array<int, 3>> cheapest_triangulation(const std::vector<int>& p
   for (int span = 2; span < n; ++span)
     for (int i = 0; i + span < n; ++i) {
       const int j = i + span;
-      double least = 1e300;
+      double minimum = 1e300;
       int choice = i + 1;
       for (int k = i + 1; k < j; ++k) {
         const double total = best[index(i, k)] + best[index(k, j)] + triangle(polygon[i], polygon[k], polygon[j]);
         // Of choices that differ by rounding only, as in symmetric models, the first.
-        if (total < least * (1 - 1e-9)) least = total, choice = k;
+        if (total < minimum * (1 - 1e-9)) minimum = total, choice = k;
       }
-      best[index(i, j)] = least + (span + 1 < n ? side(polygon[i], polygon[j]) : 0.0);
+      best[index(i, j)] = minimum + (span + 1 < n ? side(polygon[i], polygon[j]) : 0.0);
       apex[index(i, j)] = choice;
     }
   std::vector<std::pair<int, int>> open{{0, n - 1}};

@@ -20,36 +20,36 @@ namespace {
 }
 
 /// Through all points, straightest in between, in steps of about `step_mm`.
-std::vector<Vec3> way_through(const TriangleMesh& mesh, const Adjacency& adjacency, const PointDistance& surface,
-                              const std::vector<Vec3>& points, double step_mm) {
-  std::vector<Vec3> way;
+std::vector<Vec3> path_through(const TriangleMesh& mesh, const Adjacency& adjacency, const PointDistance& surface,
+                               const std::vector<Vec3>& points, double step_mm) {
+  std::vector<Vec3> path;
   for (std::size_t k = 0; k + 1 < points.size(); ++k) {
     const Vec3 from = surface.nearest(points[k])->point, to = surface.nearest(points[k + 1])->point;
     if ((from - to).norm() < 1e-9 * step_mm) continue;
     std::vector<Vec3> line{from};
-    const std::vector<int> edges = edge_way(mesh, adjacency, nearest_vertex(mesh, from), nearest_vertex(mesh, to));
+    const std::vector<int> edges = edge_path(mesh, adjacency, nearest_vertex(mesh, from), nearest_vertex(mesh, to));
     for (std::size_t i = 1; i + 1 < edges.size(); ++i) line.push_back(mesh.V.row(edges[i]).transpose());
     line.push_back(to);
     line = straightened(std::move(line), surface, step_mm);
-    way.insert(way.end(), line.begin() + (way.empty() ? 0 : 1), line.end());
+    path.insert(path.end(), line.begin() + (path.empty() ? 0 : 1), line.end());
   }
-  return way;
+  return path;
 }
 
 /// Where a vertex lies beside a path: mm to the left of it (negative: right); 0 beyond its ends or too far off.
-double beside(const std::vector<Vec3>& way, const Vec3& point, const Vec3& normal, double reach_mm) {
-  double least = reach_mm, side = 0;
-  for (std::size_t k = 0; k + 1 < way.size(); ++k) {
-    const Vec3 along = way[k + 1] - way[k];
-    const double t = along.dot(point - way[k]) / along.squaredNorm();
-    const Vec3 off = point - (way[k] + std::clamp(t, 0.0, 1.0) * along);
-    if (!(off.norm() < least)) continue;
-    least = off.norm();
-    const bool beyond = (k == 0 && t <= 0) || (k + 2 == way.size() && t >= 1);
+double beside(const std::vector<Vec3>& path, const Vec3& point, const Vec3& normal, double reach_mm) {
+  double minimum = reach_mm, side = 0;
+  for (std::size_t k = 0; k + 1 < path.size(); ++k) {
+    const Vec3 along = path[k + 1] - path[k];
+    const double t = along.dot(point - path[k]) / along.squaredNorm();
+    const Vec3 off = point - (path[k] + std::clamp(t, 0.0, 1.0) * along);
+    if (!(off.norm() < minimum)) continue;
+    minimum = off.norm();
+    const bool beyond = (k == 0 && t <= 0) || (k + 2 == path.size() && t >= 1);
     // At a corner the bisecting direction decides.
     Vec3 direction = along.normalized();
-    if (t >= 1 && k + 2 < way.size()) direction += (way[k + 2] - way[k + 1]).normalized();
-    if (t <= 0 && k > 0) direction += (way[k] - way[k - 1]).normalized();
+    if (t >= 1 && k + 2 < path.size()) direction += (path[k + 2] - path[k + 1]).normalized();
+    if (t <= 0 && k > 0) direction += (path[k] - path[k - 1]).normalized();
     const double left = normal.cross(direction.normalized()).dot(off);
     side = beyond ? 0 : left == 0 ? 1e-12 * reach_mm : left;
   }
@@ -89,8 +89,8 @@ std::vector<Vec3> cut_slit(OpenedSurface& surface, const std::vector<Vec3>& poin
   const TriangleMesh& mesh = surface.mesh;
   const Adjacency adjacency(mesh);
   const double edge_mm = mean_edge_length(mesh);
-  const std::vector<Vec3> way = way_through(mesh, adjacency, PointDistance(mesh), points, 0.5 * edge_mm);
-  if (way.size() < 2) refuse(number, "has all its points in one place: draw it longer.");
+  const std::vector<Vec3> path = path_through(mesh, adjacency, PointDistance(mesh), points, 0.5 * edge_mm);
+  if (path.size() < 2) refuse(number, "has all its points in one place: draw it longer.");
   const Positions normals = vertex_normals(mesh);
   const int n = mesh.vertex_count();
   std::vector<double> side(n, 0);
@@ -99,7 +99,7 @@ std::vector<Vec3> cut_slit(OpenedSurface& surface, const std::vector<Vec3>& poin
     const Vec3 point = mesh.V.row(v).transpose();
     double reach = 0;
     for (const int w : adjacency.neighbours(v)) reach = std::max(reach, (mesh.V.row(w).transpose() - point).norm());
-    side[v] = beside(way, point, normals.row(v).transpose(), 1.2 * reach);
+    side[v] = beside(path, point, normals.row(v).transpose(), 1.2 * reach);
     label[v] = side[v] > 0;
   }
   std::vector<int> face_of;

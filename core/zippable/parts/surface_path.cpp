@@ -9,9 +9,7 @@ namespace formwright {
 namespace {
 
 /// What an edge along a feature counts for, of its length.
-double cost_share(double bend_rad, double least_rad) {
-  return 1 / (1 + (bend_rad / least_rad) * (bend_rad / least_rad));
-}
+double cost_share(double bend_rad, double min_rad) { return 1 / (1 + (bend_rad / min_rad) * (bend_rad / min_rad)); }
 
 /// `count` + 1 points at even steps along a polyline.
 std::vector<Vec3> even_points(const std::vector<Vec3>& line, int count) {
@@ -37,8 +35,8 @@ int nearest_vertex(const TriangleMesh& mesh, const Vec3& point) {
   return static_cast<int>(nearest);
 }
 
-std::vector<int> edge_way(const TriangleMesh& mesh, const Adjacency& adjacency, int from, int to,
-                          const FeatureLines* features) {
+std::vector<int> edge_path(const TriangleMesh& mesh, const Adjacency& adjacency, int from, int to,
+                           const FeatureLines* features) {
   std::vector<double> distance(mesh.vertex_count(), std::numeric_limits<double>::infinity());
   std::vector<int> before(mesh.vertex_count(), -1);
   using Entry = std::pair<double, int>;
@@ -52,16 +50,16 @@ std::vector<int> edge_way(const TriangleMesh& mesh, const Adjacency& adjacency, 
     if (d > distance[v]) continue;
     for (const int w : adjacency.neighbours(v)) {
       const double share =
-          features ? cost_share(features->bend_rad[adjacency.find_edge(v, w)], features->options.least_rad) : 1;
+          features ? cost_share(features->bend_rad[adjacency.find_edge(v, w)], features->options.min_rad) : 1;
       const double reach = d + share * (mesh.V.row(w) - mesh.V.row(v)).norm();
       if (reach < distance[w]) distance[w] = reach, before[w] = v, queue.emplace(reach, w);
     }
   }
   if (from != to && before[to] < 0) return {from};
-  std::vector<int> way{to};
-  while (way.back() != from) way.push_back(before[way.back()]);
-  std::reverse(way.begin(), way.end());
-  return way;
+  std::vector<int> path{to};
+  while (path.back() != from) path.push_back(before[path.back()]);
+  std::reverse(path.begin(), path.end());
+  return path;
 }
 
 std::vector<Vec3> straightened(std::vector<Vec3> line, const PointDistance& surface, double step_mm) {

@@ -13,8 +13,8 @@ int nearest_vertex(const TriangleMesh& mesh, const Vec3& point);
 
 /// Vertices of the shortest way along edges, both ends included; only the start where no way leads on. Edges along
 /// `features` count for less.
-std::vector<int> edge_way(const TriangleMesh& mesh, const Adjacency& adjacency, int from, int to,
-                          const FeatureLines* features = nullptr);
+std::vector<int> edge_path(const TriangleMesh& mesh, const Adjacency& adjacency, int from, int to,
+                           const FeatureLines* features = nullptr);
 
 /// Pulls a way straight on the surface: few points first, each to the middle between its neighbours and back onto the
 /// surface, then twice as many, until they are `step_mm` apart. Ends stay.

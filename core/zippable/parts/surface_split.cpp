@@ -94,8 +94,8 @@ LabelledSurface split_at_levels(const TriangleMesh& mesh, const Adjacency& adjac
   return result;
 }
 
-LabelledSurface split_by_least_field(const TriangleMesh& mesh, const std::vector<int>& label,
-                                     const Eigen::MatrixXd& field, const std::vector<char>& keep_to) {
+LabelledSurface split_by_smallest_field(const TriangleMesh& mesh, const std::vector<int>& label,
+                                        const Eigen::MatrixXd& field, const std::vector<char>& keep_to) {
   const Adjacency adjacency(mesh);
   std::vector<int> face_of;
   return split_at_levels(
@@ -152,10 +152,10 @@ std::vector<double> puncture(LabelledSurface& surface, const std::vector<int>& v
       throw Error(ErrorCode::invalid_input, "mesh",
                   "A hole lies on the border of its part or beside another hole: move it inside the part.");
     const auto distance = [&](int v) { return (mesh.V.row(v) - mesh.V.row(centre)).norm(); };
-    double least_ring = 1e300;
-    for (const int w : adjacency.neighbours(centre)) least_ring = std::min(least_ring, distance(w));
+    double min_ring = 1e300;
+    for (const int w : adjacency.neighbours(centre)) min_ring = std::min(min_ring, distance(w));
     for (double radius = radius_mm;; radius *= 0.5) {
-      const bool last = radius <= least_ring;
+      const bool last = radius <= min_ring;
       std::vector<int> inside{centre};
       mark[centre] = own;
       bool clear = true;

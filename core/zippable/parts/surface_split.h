@@ -26,8 +26,8 @@ LabelledSurface split_at_levels(const TriangleMesh& mesh, const Adjacency& adjac
 /// fields are equal, linearly along each edge but at least a tenth of it from either end, and in the middle where three
 /// labels meet. Borders beside a vertex of `keep_to` (per vertex; empty: none) go through that vertex instead, along
 /// old edges.
-LabelledSurface split_by_least_field(const TriangleMesh& mesh, const std::vector<int>& label,
-                                     const Eigen::MatrixXd& field, const std::vector<char>& keep_to = {});
+LabelledSurface split_by_smallest_field(const TriangleMesh& mesh, const std::vector<int>& label,
+                                        const Eigen::MatrixXd& field, const std::vector<char>& keep_to = {});
 
 /// Around each of `vertices`, takes out what is connected to it and nearer than `radius_mm`, cut along a smooth circle,
 /// and halves the radius until that is a disc inside the label of the vertex that touches neither other labels nor an

@@ -108,10 +108,10 @@ class PlateMaker {
     }
     const Polygon& cloth = piece_.outline_mm;
     for (std::size_t i = 0; i < cloth.size(); ++i) {
-      const Vec2 way = cloth[(i + 1) % cloth.size()] - cloth[i];
-      const int parts = std::max(1, static_cast<int>(std::ceil(way.norm() / 1)));
+      const Vec2 segment = cloth[(i + 1) % cloth.size()] - cloth[i];
+      const int parts = std::max(1, static_cast<int>(std::ceil(segment.norm() / 1)));
       for (int k = i == 0 ? 0 : 1; k <= parts; ++k) {
-        const Vec2 p = cloth[i] + way * k / parts;
+        const Vec2 p = cloth[i] + segment * k / parts;
         const bool off = std::all_of(slots.begin(), slots.end(), [&](const ThickLine& slot) {
           return nearest_on_line(slot.points_mm, false, p).distance_mm > slot.width_mm / 2 + 0.1;
         });

@@ -32,14 +32,14 @@ std::vector<TrackPoint> moved(const std::vector<Vec2>& edge, double distance_mm)
     if (nearest_on_line(edge, false, middle).distance_mm > distance_mm - 0.01) points.push_back({middle, foot});
   };
   for (std::size_t i = 0; i + 1 < edge.size(); ++i) {
-    const Vec2 way = edge[i + 1] - edge[i];
-    const double length = way.norm();
+    const Vec2 segment = edge[i + 1] - edge[i];
+    const double length = segment.norm();
     if (length < 1e-6) continue;
-    const Vec2 outward = right_of(way / length);
+    const Vec2 outward = right_of(segment / length);
     if (const double turn = before.isZero() ? 0 : turn_between(before, outward); turn > 0.05)
       for (double angle = 0.05; angle < turn; angle += 0.05) add(edge[i], Eigen::Rotation2Dd(angle) * before);
     const int parts = std::max(1, static_cast<int>(std::ceil(length / step_mm)));
-    for (int k = 0; k <= parts; ++k) add(edge[i] + way * k / parts, outward);
+    for (int k = 0; k <= parts; ++k) add(edge[i] + segment * k / parts, outward);
     before = outward;
   }
   return points;
@@ -117,12 +117,12 @@ class TrackMaker {
     RigTrack& track = result.tracks[number];
     const std::size_t count = track.middle_mm.size(), last = at_end ? count - 1 : 0;
     const std::size_t before = at_end ? count - std::min<std::size_t>(count, 4) : std::min<std::size_t>(count, 4) - 1;
-    const Vec2 end = track.middle_mm[last], way = (end - track.middle_mm[before]).normalized();
+    const Vec2 end = track.middle_mm[last], segment = (end - track.middle_mm[before]).normalized();
     // The cloth lies to the left of the edge: outwards is to the right of it, or to the left going back.
     for (const double lead : leads_mm)
       for (int k = 0; k <= 9; ++k) {
         const double angle = (at_end ? -1 : 1) * k * 10 * std::numbers::pi / 180;
-        const Vec2 centre = end + lead * (Eigen::Rotation2Dd(angle) * way);
+        const Vec2 centre = end + lead * (Eigen::Rotation2Dd(angle) * segment);
         if (!room(number, end, centre)) continue;
         track.openings_mm.push_back(centre);
         leads_.push_back({end, centre});

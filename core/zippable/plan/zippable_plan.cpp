@@ -183,11 +183,11 @@ ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& options,
     return hull.size() < 2 || !fitting_turns(hull, free_x, free_y, nesting.keep_direction).empty();
   };
   // Smaller pieces than a quarter of the ribbon's width squared are hard to hold.
-  const double least_mm2 = plan.width_mean_mm * plan.width_mean_mm / 4;
+  const double min_area_mm2 = plan.width_mean_mm * plan.width_mean_mm / 4;
   {
     const auto span = context.span(0, 0.5, "Splitting");
     plan.splitting =
-        split_ribbon(design.F, plan.ribbon.flat_mm, fits, between, least_mm2, context, design.fabric_of_face);
+        split_ribbon(design.F, plan.ribbon.flat_mm, fits, between, min_area_mm2, context, design.fabric_of_face);
   }
   plan.fabrics = design.fabrics;
   plan.fabric_of_piece.assign(std::size_t(plan.splitting.piece_count), 0);

@@ -83,8 +83,8 @@ class NetworkBuilder {
     std::vector<double> along{0};
     for (std::size_t i = 0; i + 1 < vertices.size(); ++i)
       along.push_back(along.back() + (position(vertices[i + 1]) - position(vertices[i])).norm());
-    const int least = chain.closed ? 4 : vertices.front() == vertices.back() ? 3 : 2;
-    const int steps = std::max(least, static_cast<int>(std::lround(along.back() / sample_mm_)));
+    const int minimum = chain.closed ? 4 : vertices.front() == vertices.back() ? 3 : 2;
+    const int steps = std::max(minimum, static_cast<int>(std::lround(along.back() / sample_mm_)));
     std::vector<Vec3> points;
     for (int k = 0; k <= steps; ++k) {
       const double place = along.back() * k / steps;

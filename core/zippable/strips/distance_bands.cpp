@@ -41,10 +41,10 @@ int number_components(const Adjacency& adjacency, const Border& border, std::vec
   return count;
 }
 
-/// Joins what is smaller than `least_mm2` to the neighbour along its longest border that `may(f, g)` be joined to, the
-/// smallest first, and renumbers.
+/// Joins what is smaller than `min_area_mm2` to the neighbour along its longest border that `may(f, g)` be joined to,
+/// the smallest first, and renumbers.
 template <class May>
-int join_small(const TriangleMesh& mesh, const Adjacency& adjacency, double least_mm2, const May& may,
+int join_small(const TriangleMesh& mesh, const Adjacency& adjacency, double min_area_mm2, const May& may,
                std::vector<int>& label, int count) {
   for (;;) {
     std::vector<double> area(std::size_t(count), 0.0);
@@ -56,7 +56,7 @@ int join_small(const TriangleMesh& mesh, const Adjacency& adjacency, double leas
             (position(mesh, adjacency.from(h)) - position(mesh, adjacency.to(h))).norm();
     int smallest = -1;
     for (int i = 0; i < count; ++i)
-      if (area[i] < least_mm2 && !beside[i].empty() && (smallest < 0 || area[i] < area[smallest])) smallest = i;
+      if (area[i] < min_area_mm2 && !beside[i].empty() && (smallest < 0 || area[i] < area[smallest])) smallest = i;
     if (smallest < 0) return count;
     const auto into =
         std::max_element(beside[smallest].begin(), beside[smallest].end(), [](const auto& a, const auto& b) {
@@ -151,14 +151,14 @@ class BandCutter {
 Bands distance_bands(const TriangleMesh& mesh, const std::vector<int>& limb, double feature_degrees, double width_mm,
                      Context& context) {
   const Adjacency adjacency(mesh);
-  const double most = std::cos(feature_degrees * std::numbers::pi / 180);
+  const double maximum = std::cos(feature_degrees * std::numbers::pi / 180);
   std::vector<int> part;
   int parts = number_components(
       adjacency,
       [&](int h) {
         const int o = adjacency.opposite(h);
         const Vec3 a = area_normal(mesh, h / 3), b = area_normal(mesh, o / 3);
-        return limb[h / 3] != limb[o / 3] || a.dot(b) < most * a.norm() * b.norm();
+        return limb[h / 3] != limb[o / 3] || a.dot(b) < maximum * a.norm() * b.norm();
       },
       part);
   parts = join_small(

@@ -32,13 +32,13 @@ std::vector<int> one_walk(std::vector<std::vector<int>> loops, const std::vector
   std::vector<int> walk = std::move(loops.front());
   loops.erase(loops.begin());
   while (!loops.empty()) {
-    double least = 1e300;
+    double minimum = 1e300;
     std::size_t which = 0, at = 0, from = 0;
     for (std::size_t l = 0; l < loops.size(); ++l)
       for (std::size_t i = 0; i < walk.size(); ++i)
         for (std::size_t j = 0; j < loops[l].size(); ++j)
-          if (const double distance = (points[walk[i]] - points[loops[l][j]]).squaredNorm(); distance < least)
-            least = distance, which = l, at = i, from = j;
+          if (const double distance = (points[walk[i]] - points[loops[l][j]]).squaredNorm(); distance < minimum)
+            minimum = distance, which = l, at = i, from = j;
     std::vector<int> joined(walk.begin(), walk.begin() + static_cast<std::ptrdiff_t>(at) + 1);
     std::vector<int>& loop = loops[which];
     for (std::size_t j = 0; j <= loop.size(); ++j) joined.push_back(loop[(from + j) % loop.size()]);
@@ -99,21 +99,21 @@ class Slitter {
       if (const double distance = surface.nearest(position(v))->distance; distance > farthest)
         farthest = distance, tip = v;
     if (tip < 0) return walk;
-    std::vector<Vec3> way = way_to(band, tip, walk, points);
+    std::vector<Vec3> route = path_to(band, tip, walk, points);
     const auto foot = std::min_element(walk.begin(), walk.end(), [&](int a, int b) {
-      return (points[a] - way.front()).squaredNorm() < (points[b] - way.front()).squaredNorm();
+      return (points[a] - route.front()).squaredNorm() < (points[b] - route.front()).squaredNorm();
     });
-    way.insert(way.begin(), points[*foot]);
+    route.insert(route.begin(), points[*foot]);
     std::vector<int> inward;
     double along = 0, taken = 0, length = 0;
-    for (std::size_t i = 0; i + 1 < way.size(); ++i) length += (way[i + 1] - way[i]).norm();
+    for (std::size_t i = 0; i + 1 < route.size(); ++i) length += (route[i + 1] - route[i]).norm();
     const double step = length / std::max(1.0, std::round(length / sample_mm_));
-    for (std::size_t i = 1; i < way.size(); ++i) {
-      along += (way[i] - way[i - 1]).norm();
-      if (along - taken < step && i + 1 < way.size()) continue;
+    for (std::size_t i = 1; i < route.size(); ++i) {
+      along += (route[i] - route[i - 1]).norm();
+      if (along - taken < step && i + 1 < route.size()) continue;
       taken = along;
       inward.push_back(static_cast<int>(points.size()));
-      points.push_back(way[i]);
+      points.push_back(route[i]);
     }
     std::vector<int> result(walk.begin(), foot + 1);
     result.insert(result.end(), inward.begin(), inward.end());
@@ -126,20 +126,20 @@ class Slitter {
   Vec3 position(int v) const { return bands_.mesh.V.row(v).transpose(); }
 
   /// Along edges inside the band, from its border to the tip.
-  std::vector<Vec3> way_to(int band, int tip, const std::vector<int>& walk, const std::vector<Vec3>& points) const {
+  std::vector<Vec3> path_to(int band, int tip, const std::vector<int>& walk, const std::vector<Vec3>& points) const {
     std::map<int, double> distance{{tip, 0}};
     std::map<int, int> before;
     std::set<std::pair<double, int>> open{{0, tip}};
     int end = tip;
-    double least = 1e300;
+    double minimum = 1e300;
     while (!open.empty()) {
       const auto [d, v] = *open.begin();
       open.erase(open.begin());
       // As far as to the border's nearest sample, however near that is.
       double beyond = 1e300;
       for (const int p : walk) beyond = std::min(beyond, (points[p] - position(v)).norm());
-      if (d + 2 * beyond < least) least = d + 2 * beyond, end = v;
-      if (d > least) break;
+      if (d + 2 * beyond < minimum) minimum = d + 2 * beyond, end = v;
+      if (d > minimum) break;
       for (const int w : adjacency_.neighbours(v)) {
         if (!vertices_[band].contains(w)) continue;
         const double there = d + (position(w) - position(v)).norm();
@@ -151,9 +151,9 @@ class Slitter {
         open.insert({there, w});
       }
     }
-    std::vector<Vec3> way{position(end)};
-    for (int v = end; v != tip;) way.push_back(position(v = before.at(v)));
-    return way;
+    std::vector<Vec3> route{position(end)};
+    for (int v = end; v != tip;) route.push_back(position(v = before.at(v)));
+    return route;
   }
 
   const Bands& bands_;
@@ -235,7 +235,7 @@ StripModel make_strips(const TriangleMesh& mesh, const std::vector<int>& limb, c
   const Slitter slitter(bands, 0.2 * options.width_mm);
   StripModel model;
   model.parts = bands.part_count, model.bands = bands.band_count;
-  constexpr int most_tips = 12;  // of a band
+  constexpr int max_tips = 12;  // of a band
   int degenerate = 0;
   for (int band = 0; band < bands.band_count; ++band) {
     context.progress(static_cast<double>(band + 1) / (bands.band_count + 1), "Unfolding strips");
@@ -249,7 +249,7 @@ StripModel make_strips(const TriangleMesh& mesh, const std::vector<int>& limb, c
       continue;
     }
     Strip strip = filled(walk, network.points_mm, options.width_mm);
-    for (int tips = 0; tips < most_tips; ++tips) {
+    for (int tips = 0; tips < max_tips; ++tips) {
       std::vector<int> slit = slitter.slit(band, walk, strip, 0.25 * options.width_mm, network.points_mm);
       if (slit.size() == walk.size()) break;
       walk = std::move(slit);

@@ -28,7 +28,7 @@ constexpr double passed_share = 0.8, closed_share = 0.85, settled_share = 0.9, p
 /// flying about.
 constexpr double anchor = 1e-3;
 /// As near as the cloth that was put into the shape, and that itself not too far off, in tolerances.
-constexpr double most_over_rest = 1.25, most_of_its_own = 3;
+constexpr double max_over_rest = 1.25, mostly_its_own = 3;
 
 ClothMaterial material_of(const ZippingOptions& options) {
   ClothMaterial material;
@@ -301,9 +301,8 @@ ZippingOutcome zipping_outcome(const ZippingResult& result, double tolerance_per
   const double off_mm = result.comparison.percentile_95_mm, own_mm = result.rest.percentile_95_mm;
   if (off_mm <= tolerance_mm) return ZippingOutcome::takes_shape;
   // Zipping cannot do better than the cloth does that was put there.
-  return off_mm <= most_over_rest * own_mm && own_mm <= most_of_its_own * tolerance_mm
-             ? ZippingOutcome::as_the_cloth_does
-             : ZippingOutcome::another_shape;
+  return off_mm <= max_over_rest * own_mm && own_mm <= mostly_its_own * tolerance_mm ? ZippingOutcome::as_the_cloth_does
+                                                                                     : ZippingOutcome::another_shape;
 }
 
 ZippingResult simulate_zipping(const RibbonDesign& design, const ZippingOptions& options, Context& context) {

@@ -123,7 +123,7 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
   }
   line["over_none"] = {{"unknown", unknown - none}, {"right", right - none}, {"wrong", wrong - none}};
   // How strong each hidden cause would have to be to show in these data at all, as the diagnosis itself says.
-  line["least_visible"] = Json::array();
+  line["min_visible_strength"] = Json::array();
   line["strength"] = Json::array();
   for (const HiddenEffect& e : effects) {
     double squares = 0;
@@ -131,7 +131,8 @@ Json one_case(const std::vector<std::string>& hidden, double level, double sigma
     line["strength"].push_back(std::sqrt(squares));
     for (const CauseFinding& f : d.causes)
       if (model.causes()[static_cast<std::size_t>(f.cause)].name == e.cause)
-        line["least_visible"].push_back(std::isfinite(f.least_visible) ? Json(f.least_visible) : Json());
+        line["min_visible_strength"].push_back(std::isfinite(f.min_visible_strength) ? Json(f.min_visible_strength)
+                                                                                     : Json());
   }
   line["trials"] = Json::array();
   for (const HeldOutTrial& trial : d.trials) {

@@ -3,7 +3,7 @@
 """Counts the lines of confusion_table and lists them: score_confusion_table.py FILE... [--engine N] prints docs/confusion_table.md.
 
 Of every case the newest engine's answer counts, or that of engine N.
-A hidden cause is visible if it is stronger than `least_visible`, which the diagnosis states without knowing the truth."""
+A hidden cause is visible if it is stronger than `min_visible_strength`, which the diagnosis states without knowing the truth."""
 import argparse
 import collections
 import json
@@ -17,7 +17,7 @@ def share(part, whole):
 
 
 def visible(case):
-    return all(least is not None and strength > least for strength, least in zip(case["strength"], case["least_visible"]))
+    return all(least is not None and strength > least for strength, least in zip(case["strength"], case["min_visible_strength"]))
 
 
 def right(case):

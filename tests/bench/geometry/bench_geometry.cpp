@@ -69,8 +69,8 @@ TriangleMesh read_obj(const std::string& path) {
 }
 
 Json shape_report(const TriangleMesh& mesh) {
-  const Eigen::VectorXd least = corner_angles(mesh).rowwise().minCoeff() * (180 / std::numbers::pi);
-  std::vector<double> sorted(least.begin(), least.end());
+  const Eigen::VectorXd minimum = corner_angles(mesh).rowwise().minCoeff() * (180 / std::numbers::pi);
+  std::vector<double> sorted(minimum.begin(), minimum.end());
   std::sort(sorted.begin(), sorted.end());
   const auto part = [&](double share) {
     return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
@@ -143,8 +143,8 @@ int main(int argc, char** argv) {
               {"seconds", bench.seconds},
               {"repair_sentences", repaired.sentences}};
   report["simplified"] = {{"vertices", small.vertex_count()},
-                          {"least_angle_degrees", shape_report(small)},
-                          {"least_angle_degrees_before", shape_report(sound)}};
+                          {"min_angle_degrees", shape_report(small)},
+                          {"min_angle_degrees_before", shape_report(sound)}};
   const SurfaceDistance off = surface_distance(sound, PointDistance(small), infinity, context);
   report["simplified"]["distance_percent_of_diagonal"] = {{"maximum", 100 * off.maximum / box.diagonal()},
                                                           {"mean", 100 * off.mean / box.diagonal()}};

@@ -36,7 +36,7 @@ double resident_bytes() {
 struct Times {
   double wall = infinity, cpu = infinity;
 };
-Times least(int rounds, const std::function<void()>& work) {
+Times minimum(int rounds, const std::function<void()>& work) {
   Times result;
   for (int i = 0; i < rounds; ++i) {
     const Stopwatch watch;
@@ -86,23 +86,23 @@ Json measured(const TriangleMesh& mesh, const std::vector<RaySet>& sets, int rou
   const double before = resident_bytes();
   rays.emplace(mesh);
   Json report{{"bytes_per_triangle", (resident_bytes() - before) / mesh.face_count()}};
-  const Times all_threads = least(rounds, [&] { rays.emplace(mesh); });
+  const Times all_threads = minimum(rounds, [&] { rays.emplace(mesh); });
   report["build_wall_seconds"] = all_threads.wall;
   report["build_cpu_seconds"] = all_threads.cpu;
   {
     const ThreadLimit one(1);
-    report["build_one_thread_seconds"] = least(rounds, [&] { rays.emplace(mesh); }).cpu;
+    report["build_one_thread_seconds"] = minimum(rounds, [&] { rays.emplace(mesh); }).cpu;
   }
   for (const RaySet& set : sets) {
     const auto microseconds = [&](const Times& times) {
       return 1e6 * times.cpu / static_cast<double>(set.rays.size());
     };
     std::size_t first = 0, all = 0;
-    report["first_hit_microseconds"][set.name] = microseconds(least(rounds, [&] {
+    report["first_hit_microseconds"][set.name] = microseconds(minimum(rounds, [&] {
       first = 0;
       for (const Ray& ray : set.rays) first += rays->first_hit(ray.origin, ray.direction, 0, infinity) ? 1 : 0;
     }));
-    report["all_hits_microseconds"][set.name] = microseconds(least(rounds, [&] {
+    report["all_hits_microseconds"][set.name] = microseconds(minimum(rounds, [&] {
       all = 0;
       for (const Ray& ray : set.rays) all += rays->all_hits(ray.origin, ray.direction, 0, infinity).size();
     }));

@@ -48,13 +48,13 @@ double peak_memory_mb() {
 
 template <class Work>
 double shortest_run_seconds(int rounds, const Work& work) {
-  double least = std::numeric_limits<double>::infinity();
+  double minimum = std::numeric_limits<double>::infinity();
   for (int k = 0; k < rounds; ++k) {
     const double before = seconds_now();
     work();
-    least = std::min(least, seconds_now() - before);
+    minimum = std::min(minimum, seconds_now() - before);
   }
-  return least;
+  return minimum;
 }
 
 /// |b - A x| / (|A| |x| + |b|), all in the norm of the largest entry (the normwise backward error: Rigal, Gaches 1967).

@@ -108,7 +108,7 @@ TEST_CASE("CornerMarks.AreFoundHoweverTheScanLies") {
           INFO(angle << " " << mirror << " " << k);
           CHECK((found.place_mm[k] - (linear * pattern.marks[k].centre_mm + shift)).norm() < 0.3);
         }
-        CHECK(found.likeness[k] > 0.6);
+        CHECK(found.similarity[k] > 0.6);
       }
     }
 }
@@ -126,7 +126,7 @@ TEST_CASE("CornerMarks.OneMayBeHiddenButNotTwo") {
   };
   hide(2);
   const FoundMarks found = find_marks(pattern, picture, frame, context);
-  CHECK(found.likeness[2] == 0);
+  CHECK(found.similarity[2] == 0);
   CHECK((found.place_mm[2] - pattern.marks[2].centre_mm).norm() < 0.6);
   hide(0);
   try {

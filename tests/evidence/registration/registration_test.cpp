@@ -207,7 +207,7 @@ TEST_CASE("Registration.AnotherPatternIsRefused") {
   other.seed = 99;
   try {
     const ScanRegistration r = register_scan(scan, other, small_options(), context);
-    FAIL_CHECK(r.likeness);
+    FAIL_CHECK(r.similarity);
   } catch (const Error& e) {
     CHECK(e.where() == "pattern");
   }

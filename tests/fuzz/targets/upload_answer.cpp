@@ -19,19 +19,19 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   machine.kind = what % 2 ? MachineKind::octoprint : MachineKind::moonraker;
   try {
     const UploadReply reply = read_reply(machine, status, answer);
-    Json told = Json::object();
+    Json read = Json::object();
     switch (what) {
       case 0:
-      case 1: told = read_uploaded(machine, data[2] % 2, reply); break;
+      case 1: read = read_uploaded(machine, data[2] % 2, reply); break;
       case 2:
-        if (read_moonraker_state(machine, reply, told)) read_moonraker_printing(reply, told);
+        if (read_moonraker_state(machine, reply, read)) read_moonraker_printing(reply, read);
         break;
-      case 3: told = read_octoprint_state(read_octoprint_version(machine, reply), reply); break;
-      case 4: read_moonraker_printing(reply, told); break;
-      case 5: told = read_octoprint_state("OctoPrint", reply); break;
+      case 3: read = read_octoprint_state(read_octoprint_version(machine, reply), reply); break;
+      case 4: read_moonraker_printing(reply, read); break;
+      case 5: read = read_octoprint_state("OctoPrint", reply); break;
       default: read_cancelled(machine, reply);
     }
-    fuzz::check(Json::parse(json_text(told)).is_object());
+    fuzz::check(Json::parse(json_text(read)).is_object());
   } catch (const Error& error) {
     fuzz::check(error.code() == ErrorCode::could_not_solve && std::string_view(error.what()).ends_with('.'));
     fuzz::check(Json::parse(json_text({{"message", error.what()}})).is_object());

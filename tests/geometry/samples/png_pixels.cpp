@@ -41,9 +41,9 @@ Box measured(const std::vector<Counted>& colours, std::size_t from, std::size_t 
   return box;
 }
 
-std::vector<Colour> palette_of(std::vector<Counted>& colours, std::size_t most) {
+std::vector<Colour> palette_of(std::vector<Counted>& colours, std::size_t maximum) {
   std::vector<Box> boxes{measured(colours, 0, colours.size())};
-  while (boxes.size() < most) {
+  while (boxes.size() < maximum) {
     const auto widest =
         std::max_element(boxes.begin(), boxes.end(), [](const Box& a, const Box& b) { return a.spread < b.spread; });
     if (widest->spread <= 0) break;
@@ -79,11 +79,11 @@ std::vector<Colour> palette_of(std::vector<Counted>& colours, std::size_t most) 
 
 std::uint8_t nearest(const std::vector<Colour>& palette, const Colour& colour) {
   std::size_t best = 0;
-  int least = 1 << 30;
+  int minimum = 1 << 30;
   for (std::size_t k = 0; k < palette.size(); ++k) {
     int d = 0;
     for (std::size_t c = 0; c < 3; ++c) d += (palette[k][c] - colour[c]) * (palette[k][c] - colour[c]);
-    if (d < least) least = d, best = k;
+    if (d < minimum) minimum = d, best = k;
   }
   return static_cast<std::uint8_t>(best);
 }

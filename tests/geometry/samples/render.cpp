@@ -32,13 +32,13 @@ Positions corner_normals(const TriangleMesh& mesh, double crease_deg) {
     face.row(f) = (b - a).cross(c - a);
     for (int k = 0; k < 3; ++k) around[index(mesh.F(f, k))].push_back(f);
   }
-  const double least = std::cos(crease_deg * std::numbers::pi / 180);
+  const double minimum = std::cos(crease_deg * std::numbers::pi / 180);
   Positions result(3 * mesh.F.rows(), 3);
   for (int f = 0; f < mesh.face_count(); ++f)
     for (int k = 0; k < 3; ++k) {
       Vec3 sum = Vec3::Zero();
       for (int g : around[index(mesh.F(f, k))])
-        if (face.row(g).dot(face.row(f)) >= least * face.row(g).norm() * face.row(f).norm()) sum += face.row(g);
+        if (face.row(g).dot(face.row(f)) >= minimum * face.row(g).norm() * face.row(f).norm()) sum += face.row(g);
       result.row(3 * f + k) = sum.normalized();
     }
   return result;

@@ -43,7 +43,7 @@ const Model& sample(const std::string& name, int vertices) {
 }
 
 /// The least on offer, a preview, a good one.
-std::vector<int> sizes() { return {least_sample_vertices, 3000, 12000}; }
+std::vector<int> sizes() { return {min_sample_vertices, 3000, 12000}; }
 
 /// Vertices of the shapes made of few planes come in steps.
 bool structured(const std::string& name) { return name == "pyramid"; }
@@ -86,8 +86,8 @@ TEST_CASE("Samples.AreEvenlyTriangulated") {
   for (const int asked : sizes()) {
     CAPTURE(asked);
     const TriangleMesh& mesh = sample(info.name, asked).mesh;
-    const Eigen::VectorXd least = corner_angles(mesh).rowwise().minCoeff() / degree;
-    std::vector<double> sorted(least.begin(), least.end());
+    const Eigen::VectorXd minimum = corner_angles(mesh).rowwise().minCoeff() / degree;
+    std::vector<double> sorted(minimum.begin(), minimum.end());
     std::sort(sorted.begin(), sorted.end());
     const double hundredth = sorted[sorted.size() / 100], median = sorted[sorted.size() / 2];
     if (std::getenv("FORMWRIGHT_SAMPLE_TABLE") != nullptr)
@@ -309,8 +309,8 @@ TEST_CASE("SampleShapes.UnknownNamesAndSizesAreRefused") {
   };
   CHECK(where("teapot", 1000) == "sample");
   CHECK(where("", 1000) == "sample");
-  CHECK(where("torus", least_sample_vertices - 1) == "vertices");
-  CHECK(where("torus", most_sample_vertices + 1) == "vertices");
+  CHECK(where("torus", min_sample_vertices - 1) == "vertices");
+  CHECK(where("torus", max_sample_vertices + 1) == "vertices");
   CHECK(where("torus", -1) == "vertices");
 }
 

@@ -110,8 +110,8 @@ TEST_CASE("DraftMap.HeightsByRays") {
   CHECK(grid.columns == 40);
   CHECK(grid.rows == 20);
   for (const double height : grid.height_mm) CHECK_THAT(height, WithinAbs(7, 1e-12));
-  CHECK_THAT(grid.least_around(0, 0), WithinAbs(7, 1e-12));
-  CHECK(grid.least_around(11, 0) == 0);
+  CHECK_THAT(grid.min_around(0, 0), WithinAbs(7, 1e-12));
+  CHECK(grid.min_around(11, 0) == 0);
 }
 
 TEST_CASE("DraftMap.Cancels") {

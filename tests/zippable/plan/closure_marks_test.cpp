@@ -86,9 +86,10 @@ TEST_CASE("ClosureMarks.TheLowerSideIsDeeperByTheTape") {
     for (const Vec2& corner : flap.outer_mm) {
       double nearest = 1e300;
       for (int v = flap.from_vertex; v != flap.to_vertex; v = design.next(v)) {
-        const Vec2 a = plan.ribbon.flat_mm[v], way = plan.ribbon.flat_mm[design.next(v)] - a;
-        nearest = std::min(nearest,
-                           (corner - a - std::clamp((corner - a).dot(way) / way.squaredNorm(), 0.0, 1.0) * way).norm());
+        const Vec2 a = plan.ribbon.flat_mm[v], segment = plan.ribbon.flat_mm[design.next(v)] - a;
+        nearest = std::min(
+            nearest,
+            (corner - a - std::clamp((corner - a).dot(segment) / segment.squaredNorm(), 0.0, 1.0) * segment).norm());
       }
       CHECK(nearest <= 2 * 16 + 1e-9);  // at a bend, where the moved edges meet
     }
@@ -101,9 +102,9 @@ TEST_CASE("ClosureMarks.TheLowerSideIsDeeperByTheTape") {
         if (stretch.side == ClosureSide::hook && stretch.piece == edge.piece)
           for (std::size_t k = 0; k + 1 < stretch.vertices.size(); ++k) {
             const Vec2 a = plan.ribbon.flat_mm[stretch.vertices[k]],
-                       way = plan.ribbon.flat_mm[stretch.vertices[k + 1]] - a;
-            nearest =
-                std::min(nearest, (p - a - std::clamp((p - a).dot(way) / way.squaredNorm(), 0.0, 1.0) * way).norm());
+                       segment = plan.ribbon.flat_mm[stretch.vertices[k + 1]] - a;
+            nearest = std::min(
+                nearest, (p - a - std::clamp((p - a).dot(segment) / segment.squaredNorm(), 0.0, 1.0) * segment).norm());
           }
       CHECK(nearest >= 0.98 * 16);
       CHECK(nearest <= 1.25 * 16);  // at a bend, where the moved edges meet

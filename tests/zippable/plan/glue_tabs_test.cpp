@@ -93,7 +93,7 @@ TEST_CASE("GlueTabs.GiveWayToTheNextWinding") {
   CHECK(made.shortened > 0);
   int full = 0;
   for (const GlueTab& tab : made.tabs) {
-    const Vec2 way = (tab.foot_to - tab.foot_from).normalized(), out(way.y(), -way.x());
+    const Vec2 along = (tab.foot_to - tab.foot_from).normalized(), out(along.y(), -along.x());
     full += out.dot(tab.corner_from - tab.foot_from) > 4.9;
     for (Eigen::Index f = 0; f < design.F.rows(); ++f) {
       int nearest = 1000;

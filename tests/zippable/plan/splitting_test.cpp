@@ -89,7 +89,7 @@ TEST_CASE("Splitting.PiecesOfSamplesNeitherOverlapNorLoseTriangles") {
 TEST_CASE("Splitting.CrumbsGrowAtTheirNeighboursCost") {
   // A little more than two turns: two whole rings, and what would be a scrap.
   Context context;
-  const double least_mm2 = 300;
+  const double min_area_mm2 = 300;
   const FlatDesign strip = test::strip(810, 12, 203);
   const std::vector<Vec2> flat = bent(strip, 70, 12, 2.02);
   const auto smallest = [&](const Splitting& splitting) {
@@ -100,9 +100,9 @@ TEST_CASE("Splitting.CrumbsGrowAtTheirNeighboursCost") {
     return *std::min_element(area.begin(), area.end());
   };
   const Splitting with_crumb = split_ribbon(strip.F, flat, any_size, 0.5, 0, context),
-                  swept = split_ribbon(strip.F, flat, any_size, 0.5, least_mm2, context);
-  CHECK(smallest(with_crumb) < least_mm2);
-  CHECK(smallest(swept) >= least_mm2);
+                  swept = split_ribbon(strip.F, flat, any_size, 0.5, min_area_mm2, context);
+  CHECK(smallest(with_crumb) < min_area_mm2);
+  CHECK(smallest(swept) >= min_area_mm2);
   CHECK(swept.piece_count == with_crumb.piece_count);
   CHECK(swept.moved_splits == 1);
   REQUIRE(swept.splits.size() == 2u);

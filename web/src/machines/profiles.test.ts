@@ -71,15 +71,15 @@ describe('machine profiles', () => {
     it('are told of each other, and each keeps the one it uses', () => {
       const [memory, tabs] = [new Memory(), new EventTarget()];
       const [one, two] = [new ProfileStore(memory), new ProfileStore(memory, tabs)];
-      const told = () =>
+      const notify = () =>
         tabs.dispatchEvent(Object.assign(new Event('storage'), { key: 'formwright.machines' }));
       one.put(laser);
-      told();
+      notify();
       expect(two.profiles.value.map(({ id }) => id)).toContain('a');
       expect(two.current.id).toBe('practice');
       two.choose('a');
       one.remove('a');
-      told();
+      notify();
       expect(one.profiles.value.map(({ id }) => id)).not.toContain('a');
       expect(two.current).toEqual(laser); // a job may be under way on it
     });

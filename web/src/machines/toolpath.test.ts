@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { describe, expect, it } from 'vitest';
 import type { ToolPath } from './toolpath';
-import { lastAtMost, layersOf, placeAt, readToolPath, timeOfLine, workBounds } from './toolpath';
+import { lastNotAbove, layersOf, placeAt, readToolPath, timeOfLine, workBounds } from './toolpath';
 
 const path = {
   version: 1,
@@ -70,8 +70,8 @@ describe('a tool path', () => {
     expect(() => readToolPath('{"version":2,"paths":[]}')).toThrow(/another version/);
   });
   it('searches ascending numbers', () => {
-    expect(lastAtMost([1, 2, 2, 5], 2)).toBe(2);
-    expect(lastAtMost([1, 2], 0)).toBe(-1);
-    expect(lastAtMost([], 3)).toBe(-1);
+    expect(lastNotAbove([1, 2, 2, 5], 2)).toBe(2);
+    expect(lastNotAbove([1, 2], 0)).toBe(-1);
+    expect(lastNotAbove([], 3)).toBe(-1);
   });
 });

@@ -86,7 +86,7 @@ export function workBounds(toolPath: ToolPath): Rectangle | null {
 }
 
 /** The index of the last of ascending `values` that is at most `value`; -1 where all are more. */
-export function lastAtMost(values: ArrayLike<number>, value: number): number {
+export function lastNotAbove(values: ArrayLike<number>, value: number): number {
   let [low, high] = [0, values.length];
   while (low < high) {
     const middle = (low + high) >> 1;
@@ -109,10 +109,10 @@ export interface PathPlace {
 /** Where the head is `time_s` after the start; null for an empty path. */
 export function placeAt(toolPath: ToolPath, time_s: number): PathPlace | null {
   const starts = startTimes(toolPath);
-  const index = Math.max(0, lastAtMost(starts, time_s));
+  const index = Math.max(0, lastNotAbove(starts, time_s));
   const path = toolPath.paths[index];
   if (path === undefined || path.times_s.length === 0) return null;
-  const point = Math.max(0, lastAtMost(path.times_s, time_s));
+  const point = Math.max(0, lastNotAbove(path.times_s, time_s));
   const next = Math.min(point + 1, path.times_s.length - 1);
   const [from = 0, to = 0] = [path.times_s[point], path.times_s[next]];
   const fraction = to > from ? Math.min(1, Math.max(0, (time_s - from) / (to - from))) : 0;
@@ -134,7 +134,7 @@ function startTimes(toolPath: ToolPath): number[] {
 
 /** The path that is run at a time. */
 export const partAt = (toolPath: ToolPath, time_s: number): ToolPathPart | undefined =>
-  toolPath.paths[Math.max(0, lastAtMost(startTimes(toolPath), time_s))];
+  toolPath.paths[Math.max(0, lastNotAbove(startTimes(toolPath), time_s))];
 
 /** When the machine has done this line of the job, of the stage's own where there are several. */
 export function timeOfLine(toolPath: ToolPath, line: number, stage = 0): number {
@@ -143,7 +143,7 @@ export function timeOfLine(toolPath: ToolPath, line: number, stage = 0): number 
   const own = stages ? paths.slice(stages[stage]?.first_path, stages[stage + 1]?.first_path) : paths;
   for (const { lines, times_s } of own) {
     if ((lines[0] ?? 0) > line) break;
-    time = times_s[Math.max(0, lastAtMost(lines, line))] ?? time;
+    time = times_s[Math.max(0, lastNotAbove(lines, line))] ?? time;
   }
   return time;
 }

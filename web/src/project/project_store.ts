@@ -175,18 +175,18 @@ export class ProjectStore {
   async #save(): Promise<void> {
     const { document } = this.#history;
     const stored: Stored = { document, modified_unix_s: now_s() };
-    const told = (state: SaveState) => {
+    const report = (state: SaveState) => {
       if (this.#history.document.id === document.id) this.saveState.value = state;
     };
-    told({ state: 'saving' });
+    report({ state: 'saving' });
     try {
       await this.blobs.saveHeld(blobsOf(document)); // what is stored never names what is not
       await this.#storage.writeProject(document.id, stored);
       this.#stored.set(document.id, stored);
       this.#list();
-      told({ state: this.#history.document === document ? 'saved' : 'unsaved' });
+      report({ state: this.#history.document === document ? 'saved' : 'unsaved' });
     } catch (thrown) {
-      told({ state: 'failed', message: storageSentence(thrown) });
+      report({ state: 'failed', message: storageSentence(thrown) });
     }
   }
   async #saveNew(): Promise<void> {

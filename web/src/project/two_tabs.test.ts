@@ -41,8 +41,8 @@ class Browser {
   async tab(id: string | null = null) {
     const locks = new ProjectLocks(this.locks, 50);
     const store = new ProjectStore(this.storage, new BlobStore(this.storage), locks);
-    const told = await store.load(id);
-    return { store, told };
+    const warning = await store.load(id);
+    return { store, warning };
   }
 }
 
@@ -145,8 +145,8 @@ describe('one project and two tabs', () => {
   it('the second begins with a new project, and says why', async () => {
     const browser = new Browser(new Locks());
     const a = await lion(browser);
-    const { store: b, told } = await browser.tab(idOf(a));
-    expect(told).toMatch(/“Lion” is open in another tab/);
+    const { store: b, warning } = await browser.tab(idOf(a));
+    expect(warning).toMatch(/“Lion” is open in another tab/);
     expect(b.isBlank.value).toBe(true);
     expect(idOf(b)).not.toBe(idOf(a));
   });
@@ -173,8 +173,8 @@ describe('one project and two tabs', () => {
     const a = await lion(browser);
     const again = browser.tab(idOf(a));
     setTimeout(() => void a.create(), 20);
-    const { store, told } = await again;
-    expect(told).toBeNull();
+    const { store, warning } = await again;
+    expect(warning).toBeNull();
     expect(store.document.value.name).toBe('Lion');
   });
 
@@ -205,8 +205,8 @@ describe('one project and two tabs', () => {
     for (const locks of [undefined, refusing]) {
       const browser = new Browser(locks);
       const a = await lion(browser);
-      const { store: b, told } = await browser.tab(idOf(a));
-      expect(told).toBeNull();
+      const { store: b, warning } = await browser.tab(idOf(a));
+      expect(warning).toBeNull();
       expect(idOf(b)).toBe(idOf(a));
     }
   });

@@ -150,7 +150,7 @@ void declare_thermoform_parameters(const Json& nominal, bool fit_mould_place, co
     causes.push_back(std::move(cause));
   }
   // Liberties of the simulation. Their sensitivities are what another equally good simulation would do.
-  const auto liberty = [&](const char* name, const char* label, double prior_sd) {
+  const auto discrepancy = [&](const char* name, const char* label, double prior_sd) {
     ModelParameter p;
     p.name = name;
     p.label = label;
@@ -160,10 +160,10 @@ void declare_thermoform_parameters(const Json& nominal, bool fit_mould_place, co
     p.probe = 1;
     parameters.push_back(p);
   };
-  liberty("other_elastic_law", "Other elastic law", 1);
-  liberty("other_yield_rule", "Other yield rule", 0.3);
-  liberty("slower_vacuum", "Vacuum builds up twice as slowly", 1);
-  liberty("finer_sheet", "Twice as many triangles", 1.5);
+  discrepancy("other_elastic_law", "Other elastic law", 1);
+  discrepancy("other_yield_rule", "Other yield rule", 0.3);
+  discrepancy("slower_vacuum", "Vacuum builds up twice as slowly", 1);
+  discrepancy("finer_sheet", "Twice as many triangles", 1.5);
 }
 
 }  // namespace formwright

@@ -13,9 +13,9 @@ namespace formwright {
 namespace {
 
 constexpr std::size_t fewest_points = 30;
-constexpr int fewest_triangles = 1000;    // of the cheaper model
-constexpr int most_triangles = 5000;      // of a model that has a finer one
-constexpr std::size_t most_sheets = 200;  // kept at a time; about 0.2 MB each
+constexpr int fewest_triangles = 1000;   // of the cheaper model
+constexpr int max_triangles = 5000;      // of a model that has a finer one
+constexpr std::size_t max_sheets = 200;  // kept at a time; about 0.2 MB each
 
 std::string figure(double value) {
   char text[32];
@@ -110,13 +110,13 @@ void check_measured_object(const FormedObject& object) {
   int outside = 0;
   double far = 0;
   const double turn = object.setup.sheet_turned ? -1 : 1;
-  std::vector<double> offsets, other_way;
+  std::vector<double> offsets, alternative;
   for (const MeasuredPoint& p : object.points) {
     if (std::abs(p.sheet_mm.x()) > 0.5 * options.sheet_x_mm + 1 ||
         std::abs(p.sheet_mm.y()) > 0.5 * options.sheet_y_mm + 1)
       ++outside;
     offsets.push_back((p.place_mm.head<2>() - turn * p.sheet_mm).norm());
-    other_way.push_back((p.place_mm.head<2>() + turn * p.sheet_mm).norm());
+    alternative.push_back((p.place_mm.head<2>() + turn * p.sheet_mm).norm());
   }
   if (2 * outside > static_cast<int>(object.points.size()))
     refuse("most of the measured points lie beyond the sheet of " + figure(options.sheet_x_mm) + " x " +
@@ -127,7 +127,7 @@ void check_measured_object(const FormedObject& object) {
     return *middle;
   };
   far = middle_of(offsets);
-  if (far > 0.35 * sheet_side && middle_of(other_way) < 0.35 * sheet_side)
+  if (far > 0.35 * sheet_side && middle_of(alternative) < 0.35 * sheet_side)
     refuse(object.setup.sheet_turned
                ? "the points lie as on a sheet that was not turned: take “sheet_turned” out of setup.json."
                : "the points lie as on a sheet turned by half a turn: add \"sheet_turned\": true to setup.json.");
@@ -145,8 +145,8 @@ void check_mould_of(const FormedObject& object) {
   for (const MeasuredPoint& p : object.points) heights.push_back(p.place_mm.z() - plate);
   const auto high = heights.begin() + static_cast<std::ptrdiff_t>(0.98 * static_cast<double>(heights.size() - 1));
   std::nth_element(heights.begin(), high, heights.end());
-  constexpr double least_height_mm = 5;  // below that the sheet's thickness and the clamp's height count as well
-  if (*high < least_height_mm || top <= 0) return;
+  constexpr double min_height_mm = 5;  // below that the sheet's thickness and the clamp's height count as well
+  if (*high < min_height_mm || top <= 0) return;
   for (const UnitName& unit : other_units)
     if (std::abs(std::log(top / *high / unit.factor)) < 0.5)
       throw Error(ErrorCode::invalid_input, "object",
@@ -213,7 +213,7 @@ ThermoformModel::ThermoformModel(std::vector<FormedObject> objects, ThermoformMo
 }
 
 const ForwardModel* ThermoformModel::finer() const {
-  if (options_.triangles > most_triangles) return nullptr;
+  if (options_.triangles > max_triangles) return nullptr;
   const std::scoped_lock lock(mutex_);
   if (!finer_) {
     ThermoformModelOptions fine = options_;
@@ -325,7 +325,7 @@ std::shared_ptr<const FormedSheet> ThermoformModel::formed(int object, const Eig
     if (!sheet) throw Error(ErrorCode::could_not_solve, "", "The simulation gave no finite sheet.");
   }
   const std::scoped_lock lock(mutex_);
-  if (sheets_.size() >= most_sheets) sheets_.clear();
+  if (sheets_.size() >= max_sheets) sheets_.clear();
   return sheets_.emplace(key, std::move(sheet)).first->second;
 }
 

@@ -147,9 +147,9 @@ void ErodedTerrain::erode(int steps, double time_step, Context& context) {
 
 ErodedTerrain::Sample ErodedTerrain::at(double x, double z) const {
   const double gx = (x / side_ + 0.5) * (n_ - 1), gz = (z / side_ + 0.5) * (n_ - 1);
-  const double most = n_ - 1;
+  const double maximum = n_ - 1;
   const auto cell_of = [&](double g, int& i, double& t) {
-    const double c = clamp(g, 0, most - 1e-9);
+    const double c = clamp(g, 0, maximum - 1e-9);
     i = static_cast<int>(c);
     t = c - i;
   };

@@ -11,10 +11,10 @@ namespace formwright::samples {
 /// Polynomial smooth minimum: differs from min(a, b) only where |a - b| < softness, by softness/4 at most.
 inline double smooth_min(double a, double b, double softness) {
   const double gap = std::fabs(a - b);
-  const double least = a < b ? a : b;
-  if (gap >= softness) return least;
+  const double minimum = a < b ? a : b;
+  if (gap >= softness) return minimum;
   const double h = 1 - gap / softness;
-  return least - h * h * softness * 0.25;
+  return minimum - h * h * softness * 0.25;
 }
 inline double smooth_max(double a, double b, double softness) { return -smooth_min(-a, -b, softness); }
 

@@ -25,9 +25,9 @@ double cotangent(const Point& apex, const Point& p, const Point& q) {
 Point normal_of(const Point& a, const Point& b, const Point& c) { return cross(b - a, c - a); }
 
 // a . b > least |a| |b|
-bool agree(const Point& a, const Point& b, double least) {
+bool agree(const Point& a, const Point& b, double minimum) {
   const double d = dot(a, b), product = length2(a) * length2(b);
-  return d > 0 && d * d > least * least * product;
+  return d > 0 && d * d > minimum * minimum * product;
 }
 
 class Remesher {
@@ -122,8 +122,8 @@ class Remesher {
 
   Point limited(const Point& from, const Point& to) const {
     const Point step = to - from;
-    const double l2 = length2(step), most = 0.3 * scale_;
-    return l2 <= most * most ? to : from + step * (most / std::sqrt(l2));
+    const double l2 = length2(step), maximum = 0.3 * scale_;
+    return l2 <= maximum * maximum ? to : from + step * (maximum / std::sqrt(l2));
   }
 
   void collapse_short(double factor) {
@@ -322,8 +322,8 @@ class Remesher {
           if (!s_.vertex_alive(v) || v == ghost_) continue;
           const Point p = s_.point(v);
           Point q = shape_.project(p, s_.patches(v), step * edge_, slopes_[i]);
-          const double most = 0.1 * edge_;
-          if (distance2(p, q) > most * most) q = p + (q - p) * (most / length(q - p));
+          const double maximum = 0.1 * edge_;
+          if (distance2(p, q) > maximum * maximum) q = p + (q - p) * (maximum / length(q - p));
           s_.move(v, q);
         }
       });

@@ -93,18 +93,19 @@ OperationResult run(const OperationCall& call) {
     // The most alike first; more than two would only confuse.
     std::vector<NotSeparable> pairs = diagnosis.not_separable;
     std::stable_sort(pairs.begin(), pairs.end(),
-                     [](const NotSeparable& a, const NotSeparable& b) { return a.likeness > b.likeness; });
+                     [](const NotSeparable& a, const NotSeparable& b) { return a.similarity > b.similarity; });
     if (pairs.size() > 2) pairs.resize(2);
     const auto span = call.context.span(0.85, 0.95, "Looking for a measurement that distinguishes them");
     std::vector<ProposedMeasurement> proposals;
     if (o.separate) proposals = proposed_measurements(model, options);
     for (const NotSeparable& pair : pairs) {
-      SeparatedPair separated{pair, "", pair.likeness};
+      SeparatedPair separated{pair, "", pair.similarity};
       const Separation found = o.separate ? best_separation(bag, diagnosis, pair, proposals,
                                                             std::max(diagnosis.noise.front().sigma, 1e-3), call.context)
                                           : Separation{};
       if (found.proposal >= 0)
-        separated.what = proposals[static_cast<std::size_t>(found.proposal)].what, separated.likeness = found.likeness;
+        separated.what = proposals[static_cast<std::size_t>(found.proposal)].what,
+        separated.similarity = found.similarity;
       report.separations.push_back(std::move(separated));
     }
   }

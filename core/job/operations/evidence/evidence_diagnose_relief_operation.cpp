@@ -62,7 +62,7 @@ OperationResult run(const OperationCall& call) {
     diagnosis = diagnose(bag, options, call.context);
   }
   DiagnosisReport report{model, diagnosis, {}, std::nullopt, {}, {}, ""};
-  for (const NotSeparable& pair : diagnosis.not_separable) report.separations.push_back({pair, "", pair.likeness});
+  for (const NotSeparable& pair : diagnosis.not_separable) report.separations.push_back({pair, "", pair.similarity});
   if (!unseen.empty()) {
     for (const PhotographedRelief& relief : unseen) report.unseen_names.push_back(relief.name);
     const ReliefModel other(std::move(unseen));

@@ -148,14 +148,14 @@ void report_registration(Json& report, const ScanRegistration& r, const Calibrat
   report["coordinates"] = r.in_machine_coordinates ? "rim" : "scan";
   report["rim_rms_mm"] = r.rim_rms_mm ? Json(*r.rim_rms_mm) : Json(nullptr);
   report["rim_scale"] = r.rim_scale ? Json(*r.rim_scale) : Json(nullptr);
-  report["corner_likeness"] = r.marks.likeness;
+  report["corner_likeness"] = r.marks.similarity;
   report["corner_px"] = Json::array();
   for (const std::optional<Vec2>& px : r.corner_px)
     report["corner_px"].push_back(px ? Json{px->x(), px->y()} : Json(nullptr));
   report["corner_residual_mm"] = r.corner_residual_mm;
   report["colour_rms_levels"] = r.colours.rms_levels;
   report["colour_error_levels"] = r.colour_error_levels;
-  report["likeness"] = r.likeness;
+  report["likeness"] = r.similarity;
   report["blur_px"] = r.blur_px;
   report["pixel_mm"] = pattern.sheet_mm.maxCoeff() / options.picture_px;
   report["displacement_first_mm"] = r.first_displacement_rms_mm;

@@ -15,7 +15,7 @@
 namespace formwright {
 namespace {
 
-constexpr double most_nodes = 16e6;
+constexpr double max_nodes = 16e6;
 constexpr const char* gcode_media_type = "text/x-gcode";
 
 std::vector<InputInfo> inputs() {
@@ -85,13 +85,13 @@ HeightMap height_map_of(const OperationCall& call, const MillOptions& options) {
     moved.col(0) = mesh.V.col(0).array() - (low.x() + high.x()) / 2;
     moved.col(1) = mesh.V.col(1).array() - (low.y() + high.y()) / 2;
     moved.col(2) = low.z() - mesh.V.col(2).array();
-    if (scale * scale * size.x() * size.y() > most_nodes * options.pixel_mm * options.pixel_mm)
+    if (scale * scale * size.x() * size.y() > max_nodes * options.pixel_mm * options.pixel_mm)
       throw Error(ErrorCode::invalid_input, "pixel_mm",
                   "The grid would have over 16 million points: raise the grid spacing or lower the width.");
     map = make_height_map(moved, mesh.F, scale, {scale * size.x(), scale * size.y()}, options.pixel_mm,
                           scale * size.z(), call.context);
   }
-  if (static_cast<double>(map.columns) * map.rows > most_nodes)
+  if (static_cast<double>(map.columns) * map.rows > max_nodes)
     throw Error(ErrorCode::invalid_input, "model", "The height map has over 16 million pixels: make it smaller.");
   return map;
 }

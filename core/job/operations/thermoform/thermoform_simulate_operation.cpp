@@ -92,9 +92,9 @@ std::string figure(double value, int digits = 2) {
 Json warnings(const FormedResult& result, const ThermoformOptions& o, bool watertight) {
   Json list = Json::array();
   const double thin = 0.3 * o.sheet_thickness_mm;
-  if (result.least_thickness_mm < thin)
+  if (result.min_thickness_mm < thin)
     list.push_back(
-        "The sheet thins to " + figure(result.least_thickness_mm) +
+        "The sheet thins to " + figure(result.min_thickness_mm) +
         " mm, less than a third of its thickness: it may tear there. A lower model, rounder edges or a thicker sheet help.");
   if (result.webbing_area_mm2 > 0.005 * (result.formed_area_mm2 + result.unformed_area_mm2))
     list.push_back("Parts of the sheet are squeezed (" + figure(result.webbing_area_mm2 / 100) +
@@ -163,7 +163,7 @@ OperationResult run(const OperationCall& call) {
   report["stopped_by"] = formed.reached_time_limit    ? "time_limit"
                          : formed.touching_share >= 1 ? "all_touching"
                                                       : "at_rest";
-  report["thickness_min_mm"] = formed.least_thickness_mm;
+  report["thickness_min_mm"] = formed.min_thickness_mm;
   report["thickness_mean_mm"] = formed.mean_thickness_mm;
   report["stretch_max"] = sheet.stretch.maxCoeff();
   report["formed_area_mm2"] = formed.formed_area_mm2;

@@ -18,8 +18,8 @@ double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(
 std::vector<Vec2> miters(const std::vector<Vec2>& points) {
   std::vector<Vec2> result;
   const auto normal = [&](std::size_t i) {
-    const Vec2 way = points[i + 1] - points[i];
-    return Vec2(Vec2(-way.y(), way.x()) / std::max(way.norm(), 1e-12));
+    const Vec2 segment = points[i + 1] - points[i];
+    return Vec2(Vec2(-segment.y(), segment.x()) / std::max(segment.norm(), 1e-12));
   };
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec2 before = normal(i > 0 ? i - 1 : 0), after = normal(i + 1 < points.size() ? i : i - 1),
@@ -30,13 +30,13 @@ std::vector<Vec2> miters(const std::vector<Vec2>& points) {
 }
 
 double distance_to_mm(const std::vector<Vec2>& line, const Vec2& p) {
-  double least = 1e300;
+  double minimum = 1e300;
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-    const Vec2 way = line[i + 1] - line[i];
-    const double t = std::clamp((p - line[i]).dot(way) / std::max(way.squaredNorm(), 1e-24), 0.0, 1.0);
-    least = std::min(least, (p - line[i] - t * way).norm());
+    const Vec2 segment = line[i + 1] - line[i];
+    const double t = std::clamp((p - line[i]).dot(segment) / std::max(segment.squaredNorm(), 1e-24), 0.0, 1.0);
+    minimum = std::min(minimum, (p - line[i] - t * segment).norm());
   }
-  return least;
+  return minimum;
 }
 
 class Marking {
@@ -98,13 +98,13 @@ class Marking {
         const double from = run.along_mm[k], to = run.along_mm[k + 1], share = (along - from) / (to - from);
         if (!(share >= -1e-9 && share <= 1 + 1e-9)) continue;
         const int a = design_.vertex_of(run, k), b = design_.next(a);
-        const Vec2 way = flat_[b] - flat_[a];
-        const double length = way.norm(), whole = design_.length_in_space_mm(a, b), lost = whole - length;
+        const Vec2 segment = flat_[b] - flat_[a];
+        const double length = segment.norm(), whole = design_.length_in_space_mm(a, b), lost = whole - length;
         if (!(length > 0)) continue;
         const bool a_moved = design_.boundary[a].sample >= 0, b_moved = design_.boundary[b].sample >= 0;
         const double at = share * whole - (a_moved && b_moved ? 0.5 * lost : a_moved ? lost : 0.0);
         if (at < -1e-6 * whole || at > length + 1e-6 * whole) continue;
-        const Vec2 u = way / length;
+        const Vec2 u = segment / length;
         return SideMark{flat_[a] + std::clamp(at, 0.0, length) * u, u, Vec2(-u.y(), u.x()), a};
       }
     return std::nullopt;
@@ -177,7 +177,7 @@ class Marking {
 
   /// Tapered at 45 degrees from both ends, and less deep wherever it would meet its own piece, another flap or itself.
   void add_flap(const ClosureStretch& stretch) {
-    constexpr int most_rounds = 8;
+    constexpr int max_rounds = 8;
     const std::vector<Vec2> edge = line_of(stretch);
     const double length = std::inner_product(edge.begin() + 1, edge.end(), edge.begin(), 0.0, std::plus<>(),
                                              [](const Vec2& a, const Vec2& b) { return (a - b).norm(); });
@@ -211,8 +211,8 @@ class Marking {
     };
     const auto fails = [&](std::size_t j) {
       const std::vector<Triangle> mine = triangles(j);
-      const Vec2 way = foot[j + 1] - foot[j];
-      if (!mine.empty() && !((outer(j + 1) - outer(j)).dot(way) > 0.05 * way.squaredNorm())) return true;
+      const Vec2 segment = foot[j + 1] - foot[j];
+      if (!mine.empty() && !((outer(j + 1) - outer(j)).dot(segment) > 0.05 * segment.squaredNorm())) return true;
       const auto meets = [&](const Triangle& other, double touching_mm) {
         return std::any_of(mine.begin(), mine.end(),
                            [&](const Triangle& t) { return triangles_overlap(t, other, touching_mm); });
@@ -236,13 +236,13 @@ class Marking {
           if (meets(t, i + 2 < j ? -options_.clearance_mm : 1e-7)) return true;
       return false;
     };
-    for (int round = 0; round <= most_rounds; ++round) {
+    for (int round = 0; round <= max_rounds; ++round) {
       std::vector<char> bad(foot.size(), 0);
       for (std::size_t j = 0; j + 1 < foot.size(); ++j)
         if (fails(j)) bad[j] = bad[j + 1] = 1;
       if (std::none_of(bad.begin(), bad.end(), [](char b) { return b; })) break;
       for (std::size_t j = 0; j < foot.size(); ++j)
-        if (bad[j]) deep[j] = round + 2 > most_rounds ? 0 : deep[j] / 2;
+        if (bad[j]) deep[j] = round + 2 > max_rounds ? 0 : deep[j] / 2;
     }
     EdgeFlap flap{stretch.piece, stretch.vertices.front(), stretch.vertices.back(), {}, {}};
     for (std::size_t j = 0; j + 1 < foot.size(); ++j) {

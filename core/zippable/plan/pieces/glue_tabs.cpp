@@ -42,9 +42,9 @@ class TabMaker {
   /// A tab on the stretch of the zipper, on one piece on either side; two on its halves where the edge is too curved
   /// for one.
   void add(const Seam& seam, double from_mm, double to_mm, int depth) {
-    constexpr double least_mm = 3;
-    constexpr int most_halvings = 5;
-    if (to_mm - from_mm < least_mm) {
+    constexpr double min_mm = 3;
+    constexpr int max_halvings = 5;
+    if (to_mm - from_mm < min_mm) {
       ++result.left_out;
       return;
     }
@@ -53,7 +53,7 @@ class TabMaker {
         GlueTab tab = foot(left, from_mm, to_mm);
         tab.piece = left ? seam.piece : seam.other_piece;
         const auto outward = bulge_mm(tab);
-        if (outward > 0.15 * options_.depth_mm && depth < most_halvings) continue;
+        if (outward > 0.15 * options_.depth_mm && depth < max_halvings) continue;
         if (!stands(tab, share * options_.depth_mm, std::max(outward, 0.0))) continue;
         result.shortened += share < 1;
         for (const Triangle& triangle : triangles_of(tab))
@@ -61,7 +61,7 @@ class TabMaker {
         result.tabs.push_back(tab);
         return;
       }
-    if (depth < most_halvings && (to_mm - from_mm) / 2 >= least_mm) {
+    if (depth < max_halvings && (to_mm - from_mm) / 2 >= min_mm) {
       const double middle = (from_mm + to_mm) / 2;
       add(seam, from_mm, middle, depth + 1);
       add(seam, middle, to_mm, depth + 1);
@@ -99,10 +99,10 @@ class TabMaker {
 
   /// Gives the tab its corners; does it stand clear of everything on its piece?
   bool stands(GlueTab& tab, double depth, double bulge) const {
-    const Vec2 way = tab.foot_to - tab.foot_from;
-    const double length = way.norm();
+    const Vec2 segment = tab.foot_to - tab.foot_from;
+    const double length = segment.norm();
     if (!(length > 1e-6) || bulge > 0.3 * depth) return false;
-    const Vec2 u = way / length, out(u.y(), -u.x());
+    const Vec2 u = segment / length, out(u.y(), -u.x());
     const double taper = std::min(depth, length / 4);
     const auto at = [&](bool from, double height) {
       return Vec2((from ? tab.foot_from : tab.foot_to) + height * out + (from ? 1 : -1) * taper * height / depth * u);

@@ -32,9 +32,9 @@ class Side {
   }
 
   SideMark mark(const ZipperPlace& place) const {
-    const Vec2 way =
+    const Vec2 segment =
         (left_ ? 1 : -1) * (at(place.after) - at(place.before));  // the boundary runs back along the right side
-    const Vec2 along = way.norm() > 0 ? Vec2(way.normalized()) : Vec2(1, 0);
+    const Vec2 along = segment.norm() > 0 ? Vec2(segment.normalized()) : Vec2(1, 0);
     return {at(place.before) + place.share * (at(place.after) - at(place.before)), along, Vec2(-along.y(), along.x()),
             vertex_[left_ ? place.before : place.after]};
   }

@@ -157,11 +157,11 @@ class PieceMaker {
       double done = 0;
       int written = 0;
       for (std::size_t i = 0; i + 1 < path.points_mm.size() && written < labels; ++i) {
-        const Vec2 way = path.points_mm[i + 1] - path.points_mm[i];
-        const double step = way.norm(), wanted = length * (written + 0.5) / labels;
+        const Vec2 segment = path.points_mm[i + 1] - path.points_mm[i];
+        const double step = segment.norm(), wanted = length * (written + 0.5) / labels;
         // Behind the numbers, which stand 2.4 mm from the edge.
         if (done + step >= wanted && step > 0)
-          text(stretch.piece, path.points_mm[i] + (wanted - done) / step * way, way / step,
+          text(stretch.piece, path.points_mm[i] + (wanted - done) / step * segment, segment / step,
                closure_words(stretch.cut, stretch.side, closures.tape), 3.4 + text_height_mm_),
               ++written;
         done += step;

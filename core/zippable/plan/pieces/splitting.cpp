@@ -69,8 +69,8 @@ class Overlaps {
     int corners = std::numeric_limits<int>::max();
     for (int j = 0; j < 3; ++j)
       for (int k = 0; k < 3; ++k) {
-        const double way = std::abs(along_[F_(f, j)] - along_[F_(g, k)]);
-        nearest = std::min({nearest, way, along_.back() - way});
+        const double gap = std::abs(along_[F_(f, j)] - along_[F_(g, k)]);
+        nearest = std::min({nearest, gap, along_.back() - gap});
         const int count = std::abs(F_(f, j) - F_(g, k));
         corners = std::min({corners, count, static_cast<int>(flat_.size()) - count});
       }
@@ -178,11 +178,11 @@ Splitting split_towards(int root, const Adjacency& adjacency, const Overlaps& ov
 class CrumbSweeper {
  public:
   CrumbSweeper(const Adjacency& adjacency, const Overlaps& overlaps, const std::function<bool(const Polygon&)>& fits,
-               double least_mm2, Splitting& splitting)
+               double min_area_mm2, Splitting& splitting)
       : adjacency_(adjacency),
         overlaps_(overlaps),
         fits_(fits),
-        least_mm2_(least_mm2),
+        min_area_mm2_(min_area_mm2),
         splitting_(splitting),
         pieces_(std::size_t(splitting.piece_count)),
         area_mm2_(pieces_.size(), 0.0) {
@@ -192,21 +192,21 @@ class CrumbSweeper {
   void sweep(Context& context) {
     for (int piece = 0; piece < splitting_.piece_count; ++piece) {
       context.check_cancelled();
-      if (area_mm2_[piece] >= least_mm2_ || merge(piece)) continue;
+      if (area_mm2_[piece] >= min_area_mm2_ || merge(piece)) continue;
       // At every split of it in turn: half-edges of its triangles that lead to another piece.
-      for (const int h : ways_out(piece))
+      for (const int h : exits(piece))
         if (grow(piece, h)) break;
     }
     if (splitting_.merged_crumbs + splitting_.moved_splits > 0) renumber();
   }
 
  private:
-  std::vector<int> ways_out(int piece) const {
-    std::vector<int> ways;
+  std::vector<int> exits(int piece) const {
+    std::vector<int> gaps;
     for (const int f : pieces_[piece].faces)
       for (int h = 3 * f; h < 3 * f + 3; ++h)
-        if (const int o = adjacency_.opposite(h); o >= 0 && splitting_.piece_of_face[o / 3] != piece) ways.push_back(h);
-    return ways;
+        if (const int o = adjacency_.opposite(h); o >= 0 && splitting_.piece_of_face[o / 3] != piece) gaps.push_back(h);
+    return gaps;
   }
 
   void add(int piece, int face) {
@@ -227,7 +227,7 @@ class CrumbSweeper {
   }
 
   bool merge(int piece) {
-    for (const int h : ways_out(piece)) {
+    for (const int h : exits(piece)) {
       const int other = splitting_.piece_of_face[adjacency_.opposite(h) / 3];
       if (!may_be_one(pieces_[piece], pieces_[other])) continue;
       for (const int face : pieces_[piece].faces) add(other, face);
@@ -245,18 +245,18 @@ class CrumbSweeper {
     Growing grown = pieces_[piece];
     double area = area_mm2_[piece], rest = area_mm2_[other];
     std::vector<int> taken;
-    for (int into = adjacency_.opposite(h); area < least_mm2_;) {
+    for (int into = adjacency_.opposite(h); area < min_area_mm2_;) {
       const int face = into / 3;
       const Growing next{{face}, convex_hull(overlaps_.corners(face)), overlaps_.box(face)};
       const double face_mm2 = signed_area_mm2(overlaps_.corners(face));
-      if (rest - face_mm2 < least_mm2_ || !may_be_one(grown, next)) return false;
+      if (rest - face_mm2 < min_area_mm2_ || !may_be_one(grown, next)) return false;
       grown.faces.push_back(face);
       grown.hull.insert(grown.hull.end(), next.hull.begin(), next.hull.end());
       grown.hull = convex_hull(std::move(grown.hull));
       grown.box.add(next.box);
       area += face_mm2, rest -= face_mm2;
       taken.push_back(face);
-      const std::vector<int> onward = ways_on(face, into);
+      const std::vector<int> onward = exits_on(face, into);
       if (onward.empty()) return false;
       if (onward.size() == 2) {  // a branch: all beyond one of its sides comes along, lest the rest be two parts
         if (!take_a_side(onward, grown, rest, taken)) return false;
@@ -275,13 +275,13 @@ class CrumbSweeper {
   }
 
   /// Half-edges of the same piece's triangles beside this one, except for `into`, its own.
-  std::vector<int> ways_on(int face, int into) const {
-    std::vector<int> ways;
+  std::vector<int> exits_on(int face, int into) const {
+    std::vector<int> gaps;
     for (int g = 3 * face; g < 3 * face + 3; ++g)
       if (const int o = adjacency_.opposite(g);
           g != into && o >= 0 && splitting_.piece_of_face[o / 3] == splitting_.piece_of_face[face])
-        ways.push_back(o);
-    return ways;
+        gaps.push_back(o);
+    return gaps;
   }
 
   bool take_a_side(const std::vector<int>& sides, const Growing& grown, double rest_mm2,
@@ -297,10 +297,10 @@ class CrumbSweeper {
         const Polygon corners = overlaps_.corners(face);
         side.hull.insert(side.hull.end(), corners.begin(), corners.end());
         area += signed_area_mm2(corners);
-        const std::vector<int> onward = ways_on(face, into);
+        const std::vector<int> onward = exits_on(face, into);
         open.insert(open.end(), onward.begin(), onward.end());
       }
-      if (rest_mm2 - area < least_mm2_ || !may_be_one(grown, side)) continue;
+      if (rest_mm2 - area < min_area_mm2_ || !may_be_one(grown, side)) continue;
       taken.insert(taken.end(), side.faces.begin(), side.faces.end());
       return true;
     }
@@ -324,7 +324,7 @@ class CrumbSweeper {
   const Adjacency& adjacency_;
   const Overlaps& overlaps_;
   const std::function<bool(const Polygon&)>& fits_;
-  double least_mm2_;
+  double min_area_mm2_;
   Splitting& splitting_;
   std::vector<Growing> pieces_;
   std::vector<double> area_mm2_;
@@ -333,9 +333,9 @@ class CrumbSweeper {
 }  // namespace
 
 Splitting split_ribbon(const Triangles& F, const std::vector<Vec2>& flat,
-                       const std::function<bool(const Polygon&)>& fits, double clearance_mm, double least_mm2,
+                       const std::function<bool(const Polygon&)>& fits, double clearance_mm, double min_area_mm2,
                        Context& context, const std::vector<int>& kind_of_face) {
-  constexpr std::size_t most_tries = 8;
+  constexpr std::size_t max_tries = 8;
   TriangleMesh mesh;
   mesh.V = Positions::Zero(static_cast<Eigen::Index>(flat.size()), 3);
   mesh.F = F;
@@ -347,14 +347,14 @@ Splitting split_ribbon(const Triangles& F, const std::vector<Vec2>& flat,
     return *std::min_element(area.begin(), area.end());
   };
   const std::vector<int> ends = ends_of(adjacency);
-  const std::size_t tries = std::min(most_tries, ends.size());
+  const std::size_t tries = std::min(max_tries, ends.size());
   std::pair<int, double> best_value;
   Splitting best;
   for (std::size_t i = 0; i < tries; ++i) {
     const auto span = context.span(static_cast<double>(i) / static_cast<double>(tries),
                                    static_cast<double>(i + 1) / static_cast<double>(tries), "Splitting");
     Splitting splitting = split_towards(ends[i * ends.size() / tries], adjacency, overlaps, fits, context);
-    CrumbSweeper(adjacency, overlaps, fits, least_mm2, splitting).sweep(context);
+    CrumbSweeper(adjacency, overlaps, fits, min_area_mm2, splitting).sweep(context);
     const std::pair value(-splitting.piece_count, smallest_mm2(splitting));
     if (i == 0 || value > best_value) best = std::move(splitting), best_value = value;
     if (best.piece_count == 1) break;

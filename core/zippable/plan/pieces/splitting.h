@@ -26,12 +26,12 @@ struct Splitting {
 /// `flat_mm`. `fits`: may a piece with this convex hull be cut? Pieces grow from the ribbon's ends, joined where it
 /// branches as long as they stay valid: on a ribbon without branches no division has fewer. Of several ends to grow
 /// towards, the one with the fewest pieces is taken, then with the largest smallest piece. Windings of a piece that are
-/// far apart along the boundary keep `clearance_mm`. Pieces smaller than `least_mm2` are then joined to a neighbour if
-/// the two may be one piece, or else grow at its cost until they are that large, unless it would become too small
+/// far apart along the boundary keep `clearance_mm`. Pieces smaller than `min_area_mm2` are then joined to a neighbour
+/// if the two may be one piece, or else grow at its cost until they are that large, unless it would become too small
 /// itself or fall apart where the ribbon branches. With `kind_of_face` (as long as `F`; empty: all alike) a piece has
 /// triangles of one kind only. Throws Error: invalid_input ("bed_x_mm": a single triangle does not fit), cancelled.
 Splitting split_ribbon(const Triangles& F, const std::vector<Vec2>& flat_mm,
-                       const std::function<bool(const Polygon&)>& fits, double clearance_mm, double least_mm2,
+                       const std::function<bool(const Polygon&)>& fits, double clearance_mm, double min_area_mm2,
                        Context& context, const std::vector<int>& kind_of_face = {});
 
 }  // namespace formwright

@@ -114,7 +114,7 @@ bool make_room(const FlatDesign& design, double offset_mm, OffsetRibbon& ribbon,
   }
   for (const double share : ribbon.offset_share) {
     if (share < 1) ++ribbon.narrow_samples;
-    ribbon.least_share = std::min(ribbon.least_share, share);
+    ribbon.min_share = std::min(ribbon.min_share, share);
   }
   return all_have_room;
 }
@@ -188,7 +188,7 @@ void move_in_space(const FlatDesign& design, double offset_mm, OffsetRibbon& rib
   if (!make_room(design, offset_mm, ribbon, move, areas) || ribbon.shear_max_mm > offset_mm) {
     equal_sides = false;
     ribbon.offset_share.assign(ribbon.offset_share.size(), 1.0);
-    ribbon.narrow_samples = 0, ribbon.least_share = 1;
+    ribbon.narrow_samples = 0, ribbon.min_share = 1;
     make_room(design, offset_mm, ribbon, move, areas);
   }
   ribbon.sides_made_equal = equal_sides;
@@ -208,7 +208,7 @@ ZipperModel zipper_model(const PlanOptions& options) {
 }
 
 BinormalField binormals(const std::vector<Vec3>& points, const std::vector<Vec3>& left_on_surface, double window_mm) {
-  constexpr double least_sine = 0.02, least_along_surface = 0.5;
+  constexpr double min_sine = 0.02, min_along_surface = 0.5;
   const std::size_t count = points.size();
   BinormalField field{left_on_surface, std::vector<char>(count, 0)};
   std::vector<double> at(count, 0.0);
@@ -220,9 +220,9 @@ BinormalField binormals(const std::vector<Vec3>& points, const std::vector<Vec3>
       while (behind < i && i + ahead + 1 < count && at[i] - at[i - behind] < window && at[i + ahead] - at[i] < window)
         ++behind, ++ahead;
       const Vec3 a = points[i] - points[i - behind], b = points[i + ahead] - points[i], c = a.cross(b);
-      if (c.norm() > least_sine * a.norm() * b.norm()) {
+      if (c.norm() > min_sine * a.norm() * b.norm()) {
         const Vec3 binormal = c.normalized() * (c.dot(left_on_surface[i]) < 0 ? -1.0 : 1.0);
-        if (binormal.dot(left_on_surface[i]) < least_along_surface) break;
+        if (binormal.dot(left_on_surface[i]) < min_along_surface) break;
         field.left[i] = binormal;
         field.usable[i] = 1;
       }

@@ -33,7 +33,7 @@ struct OffsetRibbon {
   std::vector<Vec2> flat_mm;         // per boundary vertex, counter-clockwise triangles
   std::vector<double> offset_share;  // per sample: 1, or less where the ribbon is too narrow for the zipper
   int narrow_samples = 0;            // how many of those
-  double least_share = 1;
+  double min_share = 1;
   double left_mm = 0, right_mm = 0;  // lengths of the moved sides
   double binormal_share = 0;         // of the zipper's length; gluing
   bool sides_made_equal = false;     // along the whole zipper, by a change of the steps of at most the offset; gluing

@@ -298,10 +298,10 @@ export class EvidenceSession extends RoomSession<EvidenceDocument> {
   readonly estimate = computed(() => {
     const triangles = this.#triangles();
     const mode = this.mode.value;
-    const told = (backend: string) => (mode === 'diagnose' ? recall('evidence', backend) : null);
+    const recalled = (backend: string) => (mode === 'diagnose' ? recall('evidence', backend) : null);
     const guess = this.#firstGuess.value;
-    const browser = told('wasm') ?? guess;
-    const worker = told('native') ?? (guess && { ...guess, seconds: workerShare * guess.seconds });
+    const browser = recalled('wasm') ?? guess;
+    const worker = recalled('native') ?? (guess && { ...guess, seconds: workerShare * guess.seconds });
     return {
       browser_s: browser && estimateSeconds(browser, triangles),
       worker_s: worker && estimateSeconds(worker, triangles),

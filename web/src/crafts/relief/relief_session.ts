@@ -99,8 +99,8 @@ export class ReliefSession extends RoomSession<CraftDocument> {
   /** Millimetres a unit of the model, as it is drawn beside its relief. */
   readonly drawnScale = computed(() => {
     const positions = this.model.original.value?.mesh.positions;
-    const told = this.fits.value ? figure(this.shown.value?.report ?? {}, 'scale_mm_per_unit') : null;
-    return told ?? (positions ? provisionalScale(positions, Number(this.value('width_mm') ?? 100)) : 1);
+    const reported = this.fits.value ? figure(this.shown.value?.report ?? {}, 'scale_mm_per_unit') : null;
+    return reported ?? (positions ? provisionalScale(positions, Number(this.value('width_mm') ?? 100)) : 1);
   });
 
   /** The relief is to be made for what this camera sees; `coalesce` while it moves. */

@@ -46,10 +46,10 @@ export function placementNow(session: ThermoformSession): Placement | null {
   const shown = session.shown.value;
   const original = session.model.original.value;
   if (shown === null || original === null) return null;
-  const told = placementOf(shown.report);
-  if (told === null) return null;
+  const reported = placementOf(shown.report);
+  if (reported === null) return null;
   const [from, to] = [session.filled(shown.parameters), session.filled(session.asked.value)];
-  return carriedOn(told, from, to, original.mesh.positions) ?? told;
+  return carriedOn(reported, from, to, original.mesh.positions) ?? reported;
 }
 
 /** Attributes and picture of the sheet as it is in the end. */

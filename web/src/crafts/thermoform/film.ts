@@ -80,7 +80,7 @@ export interface Phase {
 }
 
 /** A phase is never narrower than its words. */
-const leastShare = 0.2;
+const minShare = 0.2;
 
 /** The phases along the timeline: as wide as they are long, but none narrower than its words. `ends_s`: where the
  *  phases end, by name; else a phase goes on until the first frame of the next. */
@@ -96,7 +96,7 @@ export function phasesOf(film: Film, ends_s: Readonly<Record<string, number | nu
     }
   });
   const total = endOf(film);
-  const least = Math.min(leastShare, 1 / Math.max(1, spans.length));
+  const least = Math.min(minShare, 1 / Math.max(1, spans.length));
   const shares = spans.map(({ start_s, end_s }) =>
     total > 0 ? (end_s - start_s) / total : 1 / spans.length,
   );

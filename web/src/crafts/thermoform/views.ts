@@ -43,7 +43,7 @@ const overhangRange_deg = [-5, 30] as const;
 /** The colours of a view of a formed sheet; one scale for all moments of the film. */
 export function mappingOf(which: View, formed: Formed, sheetThickness_mm: number): ColourMapping | null {
   if (which === 'thickness') {
-    const thin = leastOf(formed.sheet.attributes['thickness_mm']) ?? sheetThickness_mm;
+    const thin = minOf(formed.sheet.attributes['thickness_mm']) ?? sheetThickness_mm;
     const step = 0.2 * sheetThickness_mm;
     return {
       attribute: 'thickness_mm',
@@ -55,7 +55,7 @@ export function mappingOf(which: View, formed: Formed, sheetThickness_mm: number
     };
   }
   if (which === 'stretch') {
-    const most = -(leastOf(formed.sheet.attributes['stretch']?.map((x) => -x)) ?? -1.5);
+    const most = -(minOf(formed.sheet.attributes['stretch']?.map((x) => -x)) ?? -1.5);
     return {
       attribute: 'stretch',
       map: 'error',
@@ -77,7 +77,7 @@ export function mappingOf(which: View, formed: Formed, sheetThickness_mm: number
   return null;
 }
 
-function leastOf(values: Float32Array | undefined): number | null {
+function minOf(values: Float32Array | undefined): number | null {
   let least = Infinity;
   for (const value of values ?? []) if (value < least) least = value;
   return Number.isFinite(least) ? least : null;

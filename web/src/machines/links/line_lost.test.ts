@@ -76,11 +76,11 @@ test('a laser that does not answer still gets the stop, then the device is given
     why: 'The laser does not answer: check that it is on and its cable plugged in.',
   });
   // How the job ended is told before.
-  const told = said.findIndex(
+  const lost = said.findIndex(
     (one) => one.type === 'state' && one.events.some(({ how }) => how === 'cut_off'),
   );
-  expect(told).toBeGreaterThan(-1);
-  expect(told).toBeLessThan(said.findIndex(({ type }) => type === 'gone'));
+  expect(lost).toBeGreaterThan(-1);
+  expect(lost).toBeLessThan(said.findIndex(({ type }) => type === 'gone'));
 
   await tell({ type: 'close' });
   expect(log.slice(4)).toEqual(['ask', 'stop', 'release', 'close']);

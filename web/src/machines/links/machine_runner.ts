@@ -30,8 +30,8 @@ export class MachineRunner {
   /** A line that is gone, until it is closed: it may still hold the device, and a stop may still wait to leave by it. */
   #lost: MachineEnd | null = null;
   #timer: ReturnType<typeof setInterval> | null = null;
-  #told_ms = 0;
-  #toldPhase = '';
+  #reported_ms = 0;
+  #reportedPhase = '';
   #state: MachineState | null = null;
   #events: MachineEvent[] = [];
   #writing: Promise<void> = Promise.resolve();
@@ -99,15 +99,15 @@ export class MachineRunner {
         .catch(() => this.#gone('The connection was lost while sending: check the cable and connect again.'));
     this.#state = state;
     this.#events.push(...events);
-    if (state.phase !== this.#toldPhase || performance.now() - this.#told_ms >= telling_ms) this.#tell();
+    if (state.phase !== this.#reportedPhase || performance.now() - this.#reported_ms >= telling_ms) this.#tell();
   }
 
   #tell(): void {
     if (this.#state === null) return;
     this.#post({ type: 'state', state: this.#state, events: this.#events });
     this.#events = [];
-    this.#toldPhase = this.#state.phase;
-    this.#told_ms = performance.now();
+    this.#reportedPhase = this.#state.phase;
+    this.#reported_ms = performance.now();
   }
 
   #gone(why: string | null): void {

@@ -41,7 +41,7 @@ export interface MachineState {
   readonly speed_mm_per_s: number;
   readonly power_percent: number;
   readonly job: MachineJob | null;
-  readonly alarm: { readonly code: number; readonly text: string; readonly mend: string } | null;
+  readonly alarm: { readonly code: number; readonly text: string; readonly fix: string } | null;
   readonly error: {
     readonly code: number;
     readonly text: string;

@@ -7,7 +7,7 @@ import { isClosed, shadingFor, smoothNormals, updateNormals } from './normals';
 import { plateBody, plateCorners, plateFrame, plateFront } from '../overlay/plate';
 import { cutOutline } from '../overlay/section';
 import { supportOf } from './support';
-import { swipeWay } from '../overlay/swipe_divider';
+import { swipeRange } from '../overlay/swipe_divider';
 import { dot, viewerAxes } from '../vector';
 
 /** Length of an outline of pieces, two points each, and the area that it encloses in the plane (holes taken off). */
@@ -239,11 +239,11 @@ describe('outlines', () => {
   });
 
   it('leave the divider within reach', () => {
-    expect(swipeWay({ left: 100, right: 700, top: 0, bottom: 1 }, 800)).toEqual({ from: 100, length: 600 });
-    const beyond = swipeWay({ left: -500, right: 3000, top: 0, bottom: 1 }, 800);
+    expect(swipeRange({ left: 100, right: 700, top: 0, bottom: 1 }, 800)).toEqual({ from: 100, length: 600 });
+    const beyond = swipeRange({ left: -500, right: 3000, top: 0, bottom: 1 }, 800);
     expect(beyond.from).toBeGreaterThan(0);
     expect(beyond.from + beyond.length).toBeLessThan(800);
-    const gone = swipeWay({ left: 2000, right: 2400, top: 0, bottom: 1 }, 800);
+    const gone = swipeRange({ left: 2000, right: 2400, top: 0, bottom: 1 }, 800);
     expect(gone.from).toBeLessThan(800);
   });
 });

@@ -15,7 +15,7 @@ const OVERHANG = 14;
 const EDGE = 12;
 
 /** Left end and length of the divider's way: the object as far as it is visible. */
-export function swipeWay(extent: Extent, width: number): { from: number; length: number } {
+export function swipeRange(extent: Extent, width: number): { from: number; length: number } {
   const from = Math.min(Math.max(extent.left, EDGE), Math.max(EDGE, width - 2 * EDGE));
   const to = Math.max(Math.min(extent.right, width - EDGE), from + 1);
   return { from, length: to - from };
@@ -45,7 +45,7 @@ export class SwipeDivider {
 
   /** Returns the line's x, px. */
   place(extent: Extent, width: number, height: number, position: number): number {
-    this.way = swipeWay(extent, width);
+    this.way = swipeRange(extent, width);
     this.position = position;
     const x = this.way.from + position * this.way.length;
     const top = Math.max(0, extent.top - OVERHANG);

@@ -110,7 +110,7 @@ export function Maps({ session, look }: { session: EvidenceSession; look: Look }
           arrowScale={scales.arrowScale}
           noise_mm={sigma_mm}
           onPainted={(canvas) => keepPicture(session, look, canvas)}
-          told={`Mean distance ${withUnit(formatNumber(values.mean, 2), 'mm')}, ${which}.`}
+          spoken={`Mean distance ${withUnit(formatNumber(values.mean, 2), 'mm')}, ${which}.`}
         />
       </Pane>
     </div>
@@ -154,7 +154,7 @@ interface SheetMapProps {
   readonly noise_mm?: number;
   /** The one of the three that the keyboard reaches. */
   readonly focusable?: boolean;
-  readonly told?: string;
+  readonly spoken?: string;
   readonly onPainted?: (canvas: HTMLCanvasElement) => void;
 }
 
@@ -216,7 +216,7 @@ function SheetMap(props: SheetMapProps) {
           width={frame.widthPx}
           height={frame.heightPx}
           role="img"
-          aria-label={[legend.summary, props.told].filter(Boolean).join(' ')}
+          aria-label={[legend.summary, props.spoken].filter(Boolean).join(' ')}
         />
         <svg viewBox={`0 0 ${frame.widthPx} ${frame.heightPx}`} aria-hidden="true">
           {props.opening_mm ? <Opening frame={frame} size_mm={props.opening_mm} /> : null}

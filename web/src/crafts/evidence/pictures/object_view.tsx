@@ -18,11 +18,11 @@ const viewpoint: Viewpoint = {
   distanceMm: 900,
   fieldOfViewDeg: 20,
 };
-const mostArrows = 240;
+const maxArrows = 240;
 
 /** Of every so many points; `scale` makes the longest usual ones a tenth of the sheet. */
 function spaceArrows(residuals: Residuals, model: Model, scale: number): Float32Array {
-  const stride = Math.max(1, Math.ceil(residuals.count / mostArrows));
+  const stride = Math.max(1, Math.ceil(residuals.count / maxArrows));
   const simulated = simulatedIn(residuals, model);
   const ends: number[] = [];
   for (let i = 0; i < residuals.count; i += stride) {

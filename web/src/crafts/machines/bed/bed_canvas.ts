@@ -2,7 +2,7 @@
 // Draws the bed with the job on it. A canvas: jobs have a hundred thousand strokes, and the playhead moves through them.
 import { detailFor } from '../../../machines/path_detail';
 import type { PathDetail, PathPlace, Rectangle, ToolPath } from '../../../machines/toolpath';
-import { lastAtMost, placeAt } from '../../../machines/toolpath';
+import { lastNotAbove, placeAt } from '../../../machines/toolpath';
 
 export interface BedPicture {
   readonly bed_mm: readonly [number, number];
@@ -133,7 +133,7 @@ function drawPaths(
     const last = (kept?.length ?? path.times_s.length) - 1;
     const here = now !== null && index === now.path;
     // Of the points that are drawn, the last one that was reached.
-    const reached = here ? (kept ? lastAtMost(kept, now.point) : now.point) : 0;
+    const reached = here ? (kept ? lastNotAbove(kept, now.point) : now.point) : 0;
     const done = now === null || index < now.path ? last : index > now.path ? 0 : reached;
     const point = (i: number): readonly [number, number] => {
       const p = 3 * (kept ? (kept[i] ?? 0) : i);

@@ -16,7 +16,7 @@ export function AlarmBar({ session }: { readonly session: MachinesSession }) {
         <strong>{state.alarm.text}</strong>
         <p>
           {locked ? '' : 'The laser is off. '}
-          {state.alarm.mend}
+          {state.alarm.fix}
         </p>
       </div>
       {control.can('home') ? <Button onClick={() => home(session)}>Home</Button> : null}

@@ -3,8 +3,9 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
+
+#include "base/format.h"
 
 namespace formwright {
 namespace {
@@ -50,12 +51,6 @@ Eigen::Matrix3d view_axes(const ReliefOptions& options) {
   return axes;
 }
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
-
 /// The distance, in model lengths, from which distance : seen width has the wanted ratio. The ratio grows
 /// with the distance from 0 (viewpoint at the nearest vertex) without end, so bisection always finds it.
 double distance_for_ratio(const Positions& P, double ratio, const ReliefOptions& options) {
@@ -67,9 +62,9 @@ double distance_for_ratio(const Positions& P, double ratio, const ReliefOptions&
     const std::string where = options.distance_mm ? "distance_mm" : "field_of_view_deg";
     const std::string fix =
         options.distance_mm
-            ? "give a distance of at least " + number(std::ceil(minimum * options.width_mm)) + " mm"
+            ? "give a distance of at least " + with_digits(std::ceil(minimum * options.width_mm), 4) + " mm"
             : "give a field of view of at most " +
-                  number(std::floor(2 * std::atan(0.5 / minimum) * 180 / std::numbers::pi * 10) / 10) + "°";
+                  with_digits(std::floor(2 * std::atan(0.5 / minimum) * 180 / std::numbers::pi * 10) / 10, 4) + "°";
     throw Error(
         ErrorCode::invalid_input, where,
         "The viewpoint lies inside the model or too close to it: " + fix + ", or look from far (orthographic).");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/format.h"
 #include "geometry/mesh/measures.h"
 #include "geometry/queries/ray_caster.h"
 #include "thermoform/frame_recorder.h"
@@ -20,11 +21,7 @@ constexpr double rest_speed_mm_per_s = 0.5;
 constexpr double min_drawing_s = 0.05;  // before what slides is brought to rest
 constexpr int max_steps = 20000;
 
-std::string millimetres(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g mm", value);
-  return text;
-}
+std::string millimetres(double value) { return with_digits(value, 4) + " mm"; }
 
 void check_options(const ThermoformOptions& o) {
   if (o.clamp_opening_x_mm > o.sheet_x_mm)

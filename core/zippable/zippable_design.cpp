@@ -2,9 +2,9 @@
 #include "zippable/zippable_design.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <numbers>
 
+#include "base/format.h"
 #include "base/error.h"
 #include "base/data/number_list.h"
 #include "geometry/mesh/measures.h"
@@ -72,18 +72,12 @@ std::vector<RankedTraversal> orders_asked_for(const ParameterisedModel& model, c
   return ranked;
 }
 
-std::string figure(double mm) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", mm);
-  return text;
-}
-
 void say_how_it_bends(ZippableDesign& design, const ZippableOptions& options) {
   if (!design.bend) return;
   if (design.bend->radius_mm < *options.min_radius_mm)
     design.notes.push_back(
-        "The ribbon's centre line bends to a radius of " + figure(design.bend->radius_mm) + " mm, less than " +
-        figure(*options.min_radius_mm) +
+        "The ribbon's centre line bends to a radius of " + with_digits(design.bend->radius_mm, 3) + " mm, less than " +
+        with_digits(*options.min_radius_mm, 3) +
         " mm, in every order of the parts. Use a narrower ribbon, larger holes at the tips or other borders of the parts.");
   else if (design.traversal_number != options.traversal)
     design.notes.push_back("Order " + std::to_string(design.traversal_number) +

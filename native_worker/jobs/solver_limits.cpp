@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "base/format.h"
 #include "base/error.h"
 #include "jobs/solver_sandbox.h"
 
@@ -37,9 +38,8 @@ double number_of(const std::string& flag, const std::string& text, double minimu
   char* end = nullptr;
   const double number = std::strtod(text.c_str(), &end);
   if (text.empty() || *end != '\0' || !(number >= minimum && number <= maximum)) {
-    char range[96];
-    std::snprintf(range, sizeof range, "%g to %g", minimum, maximum);
-    throw Error(ErrorCode::invalid_input, flag, flag + " must be a number from " + range + ".");
+    throw Error(ErrorCode::invalid_input, flag,
+                flag + " must be a number from " + with_digits(minimum, 6) + " to " + with_digits(maximum, 6) + ".");
   }
   return number;
 }
@@ -80,13 +80,11 @@ bool read_solver_flag(const std::vector<std::string>& words, std::size_t& i, Sol
 }
 
 std::vector<std::string> solver_words(const SolverOptions& options) {
-  char minutes[32];
-  std::snprintf(minutes, sizeof minutes, "%.17g", options.max_job_minutes);
   std::vector<std::string> words{"run-jobs",
                                  "--data",
                                  options.data.string(),
                                  "--max-job-minutes",
-                                 minutes,
+                                 with_digits(options.max_job_minutes, 17),
                                  "--solver-memory-mb",
                                  std::to_string(solver_memory_mb(options))};
   if (!options.sandbox) words.push_back("--no-solver-sandbox");
@@ -159,10 +157,8 @@ void limit_job(const SolverOptions& options, const std::filesystem::path& output
 }
 
 std::string job_time_text(const SolverOptions& options) {
-  char text[48];
-  if (options.max_job_minutes >= 120) std::snprintf(text, sizeof text, "%g h", options.max_job_minutes / 60);
-  else std::snprintf(text, sizeof text, "%g min", options.max_job_minutes);
-  return text;
+  if (options.max_job_minutes >= 120) return with_digits(options.max_job_minutes / 60, 6) + " h";
+  return with_digits(options.max_job_minutes, 6) + " min";
 }
 
 }  // namespace formwright

@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "system/files.h"
+#include "base/format.h"
 #include "machines/gcode/gcode_rules.h"
 #include "machines/machine_commands.h"
 #include "machines/machine_terminal.h"
@@ -193,9 +194,10 @@ int machine_frame(const std::vector<std::string>& words, const std::atomic<bool>
                        "The machine does not report where its head is: home it first.");
     frame[axis] = frame[axis + 2] = terminal.state()["work_mm"][axis].get<double>();
   }
-  char place[128];
-  std::snprintf(place, sizeof place, "x %.1f to %.1f mm, y %.1f to %.1f mm", frame[0], frame[2], frame[1], frame[3]);
-  terminal.confirm("The head moves once around the job (" + std::string(place) + "), laser off.");
+  const auto range = [&](std::size_t axis) {
+    return with_decimals(frame[axis], 1) + " to " + with_decimals(frame[axis + 2], 1) + " mm";
+  };
+  terminal.confirm("The head moves once around the job (x " + range(0) + ", y " + range(1) + "), laser off.");
   terminal.session().command({{"do", "frame"}, {"bounds_mm", frame}, {"confirmed", true}});
   terminal.run_until_rest("go around the job");
   std::printf("Framed: %s.\n", place);

@@ -2,18 +2,13 @@
 #include "base/data/parameters.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <cstdlib>
 #include <numeric>
 
+#include "base/format.h"
+
 namespace formwright {
 namespace {
-
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
 
 int edit_distance(const std::string& a, const std::string& b) {
   std::vector<int> row(b.size() + 1);
@@ -49,7 +44,7 @@ namespace parameters_detail {
 
 std::string range_sentence(const ParameterInfo& info) {
   const std::string unit = info.unit.empty() ? "" : " " + info.unit;
-  return "from " + number_text(info.minimum) + " to " + number_text(info.maximum) + unit;
+  return "from " + with_digits(info.minimum, 6) + " to " + with_digits(info.maximum, 6) + unit;
 }
 
 void reject(const ParameterInfo& info, const std::string& what) {
@@ -60,7 +55,7 @@ double checked_number(const ParameterInfo& info, const Json& value) {
   if (!value.is_number()) reject(info, "must be a number " + range_sentence(info));
   const double number = value.get<double>();
   if (!std::isfinite(number) || number < info.minimum || number > info.maximum)
-    reject(info, "is " + number_text(number) + ", and must be " + range_sentence(info));
+    reject(info, "is " + with_digits(number, 6) + ", and must be " + range_sentence(info));
   return number;
 }
 

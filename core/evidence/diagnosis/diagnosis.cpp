@@ -21,8 +21,8 @@ constexpr double max_left =
 constexpr double plain_strength = 2.5;            // half widths of its interval
 constexpr double distinguishable_strength = 1.5;  // the same: with some fourteen causes tried, 5 % for all of them
                                                   // is 2.9 standard deviations of one, not 1.96
-constexpr double min_gain = 0.01;  // of the held-out error
-constexpr double sure_gain = 0.8;  // probability that there is one
+constexpr double min_gain = 0.01;                 // of the held-out error
+constexpr double sure_gain = 0.8;                 // probability that there is one
 constexpr double inseparable_likeness = 0.9;
 constexpr const char* stays_unexplained = "Part of the misfit stays unexplained.";
 constexpr const char* nearly_as_likely = "Another explanation is nearly as likely.";

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/statistics.h"
+
 namespace formwright {
 namespace {
 
@@ -16,7 +18,7 @@ Eigen::VectorXd normalised_squares(const Measurement& measurement, const Eigen::
   Eigen::VectorXd squares = residual.rowwise().squaredNorm();
   if (measurement.sigma.maxCoeff() > 0)
     squares.array() /= measurement.sigma.array().max(0.1 * measurement.sigma.mean()).square();
-  return squares / std::max(1e-300, median_of({squares.begin(), squares.end()}));
+  return squares / std::max(1e-300, median(std::vector<double>(squares.begin(), squares.end())));
 }
 
 }  // namespace
@@ -34,7 +36,7 @@ Predictions freely_fitted(const ForwardModel& model, const Predictions& predicti
       const auto d = static_cast<double>(m.measured.cols());
       const Eigen::VectorXd squares = normalised_squares(m, left[object]);
       const Eigen::VectorXd lengths = left[object].rowwise().squaredNorm();
-      const double variance = std::max(1e-12, median_of({lengths.begin(), lengths.end()}) / d);
+      const double variance = std::max(1e-12, median(std::vector<double>(lengths.begin(), lengths.end())) / d);
       // The median of what is left is about d, in units of the noise.
       const Eigen::VectorXd trust = (degrees + d) / (degrees + d * squares.array());
       const StructuredMisfit misfit(m, isotropic(trust / variance, m.measured.cols()), {model.known_misfit()});

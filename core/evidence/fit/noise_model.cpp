@@ -8,6 +8,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "base/statistics.h"
 #include "base/random.h"
 #include "evidence/fit/structured_misfit.h"
 
@@ -21,13 +22,6 @@ constexpr double outlier_limit = 5;  // standard deviations, of the residual's l
 
 }  // namespace
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 NoiseEstimate estimate_noise(const Measurement& measurement, const Eigen::MatrixXd& residual) {
   const Eigen::Index n = residual.rows(), d = residual.cols();
   NoiseEstimate result;
@@ -39,7 +33,7 @@ NoiseEstimate estimate_noise(const Measurement& measurement, const Eigen::Matrix
     for (const double own : measurement.sigma)
       if (own > 0) known.push_back(own), squares += own * own;
     result.stated_sigma = std::sqrt(squares / static_cast<double>(known.size()));
-    const double usual = median_of(known);
+    const double usual = median(known);
     // 0 means that it is not known: as good as the others. No point is ten times as good as these.
     for (Eigen::Index i = 0; i < n; ++i)
       sigma[i] = measurement.sigma[i] > 0 ? std::max(measurement.sigma[i], 0.1 * result.stated_sigma) : usual;
@@ -53,7 +47,7 @@ NoiseEstimate estimate_noise(const Measurement& measurement, const Eigen::Matrix
     std::vector<double> lengths(static_cast<std::size_t>(n));
     for (Eigen::Index i = 0; i < n; ++i)
       lengths[static_cast<std::size_t>(i)] = residual.row(i).squaredNorm() / (sigma[i] * sigma[i]);
-    scale = std::sqrt(std::max(1e-12, median_of(lengths) / chi_square_median(static_cast<double>(d))));
+    scale = std::sqrt(std::max(1e-12, median(lengths) / chi_square_median(static_cast<double>(d))));
   }
   for (int round = 0; round < 8; ++round) {
     const Eigen::VectorXd weights = (trust.array() / (scale * sigma.array()).square()).matrix();
@@ -67,7 +61,7 @@ NoiseEstimate estimate_noise(const Measurement& measurement, const Eigen::Matrix
       normalised[i] = noise.row(i).squaredNorm() / (sigma[i] * sigma[i] * std::max(0.05, 1 - leverage[i]));
       squares.push_back(normalised[i]);
     }
-    scale = std::sqrt(std::max(1e-12, median_of(squares) / chi_square_median(static_cast<double>(d))));
+    scale = std::sqrt(std::max(1e-12, median(squares) / chi_square_median(static_cast<double>(d))));
     constexpr double degrees = 4;
     for (Eigen::Index i = 0; i < n; ++i)
       trust[i] = std::min(1.0, (degrees + static_cast<double>(d)) / (degrees + normalised[i] / (scale * scale)));

@@ -17,9 +17,6 @@ struct NoiseEstimate {
   int outliers = 0;
 };
 
-/// The upper one of an even number; 0 of none.
-double median_of(std::vector<double> values);
-
 /// `residual` n x d of some model near the truth. What is smooth over the object is not noise, so it is taken off
 /// first, robustly.
 NoiseEstimate estimate_noise(const Measurement& measurement, const Eigen::MatrixXd& residual);

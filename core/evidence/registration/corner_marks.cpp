@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/planar/plane.h"
 #include "base/error.h"
 #include "base/parallel.h"
 
@@ -160,7 +161,7 @@ FoundMarks find_marks(const CalibrationPattern& pattern, const WeightedPicture& 
                  d = pattern.marks[three[2]].centre_mm - pattern.marks[three[0]].centre_mm;
       best = sum;
       chosen = pick;
-      mirrored = (a.x() * b.y() - a.y() * b.x()) * (c.x() * d.y() - c.y() * d.x()) < 0;
+      mirrored = cross(a, b) * cross(c, d) < 0;
       return;
     }
     for (std::size_t i = 0; i < candidates[k].size(); ++i) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/planar/plane.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "geometry/mesh/adjacency.h"
@@ -232,8 +233,8 @@ FlatScan flatten(const TriangleMesh& mesh, int iterations, Context& context) {
     area[i] = 0.5 * frames[i](1, 0) * frames[i](2, 1);
     for (int k = 0; k < 3; ++k) {
       const Vec2 a = frames[i].row((k + 1) % 3) - frames[i].row(k), b = frames[i].row((k + 2) % 3) - frames[i].row(k);
-      const double cross = a.x() * b.y() - a.y() * b.x();
-      cotangents[i][k] = cross > 0 ? a.dot(b) / cross : 0;
+      const double twice_area = cross(a, b);
+      cotangents[i][k] = twice_area > 0 ? a.dot(b) / twice_area : 0;
     }
     // A sliver counts less, all its cotangents together, so that its energy stays positive.
     const double largest = cotangents[i].cwiseAbs().maxCoeff();

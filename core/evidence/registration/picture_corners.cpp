@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "geometry/planar/plane.h"
 #include "base/error.h"
 #include "base/data/number_list.h"
 
@@ -23,7 +24,6 @@ std::array<Vec2, 4> plane_corners(const std::string& text, const Model& scan, co
       if (colours.width(f) == 0) continue;
       const Vec2 uv((*numbers)[2 * k] / colours.width(f), 1 - (*numbers)[2 * k + 1] / colours.height(f));
       const Vec2 a = scan.UV.row(scan.FT(f, 0)), b = scan.UV.row(scan.FT(f, 1)), c = scan.UV.row(scan.FT(f, 2));
-      const auto cross = [](const Vec2& p, const Vec2& q) { return p.x() * q.y() - p.y() * q.x(); };
       const double doubled = cross(b - a, c - a);
       if (!(std::abs(doubled) > 1e-16)) continue;
       const Vec3 bary(cross(b - uv, c - uv) / doubled, cross(c - uv, a - uv) / doubled,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/statistics.h"
 #include "base/parallel.h"
 
 namespace formwright {
@@ -56,12 +57,7 @@ Typical typical(const FlowEvidence& e) {
       residuals.push_back(e.residual_squared[i] / e.weight[i]);
       informations.push_back(0.5f * (e.xx[i] + e.yy[i]) / e.weight[i]);
     }
-  const auto median = [](std::vector<float>& values) {
-    if (values.empty()) return 0.0;
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-    return static_cast<double>(values[values.size() / 2]);
-  };
-  return {median(residuals), median(informations)};
+  return {static_cast<double>(median(std::move(residuals))), static_cast<double>(median(std::move(informations)))};
 }
 
 /// In a mark or a colour patch, where there is no noise to see.
@@ -270,8 +266,7 @@ void align_by_rim(ScanRegistration& result, const CalibrationPattern& pattern, c
     // Points that a wrong match has carried off would turn all the others.
     std::vector<double> misses;
     for (const std::size_t i : rim) misses.push_back(miss(i));
-    std::nth_element(misses.begin(), misses.begin() + static_cast<std::ptrdiff_t>(misses.size() / 2), misses.end());
-    const double limit = 4 * misses[misses.size() / 2] + 1e-9;
+    const double limit = 4 * median(std::move(misses)) + 1e-9;
     if (pass < 2) std::erase_if(rim, [&](std::size_t i) { return miss(i) > limit; });
   }
   result.rim_rms_mm = std::sqrt(squared);

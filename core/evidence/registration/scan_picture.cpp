@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/planar/plane.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "imaging/picture/light.h"
@@ -14,8 +15,6 @@ namespace formwright {
 namespace {
 
 constexpr int band_rows = 32;
-
-double cross2(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 }  // namespace
 
@@ -93,7 +92,7 @@ WeightedPicture draw_scan(const Model& model, const ScanColours& colours, const 
   for (Eigen::Index f = 0; f < F.rows(); ++f) {
     auto& c = corner[static_cast<std::size_t>(f)];
     for (int k = 0; k < 3; ++k) c[static_cast<std::size_t>(k)] = frame.pixel(place_mm.row(F(f, k)).transpose());
-    if (!(cross2(c[1] - c[0], c[2] - c[0]) < 0)) continue;  // rows run down, so an upright face is clockwise
+    if (!(cross(c[1] - c[0], c[2] - c[0]) < 0)) continue;  // rows run down, so an upright face is clockwise
     const double top = std::min({c[0].y(), c[1].y(), c[2].y()}), bottom = std::max({c[0].y(), c[1].y(), c[2].y()});
     const double left = std::min({c[0].x(), c[1].x(), c[2].x()}), right = std::max({c[0].x(), c[1].x(), c[2].x()});
     if (!(bottom >= 0 && top <= frame.height && right >= 0 && left <= frame.width)) continue;
@@ -109,7 +108,7 @@ WeightedPicture draw_scan(const Model& model, const ScanColours& colours, const 
       std::vector<char> drawn(static_cast<std::size_t>(frame.width) * band_rows, 0);
       for (const int f : faces_of[band]) {
         const auto& c = corner[static_cast<std::size_t>(f)];
-        const double doubled = cross2(c[1] - c[0], c[2] - c[0]);
+        const double doubled = cross(c[1] - c[0], c[2] - c[0]);
         const LinearPicture::Footprint footprint = colours.footprint(f, c);
         const int y0 =
             std::max(row_from, static_cast<int>(std::ceil(std::max(-1.0, std::min({c[0].y(), c[1].y(), c[2].y()})))));
@@ -124,8 +123,8 @@ WeightedPicture draw_scan(const Model& model, const ScanColours& colours, const 
         for (int y = y0; y <= y1; ++y)
           for (int x = x0; x <= x1; ++x) {
             const Vec2 p(x, y);
-            const Vec3 bary(cross2(c[1] - p, c[2] - p) / doubled, cross2(c[2] - p, c[0] - p) / doubled,
-                            cross2(c[0] - p, c[1] - p) / doubled);
+            const Vec3 bary(cross(c[1] - p, c[2] - p) / doubled, cross(c[2] - p, c[0] - p) / doubled,
+                            cross(c[0] - p, c[1] - p) / doubled);
             if (!(bary.minCoeff() >= -1e-9)) continue;
             char& seen = drawn[static_cast<std::size_t>(y - row_from) * static_cast<std::size_t>(frame.width) +
                                static_cast<std::size_t>(x)];
@@ -178,10 +177,10 @@ PlaneLookup::Found PlaneLookup::find(const Vec2& place) const {
   for (int i = first_[cell]; i < first_[cell + 1]; ++i) {
     const int f = items_[static_cast<std::size_t>(i)];
     const Vec2 a = place_mm_.row(faces_(f, 0)), b = place_mm_.row(faces_(f, 1)), c = place_mm_.row(faces_(f, 2));
-    const double doubled = cross2(b - a, c - a);
+    const double doubled = cross(b - a, c - a);
     if (!(doubled > 0)) continue;
-    const Vec3 bary(cross2(b - place, c - place) / doubled, cross2(c - place, a - place) / doubled,
-                    cross2(a - place, b - place) / doubled);
+    const Vec3 bary(cross(b - place, c - place) / doubled, cross(c - place, a - place) / doubled,
+                    cross(a - place, b - place) / doubled);
     if (bary.minCoeff() >= -1e-9) return {f, bary};
   }
   return {-1, Vec3::Zero()};

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/statistics.h"
+#include "geometry/planar/plane.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "evidence/registration/picture_corners.h"
@@ -84,11 +86,7 @@ std::vector<ColourSample> patch_samples(const CalibrationPattern& pattern, const
       }
     if (values[0].empty()) continue;
     Vec3 seen;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const auto half = values[c].begin() + static_cast<std::ptrdiff_t>(values[c].size() / 2);
-      std::nth_element(values[c].begin(), half, values[c].end());
-      seen[static_cast<int>(c)] = *half;
-    }
+    for (std::size_t c = 0; c < 3; ++c) seen[static_cast<int>(c)] = median(std::move(values[c]));
     samples.push_back(
         {relative(frame, static_cast<int>(middle.x()), static_cast<int>(middle.y())), seen, light_of(patch.colour)});
   }
@@ -200,9 +198,7 @@ void draw_displacement(ScanRegistration& result, const Triangles& faces, const P
     }
   result.displacement = Image(frame.width, frame.height, {0, 0, 0, 0});
   if (lengths.empty()) return;
-  std::nth_element(lengths.begin(), lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() * 98 / 100),
-                   lengths.end());
-  result.displacement_full_mm = std::max(1e-6, lengths[lengths.size() * 98 / 100]);
+  result.displacement_full_mm = std::max(1e-6, value_of_rank(lengths, lengths.size() * 98 / 100));
   for (std::size_t i = 0; i < moved.size(); ++i) {
     if (!std::isfinite(moved[i].x())) continue;
     const double share = std::min(1.0, moved[i].norm() / result.displacement_full_mm),
@@ -253,7 +249,7 @@ ScanRegistration register_scan(const Model& scan, const CalibrationPattern& patt
     result.marks.place_mm = plane_corners(options.corners, model, colours, flat);
     const auto& p = result.marks.place_mm;
     const Vec2 a = p[2] - p[0], b = p[3] - p[1];
-    result.marks.mirrored = a.x() * b.y() - a.y() * b.x() < 0;
+    result.marks.mirrored = cross(a, b) < 0;
   }
   if (result.marks.mirrored) {
     flat.col(0) *= -1;

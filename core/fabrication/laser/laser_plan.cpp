@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <numbers>
 
+#include "base/format.h"
 #include "fabrication/sheet/contours.h"
 #include "fabrication/laser/hatching.h"
 
@@ -252,9 +252,7 @@ LaserPlan plan_laser_job(const CutSheet& sheet, const LaserOptions& options, Con
   note(planner.mouths_closed, "outline has a mouth narrower than the kerf; what lies behind it is cut by itself.",
        "outlines have mouths narrower than the kerf; what lies behind them is cut by itself.");
   if (sheet.kerf_mm > 0 && options.kerf_mm > 0 && options.kerf_side != KerfSide::centre) {
-    char kerf[32];
-    std::snprintf(kerf, sizeof kerf, "%.3g", sheet.kerf_mm);
-    plan.notes.push_back(std::string("The drawing's cuts are already moved for a kerf of ") + kerf +
+    plan.notes.push_back("The drawing's cuts are already moved for a kerf of " + with_digits(sheet.kerf_mm, 3) +
                          " mm; they are moved by the difference only.");
   }
   return plan;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/statistics.h"
 #include "fabrication/mill/mill_lines.h"
 
 namespace formwright {
@@ -228,10 +229,9 @@ Deviation deviation_of(const HeightField& carved, const HeightField& wanted) {
   double sum = 0;
   for (std::size_t i = 0; i < over.size(); ++i) sum += over[i] = carved.z_mm[i] - wanted.z_mm[i];
   const auto rank = static_cast<std::size_t>(0.95 * static_cast<double>(over.size() - 1));
-  std::nth_element(over.begin(), over.begin() + static_cast<std::ptrdiff_t>(rank), over.end());
   Deviation deviation;
   deviation.mean_mm = sum / static_cast<double>(over.size());
-  deviation.p95_mm = over[rank];
+  deviation.p95_mm = value_of_rank(over, rank);
   deviation.max_mm = *std::max_element(over.begin() + static_cast<std::ptrdiff_t>(rank), over.end());
   return deviation;
 }

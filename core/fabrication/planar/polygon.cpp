@@ -4,12 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/planar/plane.h"
+
 namespace formwright {
-namespace {
-
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
-}  // namespace
 
 double signed_area_mm2(const Polygon& polygon) {
   double twice = 0;

@@ -5,14 +5,14 @@
 #include <cmath>
 #include <polyclipping/clipper.hpp>
 
+#include "geometry/planar/plane.h"
+
 namespace formwright {
 namespace {
 
 constexpr double touching_mm = 1e-4;  // as near to an edge as this is on it
 constexpr std::size_t max_buckets = 512;
 constexpr double clipper_units_per_mm = 1e5;
-
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 double distance_to(const Vec2& p, const Vec2& a, const Vec2& b) {
   const Vec2 d = b - a;

@@ -2,9 +2,9 @@
 #include "fabrication/toolpath/toolpath.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
+#include "base/format.h"
 #include "formats/shared/text_out.h"
 
 namespace formwright {
@@ -14,12 +14,7 @@ Vec3 in_micrometres(const Vec3& p) {
   return {std::round(1e3 * p.x()) / 1e3, std::round(1e3 * p.y()) / 1e3, std::round(1e3 * p.z()) / 1e3};
 }
 
-std::string millimetres(double value) {
-  char buffer[32];
-  return {buffer,
-          std::to_chars(buffer, buffer + sizeof buffer, std::round(10 * value) / 10 + 0.0, std::chars_format::fixed, 1)
-              .ptr};
-}
+std::string millimetres(double value) { return with_decimals(std::round(10 * value) / 10 + 0.0, 1); }
 
 /// Does the segment touch the rectangle grown by `grown_mm`? Liang and Barsky's clipping.
 bool touches(const Vec2& a, const Vec2& b, const BedRectangle& zone, double grown_mm) {

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/planar/plane.h"
+
 namespace formwright {
 namespace {
 
 // Sines below this count as straight, distances below it (of an edge) as on the edge: some hundred round-offs.
 constexpr double tolerance = 1e-12;
-
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 }  // namespace
 

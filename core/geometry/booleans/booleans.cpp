@@ -11,6 +11,7 @@
 #include <string>
 #include <tuple>
 
+#include "base/format.h"
 #include "base/error.h"
 #include "geometry/mesh/adjacency.h"
 #include "geometry/booleans/booleans_surface.h"
@@ -114,11 +115,7 @@ ExactSolid boolean(const ExactSolid& a, const ExactSolid& b, Boolean kind, Conte
   return solid;
 }
 
-std::string millimetres(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g mm", value);
-  return text;
-}
+std::string millimetres(double value) { return with_digits(value, 3) + " mm"; }
 
 /// The part of the mesh whose faces are in component `part`, vertices and all.
 TriangleMesh component(const TriangleMesh& mesh, const Components& parts, int part) {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "base/statistics.h"
 #include "base/error.h"
 #include "geometry/mesh/adjacency.h"
 #include "geometry/mesh/collapsible_mesh.h"
@@ -61,12 +62,10 @@ class Queue {
       if (later_.empty()) return false;
       std::erase_if(later_, [&](const Candidate& c) { return !valid(c); });
       if (later_.empty()) return false;
-      const auto share =
-          static_cast<std::ptrdiff_t>(std::min(later_.size(), std::max<std::size_t>(20000, later_.size() / 8)));
+      const std::size_t share = std::min(later_.size(), std::max<std::size_t>(20000, later_.size() / 8));
       std::vector<float> costs(later_.size());
       std::transform(later_.begin(), later_.end(), costs.begin(), [](const Candidate& c) { return c.cost; });
-      std::nth_element(costs.begin(), costs.begin() + (share - 1), costs.end());
-      limit_ = costs[static_cast<std::size_t>(share - 1)];
+      limit_ = value_of_rank(costs, share - 1);
       const auto waiting =
           std::partition(later_.begin(), later_.end(), [&](const Candidate& c) { return c.cost > limit_; });
       heap_.assign(waiting, later_.end());

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/statistics.h"
 #include "base/error.h"
 #include "formats/shared/colour.h"
 
@@ -84,9 +85,7 @@ ColourCorrection fit_colour_correction(std::span<const ColourSample> samples) {
       for (int c = 0; c < 3; ++c) squared += std::pow(r[c] * levels_per_light(samples[i].expected[c]), 2);
       miss[i] = std::sqrt(squared / 3);
     }
-    std::vector<double> sorted = miss;
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-    const double limit = 4.685 * std::max(1.4826 * sorted[sorted.size() / 2], 0.5);
+    const double limit = 4.685 * std::max(1.4826 * median(miss), 0.5);
     double sum = 0, kept = 0;
     fit.rejected = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {

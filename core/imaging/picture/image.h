@@ -27,7 +27,7 @@ struct Image {
 };
 
 /// A tiled or printed page can be this large; 32-bit WASM has 4 GB for everything.
-inline constexpr std::int64_t max_pixels = sizeof(void*) == 4 ? 40'000'000 : 200'000'000;
+inline constexpr std::int64_t max_image_pixels = sizeof(void*) == 4 ? 40'000'000 : 200'000'000;
 
 /// Left and right exchanged.
 void mirror_left_right(Image& image);

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "base/format.h"
 #include "base/error.h"
 
 namespace formwright {
@@ -186,14 +186,7 @@ Json job_json(const MachineJob& job, double now_s) {
           {"ended", job.ended.empty() ? Json(nullptr) : Json(job.ended)}};
 }
 
-std::string decimal(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.3f", value);
-  std::string s = text;
-  while (s.back() == '0') s.pop_back();
-  if (s.back() == '.') s.pop_back();
-  return s == "-0" ? "0" : s;
-}
+std::string decimal(double value) { return with_decimals_at_most(value, 3); }
 
 }  // namespace machines_detail
 }  // namespace formwright

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "numerics/sparse/multifrontal.h"
+#include "numerics/sparse/sparse_cholesky.h"
 
 namespace formwright {
 

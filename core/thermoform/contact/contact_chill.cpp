@@ -4,6 +4,8 @@
 #include <Eigen/Dense>
 #include <algorithm>
 
+#include "geometry/planar/plane.h"
+
 namespace formwright {
 namespace {
 
@@ -24,7 +26,7 @@ ContactChill::ContactChill(const SheetMesh& sheet, double strength)
       const int a = sheet.F(f, k), b = sheet.F(f, (k + 1) % 3), c = sheet.F(f, (k + 2) % 3);
       const Vec2 u = (sheet.flat_mm.row(a) - sheet.flat_mm.row(c)).transpose(),
                  v = (sheet.flat_mm.row(b) - sheet.flat_mm.row(c)).transpose();
-      const double doubled_area = std::abs(u.x() * v.y() - u.y() * v.x());
+      const double doubled_area = std::abs(cross(u, v));
       area_mm2_[static_cast<std::size_t>(c)] += doubled_area / 6;
       // A negative weight (an obtuse corner) would make chill out of nothing.
       if (const double weight = 0.5 * u.dot(v) / doubled_area; weight > 0) edges_.push_back({{a, b}, weight});

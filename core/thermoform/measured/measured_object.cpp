@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/statistics.h"
 #include "base/error.h"
 #include "base/data/json_text.h"
 #include "base/data/number_table.h"
@@ -21,12 +22,6 @@ namespace {
 double number(const Json& value, const std::string& key) {
   if (!value.is_number() || !std::isfinite(value.get<double>())) refuse_setup("“" + key + "” must be a number.");
   return value.get<double>();
-}
-
-double percentile(const std::vector<double>& sorted, double share) {
-  const double at = share * static_cast<double>(sorted.size() - 1);
-  const auto low = static_cast<std::size_t>(at), high = std::min(low + 1, sorted.size() - 1);
-  return sorted[low] + (at - static_cast<double>(low)) * (sorted[high] - sorted[low]);
 }
 
 }  // namespace
@@ -197,14 +192,13 @@ Comparison compare(const FormedSheet& sheet, const std::vector<MeasuredPoint>& p
   result.root_mean_square_mm = std::sqrt(squares / count);
   result.along_normal_mean_mm = along / count;
   std::sort(errors.begin(), errors.end());
-  result.median_mm = percentile(errors, 0.5);
-  result.percentile_90_mm = percentile(errors, 0.9);
-  result.percentile_95_mm = percentile(errors, 0.95);
+  result.median_mm = quantile(errors, 0.5);
+  result.percentile_90_mm = quantile(errors, 0.9);
+  result.percentile_95_mm = quantile(errors, 0.95);
   result.maximum_mm = errors.back();
   std::vector<double> deviations;
   for (const double e : errors) deviations.push_back(std::abs(e - result.median_mm));
-  std::sort(deviations.begin(), deviations.end());
-  const double limit = result.median_mm + 5 * 1.4826 * percentile(deviations, 0.5);
+  const double limit = result.median_mm + 5 * 1.4826 * quantile(deviations, 0.5);
   double kept = 0;
   for (const double e : errors) {
     if (e > limit) ++result.outliers;

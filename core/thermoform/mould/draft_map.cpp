@@ -8,6 +8,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "base/format.h"
 #include "base/parallel.h"
 #include "geometry/mesh/measures.h"
 #include "geometry/queries/ray_caster.h"
@@ -77,12 +78,6 @@ struct Side {
 };
 constexpr std::array<Side, 4> sides{{{"right", 1, 0}, {"left", -1, 0}, {"back", 0, 1}, {"front", 0, -1}}};
 
-std::string rounded_text(double value, const char* format = "%.0f") {
-  char text[32];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
 /// The depth to width that `cavity_area_mm2` of the grid together reach: single nodes in creases do not count.
 void deepest_cavity(DraftMap& map, const HeightGrid& grid, double min_width_mm, Context& context) {
   const std::size_t count = grid.height_mm.size(), columns = static_cast<std::size_t>(grid.columns);
@@ -113,7 +108,7 @@ void describe(DraftMap& map, const Positions& normals, const Eigen::VectorXd& ar
   for (Eigen::Index f = 0; f < areas.size(); ++f)
     if (map.face_draft_deg[f] < overhang_deg) hanging += areas[f];
   if (hanging > 0.005 * map.area_mm2)
-    map.sentences.push_back(rounded_text(hanging / 100, "%.1f") +
+    map.sentences.push_back(with_decimals(hanging / 100, 1) +
                             " cm² face down over an empty space: the sheet cannot reach them.");
   for (const Side& side : sides) {
     double area = 0, lean = 0;
@@ -126,17 +121,17 @@ void describe(DraftMap& map, const Positions& normals, const Eigen::VectorXd& ar
     }
     if (area < 0.005 * map.area_mm2) continue;
     locked += area;
-    map.sentences.push_back(std::string("The ") + side.name + " side leans in by " + rounded_text(lean / area) +
-                            " degrees over " + rounded_text(area / 100, "%.1f") +
+    map.sentences.push_back(std::string("The ") + side.name + " side leans in by " + with_decimals(lean / area, 0) +
+                            " degrees over " + with_decimals(area / 100, 1) +
                             " cm²: the formed shell cannot be lifted off a rigid mould there.");
   }
   if (locked + hanging == 0 && map.undercut_area_mm2 > 0.005 * map.area_mm2)
-    map.sentences.push_back(rounded_text(map.undercut_area_mm2 / 100, "%.1f") +
+    map.sentences.push_back(with_decimals(map.undercut_area_mm2 / 100, 1) +
                             " cm² of the model lie below another part of it: the sheet cannot reach them.");
   if (map.undercut_area_mm2 <= 0.005 * map.area_mm2) {
     if (map.below_3_deg_area_mm2 > 0.005 * map.area_mm2)
       map.sentences.push_back(
-          rounded_text(map.below_3_deg_area_mm2 / 100, "%.1f") +
+          with_decimals(map.below_3_deg_area_mm2 / 100, 1) +
           " cm² of wall have less than 3 degrees of draft: the formed shell will be hard to lift off.");
     else
       map.sentences.emplace_back("All walls have a draft of 3 degrees or more: the formed shell will lift off easily.");
@@ -145,9 +140,9 @@ void describe(DraftMap& map, const Positions& normals, const Eigen::VectorXd& ar
         "Lower the model into the plate to its widest place, turn it, or plan to break the mould to get it out.");
   }
   if (map.depth_to_width_max > 1)
-    map.sentences.push_back("The deepest cavity, at x " + rounded_text(map.deepest_mm.x()) + ", y " +
-                            rounded_text(map.deepest_mm.y()) + " mm, is " +
-                            rounded_text(map.depth_to_width_max, "%.1f") +
+    map.sentences.push_back("The deepest cavity, at x " + with_decimals(map.deepest_mm.x(), 0) + ", y " +
+                            with_decimals(map.deepest_mm.y(), 0) + " mm, is " +
+                            with_decimals(map.depth_to_width_max, 1) +
                             " times as deep as wide: the sheet will bridge it or get very thin.");
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/format.h"
 #include "base/error.h"
 #include "geometry/mesh/adjacency.h"
 #include "geometry/mesh/measures.h"
@@ -19,11 +20,7 @@ constexpr double automatic_foot_mm = 1;
 constexpr double plaster_density_g_per_ml = 2.63;  // calcium sulphate hemihydrate
 constexpr int vent_sides = 12, outline_sides = 24;
 
-std::string millimetres(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g mm", value);
-  return text;
-}
+std::string millimetres(double value) { return with_digits(value, 3) + " mm"; }
 
 /// Whether a block around the model would be a manifold where the model meets the plate: around every vertex at z = 0,
 /// what rises above the plate is one fan, and leaves room for a flat face or goes on below.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/planar/plane.h"
+
 namespace formwright {
 namespace {
 
@@ -25,8 +27,6 @@ Triangles stacked_faces(int rings, int sides) {
   }
   return F;
 }
-
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 }  // namespace
 

@@ -148,10 +148,10 @@ PrintGrid print_grid(const ThermoformPrintOptions& options) {
   grid.per_metre = pixels_per_metre(options.dots_per_inch);
   const double width = std::round(options.sheet_x_mm * grid.per_metre / 1000),
                height = std::round(options.sheet_y_mm * grid.per_metre / 1000);
-  if (width * height > static_cast<double>(max_pixels))
+  if (width * height > static_cast<double>(max_image_pixels))
     throw Error(ErrorCode::invalid_input, "dots_per_inch",
                 "The print would have " + std::to_string(static_cast<long long>(width * height * 1e-6)) +
-                    " million pixels, and " + std::to_string(max_pixels / 1'000'000) +
+                    " million pixels, and " + std::to_string(max_image_pixels / 1'000'000) +
                     " million fit: choose fewer dots per inch.");
   grid.width = std::max(1, static_cast<int>(width));
   grid.height = std::max(1, static_cast<int>(height));

@@ -20,7 +20,7 @@ struct PrintGrid {
   }
 };
 
-/// Throws Error{invalid_input, "dots_per_inch"} when the picture would have more than max_pixels.
+/// Throws Error{invalid_input, "dots_per_inch"} when the picture would have more than max_image_pixels.
 PrintGrid print_grid(const ThermoformPrintOptions& options);
 
 /// Draws the coloured faces at their places on the flat sheet; where faces overlap, the one nearest to the formed sheet

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "base/format.h"
 #include "base/parallel.h"
 #include "formats/mesh_io.h"
 #include "geometry/mesh/measures.h"
@@ -17,12 +17,6 @@ namespace {
 
 constexpr int max_triangles = 3'000'000;
 constexpr double pale_stretch = 4;  // ink this thin is visibly paler
-
-std::string number(const char* format, double value) {
-  char buffer[64];
-  std::snprintf(buffer, sizeof buffer, format, value);
-  return buffer;
-}
 
 /// White paper wherever nothing is.
 void flatten(Image& image) {
@@ -63,7 +57,8 @@ void say(TexturePrint& print, const ThermoformPrintOptions& options) {
     add("No part of the model touches the sheet, so the print is white: check size and position of the model.");
   const double total = area(Coverage::coloured) + print.uncoloured_mm2();
   const auto share = [&](Coverage c, const char* what) {
-    if (area(c) > 1e-3 * total) add(number("%.1f %% of the surface above the plate ", 100 * area(c) / total) + what);
+    if (area(c) > 1e-3 * total)
+      add(with_decimals(100 * area(c) / total, 1) + " % of the surface above the plate " + what);
   };
   share(Coverage::hidden, "is hidden from the sheet (undercuts) and stays without colour.");
   share(
@@ -71,13 +66,13 @@ void say(TexturePrint& print, const ThermoformPrintOptions& options) {
       "lies where the sheet spans a corner and stays without colour: allow a wider gap, or make the corner less deep.");
   share(Coverage::outside, "lies outside of the clamp's opening: make the model smaller.");
   if (print.surface.edge_mm > 1.001 * options.map_edge_mm)
-    add("The model was divided to edges of " + number("%.2f", print.surface.edge_mm) +
+    add("The model was divided to edges of " + with_decimals(print.surface.edge_mm, 2) +
         " mm only, to stay below 3 million triangles.");
   if (print.stretch_max > pale_stretch)
-    add("The print is stretched up to " + number("%.1f", print.stretch_max) +
+    add("The print is stretched up to " + with_decimals(print.stretch_max, 1) +
         " times in area: colours look paler there.");
   if (options.marks && registration_marks(options).empty())
-    add("The clamped rim is narrower than " + number("%.0f", narrowest_rim_mm) +
+    add("The clamped rim is narrower than " + with_decimals(narrowest_rim_mm, 0) +
         " mm, which leaves no room for registration marks.");
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/format.h"
 #include "base/error.h"
 #include "geometry/mesh/measures.h"
 
@@ -29,11 +30,7 @@ Eigen::Matrix3d standing(const std::array<double, 3>& up_option) {
   return rotation;
 }
 
-std::string millimetres(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g mm", value);
-  return text;
-}
+std::string millimetres(double value) { return with_digits(value, 3) + " mm"; }
 
 }  // namespace
 

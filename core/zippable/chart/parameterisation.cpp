@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/planar/plane.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "geometry/operators/intrinsic_delaunay.h"
@@ -161,7 +162,6 @@ class Solver {
       for (std::size_t f = begin; f < end; ++f) {
         const auto p = corners_of(uv, f), d = corners_of(along, f);
         const Vec2 e1 = p[1] - p[0], e2 = p[2] - p[0], d1 = d[1] - d[0], d2 = d[2] - d[0];
-        const auto cross = [](const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); };
         const double c = cross(e1, e2), b = cross(e1, d2) + cross(d1, e2), a = cross(d1, d2);
         const double root = b * b - 4 * a * c;
         if (root < 0) continue;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/format.h"
 #include "base/error.h"
 #include "base/parallel.h"
 
@@ -11,12 +12,6 @@ namespace formwright {
 namespace {
 
 constexpr double min_spiral_windings = 1.0, min_fermat_windings = 0.75;
-
-std::string figure(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2g", value);
-  return text;
-}
 
 }  // namespace
 
@@ -42,8 +37,9 @@ std::vector<SpiralLine> place_lines(const Segmentation& s, const Parameterisatio
                       : options.windings ? *options.windings
                                          : p.height_mm[part] / (fermat ? 2 * options.width_mm : options.width_mm);
     if (windings < minimum) {
-      curve.notes.push_back("Part " + std::to_string(part + 1) + " got " + figure(minimum) + " windings instead of " +
-                            figure(windings) + ", the smallest number that makes a ribbon; it is narrower there.");
+      curve.notes.push_back("Part " + std::to_string(part + 1) + " got " + with_digits(minimum, 2) +
+                            " windings instead of " + with_digits(windings, 2) +
+                            ", the smallest number that makes a ribbon; it is narrower there.");
       windings = minimum;
     }
     curve.windings[part] = windings;

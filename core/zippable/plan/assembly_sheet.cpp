@@ -3,19 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "base/format.h"
 #include "imaging/flow/page_flow.h"
 #include "zippable/plan/piece_picture.h"
 
 namespace formwright {
 namespace {
 
-std::string number(double value, int decimals) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  return text;
-}
 std::string count(std::size_t n, const std::string& one) { return std::to_string(n) + " " + one + (n == 1 ? "" : "s"); }
 
 constexpr double below_pictures_mm = 4;
@@ -84,26 +79,26 @@ class AssemblyWriter {
       const auto sheets = std::count(plan_.fabric_of_sheet.begin(), plan_.fabric_of_sheet.end(), fabric);
       const std::string colour = plan_.fabrics > 1 ? ", " + fabric_name(fabric) : "";
       flow_.paragraph("- " + std::string(plan_.has_tape() ? "Cloth" : "Paper or card") + colour + ": " +
-                      count(static_cast<std::size_t>(sheets), "sheet") + " of " + number(options_.bed_x_mm, 0) +
-                      " by " + number(options_.bed_y_mm, 0) + " mm; the pieces take " + number(area / 100, 0) +
-                      " square centimetres of it" + pieces_of(fabric) + ".");
+                      count(static_cast<std::size_t>(sheets), "sheet") + " of " + with_decimals(options_.bed_x_mm, 0) +
+                      " by " + with_decimals(options_.bed_y_mm, 0) + " mm; the pieces take " +
+                      with_decimals(area / 100, 0) + " square centimetres of it" + pieces_of(fabric) + ".");
     }
     if (plan_.has_tape()) {
       const std::string coil =
           options_.coil == ZipperCoil::none
               ? ""
               : ", size " + std::string(EnumNames<ZipperCoil>::names[static_cast<std::size_t>(options_.coil)]);
-      flow_.paragraph("- Zipper: " + number(zipper_to_cut_mm(design_, plan_) / 1000, 2) +
-                      " m of coil zipper from the reel" + coil + " (" + number(design_.zipper_mm, 0) + " mm and " +
-                      number(zipper_end_mm, 0) + " mm at each end to hold), each tape " +
-                      number(plan_.zipper.tape_width_mm, 1) + " mm wide, teeth " +
-                      number(plan_.zipper.teeth_width_mm, 1) + " mm; one slider, put on at the end with number 0.");
+      flow_.paragraph(
+          "- Zipper: " + with_decimals(zipper_to_cut_mm(design_, plan_) / 1000, 2) + " m of coil zipper from the reel" +
+          coil + " (" + with_decimals(design_.zipper_mm, 0) + " mm and " + with_decimals(zipper_end_mm, 0) +
+          " mm at each end to hold), each tape " + with_decimals(plan_.zipper.tape_width_mm, 1) + " mm wide, teeth " +
+          with_decimals(plan_.zipper.teeth_width_mm, 1) + " mm; one slider, put on at the end with number 0.");
       flow_.paragraph(sewn() ? "- Thread, a sewing machine with a zipper foot, pins."
                              : "- Contact glue for cloth, clips.");
       flow_.paragraph("- tape.pdf, printed at 100 %, and a pen for the zipper.");
       for (const double mm : plan_.closures.length_mm)
-        flow_.paragraph("- Hook-and-loop tape, " + number(options_.hook_and_loop_mm, 0) + " mm wide: 2 x " +
-                        number(mm, 0) + " mm.");
+        flow_.paragraph("- Hook-and-loop tape, " + with_decimals(options_.hook_and_loop_mm, 0) + " mm wide: 2 x " +
+                        with_decimals(mm, 0) + " mm.");
     } else {
       flow_.paragraph("- Glue that sets quickly" + std::string(plan_.tabs
                                                                    ? "; a blunt knife to score the folds of the tabs."
@@ -123,7 +118,7 @@ class AssemblyWriter {
   void overview() {
     flow_.heading("How to read the pieces");
     flow_.paragraph(
-        "Numbers stand every " + number(plan_.marker_spacing_mm, 0) +
+        "Numbers stand every " + with_decimals(plan_.marker_spacing_mm, 0) +
         " mm along the edges, from 0 where the zipper begins; the same number stands once on a left edge and "
         "once on a right edge, and these two places meet. Letters stand where the ribbon was split; the same letter "
         "stands on two pieces. "
@@ -153,7 +148,7 @@ class AssemblyWriter {
       if (const double area = signed_area_mm2({a, b, c}); area > best.first) best = {area, (a + b + c) / 3};
     }
     for (std::size_t i = 0; i < widest.size(); ++i) d.label(at(widest[i].second), 2.6, name(static_cast<int>(i)));
-    flow_.paragraph("The whole ribbon, scale 1 : " + number(1 / scale, 1) +
+    flow_.paragraph("The whole ribbon, scale 1 : " + with_decimals(1 / scale, 1) +
                     ". Where it lies over itself it has been split.");
   }
 
@@ -164,7 +159,7 @@ class AssemblyWriter {
     if (plan_.has_tape())
       flow_.paragraph(
           sewn() ? "Sew flat, with the numbers inside, along the line beside the letter: " +
-                       number(options_.seam_allowance_mm, 0) + " mm from the edge. Press the allowances apart."
+                       with_decimals(options_.seam_allowance_mm, 0) + " mm from the edge. Press the allowances apart."
                  : "Glue one allowance over the other so that the lines beside the letters lie on each other.");
     else
       flow_.paragraph(
@@ -177,7 +172,7 @@ class AssemblyWriter {
       const Vec2 corner = flow_.room(height + 6 + below_pictures_mm) + Vec2(0, below_pictures_mm),
                  size(flow_.width_mm() / 2 - 4, height);
       const std::string words = "Seam " + std::to_string(i + 1) + ": letter " + seam.letters + ", " + name(seam.piece) +
-                                " to " + name(seam.other_piece) + ", " + number(seam.cloth_mm, 1) + " mm long.";
+                                " to " + name(seam.other_piece) + ", " + with_decimals(seam.cloth_mm, 1) + " mm long.";
       flow_.drawing().label(corner + Vec2(pdf_.text_width_mm(words, 2.6) / 2, height + 4), 2.6, words);
       show(seam.piece, corner, size, seam.letters, {});
       show(seam.other_piece, corner + Vec2(size.x() + 8, 0), size, seam.letters, {});
@@ -219,8 +214,8 @@ class AssemblyWriter {
     flow_.heading(step("Screw the rigs together"));
     flow_.paragraph(
         "Cut rig.svg, rig.dxf or rig.pdf from board or acrylic glass: for every piece a base, a layer with tracks " +
-        number(options_.track_width_mm, 1) + " mm wide, as thick as the teeth, and a cover. " +
-        count(static_cast<std::size_t>(rig.screws), "screw") + " of " + number(options_.screw_mm, 1) +
+        with_decimals(options_.track_width_mm, 1) + " mm wide, as thick as the teeth, and a cover. " +
+        count(static_cast<std::size_t>(rig.screws), "screw") + " of " + with_decimals(options_.screw_mm, 1) +
         " mm hold them; a piece whose rig is done lends its screws to the next.");
     flow_.paragraph(
         "Slide each tape in at an opening, teeth into the track, tape up through the slot, until its numbers stand at those of the cover. "
@@ -238,7 +233,7 @@ class AssemblyWriter {
       flow_.heading(step(left ? "Attach the left tape" : "Attach the right tape"));
       if (left) {
         flow_.paragraph(
-            "Lay the tape behind the cloth, teeth outwards, with " + number(plan_.zipper.gap_mm, 1) +
+            "Lay the tape behind the cloth, teeth outwards, with " + with_decimals(plan_.zipper.gap_mm, 1) +
             " mm between the teeth and the edge, number on number; pin or clip it number by number and then " +
             (sewn() ? "sew" : "glue") +
             " it. On curves cut into the tape every few centimetres, not into its teeth, so that it bends.");
@@ -248,9 +243,9 @@ class AssemblyWriter {
         if (const Seam& seam = plan_.seams[i]; seam.kind == SeamKind::tape && seam.left == left) {
           const double longer = seam.cloth_mm - seam.tape_mm();
           std::string words = "Seam " + std::to_string(i + 1) + ": along " + name(seam.piece) + ", " + marks(seam) +
-                              ", " + number(seam.tape_mm(), 0) + " mm";
+                              ", " + with_decimals(seam.tape_mm(), 0) + " mm";
           if (std::abs(longer) >= 1)
-            words += "; the cloth is " + number(std::abs(longer), 1) + " mm " +
+            words += "; the cloth is " + with_decimals(std::abs(longer), 1) + " mm " +
                      (longer > 0 ? "longer: ease it in" : "shorter: ease the tape in");
           flow_.paragraph(words + ".", 4);
         }
@@ -272,7 +267,8 @@ class AssemblyWriter {
     for (std::size_t i = 0; i < plan_.seams.size(); ++i)
       if (const Seam& seam = plan_.seams[i]; seam.kind == SeamKind::edge)
         flow_.paragraph("Seam " + std::to_string(i + 1) + ": left edge of " + name(seam.piece) + " to right edge of " +
-                            name(seam.other_piece) + ", " + marks(seam) + ", " + number(seam.tape_mm(), 0) + " mm.",
+                            name(seam.other_piece) + ", " + marks(seam) + ", " + with_decimals(seam.tape_mm(), 0) +
+                            " mm.",
                         4);
   }
 
@@ -303,11 +299,11 @@ class AssemblyWriter {
       };
       const auto markers = std::count_if(plan_.closures.markers.begin(), plan_.closures.markers.end(),
                                          [&](const ClosureMarker& m) { return m.cut == cut; });
-      flow_.paragraph("Cut " + std::to_string(cut) + ", " + number(plan_.closures.length_mm[c], 0) +
+      flow_.paragraph("Cut " + std::to_string(cut) + ", " + with_decimals(plan_.closures.length_mm[c], 0) +
                           " mm: " + closure_words(cut, ClosureSide::hook, tape) + " on " + pieces(ClosureSide::hook) +
                           " and " + closure_words(cut, ClosureSide::loop, tape) + " on " + pieces(ClosureSide::loop) +
                           ", " + count(static_cast<std::size_t>(markers), "number") + " on either, every " +
-                          number(plan_.marker_spacing_mm, 0) + " mm, from " + std::to_string(cut) +
+                          with_decimals(plan_.marker_spacing_mm, 0) + " mm, from " + std::to_string(cut) +
                           "-0 where the zipper meets it.",
                       4);
     }

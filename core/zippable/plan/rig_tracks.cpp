@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/planar/plane.h"
 #include "fabrication/sheet/contours.h"
 
 namespace formwright {
@@ -15,7 +16,7 @@ constexpr double step_mm = 1, shortest_mm = 10;
 constexpr double leads_mm[] = {8, 14};  // from a track's end to the middle of its opening
 
 Vec2 right_of(const Vec2& direction) { return Vec2(direction.y(), -direction.x()); }
-double turn_between(const Vec2& a, const Vec2& b) { return std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)); }
+double turn_between(const Vec2& a, const Vec2& b) { return std::atan2(cross(a, b), a.dot(b)); }
 
 /// A place on a track's middle and the place on the cloth's edge that it belongs to.
 struct TrackPoint {

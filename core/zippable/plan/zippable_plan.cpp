@@ -6,6 +6,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "geometry/planar/plane.h"
 #include "base/error.h"
 #include "fabrication/sheet/word_paths.h"
 #include "imaging/drawing/pdf.h"
@@ -19,7 +20,7 @@ double area_mm2(const Triangles& F, const std::vector<Vec2>& flat) {
   double twice = 0;
   for (Eigen::Index f = 0; f < F.rows(); ++f) {
     const Vec2 a = flat[F(f, 1)] - flat[F(f, 0)], b = flat[F(f, 2)] - flat[F(f, 0)];
-    twice += a.x() * b.y() - a.y() * b.x();
+    twice += cross(a, b);
   }
   return twice / 2;
 }

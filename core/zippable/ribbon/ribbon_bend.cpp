@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/planar/plane.h"
 #include "geometry/mesh/adjacency.h"
 
 namespace formwright {
@@ -50,7 +51,7 @@ std::vector<CentreLine> centre_lines(const Ribbon& ribbon, const Adjacency& adja
 /// Of the circle through three points; infinite on a line.
 double radius_through(const Vec2& a, const Vec2& b, const Vec2& c) {
   const Vec2 ab = b - a, ac = c - a;
-  const double twice_area = std::abs(ab.x() * ac.y() - ab.y() * ac.x());
+  const double twice_area = std::abs(cross(ab, ac));
   return twice_area > 0 ? ab.norm() * (c - b).norm() * ac.norm() / (2 * twice_area) : 1e300;
 }
 

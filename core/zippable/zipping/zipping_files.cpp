@@ -3,19 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "base/format.h"
 #include "formats/glb/glb_assembly.h"
 #include "formats/mesh_io.h"
 
 namespace formwright {
 namespace {
-
-std::string rounded(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
 
 /// Near is cream, far is red; linear RGB.
 Vec3 distance_colour(double share) {
@@ -101,22 +95,22 @@ Bytes write_zipping_glb(const ZippingResult& result, Context& context) {
 
 std::string zipping_verdict(const ZippingResult& result, double tolerance_percent) {
   const ShapeComparison& c = result.comparison;
-  const std::string figures = "95 % of it lie within " + rounded(c.percentile_95_mm) + " mm (" +
-                              rounded(100 * c.percentile_95_mm / std::max(result.pattern.size_mm, 1e-9)) +
+  const std::string figures = "95 % of it lie within " + with_digits(c.percentile_95_mm, 3) + " mm (" +
+                              with_digits(100 * c.percentile_95_mm / std::max(result.pattern.size_mm, 1e-9), 3) +
                               " % of its size) of the design";
   const std::string how = std::string(c.mirrored ? ", inside out" : "") +
                           (result.pressed_out ? ", once it is pressed out from inside" : "");
   switch (zipping_outcome(result, tolerance_percent)) {
     case ZippingOutcome::open_seams:
       return "It does not zip up: " + std::to_string(result.open_seams) +
-             " pairs of points that should meet stay up to " + rounded(result.gap_max_mm) + " mm apart; " + figures +
-             ".";
+             " pairs of points that should meet stay up to " + with_digits(result.gap_max_mm, 3) + " mm apart; " +
+             figures + ".";
     case ZippingOutcome::not_settled:
       return "The cloth was still moving when the simulation ended, so the result is uncertain; " + figures + ".";
     case ZippingOutcome::takes_shape: return "It zips into the intended shape" + how + ": " + figures + ".";
     case ZippingOutcome::as_the_cloth_does:
       return "It zips into the intended shape" + how + ", as closely as this cloth can hold it: " + figures +
-             ", and put there it would rest " + rounded(result.rest.percentile_95_mm) +
+             ", and put there it would rest " + with_digits(result.rest.percentile_95_mm, 3) +
              " mm away. Stiffer cloth or stuffing comes closer.";
     case ZippingOutcome::another_shape: break;
   }

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "base/error.h"
+#include "base/format.h"
 #include "machines/print/document_pages.h"
 #include "machines/print/printer.h"
 
@@ -29,9 +30,7 @@ void pause_for(std::chrono::milliseconds time, const std::atomic<bool>& cancelle
 }
 
 std::string millimetres(const PageSize& size) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.1f x %.1f mm", size.width_mm, size.height_mm);
-  return text;
+  return with_decimals(size.width_mm, 1) + " x " + with_decimals(size.height_mm, 1) + " mm";
 }
 
 struct CheckedOrder {

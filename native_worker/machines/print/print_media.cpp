@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/format.h"
+
 namespace formwright {
 namespace {
 
@@ -31,8 +33,7 @@ void name_media(PrintMedia& media) {
       pwgFormatSizeName(name, sizeof name, "custom", nullptr, media.width_hmm, media.height_hmm, "mm") == 1)
     media.name = name;
   if (media.label.empty() || media.label.starts_with("Custom")) {
-    std::snprintf(name, sizeof name, "%g x %g mm", media.width_mm(), media.height_mm());
-    media.label = name;
+    media.label = with_digits(media.width_mm(), 6) + " x " + with_digits(media.height_mm(), 6) + " mm";
   }
 }
 

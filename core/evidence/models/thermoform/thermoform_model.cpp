@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/statistics.h"
+#include "base/format.h"
 #include "base/sha256.h"
 #include "thermoform/sheet/sheet_mesh.h"
 
@@ -16,12 +18,6 @@ constexpr std::size_t fewest_points = 30;
 constexpr int fewest_triangles = 1000;   // of the cheaper model
 constexpr int max_triangles = 5000;      // of a model that has a finer one
 constexpr std::size_t max_sheets = 200;  // kept at a time; about 0.2 MB each
-
-std::string figure(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
 
 /// What later readers of a stored simulation must find unchanged; raised when the simulation computes something else.
 constexpr const char* simulation_version = "thermoform-2:";
@@ -72,8 +68,8 @@ double spread(const std::vector<MeasuredPoint>& points, bool on_sheet) {
   for (int k = 0; k < 2; ++k) {
     std::vector<double> values;
     for (const MeasuredPoint& p : points) values.push_back(on_sheet ? p.sheet_mm[k] : p.place_mm[k]);
-    std::sort(values.begin(), values.end());
-    widest = std::max(widest, values[values.size() * 19 / 20] - values[values.size() / 20]);
+    const double low = value_of_rank(values, values.size() / 20);
+    widest = std::max(widest, value_of_rank(values, values.size() * 19 / 20) - low);
   }
   return widest;
 }
@@ -100,7 +96,8 @@ void check_measured_object(const FormedObject& object) {
   for (const UnitName& unit : other_units)
     if (std::abs(std::log(in_space / on_sheet / unit.factor)) < 0.35)
       refuse(std::string("x_mm, y_mm, z_mm of measured.csv seem to be in ") + unit.name + " (they spread over " +
-             figure(in_space) + ", the sheet's over " + figure(on_sheet) + " mm): convert them to millimetres.");
+             with_digits(in_space, 3) + ", the sheet's over " + with_digits(on_sheet, 3) +
+             " mm): convert them to millimetres.");
   const double sheet_side = std::max(options.sheet_x_mm, options.sheet_y_mm);
   for (const UnitName& unit : other_units)
     if (std::abs(std::log(on_sheet / sheet_side / unit.factor)) < 0.35 && on_sheet < 0.2 * sheet_side &&
@@ -119,21 +116,16 @@ void check_measured_object(const FormedObject& object) {
     alternative.push_back((p.place_mm.head<2>() + turn * p.sheet_mm).norm());
   }
   if (2 * outside > static_cast<int>(object.points.size()))
-    refuse("most of the measured points lie beyond the sheet of " + figure(options.sheet_x_mm) + " x " +
-           figure(options.sheet_y_mm) + " mm: sheet_x_mm and sheet_y_mm count from the sheet's centre, in mm.");
-  const auto middle_of = [](std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-  };
-  far = middle_of(offsets);
-  if (far > 0.35 * sheet_side && middle_of(alternative) < 0.35 * sheet_side)
+    refuse("most of the measured points lie beyond the sheet of " + with_digits(options.sheet_x_mm, 3) + " x " +
+           with_digits(options.sheet_y_mm, 3) + " mm: sheet_x_mm and sheet_y_mm count from the sheet's centre, in mm.");
+  far = median(std::move(offsets));
+  if (far > 0.35 * sheet_side && median(std::move(alternative)) < 0.35 * sheet_side)
     refuse(object.setup.sheet_turned
                ? "the points lie as on a sheet that was not turned: take “sheet_turned” out of setup.json."
                : "the points lie as on a sheet turned by half a turn: add \"sheet_turned\": true to setup.json.");
   if (far > 0.35 * sheet_side)
     refuse(
-        "the measured points lie " + figure(far) +
+        "the measured points lie " + with_digits(far, 3) +
         " mm beside their places on the sheet: bring the scan into the machine's coordinates, origin in the middle of the clamp "
         "opening, x and y as on the sheet.");
 }
@@ -143,15 +135,14 @@ void check_mould_of(const FormedObject& object) {
   const double plate = object.setup.base_plate_end_z_mm, top = object.mould->mesh.V.col(2).maxCoeff() - plate;
   std::vector<double> heights;
   for (const MeasuredPoint& p : object.points) heights.push_back(p.place_mm.z() - plate);
-  const auto high = heights.begin() + static_cast<std::ptrdiff_t>(0.98 * static_cast<double>(heights.size() - 1));
-  std::nth_element(heights.begin(), high, heights.end());
+  const double high = value_of_rank(heights, static_cast<std::size_t>(0.98 * static_cast<double>(heights.size() - 1)));
   constexpr double min_height_mm = 5;  // below that the sheet's thickness and the clamp's height count as well
-  if (*high < min_height_mm || top <= 0) return;
+  if (high < min_height_mm || top <= 0) return;
   for (const UnitName& unit : other_units)
-    if (std::abs(std::log(top / *high / unit.factor)) < 0.5)
+    if (std::abs(std::log(top / high / unit.factor)) < 0.5)
       throw Error(ErrorCode::invalid_input, "object",
-                  object.name + ": mould.obj seems to be in " + unit.name + " (its top is at " + figure(top) +
-                      ", measured points reach " + figure(*high) + " mm): convert it to millimetres.");
+                  object.name + ": mould.obj seems to be in " + unit.name + " (its top is at " + with_digits(top, 3) +
+                      ", measured points reach " + with_digits(high, 3) + " mm): convert it to millimetres.");
 }
 
 std::string rim_note(const FormedObject& object) {
@@ -168,11 +159,9 @@ std::string rim_note(const FormedObject& object) {
     }
   constexpr std::size_t fewest_of_rim = 12;
   if (heights.size() < fewest_of_rim) return {};
-  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
-  std::nth_element(heights.begin(), middle, heights.end());
-  const double off = *middle - held;
+  const double off = median(heights) - held;
   if (std::abs(off) < std::max(0.3, 3 * sigma / std::sqrt(static_cast<double>(heights.size())))) return {};
-  return "The clamped rim was measured " + figure(std::abs(off)) + " mm " + (off > 0 ? "above" : "below") +
+  return "The clamped rim was measured " + with_digits(std::abs(off), 3) + " mm " + (off > 0 ? "above" : "below") +
          " where setup.json has it (clamp_height_mm, sheet_thickness_mm, measured_surface): if the scan was aligned by "
          "its rim, register it again with the same values; else the whole scan may be off its place.";
 }

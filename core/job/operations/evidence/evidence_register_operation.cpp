@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "evidence/registration/scan_registration.h"
+#include "base/statistics.h"
 #include "formats/mesh_io.h"
 #include "imaging/picture/png_writer.h"
 #include "job/operations/evidence/evidence_registration_operations.h"
@@ -140,11 +140,10 @@ void report_registration(Json& report, const ScanRegistration& r, const Calibrat
                          const ScanRegistrationOptions& options) {
   std::vector<double> sigma;
   for (const RegisteredPoint& p : r.points) sigma.push_back(p.sigma_mm);
-  std::sort(sigma.begin(), sigma.end());
   report["points"] = r.points.size();
   report["points_without_evidence"] = r.points_without_evidence;
-  report["sigma_median_mm"] = sigma[sigma.size() / 2];
-  report["sigma_95_mm"] = sigma[sigma.size() * 95 / 100];
+  report["sigma_median_mm"] = median(sigma);
+  report["sigma_95_mm"] = value_of_rank(sigma, sigma.size() * 95 / 100);
   report["coordinates"] = r.in_machine_coordinates ? "rim" : "scan";
   report["rim_rms_mm"] = r.rim_rms_mm ? Json(*r.rim_rms_mm) : Json(nullptr);
   report["rim_scale"] = r.rim_scale ? Json(*r.rim_scale) : Json(nullptr);

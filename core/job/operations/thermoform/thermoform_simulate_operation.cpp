@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "geometry/mesh/adjacency.h"
+#include "base/format.h"
 #include "job/operations/thermoform/thermoform_input.h"
 #include "job/operations/thermoform/thermoform_operations.h"
 #include "thermoform/forming_glb.h"
@@ -77,30 +78,19 @@ std::vector<ReportField> report_fields() {
       {"warnings", "Warnings", "", "What may go wrong in the machine, as sentences."}};
 }
 
-std::string figure(double value, int digits = 2) {
-  char text[32];
-  if (value >= 100) {  // "%g" would write 290 as 2.9e+02
-    const double step = std::pow(10, std::floor(std::log10(value)) + 1 - digits);
-    std::snprintf(text, sizeof text, "%.0f", std::round(value / step) * step);
-  } else {
-    std::snprintf(text, sizeof text, "%.*g", digits, value);
-  }
-  return text;
-}
-
 /// What a maker should know before heating a sheet.
 Json warnings(const FormedResult& result, const ThermoformOptions& o, bool watertight) {
   Json list = Json::array();
   const double thin = 0.3 * o.sheet_thickness_mm;
   if (result.min_thickness_mm < thin)
     list.push_back(
-        "The sheet thins to " + figure(result.min_thickness_mm) +
+        "The sheet thins to " + with_digits(result.min_thickness_mm, 2) +
         " mm, less than a third of its thickness: it may tear there. A lower model, rounder edges or a thicker sheet help.");
   if (result.webbing_area_mm2 > 0.005 * (result.formed_area_mm2 + result.unformed_area_mm2))
-    list.push_back("Parts of the sheet are squeezed (" + figure(result.webbing_area_mm2 / 100) +
+    list.push_back("Parts of the sheet are squeezed (" + with_digits(result.webbing_area_mm2 / 100, 2) +
                    " cm²): it may fold into webs there. More distance between tall parts, or from the clamp, helps.");
   if (result.unformed_area_mm2 > 0.02 * (result.formed_area_mm2 + result.unformed_area_mm2))
-    list.push_back(figure(result.unformed_area_mm2 / 100) +
+    list.push_back(with_digits(result.unformed_area_mm2 / 100, 2) +
                    " cm² of the sheet hang free, so corners there come out rounded.");
   if (result.reached_time_limit) list.push_back("The sheet was still moving at the time limit: raise the time limit.");
   if (!watertight)

@@ -6,12 +6,11 @@
 #include <numeric>
 #include <optional>
 
+#include "geometry/planar/plane.h"
 #include "zippable/plan/pieces/tape_runs.h"
 
 namespace formwright {
 namespace {
-
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 /// Per point of an open polyline, how far it moves for edges to move by 1 to the left: to where they meet, by 2 at
 /// most.

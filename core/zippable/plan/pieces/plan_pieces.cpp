@@ -7,13 +7,12 @@
 #include <map>
 #include <set>
 
+#include "geometry/planar/plane.h"
 #include "fabrication/sheet/word_paths.h"
 #include "geometry/mesh/adjacency.h"
 
 namespace formwright {
 namespace {
-
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 class PieceMaker {
  public:

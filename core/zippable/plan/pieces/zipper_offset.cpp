@@ -4,18 +4,17 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <string>
 
+#include "base/format.h"
+#include "geometry/planar/plane.h"
 #include "base/error.h"
 #include "fabrication/planar/polygon.h"
 #include "zippable/ribbon/ribbon.h"
 
 namespace formwright {
 namespace {
-
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 /// Unit vectors to the left of the zipper along the formed ribbon, per sample: across the mean of the triangles on both
 /// sides.
@@ -250,10 +249,8 @@ OffsetRibbon offset_ribbon(const FlatDesign& design, ZipperOffset method, double
   for (const double share : ribbon.offset_share)
     ribbon.offset_mean_mm += offset_mm * share / static_cast<double>(ribbon.offset_share.size());
   if (ribbon.offset_mean_mm < 0.5 * offset_mm) {
-    char room[32];
-    std::snprintf(room, sizeof room, "%.1f", 2 * offset_mm);
     throw Error(ErrorCode::invalid_input, "coil",
-                "The ribbon is too narrow for this zipper, whose sides need " + std::string(room) +
+                "The ribbon is too narrow for this zipper, whose sides need " + with_decimals(2 * offset_mm, 1) +
                     " mm together: choose a smaller coil or a wider ribbon.");
   }
   for (int v = 0; v < design.vertex_count(); ++v)

@@ -5,7 +5,8 @@
 
 namespace formwright {
 
-/// At most so many significant digits (one or more), no zeros behind them: 0.123, 1.5, 290. Below 0.0001 with a power of ten.
+/// At most so many significant digits (one or more), no zeros behind them: 0.123, 1.5, 290. Below 0.0001 with a power
+/// of ten.
 std::string with_digits(double value, int digits);
 /// Exactly so many decimals, never a power of ten: %.<decimals>f.
 std::string with_decimals(double value, int decimals);

@@ -3,7 +3,7 @@
 // The driver for each controller.
 #include <memory>
 
-#include "machines/controllers.h"
+#include "machines/driver/machine_driver.h"
 
 namespace formwright {
 

@@ -18,7 +18,7 @@ Json catalog_json();
 /// JSON of one operation, as it stands in the catalog.
 Json operation_json(const Operation& operation);
 
-/// The version of this build, "0.1.0".
+/// The version of this build, "0.2.0".
 const char* version();
 
 }  // namespace formwright

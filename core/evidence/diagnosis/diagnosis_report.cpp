@@ -88,7 +88,7 @@ Json diagnosis_json(const DiagnosisReport& report) {
                               {"values", values},
                               {"log_evidence", f.log_evidence},
                               {"min_visible_strength", visible},
-                              {"least_visible", visible},  // its name until version 0.1
+                              {"least_visible", visible},  // the name of version 0.1
                               {"explanation", cause.explanation},
                               {"remedy", cause.remedy}});
   }

@@ -172,7 +172,7 @@ std::string zero_words(const Json& command, const char* space) {
 }
 
 Json alarm_json(int code, const std::string& text, const std::string& fix) {
-  return {{"code", code}, {"text", text}, {"fix", fix}, {"mend", fix}};  // "mend": the name until version 0.1
+  return {{"code", code}, {"text", text}, {"fix", fix}, {"mend", fix}};  // "mend": the name of version 0.1
 }
 
 Json job_json(const MachineJob& job, double now_s) {

@@ -150,8 +150,8 @@ def home(page: MachineSocket) -> None:
     page.wait(lambda s: s["phase"] == "idle" and s["position_known"], 60)
 
 
-def keep_loading(worker: Worker, machine: str, job: str, over: threading.Event, loads: list[float]) -> None:
-    page = connect(worker, machine)
+def keep_loading(worker: Worker, machine: str, content: bytes, over: threading.Event, loads: list[float]) -> None:
+    page, job = connect(worker, machine), worker.put_blob(content)
     while not over.is_set():
         start = time.monotonic()
         try:
@@ -159,6 +159,9 @@ def keep_loading(worker: Worker, machine: str, job: str, over: threading.Event, 
         except ConnectionError:  # the worker was ended
             assert over.is_set()
             return
+        if "not arrived" in answer.get("error", {}).get("message", ""):  # the posted models took its place in the store
+            job = worker.put_blob(content)
+            continue
         assert "done" in answer, answer
         loads.append(time.monotonic() - start)
 
@@ -220,8 +223,7 @@ def main() -> int:
             assert "done" in page.do("send", line="G10 L20 P1 X390 Y390", confirmed=True)
             page.wait(lambda s: s["work_mm"] and s["work_mm"][0] > 300)
             assert "done" in page.ask(load={"name": "job.gcode", "sha256": worker.put_blob(squares(40))})
-            large = worker.put_blob(raster(options.job_mb))
-            loader = threading.Thread(target=keep_loading, args=(worker, second, large, over, loads), daemon=True)
+            loader = threading.Thread(target=keep_loading, args=(worker, second, raster(options.job_mb), over, loads), daemon=True)
             loader.start()
             poster = threading.Thread(target=keep_posting, args=(worker, options.model_mb, over, posts), daemon=True)
             poster.start()

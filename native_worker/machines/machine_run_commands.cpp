@@ -197,10 +197,11 @@ int machine_frame(const std::vector<std::string>& words, const std::atomic<bool>
   const auto range = [&](std::size_t axis) {
     return with_decimals(frame[axis], 1) + " to " + with_decimals(frame[axis + 2], 1) + " mm";
   };
-  terminal.confirm("The head moves once around the job (x " + range(0) + ", y " + range(1) + "), laser off.");
+  const std::string place = "x " + range(0) + ", y " + range(1);
+  terminal.confirm("The head moves once around the job (" + place + "), laser off.");
   terminal.session().command({{"do", "frame"}, {"bounds_mm", frame}, {"confirmed", true}});
   terminal.run_until_rest("go around the job");
-  std::printf("Framed: %s.\n", place);
+  std::printf("Framed: %s.\n", place.c_str());
   return 0;
 }
 

@@ -95,7 +95,9 @@ EMSCRIPTEN_KEEPALIVE int fw_virtual_new(double bed_x_mm, double bed_y_mm, int mi
   options.origin_low = true;
   options.travel_x_mm = bed_x_mm;
   options.travel_y_mm = bed_y_mm;
-  virtual_machines.emplace(++last_handle, options).first->second.open(now_s);
+  VirtualGrbl& machine = virtual_machines.emplace(++last_handle, options).first->second;
+  if (mill != 0) machine.set_setting(30, 24'000);  // the speed of a usual spindle
+  machine.open(now_s);
   return last_handle;
 }
 EMSCRIPTEN_KEEPALIVE void fw_virtual_drop(int handle) { virtual_machines.erase(handle); }

@@ -4,11 +4,13 @@
 
 #include "grbl_talk.h"
 #include "machines/marlin/marlin_driver.h"
+#include "machines/virtual_marlin.h"
 
 namespace formwright {
 namespace {
 using Catch::Matchers::WithinAbs;
 
+constexpr double machine_bed_mm = 200;
 constexpr const char* milling = "G21G90\nM3S1000\nG0Z5\nG0X10Y10\nG1Z-1F600\nG1X20\nG0Z5\nM5\n";
 
 Json start_with(const Json& z) { return {{"do", "start"}, {"confirmed", true}, {"z", z}}; }
@@ -102,6 +104,44 @@ TEST_CASE("MillZ.ALaserAndAJobWithoutZAreNotAsked") {
   laser.connect_and_home();
   laser.load("G21G90\nM4S100\nG0Z0\nG1X20F600\nM5\n");
   CHECK(laser.state()["z_choice"] == nullptr);
+}
+
+TEST_CASE("MillZ.AMarlinMillIsAskedAsWell") {
+  VirtualMarlin machine({}, 1);
+  MarlinDriver driver({.controller = DriverController::marlin,
+                       .tool = MachineTool::mill,
+                       .bed_x_mm = machine_bed_mm,
+                       .bed_y_mm = machine_bed_mm});
+  driver.opened(machine.now_s());
+  std::string sent;
+  const auto pass = [&](double seconds) {
+    for (const double end_s = machine.now_s() + seconds; machine.now_s() < end_s;) {
+      for (const Bytes& packet : driver.take_output()) sent += as_text(packet), machine.receive(as_text(packet));
+      machine.advance(0.002);
+      driver.received(as_bytes(machine.take_output()), machine.now_s());
+      driver.tick(machine.now_s());
+    }
+  };
+  const auto refusal = [&](const Json& command) {
+    try {
+      driver.command(command, machine.now_s());
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  pass(15);
+  REQUIRE(refusal({{"do", "home"}, {"confirmed", true}}) == "");
+  pass(15);
+  driver.load("test", as_bytes(std::string(milling)));
+  CHECK(refusal({{"do", "start"}, {"confirmed", true}}).find("Where is z 0") != std::string::npos);
+  sent.clear();
+  CHECK(refusal(start_with("here")) == "");
+  pass(1);
+  const std::size_t zeroed = sent.find("G92 Z0"), begins = sent.find("M3");
+  REQUIRE(zeroed != std::string::npos);
+  REQUIRE(begins != std::string::npos);
+  CHECK(zeroed < begins);
 }
 
 }  // namespace

@@ -133,7 +133,8 @@ TEST_CASE("MillZ.AMarlinMillIsAskedAsWell") {
   pass(15);
   REQUIRE(refusal({{"do", "home"}, {"confirmed", true}}) == "");
   pass(15);
-  driver.load("test", as_bytes(std::string(milling)));
+  driver.load("test",
+              as_bytes(std::string_view("G21\nG90\nM3 S1000\nG0 Z5\nG0 X10 Y10\nG1 Z-1 F600\nG1 X20\nG0 Z5\nM5\n")));
   CHECK(refusal({{"do", "start"}, {"confirmed", true}}).find("Where is z 0") != std::string::npos);
   sent.clear();
   CHECK(refusal(start_with("here")) == "");

@@ -129,7 +129,7 @@ bool GrblDriver::refuses_foreign_line(const GrblStream::Line* line, int error) c
   if (stopping_ != Stopping::no || job_active() || foreign_resets_ >= max_resets || error == eeprom_failed)
     return false;
   if (line) return identifying_ > 0 && (!version_heard_ || line->text == "$I" || line->text == "$$");
-  return phase_ != MachinePhase::idle && phase_ != MachinePhase::alarm;
+  return identifying_ > 0 || (phase_ != MachinePhase::idle && phase_ != MachinePhase::alarm);
 }
 
 /// GRBL would act on the next line, from wherever the refused one was to lead.

@@ -24,7 +24,7 @@ std::string with_digits(double value, int digits) {
 
 std::string with_decimals(double value, int decimals) { return text_of(value, std::chars_format::fixed, decimals); }
 
-std::string with_decimals_at_most(double value, int decimals) {
+std::string with_max_decimals(double value, int decimals) {
   std::string text = with_decimals(value, decimals);
   if (text.find('.') != std::string::npos) {
     text.erase(text.find_last_not_of('0') + 1);

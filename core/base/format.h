@@ -11,6 +11,6 @@ std::string with_digits(double value, int digits);
 /// Exactly so many decimals, never a power of ten: %.<decimals>f.
 std::string with_decimals(double value, int decimals);
 /// As few decimals as are needed, at most so many; never "-0" nor a power of ten.
-std::string with_decimals_at_most(double value, int decimals);
+std::string with_max_decimals(double value, int decimals);
 
 }  // namespace formwright

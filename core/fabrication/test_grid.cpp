@@ -69,7 +69,7 @@ class Grid {
     const Vec2 first = corner_ + Vec2(2.5 * h + words_width_mm("0000", h), 0);  // right of a title and four digits
     for (int r = 0; r < o_.rows; ++r) {
       const double speed = spread(o_.speed_from_mm_per_s, o_.speed_to_mm_per_s, r, o_.rows);
-      const std::string words = with_decimals_at_most(speed, speed < 10 ? 1 : 0);
+      const std::string words = with_max_decimals(speed, speed < 10 ? 1 : 0);
       const double middle = first.y() + r * step + o_.cell_mm / 2;
       label(words, {first.x() - h - words_width_mm(words, h) / 2, middle});
       for (int c = 0; c < o_.columns; ++c) {
@@ -89,8 +89,7 @@ class Grid {
     }
     const double top = first.y() + o_.rows * step - o_.gap_mm + h;
     for (int c = 0; c < o_.columns; ++c) {
-      const std::string words =
-          with_decimals_at_most(spread(o_.power_from_percent, o_.power_to_percent, c, o_.columns), 0);
+      const std::string words = with_max_decimals(spread(o_.power_from_percent, o_.power_to_percent, c, o_.columns), 0);
       // Side by side where they fit, turned where they do not.
       const bool turned = words_width_mm(words, h) > step - h / 3;
       label(words, {first.x() + c * step + o_.cell_mm / 2, top + (turned ? words_width_mm("000", h) : h) / 2},
@@ -122,7 +121,7 @@ class Grid {
       const double kerf_mm = 0.05 * i, x = low.x() + length - 10.5 * kerf_mm;
       mark({{x, edge}, {x, edge + (i % 5 == 0 ? 1.2 : i % 2 == 0 ? 0.8 : 0.5) * o_.label_mm}});
       // The ends only, outwards: a millimetre on the scale is a tenth of one.
-      const std::string words = with_decimals_at_most(kerf_mm, 2);
+      const std::string words = with_max_decimals(kerf_mm, 2);
       if (i == 0 || i == 10)
         label(words, {x + (i == 0 ? 0.5 : -0.5) * words_width_mm(words, o_.label_mm), edge + 2 * o_.label_mm});
     }
@@ -133,7 +132,7 @@ class Grid {
     const double h = o_.label_mm, step = o_.gap_mm + h;
     for (int i = 0; i < o_.columns; ++i) {
       const double z = spread(-o_.focus_range_mm, o_.focus_range_mm, i, o_.columns), y = corner_.y() + i * step + h / 2;
-      const std::string words = with_decimals_at_most(z, 2), name = "Z" + std::to_string(i + 1);
+      const std::string words = with_max_decimals(z, 2), name = "Z" + std::to_string(i + 1);
       const double x = corner_.x() + words_width_mm("-00.00", h) + h;
       label(words, {x - h - words_width_mm(words, h) / 2, y});
       LaserStroke line = stroke(name, {{x, y}, {x + 3 * o_.cell_mm, y}}, false, o_.power_percent, o_.speed_mm_per_s);

@@ -195,6 +195,9 @@ JobResult run_job(const Json& message, const BlobSource& blobs, Session& session
     OperationResult made = operation.run({inputs, parameters, wants, session, context});
     if (const double memory = context.peak_memory_mb(); memory > 0) made.report["peak_memory_mb"] = memory;
     require_finite(made.report, "");
+    for (const ReportField& field : operation.report)
+      if (!field.old_name.empty() && made.report.contains(field.name))
+        made.report[field.old_name] = made.report[field.name];
     result.report = std::move(made.report);
     result.outputs = std::move(made.outputs);
   });

@@ -40,12 +40,12 @@ TEST_CASE("Format.KnownNumbers") {
   CHECK(with_digits(1e-5, 2) == "1e-05");
   CHECK(with_digits(2.5, 3) == "2.5");
   CHECK(with_decimals(0.125, 2) == "0.12");  // halves to the even digit
-  CHECK(with_decimals_at_most(12.5, 3) == "12.5");
-  CHECK(with_decimals_at_most(100, 3) == "100");
-  CHECK(with_decimals_at_most(100, 0) == "100");
-  CHECK(with_decimals_at_most(-0.0001, 3) == "0");
-  CHECK(with_decimals_at_most(-0.0, 0) == "0");
-  CHECK(with_decimals_at_most(1e15, 2) == "1000000000000000");
+  CHECK(with_max_decimals(12.5, 3) == "12.5");
+  CHECK(with_max_decimals(100, 3) == "100");
+  CHECK(with_max_decimals(100, 0) == "100");
+  CHECK(with_max_decimals(-0.0001, 3) == "0");
+  CHECK(with_max_decimals(-0.0, 0) == "0");
+  CHECK(with_max_decimals(1e15, 2) == "1000000000000000");
 }
 
 }  // namespace

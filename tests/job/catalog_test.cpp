@@ -251,7 +251,7 @@ TEST_CASE("RunJob.ReportsOnlyDeclaredFigures") {
       REQUIRE_FALSE(result.error);
     }
     std::set<std::string> declared;
-    for (const ReportField& field : operation.report) declared.insert(field.name);
+    for (const ReportField& field : operation.report) declared.insert({field.name, field.old_name});
     for (const auto& [name, value] : result.report.items()) {
       INFO(operation.name << " " << name);
       CHECK(declared.contains(name));

@@ -265,5 +265,35 @@ TEST_CASE("GrblLight.ARefusedLineOfAnEarlierProgramStopsTheMachine") {
   CHECK(talk.state()["connection"] == "ready");
 }
 
+TEST_CASE("GrblLight.AJogWaitsForM5AlsoWhereALineByHandStandsBehindAFocusPulse") {
+  GrblTalk talk;
+  talk.connect_and_home();
+  talk.tell(focus);
+  talk.pass(0.3);
+  talk.tell({{"do", "send"}, {"line", "M3S300"}, {"confirmed", true}});
+  talk.tell({{"do", "focus_off"}});
+  talk.pass(3);
+  talk.tell(jog);
+  talk.pass(2);
+  const auto& lines = talk.machine.lines();
+  const auto jogs =
+      std::find_if(lines.begin(), lines.end(), [](const std::string& l) { return l.find("X20") != l.npos; });
+  REQUIRE(jogs != lines.end());
+  CHECK(*std::prev(jogs) == "M5");
+  for (const auto& burn : talk.machine.burns()) CHECK_FALSE(burn.jog);
+}
+
+TEST_CASE("GrblLight.NoJobStartsWhileHomingWaits") {
+  GrblTalk talk;
+  talk.connect_and_home();
+  talk.load("G21\nG90\nM4S100\nG0X1Y1\nG1X5F1000\nM5\n");
+  talk.tell(focus);
+  talk.pass(0.3);
+  talk.tell(home);
+  REQUIRE(talk.phase() == "idle");
+  CHECK_FALSE(talk.can("start"));
+  CHECK(talk.refusal(start).find("still moving") != std::string::npos);
+}
+
 }  // namespace
 }  // namespace formwright

@@ -252,6 +252,13 @@ class Sequence {
       if (!tell({{"do", "start"}})) return make_ready();
     }
     ++totals_.jobs;
+    // What was ordered before the job, as an origin, is done before its first line.
+    const std::size_t lines_before = talk_.machine.lines().size();
+    const auto begun = [&] {
+      const auto& lines = talk_.machine.lines();
+      return std::find(lines.begin() + static_cast<std::ptrdiff_t>(lines_before), lines.end(), "G0S0") != lines.end();
+    };
+    for (int ms = 0; ms < 3000 && !begun() && talk_.ended().empty(); ++ms) pass(1e-3);
     const Point origin = job_origin();
     const auto placed = [&](Point p) {
       for (std::size_t k = 0; k < 3; ++k) p[k] += origin[k];

@@ -33,6 +33,7 @@ struct OutputInfo {
 
 struct ReportField {
   std::string name, label, unit, help;
+  std::string old_name{};  // of the release before this one, reported as well; "" where there is none
 };
 
 /// A resolved input: bytes under their hash, or one of our own shapes.

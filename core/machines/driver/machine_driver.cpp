@@ -186,7 +186,7 @@ Json job_json(const MachineJob& job, double now_s) {
           {"ended", job.ended.empty() ? Json(nullptr) : Json(job.ended)}};
 }
 
-std::string decimal(double value) { return with_decimals_at_most(value, 3); }
+std::string decimal(double value) { return with_max_decimals(value, 3); }
 
 }  // namespace machines_detail
 }  // namespace formwright

@@ -39,7 +39,7 @@ std::vector<std::string> GrblDriver::possible_commands() const {
   if (!focus_until_s_ && !pulse_) add({"override"});
   if (place_known()) add({"go_to", "frame"});
   if (is_laser()) add({focus_until_s_ ? "focus_off" : "focus"});
-  if (program_.line_count() > 0 && unknown_place().empty() && !waits("$J")) add({"start"});
+  if (program_.line_count() > 0 && unknown_place().empty() && !waits("$J") && !waits("$H")) add({"start"});
   return can;
 }
 
@@ -67,7 +67,7 @@ void GrblDriver::refuse_now(const std::string& what) const {
                        : "Where the head stands is unknown: jog to the material's corner and set the origin first.");
     if (what == "start" && !unknown_place().empty()) refuse(what, unknown_place());
   }
-  if (what == "start" && waits("$J")) refuse(what, "The head is still moving: wait until it stops.");
+  if (what == "start" && (waits("$J") || waits("$H"))) refuse(what, "The head is still moving: wait until it stops.");
   machines_detail::refuse_in_phase(what, phase_);
 }
 

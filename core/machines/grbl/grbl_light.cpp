@@ -96,7 +96,7 @@ void GrblDriver::send_pulse(double now_s) {
   if (pulses_ > 0 && now_s + pulse_s > *focus_until_s_) return focus_until_s_.reset();
   ++pulses_;
   pulse_ = true;
-  dark_ = false;
+  dark_ = light_behind_dark_ = false;
   std::string bytes;
   // In laser mode the beam is on at rest only with M3 and a cutting motion.
   for (const std::string& line :
@@ -115,7 +115,10 @@ void GrblDriver::hear_pulse(const GrblStream::Line& line, std::optional<int> err
     note("The machine refused a line of the focus light: it is reset, so that the light is out.", now_s);
     return reset(now_s);
   }
-  if (line.text == "M5") dark_ = true, power_ = 0;
+  if (line.text == "M5") {
+    dark_ = !light_behind_dark_;  // a line by hand may stand behind the pulse
+    if (dark_) power_ = 0;
+  }
   if (line.text == "G0") pulse_ = false;
 }
 

@@ -65,7 +65,8 @@ std::vector<ReportField> report_fields() {
       {"crease_off_mm", "Distance to windings", "mm",
        "Mean distance from these creases to the nearest winding as drawn."},
       {"min_winding_spacing", "Smallest spacing", "",
-       "Smallest spacing of windings that were moved onto creases, as a fraction of the even spacing."},
+       "Smallest spacing of windings that were moved onto creases, as a fraction of the even spacing.",
+       "winding_spacing_least"},
       {"fermat_spirals", "Fermat spirals", "",
        "Number of parts that the zipper enters and leaves, winding in and out as a double spiral."},
       {"zipper_length_mm", "Zipper length", "mm", "Length of the zipper: one side of the ribbon."},
@@ -137,7 +138,7 @@ void report_design(Json& report, const ParameterisedModel& model, const Zippable
     report["crease_mm"] = design.alignment->crease_mm;
     report["crease_off_even_mm"] = design.alignment->off_before_mm;
     report["crease_off_mm"] = design.alignment->off_after_mm;
-    report["min_winding_spacing"] = report["winding_spacing_least"] = design.alignment->min_spacing;
+    report["min_winding_spacing"] = design.alignment->min_spacing;
   }
   report["fermat_spirals"] = design.curve.fermat_spirals;
   report["zipper_length_mm"] = ribbon.zipper_mm;

@@ -64,7 +64,8 @@ std::vector<ReportField> report_fields() {
       {"offset_mean_mm", "Mean offset", "mm", "Mean distance by which the edges were moved."},
       {"narrow_places", "Narrow places", "",
        "Number of corners where the ribbon is too narrow to move the edge as far as the zipper needs."},
-      {"min_offset_mm", "Smallest offset", "mm", "Distance by which the edge was moved at the narrowest place."},
+      {"min_offset_mm", "Smallest offset", "mm", "Distance by which the edge was moved at the narrowest place.",
+       "offset_least_mm"},
       {"binormal_share", "Share along the binormal", "",
        "Fraction of the zipper's length moved along its binormal; the rest is moved along the surface. For gluing only."},
       {"sides_made_equal", "Sides made equal", "",
@@ -156,7 +157,7 @@ void report_lengths(Json& report, const FlatDesign& design, const ZippablePlan& 
   report["offset_mm"] = plan.zipper.offset_mm();
   report["offset_mean_mm"] = ribbon.offset_mean_mm;
   report["narrow_places"] = ribbon.narrow_samples;
-  report["min_offset_mm"] = report["offset_least_mm"] = ribbon.min_share * plan.zipper.offset_mm();
+  report["min_offset_mm"] = ribbon.min_share * plan.zipper.offset_mm();
   report["binormal_share"] = ribbon.binormal_share;
   report["sides_made_equal"] = ribbon.sides_made_equal;
   report["shear_max_mm"] = ribbon.shear_max_mm;

@@ -98,7 +98,7 @@ Causes were hidden in virtual objects and diagnosed. `score_confusion_table.py` 
             print(f"| {named_level.get(level, level)}, {sigma} mm, visible: named first | {share([c for c in shown if right(c)], shown)} |")
     every = [c for c in single if visible(c)]
     print(f"| one hidden cause: another one named, without doubt | {share([c for c in single if wrong_without_doubt(c)], single)} |")
-    print(f"| false alarms on clean data | {share([c for c in clean if c['reading'] != 'none'], clean)} |")
+    print(f"| nothing hidden: something named, or unknown | {share([c for c in clean if c['reading'] != 'none'], clean)} |")
     print(f"| hidden cause is not in the list: unknown, none or in doubt | {share([c for c in missing if c['reading'] != 'cause' or c['doubtful']], missing)} |")
     shown = [c for c in pairs if visible(c)]
     both = [c for c in pairs if set(c["verdict"]) == set(c["hidden"])]

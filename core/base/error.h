@@ -7,7 +7,7 @@
 namespace formwright {
 
 enum class ErrorCode {
-  invalid_input,    // the caller can mend it: bad file, bad value, unknown name
+  invalid_input,    // the caller can fix it: bad file, bad value, unknown name
   could_not_solve,  // the input is fine, the numbers are not: singular, infeasible, not converged
   cancelled,
   out_of_memory,
@@ -15,7 +15,7 @@ enum class ErrorCode {
 };
 
 /// What went wrong, where (the name of a parameter, an input or an output; may be empty) and one
-/// sentence for a person, which names the mend. The page highlights the control called `where`.
+/// sentence for a person, which names the fix. The page highlights the control called `where`.
 class Error : public std::runtime_error {
  public:
   Error(ErrorCode code, std::string where, const std::string& message)

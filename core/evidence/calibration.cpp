@@ -43,7 +43,7 @@ double crossing(const std::vector<ProfilePoint>& points, std::size_t best, int s
   for (std::size_t i = best; side > 0 ? i + 1 < points.size() : i > 0;) {
     i = side > 0 ? i + 1 : i - 1;
     if (points[i].log_likelihood < -half_log_likelihood) {
-      // Likelihoods fall with the square of the way: their roots are what runs straight.
+      // Log likelihoods fall with the square of the distance, so their roots are linear.
       const double a = std::sqrt(-points[inside].log_likelihood), b = std::sqrt(-points[i].log_likelihood);
       const double t = b > a ? (std::sqrt(half_log_likelihood) - a) / (b - a) : 1;
       return points[inside].value + std::clamp(t, 0.0, 1.0) * (points[i].value - points[inside].value);

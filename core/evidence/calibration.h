@@ -31,7 +31,7 @@ struct Calibration {
 /// By Levenberg and Marquardt from the nominal values. Throws Error{could_not_solve, cancelled}.
 Calibration calibrate(SimulationBag& bag, Context& context);
 
-/// The thesis's way: `per_side` values of each of `grid_parameters` over `low` to `high` (values; as many as
+/// As in [Sch18]: `per_side` values of each of `grid_parameters` over `low` to `high` (values; as many as
 /// parameters), at each the best small translation of the mould by `place_parameters` (at most 2, each within `reach`
 /// of nominal, linearised about the nominal point).
 struct GridAxis {

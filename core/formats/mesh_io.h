@@ -13,7 +13,7 @@ namespace formwright {
 /// mm where the file declares a unit (glTF: metres), else as they stand. Indices are in range, every number is finite.
 /// Polygons become triangles; unused vertices stay.
 /// Throws Error{invalid_input, options.where} with one sentence that names the file, what is wrong with it and
-/// the mend; Error{cancelled}.
+/// the fix; Error{cancelled}.
 ModelFile read_model_file(ByteView bytes, std::string_view file_name, const ReadOptions& options, Context& context);
 
 /// The same without the rest of what the file says.

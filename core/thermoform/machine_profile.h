@@ -30,7 +30,7 @@ std::string write_machine_profile(const MachineProfile& profile);
 /// not another's.
 std::vector<std::string> names_of_material();
 
-/// The set-up's parameters with the profile's. A set-up says what a machine was told, a profile what it does: where
+/// The set-up's parameters with the profile's. A set-up holds a machine's settings, a profile what it does: where
 /// both have a value, the profile's material, effects and vacuum ramp win, the set-up's other values do. What a person
 /// gives by name goes over both.
 Json with_profile(const Json& setup_parameters, const MachineProfile& profile);

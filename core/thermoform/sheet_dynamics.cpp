@@ -12,7 +12,7 @@
 namespace formwright {
 namespace {
 
-constexpr double cg_tolerance = 0.1;  // of Newton's directions: the next iteration mends the rest
+constexpr double cg_tolerance = 0.1;  // of Newton's directions: the next iteration corrects the rest
 constexpr int max_cg_iterations = 400;
 constexpr int max_newton_iterations = 12;
 constexpr int max_sliding_iterations = 5;
@@ -44,7 +44,7 @@ SheetVariation variation_of(const SheetMesh& sheet, const ThermoformOptions& o) 
   return variation;
 }
 
-/// Where the rim has gone, per mm by which the clamp gives way: inwards on every side, at the corners from both, and
+/// Where the rim has gone, per mm by which the clamp slips: inwards on every side, at the corners from both, and
 /// between so smoothly that no triangle at the rim is turned over.
 Vec2 inward(const Vec2& flat_mm, const ThermoformOptions& o) {
   const double xi = 2 * flat_mm.x() / o.clamp_opening_x_mm, eta = 2 * flat_mm.y() / o.clamp_opening_y_mm;

@@ -24,7 +24,7 @@ struct StepLoad {
   double gravity_mm_per_s2 = 9806.65;
   double pressure_mpa = 0;  // difference across the sheet at the end of the step, pushing against the faces' normals
   Vec3 clamp_shift = Vec3::Zero();  // mm, of the rim in this step
-  double clamp_slip_mm = 0;         // by which the clamp gives way in this step: its rim moves in
+  double clamp_slip_mm = 0;         // by which the clamp slips in this step: its rim moves in
   bool settling = false;            // nothing grows any more: what slides is to come to rest (SheetFriction::decide)
   bool quasi_static = false;        // leave inertia out
 };

@@ -134,7 +134,7 @@ boost::asio::awaitable<void> HttpServer::serve_connection(Socket socket, std::sh
   const auto rests = [&] {
     connection->answering = false;
     connection->since = std::chrono::steady_clock::now();
-    // One limit for the whole head: a byte now and then does not lengthen it.
+    // One limit for the whole head: single late bytes do not lengthen it.
     if (connection->known) stream.expires_after(head_patience);
     else stream.expires_after(stranger_patience);
   };

@@ -59,4 +59,18 @@ words = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(words)
 assert set(words.avoided_names("int most_rows = least; // told_s\nauto told_s = \"mend_x\"; edge_way_(mend(f), leastwise(utmost, always));")) == {
     "most_rows", "told_s", "edge_way_", "mend"}
-print("planted wrong arrows were all found")
+
+spec = importlib.util.spec_from_file_location("doc_paths", pathlib.Path(__file__).with_name("check_doc_paths.py"))
+doc_paths = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(doc_paths)
+with tempfile.TemporaryDirectory() as folder:
+    root = pathlib.Path(folder)
+    for name in ("core/base/error.h", "docs/glossary.md"):
+        (root / name).parent.mkdir(parents=True)
+        (root / name).write_text("")
+    document = root / "docs/page.md"
+    document.write_text("`core/base/error.h`, `base/error`, `error.h`, `OUT/core/x`, [words](glossary.md#machines), [GRBL](https://github.com/grbl)\n"
+                        "`core/base/gone.h`, `base/gone`, `gone.cpp`, [gone](gone.md)\n```\npython3 tests/gone.py\n```\n")
+    absent = doc_paths.missing(document, root, {"error.h"})
+    assert absent == ["base/gone", "core/base/gone.h", "gone.cpp", "gone.md", "tests/gone.py"], absent
+print("planted wrong arrows, words and paths were all found")

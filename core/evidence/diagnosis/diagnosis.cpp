@@ -125,7 +125,7 @@ class Diagnostician {
     return gain.gain_probability >= sure_gain && gain.gain_share >= min_gain;
   }
 
-  /// Those told from zero, and one that stands alone only if these data can show it at all: on data of
+  /// Those distinguishable from zero, and one that stands alone only if these data can show it at all: on data of
   /// a machine without fault the others are named as well, a weak vacuum for a sheet that is a little stiffer than
   /// thought. Beside another cause the pair has to explain what that one and the material do not.
   std::vector<int> distinguishable_from_zero(const std::vector<int>& causes) const {
@@ -308,7 +308,7 @@ class Diagnostician {
       for (int other = 0; other < static_cast<int>(model_.causes().size()); ++other) {
         if (std::find(result_.verdict.begin(), result_.verdict.end(), other) != result_.verdict.end()) continue;
         const double alike = similarity(model_, gram, result_.structure, tried_.columns(), named, other);
-        // Alike in every respect, or not told apart by these very data.
+        // Equal in every respect, or not distinguished by these data.
         const bool undecided = finding_of(other).probability > 0.15 * finding_of(named).probability;
         if (alike > inseparable_likeness || (undecided && alike > 0.5))
           result_.not_separable.push_back({named, other, alike});

@@ -7,7 +7,7 @@
 namespace formwright {
 namespace {
 
-/// Probabilities that round to certainty are not told as such.
+/// Probabilities that round to certainty are not reported as certain.
 std::string percent(double share) {
   if (share > 0.99) return "over 99 %";
   return std::to_string(static_cast<int>(std::lround(100 * share))) + " %";

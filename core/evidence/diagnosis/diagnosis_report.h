@@ -12,7 +12,7 @@ struct SeparatedPair {
   double similarity = 1;  // with it
 };
 
-/// Everything that is told of a diagnosis.
+/// Everything that is reported of a diagnosis.
 struct DiagnosisReport {
   const ForwardModel& model;
   const Diagnosis& diagnosis;

@@ -246,7 +246,7 @@ void Explanations::refit() {
     h.log_evidence = std::min(h.log_evidence, worst);
     hypotheses_.push_back(h);
   }
-  // A pair of which one does nothing is the other alone, found on another way.
+  // A pair of which one does nothing is the other alone, found from another start.
   std::erase_if(hypotheses_, [&](const Hypothesis& h) { return h.causes.size() == 2 && !significant(h); });
   normalise(hypotheses_);
 }

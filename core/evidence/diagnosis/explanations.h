@@ -50,7 +50,7 @@ class Explanations {
   /// All parameters, and what each does about the calibrated model.
   const std::vector<int>& columns() const { return columns_; }
   const std::vector<Sensitivities>& sensitivities() const { return sensitivities_; }
-  /// The same about the set-up's own material, where a cause that only goes one way is taken at its usual strength:
+  /// The same about the set-up's own material, where a cause of one sign is taken at its usual strength:
   /// what it does from there on to zero. Simulates these. Throws Error{cancelled}.
   std::vector<Sensitivities> usual_sensitivities();
   const std::vector<int>& discrepancies() const { return discrepancies_; }

@@ -9,8 +9,7 @@
 namespace formwright {
 namespace {
 
-constexpr std::size_t partners =
-    6;  // that the linear model likes best; those that only go one way are tried in any case
+constexpr std::size_t partners = 6;  // that the linear model likes best; causes of one sign are tried in any case
 
 bool one_sided(const ForwardModel& model, int cause) {
   const std::vector<int>& own = model.causes()[static_cast<std::size_t>(cause)].parameters;

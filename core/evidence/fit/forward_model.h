@@ -13,7 +13,7 @@ namespace formwright {
 enum class ParameterRole {
   base,         // of the model itself: always fitted
   effect,       // of an extension: zero means absent
-  discrepancy,  // known liberties of the simulation (another law, a finer mesh): never fitted, but what they move is
+  discrepancy,  // known variants of the simulation (another law, a finer mesh): never fitted, but what they move is
                 // not evidence
 };
 

@@ -28,7 +28,7 @@ std::vector<Eigen::VectorXd> point_errors(const Predictions& residuals, const st
 HeldOutGain compare_errors(const ForwardModel& model, const std::vector<Eigen::VectorXd>& before,
                            const std::vector<Eigen::VectorXd>& after, const std::vector<Eigen::VectorXd>& weights = {});
 
-/// What an explanation as a whole (its parameters, the simulation's liberties, structure of the size
+/// What an explanation as a whole (its parameters, discrepancy parameters, structure of the size
 /// sizes()[structure]) predicts of each fold from the others, linearised about the fit. Lengths of what is left, in
 /// which a direction counts by how well it is known; -1 for points that are left out. No simulations.
 std::vector<Eigen::VectorXd> predictive_errors(const ForwardModel& model, const ParameterFit& fit,

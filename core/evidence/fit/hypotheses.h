@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // What may be wrong, and how well each explanation predicts the data: marginal likelihoods of a linearised model
-// (Laplace), in which base parameters, effects and the simulation's known liberties have Gaussian priors and structure
+// (Laplace), in which base parameters, effects and the discrepancy parameters have Gaussian priors and structure
 // of unknown origin has its say.
 #include <Eigen/Core>
 #include <string>

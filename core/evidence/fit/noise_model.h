@@ -22,7 +22,7 @@ struct NoiseEstimate {
 NoiseEstimate estimate_noise(const Measurement& measurement, const Eigen::MatrixXd& residual);
 
 /// Where equally good simulations disagree, a point is no evidence in that direction: covariance of its d numbers (n
-/// rows of d x d) from what `movements` (n x d each, one standard deviation of a liberty of the simulation) do at it
+/// rows of d x d) from what `movements` (n x d each, one standard deviation of a discrepancy parameter) do at it
 /// and around it. Thin necks of a sheet move by many millimetres with the mesh, along the wall of the mould; across it
 /// they do not.
 Eigen::MatrixXd model_covariance(const Measurement& measurement, const std::vector<Eigen::MatrixXd>& movements);

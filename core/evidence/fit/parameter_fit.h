@@ -75,7 +75,7 @@ ParameterFit fit_parameters(SimulationBag& bag, const FitObjective& objective, c
                             Context& context, const std::string& stage);
 
 /// `from`, moved to `to` in the parameters `free`, but by three probes each at most: secants hold no farther, and a
-/// longer way is gone in steps.
+/// longer distance is covered in steps.
 Eigen::VectorXd towards(const ForwardModel& model, const std::vector<int>& free, const Eigen::VectorXd& from,
                         const Eigen::VectorXd& to);
 

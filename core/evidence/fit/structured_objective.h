@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // What a diagnosis makes small: misfit against noise and structure (structured_misfit.h), with the priors, and with the
-// simulation's known liberties integrated out.
+// discrepancy parameters integrated out.
 #include "evidence/fit/noise_model.h"
 #include "evidence/fit/parameter_fit.h"
 #include "evidence/fit/structured_misfit.h"
@@ -49,7 +49,7 @@ class StructuredObjective : public FitObjective {
                  Eigen::MatrixXd& H) const override;
 
  private:
-  /// The Gram matrix without what the liberties explain.
+  /// The Gram matrix without what the discrepancy parameters explain.
   Eigen::MatrixXd reduced(const Predictions& residuals, const std::vector<Sensitivities>& sensitivities) const;
 
   const ForwardModel& model_;

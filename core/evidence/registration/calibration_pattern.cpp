@@ -39,7 +39,7 @@ int covered_of_16(const Vec2& centre_mm, double pixel_mm, const Inside& inside) 
   return count;
 }
 
-/// Calls paint(pixel, place) for the pixels within `reach_mm` of `centre_mm` either way.
+/// Calls paint(pixel, place) for the pixels within `reach_mm` of `centre_mm` in x and in y.
 template <class Paint>
 void over_square(Image& image, double pixel_mm, const Vec2& centre_mm, double reach_mm, const Paint& paint) {
   const double middle_x = 0.5 * image.width, middle_y = 0.5 * image.height;

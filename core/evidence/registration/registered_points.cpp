@@ -18,7 +18,7 @@ constexpr double min_known_share = 0.7;     // of the area that a point is judge
 constexpr double max_foreign_share = 0.08;  // of a wider area that shows something else than the print
 constexpr double kernel_share = 0.25;       // half the second moment, 2 l^2, over the square of the step, 2 l
 constexpr double plain_margin_mm = 1;
-constexpr double rim_inside_mm = 1;  // the sheet gives way a little at the clamp's edge
+constexpr double rim_inside_mm = 1;  // the sheet yields a little at the clamp's edge
 
 /// Sums over a Gaussian window about a pixel.
 struct Window {

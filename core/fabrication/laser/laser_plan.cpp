@@ -181,7 +181,7 @@ class Planner {
   const LaserOptions& options_;
   Context& context_;
   std::vector<int> inside_of_;
-  double outward_mm_ = 0;  // outlines; openings the other way
+  double outward_mm_ = 0;  // of outlines; openings move inwards
 };
 
 }  // namespace

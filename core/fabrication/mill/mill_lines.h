@@ -27,7 +27,7 @@ struct MillMotion {
 void run_lines(ToolpathBuilder& builder, const HeightField& tips, const std::vector<MillRun>& runs, int stepover_rows,
                double material_mm, int pass, const MillMotion& motion, HeightField& been);
 
-/// Fewer points over the same way: nowhere below the line through `points`, at most `tolerance_mm` above each of them.
+/// The same path with fewer points: nowhere below the line through `points`, at most `tolerance_mm` above each of them.
 /// Every point stands over one of `points`, rounded up to whole micrometres; both ends are just those. A hill of radius
 /// R is left by pieces of sqrt(8 R tolerance), tangents to it, which needs points that may rise. Needs at least one
 /// point.

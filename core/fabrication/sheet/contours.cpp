@@ -14,7 +14,7 @@ namespace {
 
 using Key = std::vector<std::pair<std::int64_t, std::int64_t>>;
 
-/// The same for every way of running along the same points.
+/// The same for any start and direction along the same points.
 Key key_of(const CutPath& path) {
   Key key;
   for (const Vec2& p : path.points_mm) key.emplace_back(std::llround(1e3 * p.x()), std::llround(1e3 * p.y()));

@@ -12,7 +12,7 @@ namespace formwright {
 
 struct TidiedPaths {
   std::vector<CutPath> paths;
-  int doubles_dropped = 0;  // drawn twice on the same layer, whichever way round
+  int doubles_dropped = 0;  // drawn twice on the same layer, in either direction
   int ends_joined = 0;
 };
 

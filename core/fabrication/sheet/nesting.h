@@ -16,7 +16,7 @@ struct NestingOptions {
   double bed_x_mm = 600, bed_y_mm = 300;  // of one sheet
   double margin_mm = 5;                   // kept free along its edges
   double spacing_mm = 2;                  // between shapes
-  bool keep_direction = false;            // a shape's long side along x, either way round; otherwise it turns freely
+  bool keep_direction = false;            // long side along x, in either direction; otherwise it turns freely
 };
 
 /// A shape's point p lies at turn * p + shift_mm of its sheet.

@@ -46,7 +46,7 @@ void time_moves(Toolpath& path, const MotionLimits& limits) {
   const double a = limits.acceleration_mm_per_s2;
   const std::size_t n = blocks.size();
   // While a block runs, the controller knows planner_blocks - 1 more and plans to stand still behind the last of them.
-  // That caps the speed at every junction by the way left to there; with these caps one pass over the whole job gives
+  // That caps the speed at every junction by the path left there; with these caps one pass over the whole job gives
   // what its moving window gives.
   const std::size_t ahead = static_cast<std::size_t>(std::max(1, limits.planner_blocks - 1));
   std::vector<double> from_start(n + 1, 0), speed_squared(n + 1, 0);  // speed_squared[i]: on entering block i

@@ -24,7 +24,7 @@ struct ToolMove {
   std::vector<int> lines;       // per point, of the job's G-code, from 1 (write_gcode)
 };
 
-/// A part of the way that is a job of its own, because the tool is changed before it.
+/// A part of the path that is a job of its own, because the tool is changed before it.
 struct ToolpathStage {
   std::string name;            // "rough", "finish"
   std::string file;            // name of its job
@@ -70,7 +70,7 @@ struct MotionLimits {
       16;  // of the controller; moves beyond them are not seen, and it must be able to stop before them
 };
 
-/// One way after the other; times go on. Needs at least one part, none with stages.
+/// The paths in sequence; times continue. Needs at least one part, none with stages.
 Toolpath in_stages(std::vector<std::pair<ToolpathStage, Toolpath>> parts);
 
 /// Fills times_s and seconds as GRBL's planner runs the moves: trapezoids of speed at constant acceleration; in a

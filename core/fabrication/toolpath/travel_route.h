@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A short way past many paths: nearest neighbour, then 2-opt and or-opt moves and a better start for every closed path.
+// A short tour of many paths: nearest neighbour, then 2-opt and or-opt moves and a better start for every closed path.
 #include <vector>
 
 #include "base/context.h"

@@ -66,7 +66,7 @@ class Program {
     if (to.x == at_.x && to.y == at_.y) return;
     laser(false);
     const int dy = to.y - at_.y;
-    // The step out of the program turns y round: it is told the other way first.
+    // The step out of the program reverses y, so y is written reversed before it.
     if (!(up_ && y_alone()) && dy >= 0) text_ += 'L';
     if (!(!up_ && y_alone()) && dy <= 0) text_ += 'R';
     text_ += 'N';
@@ -180,7 +180,7 @@ std::string egv_speed_code(double speed_mm_per_s) {
 Bytes write_egv(const Toolpath& path, const MachineOptions& machine) {
   Program program;
   for (const ToolMove& move : path.moves) {
-    if (!move.work) continue;  // the way between is the board's own
+    if (!move.work) continue;  // the board plans travel itself
     const Steps start = steps_of(move.points_mm.front(), machine);
     if (program.running() && program.speed() != move.speed_mm_per_s) program.end();
     if (!program.running()) program.begin(move.speed_mm_per_s, start);

@@ -337,7 +337,7 @@ class PlyReader {
     for (const std::string& name : header_.textures)
       if (pictures.insert(bare_name(name)).second) model_.textures.push_back({name, "", {}});
     if (!model_.textures.empty() && model_.UV.rows() > 0) {
-      // Several textures are told apart by a face's texnumber, which hardly anything writes: the first serves all.
+      // A face's texnumber distinguishes several textures, which hardly anything writes: the first serves all.
       model_.materials.push_back({"texture", Vec3::Ones(), 0});
       model_.face_material.assign(static_cast<std::size_t>(m), 0);
     }

@@ -12,7 +12,7 @@ namespace formwright {
 
 struct Grey16Image {
   int width = 0, height = 0;
-  double pixel_width_mm = 0, pixel_height_mm = 0;  // 0: not told
+  double pixel_width_mm = 0, pixel_height_mm = 0;  // 0: not stated
   std::vector<std::uint16_t> levels;               // height * width, from the top left, row by row
 };
 

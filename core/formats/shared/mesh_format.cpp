@@ -14,7 +14,7 @@ namespace {
 struct ForeignFormat {
   std::string_view start, name;
 };
-// Worth a name in the refusal, because the mend differs from "the file is broken".
+// Named in the refusal, because the fix differs from "the file is broken".
 constexpr std::array<ForeignFormat, 16> foreign_formats{{{"Kaydara FBX Binary", "an FBX file"},
                                                          {"ISO-10303-21", "a STEP file"},
                                                          {"BLENDER", "a Blender project"},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// What every reader is given, and the one way in which readers refuse a file.
+// What every reader is given, and how all readers refuse a file.
 #include <string>
 #include <string_view>
 
@@ -28,7 +28,7 @@ class MeshSource {
   const ReadOptions& options() const { return options_; }
   Context& context() const { return context_; }
 
-  /// Throws Error{invalid_input, where}: "bunny.obj: <what>". `what` goes on in lower case, names the mend, ends in
+  /// Throws Error{invalid_input, where}: "bunny.obj: <what>". `what` goes on in lower case, names the fix, ends in
   /// ".".
   [[noreturn]] void refuse(const std::string& what) const;
   /// The same with the number of the line in which byte `offset` stands: "bunny.obj, line 12: <what>".

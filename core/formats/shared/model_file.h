@@ -37,7 +37,7 @@ struct ModelFile {
   std::vector<VertexColumn> columns;  // PLY, GLB
   std::vector<std::string> material_libraries;  // OBJ: names after mtllib
   std::vector<std::string> missing_companions;  // named by the file, not given
-  std::vector<std::string> notes;               // what was mended or left out: one sentence each, for a person
+  std::vector<std::string> notes;               // what was repaired or left out: one sentence each, for a person
 };
 
 // 20 million triangles take about 1 GB as a mesh; 32-bit WASM has 4 GB for everything.

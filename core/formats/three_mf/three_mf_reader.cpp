@@ -106,7 +106,7 @@ class ThreeMfReader {
     return size;
   }
 
-  /// Materials of base materials, and of colours when they are never told apart by corner.
+  /// Materials of base materials, and of colours when they never differ by corner.
   void add_property_tables() {
     for (const auto& [id, object] : content_.objects)
       for (const ThreeMfCorner& corner : object.corners) {

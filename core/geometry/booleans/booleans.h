@@ -20,7 +20,7 @@ class ExactSolid {
   ExactSolid() = default;
 
   /// Takes a closed, manifold mesh in mm whose faces look outwards (cavities inwards).
-  /// Throws Error{invalid_input, where} for an open, inverted or self-intersecting one, naming the mend;
+  /// Throws Error{invalid_input, where} for an open, inverted or self-intersecting one, naming the fix;
   /// Error{cancelled}.
   static ExactSolid from_mesh(const TriangleMesh& mesh, std::string_view where, Context& context);
 

@@ -43,7 +43,7 @@ class Adjacency {
   int from(int h) const { return from_[static_cast<std::size_t>(h)]; }
   int to(int h) const { return from(next_halfedge(h)); }
 
-  /// The half-edge on the other side where exactly two faces meet and run opposite ways; otherwise -1:
+  /// The half-edge on the other side where exactly two faces meet and run in opposite directions; otherwise -1:
   /// at the boundary, where three or more faces meet, and where two faces are oriented against each other.
   int opposite(int h) const { return opposite_[static_cast<std::size_t>(h)]; }
 

@@ -29,7 +29,7 @@ SparseMatrix cotangent_laplacian(const TriangleMesh& mesh, const LaplacianOption
 
 /// On the same vertices, with the edges of an intrinsic Delaunay triangulation: w_ij >= 0 along every
 /// inner edge, so that a maximum principle holds however poor the triangles (Bobenko & Springborn
-/// 2007). Boundary edges, which no flip can mend, may still be negative.
+/// 2007). Boundary edges, which no flip can improve, may still be negative.
 SparseMatrix cotangent_laplacian(const IntrinsicTriangulation& triangulation, const LaplacianOptions& options = {});
 
 enum class VertexArea {

@@ -197,7 +197,7 @@ DegenerateCount fix_degenerate_faces(Draft& draft, Context& context) {
     return flat;
   };
   std::vector<int> flat = flat_faces();
-  // Each round mends faces that do not touch; a chain of flat faces needs several.
+  // Each round repairs faces that do not touch; a chain of flat faces needs several.
   for (int round = 0; round < 12 && !flat.empty(); ++round) {
     context.check_cancelled();
     const Adjacency adjacency(draft.mesh);

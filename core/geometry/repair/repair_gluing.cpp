@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Steps of repair() about topology: which faces belong together, and which way they face.
+// Steps of repair() about topology: which faces belong together, and on which side they face out.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>

@@ -10,7 +10,7 @@
 
 namespace formwright::repair_steps {
 
-/// A mesh on its way, which knows where its pieces came from (see RepairedMesh).
+/// A mesh under repair, which knows where its pieces came from (see RepairedMesh).
 struct Draft {
   TriangleMesh mesh;
   std::vector<int> vertex_of, face_of, corner_of;

@@ -133,7 +133,7 @@ void model_ears(Sculpture& s) {
   }
 }
 
-// Which way the fur lies.
+// The direction of the fur.
 Point fur_direction(const Point& p) {
   const Point head = p - nose_tip;
   const double on_head = smooth_step(24.5, 28.5, p.y);

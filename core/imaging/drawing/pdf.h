@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Pages of exact size, with pictures, lines and words at exact places: PDF by way of libharu.
+// Pages of exact size, with pictures, lines and words at exact places: PDF written by libharu.
 #include <memory>
 #include <string>
 

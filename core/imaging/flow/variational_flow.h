@@ -88,7 +88,7 @@ struct Flow {
   }
 };
 
-/// Both pictures of one size, at least 16 pixels either way. Where a weight is 0 only smoothness speaks. The same bits
+/// Both pictures of one size, at least 16 pixels a side. Where a weight is 0 only smoothness counts. The same bits
 /// for any number of threads and in WebAssembly. Throws Error{invalid_input} for pictures of different or too small
 /// size, Error{cancelled}.
 Flow variational_flow(const WeightedPicture& first, const WeightedPicture& second,

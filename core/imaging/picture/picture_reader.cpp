@@ -14,7 +14,7 @@
 namespace formwright {
 namespace {
 
-/// What is wrong with a picture, without its name and the mend.
+/// What is wrong with a picture, without its name and the fix.
 struct Damaged : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

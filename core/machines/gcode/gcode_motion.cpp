@@ -15,7 +15,7 @@ using machines_detail::decimal;
 constexpr double farthest_mm = 100'000;  // no machine reaches further
 constexpr double full_turn_rad = 5e-7;   // ends nearer than this make a whole turn (grbl, ARC_ANGULAR_TRAVEL_EPSILON)
 
-/// Words whose way depends on what the machine keeps, or that no controller moves by as RS274 says.
+/// Words whose path depends on the machine's stored state, or that no controller moves by as RS274 says.
 const char* unclear_command(int tenths) {
   switch (tenths) {
     case 50:

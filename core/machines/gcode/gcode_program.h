@@ -32,7 +32,7 @@ class GcodeProgram {
   /// Of all moves, arcs with their bulges, in work coordinates: of a program that counts `from_here` (or z from where
   /// it stands), as if it began at the origin. Only whole where `unclear()` is empty.
   const GcodeBounds& bounds() const { return reach_.bounds; }
-  /// Does the way in x and y depend on where the head stands at the start (G91)?
+  /// Does the path in x and y depend on where the head stands at the start (G91)?
   bool from_here() const { return from_here_; }
   /// Why nobody can say where the job goes: a sentence that names the first such line and what to do; "" where it is
   /// clear.

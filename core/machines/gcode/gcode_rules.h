@@ -20,10 +20,10 @@ struct GcodeRules {
 };
 
 /// Throws Error invalid_input ("job") naming the first line that the controller would refuse, leave out or take
-/// otherwise than RS274 says, or whose way nobody can tell, and what to do. Printers' jobs pass.
+/// otherwise than RS274 says, or whose path is unknown, and what to do. Printers' jobs pass.
 void require_runnable(const GcodeProgram& program, const GcodeRules& rules);
 
-/// Throws Error invalid_input ("job") naming the first line whose way nobody can tell.
+/// Throws Error invalid_input ("job") naming the first line whose path is unknown.
 void require_clear_path(const GcodeProgram& program);
 
 /// How far a program reaches that counts from where the head stands is known only when that is the origin. `index`: of

@@ -27,7 +27,7 @@ std::array<bool, 2> unplaced_at_first_cut(const GcodeProgram& program);
 /// Of the file, the first line that turns on mist (M7), for which not every board has an output; 0 without one.
 int first_mist_line(const GcodeProgram& program);
 
-/// The line with M4 where it says M3: as long, and the same on the way.
+/// The line with M4 where it says M3: of the same length, with the same path.
 std::string with_dynamic_power(std::string_view line);
 
 }  // namespace formwright

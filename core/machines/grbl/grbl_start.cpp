@@ -107,7 +107,7 @@ void GrblDriver::check_settings() const {
   if (const std::string sentence = machine_.misplaces(); !sentence.empty()) refuse("start", sentence);
 }
 
-/// A job whose first cut begins at 0 without saying so would cut its way there from wherever the head stands.
+/// A job whose first cut begins at 0 without saying so would cut a line to it from wherever the head is.
 void GrblDriver::require_first_cut_placed(int index) const {
   constexpr double at_origin_mm = 0.1;  // machines stop at whole steps
   for (std::size_t axis = 0; index == 0 && axis < 2; ++axis)

@@ -64,7 +64,7 @@ class RuidaDriver final : public MachineDriver {
   std::int64_t status_ = 0;
   int repeats_ = 0;
   bool stopping_ = false;      // what is unconfirmed is the stop
-  bool stale_answer_ = false;  // to what was under way when the stop left: answers do not tell to what they are
+  bool stale_answer_ = false;  // to a command sent before the stop: answers do not name their command
   std::array<std::optional<double>, 2> position_mm_;
   bool paused_ = false, homed_ = false, homing_ = false, seen_running_ = false;
   double sent_s_ = 0, heard_s_ = 0, asked_s_ = 0, uploaded_s_ = -1, homing_s_ = 0;

@@ -30,7 +30,7 @@ class PoolFactor {
   void add_rows(int count) { place_.resize(place_.size() + static_cast<std::size_t>(count), -1); }
 
   /// Makes `active` (flags of all rows) the active set.
-  /// Throws Error: could_not_solve (rows in contact that cannot be told apart numerically).
+  /// Throws Error: could_not_solve (rows in contact that are numerically equal).
   void set_active(const std::vector<char>& active);
 
   /// f: rows (only those active are read); y: rows, zero where inactive; w: drivers.

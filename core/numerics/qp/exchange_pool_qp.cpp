@@ -132,7 +132,7 @@ bool PoolQp::block_pivoting(double tolerance, Context& context) {
     int wrong = 0;
     for (int a = 0; a < p_.rows(); ++a) {
       if (p_.equality[at(a)]) continue;
-      // A row that pulls by less than moves it a hundredth of what is allowed may go either way: round-off.
+      // A row that pulls by less than moves it a hundredth of what is allowed may or may not hold: round-off decides.
       if (active[at(a)] ? y_[a] * row_diagonal_[a] < -0.01 * allowed : s[a] < -allowed) {
         active[at(a)] = !active[at(a)];
         ++wrong;
@@ -148,7 +148,7 @@ bool PoolQp::block_pivoting(double tolerance, Context& context) {
   }
 }
 
-// How far from `now` >= 0 towards `goal` one may go before turning negative, 1 if all the way.
+// How far from `now` >= 0 towards `goal` one may go before turning negative, 1 if `goal` can be reached.
 static double reach(double now, double goal) { return goal > 0 ? 1.0 : now > 0 ? now / (now - goal) : 0.0; }
 
 // Monotone: every pass raises the dual objective, so that no active set comes back. Once round-off in the objective

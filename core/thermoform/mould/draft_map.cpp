@@ -51,7 +51,7 @@ TriangleMesh without_base(const TriangleMesh& solid) {
   return mesh;
 }
 
-/// Walls met on the way out from a point: ever higher ones, with their distance.
+/// Walls met outwards from a point: ever higher ones, with their distance.
 struct Wall {
   double distance_mm, height_mm;
 };

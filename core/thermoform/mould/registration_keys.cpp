@@ -12,10 +12,10 @@ namespace formwright {
 namespace {
 
 constexpr double margin_mm = 0.8;  // two lines of a 0.4 mm nozzle
-constexpr double tip = 0.7;        // of the radius: pins are cones, so that they find their way
+constexpr double tip = 0.7;        // of the radius: pins are cones, so that they centre themselves
 constexpr int grid_nodes = 24, key_sides = 16;
 
-/// Inside, by the number of surfaces on the way out; the direction is no plane's of a usual model.
+/// Inside, by the number of surfaces that a ray outwards crosses; the direction is no plane's of a usual model.
 bool inside(const RayCaster& caster, const Vec3& p, double size) {
   const Vec3 direction = Vec3(0.6142, 0.3671, 0.6987).normalized();
   return caster.all_hits(p, direction, 0, 2 * size).size() % 2 == 1;

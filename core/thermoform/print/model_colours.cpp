@@ -22,7 +22,7 @@ Light light_of(const Vec3& unit) {
   return light;
 }
 
-/// Blue in the valleys to red on the peaks, so that heights can be told apart at a glance.
+/// Blue in the valleys to red on the peaks, so that heights can be distinguished at a glance.
 Vec3 height_colour(double height) {
   const double t = height - std::floor(height);
   return {0.35 + 0.6 * t, 0.75 - 0.35 * std::abs(2 * t - 1), 0.95 - 0.6 * t};

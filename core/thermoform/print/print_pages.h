@@ -23,7 +23,7 @@ struct PageLayout {
   Vec2 origin_mm(const Tile& tile) const;
 };
 
-/// The way of turning the paper that needs fewer pages, upright when that does not matter. Tiles are of equal size and
+/// The paper's orientation that needs fewer pages, upright when that does not matter. Tiles are of equal size and
 /// have exactly options.overlap_mm in common.
 /// Throws Error{invalid_input, "paper"}: more than 400 pages.
 PageLayout page_layout(const ThermoformPrintOptions& options);

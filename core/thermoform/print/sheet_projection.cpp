@@ -70,7 +70,7 @@ class Projector {
 
   double thickest_mm() const { return thickest_mm_; }
 
-  /// Nothing when no face that looks the same way is near enough.
+  /// Nothing if no face of similar normal is near enough.
   std::optional<NearestPoint> operator()(const Vec3& p, const Vec3& normal) const {
     return rays_ ? along_normal(p, normal) : nearest(p, normal);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // A symmetric sparse matrix of 3 x 3 blocks, one row of blocks a vertex, in single precision: it only makes Newton's
-// directions, whose errors the next iteration mends; what must be exact, the forces, is in double precision elsewhere.
+// directions, whose errors the next iteration fixes; what must be exact, the forces, is in double precision elsewhere.
 #include <array>
 #include <span>
 #include <vector>

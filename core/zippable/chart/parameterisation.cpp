@@ -39,7 +39,7 @@ class Solver {
  public:
   Solver(const Segmentation& s, const ParameterisationOptions& options, Context& context)
       : s_(s), options_(options), context_(context), chart_(s), system_(chart_, context) {
-    // Lengths mended where a triangle is flat to rounding, so that every reference has an area.
+    // Lengths corrected where a triangle is flat to rounding, so that every reference has an area.
     const IntrinsicTriangulation intrinsic = intrinsic_triangulation(s.mesh);
     const std::size_t m = s.mesh.face_count();
     reference_.resize(m);

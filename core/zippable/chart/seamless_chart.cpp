@@ -25,7 +25,7 @@ int SeamlessChart::intern(std::vector<SharedTerm> sum) {
 
 void SeamlessChart::cut_part(const Segmentation& s, const Adjacency& adjacency, int part,
                              std::vector<char>& shifted) const {
-  // Shortest way along inner edges from the lower line's first vertex to the upper line, touching neither between.
+  // Shortest path along inner edges from the lower line's first vertex to the upper line, touching neither between.
   const Segment& segment = s.segments[part];
   constexpr double far = std::numeric_limits<double>::infinity();
   std::vector<double> distance(s.mesh.vertex_count(), far);
@@ -62,7 +62,7 @@ void SeamlessChart::cut_part(const Segmentation& s, const Adjacency& adjacency, 
   for (int v = end; v != start; v = adjacency.from(path.back())) path.push_back(arriving[v]);
   std::vector<char> wall(adjacency.edge_count(), 0);
   for (const int h : path) wall[adjacency.edge_of(h)] = 1;
-  // Left of the way up, around each of its vertices.
+  // Left of the path upwards, around each of its vertices.
   const auto spread = [&](int v, int face) {
     std::vector<int> stack{face};
     while (!stack.empty()) {

@@ -85,7 +85,7 @@ class TapedCuts {
   };
 
   const std::vector<Span>& line(int part, bool upper) const;
-  /// On the span that the way from x towards another place lies on.
+  /// On the span that holds the path from x towards another place.
   std::optional<Place> at(int part, bool upper, double x_mm, double towards_mm) const;
   void place_on(OpeningArc& arc, double grid_step_mm) const;
   double from_origin_mm(const Cut& cut, double along_mm, double near_mm) const;

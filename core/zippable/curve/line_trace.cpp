@@ -89,7 +89,7 @@ TracedLine LineTracer::trace(int part, double x_low, double x_high) const {
   const int maximum =
       4 * s_.mesh.face_count() + static_cast<int>(8.0 * (x_high - x_low) / p_.period_mm[part] * s_.mesh.face_count());
   for (int step = 0; step < maximum; ++step) {
-    // Entering over h, whose start lies left of the way and whose end right: the third corner decides how to leave.
+    // Entering over h, whose start lies left of the path and whose end right: the third corner decides how to leave.
     const int next = next_halfedge(h), last = previous_halfedge(h);
     const bool apex_left = side_of(point(last, shift)) >= 0;
     const int out = apex_left ? next : last;

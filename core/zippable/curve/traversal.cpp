@@ -24,7 +24,7 @@ LinePlace place_on_line(const Segmentation& s, const Parameterisation& p, int pa
 
 double wrapped(double x, double period) { return x - period * std::floor(x / period); }
 
-/// Depth first, in lexicographic order; ways that cannot be gone on to the end are left where that shows.
+/// Depth first, in lexicographic order; a path that cannot reach the end is given up as soon as that shows.
 class TraversalSearch {
  public:
   TraversalSearch(const Segmentation& s, int limit, const Context& context)

@@ -20,7 +20,7 @@
 namespace formwright {
 namespace {
 
-/// Marks the edges of a way between two vertices that is as straight as edges allow.
+/// Marks the edges of a path between two vertices that is as straight as edges allow.
 void mark_path(const TriangleMesh& mesh, const Adjacency& adjacency, const PointDistance& surface, double step_mm,
                int from, int to, std::vector<char>& wall) {
   std::vector<Vec3> line;
@@ -41,11 +41,11 @@ void mark_path(const TriangleMesh& mesh, const Adjacency& adjacency, const Point
   }
 }
 
-/// Marks the edges of the cheapest way: as they are along features, as straight as edges allow in between.
+/// Marks the edges of the cheapest path: as they are along features, as straight as edges allow in between.
 void mark_snapped_path(const TriangleMesh& mesh, const Adjacency& adjacency, const PointDistance& surface,
                        double step_mm, int from, int to, const FeatureLines& features, std::vector<char>& wall) {
   const std::vector<int> path = edge_path(mesh, adjacency, from, to, &features);
-  std::size_t left = 0;  // where the way left the features
+  std::size_t left = 0;  // where the path left the features
   for (std::size_t k = 0; k + 1 < path.size(); ++k) {
     const int edge = adjacency.find_edge(path[k], path[k + 1]);
     if (std::abs(features.bend_rad[edge]) < features.options.min_rad) continue;
@@ -66,7 +66,7 @@ int snapped_vertex(const TriangleMesh& mesh, const SnapTargets& targets, const V
   return nearest >= 0 ? nearest : nearest_vertex(mesh, point);
 }
 
-/// Of every curve the vertices on its way. A point that a snapped curve moves is moved for all curves that share it.
+/// Of every curve the vertices on its path. A point that a snapped curve moves is moved for all curves that share it.
 std::vector<std::vector<int>> stops_of(const TriangleMesh& mesh, const std::vector<DrawnCurve>& curves,
                                        const std::vector<char>& snaps, const SnapTargets* targets) {
   const auto key = [](const Vec3& p) { return std::array<double, 3>{p.x(), p.y(), p.z()}; };
@@ -194,7 +194,7 @@ LabelledSurface divide_along_curves(const TriangleMesh& mesh, const std::vector<
     label[v] = static_cast<int>(minimum);
   }
   LabelledSurface result = split_by_smallest_field(mesh, label, field, keep);
-  // Slivers between ways that cross each other vanish under the smoothing: what is left is numbered anew.
+  // Slivers between paths that cross each other vanish under the smoothing: what is left is numbered anew.
   std::vector<int> number(count, -1);
   int next = 0;
   for (int& face : result.face_label) {

@@ -23,10 +23,10 @@ struct SnapTargets {
   bool by_default = true;  // for curves that do not say it
 };
 
-/// Straightest ways on the surface between the points bound the parts, along the nearest edges; then the borders are
+/// Straightest paths on the surface between the points bound the parts, along the nearest edges; then the borders are
 /// smoothed over about two edge lengths (a step of diffusion of every part's indicator) and cut through the faces.
 /// Curves join where they share a point. Labels are numbered in the order of the parts' first faces. Curves that snap
-/// (`targets`, null: none can) move their points onto feature lines in reach and take the way that is shortest when
+/// (`targets`, null: none can) move their points onto feature lines in reach and take the path that is shortest when
 /// edges along features count for less; what runs along sharp edges keeps exactly to them. Needs a connected manifold.
 /// Throws Error: invalid_input ("segments": a curve with too few points, or that divides nothing), cancelled.
 LabelledSurface divide_along_curves(const TriangleMesh& mesh, const std::vector<DrawnCurve>& curves,

@@ -25,7 +25,7 @@ int root_of(std::vector<int>& parent, int i) {
   return i;
 }
 
-/// The shortest of the generators that a tree of shortest ways from `root` gives. Openings count as faces; ways keep
+/// The shortest of the generators that a tree of shortest paths from `root` gives. Openings count as faces; paths keep
 /// off them.
 Loop shortest_loop(const TriangleMesh& mesh, const Adjacency& adjacency, int root) {
   const int n = mesh.vertex_count(), m = mesh.face_count();
@@ -75,7 +75,7 @@ Loop shortest_loop(const TriangleMesh& mesh, const Adjacency& adjacency, int roo
       continue;
     }
     if (!(length[e] < best.length)) continue;
-    // The two ways to the root, without what they share.
+    // The two paths to the root, without what they share.
     const auto path_up = [&](int v) {
       std::vector<int> path;
       for (; v >= 0; v = before[v]) path.push_back(v);

@@ -21,7 +21,7 @@ struct OpenedSurface {
 OpenedSurface cut_handles(const TriangleMesh& mesh, Context& context);
 
 /// Makes one opening of the two that are nearest to each other along the surface, by a slit between them. False, with
-/// nothing changed, when there are fewer than two or no way between them keeps off the others.
+/// nothing changed, when there are fewer than two or no path between them keeps off the others.
 bool join_nearest_openings(OpenedSurface& surface, Context& context);
 
 }  // namespace formwright

@@ -56,7 +56,7 @@ struct Segmentation {
 /// Throws Error{invalid_input, "mesh"}: not manifold, not connected, or without an opening.
 Segmentation make_segmentation(const TriangleMesh& mesh, const std::vector<int>& face_segment);
 
-/// Sum of edge lengths along the walk, in mm; `closed` adds the way back to its first vertex.
+/// Sum of edge lengths along the walk, in mm; `closed` adds the path back to its first vertex.
 double walk_length_mm(const TriangleMesh& mesh, const std::vector<int>& vertices, bool closed);
 
 }  // namespace formwright

@@ -8,7 +8,7 @@
 
 namespace formwright {
 
-/// Opens the surface along every path, the straightest way through its points: faces are cut where it crosses them,
+/// Opens the surface along every path, the straightest line through its points: faces are cut where it crosses them,
 /// vertices get a second copy, and both ends stay closed. A cut begins and ends within an edge of the path's ends and
 /// keeps a tenth of an edge off old vertices. Returns the cuts as polylines, mm. Needs a connected, manifold, oriented
 /// mesh. Throws Error: invalid_input ("segments": too short for the mesh, meeting itself, an opening or another cut),

@@ -11,12 +11,12 @@ namespace formwright {
 
 int nearest_vertex(const TriangleMesh& mesh, const Vec3& point);
 
-/// Vertices of the shortest way along edges, both ends included; only the start where no way leads on. Edges along
+/// Vertices of the shortest path along edges, both ends included; only the start where no path leads on. Edges along
 /// `features` count for less.
 std::vector<int> edge_path(const TriangleMesh& mesh, const Adjacency& adjacency, int from, int to,
                            const FeatureLines* features = nullptr);
 
-/// Pulls a way straight on the surface: few points first, each to the middle between its neighbours and back onto the
+/// Pulls a path straight on the surface: few points first, each to the middle between its neighbours and back onto the
 /// surface, then twice as many, until they are `step_mm` apart. Ends stay.
 std::vector<Vec3> straightened(std::vector<Vec3> line, const PointDistance& surface, double step_mm);
 

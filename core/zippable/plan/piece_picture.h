@@ -27,7 +27,7 @@ struct PiecePicture {
 
 /// The piece as it lies on its sheet. The left edge of the zipper thick, the right one thin, splits dashed with their
 /// letters, the outline with its allowances finest; numbers of markers as far apart as they can be read. `seam`: letter
-/// of the split to show boldly, or empty. Precondition: size at least 30 mm each way.
+/// of the split to show boldly, or empty. Precondition: width and height at least 30 mm.
 PiecePicture picture_of_piece(const FlatDesign& design, const ZippablePlan& plan, int piece, const Vec2& size_mm,
                               const std::string& seam, const std::vector<SeamTag>& tags);
 

@@ -115,7 +115,7 @@ std::vector<Vec2> unfold(const std::vector<Vec3>& positions, const Triangles& F)
   std::vector<Vec2> flat(positions.size(), Vec2::Zero());
   std::vector<char> placed(F.rows(), 0);
   const auto distance = [&](int a, int b) { return (positions[a] - positions[b]).norm(); };
-  // c to the left of the way from a to b.
+  // c to the left of the line from a to b.
   const auto put = [&](int a, int b, int c) {
     const double length = distance(a, b);
     const Vec3 ab = positions[b] - positions[a], ac = positions[c] - positions[a];

@@ -84,7 +84,7 @@ class Slitter {
     for (int h = 0; h < 3 * bands.mesh.face_count(); ++h) vertices_[bands.band[h / 3]].insert(adjacency_.from(h));
   }
 
-  /// The walk with the slit, both ways; the walk itself where the filled band comes near to all of it.
+  /// The walk with the slit in both directions; the walk itself where the filled band comes near to all of it.
   std::vector<int> slit(int band, const std::vector<int>& walk, const Strip& strip, double near_mm,
                         std::vector<Vec3>& points) const {
     TriangleMesh mesh;
@@ -298,7 +298,7 @@ std::vector<CutSheet> strip_sheets(const StripModel& model, const StripOptions& 
   for (std::size_t i = 0; i < outlines.size(); ++i) {
     auto& paths = sheets[nesting.places[i].sheet].paths;
     for (Vec2& p : outlines[i]) p = nesting.places[i](p);
-    // The number on the longest way across.
+    // The number on the longest line across.
     const StripPiece& piece = model.pieces[i];
     double longest = 0;
     Vec2 middle(0, 0), along(1, 0);

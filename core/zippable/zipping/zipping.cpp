@@ -94,7 +94,7 @@ class Zipping {
     record(1);
   }
 
-  /// As a maker does: corners and limbs that were tucked in on the way come out, and stay out.
+  /// As a maker does: corners and limbs that were tucked in while zipping come out, and stay out.
   void press_out() {
     held_percent_ = options_.press_out_percent;
     bool still = false;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // "Will it zip?": the flat ribbon as nearly inextensible cloth, its seams drawn together one after the other as a
-// slider passes them, until it comes to rest. The design's shape is not used on the way, only compared with at the end.
+// slider passes them, until it comes to rest. The design's shape is not used before, only compared with at the end.
 #include <optional>
 #include <tuple>
 #include <vector>

@@ -80,18 +80,26 @@ def main():
     missing = [c for c in cases if c["left_out"] and len(c["hidden"]) == 1]
     pairs = [c for c in cases if len(c["hidden"]) == 2 and not c["left_out"]]
 
-    print("# The confusion table\n\nMade by `score_confusion_table.py` from the answers in `tests/bench/evidence/confusion_table.jsonl`; [evidence.md](evidence.md) says how they are made and"
-          " what they mean.\n")
-    print(f"{len(cases)} cases; answers of " + ", ".join(f"engine {engine}: {count}" for engine, count in sorted(by_engine.items())) + ".\n")
-    print("| | |\n|---|---|")
+    print("""# The confusion table
+
+Causes were hidden in virtual objects and diagnosed. `score_confusion_table.py` counts the answers in `tests/bench/evidence/confusion_table.jsonl`.
+[evidence.md](evidence.md) says how the objects are made, what the causes mean, and which command makes this page.
+
+- A cause is *visible* if it is stronger than `min_visible_strength`, which the diagnosis computes without knowing the truth.
+- ± is half the width of the 95 % interval. Strengths are in the units of [thermoform.md](thermoform.md).
+- *In doubt*: the report doubts its answer and says why. *Or a twin*: another cause does nearly the same to these data. ✗: visible, but not what was named.
+- *Another object* is the mean error on an object that the diagnosis did not see, before and after the simulation is extended.
+""")
+    print(f"{len(cases)} cases, by the engine that answered: " + ", ".join(f"{engine}: {count}" for engine, count in sorted(by_engine.items())) + ".\n")
+    print("| count | result |\n|---|---|")
     for level in sorted({c["level"] for c in single}, reverse=True):
         for sigma in sorted({c["sigma_mm"] for c in single}):
             shown = [c for c in single if c["level"] == level and c["sigma_mm"] == sigma and visible(c)]
             print(f"| {named_level.get(level, level)}, {sigma} mm, visible: named first | {share([c for c in shown if right(c)], shown)} |")
     every = [c for c in single if visible(c)]
-    print(f"| a wrong name without doubt | {share([c for c in single if wrong_without_doubt(c)], single)} |")
-    print(f"| false alarms on clean data | {share([c for c in clean if c['reading'] != 'none'], clean)} |")
-    print(f"| cause left out of the list: unknown, none or doubt | {share([c for c in missing if c['reading'] != 'cause' or c['doubtful']], missing)} |")
+    print(f"| one hidden cause: another one named, without doubt | {share([c for c in single if wrong_without_doubt(c)], single)} |")
+    print(f"| nothing hidden: something named, or unknown | {share([c for c in clean if c['reading'] != 'none'], clean)} |")
+    print(f"| hidden cause is not in the list: unknown, none or in doubt | {share([c for c in missing if c['reading'] != 'cause' or c['doubtful']], missing)} |")
     shown = [c for c in pairs if visible(c)]
     both = [c for c in pairs if set(c["verdict"]) == set(c["hidden"])]
     print(f"| two strong causes: both named | {share(both, pairs)}; where both are visible {share([c for c in both if visible(c)], shown)} |")
@@ -100,16 +108,16 @@ def main():
     if gains:
         print(f"| error on another object, strong cause named | falls by {100 * statistics.median(gains):.0f} % (median), by half or more in {share([g for g in gains if g >= 0.5], gains)} |")
     if found:
-        print(f"| strength found over hidden | {statistics.median(abs(c['causes'][0][2]) / c['strength'][0] for c in found):.2f} (median) |")
+        print(f"| found strength divided by hidden strength | {statistics.median(abs(c['causes'][0][2]) / c['strength'][0] for c in found):.2f} (median) |")
         print(f"| 95 % interval holds the hidden strength | {share([c for c in found if inside(c)], found)} |")
     if cases:
-        print(f"| seconds a diagnosis, one processor | {statistics.median(c['seconds'] for c in cases):.0f} (median); failed: {len(failed)} |")
+        print(f"| seconds per diagnosis, one processor | {statistics.median(c['seconds'] for c in cases):.0f} (median); failed diagnoses: {len(failed)} |")
     by_cause = lambda c: (c["hidden"], c["sigma_mm"], c["seed"])
     for level in sorted({c["level"] for c in single}, reverse=True):
         listed(sorted((c for c in single if c["level"] == level), key=by_cause), f"One cause, {named_level.get(level, level)}")
     listed(sorted(missing, key=by_cause), "A cause that is not in the list")
     listed(sorted(pairs, key=by_cause), "Two causes")
-    listed(sorted(clean, key=by_cause), "Clean")
+    listed(sorted(clean, key=by_cause), "Nothing hidden")
 
 
 main()

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The grammars of SVG's path data, transforms and lengths (SVG 1.1, chapters 7 and 8); path data by way of SVG++.
+// The grammars of SVG's path data, transforms and lengths (SVG 1.1, chapters 7 and 8); SVG++ parses path data.
 #include <optional>
 #include <string_view>
 #include <vector>

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int steps = 10;
 
-// Shares of the largest width and height at t of the way from root to tip.
+// Shares of the largest width and height at the share t from root to tip.
 double width_at(const LockStyle& s, double t) {
   return mix(0.6 + 0.4 * smooth_step(0, 0.35, t), s.tip_width, smooth_step(0.5, 1, t));
 }

@@ -72,7 +72,7 @@ OperationResult run(const OperationCall& call) {
   options.profile = read_profile_input(call);
   std::vector<FormedObject> unseen = read_formed_objects(call, "unseen");
   const ThermoformModel model(read_formed_objects(call, "object"), options);
-  // An object that cannot be formed at all is told before the minutes, not after.
+  // An object that cannot be formed is refused before the fits, which take minutes.
   std::unique_ptr<const ThermoformModel> other;
   if (!unseen.empty()) {
     const auto span = call.context.span(0, 0.02, "Simulating the validation object");

@@ -12,7 +12,7 @@ namespace {
 /// A place between two samples of the zipper that follow each other.
 struct ZipperPlace {
   int before, after;
-  double share;  // of the way from one to the other
+  double share;  // of the distance from one to the other
 };
 
 class Side {

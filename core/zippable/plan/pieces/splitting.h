@@ -11,7 +11,7 @@
 namespace formwright {
 
 struct RibbonSplit {
-  int from = 0, to = 0;     // vertices of the cut edge; piece `left` lies to the left of the way
+  int from = 0, to = 0;     // vertices of the cut edge; piece `left` lies to the left of the direction from -> to
   int left = 0, right = 0;  // pieces
 };
 

@@ -18,12 +18,12 @@ struct ZipperModel {
 ZipperModel zipper_model(const PlanOptions& options);
 
 struct BinormalField {
-  std::vector<Vec3> left;    // per point: unit vectors to the left of the way
-  std::vector<char> usable;  // per point: 0 where the binormal stands off the surface or the way is straight;
+  std::vector<Vec3> left;    // per point: unit vectors to the left of the path
+  std::vector<char> usable;  // per point: 0 where the binormal stands off the surface or the path is straight;
                              // `left_on_surface` is there
 };
 
-/// Of a polyline in space. The binormal is the cross product of the way behind and ahead over `window_mm` each (at
+/// Of a polyline in space. The binormal is the cross product of the path behind and ahead over `window_mm` each (at
 /// least one segment), over more where it is nearly straight, pointing left. Along every stretch where it is usable,
 /// offsets to both sides are then made equally long, segment by segment, to rounding, by the smallest change of the
 /// directions in the sense of least squares. `left_on_surface`: per point, a unit vector along the surface.

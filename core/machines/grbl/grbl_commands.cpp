@@ -105,7 +105,7 @@ void GrblDriver::home(const Json& command, double now_s) {
   if (const std::string sentence = machine_.runs_by_itself(); !sentence.empty()) refuse("home", sentence);
   refused_.reset();
   focus_until_s_.reset();
-  // A light pulse is waited for; any other motion is refused.
+  // A light pulse is waited for; other unanswered lines are dropped by a reset.
   if (limits_hit_ || (!stream_.empty() && !pulse_)) after_banner_ = {"$H"}, reset(now_s);
   else queue("$H");
 }

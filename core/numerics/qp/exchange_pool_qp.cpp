@@ -132,7 +132,7 @@ bool PoolQp::block_pivoting(double tolerance, Context& context) {
     int wrong = 0;
     for (int a = 0; a < p_.rows(); ++a) {
       if (p_.equality[at(a)]) continue;
-      // A row that pulls by less than moves it a hundredth of what is allowed may or may not hold: round-off decides.
+      // An active row whose pull is worth less than a hundredth of what is allowed stays: that is round-off.
       if (active[at(a)] ? y_[a] * row_diagonal_[a] < -0.01 * allowed : s[a] < -allowed) {
         active[at(a)] = !active[at(a)];
         ++wrong;

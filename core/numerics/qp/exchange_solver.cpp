@@ -365,7 +365,7 @@ ExchangeResult ExchangeSolver::run(const Rows& rows, const std::vector<RowKey>& 
         return true;
       });
       if (at_rest || pass == refinements) break;
-      // Round-off matters once all other violations are gone.
+      // Round-off matters once nothing else is left to improve.
       double held = 0, left = 0;
       for (std::size_t k = 0; k < pool_.size(); ++k) {
         if (active_[k]) held = std::max(held, std::abs(rows.violation(pool_[k], result.u, result.m)));

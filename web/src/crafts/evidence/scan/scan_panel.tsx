@@ -226,8 +226,8 @@ function Handle({ session, corners, which, place: [x, y], size }: HandleProps) {
 }
 
 const likenessOf = ({ report }: MeasuredScan): string => {
-  const similarity = figure(report, 'likeness');
-  return similarity === null ? '' : `likeness ${formatNumber(likeness, 3)} of 1`;
+  const likeness = figure(report, 'likeness');
+  return likeness === null ? '' : `likeness ${formatNumber(likeness, 3)} of 1`;
 };
 
 function Aligned({ session, measured }: { session: EvidenceSession; measured: MeasuredScan }) {

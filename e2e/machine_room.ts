@@ -47,7 +47,7 @@ export async function practise(page: Page): Promise<void> {
 
 export async function homeIt(page: Page): Promise<void> {
   await page.locator('.machine-buttons').getByRole('button', { name: 'Home' }).click();
-  await confirm(page, /^Home the machine/, 'Home', /moves to its switches/);
+  await confirm(page, /^Home the machine/, 'Home', /moves to its homing switches/);
   await expect(chip(page)).toHaveText('Ready');
   await expect(position(page).getByText('unknown')).toHaveCount(0);
 }

@@ -187,7 +187,7 @@ test('a relief goes to a mill: its job, its way in space, its first lines', asyn
   await button(page, 'Practise without a machine').click();
   await expect(chip(page)).toHaveText('Locked');
   await page.locator('.machine-buttons').getByRole('button', { name: 'Home' }).click();
-  await confirm(page, /^Home the machine/, 'Home', /moves to its switches/);
+  await confirm(page, /^Home the machine/, 'Home', /moves to its homing switches/);
   await expect(chip(page)).toHaveText('Ready');
   // The tool has no room above it at its switches: from there the job would leave the machine's reach.
   await page.getByRole('button', { name: 'Move the tool down' }).focus();
@@ -197,10 +197,10 @@ test('a relief goes to a mill: its job, its way in space, its first lines', asyn
   await button(page, 'Set z here').click();
   // Two tools are two jobs, with z set between them.
   const jobs = page.getByRole('region', { name: 'Jobs, in order' });
-  await jobs.getByRole('button', { name: 'Run this next' }).click();
+  await jobs.getByRole('button', { name: 'Run this job next' }).click();
   await expect(jobs).toContainText('next, once z is set');
   await expect(startButton(page)).toHaveAttribute('aria-disabled', 'true');
-  await jobs.getByRole('button', { name: 'Run this next' }).click();
+  await jobs.getByRole('button', { name: 'Run this job next' }).click();
   await button(page, 'Set z here').click();
   // Nothing is chosen in advance, and nothing starts before somebody has said where z is 0.
   await startButton(page).click();

@@ -102,7 +102,7 @@ test('material is tested, and what the tests show is set and kept', async ({ pag
   await openDrawing(page);
   await button(page, 'Save as a material').click();
   await dialog(page).getByLabel('Name').fill('Felt');
-  await dialog(page).getByRole('button', { name: 'Keep', exact: true }).click();
+  await dialog(page).getByRole('button', { name: 'Save', exact: true }).click();
   await expect(page.getByLabel('Preset').locator('option:checked')).toHaveText('Felt');
 
   // Four squares, quick, run like any job.
@@ -143,7 +143,7 @@ test('material is tested, and what the tests show is set and kept', async ({ pag
   await page.keyboard.press('ArrowDown');
   await expect(best).toHaveValue('R1C2');
   await showsTest(page).getByRole('button', { name: 'Use for cutting' }).click();
-  await expect(page.getByText('100 % at 50.0 mm/s is set for cutting, and kept with Felt.')).toBeVisible();
+  await expect(page.getByText('100 % at 50.0 mm/s is set for cutting, and saved with Felt.')).toBeVisible();
   await expect(page.getByLabel('Preset').locator('option:checked')).toHaveText('Felt');
   await expect(page.getByRole('region', { name: 'Layers, in order' })).toContainText(
     /Cut, 1 part100\s%, 50\.0\smm\/s/,

@@ -227,7 +227,7 @@ function Handle({ session, corners, which, place: [x, y], size }: HandleProps) {
 
 const likenessOf = ({ report }: MeasuredScan): string => {
   const likeness = figure(report, 'likeness');
-  return likeness === null ? '' : `match ${formatNumber(likeness, 3)} (1 is perfect)`;
+  return likeness === null ? '' : `similarity ${formatNumber(likeness, 3)} (1 is perfect)`;
 };
 
 function Aligned({ session, measured }: { session: EvidenceSession; measured: MeasuredScan }) {

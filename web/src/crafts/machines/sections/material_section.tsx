@@ -85,7 +85,7 @@ export function MaterialSection({ session }: { readonly session: MachinesSession
               })
             }
           >
-            Delete this material
+            Delete
           </Button>
         ) : null}
       </div>

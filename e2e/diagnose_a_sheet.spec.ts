@@ -77,7 +77,7 @@ test('three files, a named cause, the extended model, the report, the next print
   await page.getByRole('radio', { name: 'On the object' }).click();
   await expect(page.getByText(/^Arrows from measured to simulated/)).toBeVisible();
   await expectAccessibleEverywhere(page, 'on the object');
-  await page.getByRole('radio', { name: 'Plane' }).click();
+  await page.getByRole('radio', { name: 'Flat maps' }).click();
 
   const waiting = page.waitForEvent('download');
   await page.getByRole('button', { name: 'Download or undo' }).click();
@@ -178,7 +178,7 @@ test('a scan is measured, its corners set by hand, and becomes an object', async
   await expect(page.getByText(/^similarity (0\.99|1\.0)/)).toBeVisible();
 
   await expect(page.getByRole('img', { name: /^Corner .*, found at/ })).toHaveCount(4);
-  await page.getByRole('button', { name: 'Set them by hand' }).click();
+  await page.getByRole('button', { name: 'Set the corners by hand' }).click();
   const corner = (name: string) => page.getByRole('button', { name: new RegExp(`^Corner ${name}`) });
   const image = page.getByRole('img', { name: 'The scan’s picture' });
   const box = await image.boundingBox();
@@ -224,7 +224,7 @@ test('a virtual object with a fault of one’s choice', async ({ page }) => {
   await dialog.getByRole('textbox', { name: 'Points', exact: true }).fill('300');
   await dialog.getByRole('textbox', { name: 'Points', exact: true }).press('Tab');
   await expectAccessibleEverywhere(page, 'virtual object');
-  await dialog.getByRole('button', { name: 'Make it' }).click();
+  await dialog.getByRole('button', { name: 'Make the virtual object' }).click();
   await expect(page.getByRole('button', { name: /^virtual pyramid 3\d\d points/ })).toBeVisible(seen);
   await expect(strip(page, 'Compared with the settings as they are')).toBeVisible(seen);
 });

@@ -91,9 +91,9 @@ test('cloth zipped up, frame by frame, and what became of it', async ({ page }) 
   await page.getByRole('radio', { name: 'Zipped' }).click();
   await page.getByRole('button', { name: 'Will it zip? Simulate cloth' }).click();
   await expect(page.getByText(/^It zips (into|up)/)).toBeVisible({ timeout: 150_000 });
-  await expect(page.getByRole('radio', { name: 'As cloth' })).toBeChecked();
-  await page.getByRole('slider', { name: 'How far it is bent' }).fill('0.5');
-  await page.getByRole('radio', { name: 'As drawn' }).click();
+  await expect(page.getByRole('radio', { name: 'Simulated cloth' })).toBeChecked();
+  await page.getByRole('slider', { name: 'From flat to zipped' }).fill('0.5');
+  await page.getByRole('radio', { name: 'Geometry only' }).click();
   await expect(
     page.getByText('Animation only: lengths are kept, but forces are not simulated.'),
   ).toBeVisible();
@@ -182,7 +182,7 @@ test('parts drawn by hand: a border and a cut with the mouse, an opening moved w
 
   // The openings that were found are taken over; one is moved by arrow keys, which is one step to undo.
   await page.getByRole('radio', { name: 'Opening' }).click();
-  await page.getByRole('button', { name: 'Move the points found' }).click();
+  await page.getByRole('button', { name: 'Move the openings found' }).click();
   await expect(page.getByText('Drawn by hand: 1 border, 2 openings')).toBeVisible();
   await expect(strip(page, 'Preview up to date')).toBeVisible();
   const opening = page.getByRole('button', { name: /^Opening [12]$/ }).first();
@@ -214,7 +214,7 @@ test('parts drawn by hand: a border and a cut with the mouse, an opening moved w
   await expect(page.getByText('Drawn by hand: 1 border, 1 cut')).toBeVisible();
   await expect(parts).toHaveCount(2);
   await page.getByRole('button', { name: 'Change', exact: true }).click();
-  await page.getByRole('button', { name: 'Automatic' }).click();
+  await page.getByRole('button', { name: 'Find the parts automatically' }).click();
   await expect(page.getByText('Found automatically')).toBeVisible();
   await expect(parts).toHaveCount(3);
 });

@@ -13,7 +13,7 @@ export function Sheet({ label, children }: { label: string; children: ComponentC
       <button
         type="button"
         class="sheet-handle"
-        aria-label={size === 'tall' ? 'Make the sheet lower' : 'Make the sheet taller'}
+        aria-label={size === 'tall' ? 'Make this panel lower' : 'Make this panel taller'}
         aria-expanded={size === 'tall'}
         onPointerDown={(event) => {
           setStart(event.clientY);

@@ -6,7 +6,8 @@ import type { CameraRig } from './camera/camera_rig';
 import type { Picker } from './pick/picker';
 import { boxOf, sameIndices, samePlate } from './same';
 import { linesOf, sectionPlane } from './overlay/section_lines';
-import type { PartName, Stage } from './render/stage';
+import type { PartName } from './render/part';
+import type { Stage } from './render/stage';
 import { add, length, normalise, scale, subtract } from './vector';
 
 export class Content {

@@ -3,11 +3,11 @@ import type { Services } from '../../shared/session/services';
 import { Dialog, formatBytes, formatCount } from '../../ui';
 
 const keys: readonly (readonly [keys: readonly string[], meaning: string])[] = [
-  [['1', '–', '5'], 'Places'],
+  [['1', '–', '5'], 'Go to a room'],
   [['0'], 'Look from the viewpoint'],
   [['F'], 'Fit'],
   [['S'], 'Swipe'],
-  [['Space'], 'Play the forming'],
+  [['Space'], 'Play the animation of forming'],
   [['Ctrl', 'Enter'], 'Solve at full detail'],
   [['Ctrl', 'E'], 'Export'],
   [['Ctrl', 'O'], 'Open a file'],
@@ -23,8 +23,8 @@ const viewKeys: typeof keys = [
   [['+', '−'], 'Zoom'],
 ];
 const fieldKeys: typeof keys = [
-  [['↑', '↓'], 'Step by 1 % of the range'],
-  [['Shift', '↑'], 'Step by 10 %'],
+  [['↑', '↓'], 'Change the value by 1 % of its range'],
+  [['Shift', '↑'], 'Change the value by 10 % of its range'],
   [['Enter'], 'Accept the number'],
 ];
 
@@ -81,8 +81,9 @@ export function WorkerDialog({ services, onClose }: { services: Services; onClos
         <p>{connection.message}</p>
       ) : connection ? (
         <p>
-          The line to the worker broke; this page keeps trying. A job it was given goes on there and is found
-          again. Until then everything runs in this page.
+          The connection to the worker was lost; this page keeps trying to connect. A job sent to the worker
+          continues there, and its result is fetched once it is connected again. Until then everything runs in
+          this page.
         </p>
       ) : (
         <>

@@ -5,7 +5,7 @@ import { place } from '../route';
 
 export function Rail() {
   return (
-    <nav class="rail" aria-label="Places">
+    <nav class="rail" aria-label="Rooms">
       {crafts.map((craft) => (
         <>
           {craft.apart ? <hr key="line" /> : null}

@@ -91,7 +91,7 @@ export function CalibrationPanel({ session, result }: { session: EvidenceSession
                 ) : profile.identified ? (
                   '–'
                 ) : (
-                  <em>these data do not tell</em>
+                  <em>not determined by these data</em>
                 )}
               </td>
               <td>

@@ -35,7 +35,7 @@ export function Causes({ session, diagnosis }: { session: EvidenceSession; diagn
       </ol>
       {rest > 0 ? (
         <button type="button" class="text-button" onClick={() => (all.value = true)}>
-          {rest} more that explain it less
+          {rest} less likely {rest === 1 ? 'cause' : 'causes'}
         </button>
       ) : null}
       {alike
@@ -104,9 +104,9 @@ function Details({ session, cause }: { session: EvidenceSession; cause: Cause })
         <p>
           <strong>Evidence.</strong>{' '}
           {odds >= 0.3
-            ? `With it, the data are ${timesWords(odds)} more probable than with the calibrated material alone.`
-            : 'The data are no more probable with it than with the calibrated material alone.'}{' '}
-          The strength’s interval is 95 %.
+            ? `The measurement is ${timesWords(odds)} more probable with this cause than with the calibrated material alone.`
+            : 'The measurement is no more probable with this cause than with the calibrated material alone.'}{' '}
+          The strength is given with its 95 % interval.
         </p>
       )}
       {cause.remedy ? (

@@ -146,7 +146,9 @@ class EvidenceCommands extends RoomCommands<EvidenceDocument> {
   }
 
   setMode(mode: Mode) {
-    return this.command({ label: 'Change the mode', recorded: false }, () => ({ mode }));
+    return this.command({ label: 'Choose between diagnosis and calibration', recorded: false }, () => ({
+      mode,
+    }));
   }
 
   setDraft(draft: Draft | null, label: string) {

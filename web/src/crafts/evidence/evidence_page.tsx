@@ -30,7 +30,7 @@ type View = 'plane' | 'object';
 /** It outlives a visit to another page. */
 const view = signal<View>('plane');
 const views = [
-  { value: 'plane', label: 'Plane' },
+  { value: 'plane', label: 'Flat maps' },
   { value: 'object', label: 'On the object' },
 ] as const;
 
@@ -110,7 +110,7 @@ function Bench({ session }: { session: EvidenceSession }) {
     <div class="bench">
       <div class="bench-head">
         <Segmented
-          label="Where it is shown"
+          label="View"
           options={views}
           value={view.value}
           onChange={(value) => (view.value = value)}

@@ -246,7 +246,7 @@ export class EvidenceSession extends RoomSession<EvidenceDocument> {
           throw new JobError({
             code: 'invalid_input',
             where: '',
-            message: `It is none of ${objectFiles.join(', ')}: drop these three together, their folder, or a zip archive of it.`,
+            message: `A measured object consists of ${objectFiles.join(', ')}: drop these three files together, their folder, or a zip archive of it.`,
           });
         return true;
       },

@@ -78,7 +78,7 @@ export function Inspector({ session, onChooseFile }: InspectorProps) {
               />
             </div>
             <Causes session={session} diagnosis={diagnosis} />
-            <Fold title="Parameters fitted together with it" count={diagnosis.parameters.length}>
+            <Fold title="Parameters fitted with this cause" count={diagnosis.parameters.length}>
               <table class="refitted">
                 <thead>
                   <tr>

@@ -29,13 +29,13 @@ export function MainButton({ session }: { session: EvidenceSession }) {
         <p>
           {activity.name === 'native'
             ? 'Finished simulations are kept: a stopped run continues from there'
-            : 'Change anything to start again'}
+            : 'Up to date. Change a setting to run it again.'}
         </p>
       </>
     );
   const busy = activity.kind === 'idle' ? undefined : 'Busy with a file';
   if (result === null) {
-    const none = session.subject.value === null ? 'Add a measured object to use' : busy;
+    const none = session.subject.value === null ? 'Add a measured object first' : busy;
     return (
       <>
         <Button kind="filled" size="big" disabledReason={none} onClick={() => void session.solve()}>
@@ -56,7 +56,7 @@ export function MainButton({ session }: { session: EvidenceSession }) {
           kind="filled"
           size="big"
           icon={used ? 'check' : 'print'}
-          disabledReason={used ? 'Thermoforming in this project uses it already' : busy}
+          disabledReason={used ? 'Thermoform in this project uses these values already' : busy}
           onClick={() => void session.useProfile()}
         >
           {used ? 'Used in the next print' : 'Use in the next print'}
@@ -76,8 +76,8 @@ export function MainButton({ session }: { session: EvidenceSession }) {
               })),
             null,
             {
-              label: 'Form without the profile',
-              disabledReason: used ? undefined : 'It is not in use',
+              label: 'Form without the machine profile',
+              disabledReason: used ? undefined : 'The profile is not in use',
               onSelect: () => projects.do(machineProfile.remove()),
             },
           ]}

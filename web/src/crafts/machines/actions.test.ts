@@ -34,7 +34,7 @@ it('a mill waits until its z is set, a laser does not', () => {
 
 it('an origin of z alone is not where the head stands', () => {
   const onlyZ = { ...idle, position_known: false, axes_known: { x: false, y: false, z: true } };
-  expect(startReason(room('mill', onlyZ))).toMatch(/unknown: home it first/);
+  expect(startReason(room('mill', onlyZ))).toMatch(/unknown: home the machine first/);
 });
 
 it('a mill’s start asks where z is 0, and says where and when it was set', () => {

@@ -63,8 +63,8 @@ export function startReason(session: MachinesSession): string | undefined {
   if (state.phase === 'alarm') return 'The machine is in alarm: home it first';
   if (!state.position_known)
     return state.can.includes('home')
-      ? 'Where the head stands is unknown: home it first'
-      : 'Where the head stands is unknown: jog to the corner and set the origin';
+      ? 'The position of the head is unknown: home the machine first'
+      : 'The position of the head is unknown: jog to the corner and set the origin';
   if (session.needsZ)
     return `Mount the ${toolWords(session)} tool, lower its tip to the stock and set z here`;
   if (session.isMill && !state.axes_known.z)
@@ -184,7 +184,7 @@ export function frame(session: MachinesSession): void {
 export function home(session: MachinesSession): void {
   ask({
     title: 'Home the machine?',
-    sentences: ['The head moves to its switches. Keep hands and clamps out of its way.'],
+    sentences: ['The head moves to its homing switches. Keep hands and clamps out of its way.'],
     action: 'Home',
     run: () => void session.control.command({ do: 'home', confirmed: true }),
   });

@@ -157,12 +157,12 @@ function Strip({ session, onChooseFile }: MachinesPageProps) {
   }
   if (job && job.ended !== null && job.ended !== 'done') {
     const percent = Math.round((100 * job.acknowledged) / Math.max(1, job.line_count));
-    const reason = ofThis ? startReason(session) : 'The job was changed in the meantime';
+    const reason = ofThis ? startReason(session) : 'The job has changed since it was stopped';
     return (
       <JobStrip
         state="attention"
         title={`Job ${job.ended === 'cut_off' ? 'cut off' : job.ended} at ${percent} %`}
-        detail={`After ${formatDuration(job.seconds)}. ${job.careful_line === undefined ? 'It can be started again' : 'After homing, the rest can be cut'}`}
+        detail={`After ${formatDuration(job.seconds)}. ${job.careful_line === undefined ? 'It can be started again' : 'After homing, it can be continued'}`}
       >
         {job.careful_line === undefined ? null : (
           <Button size="small" disabledReason={reason} onClick={() => void goOn(session)}>
@@ -211,7 +211,7 @@ function Strip({ session, onChooseFile }: MachinesPageProps) {
             ? 'Making the job'
             : session.isCurrent.value
               ? 'Job ready'
-              : 'The job before'
+              : 'Previous job, out of date'
       }
       detail={`About ${formatDuration(plan.toolPath.seconds)}${typeof lines === 'number' ? `, ${formatCount(lines)} lines` : ''}`}
     >

@@ -117,7 +117,7 @@ function MainButton({ session, onSolve, onSendToMill }: InspectorProps) {
         <Button kind="filled" size="big" disabledReason="Solving; Esc cancels">
           Solving at full detail
         </Button>
-        <p>Change anything to start again</p>
+        <p>Up to date. Change a setting to make it again.</p>
       </>
     );
   if (result) return <ExportButton session={session} result={result} onSendToMill={onSendToMill} />;

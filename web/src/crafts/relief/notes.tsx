@@ -45,7 +45,7 @@ export function Notes({ session, onChooseFile, onWorkerHelp }: NotesProps) {
         <Note
           kind="attention"
           icon="clock"
-          title="Working without the native worker"
+          title="Solving in the browser, without the native worker"
           onDismiss={dismiss}
           actions={
             <>

@@ -81,7 +81,7 @@ export function MainButton({ session, onForm }: { session: ThermoformSession; on
         <Button kind="filled" size="big" disabledReason="Forming; Esc cancels">
           Forming at full detail
         </Button>
-        <p>Change anything to start again</p>
+        <p>Up to date. Change a setting to make it again.</p>
       </>
     );
   const busy = activity.kind === 'idle' ? undefined : 'Busy with a file';

@@ -72,7 +72,7 @@ export function Notes({ session, onChooseFile }: NotesProps) {
   if (solving && session.shown.value)
     return (
       <p class="label-chip">
-        <Icon name="clock" small /> Preview. The fine sheet replaces it.
+        <Icon name="clock" small /> Preview. Forming at full detail replaces it.
       </p>
     );
   const repairs = narrow() ? null : repairsNote(session);

@@ -20,7 +20,7 @@ function phaseDetail(name: string, { report }: Formed, all: Readonly<Record<stri
   if (name === 'raise') return withUnit(formatNumber(Number(all['mould_speed_mm_per_s'] ?? 0), 2), 'mm/s');
   const vacuum = withUnit(formatNumber(Number(all['vacuum_kpa'] ?? 0), 2), 'kPa');
   const end = withUnit(formatFixed(figure(report, 'forming_end_s') ?? 0, 1), 's');
-  const stopped = { all_touching: `all touching at ${end}`, at_rest: `at rest at ${end}` }[
+  const stopped = { all_touching: `all in contact at ${end}`, at_rest: `stops moving at ${end}` }[
     String(report['stopped_by'])
   ];
   return [vacuum, stopped].filter(Boolean).join(', ');

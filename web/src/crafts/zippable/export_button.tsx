@@ -95,7 +95,7 @@ export function MainButton({ session, onSolve, onSendToMachine }: MainButtonProp
         <Button kind="filled" size="big" disabledReason="In progress; Esc cancels">
           Making the ribbon
         </Button>
-        <p>Change anything to start again</p>
+        <p>Up to date. Change a setting to make it again.</p>
       </>
     );
   const busy = activity.kind === 'idle' ? undefined : 'Busy with a file';
@@ -121,7 +121,8 @@ export function MainButton({ session, onSolve, onSendToMachine }: MainButtonProp
   const sends = Array.from({ length: count }, (_, sheet) => ({
     label: count === 1 ? 'Send to a machine' : `Send ${sheetName(session, sheet).toLowerCase()} to a machine`,
     icon: 'machines' as const,
-    disabledReason: busy ?? (session.operationNamed(planning) ? undefined : 'This build cannot make plans'),
+    disabledReason:
+      busy ?? (session.operationNamed(planning) ? undefined : 'This version cannot make cutting plans'),
     onSelect: () => void sendSheet(session, sheet, onSendToMachine),
   }));
   const prints = session.operationNamed(planning)

@@ -99,7 +99,8 @@ export class MachineRunner {
         .catch(() => this.#gone('The connection was lost while sending: check the cable and connect again.'));
     this.#state = state;
     this.#events.push(...events);
-    if (state.phase !== this.#reportedPhase || performance.now() - this.#reported_ms >= telling_ms) this.#tell();
+    if (state.phase !== this.#reportedPhase || performance.now() - this.#reported_ms >= telling_ms)
+      this.#tell();
   }
 
   #tell(): void {

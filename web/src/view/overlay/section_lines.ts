@@ -4,7 +4,9 @@ import type { Curve, Section, Vec3, Viewpoint } from '../api';
 import type { LineStyle } from './lines';
 import { piecesOf, pieceValues } from './lines';
 import { cutOutline } from './section';
-import type { Lines, PartName, Stage } from '../render/stage';
+import type { PartName } from '../render/part';
+import type { Lines } from '../render/picture';
+import type { Stage } from '../render/stage';
 import { resolveColour } from '../theme';
 import { dot, normalise, scale, viewerAxes } from '../vector';
 

@@ -3,7 +3,8 @@
 import type { Hit, Vec3 } from '../api';
 import { type CameraState, type Screen, rayThroughPixel } from '../camera/camera';
 import type { Picker } from './picker';
-import type { PicturePart, Stage } from '../render/stage';
+import type { PicturePart } from '../render/picture';
+import type { Stage } from '../render/stage';
 import { add, length, subtract } from '../vector';
 
 export function pickAt(

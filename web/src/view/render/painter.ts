@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How pictures get onto the canvas: at once, or drawn aside and shown when done, or averaged while at rest.
 import { Accumulation } from './passes';
-import type { Picture, Stage } from './stage';
+import type { Picture } from './picture';
+import type { Stage } from './stage';
 
 /** A still picture is shown from this many samples on; fewer look rougher than the moving one. */
 const SHOWN_FROM = 8;

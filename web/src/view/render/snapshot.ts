@@ -9,7 +9,9 @@ import {
   mmPerPixel,
   projectedBounds,
 } from '../camera/camera';
-import type { PartName, Picture, PicturePart, Stage } from './stage';
+import type { PartName } from './part';
+import type { Picture, PicturePart } from './picture';
+import type { Stage } from './stage';
 import { add } from '../vector';
 
 /** Camera, screen and divider for a picture of another size: the whole viewport fits inside, and what lies

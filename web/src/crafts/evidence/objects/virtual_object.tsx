@@ -86,7 +86,7 @@ function Choice({ session, operation, onClose }: ChoiceProps) {
         />
       </div>
       <Button kind="filled" onClick={make}>
-        Make it
+        Make the virtual object
       </Button>
     </Dialog>
   );

@@ -79,7 +79,7 @@ export function ScanInspector({ session, scan }: { session: EvidenceSession; sca
             >
               Measure the scan
             </Button>
-            <p>{missing.length > 0 ? 'Needs the scan and the pattern.json of its print' : 'Some seconds'}</p>
+            <p>{missing.length > 0 ? 'Needs the scan and the pattern.json of its print' : 'A few seconds'}</p>
           </>
         )}
       </div>

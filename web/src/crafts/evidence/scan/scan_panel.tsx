@@ -137,9 +137,9 @@ function Corners({ session, scan }: { session: EvidenceSession; scan: Scan }) {
       <div class="row scan-tools">
         {scan.corners ? (
           <>
-            <p class="grow">Move each one onto its ring mark: drag it, or use the arrow keys.</p>
+            <p class="grow">Move each corner onto its ring mark: drag it, or use the arrow keys.</p>
             <Button size="small" onClick={() => set(null, 'Find the corners')}>
-              Search for them instead
+              Search for the corners instead
             </Button>
           </>
         ) : (
@@ -154,7 +154,7 @@ function Corners({ session, scan }: { session: EvidenceSession; scan: Scan }) {
               disabledReason={size ? undefined : 'The picture is being read'}
               onClick={() => size && set(cornersToMove(found, size), 'Set the corners by hand')}
             >
-              Set them by hand
+              Set the corners by hand
             </Button>
           </>
         )}
@@ -226,8 +226,8 @@ function Handle({ session, corners, which, place: [x, y], size }: HandleProps) {
 }
 
 const likenessOf = ({ report }: MeasuredScan): string => {
-  const similarity = figure(report, 'likeness');
-  return similarity === null ? '' : `likeness ${formatNumber(likeness, 3)} of 1`;
+  const likeness = figure(report, 'likeness');
+  return likeness === null ? '' : `similarity ${formatNumber(likeness, 3)} (1 is perfect)`;
 };
 
 function Aligned({ session, measured }: { session: EvidenceSession; measured: MeasuredScan }) {

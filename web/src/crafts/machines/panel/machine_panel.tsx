@@ -18,7 +18,7 @@ const phaseWords: Record<MachineState['phase'], string> = {
   stopping: 'Stopping',
   alarm: 'Alarm',
   door: 'Door open',
-  check: 'Checking',
+  check: 'Check mode',
   sleep: 'Asleep',
 };
 
@@ -71,7 +71,7 @@ export function MachinePanel({ session }: { readonly session: MachinesSession })
             <div class="machine-buttons">
               <Button
                 icon="home"
-                disabledReason={cannot('home', 'Not now, or the machine has no switches')}
+                disabledReason={cannot('home', 'Not possible now, or the machine has no homing switches')}
                 onClick={() => home(session)}
               >
                 Home
@@ -81,7 +81,7 @@ export function MachinePanel({ session }: { readonly session: MachinesSession })
                 disabledReason={
                   plan === null
                     ? 'Open a drawing first'
-                    : cannot('frame', 'Where the head stands is unknown, or the machine is busy')
+                    : cannot('frame', 'The position of the head is unknown, or the machine is busy')
                 }
                 onClick={() => frame(session)}
               >
@@ -94,7 +94,7 @@ export function MachinePanel({ session }: { readonly session: MachinesSession })
               ) : (
                 <Button
                   icon="pause"
-                  disabledReason={cannot('pause', 'Nothing runs')}
+                  disabledReason={cannot('pause', 'No job is running')}
                   onClick={() => hold(session)}
                 >
                   Hold

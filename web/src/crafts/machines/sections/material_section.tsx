@@ -85,7 +85,7 @@ export function MaterialSection({ session }: { readonly session: MachinesSession
               })
             }
           >
-            Forget
+            Delete
           </Button>
         ) : null}
       </div>
@@ -114,7 +114,7 @@ export function MaterialSection({ session }: { readonly session: MachinesSession
             <div class="dialog-actions">
               <Button onClick={() => (naming.value = null)}>Cancel</Button>
               <Button kind="filled" type="submit">
-                Keep
+                Save
               </Button>
             </div>
           </form>

@@ -38,7 +38,9 @@ export function MillSection({ session }: { readonly session: MachinesSession }) 
     <section class="section" aria-label="What is carved">
       <h3>What is carved</h3>
       {session.isCurrent.value ? null : (
-        <p class="hint">Of the job before; what is set now is not made yet.</p>
+        <p class="hint">
+          These figures belong to the previous job. Make the job again to use the current settings.
+        </p>
       )}
       <dl class="mill-figures">
         {rows.map(({ name, label, help, text }) => (
@@ -76,7 +78,7 @@ export function MillJobs({ session }: { readonly session: MachinesSession }) {
                 disabledReason={session.control.isBusy ? 'A job is running' : undefined}
                 onClick={() => session.chooseStage(index)}
               >
-                Run this next
+                Run this job next
               </Button>
             )}
           </li>

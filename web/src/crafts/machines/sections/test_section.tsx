@@ -51,7 +51,7 @@ function use(session: MachinesSession, found: JsonObject, label: string, words: 
   const changed = profileWith(current, laser, parameters, found);
   if (changed) session.profiles.put(changed);
   session.endTest(found, label);
-  toast(material ? `${words}, and kept with ${material.name}.` : `${words}.`);
+  toast(material ? `${words}, and saved with ${material.name}.` : `${words}.`);
 }
 
 const percent = (cell: TestCell) => withUnit(formatNumber(cell.power_percent, 3), '%');
@@ -84,7 +84,7 @@ function BestSquare({ session }: Props) {
           ))}
         </select>
       </div>
-      <div class="use-square" role="group" aria-label="Use it for">
+      <div class="use-square" role="group" aria-label="Use this square for">
         {layers.map((layer) => (
           <Button
             key={layer}

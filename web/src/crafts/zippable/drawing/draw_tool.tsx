@@ -120,15 +120,15 @@ function Toolbar({ session, viewport }: { session: ZippableSession; viewport: Vi
           ) : null}
           {tool.value === 'opening' && drawn.openings.length === 0 && found > 0 ? (
             <Button size="small" icon="move" onClick={() => void takeFound(session)}>
-              Move the points found
+              Move the openings found
             </Button>
           ) : null}
           <Button size="small" icon="plus" onClick={addInTheMiddle}>
-            Add in the middle
+            Add a point in the middle
           </Button>
           {nothing ? null : (
             <Button size="small" kind="quiet" onClick={() => void startOver(session)}>
-              Automatic
+              Find the parts automatically
             </Button>
           )}
         </div>

@@ -50,7 +50,7 @@ export function PartList({ session }: { session: ZippableSession }) {
                       </span>
                     </span>
                     <small class={warning ? 'part-warning' : ''}>
-                      {warning ? `${warning} Distortion` : 'A cylinder, distortion'}{' '}
+                      {warning ? `${warning} Distortion` : 'Unwraps well. Distortion'}{' '}
                       {formatFixed(distortion?.mean ?? 1, 2)}
                     </small>
                   </span>
@@ -63,7 +63,7 @@ export function PartList({ session }: { session: ZippableSession }) {
       ) : null}
       {shown && shown.design.order.length > 1 ? (
         <p class="part-order">
-          The zipper visits{' '}
+          Order of the parts along the zipper:{' '}
           {shown.design.order.map((part, i) => (
             <Fragment key={part}>
               {i > 0 ? ', ' : ''}

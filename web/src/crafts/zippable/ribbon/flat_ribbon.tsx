@@ -119,7 +119,7 @@ function Drawing({ shown, fit, width, height }: DrawingProps) {
         aria-valuemin={0}
         aria-valuemax={Math.round(design.zipper_mm)}
         aria-valuenow={Math.round(along ?? 0)}
-        aria-valuetext={said ?? 'Nowhere yet'}
+        aria-valuetext={said ?? 'No place chosen'}
         onKeyDown={key}
         onBlur={() => (pointed.value = null)}
         onPointerMove={point}

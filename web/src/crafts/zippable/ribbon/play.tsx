@@ -55,7 +55,7 @@ export function Play({ session, onFit }: PlayProps) {
       <div class="grow">
         <input
           type="range"
-          aria-label="How far it is bent"
+          aria-label="From flat to zipped"
           aria-valuetext={`${percent} % of the way from flat to zipped`}
           min={0}
           max={1}
@@ -80,8 +80,8 @@ export function Play({ session, onFit }: PlayProps) {
 }
 
 const courses = [
-  { value: 'drawn', label: 'As drawn' },
-  { value: 'simulated', label: 'As cloth' },
+  { value: 'drawn', label: 'Geometry only' },
+  { value: 'simulated', label: 'Simulated cloth' },
 ] as const;
 
 /** Both courses once cloth was simulated; before that, what does it. */
@@ -90,14 +90,15 @@ function Choice({ session }: { session: ZippableSession }) {
   if (session.simulation.value)
     return (
       <Segmented
-        label="Course"
+        label="Animation"
         options={courses}
         value={course.value}
         onChange={(value) => (course.value = value)}
       />
     );
   const idle = session.activity.value.kind === 'idle';
-  const reason = session.result.value === null ? 'Make the ribbon first' : idle ? undefined : 'Busy';
+  const reason =
+    session.result.value === null ? 'Make the ribbon first' : idle ? undefined : 'Busy with another task';
   const simulate = async () => {
     course.value = 'simulated';
     await simulationBytes(session, 'zipping.glb', 'simulation');

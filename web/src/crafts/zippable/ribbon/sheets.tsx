@@ -35,7 +35,7 @@ export function Sheets({ session, drawing, onSendToMachine }: SheetsProps) {
   if (design === null)
     return (
       <div class="sheets-empty">
-        <p>The plan needs the ribbon of the whole model.</p>
+        <p>The cutting plan needs the ribbon of the whole model.</p>
         <Button
           icon="scissors"
           disabledReason={
@@ -56,7 +56,7 @@ export function Sheets({ session, drawing, onSendToMachine }: SheetsProps) {
           <div class="sheets-empty">
             <p>No plan was made. If a note says why, change that first.</p>
             <Button icon="scissors" onClick={() => void planBytes(session, 'plan.svg', 'plan')}>
-              Make the plan
+              Make the cutting plan
             </Button>
           </div>
         ) : null}

@@ -151,7 +151,7 @@ class Sequence {
     for (const double end = talk_.now_s + timeout_s; talk_.now_s < end && !reached();) pass(0.05);
     return reached();
   }
-  bool running() const { return box_ && talk_.ended().empty(); }
+  bool running() const { return (starts_ || box_) && talk_.ended().empty(); }
 
   /// Between its start and its end a job stays where it said it would go, but for the way there.
   void watch_bounds() {
@@ -258,7 +258,9 @@ class Sequence {
       const auto& lines = talk_.machine.lines();
       return std::find(lines.begin() + static_cast<std::ptrdiff_t>(lines_before), lines.end(), "G0S0") != lines.end();
     };
+    starts_ = true;
     for (int ms = 0; ms < 3000 && !begun() && talk_.ended().empty(); ++ms) pass(1e-3);
+    starts_ = false;
     const Point origin = job_origin();
     const auto placed = [&](Point p) {
       for (std::size_t k = 0; k < 3; ++k) p[k] += origin[k];
@@ -371,7 +373,7 @@ class Sequence {
   std::vector<Point> spots_;
   std::optional<GcodeBounds> box_;
   double lose_to_machine_ = 0;
-  bool alone_ = false;
+  bool alone_ = false, starts_ = false;  // starts_: a job, whose first line is still to come
 };
 
 TEST_CASE("GrblSequences.TheBeamIsOnNowhereButInStrokes") {

@@ -230,6 +230,8 @@ class Sequence {
 
   void focus() {
     pass(0.5);
+    pass_until([&] { return !talk_.machine.has_work(); }, 2);
+    pass(0.5);  // a jog that waited for a pulse of light is done first, and the light shines where it ends
     if (talk_.machine.state() != "Idle" || !tell({{"do", "focus"}, {"power_percent", 2}})) return;
     spots_.push_back(talk_.machine.position_mm());
     pass(between(0.1, 3));

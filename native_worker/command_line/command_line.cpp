@@ -137,7 +137,8 @@ ParsedCommand parse_command(const Operation& operation, const std::vector<std::s
   Json parameters = Json::object(), inputs = Json::object();
   for (const ParameterInfo& info : operation.parameters)
     for (const std::string& flag : names_of(info))
-      if (flags.contains(flag)) parameters[info.name] = parse_flag(info, last_of(flag));
+      if (flags.contains(flag) && !parameters.contains(info.name))
+        parameters[info.name] = parse_flag(info, last_of(flag));
   for (const InputInfo& input : operation.inputs)
     if (const auto given = flags.find(dashed(input.name)); given != flags.end())
       for (const std::string& value : given->second) add_file(input, value, command);

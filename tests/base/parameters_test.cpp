@@ -10,6 +10,7 @@ template <>
 struct EnumNames<Colour> {
   static constexpr std::array<std::string_view, 2> names{"red", "deep_blue"};
   static constexpr std::array<std::string_view, 2> labels{"Red", "Deep blue"};
+  static constexpr std::array<std::pair<std::string_view, Colour>, 1> old_names{{{"navy", Colour::deep_blue}}};
 };
 
 namespace {
@@ -23,7 +24,7 @@ struct PaintOptions {
   std::array<double, 3> from{0, 0, 1};
   static constexpr auto parameters = std::tuple{
       parameter("layer_mm", &PaintOptions::layer_mm, "Layer", unit::mm, 0.1, 3, "Thickness of a coat.").slider(0.2, 1),
-      parameter("coats", &PaintOptions::coats, "Coats", unit::none, 1, 9, "How many."),
+      parameter("coats", &PaintOptions::coats, "Coats", unit::none, 1, 9, "How many.").formerly("layers"),
       parameter("gloss", &PaintOptions::gloss, "Gloss", "Shiny."),
       parameter("drying_s", &PaintOptions::drying_s, "Drying", unit::seconds, 0, 100, "Time between coats.").advanced(),
       parameter("colour", &PaintOptions::colour, "Colour", "Which."),
@@ -72,6 +73,17 @@ TEST_CASE("Parameters.RejectsWithNameRangeAndFix") {
   expect_rejected({{"layer_m", 1}}, "layer_m", "did you mean layer_mm?");
   expect_rejected({{"zzz", 1}}, "zzz", "no parameter called zzz.");
   expect_rejected(Json::array(), "parameters", "JSON object");
+}
+
+TEST_CASE("Parameters.NamesOfTheReleaseBeforeAreUnderstood") {
+  const PaintOptions options = read_parameters<PaintOptions>({{"layers", 7}, {"colour", "navy"}});
+  CHECK(options.coats == 7);
+  CHECK(options.colour == Colour::deep_blue);
+  expect_rejected({{"layers", 10}}, "coats", "from 1 to 9");
+  CHECK(write_parameters(options).contains("coats"));
+  CHECK_FALSE(write_parameters(options).contains("layers"));
+  CHECK(describe_parameters<PaintOptions>()[1].old_name == "layers");
+  CHECK(describe_parameters<PaintOptions>()[0].old_name.empty());
 }
 
 TEST_CASE("Parameters.SchemaCarriesUnitRangeDefaultAndHelp") {

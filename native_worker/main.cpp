@@ -11,6 +11,7 @@
 
 #include "base/sha256.h"
 #include "command_line/command_line.h"
+#include "command_line/flags.h"
 #include "system/files.h"
 #include "system/host.h"
 #include "job/catalog.h"
@@ -149,14 +150,16 @@ int run(const std::vector<std::string>& words) {
     std::cout << overview_text();
     return words.empty() ? 2 : 0;
   }
+  const std::vector<std::string> rest(words.begin() + 1, words.end());
   if (words[0] == "--version") {
     std::cout << "formwright " << version() << "\n";
     return 0;
   }
   if (words[0] == "list") {
-    if (words.size() > 1 && words[1] != "--json")
-      throw Error(ErrorCode::invalid_input, words[1], "There is no flag " + words[1] + " of list: it has --json.");
-    if (words.size() > 1) {
+    const FlagValues flags =
+        read_flags(rest, {{"--json", FlagRule::Value::none}},
+                   [](const std::string& word) { return "There is no flag " + word + " of list: it has --json."; });
+    if (flags.contains("--json")) {
       std::cout << operation_list().dump(2) << "\n";
       return 0;
     }
@@ -183,7 +186,6 @@ int run(const std::vector<std::string>& words) {
     std::cout << manual_page();
     return 0;
   }
-  const std::vector<std::string> rest(words.begin() + 1, words.end());
   // What these write goes to DATA; outputs of operations are the person's own, with the rights that they chose.
   if (words[0] == "serve" || words[0] == "machine" || words[0] == "run-jobs") make_new_files_private();
   if (words[0] == "serve") return serve(rest);

@@ -168,7 +168,7 @@ std::optional<JobError> check_job(const Json& message) {
     const Operation& operation = operation_of(message);
     read_inputs(operation, message);
     read_wanted(operation, message);
-    operation.check(parameters_of(message));
+    operation.prepare(parameters_of(message));
   });
 }
 
@@ -180,8 +180,7 @@ JobResult run_job(const Json& message, const BlobSource& blobs, Session& session
     const Operation& operation = operation_of(message);
     std::map<std::string, InputBlob> inputs = read_inputs(operation, message);
     const std::vector<std::string> wanted = read_wanted(operation, message);
-    const Json parameters = parameters_of(message);
-    operation.check(parameters);
+    const PreparedOperation prepared = operation.prepare(parameters_of(message));
     for (auto& [name, input] : inputs) {
       if (!input.sample.empty()) continue;
       input.bytes = blobs(input.sha256);
@@ -192,7 +191,7 @@ JobResult run_job(const Json& message, const BlobSource& blobs, Session& session
     const auto wants = [&](const std::string& name) {
       return std::find(wanted.begin(), wanted.end(), name) != wanted.end();
     };
-    OperationResult made = operation.run({inputs, parameters, wants, session, context});
+    OperationResult made = prepared({inputs, wants, session, context});
     if (const double memory = context.peak_memory_mb(); memory > 0) made.report["peak_memory_mb"] = memory;
     require_finite(made.report, "");
     for (const ReportField& field : operation.report)

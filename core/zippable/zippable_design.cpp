@@ -16,11 +16,11 @@ void check_width(double size_mm, const ZippableOptions& options) {
   if (options.width_mm > 0.5 * size_mm)
     throw Error(
         ErrorCode::invalid_input, "width_mm",
-        "The model is too small for this ribbon, which is wider than half of it: choose a narrower ribbon or a larger size_mm.");
+        "The model is too small for this ribbon, which is wider than half of it: choose a narrower ribbon or a larger size.");
   if (options.width_mm < 1e-3 * size_mm)
     throw Error(
         ErrorCode::invalid_input, "width_mm",
-        "The ribbon is narrower than a thousandth of the model's size: choose a wider ribbon or a smaller size_mm.");
+        "The ribbon is narrower than a thousandth of the model's size: choose a wider ribbon or a smaller size.");
 }
 
 /// Per part, 0 where nothing was said.
@@ -86,12 +86,18 @@ void say_how_it_bends(ZippableDesign& design, const ZippableOptions& options) {
 
 }  // namespace
 
+double automatic_size_mm(double size_in_file) {
+  // Files know no unit. An object of sewn fabric has a size between these; other numbers are metres, inches or units.
+  constexpr double min_mm = 50, max_mm = 3000, usual_mm = 300;
+  return size_in_file >= min_mm && size_in_file <= max_mm ? size_in_file : usual_mm;
+}
+
 ParameterisedModel divide_model(const TriangleMesh& given, const ZippableParts& parts, const ZippableOptions& options,
                                 Context& context) {
   ParameterisedModel model;
   const double size = bounding_box(given).size().maxCoeff();
   if (!(size > 0)) throw Error(ErrorCode::invalid_input, "mesh", "The model has no extent: choose another file.");
-  if (options.size_mm) model.scale = *options.size_mm / size;
+  model.scale = options.size_mm.value_or(automatic_size_mm(size)) / size;
   model.mesh = {given.V * model.scale, given.F};
   check_width(size * model.scale, options);
   Stopwatch watch;
@@ -111,6 +117,11 @@ ParameterisedModel divide_model(const TriangleMesh& given, const ZippableParts& 
   for (auto& cut : proposal.cuts_mm)
     for (Vec3& point : cut) point *= model.scale;
   model.proposal = propose_segmentation(model.mesh, proposal, context);
+  if (!options.size_mm && model.scale != 1)
+    model.proposal.notes.insert(model.proposal.notes.begin(),
+                                "The file does not tell the size in mm (its largest dimension is " +
+                                    with_digits(size, 3) + "), so the object is made " +
+                                    with_digits(size * model.scale, 3) + " mm large: set the size for another.");
   const auto part_at = [&](const std::optional<Vec3>& point) {
     if (!point) return 0;
     const Segmentation& s = model.proposal.segmentation;

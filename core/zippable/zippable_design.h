@@ -37,6 +37,9 @@ struct ParameterisedModel {
   double seconds_parts = 0, seconds_parameterisation = 0;
 };
 
+/// The largest dimension of an object whose size nobody set: the file's, where that can be meant in mm, else 300.
+double automatic_size_mm(double size_in_file);
+
 /// `mesh`: connected, manifold, oriented.
 /// Throws Error: invalid_input ("mesh", "segments", or a parameter), could_not_solve, cancelled.
 ParameterisedModel parameterise_model(const TriangleMesh& mesh, const ZippableParts& parts,

@@ -76,7 +76,7 @@ struct ZippableOptions {
           .group("Ribbon")
           .advanced(),
       parameter("size_mm", &ZippableOptions::size_mm, "Size", unit::mm, 1, 100000,
-                "Largest dimension of the finished object. Automatic: the size in the file.")
+                "Largest dimension of the finished object. Automatic: the size in the file if it is from 50 to 3000 mm, else 300 mm.")
           .slider(50, 1000)
           .group("Ribbon"),
       parameter(

@@ -10,7 +10,7 @@ namespace formwright {
 
 struct FlagRule {
   enum class Value { none, one, optional };  // optional: "on" where the next word is another flag
-  std::string name;                          // "--out"
+  std::string name;                          // "--out"; without dashes: a word that stands alone
   Value value = Value::one;
 };
 

@@ -26,6 +26,8 @@ constexpr int niceness = 10;
 // long before the worker that drives machines, but after a program that takes twice as much.
 constexpr const char* memory_score = "500";
 constexpr std::uint64_t min_memory_mb = 128;
+constexpr const char *memory_flag = "--solver-memory-mb", *time_flag = "--max-job-minutes",
+                     *no_sandbox_flag = "--no-solver-sandbox";
 
 // Address sanitizers reserve terabytes of addresses, and their reports need calls that the filter forbids.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -65,40 +67,38 @@ void set_limit(decltype(RLIMIT_AS) what, rlim_t value) {
 
 }  // namespace
 
-bool read_solver_flag(const std::vector<std::string>& words, std::size_t& i, SolverOptions& options) {
-  const std::string flag = words[i];
-  if (flag == "--no-solver-sandbox") {
-    options.sandbox = false;
-    return true;
-  }
-  if (flag != "--solver-memory-mb" && flag != "--max-job-minutes") return false;
-  if (i + 1 >= words.size()) throw Error(ErrorCode::invalid_input, flag, flag + " needs a value.");
-  const std::string value = words[++i];
-  if (flag == "--max-job-minutes") options.max_job_minutes = number_of(flag, value, 0.01, 1e6);
-  else options.memory_mb = static_cast<std::uint64_t>(number_of(flag, value, min_memory_mb, 1e8));
-  return true;
+std::vector<FlagRule> solver_flag_rules() {
+  return {{memory_flag}, {time_flag}, {no_sandbox_flag, FlagRule::Value::none}};
+}
+
+void set_solver_flags(const FlagValues& flags, SolverOptions& options) {
+  if (const auto given = flags.find(memory_flag); given != flags.end())
+    options.memory_mb = static_cast<std::uint64_t>(number_of(memory_flag, given->second.back(), min_memory_mb, 1e8));
+  if (const auto given = flags.find(time_flag); given != flags.end())
+    options.max_job_minutes = number_of(time_flag, given->second.back(), 0.01, 1e6);
+  if (flags.contains(no_sandbox_flag)) options.sandbox = false;
 }
 
 std::vector<std::string> solver_words(const SolverOptions& options) {
   std::vector<std::string> words{"run-jobs",
                                  "--data",
                                  options.data.string(),
-                                 "--max-job-minutes",
+                                 time_flag,
                                  with_digits(options.max_job_minutes, 17),
-                                 "--solver-memory-mb",
+                                 memory_flag,
                                  std::to_string(solver_memory_mb(options))};
-  if (!options.sandbox) words.push_back("--no-solver-sandbox");
+  if (!options.sandbox) words.push_back(no_sandbox_flag);
   return words;
 }
 
 SolverOptions read_solver_words(const std::vector<std::string>& words) {
+  std::vector<FlagRule> rules = solver_flag_rules();
+  rules.push_back({"--data"});
+  const FlagValues flags = read_flags(
+      words, rules, [](const std::string& word) { return "There is no flag " + word + " of run-jobs."; });
   SolverOptions options;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    if (read_solver_flag(words, i, options)) continue;
-    if (words[i] != "--data" || i + 1 >= words.size())
-      throw Error(ErrorCode::invalid_input, words[i], "There is no flag " + words[i] + " of run-jobs.");
-    options.data = words[++i];
-  }
+  set_solver_flags(flags, options);
+  if (const auto data = flags.find("--data"); data != flags.end()) options.data = data->second.back();
   return options;
 }
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "command_line/flags.h"
+
 namespace formwright {
 
 struct SolverOptions {
@@ -16,9 +18,10 @@ struct SolverOptions {
   bool sandbox = true;  // Landlock and the filter of system calls
 };
 
-/// Takes words[i], and its value behind it, if it is a flag of solvers: --solver-memory-mb N, --max-job-minutes N or
-/// --no-solver-sandbox. Throws Error{invalid_input} naming the flag.
-bool read_solver_flag(const std::vector<std::string>& words, std::size_t& i, SolverOptions& options);
+/// The flags of solvers: --solver-memory-mb N, --max-job-minutes N and --no-solver-sandbox.
+std::vector<FlagRule> solver_flag_rules();
+/// Throws Error{invalid_input} naming the flag whose value is out of range.
+void set_solver_flags(const FlagValues& flags, SolverOptions& options);
 
 /// The command line of the solver process behind the program's name.
 std::vector<std::string> solver_words(const SolverOptions& options);

@@ -9,6 +9,7 @@
 #include <iostream>
 
 #include "base/error.h"
+#include "command_line/flags.h"
 #include "system/files.h"
 #include "system/host.h"
 #include "machines/port/machine_log.h"
@@ -76,17 +77,9 @@ int add(const std::vector<std::string>& words) {
 }
 
 int remove(const std::vector<std::string>& words) {
-  std::vector<std::string> rest;
-  std::string name;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    const bool flag = words[i].starts_with("--");
-    if (!flag && name.empty()) name = words[i];
-    else rest.push_back(words[i]);
-    if (flag && words[i].find('=') == std::string::npos && i + 1 < words.size()) rest.push_back(words[++i]);
-  }
-  const MachineFlags flags = read_machine_flags(rest, {"--data", "--name"}, {});
-  if (name.empty()) name = flags.needed("--name", "--name Studio");
-  registry_of(flags).remove(name);
+  const MachineFlags flags = read_machine_flags(words, {"--data", "--name", "machine"}, {});
+  const std::string name = flags.value_or("machine", "");
+  registry_of(flags).remove(name.empty() ? flags.needed("--name", "--name Studio") : name);
   return 0;
 }
 
@@ -152,27 +145,17 @@ std::string MachineFlags::value_or(const std::string& flag, const std::string& o
 
 MachineFlags read_machine_flags(const std::vector<std::string>& words, const std::vector<std::string>& flags,
                                 const std::vector<std::string>& switches, const std::vector<std::string>& repeatable) {
+  std::vector<FlagRule> rules;
+  for (const std::string& flag : flags) rules.push_back({flag});
+  for (const std::string& flag : switches) rules.push_back({flag, FlagRule::Value::none});
   MachineFlags result;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    std::string flag = words[i], value;
-    const std::size_t equals = flag.find('=');
-    const bool joined = flag.starts_with("--") && equals != std::string::npos;
-    if (joined) {
-      value = flag.substr(equals + 1);
-      flag.resize(equals);
-    }
-    const auto among = [&](const std::vector<std::string>& list) {
-      return std::find(list.begin(), list.end(), flag) != list.end();
-    };
-    if (result.values.contains(flag) && !among(repeatable))
-      throw Error(ErrorCode::invalid_input, flag, flag + " is given twice.");
-    if (among(switches) && !joined) value = "on";
-    else if (!among(flags))
-      throw Error(ErrorCode::invalid_input, flag, "There is no flag " + flag + " here: see formwright machine --help.");
-    else if (!joined && i + 1 >= words.size()) throw Error(ErrorCode::invalid_input, flag, flag + " needs a value.");
-    else if (!joined) value = words[++i];
-    result.values[flag] = value;
-    if (among(repeatable)) result.repeated[flag].push_back(value);
+  for (auto& [flag, given] : read_flags(words, rules, [](const std::string& word) {
+         return "There is no flag " + word + " here: see formwright machine --help.";
+       })) {
+    const bool repeats = std::find(repeatable.begin(), repeatable.end(), flag) != repeatable.end();
+    if (given.size() > 1 && !repeats) throw Error(ErrorCode::invalid_input, flag, flag + " is given twice.");
+    result.values[flag] = given.back();
+    if (repeats) result.repeated[flag] = given;
   }
   return result;
 }

@@ -7,8 +7,10 @@
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
+#include <optional>
 
 #include "base/error.h"
+#include "command_line/flags.h"
 #include "system/files.h"
 #include "system/host.h"
 #include "server/http_server.h"
@@ -26,37 +28,36 @@ std::filesystem::path default_web_folder() {
   return {};
 }
 
+long whole_number(const std::string& flag, const std::string& text, long minimum, long maximum) {
+  char* end = nullptr;
+  const long number = std::strtol(text.c_str(), &end, 10);
+  if (text.empty() || *end != '\0' || number < minimum || number > maximum)
+    throw Error(
+        ErrorCode::invalid_input, flag,
+        flag + " must be a whole number from " + std::to_string(minimum) + " to " + std::to_string(maximum) + ".");
+  return number;
+}
+
 ServerOptions read_options(const std::vector<std::string>& words) {
+  std::vector<FlagRule> rules = solver_flag_rules();
+  rules.insert(rules.end(), {{"--port"}, {"--web"}, {"--data"}, {"--upload-limit-mb"}});
+  const FlagValues flags = read_flags(words, rules, [](const std::string& word) {
+    return "There is no flag " + word +
+           ": serve has --port N, --web DIR, --data DIR, --upload-limit-mb N, --solver-memory-mb N, "
+           "--max-job-minutes N and --no-solver-sandbox.";
+  });
+  const auto value = [&](const char* flag) {
+    const auto given = flags.find(flag);
+    return given == flags.end() ? std::optional<std::string>() : given->second.back();
+  };
   ServerOptions options;
-  options.data = default_data_folder();
-  options.web = default_web_folder();
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    const auto value = [&] {
-      if (i + 1 >= words.size()) throw Error(ErrorCode::invalid_input, words[i], words[i] + " needs a value.");
-      return words[++i];
-    };
-    const auto whole = [&](const std::string& flag, long minimum, long maximum) {
-      const std::string text = value();
-      char* end = nullptr;
-      const long number = std::strtol(text.c_str(), &end, 10);
-      if (text.empty() || *end != '\0' || number < minimum || number > maximum)
-        throw Error(
-            ErrorCode::invalid_input, flag,
-            flag + " must be a whole number from " + std::to_string(minimum) + " to " + std::to_string(maximum) + ".");
-      return number;
-    };
-    if (read_solver_flag(words, i, options.solver)) continue;
-    if (words[i] == "--port") options.port = static_cast<unsigned short>(whole("--port", 0, 65535));
-    else if (words[i] == "--web") options.web = value();
-    else if (words[i] == "--data") options.data = value();
-    else if (words[i] == "--upload-limit-mb")
-      options.upload_limit_bytes = static_cast<std::uint64_t>(whole("--upload-limit-mb", 1, 65536)) << 20;
-    else
-      throw Error(ErrorCode::invalid_input, words[i],
-                  "There is no flag " + words[i] +
-                      ": serve has --port N, --web DIR, --data DIR, --upload-limit-mb N, --solver-memory-mb N, "
-                      "--max-job-minutes N and --no-solver-sandbox.");
-  }
+  options.data = value("--data").value_or(default_data_folder().string());
+  options.web = value("--web").value_or(default_web_folder().string());
+  if (const auto port = value("--port"))
+    options.port = static_cast<unsigned short>(whole_number("--port", *port, 0, 65535));
+  if (const auto limit = value("--upload-limit-mb"))
+    options.upload_limit_bytes = static_cast<std::uint64_t>(whole_number("--upload-limit-mb", *limit, 1, 65536)) << 20;
+  set_solver_flags(flags, options.solver);
   options.solver.data = options.data;
   return options;
 }

@@ -58,11 +58,13 @@ struct OperationResult {
 
 struct OperationCall {
   const std::map<std::string, InputBlob>& inputs;
-  const Json& parameters;
   std::function<bool(const std::string& output)> wants;  // is this output asked for?
   Session& session;
   Context& context;
 };
+
+/// An operation whose parameters are read.
+using PreparedOperation = std::function<OperationResult(const OperationCall&)>;
 
 struct Operation {
   std::string name, title, summary;
@@ -71,8 +73,8 @@ struct Operation {
   std::vector<OutputInfo> outputs;
   std::vector<ReportField> report;
   bool keeps_results = false;  // has expensive intermediate results that the host should keep (Context::keep_result)
-  std::function<void(const Json& parameters)> check;  // throws Error{invalid_input} for a wrong parameter
-  std::function<OperationResult(const OperationCall&)> run;
+  /// Reads the parameters (operation_options.h). Throws Error{invalid_input} for a wrong one.
+  std::function<PreparedOperation(const Json& parameters)> prepare;
 
   const OutputInfo* output(const std::string& output_name) const {
     for (const OutputInfo& info : outputs)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a diagnosis may turn in a thermoforming simulation. Names, labels, units and ranges are those of the
+// What a diagnosis may vary in a thermoforming simulation. Names, labels, units and ranges are those of the
 // simulation's own parameters.
 #include <algorithm>
 
@@ -8,7 +8,7 @@
 namespace formwright {
 namespace {
 
-struct Turned {
+struct VariedParameter {
   const char* name;
   bool logarithmic;
   double low, high;  // where narrower than the parameter's own range; low == high: its own
@@ -16,12 +16,12 @@ struct Turned {
 };
 
 /// Ranges about those of thesis 4.2.3, a little wider: an optimum at a bound says nothing about what lies beyond.
-constexpr Turned base_parameters[] = {{"young_modulus_pa", true, 2.5e5, 1e7, 0.6, 0.25},
+constexpr VariedParameter base_parameters[] = {{"young_modulus_pa", true, 2.5e5, 1e7, 0.6, 0.25},
                                       {"creep_per_s", true, 5, 5000, 0.8, 0.4},
                                       {"yield_strain", false, 0, 0.3, 0.05, 0.02},
                                       {"viscosity_s", true, 1e-7, 1e-3, 1, 1}};
 
-constexpr Turned mould_place[] = {{"mould_shift_x_mm", false, -4, 4, 1, 0.5},
+constexpr VariedParameter mould_place[] = {{"mould_shift_x_mm", false, -4, 4, 1, 0.5},
                                   {"mould_shift_y_mm", false, -4, 4, 1, 0.5}};
 
 /// Of causes that act through the sheet, as virtual machines with another elastic law, mesh and vacuum have it
@@ -30,7 +30,7 @@ constexpr double sheet_gain_error = 0.05;
 
 struct CauseTable {
   const char *name, *label, *explanation, *remedy;
-  std::vector<Turned> parameters;
+  std::vector<VariedParameter> parameters;
 };
 
 const std::vector<CauseTable>& cause_table() {
@@ -110,6 +110,27 @@ const std::vector<CauseTable>& cause_table() {
   return table;
 }
 
+/// Another choice that a simulation of equal merit makes. Its sensitivities are what that simulation would do.
+struct Discrepancy {
+  std::string_view name, label;
+  double prior_sd;
+  void (*apply)(ThermoformOptions&);
+};
+
+constexpr Discrepancy discrepancies[] = {
+    {"other_elastic_law", "Other elastic law", 1,
+     [](ThermoformOptions& o) {
+       o.elastic_law = o.elastic_law == ElasticLaw::st_venant_kirchhoff ? ElasticLaw::stable_neo_hookean
+                                                                        : ElasticLaw::st_venant_kirchhoff;
+     }},
+    {"other_yield_rule", "Other yield rule", 0.3,
+     [](ThermoformOptions& o) {
+       o.yield_rule = o.yield_rule == YieldRule::elastic_excess ? YieldRule::total_strain : YieldRule::elastic_excess;
+     }},
+    {"slower_vacuum", "Vacuum builds up twice as slowly", 1,
+     [](ThermoformOptions& o) { o.vacuum_ramp_s = std::max(0.05, 2 * o.vacuum_ramp_s); }},
+    {"finer_sheet", "Twice as many triangles", 1.5, [](ThermoformOptions& o) { o.triangles *= 2; }}};
+
 }  // namespace
 
 void declare_thermoform_parameters(const Json& nominal, bool fit_mould_place, const std::vector<std::string>& without,
@@ -117,53 +138,53 @@ void declare_thermoform_parameters(const Json& nominal, bool fit_mould_place, co
   std::vector<ParameterInfo> infos = describe_parameters<ThermoformOptions>();
   const std::size_t of_the_sheet = infos.size();
   for (ParameterInfo& info : describe_parameters<MeasurementEffects>()) infos.push_back(std::move(info));
-  const auto add = [&](const Turned& turned, ParameterRole role) {
+  const auto add = [&](const VariedParameter& varied, ParameterRole role) {
     const auto info =
-        std::find_if(infos.begin(), infos.end(), [&](const ParameterInfo& i) { return i.name == turned.name; });
+        std::find_if(infos.begin(), infos.end(), [&](const ParameterInfo& i) { return i.name == varied.name; });
     ModelParameter p;
     p.name = info->name;
     p.label = info->label;
     p.unit = info->unit;
     p.role = role;
     p.nominal = nominal.value(p.name, info->default_value.get<double>());
-    p.low = std::min(turned.low, p.nominal);
-    p.high = std::max(turned.high, p.nominal);
-    if (turned.logarithmic && !(p.nominal > 0)) p.nominal = info->default_value.get<double>();
-    p.logarithmic = turned.logarithmic;
-    p.prior_sd = turned.prior_sd;
-    p.probe = turned.probe;
+    p.low = std::min(varied.low, p.nominal);
+    p.high = std::max(varied.high, p.nominal);
+    if (varied.logarithmic && !(p.nominal > 0)) p.nominal = info->default_value.get<double>();
+    p.logarithmic = varied.logarithmic;
+    p.prior_sd = varied.prior_sd;
+    p.probe = varied.probe;
     parameters.push_back(p);
     return static_cast<int>(parameters.size()) - 1;
   };
-  for (const Turned& turned : base_parameters) add(turned, ParameterRole::base);
+  for (const VariedParameter& varied : base_parameters) add(varied, ParameterRole::base);
   if (fit_mould_place)
-    for (const Turned& turned : mould_place) add(turned, ParameterRole::base);
+    for (const VariedParameter& varied : mould_place) add(varied, ParameterRole::base);
   for (const CauseTable& row : cause_table()) {
     if (fit_mould_place && std::string_view(row.name) == "mould_shift") continue;
     if (std::find(without.begin(), without.end(), row.name) != without.end()) continue;
     Cause cause{row.name, row.label, row.explanation, row.remedy, {}, ""};
-    for (const Turned& turned : row.parameters) cause.parameters.push_back(add(turned, ParameterRole::effect));
+    for (const VariedParameter& varied : row.parameters) cause.parameters.push_back(add(varied, ParameterRole::effect));
     cause.unit = parameters.back().unit;
     if (std::any_of(infos.begin(), infos.begin() + static_cast<std::ptrdiff_t>(of_the_sheet),
                     [&](const ParameterInfo& i) { return i.name == parameters.back().name; }))
       cause.gain_error = sheet_gain_error;
     causes.push_back(std::move(cause));
   }
-  // Liberties of the simulation. Their sensitivities are what another equally good simulation would do.
-  const auto discrepancy = [&](const char* name, const char* label, double prior_sd) {
+  for (const Discrepancy& discrepancy : discrepancies) {
     ModelParameter p;
-    p.name = name;
-    p.label = label;
+    p.name = discrepancy.name;
+    p.label = discrepancy.label;
     p.role = ParameterRole::discrepancy;
     p.high = 1;
-    p.prior_sd = prior_sd;
+    p.prior_sd = discrepancy.prior_sd;
     p.probe = 1;
     parameters.push_back(p);
-  };
-  discrepancy("other_elastic_law", "Other elastic law", 1);
-  discrepancy("other_yield_rule", "Other yield rule", 0.3);
-  discrepancy("slower_vacuum", "Vacuum builds up twice as slowly", 1);
-  discrepancy("finer_sheet", "Twice as many triangles", 1.5);
+  }
+}
+
+void apply_discrepancy(const std::string& name, ThermoformOptions& options) {
+  for (const Discrepancy& discrepancy : discrepancies)
+    if (discrepancy.name == name) discrepancy.apply(options);
 }
 
 }  // namespace formwright

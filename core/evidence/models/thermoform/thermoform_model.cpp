@@ -75,7 +75,7 @@ double spread(const std::vector<MeasuredPoint>& points, bool on_sheet) {
 }
 
 /// Not of the material, which all objects share.
-bool is_deed(const ModelParameter& p) {
+bool is_set_by_hand(const ModelParameter& p) {
   return p.role == ParameterRole::effect || (p.role == ParameterRole::base && p.name.starts_with("mould_"));
 }
 
@@ -224,26 +224,18 @@ ThermoformOptions ThermoformModel::simulation_options(int object, const Eigen::V
     const ModelParameter& p = parameters_[i];
     const double at = u[static_cast<Eigen::Index>(i)];
     if (p.role == ParameterRole::discrepancy || measurement.contains(p.name)) continue;
-    // What is not turned keeps its value to the last bit, which is what stored results are known by.
+    // What does not vary keeps its value to the last bit, which is what stored results are known by.
     const double value = at == 0 ? p.nominal : p.value(at);
-    // A mould that was set beside its mark on purpose, or another such deed, is of this object alone: what is found
-    // comes on top. The material is one.
-    const bool of_this_object = object > 0 && is_deed(p) && values.contains(p.name);
+    // A mould that was set beside its mark on purpose, or anything else set by hand, is of this object alone:
+    // what is found comes on top. The material is shared.
+    const bool of_this_object = object > 0 && is_set_by_hand(p) && values.contains(p.name);
     values[p.name] =
         of_this_object ? std::clamp(values[p.name].get<double>() + value - p.nominal, p.low, p.high) : value;
   }
   auto o = read_parameters<ThermoformOptions>(values);
-  for (std::size_t i = 0; i < parameters_.size(); ++i) {
-    const std::string& name = parameters_[i].name;
-    if (parameters_[i].role != ParameterRole::discrepancy || u[static_cast<Eigen::Index>(i)] < 0.5) continue;
-    if (name == "other_elastic_law")
-      o.elastic_law = o.elastic_law == ElasticLaw::st_venant_kirchhoff ? ElasticLaw::stable_neo_hookean
-                                                                       : ElasticLaw::st_venant_kirchhoff;
-    if (name == "other_yield_rule")
-      o.yield_rule = o.yield_rule == YieldRule::elastic_excess ? YieldRule::total_strain : YieldRule::elastic_excess;
-    if (name == "slower_vacuum") o.vacuum_ramp_s = std::max(0.05, 2 * o.vacuum_ramp_s);
-    if (name == "finer_sheet") o.triangles *= 2;
-  }
+  for (std::size_t i = 0; i < parameters_.size(); ++i)
+    if (parameters_[i].role == ParameterRole::discrepancy && u[static_cast<Eigen::Index>(i)] >= 0.5)
+      apply_discrepancy(parameters_[i].name, o);
   if (formed_object.setup.sheet_turned) {
     o.thickness_wedge_x = -o.thickness_wedge_x;
     o.thickness_wedge_y = -o.thickness_wedge_y;

@@ -79,8 +79,11 @@ class ThermoformModel : public ForwardModel {
   mutable std::map<std::string, std::shared_ptr<const FormedSheet>> sheets_;
 };
 
-/// The parameters a diagnosis turns, base first, and the causes they belong to.
+/// The parameters that a diagnosis varies, base first, and the causes they belong to.
 void declare_thermoform_parameters(const Json& nominal, bool fit_mould_place, const std::vector<std::string>& without,
                                    std::vector<ModelParameter>& parameters, std::vector<Cause>& causes);
+
+/// Makes the simulation the other one that the discrepancy of this name stands for.
+void apply_discrepancy(const std::string& name, ThermoformOptions& options);
 
 }  // namespace formwright

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "job/contract/operation_options.h"
 #include "job/operations/evidence/evidence_input.h"
 #include "job/operations/evidence/evidence_operations.h"
 #include "job/contract/model_input.h"
@@ -94,8 +95,7 @@ Calibration search(SimulationBag& bag, const CalibrateOptions& o, Context& conte
                      {index_of(model, "mould_shift_x_mm"), index_of(model, "mould_shift_y_mm")}, 2, context);
 }
 
-OperationResult run(const OperationCall& call) {
-  const auto o = read_parameters<CalibrateOptions>(call.parameters);
+OperationResult run(const OperationCall& call, const CalibrateOptions& o) {
   require_each_once(call, "measured.csv");
   std::vector<FormedObject> objects = read_formed_objects(call, "object");
   ThermoformModelOptions options;
@@ -175,12 +175,10 @@ Operation evidence_calibrate_operation() {
   operation.inputs = {object_input_info("object", "Measured object",
                                         "A folder with mould.obj, setup.json and measured.csv.", true, true),
                       profile_input_info()};
-  operation.parameters = describe_parameters<CalibrateOptions>();
-  operation.outputs = outputs();
+    operation.outputs = outputs();
   operation.report = report_fields();
   operation.keeps_results = true;
-  operation.check = [](const Json& parameters) { read_parameters<CalibrateOptions>(parameters); };
-  operation.run = run;
+  take_options<CalibrateOptions>(operation, run);
   return operation;
 }
 

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "evidence/models/thermoform/proposals.h"
+#include "job/contract/operation_options.h"
 #include "job/operations/evidence/diagnosis_result.h"
 #include "job/operations/evidence/evidence_input.h"
 #include "job/operations/evidence/evidence_operations.h"
@@ -64,8 +65,7 @@ std::string residuals_csv(const ThermoformModel& model, const Diagnosis& d) {
   return text;
 }
 
-OperationResult run(const OperationCall& call) {
-  const auto o = read_parameters<DiagnoseOptions>(call.parameters);
+OperationResult run(const OperationCall& call, const DiagnoseOptions& o) {
   require_each_once(call, "measured.csv");
   ThermoformModelOptions options;
   options.triangles = o.triangles;
@@ -158,12 +158,10 @@ Operation evidence_diagnose_operation() {
           "Another folder of the same kind for validation: it is not used for fitting, only to measure the gain.",
           false, true),
       profile_input_info()};
-  operation.parameters = describe_parameters<DiagnoseOptions>();
-  operation.outputs = outputs();
+    operation.outputs = outputs();
   operation.report = diagnosis_report_fields();
   operation.keeps_results = true;
-  operation.check = [](const Json& parameters) { read_parameters<DiagnoseOptions>(parameters); };
-  operation.run = run;
+  take_options<DiagnoseOptions>(operation, run);
   return operation;
 }
 

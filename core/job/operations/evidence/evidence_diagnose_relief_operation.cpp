@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "evidence/models/relief/relief_model.h"
 #include "formats/mesh_io.h"
+#include "job/contract/operation_options.h"
 #include "job/operations/evidence/diagnosis_result.h"
 #include "job/operations/evidence/evidence_input.h"
 #include "job/operations/evidence/evidence_operations.h"
@@ -48,8 +49,7 @@ std::vector<PhotographedRelief> read_reliefs(const OperationCall& call, const st
   return reliefs;
 }
 
-OperationResult run(const OperationCall& call) {
-  const auto o = read_parameters<DiagnoseReliefOptions>(call.parameters);
+OperationResult run(const OperationCall& call, const DiagnoseReliefOptions& o) {
   require_each_once(call, "shading.csv");
   std::vector<PhotographedRelief> unseen = read_reliefs(call, "unseen", o.pixels);
   const ReliefModel model(read_reliefs(call, "object", o.pixels));
@@ -91,11 +91,9 @@ Operation evidence_diagnose_relief_operation() {
           "unseen", "Validation relief",
           "Another folder of the same kind for validation: it is not used for fitting, only to measure the gain.",
           false)};
-  operation.parameters = describe_parameters<DiagnoseReliefOptions>();
-  operation.outputs = diagnosis_outputs();
+    operation.outputs = diagnosis_outputs();
   operation.report = diagnosis_report_fields();
-  operation.check = [](const Json& parameters) { read_parameters<DiagnoseReliefOptions>(parameters); };
-  operation.run = run;
+  take_options<DiagnoseReliefOptions>(operation, run);
   return operation;
 }
 

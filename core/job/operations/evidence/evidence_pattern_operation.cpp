@@ -2,6 +2,7 @@
 #include "base/sha256.h"
 #include "evidence/registration/calibration_pattern.h"
 #include "imaging/picture/png_writer.h"
+#include "job/contract/operation_options.h"
 #include "job/operations/evidence/evidence_registration_operations.h"
 #include "job/contract/model_input.h"
 #include "thermoform/print/print_pages.h"
@@ -86,8 +87,7 @@ ThermoformPrintOptions print_options(const EvidencePatternOptions& options) {
   return print;
 }
 
-OperationResult run_pattern(const OperationCall& call) {
-  const auto options = read_parameters<EvidencePatternOptions>(call.parameters);
+OperationResult run_pattern(const OperationCall& call, const EvidencePatternOptions& options) {
   Context& context = call.context;
   const CalibrationPattern pattern = make_calibration_pattern(options);
   const ThermoformPrintOptions print = print_options(options);
@@ -132,13 +132,9 @@ Operation evidence_pattern_operation() {
   operation.title = "Calibration pattern";
   operation.summary =
       "Makes a pattern to print on a sheet. A scan of the formed sheet then shows where every point of the sheet moved.";
-  operation.parameters = describe_parameters<EvidencePatternOptions>();
-  operation.outputs = outputs();
+    operation.outputs = outputs();
   operation.report = report_fields();
-  operation.check = [](const Json& parameters) {
-    make_calibration_pattern(read_parameters<EvidencePatternOptions>(parameters));
-  };
-  operation.run = run_pattern;
+  take_options<EvidencePatternOptions>(operation, run_pattern, [](const EvidencePatternOptions& options) { make_calibration_pattern(options); });
   return operation;
 }
 

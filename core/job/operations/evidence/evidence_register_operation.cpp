@@ -6,6 +6,7 @@
 #include "base/statistics.h"
 #include "formats/mesh_io.h"
 #include "imaging/picture/png_writer.h"
+#include "job/contract/operation_options.h"
 #include "job/operations/evidence/evidence_registration_operations.h"
 #include "job/contract/model_input.h"
 #include "thermoform/measured/measured_object.h"
@@ -173,8 +174,7 @@ void report_registration(Json& report, const ScanRegistration& r, const Calibrat
   report["seconds_points"] = r.seconds_points;
 }
 
-OperationResult run_register(const OperationCall& call) {
-  const auto options = read_parameters<ScanRegistrationOptions>(call.parameters);
+OperationResult run_register(const OperationCall& call, const ScanRegistrationOptions& options) {
   Context& context = call.context;
   Stopwatch watch;
   const CalibrationPattern pattern = read_calibration_pattern(*call.inputs.at("pattern").bytes);
@@ -220,11 +220,9 @@ Operation evidence_register_operation() {
   operation.summary =
       "Finds where every point of a printed sheet moved, from a scan of the formed sheet and its pattern.";
   operation.inputs = inputs();
-  operation.parameters = describe_parameters<ScanRegistrationOptions>();
-  operation.outputs = outputs();
+    operation.outputs = outputs();
   operation.report = report_fields();
-  operation.check = [](const Json& parameters) { read_parameters<ScanRegistrationOptions>(parameters); };
-  operation.run = run_register;
+  take_options<ScanRegistrationOptions>(operation, run_register);
   return operation;
 }
 

@@ -3,6 +3,7 @@
 #include "job/operations/evidence/evidence_operations.h"
 #include "job/contract/file_pack.h"
 #include "job/contract/model_input.h"
+#include "job/contract/operation_options.h"
 #include "job/operations/thermoform/thermoform_input.h"
 
 namespace formwright {
@@ -27,21 +28,9 @@ std::vector<ReportField> report_fields() {
           {"notes", "Notes", "", "What to know about the result, as sentences."}};
 }
 
-struct GivenParameters {
-  Json simulation, measurement, scan;
-  explicit GivenParameters(const Json& parameters) {
-    const std::vector<ParameterInfo> measuring = describe_parameters<MeasurementEffects>(),
-                                     scanning = describe_parameters<VirtualScan>();
-    measurement = parameters_among(parameters, measuring);
-    scan = parameters_among(parameters, scanning);
-    simulation = parameters_among(parameters_among(parameters, measuring, false), scanning, false);
-  }
-};
-
-OperationResult run(const OperationCall& call) {
-  const GivenParameters given(call.parameters);
-  const SimulationCall simulation = simulation_call(call, given.simulation);
-  const auto effects = read_parameters<MeasurementEffects>(given.measurement);
+OperationResult run(const OperationCall& call, const Json& given, const Json& measurement, const Json& scan) {
+  const SimulationCall simulation = simulation_call(call, given);
+  const auto effects = read_parameters<MeasurementEffects>(measurement);
   Simulated simulated;
   {
     const auto span = call.context.span(0, 0.95, "Forming the virtual sheet");
@@ -50,7 +39,7 @@ OperationResult run(const OperationCall& call) {
   const ThermoformOptions& o = simulation.options;
   constexpr MeasuredSurface surface = MeasuredSurface::outer;  // what a scanner sees
   const std::vector<MeasuredPoint> points =
-      scan_virtually(simulated.result->sheet, o, surface, effects, read_parameters<VirtualScan>(given.scan));
+      scan_virtually(simulated.result->sheet, o, surface, effects, read_parameters<VirtualScan>(scan));
   Model mould;
   mould.mesh = simulated.mould.placement(simulated.mould.shape->mesh);
   const Bytes obj = write_model(mould, MeshFormat::obj, call.context);
@@ -87,18 +76,9 @@ Operation evidence_virtual_object_operation() {
   operation.summary =
       "Forms and measures an object on a simulated machine with faults that you choose, to practise a diagnosis.";
   operation.inputs = {mould_input_info()};
-  operation.parameters = describe_parameters<ThermoformOptions>();
-  for (ParameterInfo& info : describe_parameters<MeasurementEffects>()) operation.parameters.push_back(std::move(info));
-  for (ParameterInfo& info : describe_parameters<VirtualScan>()) operation.parameters.push_back(std::move(info));
   operation.outputs = outputs();
   operation.report = report_fields();
-  operation.check = [](const Json& parameters) {
-    const GivenParameters given(parameters);
-    read_parameters<ThermoformOptions>(given.simulation);
-    read_parameters<MeasurementEffects>(given.measurement);
-    read_parameters<VirtualScan>(given.scan);
-  };
-  operation.run = run;
+  take_mergeable_options<ThermoformOptions, MeasurementEffects, VirtualScan>(operation, run);
   return operation;
 }
 

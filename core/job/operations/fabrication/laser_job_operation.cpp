@@ -4,6 +4,7 @@
 #include "fabrication/writers/gcode_writer.h"
 #include "fabrication/laser/laser_plan.h"
 #include "fabrication/toolpath/toolpath_preview.h"
+#include "job/contract/operation_options.h"
 #include "job/operations/fabrication/fabrication_operations.h"
 #include "job/operations/fabrication/fabrication_result.h"
 #include "job/contract/model_input.h"
@@ -21,8 +22,7 @@ std::vector<InputInfo> inputs() {
   return {drawing};
 }
 
-OperationResult run(const OperationCall& call) {
-  const auto options = read_parameters<LaserOptions>(call.parameters);
+OperationResult run(const OperationCall& call, const LaserOptions& options) {
   Context& context = call.context;
   Stopwatch watch;
   context.progress(0, "Reading the drawing");
@@ -58,8 +58,7 @@ Operation laser_job_operation() {
   operation.summary =
       "Turns a drawing into a job for a laser cutter, with kerf, cutting order, tabs, power, speed and an estimate of the time.";
   operation.inputs = inputs();
-  operation.parameters = describe_parameters<LaserOptions>();
-  operation.outputs = laser_job_outputs();
+    operation.outputs = laser_job_outputs();
   operation.report = laser_report_fields();
   operation.report.push_back({"drawing_mm", "Drawing", "mm", "Width and height of the drawing as read."});
   operation.report.push_back(
@@ -69,8 +68,7 @@ Operation laser_job_operation() {
   operation.report.push_back({"seconds_write", "Writing", "s", "Time for writing the output files."});
   operation.report.push_back(
       {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."});
-  operation.check = [](const Json& parameters) { read_no_go(read_parameters<LaserOptions>(parameters).no_go); };
-  operation.run = run;
+  take_options<LaserOptions>(operation, run, [](const LaserOptions& options) { read_no_go(options.no_go); });
   return operation;
 }
 

@@ -7,6 +7,7 @@
 #include "fabrication/toolpath/toolpath_preview.h"
 #include "formats/mesh_io.h"
 #include "formats/png/png16.h"
+#include "job/contract/operation_options.h"
 #include "job/operations/fabrication/fabrication_operations.h"
 #include "job/operations/fabrication/fabrication_result.h"
 #include "job/contract/model_input.h"
@@ -102,8 +103,7 @@ void report_deviation(Json& report, const std::string& name, const Deviation& de
   report[name + "_max_mm"] = deviation.max_mm;
 }
 
-OperationResult run(const OperationCall& call) {
-  const auto options = read_parameters<MillOptions>(call.parameters);
+OperationResult run(const OperationCall& call, const MillOptions& options) {
   Context& context = call.context;
   Stopwatch watch;
   context.progress(0, "Reading the model");
@@ -221,11 +221,9 @@ Operation mill_job_operation() {
   operation.title = "Mill job";
   operation.summary = "Makes the job that mills a relief or a height map, and reports where the tool cannot reach.";
   operation.inputs = inputs();
-  operation.parameters = describe_parameters<MillOptions>();
-  operation.outputs = outputs();
+    operation.outputs = outputs();
   operation.report = report_fields();
-  operation.check = [](const Json& parameters) { read_no_go(read_parameters<MillOptions>(parameters).no_go); };
-  operation.run = run;
+  take_options<MillOptions>(operation, run, [](const MillOptions& options) { read_no_go(options.no_go); });
   return operation;
 }
 

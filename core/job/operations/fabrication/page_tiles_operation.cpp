@@ -3,6 +3,7 @@
 #include "fabrication/svg/svg_reader.h"
 #include "formats/png/png16.h"
 #include "imaging/picture/picture_reader.h"
+#include "job/contract/operation_options.h"
 #include "job/operations/fabrication/fabrication_operations.h"
 #include "job/contract/model_input.h"
 
@@ -14,8 +15,7 @@ std::vector<OutputInfo> outputs() {
            true}};
 }
 
-OperationResult run(const OperationCall& call) {
-  const auto options = read_parameters<PageTilesOptions>(call.parameters);
+OperationResult run(const OperationCall& call, const PageTilesOptions& options) {
   Context& context = call.context;
   Stopwatch watch;
   const InputBlob& input = call.inputs.at("drawing");
@@ -67,8 +67,7 @@ Operation page_tiles_operation() {
   content.help = "A PNG or JPEG picture, or an SVG drawing, whose lines are printed in black.";
   content.extensions = {"svg", "png", "jpg", "jpeg"};
   operation.inputs = {content};
-  operation.parameters = describe_parameters<PageTilesOptions>();
-  operation.outputs = outputs();
+    operation.outputs = outputs();
   operation.report = {
       {"pages", "Pages", "", "Number of pages in all."},
       {"columns", "Columns", "", "Number of columns of pages."},
@@ -79,8 +78,7 @@ Operation page_tiles_operation() {
       {"seconds_total", "Time", "s", "Time for the whole job."},
       {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."},
       {"notes", "Notes", "", "What to know about the result, as sentences."}};
-  operation.check = [](const Json& parameters) { read_parameters<PageTilesOptions>(parameters); };
-  operation.run = run;
+  take_options<PageTilesOptions>(operation, run);
   return operation;
 }
 

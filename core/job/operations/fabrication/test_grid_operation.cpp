@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fabrication/test_grid.h"
+#include "job/contract/operation_options.h"
 #include "job/operations/fabrication/fabrication_operations.h"
 #include "job/operations/fabrication/fabrication_result.h"
 #include "job/contract/model_input.h"
@@ -13,8 +14,7 @@ std::vector<OutputInfo> outputs() {
   return all;
 }
 
-OperationResult run(const OperationCall& call) {
-  const auto options = read_parameters<TestGridOptions>(call.parameters);
+OperationResult run(const OperationCall& call, const TestGridOptions& options) {
   Stopwatch watch;
   const TestGrid grid = make_test_grid(options, call.context);
   LaserPlan plan = run_strokes({grid.labels, grid.strokes}, options, 0, true, call.context);
@@ -43,16 +43,14 @@ Operation test_grid_operation() {
   operation.title = "Laser test";
   operation.summary =
       "Makes a test piece that shows which power and speed a material needs, how wide the beam burns, or where its focus is.";
-  operation.parameters = describe_parameters<TestGridOptions>();
-  operation.outputs = outputs();
+    operation.outputs = outputs();
   operation.report = laser_report_fields();
   operation.report.push_back(
       {"cells", "Cells", "", "Every square or line of the test with its power, speed, height and position."});
   operation.report.push_back({"seconds_plan", "Planning", "s", "Time for planning and writing the test."});
   operation.report.push_back(
       {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."});
-  operation.check = [](const Json& parameters) { read_no_go(read_parameters<TestGridOptions>(parameters).no_go); };
-  operation.run = run;
+  take_options<TestGridOptions>(operation, run, [](const TestGridOptions& options) { read_no_go(options.no_go); });
   return operation;
 }
 

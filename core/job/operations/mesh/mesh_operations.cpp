@@ -7,6 +7,7 @@
 #include "geometry/mesh/simplify.h"
 #include "geometry/mesh/subdivide.h"
 #include "job/contract/model_input.h"
+#include "job/contract/operation_options.h"
 
 namespace formwright {
 namespace {
@@ -33,12 +34,9 @@ Operation mesh_operation(std::string name, std::string title, std::string summar
   operation.title = std::move(title);
   operation.summary = std::move(summary);
   operation.inputs = {model_input_info()};
-  operation.parameters = describe_parameters<Options>();
   operation.outputs = outputs;
   operation.report = std::move(report);
-  operation.check = [](const Json& parameters) { read_parameters<Options>(parameters); };
-  operation.run = [outputs, body](const OperationCall& call) {
-    const auto options = read_parameters<Options>(call.parameters);
+  take_options<Options>(operation, [outputs, body](const OperationCall& call, const Options& options) {
     std::shared_ptr<const LoadedModel> loaded;
     {
       const auto span = call.context.span(0, 0.4, "Reading the model");
@@ -52,7 +50,7 @@ Operation mesh_operation(std::string name, std::string title, std::string summar
     result.outputs = write_mesh_outputs(call, outputs, model);
     result.report["seconds_write"] = watch.lap();
     return result;
-  };
+  });
   return operation;
 }
 

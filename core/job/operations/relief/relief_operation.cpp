@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "job/contract/operation_options.h"
 #include "job/operations/relief/relief_operation.h"
 
 #include <cmath>
@@ -155,8 +156,7 @@ void report_relief(Json& report, const LoadedModel& loaded, const ReliefSolver& 
   report["distance_mm"] = straight ? Json(nullptr) : Json(size / frame.kappa);
 }
 
-OperationResult run_relief(const OperationCall& call) {
-  const auto options = read_parameters<ReliefOptions>(call.parameters);
+OperationResult run_relief(const OperationCall& call, const ReliefOptions& options) {
   Context& context = call.context;
   std::shared_ptr<const LoadedModel> loaded;
   {
@@ -250,11 +250,9 @@ Operation relief_operation() {
   operation.title = "Relief";
   operation.summary = "Turns a model into a thin relief that still looks deep from the viewpoint you choose.";
   operation.inputs = {model_input_info()};
-  operation.parameters = describe_parameters<ReliefOptions>();
-  operation.outputs = outputs();
+    operation.outputs = outputs();
   operation.report = report_fields();
-  operation.check = [](const Json& parameters) { read_parameters<ReliefOptions>(parameters); };
-  operation.run = run_relief;
+  take_options<ReliefOptions>(operation, run_relief);
   return operation;
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "job/contract/operation_options.h"
 #include "job/operations/thermoform/thermoform_input.h"
 #include "job/operations/thermoform/thermoform_operations.h"
 #include "thermoform/sheet/sheet_lookup.h"
@@ -96,14 +97,12 @@ Bytes residuals(const std::vector<MeasuredPoint>& points, const Comparison& comp
   return {view.begin(), view.end()};
 }
 
-OperationResult run(const OperationCall& call) {
-  const std::vector<ParameterInfo> measuring = describe_parameters<MeasurementEffects>();
-  const SimulationCall simulation = simulation_call(call, parameters_among(call.parameters, measuring, false));
-  const Json given = parameters_among(call.parameters, measuring);
-  Json measurement = given;
+OperationResult run(const OperationCall& call, const Json& given, const Json& given_measurement) {
+  const SimulationCall simulation = simulation_call(call, given);
+  Json measurement = given_measurement;
   if (const auto profile = machine_profile(call)) {
     measurement = write_parameters(profile->measurement);
-    measurement.update(given);
+    measurement.update(given_measurement);
   }
   const auto effects = read_parameters<MeasurementEffects>(measurement);
   const std::vector<MeasuredPoint> points = read_measured_points(*call.inputs.at("measured").bytes);
@@ -165,16 +164,9 @@ Operation thermoform_compare_operation() {
   InputInfo setup = setup_input_info();
   setup.required = true;
   operation.inputs = {mould_input_info(), setup, measured_input_info(), profile_input_info()};
-  operation.parameters = describe_parameters<ThermoformOptions>();
-  for (ParameterInfo& info : describe_parameters<MeasurementEffects>()) operation.parameters.push_back(std::move(info));
   operation.outputs = outputs();
   operation.report = report_fields();
-  operation.check = [](const Json& parameters) {
-    const std::vector<ParameterInfo> measuring = describe_parameters<MeasurementEffects>();
-    read_parameters<ThermoformOptions>(parameters_among(parameters, measuring, false));
-    read_parameters<MeasurementEffects>(parameters_among(parameters, measuring));
-  };
-  operation.run = run;
+  take_mergeable_options<ThermoformOptions, MeasurementEffects>(operation, run);
   return operation;
 }
 

@@ -84,15 +84,6 @@ Json merged_parameters(const OperationCall& call, const Json& parameters, const 
   return merged;
 }
 
-Json parameters_among(const Json& parameters, const std::vector<ParameterInfo>& infos, bool declared) {
-  Json chosen = Json::object();
-  for (const auto& [name, value] : parameters.items())
-    if (std::any_of(infos.begin(), infos.end(), [&n = name](const ParameterInfo& info) { return info.name == n; }) ==
-        declared)
-      chosen[name] = value;
-  return chosen;
-}
-
 SimulationCall simulation_call(const OperationCall& call, const Json& parameters) {
   SimulationCall simulation;
   if (const auto setup = call.inputs.find("setup"); setup != call.inputs.end())

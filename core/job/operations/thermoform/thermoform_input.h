@@ -46,9 +46,6 @@ std::optional<MachineProfile> machine_profile(const OperationCall& call);
 Json merged_parameters(const OperationCall& call, const Json& parameters,
                        const std::optional<ObjectSetup>& setup = std::nullopt);
 
-/// Those of `parameters` that `infos` declare; the others where `declared` is false.
-Json parameters_among(const Json& parameters, const std::vector<ParameterInfo>& infos, bool declared = true);
-
 /// The simulation's options, merged; a setup also means that the mould is in machine coordinates already.
 struct SimulationCall {
   ThermoformOptions options;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "job/contract/operation_options.h"
 #include "job/operations/thermoform/thermoform_operations.h"
 
 #include "geometry/mesh/adjacency.h"
@@ -158,8 +159,8 @@ void report_parts(Json& report, const MouldParts& parts) {
   report["plastic_volume_ml"] = volume_mm3 / 1000;
 }
 
-OperationResult run_mould(const OperationCall& call) {
-  const auto options = read_parameters<ThermoformMouldOptions>(merged_parameters(call, call.parameters));
+OperationResult run_mould(const OperationCall& call, const Json& given) {
+  const auto options = read_parameters<ThermoformMouldOptions>(merged_parameters(call, given));
   Context& context = call.context;
   OperationResult result;
   Json& report = result.report;
@@ -267,11 +268,9 @@ Operation thermoform_mould_operation() {
   operation.title = "Mould";
   operation.summary = "Makes the mould that the sheet is formed over: a negative to cast gypsum in, or a positive.";
   operation.inputs = {mould_input_info(), sheet_input_info(), profile_input_info()};
-  operation.parameters = describe_parameters<ThermoformMouldOptions>();
-  operation.outputs = outputs();
+    operation.outputs = outputs();
   operation.report = report_fields();
-  operation.check = [](const Json& parameters) { read_parameters<ThermoformMouldOptions>(parameters); };
-  operation.run = run_mould;
+  take_mergeable_options<ThermoformMouldOptions>(operation, run_mould);
   return operation;
 }
 

@@ -3,6 +3,7 @@
 
 #include "geometry/mesh/adjacency.h"
 #include "base/format.h"
+#include "job/contract/operation_options.h"
 #include "job/operations/thermoform/thermoform_input.h"
 #include "job/operations/thermoform/thermoform_operations.h"
 #include "thermoform/forming_glb.h"
@@ -99,8 +100,8 @@ Json warnings(const FormedResult& result, const ThermoformOptions& o, bool water
   return list;
 }
 
-OperationResult run(const OperationCall& call) {
-  const SimulationCall simulation = simulation_call(call, call.parameters);
+OperationResult run(const OperationCall& call, const Json& given) {
+  const SimulationCall simulation = simulation_call(call, given);
   const ThermoformOptions& o = simulation.options;
   Simulated simulated;
   {
@@ -194,11 +195,9 @@ Operation thermoform_simulate_operation() {
   operation.title = "Thermoform";
   operation.summary = "Simulates how a heated plastic sheet is formed over a model by vacuum.";
   operation.inputs = {mould_input_info(), setup_input_info(), profile_input_info()};
-  operation.parameters = describe_parameters<ThermoformOptions>();
-  operation.outputs = outputs();
+    operation.outputs = outputs();
   operation.report = report_fields();
-  operation.check = [](const Json& parameters) { read_parameters<ThermoformOptions>(parameters); };
-  operation.run = run;
+  take_mergeable_options<ThermoformOptions>(operation, run);
   return operation;
 }
 

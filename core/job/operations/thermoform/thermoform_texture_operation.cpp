@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "job/contract/operation_options.h"
 #include "job/operations/thermoform/thermoform_operations.h"
 
 #include "formats/mesh_io.h"
@@ -146,8 +147,8 @@ void report_print(Json& report, const TexturePrint& print, const PageLayout& lay
   report["seconds_bleed"] = print.seconds_bleed;
 }
 
-OperationResult run_texture(const OperationCall& call) {
-  const auto options = read_parameters<ThermoformPrintOptions>(merged_parameters(call, call.parameters));
+OperationResult run_texture(const OperationCall& call, const Json& given) {
+  const auto options = read_parameters<ThermoformPrintOptions>(merged_parameters(call, given));
   Context& context = call.context;
   // What can be refused at once is, before a simulation.
   const PageLayout layout = page_layout(options);
@@ -205,11 +206,9 @@ Operation thermoform_texture_operation() {
   operation.summary =
       "Makes the picture to print on the flat sheet so that, after forming, every colour lands where it belongs.";
   operation.inputs = inputs();
-  operation.parameters = describe_parameters<ThermoformPrintOptions>();
-  operation.outputs = outputs();
+    operation.outputs = outputs();
   operation.report = report_fields();
-  operation.check = [](const Json& parameters) { read_parameters<ThermoformPrintOptions>(parameters); };
-  operation.run = run_texture;
+  take_mergeable_options<ThermoformPrintOptions>(operation, run_texture);
   return operation;
 }
 

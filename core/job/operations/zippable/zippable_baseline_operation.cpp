@@ -5,6 +5,7 @@
 #include "formats/mesh_io.h"
 #include "geometry/mesh/measures.h"
 #include "job/contract/model_input.h"
+#include "job/contract/operation_options.h"
 #include "job/operations/zippable/zippable_operation.h"
 #include "zippable/design_files.h"
 #include "zippable/plan/zippable_plan.h"
@@ -89,8 +90,7 @@ void report_zippable(Json& report, ParameterisedModel& model, const ZippableOpti
   report["zippable_ribbon_width_min_mm"] = design.ribbon.width_min_mm;
 }
 
-OperationResult run(const OperationCall& call) {
-  const auto options = read_parameters<StripOptions>(call.parameters);
+OperationResult run(const OperationCall& call, const StripOptions& options) {
   Context& context = call.context;
   std::shared_ptr<const LoadedModel> loaded;
   {
@@ -161,11 +161,9 @@ Operation zippable_baseline_operation() {
   operation.title = "Strips to compare with";
   operation.summary = "Makes the model from paper strips (Mitani and Suzuki 2004), to compare with the zippable.";
   operation.inputs = {model_input_info()};
-  operation.parameters = describe_parameters<StripOptions>();
-  operation.outputs = outputs();
+    operation.outputs = outputs();
   operation.report = report_fields();
-  operation.check = [](const Json& parameters) { read_parameters<StripOptions>(parameters); };
-  operation.run = run;
+  take_options<StripOptions>(operation, run);
   return operation;
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "job/contract/operation_options.h"
 #include "job/operations/zippable/zippable_operation.h"
 
 #include <algorithm>
@@ -193,8 +194,7 @@ OperationResult check_parts(const OperationCall& call, const LoadedModel& loaded
   return result;
 }
 
-OperationResult run(const OperationCall& call) {
-  const auto options = read_parameters<ZippableOptions>(call.parameters);
+OperationResult run(const OperationCall& call, const ZippableOptions& options) {
   Context& context = call.context;
   ZippableParts parts;
   std::string parts_key = "automatic";
@@ -258,11 +258,9 @@ Operation zippable_design_operation() {
   operation.title = "Zippable";
   operation.summary = "Turns a model into one flat ribbon that zips up into the model's shape.";
   operation.inputs = inputs();
-  operation.parameters = describe_parameters<ZippableOptions>();
-  operation.outputs = outputs();
+    operation.outputs = outputs();
   operation.report = report_fields();
-  operation.check = [](const Json& parameters) { read_parameters<ZippableOptions>(parameters); };
-  operation.run = run;
+  take_options<ZippableOptions>(operation, run);
   return operation;
 }
 

@@ -5,6 +5,7 @@
 #include "imaging/drawing/pdf.h"
 #include "job/contract/file_pack.h"
 #include "job/contract/model_input.h"
+#include "job/contract/operation_options.h"
 #include "job/operations/zippable/zippable_operation.h"
 #include "zippable/plan/assembly_sheet.h"
 #include "zippable/plan/zippable_plan.h"
@@ -280,8 +281,7 @@ Bytes sheets_zip(const ZippablePlan& plan, const Context& context) {
   return pack_files(views, context);
 }
 
-OperationResult run(const OperationCall& call) {
-  const auto options = read_parameters<PlanOptions>(call.parameters);
+OperationResult run(const OperationCall& call, const PlanOptions& options) {
   Context& context = call.context;
   Stopwatch watch;
   context.progress(0, "Reading the design");
@@ -347,11 +347,9 @@ Operation zippable_plan_operation() {
   operation.summary =
       "Turns the design of a zippable into sheets to cut, with numbered markers for attaching the zipper.";
   operation.inputs = inputs();
-  operation.parameters = describe_parameters<PlanOptions>();
-  operation.outputs = outputs();
+    operation.outputs = outputs();
   operation.report = report_fields();
-  operation.check = [](const Json& parameters) { read_parameters<PlanOptions>(parameters); };
-  operation.run = run;
+  take_options<PlanOptions>(operation, run);
   return operation;
 }
 

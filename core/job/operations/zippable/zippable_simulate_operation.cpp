@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "job/contract/model_input.h"
+#include "job/contract/operation_options.h"
 #include "job/operations/zippable/zippable_operation.h"
 #include "zippable/zipping/zipping_files.h"
 
@@ -86,8 +87,7 @@ const char* outcome_name(ZippingOutcome outcome) {
   return "not_settled";
 }
 
-OperationResult run(const OperationCall& call) {
-  const auto options = read_parameters<ZippingOptions>(call.parameters);
+OperationResult run(const OperationCall& call, const ZippingOptions& options) {
   const RibbonDesign design = ribbon_of(read_flat_design(*call.inputs.at("design").bytes));
   ZippingResult zipped;
   {
@@ -146,11 +146,9 @@ Operation zippable_simulate_operation() {
   operation.title = "Will it zip?";
   operation.summary = "Simulates the ribbon as cloth while it is zipped up, and compares the result with the design.";
   operation.inputs = {design_input()};
-  operation.parameters = describe_parameters<ZippingOptions>();
-  operation.outputs = outputs();
+    operation.outputs = outputs();
   operation.report = report_fields();
-  operation.check = [](const Json& parameters) { read_parameters<ZippingOptions>(parameters); };
-  operation.run = run;
+  take_options<ZippingOptions>(operation, run);
   return operation;
 }
 

@@ -22,6 +22,8 @@ interface PartPlan {
 }
 
 export interface Design {
+  /** Millimetres of the object, a unit of the model's file. */
+  readonly scale: number;
   /** Parts by number, as the zipper visits them. */
   readonly order: readonly number[];
   readonly parts: readonly PartPlan[];
@@ -41,6 +43,7 @@ export interface Design {
 
 interface DesignFile {
   readonly format: string;
+  readonly scale: number;
   readonly order: number[];
   readonly parts: PartPlan[];
   readonly handles_cut: number;
@@ -78,6 +81,7 @@ export function readDesign(bytes: Uint8Array): Design {
   const pieceOf = new Int32Array(samples).fill(-1);
   file.pieces.forEach((piece, index) => piece.forEach((sample) => (pieceOf[sample] = index)));
   return {
+    scale: file.scale ?? 1,
     order: file.order ?? [],
     parts: file.parts,
     handlesCut: file.handles_cut ?? 0,

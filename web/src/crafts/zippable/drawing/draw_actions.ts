@@ -27,31 +27,7 @@ export const tool = signal<Tool | null>(null);
 export const held = signal<{ readonly handle: Handle; readonly at: Place3 } | null>(null);
 
 /** Millimetres as shown, a unit of the model's file. */
-function shownScale(session: ZippableSession): number {
-  const original = session.model.original.value;
-  const size_mm = session.value('size_mm');
-  if (original === null || typeof size_mm !== 'number') return 1;
-  return size_mm / longestSide(original.mesh);
-}
-
-const sides = new WeakMap<Float32Array, number>();
-
-function longestSide({ positions }: ShadedMesh): number {
-  let longest = sides.get(positions);
-  if (longest === undefined) {
-    longest = 0;
-    for (let k = 0; k < 3; ++k) {
-      let [low, high] = [Infinity, -Infinity];
-      for (let i = k; i < positions.length; i += 3) {
-        low = Math.min(low, positions[i] ?? 0);
-        high = Math.max(high, positions[i] ?? 0);
-      }
-      longest = Math.max(longest, high - low);
-    }
-    sides.set(positions, longest);
-  }
-  return longest;
-}
+const shownScale = (session: ZippableSession): number => session.shown.value?.design.scale ?? 1;
 
 export const fromShown = (session: ZippableSession, [x, y, z]: Place3): Place3 => {
   const scale = shownScale(session);

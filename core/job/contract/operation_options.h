@@ -41,10 +41,11 @@ Json taken_from(Json& parameters) {
 /// job as they were given, to merge them. A name that none declares is refused as one of `Options`.
 template <class Options, class... More, class Run>
 void take_mergeable_options(Operation& operation, Run run) {
-  operation.parameters = describe_parameters<Options>();
+  operation.parameters.clear();
   const auto append = [&](std::vector<ParameterInfo> infos) {
     std::move(infos.begin(), infos.end(), std::back_inserter(operation.parameters));
   };
+  append(describe_parameters<Options>());
   (append(describe_parameters<More>()), ...);
   operation.prepare = [run](const Json& parameters) -> PreparedOperation {
     Json given = parameters;

@@ -156,9 +156,9 @@ int run(const std::vector<std::string>& words) {
     return 0;
   }
   if (words[0] == "list") {
-    const FlagValues flags =
-        read_flags(rest, {{"--json", FlagRule::Value::none}},
-                   [](const std::string& word) { return "There is no flag " + word + " of list: it has --json."; });
+    const FlagValues flags = read_flags(rest, {{"--json", FlagRule::Value::none}}, [](const std::string& word) {
+      return "There is no flag " + word + " of list: it has --json.";
+    });
     if (flags.contains("--json")) {
       std::cout << operation_list().dump(2) << "\n";
       return 0;

@@ -75,8 +75,9 @@ struct ZippableOptions {
           "Number of turns for each part, separated by spaces, in the order of the parts, such as 3 0 2.5. 0 or a missing number: the same as for all parts.")
           .group("Ribbon")
           .advanced(),
-      parameter("size_mm", &ZippableOptions::size_mm, "Size", unit::mm, 1, 100000,
-                "Largest dimension of the finished object. Automatic: the size in the file if it is from 50 to 3000 mm, else 300 mm.")
+      parameter(
+          "size_mm", &ZippableOptions::size_mm, "Size", unit::mm, 1, 100000,
+          "Largest dimension of the finished object. Automatic: the size in the file if it is from 50 to 3000 mm, else 300 mm.")
           .slider(50, 1000)
           .group("Ribbon"),
       parameter(

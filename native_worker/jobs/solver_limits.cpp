@@ -94,8 +94,8 @@ std::vector<std::string> solver_words(const SolverOptions& options) {
 SolverOptions read_solver_words(const std::vector<std::string>& words) {
   std::vector<FlagRule> rules = solver_flag_rules();
   rules.push_back({"--data"});
-  const FlagValues flags = read_flags(
-      words, rules, [](const std::string& word) { return "There is no flag " + word + " of run-jobs."; });
+  const FlagValues flags =
+      read_flags(words, rules, [](const std::string& word) { return "There is no flag " + word + " of run-jobs."; });
   SolverOptions options;
   set_solver_flags(flags, options);
   if (const auto data = flags.find("--data"); data != flags.end()) options.data = data->second.back();

@@ -10,8 +10,8 @@
 
 namespace formwright {
 
-/// The operation's parameters are those of `Options`; a job's are read before it begins, and `run(call, options)` gets them.
-/// `check` tests what no range of a single parameter says; it throws Error{invalid_input}.
+/// The operation's parameters are those of `Options`; a job's are read before it begins, and `run(call, options)` gets
+/// them. `check` tests what no range of a single parameter says; it throws Error{invalid_input}.
 template <class Options, class Run>
 void take_options(Operation& operation, Run run, void (*check)(const Options&) = nullptr) {
   operation.parameters = describe_parameters<Options>();

@@ -39,7 +39,7 @@ std::vector<std::string> GrblDriver::possible_commands() const {
   if (!focus_until_s_ && !pulse_) add({"override"});
   if (place_known()) add({"go_to", "frame"});
   if (is_laser()) add({focus_until_s_ ? "focus_off" : "focus"});
-  if (program_.line_count() > 0 && unknown_place().empty() && !waits("$J") && !waits("$H")) add({"start"});
+  if (program_.line_count() > 0 && unknown_place().empty() && !waits_for_motion()) add({"start"});
   return can;
 }
 
@@ -67,7 +67,7 @@ void GrblDriver::refuse_now(const std::string& what) const {
                        : "Where the head stands is unknown: jog to the material's corner and set the origin first.");
     if (what == "start" && !unknown_place().empty()) refuse(what, unknown_place());
   }
-  if (what == "start" && (waits("$J") || waits("$H"))) refuse(what, "The head is still moving: wait until it stops.");
+  if (what == "start" && waits_for_motion()) refuse(what, "The head is still moving: wait until it stops.");
   machines_detail::refuse_in_phase(what, phase_);
 }
 
@@ -186,6 +186,10 @@ bool GrblDriver::waits(std::string_view beginning) const {
   return stream_.waits_for(beginning) || std::any_of(by_hand_.begin(), by_hand_.end(), [&](const std::string& line) {
            return line.starts_with(beginning);
          });
+}
+
+bool GrblDriver::waits_for_motion() const {
+  return stream_.waits_for_motion() || std::any_of(by_hand_.begin(), by_hand_.end(), moves_head);
 }
 
 void GrblDriver::send_by_hand(const Json& command) {

@@ -123,6 +123,8 @@ class GrblDriver final : public MachineDriver {
   bool origin_moves() const { return waits("G10") || waits("G54"); }
   /// Does a line that begins so wait to be sent, or to be answered?
   bool waits(std::string_view beginning) const;
+  /// Is a line that moves the head not sent, or not answered, yet?
+  bool waits_for_motion() const;
   void send_by_hand(const Json& command);
   void override_speeds(const Json& command);
   double setting(int number, double fallback) const { return machine_.setting(number, fallback); }

@@ -108,10 +108,8 @@ void GrblDriver::hear_answer(std::optional<int> error, double now_s) {
   // A report of rest may have passed it on the way: from here the machine moves, until a report says otherwise.
   if (line->text.starts_with("$J") && !error && phase_ == MachinePhase::idle)
     phase_ = MachinePhase::jogging, idle_since_s_ = -1;
-  // As a line that a person sent.
-  const bool sets_origin = line->text.starts_with("G10") || line->text.starts_with("G92");
-  if (line->job_line < 0 && !job_active() && !error && !line->text.starts_with("$") && !sets_origin &&
-      effect_of(line->text).moves && phase_ == MachinePhase::idle)
+  if (line->job_line < 0 && !job_active() && !error && !line->text.starts_with("$") && moves_head(line->text) &&
+      phase_ == MachinePhase::idle)
     phase_ = MachinePhase::running, idle_since_s_ = -1;
   if (line->text.starts_with("$J") && error)  // what follows was to begin where this one was to lead
     std::erase_if(by_hand_, [](const std::string& waiting) { return waiting.starts_with("$J"); });

@@ -1,7 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "machines/grbl/grbl_stream.h"
 
+#include "machines/gcode/gcode_words.h"
+
 namespace formwright {
+
+bool GrblStream::waits_for_motion() const {
+  return std::any_of(unanswered_.begin(), unanswered_.end(), [](const Line& line) { return moves_head(line.text); });
+}
+
+bool moves_head(const std::string& line) {
+  return effect_of(line).moves && !line.starts_with("G10") && !line.starts_with("G92");
+}
 
 bool writes_eeprom(const std::string& line) {
   // $J= is a jog, $H homes, $X unlocks; every other $ command reads or writes settings.

@@ -50,6 +50,7 @@ class GrblStream {
     return std::any_of(unanswered_.begin(), unanswered_.end(),
                        [&](const Line& line) { return line.text.starts_with(beginning); });
   }
+  bool waits_for_motion() const;
   int bytes() const { return unanswered_bytes_; }
   double patience_s() const {
     double sum = 0;
@@ -61,6 +62,9 @@ class GrblStream {
   std::deque<Line> unanswered_;
   int unanswered_bytes_ = 0, buffer_bytes_ = 127;
 };
+
+/// Does the head move when the line is carried out? Origins are set by axis words, too.
+bool moves_head(const std::string& line);
 
 /// Does the line write to GRBL's EEPROM, which stops its serial line meanwhile?
 bool writes_eeprom(const std::string& line);

@@ -33,8 +33,9 @@ struct StripOptions {
           "Approximate distance between the two edges of a strip. Narrower strips follow the model better and make more pieces.")
           .slider(5, 100)
           .group("Strips"),
-      parameter("size_mm", &StripOptions::size_mm, "Size", unit::mm, 1, 100000,
-                "Largest dimension of the finished object. Automatic: the size in the file if it is from 50 to 3000 mm, else 300 mm.")
+      parameter(
+          "size_mm", &StripOptions::size_mm, "Size", unit::mm, 1, 100000,
+          "Largest dimension of the finished object. Automatic: the size in the file if it is from 50 to 3000 mm, else 300 mm.")
           .slider(50, 1000)
           .group("Strips"),
       parameter("feature_degrees", &StripOptions::feature_degrees, "Feature lines", unit::degrees, 5, 180,

@@ -17,12 +17,12 @@ struct VariedParameter {
 
 /// Ranges about those of thesis 4.2.3, a little wider: an optimum at a bound says nothing about what lies beyond.
 constexpr VariedParameter base_parameters[] = {{"young_modulus_pa", true, 2.5e5, 1e7, 0.6, 0.25},
-                                      {"creep_per_s", true, 5, 5000, 0.8, 0.4},
-                                      {"yield_strain", false, 0, 0.3, 0.05, 0.02},
-                                      {"viscosity_s", true, 1e-7, 1e-3, 1, 1}};
+                                               {"creep_per_s", true, 5, 5000, 0.8, 0.4},
+                                               {"yield_strain", false, 0, 0.3, 0.05, 0.02},
+                                               {"viscosity_s", true, 1e-7, 1e-3, 1, 1}};
 
 constexpr VariedParameter mould_place[] = {{"mould_shift_x_mm", false, -4, 4, 1, 0.5},
-                                  {"mould_shift_y_mm", false, -4, 4, 1, 0.5}};
+                                           {"mould_shift_y_mm", false, -4, 4, 1, 0.5}};
 
 /// Of causes that act through the sheet, as virtual machines with another elastic law, mesh and vacuum have it
 /// (docs/evidence.md, the confusion table).

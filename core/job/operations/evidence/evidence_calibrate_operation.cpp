@@ -175,7 +175,7 @@ Operation evidence_calibrate_operation() {
   operation.inputs = {object_input_info("object", "Measured object",
                                         "A folder with mould.obj, setup.json and measured.csv.", true, true),
                       profile_input_info()};
-    operation.outputs = outputs();
+  operation.outputs = outputs();
   operation.report = report_fields();
   operation.keeps_results = true;
   take_options<CalibrateOptions>(operation, run);

@@ -158,7 +158,7 @@ Operation evidence_diagnose_operation() {
           "Another folder of the same kind for validation: it is not used for fitting, only to measure the gain.",
           false, true),
       profile_input_info()};
-    operation.outputs = outputs();
+  operation.outputs = outputs();
   operation.report = diagnosis_report_fields();
   operation.keeps_results = true;
   take_options<DiagnoseOptions>(operation, run);

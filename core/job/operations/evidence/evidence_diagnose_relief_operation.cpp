@@ -91,7 +91,7 @@ Operation evidence_diagnose_relief_operation() {
           "unseen", "Validation relief",
           "Another folder of the same kind for validation: it is not used for fitting, only to measure the gain.",
           false)};
-    operation.outputs = diagnosis_outputs();
+  operation.outputs = diagnosis_outputs();
   operation.report = diagnosis_report_fields();
   take_options<DiagnoseReliefOptions>(operation, run);
   return operation;

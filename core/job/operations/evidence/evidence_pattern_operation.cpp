@@ -132,9 +132,10 @@ Operation evidence_pattern_operation() {
   operation.title = "Calibration pattern";
   operation.summary =
       "Makes a pattern to print on a sheet. A scan of the formed sheet then shows where every point of the sheet moved.";
-    operation.outputs = outputs();
+  operation.outputs = outputs();
   operation.report = report_fields();
-  take_options<EvidencePatternOptions>(operation, run_pattern, [](const EvidencePatternOptions& options) { make_calibration_pattern(options); });
+  take_options<EvidencePatternOptions>(
+      operation, run_pattern, [](const EvidencePatternOptions& options) { make_calibration_pattern(options); });
   return operation;
 }
 

@@ -220,7 +220,7 @@ Operation evidence_register_operation() {
   operation.summary =
       "Finds where every point of a printed sheet moved, from a scan of the formed sheet and its pattern.";
   operation.inputs = inputs();
-    operation.outputs = outputs();
+  operation.outputs = outputs();
   operation.report = report_fields();
   take_options<ScanRegistrationOptions>(operation, run_register);
   return operation;

@@ -58,7 +58,7 @@ Operation laser_job_operation() {
   operation.summary =
       "Turns a drawing into a job for a laser cutter, with kerf, cutting order, tabs, power, speed and an estimate of the time.";
   operation.inputs = inputs();
-    operation.outputs = laser_job_outputs();
+  operation.outputs = laser_job_outputs();
   operation.report = laser_report_fields();
   operation.report.push_back({"drawing_mm", "Drawing", "mm", "Width and height of the drawing as read."});
   operation.report.push_back(

@@ -221,7 +221,7 @@ Operation mill_job_operation() {
   operation.title = "Mill job";
   operation.summary = "Makes the job that mills a relief or a height map, and reports where the tool cannot reach.";
   operation.inputs = inputs();
-    operation.outputs = outputs();
+  operation.outputs = outputs();
   operation.report = report_fields();
   take_options<MillOptions>(operation, run, [](const MillOptions& options) { read_no_go(options.no_go); });
   return operation;

@@ -67,7 +67,7 @@ Operation page_tiles_operation() {
   content.help = "A PNG or JPEG picture, or an SVG drawing, whose lines are printed in black.";
   content.extensions = {"svg", "png", "jpg", "jpeg"};
   operation.inputs = {content};
-    operation.outputs = outputs();
+  operation.outputs = outputs();
   operation.report = {
       {"pages", "Pages", "", "Number of pages in all."},
       {"columns", "Columns", "", "Number of columns of pages."},

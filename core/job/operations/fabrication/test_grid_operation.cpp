@@ -43,7 +43,7 @@ Operation test_grid_operation() {
   operation.title = "Laser test";
   operation.summary =
       "Makes a test piece that shows which power and speed a material needs, how wide the beam burns, or where its focus is.";
-    operation.outputs = outputs();
+  operation.outputs = outputs();
   operation.report = laser_report_fields();
   operation.report.push_back(
       {"cells", "Cells", "", "Every square or line of the test with its power, speed, height and position."});

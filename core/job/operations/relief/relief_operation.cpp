@@ -250,7 +250,7 @@ Operation relief_operation() {
   operation.title = "Relief";
   operation.summary = "Turns a model into a thin relief that still looks deep from the viewpoint you choose.";
   operation.inputs = {model_input_info()};
-    operation.outputs = outputs();
+  operation.outputs = outputs();
   operation.report = report_fields();
   take_options<ReliefOptions>(operation, run_relief);
   return operation;

@@ -268,7 +268,7 @@ Operation thermoform_mould_operation() {
   operation.title = "Mould";
   operation.summary = "Makes the mould that the sheet is formed over: a negative to cast gypsum in, or a positive.";
   operation.inputs = {mould_input_info(), sheet_input_info(), profile_input_info()};
-    operation.outputs = outputs();
+  operation.outputs = outputs();
   operation.report = report_fields();
   take_mergeable_options<ThermoformMouldOptions>(operation, run_mould);
   return operation;

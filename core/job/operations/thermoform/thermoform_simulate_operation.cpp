@@ -195,7 +195,7 @@ Operation thermoform_simulate_operation() {
   operation.title = "Thermoform";
   operation.summary = "Simulates how a heated plastic sheet is formed over a model by vacuum.";
   operation.inputs = {mould_input_info(), setup_input_info(), profile_input_info()};
-    operation.outputs = outputs();
+  operation.outputs = outputs();
   operation.report = report_fields();
   take_mergeable_options<ThermoformOptions>(operation, run);
   return operation;

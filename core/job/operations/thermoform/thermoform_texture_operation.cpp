@@ -154,8 +154,8 @@ OperationResult run_texture(const OperationCall& call, const Json& given) {
   const PageLayout layout = page_layout(options);
   print_grid(options);
   std::optional<Image> picture;
-  if (const auto given = call.inputs.find("texture"); given != call.inputs.end())
-    picture = read_picture(*given->second.bytes, given->second.file_name, "texture");
+  if (const auto texture = call.inputs.find("texture"); texture != call.inputs.end())
+    picture = read_picture(*texture->second.bytes, texture->second.file_name, "texture");
   Stopwatch watch;
   FormedModel formed;
   {
@@ -206,7 +206,7 @@ Operation thermoform_texture_operation() {
   operation.summary =
       "Makes the picture to print on the flat sheet so that, after forming, every colour lands where it belongs.";
   operation.inputs = inputs();
-    operation.outputs = outputs();
+  operation.outputs = outputs();
   operation.report = report_fields();
   take_mergeable_options<ThermoformPrintOptions>(operation, run_texture);
   return operation;

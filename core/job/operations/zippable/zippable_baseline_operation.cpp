@@ -161,7 +161,7 @@ Operation zippable_baseline_operation() {
   operation.title = "Strips to compare with";
   operation.summary = "Makes the model from paper strips (Mitani and Suzuki 2004), to compare with the zippable.";
   operation.inputs = {model_input_info()};
-    operation.outputs = outputs();
+  operation.outputs = outputs();
   operation.report = report_fields();
   take_options<StripOptions>(operation, run);
   return operation;

@@ -258,7 +258,7 @@ Operation zippable_design_operation() {
   operation.title = "Zippable";
   operation.summary = "Turns a model into one flat ribbon that zips up into the model's shape.";
   operation.inputs = inputs();
-    operation.outputs = outputs();
+  operation.outputs = outputs();
   operation.report = report_fields();
   take_options<ZippableOptions>(operation, run);
   return operation;

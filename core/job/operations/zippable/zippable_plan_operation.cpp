@@ -347,7 +347,7 @@ Operation zippable_plan_operation() {
   operation.summary =
       "Turns the design of a zippable into sheets to cut, with numbered markers for attaching the zipper.";
   operation.inputs = inputs();
-    operation.outputs = outputs();
+  operation.outputs = outputs();
   operation.report = report_fields();
   take_options<PlanOptions>(operation, run);
   return operation;

@@ -146,7 +146,7 @@ Operation zippable_simulate_operation() {
   operation.title = "Will it zip?";
   operation.summary = "Simulates the ribbon as cloth while it is zipped up, and compares the result with the design.";
   operation.inputs = {design_input()};
-    operation.outputs = outputs();
+  operation.outputs = outputs();
   operation.report = report_fields();
   take_options<ZippingOptions>(operation, run);
   return operation;

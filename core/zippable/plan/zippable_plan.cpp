@@ -89,14 +89,18 @@ std::vector<CutSheet> lay_out(const ZippablePlan& plan, const PlanOptions& optio
   return sheets;
 }
 
-void say_what_to_know(const PlanOptions& options, ZippablePlan& plan) {
+void say_what_to_know(const FlatDesign& design, const PlanOptions& options, ZippablePlan& plan) {
   const auto plural = [](int count, const std::string& one, const std::string& many) {
     return count == 1 ? "1 " + one : std::to_string(count) + " " + many;
   };
-  if (plan.ribbon.narrow_samples > 0)
+  if (plan.ribbon.narrow_mm > 0) {
+    // Where windings turn at a tip the edges are always this tight; more than that is a wrong zipper.
+    constexpr double usual_share = 0.05;
     plan.notes.push_back(
-        "The ribbon is too narrow for the zipper at " + plural(plan.ribbon.narrow_samples, "place", "places") +
-        "; the edge is moved by less there and the zipper sits closer. Use a smaller zipper or a wider ribbon.");
+        "Along " + with_digits(plan.ribbon.narrow_mm / 10, 2) + " of " + with_digits(design.zipper_mm / 10, 3) +
+        " cm of zipper the ribbon's edges turn too tightly to leave all the room that the teeth need: sew slowly there." +
+        (plan.ribbon.narrow_mm > usual_share * design.zipper_mm ? " A smaller zipper or a wider ribbon helps." : ""));
+  }
   if (2 * plan.zipper.tape_width_mm > plan.width_mean_mm)
     plan.notes.push_back(
         "The two tapes are wider than the ribbon and overlap behind it: trim them or use a wider ribbon.");
@@ -214,7 +218,7 @@ ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& options,
       make_tape_template(design, plan.zipper, plan.markers, plan.marker_spacing_mm, plan.runs, paper.y(), paper.x());
   if (rig) plan.rig = make_rig(design, plan.ribbon, plan.markers, plan.pieces, plan.runs, options, *rig, context);
   plan.seconds_nest = watch.lap();
-  say_what_to_know(options, plan);
+  say_what_to_know(design, options, plan);
   return plan;
 }
 

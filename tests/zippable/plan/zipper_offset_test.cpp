@@ -128,6 +128,7 @@ TEST_CASE("ZipperOffset.AStripGetsNarrowerAndKeepsItsLength") {
   CHECK_THAT(ribbon.left_mm, WithinAbs(200, 1e-9));
   CHECK_THAT(ribbon.right_mm, WithinAbs(200, 1e-9));
   CHECK(ribbon.narrow_samples == 0);
+  CHECK(ribbon.narrow_mm == 0);
 }
 
 TEST_CASE("ZipperOffset.ARibbonTooNarrowIsRefused") {

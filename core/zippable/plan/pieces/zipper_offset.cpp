@@ -238,6 +238,17 @@ BinormalField binormals(const std::vector<Vec3>& points, const std::vector<Vec3>
   return field;
 }
 
+/// Of the zipper's length, what belongs to samples at which the edge is moved by less.
+static double narrow_length_mm(const FlatDesign& design, const std::vector<double>& shares) {
+  double sum = 0;
+  for (const auto& piece : design.pieces)
+    for (std::size_t k = 1; k < piece.size(); ++k) {
+      const double step = std::abs(design.arclength_mm[piece[k]] - design.arclength_mm[piece[k - 1]]);
+      for (const int end : {piece[k - 1], piece[k]}) sum += shares[end] < 1 ? 0.5 * step : 0;
+    }
+  return sum;
+}
+
 OffsetRibbon offset_ribbon(const FlatDesign& design, ZipperOffset method, double offset_mm) {
   OffsetRibbon ribbon;
   ribbon.offset_share.assign(design.left_vertex.size(), 1.0);
@@ -246,6 +257,7 @@ OffsetRibbon offset_ribbon(const FlatDesign& design, ZipperOffset method, double
     if (method == ZipperOffset::sewing) move_in_plane(design, offset_mm, ribbon);
     else move_in_space(design, offset_mm, ribbon);
   }
+  ribbon.narrow_mm = narrow_length_mm(design, ribbon.offset_share);
   for (const double share : ribbon.offset_share)
     ribbon.offset_mean_mm += offset_mm * share / static_cast<double>(ribbon.offset_share.size());
   if (ribbon.offset_mean_mm < 0.5 * offset_mm) {

@@ -33,6 +33,7 @@ struct OffsetRibbon {
   std::vector<Vec2> flat_mm;         // per boundary vertex, counter-clockwise triangles
   std::vector<double> offset_share;  // per sample: 1, or less where the ribbon is too narrow for the zipper
   int narrow_samples = 0;            // how many of those
+  double narrow_mm = 0;              // length of the zipper at those
   double min_share = 1;
   double left_mm = 0, right_mm = 0;  // lengths of the moved sides
   double binormal_share = 0;         // of the zipper's length; gluing

@@ -40,12 +40,13 @@ find_package(Eigen3 3.4 REQUIRED CONFIG)
 find_package(nlohmann_json 3.11 REQUIRED CONFIG)
 formwright_dependency(fast_float fast_float/fast_float.h)
 
-# zlib, PNG, PDF, XML (3MF, SVG)
+# zlib, PNG, PDF, XML (streams of it in 3MF, trees in SVG)
 formwright_dependency(zlib zlib.h z)
 formwright_dependency(png png.h png)
 target_link_libraries(fw::png INTERFACE fw::zlib)
 formwright_dependency(hpdf hpdf.h hpdf)
 target_link_libraries(fw::hpdf INTERFACE fw::png fw::zlib)
+formwright_dependency(expat expat.h expat)
 formwright_dependency(pugixml pugixml.hpp pugixml)
 
 # JPEG and other pictures. A compiled library, so nobody defines an *_IMPLEMENTATION macro.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// bench_formats [vertices] [rounds]: best of some rounds, on a generated closed mesh, each format written and read;
-// OBJ also through tinyobjloader where it is installed, for comparison.
+// bench_formats [vertices] [rounds] [format]: best of some rounds, on a generated closed mesh, each format (or one, as
+// "3mf") written and read; OBJ also through tinyobjloader where it is installed, for comparison.
 #include <sys/resource.h>
 #ifdef FORMWRIGHT_WITH_TINYOBJLOADER
 #include <tiny_obj_loader.h>
@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "base/data/json.h"
+#include "base/peak_memory.h"
 #include "formats/mesh_io.h"
 #include "formats/model_samples.h"
 #include "formats/png/png16.h"
@@ -53,10 +54,26 @@ struct Case {
   bool ascii = false, textured = false;
 };
 
+Json height_map_row(int rounds) {
+  Grey16Image image;
+  image.width = image.height = 2000;
+  image.pixel_width_mm = image.pixel_height_mm = 0.1;
+  for (int y = 0; y < 2000; ++y)
+    for (int x = 0; x < 2000; ++x)
+      image.levels.push_back(static_cast<std::uint16_t>(32767 + 32000 * std::sin(0.004 * x) * std::cos(0.003 * y)));
+  Bytes png;
+  const Json write = best_seconds(rounds, [&] { png = write_png16(image); });
+  return {{"format", "png16 of 2000 x 2000"},
+          {"megabytes", static_cast<double>(png.size()) / 1e6},
+          {"seconds_write", write},
+          {"seconds_read", best_seconds(rounds, [&] { read_png16(png, "bench"); })}};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const int vertices = argc > 1 ? std::atoi(argv[1]) : 300'000, rounds = argc > 2 ? std::atoi(argv[2]) : 5;
+  const std::string only = argc > 3 ? argv[3] : "";
   const int side = std::max(3, static_cast<int>(std::sqrt(vertices)));
   const Model textured = test::wavy_torus(side, side);
   Model plain = textured;
@@ -72,17 +89,20 @@ int main(int argc, char** argv) {
                         {"glb", MeshFormat::glb},     {"glb with uv", MeshFormat::glb, false, true},
                         {"3mf", MeshFormat::three_mf}};
   for (const Case& c : cases) {
+    if (!only.empty() && c.name != only) continue;
     WriteOptions options;
     options.ascii = c.ascii;
     if (c.format == MeshFormat::ply || c.format == MeshFormat::glb) options.columns = columns;
     Bytes bytes;
     const Model& model = c.textured ? textured : plain;
     const Json write = best_seconds(rounds, [&] { bytes = write_model(model, c.format, options, context); });
+    const std::optional<double> growth = test::peak_growth_mb([&] { read_model(bytes, "bench", context); });
     const Json read = best_seconds(rounds, [&] { read_model(bytes, "bench", context); });
     Json row = {{"format", c.name},
                 {"megabytes", static_cast<double>(bytes.size()) / 1e6},
                 {"seconds_write", write},
                 {"seconds_read", read}};
+    if (growth) row["megabytes_to_read"] = *growth;
 #ifdef FORMWRIGHT_WITH_TINYOBJLOADER
     if (c.format == MeshFormat::obj) {
       row["seconds_read_tinyobjloader"] = best_seconds(std::min(rounds, 2), [&] {
@@ -97,18 +117,7 @@ int main(int argc, char** argv) {
 #endif
     result["formats"].push_back(row);
   }
-  Grey16Image image;
-  image.width = image.height = 2000;
-  image.pixel_width_mm = image.pixel_height_mm = 0.1;
-  for (int y = 0; y < 2000; ++y)
-    for (int x = 0; x < 2000; ++x)
-      image.levels.push_back(static_cast<std::uint16_t>(32767 + 32000 * std::sin(0.004 * x) * std::cos(0.003 * y)));
-  Bytes png;
-  const Json png_write = best_seconds(rounds, [&] { png = write_png16(image); });
-  result["formats"].push_back({{"format", "png16 of 2000 x 2000"},
-                               {"megabytes", static_cast<double>(png.size()) / 1e6},
-                               {"seconds_write", png_write},
-                               {"seconds_read", best_seconds(rounds, [&] { read_png16(png, "bench"); })}});
+  if (only.empty()) result["formats"].push_back(height_map_row(rounds));
   result["peak_memory_mb"] = peak_mb();
   // One format a line.
   const Json formats = result["formats"];

@@ -101,9 +101,9 @@ test('a laser on a cable: connect, home, cut, hold, go on, and the cable pulled'
     await confirm(page, 'Start with the laser on');
     await expect(chip(page, 'Working')).toBeVisible();
     await page.keyboard.press('Escape');
-    await expect(chip(page, 'Held')).toBeVisible();
-    await page.getByRole('button', { name: 'Go on' }).click();
-    await confirm(page, 'Go on');
+    await expect(chip(page, 'Paused')).toBeVisible();
+    await page.getByRole('button', { name: 'Resume' }).click();
+    await confirm(page, 'Resume');
     await expect(page.getByRole('contentinfo').locator('strong').getByText('plate is done')).toBeVisible({
       timeout: 90_000,
     });

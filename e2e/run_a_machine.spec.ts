@@ -108,8 +108,8 @@ test('a drawing to a finished job by keyboard alone', async ({ page }) => {
   await page.keyboard.press('Enter');
   await expect(chip(page)).toHaveText('Working');
   await page.keyboard.press('Escape'); // holds
-  await expect(chip(page)).toHaveText('Held');
-  await press('Go on');
+  await expect(chip(page)).toHaveText('Paused');
+  await press('Resume');
   await expect(dialog(page).getByRole('button', { name: 'Cancel' })).toBeFocused();
   await page.keyboard.press('Tab');
   await page.keyboard.press('Enter');

@@ -15,7 +15,7 @@ export function AboutPage({ services }: { services: Services }) {
         <h1>About Formwright</h1>
         <p>
           Formwright turns 3D models into things made by hand-sized machines. It runs in this page, or,
-          faster, in its native worker on your own machine. Models are never sent anywhere else.
+          faster, in its worker program on your own machine. Models are never sent anywhere else.
         </p>
         <p>Version {services.catalog.value?.version ?? 'unknown'}.</p>
         <h2>Licence</h2>

@@ -111,7 +111,7 @@ export function Gains({ diagnosis }: { diagnosis: Diagnosis }) {
       `${gain.title} (${gain.detail}): mean distance ${formatNumber(gain.before.value, 2)} to ${withUnit(formatNumber(gain.after.value, 2), 'mm')}, ${gainWords(gain)}`,
   );
   return (
-    <Pane title="Error on held-out data" detail={gainWords(first)}>
+    <Pane title="Error on points left out of the fit" detail={gainWords(first)}>
       <svg
         class="chart"
         viewBox={`0 0 ${width} ${height}`}

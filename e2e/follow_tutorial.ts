@@ -31,7 +31,7 @@ async function expectRingAround(page: Page, control: Locator): Promise<void> {
 
 async function act(page: Page, { act: what, control }: Step): Promise<void> {
   if (what.do === 'look') return await learnCard(page).getByRole('button', { name: 'Next' }).click();
-  if (what.do === 'wait' || control === null) return;
+  if (control === null) return;
   const found = await find(page, control);
   await found.scrollIntoViewIfNeeded();
   await expectRingAround(page, found);
@@ -40,7 +40,7 @@ async function act(page: Page, { act: what, control }: Step): Promise<void> {
   else if (what.do === 'enter') {
     await found.fill(what.value);
     await found.press('Enter');
-  } else {
+  } else if (what.do === 'keys') {
     await found.focus();
     for (const key of what.keys) await page.keyboard.press(key);
   }

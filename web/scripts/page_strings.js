@@ -102,6 +102,12 @@ export function catalogStrings() {
   return [...new Set(found.filter(Boolean))];
 }
 
+/** What the core calls the causes that a diagnosis knows, as a recorded job has them. */
+export function causeStrings() {
+  const { recorded } = JSON.parse(readFileSync(resolve(root, 'tests/jobs/evidence_diagnose_pyramid.json'), 'utf8'));
+  return recorded.report.causes.map(({ label }) => label);
+}
+
 /** The same draw for the same seed (Lehmer's generator). */
 export function draw(strings, count, seed) {
   const rest = [...strings].sort();

@@ -15,7 +15,7 @@ export interface Seen {
 const isDisabled = (element: Element): boolean => element.getAttribute('aria-disabled') === 'true';
 
 function hasValue(control: HTMLElement | null, wanted: string, seen: Seen): boolean {
-  if (control instanceof HTMLSelectElement) return control.selectedOptions[0]?.label === wanted;
+  if (control instanceof HTMLSelectElement) return control.options[control.selectedIndex]?.textContent === wanted;
   if (!(control instanceof HTMLInputElement)) return false;
   // Half a number, while it is being typed, is none yet.
   if (document.activeElement === control && !seen.entered) return false;

@@ -4,7 +4,7 @@
 import { existsSync, readdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { describe, expect, it } from 'vitest';
-import { catalogStrings, gap, pageStrings } from '../../../scripts/page_strings.js';
+import { catalogStrings, causeStrings, gap, pageStrings } from '../../../scripts/page_strings.js';
 import type { Tutorial } from './tutorial';
 import { labelsIn } from './tutorial';
 import { tutorials } from './tutorials';
@@ -30,11 +30,11 @@ function withSteps(document: string, tutorial: Tutorial): string {
 
 /** Said by the page as it is, or with other words in the gaps of a template. */
 const spoken = (() => {
-  const strings = [...pageStrings(), ...catalogStrings()];
+  const strings = [...pageStrings(), ...catalogStrings(), ...causeStrings()];
   const exact = new Set(strings);
   const patterns = strings
     .filter((text) => text.includes(gap) && text.replaceAll(/[^\p{L}]/gu, '').length >= 4)
-    .map((text) => new RegExp(`^${text.split(gap).map(RegExp.escape ?? escaped).join('.+')}$`, 'u'));
+    .map((text) => new RegExp(`^${text.split(gap).map(escaped).join('.+')}$`, 'u'));
   return (label: string) => exact.has(label) || patterns.some((pattern) => pattern.test(label));
 })();
 function escaped(text: string): string {

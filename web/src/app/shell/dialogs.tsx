@@ -4,7 +4,7 @@ import { Dialog, formatBytes, formatCount } from '../../ui';
 
 const keys: readonly (readonly [keys: readonly string[], meaning: string])[] = [
   [['1', '–', '5'], 'Go to a room'],
-  [['0'], 'Look from where the relief is made for'],
+  [['0'], 'Look from the relief’s viewpoint'],
   [['F'], 'Fit the model into the picture'],
   [['S'], 'Swipe between model and result'],
   [['Space'], 'Play the animation of forming'],
@@ -49,7 +49,7 @@ export function KeysDialog({ onClose }: { onClose: () => void }) {
           <KeyList list={keys} />
         </div>
         <div>
-          <h3>In the viewport</h3>
+          <h3>In the 3D view</h3>
           <KeyList list={viewKeys} />
           <h3>In a parameter</h3>
           <KeyList list={fieldKeys} />

@@ -92,7 +92,7 @@ function WorkerChip({
 }) {
   const connection = services.connection.value;
   const mock = services.browser.kind === 'mock';
-  let [dot, words, short] = ['off', mock ? 'Mock solver' : 'In the browser', mock ? 'Mock' : 'Browser'];
+  let [dot, words, short] = ['off', mock ? 'Mock solver' : 'In the browser', mock ? 'Mock' : 'In browser'];
   if (connection?.state === 'ready') {
     const { cores } = connection.status;
     [dot, words, short] = ['', `Worker program · ${cores} ${cores === 1 ? 'core' : 'cores'} · ready`, 'Ready'];
@@ -106,7 +106,7 @@ function WorkerChip({
       'Worker lost',
     ];
   else if (connection?.state === 'refused')
-    [dot, words, short] = ['bad', 'The worker program refused this page', 'Refused'];
+    [dot, words, short] = ['bad', 'The worker program refused this page', 'Worker refused'];
   else if (solving) [dot, words, short] = ['live', 'In the browser · solving', 'Solving'];
   return (
     <button type="button" class="chip" onClick={onWorker} {...tipHandlers('Where models are solved')}>

@@ -168,7 +168,7 @@ function ObjectRow({ session, object }: { session: EvidenceSession; object: Meas
           })),
           null,
           {
-            label: 'Remove',
+            label: 'Remove this object',
             icon: 'trash' as const,
             onSelect: () => projects.do(evidence.removeObject(object)),
           },

@@ -87,7 +87,7 @@ function ViewpointTools({ session, viewport }: { session: ReliefSession; viewpor
         <IconButton
           icon="eye"
           class="outlined"
-          label="Look from the viewpoint"
+          label="Look from the relief’s viewpoint"
           keys="0"
           pressed={at}
           onClick={() => viewport?.lookFromViewpoint(true)}

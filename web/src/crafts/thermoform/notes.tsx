@@ -65,7 +65,7 @@ export function Notes({ session, onChooseFile }: NotesProps) {
           icon="warn"
           title={`The model reaches ${withUnit(formatNumber(over, 2), 'mm')} beyond the clamp`}
         >
-          Move it inwards or make it smaller, so that the clamp frame can close.
+          Move the model inwards or make it smaller, so that the clamp frame can close.
         </Note>
       </div>
     );

@@ -66,7 +66,7 @@ function PrinterChoice({ session }: { readonly session: PrintSession }) {
               {state === 'off' ? ' (off)' : ''}
             </option>
           ))}
-          <option value={asFile}>None: a PDF</option>
+          <option value={asFile}>No printer: save a PDF</option>
         </select>
       </div>
       {printers.length === 0 ? (

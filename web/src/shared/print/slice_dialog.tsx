@@ -178,7 +178,7 @@ function Sending({ session }: { readonly session: SliceSession }) {
             {name} heats up and moves as soon as it has the file. Is its bed clear, and is somebody beside it?
           </p>
           <div class="dialog-actions">
-            <Button onClick={() => (confirming.value = false)}>Not yet</Button>
+            <Button onClick={() => (confirming.value = false)}>Do not start yet</Button>
             <Button
               kind="danger"
               onClick={() => {

@@ -136,7 +136,7 @@ export function MachinePanel({ session }: { readonly session: MachinesSession })
               </Button>
               {control.can('set_origin') && state.position_known && state.controller === 'grbl' ? (
                 <Button size="small" onClick={() => void control.command({ do: 'set_origin', at: 'corner' })}>
-                  Origin at the bed’s corner
+                  Set origin at the bed’s corner
                 </Button>
               ) : null}
               <Button

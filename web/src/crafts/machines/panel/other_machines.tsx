@@ -105,7 +105,7 @@ function SendJob({ session, machine }: { session: MachinesSession; machine: Brid
       danger: true,
       run: () => void send(true),
     });
-  const busy = sending.value ? 'Being sent' : undefined;
+  const busy = sending.value ? 'The file is being sent' : undefined;
   return (
     <>
       <Button size="small" disabledReason={busy} onClick={() => void send(false)}>

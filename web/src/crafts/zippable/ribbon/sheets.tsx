@@ -50,7 +50,7 @@ export function Sheets({ session, drawing, onSendToMachine }: SheetsProps) {
   const notes = sentences(plan?.report ?? {}, 'notes');
   return (
     <>
-      <div class="sheets" tabIndex={0} role="group" aria-label={rig ? 'Rig' : 'Sheets'}>
+      <div class="sheets" tabIndex={0} role="group" aria-label={rig ? 'Fastening rig' : 'Sheets to cut'}>
         {plan && url ? <img src={url} alt={words} /> : null}
         {plan === null && idle ? (
           <div class="sheets-empty">

@@ -170,7 +170,10 @@ test('parts drawn by hand: a border and a cut with the mouse, an opening moved w
   };
   await click(0.4, 0.7, 1);
   await click(0.53, 0.7, 2);
-  await expect(page.getByRole('button', { name: 'Close the border' })).toHaveAttribute('aria-disabled', 'true');
+  await expect(page.getByRole('button', { name: 'Close the border' })).toHaveAttribute(
+    'aria-disabled',
+    'true',
+  );
   await pane.getByLabel('Model with the line of the zipper').focus();
   for (let i = 0; i < 12; ++i) await page.keyboard.press('Shift+ArrowLeft');
   await click(0.47, 0.7, 3);

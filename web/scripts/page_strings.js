@@ -27,8 +27,12 @@ function templateText(node) {
 
 /** Said by itself: begins with a capital letter, or is several words. */
 const looksSaid = (text) =>
-  (/^[“]?[A-Z\u2026][\p{L}\d \u2026’“”:;,.()×%–?!/+-]*$/u.test(text) && /[a-z]{2}/.test(text)) || /\p{L}{2,} \p{L}{2,} \p{L}/u.test(text);
-const isCode = (text) => /[{}<>=]|^\W*$|^[a-z-]+\/|\.(ts|js|css)\b|^(Content|Authorization|Bearer|ArrowUp|ArrowDown|ArrowLeft|ArrowRight|Backspace|Delete|Enter|Escape|Home|End|PageUp|PageDown|Control)/.test(text);
+  (/^[“]?[A-Z\u2026][\p{L}\d \u2026’“”:;,.()×%–?!/+-]*$/u.test(text) && /[a-z]{2}/.test(text)) ||
+  /\p{L}{2,} \p{L}{2,} \p{L}/u.test(text);
+const isCode = (text) =>
+  /[{}<>=]|^\W*$|^[a-z-]+\/|\.(ts|js|css)\b|^(Content|Authorization|Bearer|ArrowUp|ArrowDown|ArrowLeft|ArrowRight|Backspace|Delete|Enter|Escape|Home|End|PageUp|PageDown|Control)/.test(
+    text,
+  );
 
 function wordsOfElement(node) {
   const pieces = node.children.map((child) =>
@@ -44,7 +48,13 @@ function wordsOfElement(node) {
 
 /** Of one source file, in order. */
 export function stringsIn(path, source) {
-  const file = ts.createSourceFile(path, source, ts.ScriptTarget.ESNext, true, path.endsWith('x') ? ts.ScriptKind.TSX : ts.ScriptKind.TS);
+  const file = ts.createSourceFile(
+    path,
+    source,
+    ts.ScriptTarget.ESNext,
+    true,
+    path.endsWith('x') ? ts.ScriptKind.TSX : ts.ScriptKind.TS,
+  );
   const found = [];
   const visit = (node) => {
     if (ts.isImportDeclaration(node) || ts.isExportDeclaration(node) || ts.isLiteralTypeNode(node)) return;
@@ -65,7 +75,8 @@ export function stringsIn(path, source) {
       const { parent } = node;
       const named = ts.isPropertyAssignment(parent) && wordy.test(parent.name.getText());
       const attribute = ts.isJsxAttribute(parent);
-      if (!isCode(text) && ((/^[A-Z]/.test(text) && (named || attribute)) || looksSaid(text))) found.push(text);
+      if (!isCode(text) && ((/^[A-Z]/.test(text) && (named || attribute)) || looksSaid(text)))
+        found.push(text);
     }
     ts.forEachChild(node, visit);
   };
@@ -78,7 +89,11 @@ export function pageSources() {
   const folder = resolve(root, 'web/src');
   return readdirSync(folder, { recursive: true })
     .map(String)
-    .filter((path) => /\.tsx?$/.test(path) && !/\.test\.|^(view|fuzz|jobs\/mock)\/|test_room|app\/learn\/tutorials\//.test(path))
+    .filter(
+      (path) =>
+        /\.tsx?$/.test(path) &&
+        !/\.test\.|^(view|fuzz|jobs\/mock)\/|test_room|app\/learn\/tutorials\//.test(path),
+    )
     .sort()
     .map((path) => ({ path, source: readFileSync(resolve(folder, path), 'utf8') }));
 }
@@ -104,7 +119,9 @@ export function catalogStrings() {
 
 /** What the core calls the causes that a diagnosis knows, as a recorded job has them. */
 export function causeStrings() {
-  const { recorded } = JSON.parse(readFileSync(resolve(root, 'tests/jobs/evidence_diagnose_pyramid.json'), 'utf8'));
+  const { recorded } = JSON.parse(
+    readFileSync(resolve(root, 'tests/jobs/evidence_diagnose_pyramid.json'), 'utf8'),
+  );
   return recorded.report.causes.map(({ label }) => label);
 }
 

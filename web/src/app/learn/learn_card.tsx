@@ -30,10 +30,24 @@ function LearnCard() {
   const [spot, setSpot] = useState<{ readonly left: number; readonly top: number } | null>(null);
   useLayoutEffect(() => {
     if (card.current) setSpot((old) => placeCard(card.current as HTMLElement, box, old));
-  }, [now?.step, now?.tutorial, box?.left, box?.top, box?.width, box?.height, innerWidth, innerHeight, place.value]);
+  }, [
+    now?.step,
+    now?.tutorial,
+    box?.left,
+    box?.top,
+    box?.width,
+    box?.height,
+    innerWidth,
+    innerHeight,
+    place.value,
+  ]);
   useEffect(() => {
-    // A dialog that the tutorial was chosen in gives the focus back first.
-    const timer = setTimeout(() => card.current?.focus(), 0);
+    // The dialog that the tutorial was chosen in gives the focus back first, and the card moves out of it.
+    const focus = () => {
+      if (document.querySelector('dialog[open]')) timer = setTimeout(focus, 50);
+      else card.current?.focus();
+    };
+    let timer = setTimeout(focus, 0);
     return () => clearTimeout(timer);
   }, [now?.tutorial]);
   if (now === null) return null;
@@ -59,7 +73,11 @@ function LearnCard() {
           </p>
           <p>{current ? <StepText step={current} /> : 'What you made is kept in this project.'}</p>
         </div>
-        {current ? <Buttons step={current} first={step === 0} /> : <Button onClick={leaveTutorial}>Close</Button>}
+        {current ? (
+          <Buttons step={current} first={step === 0} />
+        ) : (
+          <Button onClick={leaveTutorial}>Close</Button>
+        )}
       </aside>
     </>
   );

@@ -40,8 +40,8 @@ export function LearnDialog({ projects, onClose }: { projects: ProjectStore; onC
   return (
     <Dialog title="Learn" onClose={onClose}>
       <p>
-        Each tutorial takes about ten minutes and guides you through the page itself. It begins a new project; yours
-        is saved first.
+        Each tutorial takes about ten minutes and guides you through the page itself. It begins a new project;
+        yours is saved first.
       </p>
       <LearnList projects={projects} onStart={onClose} />
     </Dialog>

@@ -6,7 +6,16 @@ import { ProjectStore } from '../../project/project_store';
 import { MemoryStorage } from '../../project/storage';
 import { place } from '../route';
 import { findControl, nameOf } from './find_control';
-import { leaveTutorial, learning, pointedAt, sayDone, skipStep, startTutorial, stepBack, watchPage } from './learning';
+import {
+  leaveTutorial,
+  learning,
+  pointedAt,
+  sayDone,
+  skipStep,
+  startTutorial,
+  stepBack,
+  watchPage,
+} from './learning';
 import { stepDone } from './step_done';
 import type { Tutorial } from './tutorial';
 import { button, exactly, field, stepsIn } from './tutorial';
@@ -124,7 +133,8 @@ it('changes nothing of the project, is skipped, gone back, left, and ends with a
 });
 
 it('reads a choice from its list', () => {
-  document.body.innerHTML = '<label for="s">Preset</label><select id="s"><option>Felt</option><option>Card</option></select>';
+  document.body.innerHTML =
+    '<label for="s">Preset</label><select id="s"><option>Felt</option><option>Card</option></select>';
   const step = room.choose('Choose **Card**.', { role: 'combobox', name: 'Preset' }, 'Card');
   expect(stepDone(step, unseen)).toBe(false);
   (document.querySelector('select') as HTMLSelectElement).selectedIndex = 1;

@@ -15,7 +15,8 @@ export interface Seen {
 const isDisabled = (element: Element): boolean => element.getAttribute('aria-disabled') === 'true';
 
 function hasValue(control: HTMLElement | null, wanted: string, seen: Seen): boolean {
-  if (control instanceof HTMLSelectElement) return control.options[control.selectedIndex]?.textContent === wanted;
+  if (control instanceof HTMLSelectElement)
+    return control.options[control.selectedIndex]?.textContent === wanted;
   if (!(control instanceof HTMLInputElement)) return false;
   // Half a number, while it is being typed, is none yet.
   if (document.activeElement === control && !seen.entered) return false;
@@ -36,4 +37,5 @@ function holds(sign: Sign, step: Step, seen: Seen): boolean {
   return titles.some(({ textContent }) => textContent?.startsWith(sign.strip) === true);
 }
 
-export const stepDone = (step: Step, seen: Seen): boolean => step.done.every((sign) => holds(sign, step, seen));
+export const stepDone = (step: Step, seen: Seen): boolean =>
+  step.done.every((sign) => holds(sign, step, seen));

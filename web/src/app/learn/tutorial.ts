@@ -89,7 +89,13 @@ export const stepsIn = (room: Room | null) => ({
     done: [{ pressed: true }, ...signs],
     ...rest,
   }),
-  enter: (text: string, control: Control, value: string, signs: readonly Sign[] = [], rest: Rest = {}): Step => ({
+  enter: (
+    text: string,
+    control: Control,
+    value: string,
+    signs: readonly Sign[] = [],
+    rest: Rest = {},
+  ): Step => ({
     text,
     room,
     control,
@@ -97,7 +103,13 @@ export const stepsIn = (room: Room | null) => ({
     done: [{ value }, ...signs],
     ...rest,
   }),
-  choose: (text: string, control: Control, value: string, signs: readonly Sign[] = [], rest: Rest = {}): Step => ({
+  choose: (
+    text: string,
+    control: Control,
+    value: string,
+    signs: readonly Sign[] = [],
+    rest: Rest = {},
+  ): Step => ({
     text,
     room,
     control,
@@ -105,7 +117,13 @@ export const stepsIn = (room: Room | null) => ({
     done: [{ value }, ...signs],
     ...rest,
   }),
-  keys: (text: string, control: Control, keys: readonly string[], signs: readonly Sign[], rest: Rest = {}): Step => ({
+  keys: (
+    text: string,
+    control: Control,
+    keys: readonly string[],
+    signs: readonly Sign[],
+    rest: Rest = {},
+  ): Step => ({
     text,
     room,
     control,

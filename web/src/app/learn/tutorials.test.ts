@@ -24,7 +24,8 @@ const stepsOf = ({ steps }: Tutorial): string =>
 function withSteps(document: string, tutorial: Tutorial): string {
   const [head, rest] = document.split(begin);
   const tail = rest?.split(end)[1];
-  if (head === undefined || tail === undefined) throw new Error(`${tutorial.name}.md lacks the marks of its steps.`);
+  if (head === undefined || tail === undefined)
+    throw new Error(`${tutorial.name}.md lacks the marks of its steps.`);
   return `${head}${begin}\n${stepsOf(tutorial)}\n${end}${tail}`;
 }
 
@@ -69,8 +70,12 @@ describe.each(tutorials)('$name', (tutorial) => {
 });
 
 it('keeps no picture that no tutorial shows', () => {
-  const documents = readdirSync(path('tutorials')).map((name) => readFileSync(path(`tutorials/${name}`), 'utf8'));
-  const unused = readdirSync(path('img/tutorials')).filter((name) => !documents.some((text) => text.includes(name)));
+  const documents = readdirSync(path('tutorials')).map((name) =>
+    readFileSync(path(`tutorials/${name}`), 'utf8'),
+  );
+  const unused = readdirSync(path('img/tutorials')).filter(
+    (name) => !documents.some((text) => text.includes(name)),
+  );
   expect(unused).toEqual([]);
 });
 

@@ -81,9 +81,9 @@ export function WorkerDialog({ services, onClose }: { services: Services; onClos
         <p>{connection.message}</p>
       ) : connection ? (
         <p>
-          The connection to the worker program was lost; this page keeps trying to connect. A job sent to the worker
-          continues there, and its result is fetched once it is connected again. Until then everything runs in
-          this page.
+          The connection to the worker program was lost; this page keeps trying to connect. A job sent to the
+          worker continues there, and its result is fetched once it is connected again. Until then everything
+          runs in this page.
         </p>
       ) : (
         <>

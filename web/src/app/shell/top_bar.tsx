@@ -95,16 +95,16 @@ function WorkerChip({
   let [dot, words, short] = ['off', mock ? 'Mock solver' : 'In the browser', mock ? 'Mock' : 'In browser'];
   if (connection?.state === 'ready') {
     const { cores } = connection.status;
-    [dot, words, short] = ['', `Worker program · ${cores} ${cores === 1 ? 'core' : 'cores'} · ready`, 'Ready'];
+    [dot, words, short] = [
+      '',
+      `Worker program · ${cores} ${cores === 1 ? 'core' : 'cores'} · ready`,
+      'Ready',
+    ];
     if (solving) [dot, words, short] = ['live', words.replace('ready', 'solving'), 'Solving'];
   } else if (connection?.state === 'connecting')
     [dot, words, short] = ['off', 'Connecting to the worker program', 'Connecting'];
   else if (connection?.state === 'lost')
-    [dot, words, short] = [
-      'attention',
-      'Worker program lost · solving in the browser',
-      'Worker lost',
-    ];
+    [dot, words, short] = ['attention', 'Worker program lost · solving in the browser', 'Worker lost'];
   else if (connection?.state === 'refused')
     [dot, words, short] = ['bad', 'The worker program refused this page', 'Worker refused'];
   else if (solving) [dot, words, short] = ['live', 'In the browser · solving', 'Solving'];

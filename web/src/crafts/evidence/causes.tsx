@@ -112,8 +112,8 @@ function Details({ session, cause }: { session: EvidenceSession; cause: Cause })
           {odds >= 6
             ? 'Without this cause, the calibrated material alone hardly explains the measurement at all.'
             : odds >= 0.3
-            ? `The measurement is ${timesWords(odds)} more probable with this cause than with the calibrated material alone.`
-            : 'The measurement is no more probable with this cause than with the calibrated material alone.'}{' '}
+              ? `The measurement is ${timesWords(odds)} more probable with this cause than with the calibrated material alone.`
+              : 'The measurement is no more probable with this cause than with the calibrated material alone.'}{' '}
           The strength is given with its 95 % interval.
         </p>
       )}

@@ -56,7 +56,9 @@ describe('a diagnosis', () => {
 
   it('says in words what looks alike and what would tell', () => {
     const diagnosis = readDiagnosis(report);
-    expect(readingWords(diagnosis)).toBe('“Uneven heating” and “Wedge” explain this measurement equally well.');
+    expect(readingWords(diagnosis)).toBe(
+      '“Uneven heating” and “Wedge” explain this measurement equally well.',
+    );
     expect(diagnosis.alike[0]?.measurement).toBe('Turn the sheet.');
     for (const reading of ['none', 'unknown'] as const)
       expect(readingWords({ reading, alike: [] })).toMatch(/\.$/);

@@ -104,7 +104,11 @@ const hintOf = (name: string, bytes: number | undefined): string =>
 function TimeLine({ session }: { session: EvidenceSession }) {
   const { browser_s, worker_s } = session.estimate.value;
   if (readyWorker(session.services) !== null)
-    return <p>{worker_s ? `About ${formatDuration(worker_s)} in the worker program` : 'Runs in the worker program'}</p>;
+    return (
+      <p>
+        {worker_s ? `About ${formatDuration(worker_s)} in the worker program` : 'Runs in the worker program'}
+      </p>
+    );
   const triangles = Number(session.value('triangles') ?? 0);
   return (
     <>

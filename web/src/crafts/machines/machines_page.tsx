@@ -54,7 +54,11 @@ export function MachinesPage({ session, onChooseFile }: MachinesPageProps) {
           />
           {shown.value !== 'console' && plan ? (
             <div class="panel travel-switch">
-              <Switch label="Show travel moves" value={travel.value} onChange={(value) => (travel.value = value)} />
+              <Switch
+                label="Show travel moves"
+                value={travel.value}
+                onChange={(value) => (travel.value = value)}
+              />
             </div>
           ) : null}
         </div>

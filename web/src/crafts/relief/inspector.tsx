@@ -147,7 +147,8 @@ function MainButton({ session, onSolve, onSendToMill }: InspectorProps) {
           <p>
             This model needs about {formatBytes(memory * 1e6)} of memory
             {estimate?.browser_s ? ` and ${formatDuration(estimate.browser_s)}` : ''} in the browser, which
-            ends at {withUnit('4', 'GB')}. The worker program on your own computer has no such limit. Your work is saved either way.
+            ends at {withUnit('4', 'GB')}. The worker program on your own computer has no such limit. Your
+            work is saved either way.
           </p>
           <div class="row end">
             <Button onClick={() => setConfirm(false)}>Keep the preview</Button>

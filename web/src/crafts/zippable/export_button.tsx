@@ -172,7 +172,9 @@ export function MainButton({ session, onSolve, onSendToMachine }: MainButtonProp
       </div>
       <p>
         {ending(main.output)} at true size
-        {main.operation === planning ? ', layers by colour: cut, mark, engrave.' : '. The ribbon may overlap itself; the sheets to cut do not.'}
+        {main.operation === planning
+          ? ', layers by colour: cut, mark, engrave.'
+          : '. The ribbon may overlap itself; the sheets to cut do not.'}
       </p>
     </>
   );

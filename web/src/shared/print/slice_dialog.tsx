@@ -152,8 +152,13 @@ function Sending({ session }: { readonly session: SliceSession }) {
       </p>
     );
   const name = servers.find(({ id }) => id === session.server.value)?.name ?? '';
-  const busy = session.task.value ? 'A print is being prepared' : now === null ? 'The printer has not answered yet' : undefined;
-  const notReady = now?.state === 'ready' ? undefined : now ? `The printer is ${now.state}` : 'The printer does not answer';
+  const busy = session.task.value
+    ? 'A print is being prepared'
+    : now === null
+      ? 'The printer has not answered yet'
+      : undefined;
+  const notReady =
+    now?.state === 'ready' ? undefined : now ? `The printer is ${now.state}` : 'The printer does not answer';
   return (
     <section class="section" aria-label="Printer">
       <div class="field-line">

@@ -28,7 +28,12 @@ export const evidence: Tutorial = {
       'Press **Make the virtual object** and wait. The maps then show measured beside simulated.',
       button('Make the virtual object'),
       [{ strip: 'Compared with the settings as they are' }],
-      { picture: { name: 'evidence_compared', alt: 'Maps of measured and simulated height, and of their difference' } },
+      {
+        picture: {
+          name: 'evidence_compared',
+          alt: 'Maps of measured and simulated height, and of their difference',
+        },
+      },
     ),
     room.press(
       'Switch **Two causes at once** off. Looking for one cause only is much quicker.',
@@ -55,7 +60,12 @@ export const evidence: Tutorial = {
       'Switch **Show the simulation with this cause included** on. The last map becomes paler: less is unexplained.',
       toggle('Show the simulation with this cause included'),
       [{ shown: picture('Distances between measured and simulated, extended') }],
-      { picture: { name: 'evidence_gain', alt: 'The maps with the cause included, and how far the error falls' } },
+      {
+        picture: {
+          name: 'evidence_gain',
+          alt: 'The maps with the cause included, and how far the error falls',
+        },
+      },
     ),
     room.press(
       'Press **Use in the next print**. From now on this project forms sheets on this machine, fault included.',

@@ -73,7 +73,9 @@ export const laser: Tutorial = {
       'Choose **Console**. Under **1 job so far** stands when it began and how it ended.',
       radio('Console'),
       [],
-      { picture: { name: 'laser_done', alt: 'What was said between page and machine, and the finished job' } },
+      {
+        picture: { name: 'laser_done', alt: 'What was said between page and machine, and the finished job' },
+      },
     ),
   ],
 };

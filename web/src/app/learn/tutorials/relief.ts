@@ -38,7 +38,12 @@ export const relief: Tutorial = {
       'Choose **Shading difference** above the picture. Pale places are shaded like the model, dark places look flatter.',
       radio('Shading difference'),
       [],
-      { picture: { name: 'relief_difference', alt: 'The relief, dark where its shading differs from the model' } },
+      {
+        picture: {
+          name: 'relief_difference',
+          alt: 'The relief, dark where its shading differs from the model',
+        },
+      },
     ),
     room.press(
       'Press **Solve at full detail**. The file is ready when **Relief ready** stands at the foot of the page.',

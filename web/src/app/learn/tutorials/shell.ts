@@ -34,7 +34,9 @@ export const shell: Tutorial = {
       'Choose **Thickness**. The scale marks the thinnest place; below a quarter of the flat sheet it may tear.',
       radio('Thickness'),
       [],
-      { picture: { name: 'shell_thickness', alt: 'The formed sheet, dark where it is thin, with its scale' } },
+      {
+        picture: { name: 'shell_thickness', alt: 'The formed sheet, dark where it is thin, with its scale' },
+      },
     ),
     room.press(
       'Choose **Texture** and wait for the print at the right: the picture, distorted so that it fits after forming.',

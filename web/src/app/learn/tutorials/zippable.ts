@@ -17,7 +17,12 @@ export const zippable: Tutorial = {
       'Choose the sample **Star**. Left you see where the zipper runs, right the ribbon laid flat.',
       button('Star'),
       [{ strip: 'Preview up to date' }],
-      { picture: { name: 'zippable_preview', alt: 'The star with the line of its zipper, and its flat ribbon' } },
+      {
+        picture: {
+          name: 'zippable_preview',
+          alt: 'The star with the line of its zipper, and its flat ribbon',
+        },
+      },
     ),
     room.enter(
       'Set **Windings** to 4 and press Enter. Fewer windings make a wider ribbon and a shorter zipper.',
@@ -37,7 +42,12 @@ export const zippable: Tutorial = {
       'Press **Will it zip? Simulate cloth**. The sentence that appears says whether cloth takes this shape.',
       button('Will it zip? Simulate cloth'),
       [{ shown: radio('Simulated cloth') }],
-      { picture: { name: 'zippable_cloth', alt: 'The zipped star as simulated cloth, with the verdict below it' } },
+      {
+        picture: {
+          name: 'zippable_cloth',
+          alt: 'The zipped star as simulated cloth, with the verdict below it',
+        },
+      },
     ),
     room.press(
       'Choose **Sheets to cut**: the ribbon in pieces that fit the bed of a laser cutter.',

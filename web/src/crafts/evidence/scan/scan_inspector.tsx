@@ -79,7 +79,11 @@ export function ScanInspector({ session, scan }: { session: EvidenceSession; sca
             >
               Measure the scan
             </Button>
-            <p>{missing.length > 0 ? 'Needs the scan and the pattern.json of its print' : 'Takes a few seconds'}</p>
+            <p>
+              {missing.length > 0
+                ? 'Needs the scan and the pattern.json of its print'
+                : 'Takes a few seconds'}
+            </p>
           </>
         )}
       </div>

@@ -2,7 +2,7 @@
 // Which machine: profiles that are kept and shared, and the ways to connect.
 import { useSignal } from '@preact/signals';
 import { useRef } from 'preact/hooks';
-import { hasSerial, hasUsb, openSerial, openUsb, openVirtual } from '../../../machines/links/open_machine';
+import { hasSerial, hasUsb, openSerial, openUsb } from '../../../machines/links/open_machine';
 import type { MachineLink } from '../../../machines/links/machine_link';
 import type { MachineProfile } from '../../../machines/profiles';
 import { asProfile, profileExtension, profileFile } from '../../../machines/profiles';
@@ -256,7 +256,7 @@ export function ConnectMenu({ session }: { readonly session: MachinesSession }) 
           {name}
         </Button>
       ))}
-      <Button icon="play" disabledReason={busy} onClick={() => connect(() => openVirtual(options()))}>
+      <Button icon="play" disabledReason={busy} onClick={() => void session.practise()}>
         Practise without a machine
       </Button>
       <p class="hint">

@@ -100,7 +100,11 @@ export function MakeMillJob({ session }: { readonly session: MachinesSession }) 
         kind="filled"
         size="big"
         disabledReason={
-          kind === 'solving' ? 'The job is being made; Esc cancels' : kind === 'idle' ? undefined : 'A file is being made or opened'
+          kind === 'solving'
+            ? 'The job is being made; Esc cancels'
+            : kind === 'idle'
+              ? undefined
+              : 'A file is being made or opened'
         }
         onClick={() => void solveInFull(session)}
       >

@@ -102,7 +102,9 @@ function Toolbar({ session, viewport }: { session: ZippableSession; viewport: Vi
             <Button
               size="small"
               icon="loop"
-              disabledReason={left > 0 ? `Add ${left} more ${left === 1 ? 'point' : 'points'} first` : undefined}
+              disabledReason={
+                left > 0 ? `Add ${left} more ${left === 1 ? 'point' : 'points'} first` : undefined
+              }
               onClick={() => void closeBorder(session)}
             >
               Close the border

@@ -34,6 +34,11 @@ const isCode = (text) =>
     text,
   );
 
+/** Not the tail of a sentence, a file name or the name of an error. */
+const isSaid = (text) =>
+  text.replaceAll(/[^\p{L}]/gu, '').length >= 3 &&
+  !/^[,.;)]|^\u2026?-|\u2026px|^\u2026?\/|(Error|Refusal)$|^\u2026?\.\w+$/.test(text);
+
 function wordsOfElement(node) {
   const pieces = node.children.map((child) =>
     ts.isJsxText(child)
@@ -81,7 +86,7 @@ export function stringsIn(path, source) {
     ts.forEachChild(node, visit);
   };
   visit(file);
-  return found.filter((text) => /\p{L}{2}/u.test(text));
+  return found.filter(isSaid);
 }
 
 /** Every source of the page that speaks: not tests, not what only draws, not the tutorials themselves. */

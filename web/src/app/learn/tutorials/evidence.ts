@@ -59,7 +59,7 @@ export const evidence: Tutorial = {
     room.press(
       'Switch **Show the simulation with this cause included** on. The last map becomes paler: less is unexplained.',
       toggle('Show the simulation with this cause included'),
-      [{ shown: picture('Distances between measured and simulated, extended') }],
+      [{ shown: picture('Distances between measured and simulated, with the cause') }],
       {
         picture: {
           name: 'evidence_gain',

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every tutorial from its start to its end, by its own steps. With FORMWRIGHT_TUTORIAL_PICTURES=1 its pictures are taken on the way.
 import type { Page } from '@playwright/test';
-import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { mkdirSync, readFileSync } from 'node:fs';
 import { resolve } from 'node:path';
 import { inflateRawSync } from 'node:zlib';
 import { tutorials } from '../web/src/app/learn/tutorials/index';
@@ -13,10 +13,8 @@ test.skip(backend !== 'wasm', 'the mock makes reliefs only; the worker serves th
 
 const takesPictures = process.env['FORMWRIGHT_TUTORIAL_PICTURES'] === '1';
 const folder = resolve(import.meta.dirname, '../docs/img/tutorials');
-/** A view draws coarsely first: it is taken once it has looked the same so often, this far apart. */
-const same_times = 2;
-const apart_ms = 3000;
-const patience_ms = 90_000;
+/** A view draws coarsely first and says so; on a busy machine what is better takes its time. */
+const patience_ms = 300_000;
 
 async function begin(page: Page, title: string): Promise<void> {
   await openPage(page);
@@ -32,18 +30,6 @@ function projectIn(archive: Buffer): string {
   return inflateRawSync(archive.subarray(begin, begin + archive.readUInt32LE(18))).toString();
 }
 
-async function settle(page: Page): Promise<Buffer> {
-  const until = Date.now() + patience_ms;
-  let shown = await page.screenshot();
-  for (let same = 0; same < same_times && Date.now() < until;) {
-    await page.waitForTimeout(apart_ms);
-    const now = await page.screenshot();
-    same = now.equals(shown) ? same + 1 : 0;
-    shown = now;
-  }
-  return shown;
-}
-
 /** The page alone, as the reader will see it on a machine that is quick enough. */
 async function takePicture(page: Page, name: string): Promise<void> {
   mkdirSync(folder, { recursive: true });
@@ -51,13 +37,15 @@ async function takePicture(page: Page, name: string): Promise<void> {
   if (await slow.isVisible()) await slow.click();
   const hidden = await page.addStyleTag({ content: '.learn { visibility: hidden; }' });
   await page.mouse.move(640, 4);
-  writeFileSync(resolve(folder, `${name}.png`), await settle(page));
+  await expect(page.locator('.fw-view[data-drawing]')).toHaveCount(0, { timeout: patience_ms });
+  await page.waitForTimeout(1000); // until the browser has put it onto the screen
+  await page.screenshot({ path: resolve(folder, `${name}.png`) });
   await hidden.evaluate((style: Element) => style.remove());
 }
 
 for (const tutorial of tutorials)
   test(`${tutorial.name}: ${tutorial.title}`, async ({ page }) => {
-    test.setTimeout(900_000);
+    test.setTimeout(takesPictures ? 3_600_000 : 900_000);
     await begin(page, tutorial.title);
     await followTutorial(page, tutorial, async ({ picture }) => {
       if (takesPictures && picture) await takePicture(page, picture.name);

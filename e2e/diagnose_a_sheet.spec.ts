@@ -63,14 +63,14 @@ test('three files, a named cause, the extended model, the report, the next print
   const cause = page.getByRole('button', { name: /^Uneven heating, side to side/ });
   await cause.click();
   await expect(page.getByText('What to do.')).toBeVisible();
-  await expect(page.getByRole('img', { name: /^Held out .* to .*mm, −\d+\s%/ })).toBeVisible();
+  await expect(page.getByRole('img', { name: /^Points left out .* to .*mm, −\d+\s%/ })).toBeVisible();
 
   const distances = page.getByRole('img', { name: /^Distances between measured and simulated/ });
   const meanOf = async () =>
     Number(/mean ([\d.]+)/.exec((await distances.getAttribute('aria-label')) ?? '')?.[1]);
   const calibrated = await meanOf();
   await page.getByRole('switch', { name: 'Show the simulation with this cause included' }).click();
-  await expect(distances).toHaveAttribute('aria-label', /simulated, extended/);
+  await expect(distances).toHaveAttribute('aria-label', /simulated, with the cause/);
   expect(await meanOf()).toBeLessThan(calibrated);
   await expectAccessibleEverywhere(page, 'diagnosed');
 
@@ -80,7 +80,7 @@ test('three files, a named cause, the extended model, the report, the next print
   await page.getByRole('radio', { name: 'Flat maps' }).click();
 
   const waiting = page.waitForEvent('download');
-  await page.getByRole('button', { name: 'Download or undo' }).click();
+  await page.getByRole('button', { name: 'Download the results, or stop using them' }).click();
   await page.getByRole('menuitem', { name: /^Download report/ }).click();
   const report = await waiting;
   expect(report.suggestedFilename()).toMatch(/\.html$/);
@@ -150,12 +150,12 @@ test('files that lack a third, are strange or in metres are said in words', asyn
   await expect(page.getByRole('alert').getByText('Could not open picture.tiff')).toBeVisible();
   await expect(page.getByText('mould.obj, setup.json, measured.csv')).toBeVisible();
   await give(page, measuredObject(0.001));
-  await expect(page.getByRole('button', { name: /^Object 1 2 196 points/ })).toBeVisible();
+  await expect(page.getByRole('button', { name: /^Object 2 196 points/ })).toBeVisible();
   await run(page, 'Diagnose');
   await expect(page.getByRole('alert').getByText(/seem to be in metres/)).toBeVisible();
   await expect(page.getByRole('alert').getByText(/convert them to millimetres/)).toBeVisible();
   await page.keyboard.press('Control+z');
-  await expect(page.getByRole('button', { name: /^Object 1 2/ })).toBeHidden();
+  await expect(page.getByRole('button', { name: /^Object 2/ })).toBeHidden();
   await expect(page.getByRole('button', { name: /^Object 1 196 points/ })).toBeVisible();
 });
 

@@ -67,9 +67,9 @@ for (const sample of ['Mountain', 'Cat'])
     await timeline(page).focus();
     await expect(timeline(page)).toHaveAttribute('aria-valuetext', /vacuum, \d+ % in contact/);
     await page.keyboard.press('Home');
-    await expect(timeline(page)).toHaveAttribute('aria-valuetext', /^0\.0\ss of .*, relax, 0 % in contact/);
+    await expect(timeline(page)).toHaveAttribute('aria-valuetext', /^0\.0\ss of .*, sag, 0 % in contact/);
     await page.keyboard.press('PageUp');
-    await expect(timeline(page)).toHaveAttribute('aria-valuetext', /^1\.0\ss of .*, relax/);
+    await expect(timeline(page)).toHaveAttribute('aria-valuetext', /^1\.0\ss of .*, sag/);
     await page.keyboard.press('PageUp');
     await expect(timeline(page)).toHaveAttribute('aria-valuetext', /, raise, /);
     await page.keyboard.press('End');

@@ -21,7 +21,7 @@ test('a wrong file is said in words and the work stays', async ({ page }) => {
   await expect(page.getByRole('alert').getByText('Could not open notes.obj')).toBeVisible();
   await expect(page.locator('.model-row strong')).toHaveText(model ?? '');
   await expect(page.getByRole('button', { name: 'Choose another file' })).toBeVisible();
-  await page.getByRole('button', { name: 'Dismiss' }).click();
+  await page.getByRole('button', { name: 'Hide this note' }).click();
   await expect(page.getByText('Could not open notes.obj')).toBeHidden();
 });
 

@@ -94,16 +94,16 @@ test('a laser on a cable: connect, home, cut, hold, go on, and the cable pulled'
     await confirm(page, 'Home');
     await expect(chip(page, 'Ready')).toBeVisible({ timeout: 20_000 });
     // This laser homes to its upper right corner and counts down from there.
-    await page.getByRole('button', { name: 'Origin at the bed’s corner' }).click();
+    await page.getByRole('button', { name: 'Set origin at the bed’s corner' }).click();
     await expect(page.locator('.machine-position')).toContainText('399.00');
 
     await page.getByRole('button', { name: 'Start', exact: true }).click();
     await confirm(page, 'Start with the laser on');
     await expect(chip(page, 'Working')).toBeVisible();
     await page.keyboard.press('Escape');
-    await expect(chip(page, 'Held')).toBeVisible();
-    await page.getByRole('button', { name: 'Go on' }).click();
-    await confirm(page, 'Go on');
+    await expect(chip(page, 'Paused')).toBeVisible();
+    await page.getByRole('button', { name: 'Resume' }).click();
+    await confirm(page, 'Resume');
     await expect(page.getByRole('contentinfo').locator('strong').getByText('plate is done')).toBeVisible({
       timeout: 90_000,
     });
@@ -135,7 +135,7 @@ test('a laser on a cable: connect, home, cut, hold, go on, and the cable pulled'
     await page.locator('.machine-buttons').getByRole('button', { name: 'Home' }).click();
     await confirm(page, 'Home');
     await expect(chip(page, 'Ready')).toBeVisible({ timeout: 20_000 });
-    await page.getByRole('button', { name: 'Origin at the bed’s corner' }).click();
+    await page.getByRole('button', { name: 'Set origin at the bed’s corner' }).click();
     await footer.getByRole('button', { name: 'Cut the rest' }).click();
     await confirm(page, 'Continue with the laser on');
     await expect(footer.locator('strong').getByText('plate is done')).toBeVisible({ timeout: 90_000 });

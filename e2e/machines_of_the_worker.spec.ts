@@ -33,7 +33,7 @@ test('a laser at the worker’s port: connect, home, cut, stop; a page that goes
     await page.locator('.machine-buttons').getByRole('button', { name: 'Home' }).click();
     await confirm(page, 'Home');
     await expect(chip(page)).toHaveText('Ready', { timeout: 30_000 });
-    await page.getByRole('button', { name: 'Origin at the bed’s corner' }).click();
+    await page.getByRole('button', { name: 'Set origin at the bed’s corner' }).click();
     const start = page.locator('.inspector-foot').getByRole('button', { name: /^Start/ });
     await expect(start).toBeEnabled();
     await start.click();
@@ -55,9 +55,9 @@ test('a laser at the worker’s port: connect, home, cut, stop; a page that goes
     await page.reload();
     await page.getByRole('link', { name: 'Machines', exact: true }).click();
     await page.getByRole('button', { name: 'Shed, through the worker' }).click();
-    await expect(chip(page)).toHaveText('Held', { timeout: 20_000 });
-    await page.getByRole('button', { name: 'Go on' }).click();
-    await confirm(page, 'Go on');
+    await expect(chip(page)).toHaveText('Paused', { timeout: 20_000 });
+    await page.getByRole('button', { name: 'Resume' }).click();
+    await confirm(page, 'Resume');
     await expect(chip(page)).toHaveText('Ready', { timeout: 120_000 });
   } finally {
     removeMachine('Shed');

@@ -9,7 +9,7 @@ test('from a sample to a solid of the asked thickness', async ({ page }) => {
   await thickness.press('Enter');
   await solve(page);
   await expect(page.getByRole('contentinfo').locator('.job-text')).toContainText(
-    /Solved in .* than with plain scaling/,
+    /Solved in .* than the model simply squashed/,
   );
   const waiting = page.waitForEvent('download');
   await page.getByRole('button', { name: 'Export STL' }).click();

@@ -106,7 +106,9 @@ test('from the sample mountain to a printed picture', async ({ page }) => {
 test('without a printer: pages for the paper that is chosen, as a PDF', async ({ page }) => {
   await openPicture(page, 'Hemisphere');
   await openDialog(page);
-  await dialog(page).getByRole('combobox', { name: 'Printer' }).selectOption({ label: 'None: a PDF' });
+  await dialog(page)
+    .getByRole('combobox', { name: 'Printer' })
+    .selectOption({ label: 'No printer: save a PDF' });
   await dialog(page).getByRole('combobox', { name: 'Paper', exact: true }).selectOption({ label: 'A2' });
   await expect(dialog(page).getByRole('img', { name: /on one page$/ })).toBeVisible({ timeout: 60_000 });
   const waiting = page.waitForEvent('download');

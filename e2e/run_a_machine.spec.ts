@@ -108,8 +108,8 @@ test('a drawing to a finished job by keyboard alone', async ({ page }) => {
   await page.keyboard.press('Enter');
   await expect(chip(page)).toHaveText('Working');
   await page.keyboard.press('Escape'); // holds
-  await expect(chip(page)).toHaveText('Held');
-  await press('Go on');
+  await expect(chip(page)).toHaveText('Paused');
+  await press('Resume');
   await expect(dialog(page).getByRole('button', { name: 'Cancel' })).toBeFocused();
   await page.keyboard.press('Tab');
   await page.keyboard.press('Enter');
@@ -234,14 +234,9 @@ test('a relief goes to a mill: its job, its way in space, its first lines', asyn
   await expect(button(page, 'Make the job')).toBeVisible();
   await expect(startButton(page)).toHaveAttribute('aria-disabled', 'true');
 
-  // A drawing is no work for a mill: not while it is connected, else a laser is chosen.
-  const input = page.getByLabel('Model or project file');
-  await input.setInputFiles(square);
-  await expect(
-    page.getByRole('alert').getByText(/^Drawings are for lasers: disconnect the mill/),
-  ).toBeVisible();
-  await button(page, 'Disconnect').click();
-  await input.setInputFiles(square);
+  // A drawing is no work for a mill: the practice mill is exchanged for the practice laser.
+  await page.getByLabel('Model or project file').setInputFiles(square);
   await expect(page.locator('.profile-button')).toHaveText('Practice laser');
   await expect(strip(page, 'Job ready')).toBeVisible();
+  await expect(chip(page)).toHaveText('Locked');
 });

@@ -156,7 +156,7 @@ test('parts drawn by hand: a border and a cut with the mouse, an opening moved w
   await openSample(page, 'Heart');
   const parts = page.getByRole('list', { name: 'Parts' }).getByRole('button');
   await expect(parts).toHaveCount(3);
-  await page.getByRole('button', { name: 'Draw them' }).click();
+  await page.getByRole('button', { name: 'Draw the parts' }).click();
   const pane = page.locator('.zippable-model');
   const box = await pane.boundingBox();
   if (box === null) throw new Error('The model is not to be seen.');
@@ -170,12 +170,15 @@ test('parts drawn by hand: a border and a cut with the mouse, an opening moved w
   };
   await click(0.4, 0.7, 1);
   await click(0.53, 0.7, 2);
-  await expect(page.getByRole('button', { name: 'Close it' })).toHaveAttribute('aria-disabled', 'true');
+  await expect(page.getByRole('button', { name: 'Close the border' })).toHaveAttribute(
+    'aria-disabled',
+    'true',
+  );
   await pane.getByLabel('Model with the line of the zipper').focus();
   for (let i = 0; i < 12; ++i) await page.keyboard.press('Shift+ArrowLeft');
   await click(0.47, 0.7, 3);
   await click(0.6, 0.7, 4);
-  await page.getByRole('button', { name: 'Close it' }).click();
+  await page.getByRole('button', { name: 'Close the border' }).click();
   await expect(page.getByText('Drawn by hand: 1 border')).toBeVisible();
   await expect(parts).toHaveCount(2);
   await expectAccessible(page, 'drawing');
@@ -203,7 +206,7 @@ test('parts drawn by hand: a border and a cut with the mouse, an opening moved w
   await page.getByRole('radio', { name: 'Cut', exact: true }).click();
   await click(0.48, 0.76, 1, 'cut');
   await click(0.52, 0.79, 2, 'cut');
-  await page.getByRole('button', { name: 'End it here' }).click();
+  await page.getByRole('button', { name: 'End the cut here' }).click();
   await expect(page.getByText('Drawn by hand: 1 border, 1 cut')).toBeVisible();
   await expect(strip(page, 'Preview up to date')).toBeVisible();
   await expect(parts).toHaveCount(2);
@@ -213,9 +216,9 @@ test('parts drawn by hand: a border and a cut with the mouse, an opening moved w
   await page.reload();
   await expect(page.getByText('Drawn by hand: 1 border, 1 cut')).toBeVisible();
   await expect(parts).toHaveCount(2);
-  await page.getByRole('button', { name: 'Change', exact: true }).click();
+  await page.getByRole('button', { name: 'Change the drawing' }).click();
   await page.getByRole('button', { name: 'Find the parts automatically' }).click();
-  await expect(page.getByText('Found automatically')).toBeVisible();
+  await expect(page.getByText('The parts were found automatically')).toBeVisible();
   await expect(parts).toHaveCount(3);
 });
 

@@ -21,7 +21,7 @@ enum class BoundedVertices { all, visible };
 template <>
 struct EnumNames<BoundedVertices> {
   static constexpr std::array<std::string_view, 2> names{"all", "visible"};
-  static constexpr std::array<std::string_view, 2> labels{"All", "Visible only"};
+  static constexpr std::array<std::string_view, 2> labels{"Flat", "May sink"};
 };
 
 struct ReliefOptions {
@@ -83,11 +83,11 @@ struct ReliefOptions {
           .slider(50, 2000)
           .advanced(),
       parameter(
-          "bounded_vertices", &ReliefOptions::bounded_vertices, "Keep within the thickness",
-          "All keeps the whole model within the thickness, so that its back is flat. Visible only lets the hidden back sink behind the plate, which distorts the visible side less.")
+          "bounded_vertices", &ReliefOptions::bounded_vertices, "Back of the relief",
+          "Flat keeps the whole model within the thickness. May sink lets the hidden back go deeper than the plate's face, which distorts the visible side less.")
           .group("Shape"),
       parameter(
-          "hidden_weight", &ReliefOptions::hidden_weight, "Weight of the hidden side", unit::none, 0.001, 1,
+          "hidden_weight", &ReliefOptions::hidden_weight, "How much the back matters", unit::none, 0.001, 1,
           "How much the shape of parts hidden from the viewer matters. 1: as much as the visible parts; smaller values let hidden parts distort more so that visible ones distort less.")
           .group("Shape")
           .slider(0.01, 1)
@@ -96,7 +96,7 @@ struct ReliefOptions {
                 "Keeps what is in front in front, so that parts do not pass through each other. Off: parts may cross.")
           .group("Shape"),
       parameter(
-          "pixel_mm", &ReliefOptions::pixel_mm, "Detail of the solid", unit::mm, 0.01, 10,
+          "pixel_mm", &ReliefOptions::pixel_mm, "Detail of the STL", unit::mm, 0.01, 10,
           "Spacing of the points in the height map and in the exported solid. Smaller shows finer detail and makes larger files; half the width of the nozzle or tool is fine enough.")
           .group("Output")
           .slider(0.05, 1)

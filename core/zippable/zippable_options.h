@@ -120,34 +120,34 @@ struct ZippableOptions {
           "traversal", &ZippableOptions::traversal, "Order of parts", unit::none, 1, 100000,
           "Which of the possible orders the zipper follows through the parts. 1 is the most even one; higher numbers are less even.")
           .slider(1, 50)
-          .group("Curve"),
+          .group("Zipper line"),
       parameter("start_part", &ZippableOptions::start_part, "Start in part", unit::none, 0, 40,
                 "Number of the part where the zipper must start. 0: any part.")
           .slider(0, 12)
-          .group("Curve"),
+          .group("Zipper line"),
       parameter("end_part", &ZippableOptions::end_part, "End in part", unit::none, 0, 40,
                 "Number of the part where the zipper must end. 0: any part.")
           .slider(0, 12)
-          .group("Curve"),
+          .group("Zipper line"),
       parameter(
           "min_radius_mm", &ZippableOptions::min_radius_mm, "Smallest radius", unit::mm, 0.1, 10000,
           "Smallest radius to which the centre line of the flat ribbon may bend; a stiff zipper needs more. Larger values enlarge the holes at the tips and may change the order of parts. Automatic: no limit.")
           .slider(5, 100)
-          .group("Curve")
+          .group("Zipper line")
           .formerly("radius_least_mm"),
       parameter(
           "winding_course", &ZippableOptions::winding_course, "Windings follow",
           "Even: windings are equally spaced. Along creases: windings move, by less than half their spacing, onto creases that run in nearly the same direction.")
-          .group("Curve"),
+          .group("Zipper line"),
       parameter(
           "sample_mm", &ZippableOptions::sample_mm, "Sampling", unit::mm, 0.01, 1000,
           "Approximate distance between neighbouring corner points of the ribbon's edge. Smaller follows the model better and makes larger files. Automatic: a fifth of the ribbon width.")
           .slider(1, 20)
-          .group("Curve")
+          .group("Zipper line")
           .advanced(),
       parameter("measure_distances", &ZippableOptions::measure_distances, "Measure distances",
                 "Measures how far the zipped ribbon lies from the model. Switch it off to change windings faster.")
-          .group("Curve")
+          .group("Zipper line")
           .advanced(),
       parameter(
           "check_parts", &ZippableOptions::check_parts, "Check parts only",

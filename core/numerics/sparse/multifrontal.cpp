@@ -174,9 +174,7 @@ void Multifrontal::run(bool parallel) {
   if (failed_ == -1) factor_top(parallel);
   if (failed_ != -1) {
     throw Error(ErrorCode::could_not_solve, "matrix",
-                "The equations have no unique solution (the matrix is not positive definite at row " +
-                    std::to_string(form_.permutation.order[failed_]) +
-                    ", counted from 0): repair the model, or change the borders drawn on it.");
+                "The equations have no unique solution: repair the model, or change the borders drawn on it.");
   }
 }
 

@@ -15,7 +15,7 @@ export function AboutPage({ services }: { services: Services }) {
         <h1>About Formwright</h1>
         <p>
           Formwright turns 3D models into things made by hand-sized machines. It runs in this page, or,
-          faster, in its native worker on your own machine. Models are never sent anywhere else.
+          faster, in its worker program on your own machine. Models are never sent anywhere else.
         </p>
         <p>Version {services.catalog.value?.version ?? 'unknown'}.</p>
         <h2>Licence</h2>
@@ -28,7 +28,7 @@ export function AboutPage({ services }: { services: Services }) {
           Reliefs: C. Schüller, D. Panozzo, O. Sorkine-Hornung, “Appearance-mimicking surfaces”, ACM
           Transactions on Graphics 33 (6), 2014.
         </p>
-        <h2>In the solver</h2>
+        <h2>Programs in the solver</h2>
         <ul class="licence-list">
           {solverParts.map(({ name, licence, use }) => (
             <li key={name}>
@@ -36,7 +36,7 @@ export function AboutPage({ services }: { services: Services }) {
             </li>
           ))}
         </ul>
-        <h2>In the page</h2>
+        <h2>Programs in the page</h2>
         {licences.map((entry) => (
           <details key={entry.name} class="licence">
             <summary>

@@ -18,6 +18,9 @@ import { crafts } from './crafts';
 import { KeysDialog, WorkerDialog } from './shell/dialogs';
 import { droppedFiles } from './dropped_files';
 import { Rail } from './shell/rail';
+import { showLearnCard } from './learn/learn_card';
+import { LearnDialog } from './learn/learn_list';
+import { watchPage } from './learn/learning';
 import { go, place } from './route';
 import { formatNames, StartPage } from './start_page';
 import type { Sessions } from './rooms';
@@ -74,7 +77,7 @@ export interface AppProps {
 }
 
 export function App({ services, sessions }: AppProps) {
-  const dialog = useSignal<'keys' | 'worker' | null>(null);
+  const dialog = useSignal<'keys' | 'worker' | 'learn' | null>(null);
   const dropping = useSignal(false);
   const input = useRef<HTMLInputElement>(null);
   const chooseFile = () => input.current?.click();
@@ -109,6 +112,10 @@ export function App({ services, sessions }: AppProps) {
   useFileDrop(dropping, openFiles);
   useGlobalKeys(services, { chooseFile, showKeys: () => (dialog.value = 'keys') });
   useLaunchedFiles(openFiles);
+  useEffect(() => {
+    const ends = [watchPage(services.projects), showLearnCard()];
+    return () => ends.forEach((end) => end());
+  }, []);
 
   const where = place.value;
   const ReliefPage = reliefPage.value?.Page;
@@ -140,6 +147,7 @@ export function App({ services, sessions }: AppProps) {
         onOpenFile={chooseFile}
         onKeys={() => (dialog.value = 'keys')}
         onWorker={() => (dialog.value = 'worker')}
+        onLearn={() => (dialog.value = 'learn')}
       />
       <Rail />
       {where === 'relief' && ReliefPage ? (
@@ -189,10 +197,10 @@ export function App({ services, sessions }: AppProps) {
                 ? 'Measured objects: mould.obj, setup.json, measured.csv, their folder or zip'
                 : where === 'machines'
                   ? `Drawings and jobs: ${[...drawingEndings, ...jobEndings].join(', ')}. For mills, models and height maps: ${heightMapEnding}`
-                  : `Meshes: ${formatNames(services)}`}
+                  : `Models: ${formatNames(services)}`}
               . Projects: .{projectExtension}.
             </p>
-            <p>Your project is saved first.</p>
+            {services.projects.isBlank.value ? null : <p>Your project is saved first.</p>}
           </div>
         </div>
       ) : null}
@@ -216,6 +224,9 @@ export function App({ services, sessions }: AppProps) {
         }}
       />
       {dialog.value === 'keys' ? <KeysDialog onClose={() => (dialog.value = null)} /> : null}
+      {dialog.value === 'learn' ? (
+        <LearnDialog projects={services.projects} onClose={() => (dialog.value = null)} />
+      ) : null}
       {dialog.value === 'worker' ? (
         <WorkerDialog services={services} onClose={() => (dialog.value = null)} />
       ) : null}

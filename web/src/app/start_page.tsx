@@ -6,6 +6,7 @@ import type { ReliefSession } from '../crafts/relief/relief_session';
 import { warmUp } from '../crafts/relief/warm_up';
 import { Button, Icon } from '../ui';
 import { crafts } from './crafts';
+import { LearnList } from './learn/learn_list';
 import { go } from './route';
 import { toastFailure } from './failure_toast';
 
@@ -74,6 +75,8 @@ export function StartPage({ services, session, onChooseFile }: StartPageProps) {
             The solver could not be started: {services.catalogError.value} Reload the page to try again.
           </p>
         ) : null}
+        <h2>Learn by doing, ten minutes each</h2>
+        <LearnList projects={services.projects} />
         {catalog && catalog.samples.length > 0 ? (
           <>
             <h2>Or start from a sample</h2>

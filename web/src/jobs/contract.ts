@@ -130,6 +130,7 @@ export interface Sample {
   readonly description?: string;
   readonly default_vertices: number;
   readonly closed?: boolean;
+  readonly has_texture?: boolean;
   /** The side it is best seen from, in the words of the relief's parameters. */
   readonly view_direction?: readonly number[];
   readonly view_up?: readonly number[];

@@ -81,7 +81,8 @@ class Glb {
     const count = Number(accessor['count']);
     const bytes = this.view(accessor['bufferView'], Number(accessor['byteOffset'] ?? 0));
     const size =
-      { 5121: 1, 5123: 2, 5125: 4 }[Number(accessor['componentType'])] ?? fail('has strange indices');
+      { 5121: 1, 5123: 2, 5125: 4 }[Number(accessor['componentType'])] ??
+      fail('names vertices that it does not have');
     if (bytes.byteLength < size * count) fail('ends before its last triangle');
     const { buffer } = bytes.slice(0, size * count);
     if (size === 4) return new Uint32Array(buffer);

@@ -96,7 +96,7 @@ export class NativeConnection {
       response = await send(`${this.#options.origin}/api/${path}`, { ...init, headers });
     } catch (thrown) {
       if (init.signal?.aborted) throw thrown;
-      const message = 'The native worker does not answer; start it again with “formwright serve”.';
+      const message = 'The worker program does not answer; start it again with “formwright serve”.';
       throw new JobError({ code: 'unreachable', where: '', message });
     }
     return response;

@@ -13,7 +13,7 @@ function trapMessage(thrown: unknown): ErrorMessage {
   const memory = /memory|alloc|OOM/i.test(text);
   const code: ErrorCode = memory ? 'out_of_memory' : 'internal';
   const message = memory
-    ? 'The browser ran out of memory; reduce the model or solve with the native worker.'
+    ? 'The browser ran out of memory; reduce the model, or solve in the worker program on your computer.'
     : `The solver stopped unexpectedly (${text}).`;
   return { code, where: '', message };
 }

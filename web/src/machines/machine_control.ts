@@ -9,13 +9,19 @@ import type { MachineProfile } from './profiles';
 
 const lockName = 'formwright.machine';
 
+interface Held {
+  readonly release: () => void;
+  /** Once others can have it. */
+  readonly free: Promise<unknown>;
+}
+
 /** Held while a machine is controlled; null where another tab holds it. */
-async function takeLock(): Promise<(() => void) | null> {
-  if (!('locks' in navigator)) return () => undefined;
+async function takeLock(): Promise<Held | null> {
+  if (!('locks' in navigator)) return { release: () => undefined, free: Promise.resolve() };
   return await new Promise((resolve) => {
-    void navigator.locks.request(lockName, { ifAvailable: true }, (lock) => {
+    const free: Promise<unknown> = navigator.locks.request(lockName, { ifAvailable: true }, (lock) => {
       if (lock === null) return resolve(null);
-      return new Promise<void>((release) => resolve(release));
+      return new Promise<void>((release) => queueMicrotask(() => resolve({ release, free })));
     });
   });
 }
@@ -26,6 +32,8 @@ export class MachineControl {
   readonly zSets = signal(0);
   readonly link = signal<MachineLink | null>(null);
   readonly connecting = signal(false);
+  /** The machine that is connected exists on the screen only. */
+  readonly practising = signal(false);
   /** What went wrong last, in a sentence. */
   readonly problem = signal<string | null>(null);
   readonly machineName = signal('');
@@ -34,7 +42,8 @@ export class MachineControl {
   /** The job that was under way when its machine went, and what it was made from: the next driver knows nothing of it. */
   readonly cutOff = signal<{ readonly key: string; readonly job: MachineJob } | null>(null);
   readonly state: ReadonlySignal<MachineState | null> = computed(() => this.link.value?.state.value ?? null);
-  #release: (() => void) | null = null;
+  #held: Held | null = null;
+  #free: Promise<unknown> = Promise.resolve();
   #jobId = '';
 
   constructor(log: JobLog) {
@@ -65,16 +74,22 @@ export class MachineControl {
     return this.state.value?.can.includes(what) ?? false;
   }
 
-  async connect(profile: MachineProfile, open: () => Promise<MachineLink | null>): Promise<void> {
+  async connect(
+    profile: MachineProfile,
+    open: () => Promise<MachineLink | null>,
+    practising = false,
+  ): Promise<void> {
     if (this.link.value !== null || this.connecting.value) return;
     this.connecting.value = true;
     this.problem.value = null;
     try {
-      this.#release = await takeLock();
-      if (this.#release === null)
+      await this.#free; // by this page itself, a moment ago
+      this.#held = await takeLock();
+      if (this.#held === null)
         throw new Error('Another tab of this page controls a machine: disconnect it there first.');
       const link = await open();
       this.machineName.value = profile.name;
+      this.practising.value = practising;
       this.loaded.value = null;
       if (link === null) this.#unlock();
       else this.link.value = link;
@@ -155,8 +170,9 @@ export class MachineControl {
     this.#unlock();
   }
   #unlock(): void {
-    this.#release?.();
-    this.#release = null;
+    if (this.#held) this.#free = this.#held.free;
+    this.#held?.release();
+    this.#held = null;
   }
 
   #writeLog(): void {

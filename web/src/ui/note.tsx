@@ -26,7 +26,7 @@ export function Note({ kind, icon, title, children, actions, onDismiss }: NotePr
         {children ? <p>{children}</p> : null}
         {actions ? <div class="row">{actions}</div> : null}
       </div>
-      {onDismiss ? <IconButton icon="close" label="Dismiss" onClick={onDismiss} /> : null}
+      {onDismiss ? <IconButton icon="close" label="Hide this note" onClick={onDismiss} /> : null}
     </section>
   );
 }

@@ -52,12 +52,14 @@ describe('numbers', () => {
     expect(roundTo(7.3, 5)).toBe(5);
   });
   it('says durations with two digits', () => {
-    expect([0.01, 0.42, 7.84, 25.3, 240].map(formatDuration)).toEqual([
+    expect([0.01, 0.42, 7.84, 25.3, 240, 7200, 15_300].map(formatDuration)).toEqual([
       'under 0.1\u2009s',
       '0.4\u2009s',
       '7.8\u2009s',
       '25\u2009s',
       '4\u2009min',
+      '2\u2009h',
+      '4\u2009h 15\u2009min',
     ]);
   });
 });

@@ -58,12 +58,15 @@ export function formatOnStep(value: number, step: number): string {
   return rounded === value ? formatFixed(value, decimals) : withMinus(String(Number(value.toPrecision(6))));
 }
 
-/** "about 25 s", "4 min". */
+/** "25 s", "4 min", "4 h 15 min". */
 export function formatDuration(seconds: number): string {
   if (seconds < 0.05) return `under ${withUnit('0.1', 's')}`;
   if (seconds < 10) return withUnit(seconds.toFixed(1), 's');
   if (seconds < 100) return withUnit(String(Math.round(seconds)), 's');
-  return withUnit(String(Math.round(seconds / 60)), 'min');
+  const minutes = Math.round(seconds / 60);
+  if (minutes < 120) return withUnit(String(minutes), 'min');
+  const [hours, rest] = [withUnit(String(Math.floor(minutes / 60)), 'h'), minutes % 60];
+  return rest === 0 ? hours : `${hours} ${withUnit(String(rest), 'min')}`;
 }
 
 export function formatBytes(bytes: number): string {

@@ -145,6 +145,7 @@ export abstract class ViewportBase {
         gpuBusy: () => this.stage?.busy ?? false,
         triangles: () => this.content?.triangleCount() ?? 0,
         onFrame: (stats) => this.options.onFrame?.(stats),
+        onDrawing: (drawing) => void this.root.toggleAttribute('data-drawing', drawing),
       },
       qualityHere().restMs,
     );

@@ -21,7 +21,7 @@ std::vector<OutputInfo> outputs() {
       {"mould.stl", "model/stl", "STL", "All parts of the mould side by side on the bed of the 3D printer, watertight.",
        true},
       {"mould.3mf", "model/3mf", "3MF", "The mould for a slicer, every part as a separate object.", true},
-      {"draft.ply", "application/x-ply", "Draft map",
+      {"draft.ply", "application/x-ply", "Undercut map",
        "The model above the plate in machine coordinates, with draft angle, undercut and ratio of depth to width at every vertex.",
        true},
       {"mould.glb", "model/gltf-binary", "GLB", "The parts of the mould as printed, for viewing.", true}};

@@ -13,12 +13,12 @@ namespace {
 
 std::vector<OutputInfo> outputs() {
   return {
-      {"sheet.ply", "application/x-ply", "Formed sheet",
+      {"sheet.ply", "application/x-ply", "Formed sheet, thickness",
        "The middle surface of the formed sheet, with flat position, thickness, stretch and time of contact at every vertex.",
        true},
       {"forming.glb", "model/gltf-binary", "Animation",
        "Animation of sagging, raising and vacuum, coloured by thickness.", true},
-      {"mould.obj", "model/obj", "Placed model", "The model in the machine's coordinates, as placed on the platform.",
+      {"mould.obj", "model/obj", "Model as placed", "The model in the machine's coordinates, as placed on the platform.",
        false}};
 }
 

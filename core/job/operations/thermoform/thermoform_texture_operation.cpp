@@ -31,11 +31,11 @@ std::vector<InputInfo> inputs() {
 
 std::vector<OutputInfo> outputs() {
   return {
-      {"print.png", "image/png", "Picture",
+      {"print.png", "image/png", "Print as one picture",
        "The print for the whole sheet with its marks. The file contains its true size.", true},
-      {"print.pdf", "application/pdf", "Pages",
+      {"print.pdf", "application/pdf", "Print for paper",
        "The print at true size on the chosen paper, then a template of the marks on the frame. Print at 100 %.", true},
-      {"formed.glb", "model/gltf-binary", "Formed sheet",
+      {"formed.glb", "model/gltf-binary", "Formed sheet, coloured",
        "The formed sheet with the print on it, for viewing; y points up.", true},
       {"coverage.ply", "application/x-ply", "Coverage",
        "The model in machine coordinates. Every vertex has a code (0 coloured, 1 hidden, 2 not touched, 3 below the plate, 4 outside), its place on the sheet and the gap to it.",

@@ -4,9 +4,9 @@ import { Dialog, formatBytes, formatCount } from '../../ui';
 
 const keys: readonly (readonly [keys: readonly string[], meaning: string])[] = [
   [['1', '–', '5'], 'Go to a room'],
-  [['0'], 'Look from the viewpoint'],
-  [['F'], 'Fit'],
-  [['S'], 'Swipe'],
+  [['0'], 'Look from the relief’s viewpoint'],
+  [['F'], 'Fit the model into the picture'],
+  [['S'], 'Swipe between model and result'],
   [['Space'], 'Play the animation of forming'],
   [['Ctrl', 'Enter'], 'Solve at full detail'],
   [['Ctrl', 'E'], 'Export'],
@@ -49,7 +49,7 @@ export function KeysDialog({ onClose }: { onClose: () => void }) {
           <KeyList list={keys} />
         </div>
         <div>
-          <h3>In the viewport</h3>
+          <h3>In the 3D view</h3>
           <KeyList list={viewKeys} />
           <h3>In a parameter</h3>
           <KeyList list={fieldKeys} />
@@ -65,7 +65,7 @@ export function WorkerDialog({ services, onClose }: { services: Services; onClos
     <Dialog title="Where models are solved" onClose={onClose}>
       {connection?.state === 'ready' ? (
         <>
-          <p>Previews run in this page, full solves in the native worker on this machine.</p>
+          <p>Previews run in this page, work at full detail in the worker program on this machine.</p>
           <dl class="figures">
             <dt>Version</dt>
             <dd>{connection.status.version}</dd>
@@ -81,15 +81,15 @@ export function WorkerDialog({ services, onClose }: { services: Services; onClos
         <p>{connection.message}</p>
       ) : connection ? (
         <p>
-          The connection to the worker was lost; this page keeps trying to connect. A job sent to the worker
-          continues there, and its result is fetched once it is connected again. Until then everything runs in
-          this page.
+          The connection to the worker program was lost; this page keeps trying to connect. A job sent to the
+          worker continues there, and its result is fetched once it is connected again. Until then everything
+          runs in this page.
         </p>
       ) : (
         <>
           <p>
-            Everything runs in this page. A native worker on your own machine solves large models several
-            times faster.
+            Everything runs in this page. The worker program on your own computer does the same several times
+            faster, and reaches printers and network machines.
           </p>
           <p>To start it, run this in a copy of Formwright’s source:</p>
           <pre class="command">make run</pre>

@@ -86,8 +86,8 @@ it('what only the tab has is not called saved, and can be saved as a file', asyn
   document.body.innerHTML = '<div class="top"></div>';
   render(<SaveState projects={projects} />, document.querySelector('.top') as Element);
   expect(projects.saveState.value.state).toBe('saved');
-  expect(document.querySelector('.top')?.textContent).toBe('Not kept');
-  button('Not kept')?.click();
+  expect(document.querySelector('.top')?.textContent).toBe('In this tab only');
+  button('In this tab only')?.click();
   await settle();
   expect(document.querySelector('dialog')?.textContent).toMatch(/until the tab is closed/);
   expect(button('Save as a file')).toBeDefined();

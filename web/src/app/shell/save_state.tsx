@@ -42,7 +42,7 @@ function NotKept({ projects }: { projects: ProjectStore }) {
     <>
       <span class="saved failed">
         <button type="button" aria-haspopup="dialog" onClick={() => setShown(true)}>
-          Not kept
+          In this tab only
         </button>
       </span>
       {shown ? (

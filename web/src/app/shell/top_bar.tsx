@@ -13,9 +13,10 @@ export interface TopBarProps {
   readonly onOpenFile: () => void;
   readonly onKeys: () => void;
   readonly onWorker: () => void;
+  readonly onLearn: () => void;
 }
 
-export function TopBar({ services, solving, onOpenFile, onKeys, onWorker }: TopBarProps) {
+export function TopBar({ services, solving, onOpenFile, onKeys, onWorker, onLearn }: TopBarProps) {
   const { projects } = services;
   const { value: undo } = projects.undoLabel;
   const { value: redo } = projects.redoLabel;
@@ -65,11 +66,12 @@ export function TopBar({ services, solving, onOpenFile, onKeys, onWorker }: TopB
       />
       <Menu
         label="Help"
-        buttonClass="icon-button desk"
+        buttonClass="icon-button"
         align="right"
         items={[
+          { label: 'Learn: tutorials', onSelect: onLearn },
           { label: 'All keys', hint: '?', onSelect: onKeys },
-          { label: 'The native worker', onSelect: onWorker },
+          { label: 'Where models are solved', onSelect: onWorker },
           { label: 'About Formwright', onSelect: () => go('about') },
         ]}
       >
@@ -90,21 +92,21 @@ function WorkerChip({
 }) {
   const connection = services.connection.value;
   const mock = services.browser.kind === 'mock';
-  let [dot, words, short] = ['off', mock ? 'Mock solver' : 'In the browser', mock ? 'Mock' : 'Browser'];
+  let [dot, words, short] = ['off', mock ? 'Mock solver' : 'In the browser', mock ? 'Mock' : 'In browser'];
   if (connection?.state === 'ready') {
     const { cores } = connection.status;
-    [dot, words, short] = ['', `Native worker · ${cores} ${cores === 1 ? 'core' : 'cores'} · ready`, 'Ready'];
+    [dot, words, short] = [
+      '',
+      `Worker program · ${cores} ${cores === 1 ? 'core' : 'cores'} · ready`,
+      'Ready',
+    ];
     if (solving) [dot, words, short] = ['live', words.replace('ready', 'solving'), 'Solving'];
   } else if (connection?.state === 'connecting')
-    [dot, words, short] = ['off', 'Connecting to the worker', 'Connecting'];
+    [dot, words, short] = ['off', 'Connecting to the worker program', 'Connecting'];
   else if (connection?.state === 'lost')
-    [dot, words, short] = [
-      'attention',
-      'Connection to the worker lost · solving in the browser',
-      'Worker lost',
-    ];
+    [dot, words, short] = ['attention', 'Worker program lost · solving in the browser', 'Worker lost'];
   else if (connection?.state === 'refused')
-    [dot, words, short] = ['bad', 'Worker refused this page', 'Refused'];
+    [dot, words, short] = ['bad', 'The worker program refused this page', 'Worker refused'];
   else if (solving) [dot, words, short] = ['live', 'In the browser · solving', 'Solving'];
   return (
     <button type="button" class="chip" onClick={onWorker} {...tipHandlers('Where models are solved')}>

@@ -86,12 +86,12 @@ export function CalibrationPanel({ session, result }: { session: EvidenceSession
               </th>
               <td>{shortNumber(profile.value)}</td>
               <td>
-                {profile.identified && !Number.isNaN(profile.low) ? (
+                {profile.identified && profile.high > profile.low ? (
                   `${shortNumber(profile.low)} to ${shortNumber(profile.high)}`
                 ) : profile.identified ? (
                   '–'
                 ) : (
-                  <em>not determined by these data</em>
+                  <em>this measurement does not tell</em>
                 )}
               </td>
               <td>

@@ -14,18 +14,22 @@ export function Causes({ session, diagnosis }: { session: EvidenceSession; diagn
   const all = useSignal(false);
   const { causes, reading, named, alike } = diagnosis;
   const words = readingWords(diagnosis);
-  const listed = all.value ? causes : causes.slice(0, shownCauses);
+  const certain = causes.filter(({ name, probability }) => named.includes(name) && probability > 0.995);
+  // Where nothing is wrong, a list of causes with figures would look as if something were.
+  const shown = reading === 'none' ? 0 : shownCauses;
+  const listed = all.value ? causes : causes.slice(0, shown);
   const rest = causes.length - listed.length;
   return (
     <section class="section causes" aria-label="Causes of the difference">
       <h3>Causes of the difference</h3>
       {reading === 'none' || reading === 'unknown' ? <p class="reading">{diagnosis.sentence}</p> : null}
       {words ? <p>{words}</p> : null}
+      {certain.length > 1 ? <p>Found together, each almost certain.</p> : null}
       <ol>
         {listed.map((cause) => (
           <CauseCard key={cause.name} session={session} cause={cause} named={named.includes(cause.name)} />
         ))}
-        {diagnosis.unlisted >= 0.005 ? (
+        {diagnosis.unlisted >= 0.005 && reading !== 'none' ? (
           <li class="cause unlisted">
             <span class="cause-line">
               A cause that is not in the list <b>{percent(diagnosis.unlisted)}</b>
@@ -35,7 +39,9 @@ export function Causes({ session, diagnosis }: { session: EvidenceSession; diagn
       </ol>
       {rest > 0 ? (
         <button type="button" class="text-button" onClick={() => (all.value = true)}>
-          {rest} less likely {rest === 1 ? 'cause' : 'causes'}
+          {reading === 'none' ? 'Checked and not needed: ' : 'Show '}
+          {rest} {reading === 'none' ? '' : 'less likely '}
+          {rest === 1 ? 'cause' : 'causes'}
         </button>
       ) : null}
       {alike
@@ -103,9 +109,11 @@ function Details({ session, cause }: { session: EvidenceSession; cause: Cause })
       {odds === null ? null : (
         <p>
           <strong>Evidence.</strong>{' '}
-          {odds >= 0.3
-            ? `The measurement is ${timesWords(odds)} more probable with this cause than with the calibrated material alone.`
-            : 'The measurement is no more probable with this cause than with the calibrated material alone.'}{' '}
+          {odds >= 6
+            ? 'Without this cause, the calibrated material alone hardly explains the measurement at all.'
+            : odds >= 0.3
+              ? `The measurement is ${timesWords(odds)} more probable with this cause than with the calibrated material alone.`
+              : 'The measurement is no more probable with this cause than with the calibrated material alone.'}{' '}
           The strength is given with its 95 % interval.
         </p>
       )}
@@ -119,8 +127,4 @@ function Details({ session, cause }: { session: EvidenceSession; cause: Cause })
 }
 
 const timesWords = (odds: number): string =>
-  odds < 3
-    ? `about ${formatNumber(10 ** odds, 1)} times`
-    : odds < 6
-      ? 'thousands of times'
-      : 'over a million times';
+  odds < 3 ? `about ${formatNumber(10 ** odds, 1)} times` : 'thousands of times';

@@ -47,7 +47,7 @@ describe('a diagnosis', () => {
   it('is read with its gains, on parts left out and on other objects', () => {
     const diagnosis = readDiagnosis(report);
     expect(diagnosis.named).toEqual(['heating_gradient']);
-    expect(diagnosis.gains.map(({ title }) => title)).toEqual(['Held out', 'Not used']);
+    expect(diagnosis.gains.map(({ title }) => title)).toEqual(['Points left out', 'Kept for checking']);
     expect(diagnosis.gains[0]?.after).toEqual({ value: 0.14, low: 0.1, high: 0.2 });
     expect(diagnosis.gains[1]?.after).toEqual({ value: 0.5, low: 0.5, high: 0.5 });
     expect(diagnosis.sigma_mm.get('lamp')).toBe(0.08);
@@ -56,7 +56,9 @@ describe('a diagnosis', () => {
 
   it('says in words what looks alike and what would tell', () => {
     const diagnosis = readDiagnosis(report);
-    expect(readingWords(diagnosis)).toBe('These data fit equally well with “Uneven heating” and “Wedge”.');
+    expect(readingWords(diagnosis)).toBe(
+      '“Uneven heating” and “Wedge” explain this measurement equally well.',
+    );
     expect(diagnosis.alike[0]?.measurement).toBe('Turn the sheet.');
     for (const reading of ['none', 'unknown'] as const)
       expect(readingWords({ reading, alike: [] })).toMatch(/\.$/);

@@ -107,8 +107,8 @@ export function readDiagnosis(report: Report): Diagnosis {
       measurement: text(pair['measurement']),
     })),
     gains: [
-      gainOf(report, 'Held out', 'parts left out'),
-      ...(isObject(unseen) ? [gainOf(unseen, 'Not used', objects.join(', '))] : []),
+      gainOf(report, 'Points left out', 'of the fit'),
+      ...(isObject(unseen) ? [gainOf(unseen, 'Kept for checking', objects.join(', '))] : []),
     ],
     noiseFloor_mm: figure(report, 'noise_floor_mm') ?? 0,
     sigma_mm: new Map(
@@ -130,14 +130,14 @@ export function readDiagnosis(report: Report): Diagnosis {
 export function readingWords({ reading, alike }: Pick<Diagnosis, 'reading' | 'alike'>): string {
   switch (reading) {
     case 'none':
-      return 'Nothing to fix: the remaining error is as small as the measuring noise. The calibrated simulation can be used as it is.';
+      return 'Nothing to fix: the remaining error is as small as the measuring noise. The simulation with the calibrated material can be used as it is.';
     case 'unknown':
       return 'The measured sheet differs in a systematic way that none of the known causes explains. The most similar cause is listed first; look for other causes.';
     case 'cannot_separate': {
       const labels = alike[0]?.labels ?? [];
       return labels.length === 2
-        ? `These data fit equally well with “${labels[0]}” and “${labels[1]}”.`
-        : 'These data fit equally well with more than one cause.';
+        ? `“${labels[0]}” and “${labels[1]}” explain this measurement equally well.`
+        : 'More than one cause explains this measurement equally well.';
     }
     case 'cause':
       return '';

@@ -115,12 +115,12 @@ export function usesIn(
   };
 }
 
-/** "lamp", "lamp 2", ...: names tell objects apart in tables and reports. */
+/** "lamp", "lamp 2", ...; "Object 1", "Object 2", ...: names tell objects apart in tables and reports. */
 export function freeName(wanted: string, objects: readonly MeasuredObject[]): string {
   const plain = wanted.replaceAll(/[,"\r\n]/g, '_').trim() || 'Object';
   const taken = new Set(objects.map(({ name }) => name));
   for (let number = 1; ; ++number) {
-    const name = number === 1 ? plain : `${plain} ${number}`;
+    const name = number === 1 ? plain : `${plain.replace(/ 1$/, '')} ${number}`;
     if (!taken.has(name)) return name;
   }
 }

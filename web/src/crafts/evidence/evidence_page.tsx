@@ -119,7 +119,7 @@ function Bench({ session }: { session: EvidenceSession }) {
       </div>
       {look === null ? (
         <p class="waiting" role="status">
-          {waiting ? 'Simulating with the settings as they are…' : ''}
+          {waiting ? 'Simulating with the machine settings as they are…' : ''}
         </p>
       ) : view.value === 'plane' ? (
         <Maps session={session} look={look} />
@@ -134,11 +134,11 @@ function Bench({ session }: { session: EvidenceSession }) {
           {diagnosis ? (
             <Gains diagnosis={diagnosis} />
           ) : (
-            <Pane title="Error on held-out data" detail="">
+            <Pane title="Error on points left out of the fit" detail="">
               <p class="later">
                 {session.mode.value === 'diagnose'
-                  ? 'Parts of the sheet are left out of the fit and then predicted. This chart is shown after a diagnosis.'
-                  : 'This chart is shown after a diagnosis. A calibration only fits the sheet’s material and reports how certain each parameter is.'}
+                  ? 'A diagnosis leaves parts of the sheet out of the fit and then predicts them. How well it does is shown here afterwards.'
+                  : 'Only a diagnosis fills this chart. A calibration fits the sheet’s material and reports how certain each parameter is.'}
               </p>
             </Pane>
           )}

@@ -22,14 +22,14 @@ const modes = [
 ] as const;
 
 const useNames: Readonly<Record<Use, string>> = {
-  fit: 'Used',
-  unseen: 'Validation object: not used for fitting',
-  off: 'Left out',
+  fit: 'Use for fitting',
+  unseen: 'Keep for checking: not used for fitting',
+  off: 'Leave out',
 };
 
 const useWords: Readonly<Record<Use, string>> = {
   fit: '',
-  unseen: ', for validation only',
+  unseen: ', kept for checking',
   off: ', left out',
 };
 
@@ -48,7 +48,7 @@ export function Inspector({ session, onChooseFile }: InspectorProps) {
               ...mode,
               disabledReason:
                 solving && mode.value !== session.mode.value
-                  ? 'A run is in progress; Esc cancels it'
+                  ? 'A diagnosis or calibration is running; Esc cancels it'
                   : undefined,
             }))}
             value={session.mode.value}
@@ -78,13 +78,13 @@ export function Inspector({ session, onChooseFile }: InspectorProps) {
               />
             </div>
             <Causes session={session} diagnosis={diagnosis} />
-            <Fold title="Parameters fitted with this cause" count={diagnosis.parameters.length}>
+            <Fold title="Material, fitted with and without the cause" count={diagnosis.parameters.length}>
               <table class="refitted">
                 <thead>
                   <tr>
                     <th scope="col">Parameter</th>
-                    <th scope="col">calibrated</th>
-                    <th scope="col">extended</th>
+                    <th scope="col">material alone</th>
+                    <th scope="col">with the cause</th>
                   </tr>
                 </thead>
                 <tbody>
@@ -168,7 +168,7 @@ function ObjectRow({ session, object }: { session: EvidenceSession; object: Meas
           })),
           null,
           {
-            label: 'Remove',
+            label: 'Remove this object',
             icon: 'trash' as const,
             onSelect: () => projects.do(evidence.removeObject(object)),
           },

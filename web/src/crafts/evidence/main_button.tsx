@@ -23,17 +23,17 @@ export function MainButton({ session }: { session: EvidenceSession }) {
   if (activity.kind === 'solving')
     return (
       <>
-        <Button kind="filled" size="big" disabledReason="In progress; Esc cancels">
+        <Button kind="filled" size="big" disabledReason="This takes a while; Esc cancels">
           {mode === 'diagnose' ? 'Diagnosing' : 'Calibrating'}
         </Button>
         <p>
           {activity.name === 'native'
-            ? 'Finished simulations are kept: a stopped run continues from there'
-            : 'Up to date. Change a setting to run it again.'}
+            ? 'Finished simulations are kept: if you stop, the next run continues from there'
+            : 'Earlier results are kept. Esc cancels.'}
         </p>
       </>
     );
-  const busy = activity.kind === 'idle' ? undefined : 'Busy with a file';
+  const busy = activity.kind === 'idle' ? undefined : 'A file is being made or opened';
   if (result === null) {
     const none = session.subject.value === null ? 'Add a measured object first' : busy;
     return (
@@ -56,13 +56,13 @@ export function MainButton({ session }: { session: EvidenceSession }) {
           kind="filled"
           size="big"
           icon={used ? 'check' : 'print'}
-          disabledReason={used ? 'Thermoform in this project uses these values already' : busy}
+          disabledReason={used ? 'Thermoform in this project uses this machine profile already' : busy}
           onClick={() => void session.useProfile()}
         >
           {used ? 'Used in the next print' : 'Use in the next print'}
         </Button>
         <Menu
-          label="Download or undo"
+          label="Download the results, or stop using them"
           buttonClass="button filled big"
           align="right"
           items={[
@@ -77,7 +77,7 @@ export function MainButton({ session }: { session: EvidenceSession }) {
             null,
             {
               label: 'Form without the machine profile',
-              disabledReason: used ? undefined : 'The profile is not in use',
+              disabledReason: used ? undefined : 'No machine profile is in use',
               onSelect: () => projects.do(machineProfile.remove()),
             },
           ]}
@@ -87,10 +87,10 @@ export function MainButton({ session }: { session: EvidenceSession }) {
       </div>
       <p>
         {used
-          ? 'Sheets, prints and moulds are made for this machine'
+          ? 'Thermoform now makes sheets, prints and moulds for this machine'
           : named
-            ? 'Material and cause as found, for thermoforming'
-            : 'The calibrated material, for thermoforming'}
+            ? 'Thermoform will allow for the material and the cause found'
+            : 'Thermoform will use the calibrated material'}
       </p>
     </>
   );
@@ -104,14 +104,18 @@ const hintOf = (name: string, bytes: number | undefined): string =>
 function TimeLine({ session }: { session: EvidenceSession }) {
   const { browser_s, worker_s } = session.estimate.value;
   if (readyWorker(session.services) !== null)
-    return <p>{worker_s ? `About ${formatDuration(worker_s)} with the worker` : 'With the native worker'}</p>;
+    return (
+      <p>
+        {worker_s ? `About ${formatDuration(worker_s)} in the worker program` : 'Runs in the worker program'}
+      </p>
+    );
   const triangles = Number(session.value('triangles') ?? 0);
   return (
     <>
       <p>
         {browser_s
-          ? `About ${formatDuration(browser_s)} in the browser; a worker is quicker`
-          : 'In the browser'}
+          ? `About ${formatDuration(browser_s)} in the browser; the worker program is quicker`
+          : 'Runs in the browser'}
       </p>
       {triangles > coarseTriangles ? (
         <p>

@@ -99,7 +99,7 @@ function PatternDialog({ session, operation, onClose }: PatternDialogProps) {
       <Button
         kind="filled"
         icon="print"
-        disabledReason={making.value ? 'Being made' : undefined}
+        disabledReason={making.value ? 'The pattern is being made' : undefined}
         onClick={() => void print()}
       >
         {making.value ? 'Making the pattern' : 'Save pattern.json and print'}

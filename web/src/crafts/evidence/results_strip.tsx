@@ -64,11 +64,11 @@ function stateOf(session: EvidenceSession) {
           title: 'Scan measured',
           detail: `${formatCount(figure(measured.report, 'points') ?? 0)} points`,
         }
-      : { state: 'idle' as const, title: 'Scan opened', detail: 'Its points are measured next' };
+      : { state: 'idle' as const, title: 'Scan opened', detail: 'Press Measure the scan to find its points' };
   }
   const result = session.result.value;
   if (result) {
-    const where = result.backend === 'native' ? 'on the worker' : 'in the browser';
+    const where = result.backend === 'native' ? 'in the worker program' : 'in the browser';
     const simulations = figure(result.report, 'simulations');
     const made = simulations === null ? '' : `${formatCount(simulations)} simulations, `;
     return {
@@ -78,22 +78,22 @@ function stateOf(session: EvidenceSession) {
     };
   }
   const error = Object.values(session.fieldErrors.value)[0];
-  if (error) return { state: 'attention' as const, title: 'Not run', detail: error };
+  if (error) return { state: 'attention' as const, title: 'Some settings are invalid', detail: error };
   if (session.stopped.value)
     return {
       state: 'idle' as const,
       title: 'Stopped',
       detail:
         session.services.native === null
-          ? 'A run in the browser starts again from the beginning'
-          : 'Finished simulations are kept; the run continues from there',
+          ? 'The next run starts from the beginning'
+          : 'Finished simulations are kept; the next run continues from there',
     };
   const look = session.look.value;
   if (look === null)
     return {
       state: 'idle' as const,
-      title: session.looking.value ? 'Simulating the set-up' : 'Nothing compared yet',
-      detail: 'The comparison of measurement and simulation comes first',
+      title: session.looking.value ? 'Simulating this machine and mould' : 'Nothing compared yet',
+      detail: 'Measured and simulated sheet are compared first',
     };
   const mean = meanOf(distancesOf(look.residuals, 'base'));
   return {

@@ -53,7 +53,7 @@ export function startReason(session: MachinesSession): string | undefined {
   const wrong = wrongMachine(session);
   if (wrong) return wrong;
   if (plan === null) return session.subject.value ? 'Make the job first' : 'Open a drawing or a job first';
-  if (session.planning.value) return 'Available when the job is made';
+  if (session.planning.value) return 'Available when the job has been made';
   if (plan.misfits.length > 0 || session.job.value === null) return plan.misfits[0] ?? 'The job does not fit';
   if (!session.isCurrent.value)
     return session.subject.value
@@ -69,7 +69,7 @@ export function startReason(session: MachinesSession): string | undefined {
     return `Mount the ${toolWords(session)} tool, lower its tip to the stock and set z here`;
   if (session.isMill && !state.axes_known.z)
     return 'The height of the tool’s tip is unknown: lower it to the top of the stock and set z';
-  return state.phase === 'idle' ? undefined : `The machine is ${state.phase}`;
+  return state.phase === 'idle' ? undefined : 'The machine is busy: wait until it is ready';
 }
 
 /** What the driver warns of, and what happens when nobody talks to the machine any more. */
@@ -141,7 +141,7 @@ export async function goOn(session: MachinesSession): Promise<void> {
   // The driver asks about z of the job that it has; after a lost connection it has none. Loading ends what it knew of the last one.
   if (!(await session.control.load(nameOf(session), key, job.bytes))) return;
   ask({
-    title: 'Cut the rest?',
+    title: isLaser(session) ? 'Cut the rest?' : 'Carve on from here?',
     sentences: [
       isLaser(session)
         ? `The machine was homed again; it moves to the path that begins at line ${line}, turns the laser on and continues cutting there. The last cut is repeated.`
@@ -205,14 +205,14 @@ export function focus(session: MachinesSession): void {
 
 export function resume(session: MachinesSession): void {
   ask({
-    title: 'Go on?',
+    title: 'Resume the job?',
     sentences: [
       isLaser(session)
         ? 'The machine continues where it was paused, with the laser on.'
         : 'The machine continues where it was paused, with the spindle on.',
       isLaser(session) ? eyes : chips,
     ],
-    action: 'Go on',
+    action: 'Resume',
     danger: true,
     run: () => void session.control.command({ do: 'resume', confirmed: true }),
   });

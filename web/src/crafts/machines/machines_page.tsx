@@ -17,6 +17,7 @@ import './panel/machine_state.css';
 import './machines.css';
 import type { MachinesSession } from './machines_session';
 import { PathView } from './bed/path_view';
+import { sampleDrawing, sampleName } from './sample_drawing';
 
 export interface MachinesPageProps {
   readonly session: MachinesSession;
@@ -53,7 +54,11 @@ export function MachinesPage({ session, onChooseFile }: MachinesPageProps) {
           />
           {shown.value !== 'console' && plan ? (
             <div class="panel travel-switch">
-              <Switch label="Travel" value={travel.value} onChange={(value) => (travel.value = value)} />
+              <Switch
+                label="Show travel moves"
+                value={travel.value}
+                onChange={(value) => (travel.value = value)}
+              />
             </div>
           ) : null}
         </div>
@@ -95,6 +100,9 @@ function Empty({ session, onChooseFile }: MachinesPageProps) {
         <Button icon="upload" onClick={onChooseFile}>
           {session.isMill ? 'Open a model or a job' : 'Open a drawing or a job'}
         </Button>
+        {session.isMill ? null : (
+          <Button onClick={() => void session.take(sampleName, sampleDrawing())}>Try a sample drawing</Button>
+        )}
       </div>
     </div>
   );
@@ -166,7 +174,7 @@ function Strip({ session, onChooseFile }: MachinesPageProps) {
       >
         {job.careful_line === undefined ? null : (
           <Button size="small" disabledReason={reason} onClick={() => void goOn(session)}>
-            Cut the rest
+            {session.isMill ? 'Carve on from here' : 'Cut the rest'}
           </Button>
         )}
         {another}
@@ -191,7 +199,7 @@ function Strip({ session, onChooseFile }: MachinesPageProps) {
         title={session.planning.value ? 'Making the job' : 'No job yet'}
         detail={
           session.planning.value
-            ? 'One moment'
+            ? 'This takes a moment'
             : session.subject.value
               ? 'Press Make the job to see the tool path'
               : session.isMill
@@ -211,7 +219,7 @@ function Strip({ session, onChooseFile }: MachinesPageProps) {
             ? 'Making the job'
             : session.isCurrent.value
               ? 'Job ready'
-              : 'Previous job, out of date'
+              : 'The job shown is out of date'
       }
       detail={`About ${formatDuration(plan.toolPath.seconds)}${typeof lines === 'number' ? `, ${formatCount(lines)} lines` : ''}`}
     >

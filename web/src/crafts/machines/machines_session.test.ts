@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { signal } from '@preact/signals';
 import { expect, it, vi } from 'vitest';
+import { practiceMill } from '../../machines/profiles';
 import { solveInFull } from '../../shared/session/full_solve';
 import { resultOf, settled, testCatalog, testServices } from '../../shared/session/test_room';
 import { laserJob, machines, millJob } from './machines_document';
@@ -37,6 +38,15 @@ it('a drawing that is still being kept when another project is opened is not wri
   expect(await session.take('star.svg', new Uint8Array(3))).toBe(false);
   expect(services.projects.document.value.id).not.toBe(first);
   expect(services.projects.isBlank.value).toBe(true);
+});
+
+it('a drawing is not taken while a real mill is connected', async () => {
+  const session = new MachinesSession(testServices(testCatalog(laserJob, millJob)));
+  session.useProfile(practiceMill);
+  session.control.link.value = { state: signal(null), gone: signal(null), close: async () => {} } as never;
+  expect(await session.take('star.svg', new Uint8Array(3))).toBe(false);
+  expect(session.problem.value?.message).toMatch(/^Drawings are for lasers: disconnect the mill/);
+  expect(session.document.value.drawing).toBeNull();
 });
 
 it('what a relief was sent to the mill with does not scale the file that is opened next', () => {

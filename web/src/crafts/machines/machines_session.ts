@@ -5,6 +5,7 @@ import type { Catalog, JsonObject, Report } from '../../jobs/contract';
 import { asJobError, cancelled, findOperation } from '../../jobs/contract';
 import { LatestOnly } from '../../jobs/latest_only';
 import { JobLog } from '../../machines/job_log';
+import { openVirtual } from '../../machines/links/open_machine';
 import { MachineControl } from '../../machines/machine_control';
 import { asOrigin } from '../../machines/places';
 import type { MachineProfile } from '../../machines/profiles';
@@ -263,8 +264,9 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
     return await this.take(file.name, new Uint8Array(await file.arrayBuffer()), kind);
   }
 
-  /** Drawings are work for lasers, models and height maps for mills: such a machine is chosen where the other kind was, unless
-   *  that one is connected; then the work is not taken, and the person told. `own`: what is known of it beside its bytes. */
+  /** Drawings are work for lasers, models and height maps for mills: such a machine is chosen where the other kind was. A practice
+   *  machine is exchanged; where a real one is connected the work is not taken, and the person told. `own`: what is known of it
+   *  beside its bytes. */
   async take(
     file_name: string,
     bytes: Uint8Array<ArrayBuffer>,
@@ -273,7 +275,9 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
   ): Promise<boolean> {
     const change = this.changesHere();
     const suits = kind === 'job' || (kind === 'model') === this.isMill;
-    if (!suits && this.control.link.value !== null) {
+    const exchanged = !suits && this.control.practising.value && !this.control.isBusy;
+    const connected = this.control.link.value !== null;
+    if (!suits && connected && !exchanged) {
       this.problem.value = {
         kind: 'file',
         title: `Could not open ${file_name}`,
@@ -302,7 +306,9 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
       if (asJobError(thrown).code === 'cancelled') return false; // the person went on to another project
       throw thrown;
     }
+    if (!suits && connected) await this.control.disconnect();
     if (!suits) this.useProfile(this.profiles.oneThat(kind === 'model'));
+    if (!suits && connected) await this.practise();
     if (blank) change(nameProject(file_name.replace(/\.[^.]+$/, '')));
     return true;
   }
@@ -337,6 +343,11 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
   }
 
   // ---- machines ----
+
+  /** Connects the machine of the profile as one that exists on the screen only. */
+  practise(): Promise<void> {
+    return this.control.connect(this.profiles.current, () => openVirtual(this.driverOptions()), true);
+  }
 
   /** Changes to this machine: its bed and speeds become the job's. */
   useProfile(profile: MachineProfile): void {

@@ -72,7 +72,7 @@ function ViewpointTools({ session, viewport }: { session: ReliefSession; viewpor
           class="grow"
           icon="lock"
           disabledReason={
-            at ? 'This view is the viewpoint already. Turn the model to choose another one.' : undefined
+            at ? 'The relief is made for this view already. Turn the model to choose another one.' : undefined
           }
           title="Makes the relief for the view you see now"
           onClick={() => {
@@ -87,7 +87,7 @@ function ViewpointTools({ session, viewport }: { session: ReliefSession; viewpor
         <IconButton
           icon="eye"
           class="outlined"
-          label="Look from the viewpoint"
+          label="Look from the relief’s viewpoint"
           keys="0"
           pressed={at}
           onClick={() => viewport?.lookFromViewpoint(true)}
@@ -114,10 +114,10 @@ function MainButton({ session, onSolve, onSendToMill }: InspectorProps) {
   if (activity.kind === 'solving')
     return (
       <>
-        <Button kind="filled" size="big" disabledReason="Solving; Esc cancels">
+        <Button kind="filled" size="big" disabledReason="The relief is being solved; Esc cancels">
           Solving at full detail
         </Button>
-        <p>Up to date. Change a setting to make it again.</p>
+        <p>Earlier results are kept. Esc cancels.</p>
       </>
     );
   if (result) return <ExportButton session={session} result={result} onSendToMill={onSendToMill} />;
@@ -135,7 +135,7 @@ function MainButton({ session, onSolve, onSendToMill }: InspectorProps) {
             ? 'Available when the preview is ready'
             : activity.kind === 'idle'
               ? undefined
-              : 'Busy with a file'
+              : 'A file is being made or opened'
         }
         onClick={() => (tight ? setConfirm(true) : onSolve())}
       >
@@ -147,7 +147,8 @@ function MainButton({ session, onSolve, onSendToMill }: InspectorProps) {
           <p>
             This model needs about {formatBytes(memory * 1e6)} of memory
             {estimate?.browser_s ? ` and ${formatDuration(estimate.browser_s)}` : ''} in the browser, which
-            ends at {withUnit('4', 'GB')}. The native worker has no such limit. Your work is saved either way.
+            ends at {withUnit('4', 'GB')}. The worker program on your own computer has no such limit. Your
+            work is saved either way.
           </p>
           <div class="row end">
             <Button onClick={() => setConfirm(false)}>Keep the preview</Button>
@@ -177,7 +178,7 @@ function ExportButton({ session, result, onSendToMill }: ExportProps) {
   const all = session.operation.value?.outputs ?? [];
   const files = all.filter((output) => output.name !== 'relief.ply');
   const main = files.find((output) => output.name === 'relief.stl') ?? files[0];
-  const busy = session.activity.value.kind === 'idle' ? undefined : 'Busy with another file';
+  const busy = session.activity.value.kind === 'idle' ? undefined : 'Another file is being made';
   const save = async (output: OutputDeclaration) => {
     const fileName = fileNameOf(session, output.name); // as it is now: making the file may take a while
     const bytes = await outputOf(session, output.name, output.label);

@@ -20,7 +20,7 @@ export function Notes({ session, onChooseFile, onWorkerHelp }: NotesProps) {
   if (solving && session.shown.value)
     return (
       <p class="label-chip">
-        <Icon name="clock" small /> Preview. The full relief replaces it.
+        <Icon name="clock" small /> This is the preview. The relief at full detail replaces it.
       </p>
     );
   const repairs = repairsNote(session);
@@ -45,12 +45,12 @@ export function Notes({ session, onChooseFile, onWorkerHelp }: NotesProps) {
         <Note
           kind="attention"
           icon="clock"
-          title="Solving in the browser, without the native worker"
+          title="Solving takes a while in the browser"
           onDismiss={dismiss}
           actions={
             <>
               <Button size="small" onClick={onWorkerHelp}>
-                Start the worker
+                How to start the worker program
               </Button>
               <Button size="small" kind="quiet" onClick={dismiss}>
                 Keep working here
@@ -58,9 +58,11 @@ export function Notes({ session, onChooseFile, onWorkerHelp }: NotesProps) {
             </>
           }
         >
-          Previews run in the browser either way. A full solve of this model runs in the browser in about{' '}
-          {formatDuration(estimate?.browser_s ?? 0)}
-          {estimate?.worker_s ? `, with the worker in about ${formatDuration(estimate.worker_s)}` : ''}.
+          At full detail this model takes about {formatDuration(estimate?.browser_s ?? 0)} in the browser
+          {estimate?.worker_s
+            ? ` and about ${formatDuration(estimate.worker_s)} in the worker program on your own computer`
+            : '. The worker program on your own computer is several times faster'}
+          . Previews run in the browser either way.
         </Note>
       </div>
     );

@@ -13,14 +13,17 @@ export function solidLine(report: Report): string {
   return [closed, dimensions].filter(Boolean).join(', ');
 }
 
-/** "Shading 11.1° closer than with plain scaling". */
+/** "Looks deeper than the model simply squashed (shading 4.5° closer)". */
 function gainLine(report: Report): string | null {
   const own = figure(report, 'normal_error_mean_deg');
   const plain = figure(report, 'normal_error_linear_mean_deg');
   if (own === null || plain === null) return null;
   const gain = plain - own;
-  if (Math.abs(gain) < 0.05) return 'Shading as close as with plain scaling';
-  return `Shading ${formatFixed(Math.abs(gain), 1)}° ${gain > 0 ? 'closer' : 'further off'} than with plain scaling`;
+  if (Math.abs(gain) < 0.05) return 'Looks as deep as the model simply squashed';
+  const by = `${formatFixed(Math.abs(gain), 1)}°`;
+  return gain > 0
+    ? `Looks deeper than the model simply squashed (shading ${by} closer)`
+    : `Looks flatter than the model simply squashed (shading ${by} further off)`;
 }
 
 export function solvedLine(seconds: number, report: Report): string {

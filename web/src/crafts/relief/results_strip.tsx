@@ -13,7 +13,7 @@ const titles = {
   exporting: 'Making the file',
   done: 'Relief ready',
   empty: 'No relief yet',
-  failed: 'Not solved',
+  failed: 'The relief was not made',
 };
 
 export const ResultsStrip = ({ session }: { session: ReliefSession }) => (
@@ -24,7 +24,7 @@ export const ResultsStrip = ({ session }: { session: ReliefSession }) => (
     cornersOf={({ mesh }) => mesh.indices.length}
     usualParameter="thickness_mm"
     figureOf={errorText}
-    figureName="normal error"
+    figureName="mean shading difference"
     onRestore={(one, label) => session.services.projects.do(relief.restoreResult(one, label))}
   />
 );

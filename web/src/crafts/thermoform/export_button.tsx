@@ -36,11 +36,11 @@ function exportsOf(session: ThermoformSession): Export[] {
   });
 }
 
-const named = ({ operation, output }: Export): string => {
-  const of = { [printing]: 'Print', [moulding]: 'Mould' }[operation];
-  if (output.name === 'draft.ply' || output.name === 'formed.glb') return output.label;
-  return of ? `${of}, ${output.label}` : output.label;
-};
+/** "Mould, STL", "Print for paper (PDF)". */
+const named = ({ operation, output }: Export): string =>
+  operation === moulding && output.name !== 'draft.ply'
+    ? `Mould, ${output.label}`
+    : `${output.label} (${output.name.split('.').at(-1)?.toUpperCase() ?? ''})`;
 
 async function save(session: ThermoformSession, one: Export): Promise<void> {
   const bytes = await bytesToSave(session, one.operation, one.output.name, one.output.label);
@@ -78,13 +78,13 @@ export function MainButton({ session, onForm }: { session: ThermoformSession; on
   if (activity.kind === 'solving')
     return (
       <>
-        <Button kind="filled" size="big" disabledReason="Forming; Esc cancels">
+        <Button kind="filled" size="big" disabledReason="The sheet is being formed; Esc cancels">
           Forming at full detail
         </Button>
-        <p>Up to date. Change a setting to make it again.</p>
+        <p>Earlier results are kept. Esc cancels.</p>
       </>
     );
-  const busy = activity.kind === 'idle' ? undefined : 'Busy with a file';
+  const busy = activity.kind === 'idle' ? undefined : 'A file is being made or opened';
   if (session.result.value === null)
     return (
       <>
@@ -159,7 +159,7 @@ export function MainButton({ session, onForm }: { session: ThermoformSession; on
       <p>
         {[print ? printLine(session) : null, size === null ? null : formatBytes(size)]
           .filter(Boolean)
-          .join(', ') || 'Made when it is saved'}
+          .join(', ') || 'This file is made when you export it'}
       </p>
     </>
   );

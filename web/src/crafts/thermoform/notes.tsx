@@ -65,14 +65,14 @@ export function Notes({ session, onChooseFile }: NotesProps) {
           icon="warn"
           title={`The model reaches ${withUnit(formatNumber(over, 2), 'mm')} beyond the clamp`}
         >
-          Move it inwards or make it smaller, so that the clamp frame can close.
+          Move the model inwards or make it smaller, so that the clamp frame can close.
         </Note>
       </div>
     );
   if (solving && session.shown.value)
     return (
       <p class="label-chip">
-        <Icon name="clock" small /> Preview. Forming at full detail replaces it.
+        <Icon name="clock" small /> This is the preview. The sheet formed at full detail replaces it.
       </p>
     );
   const repairs = narrow() ? null : repairsNote(session);
@@ -102,9 +102,9 @@ export function Notes({ session, onChooseFile }: NotesProps) {
         <Icon name="warn" small />
         <span class="clip">{title}</span>
         <button type="button" class="text-button" onClick={() => (whole.value = true)}>
-          {others.length > 0 ? `${others.length} more` : 'More'}
+          {others.length > 0 ? `${others.length} more ${others.length === 1 ? 'note' : 'notes'}` : 'Read on'}
         </button>
-        <IconButton icon="close" label="Dismiss" onClick={() => (dismissed.value = words)} />
+        <IconButton icon="close" label="Hide this note" onClick={() => (dismissed.value = words)} />
       </div>
     );
   return (

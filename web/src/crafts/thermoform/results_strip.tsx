@@ -18,13 +18,13 @@ export function ResultsStrip({ session }: { session: ThermoformSession }) {
         exporting: activity.kind === 'idle' ? '' : `Making the ${activity.name}`,
         done: 'Sheet formed',
         empty: 'No sheet yet',
-        failed: 'Not formed',
+        failed: 'The sheet was not formed',
       }}
       detailOf={formedLine}
       cornersOf={({ sheet }) => sheet.indices.length}
       usualParameter="sheet_thickness_mm"
       figureOf={thinnest}
-      figureName="thinnest"
+      figureName="thinnest place"
       onRestore={(one, label) =>
         session.services.projects.do(thermoform.restoreResult(one, label, (name) => name in own))
       }
@@ -37,10 +37,10 @@ const thinnest = ({ report }: CraftResult): string => {
   return thin === null ? '' : withUnit(formatNumber(thin, 2), 'mm');
 };
 
-/** "10,240 triangles, 8.9 s on the worker". */
+/** "10,240 triangles, 8.9 s in the worker program". */
 function formedLine({ report, seconds, backend }: CraftResult): string {
   const triangles = figure(report, 'triangles');
-  const where = backend === 'native' ? 'on the worker' : 'in the browser';
+  const where = backend === 'native' ? 'in the worker program' : 'in the browser';
   const time = `${formatDuration(seconds)} ${where}`;
   return triangles === null ? time : `${formatCount(triangles)} triangles, ${time}`;
 }

@@ -9,18 +9,18 @@ import { endOf, fractionAt, timeAt } from './film';
 import type { Formed, ThermoformSession } from './thermoform_session';
 import { playing } from './views';
 
-const titles: Readonly<Record<string, string>> = { relax: 'Relax', raise: 'Raise', vacuum: 'Vacuum' };
+const titles: Readonly<Record<string, string>> = { relax: 'Sag', raise: 'Raise', vacuum: 'Vacuum' };
 
 /** What happens in a phase, in a few words. */
 function phaseDetail(name: string, { report }: Formed, all: Readonly<Record<string, Json>>): string {
   if (name === 'relax') {
     const sag = figure(report, 'sag_mm');
-    return sag === null ? '' : `sags ${withUnit(formatNumber(sag, 2), 'mm')}`;
+    return sag === null ? '' : `by ${withUnit(formatNumber(sag, 2), 'mm')}`;
   }
   if (name === 'raise') return withUnit(formatNumber(Number(all['mould_speed_mm_per_s'] ?? 0), 2), 'mm/s');
   const vacuum = withUnit(formatNumber(Number(all['vacuum_kpa'] ?? 0), 2), 'kPa');
   const end = withUnit(formatFixed(figure(report, 'forming_end_s') ?? 0, 1), 's');
-  const stopped = { all_touching: `all in contact at ${end}`, at_rest: `stops moving at ${end}` }[
+  const stopped = { all_touching: `touches everywhere at ${end}`, at_rest: `at rest at ${end}` }[
     String(report['stopped_by'])
   ];
   return [vacuum, stopped].filter(Boolean).join(', ');

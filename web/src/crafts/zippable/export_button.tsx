@@ -92,13 +92,13 @@ export function MainButton({ session, onSolve, onSendToMachine }: MainButtonProp
   if (activity.kind === 'solving')
     return (
       <>
-        <Button kind="filled" size="big" disabledReason="In progress; Esc cancels">
+        <Button kind="filled" size="big" disabledReason="The ribbon is being made; Esc cancels">
           Making the ribbon
         </Button>
-        <p>Up to date. Change a setting to make it again.</p>
+        <p>Earlier results are kept. Esc cancels.</p>
       </>
     );
-  const busy = activity.kind === 'idle' ? undefined : 'Busy with a file';
+  const busy = activity.kind === 'idle' ? undefined : 'A file is being made or opened';
   const result = session.result.value;
   if (result === null)
     return (
@@ -172,7 +172,9 @@ export function MainButton({ session, onSolve, onSendToMachine }: MainButtonProp
       </div>
       <p>
         {ending(main.output)} at true size
-        {main.operation === planning ? ', layers by colour: cut, mark, engrave.' : '. It may overlap itself.'}
+        {main.operation === planning
+          ? ', layers by colour: cut, mark, engrave.'
+          : '. The ribbon may overlap itself; the sheets to cut do not.'}
       </p>
     </>
   );

@@ -24,7 +24,7 @@ export function Notes({ session, onChooseFile }: NotesProps) {
   if (solving && session.shown.value)
     return (
       <p class="label-chip">
-        <Icon name="clock" small /> Preview. The whole model’s ribbon replaces it.
+        <Icon name="clock" small /> This is the preview. The ribbon of the whole model replaces it.
       </p>
     );
   const repairs = repairsNote(session);
@@ -43,7 +43,7 @@ export function Notes({ session, onChooseFile }: NotesProps) {
       <Note
         kind="plain"
         icon="warn"
-        title="Decided automatically"
+        title="What was decided automatically"
         onDismiss={() => {
           open.value = false;
           dismissed.value = words;

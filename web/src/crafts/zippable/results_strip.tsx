@@ -42,9 +42,9 @@ const zipperOf = ({ report }: CraftResult): string => {
   return length_mm === null ? '' : formatMetres(length_mm);
 };
 
-/** "All lengths are kept. 1.3 s on the worker". */
+/** "Laid flat without stretching 1.3 s on the worker". */
 function madeLine({ report, seconds, backend }: CraftResult): string {
   const error = figure(report, 'isometry_error');
   const kept = error !== null && error < lengthKept ? 'All lengths are kept. ' : '';
-  return `${kept}${formatDuration(seconds)} ${backend === 'native' ? 'on the worker' : 'in the browser'}`;
+  return `${kept}${formatDuration(seconds)} ${backend === 'native' ? 'in the worker program' : 'in the browser'}`;
 }

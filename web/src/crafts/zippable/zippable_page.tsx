@@ -5,6 +5,7 @@ import type { Viewport } from '../../view';
 import { solveInFull } from '../../shared/session/full_solve';
 import { useRoomKeys } from '../../shared/session/room_keys';
 import { Gallery } from '../../shared/panels/gallery';
+import { zippableSamples } from '../../shared/panels/sample_uses';
 import { useModelPicture, useResultPictures } from '../../shared/panels/pictures';
 import '../../shared/panels/room.css';
 import { tool } from './drawing/draw_actions';
@@ -25,9 +26,6 @@ export interface ZippablePageProps {
   readonly onChooseFile: () => void;
   readonly onSendToMachine: SendToMachine;
 }
-
-/** The samples that make good zippables, easy ones first. */
-const samplesFirst = ['star', 'heart', 't_shape', 'octopus', 'cat', 'torus'];
 
 export function ZippablePage({ session, onChooseFile, onSendToMachine }: ZippablePageProps) {
   const viewport = useSignal<Viewport | null>(null);
@@ -80,7 +78,7 @@ export function ZippablePage({ session, onChooseFile, onSendToMachine }: Zippabl
 
 function Empty({ session, onChooseFile }: Omit<ZippablePageProps, 'onSendToMachine'>) {
   const all = session.services.catalog.value?.samples ?? [];
-  const samples = samplesFirst.flatMap((name) => all.find((sample) => sample.name === name) ?? []);
+  const samples = zippableSamples.flatMap((name) => all.find((sample) => sample.name === name) ?? []);
   return (
     <div class="zippable-empty">
       <p>A zippable starts from a closed model. Drop one, or choose a sample.</p>

@@ -77,7 +77,7 @@ export class ZippableSession extends RoomSession<ZippableDocument> {
     inputName: 'mesh',
     furtherInputs: this.#furtherInputs,
     // The order was one of the old model's; widths and sizes stay as the maker set them.
-    forgets: (name) => this.operation.value?.parameters.properties[name]?.['x-group'] === 'Curve',
+    forgets: (name) => this.operation.value?.parameters.properties[name]?.['x-group'] === 'Zipper line',
   });
   readonly hasWork = this.model.isThere;
   readonly subject = this.model.subject;

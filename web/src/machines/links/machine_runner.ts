@@ -82,8 +82,7 @@ export class MachineRunner {
     else if (end.kind === 'serial' && serial)
       this.#end = await openSerialEnd(serial, end.index, end.baud, listener);
     else if (end.kind === 'usb' && usb) this.#end = await openUsbEnd(usb, end.index, listener);
-    else
-      throw new Error('This browser has no access to such ports: use Chrome or Edge, or the native worker.');
+    else throw new Error('This browser cannot reach such a port: use Chrome or Edge, or the worker program.');
     this.#call({ call: 'opened' });
     this.#timer = setInterval(() => this.#call({ call: 'tick' }), tick_ms);
   }

@@ -37,7 +37,7 @@ export async function openSerial(options: Options, choose = false): Promise<Mach
   const { serial } = chooser();
   if (serial === undefined)
     throw new Error(
-      'This browser has no serial ports: use Chrome or Edge, or connect through the native worker.',
+      'This browser cannot reach a serial port: use Chrome or Edge, or connect through the worker program.',
     );
   const before = await serial.getPorts();
   const port = !choose && before.length === 1 ? before[0] : await serial.requestPort().catch(cancelled);

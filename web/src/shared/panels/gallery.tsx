@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import type { Sample } from '../../jobs/contract';
-import { formatCount } from '../../ui';
+import { usesOf } from './sample_uses';
 
 /** Kept in public/pictures by scripts/draw_pictures.js; a sample newer than its picture goes without. */
 export function KeptPicture({ name }: { name: string }) {
@@ -24,7 +24,7 @@ export function Gallery({ samples, onOpen }: GalleryProps) {
               <KeptPicture name={sample.name} />
             </span>
             <strong>{sample.title}</strong>
-            <small>{formatCount(sample.default_vertices / 1000)}k vertices</small>
+            <small>{usesOf(sample)}</small>
           </button>
         </li>
       ))}

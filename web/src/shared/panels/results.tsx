@@ -67,7 +67,7 @@ export function Results<D extends RoomDocument>(props: ResultsProps<D>) {
           {
             label: 'Delete this result',
             icon: 'trash' as const,
-            disabledReason: current ? undefined : 'None chosen',
+            disabledReason: current ? undefined : 'Choose a result first',
             onSelect: () => {
               if (current) session.services.projects.do(session.commands.removeResult(current.id));
             },

@@ -38,7 +38,7 @@ export interface PreviewLineProps {
 /** "Preview up to date", "10,240 triangles, 0.4 s in the browser". */
 export function previewLine({ error, failed, empty, corners, seconds, previewing }: PreviewLineProps) {
   if (error) return { state: 'attention' as const, title: failed, detail: error };
-  if (corners === null) return { state: 'idle' as const, title: empty, detail: 'The preview comes first' };
+  if (corners === null) return { state: 'idle' as const, title: empty, detail: 'A preview is made first' };
   const triangles = `${formatCount(corners / 3)} triangles`;
   return {
     state: 'idle' as const,

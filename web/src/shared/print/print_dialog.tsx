@@ -66,7 +66,7 @@ function PrinterChoice({ session }: { readonly session: PrintSession }) {
               {state === 'off' ? ' (off)' : ''}
             </option>
           ))}
-          <option value={asFile}>None: a PDF</option>
+          <option value={asFile}>No printer: save a PDF</option>
         </select>
       </div>
       {printers.length === 0 ? (
@@ -75,7 +75,7 @@ function PrinterChoice({ session }: { readonly session: PrintSession }) {
             ? 'Looking for printers'
             : worker
               ? 'No printer was found. Printers of this computer and of the network appear here by themselves.'
-              : 'Printing from here needs the native worker: run “make run” and open the address it prints. Or save the PDF and print it at 100 %, not fitted to the page.'}
+              : 'Printing from here needs the worker program: run “make run” in Formwright’s source and open the address it prints. Or save the PDF and print it at 100 %, not fitted to the page.'}
         </p>
       ) : null}
       {reasons.length > 0 ? (

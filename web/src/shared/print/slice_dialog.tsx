@@ -54,7 +54,7 @@ function NoSlicer({ session }: { readonly session: SliceSession }) {
       <p>
         {worker
           ? 'No slicer was found on this computer. Install PrusaSlicer, or slice the file yourself.'
-          : 'Slicing and sending need the native worker: run “make run” and open the address it prints. Or slice the file yourself.'}
+          : 'Slicing and sending need the worker program: run “make run” in Formwright’s source and open the address it prints. Or slice the file yourself.'}
       </p>
       <div class="dialog-actions">
         <Button
@@ -108,7 +108,7 @@ function Slicing({ session }: { readonly session: SliceSession }) {
         ) : (
           <Button
             kind="filled"
-            disabledReason={session.task.value ? 'Under way' : undefined}
+            disabledReason={session.task.value ? 'A print is being prepared' : undefined}
             onClick={() => void session.slice()}
           >
             Slice
@@ -152,8 +152,13 @@ function Sending({ session }: { readonly session: SliceSession }) {
       </p>
     );
   const name = servers.find(({ id }) => id === session.server.value)?.name ?? '';
-  const busy = session.task.value ? 'Under way' : now === null ? 'It has not answered yet' : undefined;
-  const notReady = now?.state === 'ready' ? undefined : `It is ${now?.state ?? 'silent'}`;
+  const busy = session.task.value
+    ? 'A print is being prepared'
+    : now === null
+      ? 'The printer has not answered yet'
+      : undefined;
+  const notReady =
+    now?.state === 'ready' ? undefined : now ? `The printer is ${now.state}` : 'The printer does not answer';
   return (
     <section class="section" aria-label="Printer">
       <div class="field-line">
@@ -178,7 +183,7 @@ function Sending({ session }: { readonly session: SliceSession }) {
             {name} heats up and moves as soon as it has the file. Is its bed clear, and is somebody beside it?
           </p>
           <div class="dialog-actions">
-            <Button onClick={() => (confirming.value = false)}>Not yet</Button>
+            <Button onClick={() => (confirming.value = false)}>Do not start yet</Button>
             <Button
               kind="danger"
               onClick={() => {

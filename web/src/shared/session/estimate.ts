@@ -55,10 +55,10 @@ export function expectedTimes(craft: string, vertices: number, previewed: Measur
   };
 }
 
-/** "About 8 s in the browser", "About 2 s with the worker". */
+/** "About 8 s in the browser", "About 2 s in the worker program". */
 export function timeLine(expected: ExpectedTimes | null, worker: boolean): string {
   const seconds = worker ? expected?.worker_s : expected?.browser_s;
-  const where = worker ? 'with the worker' : 'in the browser';
+  const where = worker ? 'in the worker program' : 'in the browser';
   if (seconds) return `About ${formatDuration(seconds)} ${where}`;
-  return worker ? 'With the native worker' : 'In the browser';
+  return worker ? 'Runs in the worker program' : 'Runs in the browser';
 }

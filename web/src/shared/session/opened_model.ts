@@ -12,6 +12,10 @@ import { readMesh } from './read_mesh';
 import { sentences } from './report';
 import type { RoomSession } from './room_session';
 import type { ShadedMesh } from '../panels/shaded_mesh';
+import { formatBytes } from '../../ui';
+
+/** What browsers read into one piece of memory. */
+const maxFileBytes = 2 ** 31 - 1;
 
 /** The file's bytes, and of those that came with it. */
 export interface ChosenFiles {
@@ -72,6 +76,12 @@ export class OpenedModel<D extends CraftDocument = CraftDocument> {
   }
 
   async openFile({ model, companions = [] }: ChosenFiles): Promise<boolean> {
+    const large = [model, ...companions].find(({ size }) => size > maxFileBytes);
+    if (large) {
+      const message = `It has ${formatBytes(large.size)}, and a browser reads files up to ${formatBytes(maxFileBytes)}: reduce the number of triangles and export it again.`;
+      this.#room.problem.value = { kind: 'file', title: `Could not open ${large.name}`, message };
+      return false;
+    }
     const reference = async (file: File): Promise<BlobReference> =>
       await this.#room.keep(
         new Uint8Array(await file.arrayBuffer()),
@@ -143,7 +153,7 @@ export class OpenedModel<D extends CraftDocument = CraftDocument> {
       throw new JobError({
         code: 'internal',
         where: '',
-        message: `This build does not have the operation ${this.#room.operationName}.`,
+        message: `This version of Formwright cannot do this (${this.#room.operationName}).`,
       });
     return operation;
   }

@@ -19,6 +19,8 @@ export interface FrameClient {
   /** The graphics card has not finished what it was given. */
   gpuBusy(): boolean;
   onFrame(stats: FrameStats): void;
+  /** Whether there is more to draw than what is to be seen. */
+  onDrawing(drawing: boolean): void;
 }
 
 /** How soon to look again whether the card is done: soon after a frame's length. */
@@ -55,6 +57,7 @@ export class FrameLoop {
   restart(): void {
     this.sample = 0;
     this.finished = false;
+    this.client.onDrawing(true);
     if (this.stopped) return;
     clearTimeout(this.timer);
     this.timer = 0;
@@ -152,6 +155,7 @@ export class FrameLoop {
       if (this.sample >= samples || late) {
         this.finished = true;
         this.last = null;
+        this.client.onDrawing(false);
         this.client.onFrame({
           cpuMs: 0,
           intervalMs: null,

@@ -30,7 +30,7 @@ export function Distances({ session, look }: { session: EvidenceSession; look: L
     `95 % below ${withUnit(formatNumber(percentile(shown, 0.95), 2), 'mm')}`,
     ...(noiseFloor_mm === null
       ? []
-      : [`noise alone would give ${withUnit(formatNumber(noiseFloor_mm, 2), 'mm')}`]),
+      : [`measuring noise alone would give ${withUnit(formatNumber(noiseFloor_mm, 2), 'mm')}`]),
   ].join(', ');
   return (
     <Pane title="Distances" detail={`${mean} on average`}>
@@ -69,7 +69,7 @@ export function Distances({ session, look }: { session: EvidenceSession; look: L
         </text>
         <g class="key" transform={`translate(${width - 130} 14)`}>
           {noise > 0 ? <KeyLine at={0} kind="noise" text="mean of noise alone" /> : null}
-          {before ? <KeyLine at={1} kind="before" text="calibrated only" /> : null}
+          {before ? <KeyLine at={1} kind="before" text="material alone" /> : null}
         </g>
       </svg>
     </Pane>
@@ -111,7 +111,7 @@ export function Gains({ diagnosis }: { diagnosis: Diagnosis }) {
       `${gain.title} (${gain.detail}): mean distance ${formatNumber(gain.before.value, 2)} to ${withUnit(formatNumber(gain.after.value, 2), 'mm')}, ${gainWords(gain)}`,
   );
   return (
-    <Pane title="Error on held-out data" detail={gainWords(first)}>
+    <Pane title="Error on points left out of the fit" detail={gainWords(first)}>
       <svg
         class="chart"
         viewBox={`0 0 ${width} ${height}`}
@@ -163,12 +163,12 @@ export function Gains({ diagnosis }: { diagnosis: Diagnosis }) {
         <g class="key" transform={`translate(${left} ${height - 12})`}>
           <rect class="base" width="11" height="10" />
           <text x="18" y="9">
-            calibrated
+            material alone
           </text>
-          <g transform="translate(100 0)">
+          <g transform="translate(124 0)">
             <rect class="extended" width="11" height="10" />
             <text x="18" y="9">
-              extended
+              with the cause
             </text>
           </g>
         </g>

@@ -127,7 +127,11 @@ function keepPicture(session: EvidenceSession, look: Look, canvas: HTMLCanvasEle
 }
 
 export const modelWords = (look: Look, model: 'base' | 'extended'): string =>
-  look.kind === 'quick' ? 'current settings' : model === 'extended' ? 'extended' : 'calibrated';
+  look.kind === 'quick'
+    ? 'current settings'
+    : model === 'extended'
+      ? 'with the cause'
+      : 'material calibrated';
 
 export function Pane(props: { title: string; detail: string; children: ComponentChildren }) {
   return (

@@ -18,7 +18,7 @@ export function ScanInspector({ session, scan }: { session: EvidenceSession; sca
   const missing = lacking(session, scan);
   const busy = session.activity.value.kind !== 'idle';
   const reason = busy
-    ? 'In progress; Esc cancels'
+    ? 'The scan is being measured; Esc cancels'
     : missing.length > 0
       ? `Still missing: ${missing.join(' and ')}`
       : undefined;
@@ -42,7 +42,7 @@ export function ScanInspector({ session, scan }: { session: EvidenceSession; sca
             ))}
           </ul>
           <Button size="small" onClick={() => projects.do(evidence.setScan(null, 'Remove the scan'))}>
-            Remove it
+            Remove the scan
           </Button>
         </section>
         {operation ? (
@@ -67,7 +67,7 @@ export function ScanInspector({ session, scan }: { session: EvidenceSession; sca
             >
               Use these points
             </Button>
-            <p>Mould and set-up of the object come next</p>
+            <p>After this, add the object’s mould.obj and setup.json</p>
           </>
         ) : (
           <>
@@ -79,7 +79,11 @@ export function ScanInspector({ session, scan }: { session: EvidenceSession; sca
             >
               Measure the scan
             </Button>
-            <p>{missing.length > 0 ? 'Needs the scan and the pattern.json of its print' : 'A few seconds'}</p>
+            <p>
+              {missing.length > 0
+                ? 'Needs the scan and the pattern.json of its print'
+                : 'Takes a few seconds'}
+            </p>
           </>
         )}
       </div>

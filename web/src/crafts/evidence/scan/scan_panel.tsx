@@ -246,7 +246,9 @@ function Aligned({ session, measured }: { session: EvidenceSession; measured: Me
       <p class="scan-figures">
         {formatCount(figure(report, 'points') ?? 0)} points
         {sigma === null ? '' : `, each to about ${withUnit(formatNumber(sigma, 2), 'mm')}`}
-        {report['coordinates'] === 'scan' ? ', in the scanner’s coordinates: no rim was scanned' : ''}
+        {report['coordinates'] === 'scan'
+          ? ', in the scanner’s coordinates, because the sheet’s rim was not scanned'
+          : ''}
       </p>
       {notes.length > 0 ? (
         <ul class="plain-list">

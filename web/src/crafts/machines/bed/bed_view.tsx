@@ -141,5 +141,5 @@ function words(session: MachinesSession): string {
   const head = session.control.state.value?.position_known ? session.control.state.value.work_mm : null;
   const where = head ? `; the head at ${head.slice(0, 2).map(mm).join(', ')}` : '';
   const movable = session.document.value.drawing?.kind !== 'model';
-  return `Bed of ${bed}: ${job}${where}.${movable ? ' Arrows move the job.' : ''}`;
+  return `Bed of ${bed}: ${job}${where}.${movable ? ' Arrow keys move the job.' : ''}`;
 }

@@ -54,7 +54,12 @@ export function MachineNotes({
     );
   if (control.problem.value)
     return (
-      <Note kind="bad" icon="warn" title="The machine" onDismiss={() => (control.problem.value = null)}>
+      <Note
+        kind="bad"
+        icon="warn"
+        title="The machine did not do this"
+        onDismiss={() => (control.problem.value = null)}
+      >
         {control.problem.value}
       </Note>
     );

@@ -16,7 +16,7 @@ export function MachineBar({ session }: { readonly session: MachinesSession }) {
       <a href="#/machines">
         {state.alarm
           ? `${control.machineName.value}: alarm`
-          : `${state.phase === 'paused' ? 'Held' : 'Working on'} ${job?.name ?? 'a job'}, ${percent} %`}
+          : `${state.phase === 'paused' ? 'Paused' : 'Working on'} ${job?.name ?? 'a job'}, ${percent} %`}
       </a>
       <Button kind="danger" icon="stop" onClick={() => void control.command({ do: 'stop' })}>
         Stop

@@ -2,7 +2,7 @@
 // Which machine: profiles that are kept and shared, and the ways to connect.
 import { useSignal } from '@preact/signals';
 import { useRef } from 'preact/hooks';
-import { hasSerial, hasUsb, openSerial, openUsb, openVirtual } from '../../../machines/links/open_machine';
+import { hasSerial, hasUsb, openSerial, openUsb } from '../../../machines/links/open_machine';
 import type { MachineLink } from '../../../machines/links/machine_link';
 import type { MachineProfile } from '../../../machines/profiles';
 import { asProfile, profileExtension, profileFile } from '../../../machines/profiles';
@@ -25,7 +25,7 @@ export function ProfileMenu({ session }: { readonly session: MachinesSession }) 
   const file = useRef<HTMLInputElement>(null);
   const { profiles, control } = session;
   const current = profiles.current;
-  const busy = control.link.value === null ? undefined : 'Disconnect first';
+  const busy = control.link.value === null ? undefined : 'Disconnect the machine first';
   const read = async (chosen: File) => {
     try {
       session.useProfile(asProfile(JSON.parse(await chosen.text())));
@@ -59,7 +59,7 @@ export function ProfileMenu({ session }: { readonly session: MachinesSession }) 
           {
             label: 'Save these settings with the machine',
             icon: 'check' as const,
-            disabledReason: session.profileChanged ? undefined : 'Nothing has changed',
+            disabledReason: session.profileChanged ? undefined : 'No setting of this machine has changed',
             onSelect: () => {
               profiles.put({ ...current, parameters: session.machineParameters() });
               toast(`Saved with ${current.name}.`);
@@ -218,8 +218,8 @@ export function ConnectMenu({ session }: { readonly session: MachinesSession }) 
   const busy = control.connecting.value ? 'Connecting' : undefined;
   const serial = hasSerial()
     ? undefined
-    : 'This browser has no serial ports: use Chrome or Edge, or the native worker';
-  const usb = hasUsb() ? undefined : 'This browser has no WebUSB: use Chrome or Edge';
+    : 'This browser cannot reach a serial port: use Chrome or Edge, or the worker program';
+  const usb = hasUsb() ? undefined : 'This browser cannot reach USB devices: use Chrome or Edge';
   return (
     <div class="connect">
       {controller === 'k40' ? (
@@ -256,12 +256,12 @@ export function ConnectMenu({ session }: { readonly session: MachinesSession }) 
           {name}
         </Button>
       ))}
-      <Button icon="play" disabledReason={busy} onClick={() => connect(() => openVirtual(options()))}>
+      <Button icon="play" disabledReason={busy} onClick={() => void session.practise()}>
         Practise without a machine
       </Button>
       <p class="hint">
         {controller === 'ruida'
-          ? 'Ruida lasers are reached over the network, through the native worker.'
+          ? 'Ruida lasers are reached over the network, through the worker program on your computer.'
           : 'The practice machine behaves like a real one and moves nothing.'}
       </p>
     </div>

@@ -13,12 +13,12 @@ const phaseWords: Record<MachineState['phase'], string> = {
   homing: 'Homing',
   jogging: 'Moving',
   running: 'Working',
-  pausing: 'Holding',
-  paused: 'Held',
+  pausing: 'Pausing',
+  paused: 'Paused',
   stopping: 'Stopping',
   alarm: 'Alarm',
   door: 'Door open',
-  check: 'Check mode',
+  check: 'Check only',
   sleep: 'Asleep',
 };
 
@@ -53,7 +53,7 @@ export function MachinePanel({ session }: { readonly session: MachinesSession })
         <div class="grow">
           <ProfileMenu session={session} />
           <span class="model-line">
-            {state?.firmware ? `${state.controller.toUpperCase()} ${state.firmware}` : 'No machine'}
+            {state?.firmware ? `${state.controller.toUpperCase()} ${state.firmware}` : 'No machine connected'}
           </span>
         </div>
         <span class={`chip state-chip ${dotOf(state)}`} role="status">
@@ -71,7 +71,7 @@ export function MachinePanel({ session }: { readonly session: MachinesSession })
             <div class="machine-buttons">
               <Button
                 icon="home"
-                disabledReason={cannot('home', 'Not possible now, or the machine has no homing switches')}
+                disabledReason={cannot('home', 'The machine is busy, or has no homing switches')}
                 onClick={() => home(session)}
               >
                 Home
@@ -89,7 +89,7 @@ export function MachinePanel({ session }: { readonly session: MachinesSession })
               </Button>
               {held ? (
                 <Button icon="play" onClick={() => resume(session)}>
-                  Go on
+                  Resume
                 </Button>
               ) : (
                 <Button
@@ -97,7 +97,7 @@ export function MachinePanel({ session }: { readonly session: MachinesSession })
                   disabledReason={cannot('pause', 'No job is running')}
                   onClick={() => hold(session)}
                 >
-                  Hold
+                  Pause
                 </Button>
               )}
               {control.can('focus_off') ? (
@@ -136,7 +136,7 @@ export function MachinePanel({ session }: { readonly session: MachinesSession })
               </Button>
               {control.can('set_origin') && state.position_known && state.controller === 'grbl' ? (
                 <Button size="small" onClick={() => void control.command({ do: 'set_origin', at: 'corner' })}>
-                  Origin at the bed’s corner
+                  Set origin at the bed’s corner
                 </Button>
               ) : null}
               <Button

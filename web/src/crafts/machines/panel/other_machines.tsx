@@ -30,7 +30,7 @@ export function OtherMachines({ session }: { readonly session: MachinesSession }
         <p class="hint">
           {worker
             ? 'None found. Printers of this computer appear by themselves; others are added with “formwright machine add”.'
-            : 'Printers and network machines need the native worker: run “make run” and open the address it prints.'}
+            : 'Printers and network machines need the worker program: run “make run” in Formwright’s source and open the address it prints.'}
         </p>
       ) : (
         <ul class="other-machines">
@@ -105,7 +105,7 @@ function SendJob({ session, machine }: { session: MachinesSession; machine: Brid
       danger: true,
       run: () => void send(true),
     });
-  const busy = sending.value ? 'Being sent' : undefined;
+  const busy = sending.value ? 'The file is being sent' : undefined;
   return (
     <>
       <Button size="small" disabledReason={busy} onClick={() => void send(false)}>

@@ -39,7 +39,7 @@ export function MaterialSection({ session }: { readonly session: MachinesSession
           value={beginning?.name ?? String(chosen)}
           onChange={(event) => choose(event.currentTarget.value)}
         >
-          <option value="-1">As set below</option>
+          <option value="-1">None: the values below</option>
           {materials.length > 0 ? (
             <optgroup label={`Saved with ${profiles.current.name}`}>
               {materials.map(({ name }, index) => (

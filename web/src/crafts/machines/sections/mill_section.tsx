@@ -93,14 +93,18 @@ export function MakeMillJob({ session }: { readonly session: MachinesSession }) 
   const { kind } = session.activity.value;
   const worker = readyWorker(session.services) !== null;
   const seconds = session.estimate_s.value;
-  const where = worker ? 'with the native worker' : 'in the browser';
+  const where = worker ? 'in the worker program' : 'in the browser';
   return (
     <>
       <Button
         kind="filled"
         size="big"
         disabledReason={
-          kind === 'solving' ? 'In progress; Esc cancels' : kind === 'idle' ? undefined : 'Busy with a file'
+          kind === 'solving'
+            ? 'The job is being made; Esc cancels'
+            : kind === 'idle'
+              ? undefined
+              : 'A file is being made or opened'
         }
         onClick={() => void solveInFull(session)}
       >

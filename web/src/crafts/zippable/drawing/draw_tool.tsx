@@ -86,7 +86,7 @@ function Toolbar({ session, viewport }: { session: ZippableSession; viewport: Vi
       <div class="row">
         <Segmented
           floating
-          label="Draw"
+          label="What to draw"
           options={tools}
           value={tool.value ?? 'border'}
           onChange={(value) => (tool.value = value)}
@@ -102,20 +102,22 @@ function Toolbar({ session, viewport }: { session: ZippableSession; viewport: Vi
             <Button
               size="small"
               icon="loop"
-              disabledReason={left > 0 ? `${left} more ${left === 1 ? 'point' : 'points'}` : undefined}
+              disabledReason={
+                left > 0 ? `Add ${left} more ${left === 1 ? 'point' : 'points'} first` : undefined
+              }
               onClick={() => void closeBorder(session)}
             >
-              Close it
+              Close the border
             </Button>
           ) : null}
           {cutting && drawn.begunCut.length > 0 ? (
             <Button
               size="small"
               icon="check"
-              disabledReason={drawn.begunCut.length < fewestToCut ? '1 more point' : undefined}
+              disabledReason={drawn.begunCut.length < fewestToCut ? 'Add 1 more point first' : undefined}
               onClick={() => void endCut(session)}
             >
-              End it here
+              End the cut here
             </Button>
           ) : null}
           {tool.value === 'opening' && drawn.openings.length === 0 && found > 0 ? (

@@ -118,7 +118,7 @@ function DrawRow({ session }: { session: ZippableSession }) {
       <p class="grow">
         {byHand
           ? `Drawn by hand: ${[...count(borders.length, 'border'), ...count(openings.length, 'opening'), ...count(cuts.length, 'cut')].join(', ')}`
-          : 'Found automatically'}
+          : 'The parts were found automatically'}
       </p>
       {tool.value === null ? (
         <Button
@@ -129,7 +129,7 @@ function DrawRow({ session }: { session: ZippableSession }) {
             tool.value = 'border';
           }}
         >
-          {byHand ? 'Change' : 'Draw them'}
+          {byHand ? 'Change the drawing' : 'Draw the parts'}
         </Button>
       ) : (
         <Button size="small" icon="check" onClick={() => (tool.value = null)}>

@@ -19,7 +19,7 @@ const flatNames = [
   { value: 'ribbon', label: 'Ribbon' },
   { value: 'sheets', label: 'Sheets to cut' },
 ] as const;
-const rigName = { value: 'rig', label: 'Rig' } as const;
+const rigName = { value: 'rig', label: 'Fastening rig' } as const;
 
 export interface FlatRibbonProps {
   readonly session: ZippableSession;

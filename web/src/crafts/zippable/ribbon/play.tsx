@@ -98,7 +98,11 @@ function Choice({ session }: { session: ZippableSession }) {
     );
   const idle = session.activity.value.kind === 'idle';
   const reason =
-    session.result.value === null ? 'Make the ribbon first' : idle ? undefined : 'Busy with another task';
+    session.result.value === null
+      ? 'Make the ribbon first'
+      : idle
+        ? undefined
+        : 'A file is being made or opened';
   const simulate = async () => {
     course.value = 'simulated';
     await simulationBytes(session, 'zipping.glb', 'simulation');

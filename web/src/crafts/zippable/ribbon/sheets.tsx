@@ -35,7 +35,7 @@ export function Sheets({ session, drawing, onSendToMachine }: SheetsProps) {
   if (design === null)
     return (
       <div class="sheets-empty">
-        <p>The cutting plan needs the ribbon of the whole model.</p>
+        <p>The cutting plan is made of the whole model’s ribbon, which is not made yet.</p>
         <Button
           icon="scissors"
           disabledReason={
@@ -50,11 +50,11 @@ export function Sheets({ session, drawing, onSendToMachine }: SheetsProps) {
   const notes = sentences(plan?.report ?? {}, 'notes');
   return (
     <>
-      <div class="sheets" tabIndex={0} role="group" aria-label={rig ? 'Rig' : 'Sheets'}>
+      <div class="sheets" tabIndex={0} role="group" aria-label={rig ? 'Fastening rig' : 'Sheets to cut'}>
         {plan && url ? <img src={url} alt={words} /> : null}
         {plan === null && idle ? (
           <div class="sheets-empty">
-            <p>No plan was made. If a note says why, change that first.</p>
+            <p>No cutting plan was made. If a note on the model says why, change that first.</p>
             <Button icon="scissors" onClick={() => void planBytes(session, 'plan.svg', 'plan')}>
               Make the cutting plan
             </Button>
@@ -93,7 +93,7 @@ function SendButton({ session, onSendToMachine }: Omit<SheetsProps, 'drawing'>) 
       <Button
         size="small"
         icon="machines"
-        disabledReason={idle ? undefined : 'Busy with a file'}
+        disabledReason={idle ? undefined : 'A file is being made or opened'}
         onClick={() => send(0)}
       >
         Send to a machine
@@ -104,7 +104,7 @@ function SendButton({ session, onSendToMachine }: Omit<SheetsProps, 'drawing'>) 
       buttonClass="button small"
       items={Array.from({ length: count }, (_, sheet) => ({
         label: sheetName(session, sheet),
-        disabledReason: idle ? undefined : 'Busy with a file',
+        disabledReason: idle ? undefined : 'A file is being made or opened',
         onSelect: () => send(sheet),
       }))}
     >

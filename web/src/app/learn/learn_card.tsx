@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The card that says the next step of a tutorial, and the ring around the control that it is done with.
+import { render } from 'preact';
+import { useEffect, useLayoutEffect, useRef, useState } from 'preact/hooks';
+import { Button, IconButton } from '../../ui';
+import { crafts } from '../crafts';
+import { place } from '../route';
+import { Bold } from './bold';
+import { placeCard } from './card_place';
+import './learn.css';
+import {
+  isElsewhere,
+  leaveTutorial,
+  learning,
+  looked,
+  pointedAt,
+  sayDone,
+  skipStep,
+  stepBack,
+  stepNow,
+} from './learning';
+import type { Step } from './tutorial';
+
+function LearnCard() {
+  const now = learning.value;
+  const card = useRef<HTMLElement>(null);
+  void looked.value;
+  const target = pointedAt.value;
+  const box = target?.isConnected ? target.getBoundingClientRect() : null;
+  const [spot, setSpot] = useState<{ readonly left: number; readonly top: number } | null>(null);
+  useLayoutEffect(() => {
+    if (card.current) setSpot((old) => placeCard(card.current as HTMLElement, box, old));
+  }, [
+    now?.step,
+    now?.tutorial,
+    box?.left,
+    box?.top,
+    box?.width,
+    box?.height,
+    innerWidth,
+    innerHeight,
+    place.value,
+  ]);
+  useEffect(() => {
+    // The dialog that the tutorial was chosen in gives the focus back first, and the card moves out of it.
+    const focus = () => {
+      if (document.querySelector('dialog[open]')) timer = setTimeout(focus, 50);
+      else card.current?.focus();
+    };
+    let timer = setTimeout(focus, 0);
+    return () => clearTimeout(timer);
+  }, [now?.tutorial]);
+  if (now === null) return null;
+  const { tutorial, step } = now;
+  const current = stepNow();
+  return (
+    <>
+      {box ? <Ring box={box} /> : null}
+      <aside
+        ref={card}
+        class="learn-card"
+        tabIndex={-1}
+        aria-label={`Tutorial: ${tutorial.title}`}
+        style={spot ? { left: `${spot.left}px`, top: `${spot.top}px` } : { visibility: 'hidden' }}
+      >
+        <header>
+          <strong class="grow">{tutorial.title}</strong>
+          <IconButton icon="close" label="Leave the tutorial" onClick={leaveTutorial} />
+        </header>
+        <div aria-live="polite">
+          <p class="learn-count">
+            {current ? `Step ${step + 1} of ${tutorial.steps.length}` : 'All steps done'}
+          </p>
+          <p>{current ? <StepText step={current} /> : 'What you made is kept in this project.'}</p>
+        </div>
+        {current ? (
+          <Buttons step={current} first={step === 0} />
+        ) : (
+          <Button onClick={leaveTutorial}>Close</Button>
+        )}
+      </aside>
+    </>
+  );
+}
+
+function StepText({ step }: { step: Step }) {
+  if (isElsewhere(step)) {
+    const room = crafts.find((craft) => craft.place === step.room)?.title;
+    return room ? (
+      <>
+        This step is in another room. Choose <strong>{room}</strong> in the bar of rooms.
+      </>
+    ) : (
+      <>This step is on the start page. Press the sign at the top left.</>
+    );
+  }
+  return <Bold text={step.text} />;
+}
+
+function Buttons({ step, first }: { step: Step; first: boolean }) {
+  const target = pointedAt.value;
+  const looking = step.done.some((sign) => 'said' in sign);
+  const show = () => {
+    target?.scrollIntoView({ block: 'center', behavior: 'instant' });
+    target?.focus();
+  };
+  return (
+    <div class="learn-buttons">
+      {first ? null : (
+        <Button size="small" kind="quiet" onClick={stepBack}>
+          Back
+        </Button>
+      )}
+      <span class="grow" />
+      {target ? (
+        <Button size="small" title="Scrolls to the control and moves the keyboard there" onClick={show}>
+          Show me where
+        </Button>
+      ) : null}
+      {looking && !isElsewhere(step) ? (
+        <Button size="small" kind="filled" onClick={sayDone}>
+          Next
+        </Button>
+      ) : (
+        <Button size="small" kind="quiet" onClick={skipStep}>
+          Skip this step
+        </Button>
+      )}
+    </div>
+  );
+}
+
+const margin_px = 5;
+
+function Ring({ box }: { box: DOMRect }) {
+  return (
+    <div
+      class="learn-ring"
+      aria-hidden="true"
+      style={{
+        left: `${box.left - margin_px}px`,
+        top: `${box.top - margin_px}px`,
+        width: `${box.width + 2 * margin_px}px`,
+        height: `${box.height + 2 * margin_px}px`,
+      }}
+    />
+  );
+}
+
+/** Draws the card over everything. A question makes the rest of the page inert, so the card moves into it meanwhile. */
+export function showLearnCard(): () => void {
+  const host = document.createElement('div');
+  host.className = 'learn';
+  const follow = () => {
+    const dialogs = document.querySelectorAll('dialog[open]');
+    const home = dialogs[dialogs.length - 1] ?? document.body;
+    if (host.parentElement !== home) home.append(host);
+  };
+  follow();
+  const changes = new MutationObserver(follow);
+  changes.observe(document.body, { childList: true, subtree: true, attributeFilter: ['open'] });
+  render(<LearnCard />, host);
+  return () => {
+    changes.disconnect();
+    render(null, host);
+    host.remove();
+  };
+}

@@ -8,6 +8,7 @@
 
 #include "geometry/planar/plane.h"
 #include "base/error.h"
+#include "base/format.h"
 #include "fabrication/sheet/word_paths.h"
 #include "imaging/drawing/pdf.h"
 

@@ -10,6 +10,9 @@ namespace formwright::flow_detail {
 namespace {
 
 constexpr float over_relaxation = 1.9f;
+// Of pictures with 2 grey levels of noise and the usual gradient weight: what the smoothness is chosen for.
+constexpr double usual_mismatch_levels = 20.6;
+constexpr double min_smoothness_share = 0.5;
 
 float sum3(const Float4& p) { return p[0] + p[1] + p[2]; }
 
@@ -66,9 +69,18 @@ void find_links(const Plane& diffusivity, System& system, const Context& context
   });
 }
 
+/// What the links pull a pixel of `p` by, were they alone: the divergence of the diffusivity times the gradient.
+float pull(const System& system, const Plane& p, int x, int y) {
+  const float *right = system.link_right.row(y), *below = system.link_below.row(y),
+              *above = system.link_below.row(y - 1);
+  const float *here = p.row(y), *pa = p.row(y - 1), *pb = p.row(y + 1);
+  return right[x] * (here[x + 1] - here[x]) + right[x - 1] * (here[x - 1] - here[x]) + below[x] * (pb[x] - here[x]) +
+         above[x] * (pa[x] - here[x]);
+}
+
 /// `u0`, `v0`: where the tensors were taken.
 void assemble(const MotionTensors& t, const Plane& u0, const Plane& v0, const Plane& u, const Plane& v,
-              const VariationalFlowOptions& options, System& system, const Context& context) {
+              Smoothed smoothed, const VariationalFlowOptions& options, System& system, const Context& context) {
   const int w = u.width, h = u.height;
   const float epsilon_squared = static_cast<float>(options.data_epsilon * options.data_epsilon);
   parallel_for(static_cast<std::size_t>(h), rows_a_chunk(w), [&](std::size_t begin, std::size_t end) {
@@ -94,6 +106,10 @@ void assemble(const MotionTensors& t, const Plane& u0, const Plane& v0, const Pl
         iyy[x] = axx * scale;
         bx[x] = robust * (xx[x] * uo[x] + xy[x] * vo[x] - xt[x]);
         by[x] = robust * (xy[x] * uo[x] + yy[x] * vo[x] - yt[x]);
+        if (smoothed == Smoothed::correction) {
+          bx[x] -= pull(system, u0, x, y);
+          by[x] -= pull(system, v0, x, y);
+        }
       }
     }
   });
@@ -142,6 +158,34 @@ void sweep(const System& system, Plane& u, Plane& v, const std::vector<float>& p
     sweep_row(system, u, v, first, pace_of(first, 1), room.data(), room.data() + w);
     if (last > first) sweep_row(system, u, v, last, pace_of(last, 1), room.data(), room.data() + w);
   }
+}
+
+/// Mean over the pixels that count of the root of the squared mismatch, in grey levels: how noisy the pictures are.
+double mean_mismatch(const MotionTensors& tensors, const Context& context) {
+  const int w = tensors.tt.width, h = tensors.tt.height;
+  std::vector<double> mismatch(static_cast<std::size_t>(h), 0), weight(mismatch);
+  parallel_for(static_cast<std::size_t>(h), rows_a_chunk(w), [&](std::size_t begin, std::size_t end) {
+    context.check_cancelled();
+    for (std::size_t y = begin; y < end; ++y) {
+      const float *tt = tensors.tt.row(static_cast<int>(y)), *trust = tensors.weight.row(static_cast<int>(y));
+      for (int x = 0; x < w; ++x) {
+        mismatch[y] += static_cast<double>(std::sqrt(trust[x] * tt[x]));
+        weight[y] += static_cast<double>(trust[x]);
+      }
+    }
+  });
+  double sum = 0, count = 0;
+  for (std::size_t y = 0; y < mismatch.size(); ++y) {
+    sum += mismatch[y];
+    count += weight[y];
+  }
+  return count > 0 ? sum / count : usual_mismatch_levels;
+}
+
+Plane difference(const Plane& a, const Plane& b) {
+  Plane result = a;
+  for (std::size_t i = 0; i < result.values.size(); ++i) result.values[i] -= b.values[i];
+  return result;
 }
 
 }  // namespace
@@ -207,18 +251,22 @@ MotionTensors motion_tensors(const WeightedPicture& first, const WeightedPicture
   return t;
 }
 
-void relax(const MotionTensors& tensors, Plane& u, Plane& v, const VariationalFlowOptions& options,
+void relax(const MotionTensors& tensors, Plane& u, Plane& v, Smoothed smoothed, const VariationalFlowOptions& given,
            const Context& context) {
   const int w = u.width, h = u.height;
   const Plane u0 = u, v0 = v;
+  VariationalFlowOptions options = given;
+  if (std::max(w, h) > options.fine_above_px)
+    options.smoothness *= std::max(min_smoothness_share, mean_mismatch(tensors, context) / usual_mismatch_levels);
   Plane diffusivity(w, h);
   System system(w, h);
   std::vector<float> pace(static_cast<std::size_t>(w) + 2);
   for (std::size_t i = 0; i < pace.size(); i += 2) pace[i] = over_relaxation;
   for (int i = 0; i < options.inner_iterations; ++i) {
-    find_diffusivity(u, v, options, diffusivity, context);
+    if (smoothed == Smoothed::displacement) find_diffusivity(u, v, options, diffusivity, context);
+    else find_diffusivity(difference(u, u0), difference(v, v0), options, diffusivity, context);
     find_links(diffusivity, system, context);
-    assemble(tensors, u0, v0, u, v, options, system, context);
+    assemble(tensors, u0, v0, u, v, smoothed, options, system, context);
     for (int k = 0; k < options.sweeps; ++k) sweep(system, u, v, pace, context);
   }
 }

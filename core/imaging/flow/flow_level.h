@@ -34,9 +34,13 @@ struct MotionTensors {
 MotionTensors motion_tensors(const WeightedPicture& first, const WeightedPicture& second, const Plane& u,
                              const Plane& v, double gradient_weight, const Context& context);
 
+/// What smoothness asks of: the displacement, or only what this warp adds to it. Smoothing a second time, and only the
+/// correction, gives back detail that the first smoothing took (Tukey's twicing).
+enum class Smoothed { displacement, correction };
+
 /// Improves (u, v): options.inner_iterations times new robust weights, then options.sweeps of red-black successive
 /// over-relaxation, both components of a pixel at once.
-void relax(const MotionTensors& tensors, Plane& u, Plane& v, const VariationalFlowOptions& options,
+void relax(const MotionTensors& tensors, Plane& u, Plane& v, Smoothed smoothed, const VariationalFlowOptions& options,
            const Context& context);
 
 /// Rows that one thread takes at a time; small pictures stay on one.

@@ -113,7 +113,10 @@ Flow run(const WeightedPicture& first, const WeightedPicture& second, Plane u, P
     for (int k = 0; k < warps; ++k) {
       const flow_detail::MotionTensors tensors =
           flow_detail::motion_tensors(a, b, u, v, options.gradient_weight, context);
-      flow_detail::relax(tensors, u, v, options, context);
+      const bool is_second_pass = level + 1 == sizes.size() && k > 0;
+      flow_detail::relax(tensors, u, v,
+                         is_second_pass ? flow_detail::Smoothed::correction : flow_detail::Smoothed::displacement,
+                         options, context);
     }
     done += static_cast<double>(size.width) * size.height;
     context.progress(done / work);

@@ -5,6 +5,9 @@
 //
 // E(w) = integral of Psi(sum over channels of |I2(x + w) - I1(x)|^2 + gamma |grad I2(x + w) - grad I1(x)|^2) + alpha
 // Psi(|grad u|^2 + |grad v|^2), Psi(s^2) = sqrt(s^2 + epsilon^2), grey levels from 0 to 255, lengths in pixels.
+//
+// In large pictures alpha grows with what the pictures differ by once warped, so that noise is averaged over a wider
+// area. From the second warp of the finest picture on only the correction is smoothed.
 #include <tuple>
 #include <vector>
 
@@ -15,8 +18,8 @@
 namespace formwright {
 
 struct VariationalFlowOptions {
-  double smoothness = 20;        // alpha
-  double gradient_weight = 5;    // gamma
+  double smoothness = 85;        // alpha
+  double gradient_weight = 50;   // gamma
   double pyramid_factor = 0.95;  // eta: of each level's side to the next finer one's
   double fine_pyramid_factor = 0.5;
   int fine_above_px = 400;
@@ -31,12 +34,12 @@ struct VariationalFlowOptions {
           "smoothness", &VariationalFlowOptions::smoothness, "Smoothness", unit::none, 0.01, 10000,
           "How much a smooth displacement counts against matching colours (alpha in the optical flow). Larger values smooth more.")
           .group("Flow")
-          .slider(5, 100),
+          .slider(20, 400),
       parameter(
           "gradient_weight", &VariationalFlowOptions::gradient_weight, "Gradient weight", unit::none, 0, 1000,
           "How much matching edges count against matching colours (gamma in the optical flow). Larger values tolerate uneven light better.")
           .group("Flow")
-          .slider(0, 50),
+          .slider(0, 200),
       parameter(
           "pyramid_factor", &VariationalFlowOptions::pyramid_factor, "Pyramid factor", unit::none, 0.5, 0.98,
           "Size of each coarser picture relative to the next finer one, for small pictures. Closer to 1 follows large movements better and takes longer.")

@@ -8,6 +8,7 @@
 #include "geometry/planar/plane.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "imaging/opencv/homography.h"
 
 namespace formwright {
 namespace {
@@ -207,24 +208,10 @@ FoundMarks find_marks(const CalibrationPattern& pattern, const WeightedPicture& 
 }
 
 Eigen::Matrix3d homography(const std::array<Vec2, 4>& from, const std::array<Vec2, 4>& to) {
-  Eigen::Matrix<double, 8, 8> system = Eigen::Matrix<double, 8, 8>::Zero();
-  Eigen::Matrix<double, 8, 1> right;
-  // Lengths about 1, so that the entries are comparable.
-  double size = 1e-12;
-  for (std::size_t k = 0; k < 4; ++k) size = std::max({size, from[k].norm(), to[k].norm()});
-  for (int k = 0; k < 4; ++k) {
-    const Vec2 p = from[static_cast<std::size_t>(k)] / size, q = to[static_cast<std::size_t>(k)] / size;
-    system.row(2 * k) << p.x(), p.y(), 1, 0, 0, 0, -q.x() * p.x(), -q.x() * p.y();
-    system.row(2 * k + 1) << 0, 0, 0, p.x(), p.y(), 1, -q.y() * p.x(), -q.y() * p.y();
-    right[2 * k] = q.x();
-    right[2 * k + 1] = q.y();
-  }
-  const Eigen::FullPivLU<Eigen::Matrix<double, 8, 8>> lu(system);
-  const Eigen::Matrix<double, 8, 1> h = lu.solve(right);
-  Eigen::Matrix3d m;
-  m << h[0], h[1], h[2] * size, h[3], h[4], h[5] * size, h[6] / size, h[7] / size, 1;
-  bool sound = lu.isInvertible() && m.allFinite();
-  for (std::size_t k = 0; k < 4 && sound; ++k) sound = m.row(2).dot(Vec3(from[k].x(), from[k].y(), 1)) > 0.05;
+  const Eigen::Matrix3d m = projective_map(from, to);
+  bool sound = m.allFinite() && std::abs(m.determinant()) > 1e-9;
+  for (std::size_t k = 0; k < 4 && sound; ++k)
+    sound = m.row(2).dot(Vec3(from[k].x(), from[k].y(), 1)) > 0.05 && (mapped(m, from[k]) - to[k]).norm() < 0.01;
   if (!sound)
     throw Error(ErrorCode::invalid_input, "corners",
                 "The four corners do not make a quadrilateral: give front left, front right, back right, back left.");

@@ -14,7 +14,7 @@ export const laser: Tutorial = {
       { shown: button('Try a sample drawing') },
     ]),
     room.press(
-      'Press **Try a sample drawing**. Its outline lies on the bed; red lines are cut, blue lines are marked.',
+      'Press **Try a sample drawing**. It lies on the bed from above: black lines are cut, blue lines are marked.',
       button('Try a sample drawing'),
       [{ strip: 'Job ready' }],
       { picture: { name: 'laser_job', alt: 'The key tag on the bed of the laser' } },
@@ -63,19 +63,16 @@ export const laser: Tutorial = {
     room.press(
       'Press **Start with the laser on**. **Stop** is always at hand; Esc pauses, Esc twice stops.',
       button('Start with the laser on'),
-      [{ strip: 'Working on' }],
-      { picture: { name: 'laser_working', alt: 'The practice laser in the middle of the job' } },
+      [{ gone: button('Start with the laser on') }],
     ),
-    room.wait('Wait until **key tag is done** stands at the foot of the page, about half a minute.', [
-      { strip: 'key tag is done' },
-    ]),
+    room.wait(
+      'Wait until **key tag is done** stands at the foot of the page, about ten seconds.',
+      [{ strip: 'key tag is done' }],
+      { picture: { name: 'laser_done', alt: 'The finished job, and the head back at its origin' } },
+    ),
     room.press(
       'Choose **Console**. Under **1 job so far** stands when it began and how it ended.',
       radio('Console'),
-      [],
-      {
-        picture: { name: 'laser_done', alt: 'What was said between page and machine, and the finished job' },
-      },
     ),
   ],
 };

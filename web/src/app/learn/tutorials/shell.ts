@@ -31,7 +31,7 @@ export const shell: Tutorial = {
       [{ strip: 'Sheet formed' }],
     ),
     room.press(
-      'Choose **Thickness**. The scale marks the thinnest place; below a quarter of the flat sheet it may tear.',
+      'Choose **Thickness**. The scale marks the thinnest place. Steep flanks as the cat’s are thin; a note says so below.',
       radio('Thickness'),
       [],
       {

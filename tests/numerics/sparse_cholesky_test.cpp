@@ -227,7 +227,7 @@ TEST_CASE("SparseCholesky.AnArrowStaysSparse") {
   }
 }
 
-TEST_CASE("SparseCholesky.NamesTheRowThatIsNotPositiveDefinite") {
+TEST_CASE("SparseCholesky.RefusesAMatrixThatIsNotPositiveDefinite") {
   SparseMatrix A = test::torus_bilaplacian(40, 40, 1.0);
   for (const double bad :
        {0.0, -3.0, -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
@@ -243,7 +243,7 @@ TEST_CASE("SparseCholesky.NamesTheRowThatIsNotPositiveDefinite") {
     } catch (const Error& error) {
       CHECK(error.code() == ErrorCode::could_not_solve);
       INFO(error.what());
-      CHECK(std::string(error.what()).find("row 37,") != std::string::npos);
+      CHECK(std::string(error.what()).find("no unique solution") != std::string::npos);
     }
   }
 }

@@ -34,7 +34,7 @@ struct MultifrontalOptions {
 
 /// Factors the matrix of these values and diagonal (both of A, in its own order). With `parallel` it uses all
 /// threads; the result does not depend on their number.
-/// Throws Error: could_not_solve (not positive definite; names the row), cancelled, out_of_memory.
+/// Throws Error: could_not_solve (not positive definite), cancelled, out_of_memory.
 void factorize_multifrontal(const SupernodalForm& form, const AssemblyMap& map, const double* values,
                             const std::vector<double>& diagonal, SupernodalFactor& factor,
                             const MultifrontalOptions& options, Context& context);

@@ -30,7 +30,7 @@ class SparseCholesky {
   void analyze(const SparseMatrix& lower, const Positions& positions, Context& context);
 
   /// Computes L for values on the analysed pattern (the diagonal must be stored). May be repeated.
-  /// Throws Error: could_not_solve (not positive definite; names the row), cancelled, out_of_memory.
+  /// Throws Error: could_not_solve (not positive definite), cancelled, out_of_memory.
   void factorize(const SparseMatrix& lower, Context& context);
 
   /// x = A^-1 b for every column, in place. Needs factorize.

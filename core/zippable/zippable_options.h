@@ -15,7 +15,7 @@ enum class RibbonFabrics { one, two };
 template <>
 struct EnumNames<RibbonFabrics> {
   static constexpr std::array<std::string_view, 2> names{"one", "two"};
-  static constexpr std::array<std::string_view, 2> labels{"One", "Two colours"};
+  static constexpr std::array<std::string_view, 2> labels{"One colour", "Two colours"};
 };
 
 enum class PartBorders { straight, creases };

@@ -42,10 +42,11 @@ function LearnCard() {
     place.value,
   ]);
   useEffect(() => {
-    // The dialog that the tutorial was chosen in gives the focus back first, and the card moves out of it.
+    // The dialog that the tutorial was chosen in gives the focus back first, and the card moves out of it and to its place.
     const focus = () => {
-      if (document.querySelector('dialog[open]')) timer = setTimeout(focus, 50);
-      else card.current?.focus();
+      if (card.current === null) return;
+      if (!document.querySelector('dialog[open]')) card.current.focus();
+      if (document.activeElement !== card.current) timer = setTimeout(focus, 50);
     };
     let timer = setTimeout(focus, 0);
     return () => clearTimeout(timer);

@@ -22,7 +22,7 @@ export interface Control {
 }
 
 /** What a person does at the step's control. */
-export type Act =
+type Act =
   | { readonly do: 'press' | 'wait' | 'look' }
   | { readonly do: 'enter' | 'choose'; readonly value: string }
   | { readonly do: 'keys'; readonly keys: readonly string[] };

@@ -4,7 +4,6 @@ import { render } from 'preact';
 import { useEffect, useLayoutEffect, useRef, useState } from 'preact/hooks';
 import { Button, IconButton } from '../../ui';
 import { crafts } from '../crafts';
-import { place } from '../route';
 import { Bold } from './bold';
 import { placeCard } from './card_place';
 import './learn.css';
@@ -21,6 +20,9 @@ import {
 } from './learning';
 import type { Step } from './tutorial';
 
+/** Looks, 50 ms apart, at which the card must still have the focus. */
+const keptFor = 4;
+
 function LearnCard() {
   const now = learning.value;
   const card = useRef<HTMLElement>(null);
@@ -28,25 +30,20 @@ function LearnCard() {
   const target = pointedAt.value;
   const box = target?.isConnected ? target.getBoundingClientRect() : null;
   const [spot, setSpot] = useState<{ readonly left: number; readonly top: number } | null>(null);
+  // At every look: the card may have been measured before it was shown, and a step has more text than the last.
   useLayoutEffect(() => {
-    if (card.current) setSpot((old) => placeCard(card.current as HTMLElement, box, old));
-  }, [
-    now?.step,
-    now?.tutorial,
-    box?.left,
-    box?.top,
-    box?.width,
-    box?.height,
-    innerWidth,
-    innerHeight,
-    place.value,
-  ]);
+    if (card.current === null) return;
+    const next = placeCard(card.current, box, spot);
+    if (next.left !== spot?.left || next.top !== spot.top) setSpot(next);
+  });
   useEffect(() => {
-    // The dialog that the tutorial was chosen in gives the focus back first, and the card moves out of it and to its place.
+    // The dialog that the tutorial was chosen in takes the focus back once more when it goes.
+    let kept = 0;
     const focus = () => {
-      if (card.current === null) return;
-      if (!document.querySelector('dialog[open]')) card.current.focus();
-      if (document.activeElement !== card.current) timer = setTimeout(focus, 50);
+      if (card.current === null || kept === keptFor) return;
+      kept = document.activeElement === card.current ? kept + 1 : 0;
+      if (kept === 0 && !document.querySelector('dialog[open]')) card.current.focus();
+      timer = setTimeout(focus, 50);
     };
     let timer = setTimeout(focus, 0);
     return () => clearTimeout(timer);

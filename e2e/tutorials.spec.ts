@@ -68,6 +68,7 @@ test('the picture of a measured scan, which no step shows', async ({ page }) => 
 
 test('by keyboard, from Help, left in the middle: nothing of it is in the project', async ({ page }) => {
   test.skip(takesPictures, 'no picture is taken here');
+  test.setTimeout(420_000);
   await openPage(page);
   await page.getByRole('button', { name: 'Help' }).focus();
   await page.keyboard.press('Enter');

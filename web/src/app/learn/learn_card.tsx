@@ -41,7 +41,9 @@ function LearnCard() {
     let kept = 0;
     const focus = () => {
       if (card.current === null || kept === keptFor) return;
-      kept = document.activeElement === card.current ? kept + 1 : 0;
+      const at = document.activeElement;
+      if (at !== card.current && card.current.contains(at)) return; // somebody has gone on from the card
+      kept = at === card.current ? kept + 1 : 0;
       if (kept === 0 && !document.querySelector('dialog[open]')) card.current.focus();
       timer = setTimeout(focus, 50);
     };

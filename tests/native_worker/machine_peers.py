@@ -7,6 +7,7 @@ import os
 import pathlib
 import queue
 import re
+import select
 import shutil
 import signal
 import socket
@@ -168,7 +169,7 @@ class LateLine:
         try:
             work(source, sink, held)
             sink.shutdown(socket.SHUT_WR)
-        except OSError:
+        except (OSError, ValueError):  # select says the latter of a closed socket
             pass
 
     def _ask(self, near: socket.socket, far: socket.socket, held: threading.Event) -> None:
@@ -182,11 +183,21 @@ class LateLine:
                 self.asked.set()
 
     def _answer(self, far: socket.socket, near: socket.socket, held: threading.Event) -> None:
-        while data := far.recv(65536):
-            if held.is_set():
-                self.answered += data
-                self.through.wait()
-            near.sendall(data)
+        # An answer comes in several pieces: all are taken in, also while none may go on.
+        kept = b""
+        while True:
+            if select.select([far], [], [], 0.05)[0]:
+                if not (data := far.recv(65536)):
+                    break
+                kept += data
+                if held.is_set():
+                    self.answered += data
+            if kept and (self.through.is_set() or not held.is_set()):
+                near.sendall(kept)
+                kept = b""
+        if kept:
+            self.through.wait()
+            near.sendall(kept)
 
     def stop(self) -> None:
         self.through.set()

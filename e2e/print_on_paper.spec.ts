@@ -59,7 +59,7 @@ test('from the sample mountain to a printed picture', async ({ page }) => {
 
     // The picture itself, to compare with.
     const waiting = page.waitForEvent('download', { timeout: 120_000 });
-    await choose(page, 'Print, Picture');
+    await choose(page, 'Print as one picture (PNG)');
     const picture = join(peer.folder, 'picture.png');
     writeFileSync(picture, readFileSync(await (await waiting).path()));
 

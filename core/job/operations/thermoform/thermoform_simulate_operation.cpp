@@ -18,8 +18,8 @@ std::vector<OutputInfo> outputs() {
        true},
       {"forming.glb", "model/gltf-binary", "Animation",
        "Animation of sagging, raising and vacuum, coloured by thickness.", true},
-      {"mould.obj", "model/obj", "Model as placed", "The model in the machine's coordinates, as placed on the platform.",
-       false}};
+      {"mould.obj", "model/obj", "Model as placed",
+       "The model in the machine's coordinates, as placed on the platform.", false}};
 }
 
 std::vector<ReportField> report_fields() {

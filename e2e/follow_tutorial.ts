@@ -46,7 +46,7 @@ async function act(page: Page, { act: what, control }: Step): Promise<void> {
   }
 }
 
-/** Every step is done once, and the overlay notices it; `after` is told of each. */
+/** Every step is done once, and the overlay notices it; `after` is called with each. */
 export async function followTutorial(
   page: Page,
   tutorial: Tutorial,

@@ -103,7 +103,7 @@ TEST_CASE("GrblDriver.AJobMayStartAtOnceFromAnOriginJustSet") {
   talk.load("G21G90\nG0X310Y0\nG0X0\n");  // does not fit from where the origin is: 301 mm from the end
   CHECK(talk.refusal(start).find("leave the bed in x") != std::string::npos);
   const double head_mm = talk.state()["machine_mm"][0];
-  // However long ago the last report was, which told of another origin.
+  // However long ago the last report was, which named another origin.
   for (int i = 0; i < 8; ++i) {
     talk.tell({{"do", "set_origin"}, {"at", "corner"}});
     CHECK_THAT(talk.state()["work_mm"][0], WithinULP(head_mm + 400, 4));

@@ -265,7 +265,7 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
   }
 
   /** Drawings are work for lasers, models and height maps for mills: such a machine is chosen where the other kind was. A practice
-   *  machine is exchanged; where a real one is connected the work is not taken, and the person told. `own`: what is known of it
+   *  machine is exchanged; where a real one is connected the work is not taken, and a message says so. `own`: what is known of it
    *  beside its bytes. */
   async take(
     file_name: string,

@@ -124,6 +124,8 @@ TEST_CASE("Registration.HolesWrongPatchesBlurAndNoiseCostPointsRatherThanTruth")
   const RecoveredError e = recovered_error(r, surface);
   CHECK(e.median_mm < 0.07);
   CHECK(e.percentile_95_mm < 0.2);
+  CHECK(e.spread_median > 0.5);
+  CHECK(e.spread < 1.5);
 }
 
 TEST_CASE("Registration.AScanThatLooksInwardsIsTurned") {

@@ -5,7 +5,7 @@ import { Button, formatFixed, formatNumber, Icon, Parameter, withUnit } from '..
 import { sentences } from '../../../shared/session/report';
 import { partName } from '../design';
 import { ownWindings, withOwnWindings } from './own_windings';
-import { partWarning } from './part_notes';
+import { partWarning, unwrapWords } from './part_notes';
 import { tool } from './draw_actions';
 import { drawnOn } from '../zippable_document';
 import { chosenPart, partToken, pointed, view } from '../views';
@@ -50,8 +50,7 @@ export function PartList({ session }: { session: ZippableSession }) {
                       </span>
                     </span>
                     <small class={warning ? 'part-warning' : ''}>
-                      {warning ? `${warning} Distortion` : 'Unwraps well. Distortion'}{' '}
-                      {formatFixed(distortion?.mean ?? 1, 2)}
+                      {warning ?? unwrapWords(distortion)} Distortion {formatFixed(distortion?.mean ?? 1, 2)}
                     </small>
                   </span>
                 </button>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { expect, it } from 'vitest';
-import { partWarning } from './part_notes';
+import { partWarning, unwrapWords } from './part_notes';
 
 const fine = { area_mm2: 1, mean: 1.2, most: 9 };
 const note =
@@ -17,4 +17,9 @@ it('repeats what the core says of the part, not of another whose number begins a
 it('says where the map is poor', () => {
   expect(partWarning(0, [], fine)).toBeNull();
   expect(partWarning(0, [], { ...fine, mean: 4.3 })).toMatch(/Badly distorted/);
+});
+
+it('calls a part well unwrapped only where its distortion is usual', () => {
+  expect(unwrapWords(fine)).toBe('Unwraps well.');
+  expect(unwrapWords({ ...fine, mean: 2.6 })).toBe('Unwraps unevenly.');
 });

@@ -20,3 +20,9 @@ export function partWarning(
     return `Badly distorted: ${formatFixed(distortion.mean, 1)} on average.`;
   return null;
 }
+
+/** Of a part without a warning. The samples' parts have mean distortions of 1.1 to 1.7 (docs/zippable.md). */
+export function unwrapWords(distortion: PartDistortion | undefined): string {
+  const usual = 1.7;
+  return (distortion?.mean ?? 1) <= usual ? 'Unwraps well.' : 'Unwraps unevenly.';
+}

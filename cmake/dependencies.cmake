@@ -52,6 +52,27 @@ formwright_dependency(pugixml pugixml.hpp pugixml)
 # JPEG and other pictures. A compiled library, so nobody defines an *_IMPLEMENTATION macro.
 formwright_dependency(stb stb_image.h stb SUBDIR stb)
 
+# Smaller and blurred pictures, projective maps: three modules of OpenCV, compiled from one source for both (setup/opencv.sh).
+if(NOT EMSCRIPTEN)
+  execute_process(
+    COMMAND ${CMAKE_CURRENT_LIST_DIR}/../setup/opencv.sh --print-path
+    OUTPUT_VARIABLE FORMWRIGHT_OPENCV OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+  if(NOT EXISTS ${FORMWRIGHT_OPENCV}/lib/libopencv.a)
+    message(FATAL_ERROR "${FORMWRIGHT_OPENCV} is missing: run `make setup` (or setup/opencv.sh)")
+  endif()
+  if(NOT FORMWRIGHT_OPENCV STREQUAL FW_opencv_PREFIX)  # compiled anew: what was found before is out of date
+    unset(FW_opencv_INCLUDE_DIR CACHE)
+    unset(FW_opencv_LIBRARY CACHE)
+    set(FW_opencv_PREFIX ${FORMWRIGHT_OPENCV} CACHE INTERNAL "")
+  endif()
+  list(PREPEND CMAKE_PREFIX_PATH ${FORMWRIGHT_OPENCV})
+endif()
+formwright_dependency(opencv opencv2/core.hpp opencv SUBDIR opencv4)
+if(NOT EMSCRIPTEN)
+  target_link_libraries(fw::opencv INTERFACE ${CMAKE_DL_LIBS} Threads::Threads)
+  target_link_options(fw::opencv INTERFACE -Wl,--gc-sections)  # its files hold functions that call what is not compiled
+endif()
+
 # Boost 1.83 headers (Beast and Asio in the native worker, CGAL's own needs).
 add_library(fw::boost INTERFACE IMPORTED GLOBAL)
 target_include_directories(fw::boost INTERFACE ${FORMWRIGHT_TOOLCHAIN}/include)

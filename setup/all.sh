@@ -9,6 +9,7 @@ setup/native.sh "$@"
 setup/wasm_toolchain.sh >/dev/null
 setup/wasm_libraries.sh >/dev/null
 setup/catch2.sh >/dev/null
+setup/opencv.sh >/dev/null
 if [ "${1-}" = --test ]; then
   setup/python_packages.sh >/dev/null
   setup/test_peers.sh >/dev/null

@@ -12,7 +12,7 @@
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-LIBRARIES=(headers zlib libpng libharu expat pugixml polyclipping stb)
+LIBRARIES=(headers zlib libpng libharu expat pugixml polyclipping stb opencv)
 JOBS="${FORMWRIGHT_JOBS:-$(nproc)}"
 
 mapfile -t WASM_FLAGS <"$FORMWRIGHT_ROOT/cmake/wasm_flags.txt"
@@ -156,18 +156,20 @@ C
   static_library stb -I"$PREFIX/include/stb" "$SOURCES/stb/stb.c"
 }
 
-# OpenCV belongs here: add `opencv` to LIBRARIES and a build_opencv() that does
-#   fetch_source opencv
-#   the shim in intrin_wasm.hpp that clang 19 needs
-#   cmake_install "$SOURCE" -DBUILD_LIST=core,imgproc,video -DBUILD_ZLIB=OFF ...
-# It takes about 15 minutes; the stamp sees to it that this happens once, and
-# editing another recipe does not repeat it.
+# The parts that are used, from the same source as natively (setup/opencv.sh).
+build_opencv() {
+  cmake_install "$FORMWRIGHT_ROOT/setup/opencv" -DOPENCV_SOURCE="$("$FORMWRIGHT_ROOT/setup/opencv.sh" --source)" \
+    -DZLIB_INCLUDE_DIR="$PREFIX/include" -DCMAKE_INSTALL_LIBDIR=lib
+}
 
 # ---- driver -----------------------------------------------------------------
 
 # A stamp changes with the recipe's text (comments aside), not with the others.
 stamp_of() {  # library
-  printf '%s/stamps/%s-%s' "$PREFIX" "$1" "$(declare -f "build_$1" cmake_install static_library | sha256sum | cut -c 1-12)"
+  printf '%s/stamps/%s-%s' "$PREFIX" "$1" "$({
+    declare -f "build_$1" cmake_install static_library
+    [ "$1" != opencv ] || grep -hv '^#' "$FORMWRIGHT_ROOT/setup/opencv/CMakeLists.txt" <(grep -E '^(VERSION|SHA256)=' "$FORMWRIGHT_ROOT/setup/opencv.sh")
+  } | sha256sum | cut -c 1-12)"
 }
 
 # Runs in a shell of its own: `set -e` would be off within an `if` or `||`.

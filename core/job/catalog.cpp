@@ -4,44 +4,10 @@
 #include "fabrication/laser/laser_materials.h"
 #include "formats/mesh_io.h"
 #include "geometry/samples/samples.h"
-#include "job/operations/evidence/evidence_operations.h"
-#include "job/operations/evidence/evidence_registration_operations.h"
-#include "job/operations/fabrication/fabrication_operations.h"
-#include "job/operations/mesh/mesh_operations.h"
-#include "job/operations/relief/relief_operation.h"
-#include "job/operations/thermoform/thermoform_operations.h"
-#include "job/operations/zippable/zippable_operation.h"
 
 namespace formwright {
 
 const char* version() { return FORMWRIGHT_VERSION; }
-
-const std::vector<Operation>& operations() {
-  static const std::vector<Operation> all = {relief_operation(),
-                                             thermoform_simulate_operation(),
-                                             thermoform_texture_operation(),
-                                             thermoform_mould_operation(),
-                                             thermoform_compare_operation(),
-                                             evidence_pattern_operation(),
-                                             evidence_register_operation(),
-                                             evidence_calibrate_operation(),
-                                             evidence_diagnose_operation(),
-                                             evidence_diagnose_relief_operation(),
-                                             evidence_virtual_object_operation(),
-                                             zippable_design_operation(),
-                                             zippable_plan_operation(),
-                                             zippable_simulate_operation(),
-                                             zippable_baseline_operation(),
-                                             laser_job_operation(),
-                                             mill_job_operation(),
-                                             test_grid_operation(),
-                                             page_tiles_operation(),
-                                             import_operation(),
-                                             simplify_operation(),
-                                             subdivide_operation(),
-                                             convert_operation()};
-  return all;
-}
 
 const Operation* find_operation(const std::string& name) {
   for (const Operation& operation : operations())
@@ -72,6 +38,7 @@ Json operation_json(const Operation& operation) {
   return {{"name", operation.name},
           {"title", operation.title},
           {"summary", operation.summary},
+          {"module", operation.module},
           {"inputs", inputs},
           {"parameters",
            {{"$schema", "https://json-schema.org/draft/2020-12/schema"},

@@ -34,6 +34,8 @@ HOSTS = {"wasm": {"job", "base", "machines"}, "native_worker": {"job", "base", "
 # What core never touches: sockets, files, standard output, Emscripten.
 FORBIDDEN_HEADERS = re.compile(
     r"^(emscripten|sys/|unistd|fcntl|netinet|arpa|fstream|iostream|filesystem|boost/(asio|beast)|print$)")
+# Libraries that one folder alone includes, so that what they throw and need is handled in one place.
+HEADER_FOLDERS = {"opencv2": "core/imaging", "embree3": "core/geometry", "hpdf": "core/imaging"}
 FORBIDDEN_WORDS = re.compile(r"\b(std::cout|std::cerr|std::clog|printf|puts|fopen|EM_ASM|EM_JS)\s*[(<]")
 
 # web/src: folder -> folders it may import from, itself apart; crafts do not know each other.
@@ -68,6 +70,10 @@ def check_sources(folder: pathlib.Path, module: str, allowed: set[str], is_core:
             if is_core and (match := re.match(r"\s*#\s*include\s*<([^>]+)>", line)):
                 if FORBIDDEN_HEADERS.match(match.group(1)):
                     problems.append(f"{where}:{number}: core must not include <{match.group(1)}>")
+            if match := re.match(r"\s*#\s*include\s*<([a-z0-9]+)", line):
+                only = HEADER_FOLDERS.get(match.group(1))
+                if only and not str(where).startswith(only + "/"):
+                    problems.append(f"{where}:{number}: only {only} includes <{match.group(1)}>")
             if is_core and FORBIDDEN_WORDS.search(line.split("//")[0]):
                 problems.append(f"{where}:{number}: core must not print or open files")
     return problems

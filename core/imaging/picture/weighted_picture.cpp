@@ -3,27 +3,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-
-#include "base/error.h"
-#include "base/parallel.h"
-#include "imaging/picture/overlap_shares.h"
 
 namespace formwright {
-namespace {
-
-/// Colours times their weight, the weight itself in lane 3.
-Float4 weighed(const Float4& p) { return Float4{p[0] * p[3], p[1] * p[3], p[2] * p[3], p[3]}; }
-Float4 unweighed(const Float4& p) {
-  if (!(p[3] > 1e-6f)) return Float4{};
-  const float scale = 1 / p[3];
-  return Float4{p[0] * scale, p[1] * scale, p[2] * scale, std::min(p[3], 1.0f)};
-}
-
-constexpr std::size_t rows_a_chunk = 32;
-
-}  // namespace
-
 WeightedPicture weighted_picture(const Image& image) {
   WeightedPicture picture(image.width, image.height);
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
@@ -32,69 +13,6 @@ WeightedPicture weighted_picture(const Image& image) {
                                static_cast<float>(p[3]) / 255.0f};
   }
   return picture;
-}
-
-WeightedPicture reduced(const WeightedPicture& picture, int width, int height, const Context& context) {
-  if (width < 1 || height < 1 || width > picture.width || height > picture.height || 4 * width < picture.width ||
-      4 * height < picture.height)
-    throw Error(ErrorCode::internal, "", "A picture can be reduced to a quarter at once, not further.");
-  if (width == picture.width && height == picture.height) return picture;
-  const auto columns = overlap_shares<6>(picture.width, width), rows = overlap_shares<6>(picture.height, height);
-  WeightedPicture result(width, height);
-  parallel_for(static_cast<std::size_t>(height), rows_a_chunk, [&](std::size_t begin, std::size_t end) {
-    context.check_cancelled();
-    std::vector<Float4> line(static_cast<std::size_t>(picture.width));
-    for (std::size_t y = begin; y < end; ++y) {
-      std::fill(line.begin(), line.end(), Float4{});
-      for (int k = 0; k < rows[y].count; ++k) {
-        const Float4* from = &picture.at(0, rows[y].first + k);
-        const float weight = rows[y].weight[static_cast<std::size_t>(k)];
-        for (std::size_t x = 0; x < line.size(); ++x) line[x] += weight * weighed(from[x]);
-      }
-      for (std::size_t x = 0; x < columns.size(); ++x) {
-        Float4 sum{};
-        for (int k = 0; k < columns[x].count; ++k)
-          sum += columns[x].weight[static_cast<std::size_t>(k)] * line[static_cast<std::size_t>(columns[x].first + k)];
-        result.at(static_cast<int>(x), static_cast<int>(y)) = unweighed(sum);
-      }
-    }
-  });
-  return result;
-}
-
-WeightedPicture smoothed(const WeightedPicture& picture, double sigma_px, const Context& context) {
-  if (!(sigma_px > 0)) return picture;
-  const int radius = std::max(1, static_cast<int>(std::ceil(3 * sigma_px)));
-  std::vector<float> kernel(static_cast<std::size_t>(radius) + 1);
-  double sum = 0;
-  for (int k = 0; k <= radius; ++k) sum += (k == 0 ? 1 : 2) * std::exp(-0.5 * k * k / (sigma_px * sigma_px));
-  for (int k = 0; k <= radius; ++k)
-    kernel[static_cast<std::size_t>(k)] = static_cast<float>(std::exp(-0.5 * k * k / (sigma_px * sigma_px)) / sum);
-  WeightedPicture across(picture.width, picture.height), result(picture.width, picture.height);
-  const int w = picture.width, h = picture.height;
-  parallel_for(static_cast<std::size_t>(h), rows_a_chunk, [&](std::size_t begin, std::size_t end) {
-    context.check_cancelled();
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
-      for (int x = 0; x < w; ++x) {
-        Float4 total = kernel[0] * weighed(picture.at(x, y));
-        for (int k = 1; k <= radius; ++k)
-          total += kernel[static_cast<std::size_t>(k)] *
-                   (weighed(picture.at(std::max(x - k, 0), y)) + weighed(picture.at(std::min(x + k, w - 1), y)));
-        across.at(x, y) = total;
-      }
-  });
-  parallel_for(static_cast<std::size_t>(h), rows_a_chunk, [&](std::size_t begin, std::size_t end) {
-    context.check_cancelled();
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
-      for (int x = 0; x < w; ++x) {
-        Float4 total = kernel[0] * across.at(x, y);
-        for (int k = 1; k <= radius; ++k)
-          total += kernel[static_cast<std::size_t>(k)] *
-                   (across.at(x, std::max(y - k, 0)) + across.at(x, std::min(y + k, h - 1)));
-        result.at(x, y) = unweighed(total);
-      }
-  });
-  return result;
 }
 
 Float4 bilinear(const WeightedPicture& picture, float x, float y) {

@@ -68,6 +68,8 @@ using PreparedOperation = std::function<OperationResult(const OperationCall&)>;
 
 struct Operation {
   std::string name, title, summary;
+  std::string module =
+      "formwright";  // of WebAssembly, with its code (wasm/CMakeLists.txt); natively all are in one program
   std::vector<InputInfo> inputs;
   std::vector<ParameterInfo> parameters;
   std::vector<OutputInfo> outputs;

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <tuple>
 
+#include "base/error.h"
 #include "job/contract/operation.h"
 
 namespace formwright {
@@ -20,6 +21,18 @@ void take_options(Operation& operation, Run run, void (*check)(const Options&) =
     if (check) check(options);
     return [run, options](const OperationCall& call) { return run(call, options); };
   };
+}
+
+/// The operation's parameters are those of `Options`, in a program that has not its code: parameters are checked, and
+/// running it is refused.
+template <class Options>
+void declare_options(Operation& operation) {
+  take_options<Options>(
+      operation,
+      [name = operation.name, module = operation.module](const OperationCall&, const Options&) -> OperationResult {
+        throw Error(ErrorCode::internal, "operation",
+                    name + " runs in the module " + module + ", which was not loaded: this is a bug in Formwright.");
+      });
 }
 
 namespace job_detail {

@@ -8,7 +8,7 @@ import { asJobError } from '../jobs/contract';
 import { NativeBackend } from '../jobs/native_backend';
 import type { ConnectionState } from '../jobs/native_connection';
 import { takeToken } from '../jobs/native_connection';
-import { WasmBackend } from '../jobs/wasm_backend';
+import { WasmModules } from '../jobs/wasm_modules';
 import { BlobStore } from '../project/blob_store';
 import { openStorage } from '../project/open_storage';
 import { ProjectLocks } from '../project/project_locks';
@@ -17,19 +17,19 @@ import { toast } from '../ui';
 import { lastProject, rememberProject } from './last_project';
 import { askBeforeLeaving } from './leaving';
 
-const moduleUrl = () => new URL('wasm/formwright.mjs', document.baseURI.replace(/#.*/, '')).href;
+const moduleUrl = (module: string) => new URL(`wasm/${module}.mjs`, document.baseURI.replace(/#.*/, '')).href;
 
 /** The core in this page. Only `vite dev` without a WASM build, and `vite build --mode mock`, have a stand-in. */
 async function browserBackend(blobs: BlobSource): Promise<Backend> {
   if (import.meta.env.DEV || import.meta.env.MODE === 'mock') {
-    const answer = await fetch(moduleUrl(), { method: 'HEAD' }).catch(() => null);
+    const answer = await fetch(moduleUrl('formwright'), { method: 'HEAD' }).catch(() => null);
     const built = answer?.ok === true && /javascript/.test(answer.headers.get('content-type') ?? '');
     if (!built || import.meta.env.MODE === 'mock') {
       const { MockBackend } = await import('../jobs/mock/mock_backend');
       return new MockBackend(blobs);
     }
   }
-  return new WasmBackend({ moduleUrl: moduleUrl(), blobs });
+  return new WasmModules({ moduleUrl, blobs });
 }
 
 /** Blobs that no project names any more are deleted, unless another tab may be about to name them. */

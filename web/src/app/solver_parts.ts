@@ -19,6 +19,7 @@ export const solverParts: readonly SolverPart[] = [
   { name: 'libpng', licence: 'libpng-2.0', use: 'pictures', include: 'png' },
   { name: 'libharu', licence: 'Zlib', use: 'pages to print', include: 'hpdf' },
   { name: 'stb_image', licence: 'MIT or public domain', use: 'JPEG pictures', include: 'stb_image' },
+  { name: 'OpenCV', licence: 'Apache-2.0', use: 'smaller and blurred pictures of scans', include: 'opencv2' },
   { name: 'Expat', licence: 'MIT', use: '3MF', include: 'expat' },
   { name: 'pugixml', licence: 'MIT', use: 'drawings', include: 'pugixml' },
   { name: 'SVG++', licence: 'BSL-1.0', use: 'drawings', include: 'svgpp' },

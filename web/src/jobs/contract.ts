@@ -118,6 +118,8 @@ export interface Operation {
   readonly name: string;
   readonly title: string;
   readonly summary?: string;
+  /** The WebAssembly module that runs it. */
+  readonly module?: string;
   readonly inputs: readonly InputDeclaration[];
   readonly parameters: { readonly properties: Readonly<Record<string, ParameterSchema>> };
   readonly outputs: readonly OutputDeclaration[];

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/data/json_text.h"
 #include "base/sha256.h"
+#include "machines/machine_errors.h"
 #include "system/files.h"
 #include "system/host.h"
 #include "machines/print/printer.h"
@@ -48,10 +49,6 @@ Response too_many(const Head& head) {
 }
 Response nothing_here(const Head& head) {
   return error_response(head, http::status::not_found, "invalid_input", "", "There is nothing at this address.");
-}
-
-[[noreturn]] void refuse(const std::string& where, const std::string& sentence) {
-  throw Error(ErrorCode::invalid_input, where, sentence);
 }
 
 std::string text_in(const Json& order, const char* name, const std::string& otherwise) {

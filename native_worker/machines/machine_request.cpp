@@ -2,15 +2,11 @@
 // What a page may say at a machine's socket. Apart from the socket, so that the fuzzer reaches it.
 #include "base/error.h"
 #include "base/data/json_text.h"
+#include "machines/machine_errors.h"
 #include "system/hex_name.h"
 #include "machines/machine_page.h"
 
 namespace formwright {
-namespace {
-[[noreturn]] void refuse(const std::string& where, const std::string& sentence) {
-  throw Error(ErrorCode::invalid_input, where, sentence);
-}
-}  // namespace
 
 MachineRequest read_machine_request(const std::string& text) {
   const Json message = parse_json_text(text);

@@ -23,6 +23,16 @@ class Random {
   std::uint64_t state_;
 };
 
+/// Entries in [-1, 1).
+inline Eigen::MatrixXd random_matrix(int rows, int columns, std::uint64_t seed) {
+  Random random(seed);
+  Eigen::MatrixXd result(rows, columns);
+  for (int c = 0; c < columns; ++c) {
+    for (int r = 0; r < rows; ++r) result(r, c) = random.uniform();
+  }
+  return result;
+}
+
 inline SparseMatrix lower_of(int n, const std::vector<Eigen::Triplet<double>>& entries) {
   SparseMatrix matrix(n, n);
   matrix.setFromTriplets(entries.begin(), entries.end());

@@ -12,12 +12,12 @@
 #include "base/error.h"
 #include "base/data/json_text.h"
 #include "base/sha256.h"
-#include "machines/machine_errors.h"
 #include "system/files.h"
 #include "system/host.h"
 #include "machines/print/printer.h"
 #include "machines/print/slicer.h"
 #include "machines/print/upload.h"
+#include "system/machine_errors.h"
 
 namespace formwright {
 namespace {

@@ -2,9 +2,9 @@
 // What a page may say at a machine's socket. Apart from the socket, so that the fuzzer reaches it.
 #include "base/error.h"
 #include "base/data/json_text.h"
-#include "machines/machine_errors.h"
 #include "system/hex_name.h"
 #include "machines/machine_page.h"
+#include "system/machine_errors.h"
 
 namespace formwright {
 

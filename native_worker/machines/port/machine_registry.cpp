@@ -14,8 +14,8 @@
 #include "base/error.h"
 #include "base/data/json_text.h"
 #include "base/sha256.h"
-#include "machines/machine_errors.h"
 #include "system/files.h"
+#include "system/machine_errors.h"
 #include "system/private_data.h"
 #include "system/host.h"
 

@@ -7,9 +7,9 @@
 
 #include "base/error.h"
 #include "base/format.h"
-#include "machines/machine_errors.h"
 #include "machines/print/document_pages.h"
 #include "machines/print/printer.h"
+#include "system/machine_errors.h"
 
 namespace formwright {
 namespace {

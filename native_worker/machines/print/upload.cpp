@@ -10,8 +10,8 @@
 
 #include "base/error.h"
 #include "base/sha256.h"
-#include "machines/machine_errors.h"
 #include "machines/print/upload_answers.h"
+#include "system/machine_errors.h"
 
 namespace formwright {
 namespace {

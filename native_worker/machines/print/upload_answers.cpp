@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "base/data/json_text.h"
-#include "machines/machine_errors.h"
+#include "system/machine_errors.h"
 
 namespace formwright {
 namespace {

@@ -19,7 +19,7 @@ namespace formwright {
 namespace {
 using Catch::Matchers::WithinAbs;
 
-using test::Random;
+using test::MatrixRandom;
 
 SparseCholesky factored_with(const SparseMatrix& lower, const Positions& positions, Context& context) {
   SparseCholesky cholesky;
@@ -110,7 +110,7 @@ TEST_CASE("SparseCholesky.ForwardAndBackwardAreTheTwoHalvesOfSolve") {
 TEST_CASE("SparseCholesky.SparseForwardEqualsDenseForward") {
   const SparseMatrix A = test::torus_bilaplacian(60, 45, 0.2);
   const SparseCholesky cholesky = factored(A);
-  Random random(7);
+  MatrixRandom random(7);
   std::vector<SparseVector> sides(21);
   std::vector<Eigen::VectorXd> expected;
   for (std::size_t k = 0; k < sides.size(); ++k) {

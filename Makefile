@@ -53,4 +53,4 @@ format: ## format the C++ sources in place
 	@setup/format.sh
 
 clean: ## remove what was built here; the cache folder stays (docs/toolchain.md)
-	rm -rf build build-asan build-wasm build-fuzz build-package web/dist web/public/wasm
+	rm -rf build build-asan build-wasm build-fuzz build-lint build-package web/dist web/public/wasm

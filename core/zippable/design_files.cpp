@@ -14,7 +14,9 @@
 namespace formwright {
 namespace {
 
-[[noreturn]] void refuse(const std::string& sentence) { throw Error(ErrorCode::invalid_input, "segments", sentence); }
+[[noreturn]] void refuse_segments(const std::string& sentence) {
+  throw Error(ErrorCode::invalid_input, "segments", sentence);
+}
 
 Json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
@@ -25,7 +27,7 @@ Vec3 read_point(const Json& item, const std::string& what) {
     good = item[k].is_number() && std::abs(item[k].get<double>()) < 1e9;
     if (good) point[k] = item[k].get<double>();
   }
-  if (!good) refuse("segments.json: " + what + " must be a point [x, y, z].");
+  if (!good) refuse_segments("segments.json: " + what + " must be a point [x, y, z].");
   return point;
 }
 
@@ -46,7 +48,7 @@ void read_punctures(const Json& list, ZippableParts& parts) {
       continue;
     }
     if (list[i].size() < 2 || list[i].size() > 1000)
-      refuse("segments.json: " + name + " is a cut and must have 2 to 1000 points [x, y, z].");
+      refuse_segments("segments.json: " + name + " is a cut and must have 2 to 1000 points [x, y, z].");
     parts.cuts.push_back(read_points(list[i], name));
   }
 }
@@ -59,17 +61,18 @@ DrawnCurve read_curve(const Json& item, const std::string& name) {
   if (item.is_object()) {
     for (const auto& [key, value] : item.items())
       if (key != "points" && key != "snap")
-        refuse("segments.json: an entry of " + name + " has \"" + key + "\": it may have points and snap.");
+        refuse_segments("segments.json: an entry of " + name + " has \"" + key + "\": it may have points and snap.");
     if (const auto snap = item.find("snap"); snap != item.end()) {
-      if (!snap->is_boolean()) refuse("segments.json: snap of an entry of " + name + " must be true or false.");
+      if (!snap->is_boolean())
+        refuse_segments("segments.json: snap of an entry of " + name + " must be true or false.");
       curve.snap = snap->get<bool>();
     }
     const auto found = item.find("points");
-    if (found == item.end()) refuse("segments.json: an entry of " + name + " has no points.");
+    if (found == item.end()) refuse_segments("segments.json: an entry of " + name + " has no points.");
     points = &*found;
   }
   if (!points->is_array() || points->size() > 1000)
-    refuse("segments.json: each of " + name + " must be a list of up to 1000 points [x, y, z].");
+    refuse_segments("segments.json: each of " + name + " must be a list of up to 1000 points [x, y, z].");
   curve.points = read_points(*points, name);
   return curve;
 }
@@ -108,7 +111,8 @@ double micrometres(double mm) { return std::round(1000 * mm) / 1000; }
 
 ZippableParts read_segments(ByteView bytes) {
   const Json json = parse_json_text(as_text(bytes));
-  if (!json.is_object()) refuse("segments.json is not a JSON object: it holds punctures, loops, lines, start and end.");
+  if (!json.is_object())
+    refuse_segments("segments.json is not a JSON object: it holds punctures, loops, lines, start and end.");
   ZippableParts parts;
   for (const auto& [name, value] : json.items()) {
     if (name == "start" || name == "end") {
@@ -116,10 +120,10 @@ ZippableParts read_segments(ByteView bytes) {
       continue;
     }
     if (name != "punctures" && name != "loops" && name != "lines")
-      refuse("segments.json has \"" + name +
-             "\", which is not known: it may have punctures, loops, lines, start and end.");
+      refuse_segments("segments.json has \"" + name +
+                      "\", which is not known: it may have punctures, loops, lines, start and end.");
     if (!value.is_array() || value.size() > 100)
-      refuse("segments.json: " + name + " must be a list of up to 100 entries.");
+      refuse_segments("segments.json: " + name + " must be a list of up to 100 entries.");
     if (name == "punctures") {
       read_punctures(value, parts);
       continue;
@@ -127,7 +131,7 @@ ZippableParts read_segments(ByteView bytes) {
     for (const Json& item : value) parts.curves.push_back(read_curve(item, name));
   }
   if (parts.punctures.empty() && parts.cuts.empty() && parts.curves.empty() && !parts.start && !parts.end)
-    refuse("segments.json is empty: give punctures, loops or lines, or leave the file out.");
+    refuse_segments("segments.json is empty: give punctures, loops or lines, or leave the file out.");
   return parts;
 }
 

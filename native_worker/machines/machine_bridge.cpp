@@ -17,6 +17,7 @@
 #include "machines/print/printer.h"
 #include "machines/print/slicer.h"
 #include "machines/print/upload.h"
+#include "system/machine_errors.h"
 
 namespace formwright {
 namespace {
@@ -48,10 +49,6 @@ Response too_many(const Head& head) {
 }
 Response nothing_here(const Head& head) {
   return error_response(head, http::status::not_found, "invalid_input", "", "There is nothing at this address.");
-}
-
-[[noreturn]] void refuse(const std::string& where, const std::string& sentence) {
-  throw Error(ErrorCode::invalid_input, where, sentence);
 }
 
 std::string text_in(const Json& order, const char* name, const std::string& otherwise) {

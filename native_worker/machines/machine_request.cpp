@@ -4,13 +4,9 @@
 #include "base/data/json_text.h"
 #include "system/hex_name.h"
 #include "machines/machine_page.h"
+#include "system/machine_errors.h"
 
 namespace formwright {
-namespace {
-[[noreturn]] void refuse(const std::string& where, const std::string& sentence) {
-  throw Error(ErrorCode::invalid_input, where, sentence);
-}
-}  // namespace
 
 MachineRequest read_machine_request(const std::string& text) {
   const Json message = parse_json_text(text);

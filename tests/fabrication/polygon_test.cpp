@@ -29,8 +29,8 @@ Polygon moved(const Polygon& polygon, const std::vector<double>& left_mm) {
 }
 
 TEST_CASE("Polygon.ARectangleGrowsByEachEdgesOwnDistance") {
-  const Polygon square{{0, 0}, {10, 0}, {10, 5}, {0, 5}};
-  const Polygon result = moved(square, {1, 2, 0, -3});  // inwards below and right, not above, outwards on the left
+  const Polygon rectangle{{0, 0}, {10, 0}, {10, 5}, {0, 5}};
+  const Polygon result = moved(rectangle, {1, 2, 0, -3});  // inwards below and right, not above, outwards on the left
   const Polygon expected{{-3, 1}, {8, 1}, {8, 5}, {-3, 5}};
   for (std::size_t i = 0; i < 4; ++i) {
     INFO(i);

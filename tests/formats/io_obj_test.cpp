@@ -11,7 +11,7 @@ namespace {
 using Catch::Matchers::WithinULP;
 using namespace test;
 
-constexpr std::string_view square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+constexpr std::string_view square_corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 TEST_CASE("Obj.VerticesAndTriangles") {
   const Model model =
@@ -28,7 +28,7 @@ TEST_CASE("Obj.VerticesAndTriangles") {
 TEST_CASE("Obj.EveryFormOfCorner") {
   const Model model =
       read_text(
-          std::string(square) +
+          std::string(square_corners) +
               "vt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\nf 1/1 2/2 3/3\nf 1/1/1 3/3/1 4/2/1\nf -4/-3 -3/-2 -2/-1\nf 1//1 2//1 3//1\nf 1 2 4\n",
           "a.obj")
           .model;
@@ -94,7 +94,7 @@ TEST_CASE("Obj.TextureCornersFollowTheTriangulation") {
 
 TEST_CASE("Obj.GroupsAndMaterials") {
   const ModelFile file = read_text(
-      std::string("mtllib my materials.mtl other.mtl\n") + std::string(square) +
+      std::string("mtllib my materials.mtl other.mtl\n") + std::string(square_corners) +
           "f 1 2 3\no first  name\nusemtl red\nf 1 3 4\ng\ng second\nusemtl blue\nf 2 3 4\nusemtl red\nf 1 2 4\ng unused\n",
       "a.obj");
   const Model& model = file.model;
@@ -115,7 +115,7 @@ TEST_CASE("Obj.MaterialsComeFromCompanions") {
   ReadOptions options;
   options.companions = companions;
   const ModelFile file =
-      read_text("mtllib materials.mtl\n" + std::string(square) + "usemtl red\nf 1 2 3\nusemtl plain\nf 1 3 4\n",
+      read_text("mtllib materials.mtl\n" + std::string(square_corners) + "usemtl red\nf 1 2 3\nusemtl plain\nf 1 3 4\n",
                 "a.obj", options);
   REQUIRE(file.model.materials.size() == 2u);
   CHECK(file.model.materials[0].diffuse.isApprox(Vec3(1, 0, linear_of_srgb(0.5))));
@@ -138,14 +138,14 @@ TEST_CASE("Obj.VertexColours") {
 }
 
 TEST_CASE("Obj.WhatIsLeftOutIsSaid") {
-  const ModelFile file = read_text(std::string(square) + "f 1 2\nl 1 2 3\np 1\nf 1 2 3\n", "a.obj");
+  const ModelFile file = read_text(std::string(square_corners) + "f 1 2\nl 1 2 3\np 1\nf 1 2 3\n", "a.obj");
   CHECK(file.model.mesh.face_count() == 1);
   REQUIRE(file.notes.size() == 1u);
   CHECK(file.notes[0] == "1 face with fewer than three corners left out.");
 }
 
 TEST_CASE("Obj.NamesBecomeUtf8") {
-  const ModelFile file = read_text(std::string(square) +
+  const ModelFile file = read_text(std::string(square_corners) +
                                        "g Gr\xFC\xDF"
                                        "e\nf 1 2 3\ng Gr\xC3\xBC\xC3\x9F"
                                        "e\nf 1 3 4\n",
@@ -183,7 +183,7 @@ TEST_CASE("Obj.ChunksDoNotShow") {
 }
 
 TEST_CASE("Obj.BadFilesAreRefusedWithTheLine") {
-  const std::string good(square);
+  const std::string good(square_corners);
   const auto refused = [](const std::string& text, const std::string& part) {
     expect_refused(as_bytes(text), "bad.obj", part);
   };
@@ -217,14 +217,15 @@ TEST_CASE("Obj.TooManyTrianglesAreRefusedBeforeTheyAreRead") {
   ReadOptions options;
   options.max_triangles = 3;
   options.where = "shape";
-  expect_refused(as_bytes(std::string(square) + "f 1 2 3 4\nf 1 2 3 4\n"), "large.obj",
+  expect_refused(as_bytes(std::string(square_corners) + "f 1 2 3 4\nf 1 2 3 4\n"), "large.obj",
                  "it holds 4 triangles, and at most 3 are read here", options);
-  CHECK(read_text(std::string(square) + "f 1 2 3 4\nf 1 2 3\n", "fits.obj", options).model.mesh.face_count() == 3);
+  CHECK(read_text(std::string(square_corners) + "f 1 2 3 4\nf 1 2 3\n", "fits.obj", options).model.mesh.face_count() ==
+        3);
 }
 
 TEST_CASE("Obj.CancelReachesTheReader") {
   Context context(Host{{}, [] { return true; }, {}});
-  const Bytes bytes = to_bytes(std::string(square) + "f 1 2 3\n");
+  const Bytes bytes = to_bytes(std::string(square_corners) + "f 1 2 3\n");
   try {
     read_model_file(bytes, "a.obj", {}, context);
     FAIL();
@@ -251,7 +252,7 @@ TEST_CASE("Mtl.BadColoursAreRefused") {
   ReadOptions options;
   options.companions = companions;
   try {
-    read_text("mtllib m.mtl\n" + std::string(square) + "usemtl red\nf 1 2 3\n", "a.obj", options);
+    read_text("mtllib m.mtl\n" + std::string(square_corners) + "usemtl red\nf 1 2 3\n", "a.obj", options);
     FAIL();
   } catch (const Error& error) {
     CHECK(std::string(error.what()) == "m.mtl, line 2: Kd needs three numbers: red, green and blue; correct the line.");

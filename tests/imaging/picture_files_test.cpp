@@ -36,7 +36,7 @@ Bytes of_hexadecimal(std::string_view text) {
   return bytes;
 }
 
-Image noise(int width, int height, bool with_alpha) {
+Image noise_picture(int width, int height, bool with_alpha) {
   Image image(width, height, {0, 0, 0, 255});
   std::mt19937 random(3);
   for (Rgba& p : image.pixels)
@@ -83,7 +83,7 @@ std::string refused(ByteView bytes) {
 
 TEST_CASE("PictureFiles.PngComesBackBitForBit") {
   for (const bool with_alpha : {false, true}) {
-    const Image image = noise(37, 21, with_alpha);
+    const Image image = noise_picture(37, 21, with_alpha);
     const Image again = read_picture(write_png(image, 11811, Context()), "", "texture");
     CHECK(again.width == 37);
     CHECK(again.pixels == image.pixels);
@@ -92,13 +92,13 @@ TEST_CASE("PictureFiles.PngComesBackBitForBit") {
 
 TEST_CASE("PictureFiles.PngSaysItsSizeAndSpace") {
   CHECK(pixels_per_metre(300) == 11811);
-  const Bytes png = write_png(noise(2, 2, false), 11811, Context());
+  const Bytes png = write_png(noise_picture(2, 2, false), 11811, Context());
   const std::string_view text = as_text(png);
   const std::size_t at = text.find("pHYs");
   REQUIRE(at != std::string_view::npos);
   CHECK(text.substr(at + 4, 9) == std::string_view{"\x00\x00\x2e\x23\x00\x00\x2e\x23\x01", 9});  // 11811, per metre
   CHECK(text.find("sRGB") != std::string_view::npos);
-  CHECK(as_text(write_png(noise(2, 2, false), 0, Context())).find("pHYs") == std::string_view::npos);
+  CHECK(as_text(write_png(noise_picture(2, 2, false), 0, Context())).find("pHYs") == std::string_view::npos);
 }
 
 TEST_CASE("PictureFiles.BaselineJpegIsClose") {
@@ -123,7 +123,7 @@ TEST_CASE("PictureFiles.ProgressiveJpegIsRead") {
 }
 
 TEST_CASE("PictureFiles.TruncatedFilesAreRefused") {
-  const Bytes png = write_png(noise(60, 40, false), 0, Context()), jpeg = baseline_jpeg(ramp(60, 40)),
+  const Bytes png = write_png(noise_picture(60, 40, false), 0, Context()), jpeg = baseline_jpeg(ramp(60, 40)),
               progressive = of_hexadecimal(progressive_jpeg);
   for (const Bytes* whole : {&png, &jpeg, &progressive})
     for (const double share : {0.1, 0.3, 0.6, 0.9, 0.999}) {
@@ -136,8 +136,8 @@ TEST_CASE("PictureFiles.TruncatedFilesAreRefused") {
 TEST_CASE("PictureFiles.DamagedFilesAreRefusedOrReadNeverWorse") {
   std::mt19937 random(11);
   int refusals = 0;
-  for (const Bytes& whole :
-       {write_png(noise(30, 20, true), 0, Context()), baseline_jpeg(ramp(64, 40)), of_hexadecimal(progressive_jpeg)})
+  for (const Bytes& whole : {write_png(noise_picture(30, 20, true), 0, Context()), baseline_jpeg(ramp(64, 40)),
+                             of_hexadecimal(progressive_jpeg)})
     for (int i = 0; i < 200; ++i) {
       Bytes damaged = whole;
       for (int k = 0; k < 3; ++k) damaged[8 + random() % (damaged.size() - 8)] = static_cast<std::byte>(random());
@@ -154,7 +154,7 @@ TEST_CASE("PictureFiles.OtherKindsAndEmptyFilesAreRefused") {
 }
 
 TEST_CASE("PictureFiles.HugeClaimsAreRefusedBeforeTheyAreBelieved") {
-  Bytes png = write_png(noise(4, 4, false), 0, Context());
+  Bytes png = write_png(noise_picture(4, 4, false), 0, Context());
   const auto claim = [&](std::uint32_t width, std::uint32_t height) {
     for (int k = 0; k < 4; ++k) {
       png[static_cast<std::size_t>(16 + k)] = static_cast<std::byte>(width >> (24 - 8 * k));

@@ -11,8 +11,6 @@ namespace {
 using Catch::Matchers::WithinAbs;
 
 const std::string square = "G21G90\nM4S500\nG0X10Y10\nG1X30F1200\nY30\nX10\nY10\nM5\nG0X0Y0\nM2\n";
-const Json start = {{"do", "start"}, {"confirmed", true}}, stop = {{"do", "stop"}};
-
 TEST_CASE("GrblDriver.GreetsAndLearnsWhatTheMachineIs") {
   GrblTalk talk;
   CHECK(talk.state()["connection"] == "greeting");
@@ -65,7 +63,7 @@ TEST_CASE("GrblDriver.ConnectsToAMachineThatIsHeld") {
   GrblTalk talk(options);
   talk.connect_and_home();
   talk.load(square);
-  talk.tell(start);
+  talk.tell(start_job);
   REQUIRE(talk.pass_until([&] { return talk.machine.beam(); }, 10));
   talk.tell({{"do", "pause"}});
   REQUIRE(talk.pass_until([&] { return talk.phase() == "paused"; }, 2));
@@ -74,7 +72,7 @@ TEST_CASE("GrblDriver.ConnectsToAMachineThatIsHeld") {
   talk.connect();
   CHECK(talk.phase() == "paused");
   CHECK(talk.can("resume"));
-  talk.tell(stop);
+  talk.tell(stop_job);
   talk.pass(3);
   CHECK(talk.phase() == "idle");
   CHECK(talk.state()["firmware"] == "1.1h.20190825");  // asked for once it rests
@@ -110,7 +108,7 @@ TEST_CASE("GrblDriver.CutsWhatTheJobSays") {
   talk.connect_and_home();
   const auto origin = talk.machine.position_mm();
   talk.load(square);
-  talk.tell(start);
+  talk.tell(start_job);
   {
     const bool reached = talk.pass_until([&] { return !talk.ended().empty(); }, 60);
     INFO(talk.state().dump());
@@ -136,10 +134,10 @@ TEST_CASE("GrblDriver.StopEndsEverythingAndForgetsThePosition") {
   GrblTalk talk;
   talk.connect_and_home();
   talk.load("G21G90M4S500\nG1X250F600\nX0\nX250\n");
-  talk.tell(start);
+  talk.tell(start_job);
   talk.pass(2);
   REQUIRE(talk.machine.beam());
-  talk.tell(stop);
+  talk.tell(stop_job);
   talk.pass(0.1);
   CHECK_FALSE(talk.machine.beam());
   talk.pass(1.5);
@@ -148,7 +146,7 @@ TEST_CASE("GrblDriver.StopEndsEverythingAndForgetsThePosition") {
   const auto there = talk.machine.position_mm();
   talk.pass(5);
   CHECK(talk.machine.position_mm() == there);  // the queue does not go on by itself
-  CHECK(talk.refusal(start) != "");
+  CHECK(talk.refusal(start_job) != "");
   // It came to rest before the reset: no alarm, but homing is asked for all the same.
   CHECK(talk.phase() == "idle");
   CHECK(talk.can("home"));
@@ -160,9 +158,9 @@ TEST_CASE("GrblDriver.StopWithoutLaserModeResetsAtOnce") {
   GrblTalk talk(options);
   talk.connect_and_home();
   talk.load("G21G90\nG1X250F600\n");
-  talk.tell(start);
+  talk.tell(start_job);
   talk.pass(2);
-  talk.tell(stop);
+  talk.tell(stop_job);
   talk.pass(0.05);
   CHECK(talk.machine.state() == "Alarm");
   talk.pass(1);
@@ -175,14 +173,14 @@ TEST_CASE("GrblDriver.RefusesLaserJobsWithoutLaserMode") {
   GrblTalk talk(options);
   talk.connect_and_home();
   talk.load(square);
-  CHECK(talk.refusal(start).find("$32=1") != std::string::npos);
+  CHECK(talk.refusal(start_job).find("$32=1") != std::string::npos);
 }
 
 TEST_CASE("GrblDriver.HoldsAndGoesOn") {
   GrblTalk talk;
   talk.connect_and_home();
   talk.load(square);
-  talk.tell(start);
+  talk.tell(start_job);
   REQUIRE(talk.pass_until([&] { return talk.machine.beam(); }, 10));
   talk.tell({{"do", "pause"}});
   {
@@ -205,7 +203,7 @@ TEST_CASE("GrblDriver.ARefusedLineEndsTheJob") {
   talk.connect_and_home();
   talk.machine.refuse_line("M1", 20);
   talk.load("G21G90\nM4S500\nG1X10F600\nM1\nG1X200\nM5\n");
-  talk.tell(start);
+  talk.tell(start_job);
   REQUIRE(talk.pass_until([&] { return !talk.ended().empty(); }, 60));
   CHECK(talk.ended() == "failed");
   CHECK(talk.state()["error"]["line_number"] == 4);
@@ -219,7 +217,7 @@ TEST_CASE("GrblDriver.AlarmsAreSaidInWords") {
   GrblTalk talk;
   talk.connect_and_home();
   talk.load(square);
-  talk.tell(start);
+  talk.tell(start_job);
   talk.pass(1);
   talk.machine.trip_limit();
   talk.pass(0.5);
@@ -242,7 +240,7 @@ TEST_CASE("GrblDriver.ARestartInTheJobIsNoticed") {
   GrblTalk talk;
   talk.connect_and_home();
   talk.load(square);
-  talk.tell(start);
+  talk.tell(start_job);
   talk.pass(1);
   const std::size_t lines = talk.machine.lines().size();
   talk.machine.brown_out(talk.now_s);
@@ -258,13 +256,13 @@ TEST_CASE("GrblDriver.AnUnpluggedCableClearsTheQueue") {
   GrblTalk talk;
   talk.connect_and_home();
   talk.load(square);
-  talk.tell(start);
+  talk.tell(start_job);
   talk.pass(1);
   talk.driver.closed(talk.now_s);
   CHECK(talk.ended() == "cut_off");
   CHECK_FALSE(talk.state()["position_known"]);
   CHECK(talk.driver.take_output().empty());
-  CHECK(talk.refusal(start).find("not connected") != std::string::npos);
+  CHECK(talk.refusal(start_job).find("not connected") != std::string::npos);
 }
 
 TEST_CASE("GrblDriver.FramesWithoutLightAndJogsUntilLetGo") {
@@ -311,7 +309,7 @@ TEST_CASE("GrblDriver.TheFocusLightIsOutBeforeAJobBegins") {
   talk.pass(0.5);
   REQUIRE(talk.machine.beam());
   talk.load("G21G90\nG4P5\nG0X5Y5\n");  // says nothing of the beam, and waits
-  talk.tell(start);
+  talk.tell(start_job);
   talk.pass(1);
   CHECK_FALSE(talk.machine.beam());
   CHECK(talk.pass_until([&] { return talk.ended() == "done"; }, 20));

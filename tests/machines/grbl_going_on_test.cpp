@@ -25,11 +25,6 @@ struct Job {
   std::vector<int> travels;  // lines that begin with G0
 };
 
-std::uint64_t seed() {
-  const char* given = std::getenv("FORMWRIGHT_SEED");
-  return given ? std::strtoull(given, nullptr, 10) : 20261122;
-}
-
 Job random_job(Random& random) {
   Job job;
   int line = 0;
@@ -91,10 +86,10 @@ double length_of(const std::vector<VirtualGrbl::Burn>& burns, std::size_t from) 
 }
 
 TEST_CASE("GrblGoingOn.AfterPulledCablesEverythingIsBurned") {
-  Random random(seed() + 7);
+  Random random(random_seed() + 7);
   int pulled = 0, in_two_runs = 0;
   for (int round = 0; round < 40; ++round) {
-    INFO("seed " + std::to_string(seed()) + ", round " + std::to_string(round));
+    INFO("seed " + std::to_string(random_seed()) + ", round " + std::to_string(round));
     const Job job = random_job(random);
     GrblTalk talk({}, {.burst_s = random.uniform() < 0.3 ? 0.1 : 0.0}, random.next());
     talk.connect_and_home();

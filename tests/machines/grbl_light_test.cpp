@@ -9,7 +9,6 @@ namespace formwright {
 namespace {
 using Catch::Matchers::WithinAbs;
 
-const Json start = {{"do", "start"}, {"confirmed", true}};
 const Json focus = {{"do", "focus"}, {"power_percent", 1}, {"confirmed", true}};
 const Json home = {{"do", "home"}, {"confirmed", true}};
 const Json frame = {{"do", "frame"}, {"bounds_mm", {5, 5, 60, 40}}, {"speed_mm_per_s", 100}, {"confirmed", true}};
@@ -42,7 +41,7 @@ TEST_CASE("GrblLight.AJobThatEndsWithoutM5LeavesNothingOn") {
       GrblTalk talk;
       talk.connect_and_home();
       talk.load(std::string("G21\nG90\n") + on + " S800\nG1 X50 F3000\nG1 Y50\n");
-      talk.tell(start);
+      talk.tell(start_job);
       REQUIRE(talk.pass_until([&] { return talk.ended() == "done"; }, 30));
       CHECK(talk.machine.lines().back() == "M5");
       const double before = lit_s(talk);
@@ -88,12 +87,12 @@ TEST_CASE("GrblLight.AJobThatBeginsAtTheOriginIsNotBegunElsewhere") {
   talk.tell({{"do", "send"}, {"line", "G10L2P1X100Y100"}, {"confirmed", true}});
   talk.pass(1);
   talk.load("G21\nG90\nM4 S800\nG1 X50 F3000\nG1 Y50\nM5\n");  // its writer thought that it stands at 0, 0
-  CHECK(talk.refusal(start).find("x 0, y 0") != std::string::npos);
+  CHECK(talk.refusal(start_job).find("x 0, y 0") != std::string::npos);
   talk.tell({{"do", "go_to"}, {"x_mm", 0}, {"y_mm", 0}, {"speed_mm_per_s", 150}});
   talk.pass(0.5);
   REQUIRE(talk.pass_until([&] { return talk.phase() == "idle" && talk.can("start"); }, 9));
   talk.pass(1);
-  talk.tell(start);
+  talk.tell(start_job);
   REQUIRE(talk.pass_until([&] { return talk.ended() == "done"; }, 30));
   for (const auto& burn : talk.machine.burns()) {
     INFO(burn.from_mm[0] << " " << burn.from_mm[1]);
@@ -101,7 +100,7 @@ TEST_CASE("GrblLight.AJobThatBeginsAtTheOriginIsNotBegunElsewhere") {
   }
   // One that says where it begins goes there in the dark.
   talk.load("G21\nG90\nG0X0Y0\nM4 S800\nG1 X50 F3000\nM5\n");
-  CHECK(talk.refusal(start) == "");
+  CHECK(talk.refusal(start_job) == "");
 }
 
 TEST_CASE("GrblLight.AKilledProgramLeavesItDarkInTheMiddleOfAnM3Job") {
@@ -110,7 +109,7 @@ TEST_CASE("GrblLight.AKilledProgramLeavesItDarkInTheMiddleOfAnM3Job") {
   talk.load("G21G90\nM3S500\nG1F3000\nX50\nY50\nX0\nY0\nX50\nY50\nX0\nY0\n");
   CHECK(talk.state()["warnings"].dump().find("M4") != std::string::npos);
   CHECK(talk.state()["when_connection_ends"].get<std::string>().find("laser off") != std::string::npos);
-  talk.tell(start);
+  talk.tell(start_job);
   REQUIRE(talk.pass_until([&] { return talk.machine.beam(); }, 5));
   talk.kill_host(true);
   talk.leave_alone(60);
@@ -130,7 +129,7 @@ TEST_CASE("GrblLight.AJobThatBurnsAtRestIsConfirmedInWords") {
   talk.load("G21G90\nM3S500\nG1X5F3000\nG4P0.2\nG1X9\nM5\n");
   CHECK(talk.refusal({{"do", "start"}}).find("line 4 burns at rest") != std::string::npos);
   CHECK(talk.state()["when_connection_ends"].get<std::string>().find("laser ON") != std::string::npos);
-  talk.tell(start);
+  talk.tell(start_job);
   REQUIRE(talk.pass_until([&] { return talk.ended() == "done"; }, 30));
   CHECK_THAT(lit_s(talk), WithinAbs(0.2, 0.4));
   CHECK_FALSE(talk.machine.beam());
@@ -247,7 +246,7 @@ TEST_CASE("GrblLight.ARefusedLineOfAnEarlierProgramStopsTheMachine") {
   talk.connect_and_home();
   talk.load("G21\nG90\nM4S500\nG0X0Y0\nG1F1200\nG1X40Y0\nG4P2\nG0X0Y30\nG1X40Y30\nG1X40Y60\nM5\n");
   talk.machine.refuse_line("G0X0Y30", 20);
-  talk.tell(start);
+  talk.tell(start_job);
   REQUIRE(talk.pass_until([&] { return talk.machine.beam(); }, 20));
   talk.pull_cable();
   talk.leave_alone(2);
@@ -292,7 +291,7 @@ TEST_CASE("GrblLight.NoJobStartsWhileHomingWaits") {
   talk.tell(home);
   REQUIRE(talk.phase() == "idle");
   CHECK_FALSE(talk.can("start"));
-  CHECK(talk.refusal(start).find("still moving") != std::string::npos);
+  CHECK(talk.refusal(start_job).find("still moving") != std::string::npos);
 }
 
 }  // namespace

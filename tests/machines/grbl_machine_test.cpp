@@ -8,7 +8,6 @@ namespace formwright {
 namespace {
 using Catch::Matchers::WithinAbs;
 
-const Json start = {{"do", "start"}, {"confirmed", true}};
 const std::string square = "G21G90\nM4S500\nG0X10Y10\nG1X30F1200\nY30\nX10\nY10\nM5\n";
 
 void by_hand(GrblTalk& talk, const std::string& line) {
@@ -24,7 +23,7 @@ TEST_CASE("GrblMachine.ReportsInInchesAreMillimetresHere") {
   for (std::size_t axis = 0; axis < 2; ++axis)
     CHECK_THAT(talk.state()["machine_mm"][axis].get<double>(), WithinAbs(talk.machine.position_mm()[axis], 3e-3));
   talk.load(square);
-  talk.tell(start);
+  talk.tell(start_job);
   REQUIRE(talk.pass_until([&] { return talk.ended() == "done"; }, 60));
   CHECK_THAT(talk.state()["work_mm"][0].get<double>(), WithinAbs(10, 3e-3));
   by_hand(talk, "$13=0");
@@ -36,7 +35,7 @@ TEST_CASE("GrblMachine.PowersBeyondTheMachinesAreRefused") {
   talk.machine.set_setting(30, 255);
   talk.connect_and_home();
   talk.load(square);
-  const std::string refusal = talk.refusal(start);
+  const std::string refusal = talk.refusal(start_job);
   {
     INFO(refusal);
     CHECK(refusal.find("Line 2 asks for S500") != std::string::npos);
@@ -44,9 +43,9 @@ TEST_CASE("GrblMachine.PowersBeyondTheMachinesAreRefused") {
   CHECK(refusal.find("255") != std::string::npos);
   by_hand(talk, "$30=1000");
   by_hand(talk, "$31=1000");
-  CHECK(talk.refusal(start).find("$31=0") != std::string::npos);
+  CHECK(talk.refusal(start_job).find("$31=0") != std::string::npos);
   by_hand(talk, "$31=0");
-  CHECK(talk.refusal(start) == "");
+  CHECK(talk.refusal(start_job) == "");
 }
 
 TEST_CASE("GrblMachine.StartupLinesThatFireOrMoveAreRefused") {
@@ -72,7 +71,7 @@ TEST_CASE("GrblMachine.AJobBeginsInAKnownState") {
   const auto origin = talk.machine.position_mm();
   for (const char* line : {"G20", "G91", "G18", "G10L2P2X-9Y-9", "G55", "S900", "G1F100"}) by_hand(talk, line);
   talk.load("M4S500\nG0X10Y10\nG1X30F1200\nM5\n");
-  talk.tell(start);
+  talk.tell(start_job);
   REQUIRE(talk.pass_until([&] { return !talk.ended().empty(); }, 60));
   CHECK(talk.ended() == "done");
   CHECK_THAT(talk.machine.position_mm()[0], WithinAbs(origin[0] + 30, 1e-9));
@@ -85,12 +84,12 @@ TEST_CASE("GrblMachine.OffsetsInForceAreRefused") {
   talk.connect_and_home();
   talk.load(square);
   by_hand(talk, "G92X5");
-  CHECK(talk.refusal(start).find("G92.1") != std::string::npos);
+  CHECK(talk.refusal(start_job).find("G92.1") != std::string::npos);
   by_hand(talk, "G92.1");
   by_hand(talk, "G43.1Z2");
-  CHECK(talk.refusal(start).find("G49") != std::string::npos);
+  CHECK(talk.refusal(start_job).find("G49") != std::string::npos);
   by_hand(talk, "G49");
-  CHECK(talk.refusal(start) == "");
+  CHECK(talk.refusal(start_job) == "");
 }
 
 TEST_CASE("GrblMachine.OffsetsOfAMachineThatDidNotResetAreAskedFor") {
@@ -123,17 +122,17 @@ TEST_CASE("GrblMachine.PlacesAreKnownPerAxis") {
     talk.pass(0.5);
   };
   talk.load("G21G90\nM3S1000\nG0Z5\nG0X10Y10\nG1Z-1F100\nG1X20\nG0Z5\nM5\n");
-  CHECK(talk.refusal(start).find("set the origin") != std::string::npos);
+  CHECK(talk.refusal(start_job).find("set the origin") != std::string::npos);
   set("z");
   CHECK(talk.state()["axes_known"] == Json{{"x", false}, {"y", false}, {"z", true}});
   CHECK_FALSE(talk.state()["position_known"]);
   CHECK_FALSE(talk.can("frame"));
-  CHECK(talk.refusal(start) != "");
+  CHECK(talk.refusal(start_job) != "");
   talk.tell({{"do", "stop"}});  // nothing is known any more
   talk.pass(2);
   set("xy");
   CHECK(talk.can("frame"));
-  CHECK(talk.refusal(start).find("Set z") != std::string::npos);
+  CHECK(talk.refusal(start_job).find("Set z") != std::string::npos);
   set("z");
   CHECK(talk.refusal({{"do", "start"}, {"confirmed", true}, {"z", "kept"}}) == "");
   REQUIRE(talk.pass_until([&] { return talk.ended() == "done"; }, 60));
@@ -147,7 +146,7 @@ TEST_CASE("GrblMachine.GoingOnHeedsThePlannersSize") {
   for (int i = 1; i <= 400; ++i)
     job += "G1X" + std::to_string(i % 2) + "Y" + std::to_string(i / 8) + "\nS" + std::to_string(300 + i) + "\nG0X5\n";
   talk.load(job);
-  talk.tell(start);
+  talk.tell(start_job);
   REQUIRE(talk.pass_until([&] { return talk.state()["job"]["acknowledged"] > 600; }, 200));
   const double y_mm = talk.machine.position_mm()[1] - talk.machine.origin_mm(54)[1];
   const Json state = talk.state()["job"];

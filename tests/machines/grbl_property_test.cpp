@@ -11,12 +11,7 @@ namespace formwright {
 namespace {
 using Catch::Matchers::WithinAbs;
 
-std::uint64_t seed() {
-  const char* given = std::getenv("FORMWRIGHT_SEED");
-  return given ? std::strtoull(given, nullptr, 10) : 20261122;
-}
-
-std::string random_job(Random& random, int lines, double& length_mm) {
+std::string random_lines(Random& random, int lines, double& length_mm) {
   std::string job = "G21G90\nM4S500\nG0X0Y0\nF9000\n";
   double x = 0, y = 0;
   length_mm = 0;
@@ -44,11 +39,11 @@ double burned(const VirtualGrbl& machine) {
 }
 
 TEST_CASE("GrblProperty.JobsArriveWholeOverSlowAndBurstyLines") {
-  Random random(seed());
+  Random random(random_seed());
   for (int round = 0; round < 12; ++round) {
-    INFO("seed " + std::to_string(seed()) + ", round " + std::to_string(round));
+    INFO("seed " + std::to_string(random_seed()) + ", round " + std::to_string(round));
     double length = 0;
-    const std::string job = random_job(random, 40 + static_cast<int>(random.below(80)), length);
+    const std::string job = random_lines(random, 40 + static_cast<int>(random.below(80)), length);
     GrblTalk talk({}, {.burst_s = random.uniform() < 0.5 ? 0.0 : random.uniform(0, 0.2)}, random.next());
     talk.connect_and_home();
     talk.load(job);
@@ -73,12 +68,12 @@ TEST_CASE("GrblProperty.JobsArriveWholeOverSlowAndBurstyLines") {
 }
 
 TEST_CASE("GrblProperty.WhateverHappensTheQueueEndsAndTheBeamGoesOut") {
-  Random random(seed() + 1);
+  Random random(random_seed() + 1);
   int done = 0, not_done = 0;
   for (int round = 0; round < 40; ++round) {
-    INFO("seed " + std::to_string(seed()) + ", round " + std::to_string(round));
+    INFO("seed " + std::to_string(random_seed()) + ", round " + std::to_string(round));
     double length = 0;
-    const std::string job = random_job(random, 60, length);
+    const std::string job = random_lines(random, 60, length);
     VirtualGrblOptions options;
     options.soft_limits = random.uniform() < 0.3;
     GrblTalk talk(options, {}, random.next());
@@ -123,12 +118,12 @@ TEST_CASE("GrblProperty.WhateverHappensTheQueueEndsAndTheBeamGoesOut") {
 }
 
 TEST_CASE("GrblProperty.LostBytesNeverPassForADoneJob") {
-  Random random(seed() + 2);
+  Random random(random_seed() + 2);
   int caught = 0;
   for (int round = 0; round < 30; ++round) {
-    INFO("seed " + std::to_string(seed()) + ", round " + std::to_string(round));
+    INFO("seed " + std::to_string(random_seed()) + ", round " + std::to_string(round));
     double length = 0;
-    const std::string job = random_job(random, 60, length);
+    const std::string job = random_lines(random, 60, length);
     // Bytes lost on the way back: answers are missing, and the driver must not wait for ever nor take the job for done.
     GrblTalk talk({}, {.lose_to_host = 0.0015}, random.next());
     if (!talk.pass_until([&] { return talk.state()["connection"] == "ready"; }, 60)) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a job may start on a GRBL machine, and where it goes on.
+// Where a job may start_job on a GRBL machine, and where it goes on.
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
 #include <cmath>
 
@@ -11,8 +11,6 @@ using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinULP;
 
 const std::string square = "G21G90\nM4S500\nG0X10Y10\nG1X30F1200\nY30\nX10\nY10\nM5\nG0X0Y0\nM2\n";
-const Json start = {{"do", "start"}, {"confirmed", true}}, stop = {{"do", "stop"}};
-
 TEST_CASE("GrblDriver.GoingOnLeavesAnUnnamedAxisWhereItIs") {
   GrblTalk talk;
   talk.connect_and_home();
@@ -20,7 +18,7 @@ TEST_CASE("GrblDriver.GoingOnLeavesAnUnnamedAxisWhereItIs") {
   talk.pass(3);
   const double y = talk.machine.position_mm()[1], x = talk.machine.position_mm()[0] - 10;
   talk.load("G21G90\nG0X15\nG0X30\nG0X40\n");
-  Json from = start;
+  Json from = start_job;
   from["from_line"] = 3;
   talk.tell(from);
   CHECK(talk.pass_until([&] { return talk.ended() == "done"; }, 20));
@@ -33,9 +31,9 @@ TEST_CASE("GrblDriver.JobsThatDoNotFitAreRefusedBeforeAnythingMoves") {
   talk.connect_and_home();
   const auto there = talk.machine.position_mm();
   talk.load("G21G90\nG0X0\nG0X500\n");
-  CHECK(talk.refusal(start).find("500 mm long") != std::string::npos);
+  CHECK(talk.refusal(start_job).find("500 mm long") != std::string::npos);
   talk.load("G21G90\nG0X310Y0\nG0X0\n");  // 310 mm from an origin 301 mm from the end
-  CHECK(talk.refusal(start).find("leave the bed in x") != std::string::npos);
+  CHECK(talk.refusal(start_job).find("leave the bed in x") != std::string::npos);
   CHECK(talk.refusal({{"do", "frame"}, {"bounds_mm", {-150, 0, 20, 20}}, {"speed_mm_per_s", 50}, {"confirmed", true}})
             .find("bed") != std::string::npos);
   talk.pass(1);
@@ -54,23 +52,23 @@ TEST_CASE("GrblDriver.AJobThatCountsFromTheHeadStartsAtTheOriginOnly") {
   talk.tell({{"do", "jog"}, {"x_mm", 250}, {"y_mm", 250}, {"speed_mm_per_s", 150}});
   rest();
   // From here it would go to x 350, and the bed ends at 301.
-  CHECK(talk.refusal(start).find("G91") != std::string::npos);
+  CHECK(talk.refusal(start_job).find("G91") != std::string::npos);
   talk.tell({{"do", "go_to"}, {"x_mm", 0}, {"y_mm", 0}, {"speed_mm_per_s", 150}});
   rest();
-  CHECK(talk.refusal(start) == "");
+  CHECK(talk.refusal(start_job) == "");
   REQUIRE(talk.pass_until([&] { return !talk.ended().empty(); }, 30));
   CHECK(talk.ended() == "done");
   CHECK_THAT(talk.machine.position_mm()[0], WithinAbs(origin_mm + 100, 1e-9));
   rest();
-  CHECK(talk.refusal(start) != "");
+  CHECK(talk.refusal(start_job) != "");
   talk.tell({{"do", "set_origin"}, {"axes", "xy"}});
-  CHECK(talk.refusal(start) == "");
+  CHECK(talk.refusal(start_job) == "");
   REQUIRE(talk.pass_until([&] { return talk.ended() == "done"; }, 30));
   CHECK_THAT(talk.machine.position_mm()[0], WithinAbs(origin_mm + 200, 1e-9));
   // A tool that is lifted first does not make such a job.
   talk.load("G21G91\nG0Z-5\nG90\nG0X10Y10\nG0X0Y0\n");
   rest();
-  CHECK(talk.refusal(start) == "");
+  CHECK(talk.refusal(start_job) == "");
 }
 
 TEST_CASE("GrblDriver.AJobThatCountsFromTheHeadGoesOnFromAnywhere") {
@@ -80,16 +78,16 @@ TEST_CASE("GrblDriver.AJobThatCountsFromTheHeadGoesOnFromAnywhere") {
   std::string job = "G21G91\nM4S400\n";
   for (int i = 0; i < 20; ++i) job += "G0Y2\nG1X20F3000\nG0Y2\nG1X-20\n";
   talk.load(job + "M5\n");
-  talk.tell(start);
+  talk.tell(start_job);
   REQUIRE(talk.pass_until([&] { return talk.state()["job"]["acknowledged"] > 40; }, 60));
-  talk.tell(stop);
+  talk.tell(stop_job);
   talk.pass(2);
   const int from = talk.state()["job"]["careful_line"];
   REQUIRE(from > 10);
   talk.tell({{"do", "home"}, {"confirmed", true}});
   REQUIRE(talk.pass_until([&] { return talk.phase() == "idle" && talk.state()["position_known"] == true; }, 20));
   talk.pass(1);
-  CHECK(talk.refusal(start) != "");
+  CHECK(talk.refusal(start_job) != "");
   CHECK(talk.refusal({{"do", "start"}, {"confirmed", true}, {"from_line", from}}) == "");
   REQUIRE(talk.pass_until([&] { return !talk.ended().empty(); }, 120));
   CHECK(talk.ended() == "done");
@@ -101,7 +99,7 @@ TEST_CASE("GrblDriver.AJobMayStartAtOnceFromAnOriginJustSet") {
   GrblTalk talk;
   talk.connect_and_home();
   talk.load("G21G90\nG0X310Y0\nG0X0\n");  // does not fit from where the origin is: 301 mm from the end
-  CHECK(talk.refusal(start).find("leave the bed in x") != std::string::npos);
+  CHECK(talk.refusal(start_job).find("leave the bed in x") != std::string::npos);
   const double head_mm = talk.state()["machine_mm"][0];
   // However long ago the last report was, which named another origin.
   for (int i = 0; i < 8; ++i) {
@@ -113,11 +111,11 @@ TEST_CASE("GrblDriver.AJobMayStartAtOnceFromAnOriginJustSet") {
     }
     talk.tell({{"do", "set_origin"}, {"axes", "xy"}});
     CHECK_THAT(talk.state()["work_mm"][0], WithinULP(0.0, 4));
-    CHECK(talk.refusal(start) != "");
+    CHECK(talk.refusal(start_job) != "");
     talk.pass(0.137);
   }
   talk.tell({{"do", "set_origin"}, {"at", "corner"}});
-  CHECK(talk.refusal(start) == "");
+  CHECK(talk.refusal(start_job) == "");
   REQUIRE(talk.pass_until([&] { return talk.ended() == "done"; }, 30));
 }
 
@@ -130,7 +128,7 @@ TEST_CASE("GrblDriver.AJobNeverStartsIntoAFrameThatIsNotDone") {
     REQUIRE(talk.pass_until([&] { return talk.can("frame"); }, 5));
     talk.tell({{"do", "frame"}, {"bounds_mm", {0, 0, 10, 10}}, {"speed_mm_per_s", 50}, {"confirmed", true}});
     talk.pass(0.04 * i);
-    if (talk.refusal(start) != "") {
+    if (talk.refusal(start_job) != "") {
       ++refused;
       talk.pass(1.5);
       continue;
@@ -154,9 +152,9 @@ TEST_CASE("GrblDriver.GoesOnTheCarefulWay") {
   }
   job += "M5\n";
   talk.load(job);
-  talk.tell(start);
+  talk.tell(start_job);
   REQUIRE(talk.pass_until([&] { return talk.state()["job"]["acknowledged"] > 40; }, 60));
-  talk.tell(stop);
+  talk.tell(stop_job);
   talk.pass(2);
   const int from = talk.state()["job"]["careful_line"];
   CHECK(from > 10);
@@ -192,9 +190,9 @@ TEST_CASE("GrblDriver.AJobWaitsUntilALineByHandHasMoved") {
   for (int ms = 0; ms < 300 && talk.machine.state() != "Run"; ++ms) talk.pass(1e-3);
   REQUIRE(talk.machine.state() == "Run");
   CHECK_FALSE(talk.can("start"));
-  CHECK_FALSE(talk.refusal(start).empty());
+  CHECK_FALSE(talk.refusal(start_job).empty());
   REQUIRE(talk.pass_until([&] { return talk.phase() == "idle"; }, 10));
-  CHECK(talk.refusal(start).find("where that begins") != std::string::npos);
+  CHECK(talk.refusal(start_job).find("where that begins") != std::string::npos);
 }
 
 }  // namespace

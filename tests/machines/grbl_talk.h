@@ -3,6 +3,8 @@
 // A driver and the virtual machine on a serial line that takes its time and may spoil what passes.
 #include <catch2/catch_test_macros.hpp>
 
+#include <cstdint>
+#include <cstdlib>
 #include <deque>
 #include <functional>
 #include <string>
@@ -13,6 +15,14 @@
 #include "machines/virtual_grbl/virtual_grbl.h"
 
 namespace formwright {
+
+inline const Json start_job = {{"do", "start"}, {"confirmed", true}}, stop_job = {{"do", "stop"}};
+
+/// FORMWRIGHT_SEED asks for other random programs.
+inline std::uint64_t random_seed() {
+  const char* given = std::getenv("FORMWRIGHT_SEED");
+  return given ? std::strtoull(given, nullptr, 10) : 20261122;
+}
 
 struct LineFaults {
   double lose_to_machine = 0, lose_to_host = 0;  // probability of a byte

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "machines/k40/k40_driver.h"
+#include "machines/notes_of.h"
 
 namespace formwright {
 namespace {
@@ -54,14 +55,6 @@ TEST_CASE("K40.ReadsEgvFiles") {
   CHECK(packets[2] == "E");
   CHECK_THROWS_AS(k40_packets("G1 X5\n"), Error);
   CHECK_THROWS_AS(k40_packets(""), Error);
-}
-
-std::string notes_of(MachineDriver& driver) {
-  std::string notes;
-  const Json events = driver.take_events();
-  for (const Json& event : events)
-    if (event["event"] == "note") notes += event["text"].get<std::string>() + "\n";
-  return notes;
 }
 
 /// The board's side: judges every transfer, is busy now and then, and hears badly.

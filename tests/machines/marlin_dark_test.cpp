@@ -16,7 +16,7 @@ constexpr double bed_x_mm = 300, bed_y_mm = 200;
 std::string number(double value) { return machines_detail::decimal(value); }
 
 /// A few cuts of one to four lines. `cut_off`: the file ends behind a cut, and nothing turns the laser off.
-LaserJob random_job(Random& random, LaserJob::Mode mode, bool cut_off) {
+LaserJob random_laser_job(Random& random, LaserJob::Mode mode, bool cut_off) {
   LaserJob job;
   job.mode = mode;
   const double width = 5 + 40 * random.uniform(), height = 5 + 40 * random.uniform();
@@ -150,7 +150,7 @@ class Sequence {
     wait();
   }
   void start() {
-    LaserJob job = random_job(random_, mode_, random_.uniform() < 0.5);
+    LaserJob job = random_laser_job(random_, mode_, random_.uniform() < 0.5);
     try {
       talk_.driver.load("job", as_bytes(job.text));
     } catch (const Error&) {

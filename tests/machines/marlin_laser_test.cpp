@@ -10,8 +10,8 @@ namespace formwright {
 namespace {
 using Catch::Matchers::WithinAbs;
 
-const Json home = {{"do", "home"}, {"confirmed", true}}, start = {{"do", "start"}, {"confirmed", true}},
-           focus = {{"do", "focus"}, {"power_percent", 1}, {"confirmed", true}};
+const Json home_laser = {{"do", "home"}, {"confirmed", true}}, start_laser = {{"do", "start"}, {"confirmed", true}},
+           focus_laser = {{"do", "focus"}, {"power_percent", 1}, {"confirmed", true}};
 
 struct ReadyTalk : MarlinLaserTalk {
   explicit ReadyTalk(const VirtualMarlinOptions& laser = {}, double focus_seconds = 60)
@@ -27,13 +27,13 @@ struct ReadyTalk : MarlinLaserTalk {
     return "";
   }
   void homed() {
-    try_tell(home);
+    try_tell(home_laser);
     REQUIRE(wait_for("idle", 30));
     pass(0.1);
   }
   void begin(const std::string& text) {
     driver.load("job", as_bytes(text));
-    REQUIRE(refusal(start) == "");
+    REQUIRE(refusal(start_laser) == "");
   }
   bool ends(const char* how) {
     for (int i = 0; i < 3000 && state()["job"]["ended"].is_null(); ++i) pass(0.02);
@@ -95,7 +95,7 @@ TEST_CASE("MarlinLaser.FirmwareWithoutInlineModesKeepsSuchJobsDark") {
 TEST_CASE("MarlinLaser.AFocusLightEndsByItselfBehindADeadHost") {
   ReadyTalk talk;
   talk.expect_spot(true);
-  REQUIRE(talk.try_tell(focus));
+  REQUIRE(talk.try_tell(focus_laser));
   CHECK(talk.state()["laser_on"] == true);
   talk.pass(2);
   CHECK(talk.spot_s > 1.8);  // dark between pulses for a moment only
@@ -109,19 +109,19 @@ TEST_CASE("MarlinLaser.AFocusLightEndsByItselfBehindADeadHost") {
 
 TEST_CASE("MarlinLaser.AFocusLightGoesOutByItsTimeByItsButtonAndByARestart") {
   ReadyTalk talk({}, 5);
-  REQUIRE(talk.try_tell(focus));
+  REQUIRE(talk.try_tell(focus_laser));
   talk.pass(6);
   CHECK(talk.lit_s > 4.5);
   CHECK(talk.lit_s < 5.4);
   CHECK(talk.state()["laser_on"] == false);
-  REQUIRE(talk.try_tell(focus));
+  REQUIRE(talk.try_tell(focus_laser));
   talk.pass(1);
   REQUIRE(talk.try_tell({{"do", "focus_off"}}));
   talk.pass(0.3);
   double lit = talk.lit_s;
   talk.pass(2);
   CHECK(talk.lit_s == lit);
-  REQUIRE(talk.try_tell(focus));
+  REQUIRE(talk.try_tell(focus_laser));
   talk.pass(1);
   talk.machine.restart();
   lit = talk.lit_s;
@@ -132,13 +132,13 @@ TEST_CASE("MarlinLaser.AFocusLightGoesOutByItsTimeByItsButtonAndByARestart") {
 TEST_CASE("MarlinLaser.NothingMovesWithAFocusLightOrWithWhatAJobLeftOn") {
   for (const char* left_on : {"focus", "M3 S200\nG1 X20 Y5 F3000\n", "M3 I\nG1 X20 Y5 S200 F3000\n", "by hand"})
     for (const Json& order :
-         {home, Json{{"do", "jog"}, {"x_mm", 5}, {"speed_mm_per_s", 10}},
+         {home_laser, Json{{"do", "jog"}, {"x_mm", 5}, {"speed_mm_per_s", 10}},
           Json{{"do", "go_to"}, {"x_mm", 50}, {"y_mm", 40}, {"speed_mm_per_s", 50}},
           Json{{"do", "frame"}, {"bounds_mm", {0, 0, 30, 30}}, {"speed_mm_per_s", 50}, {"confirmed", true}}}) {
       INFO(std::string(left_on) + order.dump());
       ReadyTalk talk;
       talk.homed();
-      if (left_on == std::string("focus")) talk.try_tell(focus), talk.pass(0.1);
+      if (left_on == std::string("focus")) talk.try_tell(focus_laser), talk.pass(0.1);
       else if (left_on == std::string("by hand"))
         talk.try_tell({{"do", "send"}, {"line", "M3 S200"}, {"confirmed", true}}), talk.pass(0.3);
       else {
@@ -205,7 +205,7 @@ TEST_CASE("MarlinPlace.IsKnownAxisByAxis") {
   CHECK(talk.axes_known() == std::array{false, false, true});
   CHECK_FALSE(talk.can("go_to"));
   talk.driver.load("job", as_bytes(std::string("G1 X5 F600\n")));
-  CHECK(talk.refusal(start).find("home the machine first") != std::string::npos);
+  CHECK(talk.refusal(start_laser).find("home the machine first") != std::string::npos);
   REQUIRE(talk.refusal({{"do", "send"}, {"line", "G28 X"}, {"confirmed", true}}) == "");
   talk.pass(0.1);
   talk.wait_for("idle", 20);
@@ -217,9 +217,9 @@ TEST_CASE("MarlinPlace.IsKnownAxisByAxis") {
   talk.pass(0.3);
   CHECK(talk.axes_known() == std::array{true, true, false});
   talk.driver.load("job", as_bytes(std::string("G1 X5 Z-1 F600\n")));
-  CHECK(talk.refusal(start).find("how high the tool stands") != std::string::npos);
+  CHECK(talk.refusal(start_laser).find("how high the tool stands") != std::string::npos);
   talk.driver.load("job", as_bytes(std::string("G1 X5 F600\n")));
-  CHECK(talk.refusal(start) == "");
+  CHECK(talk.refusal(start_laser) == "");
 }
 
 TEST_CASE("MarlinPlace.JobsAreHeldAgainstTheBedFromWhereTheOriginLies") {
@@ -237,9 +237,9 @@ TEST_CASE("MarlinPlace.JobsAreHeldAgainstTheBedFromWhereTheOriginLies") {
   CHECK(talk.refusal(frame(21, 10)).find("leave the bed in x") != std::string::npos);
   CHECK(talk.refusal(frame(20, 41)).find("leave the bed in y") != std::string::npos);
   talk.driver.load("job", as_bytes(std::string("G0 X-101 Y0 F3000\nG1 X0 F600\n")));
-  CHECK(talk.refusal(start).find("leave the bed in x") != std::string::npos);
+  CHECK(talk.refusal(start_laser).find("leave the bed in x") != std::string::npos);
   talk.driver.load("job", as_bytes(std::string("G0 X-100 Y0 F3000\nG1 X20 F3000\n")));
-  CHECK(talk.refusal(start) == "");
+  CHECK(talk.refusal(start_laser) == "");
   CHECK(talk.ends("done"));
   CHECK_THAT(talk.machine.head_mm()[0], WithinAbs(120, 1e-6));
   CHECK(talk.refusal(frame(20, 40)) == "");

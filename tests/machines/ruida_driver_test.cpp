@@ -6,18 +6,11 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "machines/ruida/ruida_driver.h"
+#include "machines/notes_of.h"
 
 namespace formwright {
 namespace {
 using Catch::Matchers::WithinAbs;
-
-std::string notes_of(MachineDriver& driver) {
-  std::string notes;
-  const Json events = driver.take_events();
-  for (const Json& event : events)
-    if (event["event"] == "note") notes += event["text"].get<std::string>() + "\n";
-  return notes;
-}
 
 TEST_CASE("Ruida.ScramblesAndSums") {
   const unsigned char plain[] = {0xda, 0, 5, 0x7e, 0xcc, 0xd8, 1, 0x2a},

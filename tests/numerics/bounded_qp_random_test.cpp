@@ -15,7 +15,7 @@ using test::infinity;
 using test::RandomProblem;
 using test::RandomProblemSettings;
 
-BoundedQpSolution solve(const RandomProblem& p, const BoundedQpOptions& options = {}) {
+BoundedQpSolution solve_random(const RandomProblem& p, const BoundedQpOptions& options = {}) {
   Context context;
   BoundedQp qp;
   qp.set_energy(test::lower_triangle(p.Q), p.component, {}, context);
@@ -70,7 +70,7 @@ TEST_CASE("BoundedQpRandom.EqualsDenseReference") {
         REQUIRE(reference.gap < 1e-6 * (1 + reference.objective));
         REQUIRE(reference.violation < 1e-7);
       }
-      const BoundedQpSolution s = solve(p);
+      const BoundedQpSolution s = solve_random(p);
       CHECK(violation(p.constraints, s) <= 1e-9);
       CHECK_THAT(p.constraints.gauge.dot(s.u), WithinAbs(0, 1e-9));
       CHECK_THAT(0.5 * s.u.dot(p.Q * s.u), WithinAbs(reference.objective, 2e-6 * (1 + reference.objective)));

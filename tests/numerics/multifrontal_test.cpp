@@ -18,15 +18,10 @@ namespace formwright {
 namespace {
 using Catch::Matchers::WithinAbs;
 
-Eigen::MatrixXd random_matrix(int rows, int columns, std::uint64_t seed) {
-  test::Random random(seed);
-  return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return random.uniform(); });
-}
-
 TEST_CASE("DenseKernels.UpdateSubtractsTheProductOnTheLowerTriangle") {
   for (const int size : {4, 8, 12, 16, 20, 48, 100, 260, 400}) {
     for (const int depth : {1, 3, 4, 17, 128}) {
-      const Eigen::MatrixXd A = random_matrix(size, depth, 1), start = random_matrix(size, size, 2);
+      const Eigen::MatrixXd A = test::random_matrix(size, depth, 1), start = test::random_matrix(size, size, 2);
       const Eigen::MatrixXd expected = start - A * A.transpose();
       std::vector<double> packed(static_cast<std::size_t>(size * depth));
       dense::pack(A.data(), static_cast<std::size_t>(size), depth, size, packed.data());
@@ -59,9 +54,9 @@ TEST_CASE("DenseKernels.UpdateSubtractsTheProductOnTheLowerTriangle") {
 TEST_CASE("DenseKernels.FactorsAndSolvesAPanel") {
   for (const int width : {1, 2, 3, 4, 5, 7, 8, 30, 64, 127, 128}) {
     const int below = 40, top = padded(width), height = top + below;
-    Eigen::MatrixXd half = random_matrix(width, width, 3);
+    Eigen::MatrixXd half = test::random_matrix(width, width, 3);
     const Eigen::MatrixXd A = half * half.transpose() + Eigen::MatrixXd::Identity(width, width) * width;
-    const Eigen::MatrixXd B = random_matrix(below, width, 4);
+    const Eigen::MatrixXd B = test::random_matrix(below, width, 4);
     Eigen::MatrixXd panel = Eigen::MatrixXd::Zero(height, width);
     panel.topRows(width) = A.triangularView<Eigen::Lower>();
     panel.bottomRows(below) = B;
@@ -78,7 +73,7 @@ TEST_CASE("DenseKernels.FactorsAndSolvesAPanel") {
     CHECK(panel.block(width, 0, top - width, width).norm() == 0);  // padding stays zero
     // And the triangular solves with this panel.
     for (const int sides : {1, dense::many_sides}) {
-      Eigen::MatrixXd z = random_matrix(sides, height, 5), forward = z, backward = z;
+      Eigen::MatrixXd z = test::random_matrix(sides, height, 5), forward = z, backward = z;
       z.middleCols(width, top - width).setZero();
       forward = backward = z;
       if (sides == 1) {
@@ -113,7 +108,7 @@ struct Factorization {
   SupernodalFactor factor;
 };
 
-Factorization factored(const SparseMatrix& A, bool parallel, int leaf_size) {
+Factorization multifrontal(const SparseMatrix& A, bool parallel, int leaf_size) {
   Context context;
   Factorization result;
   const Graph graph = graph_of(A);
@@ -148,7 +143,7 @@ TEST_CASE("Multifrontal.TheFactorReproducesTheMatrix") {
   std::vector<SparseMatrix> matrices{test::torus_bilaplacian(40, 25, 0.5), test::grid_laplacian(30, 33, 0.1)};
   for (const double per_row : {1.0, 4.0, 15.0, 400.0}) matrices.push_back(test::random_spd(500, per_row, ++seed));
   for (const SparseMatrix& A : matrices) {
-    const Factorization f = factored(A, true, 50);
+    const Factorization f = multifrontal(A, true, 50);
     const Eigen::MatrixXd L = dense_factor(f), dense = test::dense_of(A);
     Eigen::MatrixXd permuted(f.form.n, f.form.n);
     for (int i = 0; i < f.form.n; ++i) {
@@ -161,7 +156,7 @@ TEST_CASE("Multifrontal.TheFactorReproducesTheMatrix") {
 
 TEST_CASE("Multifrontal.ThreadsDoNotChangeABit") {
   const SparseMatrix A = test::torus_bilaplacian(160, 130, 0.1);  // large enough for parallel fronts at the top
-  const Factorization one = factored(A, false, 300), all = factored(A, true, 300);
+  const Factorization one = multifrontal(A, false, 300), all = multifrontal(A, true, 300);
   REQUIRE(one.form.first_value.back() == all.form.first_value.back());
   // Compare what L is made of: entries above the diagonal inside blocks are scratch.
   double differences = 0;

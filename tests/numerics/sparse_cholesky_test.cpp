@@ -19,7 +19,7 @@ namespace formwright {
 namespace {
 using Catch::Matchers::WithinAbs;
 
-using test::Random;
+using test::MatrixRandom;
 
 SparseCholesky factored_with(const SparseMatrix& lower, const Positions& positions, Context& context) {
   SparseCholesky cholesky;
@@ -33,15 +33,6 @@ SparseCholesky factored(const SparseMatrix& lower, const Positions& positions = 
   return factored_with(lower, positions, context);
 }
 
-Eigen::MatrixXd random_matrix(int rows, int columns, std::uint64_t seed) {
-  Random random(seed);
-  Eigen::MatrixXd result(rows, columns);
-  for (int c = 0; c < columns; ++c) {
-    for (int r = 0; r < rows; ++r) result(r, c) = random.uniform();
-  }
-  return result;
-}
-
 Eigen::VectorXd dense_of(const SparseVector& sparse, int n) {
   Eigen::VectorXd result = Eigen::VectorXd::Zero(n);
   for (std::size_t k = 0; k < sparse.index.size(); ++k) result[sparse.index[k]] += sparse.value[k];
@@ -52,7 +43,7 @@ double relative_residual(const SparseMatrix& lower, const Eigen::MatrixXd& x, co
   return (lower.selfadjointView<Eigen::Lower>() * x - b).norm() / b.norm();
 }
 
-ErrorCode code_of(const std::function<void()>& action) {
+ErrorCode thrown_code(const std::function<void()>& action) {
   try {
     action();
   } catch (const Error& error) {
@@ -67,7 +58,7 @@ TEST_CASE("SparseCholesky.SolvesLikeDenseCholesky") {
   for (const int n : {1, 2, 3, 4, 5, 8, 13, 40, 129, 300}) {
     for (const double per_row : {0.0, 1.0, 3.0, 12.0, 60.0}) {
       const SparseMatrix A = test::random_spd(n, per_row, ++seed);
-      const Eigen::MatrixXd b = random_matrix(n, 3, seed), expected = test::dense_of(A).llt().solve(b);
+      const Eigen::MatrixXd b = test::random_matrix(n, 3, seed), expected = test::dense_of(A).llt().solve(b);
       Eigen::MatrixXd x = b;
       factored(A).solve(x);
       INFO("n " << n << ", per row " << per_row);
@@ -78,12 +69,12 @@ TEST_CASE("SparseCholesky.SolvesLikeDenseCholesky") {
 
 TEST_CASE("SparseCholesky.SolvesAFullMatrix") {
   const int n = 400;  // more than three blocks of columns
-  const Eigen::MatrixXd half = random_matrix(n, n, 3);
+  const Eigen::MatrixXd half = test::random_matrix(n, n, 3);
   const SparseMatrix full =
       Eigen::MatrixXd(half * half.transpose() + 20 * Eigen::MatrixXd::Identity(n, n)).sparseView();
   SparseMatrix A = full.triangularView<Eigen::Lower>();
   A.makeCompressed();
-  const Eigen::MatrixXd b = random_matrix(n, 1, 4);
+  const Eigen::MatrixXd b = test::random_matrix(n, 1, 4);
   Eigen::MatrixXd x = b;
   const SparseCholesky cholesky = factored(A);
   cholesky.solve(x);
@@ -95,7 +86,7 @@ TEST_CASE("SparseCholesky.ResidualIsRoundOffForEveryNumberOfSides") {
   const SparseMatrix A = test::torus_bilaplacian(70, 50, 1.0);  // condition number about 140
   const SparseCholesky cholesky = factored(A, test::torus_positions(70, 50));
   for (const int sides : {1, 2, 7, 8, 9, 17}) {
-    const Eigen::MatrixXd b = random_matrix(3500, sides, 5);
+    const Eigen::MatrixXd b = test::random_matrix(3500, sides, 5);
     Eigen::MatrixXd x = b;
     cholesky.solve(x);
     INFO(sides);
@@ -106,7 +97,7 @@ TEST_CASE("SparseCholesky.ResidualIsRoundOffForEveryNumberOfSides") {
 TEST_CASE("SparseCholesky.ForwardAndBackwardAreTheTwoHalvesOfSolve") {
   const SparseMatrix A = test::torus_bilaplacian(40, 30, 0.5);
   const SparseCholesky cholesky = factored(A);
-  const Eigen::VectorXd b = random_matrix(1200, 1, 6);
+  const Eigen::VectorXd b = test::random_matrix(1200, 1, 6);
   Eigen::VectorXd y = b;
   cholesky.forward(Eigen::Ref<Eigen::VectorXd>(y));
   Eigen::MatrixXd x = b;
@@ -119,7 +110,7 @@ TEST_CASE("SparseCholesky.ForwardAndBackwardAreTheTwoHalvesOfSolve") {
 TEST_CASE("SparseCholesky.SparseForwardEqualsDenseForward") {
   const SparseMatrix A = test::torus_bilaplacian(60, 45, 0.2);
   const SparseCholesky cholesky = factored(A);
-  Random random(7);
+  MatrixRandom random(7);
   std::vector<SparseVector> sides(21);
   std::vector<Eigen::VectorXd> expected;
   for (std::size_t k = 0; k < sides.size(); ++k) {
@@ -194,7 +185,7 @@ TEST_CASE("SparseCholesky.DisconnectedPartsAreSolvedApart") {
   add(torus);
   const SparseMatrix A = test::lower_of(n, entries);
   const SparseCholesky cholesky = factored(A);
-  const Eigen::MatrixXd b = random_matrix(n, 2, 8);
+  const Eigen::MatrixXd b = test::random_matrix(n, 2, 8);
   Eigen::MatrixXd x = b, alone = b.bottomRows(600);
   cholesky.solve(x);
   factored(torus).solve(alone);
@@ -220,7 +211,7 @@ TEST_CASE("SparseCholesky.AnArrowStaysSparse") {
     const SparseMatrix A = test::lower_of(n, entries);
     const SparseCholesky cholesky = factored(A);
     CHECK(cholesky.factor_entries() < 2.1 * n);  // 2 n - 1 and a few stored zeros
-    const Eigen::MatrixXd b = random_matrix(n, 1, 9);
+    const Eigen::MatrixXd b = test::random_matrix(n, 1, 9);
     Eigen::MatrixXd x = b;
     cholesky.solve(x);
     CHECK(relative_residual(A, x, b) <= 1e-12);
@@ -253,7 +244,7 @@ TEST_CASE("SparseCholesky.RefusesASingularMatrix") {
   for (const int width : {12, 25, 60}) {
     const SparseMatrix A = test::torus_bilaplacian(width, 20, 0.0);
     INFO(width);
-    CHECK(code_of([&] { factored(A); }) == ErrorCode::could_not_solve);
+    CHECK(thrown_code([&] { factored(A); }) == ErrorCode::could_not_solve);
   }
 }
 
@@ -263,9 +254,9 @@ TEST_CASE("SparseCholesky.FactorsAgainAfterAFailureAndWithOtherValues") {
   Context context;
   SparseCholesky cholesky;
   cholesky.analyze(A, {}, context);
-  CHECK(code_of([&] { cholesky.factorize(singular, context); }) == ErrorCode::could_not_solve);
+  CHECK(thrown_code([&] { cholesky.factorize(singular, context); }) == ErrorCode::could_not_solve);
   Eigen::MatrixXd x = Eigen::MatrixXd::Ones(900, 1);
-  CHECK(code_of([&] { cholesky.solve(x); }) == ErrorCode::internal);
+  CHECK(thrown_code([&] { cholesky.solve(x); }) == ErrorCode::internal);
   for (const double scale : {1.0, 0.25, 8.0}) {
     const SparseMatrix scaled = scale * A;
     cholesky.factorize(scaled, context);
@@ -278,13 +269,13 @@ TEST_CASE("SparseCholesky.FactorsAgainAfterAFailureAndWithOtherValues") {
 TEST_CASE("SparseCholesky.RefusesWhatItDoesNotUnderstand") {
   Context context;
   SparseCholesky cholesky;
-  const auto analyze = [&](const SparseMatrix& A) { return code_of([&] { cholesky.analyze(A, {}, context); }); };
+  const auto analyze = [&](const SparseMatrix& A) { return thrown_code([&] { cholesky.analyze(A, {}, context); }); };
   CHECK(analyze(SparseMatrix(2, 3)) == ErrorCode::invalid_input);
   CHECK(analyze(test::lower_of(2, {{0, 0, 1.0}, {0, 1, 1.0}, {1, 1, 3.0}})) == ErrorCode::invalid_input);
   CHECK(analyze(test::lower_of(2, {{0, 0, 1.0}, {1, 0, 1.0}})) == ErrorCode::invalid_input);
   cholesky.analyze(test::grid_laplacian(4, 4, 1.0), {}, context);
-  CHECK(code_of([&] { cholesky.factorize(test::grid_laplacian(4, 5, 1.0), context); }) == ErrorCode::invalid_input);
-  CHECK(code_of([&] { cholesky.factorize(test::grid_laplacian(2, 8, 1.0), context); }) == ErrorCode::invalid_input);
+  CHECK(thrown_code([&] { cholesky.factorize(test::grid_laplacian(4, 5, 1.0), context); }) == ErrorCode::invalid_input);
+  CHECK(thrown_code([&] { cholesky.factorize(test::grid_laplacian(2, 8, 1.0), context); }) == ErrorCode::invalid_input);
 }
 
 TEST_CASE("SparseCholesky.AcceptsAnUncompressedMatrix") {
@@ -292,7 +283,7 @@ TEST_CASE("SparseCholesky.AcceptsAnUncompressedMatrix") {
   SparseMatrix loose = A;
   loose.reserve(Eigen::VectorXi::Constant(63, 10));
   REQUIRE_FALSE(loose.isCompressed());
-  const Eigen::MatrixXd b = random_matrix(63, 1, 10);
+  const Eigen::MatrixXd b = test::random_matrix(63, 1, 10);
   Eigen::MatrixXd x = b, y = b;
   factored(A).solve(x);
   factored(loose).solve(y);
@@ -302,7 +293,7 @@ TEST_CASE("SparseCholesky.AcceptsAnUncompressedMatrix") {
 TEST_CASE("SparseCholesky.TheSameInputGivesTheSameBits") {
   const SparseMatrix A = test::torus_bilaplacian(120, 90, 0.1);
   const Positions positions = test::torus_positions(120, 90);
-  const Eigen::MatrixXd b = random_matrix(10800, 1, 11);
+  const Eigen::MatrixXd b = test::random_matrix(10800, 1, 11);
   Eigen::MatrixXd first = b;
   factored(A, positions).solve(first);
   for (int repeat = 0; repeat < 3; ++repeat) {
@@ -321,7 +312,7 @@ TEST_CASE("SparseCholesky.StopsWhereverItIsCancelled") {
     host.cancel_requested = [&] { return ++questions >= last; };
     Context context(host), patient;
     SparseCholesky cholesky;
-    CHECK(code_of([&] {
+    CHECK(thrown_code([&] {
             cholesky.analyze(A, {}, context);
             for (;;) cholesky.factorize(A, context);
           }) == ErrorCode::cancelled);
@@ -344,7 +335,7 @@ TEST_CASE("SparseCholesky.AnotherThreadCanCancel") {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     stop = true;
   });
-  CHECK(code_of([&] {
+  CHECK(thrown_code([&] {
           for (;;) factored_with(A, {}, context);
         }) == ErrorCode::cancelled);
   canceller.join();

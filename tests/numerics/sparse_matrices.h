@@ -10,9 +10,9 @@
 namespace formwright::test {
 
 /// A small generator of our own, so that every platform sees the same matrices.
-class Random {
+class MatrixRandom {
  public:
-  explicit Random(std::uint64_t seed) : state_(seed * 2862933555777941757ull + 3037000493ull) {}
+  explicit MatrixRandom(std::uint64_t seed) : state_(seed * 2862933555777941757ull + 3037000493ull) {}
   double uniform() {  // in [-1, 1)
     state_ = state_ * 6364136223846793005ull + 1442695040888963407ull;
     return static_cast<double>(state_ >> 11) * (2.0 / 9007199254740992.0) - 1.0;
@@ -23,6 +23,16 @@ class Random {
   std::uint64_t state_;
 };
 
+/// Entries in [-1, 1).
+inline Eigen::MatrixXd random_matrix(int rows, int columns, std::uint64_t seed) {
+  MatrixRandom random(seed);
+  Eigen::MatrixXd result(rows, columns);
+  for (int c = 0; c < columns; ++c) {
+    for (int r = 0; r < rows; ++r) result(r, c) = random.uniform();
+  }
+  return result;
+}
+
 inline SparseMatrix lower_of(int n, const std::vector<Eigen::Triplet<double>>& entries) {
   SparseMatrix matrix(n, n);
   matrix.setFromTriplets(entries.begin(), entries.end());
@@ -32,7 +42,7 @@ inline SparseMatrix lower_of(int n, const std::vector<Eigen::Triplet<double>>& e
 
 /// Diagonally dominant, about `per_row` random entries a row.
 inline SparseMatrix random_spd(int n, double per_row, std::uint64_t seed) {
-  Random random(seed);
+  MatrixRandom random(seed);
   std::vector<Eigen::Triplet<double>> entries;
   std::vector<double> sum(static_cast<std::size_t>(n), 0.0);
   for (int k = 0; k < static_cast<int>(n * per_row / 2); ++k) {

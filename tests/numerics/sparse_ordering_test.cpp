@@ -59,7 +59,7 @@ Graph path_graph(int n) { return graph_of(test::grid_laplacian(n, 1, 1.0)); }
 
 // Every vertex but the first hangs on a random earlier one.
 Graph random_tree(int n, std::uint64_t seed) {
-  test::Random random(seed);
+  test::MatrixRandom random(seed);
   std::vector<Eigen::Triplet<double>> entries;
   for (int i = 0; i < n; ++i) {
     entries.emplace_back(i, i, 1.0);

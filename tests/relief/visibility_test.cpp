@@ -12,7 +12,7 @@ namespace formwright {
 namespace {
 using Catch::Matchers::WithinAbs;
 
-ViewFrame frame_of(const TriangleMesh& mesh, Projection projection) {
+ViewFrame visibility_frame(const TriangleMesh& mesh, Projection projection) {
   ReliefOptions options;
   options.projection = projection;
   options.field_of_view_deg = 30;
@@ -22,7 +22,7 @@ ViewFrame frame_of(const TriangleMesh& mesh, Projection projection) {
 TEST_CASE("Visibility.OfASphereIsTheCapTheViewerSees") {
   const TriangleMesh mesh = test::icosphere(4);
   for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
-    const ViewFrame frame = frame_of(mesh, projection);
+    const ViewFrame frame = visibility_frame(mesh, projection);
     Context context;
     const RayCaster caster(TriangleMesh{frame.P, mesh.F});
     const Visibility visibility = find_visibility(frame, mesh.F, caster, context);
@@ -51,7 +51,7 @@ TriangleMesh two_sheets() {
 
 TEST_CASE("Visibility.WhatIsBehindIsHidden") {
   const TriangleMesh mesh = two_sheets();
-  const ViewFrame frame = frame_of(mesh, Projection::orthographic);
+  const ViewFrame frame = visibility_frame(mesh, Projection::orthographic);
   Context context;
   const RayCaster caster(TriangleMesh{frame.P, mesh.F});
   const Visibility visibility = find_visibility(frame, mesh.F, caster, context);
@@ -68,7 +68,7 @@ TEST_CASE("Visibility.WhatIsBehindIsHidden") {
 TEST_CASE("DepthOrder.RowsHoldForTheModelAndBreakWhenSheetsPass") {
   const TriangleMesh mesh = two_sheets();
   for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
-    const ViewFrame frame = frame_of(mesh, projection);
+    const ViewFrame frame = visibility_frame(mesh, projection);
     Context context;
     const RayCaster caster(TriangleMesh{frame.P, mesh.F});
     const auto rows = depth_order_rows(frame, mesh.F, caster, context);

@@ -21,7 +21,7 @@ using Catch::Matchers::WithinULP;
 
 using namespace thermoform_test;
 
-ThermoformOptions small_machine(int triangles) {
+ThermoformOptions fine_stepping_machine(int triangles) {
   ThermoformOptions o;
   o.sheet_x_mm = o.sheet_y_mm = 140;
   o.clamp_opening_x_mm = o.clamp_opening_y_mm = 120;
@@ -37,14 +37,14 @@ double mean_movement(const FormedResult& a, const FormedResult& b) {
 
 TEST_CASE("SheetEffects.next_to_nothing_of_any_effect_gives_the_same_bits_as_none") {
   const TriangleMesh shape = pyramid(60, 40);
-  const FormedResult none = form(shape, small_machine(800));
+  const FormedResult none = form(shape, fine_stepping_machine(800));
   constexpr double next_to_nothing = 1e-300;  // runs each effect's code, and rounds to nothing
   for (double SheetEffects::*effect :
        {&SheetEffects::heating_gradient_x, &SheetEffects::heating_gradient_y, &SheetEffects::heating_centre,
         &SheetEffects::thickness_wedge_x, &SheetEffects::thickness_wedge_y, &SheetEffects::anisotropy,
         &SheetEffects::slip, &SheetEffects::cooling, &SheetEffects::weak_vacuum, &SheetEffects::clamp_slip_mm,
         &SheetEffects::mould_shift_x_mm, &SheetEffects::mould_rotation_deg, &SheetEffects::mould_scale}) {
-    ThermoformOptions o = small_machine(800);
+    ThermoformOptions o = fine_stepping_machine(800);
     static_cast<SheetEffects&>(o).*effect = next_to_nothing;
     CHECK(form(shape, o).sheet.mesh.V == none.sheet.mesh.V);
     static_cast<SheetEffects&>(o).*effect = 0.5;
@@ -67,7 +67,7 @@ Vec2 lopsidedness(const FormedResult& result, const SheetMesh& mesh) {
 TEST_CASE("SheetEffects.a_gradient_along_x_leaves_the_sheet_symmetric_in_y") {
   const SheetMesh mesh = make_sheet_mesh(Vec2(120, 120), 1500);
   for (double SheetEffects::*effect : {&SheetEffects::heating_gradient_x, &SheetEffects::thickness_wedge_x}) {
-    ThermoformOptions o = small_machine(1500);
+    ThermoformOptions o = fine_stepping_machine(1500);
     static_cast<SheetEffects&>(o).*effect = 0.4;
     const Vec2 lopsided = lopsidedness(form(pyramid(60, 40), o), mesh);
     CHECK(lopsided.x() > 0.1);
@@ -81,11 +81,11 @@ TEST_CASE("SheetEffects.turning_the_machine_turns_the_result") {
   const SheetMesh mesh = make_sheet_mesh(Vec2(120, 120), 1500);
   const auto turned = [&](const std::function<void(ThermoformOptions&)>& along_x,
                           const std::function<void(ThermoformOptions&)>& along_y) {
-    ThermoformOptions a = small_machine(1500), b = a;
+    ThermoformOptions a = fine_stepping_machine(1500), b = a;
     along_x(a);
     along_y(b);
     const FormedResult in_x = form(shape, a), in_y = form(shape, b);
-    double sum = 0, moved = mean_movement(in_x, form(shape, small_machine(1500)));
+    double sum = 0, moved = mean_movement(in_x, form(shape, fine_stepping_machine(1500)));
     for (int row = 0; row < mesh.rows; ++row)
       for (int column = 0; column < mesh.columns; ++column) {
         // (x, y) -> (-y, x)
@@ -105,9 +105,9 @@ TEST_CASE("SheetEffects.turning_the_machine_turns_the_result") {
 
 TEST_CASE("SheetEffects.effects_move_points_the_way_they_should") {
   const TriangleMesh shape = pyramid(60, 40);
-  const FormedResult none = form(shape, small_machine(1500));
+  const FormedResult none = form(shape, fine_stepping_machine(1500));
   const auto with = [&](const std::function<void(ThermoformOptions&)>& set) {
-    ThermoformOptions o = small_machine(1500);
+    ThermoformOptions o = fine_stepping_machine(1500);
     set(o);
     return form(shape, o);
   };
@@ -138,11 +138,11 @@ TEST_CASE("SheetEffects.effects_move_points_the_way_they_should") {
 
 TEST_CASE("SheetEffects.more_slip_and_more_cooling_move_more") {
   const TriangleMesh shape = pyramid(60, 40);
-  const FormedResult none = form(shape, small_machine(1500));
+  const FormedResult none = form(shape, fine_stepping_machine(1500));
   for (double SheetEffects::*effect : {&SheetEffects::slip, &SheetEffects::cooling}) {
     double before = 0;
     for (const double strength : {0.5, 1.0, 2.0, 4.0}) {
-      ThermoformOptions o = small_machine(1500);
+      ThermoformOptions o = fine_stepping_machine(1500);
       static_cast<SheetEffects&>(o).*effect = strength;
       const double moved = mean_movement(form(shape, o), none);
       {
@@ -190,7 +190,7 @@ TEST_CASE("SheetEffects.half_an_effect_moves_points_half_as_far_the_same_way") {
 
 TEST_CASE("SheetEffects.a_shifted_mould_on_a_huge_sheet_shifts_the_result") {
   const TriangleMesh shape = pyramid(20, 12);
-  ThermoformOptions o = small_machine(5000);
+  ThermoformOptions o = fine_stepping_machine(5000);
   o.platform_travel_mm = 40;
   // By a whole number of pairs of cells, so that the mesh looks the same from the mould.
   const SheetMesh mesh = make_sheet_mesh(Vec2(120, 120), o.triangles);
@@ -224,7 +224,7 @@ TEST_CASE("SheetEffects.the_mould_turns_and_grows_about_the_middle_of_the_plate"
 }
 
 TEST_CASE("SheetEffects.a_wedge_keeps_its_volume") {
-  ThermoformOptions o = small_machine(1000);
+  ThermoformOptions o = fine_stepping_machine(1000);
   o.thickness_wedge_x = 0.5;
   o.thickness_wedge_y = -0.3;
   const FormedResult result = form(pyramid(60, 40), o);
@@ -374,7 +374,7 @@ TEST_CASE("SheetEffects.sliding_sheets_stay_outside_of_the_model") {
 
 TEST_CASE("SheetEffects.what_leaves_nothing_of_the_sheet_is_refused") {
   const auto refused = [](const std::function<void(ThermoformOptions&)>& set, const std::string& where) {
-    ThermoformOptions o = small_machine(500);
+    ThermoformOptions o = fine_stepping_machine(500);
     set(o);
     try {
       form(pyramid(60, 40), o);

@@ -17,17 +17,17 @@ namespace formwright {
 namespace {
 using Catch::Matchers::WithinAbs;
 
-struct Designed {
+struct ClosedDesign {
   ParameterisedModel model;
   ZippableDesign design;
 };
 
-Designed designed(const TriangleMesh& mesh, double width_mm) {
+ClosedDesign closed_design(const TriangleMesh& mesh, double width_mm) {
   Context context;
   ZippableOptions options;
   options.width_mm = width_mm;
   options.measure_distances = false;
-  Designed d{parameterise_model(mesh, {}, options, context), {}};
+  ClosedDesign d{parameterise_model(mesh, {}, options, context), {}};
   d.design = design_zippable(d.model, options, context);
   return d;
 }
@@ -78,7 +78,7 @@ double expect_sides_meet(const Ribbon& ribbon, const HandleClosure& closure) {
 
 TEST_CASE("HandleClosure.BothSidesOfATorusMeetPlaceByPlace") {
   for (const double width : {8.0, 15.0, 30.0}) {
-    const Designed d = designed(sample("torus"), width);
+    const ClosedDesign d = closed_design(sample("torus"), width);
     const auto& closures = d.design.ribbon.closures;
     REQUIRE(closures.size() == 1u);
     CHECK(closures[0].closed);
@@ -94,13 +94,13 @@ TEST_CASE("HandleClosure.BothSidesOfATorusMeetPlaceByPlace") {
 
 TEST_CASE("HandleClosure.OfLimbsAndAHandle") {
   // The cat's tail touches its body: two of several openings, with Fermat spirals between.
-  const Designed d = designed(sample("cat"), 12);
+  const ClosedDesign d = closed_design(sample("cat"), 12);
   REQUIRE(d.design.ribbon.closures.size() == 1u);
   CHECK(expect_sides_meet(d.design.ribbon, d.design.ribbon.closures[0]) < 1e-9);
 }
 
 TEST_CASE("HandleClosure.IsNotThereWithoutAHandle") {
-  const Designed d = designed(sample("star"), 15);
+  const ClosedDesign d = closed_design(sample("star"), 15);
   CHECK(d.design.ribbon.closures.empty());
   CHECK(std::string(as_text(write_design_json(d.model, d.design))).find("handle_cuts") == std::string::npos);
 }
@@ -110,8 +110,8 @@ TEST_CASE("HandleClosure.MovesAndGrowsWithTheModel") {
   TriangleMesh other = torus;
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   other.V = (2 * torus.V * turn.transpose()).rowwise() + Eigen::RowVector3d(5, -3, 11);
-  const HandleClosure a = designed(torus, 15).design.ribbon.closures.at(0),
-                      b = designed(other, 30).design.ribbon.closures.at(0);
+  const HandleClosure a = closed_design(torus, 15).design.ribbon.closures.at(0),
+                      b = closed_design(other, 30).design.ribbon.closures.at(0);
   CHECK_THAT(b.length_mm, WithinAbs(2 * a.length_mm, 1e-8 * a.length_mm));
   for (std::size_t side = 0; side < 2; ++side) {
     REQUIRE(a.sides[side].size() == b.sides[side].size());
@@ -126,7 +126,7 @@ TEST_CASE("HandleClosure.MovesAndGrowsWithTheModel") {
 }
 
 TEST_CASE("HandleClosure.IsReadAgainOrRefused") {
-  const Designed d = designed(sample("torus"), 15);
+  const ClosedDesign d = closed_design(sample("torus"), 15);
   const Bytes written = write_design_json(d.model, d.design);
   const HandleClosure& made = d.design.ribbon.closures.at(0);
   const FlatDesign flat = read_flat_design(written);

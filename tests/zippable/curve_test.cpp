@@ -17,7 +17,7 @@ using Catch::Matchers::WithinAbs;
 
 using std::numbers::pi;
 
-Parameterisation solve(const Segmentation& s) {
+Parameterisation charted(const Segmentation& s) {
   Context context;
   return parameterise(s, {1e-10}, context);
 }
@@ -48,7 +48,7 @@ Vec3 lifted(const Segmentation& s, const Parameterisation& p, int part, double x
 TEST_CASE("LineTrace.OnACylinderIsTheHelix") {
   const int around = 48;
   const Segmentation s = test::alone(test::tube(around, 24));  // radius 1, height 1
-  const Parameterisation p = solve(s);
+  const Parameterisation p = charted(s);
   const LineTracer tracer(s, p);
   const double period = p.period_mm[0];
   const TracedLine line = tracer.trace(0, 0, 7.3 * period);
@@ -70,7 +70,7 @@ TEST_CASE("LineTrace.OnACylinderIsTheHelix") {
 TEST_CASE("LineTrace.LiesOverTheStraightLineOnEveryPart") {
   for (const char* sample : {"t_shape", "cat", "bust"}) {
     const Segmentation s = test::proposed(sample, 1500).segmentation;
-    const Parameterisation p = solve(s);
+    const Parameterisation p = charted(s);
     const LineTracer tracer(s, p);
     test::Random random(3);
     for (int trial = 0; trial < 12; ++trial) {
@@ -167,7 +167,7 @@ TEST_CASE("Traversals.WithoutAnOrderAreGivenUpSoon") {
 
 TEST_CASE("Crossings.AreTheSamePointOnBothSides") {
   const Segmentation s = test::proposed("star", 3000).segmentation;
-  const Parameterisation p = solve(s);
+  const Parameterisation p = charted(s);
   const LineTracer tracer(s, p);
   for (const RankedTraversal& ranked : ranked_traversals(s, p, 10, Context(), 40)) {
     const auto& [traversal, crossings, cost] = ranked;
@@ -184,7 +184,7 @@ TEST_CASE("Crossings.AreTheSamePointOnBothSides") {
 
 TEST_CASE("Crossings.NoOtherPlacesAreMoreEven") {
   const Segmentation s = test::proposed("octopus", 4000).segmentation;
-  const Parameterisation p = solve(s);
+  const Parameterisation p = charted(s);
   test::Random random(9);
   const auto unevenness = [&](const Traversal& traversal, const std::vector<double>& along) {
     double sum = 0;

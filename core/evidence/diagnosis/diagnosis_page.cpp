@@ -47,7 +47,7 @@ std::string figure(double value, int digits = 3) {
   return (value < 0 ? "\u2212" : "") + std::string(text);
 }
 
-std::string percent(double share) {
+std::string percent_html(double share) {
   if (share > 0.99) return "&gt;\u200999\u2009%";
   if (share < 0.01) return "&lt;\u20091\u2009%";
   return std::to_string(static_cast<int>(std::lround(100 * share))) + "\u2009%";
@@ -208,7 +208,7 @@ std::string diagnosis_page(const DiagnosisReport& report) {
     const Cause& cause = model.causes()[static_cast<std::size_t>(f.cause)];
     html += "<tr><td>" + escaped(cause.label) + "</td><td><div class=\"bar\"><i style=\"width:" +
             std::to_string(static_cast<int>(std::lround(100 * f.probability))) + "%\"></i></div></td><td class=\"n\">" +
-            percent(f.probability) + "</td><td class=\"n\">" + quantity(f.strength, cause.unit) +
+            percent_html(f.probability) + "</td><td class=\"n\">" + quantity(f.strength, cause.unit) +
             "</td><td class=\"n\">" + figure(f.low, 2) + " to " + figure(f.high, 2) + "</td></tr>";
   }
   html += "</table></div>";

@@ -47,9 +47,9 @@ LayerSettings settings_of(CutLayer layer, const LaserOptions& o) {
   return {o.engrave_enabled, o.engrave_power_percent, o.engrave_speed_mm_per_s, o.engrave_passes};
 }
 
-class Planner {
+class LaserPlanner {
  public:
-  Planner(std::vector<CutPath> paths, double drawn_kerf_mm, const LaserOptions& options, Context& context)
+  LaserPlanner(std::vector<CutPath> paths, double drawn_kerf_mm, const LaserOptions& options, Context& context)
       : paths_(std::move(paths)), options_(options), context_(context) {
     if (options.kerf_side != KerfSide::centre && options.kerf_mm > 0)
       outward_mm_ = (options.kerf_side == KerfSide::parts ? options.kerf_mm : -options.kerf_mm) / 2 - drawn_kerf_mm / 2;
@@ -223,7 +223,7 @@ LaserPlan plan_laser_job(const CutSheet& sheet, const LaserOptions& options, Con
   TidiedPaths tidied = tidy_paths(drawn.paths, options.join_mm, context);
   place(tidied.paths, sheet, options);
   context.progress(0.1, "Moving the cuts for the kerf");
-  Planner planner(std::move(tidied.paths), sheet.kerf_mm, options, context);
+  LaserPlanner planner(std::move(tidied.paths), sheet.kerf_mm, options, context);
   std::vector<std::vector<LaserStroke>> layers;
   bool any = false;
   for (const CutLayer layer : {CutLayer::engrave, CutLayer::mark, CutLayer::cut}) {

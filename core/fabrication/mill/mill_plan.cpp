@@ -61,9 +61,9 @@ std::vector<int> raster_rows(int rows, int stepover) {
 
 constexpr const char *rough_job_name = "job_1_rough.gcode", *finish_job_name = "job_2_finish.gcode";
 
-class Planner {
+class MillPlanner {
  public:
-  Planner(const HeightField& surface, const MillOptions& options, Context& context)
+  MillPlanner(const HeightField& surface, const MillOptions& options, Context& context)
       : surface_(surface), o_(options), context_(context), builder_(start(), options.travel_speed_mm_per_s) {
     rise();
   }
@@ -238,7 +238,7 @@ Deviation deviation_of(const HeightField& carved, const HeightField& wanted) {
 
 MillPlan plan_mill_job(const HeightField& surface, const MillOptions& options, Context& context) {
   read_no_go(options.no_go);
-  return Planner(surface, options, context).plan();
+  return MillPlanner(surface, options, context).plan();
 }
 
 }  // namespace formwright

@@ -94,10 +94,9 @@ MeshFormat detect_mesh_format(ByteView bytes, std::string_view file_name, std::s
 }
 
 bool has_binary_stl_size(ByteView bytes) {
-  constexpr std::size_t header_bytes = 84, triangle_bytes = 50;
-  if (bytes.size() < header_bytes) return false;
+  if (bytes.size() < stl_header_bytes) return false;
   const std::uint64_t declared = load<std::uint32_t>(bytes.data() + 80);
-  return bytes.size() == header_bytes + declared * triangle_bytes;
+  return bytes.size() == stl_header_bytes + declared * stl_triangle_bytes;
 }
 
 }  // namespace formwright

@@ -37,6 +37,8 @@ std::optional<MeshFormat> mesh_format_of_extension(std::string_view file_name);
 /// Throws Error{invalid_input, where}: an empty file, or a format that is not read (named where it is known).
 MeshFormat detect_mesh_format(ByteView bytes, std::string_view file_name, std::string_view where = "mesh");
 
+/// Of a binary STL: what stands before its triangles, and each of them.
+inline constexpr std::size_t stl_header_bytes = 84, stl_triangle_bytes = 50;
 /// Whether the size is that of a binary STL with as many triangles as bytes 80 to 83 say; then it is one, even if
 /// its header begins with "solid".
 bool has_binary_stl_size(ByteView bytes);

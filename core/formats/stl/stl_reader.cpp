@@ -12,8 +12,6 @@
 namespace formwright {
 namespace {
 
-constexpr std::size_t header_bytes = 84, triangle_bytes = 50;
-
 /// Collects corners into a mesh, merged or not.
 class CornerSink {
  public:
@@ -51,15 +49,15 @@ class CornerSink {
 
 ModelFile read_binary(const MeshSource& source) {
   const ByteView bytes = source.bytes();
-  if (bytes.size() < header_bytes)
+  if (bytes.size() < stl_header_bytes)
     source.refuse("it ends after " + counted(static_cast<std::int64_t>(bytes.size()), "byte", "bytes") +
                   ", within the header of an STL file; export it or copy it again.");
   const std::uint32_t declared = load<std::uint32_t>(bytes.data() + 80);
-  const std::size_t body = bytes.size() - header_bytes;
-  std::size_t count = body / triangle_bytes;
+  const std::size_t body = bytes.size() - stl_header_bytes;
+  std::size_t count = body / stl_triangle_bytes;
   ModelFile file;
   file.format = MeshFormat::stl;
-  if (body % triangle_bytes != 0) {
+  if (body % stl_triangle_bytes != 0) {
     // Too much is somebody's annex; too little is a file cut short.
     if (declared > count)
       source.refuse("it should hold " + counted(declared, "triangle", "triangles") + " but ends within triangle " +
@@ -76,7 +74,7 @@ ModelFile read_binary(const MeshSource& source) {
   CornerSink sink(source, count);
   for (std::size_t i = 0; i < count; ++i) {
     if (i % 65536 == 0) source.context().progress(static_cast<double>(i) / static_cast<double>(count));
-    const std::byte* const corners = bytes.data() + header_bytes + i * triangle_bytes + 12;  // after the normal
+    const std::byte* const corners = bytes.data() + stl_header_bytes + i * stl_triangle_bytes + 12;  // after the normal
     std::array<float, 9> x;
     std::memcpy(x.data(), corners, sizeof x);
     for (std::size_t k = 0; k < 3; ++k) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "formats/shared/byte_order.h"
+#include "formats/shared/mesh_format.h"
 #include "formats/stl/stl.h"
 #include "formats/shared/text_out.h"
 
@@ -29,9 +30,8 @@ Facet facet_of(const TriangleMesh& mesh, std::size_t face) {
 }
 
 Bytes write_binary(const TriangleMesh& mesh, const Context& context) {
-  constexpr std::size_t header_bytes = 84, triangle_bytes = 50;
   const auto count = static_cast<std::size_t>(mesh.F.rows());
-  Bytes bytes(header_bytes + count * triangle_bytes);
+  Bytes bytes(stl_header_bytes + count * stl_triangle_bytes);
   // Never "solid", by which some readers take a binary file for text.
   constexpr std::string_view header = "Binary STL by Formwright, lengths in mm";
   std::ranges::copy(as_bytes(header), bytes.begin());
@@ -40,7 +40,7 @@ Bytes write_binary(const TriangleMesh& mesh, const Context& context) {
     context.check_cancelled();
     for (std::size_t i = begin; i < end; ++i) {
       const Facet facet = facet_of(mesh, i);
-      std::byte* const at = bytes.data() + header_bytes + i * triangle_bytes;
+      std::byte* const at = bytes.data() + stl_header_bytes + i * stl_triangle_bytes;
       std::memcpy(at, facet.normal.data(), 12);
       for (std::size_t k = 0; k < 3; ++k) std::memcpy(at + 12 + 12 * k, facet.corners[k].data(), 12);
     }

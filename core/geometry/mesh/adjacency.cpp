@@ -5,11 +5,10 @@
 #include <limits>
 
 #include "base/error.h"
+#include "base/index.h"
 
 namespace formwright {
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 /// Turns counts stored at [row + 1] into the first position of every row.
 void accumulate(std::vector<int>& first) {

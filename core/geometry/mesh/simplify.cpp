@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "base/index.h"
 #include "base/statistics.h"
 #include "base/error.h"
 #include "geometry/mesh/adjacency.h"
@@ -19,8 +20,6 @@
 namespace formwright {
 namespace {
 
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
-
 /// Variance of a face's normal: about 2 degrees. More spreads the vertices, less follows curvature.
 constexpr double normal_variance = 1e-3;
 /// Of the plane that holds a boundary edge in place, against the face beside it.
@@ -31,14 +30,14 @@ constexpr double min_turn_cosine = 0.3;
 constexpr double fair_shape = 0.35, min_shape = 0.05;
 
 /// An edge waiting to be collapsed. Stale when `stamp` is no longer the sum of its ends' stamps.
-struct Candidate {
+struct CollapseCandidate {
   float cost;
   std::uint32_t stamp;
   int a, b;
   static constexpr std::uint32_t weighed_bit = 0x80000000u;  // its shape is part of the cost already
 };
 /// Heaps have the greatest on top, so "less" is "costs more"; ties fall by the vertices' numbers.
-bool costs_more(const Candidate& p, const Candidate& q) {
+bool costs_more(const CollapseCandidate& p, const CollapseCandidate& q) {
   if (p.cost != q.cost) return p.cost > q.cost;
   return p.a != q.a ? p.a > q.a : p.b > q.b;
 }
@@ -47,7 +46,7 @@ bool costs_more(const Candidate& p, const Candidate& q) {
 /// stale before their turn, wait in a plain list: five million faces stay within the caches.
 class Queue {
  public:
-  void push(const Candidate& candidate) {
+  void push(const CollapseCandidate& candidate) {
     if (candidate.cost > limit_) {
       later_.push_back(candidate);
       return;
@@ -57,17 +56,17 @@ class Queue {
   }
   /// False when nothing valid is left. `valid` tells whether a candidate is still worth keeping.
   template <class Valid>
-  bool pop(Candidate& candidate, const Valid& valid) {
+  bool pop(CollapseCandidate& candidate, const Valid& valid) {
     while (heap_.empty()) {
       if (later_.empty()) return false;
-      std::erase_if(later_, [&](const Candidate& c) { return !valid(c); });
+      std::erase_if(later_, [&](const CollapseCandidate& c) { return !valid(c); });
       if (later_.empty()) return false;
       const std::size_t share = std::min(later_.size(), std::max<std::size_t>(20000, later_.size() / 8));
       std::vector<float> costs(later_.size());
-      std::transform(later_.begin(), later_.end(), costs.begin(), [](const Candidate& c) { return c.cost; });
+      std::transform(later_.begin(), later_.end(), costs.begin(), [](const CollapseCandidate& c) { return c.cost; });
       limit_ = value_of_rank(costs, share - 1);
       const auto waiting =
-          std::partition(later_.begin(), later_.end(), [&](const Candidate& c) { return c.cost > limit_; });
+          std::partition(later_.begin(), later_.end(), [&](const CollapseCandidate& c) { return c.cost > limit_; });
       heap_.assign(waiting, later_.end());
       later_.erase(waiting, later_.end());
       std::make_heap(heap_.begin(), heap_.end(), costs_more);
@@ -80,7 +79,7 @@ class Queue {
   float cheapest() const { return heap_.empty() ? limit_ : heap_.front().cost; }
 
  private:
-  std::vector<Candidate> heap_, later_;
+  std::vector<CollapseCandidate> heap_, later_;
   float limit_ = -1;
 };
 
@@ -126,11 +125,11 @@ class Simplifier {
       const int g = mesh_.opposite(h);
       if (g < 0 || g > h) enqueue(mesh_.from(h), mesh_.to(h));
     }
-    const auto valid = [&](const Candidate& c) {
+    const auto valid = [&](const CollapseCandidate& c) {
       return mesh_.has_vertex(c.a) && mesh_.has_vertex(c.b) &&
-             (c.stamp & ~Candidate::weighed_bit) == stamp_of(c.a, c.b);
+             (c.stamp & ~CollapseCandidate::weighed_bit) == stamp_of(c.a, c.b);
     };
-    Candidate candidate{};
+    CollapseCandidate candidate{};
     for (long long steps = 0; vertices_ > target && queue_.pop(candidate, valid); ++steps) {
       if ((steps & 0x1fff) == 0)
         context.progress(static_cast<double>(at_first - vertices_) / std::max(1, at_first - target));
@@ -174,7 +173,9 @@ class Simplifier {
 
  private:
   const Vec3& at(int v) const { return position_[index(v)]; }
-  std::uint32_t stamp_of(int a, int b) const { return (stamp_[index(a)] + stamp_[index(b)]) & ~Candidate::weighed_bit; }
+  std::uint32_t stamp_of(int a, int b) const {
+    return (stamp_[index(a)] + stamp_[index(b)]) & ~CollapseCandidate::weighed_bit;
+  }
 
   void gather_quadrics() {
     for (int f = 0; f < mesh_.face_count(); ++f) {
@@ -238,7 +239,7 @@ class Simplifier {
     return turns ? -1 : worst;
   }
 
-  void consider(const Candidate& candidate) {
+  void consider(const CollapseCandidate& candidate) {
     int h = mesh_.find(candidate.a, candidate.b);
     if (h < 0) h = mesh_.find(candidate.b, candidate.a);
     if (h < 0 || !mesh_.may_collapse(h)) return;
@@ -255,11 +256,11 @@ class Simplifier {
     }
     // Refused edges come back by themselves when something next to them changes.
     if (worst < 0 || (worst < min_shape && worst < before)) return;
-    if (worst < fair_shape && worst < before && (candidate.stamp & Candidate::weighed_bit) == 0) {
+    if (worst < fair_shape && worst < before && (candidate.stamp & CollapseCandidate::weighed_bit) == 0) {
       const double factor = fair_shape / worst;
-      Candidate weighed = candidate;
+      CollapseCandidate weighed = candidate;
       weighed.cost = static_cast<float>(std::min(static_cast<double>(candidate.cost) * factor * factor, 1e30));
-      weighed.stamp |= Candidate::weighed_bit;
+      weighed.stamp |= CollapseCandidate::weighed_bit;
       if (weighed.cost > queue_.cheapest()) {
         queue_.push(weighed);
         return;

@@ -9,12 +9,11 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/index.h"
 #include "geometry/mesh/adjacency.h"
 
 namespace formwright {
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 /// Weight of each of n neighbours (Loop 1987).
 double loop_weight(int n) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.h"
+
 namespace formwright {
 namespace {
 
@@ -17,8 +19,6 @@ constexpr double share_of_error = 0.7;
 /// Faces at an edge that flips may meet under acos of this at most, and none of them may turn by more than that of the
 /// other.
 constexpr double flat_cosine = 0.85, turn_cosine = 0.8;
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 class Improver {
  public:

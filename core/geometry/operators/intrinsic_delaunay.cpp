@@ -7,12 +7,11 @@
 #include <deque>
 
 #include "base/error.h"
+#include "base/index.h"
 #include "geometry/mesh/adjacency.h"
 
 namespace formwright {
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 /// Fraction of the mean edge length by which two sides of a triangle exceed the third, at least.
 constexpr double min_slack = 1e-8;

@@ -9,11 +9,10 @@
 #include <vector>
 
 #include "base/context.h"
+#include "base/index.h"
 
 namespace formwright {
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 double held_cotangent(double dot, double cross, double limit) {
   // cross >= 0; the comparison avoids the division where it would overflow.

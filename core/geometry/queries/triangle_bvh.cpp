@@ -17,44 +17,44 @@ constexpr int task_size = 8192;
 /// Deeper than this the split falls at the median, which bounds the depth of degenerate input.
 constexpr int deepest_heuristic = 32;
 
-struct Box {
-  std::array<float, 3> lower, upper;
-  Box() {
-    lower.fill(std::numeric_limits<float>::infinity());
-    upper.fill(-std::numeric_limits<float>::infinity());
-  }
-  void add(const Box& other) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      lower[k] = other.lower[k] < lower[k] ? other.lower[k] : lower[k];
-      upper[k] = other.upper[k] > upper[k] ? other.upper[k] : upper[k];
-    }
-  }
-  void add_point(const std::array<float, 3>& point) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      lower[k] = point[k] < lower[k] ? point[k] : lower[k];
-      upper[k] = point[k] > upper[k] ? point[k] : upper[k];
-    }
-  }
-  float half_area() const {
-    if (!(lower[0] <= upper[0])) return 0;
-    const float x = upper[0] - lower[0], y = upper[1] - lower[1], z = upper[2] - lower[2];
-    return x * y + y * z + z * x;
-  }
-  float middle(std::size_t k) const { return 0.5f * (lower[k] + upper[k]); }
-};
-
 /// Four triangles are tested at the price of one.
 float blocks(int triangles) { return static_cast<float>((triangles + leaf_size - 1) / leaf_size); }
-
-struct Range {
-  int begin, end;
-  Box box;
-  int size() const { return end - begin; }
-};
 
 }  // namespace
 
 struct TriangleBvh::Builder {
+  struct Box {
+    std::array<float, 3> lower, upper;
+    Box() {
+      lower.fill(std::numeric_limits<float>::infinity());
+      upper.fill(-std::numeric_limits<float>::infinity());
+    }
+    void add(const Box& other) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        lower[k] = other.lower[k] < lower[k] ? other.lower[k] : lower[k];
+        upper[k] = other.upper[k] > upper[k] ? other.upper[k] : upper[k];
+      }
+    }
+    void add_point(const std::array<float, 3>& point) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        lower[k] = point[k] < lower[k] ? point[k] : lower[k];
+        upper[k] = point[k] > upper[k] ? point[k] : upper[k];
+      }
+    }
+    float half_area() const {
+      if (!(lower[0] <= upper[0])) return 0;
+      const float x = upper[0] - lower[0], y = upper[1] - lower[1], z = upper[2] - lower[2];
+      return x * y + y * z + z * x;
+    }
+    float middle(std::size_t k) const { return 0.5f * (lower[k] + upper[k]); }
+  };
+
+  struct Range {
+    int begin, end;
+    Box box;
+    int size() const { return end - begin; }
+  };
+
   struct Reference {
     Box box;
     std::int32_t face;
@@ -209,7 +209,7 @@ TriangleBvh::TriangleBvh(const TriangleMesh& mesh) : sphere_(search_sphere(mesh)
   builder.references.resize(static_cast<std::size_t>(count));
   const double widening = 1e-6 * sphere_.radius + std::numeric_limits<float>::min();
   for (int f = 0; f < count; ++f) {
-    Box& box = builder.references[static_cast<std::size_t>(f)].box;
+    Builder::Box& box = builder.references[static_cast<std::size_t>(f)].box;
     builder.references[static_cast<std::size_t>(f)].face = f;
     for (int k = 0; k < 3; ++k) {
       const auto axis = static_cast<std::size_t>(k);

@@ -6,13 +6,12 @@
 #include <string>
 
 #include "base/error.h"
+#include "base/index.h"
 #include "geometry/mesh/adjacency.h"
 #include "geometry/repair/repair_steps.h"
 
 namespace formwright {
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 std::string counted(int count, const std::string& one, const std::string& many) {
   return std::to_string(count) + " " + (count == 1 ? one : many);

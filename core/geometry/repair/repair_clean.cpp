@@ -7,13 +7,12 @@
 #include <cmath>
 #include <cstdint>
 
+#include "base/index.h"
 #include "geometry/mesh/adjacency.h"
 #include "geometry/repair/repair_steps.h"
 
 namespace formwright::repair_steps {
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 std::uint64_t mixed(std::uint64_t z) {  // the finaliser of splitmix64
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "base/error.h"
+#include "base/index.h"
 #include "geometry/mesh/adjacency.h"
 #include "geometry/mesh/measures.h"
 #include "geometry/queries/ray_caster.h"
@@ -14,8 +15,6 @@
 
 namespace formwright::repair_steps {
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 /// Turns faces so that across every edge of exactly two faces both run opposite ways, wherever that is
 /// possible; each patch keeps the sense of the majority of its faces.

@@ -7,13 +7,12 @@
 #include <limits>
 #include <utility>
 
+#include "base/index.h"
 #include "geometry/mesh/adjacency.h"
 #include "geometry/repair/repair_steps.h"
 
 namespace formwright::repair_steps {
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 struct Weight {
   double fold = 0;  // largest 1 - cos of the angle between neighbouring normals

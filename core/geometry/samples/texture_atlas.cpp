@@ -9,12 +9,11 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "base/index.h"
 #include "base/parallel.h"
 
 namespace formwright::samples {
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 // View k looks against axis k / 2 (x, y, z), from its positive side for even k. Two coordinates of the picture and
 // the depth towards the viewer, right-handed, so that a face seen from its front is counter-clockwise.

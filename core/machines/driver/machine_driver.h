@@ -4,6 +4,7 @@
 // wants, and says what to write. It has no clock and no port of its own, so the same one runs in the page, in the
 // worker, on the command line and in tests.
 #include <array>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -135,6 +136,8 @@ ZChoice z_choice_of(const Json& command);
 /// For the state, "z_choice": where z is 0 in machine coordinates, and how long ago it was set here; null where
 /// unknown.
 Json z_choice_json(std::optional<double> origin_machine_mm, std::optional<double> set_s, double now_s);
+/// As fallback of number_of: the command must give the number.
+inline constexpr double absent_number = std::numeric_limits<double>::quiet_NaN();
 /// A number of the command in its range; `fallback` where it is absent, an error where that is NaN.
 double number_of(const Json& command, const char* name, double minimum, double maximum, double fallback);
 /// What to "do". Throws where it is no command, is not known to any machine, or the machine is not connected.

@@ -12,8 +12,8 @@ namespace {
 
 using machines_detail::decimal;
 
-constexpr double farthest_mm = 100'000;  // no machine reaches further
-constexpr double full_turn_rad = 5e-7;   // ends nearer than this make a whole turn (grbl, ARC_ANGULAR_TRAVEL_EPSILON)
+constexpr double max_reach_mm = 100'000;  // no machine reaches further
+constexpr double full_turn_rad = 5e-7;    // ends nearer than this make a whole turn (grbl, ARC_ANGULAR_TRAVEL_EPSILON)
 
 /// Words whose path depends on the machine's stored state, or that no controller moves by as RS274 says.
 const char* unclear_command(int tenths) {
@@ -250,7 +250,7 @@ std::string run_gcode_line(const std::vector<GcodeWord>& words, GcodeState& s, G
     const bool turns = is_arc && axis != axes[2];
     from_here[axis] = !s.moved[axis] && (turns || (s.relative && line.target_mm[axis]));
     if (line.target_mm[axis]) to[axis] = s.relative ? from[axis] + *line.target_mm[axis] : *line.target_mm[axis];
-    if (std::abs(to[axis]) > farthest_mm)
+    if (std::abs(to[axis]) > max_reach_mm)
       return "goes to a place " + decimal(std::abs(to[axis]) / 1000) + " m away: post the job again in mm (G21).";
   }
   Arc arc{};
@@ -270,7 +270,7 @@ std::string run_gcode_line(const std::vector<GcodeWord>& words, GcodeState& s, G
   if (is_arc && reach) {
     add_bulges(arc, axes, clockwise, line.turns >= 1, reach->bounds);
     for (const std::size_t axis : {axes[0], axes[1]})
-      if (reach->bounds.high_mm[axis] > farthest_mm || reach->bounds.low_mm[axis] < -farthest_mm)
+      if (reach->bounds.high_mm[axis] > max_reach_mm || reach->bounds.low_mm[axis] < -max_reach_mm)
         return "has an arc that reaches over 100 m away: post the job again in mm (G21).";
   }
   end_program();

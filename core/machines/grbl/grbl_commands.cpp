@@ -8,12 +8,13 @@
 namespace formwright {
 namespace {
 
+using machines_detail::absent_number;
 using machines_detail::decimal;
 using machines_detail::number_of;
 using machines_detail::refuse;
 using machines_detail::require_confirmation;
 
-constexpr double farthest_mm = 10000;
+constexpr double max_grbl_distance_mm = 10000;
 constexpr char jog_cancel_command = static_cast<char>(0x85);
 
 }  // namespace
@@ -117,7 +118,7 @@ double GrblDriver::speed_mm_per_min(const Json& command, double fallback_mm_per_
 void GrblDriver::jog(const Json& command) {
   std::string words;
   for (const auto& [name, letter] : {std::pair{"x_mm", 'X'}, std::pair{"y_mm", 'Y'}, std::pair{"z_mm", 'Z'}})
-    if (const double mm = number_of(command, name, -farthest_mm, farthest_mm, 0); mm != 0)
+    if (const double mm = number_of(command, name, -max_grbl_distance_mm, max_grbl_distance_mm, 0); mm != 0)
       words += letter + decimal(mm);
   if (words.empty()) refuse("x_mm", "A jog needs x_mm, y_mm or z_mm.");
   focus_until_s_.reset();
@@ -127,8 +128,8 @@ void GrblDriver::jog(const Json& command) {
 
 void GrblDriver::go_to(const Json& command) {
   GcodeBounds bounds;
-  bounds.add({number_of(command, "x_mm", -farthest_mm, farthest_mm, absent_number),
-              number_of(command, "y_mm", -farthest_mm, farthest_mm, absent_number), 0});
+  bounds.add({number_of(command, "x_mm", -max_grbl_distance_mm, max_grbl_distance_mm, absent_number),
+              number_of(command, "y_mm", -max_grbl_distance_mm, max_grbl_distance_mm, absent_number), 0});
   select_job_system();
   check_reach(bounds);
   focus_until_s_.reset();

@@ -10,7 +10,6 @@
 // of every job and behind it; laser jobs are sent with M4, which is dark at rest whoever stops sending.
 #include <array>
 #include <deque>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -63,7 +62,6 @@ class GrblDriver final : public MachineDriver {
   bool pump_by_hand(double now_s);
   void pump_job(double now_s);
   void send(GrblStream::Line line, double now_s);
-  static constexpr double absent_number = std::numeric_limits<double>::quiet_NaN();
   void queue(const std::string& line) { by_hand_.push_back(line); }
   void send_now(char real_time_command) { write_urgently(std::string_view(&real_time_command, 1)); }
   void reset(double now_s);

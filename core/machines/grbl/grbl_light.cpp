@@ -12,6 +12,7 @@
 namespace formwright {
 namespace {
 
+using machines_detail::absent_number;
 using machines_detail::decimal;
 using machines_detail::number_of;
 using machines_detail::refuse;

@@ -8,8 +8,6 @@
 namespace formwright {
 namespace {
 
-constexpr double mm_per_mil = 0.0254;
-
 /// The board as far as its place goes. Outside a program distances add up until N, S or P lets them be gone; within one
 /// ("compact") every letter lets those before it be gone.
 class Board {

@@ -10,6 +10,9 @@
 
 namespace formwright {
 
+/// The board counts in thousandths of an inch.
+inline constexpr double mm_per_mil = 0.0254;
+
 /// In mm from where the job begins, which is home, the bed's upper left corner: x to the right, y towards the front;
 /// z is 0.
 struct EgvBounds {

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <utility>
 
 namespace formwright {
 namespace {
 
+using machines_detail::absent_number;
 using machines_detail::number_of;
 using machines_detail::refuse;
 using machines_detail::require_confirmation;
@@ -17,8 +17,8 @@ using machines_detail::require_confirmation;
 constexpr std::size_t packet_letters = 30;
 constexpr char ask_status = static_cast<char>(0xa0);
 constexpr int status_ok = 206, status_checksum = 207, status_finished = 236, status_busy = 238, status_power = 239;
-constexpr double asking_s = 0.3, asking_busy_s = 0.02, silence_s = 3, rest_s = 1.0, settled_s = 0.3, rejection_s = 0.5,
-                 mm_per_mil = 0.0254, absent = std::numeric_limits<double>::quiet_NaN();
+constexpr double k40_asking_s = 0.3, asking_busy_s = 0.02, k40_silence_s = 3, rest_s = 1.0, settled_s = 0.3,
+                 rejection_s = 0.5;
 constexpr double rounding_mm = 0.0128;  // jobs are written in whole steps of 1/1000 inch
 constexpr int max_repeats = 10;
 
@@ -208,8 +208,8 @@ void K40Driver::send_next(double now_s) {
 void K40Driver::tick(double now_s) {
   if (connection_ == MachineConnection::closed) return;
   const bool busy = !queue_.empty() || unconfirmed_ || job_active();
-  if (!asked_ && now_s - asked_s_ >= (busy ? asking_busy_s : asking_s)) ask(now_s);
-  if (connection_ != MachineConnection::silent && now_s - heard_s_ > silence_s) {
+  if (!asked_ && now_s - asked_s_ >= (busy ? asking_busy_s : k40_asking_s)) ask(now_s);
+  if (connection_ != MachineConnection::silent && now_s - heard_s_ > k40_silence_s) {
     connection_ = MachineConnection::silent;
     asked_ = false;
     note(doing_ == Doing::stopping ? "The laser does not answer the stop: switch it off."
@@ -218,7 +218,7 @@ void K40Driver::tick(double now_s) {
     if (job_active()) end_job("cut_off", now_s), queue_.clear(), position_known_ = false;
     if (std::exchange(switch_due_, false)) paused_ = !paused_;  // it never went out
   }
-  if (connection_ == MachineConnection::silent && now_s - asked_s_ > silence_s) asked_ = false;
+  if (connection_ == MachineConnection::silent && now_s - asked_s_ > k40_silence_s) asked_ = false;
 }
 
 MachinePhase K40Driver::phase() const {
@@ -319,7 +319,8 @@ void K40Driver::command(const Json& command, double now_s) {
     if (position_known_) require_inside(position_mm_[0] + x, position_mm_[1] - y);
     move(x, -y);
   } else if (what == "go_to") {
-    const double x = number_of(command, "x_mm", 0, 2000, absent), y = number_of(command, "y_mm", 0, 2000, absent);
+    const double x = number_of(command, "x_mm", 0, 2000, absent_number),
+                 y = number_of(command, "y_mm", 0, 2000, absent_number);
     require_inside(x, options_.bed_y_mm - y);
     move(x - position_mm_[0], options_.bed_y_mm - y - position_mm_[1]);
   } else if (what == "frame") {

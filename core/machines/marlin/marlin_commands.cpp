@@ -2,19 +2,19 @@
 // What a person may ask of a Marlin machine, and when.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "machines/marlin/marlin_driver.h"
 
 namespace formwright {
 namespace {
 
+using machines_detail::absent_number;
 using machines_detail::decimal;
 using machines_detail::number_of;
 using machines_detail::refuse;
 using machines_detail::require_confirmation;
 
-constexpr double absent = std::numeric_limits<double>::quiet_NaN(), farthest_mm = 10000;
+constexpr double max_marlin_distance_mm = 10000;
 constexpr std::size_t longest_by_hand = 80;
 constexpr double jog_starts_s = 0.3;  // until the line is there and the head is as fast as it should be
 
@@ -83,8 +83,8 @@ void MarlinDriver::command(const Json& command, double now_s) {
   else if (what == "set_origin") set_origin(command, now_s);
   else if (what == "go_to") {
     GcodeBounds bounds;
-    bounds.add({number_of(command, "x_mm", -farthest_mm, farthest_mm, absent),
-                number_of(command, "y_mm", -farthest_mm, farthest_mm, absent), 0});
+    bounds.add({number_of(command, "x_mm", -max_marlin_distance_mm, max_marlin_distance_mm, absent_number),
+                number_of(command, "y_mm", -max_marlin_distance_mm, max_marlin_distance_mm, absent_number), 0});
     check_reach(bounds);
     prepare_moves(now_s);
     move("G90", " X" + decimal(bounds.low_mm[0]) + " Y" + decimal(bounds.low_mm[1]), speed(50));
@@ -101,7 +101,7 @@ void MarlinDriver::command(const Json& command, double now_s) {
       move("G90", " X" + decimal(x) + " Y" + decimal(y), speed(50));
     settle(Settles::moving);
   } else if (what == "focus") {
-    const double power = number_of(command, "power_percent", 0, options_.focus_power_percent, absent);
+    const double power = number_of(command, "power_percent", 0, options_.focus_power_percent, absent_number);
     require_confirmation(command, "The laser shines at " + decimal(power) + " % without moving: eyes protected");
     queue_dark();  // and out of an inline mode, in which M3 alone would light nothing until a move
     focus_line_ = "M3 S" + decimal(2.55 * power);
@@ -137,12 +137,12 @@ void MarlinDriver::jog(const Json& command, double now_s) {
   std::string words;
   double squared_mm = 0;
   for (const auto& [name, letter] : {std::pair{"x_mm", " X"}, std::pair{"y_mm", " Y"}, std::pair{"z_mm", " Z"}})
-    if (const double mm = number_of(command, name, -farthest_mm, farthest_mm, 0); mm != 0) {
+    if (const double mm = number_of(command, name, -max_marlin_distance_mm, max_marlin_distance_mm, 0); mm != 0) {
       words += letter + decimal(mm);
       squared_mm += mm * mm;
     }
   if (words.empty()) refuse("x_mm", "A jog needs x_mm, y_mm or z_mm.");
-  const double speed_mm_per_s = number_of(command, "speed_mm_per_s", 0.01, 2000, absent);
+  const double speed_mm_per_s = number_of(command, "speed_mm_per_s", 0.01, 2000, absent_number);
   if (by_hand_.size() >= 12) return;  // a key held down repeats faster than the head moves
   // One M5 for all that a held key brings: it waits for the move before, and the head would halt at every step.
   if (!prepared_ || phase() != MachinePhase::jogging) prepare_moves(now_s);

@@ -10,9 +10,9 @@ namespace formwright {
 namespace {
 
 constexpr std::size_t longest_line = 80, kept_lines = 200;  // MAX_CMD_SIZE 96 has number and checksum in it
-constexpr double flush_s = 0.1, boot_s = 3, greeting_s = 15, silence_s = 25, silence_in_job_s = 120,
+constexpr double flush_s = 0.1, boot_s = 3, greeting_s = 15, marlin_silence_s = 25, silence_in_job_s = 120,
                  silence_while_settling_s = 600;
-constexpr double asking_s = 2, lost_answer_s = 10, idle_s = 1;
+constexpr double marlin_asking_s = 2, lost_answer_s = 10, idle_s = 1;
 constexpr int max_resends = 100, max_unanswered = 3;
 
 /// The number behind `name` ("X:", "T:"), if it is there.
@@ -338,7 +338,7 @@ void MarlinDriver::tick(double now_s) {
     jogging_until_s_.reset();
     ask_soon();
   }
-  if (greeted_ && by_hand_.empty() && !halted_ && now_s - asked_s_ > asking_s) {
+  if (greeted_ && by_hand_.empty() && !halted_ && now_s - asked_s_ > marlin_asking_s) {
     asked_s_ = now_s;
     queue("M105");
     if (!job_active() || settling_number_) queue("M114");
@@ -351,7 +351,7 @@ void MarlinDriver::tick(double now_s) {
   const double patience = connection_ == MachineConnection::greeting ? greeting_s
                           : settling_ != Settles::nothing            ? silence_while_settling_s
                           : job_active()                             ? silence_in_job_s
-                                                                     : silence_s;
+                                                                     : marlin_silence_s;
   if (connection_ != MachineConnection::silent && now_s - heard_s_ > patience) {
     connection_ = MachineConnection::silent;
     waiting_ = 0;

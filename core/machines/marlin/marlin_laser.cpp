@@ -5,7 +5,7 @@ namespace formwright {
 namespace {
 
 /// Is the line this command, "M3" and not "M30"? Marlin takes one command of a line, its first.
-bool is_command(std::string_view line, std::string_view name) {
+bool is_laser_command(std::string_view line, std::string_view name) {
   return line.starts_with(name) && (line.size() == name.size() || line[name.size()] < '0' || line[name.size()] > '9');
 }
 
@@ -22,11 +22,11 @@ bool is_new(const std::string& firmware) {
 
 MarlinPower marlin_power_after(std::string_view line, MarlinPower before) {
   const bool with_i = has(line, 'I');
-  if (is_command(line, "M3") || is_command(line, "M4")) {
+  if (is_laser_command(line, "M3") || is_laser_command(line, "M4")) {
     if (with_i) return line[1] == '4' ? MarlinPower::dynamic : MarlinPower::continuous;
     return is_inline(before) ? before : MarlinPower::standard;
   }
-  if (is_command(line, "M5") && (with_i || !is_inline(before))) return MarlinPower::off;
+  if (is_laser_command(line, "M5") && (with_i || !is_inline(before))) return MarlinPower::off;
   return before;
 }
 
@@ -44,18 +44,18 @@ MarlinLaserUse marlin_laser_use(const GcodeProgram& program) {
     use.standard = use.standard || power == MarlinPower::standard;
     use.continuous = use.continuous || power == MarlinPower::continuous;
     use.dynamic = use.dynamic || power == MarlinPower::dynamic;
-    use.fan = use.fan || is_command(line, "M106");
+    use.fan = use.fan || is_laser_command(line, "M106");
   });
   return use;
 }
 
 bool marlin_may_light(std::string_view line) {
-  if (is_command(line, "M3") || is_command(line, "M4") || is_command(line, "M106")) return true;
+  if (is_laser_command(line, "M3") || is_laser_command(line, "M4") || is_laser_command(line, "M106")) return true;
   return line.starts_with("G") && has(line, 'S');
 }
 
 std::string marlin_line_as_sent(std::string_view line) {
-  const bool turns_on = is_command(line, "M3") || is_command(line, "M4");
+  const bool turns_on = is_laser_command(line, "M3") || is_laser_command(line, "M4");
   if (!turns_on || !has(line, 'I') || has(line, 'S') || has(line, 'O')) return std::string(line);
   return std::string(line.substr(0, 2)) + " I S0";
 }

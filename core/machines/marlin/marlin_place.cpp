@@ -17,7 +17,7 @@ std::array<bool, 3> axes_of(std::string_view line) {
   return any ? named : std::array<bool, 3>{true, true, true};
 }
 
-bool is_command(std::string_view line, std::string_view name) {
+bool is_place_command(std::string_view line, std::string_view name) {
   return line.starts_with(name) && (line.size() == name.size() || line[name.size()] == ' ' ||
                                     (line[name.size()] >= 'A' && line[name.size()] <= 'Z'));
 }
@@ -26,19 +26,19 @@ bool is_command(std::string_view line, std::string_view name) {
 
 void MarlinPlace::sending(std::string_view line) {
   const bool places = line.starts_with("G92");
-  if (is_command(line, "G28")) {
+  if (is_place_command(line, "G28")) {
     homing_ = axes_of(line);
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (homing_[axis]) known_[axis] = false, origin_mm_[axis].reset();
   } else if (places) set_place(line);
-  else if (is_command(line, "M84") || is_command(line, "M18")) {
+  else if (is_place_command(line, "M84") || is_place_command(line, "M18")) {
     // Motors without current may be pushed.
     const std::array<bool, 3> off = axes_of(line);
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (off[axis]) known_[axis] = false, origin_mm_[axis].reset();
   }
   bool rests = line.empty() || line[0] != 'G' || places;
-  for (const char* name : {"G4", "G17", "G20", "G21", "G90", "G91"}) rests = rests || is_command(line, name);
+  for (const char* name : {"G4", "G17", "G20", "G21", "G90", "G91"}) rests = rests || is_place_command(line, name);
   fresh_ = fresh_ && rests;
 }
 

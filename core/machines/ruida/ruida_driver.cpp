@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace formwright {
 namespace {
 
+using machines_detail::absent_number;
 using machines_detail::number_of;
 using machines_detail::refuse;
 using machines_detail::require_confirmation;
@@ -16,7 +16,7 @@ using machines_detail::require_confirmation;
 constexpr unsigned magic = 0x88;  // RDC644x; other models differ
 constexpr std::size_t datagram_bytes = 1470;
 constexpr unsigned char acknowledged = 0xcc, refused = 0xcf;
-constexpr double resend_s = 1, asking_s = 0.3, rest_s = 1.5, absent = std::numeric_limits<double>::quiet_NaN();
+constexpr double resend_s = 1, ruida_asking_s = 0.3, rest_s = 1.5;
 constexpr int max_repeats = 4, card_id = 0x057e, machine_status = 0x0400, x_position = 0x0421, y_position = 0x0431;
 constexpr std::int64_t status_moving = 0x01000000, status_running = 1;
 
@@ -130,7 +130,7 @@ void RuidaDriver::received(ByteView datagram, double now_s) {
   const bool resting = (status_ & (status_moving | status_running)) == 0;
   if (job_active() && job_left_ == 0) {
     seen_running_ = seen_running_ || !resting;
-    if (resting && (seen_running_ || now_s - uploaded_s_ > rest_s) && now_s - uploaded_s_ > asking_s)
+    if (resting && (seen_running_ || now_s - uploaded_s_ > rest_s) && now_s - uploaded_s_ > ruida_asking_s)
       end("done", now_s);
   }
   if (homing_ && resting && now_s - homing_s_ > rest_s) homing_ = false, homed_ = true;
@@ -193,7 +193,7 @@ void RuidaDriver::tick(double now_s) {
     }
     repeat(now_s);
   }
-  if (queue_.empty() && !unconfirmed_ && now_s - asked_s_ > asking_s) {
+  if (queue_.empty() && !unconfirmed_ && now_s - asked_s_ > ruida_asking_s) {
     asked_s_ = now_s;
     for (const int address : {machine_status, x_position, y_position}) queue(read_memory(address));
   }
@@ -273,7 +273,7 @@ void RuidaDriver::command(const Json& command, double now_s) {
     go(*position_mm_[0] + number_of(command, "x_mm", -2000, 2000, 0),
        *position_mm_[1] + number_of(command, "y_mm", -2000, 2000, 0));
   } else if (what == "go_to")
-    go(number_of(command, "x_mm", 0, 2000, absent), number_of(command, "y_mm", 0, 2000, absent));
+    go(number_of(command, "x_mm", 0, 2000, absent_number), number_of(command, "y_mm", 0, 2000, absent_number));
   else if (what == "frame") {
     require_confirmation(command, "The head moves once around the job, laser off");
     const std::array<double, 4> b = machines_detail::bounds_of(command);

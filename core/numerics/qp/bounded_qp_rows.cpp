@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "base/index.h"
 #include "base/parallel.h"
 
 namespace formwright::bounded_qp_detail {
@@ -16,8 +17,6 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t unknowns_per_chunk = 8192;
 constexpr std::ptrdiff_t few =
     100;  // violated bounds that enter together: it saves the last rounds, which creep from neighbour to neighbour
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 [[noreturn]] void reject(const std::string& where, const std::string& message) {
   throw Error(ErrorCode::invalid_input, where, message);
 }
@@ -54,19 +53,19 @@ void Rows::check() const {
   if (!c_.lower_slope.allFinite()) reject("lower_slope", "The slopes of a quadratic program must be finite.");
   if (!c_.upper_slope.allFinite()) reject("upper_slope", "The slopes of a quadratic program must be finite.");
   // Each pair of bounds asks (upper_slope - lower_slope) m >= lower - upper: a half line of m, or nothing.
-  std::vector<double> minimum(at(c_.group_count), -infinity), maximum(at(c_.group_count), infinity);
+  std::vector<double> minimum(index(c_.group_count), -infinity), maximum(index(c_.group_count), infinity);
   int crossed = 0;
   for (int i = 0; i < size(); ++i) {
     const double lower = c_.lower[i], upper = c_.upper[i];
     if (std::isnan(lower) || lower == infinity) reject("lower", "A lower bound must be a number or minus infinity.");
     if (std::isnan(upper) || upper == -infinity) reject("upper", "An upper bound must be a number or plus infinity.");
-    const int g = c_.group[at(i)];
+    const int g = c_.group[index(i)];
     if (g < 0 || g >= c_.group_count)
       reject("group", "The groups of a quadratic program must be numbered from 0 to group_count - 1.");
     if (lower == -infinity || upper == infinity) continue;
     const double gap = lower - upper, slope = c_.upper_slope[i] - c_.lower_slope[i];
-    if (slope > 0) minimum[at(g)] = std::max(minimum[at(g)], gap / slope);
-    else if (slope < 0) maximum[at(g)] = std::min(maximum[at(g)], gap / slope);
+    if (slope > 0) minimum[index(g)] = std::max(minimum[index(g)], gap / slope);
+    else if (slope < 0) maximum[index(g)] = std::min(maximum[index(g)], gap / slope);
     else if (gap > 0) ++crossed;
   }
   if (crossed > 0) {
@@ -97,13 +96,13 @@ void Rows::check() const {
 }
 
 int Rows::group(RowKey key) const {
-  return key.side == Side::order ? c_.rows[at(key.index)].group : c_.group[at(key.index)];
+  return key.side == Side::order ? c_.rows[index(key.index)].group : c_.group[index(key.index)];
 }
 
 double Rows::bound(RowKey key) const {
   switch (key.side) {
     case Side::upper: return -c_.upper[key.index];
-    case Side::order: return c_.rows[at(key.index)].bound;
+    case Side::order: return c_.rows[index(key.index)].bound;
     default: return c_.lower[key.index];
   }
 }
@@ -111,7 +110,7 @@ double Rows::bound(RowKey key) const {
 double Rows::slope(RowKey key) const {
   switch (key.side) {
     case Side::upper: return c_.upper_slope[key.index];
-    case Side::order: return c_.rows[at(key.index)].slope;
+    case Side::order: return c_.rows[index(key.index)].slope;
     default: return -c_.lower_slope[key.index];
   }
 }
@@ -119,7 +118,7 @@ double Rows::slope(RowKey key) const {
 double Rows::apply(RowKey key, const Eigen::VectorXd& v) const {
   if (key.side == Side::upper) return -v[key.index];
   if (key.side != Side::order) return v[key.index];
-  const InequalityRow& row = c_.rows[at(key.index)];
+  const InequalityRow& row = c_.rows[index(key.index)];
   double sum = 0;
   for (std::size_t k = 0; k < row.index.size(); ++k) sum += row.coefficient[k] * v[row.index[k]];
   return sum;
@@ -129,7 +128,7 @@ void Rows::add_force(RowKey key, double y, Eigen::VectorXd& f) const {
   if (key.side == Side::upper) f[key.index] -= y;
   else if (key.side != Side::order) f[key.index] += y;
   else {
-    const InequalityRow& row = c_.rows[at(key.index)];
+    const InequalityRow& row = c_.rows[index(key.index)];
     for (std::size_t k = 0; k < row.index.size(); ++k) f[row.index[k]] += y * row.coefficient[k];
   }
 }
@@ -144,7 +143,7 @@ double Rows::violation(RowKey key, const Eigen::VectorXd& u, const Eigen::Vector
 }
 
 void Rows::evaluate(const Eigen::VectorXd& u, const Eigen::VectorXd& m, Violations& out) const {
-  const std::size_t n = at(size());
+  const std::size_t n = index(size());
   out.bound.resize(n);
   out.side.resize(n);
   out.order.resize(c_.rows.size());
@@ -177,14 +176,14 @@ std::vector<RowKey> Rows::worth_adding(const Violations& v, double minimum) cons
   std::vector<std::pair<double, RowKey>> found;
   const bool all = std::count_if(v.bound.begin(), v.bound.end(), [&](double x) { return x > minimum; }) <= few;
   for (int i = 0; i < size(); ++i) {
-    const double here = v.bound[at(i)];
+    const double here = v.bound[index(i)];
     if (!(here > minimum)) continue;
-    const Side side = v.side[at(i)];
+    const Side side = v.side[index(i)];
     bool highest = true;
     if (side != Side::both && !all) {
       for (const int j : energy_.neighbours(i)) {
-        const double there = v.bound[at(j)];
-        if (v.side[at(j)] == side && (there > here || (there == here && j < i))) {
+        const double there = v.bound[index(j)];
+        if (v.side[index(j)] == side && (there > here || (there == here && j < i))) {
           highest = false;
           break;
         }
@@ -193,14 +192,14 @@ std::vector<RowKey> Rows::worth_adding(const Violations& v, double minimum) cons
     if (highest) found.push_back({here, {side, i}});
   }
   if (v.max_order > minimum) {
-    std::vector<double> maximum(at(size()), 0.0);
+    std::vector<double> maximum(index(size()), 0.0);
     for (std::size_t r = 0; r < c_.rows.size(); ++r) {
-      for (const int i : c_.rows[r].index) maximum[at(i)] = std::max(maximum[at(i)], v.order[r]);
+      for (const int i : c_.rows[r].index) maximum[index(i)] = std::max(maximum[index(i)], v.order[r]);
     }
     for (std::size_t r = 0; r < c_.rows.size(); ++r) {
       if (!(v.order[r] > minimum)) continue;
-      const auto& index = c_.rows[r].index;
-      if (std::all_of(index.begin(), index.end(), [&](int i) { return maximum[at(i)] <= v.order[r]; })) {
+      const auto& unknowns = c_.rows[r].index;
+      if (std::all_of(unknowns.begin(), unknowns.end(), [&](int i) { return maximum[index(i)] <= v.order[r]; })) {
         found.push_back({v.order[r], {Side::order, static_cast<int>(r)}});
       }
     }
@@ -213,7 +212,7 @@ std::vector<RowKey> Rows::worth_adding(const Violations& v, double minimum) cons
 
 void Rows::clip(Eigen::VectorXd& u, const Eigen::VectorXd& m) const {
   for (int i = 0; i < size(); ++i) {
-    const double mg = m[c_.group[at(i)]];
+    const double mg = m[c_.group[index(i)]];
     const double low = c_.lower[i] + c_.lower_slope[i] * mg, high = c_.upper[i] + c_.upper_slope[i] * mg;
     u[i] = std::min(std::max(u[i], low), high);
   }
@@ -222,15 +221,15 @@ void Rows::clip(Eigen::VectorXd& u, const Eigen::VectorXd& m) const {
 Eigen::VectorXd Rows::centred_m() const {
   // u = 0 asks upper + upper_slope m >= 0 and lower + lower_slope m <= 0: from where each alone would push m.
   Eigen::VectorXd m = Eigen::VectorXd::Zero(groups());
-  std::vector<double> up(at(groups()), -infinity), down(at(groups()), infinity);
+  std::vector<double> up(index(groups()), -infinity), down(index(groups()), infinity);
   for (int i = 0; i < size(); ++i) {
-    const std::size_t g = at(c_.group[at(i)]);
+    const std::size_t g = index(c_.group[index(i)]);
     if (std::isfinite(c_.upper[i]) && c_.upper_slope[i] > 0) up[g] = std::max(up[g], -c_.upper[i] / c_.upper_slope[i]);
     if (std::isfinite(c_.lower[i]) && c_.lower_slope[i] > 0)
       down[g] = std::min(down[g], -c_.lower[i] / c_.lower_slope[i]);
   }
   for (int g = 0; g < groups(); ++g) {
-    const double a = up[at(g)], b = down[at(g)];
+    const double a = up[index(g)], b = down[index(g)];
     if (std::isfinite(a) && std::isfinite(b)) m[g] = a <= b ? std::clamp(0.0, a, b) : 0.5 * (a + b);
     else if (std::isfinite(a)) m[g] = std::max(0.0, a);
     else if (std::isfinite(b)) m[g] = std::min(0.0, b);

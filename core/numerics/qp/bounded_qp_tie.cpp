@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "base/index.h"
 #include "numerics/qp/exchange_pool_qp.h"
 
 namespace formwright::bounded_qp_detail {
@@ -15,14 +16,12 @@ namespace formwright::bounded_qp_detail {
 namespace {
 constexpr double null_tolerance = 1e-10;  // of the largest pivot of K, which is quadratic in the rows
 constexpr int max_rounds = 100;
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 // How a row reads the constants and m: one coefficient for each component, then one for each group.
 Eigen::VectorXd driver_row(const Energy& energy, const Rows& rows, RowKey key) {
   const int components = energy.component_count();
   Eigen::VectorXd row = Eigen::VectorXd::Zero(components + rows.groups());
   if (key.side == Side::order) {
-    const InequalityRow& r = rows.constraints().rows[at(key.index)];
+    const InequalityRow& r = rows.constraints().rows[index(key.index)];
     for (std::size_t k = 0; k < r.index.size(); ++k) row[energy.component(r.index[k])] += r.coefficient[k];
   } else {
     row[energy.component(key.index)] = key.side == Side::upper ? -1 : 1;
@@ -64,7 +63,7 @@ int break_ties(const Energy& energy, const Rows& rows, std::span<const RowKey> p
   if (freedom == 0) return 0;
   // |u + W N t|^2 + |m + N_m t|^2 with W N t constant on components: M and its gradient at t = 0.
   Eigen::VectorXd count(components), sum = Eigen::VectorXd::Zero(components);
-  for (int k = 0; k < components; ++k) count[k] = energy.component_sizes()[at(k)];
+  for (int k = 0; k < components; ++k) count[k] = energy.component_sizes()[index(k)];
   for (int i = 0; i < energy.size(); ++i) sum[energy.component(i)] += u[i];
   const auto Nc = N.topRows(components), Nm = N.bottomRows(groups);
   const Eigen::MatrixXd M = Nc.transpose() * count.asDiagonal() * Nc + Nm.transpose() * Nm;
@@ -86,16 +85,17 @@ int break_ties(const Energy& energy, const Rows& rows, std::span<const RowKey> p
     Rows::Violations violations;
     rows.evaluate(u, m, violations);
     // The worst bound of every component, group and side, and the worst order row.
-    std::vector<int> worst(at(components) * at(groups) * 2, -1);
+    std::vector<int> worst(index(components) * index(groups) * 2, -1);
     for (int i = 0; i < energy.size(); ++i) {
-      if (!(violations.bound[at(i)] > tolerance)) continue;
-      const std::size_t slot = (at(energy.component(i)) * at(groups) + at(rows.constraints().group[at(i)])) * 2 +
-                               (violations.side[at(i)] == Side::upper ? 1 : 0);
-      if (worst[slot] < 0 || violations.bound[at(i)] > violations.bound[at(worst[slot])]) worst[slot] = i;
+      if (!(violations.bound[index(i)] > tolerance)) continue;
+      const std::size_t slot =
+          (index(energy.component(i)) * index(groups) + index(rows.constraints().group[index(i)])) * 2 +
+          (violations.side[index(i)] == Side::upper ? 1 : 0);
+      if (worst[slot] < 0 || violations.bound[index(i)] > violations.bound[index(worst[slot])]) worst[slot] = i;
     }
     std::vector<RowKey> found;
     for (const int i : worst) {
-      if (i >= 0) found.push_back({violations.side[at(i)], i});
+      if (i >= 0) found.push_back({violations.side[index(i)], i});
     }
     if (violations.max_order > tolerance) {
       const auto it = std::max_element(violations.order.begin(), violations.order.end());

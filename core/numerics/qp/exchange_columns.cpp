@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/index.h"
 #include "base/parallel.h"
 
 namespace formwright::bounded_qp_detail {
@@ -11,14 +12,13 @@ namespace {
 constexpr int panel_height = 64;
 constexpr std::size_t strands = 8;  // partial Gram sums; fixed, so that the sum does not depend on the threads
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 using Block = Eigen::Map<const Eigen::MatrixXd>;
 }  // namespace
 
 void ExchangeColumns::reset(int n) {
   n_ = n;
   count_ = 0;
-  panels_.assign(at((n + panel_height - 1) / panel_height), {});
+  panels_.assign(index((n + panel_height - 1) / panel_height), {});
   gram_.resize(0, 0);
 }
 
@@ -26,12 +26,12 @@ void ExchangeColumns::append(std::span<const SparseVector> columns, Context& con
   const int before = count_, added = static_cast<int>(columns.size());
   if (added == 0) return;
   for (int c = 0; c < added; ++c) {
-    const SparseVector& y = columns[at(c)];
+    const SparseVector& y = columns[index(c)];
     for (std::size_t p = 0; p < y.index.size();) {
       const int number = y.index[p] / panel_height;
-      Panel& panel = panels_[at(number)];
+      Panel& panel = panels_[index(number)];
       panel.column.push_back(before + c);
-      panel.value.resize(panel.value.size() + at(panel_height), 0.0);
+      panel.value.resize(panel.value.size() + index(panel_height), 0.0);
       double* value = panel.value.data() + panel.value.size() - panel_height;
       for (; p < y.index.size() && y.index[p] / panel_height == number; ++p)
         value[y.index[p] - number * panel_height] = y.value[p];
@@ -74,13 +74,13 @@ void ExchangeColumns::append(std::span<const SparseVector> columns, Context& con
 }
 
 void ExchangeColumns::keep(std::span<const int> columns) {
-  std::vector<int> place(at(count_), -1);
-  for (std::size_t k = 0; k < columns.size(); ++k) place[at(columns[k])] = static_cast<int>(k);
+  std::vector<int> place(index(count_), -1);
+  for (std::size_t k = 0; k < columns.size(); ++k) place[index(columns[k])] = static_cast<int>(k);
   for (Panel& panel : panels_) {
     std::size_t kept = 0;
     for (std::size_t c = 0; c < panel.column.size(); ++c) {
-      if (place[at(panel.column[c])] < 0) continue;
-      panel.column[kept] = place[at(panel.column[c])];
+      if (place[index(panel.column[c])] < 0) continue;
+      panel.column[kept] = place[index(panel.column[c])];
       if (kept != c)
         std::copy_n(panel.value.data() + c * panel_height, panel_height, panel.value.data() + kept * panel_height);
       ++kept;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/index.h"
 
 namespace formwright::bounded_qp_detail {
 
@@ -15,7 +16,6 @@ constexpr int border_part = 8;  // or up to this part of L
 // Dropping a row that others nearly repeat through the border cancels digits that L without it keeps: round-off in y
 // grows by (S'^-1)_aa S'_aa. A step of refinement gives back about as many digits as are left.
 constexpr double max_cancellation = 1e10;
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
 PoolFactor::PoolFactor(Gram gram, const Eigen::VectorXd& row_diagonal, const Eigen::MatrixXd& B,
@@ -25,20 +25,20 @@ PoolFactor::PoolFactor(Gram gram, const Eigen::VectorXd& row_diagonal, const Eig
 void PoolFactor::restart(int rows, double proximal) {
   proximal_ = proximal;
   order_.clear();
-  place_.assign(at(rows), -1);
+  place_.assign(index(rows), -1);
   dropped_.clear();
 }
 
 void PoolFactor::set_active(const std::vector<char>& active) {
   int leaving = 0;
-  for (const int a : order_) leaving += active[at(a)] ? 0 : 1;
+  for (const int a : order_) leaving += active[index(a)] ? 0 : 1;
   const int old_size = size();
   if (leaving > std::max(min_border, size() / border_part)) {
     compact(active, old_size);
   } else {
     for (int a = 0; a < static_cast<int>(active.size()); ++a) {
-      if (!active[at(a)] || place_[at(a)] >= 0) continue;
-      place_[at(a)] = size();
+      if (!active[index(a)] || place_[index(a)] >= 0) continue;
+      place_[index(a)] = size();
       order_.push_back(a);
     }
     if (!grow(old_size) || !update_border(active, old_size)) compact(active, old_size);
@@ -51,14 +51,14 @@ void PoolFactor::compact(const std::vector<char>& active, int valid) {
   std::vector<int> order;
   int from = valid;
   for (const int a : order_) {
-    place_[at(a)] = -1;
-    if (active[at(a)]) order.push_back(a);
+    place_[index(a)] = -1;
+    if (active[index(a)]) order.push_back(a);
     else from = std::min(from, static_cast<int>(order.size()));
   }
-  for (std::size_t k = 0; k < order.size(); ++k) place_[at(order[k])] = static_cast<int>(k);
+  for (std::size_t k = 0; k < order.size(); ++k) place_[index(order[k])] = static_cast<int>(k);
   for (int a = 0; a < static_cast<int>(active.size()); ++a) {
-    if (!active[at(a)] || place_[at(a)] >= 0) continue;
-    place_[at(a)] = static_cast<int>(order.size());
+    if (!active[index(a)] || place_[index(a)] >= 0) continue;
+    place_[index(a)] = static_cast<int>(order.size());
     order.push_back(a);
   }
   order_ = std::move(order);
@@ -85,7 +85,7 @@ bool PoolFactor::grow(int from) {
   if (fresh == 0) return true;
   for (int b = 0; b < size(); ++b) {
     const int first = std::max(b, from);
-    gram_(order_[at(b)], std::span(order_).subspan(at(first)), &L_(first, b));
+    gram_(order_[index(b)], std::span(order_).subspan(index(first)), &L_(first, b));
   }
   for (Eigen::Index a = from; a < k; ++a) L_(a, a) += proximal_ * row_diagonal_[order_[static_cast<std::size_t>(a)]];
   auto corner = L_.block(from, from, fresh, fresh);
@@ -112,7 +112,7 @@ bool PoolFactor::update_border(const std::vector<char>& active, int old_size) {
   Eigen::Index kept = 0;
   std::vector<int> dropped;
   for (std::size_t c = 0; c < dropped_.size(); ++c) {
-    if (active[at(order_[at(dropped_[c])])]) continue;
+    if (active[index(order_[index(dropped_[c])])]) continue;
     if (kept != static_cast<Eigen::Index>(c))
       U_.col(kept).head(old_size) = U_.col(static_cast<Eigen::Index>(c)).head(old_size);
     dropped.push_back(dropped_[c]);
@@ -120,7 +120,8 @@ bool PoolFactor::update_border(const std::vector<char>& active, int old_size) {
   }
   const std::vector<int> before = dropped;
   for (int p = 0; p < static_cast<int>(k); ++p) {
-    if (!active[at(order_[at(p)])] && std::find(before.begin(), before.end(), p) == before.end()) dropped.push_back(p);
+    if (!active[index(order_[index(p)])] && std::find(before.begin(), before.end(), p) == before.end())
+      dropped.push_back(p);
   }
   const auto columns = static_cast<Eigen::Index>(dropped.size());
   if (U_.rows() < L_.rows() || U_.cols() < columns)
@@ -142,7 +143,7 @@ bool PoolFactor::update_border(const std::vector<char>& active, int old_size) {
   cancellation_ = 1;
   for (Eigen::Index c = 0; c < columns; ++c) {
     cancellation_ = std::max(cancellation_, U_.col(c).head(k).squaredNorm() *
-                                                row_diagonal_[order_[at(dropped_[static_cast<std::size_t>(c)])]]);
+                                                row_diagonal_[order_[index(dropped_[static_cast<std::size_t>(c)])]]);
   }
   return cancellation_ <= max_cancellation;
 }

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "base/index.h"
 
 namespace formwright::bounded_qp_detail {
 
@@ -25,7 +26,6 @@ constexpr double cancellation_to_refine = 1e5;
 constexpr int proximal_rounds = 60;
 constexpr double contradiction = 1e-9;  // of the size of the rows' terms
 constexpr int block_rounds_without_gain = 4;
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
 PoolQp::PoolQp()
@@ -38,7 +38,7 @@ void PoolQp::set_problem(Eigen::Ref<const Eigen::MatrixXd> gram, PoolProblem pro
   new (&gram_) Gram(gram.data(), gram.rows(), gram.cols(), Eigen::OuterStride<>(gram.outerStride()));
   const int k = p_.rows(), d = p_.drivers();
   double scale = 0;
-  for (int a = 0; a < k; ++a) scale = std::max(scale, gram_(p_.column[at(a)], p_.column[at(a)]));
+  for (int a = 0; a < k; ++a) scale = std::max(scale, gram_(p_.column[index(a)], p_.column[index(a)]));
   if (!(scale > 0)) scale = 1;
   Eigen::VectorXd augment = Eigen::VectorXd::Zero(d);
   proximal_w_.resize(d);
@@ -57,7 +57,7 @@ void PoolQp::set_problem(Eigen::Ref<const Eigen::MatrixXd> gram, PoolProblem pro
   P_.diagonal() += proximal_w_;
   row_diagonal_.resize(k);
   for (int a = 0; a < k; ++a) {
-    row_diagonal_[a] = gram_(p_.column[at(a)], p_.column[at(a)]);
+    row_diagonal_[a] = gram_(p_.column[index(a)], p_.column[index(a)]);
     for (int j = 0; j < d; ++j) row_diagonal_[a] += augment_[j] * p_.B(a, j) * p_.B(a, j);
   }
   if (grown) factor_.add_rows(k - rows_before);
@@ -65,9 +65,9 @@ void PoolQp::set_problem(Eigen::Ref<const Eigen::MatrixXd> gram, PoolProblem pro
 }
 
 void PoolQp::gram(int b, std::span<const int> rows, double* out) const {
-  const double* column = gram_.col(p_.column[at(b)]).data();
+  const double* column = gram_.col(p_.column[index(b)]).data();
   for (std::size_t k = 0; k < rows.size(); ++k)
-    out[k] = p_.sign[at(b)] * p_.sign[at(rows[k])] * column[p_.column[at(rows[k])]];
+    out[k] = p_.sign[index(b)] * p_.sign[index(rows[k])] * column[p_.column[index(rows[k])]];
   for (Eigen::Index j = 0; j < p_.B.cols(); ++j) {
     const double weight = augment_[j] * p_.B(b, j);
     if (weight == 0) continue;
@@ -103,7 +103,7 @@ std::pair<Eigen::VectorXd, Eigen::VectorXd> PoolQp::correct(const Eigen::VectorX
 double PoolQp::noise(const Eigen::VectorXd& s) const {
   double maximum = 0, sum = 0, left = 0;
   for (int a = 0; a < p_.rows(); ++a) {
-    if (!active_[at(a)]) continue;
+    if (!active_[index(a)]) continue;
     const double root = std::sqrt(row_diagonal_[a]);
     maximum = std::max(maximum, root);
     sum += root * std::abs(y_[a]);
@@ -114,10 +114,10 @@ double PoolQp::noise(const Eigen::VectorXd& s) const {
 
 Eigen::VectorXd PoolQp::slack() const {
   Eigen::VectorXd by_column = Eigen::VectorXd::Zero(gram_.rows());
-  for (int a = 0; a < p_.rows(); ++a) by_column[p_.column[at(a)]] += p_.sign[at(a)] * y_[a];
+  for (int a = 0; a < p_.rows(); ++a) by_column[p_.column[index(a)]] += p_.sign[index(a)] * y_[a];
   const Eigen::VectorXd response = gram_ * by_column;
   Eigen::VectorXd s = p_.B * w_ - p_.d;
-  for (int a = 0; a < p_.rows(); ++a) s[a] += p_.sign[at(a)] * response[p_.column[at(a)]];
+  for (int a = 0; a < p_.rows(); ++a) s[a] += p_.sign[index(a)] * response[p_.column[index(a)]];
   return s;
 }
 
@@ -131,10 +131,10 @@ bool PoolQp::block_pivoting(double tolerance, Context& context) {
     const double allowed = std::max(tolerance, noise(s));
     int wrong = 0;
     for (int a = 0; a < p_.rows(); ++a) {
-      if (p_.equality[at(a)]) continue;
+      if (p_.equality[index(a)]) continue;
       // An active row whose pull is worth less than a hundredth of what is allowed stays: that is round-off.
-      if (active[at(a)] ? y_[a] * row_diagonal_[a] < -0.01 * allowed : s[a] < -allowed) {
-        active[at(a)] = !active[at(a)];
+      if (active[index(a)] ? y_[a] * row_diagonal_[a] < -0.01 * allowed : s[a] < -allowed) {
+        active[index(a)] = !active[index(a)];
         ++wrong;
       }
     }
@@ -155,12 +155,12 @@ static double reach(double now, double goal) { return goal > 0 ? 1.0 : now > 0 ?
 // is all that passes change, the rest is round-off in the slacks too. Begins with those rows that push now.
 void PoolQp::lawson_hanson(double tolerance, Context& context) {
   const int k = p_.rows();
-  std::vector<char> active = p_.equality, aside(at(k), 0);
+  std::vector<char> active = p_.equality, aside(index(k), 0);
   Eigen::VectorXd y = y_;
   for (int a = 0; a < k; ++a) {
-    if (p_.equality[at(a)]) continue;
+    if (p_.equality[index(a)]) continue;
     y[a] = std::max(y[a], 0.0);
-    active[at(a)] = y[a] > 0;
+    active[index(a)] = y[a] > 0;
   }
   int entered = -1, idle = 0;
   double best = -std::numeric_limits<double>::infinity();
@@ -170,13 +170,13 @@ void PoolQp::lawson_hanson(double tolerance, Context& context) {
       solve_active(active);
       double step = 1;
       for (int a = 0; a < k; ++a) {
-        if (active[at(a)] && !p_.equality[at(a)]) step = std::min(step, reach(y[a], y_[a]));
+        if (active[index(a)] && !p_.equality[index(a)]) step = std::min(step, reach(y[a], y_[a]));
       }
       if (step >= 1) break;
       for (int a = 0; a < k; ++a) {
-        if (!active[at(a)]) continue;
-        if (!p_.equality[at(a)] && reach(y[a], y_[a]) <= step) {
-          active[at(a)] = 0;
+        if (!active[index(a)]) continue;
+        if (!p_.equality[index(a)] && reach(y[a], y_[a]) <= step) {
+          active[index(a)] = 0;
           y[a] = 0;
         } else {
           y[a] += step * (y_[a] - y[a]);
@@ -184,8 +184,8 @@ void PoolQp::lawson_hanson(double tolerance, Context& context) {
       }
     }
     y = y_;
-    if (entered >= 0 && !active[at(entered)])
-      aside[at(entered)] = 1;  // round-off pushed it in, round-off pushed it out
+    if (entered >= 0 && !active[index(entered)])
+      aside[index(entered)] = 1;  // round-off pushed it in, round-off pushed it out
     const Eigen::VectorXd s = slack();
     const double value = y.dot(p_.d - 0.5 * (s + p_.d - p_.B * w_)) - 0.5 * w_.dot(p_.P * w_);
     idle = value > best + 1e-13 * std::abs(best) ? 0 : idle + 1;
@@ -194,10 +194,10 @@ void PoolQp::lawson_hanson(double tolerance, Context& context) {
     const double allowed = std::max(tolerance, noise(s));
     entered = -1;
     for (int a = 0; a < k; ++a) {
-      if (!active[at(a)] && !aside[at(a)] && s[a] < -allowed && (entered < 0 || s[a] < s[entered])) entered = a;
+      if (!active[index(a)] && !aside[index(a)] && s[a] < -allowed && (entered < 0 || s[a] < s[entered])) entered = a;
     }
     if (entered < 0) return;
-    active[at(entered)] = 1;
+    active[index(entered)] = 1;
   }
 }
 
@@ -206,7 +206,7 @@ PoolSolution PoolQp::solve(const std::vector<char>& start, const Eigen::VectorXd
   const int k = p_.rows();
   active_ = start;
   for (int a = 0; a < k; ++a) {
-    if (p_.equality[at(a)]) active_[at(a)] = 1;
+    if (p_.equality[index(a)]) active_[index(a)] = 1;
   }
   centre_y_.setZero(k);
   centre_w_ = w;
@@ -218,7 +218,7 @@ PoolSolution PoolQp::solve(const std::vector<char>& start, const Eigen::VectorXd
     if (!block_pivoting(tolerance, context)) lawson_hanson(tolerance, context);
     result.residual = 0;
     for (int a = 0; a < k; ++a) {
-      if (!active_[at(a)]) continue;
+      if (!active_[index(a)]) continue;
       result.residual =
           std::max(result.residual, factor_.proximal() * row_diagonal_[a] * std::abs(y_[a] - centre_y_[a]));
     }
@@ -244,7 +244,7 @@ PoolSolution PoolQp::solve(const std::vector<char>& start, const Eigen::VectorXd
   }
   result.y = y_;
   for (int a = 0; a < k; ++a) {
-    if (!p_.equality[at(a)]) result.y[a] = std::max(result.y[a], 0.0);
+    if (!p_.equality[index(a)]) result.y[a] = std::max(result.y[a], 0.0);
   }
   result.w = w_;
   result.push = row_diagonal_.cwiseProduct(y_);

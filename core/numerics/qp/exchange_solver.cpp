@@ -8,6 +8,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "base/index.h"
 
 namespace formwright::bounded_qp_detail {
 
@@ -17,8 +18,6 @@ constexpr double target_violation = 1e-3;  // of the tolerance: what rounds stri
 constexpr int min_batch = 300, batch_part = 4;
 constexpr int refinements = 3;             // at most, per round
 constexpr double force_tolerance = 1e-10;  // on Q u - forces, relative: above it a refinement is tried
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 std::size_t hash_of(const InequalityRow& row) {
   std::size_t h = row.index.size();
   const auto mix = [&h](std::size_t value) { h ^= value + 0x9e3779b9U + (h << 6) + (h >> 2); };
@@ -30,7 +29,7 @@ std::size_t hash_of(const InequalityRow& row) {
 
 void ExchangeSolver::forget() {
   columns_.reset(energy_.size());
-  bound_column_.assign(at(energy_.size()), -1);
+  bound_column_.assign(index(energy_.size()), -1);
   order_columns_.clear();
   gauge_column_ = -1;
   pool_.clear();
@@ -44,23 +43,23 @@ void ExchangeSolver::forget() {
 //   u = offset + sum_g m_g slope_g,  Q u = 0 off the base,  u on its bound on the base.
 void ExchangeSolver::start(const Rows& rows, const std::vector<RowKey>& base, Context& context) {
   const int n = energy_.size(), groups = rows.groups();
-  const bool same = base == base_ && bound_column_.size() == at(n);
+  const bool same = base == base_ && bound_column_.size() == index(n);
   if (!same) forget();
   base_ = base;
   std::vector<char> flags;
   if (!base.empty()) {
-    flags.assign(at(n), 0);
-    guessed_.assign(at(n), 0);
+    flags.assign(index(n), 0);
+    guessed_.assign(index(n), 0);
     for (const RowKey key : base) {
-      flags[at(key.index)] = 1;
-      guessed_[at(key.index)] = rows.equality(key) ? 0 : 1;
+      flags[index(key.index)] = 1;
+      guessed_[index(key.index)] = rows.equality(key) ? 0 : 1;
     }
   }
   energy_.factorize_pinned(flags, context);
-  constant_driver_.assign(at(energy_.component_count()), -1);
+  constant_driver_.assign(index(energy_.component_count()), -1);
   int constants = 0;
   for (int k = 0; k < energy_.component_count(); ++k) {
-    if (energy_.free_constant(k)) constant_driver_[at(k)] = constants++;
+    if (energy_.free_constant(k)) constant_driver_[index(k)] = constants++;
   }
   if (drivers_.size() != constants + groups) {
     drivers_.setZero(constants + groups);
@@ -116,7 +115,7 @@ void ExchangeSolver::start(const Rows& rows, const std::vector<RowKey>& base, Co
   for (std::size_t k = 0; k < pool_.size(); ++k) {
     const RowKey key = pool_[k];
     if (key.side == Side::order &&
-        (at(key.index) >= rows.constraints().rows.size() || column_of(rows, key) != pool_column_[k]))
+        (index(key.index) >= rows.constraints().rows.size() || column_of(rows, key) != pool_column_[k]))
       continue;
     if (!std::isfinite(rows.bound(key))) continue;
     kept.push_back(key);
@@ -129,8 +128,8 @@ void ExchangeSolver::start(const Rows& rows, const std::vector<RowKey>& base, Co
 }
 
 int& ExchangeSolver::column_of(const Rows& rows, RowKey key) {
-  if (key.side != Side::order) return bound_column_[at(key.index)];
-  const InequalityRow& row = rows.constraints().rows[at(key.index)];
+  if (key.side != Side::order) return bound_column_[index(key.index)];
+  const InequalityRow& row = rows.constraints().rows[index(key.index)];
   const std::size_t hash = hash_of(row);
   const auto [first, last] = order_columns_.equal_range(hash);
   for (auto it = first; it != last; ++it) {
@@ -149,7 +148,7 @@ void ExchangeSolver::add_to_pool(const Rows& rows, std::span<const RowKey> keys,
       if (key.side != Side::order) {
         if (!energy_.fixed(key.index)) g = {{key.index}, {1.0}};
       } else {
-        const InequalityRow& row = rows.constraints().rows[at(key.index)];
+        const InequalityRow& row = rows.constraints().rows[index(key.index)];
         std::vector<std::pair<int, double>> entries;
         for (std::size_t k = 0; k < row.index.size(); ++k) {
           if (!energy_.fixed(row.index[k])) entries.emplace_back(row.index[k], row.coefficient[k]);
@@ -195,7 +194,7 @@ PoolProblem ExchangeSolver::pool_problem(const Rows& rows) const {
     p.column.push_back(gauge_column_);
     p.equality[0] = 1;
     for (int i = 0; i < energy_.size(); ++i) {
-      const int c = constant_driver_[at(energy_.component(i))];
+      const int c = constant_driver_[index(energy_.component(i))];
       if (c >= 0) p.B(0, c) += gauge_[i];
     }
     if (base_offset_.size() > 0) {
@@ -211,11 +210,11 @@ PoolProblem ExchangeSolver::pool_problem(const Rows& rows) const {
     p.B(j, constants + rows.group(key)) += rows.slope(key);
     p.d[j] = rows.bound(key);
     const auto touch = [&](int i, double a) {
-      const int c = constant_driver_[at(energy_.component(i))];
+      const int c = constant_driver_[index(energy_.component(i))];
       if (c >= 0) p.B(j, c) += a;
     };
     if (key.side == Side::order) {
-      const InequalityRow& row = rows.constraints().rows[at(key.index)];
+      const InequalityRow& row = rows.constraints().rows[index(key.index)];
       for (std::size_t e = 0; e < row.index.size(); ++e) touch(row.index[e], row.coefficient[e]);
     } else {
       touch(key.index, p.sign[static_cast<std::size_t>(j)]);
@@ -230,7 +229,7 @@ PoolProblem ExchangeSolver::pool_problem(const Rows& rows) const {
 
 Eigen::VectorXd ExchangeSolver::by_column(const PoolProblem& problem, const Eigen::VectorXd& y) const {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(columns_.count());
-  for (int a = 0; a < problem.rows(); ++a) sum[problem.column[at(a)]] += problem.sign[at(a)] * y[a];
+  for (int a = 0; a < problem.rows(); ++a) sum[problem.column[index(a)]] += problem.sign[index(a)] * y[a];
   return sum;
 }
 
@@ -238,7 +237,7 @@ Eigen::VectorXd ExchangeSolver::by_column(const PoolProblem& problem, const Eige
 void ExchangeSolver::add_drivers(const Eigen::VectorXd& w, Eigen::VectorXd& u) const {
   for (int i = 0; i < energy_.size(); ++i) {
     if (energy_.fixed(i)) u[i] = 0;
-    const int c = constant_driver_[at(energy_.component(i))];
+    const int c = constant_driver_[index(energy_.component(i))];
     if (c >= 0) u[i] += w[c];
   }
   if (base_offset_.size() > 0) u += base_slope_ * w.tail(base_slope_.cols());
@@ -265,8 +264,8 @@ double ExchangeSolver::force_residual(const Rows& rows, const PoolSolution& pool
 // Whether an order row moves with unknowns that are on their bound by guess, not by equality.
 bool ExchangeSolver::on_guess(const Rows& rows, RowKey key) const {
   if (key.side != Side::order || base_.empty()) return false;
-  const auto& index = rows.constraints().rows[at(key.index)].index;
-  return std::any_of(index.begin(), index.end(), [&](int i) { return guessed_[at(i)] != 0; });
+  const auto& unknowns = rows.constraints().rows[index(key.index)].index;
+  return std::any_of(unknowns.begin(), unknowns.end(), [&](int i) { return guessed_[index(i)] != 0; });
 }
 
 // One step of iterative refinement of the whole KKT system on the active set: the factor of Q is exact to round-off
@@ -284,8 +283,8 @@ void ExchangeSolver::refine(const Rows& rows, const PoolProblem& problem, const 
   const Eigen::VectorXd m = pool.w.tail(groups);
   Eigen::VectorXd slack_error(problem.rows());
   for (int a = 0; a < problem.rows(); ++a) {
-    const double error = a >= gauge_rows() ? rows.deficit(pool_[at(a - gauge_rows())], u, m) : -gauge_.dot(u);
-    slack_error[a] = error - problem.sign[at(a)] * moved[problem.column[at(a)]];
+    const double error = a >= gauge_rows() ? rows.deficit(pool_[index(a - gauge_rows())], u, m) : -gauge_.dot(u);
+    slack_error[a] = error - problem.sign[index(a)] * moved[problem.column[index(a)]];
   }
   const Eigen::VectorXd balance = problem.P * pool.w + problem.r - problem.B.transpose() * pool.y;
   const auto [dy, dw] = qp.correct(slack_error, balance);
@@ -296,7 +295,7 @@ void ExchangeSolver::refine(const Rows& rows, const PoolProblem& problem, const 
   pool.w += dw;
   pool.y += dy;
   for (int a = 0; a < problem.rows(); ++a) {
-    if (!problem.equality[at(a)]) pool.y[a] = std::max(pool.y[a], 0.0);
+    if (!problem.equality[index(a)]) pool.y[a] = std::max(pool.y[a], 0.0);
   }
 }
 
@@ -334,7 +333,7 @@ ExchangeResult ExchangeSolver::run(const Rows& rows, const std::vector<RowKey>& 
     const bool at_rest = result.rounds == 0 && pool_.empty() && base.empty();  // u = 0 is optimal for no constraints
     if (!at_rest) {
       problem = pool_problem(rows);
-      std::vector<char> start_active(at(gauge_rows()), 1);
+      std::vector<char> start_active(index(gauge_rows()), 1);
       start_active.insert(start_active.end(), active_.begin(), active_.end());
       qp.set_problem(columns_.gram(), problem, grown);
       grown = true;
@@ -389,7 +388,7 @@ ExchangeResult ExchangeSolver::run(const Rows& rows, const std::vector<RowKey>& 
       break;
     }
     const int max_new = std::max(min_batch, result.history.back().active / batch_part);
-    if (static_cast<int>(keys.size()) > max_new) keys.resize(at(max_new));  // the worst first
+    if (static_cast<int>(keys.size()) > max_new) keys.resize(index(max_new));  // the worst first
     add_to_pool(rows, keys, context);
     result.seconds.columns += watch.lap();
     context.progress(static_cast<double>(result.rounds) / (result.rounds + 5), "Finding contacts");

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "base/index.h"
 #include "numerics/qp/exchange_columns.h"
 
 namespace formwright::bounded_qp_detail {
@@ -16,8 +17,6 @@ constexpr double proximal = 1e-13;  // of the diagonal of Q, in the matrix only:
 constexpr double boundary_part = 0.9995;
 constexpr double start_slack = 0.05;  // of the distance between the bounds
 constexpr double balance_tolerance = 1e-9;
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 // Slacks and multipliers of one family of rows, g^T u + slope m - s = bound, s, y >= 0.
 struct Family {
   std::vector<RowKey> key;
@@ -65,12 +64,12 @@ InteriorPoint::InteriorPoint(Energy& energy, const Rows& rows, std::span<const i
   const BoundedQpConstraints& c = rows.constraints();
   const double size = c.gauge.cwiseAbs().sum();
   gauge_ = size > 0 ? Eigen::VectorXd(c.gauge / size) : Eigen::VectorXd();
-  fixed_.assign(at(n_), 0);
+  fixed_.assign(index(n_), 0);
   fixed_slope_.setZero(n_, groups_);
   for (int i = 0; i < n_; ++i) {
     if (c.lower[i] == c.upper[i] && c.lower_slope[i] == c.upper_slope[i]) {
-      fixed_[at(i)] = 1;
-      fixed_slope_(i, c.group[at(i)]) = c.lower_slope[i];
+      fixed_[index(i)] = 1;
+      fixed_slope_(i, c.group[index(i)]) = c.lower_slope[i];
       continue;
     }
     if (std::isfinite(c.lower[i])) bounds_.key.push_back({Side::lower, i});
@@ -86,17 +85,17 @@ void InteriorPoint::begin(const InteriorPointStart& start) {
   u_ = start.u;
   m_ = start.m;
   for (int i = 0; i < n_; ++i) {
-    if (fixed_[at(i)]) u_[i] = c.lower[i] + c.lower_slope[i] * m_[c.group[at(i)]];
+    if (fixed_[index(i)]) u_[i] = c.lower[i] + c.lower_slope[i] * m_[c.group[index(i)]];
   }
   // A known multiplier times the slack its row starts with is how far from the end the start is.
   Eigen::VectorXd known = Eigen::VectorXd::Zero(n_),
                   known_order = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(c.rows.size()));
-  std::vector<Side> side(at(n_), Side::order);
+  std::vector<Side> side(index(n_), Side::order);
   for (std::size_t k = 0; k < start.active.size(); ++k) {
     const RowKey key = start.active[k];
     (key.side == Side::order ? known_order : known)[key.index] =
         std::max(0.0, start.multiplier[static_cast<Eigen::Index>(k)]);
-    if (key.side != Side::order) side[at(key.index)] = key.side;
+    if (key.side != Side::order) side[index(key.index)] = key.side;
   }
   double product = 0;
   int products = 0;
@@ -109,12 +108,13 @@ void InteriorPoint::begin(const InteriorPointStart& start) {
       const int i = key.index;
       double width = rows_.scale();
       if (key.side != Side::order && std::isfinite(c.lower[i]) && std::isfinite(c.upper[i])) {
-        width = std::min(width, c.upper[i] - c.lower[i] + (c.upper_slope[i] - c.lower_slope[i]) * m_[c.group[at(i)]]);
+        width =
+            std::min(width, c.upper[i] - c.lower[i] + (c.upper_slope[i] - c.lower_slope[i]) * m_[c.group[index(i)]]);
       }
       family->s[a] =
           std::max(moved(key, u_, m_) - rows_.bound(key), std::max(start_slack * width, 1e-6 * rows_.scale()));
       if (key.side == Side::order) family->y[a] = known_order[i];
-      else if (side[at(i)] == key.side) family->y[a] = known[i];
+      else if (side[index(i)] == key.side) family->y[a] = known[i];
       if (family->y[a] > 0) {
         product += family->s[a] * family->y[a];
         ++products;
@@ -146,7 +146,7 @@ void InteriorPoint::residuals() {
   }
   m_left_ += fixed_slope_.transpose() * force_left_;
   for (int i = 0; i < n_; ++i) {
-    if (fixed_[at(i)]) force_left_[i] = 0;
+    if (fixed_[index(i)]) force_left_[i] = 0;
   }
 }
 
@@ -185,10 +185,10 @@ void InteriorPoint::assemble(Context& context) {
     const auto k = static_cast<Eigen::Index>(a);
     E(border, border) = -order_.s[k] / order_.y[k];
     E(border, rows_.group(key)) -= rows_.slope(key);
-    const InequalityRow& row = rows_.constraints().rows[at(key.index)];
+    const InequalityRow& row = rows_.constraints().rows[index(key.index)];
     std::vector<std::pair<int, double>> entries;
     for (std::size_t e = 0; e < row.index.size(); ++e) {
-      if (!fixed_[at(row.index[e])]) entries.emplace_back(row.index[e], -row.coefficient[e]);
+      if (!fixed_[index(row.index[e])]) entries.emplace_back(row.index[e], -row.coefficient[e]);
       else E.row(border).head(groups_) -= row.coefficient[e] * fixed_slope_.row(row.index[e]);
     }
     std::sort(entries.begin(), entries.end());
@@ -202,7 +202,7 @@ void InteriorPoint::assemble(Context& context) {
   }
   for (int i = 0; i < n_; ++i) {
     diagonal_[i] += proximal * energy_.diagonal(i);
-    if (fixed_[at(i)]) border_dense_.row(i).setZero();
+    if (fixed_[index(i)]) border_dense_.row(i).setZero();
   }
   energy_.factorize_shifted(diagonal_, fixed_, context);
   for (Eigen::Index c = 0; c < border_dense_.cols(); ++c)
@@ -250,7 +250,7 @@ void InteriorPoint::direction() {
   dm_ = db.head(groups_);
   dgauge_ = gauge_border >= 0 ? db[gauge_border] : 0;
   for (int i = 0; i < n_; ++i) {
-    if (fixed_[at(i)]) du_[i] = fixed_slope_.row(i).dot(dm_);
+    if (fixed_[index(i)]) du_[i] = fixed_slope_.row(i).dot(dm_);
   }
   for (Family* family : {&bounds_, &order_}) {
     family->ds.resize(family->s.size());

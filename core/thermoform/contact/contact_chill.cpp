@@ -10,7 +10,7 @@ namespace formwright {
 namespace {
 
 constexpr int max_sweeps = 200;
-constexpr double settled = 1e-5;  // of a sweep's largest change
+constexpr double settled_change = 1e-5;  // of a sweep's largest change
 
 }  // namespace
 
@@ -63,7 +63,7 @@ void ContactChill::advance(double dt_s, const HeldVertices& held) {
       change = std::max(change, std::abs(next - now[i]));
       now[i] = next;
     }
-    if (change < settled) break;
+    if (change < settled_change) break;
   }
   chill_ = std::move(now);
   for (Eigen::Index f = 0; f < sheet_.F.rows(); ++f) {

@@ -76,7 +76,7 @@ struct Side {
   const char* name;
   double x, y;
 };
-constexpr std::array<Side, 4> sides{{{"right", 1, 0}, {"left", -1, 0}, {"back", 0, 1}, {"front", 0, -1}}};
+constexpr std::array<Side, 4> model_sides{{{"right", 1, 0}, {"left", -1, 0}, {"back", 0, 1}, {"front", 0, -1}}};
 
 /// The depth to width that `cavity_area_mm2` of the grid together reach: single nodes in creases do not count.
 void deepest_cavity(DraftMap& map, const HeightGrid& grid, double min_width_mm, Context& context) {
@@ -110,7 +110,7 @@ void describe(DraftMap& map, const Positions& normals, const Eigen::VectorXd& ar
   if (hanging > 0.005 * map.area_mm2)
     map.sentences.push_back(with_decimals(hanging / 100, 1) +
                             " cm² face down over an empty space: the sheet cannot reach them.");
-  for (const Side& side : sides) {
+  for (const Side& side : model_sides) {
     double area = 0, lean = 0;
     for (Eigen::Index f = 0; f < areas.size(); ++f) {
       const double along = normals(f, 0) * side.x + normals(f, 1) * side.y,

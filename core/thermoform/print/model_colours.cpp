@@ -13,7 +13,8 @@ namespace formwright {
 namespace {
 
 constexpr double line_share = 0.08;  // of the distance between two contours, half of each line's width
-const Vec3 paper(1, 1, 1), ink(0.02, 0.02, 0.02), checker_light(0.86, 0.78, 0.55), checker_dark(0.05, 0.12, 0.35);
+const Vec3 paper_colour(1, 1, 1), ink(0.02, 0.02, 0.02), checker_light(0.86, 0.78, 0.55),
+    checker_dark(0.05, 0.12, 0.35);
 
 Light light_of(const Vec3& unit) {
   Light light{};
@@ -122,12 +123,12 @@ FaceColour ModelColours::face(const RefinedSurface& surface, std::size_t f, cons
     return result;
   }
   const int material = model_.face_material.empty() ? -1 : model_.face_material[static_cast<std::size_t>(old)];
-  const Vec3 diffuse = material < 0 ? Vec3(paper) : model_.materials[static_cast<std::size_t>(material)].diffuse;
+  const Vec3 diffuse = material < 0 ? Vec3(paper_colour) : model_.materials[static_cast<std::size_t>(material)].diffuse;
   if (kind_ == PrintColours::picture)
     if (const LinearPicture* const picture = picture_of(old)) {
       result.kind = FaceColour::Kind::picture;
       result.picture = picture;
-      result.factor = own_ ? Vec3(paper) : Vec3(diffuse.cwiseMax(0).cwiseMin(1));
+      result.factor = own_ ? Vec3(paper_colour) : Vec3(diffuse.cwiseMax(0).cwiseMin(1));
       vary(model_.UV, model_.FT);
       result.value.y() = 1 - result.value.y();
       result.per_pixel.row(1) *= -1;

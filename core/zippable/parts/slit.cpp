@@ -15,7 +15,7 @@
 namespace formwright {
 namespace {
 
-[[noreturn]] void refuse(std::size_t number, const std::string& why) {
+[[noreturn]] void refuse_slit(std::size_t number, const std::string& why) {
   throw Error(ErrorCode::invalid_input, "segments", "Cut " + std::to_string(number + 1) + " of the punctures " + why);
 }
 
@@ -90,7 +90,7 @@ std::vector<Vec3> cut_slit(OpenedSurface& surface, const std::vector<Vec3>& poin
   const Adjacency adjacency(mesh);
   const double edge_mm = mean_edge_length(mesh);
   const std::vector<Vec3> path = path_through(mesh, adjacency, PointDistance(mesh), points, 0.5 * edge_mm);
-  if (path.size() < 2) refuse(number, "has all its points in one place: draw it longer.");
+  if (path.size() < 2) refuse_slit(number, "has all its points in one place: draw it longer.");
   const Positions normals = vertex_normals(mesh);
   const int n = mesh.vertex_count();
   std::vector<double> side(n, 0);
@@ -114,10 +114,10 @@ std::vector<Vec3> cut_slit(OpenedSurface& surface, const std::vector<Vec3>& poin
   const Adjacency after(cut.mesh);
   const std::vector<int> walk = chain(cut, after, n);
   if (cut.mesh.vertex_count() - n < 3)
-    refuse(number, "is too short for this mesh: draw it longer, or subdivide the model.");
-  if (walk.empty()) refuse(number, "meets itself, or an edge that is too sharp: draw it simpler.");
+    refuse_slit(number, "is too short for this mesh: draw it longer, or subdivide the model.");
+  if (walk.empty()) refuse_slit(number, "meets itself, or an edge that is too sharp: draw it simpler.");
   for (const int v : walk)
-    if (after.is_boundary_vertex(v)) refuse(number, "touches an opening or another cut: move it away.");
+    if (after.is_boundary_vertex(v)) refuse_slit(number, "touches an opening or another cut: move it away.");
   OpenedSurface result = surface;
   result.mesh = cut.mesh;
   result.source_of.resize(cut.mesh.vertex_count(), -1);
@@ -134,7 +134,7 @@ std::vector<Vec3> cut_slit(OpenedSurface& surface, const std::vector<Vec3>& poin
   const Adjacency opened(result.mesh);
   if (!opened.is_manifold() || euler_characteristic(opened) != euler_characteristic(adjacency) - 1 ||
       boundary_loops(opened).size() != boundary_loops(adjacency).size() + 1)
-    refuse(number, "does not leave one opening behind: draw it simpler, or subdivide the model.");
+    refuse_slit(number, "does not leave one opening behind: draw it simpler, or subdivide the model.");
   std::vector<Vec3> line;
   for (const int v : walk) line.push_back(cut.mesh.V.row(v).transpose());
   surface = std::move(result);

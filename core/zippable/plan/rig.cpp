@@ -14,7 +14,7 @@
 namespace formwright {
 namespace {
 
-constexpr const char* title = "Zippable rig";
+constexpr const char* rig_title = "Zippable rig";
 constexpr double mark_mm = 2, clear_mm = 0.3;
 
 double rim_width_mm(const PlanOptions& options) { return 3 * options.screw_mm; }
@@ -241,7 +241,7 @@ void lay_on_sheets(Rig& rig, const PlanOptions& options, Context& context) {
   const Nesting nesting =
       nest(outlines, {options.bed_x_mm, options.bed_y_mm, options.margin_mm, options.spacing_mm, false}, context);
   rig.sheets.assign(std::size_t(nesting.sheet_count),
-                    CutSheet{title, options.bed_x_mm, options.bed_y_mm, {}, options.kerf_mm});
+                    CutSheet{rig_title, options.bed_x_mm, options.bed_y_mm, {}, options.kerf_mm});
   for (std::size_t i = 0; i < rig.plates.size(); ++i) {
     auto& paths = rig.sheets[nesting.places[i].sheet].paths;
     // What is inside is cut before the outline.

@@ -11,7 +11,7 @@
 namespace formwright {
 namespace {
 
-constexpr double margin_mm = 10, caption_mm = 6, header_mm = 12, between_rows_mm = 5, text_mm = 2.6;
+constexpr double page_margin_mm = 10, caption_mm = 6, header_mm = 12, between_rows_mm = 5, text_mm = 2.6;
 
 class RowWriter {
  public:
@@ -84,8 +84,8 @@ class RowWriter {
 };
 
 void draw_scale(CutSheet& sheet) {
-  const double y = sheet.height_mm - margin_mm - 4, from = sheet.width_mm - margin_mm - 100,
-               to = sheet.width_mm - margin_mm;
+  const double y = sheet.height_mm - page_margin_mm - 4, from = sheet.width_mm - page_margin_mm - 100,
+               to = sheet.width_mm - page_margin_mm;
   sheet.paths.push_back({CutLayer::mark, {{from, y}, {to, y}}, false, "scale-100"});
   for (const double x : {from, to}) sheet.paths.push_back({CutLayer::mark, {{x, y - 2}, {x, y + 2}}, false, ""});
   const std::string words = "THIS BAR IS 100 MM LONG";
@@ -99,11 +99,11 @@ TapeTemplate make_tape_template(const FlatDesign& design, const ZipperModel& zip
                                 double paper_y_mm) {
   TapeTemplate result;
   if (!(zipper.tape_width_mm > 0)) return result;
-  const double free_x = paper_x_mm - 2 * margin_mm;
+  const double free_x = paper_x_mm - 2 * page_margin_mm;
   result.row_mm = marker_spacing_mm <= free_x ? marker_spacing_mm * std::floor(free_x / marker_spacing_mm) : free_x;
   result.rows = std::max(1, static_cast<int>(std::ceil(design.zipper_mm / result.row_mm - 1e-9)));
   const RowWriter writer(zipper, markers.markers, runs, result.row_mm);
-  const double step = writer.height_mm() + between_rows_mm, free_y = paper_y_mm - 2 * margin_mm - header_mm;
+  const double step = writer.height_mm() + between_rows_mm, free_y = paper_y_mm - 2 * page_margin_mm - header_mm;
   const int rows_a_sheet = static_cast<int>(std::floor((free_y + between_rows_mm) / step));
   if (rows_a_sheet < 1)
     throw Error(ErrorCode::invalid_input, "tape_width_mm",
@@ -113,11 +113,11 @@ TapeTemplate make_tape_template(const FlatDesign& design, const ZipperModel& zip
     CutSheet sheet{"Zipper tape", paper_x_mm, paper_y_mm, {}};
     draw_scale(sheet);
     RowWriter::say(
-        sheet, Vec2(margin_mm, paper_y_mm - margin_mm - 4),
+        sheet, Vec2(page_margin_mm, paper_y_mm - page_margin_mm - 4),
         "ZIPPER TAPE " + std::to_string(i + 1) + "/" + std::to_string(sheets) + "   LEFT ABOVE - RIGHT BELOW");
     for (int row = i * rows_a_sheet; row < std::min(result.rows, (i + 1) * rows_a_sheet); ++row)
-      writer.write(sheet, Vec2(margin_mm, paper_y_mm - margin_mm - header_mm - (row % rows_a_sheet) * step), row,
-                   design.zipper_mm);
+      writer.write(sheet, Vec2(page_margin_mm, paper_y_mm - page_margin_mm - header_mm - (row % rows_a_sheet) * step),
+                   row, design.zipper_mm);
     result.sheets.push_back(std::move(sheet));
   }
   return result;

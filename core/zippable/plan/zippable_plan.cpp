@@ -15,7 +15,7 @@
 namespace formwright {
 namespace {
 
-constexpr const char* title = "Zippable plan";
+constexpr const char* plan_title = "Zippable plan";
 
 double area_mm2(const Triangles& F, const std::vector<Vec2>& flat) {
   double twice = 0;
@@ -69,7 +69,7 @@ void draw_grain(CutSheet& sheet, double margin_mm) {
 std::vector<CutSheet> lay_out(const ZippablePlan& plan, const PlanOptions& options) {
   const auto& [pieces, nesting] = std::tie(plan.pieces, plan.nesting);
   std::vector<CutSheet> sheets(std::size_t(nesting.sheet_count),
-                               CutSheet{title, options.bed_x_mm, options.bed_y_mm, {}, options.kerf_mm});
+                               CutSheet{plan_title, options.bed_x_mm, options.bed_y_mm, {}, options.kerf_mm});
   for (std::size_t i = 0; i < pieces.pieces.size(); ++i) {
     const PlanPiece& piece = pieces.pieces[i];
     const Nested& place = nesting.places[i];
@@ -224,7 +224,7 @@ ZippablePlan plan_zippable(const FlatDesign& design, const PlanOptions& options,
 }
 
 Bytes write_plan_pdf(const std::vector<CutSheet>& sheets) {
-  PdfDocument pdf(title);
+  PdfDocument pdf(plan_title);
   for (const CutSheet& sheet : sheets) {
     pdf.add_page(sheet.width_mm, sheet.height_mm);
     Drawing drawing;

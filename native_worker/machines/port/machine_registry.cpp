@@ -15,6 +15,7 @@
 #include "base/data/json_text.h"
 #include "base/sha256.h"
 #include "system/files.h"
+#include "system/machine_errors.h"
 #include "system/private_data.h"
 #include "system/host.h"
 
@@ -24,10 +25,6 @@ namespace {
 constexpr std::array<const char*, 6> kind_names{"serial", "ruida", "printer", "octoprint", "moonraker", "slicer"};
 constexpr std::array<int, 12> baud_rates{9600,   19200,  38400,  57600,  76800,  115200,
                                          230400, 250000, 460800, 500000, 921600, 1000000};
-
-[[noreturn]] void refuse(const std::string& where, const std::string& sentence) {
-  throw Error(ErrorCode::invalid_input, where, sentence);
-}
 
 std::string id_of(MachineKind kind, const std::string& address) {
   return sha256_hex(as_bytes(std::string(to_string(kind)) + "\n" + address)).substr(0, 16);

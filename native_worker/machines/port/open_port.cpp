@@ -21,7 +21,7 @@
 namespace formwright::machine_port_detail {
 namespace {
 
-constexpr int connect_patience_ms = 5000;
+constexpr int port_connect_patience_ms = 5000;
 
 [[noreturn]] void fail(int descriptor, const std::string& sentence) {
   if (descriptor >= 0) ::close(descriptor);
@@ -76,7 +76,7 @@ int connect_tcp(const std::string& host, int port, const std::string& name) {
     if (descriptor < 0) continue;
     if (::connect(descriptor, a->ai_addr, a->ai_addrlen) != 0 && errno == EINPROGRESS) {
       pollfd wait{descriptor, POLLOUT, 0};
-      const int ready = ::poll(&wait, 1, connect_patience_ms);
+      const int ready = ::poll(&wait, 1, port_connect_patience_ms);
       errno = ready > 0 ? 0 : ETIMEDOUT;
     }
     int error = errno;

@@ -24,11 +24,13 @@ constexpr double mm_per_point = 25.4 / 72;
 constexpr std::size_t max_pages = 500;
 constexpr double max_mm = 20'000;
 
-[[noreturn]] void refuse(const std::string& sentence) { throw Error(ErrorCode::invalid_input, "sha256", sentence); }
+[[noreturn]] void refuse_document(const std::string& sentence) {
+  throw Error(ErrorCode::invalid_input, "sha256", sentence);
+}
 
 PageSize checked(PageSize size) {
   if (!(size.width_mm >= 1 && size.width_mm <= max_mm && size.height_mm >= 1 && size.height_mm <= max_mm))
-    refuse(
+    refuse_document(
         "A page of the document is smaller than 1 mm or larger than 20 m: export it again with its size in millimetres.");
   return size;
 }
@@ -58,7 +60,7 @@ DocumentPages read_png(ByteView png) {
     }
     at += length + 12;
   }
-  refuse(
+  refuse_document(
       "The PNG does not say how many pixels there are to a metre, so its true size is unknown: save it with a density, "
       "or print a PDF.");
 }
@@ -67,7 +69,8 @@ DocumentPages read_png(ByteView png) {
 /// printers take one size per job. Not by libcups, which first sets aside as many bytes as the header claims a line to
 /// have, up to 4 GB.
 DocumentPages read_pwg_raster(ByteView raster) {
-  if (raster.size() < 4 + sizeof(cups_page_header2_t)) refuse("The PWG raster cannot be read: export it again.");
+  if (raster.size() < 4 + sizeof(cups_page_header2_t))
+    refuse_document("The PWG raster cannot be read: export it again.");
   const bool low_end_first = as_text(raster).starts_with("2SaR");
   const auto number = [&](std::size_t offset) {
     const std::uint32_t value = big_endian(raster, 4 + offset);
@@ -75,7 +78,7 @@ DocumentPages read_pwg_raster(ByteView raster) {
   };
   const std::size_t resolution = offsetof(cups_page_header2_t, HWResolution);
   const double across = number(resolution), down = number(resolution + 4);
-  if (across == 0 || down == 0) refuse("The PWG raster cannot be read: export it again.");
+  if (across == 0 || down == 0) refuse_document("The PWG raster cannot be read: export it again.");
   return {"image/pwg-raster",
           {checked({25.4 * number(offsetof(cups_page_header2_t, cupsWidth)) / across,
                     25.4 * number(offsetof(cups_page_header2_t, cupsHeight)) / down})}};
@@ -87,11 +90,11 @@ struct Box {
 
 Box crop_box(QPDFPageObjectHelper& page) {
   QPDFObjectHandle box = page.getCropBox();
-  if (!box.isRectangle()) refuse("A page of the PDF does not state its size: export the PDF again.");
+  if (!box.isRectangle()) refuse_document("A page of the PDF does not state its size: export the PDF again.");
   const auto r = box.getArrayAsRectangle();
   const Box found{std::min(r.llx, r.urx), std::min(r.lly, r.ury), std::max(r.llx, r.urx), std::max(r.lly, r.ury)};
   if (!std::isfinite(found.x0 + found.y0 + found.x1 + found.y1))
-    refuse("A page of the PDF does not state its size: export the PDF again.");
+    refuse_document("A page of the PDF does not state its size: export the PDF again.");
   return found;
 }
 
@@ -101,7 +104,7 @@ class CountingPipeline final : public Pipeline {
   explicit CountingPipeline(ReadBudget& budget) : Pipeline("count", nullptr), budget_(budget) {}
   void write(const unsigned char*, std::size_t size) override {
     if (!budget_.take(size))
-      refuse("The PDF is far larger when unpacked than a file of its size should be: export it again.");
+      refuse_document("The PDF is far larger when unpacked than a file of its size should be: export it again.");
   }
   void finish() override {}
 
@@ -145,7 +148,7 @@ void check_unpacked_size(ByteView document) {
     const std::size_t flate = dictionary.find("/Fl");
     if (flate == std::string::npos || dictionary.find("/Fl", flate + 1) != std::string::npos || has("/LZW") ||
         has("/RunLength"))
-      refuse("The PDF is compressed in an unusual way: export it again.");
+      refuse_document("The PDF is compressed in an unusual way: export it again.");
     if (text.substr(at).starts_with("\r\n")) at += 2;
     else if (text.substr(at).starts_with('\n')) ++at;
     CountingPipeline count(budget);
@@ -177,7 +180,7 @@ DocumentPages read_pdf(ByteView document) {
     QPDF pdf;
     open_pdf(pdf, document);
     for (QPDFPageObjectHelper page : QPDFPageDocumentHelper(pdf).getAllPages()) {
-      if (result.pages.size() >= max_pages) refuse("The PDF has more than 500 pages: print it in parts.");
+      if (result.pages.size() >= max_pages) refuse_document("The PDF has more than 500 pages: print it in parts.");
       const Box box = crop_box(page);
       const double unit = number_or(page.getAttribute("/UserUnit", false), 1);
       PageSize size{(box.x1 - box.x0) * unit * mm_per_point, (box.y1 - box.y0) * unit * mm_per_point};
@@ -188,9 +191,9 @@ DocumentPages read_pdf(ByteView document) {
   } catch (const Error&) {
     throw;
   } catch (const std::exception&) {
-    refuse("The PDF cannot be read, or is locked by a password: export it again without one.");
+    refuse_document("The PDF cannot be read, or is locked by a password: export it again without one.");
   }
-  if (result.pages.empty()) refuse("The PDF has no pages: export it again.");
+  if (result.pages.empty()) refuse_document("The PDF has no pages: export it again.");
   return result;
 }
 
@@ -201,7 +204,7 @@ DocumentPages read_document_pages(ByteView document) {
   if (text.starts_with("%PDF-")) return read_pdf(document);
   if (text.starts_with("\x89PNG\r\n\x1a\n")) return read_png(document);
   if (text.starts_with("RaS2") || text.starts_with("2SaR")) return read_pwg_raster(document);
-  refuse("Only PDF, PNG and PWG raster can be printed: export the plan as PDF.");
+  refuse_document("Only PDF, PNG and PWG raster can be printed: export the plan as PDF.");
 }
 
 Bytes mirrored_pdf(ByteView document) {

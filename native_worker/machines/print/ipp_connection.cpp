@@ -9,7 +9,7 @@
 namespace formwright {
 namespace {
 
-constexpr int connect_patience_ms = 10'000;
+constexpr int printer_connect_patience_ms = 10'000;
 constexpr double answer_patience_s = 30,
                  look_up_s = 0.5;  // how long it may be silent; how often a cancel is looked for
 
@@ -71,8 +71,8 @@ void IppConnection::connect_to_destination(const cups_dest_t& destination) {
   char resource[1024] = "";
   // A destination with a queue is reached through the print service; one found on the network is spoken to itself.
   const std::string queue = option("printer-uri-supported");
-  http_ = cupsConnectDest(copy, queue.empty() ? CUPS_DEST_FLAGS_DEVICE : CUPS_DEST_FLAGS_NONE, connect_patience_ms,
-                          nullptr, resource, sizeof resource, nullptr, nullptr);
+  http_ = cupsConnectDest(copy, queue.empty() ? CUPS_DEST_FLAGS_DEVICE : CUPS_DEST_FLAGS_NONE,
+                          printer_connect_patience_ms, nullptr, resource, sizeof resource, nullptr, nullptr);
   if (!http_) fail(name_ + " cannot be reached: see whether it is switched on and on the network, and try again.");
   resource_ = resource;
   uri_ = queue;
@@ -94,7 +94,7 @@ void IppConnection::connect_to_uri() {
   resource_ = resource;
   const http_encryption_t encryption =
       std::string(scheme) == "ipps" ? HTTP_ENCRYPTION_ALWAYS : HTTP_ENCRYPTION_IF_REQUESTED;
-  http_ = httpConnect2(host, port, nullptr, AF_UNSPEC, encryption, 1, connect_patience_ms, nullptr);
+  http_ = httpConnect2(host, port, nullptr, AF_UNSPEC, encryption, 1, printer_connect_patience_ms, nullptr);
   if (http_) return;
   const std::string reason = last_words();
   fail(name_ + " does not answer at " + uri_ + (reason.empty() ? "" : " (" + reason + ")") +

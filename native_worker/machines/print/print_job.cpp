@@ -9,6 +9,7 @@
 #include "base/format.h"
 #include "machines/print/document_pages.h"
 #include "machines/print/printer.h"
+#include "system/machine_errors.h"
 
 namespace formwright {
 namespace {
@@ -17,11 +18,6 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::minutes busy_patience{5}, print_patience{120};
 constexpr std::chrono::milliseconds retry_pause{1500}, look_pause{700};
 constexpr int max_failures = 8;
-
-[[noreturn]] void refuse(const std::string& where, const std::string& sentence) {
-  throw Error(ErrorCode::invalid_input, where, sentence);
-}
-[[noreturn]] void fail(const std::string& sentence) { throw Error(ErrorCode::could_not_solve, "machine", sentence); }
 
 void pause_for(std::chrono::milliseconds time, const std::atomic<bool>& cancelled) {
   const auto end = Clock::now() + time;
@@ -143,14 +139,15 @@ void add_job_attributes(ipp_t* request, const CheckedOrder& checked, const Print
 [[noreturn]] void fail_refused(const IppConnection::Answer& answer, const std::string& name, const PrintMedia& media) {
   const std::string words = answer.text.empty() ? ippErrorString(answer.status) : answer.text;
   if (answer.status == IPP_STATUS_ERROR_DOCUMENT_FORMAT_NOT_SUPPORTED)
-    fail(name + " does not take this kind of document (\"" + words +
-         "\"): add it to the system's printers, which convert.");
+    fail_at_machine(name + " does not take this kind of document (\"" + words +
+                    "\"): add it to the system's printers, which convert.");
   if (answer.status == IPP_STATUS_ERROR_NOT_ACCEPTING_JOBS)
-    fail(name + " takes no jobs now (\"" + words + "\"): switch it on, or resume it in the system's printers.");
+    fail_at_machine(name + " takes no jobs now (\"" + words +
+                    "\"): switch it on, or resume it in the system's printers.");
   if (answer.status == IPP_STATUS_ERROR_ATTRIBUTES_OR_VALUES)
-    fail(name + " refuses " + media.label + " or one of the other settings (\"" + words +
-         "\"): choose another sheet, quality or number of copies.");
-  fail(name + " refused the job: \"" + words + "\". Fix this at the printer, and print again.");
+    fail_at_machine(name + " refuses " + media.label + " or one of the other settings (\"" + words +
+                    "\"): choose another sheet, quality or number of copies.");
+  fail_at_machine(name + " refused the job: \"" + words + "\". Fix this at the printer, and print again.");
 }
 
 /// A printer that would take another sheet instead says so in the group of unsupported attributes.
@@ -158,8 +155,8 @@ void check_media_kept(const IppConnection::Answer& answer, const std::string& na
   for (ipp_attribute_t* a = ippFirstAttribute(answer.message.get()); a; a = ippNextAttribute(answer.message.get()))
     if (ippGetGroupTag(a) == IPP_TAG_UNSUPPORTED_GROUP && ippGetName(a) &&
         std::string(ippGetName(a)).starts_with("media"))
-      fail(name + " would take another sheet than " + media.label + ": choose one that it has, or load " + media.label +
-           ".");
+      fail_at_machine(name + " would take another sheet than " + media.label + ": choose one that it has, or load " +
+                      media.label + ".");
 }
 
 /// Asks until the printer is no longer busy.
@@ -174,7 +171,7 @@ IppConnection::Answer ask_patiently(const PrinterAddress& address, const MakeReq
       if (!answer.busy()) return answer;
     }
     if (Clock::now() > end)
-      fail(address.name + " has been busy for 5 minutes: try again when its other jobs are done.");
+      fail_at_machine(address.name + " has been busy for 5 minutes: try again when its other jobs are done.");
     progress("waiting", address.name + " is busy; asking again.");
     pause_for(retry_pause, cancelled);
   }
@@ -219,8 +216,9 @@ int follow(const PrinterAddress& address, int job_id, const std::atomic<bool>& c
   for (;;) {
     pause_for(look_pause, cancelled);
     if (Clock::now() > end)
-      fail(address.name +
-           " has had the job for two hours and is not done: look at the printer; the job is not followed any longer.");
+      fail_at_machine(
+          address.name +
+          " has had the job for two hours and is not done: look at the printer; the job is not followed any longer.");
     IppConnection::Answer answer;
     try {
       IppConnection connection(address, cancelled);
@@ -234,11 +232,12 @@ int follow(const PrinterAddress& address, int job_id, const std::atomic<bool>& c
     }
     if (answer.busy()) continue;
     if (answer.status == IPP_STATUS_ERROR_NOT_FOUND || answer.status == IPP_STATUS_ERROR_GONE)
-      fail(address.name + " no longer knows the job: see whether its sheets came out before printing again.");
+      fail_at_machine(address.name +
+                      " no longer knows the job: see whether its sheets came out before printing again.");
     ipp_attribute_t* state = answer.ok() ? ippFindAttribute(answer.message.get(), "job-state", IPP_TAG_ENUM) : nullptr;
     if (!state) {
       if (++failures >= max_failures)
-        fail(address.name + " does not report the progress of the job: check whether it prints.");
+        fail_at_machine(address.name + " does not report the progress of the job: check whether it prints.");
       continue;
     }
     failures = 0;
@@ -247,11 +246,11 @@ int follow(const PrinterAddress& address, int job_id, const std::atomic<bool>& c
     switch (ippGetInteger(state, 0)) {
       case IPP_JSTATE_COMPLETED: return sheets;
       case IPP_JSTATE_CANCELED:
-        fail("The job was cancelled at " + address.name + (reasons.empty() ? "" : ": " + reasons) +
-             ". Print again when it is ready.");
+        fail_at_machine("The job was cancelled at " + address.name + (reasons.empty() ? "" : ": " + reasons) +
+                        ". Print again when it is ready.");
       case IPP_JSTATE_ABORTED:
-        fail(address.name + " cancelled the job" + (reasons.empty() ? "" : ": " + reasons) +
-             ". Fix this at the printer, and print again.");
+        fail_at_machine(address.name + " cancelled the job" + (reasons.empty() ? "" : ": " + reasons) +
+                        ". Fix this at the printer, and print again.");
       case IPP_JSTATE_STOPPED:
       case IPP_JSTATE_HELD:
         progress("waiting", address.name + " stopped" + (reasons.empty() ? "" : ": " + reasons) +
@@ -282,7 +281,7 @@ PrintResult print_document(const PrinterAddress& address, const PrintOrder& orde
   const PrinterDescription printer = describe_printer(address, cancelled);
   const CheckedOrder checked = check_order(printer, order, address.name);
   if (!printer.accepting)
-    fail(address.name + " takes no jobs now: switch it on, or resume it in the system's printers.");
+    fail_at_machine(address.name + " takes no jobs now: switch it on, or resume it in the system's printers.");
   const ByteView document = checked.mirrored.empty() ? order.document : ByteView(checked.mirrored);
   const auto make = [&](ipp_op_t operation) {
     return [&, operation](const IppConnection& connection) {
@@ -299,7 +298,7 @@ PrintResult print_document(const PrinterAddress& address, const PrintOrder& orde
   answer = ask_patiently(address, make(IPP_OP_PRINT_JOB), document, cancelled, progress);
   if (!answer.ok()) fail_refused(answer, address.name, checked.media);
   ipp_attribute_t* id = ippFindAttribute(answer.message.get(), "job-id", IPP_TAG_INTEGER);
-  if (!id) fail(address.name + " received the document but did not confirm it: check whether it prints.");
+  if (!id) fail_at_machine(address.name + " received the document but did not confirm it: check whether it prints.");
   PrintResult result{ippGetInteger(id, 0), 0, checked.notes};
   progress("printing", checked.notes.empty() ? "Printing." : checked.notes.front());
   if (taken) taken(result);

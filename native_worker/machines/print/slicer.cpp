@@ -20,7 +20,7 @@
 namespace formwright {
 namespace {
 
-constexpr std::uintmax_t max_gcode_bytes = std::uintmax_t{1} << 30;
+constexpr std::uintmax_t max_sliced_bytes = std::uintmax_t{1} << 30;
 
 /// A folder of ours that goes with this object.
 class WorkFolder {
@@ -83,7 +83,7 @@ pid_t start(const std::vector<std::string>& words, const std::filesystem::path& 
   ::dup2(out, STDERR_FILENO);
   ::close_range(STDERR_FILENO + 1, ~0U,
                 CLOSE_RANGE_CLOEXEC);  // pages' sockets and machines' ports are not the slicer's
-  const rlimit file_limit{max_gcode_bytes, max_gcode_bytes}, no_core{0, 0};
+  const rlimit file_limit{max_sliced_bytes, max_sliced_bytes}, no_core{0, 0};
   ::setrlimit(RLIMIT_FSIZE, &file_limit);
   ::setrlimit(RLIMIT_CORE, &no_core);
   ::setpriority(PRIO_PROCESS, 0, 5);
@@ -170,7 +170,7 @@ Bytes slice_model(ByteView model, const std::string& profile, const std::filesys
                 "PrusaSlicer could not slice the model" + (said.empty() ? "" : ": \"" + said + "\"") +
                     ". See whether the model is closed and fits the printer's bed.");
   }
-  return *read_file(output, "sha256", max_gcode_bytes);
+  return *read_file(output, "sha256", max_sliced_bytes);
 }
 
 }  // namespace formwright

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/sha256.h"
 #include "machines/print/upload_answers.h"
+#include "system/machine_errors.h"
 
 namespace formwright {
 namespace {
@@ -18,8 +19,6 @@ namespace {
 constexpr std::size_t max_answer_bytes = 1 << 20;
 constexpr std::size_t max_gcode_bytes = std::size_t{1} << 30;
 constexpr long connect_patience_s = 10, silence_patience_s = 30, ask_patience_s = 20, upload_patience_s = 3600;
-
-[[noreturn]] void fail(const std::string& sentence) { throw Error(ErrorCode::could_not_solve, "machine", sentence); }
 
 struct Conversation {
   const std::atomic<bool>* cancelled = nullptr;
@@ -66,7 +65,7 @@ class Request {
     static std::once_flag once;
     std::call_once(once, [] { curl_global_init(CURL_GLOBAL_DEFAULT); });
     curl_.reset(curl_easy_init());
-    if (!curl_) fail("No connection to " + machine.name + " could be made: the system has no room for one.");
+    if (!curl_) fail_at_machine("No connection to " + machine.name + " could be made: the system has no room for one.");
     conversation_.cancelled = &cancelled;
     const std::string url = machine.url + path;
     set(CURLOPT_URL, url.c_str());
@@ -113,16 +112,18 @@ class Request {
     const CURLcode code = curl_easy_perform(curl_.get());
     if (*conversation_.cancelled) throw Error(ErrorCode::cancelled, "", "Cancelled.");
     if (code == CURLE_OPERATION_TIMEDOUT)
-      fail(machine_.name + " did not answer at " + machine_.url +
-           ": see whether it is switched on and reachable, and try again.");
+      fail_at_machine(machine_.name + " did not answer at " + machine_.url +
+                      ": see whether it is switched on and reachable, and try again.");
     if (code == CURLE_PEER_FAILED_VERIFICATION)
-      fail("The certificate of " + machine_.name +
-           " is not one this computer trusts: install it, or register the machine with http.");
+      fail_at_machine("The certificate of " + machine_.name +
+                      " is not one this computer trusts: install it, or register the machine with http.");
     if (code == CURLE_WRITE_ERROR)
-      fail(machine_.name + " sent an answer of more than 1 MB, so it is probably another program: check its address.");
+      fail_at_machine(machine_.name +
+                      " sent an answer of more than 1 MB, so it is probably another program: check its address.");
     if (code != CURLE_OK)
-      fail(machine_.name + " cannot be reached at " + machine_.url + " (" + std::string(curl_easy_strerror(code)) +
-           "): see whether it is switched on and its address is right.");
+      fail_at_machine(machine_.name + " cannot be reached at " + machine_.url + " (" +
+                      std::string(curl_easy_strerror(code)) +
+                      "): see whether it is switched on and its address is right.");
     long status = 0;
     curl_easy_getinfo(curl_.get(), CURLINFO_RESPONSE_CODE, &status);
     return read_reply(machine_, status, conversation_.answer);

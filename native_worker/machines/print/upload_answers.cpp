@@ -5,11 +5,10 @@
 
 #include "base/error.h"
 #include "base/data/json_text.h"
+#include "system/machine_errors.h"
 
 namespace formwright {
 namespace {
-
-[[noreturn]] void fail(const std::string& sentence) { throw Error(ErrorCode::could_not_solve, "machine", sentence); }
 
 /// The machine's own words: OctoPrint says {"error": "..."}, Moonraker {"error": {"message": "..."}}.
 std::string words_of(const Json& json) {
@@ -50,11 +49,12 @@ bool flag_at(const Json& json, std::initializer_list<const char*> path) {
 
 UploadReply read_reply(const Machine& machine, long status, const std::string& answer) {
   if (status >= 300 && status < 400)
-    fail(machine.name + " redirects to another address: register it with that address.");
+    fail_at_machine(machine.name + " redirects to another address: register it with that address.");
   // OctoPrint takes a request with a key it does not know for one of a browser.
   if (status == 401 || status == 403 || (status == 400 && answer.find("CSRF") != std::string::npos))
-    fail(machine.name +
-         " does not accept the key: remove it and add it again with --api-key-file and a key from its settings.");
+    fail_at_machine(
+        machine.name +
+        " does not accept the key: remove it and add it again with --api-key-file and a key from its settings.");
   return {status, parse_json_text(answer)};
 }
 
@@ -62,26 +62,28 @@ Json read_uploaded(const Machine& machine, bool print, const UploadReply& reply)
   const bool octoprint = machine.kind == MachineKind::octoprint;
   const std::string words = words_of(reply.json);
   if (reply.status == 409)
-    fail(machine.name + " cannot take the file now" + quoted(words) +
-         ": it prints that file, or is not connected to its printer. Wait or connect it.");
+    fail_at_machine(machine.name + " cannot take the file now" + quoted(words) +
+                    ": it prints that file, or is not connected to its printer. Wait or connect it.");
   if (reply.status == 413 || reply.status == 507)
-    fail(machine.name + " has no room for the file" + quoted(words) + ": delete old ones there.");
-  if (reply.status == 415) fail(machine.name + " does not take such a file" + quoted(words) + ": send G-code.");
+    fail_at_machine(machine.name + " has no room for the file" + quoted(words) + ": delete old ones there.");
+  if (reply.status == 415)
+    fail_at_machine(machine.name + " does not take such a file" + quoted(words) + ": send G-code.");
   if (reply.status == 404)
-    fail("What answers at " + machine.url + " is no " + (octoprint ? "OctoPrint" : "Moonraker") +
-         ": see whether the address and --kind are right.");
-  if (reply.status == 422) fail("The file arrived damaged at " + machine.name + quoted(words) + ": send it again.");
+    fail_at_machine("What answers at " + machine.url + " is no " + (octoprint ? "OctoPrint" : "Moonraker") +
+                    ": see whether the address and --kind are right.");
+  if (reply.status == 422)
+    fail_at_machine("The file arrived damaged at " + machine.name + quoted(words) + ": send it again.");
   if (reply.status < 200 || reply.status >= 300)
-    fail(machine.name + " refused the file (" + std::to_string(reply.status) + ")" + quoted(words) +
-         ": see its own page for the reason.");
+    fail_at_machine(machine.name + " refused the file (" + std::to_string(reply.status) + ")" + quoted(words) +
+                    ": see its own page for the reason.");
   std::string kept =
       octoprint ? text_at(reply.json, {"files", "local", "name"}) : text_at(reply.json, {"item", "path"});
   if (kept.empty())
     kept =
         octoprint ? text_at(reply.json, {"files", "local", "path"}) : text_at(reply.json, {"result", "item", "path"});
   if (kept.empty())
-    fail("What answers at " + machine.url + " is no " + (octoprint ? "OctoPrint" : "Moonraker") +
-         ": see whether the address and --kind are right.");
+    fail_at_machine("What answers at " + machine.url + " is no " + (octoprint ? "OctoPrint" : "Moonraker") +
+                    ": see whether the address and --kind are right.");
   bool printing = print;
   if (octoprint && at_path(reply.json, {"effectivePrint"}).is_boolean())
     printing = flag_at(reply.json, {"effectivePrint"});
@@ -89,15 +91,16 @@ Json read_uploaded(const Machine& machine, bool print, const UploadReply& reply)
     printing = flag_at(reply.json, {"print_started"}) || flag_at(reply.json, {"result", "print_started"});
   else if (print) printing = !at_path(reply.json, {"files", "local"}).is_null();
   if (print && !printing)
-    fail(machine.name + " has the file " + kept +
-         " and did not start it: its printer is not ready. Start it there once it is.");
+    fail_at_machine(machine.name + " has the file " + kept +
+                    " and did not start it: its printer is not ready. Start it there once it is.");
   return {{"file_name", kept}, {"printing", printing}};
 }
 
 std::string read_octoprint_version(const Machine& machine, const UploadReply& version) {
   const std::string server = text_at(version.json, {"server"});
   if (version.status != 200 || server.empty())
-    fail("What answers at " + machine.url + " is no OctoPrint: see whether the address and --kind are right.");
+    fail_at_machine("What answers at " + machine.url +
+                    " is no OctoPrint: see whether the address and --kind are right.");
   return "OctoPrint " + server;
 }
 
@@ -115,7 +118,8 @@ Json read_octoprint_state(const std::string& software, const UploadReply& printe
 bool read_moonraker_state(const Machine& machine, const UploadReply& info, Json& state) {
   const std::string klippy = text_at(info.json, {"result", "klippy_state"});
   if (info.status != 200 || klippy.empty())
-    fail("What answers at " + machine.url + " is no Moonraker: see whether the address and --kind are right.");
+    fail_at_machine("What answers at " + machine.url +
+                    " is no Moonraker: see whether the address and --kind are right.");
   state = {{"state", klippy == "ready"                           ? "ready"
                      : klippy == "error" || klippy == "shutdown" ? "error"
                                                                  : "disconnected"},
@@ -130,8 +134,8 @@ void read_moonraker_printing(const UploadReply& printing, Json& state) {
 
 void read_cancelled(const Machine& machine, const UploadReply& reply) {
   if (reply.status < 200 || reply.status >= 300)
-    fail(machine.name + " did not stop (" + std::to_string(reply.status) + ")" + quoted(words_of(reply.json)) +
-         ": if it prints, stop it at the machine.");
+    fail_at_machine(machine.name + " did not stop (" + std::to_string(reply.status) + ")" +
+                    quoted(words_of(reply.json)) + ": if it prints, stop it at the machine.");
 }
 
 }  // namespace formwright

@@ -13,7 +13,7 @@
 namespace formwright {
 namespace {
 
-constexpr std::size_t fewest_points = 30;
+constexpr std::size_t min_relief_points = 30;
 constexpr double shininess = 20;     // of gloss: Blinn and Phong's exponent
 constexpr double penumbra_mm = 0.3;  // over which a shadow's edge fades
 
@@ -126,10 +126,10 @@ ReliefModel::ReliefModel(std::vector<PhotographedRelief> reliefs) : reliefs_(std
   using enum ParameterRole;
   double brightest = 0;
   for (const PhotographedRelief& relief : reliefs_) {
-    if (relief.points.size() < fewest_points)
+    if (relief.points.size() < min_relief_points)
       throw Error(ErrorCode::invalid_input, "object",
                   relief.name + ": shading.csv has " + std::to_string(relief.points.size()) + " points; at least " +
-                      std::to_string(fewest_points) + " are needed.");
+                      std::to_string(min_relief_points) + " are needed.");
     for (const ShadedPoint& p : relief.points) brightest = std::max(brightest, p.brightness);
   }
   if (!(brightest > 0))

@@ -14,7 +14,7 @@
 namespace formwright {
 namespace {
 
-constexpr std::size_t fewest_points = 30;
+constexpr std::size_t min_sheet_points = 30;
 constexpr int fewest_triangles = 1000;   // of the cheaper model
 constexpr int max_triangles = 5000;      // of a model that has a finer one
 constexpr std::size_t max_sheets = 200;  // kept at a time; about 0.2 MB each
@@ -85,9 +85,9 @@ void check_measured_object(const FormedObject& object) {
   const auto refuse = [&](const std::string& sentence) {
     throw Error(ErrorCode::invalid_input, "object", object.name + ": " + sentence);
   };
-  if (object.points.size() < fewest_points)
+  if (object.points.size() < min_sheet_points)
     refuse("measured.csv has " + std::to_string(object.points.size()) + " points; at least " +
-           std::to_string(fewest_points) + ", spread over the sheet, are needed.");
+           std::to_string(min_sheet_points) + ", spread over the sheet, are needed.");
   const auto options = read_parameters<ThermoformOptions>(object.setup.parameters);
   const double on_sheet = spread(object.points, true), in_space = spread(object.points, false);
   if (!(on_sheet > 0) || !(in_space > 0))

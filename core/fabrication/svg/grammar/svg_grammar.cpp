@@ -46,8 +46,6 @@ struct QuietErrors {
   };
 };
 
-constexpr std::string_view blanks = " \t\r\n\f";
-
 /// At most six numbers, which need no blank between them where a sign or a point tells them apart.
 std::optional<std::vector<double>> packed_numbers(std::string_view text) {
   std::vector<double> numbers;

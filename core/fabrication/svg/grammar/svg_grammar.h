@@ -46,6 +46,7 @@ std::optional<SvgLength> read_length(std::string_view text);
 /// Lengths with blanks or commas between them; none when one of them is none or there are over 10,000.
 std::optional<std::vector<SvgLength>> read_lengths(std::string_view text);
 
+inline constexpr std::string_view blanks = " \t\r\n\f";
 /// Without the blanks at its ends.
 std::string_view without_blanks(std::string_view text);
 

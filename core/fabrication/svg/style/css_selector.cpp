@@ -14,7 +14,6 @@ using Compare = CssCondition::Compare;
 using Join = CssCondition::Join;
 
 constexpr std::size_t max_conditions = 32;
-constexpr std::string_view blanks = " \t\r\n\f";
 
 bool is_name(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_' ||

@@ -7,14 +7,13 @@
 #include <cstdlib>
 
 #include "base/error.h"
+#include "base/index.h"
 #include "base/parallel.h"
 
 namespace formwright::samples {
 namespace {
 
 constexpr std::size_t grain = 2048;
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 double cotangent(const Point& apex, const Point& p, const Point& q) {
   const Point u = p - apex, v = q - apex;

@@ -41,14 +41,14 @@ struct CalibrateOptions {
           .advanced()};
 };
 
-std::vector<OutputInfo> outputs() {
+std::vector<OutputInfo> evidence_calibrate_outputs() {
   return {{"profile.json", "application/json", "Machine profile",
            "The fitted material, to be used in later simulations (--profile).", true},
           {"calibration.json", "application/json", "Calibration",
            "Fitted values, 95 % intervals and profile likelihoods.", true}};
 }
 
-std::vector<ReportField> report_fields() {
+std::vector<ReportField> evidence_calibrate_report_fields() {
   return {
       {"objects", "Objects", "", "Number of measured objects that were fitted."},
       {"points", "Measured points", "", "Number of measured points of all objects together."},
@@ -95,7 +95,7 @@ Calibration search(SimulationBag& bag, const CalibrateOptions& o, Context& conte
                      {index_of(model, "mould_shift_x_mm"), index_of(model, "mould_shift_y_mm")}, 2, context);
 }
 
-OperationResult run(const OperationCall& call, const CalibrateOptions& o) {
+OperationResult run_evidence_calibrate(const OperationCall& call, const CalibrateOptions& o) {
   require_each_once(call, "measured.csv");
   std::vector<FormedObject> objects = read_formed_objects(call, "object");
   ThermoformModelOptions options;
@@ -156,7 +156,7 @@ OperationResult run(const OperationCall& call, const CalibrateOptions& o) {
   details["profiles"] = Json::array();
   for (const ParameterProfile& own : calibration.profiles) details["profiles"].push_back(profile_json(model, own));
   const auto add = [&](const char* name, const std::string& text) {
-    for (const OutputInfo& info : outputs())
+    for (const OutputInfo& info : evidence_calibrate_outputs())
       if (info.name == name && call.wants(name)) result.outputs.push_back(make_output(info, to_bytes(text)));
   };
   add("profile.json", write_machine_profile(profile));
@@ -175,10 +175,10 @@ Operation evidence_calibrate_operation() {
   operation.inputs = {object_input_info("object", "Measured object",
                                         "A folder with mould.obj, setup.json and measured.csv.", true, true),
                       profile_input_info()};
-  operation.outputs = outputs();
-  operation.report = report_fields();
+  operation.outputs = evidence_calibrate_outputs();
+  operation.report = evidence_calibrate_report_fields();
   operation.keeps_results = true;
-  take_options<CalibrateOptions>(operation, run);
+  take_options<CalibrateOptions>(operation, run_evidence_calibrate);
   return operation;
 }
 

@@ -32,7 +32,7 @@ struct DiagnoseOptions {
           .slider(1000, 10000)};
 };
 
-std::vector<OutputInfo> outputs() {
+std::vector<OutputInfo> evidence_diagnose_outputs() {
   std::vector<OutputInfo> list = diagnosis_outputs();
   list.push_back({"profile.json", "application/json", "Machine profile",
                   "The material and causes found, to be used in later simulations (--profile).", true});
@@ -65,7 +65,7 @@ std::string residuals_csv(const ThermoformModel& model, const Diagnosis& d) {
   return text;
 }
 
-OperationResult run(const OperationCall& call, const DiagnoseOptions& o) {
+OperationResult run_evidence_diagnose(const OperationCall& call, const DiagnoseOptions& o) {
   require_each_once(call, "measured.csv");
   ThermoformModelOptions options;
   options.triangles = o.triangles;
@@ -134,7 +134,7 @@ OperationResult run(const OperationCall& call, const DiagnoseOptions& o) {
 
   OperationResult result = diagnosis_result(call, report);
   const auto add = [&](const char* name, const std::string& text) {
-    for (const OutputInfo& info : outputs())
+    for (const OutputInfo& info : evidence_diagnose_outputs())
       if (info.name == name && call.wants(name)) result.outputs.push_back(make_output(info, to_bytes(text)));
   };
   add("profile.json", write_machine_profile(profile));
@@ -158,10 +158,10 @@ Operation evidence_diagnose_operation() {
           "Another folder of the same kind for validation: it is not used for fitting, only to measure the gain.",
           false, true),
       profile_input_info()};
-  operation.outputs = outputs();
+  operation.outputs = evidence_diagnose_outputs();
   operation.report = diagnosis_report_fields();
   operation.keeps_results = true;
-  take_options<DiagnoseOptions>(operation, run);
+  take_options<DiagnoseOptions>(operation, run_evidence_diagnose);
   return operation;
 }
 

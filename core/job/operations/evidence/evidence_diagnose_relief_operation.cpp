@@ -49,7 +49,7 @@ std::vector<PhotographedRelief> read_reliefs(const OperationCall& call, const st
   return reliefs;
 }
 
-OperationResult run(const OperationCall& call, const DiagnoseReliefOptions& o) {
+OperationResult run_evidence_diagnose_relief(const OperationCall& call, const DiagnoseReliefOptions& o) {
   require_each_once(call, "shading.csv");
   std::vector<PhotographedRelief> unseen = read_reliefs(call, "unseen", o.pixels);
   const ReliefModel model(read_reliefs(call, "object", o.pixels));
@@ -93,7 +93,7 @@ Operation evidence_diagnose_relief_operation() {
           false)};
   operation.outputs = diagnosis_outputs();
   operation.report = diagnosis_report_fields();
-  take_options<DiagnoseReliefOptions>(operation, run);
+  take_options<DiagnoseReliefOptions>(operation, run_evidence_diagnose_relief);
   return operation;
 }
 

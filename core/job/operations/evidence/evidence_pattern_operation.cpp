@@ -44,7 +44,7 @@ struct EvidencePatternOptions : CalibrationPatternOptions {
               .slider(0, 30)});
 };
 
-std::vector<OutputInfo> outputs() {
+std::vector<OutputInfo> evidence_pattern_outputs() {
   return {{"pattern.png", "image/png", "Pattern", "The pattern for the whole sheet. The file contains its true size.",
            true},
           {"pattern.pdf", "application/pdf", "Pages", "The pattern at true size on the chosen paper. Print at 100 %.",
@@ -53,7 +53,7 @@ std::vector<OutputInfo> outputs() {
            "The description of the pattern that evidence-register needs later. Keep it.", true}};
 }
 
-std::vector<ReportField> report_fields() {
+std::vector<ReportField> evidence_pattern_report_fields() {
   return {
       {"sheet_mm", "Sheet", "mm", "Width and length of the flat sheet."},
       {"picture_pixels", "Pixels", "", "Width and height of the picture in pixels."},
@@ -112,7 +112,7 @@ OperationResult run_pattern(const OperationCall& call, const EvidencePatternOpti
   context.progress(0.5, "Writing");
   const auto add = [&](const char* name, const auto& bytes) {
     if (!call.wants(name)) return;
-    for (const OutputInfo& info : outputs())
+    for (const OutputInfo& info : evidence_pattern_outputs())
       if (info.name == name) result.outputs.push_back(make_output(info, bytes()));
     context.check_cancelled();
   };
@@ -132,8 +132,8 @@ Operation evidence_pattern_operation() {
   operation.title = "Calibration pattern";
   operation.summary =
       "Makes a pattern to print on a sheet. A scan of the formed sheet then shows where every point of the sheet moved.";
-  operation.outputs = outputs();
-  operation.report = report_fields();
+  operation.outputs = evidence_pattern_outputs();
+  operation.report = evidence_pattern_report_fields();
   take_options<EvidencePatternOptions>(
       operation, run_pattern, [](const EvidencePatternOptions& options) { make_calibration_pattern(options); });
   return operation;

@@ -9,7 +9,7 @@
 namespace formwright {
 namespace {
 
-std::vector<OutputInfo> outputs() {
+std::vector<OutputInfo> evidence_virtual_object_outputs() {
   return {{"mould.obj", "model/obj", "Mould", "The mould as it should stand in the machine.", true},
           {"setup.json", "application/json", "Set-up", "The settings of the machine, without its faults.", true},
           {"measured.csv", "text/csv", "Measured points",
@@ -20,7 +20,7 @@ std::vector<OutputInfo> outputs() {
            false}};
 }
 
-std::vector<ReportField> report_fields() {
+std::vector<ReportField> evidence_virtual_object_report_fields() {
   return {{"points", "Measured points", "", "Number of measured points: rows of measured.csv."},
           {"triangles", "Triangles", "", "Number of triangles in the simulated sheet."},
           {"seconds_simulation", "Simulation", "s", "Time for the simulation; 0 if an earlier one was used again."},
@@ -28,7 +28,8 @@ std::vector<ReportField> report_fields() {
           {"notes", "Notes", "", "What to know about the result, as sentences."}};
 }
 
-OperationResult run(const OperationCall& call, const Json& given, const Json& measurement, const Json& scan) {
+OperationResult run_evidence_virtual_object(const OperationCall& call, const Json& given, const Json& measurement,
+                                            const Json& scan) {
   const SimulationCall simulation = simulation_call(call, given);
   const auto effects = read_parameters<MeasurementEffects>(measurement);
   Simulated simulated;
@@ -54,7 +55,7 @@ OperationResult run(const OperationCall& call, const Json& given, const Json& me
   result.report["seconds_simulation"] = simulated.reused ? 0.0 : simulated.result->seconds;
   result.report["notes"] = simulated.result->placement.notes;
   const auto add = [&](const char* name, Bytes bytes) {
-    for (const OutputInfo& info : outputs())
+    for (const OutputInfo& info : evidence_virtual_object_outputs())
       if (info.name == name && call.wants(name)) result.outputs.push_back(make_output(info, std::move(bytes)));
   };
   add("mould.obj", obj);
@@ -76,9 +77,9 @@ Operation evidence_virtual_object_operation() {
   operation.summary =
       "Forms and measures an object on a simulated machine with faults that you choose, to practise a diagnosis.";
   operation.inputs = {mould_input_info()};
-  operation.outputs = outputs();
-  operation.report = report_fields();
-  take_mergeable_options<ThermoformOptions, MeasurementEffects, VirtualScan>(operation, run);
+  operation.outputs = evidence_virtual_object_outputs();
+  operation.report = evidence_virtual_object_report_fields();
+  take_mergeable_options<ThermoformOptions, MeasurementEffects, VirtualScan>(operation, run_evidence_virtual_object);
   return operation;
 }
 

@@ -12,7 +12,7 @@
 namespace formwright {
 namespace {
 
-std::vector<InputInfo> inputs() {
+std::vector<InputInfo> laser_job_inputs() {
   InputInfo drawing;
   drawing.name = "drawing";
   drawing.label = "Drawing";
@@ -22,7 +22,7 @@ std::vector<InputInfo> inputs() {
   return {drawing};
 }
 
-OperationResult run(const OperationCall& call, const LaserOptions& options) {
+OperationResult run_laser_job(const OperationCall& call, const LaserOptions& options) {
   Context& context = call.context;
   Stopwatch watch;
   context.progress(0, "Reading the drawing");
@@ -57,7 +57,7 @@ Operation laser_job_operation() {
   operation.title = "Laser job";
   operation.summary =
       "Turns a drawing into a job for a laser cutter, with kerf, cutting order, tabs, power, speed and an estimate of the time.";
-  operation.inputs = inputs();
+  operation.inputs = laser_job_inputs();
   operation.outputs = laser_job_outputs();
   operation.report = laser_report_fields();
   operation.report.push_back({"drawing_mm", "Drawing", "mm", "Width and height of the drawing as read."});
@@ -68,7 +68,7 @@ Operation laser_job_operation() {
   operation.report.push_back({"seconds_write", "Writing", "s", "Time for writing the output files."});
   operation.report.push_back(
       {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."});
-  take_options<LaserOptions>(operation, run, [](const LaserOptions& options) { read_no_go(options.no_go); });
+  take_options<LaserOptions>(operation, run_laser_job, [](const LaserOptions& options) { read_no_go(options.no_go); });
   return operation;
 }
 

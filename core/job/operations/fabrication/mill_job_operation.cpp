@@ -19,7 +19,7 @@ namespace {
 constexpr double max_nodes = 16e6;
 constexpr const char* gcode_media_type = "text/x-gcode";
 
-std::vector<InputInfo> inputs() {
+std::vector<InputInfo> mill_job_inputs() {
   InputInfo model = model_input_info();
   model.name = "model";
   model.help = "A model, carved as seen from above (z up), or a height map as PNG, in which white is high.";
@@ -27,7 +27,7 @@ std::vector<InputInfo> inputs() {
   return {model};
 }
 
-std::vector<OutputInfo> outputs() {
+std::vector<OutputInfo> mill_job_outputs() {
   return {
       {"job.gcode", gcode_media_type, "G-code",
        "The job as G-code for GRBL or Marlin, if one tool does everything. Not written if the job does not fit the bed.",
@@ -103,7 +103,7 @@ void report_deviation(Json& report, const std::string& name, const Deviation& de
   report[name + "_max_mm"] = deviation.max_mm;
 }
 
-OperationResult run(const OperationCall& call, const MillOptions& options) {
+OperationResult run_mill_job(const OperationCall& call, const MillOptions& options) {
   Context& context = call.context;
   Stopwatch watch;
   context.progress(0, "Reading the model");
@@ -125,7 +125,7 @@ OperationResult run(const OperationCall& call, const MillOptions& options) {
   if (jobs.empty()) jobs.push_back({"", "job.gcode"});
   // Whoever asks for the job gets all of it, in whatever files it comes.
   bool wants_job = false;
-  for (const OutputInfo& info : outputs())
+  for (const OutputInfo& info : mill_job_outputs())
     wants_job = wants_job || (info.media_type == gcode_media_type && call.wants(info.name));
   Json stages = Json::array();
   int lines = 0;
@@ -135,12 +135,12 @@ OperationResult run(const OperationCall& call, const MillOptions& options) {
     if (!plan.path.stages.empty())
       stages.push_back({{"stage", jobs[stage].name}, {"file", jobs[stage].file}, {"lines", line_count(gcode)}});
     if (!wants_job || !plan.misfits.empty()) continue;
-    for (const OutputInfo& info : outputs())
+    for (const OutputInfo& info : mill_job_outputs())
       if (info.name == jobs[stage].file) result.outputs.push_back(make_output(info, gcode));
   }
   const auto add = [&](const char* name, auto&& bytes) {
     if (!call.wants(name)) return;
-    for (const OutputInfo& info : outputs())
+    for (const OutputInfo& info : mill_job_outputs())
       if (info.name == name) result.outputs.push_back(make_output(info, bytes()));
   };
   add("toolpath.json", [&] { return write_toolpath_json(plan.path, options); });
@@ -174,7 +174,7 @@ OperationResult run(const OperationCall& call, const MillOptions& options) {
   return result;
 }
 
-std::vector<ReportField> report_fields() {
+std::vector<ReportField> mill_job_report_fields() {
   std::vector<ReportField> fields = laser_report_fields();
   const auto rename = [&](const std::string& name, const std::string& label, const std::string& help) {
     for (ReportField& field : fields)
@@ -220,10 +220,10 @@ Operation mill_job_operation() {
   operation.name = "mill-job";
   operation.title = "Mill job";
   operation.summary = "Makes the job that mills a relief or a height map, and reports where the tool cannot reach.";
-  operation.inputs = inputs();
-  operation.outputs = outputs();
-  operation.report = report_fields();
-  take_options<MillOptions>(operation, run, [](const MillOptions& options) { read_no_go(options.no_go); });
+  operation.inputs = mill_job_inputs();
+  operation.outputs = mill_job_outputs();
+  operation.report = mill_job_report_fields();
+  take_options<MillOptions>(operation, run_mill_job, [](const MillOptions& options) { read_no_go(options.no_go); });
   return operation;
 }
 

@@ -10,12 +10,12 @@
 namespace formwright {
 namespace {
 
-std::vector<OutputInfo> outputs() {
+std::vector<OutputInfo> page_tiles_outputs() {
   return {{"pages.pdf", "application/pdf", "Pages", "The pages at exact size. Print at 100 %, not fitted to the page.",
            true}};
 }
 
-OperationResult run(const OperationCall& call, const PageTilesOptions& options) {
+OperationResult run_page_tiles(const OperationCall& call, const PageTilesOptions& options) {
   Context& context = call.context;
   Stopwatch watch;
   const InputBlob& input = call.inputs.at("drawing");
@@ -39,7 +39,8 @@ OperationResult run(const OperationCall& call, const PageTilesOptions& options) 
   }
   PageTiles tiles = make_page_tiles(content, options, context);
   OperationResult result;
-  if (call.wants("pages.pdf")) result.outputs.push_back(make_output(outputs().front(), std::move(tiles.pdf)));
+  if (call.wants("pages.pdf"))
+    result.outputs.push_back(make_output(page_tiles_outputs().front(), std::move(tiles.pdf)));
   tiles.notes.insert(tiles.notes.begin(), drawing.notes.begin(), drawing.notes.end());
   result.report["pages"] = tiles.columns * tiles.rows;
   result.report["columns"] = tiles.columns;
@@ -67,7 +68,7 @@ Operation page_tiles_operation() {
   content.help = "A PNG or JPEG picture, or an SVG drawing, whose lines are printed in black.";
   content.extensions = {"svg", "png", "jpg", "jpeg"};
   operation.inputs = {content};
-  operation.outputs = outputs();
+  operation.outputs = page_tiles_outputs();
   operation.report = {
       {"pages", "Pages", "", "Number of pages in all."},
       {"columns", "Columns", "", "Number of columns of pages."},
@@ -78,7 +79,7 @@ Operation page_tiles_operation() {
       {"seconds_total", "Time", "s", "Time for the whole job."},
       {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."},
       {"notes", "Notes", "", "What to know about the result, as sentences."}};
-  take_options<PageTilesOptions>(operation, run);
+  take_options<PageTilesOptions>(operation, run_page_tiles);
   return operation;
 }
 

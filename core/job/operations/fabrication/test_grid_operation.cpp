@@ -8,19 +8,20 @@
 namespace formwright {
 namespace {
 
-std::vector<OutputInfo> outputs() {
+std::vector<OutputInfo> test_grid_outputs() {
   std::vector<OutputInfo> all = laser_job_outputs();
   all.push_back({"grid.svg", "image/svg+xml", "Drawing", "A drawing of the test.", false});
   return all;
 }
 
-OperationResult run(const OperationCall& call, const TestGridOptions& options) {
+OperationResult run_test_grid(const OperationCall& call, const TestGridOptions& options) {
   Stopwatch watch;
   const TestGrid grid = make_test_grid(options, call.context);
   LaserPlan plan = run_strokes({grid.labels, grid.strokes}, options, 0, true, call.context);
   OperationResult result;
-  write_laser_result(result, call, outputs(), plan, options);
-  if (call.wants("grid.svg")) result.outputs.push_back(make_output(outputs().back(), write_svg(grid.drawing)));
+  write_laser_result(result, call, test_grid_outputs(), plan, options);
+  if (call.wants("grid.svg"))
+    result.outputs.push_back(make_output(test_grid_outputs().back(), write_svg(grid.drawing)));
   Json cells = Json::array();
   for (const TestCell& cell : grid.cells)
     cells.push_back({{"name", cell.name},
@@ -43,14 +44,15 @@ Operation test_grid_operation() {
   operation.title = "Laser test";
   operation.summary =
       "Makes a test piece that shows which power and speed a material needs, how wide the beam burns, or where its focus is.";
-  operation.outputs = outputs();
+  operation.outputs = test_grid_outputs();
   operation.report = laser_report_fields();
   operation.report.push_back(
       {"cells", "Cells", "", "Every square or line of the test with its power, speed, height and position."});
   operation.report.push_back({"seconds_plan", "Planning", "s", "Time for planning and writing the test."});
   operation.report.push_back(
       {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."});
-  take_options<TestGridOptions>(operation, run, [](const TestGridOptions& options) { read_no_go(options.no_go); });
+  take_options<TestGridOptions>(operation, run_test_grid,
+                                [](const TestGridOptions& options) { read_no_go(options.no_go); });
   return operation;
 }
 

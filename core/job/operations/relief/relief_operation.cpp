@@ -18,7 +18,7 @@ namespace {
 constexpr double solid_tolerance = 1e-3;
 constexpr double unbounded_mm = 1e30;  // stands for "no bound" in relief.ply, where infinity has no safe spelling
 
-std::vector<OutputInfo> outputs() {
+std::vector<OutputInfo> relief_outputs() {
   return {{"relief.ply", "application/x-ply", "PLY",
            "The relief as a mesh, with depth, depth limits, visibility and shading difference at every vertex.", true},
           {"relief.stl", "model/stl", "STL",
@@ -30,7 +30,7 @@ std::vector<OutputInfo> outputs() {
           {"relief.obj", "model/obj", "OBJ", "The solid for a 3D modelling program.", false}};
 }
 
-std::vector<ReportField> report_fields() {
+std::vector<ReportField> relief_report_fields() {
   return {
       {"vertices", "Vertices", "", "Number of vertices of the repaired model."},
       {"faces", "Triangles", "", "Number of triangles of the repaired model."},
@@ -192,7 +192,7 @@ OperationResult run_relief(const OperationCall& call, const ReliefOptions& optio
                         frame.image_height * options.width_mm + 2 * options.margin_mm};
   report["size_mm"] = {plate.width_mm, plate.height_mm, options.plate_mm + options.thickness_mm};
   const auto add = [&](const char* name, Bytes bytes) {
-    for (const OutputInfo& info : outputs())
+    for (const OutputInfo& info : relief_outputs())
       if (info.name == name) result.outputs.push_back(make_output(info, std::move(bytes)));
     context.check_cancelled();
   };
@@ -250,8 +250,8 @@ Operation relief_operation() {
   operation.title = "Relief";
   operation.summary = "Turns a model into a thin relief that still looks deep from the viewpoint you choose.";
   operation.inputs = {model_input_info()};
-  operation.outputs = outputs();
-  operation.report = report_fields();
+  operation.outputs = relief_outputs();
+  operation.report = relief_report_fields();
   take_options<ReliefOptions>(operation, run_relief);
   return operation;
 }

@@ -10,7 +10,7 @@
 namespace formwright {
 namespace {
 
-std::vector<OutputInfo> outputs() {
+std::vector<OutputInfo> thermoform_compare_outputs() {
   return {
       {"errors.ply", "application/x-ply", "Error map",
        "The simulated sheet with the error near every vertex; −1 where nothing was measured.", true},
@@ -19,7 +19,7 @@ std::vector<OutputInfo> outputs() {
       {"sheet.ply", "application/x-ply", "Formed sheet", "The formed sheet as thermoform-simulate writes it.", false}};
 }
 
-std::vector<ReportField> report_fields() {
+std::vector<ReportField> thermoform_compare_report_fields() {
   return {
       {"points", "Measured points", "", "Number of measured points: rows of measured.csv."},
       {"error_mean_mm", "Mean error", "mm", "Mean distance between measured and simulated position over all points."},
@@ -97,7 +97,7 @@ Bytes residuals(const std::vector<MeasuredPoint>& points, const Comparison& comp
   return {view.begin(), view.end()};
 }
 
-OperationResult run(const OperationCall& call, const Json& given, const Json& given_measurement) {
+OperationResult run_thermoform_compare(const OperationCall& call, const Json& given, const Json& given_measurement) {
   const SimulationCall simulation = simulation_call(call, given);
   Json measurement = given_measurement;
   if (const auto profile = machine_profile(call)) {
@@ -143,7 +143,7 @@ OperationResult run(const OperationCall& call, const Json& given, const Json& gi
   report["seconds_compare"] = watch.seconds();
   report["notes"] = setup.notes;
   const auto add = [&](const char* name, Bytes bytes) {
-    for (const OutputInfo& info : outputs())
+    for (const OutputInfo& info : thermoform_compare_outputs())
       if (info.name == name) result.outputs.push_back(make_output(info, std::move(bytes)));
   };
   if (call.wants("errors.ply"))
@@ -164,9 +164,9 @@ Operation thermoform_compare_operation() {
   InputInfo setup = setup_input_info();
   setup.required = true;
   operation.inputs = {mould_input_info(), setup, measured_input_info(), profile_input_info()};
-  operation.outputs = outputs();
-  operation.report = report_fields();
-  take_mergeable_options<ThermoformOptions, MeasurementEffects>(operation, run);
+  operation.outputs = thermoform_compare_outputs();
+  operation.report = thermoform_compare_report_fields();
+  take_mergeable_options<ThermoformOptions, MeasurementEffects>(operation, run_thermoform_compare);
   return operation;
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int draft_cells = 256;  // across the model's longer side: 0.4 mm of 100 mm, a nozzle
 
-std::vector<OutputInfo> outputs() {
+std::vector<OutputInfo> thermoform_mould_outputs() {
   return {
       {"mould.stl", "model/stl", "STL", "All parts of the mould side by side on the bed of the 3D printer, watertight.",
        true},
@@ -27,7 +27,7 @@ std::vector<OutputInfo> outputs() {
       {"mould.glb", "model/gltf-binary", "GLB", "The parts of the mould as printed, for viewing.", true}};
 }
 
-std::vector<ReportField> report_fields() {
+std::vector<ReportField> thermoform_mould_report_fields() {
   return {
       {"vertices", "Vertices", "", "Number of vertices of the repaired model."},
       {"faces", "Triangles", "", "Number of triangles of the repaired model."},
@@ -236,7 +236,7 @@ OperationResult run_mould(const OperationCall& call, const Json& given) {
 
   context.progress(0.95, "Writing");
   const auto add = [&](const char* name, Bytes bytes) {
-    for (const OutputInfo& info : outputs())
+    for (const OutputInfo& info : thermoform_mould_outputs())
       if (info.name == name) result.outputs.push_back(make_output(info, std::move(bytes)));
     context.check_cancelled();
   };
@@ -268,8 +268,8 @@ Operation thermoform_mould_operation() {
   operation.title = "Mould";
   operation.summary = "Makes the mould that the sheet is formed over: a negative to cast gypsum in, or a positive.";
   operation.inputs = {mould_input_info(), sheet_input_info(), profile_input_info()};
-  operation.outputs = outputs();
-  operation.report = report_fields();
+  operation.outputs = thermoform_mould_outputs();
+  operation.report = thermoform_mould_report_fields();
   take_mergeable_options<ThermoformMouldOptions>(operation, run_mould);
   return operation;
 }

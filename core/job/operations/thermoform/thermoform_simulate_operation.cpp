@@ -11,7 +11,7 @@
 namespace formwright {
 namespace {
 
-std::vector<OutputInfo> outputs() {
+std::vector<OutputInfo> thermoform_simulate_outputs() {
   return {
       {"sheet.ply", "application/x-ply", "Formed sheet, thickness",
        "The middle surface of the formed sheet, with flat position, thickness, stretch and time of contact at every vertex.",
@@ -22,7 +22,7 @@ std::vector<OutputInfo> outputs() {
        "The model in the machine's coordinates, as placed on the platform.", false}};
 }
 
-std::vector<ReportField> report_fields() {
+std::vector<ReportField> thermoform_simulate_report_fields() {
   return {
       {"triangles", "Triangles", "", "Number of triangles in the simulated sheet."},
       {"vertices", "Vertices", "", "Number of vertices in the simulated sheet."},
@@ -100,7 +100,7 @@ Json warnings(const FormedResult& result, const ThermoformOptions& o, bool water
   return list;
 }
 
-OperationResult run(const OperationCall& call, const Json& given) {
+OperationResult run_thermoform_simulate(const OperationCall& call, const Json& given) {
   const SimulationCall simulation = simulation_call(call, given);
   const ThermoformOptions& o = simulation.options;
   Simulated simulated;
@@ -115,7 +115,7 @@ OperationResult run(const OperationCall& call, const Json& given) {
   Stopwatch watch;
   OperationResult result;
   const auto add = [&](const char* name, Bytes bytes) {
-    for (const OutputInfo& info : outputs())
+    for (const OutputInfo& info : thermoform_simulate_outputs())
       if (info.name == name) result.outputs.push_back(make_output(info, std::move(bytes)));
     call.context.check_cancelled();
   };
@@ -195,9 +195,9 @@ Operation thermoform_simulate_operation() {
   operation.title = "Thermoform";
   operation.summary = "Simulates how a heated plastic sheet is formed over a model by vacuum.";
   operation.inputs = {mould_input_info(), setup_input_info(), profile_input_info()};
-  operation.outputs = outputs();
-  operation.report = report_fields();
-  take_mergeable_options<ThermoformOptions>(operation, run);
+  operation.outputs = thermoform_simulate_outputs();
+  operation.report = thermoform_simulate_report_fields();
+  take_mergeable_options<ThermoformOptions>(operation, run_thermoform_simulate);
   return operation;
 }
 

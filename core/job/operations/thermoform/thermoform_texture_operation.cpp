@@ -14,7 +14,7 @@ namespace {
 
 constexpr int formed_texture_px = 2048;
 
-std::vector<InputInfo> inputs() {
+std::vector<InputInfo> thermoform_texture_inputs() {
   return {
       mould_input_info(),
       sheet_input_info(),
@@ -29,7 +29,7 @@ std::vector<InputInfo> inputs() {
       profile_input_info()};
 }
 
-std::vector<OutputInfo> outputs() {
+std::vector<OutputInfo> thermoform_texture_outputs() {
   return {
       {"print.png", "image/png", "Print as one picture",
        "The print for the whole sheet with its marks. The file contains its true size.", true},
@@ -42,7 +42,7 @@ std::vector<OutputInfo> outputs() {
        false}};
 }
 
-std::vector<ReportField> report_fields() {
+std::vector<ReportField> thermoform_texture_report_fields() {
   return {
       {"sheet_mm", "Sheet", "mm", "Width and length of the flat sheet."},
       {"picture_mm", "Picture", "mm",
@@ -182,7 +182,7 @@ OperationResult run_texture(const OperationCall& call, const Json& given) {
   watch.lap();
   context.progress(0.85, "Writing");
   const auto add = [&](const char* name, Bytes bytes) {
-    for (const OutputInfo& info : outputs())
+    for (const OutputInfo& info : thermoform_texture_outputs())
       if (info.name == name) result.outputs.push_back(make_output(info, std::move(bytes)));
     context.check_cancelled();
   };
@@ -205,9 +205,9 @@ Operation thermoform_texture_operation() {
   operation.title = "Print for thermoforming";
   operation.summary =
       "Makes the picture to print on the flat sheet so that, after forming, every colour lands where it belongs.";
-  operation.inputs = inputs();
-  operation.outputs = outputs();
-  operation.report = report_fields();
+  operation.inputs = thermoform_texture_inputs();
+  operation.outputs = thermoform_texture_outputs();
+  operation.report = thermoform_texture_report_fields();
   take_mergeable_options<ThermoformPrintOptions>(operation, run_texture);
   return operation;
 }

@@ -14,13 +14,13 @@
 namespace formwright {
 namespace {
 
-std::vector<OutputInfo> outputs() {
+std::vector<OutputInfo> zippable_baseline_outputs() {
   return {{"strips.svg", "image/svg+xml", "Strips, SVG",
            "All sheets side by side at true size, with the layers cut and engrave.", true},
           {"strips.ply", "application/x-ply", "Strips in space", "The shape that the strips make.", true}};
 }
 
-std::vector<ReportField> report_fields() {
+std::vector<ReportField> zippable_baseline_report_fields() {
   return {
       {"parts", "Parts", "", "Number of parts between feature lines and limbs."},
       {"bands", "Bands", "", "Number of bands that follow the borders of the parts."},
@@ -90,7 +90,7 @@ void report_zippable(Json& report, ParameterisedModel& model, const ZippableOpti
   report["zippable_ribbon_width_min_mm"] = design.ribbon.width_min_mm;
 }
 
-OperationResult run(const OperationCall& call, const StripOptions& options) {
+OperationResult run_zippable_baseline(const OperationCall& call, const StripOptions& options) {
   Context& context = call.context;
   std::shared_ptr<const LoadedModel> loaded;
   {
@@ -139,7 +139,7 @@ OperationResult run(const OperationCall& call, const StripOptions& options) {
   result.report["seconds_zippable"] = watch.lap();
   const auto add = [&](const char* name, auto&& bytes) {
     if (!call.wants(name)) return;
-    for (const OutputInfo& info : outputs())
+    for (const OutputInfo& info : zippable_baseline_outputs())
       if (info.name == name) result.outputs.push_back(make_output(info, bytes()));
   };
   add("strips.svg", [&] { return write_svg(side_by_side(sheets, 20)); });
@@ -161,9 +161,9 @@ Operation zippable_baseline_operation() {
   operation.title = "Strips to compare with";
   operation.summary = "Makes the model from paper strips (Mitani and Suzuki 2004), to compare with the zippable.";
   operation.inputs = {model_input_info()};
-  operation.outputs = outputs();
-  operation.report = report_fields();
-  take_options<StripOptions>(operation, run);
+  operation.outputs = zippable_baseline_outputs();
+  operation.report = zippable_baseline_report_fields();
+  take_options<StripOptions>(operation, run_zippable_baseline);
   return operation;
 }
 

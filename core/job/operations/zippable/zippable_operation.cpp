@@ -12,7 +12,7 @@
 namespace formwright {
 namespace {
 
-std::vector<InputInfo> inputs() {
+std::vector<InputInfo> zippable_inputs() {
   InputInfo segments;
   segments.name = "segments";
   segments.label = "Parts";
@@ -23,7 +23,7 @@ std::vector<InputInfo> inputs() {
   return {model_input_info(), segments};
 }
 
-std::vector<OutputInfo> outputs() {
+std::vector<OutputInfo> zippable_outputs() {
   return {
       {"design.json", "application/json", "Design",
        "The design: parts, zipper and ribbon, zipped and flat. Needed by the plan and the simulation.", true},
@@ -34,7 +34,7 @@ std::vector<OutputInfo> outputs() {
       {"ribbon.svg", "image/svg+xml", "Flat ribbon", "The flat ribbon at true size; parts of it may overlap.", true}};
 }
 
-std::vector<ReportField> report_fields() {
+std::vector<ReportField> zippable_report_fields() {
   return {
       {"vertices", "Vertices", "", "Number of vertices of the model after it was divided into parts."},
       {"faces", "Triangles", "", "Number of triangles of the model after it was divided into parts."},
@@ -180,7 +180,8 @@ OperationResult check_parts(const OperationCall& call, const LoadedModel& loaded
   const ParameterisedModel model = divide_model(loaded.model.mesh, parts, options, call.context);
   const Segmentation& s = model.proposal.segmentation;
   OperationResult result;
-  if (call.wants("design.json")) result.outputs.push_back(make_output(outputs().front(), write_parts_json(model)));
+  if (call.wants("design.json"))
+    result.outputs.push_back(make_output(zippable_outputs().front(), write_parts_json(model)));
   std::vector<std::string> notes = model.proposal.notes;
   for (int part = 0; part < s.part_count(); ++part)
     if (!s.problems[part].empty())
@@ -194,7 +195,7 @@ OperationResult check_parts(const OperationCall& call, const LoadedModel& loaded
   return result;
 }
 
-OperationResult run(const OperationCall& call, const ZippableOptions& options) {
+OperationResult run_zippable(const OperationCall& call, const ZippableOptions& options) {
   Context& context = call.context;
   ZippableParts parts;
   std::string parts_key = "automatic";
@@ -226,7 +227,7 @@ OperationResult run(const OperationCall& call, const ZippableOptions& options) {
   OperationResult result;
   const auto add = [&](const char* name, auto&& bytes) {
     if (!call.wants(name)) return;
-    for (const OutputInfo& info : outputs())
+    for (const OutputInfo& info : zippable_outputs())
       if (info.name == name) result.outputs.push_back(make_output(info, bytes()));
     context.check_cancelled();
   };
@@ -257,10 +258,10 @@ Operation zippable_design_operation() {
   operation.name = "zippable-design";
   operation.title = "Zippable";
   operation.summary = "Turns a model into one flat ribbon that zips up into the model's shape.";
-  operation.inputs = inputs();
-  operation.outputs = outputs();
-  operation.report = report_fields();
-  take_options<ZippableOptions>(operation, run);
+  operation.inputs = zippable_inputs();
+  operation.outputs = zippable_outputs();
+  operation.report = zippable_report_fields();
+  take_options<ZippableOptions>(operation, run_zippable);
   return operation;
 }
 

@@ -13,7 +13,7 @@
 namespace formwright {
 namespace {
 
-std::vector<InputInfo> inputs() {
+std::vector<InputInfo> zippable_plan_inputs() {
   InputInfo design;
   design.name = "design";
   design.label = "Design";
@@ -22,7 +22,7 @@ std::vector<InputInfo> inputs() {
   return {design};
 }
 
-std::vector<OutputInfo> outputs() {
+std::vector<OutputInfo> zippable_plan_outputs() {
   return {
       {"plan.svg", "image/svg+xml", "Plan, SVG",
        "All sheets side by side at true size, with the layers cut, mark, engrave and note.", true},
@@ -44,7 +44,7 @@ std::vector<OutputInfo> outputs() {
        "Instructions with pictures: what is needed and what is joined to what, step by step.", true}};
 }
 
-std::vector<ReportField> report_fields() {
+std::vector<ReportField> zippable_plan_report_fields() {
   return {
       {"zipper_length_mm", "Zipper length", "mm",
        "Length of the zipper in the design; that much tape is needed for each side."},
@@ -281,7 +281,7 @@ Bytes sheets_zip(const ZippablePlan& plan, const Context& context) {
   return pack_files(views, context);
 }
 
-OperationResult run(const OperationCall& call, const PlanOptions& options) {
+OperationResult run_zippable_plan(const OperationCall& call, const PlanOptions& options) {
   Context& context = call.context;
   Stopwatch watch;
   context.progress(0, "Reading the design");
@@ -298,7 +298,7 @@ OperationResult run(const OperationCall& call, const PlanOptions& options) {
   const CutSheet all = side_by_side(plan.sheets, 20);
   const auto add = [&](const char* name, auto&& bytes) {
     if (!call.wants(name)) return;
-    for (const OutputInfo& info : outputs())
+    for (const OutputInfo& info : zippable_plan_outputs())
       if (info.name == name) result.outputs.push_back(make_output(info, bytes()));
     context.check_cancelled();
   };
@@ -346,10 +346,10 @@ Operation zippable_plan_operation() {
   operation.title = "Zippable plan";
   operation.summary =
       "Turns the design of a zippable into sheets to cut, with numbered markers for attaching the zipper.";
-  operation.inputs = inputs();
-  operation.outputs = outputs();
-  operation.report = report_fields();
-  take_options<PlanOptions>(operation, run);
+  operation.inputs = zippable_plan_inputs();
+  operation.outputs = zippable_plan_outputs();
+  operation.report = zippable_plan_report_fields();
+  take_options<PlanOptions>(operation, run_zippable_plan);
   return operation;
 }
 

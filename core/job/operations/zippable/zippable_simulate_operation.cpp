@@ -18,14 +18,14 @@ InputInfo design_input() {
   return info;
 }
 
-std::vector<OutputInfo> outputs() {
+std::vector<OutputInfo> zippable_simulate_outputs() {
   return {{"zipped.ply", "application/x-ply", "Zipped cloth",
            "The simulated shape, with distance from the design and strain at every vertex.", true},
           {"zipping.glb", "model/gltf-binary", "Animation",
            "Animation from flat to zipped, coloured by the distance from the design at the end.", true}};
 }
 
-std::vector<ReportField> report_fields() {
+std::vector<ReportField> zippable_simulate_report_fields() {
   return {
       {"outcome", "Outcome", "",
        "takes_shape (as designed), as_the_cloth_does (sags as the cloth would anyway), another_shape, open_seams or not_settled (still moving)."},
@@ -87,7 +87,7 @@ const char* outcome_name(ZippingOutcome outcome) {
   return "not_settled";
 }
 
-OperationResult run(const OperationCall& call, const ZippingOptions& options) {
+OperationResult run_zippable_simulate(const OperationCall& call, const ZippingOptions& options) {
   const RibbonDesign design = ribbon_of(read_flat_design(*call.inputs.at("design").bytes));
   ZippingResult zipped;
   {
@@ -97,7 +97,7 @@ OperationResult run(const OperationCall& call, const ZippingOptions& options) {
   call.context.progress(0.97, "Writing");
   Stopwatch watch;
   OperationResult result;
-  for (const OutputInfo& info : outputs()) {
+  for (const OutputInfo& info : zippable_simulate_outputs()) {
     if (!call.wants(info.name)) continue;
     result.outputs.push_back(make_output(info, info.name == "zipped.ply" ? write_zipped_ply(zipped, call.context)
                                                                          : write_zipping_glb(zipped, call.context)));
@@ -146,9 +146,9 @@ Operation zippable_simulate_operation() {
   operation.title = "Will it zip?";
   operation.summary = "Simulates the ribbon as cloth while it is zipped up, and compares the result with the design.";
   operation.inputs = {design_input()};
-  operation.outputs = outputs();
-  operation.report = report_fields();
-  take_options<ZippingOptions>(operation, run);
+  operation.outputs = zippable_simulate_outputs();
+  operation.report = zippable_simulate_report_fields();
+  take_options<ZippingOptions>(operation, run_zippable_simulate);
   return operation;
 }
 

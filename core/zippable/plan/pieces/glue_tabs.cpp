@@ -10,13 +10,13 @@ namespace {
 
 using Triangle = std::array<Vec2, 3>;
 
-struct Box {
+struct TriangleBox {
   Vec2 lower = Vec2::Constant(1e300), upper = Vec2::Constant(-1e300);
 
-  explicit Box(const Triangle& triangle) {
+  explicit TriangleBox(const Triangle& triangle) {
     for (const Vec2& p : triangle) lower = lower.cwiseMin(p), upper = upper.cwiseMax(p);
   }
-  bool near(const Box& other, double margin) const {
+  bool near(const TriangleBox& other, double margin) const {
     return (lower.array() <= other.upper.array() + margin).all() &&
            (other.lower.array() <= upper.array() + margin).all();
   }
@@ -24,7 +24,7 @@ struct Box {
 
 struct Obstacle {
   Triangle triangle;
-  Box box;
+  TriangleBox box;
   int face = -1;  // of the ribbon, or of a tab
 };
 
@@ -35,7 +35,7 @@ class TabMaker {
       : design_(design), flat_(flat), options_(options), obstacles_(std::size_t(splitting.piece_count)) {
     for (int f = 0; f < design.F.rows(); ++f) {
       const Triangle triangle{flat[design.F(f, 0)], flat[design.F(f, 1)], flat[design.F(f, 2)]};
-      obstacles_[splitting.piece_of_face[f]].push_back({triangle, Box(triangle), f});
+      obstacles_[splitting.piece_of_face[f]].push_back({triangle, TriangleBox(triangle), f});
     }
   }
 
@@ -57,7 +57,7 @@ class TabMaker {
         if (!stands(tab, share * options_.depth_mm, std::max(outward, 0.0))) continue;
         result.shortened += share < 1;
         for (const Triangle& triangle : triangles_of(tab))
-          obstacles_[tab.piece].push_back({triangle, Box(triangle), -1});
+          obstacles_[tab.piece].push_back({triangle, TriangleBox(triangle), -1});
         result.tabs.push_back(tab);
         return;
       }
@@ -117,7 +117,8 @@ class TabMaker {
     const auto lower = parts(low, knee), upper = parts(knee, depth);
     const auto meets = [&](const std::array<Triangle, 2>& part, const Obstacle& other, double touching_mm) {
       return std::any_of(part.begin(), part.end(), [&](const Triangle& t) {
-        return Box(t).near(other.box, options_.clearance_mm) && triangles_overlap(t, other.triangle, touching_mm);
+        return TriangleBox(t).near(other.box, options_.clearance_mm) &&
+               triangles_overlap(t, other.triangle, touching_mm);
       });
     };
     return std::none_of(obstacles_[tab.piece].begin(), obstacles_[tab.piece].end(), [&](const Obstacle& other) {

@@ -11,11 +11,11 @@
 namespace formwright {
 namespace {
 
-struct Box {
+struct FaceBox {
   Vec2 lower = Vec2::Constant(1e300), upper = Vec2::Constant(-1e300);
 
-  void add(const Box& other) { lower = lower.cwiseMin(other.lower), upper = upper.cwiseMax(other.upper); }
-  bool meets(const Box& other, double margin) const {
+  void add(const FaceBox& other) { lower = lower.cwiseMin(other.lower), upper = upper.cwiseMax(other.upper); }
+  bool meets(const FaceBox& other, double margin) const {
     return (lower.array() <= other.upper.array() + margin).all() &&
            (other.lower.array() <= upper.array() + margin).all();
   }
@@ -25,7 +25,7 @@ struct Box {
 struct Growing {
   std::vector<int> faces;
   Polygon hull;
-  Box box;
+  FaceBox box;
 };
 
 class Overlaps {
@@ -43,7 +43,7 @@ class Overlaps {
       for (int k = 0; k < 3; ++k) boxes_[f].add({corner(f, k), corner(f, k)});
   }
 
-  const Box& box(int f) const { return boxes_[f]; }
+  const FaceBox& box(int f) const { return boxes_[f]; }
   bool alike(int f, int g) const { return kind_of_face_.empty() || kind_of_face_[f] == kind_of_face_[g]; }
   Polygon corners(int f) const { return {corner(f, 0), corner(f, 1), corner(f, 2)}; }
 
@@ -84,7 +84,7 @@ class Overlaps {
   double clearance_mm_;
   const std::vector<int>& kind_of_face_;
   std::vector<double> along_;  // per vertex: place on the boundary; the last is its length
-  std::vector<Box> boxes_;
+  std::vector<FaceBox> boxes_;
 };
 
 /// Triangles from an end of the ribbon on, each before its neighbours that are farther away, and the half-edge that

@@ -8,7 +8,7 @@ namespace formwright {
 namespace {
 using Catch::Matchers::WithinAbs;
 
-const std::string square = "G21G90\nM4S500\nG0X10Y10\nG1X30F1200\nY30\nX10\nY10\nM5\n";
+const std::string square_without_end = "G21G90\nM4S500\nG0X10Y10\nG1X30F1200\nY30\nX10\nY10\nM5\n";
 
 void by_hand(GrblTalk& talk, const std::string& line) {
   talk.tell({{"do", "send"}, {"line", line}, {"confirmed", true}});
@@ -22,7 +22,7 @@ TEST_CASE("GrblMachine.ReportsInInchesAreMillimetresHere") {
   talk.connect_and_home();
   for (std::size_t axis = 0; axis < 2; ++axis)
     CHECK_THAT(talk.state()["machine_mm"][axis].get<double>(), WithinAbs(talk.machine.position_mm()[axis], 3e-3));
-  talk.load(square);
+  talk.load(square_without_end);
   talk.tell(start_job);
   REQUIRE(talk.pass_until([&] { return talk.ended() == "done"; }, 60));
   CHECK_THAT(talk.state()["work_mm"][0].get<double>(), WithinAbs(10, 3e-3));
@@ -34,7 +34,7 @@ TEST_CASE("GrblMachine.PowersBeyondTheMachinesAreRefused") {
   GrblTalk talk;
   talk.machine.set_setting(30, 255);
   talk.connect_and_home();
-  talk.load(square);
+  talk.load(square_without_end);
   const std::string refusal = talk.refusal(start_job);
   {
     INFO(refusal);
@@ -82,7 +82,7 @@ TEST_CASE("GrblMachine.AJobBeginsInAKnownState") {
 TEST_CASE("GrblMachine.OffsetsInForceAreRefused") {
   GrblTalk talk;
   talk.connect_and_home();
-  talk.load(square);
+  talk.load(square_without_end);
   by_hand(talk, "G92X5");
   CHECK(talk.refusal(start_job).find("G92.1") != std::string::npos);
   by_hand(talk, "G92.1");

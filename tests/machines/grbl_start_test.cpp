@@ -10,7 +10,6 @@ namespace {
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinULP;
 
-const std::string square = "G21G90\nM4S500\nG0X10Y10\nG1X30F1200\nY30\nX10\nY10\nM5\nG0X0Y0\nM2\n";
 TEST_CASE("GrblDriver.GoingOnLeavesAnUnnamedAxisWhereItIs") {
   GrblTalk talk;
   talk.connect_and_home();

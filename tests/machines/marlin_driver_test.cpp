@@ -14,9 +14,9 @@ namespace {
 using Catch::Matchers::WithinULP;
 
 /// Marlin's side of the line protocol, from its documentation: numbers, checksums, requests, the extra ok.
-class VirtualMarlin {
+class NoisyMarlin {
  public:
-  explicit VirtualMarlin(std::uint64_t seed, double spoil) : random_(seed), spoil_(spoil) { output = "start\n"; }
+  explicit NoisyMarlin(std::uint64_t seed, double spoil) : random_(seed), spoil_(spoil) { output = "start\n"; }
 
   void receive(std::string_view bytes) {
     for (const char c : bytes) {
@@ -134,7 +134,7 @@ struct MarlinTalk {
       driver.tick(now_s);
     }
   }
-  VirtualMarlin machine;
+  NoisyMarlin machine;
   MarlinDriver driver;
   double now_s = 0;
 };

@@ -13,7 +13,7 @@ namespace formwright {
 namespace {
 using Catch::Matchers::WithinAbs;
 
-const Polygon sheet{{0, 0}, {200, 0}, {200, 14}, {0, 14}};
+const Polygon rig_outline{{0, 0}, {200, 0}, {200, 14}, {0, 14}};
 
 TEST_CASE("ThickLines.AreasAreThoseOfStadiumsAndDiscs") {
   const auto one = outlines_of({{{{0, 0}, {30, 0}, {50, 0}}, 4}});
@@ -30,7 +30,7 @@ TEST_CASE("ThickLines.AreasAreThoseOfStadiumsAndDiscs") {
 
 TEST_CASE("RigTracks.OfAStripRunBesideItsEdges") {
   const RigSizes sizes;
-  const RigTracks rig = rig_tracks(sheet, {{{0, 0}, {200, 0}}, {{200, 14}, {0, 14}}}, {1, 0}, sizes);
+  const RigTracks rig = rig_tracks(rig_outline, {{{0, 0}, {200, 0}}, {{200, 14}, {0, 14}}}, {1, 0}, sizes);
   REQUIRE(rig.tracks.size() == 2u);
   CHECK_THAT(rig.left_out_mm, WithinAbs(0, 1e-9));
   for (const RigTrack& track : rig.tracks) {
@@ -45,7 +45,7 @@ TEST_CASE("RigTracks.OfAStripRunBesideItsEdges") {
         CHECK_THAT(std::abs(p.y() - 7), WithinAbs(7 + sizes.offset_mm - sizes.track_mm / 2 + sizes.slot_mm / 2, 1e-9));
       }
     for (const Vec2& opening : track.openings_mm)
-      CHECK(nearest_on_line(sheet, true, opening).distance_mm > sizes.opening_mm / 2);
+      CHECK(nearest_on_line(rig_outline, true, opening).distance_mm > sizes.opening_mm / 2);
   }
 }
 

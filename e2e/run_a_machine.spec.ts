@@ -109,6 +109,7 @@ test('a drawing to a finished job by keyboard alone', async ({ page }) => {
   await expect(chip(page)).toHaveText('Working');
   await page.keyboard.press('Escape'); // holds
   await expect(chip(page)).toHaveText('Paused');
+  await expect(strip(page, 'Paused: square')).toBeVisible();
   await press('Resume');
   await expect(dialog(page).getByRole('button', { name: 'Cancel' })).toBeFocused();
   await page.keyboard.press('Tab');
@@ -130,6 +131,7 @@ test('stopped in the middle: the position is unknown, and the rest is cut after 
       .getByText(/^Job stopped at \d+ %$/),
   ).toBeVisible();
   await expect(position(page).getByText('unknown')).toHaveCount(2);
+  await expect(chip(page)).toHaveText('Stopped');
   await expect(page.getByRole('button', { name: /^Cut the rest/ })).toHaveAttribute('aria-disabled', 'true');
   await expect(startButton(page)).toHaveAttribute('aria-disabled', 'true');
   await homeIt(page);

@@ -13,6 +13,7 @@ import { Confirmation } from './panel/confirm';
 import { Console } from './panel/console';
 import { Inspector } from './inspector';
 import { JobBar, partWords, timeShown } from './panel/job_bar';
+import { jobWords } from './panel/state_words';
 import './panel/machine_state.css';
 import './machines.css';
 import type { MachinesSession } from './machines_session';
@@ -112,9 +113,10 @@ function Strip({ session, onChooseFile }: MachinesPageProps) {
   const { control } = session;
   const plan = session.plan.value;
   const { cutOff } = control;
-  const job = control.state.value?.job ?? cutOff.value?.job;
+  const state = control.state.value;
+  const job = state?.job ?? cutOff.value?.job;
   const ofThis =
-    (control.state.value?.job ? control.loaded.value : cutOff.value?.key) === session.jobKey.value;
+    (state?.job ? control.loaded.value : cutOff.value?.key) === session.jobKey.value;
   const ending = session.jobFormat.split('.').at(-1) ?? 'gcode';
   const exportJob = plan?.jobs.map(({ stage, bytes }, index) => (
     <Button
@@ -146,14 +148,14 @@ function Strip({ session, onChooseFile }: MachinesPageProps) {
         onCancel={() => session.cancel()}
       />
     );
-  if (job && control.isBusy) {
+  if (state && job && control.isBusy) {
     const seconds = plan && ofThis ? plan.toolPath.seconds : 0;
     const time = plan && ofThis ? (timeShown(session) ?? 0) : 0;
     const fraction = seconds > 0 ? time / seconds : job.acknowledged / Math.max(1, job.line_count);
     return (
       <JobStrip
         state="running"
-        title={`Working on ${job.name}`}
+        title={jobWords(state, job.name)}
         detail={
           plan && ofThis
             ? partWords(session, time)

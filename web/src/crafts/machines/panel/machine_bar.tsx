@@ -2,6 +2,7 @@
 // A machine that works while another room is looked at: what it does, and Stop.
 import { Button } from '../../../ui';
 import type { MachinesSession } from '../machines_session';
+import { jobWords } from './state_words';
 import './machine_bar.css';
 
 export function MachineBar({ session }: { readonly session: MachinesSession }) {
@@ -16,7 +17,7 @@ export function MachineBar({ session }: { readonly session: MachinesSession }) {
       <a href="#/machines">
         {state.alarm
           ? `${control.machineName.value}: alarm`
-          : `${state.phase === 'paused' ? 'Paused' : 'Working on'} ${job?.name ?? 'a job'}, ${percent} %`}
+          : `${jobWords(state, job?.name ?? 'a job')}, ${percent} %`}
       </a>
       <Button kind="danger" icon="stop" onClick={() => void control.command({ do: 'stop' })}>
         Stop

@@ -6,30 +6,7 @@ import { Button, formatFixed, Icon } from '../../../ui';
 import { focus, frame, hold, home, resume, start, startReason, stop } from '../actions';
 import { ConnectMenu, ProfileMenu } from './machine_menus';
 import type { MachinesSession } from '../machines_session';
-
-const phaseWords: Record<MachineState['phase'], string> = {
-  unknown: 'Waiting',
-  idle: 'Ready',
-  homing: 'Homing',
-  jogging: 'Moving',
-  running: 'Working',
-  pausing: 'Pausing',
-  paused: 'Paused',
-  stopping: 'Stopping',
-  alarm: 'Alarm',
-  door: 'Door open',
-  check: 'Check only',
-  sleep: 'Asleep',
-};
-
-function stateWords(state: MachineState | null): string {
-  if (state === null) return 'Offline';
-  if (state.connection === 'greeting') return 'Connecting';
-  if (state.connection === 'silent') return 'No answer';
-  if (state.phase === 'alarm' && state.alarm)
-    return state.alarm.code > 0 ? `Alarm ${state.alarm.code}` : 'Locked';
-  return phaseWords[state.phase];
-}
+import { stateWords } from './state_words';
 
 const dotOf = (state: MachineState | null): string => {
   if (state === null) return 'off';

@@ -26,6 +26,7 @@ import { formatNames, StartPage } from './start_page';
 import type { Sessions } from './rooms';
 import { MachineBar } from '../crafts/machines/panel/machine_bar';
 import { drawingEndings, heightMapEnding, jobEndings } from '../crafts/machines/machines_document';
+import { flatView } from '../crafts/zippable/views';
 import { isRoom, placeOfWork, roomOf } from './rooms';
 import { sentenceOf } from './failure_toast';
 import { TopBar } from './shell/top_bar';
@@ -168,14 +169,25 @@ export function App({ services, sessions }: AppProps) {
           session={sessions.zippable}
           onChooseFile={chooseFile}
           onSendToMachine={async (name, drawing) => {
-            const taken = await sessions.machines.take(name, drawing);
+            const taken = await sessions.machines.take(name, drawing, 'drawing', {}, { of_plan: true });
             if (taken || sessions.machines.problem.value !== null) go('machines');
           }}
         />
       ) : where === 'evidence' && EvidencePage ? (
         <EvidencePage session={sessions.evidence} onChooseFile={chooseFile} />
       ) : where === 'machines' && MachinesPage ? (
-        <MachinesPage session={sessions.machines} onChooseFile={chooseFile} />
+        <MachinesPage
+          session={sessions.machines}
+          onChooseFile={chooseFile}
+          onLayOutAgain={([bed_x_mm, bed_y_mm]) => {
+            sessions.zippable.setParameters(
+              { bed_x_mm, bed_y_mm },
+              `Lay out for ${bed_x_mm} × ${bed_y_mm} mm`,
+            );
+            flatView.value = 'sheets';
+            go('zippable');
+          }}
+        />
       ) : isRoom(where) ? (
         <main
           class="view"

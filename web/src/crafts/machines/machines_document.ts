@@ -18,6 +18,8 @@ export interface FileWork {
   readonly file: BlobReference;
   /** Of a height map: its pixels. */
   readonly nodes?: number;
+  /** A sheet of this project's cutting plan, which can be laid out for another bed. */
+  readonly of_plan?: true;
 }
 /** A test of the material, made of parameters alone. */
 interface TestWork {

@@ -23,9 +23,11 @@ import { sampleDrawing, sampleName } from './sample_drawing';
 export interface MachinesPageProps {
   readonly session: MachinesSession;
   readonly onChooseFile: () => void;
+  /** The project's cutting plan, for a bed of this width and depth in mm. */
+  readonly onLayOutAgain: (bed_mm: readonly [number, number]) => void;
 }
 
-export function MachinesPage({ session, onChooseFile }: MachinesPageProps) {
+export function MachinesPage({ session, onChooseFile, onLayOutAgain }: MachinesPageProps) {
   const shown = useSignal<'bed' | 'path' | 'console'>('bed');
   const travel = useSignal(false);
   useEffect(() => followBridge(session), [session]);
@@ -74,7 +76,7 @@ export function MachinesPage({ session, onChooseFile }: MachinesPageProps) {
           <Empty session={session} onChooseFile={onChooseFile} />
         ) : null}
         <div class="machines-foot">
-          <MachineNotes session={session} onChooseFile={onChooseFile} />
+          <MachineNotes session={session} onChooseFile={onChooseFile} onLayOutAgain={onLayOutAgain} />
           {shown.value === 'console' ? null : <JobBar session={session} />}
         </div>
         <Confirmation />
@@ -89,7 +91,7 @@ export function MachinesPage({ session, onChooseFile }: MachinesPageProps) {
   );
 }
 
-function Empty({ session, onChooseFile }: MachinesPageProps) {
+function Empty({ session, onChooseFile }: Omit<MachinesPageProps, 'onLayOutAgain'>) {
   return (
     <div class="machines-empty">
       {session.isMill ? (
@@ -109,14 +111,13 @@ function Empty({ session, onChooseFile }: MachinesPageProps) {
   );
 }
 
-function Strip({ session, onChooseFile }: MachinesPageProps) {
+function Strip({ session, onChooseFile }: Omit<MachinesPageProps, 'onLayOutAgain'>) {
   const { control } = session;
   const plan = session.plan.value;
   const { cutOff } = control;
   const state = control.state.value;
   const job = state?.job ?? cutOff.value?.job;
-  const ofThis =
-    (state?.job ? control.loaded.value : cutOff.value?.key) === session.jobKey.value;
+  const ofThis = (state?.job ? control.loaded.value : cutOff.value?.key) === session.jobKey.value;
   const ending = session.jobFormat.split('.').at(-1) ?? 'gcode';
   const exportJob = plan?.jobs.map(({ stage, bytes }, index) => (
     <Button

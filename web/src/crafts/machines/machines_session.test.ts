@@ -40,6 +40,16 @@ it('a drawing that is still being kept when another project is opened is not wri
   expect(services.projects.isBlank.value).toBe(true);
 });
 
+it('a sheet of the cutting plan is known as one, until another drawing is opened', async () => {
+  const session = new MachinesSession(testServices(testCatalog(laserJob, millJob)));
+  expect(await session.take('star, sheet 1.svg', new Uint8Array(3), 'drawing', {}, { of_plan: true })).toBe(
+    true,
+  );
+  expect(session.document.value.drawing).toMatchObject({ kind: 'drawing', of_plan: true });
+  expect(await session.take('other.svg', new Uint8Array(4))).toBe(true);
+  expect(session.document.value.drawing).not.toHaveProperty('of_plan');
+});
+
 it('a drawing is not taken while a real mill is connected', async () => {
   const session = new MachinesSession(testServices(testCatalog(laserJob, millJob)));
   session.useProfile(practiceMill);

@@ -266,12 +266,13 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
 
   /** Drawings are work for lasers, models and height maps for mills: such a machine is chosen where the other kind was. A practice
    *  machine is exchanged; where a real one is connected the work is not taken, and a message says so. `own`: what is known of it
-   *  beside its bytes. */
+   *  beside its bytes, for the job and (`more`) for this room. */
   async take(
     file_name: string,
     bytes: Uint8Array<ArrayBuffer>,
     kind: FileWork['kind'] = 'drawing',
     own: JsonObject = {},
+    more: Pick<FileWork, 'of_plan'> = {},
   ): Promise<boolean> {
     const change = this.changesHere();
     const suits = kind === 'job' || (kind === 'model') === this.isMill;
@@ -301,7 +302,9 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
     }
     const blank = this.services.projects.isBlank.value;
     try {
-      change(machines.setWork(catalog, { file_name, kind, file, ...nodes }, `Open ${file_name}`, own));
+      change(
+        machines.setWork(catalog, { file_name, kind, file, ...nodes, ...more }, `Open ${file_name}`, own),
+      );
     } catch (thrown) {
       if (asJobError(thrown).code === 'cancelled') return false; // the person went on to another project
       throw thrown;
@@ -382,7 +385,13 @@ export class MachinesSession extends RoomSession<MachinesDocument> {
 
   /** For the driver: what the profile says, with the bed that the job is made for. */
   driverOptions(): JsonObject {
-    const [bed_x_mm, bed_y_mm] = [this.value('bed_x_mm'), this.value('bed_y_mm')];
-    return { ...this.profiles.current.options, ...(bed_x_mm && bed_y_mm ? { bed_x_mm, bed_y_mm } : {}) };
+    const bed = this.bed_mm;
+    return { ...this.profiles.current.options, ...(bed ? { bed_x_mm: bed[0], bed_y_mm: bed[1] } : {}) };
+  }
+
+  /** Width and depth of the machine's bed. */
+  get bed_mm(): readonly [number, number] | null {
+    const [x, y] = [this.#number('bed_x_mm', 0), this.#number('bed_y_mm', 0)];
+    return x > 0 && y > 0 ? [x, y] : null;
   }
 }

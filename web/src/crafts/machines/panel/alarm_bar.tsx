@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What happened, what is safe, what to do.
-import { Button, Icon, Note } from '../../../ui';
+import { Button, formatNumber, Icon, Note } from '../../../ui';
 import { home } from '../actions';
 import type { MachinesSession } from '../machines_session';
 
@@ -28,9 +28,11 @@ export function AlarmBar({ session }: { readonly session: MachinesSession }) {
 export function MachineNotes({
   session,
   onChooseFile,
+  onLayOutAgain,
 }: {
   readonly session: MachinesSession;
   readonly onChooseFile: () => void;
+  readonly onLayOutAgain: (bed_mm: readonly [number, number]) => void;
 }) {
   const { control } = session;
   const plan = session.plan.value;
@@ -77,11 +79,30 @@ export function MachineNotes({
         {error.text} The line was “{error.line}”.
       </Note>
     );
-  if (plan && plan.misfits.length > 0)
+  if (plan && plan.misfits.length > 0) {
+    const { drawing } = session.document.value;
+    const bed = session.bed_mm;
+    if (drawing?.kind === 'drawing' && drawing.of_plan && bed)
+      return (
+        <Note
+          kind="attention"
+          icon="warn"
+          title="The sheet does not fit on the bed"
+          actions={
+            <Button size="small" onClick={() => onLayOutAgain(bed)}>
+              Lay out again for {bed.map((mm) => formatNumber(mm, 3)).join(' × ')}
+            </Button>
+          }
+        >
+          The pieces were laid out for a larger sheet. Laid out again, they keep their size and come on more
+          sheets.
+        </Note>
+      );
     return (
       <Note kind="attention" icon="warn" title="The job does not fit">
         {plan.misfits.join(' ')}
       </Note>
     );
+  }
   return null;
 }

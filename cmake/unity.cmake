@@ -1,6 +1,6 @@
 # Files that are compiled in groups read and instantiate their headers once a
 # group: two thirds of the processor time, in light folders less than half. The
-# fuzz preset compiles every file alone, which shows that each can be.
+# fuzz preset compiles core's files alone, which shows that each can be.
 #
 # A target of heavy files takes smaller groups (UNITY_BUILD_BATCH_SIZE), so that
 # one edit costs at most half a minute.

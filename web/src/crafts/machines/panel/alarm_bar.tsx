@@ -94,7 +94,7 @@ export function MachineNotes({
             </Button>
           }
         >
-          The pieces were laid out for a larger sheet. Laid out again, they keep their size and come on more
+          The pieces were laid out for a larger sheet. Laid out again they keep their size, and may take more
           sheets.
         </Note>
       );

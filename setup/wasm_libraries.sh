@@ -158,7 +158,7 @@ C
 
 # The parts that are used, from the same source as natively (setup/opencv.sh).
 build_opencv() {
-  cmake_install "$FORMWRIGHT_ROOT/setup/opencv" -DOPENCV_SOURCE="$("$FORMWRIGHT_ROOT/setup/opencv.sh" --source)" \
+  cmake_install "$FORMWRIGHT_ROOT/setup/opencv" -DOPENCV_SOURCE="$OPENCV_SOURCE" \
     -DZLIB_INCLUDE_DIR="$PREFIX/include" -DCMAKE_INSTALL_LIBDIR=lib
 }
 
@@ -202,6 +202,8 @@ main() {
   if [ ${#missing[@]} -gt 0 ] || [ ! -e "$PREFIX/complete" ]; then
     take_lock wasm-libraries
     mkdir -p "$PREFIX/stamps" "$SOURCES"
+    # Before prepare_sources() puts its package lists in the place of this machine's own.
+    OPENCV_SOURCE="$("$FORMWRIGHT_ROOT/setup/opencv.sh" --source)"
     say "reading the lists of source packages"
     prepare_sources
     for library in "${chosen[@]}"; do build "$library"; done

@@ -40,7 +40,7 @@ test('a laser at the worker’s port: connect, home, cut, stop; a page that goes
     await confirm(page, 'Start with the laser on');
     await expect(chip(page)).toHaveText('Working');
     await page.keyboard.press('Control+.'); // Stop, wherever the focus is
-    await expect(chip(page)).toHaveText(/^(Locked|Alarm.*|Ready)$/, { timeout: 10_000 });
+    await expect(chip(page)).toHaveText(/^(Locked|Alarm.*|Stopped)$/, { timeout: 10_000 });
     await page.locator('.machine-buttons').getByRole('button', { name: 'Home' }).click();
     await confirm(page, 'Home');
     await expect(chip(page)).toHaveText('Ready', { timeout: 30_000 });

@@ -1,6 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { readFileSync } from 'node:fs';
-import { backend, ballObj, expect, fileOf, openPage, openSample, readStl, solve, strip, test } from './page';
+import {
+  backend,
+  ballObj,
+  expect,
+  fileOf,
+  openModel,
+  openPage,
+  openSample,
+  readStl,
+  solve,
+  strip,
+  test,
+} from './page';
 
 test('from a sample to a solid of the asked thickness', async ({ page }) => {
   await openSample(page, 'Bust');
@@ -28,7 +40,7 @@ test('from a sample to a solid of the asked thickness', async ({ page }) => {
 
 test('a file, several thicknesses, and back to an earlier result', async ({ page }) => {
   await openPage(page);
-  await page.locator('input[type=file]').setInputFiles(fileOf('ball.obj', ballObj()));
+  await openModel(page, fileOf('ball.obj', ballObj()));
   await expect(strip(page, 'Preview up to date')).toBeVisible();
   await expect(page.getByText('ball.obj', { exact: true })).toBeVisible();
   await expect(page.locator('.model-picture')).toHaveAttribute('style', /blob:/);
@@ -60,7 +72,7 @@ test('cancel a solve and go on', async ({ page }) => {
 test('other formats from the menu', async ({ page }) => {
   test.skip(backend === 'mock', 'the mock makes STL only');
   await openPage(page);
-  await page.locator('input[type=file]').setInputFiles(fileOf('ball.obj', ballObj()));
+  await openModel(page, fileOf('ball.obj', ballObj()));
   await solve(page);
   for (const [label, magic] of [
     ['3MF', 'PK'],
@@ -77,7 +89,7 @@ test('other formats from the menu', async ({ page }) => {
 test('a viewpoint set from the view stays as far away', async ({ page }) => {
   test.skip(backend === 'mock', 'the mock knows one viewpoint');
   await openPage(page);
-  await page.locator('input[type=file]').setInputFiles(fileOf('ball.obj', ballObj()));
+  await openModel(page, fileOf('ball.obj', ballObj()));
   await expect(strip(page, 'Preview up to date')).toBeVisible();
   await page.getByRole('button', { name: /^Advanced/ }).click();
   const angle = page.getByRole('textbox', { name: 'Field of view' });

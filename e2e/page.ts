@@ -48,6 +48,17 @@ export async function openSample(page: Page, title = 'Torus'): Promise<void> {
   await expect(strip(page, 'Preview up to date')).toBeVisible();
 }
 
+/** A model on the start page: the page asks what becomes of it. */
+export async function openModel(
+  page: Page,
+  file: ReturnType<typeof fileOf>,
+  craft: 'Relief' | 'Thermoform' | 'Zippable' = 'Relief',
+): Promise<void> {
+  await page.locator('input[type=file]').setInputFiles(file);
+  const question = page.getByRole('dialog', { name: `What will you make of ${file.name}?` });
+  await question.getByRole('button', { name: craft }).click();
+}
+
 export async function solve(page: Page): Promise<void> {
   await page.getByRole('button', { name: 'Solve at full detail' }).click();
   await expect(strip(page, 'Relief ready')).toBeVisible({ timeout: 150_000 });

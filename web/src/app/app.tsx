@@ -14,6 +14,7 @@ import type { ZippablePage as ZippablePageComponent } from '../crafts/zippable/z
 import { projectExtension } from '../project/archive';
 import { Icon, TipLayer, toast, ToastLayer } from '../ui';
 import { AboutPage } from './about_page';
+import { ChooseCraft, evidenceEndings, roomFor } from './choose_craft';
 import { crafts } from './crafts';
 import { KeysDialog, WorkerDialog } from './shell/dialogs';
 import { droppedFiles } from './dropped_files';
@@ -23,7 +24,7 @@ import { LearnDialog } from './learn/learn_list';
 import { watchPage } from './learn/learning';
 import { go, place } from './route';
 import { formatNames, StartPage } from './start_page';
-import type { Sessions } from './rooms';
+import type { Room, Sessions } from './rooms';
 import { MachineBar } from '../crafts/machines/panel/machine_bar';
 import { drawingEndings, heightMapEnding, jobEndings } from '../crafts/machines/machines_document';
 import { flatView } from '../crafts/zippable/views';
@@ -33,8 +34,6 @@ import { TopBar } from './shell/top_bar';
 
 /** Materials and pictures that may come with a model. */
 const companionEndings = ['.mtl', '.png', '.jpg', '.jpeg'];
-/** What measured objects come as. */
-const evidenceEndings = ['.zip', '.json', '.csv'];
 
 /** The viewport is most of the program; it comes when a place needs it, or when the start screen is at rest. */
 const reliefPage = signal<{ readonly Page: typeof ReliefPageComponent } | null>(null);
@@ -80,6 +79,7 @@ export interface AppProps {
 export function App({ services, sessions }: AppProps) {
   const dialog = useSignal<'keys' | 'worker' | 'learn' | null>(null);
   const dropping = useSignal(false);
+  const choosing = useSignal<readonly File[] | null>(null);
   const input = useRef<HTMLInputElement>(null);
   const chooseFile = () => input.current?.click();
 
@@ -99,15 +99,19 @@ export function App({ services, sessions }: AppProps) {
       return;
     }
     if (files.length === 0) return;
+    const room = roomFor(files, place.value, services.catalog.value);
+    if (room === null) choosing.value = files;
+    else await openIn(room, files);
+  };
+  const openIn = async (room: Room, files: readonly File[]) => {
     try {
       if (place.value === 'start' && !services.projects.isBlank.value) await services.projects.create();
     } catch (thrown) {
       toast(sentenceOf(thrown), true); // what is open could not be saved, and stays
       return;
     }
-    const where = roomOf(place.value);
-    go(where);
-    await sessions[where].openFiles(files);
+    go(room);
+    await sessions[room].openFiles(files);
   };
 
   useFileDrop(dropping, openFiles);
@@ -156,7 +160,6 @@ export function App({ services, sessions }: AppProps) {
           session={sessions.relief}
           onChooseFile={chooseFile}
           onWorkerHelp={() => (dialog.value = 'worker')}
-          onStart={() => go('start')}
           onSendToMill={async (name, heightMap, size) => {
             const taken = await sessions.machines.take(name, heightMap, 'model', size);
             if (taken || sessions.machines.problem.value !== null) go('machines');
@@ -225,8 +228,8 @@ export function App({ services, sessions }: AppProps) {
         accept={[
           ...(services.catalog.value?.mesh_formats ?? []).map((f) => `.${f.extension}`),
           ...companionEndings,
-          ...(where === 'evidence' ? evidenceEndings : []),
-          ...(where === 'machines' ? [...drawingEndings, ...jobEndings] : []),
+          ...(where === 'evidence' || where === 'start' ? evidenceEndings : []),
+          ...(where === 'machines' || where === 'start' ? [...drawingEndings, ...jobEndings] : []),
           `.${projectExtension}`,
         ].join()}
         onChange={(event) => {
@@ -235,6 +238,18 @@ export function App({ services, sessions }: AppProps) {
           if (files.length > 0) void openFiles(files);
         }}
       />
+      {choosing.value ? (
+        <ChooseCraft
+          files={choosing.value}
+          catalog={services.catalog.value}
+          onClose={() => (choosing.value = null)}
+          onChoose={(room) => {
+            const files = choosing.value ?? [];
+            choosing.value = null;
+            void openIn(room, files);
+          }}
+        />
+      ) : null}
       {dialog.value === 'keys' ? <KeysDialog onClose={() => (dialog.value = null)} /> : null}
       {dialog.value === 'learn' ? (
         <LearnDialog projects={services.projects} onClose={() => (dialog.value = null)} />

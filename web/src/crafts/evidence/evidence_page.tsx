@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { signal } from '@preact/signals';
+import { EmptyRoom } from '../../shared/panels/empty_room';
 import { Button, formatCount, formatNumber, Segmented, Sheet, useLasting, withUnit } from '../../ui';
 import { outputOf } from '../../shared/session/full_solve';
 import { useRoomKeys } from '../../shared/session/room_keys';
@@ -82,21 +83,34 @@ export function EvidencePage({ session, onChooseFile }: EvidencePageProps) {
 function Empty({ session, onChooseFile }: EvidencePageProps) {
   const invention = session.operationNamed(inventing);
   return (
-    <div class="empty-view evidence-empty">
-      <p>
-        Find out why a formed part came out wrong. You need the mould (mould.obj), your machine’s settings
-        (setup.json) and the measured points (measured.csv): drop the three files, their folder, or a zip of
-        it.
-      </p>
-      <div class="row">
-        <Button kind="filled" icon="upload" onClick={onChooseFile}>
-          Open a measured object
-        </Button>
-        {invention ? <VirtualObject session={session} operation={invention} /> : null}
-        <PatternButton session={session} />
-      </div>
-      <p class="aside">A photographed scan of a printed sheet, with its pattern.json, is measured first.</p>
-    </div>
+    <EmptyRoom
+      what="Find out why a formed part came out wrong, and what to change in the next print."
+      below={
+        <>
+          <h2>What you need</h2>
+          <ul class="needs">
+            <li>
+              <strong>The model you formed over.</strong> A file named mould.obj.
+            </li>
+            <li>
+              <strong>The machine’s settings.</strong> A file named setup.json: sheet, clamp opening and
+              vacuum.
+            </li>
+            <li>
+              <strong>Measured points of the formed sheet.</strong> A table named measured.csv. A photographed
+              scan of a printed sheet with its pattern.json does as well: its points are measured first.
+            </li>
+          </ul>
+          <p class="aside">Drop the three files together, their folder, or a zip of it.</p>
+        </>
+      }
+    >
+      <Button kind="filled" icon="upload" onClick={onChooseFile}>
+        Open a measured object
+      </Button>
+      {invention ? <VirtualObject session={session} operation={invention} /> : null}
+      <PatternButton session={session} />
+    </EmptyRoom>
   );
 }
 

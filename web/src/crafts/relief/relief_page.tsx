@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { useSignal } from '@preact/signals';
-import { Button, Sheet } from '../../ui';
+import { Sheet } from '../../ui';
 import type { Viewport } from '../../view';
 import { exportMain, Inspector } from './inspector';
 import { viewpointOf } from './meshes';
 import { Notes } from './notes';
 import { solveInFull } from '../../shared/session/full_solve';
 import { useRoomKeys } from '../../shared/session/room_keys';
+import { EmptyModelRoom } from '../../shared/panels/empty_room';
 import '../../shared/panels/room.css';
 import type { ReliefSession } from './relief_session';
 import type { SendToMill } from './send_relief';
@@ -19,14 +20,13 @@ export interface ReliefPageProps {
   readonly session: ReliefSession;
   readonly onChooseFile: () => void;
   readonly onWorkerHelp: () => void;
-  readonly onStart: () => void;
   readonly onSendToMill: SendToMill;
 }
 
 const threeQuarters: Look = { direction: [-0.5, -0.34, -1], up: [0, 1, 0] };
 
 export function ReliefPage(props: ReliefPageProps) {
-  const { session, onChooseFile, onWorkerHelp, onStart } = props;
+  const { session, onChooseFile, onWorkerHelp } = props;
   const viewport = useSignal<Viewport | null>(null);
   const picture = useModelPicture(session, viewport, threeQuarters);
   const { shown } = session;
@@ -56,15 +56,12 @@ export function ReliefPage(props: ReliefPageProps) {
           notes={<Notes session={session} onChooseFile={onChooseFile} onWorkerHelp={onWorkerHelp} />}
         >
           {model === null && session.activity.value.kind !== 'opening' ? (
-            <div class="empty-view">
-              <p>A relief starts from a model.</p>
-              <div class="row">
-                <Button kind="filled" icon="upload" onClick={onChooseFile}>
-                  Open a model
-                </Button>
-                <Button onClick={onStart}>See the samples</Button>
-              </div>
-            </div>
+            <EmptyModelRoom
+              session={session}
+              what="A relief starts from a model. Drop one, or choose a sample."
+              samples={session.services.catalog.value?.samples ?? []}
+              onChooseFile={onChooseFile}
+            />
           ) : null}
         </ViewportPanel>
       </main>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { useSignal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
-import { Button, Sheet } from '../../ui';
+import { Sheet } from '../../ui';
 import type { Viewport } from '../../view';
 import { solveInFull } from '../../shared/session/full_solve';
 import { useRoomKeys } from '../../shared/session/room_keys';
-import { Gallery } from '../../shared/panels/gallery';
+import { EmptyModelRoom } from '../../shared/panels/empty_room';
 import type { Look } from '../../shared/panels/pictures';
 import { useModelPicture, useResultPictures } from '../../shared/panels/pictures';
 import '../../shared/panels/room.css';
@@ -52,7 +52,14 @@ export function ThermoformPage({ session, onChooseFile }: ThermoformPageProps) {
           onViewport={(made) => (viewport.value = made)}
           notes={<Notes session={session} onChooseFile={onChooseFile} />}
         >
-          {model === null && !opening ? <Empty session={session} onChooseFile={onChooseFile} /> : null}
+          {model === null && !opening ? (
+            <EmptyModelRoom
+              session={session}
+              what="A shell starts from a model. Drop one together with its material and picture files, or choose a sample."
+              samples={session.services.catalog.value?.samples ?? []}
+              onChooseFile={onChooseFile}
+            />
+          ) : null}
         </ViewportPanel>
       </main>
       {model ? (
@@ -71,21 +78,5 @@ export function ThermoformPage({ session, onChooseFile }: ThermoformPageProps) {
         </footer>
       ) : null}
     </>
-  );
-}
-
-function Empty({ session, onChooseFile }: ThermoformPageProps) {
-  const samples = session.services.catalog.value?.samples ?? [];
-  return (
-    <div class="thermoform-empty">
-      <p>
-        A shell starts from a model. Drop one together with its material and picture files, or choose a
-        sample.
-      </p>
-      <Button kind="filled" icon="upload" onClick={onChooseFile}>
-        Open a model
-      </Button>
-      <Gallery samples={samples} onOpen={(sample, title) => void session.model.openSample(sample, title)} />
-    </div>
   );
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { useSignal } from '@preact/signals';
-import { Button, Sheet } from '../../ui';
+import { Sheet } from '../../ui';
 import type { Viewport } from '../../view';
 import { solveInFull } from '../../shared/session/full_solve';
 import { useRoomKeys } from '../../shared/session/room_keys';
-import { Gallery } from '../../shared/panels/gallery';
+import { EmptyModelRoom } from '../../shared/panels/empty_room';
 import { zippableSamples } from '../../shared/panels/sample_uses';
 import { useModelPicture, useResultPictures } from '../../shared/panels/pictures';
 import '../../shared/panels/room.css';
@@ -42,6 +42,8 @@ export function ZippablePage({ session, onChooseFile, onSendToMachine }: Zippabl
   }));
   const { model } = session.document.value;
   const opening = session.activity.value.kind === 'opening';
+  const all = session.services.catalog.value?.samples ?? [];
+  const samples = zippableSamples.flatMap((name) => all.find((sample) => sample.name === name) ?? []);
   return (
     <>
       <main class={tool.value ? 'view zippable-view drawing' : 'view zippable-view'} aria-label="Zippable">
@@ -54,7 +56,14 @@ export function ZippablePage({ session, onChooseFile, onSendToMachine }: Zippabl
           />
         </div>
         <FlatRibbon session={session} onSendToMachine={onSendToMachine} />
-        {model === null && !opening ? <Empty session={session} onChooseFile={onChooseFile} /> : null}
+        {model === null && !opening ? (
+          <EmptyModelRoom
+            session={session}
+            what="A zippable starts from a closed model. Drop one, or choose a sample."
+            samples={samples}
+            onChooseFile={onChooseFile}
+          />
+        ) : null}
       </main>
       {model ? (
         <Sheet label="Parameters">
@@ -73,19 +82,5 @@ export function ZippablePage({ session, onChooseFile, onSendToMachine }: Zippabl
         </footer>
       ) : null}
     </>
-  );
-}
-
-function Empty({ session, onChooseFile }: Omit<ZippablePageProps, 'onSendToMachine'>) {
-  const all = session.services.catalog.value?.samples ?? [];
-  const samples = zippableSamples.flatMap((name) => all.find((sample) => sample.name === name) ?? []);
-  return (
-    <div class="zippable-empty">
-      <p>A zippable starts from a closed model. Drop one, or choose a sample.</p>
-      <Button kind="filled" icon="upload" onClick={onChooseFile}>
-        Open a model
-      </Button>
-      <Gallery samples={samples} onOpen={(sample, title) => void session.model.openSample(sample, title)} />
-    </div>
   );
 }

@@ -215,3 +215,15 @@ export const meshInput = (mesh: BlobReference, name: string): JobInput => ({
 });
 
 export const titleOf = (source: Source): string => (source.kind === 'file' ? source.file_name : source.title);
+
+/** The models of a project's other rooms, each once, by the hash of its mesh. */
+export function modelsElsewhere({ crafts }: ProjectDocument, craft: string): CraftModel[] {
+  const found = new Map<string, CraftModel>();
+  for (const [name, room] of Object.entries(crafts)) {
+    if (name === craft || !isObject(room) || !isObject(room['model'])) continue;
+    const model = room['model'] as unknown as Partial<CraftModel>;
+    if (model.mesh && model.preview && model.source && model.report)
+      found.set(model.mesh.blob, model as CraftModel);
+  }
+  return [...found.values()];
+}

@@ -6,7 +6,7 @@ import type { Catalog, JobInput, JsonObject, Operation } from '../../jobs/contra
 import { asJobError, findOperation, JobError } from '../../jobs/contract';
 import type { BlobReference } from '../../project/document';
 import type { Companion, CraftCommands, CraftDocument, CraftModel, Source, Subject } from './craft_document';
-import { nameProject, subjectOf, titleOf } from './craft_document';
+import { modelsElsewhere, nameProject, subjectOf, titleOf } from './craft_document';
 import { importModel } from './import_model';
 import { readMesh } from './read_mesh';
 import { sentences } from './report';
@@ -58,6 +58,10 @@ export class OpenedModel<D extends CraftDocument = CraftDocument> {
     const { model } = this.#room.document.value;
     return model && this.#subjectOf(model.preview);
   });
+  /** Models that other rooms of the project have, each once. */
+  readonly elsewhere = computed(() =>
+    modelsElsewhere(this.#room.services.projects.document.value, this.#rules.commands.craft),
+  );
   readonly #room: RoomSession<D>;
   readonly #rules: OpeningRules<D>;
 
@@ -95,6 +99,25 @@ export class OpenedModel<D extends CraftDocument = CraftDocument> {
     });
   }
 
+  /** Opens a model that another room has read. */
+  take(model: CraftModel): void {
+    const operation = this.#room.operation.value;
+    if (operation === null) return;
+    const { projects } = this.#room.services;
+    projects.do(this.#openCommand(operation, model, titleOf(model.source)));
+    projects.commit();
+  }
+
+  #openCommand(operation: Operation, model: CraftModel, name: string) {
+    return this.#rules.commands.openModel(
+      operation,
+      model,
+      `Open ${name}`,
+      this.#rules.ownParameters?.(model.source) ?? {},
+      this.#rules.forgets,
+    );
+  }
+
   async openSample(sample: string, title: string): Promise<boolean> {
     return await this.#open(title, () => Promise.resolve({ kind: 'sample', sample, title }));
   }
@@ -108,15 +131,7 @@ export class OpenedModel<D extends CraftDocument = CraftDocument> {
         const operation = await this.#needOperation();
         const model: CraftModel = await importModel(browser, projects.blobs, await getSource(), options);
         const first = projects.isBlank.value && projects.document.value.name === 'New project';
-        options.do(
-          this.#rules.commands.openModel(
-            this.#room.operation.value ?? operation,
-            model,
-            `Open ${name}`,
-            this.#rules.ownParameters?.(model.source) ?? {},
-            this.#rules.forgets,
-          ),
-        );
+        options.do(this.#openCommand(this.#room.operation.value ?? operation, model, name));
         if (first) options.do(nameProject(name.replace(/\.[^.]+$/, '')));
         this.repairsOpen.value = sentences(model.report, 'repairs').length > 0;
         return true;

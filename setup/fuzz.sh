@@ -4,6 +4,7 @@
 #   FUZZ_SECONDS=600 setup/fuzz.sh [obj stl ply glb ...]   all targets, or these
 #   setup/fuzz.sh --table                                  what all runs so far came to, by target
 # New inputs stay in the cache folder, where the next run begins; so do the logs of which --table adds up the figures.
+# FUZZ_JOBS targets run beside each other (1). The seconds in the table are processor time.
 # What it finds stays in build-fuzz/findings; each target goes on after a finding until its time is up or it has found ten.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -19,7 +20,7 @@ statistic() {  # log, name, sum or largest
 
 table() {
   local log name
-  printf '%s\n' '| target | runs | seconds | edges | largest memory, MB | slowest, s | found |' '|---|---:|---:|---:|---:|---:|---:|'
+  printf '%s\n' '| target | runs | processor time, s | edges | largest memory, MB | slowest, s | found |' '|---|---:|---:|---:|---:|---:|---:|'
   for log in "$logs"/*.log; do
     [ -f "$log" ] || continue
     name="$(basename "$log" .log)"
@@ -50,26 +51,41 @@ else
 fi
 [ ${#targets[@]} -gt 0 ] || fail "no fuzz target was built" "name its CMake target fuzz_<what>"
 
-status=0
-for name in "${targets[@]}"; do
-  mkdir -p "$corpus/$name" "build-fuzz/seeds/$name"
-  dictionary="tests/fuzz/dictionaries/$name.dict" log="$logs/$name.log" begin=$SECONDS found=0
+# Runs one target until its time is up; "found" in its log counts what it was restarted for.
+fuzz_one() {  # name
+  local name="$1" begin=$SECONDS end found=0
+  local dictionary="tests/fuzz/dictionaries/$name.dict" log="$logs/$name.log"
   end=$((begin + ${FUZZ_SECONDS:-60}))
+  mkdir -p "$corpus/$name" "build-fuzz/seeds/$name"
   # The memory of one input is counted by the target itself (fuzz_entry.cpp); these limits end what runs away.
-  options=(-max_len=1048576 -timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=1024 -print_final_stats=1)
+  local options=(-max_len=1048576 -timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=1024 -print_final_stats=1)
   [ ! -f "$dictionary" ] || options+=(-dict="$dictionary")
-  folders=("$corpus/$name" "build-fuzz/seeds/$name")
+  local folders=("$corpus/$name" "build-fuzz/seeds/$name")
   [ ! -d "tests/fuzz/found/$name" ] || folders+=("tests/fuzz/found/$name")
   while [ $SECONDS -lt $end ] && [ $found -lt 10 ]; do
-    if nice -n 19 "build-fuzz/tests/fuzz/fuzz_$name" "${options[@]}" -max_total_time=$((end - SECONDS)) \
+    if nice -n "${FUZZ_NICE:-19}" "build-fuzz/tests/fuzz/fuzz_$name" "${options[@]}" -max_total_time=$((end - SECONDS)) \
       -artifact_prefix="$findings/$name-" "${folders[@]}" >>"$log" 2>&1; then
       break
     fi
-    found=$((found + 1)) status=1
+    found=$((found + 1))
     grep -E '^SUMMARY|Test unit written' "$log" | tail -n 2 >&2
   done
-  echo "stat::seconds: $((SECONDS - begin))" >>"$log"
+  # Of this subshell's children, user and system time: "1m2.345s 0m1.234s" in the second line.
+  times | awk -F'[ms ]+' 'NR == 2 { printf "stat::seconds: %d\n", $1 * 60 + $2 + $3 * 60 + $4 }' >>"$log"
   printf '%s: %d s, %d inputs kept, %d findings\n' "$name" $((SECONDS - begin)) "$(find "$corpus/$name" -type f | wc -l)" "$found"
+  [ $found -eq 0 ]
+}
+
+status=0
+running=()
+for name in "${targets[@]}"; do
+  fuzz_one "$name" &
+  running+=($!)
+  if [ ${#running[@]} -ge "${FUZZ_JOBS:-1}" ]; then
+    wait "${running[0]}" || status=1
+    running=("${running[@]:1}")
+  fi
 done
+for job in "${running[@]}"; do wait "$job" || status=1; done
 table
 exit $status

@@ -22,7 +22,8 @@ void Context::progress(double fraction) { progress(fraction, stage_); }
 
 void Context::progress(double fraction, const std::string& stage) {
   check_cancelled();
-  if (!host_.on_progress) return;
+  // In a span without width there is nothing to report, neither fraction nor stage.
+  if (!host_.on_progress || !(to_ > from_)) return;
   const auto now = Clock::now();
   const bool new_stage = stage != stage_;
   const double whole = from_ + (to_ - from_) * std::clamp(fraction, 0.0, 1.0);
@@ -30,11 +31,7 @@ void Context::progress(double fraction, const std::string& stage) {
   if (!new_stage && now - last_message_ < std::chrono::milliseconds(50)) return;
   stage_ = stage;
   last_message_ = now;
-  Progress message{reported_, stage_, std::nullopt};
-  const double elapsed = std::chrono::duration<double>(now - start_).count();
-  // Below 3 % or 0.3 s an extrapolation would only flicker.
-  if (reported_ > 0.03 && elapsed > 0.3) message.seconds_left = elapsed * (1 - reported_) / reported_;
-  host_.on_progress(message);
+  host_.on_progress({reported_, stage_, std::nullopt});
 }
 
 Context::Span::Span(Context& context, double from, double to)
@@ -50,7 +47,7 @@ Context::Span::~Span() {
 }
 
 Context::Span Context::span(double from, double to, const std::string& stage) {
-  progress(from, stage);
+  if (to > from) progress(from, stage);
   return Span(*this, from, to);
 }
 

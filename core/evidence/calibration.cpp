@@ -121,7 +121,10 @@ std::vector<ParameterProfile> profile(SimulationBag& bag, const ParameterFit& fi
 /// Predictions at the nominal point; sets the error before and the noise.
 Predictions at_nominal(SimulationBag& bag, Calibration& result, Context& context) {
   const ForwardModel& model = bag.model();
-  auto nominal = bag.run(model.nominal(), context, "Simulating the set-up as it is");
+  auto nominal = [&] {
+    const auto span = context.span(0, 0.05, "Simulating the set-up as it is");
+    return bag.run(model.nominal(), context, "Simulating the set-up as it is");
+  }();
   if (!nominal)
     throw Error(ErrorCode::could_not_solve, "",
                 "The simulation fails with the set-up's own parameters: check mould and set-up.");
@@ -163,8 +166,11 @@ Calibration calibrate(SimulationBag& bag, Context& context) {
     const auto span = context.span(0.6, 1, "Finding how certain each parameter is");
     // What another, equally good simulation would do differently is not known any better than that.
     const std::vector<int> discrepancies = model.parameters_with(ParameterRole::discrepancy);
-    const std::vector<Sensitivities> freedom =
-        sensitivities_at(bag, fit.u, fit.predictions, discrepancies, context, "Finding how certain each parameter is");
+    const std::vector<Sensitivities> freedom = [&] {
+      const auto begin = context.span(0, 0.3, "Finding how certain each parameter is");
+      return sensitivities_at(bag, fit.u, fit.predictions, discrepancies, context,
+                              "Finding how certain each parameter is");
+    }();
     const std::vector<Eigen::VectorXd> weights = take_noise(model, residuals(model, fit.predictions), result.noise);
     // Directions alike: what little the simulation errs across walls, the material would be made to answer for.
     std::vector<Precisions> precisions = precisions_of(model, weights, movements_of(model, discrepancies, freedom));

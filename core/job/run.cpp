@@ -9,6 +9,7 @@
 
 #include "geometry/samples/samples.h"
 #include "job/catalog.h"
+#include "job/progress/timed_host.h"
 
 namespace formwright {
 namespace {
@@ -175,9 +176,10 @@ std::optional<JobError> check_job(const Json& message) {
 JobResult run_job(const Json& message, const BlobSource& blobs, Session& session, const Host& host) {
   sum_alike_on_every_processor();
   JobResult result;
-  Context context(host);
   result.error = caught([&] {
     const Operation& operation = operation_of(message);
+    TimedHost timed(host, operation.name, session);
+    Context context(timed.host());
     std::map<std::string, InputBlob> inputs = read_inputs(operation, message);
     const std::vector<std::string> wanted = read_wanted(operation, message);
     const PreparedOperation prepared = operation.prepare(parameters_of(message));
@@ -199,6 +201,7 @@ JobResult run_job(const Json& message, const BlobSource& blobs, Session& session
         made.report[field.old_name] = made.report[field.name];
     result.report = std::move(made.report);
     result.outputs = std::move(made.outputs);
+    timed.succeeded();
   });
   if (result.error) result.report = Json(), result.outputs.clear();
   return result;

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The child process of the worker: one JSON message a line in, one a line out.
-//   in:  {"run": id, "job": message, "blobs": {sha256: path}, "outputs": folder, "results": folder} | {"cancel": id}
+//   in:  {"run": id, "job": message, "blobs": {sha256: path}, "outputs": folder, "results": folder, "time_shares"?:
+//   bool}
+//        | {"cancel": id}
 //   out: {"progress": id, ...}
-//        | {"finished": id, "result": message, "altered_blobs": [sha256, ...], "stuck"?: true}
+//        | {"finished": id, "result": message, "altered_blobs": [sha256, ...], "stuck"?: true, "time_shares"?: [...]}
 //        | {"finished": id, "not_kept": sentence}: the disk did not take the outputs, the job is to run again
 // `stuck`: the solver did not hear that its time was up, and this process takes no further job.
+// `time_shares`: how this process's runs of the operation spent their time, for tests/bench/progress.mjs.
 // Paths come from the server, which makes them from hashes and identifiers only.
 #include <sys/prctl.h>
 #include <unistd.h>
@@ -21,6 +24,7 @@
 #include "base/sha256.h"
 #include "system/files.h"
 #include "system/host.h"
+#include "job/progress/timed_host.h"
 #include "job/run.h"
 #include "jobs/job_runner.h"
 #include "jobs/solver_limits.h"
@@ -196,6 +200,10 @@ int run_jobs_for_server(const std::vector<std::string>& words) {
       Json& result = answer["result"];
       const bool cancelled = result.contains("error") && result["error"]["code"] == to_string(ErrorCode::cancelled);
       if (cancelled && !inbox.cancelled()) result = time_is_up(options);
+    }
+    if (request.value("time_shares", false)) {
+      const auto shares = learned_time_shares(request["job"]["operation"].get<std::string>(), session);
+      answer["time_shares"] = shares ? Json(*shares) : Json(nullptr);
     }
     send(answer);
   }

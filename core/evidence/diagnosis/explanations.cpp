@@ -36,12 +36,16 @@ void Explanations::estimate_noise_about(const Predictions& predictions) {
 
 void Explanations::calibrate() {
   const auto span = context_.span(0, 0.2, "Calibrating");
-  auto at_nominal = bag_.run(model_.nominal(), context_, "Calibrating");
+  auto at_nominal = [&] {
+    const auto begin = context_.span(0, 0.05, "Calibrating");
+    return bag_.run(model_.nominal(), context_, "Calibrating");
+  }();
   if (!at_nominal)
     throw Error(ErrorCode::could_not_solve, "",
                 "The simulation fails with the set-up's own parameters: check mould and set-up.");
   at_nominal_ = std::move(*at_nominal);
   estimate_noise_about(at_nominal_);
+  const auto rest = context_.span(0.05, 1, "Calibrating");
   base_ = fit_parameters(bag_, *mean_distance_objective(model_, softness()), model_.base_parameters(), model_.nominal(),
                          {}, {}, context_, "Calibrating");
   estimate_noise_about(base_.predictions);

@@ -152,14 +152,21 @@ ParameterFit fit_parameters(SimulationBag& bag, const FitObjective& objective, c
   ParameterFit fit;
   fit.free = free;
   fit.u = within_ranges(model, start);
-  const auto first = bag.run(fit.u, context, stage);
+  constexpr double prepared = 0.3;  // of the work: simulations about the start
+  const auto first = [&] {
+    const auto span = context.span(0, 0.05, stage);
+    return bag.run(fit.u, context, stage);
+  }();
   if (!first)
     throw Error(ErrorCode::could_not_solve, "",
                 "The simulation fails at the parameters to start from: check the set-up.");
   fit.predictions = *first;
   fit.value = objective.value(residuals(model, fit.predictions), fit.u);
   bool fresh = known.empty();
-  fit.sensitivities = fresh ? sensitivities_at(bag, fit.u, fit.predictions, free, context, stage) : std::move(known);
+  {
+    const auto span = context.span(0.05, prepared, stage);
+    fit.sensitivities = fresh ? sensitivities_at(bag, fit.u, fit.predictions, free, context, stage) : std::move(known);
+  }
 
   const auto k = static_cast<Eigen::Index>(free.size());
   Eigen::VectorXd probe(k);
@@ -168,8 +175,8 @@ ParameterFit fit_parameters(SimulationBag& bag, const FitObjective& objective, c
   double damping = 0.03;
   int small_gains = 0;
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
-    const auto span = context.span(static_cast<double>(iteration) / options.max_iterations,
-                                   (iteration + 1.0) / options.max_iterations, stage);
+    const auto until = [&](int done) { return prepared + (1 - prepared) * done / options.max_iterations; };
+    const auto span = context.span(until(iteration), until(iteration + 1), stage);
     Eigen::VectorXd g, low(k), high(k);
     Eigen::MatrixXd H;
     objective.quadratic(residuals(model, fit.predictions), fit.sensitivities, free, fit.u, g, H);
@@ -192,7 +199,10 @@ ParameterFit fit_parameters(SimulationBag& bag, const FitObjective& objective, c
       points.push_back(fit.u);
       for (Eigen::Index a = 0; a < k; ++a) points.back()[free[static_cast<std::size_t>(a)]] += steps.back()[a];
     }
-    const auto tried = bag.run(points, context, stage);
+    const auto tried = [&] {
+      const auto half = context.span(0, 0.5, stage);
+      return bag.run(points, context, stage);
+    }();
     int best = -1;
     double best_value = fit.value;
     for (int c = 0; c < 2; ++c) {
@@ -218,6 +228,7 @@ ParameterFit fit_parameters(SimulationBag& bag, const FitObjective& objective, c
       small_gains = gain < options.tolerance ? small_gains + 1 : 0;
       if (small_gains >= 2) break;
     } else if (!fresh && options.renew_sensitivities) {
+      const auto half = context.span(0.5, 1, stage);
       fit.sensitivities = sensitivities_at(bag, fit.u, fit.predictions, free, context, stage);
       fresh = true;
     } else {

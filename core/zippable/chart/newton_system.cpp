@@ -59,6 +59,7 @@ NewtonSystem::NewtonSystem(const SeamlessChart& chart, Context& context) : chart
   terms_.resize(m);
   held_.assign(n, 0);
   std::fill(lower_.valuePtr(), lower_.valuePtr() + entries, 1.0);
+  const auto span = context.span(0, ordering_share, "Ordering");
   cholesky_.analyze(lower_, Positions(), context);
 }
 
@@ -129,6 +130,7 @@ bool NewtonSystem::solve(NewtonStep& step, double damping, Context& context) {
     for (int j = 0; j < n; ++j) damped.valuePtr()[damped.outerIndexPtr()[j]] *= 1 + damping;
   }
   try {
+    const auto quiet = context.span(0, 0, "");  // how many solutions there will be is not known
     cholesky_.factorize(damping > 0 ? damped : lower_, context);
   } catch (const Error& error) {
     if (error.code() == ErrorCode::could_not_solve) return false;

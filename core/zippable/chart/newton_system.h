@@ -20,6 +20,9 @@ struct NewtonStep {
   double slope = 0;  // gradient times step; negative
 };
 
+/// Of the progress of a parameterisation, what analysing the pattern takes.
+inline constexpr double ordering_share = 0.15;
+
 class NewtonSystem {
  public:
   /// Finds the pattern and analyses it. Throws Error: cancelled, out_of_memory.

@@ -226,7 +226,9 @@ void Solver::iterate() {
   double value = energy(uv);
   bool try_true = false;
   for (result_.iterations = 0; result_.iterations < options_.iterations_max;) {
-    context_.progress(std::min(0.95, result_.iterations / 40.0), "Parameterising");
+    const double usual_iterations = 40;
+    context_.progress(ordering_share + (1 - ordering_share) * std::min(0.95, result_.iterations / usual_iterations),
+                      "Parameterising");
     NewtonStep step;
     bool solved = false;
     if (try_true) {

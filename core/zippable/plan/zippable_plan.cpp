@@ -90,6 +90,15 @@ std::vector<CutSheet> lay_out(const ZippablePlan& plan, const PlanOptions& optio
   return sheets;
 }
 
+/// How wide a tape may be that lies flat behind the ribbon and stays off the seam of the other edge's tape.
+double tape_room_mm(const ZippablePlan& plan) {
+  constexpr double seam_mm = 3;  // from the cloth's edge to behind the stitches
+  return plan.width_mean_mm - plan.zipper.teeth_width_mm - plan.zipper.gap_mm - seam_mm;
+}
+constexpr double min_tape_mm = 5;    // less cannot be sewn
+constexpr double min_tab_mm = 2;     // less does not hold
+constexpr double min_text_mm = 1.5;  // less cannot be read on cloth
+
 void say_what_to_know(const FlatDesign& design, const PlanOptions& options, ZippablePlan& plan) {
   const auto plural = [](int count, const std::string& one, const std::string& many) {
     return count == 1 ? "1 " + one : std::to_string(count) + " " + many;
@@ -101,10 +110,22 @@ void say_what_to_know(const FlatDesign& design, const PlanOptions& options, Zipp
         "Along " + with_digits(plan.ribbon.narrow_mm / 10, 2) + " of " + with_digits(design.zipper_mm / 10, 3) +
         " cm of zipper the ribbon's edges turn too tightly to leave all the room that the teeth need: sew slowly there." +
         (plan.ribbon.narrow_mm > usual_share * design.zipper_mm ? " A smaller zipper or a wider ribbon helps." : ""));
+    if (options.coil > ZipperCoil::coil_3 && plan.ribbon.narrow_mm > usual_share * design.zipper_mm)
+      plan.fixes.push_back({plan.notes.back(),
+                            "Use the smallest zipper",
+                            {{"coil", EnumNames<ZipperCoil>::names[static_cast<std::size_t>(ZipperCoil::coil_3)]}}});
   }
-  if (2 * plan.zipper.tape_width_mm > plan.width_mean_mm)
-    plan.notes.push_back(
-        "The two tapes are wider than the ribbon and overlap behind it: trim them or use a wider ribbon.");
+  if (const double room_mm = tape_room_mm(plan); plan.zipper.tape_width_mm > room_mm) {
+    const double missing_mm = plan.zipper.tape_width_mm - room_mm;
+    plan.notes.push_back("Behind the ribbon each tape reaches the seam of the other one: trim the tapes by " +
+                         with_decimals(missing_mm, 0) + " mm, or make the ribbon " + with_decimals(missing_mm, 0) +
+                         " mm wider.");
+    const double trimmed_mm = std::floor(room_mm);
+    if (trimmed_mm >= min_tape_mm)
+      plan.fixes.push_back({plan.notes.back(),
+                            "Trim the tapes to " + with_decimals(trimmed_mm, 0) + " mm",
+                            {{"tape_width_mm", trimmed_mm}}});
+  }
   constexpr double crumb_mm2 = 20;
   const auto crumbs = std::count_if(plan.pieces.pieces.begin(), plan.pieces.pieces.end(),
                                     [](const PlanPiece& piece) { return piece.ribbon_area_mm2 < crumb_mm2; });
@@ -117,11 +138,19 @@ void say_what_to_know(const FlatDesign& design, const PlanOptions& options, Zipp
   if (plan.pieces.left_out_texts > 0)
     plan.notes.push_back(plural(plan.pieces.left_out_texts, "number or letter", "numbers and letters") +
                          " found no room: lower the text height.");
+  if (plan.pieces.left_out_texts > 0 && options.text_height_mm > min_text_mm)
+    plan.fixes.push_back({plan.notes.back(),
+                          "Print smaller numbers",
+                          {{"text_height_mm", std::max(min_text_mm, options.text_height_mm - 1)}}});
   if (plan.tabs && plan.tabs->shortened + plan.tabs->left_out > 0)
     plan.notes.push_back(
         plural(plan.tabs->shortened, "tab is", "tabs are") + " shorter and " +
         plural(plan.tabs->left_out, "is", "are") +
         " left out where paper lies too close beside them. Use a wider ribbon or a smaller tab depth.");
+  if (plan.tabs && plan.tabs->shortened + plan.tabs->left_out > 0 && options.tab_depth_mm > min_tab_mm)
+    plan.fixes.push_back({plan.notes.back(),
+                          "Make the tabs less deep",
+                          {{"tab_depth_mm", std::max(min_tab_mm, options.tab_depth_mm - 1)}}});
   const auto whole_mm = [](double mm) { return std::to_string(static_cast<int>(std::lround(mm))) + " mm"; };
   if (plan.closures.narrow_mm > 1)
     plan.notes.push_back(

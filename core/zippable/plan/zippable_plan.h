@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/data/fix.h"
 #include "base/context.h"
 #include "fabrication/sheet/nesting.h"
 #include "zippable/plan/pieces/plan_pieces.h"
@@ -34,6 +35,7 @@ struct ZippablePlan {
   double area_before_mm2 = 0;  // of the ribbon with room for the zipper, before splitting
   double width_mean_mm = 0;    // of the ribbon as designed: its area over the zipper's length
   std::vector<std::string> notes;
+  std::vector<Fix> fixes;  // of some notes
   double seconds_offset = 0, seconds_split = 0, seconds_nest = 0;
 
   bool has_tape() const { return zipper.tape_width_mm > 0; }

@@ -118,6 +118,7 @@ ZippingSystem::ZippingSystem(const RibbonPattern& pattern, const ClothMaterial& 
     for (const Slot& s : {slot(pair.left, pair.left), slot(pair.right, pair.right), slot(pair.left, pair.right)})
       seam_slots_.push_back(s);
   terms_.resize(triangles_.size());
+  const auto quiet = context.span(0, 0, "");
   cholesky_.analyze(lower_, {}, context);
 }
 
@@ -224,6 +225,7 @@ ZippingSystem::Progress ZippingSystem::minimise(Positions& x, int iterations_max
   Positions gradient(x.rows(), 3), trial(x.rows(), 3);
   Eigen::VectorXd step(3 * x.rows());
   double objective = objective_mj(x);
+  const auto quiet = context.span(0, 0, "");
   while (progress.iterations < iterations_max) {
     context.check_cancelled();
     assemble(x, gradient);

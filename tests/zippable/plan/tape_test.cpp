@@ -131,5 +131,31 @@ TEST_CASE("TapeTemplate.PaperNeedsNoneAndTooWideATapeIsRefused") {
   }
 }
 
+TEST_CASE("ZippablePlan.ATapeThatReachesTheOtherSeamIsSaidWithItsFixAndTheUsualOneFitsTheUsualRibbon") {
+  const auto notes_of_tapes = [](double width_mm, const PlanOptions& options) {
+    Context context;
+    const ZippablePlan plan = plan_zippable(test::strip(400, width_mm, 41), options, context);
+    int notes = 0;
+    for (const std::string& note : plan.notes) notes += note.find("trim the tapes") != std::string::npos;
+    return std::pair{notes, plan.fixes};
+  };
+  PlanOptions options;
+  // Tape 11.5, teeth 4.2, gap 0.8 and seam 3 mm: 19.5 mm are just enough.
+  CHECK(notes_of_tapes(20, options).first == 0);
+  CHECK(notes_of_tapes(19.6, options).first == 0);
+  CHECK(notes_of_tapes(19.4, options).first == 1);
+  const auto [notes, fixes] = notes_of_tapes(15, options);
+  CHECK(notes == 1);
+  REQUIRE(fixes.size() == 1);
+  CHECK(fixes[0].parameters == Json{{"tape_width_mm", 7.0}});
+  // What the fix says helps.
+  options.tape_width_mm = fixes[0].parameters["tape_width_mm"].get<double>();
+  CHECK(notes_of_tapes(15, options).first == 0);
+  // A ribbon that no tape can be trimmed for gets no such fix.
+  const auto [narrow_notes, narrow_fixes] = notes_of_tapes(10, PlanOptions{});
+  CHECK(narrow_notes == 1);
+  for (const Fix& fix : narrow_fixes) CHECK_FALSE(fix.parameters.contains("tape_width_mm"));
+}
+
 }  // namespace
 }  // namespace formwright

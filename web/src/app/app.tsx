@@ -99,7 +99,9 @@ export function App({ services, sessions }: AppProps) {
       return;
     }
     if (files.length === 0) return;
-    const room = roomFor(files, place.value, services.catalog.value);
+    // Until the solver has started nothing is known of formats; without one the room says so.
+    const catalog = services.catalog.value ?? (await services.browser.catalog().catch(() => null));
+    const room = roomFor(files, place.value, catalog);
     if (room === null) choosing.value = files;
     else await openIn(room, files);
   };

@@ -97,7 +97,11 @@ Calibration search(SimulationBag& bag, const CalibrateOptions& o, Context& conte
 
 OperationResult run_evidence_calibrate(const OperationCall& call, const CalibrateOptions& o) {
   require_each_once(call, "measured.csv");
-  std::vector<FormedObject> objects = read_formed_objects(call, "object");
+  std::vector<FormedObject> objects;
+  {
+    const auto span = call.context.span(0, 0.01, "Reading the objects");
+    objects = read_formed_objects(call, "object");
+  }
   ThermoformModelOptions options;
   options.triangles = o.triangles;
   options.fit_mould_place = true;

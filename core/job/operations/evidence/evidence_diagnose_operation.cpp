@@ -70,12 +70,17 @@ OperationResult run_evidence_diagnose(const OperationCall& call, const DiagnoseO
   ThermoformModelOptions options;
   options.triangles = o.triangles;
   options.profile = read_profile_input(call);
-  std::vector<FormedObject> unseen = read_formed_objects(call, "unseen");
-  const ThermoformModel model(read_formed_objects(call, "object"), options);
+  std::vector<FormedObject> unseen, objects;
+  {
+    const auto span = call.context.span(0, 0.01, "Reading the objects");
+    unseen = read_formed_objects(call, "unseen");
+    objects = read_formed_objects(call, "object");
+  }
+  const ThermoformModel model(std::move(objects), options);
   // An object that cannot be formed is refused before the fits, which take minutes.
   std::unique_ptr<const ThermoformModel> other;
   if (!unseen.empty()) {
-    const auto span = call.context.span(0, 0.02, "Simulating the validation object");
+    const auto span = call.context.span(0.01, 0.02, "Simulating the validation object");
     other = std::make_unique<const ThermoformModel>(std::move(unseen), options);
     for (std::size_t i = 0; i < other->objects().size(); ++i)
       other->predict(static_cast<int>(i), other->nominal(), call.context);
@@ -83,7 +88,7 @@ OperationResult run_evidence_diagnose(const OperationCall& call, const DiagnoseO
   SimulationBag bag(model);
   Diagnosis diagnosis;
   {
-    const auto span = call.context.span(other ? 0.02 : 0, o.separate ? 0.85 : 0.95, "Diagnosing");
+    const auto span = call.context.span(other ? 0.02 : 0.01, o.separate ? 0.85 : 0.95, "Diagnosing");
     DiagnosisOptions own;
     own.pairs = o.pairs;
     diagnosis = diagnose(bag, own, call.context);

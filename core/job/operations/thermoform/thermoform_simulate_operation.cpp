@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
 
 #include "geometry/mesh/adjacency.h"
+#include "base/data/fix.h"
 #include "base/format.h"
 #include "job/contract/operation_options.h"
 #include "job/operations/thermoform/thermoform_input.h"
@@ -76,24 +78,43 @@ std::vector<ReportField> thermoform_simulate_report_fields() {
       {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."},
       {"repairs", "Repairs", "", "What was found wrong in the model and repaired, as sentences."},
       {"notes", "Notes", "", "Decisions that were made automatically, as sentences."},
-      {"warnings", "Warnings", "", "What may go wrong in the machine, as sentences."}};
+      {"warnings", "Warnings", "", "What may go wrong in the machine, as sentences."},
+      {"fixes", "Fixes", "", fixes_help}};
 }
 
-/// What a maker should know before heating a sheet.
-Json warnings(const FormedResult& result, const ThermoformOptions& o, bool watertight) {
-  Json list = Json::array();
+/// What a maker should know before heating a sheet. `height_mm`: of the model above the plate.
+std::vector<std::string> warnings(const FormedResult& result, const ThermoformOptions& o, double height_mm,
+                                  bool watertight, std::vector<Fix>& fixes) {
+  std::vector<std::string> list;
+  // A model that stands less high draws less of the sheet: on cat, bust, pyramid and star it thins less and folds less.
+  const auto lower_it = [&] {
+    const double by_mm = std::round(0.2 * height_mm);
+    if (by_mm >= 1)
+      fixes.push_back({list.back(),
+                       "Lower it " + with_decimals(by_mm, 0) + " mm into the plate",
+                       {{"sink_mm", o.sink_mm + by_mm}}});
+  };
   const double thin = 0.3 * o.sheet_thickness_mm;
-  if (result.min_thickness_mm < thin)
+  if (result.min_thickness_mm < thin) {
     list.push_back(
         "The sheet thins to " + with_digits(result.min_thickness_mm, 2) +
         " mm, less than a third of its thickness: it may tear there. A lower model, rounder edges or a thicker sheet help.");
-  if (result.webbing_area_mm2 > 0.005 * (result.formed_area_mm2 + result.unformed_area_mm2))
+    lower_it();
+  }
+  if (result.webbing_area_mm2 > 0.005 * (result.formed_area_mm2 + result.unformed_area_mm2)) {
     list.push_back("Parts of the sheet are squeezed (" + with_digits(result.webbing_area_mm2 / 100, 2) +
                    " cm²): it may fold into webs there. More distance between tall parts, or from the clamp, helps.");
+    lower_it();
+  }
   if (result.unformed_area_mm2 > 0.02 * (result.formed_area_mm2 + result.unformed_area_mm2))
     list.push_back(with_digits(result.unformed_area_mm2 / 100, 2) +
                    " cm² of the sheet hang free, so corners there come out rounded.");
-  if (result.reached_time_limit) list.push_back("The sheet was still moving at the time limit: raise the time limit.");
+  if (result.reached_time_limit) {
+    list.push_back("The sheet was still moving at the time limit: raise the time limit.");
+    constexpr double max_time_limit_s = 60;
+    if (const double longer_s = std::min(2 * o.time_limit_s, max_time_limit_s); longer_s > o.time_limit_s)
+      fixes.push_back({list.back(), "Wait " + with_digits(longer_s, 3) + " s", {{"time_limit_s", longer_s}}});
+  }
   if (!watertight)
     list.push_back(
         "The model has holes. Forming works, but a mould needs a closed model: fill the holes before making one.");
@@ -183,7 +204,9 @@ OperationResult run_thermoform_simulate(const OperationCall& call, const Json& g
   if (simulation.setup)
     for (const std::string& note : simulation.setup->notes) notes.push_back(note);
   report["notes"] = notes;
-  report["warnings"] = warnings(formed, o, watertight);
+  std::vector<Fix> fixes;
+  report["warnings"] = warnings(formed, o, placed.V.col(2).maxCoeff(), watertight, fixes);
+  report["fixes"] = fixes_json(fixes);
   return result;
 }
 

@@ -128,7 +128,8 @@ std::vector<ReportField> zippable_plan_report_fields() {
       {"seconds_nest", "Nesting", "s", "Time for placing the pieces on sheets."},
       {"seconds_write", "Writing", "s", "Time for writing the output files."},
       {"peak_memory_mb", "Peak memory", "MB", "Largest amount of memory that the process used."},
-      {"notes", "Notes", "", "What to know about the result, as sentences."}};
+      {"notes", "Notes", "", "What to know about the result, as sentences."},
+      {"fixes", "Fixes", "", std::string(fixes_help)}};
 }
 
 void report_lengths(Json& report, const FlatDesign& design, const ZippablePlan& plan) {
@@ -335,6 +336,7 @@ OperationResult run_zippable_plan(const OperationCall& call, const PlanOptions& 
   result.report["seconds_nest"] = plan.seconds_nest;
   result.report["seconds_write"] = watch.seconds();
   result.report["notes"] = plan.notes;
+  result.report["fixes"] = fixes_json(plan.fixes);
   return result;
 }
 

@@ -6,7 +6,7 @@ import { ModelRow } from '../../shared/panels/model_row';
 import { ParameterPanel } from '../../shared/panels/parameter_panel';
 import { placementNow } from './draw_scene';
 import { MainButton } from './export_button';
-import { boxOf } from './placement';
+import { boxOf, sizeBeforeTurning_mm } from './placement';
 import type { ThermoformSession } from './thermoform_session';
 
 export interface InspectorProps {
@@ -24,9 +24,7 @@ function automaticValues(session: ThermoformSession): Record<string, number> {
   const original = session.model.original.value;
   const placement = placementNow(session);
   if (original === null || placement === null) return {};
-  const scale = Math.hypot(...[0, 1, 2].map((at) => placement[at] ?? 0));
-  const { low, high } = boxOf(original.mesh.positions);
-  return { size_mm: Math.max(...[0, 1, 2].map((k) => scale * ((high[k] ?? 0) - (low[k] ?? 0)))) };
+  return { size_mm: sizeBeforeTurning_mm(placement, boxOf(original.mesh.positions)) };
 }
 
 export function Inspector({ session, picture, onReplace, onForm }: InspectorProps) {

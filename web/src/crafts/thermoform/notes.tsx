@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Notes at the foot of the viewport: one at a time, the most urgent first.
-import { signal, useSignal } from '@preact/signals';
-import { formatNumber, Icon, IconButton, Note, useLasting, withUnit } from '../../ui';
+// Notes at the foot of the viewport: what keeps the work from going on first, then a list.
+import { Button, formatNumber, Icon, Note, useLasting, withUnit } from '../../ui';
 import { narrow } from '../../shared/panels/narrow';
-import { sentences } from '../../shared/session/report';
+import { NoteList } from '../../shared/panels/note_list';
+import type { ReportNote } from '../../shared/session/report_notes';
+import { notesOf } from '../../shared/session/report_notes';
 import { problemNote, repairsNote } from '../../shared/panels/room_notes';
 import { clampOf, placementNow } from './draw_scene';
-import { beyondOpening, boxOf, placed } from './placement';
+import { beyondOpening, boxOf, placed, shareThatFits, sizeBeforeTurning_mm } from './placement';
 import type { ThermoformSession } from './thermoform_session';
 import { view } from './views';
-
-/** Words that were read, until others come. */
-const dismissed = signal('');
 
 /** How far the model reaches beyond the clamp, mm; 0 inside. */
 function overhang_mm(session: ThermoformSession): number {
@@ -22,26 +20,29 @@ function overhang_mm(session: ThermoformSession): number {
   return beyondOpening(boxOf(placed(original.mesh.positions, placement)), clampOf(session, shown).opening_mm);
 }
 
+/** Moves the model to the middle and, where that is not enough, makes it as large as the opening allows. */
+function makeFit(session: ThermoformSession): void {
+  const original = session.model.original.value;
+  const shown = session.shown.value;
+  const placement = placementNow(session);
+  if (original === null || shown === null || placement === null) return;
+  const { low, high } = boxOf(placed(original.mesh.positions, placement));
+  const share = shareThatFits({ low, high }, clampOf(session, shown).opening_mm);
+  const size_mm = Math.floor(share * sizeBeforeTurning_mm(placement, boxOf(original.mesh.positions)));
+  session.setParameters({ x_mm: 0, y_mm: 0, ...(share < 1 ? { size_mm } : {}) }, 'Make the model fit');
+}
+
 /** What the reports say that a maker should know before heating a sheet. */
-function advice(session: ThermoformSession): string[] {
+function advice(session: ThermoformSession): ReportNote[] {
   const shown = session.shown.value;
   const [print, mould] = [session.print.value?.report ?? {}, session.mould.value?.report ?? {}];
   const of = {
-    texture: sentences(print, 'sentences'),
-    undercut: sentences(mould, 'advice'),
+    texture: notesOf(print, 'sentences'),
+    undercut: notesOf(mould, 'advice'),
     thickness: [],
     stretch: [],
   }[view.value];
-  return [
-    ...of,
-    ...(shown ? [...sentences(shown.report, 'warnings'), ...sentences(shown.report, 'notes')] : []),
-  ];
-}
-
-/** A sentence as what is the matter, and what follows from it: at its colon, or its first full stop. */
-function headed(sentence: string): readonly [string, string] {
-  const [, head = sentence, tail = ''] = /^(.*?[^\d])[:.]\s+(.+)$/.exec(sentence) ?? [];
-  return [head.replace(/\.$/, ''), tail && tail.charAt(0).toUpperCase() + tail.slice(1)];
+  return [...of, ...(shown ? notesOf(shown.report, 'warnings', 'notes') : [])];
 }
 
 export interface NotesProps {
@@ -51,7 +52,6 @@ export interface NotesProps {
 
 export function Notes({ session, onChooseFile }: NotesProps) {
   const solving = useLasting(session.activity.value.kind === 'solving');
-  const whole = useSignal(false);
   const { model } = session.document.value;
   const problem = problemNote(session, onChooseFile);
   if (problem) return problem;
@@ -64,6 +64,11 @@ export function Notes({ session, onChooseFile }: NotesProps) {
           kind="attention"
           icon="warn"
           title={`The model reaches ${withUnit(formatNumber(over, 2), 'mm')} beyond the clamp`}
+          actions={
+            <Button size="small" onClick={() => makeFit(session)}>
+              Make it fit
+            </Button>
+          }
         >
           Move the model inwards or make it smaller, so that the clamp frame can close.
         </Note>
@@ -77,49 +82,12 @@ export function Notes({ session, onChooseFile }: NotesProps) {
     );
   const repairs = narrow() ? null : repairsNote(session);
   if (repairs) return repairs;
-  const said = advice(session);
-  const words = said.join(' ');
-  if (said.length === 0) return null;
-  // On a phone the object needs the room until the notes are asked for; dismissed ones can be had again.
-  if (words === dismissed.value || (narrow() && !whole.value))
-    return (
-      <button
-        type="button"
-        class="label-chip note-count"
-        onClick={() => {
-          dismissed.value = '';
-          whole.value = true;
-        }}
-      >
-        <Icon name="warn" small /> {said.length === 1 ? '1 note' : `${said.length} notes`}
-      </button>
-    );
-  const [first = '', ...others] = said;
-  const [title, rest] = headed(first);
-  if (!whole.value)
-    return (
-      <div class="label-chip advice" role="status">
-        <Icon name="warn" small />
-        <span class="clip">{title}</span>
-        <button type="button" class="text-button" onClick={() => (whole.value = true)}>
-          {others.length > 0 ? `${others.length} more ${others.length === 1 ? 'note' : 'notes'}` : 'Read on'}
-        </button>
-        <IconButton icon="close" label="Hide this note" onClick={() => (dismissed.value = words)} />
-      </div>
-    );
   return (
-    <div class="note-place">
-      <Note
-        kind="attention"
-        icon="warn"
-        title={title}
-        onDismiss={() => {
-          whole.value = false;
-          dismissed.value = words;
-        }}
-      >
-        {[rest, ...others].filter(Boolean).join(' ')}
-      </Note>
-    </div>
+    <NoteList
+      notes={advice(session)}
+      title="Before you heat a sheet"
+      urgent
+      onFix={({ fix }) => fix && session.setParameters(fix.parameters, fix.label)}
+    />
   );
 }

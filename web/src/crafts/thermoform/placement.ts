@@ -49,6 +49,19 @@ export function boxOf(positions: ArrayLike<number>): Box {
   return { low, high };
 }
 
+/** The longest side of a model that was not turned yet, as the parameter `size_mm` counts it. `box`: in the model's coordinates. */
+export function sizeBeforeTurning_mm(m: Placement, { low, high }: Box): number {
+  const scale = Math.hypot(m[0] ?? 0, m[1] ?? 0, m[2] ?? 0);
+  return scale * Math.max(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
+}
+
+/** By how much a model must shrink to stand in the middle of the opening with 5 mm around it; 1: not at all. */
+export function shareThatFits({ low, high }: Box, opening_mm: readonly [number, number]): number {
+  const margin_mm = 5;
+  const fits = (axis: 0 | 1) => (opening_mm[axis] - 2 * margin_mm) / (high[axis] - low[axis]);
+  return Math.min(1, fits(0), fits(1));
+}
+
 const number = (values: JsonObject, name: string): number => Number(values[name] ?? 0);
 
 /** Where the core will put the model with the parameters `to`, given where it stood with `from`; null where

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Notes at the foot of the viewport: one at a time, the most urgent first.
-import { signal } from '@preact/signals';
-import { Icon, Note, useLasting } from '../../ui';
-import { sentences } from '../../shared/session/report';
+// Notes at the foot of the viewport: what keeps the work from going on first, then a list.
+import { Icon, useLasting } from '../../ui';
+import { NoteList } from '../../shared/panels/note_list';
+import { notesOf } from '../../shared/session/report_notes';
 import { problemNote, repairsNote } from '../../shared/panels/room_notes';
 import type { ZippableSession } from './zippable_session';
-
-/** Words that were read, until others come. */
-const dismissed = signal('');
-const open = signal(false);
 
 export interface NotesProps {
   readonly session: ZippableSession;
@@ -29,28 +25,12 @@ export function Notes({ session, onChooseFile }: NotesProps) {
     );
   const repairs = repairsNote(session);
   if (repairs) return repairs;
-  const said = sentences(session.shown.value?.report ?? {}, 'notes');
-  const words = said.join(' ');
-  if (said.length === 0 || words === dismissed.value) return null;
-  if (!open.value)
-    return (
-      <button type="button" class="label-chip note-chip" onClick={() => (open.value = true)}>
-        <Icon name="warn" small /> {said.length === 1 ? '1 note' : `${said.length} notes`}
-      </button>
-    );
   return (
-    <div class="note-place">
-      <Note
-        kind="plain"
-        icon="warn"
-        title="What was decided automatically"
-        onDismiss={() => {
-          open.value = false;
-          dismissed.value = words;
-        }}
-      >
-        {words}
-      </Note>
-    </div>
+    <NoteList
+      notes={notesOf(session.shown.value?.report ?? {}, 'notes')}
+      title="What was decided automatically"
+      urgent={false}
+      onFix={({ fix }) => fix && session.setParameters(fix.parameters, fix.label)}
+    />
   );
 }

@@ -3,7 +3,8 @@
 import { useEffect, useState } from 'preact/hooks';
 import { Button, formatCount, formatMetres, formatNumber, Icon, Menu, withUnit } from '../../../ui';
 import { solveInFull } from '../../../shared/session/full_solve';
-import { figure, sentences } from '../../../shared/session/report';
+import { figure } from '../../../shared/session/report';
+import { notesOf } from '../../../shared/session/report_notes';
 import { planBytes } from '../make_product';
 import type { SendToMachine } from './send_sheet';
 import { sendSheet, sheetCount, sheetName } from './send_sheet';
@@ -47,7 +48,7 @@ export function Sheets({ session, drawing, onSendToMachine }: SheetsProps) {
         </Button>
       </div>
     );
-  const notes = sentences(plan?.report ?? {}, 'notes');
+  const notes = notesOf(plan?.report ?? {}, 'notes');
   return (
     <>
       <div class="sheets" tabIndex={0} role="group" aria-label={rig ? 'Fastening rig' : 'Sheets to cut'}>
@@ -71,8 +72,19 @@ export function Sheets({ session, drawing, onSendToMachine }: SheetsProps) {
                 <Icon name="warn" small /> {notes.length === 1 ? '1 note' : `${notes.length} notes`}
               </summary>
               <ul>
-                {notes.map((note) => (
-                  <li key={note}>{note}</li>
+                {notes.map(({ sentence, fix }) => (
+                  <li key={sentence}>
+                    {sentence}{' '}
+                    {fix ? (
+                      <button
+                        type="button"
+                        class="text-button"
+                        onClick={() => session.setParameters(fix.parameters, fix.label)}
+                      >
+                        {fix.label}
+                      </button>
+                    ) : null}
+                  </li>
                 ))}
               </ul>
             </details>

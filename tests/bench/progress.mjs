@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How far the remaining time that a running job gives can be relied on: long jobs of every craft, natively.
+//   node tests/bench/progress.mjs build/formwright [NAME...] [--trace FILE]
+//   node tests/bench/progress.mjs build/formwright [OPERATION...] --record core/job/progress/usual_time_shares.cpp
+// Prints for each job its seconds, the share of its run during which a remaining time was given, the share of those
+// moments at which it was within a factor of 1.5 of what the run then took, and where the shown fraction differed
+// most from the share of the time that had passed. --trace writes every message: seconds, fraction, stage, seconds left.
+import { spawn } from 'node:child_process';
+import { createHash } from 'node:crypto';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import os from 'node:os';
+import path from 'node:path';
+import { createInterface } from 'node:readline';
+import { machine, round } from './jobs.mjs';
+
+const job = (operation, parameters, inputs = {}, outputs) => ({ operation, parameters, inputs, ...(outputs ? { outputs } : {}) });
+/** An input that is an output of another job. */
+const made = (maker, output) => ({ maker, output });
+const model = (name, vertices) => made(job('import', {}, { mesh: { sample: name, vertices } }), 'model.ply');
+const relief = (name, vertices, parameters = {}, outputs) => job('relief', parameters, { mesh: model(name, vertices) }, outputs);
+const forming = (operation, name, vertices, parameters = {}) => job(operation, parameters, { mould: model(name, vertices) });
+const design = (name, vertices, width_mm = 20) => job('zippable-design', { width_mm, size_mm: 300 }, { mesh: model(name, vertices) });
+const zipping = (name, vertices, width_mm = 20) => job('zippable-simulate', {}, { design: made(design(name, vertices, width_mm), 'design.json') });
+const milling = (name, vertices, parameters) => job('mill-job', { width_mm: 120, ...parameters }, { model: made(relief(name, vertices, {}, ['heightmap.png']), 'heightmap.png') });
+const small = { size_mm: 60, sheet_x_mm: 130, sheet_y_mm: 130, clamp_opening_x_mm: 110, clamp_opening_y_mm: 110, platform_travel_mm: 60 };
+const measured = (name, fault) => made(job('evidence-virtual-object', { ...small, points: 300, triangles: 1500, ...fault }, { mould: { sample: name } }, ['object.zip']), 'object.zip');
+const diagnosing = (operation, parameters, name, fault) => job(operation, parameters, { object: measured(name, fault) });
+
+/** The usual shares are the mean of these. */
+const recorded = [
+  relief('bust', 60000), relief('octopus', 40000, { thickness_mm: 2 }), relief('cat', 60000),
+  forming('thermoform-simulate', 'bust', 60000), forming('thermoform-simulate', 'cat', 20000),
+  forming('thermoform-texture', 'cat', 20000), forming('thermoform-texture', 'octopus', 20000),
+  forming('thermoform-mould', 'octopus', 60000),
+  design('octopus', 40000), design('cat', 40000, 15), design('t_shape', 30000),
+  zipping('star', 4000),
+  milling('bust', 40000, { width_mm: 400, thickness_mm: 10, diameter_mm: 0.8, rough_diameter_mm: 3, pixel_mm: 0.25 }),
+  diagnosing('evidence-diagnose', { triangles: 1500 }, 'pyramid', { heating_gradient_x: 0.5 }),
+  diagnosing('evidence-calibrate', { triangles: 3000 }, 'pyramid', { young_modulus_pa: 3300000 }),
+];
+/** Other models, sizes and parameters: on these the remaining times are judged. */
+const judged = {
+  relief_octopus_60k: relief('octopus', 60000),
+  relief_mountain_40k: relief('mountain', 40000, { thickness_mm: 3 }),
+  relief_star_thin: relief('star', 40000, { thickness_mm: 1 }),
+  thermoform_simulate_mountain: forming('thermoform-simulate', 'mountain', 40000),
+  thermoform_simulate_octopus: forming('thermoform-simulate', 'octopus', 40000, { triangles: 6000 }),
+  thermoform_texture_fish: forming('thermoform-texture', 'fish', 20000),
+  thermoform_mould_cat: forming('thermoform-mould', 'cat', 40000),
+  zippable_design_cat: design('cat', 20000, 25),
+  zippable_design_star: design('star', 60000, 15),
+  zippable_design_heart: design('heart', 40000),
+  zippable_simulate_heart: zipping('heart', 3000),
+  zippable_simulate_wide_star: zipping('star', 6000, 30),
+  mill_job_cat: milling('cat', 40000, { width_mm: 250, thickness_mm: 8, diameter_mm: 1 }),
+  evidence_diagnose_hemisphere: diagnosing('evidence-diagnose', { triangles: 1500 }, 'hemisphere', { scan_shift_x_mm: 1 }),
+  evidence_diagnose_without_pairs: diagnosing('evidence-diagnose', { triangles: 1000, pairs: false }, 'hemisphere', { weak_vacuum: 0.5 }),
+  evidence_calibrate_hemisphere: diagnosing('evidence-calibrate', { triangles: 2000 }, 'hemisphere', { young_modulus_pa: 2000000 }),
+};
+
+/** Runs one job in a process of its own: its messages with their seconds, its end and the bytes of its outputs. */
+function run(program, message, files) {
+  const folder = mkdtempSync(path.join(os.tmpdir(), 'formwright-progress-'));
+  const blobs = {};
+  for (const [hash, bytes] of Object.entries(files)) writeFileSync((blobs[hash] = path.join(folder, hash)), bytes);
+  const child = spawn(program, ['run-jobs'], { stdio: ['pipe', 'pipe', 'inherit'] });
+  const start = performance.now();
+  child.stdin.write(JSON.stringify({ run: 'x', job: message, blobs, outputs: folder, time_shares: true }) + '\n');
+  return new Promise((resolve, reject) => {
+    const said = [];
+    child.on('exit', (code) => reject(new Error(`the native program ended with ${code}`)));
+    createInterface({ input: child.stdout }).on('line', (line) => {
+      const seconds = (performance.now() - start) / 1e3;
+      const answer = JSON.parse(line);
+      if (answer.progress) said.push([seconds, answer.fraction, answer.stage, answer.seconds_left]);
+      if (!answer.finished) return;
+      child.removeAllListeners('exit');
+      child.kill();
+      const { error, outputs = {} } = answer.result;
+      const bytes = Object.fromEntries(Object.keys(outputs).map((name) => [name, readFileSync(path.join(folder, name))]));
+      rmSync(folder, { recursive: true });
+      if (error) reject(new Error(`${message.operation}: ${error.message}`));
+      else resolve({ seconds, said, bytes, shares: answer.time_shares });
+    });
+  });
+}
+
+const kept = new Map(); // outputs of makers, by their messages
+
+/** Runs a job after those that make its inputs. */
+async function runWithInputs(program, message) {
+  const files = {};
+  const inputs = {};
+  for (const [name, input] of Object.entries(message.inputs)) {
+    if (!input.maker) {
+      inputs[name] = input;
+      continue;
+    }
+    const key = JSON.stringify(input);
+    if (!kept.has(key)) kept.set(key, (await runWithInputs(program, { ...input.maker, outputs: [input.output] })).bytes[input.output]);
+    const bytes = kept.get(key);
+    const sha256 = createHash('sha256').update(bytes).digest('hex');
+    files[sha256] = bytes;
+    inputs[name] = { sha256, file_name: input.output };
+  }
+  return await run(program, { ...message, inputs }, files);
+}
+
+/** What is shown at each moment is the newest message; moments are every 20 ms of the run. */
+function judge({ seconds, said }) {
+  const step = 0.02;
+  let [shown, within, moments, off, offAt] = [0, 0, 0, 0, null];
+  for (let now = 0, k = -1; now < seconds; now += step, ++moments) {
+    while (k + 1 < said.length && said[k + 1][0] <= now) ++k;
+    if (k < 0) continue;
+    const [at, fraction, stage, left] = said[k];
+    const apart = Math.abs(fraction - now / seconds);
+    if (apart > off) [off, offAt] = [apart, `${stage}: ${Math.round(100 * fraction)} % after ${Math.round((100 * now) / seconds)} %`];
+    if (left === null) continue;
+    ++shown;
+    const shownLeft = Math.max(left - (now - at), 0);
+    const truth = seconds - now;
+    if (Math.max(shownLeft, 0.5) <= 1.5 * Math.max(truth, 0.5) && Math.max(truth, 0.5) <= 1.5 * Math.max(shownLeft, 0.5)) ++within;
+  }
+  return { seconds: round(seconds), given_share: round(shown / moments), within_share: shown > 0 ? round(within / shown) : null, fraction_off: round(off), fraction_off_at: offAt };
+}
+
+const words = process.argv.slice(2);
+const option = (name) => {
+  const at = words.indexOf(name);
+  return at < 0 ? null : words.splice(at, 2)[1];
+};
+const trace = option('--trace');
+const table = option('--record');
+const [program, ...names] = words;
+if (!program) throw new Error('Name the native program: node tests/bench/progress.mjs build/formwright');
+
+if (table) {
+  const chosen = recorded.filter(({ operation }) => names.length === 0 || names.includes(operation));
+  const sums = new Map();
+  for (const message of chosen) {
+    const ran = await runWithInputs(program, message);
+    console.error(message.operation, round(ran.seconds));
+    if (ran.shares === null) throw new Error(`${message.operation} ended within a second: use a larger model`);
+    sums.set(message.operation, [...(sums.get(message.operation) ?? []), ran.shares]);
+  }
+  const source = readFileSync(table, 'utf8');
+  const at = source.indexOf('shares{') + 'shares{'.length;
+  const end = source.indexOf('};', at);
+  const rows = new Map([...source.slice(at, end).matchAll(/^ *\{"([^"]+)",[^"]*?\}\},$/gm)].map(([row, operation]) => [operation, row.trim()]));
+  for (const [operation, runs] of sums) {
+    const mean = runs[0].map((_, k) => Math.round((1000 * runs.reduce((sum, run) => sum + run[k], 0)) / runs.length));
+    rows.set(operation, `{"${operation}", {${mean.flatMap((share, k) => (share > 0 ? [`{${k}, ${share}}`] : [])).join(', ')}}},`);
+  }
+  const lines = [...rows].sort().map(([, row]) => `\n      ${row}`).join('');
+  writeFileSync(table, `${source.slice(0, at)}${lines}\n  ${source.slice(end)}`);
+  process.exit();
+}
+
+const rows = {};
+const traces = {};
+for (const [name, message] of Object.entries(judged)) {
+  if (names.length > 0 && !names.includes(name)) continue;
+  const ran = await runWithInputs(program, message);
+  rows[name] = judge(ran);
+  traces[name] = { seconds: ran.seconds, said: ran.said };
+  console.error(name, JSON.stringify(rows[name]));
+}
+if (trace) writeFileSync(trace, JSON.stringify(traces));
+console.log(JSON.stringify({ machine: machine(), jobs: rows }, null, 2));

@@ -127,7 +127,8 @@ TEST_CASE("ProgressClock.MeasuresHowTheTimeWasSpent") {
 }
 
 TEST_CASE("ProgressClock.TheUsualSharesOfEveryOperationAddUpToOne") {
-  for (const char* name : {"relief", "thermoform-simulate", "zippable-design", "evidence-diagnose", "no such operation"}) {
+  for (const char* name :
+       {"relief", "thermoform-simulate", "zippable-design", "evidence-diagnose", "no such operation"}) {
     INFO(name);
     const TimeShares shares = usual_time_shares(name);
     CHECK_THAT(std::accumulate(shares.begin(), shares.end(), 0.0), WithinRel(1.0, 1e-9));

@@ -57,8 +57,8 @@ ProgressClock::Estimate ProgressClock::at(double now_s) {
   const double since_s = (1 - recent) * now_s;
   while (ends_.size() > 1 && ends_[1].first <= since_s) ends_.pop_front();
   if (ends_.front().first > since_s || overdue > max_overdue) return estimate;
-  const auto [first, last] = std::minmax_element(ends_.begin(), ends_.end(),
-                                                 [](const auto& a, const auto& b) { return a.second < b.second; });
+  const auto [first, last] =
+      std::minmax_element(ends_.begin(), ends_.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   // What remains counts, not the end: near it a small change of the end is a large one of the rest.
   const double min_left_s = first->second - now_s, max_left_s = last->second - now_s;
   if (max_left_s <= agreement * std::max(min_left_s, 0.0) + 0.5) estimate.seconds_left = left_s;

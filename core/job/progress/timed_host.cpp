@@ -54,8 +54,8 @@ struct TimedHost::Run {
 TimedHost::TimedHost(const Host& host, const std::string& operation, Session& session) : timed_(host) {
   if (!host.on_progress) return;
   const auto learned = learned_time_shares(operation, session);
-  run_ = std::make_shared<Run>(host, session_key(operation), session,
-                               learned ? *learned : usual_time_shares(operation));
+  run_ =
+      std::make_shared<Run>(host, session_key(operation), session, learned ? *learned : usual_time_shares(operation));
   timed_.on_progress = [run = run_](const Progress& progress) { run->report(progress); };
   timed_.cancel_requested = [run = run_] {
     if (std::this_thread::get_id() == run->thread) run->tick();

@@ -4,6 +4,7 @@ import * as THREE from 'three';
 import type { Vec3 } from '../api';
 import type { CameraState, Screen } from '../camera/camera';
 import type { LineStyle } from '../overlay/lines';
+import { AMBIENT, KEY, fillLight } from './lighting';
 import type { PartName } from './part';
 import type { Uniforms } from './surface';
 import { along, dot, scale, subtract } from '../vector';
@@ -37,8 +38,6 @@ export interface Lines {
   readonly values?: Float32Array;
 }
 
-const KEY = 0.86;
-const AMBIENT = 0.215;
 const NO_REACH = 3e38;
 
 export class PictureUniforms {
@@ -53,6 +52,7 @@ export class PictureUniforms {
     uInside: { value: new THREE.Vector3(-1, 0, 0) },
     uKey: { value: KEY },
     uAmbient: { value: AMBIENT },
+    uFill: { value: new THREE.Vector4(0, 0, 1, 0) },
     uNoise: { value: 0 },
     uViewport: { value: new THREE.Vector2(1, 1) },
     uReach: { value: NO_REACH },
@@ -106,6 +106,8 @@ export class PictureUniforms {
     (this.values['uUp']?.value as THREE.Vector3).set(...picture.lightUp);
     (this.values['uFront']?.value as THREE.Vector3).set(...picture.lightFront);
     (this.values['uLight']?.value as THREE.Vector3).set(...towardsLight);
+    const fill = fillLight(picture.towardsLight, camera);
+    (this.values['uFill']?.value as THREE.Vector4).set(...fill.towards, fill.strength);
     (this.values['uNoise'] as THREE.IUniform).value = sample < 0 ? 0 : (sample * 0.61803399) % 1;
     (this.values['uViewport']?.value as THREE.Vector2).set(width, height);
   }

@@ -2,7 +2,22 @@
 // The mesh itself, and its depth as the light sees it. Positions are mm from the scene's origin;
 // `projectionMatrix` is the whole clip matrix of camera.ts (computed in double precision), so there is no
 // model or view matrix.
+import type { Vec3 } from '../api';
+import {
+  BOUNCE_COLOUR,
+  DIFFUSE,
+  FILL_COLOUR,
+  FILL_IN_HOLLOWS,
+  KEY_COLOUR,
+  ROUGH,
+  SKY_COLOUR,
+  SKY_LEAN,
+  VIEWER,
+} from './lighting';
 import { HEAD, CLIP, SRGB, TEXEL } from './shaders';
+
+const float = (value: number): string => value.toFixed(6);
+const vec3 = (value: Vec3): string => `vec3(${value.map(float).join()})`;
 
 export const surfaceVertex = /* glsl */ `${HEAD}${TEXEL}
 in vec3 position;
@@ -49,8 +64,8 @@ void main() {
 }
 `;
 
-/** Matt plaster: Oren-Nayar under one raking key light, a sky, a bounce from below and a weak light from
- *  the viewer that keeps shadows readable. */
+/** Matt plaster: Oren-Nayar under one raking key light, a sky, a bounce from below, a weak light from the viewer that
+ *  keeps shadows readable, and a fill light on the sides that the key light does not reach (`lighting.ts`). */
 export const surfaceFragment = /* glsl */ `${HEAD}
 precision highp sampler2DShadow;
 ${CLIP}${SRGB}
@@ -68,6 +83,7 @@ uniform vec3 uAlbedo;
 uniform vec3 uInside;           // seen through a cut
 uniform float uKey;
 uniform float uAmbient;
+uniform vec4 uFill;             // xyz towards the fill light, w its strength
 uniform float uOcclusionStrength;
 uniform float uHighlight;
 uniform sampler2D uOcclusion;
@@ -109,7 +125,7 @@ float orenNayar(vec3 l, vec3 v, vec3 n) {
   float nv = max(dot(n, v), 0.0);
   float s = dot(l, v) - nl * nv;
   float t = s > 0.0 ? max(max(nl, nv), 1e-3) : 1.0;
-  return nl * (0.9156 + 0.156 * s / t);
+  return nl * (${float(DIFFUSE)} + ${float(ROUGH)} * s / t);
 }
 
 vec3 shoulder(vec3 c) {
@@ -157,11 +173,12 @@ void main() {
 
   float lit = orenNayar(uLight, v, n);
   if (lit > 0.0) lit *= keyVisibility(n);
-  vec3 keyColour = vec3(1.0, 0.985, 0.955);
-  vec3 skyColour = mix(vec3(0.84, 0.80, 0.76), vec3(1.02, 1.05, 1.12), 0.5 + 0.5 * dot(n, normalize(uUp + 0.7 * uFront)));
-  float viewer = max(dot(n, v), 0.0);
-  vec3 light = uKey * lit * keyColour
-             + uAmbient * (skyColour + 0.35 * viewer) * ambientVisibility;
+  vec3 sky = mix(${vec3(BOUNCE_COLOUR)}, ${vec3(SKY_COLOUR)}, 0.5 + 0.5 * dot(n, normalize(uUp + ${float(SKY_LEAN)} * uFront)));
+  float viewer = ${float(VIEWER)} * max(dot(n, v), 0.0);
+  float filled = uFill.w * max(dot(n, uFill.xyz), 0.0);
+  vec3 light = uKey * lit * ${vec3(KEY_COLOUR)}
+             + uAmbient * (sky + viewer) * ambientVisibility
+             + filled * ${vec3(FILL_COLOUR)} * mix(vec3(1.0), ambientVisibility, ${float(1 - FILL_IN_HOLLOWS)});
   vec3 h = normalize(uLight + v);
   float nh = max(dot(n, h), 0.0);
   vec3 sheen = vec3(0.035 * pow(nh, 14.0) * lit * uKey);

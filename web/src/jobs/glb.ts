@@ -190,3 +190,17 @@ export function parsePrinted(bytes: Uint8Array<ArrayBuffer>): Printed {
     media_type: String(image['mimeType'] ?? 'image/png'),
   };
 }
+
+/** The picture of a scene that has exactly one. Throws Error with one sentence for what is no such file. */
+export function onlyPicture(
+  bytes: Uint8Array<ArrayBuffer>,
+): { readonly picture: Uint8Array<ArrayBuffer>; readonly media_type: string } | null {
+  const glb = new Glb(bytes);
+  const images = list(glb.json['images']).map(object);
+  const [image] = images;
+  if (image === undefined || images.length > 1) return null;
+  return {
+    picture: glb.view(image['bufferView']).slice(),
+    media_type: String(image['mimeType'] ?? 'image/png'),
+  };
+}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { describe, expect, it } from 'vitest';
 import { sampleMesh, writePly } from './mock/meshes';
-import { parsePly } from './ply';
+import { parsePly, plyPictures } from './ply';
 
 function ply(header: string, body: number[]): Uint8Array {
   const text = new TextEncoder().encode(`ply\nformat binary_little_endian 1.0\n${header}end_header\n`);
@@ -32,6 +32,38 @@ describe('parsePly', () => {
     expect([...read.positions]).toEqual([1, 2, 3]);
     expect([...(read.colours ?? [])].map((c) => c.toFixed(2))).toEqual(['1.00', '0.00', '0.20']);
     expect([...(read.attributes['visible'] ?? [])]).toEqual([1]);
+  });
+
+  const triangle = [corner(0, 0, 0), corner(1, 0, 0), corner(0, 1, 0)].flat();
+  const texcoord = 'property list uchar float texcoord\n';
+
+  it('reads where corners lie in a picture, from its faces or from its vertices', () => {
+    const uvs = [0, 0.25, 1, 0.5, 0, 0.75];
+    const face = [3, ...[0, 1, 2].flatMap(int), 6, ...uvs.flatMap(float)];
+    const read = parsePly(ply(vertices(3) + faces(1) + texcoord, [...triangle, ...face]));
+    expect([...(read.cornerUvs ?? [])]).toEqual(uvs);
+
+    const columns = 'property float s\nproperty float t\n';
+    const body = [0, 1, 2].flatMap((v) => [
+      ...triangle.slice(12 * v, 12 * v + 12),
+      ...float(v),
+      ...float(v / 4),
+    ]);
+    const turned = parsePly(ply(vertices(3, columns) + faces(1), [...body, 3, ...[2, 0, 1].flatMap(int)]));
+    expect([...(turned.cornerUvs ?? [])]).toEqual([2, 0.5, 0, 0, 1, 0.25]);
+  });
+
+  it('places no picture where a face does not say where it lies', () => {
+    const bare = [3, ...[0, 1, 2].flatMap(int), 0];
+    const read = parsePly(ply(vertices(3) + faces(1) + texcoord, [...triangle, ...bare]));
+    expect(read.cornerUvs).toBeUndefined();
+    expect([...read.indices]).toEqual([0, 1, 2]);
+  });
+
+  it('names the pictures of its header', () => {
+    const named = ply('comment TextureFile my cat.png\n' + vertices(0) + faces(0) + texcoord, []);
+    expect(plyPictures(named)).toEqual({ placed: true, names: ['my cat.png'] });
+    expect(plyPictures(ply(vertices(0) + faces(0), []))).toEqual({ placed: false, names: [] });
   });
 
   it('turns polygons into fans', () => {

@@ -9,6 +9,8 @@ export interface PlyMesh {
   readonly indices: Uint32Array<ArrayBuffer>;
   /** r, g, b in 0..1 per vertex, if the file has colours. */
   readonly colours?: Float32Array<ArrayBuffer>;
+  /** u, v of each corner of each triangle, origin at the picture's lower left, if the file has them. */
+  readonly cornerUvs?: Float32Array<ArrayBuffer>;
   /** All further scalar vertex properties by name. */
   readonly attributes: Readonly<Record<string, Float32Array<ArrayBuffer>>>;
 }
@@ -44,15 +46,24 @@ function scalar(name: string | undefined): Scalar {
   return scalarNames[name ?? ''] ?? fail(`has a property of unknown type “${name ?? ''}”`);
 }
 
-function readHeader(bytes: Uint8Array): { elements: Element[]; bodyStart: number } {
+interface Header {
+  readonly elements: Element[];
+  /** Of its `TextureFile` comments. */
+  readonly pictures: string[];
+  readonly bodyStart: number;
+}
+
+function readHeader(bytes: Uint8Array): Header {
   const text = new TextDecoder('latin1').decode(bytes.subarray(0, 65536));
   const end = /end_header\r?\n/.exec(text);
   if (!text.startsWith('ply') || end === null) return fail('has no header');
   const elements: Element[] = [];
+  const pictures: string[] = [];
   for (const line of text.slice(0, end.index).split(/\r?\n/)) {
     const words = line.trim().split(/\s+/);
     const element = elements.at(-1);
     if (words[0] === 'format' && words[1] !== 'binary_little_endian') fail('is not binary little-endian');
+    if (words[0] === 'comment' && words[1] === 'TextureFile') pictures.push(words.slice(2).join(' '));
     if (words[0] === 'element')
       elements.push({ name: words[1] ?? '', count: Number(words[2]), properties: [] });
     if (words[0] !== 'property' || element === undefined) continue;
@@ -60,7 +71,20 @@ function readHeader(bytes: Uint8Array): { elements: Element[]; bodyStart: number
       element.properties.push({ name: words[4] ?? '', type: scalar(words[3]), count: scalar(words[2]) });
     else element.properties.push({ name: words[2] ?? '', type: scalar(words[1]), count: null });
   }
-  return { elements, bodyStart: end.index + end[0].length };
+  return { elements, pictures, bodyStart: end.index + end[0].length };
+}
+
+/** Whether a PLY places a picture on its triangles, and the pictures that it names. */
+export function plyPictures(bytes: Uint8Array): { placed: boolean; names: readonly string[] } {
+  const { elements, pictures } = readHeader(bytes);
+  const has = (element: string, property: string) =>
+    elements.some(
+      ({ name, properties }) => name === element && properties.some((known) => known.name === property),
+    );
+  return {
+    placed: has('face', 'texcoord') || (has('vertex', 's') && has('vertex', 't')),
+    names: pictures,
+  };
 }
 
 function read(data: DataView, type: Scalar, at: number): number {
@@ -92,6 +116,7 @@ export function parsePly(bytes: Uint8Array): PlyMesh {
   let at = bodyStart;
   let positions = new Float32Array(0);
   let indices = new Uint32Array(0);
+  let cornerUvs: Float32Array<ArrayBuffer> | undefined;
   let colours: Float32Array<ArrayBuffer> | undefined;
   const attributes: Record<string, Float32Array<ArrayBuffer>> = {};
 
@@ -123,19 +148,43 @@ export function parsePly(bytes: Uint8Array): PlyMesh {
       }
       at += offset * element.count;
     } else if (element.name === 'face') {
-      [indices, at] = readFaces(data, at, element);
+      ({ indices, cornerUvs, at } = readFaces(data, at, element));
     } else {
       at = skip(data, at, element);
     }
   }
   const vertices = positions.length / 3;
   for (const index of indices) if (index >= vertices) fail('names a vertex that it does not have');
-  return { positions, indices, ...(colours ? { colours } : {}), attributes };
+  const { s, t } = attributes;
+  if (s && t && cornerUvs === undefined) {
+    cornerUvs = new Float32Array(2 * indices.length);
+    for (const [corner, vertex] of indices.entries()) {
+      cornerUvs[2 * corner] = s[vertex] ?? 0;
+      cornerUvs[2 * corner + 1] = t[vertex] ?? 0;
+    }
+  }
+  return {
+    positions,
+    indices,
+    ...(colours ? { colours } : {}),
+    ...(cornerUvs ? { cornerUvs } : {}),
+    attributes,
+  };
 }
 
-/** Polygons become fans of triangles. */
-function readFaces(data: DataView, start: number, element: Element): [Uint32Array<ArrayBuffer>, number] {
+interface Faces {
+  readonly indices: Uint32Array<ArrayBuffer>;
+  readonly cornerUvs: Float32Array<ArrayBuffer> | undefined;
+  /** Where the next element begins. */
+  readonly at: number;
+}
+
+/** Polygons become fans of triangles. Texture coordinates are read where every face is a triangle that has them. */
+function readFaces(data: DataView, start: number, element: Element): Faces {
   let indices = new Uint32Array(3 * element.count);
+  const placed = element.properties.some(({ name, count }) => name === 'texcoord' && count !== null);
+  const uvs = placed ? new Float32Array(6 * element.count) : null;
+  let placedFaces = 0;
   let used = 0;
   let at = start;
   try {
@@ -160,13 +209,22 @@ function readFaces(data: DataView, start: number, element: Element): [Uint32Arra
             indices[used++] = read(data, type, at + corner * size);
           }
         }
+        if (uvs && name === 'texcoord' && corners === 6) {
+          for (let k = 0; k < 6; ++k) uvs[6 * face + k] = read(data, type, at + k * size);
+          ++placedFaces;
+        }
         at += corners * size;
       }
   } catch {
     fail('ends before its last face');
   }
   if (at > data.byteLength) fail('ends before its last face');
-  return [used === indices.length ? indices : indices.slice(0, used), at];
+  const complete = uvs !== null && placedFaces === element.count && used === 3 * element.count;
+  return {
+    indices: used === indices.length ? indices : indices.slice(0, used),
+    cornerUvs: complete ? uvs : undefined,
+    at,
+  };
 }
 
 function skip(data: DataView, start: number, element: Element): number {

@@ -31,6 +31,8 @@ export interface MeshData {
   colours?: Float32Array;
   /** u, v per vertex, origin at the lower left, for `texture`. */
   uvs?: Float32Array;
+  /** In the place of `uvs`: u, v per corner of each triangle, for pictures that have seams. */
+  cornerUvs?: Float32Array;
   texture?: ImageBitmap | HTMLCanvasElement | HTMLImageElement;
   /** Named scalars per vertex for colour maps; NaN means "no value here". */
   attributes?: Readonly<Record<string, Float32Array>>;

@@ -216,5 +216,5 @@ export class Content {
 function sameTopology(a: MeshData | null, b: MeshData | null): boolean {
   if (!a || !b || a.positions.length !== b.positions.length) return false;
   if (a.normals || b.normals || !sameIndices(a.indices, b.indices)) return false;
-  return a.uvs === b.uvs && a.colours === b.colours && a.texture === b.texture;
+  return a.uvs === b.uvs && a.cornerUvs === b.cornerUvs && a.colours === b.colours && a.texture === b.texture;
 }

@@ -12,20 +12,21 @@ import type { Extras } from './extras';
 import type { Placement } from './placement';
 import { boxOf, carriedOn, placed, placementOf, rotationOf } from './placement';
 import type { Formed, ThermoformSession } from './thermoform_session';
-import { dragging, mappingOf, swiping, view } from './views';
+import { chooseViewFor, dragging, mappingOf, swiping, view } from './views';
 
 /** White plastic. */
 const plastic = [0.9, 0.895, 0.88] as const;
 /** While the model below matters more than the sheet. */
 const translucent = 0.5;
 
-function modelData(mesh: ShadedMesh, placement: Placement): MeshData {
-  const { shading } = mesh;
+function modelData(mesh: ShadedMesh, placement: Placement, texture: ImageBitmap | null): MeshData {
+  const { shading, cornerUvs } = mesh;
   return {
     positions: placed(mesh.positions, placement),
     indices: mesh.indices,
     ...(shading ? { shading: turnedShading(shading, rotationOf(placement)) } : {}),
     ...(mesh.colours ? { colours: mesh.colours } : {}),
+    ...(texture && cornerUvs ? { cornerUvs, texture } : {}),
   };
 }
 
@@ -68,7 +69,8 @@ function sheetData(formed: Formed, extras: Extras | null): MeshData {
 
 export function keepDrawn(viewport: Viewport, session: ThermoformSession, extras: () => Extras): () => void {
   let drawn: { formed: Formed; printed: unknown } | null = null;
-  let model: { from: string; placement: Placement; frame: string; draft: unknown } | null = null;
+  let model: { from: string; placement: Placement; frame: string; draft: unknown; picture: unknown } | null =
+    null;
   let stretching: Stretching | null = null;
   let lift = 0;
 
@@ -84,10 +86,12 @@ export function keepDrawn(viewport: Viewport, session: ThermoformSession, extras
       return;
     }
     const clamp = clampOf(session, shown);
-    const data = modelData(original.mesh, placement);
+    const picture = session.picture.value;
+    const data = modelData(original.mesh, placement, picture);
     const { high } = boxOf(data.positions);
     const frame = JSON.stringify([clamp, original.from]);
-    if (model?.frame !== frame) {
+    const repainted = model?.picture !== picture;
+    if (model?.frame !== frame || repainted) {
       viewport.setFixtures([
         {
           id: 'frame',
@@ -101,13 +105,14 @@ export function keepDrawn(viewport: Viewport, session: ThermoformSession, extras
       ]);
       lift = 0;
     }
-    const same = model?.from === original.from && model.draft === draft && model.frame === frame;
+    const same =
+      !repainted && model?.from === original.from && model.draft === draft && model.frame === frame;
     const unturned = same && sameTurn(model?.placement, placement);
     if (draft) {
       if (!same) viewport.setOriginal(draft);
     } else if (!same || (!unturned && !dragging.peek())) viewport.setOriginal(data);
     else if (model?.placement.join() !== placement.join()) viewport.rescaleOriginal(data.positions);
-    model = { from: original.from, placement, frame, draft };
+    model = { from: original.from, placement, frame, draft, picture };
     moveModel(data.positions);
   };
   const moveModel = (positions: Float32Array | Float64Array): void => {
@@ -163,6 +168,10 @@ export function keepDrawn(viewport: Viewport, session: ThermoformSession, extras
   };
 
   const stops = [
+    effect(() => {
+      const original = session.model.original.value;
+      if (original) chooseViewFor(original.from, session.hasColours.value);
+    }),
     effect(drawModel),
     effect(drawSheet),
     effect(drawMoment),

@@ -5,11 +5,15 @@ import type { CraftResult } from '../../shared/session/craft_document';
 import type { Product } from '../../shared/session/products';
 import { watchExtras } from './extras';
 import { bytesToSave } from './make_product';
+import { previewPrint } from './preview_print';
 import { moulding, printing } from './thermoform_document';
 import type { Formed, ThermoformSession } from './thermoform_session';
 import { view } from './views';
 
 vi.mock('./make_product', () => ({ bytesToSave: vi.fn(() => Promise.resolve(null)) }));
+vi.mock('./preview_print', () => ({
+  previewPrint: vi.fn(() => Promise.resolve({ positions: [0, 0, 0], uvs: 'own', picture: 'own' })),
+}));
 vi.mock('../../jobs/mesh_reader', () => ({
   readPrinted: (bytes: string) => Promise.resolve({ positions: [0, 0, 0], uvs: bytes, picture: bytes }),
   readPly: (bytes: string) => Promise.resolve({ positions: bytes, indices: [], attributes: {} }),
@@ -31,6 +35,7 @@ const sessionWith = (first: Formed) => ({
   mould: signal<Product | null>(null),
   document: signal({ parameters: {} }),
   activity: signal({ kind: 'idle' }),
+  hasColours: signal(false),
   operationNamed: (name: string) => ({ name }),
   services: { projects: { blobs: { read: (hash: string) => Promise.resolve(hash) } } },
 });
@@ -154,4 +159,24 @@ test('what was read too late is not shown', async () => {
   late('first');
   await rest();
   expect(extras.value.draft).toBeNull();
+});
+
+test('a preview of a coloured model is shown in its colours, one without colours is not', async () => {
+  view.value = 'texture';
+  const first = { ...formed(100), kind: 'preview' } as Formed;
+  const session = sessionWith(first);
+  session.result.value = null;
+  const extras = watch(session);
+  await rest();
+  expect(extras.value.printed).toBeNull();
+  expect(vi.mocked(previewPrint)).not.toHaveBeenCalled();
+
+  session.hasColours.value = true;
+  await rest();
+  expect(extras.value.printed).toMatchObject({ of: first, uvs: 'own', url: null });
+  session.shown.value = { ...formed(90), kind: 'preview' } as Formed;
+  expect(extras.value.printed).toBeNull(); // another sheet
+  await rest();
+  expect(extras.value.printed).toMatchObject({ of: session.shown.value, uvs: 'own' });
+  expect(vi.mocked(previewPrint)).toHaveBeenCalledTimes(2);
 });

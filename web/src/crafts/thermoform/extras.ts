@@ -6,6 +6,7 @@ import { readPly, readPrinted } from '../../jobs/mesh_reader';
 import type { MeshData } from '../../view';
 import { sameRequest } from '../../shared/session/craft_document';
 import { bytesToSave } from './make_product';
+import { previewPrint } from './preview_print';
 import type { Product } from '../../shared/session/products';
 import { moulding, printing } from './thermoform_document';
 import type { Formed, ThermoformSession } from './thermoform_session';
@@ -22,7 +23,13 @@ interface ReadFor {
 export interface Extras {
   /** The print, laid onto the sheet. */
   readonly printed:
-    (ReadFor & { readonly uvs: Float32Array; readonly texture: ImageBitmap; readonly url: string }) | null;
+    | (ReadFor & {
+        readonly uvs: Float32Array;
+        readonly texture: ImageBitmap;
+        /** Of the picture; null for a preview's, which nobody prints. */
+        readonly url: string | null;
+      })
+    | null;
   /** The model with its draft, in the machine. */
   readonly draft: (ReadFor & { readonly mesh: MeshData }) | null;
 }
@@ -68,6 +75,15 @@ export function watchExtras(session: ThermoformSession) {
     urls.push(url);
     extras.value = { ...extras.peek(), printed: { of, file, uvs: read.uvs, texture, url } };
   };
+  /** The model's own colours on a preview's sheet: made in the page, kept nowhere. */
+  const printPreview = async (of: Formed): Promise<void> => {
+    const read = await previewPrint(session, of);
+    if (read === null || read.positions.length !== of.sheet.positions.length) return;
+    const picture = new Blob([read.picture], { type: read.media_type });
+    const texture = await createImageBitmap(picture, { imageOrientation: 'flipY' });
+    if (session.shown.value !== of) return;
+    extras.value = { ...none, printed: { of, file: '', uvs: read.uvs, texture, url: null } };
+  };
   const readDraft = async ({ of, file }: ReadFor): Promise<void> => {
     const { positions, indices, attributes } = await readPly(
       await session.services.projects.blobs.read(file),
@@ -90,8 +106,12 @@ export function watchExtras(session: ThermoformSession) {
     const result = session.result.value;
     // While another result is being read, print and mould are that one's already.
     if (of?.kind !== 'full' || result === null || !sameRequest(result, { ...of, mesh: of.from })) {
-      if (extras.peek() !== none) extras.value = none;
-      return undefined;
+      const painted = of?.kind === 'preview' && extras.peek().printed?.of === of;
+      if (extras.peek() !== none && !painted) extras.value = none;
+      if (of?.kind !== 'preview' || wanted !== 'texture' || painted || !session.hasColours.value)
+        return undefined;
+      const waiting = setTimeout(() => void printPreview(of).catch(() => undefined), wait_ms);
+      return () => clearTimeout(waiting);
     }
     const { printed, draft } = extras.peek();
     if (wanted === 'texture' && !isOf(printed, of, print) && session.operationNamed(printing)) {

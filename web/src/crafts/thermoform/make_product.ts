@@ -10,13 +10,13 @@ import { printing, simulate } from './thermoform_document';
 import type { ThermoformSession } from './thermoform_session';
 
 /** The model's own file keeps what the repaired mesh lost: coordinates of its picture. */
-const sourceInput = (source: Source): JobInput =>
+export const sourceInput = (source: Source): JobInput =>
   source.kind === 'sample'
     ? { sample: source.sample }
     : { sha256: source.file.blob, file_name: source.file_name };
 
 /** Materials and pictures that came with the model, for the inputs that take such files. */
-function companionInputs(operation: Operation, source: Source): Record<string, JobInput> {
+export function companionInputs(operation: Operation, source: Source): Record<string, JobInput> {
   const companions = source.kind === 'file' ? (source.companions ?? []) : [];
   const inputs: Record<string, JobInput> = {};
   for (const { name, extensions = [] } of operation.inputs) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the thermoforming page does beyond opening models: forms a coarse sheet at every change, shows what was
 // formed in full, keeps the moment of the film that is looked at.
-import { computed, signal } from '@preact/signals';
+import { computed, effect, signal } from '@preact/signals';
 import type { JsonObject, Operation, Report } from '../../jobs/contract';
 import { findOperation } from '../../jobs/contract';
 import type { Film } from '../../jobs/glb';
@@ -27,6 +27,8 @@ import type { ThermoformDocument } from './thermoform_document';
 export interface Formed extends ShownWork {
   readonly sheet: PlyMesh;
   readonly film: Film;
+  /** Of a preview: sheet.ply, which no project keeps. */
+  readonly sheetFile?: Uint8Array<ArrayBuffer>;
 }
 
 /** Coarse enough to re-form while the model is dragged. */
@@ -51,6 +53,13 @@ export class ThermoformSession extends RoomSession<ThermoformDocument> {
     furtherInputs: computed(() => profileInputs(this.profile.value)),
     // Size and place belonged to the old model; sheet and machine are still the same.
     forgets: (name) => this.operation.value?.parameters.properties[name]?.['x-group'] === 'Placement',
+  });
+  /** The model's own, once it is read; null where it has none. */
+  readonly picture = signal<ImageBitmap | null>(null);
+  /** Whether the model's file says which colours it has. */
+  readonly hasColours = computed(() => {
+    const colours = this.model.original.value?.mesh.colours;
+    return Boolean(colours ?? this.document.value.model?.picture);
   });
   readonly hasWork = this.model.isThere;
   readonly subject = this.model.subject;
@@ -94,6 +103,25 @@ export class ThermoformSession extends RoomSession<ThermoformDocument> {
   constructor(services: Services) {
     super(services, thermoform);
     this.previews.startFollowing();
+    effect(() => {
+      const blob = this.document.value.model?.picture?.blob ?? null;
+      if (this.active.value) void this.#readPicture(blob);
+    });
+  }
+
+  #pictureFrom: string | null = null;
+  async #readPicture(blob: string | null): Promise<void> {
+    if (blob === this.#pictureFrom) return;
+    this.#pictureFrom = blob;
+    this.picture.value = null;
+    if (blob === null) return;
+    try {
+      const bytes = await this.services.projects.blobs.read(blob);
+      const picture = await createImageBitmap(new Blob([bytes]), { imageOrientation: 'flipY' });
+      if (this.#pictureFrom === blob) this.picture.value = picture;
+    } catch {
+      // A picture that the browser cannot read leaves the model plain; the print's own note says what is wrong with it.
+    }
   }
 
   openFiles(files: readonly File[]): Promise<boolean> {
@@ -142,10 +170,11 @@ export class ThermoformSession extends RoomSession<ThermoformDocument> {
       outputs: this.wantedOutputs,
     };
     const done = await this.services.browser.run(job, { signal });
-    const sheet = await readPly(await bytesOf(done, 'sheet.ply'));
+    const sheetFile = await bytesOf(done, 'sheet.ply');
+    const sheet = await readPly(sheetFile);
     const film = await readFilm(await bytesOf(done, 'forming.glb'));
     this.#previewed.value = this.measured(done.report) ?? this.#previewed.value;
-    return { kind: 'preview', sheet, film, report: done.report, parameters, from: subject.key };
+    return { kind: 'preview', sheet, sheetFile, film, report: done.report, parameters, from: subject.key };
   }
 
   /** Keeps the moment looked at; who looked at the end goes on doing so. */

@@ -9,6 +9,14 @@ import { moulding } from './thermoform_document';
 export type View = 'texture' | 'thickness' | 'stretch' | 'undercut';
 
 export const view = signal<View>('thickness');
+let openedLast: string | null = null;
+/** A model that comes with colours is shown in them, until another view is chosen. */
+export function chooseViewFor(model: string, hasColours: boolean): void {
+  if (openedLast === model) return;
+  openedLast = model;
+  if (hasColours) view.value = 'texture';
+  else if (view.peek() === 'texture') view.value = 'thickness';
+}
 /** Model left of the divider, sheet right of it. */
 export const swiping = signal(false);
 /** A model is being moved about. */

@@ -27,6 +27,8 @@ export interface CraftModel {
   /** For live previews; the mesh itself where that is small enough. */
   readonly preview: BlobReference;
   readonly report: Report;
+  /** Its own picture, which the mesh says where to place; not there where it has none or several. */
+  readonly picture?: BlobReference;
 }
 
 export interface CraftResult {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From a file or a sample to a repaired model with its small stand-in for previews.
 import type { Backend, Result, RunOptions } from '../../jobs/backend';
-import { JobError } from '../../jobs/contract';
+import type { Job } from '../../jobs/contract';
+import { asJobError, JobError } from '../../jobs/contract';
+import { onlyPicture } from '../../jobs/glb';
+import { plyPictures } from '../../jobs/ply';
 import type { BlobStore } from '../../project/blob_store';
 import type { BlobReference } from '../../project/document';
 import { storageSentence } from '../../project/storage';
@@ -27,8 +30,11 @@ export async function importModel(
       : { sha256: source.file.blob, file_name: source.file_name };
   const job = { operation: 'import', parameters: {}, inputs: { mesh: input }, outputs: ['model.ply'] };
   const { report, outputs } = await backend.run(job, options);
-  const mesh = await keep(blobs, await bytesOf({ report, outputs }, 'model.ply'), ply);
-  if ((figure(report, 'vertices') ?? 0) <= previewVertices) return { source, mesh, preview: mesh, report };
+  const bytes = await bytesOf({ report, outputs }, 'model.ply');
+  const mesh = await keep(blobs, bytes, ply);
+  const picture = await ownPicture(backend, blobs, source, bytes, job, options);
+  const model = { source, mesh, report, ...(picture ? { picture } : {}) };
+  if ((figure(report, 'vertices') ?? 0) <= previewVertices) return { ...model, preview: mesh };
   const simplify = {
     operation: 'simplify',
     parameters: { target_vertices: previewVertices },
@@ -37,7 +43,35 @@ export async function importModel(
   };
   const simplified = await backend.run(simplify, options);
   const preview = await keep(blobs, await bytesOf(simplified, 'simplified.ply'), ply);
-  return { source, mesh, preview, report };
+  return { ...model, preview };
+}
+
+const isPicture = (file_name: string): boolean => /\.(png|jpe?g)$/i.test(file_name);
+
+/** The picture that came with the file, else the one inside it. The mesh as PLY only names it, GLB holds it. A model
+ *  opens without its picture where that cannot be read. */
+async function ownPicture(
+  backend: Backend,
+  blobs: BlobStore,
+  source: Source,
+  mesh: Uint8Array,
+  job: Job,
+  options: RunOptions,
+): Promise<BlobReference | null> {
+  try {
+    const { placed, names } = plyPictures(mesh);
+    if (!placed) return null;
+    const beside = source.kind === 'file' ? (source.companions ?? []) : [];
+    const companion = beside.find(({ file_name }) => isPicture(file_name));
+    if (companion) return companion.file;
+    if (names.length !== 1) return null;
+    const glb = await backend.run({ ...job, outputs: ['model.glb'] }, options);
+    const found = onlyPicture(await bytesOf(glb, 'model.glb'));
+    return found && (await keep(blobs, found.picture, found.media_type));
+  } catch (thrown) {
+    if (asJobError(thrown).code === 'cancelled') throw thrown;
+    return null;
+  }
 }
 
 export async function bytesOf(result: Result, name: string): Promise<Uint8Array<ArrayBuffer>> {

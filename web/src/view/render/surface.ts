@@ -3,6 +3,7 @@
 // One mesh on the graphics card: buffers, live updates, and the materials that draw, shadow and bake it.
 import * as THREE from 'three';
 import type { MeshData, Vec3 } from '../api';
+import { type PicturedShading, apartByUv, copyNormals } from '../mesh/corner_uvs';
 import { type Shading, updateNormals } from '../mesh/normals';
 import { findShading } from '../mesh/shading';
 import { bakeFragment, bakeQuadFragment, bakeQuadVertex, bakeVertex } from './bake_shaders';
@@ -69,6 +70,8 @@ export class Surface {
   /** Closed, and its triangles look outwards: nobody sees their backs until it is cut. */
   private readonly solid: boolean;
   private readonly shading: Shading;
+  /** What is drawn of it: more vertices where a picture has seams. */
+  private readonly pictured: PicturedShading | null;
   /** Of the mesh as it was given, until its shape changes: its vertices come first among those drawn. */
   private knownOutline: Uint32Array | undefined;
   private readonly given: MeshData;
@@ -124,7 +127,9 @@ export class Surface {
           source: found.source ?? identity(this.vertexCount),
           normals: found.normals.slice(), // moving the mesh writes into them
         };
-    const count = this.shading.source.length;
+    this.pictured = mesh.texture && mesh.cornerUvs ? apartByUv(this.shading, mesh.cornerUvs) : null;
+    const { source, normals, indices } = this.drawnShading;
+    const count = source.length;
     this.drawn = new Float32Array(3 * count);
     this.writePositions(mesh.positions);
     const attribute = (array: Float32Array, size: number, live = false): THREE.BufferAttribute => {
@@ -133,15 +138,16 @@ export class Surface {
       return buffer;
     };
     this.geometry.setAttribute('position', attribute(this.drawn, 3, true));
-    this.geometry.setAttribute('normal', attribute(this.shading.normals, 3, true));
-    this.geometry.setIndex(new THREE.BufferAttribute(this.shading.indices, 1));
+    this.geometry.setAttribute('normal', attribute(normals, 3, true));
+    this.geometry.setIndex(new THREE.BufferAttribute(indices, 1));
     const defines: Record<string, string | number> = { SHADOW_TAPS: options.shadowTaps ?? 16 };
     if (mesh.colours) {
       this.geometry.setAttribute('colour', attribute(this.spread(mesh.colours, 3), 3));
       defines['COLOURS'] = 1;
     }
-    if (mesh.uvs) this.geometry.setAttribute('uv', attribute(this.spread(mesh.uvs, 2), 2));
-    const texture = mesh.texture && mesh.uvs ? new THREE.Texture(mesh.texture as HTMLImageElement) : null;
+    const uvs = this.pictured?.uvs ?? (mesh.uvs ? this.spread(mesh.uvs, 2) : null);
+    if (uvs) this.geometry.setAttribute('uv', attribute(uvs, 2));
+    const texture = mesh.texture && uvs ? new THREE.Texture(mesh.texture as HTMLImageElement) : null;
     if (texture) {
       defines['TEXTURED'] = 1;
       texture.wrapS = texture.wrapT = THREE.RepeatWrapping;
@@ -226,6 +232,10 @@ export class Surface {
     if (this.bakeGeometry) this.disposables.push(this.bakeGeometry);
   }
 
+  private get drawnShading(): Shading {
+    return this.pictured ?? this.shading;
+  }
+
   /** x, y, z of the drawn vertices, from the scene's origin. */
   get positions(): Float32Array {
     return this.drawn;
@@ -247,7 +257,7 @@ export class Surface {
   }
 
   get drawnIndices(): Uint32Array {
-    return this.shading.indices;
+    return this.drawnShading.indices;
   }
 
   updatePositions(positions: Float32Array | Float64Array, similar: boolean): void {
@@ -255,6 +265,7 @@ export class Surface {
     this.geometry.getAttribute('position').needsUpdate = true;
     if (!similar) {
       updateNormals(this.shading, this.drawn, this.indices, this.faces);
+      if (this.pictured) copyNormals(this.shading.normals, this.pictured);
       this.geometry.getAttribute('normal').needsUpdate = true;
       this.knownOutline = undefined;
     }
@@ -343,7 +354,7 @@ export class Surface {
 
   private writePositions(positions: Float32Array | Float64Array): void {
     const { drawn } = this;
-    const { source } = this.shading;
+    const { source } = this.drawnShading;
     const [ox, oy, oz] = this.origin;
     for (let i = 0, j = 0; i < source.length; ++i, j += 3) {
       const s = 3 * source[i]!;
@@ -355,7 +366,7 @@ export class Surface {
 
   /** Values per mesh vertex to values per drawn vertex. */
   private spread(values: Float32Array, size: number): Float32Array {
-    const { source } = this.shading;
+    const { source } = this.drawnShading;
     const out = new Float32Array(size * source.length);
     out.set(values.subarray(0, size * this.vertexCount));
     for (let i = this.vertexCount; i < source.length; ++i) {
